@@ -1,6 +1,9 @@
 // LOD by error under rows: how many rows of which width keep a patch within a tolerance, with the fewest triangles. Twin:
 // src/tessellate/least_rows.rs, which explains the search. Teams search as search_group.wgsl says.
 
+// Whether the searches of a pass are for rows. The compiler leaves out the other one.
+override SEARCHES_ROWS: u32 = 0u;
+
 // What second derivatives say of rows beside a base.
 struct Expected {
     // How many rows of which width may keep the tolerance. Neither is rounded.

@@ -273,46 +273,19 @@ fn search_asked_factors_main(
         }
         let inside = select(BEYOND_LAST, heights_inside(index), is_searched);
         let inner = select(0.0, known_inner(index), is_searched);
-        let asked = asked_factors(&seen, surface_tolerance(), params.partitioning, least, inside, inner);
+        var asked: Chosen;
+        if SEARCHES_ROWS == 1u {
+            asked = asked_rows(&seen, surface_tolerance(), least, inside);
+        } else {
+            asked = asked_factors(&seen, surface_tolerance(), params.partitioning, least, inside, inner);
+        }
         if leads_team() && is_searched {
             ask(index, asked.edges);
             // What asks again has found an inside factor before.
-            if search == SEARCH_ASKED || asked.inside <= 64.0 {
-                set_chosen(index, asked.edges, asked.inside);
-            }
-            atomicStore(&edge_factors[inner_at(index)], bitcast<u32>(asked.inner));
-        }
-        next = next_patch(search, workgroups.x);
-    }
-}
-
-// The same under rows.
-@compute @workgroup_size(GROUP)
-fn search_asked_rows_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    lane = local;
-    let search = select(SEARCH_ASKED, SEARCH_AGAIN, is_later_round());
-    begun = workgroup.x;
-    var next = next_patch(search, workgroups.x);
-    while any_team(next != NO_MORE) {
-        let is_searched = next != NO_MORE;
-        let index = select(0u, next, is_searched);
-        var seen = load_seen(index);
-        var least = edges_of(index, params.factor_count);
-        if search == SEARCH_ASKED {
-            least = first_least(&seen, least);
-        }
-        let inside = select(BEYOND_LAST, heights_inside(index), is_searched);
-        let asked = asked_rows(&seen, surface_tolerance(), least, inside);
-        if leads_team() && is_searched {
-            ask(index, asked.edges);
-            // What asks again has found rows before.
             if search == SEARCH_ASKED || asked.inside != BEYOND_LAST {
                 set_chosen(index, asked.edges, asked.inside);
             }
+            atomicStore(&edge_factors[inner_at(index)], bitcast<u32>(asked.inner));
         }
         next = next_patch(search, workgroups.x);
     }
@@ -363,6 +336,18 @@ fn inside_factors_main(
     set_inside(index, inside);
 }
 
+// Whether a patch asks again, which has chosen something and found this inside factor beside these factors of its edges.
+fn needs_more(patch_index: u32, chosen: Enough, edges: vec3<f32>, inside: f32) -> bool {
+    if SEARCHES_ROWS != 1u {
+        return asks_again(chosen.inside, inside);
+    }
+    // What was found in an earlier round was found beside what edges had then.
+    let is_known = all(chosen.edges == vec3<f32>(0.0));
+    let chosen_edges = select(chosen.edges, edges_of(patch_index, params.factor_count), is_known);
+    return rows_ask_again(chosen_edges, chosen.inside, edges, inside);
+}
+
+// Searches the inside factors of patches beside what their edges have.
 @compute @workgroup_size(GROUP)
 fn search_inside_factors_main(
     @builtin(workgroup_id) workgroup: vec3<u32>,
@@ -379,42 +364,15 @@ fn search_inside_factors_main(
         let edges = edges_of(index, 0u);
         let least = select(BEYOND_LAST, heights_inside(index), is_searched);
         let inner = select(0.0, known_inner(index), is_searched);
-        let inside = least_inside_factor(&seen, surface_tolerance(), params.partitioning, edges, least, inner);
-        if leads_team() && is_searched {
-            let chosen = chosen_from(atomicExchange(&edge_factors[inside_at(index)], bitcast<u32>(inside)));
-            if asks_again(chosen.inside, inside) {
-                search_later(SEARCH_AGAIN, index, edges, least);
-            }
+        var inside: f32;
+        if SEARCHES_ROWS == 1u {
+            inside = rows_beside(&seen, surface_tolerance(), edges, least);
+        } else {
+            inside = least_inside_factor(&seen, surface_tolerance(), params.partitioning, edges, least, inner);
         }
-        next = next_patch(SEARCH_INSIDE, workgroups.x);
-    }
-}
-
-// The same under rows.
-@compute @workgroup_size(GROUP)
-fn search_rows_beside_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    lane = local;
-    begun = workgroup.x;
-    var next = next_patch(SEARCH_INSIDE, workgroups.x);
-    while any_team(next != NO_MORE) {
-        let is_searched = next != NO_MORE;
-        let index = select(0u, next, is_searched);
-        var seen = load_seen(index);
-        let edges = edges_of(index, 0u);
-        let least = select(BEYOND_LAST, heights_inside(index), is_searched);
-        let inside = rows_beside(&seen, surface_tolerance(), edges, least);
         if leads_team() && is_searched {
             let word = atomicExchange(&edge_factors[inside_at(index)], bitcast<u32>(inside));
-            var chosen = chosen_from(word);
-            if word >= bitcast<u32>(1.0) {
-                // It was found in an earlier round, beside what edges had then.
-                chosen.edges = edges_of(index, params.factor_count);
-            }
-            if rows_ask_again(chosen.edges, chosen.inside, edges, inside) {
+            if needs_more(index, chosen_from(word), edges, inside) {
                 search_later(SEARCH_AGAIN, index, edges, least);
             }
         }

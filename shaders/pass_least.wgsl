@@ -84,28 +84,12 @@ fn search_least_triangles_main(
         var seen = load_seen(index);
         let least = first_least(&seen, least_of_edges(index));
         let inside = select(BEYOND_LAST, heights_inside(index), is_searched);
-        let own = own_least_factors(&seen, surface_tolerance(), params.partitioning, least, inside);
-        if leads_team() && is_searched {
-            least_triangles[index] = triangles_of(own.edges, own.inside);
+        var own: Chosen;
+        if SEARCHES_ROWS == 1u {
+            own = own_least_rows(&seen, surface_tolerance(), least, inside);
+        } else {
+            own = own_least_factors(&seen, surface_tolerance(), params.partitioning, least, inside);
         }
-    }
-}
-
-// The same under rows.
-@compute @workgroup_size(GROUP)
-fn search_least_rows_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    lane = local;
-    team_size = GROUP;
-    for (var index = workgroup.x; index < params.patch_count; index += workgroups.x) {
-        let is_searched = least_triangles[index] == 0u;
-        var seen = load_seen(index);
-        let least = first_least(&seen, least_of_edges(index));
-        let inside = select(BEYOND_LAST, heights_inside(index), is_searched);
-        let own = own_least_rows(&seen, surface_tolerance(), least, inside);
         if leads_team() && is_searched {
             least_triangles[index] = triangles_of(own.edges, own.inside);
         }

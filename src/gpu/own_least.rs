@@ -7,7 +7,7 @@ use super::bound_pass::{BoundPass, PassInputs};
 use super::buffer::{empty, uniform_buffer};
 use super::layout::Params;
 use super::mesh_passes::factor_buffers;
-use super::pipelines::{ComputePipelines, MOST_WORKGROUPS, SearchPipelines, grid};
+use super::pipelines::{ComputePipelines, MOST_WORKGROUPS, grid};
 use super::recorder::RecordPasses;
 use super::search_passes::asked_buffers;
 use super::{Gpu, GpuError};
@@ -78,10 +78,10 @@ impl OwnLeast {
             let buffers = [&factor_buffers(mesh, &self.params, &self.factors)[..], &[(7, &mesh.patches)]].concat();
             Some(BoundPass::once(&self.heights_inside, on.gpu, &on.pipelines.heights_inside, &buffers)?)
         };
-        let has_rows = params.partitioning == Partitioning::Rows as u32;
-        let pipeline = search_pipelines(on.pipelines, has_rows).of(on.gpu, mesh.patch_count);
+        let kind = usize::from(params.partitioning == Partitioning::Rows as u32);
+        let pipeline = on.pipelines.search_least_triangles[kind].of(on.gpu, mesh.patch_count);
         let of_patches = [&asked_buffers(mesh, &self.params, &self.factors)[..], &[(7, &self.triangles)]].concat();
-        let search = BoundPass::once(&self.searches[usize::from(has_rows)], on.gpu, pipeline, &of_patches)?;
+        let search = BoundPass::once(&self.searches[kind], on.gpu, pipeline, &of_patches)?;
         on.gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(params));
         recorder.compute("least", |pass| {
             self.edge_factors.dispatch(pass, grid(mesh.factor_count));
@@ -105,11 +105,6 @@ impl OwnLeast {
     }
 }
 
-/// The pipelines of the search, for rows or for the patterns of Direct3D.
-fn search_pipelines(pipelines: &ComputePipelines, has_rows: bool) -> &SearchPipelines {
-    if has_rows { &pipelines.search_least_rows } else { &pipelines.search_least_triangles }
-}
-
 /// Makes the pipelines of the passes for a number of patches, on any thread.
 ///
 /// # Errors
@@ -117,5 +112,5 @@ fn search_pipelines(pipelines: &ComputePipelines, has_rows: bool) -> &SearchPipe
 pub(super) fn prepare(gpu: &Gpu, pipelines: &ComputePipelines, patches: u32, has_rows: bool) -> Result<(), GpuError> {
     pipelines.edge_factors.get(gpu)?;
     pipelines.least_triangles.get(gpu)?;
-    search_pipelines(pipelines, has_rows).of(gpu, patches).get(gpu).map(|_| ())
+    pipelines.search_least_triangles[usize::from(has_rows)].of(gpu, patches).get(gpu).map(|_| ())
 }

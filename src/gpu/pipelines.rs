@@ -147,6 +147,18 @@ impl SearchPipelines {
         Self { on_software, many_patches, few_patches }
     }
 
+    /// Those that search the patterns of Direct3D, then those that search rows.
+    fn pair(module: &Arc<ShaderModule>, entry_point: &'static str, groups: [u32; 3]) -> [Self; 2] {
+        [0, 1].map(|rows| {
+            let own = Self::new(module, entry_point, groups);
+            Self {
+                on_software: own.on_software.with("SEARCHES_ROWS", rows),
+                many_patches: own.many_patches.with("SEARCHES_ROWS", rows),
+                few_patches: own.few_patches.with("SEARCHES_ROWS", rows),
+            }
+        })
+    }
+
     /// The pipeline for a number of patches: if these alone don't fill a GPU, larger workgroups do.
     pub fn of(&self, gpu: &Gpu, patches: u32) -> &ComputePipeline {
         match patches {
@@ -180,11 +192,10 @@ pub struct ComputePipelines {
     pub first_patterns: ComputePipeline,
     pub search_workgroups: ComputePipeline,
     pub round_workgroups: ComputePipeline,
-    pub search_asked_factors: SearchPipelines,
+    /// For the patterns of Direct3D, then for rows, like all searches that are pairs.
+    pub search_asked_factors: [SearchPipelines; 2],
     pub inside_factors: ComputePipeline,
-    pub search_inside_factors: SearchPipelines,
-    pub search_asked_rows: SearchPipelines,
-    pub search_rows_beside: SearchPipelines,
+    pub search_inside_factors: [SearchPipelines; 2],
     pub keep_factors: ComputePipeline,
     pub sum_triangles: ComputePipeline,
     pub candidates: ComputePipeline,
@@ -192,8 +203,7 @@ pub struct ComputePipelines {
     pub take_uniform_factor: ComputePipeline,
     /// Whose results no other pass needs, like those of the next.
     pub least_triangles: ComputePipeline,
-    pub search_least_triangles: SearchPipelines,
-    pub search_least_rows: SearchPipelines,
+    pub search_least_triangles: [SearchPipelines; 2],
     pub factor_levels: ComputePipeline,
     pub point_levels: ComputePipeline,
     pub counts: ComputePipeline,
@@ -240,19 +250,16 @@ impl ComputePipelines {
             first_patterns: ComputePipeline::new(&asked, "first_patterns_main"),
             search_workgroups: ComputePipeline::new(&asked, "search_workgroups_main"),
             round_workgroups: ComputePipeline::new(&asked, "round_workgroups_main"),
-            search_asked_factors: SearchPipelines::new(&asked, "search_asked_factors_main", groups),
+            search_asked_factors: SearchPipelines::pair(&asked, "search_asked_factors_main", groups),
             inside_factors: ComputePipeline::new(&asked, "inside_factors_main"),
-            search_inside_factors: SearchPipelines::new(&asked, "search_inside_factors_main", groups),
-            search_asked_rows: SearchPipelines::new(&asked, "search_asked_rows_main", groups),
-            search_rows_beside: SearchPipelines::new(&asked, "search_rows_beside_main", groups),
+            search_inside_factors: SearchPipelines::pair(&asked, "search_inside_factors_main", groups),
             keep_factors: ComputePipeline::new(&asked, "keep_factors_main"),
             sum_triangles: ComputePipeline::new(&uniform, "sum_triangles_main"),
             candidates: ComputePipeline::new(&uniform, "candidates_main"),
             search_uniform_factor: SearchPipelines::new(&uniform, "search_uniform_factor_main", groups),
             take_uniform_factor: ComputePipeline::new(&uniform, "take_uniform_factor_main"),
             least_triangles: ComputePipeline::new(&least, "least_triangles_main"),
-            search_least_triangles: SearchPipelines::new(&least, "search_least_triangles_main", groups),
-            search_least_rows: SearchPipelines::new(&least, "search_least_rows_main", groups),
+            search_least_triangles: SearchPipelines::pair(&least, "search_least_triangles_main", groups),
             factor_levels: ComputePipeline::new(&levels, "factor_levels_main"),
             point_levels: ComputePipeline::new(&levels, "point_levels_main"),
             counts: ComputePipeline::new(&counts, "counts_main"),

@@ -11,8 +11,8 @@ use crate::tessellate::ROUNDS;
 /// These belong to one set of mesh buffers: when those are replaced, so must this be.
 #[derive(Default)]
 pub(super) struct SearchPasses {
-    /// By [`SearchPass`].
-    bound: [OnceLock<BoundPass>; 14],
+    /// For the patterns of Direct3D, then for rows; by [`SearchPass`].
+    bound: [[OnceLock<BoundPass>; 12]; 2],
 }
 
 /// The entry points, without `_main`.
@@ -30,8 +30,6 @@ enum SearchPass {
     Candidates,
     SearchUniformFactor,
     TakeUniformFactor,
-    SearchAskedRows,
-    SearchRowsBeside,
 }
 
 /// Software drivers take time for what has nothing to do, and GPUs take less for that than for counting what has.
@@ -64,7 +62,7 @@ pub(crate) const NEXT_PATCHES: u32 = 3;
 pub(crate) const NEXT_EDGES: u32 = 4;
 
 impl SearchPasses {
-    /// All passes in their order, which under rows search other patterns.
+    /// All passes in their order, for rows or for the patterns of Direct3D.
     ///
     /// # Errors
     /// A pipeline can't be made: out of memory, or a lost device.
@@ -101,17 +99,12 @@ impl SearchPasses {
         steps.extend(take_insides(next_patches));
 
         steps.retain(|(pass, _)| software || !SOFTWARE_ONLY.contains(pass));
-        let searched = |pass| match pass {
-            SearchAskedFactors if has_rows => SearchAskedRows,
-            SearchInsideFactors if has_rows => SearchRowsBeside,
-            other => other,
-        };
-        steps.into_iter().map(|(pass, each)| Ok((self.bound(on, searched(pass))?, each))).collect()
+        steps.into_iter().map(|(pass, each)| Ok((self.bound(on, pass, has_rows)?, each))).collect()
     }
 
-    fn bound<'a>(&'a self, on: &PassInputs<'a>, pass: SearchPass) -> Result<&'a BoundPass, GpuError> {
+    fn bound<'a>(&'a self, on: &PassInputs<'a>, pass: SearchPass, has_rows: bool) -> Result<&'a BoundPass, GpuError> {
         use SearchPass::*;
-        let (mesh, pipelines) = (on.mesh, on.pipelines);
+        let (mesh, pipelines, kind) = (on.mesh, on.pipelines, usize::from(has_rows));
         let of_patches = asked_buffers(mesh, on.params, &mesh.edge_factors);
         let factors = [(0, on.params), (4, &mesh.edge_factors)];
         let counted = [factors[0], factors[1], (7, &mesh.search_workgroups)];
@@ -123,18 +116,16 @@ impl SearchPasses {
             FirstPatterns => (&pipelines.first_patterns, &of_patches),
             SearchWorkgroups => (&pipelines.search_workgroups, &counted),
             RoundWorkgroups => (&pipelines.round_workgroups, &counted),
-            SearchAskedFactors => (sized(&pipelines.search_asked_factors), &of_patches),
+            SearchAskedFactors => (sized(&pipelines.search_asked_factors[kind]), &of_patches),
             InsideFactors => (&pipelines.inside_factors, &of_patches),
-            SearchInsideFactors => (sized(&pipelines.search_inside_factors), &of_patches),
-            SearchAskedRows => (sized(&pipelines.search_asked_rows), &of_patches),
-            SearchRowsBeside => (sized(&pipelines.search_rows_beside), &of_patches),
+            SearchInsideFactors => (sized(&pipelines.search_inside_factors[kind]), &of_patches),
             KeepFactors => (&pipelines.keep_factors, &factors),
             SumTriangles => (&pipelines.sum_triangles, &summed),
             Candidates => (&pipelines.candidates, &factors),
             SearchUniformFactor => (sized(&pipelines.search_uniform_factor), &of_patches),
             TakeUniformFactor => (&pipelines.take_uniform_factor, &counted),
         };
-        BoundPass::once(&self.bound[pass as usize], on.gpu, pipeline, buffers)
+        BoundPass::once(&self.bound[kind][pass as usize], on.gpu, pipeline, buffers)
     }
 }
 

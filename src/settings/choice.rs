@@ -199,7 +199,7 @@ impl Choice for Partitioning {
                 "rows",
                 "Rows",
                 "Rounds factors up to whole numbers and cuts every patch into strips beside one of its edges. LOD by error \
-                 takes about half the triangles that Direct3D's patterns need. Hardware tessellators can't make it; \
+                 takes about 0.6 times the triangles that Direct3D's patterns need. Hardware tessellators can't make it; \
                  compute and mesh shaders can.",
             ),
         };

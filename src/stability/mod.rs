@@ -160,7 +160,7 @@ pub(crate) enum Quantity {
     /// The largest distance that any surface point moves as the factor grows by 1/64, as a part of the mesh's diagonal,
     /// under fractional partitioning.
     Jump,
-    /// The same under the other partitionings: integer, pow2 and subtriangulation.
+    /// The same under the other partitionings: integer, pow2, subtriangulation and rows.
     Pop,
 }
 

@@ -201,7 +201,9 @@ fn low_factors_and_small_triangles_are_counted_as_on_the_cpu() {
             let low = match partitioning {
                 Partitioning::FractionalOdd => factor < 2.0,
                 Partitioning::FractionalEven => false,
-                _ => factor == 1.0,
+                Partitioning::Integer | Partitioning::Pow2 | Partitioning::Subtriangulation | Partitioning::Rows => {
+                    factor == 1.0
+                }
             };
             assert_eq!(on_gpu.patches_low, if low { 256 } else { 0 }, "{what}");
             let mut sizes = Sizes::new(view);
