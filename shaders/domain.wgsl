@@ -98,6 +98,15 @@ fn domain_triangle(plan: DomainPlan, t: u32) -> vec3<u32> {
     return regular_triangle(plan.outer, plan.n, t - transition);
 }
 
+// Returns (U, V) of the corners of triangle `t`, in 16.16 fixed point.
+fn domain_triangle_places(plan: DomainPlan, t: u32) -> array<vec2<u32>, 3> {
+    if plan.kind == PATTERN_ROWS {
+        return row_triangle_places(row_plan(plan.factors), t);
+    }
+    let at = domain_triangle(plan, t);
+    return array<vec2<u32>, 3>(domain_point(plan, at.x), domain_point(plan, at.y), domain_point(plan, at.z));
+}
+
 // Returns triangle `t` between an edge and the first ring. The second half of a side mirrors the first.
 fn transition_step(row: DomainRow, inner_segments: u32, edge: u32, t: u32) -> TransitionStep {
     let inner_half = row.half - row.odd;

@@ -18,13 +18,14 @@ const FACTOR_VALUE: u32 = 0x7fffffu;
 const SUBTRIANGULATED: u32 = 0x40000000u;
 const ROWS: u32 = 0x20000000u;
 const ROW_BASE_SHIFT: u32 = 24u;
+const ROW_FLIP_SHIFT: u32 = 26u;
 const ROW_BASE_STEP: u32 = 128u;
 
 const BITS_ONE: u32 = 0x3f800000u;
 const BITS_TWO: u32 = 0x40000000u;
 const BITS_63: u32 = 0x427c0000u;
 const BITS_64: u32 = 0x42800000u;
-const BITS_512: u32 = 0x44000000u;
+const BITS_896: u32 = 0x44600000u;
 const BITS_INFINITY: u32 = 0x7f800000u;
 const BITS_ONE_AND_HALF_STEP: u32 = 0x3f800040u;
 const BITS_ONE_AND_STEP: u32 = 0x3f800080u;
@@ -116,19 +117,19 @@ fn process(partitioning: u32, edges: vec3<f32>, inside: f32) -> PatchFactors {
 // largest 64.
 fn process_rows(outside: vec3<u32>, inside: u32) -> PatchFactors {
     let positive = select(BITS_ONE, max(inside, BITS_ONE), positive_bits(inside));
-    let rounded = (factor_word(PARTITIONING_ROWS, min(positive, BITS_512)) >> 16u) & 0x7fffu;
-    var base = rounded / ROW_BASE_STEP;
+    let rounded = (factor_word(PARTITIONING_ROWS, min(positive, BITS_896)) >> 16u) & 0x7fffu;
+    var step = rounded / ROW_BASE_STEP;
     var width = clamp(rounded % ROW_BASE_STEP, 1u, 64u);
-    if base > 3u {
-        base = 0u;
+    if step > 6u {
+        step = 0u;
         width = 64u;
     }
-    if base == 0u {
+    var base = (step + 2u) % 3u;
+    if step == 0u {
         base = base_by_edges(outside);
-    } else {
-        base -= 1u;
     }
-    return PatchFactors(outside, (width << 16u) | (width << 31u) | ROWS | (base << ROW_BASE_SHIFT));
+    let chosen = (base << ROW_BASE_SHIFT) | (u32(step > 3u) << ROW_FLIP_SHIFT);
+    return PatchFactors(outside, (width << 16u) | (width << 31u) | ROWS | chosen);
 }
 
 // Returns which edge is the base of rows if nothing else says so: the one whose neighbours have the most similar numbers of
@@ -184,6 +185,11 @@ fn patch_has_rows(factors: PatchFactors) -> bool {
 // Returns which edge is the base of a patch's rows: 0, 1 or 2 for U == 0, V == 0 or W == 0.
 fn row_base(factors: PatchFactors) -> u32 {
     return (factors.inside >> ROW_BASE_SHIFT) & 3u;
+}
+
+// Returns 1 if the diagonals of a patch's rows are flipped, else 0.
+fn row_flip(factors: PatchFactors) -> u32 {
+    return (factors.inside >> ROW_FLIP_SHIFT) & 1u;
 }
 
 // Returns the number of rows of a patch: the larger number of segments of the edges beside the base.

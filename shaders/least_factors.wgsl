@@ -114,16 +114,12 @@ fn least_edge_factor(
     return BEYOND_LAST;
 }
 
-// Returns a place of a pattern's domain as weights of corners 0 and 1.
-fn domain_place(plan: DomainPlan, i: u32) -> vec2<f32> {
-    return vec2<f32>(domain_point(plan, i)) / f32(FIXED_ONE);
-}
-
 // Returns the error of triangle `t` of a pattern, in px; a large number in place of NaN.
 fn triangle_error_at(seen: ptr<function, SeenPatch>, tolerance: f32, plan: DomainPlan, t: u32) -> f32 {
-    let at = domain_triangle(plan, t);
-    let p = domain_place(plan, at.x);
-    let error = piece_error(seen, tolerance, p, domain_place(plan, at.y), domain_place(plan, at.z));
+    // As weights of corners 0 and 1.
+    let at = domain_triangle_places(plan, t);
+    let scale = 1.0 / f32(FIXED_ONE);
+    let error = piece_error(seen, tolerance, vec2<f32>(at[0]) * scale, vec2<f32>(at[1]) * scale, vec2<f32>(at[2]) * scale);
     return select(3.4e38, error, error < 3.4e38);
 }
 

@@ -12,6 +12,8 @@ struct Expected {
     // A sixth of the largest second derivatives, in px: across the rows, if there is one, and along the base.
     across: f32,
     along: f32,
+    // Whether flipped diagonals follow the surface better.
+    flips: bool,
 }
 
 // Returns what second derivatives say of rows beside base `base`.
@@ -31,26 +33,33 @@ fn expected_rows(seen: ptr<function, SeenPatch>, base: u32, tolerance: f32) -> E
     // With this many times as many segments as rows, both parts are alike.
     let ratio = sqrt(along / across);
     var error = 0.0;
+    var agreeing = 0.0;
+    var whole = 0.0;
     for (var corner = 0u; corner < 3u; corner++) {
         let segment = forms[corner].aa * (1.0 / (ratio * ratio));
         let mixed = forms[corner].ab * (1.0 / ratio);
         let beside = forms[corner].bb + segment * 0.25;
         error = max(error, triangle_error(length(segment), length(beside + mixed), length(beside - mixed)));
+        // Second derivatives along the diagonals are the sum of these, plus and minus twice the mixed one.
+        let sides = segment + forms[corner].bb;
+        agreeing += dot(sides, mixed);
+        whole += dot(sides, sides);
     }
     let rows = sqrt(error / tolerance);
-    return Expected(rows, ratio * rows, across, along);
+    // Where both diagonals are alike, rounding must not choose.
+    return Expected(rows, ratio * rows, across, along, agreeing < -0.01 * whole);
 }
 
 // Rows that are tried: their base, number and width, and the base's number of segments.
 struct Tried {
     base: u32,
+    flips: bool,
     rows: f32,
     width: f32,
     segments: f32,
     // How many segments less than rows the first and the second edge have.
     fewer: vec2<f32>,
-    // 0 while they grow; then which number has just been made one less: of rows, of their segments, of the base's, or of the first
-    // or the second edge's.
+    // 0 while they grow; then which number has just been lessened (see `with_less`).
     lessened: u32,
 }
 
@@ -83,13 +92,17 @@ fn expected_at_least(number: f32, least: f32) -> f32 {
 }
 
 // Returns the rows with which the search beside a base starts.
-fn first_rows(sought: Sought, base: u32, expected: Expected, slides: bool) -> Tried {
-    // Second derivatives bound the error from above, and say nothing of it where points may slide.
-    let share = select(0.8, 0.0, slides);
+fn first_rows(sought: Sought, base: u32, expected: Expected, share: f32) -> Tried {
     let least = least_rows(sought, base);
     let rows = select(expected_at_least(share * expected.rows, least), least, sought.is_given);
     let width = expected_at_least(share * expected.width, sought.inside);
-    return Tried(base, rows, width, least_segments(sought, base, width), vec2<f32>(0.0), 0u);
+    return Tried(base, expected.flips, rows, width, least_segments(sought, base, width), vec2<f32>(0.0), 0u);
+}
+
+// Returns the share of the expected rows with which a search starts: with the first base, and with the others. Second derivatives
+// bound the error from above, and say nothing of it where points may slide.
+fn first_shares(slides: bool) -> vec2<f32> {
+    return select(vec2<f32>(0.8, 0.6), vec2<f32>(0.0), slides);
 }
 
 // Returns about how many triangles rows beside a base will have.
@@ -97,8 +110,8 @@ fn expected_cost(sought: Sought, base: u32, expected: Expected) -> f32 {
     let rows = max(expected.rows, least_rows(sought, base));
     let width = max(expected.width, sought.inside);
     let cost = rows * width + sought.segment * (rows + 0.5 * least_segments(sought, base, width));
-    // NaN comes last.
-    return select(3e38, cost, cost < 3e38);
+    // NaN comes last. Where bases cost about the same, rounding must not choose: only 5 bits of the mantissa count.
+    return select(3e38, bitcast<f32>(bitcast<u32>(cost) & 0xfffc0000u), cost < 3e38);
 }
 
 // Returns the factors of the edges.
@@ -111,7 +124,13 @@ fn edges_of_rows(sought: Sought, tried: Tried) -> vec3<f32> {
 
 // Returns the inside factor that says which rows.
 fn inside_of_rows(tried: Tried) -> f32 {
-    return f32(ROW_BASE_STEP * (tried.base + 1u)) + tried.width;
+    let step = tried.base + select(1u, 4u, tried.flips);
+    return f32(ROW_BASE_STEP * step) + tried.width;
+}
+
+// Returns the number that is tried after one that isn't enough: at least by one and by this part of it larger.
+fn next_number(number: f32, part: f32) -> f32 {
+    return max(number + 1.0, floor(number * (1.0 + part)));
 }
 
 // Returns rows that may be enough, after some that have this error; more than 64, if none will be.
@@ -120,57 +139,78 @@ fn grown_rows(sought: Sought, tried: Tried, expected: Expected, error: f32, tole
     let ratio = select(100.0, root, root < 100.0);
     let across = expected.across / (tried.rows * tried.rows);
     let along = expected.along / (tried.width * tried.width);
-    let more_rows = max(floor(0.8 * ratio * tried.rows), tried.rows + 1.0);
-    let more_width = max(floor(0.8 * ratio * tried.width), tried.width + 1.0);
-    var rows = tried.rows;
-    var width = tried.width;
+    let part = select(0.125, 0.25, sought.is_given);
+    let more_rows = max(floor(0.8 * ratio * tried.rows), next_number(tried.rows, part));
+    let more_width = max(floor(0.8 * ratio * tried.width), next_number(tried.width, part));
+    var grown = tried;
     if sought.is_given {
         // There may be too few rows for any width.
-        width = select(more_width, BEYOND_LAST, 0.5 * across > tolerance);
+        grown.width = select(more_width, BEYOND_LAST, 0.5 * across > tolerance);
     } else if ratio > 1.5 {
         // The part that is much smaller isn't what is missing.
-        rows = select(more_rows, rows, along > 4.0 * across);
-        width = select(more_width, width, across > 4.0 * along);
+        grown.rows = select(more_rows, tried.rows, along > 4.0 * across);
+        grown.width = select(more_width, tried.width, across > 4.0 * along);
     } else if across > along {
-        rows += 1.0;
+        grown.rows = next_number(tried.rows, part);
     } else {
-        width += 1.0;
+        grown.width = next_number(tried.width, part);
     }
-    return Tried(tried.base, rows, width, least_segments(sought, tried.base, width), vec2<f32>(0.0), 0u);
+    grown.segments = least_segments(sought, tried.base, grown.width);
+    return grown;
 }
 
-// Returns rows with fewer triangles than some that are enough, of which the first possible number after `lessened` is one less; with a
-// `lessened` above 5, if there are none.
-fn lesser_rows(sought: Sought, enough: Tried, lessened: u32) -> Tried {
+// How many kinds of lessening there are.
+const LESSENINGS: u32 = 8u;
+
+// Returns rows with less than others: 1 row less; rows narrower by 1 segment (2) or by 2 (4), and the base with them if it has as
+// many; the same without the base (3 and 5); or 1 segment less of the base (6), of the first edge (7) or of the second one (8).
+fn with_less(sought: Sought, enough: Tried, kind: u32) -> Tried {
     var less = enough;
-    less.lessened = 6u;
-    if sought.is_given {
-        return less;
-    }
-    let base = enough.base;
-    if lessened < 1u && enough.rows > least_rows(sought, base) {
-        less.rows -= 1.0;
-        less.lessened = 1u;
-    } else if lessened < 2u && enough.width > sought.inside {
-        // The base has as many segments as rows are wide, unless its edge needs more.
-        less.width -= 1.0;
-        if enough.segments == enough.width {
-            less.segments = least_segments(sought, base, less.width);
-        }
-        less.lessened = 2u;
-    } else if lessened < 3u && enough.segments > sought.least[base] {
-        less.segments -= 1.0;
-        less.lessened = 3u;
-    } else if lessened < 4u && enough.fewer.y == 0.0
-        && enough.rows - enough.fewer.x > sought.least[(base + 2u) % 3u] {
-        less.fewer.x += 1.0;
-        less.lessened = 4u;
-    } else if lessened < 5u && enough.fewer.x == 0.0
-        && enough.rows - enough.fewer.y > sought.least[(base + 1u) % 3u] {
-        less.fewer.y += 1.0;
-        less.lessened = 5u;
-    }
+    less.rows -= f32(kind == 1u);
+    less.width -= f32(kind == 2u || kind == 3u) + 2.0 * f32(kind == 4u || kind == 5u);
+    let follows = (kind == 2u || kind == 4u) && enough.segments == enough.width;
+    less.segments = select(enough.segments - f32(kind == 6u), least_segments(sought, enough.base, less.width), follows);
+    less.fewer += vec2<f32>(f32(kind == 7u), f32(kind == 8u));
+    less.lessened = kind;
     return less;
+}
+
+// Returns whether there are such rows, and whether they differ from others that are tried.
+fn is_possible(sought: Sought, enough: Tried, less: Tried) -> bool {
+    let kind = less.lessened;
+    if sought.is_given {
+        // The edges have their factors.
+        return (kind == 2u || kind == 4u) && less.width >= sought.inside;
+    }
+    // Where the base doesn't follow, kinds 3 and 5 are the same as 2 and 4.
+    let follows = enough.segments == enough.width && enough.width > sought.least[less.base];
+    return less.rows >= least_rows(sought, less.base)
+        && less.width >= sought.inside
+        && less.segments >= sought.least[less.base]
+        && less.rows - less.fewer.x >= sought.least[(less.base + 2u) % 3u]
+        && less.rows - less.fewer.y >= sought.least[(less.base + 1u) % 3u]
+        && min(less.fewer.x, less.fewer.y) == 0.0
+        && (follows || (kind != 3u && kind != 5u));
+}
+
+// Returns rows with less than some that are enough, by the first kind of lessening after `lessened` that there is; with a `lessened`
+// above LESSENINGS, if there is none.
+fn lesser_rows(sought: Sought, enough: Tried, lessened: u32) -> Tried {
+    for (var kind = lessened + 1u; kind <= LESSENINGS; kind++) {
+        let less = with_less(sought, enough, kind);
+        if is_possible(sought, enough, less) {
+            return less;
+        }
+    }
+    var none = enough;
+    none.lessened = LESSENINGS + 1u;
+    return none;
+}
+
+// Returns the kind of lessening after which the next one is looked for, once one has given rows that are enough: the same again, or
+// all of them where the numbers of two rows fit otherwise.
+fn lessened_before(kind: u32) -> u32 {
+    return select(kind - 1u, 0u, kind == 0u || (kind >= 3u && kind < 6u));
 }
 
 // Returns the number of triangles of a pattern, if a segment of an edge counts as `segment` triangles.
@@ -192,7 +232,7 @@ fn bases_by_cost(costs: vec3<f32>) -> vec3<u32> {
 // are enough, it returns the least factors and BEYOND_LAST. Not for patches of which one triangle suffices.
 fn fewest_rows(seen: ptr<function, SeenPatch>, tolerance: f32, sought: Sought) -> Chosen {
     let within = BOUND_SHARE * tolerance;
-    let slides = may_slide(seen, within);
+    let shares = first_shares(may_slide(seen, within));
     var best = Chosen(sought.least, BEYOND_LAST, 0.0);
     var all_expected: array<Expected, 3>;
     var costs: vec3<f32>;
@@ -203,7 +243,7 @@ fn fewest_rows(seen: ptr<function, SeenPatch>, tolerance: f32, sought: Sought) -
     let order = bases_by_cost(costs);
     var fewest = 3.4e38;
     var at = 0u;
-    var tried = first_rows(sought, order.x, all_expected[order.x], slides);
+    var tried = first_rows(sought, order.x, all_expected[order.x], shares.x);
     var enough = tried;
     var goes_on = max(max(max(sought.least.x, sought.least.y), sought.least.z), sought.inside) <= 64.0;
     while any_team(goes_on) {
@@ -221,26 +261,28 @@ fn fewest_rows(seen: ptr<function, SeenPatch>, tolerance: f32, sought: Sought) -
             fewest = cost;
             enough = tried;
             best = Chosen(edges, inside_of_rows(tried), 0.0);
-            tried = lesser_rows(sought, enough, max(lessened, 1u) - 1u);
+            tried = lesser_rows(sought, enough, lessened_before(lessened));
         } else if lessened > 0u {
             tried = lesser_rows(sought, enough, lessened);
         } else {
             tried = grown_rows(sought, tried, all_expected[tried.base], error, within);
         }
-        if (!is_worth && lessened == 0u) || tried.lessened > 5u {
+        if (!is_worth && lessened == 0u) || tried.lessened > LESSENINGS {
             at += 1u;
             goes_on = at < 3u;
             let base = order[min(at, 2u)];
-            tried = first_rows(sought, base, all_expected[base], slides);
+            tried = first_rows(sought, base, all_expected[base], shares.y);
         }
     }
     return best;
 }
 
+// As how many triangles a segment of an edge counts where a patch asks for it.
+const ASKED_SEGMENT: f32 = 1.75;
+
 // Returns the factors that a patch asks its edges for, and the rows that it would take beside these. See fewest_rows.
 fn asked_rows(seen: ptr<function, SeenPatch>, tolerance: f32, least: vec3<f32>, inside: f32) -> Chosen {
-    // Every segment of an edge is a triangle's side in this patch and in its neighbour.
-    return fewest_rows(seen, tolerance, Sought(least, inside, false, 2.0));
+    return fewest_rows(seen, tolerance, Sought(least, inside, false, ASKED_SEGMENT));
 }
 
 // Returns the factors with which a patch has the fewest triangles if no neighbour asks for anything. See fewest_rows.

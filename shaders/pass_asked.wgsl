@@ -104,13 +104,17 @@ struct Enough {
     inside: f32,
 }
 
+// In place of a chosen inside factor that isn't enough.
+const NONE_ENOUGH: u32 = 400u;
+
 // Stores what a patch has chosen in place of its inside factor: whole numbers, and 65 for larger factors. All together are less
 // than the bits of an inside factor alone.
 fn set_chosen(patch_index: u32, edges: vec3<f32>, inside: f32) {
     let numbers = vec3<u32>(min(ceil(edges), vec3<f32>(65.0)));
-    // Of rows the number that says their base is one less, so that 9 bits are enough.
+    // Of rows the base, the diagonals and the width count from 0, so that 384 numbers are enough.
     let whole = u32(ceil(inside));
-    let own = select(whole, whole - ROW_BASE_STEP, whole > ROW_BASE_STEP);
+    let packed = (whole / ROW_BASE_STEP - 1u) * 64u + whole % ROW_BASE_STEP - 1u;
+    let own = select(select(whole, packed, whole > ROW_BASE_STEP), NONE_ENOUGH, inside == BEYOND_LAST);
     let word = numbers.x | (numbers.y << 7u) | (numbers.z << 14u) | (own << 21u);
     atomicStore(&edge_factors[inside_at(patch_index)], word);
 }
@@ -122,11 +126,9 @@ fn chosen_from(word: u32) -> Enough {
     }
     let numbers = (vec3<u32>(word) >> vec3<u32>(0u, 7u, 14u)) & vec3<u32>(127u);
     let own = word >> 21u;
-    var inside = select(f32(own), BEYOND_LAST, own == 65u);
-    if params.partitioning == PARTITIONING_ROWS && own != 65u {
-        inside = f32(own + ROW_BASE_STEP);
-    }
-    return Enough(min(vec3<f32>(numbers), vec3<f32>(BEYOND_LAST)), inside);
+    let of_rows = (own / 64u + 1u) * ROW_BASE_STEP + own % 64u + 1u;
+    let inside = f32(select(own, of_rows, params.partitioning == PARTITIONING_ROWS));
+    return Enough(min(vec3<f32>(numbers), vec3<f32>(BEYOND_LAST)), select(inside, BEYOND_LAST, own == NONE_ENOUGH));
 }
 
 fn ask(patch_index: u32, asked: vec3<f32>) {

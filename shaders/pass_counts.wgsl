@@ -27,10 +27,11 @@ fn needed_net(patch_index: u32) -> ControlNet {
 // Returns an inside factor under rows whose base is an edge in the order of a convention, for one whose base is the edge U == 0,
 // V == 0 or W == 0 as LOD takes them: each is the edge opposite corner 0, 1 or 2.
 fn inside_of_base(convention: u32, inside: f32) -> f32 {
-    let base = u32(inside) / ROW_BASE_STEP;
+    let step = u32(inside) / ROW_BASE_STEP;
+    let base = (step + 2u) % 3u;
     for (var written = 0u; written < 3u; written++) {
-        if base > 0u && factor_side(convention, written) == base % 3u {
-            return inside + f32(ROW_BASE_STEP * (written + 1u)) - f32(ROW_BASE_STEP * base);
+        if step > 0u && factor_side(convention, written) == step % 3u {
+            return inside + f32(ROW_BASE_STEP * written) - f32(ROW_BASE_STEP * base);
         }
     }
     return inside;

@@ -1,5 +1,10 @@
 // The numbers of segments of the rows of rows.wgsl, added up. Twin: src/tessellate/row_widths.rs.
 
+// Returns `number / by`, rounded down, as the integer part of an f32 quotient. `number` is at most 65,535.
+fn quotient(number: u32, by: u32) -> u32 {
+    return u32((f32(number) + 0.5) / f32(by));
+}
+
 // Returns how many segments rows 1 to `row` have together, of `rows` rows that widen evenly to `width` segments: the sum of
 // ceil(width * i / rows) for i from 1 to `row`, by Euclid's algorithm.
 fn widths_through(rows: u32, width: u32, row: u32) -> u32 {
@@ -9,13 +14,15 @@ fn widths_through(rows: u32, width: u32, row: u32) -> u32 {
     var shift = rows - 1u;
     var sum = 0u;
     while count > 0u {
-        sum += count * (count - 1u) / 2u * (slope / base) + count * (shift / base);
-        slope = slope % base;
-        shift = shift % base;
+        let steps = quotient(slope, base);
+        let steps_at_start = quotient(shift, base);
+        sum += count * (count - 1u) / 2u * steps + count * steps_at_start;
+        slope -= steps * base;
+        shift -= steps_at_start * base;
         // The line's height at the end. Below it, columns are counted as rows.
         let end = slope * count + shift;
-        count = end / base;
-        shift = end % base;
+        count = quotient(end, base);
+        shift = end - count * base;
         let steep = base;
         base = slope;
         slope = steep;

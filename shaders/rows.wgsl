@@ -2,24 +2,24 @@
 // its number alone. Twin: src/tessellate/rows.rs, which describes the pattern. Needs connectivity.wgsl or
 // connectivity_table.wgsl.
 
-// A patch's rows, prepared for `row_point` and `row_triangle`.
+// A patch's rows, prepared for `row_point`, `row_triangle` and `row_triangle_places`.
 struct RowPlan {
-    // The words of the first and of the second edge.
-    edges: vec2<u32>,
+    // The numbers of segments of the first edge, of the second, and of the base.
     a: u32,
     b: u32,
     c: u32,
     n: u32,
     width: u32,
     base: u32,
+    // 1 if diagonals are flipped, else 0.
+    flip: u32,
     apex: u32,
     outer: u32,
 }
 
 // Returns the larger of 1 and row * segments / rows, rounded half up: where a row after the first starts on an edge.
 fn end_place(segments: u32, rows: u32, row: u32) -> u32 {
-    let rounded = (f32(2u * row * segments + rows) + 0.5) / f32(2u * rows);
-    return max(u32(rounded), 1u);
+    return max(quotient(2u * row * segments + rows, 2u * rows), 1u);
 }
 
 // Returns one of three numbers, from those that follow each other in a circle.
@@ -35,13 +35,13 @@ fn row_plan(factors: PatchFactors) -> RowPlan {
     let counts = vec3<u32>(segments(words.x), segments(words.y), segments(words.z));
     let starts = vec3<u32>(0u, counts.x, counts.x + counts.y);
     return RowPlan(
-        vec2<u32>(in_circle(words, base + 2u), in_circle(words, base + 1u)),
         in_circle(counts, base + 2u),
         in_circle(counts, base + 1u),
         in_circle(counts, base),
         row_count(factors),
         row_width(factors),
         base,
+        row_flip(factors),
         in_circle(starts, base + 2u),
         counts.x + counts.y + counts.z,
     );
@@ -67,82 +67,158 @@ fn outline_point(plan: RowPlan, i: u32) -> u32 {
     return select(at, at - plan.outer, at >= plan.outer);
 }
 
-// A row: its number of segments, where it starts and ends on the outline, counted from the apex, and the number of the point
-// after its first one.
+// Returns the number of segments of a row between the apex and the base: ceil(width * row / rows).
+fn row_segments(plan: RowPlan, row: u32) -> u32 {
+    return quotient(plan.width * row + plan.n - 1u, plan.n);
+}
+
+// A row: its number of segments, and at which points of the first and of the second edge it starts and ends, counted from the
+// apex.
 struct PatternRow {
     segments: u32,
     start: u32,
     end: u32,
-    inner: u32,
 }
 
 // Returns a row of a patch.
 fn row_at(plan: RowPlan, row: u32) -> PatternRow {
     if row == 0u {
-        return PatternRow(0u, 0u, 0u, 0u);
+        return PatternRow(0u, 0u, 0u);
     }
-    if row == plan.n {
-        return PatternRow(plan.c, plan.a, plan.a + plan.c, outline_point(plan, plan.a) + 1u);
-    }
-    let widths = row_widths(plan.n, plan.width, row);
-    return PatternRow(
-        widths.y - widths.x,
-        end_place(plan.a, plan.n, row),
-        plan.outer - end_place(plan.b, plan.n, row),
-        plan.outer + points_through(widths.x, row - 1u),
-    );
+    // The last row starts and ends at the last points of the two edges.
+    let segments = select(row_segments(plan, row), plan.c, row == plan.n);
+    return PatternRow(segments, end_place(plan.a, plan.n, row), end_place(plan.b, plan.n, row));
 }
 
-// Returns the number of point `i` of a row.
-fn point_of_row(plan: RowPlan, row: PatternRow, i: u32) -> u32 {
-    let on_outline = outline_point(plan, select(row.end, row.start, i == 0u));
-    return select(row.inner + i - 1u, on_outline, i == 0u || i == row.segments);
+// A strip between a row and the next one.
+struct Strip {
+    // The number of the upper row.
+    row: u32,
+    upper: PatternRow,
+    lower: PatternRow,
+}
+
+// Returns the number of triangles of a strip: one for each segment of its two rows, less one for each point that they share.
+fn strip_triangles(strip: Strip) -> u32 {
+    let joint = u32(strip.upper.start == strip.lower.start) + u32(strip.upper.end == strip.lower.end);
+    return strip.upper.segments + strip.lower.segments - joint;
 }
 
 // Returns how many of the first `t` steps along two rows together are steps of the row with `own` segments, if the other one has
-// `others`.
-fn own_steps(own: u32, others: u32, t: u32) -> u32 {
+// `others`: t * own / (own + others), halves rounded up, or down if diagonals are flipped.
+fn own_steps(flip: u32, own: u32, others: u32, t: u32) -> u32 {
     let all = max(own + others, 1u);
-    return u32((f32(2u * t * own + all) + 0.5) / f32(2u * all));
+    return quotient(2u * t * own + all - flip, 2u * all);
+}
+
+// A corner of a triangle: whether it is on the lower row of its strip, and which point of its row it is.
+struct StripPoint {
+    is_lower: bool,
+    at: u32,
+}
+
+// Returns the corners of triangle `i` of a strip, in the order of the outline.
+fn strip_corners(plan: RowPlan, strip: Strip, i: u32) -> array<StripPoint, 3> {
+    let shares_start = u32(strip.upper.start == strip.lower.start);
+    let joint = shares_start + u32(strip.upper.end == strip.lower.end);
+    let own = strip.upper.segments - joint;
+    let others = strip.lower.segments - joint;
+
+    // The triangle at a shared start stands on the upper row, the one at a shared end on the lower row.
+    var at = vec2<u32>(0u, 1u);
+    var is_upper = true;
+    if i >= shares_start {
+        let step = i - shares_start;
+        let along_upper = own_steps(plan.flip, own, others, step);
+        at = shares_start + vec2<u32>(along_upper, step - along_upper);
+        is_upper = step < own + others && own_steps(plan.flip, own, others, step + 1u) > along_upper;
+    }
+    let upper = StripPoint(false, at.x);
+    let lower = StripPoint(true, at.y);
+    if is_upper {
+        return array<StripPoint, 3>(StripPoint(false, at.x + 1u), upper, lower);
+    }
+    return array<StripPoint, 3>(upper, lower, StripPoint(true, at.y + 1u));
+}
+
+// Returns the number of point `at` of row `row`.
+fn number_in_row(plan: RowPlan, row: u32, own: PatternRow, at: u32) -> u32 {
+    if at == 0u {
+        return outline_point(plan, own.start);
+    }
+    if at == own.segments {
+        return outline_point(plan, plan.outer - own.end);
+    }
+    if row == plan.n {
+        // The points of the base follow each other on the outline.
+        return outline_point(plan, plan.a) + at;
+    }
+    return plan.outer + points_through(row_widths(plan.n, plan.width, row).x, row - 1u) + at - 1u;
+}
+
+// Returns the number of a corner of a triangle.
+fn corner_number(plan: RowPlan, strip: Strip, corner: StripPoint) -> u32 {
+    if corner.is_lower {
+        return number_in_row(plan, strip.row + 1u, strip.lower, corner.at);
+    }
+    return number_in_row(plan, strip.row, strip.upper, corner.at);
 }
 
 // Returns triangle `t` of a patch, as point numbers, in the order of the outline.
 fn row_triangle(plan: RowPlan, t: u32) -> vec3<u32> {
     // A bisection over the at most 64 strips.
-    var strip = 0u;
+    var row = 0u;
     for (var skip = 32u; skip > 0u; skip >>= 1u) {
-        if strip + skip < plan.n && triangles_before(plan, strip + skip) <= t {
-            strip += skip;
+        if row + skip < plan.n && triangles_before(plan, row + skip) <= t {
+            row += skip;
         }
     }
-    let upper = row_at(plan, strip);
-    let lower = row_at(plan, strip + 1u);
-    let in_strip = t - triangles_before(plan, strip);
-    let shares_start = u32(upper.start == lower.start);
-    let joint = shares_start + u32(upper.end == lower.end);
-    let own = upper.segments - joint;
-    let others = lower.segments - joint;
-
-    // The triangle at a shared start stands on the upper row, the one at a shared end on the lower row.
-    var at = vec2<u32>(0u, 1u);
-    var is_upper = true;
-    if in_strip >= shares_start {
-        let step = in_strip - shares_start;
-        let along_upper = own_steps(own, others, step);
-        at = shares_start + vec2<u32>(along_upper, step - along_upper);
-        is_upper = step < own + others && own_steps(own, others, step + 1u) > along_upper;
-    }
-    let p = point_of_row(plan, upper, at.x);
-    let q = point_of_row(plan, lower, at.y);
-    if is_upper {
-        return vec3<u32>(point_of_row(plan, upper, at.x + 1u), p, q);
-    }
-    return vec3<u32>(p, q, point_of_row(plan, lower, at.y + 1u));
+    let strip = Strip(row, row_at(plan, row), row_at(plan, row + 1u));
+    let corners = strip_corners(plan, strip, t - triangles_before(plan, row));
+    return vec3<u32>(
+        corner_number(plan, strip, corners[0]),
+        corner_number(plan, strip, corners[1]),
+        corner_number(plan, strip, corners[2]),
+    );
 }
 
-// Returns the number of segments of a row between the apex and the base: ceil(width * row / rows).
-fn row_segments(plan: RowPlan, row: u32) -> u32 {
-    return (plan.width * row + plan.n - 1u) / plan.n;
+// Returns (U, V) of point `at` of a row, in 16.16 fixed point.
+fn place_in_row(plan: RowPlan, row: PatternRow, at: u32) -> vec2<u32> {
+    let start = whole_location(plan.a, row.start);
+    let end = whole_location(plan.b, row.end);
+    // The weights of the base's start and end. Neither product exceeds 32 bits, since `along` is neither 0 nor 1.
+    let along = whole_location(max(row.segments, 1u), at);
+    let inner = (vec2<u32>(start, end) * vec2<u32>(FIXED_ONE - along, along) + FIXED_HALF) >> vec2<u32>(16u);
+    let at_start = select(select(inner.x, 0u, at == row.segments), start, at == 0u);
+    let at_end = select(select(inner.y, end, at == row.segments), 0u, at == 0u);
+    let at_apex = FIXED_ONE - at_start - at_end;
+    let beside = select(vec2<u32>(at_apex, at_start), vec2<u32>(at_end, at_apex), plan.base == 1u);
+    return select(beside, vec2<u32>(at_start, at_end), plan.base == 2u);
+}
+
+// Returns (U, V) of a corner of a triangle.
+fn corner_place(plan: RowPlan, strip: Strip, corner: StripPoint) -> vec2<u32> {
+    if corner.is_lower {
+        return place_in_row(plan, strip.lower, corner.at);
+    }
+    return place_in_row(plan, strip.upper, corner.at);
+}
+
+// Returns (U, V) of the corners of triangle `t` of a patch, in 16.16 fixed point. It passes the strips before the triangle one by
+// one: for the few rows of most patches that is faster than finding points by their numbers.
+fn row_triangle_places(plan: RowPlan, t: u32) -> array<vec2<u32>, 3> {
+    var strip = Strip(0u, row_at(plan, 0u), row_at(plan, 1u));
+    var rest = t;
+    while rest >= strip_triangles(strip) && strip.row + 1u < plan.n {
+        rest -= strip_triangles(strip);
+        strip = Strip(strip.row + 1u, strip.lower, row_at(plan, strip.row + 2u));
+    }
+    let corners = strip_corners(plan, strip, rest);
+    return array<vec2<u32>, 3>(
+        corner_place(plan, strip, corners[0]),
+        corner_place(plan, strip, corners[1]),
+        corner_place(plan, strip, corners[2]),
+    );
 }
 
 // Returns the row of point `i` of those inside the patch, and the point's place in it.
@@ -154,33 +230,19 @@ fn row_of_point(plan: RowPlan, i: u32) -> vec2<u32> {
     var row = u32(max((root + 2.0 - width) / (2.0 * width) - 0.015625, 0.0));
     var rest = i - points_through(widths_through(plan.n, plan.width, row), row);
     var inner = row_segments(plan, row + 1u) - 1u;
-    var alike = (inner + 1u) * plan.n / plan.width - row;
+    var alike = quotient((inner + 1u) * plan.n, plan.width) - row;
     while rest >= alike * inner {
         rest -= alike * inner;
         row += alike;
         inner = row_segments(plan, row + 1u) - 1u;
-        alike = (inner + 1u) * plan.n / plan.width - row;
+        alike = quotient((inner + 1u) * plan.n, plan.width) - row;
     }
-    let passed = rest / inner;
+    let passed = quotient(rest, inner);
     return vec2<u32>(row + 1u + passed, rest - passed * inner + 1u);
 }
 
 // Returns (U, V) of point `i` of those inside the patch, in 16.16 fixed point.
 fn row_point(plan: RowPlan, i: u32) -> vec2<u32> {
     let found = row_of_point(plan, i);
-    let row = found.x;
-    let along = row_location(domain_row(whole_word(row_segments(plan, row))), found.y);
-    let start = row_location(domain_row(plan.edges.x), end_place(plan.a, plan.n, row));
-    let end = row_location(domain_row(plan.edges.y), end_place(plan.b, plan.n, row));
-    // The weights of the base's start and end. Neither product exceeds 32 bits, since `along` is neither 0 nor 1.
-    let at_start = (start * (FIXED_ONE - along) + FIXED_HALF) >> 16u;
-    let at_end = (end * along + FIXED_HALF) >> 16u;
-    let at_apex = FIXED_ONE - at_start - at_end;
-    let beside = select(vec2<u32>(at_apex, at_start), vec2<u32>(at_end, at_apex), plan.base == 1u);
-    return select(beside, vec2<u32>(at_start, at_end), plan.base == 2u);
-}
-
-// Returns the word of a whole factor.
-fn whole_word(segments: u32) -> u32 {
-    return (segments << 16u) | (segments << 31u);
+    return place_in_row(plan, row_at(plan, found.x), found.y);
 }

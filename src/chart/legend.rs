@@ -59,6 +59,7 @@ pub(super) fn legend(subjects: &[Subject]) -> Vec<Vec<Entry>> {
             LodKind::Uniform => "uniform factor".to_owned(),
             LodKind::Paper => "white paper's LOD, px a segment".to_owned(),
             LodKind::Error => "LOD by error, px".to_owned(),
+            LodKind::ErrorRows => "LOD by error under rows, px".to_owned(),
         };
         if variants.is_empty() {
             name += &format!(" ({})", method.partitioning.name());

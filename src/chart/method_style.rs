@@ -88,5 +88,6 @@ pub(crate) fn dash(lod: LodKind) -> Option<[f64; 2]> {
         LodKind::Uniform => None,
         LodKind::Paper => Some([7.0, 4.0]),
         LodKind::Error => Some([2.0, 2.5]),
+        LodKind::ErrorRows => Some([1.0, 5.0]),
     }
 }

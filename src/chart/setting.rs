@@ -15,21 +15,24 @@ pub enum LodKind {
     Paper,
     /// LOD by error, in px on screen.
     Error,
+    /// LOD by error with patches that are cut into rows, in px on screen.
+    ErrorRows,
 }
 
 impl LodKind {
-    pub const ALL: [Self; 3] = every![LodKind: Uniform, Paper, Error];
+    pub const ALL: [Self; 4] = every![LodKind: Uniform, Paper, Error, ErrorRows];
 
-    /// The kind of an LOD; `None` for one that isn't tried.
-    fn of(lod: Lod) -> Option<Self> {
-        Self::ALL.into_iter().find(|kind| kind.lod() == lod)
+    /// The kind of an LOD with a partitioning; `None` for one that isn't tried.
+    fn of(lod: Lod, partitioning: Partitioning) -> Option<Self> {
+        let has_rows = partitioning == Partitioning::Rows && lod == Lod::Error;
+        Self::ALL.into_iter().find(|kind| kind.lod() == lod && (*kind == Self::ErrorRows) == has_rows)
     }
 
     fn lod(self) -> Lod {
         match self {
             Self::Uniform => Lod::Uniform,
             Self::Paper => Lod::Paper,
-            Self::Error => Lod::Error,
+            Self::Error | Self::ErrorRows => Lod::Error,
         }
     }
 
@@ -38,6 +41,7 @@ impl LodKind {
         match self {
             Self::Uniform | Self::Paper => Partitioning::FractionalOdd,
             Self::Error => Partitioning::Integer,
+            Self::ErrorRows => Partitioning::Rows,
         }
     }
 }
@@ -54,6 +58,11 @@ impl Choice for LodKind {
                 "The white paper's length of an edge on screen, divided by the length of a segment in px.",
             ),
             Self::Error => Description::new("error", "Error", "The error on screen, in px."),
+            Self::ErrorRows => Description::new(
+                "error-rows",
+                "Error under rows",
+                "The error on screen, in px, with patches that are cut into rows.",
+            ),
         }
     }
 }
@@ -84,11 +93,11 @@ impl Setting {
     /// The setting that some settings amount to; `None` under an LOD that isn't tried.
     pub fn of(settings: &Settings) -> Option<Self> {
         let Tessellation { surface, normals, partitioning, factor, pixels, tolerance, .. } = settings.tessellation;
-        let lod = LodKind::of(settings.tessellation.used_lod())?;
+        let lod = LodKind::of(settings.tessellation.used_lod(), partitioning)?;
         let value = match lod {
             LodKind::Uniform => factor,
             LodKind::Paper => pixels,
-            LodKind::Error => tolerance,
+            LodKind::Error | LodKind::ErrorRows => tolerance,
         };
         Some(Self { method: Method { surface, normals, partitioning, lod }, value })
     }
@@ -100,7 +109,7 @@ impl Setting {
         settings.with(match lod {
             LodKind::Uniform => Tessellation { factor: self.value, ..plain },
             LodKind::Paper => Tessellation { pixels: self.value, ..plain },
-            LodKind::Error => Tessellation { tolerance: self.value, ..plain },
+            LodKind::Error | LodKind::ErrorRows => Tessellation { tolerance: self.value, ..plain },
         })
     }
 
@@ -108,7 +117,7 @@ impl Setting {
     pub fn is_finer(&self, than: &Self) -> bool {
         let finer = match self.method.lod {
             LodKind::Uniform => self.value > than.value,
-            LodKind::Paper | LodKind::Error => self.value < than.value,
+            LodKind::Paper | LodKind::Error | LodKind::ErrorRows => self.value < than.value,
         };
         finer && self.method == than.method
     }
@@ -117,7 +126,7 @@ impl Setting {
     pub fn label(&self) -> String {
         match self.method.lod {
             LodKind::Uniform => self.value.to_string(),
-            LodKind::Paper | LodKind::Error => format!("{} px", self.value),
+            LodKind::Paper | LodKind::Error | LodKind::ErrorRows => format!("{} px", self.value),
         }
     }
 }
@@ -128,6 +137,7 @@ impl fmt::Display for Setting {
             LodKind::Uniform => "factor",
             LodKind::Paper => "paper",
             LodKind::Error => "error",
+            LodKind::ErrorRows => "error, rows",
         };
         write!(f, "{what} {}", self.label())
     }
@@ -180,7 +190,7 @@ impl Plan {
             let values = match method.lod {
                 LodKind::Uniform => &self.factors,
                 LodKind::Paper => &self.pixels,
-                LodKind::Error => &self.tolerances,
+                LodKind::Error | LodKind::ErrorRows => &self.tolerances,
             };
             let settings = values.iter().map(|&value| Setting { method, value });
             // A setting that was named twice is tried once.
@@ -198,11 +208,16 @@ impl Plan {
         for (&surface, &normals) in self.surfaces.iter().flat_map(|a| self.normals.iter().map(move |b| (a, b))) {
             for &lod in &self.lods {
                 let common = [lod.partitioning()];
-                let listed = if self.partitionings.is_empty() { &common[..] } else { &self.partitionings };
+                let has_common = self.partitionings.is_empty() || lod == LodKind::ErrorRows;
+                let listed = if has_common { &common[..] } else { &self.partitionings };
                 let possible = |partitioning: &&Partitioning| {
                     lod == LodKind::Uniform || **partitioning != Partitioning::Subtriangulation
                 };
-                let method = |&partitioning: &Partitioning| Method { surface, normals, partitioning, lod };
+                let method = |&partitioning: &Partitioning| {
+                    let under_rows = lod == LodKind::Error && partitioning == Partitioning::Rows;
+                    let lod = if under_rows { LodKind::ErrorRows } else { lod };
+                    Method { surface, normals, partitioning, lod }
+                };
                 all.extend(listed.iter().filter(possible).map(method));
             }
         }

@@ -203,7 +203,7 @@ fn every_listed_setting_is_tried_once() {
         tolerances: vec![0.25],
     };
     let names = |plan: &Plan| -> Vec<String> { plan.settings().iter().map(Setting::to_string).collect() };
-    let each = ["factor 1", "factor 2", "paper 4 px", "error 0.25 px"];
+    let each = ["factor 1", "factor 2", "paper 4 px", "error 0.25 px", "error, rows 0.25 px"];
     assert_eq!(names(&plan), [each, each].concat());
     let by_error = plan.settings()[3];
     assert_eq!(by_error.method.partitioning, Partitioning::Integer);
@@ -212,7 +212,14 @@ fn every_listed_setting_is_tried_once() {
         (applied(by_error).tessellation.tolerance, applied(plan.settings()[2]).tessellation.pixels),
         (0.25, 4.0)
     );
-    let only = Plan { partitionings: vec![Partitioning::Subtriangulation], ..plan };
+    let rows = Plan {
+        partitionings: vec![Partitioning::Rows],
+        lods: vec![LodKind::Error, LodKind::ErrorRows],
+        ..plan.clone()
+    };
+    assert_eq!(names(&rows), ["error, rows 0.25 px"; 2], "LOD by error under rows is tried once");
+    let lods = vec![LodKind::Uniform, LodKind::Paper, LodKind::Error];
+    let only = Plan { partitionings: vec![Partitioning::Subtriangulation], lods, ..plan };
     assert_eq!(names(&only), ["factor 1", "factor 2", "factor 1", "factor 2"], "subtriangulation has only uniform LOD");
 }
 

@@ -50,7 +50,7 @@ pub(crate) struct Args {
     #[arg(long, value_delimiter = ',', value_name = "P,..", value_parser = options::choice::<Partitioning>())]
     pub partitionings: Vec<Partitioning>,
     /// Kinds of LOD to try: one factor everywhere; the white paper's, by projected lengths of edges; or by error on screen
-    #[arg(long, value_parser = options::choice::<LodKind>(), value_delimiter = ',', value_name = "LOD,..", default_values = ["uniform", "paper", "error"])]
+    #[arg(long, value_parser = options::choice::<LodKind>(), value_delimiter = ',', value_name = "LOD,..", default_values = ["uniform", "paper", "error", "error-rows"])]
     pub lods: Vec<LodKind>,
     /// Factors to try under uniform LOD, each 1 to 64
     #[arg(long, value_delimiter = ',', value_name = "F,..", default_value = "1,2,3,4,6,8,12,16,24,32,48,64", value_parser = options::number_of(&FACTOR))]

@@ -15,7 +15,7 @@ use super::factors::{
     patch_is_subtriangulated, segments,
 };
 use super::rings::{TransitionStep, ring_point, rings_before};
-use super::rows::{row_plan, row_point, row_triangle};
+use super::rows::{row_plan, row_point, row_triangle, row_triangle_places};
 use super::subtriangulation::{subtriangulation_point, subtriangulation_triangle};
 
 /// Two thirds in 16.16 fixed point, rounded down as in the specification.
@@ -136,6 +136,14 @@ pub fn domain_triangle(plan: &DomainPlan, t: u32) -> [u32; 3] {
     }
     let transition = plan.outer + 3 * (plan.n - 2);
     if t < transition { transition_triangle(plan, t) } else { regular_triangle(plan.outer, plan.n, t - transition) }
+}
+
+/// Returns (U, V) of the corners of triangle `t`, in 16.16 fixed point.
+pub(crate) fn domain_triangle_places(plan: &DomainPlan, t: u32) -> [[u32; 2]; 3] {
+    if plan.kind == PatternKind::Rows {
+        return row_triangle_places(&row_plan(plan.factors), t);
+    }
+    domain_triangle(plan, t).map(|i| domain_point(plan, i))
 }
 
 /// Returns triangle `t` between an edge and the first ring. The second half of a side mirrors the first.

@@ -22,13 +22,14 @@ pub(crate) const FACTOR_ODD: u32 = 0x8000_0000;
 pub(crate) const FACTOR_VALUE: u32 = 0x7f_ffff;
 /// The bit of an inside factor's word that marks a subtriangulated patch: see `subtriangulation.rs`.
 pub(crate) const SUBTRIANGULATED: u32 = 0x4000_0000;
-/// The bit of an inside factor's word that marks a patch of rows: see `rows.rs`. The factor is the rows' width, and the two
-/// bits from [`ROW_BASE_SHIFT`] on say which edge is the base.
+/// The bit of an inside factor's word that marks a patch of rows: see `rows.rs`. The factor is the rows' width, the two bits
+/// from [`ROW_BASE_SHIFT`] on say which edge is the base, and the bit after them is 1 if diagonals are flipped.
 pub(crate) const ROWS: u32 = 0x2000_0000;
 pub(crate) const ROW_BASE_SHIFT: u32 = 24;
+pub(crate) const ROW_FLIP_SHIFT: u32 = 26;
 
-/// Under rows the inside factor is the width and this times 1, 2 or 3 if the base is the edge U == 0, V == 0 or W == 0. Without
-/// that the factors of the edges choose the base.
+/// Under rows the inside factor is the width and this times 1, 2 or 3 if the base is the edge U == 0, V == 0 or W == 0; or times
+/// 4, 5 or 6 if diagonals are flipped, too. Without that the factors of the edges choose the base.
 pub(crate) const ROW_BASE_STEP: u32 = 128;
 
 /// Bit patterns of `f32` numbers. Those of positive numbers are in the order of the numbers; those of NaN and of
@@ -37,8 +38,8 @@ pub(crate) const BITS_ONE: u32 = 0x3f80_0000;
 pub(crate) const BITS_TWO: u32 = 0x4000_0000;
 pub(crate) const BITS_63: u32 = 0x427c_0000;
 pub(crate) const BITS_64: u32 = 0x4280_0000;
-/// 512, from which on inside factors under rows name no base.
-pub(crate) const BITS_512: u32 = 0x4400_0000;
+/// 896, from which on inside factors under rows name no base.
+pub(crate) const BITS_896: u32 = 0x4460_0000;
 pub(crate) const BITS_INFINITY: u32 = 0x7f80_0000;
 /// 1 + 2^-17, the largest edge factor that rounds to 1 in fixed point.
 pub(crate) const BITS_ONE_AND_HALF_STEP: u32 = 0x3f80_0040;
@@ -165,13 +166,14 @@ pub(crate) fn process(partitioning: Partitioning, edges: [f32; 3], inside: f32) 
 /// largest 64.
 fn process_rows(outside: [u32; 3], inside: u32) -> PatchFactors {
     let positive = if positive_bits(inside) { inside.max(BITS_ONE) } else { BITS_ONE };
-    let rounded = factor_word(Partitioning::Rows, positive.min(BITS_512)) >> 16 & 0x7fff;
-    let (mut base, mut width) = (rounded / ROW_BASE_STEP, (rounded % ROW_BASE_STEP).clamp(1, 64));
-    if base > 3 {
-        (base, width) = (0, 64);
+    let rounded = factor_word(Partitioning::Rows, positive.min(BITS_896)) >> 16 & 0x7fff;
+    let (mut step, mut width) = (rounded / ROW_BASE_STEP, (rounded % ROW_BASE_STEP).clamp(1, 64));
+    if step > 6 {
+        (step, width) = (0, 64);
     }
-    let base = if base == 0 { base_by_edges(outside) } else { base - 1 };
-    PatchFactors { outside, inside: width << 16 | width << 31 | ROWS | base << ROW_BASE_SHIFT }
+    let base = if step == 0 { base_by_edges(outside) } else { (step - 1) % 3 };
+    let chosen = base << ROW_BASE_SHIFT | u32::from(step > 3) << ROW_FLIP_SHIFT;
+    PatchFactors { outside, inside: width << 16 | width << 31 | ROWS | chosen }
 }
 
 /// Returns which edge is the base of rows if nothing else says so: the one whose neighbours have the most similar numbers of
@@ -220,6 +222,11 @@ pub(crate) fn patch_has_rows(factors: PatchFactors) -> bool {
 /// Returns which edge is the base of a patch's rows: 0, 1 or 2 for U == 0, V == 0 or W == 0.
 pub(crate) fn row_base(factors: PatchFactors) -> u32 {
     factors.inside >> ROW_BASE_SHIFT & 3
+}
+
+/// Returns 1 if the diagonals of a patch's rows are flipped, else 0.
+pub(crate) fn row_flip(factors: PatchFactors) -> u32 {
+    factors.inside >> ROW_FLIP_SHIFT & 1
 }
 
 /// Returns the number of rows of a patch: the larger number of segments of the edges beside the base.

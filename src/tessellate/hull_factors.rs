@@ -12,7 +12,7 @@ pub struct HullFactors {
     /// TessFactor[0..2]. Which side each one is for depends on the [`Convention`].
     pub edges: [f32; 3],
     /// InsideTessFactor. Under rows it is the width, and [`ROW_BASE_STEP`] times 1, 2 or 3 more if the base is the edge of
-    /// factor 0, 1 or 2.
+    /// factor 0, 1 or 2; or times 4, 5 or 6 more if diagonals are flipped, too.
     pub inside: f32,
 }
 
@@ -55,10 +55,11 @@ impl HullFactors {
 /// Returns an inside factor under rows whose base is an edge in the order of a convention, for one whose base is the edge
 /// U == 0, V == 0 or W == 0 as LOD takes them: each is the edge opposite corner 0, 1 or 2.
 pub(crate) fn inside_of_base(convention: Convention, inside: f32) -> f32 {
-    let base = (inside / ROW_BASE_STEP as f32) as u32;
-    let side = base % 3;
+    let step = (inside / ROW_BASE_STEP as f32) as u32;
+    let base = (step + 2) % 3;
+    let side = step % 3;
     match (0..3).find(|&i| factor_side(convention, i) == side) {
-        Some(written) if base > 0 => inside + (ROW_BASE_STEP * (written + 1)) as f32 - (ROW_BASE_STEP * base) as f32,
+        Some(written) if step > 0 => inside + (ROW_BASE_STEP * written) as f32 - (ROW_BASE_STEP * base) as f32,
         _ => inside,
     }
 }

@@ -11,7 +11,7 @@ use std::array::from_fn;
 
 use glam::{Vec2, Vec3};
 
-use super::domain::{DomainPlan, domain_plan, domain_point, domain_triangle};
+use super::domain::{DomainPlan, domain_plan, domain_triangle_places};
 use super::factors::{
     FIXED_ONE, Partitioning, PatchFactors, inside_segments, patch_has_rows, patch_is_minimal, process, round_pow2,
     segments, triangle_count,
@@ -107,15 +107,11 @@ pub(super) fn least_edge_factor(
     BEYOND_LAST
 }
 
-/// Returns a place of a pattern's domain as weights of corners 0 and 1.
-fn domain_place(plan: &DomainPlan, i: u32) -> Vec2 {
-    let [u, v] = domain_point(plan, i);
-    Vec2::new(u as f32, v as f32) / FIXED_ONE as f32
-}
-
 /// Returns the error of triangle `t` of a pattern, in px; a large number in place of NaN.
 fn triangle_error_at(patch: &SeenPatch, tolerance: f32, plan: &DomainPlan, t: u32) -> f32 {
-    let error = piece_error(patch, tolerance, domain_triangle(plan, t).map(|i| domain_place(plan, i)));
+    // As weights of corners 0 and 1.
+    let weights = |[u, v]: [u32; 2]| Vec2::new(u as f32, v as f32) / FIXED_ONE as f32;
+    let error = piece_error(patch, tolerance, domain_triangle_places(plan, t).map(weights));
     if error < 3.4e38 { error } else { 3.4e38 }
 }
 

@@ -4,7 +4,11 @@
 //! Each of the three edges may be the base. The error of a triangle of rows follows from the second derivatives along the base,
 //! divided by the square of the rows' width, and across the rows, divided by the square of their number. So the number and
 //! the width for which both parts are alike give the fewest triangles. They are where the search starts, at somewhat fewer;
-//! what a pattern lacks is then told by its triangles' errors, as `piece_error.rs` bounds them.
+//! what a pattern lacks is then told by its triangles' errors, as `piece_error.rs` bounds them. Once a pattern is enough, single
+//! numbers are lessened. Errors don't fall steadily as numbers grow, because whether triangles lean depends on how the numbers
+//! of two rows fit each other. So numbers are lessened by two as well, and the base with its rows or without them.
+//!
+//! Diagonals follow the direction in which the surface bends less, which second derivatives tell, too.
 
 use glam::Vec2;
 
@@ -21,6 +25,8 @@ struct Expected {
     /// A sixth of the largest second derivatives, in px: across the rows, if there is one, and along the base.
     across: f32,
     along: f32,
+    /// Whether flipped diagonals follow the surface better.
+    flips: bool,
 }
 
 /// Returns what second derivatives say of rows beside base `base`.
@@ -36,27 +42,32 @@ fn expected_rows(patch: &SeenPatch, base: usize, tolerance: f32) -> Expected {
     }
     // With this many times as many segments as rows, both parts are alike.
     let ratio = (along / across).sqrt();
-    let mut error = 0.0f32;
+    let (mut error, mut agreeing, mut whole) = (0.0f32, 0.0, 0.0);
     for SecondForms { aa, ab, bb } in forms {
         let (segment, mixed) = (aa * (1.0 / (ratio * ratio)), ab * (1.0 / ratio));
         let beside = bb + segment * 0.25;
         error = error.max(triangle_error(segment.length(), (beside + mixed).length(), (beside - mixed).length()));
+        // Second derivatives along the diagonals are the sum of these, plus and minus twice the mixed one.
+        let sides = segment + bb;
+        agreeing += sides.dot(mixed);
+        whole += sides.dot(sides);
     }
     let rows = (error / tolerance).sqrt();
-    Expected { rows, width: ratio * rows, across, along }
+    // Where both diagonals are alike, rounding must not choose.
+    Expected { rows, width: ratio * rows, across, along, flips: agreeing < -0.01 * whole }
 }
 
 /// Rows that are tried: their base, number and width, and the base's number of segments.
 #[derive(Clone, Copy, Debug)]
 struct Tried {
     base: usize,
+    flips: bool,
     rows: f32,
     width: f32,
     segments: f32,
     /// How many segments less than rows the first and the second edge have.
     fewer: [f32; 2],
-    /// 0 while they grow; then which number has just been made one less: of rows, of their segments, of the base's, or of the
-    /// first or the second edge's.
+    /// 0 while they grow; then which number has just been lessened (see [`with_less`]).
     lessened: u32,
 }
 
@@ -90,13 +101,18 @@ fn expected_at_least(number: f32, least: f32) -> f32 {
 }
 
 /// Returns the rows with which the search beside a base starts.
-fn first_rows(sought: &Sought, base: usize, expected: &Expected, slides: bool) -> Tried {
-    // Second derivatives bound the error from above, and say nothing of it where points may slide.
-    let share = if slides { 0.0 } else { 0.8 };
+fn first_rows(sought: &Sought, base: usize, expected: &Expected, share: f32) -> Tried {
     let least = least_rows(sought, base);
     let rows = if sought.is_given { least } else { expected_at_least(share * expected.rows, least) };
     let width = expected_at_least(share * expected.width, sought.inside);
-    Tried { base, rows, width, segments: least_segments(sought, base, width), fewer: [0.0; 2], lessened: 0 }
+    let segments = least_segments(sought, base, width);
+    Tried { base, flips: expected.flips, rows, width, segments, fewer: [0.0; 2], lessened: 0 }
+}
+
+/// Returns the share of the expected rows with which a search starts: with the first base, and with the others. Second derivatives
+/// bound the error from above, and say nothing of it where points may slide.
+fn first_shares(slides: bool) -> [f32; 2] {
+    if slides { [0.0; 2] } else { [0.8, 0.6] }
 }
 
 /// Returns about how many triangles rows beside a base will have.
@@ -104,8 +120,8 @@ fn expected_cost(sought: &Sought, base: usize, expected: &Expected) -> f32 {
     let rows = expected.rows.max(least_rows(sought, base));
     let width = expected.width.max(sought.inside);
     let cost = rows * width + sought.segment * (rows + 0.5 * least_segments(sought, base, width));
-    // NaN comes last.
-    if cost < 3e38 { cost } else { 3e38 }
+    // NaN comes last. Where bases cost about the same, rounding must not choose: only 5 bits of the mantissa count.
+    if cost < 3e38 { f32::from_bits(cost.to_bits() & 0xfffc_0000) } else { 3e38 }
 }
 
 /// Returns the factors of the edges.
@@ -121,7 +137,13 @@ fn edges_of_rows(sought: &Sought, tried: &Tried) -> [f32; 3] {
 
 /// Returns the inside factor that says which rows.
 fn inside_of_rows(tried: &Tried) -> f32 {
-    (ROW_BASE_STEP as usize * (tried.base + 1)) as f32 + tried.width
+    let step = tried.base as u32 + if tried.flips { 4 } else { 1 };
+    (ROW_BASE_STEP * step) as f32 + tried.width
+}
+
+/// Returns the number that is tried after one that isn't enough: at least by one and by this part of it larger.
+fn next_number(number: f32, part: f32) -> f32 {
+    (number + 1.0).max((number * (1.0 + part)).floor())
 }
 
 /// Returns rows that may be enough, after some that have this error; more than 64, if none will be.
@@ -130,7 +152,8 @@ fn grown_rows(sought: &Sought, tried: Tried, expected: &Expected, error: f32, to
     let ratio = if ratio < 100.0 { ratio } else { 100.0 };
     let across = expected.across / (tried.rows * tried.rows);
     let along = expected.along / (tried.width * tried.width);
-    let more = |number: f32| (0.8 * ratio * number).floor().max(number + 1.0);
+    let part = if sought.is_given { 0.25 } else { 0.125 };
+    let more = |number: f32| (0.8 * ratio * number).floor().max(next_number(number, part));
     let (mut rows, mut width) = (tried.rows, tried.width);
     if sought.is_given {
         // There may be too few rows for any width.
@@ -140,38 +163,68 @@ fn grown_rows(sought: &Sought, tried: Tried, expected: &Expected, error: f32, to
         rows = if along > 4.0 * across { rows } else { more(rows) };
         width = if across > 4.0 * along { width } else { more(width) };
     } else if across > along {
-        rows += 1.0;
+        rows = next_number(rows, part);
     } else {
-        width += 1.0;
+        width = next_number(width, part);
     }
     Tried { rows, width, segments: least_segments(sought, tried.base, width), ..tried }
 }
 
-/// Returns rows with fewer triangles than some that are enough, of which the first possible number after `lessened` is one less;
-/// with a `lessened` above 5, if there are none.
-fn lesser_rows(sought: &Sought, enough: Tried, lessened: u32) -> Tried {
-    let Tried { base, rows, width, segments, fewer: [first, second], .. } = enough;
+/// How many kinds of lessening there are.
+pub(crate) const LESSENINGS: u32 = 8;
+
+/// Returns rows with less than others: 1 row less; rows narrower by 1 segment (2) or by 2 (4), and the base with them if it has as
+/// many; the same without the base (3 and 5); or 1 segment less of the base (6), of the first edge (7) or of the second one (8).
+fn with_less(sought: &Sought, enough: &Tried, kind: u32) -> Tried {
+    let one = |of: &[u32]| if of.contains(&kind) { 1.0 } else { 0.0 };
+    let width = enough.width - one(&[2, 3]) - 2.0 * one(&[4, 5]);
+    let follows = [2, 4].contains(&kind) && enough.segments == enough.width;
+    let [first, second] = enough.fewer;
+    Tried {
+        rows: enough.rows - one(&[1]),
+        width,
+        segments: if follows { least_segments(sought, enough.base, width) } else { enough.segments - one(&[6]) },
+        fewer: [first + one(&[7]), second + one(&[8])],
+        lessened: kind,
+        ..*enough
+    }
+}
+
+/// Returns whether there are such rows, and whether they differ from others that are tried.
+fn is_possible(sought: &Sought, enough: &Tried, less: &Tried) -> bool {
+    let kind = less.lessened;
     if sought.is_given {
-        return Tried { lessened: 6, ..enough };
+        // The edges have their factors.
+        return (kind == 2 || kind == 4) && less.width >= sought.inside;
     }
-    if lessened < 1 && rows > least_rows(sought, base) {
-        return Tried { rows: rows - 1.0, lessened: 1, ..enough };
+    // Where the base doesn't follow, kinds 3 and 5 are the same as 2 and 4.
+    let follows = enough.segments == enough.width && enough.width > sought.least[less.base];
+    let [first, second] = less.fewer;
+    less.rows >= least_rows(sought, less.base)
+        && less.width >= sought.inside
+        && less.segments >= sought.least[less.base]
+        && less.rows - first >= sought.least[(less.base + 2) % 3]
+        && less.rows - second >= sought.least[(less.base + 1) % 3]
+        && first.min(second) == 0.0
+        && (follows || (kind != 3 && kind != 5))
+}
+
+/// Returns rows with less than some that are enough, by the first kind of lessening after `lessened` that there is; with a
+/// `lessened` above [`LESSENINGS`], if there is none.
+fn lesser_rows(sought: &Sought, enough: Tried, lessened: u32) -> Tried {
+    for kind in lessened + 1..=LESSENINGS {
+        let less = with_less(sought, &enough, kind);
+        if is_possible(sought, &enough, &less) {
+            return less;
+        }
     }
-    if lessened < 2 && width > sought.inside {
-        // The base has as many segments as rows are wide, unless its edge needs more.
-        let less = if segments == width { least_segments(sought, base, width - 1.0) } else { segments };
-        return Tried { width: width - 1.0, segments: less, lessened: 2, ..enough };
-    }
-    if lessened < 3 && segments > sought.least[base] {
-        return Tried { segments: segments - 1.0, lessened: 3, ..enough };
-    }
-    if lessened < 4 && second == 0.0 && rows - first > sought.least[(base + 2) % 3] {
-        return Tried { fewer: [first + 1.0, second], lessened: 4, ..enough };
-    }
-    if lessened < 5 && first == 0.0 && rows - second > sought.least[(base + 1) % 3] {
-        return Tried { fewer: [first, second + 1.0], lessened: 5, ..enough };
-    }
-    Tried { lessened: 6, ..enough }
+    Tried { lessened: LESSENINGS + 1, ..enough }
+}
+
+/// Returns the kind of lessening after which the next one is looked for, once one has given rows that are enough: the same again, or
+/// all of them where the numbers of two rows fit otherwise.
+fn lessened_before(kind: u32) -> u32 {
+    if kind == 0 || (3..6).contains(&kind) { 0 } else { kind - 1 }
 }
 
 /// Returns the number of triangles of a pattern, if a segment of an edge counts as `segment` triangles.
@@ -206,13 +259,13 @@ fn fewest_rows(patch: &SeenPatch, tolerance: f32, sought: &Sought) -> Chosen {
     if single_suffices(patch, within, Partitioning::Rows, sought.least, sought.inside) {
         return Chosen { inside: (ROW_BASE_STEP + 1) as f32, ..best };
     }
-    let slides = may_slide(patch, within);
+    let shares = first_shares(may_slide(patch, within));
     let all = [0, 1, 2].map(|base| expected_rows(patch, base, within));
     let costs = [0, 1, 2].map(|base| expected_cost(sought, base, &all[base]));
     let order = bases_by_cost(costs);
     let mut fewest = 3.4e38;
     let mut at = 0;
-    let mut tried = first_rows(sought, order[0], &all[order[0]], slides);
+    let mut tried = first_rows(sought, order[0], &all[order[0]], shares[0]);
     let mut enough = tried;
     let mut goes_on = true;
     while goes_on {
@@ -226,27 +279,30 @@ fn fewest_rows(patch: &SeenPatch, tolerance: f32, sought: &Sought) -> Chosen {
         if is_worth && error <= within {
             (fewest, enough) = (cost, tried);
             best = Chosen { edges, inside: inside_of_rows(&tried), inner: 0.0 };
-            tried = lesser_rows(sought, enough, lessened.saturating_sub(1));
+            tried = lesser_rows(sought, enough, lessened_before(lessened));
         } else if lessened > 0 {
             tried = lesser_rows(sought, enough, lessened);
         } else {
             tried = grown_rows(sought, tried, &all[tried.base], error, within);
         }
-        if !is_worth && lessened == 0 || tried.lessened > 5 {
+        if !is_worth && lessened == 0 || tried.lessened > LESSENINGS {
             at += 1;
             goes_on = at < 3;
             let base = order[at.min(2)];
-            tried = first_rows(sought, base, &all[base], slides);
+            tried = first_rows(sought, base, &all[base], shares[1]);
         }
     }
     best
 }
 
+/// As how many triangles a segment of an edge counts where a patch asks for it. It is a triangle's side in this patch and in its
+/// neighbour; but the neighbour often asks for it, too.
+pub(crate) const ASKED_SEGMENT: f32 = 1.75;
+
 /// Returns the factors that a patch asks its edges for, and the rows that it would take beside these. `least` are the least
 /// factors that the edges may get, and `inside` is the least number of rows and of segments of a row.
 pub(super) fn asked_rows(patch: &SeenPatch, tolerance: f32, least: [f32; 3], inside: f32) -> Chosen {
-    // Every segment of an edge is a triangle's side in this patch and in its neighbour.
-    fewest_rows(patch, tolerance, &Sought { least, inside, is_given: false, segment: 2.0 })
+    fewest_rows(patch, tolerance, &Sought { least, inside, is_given: false, segment: ASKED_SEGMENT })
 }
 
 /// Returns the factors with which a patch has the fewest triangles if no neighbour asks for anything.

@@ -116,11 +116,13 @@ pub(crate) mod shared_constants {
     pub(crate) use super::displacement_factor::{DETAIL_SHARE, SURFACE_SHARE, TURN_SHARE};
     pub(crate) use super::domain::FIXED_TWO_THIRDS;
     pub(crate) use super::factors::{
-        BITS_63, BITS_64, BITS_512, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP, BITS_ONE_AND_STEP, BITS_TWO,
-        FACTOR_ODD, FACTOR_VALUE, FIXED_HALF, FIXED_ONE, ROW_BASE_SHIFT, ROW_BASE_STEP, ROWS, SUBTRIANGULATED,
+        BITS_63, BITS_64, BITS_896, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP, BITS_ONE_AND_STEP, BITS_TWO,
+        FACTOR_ODD, FACTOR_VALUE, FIXED_HALF, FIXED_ONE, ROW_BASE_SHIFT, ROW_BASE_STEP, ROW_FLIP_SHIFT, ROWS,
+        SUBTRIANGULATED,
     };
     pub(crate) use super::flat_patch::{AGREEING, TWO_POINTS};
     pub(crate) use super::least_factors::{BEYOND_LAST, BOUND_SHARE, ROW_REACH, SPREAD, TOGETHER};
+    pub(crate) use super::least_rows::{ASKED_SEGMENT, LESSENINGS};
     pub(crate) use super::normal::CANCELLED;
     pub(crate) use super::piece_error::{FINEST_GRID, PARTIAL_STEPS};
     pub(crate) use super::surface::UNIT;

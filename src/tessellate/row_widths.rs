@@ -1,5 +1,13 @@
 //! The numbers of segments of the rows of `rows.rs`, added up. Twin: `shaders/row_widths.wgsl`.
 
+/// Returns `number / by`, rounded down. `number` is at most 65,535.
+///
+/// It is the integer part of an f32 quotient, since GPUs divide f32 numbers many times faster than integers. The 0.5 that is
+/// added keeps the quotient further from integers than the 2.5 ULP by which WGSL lets it be wrong.
+pub(super) fn quotient(number: u32, by: u32) -> u32 {
+    ((number as f32 + 0.5) / by as f32) as u32
+}
+
 /// Returns how many segments rows 1 to `row` have together, of `rows` rows that widen evenly to `width` segments: the sum of
 /// ceil(width * i / rows) for i from 1 to `row`. `rows` and `width` are 1 to 64, and `row` is at most `rows`.
 ///
@@ -10,12 +18,13 @@ pub(super) fn widths_through(rows: u32, width: u32, row: u32) -> u32 {
     let (mut count, mut base, mut slope, mut shift) = (row + 1, rows, width, rows - 1);
     let mut sum = 0;
     while count > 0 {
-        sum += count * (count - 1) / 2 * (slope / base) + count * (shift / base);
-        (slope, shift) = (slope % base, shift % base);
+        let (steps, steps_at_start) = (quotient(slope, base), quotient(shift, base));
+        sum += count * (count - 1) / 2 * steps + count * steps_at_start;
+        (slope, shift) = (slope - steps * base, shift - steps_at_start * base);
         // The line's height at the end. Below it, columns are counted as rows.
         let end = slope * count + shift;
-        count = end / base;
-        shift = end % base;
+        count = quotient(end, base);
+        shift = end - count * base;
         (base, slope) = (slope, base);
     }
     sum
@@ -24,6 +33,15 @@ pub(super) fn widths_through(rows: u32, width: u32, row: u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn quotients_are_rounded_down() {
+        for by in 1..=256 {
+            for number in 0..=65535 {
+                assert_eq!(quotient(number, by), number / by, "{number} / {by}");
+            }
+        }
+    }
 
     #[test]
     fn the_sum_is_that_of_all_rows() {

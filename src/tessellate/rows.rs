@@ -14,19 +14,22 @@
 //! other by more than half a segment. Rows never meet but in a shared point, so every order of steps would give triangles that
 //! don't overlap. Where rows share a point, they begin or end with one triangle instead of two.
 //!
-//! So the numbers of segments of the three edges, which edge is the base, and `width` say everything. With all of them equal to
-//! `n`, the patch is cut into `n * n` equal triangles.
+//! Where the two rows have the same number of segments, the strip consists of quads, all of which are cut along the same
+//! diagonal. Whether that is the one or the other is up to the patch: its diagonals may be *flipped*. The other diagonal may
+//! follow the surface much better, as on a saddle.
+//!
+//! So the numbers of segments of the three edges, which edge is the base, `width`, and whether diagonals are flipped say
+//! everything. With all numbers equal to `n`, the patch is cut into `n * n` equal triangles.
 
 use super::connectivity::row_widths;
-use super::domain_row::{domain_row, row_location};
-use super::factors::{FIXED_HALF, FIXED_ONE, PatchFactors, row_base, row_count, row_width, segments};
-use super::row_widths::widths_through;
+use super::domain_row::whole_location;
+use super::factors::{FIXED_HALF, FIXED_ONE, PatchFactors, row_base, row_count, row_flip, row_width, segments};
+use super::row_widths::{quotient, widths_through};
 
-/// A patch's rows, prepared for [`row_point`] and [`row_triangle`].
+/// A patch's rows, prepared for [`row_point`], [`row_triangle`] and [`row_triangle_places`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RowPlan {
-    /// The words of the first and of the second edge, and their numbers of segments.
-    edges: [u32; 2],
+    /// The numbers of segments of the first and of the second edge.
     a: u32,
     b: u32,
     /// The number of segments of the base.
@@ -36,6 +39,8 @@ pub(super) struct RowPlan {
     width: u32,
     /// Which edge is the base: 0, 1 or 2 for U == 0, V == 0 or W == 0.
     base: u32,
+    /// 1 if diagonals are flipped, else 0.
+    flip: u32,
     /// The apex's number, and how many points are on the outline.
     apex: u32,
     outer: u32,
@@ -43,12 +48,8 @@ pub(super) struct RowPlan {
 
 /// Returns the larger of 1 and row * segments / rows, rounded half up: where a row after the first starts on an edge. All are
 /// at most 64.
-///
-/// It is the integer part of an f32 quotient, as in `domain.rs`: the 0.5 that is added keeps the quotient further from integers
-/// than the 2.5 ULP by which WGSL lets it be wrong.
 fn end_place(segments: u32, rows: u32, row: u32) -> u32 {
-    let rounded = ((2 * row * segments + rows) as f32 + 0.5) / (2 * rows) as f32;
-    (rounded as u32).max(1)
+    quotient(2 * row * segments + rows, 2 * rows).max(1)
 }
 
 /// Returns one of three numbers, from those that follow each other in a circle.
@@ -59,16 +60,16 @@ fn in_circle(numbers: [u32; 3], i: u32) -> u32 {
 /// Prepares the rows of a patch.
 pub(super) fn row_plan(factors: PatchFactors) -> RowPlan {
     let base = row_base(factors);
-    let (words, counts) = (factors.outside, factors.outside.map(segments));
+    let counts = factors.outside.map(segments);
     // Edge i runs from corner i + 1 to corner i + 2. So the outline passes the first edge, the base and the second edge.
     RowPlan {
-        edges: [in_circle(words, base + 2), in_circle(words, base + 1)],
         a: in_circle(counts, base + 2),
         b: in_circle(counts, base + 1),
         c: in_circle(counts, base),
         n: row_count(factors),
         width: row_width(factors),
         base,
+        flip: row_flip(factors),
         apex: in_circle([0, counts[0], counts[0] + counts[1]], base + 2),
         outer: counts[0] + counts[1] + counts[2],
     }
@@ -95,87 +96,154 @@ fn outline_point(plan: &RowPlan, i: u32) -> u32 {
     if point >= plan.outer { point - plan.outer } else { point }
 }
 
-/// A row: its number of segments, where it starts and ends on the outline, counted from the apex, and the number of the point
-/// after its first one.
+/// Returns the number of segments of a row between the apex and the base: ceil(width * row / rows).
+fn row_segments(plan: &RowPlan, row: u32) -> u32 {
+    quotient(plan.width * row + plan.n - 1, plan.n)
+}
+
+/// A row: its number of segments, and at which points of the first and of the second edge it starts and ends, counted from the
+/// apex.
 #[derive(Clone, Copy)]
 struct PatternRow {
     segments: u32,
     start: u32,
     end: u32,
-    inner: u32,
 }
 
 /// Returns a row of a patch.
 fn row_at(plan: &RowPlan, row: u32) -> PatternRow {
     if row == 0 {
-        return PatternRow { segments: 0, start: 0, end: 0, inner: 0 };
+        return PatternRow { segments: 0, start: 0, end: 0 };
     }
-    if row == plan.n {
-        // The points of the base follow each other on the outline.
-        let end = plan.a + plan.c;
-        return PatternRow { segments: plan.c, start: plan.a, end, inner: outline_point(plan, plan.a) + 1 };
-    }
-    let [above, through] = row_widths(plan.n, plan.width, row);
-    PatternRow {
-        segments: through - above,
-        start: end_place(plan.a, plan.n, row),
-        end: plan.outer - end_place(plan.b, plan.n, row),
-        inner: plan.outer + points_through(above, row - 1),
-    }
+    // The last row starts and ends at the last points of the two edges.
+    let segments = if row == plan.n { plan.c } else { row_segments(plan, row) };
+    PatternRow { segments, start: end_place(plan.a, plan.n, row), end: end_place(plan.b, plan.n, row) }
 }
 
-/// Returns the number of point `i` of a row.
-fn point_of_row(plan: &RowPlan, row: PatternRow, i: u32) -> u32 {
-    if i == 0 {
-        return outline_point(plan, row.start);
-    }
-    if i == row.segments { outline_point(plan, row.end) } else { row.inner + i - 1 }
+/// A strip between a row and the next one.
+#[derive(Clone, Copy)]
+struct Strip {
+    /// The number of the upper row.
+    row: u32,
+    upper: PatternRow,
+    lower: PatternRow,
+}
+
+/// Returns the number of triangles of a strip: one for each segment of its two rows, less one for each point that they share.
+fn strip_triangles(strip: Strip) -> u32 {
+    let joint = u32::from(strip.upper.start == strip.lower.start) + u32::from(strip.upper.end == strip.lower.end);
+    strip.upper.segments + strip.lower.segments - joint
 }
 
 /// Returns how many of the first `t` steps along two rows together are steps of the row with `own` segments, if the other one has
-/// `others`: t * own / (own + others), rounded half up. There are at most 128 segments. Exact for the same reason as
-/// [`end_place`].
-fn own_steps(own: u32, others: u32, t: u32) -> u32 {
+/// `others`: t * own / (own + others), halves rounded up, or down if diagonals are flipped. There are at most 128 segments.
+fn own_steps(flip: u32, own: u32, others: u32, t: u32) -> u32 {
     let all = (own + others).max(1);
-    (((2 * t * own + all) as f32 + 0.5) / (2 * all) as f32) as u32
+    quotient(2 * t * own + all - flip, 2 * all)
+}
+
+/// A corner of a triangle: whether it is on the lower row of its strip, and which point of its row it is.
+#[derive(Clone, Copy)]
+struct StripPoint {
+    is_lower: bool,
+    at: u32,
+}
+
+/// Returns the corners of triangle `i` of a strip, in the order of the outline.
+fn strip_corners(plan: &RowPlan, strip: Strip, i: u32) -> [StripPoint; 3] {
+    let shares_start = u32::from(strip.upper.start == strip.lower.start);
+    let joint = shares_start + u32::from(strip.upper.end == strip.lower.end);
+    let own = strip.upper.segments - joint;
+    let others = strip.lower.segments - joint;
+
+    // The triangle at a shared start stands on the upper row, the one at a shared end on the lower row.
+    let (mut at, mut is_upper) = ([0, 1], true);
+    if i >= shares_start {
+        let step = i - shares_start;
+        let along_upper = own_steps(plan.flip, own, others, step);
+        at = [shares_start + along_upper, shares_start + step - along_upper];
+        is_upper = step < own + others && own_steps(plan.flip, own, others, step + 1) > along_upper;
+    }
+    let upper = StripPoint { is_lower: false, at: at[0] };
+    let lower = StripPoint { is_lower: true, at: at[1] };
+    if is_upper {
+        return [StripPoint { at: at[0] + 1, ..upper }, upper, lower];
+    }
+    [upper, lower, StripPoint { at: at[1] + 1, ..lower }]
+}
+
+/// Returns the number of point `at` of row `row`.
+fn number_in_row(plan: &RowPlan, row: u32, own: PatternRow, at: u32) -> u32 {
+    if at == 0 {
+        return outline_point(plan, own.start);
+    }
+    if at == own.segments {
+        return outline_point(plan, plan.outer - own.end);
+    }
+    if row == plan.n {
+        // The points of the base follow each other on the outline.
+        return outline_point(plan, plan.a) + at;
+    }
+    let [above, _] = row_widths(plan.n, plan.width, row);
+    plan.outer + points_through(above, row - 1) + at - 1
+}
+
+/// Returns the number of a corner of a triangle.
+fn corner_number(plan: &RowPlan, strip: Strip, corner: StripPoint) -> u32 {
+    match corner.is_lower {
+        true => number_in_row(plan, strip.row + 1, strip.lower, corner.at),
+        false => number_in_row(plan, strip.row, strip.upper, corner.at),
+    }
 }
 
 /// Returns triangle `t` of a patch, as point numbers, in the order of the outline.
 pub(super) fn row_triangle(plan: &RowPlan, t: u32) -> [u32; 3] {
     // A bisection over the at most 64 strips, unrolled.
-    let mut strip = 0;
+    let mut row = 0;
     for skip in [32, 16, 8, 4, 2, 1] {
-        if strip + skip < plan.n && triangles_before(plan, strip + skip) <= t {
-            strip += skip;
+        if row + skip < plan.n && triangles_before(plan, row + skip) <= t {
+            row += skip;
         }
     }
-    let upper = row_at(plan, strip);
-    let lower = row_at(plan, strip + 1);
-    let in_strip = t - triangles_before(plan, strip);
-    let shares_start = u32::from(upper.start == lower.start);
-    let shares_end = u32::from(upper.end == lower.end);
-    let joint = shares_start + shares_end;
-    let own = upper.segments - joint;
-    let others = lower.segments - joint;
-
-    // The triangle at a shared start stands on the upper row, the one at a shared end on the lower row.
-    let (mut at, mut is_upper) = ([0, 1], true);
-    if in_strip >= shares_start {
-        let step = in_strip - shares_start;
-        let along_upper = own_steps(own, others, step);
-        at = [shares_start + along_upper, shares_start + step - along_upper];
-        is_upper = step < own + others && own_steps(own, others, step + 1) > along_upper;
-    }
-    let (p, q) = (point_of_row(plan, upper, at[0]), point_of_row(plan, lower, at[1]));
-    if is_upper {
-        return [point_of_row(plan, upper, at[0] + 1), p, q];
-    }
-    [p, q, point_of_row(plan, lower, at[1] + 1)]
+    let strip = Strip { row, upper: row_at(plan, row), lower: row_at(plan, row + 1) };
+    let corners = strip_corners(plan, strip, t - triangles_before(plan, row));
+    corners.map(|corner| corner_number(plan, strip, corner))
 }
 
-/// Returns the number of segments of a row between the apex and the base: ceil(width * row / rows).
-fn row_segments(plan: &RowPlan, row: u32) -> u32 {
-    (plan.width * row).div_ceil(plan.n)
+/// Returns (U, V) of point `at` of a row, in 16.16 fixed point.
+fn place_in_row(plan: &RowPlan, row: PatternRow, at: u32) -> [u32; 2] {
+    let start = whole_location(plan.a, row.start);
+    let end = whole_location(plan.b, row.end);
+    // The weights of the base's start and end. Neither product exceeds 32 bits, since `along` is neither 0 nor 1.
+    let along = whole_location(row.segments.max(1), at);
+    let (mut at_start, mut at_end) = (start, 0);
+    if at > 0 {
+        at_start = if at == row.segments { 0 } else { (start * (FIXED_ONE - along) + FIXED_HALF) >> 16 };
+        at_end = if at == row.segments { end } else { (end * along + FIXED_HALF) >> 16 };
+    }
+    let at_apex = FIXED_ONE - at_start - at_end;
+    match plan.base {
+        0 => [at_apex, at_start],
+        1 => [at_end, at_apex],
+        _ => [at_start, at_end],
+    }
+}
+
+/// Returns (U, V) of a corner of a triangle.
+fn corner_place(plan: &RowPlan, strip: Strip, corner: StripPoint) -> [u32; 2] {
+    place_in_row(plan, if corner.is_lower { strip.lower } else { strip.upper }, corner.at)
+}
+
+/// Returns (U, V) of the corners of triangle `t` of a patch, in 16.16 fixed point. It passes the strips before the triangle one
+/// by one: for the few rows of most patches that is faster than finding points by their numbers.
+pub(super) fn row_triangle_places(plan: &RowPlan, t: u32) -> [[u32; 2]; 3] {
+    let mut strip = Strip { row: 0, upper: row_at(plan, 0), lower: row_at(plan, 1) };
+    let mut rest = t;
+    while rest >= strip_triangles(strip) && strip.row + 1 < plan.n {
+        rest -= strip_triangles(strip);
+        strip = Strip { row: strip.row + 1, upper: strip.lower, lower: row_at(plan, strip.row + 2) };
+    }
+    strip_corners(plan, strip, rest).map(|corner| corner_place(plan, strip, corner))
 }
 
 /// Returns the row of point `i` of those inside the patch, and the point's place in it.
@@ -189,37 +257,21 @@ fn row_of_point(plan: &RowPlan, i: u32) -> [u32; 2] {
     let mut row = (((root + 2.0 - width) / (2.0 * width)) - 0.015625).max(0.0) as u32;
     let mut rest = i - points_through(widths_through(plan.n, plan.width, row), row);
     let mut inner = row_segments(plan, row + 1) - 1;
-    let mut alike = (inner + 1) * plan.n / plan.width - row;
+    let mut alike = quotient((inner + 1) * plan.n, plan.width) - row;
     while rest >= alike * inner {
         rest -= alike * inner;
         row += alike;
         inner = row_segments(plan, row + 1) - 1;
-        alike = (inner + 1) * plan.n / plan.width - row;
+        alike = quotient((inner + 1) * plan.n, plan.width) - row;
     }
-    let passed = rest / inner;
+    let passed = quotient(rest, inner);
     [row + 1 + passed, rest - passed * inner + 1]
 }
 
 /// Returns (U, V) of point `i` of those inside the patch, in 16.16 fixed point.
 pub(super) fn row_point(plan: &RowPlan, i: u32) -> [u32; 2] {
     let [row, place] = row_of_point(plan, i);
-    let along = row_location(domain_row(whole_word(row_segments(plan, row))), place);
-    let start = row_location(domain_row(plan.edges[0]), end_place(plan.a, plan.n, row));
-    let end = row_location(domain_row(plan.edges[1]), end_place(plan.b, plan.n, row));
-    // The weights of the base's start and end. Neither product exceeds 32 bits, since `along` is neither 0 nor 1.
-    let at_start = (start * (FIXED_ONE - along) + FIXED_HALF) >> 16;
-    let at_end = (end * along + FIXED_HALF) >> 16;
-    let at_apex = FIXED_ONE - at_start - at_end;
-    match plan.base {
-        0 => [at_apex, at_start],
-        1 => [at_end, at_apex],
-        _ => [at_start, at_end],
-    }
-}
-
-/// Returns the word of a whole factor.
-fn whole_word(segments: u32) -> u32 {
-    segments << 16 | segments << 31
+    place_in_row(plan, row_at(plan, row), place)
 }
 
 #[cfg(test)]

@@ -157,6 +157,7 @@ fn lod_name(lod: LodKind) -> &'static str {
         LodKind::Uniform => "uniform factor",
         LodKind::Paper => "white paper's LOD",
         LodKind::Error => "LOD by error",
+        LodKind::ErrorRows => "LOD by error, rows",
     }
 }
 

@@ -18,7 +18,9 @@ const DIFFERENT: f64 = 1.05;
 pub(super) fn sentences(parts: &[Part]) -> Vec<String> {
     let mut all: Vec<String> = PARTS.iter().filter_map(|error| reaching(parts, *error)).collect();
     all.extend(fronts::sentences(parts));
-    all.extend([LodKind::Uniform, LodKind::Paper].into_iter().filter_map(|other| saved(parts, other)));
+    all.extend(
+        [LodKind::Uniform, LodKind::Paper, LodKind::ErrorRows].into_iter().filter_map(|other| saved(parts, other)),
+    );
     all.extend(limits::sentences(parts));
     let own = parts.iter().filter(|part| !part.has_truth());
     let own: Vec<_> = own.map(|part| markdown::plain(&part.subject.title)).collect();
@@ -89,6 +91,7 @@ fn saved(parts: &[Part], other: LodKind) -> Option<String> {
     let name = match other {
         LodKind::Uniform => "a uniform factor",
         LodKind::Paper => "the white paper's LOD",
+        LodKind::ErrorRows => "the same LOD under rows",
         LodKind::Error => return None,
     };
     let Saving { times, count, alone } = saving(parts, other, Cost::Triangles)?;

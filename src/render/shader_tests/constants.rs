@@ -18,12 +18,12 @@ use crate::render::layout::{
 use crate::render::scale::Scale;
 use crate::settings::{Colors, Overlays};
 use crate::tessellate::shared_constants::{
-    AGREEING, BEYOND_LAST, BITS_63, BITS_64, BITS_512, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP,
+    AGREEING, ASKED_SEGMENT, BEYOND_LAST, BITS_63, BITS_64, BITS_896, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP,
     BITS_ONE_AND_STEP, BITS_TWO, BOUND_SHARE, CANCELLED, DETAIL_SHARE, FACING_AWAY, FACING_MARGIN, FACING_ROUNDING,
     FACTOR_ODD, FACTOR_VALUE, FINEST_GRID, FIXED_HALF, FIXED_ONE, FIXED_TWO_THIRDS, MOST_SEGMENTS, NOT_CULLED,
     OUT_OF_VIEW, PARALLEL, PARTIAL_STEPS, PATTERN_HALVES, PATTERN_STEPS, POLAR_INDICES, POLAR_WEIGHTS, ROW_BASE_SHIFT,
-    ROW_BASE_STEP, ROW_REACH, ROW_SAMPLES, ROWS, SPREAD, SUBTRIANGULATED, SURFACE_SHARE, TOGETHER, TURN_SHARE,
-    TWO_POINTS, UNIT,
+    ROW_BASE_STEP, ROW_FLIP_SHIFT, ROW_REACH, ROW_SAMPLES, ROWS, SPREAD, SUBTRIANGULATED, SURFACE_SHARE, TOGETHER,
+    TURN_SHARE, TWO_POINTS, UNIT,
 };
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
 
@@ -141,6 +141,8 @@ fn of_the_mathematics() -> Vec<(&'static str, Expected)> {
         ("NEXT_PATCHES", number(NEXT_PATCHES)),
         ("NEXT_EDGES", number(NEXT_EDGES)),
         ("SPREAD", number(SPREAD)),
+        ("ASKED_SEGMENT", number(ASKED_SEGMENT)),
+        ("LESSENINGS", number(LESSENINGS)),
         ("TOGETHER", number(TOGETHER)),
         ("SURFACE_SHARE", number(SURFACE_SHARE)),
         ("DETAIL_SHARE", number(DETAIL_SHARE)),
@@ -154,7 +156,8 @@ fn of_the_mathematics() -> Vec<(&'static str, Expected)> {
         ("ROWS", number(ROWS)),
         ("ROW_BASE_SHIFT", number(ROW_BASE_SHIFT)),
         ("ROW_BASE_STEP", number(ROW_BASE_STEP)),
-        ("BITS_512", number(BITS_512)),
+        ("ROW_FLIP_SHIFT", number(ROW_FLIP_SHIFT)),
+        ("BITS_896", number(BITS_896)),
         ("MOST_SEGMENTS", number(MOST_SEGMENTS)),
         ("BITS_ONE", number(BITS_ONE)),
         ("BITS_TWO", number(BITS_TWO)),

@@ -6,7 +6,7 @@ use super::*;
 use crate::tessellate::factors::{Partitioning, base_by_edges, patch_has_rows, point_count, process, triangle_count};
 use crate::tessellate::{domain_plan, domain_point, domain_triangle};
 
-/// Returns what becomes of whole factors of the edges, a base and a width.
+/// Returns what becomes of whole factors of the edges, a base and a width. Bases 3 to 5 are 0 to 2 with flipped diagonals.
 fn rows([u, v, w]: [u32; 3], base: u32, width: u32) -> PatchFactors {
     process(Partitioning::Rows, [u as f32, v as f32, w as f32], (128 * (base + 1) + width) as f32)
 }
@@ -99,7 +99,7 @@ fn equal_numbers_give_equal_triangles() {
 fn all_small_numbers_cover_the_domain_once() {
     let numbers = [1, 2, 3, 4, 5, 7];
     for (u, v) in numbers.into_iter().flat_map(|u| numbers.map(|v| (u, v))) {
-        for (w, base) in numbers.into_iter().flat_map(|w| [0, 1, 2].map(|base| (w, base))) {
+        for (w, base) in numbers.into_iter().flat_map(|w| [0, 1, 2, 3, 4, 5].map(|base| (w, base))) {
             for width in 1..=9 {
                 let found = fault(rows([u, v, w], base, width));
                 assert_eq!(found, None, "{u}, {v}, {w}, base {base}, width {width}");
@@ -112,7 +112,7 @@ fn all_small_numbers_cover_the_domain_once() {
 fn very_unequal_numbers_cover_the_domain_once() {
     for (u, v) in [1, 2, 63, 64].into_iter().flat_map(|u| [1, 2, 63, 64].map(|v| (u, v))) {
         for (w, width) in [1, 64].into_iter().flat_map(|w| [1, 2, 33, 63, 64].map(|width| (w, width))) {
-            for base in 0..3 {
+            for base in 0..6 {
                 let found = fault(rows([u, v, w], base, width));
                 assert_eq!(found, None, "{u}, {v}, {w}, base {base}, width {width}");
             }
@@ -146,6 +146,41 @@ fn every_point_inside_is_found_in_its_row() {
             }
         }
         assert_eq!(i + n + n + 1, point_count(rows([1, n, n], 0, width)), "{n} rows, to {width}");
+    }
+}
+
+#[test]
+fn flipped_diagonals_are_those_of_the_mirrored_pattern() {
+    // Two rows of one segment beside the edge W == 0 have one diagonal.
+    let (_, upright) = pattern(rows([2, 2, 1], 2, 1));
+    let (_, flipped) = pattern(rows([2, 2, 1], 5, 1));
+    assert_eq!(upright, [[2, 3, 1], [1, 3, 4], [1, 4, 0]]);
+    assert_eq!(flipped, [[2, 3, 1], [3, 4, 0], [1, 3, 0]]);
+    // Exchanging U and V mirrors a pattern beside the edge W == 0, and turns its triangles.
+    let places = |factors, mirrored: bool| {
+        let (points, triangles) = pattern(factors);
+        let place = |i: u32| points[i as usize];
+        let corners = |triangle: [u32; 3]| {
+            let mut own = triangle.map(place);
+            if mirrored {
+                own = own.map(|[u, v]| [v, u]);
+            }
+            own.sort_unstable();
+            own
+        };
+        let mut all: Vec<_> = triangles.into_iter().map(corners).collect();
+        all.sort_unstable();
+        all
+    };
+    for numbers in [[6, 6, 3], [7, 4, 9], [1, 5, 2], [12, 12, 12], [8, 16, 5]] {
+        for width in [1, 3, 4, 8, 17] {
+            let [u, v, w] = numbers;
+            assert_eq!(
+                places(rows([u, v, w], 2, width), true),
+                places(rows([v, u, w], 5, width), false),
+                "{numbers:?}, width {width}"
+            );
+        }
     }
 }
 
@@ -197,19 +232,33 @@ fn inside_factors_say_base_and_width() {
     assert_eq!([3.2, 64.0, 70.0, 1e9, f32::INFINITY].map(of), [(0, 4), (0, 64), (0, 64), (0, 64), (0, 64)]);
     assert_eq!([128.0, 129.0, 131.5, 128.0 + 64.5, 255.0].map(of), [(0, 1), (0, 1), (0, 4), (0, 64), (0, 64)]);
     assert_eq!([257.0, 256.0 + 64.0, 385.0, 384.0 + 7.0].map(of), [(1, 1), (1, 64), (2, 1), (2, 7)]);
-    assert_eq!([512.0, 511.5, 517.0].map(of), [(0, 64), (0, 64), (0, 64)]);
+    // From 4 times 128 on, diagonals are flipped.
+    let flips = |inside: f32| row_flip(process(Partitioning::Rows, [3.0, 8.0, 8.0], inside));
+    assert_eq!([512.0, 511.5, 517.0, 641.0, 775.0, 895.0].map(of), [(0, 1), (0, 1), (0, 5), (1, 1), (2, 7), (2, 64)]);
+    assert_eq!([3.0, 130.0, 511.0, 512.0, 517.0, 895.0, 896.0, f32::NAN].map(flips), [0, 0, 0, 1, 1, 1, 0, 0]);
+    assert_eq!([896.0, 895.5, 900.0].map(of), [(0, 64), (0, 64), (0, 64)]);
     assert!(!patch_has_rows(process(Partitioning::Rows, [3.0, 0.0, 8.0], 131.0)));
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
     #[test]
-    fn rows_cover_the_domain_once(edges in prop::array::uniform3(1u32..=64), base in 0u32..3, width in 1u32..=64) {
+    fn rows_cover_the_domain_once(edges in prop::array::uniform3(1u32..=64), base in 0u32..6, width in 1u32..=64) {
         prop_assert_eq!(fault(rows(edges, base, width)), None);
     }
 
     #[test]
-    fn any_factors_give_a_pattern_or_none(bits in prop::array::uniform4(any::<u32>()), inside in 0.0f32..700.0) {
+    fn triangles_lie_where_their_points_do(edges in prop::array::uniform3(1u32..=64), base in 0u32..6, width in 1u32..=64) {
+        let factors = rows(edges, base, width);
+        let (points, triangles) = pattern(factors);
+        let plan = row_plan(factors);
+        for (t, triangle) in (0..).zip(triangles) {
+            prop_assert_eq!(row_triangle_places(&plan, t), triangle.map(|i| points[i as usize]), "triangle {}", t);
+        }
+    }
+
+    #[test]
+    fn any_factors_give_a_pattern_or_none(bits in prop::array::uniform4(any::<u32>()), inside in 0.0f32..1000.0) {
         let [u, v, w, any_inside] = bits.map(f32::from_bits);
         for (edges, inside) in [([u, v, w], any_inside), ([u.abs(), v.abs(), w.abs()], inside), ([3.0, 5.0, 4.0], any_inside)] {
             let factors = process(Partitioning::Rows, edges, inside);
