@@ -128,9 +128,11 @@ fn inside_of_rows(tried: Tried) -> f32 {
     return f32(ROW_BASE_STEP * step) + tried.width;
 }
 
-// Returns the number that is tried after one that isn't enough: at least by one and by this part of it larger.
-fn next_number(number: f32, part: f32) -> f32 {
-    return max(number + 1.0, floor(number * (1.0 + part)));
+// Returns the number that is tried after one that isn't enough: at least by one and by this part of it larger, but no number below
+// the largest one passes that over.
+fn next_number(number: f32, part: f32, estimate: f32) -> f32 {
+    let next = max(max(number + 1.0, floor(number * (1.0 + part))), floor(estimate));
+    return select(BEYOND_LAST, min(next, 64.0), number < 64.0);
 }
 
 // Returns rows that may be enough, after some that have this error; more than 64, if none will be.
@@ -139,9 +141,10 @@ fn grown_rows(sought: Sought, tried: Tried, expected: Expected, error: f32, tole
     let ratio = select(100.0, root, root < 100.0);
     let across = expected.across / (tried.rows * tried.rows);
     let along = expected.along / (tried.width * tried.width);
-    let part = select(0.125, 0.25, sought.is_given);
-    let more_rows = max(floor(0.8 * ratio * tried.rows), next_number(tried.rows, part));
-    let more_width = max(floor(0.8 * ratio * tried.width), next_number(tried.width, part));
+    // Beyond what second derivatives ask for, more segments rarely help.
+    let part = select(0.125, select(0.25, 0.0, tried.width < 1.5 * expected.width), sought.is_given);
+    let more_rows = next_number(tried.rows, part, 0.8 * ratio * tried.rows);
+    let more_width = next_number(tried.width, part, 0.8 * ratio * tried.width);
     var grown = tried;
     if sought.is_given {
         // There may be too few rows for any width.
@@ -151,9 +154,9 @@ fn grown_rows(sought: Sought, tried: Tried, expected: Expected, error: f32, tole
         grown.rows = select(more_rows, tried.rows, along > 4.0 * across);
         grown.width = select(more_width, tried.width, across > 4.0 * along);
     } else if across > along {
-        grown.rows = next_number(tried.rows, part);
+        grown.rows = next_number(tried.rows, part, 0.0);
     } else {
-        grown.width = next_number(tried.width, part);
+        grown.width = next_number(tried.width, part, 0.0);
     }
     grown.segments = least_segments(sought, tried.base, grown.width);
     return grown;
@@ -269,9 +272,11 @@ fn fewest_rows(seen: ptr<function, SeenPatch>, tolerance: f32, sought: Sought) -
         }
         if (!is_worth && lessened == 0u) || tried.lessened > LESSENINGS {
             at += 1u;
-            goes_on = at < 3u;
-            let base = order[min(at, 2u)];
+            // The other diagonals may be the only ones that are enough.
+            goes_on = at < 3u || (at < 6u && best.inside == BEYOND_LAST);
+            let base = order[at % 3u];
             tried = first_rows(sought, base, all_expected[base], shares.y);
+            tried.flips = tried.flips != (at >= 3u);
         }
     }
     return best;

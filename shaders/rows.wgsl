@@ -19,6 +19,10 @@ struct RowPlan {
 
 // Returns the larger of 1 and row * segments / rows, rounded half up: where a row after the first starts on an edge.
 fn end_place(segments: u32, rows: u32, row: u32) -> u32 {
+    // Mostly there is no need to divide.
+    if segments == rows {
+        return row;
+    }
     return max(quotient(2u * row * segments + rows, 2u * rows), 1u);
 }
 
@@ -52,13 +56,22 @@ fn points_through(widths: u32, row: u32) -> u32 {
     return widths - row;
 }
 
-// Returns the number of triangles before the strip below row `row`, which is less than the number of rows.
-fn triangles_before(plan: RowPlan, row: u32) -> u32 {
-    if row == 0u {
-        return 0u;
-    }
-    let widths = row_widths(plan.n, plan.width, row);
+// Returns the number of triangles before the strip below row `row`, which is 1 or more and less than the number of rows. `widths`
+// are its row_widths.
+fn triangles_before(plan: RowPlan, row: u32, widths: vec2<u32>) -> u32 {
     return widths.x + widths.y + end_place(plan.a, plan.n, row) + end_place(plan.b, plan.n, row) - 2u * row;
+}
+
+// Returns between which rows the strip with triangle `t` begins: the first one or later, and before the second one.
+fn rows_around(plan: RowPlan, t: u32) -> vec2<u32> {
+    let n = f32(plan.n);
+    let m = f32(plan.width);
+    let sides = f32(plan.a + plan.b);
+    let slopes = vec2<f32>(sides, sides - 2.0 * n);
+    let heights = max(vec2<f32>(f32(t) - 2.0, f32(t) + 2.0), vec2<f32>(0.0));
+    let roots = (sqrt(slopes * slopes + 4.0 * m * n * heights) - slopes) / (2.0 * m);
+    // Bounds that are too far apart are no mistake, so roundings go outwards.
+    return vec2<u32>(u32(max(roots.x - 0.015625, 0.0)), min(plan.n, u32(roots.y + 1.015625) + 1u));
 }
 
 // Returns point `i` of the outline, counted from the apex.
@@ -141,8 +154,8 @@ fn strip_corners(plan: RowPlan, strip: Strip, i: u32) -> array<StripPoint, 3> {
     return array<StripPoint, 3>(upper, lower, StripPoint(true, at.y + 1u));
 }
 
-// Returns the number of point `at` of row `row`.
-fn number_in_row(plan: RowPlan, row: u32, own: PatternRow, at: u32) -> u32 {
+// Returns the number of point `at` of row `row`. `above` is how many segments rows 1 to `row - 1` have together.
+fn number_in_row(plan: RowPlan, row: u32, own: PatternRow, above: u32, at: u32) -> u32 {
     if at == 0u {
         return outline_point(plan, own.start);
     }
@@ -153,32 +166,47 @@ fn number_in_row(plan: RowPlan, row: u32, own: PatternRow, at: u32) -> u32 {
         // The points of the base follow each other on the outline.
         return outline_point(plan, plan.a) + at;
     }
-    return plan.outer + points_through(row_widths(plan.n, plan.width, row).x, row - 1u) + at - 1u;
+    return plan.outer + points_through(above, row - 1u) + at - 1u;
 }
 
-// Returns the number of a corner of a triangle.
-fn corner_number(plan: RowPlan, strip: Strip, corner: StripPoint) -> u32 {
+// Returns the number of a corner of a triangle. `widths` are the row_widths of the strip's upper row.
+fn corner_number(plan: RowPlan, strip: Strip, widths: vec2<u32>, corner: StripPoint) -> u32 {
     if corner.is_lower {
-        return number_in_row(plan, strip.row + 1u, strip.lower, corner.at);
+        return number_in_row(plan, strip.row + 1u, strip.lower, widths.y, corner.at);
     }
-    return number_in_row(plan, strip.row, strip.upper, corner.at);
+    return number_in_row(plan, strip.row, strip.upper, widths.x, corner.at);
 }
 
 // Returns triangle `t` of a patch, as point numbers, in the order of the outline.
 fn row_triangle(plan: RowPlan, t: u32) -> vec3<u32> {
-    // A bisection over the at most 64 strips.
-    var row = 0u;
-    for (var skip = 32u; skip > 0u; skip >>= 1u) {
-        if row + skip < plan.n && triangles_before(plan, row + skip) <= t {
-            row += skip;
+    // A bisection over the few strips that it can be. No triangle is before row 0.
+    let around = rows_around(plan, t);
+    var row = around.x;
+    var end = around.y;
+    var before = 0u;
+    var widths = vec2<u32>(0u);
+    if row > 0u {
+        widths = row_widths(plan.n, plan.width, row);
+        before = triangles_before(plan, row, widths);
+    }
+    while row + 1u < end {
+        let middle = (row + end) / 2u;
+        let own = row_widths(plan.n, plan.width, middle);
+        let count = triangles_before(plan, middle, own);
+        if count <= t {
+            row = middle;
+            before = count;
+            widths = own;
+        } else {
+            end = middle;
         }
     }
     let strip = Strip(row, row_at(plan, row), row_at(plan, row + 1u));
-    let corners = strip_corners(plan, strip, t - triangles_before(plan, row));
+    let corners = strip_corners(plan, strip, t - before);
     return vec3<u32>(
-        corner_number(plan, strip, corners[0]),
-        corner_number(plan, strip, corners[1]),
-        corner_number(plan, strip, corners[2]),
+        corner_number(plan, strip, widths, corners[0]),
+        corner_number(plan, strip, widths, corners[1]),
+        corner_number(plan, strip, widths, corners[2]),
     );
 }
 

@@ -56,5 +56,5 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
             scene.tessellator.hull_factors()?
         }
     };
-    write_text(&args.output, &to_csv(topology, &written))
+    write_text(&args.output, &to_csv(topology, &written, args.surface.tessellation().partitioning))
 }

@@ -16,8 +16,8 @@ use crate::tessellate::{Convention, HullFactors, Partitioning, Tessellation};
 #[derive(Clone, Debug, Default, clap::Args)]
 pub(crate) struct FactorsOption {
     /// Tessellate with the factors of a file in place of those that LOD computes (- for standard input): CSV with the header
-    /// patch,e0,e1,e2,inside and a line for each triangle, as the factors command or another engine writes it. Standard error
-    /// lists edges whose two sides have different factors, and names the convention under which all sides agree
+    /// patch,e0,e1,e2,inside (under rows patch,e0,e1,e2,base,width,flipped) and a line for each triangle, as the factors
+    /// command or another engine writes it. Standard error lists edges whose two sides have different factors, and names the convention under which all sides agree
     #[arg(
         long = "factors",
         value_name = "CSV",
@@ -52,10 +52,8 @@ impl FactorsOption {
         let Tessellation { convention, partitioning, .. } = *tessellation;
         let Some(path) = &self.given else { return Ok(None) };
         let text = read_text(path)?;
-        let factors = from_csv(&text, topology, mesh.triangles.len()).map_err(|error| CliError::Line {
-            path: shown_path(path),
-            line: error.line,
-            reason: error.fault.to_string(),
+        let factors = from_csv(&text, topology, mesh.triangles.len(), partitioning).map_err(|error| {
+            CliError::Line { path: shown_path(path), line: error.line, reason: error.fault.to_string() }
         })?;
         if partitioning == Partitioning::Subtriangulation {
             let uneven = topology.patches.iter().zip(&factors).find(|(_, factors)| !factors.is_uniform());

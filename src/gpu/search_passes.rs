@@ -6,7 +6,7 @@ use super::GpuError;
 use super::bound_pass::{BoundPass, PassInputs};
 use super::mesh_buffers::MeshBuffers;
 use super::pipelines::{ComputePipeline, SearchPipelines, WORKGROUP};
-use crate::tessellate::ROUNDS;
+use crate::tessellate::rounds;
 
 /// These belong to one set of mesh buffers: when those are replaced, so must this be.
 #[derive(Default)]
@@ -87,7 +87,7 @@ impl SearchPasses {
         let mut steps = vec![(AskedFactors, Each::Patch), (SearchWorkgroups, one), (FirstPatterns, next_patches)];
         steps.extend([(SearchWorkgroups, one), (SearchAskedFactors, searched(SEARCH_ASKED))]);
         steps.extend(take_insides(Each::Patch));
-        for round in 1..ROUNDS {
+        for round in 1..rounds(has_rows) {
             steps.push((KeepFactors, if round == 1 { Each::Edge } else { next_edges }));
             steps.extend([(RoundWorkgroups, one), (SearchAskedFactors, searched(SEARCH_AGAIN))]);
             steps.extend(take_insides(next_patches));

@@ -52,16 +52,44 @@ impl HullFactors {
     }
 }
 
+/// What an inside factor says under rows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct RowChoice {
+    /// The edge that is the base, and whether diagonals are flipped; `None` if the factors of the edges choose.
+    pub base: Option<(u32, bool)>,
+    /// The width, as it was written.
+    pub width: f32,
+}
+
+impl RowChoice {
+    /// Returns what an inside factor says.
+    pub(crate) fn of(inside: f32) -> Self {
+        let step = (inside / ROW_BASE_STEP as f32) as u32;
+        match step {
+            1..=6 => {
+                let width = inside - (ROW_BASE_STEP * step) as f32;
+                Self { base: Some(((step - 1) % 3, step > 3)), width }
+            }
+            _ => Self { base: None, width: inside },
+        }
+    }
+
+    /// Returns the inside factor that says this.
+    pub(crate) fn inside(self) -> f32 {
+        self.base.map_or(self.width, |(base, flips)| {
+            let step = base + if flips { 4 } else { 1 };
+            self.width + (ROW_BASE_STEP * step) as f32
+        })
+    }
+}
+
 /// Returns an inside factor under rows whose base is an edge in the order of a convention, for one whose base is the edge
 /// U == 0, V == 0 or W == 0 as LOD takes them: each is the edge opposite corner 0, 1 or 2.
 pub(crate) fn inside_of_base(convention: Convention, inside: f32) -> f32 {
-    let step = (inside / ROW_BASE_STEP as f32) as u32;
-    let base = (step + 2) % 3;
-    let side = step % 3;
-    match (0..3).find(|&i| factor_side(convention, i) == side) {
-        Some(written) if step > 0 => inside + (ROW_BASE_STEP * written) as f32 - (ROW_BASE_STEP * base) as f32,
-        _ => inside,
-    }
+    let choice = RowChoice::of(inside);
+    let Some((base, flips)) = choice.base else { return inside };
+    let written = (0..3).find(|&i| factor_side(convention, i) == (base + 1) % 3);
+    RowChoice { base: written.map(|written| (written, flips)), ..choice }.inside()
 }
 
 #[cfg(test)]
@@ -76,6 +104,29 @@ mod tests {
         assert_eq!(edges(Convention::EdgeOrder), [10.0, 11.0, 12.0]);
         assert_eq!(edges(Convention::Rotated), [10.0, 11.0, 12.0]);
         assert_eq!(edges(Convention::Mirrored), [12.0, 11.0, 10.0]);
+    }
+
+    #[test]
+    fn what_an_inside_factor_says_under_rows_reads_back_to_the_bit() {
+        for (inside, base, width) in [
+            (7.5, None, 7.5),
+            (131.0, Some((0, false)), 3.0),
+            (256.0 + 64.0, Some((1, false)), 64.0),
+            (384.25, Some((2, false)), 0.25),
+            (512.1, Some((0, true)), 512.1 - 512.0),
+            (895.0, Some((2, true)), 127.0),
+            (896.0, None, 896.0),
+            (f32::INFINITY, None, f32::INFINITY),
+            (-3.0, None, -3.0),
+        ] {
+            let choice = RowChoice { base, width };
+            assert_eq!((RowChoice::of(inside), choice.inside()), (choice, inside));
+        }
+        assert!(RowChoice::of(f32::NAN).inside().is_nan());
+        // D3d11 writes side 1 as factor 0; edge order writes it as factor 1.
+        assert_eq!([Convention::D3d11, Convention::EdgeOrder].map(|own| inside_of_base(own, 131.0)), [131.0, 259.0]);
+        assert_eq!([Convention::D3d11, Convention::EdgeOrder].map(|own| inside_of_base(own, 515.0)), [515.0, 643.0]);
+        assert_eq!(inside_of_base(Convention::EdgeOrder, 3.0), 3.0);
     }
 
     #[test]

@@ -141,9 +141,11 @@ fn inside_of_rows(tried: &Tried) -> f32 {
     (ROW_BASE_STEP * step) as f32 + tried.width
 }
 
-/// Returns the number that is tried after one that isn't enough: at least by one and by this part of it larger.
-fn next_number(number: f32, part: f32) -> f32 {
-    (number + 1.0).max((number * (1.0 + part)).floor())
+/// Returns the number that is tried after one that isn't enough: at least by one and by this part of it larger, but no number below
+/// the largest one passes that over.
+fn next_number(number: f32, part: f32, estimate: f32) -> f32 {
+    let next = (number + 1.0).max((number * (1.0 + part)).floor()).max(estimate.floor());
+    if number < 64.0 { next.min(64.0) } else { BEYOND_LAST }
 }
 
 /// Returns rows that may be enough, after some that have this error; more than 64, if none will be.
@@ -152,8 +154,13 @@ fn grown_rows(sought: &Sought, tried: Tried, expected: &Expected, error: f32, to
     let ratio = if ratio < 100.0 { ratio } else { 100.0 };
     let across = expected.across / (tried.rows * tried.rows);
     let along = expected.along / (tried.width * tried.width);
-    let part = if sought.is_given { 0.25 } else { 0.125 };
-    let more = |number: f32| (0.8 * ratio * number).floor().max(next_number(number, part));
+    // Beyond what second derivatives ask for, more segments rarely help.
+    let part = match sought.is_given {
+        true if tried.width < 1.5 * expected.width => 0.0,
+        true => 0.25,
+        false => 0.125,
+    };
+    let more = |number: f32| next_number(number, part, 0.8 * ratio * number);
     let (mut rows, mut width) = (tried.rows, tried.width);
     if sought.is_given {
         // There may be too few rows for any width.
@@ -163,9 +170,9 @@ fn grown_rows(sought: &Sought, tried: Tried, expected: &Expected, error: f32, to
         rows = if along > 4.0 * across { rows } else { more(rows) };
         width = if across > 4.0 * along { width } else { more(width) };
     } else if across > along {
-        rows = next_number(rows, part);
+        rows = next_number(rows, part, 0.0);
     } else {
-        width = next_number(width, part);
+        width = next_number(width, part, 0.0);
     }
     Tried { rows, width, segments: least_segments(sought, tried.base, width), ..tried }
 }
@@ -287,9 +294,11 @@ fn fewest_rows(patch: &SeenPatch, tolerance: f32, sought: &Sought) -> Chosen {
         }
         if !is_worth && lessened == 0 || tried.lessened > LESSENINGS {
             at += 1;
-            goes_on = at < 3;
-            let base = order[at.min(2)];
+            // The other diagonals may be the only ones that are enough.
+            goes_on = at < 3 || at < 6 && best.inside == BEYOND_LAST;
+            let base = order[at % 3];
             tried = first_rows(sought, base, &all[base], shares[1]);
+            tried.flips = tried.flips != (at >= 3);
         }
     }
     best

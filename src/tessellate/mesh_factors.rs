@@ -8,8 +8,8 @@ use super::factors::base_factor;
 use super::flat_patch::{line_error, normals_agree, plane_error};
 use super::hull_factors::inside_of_base;
 use super::least_factors::{
-    BEYOND_LAST, Chosen, ROUNDS, asked_factors, asks_again, last_factor, least_edge_factor, least_inside_factor,
-    own_least_factors, uniform_suffices, whole_segments,
+    BEYOND_LAST, Chosen, asked_factors, asks_again, last_factor, least_edge_factor, least_inside_factor,
+    own_least_factors, rounds, uniform_suffices, whole_segments,
 };
 use super::least_rows::{asked_rows, own_least_rows, rows_ask_again, rows_beside};
 use super::mesh_displacement::MeshDisplacement;
@@ -102,7 +102,8 @@ impl ControlNets<'_> {
             ask(patch, own.edges, &mut asked);
             chosen.push(own);
         }
-        for round in 1..=ROUNDS {
+        let rounds = rounds(partitioning == Partitioning::Rows);
+        for round in 1..=rounds {
             let before = asked.clone();
             for (patch, chosen) in (0..).zip(&mut chosen) {
                 let edges = self.edges_of_patch(&before, patch);
@@ -114,7 +115,7 @@ impl ControlNets<'_> {
                     Partitioning::Rows => rows_ask_again(chosen, edges, inside),
                     _ => asks_again(chosen.inside, inside),
                 };
-                let asks = surface != Surface::Flat && round < ROUNDS && again;
+                let asks = surface != Surface::Flat && round < rounds && again;
                 *chosen = Chosen { edges, inside, ..*chosen };
                 if asks {
                     let seen = self.seen_patch(inputs, displacement, patch);

@@ -82,9 +82,9 @@ pub(crate) use factors::{
     FACTOR_VALUE, FIXED_ONE, outer_count, patch_is_culled, patch_is_low, point_count, process, round_pow2, segments,
     triangle_count,
 };
-pub(crate) use hull_factors::HullFactors;
+pub(crate) use hull_factors::{HullFactors, RowChoice};
 pub(crate) use inputs::sharing;
-pub(crate) use least_factors::ROUNDS;
+pub(crate) use least_factors::rounds;
 pub(crate) use limit_surface::LimitSurface;
 pub(crate) use lod::{beyond_near, distance_factor, edge_length_factor, paper_edge_factor};
 pub(crate) use mesh_displacement::{displacement_reach, displacing_heights, height_units};

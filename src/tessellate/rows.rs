@@ -49,6 +49,10 @@ pub(super) struct RowPlan {
 /// Returns the larger of 1 and row * segments / rows, rounded half up: where a row after the first starts on an edge. All are
 /// at most 64.
 fn end_place(segments: u32, rows: u32, row: u32) -> u32 {
+    // Mostly there is no need to divide.
+    if segments == rows {
+        return row;
+    }
     quotient(2 * row * segments + rows, 2 * rows).max(1)
 }
 
@@ -80,14 +84,26 @@ fn points_through(widths: u32, row: u32) -> u32 {
     widths - row
 }
 
-/// Returns the number of triangles before the strip below row `row`, which is less than the number of rows.
-fn triangles_before(plan: &RowPlan, row: u32) -> u32 {
-    if row == 0 {
-        return 0;
-    }
-    let [above, through] = row_widths(plan.n, plan.width, row);
-    // Each strip has as many triangles as its two rows have segments, less one for each point that they share.
-    above + through + end_place(plan.a, plan.n, row) + end_place(plan.b, plan.n, row) - 2 * row
+/// Returns the number of triangles before the strip below row `row`, which is 1 or more and less than the number of rows. `widths`
+/// are its [`row_widths`].
+///
+/// Each strip has as many triangles as its two rows have segments, less one for each point that they share.
+fn triangles_before(plan: &RowPlan, row: u32, widths: [u32; 2]) -> u32 {
+    widths[0] + widths[1] + end_place(plan.a, plan.n, row) + end_place(plan.b, plan.n, row) - 2 * row
+}
+
+/// Returns between which rows the strip with triangle `t` begins: the first one or later, and before the second one.
+///
+/// With m for the width and s for the segments of both edges together, the strips before row j have at least
+/// (m j^2 + (s - 2 n) j) / n - 2 triangles and at most (m j^2 + s j) / n + 2, because of the roundings of widths and places.
+fn rows_around(plan: &RowPlan, t: u32) -> [u32; 2] {
+    let [n, m] = [plan.n, plan.width].map(|number| number as f32);
+    let sides = (plan.a + plan.b) as f32;
+    let root = |slope: f32, height: f32| ((slope * slope + 4.0 * m * n * height.max(0.0)).sqrt() - slope) / (2.0 * m);
+    // Bounds that are too far apart are no mistake, so roundings go outwards.
+    let first = (root(sides, t as f32 - 2.0) - 0.015625).max(0.0);
+    let end = root(sides - 2.0 * n, t as f32 + 2.0) + 1.015625;
+    [first as u32, plan.n.min(end as u32 + 1)]
 }
 
 /// Returns point `i` of the outline, counted from the apex.
@@ -172,8 +188,8 @@ fn strip_corners(plan: &RowPlan, strip: Strip, i: u32) -> [StripPoint; 3] {
     [upper, lower, StripPoint { at: at[1] + 1, ..lower }]
 }
 
-/// Returns the number of point `at` of row `row`.
-fn number_in_row(plan: &RowPlan, row: u32, own: PatternRow, at: u32) -> u32 {
+/// Returns the number of point `at` of row `row`. `above` is how many segments rows 1 to `row - 1` have together.
+fn number_in_row(plan: &RowPlan, row: u32, own: PatternRow, above: u32, at: u32) -> u32 {
     if at == 0 {
         return outline_point(plan, own.start);
     }
@@ -184,30 +200,38 @@ fn number_in_row(plan: &RowPlan, row: u32, own: PatternRow, at: u32) -> u32 {
         // The points of the base follow each other on the outline.
         return outline_point(plan, plan.a) + at;
     }
-    let [above, _] = row_widths(plan.n, plan.width, row);
     plan.outer + points_through(above, row - 1) + at - 1
 }
 
-/// Returns the number of a corner of a triangle.
-fn corner_number(plan: &RowPlan, strip: Strip, corner: StripPoint) -> u32 {
+/// Returns the number of a corner of a triangle. `widths` are the [`row_widths`] of the strip's upper row.
+fn corner_number(plan: &RowPlan, strip: Strip, widths: [u32; 2], corner: StripPoint) -> u32 {
     match corner.is_lower {
-        true => number_in_row(plan, strip.row + 1, strip.lower, corner.at),
-        false => number_in_row(plan, strip.row, strip.upper, corner.at),
+        true => number_in_row(plan, strip.row + 1, strip.lower, widths[1], corner.at),
+        false => number_in_row(plan, strip.row, strip.upper, widths[0], corner.at),
     }
 }
 
 /// Returns triangle `t` of a patch, as point numbers, in the order of the outline.
 pub(super) fn row_triangle(plan: &RowPlan, t: u32) -> [u32; 3] {
-    // A bisection over the at most 64 strips, unrolled.
-    let mut row = 0;
-    for skip in [32, 16, 8, 4, 2, 1] {
-        if row + skip < plan.n && triangles_before(plan, row + skip) <= t {
-            row += skip;
+    // A bisection over the few strips that it can be. No triangle is before row 0.
+    let [mut row, mut end] = rows_around(plan, t);
+    let (mut before, mut widths) = (0, [0, 0]);
+    if row > 0 {
+        widths = row_widths(plan.n, plan.width, row);
+        before = triangles_before(plan, row, widths);
+    }
+    while row + 1 < end {
+        let middle = (row + end) / 2;
+        let own = row_widths(plan.n, plan.width, middle);
+        let count = triangles_before(plan, middle, own);
+        if count <= t {
+            (row, before, widths) = (middle, count, own);
+        } else {
+            end = middle;
         }
     }
     let strip = Strip { row, upper: row_at(plan, row), lower: row_at(plan, row + 1) };
-    let corners = strip_corners(plan, strip, t - triangles_before(plan, row));
-    corners.map(|corner| corner_number(plan, strip, corner))
+    strip_corners(plan, strip, t - before).map(|corner| corner_number(plan, strip, widths, corner))
 }
 
 /// Returns (U, V) of point `at` of a row, in 16.16 fixed point.
