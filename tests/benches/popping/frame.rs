@@ -1,0 +1,137 @@
+//! What is emitted in one frame, and how its camera sees it.
+
+use glam::{DMat4, DVec2, DVec3, DVec4, Vec3};
+use pnaen::internals::{Camera, point_count, triangle_count};
+use pnaen::mesh::{Mesh, Topology};
+use pnaen::tessellate::{Inputs, PatchFactors, Tessellated, Tessellation, Vertex, tessellate, unpack_normal};
+
+use crate::VIEWPORT;
+use crate::places::{PER_PATCH, Place, places_within};
+
+/// What is emitted in one frame.
+pub struct Frame {
+    emitted: Tessellated,
+    /// The first vertex and the first triangle of each patch.
+    starts: Vec<[usize; 2]>,
+}
+
+/// What is emitted at a place: the position in object units, and the interpolated unit normal.
+#[derive(Clone, Copy)]
+pub struct Emitted {
+    pub position: DVec3,
+    pub normal: DVec3,
+}
+
+impl Frame {
+    pub fn new(mesh: &Mesh, topology: &Topology, tessellation: &Tessellation, camera: &Camera) -> Self {
+        let inputs = Inputs::new(tessellation, camera.lod_view(VIEWPORT, &mesh.bounds()));
+        let emitted = tessellate(mesh, topology, &inputs, None);
+        let start = |at: &mut [usize; 2], &factors: &PatchFactors| {
+            let own = *at;
+            *at = [own[0] + point_count(factors) as usize, own[1] + triangle_count(factors) as usize];
+            Some(own)
+        };
+        let starts = emitted.patch_factors.iter().scan([0; 2], start).collect();
+        Self { emitted, starts }
+    }
+
+    /// How a camera sees the frame.
+    pub fn seen(&self, camera: &Camera, mesh: &Mesh) -> Seen {
+        Seen {
+            clip_from_object: camera.clip_from_object(VIEWPORT, &mesh.bounds()).as_dmat4(),
+            half_viewport: VIEWPORT.as_dvec2() * 0.5,
+            eye: camera.eye().as_dvec3(),
+        }
+    }
+
+    /// The number of triangles of all patches.
+    pub fn triangles(&self) -> usize {
+        self.emitted.triangles.len()
+    }
+
+    pub fn patches(&self) -> usize {
+        self.starts.len()
+    }
+
+    pub fn factors(&self, patch: usize) -> PatchFactors {
+        self.emitted.patch_factors[patch]
+    }
+
+    /// The triangles of a patch.
+    fn triangles_of(&self, patch: usize) -> impl Iterator<Item = [&Vertex; 3]> {
+        let count = triangle_count(self.factors(patch)) as usize;
+        let own = &self.emitted.triangles[self.starts[patch][1]..][..count];
+        own.iter().map(|triangle| triangle.map(|i| &self.emitted.vertices[i as usize]))
+    }
+
+    /// The triangles of a patch as domain points, in an order that doesn't depend on how they are numbered.
+    fn pattern(&self, patch: usize) -> Vec<[[u32; 2]; 3]> {
+        let sorted = |triangle: [&Vertex; 3]| {
+            let mut corners = triangle.map(|vertex| vertex.domain());
+            corners.sort_unstable();
+            corners
+        };
+        let mut pattern: Vec<_> = self.triangles_of(patch).map(sorted).collect();
+        pattern.sort_unstable();
+        pattern
+    }
+
+    /// Whether a patch has the same triangles in another frame.
+    pub fn has_same_pattern(&self, other: &Self, patch: usize) -> bool {
+        let (own, others) = (self.factors(patch), other.factors(patch));
+        own == others || triangle_count(own) == triangle_count(others) && self.pattern(patch) == other.pattern(patch)
+    }
+
+    /// What is emitted at all places of a patch.
+    pub fn at_places(&self, patch: usize) -> [Option<Emitted>; PER_PATCH] {
+        let mut all = [None; PER_PATCH];
+        for triangle in self.triangles_of(patch) {
+            places_within(triangle.map(|vertex| vertex.domain()), |place, weights| {
+                let mix = |of: &dyn Fn(&Vertex) -> Vec3| -> DVec3 {
+                    (0..3).map(|k| of(triangle[k]).as_dvec3() * weights[k]).sum()
+                };
+                let position = mix(&|vertex| vertex.position.into());
+                let normal = mix(&|vertex| unpack_normal(vertex.normal)).normalize_or_zero();
+                all[place] = Some(Emitted { position, normal });
+            });
+        }
+        all
+    }
+}
+
+/// How a camera sees a frame.
+pub struct Seen {
+    clip_from_object: DMat4,
+    half_viewport: DVec2,
+    eye: DVec3,
+}
+
+impl Seen {
+    fn clip(&self, p: DVec3) -> DVec4 {
+        self.clip_from_object * p.extend(1.0)
+    }
+
+    /// The cosine of the angle at which the true surface faces the eye at a place, from 1 through 0 (edge-on) to -1 (away);
+    /// `None` if the place is out of view.
+    pub fn facing(&self, place: &Place) -> Option<f64> {
+        let clip = self.clip(place.position);
+        let is_in_view = clip.w > 0.0 && clip.x.abs() <= clip.w && clip.y.abs() <= clip.w && clip.z <= clip.w;
+        is_in_view.then(|| place.normal.dot((self.eye - place.position).normalize_or_zero()))
+    }
+
+    /// The place on screen of a point in object units, in px from the middle; `None` if it is nearer than the near plane.
+    pub fn on_screen(&self, p: DVec3) -> Option<DVec2> {
+        let clip = self.clip(p);
+        let is_beyond_near = clip.w > 0.0 && clip.z <= clip.w;
+        is_beyond_near.then(|| clip.truncate().truncate() / clip.w * self.half_viewport)
+    }
+
+    /// The direction on screen across the outline at a place that is seen edge-on.
+    pub fn across_outline(&self, place: &Place) -> DVec2 {
+        // The outline's direction is that of the tangent at right angles to the line of sight.
+        let tangent = place.normal.cross(self.eye - place.position);
+        let (clip, along) = (self.clip(place.position), self.clip_from_object * tangent.extend(0.0));
+        let slope = (along.truncate().truncate() * clip.w - clip.truncate().truncate() * along.w) * self.half_viewport;
+        slope.perp().normalize_or_zero()
+    }
+}
