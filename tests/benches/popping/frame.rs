@@ -1,12 +1,12 @@
-//! What is emitted in one frame, and how its camera sees it.
+//! What is emitted in one frame.
 
-use glam::{DMat4, DVec2, DVec3, DVec4, Vec3};
+use glam::{DVec3, Vec3};
 use pnaen::internals::{Camera, point_count, triangle_count};
 use pnaen::mesh::{Mesh, Topology};
 use pnaen::tessellate::{Inputs, PatchFactors, Tessellated, Tessellation, Vertex, tessellate, unpack_normal};
 
 use crate::VIEWPORT;
-use crate::places::{PER_PATCH, Place, places_within};
+use crate::places::{PER_PATCH, places_within};
 
 /// What is emitted in one frame.
 pub struct Frame {
@@ -33,15 +33,6 @@ impl Frame {
         };
         let starts = emitted.patch_factors.iter().scan([0; 2], start).collect();
         Self { emitted, starts }
-    }
-
-    /// How a camera sees the frame.
-    pub fn seen(&self, camera: &Camera, mesh: &Mesh) -> Seen {
-        Seen {
-            clip_from_object: camera.clip_from_object(VIEWPORT, &mesh.bounds()).as_dmat4(),
-            half_viewport: VIEWPORT.as_dvec2() * 0.5,
-            eye: camera.eye().as_dvec3(),
-        }
     }
 
     /// The number of triangles of all patches.
@@ -96,42 +87,5 @@ impl Frame {
             });
         }
         all
-    }
-}
-
-/// How a camera sees a frame.
-pub struct Seen {
-    clip_from_object: DMat4,
-    half_viewport: DVec2,
-    eye: DVec3,
-}
-
-impl Seen {
-    fn clip(&self, p: DVec3) -> DVec4 {
-        self.clip_from_object * p.extend(1.0)
-    }
-
-    /// The cosine of the angle at which the true surface faces the eye at a place, from 1 through 0 (edge-on) to -1 (away);
-    /// `None` if the place is out of view.
-    pub fn facing(&self, place: &Place) -> Option<f64> {
-        let clip = self.clip(place.position);
-        let is_in_view = clip.w > 0.0 && clip.x.abs() <= clip.w && clip.y.abs() <= clip.w && clip.z <= clip.w;
-        is_in_view.then(|| place.normal.dot((self.eye - place.position).normalize_or_zero()))
-    }
-
-    /// The place on screen of a point in object units, in px from the middle; `None` if it is nearer than the near plane.
-    pub fn on_screen(&self, p: DVec3) -> Option<DVec2> {
-        let clip = self.clip(p);
-        let is_beyond_near = clip.w > 0.0 && clip.z <= clip.w;
-        is_beyond_near.then(|| clip.truncate().truncate() / clip.w * self.half_viewport)
-    }
-
-    /// The direction on screen across the outline at a place that is seen edge-on.
-    pub fn across_outline(&self, place: &Place) -> DVec2 {
-        // The outline's direction is that of the tangent at right angles to the line of sight.
-        let tangent = place.normal.cross(self.eye - place.position);
-        let (clip, along) = (self.clip(place.position), self.clip_from_object * tangent.extend(0.0));
-        let slope = (along.truncate().truncate() * clip.w - clip.truncate().truncate() * along.w) * self.half_viewport;
-        slope.perp().normalize_or_zero()
     }
 }

@@ -2,9 +2,10 @@
 
 use pnaen::internals::{row_base, triangle_count};
 
-use crate::frame::{Emitted, Frame, Seen};
+use crate::frame::{Emitted, Frame};
 use crate::histogram::Histogram;
 use crate::places::{Place, Places};
+use crate::view::View;
 
 /// The largest cosine of the angle at which the true surface is nearly edge-on: it is then less than 5.7 degrees from it.
 const EDGE_ON: f64 = 0.1;
@@ -29,13 +30,13 @@ pub struct Jumps {
     pub error_before: f64,
     /// Patches with a place in view that faces the eye, added up over frames.
     pub patches: u64,
-    /// Those of them whose pattern changed.
+    /// Of `patches`, those whose pattern changed.
     pub patterns: u64,
-    /// Those of them whose rows have another base, with more than one triangle in both frames.
+    /// Of `patterns`, those whose rows have another base, with more than one triangle in both frames.
     pub bases: u64,
-    /// Those of them that have no fewer triangles than before.
+    /// Of `bases`, those that have no fewer triangles than before.
     pub flips: u64,
-    /// Those of them whose edges have the same numbers of segments as before.
+    /// Of `bases`, those whose edges have the same numbers of segments as before.
     pub beside_same_edges: u64,
 }
 
@@ -57,11 +58,13 @@ impl Jumps {
     }
 
     /// Compares a frame with the frame before it, as the camera of the former sees both.
-    pub fn compare(&mut self, before: &Frame, now: &Frame, places: &Places, seen: &Seen) {
+    pub fn compare(&mut self, [before, now]: [&Frame; 2], places: &Places, [view_before, view]: [&View; 2]) {
         self.frames += 1;
         self.triangles += now.triangles() as u64;
         for patch in (0..now.patches()).filter(|&patch| !places.is_flat(patch)) {
-            let facing: Vec<Option<f64>> = places.of_patch(patch).iter().map(|place| seen.facing(place)).collect();
+            let is_in_view = |place: &Place| view.shows(place) && view_before.shows(place);
+            let facing = |place: &Place| is_in_view(place).then(|| view.facing(place));
+            let facing: Vec<Option<f64>> = places.of_patch(patch).iter().map(facing).collect();
             let is_wanted = |facing: &Option<f64>| facing.is_some_and(|cosine| cosine > -EDGE_ON);
             if !facing.iter().any(is_wanted) {
                 continue;
@@ -76,7 +79,7 @@ impl Jumps {
             for ((place, facing), emitted) in places.of_patch(patch).iter().zip(&facing).zip(emitted) {
                 if let Some(cosine) = facing.filter(|_| is_wanted(facing)) {
                     let (Some(old), Some(new)) = emitted else { panic!("a pattern has a hole") };
-                    self.compare_place(place, cosine, [old, new], seen, has_other_base);
+                    self.compare_place(place, cosine, [old, new], view, has_other_base);
                 }
             }
         }
@@ -85,12 +88,12 @@ impl Jumps {
     /// Counts what changed of a patch with another pattern. Returns whether its base changed.
     fn count_changes(&mut self, before: &Frame, now: &Frame, patch: usize, is_seen: bool) -> bool {
         let [old, new] = [before, now].map(|frame| frame.factors(patch));
-        let [fewer, more] = [old, new].map(triangle_count);
-        let has_other_base = row_base(old) != row_base(new) && fewer > 1 && more > 1;
+        let [triangles_before, triangles] = [old, new].map(triangle_count);
+        let has_other_base = row_base(old) != row_base(new) && triangles_before > 1 && triangles > 1;
         if is_seen {
             self.patterns += 1;
             self.bases += u64::from(has_other_base);
-            self.flips += u64::from(has_other_base && more >= fewer);
+            self.flips += u64::from(has_other_base && triangles >= triangles_before);
             self.beside_same_edges += u64::from(has_other_base && old.outside == new.outside);
         }
         has_other_base
@@ -101,13 +104,13 @@ impl Jumps {
         place: &Place,
         cosine: f64,
         [old, new]: [Emitted; 2],
-        seen: &Seen,
+        view: &View,
         has_other_base: bool,
     ) {
-        let points = [old.position, new.position, place.position].map(|p| seen.on_screen(p));
+        let points = [old.position, new.position, place.position].map(|p| view.on_screen(p));
         let [Some(from), Some(to), Some(truth)] = points else { return };
         if cosine.abs() < EDGE_ON {
-            self.silhouette = self.silhouette.max((to - from).dot(seen.across_outline(place)).abs());
+            self.silhouette = self.silhouette.max((to - from).dot(view.across_outline(place)).abs());
         }
         if cosine <= 0.0 {
             return;

@@ -74,7 +74,7 @@ fn print_row<'a>(name: &str, method: Method, measured: impl Iterator<Item = &'a 
 fn print_bases(meshes: &[&str], measured: &[&Measured], each_mesh: bool) {
     println!("\nRows: patches with another base, a frame\n");
     println!(
-        "| paths of | another base | of these without fewer triangles | of these beside the same segments of edges | their surface, largest px | 99th percentile px |"
+        "| paths of | another base | another base, but no fewer triangles | another base beside the same segments of edges | surface where the base changed, largest px | 99th percentile px |"
     );
     println!("| --- | ---: | ---: | ---: | ---: | ---: |");
     for (name, own) in groups(meshes, measured, each_mesh) {
