@@ -7,7 +7,7 @@ use crate::histogram::Histogram;
 use crate::places::{Place, Places};
 use crate::view::View;
 
-/// The largest cosine of the angle at which the true surface is nearly edge-on: it is then less than 5.7 degrees from it.
+/// The largest cosine of the angle at which the limit surface is nearly edge-on: it is then less than 5.7 degrees from it.
 const EDGE_ON: f64 = 0.1;
 
 /// What changed between successive frames, added up.
@@ -24,7 +24,7 @@ pub struct Jumps {
     pub surface_of_bases: Histogram,
     /// In degrees, at the same places as `surface`.
     pub normals: Histogram,
-    /// The largest distances on screen between what is emitted and the true surface, in px: of this frame, and of the frame
+    /// The largest distances on screen between what is emitted and the limit surface, in px: of this frame, and of the frame
     /// before under this frame's camera. Only patches whose pattern changed are looked at.
     pub error: f64,
     pub error_before: f64,
@@ -108,9 +108,9 @@ impl Jumps {
         has_other_base: bool,
     ) {
         let points = [old.position, new.position, place.position].map(|p| view.on_screen(p));
-        let [Some(from), Some(to), Some(truth)] = points else { return };
+        let [Some(from), Some(to), Some(limit)] = points else { return };
         if cosine.abs() < EDGE_ON {
-            self.silhouette = self.silhouette.max((to - from).dot(view.across_outline(place)).abs());
+            self.silhouette = self.silhouette.max((to - from).dot(view.across_silhouette(place)).abs());
         }
         if cosine <= 0.0 {
             return;
@@ -121,7 +121,7 @@ impl Jumps {
             self.surface_of_bases.add(px);
         }
         self.normals.add(old.normal.angle_between(new.normal).to_degrees());
-        self.error = self.error.max(to.distance(truth));
-        self.error_before = self.error_before.max(from.distance(truth));
+        self.error = self.error.max(to.distance(limit));
+        self.error_before = self.error_before.max(from.distance(limit));
     }
 }

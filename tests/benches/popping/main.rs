@@ -7,19 +7,19 @@
 //! count. They are compared at the same places of each patch (`places.rs`), where these are in view of both cameras: LOD by error
 //! keeps no tolerance out of view, and nobody sees what was there.
 //!
-//! - *surface*: the distance on screen between both emitted surfaces, where the true surface faces the eye;
-//! - *silhouette*: the part of that distance across the outline, where the true surface is seen nearly edge-on;
-//! - *normals*: the angle between both interpolated shading normals, where the true surface faces the eye.
+//! - *surface*: the distance on screen between both emitted surfaces, where the limit surface faces the eye;
+//! - *silhouette*: the part of that distance across the silhouette, where the limit surface is seen nearly edge-on;
+//! - *normals*: the angle between both interpolated shading normals, where the limit surface faces the eye.
 //!
 //! Percentiles are those of the places of patches whose pattern changed: where it didn't, nothing moves. LOD by error keeps both
-//! surfaces within the tolerance of the true one, each under its own camera, so a jump should be at most about twice the
+//! surfaces within the tolerance of the limit surface, each under its own camera, so a jump should be at most about twice the
 //! tolerance. The bench says whether it is.
 //!
 //! Other parts of the mesh may hide a place; this isn't looked at. Flat patches without a texture are left out: LOD by error
 //! lets their points slide, which nobody sees. Their outlines are measured in the patches beside them.
 //!
 //! Arguments after `--` are mesh files that are measured too; `paths=N` and `frames=N`, the number of paths (200) and of frames in
-//! each (12); `only=NAME`, which measures one mesh alone; and `meshes=all`, which prints a row for each mesh.
+//! each (8); `only=NAME`, which measures one mesh alone; and `meshes=all`, which prints a row for each mesh.
 
 mod frame;
 mod histogram;
@@ -83,16 +83,8 @@ impl Subject {
     }
 }
 
-fn main() {
-    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| !argument.starts_with("--")).collect();
-    let value = |name: &str| arguments.iter().find_map(|argument| argument.strip_prefix(name));
-    let number = |name: &str, default: usize| value(name).and_then(|text| text.parse().ok()).unwrap_or(default);
-    let files: Vec<PathBuf> = arguments.iter().filter(|argument| !argument.contains('=')).map(PathBuf::from).collect();
-    let mut meshes = meshes::with_files(&files);
-    meshes.retain(|(name, _)| value("only=").is_none_or(|only| name == only));
-    let subjects: Vec<Subject> = meshes.into_iter().map(|(name, mesh)| Subject::new(name, mesh)).collect();
-    let bounds: Vec<_> = subjects.iter().map(|subject| subject.mesh.bounds()).collect();
-    let paths = paths::random(&bounds, number("paths=", 200), number("frames=", 12));
+/// Measures all paths with every tolerance and method, on all cores.
+fn measure_all(subjects: &[Subject], paths: &[Path]) -> Vec<Measured> {
     let cases: Vec<_> = (0..paths.len())
         .flat_map(|path| {
             TOLERANCES.into_iter().flat_map(move |tolerance| Method::ALL.map(|method| (path, tolerance, method)))
@@ -111,7 +103,24 @@ fn main() {
             });
         }
     });
-    let measured = measured.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
+    measured.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner())
+}
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| !argument.starts_with("--")).collect();
+    let value = |name: &str| arguments.iter().find_map(|argument| argument.strip_prefix(name));
+    let number = |name: &str, default: usize| value(name).and_then(|text| text.parse().ok()).unwrap_or(default);
+    let files: Vec<PathBuf> = arguments.iter().filter(|argument| !argument.contains('=')).map(PathBuf::from).collect();
+    let mut meshes = meshes::with_files(&files);
+    meshes.retain(|(name, _)| value("only=").is_none_or(|only| name == only));
+    let subjects: Vec<Subject> = meshes.into_iter().map(|(name, mesh)| Subject::new(name, mesh)).collect();
+    if subjects.is_empty() {
+        eprintln!("No mesh has this name. The table that `meshes=all` prints has all names.");
+        return;
+    }
+    let bounds: Vec<_> = subjects.iter().map(|subject| subject.mesh.bounds()).collect();
+    let paths = paths::random(&bounds, number("paths=", 200), number("frames=", 8));
+    let measured = measure_all(&subjects, &paths);
     let names: Vec<&str> = subjects.iter().map(|subject| subject.name.as_str()).collect();
     for tolerance in TOLERANCES {
         let own: Vec<&Measured> = measured.iter().filter(|one| one.tolerance == tolerance).collect();

@@ -15,7 +15,7 @@ pub const PER_PATCH: usize = (STEPS as usize + 1) * (STEPS as usize + 2) / 2;
 /// The least cosine of the angle between normals that count as equal: 1 degree, as for LOD by error.
 const AGREEING: f32 = 0.99985;
 
-/// The true surface at a place: its position in object units, and its unit normal.
+/// The limit surface at a place: its position in object units, and its unit normal.
 #[derive(Clone, Copy, Default)]
 pub struct Place {
     pub position: DVec3,
@@ -30,7 +30,7 @@ pub struct Places {
 
 impl Places {
     pub fn new(mesh: &Mesh, topology: &Topology) -> Self {
-        // A tessellation whose vertices are the places, with the normals of the true surface.
+        // A tessellation whose vertices are the places, with the normals of the limit surface.
         let tessellation = Tessellation {
             partitioning: Partitioning::Subtriangulation,
             factor: STEPS as f32,

@@ -91,13 +91,13 @@ fn print_bases(meshes: &[&str], measured: &[&Measured], each_mesh: bool) {
     }
 }
 
-/// Prints whether no jump is larger than twice the tolerance: both frames' surfaces are within it of the true one.
+/// Prints whether no jump is larger than twice the tolerance: both frames' surfaces are within it of the limit surface.
 fn print_check<'a>(tolerance: f32, method: Method, measured: impl Iterator<Item = &'a Measured>) {
     let (_, jumps) = sum(measured);
     let [jump, most] = [jumps.surface.largest, 2.0 * f64::from(tolerance)];
     let holds = if jump <= most { "holds" } else { "FAILS" };
     println!(
-        "{}: no jump beyond twice the tolerance {holds}: {jump:.3} of {most} px. The emitted surface is up to {:.3} px from the true one, that of the frame before up to {:.3} px.",
+        "{}: no jump beyond twice the tolerance {holds}: {jump:.3} of {most} px. The emitted surface is up to {:.3} px from the limit surface, that of the frame before up to {:.3} px.",
         method.name(),
         jumps.error,
         jumps.error_before,

@@ -28,13 +28,13 @@ impl View {
         self.clip_from_object * p.extend(1.0)
     }
 
-    /// Whether the true surface at a place is in view.
+    /// Whether the limit surface at a place is in view.
     pub fn shows(&self, place: &Place) -> bool {
         let clip = self.clip(place.position);
         clip.w > 0.0 && clip.x.abs() <= clip.w && clip.y.abs() <= clip.w && clip.z <= clip.w
     }
 
-    /// The cosine of the angle at which the true surface faces the eye at a place: from 1 through 0 (edge-on) to -1 (away).
+    /// The cosine of the angle at which the limit surface faces the eye at a place: from 1 through 0 (edge-on) to -1 (away).
     pub fn facing(&self, place: &Place) -> f64 {
         place.normal.dot((self.eye - place.position).normalize_or_zero())
     }
@@ -46,9 +46,9 @@ impl View {
         is_beyond_near.then(|| clip.truncate().truncate() / clip.w * self.half_viewport)
     }
 
-    /// The direction on screen across the outline at a place that is seen edge-on.
-    pub fn across_outline(&self, place: &Place) -> DVec2 {
-        // The outline's direction is that of the tangent at right angles to the line of sight.
+    /// The direction on screen across the silhouette at a place that is seen edge-on.
+    pub fn across_silhouette(&self, place: &Place) -> DVec2 {
+        // The silhouette's direction is that of the tangent at right angles to the line of sight.
         let tangent = place.normal.cross(self.eye - place.position);
         let (clip, along) = (self.clip(place.position), self.clip_from_object * tangent.extend(0.0));
         let slope = (along.truncate().truncate() * clip.w - clip.truncate().truncate() * along.w) * self.half_viewport;
