@@ -8,6 +8,11 @@ use pnaen::tessellate::{Inputs, PatchFactors, Tessellated, Tessellation, Vertex,
 use crate::VIEWPORT;
 use crate::places::{PER_PATCH, places_within};
 
+/// The bits of a factor's word that hold the factor, in 16.16 fixed point.
+const FACTOR_VALUE: u32 = 0x7f_ffff;
+/// The largest factor of fractional-odd partitioning. The others have 64.
+const LARGEST: u32 = 63;
+
 /// What is emitted in one frame.
 pub struct Frame {
     emitted: Tessellated,
@@ -46,6 +51,12 @@ impl Frame {
 
     pub fn factors(&self, patch: usize) -> PatchFactors {
         self.emitted.patch_factors[patch]
+    }
+
+    /// Whether a factor of a patch is the largest that there is. LOD by error may then not keep the tolerance.
+    pub fn is_capped(&self, patch: usize) -> bool {
+        let PatchFactors { outside: [u, v, w], inside } = self.factors(patch);
+        [u, v, w, inside].iter().any(|word| (word & FACTOR_VALUE) >> 16 >= LARGEST)
     }
 
     /// The triangles of a patch.

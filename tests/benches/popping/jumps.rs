@@ -32,6 +32,9 @@ pub struct Jumps {
     pub patches: u64,
     /// Of `patches`, those whose pattern changed.
     pub patterns: u64,
+    /// Of `patterns`, those with the largest factor in one of the frames. Their places aren't compared, since LOD by error may not
+    /// keep the tolerance there.
+    pub capped: u64,
     /// Of `patterns`, those whose rows have another base, with more than one triangle in both frames.
     pub bases: u64,
     /// Of `bases`, those that have no fewer triangles than before.
@@ -52,6 +55,7 @@ impl Jumps {
         self.error_before = self.error_before.max(other.error_before);
         self.patches += other.patches;
         self.patterns += other.patterns;
+        self.capped += other.capped;
         self.bases += other.bases;
         self.flips += other.flips;
         self.beside_same_edges += other.beside_same_edges;
@@ -75,6 +79,10 @@ impl Jumps {
                 continue;
             }
             let has_other_base = self.count_changes(before, now, patch, is_seen);
+            if before.is_capped(patch) || now.is_capped(patch) {
+                self.capped += u64::from(is_seen);
+                continue;
+            }
             let emitted = before.at_places(patch).into_iter().zip(now.at_places(patch));
             for ((place, facing), emitted) in places.of_patch(patch).iter().zip(&facing).zip(emitted) {
                 if let Some(cosine) = facing.filter(|_| is_wanted(facing)) {

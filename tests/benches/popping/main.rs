@@ -16,7 +16,8 @@
 //! tolerance. The bench says whether it is.
 //!
 //! Other parts of the mesh may hide a place; this isn't looked at. Flat patches without a texture are left out: LOD by error
-//! lets their points slide, which nobody sees. Their outlines are measured in the patches beside them.
+//! lets their points slide, which nobody sees. Their outlines are measured in the patches beside them. Patches with the largest
+//! factor are left out and counted, since no factor may be enough there.
 //!
 //! Arguments after `--` are mesh files that are measured too; `paths=N` and `frames=N`, the number of paths (200) and of frames in
 //! each (8); `only=NAME`, which measures one mesh alone; and `meshes=all`, which prints a row for each mesh.

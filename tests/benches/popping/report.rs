@@ -97,10 +97,12 @@ fn print_check<'a>(tolerance: f32, method: Method, measured: impl Iterator<Item 
     let [jump, most] = [jumps.surface.largest, 2.0 * f64::from(tolerance)];
     let holds = if jump <= most { "holds" } else { "FAILS" };
     println!(
-        "{}: no jump beyond twice the tolerance {holds}: {jump:.3} of {most} px. The emitted surface is up to {:.3} px from the limit surface, that of the frame before up to {:.3} px.",
+        "{}: no jump beyond twice the tolerance {holds}: {jump:.3} of {most} px. The emitted surface is up to {:.3} px from the limit surface, that of the frame before up to {:.3} px. {} of {} changed patches have the largest factor and aren't compared.",
         method.name(),
         jumps.error,
         jumps.error_before,
+        jumps.capped,
+        jumps.patterns,
     );
 }
 
