@@ -29,5 +29,5 @@ pub use crate::render::target::{Target, samples};
 pub use crate::settings::options::TOLERANCE_RANGE;
 pub use crate::settings::{ARENA_BYTES, Settings};
 pub use crate::tessellate::domain::{domain_plan, domain_point, domain_triangle};
-pub use crate::tessellate::factors::{outer_count, point_count, triangle_count};
+pub use crate::tessellate::factors::{outer_count, point_count, row_base, triangle_count};
 pub use crate::tessellate::hull_factors::HullFactors;

@@ -220,7 +220,7 @@ pub(crate) fn patch_has_rows(factors: PatchFactors) -> bool {
 }
 
 /// Returns which edge is the base of a patch's rows: 0, 1 or 2 for U == 0, V == 0 or W == 0.
-pub(crate) fn row_base(factors: PatchFactors) -> u32 {
+pub fn row_base(factors: PatchFactors) -> u32 {
     factors.inside >> ROW_BASE_SHIFT & 3
 }
 

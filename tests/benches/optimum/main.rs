@@ -14,11 +14,9 @@ use std::sync::{Arc, Mutex};
 
 use glam::{Vec2, Vec3};
 use pnaen::internals::{
-    ARENA_BYTES, Camera, Compared, Engine, HullFactors, Limits, Measurements, Optimum, Scene, Shape, Source, Timing,
-    compare_with_optimum,
+    ARENA_BYTES, Camera, Compared, Engine, HullFactors, Measurements, Optimum, Scene, Timing, compare_with_optimum,
 };
 use pnaen::mesh::{Mesh, Topology};
-use pnaen::progress::Progress;
 use pnaen::tessellate::{Inputs, Lod, Partitioning, Tessellation};
 
 const VIEWPORT: Vec2 = Vec2::new(1280.0, 720.0);
@@ -65,18 +63,6 @@ impl Row {
             self.compared.best.as_ref().and_then(|best| best.uniform).filter(|_| self.compared.error_px.is_some());
         uniform.is_some_and(|(_, triangles)| self.compared.triangles > triangles)
     }
-}
-
-fn meshes(files: &[PathBuf]) -> Vec<(String, Arc<Mesh>)> {
-    let shapes = Shape::ALL.into_iter().map(|shape| (shape.name().to_owned(), shape.build()));
-    let mut all: Vec<_> = shapes.chain(meshes::all()).collect();
-    for file in files {
-        match Source::File(file.clone()).load(&Limits::default(), &Progress::new()) {
-            Ok(loaded) => all.push((file.file_name().unwrap_or_default().to_string_lossy().into_owned(), loaded.mesh)),
-            Err(error) => eprintln!("{}: {error}", file.display()),
-        }
-    }
-    all.into_iter().map(|(name, mesh)| (name, Arc::new(mesh))).collect()
 }
 
 /// The default camera, then random ones: around the mesh, close to it, inside, and without perspective.
@@ -234,7 +220,7 @@ fn main() {
         arguments.iter().find_map(|argument| argument.strip_prefix("cameras=")?.parse().ok()).unwrap_or(20);
     let files: Vec<PathBuf> = arguments.iter().filter(|argument| !argument.contains('=')).map(PathBuf::from).collect();
     let only = arguments.iter().find_map(|argument| argument.strip_prefix("only="));
-    let mut meshes = meshes(&files);
+    let mut meshes = meshes::with_files(&files);
     meshes.retain(|(name, _)| only.is_none_or(|only| name == only));
     let topologies: Vec<Arc<Topology>> = meshes.iter().map(|(_, mesh)| Arc::new(Topology::of(mesh))).collect();
     let on_device = arguments.iter().any(|argument| argument == "device=gpu");

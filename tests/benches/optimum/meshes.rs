@@ -1,13 +1,28 @@
 //! Meshes of many kinds: organic and hard surfaces, with patches of all sizes.
 
 use std::f32::consts::TAU;
+use std::path::PathBuf;
+use std::sync::Arc;
 
 use glam::{Vec2, Vec3, vec3};
-use pnaen::internals::MeshBuilder;
+use pnaen::internals::{Limits, MeshBuilder, Shape, Source};
 use pnaen::mesh::{Corner, Material, Mesh};
 use pnaen::progress::Progress;
 
-pub fn all() -> Vec<(String, Mesh)> {
+/// All shapes, the meshes of this file, and those of mesh files. A file that can't be read is named on stderr and left out.
+pub fn with_files(files: &[PathBuf]) -> Vec<(String, Arc<Mesh>)> {
+    let shapes = Shape::ALL.into_iter().map(|shape| (shape.name().to_owned(), shape.build()));
+    let mut all: Vec<_> = shapes.chain(made()).collect();
+    for file in files {
+        match Source::File(file.clone()).load(&Limits::default(), &Progress::new()) {
+            Ok(loaded) => all.push((file.file_name().unwrap_or_default().to_string_lossy().into_owned(), loaded.mesh)),
+            Err(error) => eprintln!("{}: {error}", file.display()),
+        }
+    }
+    all.into_iter().map(|(name, mesh)| (name, Arc::new(mesh))).collect()
+}
+
+fn made() -> Vec<(String, Mesh)> {
     vec![
         ("head".to_owned(), sheet([28, 22], true, head)),
         ("blob of few patches".to_owned(), sheet([6, 4], true, blob)),
