@@ -71,7 +71,9 @@ fn rows_around(plan: RowPlan, t: u32) -> vec2<u32> {
     let heights = max(vec2<f32>(f32(t) - 2.0, f32(t) + 2.0), vec2<f32>(0.0));
     let roots = (sqrt(slopes * slopes + 4.0 * m * n * heights) - slopes) / (2.0 * m);
     // Bounds that are too far apart are no mistake, so roundings go outwards.
-    return vec2<u32>(u32(max(roots.x - 0.015625, 0.0)), min(plan.n, u32(roots.y + 1.015625) + 1u));
+    let first = u32(max(roots.x - 0.015625, 0.0));
+    // The base may have so many segments that the first bound is beyond the last strip.
+    return vec2<u32>(min(first, plan.n - 1u), min(plan.n, u32(roots.y + 1.015625) + 1u));
 }
 
 // Returns point `i` of the outline, counted from the apex.

@@ -313,12 +313,6 @@ pub(super) fn asked_factors(
     fewest_triangles(patch, tolerance, partitioning, least, (least_inside, inner), 2.0)
 }
 
-/// Returns how often patches may ask: once, and again as long as factors change. Rows have no more of them than their edges have
-/// segments, so that neighbours more often ask for more.
-pub(crate) fn rounds(has_rows: bool) -> u32 {
-    if has_rows { 5 } else { 4 }
-}
-
 /// Returns whether a patch asks its edges again: beside what other patches asked for, its inside factor is much larger
 /// than the one that it has chosen.
 pub(super) fn asks_again(chosen: f32, inside: f32) -> bool {

@@ -9,7 +9,7 @@ use super::flat_patch::{line_error, normals_agree, plane_error};
 use super::hull_factors::inside_of_base;
 use super::least_factors::{
     BEYOND_LAST, Chosen, asked_factors, asks_again, last_factor, least_edge_factor, least_inside_factor,
-    own_least_factors, rounds, uniform_suffices, whole_segments,
+    own_least_factors, uniform_suffices, whole_segments,
 };
 use super::least_rows::{asked_rows, own_least_rows, rows_ask_again, rows_beside};
 use super::mesh_displacement::MeshDisplacement;
@@ -26,6 +26,12 @@ pub(super) struct MeshFactors {
     pub edges: Vec<f32>,
     /// The inside factors of patches under LOD by error; empty under any other LOD, which takes the largest of the sides'.
     insides: Vec<f32>,
+}
+
+/// Returns how often patches may ask: once, and again as long as factors change. A patch has no more rows than its edges have
+/// segments, so that under rows patches more often need more than what their neighbours have asked for.
+pub(crate) fn rounds(has_rows: bool) -> u32 {
+    if has_rows { 5 } else { 4 }
 }
 
 impl ControlNets<'_> {

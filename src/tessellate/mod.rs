@@ -84,10 +84,10 @@ pub(crate) use factors::{
 };
 pub(crate) use hull_factors::{HullFactors, RowChoice};
 pub(crate) use inputs::sharing;
-pub(crate) use least_factors::rounds;
 pub(crate) use limit_surface::LimitSurface;
 pub(crate) use lod::{beyond_near, distance_factor, edge_length_factor, paper_edge_factor};
 pub(crate) use mesh_displacement::{displacement_reach, displacing_heights, height_units};
+pub(crate) use mesh_factors::rounds;
 #[cfg(test)]
 pub(crate) use mesh_tessellation::edge_factors;
 pub(crate) use mesh_tessellation::{given_totals, hull_factors, tessellate_given, totals};

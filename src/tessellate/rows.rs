@@ -103,7 +103,8 @@ fn rows_around(plan: &RowPlan, t: u32) -> [u32; 2] {
     // Bounds that are too far apart are no mistake, so roundings go outwards.
     let first = (root(sides, t as f32 - 2.0) - 0.015625).max(0.0);
     let end = root(sides - 2.0 * n, t as f32 + 2.0) + 1.015625;
-    [first as u32, plan.n.min(end as u32 + 1)]
+    // The base may have so many segments that the first bound is beyond the last strip.
+    [(first as u32).min(plan.n - 1), plan.n.min(end as u32 + 1)]
 }
 
 /// Returns point `i` of the outline, counted from the apex.

@@ -16,7 +16,7 @@ use crate::measure::EdgeSide;
 use crate::mesh::{Mesh, Topology, adjacency};
 use crate::render::PickedTriangle;
 use crate::render::layout::FACTOR_COLORS;
-use crate::tessellate::factors::{patch_has_rows, patch_is_culled, row_base, row_count};
+use crate::tessellate::factors::{patch_has_rows, patch_is_culled, row_base, row_count, row_flip};
 use crate::tessellate::{
     Convention, FACING_AWAY, FACTOR_VALUE, FIXED_ONE, Lod, OUT_OF_VIEW, PatchFactors, PosedMesh, Vertex, domain_plan,
     domain_side, domain_triangle, factor_side, inside_cut, point_count, segments, triangle_count, weight_corner,
@@ -173,7 +173,9 @@ impl SelectedPatch<'_> {
         let (name, hover) = match self.factors.filter(|factors| patch_has_rows(*factors)) {
             Some(factors) => {
                 let base = row_base(factors);
-                ("width", format!("{} rows beside edge [{base}] widen to so many segments.", row_count(factors)))
+                let flipped = if row_flip(factors) == 1 { " Diagonals are flipped." } else { "" };
+                let rows = row_count(factors);
+                ("width", format!("{rows} rows beside edge [{base}] widen to so many segments.{flipped}"))
             }
             None => ("inside", "InsideTessFactor".to_owned()),
         };

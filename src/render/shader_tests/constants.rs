@@ -35,7 +35,10 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
     ),
     (&["AT_CORNER", "ON_SIDE", "INSIDE"], "in Rust, an enum without numbers"),
     (&["FOUND_SOURCE"], "in Rust, any number other than 0 and FOUND_EMITTED means the same"),
-    (&["ALL_MAPS", "NO_PATCH", "NO_MORE"], "markers within one pass"),
+    (
+        &["ALL_MAPS", "NO_PATCH", "NO_MORE", "NONE_ENOUGH"],
+        "markers within one pass, or within one word that no other pass reads",
+    ),
     (
         &["VERTEX_WORKGROUP", "TRIANGLE_WORKGROUP", "LANES"],
         "how one pass divides its work; it is dispatched indirectly",

@@ -137,7 +137,7 @@ fn diagonals_follow_the_direction_in_which_a_patch_bends_less() {
     }
     let mean = (logs.iter().sum::<f32>() / logs.len() as f32).exp();
     assert!((100..300).contains(&flipped), "{flipped} of 400 are flipped");
-    assert!(mean < 0.9, "{mean} times the error with the other diagonals");
+    assert!(mean < 0.95, "{mean} times the error with the other diagonals");
 }
 
 #[test]
