@@ -9,10 +9,11 @@
 
 // Returns the unit normal of a patch that isn't displaced, at weights u and v from 0 to 1.
 fn pixel_normal(patch_index: u32, weights: vec2<f32>) -> vec3<f32> {
-    // At a triangle's border the middle of a pixel may lie outside the patch.
-    let inside = vec2<u32>(clamp(weights, vec2<f32>(0.0), vec2<f32>(1.0)) * f32(FIXED_ONE) + 0.5);
-    let u = inside.x;
-    let v = min(inside.y, FIXED_ONE - u);
+    // At a triangle's border the middle of a pixel may lie outside the patch. Its border's normal is shown there.
+    let inside = max(vec3<f32>(weights, 1.0 - weights.x - weights.y), vec3<f32>(0.0));
+    let scaled = inside.xy / (inside.x + inside.y + inside.z) * f32(FIXED_ONE);
+    let u = min(u32(scaled.x + 0.5), FIXED_ONE);
+    let v = min(u32(scaled.y + 0.5), FIXED_ONE - u);
     let own = patches[patch_index];
     let normals = array<vec3<f32>, 3>(
         corners[own.corners[0]].normal,

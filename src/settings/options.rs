@@ -5,7 +5,8 @@
 
 use super::value::Field;
 use super::{
-    Access, Colors, Declaration, Description, DeviationUnit, Kind, NormalsAt, Overlay, Range, Settings, Value, descriptions,
+    Access, Colors, Declaration, Description, DeviationUnit, Kind, NormalsAt, Overlay, Range, Settings, Value,
+    descriptions,
 };
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface, Tessellation};
 
@@ -30,7 +31,8 @@ pub(crate) static TESSELLATION: [&Declaration; 16] = [
 ];
 
 /// The options of commands that draw a picture.
-pub(crate) static PICTURE: [&Declaration; 6] = [&NORMALS_AT, &OVERLAY, &DEVIATION_IN, &SPLIT, &SPLIT_SURFACE, &BACKGROUND];
+pub(crate) static PICTURE: [&Declaration; 6] =
+    [&NORMALS_AT, &OVERLAY, &DEVIATION_IN, &SPLIT, &SPLIT_SURFACE, &BACKGROUND];
 
 /// Tessellation factors, as Direct3D 11 has them.
 pub(crate) const FACTOR_RANGE: Range = Range::new(1.0, 64.0, "").decimals(3).logarithmic();
@@ -298,9 +300,7 @@ pub(crate) static NORMALS_AT: Declaration = Declaration {
     kind: Kind::Choice(descriptions::<NormalsAt>),
     unset: None,
     saved_as: &["normals_at"],
-    no_effect: |settings| {
-        (settings.tessellation.displacement != Displacement::Off).then_some(NORMALS_FOLLOW_TRIANGLES)
-    },
+    no_effect: |settings| (settings.tessellation.displacement != Displacement::Off).then_some(NORMALS_FOLLOW_TRIANGLES),
     access: field!(normals_at),
 };
 
