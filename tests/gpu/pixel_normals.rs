@@ -50,7 +50,8 @@ fn from_fine(scene: &mut Scene, normals: Normals) -> [f64; 2] {
     })
 }
 
-/// Interpolated quadratic normals are more than a level off, on average. Those at pixels were 40 to 140 times nearer.
+/// Interpolated quadratic normals are more than a level off, on average. Those at pixels were 25 times nearer on the torus, and over
+/// 100 times on the others.
 #[test]
 fn one_triangle_with_normals_at_pixels_is_shaded_as_thousands_with_normals_at_vertices() {
     for shape in [Shape::CubeSmooth, Shape::Torus, Shape::Icosahedron] {
@@ -58,7 +59,7 @@ fn one_triangle_with_normals_at_pixels_is_shaded_as_thousands_with_normals_at_ve
         for &normals in Normals::ALL {
             let [vertices, pixels] = from_fine(&mut scene, normals);
             assert!(pixels < ROUNDING, "{shape} {normals:?}: {pixels}");
-            assert!(normals != Normals::Quadratic || vertices > 20.0 * pixels, "{shape}: {vertices} {pixels}");
+            assert!(normals != Normals::Quadratic || vertices > 10.0 * pixels, "{shape}: {vertices} {pixels}");
         }
     }
 }
