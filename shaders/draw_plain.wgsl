@@ -48,3 +48,28 @@ fn textured_fragment(in: TexturedVaryings, @builtin(front_facing) front: bool) -
     let base = material.base_color.rgb * textureSample(base_texture, base_sampler, in.uv).rgb;
     return plain_color(base, in.clip.xy, in.normal, front);
 }
+
+// With a texture or without: little is drawn where normals are evaluated at pixels, and all that differs is a texel.
+struct PixelVaryings {
+    @builtin(position) clip: vec4<f32>,
+    // Weights u and v in the patch.
+    @location(0) weights: vec2<f32>,
+    @location(1) uv: vec2<f32>,
+    @location(2) @interpolate(flat) patch_index: u32,
+}
+
+@vertex
+fn pixel_vertex(
+    @location(0) position: vec3<f32>,
+    @location(2) key: vec2<u32>,
+    @location(3) uv: vec2<f32>,
+) -> PixelVaryings {
+    let weights = vec2<f32>(key_uv(key)) * UNIT;
+    return PixelVaryings(plain_frame.clip_from_object * vec4<f32>(position, 1.0), weights, uv, key_patch(key));
+}
+
+@fragment
+fn pixel_fragment(in: PixelVaryings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    let base = material.base_color.rgb * textureSample(base_texture, base_sampler, in.uv).rgb;
+    return plain_color(base, in.clip.xy, pixel_normal(in.patch_index, in.weights), front);
+}

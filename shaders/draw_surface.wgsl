@@ -4,9 +4,6 @@
 
 // In storage, not a uniform: some software drivers compile a shader again for every value of a uniform that it branches on.
 @group(0) @binding(0) var<storage, read> frame: Frame;
-@group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
-@group(0) @binding(2) var<storage, read> corners: array<Corner>;
-@group(0) @binding(3) var<storage, read> patches: array<Patch>;
 @group(0) @binding(4) var<storage, read> vertex_halves: array<vec4<u32>>;
 @group(0) @binding(5) var<storage, read> indices: array<u32>;
 @group(1) @binding(0) var<uniform> material: Material;
@@ -30,7 +27,7 @@ struct Varyings {
     @location(3) domain: vec3<f32>,
     // Barycentric coordinates in the drawn triangle; all 1 where they are not known.
     @location(4) corner: vec3<f32>,
-    @location(5) @interpolate(flat) edge_kinds: vec3<u32>,
+    @location(5) @interpolate(flat) patch_index: u32,
     // 1 if the drawn triangle faces away from where its patch faces.
     @location(6) @interpolate(flat) folded: u32,
     // Factors of the edges where u, v and w is 0, and inside; 0 for input triangles.
@@ -59,11 +56,7 @@ fn varyings(
     out.uv = uv;
     out.domain = vec3<f32>(f32(domain.x), f32(domain.y), f32(FIXED_ONE - domain.x - domain.y)) * UNIT;
     out.corner = corner;
-    if (frame.overlays & OVERLAY_ADJACENCY) != 0u {
-        // Kind of the edge where u, v, w is 0: opposite corner 0, 1, 2, which is side 1, 2, 0.
-        let sides = patches[patch_index].factors;
-        out.edge_kinds = vec3<u32>(sides[1] & 7u, sides[2] & 7u, sides[0] & 7u);
-    }
+    out.patch_index = patch_index;
     return out;
 }
 
@@ -317,6 +310,15 @@ fn meaning(in: Varyings, to_edges: vec3<f32>, edge_heights: vec3<f32>) -> vec4<f
 
 @fragment
 fn surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    return surface_color(in, in.normal, front);
+}
+
+@fragment
+fn pixel_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    return surface_color(in, pixel_normal(in.patch_index, in.domain.xy), front);
+}
+
+fn surface_color(in: Varyings, own_normal: vec3<f32>, front: bool) -> vec4<f32> {
     // Derivatives and samples first: both need uniform control flow.
     let edge_heights = heights(in.domain);
     let to_edges = in.domain * edge_heights;
@@ -335,7 +337,7 @@ fn surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @locati
     if marked_back {
         base = BACK_FACE_COLOR;
     }
-    let normal = normalize(select(-in.normal, in.normal, front));
+    let normal = normalize(select(-own_normal, own_normal, front));
     let meant = meaning(in, to_edges, edge_heights);
     let to_eye = toward_eye(frame.clip_from_object, frame.viewport, in.clip.xy);
     var color = shade(Lights(frame.key_light.xyz, frame.fill_light.xyz, to_eye), base, normal);
@@ -359,12 +361,14 @@ fn surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @locati
         color = mix(color, vec3<f32>(0.93, 0.94, 0.96), line_coverage(nearest_edge, 0.9));
     }
     if (frame.overlays & OVERLAY_ADJACENCY) != 0u {
-        var kind = in.edge_kinds.z;
+        // The edge where u, v or w is 0 is opposite corner 0, 1 or 2, and so side 1, 2 or 0.
+        var side = 0u;
         if to_edges.x <= nearest_edge {
-            kind = in.edge_kinds.x;
+            side = 1u;
         } else if to_edges.y <= nearest_edge {
-            kind = in.edge_kinds.y;
+            side = 2u;
         }
+        let kind = patches[in.patch_index].factors[side] & 7u;
         // Smooth edges are the most frequent and the least interesting, so their lines are thin.
         color = mix(color, edge_color(kind), line_coverage(nearest_edge, select(1.75, 0.75, kind == EDGE_SMOOTH)));
     }

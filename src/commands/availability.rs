@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::settings::options::LOD_IS_FIXED;
+use crate::settings::options::{LOD_IS_FIXED, NORMALS_FOLLOW_TRIANGLES};
 
 /// The window's state as far as commands depend on it.
 #[derive(Clone, Debug, Default)]
@@ -19,6 +19,8 @@ pub struct Availability {
     pub has_selected_patch: bool,
     /// Whether the mesh has heights that can displace it.
     pub has_heights: bool,
+    /// Whether normals can be evaluated at pixels.
+    pub takes_normals_at: bool,
     /// Whether the LOD that is used takes a tessellation factor.
     pub takes_factor: bool,
     /// Whether the partitioning leaves a choice of LOD.
@@ -52,6 +54,7 @@ impl Availability {
             has_selection: true,
             has_selected_patch: true,
             has_heights: true,
+            takes_normals_at: true,
             takes_factor: true,
             takes_lod: true,
             can_cull_back_faces: true,
@@ -110,6 +113,10 @@ pub(super) fn selected_patch(now: &Availability) -> Option<&'static str> {
 
 pub(super) fn heights(now: &Availability) -> Option<&'static str> {
     unless(now.has_heights, "The mesh has no heights: choose a height image.")
+}
+
+pub(super) fn normals_at(now: &Availability) -> Option<&'static str> {
+    unless(now.takes_normals_at, NORMALS_FOLLOW_TRIANGLES)
 }
 
 pub(super) fn factor(now: &Availability) -> Option<&'static str> {

@@ -1,7 +1,7 @@
 //! Changes of settings that are commands.
 
 use crate::settings::options::FACTOR_RANGE;
-use crate::settings::{Colors, DeviationUnit, Overlay, Settings};
+use crate::settings::{Colors, DeviationUnit, NormalsAt, Overlay, Settings};
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
 
 /// A change of settings. Its result depends on the settings alone.
@@ -17,6 +17,7 @@ pub enum Change {
     /// None is the untessellated mesh.
     LeftSurface(Option<Surface>),
     Shading(Normals),
+    NormalsAt(NormalsAt),
     Partitioning(Partitioning),
     Edges(Edges),
     Lod(Lod),
@@ -43,6 +44,7 @@ impl Change {
             Self::Surface(surface) => settings.tessellation.surface = surface,
             Self::LeftSurface(surface) => settings.split_surface = surface,
             Self::Shading(normals) => settings.tessellation.normals = normals,
+            Self::NormalsAt(places) => settings.normals_at = places,
             Self::Partitioning(partitioning) => settings.tessellation.partitioning = partitioning,
             Self::Edges(edges) => settings.set_edges(edges),
             Self::Lod(lod) => settings.tessellation.lod = lod,

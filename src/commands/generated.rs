@@ -8,7 +8,7 @@ use super::availability as when;
 use super::{Action, Availability, Change, Command, FileAction, Preparing, Submenu, plain};
 use crate::mesh::weld_preview::TOLERANCES;
 use crate::names::shortened;
-use crate::settings::{Choice, Colors, Control, DeviationUnit, Overlay, Overlays, options};
+use crate::settings::{Choice, Colors, Control, DeviationUnit, NormalsAt, Overlay, Overlays, options};
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
 
 /// The greatest number of clips that are listed.
@@ -44,6 +44,7 @@ fn settings() -> Vec<Command> {
     }));
     all.extend(values::<Surface>(left, |surface| Change::LeftSurface(Some(surface)), when::split));
     all.extend(values::<Normals>(options::NORMALS.label, Change::Shading, always));
+    all.extend(values::<NormalsAt>(options::NORMALS_AT.label, Change::NormalsAt, when::normals_at));
     all.extend(values::<Partitioning>(options::PARTITIONING.label, Change::Partitioning, always));
     all.extend(values::<Edges>(options::EDGES.label, Change::Edges, always));
     all.extend(values::<Lod>(options::LOD.label, Change::Lod, when::lod));

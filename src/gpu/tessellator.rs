@@ -357,6 +357,11 @@ impl Tessellator {
         &self.buffers
     }
 
+    /// The parameters of the passes, a [`Params`], as they were last set.
+    pub fn params(&self) -> &wgpu::Buffer {
+        &self.params_buffer
+    }
+
     /// At rest.
     pub fn mesh(&self) -> &Arc<Mesh> {
         &self.mesh

@@ -2,14 +2,19 @@
 
 use super::scene::LineSegment;
 use super::target::{COLOR_FORMAT, DEPTH_FORMAT, samples};
-use crate::gpu::wgsl::{CONVENTION, FACTORS, OCTAHEDRAL_NORMAL, SURFACE, TYPES, WgslFile, wgsl};
+use crate::gpu::wgsl::{
+    CONVENTION, FACTORS, LOAD_NET, LOADS, NORMAL, OCTAHEDRAL_NORMAL, SURFACE, TYPES, WgslFile, wgsl,
+};
 use crate::gpu::{Gpu, GpuError, Lazy, ShaderModule, VERTEX_HALF};
+use crate::settings::NormalsAt;
 
 pub(super) static DRAW_TYPES: WgslFile = wgsl!("draw_types", TYPES);
 static DRAW_LIGHT: WgslFile = wgsl!("draw_light");
-pub(super) static DRAW_PLAIN: WgslFile = wgsl!("draw_plain", DRAW_LIGHT, DRAW_TYPES, OCTAHEDRAL_NORMAL);
+static DRAW_NORMAL: WgslFile = wgsl!("draw_normal", FACTORS, LOAD_NET, LOADS, NORMAL, TYPES);
+pub(super) static DRAW_PLAIN: WgslFile =
+    wgsl!("draw_plain", DRAW_LIGHT, DRAW_NORMAL, DRAW_TYPES, OCTAHEDRAL_NORMAL, SURFACE, TYPES);
 pub(super) static DRAW_SURFACE: WgslFile =
-    wgsl!("draw_surface", CONVENTION, DRAW_LIGHT, DRAW_TYPES, FACTORS, OCTAHEDRAL_NORMAL, SURFACE, TYPES);
+    wgsl!("draw_surface", CONVENTION, DRAW_LIGHT, DRAW_NORMAL, DRAW_TYPES, FACTORS, OCTAHEDRAL_NORMAL, SURFACE, TYPES);
 pub(super) static DRAW_LINES: WgslFile = wgsl!("draw_lines", DRAW_TYPES, FACTORS, OCTAHEDRAL_NORMAL, TYPES);
 
 /// What a pipeline draws.
@@ -19,11 +24,13 @@ pub(super) enum Draw {
     Plain(Faces),
     /// Emitted triangles with the material's colour and texture.
     Textured(Faces),
+    /// The same with normals that are evaluated at pixels.
+    PixelNormals(Faces),
     /// Emitted triangles with overlays that need no data of whole triangles.
-    Indexed(Faces),
+    Indexed(Faces, NormalsAt),
     /// Emitted triangles with any overlays. The shader pulls each corner from the vertex buffer, so that it knows the barycentric
     /// coordinates in the triangle.
-    Pulled(Faces),
+    Pulled(Faces, NormalsAt),
     /// The input triangles, with any overlays.
     Source,
     /// Lines over the mesh.
@@ -51,15 +58,21 @@ pub(super) enum Occluded {
 
 impl Draw {
     /// Every pipeline that there is.
-    pub(super) const ALL: [Self; 13] = [
+    pub(super) const ALL: [Self; 19] = [
         Self::Plain(Faces::Both),
         Self::Plain(Faces::Fronts),
         Self::Textured(Faces::Both),
         Self::Textured(Faces::Fronts),
-        Self::Indexed(Faces::Both),
-        Self::Indexed(Faces::Fronts),
-        Self::Pulled(Faces::Both),
-        Self::Pulled(Faces::Fronts),
+        Self::PixelNormals(Faces::Both),
+        Self::PixelNormals(Faces::Fronts),
+        Self::Indexed(Faces::Both, NormalsAt::Vertices),
+        Self::Indexed(Faces::Fronts, NormalsAt::Vertices),
+        Self::Indexed(Faces::Both, NormalsAt::Pixels),
+        Self::Indexed(Faces::Fronts, NormalsAt::Pixels),
+        Self::Pulled(Faces::Both, NormalsAt::Vertices),
+        Self::Pulled(Faces::Fronts, NormalsAt::Vertices),
+        Self::Pulled(Faces::Both, NormalsAt::Pixels),
+        Self::Pulled(Faces::Fronts, NormalsAt::Pixels),
         Self::Source,
         Self::Lines(Occluded::Through),
         Self::Lines(Occluded::InSight),
@@ -73,11 +86,16 @@ impl Draw {
             Occluded::Through => "hidden_line_fragment",
             Occluded::InSight => "line_fragment",
         };
+        let surface = |places| match places {
+            NormalsAt::Vertices => "surface_fragment",
+            NormalsAt::Pixels => "pixel_surface_fragment",
+        };
         match self {
             Self::Plain(_) => ("plain_vertex", "plain_fragment"),
             Self::Textured(_) => ("textured_vertex", "textured_fragment"),
-            Self::Indexed(_) => ("indexed_vertex", "surface_fragment"),
-            Self::Pulled(_) => ("pulled_vertex", "surface_fragment"),
+            Self::PixelNormals(_) => ("pixel_vertex", "pixel_fragment"),
+            Self::Indexed(_, places) => ("indexed_vertex", surface(places)),
+            Self::Pulled(_, places) => ("pulled_vertex", surface(places)),
             Self::Source => ("source_vertex", "surface_fragment"),
             Self::Lines(part) => ("line_vertex", line(part)),
             Self::Normals(part) => ("normal_vertex", line(part)),
@@ -88,8 +106,10 @@ impl Draw {
     fn vertex_buffers(self) -> Vec<Option<wgpu::VertexBufferLayout<'static>>> {
         match self {
             Self::Plain(_) => vertex_halves(wgpu::VertexStepMode::Vertex)[..1].to_vec(),
-            Self::Textured(_) | Self::Indexed(_) => vertex_halves(wgpu::VertexStepMode::Vertex).to_vec(),
-            Self::Pulled(_) | Self::Source => Vec::new(),
+            Self::Textured(_) | Self::PixelNormals(_) | Self::Indexed(..) => {
+                vertex_halves(wgpu::VertexStepMode::Vertex).to_vec()
+            }
+            Self::Pulled(..) | Self::Source => Vec::new(),
             Self::Lines(_) => vec![Some(wgpu::VertexBufferLayout {
                 array_stride: size_of::<LineSegment>() as u64,
                 step_mode: wgpu::VertexStepMode::Instance,
@@ -113,12 +133,15 @@ impl Draw {
     }
 
     fn cull_mode(self) -> Option<wgpu::Face> {
-        use Draw::{Indexed, Plain, Pulled, Textured};
-        let fronts = matches!(
-            self,
-            Plain(Faces::Fronts) | Textured(Faces::Fronts) | Indexed(Faces::Fronts) | Pulled(Faces::Fronts)
-        );
-        fronts.then_some(wgpu::Face::Back)
+        let (Self::Plain(faces)
+        | Self::Textured(faces)
+        | Self::PixelNormals(faces)
+        | Self::Indexed(faces, _)
+        | Self::Pulled(faces, _)) = self
+        else {
+            return None;
+        };
+        (faces == Faces::Fronts).then_some(wgpu::Face::Back)
     }
 }
 
@@ -138,7 +161,8 @@ fn vertex_halves(step_mode: wgpu::VertexStepMode) -> [Option<wgpu::VertexBufferL
 
 /// The pipeline of each [`Draw`], and the layouts of their bind groups.
 pub(super) struct DrawPipelines {
-    /// Group 0: the frame, points, corners, patches, the arena's vertices and indices, and the frame once more as a uniform.
+    /// Group 0: the frame, points, corners, patches, the arena's vertices and indices, the frame once more as a uniform, curve
+    /// nets, and the parameters of the passes.
     pub scene_layout: wgpu::BindGroupLayout,
     /// Group 1: a material's constants, texture and sampler.
     pub material_layout: wgpu::BindGroupLayout,
@@ -174,8 +198,8 @@ impl DrawPipelines {
     /// Out of memory, or a lost device.
     pub(super) fn get(&self, gpu: &Gpu, draw: Draw) -> Result<&wgpu::RenderPipeline, GpuError> {
         let module = match draw {
-            Draw::Plain(_) | Draw::Textured(_) => &self.plain,
-            Draw::Indexed(_) | Draw::Pulled(_) | Draw::Source => &self.surface,
+            Draw::Plain(_) | Draw::Textured(_) | Draw::PixelNormals(_) => &self.plain,
+            Draw::Indexed(..) | Draw::Pulled(..) | Draw::Source => &self.surface,
             Draw::Lines(_) | Draw::Normals(_) => &self.lines,
         };
         let module = module.get(gpu)?;
@@ -189,8 +213,8 @@ impl DrawPipelines {
         let (scene, material) = (Some(&self.scene_layout), Some(&self.material_layout));
         let (chunk, deviation) = (Some(&self.chunk_layout), Some(&self.measured_layout));
         match draw {
-            Draw::Plain(_) | Draw::Textured(_) => vec![scene, material],
-            Draw::Indexed(_) | Draw::Pulled(_) => vec![scene, material, chunk, deviation],
+            Draw::Plain(_) | Draw::Textured(_) | Draw::PixelNormals(_) => vec![scene, material],
+            Draw::Indexed(..) | Draw::Pulled(..) => vec![scene, material, chunk, deviation],
             Draw::Source => vec![scene, material, None, deviation],
             Draw::Lines(_) => vec![scene],
             Draw::Normals(_) => vec![scene, None, chunk],
@@ -199,10 +223,13 @@ impl DrawPipelines {
 }
 
 fn scene_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
-    let mut entries = vec![buffer_entry(0, READ, both)];
-    entries.extend((1..6).map(|binding| buffer_entry(binding, READ, wgpu::ShaderStages::VERTEX)));
-    entries.push(buffer_entry(6, wgpu::BufferBindingType::Uniform, both));
+    let (vertex, fragment) = (wgpu::ShaderStages::VERTEX, wgpu::ShaderStages::FRAGMENT);
+    let mut entries: Vec<_> = (0..4).map(|binding| buffer_entry(binding, READ, vertex | fragment)).collect();
+    entries.extend((4..6).map(|binding| buffer_entry(binding, READ, vertex)));
+    entries.push(buffer_entry(6, wgpu::BufferBindingType::Uniform, vertex | fragment));
+    // Vertex shaders have as many storage buffers as WebGPU allows.
+    entries.push(buffer_entry(7, READ, fragment));
+    entries.push(buffer_entry(8, wgpu::BufferBindingType::Uniform, fragment));
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("scene"), entries: &entries })
 }
 

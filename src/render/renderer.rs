@@ -13,7 +13,8 @@ use super::target::samples;
 use super::{Camera, Scene, Target};
 use crate::gpu::layout::DrawArgs;
 use crate::gpu::{ChunkBuffers, Gpu, GpuError, Recorder, bind_group};
-use crate::settings::{Colors, Overlays, Settings, SplitSide};
+use crate::mesh::Mesh;
+use crate::settings::{Colors, NormalsAt, Overlays, Settings, SplitSide};
 use crate::tessellate::CoverageView;
 
 /// Draws pictures of any scene on a device. Its pipelines are made when they are first needed.
@@ -68,7 +69,7 @@ impl Renderer {
         } else {
             Faces::Both
         };
-        let (materials, _) = surface_draws(&settings.overlays, faces);
+        let (materials, _) = surface_draws(settings, scene.tessellator.mesh(), faces);
         let mut draws: Vec<_> = scene
             .tessellator
             .mesh()
@@ -210,9 +211,10 @@ impl Renderer {
         let clip_from_object = camera.clip_from_object(target.viewport(), &scene.bounds);
         // These two overlays show faces from behind.
         let fronts = !folds && !back_faces && scene.tessellator.shows_fronts_only(clip_from_object);
-        let (draws, pulled) = surface_draws(&settings.overlays, if fronts { Faces::Fronts } else { Faces::Both });
+        let (mesh, faces) = (scene.tessellator.mesh(), if fronts { Faces::Fronts } else { Faces::Both });
+        let (draws, pulled) = surface_draws(settings, mesh, faces);
         let mut materials = [None; 2];
-        for own in &scene.tessellator.mesh().materials {
+        for own in &mesh.materials {
             let textured = usize::from(own.texture.is_some());
             materials[textured] = Some(self.get(draws[textured])?);
         }
@@ -325,7 +327,9 @@ impl Renderer {
     fn scene_group(&self, scene: &Scene, frame: &wgpu::Buffer) -> wgpu::BindGroup {
         let buffers = scene.tessellator.buffers();
         let (vertices, indices) = scene.tessellator.arena();
-        let bound = [frame, &buffers.points, &buffers.corners, &buffers.patches, vertices, indices, frame];
+        let (nets, params) = (&buffers.curve_nets, scene.tessellator.params());
+        let bound =
+            [frame, &buffers.points, &buffers.corners, &buffers.patches, vertices, indices, frame, nets, params];
         let bound: Vec<_> = (0..).zip(bound).collect();
         bind_group(&self.gpu, "scene", &self.pipelines.scene_layout, &bound)
     }
@@ -343,14 +347,16 @@ impl Renderer {
 }
 
 /// The pipelines for emitted triangles without and with a texture, and whether they pull their vertices.
-fn surface_draws(overlays: &Overlays, faces: Faces) -> ([Draw; 2], bool) {
+fn surface_draws(settings: &Settings, mesh: &Mesh, faces: Faces) -> ([Draw; 2], bool) {
+    let places = settings.used_normals_at(mesh);
     // These overlays need data of whole triangles.
-    let Overlays { wireframe, folds, colors, .. } = *overlays;
+    let Overlays { wireframe, folds, colors, .. } = settings.overlays;
     let pulled = wireframe || folds || matches!(colors, Colors::TriangleSize | Colors::Deviation);
     let draws = match pulled {
-        true => [Draw::Pulled(faces); 2],
-        false if overlay_bits(overlays) == 0 => [Draw::Plain(faces), Draw::Textured(faces)],
-        false => [Draw::Indexed(faces); 2],
+        true => [Draw::Pulled(faces, places); 2],
+        false if overlay_bits(&settings.overlays) != 0 => [Draw::Indexed(faces, places); 2],
+        false if places == NormalsAt::Pixels => [Draw::PixelNormals(faces); 2],
+        false => [Draw::Plain(faces), Draw::Textured(faces)],
     };
     (draws, pulled)
 }

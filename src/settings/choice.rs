@@ -335,7 +335,7 @@ impl Choice for Displacement {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Colors, DeviationUnit, Overlay};
+    use super::super::{Colors, DeviationUnit, NormalsAt, Overlay};
     use super::*;
 
     fn check<T: Choice + std::fmt::Debug>() {
@@ -364,6 +364,7 @@ mod tests {
         check::<Convention>();
         check::<Displacement>();
         check::<DeviationUnit>();
+        check::<NormalsAt>();
         check::<Overlay>();
         check::<Colors>();
     }

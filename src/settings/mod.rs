@@ -14,7 +14,9 @@ use glam::{Mat4, Vec2};
 
 use crate::mesh::Mesh;
 use crate::names::every;
-use crate::tessellate::{Clip, Edges, Inputs, Lod, LodView, Partitioning, Surface, Tessellation, displacement_reach};
+use crate::tessellate::{
+    Clip, Displacement, Edges, Inputs, Lod, LodView, Partitioning, Surface, Tessellation, displacement_reach,
+};
 
 pub(crate) use choice::{Choice, Description, descriptions};
 pub(crate) use overlays::{Colors, Control, Overlay, Overlays};
@@ -27,6 +29,8 @@ pub const ARENA_BYTES: u64 = 256 << 20;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     pub tessellation: Tessellation,
+    /// Where shading normals are evaluated; a displaced surface has them at vertices. See [`Self::used_normals_at`].
+    pub normals_at: NormalsAt,
     pub overlays: Overlays,
     /// The unit of the distances that the deviation overlay colours.
     pub deviation_in: DeviationUnit,
@@ -42,6 +46,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             tessellation: Tessellation::default(),
+            normals_at: NormalsAt::Vertices,
             overlays: Overlays::default(),
             deviation_in: DeviationUnit::Units,
             split: None,
@@ -66,6 +71,38 @@ pub enum SplitSide {
 
 impl SplitSide {
     pub const BOTH: [Self; 2] = [Self::Left, Self::Right];
+}
+
+/// Where the normals that a surface is shaded with are evaluated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum NormalsAt {
+    /// At emitted vertices; triangles interpolate them.
+    #[default]
+    Vertices,
+    /// At every pixel, at its place in the patch.
+    Pixels,
+}
+
+impl Choice for NormalsAt {
+    const ALL: &'static [Self] = &every![NormalsAt: Vertices, Pixels];
+
+    fn description(self) -> Description {
+        let (name, label, text) = match self {
+            Self::Vertices => (
+                "vertices",
+                "Vertices",
+                "Normals are evaluated at vertices and interpolated in every triangle, so that shading depends on the \
+                 triangles.",
+            ),
+            Self::Pixels => (
+                "pixels",
+                "Pixels",
+                "The pixel shader evaluates the patch's normal at every pixel, so that shading stays the same however \
+                 few triangles a patch has.",
+            ),
+        };
+        Description::new(name, label, text)
+    }
 }
 
 /// The unit of distances on the surface.
@@ -131,6 +168,12 @@ impl Settings {
             Clip::Paper if !published => Clip::Frustum,
             other => other,
         };
+    }
+
+    /// Where a mesh's shading normals are evaluated. Those of a displaced surface follow its triangles, so they are at vertices.
+    pub fn used_normals_at(&self, mesh: &Mesh) -> NormalsAt {
+        let is_displaced = mesh.heights.is_some() && self.tessellation.displacement != Displacement::Off;
+        if is_displaced { NormalsAt::Vertices } else { self.normals_at }
     }
 
     /// The settings of one half of the picture; none where that half doesn't exist or shows the untessellated mesh.

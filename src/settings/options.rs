@@ -5,7 +5,8 @@
 
 use super::value::Field;
 use super::{
-    Access, Colors, Declaration, Description, DeviationUnit, Kind, Overlay, Range, Settings, Value, descriptions,
+    Access, Colors, Declaration, Description, DeviationUnit, Kind, NormalsAt, Overlay, Range, Settings, Value,
+    descriptions,
 };
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface, Tessellation};
 
@@ -30,7 +31,8 @@ pub(crate) static TESSELLATION: [&Declaration; 16] = [
 ];
 
 /// The options of commands that draw a picture.
-pub(crate) static PICTURE: [&Declaration; 5] = [&OVERLAY, &DEVIATION_IN, &SPLIT, &SPLIT_SURFACE, &BACKGROUND];
+pub(crate) static PICTURE: [&Declaration; 6] =
+    [&NORMALS_AT, &OVERLAY, &DEVIATION_IN, &SPLIT, &SPLIT_SURFACE, &BACKGROUND];
 
 /// Tessellation factors, as Direct3D 11 has them.
 pub(crate) const FACTOR_RANGE: Range = Range::new(1.0, 64.0, "").decimals(3).logarithmic();
@@ -284,6 +286,22 @@ pub(crate) static MIDLEVEL: Declaration = Declaration {
     saved_as: &["midlevel"],
     no_effect: not_displaced,
     access: field!(tessellation.midlevel),
+};
+
+/// Why normals can't be evaluated at pixels under displacement.
+pub(crate) const NORMALS_FOLLOW_TRIANGLES: &str =
+    "The normals of a displaced surface follow its triangles, so they are at vertices.";
+
+pub(crate) static NORMALS_AT: Declaration = Declaration {
+    name: "normals-at",
+    label: "Normals at",
+    placeholder: "PLACES",
+    text: "Where the normals that the surface is shaded with are evaluated. It changes no triangle.",
+    kind: Kind::Choice(descriptions::<NormalsAt>),
+    unset: None,
+    saved_as: &["normals_at"],
+    no_effect: |settings| (settings.tessellation.displacement != Displacement::Off).then_some(NORMALS_FOLLOW_TRIANGLES),
+    access: field!(normals_at),
 };
 
 pub(crate) static OVERLAY: Declaration = Declaration {

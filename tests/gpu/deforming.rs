@@ -16,7 +16,7 @@ use crate::gpu_tests::engine;
 use crate::gpu_tests::moving::{CLIPS, moving};
 use crate::gpu_tests::passes::{assert_agree, inputs, on_gpu};
 
-fn scene() -> (Loaded, Scene) {
+pub(super) fn scene() -> (Loaded, Scene) {
     let folder = tempfile::tempdir().expect("a writable temporary folder");
     let path = folder.path().join("moving.glb");
     std::fs::write(&path, moving()).expect("a writable temporary folder");

@@ -18,6 +18,7 @@ pub(crate) mod moving;
 mod passes;
 mod picking;
 mod pictures;
+mod pixel_normals;
 mod readbacks;
 mod stability;
 

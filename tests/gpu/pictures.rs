@@ -11,7 +11,7 @@ use pnaen::mesh::{EdgeKind, Shape, t_junctions};
 use pnaen::progress::Progress;
 use pnaen::render::layout::{CRACK_COLOR, FOLD_COLOR, NORMAL_COLOR, T_JUNCTION_COLOR, WASTE_COLOR, edge_color};
 use pnaen::render::{Camera, EXCESS_SCALE, FACTOR_SCALE, Scene, Target, t_junction_lines};
-use pnaen::settings::{ARENA_BYTES, Choice, Colors, Overlay, Overlays, Settings};
+use pnaen::settings::{ARENA_BYTES, Choice, Colors, NormalsAt, Overlay, Overlays, Settings};
 use pnaen::tessellate::{
     Convention, Displacement, FACTOR_ODD, FIXED_ONE, Lod, Normals, Partitioning, Surface, Tessellation, domain_side,
     triangle_count,
@@ -74,6 +74,16 @@ fn normals_look_as_they_did() {
         (format!("normals-{name}"), picture(&mut scene, &settings, SIZE))
     });
     assert_eq!(differing(pictures.into()), Vec::<String>::new());
+}
+
+#[test]
+fn normals_at_pixels_look_as_they_did() {
+    // Beside normals-quadratic: with 4 segments an edge in place of 16, the outline differs and the shading doesn't.
+    let (_, mut scene) = scene(Shape::CubeSmooth);
+    let tessellation = Tessellation { normals: Normals::Quadratic, factor: 4.0, ..Tessellation::default() };
+    let settings = Settings { normals_at: NormalsAt::Pixels, ..Settings::from(tessellation) };
+    let picture = picture(&mut scene, &settings, SIZE);
+    assert_eq!(differing(vec![("normals-at-pixels".to_owned(), picture)]), Vec::<String>::new());
 }
 
 #[test]

@@ -29,6 +29,7 @@ impl App {
             has_selection: self.viewport.selected_edge.is_some() || self.selected_triangle().is_some(),
             has_selected_patch: self.selected_patch().is_some(),
             has_heights: self.has_heights(),
+            takes_normals_at: has_effect(&options::NORMALS_AT),
             takes_factor: has_effect(&options::FACTOR),
             takes_lod: has_effect(&options::LOD),
             can_cull_back_faces: self.can_cull_back_faces(),

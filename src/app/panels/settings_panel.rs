@@ -51,6 +51,7 @@ impl App {
         option_row(ui, &options::SURFACE, settings, "");
         option_row(ui, &options::ALPHA, settings, "");
         option_row(ui, &options::NORMALS, settings, "");
+        option_row(ui, &options::NORMALS_AT, settings, "");
         option_row(ui, &options::FACTOR, settings, &factor_keys());
         option_row(ui, &options::PARTITIONING, settings, "");
         let mut chosen = *settings;

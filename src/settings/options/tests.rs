@@ -7,7 +7,7 @@ use crate::settings::random;
 
 /// Every field with its value. Patterns have no `..`, so a new field must be named here and then reached by a declaration.
 fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
-    let Settings { tessellation, overlays, deviation_in, split, split_surface, background } = settings;
+    let Settings { tessellation, normals_at, overlays, deviation_in, split, split_surface, background } = settings;
     let Tessellation {
         surface,
         alpha,
@@ -45,6 +45,7 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         ("displacement", format!("{displacement:?}")),
         ("height_scale", format!("{height_scale:?}")),
         ("midlevel", format!("{midlevel:?}")),
+        ("normals_at", format!("{normals_at:?}")),
         ("overlays", format!("{overlays:?}")),
         ("deviation_in", format!("{deviation_in:?}")),
         ("split", format!("{split:?}")),
@@ -173,9 +174,9 @@ fn unused_options_have_no_effect() {
     phong_left.tessellation.partitioning = Partitioning::Subtriangulation;
     phong_left.overlays.colors = Colors::Deviation;
     phong_left.split_surface = Some(Surface::Phong);
-    assert_eq!(idle(&phong_left), ["alpha", "lod", "pixels", "tolerance", "distances", "split-surface"]);
+    assert_eq!(idle(&phong_left), ["alpha", "lod", "pixels", "tolerance", "distances", "normals-at", "split-surface"]);
     phong_left.split = Some(0.5);
-    assert_eq!(idle(&phong_left), ["lod", "pixels", "tolerance", "distances"]);
+    assert_eq!(idle(&phong_left), ["lod", "pixels", "tolerance", "distances", "normals-at"]);
 }
 
 #[test]
