@@ -129,12 +129,13 @@ impl Choice for DeviationUnit {
 }
 
 impl Settings {
-    /// The settings of a first start: LOD by error, with patches that can't be seen left out, and the wireframe.
+    /// The settings of a first start: LOD by error with the fewest triangles, which rows have, with patches that can't be seen left
+    /// out, and the wireframe.
     pub fn opening() -> Self {
         Self {
             tessellation: Tessellation {
                 lod: Lod::Error,
-                partitioning: Partitioning::Integer,
+                partitioning: Partitioning::Rows,
                 clip: Clip::Frustum,
                 cull_back_faces: true,
                 ..Tessellation::default()
