@@ -11,7 +11,7 @@ use pnaen::render::layout::CRACK_COLOR;
 use pnaen::settings::{Colors, DeviationUnit, SplitSide};
 use pnaen::tessellate::Surface;
 
-use crate::window_tests::{choose, click, press, settle, uniform, window};
+use crate::window_tests::{choose, click, open_list, press, settle, uniform, window};
 
 #[test]
 fn deviation_has_numbers_and_a_legend_and_a_click_frames_the_worst_point() {
@@ -116,8 +116,7 @@ fn both_halves_of_a_split_show_their_surface_and_deviation() {
     assert_eq!(harness.state().pictures(), pictures, "nothing is drawn when nothing changed");
     choose(&mut harness, "Surface", "PN");
     assert_eq!(harness.state().deviation(SplitSide::Left), Some(flat), "the left half isn't measured again");
-    harness.get_by_role_and_label(Role::ComboBox, "Left").click();
-    settle(&mut harness);
+    open_list(&mut harness, "Left");
     // The statistics have a text "PN" as well, so the entry is looked up by its role.
     harness.get_by_role_and_label(Role::Button, "PN").click();
     settle(&mut harness);

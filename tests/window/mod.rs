@@ -64,10 +64,17 @@ fn click(harness: &mut Harness<App>, label: &str) {
     settle(harness);
 }
 
-/// Picks an entry of a list.
-fn choose(harness: &mut Harness<App>, list: &str, entry: &str) {
+/// Opens a list. The panel is scrolled to it first, since not all rows fit the window.
+fn open_list(harness: &mut Harness<App>, list: &str) {
+    harness.get_by_role_and_label(Role::ComboBox, list).scroll_to_me();
+    settle(harness);
     harness.get_by_role_and_label(Role::ComboBox, list).click();
     settle(harness);
+}
+
+/// Picks an entry of a list.
+fn choose(harness: &mut Harness<App>, list: &str, entry: &str) {
+    open_list(harness, list);
     click(harness, entry);
 }
 
