@@ -214,6 +214,41 @@ fn print_worst(meshes: &[(String, Arc<Mesh>)], rows: &[Row]) {
     }
 }
 
+/// Prints what the default camera sees, mesh by mesh and tolerance by tolerance: the triangles of LOD by error under integer
+/// partitioning and under rows, and the optimum of Direct3D's pattern.
+fn print_default_views(meshes: &[(String, Arc<Mesh>)], rows: &[Row]) {
+    println!(
+        "\nThe default view: triangles under integer / optimum of Direct3D's pattern / rows, and rows over that optimum\n"
+    );
+    let columns = TOLERANCES.map(|tolerance| format!(" {tolerance} px |")).concat();
+    println!("| mesh |{columns}\n| --- |{}", " --- |".repeat(TOLERANCES.len()));
+    let mut times = vec![Vec::new(); TOLERANCES.len()];
+    for (index, (name, _)) in meshes.iter().enumerate() {
+        let mut cells = String::new();
+        for (tolerance, times) in TOLERANCES.into_iter().zip(&mut times) {
+            let of = |partitioning| {
+                let is_own = |row: &&Row| {
+                    let Case { mesh, number, tolerance: own, partitioning: under, .. } = row.case;
+                    (mesh, number, own, under) == (index, 0, tolerance, partitioning)
+                };
+                rows.iter().find(is_own)
+            };
+            let (Some(integer), Some(own)) = (of(Partitioning::Integer), of(Partitioning::Rows)) else { continue };
+            let [here, there] = [integer.compared.triangles, own.compared.triangles];
+            cells += &match (&integer.compared.best, own.times()) {
+                (Some(best), Some(ratio)) => {
+                    times.push(ratio);
+                    format!(" {here} / {} / {there}: {ratio:.2} |", best.triangles)
+                }
+                _ => format!(" {here} / - / {there} |"),
+            };
+        }
+        println!("| {name} |{cells}");
+    }
+    let means: String = times.into_iter().map(|own| format!(" {:.3} |", geometric_mean(own.into_iter()))).collect();
+    println!("| geometric mean |{means}");
+}
+
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| !argument.starts_with("--")).collect();
     let cameras_each =
@@ -265,6 +300,9 @@ fn main() {
             print_row(&format!("{name} ({})", mesh.triangles.len()), &own);
         }
         print_row("all", &rows.iter().filter(|row| row.case.partitioning == partitioning).collect::<Vec<_>>());
+    }
+    if searches {
+        print_default_views(&meshes, &rows);
     }
     print_worst(&meshes, &rows);
 }
