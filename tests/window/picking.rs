@@ -218,8 +218,25 @@ fn numbers(text: &str) -> Vec<f64> {
 }
 
 #[test]
+fn under_rows_a_patch_is_explained_as_a_whole() {
+    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    harness.state_mut().select_triangle(Some(33));
+    settle(&mut harness);
+    let tolerance = numbers(&row(&harness, "tolerance  "))[0];
+    let whole = numbers(&row(&harness, "whole          "));
+    assert!(whole[0] >= 1.0 && whole[1] <= tolerance, "{whole:?}");
+    for edge in ["0-1 ", "1-2 ", "2-0 "] {
+        let text = row(&harness, edge);
+        let asked: Vec<f64> = text.split_whitespace().skip(1).take(3).filter_map(|word| word.parse().ok()).collect();
+        let [own, others, got] = asked[..] else { panic!("{text}") };
+        assert!(got >= own.max(others), "{text}");
+    }
+}
+
+#[test]
 fn a_patch_says_why_it_has_its_factors() {
     let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    choose(&mut harness, "Partitioning", "Integer");
     let mut decided = Vec::new();
     for triangle in [0, 33, 90, 150] {
         harness.state_mut().select_triangle(Some(triangle));
