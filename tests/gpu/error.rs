@@ -36,7 +36,8 @@ fn deviation_px(mesh: &Mesh, topology: &Topology, inputs: &Inputs, out: &Tessell
 }
 
 /// What rounding adds to a distance in px: emitted positions are off by a few units in the last place of coordinates
-/// about as large as the distance to the eye.
+/// about as large as the distance to the eye. A device may take numbers below the least normal one for zero (WGSL, "Floating
+/// Point Evaluation"), so distances smaller than that are lost on it: in meshes of 1e-36 object units that is a hundredth.
 fn rounding_px(mesh: &Mesh, inputs: &Inputs) -> f64 {
     let bounds = mesh.bounds();
     let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
@@ -45,7 +46,8 @@ fn rounding_px(mesh: &Mesh, inputs: &Inputs) -> f64 {
     // Nothing is nearer than the near plane; orthographic views have w = 1.
     let perspective = clip.row(3).truncate() != glam::Vec3::ZERO;
     let depth = if perspective { f64::from(clip.w_axis.z.abs().max(f32::MIN_POSITIVE)) } else { 1.0 };
-    16.0 * f64::from(largest) * f64::from(f32::EPSILON) * a_unit / depth
+    let least = (f64::from(largest) * f64::from(f32::EPSILON)).max(f64::from(f32::MIN_POSITIVE));
+    16.0 * least * a_unit / depth
 }
 
 fn by_error(settings: Settings, tolerance: f32) -> Settings {

@@ -299,7 +299,9 @@ impl Trial {
 /// How many meshes at random the CPU takes: PNAEN_SOUPS, for a long look in release, or else `usually`.
 pub(super) fn soups(usually: u32) -> ProptestConfig {
     let asked = std::env::var("PNAEN_SOUPS").ok();
-    ProptestConfig::with_cases(asked.map_or(usually, |count| count.parse().expect("PNAEN_SOUPS is a number")))
+    let cases = asked.map_or(usually, |count| count.parse().expect("PNAEN_SOUPS is a number"));
+    // Some soups are passed over: settings that a property says nothing of.
+    ProptestConfig { max_global_rejects: cases.max(1024), ..ProptestConfig::with_cases(cases) }
 }
 
 proptest! {
