@@ -60,11 +60,11 @@ fn row_location(row: DomainRow, p: u32) -> u32 {
     return select(x, FIXED_ONE - x, mirrored);
 }
 
-// Returns where point `p` of a row of so many equal segments, at most 64, lies: as `row_location` of a whole factor.
-fn whole_location(segments: u32, p: u32) -> u32 {
+// Returns where point `p` of a row of so many equal segments, at most 64, lies: as `row_location` of a whole factor. `step` is
+// the segment_length.
+fn whole_location(segments: u32, step: u32, p: u32) -> u32 {
     if 2u * p == segments {
         return FIXED_HALF;
     }
-    let step = segment_length(segments);
     return select(p * step, FIXED_ONE - (segments - p) * step, 2u * p > segments);
 }

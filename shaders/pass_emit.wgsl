@@ -21,6 +21,8 @@
 
 // How normals are made, NORMALS_*. Each way has a pipeline of its own, without the registers that the others need.
 override EMIT_NORMALS: u32 = 0u;
+// 1 if all patches are cut into rows. The pipelines for rows prepare them once a patch, and the others are without them.
+override EMIT_ROWS: u32 = 0u;
 
 const NO_PATCH: u32 = 0xffffffffu;
 // Invocations of a workgroup. Vertices have fewer, each with more to do, since loading a control net takes long.
@@ -117,6 +119,38 @@ fn of_three(values: array<u32, 3>, k: u32) -> u32 {
     return select(select(values[0], values[1], k == 1u), values[2], k == 2u);
 }
 
+// A patch's pattern, prepared for `emit_point` and `emit_triangle`.
+struct EmitPlan {
+    domain: DomainPlan,
+    // All zeros if patches aren't cut into rows.
+    rows: RowPlan,
+}
+
+fn emit_plan(factors: PatchFactors) -> EmitPlan {
+    var rows: RowPlan;
+    if EMIT_ROWS == 1u {
+        rows = row_plan(factors);
+    }
+    return EmitPlan(domain_plan(factors), rows);
+}
+
+fn emit_point(plan: EmitPlan, i: u32) -> vec2<u32> {
+    if EMIT_ROWS == 0u {
+        return domain_point(plan.domain, i);
+    }
+    if i < plan.domain.outer {
+        return outer_point(plan.domain, i);
+    }
+    return row_point(plan.rows, i - plan.domain.outer);
+}
+
+fn emit_triangle(plan: EmitPlan, t: u32) -> vec3<u32> {
+    if EMIT_ROWS == 1u {
+        return row_triangle(plan.rows, t);
+    }
+    return domain_triangle(plan.domain, t);
+}
+
 // What the domain shader makes of one domain point.
 struct DomainVertex {
     position: vec3<f32>,
@@ -198,9 +232,9 @@ fn store_vertex(index: u32, patch_index: u32, hull: HullPatch, uv: vec2<u32>) {
 }
 
 // Emits vertices `first`, `first + LANES` and so on up to `end` of the patch whose first vertex is `start`.
-fn emit_patch_vertices(plan: DomainPlan, hull: HullPatch, patch_index: u32, start: u32, first: u32, end: u32) {
+fn emit_patch_vertices(plan: EmitPlan, hull: HullPatch, patch_index: u32, start: u32, first: u32, end: u32) {
     for (var index = first; index < end; index += LANES) {
-        let uv = corner_weights(params.convention, domain_point(plan, index - start));
+        let uv = corner_weights(params.convention, emit_point(plan, index - start));
         store_vertex(index, patch_index, hull, uv);
     }
 }
@@ -236,11 +270,11 @@ fn vertices_by_patch(chunk: Chunk, first_entry: u32, first: u32, turns: u32, loc
         // Where the patch starts and ends, in the chunk: its start may lie before it.
         let start = offsets[entry].x - chunk.first_vertex;
         let factors = patch_factors[entry];
-        let plan = domain_plan(factors);
+        let plan = emit_plan(factors);
         let stop = min(start + point_count(factors), end);
         let hull = load_hull(patch_index);
-        // The outline first, then the inside: each takes another path through domain_point.
-        let inside = clamp(start + plan.outer, at, stop);
+        // The outline first, then the inside: each takes another path through emit_point.
+        let inside = clamp(start + plan.domain.outer, at, stop);
         emit_patch_vertices(plan, hull, patch_index, start, at + local % LANES, inside);
         emit_patch_vertices(plan, hull, patch_index, start, inside + local % LANES, stop);
         at = stop;
@@ -253,7 +287,7 @@ fn vertices_by_item(chunk: Chunk, first_entry: u32, first: u32, turns: u32, loca
     var known = NO_PATCH;
     var entry = first_entry;
     var start = 0u;
-    var plan: DomainPlan;
+    var plan: EmitPlan;
     for (var turn = 0u; turn < turns; turn++) {
         let index = first + emit_start(local, turns) + turn * LANES + local % LANES;
         if index >= chunk.vertex_count {
@@ -264,9 +298,9 @@ fn vertices_by_item(chunk: Chunk, first_entry: u32, first: u32, turns: u32, loca
         if entry != known {
             known = entry;
             start = offsets[entry].x;
-            plan = domain_plan(patch_factors[entry]);
+            plan = emit_plan(patch_factors[entry]);
         }
-        let uv = corner_weights(params.convention, domain_point(plan, item - start));
+        let uv = corner_weights(params.convention, emit_point(plan, item - start));
         let patch_index = slab.first_patch + entry;
         store_vertex(index, patch_index, load_hull(patch_index), uv);
     }
@@ -280,9 +314,9 @@ fn store_triangle(index: u32, corners: vec3<u32>) {
 
 // Emits triangles `first`, `first + LANES` and so on up to `end` of the patch whose first triangle is `start` and whose
 // first vertex is `base`.
-fn emit_patch_triangles(plan: DomainPlan, base: u32, start: u32, first: u32, end: u32) {
+fn emit_patch_triangles(plan: EmitPlan, base: u32, start: u32, first: u32, end: u32) {
     for (var index = first; index < end; index += LANES) {
-        store_triangle(index, base + domain_triangle(plan, index - start));
+        store_triangle(index, base + emit_triangle(plan, index - start));
     }
 }
 
@@ -314,10 +348,11 @@ fn triangles_by_patch(chunk: Chunk, first_entry: u32, first: u32, turns: u32, lo
     while at < end {
         let starts = offsets[entry] - vec2<u32>(chunk.first_vertex, chunk.first_triangle);
         let factors = patch_factors[entry];
-        let plan = domain_plan(factors);
+        let plan = emit_plan(factors);
         let stop = min(starts.y + triangle_count(factors), end);
-        // Those at the outline first, then the others: each takes another path through domain_triangle.
-        let inside = clamp(starts.y + plan.outer + 3u * (plan.n - 2u), at, stop);
+        // Those at the outline first, then the others: each takes another path through domain_triangle. Those of rows take one.
+        let ring = plan.domain.outer + 3u * (plan.domain.n - 2u);
+        let inside = select(clamp(starts.y + ring, at, stop), at, EMIT_ROWS == 1u);
         emit_patch_triangles(plan, starts.x, starts.y, at + local % LANES, inside);
         emit_patch_triangles(plan, starts.x, starts.y, inside + local % LANES, stop);
         at = stop;
@@ -329,7 +364,7 @@ fn triangles_by_item(chunk: Chunk, first_entry: u32, first: u32, turns: u32, loc
     var known = NO_PATCH;
     var entry = first_entry;
     var start = vec2<u32>(0u);
-    var plan: DomainPlan;
+    var plan: EmitPlan;
     for (var turn = 0u; turn < turns; turn++) {
         let index = first + emit_start(local, turns) + turn * LANES + local % LANES;
         if index >= chunk.triangle_count {
@@ -340,8 +375,8 @@ fn triangles_by_item(chunk: Chunk, first_entry: u32, first: u32, turns: u32, loc
         if entry != known {
             known = entry;
             start = offsets[entry];
-            plan = domain_plan(patch_factors[entry]);
+            plan = emit_plan(patch_factors[entry]);
         }
-        store_triangle(index, start.x - chunk.first_vertex + domain_triangle(plan, item - start.y));
+        store_triangle(index, start.x - chunk.first_vertex + emit_triangle(plan, item - start.y));
     }
 }

@@ -5,6 +5,16 @@ fn quotient(number: u32, by: u32) -> u32 {
     return u32((f32(number) + 0.5) / f32(by));
 }
 
+// Returns a number for `scaled`. `by` is 1 to 128.
+fn reciprocal(by: u32) -> u32 {
+    return 16777216u / by + 1u;
+}
+
+// Returns `number / by`, rounded down, for the reciprocal of `by`. `number * by` is at most 2^24, and the quotient at most 255.
+fn scaled(number: u32, reciprocal: u32) -> u32 {
+    return (number * reciprocal) >> 24u;
+}
+
 // Returns how many segments rows 1 to `row` have together, of `rows` rows that widen evenly to `width` segments: the sum of
 // ceil(width * i / rows) for i from 1 to `row`, by Euclid's algorithm.
 fn widths_through(rows: u32, width: u32, row: u32) -> u32 {

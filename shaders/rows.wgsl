@@ -8,7 +8,12 @@ struct RowPlan {
     a: u32,
     b: u32,
     c: u32,
+    // The lengths of one segment of the first edge and of the second.
+    a_step: u32,
+    b_step: u32,
+    // The number of rows, and its reciprocal.
     n: u32,
+    per_row: u32,
     width: u32,
     base: u32,
     // 1 if diagonals are flipped, else 0.
@@ -17,13 +22,10 @@ struct RowPlan {
     outer: u32,
 }
 
-// Returns the larger of 1 and row * segments / rows, rounded half up: where a row after the first starts on an edge.
-fn end_place(segments: u32, rows: u32, row: u32) -> u32 {
-    // Mostly there is no need to divide.
-    if segments == rows {
-        return row;
-    }
-    return max(quotient(2u * row * segments + rows, 2u * rows), 1u);
+// Returns the larger of 1 and row * segments / n, rounded half up: where a row after the first starts on an edge with so many
+// segments.
+fn end_place(plan: RowPlan, segments: u32, row: u32) -> u32 {
+    return max(scaled(2u * row * segments + plan.n, plan.per_row) >> 1u, 1u);
 }
 
 // Returns one of three numbers, from those that follow each other in a circle.
@@ -38,11 +40,17 @@ fn row_plan(factors: PatchFactors) -> RowPlan {
     let words = factors.outside;
     let counts = vec3<u32>(segments(words.x), segments(words.y), segments(words.z));
     let starts = vec3<u32>(0u, counts.x, counts.x + counts.y);
+    let a = in_circle(counts, base + 2u);
+    let b = in_circle(counts, base + 1u);
+    let n = row_count(factors);
     return RowPlan(
-        in_circle(counts, base + 2u),
-        in_circle(counts, base + 1u),
+        a,
+        b,
         in_circle(counts, base),
-        row_count(factors),
+        segment_length(a),
+        segment_length(b),
+        n,
+        reciprocal(n),
         row_width(factors),
         base,
         row_flip(factors),
@@ -59,7 +67,7 @@ fn points_through(widths: u32, row: u32) -> u32 {
 // Returns the number of triangles before the strip below row `row`, which is 1 or more and less than the number of rows. `widths`
 // are its row_widths.
 fn triangles_before(plan: RowPlan, row: u32, widths: vec2<u32>) -> u32 {
-    return widths.x + widths.y + end_place(plan.a, plan.n, row) + end_place(plan.b, plan.n, row) - 2u * row;
+    return widths.x + widths.y + end_place(plan, plan.a, row) + end_place(plan, plan.b, row) - 2u * row;
 }
 
 // Returns between which rows the strip with triangle `t` begins: the first one or later, and before the second one.
@@ -84,7 +92,7 @@ fn outline_point(plan: RowPlan, i: u32) -> u32 {
 
 // Returns the number of segments of a row between the apex and the base: ceil(width * row / rows).
 fn row_segments(plan: RowPlan, row: u32) -> u32 {
-    return quotient(plan.width * row + plan.n - 1u, plan.n);
+    return scaled(plan.width * row + plan.n - 1u, plan.per_row);
 }
 
 // A row: its number of segments, and at which points of the first and of the second edge it starts and ends, counted from the
@@ -102,7 +110,7 @@ fn row_at(plan: RowPlan, row: u32) -> PatternRow {
     }
     // The last row starts and ends at the last points of the two edges.
     let segments = select(row_segments(plan, row), plan.c, row == plan.n);
-    return PatternRow(segments, end_place(plan.a, plan.n, row), end_place(plan.b, plan.n, row));
+    return PatternRow(segments, end_place(plan, plan.a, row), end_place(plan, plan.b, row));
 }
 
 // A strip between a row and the next one.
@@ -117,13 +125,6 @@ struct Strip {
 fn strip_triangles(strip: Strip) -> u32 {
     let joint = u32(strip.upper.start == strip.lower.start) + u32(strip.upper.end == strip.lower.end);
     return strip.upper.segments + strip.lower.segments - joint;
-}
-
-// Returns how many of the first `t` steps along two rows together are steps of the row with `own` segments, if the other one has
-// `others`: t * own / (own + others), halves rounded up, or down if diagonals are flipped.
-fn own_steps(flip: u32, own: u32, others: u32, t: u32) -> u32 {
-    let all = max(own + others, 1u);
-    return quotient(2u * t * own + all - flip, 2u * all);
 }
 
 // A corner of a triangle: whether it is on the lower row of its strip, and which point of its row it is.
@@ -143,10 +144,14 @@ fn strip_corners(plan: RowPlan, strip: Strip, i: u32) -> array<StripPoint, 3> {
     var at = vec2<u32>(0u, 1u);
     var is_upper = true;
     if i >= shares_start {
+        // Of the first steps along both rows, those along the upper row are step * own / (own + others), halves rounded up, or down
+        // if diagonals are flipped. The next step is one of them if it makes them more.
         let step = i - shares_start;
-        let along_upper = own_steps(plan.flip, own, others, step);
+        let all = max(own + others, 1u);
+        let halves = 2u * step * own + all - plan.flip;
+        let along_upper = quotient(halves, 2u * all);
         at = shares_start + vec2<u32>(along_upper, step - along_upper);
-        is_upper = step < own + others && own_steps(plan.flip, own, others, step + 1u) > along_upper;
+        is_upper = step < own + others && halves + 2u * own >= 2u * all * (along_upper + 1u);
     }
     let upper = StripPoint(false, at.x);
     let lower = StripPoint(true, at.y);
@@ -214,10 +219,11 @@ fn row_triangle(plan: RowPlan, t: u32) -> vec3<u32> {
 
 // Returns (U, V) of point `at` of a row, in 16.16 fixed point.
 fn place_in_row(plan: RowPlan, row: PatternRow, at: u32) -> vec2<u32> {
-    let start = whole_location(plan.a, row.start);
-    let end = whole_location(plan.b, row.end);
+    let start = whole_location(plan.a, plan.a_step, row.start);
+    let end = whole_location(plan.b, plan.b_step, row.end);
     // The weights of the base's start and end. Neither product exceeds 32 bits, since `along` is neither 0 nor 1.
-    let along = whole_location(max(row.segments, 1u), at);
+    let segments = max(row.segments, 1u);
+    let along = whole_location(segments, segment_length(segments), at);
     let inner = (vec2<u32>(start, end) * vec2<u32>(FIXED_ONE - along, along) + FIXED_HALF) >> vec2<u32>(16u);
     let at_start = select(select(inner.x, 0u, at == row.segments), start, at == 0u);
     let at_end = select(select(inner.y, end, at == row.segments), 0u, at == 0u);

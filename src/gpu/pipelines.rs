@@ -211,9 +211,9 @@ pub struct ComputePipelines {
     pub hull_factors: ComputePipeline,
     pub scan: ComputePipeline,
     pub chunks: ComputePipeline,
-    /// One for each of [`Normals`].
-    pub emit_vertices: [ComputePipeline; 3],
-    pub emit_triangles: ComputePipeline,
+    /// For the patterns of Direct3D, then for rows; of each, one for each of [`Normals`].
+    pub emit_vertices: [[ComputePipeline; 3]; 2],
+    pub emit_triangles: [ComputePipeline; 2],
     pub displace: ComputePipeline,
     patterns: Lazy<wgpu::Buffer>,
 }
@@ -236,6 +236,7 @@ impl ComputePipelines {
         let (deform, nets, levels) = (module(&PASS_DEFORM), module(&PASS_NETS), module(&PASS_LEVELS));
         let (asked, uniform, least) = (module(&PASS_ASKED), module(&PASS_UNIFORM), module(&PASS_LEAST));
         let (factors, counts, emit) = (module(&PASS_FACTORS), module(&PASS_COUNTS), module(&PASS_EMIT));
+        let vertices = |rows| ComputePipeline::new(&emit, "emit_vertices_main").with("EMIT_ROWS", rows);
         Self {
             deform_corners: ComputePipeline::new(&deform, "deform_corners_main"),
             deform_points: ComputePipeline::new(&deform, "deform_points_main"),
@@ -266,9 +267,12 @@ impl ComputePipelines {
             hull_factors: ComputePipeline::new(&counts, "hull_factors_main"),
             scan: ComputePipeline::new(&module(&PASS_SCAN), "scan_main"),
             chunks: ComputePipeline::new(&module(&PASS_CHUNKS), "chunks_main"),
-            emit_vertices: [Normals::Linear, Normals::Quadratic, Normals::Surface]
-                .map(|normals| ComputePipeline::new(&emit, "emit_vertices_main").with("EMIT_NORMALS", normals as u32)),
-            emit_triangles: ComputePipeline::new(&emit, "emit_triangles_main"),
+            emit_vertices: [0, 1].map(|rows| {
+                let of_normals = |normals| vertices(rows).with("EMIT_NORMALS", normals as u32);
+                [Normals::Linear, Normals::Quadratic, Normals::Surface].map(of_normals)
+            }),
+            emit_triangles: [0, 1]
+                .map(|rows| ComputePipeline::new(&emit, "emit_triangles_main").with("EMIT_ROWS", rows)),
             displace: ComputePipeline::new(&module(&PASS_DISPLACE), "displace_main"),
             patterns: Lazy::default(),
         }

@@ -41,9 +41,9 @@ struct Bound {
     counts: OnceLock<BoundPass>,
     scan: OnceLock<BoundPass>,
     chunks: OnceLock<BoundPass>,
-    /// One for each of [`Normals`].
-    emit_vertices: [OnceLock<BoundPass>; 3],
-    emit_triangles: OnceLock<BoundPass>,
+    /// As the pipelines are: for the patterns of Direct3D, then for rows.
+    emit_vertices: [[OnceLock<BoundPass>; 3]; 2],
+    emit_triangles: [OnceLock<BoundPass>; 2],
     displace: OnceLock<BoundPass>,
 }
 
@@ -133,23 +133,27 @@ impl SlabPasses {
         BoundPass::once(&self.bound.chunks, on.gpu, &on.pipelines.chunks, &buffers)
     }
 
-    /// The vertices of a chunk. Its pipeline depends on how normals are made: a number of [`Normals`].
-    pub(super) fn emit_vertices(&self, on: &PassInputs, normals: usize) -> Result<&BoundPass, GpuError> {
+    /// The vertices of a chunk. Its pipeline depends on whether patches are cut into rows, and on how normals are made: a number of
+    /// [`Normals`].
+    pub(super) fn emit_vertices(&self, on: &PassInputs, rows: bool, normals: usize) -> Result<&BoundPass, GpuError> {
         let normals = normals.min(Normals::Surface as usize);
         let buffers = [
             &self.emit_buffers()[..],
             &[(0, on.params), (5, &on.mesh.points), (6, &on.mesh.patches), (7, &on.mesh.curve_nets)],
             &[(8, &on.mesh.corners), (9, &on.arena.vertices)],
         ];
-        let (cell, pipeline) = (&self.bound.emit_vertices[normals], &on.pipelines.emit_vertices[normals]);
-        BoundPass::once(cell, on.gpu, pipeline, &buffers.concat())
+        let (cells, pipelines) = (&self.bound.emit_vertices, &on.pipelines.emit_vertices);
+        let rows = usize::from(rows);
+        BoundPass::once(&cells[rows][normals], on.gpu, &pipelines[rows][normals], &buffers.concat())
     }
 
-    /// The triangles of a chunk.
-    pub(super) fn emit_triangles(&self, on: &PassInputs) -> Result<&BoundPass, GpuError> {
+    /// The triangles of a chunk. Its pipeline depends on whether patches are cut into rows.
+    pub(super) fn emit_triangles(&self, on: &PassInputs, rows: bool) -> Result<&BoundPass, GpuError> {
         let patterns = on.pipelines.patterns(on.gpu)?;
         let buffers = [&self.emit_buffers()[..], &[(10, &on.arena.indices), (11, patterns)]].concat();
-        BoundPass::once(&self.bound.emit_triangles, on.gpu, &on.pipelines.emit_triangles, &buffers)
+        let (cells, pipelines) = (&self.bound.emit_triangles, &on.pipelines.emit_triangles);
+        let rows = usize::from(rows);
+        BoundPass::once(&cells[rows], on.gpu, &pipelines[rows], &buffers)
     }
 
     fn emit_buffers(&self) -> [(u32, &wgpu::Buffer); 4] {

@@ -8,6 +8,21 @@ pub(super) fn quotient(number: u32, by: u32) -> u32 {
     ((number as f32 + 0.5) / by as f32) as u32
 }
 
+/// Returns a number for [`scaled`]. `by` is 1 to 128.
+pub(super) fn reciprocal(by: u32) -> u32 {
+    (1 << 24) / by + 1
+}
+
+/// Returns `number / by`, rounded down, for the [`reciprocal`] of `by`, with one multiplication. `number * by` is at most 2^24,
+/// and the quotient at most 255.
+///
+/// The reciprocal is too large by at most 1, which makes the quotient too large by at most `number / 2^24`: less than `1 / by`,
+/// so that it doesn't reach the next whole number (Granlund and Montgomery 1994, *Division by Invariant Integers using
+/// Multiplication*, theorem 4.2).
+pub(super) fn scaled(number: u32, reciprocal: u32) -> u32 {
+    number * reciprocal >> 24
+}
+
 /// Returns how many segments rows 1 to `row` have together, of `rows` rows that widen evenly to `width` segments: the sum of
 /// ceil(width * i / rows) for i from 1 to `row`. `rows` and `width` are 1 to 64, and `row` is at most `rows`.
 ///
@@ -39,6 +54,15 @@ mod tests {
         for by in 1..=256 {
             for number in 0..=65535 {
                 assert_eq!(quotient(number, by), number / by, "{number} / {by}");
+            }
+        }
+    }
+
+    #[test]
+    fn products_with_reciprocals_are_rounded_down() {
+        for by in 1..=128 {
+            for number in 0..=((1 << 24) / by).min(255 * by) {
+                assert_eq!(scaled(number, reciprocal(by)), number / by, "{number} / {by}");
             }
         }
     }

@@ -22,9 +22,9 @@
 //! everything. With all numbers equal to `n`, the patch is cut into `n * n` equal triangles.
 
 use super::connectivity::row_widths;
-use super::domain_row::whole_location;
+use super::domain_row::{segment_length, whole_location};
 use super::factors::{FIXED_HALF, FIXED_ONE, PatchFactors, row_base, row_count, row_flip, row_width, segments};
-use super::row_widths::{quotient, widths_through};
+use super::row_widths::{quotient, reciprocal, scaled, widths_through};
 
 /// A patch's rows, prepared for [`row_point`], [`row_triangle`] and [`row_triangle_places`].
 #[derive(Clone, Copy, Debug)]
@@ -34,8 +34,12 @@ pub(super) struct RowPlan {
     b: u32,
     /// The number of segments of the base.
     c: u32,
-    /// The number of rows.
+    /// The lengths of one segment of the first and of the second edge.
+    a_step: u32,
+    b_step: u32,
+    /// The number of rows, and its [`reciprocal`].
     n: u32,
+    per_row: u32,
     width: u32,
     /// Which edge is the base: 0, 1 or 2 for U == 0, V == 0 or W == 0.
     base: u32,
@@ -46,14 +50,10 @@ pub(super) struct RowPlan {
     outer: u32,
 }
 
-/// Returns the larger of 1 and row * segments / rows, rounded half up: where a row after the first starts on an edge. All are
-/// at most 64.
-fn end_place(segments: u32, rows: u32, row: u32) -> u32 {
-    // Mostly there is no need to divide.
-    if segments == rows {
-        return row;
-    }
-    quotient(2 * row * segments + rows, 2 * rows).max(1)
+/// Returns the larger of 1 and row * segments / n, rounded half up: where a row after the first starts on an edge with so many
+/// segments.
+fn end_place(plan: &RowPlan, segments: u32, row: u32) -> u32 {
+    (scaled(2 * row * segments + plan.n, plan.per_row) >> 1).max(1)
 }
 
 /// Returns one of three numbers, from those that follow each other in a circle.
@@ -65,12 +65,16 @@ fn in_circle(numbers: [u32; 3], i: u32) -> u32 {
 pub(super) fn row_plan(factors: PatchFactors) -> RowPlan {
     let base = row_base(factors);
     let counts = factors.outside.map(segments);
+    let (a, b, n) = (in_circle(counts, base + 2), in_circle(counts, base + 1), row_count(factors));
     // Edge i runs from corner i + 1 to corner i + 2. So the outline passes the first edge, the base and the second edge.
     RowPlan {
-        a: in_circle(counts, base + 2),
-        b: in_circle(counts, base + 1),
+        a,
+        b,
         c: in_circle(counts, base),
-        n: row_count(factors),
+        a_step: segment_length(a),
+        b_step: segment_length(b),
+        n,
+        per_row: reciprocal(n),
         width: row_width(factors),
         base,
         flip: row_flip(factors),
@@ -89,7 +93,7 @@ fn points_through(widths: u32, row: u32) -> u32 {
 ///
 /// Each strip has as many triangles as its two rows have segments, less one for each point that they share.
 fn triangles_before(plan: &RowPlan, row: u32, widths: [u32; 2]) -> u32 {
-    widths[0] + widths[1] + end_place(plan.a, plan.n, row) + end_place(plan.b, plan.n, row) - 2 * row
+    widths[0] + widths[1] + end_place(plan, plan.a, row) + end_place(plan, plan.b, row) - 2 * row
 }
 
 /// Returns between which rows the strip with triangle `t` begins: the first one or later, and before the second one.
@@ -115,7 +119,7 @@ fn outline_point(plan: &RowPlan, i: u32) -> u32 {
 
 /// Returns the number of segments of a row between the apex and the base: ceil(width * row / rows).
 fn row_segments(plan: &RowPlan, row: u32) -> u32 {
-    quotient(plan.width * row + plan.n - 1, plan.n)
+    scaled(plan.width * row + plan.n - 1, plan.per_row)
 }
 
 /// A row: its number of segments, and at which points of the first and of the second edge it starts and ends, counted from the
@@ -134,7 +138,7 @@ fn row_at(plan: &RowPlan, row: u32) -> PatternRow {
     }
     // The last row starts and ends at the last points of the two edges.
     let segments = if row == plan.n { plan.c } else { row_segments(plan, row) };
-    PatternRow { segments, start: end_place(plan.a, plan.n, row), end: end_place(plan.b, plan.n, row) }
+    PatternRow { segments, start: end_place(plan, plan.a, row), end: end_place(plan, plan.b, row) }
 }
 
 /// A strip between a row and the next one.
@@ -150,13 +154,6 @@ struct Strip {
 fn strip_triangles(strip: Strip) -> u32 {
     let joint = u32::from(strip.upper.start == strip.lower.start) + u32::from(strip.upper.end == strip.lower.end);
     strip.upper.segments + strip.lower.segments - joint
-}
-
-/// Returns how many of the first `t` steps along two rows together are steps of the row with `own` segments, if the other one has
-/// `others`: t * own / (own + others), halves rounded up, or down if diagonals are flipped. There are at most 128 segments.
-fn own_steps(flip: u32, own: u32, others: u32, t: u32) -> u32 {
-    let all = (own + others).max(1);
-    quotient(2 * t * own + all - flip, 2 * all)
 }
 
 /// A corner of a triangle: whether it is on the lower row of its strip, and which point of its row it is.
@@ -176,10 +173,13 @@ fn strip_corners(plan: &RowPlan, strip: Strip, i: u32) -> [StripPoint; 3] {
     // The triangle at a shared start stands on the upper row, the one at a shared end on the lower row.
     let (mut at, mut is_upper) = ([0, 1], true);
     if i >= shares_start {
-        let step = i - shares_start;
-        let along_upper = own_steps(plan.flip, own, others, step);
+        // Of the first steps along both rows, those along the upper row are step * own / (own + others), halves rounded up, or down
+        // if diagonals are flipped. The next step is one of them if it makes them more.
+        let (step, all) = (i - shares_start, (own + others).max(1));
+        let halves = 2 * step * own + all - plan.flip;
+        let along_upper = quotient(halves, 2 * all);
         at = [shares_start + along_upper, shares_start + step - along_upper];
-        is_upper = step < own + others && own_steps(plan.flip, own, others, step + 1) > along_upper;
+        is_upper = step < own + others && halves + 2 * own >= 2 * all * (along_upper + 1);
     }
     let upper = StripPoint { is_lower: false, at: at[0] };
     let lower = StripPoint { is_lower: true, at: at[1] };
@@ -237,10 +237,11 @@ pub(super) fn row_triangle(plan: &RowPlan, t: u32) -> [u32; 3] {
 
 /// Returns (U, V) of point `at` of a row, in 16.16 fixed point.
 fn place_in_row(plan: &RowPlan, row: PatternRow, at: u32) -> [u32; 2] {
-    let start = whole_location(plan.a, row.start);
-    let end = whole_location(plan.b, row.end);
+    let start = whole_location(plan.a, plan.a_step, row.start);
+    let end = whole_location(plan.b, plan.b_step, row.end);
     // The weights of the base's start and end. Neither product exceeds 32 bits, since `along` is neither 0 nor 1.
-    let along = whole_location(row.segments.max(1), at);
+    let segments = row.segments.max(1);
+    let along = whole_location(segments, segment_length(segments), at);
     let (mut at_start, mut at_end) = (start, 0);
     if at > 0 {
         at_start = if at == row.segments { 0 } else { (start * (FIXED_ONE - along) + FIXED_HALF) >> 16 };

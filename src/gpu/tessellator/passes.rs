@@ -64,11 +64,12 @@ impl Tessellator {
     /// Out of memory, or a lost device.
     pub fn prepare(&self, tessellation: &Tessellation) -> Result<(), GpuError> {
         let (on, passes) = (self.inputs_of_passes(), &self.mesh_passes);
+        let rows = tessellation.partitioning == Partitioning::Rows;
         passes.curve_nets(&on)?;
         passes.centers(&on)?;
         passes.edge_factors(&on)?;
         if tessellation.used_lod() == Lod::Error {
-            passes.searches.steps(&on, tessellation.partitioning == Partitioning::Rows)?;
+            passes.searches.steps(&on, rows)?;
         }
         if let Some((relief, images)) = self.buffers.relief.as_ref().zip(self.images.as_ref()) {
             passes.directions(&on, relief)?;
@@ -83,8 +84,8 @@ impl Tessellator {
             slab.counts(&on)?;
             slab.scan(&on)?;
             slab.chunks(&on)?;
-            slab.emit_vertices(&on, tessellation.normals as usize)?;
-            slab.emit_triangles(&on)?;
+            slab.emit_vertices(&on, rows, tessellation.normals as usize)?;
+            slab.emit_triangles(&on, rows)?;
         }
         Ok(())
     }
@@ -210,8 +211,9 @@ impl Tessellator {
         chunk_index: u32,
     ) -> Result<(), GpuError> {
         let (on, slab) = (self.inputs_of_passes(), &self.slabs[slab_index]);
-        let vertices = slab.emit_vertices(&on, self.params.normals as usize)?;
-        let triangles = slab.emit_triangles(&on)?;
+        let rows = self.params.partitioning == Partitioning::Rows as u32;
+        let vertices = slab.emit_vertices(&on, rows, self.params.normals as usize)?;
+        let triangles = slab.emit_triangles(&on, rows)?;
         let displace = self.displacing_images().map(|images| slab.displace(&on, images)).transpose()?;
         let args = u64::from(chunk_index) * size_of::<EmitArgs>() as u64;
         let run = |pass: &mut wgpu::ComputePass, bound: &BoundPass, field: usize| {

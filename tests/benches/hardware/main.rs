@@ -10,6 +10,7 @@ mod growth;
 mod memory;
 mod numbers;
 mod ours;
+mod patterns;
 mod peer;
 mod pipelines;
 mod report;
@@ -105,6 +106,7 @@ fn run(engine: &Engine) -> Result<(), BenchError> {
     report.versus("the same in the window's arena", in_chunks);
     let mut subject = subjects::subject(engine, subjects::tori(16, 1), scale.size, ARENA_BYTES)?;
     report.end_versus(&subject.time_nothing(engine, scale.effort)?);
+    report.patterns(&patterns::measure(engine, &scale)?);
     report.growth(&growth::measure(engine, peer.as_ref(), &scale)?);
     report.equal_error(&error::measure(engine, peer.as_ref(), &scale)?);
     report.goals();

@@ -6,6 +6,7 @@ use super::Scale;
 use super::copy::Copies;
 use super::error::{self, EqualError, PAPER_PIXELS};
 use super::numbers::{Spread, table, whole};
+use super::patterns::{self, Pair};
 use super::rows::{self, Named, rate_of};
 use super::versus::Versus;
 use super::vulkan::VulkanError;
@@ -73,6 +74,12 @@ impl Report {
         println!("## What was drawn\n\n{}", rows::drawn(&self.rows));
         self.rows.iter().for_each(warn);
         println!("## Our passes\n\n{}", rows::passes(&self.rows));
+    }
+
+    /// Prints the emission of rows beside that of rings.
+    pub fn patterns(&self, pairs: &[Pair]) {
+        println!("## Emission of rows and of rings\n\n{}", patterns::table_of(pairs));
+        println!("One factor for all edges of a torus; rings are those of integer partitioning.\n");
     }
 
     /// Prints how cost grows.
