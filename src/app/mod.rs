@@ -67,7 +67,7 @@ impl App {
             viewport: Viewport::new(&engine),
             engine,
             render_state,
-            settings: Settings::opening(),
+            settings: if source.is_some() { Settings::opening() } else { Settings::greeting() },
             history: History::default(),
             document: None,
             truth: None,
@@ -78,7 +78,8 @@ impl App {
             persistence: Persistence::default(),
             window: WindowState::default(),
         };
-        app.open(&context.egui_ctx, source.unwrap_or_default());
+        app.viewport.greets = source.is_none();
+        app.open(&context.egui_ctx, source.unwrap_or(Source::Vase));
         Ok(app)
     }
 
@@ -137,6 +138,11 @@ impl App {
     /// How many pictures have been drawn.
     pub fn pictures(&self) -> u64 {
         self.viewport.picture.pictures()
+    }
+
+    /// Whether the line of help of a first start is over the picture.
+    pub fn greets(&self) -> bool {
+        self.viewport.greets
     }
 
     /// Whether something is still being loaded, drawn or measured.
@@ -201,9 +207,12 @@ impl eframe::App for App {
         }
         egui::Panel::top("menu").show(ui, |ui| self.menu_bar(ui));
         egui::Panel::bottom("status").show(ui, |ui| self.status_line(ui));
-        egui::Panel::left("settings").resizable(false).exact_size(264.0).show(ui, |ui| self.settings_panel(ui));
-        egui::Panel::right("facts").resizable(false).exact_size(284.0).show(ui, |ui| self.facts_panel(ui));
+        if !self.panels.are_hidden {
+            egui::Panel::left("settings").resizable(false).exact_size(264.0).show(ui, |ui| self.settings_panel(ui));
+            egui::Panel::right("facts").resizable(false).exact_size(284.0).show(ui, |ui| self.facts_panel(ui));
+        }
         self.chart_panel(ui);
+        egui::Panel::top("toolbar").show(ui, |ui| self.toolbar(ui));
         egui::CentralPanel::no_frame().show(ui, |ui| self.viewport_panel(ui));
         self.windows(ui.ctx());
         self.hold_chart();

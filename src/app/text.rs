@@ -9,6 +9,16 @@ pub(super) fn part(number: u64, all: u64) -> String {
     format!("{} ({percent:.1} %)", grouped(number))
 }
 
+/// Formats a number of things, as "1 fold" or "947 folds".
+pub(super) fn counted(number: u64, thing: &str) -> String {
+    let plural = match number {
+        1 => "",
+        _ if thing.ends_with("ch") => "es",
+        _ => "s",
+    };
+    format!("{} {thing}{plural}", grouped(number))
+}
+
 /// Formats bytes in MiB.
 pub(super) fn mebibytes(bytes: u64) -> String {
     format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20))
@@ -27,6 +37,10 @@ mod tests {
     fn shares_factors_and_bytes_are_formatted() {
         assert_eq!([part(1234, 10000), part(0, 0)], ["1,234 (12.3 %)", "0 (0.0 %)"]);
         assert_eq!([factor(7.3125, 2), factor(64.0, 3), factor(1.5e9, 2)], ["7.31", "64.000", "1.50e9"]);
+        assert_eq!(
+            [counted(1, "fold"), counted(0, "crack"), counted(1200, "patch")],
+            ["1 fold", "0 cracks", "1,200 patches"]
+        );
         assert_eq!(mebibytes(3 << 19), "1.5 MiB");
     }
 }

@@ -5,13 +5,6 @@ use egui::RichText;
 /// The width of the settings' labels in points: as much as the longest, "Segment length", takes.
 pub(super) const LABEL_WIDTH: f32 = 94.0;
 
-/// A section's name, and a line under it.
-pub(super) fn heading(ui: &mut egui::Ui, text: &str) {
-    ui.add_space(8.0);
-    ui.label(RichText::new(text).strong());
-    ui.separator();
-}
-
 /// Small monospaced text, so that a position's three coordinates fit on one line.
 pub(super) fn dense(text: impl Into<String>) -> RichText {
     RichText::new(text).monospace().size(12.0)

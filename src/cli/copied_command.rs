@@ -33,6 +33,7 @@ impl CopiedCommand<'_> {
         let name = match self.source {
             Source::File(path) => path.file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy().into_owned()),
             Source::Shape(shape) | Source::FineShape(shape, _) => shape.to_string(),
+            Source::Vase => "vase".to_owned(),
         };
         // A texture beside the mesh may have the mesh's name.
         let picture = Source::File(format!("{name}-view.png").into());

@@ -34,7 +34,7 @@ pub(super) fn keep_apart<'a>(
 pub(super) fn file_of(source: &Source) -> Option<&Path> {
     match source {
         Source::File(path) => Some(path),
-        Source::Shape(..) | Source::FineShape(..) => None,
+        Source::Shape(..) | Source::FineShape(..) | Source::Vase => None,
     }
 }
 

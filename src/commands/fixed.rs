@@ -60,6 +60,14 @@ fn file() -> Vec<Command> {
         Command::new(Action::File(FileAction::OpenShape(shape)), format!("Shape: {}", shape.title()), text)
             .submenu(Submenu::Shapes)
     }));
+    commands.push(
+        Command::new(
+            Action::File(FileAction::OpenVase),
+            "Shape: Vase",
+            "Opens the painted vase that the window opens at a first start.",
+        )
+        .submenu(Submenu::Shapes),
+    );
     commands.extend(writing());
     commands.push(
         Command::new(
@@ -175,6 +183,14 @@ fn view() -> Vec<Command> {
         .menu(View, 1),
         Command::new(Action::MeasureChart, "Measure chart", "Measures the settings that are missing from the chart.")
             .unless(when::measure_chart),
+        Command::new(Action::HidePanels, "Hide panels", "Hides the panels on both sides, or shows them again.")
+            .keys([ctrl(Key::B)])
+            .menu(View, 1),
+        Command::new(Action::OpenAllSections, "Open all sections", "Opens every section of both panels.").menu(View, 1),
+        Command::new(Action::FoldAllSections, "Fold all sections", "Folds every section of both panels.").menu(View, 1),
+        Command::new(Action::Warnings, "Warnings…", "Lists what was repaired or left out when the file was read.")
+            .menu(View, 1)
+            .unless(when::document),
         Command::new(Action::LargerText, "Larger text", "Makes everything in the window larger.")
             .keys([ctrl(Key::Plus), ctrl(Key::Equals)])
             .menu(View, 2),

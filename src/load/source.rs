@@ -2,11 +2,11 @@
 
 use std::ffi::OsString;
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use super::loaded_mesh::LoadedMesh;
-use super::mesh_file::{LoadError, load};
+use super::mesh_file::{Format, LoadError, load, read};
 use crate::files::Limits;
 use crate::mesh::shapes::{MAX_LEVEL, Shape, ShapeError};
 use crate::progress::Progress;
@@ -14,12 +14,17 @@ use crate::progress::Progress;
 /// The prefix of a shape's name.
 const SHAPE: &str = "shape:";
 
-/// A shape or a file. Its text form is `shape:torus`, `shape:torus@2`, or a path.
+/// The name of the vase.
+const VASE: &str = "vase";
+
+/// A shape, the vase or a file. Its text form is `shape:torus`, `shape:torus@2`, `shape:vase`, or a path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Source {
     Shape(Shape),
     /// A shape with levels, at a level from 1 to [`MAX_LEVEL`]. At level 0 it is a `Shape`.
     FineShape(Shape, u32),
+    /// A painted vase of few triangles, which is part of the program: what the window opens at a first start.
+    Vase,
     File(PathBuf),
 }
 
@@ -38,6 +43,10 @@ impl Source {
         match self {
             Self::Shape(shape) => Ok(LoadedMesh { mesh: shape.build(), ..LoadedMesh::default() }),
             Self::FineShape(shape, level) => Ok(LoadedMesh { mesh: shape.build_at(*level), ..LoadedMesh::default() }),
+            Self::Vase => {
+                let bytes = include_bytes!("../../assets/vase.glb").to_vec();
+                read(Format::Gltf, bytes, Path::new("vase.glb"), limits, progress)
+            }
             Self::File(path) => load(path, limits, progress),
         }
     }
@@ -58,7 +67,7 @@ impl Source {
     pub fn shape(&self) -> Option<Shape> {
         match self {
             Self::Shape(shape) | Self::FineShape(shape, _) => Some(*shape),
-            Self::File(_) => None,
+            Self::Vase | Self::File(_) => None,
         }
     }
 
@@ -67,6 +76,7 @@ impl Source {
         match self {
             Self::Shape(shape) => shape.title().to_owned(),
             Self::FineShape(shape, level) => shape.title_at(*level),
+            Self::Vase => "Vase".to_owned(),
             Self::File(path) => path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned(),
         }
     }
@@ -89,6 +99,7 @@ impl FromStr for Source {
 
     fn from_str(text: &str) -> Result<Self, ShapeError> {
         match text.strip_prefix(SHAPE) {
+            Some(VASE) => Ok(Self::Vase),
             Some(shape) => match shape.split_once('@') {
                 Some((name, level)) => Self::at_level(name.parse()?, level),
                 None => shape.parse().map(Self::Shape),
@@ -103,6 +114,7 @@ impl fmt::Display for Source {
         match self {
             Self::Shape(shape) => write!(f, "{SHAPE}{shape}"),
             Self::FineShape(shape, level) => write!(f, "{SHAPE}{shape}@{level}"),
+            Self::Vase => write!(f, "{SHAPE}{VASE}"),
             Self::File(path) => path.display().fmt(f),
         }
     }
@@ -146,6 +158,14 @@ mod tests {
     fn titles_are_short() {
         assert_eq!(Source::File("models/fox.glb".into()).title(), "fox.glb");
         assert_eq!(Source::Shape(Shape::Moebius).title(), "Moebius strip");
+    }
+
+    #[test]
+    fn the_vase_is_always_there() {
+        assert_eq!("shape:vase".parse(), Ok(Source::Vase));
+        assert_eq!(Source::Vase.to_string(), "shape:vase");
+        let loaded = Source::Vase.load(&Limits::default(), &Progress::new()).unwrap();
+        assert_eq!((loaded.mesh.triangles.len(), loaded.warnings.len()), (308, 0));
     }
 
     #[test]

@@ -140,9 +140,15 @@ impl Settings {
                 cull_back_faces: true,
                 ..Tessellation::default()
             },
-            overlays: Overlays { wireframe: true, ..Overlays::default() },
             ..Self::default()
         }
+    }
+
+    /// Returns the settings of the window's first start, which show at once what tessellation does: the mesh as it came beside
+    /// the tessellated one, both with the borders of the mesh's own triangles.
+    pub fn greeting() -> Self {
+        let overlays = Overlays { patches: true, ..Overlays::default() };
+        Self { split: Some(0.5), overlays, ..Self::opening() }
     }
 
     /// These settings with another tessellation.

@@ -20,7 +20,7 @@ pub(super) fn reciprocal(by: u32) -> u32 {
 /// so that it doesn't reach the next whole number (Granlund and Montgomery 1994, *Division by Invariant Integers using
 /// Multiplication*, theorem 4.2).
 pub(super) fn scaled(number: u32, reciprocal: u32) -> u32 {
-    number * reciprocal >> 24
+    (number * reciprocal) >> 24
 }
 
 /// Returns how many segments rows 1 to `row` have together, of `rows` rows that widen evenly to `width` segments: the sum of

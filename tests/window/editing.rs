@@ -29,14 +29,14 @@ fn settings_are_undone_and_redone() {
     let last = *harness.state().settings();
     assert_eq!(
         (last.tessellation.surface, last.tessellation.lod, last.overlays.wireframe),
-        (Surface::Pn, Lod::Uniform, false)
+        (Surface::Pn, Lod::Uniform, true)
     );
     press_with(&mut harness, Modifiers::COMMAND, Key::Z);
     press_with(&mut harness, Modifiers::COMMAND, Key::Z);
     let between = *harness.state().settings();
     assert_eq!(
         (between.tessellation.surface, between.tessellation.lod, between.overlays.wireframe),
-        (Surface::Pn, first.tessellation.lod, true)
+        (Surface::Pn, first.tessellation.lod, false)
     );
     click(&mut harness, "Edit");
     harness.get_by_label_contains("Undo").click();
@@ -136,7 +136,7 @@ fn the_copied_command_draws_what_is_shown() {
     press_with(&mut harness, Modifiers::SHIFT, Key::ArrowRight);
     let command = copied(&mut harness);
     assert!(command.contains("--surface phong ") && command.contains("--split 0.5 "), "{command}");
-    assert!(command.contains("--overlay wireframe,barycentric,adjacency "), "{command}");
+    assert!(command.contains("--overlay barycentric,adjacency "), "{command}");
     assert_draws(&harness, &command, "vase-view");
 }
 
@@ -163,7 +163,7 @@ fn commands_are_found_by_a_part_of_their_name() {
     assert_eq!(*harness.state().settings(), before);
     harness.get_by_label_contains("Overlay: Wireframe").click();
     settle(&mut harness);
-    assert!(!harness.state().settings().overlays.wireframe);
+    assert!(harness.state().settings().overlays.wireframe);
     press_with(&mut harness, Modifiers::COMMAND, Key::P);
     press(&mut harness, Key::Escape);
     assert!(harness.query_by_label("Search commands").is_none());
@@ -182,7 +182,7 @@ fn displacement_follows_the_height_map_and_is_not_undone() {
     press(&mut harness, Key::D);
     assert_eq!((*harness.state().settings(), drawn(&harness)), (settings, before), "there are no heights");
     press(&mut harness, Key::W);
-    let without_wires = *harness.state().settings();
+    let with_wires = *harness.state().settings();
     let context = harness.ctx.clone();
     let waves = HeightSource::File(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/waves.png").into());
     harness.state_mut().displace(&context, Some(waves));
@@ -197,7 +197,7 @@ fn displacement_follows_the_height_map_and_is_not_undone() {
     press_with(&mut harness, Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
     harness.state_mut().displace(&context, None);
     settle(&mut harness);
-    assert_eq!((*harness.state().settings(), drawn(&harness)), (without_wires, before));
+    assert_eq!((*harness.state().settings(), drawn(&harness)), (with_wires, before));
     press_with(&mut harness, Modifiers::COMMAND, Key::Z);
     assert_eq!(*harness.state().settings(), settings);
 }

@@ -85,6 +85,7 @@ impl App {
                 | CameraAction::ZoomOut => None,
             },
             Action::Chart => Some(self.panels.chart.is_open),
+            Action::HidePanels => Some(self.panels.are_hidden),
             Action::Theme(theme) => Some(context.options(|options| options.theme_preference) == *theme),
             Action::File(_)
             | Action::Setting(_)
@@ -95,6 +96,9 @@ impl App {
             | Action::ResetSettings
             | Action::ForgetEverything
             | Action::SplitView
+            | Action::OpenAllSections
+            | Action::FoldAllSections
+            | Action::Warnings
             | Action::FreezeLodCamera
             | Action::Background
             | Action::MeasureChart

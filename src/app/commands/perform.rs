@@ -63,6 +63,10 @@ impl App {
             Action::ResetSettings => self.reset_settings(),
             Action::ForgetEverything => self.dialogs.asks_to_forget = true,
             Action::SplitView => self.toggle_split(),
+            Action::HidePanels => self.panels.are_hidden = !self.panels.are_hidden,
+            Action::OpenAllSections => self.panels.open.set_all(true),
+            Action::FoldAllSections => self.panels.open.set_all(false),
+            Action::Warnings => self.dialogs.shows_warnings = true,
             Action::FreezeLodCamera => self.toggle_frozen(),
             Action::Background => self.dialogs.chooses_background = true,
             Action::Chart => self.toggle_chart(),
@@ -88,6 +92,7 @@ impl App {
             FileAction::OpenPath => self.type_path(Purpose::Open),
             FileAction::OpenRecent(path) => self.open(context, Source::File(path.clone())),
             FileAction::OpenShape(shape) => self.open(context, Source::Shape(*shape)),
+            FileAction::OpenVase => self.open(context, Source::Vase),
             FileAction::Reload => self.reload(context),
             FileAction::HeightImage => self.height_dialog(context),
             FileAction::Truth => self.truth_dialog(context),
@@ -138,7 +143,7 @@ impl App {
         }
         (self.jobs.load, self.jobs.truth_load, self.jobs.export) = (None, None, None);
         (self.dialogs.error, self.dialogs.notice, self.dialogs.typed_path) = (None, None, None);
-        self.commands.shows_keys = false;
+        (self.commands.shows_keys, self.dialogs.shows_warnings) = (false, false);
         self.deselect();
     }
 }

@@ -3,6 +3,7 @@
 mod background;
 mod desktop_dialog;
 pub(super) mod typed_path;
+mod warnings;
 pub(super) mod windows;
 mod writing;
 
@@ -21,6 +22,8 @@ pub(super) struct Dialogs {
     pub notice: Option<String>,
     /// Whether the window for the background colour is open.
     pub chooses_background: bool,
+    /// Whether the list of the mesh's warnings is open.
+    pub shows_warnings: bool,
     /// Whether the window that asks before everything is forgotten is open.
     pub asks_to_forget: bool,
 }

@@ -62,6 +62,7 @@ impl App {
         self.palette_window(context);
         self.forget_window(context);
         self.background_window(context);
+        self.warnings_window(context);
         self.message_window(context);
     }
 

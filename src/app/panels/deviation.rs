@@ -3,12 +3,13 @@
 use egui::RichText;
 use glam::{Vec2, Vec3};
 
+use super::sections::Section;
 use crate::app::App;
 use crate::app::jobs::deviation_job::{DeviationBasis, DeviationJob, DeviationResult};
 use crate::app::jobs::measure_job::Trouble;
 use crate::app::text::{grouped, short, shortened};
 use crate::app::viewport::legend::Distances;
-use crate::app::widgets::{fact, heading, number, swatch};
+use crate::app::widgets::{fact, number, swatch};
 use crate::measure::{DeviationTarget, MOST_TRIANGLES};
 use crate::render::layout::WORST_COLOR;
 use crate::render::{DEVIATION_PX_SCALE, LineSegment, Scale, deviation_scale, worst_lines};
@@ -142,10 +143,9 @@ impl App {
 
     /// The section about deviation: the reference surface and the distances. It is shown with the overlay.
     pub(in crate::app) fn deviation_section(&mut self, ui: &mut egui::Ui) {
-        if !self.shows_deviation() {
+        if !self.shows_deviation() || !self.panels.open.title(ui, Section::Deviation) {
             return;
         }
-        heading(ui, "Deviation");
         let (truth, mut name) = (self.yardstick().1, self.yardstick().2);
         let is_split = self.settings.half(SplitSide::Left).is_some();
         if is_split && truth.is_none() {

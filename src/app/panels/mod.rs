@@ -12,17 +12,23 @@ mod option_rows;
 mod patch_explanation;
 mod patch_panel;
 mod patch_pattern;
-mod settings_panel;
+pub(super) mod sections;
+pub(super) mod settings_panel;
 mod statistics;
 mod status_line;
+mod verdict;
 
 use crate::tessellate::Displacement;
 
 use chart::Chart;
+use sections::OpenSections;
 
 /// What the panels remember from one frame to the next.
 pub(super) struct Panels {
     pub chart: Chart,
+    pub open: OpenSections,
+    /// Whether the panels on both sides are hidden, so that the picture has their room.
+    pub are_hidden: bool,
     /// The width of the crease band while it is being dragged, as a part of the bounding diagonal.
     pub dragged_crease_band: Option<f32>,
     /// The displacement before it was last switched.
@@ -31,6 +37,12 @@ pub(super) struct Panels {
 
 impl Default for Panels {
     fn default() -> Self {
-        Self { chart: Chart::default(), dragged_crease_band: None, last_displacement: Displacement::Off }
+        Self {
+            chart: Chart::default(),
+            open: OpenSections::default(),
+            are_hidden: false,
+            dragged_crease_band: None,
+            last_displacement: Displacement::Off,
+        }
     }
 }

@@ -1,9 +1,11 @@
 //! The settings in the left panel.
 
 use super::option_rows::{option_hover, option_row};
+use super::sections::{Section, in_fixed_width};
 use crate::app::App;
 use crate::app::text::short;
-use crate::app::widgets::{LABEL_WIDTH, chooser, fixed, heading};
+use crate::app::viewport::toolbar::ON_TOOLBAR;
+use crate::app::widgets::{LABEL_WIDTH, fixed};
 use crate::commands::{Action, BACKS_ARE_SEEN, Change, key_name, with_key};
 use crate::settings::{Choice, Colors, Control, Declaration, Kind, Overlay, Overlays, Range, Settings, options};
 use crate::tessellate::{Displacement, Lod, Tessellation};
@@ -11,81 +13,72 @@ use crate::tessellate::{Displacement, Lod, Tessellation};
 impl App {
     pub(in crate::app) fn settings_panel(&mut self, ui: &mut egui::Ui) {
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            heading(ui, "Surface");
-            egui::Grid::new("surface").num_columns(2).min_col_width(LABEL_WIDTH).show(ui, |ui| self.surface_rows(ui));
-            heading(ui, "Level of detail");
-            self.lod_rows(ui);
-            heading(ui, "Mesh");
-            egui::Grid::new("weld").num_columns(2).min_col_width(LABEL_WIDTH).show(ui, |ui| {
-                self.weld_row(ui);
-                self.crease_band_row(ui);
-                self.height_rows(ui);
+            in_fixed_width(ui, |ui| {
+                self.section(ui, Section::Surface, Self::surface_rows);
+                self.section(ui, Section::LevelOfDetail, Self::lod_rows);
+                self.section(ui, Section::Displacement, Self::height_rows);
+                self.animation_section(ui);
+                self.section(ui, Section::Overlays, Self::overlay_rows);
+                self.section(ui, Section::View, Self::view_rows);
+                self.section(ui, Section::Advanced, Self::advanced_rows);
             });
-            self.animation_section(ui);
-            heading(ui, "Overlays");
-            self.overlay_rows(ui);
-            heading(ui, "View");
-            self.view_rows(ui);
         });
     }
 
+    /// A section of rows with a label and a control each.
+    fn section(&mut self, ui: &mut egui::Ui, section: Section, rows: impl FnOnce(&mut Self, &mut egui::Ui)) {
+        if self.panels.open.title(ui, section) {
+            egui::Grid::new(section.title()).num_columns(2).min_col_width(LABEL_WIDTH).show(ui, |ui| rows(self, ui));
+        }
+    }
+
     fn overlay_rows(&mut self, ui: &mut egui::Ui) {
-        let hovers: Vec<_> = Colors::ALL.iter().map(|&colors| colors_hover(colors)).collect();
-        let colors: Vec<_> =
-            Colors::ALL.iter().zip(&hovers).map(|(&colors, hover)| (colors, colors.label(), hover.as_str())).collect();
-        let settings = &mut self.settings;
-        egui::Grid::new("colors").num_columns(2).min_col_width(LABEL_WIDTH).show(ui, |ui| {
-            let hover = "What the surface's colours mean (--overlay).";
-            chooser(ui, "Colours", hover, &mut settings.overlays.colors, &colors);
-            option_row(ui, &options::DEVIATION_IN, settings, "");
-        });
-        for &overlay in Overlay::ALL.iter() {
-            if let Control::Switch(switch) = settings.overlays.control(overlay) {
+        for &overlay in Overlay::ALL.iter().filter(|overlay| !ON_TOOLBAR.contains(overlay)) {
+            if let Control::Switch(switch) = self.settings.overlays.control(overlay) {
                 ui.checkbox(switch, overlay.label()).on_hover_text(overlay_hover(overlay));
+                ui.end_row();
             }
         }
+        shown_option_row(ui, &options::DEVIATION_IN, &mut self.settings);
     }
 
     fn surface_rows(&mut self, ui: &mut egui::Ui) {
         let settings = &mut self.settings;
         option_row(ui, &options::SURFACE, settings, "");
-        option_row(ui, &options::ALPHA, settings, "");
+        shown_option_row(ui, &options::ALPHA, settings);
         option_row(ui, &options::NORMALS, settings, "");
-        option_row(ui, &options::NORMALS_AT, settings, "");
-        option_row(ui, &options::FACTOR, settings, &factor_keys());
         option_row(ui, &options::PARTITIONING, settings, "");
+    }
+
+    /// What specialists set.
+    fn advanced_rows(&mut self, ui: &mut egui::Ui) {
+        let settings = &mut self.settings;
         let mut chosen = *settings;
         option_row(ui, &options::EDGES, &mut chosen, key_name(&Action::Setting(Change::ToggleEdges)));
         settings.set_edges(chosen.tessellation.edges);
+        option_row(ui, &options::CONVENTION, settings, "");
+        option_row(ui, &options::CLIP, settings, "");
+        shown_option_row(ui, &options::NORMALS_AT, settings);
+        self.weld_row(ui);
+        self.crease_band_row(ui);
+        self.back_face_row(ui);
     }
 
     fn lod_rows(&mut self, ui: &mut egui::Ui) {
         let settings = &mut self.settings;
-        egui::Grid::new("lod").num_columns(2).min_col_width(LABEL_WIDTH).show(ui, |ui| {
-            match (options::LOD.no_effect)(settings) {
-                Some(why) => fixed(ui, options::LOD.label, settings.tessellation.used_lod().label(), why),
-                None => option_row(ui, &options::LOD, settings, key_name(&Action::Setting(Change::AdaptiveLod))),
+        match (options::LOD.no_effect)(settings) {
+            Some(why) => fixed(ui, options::LOD.label, settings.tessellation.used_lod().label(), why),
+            None => option_row(ui, &options::LOD, settings, key_name(&Action::Setting(Change::AdaptiveLod))),
+        }
+        if (options::FACTOR.no_effect)(settings).is_none() {
+            option_row(ui, &options::FACTOR, settings, &factor_keys());
+        }
+        let own: Vec<_> = options_of_lods().filter(|option| (option.no_effect)(settings).is_none()).collect();
+        for option in own {
+            match option.kind {
+                Kind::Pair(_) => distances_row(ui, settings),
+                _ => option_row(ui, option, settings, ""),
             }
-            let mut own: Vec<_> = options_of_lods().filter(|option| (option.no_effect)(settings).is_none()).collect();
-            if own.is_empty() {
-                // A row that is greyed out keeps the panel's height.
-                own.push(&options::PIXELS);
-            }
-            for option in own {
-                match option.kind {
-                    Kind::Pair(_) => distances_row(ui, settings),
-                    _ => option_row(ui, option, settings, ""),
-                }
-            }
-            option_row(ui, &options::CLIP, settings, "");
-            option_row(ui, &options::CONVENTION, settings, "");
-        });
-        self.back_face_row(ui);
-        let mut frozen = self.viewport.frozen.is_some();
-        let hover = "Keeps LOD and clipping as they are for this camera while you look from elsewhere.";
-        let hover = with_key(hover, &Action::FreezeLodCamera);
-        if ui.checkbox(&mut frozen, "Freeze LOD camera").on_hover_text(hover).changed() {
-            self.toggle_frozen();
         }
     }
 
@@ -101,6 +94,7 @@ impl App {
         let is_solid = self.can_cull_back_faces();
         let check =
             egui::Checkbox::new(&mut self.settings.tessellation.cull_back_faces, options::CULL_BACK_FACES.label);
+        ui.label("");
         ui.add_enabled(is_solid, check)
             .on_hover_text(format!(
                 "{} They are drawn anyway where backs can be seen: in an animation, while the near plane cuts the \
@@ -108,6 +102,7 @@ impl App {
                 option_hover(&options::CULL_BACK_FACES, "")
             ))
             .on_disabled_hover_text(BACKS_ARE_SEEN);
+        ui.end_row();
     }
 
     /// The row for the weld tolerance. Its list says what each tolerance would join. A new one loads the mesh again.
@@ -144,37 +139,26 @@ impl App {
     }
 
     fn view_rows(&mut self, ui: &mut egui::Ui) {
-        let mut split = self.settings.split.is_some();
-        let hover = with_key(
-            "Shows the untessellated mesh, or another surface, left of a divider and the tessellation right of it.",
-            &Action::SplitView,
-        );
-        if ui.checkbox(&mut split, "Split view").on_hover_text(hover).changed() {
-            self.toggle_split();
-        }
-        egui::Grid::new("view").num_columns(2).min_col_width(LABEL_WIDTH).show(ui, |ui| {
+        if self.settings.split.is_some() {
             option_row(ui, &options::SPLIT_SURFACE, &mut self.settings, "");
             let mut percent = self.settings.split.unwrap_or(self.viewport.last_split) * 100.0;
             let label = ui.label(options::SPLIT.label);
             let slider = egui::Slider::new(&mut percent, 0.0..=100.0).max_decimals(0).suffix(" %");
-            let response = ui.add_enabled(split, slider).labelled_by(label.id);
-            if response
-                .on_hover_text("The position of the divider, in percent of the view's width from the left (--split).")
-                .changed()
-            {
+            let hover = "The position of the divider, in percent of the view's width from the left (--split).";
+            if ui.add(slider).labelled_by(label.id).on_hover_text(hover).changed() {
                 self.viewport.last_split = percent / 100.0;
                 self.settings.split = Some(self.viewport.last_split);
             }
             ui.end_row();
-            let label = ui.label(options::BACKGROUND.label);
-            let response = ui.color_edit_button_srgb(&mut self.settings.background).labelled_by(label.id);
-            if response.has_focus() {
-                let stroke = ui.visuals().selection.stroke;
-                ui.painter().rect_stroke(response.rect.expand(2.0), 3.0, stroke, egui::StrokeKind::Outside);
-            }
-            response.on_hover_text(option_hover(&options::BACKGROUND, ""));
-            ui.end_row();
-        });
+        }
+        let label = ui.label(options::BACKGROUND.label);
+        let response = ui.color_edit_button_srgb(&mut self.settings.background).labelled_by(label.id);
+        if response.has_focus() {
+            let stroke = ui.visuals().selection.stroke;
+            ui.painter().rect_stroke(response.rect.expand(2.0), 3.0, stroke, egui::StrokeKind::Outside);
+        }
+        response.on_hover_text(option_hover(&options::BACKGROUND, ""));
+        ui.end_row();
     }
 
     pub(in crate::app) fn toggle_split(&mut self) {
@@ -205,13 +189,20 @@ fn factor_keys() -> String {
     format!("{up} and {down}")
 }
 
+/// A row that is there only where the option has an effect.
+fn shown_option_row(ui: &mut egui::Ui, option: &Declaration, settings: &mut Settings) {
+    if (option.no_effect)(settings).is_none() {
+        option_row(ui, option, settings, "");
+    }
+}
+
 /// The hover text of an overlay: what it shows, and its key.
-fn overlay_hover(overlay: Overlay) -> String {
+pub(in crate::app) fn overlay_hover(overlay: Overlay) -> String {
     with_key(overlay.text(), &Action::Setting(Change::Overlay(overlay)))
 }
 
 /// The hover text of a choice of colours: their meaning, and the overlay's key.
-fn colors_hover(colors: Colors) -> String {
+pub(in crate::app) fn colors_hover(colors: Colors) -> String {
     let overlays = Overlays { colors, ..Overlays::default() };
     overlays.on().next().map_or_else(|| colors.text().to_owned(), overlay_hover)
 }

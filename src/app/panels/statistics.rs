@@ -1,10 +1,9 @@
 //! The panel on the right: statistics of the tessellation and the mesh.
 
-use egui::RichText;
-
+use super::sections::{Section, in_fixed_width};
 use crate::app::App;
 use crate::app::text::{grouped, part, short};
-use crate::app::widgets::{fact, heading, number, swatch};
+use crate::app::widgets::{fact, number, swatch};
 use crate::measure::{Cracks, Culled};
 use crate::mesh::EdgeKind;
 use crate::render::layout::{CRACK_COLOR, FOLD_COLOR, WASTE_COLOR, edge_color};
@@ -26,23 +25,32 @@ pub(in crate::app) const EDGE_KINDS: [(EdgeKind, &str, &str); 5] = [
 impl App {
     pub(in crate::app) fn facts_panel(&mut self, ui: &mut egui::Ui) {
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            heading(ui, "Patch");
-            self.patch_section(ui);
-            self.deviation_section(ui);
-            heading(ui, "Cracks");
-            self.crack_facts(ui);
-            self.worst_edges(ui);
-            self.t_junction_list(ui);
-            self.edge_details(ui);
-            heading(ui, "Patches");
-            self.patch_facts(ui);
-            heading(ui, "Waste");
-            self.waste_facts(ui);
-            heading(ui, "Edges");
-            self.edge_legend(ui);
-            heading(ui, "Mesh");
-            self.mesh_facts(ui);
-            self.pass_times(ui);
+            in_fixed_width(ui, |ui| {
+                // Each in a scope of its own, so that rows that come and go don't take the focus from those below.
+                ui.push_id("verdict", |ui| self.verdict(ui));
+                if self.panels.open.title(ui, Section::Patch) {
+                    ui.push_id("patch", |ui| self.patch_section(ui));
+                }
+                self.deviation_section(ui);
+                if self.panels.open.title(ui, Section::Cracks) {
+                    self.crack_facts(ui);
+                    self.worst_edges(ui);
+                    self.t_junction_list(ui);
+                }
+                self.edge_details(ui);
+                let sections: [(Section, fn(&Self, &mut egui::Ui)); 4] = [
+                    (Section::Patches, Self::patch_facts),
+                    (Section::Waste, Self::waste_facts),
+                    (Section::Edges, Self::edge_legend),
+                    (Section::Mesh, Self::mesh_facts),
+                ];
+                for (section, show) in sections {
+                    if self.panels.open.title(ui, section) {
+                        show(self, ui);
+                    }
+                }
+                self.pass_times(ui);
+            });
         });
     }
 
@@ -176,16 +184,12 @@ impl App {
                 "Welding points and finding edges.",
             );
         });
-        for warning in &document.loaded.warnings {
-            ui.add(egui::Label::new(RichText::new(warning).color(ui.visuals().warn_fg_color)).wrap());
-        }
     }
 
-    fn pass_times(&self, ui: &mut egui::Ui) {
-        if self.viewport.picture.times.is_empty() {
+    fn pass_times(&mut self, ui: &mut egui::Ui) {
+        if self.viewport.picture.times.is_empty() || !self.panels.open.title(ui, Section::Passes) {
             return;
         }
-        heading(ui, "Passes");
         egui::Grid::new("passes").num_columns(2).min_col_width(104.0).show(ui, |ui| {
             for time in &self.viewport.picture.times {
                 fact(

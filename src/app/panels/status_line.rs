@@ -54,13 +54,6 @@ impl App {
             );
             let (ms, hover) = self.times();
             status(ui, 112.0, ms, &hover);
-            let warnings = &document.loaded.warnings;
-            if !warnings.is_empty() {
-                let text =
-                    RichText::new(format!("{} warning{}", warnings.len(), if warnings.len() == 1 { "" } else { "s" }))
-                        .color(ui.visuals().warn_fg_color);
-                status(ui, 82.0, text, &warnings.join("\n"));
-            }
             ui.add(egui::Label::new(RichText::new(&self.engine.gpu.info.name).weak()).truncate())
                 .on_hover_text(format!("Graphics adapter: {}.", self.engine.gpu.info.name));
         });

@@ -12,6 +12,7 @@ use egui::ViewportCommand;
 
 use crate::app::App;
 use crate::app::jobs::background_job::BackgroundJob;
+use crate::app::panels::sections::OpenSections;
 use crate::load::Source;
 use crate::render::Camera;
 use crate::settings::Settings;
@@ -99,8 +100,9 @@ impl Persistence {
     }
 
     /// Takes over the window's present state.
-    fn take(&mut self, context: &egui::Context, settings: &Settings, seen: Option<SavedCamera>) {
+    fn take(&mut self, context: &egui::Context, settings: &Settings, open: OpenSections, seen: Option<SavedCamera>) {
         self.kept.take_settings(settings);
+        self.kept.open = open;
         self.kept.frame = frame_now(context, &self.kept.frame);
         let open = self.kept.files.iter_mut().find(|file| Some(&file.path) == self.open.as_ref());
         if let Some((file, seen)) = open.zip(seen) {
@@ -183,7 +185,12 @@ fn frame_now(context: &egui::Context, before: &WindowGeometry) -> WindowGeometry
 impl App {
     /// Takes over the state that the last window saved.
     pub fn resume(&mut self, context: &egui::Context, mut lasting: Persistence) {
-        self.settings = *lasting.settings();
+        // A first start shows what it has to show.
+        if lasting.kept != SavedState::default() {
+            self.settings = *lasting.settings();
+            self.viewport.greets = false;
+        }
+        self.panels.open = lasting.kept.open;
         self.viewport.last_split = self.settings.split.unwrap_or(self.viewport.last_split);
         context.set_theme(lasting.kept.frame.theme);
         context.set_zoom_factor(lasting.kept.frame.zoom);
@@ -205,7 +212,7 @@ impl App {
     pub(in crate::app) fn keep(&mut self, context: &egui::Context) {
         let diagonal = self.document.as_ref().map(|document| document.diagonal);
         let seen = diagonal.map(|diagonal| SavedCamera { camera: self.viewport.camera, diagonal });
-        self.persistence.take(context, &self.settings, seen);
+        self.persistence.take(context, &self.settings, self.panels.open, seen);
         let failed = self.persistence.write_on(context);
         self.dialogs.error = self.dialogs.error.take().or(failed);
     }
@@ -249,6 +256,7 @@ impl App {
             ..Settings::opening().tessellation
         });
         self.history = Default::default();
+        self.panels.open = OpenSections::default();
         self.viewport.last_split = 0.5;
         self.viewport.frozen = None;
         self.viewport.camera = Camera::framing(&Default::default(), glam::Vec2::ONE);

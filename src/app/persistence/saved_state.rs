@@ -9,6 +9,7 @@ use glam::Vec3;
 use serde_json::{Value, json};
 
 use super::saved_settings::{read_settings, written_settings};
+use crate::app::panels::sections::{OpenSections, Section};
 use crate::render::Camera;
 use crate::settings::Settings;
 use crate::tessellate::{Displacement, Tessellation};
@@ -31,6 +32,7 @@ pub(super) struct SavedState {
     /// Without displacement, which depends on the mesh.
     pub settings: Settings,
     pub frame: WindowGeometry,
+    pub open: OpenSections,
     /// The file that was opened last comes first.
     pub files: Vec<SavedFile>,
 }
@@ -71,7 +73,12 @@ impl Default for WindowGeometry {
 
 impl Default for SavedState {
     fn default() -> Self {
-        Self { settings: Settings::opening(), frame: WindowGeometry::default(), files: Vec::new() }
+        Self {
+            settings: Settings::opening(),
+            frame: WindowGeometry::default(),
+            open: OpenSections::default(),
+            files: Vec::new(),
+        }
     }
 }
 
@@ -93,7 +100,12 @@ impl SavedState {
                     files.push(file);
                 }
             }
-            Self { settings: read_settings(&all["settings"]), frame: WindowGeometry::read(&all["window"]), files }
+            Self {
+                settings: read_settings(&all["settings"]),
+                frame: WindowGeometry::read(&all["window"]),
+                open: read_open(&all["sections"]),
+                files,
+            }
         })
     }
 
@@ -101,13 +113,34 @@ impl SavedState {
     pub(super) fn written(&self) -> String {
         let files: Vec<Value> = self.files.iter().map(SavedFile::written).collect();
         let settings = written_settings(&self.settings);
-        format!("{:#}\n", json!({ "settings": settings, "window": self.frame.written(), "files": files }))
+        format!(
+            "{:#}\n",
+            json!({
+                "settings": settings,
+                "window": self.frame.written(),
+                "sections": written_open(&self.open),
+                "files": files,
+            })
+        )
     }
 
     /// Takes settings, without displacement, which depends on the mesh.
     pub(super) fn take_settings(&mut self, settings: &Settings) {
         self.settings = settings.with(Tessellation { displacement: Displacement::Off, ..settings.tessellation });
     }
+}
+
+/// Reads which sections are open, by their titles.
+fn read_open(value: &Value) -> OpenSections {
+    let mut open = OpenSections::default();
+    for section in Section::ALL {
+        open.set(section, Fields(value).switch(section.title(), open.has(section)));
+    }
+    open
+}
+
+fn written_open(open: &OpenSections) -> Value {
+    Section::ALL.iter().map(|&section| (section.title().to_owned(), Value::from(open.has(section)))).collect()
 }
 
 impl WindowGeometry {

@@ -9,6 +9,7 @@ mod patch_labels;
 pub(super) mod picture;
 pub(super) mod playback;
 pub(super) mod selection;
+pub(super) mod toolbar;
 
 use crate::engine::Engine;
 use crate::render::Camera;
@@ -29,6 +30,8 @@ pub(super) struct Viewport {
     pub frozen: Option<LodView>,
     /// The divider's place when the view was last split: 0 is the left edge, 1 the right one.
     pub last_split: f32,
+    /// Whether a line of help is over the picture: at a first start, until anything is done.
+    pub greets: bool,
     pub picture: Picture,
     pub playback: Playback,
     pub left: LeftHalf,
@@ -46,6 +49,7 @@ impl Viewport {
             framed: None,
             frozen: None,
             last_split: 0.5,
+            greets: false,
             picture: Picture::new(engine),
             playback: Playback::default(),
             left: LeftHalf::default(),

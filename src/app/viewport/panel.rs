@@ -9,12 +9,13 @@ use super::legend::legend;
 use super::picture::Wanted;
 use crate::app::App;
 use crate::app::jobs::measure_job::Trouble;
-use crate::app::text::grouped;
+use crate::app::text::counted;
 use crate::commands::{Action, with_key};
 use crate::gpu::GpuError;
+use crate::load::Source;
 use crate::progress::Stage;
 use crate::render::Scene;
-use crate::settings::{Colors, SplitSide};
+use crate::settings::{Colors, Settings, SplitSide};
 use crate::view::ScreenView;
 
 /// Degrees that the camera turns for a point of dragging.
@@ -24,6 +25,10 @@ const DIVIDER_REACH: f32 = 5.0;
 
 /// The alignment of the halves' titles, which are at the top beside the divider.
 const ALIGN: [egui::Align2; 2] = [egui::Align2::RIGHT_TOP, egui::Align2::LEFT_TOP];
+
+/// The line of help at a first start.
+const GREETING: &str =
+    "Drag to turn, scroll to zoom, click a triangle to read its factors. Drop a mesh here to open it.";
 
 impl App {
     pub(in crate::app) fn viewport_panel(&mut self, ui: &mut egui::Ui) {
@@ -35,14 +40,20 @@ impl App {
         let scale = ui.ctx().pixels_per_point();
         self.click(&response, scale);
         let size = [(points.x * scale).round().max(1.0) as u32, (points.y * scale).round().max(1.0) as u32];
+        // A camera that frames the whole mesh goes on doing so in a window of another size.
+        let resized = self.viewport.picture.target.as_ref().is_some_and(|(target, _)| target.size != size);
+        let framed = resized && self.is_framed();
         if let Err(error) = self.advance(ui.ctx(), size) {
             self.dialogs.error = Some(error.to_string());
         }
+        if framed {
+            self.frame();
+        }
         // A picture that the device refused may be half drawn.
         let is_whole = self.viewport.picture.drawn.is_some() || self.viewport.picture.cancelled.is_none();
-        if let Some((_, id)) = self.viewport.picture.target.as_ref().filter(|_| is_whole) {
+        if let Some(id) = self.viewport.picture.shown().filter(|_| is_whole) {
             let whole = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
-            ui.painter().image(*id, rect, whole, egui::Color32::WHITE);
+            ui.painter().image(id, rect, whole, egui::Color32::WHITE);
         }
         self.patch_labels(ui, rect);
         self.divider(ui, rect);
@@ -197,11 +208,24 @@ impl App {
                 SplitSide::BOTH.into_iter().filter_map(|half| self.settings.half(half).and(document.scene.half(half)));
             halves.map(of).sum()
         });
-        format!("{} triangles", grouped(triangles))
+        counted(triangles, "triangle")
+    }
+
+    /// Whether nothing was done yet: no camera moved, no setting changed, nothing selected and no other mesh opened.
+    fn is_untouched(&self) -> bool {
+        let is_vase = self.source().is_none_or(|source| *source == Source::Vase);
+        let is_framed = self.viewport.framed.is_none_or(|framed| framed == self.viewport.camera);
+        let is_selected = self.viewport.selected_edge.is_some() || self.selected_triangle().is_some();
+        is_vase && is_framed && !is_selected && self.settings == Settings::greeting()
     }
 
     /// Notes over the picture: the frozen camera, and the progress of loading, exporting and drawing.
     fn viewport_notes(&mut self, ui: &mut egui::Ui, rect: egui::Rect) {
+        self.viewport.greets &= self.is_untouched();
+        if self.viewport.greets {
+            let position = rect.center_bottom() + egui::vec2(0.0, -14.0);
+            note(ui, position, egui::Align2::CENTER_BOTTOM, GREETING);
+        }
         if self.viewport.frozen.is_some() {
             let position = rect.left_bottom() + egui::vec2(10.0, -10.0);
             note(ui, position, egui::Align2::LEFT_BOTTOM, "LOD camera frozen");

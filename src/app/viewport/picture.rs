@@ -60,6 +60,10 @@ pub(crate) const SHORT: usize = 8;
 /// The picture and what it cost.
 pub(crate) struct Picture {
     pub target: Option<(Target, egui::TextureId)>,
+    /// The last picture, of another size. It is shown stretched until the first one of the new size is drawn.
+    before: Option<(Target, egui::TextureId)>,
+    /// A texture that is shown no more, until egui has forgotten it.
+    unused: Option<egui::TextureId>,
     pub drawn: Option<Wanted>,
     /// The picture that the device is counting for. It is drawn before any newer one, so that a long drag shows pictures.
     counting: Option<Wanted>,
@@ -90,6 +94,8 @@ impl Picture {
         };
         Self {
             target: None,
+            before: None,
+            unused: None,
             drawn: None,
             counting: None,
             drawing: None,
@@ -165,6 +171,7 @@ impl Picture {
                 self.picture_ms = Some(drawing.start.elapsed().as_secs_f64() * 1e3);
                 self.pass_times_hold = drawing.steps == 1;
                 self.drawn = Some(drawing.wanted);
+                self.unused = self.before.take().map(|(_, id)| id).or(self.unused);
                 self.pictures += 1;
             }
         }
@@ -183,10 +190,16 @@ impl Picture {
         engine: &Engine,
         size: [u32; 2],
     ) -> Result<(), GpuError> {
+        if let Some(id) = self.unused.take() {
+            app.renderer.write().free_texture(&id);
+        }
         if self.target.as_ref().is_some_and(|(target, _)| target.size == size) {
             return Ok(());
         }
         let target = Target::new(&engine.gpu, size)?;
+        if self.drawn.take().is_some() {
+            self.unused = std::mem::replace(&mut self.before, self.target.take()).map(|(_, id)| id);
+        }
         let mut renderer = app.renderer.write();
         let (view, filter) = (target.shown_view(), wgpu::FilterMode::Nearest);
         let id = match self.target.take() {
@@ -197,9 +210,14 @@ impl Picture {
             None => renderer.register_native_texture(&engine.gpu.device, &view, filter),
         };
         self.target = Some((target, id));
-        self.drawn = None;
         self.drawing = None;
         Ok(())
+    }
+
+    /// The texture that is shown: the picture, or until it is drawn for the first time the one before it.
+    pub(crate) fn shown(&self) -> Option<egui::TextureId> {
+        let before = self.before.as_ref().filter(|_| self.drawn.is_none());
+        before.or(self.target.as_ref()).map(|(_, id)| *id)
     }
 
     /// Draws what is wanted, if it isn't drawn yet and the device is free. The counts come back first; until then, and

@@ -1,8 +1,9 @@
 //! The animation: clip, time and speed, and playing.
 
 use crate::app::App;
+use crate::app::panels::sections::Section;
 use crate::app::text::shortened;
-use crate::app::widgets::{LABEL_WIDTH, chooser, heading};
+use crate::app::widgets::{LABEL_WIDTH, chooser};
 use crate::commands::{Action, with_key};
 use crate::mesh::Moment;
 use crate::mesh::rig::Clip;
@@ -136,13 +137,17 @@ impl App {
         if self.clips().is_empty() {
             let read = self.document.as_ref().map(|document| &document.loaded.read);
             if read.is_some_and(|read| read.rig.is_some()) {
-                heading(ui, "Animation");
-                ui.weak("A mesh with a crease band can't be animated.");
+                if self.panels.open.title(ui, Section::Animation) {
+                    ui.weak("A mesh with a crease band can't be animated.");
+                }
             }
             return;
         }
-        heading(ui, "Animation");
-        let mut chosen = self.viewport.playback.clip;
+        if !self.panels.open.title(ui, Section::Animation) {
+            return;
+        }
+        let before = self.viewport.playback.clip;
+        let mut chosen = before;
         let texts: Vec<_> = self.clips().iter().take(LISTED).map(clip_texts).collect();
         egui::Grid::new("animation").num_columns(2).min_col_width(LABEL_WIDTH).show(ui, |ui| {
             let mut choices = vec![(None, "Rest pose", "The mesh as it is without any clip.")];
@@ -161,7 +166,8 @@ impl App {
             self.play_button(ui);
             ui.end_row();
         });
-        if chosen != self.viewport.playback.clip {
+        // Playing at rest chooses the first clip by itself.
+        if chosen != before {
             self.choose_clip(chosen);
         }
     }

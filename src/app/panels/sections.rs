@@ -1,0 +1,138 @@
+//! The sections of the panels, which fold.
+
+use egui::{Color32, Rect, Sense, Shape, Stroke, pos2, vec2};
+
+/// A section of the left or of the right panel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::app) enum Section {
+    Surface,
+    LevelOfDetail,
+    Displacement,
+    Animation,
+    Overlays,
+    View,
+    Advanced,
+    Patch,
+    Deviation,
+    Cracks,
+    Patches,
+    Waste,
+    Edges,
+    Mesh,
+    Passes,
+}
+
+impl Section {
+    pub(in crate::app) const ALL: [Self; 15] = crate::names::every![Section:
+        Surface, LevelOfDetail, Displacement, Animation, Overlays, View, Advanced, Patch, Deviation, Cracks, Patches, Waste,
+        Edges, Mesh, Passes,
+    ];
+
+    /// Its title in the window, by which it is saved too.
+    pub(in crate::app) fn title(self) -> &'static str {
+        match self {
+            Self::Surface => "Surface",
+            Self::LevelOfDetail => "Level of detail",
+            Self::Displacement => "Displacement",
+            Self::Animation => "Animation",
+            Self::Overlays => "Overlays",
+            Self::View => "View",
+            Self::Advanced => "Advanced",
+            Self::Patch => "Patch",
+            Self::Deviation => "Deviation",
+            Self::Cracks => "Cracks",
+            Self::Patches => "Patches",
+            Self::Waste => "Waste",
+            Self::Edges => "Edges",
+            Self::Mesh => "Mesh",
+            Self::Passes => "Passes",
+        }
+    }
+
+    /// Whether it is open at the first start: what people set and read every day is.
+    fn opens(self) -> bool {
+        !matches!(
+            self,
+            Self::Displacement | Self::Advanced | Self::Patches | Self::Waste | Self::Edges | Self::Mesh | Self::Passes
+        )
+    }
+}
+
+/// Which sections are open.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::app) struct OpenSections([bool; Section::ALL.len()]);
+
+impl Default for OpenSections {
+    fn default() -> Self {
+        Self(Section::ALL.map(Section::opens))
+    }
+}
+
+impl OpenSections {
+    pub(in crate::app) fn has(&self, section: Section) -> bool {
+        self.0[section as usize]
+    }
+
+    pub(in crate::app) fn set(&mut self, section: Section, is_open: bool) {
+        self.0[section as usize] = is_open;
+    }
+
+    /// Opens all sections, or closes them.
+    pub(in crate::app) fn set_all(&mut self, is_open: bool) {
+        self.0 = [is_open; Section::ALL.len()];
+    }
+
+    /// Shows the title of a section. A click folds the section or opens it. Returns whether it is open.
+    pub(in crate::app) fn title(&mut self, ui: &mut egui::Ui, section: Section) -> bool {
+        let is_open = &mut self.0[section as usize];
+        if title_row(ui, section.title(), *is_open).clicked() {
+            *is_open = !*is_open;
+        }
+        *is_open
+    }
+}
+
+/// A row as wide as the panel: a triangle that points down if the section is open, and the title.
+fn title_row(ui: &mut egui::Ui, title: &str, is_open: bool) -> egui::Response {
+    ui.add_space(6.0);
+    let size = vec2(ui.available_width(), ui.spacing().interact_size.y + 2.0);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::DisclosureTriangle, true, is_open, title));
+    let visuals = ui.visuals();
+    let (text, line) = (visuals.strong_text_color(), visuals.widgets.noninteractive.bg_stroke);
+    if response.hovered() || response.has_focus() {
+        ui.painter().rect_filled(rect, 3.0, visuals.widgets.hovered.weak_bg_fill.gamma_multiply(0.6));
+    }
+    if response.has_focus() {
+        ui.painter().rect_stroke(rect, 3.0, visuals.selection.stroke, egui::StrokeKind::Inside);
+    }
+    let icon = Rect::from_center_size(pos2(rect.left() + 6.0, rect.center().y), vec2(8.0, 8.0));
+    ui.painter().add(triangle(icon, is_open, text));
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let title = ui.painter().layout_no_wrap(title.to_owned(), font, text);
+    let place = pos2(rect.left() + 18.0, rect.center().y - title.size().y / 2.0);
+    ui.painter().galley(place, title, text);
+    ui.painter().hline(rect.x_range(), rect.bottom() + 1.0, line);
+    ui.add_space(2.0);
+    response.on_hover_text(if is_open { "Folds this section." } else { "Opens this section." })
+}
+
+fn triangle(place: Rect, is_open: bool, color: Color32) -> Shape {
+    let points = match is_open {
+        true => vec![place.left_top() + vec2(0.0, 1.5), place.right_top() + vec2(0.0, 1.5), place.center_bottom()],
+        false => vec![place.left_top() + vec2(1.5, 0.0), place.right_center(), place.left_bottom() + vec2(1.5, 0.0)],
+    };
+    Shape::convex_polygon(points, color, Stroke::NONE)
+}
+
+/// Shows contents in the width that is left, and never takes more: whatever is wider is cut off. So no number that grows can
+/// move the picture.
+pub(in crate::app) fn in_fixed_width(ui: &mut egui::Ui, show: impl FnOnce(&mut egui::Ui)) {
+    let room = ui.available_rect_before_wrap();
+    let mut inside = ui.new_child(egui::UiBuilder::new().max_rect(room));
+    let clip = ui.clip_rect();
+    inside.set_clip_rect(clip.intersect(Rect::from_x_y_ranges(room.x_range().expand(2.0), clip.y_range())));
+    show(&mut inside);
+    let used = Rect::from_min_size(room.min, vec2(room.width(), inside.min_rect().height()));
+    ui.allocate_rect(used, Sense::hover());
+}

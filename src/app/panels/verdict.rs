@@ -1,0 +1,150 @@
+//! What is wrong with the picture, in a few lines at the top of the right panel. A click on one shows the place.
+
+use egui::{Color32, RichText};
+
+use super::sections::Section;
+use crate::app::App;
+use crate::app::text::{counted, short};
+use crate::app::widgets::rgb;
+use crate::render::layout::{CRACK_COLOR, FOLD_COLOR, T_JUNCTION_COLOR};
+use crate::settings::{Colors, Overlay};
+
+/// What a click on a line does.
+#[derive(Clone, Copy)]
+enum Leads {
+    /// To the overlay of cracks, and to the edge with the widest gap.
+    ToCracks,
+    ToFolds,
+    ToTJunctions,
+    ToSizes,
+    ToFactors,
+    ToWarnings,
+}
+
+/// A line of the verdict.
+struct Line {
+    text: String,
+    /// None where all is well: such a line is dim, and leads nowhere.
+    color: Option<Color32>,
+    hover: &'static str,
+    leads: Leads,
+}
+
+impl Line {
+    fn dim(text: impl Into<String>, hover: &'static str, leads: Leads) -> Self {
+        Self { text: text.into(), color: None, hover, leads }
+    }
+
+    fn bad(text: String, color: Color32, hover: &'static str, leads: Leads) -> Self {
+        Self { text, color: Some(color), hover, leads }
+    }
+}
+
+impl App {
+    pub(in crate::app) fn verdict(&mut self, ui: &mut egui::Ui) {
+        if self.document.is_none() {
+            return;
+        }
+        ui.add_space(6.0);
+        let lines: Vec<Line> = [
+            Some(self.cracks_line()),
+            Some(self.folds_line()),
+            self.junctions_line(),
+            self.sizes_line(ui.visuals().text_color()),
+            self.limit_line(ui.visuals().warn_fg_color),
+            self.warnings_line(ui.visuals().warn_fg_color),
+        ]
+        .into_iter()
+        .flatten()
+        .collect();
+        for line in lines {
+            let Some(color) = line.color else {
+                ui.weak(line.text).on_hover_text(line.hover);
+                continue;
+            };
+            if ui.button(RichText::new(line.text).color(color)).on_hover_text(line.hover).clicked() {
+                self.follow(line.leads);
+            }
+        }
+    }
+
+    fn cracks_line(&self) -> Line {
+        let hover =
+            "Edges whose sides put a point at different positions. A click shows them and goes to the widest gap.";
+        match self.jobs.measure.cracks() {
+            None => Line::dim("Cracks \u{2026}", "Cracks are measured while the picture rests.", Leads::ToCracks),
+            Some(cracks) if cracks.edges.is_empty() => {
+                Line::dim("No cracks", "No edge of what is drawn has sides that differ in a bit.", Leads::ToCracks)
+            }
+            Some(cracks) => {
+                let px = short(self.viewport.picture.gap_px(cracks));
+                let edges = counted(cracks.edges.len() as u64, "cracked edge");
+                Line::bad(format!("{edges}, widest {px} px"), rgb(CRACK_COLOR), hover, Leads::ToCracks)
+            }
+        }
+    }
+
+    fn folds_line(&self) -> Line {
+        let hover = "Triangles that face away from the side that their patch faces. A click shows them.";
+        match self.jobs.measure.found().map(|found| found.folds) {
+            None => Line::dim("Folds \u{2026}", "Folds are counted while the picture rests.", Leads::ToFolds),
+            Some(0) => Line::dim("No folds", hover, Leads::ToFolds),
+            Some(folds) => Line::bad(counted(folds, "fold"), rgb(FOLD_COLOR), hover, Leads::ToFolds),
+        }
+    }
+
+    fn junctions_line(&self) -> Option<Line> {
+        let junctions = self.document.as_ref()?.checks.t_junctions().filter(|junctions| !junctions.is_empty())?;
+        let hover = "Points of the mesh that lie on the open edge of another triangle, which no tessellation closes. A click \
+                     shows them and goes to the first.";
+        let text = counted(junctions.len() as u64, "T-junction");
+        Some(Line::bad(text, rgb(T_JUNCTION_COLOR), hover, Leads::ToTJunctions))
+    }
+
+    fn sizes_line(&self, color: Color32) -> Option<Line> {
+        let sizes = self.sizes_shown().filter(|sizes| sizes.small > 0)?;
+        let percent = 100.0 * sizes.small as f64 / sizes.in_view.max(1) as f64;
+        let hover = "Triangles in view that are smaller than half of a square with sides of 3 px: a GPU shades up to four times \
+                     as many px for them as they cover. A click colours triangles by their size.";
+        let text = format!("{percent:.0} % of triangles below 3 px");
+        (percent >= 0.5).then(|| Line::bad(text, color, hover, Leads::ToSizes))
+    }
+
+    fn limit_line(&self, color: Color32) -> Option<Line> {
+        let patches = self.jobs.measure.found()?.patches_at_limit;
+        let hover = "Patches with a factor of 63 or 64, the most there is. LOD by error may miss its tolerance there. A click \
+                     colours the surface by factors.";
+        let text = format!("{} at the maximum factor", counted(patches.into(), "patch"));
+        (patches > 0).then(|| Line::bad(text, color, hover, Leads::ToFactors))
+    }
+
+    fn warnings_line(&self, color: Color32) -> Option<Line> {
+        let warnings = self.document.as_ref()?.loaded.warnings.len() as u64;
+        let hover = "What was repaired or left out when the file was read. A click lists it.";
+        (warnings > 0).then(|| Line::bad(counted(warnings, "warning"), color, hover, Leads::ToWarnings))
+    }
+
+    fn follow(&mut self, leads: Leads) {
+        let overlays = &mut self.settings.overlays;
+        match leads {
+            Leads::ToCracks => {
+                overlays.cracks = true;
+                self.panels.open.set(Section::Cracks, true);
+                let widest = self.jobs.measure.cracks().and_then(|cracks| cracks.edges.first()).map(|crack| crack.edge);
+                widest.into_iter().for_each(|edge| self.select_edge(edge));
+            }
+            Leads::ToFolds => overlays.folds = true,
+            Leads::ToTJunctions => {
+                overlays.t_junctions = true;
+                self.panels.open.set(Section::Cracks, true);
+                let junctions = self.document.as_ref().and_then(|document| document.checks.t_junctions());
+                let first = junctions.and_then(|junctions| junctions.first()).map(|junction| junction.edge);
+                first.into_iter().for_each(|edge| self.select_edge(edge));
+            }
+            Leads::ToSizes if overlays.colors != Colors::TriangleSize => overlays.toggle(Overlay::TriangleSize),
+            Leads::ToFactors if overlays.colors != Colors::Factors => overlays.toggle(Overlay::Factors),
+            Leads::ToSizes | Leads::ToFactors => {}
+            Leads::ToWarnings => self.dialogs.shows_warnings = true,
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! The toolbar over the picture: what people use every day, one click away.
+
+use crate::app::App;
+use crate::app::panels::settings_panel::{colors_hover, overlay_hover};
+use crate::commands::{Action, Availability, CameraAction, Command, FileAction, all, with_key};
+use crate::settings::{Choice, Colors, Control, Overlay};
+
+/// The overlays that have a button here, and so no row in the panel.
+pub(in crate::app) const ON_TOOLBAR: [Overlay; 2] = [Overlay::Wireframe, Overlay::Cracks];
+
+/// The width of the list of colours, in points: that of its longest entry.
+const COLORS_WIDTH: f32 = 124.0;
+
+impl App {
+    pub(in crate::app) fn toolbar(&mut self, ui: &mut egui::Ui) {
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            let now = self.availability();
+            let commands = all(&now);
+            let hover =
+                "Shows the untessellated mesh, or another surface, left of a divider and the tessellation right of it.";
+            if toggle(ui, self.settings.split.is_some(), ["Split", "Split view"], &with_key(hover, &Action::SplitView))
+            {
+                self.toggle_split();
+            }
+            for overlay in ON_TOOLBAR {
+                if let Control::Switch(switch) = self.settings.overlays.control(overlay)
+                    && toggle(ui, *switch, [overlay.label(); 2], &overlay_hover(overlay))
+                {
+                    *switch = !*switch;
+                }
+            }
+            self.colors_list(ui);
+            ui.separator();
+            self.command_button(ui, &commands, &now, &Action::Camera(CameraAction::Frame), ["Frame", "Frame all"]);
+            let hover = "Keeps LOD and clipping as they are for this camera while you look from elsewhere.";
+            let hover = with_key(hover, &Action::FreezeLodCamera);
+            if toggle(ui, self.viewport.frozen.is_some(), ["Freeze LOD", "Freeze LOD camera"], &hover) {
+                self.toggle_frozen();
+            }
+            if !now.clips.is_empty() {
+                let label = if self.is_playing() { "Pause" } else { "Play" };
+                self.command_button(ui, &commands, &now, &Action::PlayOrPause, [label, "Play or pause"]);
+            }
+            ui.separator();
+            self.command_button(ui, &commands, &now, &Action::File(FileAction::SavePicture), ["Save picture"; 2]);
+        });
+    }
+
+    /// The list of what the surface's colours mean.
+    fn colors_list(&mut self, ui: &mut egui::Ui) {
+        let colors = &mut self.settings.overlays.colors;
+        let combo = egui::ComboBox::from_id_salt("Colours").selected_text(colors.label()).width(COLORS_WIDTH);
+        let combo = combo.height(260.0).show_ui(ui, |ui| {
+            for &choice in Colors::ALL {
+                ui.selectable_value(colors, choice, choice.label()).on_hover_text(colors_hover(choice));
+            }
+        });
+        let response = combo.response.on_hover_text("What the surface's colours mean (--overlay).");
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Colours"));
+    }
+
+    /// A button that gives a command, with its text and key as hover text. It is greyed out where the command isn't possible.
+    fn command_button(
+        &mut self,
+        ui: &mut egui::Ui,
+        commands: &[Command],
+        now: &Availability,
+        action: &Action,
+        [label, name]: [&str; 2],
+    ) {
+        let Some(command) = commands.iter().find(|command| command.action == *action) else { return };
+        let why_not = command.why_not(now);
+        let button = ui.add_enabled(why_not.is_none(), egui::Button::new(label));
+        button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, why_not.is_none(), name));
+        let button = button.on_hover_text(with_key(&command.text, action));
+        if button.on_disabled_hover_text(why_not.unwrap_or_default()).clicked() {
+            self.give(ui.ctx(), command);
+        }
+    }
+}
+
+/// A button that stays pressed while something is on, with a name for screen readers that says more than its label. Returns
+/// whether it was clicked.
+fn toggle(ui: &mut egui::Ui, is_on: bool, [label, name]: [&str; 2], hover: &str) -> bool {
+    let response = ui.add(egui::Button::selectable(is_on, label)).on_hover_text(hover);
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, is_on, name));
+    response.clicked()
+}

@@ -1,0 +1,188 @@
+//! Where things are in the window: the toolbar, the sections, the verdict, and that nothing moves by itself.
+
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use pnaen::app::{App, Persistence};
+use pnaen::files::Limits;
+use pnaen::load::Source;
+use pnaen::mesh::Shape;
+use pnaen::settings::{Colors, Settings};
+use tempfile::TempDir;
+
+use crate::gpu_tests::moving::{CLIPS, moving};
+use crate::window_tests::{choose, click, press, settle, switch, uniform, window};
+
+/// A window of this size that was never open before, with all sections as they are then.
+fn first_start(size: [f32; 2], source: Option<Source>) -> Harness<'static, App> {
+    let mut harness = Harness::builder().with_size(size).wgpu().build_eframe(move |context| {
+        App::new(context, source, Limits::default()).expect("these tests need a graphics adapter")
+    });
+    settle(&mut harness);
+    harness
+}
+
+fn viewport(harness: &Harness<App>) -> egui::Rect {
+    harness.get_by_label("Viewport").rect()
+}
+
+#[test]
+fn a_first_start_shows_the_vase_split_with_a_line_of_help_until_something_is_done() {
+    let mut harness = first_start([1280.0, 720.0], None);
+    assert_eq!(harness.state().source(), Some(&Source::Vase));
+    assert_eq!(*harness.state().settings(), Settings::greeting());
+    assert!(harness.state().greets());
+    harness.get_by_label("No cracks");
+    press(&mut harness, egui::Key::ArrowLeft);
+    assert!(!harness.state().greets(), "the camera was moved");
+    press(&mut harness, egui::Key::ArrowRight);
+    assert!(!harness.state().greets(), "it doesn't come back");
+    assert!(!first_start([1280.0, 720.0], Some(Source::Shape(Shape::Torus))).state().greets());
+}
+
+#[test]
+fn a_number_that_grows_moves_nothing() {
+    let mut harness = first_start([1000.0, 600.0], Some(Source::Shape(Shape::Torus)));
+    choose(&mut harness, "LOD", "Uniform");
+    click(&mut harness, "Waste");
+    let before = viewport(&harness);
+    // A million triangles, all of them below 3 px, whose count and share are a long text.
+    harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(64.0);
+    settle(&mut harness);
+    let triangles = harness.state().totals().expect("a torus").1;
+    assert!(triangles > 500_000, "{triangles}");
+    harness.get_by_label_contains("% of triangles below 3 px");
+    assert_eq!(viewport(&harness), before);
+    let pictures = harness.state().pictures();
+    harness.run_steps(10);
+    assert_eq!(harness.state().pictures(), pictures, "nothing is drawn when nothing changed");
+}
+
+#[test]
+fn a_window_of_another_size_shows_the_last_picture_until_the_next_one_and_frames_the_mesh_again() {
+    let mut harness = first_start([1000.0, 600.0], Some(Source::Vase));
+    let distance = harness.state().camera().distance;
+    harness.set_size(egui::vec2(1600.0, 1000.0));
+    harness.step();
+    let middle = harness.render().expect("a picture of the window").get_pixel(790, 540).0;
+    assert!(middle[..3].iter().any(|&channel| channel > 60), "{middle:?} is neither vase nor background");
+    settle(&mut harness);
+    assert!(harness.state().camera().distance < distance, "the mesh takes the room that there is now");
+    press(&mut harness, egui::Key::PageUp);
+    let near = harness.state().camera().distance;
+    harness.set_size(egui::vec2(1000.0, 700.0));
+    settle(&mut harness);
+    assert_eq!(harness.state().camera().distance, near, "a camera that shows a detail stays");
+}
+
+#[test]
+fn the_toolbar_switches_what_is_used_every_day() {
+    let mut harness = first_start([1280.0, 720.0], Some(Source::Shape(Shape::Torus)));
+    let toolbar = ["Split view", "Wireframe", "Cracks", "Freeze LOD camera"];
+    let frame = viewport(&harness);
+    for name in toolbar {
+        let button = harness.get_by_role_and_label(Role::CheckBox, name).rect();
+        assert!(button.bottom() <= frame.top() && button.left() >= frame.left(), "{name}: {button:?} is not over it");
+        switch(&mut harness, name);
+    }
+    let settings = *harness.state().settings();
+    assert!(settings.split.is_some() && settings.overlays.wireframe && settings.overlays.cracks);
+    choose(&mut harness, "Colours", "Factors");
+    assert_eq!(harness.state().settings().overlays.colors, Colors::Factors);
+    assert!(harness.query_by_label("Play or pause").is_none(), "a torus doesn't move");
+    let turned = harness.state().camera().distance;
+    press(&mut harness, egui::Key::PageUp);
+    click(&mut harness, "Frame all");
+    assert_eq!(harness.state().camera().distance, turned);
+}
+
+#[test]
+fn the_play_buttons_start_the_first_clip_from_rest() {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let path = folder.path().join("moving.glb");
+    std::fs::write(&path, moving()).expect("a writable temporary folder");
+    let mut harness = uniform(Some(Source::File(path)));
+    for name in ["Play", "Play or pause"] {
+        harness.get_by_role_and_label(Role::Button, name).click();
+        harness.run_steps(3);
+        assert!(harness.state().is_playing(), "{name}");
+        assert_eq!(harness.state().moment().map(|moment| moment.clip), Some(0), "{name}: {}", CLIPS[0]);
+        harness.state_mut().choose_clip(None);
+        settle(&mut harness);
+    }
+}
+
+#[test]
+fn the_verdict_counts_what_is_wrong_and_leads_there() {
+    let mut harness = first_start([1280.0, 720.0], Some(Source::Shape(Shape::CubeSplit)));
+    harness.get_by_label("No cracks");
+    harness.get_by_label("No folds");
+    choose(&mut harness, "Surface", "PN");
+    let worst = harness.state().cracks().expect("measured").edges[0].edge;
+    harness.get_by_label_contains("12 cracked edges, widest ").click();
+    settle(&mut harness);
+    assert!(harness.state().settings().overlays.cracks);
+    assert_eq!(harness.state().selected_edge(), Some(worst));
+    harness.get_by_label("Worst edges");
+    assert!(harness.query_by_label_contains("warning").is_none());
+}
+
+#[test]
+fn warnings_are_listed() {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let path = folder.path().join("warns.obj");
+    // The material's file isn't there.
+    let text = "mtllib nowhere.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n";
+    std::fs::write(&path, text).expect("a writable temporary folder");
+    let mut harness = first_start([1280.0, 720.0], Some(Source::File(path)));
+    let warnings = harness.state().loaded().expect("a mesh").warnings.clone();
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    click(&mut harness, "1 warning");
+    let list = harness.get_by_role_and_label(Role::Window, "Warnings").rect();
+    assert!(list.contains(harness.get_by_label(&warnings[0]).rect().center()));
+    click(&mut harness, "Copy");
+    press(&mut harness, egui::Key::Escape);
+    assert!(harness.query_by_role_and_label(Role::Window, "Warnings").is_none());
+}
+
+#[test]
+fn sections_fold_and_the_next_window_remembers_it() {
+    let folder: TempDir = tempfile::tempdir().expect("a writable temporary folder");
+    let resumed = |kept: &std::path::Path| {
+        let kept = kept.to_owned();
+        let mut harness = Harness::builder().with_size([1280.0, 720.0]).wgpu().build_eframe(move |context| {
+            let source = Some(Source::Shape(Shape::Torus));
+            let mut app = App::new(context, source, Limits::default()).expect("these tests need a graphics adapter");
+            app.resume(&context.egui_ctx, Persistence::read(Some(&kept)));
+            app
+        });
+        settle(&mut harness);
+        harness
+    };
+    let mut harness = resumed(folder.path());
+    assert!(harness.query_by_role_and_label(Role::ComboBox, "Convention").is_none(), "specialists open it");
+    click(&mut harness, "Advanced");
+    harness.get_by_role_and_label(Role::ComboBox, "Convention");
+    harness.get_by_role_and_label(Role::DisclosureTriangle, "Surface").click();
+    settle(&mut harness);
+    assert!(harness.query_by_role_and_label(Role::ComboBox, "Partitioning").is_none());
+    eframe::App::on_exit(harness.state_mut());
+    drop(harness);
+    let harness = resumed(folder.path());
+    harness.get_by_role_and_label(Role::ComboBox, "Convention");
+    assert!(harness.query_by_role_and_label(Role::ComboBox, "Partitioning").is_none());
+}
+
+#[test]
+fn hidden_panels_leave_the_picture_all_the_room() {
+    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    let before = viewport(&harness);
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::B);
+    settle(&mut harness);
+    let whole = viewport(&harness);
+    assert!(whole.width() > before.width() + 500.0, "{whole:?}");
+    harness.get_by_role_and_label(Role::CheckBox, "Wireframe");
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::B);
+    settle(&mut harness);
+    assert_eq!(viewport(&harness), before);
+}
