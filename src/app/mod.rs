@@ -79,7 +79,7 @@ impl App {
             window: WindowState::default(),
         };
         app.viewport.greets = source.is_none();
-        app.open(&context.egui_ctx, source.unwrap_or(Source::Vase));
+        app.open(&context.egui_ctx, source.unwrap_or_default());
         Ok(app)
     }
 

@@ -52,6 +52,7 @@ use crate::gpu::GpuError;
 use crate::load::{LoadError, Source};
 use crate::names::{on_one_line, shown_path};
 use crate::progress::Progress;
+use crate::settings::Settings;
 
 /// Shows what tessellation does to a mesh in a window; commands write pictures, meshes and numbers instead
 #[derive(Debug, Parser)]
@@ -206,8 +207,8 @@ pub(crate) fn preview(
     adapter: AdapterOption,
     path: &Path,
 ) -> Result<(), CliError> {
-    let source = source.unwrap_or_default();
-    render::run(&render::Args::preview(source, limit, adapter, path))
+    let settings = if source.is_some() { Settings::opening() } else { Settings::greeting() };
+    render::run(&render::Args::preview(source.unwrap_or_default(), settings, limit, adapter, path))
 }
 
 /// Reads a whole text file, or standard input if the path is `-`.

@@ -59,17 +59,22 @@ pub(crate) struct Args {
 }
 
 impl Args {
-    /// The arguments that draw what the window shows when it opens.
-    pub(crate) fn preview(file: Source, limit: LimitOption, adapter: AdapterOption, output: &Path) -> Self {
-        let opening = Settings::opening();
-        let tessellation = TessellationOptions { tessellation: opening.tessellation, displacement: None };
+    /// The arguments that draw what the window shows when it opens with these settings.
+    pub(crate) fn preview(
+        file: Source,
+        settings: Settings,
+        limit: LimitOption,
+        adapter: AdapterOption,
+        output: &Path,
+    ) -> Self {
+        let tessellation = TessellationOptions { tessellation: settings.tessellation, displacement: None };
         let weld = WeldOption { limit, ..WeldOption::default() };
         Self {
             file,
             output: output.to_owned(),
             surface: SurfaceOptions { tessellation, weld, ..SurfaceOptions::default() },
             given: FactorsOption::default(),
-            picture: PictureOptions(opening),
+            picture: PictureOptions(settings),
             truth: TruthOption::default(),
             select: None,
             stats: None,

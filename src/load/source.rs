@@ -18,20 +18,15 @@ const SHAPE: &str = "shape:";
 const VASE: &str = "vase";
 
 /// A shape, the vase or a file. Its text form is `shape:torus`, `shape:torus@2`, `shape:vase`, or a path.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Source {
     Shape(Shape),
     /// A shape with levels, at a level from 1 to [`MAX_LEVEL`]. At level 0 it is a `Shape`.
     FineShape(Shape, u32),
-    /// A painted vase of few triangles, which is part of the program: what the window opens at a first start.
+    /// A painted vase of few triangles, which is part of the program: what the window opens if no mesh is named.
+    #[default]
     Vase,
     File(PathBuf),
-}
-
-impl Default for Source {
-    fn default() -> Self {
-        Self::Shape(Shape::default())
-    }
 }
 
 impl Source {

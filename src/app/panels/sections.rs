@@ -53,7 +53,14 @@ impl Section {
     fn opens(self) -> bool {
         !matches!(
             self,
-            Self::Displacement | Self::Advanced | Self::Patches | Self::Waste | Self::Edges | Self::Mesh | Self::Passes
+            Self::Displacement
+                | Self::Advanced
+                | Self::Cracks
+                | Self::Patches
+                | Self::Waste
+                | Self::Edges
+                | Self::Mesh
+                | Self::Passes
         )
     }
 }
