@@ -148,7 +148,7 @@ fn without_a_dialog() {
         assert!(start.elapsed() < PATIENCE, "no window asks for a path");
         context.request_repaint();
         if let Some(asked) = app.path_asked_for() {
-            assert!(app.settings().overlays.wireframe, "a key typed meanwhile is no shortcut");
+            assert!(!app.settings().overlays.wireframe, "a key typed meanwhile is no shortcut");
             seen.borrow_mut().push(asked);
             // The window is visible some frames later.
             if seen.borrow().len() == 5 {

@@ -7,6 +7,7 @@ mod jobs;
 mod panels;
 mod patch_names;
 pub(crate) mod persistence;
+mod sections;
 mod style;
 mod text;
 mod viewport;
@@ -29,7 +30,7 @@ use history::History;
 use jobs::Jobs;
 use jobs::document::Document;
 use jobs::truth::ChosenTruth;
-use panels::Panels;
+use panels::{FACTS_WIDTH, Panels, SETTINGS_WIDTH};
 use viewport::Viewport;
 use window::WindowState;
 
@@ -176,6 +177,13 @@ impl App {
 }
 
 impl eframe::App for App {
+    fn raw_input_hook(&mut self, context: &egui::Context, input: &mut egui::RawInput) {
+        input.events = self.window.events.pace(std::mem::take(&mut input.events));
+        if self.window.events.are_waiting() {
+            context.request_repaint();
+        }
+    }
+
     fn logic(&mut self, context: &egui::Context, _frame: &mut eframe::Frame) {
         if self.is_lost() {
             // This window can't show anything any more; the one that replaces it can.
@@ -207,9 +215,14 @@ impl eframe::App for App {
         }
         egui::Panel::top("menu").show(ui, |ui| self.menu_bar(ui));
         egui::Panel::bottom("status").show(ui, |ui| self.status_line(ui));
-        if !self.panels.are_hidden {
-            egui::Panel::left("settings").resizable(false).exact_size(264.0).show(ui, |ui| self.settings_panel(ui));
-            egui::Panel::right("facts").resizable(false).exact_size(284.0).show(ui, |ui| self.facts_panel(ui));
+        let [left, right] = self.panels.shown(ui.available_width());
+        if left {
+            let panel = egui::Panel::left("settings").resizable(false).exact_size(SETTINGS_WIDTH);
+            panel.show(ui, |ui| self.settings_panel(ui));
+        }
+        if right {
+            let panel = egui::Panel::right("facts").resizable(false).exact_size(FACTS_WIDTH);
+            panel.show(ui, |ui| self.facts_panel(ui));
         }
         self.chart_panel(ui);
         egui::Panel::top("toolbar").show(ui, |ui| self.toolbar(ui));

@@ -140,8 +140,11 @@ pub(super) fn swatch(ui: &mut egui::Ui, color: [u8; 3]) {
     ui.painter().rect_filled(rect, 2.0, rgb(color));
 }
 
-/// A field of the status line. Its width doesn't depend on its text.
+/// A field of the status line. Its width doesn't depend on its text. Where there is no room for all of it, it is left out.
 pub(super) fn status(ui: &mut egui::Ui, width: f32, text: impl Into<egui::WidgetText>, hover: &str) {
+    if ui.available_width() < width {
+        return;
+    }
     let height = ui.spacing().interact_size.y;
     ui.allocate_ui_with_layout(egui::vec2(width, height), egui::Layout::left_to_right(egui::Align::Center), |ui| {
         ui.set_min_width(width);

@@ -60,7 +60,7 @@ fn settings_cameras_and_recent_files_survive_a_restart() {
     let folder = tempfile::tempdir().expect("a writable temporary folder");
     let (first, second) = (mesh(&folder, "first.glb"), mesh(&folder, "second.glb"));
     let mut harness = window(&folder, None);
-    assert_eq!(harness.state().settings(), &Settings::opening(), "the settings of a first start");
+    assert_eq!(harness.state().settings(), &Settings::greeting(), "the settings of a first start");
     choose(&mut harness, "Surface", "Phong AEN");
     harness.get_by_role_and_label(Role::CheckBox, "Cracks").click();
     open(&mut harness, &first);
@@ -75,11 +75,7 @@ fn settings_cameras_and_recent_files_survive_a_restart() {
     close(harness);
 
     let mut harness = window(&folder, None);
-    assert_eq!(
-        harness.state().source(),
-        Some(&Source::Shape(Shape::CubeSplit)),
-        "the last file isn't opened by itself"
-    );
+    assert_eq!(harness.state().source(), Some(&Source::Vase), "the last file isn't opened by itself");
     assert_eq!(harness.state().settings(), &settings);
     recent_menu(&mut harness);
     harness.get_by_label_contains("second.glb");
@@ -235,7 +231,7 @@ fn forgetting_goes_back_to_the_state_of_a_first_start() {
     let text = std::fs::read_to_string(settings_file(&folder)).expect("the saved state");
     assert!(!text.contains("first.glb"), "{text}");
     let mut harness = window(&folder, None);
-    assert_eq!(harness.state().settings(), &Settings::opening());
+    assert_eq!(harness.state().settings(), &Settings::greeting());
     click(&mut harness, "File");
     assert!(harness.get_by_label_contains("Open recent").accesskit_node().is_disabled());
 }
@@ -263,7 +259,7 @@ fn damaged_settings_are_renamed_and_the_window_opens() {
     std::fs::create_dir(folder.path().join("kept")).expect("a writable folder");
     std::fs::write(settings_file(&folder), "{\"settings\": {\"surf").expect("a writable folder");
     let mut harness = window(&folder, None);
-    assert_eq!(harness.state().settings(), &Settings::opening());
+    assert_eq!(harness.state().settings(), &Settings::greeting());
     harness.get_by_label_contains("window.json is damaged");
     assert!(settings_file(&folder).with_file_name("window.damaged.json").exists());
     click(&mut harness, "Close");

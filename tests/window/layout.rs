@@ -186,3 +186,27 @@ fn hidden_panels_leave_the_picture_all_the_room() {
     settle(&mut harness);
     assert_eq!(viewport(&harness), before);
 }
+
+#[test]
+fn a_narrow_window_leaves_out_panels_before_it_covers_anything() {
+    for (size, zoom, panels) in
+        [([1280.0, 720.0], 1.5, 2), ([1024.0, 640.0], 1.5, 1), ([1024.0, 640.0], 2.0, 1), ([640.0, 400.0], 1.5, 0)]
+    {
+        let mut harness = first_start(size, Some(Source::Shape(Shape::Torus)));
+        harness.ctx.set_zoom_factor(zoom);
+        harness.set_size(egui::Vec2::from(size) / zoom);
+        settle(&mut harness);
+        let screen = harness.ctx.content_rect();
+        let picture = viewport(&harness);
+        assert!(screen.contains_rect(picture) && picture.width() >= 200.0, "{size:?} x {zoom}: {picture:?}");
+        let left = harness.query_by_role_and_label(Role::DisclosureTriangle, "Surface");
+        let right = harness.query_by_role_and_label(Role::DisclosureTriangle, "Patch");
+        let shown: Vec<_> = [left, right].into_iter().flatten().map(|node| node.rect()).collect();
+        assert_eq!(shown.len(), panels, "{size:?} x {zoom}");
+        assert!(shown.iter().all(|title| !title.intersects(picture)), "{shown:?} {picture:?}");
+        for name in ["Split view", "Wireframe", "Cracks", "Freeze LOD camera"] {
+            let button = harness.get_by_role_and_label(Role::CheckBox, name).rect();
+            assert!(screen.contains_rect(button) && !button.intersects(picture), "{name}: {button:?}, {picture:?}");
+        }
+    }
+}

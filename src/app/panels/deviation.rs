@@ -3,10 +3,10 @@
 use egui::RichText;
 use glam::{Vec2, Vec3};
 
-use super::sections::Section;
 use crate::app::App;
 use crate::app::jobs::deviation_job::{DeviationBasis, DeviationJob, DeviationResult};
 use crate::app::jobs::measure_job::Trouble;
+use crate::app::sections::Section;
 use crate::app::text::{grouped, short, shortened};
 use crate::app::viewport::legend::Distances;
 use crate::app::widgets::{fact, number, swatch};

@@ -12,16 +12,21 @@ mod option_rows;
 mod patch_explanation;
 mod patch_panel;
 mod patch_pattern;
-pub(super) mod sections;
-pub(super) mod settings_panel;
+mod settings_panel;
 mod statistics;
 mod status_line;
+mod toolbar;
 mod verdict;
 
 use crate::tessellate::Displacement;
 
+use crate::app::sections::OpenSections;
 use chart::Chart;
-use sections::OpenSections;
+
+/// The widths of the left and of the right panel, and the least that is left for the picture, in points.
+pub(super) const SETTINGS_WIDTH: f32 = 264.0;
+pub(super) const FACTS_WIDTH: f32 = 284.0;
+const LEAST_PICTURE: f32 = 220.0;
 
 /// What the panels remember from one frame to the next.
 pub(super) struct Panels {
@@ -33,6 +38,15 @@ pub(super) struct Panels {
     pub dragged_crease_band: Option<f32>,
     /// The displacement before it was last switched.
     pub last_displacement: Displacement,
+}
+
+impl Panels {
+    /// Whether the left and the right panel are shown in a window of this width, in points. A narrow one leaves out the right
+    /// panel, and a very narrow one both.
+    pub(super) fn shown(&self, width: f32) -> [bool; 2] {
+        let fits = |panels: f32| !self.are_hidden && width >= panels + LEAST_PICTURE;
+        [fits(SETTINGS_WIDTH), fits(SETTINGS_WIDTH + FACTS_WIDTH)]
+    }
 }
 
 impl Default for Panels {

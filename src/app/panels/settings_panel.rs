@@ -1,10 +1,10 @@
 //! The settings in the left panel.
 
 use super::option_rows::{option_hover, option_row};
-use super::sections::{Section, in_fixed_width};
+use super::toolbar::ON_TOOLBAR;
 use crate::app::App;
+use crate::app::sections::{Section, in_fixed_width};
 use crate::app::text::short;
-use crate::app::viewport::toolbar::ON_TOOLBAR;
 use crate::app::widgets::{LABEL_WIDTH, fixed};
 use crate::commands::{Action, BACKS_ARE_SEEN, Change, key_name, with_key};
 use crate::settings::{Choice, Colors, Control, Declaration, Kind, Overlay, Overlays, Range, Settings, options};
@@ -197,12 +197,12 @@ fn shown_option_row(ui: &mut egui::Ui, option: &Declaration, settings: &mut Sett
 }
 
 /// The hover text of an overlay: what it shows, and its key.
-pub(in crate::app) fn overlay_hover(overlay: Overlay) -> String {
+pub(super) fn overlay_hover(overlay: Overlay) -> String {
     with_key(overlay.text(), &Action::Setting(Change::Overlay(overlay)))
 }
 
 /// The hover text of a choice of colours: their meaning, and the overlay's key.
-pub(in crate::app) fn colors_hover(colors: Colors) -> String {
+pub(super) fn colors_hover(colors: Colors) -> String {
     let overlays = Overlays { colors, ..Overlays::default() };
     overlays.on().next().map_or_else(|| colors.text().to_owned(), overlay_hover)
 }

@@ -1,7 +1,7 @@
 //! The panel on the right: statistics of the tessellation and the mesh.
 
-use super::sections::{Section, in_fixed_width};
 use crate::app::App;
+use crate::app::sections::{Section, in_fixed_width};
 use crate::app::text::{grouped, part, short};
 use crate::app::widgets::{fact, number, swatch};
 use crate::measure::{Cracks, Culled};
@@ -38,16 +38,17 @@ impl App {
                     self.t_junction_list(ui);
                 }
                 self.edge_details(ui);
-                let sections: [(Section, fn(&Self, &mut egui::Ui)); 4] = [
-                    (Section::Patches, Self::patch_facts),
-                    (Section::Waste, Self::waste_facts),
-                    (Section::Edges, Self::edge_legend),
-                    (Section::Mesh, Self::mesh_facts),
-                ];
-                for (section, show) in sections {
-                    if self.panels.open.title(ui, section) {
-                        show(self, ui);
-                    }
+                if self.panels.open.title(ui, Section::Patches) {
+                    self.patch_facts(ui);
+                }
+                if self.panels.open.title(ui, Section::Waste) {
+                    self.waste_facts(ui);
+                }
+                if self.panels.open.title(ui, Section::Edges) {
+                    self.edge_legend(ui);
+                }
+                if self.panels.open.title(ui, Section::Mesh) {
+                    self.mesh_facts(ui);
                 }
                 self.pass_times(ui);
             });

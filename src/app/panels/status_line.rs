@@ -29,15 +29,16 @@ impl App {
             let before = (document.loaded.mesh.triangles.len() as u64, document.loaded.mesh.corners.len() as u64);
             status(
                 ui,
-                120.0,
-                format!("{} of {} patches", grouped(drawn), grouped(patches)),
-                "Patches that are drawn, out of all. The others are out of view or face away.",
-            );
-            status(
-                ui,
                 170.0,
                 format!("{} to {} triangles", grouped(before.0), triangles),
                 "Triangles before and after tessellation.",
+            );
+            self.status_of_cracks(ui);
+            status(
+                ui,
+                120.0,
+                format!("{} of {} patches", grouped(drawn), grouped(patches)),
+                "Patches that are drawn, out of all. The others are out of view or face away.",
             );
             status(
                 ui,
@@ -45,7 +46,6 @@ impl App {
                 format!("{} to {} vertices", grouped(before.1), vertices),
                 "Vertices before and after tessellation.",
             );
-            self.status_of_cracks(ui);
             status(
                 ui,
                 76.0,

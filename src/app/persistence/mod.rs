@@ -12,7 +12,7 @@ use egui::ViewportCommand;
 
 use crate::app::App;
 use crate::app::jobs::background_job::BackgroundJob;
-use crate::app::panels::sections::OpenSections;
+use crate::app::sections::OpenSections;
 use crate::load::Source;
 use crate::render::Camera;
 use crate::settings::Settings;
@@ -186,7 +186,7 @@ impl App {
     /// Takes over the state that the last window saved.
     pub fn resume(&mut self, context: &egui::Context, mut lasting: Persistence) {
         // A first start shows what it has to show.
-        if lasting.kept != SavedState::default() {
+        if !lasting.kept.is_of_a_first_start() {
             self.settings = *lasting.settings();
             self.viewport.greets = false;
         }

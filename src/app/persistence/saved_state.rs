@@ -9,7 +9,7 @@ use glam::Vec3;
 use serde_json::{Value, json};
 
 use super::saved_settings::{read_settings, written_settings};
-use crate::app::panels::sections::{OpenSections, Section};
+use crate::app::sections::{OpenSections, Section};
 use crate::render::Camera;
 use crate::settings::Settings;
 use crate::tessellate::{Displacement, Tessellation};
@@ -122,6 +122,11 @@ impl SavedState {
                 "files": files,
             })
         )
+    }
+
+    /// Whether no setting was changed and no file was opened yet.
+    pub(super) fn is_of_a_first_start(&self) -> bool {
+        self.settings == Settings::opening() && self.files.is_empty()
     }
 
     /// Takes settings, without displacement, which depends on the mesh.

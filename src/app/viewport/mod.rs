@@ -9,7 +9,6 @@ mod patch_labels;
 pub(super) mod picture;
 pub(super) mod playback;
 pub(super) mod selection;
-pub(super) mod toolbar;
 
 use crate::engine::Engine;
 use crate::render::Camera;

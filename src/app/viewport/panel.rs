@@ -241,7 +241,7 @@ impl App {
                 (Stage::Heights, Some(heights)) => format!("Reading heights: {}", heights.title()),
                 _ => format!("Loading {}", load.source.title()),
             };
-            let (done, hover) = (Some(load.progress.fraction()), "Stops loading. The mesh that is open stays.");
+            let (done, hover) = (Some((load.progress.fraction(), None)), "Stops loading. The mesh that is open stays.");
             if progress(ui, rect, &title, done, ("Cancel", hover)) {
                 self.jobs.load = None;
             }
@@ -249,13 +249,13 @@ impl App {
         } else if let Some(load) = &self.jobs.truth_load {
             let title = format!("Loading the reference surface {}", load.source.title());
             let (done, hover) =
-                (Some(load.progress.fraction()), "Stops loading. The reference surface before it stays.");
+                (Some((load.progress.fraction(), None)), "Stops loading. The reference surface before it stays.");
             if progress(ui, rect, &title, done, ("Cancel", hover)) {
                 self.jobs.truth_load = None;
             }
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
         } else if let Some(export) = &self.jobs.export {
-            let (title, done) = (format!("Exporting {}", export.name()), Some(export.progress.fraction()));
+            let (title, done) = (format!("Exporting {}", export.name()), Some((export.progress.fraction(), None)));
             let hover = with_key("Stops exporting. Nothing is written.", &Action::Cancel);
             if progress(ui, rect, &title, done, ("Cancel", &hover)) {
                 self.jobs.export = None;
@@ -269,7 +269,7 @@ impl App {
             }
         } else if let Some(drawing) = self.viewport.picture.drawing.as_ref().filter(|_| self.viewport.picture.is_long())
         {
-            let done = Some(drawing.given as f32 / drawing.steps as f32);
+            let done = Some((drawing.done(), drawing.seconds_left()));
             let hover = with_key("Stops drawing. The last picture and all settings stay.", &Action::Cancel);
             if progress(ui, rect, &format!("Drawing {}", self.triangles()), done, ("Cancel", &hover)) {
                 self.viewport.picture.cancel();
@@ -278,21 +278,24 @@ impl App {
     }
 }
 
-/// Shows the title and progress of something that takes long in the middle of the picture, and a button with a hover text.
-/// Returns true if the button is pressed.
+/// Shows the title of something that takes long at the lower border of the picture, the part of it that is done, about how many
+/// seconds are left if that is known, and a button with a hover text. Returns true if the button is pressed.
 fn progress(
     ui: &mut egui::Ui,
     rect: egui::Rect,
     title: &str,
-    done: Option<f32>,
+    done: Option<(f32, Option<f64>)>,
     (button, hover): (&str, &str),
 ) -> bool {
-    let area = egui::Rect::from_center_size(rect.center(), egui::vec2(280.0, 84.0));
+    // Below the middle, so that the picture can be seen.
+    let area = egui::Align2::CENTER_BOTTOM.align_size_within_rect(egui::vec2(280.0, 84.0), rect.shrink(14.0));
     let show = |ui: &mut egui::Ui| {
         ui.set_min_width(260.0);
         ui.label(title);
-        if let Some(done) = done {
-            ui.add(egui::ProgressBar::new(done).desired_width(260.0));
+        if let Some((done, left)) = done {
+            let left = left.map_or_else(String::new, |left| format!(", about {left:.0} s left"));
+            let text = format!("{:.0} %{left}", 100.0 * done);
+            ui.add(egui::ProgressBar::new(done).desired_width(260.0).text(text));
         }
         ui.button(button).on_hover_text(hover).clicked()
     };

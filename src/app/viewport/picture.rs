@@ -54,6 +54,19 @@ pub(crate) struct Drawing {
     pub steps: usize,
 }
 
+impl Drawing {
+    /// The part that is submitted, 0 to 1.
+    pub(crate) fn done(&self) -> f32 {
+        self.given as f32 / self.steps.max(1) as f32
+    }
+
+    /// About how many seconds the rest takes, once so much is done that it can be told.
+    pub(crate) fn seconds_left(&self) -> Option<f64> {
+        let done = f64::from(self.done());
+        (done > 0.05).then(|| self.start.elapsed().as_secs_f64() * (1.0 - done) / done)
+    }
+}
+
 /// Pictures of up to this many steps are finished even if a newer one is wanted.
 pub(crate) const SHORT: usize = 8;
 

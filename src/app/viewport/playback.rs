@@ -1,7 +1,7 @@
 //! The animation: clip, time and speed, and playing.
 
 use crate::app::App;
-use crate::app::panels::sections::Section;
+use crate::app::sections::Section;
 use crate::app::text::shortened;
 use crate::app::widgets::{LABEL_WIDTH, chooser};
 use crate::commands::{Action, with_key};
@@ -136,10 +136,8 @@ impl App {
     pub(in crate::app) fn animation_section(&mut self, ui: &mut egui::Ui) {
         if self.clips().is_empty() {
             let read = self.document.as_ref().map(|document| &document.loaded.read);
-            if read.is_some_and(|read| read.rig.is_some()) {
-                if self.panels.open.title(ui, Section::Animation) {
-                    ui.weak("A mesh with a crease band can't be animated.");
-                }
+            if read.is_some_and(|read| read.rig.is_some()) && self.panels.open.title(ui, Section::Animation) {
+                ui.weak("A mesh with a crease band can't be animated.");
             }
             return;
         }

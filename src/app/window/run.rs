@@ -157,6 +157,10 @@ impl WatchedApp {
 }
 
 impl eframe::App for WatchedApp {
+    fn raw_input_hook(&mut self, context: &egui::Context, input: &mut egui::RawInput) {
+        self.with(|app| app.raw_input_hook(context, input));
+    }
+
     fn logic(&mut self, context: &egui::Context, frame: &mut eframe::Frame) {
         self.with(|app| {
             self.watch.borrow_mut()(app, context);
