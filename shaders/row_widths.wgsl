@@ -10,7 +10,7 @@ fn reciprocal(by: u32) -> u32 {
     return 16777216u / by + 1u;
 }
 
-// Returns `number / by`, rounded down, for the reciprocal of `by`. `number * by` is at most 2^24, and the quotient at most 255.
+// Returns `number / by`, rounded down, for the reciprocal of `by`. `number * by` is below 2^24, and the quotient at most 255.
 fn scaled(number: u32, reciprocal: u32) -> u32 {
     return (number * reciprocal) >> 24u;
 }

@@ -13,7 +13,7 @@ pub(super) fn reciprocal(by: u32) -> u32 {
     (1 << 24) / by + 1
 }
 
-/// Returns `number / by`, rounded down, for the [`reciprocal`] of `by`, with one multiplication. `number * by` is at most 2^24,
+/// Returns `number / by`, rounded down, for the [`reciprocal`] of `by`, with one multiplication. `number * by` is below 2^24,
 /// and the quotient at most 255.
 ///
 /// The reciprocal is too large by at most 1, which makes the quotient too large by at most `number / 2^24`: less than `1 / by`,

@@ -212,9 +212,9 @@ fn forgetting_goes_back_to_the_state_of_a_first_start() {
     press(&mut harness, egui::Key::Escape);
     let mesh = mesh(&folder, "first.glb");
     open(&mut harness, &mesh);
-    let framed = *harness.state().camera();
     choose(&mut harness, "Surface", "PN");
     press(&mut harness, egui::Key::Num1);
+    press(&mut harness, egui::Key::PageUp);
     press(&mut harness, egui::Key::S);
     harness.ctx.set_theme(egui::Theme::Light);
     settle(&mut harness);
@@ -225,7 +225,10 @@ fn forgetting_goes_back_to_the_state_of_a_first_start() {
     assert_eq!(harness.state().settings(), &before, "the window asks first");
     click(&mut harness, "Forget them");
     assert_eq!((harness.state().settings(), harness.state().source()), (&Settings::opening(), Some(&mesh)));
-    assert_eq!(*harness.state().camera(), framed);
+    let framed = *harness.state().camera();
+    assert_eq!((framed.azimuth, framed.elevation), (30.0, 20.0), "the camera of a first start");
+    press(&mut harness, egui::Key::F);
+    assert_eq!(*harness.state().camera(), framed, "which shows all of the mesh");
     assert_eq!(harness.ctx.options(|options| options.theme_preference), egui::ThemePreference::System);
     close(harness);
     let text = std::fs::read_to_string(settings_file(&folder)).expect("the saved state");

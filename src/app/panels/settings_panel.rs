@@ -1,7 +1,6 @@
 //! The settings in the left panel.
 
 use super::option_rows::{option_hover, option_row};
-use super::toolbar::ON_TOOLBAR;
 use crate::app::App;
 use crate::app::sections::{Section, in_fixed_width};
 use crate::app::text::short;
@@ -9,6 +8,9 @@ use crate::app::widgets::{LABEL_WIDTH, fixed};
 use crate::commands::{Action, BACKS_ARE_SEEN, Change, key_name, with_key};
 use crate::settings::{Choice, Colors, Control, Declaration, Kind, Overlay, Overlays, Range, Settings, options};
 use crate::tessellate::{Displacement, Lod, Tessellation};
+
+/// The overlays that have a button in the toolbar, and so no row here.
+pub(super) const ON_TOOLBAR: [Overlay; 2] = [Overlay::Wireframe, Overlay::Cracks];
 
 impl App {
     pub(in crate::app) fn settings_panel(&mut self, ui: &mut egui::Ui) {

@@ -3,7 +3,7 @@
 use egui::RichText;
 
 use crate::app::App;
-use crate::app::text::{grouped, mebibytes, short};
+use crate::app::text::{counted, grouped, mebibytes, short};
 use crate::app::widgets::{rgb, status};
 use crate::gpu::DRAWING;
 use crate::render::layout::CRACK_COLOR;
@@ -21,8 +21,8 @@ impl App {
             let is_known = scene.tessellator.is_counted() || self.is_playing();
             let totals = is_known.then(|| scene.tessellator.totals());
             let (vertices, triangles) = totals.map_or_else(
-                || ("…".to_owned(), "…".to_owned()),
-                |(vertices, triangles)| (grouped(vertices), grouped(triangles)),
+                || ("…".to_owned(), "… triangles".to_owned()),
+                |(vertices, triangles)| (grouped(vertices), counted(triangles, "triangle")),
             );
             let patches = document.loaded.topology.patches.len() as u64;
             let drawn = patches - u64::from(self.jobs.measure.found().map_or(0, |found| found.culled.total()));
@@ -30,7 +30,7 @@ impl App {
             status(
                 ui,
                 170.0,
-                format!("{} to {} triangles", grouped(before.0), triangles),
+                format!("{} to {triangles}", grouped(before.0)),
                 "Triangles before and after tessellation.",
             );
             self.status_of_cracks(ui);

@@ -1,12 +1,9 @@
 //! The toolbar over the picture: what people use every day, one click away.
 
-use super::settings_panel::{colors_hover, overlay_hover};
+use super::settings_panel::{ON_TOOLBAR, colors_hover, overlay_hover};
 use crate::app::App;
 use crate::commands::{Action, Availability, CameraAction, Command, FileAction, all, with_key};
 use crate::settings::{Choice, Colors, Control, Overlay};
-
-/// The overlays that have a button here, and so no row in the panel.
-pub(super) const ON_TOOLBAR: [Overlay; 2] = [Overlay::Wireframe, Overlay::Cracks];
 
 /// The width of the list of colours, in points: that of its longest entry.
 const COLORS_WIDTH: f32 = 124.0;
