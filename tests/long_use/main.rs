@@ -155,6 +155,10 @@ fn settings(harness: &mut Harness<App>, folder: &Path, effort: &Effort) -> Part 
     let context = harness.ctx.clone();
     harness.state_mut().open(&context, Source::Shape(Shape::CubeSplit));
     settle(harness);
+    for section in ["Displacement", "Advanced"] {
+        harness.get_by_role_and_label(Role::DisclosureTriangle, section).click();
+        settle(harness);
+    }
     need_every_pipeline(harness);
     let (mut part, mut random) = (Part { what: "settings", taken: Vec::new() }, Rng::with_seed(5));
     for step in 0..effort.settings {

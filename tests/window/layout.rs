@@ -90,6 +90,9 @@ fn the_toolbar_switches_what_is_used_every_day() {
     choose(&mut harness, "Colours", "Factors");
     assert_eq!(harness.state().settings().overlays.colors, Colors::Factors);
     assert!(harness.query_by_label("Play or pause").is_none(), "a torus doesn't move");
+    harness.get_by_role_and_label(Role::Slider, "Split divider").set_value_accesskit(25.0);
+    settle(&mut harness);
+    assert_eq!(harness.state().settings().split, Some(0.25));
     let turned = harness.state().camera().distance;
     press(&mut harness, egui::Key::PageUp);
     click(&mut harness, "Frame all");

@@ -3,7 +3,7 @@
 use super::settings_panel::{ON_TOOLBAR, colors_hover, overlay_hover};
 use crate::app::App;
 use crate::commands::{Action, Availability, CameraAction, Command, FileAction, all, with_key};
-use crate::settings::{Choice, Colors, Control, Overlay};
+use crate::settings::{Choice, Colors, Control};
 
 /// The width of the list of colours, in points: that of its longest entry.
 const COLORS_WIDTH: f32 = 124.0;

@@ -176,6 +176,10 @@ impl App {
         let reach = egui::Rect::from_x_y_ranges(at - DIVIDER_REACH..=at + DIVIDER_REACH, rect.y_range());
         let response = ui.interact(reach, ui.scope_id().with("divider"), Sense::drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Split divider"));
+        if let Some(percent) = spoken_percent(ui, response.id, 100.0 * *split) {
+            *split = percent / 100.0;
+            self.viewport.last_split = *split;
+        }
         if response.dragged_by(PointerButton::Primary)
             && let Some(pointer) = response.interact_pointer_pos()
         {
@@ -276,6 +280,25 @@ impl App {
             }
         }
     }
+}
+
+/// Says a value from 0 to 100 to screen readers, and returns the one that they ask for.
+fn spoken_percent(ui: &egui::Ui, id: egui::Id, percent: f32) -> Option<f32> {
+    use egui::accesskit::{Action, ActionData};
+    ui.ctx().accesskit_node_builder(id, |node| {
+        node.set_min_numeric_value(0.0);
+        node.set_max_numeric_value(100.0);
+        node.set_numeric_value(percent.into());
+        node.add_action(Action::SetValue);
+    });
+    let asked = ui.input(|input| {
+        let values = input.accesskit_action_requests(id, Action::SetValue).filter_map(|request| match request.data {
+            Some(ActionData::NumericValue(value)) => Some(value),
+            _ => None,
+        });
+        values.last()
+    });
+    asked.map(|percent| percent.clamp(0.0, 100.0) as f32)
 }
 
 /// Shows the title of something that takes long at the lower border of the picture, the part of it that is done, about how many
