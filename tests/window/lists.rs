@@ -36,7 +36,7 @@ fn the_worst_edges_are_listed_and_a_click_frames_one() {
     let before = *app.camera();
     // Click the list's third row.
     let edge = cracks.edges[2].edge;
-    let row = format!("{edge:<8}split normal");
+    let row = format!("{edge:<7}split normal");
     harness.get_by_label_contains(&row).click();
     settle(&mut harness);
     let app = harness.state();
@@ -65,7 +65,7 @@ fn keys_go_through_a_list_beyond_the_visible_rows() {
     let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
     choose(&mut harness, "Surface", "PN");
     let edges: Vec<_> = harness.state().cracks().expect("measured").edges.iter().map(|crack| crack.edge).collect();
-    harness.get_by_label_contains(&format!("{:<8}split normal", edges[0])).focus();
+    harness.get_by_label_contains(&format!("{:<7}split normal", edges[0])).focus();
     settle(&mut harness);
     let steps = [egui::Key::ArrowDown; 9].into_iter().chain([egui::Key::ArrowUp, egui::Key::Enter]);
     for key in steps {

@@ -26,13 +26,13 @@ impl App {
         ui.label("Worst edges").on_hover_text(
             "Edges whose sides disagree in a position, factor or normal, the widest gap first; a click frames one.",
         );
-        columns(ui, &format!("{:<8}{:<13}{:>10}", "edge", "kind", "gap, units"), true);
+        columns(ui, &format!("{:<7}{:<13}{:>9}", "edge", "kind", "gap, units"), true);
         let (topology, ulp) = (&document.loaded.topology, ulp(&document.loaded.topology));
         let mut clicked = None;
         let text = |row: usize| {
             let crack = &cracks.edges[row];
             let kind = kind_name(topology.edges[crack.edge as usize].kind);
-            (crack.edge, format!("{:<8}{kind:<13}{:>10}", crack.edge, short(crack.gap)))
+            (crack.edge, format!("{:<7}{kind:<13}{:>9}", crack.edge, short(crack.gap)))
         };
         list(ui, "worst edges", cracks.edges.len(), |ui, row| {
             let (edge, text) = text(row);

@@ -24,8 +24,8 @@ use crate::app::sections::OpenSections;
 use chart::Chart;
 
 /// The widths of the left and of the right panel, and the least that is left for the picture, in points.
-pub(super) const SETTINGS_WIDTH: f32 = 264.0;
-pub(super) const FACTS_WIDTH: f32 = 284.0;
+pub(super) const SETTINGS_WIDTH: f32 = 280.0;
+pub(super) const FACTS_WIDTH: f32 = 304.0;
 const LEAST_PICTURE: f32 = 220.0;
 
 /// What the panels remember from one frame to the next.
