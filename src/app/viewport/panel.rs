@@ -228,7 +228,9 @@ impl App {
         self.viewport.greets &= self.is_untouched();
         if self.viewport.greets {
             let position = rect.center_bottom() + egui::vec2(0.0, -14.0);
-            note(ui, position, egui::Align2::CENTER_BOTTOM, GREETING);
+            let (font, gray) = (egui::TextStyle::Body.resolve(ui.style()), egui::Color32::from_gray(235));
+            let text = ui.painter().layout(GREETING.to_owned(), font, gray, rect.width() - 28.0);
+            paint_note(ui, egui::Align2::CENTER_BOTTOM.anchor_size(position, text.size()), text);
         }
         if self.viewport.frozen.is_some() {
             let position = rect.left_bottom() + egui::vec2(10.0, -10.0);
