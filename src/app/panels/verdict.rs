@@ -11,7 +11,7 @@ use crate::settings::{Colors, Overlay};
 
 /// Where a click on a line leads.
 #[derive(Clone, Copy)]
-enum Place {
+enum Destination {
     /// The overlay of cracks, and the edge with the widest gap.
     Cracks,
     Folds,
@@ -27,15 +27,15 @@ struct Line {
     /// None where all is well: such a line is dim, and leads nowhere.
     color: Option<Color32>,
     hover: &'static str,
-    leads: Place,
+    leads: Destination,
 }
 
 impl Line {
-    fn dim(text: impl Into<String>, hover: &'static str, leads: Place) -> Self {
+    fn dim(text: impl Into<String>, hover: &'static str, leads: Destination) -> Self {
         Self { text: text.into(), color: None, hover, leads }
     }
 
-    fn bad(text: String, color: Color32, hover: &'static str, leads: Place) -> Self {
+    fn bad(text: String, color: Color32, hover: &'static str, leads: Destination) -> Self {
         Self { text, color: Some(color), hover, leads }
     }
 }
@@ -72,14 +72,14 @@ impl App {
         let hover =
             "Edges whose sides put a point at different positions. A click shows them and goes to the widest gap.";
         match self.jobs.measure.cracks() {
-            None => Line::dim("Cracks \u{2026}", "Cracks are measured while the picture rests.", Place::Cracks),
+            None => Line::dim("Cracks \u{2026}", "Cracks are measured while the picture rests.", Destination::Cracks),
             Some(cracks) if cracks.edges.is_empty() => {
-                Line::dim("No cracks", "No edge of what is drawn has sides that differ in a bit.", Place::Cracks)
+                Line::dim("No cracks", "No edge of what is drawn has sides that differ in a bit.", Destination::Cracks)
             }
             Some(cracks) => {
                 let px = short(self.viewport.picture.gap_px(cracks));
                 let edges = counted(cracks.edges.len() as u64, "cracked edge");
-                Line::bad(format!("{edges}, widest {px} px"), rgb(CRACK_COLOR), hover, Place::Cracks)
+                Line::bad(format!("{edges}, widest {px} px"), rgb(CRACK_COLOR), hover, Destination::Cracks)
             }
         }
     }
@@ -87,9 +87,9 @@ impl App {
     fn folds_line(&self) -> Line {
         let hover = "Triangles that face away from the side that their patch faces. A click shows them.";
         match self.jobs.measure.found().map(|found| found.folds) {
-            None => Line::dim("Folds \u{2026}", "Folds are counted while the picture rests.", Place::Folds),
-            Some(0) => Line::dim("No folds", hover, Place::Folds),
-            Some(folds) => Line::bad(counted(folds, "fold"), rgb(FOLD_COLOR), hover, Place::Folds),
+            None => Line::dim("Folds \u{2026}", "Folds are counted while the picture rests.", Destination::Folds),
+            Some(0) => Line::dim("No folds", hover, Destination::Folds),
+            Some(folds) => Line::bad(counted(folds, "fold"), rgb(FOLD_COLOR), hover, Destination::Folds),
         }
     }
 
@@ -98,7 +98,7 @@ impl App {
         let hover = "Points of the mesh that lie on the open edge of another triangle, which no tessellation closes. A click \
                      shows them and goes to the first.";
         let text = counted(junctions.len() as u64, "T-junction");
-        Some(Line::bad(text, rgb(T_JUNCTION_COLOR), hover, Place::TJunctions))
+        Some(Line::bad(text, rgb(T_JUNCTION_COLOR), hover, Destination::TJunctions))
     }
 
     fn sizes_line(&self, color: Color32) -> Option<Line> {
@@ -107,7 +107,7 @@ impl App {
         let hover = "Triangles in view that are smaller than half of a square with sides of 3 px: a GPU shades up to four times \
                      as many px for them as they cover. A click colours triangles by their size.";
         let text = format!("{percent:.0} % of triangles below 3 px");
-        (percent >= 0.5).then(|| Line::bad(text, color, hover, Place::Sizes))
+        (percent >= 0.5).then(|| Line::bad(text, color, hover, Destination::Sizes))
     }
 
     fn limit_line(&self, color: Color32) -> Option<Line> {
@@ -115,36 +115,36 @@ impl App {
         let hover = "Patches with a factor of 63 or 64, the most there is. LOD by error may miss its tolerance there. A click \
                      colours the surface by factors.";
         let text = format!("{} at the maximum factor", counted(patches.into(), "patch"));
-        (patches > 0).then(|| Line::bad(text, color, hover, Place::Factors))
+        (patches > 0).then(|| Line::bad(text, color, hover, Destination::Factors))
     }
 
     fn warnings_line(&self, color: Color32) -> Option<Line> {
         let warnings = self.document.as_ref()?.loaded.warnings.len() as u64;
         let hover = "What was repaired or left out when the file was read. A click lists it.";
-        (warnings > 0).then(|| Line::bad(counted(warnings, "warning"), color, hover, Place::Warnings))
+        (warnings > 0).then(|| Line::bad(counted(warnings, "warning"), color, hover, Destination::Warnings))
     }
 
-    fn follow(&mut self, leads: Place) {
+    fn follow(&mut self, leads: Destination) {
         let overlays = &mut self.settings.overlays;
         match leads {
-            Place::Cracks => {
+            Destination::Cracks => {
                 overlays.cracks = true;
                 self.panels.open.set(Section::Cracks, true);
                 let widest = self.jobs.measure.cracks().and_then(|cracks| cracks.edges.first()).map(|crack| crack.edge);
                 widest.into_iter().for_each(|edge| self.select_edge(edge));
             }
-            Place::Folds => overlays.folds = true,
-            Place::TJunctions => {
+            Destination::Folds => overlays.folds = true,
+            Destination::TJunctions => {
                 overlays.t_junctions = true;
                 self.panels.open.set(Section::Cracks, true);
                 let junctions = self.document.as_ref().and_then(|document| document.checks.t_junctions());
                 let first = junctions.and_then(|junctions| junctions.first()).map(|junction| junction.edge);
                 first.into_iter().for_each(|edge| self.select_edge(edge));
             }
-            Place::Sizes if overlays.colors != Colors::TriangleSize => overlays.toggle(Overlay::TriangleSize),
-            Place::Factors if overlays.colors != Colors::Factors => overlays.toggle(Overlay::Factors),
-            Place::Sizes | Place::Factors => {}
-            Place::Warnings => self.dialogs.shows_warnings = true,
+            Destination::Sizes if overlays.colors != Colors::TriangleSize => overlays.toggle(Overlay::TriangleSize),
+            Destination::Factors if overlays.colors != Colors::Factors => overlays.toggle(Overlay::Factors),
+            Destination::Sizes | Destination::Factors => {}
+            Destination::Warnings => self.dialogs.shows_warnings = true,
         }
     }
 }
