@@ -84,10 +84,3 @@ fn regular_triangle(outer: u32, n: u32, t: u32) -> vec3<u32> {
     let odd_triangle = select(vec3<u32>(i, o, third), vec3<u32>(o, third, i), early || last);
     return select(vec3<u32>(third, o, i), odd_triangle, odd);
 }
-
-// Returns how many segments rows 1 to `row - 1` have together, and rows 1 to `row`, of `rows` rows that widen to `width` segments.
-// `row` is 1 or more, and less than `rows`.
-fn row_widths(rows: u32, width: u32, row: u32) -> vec2<u32> {
-    let through = widths_through(rows, width, row);
-    return vec2<u32>(through - (width * row + rows - 1u) / rows, through);
-}

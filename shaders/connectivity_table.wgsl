@@ -5,8 +5,6 @@
 const PATTERN_HALVES: u32 = 33u;
 // The table has room for this many triangles before the middle of a side.
 const PATTERN_STEPS: u32 = 64u;
-// The largest number of segments.
-const MOST_SEGMENTS: u32 = 64u;
 
 // Returns the index of triangle `t` before the middle of a side.
 fn step_index(inner_half: u32, outer_half: u32, t: u32) -> u32 {
@@ -31,16 +29,4 @@ fn regular_triangle(outer: u32, n: u32, t: u32) -> vec3<u32> {
     let word = connectivity_table[regular_index(n) + t];
     let a = outer + (word & 0xfffu);
     return vec3<u32>(a, a + ((word >> 12u) & 0x3ffu) - 512u, a + (word >> 22u) - 512u);
-}
-
-// Returns the index of the entry for row 1 of `rows` rows that widen to `width` segments.
-fn widths_index(rows: u32, width: u32) -> u32 {
-    return regular_index(MOST_SEGMENTS + 1u) + (width - 1u) * MOST_SEGMENTS * (MOST_SEGMENTS - 1u) / 2u
-        + (rows - 1u) * (rows - 2u) / 2u;
-}
-
-// Looks up how many segments rows 1 to `row - 1` have together, and rows 1 to `row`.
-fn row_widths(rows: u32, width: u32, row: u32) -> vec2<u32> {
-    let word = connectivity_table[widths_index(rows, width) + row - 1u];
-    return vec2<u32>(word & 0xffffu, word >> 16u);
 }

@@ -45,7 +45,7 @@ fn domain_point(plan: DomainPlan, i: u32) -> vec2<u32> {
         return outer_point(plan, i);
     }
     if plan.kind == PATTERN_ROWS {
-        return row_point(row_plan(plan.factors), i - plan.outer);
+        return row_point(numbered_rows(plan.factors), i - plan.outer);
     }
     return inner_point(plan.row, plan.n, i - plan.outer);
 }
@@ -89,7 +89,7 @@ fn domain_triangle(plan: DomainPlan, t: u32) -> vec3<u32> {
         return subtriangulation_triangle(plan.n, t);
     }
     if plan.kind == PATTERN_ROWS {
-        return row_triangle(row_plan(plan.factors), t);
+        return row_triangle(numbered_rows(plan.factors), t);
     }
     let transition = plan.outer + 3u * (plan.n - 2u);
     if t < transition {
@@ -98,7 +98,8 @@ fn domain_triangle(plan: DomainPlan, t: u32) -> vec3<u32> {
     return regular_triangle(plan.outer, plan.n, t - transition);
 }
 
-// Returns (U, V) of the corners of triangle `t`, in 16.16 fixed point.
+// Returns (U, V) of the corners of triangle `t`, in 16.16 fixed point. Those of rows are counted in another order than that of
+// `domain_triangle`.
 fn domain_triangle_places(plan: DomainPlan, t: u32) -> array<vec2<u32>, 3> {
     if plan.kind == PATTERN_ROWS {
         return row_triangle_places(row_plan(plan.factors), t);

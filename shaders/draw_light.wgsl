@@ -16,10 +16,15 @@ fn toward_eye(clip_from_object: mat4x4<f32>, viewport: vec2<f32>, px: vec2<f32>)
     return normalize(cross(rows[0].xyz - at.x * rows[3].xyz, rows[1].xyz - at.y * rows[3].xyz));
 }
 
-fn shade(lights: Lights, base: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
+// How bright a matte white surface is.
+fn brightness(lights: Lights, normal: vec3<f32>) -> f32 {
     let key = max(dot(normal, lights.key), 0.0);
     let fill = 0.5 + 0.5 * dot(normal, lights.fill);
+    return 0.62 * key + 0.22 * fill + 0.04;
+}
+
+fn shade(lights: Lights, base: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     let half_way = normalize(lights.key + lights.to_eye);
     let gloss = pow(max(dot(normal, half_way), 0.0), 48.0) * 0.08;
-    return base * (0.62 * key + 0.22 * fill + 0.04) + vec3<f32>(gloss);
+    return base * brightness(lights, normal) + vec3<f32>(gloss);
 }

@@ -12,7 +12,7 @@
 // Lines lie on surfaces: their depth is moved nearer by this factor.
 const NEARER: f32 = 1.003;
 
-// Opacity of a line that is behind something.
+// Opacity of lines that are behind something.
 const HIDDEN: f32 = 0.3;
 
 // As NORMAL_COLOR in src/render/layout.rs, in linear light.
@@ -30,7 +30,7 @@ struct LineVaryings {
     @location(0) @interpolate(linear) across: f32,
     @location(1) @interpolate(flat) color: vec3<f32>,
     @location(2) @interpolate(flat) half_width: f32,
-    // How many times the line is drawn, about.
+    // How many lines are drawn over each other here, about.
     @location(3) @interpolate(flat) times: f32,
 }
 
@@ -43,9 +43,19 @@ fn in_front(a: vec4<f32>, b: vec4<f32>) -> vec4<f32> {
     return mix(a, b, (least - a.w) / (b.w - a.w));
 }
 
-fn line(index: u32, start: vec3<f32>, end: vec3<f32>, color: vec3<f32>, half_width: f32, times: f32) -> LineVaryings {
-    let a = frame.clip_from_object * vec4<f32>(start, 1.0);
-    let b = frame.clip_from_object * vec4<f32>(end, 1.0);
+struct Line {
+    start: vec3<f32>,
+    end: vec3<f32>,
+    color: vec3<f32>,
+    half_width: f32,
+    times: f32,
+}
+
+// With caps, a line reaches beyond its ends by half its width, so that lines join without a notch. A dot always has them.
+fn line(index: u32, own: Line, has_caps: bool) -> LineVaryings {
+    let half_width = own.half_width;
+    let a = frame.clip_from_object * vec4<f32>(own.start, 1.0);
+    let b = frame.clip_from_object * vec4<f32>(own.end, 1.0);
     let from_clip = in_front(a, b);
     let to_clip = in_front(b, a);
     let half_viewport = 0.5 * frame.viewport;
@@ -58,12 +68,14 @@ fn line(index: u32, start: vec3<f32>, end: vec3<f32>, color: vec3<f32>, half_wid
     let at_end = (corner & 1u) == 1u;
     let side = select(-1.0, 1.0, (corner & 2u) == 2u);
     let reach = half_width + 1.0;
-    let cap = along * select(-half_width, half_width, at_end);
+    let is_dot = all(own.start == own.end);
+    let beyond = select(0.0, half_width, has_caps || is_dot);
+    let cap = along * select(-beyond, beyond, at_end);
     let clip = select(from_clip, to_clip, at_end);
     let offset = (across * side * reach + cap) / half_viewport;
     // A little nearer than the surface that the line lies on; depth is reversed.
     let z = min(clip.z * NEARER, clip.w);
-    return LineVaryings(vec4<f32>(clip.xy + offset * clip.w, z, clip.w), side * reach, color, half_width, times);
+    return LineVaryings(vec4<f32>(clip.xy + offset * clip.w, z, clip.w), side * reach, own.color, half_width, own.times);
 }
 
 @vertex
@@ -73,8 +85,22 @@ fn line_vertex(
     @location(1) end: vec3<f32>,
     @location(2) color: vec3<f32>,
     @location(3) half_width: f32,
+    @location(4) times: f32,
 ) -> LineVaryings {
-    return line(index, start, end, color, half_width, 1.0);
+    return line(index, Line(start, end, color, half_width, times), true);
+}
+
+// Without caps: where the faint lines of a chain overlapped, it would not be faint.
+@vertex
+fn hidden_line_vertex(
+    @builtin(vertex_index) index: u32,
+    @location(0) start: vec3<f32>,
+    @location(1) end: vec3<f32>,
+    @location(2) color: vec3<f32>,
+    @location(3) half_width: f32,
+    @location(4) times: f32,
+) -> LineVaryings {
+    return line(index, Line(start, end, color, half_width, times), false);
 }
 
 // How many px a unit of length across the view is, at a depth.
@@ -141,7 +167,8 @@ fn normal_vertex(
         return LineVaryings();
     }
     let end = position + direction * (NORMAL_LENGTH / px);
-    return line(index, position, end, NORMAL_COLOR, NORMAL_HALF_WIDTH, usual_times(key_uv(key)));
+    let own = Line(position, end, NORMAL_COLOR, NORMAL_HALF_WIDTH, usual_times(key_uv(key)));
+    return line(index, own, true);
 }
 
 fn line_coverage(in: LineVaryings) -> f32 {

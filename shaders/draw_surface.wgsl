@@ -221,9 +221,14 @@ fn heights(coordinates: vec3<f32>) -> vec3<f32> {
     return 1.0 / max(sqrt(dx * dx + dy * dy), vec3<f32>(1e-12));
 }
 
-// How much of a pixel, `distance` px from the middle of a line, the line covers.
-fn line_coverage(distance: f32, half_width: f32) -> f32 {
-    return 1.0 - smoothstep(half_width - 0.5, half_width + 0.5, distance);
+fn least(numbers: vec3<f32>) -> f32 {
+    return min(min(numbers.x, numbers.y), numbers.z);
+}
+
+// How opaque the sides of a triangle are at a pixel, which are `to_sides` px away. All fade together where the triangle is thin,
+// since of a thin triangle only one side would be left.
+fn sides_opacity(to_sides: vec3<f32>, side_heights: vec3<f32>, half_width: f32) -> f32 {
+    return left_by_density(least(side_heights)) * line_coverage(least(to_sides), half_width);
 }
 
 // Lit very little, so that colours can be compared with a legend: unchanged where the surface faces the eye.
@@ -318,13 +323,59 @@ fn pixel_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @
     return surface_color(in, pixel_normal(in.patch_index, in.domain.xy), front);
 }
 
-fn surface_color(in: Varyings, own_normal: vec3<f32>, front: bool) -> vec4<f32> {
-    // Derivatives and samples first: both need uniform control flow.
-    let edge_heights = heights(in.domain);
-    let to_edges = in.domain * edge_heights;
-    let side_heights = heights(in.corner);
-    let to_sides = in.corner * side_heights;
+// How varyings change from a pixel to the next one on the right, and below. Only varyings have derivatives that can be relied on:
+// for pixels beside a triangle, which derivatives are taken with, some drivers read no buffers.
+struct Changes {
+    normal_right: vec3<f32>,
+    normal_below: vec3<f32>,
+    uv_right: vec2<f32>,
+    uv_below: vec2<f32>,
+}
+
+fn changes(in: Varyings) -> Changes {
+    let normal = normalize(in.normal);
+    return Changes(dpdx(normal), dpdy(normal), dpdx(in.uv), dpdy(in.uv));
+}
+
+// The place on the zebra's stripes that is seen at a place of the picture, in px.
+fn zebra_place(normal: vec3<f32>, px: vec2<f32>) -> f32 {
+    let to_eye = toward_eye(frame.clip_from_object, frame.viewport, px);
+    return reflected_place(frame.clip_from_object, normalize(normal), to_eye);
+}
+
+// The colour of a surface that isn't lit, and 1 if there is one.
+fn unlit(in: Varyings, normal: vec3<f32>, change: Changes) -> vec4<f32> {
+    if (frame.overlays & OVERLAY_ZEBRA) != 0u {
+        let px = in.clip.xy;
+        let place = zebra_place(normal, px);
+        let right = zebra_place(normal + change.normal_right, px + vec2<f32>(1.0, 0.0));
+        let below = zebra_place(normal + change.normal_below, px + vec2<f32>(0.0, 1.0));
+        return vec4<f32>(zebra_color(place, length(vec2<f32>(right - place, below - place))), 1.0);
+    }
+    if (frame.overlays & OVERLAY_SHADING_NORMALS) != 0u {
+        return vec4<f32>(from_srgb(0.5 + 0.5 * normal), 1.0);
+    }
+    if (frame.overlays & OVERLAY_UV_CHECKER) != 0u {
+        let right = change.uv_right;
+        let below = change.uv_below;
+        return vec4<f32>(checker_color(in.uv, sqrt(right * right + below * below)), 1.0);
+    }
+    return vec4<f32>(0.0);
+}
+
+// The colour of the surface without lines over it.
+fn bare_color(
+    in: Varyings,
+    own_normal: vec3<f32>,
+    front: bool,
+    to_edges: vec3<f32>,
+    edge_heights: vec3<f32>,
+) -> vec3<f32> {
+    let normal = normalize(select(-own_normal, own_normal, front));
+    let to_eye = toward_eye(frame.clip_from_object, frame.viewport, in.clip.xy);
+    // Samples and derivatives first: both need uniform control flow.
     let texel = textureSample(base_texture, base_sampler, in.uv);
+    let change = changes(in);
     var base = material.base_color.rgb * texel.rgb;
     if (frame.overlays & (OVERLAY_LOW_FACTORS | OVERLAY_EXCESS | OVERLAY_DEVIATION)) != 0u {
         // Grey, since the mesh's own colours could be mistaken for the overlay's.
@@ -337,30 +388,43 @@ fn surface_color(in: Varyings, own_normal: vec3<f32>, front: bool) -> vec4<f32> 
     if marked_back {
         base = BACK_FACE_COLOR;
     }
-    let normal = normalize(select(-own_normal, own_normal, front));
     let meant = meaning(in, to_edges, edge_heights);
-    let to_eye = toward_eye(frame.clip_from_object, frame.viewport, in.clip.xy);
-    var color = shade(Lights(frame.key_light.xyz, frame.fill_light.xyz, to_eye), base, normal);
-    if meant.a > 0.0 && !marked_back {
+    let lights = Lights(frame.key_light.xyz, frame.fill_light.xyz, to_eye);
+    var color = shade(lights, base, normal);
+    if marked_back {
+        return select(color, FOLD_COLOR, in.folded != 0u);
+    }
+    if (frame.overlays & OVERLAY_CLAY) != 0u {
+        color = CLAY_COLOR * brightness(lights, normal);
+    }
+    if meant.a > 0.0 {
         color = shade_flat(meant.rgb, normal, to_eye);
     }
-    if in.folded != 0u {
-        // Unlit, since folds mostly face away from the light.
-        color = FOLD_COLOR;
+    // Its normals are as they are, also seen from behind.
+    let unlit_color = unlit(in, normalize(own_normal), change);
+    if unlit_color.a > 0.0 {
+        color = unlit_color.rgb;
     }
+    // Unlit, since folds mostly face away from the light.
+    return select(color, FOLD_COLOR, in.folded != 0u);
+}
+
+fn surface_color(in: Varyings, own_normal: vec3<f32>, front: bool) -> vec4<f32> {
+    // Derivatives first: they need uniform control flow.
+    let edge_heights = heights(in.domain);
+    let to_edges = in.domain * edge_heights;
+    let side_heights = heights(in.corner);
+    let to_sides = in.corner * side_heights;
+    var color = bare_color(in, own_normal, front, to_edges, edge_heights);
     if (frame.overlays & OVERLAY_WIREFRAME) != 0u {
-        let nearest = min(min(to_sides.x, to_sides.y), to_sides.z);
-        // Triangles of a px or two would be covered by their lines. Their lines are fainter, so that the surface stays
-        // visible.
-        let height = max(max(side_heights.x, side_heights.y), side_heights.z);
-        let strength = mix(0.25, 0.75, smoothstep(2.0, 10.0, height));
-        color = mix(color, vec3<f32>(0.008, 0.010, 0.014), strength * line_coverage(nearest, 0.5));
+        let opacity = 0.75 * sides_opacity(to_sides, side_heights, 0.5);
+        color = mix(color, vec3<f32>(0.008, 0.010, 0.014), opacity);
     }
-    let nearest_edge = min(min(to_edges.x, to_edges.y), to_edges.z);
     if (frame.overlays & OVERLAY_PATCHES) != 0u {
-        color = mix(color, vec3<f32>(0.93, 0.94, 0.96), line_coverage(nearest_edge, 0.9));
+        color = mix(color, vec3<f32>(0.93, 0.94, 0.96), sides_opacity(to_edges, edge_heights, 0.9));
     }
     if (frame.overlays & OVERLAY_ADJACENCY) != 0u {
+        let nearest_edge = least(to_edges);
         // The edge where u, v or w is 0 is opposite corner 0, 1 or 2, and so side 1, 2 or 0.
         var side = 0u;
         if to_edges.x <= nearest_edge {
@@ -369,8 +433,10 @@ fn surface_color(in: Varyings, own_normal: vec3<f32>, front: bool) -> vec4<f32> 
             side = 2u;
         }
         let kind = patches[in.patch_index].factors[side] & 7u;
-        // Smooth edges are the most frequent and the least interesting, so their lines are thin.
-        color = mix(color, edge_color(kind), line_coverage(nearest_edge, select(1.75, 0.75, kind == EDGE_SMOOTH)));
+        // Smooth edges are the most frequent and the least interesting, so their lines are thin, and fade where they are dense.
+        let is_smooth = kind == EDGE_SMOOTH;
+        let opacity = select(1.0, left_by_density(least(edge_heights)), is_smooth);
+        color = mix(color, edge_color(kind), opacity * line_coverage(nearest_edge, select(1.75, 0.75, is_smooth)));
     }
     return vec4<f32>(color, 1.0);
 }

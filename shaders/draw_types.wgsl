@@ -24,6 +24,8 @@ struct Frame {
     scale_most: f32,
     // Px of an object unit where w is 1, if deviations are shown in px; else 0.
     px_per_unit: f32,
+    // The middle of the ground, and how far apart its lines are, in object units.
+    ground: vec4<f32>,
     // The scale's colours in sRGB, 0 to 1; the fourth component is unused.
     scale: array<vec4<f32>, SCALE_STOPS>,
 }
@@ -60,3 +62,7 @@ const OVERLAY_TRIANGLE_SIZE: u32 = 128u;
 const OVERLAY_LOW_FACTORS: u32 = 256u;
 const OVERLAY_DEVIATION: u32 = 512u;
 const OVERLAY_EXCESS: u32 = 1024u;
+const OVERLAY_CLAY: u32 = 2048u;
+const OVERLAY_ZEBRA: u32 = 4096u;
+const OVERLAY_SHADING_NORMALS: u32 = 8192u;
+const OVERLAY_UV_CHECKER: u32 = 16384u;

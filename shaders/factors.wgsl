@@ -213,10 +213,16 @@ fn inside_value(factors: PatchFactors) -> u32 {
     return select(width, min(width, row_count(factors) << 16u), patch_has_rows(factors));
 }
 
-// Returns the number of points inside a patch of rows: each row between the apex and the base has one less than segments.
+// Returns the number of points inside a patch with so many rows of some width. `divisor` is the common_divisor of both.
+fn points_in_rows(rows: u32, width: u32, divisor: u32) -> u32 {
+    return ((rows - 1u) * (width - 1u) + 1u - divisor) >> 1u;
+}
+
+// Returns the number of points inside a patch of rows.
 fn row_points(factors: PatchFactors) -> u32 {
-    let last = row_count(factors) - 1u;
-    return widths_through(last + 1u, row_width(factors), last) - last;
+    let rows = row_count(factors);
+    let width = row_width(factors);
+    return points_in_rows(rows, width, common_divisor(rows, width));
 }
 
 // Returns whether all factors are 1, so that the patch is one triangle.

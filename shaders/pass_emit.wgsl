@@ -123,15 +123,26 @@ fn of_three(values: array<u32, 3>, k: u32) -> u32 {
 struct EmitPlan {
     domain: DomainPlan,
     // All zeros if patches aren't cut into rows.
-    rows: RowPlan,
+    rows: NumberedRows,
 }
 
 fn emit_plan(factors: PatchFactors) -> EmitPlan {
-    var rows: RowPlan;
+    var rows: NumberedRows;
     if EMIT_ROWS == 1u {
-        rows = row_plan(factors);
+        rows = numbered_rows(factors);
     }
     return EmitPlan(domain_plan(factors), rows);
+}
+
+// The numbers of points and of triangles of a patch, which its rows know already.
+fn emit_counts(plan: EmitPlan, factors: PatchFactors) -> vec2<u32> {
+    if EMIT_ROWS == 0u {
+        return vec2<u32>(point_count(factors), triangle_count(factors));
+    }
+    let outer = plan.domain.outer;
+    let inside = plan.rows.inside;
+    // By Euler's formula.
+    return select(vec2<u32>(outer + inside, outer + 2u * inside - 2u), vec2<u32>(0u), patch_is_culled(factors));
 }
 
 fn emit_point(plan: EmitPlan, i: u32) -> vec2<u32> {
@@ -271,7 +282,7 @@ fn vertices_by_patch(chunk: Chunk, first_entry: u32, first: u32, turns: u32, loc
         let start = offsets[entry].x - chunk.first_vertex;
         let factors = patch_factors[entry];
         let plan = emit_plan(factors);
-        let stop = min(start + point_count(factors), end);
+        let stop = min(start + emit_counts(plan, factors).x, end);
         let hull = load_hull(patch_index);
         // The outline first, then the inside: each takes another path through emit_point.
         let inside = clamp(start + plan.domain.outer, at, stop);
@@ -349,8 +360,8 @@ fn triangles_by_patch(chunk: Chunk, first_entry: u32, first: u32, turns: u32, lo
         let starts = offsets[entry] - vec2<u32>(chunk.first_vertex, chunk.first_triangle);
         let factors = patch_factors[entry];
         let plan = emit_plan(factors);
-        let stop = min(starts.y + triangle_count(factors), end);
-        // Those at the outline first, then the others: each takes another path through domain_triangle. Those of rows take one.
+        let stop = min(starts.y + emit_counts(plan, factors).y, end);
+        // Those at the outline first, then the others: each takes another path through domain_triangle. Rows mostly take one.
         let ring = plan.domain.outer + 3u * (plan.domain.n - 2u);
         let inside = select(clamp(starts.y + ring, at, stop), at, EMIT_ROWS == 1u);
         emit_patch_triangles(plan, starts.x, starts.y, at + local % LANES, inside);

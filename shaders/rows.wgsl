@@ -1,8 +1,7 @@
 // Rows: a pattern in which a patch is cut into strips beside one of its edges. Each point and each triangle is computed from
-// its number alone. Twin: src/tessellate/rows.rs, which describes the pattern. Needs connectivity.wgsl or
-// connectivity_table.wgsl.
+// its number alone. Twin: src/tessellate/rows.rs, which describes the pattern.
 
-// A patch's rows, prepared for `row_point`, `row_triangle` and `row_triangle_places`.
+// A patch's rows, prepared for `row_triangle_places`.
 struct RowPlan {
     // The numbers of segments of the first edge, of the second, and of the base.
     a: u32,
@@ -22,10 +21,16 @@ struct RowPlan {
     outer: u32,
 }
 
-// Returns the larger of 1 and row * segments / n, rounded half up: where a row after the first starts on an edge with so many
-// segments.
-fn end_place(plan: RowPlan, segments: u32, row: u32) -> u32 {
-    return max(scaled(2u * row * segments + plan.n, plan.per_row) >> 1u, 1u);
+// A patch's rows, prepared for `row_point` and `row_triangle`.
+struct NumberedRows {
+    rows: RowPlan,
+    // The common_divisor of the number of rows and the width.
+    divisor: u32,
+    // How many points lie inside the patch.
+    inside: u32,
+    // The inverse of how many points `n` pairs of rows have, and of half of how many triangles `n` pairs of strips have.
+    per_point: f32,
+    per_half: f32,
 }
 
 // Returns one of three numbers, from those that follow each other in a circle.
@@ -59,29 +64,18 @@ fn row_plan(factors: PatchFactors) -> RowPlan {
     );
 }
 
-// Returns how many points lie inside the patch in rows 1 to `row`, if these have `widths` segments together.
-fn points_through(widths: u32, row: u32) -> u32 {
-    return widths - row;
-}
-
-// Returns the number of triangles before the strip below row `row`, which is 1 or more and less than the number of rows. `widths`
-// are its row_widths.
-fn triangles_before(plan: RowPlan, row: u32, widths: vec2<u32>) -> u32 {
-    return widths.x + widths.y + end_place(plan, plan.a, row) + end_place(plan, plan.b, row) - 2u * row;
-}
-
-// Returns between which rows the strip with triangle `t` begins: the first one or later, and before the second one.
-fn rows_around(plan: RowPlan, t: u32) -> vec2<u32> {
-    let n = f32(plan.n);
-    let m = f32(plan.width);
-    let sides = f32(plan.a + plan.b);
-    let slopes = vec2<f32>(sides, sides - 2.0 * n);
-    let heights = max(vec2<f32>(f32(t) - 2.0, f32(t) + 2.0), vec2<f32>(0.0));
-    let roots = (sqrt(slopes * slopes + 4.0 * m * n * heights) - slopes) / (2.0 * m);
-    // Bounds that are too far apart are no mistake, so roundings go outwards.
-    let first = u32(max(roots.x - 0.015625, 0.0));
-    // The base may have so many segments that the first bound is beyond the last strip.
-    return vec2<u32>(min(first, plan.n - 1u), min(plan.n, u32(roots.y + 1.015625) + 1u));
+// Prepares the rows of a patch, and their numbers.
+fn numbered_rows(factors: PatchFactors) -> NumberedRows {
+    let rows = row_plan(factors);
+    let divisor = common_divisor(rows.n, rows.width);
+    return NumberedRows(
+        rows,
+        divisor,
+        points_in_rows(rows.n, rows.width, divisor),
+        // Where there is nothing to find, any number will do.
+        inverse(max(rows.n * (rows.width - 1u), divisor + 1u) - divisor),
+        inverse(max(rows.n * rows.width, divisor + 1u) - divisor),
+    );
 }
 
 // Returns point `i` of the outline, counted from the apex.
@@ -90,9 +84,20 @@ fn outline_point(plan: RowPlan, i: u32) -> u32 {
     return select(at, at - plan.outer, at >= plan.outer);
 }
 
-// Returns the number of segments of a row between the apex and the base: ceil(width * row / rows).
-fn row_segments(plan: RowPlan, row: u32) -> u32 {
+// Returns ceil(width * row / rows): the number of segments of a row before the base.
+fn widened(plan: RowPlan, row: u32) -> u32 {
     return scaled(plan.width * row + plan.n - 1u, plan.per_row);
+}
+
+// Returns the number of segments of a row.
+fn row_segments(plan: RowPlan, row: u32) -> u32 {
+    return select(widened(plan, row), plan.c, row == plan.n);
+}
+
+// Returns where a row starts on the first edge and ends on the second: max(1, row * segments / n) of each, rounded half up.
+fn end_places(plan: RowPlan, row: u32) -> vec2<u32> {
+    let place = max(scaled(2u * row * min(plan.a, plan.b) + plan.n, plan.per_row) >> 1u, min(row, 1u));
+    return select(vec2<u32>(row, place), vec2<u32>(place, row), plan.a < plan.b);
 }
 
 // A row: its number of segments, and at which points of the first and of the second edge it starts and ends, counted from the
@@ -105,12 +110,8 @@ struct PatternRow {
 
 // Returns a row of a patch.
 fn row_at(plan: RowPlan, row: u32) -> PatternRow {
-    if row == 0u {
-        return PatternRow(0u, 0u, 0u);
-    }
-    // The last row starts and ends at the last points of the two edges.
-    let segments = select(row_segments(plan, row), plan.c, row == plan.n);
-    return PatternRow(segments, end_place(plan, plan.a, row), end_place(plan, plan.b, row));
+    let ends = end_places(plan, row);
+    return PatternRow(row_segments(plan, row), ends.x, ends.y);
 }
 
 // A strip between a row and the next one.
@@ -119,6 +120,11 @@ struct Strip {
     row: u32,
     upper: PatternRow,
     lower: PatternRow,
+}
+
+// Returns the strip below a row.
+fn strip_below(plan: RowPlan, row: u32) -> Strip {
+    return Strip(row, row_at(plan, row), row_at(plan, row + 1u));
 }
 
 // Returns the number of triangles of a strip: one for each segment of its two rows, less one for each point that they share.
@@ -161,59 +167,84 @@ fn strip_corners(plan: RowPlan, strip: Strip, i: u32) -> array<StripPoint, 3> {
     return array<StripPoint, 3>(upper, lower, StripPoint(true, at.y + 1u));
 }
 
-// Returns the number of point `at` of row `row`. `above` is how many segments rows 1 to `row - 1` have together.
-fn number_in_row(plan: RowPlan, row: u32, own: PatternRow, above: u32, at: u32) -> u32 {
-    if at == 0u {
-        return outline_point(plan, own.start);
-    }
-    if at == own.segments {
-        return outline_point(plan, plan.outer - own.end);
-    }
-    if row == plan.n {
-        // The points of the base follow each other on the outline.
-        return outline_point(plan, plan.a) + at;
-    }
-    return plan.outer + points_through(above, row - 1u) + at - 1u;
+// Returns how many points the first `pairs` pairs of rows have inside the patch, of which pair j is rows j and n - j.
+fn pair_points(rows: NumberedRows, pairs: u32) -> u32 {
+    return pairs * (rows.rows.width - 1u) - scaled(pairs * rows.divisor, rows.rows.per_row);
 }
 
-// Returns the number of a corner of a triangle. `widths` are the row_widths of the strip's upper row.
-fn corner_number(plan: RowPlan, strip: Strip, widths: vec2<u32>, corner: StripPoint) -> u32 {
-    if corner.is_lower {
-        return number_in_row(plan, strip.row + 1u, strip.lower, widths.y, corner.at);
+// Returns the row of point `i` of those inside the patch, and the point's place in it. Points are numbered pair by pair, the row
+// nearer to the apex first.
+fn row_of_point(rows: NumberedRows, i: u32) -> vec2<u32> {
+    let pairs = divided(i * rows.rows.n, rows.per_point);
+    let rest = i - pair_points(rows, pairs);
+    let inner = widened(rows.rows, pairs + 1u) - 1u;
+    let farther = vec2<u32>(rows.rows.n - pairs - 1u, rest - inner + 1u);
+    return select(farther, vec2<u32>(pairs + 1u, rest + 1u), rest < inner);
+}
+
+// Returns the number that is added to a point's place in a row with so many segments, if it's no end of the row.
+fn number_before(rows: NumberedRows, row: u32, segments: u32) -> u32 {
+    let plan = rows.rows;
+    let is_farther = 2u * row > plan.n;
+    let pairs = select(max(row, 1u) - 1u, plan.n - row, is_farther);
+    let inside = plan.outer + pair_points(rows, pairs) - select(1u, segments, is_farther);
+    // The points of the base follow each other on the outline.
+    return select(inside, outline_point(plan, plan.a), row == plan.n);
+}
+
+// Returns the strip with triangle `k` of the last ones.
+fn unshared_strip(plan: RowPlan, k: u32) -> u32 {
+    let fewer = 2u * min(plan.a, plan.b);
+    return select(quotient((2u * k + 1u) * plan.n + fewer - 1u, fewer) - 1u, 0u, k == 0u);
+}
+
+// Returns the strip with triangle `t`, and the triangle's number in it.
+fn strip_of_triangle(rows: NumberedRows, t: u32) -> vec2<u32> {
+    let plan = rows.rows;
+    let last = plan.n - 1u;
+    if t < widened(plan, last) + plan.c - 1u {
+        return vec2<u32>(last, t);
     }
-    return number_in_row(plan, strip.row, strip.upper, widths.x, corner.at);
+    let paired = 2u * rows.inside + last + plan.c - 1u;
+    if t >= paired {
+        let row = unshared_strip(plan, t - paired);
+        return vec2<u32>(row, row_segments(plan, row) + row_segments(plan, row + 1u) - 1u);
+    }
+    let i = t + plan.width - plan.c;
+    let pairs = divided(((i + 1u) >> 1u) * plan.n - (i & 1u), rows.per_half);
+    let whole = scaled(pairs * rows.divisor, plan.per_row);
+    let is_rounded = whole * plan.n != pairs * rows.divisor;
+    let rest = i + u32(is_rounded) - 2u * (pairs * plan.width - whole);
+    let lower = last - pairs;
+    let in_lower = widened(plan, lower) + widened(plan, lower + 1u) - 1u;
+    return select(vec2<u32>(pairs, rest - in_lower), vec2<u32>(lower, rest), rest < in_lower);
+}
+
+// Returns the number of a corner of a triangle. `before` are the number_before of the strip's upper and lower row.
+fn corner_number(plan: RowPlan, strip: Strip, before: vec2<u32>, corner: StripPoint) -> u32 {
+    var row = strip.upper;
+    if corner.is_lower {
+        row = strip.lower;
+    }
+    let inside = select(before.x, before.y, corner.is_lower) + corner.at;
+    let end = outline_point(plan, select(plan.outer - row.end, row.start, corner.at == 0u));
+    return select(inside, end, corner.at == 0u || corner.at == row.segments);
 }
 
 // Returns triangle `t` of a patch, as point numbers, in the order of the outline.
-fn row_triangle(plan: RowPlan, t: u32) -> vec3<u32> {
-    // A bisection over the few strips that it can be. No triangle is before row 0.
-    let around = rows_around(plan, t);
-    var row = around.x;
-    var end = around.y;
-    var before = 0u;
-    var widths = vec2<u32>(0u);
-    if row > 0u {
-        widths = row_widths(plan.n, plan.width, row);
-        before = triangles_before(plan, row, widths);
-    }
-    while row + 1u < end {
-        let middle = (row + end) / 2u;
-        let own = row_widths(plan.n, plan.width, middle);
-        let count = triangles_before(plan, middle, own);
-        if count <= t {
-            row = middle;
-            before = count;
-            widths = own;
-        } else {
-            end = middle;
-        }
-    }
-    let strip = Strip(row, row_at(plan, row), row_at(plan, row + 1u));
-    let corners = strip_corners(plan, strip, t - before);
+fn row_triangle(rows: NumberedRows, t: u32) -> vec3<u32> {
+    let plan = rows.rows;
+    let at = strip_of_triangle(rows, t);
+    let strip = strip_below(plan, at.x);
+    let before = vec2<u32>(
+        number_before(rows, at.x, strip.upper.segments),
+        number_before(rows, at.x + 1u, strip.lower.segments),
+    );
+    let corners = strip_corners(plan, strip, at.y);
     return vec3<u32>(
-        corner_number(plan, strip, widths, corners[0]),
-        corner_number(plan, strip, widths, corners[1]),
-        corner_number(plan, strip, widths, corners[2]),
+        corner_number(plan, strip, before, corners[0]),
+        corner_number(plan, strip, before, corners[1]),
+        corner_number(plan, strip, before, corners[2]),
     );
 }
 
@@ -240,10 +271,11 @@ fn corner_place(plan: RowPlan, strip: Strip, corner: StripPoint) -> vec2<u32> {
     return place_in_row(plan, strip.upper, corner.at);
 }
 
-// Returns (U, V) of the corners of triangle `t` of a patch, in 16.16 fixed point. It passes the strips before the triangle one by
-// one: for the few rows of most patches that is faster than finding points by their numbers.
+// Returns (U, V) of the corners of triangle `t` of a patch, counted strip by strip from the apex, in 16.16 fixed point. LOD by
+// error looks at triangles in this order. For the few rows of most patches it is faster to pass strips one by one than to prepare
+// NumberedRows.
 fn row_triangle_places(plan: RowPlan, t: u32) -> array<vec2<u32>, 3> {
-    var strip = Strip(0u, row_at(plan, 0u), row_at(plan, 1u));
+    var strip = strip_below(plan, 0u);
     var rest = t;
     while rest >= strip_triangles(strip) && strip.row + 1u < plan.n {
         rest -= strip_triangles(strip);
@@ -257,28 +289,8 @@ fn row_triangle_places(plan: RowPlan, t: u32) -> array<vec2<u32>, 3> {
     );
 }
 
-// Returns the row of point `i` of those inside the patch, and the point's place in it.
-fn row_of_point(plan: RowPlan, i: u32) -> vec2<u32> {
-    let n = f32(plan.n);
-    let width = f32(plan.width);
-    let root = sqrt((width - 2.0) * (width - 2.0) + 8.0 * width * n * f32(i));
-    // Too few rows are no mistake, so rounding is always downwards.
-    var row = u32(max((root + 2.0 - width) / (2.0 * width) - 0.015625, 0.0));
-    var rest = i - points_through(widths_through(plan.n, plan.width, row), row);
-    var inner = row_segments(plan, row + 1u) - 1u;
-    var alike = quotient((inner + 1u) * plan.n, plan.width) - row;
-    while rest >= alike * inner {
-        rest -= alike * inner;
-        row += alike;
-        inner = row_segments(plan, row + 1u) - 1u;
-        alike = quotient((inner + 1u) * plan.n, plan.width) - row;
-    }
-    let passed = quotient(rest, inner);
-    return vec2<u32>(row + 1u + passed, rest - passed * inner + 1u);
-}
-
 // Returns (U, V) of point `i` of those inside the patch, in 16.16 fixed point.
-fn row_point(plan: RowPlan, i: u32) -> vec2<u32> {
-    let found = row_of_point(plan, i);
-    return place_in_row(plan, row_at(plan, found.x), found.y);
+fn row_point(rows: NumberedRows, i: u32) -> vec2<u32> {
+    let at = row_of_point(rows, i);
+    return place_in_row(rows.rows, row_at(rows.rows, at.x), at.y);
 }

@@ -19,7 +19,7 @@ use crate::mesh::{BuildError, CreaseBand, Mesh, Moment, Topology, with_crease_ba
 use crate::progress::{Progress, Stage};
 use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, Target};
 use crate::settings::{Settings, SplitSide};
-use crate::tessellate::{Inputs, Lod, Partitioning, PatchFactors, PosedMesh, Tessellated, Tessellation};
+use crate::tessellate::{Inputs, Lod, LodView, Partitioning, PatchFactors, PosedMesh, Tessellated, Tessellation};
 
 pub(crate) use measurements::{MeasurementResults, Measurements};
 
@@ -236,6 +236,22 @@ impl Engine {
         timing: &mut Timing,
     ) -> Result<(), GpuError> {
         let view = camera.lod_view(target.viewport(), &scene.bounds);
+        self.draw_for(scene, target, camera, view, settings, timing)
+    }
+
+    /// Like [`Self::draw`], tessellated for the view of another camera.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn draw_for(
+        &self,
+        scene: &mut Scene,
+        target: &Target,
+        camera: &Camera,
+        view: LodView,
+        settings: &Settings,
+        timing: &mut Timing,
+    ) -> Result<(), GpuError> {
         for half in SplitSide::BOTH {
             if let Some((scene, settings)) = scene.half_mut(half).zip(settings.half(half)) {
                 self.count(scene, &settings.inputs(view), timing)?;
@@ -405,6 +421,23 @@ impl Engine {
         settings: &Settings,
         runs: Runs,
     ) -> Result<Vec<PassTime>, GpuError> {
+        let view = camera.lod_view(target.viewport(), &scene.bounds);
+        self.time_for(scene, target, camera, view, settings, runs)
+    }
+
+    /// Like [`Self::time`], tessellated for the view of another camera.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn time_for(
+        &self,
+        scene: &mut Scene,
+        target: &Target,
+        camera: &Camera,
+        view: LodView,
+        settings: &Settings,
+        runs: Runs,
+    ) -> Result<Vec<PassTime>, GpuError> {
         let mut timing = Timing::on(&self.gpu);
         let mut all: Vec<Vec<PassTime>> = Vec::new();
         let start = Instant::now();
@@ -413,7 +446,7 @@ impl Engine {
                 break;
             }
             scene.tessellator.forget();
-            self.draw(scene, target, camera, settings, &mut timing)?;
+            self.draw_for(scene, target, camera, view, settings, &mut timing)?;
             self.gpu.wait();
             let times = take_times(&self.gpu, &mut timing);
             if run > 0 {

@@ -180,26 +180,104 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if path.exists() && !path.is_file() {
         return std::fs::OpenOptions::new().write(true).open(path)?.write_all(bytes);
     }
-    let place = std::fs::canonicalize(path).unwrap_or_else(|_| end_of_links(path));
-    let permissions = std::fs::metadata(&place).ok().map(|metadata| metadata.permissions());
-    if permissions.as_ref().is_some_and(std::fs::Permissions::readonly) {
-        return Err(io::Error::new(io::ErrorKind::PermissionDenied, "it is read-only"));
+    let mut part = PartFile::create(path)?;
+    part.file.write_all(bytes)?;
+    part.finish()
+}
+
+/// A file that is written under another name in its folder, and takes its place once it is whole. What was there stays until
+/// then, and if this is dropped before. A symbolic link stays a link, and permissions are kept.
+pub(crate) struct PartFile {
+    pub file: File,
+    beside: PathBuf,
+    place: PathBuf,
+    permissions: Option<std::fs::Permissions>,
+}
+
+impl PartFile {
+    /// # Errors
+    /// The errors of the file system. An existing file that is read-only isn't replaced.
+    pub(crate) fn create(path: &Path) -> io::Result<Self> {
+        let place = std::fs::canonicalize(path).unwrap_or_else(|_| end_of_links(path));
+        let permissions = std::fs::metadata(&place).ok().map(|metadata| metadata.permissions());
+        if permissions.as_ref().is_some_and(std::fs::Permissions::readonly) {
+            return Err(io::Error::new(io::ErrorKind::PermissionDenied, "it is read-only"));
+        }
+        let beside = beside(&place);
+        Ok(Self { file: File::create(&beside)?, beside, place, permissions })
     }
+
+    /// Puts the file in its place.
+    ///
+    /// # Errors
+    /// The errors of the file system.
+    pub(crate) fn finish(mut self) -> io::Result<()> {
+        // A network drive or a full disk may report its failure only now.
+        self.file.sync_all()?;
+        if let Some(permissions) = self.permissions.take() {
+            std::fs::set_permissions(&self.beside, permissions)?;
+        }
+        std::fs::rename(&self.beside, &self.place)
+    }
+}
+
+impl Drop for PartFile {
+    fn drop(&mut self) {
+        // Once it is in its place, there is nothing here.
+        let _ = std::fs::remove_file(&self.beside);
+    }
+}
+
+/// A folder whose files are written into another folder beside it, and come into it together once they are whole. Dropped
+/// before, it changes nothing.
+pub(crate) struct PartFolder {
+    beside: PathBuf,
+    place: PathBuf,
+    names: Vec<String>,
+}
+
+impl PartFolder {
+    /// # Errors
+    /// The errors of the file system.
+    pub(crate) fn create(path: &Path) -> io::Result<Self> {
+        // Without a slash at its end, which a name can't be appended to.
+        let place = std::fs::canonicalize(path).unwrap_or_else(|_| path.components().collect());
+        if place.exists() && !place.is_dir() {
+            return Err(io::Error::new(ErrorKind::NotADirectory, "it is no folder; choose another name"));
+        }
+        let beside = beside(&place);
+        std::fs::create_dir(&beside)?;
+        Ok(Self { beside, place, names: Vec::new() })
+    }
+
+    /// The path under which the file of this name is written.
+    pub(crate) fn path(&mut self, name: String) -> PathBuf {
+        let path = self.beside.join(&name);
+        self.names.push(name);
+        path
+    }
+
+    /// Puts the files in their places. The folder is made if it isn't there.
+    ///
+    /// # Errors
+    /// The errors of the file system.
+    pub(crate) fn finish(self) -> io::Result<()> {
+        std::fs::create_dir_all(&self.place)?;
+        self.names.iter().try_for_each(|name| std::fs::rename(self.beside.join(name), self.place.join(name)))
+    }
+}
+
+impl Drop for PartFolder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.beside);
+    }
+}
+
+/// The path under which something is written that isn't whole yet.
+fn beside(place: &Path) -> PathBuf {
     let mut beside = place.as_os_str().to_owned();
     beside.push(format!(".{}.part", std::process::id()));
-    let beside = Path::new(&beside);
-    let write = || {
-        let mut file = std::fs::File::create(beside)?;
-        file.write_all(bytes)?;
-        // A network drive or a full disk may report its failure only now.
-        file.sync_all()?;
-        permissions.map_or(Ok(()), |permissions| std::fs::set_permissions(beside, permissions))
-    };
-    let written = write().and_then(|()| std::fs::rename(beside, &place));
-    if written.is_err() {
-        let _ = std::fs::remove_file(beside);
-    }
-    written
+    beside.into()
 }
 
 /// Follows symbolic links to the path of a file that doesn't exist yet.
@@ -236,6 +314,41 @@ mod tests {
         let message = read(100).unwrap_err().to_string();
         assert!(message.contains("has 101 bytes, but at most 100 are read"), "{message}");
         assert!(read(1 << 20).is_ok_and(|bytes| bytes.len() > 100));
+    }
+
+    #[test]
+    fn the_files_of_a_folder_come_together_or_not_at_all() {
+        let parent = tempfile::tempdir().unwrap();
+        let place = parent.path().join("out/");
+        let names = |folder: &Path| {
+            let mut names: Vec<_> = std::fs::read_dir(folder)
+                .map(|all| all.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect())
+                .unwrap_or_default();
+            names.sort();
+            names
+        };
+        let write = |text: &str, all: &[&str]| {
+            let mut folder = PartFolder::create(&place).unwrap();
+            for name in all {
+                std::fs::write(folder.path((*name).to_owned()), text).unwrap();
+            }
+            folder
+        };
+        drop(write("dropped", &["a", "b"]));
+        assert!(names(parent.path()).is_empty());
+        write("first", &["a", "b"]).finish().unwrap();
+        assert_eq!(
+            (names(parent.path()), names(&place)),
+            (vec!["out".to_owned()], vec!["a".to_owned(), "b".to_owned()])
+        );
+        drop(write("dropped", &["a", "c"]));
+        assert_eq!(std::fs::read_to_string(place.join("a")).unwrap(), "first");
+        write("second", &["b", "c"]).finish().unwrap();
+        assert_eq!(
+            (names(parent.path()), names(&place)),
+            (vec!["out".to_owned()], ["a", "b", "c"].map(str::to_owned).to_vec())
+        );
+        assert_eq!(["a", "b"].map(|name| std::fs::read_to_string(place.join(name)).unwrap()), ["first", "second"]);
     }
 
     #[test]

@@ -1,28 +1,37 @@
-//! Undo and redo of settings.
+//! Undo and redo: of settings, and separately of views, so that neither is in the way of the other.
 
 use std::collections::VecDeque;
 
 use super::App;
+use crate::render::Camera;
 use crate::settings::Settings;
 use crate::tessellate::Displacement;
 
 /// The greatest number of steps that can be undone.
 const MOST: usize = 200;
 
-/// The settings before and after the present ones.
-#[derive(Default)]
-pub(super) struct History {
+/// Movements of the camera that follow each other within so many seconds are one step.
+const ONE_MOVEMENT: f64 = 0.5;
+
+/// The states before and after the present one.
+pub(super) struct History<T> {
     /// None before the first frame.
-    now: Option<Settings>,
-    past: VecDeque<Settings>,
-    future: Vec<Settings>,
+    now: Option<T>,
+    past: VecDeque<T>,
+    future: Vec<T>,
 }
 
-impl History {
-    /// Records settings. It isn't called while the pointer drags, so that a drag is one step.
-    fn note(&mut self, settings: &Settings) {
-        let before = self.now.replace(*settings);
-        let Some(before) = before.filter(|before| before != settings) else { return };
+impl<T> Default for History<T> {
+    fn default() -> Self {
+        Self { now: None, past: VecDeque::new(), future: Vec::new() }
+    }
+}
+
+impl<T: Copy + PartialEq> History<T> {
+    /// Records a state. It isn't called while the pointer drags, so that a drag is one step.
+    fn note(&mut self, state: &T) {
+        let before = self.now.replace(*state);
+        let Some(before) = before.filter(|before| before != state) else { return };
         self.past.push_back(before);
         if self.past.len() > MOST {
             self.past.pop_front();
@@ -30,32 +39,56 @@ impl History {
         self.future.clear();
     }
 
-    /// Sets displacement in all steps, because it follows from the mesh and can't be undone.
-    pub(super) fn displace(&mut self, displacement: Displacement) {
-        let all = self.now.iter_mut().chain(&mut self.past).chain(&mut self.future);
-        all.for_each(|settings| settings.tessellation.displacement = displacement);
-    }
-
-    fn undo(&mut self, settings: &Settings) -> Option<Settings> {
-        self.note(settings);
+    fn undo(&mut self, state: &T) -> Option<T> {
+        self.note(state);
         let before = self.past.pop_back()?;
         self.future.extend(self.now.replace(before));
         Some(before)
     }
 
-    fn redo(&mut self, settings: &Settings) -> Option<Settings> {
-        self.note(settings);
+    fn redo(&mut self, state: &T) -> Option<T> {
+        self.note(state);
         let after = self.future.pop()?;
         self.past.extend(self.now.replace(after));
         Some(after)
     }
 }
 
+impl History<Settings> {
+    /// Sets displacement in all steps, because it follows from the mesh and can't be undone.
+    pub(super) fn displace(&mut self, displacement: Displacement) {
+        let all = self.now.iter_mut().chain(&mut self.past).chain(&mut self.future);
+        all.for_each(|settings| settings.tessellation.displacement = displacement);
+    }
+}
+
+/// The views before and after the present one.
+#[derive(Default)]
+pub(super) struct ViewHistory {
+    views: History<Camera>,
+    /// When the camera was last seen to have moved, in s.
+    moved: Option<f64>,
+}
+
+impl ViewHistory {
+    /// Records the view at a time in s. A movement that goes on is one step.
+    fn note(&mut self, camera: &Camera, now: f64) {
+        if self.views.now.is_none_or(|before| before == *camera) {
+            return self.views.note(camera);
+        }
+        match self.moved.replace(now) {
+            Some(before) if now - before < ONE_MOVEMENT => self.views.now = Some(*camera),
+            _ => self.views.note(camera),
+        }
+    }
+}
+
 impl App {
-    /// Records the settings at the end of a frame.
-    pub(super) fn note_settings(&mut self, context: &egui::Context) {
+    /// Records settings and view at the end of a frame.
+    pub(super) fn note_state(&mut self, context: &egui::Context) {
         if !context.egui_is_using_pointer() {
             self.history.note(&self.settings);
+            self.view_history.note(&self.viewport.camera, context.input(|input| input.time));
         }
     }
 
@@ -65,6 +98,26 @@ impl App {
 
     pub(super) fn can_redo(&self) -> bool {
         !self.history.future.is_empty()
+    }
+
+    pub(super) fn has_view_before(&self) -> bool {
+        !self.view_history.views.past.is_empty()
+    }
+
+    pub(super) fn has_view_after(&self) -> bool {
+        !self.view_history.views.future.is_empty()
+    }
+
+    /// Goes back to the view before the last movement of the camera.
+    pub(super) fn view_before(&mut self) {
+        let before = self.view_history.views.undo(&self.viewport.camera);
+        self.viewport.camera = before.unwrap_or(self.viewport.camera);
+    }
+
+    /// Goes forward to the view that [`Self::view_before`] left.
+    pub(super) fn view_after(&mut self) {
+        let after = self.view_history.views.redo(&self.viewport.camera);
+        self.viewport.camera = after.unwrap_or(self.viewport.camera);
     }
 
     /// Goes back to the settings before the last change.
@@ -107,6 +160,18 @@ mod tests {
         history.note(&of(8.0));
         assert_eq!(history.redo(&of(8.0)), None);
         assert_eq!(history.undo(&of(8.0)), Some(of(7.0)));
+    }
+
+    #[test]
+    fn a_movement_that_goes_on_is_one_step_of_the_views() {
+        let at = |azimuth: f32| Camera { azimuth, ..Camera::framing(&Default::default(), glam::Vec2::ONE) };
+        let mut history = ViewHistory::default();
+        for (azimuth, now) in [(0.0, 0.0), (1.0, 1.0), (2.0, 1.1), (3.0, 1.5), (9.0, 3.0)] {
+            history.note(&at(azimuth), now);
+        }
+        assert_eq!(history.views.undo(&at(9.0)), Some(at(3.0)));
+        assert_eq!(history.views.undo(&at(3.0)), Some(at(0.0)));
+        assert_eq!(history.views.redo(&at(0.0)), Some(at(3.0)));
     }
 
     #[test]

@@ -26,9 +26,10 @@ use crate::settings::Settings;
 
 use commands::Commands;
 use dialogs::Dialogs;
-use history::History;
+use history::{History, ViewHistory};
 use jobs::Jobs;
 use jobs::document::Document;
+use jobs::given_factors::GivenFactors;
 use jobs::truth::ChosenTruth;
 use panels::{FACTS_WIDTH, Panels, SETTINGS_WIDTH};
 use viewport::Viewport;
@@ -42,11 +43,14 @@ pub struct App {
     engine: Engine,
     render_state: egui_wgpu::RenderState,
     settings: Settings,
-    history: History,
+    history: History<Settings>,
+    view_history: ViewHistory,
     /// The mesh that is open; none before the first one is loaded.
     document: Option<Document>,
     /// The reference surface that was chosen for the mesh, if one was.
     truth: Option<ChosenTruth>,
+    /// Factors of a file in place of those of LOD, if there are any.
+    given: Option<GivenFactors>,
     viewport: Viewport,
     panels: Panels,
     jobs: Jobs,
@@ -70,8 +74,10 @@ impl App {
             render_state,
             settings: if source.is_some() { Settings::opening() } else { Settings::greeting() },
             history: History::default(),
+            view_history: ViewHistory::default(),
             document: None,
             truth: None,
+            given: None,
             panels: Panels::default(),
             jobs: Jobs { limits, ..Jobs::default() },
             dialogs: Dialogs::default(),
@@ -115,7 +121,8 @@ impl App {
 
     /// Vertices and triangles of what is shown.
     pub fn totals(&self) -> Option<(u64, u64)> {
-        self.document.as_ref().map(|document| document.scene.tessellator.totals())
+        let totals = |document: &Document| document.scene.tessellator.totals();
+        self.viewport.preview.kept_totals().or(self.document.as_ref().map(totals))
     }
 
     /// The source of the mesh that is open, not of one that is being loaded.
@@ -141,6 +148,21 @@ impl App {
         self.viewport.picture.pictures()
     }
 
+    /// How many previews have been drawn while the camera moved.
+    pub fn previews(&self) -> u64 {
+        self.viewport.preview.drawings()
+    }
+
+    /// Switches previews off or on.
+    pub fn switch_previews(&mut self) {
+        self.viewport.preview.is_on = !self.viewport.preview.is_on;
+    }
+
+    /// Whether a preview is shown in place of the full picture.
+    pub fn shows_preview(&self) -> bool {
+        self.viewport.preview.shown(&self.viewport.picture).is_some()
+    }
+
     /// Whether the line of help of a first start is over the picture.
     pub fn greets(&self) -> bool {
         self.viewport.greets
@@ -148,8 +170,11 @@ impl App {
 
     /// Whether something is still being loaded, drawn or measured.
     pub fn is_busy(&self) -> bool {
-        let loads = self.jobs.load.is_some() || self.jobs.truth_load.is_some();
-        let measures = self.jobs.measure.is_busy() || self.jobs.deviation.is_busy() || self.viewport.left.is_busy();
+        let loads = self.jobs.load.is_some() || self.jobs.truth_load.is_some() || self.jobs.factors.is_some();
+        let measures = self.jobs.measure.is_busy()
+            || self.jobs.leaks.is_busy()
+            || self.jobs.deviation.is_busy()
+            || self.viewport.left.is_busy();
         loads
             || measures
             || self.jobs.explain.is_busy()
@@ -194,6 +219,7 @@ impl eframe::App for App {
         }
         self.take_loaded(context);
         self.take_truth();
+        self.take_factors(context);
         self.take_checks();
         self.take_explained();
         self.take_dialog(context);
@@ -229,7 +255,7 @@ impl eframe::App for App {
         egui::CentralPanel::no_frame().show(ui, |ui| self.viewport_panel(ui));
         self.windows(ui.ctx());
         self.hold_chart();
-        self.note_settings(ui.ctx());
+        self.note_state(ui.ctx());
         self.keep(ui.ctx());
         if self.is_lost() {
             // egui can't paint this frame with a lost device.

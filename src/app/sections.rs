@@ -13,6 +13,7 @@ pub(in crate::app) enum Section {
     View,
     Advanced,
     Patch,
+    Factors,
     Deviation,
     Cracks,
     Patches,
@@ -23,8 +24,8 @@ pub(in crate::app) enum Section {
 }
 
 impl Section {
-    pub(in crate::app) const ALL: [Self; 15] = crate::names::every![Section:
-        Surface, LevelOfDetail, Displacement, Animation, Overlays, View, Advanced, Patch, Deviation, Cracks, Patches, Waste,
+    pub(in crate::app) const ALL: [Self; 16] = crate::names::every![Section:
+        Surface, LevelOfDetail, Displacement, Animation, Overlays, View, Advanced, Patch, Factors, Deviation, Cracks, Patches, Waste,
         Edges, Mesh, Passes,
     ];
 
@@ -39,6 +40,7 @@ impl Section {
             Self::View => "View",
             Self::Advanced => "Advanced",
             Self::Patch => "Patch",
+            Self::Factors => "Factors of a file",
             Self::Deviation => "Deviation",
             Self::Cracks => "Cracks",
             Self::Patches => "Patches",

@@ -92,13 +92,16 @@ pub(super) fn list(
         }
         None => area,
     };
-    let mut focused = None;
+    let (mut focused, mut reached) = (None, None);
     let output = area.show_rows(ui, height, count, |ui, range| {
         ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Truncate);
         for index in range {
             let response = row(ui, index);
             if asked.is_some_and(|(asked, _)| asked == index) {
                 response.request_focus();
+            }
+            if response.gained_focus() {
+                reached = Some(response.rect);
             }
             if response.has_focus() {
                 focused = Some(index);
@@ -107,6 +110,10 @@ pub(super) fn list(
             }
         }
     });
+    if let Some(row) = reached {
+        // The list scrolls to a row by itself, but the panel around it doesn't.
+        ui.scroll_to_rect(row, None);
+    }
     if let Some(next) = focused.and_then(|index| next_row(ui, index, count)) {
         ui.data_mut(|data| data.insert_temp(id, (next, output.state.clamped_offset().y)));
         ui.ctx().request_repaint();

@@ -81,7 +81,15 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let loaded = load_apart(&args.file, &args.weld.preparation(), &[args.output.as_deref()])?;
     let computed = args.indices.indices(&loaded.topology);
     if let Some(path) = &args.output {
-        write(args, path, &loaded, &computed)?;
+        let format = args.format.unwrap_or(Format::of_name(path));
+        write_adjacency(&loaded, args.indices, &computed, format, path)?;
+        let (left_out, all) = (loaded.topology.degenerate, loaded.mesh.triangles.len());
+        if format == Format::Bin && left_out > 0 {
+            say(&format!(
+                "{left_out} of {all} triangles are degenerate and have no patch; the JSON's patch_triangles has the triangle \
+                 of each patch"
+            ));
+        }
     }
     match args.against.as_deref().zip(given) {
         Some((path, bytes)) => compare_with(args.indices, path, &bytes, &loaded, &computed),
@@ -89,24 +97,23 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     }
 }
 
-fn write(args: &Args, path: &Path, loaded: &Loaded, computed: &[u32]) -> Result<(), CliError> {
-    let (mesh, topology) = (&loaded.mesh, &loaded.topology);
-    match args.format.unwrap_or(Format::of_name(path)) {
+/// Writes a mesh's index buffer of this layout.
+///
+/// # Errors
+/// The file can't be written.
+pub(crate) fn write_adjacency(
+    loaded: &Loaded,
+    layout: Layout,
+    indices: &[u32],
+    format: Format,
+    path: &Path,
+) -> Result<(), CliError> {
+    match format {
         Format::Json => {
-            let text = to_json(mesh, topology, args.indices, computed);
+            let text = to_json(&loaded.mesh, &loaded.topology, layout, indices);
             write_bytes(path, text.map_err(|error| CliError::Output(error.into()))?.as_bytes())
         }
-        Format::Bin => {
-            write_bytes(path, &to_bin(computed))?;
-            if topology.degenerate > 0 {
-                let (left_out, all) = (topology.degenerate, mesh.triangles.len());
-                say(&format!(
-                    "{left_out} of {all} triangles are degenerate and have no patch; the JSON's patch_triangles has the \
-                     triangle of each patch"
-                ));
-            }
-            Ok(())
-        }
+        Format::Bin => write_bytes(path, &to_bin(indices)),
     }
 }
 

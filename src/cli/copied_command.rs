@@ -1,13 +1,16 @@
 //! The command that draws what a window shows: "Copy as command". Options that have their default values, or no effect, are
 //! left out.
 
+use std::ffi::OsString;
 use std::fmt::{Display, Write};
+use std::path::Path;
 
+use super::turntable::Turn;
 use crate::engine::Preparation;
 use crate::files::Limits;
 use crate::load::{HeightSource, Source};
 use crate::render::Camera;
-use crate::settings::{Settings, Value, options};
+use crate::settings::{Declaration, Settings, Value, options};
 use crate::tessellate::{Displacement, Tessellation};
 
 /// What a window shows, and from where.
@@ -16,6 +19,8 @@ pub(crate) struct CopiedCommand<'a> {
     pub preparation: &'a Preparation,
     pub settings: &'a Settings,
     pub camera: &'a Camera,
+    /// The camera that LOD and clipping are frozen for and its view's width and height in px, if they are.
+    pub lod_camera: Option<(&'a Camera, [u32; 2])>,
     /// The bounding radius of what is drawn, in object units. The command has the camera's distance in bounding radii.
     pub radius: f32,
     /// The view's width and height, in px.
@@ -23,25 +28,54 @@ pub(crate) struct CopiedCommand<'a> {
     /// A clip's name, and the time in it in s.
     pub animation: Option<(&'a str, f64)>,
     pub truth: Option<&'a Source>,
+    /// The file whose factors take the place of those of LOD.
+    pub factors: Option<&'a Path>,
     /// The selected triangle's number in the mesh, from 0.
     pub triangle: Option<u32>,
+    /// Whether nothing is behind the mesh, rather than the background's colour.
+    pub transparent: bool,
+    /// Whether the legend is drawn into the picture.
+    pub legend: bool,
+    /// The file to write; without one, it is named after the mesh.
+    pub output: Option<&'a Path>,
+    /// The turn of a turntable, and whether it is a GIF; none for one picture.
+    pub turn: Option<(Turn, bool)>,
 }
 
 impl CopiedCommand<'_> {
     /// The command on one line, quoted for a shell. The picture is named after the mesh.
     pub(crate) fn line(&self) -> String {
+        let name = if self.turn.is_some() { "turntable" } else { "render" };
+        let [file, output] = [self.source, &self.output()].map(|source| word(&named(source)));
+        let mut line = Line(format!("pnaen {name} {file} -o {output}"));
+        if let Some((turn, is_gif)) = self.turn {
+            let usual = Turn::default();
+            line.changed("--frames", &turn.frames, &usual.frames);
+            line.changed("--fps", if is_gif { &turn.fps } else { &usual.fps }, &usual.fps);
+        }
+        self.mesh(&mut line);
+        self.settings(&mut line);
+        self.view(&mut line);
+        line.0
+    }
+
+    /// The file to write.
+    fn output(&self) -> Source {
+        if let Some(path) = self.output {
+            return Source::File(path.to_owned());
+        }
         let name = match self.source {
             Source::File(path) => path.file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy().into_owned()),
             Source::Shape(shape) | Source::FineShape(shape, _) => shape.to_string(),
             Source::Vase => "vase".to_owned(),
         };
         // A texture beside the mesh may have the mesh's name.
-        let picture = Source::File(format!("{name}-view.png").into());
-        let mut line = Line(format!("pnaen render {} -o {}", word(&named(self.source)), word(&named(&picture))));
-        self.mesh(&mut line);
-        self.settings(&mut line);
-        self.view(&mut line);
-        line.0
+        let ending = match self.turn {
+            None => "-view.png",
+            Some((_, true)) => "-turntable.gif",
+            Some((_, false)) => "-turntable",
+        };
+        Source::File(format!("{name}{ending}").into())
     }
 
     /// Writes the options for loading and preparing the mesh.
@@ -59,15 +93,19 @@ impl CopiedCommand<'_> {
         }
     }
 
-    /// Writes every setting that has an effect and isn't at its default.
+    /// Writes every setting that has an effect and isn't at its default. A transparent picture has no colour behind the mesh.
     fn settings(&self, line: &mut Line) {
+        let background = self.settings.background.filter(|_| !self.transparent);
+        let shown = Settings { background, ..*self.settings };
         let displaced = |displacement, of: &Settings| of.with(Tessellation { displacement, ..of.tessellation });
         let (own, usual) = match self.preparation.heights {
             // With --height the surface is displaced unless --displacement says otherwise.
-            Some(_) => (*self.settings, displaced(Displacement::On, &Settings::default())),
-            None => (displaced(Displacement::Off, self.settings), Settings::default()),
+            Some(_) => (shown, displaced(Displacement::On, &Settings::default())),
+            None => (displaced(Displacement::Off, &shown), Settings::default()),
         };
-        for option in options::all().filter(|option| (option.no_effect)(&own).is_none()) {
+        let is_lod = |name: &str| self.factors.is_some() && INSTEAD_OF_FACTORS.contains(&name);
+        let written = |option: &&Declaration| (option.no_effect)(&own).is_none() && !is_lod(option.name);
+        for option in options::all().filter(written) {
             let (name, value) = (format!("--{}", option.name), option.get(&own));
             match value {
                 _ if value == option.get(&usual) => {}
@@ -77,8 +115,11 @@ impl CopiedCommand<'_> {
         }
     }
 
-    /// Writes the reference surface, the selection, the pose and the camera.
+    /// Writes the file of factors, the reference surface, the selection, the pose and the camera.
     fn view(&self, line: &mut Line) {
+        if let Some(path) = self.factors {
+            line.option("--factors", named(&Source::File(path.to_owned())));
+        }
         if let (Some(truth), None) = (self.truth, self.animation) {
             line.option("--truth", named(truth));
         }
@@ -87,11 +128,35 @@ impl CopiedCommand<'_> {
             line.option("--animation", name);
             line.changed("--time", &time, &0.0);
         }
-        line.option("--size", format!("{}x{}", self.size[0], self.size[1]));
-        let Camera { target, azimuth, elevation, distance, orthographic } = self.camera;
-        line.option("--camera", format!("{azimuth},{elevation},{}", distance / self.radius));
-        line.option("--target", format!("{},{},{}", target.x, target.y, target.z));
-        line.switch("--orthographic", *orthographic);
+        line.switch("--transparent", self.transparent);
+        line.switch("--legend", self.legend);
+        line.option("--size", Px(self.size));
+        self.camera(line, "", self.camera);
+        if let Some((camera, size)) = self.lod_camera.filter(|own| *own != (self.camera, self.size)) {
+            self.camera(line, "lod-", camera);
+            line.changed("--lod-size", &Px(size), &Px(self.size));
+        }
+    }
+
+    /// Writes the options of a camera, whose names begin with `prefix`.
+    fn camera(&self, line: &mut Line, prefix: &str, camera: &Camera) {
+        let Camera { target, azimuth, elevation, distance, orthographic } = camera;
+        line.option(&format!("--{prefix}camera"), format!("{azimuth},{elevation},{}", distance / self.radius));
+        line.option(&format!("--{prefix}target"), format!("{},{},{}", target.x, target.y, target.z));
+        line.switch(&format!("--{prefix}orthographic"), *orthographic);
+    }
+}
+
+/// The options that `--factors` excludes.
+const INSTEAD_OF_FACTORS: [&str; 6] = ["lod", "factor", "pixels", "tolerance", "distances", "max-triangles"];
+
+/// Width and height in px, as the command line takes them.
+#[derive(PartialEq)]
+struct Px([u32; 2]);
+
+impl Display for Px {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}x{}", self.0[0], self.0[1])
     }
 }
 
@@ -119,6 +184,12 @@ impl Line {
             self.option(name, own);
         }
     }
+}
+
+/// The command that this process was started with, on one line, quoted for a shell.
+pub(super) fn given(arguments: impl IntoIterator<Item = OsString>) -> String {
+    let words = arguments.into_iter().skip(1).map(|argument| word(&argument.to_string_lossy()));
+    ["pnaen".to_owned()].into_iter().chain(words).collect::<Vec<_>>().join(" ")
 }
 
 /// Formats a source as an argument. A file that would be taken for an option, a shape or `material` gets `./` in front.
@@ -178,11 +249,17 @@ mod tests {
             preparation,
             settings,
             camera,
+            lod_camera: None,
             radius,
             size,
             animation: None,
             truth: None,
+            factors: None,
             triangle: None,
+            transparent: false,
+            legend: false,
+            output: None,
+            turn: None,
         }
     }
 
@@ -220,19 +297,84 @@ mod tests {
         };
         let args = parsed(&shown.line());
         assert_eq!(args.file, Source::File("./-x.glb".into()));
-        assert_eq!(args.truth.truth, Some(Source::File("./shape:y".into())));
+        assert_eq!(args.shot.truth.truth, Some(Source::File("./shape:y".into())));
         let heights = Some(HeightSource::File("./material".into()));
-        assert_eq!(args.surface.preparation(), Preparation { heights, ..preparation.clone() });
-        assert_eq!((args.select, args.surface.orthographic), (Some(7), true));
-        assert_eq!(args.surface.target.map(|place| place.0), Some(camera.target));
-        assert_eq!(args.surface.tessellation().height_scale, -0.5);
+        assert_eq!(args.shot.surface.preparation(), Preparation { heights, ..preparation.clone() });
+        assert_eq!((args.shot.select, args.shot.surface.orthographic), (Some(7), true));
+        assert_eq!(args.shot.surface.target.map(|place| place.0), Some(camera.target));
+        assert_eq!(args.shot.surface.tessellation().height_scale, -0.5);
         let moving = CopiedCommand { animation: Some(("-run, fast", 0.1)), ..shown };
         let args = parsed(&moving.line());
         assert_eq!(
-            (args.surface.animation.animation.as_deref(), args.surface.animation.time),
+            (args.shot.surface.animation.animation.as_deref(), args.shot.surface.animation.time),
             (Some("-run, fast"), 0.1)
         );
-        assert_eq!(args.truth.truth, None, "an animation has no reference surface");
+        assert_eq!(args.shot.truth.truth, None, "an animation has no reference surface");
+    }
+
+    #[test]
+    fn a_transparent_picture_with_a_legend_is_written_without_a_background() {
+        let (source, preparation) = ("shape:torus".parse().expect("a shape"), Preparation::default());
+        let settings = Settings { background: Some([1, 2, 3]), ..Settings::default() };
+        let camera = camera();
+        let shown = shown(&source, &preparation, &settings, &camera);
+        let plain = parsed(&shown.line());
+        assert_eq!((plain.shot.transparent, plain.shot.legend), (false, false));
+        assert_eq!(plain.shot.picture.0.background, Some([1, 2, 3]));
+        let output = Some(Path::new("-odd name.png"));
+        let args = parsed(&CopiedCommand { transparent: true, legend: true, output, ..shown }.line());
+        assert_eq!((args.shot.transparent, args.shot.legend, args.shot.picture.0.background), (true, true, None));
+        assert_eq!(args.output, Path::new("./-odd name.png"));
+    }
+
+    #[test]
+    fn a_turn_is_written_as_a_turntable() {
+        let (source, preparation) = ("shape:torus".parse().expect("a shape"), Preparation::default());
+        let (settings, camera) = (Settings::default(), camera());
+        let with = |turn| CopiedCommand { turn, ..shown(&source, &preparation, &settings, &camera) }.line();
+        let usual = with(Some((Turn::default(), false)));
+        assert!(usual.starts_with("pnaen turntable shape:torus -o torus-turntable --size 640x480"), "{usual}");
+        let gif = with(Some((Turn { frames: 12, fps: 20 }, true)));
+        let words = gif.split(' ').map(str::to_owned);
+        let Ok(Some(Command::Turntable(args))) = Cli::try_parse_from(words).map(|cli| cli.command) else {
+            panic!("{gif}")
+        };
+        assert_eq!((args.frames, args.fps, &*args.output), (12, 20, Path::new("torus-turntable.gif")));
+        assert_eq!(args.shot.surface.size.0, [640, 480]);
+    }
+
+    #[test]
+    fn the_given_command_is_quoted() {
+        let words = ["/usr/bin/pnaen", "render", "it's.glb", "-o", "a b.png"].map(OsString::from);
+        let expected = if cfg!(windows) {
+            "pnaen render \"it's.glb\" -o \"a b.png\""
+        } else {
+            r"pnaen render 'it'\''s.glb' -o 'a b.png'"
+        };
+        assert_eq!(given(words), expected);
+    }
+
+    #[test]
+    fn a_frozen_lod_camera_is_written_unless_it_is_the_pictures() {
+        let (source, preparation, settings) =
+            ("shape:torus".parse().expect("a shape"), Preparation::default(), Settings::default());
+        let own = camera();
+        let frozen = Camera { azimuth: -7.5, distance: 3.0, orthographic: true, ..own };
+        let with = |lod_camera| CopiedCommand { lod_camera, ..shown(&source, &preparation, &settings, &own) }.line();
+        let args = parsed(&with(Some((&frozen, [320, 200]))));
+        let Some(camera) = args.shot.lod.lod_camera else { panic!("it has an LOD camera") };
+        assert_eq!((camera.azimuth, camera.elevation, camera.distance), (-7.5, own.elevation, Some(1.5)));
+        assert_eq!(args.shot.lod.lod_target.map(|place| place.0), Some(own.target));
+        assert_eq!(
+            (args.shot.lod.lod_size.map(|size| size.0), args.shot.lod.lod_orthographic),
+            (Some([320, 200]), true)
+        );
+        let args = parsed(&with(Some((&frozen, [640, 480]))));
+        assert!(
+            args.shot.lod.lod_camera.is_some() && args.shot.lod.lod_size.is_none(),
+            "its view has the picture's size"
+        );
+        assert_eq!(with(Some((&own, [640, 480]))), with(None));
     }
 
     proptest! {
@@ -246,9 +388,9 @@ mod tests {
             let preparation = Preparation { heights, ..Preparation::default() };
             let (source, camera) = ("shape:torus@2".parse().expect("a shape"), camera());
             let args = parsed(&shown(&source, &preparation, &settings, &camera).line());
-            let PictureOptions(picture) = args.picture;
-            prop_assert!(args.surface.check_with(picture.split_surface).is_ok());
-            prop_assert_eq!(args.surface.preparation(), preparation);
+            let PictureOptions(picture) = args.shot.picture;
+            prop_assert!(args.shot.surface.check_with(picture.split_surface).is_ok());
+            prop_assert_eq!(args.shot.surface.preparation(), preparation);
             // Options without effect may have any value. Which they are, `unused_options_have_no_effect` holds.
             let used = |settings: Settings| {
                 let mut used = settings;
@@ -257,7 +399,7 @@ mod tests {
                 }
                 used
             };
-            prop_assert_eq!(used(picture.with(args.surface.tessellation())), used(settings));
+            prop_assert_eq!(used(picture.with(args.shot.surface.tessellation())), used(settings));
         }
     }
 }

@@ -1,15 +1,17 @@
 //! `pnaen factors`: writes the hull shader's factors of every patch.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::tessellate::Device;
 use super::{AdapterOption, CliError, SurfaceOptions, file_of, file_of_heights, keep_apart, load_apart, write_text};
 use crate::engine::Engine;
 use crate::factors_file::to_csv;
-use crate::gpu::Timing;
+use crate::gpu::{GpuError, Timing};
 use crate::load::Source;
+use crate::progress::Progress;
+use crate::render::Scene;
 use crate::settings::Settings;
-use crate::tessellate::{self, bounds_through};
+use crate::tessellate::{self, HullFactors, Inputs, bounds_through};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -52,9 +54,30 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
                 engine.count(&mut scene, &settings.inputs(view), &mut Timing::Off)?;
                 Ok(scene.tessellator.totals().1)
             })?;
-            engine.count(&mut scene, &settings.inputs(view), &mut Timing::Off)?;
-            scene.tessellator.hull_factors()?
+            computed(&engine, &mut scene, &settings.inputs(view))?
         }
     };
     write_text(&args.output, &to_csv(topology, &written, args.surface.tessellation().partitioning))
+}
+
+/// The factors that a hull shader would hand to the tessellator with these inputs.
+fn computed(engine: &Engine, scene: &mut Scene, inputs: &Inputs) -> Result<Vec<HullFactors>, GpuError> {
+    engine.count(scene, inputs, &mut Timing::Off)?;
+    scene.tessellator.hull_factors()
+}
+
+/// Writes the factors of a scene with these inputs as CSV.
+///
+/// # Errors
+/// The device was lost, or the file can't be written.
+pub(crate) fn write_factors(
+    engine: &Engine,
+    scene: &mut Scene,
+    inputs: &Inputs,
+    path: &Path,
+    progress: &Progress,
+) -> Result<(), CliError> {
+    let factors = computed(engine, scene, inputs)?;
+    progress.check()?;
+    write_text(path, &to_csv(scene.tessellator.topology(), &factors, inputs.tessellation.partitioning))
 }

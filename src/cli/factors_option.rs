@@ -49,18 +49,9 @@ impl FactorsOption {
         topology: &Topology,
         tessellation: &Tessellation,
     ) -> Result<Option<Given>, CliError> {
-        let Tessellation { convention, partitioning, .. } = *tessellation;
+        let convention = tessellation.convention;
         let Some(path) = &self.given else { return Ok(None) };
-        let text = read_text(path)?;
-        let factors = from_csv(&text, topology, mesh.triangles.len(), partitioning).map_err(|error| {
-            CliError::Line { path: shown_path(path), line: error.line, reason: error.fault.to_string() }
-        })?;
-        if partitioning == Partitioning::Subtriangulation {
-            let uneven = topology.patches.iter().zip(&factors).find(|(_, factors)| !factors.is_uniform());
-            if let Some((patch, _)) = uneven {
-                return Err(CliError::Uneven { path: shown_path(path), triangle: patch.triangle });
-            }
-        }
+        let factors = read_factors(path, mesh, topology, tessellation.partitioning)?;
         let agreement = Agreement::of(topology, &factors, convention);
         for line in said(topology, &agreement, convention) {
             let _ = writeln!(std::io::stderr(), "pnaen: {line}");
@@ -68,6 +59,31 @@ impl FactorsOption {
         let stats = FactorsFile::new(path, topology, &agreement, convention);
         Ok(Some(Given { factors, stats }))
     }
+}
+
+/// Reads the factors of each patch of a mesh from a file.
+///
+/// # Errors
+/// The file can't be read, isn't for this mesh, or has factors that the partitioning doesn't take.
+pub(crate) fn read_factors(
+    path: &Path,
+    mesh: &Mesh,
+    topology: &Topology,
+    partitioning: Partitioning,
+) -> Result<Vec<HullFactors>, CliError> {
+    let text = read_text(path)?;
+    let factors = from_csv(&text, topology, mesh.triangles.len(), partitioning).map_err(|error| CliError::Line {
+        path: shown_path(path),
+        line: error.line,
+        reason: error.fault.to_string(),
+    })?;
+    if partitioning == Partitioning::Subtriangulation {
+        let uneven = topology.patches.iter().zip(&factors).find(|(_, factors)| !factors.is_uniform());
+        if let Some((patch, _)) = uneven {
+            return Err(CliError::Uneven { path: shown_path(path), triangle: patch.triangle });
+        }
+    }
+    Ok(factors)
 }
 
 /// Returns the report, as lines for standard error.
@@ -126,19 +142,13 @@ fn order_text(agreement: &Agreement, convention: Convention) -> Option<String> {
              two factors where they are written"
         ));
     }
-    let nearest = agreement.orders.iter().filter_map(|order| Some((order, named_or_own(order)?)));
-    let (order, nearest) = nearest.min_by_key(|(order, _)| order.different)?;
-    let differ = if order.different == 1 { "edge that differs" } else { "edges that differ" };
+    let (nearest, different) = agreement.nearest()?;
+    let differ = if different == 1 { "edge that differs" } else { "edges that differ" };
     Some(format!(
         "no convention makes the file consistent; {} comes nearest, with {} {differ}",
         nearest.name(),
-        order.different
+        different
     ))
-}
-
-/// The convention that has factors in this order, if it is a consistent one.
-fn named_or_own(order: &Order) -> Option<Convention> {
-    order.convention().filter(|convention| convention.is_consistent())
 }
 
 /// The report as JSON.
@@ -206,7 +216,7 @@ impl FactorsFile {
             edges_compared: agreement.edges_compared,
             edges_different: agreement.edges.len() as u64,
             patches_culled: agreement.patches_culled,
-            consistent_as: agreement.consistent().filter_map(named_or_own).map(Choice::name).collect(),
+            consistent_as: agreement.consistent().filter_map(Order::valid_convention).map(Choice::name).collect(),
             orders: agreement.orders.iter().map(order).collect(),
             edges: agreement.edges.iter().take(LISTED).map(edge).collect(),
         }

@@ -10,16 +10,21 @@ mod factors;
 mod factors_option;
 mod gallery;
 mod info;
+mod legend;
 mod mesh_report;
 mod options;
 mod output_guard;
 pub(crate) mod picture_comparison;
+mod picture_file;
 mod reference;
 mod render;
+mod shot;
+mod shot_options;
 mod stability;
 mod stats;
 mod tessellate;
 mod truth;
+mod turntable;
 
 use std::io::{Read, Write};
 use std::path::Path;
@@ -27,22 +32,26 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use clap::{Parser, Subcommand};
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use thiserror::Error;
 
 pub(crate) use adapters::AdapterOption;
 pub(crate) use animation::AnimationOption;
-pub(crate) use factors_option::FactorsOption;
+pub(crate) use factors_option::{FactorsOption, read_factors};
 use output_guard::{file_of, file_of_heights, keep_apart};
 
+pub(crate) use adjacency::write_adjacency;
 pub(crate) use copied_command::CopiedCommand;
+pub(crate) use factors::write_factors;
 pub(crate) use options::{LimitOption, SurfaceOptions, WeldOption};
 pub(crate) use picture_comparison::{CompareError, compare};
+pub(crate) use picture_file::{Stamp, write_picture, write_stamped};
 #[cfg(test)]
 pub(crate) use render::run_with as render_with;
+pub(crate) use shot::{Shot, ShotView, StatsWanted, Subject};
 #[cfg(test)]
 pub(crate) use tessellate::run_with as tessellate_with;
-pub(crate) use truth::TruthOption;
+pub(crate) use truth::{ReferenceSurface, TruthOption};
+pub(crate) use turntable::{FPS, FRAMES, Turn, frame_name};
 
 use crate::engine::{Loaded, Preparation};
 use crate::export::ExportError;
@@ -51,7 +60,7 @@ use crate::files::file_reason;
 use crate::gpu::GpuError;
 use crate::load::{LoadError, Source};
 use crate::names::{on_one_line, shown_path};
-use crate::progress::Progress;
+use crate::progress::{Cancelled, Progress};
 use crate::settings::Settings;
 
 /// Shows what tessellation does to a mesh in a window; commands write pictures, meshes and numbers instead
@@ -74,6 +83,11 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Draw the picture that the window shows, into a PNG file
     Render(render::Args),
+    /// Draw pictures from all around, as numbered PNG files or an animated GIF
+    ///
+    /// The camera turns once around the vertical axis through the point that it looks at. LOD follows the camera unless
+    /// --lod-camera is given.
+    Turntable(turntable::Args),
     /// Write the tessellated mesh
     Tessellate(tessellate::Args),
     /// Print the tessellator's domain points and triangles for given factors
@@ -112,6 +126,8 @@ pub(crate) enum CliError {
     Load(#[from] LoadError),
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     #[error(transparent)]
     Export(#[from] ExportError),
     #[error("{path}: could not be {doing} ({reason})")]
@@ -166,8 +182,10 @@ pub(crate) enum CliError {
 
 /// Runs a command. A closed pipe is no failure: the reader wants no more.
 pub(crate) fn run(command: Command) -> ExitCode {
+    let line = copied_command::given(std::env::args_os());
     let result = match command {
-        Command::Render(args) => render::run(&args),
+        Command::Render(args) => render::run(&args, &line),
+        Command::Turntable(args) => turntable::run(&args, &line),
         Command::Tessellate(args) => tessellate::run(&args),
         Command::Domain(args) => domain::run(&args),
         Command::Factors(args) => factors::run(&args),
@@ -208,7 +226,8 @@ pub(crate) fn preview(
     path: &Path,
 ) -> Result<(), CliError> {
     let settings = if source.is_some() { Settings::opening() } else { Settings::greeting() };
-    render::run(&render::Args::preview(source.unwrap_or_default(), settings, limit, adapter, path))
+    let line = copied_command::given(std::env::args_os());
+    render::run(&render::Args::preview(source.unwrap_or_default(), settings, limit, adapter, path), &line)
 }
 
 /// Reads a whole text file, or standard input if the path is `-`.
@@ -262,14 +281,6 @@ fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
         return out.write_all(bytes).and_then(|()| out.flush()).map_err(CliError::Output);
     }
     crate::files::write_whole(path, bytes).map_err(|error| file_error(path, "written", &file_reason(&error)))
-}
-
-/// Writes a PNG file, whatever its name ends in.
-pub(crate) fn write_picture(path: &Path, picture: &image::DynamicImage) -> Result<(), CliError> {
-    let mut bytes = Vec::new();
-    let encoder = PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, FilterType::Adaptive);
-    picture.write_with_encoder(encoder).map_err(|error| file_error(path, "encoded", &error))?;
-    crate::files::write_whole(path, &bytes).map_err(|error| file_error(path, "written", &file_reason(&error)))
 }
 
 /// Serialises a value on several lines, with a line end.

@@ -1,6 +1,7 @@
 //! Options that several commands share.
 
 mod declared;
+mod lod_camera;
 mod values;
 
 use std::io::Write;
@@ -20,6 +21,7 @@ use crate::settings::{ARENA_BYTES, Settings};
 use crate::tessellate::{Displacement, Lod, Partitioning, Surface, Tessellation, tolerance_within_budget};
 
 pub(crate) use declared::{PictureOptions, TessellationOptions, choice, number_of};
+pub(crate) use lod_camera::LodCameraOption;
 pub(crate) use values::{CameraOption, Position, Size, model, picture, source, threshold};
 
 use values::{bytes, crease_band, weld};

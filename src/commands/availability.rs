@@ -4,6 +4,9 @@ use std::path::PathBuf;
 
 use crate::settings::options::{LOD_IS_FIXED, NORMALS_FOLLOW_TRIANGLES};
 
+/// The greatest number of bookmarks of a file: one for each key from 1 to 9.
+pub(crate) const MOST_BOOKMARKS: usize = 9;
+
 /// The window's state as far as commands depend on it.
 #[derive(Clone, Debug, Default)]
 pub struct Availability {
@@ -12,13 +15,22 @@ pub struct Availability {
     pub has_picture: bool,
     /// Whether a reference surface was chosen for the mesh.
     pub has_truth: bool,
+    /// Whether factors of a file take the place of LOD's.
+    pub has_factors: bool,
     pub can_undo: bool,
     pub can_redo: bool,
+    /// Whether there is a view before the present one, and one after it.
+    pub has_view_before: bool,
+    pub has_view_after: bool,
+    /// The number of the file's bookmarks.
+    pub bookmarks: usize,
     /// Whether an edge or a triangle is selected.
     pub has_selection: bool,
     pub has_selected_patch: bool,
     /// Whether the mesh has heights that can displace it.
     pub has_heights: bool,
+    /// Whether the mesh has texture coordinates.
+    pub has_texture_coordinates: bool,
     /// Whether normals can be evaluated at pixels.
     pub takes_normals_at: bool,
     /// Whether the LOD that is used takes a tessellation factor.
@@ -28,13 +40,15 @@ pub struct Availability {
     /// Whether backs of the mesh can't be seen, so that patches that face away can be left out.
     pub can_cull_back_faces: bool,
     pub is_split: bool,
+    /// Whether LOD and clipping are frozen for a camera.
+    pub is_frozen: bool,
     pub shows_deviation: bool,
     /// Whether the chart's panel is open, with something to measure.
     pub can_measure_chart: bool,
     /// Whether the chart has points.
     pub has_chart: bool,
-    /// Whether a mesh is being exported.
-    pub is_exporting: bool,
+    /// Whether a file is being written, other than the chart's.
+    pub is_writing: bool,
     /// The names of the mesh's animation clips.
     pub clips: Vec<String>,
     /// Files that were opened last, the last one first.
@@ -49,20 +63,26 @@ impl Availability {
             has_document: true,
             has_picture: true,
             has_truth: true,
+            has_factors: true,
             can_undo: true,
             can_redo: true,
+            has_view_before: true,
+            has_view_after: true,
+            bookmarks: 1,
             has_selection: true,
             has_selected_patch: true,
             has_heights: true,
+            has_texture_coordinates: true,
             takes_normals_at: true,
             takes_factor: true,
             takes_lod: true,
             can_cull_back_faces: true,
             is_split: true,
+            is_frozen: true,
             shows_deviation: true,
             can_measure_chart: true,
             has_chart: true,
-            is_exporting: false,
+            is_writing: false,
             clips: vec!["Walk".into()],
             recent: vec!["/meshes/vase.glb".into()],
         }
@@ -74,6 +94,10 @@ fn unless(holds: bool, why_not: &'static str) -> Option<&'static str> {
     if holds { None } else { Some(why_not) }
 }
 
+pub(super) fn always(_: &Availability) -> Option<&'static str> {
+    None
+}
+
 pub(super) fn document(now: &Availability) -> Option<&'static str> {
     unless(now.has_document, "No mesh is open.")
 }
@@ -83,7 +107,13 @@ pub(super) fn picture(now: &Availability) -> Option<&'static str> {
 }
 
 pub(super) fn export(now: &Availability) -> Option<&'static str> {
-    document(now).or(unless(!now.is_exporting, "A mesh is being exported."))
+    document(now).or(unless(!now.is_writing, WRITES))
+}
+
+const WRITES: &str = "Another file is being written.";
+
+pub(super) fn saved_picture(now: &Availability) -> Option<&'static str> {
+    picture(now).or(unless(!now.is_writing, WRITES))
 }
 
 pub(super) fn truth(now: &Availability) -> Option<&'static str> {
@@ -98,10 +128,33 @@ pub(super) fn redo(now: &Availability) -> Option<&'static str> {
     unless(now.can_redo, "No change was undone.")
 }
 
+pub(super) fn factors(now: &Availability) -> Option<&'static str> {
+    unless(now.has_factors, "No file of factors is open.")
+}
+
+pub(super) fn view_before(now: &Availability) -> Option<&'static str> {
+    unless(now.has_view_before, "The camera has not moved.")
+}
+
+pub(super) fn view_after(now: &Availability) -> Option<&'static str> {
+    unless(now.has_view_after, "No movement of the camera was undone.")
+}
+
+pub(super) fn bookmarks(now: &Availability) -> Option<&'static str> {
+    unless(now.bookmarks > 0, "This file has no bookmarks.")
+}
+
+pub(super) fn room_for_bookmarks(now: &Availability) -> Option<&'static str> {
+    document(now).or(unless(now.bookmarks < MOST_BOOKMARKS, "A file has at most nine bookmarks: forget them first."))
+}
+
 /// Why patches that show their backs can't be left out.
 pub(crate) const BACKS_ARE_SEEN: &str = "Backs of this mesh can be seen, because one of these holds: it is open, a \
                                          part of it is wound inward, a material is double-sided, it is displaced, or \
                                          it moves.";
+
+/// Why a checker can't be drawn.
+pub(crate) const NO_TEXTURE_COORDINATES: &str = "The mesh has no texture coordinates.";
 
 pub(super) fn selection(now: &Availability) -> Option<&'static str> {
     unless(now.has_selection, "Nothing is selected.")
@@ -115,16 +168,25 @@ pub(super) fn heights(now: &Availability) -> Option<&'static str> {
     unless(now.has_heights, "The mesh has no heights: choose a height image.")
 }
 
+pub(super) fn texture_coordinates(now: &Availability) -> Option<&'static str> {
+    unless(now.has_texture_coordinates, NO_TEXTURE_COORDINATES)
+}
+
 pub(super) fn normals_at(now: &Availability) -> Option<&'static str> {
     unless(now.takes_normals_at, NORMALS_FOLLOW_TRIANGLES)
 }
 
+/// Why factors of LOD can't be set, unless factors come from a file.
+fn from_lod(now: &Availability, why: &'static str) -> &'static str {
+    if now.has_factors { "The factors come from a file." } else { why }
+}
+
 pub(super) fn factor(now: &Availability) -> Option<&'static str> {
-    unless(now.takes_factor, "Adaptive LOD computes a factor for every edge.")
+    unless(now.takes_factor, from_lod(now, "Adaptive LOD computes a factor for every edge."))
 }
 
 pub(super) fn lod(now: &Availability) -> Option<&'static str> {
-    unless(now.takes_lod, LOD_IS_FIXED)
+    unless(now.takes_lod, from_lod(now, LOD_IS_FIXED))
 }
 
 pub(super) fn culling(now: &Availability) -> Option<&'static str> {
@@ -133,6 +195,10 @@ pub(super) fn culling(now: &Availability) -> Option<&'static str> {
 
 pub(super) fn split(now: &Availability) -> Option<&'static str> {
     unless(now.is_split, "Only a split view has a left half.")
+}
+
+pub(super) fn frozen(now: &Availability) -> Option<&'static str> {
+    unless(now.is_frozen, "The LOD camera is not frozen.")
 }
 
 pub(super) fn deviation(now: &Availability) -> Option<&'static str> {

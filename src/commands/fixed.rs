@@ -15,11 +15,14 @@ pub(crate) const HEIGHT_IMAGE: &str =
 
 /// All of them, in the order of the menus.
 pub(super) fn commands() -> Vec<Command> {
-    [file(), edit(), view(), camera(), look(), tessellation(), help()].into_iter().flatten().collect()
+    [file(), edit(), view(), standpoints(), camera(), look(), tessellation(), help()].into_iter().flatten().collect()
 }
 
+/// What a file of factors is for.
+const FACTORS: &str = "Opens the tessellation factors that another engine wrote, in place of those of LOD, and lists where they disagree.";
+
 const TRUTH: &str = "Opens the mesh that deviation and charts compare with, such as the high-poly original.";
-const PICTURE: &str = "Writes the viewport's picture, at its size, as a PNG file.";
+const PICTURE: &str = "Writes the picture as a PNG file, in any size, with or without background, overlays and legend.";
 const MESH: &str = "Writes the tessellated mesh as a .glb or .obj file, as it is emitted for this view.";
 
 fn file() -> Vec<Command> {
@@ -54,6 +57,23 @@ fn file() -> Vec<Command> {
         )
         .menu(File, 2)
         .unless(when::truth),
+        Command::new(Action::File(FileAction::Factors), "Factors of a file…", FACTORS)
+            .menu(File, 2)
+            .unless(when::document),
+        Command::new(
+            Action::File(FileAction::FactorsPath),
+            "Factors path…",
+            "Opens a file of factors by its typed path.",
+        )
+        .menu(File, 2)
+        .unless(when::document),
+        Command::new(
+            Action::File(FileAction::ForgetFactors),
+            "Back to LOD",
+            "Closes the file of factors. LOD computes them again.",
+        )
+        .menu(File, 2)
+        .unless(when::factors),
     ];
     commands.extend(Shape::ALL.map(|shape| {
         let text = format!("Opens the shape {}, made in code.", shape.name());
@@ -83,20 +103,48 @@ fn file() -> Vec<Command> {
 }
 
 /// Commands that write files.
-fn writing() -> [Command; 5] {
+fn writing() -> [Command; 9] {
     use Menu::File;
     [
         Command::new(Action::File(FileAction::SavePicture), "Save picture…", PICTURE)
             .keys([ctrl(Key::S)])
             .menu(File, 4)
-            .unless(when::picture),
+            .unless(when::saved_picture),
         Command::new(
             Action::File(FileAction::SavePicturePath),
             "Save picture path…",
-            "Saves the picture as a PNG file at a typed path.",
+            "Saves the picture as a PNG file at a typed path, as was last chosen under \u{201c}Save picture\u{201d}.",
         )
         .menu(File, 4)
-        .unless(when::picture),
+        .unless(when::saved_picture),
+        Command::new(
+            Action::File(FileAction::SaveTurntable),
+            "Save turntable…",
+            "Draws pictures from all around, and writes them as numbered PNG files or as one animated GIF.",
+        )
+        .menu(File, 4)
+        .unless(when::saved_picture),
+        Command::new(
+            Action::File(FileAction::SaveFactors),
+            "Save factors…",
+            "Writes the tessellation factors of every patch as CSV, as for this view.",
+        )
+        .menu(File, 4)
+        .unless(when::export),
+        Command::new(
+            Action::File(FileAction::SaveAdjacency),
+            "Save adjacency…",
+            "Writes the index buffer of PN-AEN patches, with 9 indices a patch, as JSON or as bare indices (.bin).",
+        )
+        .menu(File, 4)
+        .unless(when::export),
+        Command::new(
+            Action::File(FileAction::SaveStats),
+            "Save stats…",
+            "Measures and times what is shown, and writes the numbers as JSON.",
+        )
+        .menu(File, 4)
+        .unless(when::saved_picture),
         Command::new(Action::File(FileAction::ExportMesh), "Export mesh…", MESH)
             .keys([ctrl(Key::E)])
             .menu(File, 4)
@@ -147,9 +195,6 @@ fn edit() -> Vec<Command> {
 
 fn view() -> Vec<Command> {
     use Menu::View;
-    let look = |standpoint, name: &'static str, text: &'static str, key| {
-        Command::new(Action::Camera(CameraAction::LookFrom(standpoint)), name, text).keys([plain(key)]).menu(View, 0)
-    };
     let theme =
         |theme, name: &'static str, text: &'static str| Command::new(Action::Theme(theme), name, text).menu(View, 3);
     vec![
@@ -164,9 +209,6 @@ fn view() -> Vec<Command> {
         .keys([shift(Key::F)])
         .menu(View, 0)
         .unless(when::selected_patch),
-        look(Standpoint::Front, "Front", "Looks from the front.", Key::Num1),
-        look(Standpoint::Right, "Right", "Looks from the right.", Key::Num3),
-        look(Standpoint::Top, "Top", "Looks from the top.", Key::Num7),
         Command::new(
             Action::Camera(CameraAction::Orthographic),
             "Orthographic",
@@ -174,6 +216,48 @@ fn view() -> Vec<Command> {
         )
         .keys([plain(Key::Num5)])
         .menu(View, 0),
+        Command::new(
+            Action::Camera(CameraAction::Before),
+            "View before",
+            "Goes back to the view before the camera last moved. Undo leaves the view as it is.",
+        )
+        .keys([plain(Key::OpenBracket)])
+        .menu(View, 0)
+        .unless(when::view_before),
+        Command::new(
+            Action::Camera(CameraAction::After),
+            "View after",
+            "Goes forward to the view that \u{201c}View before\u{201d} left.",
+        )
+        .keys([plain(Key::CloseBracket)])
+        .menu(View, 0)
+        .unless(when::view_after),
+        Command::new(
+            Action::AddBookmark,
+            "Bookmark this view",
+            "Keeps this view among the file's bookmarks, which are there again when the file is opened the next time.",
+        )
+        .keys([ctrl(Key::D)])
+        .submenu(Submenu::Bookmarks)
+        .unless(when::room_for_bookmarks),
+        Command::new(Action::ForgetBookmarks, "Forget bookmarks", "Forgets all bookmarks of this file.")
+            .submenu(Submenu::Bookmarks)
+            .unless(when::bookmarks),
+        Command::new(
+            Action::Ruler,
+            "Measure distance",
+            "Shows the distance between two places that you click on, in object units. The key, or Escape, ends it.",
+        )
+        .keys([shift(Key::D)])
+        .menu(View, 1)
+        .unless(when::document),
+        Command::new(
+            Action::Previews,
+            "Preview while the camera moves",
+            "Draws a cheaper picture while the camera moves, if the full one would be late. Switch it off to judge LOD in \
+             motion.",
+        )
+        .menu(View, 1),
         Command::new(
             Action::Chart,
             "Chart",
@@ -183,9 +267,17 @@ fn view() -> Vec<Command> {
         .menu(View, 1),
         Command::new(Action::MeasureChart, "Measure chart", "Measures the settings that are missing from the chart.")
             .unless(when::measure_chart),
-        Command::new(Action::HidePanels, "Hide panels", "Hides the panels on both sides, or shows them again.")
-            .keys([ctrl(Key::B)])
+        Command::new(Action::HidePanels, "Hide panels", "Hides the panels on both sides, or shows them again. While a control has the focus, Tab goes to the next one.")
+            .keys([plain(Key::Tab), ctrl(Key::B)])
             .menu(View, 1),
+        Command::new(
+            Action::FocusControls,
+            "Keyboard to controls",
+            "Gives the keyboard to the first control. Tab and Shift+Tab then go from one to the next, and Escape gives the \
+             keyboard back to the picture.",
+        )
+        .keys([plain(Key::F6)])
+        .menu(View, 1),
         Command::new(Action::OpenAllSections, "Open all sections", "Opens every section of both panels.").menu(View, 1),
         Command::new(Action::FoldAllSections, "Fold all sections", "Folds every section of both panels.").menu(View, 1),
         Command::new(Action::Warnings, "Warnings…", "Lists what was repaired or left out when the file was read.")
@@ -204,6 +296,23 @@ fn view() -> Vec<Command> {
         theme(ThemePreference::Light, "Light theme", "Draws the window dark on light."),
         theme(ThemePreference::Dark, "Dark theme", "Draws the window light on dark."),
     ]
+}
+
+/// The six standard views.
+fn standpoints() -> Vec<Command> {
+    let all = [
+        (Standpoint::Front, "Front", "Looks from the front.", plain(Key::Num1)),
+        (Standpoint::Back, "Back", "Looks from the back.", ctrl(Key::Num1)),
+        (Standpoint::Right, "Right", "Looks from the right.", plain(Key::Num3)),
+        (Standpoint::Left, "Left", "Looks from the left.", ctrl(Key::Num3)),
+        (Standpoint::Top, "Top", "Looks from the top.", plain(Key::Num7)),
+        (Standpoint::Bottom, "Bottom", "Looks from the bottom.", ctrl(Key::Num7)),
+    ];
+    let look = |(standpoint, name, text, key)| {
+        let action = Action::Camera(CameraAction::LookFrom(standpoint));
+        Command::new(action, format!("Look from: {name}"), text).keys([key]).submenu(Submenu::LookFrom)
+    };
+    all.map(look).into()
 }
 
 /// Commands that move the camera with keys.
@@ -255,7 +364,7 @@ fn look() -> Vec<Command> {
         Command::new(
             Action::Cancel,
             "Cancel",
-            "Stops a drawing that takes long. If there is none, closes messages, cancels loading and exporting, and \
+            "Stops a drawing that takes long. If there is none, closes messages, cancels loading and writing, and \
              deselects.",
         )
         .keys([plain(Key::Escape)]),
@@ -296,6 +405,14 @@ fn tessellation() -> Vec<Command> {
         )
         .keys([plain(Key::Z)])
         .unless(when::picture),
+        Command::new(
+            Action::Camera(CameraAction::ThroughFrozen),
+            "Look through frozen LOD camera",
+            "Moves the camera back to where LOD and clipping were frozen.",
+        )
+        .keys([shift(Key::Z)])
+        .menu(Menu::View, 0)
+        .unless(when::frozen),
         Command::new(Action::ToggleDisplacement, "Displacement", "Switches displacement by heights on or off.")
             .keys([plain(Key::D)])
             .unless(when::heights),

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use egui::{Key, KeyboardShortcut};
 
 use super::availability as when;
-use super::{Action, Availability, Change, Command, FileAction, Preparing, Submenu, plain};
+use super::{Action, Availability, CameraAction, Change, Command, FileAction, Preparing, Submenu, alt, plain, shift};
 use crate::mesh::weld_preview::TOLERANCES;
 use crate::names::shortened;
 use crate::settings::{Choice, Colors, Control, DeviationUnit, NormalsAt, Overlay, Overlays, options};
@@ -22,6 +22,7 @@ pub(super) fn commands(now: &Availability) -> Vec<Command> {
     all.extend(mesh());
     all.extend(clips(now));
     all.extend(recent(now));
+    all.extend(bookmarks(now));
     all
 }
 
@@ -35,7 +36,7 @@ fn values<T: Choice>(label: &str, change: impl Fn(T) -> Change, why_not: super::
 }
 
 fn settings() -> Vec<Command> {
-    let always = |_: &Availability| None;
+    let always = when::always;
     let mut all = values::<Surface>(options::SURFACE.label, Change::Surface, always);
     let left = "Left of the split";
     all.extend(options::SPLIT_SURFACE.unset.iter().map(|unset| {
@@ -55,9 +56,14 @@ fn settings() -> Vec<Command> {
     all
 }
 
-/// The key that switches an overlay.
+/// The key that switches an overlay. Those that look at the surface by itself have Shift and a letter, the zebra that of its
+/// stripes.
 fn overlay_key(overlay: Overlay) -> KeyboardShortcut {
     plain(match overlay {
+        Overlay::Clay => return shift(Key::C),
+        Overlay::Zebra => return shift(Key::S),
+        Overlay::ShadingNormals => return shift(Key::N),
+        Overlay::UvChecker => return shift(Key::U),
         Overlay::Wireframe => Key::W,
         Overlay::Patches => Key::P,
         Overlay::Barycentric => Key::B,
@@ -71,6 +77,7 @@ fn overlay_key(overlay: Overlay) -> KeyboardShortcut {
         Overlay::LowFactors => Key::U,
         Overlay::Excess => Key::M,
         Overlay::Normals => Key::N,
+        Overlay::Grid => Key::Y,
         Overlay::Deviation => Key::V,
     })
 }
@@ -87,7 +94,9 @@ fn colors_and_overlays() -> Vec<Command> {
             Control::Colors(_, given) => format!("{colors}: {}", given.label()),
             Control::Switch(_) => format!("Overlay: {}", overlay.label()),
         };
-        Command::new(Action::Setting(Change::Overlay(overlay)), name, overlay.text()).keys([overlay_key(overlay)])
+        let why_not = if overlay == Overlay::UvChecker { when::texture_coordinates } else { when::always };
+        let command = Command::new(Action::Setting(Change::Overlay(overlay)), name, overlay.text());
+        command.keys([overlay_key(overlay)]).unless(why_not)
     }));
     all
 }
@@ -140,4 +149,18 @@ fn recent(now: &Availability) -> Vec<Command> {
         Command::new(Action::File(FileAction::OpenRecent(path.clone())), name, text).submenu(Submenu::OpenRecent)
     };
     now.recent.iter().map(open).collect()
+}
+
+/// The keys of the bookmarks, from the first one on.
+const BOOKMARK_KEYS: [Key; when::MOST_BOOKMARKS] =
+    [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
+
+fn bookmarks(now: &Availability) -> Vec<Command> {
+    let go = |(index, key): (usize, Key)| {
+        let text = format!("Goes to the view of bookmark {}.", index + 1);
+        Command::new(Action::Camera(CameraAction::Bookmark(index)), format!("Bookmark {}", index + 1), text)
+            .keys([alt(key)])
+            .submenu(Submenu::Bookmarks)
+    };
+    BOOKMARK_KEYS.into_iter().enumerate().take(now.bookmarks).map(go).collect()
 }

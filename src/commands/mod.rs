@@ -17,7 +17,7 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 use crate::mesh::Shape;
 use crate::render::Standpoint;
 
-pub(crate) use availability::{Availability, BACKS_ARE_SEEN};
+pub(crate) use availability::{Availability, BACKS_ARE_SEEN, MOST_BOOKMARKS, NO_TEXTURE_COORDINATES};
 pub(crate) use change::Change;
 pub(crate) use fixed::HEIGHT_IMAGE;
 
@@ -35,10 +35,15 @@ pub enum Action {
     ForgetEverything,
     SplitView,
     HidePanels,
+    FocusControls,
     OpenAllSections,
     FoldAllSections,
     Warnings,
     FreezeLodCamera,
+    Ruler,
+    Previews,
+    AddBookmark,
+    ForgetBookmarks,
     Background,
     Chart,
     MeasureChart,
@@ -70,8 +75,15 @@ pub enum FileAction {
     Truth,
     TruthPath,
     ForgetTruth,
+    Factors,
+    FactorsPath,
+    ForgetFactors,
     SavePicture,
     SavePicturePath,
+    SaveTurntable,
+    SaveFactors,
+    SaveAdjacency,
+    SaveStats,
     ExportMesh,
     ExportMeshPath,
     SaveChart,
@@ -84,6 +96,13 @@ pub enum CameraAction {
     Frame,
     FramePatch,
     LookFrom(Standpoint),
+    /// The view before the last movement.
+    Before,
+    After,
+    /// An index into the bookmarks.
+    Bookmark(usize),
+    /// To where the frozen LOD camera is.
+    ThroughFrozen,
     Orthographic,
     Orbit(Direction),
     Pan(Direction),
@@ -136,6 +155,7 @@ impl Menu {
     pub fn submenus(self) -> &'static [(u8, Submenu)] {
         match self {
             Self::File => &[(0, Submenu::OpenRecent), (3, Submenu::Shapes)],
+            Self::View => &[(0, Submenu::LookFrom), (0, Submenu::Bookmarks)],
             _ => &[],
         }
     }
@@ -146,6 +166,8 @@ impl Menu {
 pub enum Submenu {
     OpenRecent,
     Shapes,
+    Bookmarks,
+    LookFrom,
 }
 
 impl Submenu {
@@ -153,6 +175,8 @@ impl Submenu {
         match self {
             Self::OpenRecent => "Open recent",
             Self::Shapes => "Shapes",
+            Self::Bookmarks => "Bookmarks",
+            Self::LookFrom => "Look from",
         }
     }
 }
@@ -282,6 +306,10 @@ const fn plain(key: Key) -> KeyboardShortcut {
 
 const fn shift(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::SHIFT, key)
+}
+
+const fn alt(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::ALT, key)
 }
 
 const fn ctrl(key: Key) -> KeyboardShortcut {

@@ -1,13 +1,16 @@
 //! The engine's measurements of a scene. One walk over the emitted mesh feeds all measurements that are asked for.
 
+use glam::{Mat4, Vec3};
+
 use super::Engine;
 use crate::gpu::GpuError;
 use crate::measure::{
     Accuracy, AccuracyMeasurement, AccuracyOptions, DeviationField, DeviationMeasurement, DeviationTarget, Measured,
     ScreenError, ScreenErrorMeasurement, Sizes, Survey, Visitor,
 };
+use crate::mesh::{Mesh, Topology};
 use crate::progress::Progress;
-use crate::render::{Camera, Scene};
+use crate::render::{Camera, LeakCount, Scene};
 use crate::tessellate::{Inputs, LodView, is_beyond_near};
 use crate::truth::Truth;
 use crate::view::ScreenView;
@@ -50,6 +53,21 @@ impl Engine {
     /// # Errors
     /// The device was lost.
     pub fn measure_all(&self, scene: &mut Scene, wanted: &Measurements) -> Result<MeasurementResults, GpuError> {
+        // No other code has this handle, so it is never cancelled.
+        self.measure_watched(scene, wanted, &Progress::new())
+    }
+
+    /// Like [`Self::measure_all`], and reports how much of the output was read. If `progress` is cancelled, the walk ends early
+    /// and the results are not whole.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn measure_watched(
+        &self,
+        scene: &mut Scene,
+        wanted: &Measurements,
+        progress: &Progress,
+    ) -> Result<MeasurementResults, GpuError> {
         let Measurements { survey, screen_error, deviation, accuracy, sizes } = wanted;
         if !survey && screen_error.is_none() && deviation.is_none() && accuracy.is_none() && sizes.is_none() {
             return Ok(MeasurementResults::default());
@@ -62,9 +80,7 @@ impl Engine {
         }
         let of_inputs = |inputs| ScreenErrorMeasurement::new(&mesh, &topology, inputs, triangles);
         let mut screen_error = wanted.screen_error.map(of_inputs);
-        // No other code has this handle, so it is never cancelled.
-        let progress = Progress::new();
-        let from = |target| DeviationMeasurement::new(target, &mesh, &topology, triangles, &progress);
+        let from = |target| DeviationMeasurement::new(target, &mesh, &topology, triangles, progress);
         let mut deviation = wanted.deviation.map(from);
         let of_truth = |(truth, view, options)| AccuracyMeasurement::new(truth, Some(view), options);
         let mut accuracy = wanted.accuracy.map(of_truth);
@@ -75,7 +91,11 @@ impl Engine {
         visitors.extend(deviation.as_mut().map(|visitor| visitor as &mut dyn Visitor));
         visitors.extend(accuracy.as_mut().map(|visitor| visitor as &mut dyn Visitor));
         visitors.extend(sizes.as_mut().map(|visitor| visitor as &mut dyn Visitor));
-        self.visit(scene, &mut visitors)?;
+        let chunks = scene.tessellator.chunk_count();
+        for index in (0..chunks).take_while(|_| progress.check().is_ok()) {
+            self.visit_chunk(scene, index, &mut visitors)?;
+            progress.set((index + 1) as f32 / chunks as f32);
+        }
         Ok(MeasurementResults {
             survey: survey.map(Survey::finish),
             flat_patches: screen_error.as_ref().map(ScreenErrorMeasurement::flat_patches),
@@ -97,6 +117,14 @@ impl Engine {
         Ok(survey.finish())
     }
 
+    /// Starts to count leaks, for a mesh that has a [`closed_extent`] beyond the near plane.
+    ///
+    /// # Errors
+    /// The picture is larger than the adapter draws, or the device was lost.
+    pub(crate) fn start_leaks(&self, size: [u32; 2], clip_from_object: Mat4) -> Result<LeakCount, GpuError> {
+        self.leaks.start(&self.gpu, size, clip_from_object)
+    }
+
     /// Counts the pixels through which one can see into a closed mesh from `camera`: see [`crate::render::LeakCounter`].
     /// Returns none where such a count means nothing: the mesh is open or reaches the near plane, or patches that face away
     /// are left out. The counts must be known.
@@ -112,13 +140,19 @@ impl Engine {
     ) -> Result<Option<u64>, GpuError> {
         let viewport = glam::vec2(size[0] as f32, size[1] as f32);
         let clip_from_object = camera.clip_from_object(viewport, &scene.bounds);
-        // Patches that clipping left out aren't in the measured extent, so their corners are tested as well.
-        let corners = scene.tessellator.posed().deformed().0.bounds();
-        let whole = [measured.extent[0].min(corners.min), measured.extent[1].max(corners.max)];
-        let closed = scene.tessellator.topology().is_closed_and_oriented() && measured.culled.facing_away == 0;
-        if !closed || !is_beyond_near(clip_from_object, whole) {
+        let (mesh, topology) = scene.tessellator.posed().deformed();
+        if !closed_extent(&mesh, &topology, measured).is_some_and(|extent| is_beyond_near(clip_from_object, extent)) {
             return Ok(None);
         }
         self.leaks.count(&self.gpu, scene, size, clip_from_object).map(Some)
     }
+}
+
+/// The least and the largest coordinates of what was emitted and of its mesh, in object units. None if leaks of it can't be
+/// counted: the mesh is open, or patches were left out because they face away.
+pub(crate) fn closed_extent(mesh: &Mesh, topology: &Topology, measured: &Measured) -> Option<[Vec3; 2]> {
+    // Patches that clipping left out aren't in the measured extent, so their corners count as well.
+    let (corners, [least, most]) = (mesh.bounds(), measured.extent);
+    let is_closed = topology.is_closed_and_oriented() && measured.culled.facing_away == 0;
+    is_closed.then(|| [least.min(corners.min), most.max(corners.max)])
 }

@@ -108,7 +108,15 @@ impl Tessellator {
         let (gpu, pipelines, solid) = (self.gpu.clone(), self.pipelines.clone(), self.solid);
         let (mesh, images) =
             ((self.mesh.clone(), self.topology.clone()), self.images.as_ref().map(HeightImages::shared));
-        move || Self::with(&gpu, pipelines, mesh, solid, images, |patches| Arena::new(&gpu, patches, arena_bytes))
+        let given = self.given.clone();
+        move || {
+            let make_arena = |patches| Arena::new(&gpu, patches, arena_bytes);
+            let mut other = Self::with(&gpu, pipelines, mesh, solid, images, make_arena)?;
+            if given.is_some() {
+                other.give(given)?;
+            }
+            Ok(other)
+        }
     }
 
     fn with(

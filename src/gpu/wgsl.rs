@@ -25,12 +25,12 @@ macro_rules! wgsl {
 pub(crate) use wgsl;
 
 // Files that several passes share. A file that only one pass has is declared where that pass is.
-pub(crate) static ROW_WIDTHS: WgslFile = wgsl!("row_widths");
-pub(crate) static FACTORS: WgslFile = wgsl!("factors", ROW_WIDTHS);
+pub(crate) static QUOTIENTS: WgslFile = wgsl!("quotients");
+pub(crate) static FACTORS: WgslFile = wgsl!("factors", QUOTIENTS);
 pub(crate) static DOMAIN_ROW: WgslFile = wgsl!("domain_row", FACTORS);
 pub(crate) static RINGS: WgslFile = wgsl!("rings");
 /// A module has it beside [`DOMAIN`].
-pub(crate) static ROWS: WgslFile = wgsl!("rows", DOMAIN_ROW, FACTORS, ROW_WIDTHS);
+pub(crate) static ROWS: WgslFile = wgsl!("rows", DOMAIN_ROW, FACTORS, QUOTIENTS);
 pub(crate) static SUBTRIANGULATION: WgslFile = wgsl!("subtriangulation", FACTORS);
 /// Beside it a module has [`CONNECTIVITY`] or [`CONNECTIVITY_TABLE`], which declare the same functions.
 pub(crate) static DOMAIN: WgslFile = wgsl!("domain", DOMAIN_ROW, FACTORS, RINGS, ROWS, SUBTRIANGULATION);

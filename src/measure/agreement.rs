@@ -54,6 +54,11 @@ impl Order {
     pub(crate) fn convention(&self) -> Option<Convention> {
         Convention::ALL.into_iter().find(|&convention| order(convention, factor_side) == self.sides)
     }
+
+    /// The convention that writes factors in this order, if it is a valid one.
+    pub(crate) fn valid_convention(&self) -> Option<Convention> {
+        self.convention().filter(|convention| convention.is_consistent())
+    }
 }
 
 const ORDERS: [[u32; 3]; 6] = [[1, 2, 0], [2, 0, 1], [0, 1, 2], [2, 1, 0], [1, 0, 2], [0, 2, 1]];
@@ -95,6 +100,12 @@ impl Agreement {
         }
         agreement.edges.sort_by(|a, b| b.difference().total_cmp(&a.difference()));
         agreement
+    }
+
+    /// The valid convention under which the fewest edges differ, and how many do.
+    pub(crate) fn nearest(&self) -> Option<(Convention, u64)> {
+        let valid = self.orders.iter().filter_map(|order| Some((order.valid_convention()?, order.different)));
+        valid.min_by_key(|(_, different)| *different)
     }
 
     /// Orders that make all sides of every edge agree.

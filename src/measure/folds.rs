@@ -32,20 +32,62 @@ fn domain_area([a, b, c]: [[u32; 2]; 3]) -> i64 {
     ab[0] * ac[1] - ab[1] * ac[0]
 }
 
-/// Counts the folded ones among triangles, which are indices into `vertices`.
-pub(super) fn count(topology: &Topology, ulp: f64, vertices: &[Vertex], triangles: &[[u32; 3]]) -> u64 {
+/// The folds of a patch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FoldedPatch {
+    pub patch: u32,
+    pub folds: u32,
+    /// The area of these triangles together, in square object units.
+    pub area: f64,
+    /// The middle of the largest of them.
+    pub place: Vec3,
+    /// Its area, by which the largest is found.
+    largest: f64,
+}
+
+impl FoldedPatch {
+    fn new(patch: u32) -> Self {
+        Self { patch, folds: 0, area: 0.0, place: Vec3::ZERO, largest: 0.0 }
+    }
+
+    fn add(&mut self, triangle: [DVec3; 3]) {
+        let area = 0.5 * facing(triangle).length();
+        self.folds += 1;
+        self.area += area;
+        if area > self.largest {
+            self.largest = area;
+            self.place = (triangle.into_iter().sum::<DVec3>() / 3.0).as_vec3();
+        }
+    }
+}
+
+/// Finds the folded ones among triangles, which are indices into `vertices` and come patch after patch, and adds them to the
+/// patches found so far.
+pub(super) fn find(
+    topology: &Topology,
+    ulp: f64,
+    vertices: &[Vertex],
+    triangles: &[[u32; 3]],
+    found: &mut Vec<FoldedPatch>,
+) {
     let at = |index: u32| Vec3::from(vertices[index as usize].position).as_dvec3();
     let (mut patch, mut patch_facing) = (u32::MAX, DVec3::ZERO);
-    let folded = triangles.iter().filter(|triangle| {
-        // Triangles come patch after patch.
+    for triangle in triangles {
         let own = vertices[triangle[0] as usize].patch();
         if own != patch {
             (patch, patch_facing) = (own, facing(corners(topology, own)));
         }
         let domain = triangle.map(|index| vertices[index as usize].domain());
-        is_folded(patch_facing, triangle.map(at), ulp) && domain_area(domain) > 0
-    });
-    folded.count() as u64
+        let places = triangle.map(at);
+        if is_folded(patch_facing, places, ulp) && domain_area(domain) > 0 {
+            if found.last().is_none_or(|last| last.patch != own) {
+                found.push(FoldedPatch::new(own));
+            }
+            if let Some(last) = found.last_mut() {
+                last.add(places);
+            }
+        }
+    }
 }
 
 fn corners(topology: &Topology, patch: u32) -> [DVec3; 3] {
@@ -61,6 +103,12 @@ mod tests {
     use crate::settings::Settings;
     use crate::tessellate::{LodView, Partitioning, Surface, Tessellation, pack_key, tessellate};
     use glam::{Mat4, Vec2};
+
+    fn found(topology: &Topology, vertices: &[Vertex], triangles: &[[u32; 3]]) -> Vec<FoldedPatch> {
+        let mut found = Vec::new();
+        find(topology, 1e-9, vertices, triangles, &mut found);
+        found
+    }
 
     #[test]
     fn triangles_that_face_away_are_folded_unless_they_are_lines() {
@@ -88,7 +136,7 @@ mod tests {
         let out = tessellate(&mesh, &topology, &settings.inputs(view), None);
         let domains = out.triangles.iter().map(|triangle| triangle.map(|index| out.vertices[index as usize].domain()));
         assert!(domains.map(domain_area).any(|area| area < 0), "the pattern should turn a triangle over at {factor}");
-        assert_eq!(count(&topology, 1e-9, &out.vertices, &out.triangles), 0);
+        assert_eq!(found(&topology, &out.vertices, &out.triangles), []);
     }
 
     #[test]
@@ -115,7 +163,12 @@ mod tests {
             |patch| [(0, [65536, 0]), (1, [0, 65536]), (2, [0, 0])].map(|(at, domain)| corner(patch, at, domain));
         let turned = [(1, [65536, 0]), (0, [0, 65536]), (2, [0, 0])].map(|(at, domain)| corner(1, at, domain));
         let vertices = [as_is(0), as_is(1), turned].concat();
-        assert_eq!(count(&topology, 1e-9, &vertices, &[[0, 1, 2], [3, 4, 5]]), 0);
-        assert_eq!(count(&topology, 1e-9, &vertices, &[[0, 1, 2], [6, 7, 8], [3, 4, 5], [6, 7, 8]]), 2);
+        assert_eq!(found(&topology, &vertices, &[[0, 1, 2], [3, 4, 5]]), []);
+        let folded = found(&topology, &vertices, &[[0, 1, 2], [6, 7, 8], [3, 4, 5], [6, 7, 8]]);
+        let [folded] = folded[..] else { panic!("one patch is folded: {folded:?}") };
+        assert_eq!((folded.patch, folded.folds), (1, 2));
+        let [a, b, c] = corners(&topology, 1);
+        assert!((folded.area - (b - a).cross(c - a).length()).abs() < 1e-6, "twice the patch: {}", folded.area);
+        assert!(folded.place.distance(((a + b + c) / 3.0).as_vec3()) < 1e-6, "{}", folded.place);
     }
 }

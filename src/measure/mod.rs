@@ -20,6 +20,7 @@ pub(crate) use agreement::{Agreement, Disagreement, Order};
 pub(crate) use asked_factors::AskedFactors;
 pub(crate) use cracks::{CrackedEdge, Cracks};
 pub(crate) use deviation_field::{DeviationField, DeviationMeasurement, DeviationTarget, MOST_TRIANGLES};
+pub(crate) use folds::FoldedPatch;
 pub(crate) use indices::{IndexDifference, Meaning, index_differences};
 pub(crate) use outlines::{EdgeSide, patch_edges};
 pub(crate) use screen_error::{ScreenError, ScreenErrorMeasurement};

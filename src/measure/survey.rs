@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::asked_factors::AskedFactors;
 use super::cracks::Cracks;
-use super::folds;
+use super::folds::{self, FoldedPatch};
 use super::outlines::Outlines;
 use super::visitor::{EmittedChunk, Visitor};
 use crate::mesh::{Mesh, Topology};
@@ -18,7 +18,7 @@ pub(crate) struct Survey<'a> {
     ulp: f64,
     culled: Culled,
     outlines: Outlines,
-    folds: u64,
+    folded: Vec<FoldedPatch>,
     not_finite: u64,
     extent: [Vec3; 2],
 }
@@ -61,6 +61,8 @@ pub struct Measured {
     pub cracks: Cracks,
     /// Triangles that face away from the side that their patch faces.
     pub folds: u64,
+    /// The patches with such triangles, those with the largest area first.
+    pub folded: Vec<FoldedPatch>,
     /// Vertices with an infinite or NaN position or uv.
     pub not_finite: u64,
     /// Least and greatest coordinates of what was emitted, in object units.
@@ -74,17 +76,19 @@ impl<'a> Survey<'a> {
         let extent = [Vec3::INFINITY, Vec3::NEG_INFINITY];
         let culled = Culled::of(&factors);
         let outlines = Outlines::new(factors, asked);
-        Self { mesh, topology, ulp: ulp(topology), culled, outlines, folds: 0, not_finite: 0, extent }
+        Self { mesh, topology, ulp: ulp(topology), culled, outlines, folded: Vec::new(), not_finite: 0, extent }
     }
 
     /// Compares the sides of every edge, after all chunks are taken.
-    pub(crate) fn finish(self) -> Measured {
+    pub(crate) fn finish(mut self) -> Measured {
+        self.folded.sort_by(|a, b| b.area.total_cmp(&a.area));
         Measured {
             culled: self.culled,
             patches_low: self.outlines.low(),
             patches_at_limit: self.outlines.at_limit(),
             cracks: Cracks::find(self.mesh, self.topology, &self.outlines),
-            folds: self.folds,
+            folds: self.folded.iter().map(|patch| u64::from(patch.folds)).sum(),
+            folded: self.folded,
             not_finite: self.not_finite,
             extent: self.extent,
             outlines: self.outlines,
@@ -96,7 +100,7 @@ impl Visitor for Survey<'_> {
     fn take(&mut self, chunk: &EmittedChunk) {
         let EmittedChunk { first_patch, vertices, triangles } = *chunk;
         self.outlines.take(first_patch, vertices);
-        self.folds += folds::count(self.topology, self.ulp, vertices, triangles);
+        folds::find(self.topology, self.ulp, vertices, triangles, &mut self.folded);
         for vertex in vertices {
             let position = Vec3::from(vertex.position);
             if !(position.is_finite() && vertex.uv.iter().all(|x| x.is_finite())) {

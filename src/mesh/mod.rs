@@ -83,6 +83,13 @@ pub struct Mesh {
     pub rig: Option<Arc<rig::Rig>>,
 }
 
+impl Mesh {
+    /// Whether texture coordinates differ anywhere. Without any in the file, those of all corners are 0.
+    pub(crate) fn has_texture_coordinates(&self) -> bool {
+        self.corners.windows(2).any(|pair| pair[0].uv != pair[1].uv)
+    }
+}
+
 /// The look of some of a mesh's patches.
 #[derive(Clone, Debug)]
 pub struct Material {

@@ -5,14 +5,20 @@ use glam::camera::rh::proj::directx as proj;
 use glam::{Mat4, Vec2, Vec3, vec3};
 
 use crate::mesh::Bounds;
+use crate::names::every;
 use crate::tessellate::LodView;
 
 /// Vertical field of view, in degrees.
 pub(crate) const FIELD_OF_VIEW: f32 = 40.0;
 /// The allowed distances between the target and the eye, in object units.
 const DISTANCES: std::ops::RangeInclusive<f32> = 1e-30..=1e30;
+/// The distance of the near plane from the eye of a perspective view, in distances between eye and target.
+const NEAR: f32 = 1e-3;
 /// The steepest elevation, in degrees. At 90 the direction that is up on screen would be undefined.
 pub(crate) const MAX_ELEVATION: f32 = 89.9;
+
+/// How far a frustum that is drawn reaches beyond the middle of the mesh, in bounding radii: a little more than the mesh.
+const FRUSTUM_REACH: f32 = 1.2;
 
 /// A camera that looks at `target` from `distance` away.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,8 +37,27 @@ pub struct Camera {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Standpoint {
     Front,
+    Back,
+    Left,
     Right,
     Top,
+    Bottom,
+}
+
+impl Standpoint {
+    pub const ALL: [Self; 6] = every![Standpoint: Front, Back, Left, Right, Top, Bottom];
+
+    /// The unit vector from the target to the eye.
+    pub fn direction(self) -> Vec3 {
+        match self {
+            Self::Front => Vec3::Z,
+            Self::Back => Vec3::NEG_Z,
+            Self::Left => Vec3::NEG_X,
+            Self::Right => Vec3::X,
+            Self::Top => Vec3::Y,
+            Self::Bottom => Vec3::NEG_Y,
+        }
+    }
 }
 
 impl Camera {
@@ -54,8 +79,11 @@ impl Camera {
     pub fn look_from(&mut self, standpoint: Standpoint) {
         (self.azimuth, self.elevation) = match standpoint {
             Standpoint::Front => (0.0, 0.0),
+            Standpoint::Back => (180.0, 0.0),
+            Standpoint::Left => (270.0, 0.0),
             Standpoint::Right => (90.0, 0.0),
             Standpoint::Top => (0.0, MAX_ELEVATION),
+            Standpoint::Bottom => (0.0, -MAX_ELEVATION),
         };
     }
 
@@ -114,9 +142,28 @@ impl Camera {
             let depth = radius + (bounds.center() - self.target).length() + self.distance;
             proj::orthographic(-half.x, half.x, -half.y, half.y, self.distance + depth, self.distance - depth)
         } else {
-            proj::perspective_infinite_reverse(FIELD_OF_VIEW.to_radians(), aspect, self.distance * 1e-3)
+            proj::perspective_infinite_reverse(FIELD_OF_VIEW.to_radians(), aspect, self.distance * NEAR)
         };
         projection * view
+    }
+
+    /// The corners of the view's near plane, and of the plane that ends it behind everything in `bounds`, in object units: the
+    /// view itself has no end. Each goes around from the lower left. An orthographic view also begins before everything.
+    pub fn frustum(&self, viewport: Vec2, bounds: &Bounds) -> [[Vec3; 4]; 2] {
+        let [right, up, back] = self.axes();
+        let (eye, middle) = (self.eye(), (self.eye() - bounds.center()).dot(back));
+        let (near, far) = if self.orthographic {
+            (middle - FRUSTUM_REACH * bounds.radius(), middle + FRUSTUM_REACH * bounds.radius())
+        } else {
+            let near = self.distance * NEAR;
+            (near, (middle + FRUSTUM_REACH * bounds.radius()).max(2.0 * near))
+        };
+        let at_target = 0.5 * self.units_per_pixel(viewport.y) * viewport.max(Vec2::ONE);
+        [near, far].map(|depth| {
+            let half = if self.orthographic { at_target } else { at_target * (depth / self.distance) };
+            [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+                .map(|(x, y)| eye - back * depth + right * (x * half.x) + up * (y * half.y))
+        })
     }
 
     /// The view for LOD and clipping.
@@ -149,6 +196,15 @@ mod tests {
     }
 
     #[test]
+    fn a_standpoint_looks_along_its_axis() {
+        let mut camera = Camera::framing(&unit_bounds(), vec2(800.0, 600.0));
+        for standpoint in Standpoint::ALL {
+            camera.look_from(standpoint);
+            assert!(camera.is_sound() && camera.axes()[2].distance(standpoint.direction()) < 0.002, "{standpoint:?}");
+        }
+    }
+
+    #[test]
     fn zooming_keeps_the_point_under_the_pointer() {
         let viewport = vec2(800.0, 600.0);
         let mut camera = Camera::framing(&unit_bounds(), viewport);
@@ -159,6 +215,40 @@ mod tests {
         camera.zoom(0.5, pointer, viewport);
         let now = project(camera.clip_from_object(viewport, &unit_bounds()), viewport, under);
         assert!(now.expect("in front of the eye").distance(pointer) < 0.1);
+    }
+
+    #[test]
+    fn a_frustum_holds_the_mesh_and_lies_on_the_views_borders() {
+        let viewport = vec2(400.0, 300.0);
+        for orthographic in [false, true] {
+            let bounds = unit_bounds();
+            let camera = Camera { orthographic, ..Camera::framing(&bounds, viewport) };
+            let clip = camera.clip_from_object(viewport, &bounds);
+            let [near, far] = camera.frustum(viewport, &bounds);
+            for (corner, expected) in
+                [(0, vec2(0.0, 300.0)), (1, vec2(400.0, 300.0)), (2, vec2(400.0, 0.0)), (3, vec2(0.0, 0.0))]
+            {
+                for place in [near[corner], far[corner]] {
+                    let at = project(clip, viewport, place).expect("in front of the eye");
+                    assert!(at.distance(expected) < 0.1, "{at} {expected}");
+                }
+            }
+            let back = camera.axes()[2];
+            let depth = |place: Vec3| (camera.eye() - place).dot(back);
+            let middle = depth(bounds.center());
+            assert!(depth(near[0]) < middle - bounds.radius() && depth(far[0]) > middle + bounds.radius());
+            let near_clip = clip * near[0].extend(1.0);
+            assert!(orthographic || (near_clip.z / near_clip.w - 1.0).abs() < 1e-4, "on the near plane");
+        }
+        // A camera that looks away from the mesh has a frustum too.
+        let away = Camera {
+            target: vec3(0.0, 0.0, 50.0),
+            azimuth: 180.0,
+            elevation: 0.0,
+            ..Camera::framing(&unit_bounds(), viewport)
+        };
+        let [near, far] = away.frustum(viewport, &unit_bounds());
+        assert!(near.iter().chain(&far).all(|corner| corner.is_finite()) && near[0] != far[0]);
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use wgpu::util::DeviceExt;
 
 use super::deviation::scale_of;
+use super::ground::Ground;
 use super::layout::{Frame, overlay_bits};
 use super::{Camera, Scene, Target};
 use crate::gpu::Gpu;
@@ -30,6 +31,7 @@ pub(super) fn frame(gpu: &Gpu, scene: &Scene, target: &Target, camera: &Camera, 
         scale_least: scale.least,
         scale_most: scale.most,
         px_per_unit: if in_px { px_where_w_is_1 } else { 0.0 },
+        ground: Ground::under(&scene.bounds).packed(),
         scale: scale.colors.map(|[r, g, b]| [r, g, b, 0].map(|byte| f32::from(byte) / 255.0)),
     };
     gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {

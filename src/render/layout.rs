@@ -30,6 +30,8 @@ pub(crate) struct Frame {
     pub scale_most: f32,
     /// If deviations are shown in px, the px per object unit where w is 1; else 0.
     pub px_per_unit: f32,
+    /// From [`super::ground::Ground`]: its middle, and how far apart its lines are, in object units.
+    pub ground: [f32; 4],
     /// The scale's colours in sRGB, 0 to 1; the fourth component is unused.
     pub scale: [[f32; 4]; Scale::STOPS],
 }
@@ -61,7 +63,7 @@ pub(crate) struct Pick {
 pub(crate) const FOUND_EMITTED: u32 = 1;
 
 /// The overlays that the surface's shader draws, as the bits `OVERLAY_*`. Cracks, T-junctions and normals are drawn as lines
-/// instead.
+/// instead, and the ground has a shader of its own.
 pub(crate) fn overlay_bits(overlays: &Overlays) -> u32 {
     u32::from(overlays.wireframe)
         | u32::from(overlays.patches) << 1
@@ -74,6 +76,10 @@ pub(crate) fn overlay_bits(overlays: &Overlays) -> u32 {
         | u32::from(overlays.colors == Colors::LowFactors) << 8
         | u32::from(overlays.colors == Colors::Deviation) << 9
         | u32::from(overlays.colors == Colors::Excess) << 10
+        | u32::from(overlays.colors == Colors::Clay) << 11
+        | u32::from(overlays.colors == Colors::Zebra) << 12
+        | u32::from(overlays.colors == Colors::ShadingNormals) << 13
+        | u32::from(overlays.colors == Colors::UvChecker) << 14
 }
 
 /// sRGB colour of an edge kind, for legends; `edge_color` in `shaders/draw_surface.wgsl` has the same in linear light.
@@ -114,6 +120,21 @@ pub(crate) const WORST_COLOR: [u8; 3] = [120, 255, 245];
 #[cfg(test)]
 pub(crate) const NORMAL_COLOR: [u8; 3] = [60, 215, 255];
 
+/// sRGB colour of the frustum of the camera that LOD is computed for, where the picture is seen from another one.
+pub(crate) const LOD_CAMERA_COLOR: [u8; 3] = [30, 205, 110];
+
+/// Colours of the checker in linear light: its light squares, and by what these and the dark ones are multiplied where u, or v,
+/// comes to the next whole number. `shaders/draw_looks.wgsl` has the same.
+pub(crate) const CHECKER_LIGHT: f32 = 0.62;
+pub(crate) const CHECKER_U: [f32; 3] = [1.15, 0.6, 0.55];
+pub(crate) const CHECKER_V: [f32; 3] = [0.6, 1.1, 0.55];
+/// sRGB colour of the lines around whole units of u and v; `CHECKER_LINE` in `shaders/draw_looks.wgsl` has the same in linear
+/// light.
+pub(crate) const CHECKER_LINE: [u8; 3] = [32, 64, 160];
+
+/// sRGB colours of the axes x, y and z.
+pub(crate) const AXIS_COLORS: [[u8; 3]; 3] = [[232, 82, 92], [122, 184, 58], [84, 140, 240]];
+
 /// sRGB colours of the sides of the selected edge, in turn, and of the outline that sets them off.
 pub(crate) const SIDE_COLORS: [[u8; 3]; 2] = [[255, 255, 255], [0, 235, 255]];
 pub(crate) const OUTLINE_COLOR: [u8; 3] = [15, 15, 18];
@@ -128,4 +149,22 @@ pub(crate) fn linear(srgb: [u8; 3]) -> [f32; 3] {
         let x = f32::from(byte) / 255.0;
         if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
     })
+}
+
+/// The byte that sRGB encodes a linear colour's channel as.
+pub(crate) fn srgb(linear: f32) -> u8 {
+    let encoded = if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+    (encoded.clamp(0.0, 1.0) * 255.0).round() as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_are_decoded_and_encoded_without_loss() {
+        for byte in 0..=255 {
+            assert_eq!(srgb(linear([byte; 3])[0]), byte);
+        }
+    }
 }

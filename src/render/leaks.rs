@@ -1,13 +1,14 @@
 //! Leaks: pixels at which a crack shows the inside of a closed mesh.
 
-use glam::Mat4;
+use std::cmp::Reverse;
+use std::collections::BTreeSet;
+
+use glam::{DVec2, Mat4, Vec2, dvec2};
 use wgpu::util::DeviceExt;
 
 use super::Scene;
 use crate::gpu::wgsl::wgsl;
-use crate::gpu::{
-    Gpu, GpuError, Lazy, Recorder, ShaderModule, Timing, VERTEX_HALF, WgslFile, bind_group, read_texture,
-};
+use crate::gpu::{Gpu, GpuError, Lazy, Readback, Recorder, ShaderModule, Timing, VERTEX_HALF, WgslFile, bind_group};
 
 pub(super) static DRAW_LEAKS: WgslFile = wgsl!("draw_leaks");
 
@@ -44,17 +45,17 @@ impl LeakCounter {
         self.pipeline.get_or_make(gpu, || pipeline(gpu, module))
     }
 
-    /// How many pixels of a picture of `size` (width and height in px) are leaks. The scene's counts must be known, its mesh must
-    /// be closed, and all of it must lie beyond the near plane.
+    /// Starts to count the leaks of a picture of `size` (width and height in px).
     ///
     /// # Errors
     /// The picture is larger than the adapter draws, or the device was lost.
-    pub(crate) fn count(&self, gpu: &Gpu, scene: &mut Scene, size: [u32; 2], clip: Mat4) -> Result<u64, GpuError> {
+    pub(crate) fn start(&self, gpu: &Gpu, size: [u32; 2], clip: Mat4) -> Result<LeakCount, GpuError> {
         let limit = gpu.device.limits().max_texture_dimension_2d;
         let [width, height] = size.map(|side| side.max(1));
         if width > limit || height > limit {
             return Err(GpuError::PictureTooLarge { width, height, limit });
         }
+        let pipeline = self.pipeline(gpu)?;
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("leaks"),
             size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
@@ -65,52 +66,119 @@ impl LeakCounter {
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         });
-        self.draw(gpu, scene, &texture, clip)?;
-        // Two bytes a texel. Both zeros, +0 and -0, are 0.
-        let bytes = read_texture(gpu, &texture)?;
-        Ok(bytes.chunks_exact(2).filter(|half| half[0] != 0 || half[1] & 0x7f != 0).count() as u64)
-    }
-
-    fn draw(&self, gpu: &Gpu, scene: &mut Scene, texture: &wgpu::Texture, clip: Mat4) -> Result<(), GpuError> {
-        let pipeline = self.pipeline(gpu)?;
-        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let uniform = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("leaks"),
             contents: bytemuck::bytes_of(&clip.to_cols_array_2d()),
             usage: wgpu::BufferUsages::UNIFORM,
         });
         let group = bind_group(gpu, "leaks", &pipeline.get_bind_group_layout(0), &[(0, &uniform)]);
+        Ok(LeakCount { texture, pipeline: pipeline.clone(), group, next_chunk: 0 })
+    }
+
+    /// The leaks in a picture of `size` (width and height in px). The scene's counts must be known, its mesh must be closed, and
+    /// all of it must lie beyond the near plane.
+    ///
+    /// # Errors
+    /// The picture is larger than the adapter draws, or the device was lost.
+    pub(crate) fn count(&self, gpu: &Gpu, scene: &mut Scene, size: [u32; 2], clip: Mat4) -> Result<u64, GpuError> {
+        let mut count = self.start(gpu, size, clip)?;
+        let mut counts = loop {
+            if let Some(counts) = count.draw_next(gpu, scene)? {
+                break counts;
+            }
+        };
+        Ok(leaking_pixels(&counts.wait(gpu)?).count() as u64)
+    }
+}
+
+/// A count under way.
+pub(crate) struct LeakCount {
+    texture: wgpu::Texture,
+    pipeline: wgpu::RenderPipeline,
+    group: wgpu::BindGroup,
+    next_chunk: usize,
+}
+
+impl LeakCount {
+    /// Emits and draws the next chunk. After the last one it returns the counts of all pixels, which are on their way to the
+    /// host: see [`leaking_pixels`].
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub(crate) fn draw_next(&mut self, gpu: &Gpu, scene: &mut Scene) -> Result<Option<Readback>, GpuError> {
+        let view = self.texture.create_view(&wgpu::TextureViewDescriptor::default());
         let mut timing = Timing::Off;
         let mut recorder = Recorder::new(gpu, &mut timing);
-        let chunks = scene.tessellator.chunk_count();
-        for index in 0..chunks.max(1) {
-            if index < chunks {
-                scene.tessellator.emit(&mut recorder, index)?;
-            }
-            let load = if index == 0 { wgpu::LoadOp::Clear(wgpu::Color::BLACK) } else { wgpu::LoadOp::Load };
-            let mut pass = recorder.encoder().begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("leaks"),
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &view,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
-                })],
-                ..Default::default()
-            });
-            if index < chunks {
-                let chunk = scene.tessellator.chunk(index);
-                pass.set_pipeline(pipeline);
-                pass.set_bind_group(0, &group, &[]);
-                let [(places, bytes), _] = chunk.vertices();
-                pass.set_vertex_buffer(0, places.slice(bytes));
-                pass.set_index_buffer(chunk.indices.slice(..), wgpu::IndexFormat::Uint32);
-                pass.draw_indexed(0..3 * chunk.chunk.triangle_count, 0, 0..1);
+        let (index, chunks) = (self.next_chunk, scene.tessellator.chunk_count());
+        self.next_chunk += 1;
+        if index < chunks {
+            scene.tessellator.emit(&mut recorder, index)?;
+        }
+        let load = if index == 0 { wgpu::LoadOp::Clear(wgpu::Color::BLACK) } else { wgpu::LoadOp::Load };
+        let mut pass = recorder.encoder().begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("leaks"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
+            })],
+            ..Default::default()
+        });
+        if index < chunks {
+            let chunk = scene.tessellator.chunk(index);
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, &self.group, &[]);
+            let [(places, bytes), _] = chunk.vertices();
+            pass.set_vertex_buffer(0, places.slice(bytes));
+            pass.set_index_buffer(chunk.indices.slice(..), wgpu::IndexFormat::Uint32);
+            pass.draw_indexed(0..3 * chunk.chunk.triangle_count, 0, 0..1);
+        }
+        drop(pass);
+        let is_last = index + 1 >= chunks;
+        let mut counts = is_last.then(|| Readback::of_texture(gpu, recorder.encoder(), &self.texture));
+        recorder.submit();
+        counts.iter_mut().for_each(Readback::request);
+        Ok(counts)
+    }
+}
+
+/// Indices of the pixels that leak, row by row from the top left, by the bytes of a [`LeakCount`].
+fn leaking_pixels(counts: &[u8]) -> impl Iterator<Item = usize> {
+    // Two bytes a pixel. Both zeros, +0 and -0, are 0.
+    counts.chunks_exact(2).enumerate().filter(|(_, half)| half[0] != 0 || half[1] & 0x7f != 0).map(|(pixel, _)| pixel)
+}
+
+/// Pixels that leak and touch each other, also at their corners.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Leak {
+    /// The middle of these pixels, in px from the picture's top left.
+    pub middle: Vec2,
+    /// How many they are.
+    pub pixels: u32,
+}
+
+/// The leaks of a picture `width` px wide, the largest first, by the bytes of a [`LeakCount`].
+pub(crate) fn leaks_in(counts: &[u8], width: usize) -> Vec<Leak> {
+    let mut left: BTreeSet<usize> = leaking_pixels(counts).collect();
+    let mut leaks = Vec::new();
+    while let Some(first) = left.pop_first() {
+        let (mut reached, mut pixels, mut sum) = (vec![first], 0, DVec2::ZERO);
+        while let Some(pixel) = reached.pop() {
+            let [x, y] = [pixel % width, pixel / width];
+            pixels += 1;
+            sum += dvec2(x as f64, y as f64) + 0.5;
+            for beside in (y.saturating_sub(1)..=y + 1).flat_map(|y| (x.saturating_sub(1)..=x + 1).map(move |x| [x, y]))
+            {
+                let beside = (beside[0] < width).then_some(beside[1] * width + beside[0]);
+                reached.extend(beside.filter(|beside| left.remove(beside)));
             }
         }
-        recorder.submit();
-        Ok(())
+        leaks.push(Leak { middle: (sum / f64::from(pixels)).as_vec2(), pixels });
     }
+    // Stable, so that leaks of one size stay in the order of their first pixels.
+    leaks.sort_by_key(|leak| Reverse(leak.pixels));
+    leaks
 }
 
 fn pipeline(gpu: &Gpu, module: &wgpu::ShaderModule) -> wgpu::RenderPipeline {
@@ -149,4 +217,22 @@ fn pipeline(gpu: &Gpu, module: &wgpu::ShaderModule) -> wgpu::RenderPipeline {
         multiview_mask: None,
         cache: None,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::vec2;
+
+    #[test]
+    fn pixels_that_touch_are_one_leak_and_the_largest_is_first() {
+        // A pixel by itself, three along a diagonal, and two at the ends of rows, which don't touch each other.
+        let rows = ["#......", "...#...", "..#....", ".#....#", "#......"];
+        let counts: Vec<u8> =
+            rows.concat().bytes().flat_map(|pixel| if pixel == b'#' { [0, 0x3c] } else { [0, 0x80] }).collect();
+        let leak = |x: f32, y: f32, pixels| Leak { middle: vec2(x, y), pixels };
+        assert_eq!(leaks_in(&counts, 7), [leak(2.0, 3.0, 4), leak(0.5, 0.5, 1), leak(6.5, 3.5, 1)]);
+        assert_eq!(leaking_pixels(&counts).count(), 6);
+        assert_eq!(leaks_in(&[], 7), []);
+    }
 }

@@ -1,11 +1,12 @@
-//! Lines that mark cracks, T-junctions, the largest deviation, and the selected patch.
+//! Lines that mark cracks, T-junctions, the largest deviation, the selected patch, and the LOD camera.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use super::LineSegment;
-use super::layout::{CRACK_COLOR, FACTOR_COLORS, OUTLINE_COLOR, T_JUNCTION_COLOR, WORST_COLOR};
+use super::camera::Camera;
+use super::layout::{CRACK_COLOR, FACTOR_COLORS, LOD_CAMERA_COLOR, OUTLINE_COLOR, T_JUNCTION_COLOR, WORST_COLOR};
 use crate::measure::{CrackedEdge, Measured};
-use crate::mesh::{TJunction, Topology};
+use crate::mesh::{Bounds, TJunction, Topology};
 
 /// The lines of every side of every cracked edge.
 pub(crate) fn crack_lines(measured: &Measured, topology: &Topology) -> Vec<LineSegment> {
@@ -21,9 +22,13 @@ pub(crate) fn crack_lines_in(
     let mut lines = Vec::new();
     for edge in measured.cracks.cracked() {
         let color = color(edge);
-        for side in measured.outlines.edge(topology, edge.edge) {
+        let sides = measured.outlines.edge(topology, edge.edge);
+        // In most cracks the sides differ by far less than a line's width.
+        let times = sides.len() as f32;
+        for side in &sides {
             let points: Vec<_> = side.positions().collect();
-            lines.extend(points.windows(2).map(|ends| LineSegment::new(ends[0], ends[1], color)));
+            let line = |ends: &[Vec3]| LineSegment { times, ..LineSegment::new(ends[0], ends[1], color) };
+            lines.extend(points.windows(2).map(line));
         }
     }
     lines
@@ -33,9 +38,14 @@ pub(crate) fn crack_lines_in(
 pub(crate) fn t_junction_lines(topology: &Topology, junctions: &[TJunction]) -> Vec<LineSegment> {
     let at = |point: u32| topology.points[point as usize];
     let dot = |place: Vec3| LineSegment { half_width: 4.0, ..LineSegment::new(place, place, T_JUNCTION_COLOR) };
-    let marks = junctions.iter().flat_map(|junction| {
-        let [a, b] = topology.edge_points(&topology.edges[junction.edge as usize]).map(at);
-        [LineSegment::new(a, b, T_JUNCTION_COLOR), dot(at(junction.point))]
+    let edge = |edge: u32| {
+        let [a, b] = topology.edge_points(&topology.edges[edge as usize]).map(at);
+        LineSegment::new(a, b, T_JUNCTION_COLOR)
+    };
+    // They are listed in the order of the edges, of which each gets one line.
+    let of_edges = junctions.chunk_by(|a, b| a.edge == b.edge);
+    let marks = of_edges.flat_map(|on_one| {
+        std::iter::once(edge(on_one[0].edge)).chain(on_one.iter().map(|junction| dot(at(junction.point))))
     });
     marks.collect()
 }
@@ -57,4 +67,17 @@ pub(crate) fn patch_lines(edges: &[Vec<Vec3>; 3]) -> Vec<LineSegment> {
     let outline = edges.iter().flat_map(|points| edge(points, OUTLINE_COLOR, 4.0));
     let colored = edges.iter().zip(FACTOR_COLORS).flat_map(|(points, color)| edge(points, color, 2.75));
     outline.chain(colored).collect()
+}
+
+/// The view of the camera that LOD is computed for: its near plane, its frustum as far as the mesh reaches, and a dot on the eye.
+/// `viewport` is that view's size in px.
+pub(crate) fn lod_camera_lines(camera: &Camera, viewport: Vec2, bounds: &Bounds) -> Vec<LineSegment> {
+    let line = |start, end| LineSegment { half_width: 1.0, ..LineSegment::new(start, end, LOD_CAMERA_COLOR) };
+    let [near, far] = camera.frustum(viewport, bounds);
+    let around = |plane: [Vec3; 4]| [0, 1, 2, 3].map(|k| line(plane[k], plane[(k + 1) % 4]));
+    let mut lines = [around(near), around(far), [0, 1, 2, 3].map(|k| line(near[k], far[k]))].concat();
+    if !camera.orthographic {
+        lines.push(LineSegment { half_width: 4.0, ..line(camera.eye(), camera.eye()) });
+    }
+    lines
 }

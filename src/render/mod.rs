@@ -5,8 +5,10 @@ mod coverage;
 mod deviation;
 mod frame;
 mod framing;
+mod ground;
 pub(crate) mod layout;
 mod leaks;
+mod legend;
 mod marks;
 mod materials;
 mod pick;
@@ -21,8 +23,10 @@ pub(crate) mod target;
 
 pub(crate) use camera::{Camera, Standpoint};
 pub(crate) use deviation::{DEVIATION_PX_SCALE, deviation_scale};
-pub(crate) use leaks::LeakCounter;
-pub(crate) use marks::{crack_lines, crack_lines_in, patch_lines, t_junction_lines, worst_lines};
+pub(crate) use ground::{Ground, axis_lines};
+pub(crate) use leaks::{Leak, LeakCount, LeakCounter, leaks_in};
+pub(crate) use legend::{BARYCENTRIC_TITLE, COLUMNS, Distances, Shown, has_legend, legend_of, tick_text};
+pub(crate) use marks::{crack_lines, crack_lines_in, lod_camera_lines, patch_lines, t_junction_lines, worst_lines};
 pub(crate) use pick::{Picked, PickedTriangle, Picker, Picking, Pixel};
 pub(crate) use renderer::Renderer;
 pub(crate) use scale::{EXCESS_SCALE, FACTOR_SCALE, SIZE_SCALE, Scale};
@@ -33,10 +37,11 @@ pub(crate) use target::samples;
 
 /// The shader files with entry points for drawing and picking. Each makes one shader module.
 #[cfg(test)]
-static MODULES: [&crate::gpu::WgslFile; 6] = [
+static MODULES: [&crate::gpu::WgslFile; 7] = [
     &coverage::PASS_COVERAGE,
     &leaks::DRAW_LEAKS,
     &pick::DRAW_PICK,
+    &pipelines::DRAW_GROUND,
     &pipelines::DRAW_LINES,
     &pipelines::DRAW_PLAIN,
     &pipelines::DRAW_SURFACE,

@@ -9,12 +9,26 @@ use crate::gpu::{Gpu, GpuError, Lazy, ShaderModule, VERTEX_HALF};
 use crate::settings::NormalsAt;
 
 pub(super) static DRAW_TYPES: WgslFile = wgsl!("draw_types", TYPES);
+static DRAW_DENSITY: WgslFile = wgsl!("draw_density");
+pub(super) static DRAW_GROUND: WgslFile = wgsl!("draw_ground", DRAW_DENSITY, DRAW_TYPES);
 static DRAW_LIGHT: WgslFile = wgsl!("draw_light");
+static DRAW_LOOKS: WgslFile = wgsl!("draw_looks", DRAW_DENSITY);
 static DRAW_NORMAL: WgslFile = wgsl!("draw_normal", FACTORS, LOAD_NET, LOADS, NORMAL, TYPES);
 pub(super) static DRAW_PLAIN: WgslFile =
     wgsl!("draw_plain", DRAW_LIGHT, DRAW_NORMAL, DRAW_TYPES, OCTAHEDRAL_NORMAL, SURFACE, TYPES);
-pub(super) static DRAW_SURFACE: WgslFile =
-    wgsl!("draw_surface", CONVENTION, DRAW_LIGHT, DRAW_NORMAL, DRAW_TYPES, FACTORS, OCTAHEDRAL_NORMAL, SURFACE, TYPES);
+pub(super) static DRAW_SURFACE: WgslFile = wgsl!(
+    "draw_surface",
+    CONVENTION,
+    DRAW_DENSITY,
+    DRAW_LIGHT,
+    DRAW_LOOKS,
+    DRAW_NORMAL,
+    DRAW_TYPES,
+    FACTORS,
+    OCTAHEDRAL_NORMAL,
+    SURFACE,
+    TYPES
+);
 pub(super) static DRAW_LINES: WgslFile = wgsl!("draw_lines", DRAW_TYPES, FACTORS, OCTAHEDRAL_NORMAL, TYPES);
 
 /// What a pipeline draws.
@@ -33,6 +47,8 @@ pub(super) enum Draw {
     Pulled(Faces, NormalsAt),
     /// The input triangles, with any overlays.
     Source,
+    /// The grid on the ground.
+    Ground,
     /// Lines over the mesh.
     Lines(Occluded),
     /// A line along the normal of every emitted vertex.
@@ -58,7 +74,7 @@ pub(super) enum Occluded {
 
 impl Draw {
     /// Every pipeline that there is.
-    pub(super) const ALL: [Self; 19] = [
+    pub(super) const ALL: [Self; 20] = [
         Self::Plain(Faces::Both),
         Self::Plain(Faces::Fronts),
         Self::Textured(Faces::Both),
@@ -74,6 +90,7 @@ impl Draw {
         Self::Pulled(Faces::Both, NormalsAt::Pixels),
         Self::Pulled(Faces::Fronts, NormalsAt::Pixels),
         Self::Source,
+        Self::Ground,
         Self::Lines(Occluded::Through),
         Self::Lines(Occluded::InSight),
         Self::Normals(Occluded::Through),
@@ -97,7 +114,9 @@ impl Draw {
             Self::Indexed(_, places) => ("indexed_vertex", surface(places)),
             Self::Pulled(_, places) => ("pulled_vertex", surface(places)),
             Self::Source => ("source_vertex", "surface_fragment"),
-            Self::Lines(part) => ("line_vertex", line(part)),
+            Self::Ground => ("ground_vertex", "ground_fragment"),
+            Self::Lines(Occluded::Through) => ("hidden_line_vertex", line(Occluded::Through)),
+            Self::Lines(Occluded::InSight) => ("line_vertex", line(Occluded::InSight)),
             Self::Normals(part) => ("normal_vertex", line(part)),
         }
     }
@@ -109,7 +128,7 @@ impl Draw {
             Self::Textured(_) | Self::PixelNormals(_) | Self::Indexed(..) => {
                 vertex_halves(wgpu::VertexStepMode::Vertex).to_vec()
             }
-            Self::Pulled(..) | Self::Source => Vec::new(),
+            Self::Pulled(..) | Self::Source | Self::Ground => Vec::new(),
             Self::Lines(_) => vec![Some(wgpu::VertexBufferLayout {
                 array_stride: size_of::<LineSegment>() as u64,
                 step_mode: wgpu::VertexStepMode::Instance,
@@ -127,9 +146,9 @@ impl Draw {
         }
     }
 
-    /// Surfaces are opaque and write depth; lines are blended over them.
+    /// Surfaces are opaque and write depth; the ground and lines are blended over them.
     fn is_opaque(self) -> bool {
-        !matches!(self, Self::Lines(_) | Self::Normals(_))
+        !matches!(self, Self::Ground | Self::Lines(_) | Self::Normals(_))
     }
 
     fn cull_mode(self) -> Option<wgpu::Face> {
@@ -149,9 +168,9 @@ impl Draw {
 const PLACE: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32];
 /// The attributes of its second half: key and texture coordinates.
 const DETAIL: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![2 => Uint32x2, 3 => Float32x2];
-/// The attributes of a [`LineSegment`]: start, end, colour and half its width.
-const SEGMENT: [wgpu::VertexAttribute; 4] =
-    wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32];
+/// The attributes of a [`LineSegment`]: start, end, colour, half its width, and how many lie over each other.
+const SEGMENT: [wgpu::VertexAttribute; 5] =
+    wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32, 4 => Float32];
 
 /// The two halves of emitted vertices, as vertex buffers.
 fn vertex_halves(step_mode: wgpu::VertexStepMode) -> [Option<wgpu::VertexBufferLayout<'static>>; 2] {
@@ -173,6 +192,7 @@ pub(super) struct DrawPipelines {
     pub measured_layout: wgpu::BindGroupLayout,
     plain: ShaderModule,
     surface: ShaderModule,
+    ground: ShaderModule,
     lines: ShaderModule,
     pipelines: [Lazy<wgpu::RenderPipeline>; Draw::ALL.len()],
 }
@@ -187,6 +207,7 @@ impl DrawPipelines {
             measured_layout: measured_layout(gpu),
             plain: ShaderModule::new(&DRAW_PLAIN),
             surface: ShaderModule::new(&DRAW_SURFACE),
+            ground: ShaderModule::new(&DRAW_GROUND),
             lines: ShaderModule::new(&DRAW_LINES),
             pipelines: Default::default(),
         }
@@ -200,6 +221,7 @@ impl DrawPipelines {
         let module = match draw {
             Draw::Plain(_) | Draw::Textured(_) | Draw::PixelNormals(_) => &self.plain,
             Draw::Indexed(..) | Draw::Pulled(..) | Draw::Source => &self.surface,
+            Draw::Ground => &self.ground,
             Draw::Lines(_) | Draw::Normals(_) => &self.lines,
         };
         let module = module.get(gpu)?;
@@ -216,7 +238,7 @@ impl DrawPipelines {
             Draw::Plain(_) | Draw::Textured(_) | Draw::PixelNormals(_) => vec![scene, material],
             Draw::Indexed(..) | Draw::Pulled(..) => vec![scene, material, chunk, deviation],
             Draw::Source => vec![scene, material, None, deviation],
-            Draw::Lines(_) => vec![scene],
+            Draw::Ground | Draw::Lines(_) => vec![scene],
             Draw::Normals(_) => vec![scene, None, chunk],
         }
     }

@@ -83,6 +83,7 @@ impl Renderer {
         if settings.overlays.colors == Colors::Excess {
             scene.tessellator.prepare_own_least(settings.tessellation.partitioning)?;
         }
+        draws.extend(settings.overlays.grid.then_some(Draw::Ground));
         if settings.overlays.normals {
             draws.extend([Occluded::Through, Occluded::InSight].map(Draw::Normals));
         }
@@ -147,7 +148,7 @@ impl Renderer {
                 }
             }
             let (first, last) = (index == 0, index + 1 == steps.len());
-            let color = target.color(linear_color(settings.background), first, last);
+            let color = target.color(linear_color(settings.background_color()), first, last);
             let mut surfaces = self.surfaces(drawn, target, camera, settings)?;
             if let Step::Surface(_, chunk) = *step {
                 surfaces.sifted = self.sift(recorder, drawn, target, camera, chunk, &surfaces)?;
@@ -162,6 +163,7 @@ impl Renderer {
             let has_lines =
                 scene.lines.is_some() || scene.half(SplitSide::Left).is_some_and(|left| left.lines.is_some());
             let lines = if last && has_lines { Some(self.line_pipelines(Draw::Lines)?) } else { None };
+            let ground = if last && settings.overlays.grid { Some(self.get(Draw::Ground)?) } else { None };
             let normals = if let Step::Normals(..) = step { Some(self.line_pipelines(Draw::Normals)?) } else { None };
             recorder.render("draw", color, target.depth(first), |pass| {
                 pass.set_bind_group(0, &group, &[]);
@@ -178,6 +180,12 @@ impl Renderer {
                         self.draw_normals(pass, pipelines.copied(), rect, &drawn.tessellator.chunk(chunk));
                     }
                     Step::Nothing => {}
+                }
+                if let Some(ground) = ground {
+                    // Both halves have the same ground.
+                    pass.set_scissor_rect(0, 0, target.size[0], target.size[1]);
+                    pass.set_pipeline(ground);
+                    pass.draw(0..6, 0..1);
                 }
                 if let Some(lines) = lines {
                     draw_lines(pass, lines, scene, rects[SplitSide::Right as usize]);

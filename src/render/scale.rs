@@ -70,7 +70,14 @@ impl Scale {
             Colors::Factors => Some(&FACTOR_SCALE),
             Colors::TriangleSize => Some(&SIZE_SCALE),
             Colors::Excess => Some(&EXCESS_SCALE),
-            Colors::Material | Colors::Barycentric | Colors::LowFactors | Colors::Deviation => None,
+            Colors::Material
+            | Colors::Clay
+            | Colors::Zebra
+            | Colors::ShadingNormals
+            | Colors::UvChecker
+            | Colors::Barycentric
+            | Colors::LowFactors
+            | Colors::Deviation => None,
         }
     }
 

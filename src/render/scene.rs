@@ -46,12 +46,15 @@ pub struct LineSegment {
     pub color: [f32; 3],
     /// Half of the line's width in px.
     pub half_width: f32,
+    /// How many lines lie over each other here, about. Behind surfaces, each is so much fainter that together they are as
+    /// faint as one.
+    pub times: f32,
 }
 
 impl LineSegment {
     /// A line of the usual width in an sRGB colour.
     pub fn new(start: Vec3, end: Vec3, color: [u8; 3]) -> Self {
-        Self { start: start.to_array(), end: end.to_array(), color: linear(color), half_width: 2.0 }
+        Self { start: start.to_array(), end: end.to_array(), color: linear(color), half_width: 2.0, times: 1.0 }
     }
 }
 

@@ -1,5 +1,6 @@
 //! The texture that a picture is drawn into.
 
+use super::layout::{linear, srgb};
 use crate::gpu::{Gpu, GpuError, read_texture};
 
 /// The format in which pictures are drawn and resolved: 8-bit RGBA, encoded as sRGB.
@@ -19,6 +20,8 @@ pub struct Target {
     resolved_srgb: wgpu::TextureView,
     multisampled: Option<wgpu::TextureView>,
     depth: wgpu::TextureView,
+    /// Whether pictures have no background: where nothing is drawn they are transparent.
+    is_transparent: bool,
 }
 
 /// The format that egui shows and a PNG holds: bytes encoded as sRGB, which sampling doesn't decode.
@@ -57,7 +60,15 @@ impl Target {
         let multisampled =
             (samples > 1).then(|| view(texture("target.multisampled", COLOR_FORMAT, samples, drawn, &[])));
         let depth = view(texture("target.depth", DEPTH_FORMAT, samples, drawn, &[]));
-        Ok(Self { size: [width, height], resolved, resolved_srgb, multisampled, depth })
+        Ok(Self { size: [width, height], resolved, resolved_srgb, multisampled, depth, is_transparent: false })
+    }
+
+    /// The same, for pictures that are transparent where nothing is drawn.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn transparent(gpu: &Gpu, size: [u32; 2]) -> Result<Self, GpuError> {
+        Ok(Self { is_transparent: true, ..Self::new(gpu, size)? })
     }
 
     /// The view for showing the picture. Its values are encoded as sRGB.
@@ -70,12 +81,14 @@ impl Target {
         glam::vec2(self.size[0] as f32, self.size[1] as f32)
     }
 
-    /// The colour attachment for one of several passes. The first clears to `background` (linear light), and the last resolves.
+    /// The colour attachment for one of several passes. The first clears to `background` (linear light), or to nothing in a
+    /// transparent picture, and the last resolves.
     pub fn color(&self, background: wgpu::Color, first: bool, last: bool) -> wgpu::RenderPassColorAttachment<'_> {
         let (view, resolve_target) = match &self.multisampled {
             Some(view) => (view, last.then_some(&self.resolved_srgb)),
             None => (&self.resolved_srgb, None),
         };
+        let background = if self.is_transparent { wgpu::Color::TRANSPARENT } else { background };
         let load = if first { wgpu::LoadOp::Clear(background) } else { wgpu::LoadOp::Load };
         wgpu::RenderPassColorAttachment {
             view,
@@ -102,14 +115,42 @@ impl Target {
         pixels * 4 * (1 + samples + if samples > 1 { samples } else { 0 })
     }
 
-    /// Reads the picture back. Waits for the device.
+    /// Reads the picture back, with straight alpha as PNG files have it. Waits for the device.
     ///
     /// # Errors
     /// The device was lost.
     pub fn read(&self, gpu: &Gpu) -> Result<image::RgbaImage, GpuError> {
         let [width, height] = self.size;
         let pixels = read_texture(gpu, &self.resolved)?;
-        image::RgbaImage::from_raw(width, height, pixels)
-            .ok_or_else(|| GpuError::Readback("the picture came back short".into()))
+        let mut picture = image::RgbaImage::from_raw(width, height, pixels)
+            .ok_or_else(|| GpuError::Readback("the picture came back short".into()))?;
+        if self.is_transparent {
+            picture.pixels_mut().for_each(|pixel| pixel.0 = straight(pixel.0));
+        }
+        Ok(picture)
+    }
+}
+
+/// A pixel with straight alpha, from one whose linear colour is multiplied by alpha, which is what blending over nothing makes.
+fn straight([r, g, b, alpha]: [u8; 4]) -> [u8; 4] {
+    if [0, 255].contains(&alpha) {
+        return [r, g, b, alpha];
+    }
+    let [r, g, b] = linear([r, g, b]).map(|channel| srgb(channel * 255.0 / f32::from(alpha)));
+    [r, g, b, alpha]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_half_covered_pixel_gets_the_colour_that_covers_it() {
+        let own = [200, 90, 20];
+        let [r, g, b] = linear(own).map(|channel| srgb(channel * 128.0 / 255.0));
+        let [red, green, blue, alpha] = straight([r, g, b, 128]);
+        let largest = [red, green, blue].iter().zip(own).map(|(a, b)| a.abs_diff(b)).max();
+        assert!(largest <= Some(1) && alpha == 128, "{red} {green} {blue}");
+        assert_eq!([straight([0; 4]), straight([1, 2, 3, 255])], [[0; 4], [1, 2, 3, 255]]);
     }
 }

@@ -25,6 +25,11 @@ pub(crate) use value::{Access, Declaration, Kind, Range, Value};
 /// Memory for a tessellation's output, in bytes.
 pub const ARENA_BYTES: u64 = 256 << 20;
 
+/// sRGB colours behind the mesh in a dark and in a light theme. Both are neutral, and the usual grey of a mesh stands out from
+/// both.
+const DARK_BACKGROUND: [u8; 3] = [0x2b, 0x2e, 0x33];
+pub(crate) const LIGHT_BACKGROUND: [u8; 3] = [0xe4, 0xe6, 0xe9];
+
 /// What is shown and how, apart from mesh and camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
@@ -38,8 +43,8 @@ pub struct Settings {
     pub split: Option<f32>,
     /// The surface left of the split, with all other settings the same; none for the untessellated mesh.
     pub split_surface: Option<Surface>,
-    /// sRGB colour behind the mesh.
-    pub background: [u8; 3],
+    /// sRGB colour behind the mesh; none for that of the window's theme, and in commands [`DARK_BACKGROUND`].
+    pub background: Option<[u8; 3]>,
 }
 
 impl Default for Settings {
@@ -51,7 +56,7 @@ impl Default for Settings {
             deviation_in: DeviationUnit::Units,
             split: None,
             split_surface: None,
-            background: [0x2b, 0x2e, 0x33],
+            background: None,
         }
     }
 }
@@ -149,6 +154,11 @@ impl Settings {
     pub fn greeting() -> Self {
         let overlays = Overlays { patches: true, ..Overlays::default() };
         Self { split: Some(0.5), overlays, ..Self::opening() }
+    }
+
+    /// The sRGB colour behind the mesh.
+    pub fn background_color(&self) -> [u8; 3] {
+        self.background.unwrap_or(DARK_BACKGROUND)
     }
 
     /// These settings with another tessellation.

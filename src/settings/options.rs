@@ -308,8 +308,8 @@ pub(crate) static OVERLAY: Declaration = Declaration {
     name: "overlay",
     label: "Overlays",
     placeholder: "OVERLAY,..",
-    text: "What is drawn over the surface. At most one of barycentric, factors, triangle-size, low-factors, excess and \
-           deviation, which colour all of it.",
+    text: "What is drawn over the surface. At most one of clay, zebra, shading-normals, uv-checker, barycentric, \
+           factors, triangle-size, low-factors, excess and deviation, which colour all of it.",
     kind: Kind::Several(descriptions::<Overlay>),
     unset: None,
     saved_as: &["overlays"],
@@ -359,9 +359,13 @@ pub(crate) static BACKGROUND: Declaration = Declaration {
     name: "background",
     label: "Background",
     placeholder: "RRGGBB",
-    text: "The sRGB colour behind the mesh.",
+    text: "The sRGB colour behind the mesh. Without it, the window's theme chooses, and commands draw on 2b2e33.",
     kind: Kind::Color,
-    unset: None,
+    unset: Some(Description::new(
+        "theme",
+        "As the theme",
+        "A dark grey in a dark theme, and a light one in a light theme.",
+    )),
     saved_as: &["background"],
     no_effect: always_has_effect,
     access: field!(background),

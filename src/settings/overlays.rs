@@ -9,6 +9,14 @@ pub enum Colors {
     /// The mesh's own.
     #[default]
     Material,
+    /// One matte material for all of the mesh, so that the shape alone is judged.
+    Clay,
+    /// Stripes that the surface reflects.
+    Zebra,
+    /// The directions of shading normals.
+    ShadingNormals,
+    /// A checker over texture coordinates.
+    UvChecker,
     /// Domain coordinates: u red, v green, w blue.
     Barycentric,
     /// Factors as the tessellator uses them: inside each patch, and along each edge.
@@ -43,6 +51,8 @@ pub struct Overlays {
     pub t_junctions: bool,
     /// Normals of emitted vertices.
     pub normals: bool,
+    /// The ground under the mesh, and the axes.
+    pub grid: bool,
 }
 
 /// One of [`Overlays`], by name.
@@ -50,6 +60,10 @@ pub struct Overlays {
 pub enum Overlay {
     Wireframe,
     Patches,
+    Clay,
+    Zebra,
+    ShadingNormals,
+    UvChecker,
     Barycentric,
     Adjacency,
     Cracks,
@@ -61,13 +75,14 @@ pub enum Overlay {
     LowFactors,
     Excess,
     Normals,
+    Grid,
     Deviation,
 }
 
 impl Overlay {
-    pub const ALL: [Self; 14] = every![Overlay:
-        Wireframe, Patches, Barycentric, Adjacency, Cracks, Folds, TJunctions, BackFaces, Factors, TriangleSize, LowFactors,
-        Excess, Normals, Deviation,
+    pub const ALL: [Self; 19] = every![Overlay:
+        Wireframe, Patches, Clay, Zebra, ShadingNormals, UvChecker, Barycentric, Adjacency, Cracks, Folds, TJunctions,
+        BackFaces, Factors, TriangleSize, LowFactors, Excess, Normals, Grid, Deviation,
     ];
 }
 
@@ -78,6 +93,30 @@ impl Choice for Overlay {
         let (name, label, text) = match self {
             Self::Wireframe => ("wireframe", "Wireframe", "Edges of the tessellated triangles."),
             Self::Patches => ("patches", "Patch borders", "Edges of the mesh's own triangles."),
+            Self::Clay => (
+                "clay",
+                "Clay",
+                "Shows the mesh in one matte warm grey, without its own colours, textures and gloss, so that only its shape \
+                 is seen.",
+            ),
+            Self::Zebra => (
+                "zebra",
+                "Zebra",
+                "Black and white stripes around the mesh, as the shading normals reflect them. Stripes jump where the tangent \
+                 breaks, and have a kink where the curvature does.",
+            ),
+            Self::ShadingNormals => (
+                "shading-normals",
+                "Shading normals",
+                "Colours the surface by its unit shading normal in object space, as normal maps do: x red, y green, z blue, \
+                 each from -1 (0) to 1 (255).",
+            ),
+            Self::UvChecker => (
+                "uv-checker",
+                "UV checker",
+                "A checker over texture coordinates, with 8 by 8 squares in one unit of u and v and blue lines around each \
+                 unit. Red grows with u and green with v, so that mirrored and turned charts are seen.",
+            ),
             Self::Barycentric => (
                 "barycentric",
                 "Barycentric",
@@ -130,6 +169,12 @@ impl Choice for Overlay {
                 "Normals of the tessellated vertices, 18 px long across the view; faint behind the surface. Where there are \
                  many, about one every 24 px is drawn.",
             ),
+            Self::Grid => (
+                "grid",
+                "Ground grid",
+                "The ground under the mesh, with lines at multiples of a round number of object units, and the axes x (red), \
+                 y (green) and z (blue) from the origin.",
+            ),
             Self::Deviation => (
                 "deviation",
                 "Deviation",
@@ -143,12 +188,16 @@ impl Choice for Overlay {
 
 impl Choice for Colors {
     const ALL: &'static [Self] = &every![Colors:
-        Material, Barycentric, Factors, TriangleSize, LowFactors, Excess, Deviation,
+        Material, Clay, Zebra, ShadingNormals, UvChecker, Barycentric, Factors, TriangleSize, LowFactors, Excess, Deviation,
     ];
 
     fn description(self) -> Description {
         match self {
             Self::Material => Description::new("material", "Material", "The mesh's own colours."),
+            Self::Clay => Overlay::Clay.description(),
+            Self::Zebra => Overlay::Zebra.description(),
+            Self::ShadingNormals => Overlay::ShadingNormals.description(),
+            Self::UvChecker => Overlay::UvChecker.description(),
             Self::Barycentric => Overlay::Barycentric.description(),
             Self::Factors => Overlay::Factors.description(),
             Self::TriangleSize => Overlay::TriangleSize.description(),
@@ -169,6 +218,10 @@ impl Overlays {
     /// The control that turns `overlay` on.
     pub fn control(&mut self, overlay: Overlay) -> Control<'_> {
         Control::Switch(match overlay {
+            Overlay::Clay => return Control::Colors(&mut self.colors, Colors::Clay),
+            Overlay::Zebra => return Control::Colors(&mut self.colors, Colors::Zebra),
+            Overlay::ShadingNormals => return Control::Colors(&mut self.colors, Colors::ShadingNormals),
+            Overlay::UvChecker => return Control::Colors(&mut self.colors, Colors::UvChecker),
             Overlay::Barycentric => return Control::Colors(&mut self.colors, Colors::Barycentric),
             Overlay::Factors => return Control::Colors(&mut self.colors, Colors::Factors),
             Overlay::TriangleSize => return Control::Colors(&mut self.colors, Colors::TriangleSize),
@@ -183,6 +236,7 @@ impl Overlays {
             Overlay::TJunctions => &mut self.t_junctions,
             Overlay::BackFaces => &mut self.back_faces,
             Overlay::Normals => &mut self.normals,
+            Overlay::Grid => &mut self.grid,
         })
     }
 

@@ -2,7 +2,6 @@
 //! `shaders/connectivity.wgsl`. [`super::connectivity_table`] has the same results in a table.
 
 use super::rings::{TransitionStep, ring_point, rings_before};
-use super::row_widths::widths_through;
 
 /// Which of the 31 places before a side's middle have a point. Points appear in the order of a breadth-first bisection:
 /// place 16, then 8 and 24, then 4, 12, 20, 28, and so on.
@@ -100,11 +99,4 @@ pub(super) fn regular_triangle(outer: u32, n: u32, t: u32) -> [u32; 3] {
     }
     let last = q == per_side - 1;
     if early || last { [o, third, i] } else { [i, o, third] }
-}
-
-/// Returns how many segments rows 1 to `row - 1` have together, and rows 1 to `row`, of `rows` rows that widen to `width` segments.
-/// `row` is 1 or more, and less than `rows`.
-pub(super) fn row_widths(rows: u32, width: u32, row: u32) -> [u32; 2] {
-    let through = widths_through(rows, width, row);
-    [through - (width * row).div_ceil(rows), through]
 }

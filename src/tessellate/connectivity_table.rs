@@ -13,7 +13,7 @@ pub(crate) const PATTERN_HALVES: u32 = 33;
 /// The table has room for this many triangles before the middle of a side.
 pub(crate) const PATTERN_STEPS: u32 = 64;
 /// The largest number of segments.
-pub(crate) const MOST_SEGMENTS: u32 = 64;
+const MOST_SEGMENTS: u32 = 64;
 
 /// Returns the index of triangle `t` before the middle of a side.
 fn step_index(inner_half: u32, outer_half: u32, t: u32) -> u32 {
@@ -50,26 +50,11 @@ fn regular_triangle(outer: u32, n: u32, t: u32) -> [u32; 3] {
     [a, a + (word >> 12 & 0x3ff) - 512, a + (word >> 22) - 512]
 }
 
-/// Returns the index of the entry for row 1 of `rows` rows that widen to `width` segments. It's followed by those for rows 2 to
-/// `rows - 1`.
-fn widths_index(rows: u32, width: u32) -> u32 {
-    let each = MOST_SEGMENTS * (MOST_SEGMENTS - 1) / 2;
-    regular_index(MOST_SEGMENTS + 1) + (width - 1) * each + (rows - 1) * rows.saturating_sub(2) / 2
-}
-
-/// Looks up [`connectivity::row_widths`].
-#[cfg(test)]
-fn row_widths(rows: u32, width: u32, row: u32) -> [u32; 2] {
-    let word = CONNECTIVITY_TABLE[(widths_index(rows, width) + row - 1) as usize];
-    [word & 0xffff, word >> 16]
-}
-
-/// The table: first the triangles of the sides, then those inside the first ring, then the widths of rows. Triangles inside
-/// are stored as the first point's number and the differences of the other two from it, plus 512; points of neighbouring rings
-/// never differ by more.
+/// The table: first the triangles of the sides, then those inside the first ring. Triangles inside are stored as the first
+/// point's number and the differences of the other two from it, plus 512; points of neighbouring rings never differ by more.
 pub(crate) static CONNECTIVITY_TABLE: LazyLock<Vec<u32>> = LazyLock::new(|| {
     let flags = |step: TransitionStep| u32::from(step.along_inner) << 16 | u32::from(step.inner_first) << 17;
-    let mut words = vec![0; widths_index(1, MOST_SEGMENTS + 1) as usize];
+    let mut words = vec![0; regular_index(MOST_SEGMENTS + 1) as usize];
     for inner_half in 1..PATTERN_HALVES {
         for outer_half in 0..PATTERN_HALVES {
             for t in 0..inner_half - 1 + outer_half {
@@ -83,12 +68,6 @@ pub(crate) static CONNECTIVITY_TABLE: LazyLock<Vec<u32>> = LazyLock::new(|| {
         for t in 0..regular_index(n + 1) - first {
             let [a, b, c] = connectivity::regular_triangle(0, n, t);
             words[(first + t) as usize] = a | (b + 512 - a) << 12 | (c + 512 - a) << 22;
-        }
-    }
-    for (width, rows) in (1..=MOST_SEGMENTS).flat_map(|width| (2..=MOST_SEGMENTS).map(move |rows| (width, rows))) {
-        for row in 1..rows {
-            let [above, through] = connectivity::row_widths(rows, width, row);
-            words[(widths_index(rows, width) + row - 1) as usize] = above | through << 16;
         }
     }
     words
@@ -107,15 +86,6 @@ mod tests {
                     let computed = connectivity::transition_before_middle(inner_half, outer_half, t);
                     assert_eq!(transition_before_middle(inner_half, outer_half, t), computed);
                 }
-            }
-        }
-    }
-
-    #[test]
-    fn the_widths_of_all_rows_are_in_the_table() {
-        for (width, rows) in (1..=64).flat_map(|width| (2..=64).map(move |rows| (width, rows))) {
-            for row in 1..rows {
-                assert_eq!(row_widths(rows, width, row), connectivity::row_widths(rows, width, row));
             }
         }
     }

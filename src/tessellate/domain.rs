@@ -15,7 +15,7 @@ use super::factors::{
     patch_is_subtriangulated, segments,
 };
 use super::rings::{TransitionStep, ring_point, rings_before};
-use super::rows::{row_plan, row_point, row_triangle, row_triangle_places};
+use super::rows::{numbered_rows, row_plan, row_point, row_triangle, row_triangle_places};
 use super::subtriangulation::{subtriangulation_point, subtriangulation_triangle};
 
 /// Two thirds in 16.16 fixed point, rounded down as in the specification.
@@ -81,7 +81,7 @@ pub fn domain_point(plan: &DomainPlan, i: u32) -> [u32; 2] {
         return outer_point(plan, i);
     }
     if plan.kind == PatternKind::Rows {
-        return row_point(&row_plan(plan.factors), i - plan.outer);
+        return row_point(&numbered_rows(plan.factors), i - plan.outer);
     }
     inner_point(plan.row, plan.n, i - plan.outer)
 }
@@ -131,14 +131,15 @@ pub fn domain_triangle(plan: &DomainPlan, t: u32) -> [u32; 3] {
     match plan.kind {
         PatternKind::Minimal => return [0, 1, 2],
         PatternKind::Subtriangulated => return subtriangulation_triangle(plan.n, t),
-        PatternKind::Rows => return row_triangle(&row_plan(plan.factors), t),
+        PatternKind::Rows => return row_triangle(&numbered_rows(plan.factors), t),
         PatternKind::Rings => {}
     }
     let transition = plan.outer + 3 * (plan.n - 2);
     if t < transition { transition_triangle(plan, t) } else { regular_triangle(plan.outer, plan.n, t - transition) }
 }
 
-/// Returns (U, V) of the corners of triangle `t`, in 16.16 fixed point.
+/// Returns (U, V) of the corners of triangle `t`, in 16.16 fixed point. Those of rows are counted in another order than that of
+/// [`domain_triangle`].
 pub(crate) fn domain_triangle_places(plan: &DomainPlan, t: u32) -> [[u32; 2]; 3] {
     if plan.kind == PatternKind::Rows {
         return row_triangle_places(&row_plan(plan.factors), t);

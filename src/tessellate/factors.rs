@@ -8,7 +8,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use super::row_widths::widths_through;
+use super::quotients::common_divisor;
 use crate::names::every;
 
 /// 1.0 in 16.16 fixed point.
@@ -251,10 +251,18 @@ pub(crate) fn inside_value(factors: PatchFactors) -> u32 {
     if patch_has_rows(factors) { width.min(row_count(factors) << 16) } else { width }
 }
 
-/// Returns the number of points inside a patch of rows: each row between the apex and the base has one less than segments.
+/// Returns the number of points inside a patch with so many rows of some width. `divisor` is the [`common_divisor`] of both.
+///
+/// Rows j and n - j together have one segment more than the width; one less where both are whole without rounding, which are
+/// `divisor - 1` rows. Each row has one point less than segments.
+pub(super) fn points_in_rows(rows: u32, width: u32, divisor: u32) -> u32 {
+    ((rows - 1) * (width - 1) + 1 - divisor) >> 1
+}
+
+/// Returns the number of points inside a patch of rows.
 fn row_points(factors: PatchFactors) -> u32 {
-    let last = row_count(factors) - 1;
-    widths_through(last + 1, row_width(factors), last) - last
+    let (rows, width) = (row_count(factors), row_width(factors));
+    points_in_rows(rows, width, common_divisor(rows, width))
 }
 
 /// Returns whether all factors are 1, so that the patch is one triangle.

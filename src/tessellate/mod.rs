@@ -36,8 +36,8 @@ mod normal;
 mod octahedral_normal;
 mod piece_error;
 mod posed_mesh;
+mod quotients;
 mod rings;
-mod row_widths;
 mod rows;
 mod solid;
 mod subtriangulation;
@@ -107,7 +107,7 @@ pub(crate) use vertex::pack_key;
 /// The constants of the mathematics that the shaders have too, for the test that compares them.
 #[cfg(test)]
 pub(crate) mod shared_constants {
-    pub(crate) use super::connectivity_table::{MOST_SEGMENTS, PATTERN_HALVES, PATTERN_STEPS};
+    pub(crate) use super::connectivity_table::{PATTERN_HALVES, PATTERN_STEPS};
     pub(crate) use super::control_points::PARALLEL;
     pub(crate) use super::coverage::ROW_SAMPLES;
     pub(crate) use super::cull::{

@@ -21,12 +21,13 @@
 //! So the numbers of segments of the three edges, which edge is the base, `width`, and whether diagonals are flipped say
 //! everything. With all numbers equal to `n`, the patch is cut into `n * n` equal triangles.
 
-use super::connectivity::row_widths;
 use super::domain_row::{segment_length, whole_location};
-use super::factors::{FIXED_HALF, FIXED_ONE, PatchFactors, row_base, row_count, row_flip, row_width, segments};
-use super::row_widths::{quotient, reciprocal, scaled, widths_through};
+use super::factors::{
+    FIXED_HALF, FIXED_ONE, PatchFactors, points_in_rows, row_base, row_count, row_flip, row_width, segments,
+};
+use super::quotients::{common_divisor, divided, inverse, quotient, reciprocal, scaled};
 
-/// A patch's rows, prepared for [`row_point`], [`row_triangle`] and [`row_triangle_places`].
+/// A patch's rows, prepared for [`row_triangle_places`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RowPlan {
     /// The numbers of segments of the first and of the second edge.
@@ -50,10 +51,17 @@ pub(super) struct RowPlan {
     outer: u32,
 }
 
-/// Returns the larger of 1 and row * segments / n, rounded half up: where a row after the first starts on an edge with so many
-/// segments.
-fn end_place(plan: &RowPlan, segments: u32, row: u32) -> u32 {
-    (scaled(2 * row * segments + plan.n, plan.per_row) >> 1).max(1)
+/// A patch's rows, prepared for [`row_point`] and [`row_triangle`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct NumberedRows {
+    rows: RowPlan,
+    /// The [`common_divisor`] of the number of rows and the width.
+    divisor: u32,
+    /// How many points lie inside the patch.
+    inside: u32,
+    /// The [`inverse`] of how many points `n` pairs of rows have, and of half of how many triangles `n` pairs of strips have.
+    per_point: f32,
+    per_half: f32,
 }
 
 /// Returns one of three numbers, from those that follow each other in a circle.
@@ -83,32 +91,19 @@ pub(super) fn row_plan(factors: PatchFactors) -> RowPlan {
     }
 }
 
-/// Returns how many points lie inside the patch in rows 1 to `row`, if these have `widths` segments together.
-fn points_through(widths: u32, row: u32) -> u32 {
-    widths - row
-}
-
-/// Returns the number of triangles before the strip below row `row`, which is 1 or more and less than the number of rows. `widths`
-/// are its [`row_widths`].
-///
-/// Each strip has as many triangles as its two rows have segments, less one for each point that they share.
-fn triangles_before(plan: &RowPlan, row: u32, widths: [u32; 2]) -> u32 {
-    widths[0] + widths[1] + end_place(plan, plan.a, row) + end_place(plan, plan.b, row) - 2 * row
-}
-
-/// Returns between which rows the strip with triangle `t` begins: the first one or later, and before the second one.
-///
-/// With m for the width and s for the segments of both edges together, the strips before row j have at least
-/// (m j^2 + (s - 2 n) j) / n - 2 triangles and at most (m j^2 + s j) / n + 2, because of the roundings of widths and places.
-fn rows_around(plan: &RowPlan, t: u32) -> [u32; 2] {
-    let [n, m] = [plan.n, plan.width].map(|number| number as f32);
-    let sides = (plan.a + plan.b) as f32;
-    let root = |slope: f32, height: f32| ((slope * slope + 4.0 * m * n * height.max(0.0)).sqrt() - slope) / (2.0 * m);
-    // Bounds that are too far apart are no mistake, so roundings go outwards.
-    let first = (root(sides, t as f32 - 2.0) - 0.015625).max(0.0);
-    let end = root(sides - 2.0 * n, t as f32 + 2.0) + 1.015625;
-    // The base may have so many segments that the first bound is beyond the last strip.
-    [(first as u32).min(plan.n - 1), plan.n.min(end as u32 + 1)]
+/// Prepares the rows of a patch, and their numbers.
+pub(super) fn numbered_rows(factors: PatchFactors) -> NumberedRows {
+    let rows = row_plan(factors);
+    let (n, width) = (rows.n, rows.width);
+    let divisor = common_divisor(n, width);
+    NumberedRows {
+        rows,
+        divisor,
+        inside: points_in_rows(n, width, divisor),
+        // Where there is nothing to find, any number will do.
+        per_point: inverse((n * (width - 1)).max(divisor + 1) - divisor),
+        per_half: inverse((n * width).max(divisor + 1) - divisor),
+    }
 }
 
 /// Returns point `i` of the outline, counted from the apex.
@@ -117,9 +112,22 @@ fn outline_point(plan: &RowPlan, i: u32) -> u32 {
     if point >= plan.outer { point - plan.outer } else { point }
 }
 
-/// Returns the number of segments of a row between the apex and the base: ceil(width * row / rows).
-fn row_segments(plan: &RowPlan, row: u32) -> u32 {
+/// Returns ceil(width * row / rows): the number of segments of a row before the base.
+fn widened(plan: &RowPlan, row: u32) -> u32 {
     scaled(plan.width * row + plan.n - 1, plan.per_row)
+}
+
+/// Returns the number of segments of a row.
+fn row_segments(plan: &RowPlan, row: u32) -> u32 {
+    if row == plan.n { plan.c } else { widened(plan, row) }
+}
+
+/// Returns where a row starts on the first edge and ends on the second: max(1, row * segments / n) of each, rounded half up.
+///
+/// That is the row's own number on the edge with `n` segments.
+fn end_places(plan: &RowPlan, row: u32) -> [u32; 2] {
+    let place = (scaled(2 * row * plan.a.min(plan.b) + plan.n, plan.per_row) >> 1).max(row.min(1));
+    if plan.a < plan.b { [place, row] } else { [row, place] }
 }
 
 /// A row: its number of segments, and at which points of the first and of the second edge it starts and ends, counted from the
@@ -133,12 +141,8 @@ struct PatternRow {
 
 /// Returns a row of a patch.
 fn row_at(plan: &RowPlan, row: u32) -> PatternRow {
-    if row == 0 {
-        return PatternRow { segments: 0, start: 0, end: 0 };
-    }
-    // The last row starts and ends at the last points of the two edges.
-    let segments = if row == plan.n { plan.c } else { row_segments(plan, row) };
-    PatternRow { segments, start: end_place(plan, plan.a, row), end: end_place(plan, plan.b, row) }
+    let [start, end] = end_places(plan, row);
+    PatternRow { segments: row_segments(plan, row), start, end }
 }
 
 /// A strip between a row and the next one.
@@ -148,6 +152,11 @@ struct Strip {
     row: u32,
     upper: PatternRow,
     lower: PatternRow,
+}
+
+/// Returns the strip below a row.
+fn strip_below(plan: &RowPlan, row: u32) -> Strip {
+    Strip { row, upper: row_at(plan, row), lower: row_at(plan, row + 1) }
 }
 
 /// Returns the number of triangles of a strip: one for each segment of its two rows, less one for each point that they share.
@@ -189,50 +198,89 @@ fn strip_corners(plan: &RowPlan, strip: Strip, i: u32) -> [StripPoint; 3] {
     [upper, lower, StripPoint { at: at[1] + 1, ..lower }]
 }
 
-/// Returns the number of point `at` of row `row`. `above` is how many segments rows 1 to `row - 1` have together.
-fn number_in_row(plan: &RowPlan, row: u32, own: PatternRow, above: u32, at: u32) -> u32 {
-    if at == 0 {
-        return outline_point(plan, own.start);
-    }
-    if at == own.segments {
-        return outline_point(plan, plan.outer - own.end);
-    }
-    if row == plan.n {
-        // The points of the base follow each other on the outline.
-        return outline_point(plan, plan.a) + at;
-    }
-    plan.outer + points_through(above, row - 1) + at - 1
+/// Returns how many points the first `pairs` pairs of rows have inside the patch, of which pair j is rows j and n - j.
+///
+/// A pair has one point less than the width; two less if both rows have a whole number of segments without rounding up.
+fn pair_points(rows: &NumberedRows, pairs: u32) -> u32 {
+    pairs * (rows.rows.width - 1) - scaled(pairs * rows.divisor, rows.rows.per_row)
 }
 
-/// Returns the number of a corner of a triangle. `widths` are the [`row_widths`] of the strip's upper row.
-fn corner_number(plan: &RowPlan, strip: Strip, widths: [u32; 2], corner: StripPoint) -> u32 {
-    match corner.is_lower {
-        true => number_in_row(plan, strip.row + 1, strip.lower, widths[1], corner.at),
-        false => number_in_row(plan, strip.row, strip.upper, widths[0], corner.at),
+/// Returns the row of point `i` of those inside the patch, and the point's place in it. Points are numbered pair by pair, the row
+/// nearer to the apex first.
+fn row_of_point(rows: &NumberedRows, i: u32) -> [u32; 2] {
+    let pairs = divided(i * rows.rows.n, rows.per_point);
+    let rest = i - pair_points(rows, pairs);
+    let inner = widened(&rows.rows, pairs + 1) - 1;
+    if rest < inner { [pairs + 1, rest + 1] } else { [rows.rows.n - pairs - 1, rest - inner + 1] }
+}
+
+/// Returns the number that is added to a point's place in a row with so many segments, if it's no end of the row.
+fn number_before(rows: &NumberedRows, row: u32, segments: u32) -> u32 {
+    let plan = &rows.rows;
+    if row == plan.n {
+        // The points of the base follow each other on the outline.
+        return outline_point(plan, plan.a);
     }
+    if 2 * row > plan.n {
+        return plan.outer + pair_points(rows, plan.n - row) - segments;
+    }
+    plan.outer + pair_points(rows, row.max(1) - 1) - 1
+}
+
+/// Returns the strip with triangle `k` of the last ones.
+///
+/// Two rows that share no point lie on both sides of point k of the edge with fewer segments, and the next one.
+fn unshared_strip(plan: &RowPlan, k: u32) -> u32 {
+    let fewer = 2 * plan.a.min(plan.b);
+    if k == 0 { 0 } else { quotient((2 * k + 1) * plan.n + fewer - 1, fewer) - 1 }
+}
+
+/// Returns the strip with triangle `t`, and the triangle's number in it.
+///
+/// All strips have at most one shared point. The last triangles of those without one follow at the end. What is left is numbered by
+/// pairs of strips, the ones below rows n - 1 - j and j, with j from 0. If the base had as many segments as the width, each pair
+/// would have twice the width; one less if row j has a whole number of segments without rounding up, and one less if row j + 1 has.
+/// So the first j pairs have x triangles rounded up and x rounded down, with x = j (width - divisor / n).
+fn strip_of_triangle(rows: &NumberedRows, t: u32) -> [u32; 2] {
+    let plan = &rows.rows;
+    let last = plan.n - 1;
+    if t < widened(plan, last) + plan.c - 1 {
+        return [last, t];
+    }
+    let paired = 2 * rows.inside + last + plan.c - 1;
+    if t >= paired {
+        let row = unshared_strip(plan, t - paired);
+        return [row, row_segments(plan, row) + row_segments(plan, row + 1) - 1];
+    }
+    let i = t + plan.width - plan.c;
+    let pairs = divided(((i + 1) >> 1) * plan.n - (i & 1), rows.per_half);
+    let whole = scaled(pairs * rows.divisor, plan.per_row);
+    let is_rounded = whole * plan.n != pairs * rows.divisor;
+    let rest = i + u32::from(is_rounded) - 2 * (pairs * plan.width - whole);
+    let lower = last - pairs;
+    let in_lower = widened(plan, lower) + widened(plan, lower + 1) - 1;
+    if rest < in_lower { [lower, rest] } else { [pairs, rest - in_lower] }
+}
+
+/// Returns the number of a corner of a triangle. `before` are the [`number_before`] of the strip's upper and lower row.
+fn corner_number(plan: &RowPlan, strip: Strip, before: [u32; 2], corner: StripPoint) -> u32 {
+    let (row, start) = if corner.is_lower { (strip.lower, before[1]) } else { (strip.upper, before[0]) };
+    if corner.at == 0 {
+        return outline_point(plan, row.start);
+    }
+    if corner.at == row.segments {
+        return outline_point(plan, plan.outer - row.end);
+    }
+    start + corner.at
 }
 
 /// Returns triangle `t` of a patch, as point numbers, in the order of the outline.
-pub(super) fn row_triangle(plan: &RowPlan, t: u32) -> [u32; 3] {
-    // A bisection over the few strips that it can be. No triangle is before row 0.
-    let [mut row, mut end] = rows_around(plan, t);
-    let (mut before, mut widths) = (0, [0, 0]);
-    if row > 0 {
-        widths = row_widths(plan.n, plan.width, row);
-        before = triangles_before(plan, row, widths);
-    }
-    while row + 1 < end {
-        let middle = (row + end) / 2;
-        let own = row_widths(plan.n, plan.width, middle);
-        let count = triangles_before(plan, middle, own);
-        if count <= t {
-            (row, before, widths) = (middle, count, own);
-        } else {
-            end = middle;
-        }
-    }
-    let strip = Strip { row, upper: row_at(plan, row), lower: row_at(plan, row + 1) };
-    strip_corners(plan, strip, t - before).map(|corner| corner_number(plan, strip, widths, corner))
+pub(super) fn row_triangle(rows: &NumberedRows, t: u32) -> [u32; 3] {
+    let plan = &rows.rows;
+    let [row, i] = strip_of_triangle(rows, t);
+    let strip = strip_below(plan, row);
+    let before = [number_before(rows, row, strip.upper.segments), number_before(rows, row + 1, strip.lower.segments)];
+    strip_corners(plan, strip, i).map(|corner| corner_number(plan, strip, before, corner))
 }
 
 /// Returns (U, V) of point `at` of a row, in 16.16 fixed point.
@@ -260,10 +308,11 @@ fn corner_place(plan: &RowPlan, strip: Strip, corner: StripPoint) -> [u32; 2] {
     place_in_row(plan, if corner.is_lower { strip.lower } else { strip.upper }, corner.at)
 }
 
-/// Returns (U, V) of the corners of triangle `t` of a patch, in 16.16 fixed point. It passes the strips before the triangle one
-/// by one: for the few rows of most patches that is faster than finding points by their numbers.
+/// Returns (U, V) of the corners of triangle `t` of a patch, counted strip by strip from the apex, in 16.16 fixed point. LOD by
+/// error looks at triangles in this order. For the few rows of most patches it is faster to pass strips one by one than to prepare
+/// [`NumberedRows`].
 pub(super) fn row_triangle_places(plan: &RowPlan, t: u32) -> [[u32; 2]; 3] {
-    let mut strip = Strip { row: 0, upper: row_at(plan, 0), lower: row_at(plan, 1) };
+    let mut strip = strip_below(plan, 0);
     let mut rest = t;
     while rest >= strip_triangles(strip) && strip.row + 1 < plan.n {
         rest -= strip_triangles(strip);
@@ -272,32 +321,10 @@ pub(super) fn row_triangle_places(plan: &RowPlan, t: u32) -> [[u32; 2]; 3] {
     strip_corners(plan, strip, rest).map(|corner| corner_place(plan, strip, corner))
 }
 
-/// Returns the row of point `i` of those inside the patch, and the point's place in it.
-///
-/// Rows 1 to j have at most j (width (j + 1) - 2) / (2 n) points inside, and less than j fewer. The rows that follow those which
-/// have at most `i` by this count are passed together where they have the same number of segments.
-fn row_of_point(plan: &RowPlan, i: u32) -> [u32; 2] {
-    let (n, width) = (plan.n as f32, plan.width as f32);
-    let root = ((width - 2.0) * (width - 2.0) + 8.0 * width * n * i as f32).sqrt();
-    // Too few rows are no mistake, so rounding is always downwards.
-    let mut row = (((root + 2.0 - width) / (2.0 * width)) - 0.015625).max(0.0) as u32;
-    let mut rest = i - points_through(widths_through(plan.n, plan.width, row), row);
-    let mut inner = row_segments(plan, row + 1) - 1;
-    let mut alike = quotient((inner + 1) * plan.n, plan.width) - row;
-    while rest >= alike * inner {
-        rest -= alike * inner;
-        row += alike;
-        inner = row_segments(plan, row + 1) - 1;
-        alike = quotient((inner + 1) * plan.n, plan.width) - row;
-    }
-    let passed = quotient(rest, inner);
-    [row + 1 + passed, rest - passed * inner + 1]
-}
-
 /// Returns (U, V) of point `i` of those inside the patch, in 16.16 fixed point.
-pub(super) fn row_point(plan: &RowPlan, i: u32) -> [u32; 2] {
-    let [row, place] = row_of_point(plan, i);
-    place_in_row(plan, row_at(plan, row), place)
+pub(super) fn row_point(rows: &NumberedRows, i: u32) -> [u32; 2] {
+    let [row, place] = row_of_point(rows, i);
+    place_in_row(&rows.rows, row_at(&rows.rows, row), place)
 }
 
 #[cfg(test)]

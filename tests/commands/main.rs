@@ -14,10 +14,12 @@ mod lod;
 mod manual;
 #[path = "../documents/moving.rs"]
 mod moving;
+mod picture_file;
 mod render;
 mod stability;
 mod techniques;
 mod tessellate;
+mod turntable;
 mod usage;
 #[cfg(unix)]
 mod writing;

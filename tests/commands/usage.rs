@@ -141,9 +141,13 @@ fn two_overlays_that_colour_the_surface_are_wrong_usage() {
     let folder = Folder::new();
     let picture = folder.path("out.png");
     let overlays = |list| ["render", "shape:torus", "-o", &picture, "--size", "60x40", "--overlay", list];
-    for list in
-        ["barycentric,factors", "triangle-size,wireframe,low-factors", "deviation,factors", "excess,low-factors"]
-    {
+    for list in [
+        "barycentric,factors",
+        "triangle-size,wireframe,low-factors",
+        "deviation,factors",
+        "excess,low-factors",
+        "clay,zebra",
+    ] {
         let errors = failure(&overlays(list), 2);
         assert!(errors.contains("--overlay can't be"), "{errors}");
         assert!(!Path::new(&picture).exists(), "nothing is drawn");

@@ -123,7 +123,7 @@ fn read(device: &wgpu::Device, buffer: &wgpu::Buffer) -> Vec<u8> {
 fn dispatch(cases: &[Case], sizes: [usize; 3]) -> [Vec<u8>; 3] {
     let (device, queue) = device();
     let source = [
-        include_str!("../../shaders/row_widths.wgsl"),
+        include_str!("../../shaders/quotients.wgsl"),
         include_str!("../../shaders/factors.wgsl"),
         include_str!("../../shaders/domain_row.wgsl"),
         include_str!("../../shaders/rings.wgsl"),

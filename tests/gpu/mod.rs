@@ -13,6 +13,8 @@ mod domain;
 mod embed;
 mod error;
 mod limits;
+mod lines;
+mod looks;
 #[path = "../documents/moving.rs"]
 pub(crate) mod moving;
 mod passes;

@@ -464,7 +464,7 @@ fn an_empty_view_emits_nothing_and_draws_the_background() {
     camera.target -= camera.axes()[2] * camera.distance * 3.0;
     let settings = Settings {
         tessellation: Tessellation { clip: Clip::Paper, ..Tessellation::default() },
-        background: [10, 200, 30],
+        background: Some([10, 200, 30]),
         ..Settings::default()
     };
     engine.draw(&mut scene, &target, &camera, &settings, &mut Timing::Off).expect("a draw");

@@ -132,7 +132,7 @@ fn partitionings_look_as_they_did() {
 fn overlays_look_as_they_did() {
     let mut pictures = Vec::new();
     for (name, shape, overlay) in [
-        ("wireframe", Shape::Torus, Overlay::Wireframe),
+        ("wireframe", Shape::Icosahedron, Overlay::Wireframe),
         ("patches", Shape::Torus, Overlay::Patches),
         ("barycentric", Shape::CubeSplit, Overlay::Barycentric),
         ("adjacency-cylinder", Shape::Cylinder, Overlay::Adjacency),
@@ -180,6 +180,10 @@ fn colours_look_as_they_did() {
             Colors::Excess,
             Settings::from(Tessellation { lod: Lod::EdgeLength, tolerance: 1.0, ..Tessellation::default() }),
         ),
+        ("clay", Shape::Bicubic, Colors::Clay, Settings::default()),
+        ("zebra", Shape::Bicubic, Colors::Zebra, Settings { normals_at: NormalsAt::Pixels, ..Settings::default() }),
+        ("shading-normals", Shape::CubeSplit, Colors::ShadingNormals, Settings::default()),
+        ("uv-checker", Shape::Torus, Colors::UvChecker, Settings { split: Some(0.5), ..Settings::default() }),
     ] {
         let (_, mut scene) = scene(shape);
         let settings = Settings {
@@ -197,11 +201,12 @@ fn adaptive_lod_and_the_split_look_as_they_did() {
     let (_, mut scene) = scene(Shape::Cone);
     let overlays = Overlays { wireframe: true, ..Overlays::default() };
     let adaptive = Settings {
-        tessellation: Tessellation { lod: Lod::Paper, pixels: 12.0, ..Tessellation::default() },
+        tessellation: Tessellation { lod: Lod::Paper, pixels: 32.0, ..Tessellation::default() },
         overlays,
         ..Settings::default()
     };
-    let split = Settings { split: Some(0.5), overlays, ..Settings::default() };
+    let few = Settings::from(Tessellation { factor: 3.0, ..Tessellation::default() });
+    let split = Settings { split: Some(0.5), overlays, ..few };
     let pictures = [("lod-paper", adaptive), ("split", split)];
     let pictures = pictures.map(|(name, settings)| (name.to_owned(), picture(&mut scene, &settings, SIZE)));
     assert_eq!(differing(pictures.into()), Vec::<String>::new());

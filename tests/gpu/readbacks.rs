@@ -15,7 +15,7 @@ fn chunks_read(engine: &Engine, arguments: &[&str], output: &Path) -> u64 {
     let command = Cli::try_parse_from(all).expect("a command").command.expect("a command");
     let before = engine.chunks_read();
     match command {
-        Command::Render(args) => render_with(&args, || Ok(engine.clone())).expect("a picture"),
+        Command::Render(args) => render_with(&args, "", || Ok(engine.clone())).expect("a picture"),
         Command::Tessellate(args) => tessellate_with(&args, || Ok(engine.clone())).expect("a mesh"),
         other => panic!("{other:?}"),
     }

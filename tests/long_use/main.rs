@@ -116,6 +116,9 @@ fn controls(harness: &Harness<App>) -> Vec<(Role, String)> {
 fn change(harness: &mut Harness<App>, random: &mut Rng) {
     let all = controls(harness);
     let (role, name) = &all[random.usize(..all.len())];
+    // A list opens only where it is in sight, and not all rows fit the window.
+    harness.get_by_role_and_label(*role, name).scroll_to_me();
+    settle(harness);
     let control = harness.get_by_role_and_label(*role, name);
     match role {
         Role::Slider => {

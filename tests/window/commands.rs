@@ -78,8 +78,8 @@ fn every_key_of_the_table_gives_its_command() {
             press_shortcut(&mut harness, key);
             assert_eq!(harness.state().last_action(), Some(&command.action), "{}: {key:?}", command.name);
             pressed += 1;
-            use FileAction::{ExportMesh, Open, SavePicture};
-            if matches!(&command.action, Action::File(Open | SavePicture | ExportMesh)) {
+            use FileAction::{ExportMesh, Open};
+            if matches!(&command.action, Action::File(Open | ExportMesh)) {
                 wait_for_dialog(&mut harness);
             }
             if command.action == Action::PlayOrPause {
@@ -209,10 +209,14 @@ fn the_background_window_changes_the_colour() {
     let mut harness = window(None);
     give(&mut harness, "Background colour…");
     assert!(harness.query_by_role_and_label(Role::Window, "Background colour").is_some());
-    let [red, _, blue] = harness.state().settings().background;
+    assert_eq!(harness.state().settings().background, None, "the theme chooses");
+    let [red, _, blue] = harness.state().settings().background_color();
     harness.get_by_role_and_label(Role::Slider, "Green").set_value_accesskit(200.0);
     settle(&mut harness);
-    assert_eq!(harness.state().settings().background, [red, 200, blue]);
+    assert_eq!(harness.state().settings().background, Some([red, 200, blue]));
+    harness.get_by_role_and_label(Role::Window, "Background colour").get_by_label("As the theme").click();
+    settle(&mut harness);
+    assert_eq!(harness.state().settings().background, None);
     press(&mut harness, Key::Escape);
     assert!(harness.query_by_role_and_label(Role::Window, "Background colour").is_none());
 }

@@ -14,7 +14,7 @@ use pnaen::tessellate::{Displacement, Lod, Surface, Tessellation};
 
 use crate::window_tests::{choose, click, press, run_command, settle, uniform, vase, window};
 
-fn press_with(harness: &mut Harness<App>, modifiers: Modifiers, key: Key) {
+pub(super) fn press_with(harness: &mut Harness<App>, modifiers: Modifiers, key: Key) {
     harness.key_press_modifiers(modifiers, key);
     settle(harness);
 }
@@ -84,7 +84,7 @@ fn a_drag_is_one_step() {
 }
 
 /// Copies the command with the menu and returns it. Checks that the window shows it.
-fn copied(harness: &mut Harness<App>) -> String {
+pub(super) fn copied(harness: &mut Harness<App>) -> String {
     click(harness, "Edit");
     harness.get_by_label_contains("Copy as command").click();
     harness.step();
@@ -104,7 +104,7 @@ fn copied(harness: &mut Harness<App>) -> String {
 }
 
 /// Runs a command in a folder of its own, and compares its picture with the window's.
-fn assert_draws(harness: &Harness<App>, command: &str, name: &str) {
+pub(super) fn assert_draws(harness: &Harness<App>, command: &str, name: &str) {
     let folder = tempfile::tempdir().expect("a writable temporary folder");
     // The shell splits the line into words.
     let output = Command::new("sh").args(["-c", &format!("printf '%s\\n' {command}")]).output().expect("a shell");

@@ -2,7 +2,7 @@
 
 use egui::accesskit::Role;
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::{App, Persistence};
 use pnaen::files::Limits;
 use pnaen::load::Source;
@@ -14,7 +14,7 @@ use crate::gpu_tests::moving::{CLIPS, moving};
 use crate::window_tests::{choose, click, press, settle, switch, uniform, window};
 
 /// A window of this size that was never open before, with all sections as they are then.
-fn first_start(size: [f32; 2], source: Option<Source>) -> Harness<'static, App> {
+pub(super) fn first_start(size: [f32; 2], source: Option<Source>) -> Harness<'static, App> {
     let mut harness = Harness::builder().with_size(size).wgpu().build_eframe(move |context| {
         App::new(context, source, Limits::default()).expect("these tests need a graphics adapter")
     });
@@ -211,5 +211,79 @@ fn a_narrow_window_leaves_out_panels_before_it_covers_anything() {
             let button = harness.get_by_role_and_label(Role::CheckBox, name).rect();
             assert!(screen.contains_rect(button) && !button.intersects(picture), "{name}: {button:?}, {picture:?}");
         }
+    }
+}
+
+/// What can be read or used in the panels: a text, and where it is. Rows that are scrolled out of view count too.
+fn rows(harness: &Harness<App>) -> Vec<(String, egui::Rect)> {
+    let roles = [
+        Role::Label,
+        Role::Button,
+        Role::CheckBox,
+        Role::ComboBox,
+        Role::Slider,
+        Role::SpinButton,
+        Role::DisclosureTriangle,
+    ];
+    let nodes = roles.iter().flat_map(|&role| harness.query_all_by_role(role));
+    let text = |node: &egui_kittest::Node<'_>| {
+        let own = node.accesskit_node();
+        format!("{:?} {}", own.role(), own.label().or(own.value()).unwrap_or_default())
+    };
+    nodes.map(|node| (text(&node), node.rect())).collect()
+}
+
+/// Pairs of rows that lie over each other by more than a rounding.
+fn overlapping(rows: &[(String, egui::Rect)]) -> Vec<String> {
+    let mut found = Vec::new();
+    for (index, (name, rect)) in rows.iter().enumerate() {
+        for (other, beside) in &rows[index + 1..] {
+            let common = rect.intersect(*beside);
+            // A slider's number is a control within its row.
+            let is_part = rect.contains_rect(*beside) || beside.contains_rect(*rect);
+            if common.width() > 1.5 && common.height() > 1.5 && !is_part {
+                found.push(format!("{name} {rect:?} and {other} {beside:?}"));
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn no_row_of_the_panels_is_cut_or_covered_at_any_size_of_the_text() {
+    let size = [1024.0, 640.0];
+    for zoom in [0.75, 1.0, 1.25, 1.5, 2.0] {
+        let mut harness = first_start(size, Some(Source::Shape(Shape::CubeSplit)));
+        crate::window_tests::open_all_sections(&mut harness);
+        harness.ctx.set_zoom_factor(zoom);
+        harness.set_size(egui::Vec2::from(size) / zoom);
+        choose(&mut harness, "Surface", "PN");
+        harness.state_mut().select_triangle(Some(3));
+        settle(&mut harness);
+        for (role, last) in [(Role::ComboBox, "Surface"), (Role::CheckBox, "Cull back faces")] {
+            harness.get_by_role_and_label(role, last).scroll_to_me();
+            settle(&mut harness);
+            no_row_is_cut_or_covered(&harness, zoom);
+        }
+    }
+}
+
+/// Checks the rows that are in view.
+fn no_row_is_cut_or_covered(harness: &Harness<App>, zoom: f32) {
+    let (picture, screen) = (viewport(harness), harness.ctx.content_rect());
+    let in_view = |rect: &egui::Rect| rect.top() > picture.top() - 40.0 && rect.bottom() < picture.bottom();
+    let all: Vec<_> = rows(harness).into_iter().filter(|(_, rect)| in_view(rect)).collect();
+    let left: Vec<_> = all.iter().filter(|(_, rect)| rect.right() < picture.left() + 1.0).cloned().collect();
+    let right: Vec<_> = all.iter().filter(|(_, rect)| rect.left() > picture.right() - 1.0).cloned().collect();
+    assert!(left.len() > 12, "{zoom}: {left:?}");
+    assert_eq!(right.is_empty(), zoom > 1.3, "the right panel is there if it has room");
+    for panel in [left, right] {
+        assert_eq!(overlapping(&panel), Vec::<String>::new(), "{zoom}");
+    }
+    // Nothing reaches from a panel into the picture, or beyond the window.
+    for (name, rect) in &all {
+        let beside = rect.right() < picture.left() + 1.0 || rect.left() > picture.right() - 1.0;
+        assert!(beside || rect.left() > picture.left() - 1.0, "{zoom}: {name} {rect:?} {picture:?}");
+        assert!(rect.left() >= screen.left() - 0.5 && rect.right() <= screen.right() + 0.5, "{zoom}: {name} {rect:?}");
     }
 }

@@ -5,14 +5,16 @@ use std::time::Instant;
 
 use egui::accesskit::Role;
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::App;
 use pnaen::load::Source;
 use pnaen::mesh::Shape;
+use pnaen::numbers::grouped;
+use pnaen::render::Leak;
 use pnaen::tessellate::Surface;
 use tempfile::TempDir;
 
-use crate::window_tests::{PATIENCE, choose, press, settle, uniform};
+use crate::window_tests::{PATIENCE, choose, click, press, settle, uniform};
 
 #[test]
 fn pn_triangles_crack_and_the_status_line_counts_it() {
@@ -79,6 +81,82 @@ fn keys_go_through_a_list_beyond_the_visible_rows() {
     press(&mut harness, egui::Key::Home);
     press(&mut harness, egui::Key::Enter);
     assert_eq!(harness.state().selected_edge(), Some(edges[0]));
+}
+
+/// The text of the first button that looks like this.
+fn button(harness: &Harness<App>, looks: impl Fn(&str) -> bool) -> String {
+    let mut texts = harness.query_all_by_role(Role::Button).filter_map(|node| node.accesskit_node().label());
+    texts.find(|text| looks(text)).expect("a button")
+}
+
+/// Clicks the row of a list that begins like this. The panel is scrolled to the list first.
+fn click_row(harness: &mut Harness<App>, list: &str, text: &str) {
+    harness.get_by_label(list).scroll_to_me();
+    settle(harness);
+    let row = button(harness, |label| label.starts_with(text));
+    click(harness, &row);
+}
+
+#[test]
+fn folds_are_listed_and_the_verdict_goes_to_the_largest() {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let path = folder.path().join("leaning.obj");
+    // Two triangles apart, whose normals are like those at a notch and a point of a star; the second is twice as large.
+    let triangle = |x: f32, size: f32| {
+        let corners = [[0.0, 0.0], [0.28, 0.2], [1.0, 0.0]];
+        let lines = corners.map(|[a, c]| format!("v {} 0 {}\n", x + size * a, size * c));
+        lines.concat() + "vn 0 1 0\nvn -0.77 0.32 -0.56\nvn 0.84 0.28 0.45\n"
+    };
+    let faces = "f 1//1 2//2 3//3\nf 4//4 5//5 6//6\n";
+    std::fs::write(&path, triangle(0.0, 1.0) + &triangle(5.0, 2.0) + faces).expect("a writable temporary folder");
+    let mut harness = uniform(Some(Source::File(path)));
+    let before = *harness.state().camera();
+    let line = button(&harness, |text| text.ends_with(" folds"));
+    click(&mut harness, &line);
+    settle(&mut harness);
+    let app = harness.state();
+    assert!(app.settings().overlays.folds);
+    assert_eq!(app.selected_triangle(), Some(1), "the larger one");
+    assert_ne!(*app.camera(), before);
+    assert!((5.0..7.0).contains(&app.camera().target.x), "{:?}", app.camera());
+    click_row(&mut harness, "Folded patches", &format!("{:<10}", 0));
+    let app = harness.state();
+    assert_eq!(app.selected_triangle(), Some(0), "the one of the row");
+    assert!((0.0..2.0).contains(&app.camera().target.x), "{:?}", app.camera());
+}
+
+#[test]
+fn leaks_are_listed_and_lead_to_the_edge_that_leaks() {
+    let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
+    harness.get_by_label("No leaks in this view");
+    choose(&mut harness, "Surface", "PN");
+    let app = harness.state();
+    let leaks = app.leaks().expect("counted");
+    assert!(leaks.is_sorted_by_key(|leak| std::cmp::Reverse(leak.pixels)), "{leaks:?}");
+    let pixels: u32 = leaks.iter().map(|leak| leak.pixels).sum();
+    let row = |leak: &Leak| format!("{:>6.0}{:>8.0}{:>15}", leak.middle.x, leak.middle.y, grouped(leak.pixels.into()));
+    let (second, before) = (row(&leaks[1]), *app.camera());
+    click_row(&mut harness, "Leaks", &second);
+    let app = harness.state();
+    assert!(app.settings().overlays.cracks);
+    let edge = app.selected_edge().expect("the edge beside the leak");
+    assert!(app.cracks().expect("measured").edges.iter().any(|crack| crack.edge == edge && crack.gap > 0.0));
+    assert_ne!(*app.camera(), before);
+    // The same camera as before has the same leaks.
+    press(&mut harness, egui::Key::OpenBracket);
+    let line = format!("{} px leak in this view", grouped(pixels.into()));
+    // The panel was scrolled to the list.
+    harness.get_by_label(&line).scroll_to_me();
+    settle(&mut harness);
+    click(&mut harness, &line);
+    assert_ne!(*harness.state().camera(), before, "at the largest leak");
+    // An edge that is computed once can't leak, and an open mesh has no inside.
+    choose(&mut harness, "Surface", "PN-AEN");
+    harness.get_by_label("No leaks in this view");
+    let context = harness.ctx.clone();
+    harness.state_mut().open(&context, Source::Shape(Shape::Bicubic));
+    settle(&mut harness);
+    assert!(harness.query_by_label_contains("in this view").is_none());
 }
 
 #[test]

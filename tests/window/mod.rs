@@ -6,15 +6,19 @@ mod commands;
 mod deviation;
 mod driver;
 mod editing;
+mod foreign_factors;
 mod lasting;
 mod layout;
 mod lists;
 mod loading;
 mod lost;
 mod picking;
+mod saving;
 mod spending;
+mod tasks;
 mod techniques;
 mod typing;
+mod viewing;
 
 use std::path::{Path, PathBuf};
 

@@ -90,6 +90,33 @@ fn escape_and_a_click_beside_the_mesh_deselect() {
 }
 
 #[test]
+fn the_ruler_measures_between_two_clicks_and_selects_nothing() {
+    let mut harness = cube();
+    let front = [egui::Key::Num1, egui::Key::Num5];
+    front.into_iter().for_each(|key| press(&mut harness, key));
+    harness.key_press_modifiers(egui::Modifiers::SHIFT, egui::Key::D);
+    settle(&mut harness);
+    harness.get_by_label("Distance: click on two places of the mesh");
+    let plain = harness.state().read_picture().expect("a device");
+    click_beside_the_middle(&mut harness, egui::vec2(-60.0, 0.0));
+    click_beside_the_middle(&mut harness, egui::vec2(60.0, 0.0));
+    let app = harness.state();
+    let [Some(a), Some(b)] = app.ruler().expect("in use") else { panic!("two places: {:?}", app.ruler()) };
+    // 120 points apart, seen without perspective. The face is curved, so that the ends may differ a little in depth.
+    let viewport = harness.get_by_label("Viewport").rect();
+    let height = 2.0 * app.camera().distance * 20f32.to_radians().tan();
+    let units = 120.0 * height / viewport.height();
+    assert!(((b.x - a.x) / units - 1.0).abs() < 0.02, "{a} {b} {units}");
+    assert!(a.y.abs() < 0.02 && (a.z - b.z).abs() < 0.05 && a.z > 0.5, "{a} {b}");
+    harness.get_by_label_contains("Distance: 0.");
+    assert_ne!(app.read_picture().expect("a device"), plain, "it is drawn");
+    assert_eq!((app.selected_triangle(), app.selected_edge()), (None, None));
+    press(&mut harness, egui::Key::Escape);
+    assert_eq!(harness.state().ruler(), None);
+    assert_eq!(harness.state().read_picture().expect("a device"), plain);
+}
+
+#[test]
 fn neighbours_lead_from_triangle_to_triangle() {
     let mut harness = cube();
     click_beside_the_middle(&mut harness, egui::Vec2::ZERO);

@@ -4,38 +4,49 @@ use std::time::Instant;
 
 use egui::accesskit::Role;
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::App;
 use pnaen::load::Source;
 use pnaen::mesh::Shape;
 use pnaen::settings::Colors;
 use pnaen::tessellate::Convention;
 
-use crate::window_tests::{PATIENCE, choose, click, press, run_command, settle, uniform};
+use crate::window_tests::editing::press_with;
+use crate::window_tests::{PATIENCE, choose, click, open_list, press, run_command, settle, uniform};
 
 #[test]
-fn only_one_colouring_is_shown_and_numbers_have_a_legend() {
+fn only_one_colouring_is_shown_and_has_a_legend() {
     let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     let legends = [
         "Legend: Factor",
         "Legend: Triangle size, px",
         "Legend: Factors below 2",
         "Legend: Triangles, times the own least",
+        "Legend: Barycentric, weights in the patch",
+        "Legend: Jump: break of tangent; kink: of curvature",
+        "Legend: Normal: x red, y green, z blue",
+        "Legend: UV: a square is 1/8 of a unit",
     ];
-    let shown = |harness: &Harness<App>| legends.map(|legend| harness.query_by_label(legend).is_some());
-    assert_eq!(shown(&harness), [false; 4]);
+    let shown = |harness: &Harness<App>| -> Vec<_> {
+        (0..legends.len()).filter(|&legend| harness.query_by_label(legends[legend]).is_some()).collect()
+    };
+    assert_eq!(shown(&harness), Vec::<usize>::new());
     for (entry, colors, expected) in [
-        ("Factors", Colors::Factors, [true, false, false, false]),
-        ("Triangle size", Colors::TriangleSize, [false, true, false, false]),
-        ("Factors below 2", Colors::LowFactors, [false, false, true, false]),
-        ("Excess triangles", Colors::Excess, [false, false, false, true]),
-        ("Barycentric", Colors::Barycentric, [false; 4]),
-        ("Material", Colors::Material, [false; 4]),
+        ("Factors", Colors::Factors, Some(0)),
+        ("Triangle size", Colors::TriangleSize, Some(1)),
+        ("Clay", Colors::Clay, None),
+        ("Factors below 2", Colors::LowFactors, Some(2)),
+        ("Excess triangles", Colors::Excess, Some(3)),
+        ("Barycentric", Colors::Barycentric, Some(4)),
+        ("Zebra", Colors::Zebra, Some(5)),
+        ("Shading normals", Colors::ShadingNormals, Some(6)),
+        ("UV checker", Colors::UvChecker, Some(7)),
+        ("Material", Colors::Material, None),
     ] {
         let pictures = harness.state().pictures();
         choose(&mut harness, "Colours", entry);
         assert_eq!(harness.state().settings().overlays.colors, colors);
-        assert_eq!(shown(&harness), expected, "{entry}");
+        assert_eq!(shown(&harness), Vec::from_iter(expected), "{entry}");
         assert!(harness.state().pictures() > pictures, "{entry} isn't drawn");
     }
     for (key, colors) in [
@@ -49,8 +60,31 @@ fn only_one_colouring_is_shown_and_numbers_have_a_legend() {
         press(&mut harness, key);
         assert_eq!(harness.state().settings().overlays.colors, colors);
     }
+    for (key, colors) in [
+        (egui::Key::C, Colors::Clay),
+        (egui::Key::S, Colors::Zebra),
+        (egui::Key::N, Colors::ShadingNormals),
+        (egui::Key::U, Colors::UvChecker),
+        (egui::Key::U, Colors::Material),
+    ] {
+        press_with(&mut harness, egui::Modifiers::SHIFT, key);
+        assert_eq!(harness.state().settings().overlays.colors, colors);
+    }
     press(&mut harness, egui::Key::N);
     assert!(harness.state().settings().overlays.normals);
+}
+
+#[test]
+fn a_mesh_without_texture_coordinates_has_no_checker() {
+    for (shape, has_checker) in [(Shape::Icosphere, false), (Shape::Torus, true)] {
+        let mut harness = uniform(Some(Source::Shape(shape)));
+        open_list(&mut harness, "Colours");
+        let is_disabled = |name| harness.get_by_label(name).accesskit_node().is_disabled();
+        assert_eq!([is_disabled("UV checker"), is_disabled("Zebra")], [!has_checker, false], "{shape:?}");
+        press(&mut harness, egui::Key::Escape);
+        press_with(&mut harness, egui::Modifiers::SHIFT, egui::Key::U);
+        assert_eq!(harness.state().settings().overlays.colors == Colors::UvChecker, has_checker, "{shape:?}");
+    }
 }
 
 #[test]

@@ -1,13 +1,42 @@
 //! Copies the command line that draws what the window shows.
 
+use std::path::Path;
+
 use crate::app::App;
-use crate::cli::CopiedCommand;
+use crate::app::jobs::picture_job::PictureChoices;
+use crate::cli::{CopiedCommand, Turn};
 use crate::load::{HeightSource, Source};
+use crate::render::Camera;
 
 impl App {
     /// Copies the command that draws what is shown, and shows that command in a window.
     pub(in crate::app) fn copy_command(&mut self, context: &egui::Context) {
-        let Some(document) = &self.document else { return };
+        self.copy_command_of(context, &PictureChoices::default());
+    }
+
+    /// The same for a picture with these choices.
+    pub(in crate::app) fn copy_command_of(&mut self, context: &egui::Context, choices: &PictureChoices) {
+        self.copy_line(context, self.command_of(context.theme(), choices, &self.viewport.camera, None, None));
+    }
+
+    /// Copies a command, and shows it in a window.
+    pub(in crate::app) fn copy_line(&mut self, context: &egui::Context, command: Option<String>) {
+        let Some(command) = command else { return };
+        context.copy_text(command.clone());
+        self.commands.copied = Some(command);
+    }
+
+    /// The command that draws what is shown, with these choices, as this camera sees it; none without a mesh. Without an
+    /// output, the file is named after the mesh. A turn makes it a turntable, as a GIF or not.
+    pub(in crate::app) fn command_of(
+        &self,
+        theme: egui::Theme,
+        choices: &PictureChoices,
+        camera: &Camera,
+        output: Option<&Path>,
+        turn: Option<(Turn, bool)>,
+    ) -> Option<String> {
+        let document = self.document.as_ref()?;
         let moment = self.moment().zip(document.loaded.mesh.rig.as_deref());
         let animation = moment.map(|(moment, rig)| (rig.clip_name(moment.clip), moment.time));
         let source = absolute_source(&document.loaded.source);
@@ -16,20 +45,27 @@ impl App {
         if let Some(HeightSource::File(path)) = &mut preparation.heights {
             *path = std::path::absolute(&*path).unwrap_or_else(|_| path.clone());
         }
+        let settings = self.saved_settings_of(theme, choices);
+        let px = |size: glam::Vec2| size.to_array().map(|side| side as u32);
+        let frozen = self.viewport.frozen.as_ref();
         let shown = CopiedCommand {
             source: &source,
             preparation: &preparation,
-            settings: &self.settings,
-            camera: &self.viewport.camera,
+            settings: &settings,
+            camera,
+            lod_camera: frozen.map(|frozen| (&frozen.camera, px(frozen.viewport))),
             radius: document.scene.bounds.radius(),
-            size: self.viewport.picture.size().to_array().map(|side| side as u32),
+            size: self.saved_size(choices),
             animation: animation.as_ref().map(|(name, time)| (&**name, *time)),
             truth: truth.as_ref(),
-            triangle: self.selected_triangle(),
+            factors: self.factors_file(),
+            triangle: self.selected_triangle().filter(|_| choices.overlays),
+            transparent: choices.transparent,
+            legend: choices.legend,
+            output,
+            turn,
         };
-        let command = shown.line();
-        context.copy_text(command.clone());
-        self.commands.copied = Some(command);
+        Some(shown.line())
     }
 
     pub(in crate::app) fn command_window(&mut self, context: &egui::Context) {
@@ -37,11 +73,8 @@ impl App {
         let mut is_open = true;
         let window = egui::Window::new("Copied").open(&mut is_open).resizable(false).collapsible(false);
         window.anchor(egui::Align2::CENTER_TOP, egui::vec2(0.0, 40.0)).default_width(520.0).show(context, |ui| {
-            ui.label("This command draws the picture without a window:");
+            ui.label("This command draws it without a window:");
             ui.add(egui::Label::new(egui::RichText::new(command).monospace()).wrap().selectable(true));
-            if self.viewport.frozen.is_some() {
-                ui.weak("The command computes LOD for this camera, not for the frozen one.");
-            }
         });
         if !is_open {
             self.commands.copied = None;

@@ -5,6 +5,9 @@ use egui::{Event, Key, KeyboardShortcut};
 use crate::app::App;
 use crate::commands::{Action, Command, FileAction, all};
 
+/// The key that hides the panels while no control has the focus.
+const TAB: KeyboardShortcut = KeyboardShortcut::new(egui::Modifiers::NONE, Key::Tab);
+
 impl App {
     /// Performs the commands whose keys were pressed. Commands that work while text is typed come first, because those that
     /// open a text field take the keys that were pressed after them.
@@ -38,6 +41,15 @@ impl App {
             return;
         }
         for shortcut in &command.keys {
+            if *shortcut == TAB {
+                // Tab goes from control to control once one of them has the focus.
+                if context.memory(|memory| memory.focused().is_some()) || egui::Popup::is_any_open(context) {
+                    continue;
+                }
+                if context.input(|input| input.events.iter().any(|event| is_press_of(event, &TAB))) {
+                    context.memory_mut(|memory| memory.move_focus(egui::FocusDirection::None));
+                }
+            }
             for place in take_presses(context, shortcut) {
                 self.give(context, command);
                 if matches!(command.action, Action::File(FileAction::Open | FileAction::OpenPath)) {

@@ -43,7 +43,7 @@ impl App {
                 }
             }
             for (_, submenu) in menu.submenus().iter().filter(|(of, _)| *of == group) {
-                chosen = submenu_entries(ui, *submenu, &commands).or(chosen);
+                chosen = submenu_entries(ui, *submenu, &commands, &now).or(chosen);
             }
         }
         if let Some(command) = chosen {
@@ -79,6 +79,10 @@ impl App {
                 CameraAction::Frame
                 | CameraAction::FramePatch
                 | CameraAction::LookFrom(_)
+                | CameraAction::Before
+                | CameraAction::After
+                | CameraAction::Bookmark(_)
+                | CameraAction::ThroughFrozen
                 | CameraAction::Orbit(_)
                 | CameraAction::Pan(_)
                 | CameraAction::ZoomIn
@@ -86,6 +90,8 @@ impl App {
             },
             Action::Chart => Some(self.panels.chart.is_open),
             Action::HidePanels => Some(self.panels.are_hidden),
+            Action::Ruler => Some(self.viewport.ruler.is_some()),
+            Action::Previews => Some(self.viewport.preview.is_on),
             Action::Theme(theme) => Some(context.options(|options| options.theme_preference) == *theme),
             Action::File(_)
             | Action::Setting(_)
@@ -96,10 +102,13 @@ impl App {
             | Action::ResetSettings
             | Action::ForgetEverything
             | Action::SplitView
+            | Action::FocusControls
             | Action::OpenAllSections
             | Action::FoldAllSections
             | Action::Warnings
             | Action::FreezeLodCamera
+            | Action::AddBookmark
+            | Action::ForgetBookmarks
             | Action::Background
             | Action::MeasureChart
             | Action::LargerText
@@ -118,20 +127,30 @@ impl App {
 }
 
 /// Shows a submenu. Returns the command that is chosen in it.
-fn submenu_entries<'a>(ui: &mut egui::Ui, submenu: Submenu, commands: &'a [Command]) -> Option<&'a Command> {
+fn submenu_entries<'a>(
+    ui: &mut egui::Ui,
+    submenu: Submenu,
+    commands: &'a [Command],
+    now: &Availability,
+) -> Option<&'a Command> {
     let entries: Vec<_> = commands.iter().filter(|command| command.place == Some(Place::Submenu(submenu))).collect();
     let show = |ui: &mut egui::Ui| {
-        ui.menu_button(submenu.name(), |ui| entries.iter().copied().filter(|command| entry(ui, command)).last()).inner
+        ui.menu_button(submenu.name(), |ui| entries.iter().copied().filter(|command| entry(ui, command, now)).last())
+            .inner
     };
     ui.add_enabled_ui(!entries.is_empty(), show).inner.flatten()
 }
 
-fn entry(ui: &mut egui::Ui, command: &Command) -> bool {
+fn entry(ui: &mut egui::Ui, command: &Command, now: &Availability) -> bool {
+    let key = command.keys.first().map(|key| ui.ctx().format_shortcut(key)).unwrap_or_default();
     let button = match &command.action {
         Action::File(FileAction::OpenRecent(path)) => recent_button(path),
-        _ => egui::Button::new(command.value_name()),
+        _ if key.is_empty() => egui::Button::new(command.value_name()),
+        _ => egui::Button::new(command.value_name()).shortcut_text(key),
     };
-    ui.add(button).on_hover_text(&*command.text).clicked()
+    let why_not = command.why_not(now);
+    let response = ui.add_enabled(why_not.is_none(), button).on_hover_text(&*command.text);
+    response.on_disabled_hover_text(why_not.unwrap_or_default()).clicked()
 }
 
 /// A button with a file's name and its folder.

@@ -24,20 +24,26 @@ impl App {
             has_document: self.document.is_some(),
             has_picture: self.viewport.picture.drawn.is_some(),
             has_truth: self.truth.is_some(),
+            has_factors: self.given.is_some(),
             can_undo: self.can_undo(),
             can_redo: self.can_redo(),
+            has_view_before: self.has_view_before(),
+            has_view_after: self.has_view_after(),
+            bookmarks: self.viewport.bookmarks.len(),
             has_selection: self.viewport.selected_edge.is_some() || self.selected_triangle().is_some(),
             has_selected_patch: self.selected_patch().is_some(),
             has_heights: self.has_heights(),
+            has_texture_coordinates: self.document.as_ref().is_some_and(|document| document.has_texture_coordinates),
             takes_normals_at: has_effect(&options::NORMALS_AT),
-            takes_factor: has_effect(&options::FACTOR),
-            takes_lod: has_effect(&options::LOD),
+            takes_factor: has_effect(&options::FACTOR) && self.given.is_none(),
+            takes_lod: has_effect(&options::LOD) && self.given.is_none(),
             can_cull_back_faces: self.can_cull_back_faces(),
             is_split: self.settings.split.is_some(),
+            is_frozen: self.viewport.frozen.is_some(),
             shows_deviation: self.settings.overlays.colors == Colors::Deviation,
             can_measure_chart: self.can_measure_chart(),
             has_chart: !self.chart_rows().is_empty() && self.panels.chart.saving.is_none(),
-            is_exporting: self.jobs.export.is_some(),
+            is_writing: self.is_writing(),
             clips: self.clip_names(),
             recent: self.persistence.recent().map(Into::into).collect(),
         }
@@ -64,10 +70,15 @@ impl App {
             Action::ForgetEverything => self.dialogs.asks_to_forget = true,
             Action::SplitView => self.toggle_split(),
             Action::HidePanels => self.panels.are_hidden = !self.panels.are_hidden,
+            Action::FocusControls => context.memory_mut(|memory| memory.move_focus(egui::FocusDirection::Next)),
             Action::OpenAllSections => self.panels.open.set_all(true),
             Action::FoldAllSections => self.panels.open.set_all(false),
             Action::Warnings => self.dialogs.shows_warnings = true,
             Action::FreezeLodCamera => self.toggle_frozen(),
+            Action::Ruler => self.toggle_ruler(),
+            Action::Previews => self.switch_previews(),
+            Action::AddBookmark => self.viewport.bookmarks.push(self.viewport.camera),
+            Action::ForgetBookmarks => self.viewport.bookmarks.clear(),
             Action::Background => self.dialogs.chooses_background = true,
             Action::Chart => self.toggle_chart(),
             Action::MeasureChart => self.measure_chart(context),
@@ -98,8 +109,15 @@ impl App {
             FileAction::Truth => self.truth_dialog(context),
             FileAction::TruthPath => self.type_path(Purpose::Truth),
             FileAction::ForgetTruth => self.forget_truth(),
-            FileAction::SavePicture => self.picture_dialog(context),
+            FileAction::Factors => self.factors_dialog(context),
+            FileAction::FactorsPath => self.type_path(Purpose::Factors),
+            FileAction::ForgetFactors => self.forget_factors(),
+            FileAction::SavePicture => self.dialogs.picture.is_open = true,
             FileAction::SavePicturePath => self.type_path(Purpose::SavePicture),
+            FileAction::SaveTurntable => self.dialogs.turntable.is_open = true,
+            FileAction::SaveFactors => self.numbers_dialog(context, Purpose::SaveFactors),
+            FileAction::SaveAdjacency => self.numbers_dialog(context, Purpose::SaveAdjacency),
+            FileAction::SaveStats => self.numbers_dialog(context, Purpose::SaveStats),
             FileAction::ExportMesh => self.export_dialog(context),
             FileAction::ExportMeshPath => self.type_path(Purpose::ExportMesh),
             FileAction::SaveChart => self.save_dialog(context),
@@ -134,16 +152,20 @@ impl App {
     /// stops all jobs, closes all messages and clears the selection.
     fn cancel(&mut self) {
         let asked = std::mem::take(&mut self.dialogs.asks_to_forget);
-        let chose = std::mem::take(&mut self.dialogs.chooses_background);
+        let chose = std::mem::take(&mut self.dialogs.chooses_background)
+            | std::mem::take(&mut self.dialogs.picture.is_open)
+            | std::mem::take(&mut self.dialogs.turntable.is_open);
         if self.commands.palette.take().is_some() || self.commands.copied.take().is_some() || asked || chose {
             return;
         }
         if self.jobs.load.is_none() && self.viewport.picture.is_long() {
             return self.viewport.picture.cancel();
         }
-        (self.jobs.load, self.jobs.truth_load, self.jobs.export) = (None, None, None);
+        (self.jobs.load, self.jobs.truth_load, self.jobs.writing) = (None, None, None);
         (self.dialogs.error, self.dialogs.notice, self.dialogs.typed_path) = (None, None, None);
         (self.commands.shows_keys, self.dialogs.shows_warnings) = (false, false);
-        self.deselect();
+        if self.viewport.ruler.take().is_none() {
+            self.deselect();
+        }
     }
 }

@@ -2,11 +2,15 @@
 
 mod background;
 mod desktop_dialog;
+pub(super) mod picture_window;
+mod turntable_window;
 pub(super) mod typed_path;
 mod warnings;
 pub(super) mod windows;
 mod writing;
 
+use picture_window::PictureWindow;
+use turntable_window::TurntableWindow;
 use typed_path::{PendingDialog, TypedPath};
 
 /// Windows and dialogs that are open.
@@ -22,6 +26,10 @@ pub(super) struct Dialogs {
     pub notice: Option<String>,
     /// Whether the window for the background colour is open.
     pub chooses_background: bool,
+    /// The window that chooses how a picture is saved.
+    pub picture: PictureWindow,
+    /// The window that chooses how a turntable is saved.
+    pub turntable: TurntableWindow,
     /// Whether the list of the mesh's warnings is open.
     pub shows_warnings: bool,
     /// Whether the window that asks before everything is forgotten is open.

@@ -18,8 +18,15 @@ pub(crate) enum Purpose {
     Open,
     Heights,
     Truth,
+    Factors,
     SaveChart,
     SavePicture,
+    /// A turntable as PNG files.
+    SaveFolder,
+    SaveGif,
+    SaveFactors,
+    SaveAdjacency,
+    SaveStats,
     ExportMesh,
 }
 
@@ -61,10 +68,20 @@ impl Purpose {
             Self::Open => "Open path",
             Self::Heights => "Height image path",
             Self::Truth => "Reference surface path",
+            Self::Factors => "Factors path",
             Self::SaveChart => "Save chart",
             Self::SavePicture => "Save picture",
+            Self::SaveFolder | Self::SaveGif => "Save turntable",
+            Self::SaveFactors => "Save factors",
+            Self::SaveAdjacency => "Save adjacency",
+            Self::SaveStats => "Save stats",
             Self::ExportMesh => "Export mesh",
         }
+    }
+
+    /// Whether the path is that of a file to write.
+    fn is_written(self) -> bool {
+        !matches!(self, Self::Open | Self::Heights | Self::Truth | Self::Factors)
     }
 
     /// The kinds of file that can be typed.
@@ -73,17 +90,23 @@ impl Purpose {
             Self::Open => format!("A {} file, shape:NAME, or a height image (.png, .jpg)", known_extensions()),
             Self::Heights => "A .png or .jpg image".to_owned(),
             Self::Truth => format!("A {} file, or shape:NAME", known_extensions()),
+            Self::Factors => "A .csv file with the factors of every triangle".to_owned(),
             Self::SaveChart => "A new .svg, .png or .csv file".to_owned(),
             Self::SavePicture => "A new .png file".to_owned(),
+            Self::SaveFolder => "A new folder".to_owned(),
+            Self::SaveGif => "A new .gif file".to_owned(),
+            Self::SaveFactors => "A new .csv file".to_owned(),
+            Self::SaveAdjacency => "A new .json or .bin file".to_owned(),
+            Self::SaveStats => "A new .json file".to_owned(),
             Self::ExportMesh => "A new .glb or .obj file".to_owned(),
         }
     }
 
     fn button(self) -> &'static str {
         match self {
-            Self::Open | Self::Heights | Self::Truth => "Open",
-            Self::SaveChart | Self::SavePicture => "Save",
+            Self::Open | Self::Heights | Self::Truth | Self::Factors => "Open",
             Self::ExportMesh => "Export",
+            _ => "Save",
         }
     }
 
@@ -92,9 +115,14 @@ impl Purpose {
         let title = open.map_or_else(|| "mesh".to_owned(), Source::title);
         match (self, open) {
             (Self::Open | Self::Truth, Some(Source::File(path))) => path.display().to_string(),
-            (Self::Open | Self::Truth | Self::Heights, _) => String::new(),
+            (Self::Open | Self::Truth | Self::Heights | Self::Factors, _) => String::new(),
             (Self::SaveChart, _) => absolute("chart.svg"),
             (Self::SavePicture, _) => absolute(&name_beside(&title, "-view.png")),
+            (Self::SaveFolder, _) => absolute(&name_beside(&title, "-turntable")),
+            (Self::SaveGif, _) => absolute(&name_beside(&title, "-turntable.gif")),
+            (Self::SaveFactors, _) => absolute(&name_beside(&title, "-factors.csv")),
+            (Self::SaveAdjacency, _) => absolute(&name_beside(&title, "-adjacency.json")),
+            (Self::SaveStats, _) => absolute(&name_beside(&title, "-stats.json")),
             (Self::ExportMesh, _) => absolute(&name_beside(&title, "-tessellated.glb")),
         }
     }
@@ -218,13 +246,13 @@ impl App {
         let (purpose, path) = (*purpose, path.trim());
         let taken = match purpose {
             // This window doesn't ask before it replaces a file, so it never does.
-            Purpose::SaveChart | Purpose::SavePicture | Purpose::ExportMesh if Path::new(path).exists() => {
+            _ if purpose.is_written() && Path::new(path).exists() => {
                 Err(format!("{} exists already: choose another name", shown_path(Path::new(path))))
             }
-            Purpose::SaveChart | Purpose::SavePicture | Purpose::ExportMesh => {
+            _ if purpose.is_written() || purpose == Purpose::Factors => {
                 self.take_source(context, purpose, Source::File(path.into()))
             }
-            Purpose::Open | Purpose::Heights | Purpose::Truth => match path.parse() {
+            _ => match path.parse() {
                 Ok(source) => self.take_source(context, purpose, source),
                 Err(error) => Err(error.to_string()),
             },
@@ -242,8 +270,13 @@ impl App {
     fn take_source(&mut self, context: &egui::Context, purpose: Purpose, source: Source) -> Result<(), String> {
         match (purpose, source) {
             (Purpose::Truth, source) => self.open_truth(context, source),
+            (Purpose::Factors, Source::File(path)) => self.open_factors(context, path),
             (Purpose::SaveChart, Source::File(path)) => self.save_chart_beside(context, path),
             (Purpose::SavePicture, Source::File(path)) => self.save_picture(context, path)?,
+            (Purpose::SaveFolder | Purpose::SaveGif, Source::File(path)) => self.save_turntable(context, path)?,
+            (Purpose::SaveFactors, Source::File(path)) => self.save_factors(context, path)?,
+            (Purpose::SaveAdjacency, Source::File(path)) => self.save_adjacency(context, path)?,
+            (Purpose::SaveStats, Source::File(path)) => self.save_stats(context, path)?,
             (Purpose::ExportMesh, Source::File(path)) => self.export_mesh(context, path)?,
             (Purpose::Open | Purpose::Heights, Source::File(path)) => self.open_path(context, path),
             (_, source) => self.open(context, source),

@@ -17,6 +17,12 @@ impl App {
         self.dialog(Purpose::Truth, context, || meshes("Choose a reference surface").pick_file());
     }
 
+    pub(in crate::app) fn factors_dialog(&mut self, context: &egui::Context) {
+        self.dialog(Purpose::Factors, context, || {
+            rfd::FileDialog::new().set_title("Choose a file of factors").add_filter("CSV", &["csv"]).pick_file()
+        });
+    }
+
     /// Asks where the picture is to be saved.
     pub(in crate::app) fn picture_dialog(&mut self, context: &egui::Context) {
         let name = self.proposed_name("-view.png");
@@ -32,6 +38,32 @@ impl App {
         self.dialog(Purpose::ExportMesh, context, move || {
             let dialog = rfd::FileDialog::new().set_title("Export the tessellated mesh").set_file_name(name);
             dialog.add_filter("glTF binary", &["glb"]).add_filter("Wavefront OBJ", &["obj"]).save_file()
+        });
+    }
+
+    /// Asks where a turntable is to be saved.
+    pub(in crate::app) fn turntable_dialog(&mut self, context: &egui::Context, is_gif: bool) {
+        let purpose = if is_gif { Purpose::SaveGif } else { Purpose::SaveFolder };
+        let name = self.proposed_name(if is_gif { "-turntable.gif" } else { "-turntable" });
+        self.dialog(purpose, context, move || {
+            let dialog = rfd::FileDialog::new().set_title("Save the turntable").set_file_name(name);
+            if is_gif { dialog.add_filter("Animated GIF", &["gif"]) } else { dialog }.save_file()
+        });
+    }
+
+    /// Asks where numbers are to be saved: factors, the index buffer or stats.
+    pub(in crate::app) fn numbers_dialog(&mut self, context: &egui::Context, purpose: Purpose) {
+        let (title, name, filters): (_, _, &[_]) = match purpose {
+            Purpose::SaveFactors => ("Save the factors", "-factors.csv", &[("CSV table", "csv")]),
+            Purpose::SaveAdjacency => {
+                ("Save the adjacency", "-adjacency.json", &[("JSON", "json"), ("Bare indices", "bin")])
+            }
+            _ => ("Save the stats", "-stats.json", &[("JSON", "json")]),
+        };
+        let name = self.proposed_name(name);
+        self.dialog(purpose, context, move || {
+            let dialog = rfd::FileDialog::new().set_title(title).set_file_name(name);
+            filters.iter().fold(dialog, |dialog, (kind, ending)| dialog.add_filter(*kind, &[*ending])).save_file()
         });
     }
 
@@ -62,6 +94,8 @@ impl App {
         self.palette_window(context);
         self.forget_window(context);
         self.background_window(context);
+        self.picture_window(context);
+        self.turntable_window(context);
         self.warnings_window(context);
         self.message_window(context);
     }

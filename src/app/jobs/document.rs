@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::background_job::BackgroundJob;
 use super::mesh_checks::Checks;
+use super::stand_in::StandIn;
 use crate::engine::{self, Engine, Loaded, Preparation};
 use crate::files::FileError;
 use crate::gpu::GpuError;
@@ -23,9 +24,15 @@ pub(crate) struct Document {
     pub edges: EdgeCounts,
     /// The moment whose pose the scene has; none at rest.
     pub moment: Option<Moment>,
+    /// The number of the factors of a file that the scene has; 0 for those of LOD.
+    pub given: u64,
     pub checks: Checks,
+    /// What previews draw in place of a large mesh.
+    pub stand_in: StandIn,
     /// The bounding diagonal at rest, in object units.
     pub diagonal: f32,
+    /// See [`Mesh::has_texture_coordinates`](crate::mesh::Mesh::has_texture_coordinates).
+    pub has_texture_coordinates: bool,
     /// The exact surface, if the mesh is a shape that has one.
     pub exact: Option<Arc<Truth>>,
     /// A number of its own for each document, even if the same file is loaded again.
@@ -150,8 +157,21 @@ fn load(
     let edges = loaded.topology.edge_counts();
     let checks = Checks::start(context, &loaded);
     let diagonal = scene.bounds.diagonal();
+    let has_texture_coordinates = loaded.mesh.has_texture_coordinates();
     let exact = source.shape().and_then(Truth::of_shape).map(Arc::new);
-    Ok(Document { loaded, scene, edges, moment: None, checks, diagonal, exact, generation })
+    Ok(Document {
+        loaded,
+        scene,
+        edges,
+        moment: None,
+        given: 0,
+        checks,
+        stand_in: StandIn::default(),
+        diagonal,
+        has_texture_coordinates,
+        exact,
+        generation,
+    })
 }
 
 #[cfg(test)]

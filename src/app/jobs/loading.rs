@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::document::{Load, NotLoaded};
+use super::leak_job::LeakJob;
 use super::measure_job::MeasureJob;
 use crate::app::App;
 use crate::engine::{Loaded, Preparation};
@@ -59,7 +60,7 @@ impl App {
         match result {
             Ok(document) => {
                 if !keep_view {
-                    self.viewport.frozen = None;
+                    (self.viewport.frozen, self.viewport.ruler) = (None, None);
                     self.forget_truth();
                 }
                 self.panels.chart.stop();
@@ -77,7 +78,10 @@ impl App {
                 }
                 self.look_as_before(keep_view);
                 self.jobs.measure = MeasureJob::default();
+                self.jobs.leaks = LeakJob::default();
                 self.viewport.left.forget();
+                self.viewport.preview.forget();
+                self.keep_factors(context, keep_view);
                 self.deselect();
             }
             Err(Some(NotLoaded { mut why, is_gone })) => {

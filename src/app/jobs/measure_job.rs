@@ -3,15 +3,17 @@
 
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, TrySendError, channel, sync_channel};
 
+use glam::Vec3;
 use thiserror::Error;
 
 use super::background_job::{Stopped, caught, spawn};
+use crate::engine::measurements::closed_extent;
 use crate::gpu::{Gpu, GpuError, Readback, Recorder, Timing, vertices_of};
 use crate::measure::{AskedFactors, Cracks, EmittedChunk, Measured, Sizes, Survey, Visitor};
 use crate::mesh::{Mesh, Topology};
 use crate::progress::Progress;
 use crate::render::Scene;
-use crate::tessellate::{Convention, Edges, PatchFactors, Vertex};
+use crate::tessellate::{Convention, Edges, PatchFactors, Vertex, is_beyond_near};
 use crate::view::ScreenView;
 
 /// Why a measurement ended without a result.
@@ -21,6 +23,8 @@ pub(crate) enum Trouble {
     Gpu(#[from] GpuError),
     #[error("measuring the picture {0}; any other setting starts a new measurement")]
     Measuring(Stopped),
+    #[error("counting leaks {0}; any other setting starts a new count")]
+    Leaking(Stopped),
     #[error("measuring the deviation {0}; any other setting starts a new measurement")]
     Deviating(Stopped),
 }
@@ -37,14 +41,23 @@ pub(crate) struct MeasureJob {
     comparing: Option<Comparing>,
     copying: Option<Copying>,
     found: Option<Measured>,
+    /// The extent of a mesh whose leaks can be counted: see [`closed_extent`].
+    closed: Option<[Vec3; 2]>,
     sizes: Option<Sizes>,
     /// Counts changes of the result, including its loss.
     pub generation: u64,
 }
 
+/// What the thread returns.
+struct Surveyed {
+    found: Measured,
+    closed: Option<[Vec3; 2]>,
+    sizes: Sizes,
+}
+
 /// The thread that measures. It stops when this is dropped.
 struct Comparing {
-    found: Receiver<Result<(Measured, Sizes), Stopped>>,
+    found: Receiver<Result<Surveyed, Stopped>>,
     wanted: Progress,
 }
 
@@ -93,14 +106,21 @@ impl MeasureJob {
         self.sizes.as_ref()
     }
 
+    /// Whether what was measured last of this document is closed, and beyond the near plane of a view.
+    pub(crate) fn is_closed_in(&self, view: Option<ScreenView>) -> bool {
+        self.closed.zip(view).is_some_and(|(extent, view)| is_beyond_near(view.clip_from_object, extent))
+    }
+
     pub(crate) fn is_busy(&self) -> bool {
         self.copying.is_some() || self.comparing.is_some()
     }
 
     /// Forgets results that are about another document or tessellation.
     pub(crate) fn keep_only(&mut self, document: u64, tessellation: u64) {
-        if self.of.is_some_and(|of| of != (document, tessellation)) {
+        if let Some(of) = self.of.filter(|of| *of != (document, tessellation)) {
+            let closed = self.closed.filter(|_| of.0 == document);
             self.forget();
+            self.closed = closed;
         }
     }
 
@@ -129,21 +149,23 @@ impl MeasureJob {
     ) -> Result<bool, Trouble> {
         let of = Some((document, scene.tessellator.generation()));
         if self.of != of {
-            *self = Self { of, generation: self.generation + 1, ..Self::start(gpu, scene, view) };
+            let closed = self.closed;
+            *self = Self { of, closed, generation: self.generation + 1, ..Self::start(gpu, scene, view) };
             return Ok(true);
         }
         if follows && self.seen_from != Some(view) {
             // Results that don't depend on the view stay.
-            let (found, generation) = (self.found.take(), self.generation);
-            *self = Self { of, found, generation, ..Self::start(gpu, scene, view) };
+            let (found, closed, generation) = (self.found.take(), self.closed, self.generation);
+            *self = Self { of, found, closed, generation, ..Self::start(gpu, scene, view) };
             return Ok(true);
         }
         copy_on(&mut self.copying, gpu, scene)?;
         match self.comparing.as_ref().map(|comparing| comparing.found.try_recv()) {
-            Some(Ok(Ok((found, sizes)))) => {
+            Some(Ok(Ok(Surveyed { found, closed, sizes }))) => {
                 self.comparing = None;
                 self.generation += u64::from(self.found.is_none());
                 self.found = Some(found);
+                self.closed = closed;
                 self.sizes = Some(sizes);
                 Ok(true)
             }
@@ -169,11 +191,13 @@ impl MeasureJob {
         let (sender, found) = channel();
         let wanted = Progress::default();
         let posed = scene.tessellator.posed().clone();
+        let convention = scene.tessellator.convention();
+        let given = scene.tessellator.given().map(|given| AskedFactors::given(convention, given));
         let still_wanted = wanted.clone();
         spawn(move || {
             let measure = || {
                 let (mesh, topology) = posed.deformed();
-                survey(&received, &mesh, &topology, view, &still_wanted)
+                survey(&received, &mesh, &topology, given, view, &still_wanted)
             };
             if let Some(result) = caught(measure).transpose() {
                 let _ = sender.send(result);
@@ -253,18 +277,20 @@ pub(in crate::app) fn visit(
     Some(())
 }
 
-/// Surveys the parts as they come. Returns `None` if the result is no longer wanted, or the device was lost.
+/// Surveys the parts as they come. `given` are the factors that a file gave in place of LOD's. Returns `None` if the result is no longer wanted, or the device was lost.
 fn survey(
     parts: &Receiver<Part>,
     mesh: &Mesh,
     topology: &Topology,
+    given: Option<AskedFactors>,
     view: ScreenView,
     wanted: &Progress,
-) -> Option<(Measured, Sizes)> {
+) -> Option<Surveyed> {
     let Ok(Part(PartKind::Factors { patch_bytes, edges, convention }, readback)) = parts.recv() else { return None };
     let bytes = readback.bytes().ok()?;
     let (factors, asked) = bytes.split_at(patch_bytes);
-    let asked = AskedFactors::new(edges, convention, bytemuck::pod_collect_to_vec(asked));
+    let of_lod = || AskedFactors::new(edges, convention, bytemuck::pod_collect_to_vec(asked));
+    let asked = given.unwrap_or_else(of_lod);
     let mut sizes = Sizes::new(view);
     let mut survey = Survey::new(mesh, topology, bytemuck::pod_collect_to_vec(factors), asked);
     for Part(part, readback) in parts {
@@ -273,5 +299,6 @@ fn survey(
         visit(first_patch, vertex_bytes, &readback, &mut [&mut survey, &mut sizes])?;
     }
     wanted.check().ok()?;
-    Some((survey.finish(), sizes))
+    let found = survey.finish();
+    Some(Surveyed { closed: closed_extent(mesh, topology, &found), found, sizes })
 }

@@ -1,4 +1,4 @@
-//! What runs on threads of its own while the window goes on: loading, checking and measuring.
+//! What runs on threads of its own while the window goes on: loading, checking, measuring and writing files.
 
 pub(super) mod background_job;
 pub(super) mod chart_job;
@@ -6,20 +6,26 @@ pub(super) mod deviation_job;
 pub(super) mod document;
 pub(super) mod explain_job;
 pub(super) mod export_job;
+pub(super) mod given_factors;
+pub(super) mod leak_job;
 pub(super) mod loading;
 pub(super) mod measure_job;
 pub(super) mod mesh_checks;
+pub(super) mod picture_job;
+pub(super) mod stand_in;
 pub(super) mod truth;
+pub(super) mod writing_job;
 
 use crate::files::Limits;
 
-use background_job::BackgroundJob;
 use deviation_job::DeviationJob;
 use document::Load;
 use explain_job::ExplainJob;
-use export_job::ExportJob;
+use given_factors::FactorsJob;
+use leak_job::LeakJob;
 use measure_job::MeasureJob;
 use truth::TruthLoad;
+use writing_job::WritingJob;
 
 /// The jobs that are under way, and the results of measurements.
 #[derive(Default)]
@@ -28,11 +34,12 @@ pub(super) struct Jobs {
     pub limits: Limits,
     pub load: Option<Load>,
     pub truth_load: Option<TruthLoad>,
+    pub factors: Option<FactorsJob>,
     pub measure: MeasureJob,
+    pub leaks: LeakJob,
     pub deviation: DeviationJob,
     /// Of the selected patch.
     pub explain: ExplainJob,
-    pub export: Option<ExportJob>,
-    /// The job that writes a picture. It returns a sentence: what was written, or as an error why nothing was.
-    pub picture_file: Option<BackgroundJob<Result<String, String>>>,
+    /// The file that is being written, of all but the chart.
+    pub writing: Option<WritingJob>,
 }

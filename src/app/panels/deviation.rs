@@ -8,11 +8,10 @@ use crate::app::jobs::deviation_job::{DeviationBasis, DeviationJob, DeviationRes
 use crate::app::jobs::measure_job::Trouble;
 use crate::app::sections::Section;
 use crate::app::text::{grouped, short, shortened};
-use crate::app::viewport::legend::Distances;
 use crate::app::widgets::{fact, number, swatch};
 use crate::measure::{DeviationTarget, MOST_TRIANGLES};
 use crate::render::layout::WORST_COLOR;
-use crate::render::{DEVIATION_PX_SCALE, LineSegment, Scale, deviation_scale, worst_lines};
+use crate::render::{DEVIATION_PX_SCALE, Distances, LineSegment, Scale, deviation_scale, worst_lines};
 use crate::settings::{Choice, Colors, DeviationUnit, Settings, SplitSide};
 use crate::tessellate::{Clip, Inputs, Lod};
 use crate::view::project;
@@ -225,12 +224,13 @@ impl App {
         let Some(document) = &self.document else { return };
         let (mesh, topology) = document.shown();
         let Some(patch) = topology.patches.get(worst.patch as usize) else { return };
+        let corners: [Vec3; 3] = topology.corners(patch).map(|corner| mesh.corners[corner as usize].position);
+        let bounds = document.scene.bounds;
         // A tessellation for the new view would have another worst point.
         if self.viewport.frozen.is_none() && follows_view(&self.settings) {
-            self.viewport.frozen = self.viewport.picture.shown_view();
+            self.freeze();
         }
-        let corners: [Vec3; 3] = topology.corners(patch).map(|corner| mesh.corners[corner as usize].position);
-        self.viewport.camera.frame_triangle(corners, &document.scene.bounds);
+        self.viewport.camera.frame_triangle(corners, &bounds);
         self.viewport.camera.target = worst.emitted.as_vec3();
         if let Some(split) = self.settings.split {
             let middle = if half == SplitSide::Left { split / 2.0 } else { (1.0 + split) / 2.0 };

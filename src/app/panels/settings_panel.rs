@@ -67,6 +67,20 @@ impl App {
     }
 
     fn lod_rows(&mut self, ui: &mut egui::Ui) {
+        if let Some(given) = &self.given {
+            let hover = "These factors take the place of those of LOD.";
+            ui.label("Factors").on_hover_text(hover);
+            ui.add(egui::Label::new(given.name()).truncate()).on_hover_text(given.path.display().to_string());
+            ui.end_row();
+            ui.label("");
+            let button = ui.button("Back to LOD");
+            let is_over = button.on_hover_text("Closes the file of factors. LOD is as it was before.").clicked();
+            ui.end_row();
+            if is_over {
+                self.forget_factors();
+            }
+            return;
+        }
         let settings = &mut self.settings;
         match (options::LOD.no_effect)(settings) {
             Some(why) => fixed(ui, options::LOD.label, settings.tessellation.used_lod().label(), why),
@@ -153,25 +167,30 @@ impl App {
             }
             ui.end_row();
         }
+        self.background_row(ui);
+    }
+
+    fn background_row(&mut self, ui: &mut egui::Ui) {
         let label = ui.label(options::BACKGROUND.label);
-        let response = ui.color_edit_button_srgb(&mut self.settings.background).labelled_by(label.id);
-        if response.has_focus() {
-            let stroke = ui.visuals().selection.stroke;
-            ui.painter().rect_stroke(response.rect.expand(2.0), 3.0, stroke, egui::StrokeKind::Outside);
-        }
-        response.on_hover_text(option_hover(&options::BACKGROUND, ""));
+        ui.horizontal(|ui| {
+            let mut color = self.settings_in(ui.ctx().theme()).background_color();
+            // Narrow, so that the switch beside it has room in any size of the text.
+            ui.spacing_mut().interact_size.x = 36.0;
+            let response = ui.color_edit_button_srgb(&mut color).labelled_by(label.id);
+            if response.has_focus() {
+                let stroke = ui.visuals().selection.stroke;
+                ui.painter().rect_stroke(response.rect.expand(2.0), 3.0, stroke, egui::StrokeKind::Outside);
+            }
+            if response.on_hover_text(option_hover(&options::BACKGROUND, "")).changed() {
+                self.settings.background = Some(color);
+            }
+            self.background_switch(ui);
+        });
         ui.end_row();
     }
 
     pub(in crate::app) fn toggle_split(&mut self) {
         self.settings.split = if self.settings.split.is_some() { None } else { Some(self.viewport.last_split) };
-    }
-
-    pub(in crate::app) fn toggle_frozen(&mut self) {
-        self.viewport.frozen = match self.viewport.frozen {
-            Some(_) => None,
-            None => self.viewport.picture.shown_view(),
-        };
     }
 }
 

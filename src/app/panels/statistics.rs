@@ -31,10 +31,13 @@ impl App {
                 if self.panels.open.title(ui, Section::Patch) {
                     ui.push_id("patch", |ui| self.patch_section(ui));
                 }
+                ui.push_id("given", |ui| self.given_section(ui));
                 self.deviation_section(ui);
                 if self.panels.open.title(ui, Section::Cracks) {
                     self.crack_facts(ui);
                     self.worst_edges(ui);
+                    self.leak_list(ui);
+                    self.fold_list(ui);
                     self.t_junction_list(ui);
                 }
                 self.edge_details(ui);

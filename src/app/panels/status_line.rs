@@ -17,9 +17,9 @@ impl App {
                 return;
             };
             let scene = &document.scene;
-            // While a clip plays, the numbers of the last picture are shown, so that they don't flicker.
-            let is_known = scene.tessellator.is_counted() || self.is_playing();
-            let totals = is_known.then(|| scene.tessellator.totals());
+            // While a clip plays or the camera moves, the numbers of the last picture are shown, so that they don't flicker.
+            let is_known = scene.tessellator.is_counted() || self.is_playing() || self.shows_preview();
+            let totals = self.totals().filter(|_| is_known);
             let (vertices, triangles) = totals.map_or_else(
                 || ("…".to_owned(), "… triangles".to_owned()),
                 |(vertices, triangles)| (grouped(vertices), counted(triangles, "triangle")),

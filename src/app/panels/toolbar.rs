@@ -2,7 +2,7 @@
 
 use super::settings_panel::{ON_TOOLBAR, colors_hover, overlay_hover};
 use crate::app::App;
-use crate::commands::{Action, Availability, CameraAction, Command, FileAction, all, with_key};
+use crate::commands::{Action, Availability, CameraAction, Command, FileAction, NO_TEXTURE_COORDINATES, all, with_key};
 use crate::settings::{Choice, Colors, Control};
 
 /// The width of the list of colours, in points: that of its longest entry.
@@ -46,11 +46,18 @@ impl App {
 
     /// The list of what the surface's colours mean.
     fn colors_list(&mut self, ui: &mut egui::Ui) {
+        let has_coordinates = self.document.as_ref().is_some_and(|document| document.has_texture_coordinates);
         let colors = &mut self.settings.overlays.colors;
         let combo = egui::ComboBox::from_id_salt("Colours").selected_text(colors.label()).width(COLORS_WIDTH);
-        let combo = combo.height(260.0).show_ui(ui, |ui| {
+        // High enough for all entries.
+        let combo = combo.height(320.0).show_ui(ui, |ui| {
             for &choice in Colors::ALL {
-                ui.selectable_value(colors, choice, choice.label()).on_hover_text(colors_hover(choice));
+                let is_possible = choice != Colors::UvChecker || has_coordinates;
+                let entry = egui::Button::selectable(*colors == choice, choice.label());
+                let entry = ui.add_enabled(is_possible, entry).on_hover_text(colors_hover(choice));
+                if entry.on_disabled_hover_text(NO_TEXTURE_COORDINATES).clicked() {
+                    *colors = choice;
+                }
             }
         });
         let response = combo.response.on_hover_text("What the surface's colours mean (--overlay).");

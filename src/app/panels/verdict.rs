@@ -4,7 +4,7 @@ use egui::{Color32, RichText};
 
 use crate::app::App;
 use crate::app::sections::Section;
-use crate::app::text::{counted, short};
+use crate::app::text::{counted, grouped, short};
 use crate::app::widgets::rgb;
 use crate::render::layout::{CRACK_COLOR, FOLD_COLOR, T_JUNCTION_COLOR};
 use crate::settings::{Colors, Overlay};
@@ -14,8 +14,13 @@ use crate::settings::{Colors, Overlay};
 enum Destination {
     /// The overlay of cracks, and the edge with the widest gap.
     Cracks,
+    /// The overlay of cracks, and the edge at the largest leak.
+    Leaks,
+    /// The overlay of folds, and the patch whose folds have the largest area.
     Folds,
     TJunctions,
+    /// The edge whose sides were given the most different factors.
+    GivenFactors,
     Sizes,
     Factors,
     Warnings,
@@ -48,8 +53,10 @@ impl App {
         ui.add_space(6.0);
         let lines: Vec<Line> = [
             Some(self.cracks_line()),
+            self.leaks_line(),
             Some(self.folds_line()),
             self.junctions_line(),
+            self.given_line(ui.visuals().warn_fg_color),
             self.sizes_line(ui.visuals().text_color()),
             self.limit_line(ui.visuals().warn_fg_color),
             self.warnings_line(ui.visuals().warn_fg_color),
@@ -84,8 +91,24 @@ impl App {
         }
     }
 
+    fn leaks_line(&self) -> Option<Line> {
+        let hover = "Pixels of this view through which one can see into the closed mesh. A click goes to the cracked edge at the \
+                     largest group of them.";
+        let leaks = self.may_leak().then(|| self.leaks());
+        Some(match leaks? {
+            None => Line::dim("Leaks \u{2026}", "Leaks are counted while the picture rests.", Destination::Leaks),
+            Some([]) => Line::dim("No leaks in this view", hover, Destination::Leaks),
+            Some(leaks) => {
+                let pixels: u64 = leaks.iter().map(|leak| u64::from(leak.pixels)).sum();
+                let text = format!("{} px leak in this view", grouped(pixels));
+                Line::bad(text, rgb(CRACK_COLOR), hover, Destination::Leaks)
+            }
+        })
+    }
+
     fn folds_line(&self) -> Line {
-        let hover = "Triangles that face away from the side that their patch faces. A click shows them.";
+        let hover = "Triangles that face away from the side that their patch faces. A click shows them and goes to the \
+                     largest.";
         match self.jobs.measure.found().map(|found| found.folds) {
             None => Line::dim("Folds \u{2026}", "Folds are counted while the picture rests.", Destination::Folds),
             Some(0) => Line::dim("No folds", hover, Destination::Folds),
@@ -99,6 +122,15 @@ impl App {
                      shows them and goes to the first.";
         let text = counted(junctions.len() as u64, "T-junction");
         Some(Line::bad(text, rgb(T_JUNCTION_COLOR), hover, Destination::TJunctions))
+    }
+
+    fn given_line(&self, color: Color32) -> Option<Line> {
+        let compared = self.given.as_ref()?.compared()?;
+        let hover = "Edges whose sides have different factors in the file that is open. A click goes to the one where they \
+                     differ the most.";
+        let edges = compared.agreement.edges.len() as u64;
+        let text = format!("{} with different factors", counted(edges, "edge"));
+        (edges > 0).then(|| Line::bad(text, color, hover, Destination::GivenFactors))
     }
 
     fn sizes_line(&self, color: Color32) -> Option<Line> {
@@ -133,12 +165,28 @@ impl App {
                 let widest = self.jobs.measure.cracks().and_then(|cracks| cracks.edges.first()).map(|crack| crack.edge);
                 widest.into_iter().for_each(|edge| self.select_edge(edge));
             }
-            Destination::Folds => overlays.folds = true,
+            Destination::Leaks => {
+                self.panels.open.set(Section::Cracks, true);
+                let largest = self.leaks().and_then(|leaks| leaks.first()).copied();
+                largest.into_iter().for_each(|leak| self.show_leak(&leak));
+            }
+            Destination::Folds => {
+                overlays.folds = true;
+                self.panels.open.set(Section::Cracks, true);
+                let worst = self.jobs.measure.found().and_then(|found| found.folded.first()).copied();
+                worst.into_iter().for_each(|folded| self.show_fold(&folded));
+            }
             Destination::TJunctions => {
                 overlays.t_junctions = true;
                 self.panels.open.set(Section::Cracks, true);
                 let junctions = self.document.as_ref().and_then(|document| document.checks.t_junctions());
                 let first = junctions.and_then(|junctions| junctions.first()).map(|junction| junction.edge);
+                first.into_iter().for_each(|edge| self.select_edge(edge));
+            }
+            Destination::GivenFactors => {
+                self.panels.open.set(Section::Factors, true);
+                let compared = self.given.as_ref().and_then(|given| given.compared());
+                let first = compared.and_then(|compared| compared.agreement.edges.first()).map(|first| first.edge);
                 first.into_iter().for_each(|edge| self.select_edge(edge));
             }
             Destination::Sizes if overlays.colors != Colors::TriangleSize => overlays.toggle(Overlay::TriangleSize),

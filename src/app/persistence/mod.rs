@@ -68,18 +68,20 @@ impl Persistence {
     }
 
     /// Puts the file of an opened mesh at the front of the recent files. Returns the camera that the mesh was last seen
-    /// with, if it still fits.
-    pub(in crate::app) fn opened(&mut self, source: &Source, diagonal: f32) -> Option<Camera> {
+    /// with, if it still fits, and its bookmarks that fit.
+    pub(in crate::app) fn opened(&mut self, source: &Source, diagonal: f32) -> (Option<Camera>, Vec<Camera>) {
         self.open = path_of(source);
-        let path = self.open.clone()?;
+        let Some(path) = self.open.clone() else { return Default::default() };
         let files = &mut self.kept.files;
         let known = files.iter().position(|file| file.path == path);
-        let mut file = known.map_or(SavedFile { path, seen: None, is_gone: false }, |index| files.remove(index));
+        let mut file = known
+            .map_or(SavedFile { path, seen: None, bookmarks: Vec::new(), is_gone: false }, |index| files.remove(index));
         file.is_gone = false;
         let camera = file.seen.and_then(|seen| seen.camera_for(diagonal));
+        let bookmarks = file.bookmarks.iter().filter_map(|bookmark| bookmark.camera_for(diagonal)).collect();
         files.insert(0, file);
         files.truncate(MAX_FILES);
-        camera
+        (camera, bookmarks)
     }
 
     /// Removes a file that no longer exists from the list. Returns whether it was listed. Its camera is kept.
@@ -100,13 +102,19 @@ impl Persistence {
     }
 
     /// Takes over the window's present state.
-    fn take(&mut self, context: &egui::Context, settings: &Settings, open: OpenSections, seen: Option<SavedCamera>) {
+    fn take(
+        &mut self,
+        context: &egui::Context,
+        settings: &Settings,
+        open: OpenSections,
+        seen: Option<(SavedCamera, Vec<SavedCamera>)>,
+    ) {
         self.kept.take_settings(settings);
         self.kept.open = open;
         self.kept.frame = frame_now(context, &self.kept.frame);
         let open = self.kept.files.iter_mut().find(|file| Some(&file.path) == self.open.as_ref());
         if let Some((file, seen)) = open.zip(seen) {
-            file.seen = Some(seen);
+            (file.seen, file.bookmarks) = (Some(seen.0), seen.1);
         }
     }
 
@@ -204,14 +212,19 @@ impl App {
         if keep_view {
             return self.persistence.is_back(&document.loaded.source);
         }
-        let camera = self.persistence.opened(&document.loaded.source, document.diagonal);
+        let (camera, bookmarks) = self.persistence.opened(&document.loaded.source, document.diagonal);
         self.viewport.camera = camera.unwrap_or(self.viewport.camera);
+        self.viewport.bookmarks = bookmarks;
+        self.view_history = Default::default();
     }
 
     /// Saves the window's state. Called at the end of each frame.
     pub(in crate::app) fn keep(&mut self, context: &egui::Context) {
         let diagonal = self.document.as_ref().map(|document| document.diagonal);
-        let seen = diagonal.map(|diagonal| SavedCamera { camera: self.viewport.camera, diagonal });
+        let seen = diagonal.map(|diagonal| {
+            let saved = |&camera: &Camera| SavedCamera { camera, diagonal };
+            (saved(&self.viewport.camera), self.viewport.bookmarks.iter().map(saved).collect())
+        });
         self.persistence.take(context, &self.settings, self.panels.open, seen);
         let failed = self.persistence.write_on(context);
         self.dialogs.error = self.dialogs.error.take().or(failed);
@@ -256,6 +269,8 @@ impl App {
             ..Settings::opening().tessellation
         });
         self.history = Default::default();
+        self.view_history = Default::default();
+        self.viewport.bookmarks.clear();
         self.panels.open = OpenSections::default();
         self.viewport.last_split = 0.5;
         self.viewport.frozen = None;

@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 
 use super::saved_settings::{read_settings, written_settings};
 use crate::app::sections::{OpenSections, Section};
+use crate::commands::MOST_BOOKMARKS;
 use crate::render::Camera;
 use crate::settings::Settings;
 use crate::tessellate::{Displacement, Tessellation};
@@ -53,6 +54,7 @@ pub(super) struct SavedFile {
     /// The absolute path.
     pub path: String,
     pub seen: Option<SavedCamera>,
+    pub bookmarks: Vec<SavedCamera>,
     /// Whether the file was missing when it was last opened. It isn't listed until it can be loaded again.
     pub is_gone: bool,
 }
@@ -173,7 +175,9 @@ impl SavedFile {
     fn read(value: &Value) -> Option<Self> {
         let path = value["path"].as_str().filter(|path| Path::new(path).is_absolute())?;
         let is_gone = Fields(value).switch("gone", false);
-        Some(Self { path: path.to_owned(), seen: SavedCamera::read(value), is_gone })
+        let bookmarks = value["bookmarks"].as_array().into_iter().flatten().filter_map(SavedCamera::read);
+        let bookmarks = bookmarks.take(MOST_BOOKMARKS).collect();
+        Some(Self { path: path.to_owned(), seen: SavedCamera::read(value), bookmarks, is_gone })
     }
 
     fn written(&self) -> Value {
@@ -181,8 +185,25 @@ impl SavedFile {
         if self.is_gone {
             written["gone"] = true.into();
         }
-        let Some(SavedCamera { camera, diagonal }) = &self.seen else { return written };
-        let Camera { target, azimuth, elevation, distance, orthographic } = camera;
+        if let Some(seen) = &self.seen {
+            seen.write(&mut written);
+        }
+        if !self.bookmarks.is_empty() {
+            let bookmark = |camera: &SavedCamera| {
+                let mut written = json!({});
+                camera.write(&mut written);
+                written
+            };
+            written["bookmarks"] = self.bookmarks.iter().map(bookmark).collect();
+        }
+        written
+    }
+}
+
+impl SavedCamera {
+    /// Writes it into the object of a file or of a bookmark.
+    fn write(&self, written: &mut Value) {
+        let Camera { target, azimuth, elevation, distance, orthographic } = &self.camera;
         written["camera"] = json!({
             "target": target.to_array(),
             "azimuth": azimuth,
@@ -190,12 +211,9 @@ impl SavedFile {
             "distance": distance,
             "orthographic": orthographic,
         });
-        written["diagonal"] = json!(diagonal);
-        written
+        written["diagonal"] = json!(self.diagonal);
     }
-}
 
-impl SavedCamera {
     fn read(file: &Value) -> Option<Self> {
         let number = |value: &Value| value.as_f64().map(|number| number as f32).filter(|number| number.is_finite());
         let camera = &file["camera"];

@@ -55,7 +55,7 @@ prop_compose! {
         ),
     ) -> SavedState {
         let absolute = |name: String| std::env::temp_dir().join(name).to_str().unwrap().to_owned();
-        let file = |(name, (seen, is_gone))| SavedFile { path: absolute(name), seen, is_gone };
+        let file = |(name, (seen, is_gone))| SavedFile { path: absolute(name), seen, bookmarks: seen.into_iter().collect(), is_gone };
         let files = files.into_iter().map(file).collect();
         let frame = WindowGeometry { size: [width, height], is_maximized, theme, zoom };
         let mut saved = SavedState { frame, files, ..SavedState::default() };
@@ -188,10 +188,10 @@ fn the_number_of_files_is_limited_and_the_last_one_comes_first() {
     let mut lasting = Persistence::default();
     let file = |i: usize| Source::File(std::env::temp_dir().join(format!("{i}.glb")));
     for i in 0..MAX_FILES + 10 {
-        assert_eq!(lasting.opened(&file(i), 1.0), None);
+        assert_eq!(lasting.opened(&file(i), 1.0).0, None);
     }
-    assert_eq!(lasting.opened(&file(30), 1.0), None);
-    assert_eq!(lasting.opened(&Source::default(), 1.0), None);
+    assert_eq!(lasting.opened(&file(30), 1.0).0, None);
+    assert_eq!(lasting.opened(&Source::default(), 1.0).0, None);
     let names: Vec<_> = lasting.recent().map(|path| Path::new(path).file_stem().unwrap().to_owned()).collect();
     assert_eq!(names, ["30", "59", "58", "57", "56", "55", "54", "53", "52", "51"]);
     let many = lasting.kept.written();

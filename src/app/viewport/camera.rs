@@ -21,6 +21,10 @@ impl App {
             CameraAction::Frame => self.frame(),
             CameraAction::FramePatch => self.frame_patch(),
             CameraAction::LookFrom(standpoint) => camera.look_from(standpoint),
+            CameraAction::Before => self.view_before(),
+            CameraAction::After => self.view_after(),
+            CameraAction::Bookmark(index) => *camera = self.viewport.bookmarks.get(index).copied().unwrap_or(*camera),
+            CameraAction::ThroughFrozen => self.look_through_frozen(),
             CameraAction::Orthographic => camera.orthographic = !camera.orthographic,
             CameraAction::Orbit(direction) => camera.orbit(towards(direction) * DEGREES_PER_KEY),
             CameraAction::Pan(direction) => {

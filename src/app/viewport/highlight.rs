@@ -1,10 +1,12 @@
-//! The lines over the mesh: cracks, T-junctions, the worst point, and the selection.
+//! The lines over the mesh: the axes, cracks, T-junctions, the worst point, the frozen LOD camera, and the selection.
 
+use super::frozen_camera::FrozenCamera;
+use super::ruler::Ruler;
 use super::selection::Outlined;
 use crate::app::App;
 use crate::app::jobs::document::Document;
-use crate::mesh::{Moment, Topology};
-use crate::render::{LineSegment, crack_lines, t_junction_lines};
+use crate::mesh::{Bounds, Moment, Topology};
+use crate::render::{LineSegment, axis_lines, crack_lines, t_junction_lines};
 use crate::settings::SplitSide;
 
 /// Everything that the lines over the mesh depend on.
@@ -15,11 +17,15 @@ pub(crate) struct Highlight {
     measured: [u64; 2],
     /// The number of the scene in the left half; 0 for none.
     left: u64,
+    /// Whose axes are drawn, if they are.
+    axes: Option<Bounds>,
     cracks: bool,
     t_junctions: bool,
     selected_edge: Option<u32>,
     outlined: Outlined,
     worst: [u64; 2],
+    ruler: Option<Ruler>,
+    frozen: Option<(FrozenCamera, Bounds)>,
     /// The moment, if lines depend on it, and whether the pose is known on the CPU.
     moment: Option<(Moment, bool)>,
     /// Counts changes of the lines.
@@ -40,11 +46,14 @@ impl App {
             document: document.generation,
             measured: SplitSide::BOTH.map(measured),
             left: document.scene.half(SplitSide::Left).map_or(0, |_| self.viewport.left.made),
+            axes: overlays.grid.then_some(document.scene.bounds),
             cracks: overlays.cracks,
             t_junctions: junctions.is_some(),
             selected_edge: self.viewport.selected_edge,
             outlined: self.outlined(),
             worst: self.worst_marked(),
+            ruler: self.viewport.ruler,
+            frozen: self.frozen_shown(),
             moment: document.moment.filter(|_| is_marked).map(|moment| (moment, posed.is_some())),
             generation: self.viewport.highlight.map_or(0, |marked| marked.generation),
         };
@@ -66,7 +75,7 @@ impl App {
     /// The lines over a half, in its pose if that is known on the CPU.
     fn marks(&self, half: SplitSide, document: &Document, posed: Option<&Topology>) -> Vec<LineSegment> {
         let overlays = self.settings.overlays;
-        let mut lines = Vec::new();
+        let mut lines = if overlays.grid { axis_lines(&document.scene.bounds) } else { Vec::new() };
         if let Some((topology, junctions)) = posed.zip(document.checks.t_junctions()).filter(|_| overlays.t_junctions) {
             lines.extend(t_junction_lines(topology, junctions));
         }
@@ -74,6 +83,8 @@ impl App {
             lines.extend(crack_lines(found, &document.loaded.topology));
         }
         lines.extend(self.worst_mark(half));
+        lines.extend(self.frozen_lines());
+        lines.extend(self.ruler_lines());
         // The selection comes last, so that it is over all other lines.
         if let Some(topology) = posed {
             lines.extend(self.patch_outline(topology, half));

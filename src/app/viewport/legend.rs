@@ -1,131 +1,92 @@
-//! The legend in the viewport's lower right corner, which explains colours that stand for numbers.
+//! The legend in the viewport's lower right corner, which explains what the surface's colours mean.
+
+mod barycentric;
 
 use egui::{Align2, Color32, Pos2, Rect, Sense, pos2, vec2};
 
 use crate::app::widgets::rgb;
 use crate::render::layout::WASTE_COLOR;
-use crate::render::{DEVIATION_PX_SCALE, EXCESS_SCALE, FACTOR_SCALE, SIZE_SCALE, Scale};
-use crate::settings::{Colors, DeviationUnit};
+use crate::render::{BARYCENTRIC_TITLE, COLUMNS, Distances, Scale, Shown, legend_of, tick_text};
+use crate::settings::Colors;
 
 /// Sizes in points: the bar of the scale at its widest, the block of one colour before it, the margin, and the text.
 const BAR: egui::Vec2 = vec2(196.0, 12.0);
 const BLOCK_WIDTH: f32 = 42.0;
 const MARGIN: f32 = 10.0;
 const TEXT: f32 = 11.0;
+/// A row of named colours, in points.
+const ROW: f32 = 17.0;
 /// The number of pieces that the bar is painted in.
 const PIECES: u16 = 98;
 
-/// The contents of a legend.
-struct Legend {
-    title: String,
-    /// The hover text.
-    meaning: String,
-    /// The scale and the numbers under it.
-    scale: Option<(Scale, Vec<f32>)>,
-    /// Whether [`WASTE_COLOR`] is part of the legend.
-    waste: bool,
-}
-
-/// What is known of the distances to the reference surface.
-pub(crate) struct Distances {
-    pub unit: DeviationUnit,
-    /// None until something is measured.
-    pub scale: Option<Scale>,
-    /// Whether some of the surface has no colour.
-    pub is_partial: bool,
-    /// The progress of the measurement, 0 to 1; none if none is under way.
-    pub measured: Option<f32>,
-}
-
-fn legend_of(colors: Colors, distances: &Distances) -> Option<Legend> {
-    let legend = |title: &str, meaning: &str, scale: Option<(Scale, &[f32])>| Legend {
-        title: title.to_owned(),
-        meaning: meaning.to_owned(),
-        scale: scale.map(|(scale, ticks)| (scale, ticks.to_vec())),
-        waste: false,
-    };
-    match colors {
-        Colors::Material | Colors::Barycentric => None,
-        Colors::Factors => Some(legend(
-            "Factor",
-            "Colours of tessellation factors, 1 to 64. Each patch shows its inside factor, and along an edge the edge's factor.",
-            Some((FACTOR_SCALE, &[1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0])),
-        )),
-        Colors::TriangleSize => Some(Legend {
-            waste: true,
-            ..legend(
-                "Triangle size, px",
-                "Colours of triangles by their size on screen, 3 to 64 px. The size is the side of a square with twice the \
-                 triangle's area. All triangles below 3 px have one colour.",
-                Some((SIZE_SCALE, &[3.0, 4.0, 8.0, 16.0, 32.0, 64.0])),
-            )
-        }),
-        Colors::LowFactors => Some(Legend {
-            waste: true,
-            ..legend("Factors below 2", "One colour for patches whose factors are all below 2, edges and inside.", None)
-        }),
-        Colors::Excess => Some(legend(
-            "Triangles, times the own least",
-            "Colours of patches by how many times as many triangles they have as their own least, 1 to 16: the fewest with \
-             which a patch alone would keep the tolerance of LOD by error.",
-            Some((EXCESS_SCALE, &[1.0, 2.0, 4.0, 8.0, 16.0])),
-        )),
-        Colors::Deviation => Some(deviation_legend(distances)),
-    }
-}
-
-fn deviation_legend(distances: &Distances) -> Legend {
-    let unit = match distances.unit {
-        DeviationUnit::Units => "units",
-        DeviationUnit::Px => "px",
-    };
-    let state = match distances.measured {
-        Some(part) => format!(" (measuring, {:.0} %)", 100.0 * part),
-        None if distances.is_partial => " (not of all triangles)".to_owned(),
-        None => String::new(),
-    };
-    let scale = distances.scale.unwrap_or(DEVIATION_PX_SCALE);
-    // The scale has two decades: a tick at each end and one between them.
-    let ticks = [scale.least, (scale.least * scale.most).sqrt(), scale.most];
-    Legend {
-        title: format!("Deviation, {unit}{state}"),
-        meaning:
-            "Colours of the distance to the reference surface. The scale ends at the largest distance, rounded up, and \
-                  begins at a hundredth of that; smaller distances have the first colour. What isn't measured is grey."
-                .to_owned(),
-        scale: Some((scale, if distances.scale.is_some() { ticks.to_vec() } else { Vec::new() })),
-        waste: false,
-    }
-}
-
 /// The legend of these colours over a picture, if they have one.
 pub(crate) fn legend(ui: &mut egui::Ui, picture: Rect, colors: Colors, distances: &Distances) {
+    if colors == Colors::Barycentric {
+        let inner = plate(ui, picture, barycentric::SIZE, BARYCENTRIC_TITLE, barycentric::MEANING);
+        return barycentric::paint(ui, inner);
+    }
     let Some(legend) = legend_of(colors, distances) else { return };
-    let before = if legend.waste { BLOCK_WIDTH + 10.0 } else { 0.0 };
-    // A narrow view gets a short bar.
-    let bar_width = (picture.width() - before - 4.0 * MARGIN).min(BAR.x);
-    let inner = if legend.scale.is_some() { vec2(before + bar_width, 52.0) } else { vec2(106.0, 14.0) };
+    let plate = |size| plate(ui, picture, size, &legend.title, &legend.meaning);
+    match &legend.shown {
+        Shown::Title => {
+            let inner = plate(vec2(width(ui, &legend.title), 14.0));
+            text(ui, inner.left_center(), Align2::LEFT_CENTER, &legend.title);
+        }
+        Shown::Waste => named(ui, plate(vec2(106.0, 14.0)).left_center(), WASTE_COLOR, &legend.title),
+        Shown::Scale { scale, ticks, waste } => {
+            let before = if *waste { BLOCK_WIDTH + 10.0 } else { 0.0 };
+            // A narrow view gets a short bar.
+            let bar_width = (picture.width() - before - 4.0 * MARGIN).min(BAR.x);
+            let inner = plate(vec2(before + bar_width, 52.0));
+            text(ui, inner.left_top(), Align2::LEFT_TOP, &legend.title);
+            let top = inner.top() + 20.0;
+            bar(ui, Rect::from_min_size(pos2(inner.left() + before, top), vec2(bar_width, BAR.y)), scale, ticks);
+            if *waste {
+                waste_block(ui, pos2(inner.left(), top), scale.least);
+            }
+        }
+        Shown::Colors(colors) => {
+            let rows = colors.len().div_ceil(COLUMNS);
+            let inner = plate(vec2(BAR.x, 18.0 + ROW * rows as f32));
+            text(ui, inner.left_top(), Align2::LEFT_TOP, &legend.title);
+            for (index, &(color, name)) in colors.iter().enumerate() {
+                let [column, row] = [index % COLUMNS, index / COLUMNS].map(|place| place as f32);
+                let place = vec2(column * BAR.x / COLUMNS as f32, 18.0 + ROW * (row + 0.5));
+                named(ui, inner.left_top() + place, color, name);
+            }
+        }
+    }
+}
+
+/// A block of one colour, its left side in the middle at a place, and the colour's name.
+fn named(ui: &egui::Ui, at: Pos2, color: [u8; 3], name: &str) {
+    let mark = Rect::from_center_size(at + vec2(BAR.y / 2.0, 0.0), egui::Vec2::splat(BAR.y));
+    ui.painter().rect_filled(mark, 0.0, rgb(color));
+    text(ui, mark.right_center() + vec2(8.0, 0.0), Align2::LEFT_CENTER, name);
+}
+
+/// The block of what is below the least number of a scale.
+fn waste_block(ui: &egui::Ui, at: Pos2, least: f32) {
+    let block = Rect::from_min_size(at, vec2(BLOCK_WIDTH, BAR.y));
+    ui.painter().rect_filled(block, 0.0, rgb(WASTE_COLOR));
+    text(ui, block.center_bottom() + vec2(0.0, 4.0), Align2::CENTER_TOP, &format!("below {least}"));
+}
+
+/// The width of a text in points.
+fn width(ui: &egui::Ui, text: &str) -> f32 {
+    let font = egui::FontId::proportional(TEXT);
+    ui.painter().layout_no_wrap(text.to_owned(), font, Color32::PLACEHOLDER).size().x
+}
+
+/// Shows the dark plate of a legend of this size inside, and returns where that is.
+fn plate(ui: &egui::Ui, picture: Rect, inner: egui::Vec2, title: &str, meaning: &str) -> Rect {
     let size = inner + vec2(2.0 * MARGIN, 12.0);
     let place = Rect::from_min_size(picture.right_bottom() - size - vec2(MARGIN, MARGIN), size);
     let response = ui.interact(place, ui.scope_id().with("legend"), Sense::hover());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, format!("Legend: {}", legend.title)));
-    response.on_hover_text(legend.meaning);
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, format!("Legend: {title}")));
+    response.on_hover_text(meaning);
     ui.painter().rect_filled(place, 4.0, Color32::from_black_alpha(190));
-    let inner = Rect::from_center_size(place.center(), inner);
-    let Some((scale, ticks)) = &legend.scale else {
-        let mark = Rect::from_center_size(inner.left_center() + vec2(BAR.y / 2.0, 0.0), egui::Vec2::splat(BAR.y));
-        ui.painter().rect_filled(mark, 0.0, rgb(WASTE_COLOR));
-        text(ui, mark.right_center() + vec2(8.0, 0.0), Align2::LEFT_CENTER, &legend.title);
-        return;
-    };
-    text(ui, inner.left_top(), Align2::LEFT_TOP, &legend.title);
-    let top = inner.top() + 20.0;
-    bar(ui, Rect::from_min_size(pos2(inner.left() + before, top), vec2(bar_width, BAR.y)), scale, ticks);
-    if legend.waste {
-        let block = Rect::from_min_size(pos2(inner.left(), top), vec2(BLOCK_WIDTH, BAR.y));
-        ui.painter().rect_filled(block, 0.0, rgb(WASTE_COLOR));
-        text(ui, block.center_bottom() + vec2(0.0, 4.0), Align2::CENTER_TOP, &format!("below {}", scale.least));
-    }
+    Rect::from_center_size(place.center(), inner)
 }
 
 fn bar(ui: &egui::Ui, rect: Rect, scale: &Scale, ticks: &[f32]) {
@@ -149,28 +110,6 @@ fn bar(ui: &egui::Ui, rect: Rect, scale: &Scale, ticks: &[f32]) {
     }
 }
 
-/// Formats a tick as shortly as possible. The ends of scales are round numbers.
-fn tick_text(tick: f32) -> String {
-    if (1e-3..1e5).contains(&tick) {
-        let rounded = format!("{tick:.5}");
-        rounded.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        let rounded = format!("{tick:.1e}");
-        rounded.replace(".0e", "e")
-    }
-}
-
 fn text(ui: &egui::Ui, at: Pos2, align: Align2, text: &str) {
     ui.painter().text(at, align, text, egui::FontId::proportional(TEXT), Color32::from_gray(235));
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn ticks_are_short() {
-        let texts = [64.0, 3.0, 0.1, 0.0025, 0.25, 1.5e-4, 2e-7, 150.0].map(tick_text);
-        assert_eq!(texts, ["64", "3", "0.1", "0.0025", "0.25", "1.5e-4", "2e-7", "150"]);
-    }
 }

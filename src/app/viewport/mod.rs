@@ -1,6 +1,8 @@
 //! The picture in the middle: the camera, what is drawn and what is selected in it.
 
+mod axis_gizmo;
 mod camera;
+mod frozen_camera;
 mod highlight;
 pub(super) mod left_half;
 pub(super) mod legend;
@@ -8,16 +10,20 @@ pub(super) mod panel;
 mod patch_labels;
 pub(super) mod picture;
 pub(super) mod playback;
+pub(super) mod preview;
+mod ruler;
 pub(super) mod selection;
 
 use crate::engine::Engine;
 use crate::render::Camera;
-use crate::tessellate::LodView;
 
+use frozen_camera::FrozenCamera;
 use highlight::Highlight;
 use left_half::LeftHalf;
 use picture::Picture;
 use playback::Playback;
+use preview::Preview;
+use ruler::Ruler;
 use selection::Selection;
 
 /// What the viewport shows, and from where.
@@ -25,18 +31,23 @@ pub(super) struct Viewport {
     pub camera: Camera,
     /// The camera as it was when it last framed the whole mesh.
     pub framed: Option<Camera>,
-    /// The view that LOD and clipping stay computed for, while it is frozen.
-    pub frozen: Option<LodView>,
+    /// Views that are kept with the file.
+    pub bookmarks: Vec<Camera>,
+    /// The camera that LOD and clipping stay computed for, while they are frozen.
+    pub frozen: Option<FrozenCamera>,
     /// The divider's place when the view was last split: 0 is the left edge, 1 the right one.
     pub last_split: f32,
     /// Whether a line of help is over the picture: at a first start, until anything is done.
     pub greets: bool,
     pub picture: Picture,
+    pub preview: Preview,
     pub playback: Playback,
     pub left: LeftHalf,
     /// What the lines over the mesh were last made from.
     pub highlight: Option<Highlight>,
     pub selection: Selection,
+    /// Measures distances between places that are clicked on, while it is in use.
+    pub ruler: Option<Ruler>,
     /// The selected edge: an index into the edges of the topology that is shown.
     pub selected_edge: Option<u32>,
 }
@@ -46,14 +57,17 @@ impl Viewport {
         Self {
             camera: Camera::framing(&Default::default(), glam::Vec2::ONE),
             framed: None,
+            bookmarks: Vec::new(),
             frozen: None,
             last_split: 0.5,
             greets: false,
             picture: Picture::new(engine),
+            preview: Preview::new(engine),
             playback: Playback::default(),
             left: LeftHalf::default(),
             highlight: None,
             selection: Selection::default(),
+            ruler: None,
             selected_edge: None,
         }
     }

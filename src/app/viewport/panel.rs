@@ -5,6 +5,7 @@ use std::sync::Arc;
 use egui::{PointerButton, Sense};
 use glam::{Vec2, vec2};
 
+use super::axis_gizmo::axes_place;
 use super::legend::legend;
 use super::picture::Wanted;
 use crate::app::App;
@@ -14,7 +15,7 @@ use crate::commands::{Action, with_key};
 use crate::gpu::GpuError;
 use crate::load::Source;
 use crate::progress::Stage;
-use crate::render::Scene;
+use crate::render::{Ground, Scene};
 use crate::settings::{Colors, Settings, SplitSide};
 use crate::view::ScreenView;
 
@@ -51,13 +52,19 @@ impl App {
         }
         // A picture that the device refused may be half drawn.
         let is_whole = self.viewport.picture.drawn.is_some() || self.viewport.picture.cancelled.is_none();
-        if let Some(id) = self.viewport.picture.shown().filter(|_| is_whole) {
+        let previewed = self.viewport.preview.shown(&self.viewport.picture).map(|(_, shape)| shape);
+        let texture = match previewed {
+            Some(_) => self.viewport.preview.texture(),
+            None => self.viewport.picture.shown().filter(|_| is_whole),
+        };
+        if let Some(id) = texture {
             let whole = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
             ui.painter().image(id, rect, whole, egui::Color32::WHITE);
         }
         self.patch_labels(ui, rect);
         self.divider(ui, rect);
         self.viewport_notes(ui, rect);
+        self.axis_gizmo(ui, rect);
         legend(ui, rect, self.settings.overlays.colors, &self.legend_distances());
     }
 
@@ -72,22 +79,29 @@ impl App {
         self.mark();
         let deviation = self.deviation_shown();
         let moment = self.moment();
+        let given = self.give_factors()?;
+        let settings = self.settings_in(context.theme());
         let Some(document) = &mut self.document else { return Ok(()) };
         let viewport = vec2(size[0] as f32, size[1] as f32);
-        let view =
-            self.viewport.frozen.unwrap_or_else(|| self.viewport.camera.lod_view(viewport, &document.scene.bounds));
-        let inputs = self.settings.inputs(view);
+        let own = || self.viewport.camera.lod_view(viewport, &document.scene.bounds);
+        let view = self.viewport.frozen.map_or_else(own, |frozen| frozen.view);
+        let inputs = settings.inputs(view);
         let wanted = Wanted {
             document: document.generation,
             moment: document.moment,
             lines: self.viewport.highlight.map_or(0, |marked| marked.generation),
             deviation,
+            given,
             camera: self.viewport.camera,
-            settings: self.settings,
+            settings,
             inputs,
             clip_from_object: self.viewport.camera.clip_from_object(viewport, &document.scene.bounds),
             viewport,
         };
+        if self.preview(context, &wanted)? {
+            return Ok(());
+        }
+        let Some(document) = &mut self.document else { return Ok(()) };
         let drawn = self.viewport.picture.draw(&self.engine, document, &wanted);
         // The device's own error explains more than the errors that follow from it.
         if let Err(problem) = self.engine.gpu.check().and(drawn) {
@@ -98,8 +112,8 @@ impl App {
         if let Some(left) = document.scene.half(SplitSide::Left) {
             self.viewport.left.measuring.keep_only(document.generation, left.tessellator.generation());
         }
-        let is_posed = document.moment == moment;
-        let shown = is_posed && self.viewport.picture.drawn.as_ref() == Some(&wanted);
+        let is_ready = document.moment == moment && given == self.given.as_ref().map_or(0, |given| given.generation);
+        let shown = is_ready && self.viewport.picture.drawn.as_ref() == Some(&wanted);
         self.viewport.picture.outdated = !shown && self.viewport.picture.cancelled.is_none();
         let still = shown && !self.viewport.playback.is_playing();
         if still && self.viewport.picture.in_flight.is_none() && document.scene.tessellator.is_counted() {
@@ -107,10 +121,12 @@ impl App {
             let follows = self.settings.overlays.colors == Colors::TriangleSize;
             self.jobs.measure.go_on(&self.engine.gpu, &mut document.scene, document.generation, view, follows)?;
             self.measure_left(view)?;
+            self.count_leaks(context, view)?;
         }
         self.deviate(&inputs)?;
         if let Err(problem) = self.engine.gpu.check() {
             self.jobs.measure.give_up();
+            self.jobs.leaks.give_up();
             self.viewport.left.measuring.give_up();
             self.jobs.deviation.give_up();
             self.viewport.left.deviating.give_up();
@@ -191,14 +207,17 @@ impl App {
             self.viewport.camera.pan(vec2(drag.x, drag.y), vec2(rect.width(), rect.height()));
         }
         let response = response.on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
-        // The colours don't depend on the theme, because the picture is dark in both.
+        // A light line in a dark one is seen on any background.
         let (width, gray) = if response.hovered() || response.dragged() { (2.5, 255) } else { (1.5, 190) };
+        ui.painter().vline(at, rect.y_range(), egui::Stroke::new(width + 2.0, egui::Color32::from_black_alpha(130)));
         ui.painter().vline(at, rect.y_range(), egui::Stroke::new(width, egui::Color32::from_gray(gray)));
         let titles = match (left, right) {
             (Some(left), Some(right)) => [left, right],
             _ => ["untessellated", "tessellated"].map(str::to_owned),
         };
-        let halves = [rect.with_max_x(at), rect.with_min_x(at)];
+        // The axes are in the right half's corner.
+        let end = axes_place(rect).map_or(rect.right(), |axes| axes.left());
+        let halves = [rect.with_max_x(at.min(end)), rect.with_min_x(at).with_max_x(end.max(at))];
         for ((half, place), (title, align)) in halves.into_iter().zip(["Left", "Right"]).zip(titles.iter().zip(ALIGN)) {
             half_note(ui, half, align, title, &format!("{place}: {title}"));
         }
@@ -223,7 +242,29 @@ impl App {
         is_vase && is_framed && !is_selected && self.settings == Settings::greeting()
     }
 
-    /// Notes over the picture: the frozen camera, and the progress of loading, exporting and drawing.
+    /// What is on in the picture, in its lower left corner.
+    fn corner_notes(&self, ui: &egui::Ui, rect: egui::Rect) {
+        let preview = &self.viewport.preview;
+        let previewed = preview.shown(&self.viewport.picture).map(|(_, shape)| preview.mark(shape));
+        let frozen = self.viewport.frozen.map(|_| "LOD camera frozen".to_owned());
+        let grid = self.document.as_ref().filter(|_| self.settings.overlays.grid).map(|document| {
+            let spacing = Ground::under(&document.scene.bounds).spacing;
+            let unit = if spacing == 1.0 { "unit" } else { "units" };
+            format!("Grid: {spacing} {unit}")
+        });
+        let mut position = rect.left_bottom() + egui::vec2(10.0, -10.0);
+        let distance = self.viewport.ruler.map(|ruler| ruler.text());
+        for text in [previewed, frozen, grid, distance].into_iter().flatten() {
+            let galley = note_text(ui, &text, egui::Color32::from_gray(235));
+            let place = egui::Align2::LEFT_BOTTOM.anchor_size(position, galley.size());
+            let response = ui.interact(place, ui.scope_id().with(("note", &text)), Sense::empty());
+            response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &text));
+            position.y = place.top() - 10.0;
+            paint_note(ui, place, galley);
+        }
+    }
+
+    /// Notes over the picture: what is on, a preview's mark, and the progress of loading, writing and drawing.
     fn viewport_notes(&mut self, ui: &mut egui::Ui, rect: egui::Rect) {
         self.viewport.greets &= self.is_untouched();
         if self.viewport.greets {
@@ -232,10 +273,7 @@ impl App {
             let text = ui.painter().layout(GREETING.to_owned(), font, gray, rect.width() - 28.0);
             paint_note(ui, egui::Align2::CENTER_BOTTOM.anchor_size(position, text.size()), text);
         }
-        if self.viewport.frozen.is_some() {
-            let position = rect.left_bottom() + egui::vec2(10.0, -10.0);
-            note(ui, position, egui::Align2::LEFT_BOTTOM, "LOD camera frozen");
-        }
+        self.corner_notes(ui, rect);
         let is_old = self.document.as_ref().map(|document| document.generation)
             != self.viewport.picture.drawn.as_ref().map(|drawn| drawn.document);
         let is_cancelled = self.viewport.picture.cancelled.is_some();
@@ -260,11 +298,11 @@ impl App {
                 self.jobs.truth_load = None;
             }
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
-        } else if let Some(export) = &self.jobs.export {
-            let (title, done) = (format!("Exporting {}", export.name()), Some((export.progress.fraction(), None)));
-            let hover = with_key("Stops exporting. Nothing is written.", &Action::Cancel);
-            if progress(ui, rect, &title, done, ("Cancel", &hover)) {
-                self.jobs.export = None;
+        } else if let Some(writing) = &self.jobs.writing {
+            let done = Some((writing.progress.fraction(), None));
+            let hover = with_key("Stops it. Nothing is written.", &Action::Cancel);
+            if progress(ui, rect, &writing.title(), done, ("Cancel", &hover)) {
+                self.jobs.writing = None;
             }
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
         } else if self.viewport.picture.cancelled.is_some() {

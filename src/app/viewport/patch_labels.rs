@@ -22,7 +22,7 @@ impl App {
     /// Labels the selected patch in a picture shown in `rect`, if it is large enough there.
     pub(in crate::app) fn patch_labels(&self, ui: &egui::Ui, rect: Rect) {
         let (Some(patch), Some(document)) = (self.selected_patch(), &self.document) else { return };
-        let Some(ScreenView { clip_from_object, viewport }) = self.viewport.picture.seen_from() else { return };
+        let Some(ScreenView { clip_from_object, viewport }) = self.shown_view() else { return };
         let Some((_, topology)) = &document.posed() else { return };
         let at = |position| {
             let px = project(clip_from_object, viewport, position)?;

@@ -13,7 +13,7 @@ use crate::measure::{CrackedEdge, Cracks};
 use crate::mesh::Moment;
 use crate::render::{Camera, Pixel, Renderer, Scene, Target};
 use crate::settings::{Colors, Settings, SplitSide};
-use crate::tessellate::{Inputs, LodView, Tessellation};
+use crate::tessellate::{Inputs, Tessellation};
 use crate::view::ScreenView;
 
 /// Everything that the picture depends on.
@@ -24,6 +24,8 @@ pub(crate) struct Wanted {
     pub lines: u64,
     /// The number of the deviation result that is shown.
     pub deviation: u64,
+    /// The number of the factors of a file; 0 for those of LOD.
+    pub given: u64,
     pub camera: Camera,
     pub settings: Settings,
     pub inputs: Inputs,
@@ -34,7 +36,7 @@ pub(crate) struct Wanted {
 
 impl Wanted {
     /// The inputs of a half's tessellation, if there is such a half.
-    fn inputs_of(&self, half: SplitSide) -> Option<Inputs> {
+    pub(super) fn inputs_of(&self, half: SplitSide) -> Option<Inputs> {
         Some(Inputs {
             tessellation: Tessellation {
                 surface: self.settings.half(half)?.tessellation.surface,
@@ -93,6 +95,9 @@ pub(crate) struct Picture {
     pub pass_times_hold: bool,
     /// From submitting the last picture to its completion, in ms.
     pub picture_ms: Option<f64>,
+    /// When work on the next picture began, which includes its counts.
+    begun: Option<Instant>,
+    whole_ms: Option<f64>,
     /// Set once the device has finished the last submission.
     pub in_flight: Option<Arc<AtomicBool>>,
     pictures: u64,
@@ -118,6 +123,8 @@ impl Picture {
             times: Vec::new(),
             pass_times_hold: false,
             picture_ms: None,
+            begun: None,
+            whole_ms: None,
             in_flight: None,
             pictures: 0,
         }
@@ -125,6 +132,19 @@ impl Picture {
 
     pub(crate) fn pictures(&self) -> u64 {
         self.pictures
+    }
+
+    /// How long the last picture took from the first pass to its completion, in ms.
+    pub(crate) fn whole_ms(&self) -> Option<f64> {
+        self.whole_ms
+    }
+
+    /// Stops work on the next picture, so that a preview can be drawn. What the device has begun is not shown.
+    pub(crate) fn make_way(&mut self) {
+        (self.counting, self.begun) = (None, None);
+        // A picture that is submitted as a whole replaces the one before it, even if it comes too late.
+        self.drawing = self.drawing.take_if(|drawing| drawing.given == drawing.steps);
+        self.outdated = true;
     }
 
     /// Whether the picture shown is not the one wanted, or not complete.
@@ -137,9 +157,9 @@ impl Picture {
         self.target.as_ref().map_or(vec2(800.0, 600.0), |(target, _)| target.viewport())
     }
 
-    /// The view that the shown picture's LOD was computed for.
-    pub(crate) fn shown_view(&self) -> Option<LodView> {
-        self.drawn.as_ref().map(|drawn| drawn.inputs.view)
+    /// The camera of the picture that is shown, and the picture's size in px.
+    pub(crate) fn shown_camera(&self) -> Option<(Camera, Vec2)> {
+        self.drawn.as_ref().map(|drawn| (drawn.camera, drawn.viewport))
     }
 
     /// The largest gap of these cracks in px, in the view of the last picture.
@@ -183,6 +203,7 @@ impl Picture {
             if let Some(drawing) = self.drawing.take_if(|drawing| drawing.given == drawing.steps) {
                 self.picture_ms = Some(drawing.start.elapsed().as_secs_f64() * 1e3);
                 self.pass_times_hold = drawing.steps == 1;
+                self.whole_ms = self.begun.take().map(|begun| begun.elapsed().as_secs_f64() * 1e3).or(self.whole_ms);
                 self.drawn = Some(drawing.wanted);
                 self.unused = self.before.take().map(|(_, id)| id).or(self.unused);
                 self.pictures += 1;
@@ -251,6 +272,9 @@ impl Picture {
             return Ok(());
         }
         let scene = &mut document.scene;
+        if self.drawn != Some(wanted) {
+            self.begun.get_or_insert_with(Instant::now);
+        }
         let is_counted = self.count(engine, scene, &wanted, under_way.is_none())?;
         let Some((target, _)) = &self.target else { return Ok(()) };
         if self.in_flight.is_some() || !is_counted {

@@ -21,8 +21,8 @@ pub(crate) struct Selection {
     hit: Option<(u64, PickedTriangle)>,
     /// A click on a picture whose tessellation isn't known yet.
     clicked: Option<(SplitSide, Pixel)>,
-    /// The search for the triangle under a click, and its tessellation's number; none for the left half's.
-    picking: Option<(Option<u64>, Picking)>,
+    /// The search for the triangle under a click, its tessellation's number (none for the left half's), and where the click was.
+    picking: Option<(Option<u64>, Pixel, Picking)>,
 }
 
 /// What the lines over a selected patch depend on, besides the measurements.
@@ -119,14 +119,16 @@ impl App {
             let pixel = Pixel { split, ..pixel };
             let picking = self.engine.picker.start(&self.engine.gpu, scene, &pixel)?;
             let emitted = (half == SplitSide::Right).then(|| scene.tessellator.generation());
-            self.viewport.selection.picking = Some((emitted, picking));
+            self.viewport.selection.picking = Some((emitted, pixel, picking));
         }
-        let Some((emitted, mut picking)) = self.viewport.selection.picking.take() else { return Ok(false) };
+        let Some((emitted, pixel, mut picking)) = self.viewport.selection.picking.take() else { return Ok(false) };
         let Some(found) = picking.poll()? else {
-            self.viewport.selection.picking = Some((emitted, picking));
+            self.viewport.selection.picking = Some((emitted, pixel, picking));
             return Ok(false);
         };
-        self.take_picked(emitted, found);
+        if !self.measure_to(&pixel, found.as_ref()) {
+            self.take_picked(emitted, found);
+        }
         Ok(true)
     }
 
@@ -160,12 +162,18 @@ impl App {
     pub(in crate::app) fn patch_outline(&self, topology: &Topology, half: SplitSide) -> Vec<LineSegment> {
         let Some(patch) = self.selected_patch() else { return Vec::new() };
         let mut lines = patch_lines(&self.patch_edges(topology, patch, half));
-        if let Some(hit) = self.hit().filter(|_| half == SplitSide::Right) {
-            let corners = hit.vertices.map(|vertex| Vec3::from(vertex.position));
-            let edges = [0, 1, 2].map(|k| (corners[k], corners[(k + 1) % 3]));
-            let edge = |(a, b)| LineSegment { half_width: 1.25, ..LineSegment::new(a, b, [255; 3]) };
-            lines.extend(edges.map(edge));
+        if half == SplitSide::Right {
+            lines.extend(self.hit_lines());
         }
         lines
+    }
+
+    /// The lines around the emitted triangle that was clicked on.
+    pub(in crate::app) fn hit_lines(&self) -> Vec<LineSegment> {
+        let Some(hit) = self.hit() else { return Vec::new() };
+        let corners = hit.vertices.map(|vertex| Vec3::from(vertex.position));
+        let edges = [0, 1, 2].map(|k| (corners[k], corners[(k + 1) % 3]));
+        let edge = |(a, b)| LineSegment { half_width: 1.25, ..LineSegment::new(a, b, [255; 3]) };
+        edges.map(edge).into()
     }
 }

@@ -7,10 +7,12 @@ use super::fatal_screen::FatalScreen;
 use crate::app::App;
 use crate::app::dialogs::typed_path::PendingDialog;
 use crate::app::jobs::document::{Load, scene_of};
+use crate::app::jobs::leak_job::LeakJob;
 use crate::app::jobs::mesh_checks::Checks;
 use crate::app::persistence::WindowGeometry;
 use crate::app::style::style;
 use crate::app::viewport::picture::Picture;
+use crate::app::viewport::preview::Preview;
 use crate::engine::Engine;
 use crate::gpu::{Gpu, GpuError};
 
@@ -114,9 +116,11 @@ impl App {
         let scene = self.document.as_ref().map(|document| scene_of(&engine, &document.loaded)).transpose()?;
         let mut viewport = Picture::new(&engine);
         viewport.cancelled = self.viewport.picture.cancelled;
+        let preview = Preview::new(&engine).with(self.viewport.preview.is_on);
         (self.engine, self.render_state, self.viewport.picture) = (engine, render_state, viewport);
+        self.viewport.preview = preview;
         if let Some((document, scene)) = self.document.as_mut().zip(scene) {
-            (document.scene, document.moment) = (scene, None);
+            (document.scene, document.moment, document.given) = (scene, None, 0);
             if document.checks.is_busy() {
                 document.checks = Checks::start(context, &document.loaded);
             }
@@ -124,6 +128,7 @@ impl App {
             context.send_viewport_cmd(egui::ViewportCommand::Title(title));
         }
         self.jobs.measure.forget();
+        self.jobs.leaks = LeakJob::default();
         self.jobs.deviation.forget();
         self.viewport.left.forget();
         self.viewport.highlight = None;
@@ -143,11 +148,11 @@ impl App {
         if let Some(load) = &mut self.jobs.truth_load {
             load.wake(context);
         }
-        if let Some(export) = &mut self.jobs.export {
-            export.wake(context);
+        self.jobs.factors = self.jobs.factors.take().map(|job| job.waking(context));
+        if let Some(writing) = &mut self.jobs.writing {
+            writing.wake(context);
         }
         self.jobs.explain.go_on_in(context);
-        self.jobs.picture_file = self.jobs.picture_file.take().map(|job| job.waking(context));
         self.dialogs.pending = self.dialogs.pending.take().map(|dialog| PendingDialog {
             job: dialog.job.waking(context),
             since: f64::NEG_INFINITY,

@@ -110,7 +110,7 @@ impl App {
             if ui.add_enabled(is_free, egui::Button::new(text)).on_hover_text(hover).clicked() {
                 let path = PathBuf::from(path.trim());
                 let view = self.viewport.camera.lod_view(self.viewport.picture.size(), &document.scene.bounds);
-                let inputs = self.settings.inputs(self.viewport.frozen.unwrap_or(view));
+                let inputs = self.settings.inputs(self.viewport.frozen.map_or(view, |frozen| frozen.view));
                 let (loaded, moment) = (document.loaded.clone(), self.moment());
                 screen.said = None;
                 screen.saving = Some(BackgroundJob::start(ui.ctx(), move || save(&loaded, moment, &inputs, &path)));

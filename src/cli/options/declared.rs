@@ -191,7 +191,7 @@ mod tests {
     fn read(arguments: &[String]) -> Result<Settings, Error> {
         let usual = ["pnaen", "render", "a.glb", "-o", "a.png"].map(String::from);
         match Cli::try_parse_from(usual.iter().chain(arguments))?.command {
-            Some(Run::Render(args)) => Ok(args.picture.0.with(args.surface.tessellation.tessellation)),
+            Some(Run::Render(args)) => Ok(args.shot.picture.0.with(args.shot.surface.tessellation.tessellation)),
             other => panic!("{other:?}"),
         }
     }

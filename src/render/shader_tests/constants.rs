@@ -13,17 +13,18 @@ use crate::gpu::{
 use crate::mesh::{EdgeKind, MAX_LEVELS, MAX_MAPS};
 use crate::render::coverage::TILE;
 use crate::render::layout::{
-    BACK_FACE_COLOR, FOLD_COLOR, FOUND_EMITTED, NORMAL_COLOR, WASTE_COLOR, edge_color, linear, overlay_bits,
+    AXIS_COLORS, BACK_FACE_COLOR, CHECKER_LIGHT, CHECKER_LINE, CHECKER_U, CHECKER_V, FOLD_COLOR, FOUND_EMITTED,
+    NORMAL_COLOR, WASTE_COLOR, edge_color, linear, overlay_bits,
 };
 use crate::render::scale::Scale;
 use crate::settings::{Colors, Overlays};
 use crate::tessellate::shared_constants::{
     AGREEING, ASKED_SEGMENT, BEYOND_LAST, BITS_63, BITS_64, BITS_896, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP,
     BITS_ONE_AND_STEP, BITS_TWO, BOUND_SHARE, CANCELLED, DETAIL_SHARE, FACING_AWAY, FACING_MARGIN, FACING_ROUNDING,
-    FACTOR_ODD, FACTOR_VALUE, FINEST_GRID, FIXED_HALF, FIXED_ONE, FIXED_TWO_THIRDS, LESSENINGS, MOST_SEGMENTS,
-    NOT_CULLED, OUT_OF_VIEW, PARALLEL, PARTIAL_STEPS, PATTERN_HALVES, PATTERN_STEPS, POLAR_INDICES, POLAR_WEIGHTS,
-    ROW_BASE_SHIFT, ROW_BASE_STEP, ROW_FLIP_SHIFT, ROW_REACH, ROW_SAMPLES, ROWS, SPREAD, SUBTRIANGULATED,
-    SURFACE_SHARE, TOGETHER, TURN_SHARE, TWO_POINTS, UNIT,
+    FACTOR_ODD, FACTOR_VALUE, FINEST_GRID, FIXED_HALF, FIXED_ONE, FIXED_TWO_THIRDS, LESSENINGS, NOT_CULLED,
+    OUT_OF_VIEW, PARALLEL, PARTIAL_STEPS, PATTERN_HALVES, PATTERN_STEPS, POLAR_INDICES, POLAR_WEIGHTS, ROW_BASE_SHIFT,
+    ROW_BASE_STEP, ROW_FLIP_SHIFT, ROW_REACH, ROW_SAMPLES, ROWS, SPREAD, SUBTRIANGULATED, SURFACE_SHARE, TOGETHER,
+    TURN_SHARE, TWO_POINTS, UNIT,
 };
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
 
@@ -46,7 +47,15 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
     (&["LARGE"], "how one pass divides its work; no result depends on it"),
     (&["SMALL", "ROUNDS_OVER", "TRIANGLES", "NOT_TAKEN"], "counters of passes"),
     (&["TILE_WORDS", "ROUNDS"], "follow from TILE"),
-    (&["NEARER", "HIDDEN", "NORMAL_LENGTH", "NORMAL_HALF_WIDTH", "NORMAL_SPACING"], "how lines look"),
+    (
+        &["NEARER", "HIDDEN", "NORMAL_LENGTH", "NORMAL_HALF_WIDTH", "NORMAL_SPACING", "DENSE", "SPARSE"],
+        "how lines look",
+    ),
+    (
+        &["CLAY_COLOR", "ZEBRA_STRIPES", "ZEBRA_AXIS", "ZEBRA_DARK", "ZEBRA_LIGHT", "CHECKER_SQUARES", "CHECKER_DARK"],
+        "how the surface looks",
+    ),
+    (&["GROUND_REACH", "GROUND_FADES_FROM", "GROUND_COLOR", "GROUND_OPACITY"], "how the ground looks"),
 ];
 
 /// The components of a constant, and by how much each may differ.
@@ -101,11 +110,21 @@ fn table() -> Vec<(&'static str, Expected)> {
         ("OVERLAY_TRIANGLE_SIZE", colors(Colors::TriangleSize)),
         ("OVERLAY_LOW_FACTORS", colors(Colors::LowFactors)),
         ("OVERLAY_EXCESS", colors(Colors::Excess)),
+        ("OVERLAY_CLAY", colors(Colors::Clay)),
+        ("OVERLAY_ZEBRA", colors(Colors::Zebra)),
+        ("OVERLAY_SHADING_NORMALS", colors(Colors::ShadingNormals)),
+        ("OVERLAY_UV_CHECKER", colors(Colors::UvChecker)),
         ("OVERLAY_DEVIATION", colors(Colors::Deviation)),
         ("FOLD_COLOR", color(FOLD_COLOR)),
         ("BACK_FACE_COLOR", color(BACK_FACE_COLOR)),
         ("WASTE_COLOR", color(WASTE_COLOR)),
         ("NORMAL_COLOR", color(NORMAL_COLOR)),
+        ("CHECKER_LIGHT", number(CHECKER_LIGHT)),
+        ("CHECKER_U", numbers(CHECKER_U)),
+        ("CHECKER_V", numbers(CHECKER_V)),
+        ("CHECKER_LINE", color(CHECKER_LINE)),
+        ("X_AXIS_COLOR", color(AXIS_COLORS[0])),
+        ("Z_AXIS_COLOR", color(AXIS_COLORS[2])),
         // WGSL has this grey with two decimals.
         ("SMOOTH_EDGE_COLOR", Expected(color(edge_color(EdgeKind::Smooth)).0, 0.005)),
         ("SPLIT_EDGE_COLOR", color(edge_color(EdgeKind::Split))),
@@ -161,7 +180,6 @@ fn of_the_mathematics() -> Vec<(&'static str, Expected)> {
         ("ROW_BASE_STEP", number(ROW_BASE_STEP)),
         ("ROW_FLIP_SHIFT", number(ROW_FLIP_SHIFT)),
         ("BITS_896", number(BITS_896)),
-        ("MOST_SEGMENTS", number(MOST_SEGMENTS)),
         ("BITS_ONE", number(BITS_ONE)),
         ("BITS_TWO", number(BITS_TWO)),
         ("BITS_63", number(BITS_63)),

@@ -99,6 +99,7 @@ fn shared_structs_have_the_same_layout() {
         scale_least,
         scale_most,
         px_per_unit,
+        ground,
         scale,
     });
     same!(CoverageView { clip_from_object, slack, viewport, sample_count, fronts_only, snap });

@@ -70,14 +70,14 @@ fn few_segments_are_cut_as_by_hand() {
     // A strip of two rows beside the edge W == 0.
     let (points, triangles) = pattern(rows([2, 2, 1], 2, 1));
     assert_eq!(points, [[0, 0x10000], [0, 0x8000], [0, 0], [0x8000, 0], [0x10000, 0]]);
-    assert_eq!(triangles, [[2, 3, 1], [1, 3, 4], [1, 4, 0]]);
+    assert_eq!(triangles, [[1, 3, 4], [2, 3, 1], [1, 4, 0]]);
     // One edge isn't cut: its base's end is where all rows end.
     let (_, triangles) = pattern(rows([1, 1, 3], 0, 1));
-    assert_eq!(triangles, [[2, 3, 1], [3, 4, 1], [4, 0, 1]]);
+    assert_eq!(triangles, [[4, 0, 1], [3, 4, 1], [2, 3, 1]]);
     // Two rows with a point inside.
     let (points, triangles) = pattern(rows([2, 2, 2], 0, 3));
     assert_eq!(points[6..], [[0x8000, 0x4000]]);
-    assert_eq!(triangles, [[4, 5, 6], [4, 6, 3], [6, 5, 0], [6, 0, 1], [3, 6, 1], [3, 1, 2]]);
+    assert_eq!(triangles, [[6, 5, 0], [6, 0, 1], [3, 6, 1], [4, 5, 6], [4, 6, 3], [3, 1, 2]]);
 }
 
 #[test]
@@ -135,17 +135,37 @@ fn the_manuals_table_is_right() {
 }
 
 #[test]
-fn every_point_inside_is_found_in_its_row() {
+fn every_point_inside_has_one_number() {
     for (n, width) in (1..=64).flat_map(|n| (1..=64).map(move |width| (n, width))) {
-        let plan = row_plan(rows([1, n, n], 0, width));
-        let mut i = 0;
-        for row in 1..n {
-            for place in 1..row_segments(&plan, row) {
-                assert_eq!(row_of_point(&plan, i), [row, place], "point {i} of {n} rows, to {width}");
-                i += 1;
+        let numbered = numbered_rows(rows([1, n, n], 0, width));
+        let segments = |row: u32| (width * row).div_ceil(n);
+        assert_eq!(numbered.inside, (1..n).map(|row| segments(row) - 1).sum::<u32>(), "{n} rows, to {width}");
+        for i in 0..numbered.inside {
+            let [row, place] = row_of_point(&numbered, i);
+            assert!((1..n).contains(&row) && (1..segments(row)).contains(&place), "point {i} of {n} rows, to {width}");
+            let number = number_before(&numbered, row, segments(row)) + place;
+            assert_eq!(number, numbered.rows.outer + i, "point {i} of {n} rows, to {width}");
+        }
+    }
+}
+
+#[test]
+fn every_triangle_has_one_number() {
+    for (n, width) in (1..=64).flat_map(|n| (1..=64).map(move |width| (n, width))) {
+        let others = [5, 11].map(|k| (1 + (k * n + 3 * width) % n, 1 + (k * n + width) % 64));
+        for (fewer, c) in [(n, width), (1, 1), others[0], others[1]] {
+            let edges = if (n + width) % 2 == 0 { [c, n, fewer] } else { [c, fewer, n] };
+            let factors = rows(edges, 0, width);
+            let numbered = numbered_rows(factors);
+            let strips: Vec<_> = (0..n).map(|row| strip_triangles(strip_below(&numbered.rows, row))).collect();
+            assert_eq!(strips.iter().sum::<u32>(), triangle_count(factors), "{edges:?}, width {width}");
+            let mut found: Vec<_> = strips.iter().map(|&count| vec![false; count as usize]).collect();
+            for t in 0..triangle_count(factors) {
+                let [row, i] = strip_of_triangle(&numbered, t);
+                let place = found.get_mut(row as usize).and_then(|strip| strip.get_mut(i as usize));
+                assert!(place.is_some_and(|place| !std::mem::replace(place, true)), "{t} of {edges:?}, width {width}");
             }
         }
-        assert_eq!(i + n + n + 1, point_count(rows([1, n, n], 0, width)), "{n} rows, to {width}");
     }
 }
 
@@ -154,8 +174,8 @@ fn flipped_diagonals_are_those_of_the_mirrored_pattern() {
     // Two rows of one segment beside the edge W == 0 have one diagonal.
     let (_, upright) = pattern(rows([2, 2, 1], 2, 1));
     let (_, flipped) = pattern(rows([2, 2, 1], 5, 1));
-    assert_eq!(upright, [[2, 3, 1], [1, 3, 4], [1, 4, 0]]);
-    assert_eq!(flipped, [[2, 3, 1], [3, 4, 0], [1, 3, 0]]);
+    assert_eq!(upright, [[1, 3, 4], [2, 3, 1], [1, 4, 0]]);
+    assert_eq!(flipped, [[3, 4, 0], [2, 3, 1], [1, 3, 0]]);
     // Exchanging U and V mirrors a pattern beside the edge W == 0, and turns its triangles.
     let places = |factors, mirrored: bool| {
         let (points, triangles) = pattern(factors);
@@ -252,9 +272,11 @@ proptest! {
         let factors = rows(edges, base, width);
         let (points, triangles) = pattern(factors);
         let plan = row_plan(factors);
-        for (t, triangle) in (0..).zip(triangles) {
-            prop_assert_eq!(row_triangle_places(&plan, t), triangle.map(|i| points[i as usize]), "triangle {}", t);
-        }
+        let mut strip_by_strip: Vec<_> = (0..triangles.len() as u32).map(|t| row_triangle_places(&plan, t)).collect();
+        let mut by_number: Vec<_> = triangles.iter().map(|triangle| triangle.map(|i| points[i as usize])).collect();
+        strip_by_strip.sort_unstable();
+        by_number.sort_unstable();
+        prop_assert_eq!(strip_by_strip, by_number);
     }
 
     #[test]

@@ -3,6 +3,7 @@
 //! The peer draws the same patches with Vulkan's hull shader, fixed-function tessellator and domain shader. It gets the control
 //! nets that our nets pass computed, and the factors that our counts pass used. Times are medians. On software drivers, whose
 //! timestamps are wrong, they are times of whole submissions. The bench reports its results, and no result makes it fail.
+//! `cargo bench --bench hardware -- emission` prints only how long rows take to emit beside rings.
 
 mod copy;
 mod error;
@@ -81,6 +82,10 @@ fn main() -> ExitCode {
 
 fn run(engine: &Engine) -> Result<(), BenchError> {
     let scale = Scale::of(engine);
+    if std::env::args().any(|argument| argument == "emission") {
+        Report::begin(engine, &scale, None).patterns(&patterns::measure(engine, &scale)?);
+        return Ok(());
+    }
     let peer = Peer::new(&engine.gpu, scale.size);
     let mut report = Report::begin(engine, &scale, peer.as_ref().err());
     let peer = peer.ok();

@@ -1,9 +1,9 @@
 //! Compares LOD by error with the fewest triangles that keep the same tolerance: `cargo bench --bench optimum`. Arguments after
 //! `--` are mesh files that are measured too; `cameras=N`, the number of random cameras beside the default one; and
-//! `only=NAME`, which measures one mesh alone. Rows are compared with the optimum of integer partitioning. With `search=no` no
+//! `only=NAME,NAME`, which measures these meshes alone. Rows are compared with the optimum of integer partitioning. With `search=no` no
 //! optimum is searched for: then all partitionings are measured that LOD by error has, and what the table tells is whether the
-//! tolerance is kept. With `device=gpu` the same is told of what a GPU
-//! emits.
+//! tolerance is kept, of all of them or of the one that `partitioning=NAME` names. With `device=gpu` the same is told of what
+//! a GPU emits.
 
 mod meshes;
 
@@ -254,9 +254,10 @@ fn main() {
     let cameras_each =
         arguments.iter().find_map(|argument| argument.strip_prefix("cameras=")?.parse().ok()).unwrap_or(20);
     let files: Vec<PathBuf> = arguments.iter().filter(|argument| !argument.contains('=')).map(PathBuf::from).collect();
-    let only = arguments.iter().find_map(|argument| argument.strip_prefix("only="));
+    let value = |name: &str| arguments.iter().find_map(|argument| argument.strip_prefix(name));
+    let only = value("only=");
     let mut meshes = meshes::with_files(&files);
-    meshes.retain(|(name, _)| only.is_none_or(|only| name == only));
+    meshes.retain(|(name, _)| only.is_none_or(|only| only.split(',').any(|only| name == only)));
     let topologies: Vec<Arc<Topology>> = meshes.iter().map(|(_, mesh)| Arc::new(Topology::of(mesh))).collect();
     let on_device = arguments.iter().any(|argument| argument == "device=gpu");
     let searches = !on_device && !arguments.iter().any(|argument| argument == "search=no");
@@ -264,7 +265,11 @@ fn main() {
         true => &[Partitioning::Integer, Partitioning::FractionalOdd, Partitioning::Rows],
         false => &BY_ERROR,
     };
-    let cases = cases(&meshes, cameras_each, partitionings);
+    let named = |partitioning: &&Partitioning| {
+        value("partitioning=").is_none_or(|name| format!("{partitioning:?}").eq_ignore_ascii_case(name))
+    };
+    let partitionings: Vec<Partitioning> = partitionings.iter().filter(named).copied().collect();
+    let cases = cases(&meshes, cameras_each, &partitionings);
     let (next, rows) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
     std::thread::scope(|scope| {
         for _ in 0..std::thread::available_parallelism().map_or(1, |cores| cores.get()) {
@@ -284,7 +289,7 @@ fn main() {
     let mut rows = rows.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
     rows.sort_by_key(|row| (row.case.mesh, row.case.number));
     compare_rows_with_integer(&mut rows);
-    for &partitioning in partitionings {
+    for &partitioning in &partitionings {
         println!("\n{partitioning:?}, {}x{} px\n", VIEWPORT.x, VIEWPORT.y);
         let more_than = match partitioning {
             Partitioning::Rows => "integer partitioning",

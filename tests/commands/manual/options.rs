@@ -7,8 +7,19 @@ use crate::output;
 
 type Options = BTreeSet<String>;
 
-const COMMANDS: [&str; 10] =
-    ["render", "tessellate", "factors", "adjacency", "domain", "info", "stability", "gallery", "chart", "adapters"];
+const COMMANDS: [&str; 11] = [
+    "render",
+    "turntable",
+    "tessellate",
+    "factors",
+    "adjacency",
+    "domain",
+    "info",
+    "stability",
+    "gallery",
+    "chart",
+    "adapters",
+];
 
 /// The options that a command prints with `--help`. An empty name stands for the window.
 fn options_in_help(command: &str) -> Options {

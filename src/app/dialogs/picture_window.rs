@@ -1,0 +1,99 @@
+//! The window that chooses how a picture is saved.
+
+use egui::{DragValue, Grid, Ui};
+
+use crate::app::App;
+use crate::app::jobs::picture_job::PictureChoices;
+use crate::render::has_legend;
+
+/// The sides of pictures, in px: those that the option `--size` takes.
+const SIDES: std::ops::RangeInclusive<u32> = 1..=16384;
+
+/// The width of labels in points: that of the longest, "Pictures a second".
+pub(super) const LABELS: f32 = 108.0;
+
+/// The choices, which last as long as the program runs, and whether the window is open.
+#[derive(Default)]
+pub(crate) struct PictureWindow {
+    pub is_open: bool,
+    pub choices: PictureChoices,
+}
+
+impl App {
+    pub(in crate::app) fn picture_window(&mut self, context: &egui::Context) {
+        if !self.dialogs.picture.is_open {
+            return;
+        }
+        let mut is_open = true;
+        let (mut saves, mut copies) = (false, false);
+        let window = egui::Window::new("Save picture").open(&mut is_open).resizable(false).collapsible(false);
+        let window = window.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO);
+        let mut choices = self.dialogs.picture.choices;
+        window.show(context, |ui| {
+            self.picture_rows(ui, &mut choices);
+            [saves, copies] = self.save_buttons(ui, "Asks for the name of the PNG file, and writes it.");
+        });
+        self.dialogs.picture = PictureWindow { is_open: is_open && !saves, choices };
+        if saves {
+            self.picture_dialog(context);
+        } else if copies {
+            self.copy_command_of(context, &choices);
+        }
+    }
+
+    /// The buttons that save and that copy the command. Returns which are pressed.
+    pub(in crate::app) fn save_buttons(&self, ui: &mut Ui, hover: &str) -> [bool; 2] {
+        ui.add_space(6.0);
+        let buttons = |ui: &mut Ui| {
+            let why_not = self.is_writing().then_some("Another file is being written.");
+            let save = ui.add_enabled(why_not.is_none(), egui::Button::new("Save…"));
+            let save = save.on_hover_text(hover).on_disabled_hover_text(why_not.unwrap_or_default());
+            let copy = ui.button("Copy as command");
+            let copy = copy.on_hover_text("Copies the pnaen command that draws this without a window.");
+            [save.clicked(), copy.clicked()]
+        };
+        ui.horizontal(buttons).inner
+    }
+
+    /// The rows about size, background, overlays and legend, which all kinds of pictures have.
+    pub(in crate::app) fn picture_rows(&self, ui: &mut Ui, choices: &mut PictureChoices) {
+        Grid::new("picture").num_columns(2).min_col_width(LABELS).show(ui, |ui| {
+            self.size_rows(ui, choices);
+            ui.label("Background").on_hover_text("What is behind the mesh (--background, --transparent).");
+            ui.horizontal(|ui| {
+                ui.radio_value(&mut choices.transparent, false, "As shown").on_hover_text("The colour of the view.");
+                let hover = "Nothing: where no mesh, line or grid is, the picture is transparent.";
+                ui.radio_value(&mut choices.transparent, true, "Transparent").on_hover_text(hover);
+            });
+            ui.end_row();
+        });
+        let hover = "Draws what is on over the surface: wireframe, cracks, colours and so on, and the selection. The frustum of \
+                     a frozen LOD camera is always drawn.";
+        ui.checkbox(&mut choices.overlays, "With overlays").on_hover_text(hover);
+        let is_possible = choices.overlays && has_legend(self.settings.overlays.colors);
+        let legend = ui.add_enabled(is_possible, egui::Checkbox::new(&mut choices.legend, "With legend"));
+        let hover = "Draws the legend of the surface's colours into the lower right corner (--legend).";
+        legend.on_hover_text(hover).on_disabled_hover_text("These colours stand for nothing, and have no legend.");
+    }
+
+    fn size_rows(&self, ui: &mut Ui, choices: &mut PictureChoices) {
+        let (mut size, mut is_changed) = (self.saved_size(choices), false);
+        for (name, side) in ["Width", "Height"].into_iter().zip(&mut size) {
+            let hover = format!("In px, {} to {} (--size).", SIDES.start(), SIDES.end());
+            let label = ui.label(name).on_hover_text(&hover);
+            let drag = ui.add(DragValue::new(side).range(SIDES).suffix(" px")).labelled_by(label.id);
+            is_changed |= drag.on_hover_text(hover).changed();
+            ui.end_row();
+        }
+        if is_changed {
+            choices.size = Some(size);
+        }
+        ui.label("");
+        let back = ui.add_enabled(choices.size.is_some(), egui::Button::new("Size of the view"));
+        let hover = "Goes back to the size of the picture in the window, also if that changes.";
+        if back.on_hover_text(hover).on_disabled_hover_text("It has the size of the view.").clicked() {
+            choices.size = None;
+        }
+        ui.end_row();
+    }
+}

@@ -1,0 +1,143 @@
+//! Counts the leaks of what is shown while the window goes on: a chunk is drawn at a time, and a thread of its own looks for
+//! the pixels.
+
+use super::background_job::BackgroundJob;
+use super::measure_job::Trouble;
+use crate::app::App;
+use crate::engine::Engine;
+use crate::gpu::Readback;
+use crate::render::{Leak, LeakCount, Scene, leaks_in};
+use crate::settings::SplitSide;
+use crate::view::{ScreenView, project};
+use glam::{Vec2, Vec3};
+
+/// The leaks of what is shown, once counted.
+#[derive(Default)]
+pub(crate) struct LeakJob {
+    /// The document, the tessellation and the view that they are counted for.
+    of: Option<(u64, u64, ScreenView)>,
+    counting: Option<Counting>,
+    found: Option<Vec<Leak>>,
+}
+
+enum Counting {
+    Drawing(LeakCount),
+    Copying(Readback),
+    Grouping(BackgroundJob<Option<Vec<Leak>>>),
+}
+
+impl LeakJob {
+    /// The leaks in a view, the largest first, once they are counted.
+    fn found(&self, view: Option<ScreenView>) -> Option<&[Leak]> {
+        let is_same = self.of.map(|(.., counted)| counted) == view;
+        self.found.as_deref().filter(|_| is_same)
+    }
+
+    pub(crate) fn is_busy(&self) -> bool {
+        self.counting.is_some()
+    }
+
+    /// Stops counting. It isn't started again by itself.
+    pub(crate) fn give_up(&mut self) {
+        self.counting = None;
+    }
+
+    /// Goes on counting document `document`, whose counts must be known, or starts over if its tessellation or the view has
+    /// changed.
+    ///
+    /// # Errors
+    /// The device was lost, or the thread panicked.
+    pub(crate) fn go_on(
+        &mut self,
+        context: &egui::Context,
+        engine: &Engine,
+        scene: &mut Scene,
+        document: u64,
+        view: ScreenView,
+    ) -> Result<(), Trouble> {
+        let of = Some((document, scene.tessellator.generation(), view));
+        if self.of != of {
+            let size = view.viewport.to_array().map(|side| side as u32);
+            let count = engine.start_leaks(size, view.clip_from_object)?;
+            *self = Self { of, counting: Some(Counting::Drawing(count)), found: None };
+            return Ok(());
+        }
+        self.counting = match self.counting.take() {
+            None => None,
+            Some(Counting::Drawing(mut count)) => Some(match count.draw_next(&engine.gpu, scene)? {
+                Some(counts) => Counting::Copying(counts),
+                None => Counting::Drawing(count),
+            }),
+            Some(Counting::Copying(mut counts)) => Some(match counts.poll()? {
+                true => grouping(context, counts, view),
+                false => Counting::Copying(counts),
+            }),
+            Some(Counting::Grouping(job)) => match job.take() {
+                None => Some(Counting::Grouping(job)),
+                Some(leaks) => {
+                    self.found = leaks.map_err(Trouble::Leaking)?;
+                    None
+                }
+            },
+        };
+        Ok(())
+    }
+}
+
+fn grouping(context: &egui::Context, counts: Readback, view: ScreenView) -> Counting {
+    let width = view.viewport.x as usize;
+    // No bytes come from a lost device, which is reported elsewhere.
+    Counting::Grouping(BackgroundJob::start(context, move || Some(leaks_in(&counts.bytes().ok()?, width))))
+}
+
+impl App {
+    /// Whether leaks of what is shown can be counted: the mesh is closed and beyond the near plane, and nothing was left out.
+    pub(in crate::app) fn may_leak(&self) -> bool {
+        self.jobs.measure.is_closed_in(self.viewport.picture.seen_from())
+    }
+
+    /// Goes on counting leaks once everything else of what is shown was measured.
+    pub(in crate::app) fn count_leaks(&mut self, context: &egui::Context, view: ScreenView) -> Result<(), Trouble> {
+        if self.jobs.measure.is_busy() {
+            return Ok(());
+        }
+        let may_leak = self.may_leak() && self.jobs.measure.found().is_some();
+        match self.document.as_mut().filter(|_| may_leak) {
+            Some(document) => {
+                self.jobs.leaks.go_on(context, &self.engine, &mut document.scene, document.generation, view)
+            }
+            None => {
+                self.jobs.leaks.give_up();
+                Ok(())
+            }
+        }
+    }
+
+    /// The leaks of what is shown, the largest first, once they are counted.
+    pub(crate) fn leaks(&self) -> Option<&[Leak]> {
+        self.jobs.leaks.found(self.viewport.picture.seen_from())
+    }
+
+    /// The cracked edge that comes closest to a leak on screen.
+    pub(in crate::app) fn edge_of_leak(&self, leak: &Leak) -> Option<u32> {
+        let (document, found) = (self.document.as_ref()?, self.measured(SplitSide::Right).found()?);
+        let (view, topology) = (self.viewport.picture.seen_from()?, &document.shown().1);
+        let on_screen = |place: Vec3| project(view.clip_from_object, view.viewport, place);
+        let distance = |edge: u32| {
+            let sides = found.outlines.edge(topology, edge);
+            let points = sides.iter().map(|side| side.positions().filter_map(on_screen).collect::<Vec<_>>());
+            points
+                .flat_map(|points| points.windows(2).map(|ends| distance_px(leak.middle, ends)).collect::<Vec<_>>())
+                .fold(f32::INFINITY, f32::min)
+        };
+        let cracked = found.cracks.edges.iter().filter(|crack| crack.gap > 0.0).map(|crack| crack.edge);
+        cracked.map(|edge| (edge, distance(edge))).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(edge, _)| edge)
+    }
+}
+
+/// The distance of a place from a line between two others, in px.
+fn distance_px(place: Vec2, ends: &[Vec2]) -> f32 {
+    let (start, along) = (ends[0], ends[1] - ends[0]);
+    let at = (place - start).dot(along) / along.length_squared().max(f32::MIN_POSITIVE);
+    place.distance(start + along * at.clamp(0.0, 1.0))
+}

@@ -1,0 +1,177 @@
+//! What files of pictures are drawn from: the window's mesh, settings and camera, in a scene of their own.
+
+use std::path::Path;
+
+use super::document::arena_bytes;
+use crate::app::App;
+use crate::cli::{
+    CliError, ReferenceSurface, Shot, ShotView, Stamp, StatsWanted, Subject, Turn, write_factors, write_stamped,
+};
+use crate::engine::Engine;
+use crate::gpu::{Gpu, GpuError};
+use crate::progress::Progress;
+use crate::render::Scene;
+use crate::settings::{ARENA_BYTES, Colors, Overlays, Settings, SplitSide};
+
+/// How a picture is saved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PictureChoices {
+    /// Width and height in px; none for those of the viewport.
+    pub size: Option<[u32; 2]>,
+    pub transparent: bool,
+    /// Whether overlays and the selection are drawn.
+    pub overlays: bool,
+    pub legend: bool,
+}
+
+impl Default for PictureChoices {
+    fn default() -> Self {
+        Self { size: None, transparent: false, overlays: true, legend: false }
+    }
+}
+
+/// Everything that a thread needs to draw what the window shows.
+pub(crate) struct ShotParts {
+    engine: Engine,
+    make: Box<dyn FnOnce() -> Result<Scene, GpuError> + Send>,
+    subject: Subject,
+    view: ShotView,
+}
+
+impl ShotParts {
+    /// Draws the picture and writes it as a PNG file that holds this command. Writes nothing if it was cancelled.
+    ///
+    /// # Errors
+    /// The device fails, or the file can't be written; as a sentence.
+    pub(crate) fn save(self, command: &str, path: &Path, progress: &Progress) -> Result<(), String> {
+        self.with_shot(|shot| {
+            let picture = shot.picture(None, progress)?;
+            progress.check()?;
+            write_stamped(path, &picture, &Stamp { command, settings: shot.settings() })
+        })
+    }
+
+    /// Draws a turntable, whose PNG files hold these commands. Writes nothing if it was cancelled.
+    ///
+    /// # Errors
+    /// The device fails, or a file can't be written; as a sentence.
+    pub(crate) fn save_turn(
+        self,
+        turn: Turn,
+        commands: &[String],
+        path: &Path,
+        progress: &Progress,
+    ) -> Result<(), String> {
+        let command = |frame| commands.get(frame as usize).cloned().unwrap_or_default();
+        self.with_shot(|shot| turn.write(shot, command, path, progress, &mut |_| ()))
+    }
+
+    /// Measures the picture, on a device of its own so that nothing else is timed, and writes its stats. Writes nothing if it
+    /// was cancelled.
+    ///
+    /// # Errors
+    /// The device fails, or the file can't be written; as a sentence.
+    pub(crate) fn save_stats(self, adapter: &wgpu::Adapter, path: &Path, progress: &Progress) -> Result<(), String> {
+        let Self { subject, view, .. } = self;
+        let engine = Engine::new(Gpu::on(adapter).map_err(|error| error.to_string())?);
+        let subject = Subject { arena_bytes: ARENA_BYTES, ..subject };
+        let (own, loaded) = (engine.clone(), subject.loaded.clone());
+        let make = Box::new(move || own.scene(&loaded, ARENA_BYTES));
+        Self { engine, make, subject, view }.with_shot(|shot| {
+            shot.picture(Some(StatsWanted { error: true }), progress)?;
+            progress.check()?;
+            shot.write_stats(None, path)
+        })
+    }
+
+    /// Writes the factors of this view as CSV. Writes nothing if it was cancelled.
+    ///
+    /// # Errors
+    /// The device fails, or the file can't be written; as a sentence.
+    pub(crate) fn save_factors(self, path: &Path, progress: &Progress) -> Result<(), String> {
+        let Self { engine, make, subject, view } = self;
+        let own = engine.clone();
+        let attempted = engine.gpu.attempt(move || {
+            let mut scene = make()?;
+            subject.dress(&mut scene)?;
+            let inputs = subject.settings.inputs(view.lod_view(&scene));
+            write_factors(&own, &mut scene, &inputs, path, progress)
+        });
+        said(attempted)
+    }
+
+    /// Makes what is drawn, on a scene of its own, and hands it over.
+    ///
+    /// # Errors
+    /// The device fails, or `draw` does; as a sentence.
+    pub(crate) fn with_shot(self, draw: impl FnOnce(&mut Shot) -> Result<(), CliError>) -> Result<(), String> {
+        let Self { engine, make, subject, view, .. } = self;
+        let own = engine.clone();
+        // What the device refuses, such as a picture that is too large for its memory, is this file's error.
+        let attempted = engine.gpu.attempt(move || {
+            let mut scene = make()?;
+            subject.dress(&mut scene)?;
+            draw(&mut Shot::new(own, scene, subject, view)?)
+        });
+        said(attempted)
+    }
+}
+
+/// What went wrong, as a sentence.
+fn said(attempted: Result<Result<(), CliError>, GpuError>) -> Result<(), String> {
+    attempted.map_err(|error| error.to_string())?.map_err(|error| error.to_string())
+}
+
+impl App {
+    /// Width and height of a picture that is saved with these choices, in px.
+    pub(in crate::app) fn saved_size(&self, choices: &PictureChoices) -> [u32; 2] {
+        choices.size.unwrap_or_else(|| self.viewport.picture.size().to_array().map(|side| side as u32))
+    }
+
+    /// The settings that a picture is saved with.
+    pub(in crate::app) fn saved_settings_of(&self, theme: egui::Theme, choices: &PictureChoices) -> Settings {
+        let settings = self.settings_in(theme);
+        if choices.overlays { settings } else { Settings { overlays: Overlays::default(), ..settings } }
+    }
+
+    /// What a picture with these choices is drawn from; none without a mesh. `command` draws the same.
+    pub(in crate::app) fn shot_parts(&self, theme: egui::Theme, choices: &PictureChoices) -> Option<ShotParts> {
+        let document = self.document.as_ref()?;
+        let settings = self.saved_settings_of(theme, choices);
+        let topology = document.shown().1;
+        let lines = |half| {
+            let hit = if half == SplitSide::Right { self.hit_lines() } else { Vec::new() };
+            [self.ruler_lines(), hit, self.selection_lines(&topology, half)].concat()
+        };
+        let subject = Subject {
+            loaded: document.loaded.clone(),
+            moment: document.moment,
+            given: document.scene.tessellator.given().map(<[_]>::to_vec),
+            settings,
+            reference_surface: self.reference_surface(&settings),
+            selected: self.selected_patch().filter(|_| choices.overlays),
+            more_lines: if choices.overlays { SplitSide::BOTH.map(lines) } else { Default::default() },
+            arena_bytes: arena_bytes(&self.engine),
+        };
+        let view = ShotView {
+            camera: self.viewport.camera,
+            lod_camera: self.viewport.frozen.map(|frozen| (frozen.camera, frozen.viewport)),
+            size: self.saved_size(choices),
+            transparent: choices.transparent,
+            legend: choices.legend,
+        };
+        let make = Box::new(document.scene.beside(subject.arena_bytes));
+        Some(ShotParts { engine: self.engine.clone(), make, subject, view })
+    }
+
+    /// What commands compare with: the chosen mesh; and while the overlay is on, an exact or the limit surface.
+    fn reference_surface(&self, settings: &Settings) -> Option<ReferenceSurface> {
+        let is_shown = settings.overlays.colors == Colors::Deviation;
+        let chosen = self.truth.as_ref().map(|chosen| chosen.source.to_string());
+        let exact = self.source().filter(|_| is_shown).map(ToString::to_string);
+        match self.yardstick().1 {
+            Some(truth) => Some(ReferenceSurface::Truth(chosen.or(exact)?, truth)),
+            None => is_shown.then_some(ReferenceSurface::Limit),
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! Where the factors of a file disagree: the edges whose sides have different factors, and the convention that would fit.
+
+use egui::RichText;
+
+use crate::app::App;
+use crate::app::sections::Section;
+use crate::app::text::{counted, grouped, short};
+use crate::app::widgets::{columns, fact, list};
+use crate::measure::Disagreement;
+use crate::settings::Choice;
+
+impl App {
+    /// The section about a file of factors, if one is open.
+    pub(in crate::app) fn given_section(&mut self, ui: &mut egui::Ui) {
+        let Some(given) = &self.given else { return };
+        if !self.panels.open.title(ui, Section::Factors) {
+            return;
+        }
+        let Some(compared) = given.compared() else {
+            ui.weak("The factors are being compared\u{2026}");
+            return;
+        };
+        let agreement = &compared.agreement;
+        egui::Grid::new("given factors").num_columns(2).min_col_width(104.0).show(ui, |ui| {
+            let hover = "Edges with several sides whose patches emit something.";
+            fact(ui, "Edges compared", &grouped(agreement.edges_compared), hover);
+            let hover = "Edges whose sides have different factors under the convention that is set.";
+            fact(ui, "Different", &grouped(agreement.edges.len() as u64), hover);
+            let hover = "Patches that emit nothing because one of their factors is not greater than 0.";
+            fact(ui, "Patches left out", &grouped(agreement.patches_culled), hover);
+        });
+        self.convention_advice(ui);
+        self.disagreements(ui);
+    }
+
+    /// Says which convention fits, if edges differ under the one that is set, and offers it.
+    fn convention_advice(&mut self, ui: &mut egui::Ui) {
+        let Some(compared) = self.given.as_ref().and_then(|given| given.compared()) else { return };
+        let Some((nearest, different)) = compared.agreement.nearest() else { return };
+        let own = compared.agreement.edges.len() as u64;
+        if different >= own {
+            let text = "No other convention makes more sides agree.";
+            return if own > 0 {
+                drop(ui.add(egui::Label::new(text).wrap()))
+            };
+        }
+        let differ = match different {
+            0 => "all sides agree".to_owned(),
+            _ => format!("{} differ", counted(different, "edge")),
+        };
+        ui.add(egui::Label::new(format!("Under the convention {}, {differ}.", nearest.label())).wrap());
+        let button = ui.button(format!("Use {}", nearest.label()));
+        if button.on_hover_text("Sets this convention, under Advanced.").clicked() {
+            self.settings.tessellation.convention = nearest;
+        }
+    }
+
+    /// The list of edges whose sides have different factors, the largest difference first. A click frames one.
+    fn disagreements(&mut self, ui: &mut egui::Ui) {
+        let Some(compared) = self.given.as_ref().and_then(|given| given.compared()) else { return };
+        let edges = &compared.agreement.edges;
+        if edges.is_empty() {
+            return;
+        }
+        columns(ui, &format!("{:<9}{:>9}{:>9}", "edge", "least", "greatest"), true)
+            .on_hover_text("The least and the greatest factor that the file has for a side of the edge.");
+        let mut clicked = None;
+        list(ui, "different factors", edges.len(), |ui, row| {
+            let own = &edges[row];
+            let [least, greatest] = own.extremes().map(|(_, factor)| short(factor.into()));
+            let text = format!("{:<9}{least:>9}{greatest:>9}", own.edge);
+            let is_selected = self.viewport.selected_edge == Some(own.edge);
+            let response = ui.selectable_label(is_selected, RichText::new(text).monospace());
+            let response = response.on_hover_text(sides_text(own));
+            if response.clicked() {
+                clicked = Some(own.edge);
+            }
+            response
+        });
+        if let Some(edge) = clicked {
+            self.select_edge(edge);
+        }
+    }
+}
+
+/// What each side of an edge has, in sentences.
+fn sides_text(edge: &Disagreement) -> String {
+    let sides = edge.sides.iter().map(|(triangle, factor)| format!("Triangle {triangle} has {factor}."));
+    sides.chain(["A click frames the edge.".to_owned()]).collect::<Vec<_>>().join("\n")
+}

@@ -1,0 +1,48 @@
+//! The list of leaks.
+
+use egui::RichText;
+
+use crate::app::App;
+use crate::app::text::grouped;
+use crate::app::widgets::{columns, list};
+use crate::render::Leak;
+
+impl App {
+    /// The list of places where one can see into a closed mesh, the largest first. A click frames the cracked edge there.
+    pub(in crate::app) fn leak_list(&mut self, ui: &mut egui::Ui) {
+        let leaks = self.leaks().filter(|_| self.may_leak()).unwrap_or_default();
+        if leaks.is_empty() {
+            return;
+        }
+        ui.add_space(4.0);
+        ui.label("Leaks").on_hover_text(
+            "Places in the picture where one can see into the closed mesh, the largest first. A click frames the cracked edge \
+             there.",
+        );
+        columns(ui, &format!("{:>6}{:>8}{:>15}", "x, px", "y, px", "px that leak"), true)
+            .on_hover_text("The middle of the leak, from the picture's top left, and its size.");
+        let mut clicked = None;
+        list(ui, "leaks", leaks.len(), |ui, row| {
+            let leak = &leaks[row];
+            let [x, y] = leak.middle.to_array();
+            let text = format!("{x:>6.0}{y:>8.0}{:>15}", grouped(leak.pixels.into()));
+            let response = ui.selectable_label(false, RichText::new(text).monospace());
+            let response =
+                response.on_hover_text("A click selects the cracked edge that comes closest, and frames it.");
+            if response.clicked() {
+                clicked = Some(*leak);
+            }
+            response
+        });
+        if let Some(leak) = clicked {
+            self.show_leak(&leak);
+        }
+    }
+
+    /// Shows cracks, and turns the camera to the one that a leak shows.
+    pub(in crate::app) fn show_leak(&mut self, leak: &Leak) {
+        self.settings.overlays.cracks = true;
+        let edge = self.edge_of_leak(leak);
+        edge.into_iter().for_each(|edge| self.select_edge(edge));
+    }
+}

@@ -1,0 +1,55 @@
+//! The frozen LOD camera: LOD and clipping stay computed for it while the picture shows the mesh from elsewhere.
+
+use glam::Vec2;
+
+use crate::app::App;
+use crate::mesh::Bounds;
+use crate::render::{Camera, LineSegment, lod_camera_lines};
+use crate::tessellate::LodView;
+
+/// A camera as it was when LOD was frozen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct FrozenCamera {
+    pub camera: Camera,
+    /// Width and height of its view, in px.
+    pub viewport: Vec2,
+    /// What LOD and clipping are computed for.
+    pub view: LodView,
+}
+
+impl App {
+    /// Freezes LOD and clipping as they are for the camera of the picture that is shown, or lets them follow the camera again.
+    pub(in crate::app) fn toggle_frozen(&mut self) {
+        match self.viewport.frozen {
+            Some(_) => self.viewport.frozen = None,
+            None => self.freeze(),
+        }
+    }
+
+    /// Freezes LOD and clipping as they are for the camera of the picture that is shown.
+    pub(in crate::app) fn freeze(&mut self) {
+        let Some((document, (camera, viewport))) = self.document.as_ref().zip(self.viewport.picture.shown_camera())
+        else {
+            return;
+        };
+        let view = camera.lod_view(viewport, &document.scene.bounds);
+        self.viewport.frozen = Some(FrozenCamera { camera, viewport, view });
+    }
+
+    /// Moves the camera to where the frozen one is.
+    pub(in crate::app) fn look_through_frozen(&mut self) {
+        self.viewport.camera = self.viewport.frozen.map_or(self.viewport.camera, |frozen| frozen.camera);
+    }
+
+    /// What the lines of the frozen camera depend on; none if there is no such camera, or the picture is seen through it.
+    pub(in crate::app) fn frozen_shown(&self) -> Option<(FrozenCamera, Bounds)> {
+        let bounds = self.document.as_ref()?.scene.bounds;
+        self.viewport.frozen.filter(|frozen| frozen.camera != self.viewport.camera).map(|frozen| (frozen, bounds))
+    }
+
+    /// The frozen camera's frustum as lines over the mesh.
+    pub(in crate::app) fn frozen_lines(&self) -> Vec<LineSegment> {
+        let shown = self.frozen_shown();
+        shown.map_or_else(Vec::new, |(frozen, bounds)| lod_camera_lines(&frozen.camera, frozen.viewport, &bounds))
+    }
+}

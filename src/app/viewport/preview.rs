@@ -1,0 +1,309 @@
+//! A cheaper picture while the camera moves, for meshes whose full picture would be late. The full one follows once the camera
+//! rests. Nothing is measured in a preview.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use super::picture::{Picture, Wanted};
+use crate::app::App;
+use crate::app::jobs::document::Document;
+use crate::engine::Engine;
+use crate::gpu::{GpuError, Recorder, Timing};
+use crate::render::{Camera, Scene, Target};
+use crate::settings::{Colors, Settings, SplitSide};
+use crate::tessellate::{Clip, Inputs, Lod, Tessellation};
+use crate::view::ScreenView;
+
+/// A full picture that takes longer than this is late: 30 pictures a second leave 33 ms for each, and the window itself takes
+/// some of it.
+const LATE_MS: f64 = 25.0;
+/// A camera that hasn't moved for so long rests.
+const REST: Duration = Duration::from_millis(150);
+/// About the number of triangles that a preview has, on a software driver and on graphics cards.
+const TRIANGLES_IN_SOFTWARE: f32 = 40_000.0;
+const TRIANGLES: f32 = 2_000_000.0;
+/// A mesh with so many times as many patches as a preview has triangles gets a mesh of fewer triangles in its place.
+const LARGE: f32 = 2.0;
+/// The largest factor of a preview. More can't be seen at its resolution.
+const LARGEST_FACTOR: f32 = 8.0;
+/// The full picture has at most so many times as many px along each axis as a preview.
+const COARSEST: u32 = 4;
+
+/// What a preview draws in place of the full picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Shape {
+    /// The same triangles, since they don't depend on the camera.
+    Same,
+    /// One factor for all edges, and nothing left out.
+    Factor(f32),
+    /// A mesh of fewer triangles.
+    StandIn,
+}
+
+/// What is known of the preview, and its target.
+pub(crate) struct Preview {
+    /// Whether there are previews at all. Somebody who judges LOD in motion switches them off.
+    pub is_on: bool,
+    camera: Option<Camera>,
+    moved: Option<Instant>,
+    target: Option<(Target, egui::TextureId)>,
+    /// How many times as many px the full picture has along each axis.
+    coarseness: u32,
+    /// The preview that was drawn last, until the full picture follows.
+    drawn: Option<(Wanted, Shape)>,
+    /// The vertices and triangles of the full picture, while previews use its tessellator.
+    totals: Option<(u64, u64)>,
+    /// When the last preview was submitted, and after how many microseconds the device had finished it.
+    in_flight: Option<(Arc<AtomicBool>, Arc<AtomicU64>)>,
+    drawings: u64,
+}
+
+impl Preview {
+    pub(crate) fn new(engine: &Engine) -> Self {
+        Self {
+            is_on: true,
+            camera: None,
+            moved: None,
+            target: None,
+            coarseness: if engine.gpu.is_software() { 2 } else { 1 },
+            drawn: None,
+            totals: None,
+            in_flight: None,
+            drawings: 0,
+        }
+    }
+
+    /// The same, switched on or off.
+    pub(crate) fn with(self, is_on: bool) -> Self {
+        Self { is_on, ..self }
+    }
+
+    /// How many previews have been drawn.
+    pub(crate) fn drawings(&self) -> u64 {
+        self.drawings
+    }
+
+    /// Notes where the camera is. Returns how long it will count as moving, if it has moved a short while ago.
+    fn follow(&mut self, camera: Camera) -> Option<Duration> {
+        if self.camera.replace(camera).is_some_and(|before| before != camera) {
+            self.moved = Some(Instant::now());
+        }
+        let left = REST.checked_sub(self.moved?.elapsed());
+        if left.is_none() {
+            self.moved = None;
+        }
+        left
+    }
+
+    /// What the preview was drawn for and its shape, if it is shown: the full picture is of an earlier camera.
+    pub(crate) fn shown(&self, picture: &Picture) -> Option<(&Wanted, Shape)> {
+        let full = picture.drawn.as_ref().map(|drawn| drawn.camera);
+        self.drawn.as_ref().filter(|(drawn, _)| Some(drawn.camera) != full).map(|(drawn, shape)| (drawn, *shape))
+    }
+
+    pub(crate) fn texture(&self) -> Option<egui::TextureId> {
+        self.target.as_ref().map(|(_, id)| *id)
+    }
+
+    /// The mark over a preview, which says what it shows.
+    pub(crate) fn mark(&self, shape: Shape) -> String {
+        let shape = match shape {
+            Shape::Same => "the same triangles".to_owned(),
+            Shape::Factor(factor) if factor <= 1.0 => "the mesh as it came".to_owned(),
+            Shape::Factor(factor) => format!("factor {factor} everywhere"),
+            Shape::StandIn => "a simplified mesh".to_owned(),
+        };
+        match self.coarseness {
+            1 => format!("Preview: {shape}"),
+            times => format!("Preview: {shape}, 1/{times} of the resolution"),
+        }
+    }
+
+    /// Shows the full picture from now on.
+    pub(crate) fn end(&mut self) {
+        (self.drawn, self.totals) = (None, None);
+    }
+
+    /// The vertices and triangles of the full picture, if the tessellator has others for previews.
+    pub(crate) fn kept_totals(&self) -> Option<(u64, u64)> {
+        self.totals
+    }
+
+    /// Forgets the preview of a mesh that is open no more.
+    pub(crate) fn forget(&mut self) {
+        self.end();
+        (self.moved, self.camera) = (None, None);
+    }
+
+    /// Makes a target for a full picture of this size, and coarser than before if the last preview was late.
+    fn fit(&mut self, app: &egui_wgpu::RenderState, engine: &Engine, full: glam::Vec2) -> Result<(), GpuError> {
+        let size = |times: u32| full.to_array().map(|side| (side as u32).div_ceil(times).max(1));
+        if let Some((_, time)) = self.in_flight.take_if(|(done, _)| done.load(Ordering::Acquire))
+            && time.load(Ordering::Acquire) as f64 > LATE_MS * 1e3
+            && self.coarseness < COARSEST
+        {
+            self.coarseness += 1;
+        }
+        if self.target.as_ref().is_some_and(|(target, _)| target.size == size(self.coarseness)) {
+            return Ok(());
+        }
+        let target = Target::new(&engine.gpu, size(self.coarseness))?;
+        let mut renderer = app.renderer.write();
+        let (view, filter) = (target.shown_view(), wgpu::FilterMode::Linear);
+        let id = match self.target.take() {
+            Some((_, id)) => {
+                renderer.update_egui_texture_from_wgpu_texture(&engine.gpu.device, &view, filter, id);
+                id
+            }
+            None => renderer.register_native_texture(&engine.gpu.device, &view, filter),
+        };
+        self.target = Some((target, id));
+        // The new target is empty.
+        self.drawn = None;
+        Ok(())
+    }
+
+    /// Draws what is wanted into the preview's target, unless it shows that already or the last preview isn't finished. The
+    /// counts come back first.
+    fn draw(&mut self, engine: &Engine, scene: &mut Scene, wanted: &Wanted, shape: Shape) -> Result<(), GpuError> {
+        if !count(engine, scene, wanted)? || self.in_flight.is_some() {
+            return Ok(());
+        }
+        if self.drawn == Some((*wanted, shape)) {
+            return Ok(());
+        }
+        let Some((target, _)) = &self.target else { return Ok(()) };
+        let mut timing = Timing::Off;
+        let mut recorder = Recorder::new(&engine.gpu, &mut timing);
+        engine.renderer.draw(&mut recorder, scene, target, &wanted.camera, &wanted.settings)?;
+        recorder.submit();
+        let (done, time, start) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicU64::new(0)), Instant::now());
+        self.in_flight = Some((done.clone(), time.clone()));
+        engine.gpu.queue.on_submitted_work_done(move || {
+            time.store(start.elapsed().as_micros() as u64, Ordering::Release);
+            done.store(true, Ordering::Release);
+        });
+        self.drawn = Some((*wanted, shape));
+        self.drawings += 1;
+        Ok(())
+    }
+}
+
+/// Lets the device count what each half emits. Returns true once that is known.
+fn count(engine: &Engine, scene: &mut Scene, wanted: &Wanted) -> Result<bool, GpuError> {
+    let mut is_counted = true;
+    for half in SplitSide::BOTH {
+        let Some(inputs) = wanted.inputs_of(half) else { continue };
+        let Some(scene) = scene.half_mut(half) else { return Ok(false) };
+        let tessellator = &mut scene.tessellator;
+        tessellator.set(&inputs)?;
+        if tessellator.needs_count() {
+            let mut timing = Timing::Off;
+            let mut recorder = Recorder::new(&engine.gpu, &mut timing);
+            tessellator.count(&mut recorder)?;
+            recorder.submit();
+            tessellator.request_counts();
+        }
+        is_counted &= tessellator.poll_counts()?;
+    }
+    Ok(is_counted)
+}
+
+/// Decides what a preview of the wanted picture draws.
+fn shape_of(
+    context: &egui::Context,
+    engine: &Engine,
+    document: &mut Document,
+    wanted: &Wanted,
+    is_frozen: bool,
+) -> Shape {
+    let most = if engine.gpu.is_software() { TRIANGLES_IN_SOFTWARE } else { TRIANGLES };
+    let Tessellation { lod, factor, clip, cull_back_faces, .. } = wanted.inputs.tessellation;
+    let follows = !is_frozen && (lod != Lod::Uniform || clip != Clip::Off || cull_back_faces);
+    let (tessellator, patches) = (&document.scene.tessellator, document.loaded.topology.patches.len() as f32);
+    let triangles = match lod {
+        Lod::Uniform => patches * factor * factor,
+        _ => tessellator.totals().1 as f32,
+    };
+    // Factors of a file stay as they are, however many triangles they ask for.
+    if !follows && (triangles <= most || wanted.given != 0) {
+        return Shape::Same;
+    }
+    if patches > LARGE * most
+        && document.moment.is_none()
+        && document.stand_in.is_made(context, engine, &document.loaded, most as usize)
+    {
+        return Shape::StandIn;
+    }
+    let largest = if lod == Lod::Uniform { factor.min(LARGEST_FACTOR) } else { LARGEST_FACTOR };
+    Shape::Factor((most / patches.max(1.0)).sqrt().floor().clamp(1.0, largest.max(1.0)))
+}
+
+/// The settings under which a preview is drawn.
+fn settings_of(shape: Shape, settings: &Settings) -> Settings {
+    let mut cheap = *settings;
+    // Both need data that is computed for what is emitted.
+    if matches!(cheap.overlays.colors, Colors::Deviation | Colors::Excess) {
+        cheap.overlays.colors = Colors::default();
+    }
+    let factor = match shape {
+        Shape::Same => return cheap,
+        Shape::Factor(factor) => factor,
+        Shape::StandIn => {
+            cheap.split_surface = None;
+            1.0
+        }
+    };
+    let kept = cheap.tessellation;
+    cheap.tessellation = Tessellation { lod: Lod::Uniform, factor, clip: Clip::Off, cull_back_faces: false, ..kept };
+    cheap
+}
+
+impl App {
+    /// Draws a preview if the camera moves and the full picture would be late. Returns whether it did; if not, the full picture is
+    /// due.
+    ///
+    /// # Errors
+    /// The device was lost, or has no room for the preview.
+    pub(super) fn preview(&mut self, context: &egui::Context, full: &Wanted) -> Result<bool, GpuError> {
+        let left = self.viewport.preview.follow(self.viewport.camera);
+        if self.viewport.picture.drawn.as_ref() == Some(full) {
+            self.viewport.preview.end();
+        }
+        let is_late = self.viewport.picture.whole_ms().is_some_and(|ms| ms > LATE_MS);
+        let Some(left) = left.filter(|_| is_late && self.viewport.preview.is_on) else { return Ok(false) };
+        let Some(document) = &mut self.document else { return Ok(false) };
+        let totals = Some(document.scene.tessellator.totals());
+        let shape = shape_of(context, &self.engine, document, full, self.viewport.frozen.is_some());
+        let settings = settings_of(shape, &full.settings);
+        let wanted = Wanted { settings, inputs: Inputs::new(&settings.tessellation, full.inputs.view), ..*full };
+        self.viewport.picture.make_way();
+        let preview = &mut self.viewport.preview;
+        preview.fit(&self.render_state, &self.engine, full.viewport)?;
+        let scene = match (shape, document.stand_in.scene()) {
+            (Shape::StandIn, Some(stand_in)) => stand_in,
+            _ => &mut document.scene,
+        };
+        preview.totals = preview.totals.or(totals);
+        preview.draw(&self.engine, scene, &wanted, shape)?;
+        self.engine.gpu.check()?;
+        if preview.drawn == Some((wanted, shape)) {
+            context.request_repaint_after(left);
+        } else {
+            context.request_repaint();
+        }
+        Ok(true)
+    }
+
+    /// The view of what is shown: of a preview, or of the full picture.
+    pub(in crate::app) fn shown_view(&self) -> Option<ScreenView> {
+        let picture = &self.viewport.picture;
+        match self.viewport.preview.shown(picture) {
+            Some((Wanted { clip_from_object, viewport, .. }, _)) => {
+                Some(ScreenView { clip_from_object: *clip_from_object, viewport: *viewport })
+            }
+            None => picture.seen_from(),
+        }
+    }
+}

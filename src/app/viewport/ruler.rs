@@ -1,0 +1,98 @@
+//! The distance between two places that are clicked on.
+
+use glam::Vec3;
+
+use crate::app::App;
+use crate::app::text::short;
+use crate::render::layout::OUTLINE_COLOR;
+use crate::render::{LineSegment, Picked, Pixel};
+use crate::view::{ScreenView, seen_on_plane};
+
+/// The ruler while it is in use.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Ruler {
+    /// The places that were clicked on, in object units. The second is none without the first.
+    pub ends: [Option<Vec3>; 2],
+}
+
+impl Ruler {
+    /// Takes a place: the first, the second, or the first of another distance.
+    fn take(&mut self, place: Vec3) {
+        self.ends = match self.ends {
+            [Some(first), None] => [Some(first), Some(place)],
+            _ => [Some(place), None],
+        };
+    }
+
+    /// What to do next, or the distance.
+    pub(crate) fn text(&self) -> String {
+        match self.ends {
+            [Some(a), Some(b)] => {
+                let [x, y, z] = (b - a).abs().to_array().map(|length| short(length.into()));
+                format!("Distance: {} units (x {x}, y {y}, z {z})", short(a.as_dvec3().distance(b.as_dvec3())))
+            }
+            [Some(_), None] => "Distance: click on the second place".to_owned(),
+            _ => "Distance: click on two places of the mesh".to_owned(),
+        }
+    }
+
+    fn lines(&self) -> Vec<LineSegment> {
+        let line = |a, b, color, half_width| LineSegment { half_width, ..LineSegment::new(a, b, color) };
+        // Light within dark, so that it is seen on any colour.
+        let both = |a, b, width: f32| [line(a, b, OUTLINE_COLOR, width + 1.0), line(a, b, [255; 3], width)];
+        let dots = self.ends.into_iter().flatten().flat_map(|end| both(end, end, 3.5));
+        let between = self.ends[0].zip(self.ends[1]).into_iter().flat_map(|(a, b)| both(a, b, 1.0));
+        between.chain(dots).collect()
+    }
+}
+
+impl App {
+    /// Starts to measure distances: clicks take places until it is stopped.
+    pub(in crate::app) fn toggle_ruler(&mut self) {
+        self.viewport.ruler = match self.viewport.ruler {
+            Some(_) => None,
+            None => Some(Ruler::default()),
+        };
+    }
+
+    /// The ends of the distance that is measured, in object units.
+    pub fn ruler(&self) -> Option<[Option<Vec3>; 2]> {
+        self.viewport.ruler.map(|ruler| ruler.ends)
+    }
+
+    pub(in crate::app) fn ruler_lines(&self) -> Vec<LineSegment> {
+        self.viewport.ruler.map_or_else(Vec::new, |ruler| ruler.lines())
+    }
+
+    /// Takes the place that was found at a pixel. Returns whether the ruler is in use.
+    pub(in crate::app) fn measure_to(&mut self, pixel: &Pixel, found: Option<&Picked>) -> bool {
+        let (Some(ruler), Some(document)) = (&mut self.viewport.ruler, &self.document) else { return false };
+        let corners = found.map(|picked| match picked.triangle {
+            Some(triangle) => triangle.vertices.map(|vertex| Vec3::from(vertex.position)),
+            None => document.shown().1.patch_positions(picked.patch),
+        });
+        let viewport = glam::vec2(pixel.size[0] as f32, pixel.size[1] as f32);
+        let view = ScreenView { clip_from_object: pixel.clip_from_object, viewport };
+        let [x, y] = pixel.at.map(|at| at as f32 + 0.5);
+        let place = corners.and_then(|corners| seen_on_plane(&view, glam::vec2(x, y), corners));
+        place.into_iter().for_each(|place| ruler.take(place));
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_third_place_begins_another_distance() {
+        let mut ruler = Ruler::default();
+        for place in [Vec3::ZERO, Vec3::new(3.0, -4.0, 0.0)] {
+            ruler.take(place);
+        }
+        let [five, three, four, zero] = [5.0, 3.0, 4.0, 0.0].map(short);
+        assert_eq!(ruler.text(), format!("Distance: {five} units (x {three}, y {four}, z {zero})"));
+        ruler.take(Vec3::X);
+        assert_eq!(ruler.ends, [Some(Vec3::X), None]);
+    }
+}

@@ -1,0 +1,186 @@
+//! Draws the legend of the surface's colours into a picture, as the window shows it over the viewport.
+
+use image::{RgbaImage, imageops};
+use plotters::backend::BitMapBackend;
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use crate::plot::{self, ChartError, DENSITY};
+use crate::render::layout::{WASTE_COLOR, srgb};
+use crate::render::{BARYCENTRIC_TITLE, COLUMNS, Distances, Scale, Shown, legend_of, tick_text};
+use crate::settings::Colors;
+
+/// Sizes in points: the bar of the scale, the block of one colour before it, the margin, and the text.
+const BAR: [f64; 2] = [196.0, 12.0];
+const BLOCK_WIDTH: f64 = 42.0;
+const MARGIN: f64 = 10.0;
+const TEXT: f64 = 12.5;
+/// Of a row of named colours, and of a legend that is one line of text.
+const ROW: f64 = 17.0;
+const TITLE: [f64; 2] = [214.0, 14.0];
+/// A point is this part of a picture's shorter side, so that legends are as legible in large pictures as in small ones.
+const POINTS_A_SIDE: f64 = 600.0;
+/// The colours of the plate and of what is written on it.
+const PLATE: RGBColor = RGBColor(24, 24, 24);
+const INK: RGBColor = RGBColor(235, 235, 235);
+
+const LEFT_TOP: Pos = Pos { h_pos: HPos::Left, v_pos: VPos::Top };
+const MIDDLE_TOP: Pos = Pos { h_pos: HPos::Center, v_pos: VPos::Top };
+const LEFT: Pos = Pos { h_pos: HPos::Left, v_pos: VPos::Center };
+
+/// Draws the legend into the lower right corner, if these colours have one.
+///
+/// # Errors
+/// The font can't be used.
+pub(super) fn draw_legend(picture: &mut RgbaImage, colors: Colors, distances: &Distances) -> Result<(), ChartError> {
+    if colors == Colors::Barycentric {
+        return draw_plate(picture, BARYCENTRIC, barycentric);
+    }
+    let Some(legend) = legend_of(colors, distances) else { return Ok(()) };
+    let title = &legend.title;
+    match &legend.shown {
+        Shown::Title => draw_plate(picture, TITLE, |pen| pen.text(title, [0.0, 7.0], LEFT)),
+        Shown::Waste => draw_plate(picture, [112.0, 14.0], |pen| named(pen, [0.0, 7.0], WASTE_COLOR, title)),
+        Shown::Scale { scale: shown, ticks, waste } => {
+            let before = if *waste { BLOCK_WIDTH + 10.0 } else { 0.0 };
+            draw_plate(picture, [before + BAR[0], 52.0], |pen| scale(pen, title, shown, ticks, before))
+        }
+        Shown::Colors(colors) => {
+            let rows = colors.len().div_ceil(COLUMNS);
+            draw_plate(picture, [BAR[0], 18.0 + ROW * rows as f64], |pen| named_colors(pen, title, colors))
+        }
+    }
+}
+
+/// Draws a plate with this much room inside, in points, and what `paint` puts there.
+fn draw_plate(picture: &mut RgbaImage, inner: [f64; 2], paint: impl FnOnce(&Pen) -> Drawn) -> Result<(), ChartError> {
+    let (width, height) = picture.dimensions();
+    let size = [inner[0] + 2.0 * MARGIN, inner[1] + 12.0];
+    let room = [width, height].map(f64::from);
+    let usual = (room[0].min(room[1]) / POINTS_A_SIDE).max(1.0);
+    // In a small picture all of it becomes smaller.
+    let point = usual.min(room[0] / (size[0] + 2.0 * MARGIN)).min(room[1] / (size[1] + 2.0 * MARGIN));
+    let px = size.map(|side| ((side * point).round() as u32).max(1));
+    let plate = plot::bitmap(px, |area| {
+        area.fill(&PLATE)?;
+        paint(&Pen { area, point: point * f64::from(DENSITY), origin: [MARGIN, 6.0] })
+    })?;
+    let plate = image::DynamicImage::from(plate).to_rgba8();
+    let margin = (MARGIN * point).round() as u32;
+    let at = [width - px[0].min(width), height - px[1].min(height)].map(|side| i64::from(side.saturating_sub(margin)));
+    imageops::replace(picture, &plate, at[0], at[1]);
+    Ok(())
+}
+
+type Drawn = Result<(), DrawingAreaErrorKind<<BitMapBackend<'static> as DrawingBackend>::ErrorType>>;
+
+/// Draws on a plate, in points from the corner of the room inside it.
+struct Pen<'a, 'b> {
+    area: &'a DrawingArea<BitMapBackend<'b>, Shift>,
+    /// Drawn px.
+    point: f64,
+    origin: [f64; 2],
+}
+
+impl Pen<'_, '_> {
+    fn px(&self, at: [f64; 2]) -> (i32, i32) {
+        let [x, y] = [0, 1].map(|k| ((at[k] + self.origin[k]) * self.point).round() as i32);
+        (x, y)
+    }
+
+    fn rect(&self, min: [f64; 2], max: [f64; 2], [r, g, b]: [u8; 3]) -> Drawn {
+        self.area.draw(&Rectangle::new([self.px(min), self.px(max)], RGBColor(r, g, b).filled()))
+    }
+
+    fn text(&self, text: &str, at: [f64; 2], pos: Pos) -> Drawn {
+        self.area.draw_text(text, &self.font().pos(pos), self.px(at))
+    }
+
+    /// The width of a text in points.
+    fn width(&self, text: &str) -> f64 {
+        self.area.estimate_text_size(text, &self.font()).map_or(0.0, |(px, _)| f64::from(px) / self.point)
+    }
+
+    fn font(&self) -> TextStyle<'static> {
+        plot::font((TEXT * self.point).round() as i32).color(&INK)
+    }
+}
+
+/// A block of one colour, its left side in the middle at a place, and the colour's name.
+fn named(pen: &Pen, [left, middle]: [f64; 2], color: [u8; 3], name: &str) -> Drawn {
+    let half = 0.5 * BAR[1];
+    pen.rect([left, middle - half], [left + BAR[1], middle + half], color)?;
+    pen.text(name, [left + BAR[1] + 8.0, middle], LEFT)
+}
+
+/// Colours with their names, under their title.
+fn named_colors(pen: &Pen, title: &str, colors: &[([u8; 3], &str)]) -> Drawn {
+    pen.text(title, [0.0, 0.0], LEFT_TOP)?;
+    for (index, &(color, name)) in colors.iter().enumerate() {
+        let [column, row] = [index % COLUMNS, index / COLUMNS].map(|place| place as f64);
+        named(pen, [column * BAR[0] / COLUMNS as f64, 18.0 + ROW * (row + 0.5)], color, name)?;
+    }
+    Ok(())
+}
+
+/// A scale with its title and numbers. Before it is the block of what is below it, if there is room.
+fn scale(pen: &Pen, title: &str, scale: &Scale, ticks: &[f32], before: f64) -> Drawn {
+    pen.text(title, [0.0, 0.0], LEFT_TOP)?;
+    let top = 20.0;
+    bar(pen, [before, top], scale, ticks)?;
+    if before > 0.0 {
+        pen.rect([0.0, top], [BLOCK_WIDTH, top + BAR[1]], WASTE_COLOR)?;
+        pen.text(&format!("below {}", scale.least), [BLOCK_WIDTH / 2.0, top + BAR[1] + 4.0], MIDDLE_TOP)?;
+    }
+    Ok(())
+}
+
+fn bar(pen: &Pen, [left, top]: [f64; 2], scale: &Scale, ticks: &[f32]) -> Drawn {
+    let bottom = top + BAR[1];
+    let pieces = (BAR[0] * pen.point).ceil().max(1.0) as u32;
+    for piece in 0..pieces {
+        let [from, to] = [piece, piece + 1].map(|end| f64::from(end) / f64::from(pieces));
+        let color = scale.color((0.5 * (from + to)) as f32);
+        pen.rect([left + from * BAR[0], top], [left + to * BAR[0], bottom], color)?;
+    }
+    for &tick in ticks {
+        let x = left + f64::from(scale.place(tick)) * BAR[0];
+        pen.rect([x - 0.5, bottom], [x + 0.5, bottom + 3.0], [235; 3])?;
+        // Long numbers at the ends are moved inwards, so that they stay on the plate.
+        let (text, half) = (tick_text(tick), 0.5 * pen.width(&tick_text(tick)));
+        let (first, last) = (left - 6.0 + half, left + BAR[0] + 6.0 - half);
+        let middle = if first < last { x.clamp(first, last) } else { x };
+        pen.text(&text, [middle, bottom + 4.0], MIDDLE_TOP)?;
+    }
+    Ok(())
+}
+
+/// Sizes of the legend of barycentric colours in points: all of it, and the patch.
+const BARYCENTRIC: [f64; 2] = [180.0, 78.0];
+const PATCH: [f64; 2] = [66.0, 56.0];
+
+/// A patch in its barycentric colours, and which corner each colour belongs to.
+fn barycentric(pen: &Pen) -> Drawn {
+    pen.text(BARYCENTRIC_TITLE, [0.0, 0.0], LEFT_TOP)?;
+    let top = BARYCENTRIC[1] - PATCH[1];
+    let ((left, above), (right, below)) = (pen.px([0.0, top]), pen.px([PATCH[0], BARYCENTRIC[1]]));
+    for (y, x) in (above..below).flat_map(|y| (left..right).map(move |x| (y, x))) {
+        // Weights of the lower left, the lower right and the upper corner.
+        let w = f64::from(below - y) / f64::from((below - above).max(1));
+        let v = f64::from(x - left) / f64::from((right - left).max(1)) - 0.5 * w;
+        let weights = [1.0 - v - w, v, w];
+        if weights.iter().all(|weight| *weight >= 0.0) {
+            let [r, g, b] = weights.map(|weight| srgb(weight as f32));
+            pen.area.draw_pixel((x, y), &RGBColor(r, g, b))?;
+        }
+    }
+    for (corner, weight) in ["u", "v", "w"].into_iter().enumerate() {
+        let (left, middle) = (PATCH[0] + 14.0, top + 17.0 * (corner as f64 + 0.5) + 2.5);
+        let mut color = [0; 3];
+        color[corner] = 255;
+        pen.rect([left, middle - 5.0], [left + 10.0, middle + 5.0], color)?;
+        pen.text(&format!("{weight}: corner {corner}"), [left + 17.0, middle], LEFT)?;
+    }
+    Ok(())
+}

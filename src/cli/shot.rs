@@ -1,0 +1,371 @@
+//! One picture, and all that is measured for it: what `render` and `turntable` draw, and what the window saves.
+
+use std::path::Path;
+
+use glam::Vec2;
+use image::RgbaImage;
+
+use super::factors_option::FactorsFile;
+use super::legend::draw_legend;
+use super::stats::{AnimationStats, LeftStats, Stats};
+use super::truth::{AccuracyStats, DeviationStats, ReferenceSurface};
+use super::{CliError, to_json, write_text};
+use crate::engine::{Engine, Loaded, MeasurementResults, Measurements, Runs};
+use crate::gpu::{GpuError, Recorder, Timing};
+use crate::measure::{AccuracyOptions, DeviationField, patch_edges};
+use crate::mesh::{Moment, t_junctions};
+use crate::progress::Progress;
+use crate::render::{
+    Camera, DEVIATION_PX_SCALE, Distances, LineSegment, Renderer, Scale, Scene, Target, axis_lines, crack_lines,
+    deviation_scale, lod_camera_lines, patch_lines, t_junction_lines, worst_lines,
+};
+use crate::settings::{Colors, DeviationUnit, Settings, SplitSide};
+use crate::tessellate::{HullFactors, Inputs, LodView};
+use crate::view::ScreenView;
+
+/// What is drawn.
+pub(crate) struct Subject {
+    /// The mesh at rest.
+    pub loaded: Loaded,
+    pub moment: Option<Moment>,
+    /// Factors of a file in place of those that LOD computes, one for each patch.
+    pub given: Option<Vec<HullFactors>>,
+    pub settings: Settings,
+    pub reference_surface: Option<ReferenceSurface>,
+    /// The patch that is outlined.
+    pub selected: Option<u32>,
+    /// Lines over each half besides those of the overlays.
+    pub more_lines: [Vec<LineSegment>; 2],
+    /// Memory for output on the device, of each half.
+    pub arena_bytes: u64,
+}
+
+/// From where it is seen, and how large and on what it is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ShotView {
+    pub camera: Camera,
+    /// The camera that LOD and clipping are computed for and its view's size in px, if it isn't the picture's.
+    pub lod_camera: Option<(Camera, Vec2)>,
+    /// Width and height in px.
+    pub size: [u32; 2],
+    /// Whether nothing is behind the mesh, rather than the background's colour.
+    pub transparent: bool,
+    /// Whether the legend of the surface's colours is drawn into the picture.
+    pub legend: bool,
+}
+
+/// Which numbers are measured for stats.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StatsWanted {
+    /// Whether they include the largest error on screen.
+    pub error: bool,
+}
+
+/// How much of a picture's progress is for measuring; the rest is for drawing.
+const MEASURING: f32 = 0.5;
+
+/// A value for each half that the picture has.
+type ByHalf<T> = [Option<T>; 2];
+
+/// Everything that one picture is drawn and measured from.
+pub(crate) struct Shot {
+    subject: Subject,
+    /// The mesh in the pose that is drawn.
+    posed: Loaded,
+    engine: Engine,
+    scene: Scene,
+    target: Target,
+    view: ShotView,
+    /// What LOD and clipping are computed for.
+    lod_view: LodView,
+    /// What was measured of each half.
+    results: ByHalf<MeasurementResults>,
+    /// The colour scale of the deviation overlay.
+    scale: Scale,
+}
+
+impl Subject {
+    /// Gives a scene of the mesh its factors and its pose.
+    ///
+    /// # Errors
+    /// The mesh's rig needs larger buffers than the adapter can bind.
+    pub(crate) fn dress(&self, scene: &mut Scene) -> Result<(), GpuError> {
+        scene.tessellator.give(self.given.clone())?;
+        scene.frame_clip(self.moment.map(|moment| moment.clip));
+        scene.set_moment(self.moment)
+    }
+}
+
+impl ShotView {
+    /// What LOD and clipping are computed for.
+    pub(crate) fn lod_view(&self, scene: &Scene) -> LodView {
+        let own = (self.camera, Vec2::from(self.size.map(|side| side as f32)));
+        let (camera, viewport) = self.lod_camera.unwrap_or(own);
+        camera.lod_view(viewport, &scene.bounds)
+    }
+}
+
+impl Shot {
+    /// Tessellates the subject in its scene, which is [dressed](Subject::dress) already.
+    ///
+    /// # Errors
+    /// The adapter has no textures of that size, the left half needs larger buffers than it can bind, or the device was lost.
+    pub(crate) fn new(engine: Engine, mut scene: Scene, subject: Subject, view: ShotView) -> Result<Self, GpuError> {
+        let make = if view.transparent { Target::transparent } else { Target::new };
+        let target = make(&engine.gpu, view.size)?;
+        if subject.settings.half(SplitSide::Left).is_some() {
+            engine.split(&mut scene, subject.arena_bytes)?;
+            if let Some(left) = scene.half_mut(SplitSide::Left) {
+                left.tessellator.give(subject.given.clone())?;
+            }
+        }
+        let (posed, scale) = (subject.loaded.posed(subject.moment), deviation_scale(0.0, scene.ulp()));
+        let (lod_view, results) = (view.lod_view(&scene), Default::default());
+        let mut shot = Self { subject, posed, engine, scene, target, view, lod_view, results, scale };
+        shot.count()?;
+        Ok(shot)
+    }
+
+    /// Moves the picture's camera. LOD follows it, unless that has a camera of its own.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub(crate) fn look_from(&mut self, camera: Camera) -> Result<(), GpuError> {
+        self.view.camera = camera;
+        self.lod_view = self.view.lod_view(&self.scene);
+        self.count()
+    }
+
+    /// The picture's camera.
+    pub(crate) fn camera(&self) -> &Camera {
+        &self.view.camera
+    }
+
+    /// What it is drawn with.
+    pub(crate) fn settings(&self) -> &Settings {
+        &self.subject.settings
+    }
+
+    /// Counts what each half will emit.
+    fn count(&mut self) -> Result<(), GpuError> {
+        for half in SplitSide::BOTH {
+            let inputs = self.inputs(half);
+            if let Some((inputs, scene)) = inputs.zip(self.scene.half_mut(half)) {
+                self.engine.count(scene, &inputs, &mut Timing::Off)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Measures what the overlays and stats need, and draws the picture.
+    ///
+    /// # Errors
+    /// The device was lost, or `progress` was cancelled.
+    pub(crate) fn picture(&mut self, stats: Option<StatsWanted>, progress: &Progress) -> Result<RgbaImage, CliError> {
+        self.measure(stats, &progress.part(0.0, MEASURING))?;
+        self.mark(progress)?;
+        self.draw(&progress.part(MEASURING, 1.0))?;
+        let mut picture = self.target.read(&self.engine.gpu)?;
+        if self.view.legend {
+            draw_legend(&mut picture, self.subject.settings.overlays.colors, &self.distances())?;
+        }
+        Ok(picture)
+    }
+
+    /// Draws step by step, so that a long drawing can be cancelled, and a device that is shared has time for others.
+    fn draw(&mut self, progress: &Progress) -> Result<(), CliError> {
+        let Self { subject: Subject { settings, .. }, engine, scene, target, view, .. } = self;
+        let steps = Renderer::step_count(scene, settings);
+        for step in 0..steps {
+            progress.check()?;
+            let mut timing = Timing::Off;
+            let mut recorder = Recorder::new(&engine.gpu, &mut timing);
+            engine.renderer.draw_steps(&mut recorder, scene, target, &view.camera, settings, step..step + 1)?;
+            recorder.submit();
+            engine.gpu.wait();
+            progress.set((step + 1) as f32 / steps as f32);
+        }
+        Ok(())
+    }
+
+    /// What the legend says about distances.
+    fn distances(&self) -> Distances {
+        let unit = self.subject.settings.deviation_in;
+        let scale = match unit {
+            DeviationUnit::Units => self.scale,
+            DeviationUnit::Px => DEVIATION_PX_SCALE,
+        };
+        let mut fields = self.results.iter().flatten().filter_map(|results| results.deviation.as_ref());
+        let is_partial = fields.any(|field| field.left_out > 0);
+        Distances { unit, scale: Some(scale), is_partial, measured: None }
+    }
+
+    /// What a half is tessellated with, if there is one.
+    fn inputs(&self, half: SplitSide) -> Option<Inputs> {
+        Some(self.subject.settings.half(half)?.inputs(self.lod_view))
+    }
+
+    fn view(&self) -> ScreenView {
+        let viewport = self.target.viewport();
+        ScreenView { clip_from_object: self.view.camera.clip_from_object(viewport, &self.scene.bounds), viewport }
+    }
+
+    /// Measures each half with one walk over its output: what the overlays show, and what the stats say.
+    fn measure(&mut self, stats: Option<StatsWanted>, progress: &Progress) -> Result<(), CliError> {
+        let (view, settings) = (self.view(), self.subject.settings);
+        let reference_surface = self.subject.reference_surface.as_ref();
+        let is_shown = settings.overlays.colors == Colors::Deviation;
+        // Both halves are compared with the same surface.
+        let target = reference_surface.filter(|_| is_shown).zip(self.inputs(SplitSide::Right));
+        let target = target.map(|(reference_surface, inputs)| reference_surface.target(&inputs));
+        for half in SplitSide::BOTH {
+            let inputs = self.inputs(half);
+            let Some((inputs, scene)) = inputs.as_ref().zip(self.scene.half_mut(half)) else { continue };
+            let truth = reference_surface.and_then(ReferenceSurface::truth).filter(|_| stats.is_some());
+            let wanted = Measurements {
+                survey: settings.overlays.cracks || self.subject.selected.is_some() || stats.is_some(),
+                screen_error: stats.is_some_and(|stats| stats.error).then_some(inputs),
+                deviation: target.as_ref(),
+                accuracy: truth.map(|(_, truth)| (truth, &inputs.view, AccuracyOptions::default())),
+                sizes: (stats.is_some() && half == SplitSide::Right).then_some(view),
+            };
+            self.results[half as usize] = Some(self.engine.measure_watched(scene, &wanted, progress)?);
+            progress.check()?;
+        }
+        self.show_deviation();
+        Ok(())
+    }
+
+    /// Colours both halves by their deviation, on one scale that covers the larger of the two.
+    fn show_deviation(&mut self) {
+        let fields = || self.results.iter().flatten().filter_map(|results| results.deviation.as_ref());
+        let largest = fields().filter_map(DeviationField::worst).map(|worst| worst.value).fold(0.0, f64::max);
+        if fields().next().is_none() {
+            return;
+        }
+        self.scale = deviation_scale(largest, self.scene.ulp());
+        for (half, results) in SplitSide::BOTH.into_iter().zip(&self.results) {
+            let field = results.as_ref().and_then(|results| results.deviation.as_ref());
+            if let Some((scene, field)) = self.scene.half_mut(half).zip(field) {
+                scene.set_deviation(&self.engine.gpu, Some((field, self.scale)));
+            }
+        }
+    }
+
+    fn results(&self, half: SplitSide) -> Option<&MeasurementResults> {
+        self.results[half as usize].as_ref()
+    }
+
+    /// Puts lines over each half: the overlays that are lines, and the outline of the selected patch.
+    fn mark(&mut self, progress: &Progress) -> Result<(), CliError> {
+        for half in SplitSide::BOTH {
+            let lines = self.lines(half, progress)?;
+            if let Some(scene) = self.scene.half_mut(half) {
+                scene.set_lines(&self.engine.gpu, &lines);
+            }
+        }
+        Ok(())
+    }
+
+    fn lines(&self, half: SplitSide, progress: &Progress) -> Result<Vec<LineSegment>, CliError> {
+        let (topology, settings) = (&self.posed.topology, &self.subject.settings);
+        let results = self.results(half);
+        let measured = results.and_then(|results| results.survey.as_ref());
+        let mut lines = match measured {
+            Some(measured) if settings.overlays.cracks => crack_lines(measured, topology),
+            _ => Vec::new(),
+        };
+        if settings.overlays.t_junctions {
+            let junctions = t_junctions(&self.subject.loaded.topology, progress)?;
+            lines.extend(t_junction_lines(topology, &junctions));
+        }
+        if let Some(worst) = results.and_then(|results| results.deviation.as_ref()).and_then(DeviationField::worst) {
+            lines.extend(worst_lines(worst.emitted.as_vec3(), worst.truth.as_vec3()));
+        }
+        if settings.overlays.grid {
+            lines.extend(axis_lines(&self.scene.bounds));
+        }
+        // A camera that looks through its own frustum would see nothing of it but the picture's border.
+        if let Some((camera, viewport)) = self.view.lod_camera.filter(|(camera, _)| *camera != self.view.camera) {
+            lines.extend(lod_camera_lines(&camera, viewport, &self.scene.bounds));
+        }
+        if let Some(patch) = self.subject.selected {
+            let outlines = measured.map(|measured| &measured.outlines);
+            lines.extend(patch_lines(&patch_edges(topology, patch, outlines, settings.tessellation.convention)));
+        }
+        lines.extend(&self.subject.more_lines[half as usize]);
+        Ok(lines)
+    }
+
+    /// The distance of a half from the reference surface, if it was measured.
+    fn accuracy(&self, half: SplitSide) -> Option<AccuracyStats> {
+        let (name, _) = self.subject.reference_surface.as_ref().and_then(ReferenceSurface::truth)?;
+        let results = self.results(half)?;
+        let is_whole = results.survey.as_ref()?.culled.total() == 0;
+        results.accuracy.as_ref().map(|accuracy| AccuracyStats::new(name, accuracy, is_whole))
+    }
+
+    /// The deviation that the overlay shows on a half, if the overlay is on.
+    fn deviation(&self, half: SplitSide) -> Option<DeviationStats> {
+        self.results(half)?.deviation.as_ref().map(|field| DeviationStats::new(field, self.scale))
+    }
+
+    /// The stats of the picture, which must have been drawn with stats wanted; none if nothing was measured. Draws it several
+    /// times more to time it.
+    ///
+    /// # Errors
+    /// The device was lost.
+    fn stats(&mut self) -> Result<Option<Stats>, CliError> {
+        let (view, accuracy) = (self.view(), self.accuracy(SplitSide::Right));
+        let Self { engine, scene, target, lod_view, results, .. } = self;
+        let (settings, camera, moment) = (&self.subject.settings, &self.view.camera, self.subject.moment);
+        let Some(results) = &results[SplitSide::Right as usize] else { return Ok(None) };
+        let Some(measured) = &results.survey else { return Ok(None) };
+        // Only the right half is timed.
+        let alone = Settings { split_surface: None, ..*settings };
+        let passes = engine.time_for(scene, target, camera, *lod_view, &alone, Runs::default())?;
+        let leaks = engine.leaks(scene, measured, target.size, camera)?;
+        let factors_capped = engine.factors_capped(scene, &settings.tessellation)?;
+        let mut stats = Stats::new(engine, &self.posed, scene, measured, settings, view, &passes);
+        (stats.triangles_in_view, stats.triangles_below_3_px) =
+            results.sizes.map_or((0, 0), |sizes| (sizes.in_view, sizes.small));
+        stats.leaks = leaks;
+        stats.max_error_px = results.screen_error.map(|worst| worst.px);
+        stats.patches_flat = results.flat_patches;
+        if let Some(tolerance_px) = stats.max_error_px.map(|px| px as f32).filter(|px| *px > 0.0) {
+            let inputs = settings.inputs(*lod_view);
+            let triangles = engine.triangles_by_error(scene, &inputs, tolerance_px)?;
+            stats.lod_comparison = triangles.map(|triangles| stats.compared(tolerance_px, triangles));
+        }
+        stats.factors_capped = factors_capped;
+        stats.accuracy = accuracy;
+        stats.deviation = self.deviation(SplitSide::Right);
+        stats.left = self.left_stats();
+        stats.animation = moment.zip(self.subject.loaded.mesh.rig.as_ref()).map(|(Moment { clip, time }, rig)| {
+            let name = rig.clip_name(clip);
+            AnimationStats { name, time }
+        });
+        Ok(Some(stats))
+    }
+
+    /// Writes the [stats](Self::stats), and what was found about a file of factors, as JSON.
+    ///
+    /// # Errors
+    /// The device was lost, or the file can't be written.
+    pub(crate) fn write_stats(&mut self, factors_file: Option<FactorsFile>, path: &Path) -> Result<(), CliError> {
+        let Some(mut stats) = self.stats()? else { return Ok(()) };
+        stats.factors_file = factors_file;
+        write_text(path, &to_json(&stats)?)
+    }
+
+    /// The stats of another surface left of the split.
+    fn left_stats(&self) -> Option<LeftStats> {
+        let (scene, settings) = self.scene.half(SplitSide::Left).zip(self.subject.settings.half(SplitSide::Left))?;
+        let results = self.results(SplitSide::Left)?;
+        let mut stats = LeftStats::new(scene, results.survey.as_ref()?, &settings, self.view());
+        stats.max_error_px = results.screen_error.map(|worst| worst.px);
+        stats.accuracy = self.accuracy(SplitSide::Left);
+        stats.deviation = self.deviation(SplitSide::Left);
+        Some(stats)
+    }
+}

@@ -1,0 +1,112 @@
+//! The options of commands that draw pictures: what a picture shows, and from where.
+
+use std::path::Path;
+
+use super::factors_option::FactorsFile;
+use super::options::{LodCameraOption, PictureOptions};
+use super::shot::{Shot, ShotView, Subject};
+use super::{CliError, FactorsOption, SurfaceOptions, TruthOption, file_of, file_of_heights, keep_apart, load_apart};
+use crate::engine::{Engine, Loaded};
+use crate::gpu::Timing;
+use crate::load::Source;
+use crate::settings::{Colors, Settings};
+
+#[derive(Clone, Debug, Default, clap::Args)]
+pub(crate) struct ShotOptions {
+    #[command(flatten)]
+    pub surface: SurfaceOptions,
+    #[command(flatten)]
+    pub lod: LodCameraOption,
+    #[command(flatten)]
+    pub given: FactorsOption,
+    #[command(flatten)]
+    pub picture: PictureOptions,
+    #[command(flatten)]
+    pub truth: TruthOption,
+    /// Outline the patch of this triangle (its number in the mesh, from 0); the edges of factors 0, 1 and 2 are red, green
+    /// and blue
+    #[arg(long, value_name = "TRIANGLE")]
+    pub select: Option<u32>,
+    /// Draw on nothing in place of a colour: where no mesh, line or grid is, the picture is transparent
+    #[arg(long, conflicts_with = "background")]
+    pub transparent: bool,
+    /// Draw the legend of the surface's colours into the lower right corner, if the colours stand for something
+    #[arg(long)]
+    pub legend: bool,
+}
+
+impl ShotOptions {
+    /// Checks the options, and that no file to be written is one that is read. `read` are files that the command reads besides
+    /// those of these options.
+    ///
+    /// # Errors
+    /// Names the options that can't be together, or the file.
+    pub(super) fn check(&self, file: &Source, read: Option<&Path>, written: &[Option<&Path>]) -> Result<(), CliError> {
+        self.surface.check_with(self.picture.0.split_surface)?;
+        let truth = self.truth.truth.as_ref().and_then(file_of);
+        let heights = file_of_heights(self.surface.height.as_ref());
+        let own = [file_of(file), truth, heights, self.given.given.as_deref(), read];
+        keep_apart(own, written.iter().copied())
+    }
+
+    /// Reads the mesh and all other files. Returns what is drawn, and what was found about a file of factors.
+    ///
+    /// # Errors
+    /// A file can't be read, or isn't for this mesh.
+    pub(super) fn subject(
+        &self,
+        file: &Source,
+        written: &[Option<&Path>],
+    ) -> Result<(Subject, Option<FactorsFile>), CliError> {
+        let loaded = load_apart(file, &self.surface.preparation(), written)?;
+        let given = self.given.read(&loaded.mesh, &loaded.topology, &self.surface.tessellation())?;
+        let is_shown = self.picture.0.overlays.colors == Colors::Deviation;
+        let reference_surface = self.truth.reference_surface(&loaded, &self.surface, is_shown)?;
+        let selected = self.select.map(|triangle| selected_patch(&loaded, triangle)).transpose()?;
+        let (given, factors_file) = given.map(|given| (given.factors, given.stats)).unzip();
+        let subject = Subject {
+            moment: self.surface.animation.moment(&loaded)?,
+            settings: self.picture.0.with(self.surface.tessellation()),
+            loaded,
+            given,
+            reference_surface,
+            selected,
+            more_lines: Default::default(),
+            arena_bytes: self.surface.arena_bytes(),
+        };
+        Ok((subject, factors_file))
+    }
+
+    /// Uploads the subject, and tessellates it as these options say, within the budget of triangles.
+    ///
+    /// # Errors
+    /// Those of the device, or there are too many triangles at any tolerance.
+    pub(super) fn shot(&self, engine: Engine, mut subject: Subject) -> Result<Shot, CliError> {
+        let mut scene = engine.scene(&subject.loaded, subject.arena_bytes)?;
+        subject.dress(&mut scene)?;
+        let mesh = &subject.loaded.mesh;
+        let view = ShotView {
+            camera: self.surface.camera(mesh, &scene.bounds),
+            lod_camera: self.lod.camera(&self.surface, mesh, &scene.bounds),
+            size: self.surface.size.0,
+            transparent: self.transparent,
+            legend: self.legend,
+        };
+        let lod_view = view.lod_view(&scene);
+        let within: Settings = self.surface.within_budget(|settings| {
+            engine.count(&mut scene, &settings.inputs(lod_view), &mut Timing::Off)?;
+            Ok(scene.tessellator.totals().1)
+        })?;
+        subject.settings = subject.settings.with(within.tessellation);
+        Ok(Shot::new(engine, scene, subject, view)?)
+    }
+}
+
+/// The patch of a triangle of the mesh.
+fn selected_patch(loaded: &Loaded, triangle: u32) -> Result<u32, CliError> {
+    let (file, count) = (loaded.source.to_string(), loaded.mesh.triangles.len());
+    if triangle as usize >= count {
+        return Err(CliError::NoTriangle { file, last: count.saturating_sub(1), triangle });
+    }
+    loaded.topology.patch_of(triangle).ok_or(CliError::NoPatch { file, triangle })
+}

@@ -1,0 +1,171 @@
+//! What a legend says about the surface's colours. The window paints it over the viewport, and commands into their pictures.
+
+use super::layout::{CHECKER_LIGHT, CHECKER_LINE, CHECKER_U, CHECKER_V, srgb};
+use super::{DEVIATION_PX_SCALE, EXCESS_SCALE, FACTOR_SCALE, SIZE_SCALE, Scale};
+use crate::settings::{Colors, DeviationUnit};
+
+/// The contents of a legend.
+pub(crate) struct Legend {
+    pub title: String,
+    /// The hover text.
+    pub meaning: String,
+    pub shown: Shown,
+}
+
+/// What a legend shows.
+pub(crate) enum Shown {
+    /// The title alone.
+    Title,
+    /// [`WASTE_COLOR`](super::layout::WASTE_COLOR), before the title.
+    Waste,
+    /// A scale under the title.
+    Scale {
+        scale: Scale,
+        /// The numbers under it.
+        ticks: Vec<f32>,
+        /// Whether [`WASTE_COLOR`](super::layout::WASTE_COLOR) stands before it.
+        waste: bool,
+    },
+    /// sRGB colours under the title, in rows of [`COLUMNS`], with their names.
+    Colors(Vec<([u8; 3], &'static str)>),
+}
+
+/// How many colours stand in a row.
+pub(crate) const COLUMNS: usize = 3;
+
+/// The title of the legend of barycentric colours.
+pub(crate) const BARYCENTRIC_TITLE: &str = "Barycentric, weights in the patch";
+
+/// What is known of the distances to the reference surface.
+pub(crate) struct Distances {
+    pub unit: DeviationUnit,
+    /// None until something is measured.
+    pub scale: Option<Scale>,
+    /// Whether some of the surface has no colour.
+    pub is_partial: bool,
+    /// The progress of the measurement, 0 to 1; none if none is under way.
+    pub measured: Option<f32>,
+}
+
+/// Whether colours have a legend.
+pub(crate) fn has_legend(colors: Colors) -> bool {
+    !matches!(colors, Colors::Material | Colors::Clay)
+}
+
+/// The legend of these colours, if they have one. That of barycentric colours is a drawing instead.
+pub(crate) fn legend_of(colors: Colors, distances: &Distances) -> Option<Legend> {
+    let legend = |title: &str, meaning: &str, shown: Shown| {
+        Some(Legend { title: title.to_owned(), meaning: meaning.to_owned(), shown })
+    };
+    let scale = |scale: Scale, ticks: &[f32], waste: bool| Shown::Scale { scale, ticks: ticks.to_vec(), waste };
+    match colors {
+        Colors::Material | Colors::Clay | Colors::Barycentric => None,
+        Colors::Zebra => legend(
+            "Jump: break of tangent; kink: of curvature",
+            "Stripes as the shading normals reflect them. They jump where the tangent breaks, and have a kink where only the \
+             curvature does. Surface normals show the patches themselves, other normals what is shaded in their place.",
+            Shown::Title,
+        ),
+        Colors::ShadingNormals => legend(
+            "Normal: x red, y green, z blue",
+            "Colours of shading normals in object space, as normal maps have them: a coordinate of -1 is 0 in its channel, \
+             and 1 is 255. Seen from behind, the surface has the same colours.",
+            Shown::Colors(normal_colors()),
+        ),
+        Colors::UvChecker => legend(
+            "UV: a square is 1/8 of a unit",
+            "A checker over texture coordinates. Red grows with u and green with v up to the next whole number, where there \
+             is a line. Triangles without texture coordinates are plain grey, and so are squares smaller than a px.",
+            Shown::Colors(checker_colors()),
+        ),
+        Colors::Factors => legend(
+            "Factor",
+            "Colours of tessellation factors, 1 to 64. Each patch shows its inside factor, and along an edge the edge's factor.",
+            scale(FACTOR_SCALE, &[1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0], false),
+        ),
+        Colors::TriangleSize => legend(
+            "Triangle size, px",
+            "Colours of triangles by their size on screen, 3 to 64 px. The size is the side of a square with twice the \
+             triangle's area. All triangles below 3 px have one colour.",
+            scale(SIZE_SCALE, &[3.0, 4.0, 8.0, 16.0, 32.0, 64.0], true),
+        ),
+        Colors::LowFactors => legend(
+            "Factors below 2",
+            "One colour for patches whose factors are all below 2, edges and inside.",
+            Shown::Waste,
+        ),
+        Colors::Excess => legend(
+            "Triangles, times the own least",
+            "Colours of patches by how many times as many triangles they have as their own least, 1 to 16: the fewest with \
+             which a patch alone would keep the tolerance of LOD by error.",
+            scale(EXCESS_SCALE, &[1.0, 2.0, 4.0, 8.0, 16.0], false),
+        ),
+        Colors::Deviation => Some(deviation_legend(distances)),
+    }
+}
+
+/// The colours of normals along the axes.
+fn normal_colors() -> Vec<([u8; 3], &'static str)> {
+    let all = [("+x", 0, 255), ("+y", 1, 255), ("+z", 2, 255), ("-x", 0, 0), ("-y", 1, 0), ("-z", 2, 0)];
+    let color = |(name, axis, byte)| {
+        let mut color = [128; 3];
+        color[axis] = byte;
+        (color, name)
+    };
+    all.map(color).to_vec()
+}
+
+/// The colours of the checker's light squares just before whole numbers of u and of v, and of its lines.
+fn checker_colors() -> Vec<([u8; 3], &'static str)> {
+    let tinted = |tint: [f32; 3]| tint.map(|channel| srgb(CHECKER_LIGHT * channel));
+    vec![(tinted(CHECKER_U), "u grows"), (tinted(CHECKER_V), "v grows"), (CHECKER_LINE, "unit")]
+}
+
+fn deviation_legend(distances: &Distances) -> Legend {
+    let unit = match distances.unit {
+        DeviationUnit::Units => "units",
+        DeviationUnit::Px => "px",
+    };
+    let state = match distances.measured {
+        Some(part) => format!(" (measuring, {:.0} %)", 100.0 * part),
+        None if distances.is_partial => " (not of all triangles)".to_owned(),
+        None => String::new(),
+    };
+    let scale = distances.scale.unwrap_or(DEVIATION_PX_SCALE);
+    // The scale has two decades: a tick at each end and one between them.
+    let ticks = [scale.least, (scale.least * scale.most).sqrt(), scale.most];
+    Legend {
+        title: format!("Deviation, {unit}{state}"),
+        meaning:
+            "Colours of the distance to the reference surface. The scale ends at the largest distance, rounded up, and \
+                  begins at a hundredth of that; smaller distances have the first colour. What isn't measured is grey."
+                .to_owned(),
+        shown: Shown::Scale {
+            scale,
+            ticks: if distances.scale.is_some() { ticks.to_vec() } else { Vec::new() },
+            waste: false,
+        },
+    }
+}
+
+/// Formats a tick as shortly as possible. The ends of scales are round numbers.
+pub(crate) fn tick_text(tick: f32) -> String {
+    if (1e-3..1e5).contains(&tick) {
+        let rounded = format!("{tick:.5}");
+        rounded.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        let rounded = format!("{tick:.1e}");
+        rounded.replace(".0e", "e")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_short() {
+        let texts = [64.0, 3.0, 0.1, 0.0025, 0.25, 1.5e-4, 2e-7, 150.0].map(tick_text);
+        assert_eq!(texts, ["64", "3", "0.1", "0.0025", "0.25", "1.5e-4", "2e-7", "150"]);
+    }
+}

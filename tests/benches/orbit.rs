@@ -1,0 +1,103 @@
+//! Measures how many pictures a second the window shows while its camera turns: `cargo bench --bench orbit`. Arguments after `--`
+//! are mesh files that are measured too; `seconds=N` is how long each mesh is turned (5).
+//!
+//! The window is driven as a person does, with a drag of 4 points a frame, and painted into a picture that is read back: that takes
+//! a little longer than showing it. Each mesh is measured with its opening settings, first with full pictures alone, and then with
+//! previews in place of those that would be late. A picture counts once, when the window shows it for the first time. The bench
+//! reports its results, and no result makes it fail.
+
+#[path = "../window/driver.rs"]
+mod driver;
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use egui::accesskit::Role;
+use egui::{Event, Modifiers, PointerButton, Pos2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use pnaen::internals::{App, Limits, Shape, Source};
+
+use driver::settle;
+
+/// Width and height of the window, in points.
+const SIZE: [f32; 2] = [1280.0, 720.0];
+/// How far the pointer moves from frame to frame, in points.
+const STEP: f32 = 4.0;
+
+/// What a window showed while its camera turned.
+struct Shown {
+    /// Pictures for each second, previews included.
+    rate: f64,
+    /// The time between two frames of the window in ms: the median, and the 95th percentile.
+    frame_ms: [f64; 2],
+}
+
+fn window(source: &Source) -> Harness<'static, App> {
+    let source = Some(source.clone());
+    let mut harness = Harness::builder().with_size(SIZE).wgpu().build_eframe(move |context| {
+        App::new(context, source, Limits::default()).expect("the bench needs a graphics adapter")
+    });
+    settle(&mut harness);
+    harness
+}
+
+fn pointer(harness: &mut Harness<App>, at: Pos2, pressed: Option<bool>) {
+    harness.event(Event::PointerMoved(at));
+    if let Some(pressed) = pressed {
+        let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+        harness.event(Event::PointerButton { pos: at, button, pressed, modifiers });
+    }
+}
+
+/// Turns the camera for some time.
+fn turn(harness: &mut Harness<App>, time: Duration) -> Shown {
+    let viewport = harness.get_by_role_and_label(Role::Image, "Viewport").rect();
+    let at = |frame: u32| viewport.center() + egui::vec2(STEP * (frame % 50) as f32, 0.0);
+    pointer(harness, at(0), Some(true));
+    harness.step();
+    let seen = |harness: &Harness<App>| harness.state().pictures() + harness.state().previews();
+    let (before, start) = (seen(harness), Instant::now());
+    let mut frames = Vec::new();
+    while start.elapsed() < time {
+        let frame = Instant::now();
+        pointer(harness, at(frames.len() as u32), None);
+        harness.step();
+        let _ = harness.render();
+        frames.push(frame.elapsed().as_secs_f64() * 1e3);
+    }
+    let rate = (seen(harness) - before) as f64 / start.elapsed().as_secs_f64();
+    pointer(harness, at(0), Some(false));
+    settle(harness);
+    frames.sort_by(f64::total_cmp);
+    let percentile = |part: f64| frames.get((part * frames.len() as f64) as usize).copied().unwrap_or(f64::NAN);
+    Shown { rate, frame_ms: [percentile(0.5), percentile(0.95)] }
+}
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| !argument.starts_with("--")).collect();
+    let seconds = arguments.iter().find_map(|argument| argument.strip_prefix("seconds=")?.parse().ok()).unwrap_or(5.0);
+    let files =
+        arguments.iter().filter(|argument| !argument.contains('=')).map(|path| Source::File(PathBuf::from(path)));
+    let meshes = [Source::Vase, Source::Shape(Shape::Torus)].into_iter().chain(files);
+    println!("Window of {} x {} points, {seconds} s each\n", SIZE[0], SIZE[1]);
+    println!("| mesh | triangles | full pictures a second | frame, ms (median, 95 %) | with previews | frame, ms |");
+    println!("| --- | ---: | ---: | ---: | ---: | ---: |");
+    for source in meshes {
+        let mut harness = window(&source);
+        let time = Duration::from_secs_f64(seconds);
+        let previewed = turn(&mut harness, time);
+        harness.state_mut().switch_previews();
+        let full = turn(&mut harness, time);
+        let triangles = harness.state().totals().map_or(0, |(_, triangles)| triangles);
+        let ms = |shown: &Shown| format!("{:.1}, {:.1}", shown.frame_ms[0], shown.frame_ms[1]);
+        println!(
+            "| {} | {triangles} | {:.1} | {} | {:.1} | {} |",
+            source.title(),
+            full.rate,
+            ms(&full),
+            previewed.rate,
+            ms(&previewed)
+        );
+    }
+}

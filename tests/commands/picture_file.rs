@@ -1,0 +1,162 @@
+//! What is in the pictures that `pnaen render` writes: texts, transparency and the legend.
+
+use std::fs::File;
+use std::io::BufReader;
+
+use image::RgbaImage;
+
+use crate::{Folder, failure, output, vase};
+
+/// The texts of a PNG file: keywords and texts, and which of them are UTF-8.
+fn texts(path: &str) -> Vec<(String, String, bool)> {
+    let file = BufReader::new(File::open(path).expect("a file"));
+    let mut reader = png::Decoder::new(file).read_info().expect("a PNG file");
+    reader.finish().expect("a whole file");
+    let info = reader.info();
+    let latin_1 = info.uncompressed_latin1_text.iter();
+    let latin_1 = latin_1.map(|chunk| (chunk.keyword.clone(), chunk.text.clone(), false));
+    let utf_8 = info.utf8_text.iter().map(|chunk| (chunk.keyword.clone(), chunk.get_text().expect("UTF-8"), true));
+    latin_1.chain(utf_8).collect()
+}
+
+fn text(path: &str, keyword: &str) -> (String, bool) {
+    let all = texts(path);
+    let found = all.iter().find(|(key, ..)| key == keyword);
+    found.map(|(_, text, is_utf_8)| (text.clone(), *is_utf_8)).unwrap_or_else(|| panic!("no {keyword} in {all:?}"))
+}
+
+fn drawn(arguments: &[&str], path: &str) -> RgbaImage {
+    output(&[&["render", "--size", "320x240", "-o", path], arguments].concat());
+    image::open(path).expect("a PNG file").to_rgba8()
+}
+
+#[test]
+fn a_picture_says_what_drew_it() {
+    let folder = Folder::new();
+    let path = folder.path("it's.png");
+    drawn(&["shape:torus", "--factor", "3", "--overlay", "wireframe,cracks"], &path);
+    let version = concat!("pnaen ", env!("CARGO_PKG_VERSION"));
+    assert_eq!(text(&path, "Software"), (version.to_owned(), false));
+    let (command, _) = text(&path, "pnaen command");
+    let begins = "pnaen render --size 320x240 -o ";
+    assert!(command.starts_with(begins), "{command}");
+    assert!(command.ends_with(" shape:torus --factor 3 --overlay wireframe,cracks"), "{command}");
+    let (settings, _) = text(&path, "pnaen settings");
+    for line in ["surface: pn-aen", "factor: 3", "overlay: wireframe,cracks", "split: none", "cull-back-faces: off"] {
+        assert!(settings.lines().any(|own| own == line), "{line} is not in {settings}");
+    }
+    assert!(!settings.contains("tolerance"), "it has no effect under uniform LOD: {settings}");
+}
+
+#[test]
+fn a_name_beyond_latin_1_is_written_in_utf_8() {
+    let folder = Folder::new();
+    let path = folder.path("\u{26ab} ring \u{e4}.png");
+    drawn(&["shape:torus"], &path);
+    let (command, is_utf_8) = text(&path, "pnaen command");
+    assert!(is_utf_8 && command.contains("\u{26ab} ring \u{e4}.png"), "{command}");
+    let latin_1 = folder.path("ring \u{e4}.png");
+    drawn(&["shape:torus"], &latin_1);
+    let (command, is_utf_8) = text(&latin_1, "pnaen command");
+    assert!(!is_utf_8 && command.contains("ring \u{e4}.png"), "{command}");
+}
+
+#[test]
+fn texts_make_no_difference_to_a_reference() {
+    let folder = Folder::new();
+    let [stamped, bare, again] = ["stamped.png", "bare.png", "again.png"].map(|name| folder.path(name));
+    let picture = drawn(&["shape:torus"], &stamped);
+    picture.save(&bare).expect("a writable folder");
+    assert_eq!((texts(&stamped).len(), texts(&bare).len()), (3, 0));
+    for reference in [&stamped, &bare] {
+        drawn(&["shape:torus", "--reference", reference, "--threshold", "0"], &again);
+    }
+}
+
+/// A pixel's channel over a background, mixed in linear light as the device does.
+fn over(channel: u8, alpha: u8, background: u8) -> f32 {
+    let linear = |byte: u8| (f32::from(byte) / 255.0).powf(2.2);
+    let alpha = f32::from(alpha) / 255.0;
+    (linear(channel) * alpha + linear(background) * (1.0 - alpha)).powf(1.0 / 2.2) * 255.0
+}
+
+#[test]
+fn a_transparent_picture_over_a_colour_is_the_picture_on_that_colour() {
+    let folder = Folder::new();
+    let path = folder.path("out.png");
+    let options = [vase(), "--overlay", "wireframe,grid", "--camera", "30,10"];
+    let clear = drawn(&[&options[..], &["--transparent"]].concat(), &path);
+    let opaque = drawn(&[&options[..], &["--background", "3264c8"]].concat(), &path);
+    let alphas = |want: fn(u8) -> bool| clear.pixels().filter(|pixel| want(pixel.0[3])).count();
+    let (none, full, part) = (alphas(|a| a == 0), alphas(|a| a == 255), alphas(|a| a > 0 && a < 255));
+    assert!(none > 20_000 && full > 5_000 && part > 500, "{none} {full} {part}");
+    assert_eq!(clear.get_pixel(1, 1).0, [0; 4]);
+    assert!(opaque.pixels().all(|pixel| pixel.0[3] == 255));
+    let mut largest = 0.0_f32;
+    for (own, other) in clear.pixels().zip(opaque.pixels()) {
+        for (channel, background) in [0x32, 0x64, 0xc8].into_iter().enumerate() {
+            let mixed = over(own.0[channel], own.0[3], background);
+            largest = largest.max((mixed - f32::from(other.0[channel])).abs());
+        }
+    }
+    assert!(largest < 6.0, "{largest} of 255");
+    let said = failure(&["render", vase(), "-o", &path, "--transparent", "--background", "ffffff"], 2);
+    assert!(said.contains("--transparent") && said.contains("--background"), "{said}");
+}
+
+/// The smallest rectangle in which two pictures differ: least and greatest coordinates.
+fn difference(a: &RgbaImage, b: &RgbaImage) -> Option<[[u32; 2]; 2]> {
+    let different = a.enumerate_pixels().zip(b.pixels()).filter(|((.., own), other)| own != other);
+    different.map(|((x, y, _), _)| [x, y]).fold(None, |found, [x, y]| {
+        let [least, most] = found.unwrap_or([[x, y]; 2]);
+        Some([[least[0].min(x), least[1].min(y)], [most[0].max(x), most[1].max(y)]])
+    })
+}
+
+#[test]
+fn the_legend_is_in_the_lower_right_corner_of_colours_that_stand_for_something() {
+    let folder = Folder::new();
+    let path = folder.path("out.png");
+    for colors in [
+        "factors",
+        "triangle-size",
+        "low-factors",
+        "excess",
+        "deviation",
+        "barycentric",
+        "zebra",
+        "shading-normals",
+        "uv-checker",
+    ] {
+        let options = ["shape:torus", "--lod", "error", "--overlay", colors];
+        let (plain, with) = (drawn(&options, &path), drawn(&[&options[..], &["--legend"]].concat(), &path));
+        let found = difference(&plain, &with);
+        let Some([least, most]) = found else { panic!("{colors} has no legend") };
+        // The margin is 10 points, and a point 1 px in so small a picture.
+        assert_eq!(most, [309, 229], "{colors}");
+        assert!(least[0] > 30 && least[1] > 130, "{colors}: {least:?}");
+    }
+    for options in [&["shape:torus"][..], &["shape:torus", "--overlay", "clay"]] {
+        let (plain, with) = (drawn(options, &path), drawn(&[options, &["--legend"]].concat(), &path));
+        assert_eq!(difference(&plain, &with), None, "one material stands for nothing");
+    }
+}
+
+#[test]
+fn the_legend_grows_with_the_picture_and_fits_a_small_one() {
+    let folder = Folder::new();
+    let path = folder.path("out.png");
+    let legend = |size: &str| {
+        let options = ["shape:torus", "--size", size, "--overlay", "factors"];
+        let picture = |more: &[&str]| {
+            output(&[&["render", "-o", &path], &options[..], more].concat());
+            image::open(&path).expect("a PNG file").to_rgba8()
+        };
+        let [least, most] = difference(&picture(&[]), &picture(&["--legend"])).expect("a legend");
+        [most[0] - least[0] + 1, most[1] - least[1] + 1]
+    };
+    let ([small, _], [usual, _], [large, _]) = (legend("90x60"), legend("640x480"), legend("1600x1200"));
+    assert!(small < 90, "{small}");
+    assert_eq!(usual, 216, "196 points and the margins");
+    assert_eq!(large, 432, "twice as many");
+}

@@ -1,0 +1,238 @@
+//! The colours that show a surface by itself: clay, zebra, shading normals and the checker over texture coordinates.
+
+use std::f32::consts::PI;
+use std::sync::Arc;
+
+use glam::{Vec2, Vec3, vec2, vec3};
+use image::RgbaImage;
+use pnaen::mesh::mesh_builder::{InputCorner, MeshBuilder};
+use pnaen::mesh::{Material, Mesh, Shape, Texture};
+use pnaen::progress::Progress;
+use pnaen::render::layout::linear;
+use pnaen::render::{Camera, Scene, Target};
+use pnaen::settings::{Colors, NormalsAt, Overlays, Settings};
+use pnaen::tessellate::{Normals, Partitioning, Surface, Tessellation};
+use pnaen::view::project;
+
+use crate::gpu_tests::stability::{scene_of, seen};
+use crate::gpu_tests::{engine, scene};
+
+/// The sides of pictures in px.
+const SIDE: u32 = 400;
+
+/// A square from -1 to 1 in the plane z = 0, which faces +z. All its corners have one normal, and u and v run from 0 to `uv`, v
+/// downwards.
+fn square(normal: Vec3, uv: Vec2) -> Mesh {
+    let mut builder = MeshBuilder::new();
+    let material = builder.material(Material::plain("square", [0.6, 0.6, 0.6, 1.0]));
+    let corner = |x: f32, y: f32| InputCorner {
+        position: vec3(x, y, 0.0),
+        normal: Some(normal),
+        uv: uv * vec2(0.5 + 0.5 * x, 0.5 - 0.5 * y),
+    };
+    let [a, b, c, d] = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+    builder.triangle(material, [a, b, c]);
+    builder.triangle(material, [a, c, d]);
+    builder.finish("square".to_owned(), &Progress::default()).expect("nobody cancels")
+}
+
+/// Flat patches in these colours.
+fn flat(colors: Colors) -> Settings {
+    let tessellation = Tessellation {
+        surface: Surface::Flat,
+        partitioning: Partitioning::Integer,
+        factor: 3.0,
+        ..Tessellation::default()
+    };
+    Settings { overlays: Overlays { colors, ..Overlays::default() }, ..Settings::from(tessellation) }
+}
+
+/// A square's picture from the front, or from behind: it fills the view. A px has `2 / SIDE` object units.
+fn drawn(mesh: &Mesh, settings: &Settings, azimuth: f32) -> RgbaImage {
+    let mut scene = scene_of(mesh.clone(), 0.0);
+    let target = Target::new(&engine().gpu, [SIDE; 2]).expect("a small picture");
+    let framed = Camera::framing(&scene.bounds, target.viewport());
+    let distance = framed.distance * 2.0 / (SIDE as f32 * framed.units_per_pixel(SIDE as f32));
+    let camera = Camera { azimuth, elevation: 0.0, orthographic: true, distance, ..framed };
+    seen(&mut scene, &target, settings, &camera)
+}
+
+fn middle(picture: &RgbaImage) -> [u8; 3] {
+    let [r, g, b, _] = picture.get_pixel(SIDE / 2 + 7, SIDE / 2 + 3).0;
+    [r, g, b]
+}
+
+/// The settings with normals at pixels, and with the mesh itself in all of the picture, drawn without tessellation.
+fn also(settings: Settings) -> [Settings; 3] {
+    let pixels = Settings { normals_at: NormalsAt::Pixels, ..settings };
+    [settings, pixels, Settings { split: Some(1.0), ..settings }]
+}
+
+#[test]
+fn shading_normals_have_the_colours_of_normal_maps() {
+    for normal in [Vec3::Z, vec3(0.6, 0.0, 0.8), vec3(0.0, -0.6, 0.8), vec3(-0.48, 0.64, 0.6)] {
+        let mesh = square(normal, Vec2::ONE);
+        let expected = (255.0 * (0.5 + 0.5 * normal)).to_array();
+        for settings in also(flat(Colors::ShadingNormals)) {
+            for azimuth in [0.0, 180.0] {
+                let found = middle(&drawn(&mesh, &settings, azimuth)).map(f32::from);
+                // Vertices have their normals packed in 32 bits, and the picture rounds each channel.
+                let is_near = (0..3).all(|k| (found[k] - expected[k]).abs() <= 1.0);
+                assert!(is_near, "{normal}: {found:?}, not {expected:?}, from {azimuth} with {settings:?}");
+            }
+        }
+    }
+}
+
+/// The square with another material: a red one with a texture of two colours.
+fn painted(mesh: &Mesh) -> Mesh {
+    let mut painted = mesh.clone();
+    let texture = Texture { size: [2, 1], rgba: vec![255, 0, 255, 255, 0, 255, 0, 255] };
+    for material in &mut painted.materials {
+        material.base_color = [0.9, 0.2, 0.1, 1.0];
+        material.texture = Some(Arc::new(texture.clone()));
+    }
+    painted
+}
+
+#[test]
+fn clay_has_no_colours_textures_or_gloss() {
+    // It mirrors the light into the eye, so that gloss is strongest.
+    let normal = vec3(-0.5, 0.7, 2.0).normalize();
+    let plain = square(normal, Vec2::ONE);
+    let painted = painted(&plain);
+    for settings in also(flat(Colors::Clay)) {
+        let clay = drawn(&plain, &settings, 0.0);
+        assert!(clay == drawn(&painted, &settings, 0.0), "{settings:?}");
+        let [r, g, b] = middle(&clay);
+        assert!(r > g && g > b && b > 120, "a light warm grey: {:?}", [r, g, b]);
+        // Gloss is added to the colour and is grey, so that it changes the hue.
+        let hue = |color: [u8; 3]| linear(color)[2] / linear(color)[0];
+        let shaded = middle(&drawn(&square(vec3(0.9, -0.3, 0.3), Vec2::ONE), &settings, 0.0));
+        assert!((hue([r, g, b]) - hue(shaded)).abs() < 0.02, "{:?} and {shaded:?}", [r, g, b]);
+    }
+    let own = flat(Colors::Material);
+    assert!(drawn(&plain, &own, 0.0) != drawn(&painted, &own, 0.0), "their own colours differ");
+}
+
+#[test]
+fn half_a_turn_of_the_normal_has_24_stripes() {
+    // Across the stripes, in the view.
+    let across = vec3(-0.6, 0.8, 0.0);
+    for stripe in -11..11 {
+        let angle = (stripe as f32 + 0.5) / 24.0 * PI;
+        let mesh = square(angle.cos() * Vec3::Z + angle.sin() * across, Vec2::ONE);
+        for settings in also(flat(Colors::Zebra)) {
+            let color = middle(&drawn(&mesh, &settings, 0.0));
+            let is_white = color.iter().all(|&channel| channel > 200);
+            let is_black = color.iter().all(|&channel| channel < 50);
+            assert_eq!([is_white, is_black], [stripe % 2 == 0, stripe % 2 != 0], "{stripe}: {color:?}, {settings:?}");
+        }
+    }
+}
+
+/// The mean difference of the stripes on both sides of the borders of patches that face the eye, as a part of that of black and
+/// white.
+fn jump(scene: &mut Scene, settings: &Settings) -> f64 {
+    let target = Target::new(&engine().gpu, [1000; 2]).expect("a small picture");
+    let camera = Camera { orthographic: true, ..Camera::framing(&scene.bounds, target.viewport()) };
+    let picture = seen(scene, &target, settings, &camera);
+    let clip = camera.clip_from_object(target.viewport(), &scene.bounds);
+    let to_eye = camera.axes()[2];
+    let mesh = scene.tessellator.mesh().clone();
+    let brightness = |at: Vec2| f64::from(linear([picture.get_pixel(at.x as u32, at.y as u32).0[0]; 3])[0]);
+    let (mut sum, mut count) = (0.0, 0);
+    for triangle in mesh.triangles.iter() {
+        let corners = triangle.map(|corner| mesh.corners[corner as usize].position);
+        if corners.iter().any(|corner| corner.normalize().dot(to_eye) < 0.6) {
+            continue;
+        }
+        let ends = corners.map(|corner| project(clip, target.viewport(), corner).expect("in view"));
+        for (a, b) in [(ends[0], ends[1]), (ends[1], ends[2]), (ends[2], ends[0])] {
+            let aside = (b - a).perp().normalize() * 2.0;
+            for part in [0.2, 0.35, 0.5, 0.65, 0.8] {
+                let at = a.lerp(b, part);
+                sum += (brightness(at + aside) - brightness(at - aside)).abs();
+                count += 1;
+            }
+        }
+    }
+    assert!(count > 50, "{count} places");
+    sum / f64::from(count) / (0.85 - 0.012)
+}
+
+#[test]
+fn stripes_go_on_across_borders_of_patches_with_the_same_normals_and_jump_at_others() {
+    let (_, mut sphere) = scene(Shape::Icosphere);
+    let of = |normals| {
+        let settings = flat(Colors::Zebra);
+        settings.with(Tessellation { normals, ..settings.tessellation })
+    };
+    let [together, apart] = [Normals::Linear, Normals::Surface].map(|normals| jump(&mut sphere, &of(normals)));
+    // Where the sides of a border have nothing to do with each other, half of the places differ.
+    assert!(together < 0.2 && apart > 0.35, "{together} {apart}");
+    let pixels = Settings { normals_at: NormalsAt::Pixels, ..of(Normals::Linear) };
+    assert!(jump(&mut sphere, &pixels) < 0.2);
+}
+
+/// How often squares of a checker change along a row or a column of a picture. Light squares are at least 0.3 in linear light, and
+/// dark ones at most 0.25.
+fn changes(pixels: impl Iterator<Item = [u8; 3]>) -> usize {
+    let is_light: Vec<_> = pixels.map(|color| linear(color).iter().sum::<f32>() / 3.0 > 0.28).collect();
+    is_light.windows(2).filter(|pair| pair[0] != pair[1]).count()
+}
+
+#[test]
+fn a_unit_of_texture_coordinates_has_eight_squares_and_a_line_around_it() {
+    let mesh = square(Vec3::Z, Vec2::ONE);
+    for settings in also(flat(Colors::UvChecker)) {
+        let picture = drawn(&mesh, &settings, 0.0);
+        let color = |x: u32, y: u32| {
+            let [r, g, b, _] = picture.get_pixel(x, y).0;
+            [r, g, b]
+        };
+        // Through the middle of squares, without the lines at both ends.
+        let (inside, square) = (5..SIDE - 5, SIDE / 8);
+        for place in [square / 2, 4 * square + square / 2] {
+            assert_eq!(changes(inside.clone().map(|x| color(x, place))), 7, "{settings:?}");
+            assert_eq!(changes(inside.clone().map(|y| color(place, y))), 7, "{settings:?}");
+        }
+        let is_line = |[r, g, b]: [u8; 3]| b > 120 && r < 60 && g < 90;
+        for place in [0, SIDE - 1] {
+            assert!(is_line(color(place, 120)) && is_line(color(120, place)), "{:?}", color(place, 120));
+        }
+        // The light squares in the first and the last row and column.
+        let [first, u, v] = [(25, 25), (325, 25), (25, 325)].map(|(x, y)| color(x, y));
+        assert!(
+            u[0].abs_diff(first[0]) < 30 && u[1] + 30 < u[0] && u[2] + 30 < u[0],
+            "red grows with u: {first:?} {u:?}"
+        );
+        assert!(v[0] + 30 < v[1] && v[2] + 30 < v[1], "green grows with v: {first:?} {v:?}");
+    }
+}
+
+#[test]
+fn squares_smaller_than_a_pixel_are_plain() {
+    // Squares of 0.17 and of 0.8 px.
+    for units in [300.0, 62.5] {
+        let picture = drawn(&square(Vec3::Z, Vec2::splat(units)), &flat(Colors::UvChecker), 0.0);
+        let [r, g, b] = middle(&picture);
+        assert!(picture.pixels().all(|pixel| pixel.0 == [r, g, b, 255]), "{units} units have a pattern of pixels");
+    }
+}
+
+#[test]
+fn a_surface_without_texture_coordinates_has_no_checker() {
+    for settings in also(flat(Colors::UvChecker)) {
+        let picture = drawn(&square(Vec3::Z, Vec2::ZERO), &settings, 0.0);
+        let [r, g, b] = middle(&picture);
+        assert!(r == g && g == b && (140..200).contains(&r), "a grey: {:?}", [r, g, b]);
+        assert!(picture.pixels().all(|pixel| pixel.0 == [r, r, r, 255]));
+    }
+}
+
+#[test]
+fn a_normal_across_the_view_reflects_the_place_where_all_stripes_meet() {
+    let [r, g, b] = middle(&drawn(&square(Vec3::X, Vec2::ONE), &flat(Colors::Zebra), 0.0));
+    assert!(r == g && g == b && (100..220).contains(&r), "a grey: {:?}", [r, g, b]);
+}

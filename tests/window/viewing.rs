@@ -1,0 +1,284 @@
+//! How the picture is seen: the frozen LOD camera, the standard views and the axes, the ground, and the background.
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, Theme};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use pnaen::app::{App, Persistence};
+use pnaen::files::Limits;
+use pnaen::load::Source;
+use pnaen::mesh::Shape;
+use pnaen::render::layout::{AXIS_COLORS, LOD_CAMERA_COLOR};
+use pnaen::render::{Camera, Standpoint};
+
+use crate::window_tests::editing::{assert_draws, copied, press_with};
+use crate::window_tests::{PATIENCE, click, copy_vase, open_all_sections, press, settle, switch, uniform, window};
+
+/// How many px of the picture have about this sRGB colour.
+fn pixels_of(harness: &Harness<App>, color: [u8; 3]) -> usize {
+    let picture = harness.state().read_picture().expect("a device").expect("a picture");
+    picture.pixels().filter(|pixel| (0..3).all(|c| pixel.0[c].abs_diff(color[c]) <= 4)).count()
+}
+
+#[test]
+fn a_frozen_camera_is_drawn_copied_and_looked_through() {
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
+    press(&mut harness, Key::L);
+    press(&mut harness, Key::W);
+    let frozen = *harness.state().camera();
+    press(&mut harness, Key::Z);
+    harness.get_by_label("LOD camera frozen");
+    assert_eq!(pixels_of(&harness, LOD_CAMERA_COLOR), 0, "through itself it isn't seen");
+    let through = harness.state().read_picture().expect("a device");
+    for _ in 0..6 {
+        press(&mut harness, Key::ArrowRight);
+        press(&mut harness, Key::PageDown);
+    }
+    assert!(pixels_of(&harness, LOD_CAMERA_COLOR) > 200, "its frustum is drawn");
+    let command = copied(&mut harness);
+    assert!(command.contains("--lod-camera 30,20,"), "{command}");
+    assert_draws(&harness, &command, "torus-view");
+    press(&mut harness, Key::Escape);
+    press_with(&mut harness, Modifiers::SHIFT, Key::Z);
+    assert_eq!(*harness.state().camera(), frozen);
+    assert_eq!(harness.state().read_picture().expect("a device"), through);
+    assert!(!copied(&mut harness).contains("--lod-camera"), "the picture's own camera is the frozen one");
+    press(&mut harness, Key::Escape);
+    press(&mut harness, Key::Z);
+    assert!(harness.query_by_label("LOD camera frozen").is_none());
+    press(&mut harness, Key::ArrowRight);
+    assert_eq!(pixels_of(&harness, LOD_CAMERA_COLOR), 0);
+}
+
+/// Whether a camera looks from a standpoint.
+fn looks_from(camera: &Camera, standpoint: Standpoint) -> bool {
+    camera.axes()[2].distance(standpoint.direction()) < 0.01
+}
+
+#[test]
+fn the_axes_and_keys_look_from_six_sides() {
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
+    let target = harness.state().camera().target;
+    let all = [
+        ("Look from the front", Standpoint::Front, Modifiers::NONE, Key::Num1),
+        ("Look from the back", Standpoint::Back, Modifiers::COMMAND, Key::Num1),
+        ("Look from the right", Standpoint::Right, Modifiers::NONE, Key::Num3),
+        ("Look from the left", Standpoint::Left, Modifiers::COMMAND, Key::Num3),
+        ("Look from the top", Standpoint::Top, Modifiers::NONE, Key::Num7),
+        ("Look from the bottom", Standpoint::Bottom, Modifiers::COMMAND, Key::Num7),
+    ];
+    for (name, standpoint, modifiers, key) in all {
+        for by_key in [false, true] {
+            // So that no end of an axis is over another.
+            let tilt =
+                if looks_from(harness.state().camera(), Standpoint::Top) { Key::ArrowDown } else { Key::ArrowUp };
+            for key in [tilt, tilt, tilt, Key::ArrowLeft, Key::ArrowLeft, Key::ArrowLeft] {
+                harness.key_press(key);
+                harness.step();
+            }
+            settle(&mut harness);
+            assert!(!looks_from(harness.state().camera(), standpoint));
+            if by_key {
+                press_with(&mut harness, modifiers, key);
+            } else {
+                click(&mut harness, name);
+            }
+            assert!(looks_from(harness.state().camera(), standpoint), "{name} {:?}", harness.state().camera());
+        }
+    }
+    assert_eq!(harness.state().camera().target, target, "a click on an axis turns the camera and selects nothing");
+    assert_eq!(harness.state().selected_triangle(), None);
+    // The axes are no part of the picture, and lie beside the legend.
+    assert_eq!(AXIS_COLORS.map(|color| pixels_of(&harness, color)), [0; 3]);
+    press(&mut harness, Key::B);
+    let legend = harness.get_by_label("Legend: Barycentric, weights in the patch").rect();
+    let viewport = harness.get_by_label("Viewport").rect();
+    for (name, ..) in all {
+        let end = harness.get_by_label(name).rect();
+        assert!(!end.intersects(legend) && viewport.contains_rect(end), "{name}");
+    }
+}
+
+#[test]
+fn the_ground_has_a_note_with_its_spacing_and_is_copied() {
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
+    assert!(harness.query_by_label_contains("Grid: ").is_none());
+    let before = harness.state().read_picture().expect("a device");
+    press(&mut harness, Key::Y);
+    harness.get_by_label("Grid: 0.2 units");
+    assert!(pixels_of(&harness, AXIS_COLORS[1]) > 10, "the axis that points up");
+    let command = copied(&mut harness);
+    assert!(command.contains("--overlay grid"), "{command}");
+    assert_draws(&harness, &command, "torus-view");
+    press(&mut harness, Key::Escape);
+    press(&mut harness, Key::Y);
+    assert!(harness.query_by_label_contains("Grid: ").is_none());
+    assert_eq!(harness.state().read_picture().expect("a device"), before);
+}
+
+#[test]
+fn the_background_follows_the_theme_unless_it_is_set() {
+    let mut harness =
+        Harness::builder().with_size([1000.0, 700.0]).with_theme(Theme::Light).wgpu().build_eframe(|context| {
+            App::new(context, Some(Source::Shape(Shape::Torus)), Limits::default()).expect("an adapter")
+        });
+    open_all_sections(&mut harness);
+    settle(&mut harness);
+    let corner = |harness: &Harness<App>| {
+        let picture = harness.state().read_picture().expect("a device").expect("a picture");
+        picture.get_pixel(3, 3).0[1]
+    };
+    assert!(corner(&harness) > 200, "light");
+    let command = copied(&mut harness);
+    assert!(command.contains("--background e"), "{command}");
+    assert_draws(&harness, &command, "torus-view");
+    press(&mut harness, Key::Escape);
+    let set_theme = |harness: &mut Harness<App>, theme| {
+        harness.ctx.set_theme(theme);
+        settle(harness);
+    };
+    set_theme(&mut harness, Theme::Dark);
+    assert!(corner(&harness) < 60, "dark");
+    assert!(!copied(&mut harness).contains("--background"), "commands draw on the same dark grey");
+    press(&mut harness, Key::Escape);
+    // The colour that is shown is kept when it no longer follows the theme.
+    switch(&mut harness, "As the theme");
+    set_theme(&mut harness, Theme::Light);
+    assert!(corner(&harness) < 60, "it was set");
+    assert_eq!(harness.state().settings().background, Some(harness.state().settings().background_color()));
+}
+
+#[test]
+fn the_divider_is_seen_on_a_light_background() {
+    let mut harness = window(None);
+    harness.ctx.set_theme(Theme::Light);
+    settle(&mut harness);
+    press(&mut harness, Key::S);
+    let divider = harness.get_by_label("Split divider").rect();
+    let picture = harness.render().expect("a picture of the window");
+    let row = (divider.center().x as u32 - 4..=divider.center().x as u32 + 4)
+        .map(|x| picture.get_pixel(x, divider.bottom() as u32 - 6).0[0]);
+    let (least, most) = row.fold((255, 0), |(least, most), value: u8| (least.min(value), most.max(value)));
+    assert!(most - least > 60, "{least} to {most}");
+}
+
+/// Presses a key and runs frames until a preview is shown.
+fn move_until_previewed(harness: &mut Harness<App>, key: Key) {
+    let (start, before) = (std::time::Instant::now(), harness.state().previews());
+    while harness.state().previews() == before || !harness.state().shows_preview() {
+        assert!(start.elapsed() < PATIENCE, "no preview is shown");
+        harness.key_press(key);
+        harness.step();
+    }
+}
+
+#[test]
+fn a_preview_is_shown_while_the_camera_moves_and_the_full_picture_follows() {
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
+    // A million triangles are late on any driver for software.
+    harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(64.0);
+    settle(&mut harness);
+    let (totals, pictures) = (harness.state().totals(), harness.state().pictures());
+    assert!(!harness.state().shows_preview());
+    move_until_previewed(&mut harness, Key::ArrowRight);
+    harness.get_by_label_contains("Preview: factor ");
+    assert_eq!(harness.state().totals(), totals, "nothing is counted in a preview");
+    assert_eq!(harness.state().pictures(), pictures, "the full picture waits until the camera rests");
+    settle(&mut harness);
+    assert!(!harness.state().shows_preview() && harness.state().pictures() > pictures);
+    assert!(harness.query_by_label_contains("Preview: ").is_none());
+    assert_eq!(harness.state().totals(), totals);
+    let command = copied(&mut harness);
+    assert_draws(&harness, &command, "torus-view");
+    press(&mut harness, Key::Escape);
+    // Somebody who judges LOD in motion switches previews off.
+    harness.get_by_role_and_label(Role::Button, "View").click();
+    settle(&mut harness);
+    harness.get_by_label_contains("Preview while the camera moves").click();
+    settle(&mut harness);
+    let previews = harness.state().previews();
+    press(&mut harness, Key::ArrowRight);
+    assert_eq!(harness.state().previews(), previews);
+}
+
+#[test]
+fn views_are_undone_apart_from_settings() {
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
+    let camera = |harness: &Harness<App>| *harness.state().camera();
+    let first = camera(&harness);
+    press(&mut harness, Key::Num1);
+    let front = camera(&harness);
+    std::thread::sleep(std::time::Duration::from_millis(600));
+    press(&mut harness, Key::W);
+    press(&mut harness, Key::Num7);
+    let top = camera(&harness);
+    assert!(first != front && front != top);
+    press_with(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!((camera(&harness), harness.state().settings().overlays.wireframe), (top, false), "undo leaves the view");
+    press(&mut harness, Key::OpenBracket);
+    assert_eq!((camera(&harness), harness.state().settings().overlays.wireframe), (front, false));
+    press(&mut harness, Key::OpenBracket);
+    assert_eq!(camera(&harness), first);
+    press(&mut harness, Key::CloseBracket);
+    assert_eq!(camera(&harness), front);
+}
+
+fn open_bookmarks(harness: &mut Harness<App>) {
+    harness.get_by_role_and_label(Role::Button, "View").click();
+    settle(harness);
+    harness.get_by_label_contains("Bookmarks").click();
+    settle(harness);
+}
+
+#[test]
+fn bookmarks_are_kept_with_the_file() {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let file = copy_vase(&folder, "vase.glb");
+    let kept = folder.path().to_owned();
+    let opened = || {
+        let (kept, file) = (kept.clone(), file.clone());
+        let mut harness = Harness::builder().with_size([1000.0, 700.0]).wgpu().build_eframe(move |context| {
+            let mut app = App::new(context, Some(Source::File(file)), Limits::default()).expect("an adapter");
+            app.resume(&context.egui_ctx, Persistence::read(Some(&kept)));
+            app
+        });
+        settle(&mut harness);
+        harness
+    };
+    let mut harness = opened();
+    press(&mut harness, Key::Num3);
+    let right = *harness.state().camera();
+    press_with(&mut harness, Modifiers::COMMAND, Key::D);
+    press(&mut harness, Key::Num7);
+    press_with(&mut harness, Modifiers::COMMAND, Key::D);
+    press_with(&mut harness, Modifiers::ALT, Key::Num1);
+    assert_eq!(*harness.state().camera(), right);
+    press(&mut harness, Key::Num1);
+    eframe::App::on_exit(harness.state_mut());
+    drop(harness);
+    let mut harness = opened();
+    press_with(&mut harness, Modifiers::ALT, Key::Num1);
+    assert_eq!(*harness.state().camera(), right, "the next window knows it");
+    open_bookmarks(&mut harness);
+    harness.get_by_label_contains("Bookmark 2");
+    click(&mut harness, "Forget bookmarks");
+    press_with(&mut harness, Modifiers::ALT, Key::Num1);
+    open_bookmarks(&mut harness);
+    assert!(harness.query_by_label_contains("Bookmark 2").is_none());
+}
+
+#[test]
+fn tab_hides_the_panels_until_a_control_has_the_focus() {
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
+    let is_shown = |harness: &Harness<App>| harness.query_by_role_and_label(Role::ComboBox, "Surface").is_some();
+    press(&mut harness, Key::Tab);
+    assert!(!is_shown(&harness));
+    press(&mut harness, Key::Tab);
+    assert!(is_shown(&harness));
+    press(&mut harness, Key::F6);
+    press(&mut harness, Key::Tab);
+    assert!(is_shown(&harness), "Tab goes from control to control");
+    press(&mut harness, Key::Escape);
+    press(&mut harness, Key::Tab);
+    assert!(!is_shown(&harness), "Escape gave the keyboard back to the picture");
+}
