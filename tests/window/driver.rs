@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 use egui_kittest::Harness;
 use pnaen::internals::App;
 
-/// How long the tests wait at most: longer than anything here takes on two slow cores.
-pub(super) const PATIENCE: Duration = Duration::from_secs(60);
+/// How long the tests wait at most: longer than anything here takes on two slow cores beside other work.
+pub(super) const PATIENCE: Duration = Duration::from_secs(240);
 
 /// Runs frames until everything is loaded, drawn and measured.
 pub(super) fn settle(harness: &mut Harness<App>) {
