@@ -249,7 +249,9 @@ fn bookmarks_are_kept_with_the_file() {
     press(&mut harness, Key::Num3);
     let right = *harness.state().camera();
     press_with(&mut harness, Modifiers::COMMAND, Key::D);
+    harness.get_by_label("Bookmark 1");
     press(&mut harness, Key::Num7);
+    assert!(harness.query_by_label("Bookmark 1").is_none(), "another view");
     press_with(&mut harness, Modifiers::COMMAND, Key::D);
     press_with(&mut harness, Modifiers::ALT, Key::Num1);
     assert_eq!(*harness.state().camera(), right);
