@@ -11,7 +11,8 @@ impl App {
     pub(in crate::app) fn menu_bar(&mut self, ui: &mut egui::Ui) {
         egui::MenuBar::new().ui(ui, |ui| {
             for menu in Menu::ALL {
-                ui.menu_button(menu.name(), |ui| scrolled(ui, |ui| self.menu(ui, menu)));
+                let shown = ui.menu_button(menu.name(), |ui| scrolled(ui, |ui| self.menu(ui, menu)));
+                self.keep_open(menu, &shown);
             }
             let source = self.document.as_ref().map(|document| &document.loaded.source);
             let (title, whole) = source.map_or_else(Default::default, |source| (source.title(), source.to_string()));
@@ -21,6 +22,20 @@ impl App {
                 ui.add(egui::Label::new(egui::RichText::new(title).strong()).truncate()).on_hover_text(whole);
             });
         });
+    }
+
+    /// Keeps a menu open that is clicked after it opened because the pointer came over its name from another open menu. egui closes
+    /// it again. The second click on a name closes its menu.
+    fn keep_open(&mut self, menu: Menu, shown: &egui::InnerResponse<Option<()>>) {
+        if !shown.response.clicked() {
+            return;
+        }
+        let is_second = self.commands.clicked_menu == Some(menu);
+        if shown.inner.is_none() && !is_second && self.commands.clicked_menu.is_some() {
+            egui::Popup::open_id(&shown.response.ctx, egui::Popup::default_response_id(&shown.response));
+            shown.response.ctx.request_repaint();
+        }
+        self.commands.clicked_menu = (!(is_second && shown.inner.is_none())).then_some(menu);
     }
 
     /// The commands of a menu, with a line between groups. Submenus come at the ends of their groups.
