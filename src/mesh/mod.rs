@@ -5,12 +5,14 @@ mod bounding_box_tree;
 pub(crate) mod bounds;
 pub(crate) mod build_limits;
 pub(crate) mod chunked_vec;
+pub(crate) mod corner_details;
 pub(crate) mod crease_band;
 pub(crate) mod curves;
 mod dominance;
 pub(crate) mod generate_normals;
 pub(crate) mod heights;
 pub(crate) mod interner;
+pub(crate) mod material;
 pub(crate) mod mesh_builder;
 pub(crate) mod normal_faults;
 pub(crate) mod normals;
@@ -26,13 +28,14 @@ mod union_find;
 pub(crate) mod weld;
 pub(crate) mod weld_preview;
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
 pub use bounds::Bounds;
+pub use corner_details::{CornerDetail, CornerDetails};
 pub use heights::{HeightMap, Heights};
+pub use material::{Alpha, Look, Map, MapUv, Material, Sampling, Slot, Texture, Wrap};
 pub use repairs::Repairs;
 pub use rig::clip::Clip;
 pub use rig::{Moment, Pose, Rig};
@@ -77,6 +80,8 @@ pub struct Mesh {
     pub materials: Vec<Material>,
     /// The height images that displacement can move the surface by.
     pub heights: Option<Arc<Heights>>,
+    /// More about each corner, for meshes whose materials need it.
+    pub details: Option<Arc<CornerDetails>>,
     /// How many corners had to be repaired.
     pub repairs: Repairs,
     /// The joints, morph targets and clips of an animated mesh.
@@ -88,28 +93,4 @@ impl Mesh {
     pub(crate) fn has_texture_coordinates(&self) -> bool {
         self.corners.windows(2).any(|pair| pair[0].uv != pair[1].uv)
     }
-}
-
-/// The look of some of a mesh's patches.
-#[derive(Clone, Debug)]
-pub struct Material {
-    /// The name in the file.
-    pub name: String,
-    /// Linear RGBA, 0 to 1.
-    pub base_color: [f32; 4],
-    /// The image that multiplies the base colour. Materials that use the same image share it.
-    pub texture: Option<Arc<Texture>>,
-    /// Whether its triangles are also meant to be seen from behind.
-    pub double_sided: bool,
-    /// The mesh's triangles of this material.
-    pub triangles: Range<u32>,
-}
-
-/// An 8-bit sRGB image with straight alpha, stored row by row from the top.
-#[derive(Clone, Debug)]
-pub struct Texture {
-    /// Width and height in px.
-    pub size: [u32; 2],
-    /// Red, green, blue and alpha: 4 bytes a pixel.
-    pub rgba: Vec<u8>,
 }
