@@ -32,7 +32,7 @@ use pnaen::load::Source;
 use pnaen::mesh::Shape;
 use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene, Target, crack_lines};
-use pnaen::settings::{ARENA_BYTES, Settings};
+use pnaen::settings::{ARENA_BYTES, Lighting, Settings};
 
 /// One engine for all tests: compiling its pipelines is what takes long.
 pub(crate) fn engine() -> &'static Engine {
@@ -56,8 +56,13 @@ pub(crate) fn scene(shape: Shape) -> (Loaded, Scene) {
     (loaded, scene)
 }
 
-/// Draws what `pnaen render` would.
+/// Draws what `pnaen render --lighting camera` would.
 pub(crate) fn picture(scene: &mut Scene, settings: &Settings, size: [u32; 2]) -> image::RgbaImage {
+    drawn(scene, &Settings { lighting: Lighting::Camera, ..*settings }, size)
+}
+
+/// Draws what `pnaen render` would.
+pub(crate) fn drawn(scene: &mut Scene, settings: &Settings, size: [u32; 2]) -> image::RgbaImage {
     let engine = engine();
     let target = Target::new(&engine.gpu, size).expect("a small picture");
     let camera = Camera::framing(&scene.bounds, target.viewport());
