@@ -5,8 +5,8 @@ use std::mem::{offset_of, size_of};
 use super::modules;
 use crate::gpu::DomainParams;
 use crate::gpu::layout::{
-    Binding, Chunk, Corner, Curve, CurveNet, Delta, DrawArgs, EmitArgs, HeightMap, JointMatrix, LodView, Params, Patch,
-    PatchFactors, Share, Slab, Vertex,
+    Binding, Chunk, Corner, CornerDetail, Curve, CurveNet, Delta, DrawArgs, EmitArgs, HeightMap, JointMatrix, LodView,
+    Params, Patch, PatchFactors, Share, Slab, Vertex,
 };
 use crate::render::coverage::Sieve;
 use crate::render::layout::{Frame, Material, Pick};
@@ -70,6 +70,7 @@ fn shared_structs_have_the_same_layout() {
     same!(HeightMap { size, levels, start, repeats });
     same!(Patch { points, corners, curves, factors });
     same!(Corner { normal, uv });
+    same!(CornerDetail { uvs, color, tangent });
     same!(Curve { points, first_side, side_count });
     same!(CurveNet { ab, ba });
     same!(PatchFactors { outside, inside });
