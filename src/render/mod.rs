@@ -2,24 +2,36 @@
 
 pub(crate) mod camera;
 mod coverage;
+mod cube_map;
 mod deviation;
+mod dfg;
+#[allow(dead_code, reason = "nothing draws with it yet")]
+pub(crate) mod environment;
 mod frame;
 mod framing;
 mod ground;
+mod irradiance;
 pub(crate) mod layout;
 mod leaks;
 mod legend;
 mod marks;
 mod materials;
+mod panorama;
 mod pick;
 mod pipelines;
+mod prefilter;
+mod prefilter_pass;
+#[cfg(test)]
+pub(crate) mod reflectance;
 mod renderer;
 mod scale;
 pub(crate) mod scene;
 #[cfg(test)]
 mod shader_tests;
 mod steps;
+mod studio;
 pub(crate) mod target;
+mod tone;
 
 pub(crate) use camera::{Camera, Standpoint};
 pub(crate) use deviation::{DEVIATION_PX_SCALE, deviation_scale};
@@ -37,7 +49,7 @@ pub(crate) use target::samples;
 
 /// The shader files with entry points for drawing and picking. Each makes one shader module.
 #[cfg(test)]
-static MODULES: [&crate::gpu::WgslFile; 7] = [
+static MODULES: [&crate::gpu::WgslFile; 8] = [
     &coverage::PASS_COVERAGE,
     &leaks::DRAW_LEAKS,
     &pick::DRAW_PICK,
@@ -45,4 +57,5 @@ static MODULES: [&crate::gpu::WgslFile; 7] = [
     &pipelines::DRAW_LINES,
     &pipelines::DRAW_PLAIN,
     &pipelines::DRAW_SURFACE,
+    &prefilter_pass::PASS_PREFILTER,
 ];
