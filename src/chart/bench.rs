@@ -114,7 +114,8 @@ impl Bench<'_> {
 /// surface is drawn, and nothing else, in the light of the camera.
 pub(crate) fn whole(settings: &Settings) -> Settings {
     let plain = Settings::from(Tessellation::default());
-    let Settings { overlays, lighting, exposure, tone_curve, light_rotation, deviation_in, split, background, .. } = plain;
+    let Settings { overlays, lighting, exposure, tone_curve, light_rotation, deviation_in, split, background, .. } =
+        plain;
     Settings {
         tessellation: Tessellation { clip: Clip::Off, cull_back_faces: false, ..settings.tessellation },
         overlays,

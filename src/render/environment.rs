@@ -112,6 +112,12 @@ impl Environment {
         gpu.queue.write_buffer(&self.surroundings, 0, bytemuck::bytes_of(&surroundings));
     }
 
+    /// Constants for a picture with this view of the light, for [`Self::entries`]. Each picture has its own, so that one that is
+    /// recorded on another thread can't change them.
+    pub(crate) fn surroundings(&self, gpu: &Gpu, view: &LightView) -> wgpu::Buffer {
+        uniform_buffer(gpu, "surroundings", bytemuck::bytes_of(&surroundings(&self.irradiance, view)))
+    }
+
     /// Layout entries of the cube map, its sampler, the table and the `Surroundings`, which fragment shaders read, at this
     /// binding and the next three.
     pub(crate) fn layout_entries(first: u32) -> [wgpu::BindGroupLayoutEntry; 4] {

@@ -16,6 +16,7 @@ mod leaks;
 mod legend;
 mod marks;
 mod materials;
+mod needs;
 mod panorama;
 mod pick;
 mod pipelines;
@@ -31,6 +32,7 @@ mod shader_tests;
 mod steps;
 mod studio;
 pub(crate) mod target;
+mod textures;
 mod tone;
 
 pub(crate) use camera::{Camera, Standpoint};
@@ -49,12 +51,13 @@ pub(crate) use target::samples;
 
 /// The shader files with entry points for drawing and picking. Each makes one shader module.
 #[cfg(test)]
-static MODULES: [&crate::gpu::WgslFile; 8] = [
+static MODULES: [&crate::gpu::WgslFile; 9] = [
     &coverage::PASS_COVERAGE,
     &leaks::DRAW_LEAKS,
     &pick::DRAW_PICK,
     &pipelines::DRAW_GROUND,
     &pipelines::DRAW_LINES,
+    &pipelines::DRAW_LIT,
     &pipelines::DRAW_PLAIN,
     &pipelines::DRAW_SURFACE,
     &prefilter_pass::PASS_PREFILTER,

@@ -5,7 +5,6 @@ use glam::Vec3;
 
 /// Numbers of the curves.
 pub(crate) const TONE_CURVE_NEUTRAL: u32 = 0;
-#[cfg(test)]
 pub(crate) const TONE_CURVE_NONE: u32 = 1;
 
 /// Below this, colours are shown as they are, and above they are compressed.

@@ -55,9 +55,11 @@ impl Choice for ToneCurve {
                 "Keeps base colours as they are, and compresses highlights without a change of hue (Khronos PBR Neutral Tone \
                  Mapper, 2024).",
             ),
-            Self::None => {
-                Description::new("none", "None", "Colours are shown as they are, and what is brighter than white is white.")
-            }
+            Self::None => Description::new(
+                "none",
+                "None",
+                "Colours are shown as they are, and what is brighter than white is white.",
+            ),
         }
     }
 }

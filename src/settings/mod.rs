@@ -95,7 +95,7 @@ impl SplitSide {
 }
 
 /// Where the normals that a surface is shaded with are evaluated.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum NormalsAt {
     /// At emitted vertices; triangles interpolate them.
     #[default]

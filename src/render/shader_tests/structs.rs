@@ -9,7 +9,7 @@ use crate::gpu::layout::{
     Params, Patch, PatchFactors, Share, Slab, Vertex,
 };
 use crate::render::coverage::Sieve;
-use crate::render::layout::{Frame, Material, Pick};
+use crate::render::layout::{Frame, MapPlace, Material, Pick};
 use crate::tessellate::CoverageView;
 
 /// The size of a struct in WGSL, and the name and offset of each member.
@@ -104,7 +104,23 @@ fn shared_structs_have_the_same_layout() {
         scale,
     });
     same!(CoverageView { clip_from_object, slack, viewport, sample_count, fronts_only, snap });
-    same!(Material { base_color });
+    same!(Material {
+        base_color,
+        emissive,
+        metallic,
+        specular_color,
+        roughness,
+        ior,
+        specular,
+        coat,
+        coat_roughness,
+        normal_scale,
+        occlusion_strength,
+        cutoff,
+        unlit,
+        maps,
+    });
+    same!(MapPlace { u, v });
     same!(Sieve { view, triangle_count, material_count, first_draw });
     same!(Pick { vertices, found, patch_index, triangle, weight });
 }
