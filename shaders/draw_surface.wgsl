@@ -310,17 +310,15 @@ fn meaning(in: Varyings, to_edges: vec3<f32>, edge_heights: vec3<f32>) -> vec4<f
     return vec4<f32>(WASTE_COLOR, f32(in.low));
 }
 
-// No colour of the material in light from all around: the lights at the camera take its place.
-const NOT_LIT: vec4<f32> = vec4<f32>(0.0);
-
+// The last argument is the colour of the material in light from all around: none, since the lights at the camera take its place.
 @fragment
 fn surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    return surface_color(in, in.normal, front, NOT_LIT);
+    return surface_color(in, in.normal, front, vec4<f32>(0.0));
 }
 
 @fragment
 fn pixel_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    return surface_color(in, pixel_normal(in.patch_index, in.domain.xy), front, NOT_LIT);
+    return surface_color(in, pixel_normal(in.patch_index, in.domain.xy), front, vec4<f32>(0.0));
 }
 
 @fragment

@@ -76,7 +76,7 @@ impl Materials {
     }
 
     /// The bind groups of materials that a light shines on.
-    pub fn lit_groups(
+    pub(super) fn lit_groups(
         &self,
         gpu: &Gpu,
         materials: &[UploadedMaterial],

@@ -20,7 +20,7 @@ static DRAW_DENSITY: WgslFile = wgsl!("draw_density");
 pub(super) static DRAW_GROUND: WgslFile = wgsl!("draw_ground", DRAW_DENSITY, DRAW_TYPES);
 static DRAW_LIGHT: WgslFile = wgsl!("draw_light");
 pub(super) static DRAW_LIT: WgslFile =
-    wgsl!("draw_lit", DRAW_LIGHT, DRAW_MATERIAL, DRAW_NORMAL, DRAW_TYPES, FACTORS, OCTAHEDRAL_NORMAL, TYPES);
+    wgsl!("draw_lit", DRAW_LIGHT, DRAW_MATERIAL, DRAW_NORMAL, DRAW_TYPES, OCTAHEDRAL_NORMAL, SURFACE, TYPES);
 static DRAW_LOOKS: WgslFile = wgsl!("draw_looks", DRAW_DENSITY);
 static DRAW_MATERIAL: WgslFile = wgsl!("draw_material", DRAW_NORMAL, DRAW_TYPES, ENVIRONMENT, REFLECTANCE, TYPES);
 static DRAW_NORMAL: WgslFile = wgsl!("draw_normal", FACTORS, LOAD_NET, LOADS, NORMAL, TYPES);

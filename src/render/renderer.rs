@@ -58,6 +58,15 @@ impl Renderer {
         }
     }
 
+    /// The same, with another light in place of the studio's.
+    #[cfg(test)]
+    pub(crate) fn lit_by(gpu: &Gpu, environment: Environment) -> Self {
+        let renderer = Self::new(gpu);
+        // There is none yet, so that nothing fails.
+        let _ = renderer.studio.get_or_try_make(|| Ok(environment));
+        renderer
+    }
+
     /// What the materials of all scenes share.
     pub fn materials(&self) -> &Materials {
         &self.materials

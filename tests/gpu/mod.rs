@@ -15,6 +15,7 @@ mod error;
 mod limits;
 mod lines;
 mod looks;
+mod materials;
 #[path = "../documents/moving.rs"]
 pub(crate) mod moving;
 mod passes;
@@ -58,11 +59,7 @@ pub(crate) fn scene(shape: Shape) -> (Loaded, Scene) {
 
 /// Draws what `pnaen render --lighting camera` would.
 pub(crate) fn picture(scene: &mut Scene, settings: &Settings, size: [u32; 2]) -> image::RgbaImage {
-    drawn(scene, &Settings { lighting: Lighting::Camera, ..*settings }, size)
-}
-
-/// Draws what `pnaen render` would.
-pub(crate) fn drawn(scene: &mut Scene, settings: &Settings, size: [u32; 2]) -> image::RgbaImage {
+    let settings = &Settings { lighting: Lighting::Camera, ..*settings };
     let engine = engine();
     let target = Target::new(&engine.gpu, size).expect("a small picture");
     let camera = Camera::framing(&scene.bounds, target.viewport());

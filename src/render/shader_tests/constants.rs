@@ -10,7 +10,7 @@ use crate::gpu::{
     GRID_WIDTH, MOST_WORKGROUPS, NEXT_EDGES, NEXT_PATCHES, SEARCH_AGAIN, SEARCH_ASKED, SEARCH_COUNTERS, SEARCH_INSIDE,
     WORKGROUP,
 };
-use crate::mesh::{EdgeKind, MAX_LEVELS, MAX_MAPS};
+use crate::mesh::{EdgeKind, MAX_LEVELS, MAX_MAPS, Slot};
 use crate::render::coverage::TILE;
 use crate::render::layout::{
     AXIS_COLORS, BACK_FACE_COLOR, CHECKER_LIGHT, CHECKER_LINE, CHECKER_U, CHECKER_V, FOLD_COLOR, FOUND_EMITTED,
@@ -55,6 +55,7 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
         &["CLAY_COLOR", "ZEBRA_STRIPES", "ZEBRA_AXIS", "ZEBRA_DARK", "ZEBRA_LIGHT", "CHECKER_SQUARES", "CHECKER_DARK"],
         "how the surface looks",
     ),
+    (&["LEAST_TANGENT"], "only draws read normal maps"),
     (&["GROUND_REACH", "GROUND_FADES_FROM", "GROUND_COLOR", "GROUND_OPACITY"], "how the ground looks"),
 ];
 
@@ -235,6 +236,11 @@ fn of_enums() -> Vec<(&'static str, Expected)> {
         ("SURFACE_PHONG_AEN", number(Surface::PhongAen as u32)),
         ("SURFACE_NAGATA", number(Surface::Nagata as u32)),
         ("SURFACE_NAGATA_AEN", number(Surface::NagataAen as u32)),
+        ("SLOT_METALLIC_ROUGHNESS", number(Slot::MetallicRoughness as u32)),
+        ("SLOT_NORMAL", number(Slot::Normal as u32)),
+        ("SLOT_OCCLUSION", number(Slot::Occlusion as u32)),
+        ("SLOT_EMISSIVE", number(Slot::Emissive as u32)),
+        ("MAP_COUNT", number(Slot::COUNT as u32)),
     ]
 }
 
