@@ -3,7 +3,9 @@
 //!
 //! A load may take [`PER_BYTE`] times the size of its files, plus [`Limits::memory`]. What counts is the memory in use
 //! at one time. A file of `F` bytes that becomes `T` triangles with `V` distinct corners and `P` points takes, in
-//! bytes, besides textures and animation data:
+//! bytes, besides textures and animation data (a mesh whose materials need more of its corners, see [`CornerDetail`], takes `52 D`
+//! bytes more for `D` distinct ones and a table of `5 S`, where the old and the new list exist at the same time; then `52 V`, and at
+//! the end `48 V`; and 700 for each triangle of a material whose tangents are being computed):
 //!
 //! - while it is read, `F + 32 V + 5 S + 12 T`: the file's bytes, corners, the table that finds equal corners (`S` is
 //!   the first power of two from `8 V / 7` on), and triangles. Each vertex of the glTF primitive that is being read takes
@@ -19,6 +21,8 @@ use std::cell::Cell;
 use std::sync::Arc;
 
 use crate::files::Limits;
+#[cfg(doc)]
+use crate::mesh::CornerDetail;
 use crate::mesh::build_limits::{MemoryAccount, MemoryRefused};
 use crate::mesh::{Material, Mesh};
 
@@ -111,14 +115,17 @@ impl MemoryAccount for Budget {
 
 /// Returns the size of a mesh in memory, in bytes. A texture that materials share counts once.
 fn bytes_of(mesh: &Mesh) -> u64 {
-    let mut textures: Vec<_> = mesh.materials.iter().filter_map(|material| material.texture.as_ref()).collect();
+    let maps = |material: &'_ Material| material.look.maps.clone().into_iter().flatten().map(|map| map.texture);
+    let mut textures: Vec<_> =
+        mesh.materials.iter().flat_map(|material| material.texture.clone().into_iter().chain(maps(material))).collect();
     textures.sort_unstable_by_key(|texture| Arc::as_ptr(texture));
     textures.dedup_by_key(|texture| Arc::as_ptr(texture));
     let textures: usize = textures.iter().map(|texture| texture.rgba.capacity()).sum();
     let materials: usize = mesh.materials.iter().map(|material| size_of::<Material>() + material.name.capacity()).sum();
     let rig = mesh.rig.as_ref().map_or(0, |rig| rig.bytes());
     let [corners, triangles] = [mesh.corners.capacity() * 32, mesh.triangles.capacity() * 12];
-    (corners + triangles + textures + materials + rig) as u64
+    let details = mesh.details.as_ref().map_or(0, |details| size_of_val(&details[..]));
+    (corners + triangles + textures + materials + rig + details) as u64
 }
 
 #[cfg(test)]

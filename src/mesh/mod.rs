@@ -8,6 +8,7 @@ pub(crate) mod chunked_vec;
 pub(crate) mod corner_details;
 pub(crate) mod crease_band;
 pub(crate) mod curves;
+pub(crate) mod detail_table;
 mod dominance;
 pub(crate) mod generate_normals;
 pub(crate) mod heights;
