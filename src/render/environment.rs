@@ -5,11 +5,12 @@ use glam::{Mat3, Vec3};
 use half::f16;
 use wgpu::util::DeviceExt;
 
+use super::blur_levels::ENVIRONMENT_LEVELS;
 use super::cube_map::CubeMap;
 use super::dfg::{DFG_SIZE, dfg_table};
 use super::irradiance::{Irradiance, irradiance};
 use super::panorama::Panorama;
-use super::prefilter_pass::{ENVIRONMENT_LEVELS, REFLECTANCE, cube_view, prefilter};
+use super::prefilter_pass::{REFLECTANCE, cube_view, prefilter};
 use super::studio::studio_light;
 use super::tone::TONE_CURVE_NEUTRAL;
 use crate::gpu::wgsl::{WgslFile, wgsl};
@@ -60,8 +61,7 @@ impl Default for LightView {
 /// the table of directional albedos.
 pub(crate) struct Environment {
     /// [`ENVIRONMENT_LEVELS`] levels in half floats; the first is a mirror's.
-    pub cube: wgpu::Texture,
-    view: wgpu::TextureView,
+    cube: wgpu::TextureView,
     sampler: wgpu::Sampler,
     dfg: wgpu::TextureView,
     irradiance: Irradiance,
@@ -103,7 +103,7 @@ impl Environment {
         prefilter(gpu, &source, &cube, &sampler)?;
         let surroundings = surroundings(&irradiance, &LightView::default());
         let surroundings = gpu.attempt(|| uniform_buffer(gpu, "surroundings", bytemuck::bytes_of(&surroundings)))?;
-        Ok(Self { view: cube_view(&cube), cube, sampler, dfg, irradiance, surroundings })
+        Ok(Self { cube: cube_view(&cube), sampler, dfg, irradiance, surroundings })
     }
 
     /// Turns the light, and sets what the camera sees of it, for all that is submitted from now on.
@@ -140,7 +140,7 @@ impl Environment {
     pub(crate) fn entries(&self, first: u32) -> [wgpu::BindGroupEntry<'_>; 4] {
         let view = wgpu::BindingResource::TextureView;
         [
-            wgpu::BindGroupEntry { binding: first, resource: view(&self.view) },
+            wgpu::BindGroupEntry { binding: first, resource: view(&self.cube) },
             wgpu::BindGroupEntry { binding: first + 1, resource: wgpu::BindingResource::Sampler(&self.sampler) },
             wgpu::BindGroupEntry { binding: first + 2, resource: view(&self.dfg) },
             wgpu::BindGroupEntry { binding: first + 3, resource: self.surroundings.as_entire_binding() },
@@ -173,11 +173,7 @@ fn linear_sampler(gpu: &Gpu) -> wgpu::Sampler {
 
 /// A cube map of half floats whose levels the prefilter will fill.
 fn empty_cube(gpu: &Gpu, size: u32) -> wgpu::Texture {
-    gpu.device.create_texture(&cube_descriptor(
-        size,
-        ENVIRONMENT_LEVELS,
-        wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_SRC,
-    ))
+    gpu.device.create_texture(&cube_descriptor(size, ENVIRONMENT_LEVELS, wgpu::TextureUsages::STORAGE_BINDING))
 }
 
 fn cube_descriptor(size: u32, levels: u32, usage: wgpu::TextureUsages) -> wgpu::TextureDescriptor<'static> {

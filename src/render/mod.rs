@@ -1,26 +1,29 @@
 //! Draws pictures of a scene on the device, as a camera sees it, with one indirect draw per material into an offscreen texture.
 
+pub(crate) mod blur_levels;
 pub(crate) mod camera;
 mod coverage;
-mod cube_map;
+pub(crate) mod cube_map;
 mod deviation;
-mod dfg;
+pub(crate) mod dfg;
 #[allow(dead_code, reason = "nothing draws with it yet")]
 pub(crate) mod environment;
 mod frame;
 mod framing;
 mod ground;
-mod irradiance;
+pub(crate) mod irradiance;
 pub(crate) mod layout;
 mod leaks;
 mod legend;
+#[cfg(test)]
+mod light_tests;
 mod marks;
 mod materials;
 mod panorama;
 mod pick;
 mod pipelines;
-mod prefilter;
-mod prefilter_pass;
+pub(crate) mod prefilter;
+pub(crate) mod prefilter_pass;
 #[cfg(test)]
 pub(crate) mod reflectance;
 mod renderer;
@@ -29,9 +32,9 @@ pub(crate) mod scene;
 #[cfg(test)]
 mod shader_tests;
 mod steps;
-mod studio;
+pub(crate) mod studio;
 pub(crate) mod target;
-mod tone;
+pub(crate) mod tone;
 
 pub(crate) use camera::{Camera, Standpoint};
 pub(crate) use deviation::{DEVIATION_PX_SCALE, deviation_scale};

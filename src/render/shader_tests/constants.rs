@@ -16,6 +16,7 @@ use crate::render::layout::{
     AXIS_COLORS, BACK_FACE_COLOR, CHECKER_LIGHT, CHECKER_LINE, CHECKER_U, CHECKER_V, FOLD_COLOR, FOUND_EMITTED,
     NORMAL_COLOR, WASTE_COLOR, edge_color, linear, overlay_bits,
 };
+use crate::render::reflectance::{COAT_F0, LEAST_ALPHA};
 use crate::render::scale::Scale;
 use crate::settings::{Colors, Overlays};
 use crate::tessellate::shared_constants::{
@@ -98,6 +99,9 @@ fn table() -> Vec<(&'static str, Expected)> {
         ("DOMAIN_POINTS", number(DOMAIN_POINTS as u32)),
         ("DOMAIN_TRIANGLES", number(DOMAIN_TRIANGLES as u32)),
         ("TILE", number(TILE)),
+        ("PI", number(std::f32::consts::PI)),
+        ("COAT_F0", number(COAT_F0)),
+        ("LEAST_ALPHA", number(LEAST_ALPHA)),
         ("SCALE_STOPS", number(Scale::STOPS as u32)),
         ("FOUND_EMITTED", number(FOUND_EMITTED)),
         ("OVERLAY_WIREFRAME", overlay(Overlays { wireframe: true, ..none })),

@@ -10,6 +10,7 @@ use crate::gpu::layout::{
 };
 use crate::render::coverage::Sieve;
 use crate::render::layout::{Frame, Material, Pick};
+use crate::render::prefilter_pass::PrefilterParams;
 use crate::tessellate::CoverageView;
 
 /// The size of a struct in WGSL, and the name and offset of each member.
@@ -102,6 +103,7 @@ fn shared_structs_have_the_same_layout() {
         ground,
         scale,
     });
+    same!(PrefilterParams { roughness, sample_count, size, source_size });
     same!(CoverageView { clip_from_object, slack, viewport, sample_count, fronts_only, snap });
     same!(Material { base_color });
     same!(Sieve { view, triangle_count, material_count, first_draw });
