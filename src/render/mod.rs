@@ -50,10 +50,11 @@ pub(crate) use target::Target;
 #[cfg(test)]
 pub(crate) use target::samples;
 
-/// The shader files with entry points for drawing and picking. Each makes one shader module.
+/// The shader files with entry points for drawing and picking, and the light that draws read. Each makes one shader module.
 #[cfg(test)]
-static MODULES: [&crate::gpu::WgslFile; 8] = [
+static MODULES: [&crate::gpu::WgslFile; 9] = [
     &coverage::PASS_COVERAGE,
+    &environment::ENVIRONMENT,
     &leaks::DRAW_LEAKS,
     &pick::DRAW_PICK,
     &pipelines::DRAW_GROUND,
