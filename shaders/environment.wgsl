@@ -14,7 +14,7 @@ struct Surroundings {
     tone_curve: u32,
 }
 
-// Levels of the cube map. Roughness grows evenly from 0 at the first to 1 at the last.
+// Levels of the cube map: from a mirror's to that of roughness 1.
 const ENVIRONMENT_LEVELS: u32 = 6u;
 
 // Width and height of the table, in texels. The first and the last are for cosine and roughness 0 and 1.
@@ -25,11 +25,15 @@ const DFG_SIZE: u32 = 64u;
 @group(1) @binding(18) var dfg_table: texture_2d<f32>;
 @group(1) @binding(19) var<uniform> surroundings: Surroundings;
 
+// The level of the cube map that has a roughness. Levels are closer where surfaces are smooth.
+fn level_of_roughness(roughness: f32) -> f32 {
+    return f32(ENVIRONMENT_LEVELS - 1u) * pow(roughness, 2.0 / 3.0);
+}
+
 // Radiance from a direction, blurred as a surface of that roughness would.
 fn environment_radiance(direction: vec3<f32>, roughness: f32) -> vec3<f32> {
-    let level = roughness * f32(ENVIRONMENT_LEVELS - 1u);
     let turned = surroundings.light_from_object * direction;
-    return surroundings.brightness * textureSampleLevel(environment_map, environment_sampler, turned, level).rgb;
+    return surroundings.brightness * textureSampleLevel(environment_map, environment_sampler, turned, level_of_roughness(roughness)).rgb;
 }
 
 // Irradiance of a surface with that normal, divided by PI (Ramamoorthi and Hanrahan 2001, equation 11).
@@ -53,11 +57,12 @@ fn ambient_reflection(look: LookAt, normal: vec3<f32>, to_eye: vec3<f32>) -> vec
     var light: AmbientLight;
     light.diffuse = environment_irradiance(normal);
     light.facing = clamp(dot(normal, to_eye), 0.0, 1.0);
-    light.reflected = environment_radiance(reflect(-to_eye, normal), look.roughness);
+    light.reflected = environment_radiance(dominant_direction(normal, to_eye, look.roughness), look.roughness);
     light.dfg = environment_dfg(light.facing, look.roughness);
     if look.coat > 0.0 {
         light.coat_facing = clamp(dot(look.coat_normal, to_eye), 0.0, 1.0);
-        light.coat_reflected = environment_radiance(reflect(-to_eye, look.coat_normal), look.coat_roughness);
+        let coat_direction = dominant_direction(look.coat_normal, to_eye, look.coat_roughness);
+        light.coat_reflected = environment_radiance(coat_direction, look.coat_roughness);
         light.coat_dfg = environment_dfg(light.coat_facing, look.coat_roughness);
     }
     return reflect_ambient(look, light);

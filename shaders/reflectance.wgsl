@@ -34,7 +34,7 @@ struct LookAt {
 struct AmbientLight {
     // Irradiance divided by PI.
     diffuse: vec3<f32>,
-    // Radiance along the reflected direction, blurred by the surface's roughness, and by the coat's.
+    // Radiance from the dominant direction, blurred by the surface's roughness, and by the coat's.
     reflected: vec3<f32>,
     coat_reflected: vec3<f32>,
     // From the table of directional albedos, for the surface and for the coat.
@@ -93,6 +93,14 @@ fn unoccluded_reflection(occlusion: f32, facing: f32, roughness: f32) -> f32 {
     let alpha = roughness * roughness;
     let base = max(facing + occlusion, 0.0);
     return clamp(pow(base, exp2(-16.0 * alpha - 1.0)) - 1.0 + occlusion, 0.0, 1.0);
+}
+
+// The direction that the light which a rough surface reflects towards the eye comes from, on average: nearer to the normal than
+// a mirror's (Lagarde and de Rousiers 2014, section 4.9.3). Of unit length.
+fn dominant_direction(normal: vec3<f32>, to_eye: vec3<f32>, roughness: f32) -> vec3<f32> {
+    let alpha = roughness * roughness;
+    let mirrored = (1.0 - alpha) * (sqrt(1.0 - alpha) + alpha);
+    return normalize(mix(normal, reflect(-to_eye, normal), mirrored));
 }
 
 // The part of the light that the coat reflects, of a light that is the same from all sides.

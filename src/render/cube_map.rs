@@ -5,7 +5,7 @@ use glam::{Vec2, Vec3, vec2};
 use super::prefilter::cube_direction;
 
 /// Linear RGB for every direction, on six faces, from level to level at half the width.
-pub(super) struct CubeMap {
+pub(crate) struct CubeMap {
     /// Width of a face of the first level, in texels. It is a power of two.
     pub size: u32,
     /// The texels of each level, face by face in the order of WebGPU, each row by row from the top.
@@ -14,7 +14,7 @@ pub(super) struct CubeMap {
 
 impl CubeMap {
     /// Takes the mean of four directions for each texel of the first level, and the mean of four texels for those of the others.
-    pub fn of(size: u32, radiance: impl Fn(Vec3) -> Vec3) -> Self {
+    pub(crate) fn of(size: u32, radiance: impl Fn(Vec3) -> Vec3) -> Self {
         let size = size.next_power_of_two();
         let mean = |face, x: u32, y: u32| {
             let spots = [(0.25, 0.25), (0.75, 0.25), (0.25, 0.75), (0.75, 0.75)];
@@ -32,7 +32,7 @@ impl CubeMap {
     }
 
     /// The light of the first level's texels: direction, solid angle in sr, and linear RGB.
-    pub fn lights(&self) -> impl Iterator<Item = (Vec3, f32, Vec3)> {
+    pub(crate) fn lights(&self) -> impl Iterator<Item = (Vec3, f32, Vec3)> {
         let first = self.levels.first().into_iter().flatten();
         texels(self.size).zip(first).map(|((face, x, y), &light)| {
             let at = face_place(vec2(x as f32, y as f32) + 0.5, self.size);
@@ -45,12 +45,12 @@ impl CubeMap {
 }
 
 /// A place on a face, from texels to -1 to 1.
-pub(super) fn face_place(texel: Vec2, size: u32) -> Vec2 {
+pub(crate) fn face_place(texel: Vec2, size: u32) -> Vec2 {
     texel * (2.0 / size as f32) - 1.0
 }
 
 /// Face, column and row of every texel of a level, in the order of [`CubeMap::levels`].
-pub(super) fn texels(size: u32) -> impl Iterator<Item = (u32, u32, u32)> {
+pub(crate) fn texels(size: u32) -> impl Iterator<Item = (u32, u32, u32)> {
     (0..6).flat_map(move |face| (0..size).flat_map(move |y| (0..size).map(move |x| (face, x, y))))
 }
 
@@ -67,7 +67,7 @@ fn halved(level: &[Vec3], width: usize) -> Vec<Vec3> {
 #[cfg(test)]
 impl CubeMap {
     /// What a sampler gives that blends texels and levels, also across the borders of faces.
-    pub fn sample(&self, direction: Vec3, level: f32) -> Vec3 {
+    pub(crate) fn sample(&self, direction: Vec3, level: f32) -> Vec3 {
         let level = level.clamp(0.0, self.levels.len() as f32 - 1.0);
         let below = level.floor();
         let near = self.sample_level(direction, below as usize);

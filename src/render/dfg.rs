@@ -8,14 +8,14 @@ use glam::{Vec3, vec3};
 use super::prefilter::hammersley;
 
 /// Width and height of the table; `DFG_SIZE` in `shaders/environment.wgsl`.
-pub(super) const DFG_SIZE: u32 = 64;
+pub(crate) const DFG_SIZE: u32 = 64;
 
 /// Microfacets that an entry is computed from. With four times as many, no entry changes by more than 0.002.
 const SAMPLES: u32 = 128;
 
 /// The table, computed when it is first needed: [`albedo_factors`] by the cosine, then by the roughness. The first and the last
 /// entry are for 0 and 1.
-pub(super) fn dfg_table() -> &'static [[f32; 2]] {
+pub(crate) fn dfg_table() -> &'static [[f32; 2]] {
     static TABLE: OnceLock<Vec<[f32; 2]>> = OnceLock::new();
     TABLE.get_or_init(|| {
         let part = |index: u32| index as f32 / (DFG_SIZE - 1) as f32;
@@ -67,7 +67,7 @@ fn seen_facet(to_eye: Vec3, alpha: f32, [first, second]: [f32; 2]) -> Vec3 {
 
 /// Twin of `environment_dfg` in `shaders/environment.wgsl`.
 #[cfg(test)]
-pub(super) fn environment_dfg(facing: f32, roughness: f32) -> [f32; 2] {
+pub(crate) fn environment_dfg(facing: f32, roughness: f32) -> [f32; 2] {
     let table = dfg_table();
     let last = DFG_SIZE as usize - 1;
     let split = |part: f32| {

@@ -5,11 +5,12 @@ use glam::{Mat3, Vec3};
 use half::f16;
 use wgpu::util::DeviceExt;
 
+use super::blur_levels::ENVIRONMENT_LEVELS;
 use super::cube_map::CubeMap;
 use super::dfg::{DFG_SIZE, dfg_table};
 use super::irradiance::{Irradiance, irradiance};
 use super::panorama::Panorama;
-use super::prefilter_pass::{ENVIRONMENT_LEVELS, REFLECTANCE, cube_view, prefilter};
+use super::prefilter_pass::{REFLECTANCE, cube_view, prefilter};
 use super::studio::studio_light;
 use super::tone::TONE_CURVE_NEUTRAL;
 use crate::gpu::wgsl::{WgslFile, wgsl};
@@ -60,12 +61,10 @@ impl Default for LightView {
 /// the table of directional albedos.
 pub(crate) struct Environment {
     /// [`ENVIRONMENT_LEVELS`] levels in half floats; the first is a mirror's.
-    pub cube: wgpu::Texture,
-    view: wgpu::TextureView,
+    cube: wgpu::TextureView,
     sampler: wgpu::Sampler,
     dfg: wgpu::TextureView,
     irradiance: Irradiance,
-    surroundings: wgpu::Buffer,
 }
 
 impl Environment {
@@ -101,19 +100,11 @@ impl Environment {
         let (source, cube, dfg, sampler) =
             gpu.attempt(|| (upload(gpu, light), empty_cube(gpu, light.size), upload_dfg(gpu), linear_sampler(gpu)))?;
         prefilter(gpu, &source, &cube, &sampler)?;
-        let surroundings = surroundings(&irradiance, &LightView::default());
-        let surroundings = gpu.attempt(|| uniform_buffer(gpu, "surroundings", bytemuck::bytes_of(&surroundings)))?;
-        Ok(Self { view: cube_view(&cube), cube, sampler, dfg, irradiance, surroundings })
+        Ok(Self { cube: cube_view(&cube), sampler, dfg, irradiance })
     }
 
-    /// Turns the light, and sets what the camera sees of it, for all that is submitted from now on.
-    pub(crate) fn set(&self, gpu: &Gpu, view: &LightView) {
-        let surroundings = surroundings(&self.irradiance, view);
-        gpu.queue.write_buffer(&self.surroundings, 0, bytemuck::bytes_of(&surroundings));
-    }
-
-    /// Constants for a picture with this view of the light, for [`Self::entries`]. Each picture has its own, so that one that is
-    /// recorded on another thread can't change them.
+    /// The `Surroundings` of a picture for which the light is turned and shown like this. Each picture has its own, so that one
+    /// that is recorded on another thread doesn't change them.
     pub(crate) fn surroundings(&self, gpu: &Gpu, view: &LightView) -> wgpu::Buffer {
         uniform_buffer(gpu, "surroundings", bytemuck::bytes_of(&surroundings(&self.irradiance, view)))
     }
@@ -142,14 +133,14 @@ impl Environment {
         })
     }
 
-    /// What is bound there.
-    pub(crate) fn entries(&self, first: u32) -> [wgpu::BindGroupEntry<'_>; 4] {
+    /// What is bound there, with what [`Self::surroundings`] returns.
+    pub(crate) fn entries<'a>(&'a self, first: u32, surroundings: &'a wgpu::Buffer) -> [wgpu::BindGroupEntry<'a>; 4] {
         let view = wgpu::BindingResource::TextureView;
         [
-            wgpu::BindGroupEntry { binding: first, resource: view(&self.view) },
+            wgpu::BindGroupEntry { binding: first, resource: view(&self.cube) },
             wgpu::BindGroupEntry { binding: first + 1, resource: wgpu::BindingResource::Sampler(&self.sampler) },
             wgpu::BindGroupEntry { binding: first + 2, resource: view(&self.dfg) },
-            wgpu::BindGroupEntry { binding: first + 3, resource: self.surroundings.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: first + 3, resource: surroundings.as_entire_binding() },
         ]
     }
 }
@@ -179,11 +170,7 @@ fn linear_sampler(gpu: &Gpu) -> wgpu::Sampler {
 
 /// A cube map of half floats whose levels the prefilter will fill.
 fn empty_cube(gpu: &Gpu, size: u32) -> wgpu::Texture {
-    gpu.device.create_texture(&cube_descriptor(
-        size,
-        ENVIRONMENT_LEVELS,
-        wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_SRC,
-    ))
+    gpu.device.create_texture(&cube_descriptor(size, ENVIRONMENT_LEVELS, wgpu::TextureUsages::STORAGE_BINDING))
 }
 
 fn cube_descriptor(size: u32, levels: u32, usage: wgpu::TextureUsages) -> wgpu::TextureDescriptor<'static> {

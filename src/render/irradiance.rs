@@ -8,7 +8,7 @@ use super::cube_map::CubeMap;
 
 /// Coefficients of 1, y, z, x, xy, yz, 3zz - 1, xz and xx - yy of a normal, in linear RGB. Their sum is the irradiance of a
 /// surface with that normal, divided by pi.
-pub(super) type Irradiance = [Vec3; 9];
+pub(crate) type Irradiance = [Vec3; 9];
 
 /// The squares of the constants of the harmonics (equation 3), times what a cosine leaves of each degree, divided by pi
 /// (equation 8).
@@ -18,7 +18,7 @@ const WEIGHTS: [f32; 9] = {
 };
 
 /// The irradiance of an environment.
-pub(super) fn irradiance(map: &CubeMap) -> Irradiance {
+pub(crate) fn irradiance(map: &CubeMap) -> Irradiance {
     let mut sums = Irradiance::default();
     for (direction, solid_angle, light) in map.lights() {
         for (sum, term) in sums.iter_mut().zip(terms(direction)) {
@@ -35,7 +35,7 @@ fn terms(Vec3 { x, y, z }: Vec3) -> [f32; 9] {
 
 /// Twin of `environment_irradiance` in `shaders/environment.wgsl`, of a light that isn't turned.
 #[cfg(test)]
-pub(super) fn irradiance_of(coefficients: &Irradiance, normal: Vec3) -> Vec3 {
+pub(crate) fn irradiance_of(coefficients: &Irradiance, normal: Vec3) -> Vec3 {
     let sum: Vec3 = coefficients.iter().zip(terms(normal)).map(|(&color, term)| color * term).sum();
     sum.max(Vec3::ZERO)
 }

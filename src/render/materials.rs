@@ -83,8 +83,7 @@ impl Materials {
         environment: &Environment,
         surroundings: &wgpu::Buffer,
     ) -> Vec<wgpu::BindGroup> {
-        let mut light = environment.entries(LIGHT_BINDING);
-        light[3].resource = surroundings.as_entire_binding();
+        let light = environment.entries(LIGHT_BINDING, surroundings);
         let group = |own: &UploadedMaterial| {
             let constants = vec![entry(0, own.constants.as_entire_binding())];
             let entries = [constants, entries_of(&own.images), light.to_vec()].concat();

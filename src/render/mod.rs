@@ -1,27 +1,30 @@
 //! Draws pictures of a scene on the device, as a camera sees it, with one indirect draw per material into an offscreen texture.
 
+pub(crate) mod blur_levels;
 pub(crate) mod camera;
 mod coverage;
-mod cube_map;
+pub(crate) mod cube_map;
 mod deviation;
-mod dfg;
-#[allow(dead_code, reason = "nothing draws with it yet")]
+pub(crate) mod dfg;
+#[allow(dead_code, reason = "files of light aren't read yet")]
 pub(crate) mod environment;
 mod frame;
 mod framing;
 mod ground;
-mod irradiance;
+pub(crate) mod irradiance;
 pub(crate) mod layout;
 mod leaks;
 mod legend;
+#[cfg(test)]
+mod light_tests;
 mod marks;
 mod materials;
 mod needs;
 mod panorama;
 mod pick;
 mod pipelines;
-mod prefilter;
-mod prefilter_pass;
+pub(crate) mod prefilter;
+pub(crate) mod prefilter_pass;
 #[cfg(test)]
 pub(crate) mod reflectance;
 mod renderer;
@@ -30,10 +33,10 @@ pub(crate) mod scene;
 #[cfg(test)]
 mod shader_tests;
 mod steps;
-mod studio;
+pub(crate) mod studio;
 pub(crate) mod target;
 mod textures;
-mod tone;
+pub(crate) mod tone;
 
 pub(crate) use camera::{Camera, Standpoint};
 pub(crate) use deviation::{DEVIATION_PX_SCALE, deviation_scale};
@@ -49,10 +52,11 @@ pub(crate) use target::Target;
 #[cfg(test)]
 pub(crate) use target::samples;
 
-/// The shader files with entry points for drawing and picking. Each makes one shader module.
+/// The shader files with entry points for drawing and picking, and the light that draws read. Each makes one shader module.
 #[cfg(test)]
-static MODULES: [&crate::gpu::WgslFile; 9] = [
+static MODULES: [&crate::gpu::WgslFile; 10] = [
     &coverage::PASS_COVERAGE,
+    &environment::ENVIRONMENT,
     &leaks::DRAW_LEAKS,
     &pick::DRAW_PICK,
     &pipelines::DRAW_GROUND,

@@ -14,7 +14,7 @@ pub(super) struct Panorama {
 impl Panorama {
     /// Takes `size` (width and height) pixels, row by row from the top, and halves them until at most `most_rows` are left. What
     /// isn't a number, or is negative, counts as black, and so do pixels that are missing.
-    pub fn new(size: [u32; 2], pixels: &[[f32; 3]], most_rows: usize) -> Self {
+    pub(super) fn new(size: [u32; 2], pixels: &[[f32; 3]], most_rows: usize) -> Self {
         let [width, height] = size.map(|length| length.max(1) as usize);
         let sound = |value: f32| if value.is_finite() { value.clamp(0.0, 65504.0) } else { 0.0 };
         let mut pixels: Vec<Vec3> = pixels.iter().take(width * height).map(|rgb| rgb.map(sound).into()).collect();
@@ -45,7 +45,7 @@ impl Panorama {
     }
 
     /// The light from a unit direction. The panorama's middle is at -Z, +X is to the right of it, and +Y is at the top.
-    pub fn light_from(&self, direction: Vec3) -> Vec3 {
+    pub(super) fn light_from(&self, direction: Vec3) -> Vec3 {
         let across = (0.5 + direction.x.atan2(-direction.z) / TAU) * self.width as f32 - 0.5;
         let down = direction.y.clamp(-1.0, 1.0).acos() / PI * self.height as f32 - 0.5;
         let (left, top) = (across.floor(), down.floor());

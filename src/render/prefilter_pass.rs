@@ -4,23 +4,18 @@ use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
 
+use super::blur_levels::{ENVIRONMENT_LEVELS, SAMPLE_COUNT, roughness_of_level};
 use crate::gpu::wgsl::{WgslFile, wgsl};
 use crate::gpu::{ComputePipeline, Gpu, GpuError, ShaderModule, uniform_buffer};
 
-pub(super) static REFLECTANCE: WgslFile = wgsl!("reflectance");
+pub(crate) static REFLECTANCE: WgslFile = wgsl!("reflectance");
 static PREFILTER: WgslFile = wgsl!("prefilter", REFLECTANCE);
-pub(super) static PASS_PREFILTER: WgslFile = wgsl!("pass_prefilter", PREFILTER);
-
-/// Levels of an environment's cube map; `ENVIRONMENT_LEVELS` in `shaders/environment.wgsl`.
-pub(super) const ENVIRONMENT_LEVELS: u32 = 6;
-
-/// Directions that a texel is blurred from.
-pub(super) const SAMPLE_COUNT: u32 = 256;
+pub(crate) static PASS_PREFILTER: WgslFile = wgsl!("pass_prefilter", PREFILTER);
 
 /// Twin of `PrefilterParams` in `shaders/pass_prefilter.wgsl`.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-pub(super) struct PrefilterParams {
+pub(crate) struct PrefilterParams {
     pub roughness: f32,
     pub sample_count: u32,
     pub size: u32,
@@ -32,7 +27,7 @@ pub(super) struct PrefilterParams {
 ///
 /// # Errors
 /// The pipeline can't be made: out of memory, or a lost device.
-pub(super) fn prefilter(
+pub(crate) fn prefilter(
     gpu: &Gpu,
     source: &wgpu::Texture,
     filtered: &wgpu::Texture,
@@ -65,7 +60,7 @@ fn level_group(
     level: u32,
 ) -> wgpu::BindGroup {
     let params = PrefilterParams {
-        roughness: level as f32 / (ENVIRONMENT_LEVELS - 1) as f32,
+        roughness: roughness_of_level(level),
         sample_count: SAMPLE_COUNT,
         size: filtered.width() >> level,
         source_size: source.width(),
@@ -91,7 +86,7 @@ fn level_group(
 }
 
 /// All faces and levels of a texture of six layers.
-pub(super) fn cube_view(texture: &wgpu::Texture) -> wgpu::TextureView {
+pub(crate) fn cube_view(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor {
         dimension: Some(wgpu::TextureViewDimension::Cube),
         ..Default::default()

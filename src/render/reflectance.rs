@@ -99,6 +99,12 @@ pub(crate) fn unoccluded_reflection(occlusion: f32, facing: f32, roughness: f32)
     (base.powf((-16.0 * alpha - 1.0).exp2()) - 1.0 + occlusion).clamp(0.0, 1.0)
 }
 
+pub(crate) fn dominant_direction(normal: Vec3, to_eye: Vec3, roughness: f32) -> Vec3 {
+    let alpha = roughness * roughness;
+    let mirrored = (1.0 - alpha) * ((1.0 - alpha).sqrt() + alpha);
+    normal.lerp(2.0 * normal.dot(to_eye) * normal - to_eye, mirrored).normalize()
+}
+
 pub(crate) fn coat_albedo(look: &LookAt, coat_dfg: Vec2) -> f32 {
     let f0 = Vec3::splat(COAT_F0);
     look.coat * (albedo_at_once(f0, 1.0, coat_dfg).x + albedo_of_more(f0, 1.0, coat_dfg).x)

@@ -15,7 +15,7 @@ struct SoftBox {
 
 /// How far the light of a box reaches beyond its edge, and how round its corners are, in distances.
 const SOFT_EDGE: f32 = 0.06;
-const CORNER: f32 = 0.12;
+const CORNER: f32 = 0.1;
 
 /// How bright a box is at its corners, where its middle is 1.
 const AT_CORNERS: f32 = 0.7;
@@ -44,26 +44,26 @@ fn smooth_step(x: f32) -> f32 {
 }
 
 /// The radiance that comes from a unit direction, in linear RGB.
-pub(super) fn studio_light(direction: Vec3) -> Vec3 {
+pub(crate) fn studio_light(direction: Vec3) -> Vec3 {
     let side = |azimuth: f32| {
         let (sine, cosine) = azimuth.to_radians().sin_cos();
-        (vec3(sine, 0.25, cosine).normalize(), vec3(cosine, 0.0, -sine))
+        (vec3(sine, 0.1, cosine).normalize(), vec3(cosine, 0.0, -sine))
     };
     let strip = |azimuth: f32, half_size, light| {
         let (middle, along) = side(azimuth);
         SoftBox { middle, along, half_size, light }
     };
     let boxes = [
-        SoftBox { middle: Vec3::Y, along: Vec3::X, half_size: vec2(1.25, 1.0), light: vec3(1.75, 1.75, 1.75) },
-        strip(-75.0, vec2(0.32, 0.95), vec3(2.3, 2.35, 2.45)),
-        strip(95.0, vec2(0.32, 0.95), vec3(2.0, 1.95, 1.9)),
+        SoftBox { middle: Vec3::Y, along: Vec3::X, half_size: vec2(0.85, 0.7), light: vec3(1.72, 1.72, 1.72) },
+        strip(-70.0, vec2(0.36, 0.62), vec3(1.9, 1.95, 2.02)),
+        strip(100.0, vec2(0.26, 0.62), vec3(1.6, 1.56, 1.51)),
     ];
     boxes.iter().map(|soft_box| soft_box.light_from(direction)).sum::<Vec3>() + room(direction)
 }
 
 /// The room: dark grey, with a dim floor that is lighter towards the horizon.
 fn room(direction: Vec3) -> Vec3 {
-    let (floor, wall, ceiling) = (vec3(0.20, 0.195, 0.19), vec3(0.30, 0.30, 0.305), vec3(0.14, 0.14, 0.145));
+    let (floor, wall, ceiling) = (vec3(0.14, 0.137, 0.134), vec3(0.255, 0.255, 0.26), vec3(0.11, 0.11, 0.113));
     if direction.y < 0.0 {
         wall.lerp(floor, smooth_step((-direction.y - 0.2) / 0.2))
     } else {

@@ -12,6 +12,7 @@ mod displacement;
 mod domain;
 mod embed;
 mod error;
+mod light;
 mod limits;
 mod lines;
 mod looks;

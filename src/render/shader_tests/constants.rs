@@ -11,12 +11,16 @@ use crate::gpu::{
     WORKGROUP,
 };
 use crate::mesh::{EdgeKind, MAX_LEVELS, MAX_MAPS, Slot};
+use crate::render::blur_levels::ENVIRONMENT_LEVELS;
 use crate::render::coverage::TILE;
+use crate::render::dfg::DFG_SIZE;
 use crate::render::layout::{
     AXIS_COLORS, BACK_FACE_COLOR, CHECKER_LIGHT, CHECKER_LINE, CHECKER_U, CHECKER_V, FOLD_COLOR, FOUND_EMITTED,
     NORMAL_COLOR, WASTE_COLOR, edge_color, linear, overlay_bits,
 };
+use crate::render::reflectance::{COAT_F0, LEAST_ALPHA};
 use crate::render::scale::Scale;
+use crate::render::tone::{COMPRESSION_START, DESATURATION, TONE_CURVE_NEUTRAL, TONE_CURVE_NONE};
 use crate::settings::{Colors, Overlays};
 use crate::tessellate::shared_constants::{
     AGREEING, ASKED_SEGMENT, BEYOND_LAST, BITS_63, BITS_64, BITS_896, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP,
@@ -99,6 +103,15 @@ fn table() -> Vec<(&'static str, Expected)> {
         ("DOMAIN_POINTS", number(DOMAIN_POINTS as u32)),
         ("DOMAIN_TRIANGLES", number(DOMAIN_TRIANGLES as u32)),
         ("TILE", number(TILE)),
+        ("PI", number(std::f32::consts::PI)),
+        ("ENVIRONMENT_LEVELS", number(ENVIRONMENT_LEVELS)),
+        ("DFG_SIZE", number(DFG_SIZE)),
+        ("TONE_CURVE_NEUTRAL", number(TONE_CURVE_NEUTRAL)),
+        ("TONE_CURVE_NONE", number(TONE_CURVE_NONE)),
+        ("COMPRESSION_START", number(COMPRESSION_START)),
+        ("DESATURATION", number(DESATURATION)),
+        ("COAT_F0", number(COAT_F0)),
+        ("LEAST_ALPHA", number(LEAST_ALPHA)),
         ("SCALE_STOPS", number(Scale::STOPS as u32)),
         ("FOUND_EMITTED", number(FOUND_EMITTED)),
         ("OVERLAY_WIREFRAME", overlay(Overlays { wireframe: true, ..none })),

@@ -9,7 +9,10 @@ use crate::gpu::layout::{
     Params, Patch, PatchFactors, Share, Slab, Vertex,
 };
 use crate::render::coverage::Sieve;
+use crate::render::environment::Surroundings;
 use crate::render::layout::{Frame, MapPlace, Material, Pick};
+use crate::render::prefilter_pass::PrefilterParams;
+use crate::render::reflectance::LookAt;
 use crate::tessellate::CoverageView;
 
 /// The size of a struct in WGSL, and the name and offset of each member.
@@ -103,6 +106,20 @@ fn shared_structs_have_the_same_layout() {
         ground,
         scale,
     });
+    same!(Surroundings { irradiance, light_from_object, brightness, exposure, tone_curve });
+    same!(LookAt {
+        base_color,
+        metallic,
+        specular_color,
+        specular,
+        coat_normal,
+        coat,
+        roughness,
+        coat_roughness,
+        ior,
+        occlusion,
+    });
+    same!(PrefilterParams { roughness, sample_count, size, source_size });
     same!(CoverageView { clip_from_object, slack, viewport, sample_count, fronts_only, snap });
     same!(Material {
         base_color,
