@@ -1,8 +1,11 @@
 //! Blurs an environment as rough surfaces do: twin of `shaders/prefilter.wgsl`.
 
+#[cfg(test)]
 use std::f32::consts::PI;
 
-use glam::{Vec2, Vec3, Vec4, vec2, vec3, vec4};
+use glam::{Vec2, Vec3, vec2, vec3};
+#[cfg(test)]
+use glam::{Vec4, vec4};
 
 /// A direction on a face of a cube map; `at` is -1 to 1 along the face's axes (WebGPU, section on cube maps).
 pub(crate) fn cube_direction(face: u32, at: Vec2) -> Vec3 {
