@@ -178,3 +178,64 @@ impl Geometry for Surface {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn tangents(corners: Vec<Corner>) -> Vec<(Vec3, f32)> {
+        let mut surface = Surface::new(corners);
+        assert!(generate_tangents(&mut surface).is_ok());
+        surface.tangents
+    }
+
+    #[test]
+    fn large_and_small_triangles_have_the_same_tangents() {
+        let places = [Vec2::ZERO, Vec2::X, Vec2::Y];
+        let of = |size: f32| {
+            places.map(|uv| Corner { position: size * Vec3::new(uv.x, uv.x + uv.y, 0.0), normal: Vec3::Z, uv }).to_vec()
+        };
+        let usual = tangents(of(1.0));
+        assert!(
+            usual.iter().all(|(tangent, sign)| {
+                tangent.distance(Vec3::new(1.0, 1.0, 0.0).normalize()) < 1e-6 && *sign == -1.0
+            })
+        );
+        for size in [1e-30, 1e-9, 1e9, 1e36] {
+            for ((tangent, sign), (other, other_sign)) in tangents(of(size)).into_iter().zip(&usual) {
+                assert!(tangent.distance(*other) < 1e-6 && sign == *other_sign, "{size}: {tangent}");
+            }
+        }
+    }
+
+    /// Numbers of few values, so that corners meet and triangles are degenerate, and some that are extreme.
+    fn number() -> impl Strategy<Value = f32> {
+        prop_oneof![8 => (-2..3).prop_map(|i| i as f32), 1 => prop_oneof![Just(1e37), Just(-1e37), Just(1e-37), Just(1e18)]]
+    }
+
+    fn corner() -> impl Strategy<Value = Corner> {
+        let normals = prop_oneof![Just(Vec3::X), Just(Vec3::NEG_X), Just(Vec3::Z)];
+        (number(), number(), number(), normals, number(), number()).prop_map(|(x, y, z, normal, u, v)| Corner {
+            position: Vec3::new(x, y, z),
+            normal,
+            uv: Vec2::new(u, v),
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn whatever_the_triangles_tangents_are_unit_vectors_or_unknown(
+            palette in prop::collection::vec(corner(), 1..12),
+            picks in prop::collection::vec(any::<prop::sample::Index>(), 3..120),
+        ) {
+            let whole = picks.len() / 3 * 3;
+            let corners: Vec<Corner> = picks[..whole].iter().map(|pick| *pick.get(&palette)).collect();
+            for (tangent, sign) in tangents(corners) {
+                prop_assert!(tangent == Vec3::ZERO || (tangent.length() - 1.0).abs() < 1e-5, "{tangent}");
+                prop_assert!(sign.abs() == 1.0);
+            }
+        }
+    }
+}
