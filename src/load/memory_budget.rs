@@ -116,10 +116,10 @@ impl MemoryAccount for Budget {
 
 /// Returns the size of a mesh in memory, in bytes. A texture that materials share counts once.
 fn bytes_of(mesh: &Mesh) -> u64 {
-    let maps = |material: &'_ Material| material.look.maps.clone().into_iter().flatten().map(|map| map.texture);
+    let maps = |material: &Material| material.look.maps.clone().into_iter().flatten().map(|map| map.texture);
     let mut textures: Vec<_> =
         mesh.materials.iter().flat_map(|material| material.texture.clone().into_iter().chain(maps(material))).collect();
-    textures.sort_unstable_by_key(|texture| Arc::as_ptr(texture));
+    textures.sort_unstable_by_key(Arc::as_ptr);
     textures.dedup_by_key(|texture| Arc::as_ptr(texture));
     let textures: usize = textures.iter().map(|texture| texture.rgba.capacity()).sum();
     let materials: usize = mesh.materials.iter().map(|material| size_of::<Material>() + material.name.capacity()).sum();

@@ -45,7 +45,6 @@ impl Mesh {
 mod tests {
     use std::sync::Arc;
 
-    use super::*;
     use crate::mesh::{CornerDetail, Shape};
 
     #[test]

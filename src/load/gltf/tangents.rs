@@ -141,8 +141,8 @@ impl Around {
             return batch.iter().map(|&face| (face, true)).collect();
         }
         self.touched.fill(false);
-        for point in batch.iter().flat_map(|&face| self.points(mesh, face)) {
-            self.touched[point] = true;
+        for &face in batch {
+            self.points(mesh, face).into_iter().for_each(|point| self.touched[point] = true);
         }
         let mut near = Vec::with_capacity(2 * batch.len());
         for &face in faces {

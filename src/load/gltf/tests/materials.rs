@@ -186,7 +186,7 @@ fn colours_of_all_types_multiply() {
                 match component {
                     5121 => bytes.push((value * 255.0) as u8),
                     5123 => bytes.extend(((value * 65535.0) as u16).to_le_bytes()),
-                    _ => bytes.extend((*value as f32).to_le_bytes()),
+                    _ => bytes.extend(f32::to_le_bytes(*value)),
                 }
             }
         }
