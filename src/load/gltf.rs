@@ -127,15 +127,7 @@ pub(super) fn read(
     budget.release(lists.bytes());
     drop(lists);
     progress.set(0.8);
-    let (mut mesh, mut bindings) = builder.finish_bound(name.to_owned(), &budget, progress)?;
-    if let Some(details) = details {
-        bindings = with_details(&mut mesh, details, &bindings, &mut notes, (&budget, progress))?;
-    }
-    match binder.map(|binder| binder.finish(&mesh, &bindings)) {
-        Some(Ok(rig)) => mesh.rig = Some(Arc::new(rig)),
-        Some(Err(warning)) => notes.push(warning),
-        None => {}
-    }
+    let mut mesh = finished(name, (builder, details, binder), &mut notes, (&budget, progress))?;
     // The builder gets transformed normals of unit length, so the reader counts those that weren't in the file.
     mesh.repairs.normals_rescaled += primitives.rescaled;
     warnings = notes.into_warnings();
@@ -199,6 +191,28 @@ fn needs_details(document: &Document, placed: &Placed, materials: &Materials) ->
             primitive.get(&Semantic::Colors(0)).is_some() || materials.needs_details(&primitive.material())
         })
     })
+}
+
+/// Builds the mesh from what was collected, with the details of its corners and its rig.
+///
+/// # Errors
+/// [`GltfError::TooLarge`] and [`GltfError::Cancelled`].
+fn finished(
+    name: &str,
+    (builder, details, binder): (MeshBuilder, Option<DetailTable>, Option<RigBuilder>),
+    notes: &mut Notes,
+    (budget, progress): (&Budget, &Progress),
+) -> Result<Mesh, GltfError> {
+    let (mut mesh, mut bindings) = builder.finish_bound(name.to_owned(), budget, progress)?;
+    if let Some(details) = details {
+        bindings = with_details(&mut mesh, details, &bindings, notes, (budget, progress))?;
+    }
+    match binder.map(|binder| binder.finish(&mesh, &bindings)) {
+        Some(Ok(rig)) => mesh.rig = Some(Arc::new(rig)),
+        Some(Err(warning)) => notes.push(warning),
+        None => {}
+    }
+    Ok(mesh)
 }
 
 /// Gives the mesh the details of its corners, whose numbers in the table these are. Returns their bindings to joints.

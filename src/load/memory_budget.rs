@@ -3,9 +3,7 @@
 //!
 //! A load may take [`PER_BYTE`] times the size of its files, plus [`Limits::memory`]. What counts is the memory in use
 //! at one time. A file of `F` bytes that becomes `T` triangles with `V` distinct corners and `P` points takes, in
-//! bytes, besides textures and animation data (a mesh whose materials need more of its corners, see [`CornerDetail`], takes `52 D`
-//! bytes more for `D` distinct ones and a table of `5 S`, where the old and the new list exist at the same time; then `52 V`, and at
-//! the end `48 V`; and 700 for each triangle of a material whose tangents are being computed):
+//! bytes, besides textures and animation data:
 //!
 //! - while it is read, `F + 32 V + 5 S + 12 T`: the file's bytes, corners, the table that finds equal corners (`S` is
 //!   the first power of two from `8 V / 7` on), and triangles. Each vertex of the glTF primitive that is being read takes
@@ -14,6 +12,9 @@
 //! - while normals are computed, after the file's bytes have been freed: `32 V + 24 T + 4 P`, and 16 for each corner
 //!   that a crease adds.
 //! - at the end `36 V + 12 T`, or `24 T` if triangles were collected in several lists.
+//! - more if materials need details of corners ([`CornerDetail`]), of which `D` are distinct: up to `130 D` and the table's `8 S`
+//!   while they are read, then `52 D + 52 V`, at the end `48 V`; and 1000 for each of about 65,536 triangles at a time whose
+//!   tangents are computed.
 //! - with its topology `32 V + 12 T`; in addition first `32 V` for points, then `16 P + 4 V + 40 T` for patches and
 //!   sides, and 8 for each edge. For a closed mesh this is 92 for each triangle in all.
 
@@ -115,10 +116,10 @@ impl MemoryAccount for Budget {
 
 /// Returns the size of a mesh in memory, in bytes. A texture that materials share counts once.
 fn bytes_of(mesh: &Mesh) -> u64 {
-    let maps = |material: &'_ Material| material.look.maps.clone().into_iter().flatten().map(|map| map.texture);
+    let maps = |material: &Material| material.look.maps.clone().into_iter().flatten().map(|map| map.texture);
     let mut textures: Vec<_> =
         mesh.materials.iter().flat_map(|material| material.texture.clone().into_iter().chain(maps(material))).collect();
-    textures.sort_unstable_by_key(|texture| Arc::as_ptr(texture));
+    textures.sort_unstable_by_key(Arc::as_ptr);
     textures.dedup_by_key(|texture| Arc::as_ptr(texture));
     let textures: usize = textures.iter().map(|texture| texture.rgba.capacity()).sum();
     let materials: usize = mesh.materials.iter().map(|material| size_of::<Material>() + material.name.capacity()).sum();

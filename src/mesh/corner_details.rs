@@ -5,7 +5,8 @@ use glam::{Vec2, Vec3, Vec4};
 /// What a corner has beside the attributes of [`Corner`](super::Corner). Interpolated linearly over a patch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CornerDetail {
-    /// The texture coordinates TEXCOORD_0 and TEXCOORD_1 of the file, untransformed.
+    /// The texture coordinates TEXCOORD_0 and TEXCOORD_1 of the file, untransformed. Those that no map of the corner's material
+    /// uses (see [`MapUv::Set`](super::MapUv::Set)) are zero.
     pub uvs: [Vec2; 2],
     /// Linear RGBA that multiplies the base colour (COLOR_0); white without one.
     pub color: Vec4,

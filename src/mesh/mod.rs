@@ -1,6 +1,7 @@
 //! Geometry: triangles with corners ([`Mesh`]); and the points, edges and sides that they meet in ([`Topology`]).
 
 pub(crate) mod adjacency;
+mod alike_corners;
 mod bounding_box_tree;
 pub(crate) mod bounds;
 pub(crate) mod build_limits;
@@ -73,7 +74,7 @@ pub struct Mesh {
     /// The name of the file or shape, for display.
     pub name: String,
     /// Distinct corners: no two have the same bits in all three attributes (-0 counts as 0), unless an animation moves
-    /// them differently.
+    /// them differently, or their details differ.
     pub corners: Vec<Corner>,
     /// Indices into `corners`, counter-clockwise seen from outside.
     pub triangles: Arc<Vec<[u32; 3]>>,

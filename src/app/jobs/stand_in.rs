@@ -98,7 +98,7 @@ fn simplified(mesh: &Mesh, topology: &Topology, triangles: usize) -> Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{Corner, Shape};
+    use crate::mesh::{Corner, CornerDetail, Shape};
 
     /// A torus of many quads.
     fn large() -> Mesh {
@@ -148,8 +148,11 @@ mod tests {
 
     #[test]
     fn a_stand_in_has_few_triangles_and_the_same_extent() {
-        let mesh = large();
+        let mut mesh = large();
+        let detail = |corner: &Corner| CornerDetail { color: corner.position.extend(1.0), ..CornerDetail::default() };
+        mesh.details = Some(Arc::new(mesh.corners.iter().map(detail).collect()));
         let few = simplified(&mesh, &Topology::of(&mesh), 3_000);
+        assert_eq!(few.details, Some(Arc::new(few.corners.iter().map(detail).collect())));
         assert!(mesh.triangles.len() > 50_000, "the mesh is large: {}", mesh.triangles.len());
         assert!((500..=3_000).contains(&few.triangles.len()), "{} triangles", few.triangles.len());
         assert_eq!(few.materials.len(), mesh.materials.len());

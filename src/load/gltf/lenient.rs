@@ -98,11 +98,15 @@ impl<'a> Members<'a> {
             self.note(
                 name,
                 format_args!("is {value}, but must be at least {least:?}"),
-                format_args!("{least} is used"),
+                format_args!("{} is used", short(least)),
             );
             least
         } else if number > f64::from(most) {
-            self.note(name, format_args!("is {value}, but must be at most {most:?}"), format_args!("{most} is used"));
+            self.note(
+                name,
+                format_args!("is {value}, but must be at most {most:?}"),
+                format_args!("{} is used", short(most)),
+            );
             most
         } else {
             number as f32
@@ -159,4 +163,9 @@ impl<'a> Members<'a> {
     pub(super) fn say(&self, clause: &str) {
         self.notes.borrow_mut().push(format!("{} {clause}.", self.pointer));
     }
+}
+
+/// Formats a number without a long row of zeros.
+fn short(number: f32) -> String {
+    if number.abs() < 1e6 { number.to_string() } else { format!("{number:e}") }
 }
