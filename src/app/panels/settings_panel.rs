@@ -166,6 +166,9 @@ impl App {
             }
             ui.end_row();
         }
+        for option in [&options::LIGHTING, &options::EXPOSURE, &options::TONE_CURVE, &options::LIGHT_ROTATION] {
+            shown_option_row(ui, option, &mut self.settings);
+        }
         self.background_row(ui);
     }
 
