@@ -21,9 +21,7 @@ impl App {
         for command in always {
             self.press(context, command);
         }
-        // What somebody goes on typing when a problem appears is no command.
-        let asks = self.dialogs.error.is_some()
-            || self.dialogs.typed_path.is_some()
+        let asks = self.dialogs.typed_path.is_some()
             || self.commands.palette.is_some()
             || self.dialogs.pending.as_ref().is_some_and(|dialog| dialog.is_new(context));
         if asks || context.egui_wants_keyboard_input() {
