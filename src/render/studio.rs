@@ -1,4 +1,4 @@
-//! The light of a photographer's studio, made in code: soft boxes above and on both sides, in a dark grey room.
+//! The light of a photographer's studio, made in code: soft boxes above, at the front left and on the right, in a grey room.
 
 use glam::{Vec2, Vec3, vec2, vec3};
 
@@ -54,16 +54,16 @@ pub(crate) fn studio_light(direction: Vec3) -> Vec3 {
         SoftBox { middle, along, half_size, light }
     };
     let boxes = [
-        SoftBox { middle: Vec3::Y, along: Vec3::X, half_size: vec2(0.85, 0.7), light: vec3(1.72, 1.72, 1.72) },
-        strip(-70.0, vec2(0.36, 0.62), vec3(1.9, 1.95, 2.02)),
-        strip(100.0, vec2(0.26, 0.62), vec3(1.6, 1.56, 1.51)),
+        SoftBox { middle: Vec3::Y, along: Vec3::X, half_size: vec2(0.85, 0.7), light: vec3(1.6, 1.6, 1.6) },
+        strip(-45.0, vec2(0.38, 0.62), vec3(2.05, 2.1, 2.17)),
+        strip(95.0, vec2(0.26, 0.62), vec3(1.6, 1.56, 1.51)),
     ];
     boxes.iter().map(|soft_box| soft_box.light_from(direction)).sum::<Vec3>() + room(direction)
 }
 
-/// The room: dark grey, with a dim floor that is lighter towards the horizon.
+/// The room: grey, with a dim floor that is lighter towards the horizon.
 fn room(direction: Vec3) -> Vec3 {
-    let (floor, wall, ceiling) = (vec3(0.14, 0.137, 0.134), vec3(0.255, 0.255, 0.26), vec3(0.11, 0.11, 0.113));
+    let (floor, wall, ceiling) = (vec3(0.203, 0.2, 0.197), vec3(0.33, 0.33, 0.335), vec3(0.14, 0.14, 0.143));
     if direction.y < 0.0 {
         wall.lerp(floor, smooth_step((-direction.y - 0.2) / 0.2))
     } else {
@@ -86,9 +86,10 @@ mod tests {
         }
     }
 
-    /// The lights that move with the camera give 0.62 of the cosine towards the key light, 0.22 of a soft fill, and 0.04.
+    /// The lights that move with the camera give 0.62 of the cosine towards the key light, 0.22 of a soft fill, and 0.04. Under the tone
+    /// curve, which darkens what is not bright, the studio looks about as bright if it is a third brighter.
     #[test]
-    fn a_matte_white_sphere_is_about_as_bright_as_under_the_lights_of_the_camera() {
+    fn a_matte_white_sphere_is_a_third_brighter_than_under_the_lights_of_the_camera() {
         let coefficients = irradiance(&CubeMap::of(64, studio_light));
         let (right, up, back) = (Vec3::X, Vec3::Y, Vec3::Z);
         let (key, fill) =
@@ -100,6 +101,6 @@ mod tests {
             count += normal.z;
         }
         let [studio, camera] = [studio / count, camera / count];
-        assert!((studio / camera - 1.0).abs() < 0.1, "{studio} {camera}");
+        assert!((studio / camera - 1.33).abs() < 0.1, "{studio} {camera}");
     }
 }
