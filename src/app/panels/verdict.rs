@@ -92,6 +92,12 @@ impl App {
         let hover = "Pixels of this view through which one can see into the closed mesh. A click goes to the cracked edge at the \
                      largest group of them.";
         let waits = self.jobs.measure.found().is_none();
+        let junctions = self.document.as_ref().and_then(|document| document.checks.t_junctions());
+        let has_cracks = self.jobs.measure.cracks().is_none_or(|cracks| !cracks.edges.is_empty());
+        let is_whole = !has_cracks && junctions.is_some_and(|junctions| junctions.is_empty());
+        if !waits && !self.may_leak() && is_whole {
+            return Line::dim("No leaks in this view", "No edge is cracked.", Destination::Leaks);
+        }
         if !waits && !self.may_leak() {
             let why = "Leaks are counted in views of a closed mesh that is beyond the near plane and wholly drawn. One can see \
                        into others anyway.";
