@@ -1,4 +1,4 @@
-// Linear blend skinning: a corner's position and normal are transformed by the weighted mean of its joints' matrices.
+// Linear blend skinning: a corner's position, normal and tangent are transformed by the weighted mean of its joints' matrices.
 // Twin: src/tessellate/deform.rs.
 
 // A corner at rest: what morph targets and joints are applied to.
@@ -54,6 +54,20 @@ fn deform_normal(matrix: JointMatrix, normal: vec3<f32>) -> vec3<f32> {
     let z = matrix.z.xyz * scale;
     let turned = vec3<f32>(dot(cross(y, z), normal), dot(cross(z, x), normal), dot(cross(x, y), normal));
     return scaled_unit_or(turned * select(1.0, -1.0, dot(x, cross(y, z)) < 0.0), normal);
+}
+
+// Transforms a unit tangent, whose w is the sign of the bitangent: a matrix that mirrors turns that around. If the result has
+// no direction, returns the tangent itself.
+fn deform_tangent(matrix: JointMatrix, tangent: vec4<f32>) -> vec4<f32> {
+    // Scale the matrix, as above.
+    let largest_xy = max(largest_component(matrix.x.xyz), largest_component(matrix.y.xyz));
+    let scale = 1.0 / max(largest_xy, max(largest_component(matrix.z.xyz), 1e-30));
+    let x = matrix.x.xyz * scale;
+    let y = matrix.y.xyz * scale;
+    let z = matrix.z.xyz * scale;
+    let turned = vec3<f32>(dot(x, tangent.xyz), dot(y, tangent.xyz), dot(z, tangent.xyz));
+    let sign = tangent.w * select(1.0, -1.0, dot(x, cross(y, z)) < 0.0);
+    return vec4<f32>(scaled_unit_or(turned, tangent.xyz), sign);
 }
 
 // Returns `vector` at unit length, or `otherwise` if it is zero. No square overflows or underflows.

@@ -6,9 +6,6 @@
 @group(0) @binding(0) var<storage, read> frame: Frame;
 @group(0) @binding(4) var<storage, read> vertex_halves: array<vec4<u32>>;
 @group(0) @binding(5) var<storage, read> indices: array<u32>;
-@group(1) @binding(0) var<uniform> material: Material;
-@group(1) @binding(1) var base_texture: texture_2d<f32>;
-@group(1) @binding(2) var base_sampler: sampler;
 // Only for emitted triangles.
 @group(2) @binding(0) var<uniform> slab: Slab;
 @group(2) @binding(1) var<storage, read> patch_factors: array<PatchFactors>;
@@ -313,14 +310,35 @@ fn meaning(in: Varyings, to_edges: vec3<f32>, edge_heights: vec3<f32>) -> vec4<f
     return vec4<f32>(WASTE_COLOR, f32(in.low));
 }
 
+// The last argument is the colour of the material in light from all around: none, since the lights at the camera take its place.
 @fragment
 fn surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    return surface_color(in, in.normal, front);
+    return surface_color(in, in.normal, front, vec4<f32>(0.0));
 }
 
 @fragment
 fn pixel_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    return surface_color(in, pixel_normal(in.patch_index, in.domain.xy), front);
+    return surface_color(in, pixel_normal(in.patch_index, in.domain.xy), front, vec4<f32>(0.0));
+}
+
+@fragment
+fn lit_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    return lit_surface_color(in, in.normal, front);
+}
+
+@fragment
+fn pixel_lit_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    return lit_surface_color(in, pixel_normal(in.patch_index, in.domain.xy), front);
+}
+
+fn lit_surface_color(in: Varyings, normal: vec3<f32>, front: bool) -> vec4<f32> {
+    let to_eye = toward_eye(frame.clip_from_object, frame.viewport, in.clip.xy);
+    let own = material_color(surface_place(in.uv, in.domain.xy, in.patch_index, normalize(normal), front, to_eye));
+    let color = surface_color(in, normal, front, vec4<f32>(own.rgb, 1.0));
+    if HAS_MASK && own.a == 0.0 {
+        discard;
+    }
+    return color;
 }
 
 // How varyings change from a pixel to the next one on the right, and below. Only varyings have derivatives that can be relied on:
@@ -363,11 +381,13 @@ fn unlit(in: Varyings, normal: vec3<f32>, change: Changes) -> vec4<f32> {
     return vec4<f32>(0.0);
 }
 
-// The colour of the surface without lines over it.
+// The colour of the surface without lines over it. `lit` is the material's in light from all around, if its fourth component isn't
+// 0.
 fn bare_color(
     in: Varyings,
     own_normal: vec3<f32>,
     front: bool,
+    lit: vec4<f32>,
     to_edges: vec3<f32>,
     edge_heights: vec3<f32>,
 ) -> vec3<f32> {
@@ -394,6 +414,9 @@ fn bare_color(
     if marked_back {
         return select(color, FOLD_COLOR, in.folded != 0u);
     }
+    if lit.a > 0.0 {
+        color = lit.rgb;
+    }
     if (frame.overlays & OVERLAY_CLAY) != 0u {
         color = CLAY_COLOR * brightness(lights, normal);
     }
@@ -409,13 +432,13 @@ fn bare_color(
     return select(color, FOLD_COLOR, in.folded != 0u);
 }
 
-fn surface_color(in: Varyings, own_normal: vec3<f32>, front: bool) -> vec4<f32> {
+fn surface_color(in: Varyings, own_normal: vec3<f32>, front: bool, lit: vec4<f32>) -> vec4<f32> {
     // Derivatives first: they need uniform control flow.
     let edge_heights = heights(in.domain);
     let to_edges = in.domain * edge_heights;
     let side_heights = heights(in.corner);
     let to_sides = in.corner * side_heights;
-    var color = bare_color(in, own_normal, front, to_edges, edge_heights);
+    var color = bare_color(in, own_normal, front, lit, to_edges, edge_heights);
     if (frame.overlays & OVERLAY_WIREFRAME) != 0u {
         let opacity = 0.75 * sides_opacity(to_sides, side_heights, 0.5);
         color = mix(color, vec3<f32>(0.008, 0.010, 0.014), opacity);

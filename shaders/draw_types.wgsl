@@ -30,9 +30,39 @@ struct Frame {
     scale: array<vec4<f32>, SCALE_STOPS>,
 }
 
+// Images of a material beside that of the base colour.
+const MAP_COUNT: u32 = 4u;
+
 struct Material {
     // Linear RGBA.
     base_color: vec4<f32>,
+    // Linear RGB that it emits.
+    emissive: vec3<f32>,
+    metallic: f32,
+    // Linear RGB, with the strength below: how a dielectric reflects.
+    specular_color: vec3<f32>,
+    // Perceptual roughness, as that of the coat.
+    roughness: f32,
+    ior: f32,
+    specular: f32,
+    // How much of the surface a clear coat covers.
+    coat: f32,
+    coat_roughness: f32,
+    // 0 without a normal map.
+    normal_scale: f32,
+    occlusion_strength: f32,
+    // With less alpha there is no surface.
+    cutoff: f32,
+    // 1 if the base colour is shown as it is.
+    unlit: f32,
+    maps: array<MapPlace, MAP_COUNT>,
+}
+
+// Where an image is read: u' = u.x u + u.y v + u.z, and v' likewise. u.w is 0 for the texture coordinates of the base colour, and 1 or
+// 2 for the first or second of the corners' details.
+struct MapPlace {
+    u: vec4<f32>,
+    v: vec4<f32>,
 }
 
 // What is in front at a pixel.

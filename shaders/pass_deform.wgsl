@@ -1,4 +1,4 @@
-// Deforms the mesh into a pose: every corner's normal, then every point's position, both from the mesh at rest. A point is
+// Deforms the mesh into a pose: every corner's normal and tangent, then every point's position, all from the mesh at rest. A point is
 // computed once, from the first of its corners, so that it stays one point in every pose.
 
 @group(0) @binding(0) var<storage, read> bindings: array<Binding>;
@@ -9,6 +9,10 @@
 @group(0) @binding(5) var<storage, read_write> corners: array<Corner>;
 // Points, then the control point at every patch's centre.
 @group(0) @binding(6) var<storage, read_write> points: array<vec4<f32>>;
+
+// Each corner's tangent at rest, and the sign of its bitangent; one element, of zeros, for a mesh without tangents.
+@group(0) @binding(7) var<storage, read> tangents: array<vec4<f32>>;
+@group(0) @binding(8) var<storage, read_write> corner_details: array<CornerDetail>;
 
 // Morph targets come first, then joints (glTF 2.0, section 3.7.2.2).
 fn posed_position(corner: u32) -> vec3<f32> {
@@ -45,6 +49,9 @@ fn deform_corners_main(
     let index = grid_index(workgroup, workgroups, local);
     if index < arrayLength(&bindings) {
         corners[index].normal = posed_normal(index);
+        if index < arrayLength(&tangents) {
+            corner_details[index].tangent = deform_tangent(posed_matrix(bindings[index]), tangents[index]);
+        }
     }
 }
 

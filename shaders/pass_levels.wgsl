@@ -37,7 +37,7 @@ fn directions_main(
     shares[point].direction = unit_or(sum, dominant);
 }
 
-// Here `starts` and `point_factors` hold the patches of each corner.
+// Here `point_factors` holds the patches of each corner, and `starts` where they start and end: two numbers a corner.
 @compute @workgroup_size(256)
 fn frames_main(
     @builtin(workgroup_id) workgroup: vec3<u32>,
@@ -45,13 +45,13 @@ fn frames_main(
     @builtin(local_invocation_index) local: u32,
 ) {
     let corner = grid_index(workgroup, workgroups, local);
-    if corner + 1u >= arrayLength(&starts) {
+    if 2u * corner + 1u >= arrayLength(&starts) {
         return;
     }
     var u = vec3<f32>(0.0);
     var v = vec3<f32>(0.0);
     var area = 0.0;
-    for (var i = starts[corner]; i < starts[corner + 1u]; i++) {
+    for (var i = starts[2u * corner]; i < starts[2u * corner + 1u]; i++) {
         let at = patches[point_factors[i]].points;
         let positions = array<vec3<f32>, 3>(points[at[0]].xyz, points[at[1]].xyz, points[at[2]].xyz);
         let own = uv_gradients(positions, patch_uvs(point_factors[i]));

@@ -63,6 +63,16 @@ struct Corner {
     uv: vec2<f32>,
 }
 
+// What a corner has beside its shading attributes, for materials that need more.
+struct CornerDetail {
+    // The texture coordinates TEXCOORD_0 (xy) and TEXCOORD_1 (zw) of the file.
+    uvs: vec4<f32>,
+    // Linear RGBA that multiplies the base colour.
+    color: vec4<f32>,
+    // A unit vector, or zero if it isn't known; w is 1, or -1 where the bitangent is -cross(normal, tangent).
+    tangent: vec4<f32>,
+}
+
 // A curve, which some or all sides of an edge share: its end points in the edge's direction, and its run of `curve_sides`.
 struct Curve {
     points: array<u32, 2>,

@@ -111,12 +111,18 @@ impl Bench<'_> {
 }
 
 /// The settings that are measured in place of these: without clipping, culling, overlays and split, so that all of the
-/// surface is drawn, and nothing else.
+/// surface is drawn, and nothing else, in the light of the camera.
 pub(crate) fn whole(settings: &Settings) -> Settings {
-    let Settings { overlays, deviation_in, split, background, .. } = Settings::default();
+    let plain = Settings::from(Tessellation::default());
+    let Settings { overlays, lighting, exposure, tone_curve, light_rotation, deviation_in, split, background, .. } =
+        plain;
     Settings {
         tessellation: Tessellation { clip: Clip::Off, cull_back_faces: false, ..settings.tessellation },
         overlays,
+        lighting,
+        exposure,
+        tone_curve,
+        light_rotation,
         deviation_in,
         split,
         background,

@@ -25,7 +25,7 @@ use crate::progress::Progress;
 use crate::render::Target;
 use crate::settings::options::{FACTOR, PIXELS, TOLERANCE};
 use crate::settings::{ARENA_BYTES, Settings};
-use crate::tessellate::{Normals, Partitioning, Surface};
+use crate::tessellate::{Normals, Partitioning, Surface, Tessellation};
 use crate::truth::Truth;
 
 #[derive(Debug, clap::Args)]
@@ -240,7 +240,7 @@ impl Session {
             scene,
             target: &self.target,
             truth: truth.as_ref().map(|(truth, _)| truth),
-            base: Settings::default(),
+            base: Settings::from(Tessellation::default()),
             effort: args.effort(),
         };
         let mut rows = Vec::new();

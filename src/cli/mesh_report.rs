@@ -4,10 +4,11 @@ use std::fmt;
 
 use serde::Serialize;
 
+use super::material_report::MaterialInfo;
 use crate::mesh::crease_band::CreaseBand;
 use crate::mesh::rig::{AnimatedCounts, Clip, Rig};
 use crate::mesh::{
-    EdgeCounts, Material, Mesh, NormalFaults, Repairs, TJunction, Topology, WeldPreview, t_junctions, weld_previews,
+    EdgeCounts, Mesh, NormalFaults, Repairs, TJunction, Topology, WeldPreview, t_junctions, weld_previews,
 };
 use crate::names::{on_one_line, shown};
 use crate::numbers::exact;
@@ -46,15 +47,6 @@ pub(super) struct Info {
     /// Every edge has exactly two sides.
     pub closed: bool,
     pub warnings: Vec<String>,
-}
-
-/// A material in numbers.
-#[derive(Clone, Debug, Serialize)]
-pub(super) struct MaterialInfo {
-    pub name: String,
-    pub triangles: u32,
-    /// Width and height in px, where there is a texture.
-    pub texture: Option<[u32; 2]>,
 }
 
 /// An animation in numbers.
@@ -112,7 +104,7 @@ impl Info {
             degenerate: topology.degenerate,
             corners: mesh.corners.len() as u32,
             points: topology.points.len() as u32,
-            materials: mesh.materials.iter().map(material).collect(),
+            materials: mesh.materials.iter().map(MaterialInfo::of).collect(),
             animations: mesh.rig.as_deref().map_or_else(Vec::new, animations),
             edges,
             joins: weld_previews(mesh, (weld == 0.0).then_some(topology), progress)?,
@@ -137,8 +129,7 @@ impl fmt::Display for Info {
         writeln!(f, "from          {x} {y} {z} (object units)")?;
         writeln!(f, "to            {to_x} {to_y} {to_z}, diagonal {}", exact(self.bounds.diagonal))?;
         for material in &self.materials {
-            let texture = material.texture.map_or_else(String::new, |[w, h]| format!(", texture {w} x {h} px"));
-            writeln!(f, "material      {}: {} triangles{texture}", shown(&material.name), material.triangles)?;
+            write!(f, "{material}")?;
         }
         for AnimationInfo { name, duration, moved } in &self.animations {
             // Files have times in f32: an f64 would print digits that the file doesn't have.
@@ -218,14 +209,6 @@ fn t_junction(topology: &Topology, junction: &TJunction) -> TJunctionInfo {
     let at = |point: u32| topology.points[point as usize].to_array();
     let TJunction { edge, point, t, distance } = *junction;
     TJunctionInfo { edge: topology.edge_points(&topology.edges[edge as usize]).map(at), point: at(point), t, distance }
-}
-
-fn material(material: &Material) -> MaterialInfo {
-    MaterialInfo {
-        name: material.name.clone(),
-        triangles: material.triangles.len() as u32,
-        texture: material.texture.as_ref().map(|texture| texture.size),
-    }
 }
 
 fn animations(rig: &Rig) -> Vec<AnimationInfo> {

@@ -11,6 +11,7 @@ mod factors_option;
 mod gallery;
 mod info;
 mod legend;
+mod material_report;
 mod mesh_report;
 mod options;
 mod output_guard;

@@ -52,7 +52,7 @@ fn file() -> Vec<Command> {
         .menu(File, 2),
         Command::new(
             Action::File(FileAction::ForgetTruth),
-            "No reference surface",
+            "Forget reference surface",
             "Goes back to the exact surface of a shape, or to the limit surface of the tessellation.",
         )
         .menu(File, 2)
@@ -69,7 +69,7 @@ fn file() -> Vec<Command> {
         .unless(when::document),
         Command::new(
             Action::File(FileAction::ForgetFactors),
-            "Back to LOD",
+            "Close the factors file",
             "Closes the file of factors. LOD computes them again.",
         )
         .menu(File, 2)
@@ -218,7 +218,7 @@ fn view() -> Vec<Command> {
         .menu(View, 0),
         Command::new(
             Action::Camera(CameraAction::Before),
-            "View before",
+            "Previous view",
             "Goes back to the view before the camera last moved. Undo leaves the view as it is.",
         )
         .keys([plain(Key::OpenBracket)])
@@ -226,8 +226,8 @@ fn view() -> Vec<Command> {
         .unless(when::view_before),
         Command::new(
             Action::Camera(CameraAction::After),
-            "View after",
-            "Goes forward to the view that \u{201c}View before\u{201d} left.",
+            "Next view",
+            "Goes forward again, to the view that \u{201c}Previous view\u{201d} left.",
         )
         .keys([plain(Key::CloseBracket)])
         .menu(View, 0)
@@ -267,13 +267,19 @@ fn view() -> Vec<Command> {
         .menu(View, 1),
         Command::new(Action::MeasureChart, "Measure chart", "Measures the settings that are missing from the chart.")
             .unless(when::measure_chart),
+        Command::new(
+            Action::WidestCrack,
+            "Go to the widest crack",
+            "Shows the cracks, and turns the camera to the worst one: the edge whose gap is the widest on screen.",
+        )
+        .unless(when::document),
         Command::new(Action::HidePanels, "Hide panels", "Hides the panels on both sides, or shows them again. While a control has the focus, Tab goes to the next one.")
             .keys([plain(Key::Tab), ctrl(Key::B)])
             .menu(View, 1),
         Command::new(
             Action::FocusControls,
-            "Keyboard to controls",
-            "Gives the keyboard to the first control. Tab and Shift+Tab then go from one to the next, and Escape gives the \
+            "Go to the controls",
+            "Moves the keyboard's focus to the first control. Tab and Shift+Tab then go from one to the next, and Escape gives the \
              keyboard back to the picture.",
         )
         .keys([plain(Key::F6)])

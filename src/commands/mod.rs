@@ -47,6 +47,7 @@ pub enum Action {
     Background,
     Chart,
     MeasureChart,
+    WidestCrack,
     Theme(egui::ThemePreference),
     LargerText,
     SmallerText,
@@ -278,8 +279,18 @@ pub(crate) fn with_key(sentence: &str, action: &Action) -> String {
 
 /// The names of keys as on a PC, on any platform.
 pub(crate) fn key_names(keys: &[KeyboardShortcut]) -> String {
-    let name = |key: &KeyboardShortcut| key.format(&egui::ModifierNames::NAMES, false);
+    let name = |key: &KeyboardShortcut| with_symbols(key.format(&egui::ModifierNames::NAMES, false));
     keys.iter().map(name).collect::<Vec<_>>().join(", ")
+}
+
+/// The name of a key on this platform, as menus show it.
+pub(crate) fn shown_key(context: &egui::Context, key: &KeyboardShortcut) -> String {
+    with_symbols(context.format_shortcut(key))
+}
+
+/// egui has words for brackets, but keyboards have the brackets.
+fn with_symbols(name: String) -> String {
+    name.replace("OpenBracket", "[").replace("CloseBracket", "]")
 }
 
 /// Every command that there is now.

@@ -1,4 +1,6 @@
-//! Writes binary glTF 2.0: positions, normals, uvs, and materials with base colours and textures.
+//! Writes binary glTF 2.0: positions, normals, uvs, and materials.
+
+mod materials;
 
 use std::borrow::Cow;
 
@@ -8,7 +10,8 @@ use gltf::json::validation::USize64;
 use gltf::json::{self, Index, Root};
 
 use super::{ExportError, Exported};
-use crate::mesh::Texture;
+
+use materials::Written;
 
 /// The most bytes of binary data. The length of a GLB file has 32 bits, and its JSON needs room as well.
 pub(super) const MAX_BYTES: u64 = u32::MAX as u64 - (1 << 24);
@@ -31,16 +34,12 @@ pub(super) fn encode(mesh: &Exported, path: &str) -> Result<Vec<u8>, ExportError
     let mut writer = Writer { root: Root::default(), bin: Vec::with_capacity(bytes as usize) };
     let attributes = writer.attributes(mesh);
     let mut primitives = Vec::new();
-    let mut images = Vec::new();
+    let mut written = Written::default();
     for (material, triangles) in mesh.mesh.materials.iter().zip(&mesh.triangles) {
         if triangles.is_empty() {
             continue;
         }
-        let texture = match &material.texture {
-            Some(texture) => Some(writer.texture(texture, &mut images, path)?),
-            None => None,
-        };
-        let material = writer.material(&material.name, material.base_color, texture);
+        let material = writer.material(material, &mut written, path)?;
         primitives.push(writer.primitive(attributes.clone(), triangles, material));
     }
     writer.finish(&mesh.mesh.name, primitives).map_err(|reason| ExportError::Texture { path: path.to_owned(), reason })
@@ -120,67 +119,6 @@ impl Writer {
         ])
     }
 
-    /// Returns the texture for an image. Materials with the same image share it.
-    fn texture(
-        &mut self,
-        texture: &std::sync::Arc<Texture>,
-        written: &mut Vec<(*const Texture, Index<json::Texture>)>,
-        path: &str,
-    ) -> Result<Index<json::Texture>, ExportError> {
-        let key = std::sync::Arc::as_ptr(texture);
-        if let Some((_, index)) = written.iter().find(|(known, _)| *known == key) {
-            return Ok(*index);
-        }
-        let [width, height] = texture.size;
-        let mut png = std::io::Cursor::new(Vec::new());
-        image::write_buffer_with_format(
-            &mut png,
-            &texture.rgba,
-            width,
-            height,
-            image::ExtendedColorType::Rgba8,
-            image::ImageFormat::Png,
-        )
-        .map_err(|reason| ExportError::Texture { path: path.to_owned(), reason: reason.to_string() })?;
-        let view = self.view(png.get_ref(), None);
-        let source = self.root.push(json::Image {
-            buffer_view: Some(view),
-            mime_type: Some(json::image::MimeType("image/png".into())),
-            name: None,
-            uri: None,
-            extensions: None,
-            extras: Default::default(),
-        });
-        let index = self.root.push(json::Texture {
-            name: None,
-            sampler: None,
-            source,
-            extensions: None,
-            extras: Default::default(),
-        });
-        written.push((key, index));
-        Ok(index)
-    }
-
-    fn material(
-        &mut self,
-        name: &str,
-        base_color: [f32; 4],
-        texture: Option<Index<json::Texture>>,
-    ) -> Index<json::Material> {
-        let info = |index| json::texture::Info { index, tex_coord: 0, extensions: None, extras: Default::default() };
-        self.root.push(json::Material {
-            name: Some(name.to_owned()),
-            pbr_metallic_roughness: json::material::PbrMetallicRoughness {
-                base_color_factor: json::material::PbrBaseColorFactor(base_color),
-                base_color_texture: texture.map(info),
-                metallic_factor: json::material::StrengthFactor(0.0),
-                ..Default::default()
-            },
-            ..Default::default()
-        })
-    }
-
     fn primitive(
         &mut self,
         attributes: Attributes,
@@ -233,3 +171,6 @@ impl Writer {
         glb.to_vec().map_err(|error| error.to_string())
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -92,6 +92,27 @@ pub(crate) struct Corner {
     pub _pad2: [f32; 2],
 }
 
+/// What a corner has beside its shading attributes, for materials that need more: see [`crate::mesh::CornerDetail`].
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct CornerDetail {
+    /// The texture coordinates TEXCOORD_0 and TEXCOORD_1 of the file.
+    pub uvs: [[f32; 2]; 2],
+    pub color: [f32; 4],
+    /// A unit vector, or zero if it isn't known; then the sign of the bitangent, 1 or -1.
+    pub tangent: [f32; 4],
+}
+
+impl CornerDetail {
+    pub(crate) fn of(detail: &crate::mesh::CornerDetail) -> Self {
+        Self {
+            uvs: detail.uvs.map(|uv| uv.to_array()),
+            color: detail.color.to_array(),
+            tangent: detail.tangent.extend(detail.bitangent_sign).to_array(),
+        }
+    }
+}
+
 /// A curve, which some or all sides of an edge share: its end points in the edge's direction, and its run of sides.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]

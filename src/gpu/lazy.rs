@@ -40,6 +40,17 @@ impl<T> Lazy<T> {
         Ok(self.made.get_or_init(|| made))
     }
 
+    /// The same for what says itself whether it could be made.
+    ///
+    /// # Errors
+    /// Those of `make`. Nothing is kept then, so the next call tries again.
+    #[cfg(feature = "cli")]
+    pub(crate) fn get_or_try_make(&self, make: impl FnOnce() -> Result<T, GpuError>) -> Result<&T, GpuError> {
+        // There is nothing that a thread could have left half done when it panicked.
+        let _making = self.making.lock().unwrap_or_else(PoisonError::into_inner);
+        get_or_try(&self.made, make)
+    }
+
     /// Whether it was made.
     #[cfg(test)]
     pub(crate) fn is_made(&self) -> bool {

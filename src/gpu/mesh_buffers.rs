@@ -1,7 +1,7 @@
 //! A mesh in device memory.
 
 use super::buffer::{empty, filled};
-use super::layout::{Corner, Curve, CurveNet, Patch};
+use super::layout::{Corner, CornerDetail, Curve, CurveNet, Patch};
 use super::relief_buffers::{ReliefBuffers, details, patch_maps, shares};
 use super::{Gpu, GpuError};
 use crate::mesh::{Curves, Dominance, Mesh, Sharing, Topology};
@@ -16,6 +16,9 @@ pub struct MeshBuffers {
     /// height image (1 for the first, 0 for none).
     pub points: wgpu::Buffer,
     pub corners: wgpu::Buffer,
+    /// What corners have beside their shading attributes: one element for each of them, or only one, of a corner that has
+    /// nothing, for a mesh without details.
+    pub corner_details: wgpu::Buffer,
     pub patches: wgpu::Buffer,
     pub curves: wgpu::Buffer,
     pub curve_sides: wgpu::Buffer,
@@ -66,6 +69,7 @@ impl MeshBuffers {
         Ok(Self {
             points: filled(gpu, "points", &points)?,
             corners: filled(gpu, "corners", &corners(mesh))?,
+            corner_details: filled(gpu, "corner details", &corner_details(mesh))?,
             patches: filled(gpu, "patches", &patches(topology, &grouped))?,
             curves: filled(gpu, "curves", &curves)?,
             curve_sides: filled(gpu, "sides", &grouped.sides)?,
@@ -92,6 +96,7 @@ impl MeshBuffers {
         [
             &self.points,
             &self.corners,
+            &self.corner_details,
             &self.patches,
             &self.curves,
             &self.curve_sides,
@@ -117,6 +122,13 @@ fn corners(mesh: &Mesh) -> Vec<Corner> {
         _pad2: [0.0; 2],
     };
     mesh.corners.iter().map(corner).collect()
+}
+
+fn corner_details(mesh: &Mesh) -> Vec<CornerDetail> {
+    match &mesh.details {
+        Some(details) => details.iter().map(CornerDetail::of).collect(),
+        None => vec![CornerDetail::of(&crate::mesh::CornerDetail::default())],
+    }
 }
 
 /// A bit for each patch: whether its material has a texture.

@@ -62,7 +62,7 @@ impl MeshPasses {
             (2, &mesh.corners),
             (3, &mesh.patches),
             (6, &mesh.shares),
-            (7, &relief.corner_starts),
+            (7, &relief.corner_ranges),
             (9, &relief.corner_patches),
         ];
         BoundPass::once(&self.frames, on.gpu, &on.pipelines.frames, &buffers)

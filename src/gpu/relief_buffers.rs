@@ -82,7 +82,7 @@ pub struct ReliefBuffers {
     pub factor_starts: wgpu::Buffer,
     /// For each point, the factors of its edges.
     pub factors: wgpu::Buffer,
-    pub corner_starts: wgpu::Buffer,
+    pub corner_ranges: wgpu::Buffer,
     /// For each corner, its patches.
     pub corner_patches: wgpu::Buffer,
     pub corner_count: u32,
@@ -92,21 +92,21 @@ impl ReliefBuffers {
     /// # Errors
     /// A buffer would be larger than the adapter binds.
     pub fn new(gpu: &Gpu, mesh: &Mesh, topology: &Topology, dominance: &Dominance) -> Result<Self, GpuError> {
-        let (corner_starts, corner_patches) = patches_of_corners(mesh, topology);
+        let (corner_ranges, corner_patches) = patches_of_corners(mesh, topology);
         let parts: Vec<[u32; 2]> = dominance.parts.iter().map(|&(corner, part)| [corner, part.to_bits()]).collect();
         Ok(Self {
             part_starts: filled(gpu, "part starts", &dominance.part_starts)?,
             parts: filled(gpu, "parts", &parts)?,
             factor_starts: filled(gpu, "factor starts", &dominance.factor_starts)?,
             factors: filled(gpu, "point factors", &dominance.factors)?,
-            corner_starts: filled(gpu, "corner starts", &corner_starts)?,
+            corner_ranges: filled(gpu, "corner ranges", &corner_ranges)?,
             corner_patches: filled(gpu, "corner patches", &corner_patches)?,
             corner_count: mesh.corners.len() as u32,
         })
     }
 
     pub fn bytes(&self) -> u64 {
-        let corners = [&self.corner_starts, &self.corner_patches];
+        let corners = [&self.corner_ranges, &self.corner_patches];
         let points = [&self.part_starts, &self.parts, &self.factor_starts, &self.factors];
         corners.iter().chain(&points).map(|buffer| buffer.size()).sum()
     }
@@ -142,11 +142,16 @@ pub(crate) fn details(gpu: &Gpu, heights: Option<&Heights>) -> wgpu::Buffer {
     uniform_buffer(gpu, "height details", bytemuck::cast_slice(&table))
 }
 
-/// Where each corner's list of patches starts in the second vector, then where the last ends.
-fn patches_of_corners(mesh: &Mesh, topology: &Topology) -> (Vec<u32>, Vec<u32>) {
+/// Where each corner's list of patches starts in the second vector, and where it ends. Corners that differ in their details alone
+/// have one list, so that displaced normals are as smooth there as if they were one corner.
+fn patches_of_corners(mesh: &Mesh, topology: &Topology) -> (Vec<[u32; 2]>, Vec<u32>) {
+    let alike = mesh.alike_corners();
     let mut starts = vec![0; mesh.corners.len() + 1];
-    let corners =
-        || (0..).zip(&topology.patches).flat_map(|(patch, own)| topology.corners(own).map(|corner| (corner, patch)));
+    let corners = || {
+        (0..)
+            .zip(&topology.patches)
+            .flat_map(|(patch, own)| topology.corners(own).map(|corner| (alike[corner as usize], patch)))
+    };
     corners().for_each(|(corner, _)| starts[corner as usize + 1] += 1);
     for corner in 0..mesh.corners.len() {
         starts[corner + 1] += starts[corner];
@@ -156,7 +161,8 @@ fn patches_of_corners(mesh: &Mesh, topology: &Topology) -> (Vec<u32>, Vec<u32>) 
         patches[next[corner as usize] as usize] = patch;
         next[corner as usize] += 1;
     }
-    (starts, patches)
+    let range = |&corner: &u32| [starts[corner as usize], starts[corner as usize + 1]];
+    (alike.iter().map(range).collect(), patches)
 }
 
 /// The number of each patch's height image: 1 for the first, 0 for none.

@@ -9,6 +9,8 @@ use crate::mesh::{Pose, Rig, Topology};
 /// A rig, and one pose of it.
 pub(super) struct RigBuffers {
     bindings: wgpu::Buffer,
+    /// The corners' tangents at rest; one element, of zeros, for a mesh without tangents.
+    tangents: wgpu::Buffer,
     deltas: wgpu::Buffer,
     palette: wgpu::Buffer,
     morph_weights: wgpu::Buffer,
@@ -25,6 +27,7 @@ impl RigBuffers {
     pub(super) fn new(gpu: &Gpu, rig: &Rig, topology: &Topology, pose: &Pose) -> Result<Self, GpuError> {
         Ok(Self {
             bindings: filled(gpu, "bindings", &rig.bindings)?,
+            tangents: filled(gpu, "tangents", &rig.tangents)?,
             deltas: filled(gpu, "morph targets", &rig.deltas)?,
             palette: filled(gpu, "palette", &pose.palette)?,
             morph_weights: filled(gpu, "morph weights", &pose.weights)?,
@@ -44,14 +47,15 @@ impl RigBuffers {
         Ok(())
     }
 
-    /// The passes that deform the mesh, in the order in which they run: its corners' normals, and its points. Each comes with
+    /// The passes that deform the mesh, in the order in which they run: its corners' normals and tangents, and its points. Each comes with
     /// the grid that it runs over.
     ///
     /// # Errors
     /// A pipeline can't be made: out of memory, or a lost device.
     pub(super) fn passes(&self, on: &PassInputs) -> Result<[(BoundPass, [u32; 3]); 2], GpuError> {
         let inputs = [(0, &self.bindings), (1, &self.deltas), (2, &self.palette), (3, &self.morph_weights)];
-        let corners = [&inputs[..], &[(5, &on.mesh.corners)]].concat();
+        let details = [(7, &self.tangents), (8, &on.mesh.corner_details)];
+        let corners = [&inputs[..], &[(5, &on.mesh.corners)], &details].concat();
         let points = [&inputs[..], &[(4, &self.point_corners), (6, &on.mesh.points)]].concat();
         Ok([
             (BoundPass::new(on.gpu, &on.pipelines.deform_corners, &corners)?, grid(self.corner_count)),
@@ -60,7 +64,7 @@ impl RigBuffers {
     }
 
     pub(super) fn bytes(&self) -> u64 {
-        [&self.bindings, &self.deltas, &self.palette, &self.morph_weights, &self.point_corners]
+        [&self.bindings, &self.tangents, &self.deltas, &self.palette, &self.morph_weights, &self.point_corners]
             .iter()
             .map(|buffer| buffer.size())
             .sum()

@@ -12,6 +12,9 @@
 //! - while normals are computed, after the file's bytes have been freed: `32 V + 24 T + 4 P`, and 16 for each corner
 //!   that a crease adds.
 //! - at the end `36 V + 12 T`, or `24 T` if triangles were collected in several lists.
+//! - more if materials need details of corners ([`CornerDetail`]), of which `D` are distinct: up to `130 D` and the table's `8 S`
+//!   while they are read, then `52 D + 52 V`, at the end `48 V`; and 1000 for each of about 65,536 triangles at a time whose
+//!   tangents are computed.
 //! - with its topology `32 V + 12 T`; in addition first `32 V` for points, then `16 P + 4 V + 40 T` for patches and
 //!   sides, and 8 for each edge. For a closed mesh this is 92 for each triangle in all.
 
@@ -19,6 +22,8 @@ use std::cell::Cell;
 use std::sync::Arc;
 
 use crate::files::Limits;
+#[cfg(doc)]
+use crate::mesh::CornerDetail;
 use crate::mesh::build_limits::{MemoryAccount, MemoryRefused};
 use crate::mesh::{Material, Mesh};
 
@@ -111,14 +116,17 @@ impl MemoryAccount for Budget {
 
 /// Returns the size of a mesh in memory, in bytes. A texture that materials share counts once.
 fn bytes_of(mesh: &Mesh) -> u64 {
-    let mut textures: Vec<_> = mesh.materials.iter().filter_map(|material| material.texture.as_ref()).collect();
-    textures.sort_unstable_by_key(|texture| Arc::as_ptr(texture));
+    let maps = |material: &Material| material.look.maps.clone().into_iter().flatten().map(|map| map.texture);
+    let mut textures: Vec<_> =
+        mesh.materials.iter().flat_map(|material| material.texture.clone().into_iter().chain(maps(material))).collect();
+    textures.sort_unstable_by_key(Arc::as_ptr);
     textures.dedup_by_key(|texture| Arc::as_ptr(texture));
     let textures: usize = textures.iter().map(|texture| texture.rgba.capacity()).sum();
     let materials: usize = mesh.materials.iter().map(|material| size_of::<Material>() + material.name.capacity()).sum();
     let rig = mesh.rig.as_ref().map_or(0, |rig| rig.bytes());
     let [corners, triangles] = [mesh.corners.capacity() * 32, mesh.triangles.capacity() * 12];
-    (corners + triangles + textures + materials + rig) as u64
+    let details = mesh.details.as_ref().map_or(0, |details| size_of_val(&details[..]));
+    (corners + triangles + textures + materials + rig + details) as u64
 }
 
 #[cfg(test)]

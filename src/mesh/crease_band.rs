@@ -15,17 +15,22 @@
 //! (`cuts`). What lies inside a triangle is computed by the triangle (`pieces`).
 
 mod cuts;
+mod details;
 mod fans;
 mod pieces;
+
+use std::sync::Arc;
 
 use serde::Serialize;
 
 use super::build_limits::{BuildError, MAX_TRIANGLES, MemoryAccount};
-use super::mesh_builder::{InputCorner, MeshBuilder};
+use super::detail_table::DetailTable;
+use super::mesh_builder::{InputCorner, MeshBuilder, StoredCorner};
 use super::{Corner, Mesh, Topology};
 use crate::progress::Progress;
 
 use cuts::{Cuts, EdgeCuts, width_in_units};
+use details::detail_in;
 use fans::Fans;
 use pieces::Cutter;
 
@@ -110,6 +115,7 @@ fn rebuilt(
     mut pieces: impl FnMut(u32, &mut dyn FnMut([Corner; 3])),
 ) -> Result<Mesh, BuildError> {
     let (mut builder, mut made) = (MeshBuilder::new(), Vec::new());
+    let mut details = mesh.details.as_ref().map(|details| (details, DetailTable::default()));
     for material in &mesh.materials {
         progress.check()?;
         let index = builder.material(material.clone());
@@ -121,15 +127,26 @@ fn rebuilt(
             let room = builder.make_room_for_triangles(index, made.len(), budget);
             room.and_then(|()| builder.make_room(3 * made.len(), budget))?;
             for corners in made.drain(..) {
-                builder.triangle(index, corners.map(InputCorner::from));
+                let mut kept = [StoredCorner::default(); 3];
+                for (corner, kept) in corners.into_iter().zip(&mut kept) {
+                    let number = match &mut details {
+                        Some((details, table)) => {
+                            table.number(detail_in((mesh, details), topology, triangle, &corner), 0, budget)?
+                        }
+                        None => 0,
+                    };
+                    *kept = builder.corner(InputCorner::from(corner), number);
+                }
+                builder.stored_triangle(index, kept);
             }
             if builder.len() as u64 > MAX_TRIANGLES {
                 return Err(BuildError::TooManyTriangles);
             }
         }
     }
-    let (made, _) = builder.finish_bound(mesh.name.clone(), budget, progress)?;
-    Ok(Mesh { repairs: mesh.repairs, ..made })
+    let (made, numbers) = builder.finish_bound(mesh.name.clone(), budget, progress)?;
+    let details = details.map(|(_, table)| table.into_lists(&numbers, budget)).transpose()?;
+    Ok(Mesh { repairs: mesh.repairs, details: details.map(|(details, _)| Arc::new(details)), ..made })
 }
 
 /// Returns a corner of the mesh, moved to its point.

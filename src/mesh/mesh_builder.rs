@@ -329,12 +329,5 @@ fn repaired(corner: InputCorner) -> (Corner, CornerRepairs) {
     (Corner { position: plus_zero3(position), normal, uv: plus_zero2(corner.uv) }, CornerRepairs(repairs))
 }
 
-impl Material {
-    /// Returns a material of one colour (linear RGBA), without triangles.
-    pub fn plain(name: &str, base_color: [f32; 4]) -> Self {
-        Self { name: name.to_owned(), base_color, texture: None, double_sided: false, triangles: 0..0 }
-    }
-}
-
 #[cfg(test)]
 mod tests;

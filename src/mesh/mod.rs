@@ -1,16 +1,20 @@
 //! Geometry: triangles with corners ([`Mesh`]); and the points, edges and sides that they meet in ([`Topology`]).
 
 pub(crate) mod adjacency;
+mod alike_corners;
 mod bounding_box_tree;
 pub(crate) mod bounds;
 pub(crate) mod build_limits;
 pub(crate) mod chunked_vec;
+pub(crate) mod corner_details;
 pub(crate) mod crease_band;
 pub(crate) mod curves;
+pub(crate) mod detail_table;
 mod dominance;
 pub(crate) mod generate_normals;
 pub(crate) mod heights;
 pub(crate) mod interner;
+pub(crate) mod material;
 pub(crate) mod mesh_builder;
 pub(crate) mod normal_faults;
 pub(crate) mod normals;
@@ -26,13 +30,14 @@ mod union_find;
 pub(crate) mod weld;
 pub(crate) mod weld_preview;
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
 pub use bounds::Bounds;
+pub use corner_details::{CornerDetail, CornerDetails};
 pub use heights::{HeightMap, Heights};
+pub use material::{Alpha, Look, Map, MapUv, Material, Sampling, Slot, Texture, Wrap};
 pub use repairs::Repairs;
 pub use rig::clip::Clip;
 pub use rig::{Moment, Pose, Rig};
@@ -69,7 +74,7 @@ pub struct Mesh {
     /// The name of the file or shape, for display.
     pub name: String,
     /// Distinct corners: no two have the same bits in all three attributes (-0 counts as 0), unless an animation moves
-    /// them differently.
+    /// them differently, or their details differ.
     pub corners: Vec<Corner>,
     /// Indices into `corners`, counter-clockwise seen from outside.
     pub triangles: Arc<Vec<[u32; 3]>>,
@@ -77,6 +82,8 @@ pub struct Mesh {
     pub materials: Vec<Material>,
     /// The height images that displacement can move the surface by.
     pub heights: Option<Arc<Heights>>,
+    /// More about each corner, for meshes whose materials need it.
+    pub details: Option<Arc<CornerDetails>>,
     /// How many corners had to be repaired.
     pub repairs: Repairs,
     /// The joints, morph targets and clips of an animated mesh.
@@ -88,28 +95,4 @@ impl Mesh {
     pub(crate) fn has_texture_coordinates(&self) -> bool {
         self.corners.windows(2).any(|pair| pair[0].uv != pair[1].uv)
     }
-}
-
-/// The look of some of a mesh's patches.
-#[derive(Clone, Debug)]
-pub struct Material {
-    /// The name in the file.
-    pub name: String,
-    /// Linear RGBA, 0 to 1.
-    pub base_color: [f32; 4],
-    /// The image that multiplies the base colour. Materials that use the same image share it.
-    pub texture: Option<Arc<Texture>>,
-    /// Whether its triangles are also meant to be seen from behind.
-    pub double_sided: bool,
-    /// The mesh's triangles of this material.
-    pub triangles: Range<u32>,
-}
-
-/// An 8-bit sRGB image with straight alpha, stored row by row from the top.
-#[derive(Clone, Debug)]
-pub struct Texture {
-    /// Width and height in px.
-    pub size: [u32; 2],
-    /// Red, green, blue and alpha: 4 bytes a pixel.
-    pub rgba: Vec<u8>,
 }

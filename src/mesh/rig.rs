@@ -23,6 +23,9 @@ pub(crate) use clip::{Channel, Clip, Interpolation, Keys, Property};
 pub struct Rig {
     /// One binding for each of the mesh's corners.
     pub(crate) bindings: Vec<Binding>,
+    /// For each binding, the corner's tangent (see [`CornerDetail`](super::CornerDetail)) in the space that its joints' matrices
+    /// start from, and the sign of its bitangent there. Empty without tangents. Morph targets don't change them.
+    pub(crate) tangents: Vec<[f32; 4]>,
     /// The displacements by morph targets: one part for each binding, with an entry for each target that moves or turns
     /// it.
     pub(crate) deltas: Vec<Delta>,
@@ -218,6 +221,7 @@ impl Rig {
         let clips =
             self.clips.iter().flat_map(|clip| &clip.channels).map(|channel| size_of::<Channel>() + 4 * keys(channel));
         size_of_val(&self.bindings[..])
+            + size_of_val(&self.tangents[..])
             + size_of_val(&self.deltas[..])
             + size_of_val(&self.alike[..])
             + size_of_val(&self.nodes[..])

@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 
 use super::Scale;
 use crate::gpu::layout::Vertex;
-use crate::mesh::EdgeKind;
+use crate::mesh::{EdgeKind, Slot};
 use crate::settings::{Colors, Overlays};
 
 /// The constants of a picture.
@@ -42,6 +42,36 @@ pub(crate) struct Frame {
 pub(crate) struct Material {
     /// Linear RGBA.
     pub base_color: [f32; 4],
+    /// Linear RGB that it emits.
+    pub emissive: [f32; 3],
+    pub metallic: f32,
+    /// Linear RGB, with the strength below: how a dielectric reflects.
+    pub specular_color: [f32; 3],
+    /// Perceptual roughness, as that of the coat.
+    pub roughness: f32,
+    pub ior: f32,
+    pub specular: f32,
+    /// How much of the surface a clear coat covers.
+    pub coat: f32,
+    pub coat_roughness: f32,
+    /// 0 without a normal map.
+    pub normal_scale: f32,
+    pub occlusion_strength: f32,
+    /// With less alpha there is no surface.
+    pub cutoff: f32,
+    /// 1 if the base colour is shown as it is.
+    pub unlit: f32,
+    /// In the order of [`Slot::ALL`].
+    pub maps: [MapPlace; Slot::COUNT],
+}
+
+/// Where an image is read: u' = `u[0]` u + `u[1]` v + `u[2]`, and v' likewise. `u[3]` is 0 for the texture coordinates of the base
+/// colour, and 1 or 2 for the first or second of the corners' details.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct MapPlace {
+    pub u: [f32; 4],
+    pub v: [f32; 4],
 }
 
 /// The result of picking: what is in front at a pixel.

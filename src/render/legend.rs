@@ -61,9 +61,9 @@ pub(crate) fn legend_of(colors: Colors, distances: &Distances) -> Option<Legend>
     match colors {
         Colors::Material | Colors::Clay | Colors::Barycentric => None,
         Colors::Zebra => legend(
-            "Jump: break of tangent; kink: of curvature",
-            "Stripes as the shading normals reflect them. They jump where the tangent breaks, and have a kink where only the \
-             curvature does. Surface normals show the patches themselves, other normals what is shaded in their place.",
+            "Stripes break at creases",
+            "Stripes that the surface reflects. A stripe breaks off where the surface has a crease, and has a corner where only \
+             its curvature changes. With surface normals they show the patches, otherwise the normals that are shaded.",
             Shown::Title,
         ),
         Colors::ShadingNormals => legend(
@@ -95,7 +95,7 @@ pub(crate) fn legend_of(colors: Colors, distances: &Distances) -> Option<Legend>
             Shown::Waste,
         ),
         Colors::Excess => legend(
-            "Triangles, times the own least",
+            "Triangles / fewest needed",
             "Colours of patches by how many times as many triangles they have as their own least, 1 to 16: the fewest with \
              which a patch alone would keep the tolerance of LOD by error.",
             scale(EXCESS_SCALE, &[1.0, 2.0, 4.0, 8.0, 16.0], false),

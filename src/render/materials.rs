@@ -1,124 +1,178 @@
-//! Materials on the device: their colours and textures.
+//! Materials on the device: their constants, images and samplers.
 
-use std::sync::Arc;
-
-use image::imageops::FilterType;
 use wgpu::util::DeviceExt;
 
-use super::layout;
+use super::environment::Environment;
+use super::layout::{self, MapPlace};
+use super::textures::{Meaning, Samplers, Textures, white};
 use crate::gpu::Gpu;
-use crate::mesh::{Material, Texture};
+use crate::mesh::{Alpha, Map, MapUv, Material, Sampling, Slot};
 
-/// What the materials of all scenes share: the layout, a sampler and a white texture.
+/// The first binding of the light in the group of a material that is lit; the same in `shaders/environment.wgsl`.
+const LIGHT_BINDING: u32 = 16;
+
+/// Images of a material: that of the base colour, and the maps.
+const IMAGES: usize = 1 + Slot::COUNT;
+
+/// What the materials of all scenes share: layouts, samplers and a white texture.
 pub struct Materials {
+    /// Of the base colour's constants, texture and sampler.
     pub layout: wgpu::BindGroupLayout,
-    /// For materials without a texture.
+    /// Of everything, and the light.
+    pub lit_layout: wgpu::BindGroupLayout,
+    /// For what has no image.
     white: wgpu::TextureView,
-    sampler: wgpu::Sampler,
+    samplers: Samplers,
+}
+
+/// A material on the device.
+#[derive(Clone)]
+pub struct UploadedMaterial {
+    /// Its base colour.
+    pub group: wgpu::BindGroup,
+    constants: wgpu::Buffer,
+    images: [(wgpu::TextureView, wgpu::Sampler); IMAGES],
 }
 
 impl Materials {
     pub fn new(gpu: &Gpu) -> Self {
+        let own = |images| [vec![constants_entry()], image_entries(images)].concat();
         Self {
-            layout: material_layout(gpu),
-            white: upload(gpu, &Texture { size: [1, 1], rgba: vec![255; 4] }),
-            sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
-                label: Some("base color"),
-                address_mode_u: wgpu::AddressMode::Repeat,
-                address_mode_v: wgpu::AddressMode::Repeat,
-                mag_filter: wgpu::FilterMode::Linear,
-                min_filter: wgpu::FilterMode::Linear,
-                mipmap_filter: wgpu::MipmapFilterMode::Linear,
-                ..Default::default()
-            }),
+            layout: bind_group_layout(gpu, "material", &own(1)),
+            lit_layout: bind_group_layout(
+                gpu,
+                "lit material",
+                &[own(IMAGES), Environment::layout_entries(LIGHT_BINDING).to_vec()].concat(),
+            ),
+            white: white(gpu),
+            samplers: Samplers::default(),
         }
     }
 
-    /// Makes a bind group for each material. A texture that several materials use is uploaded once.
-    pub fn groups(&self, gpu: &Gpu, materials: &[Material]) -> Vec<wgpu::BindGroup> {
-        let mut uploaded: Vec<(*const Texture, wgpu::TextureView)> = Vec::new();
-        let mut view = |texture: &Arc<Texture>| {
-            let key = Arc::as_ptr(texture);
-            if let Some((_, view)) = uploaded.iter().find(|(known, _)| *known == key) {
-                return view.clone();
-            }
-            let view = upload(gpu, texture);
-            uploaded.push((key, view.clone()));
-            view
-        };
-        let group = |material: &Material| {
-            let view = material.texture.as_ref().map_or_else(|| self.white.clone(), &mut view);
-            self.group(gpu, material.base_color, &view)
+    /// Uploads materials. An image that several of them use is uploaded once.
+    pub fn upload(&self, gpu: &Gpu, materials: &[Material]) -> Vec<UploadedMaterial> {
+        let mut textures = Textures::default();
+        materials.iter().map(|material| self.upload_one(gpu, material, &mut textures)).collect()
+    }
+
+    fn upload_one(&self, gpu: &Gpu, material: &Material, textures: &mut Textures) -> UploadedMaterial {
+        let constants = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("material"),
+            contents: bytemuck::bytes_of(&constants(material)),
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
+        let sampler = |sampling| self.samplers.get(gpu, sampling);
+        let base = material.texture.as_ref().map(|texture| textures.view(gpu, texture, Meaning::Colors));
+        let maps = Slot::ALL.map(|slot| match &material.look.maps[slot as usize] {
+            Some(map) => (textures.view(gpu, &map.texture, meaning(slot)), sampler(map.sampling)),
+            None => (self.white.clone(), sampler(Sampling::default())),
+        });
+        let [first, second, third, fourth] = maps;
+        let base = (base.unwrap_or_else(|| self.white.clone()), sampler(material.sampling));
+        let images = [base, first, second, third, fourth];
+        let entries = [vec![entry(0, constants.as_entire_binding())], entries_of(&images[..1])].concat();
+        let group = bind_group(gpu, "material", &self.layout, &entries);
+        UploadedMaterial { group, constants, images }
+    }
+
+    /// The bind groups of materials that a light shines on.
+    pub(super) fn lit_groups(
+        &self,
+        gpu: &Gpu,
+        materials: &[UploadedMaterial],
+        environment: &Environment,
+        surroundings: &wgpu::Buffer,
+    ) -> Vec<wgpu::BindGroup> {
+        let light = environment.entries(LIGHT_BINDING, surroundings);
+        let group = |own: &UploadedMaterial| {
+            let constants = vec![entry(0, own.constants.as_entire_binding())];
+            let entries = [constants, entries_of(&own.images), light.to_vec()].concat();
+            bind_group(gpu, "lit material", &self.lit_layout, &entries)
         };
         materials.iter().map(group).collect()
     }
+}
 
-    fn group(&self, gpu: &Gpu, base_color: [f32; 4], view: &wgpu::TextureView) -> wgpu::BindGroup {
-        let constants = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("material"),
-            contents: bytemuck::bytes_of(&layout::Material { base_color }),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
-        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("material"),
-            layout: &self.layout,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: constants.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(view) },
-                wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(&self.sampler) },
-            ],
-        })
+fn meaning(slot: Slot) -> Meaning {
+    match slot {
+        Slot::MetallicRoughness | Slot::Normal | Slot::Occlusion => Meaning::Numbers,
+        Slot::Emissive => Meaning::Colors,
     }
 }
 
-fn material_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let entry =
-        |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None };
-    let uniform = wgpu::BufferBindingType::Uniform;
+/// The constants that shaders read of a material.
+fn constants(material: &Material) -> layout::Material {
+    let look = &material.look;
+    let has_normals = look.maps[Slot::Normal as usize].is_some();
+    layout::Material {
+        base_color: material.base_color,
+        emissive: look.emissive,
+        metallic: look.metallic,
+        specular_color: look.specular_color,
+        roughness: look.roughness,
+        ior: look.ior,
+        specular: look.specular,
+        coat: look.clearcoat,
+        coat_roughness: look.clearcoat_roughness,
+        normal_scale: if has_normals { look.normal_scale } else { 0.0 },
+        occlusion_strength: look.occlusion_strength,
+        cutoff: if let Alpha::Mask(cutoff) = look.alpha { cutoff } else { f32::NEG_INFINITY },
+        unlit: f32::from(u8::from(look.unlit)),
+        maps: look.maps.each_ref().map(|map| map_place(map.as_ref())),
+    }
+}
+
+fn map_place(map: Option<&Map>) -> MapPlace {
+    match map.map(|map| map.uv) {
+        None | Some(MapUv::Own) => MapPlace { u: [1.0, 0.0, 0.0, 0.0], v: [0.0, 1.0, 0.0, 0.0] },
+        Some(MapUv::Set(set, [a, b, c, d, e, f])) => {
+            MapPlace { u: [a, b, c, if set == 0 { 1.0 } else { 2.0 }], v: [d, e, f, 0.0] }
+        }
+    }
+}
+
+fn constants_entry() -> wgpu::BindGroupLayoutEntry {
+    let ty = wgpu::BufferBindingType::Uniform;
+    layout_entry(0, wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None })
+}
+
+/// A texture and a sampler for each of so many images.
+fn image_entries(images: usize) -> Vec<wgpu::BindGroupLayoutEntry> {
     let texture = wgpu::BindingType::Texture {
         sample_type: wgpu::TextureSampleType::Float { filterable: true },
         view_dimension: wgpu::TextureViewDimension::D2,
         multisampled: false,
     };
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("material"),
-        entries: &[
-            entry(0, wgpu::BindingType::Buffer { ty: uniform, has_dynamic_offset: false, min_binding_size: None }),
-            entry(1, texture),
-            entry(2, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
-        ],
-    })
+    let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+    let both = std::iter::repeat_n([texture, sampler], images).flatten();
+    (1..).zip(both).map(|(binding, ty)| layout_entry(binding, ty)).collect()
 }
 
-/// Uploads an image with all its mip levels. If it is larger than the adapter's textures can be, it is made smaller first.
-fn upload(gpu: &Gpu, texture: &Texture) -> wgpu::TextureView {
-    let limit = gpu.device.limits().max_texture_dimension_2d;
-    let [width, height] = texture.size;
-    let Some(mut level) = image::RgbaImage::from_raw(width, height, texture.rgba.clone()) else {
-        return upload(gpu, &Texture { size: [1, 1], rgba: vec![255; 4] });
-    };
-    if width > limit || height > limit {
-        let fitted = image::DynamicImage::ImageRgba8(level).resize(limit, limit, FilterType::Triangle);
-        level = fitted.to_rgba8();
-    }
-    let (mut bytes, size) = (level.as_raw().clone(), level.dimensions());
-    let mip_level_count = size.0.max(size.1).ilog2() + 1;
-    for _ in 1..mip_level_count {
-        let (width, height) = ((level.width() / 2).max(1), (level.height() / 2).max(1));
-        level = image::imageops::resize(&level, width, height, FilterType::Triangle);
-        bytes.extend_from_slice(level.as_raw());
-    }
-    let descriptor = wgpu::TextureDescriptor {
-        label: Some("base color"),
-        size: wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 },
-        mip_level_count,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba8UnormSrgb,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    };
-    let order = wgpu::util::TextureDataOrder::LayerMajor;
-    let texture = gpu.device.create_texture_with_data(&gpu.queue, &descriptor, order, &bytes);
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
+fn layout_entry(binding: u32, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None }
+}
+
+fn bind_group_layout(gpu: &Gpu, label: &str, entries: &[wgpu::BindGroupLayoutEntry]) -> wgpu::BindGroupLayout {
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
+}
+
+fn entry(binding: u32, resource: wgpu::BindingResource<'_>) -> wgpu::BindGroupEntry<'_> {
+    wgpu::BindGroupEntry { binding, resource }
+}
+
+/// The entries of [`image_entries`].
+fn entries_of(images: &[(wgpu::TextureView, wgpu::Sampler)]) -> Vec<wgpu::BindGroupEntry<'_>> {
+    let both = images.iter().flat_map(|(view, sampler)| {
+        [wgpu::BindingResource::TextureView(view), wgpu::BindingResource::Sampler(sampler)]
+    });
+    (1..).zip(both).map(|(binding, resource)| entry(binding, resource)).collect()
+}
+
+fn bind_group(
+    gpu: &Gpu,
+    label: &str,
+    layout: &wgpu::BindGroupLayout,
+    entries: &[wgpu::BindGroupEntry],
+) -> wgpu::BindGroup {
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries })
 }

@@ -1,25 +1,42 @@
 //! Draws pictures of a scene on the device, as a camera sees it, with one indirect draw per material into an offscreen texture.
 
+pub(crate) mod blur_levels;
 pub(crate) mod camera;
 mod coverage;
+pub(crate) mod cube_map;
 mod deviation;
+pub(crate) mod dfg;
+#[allow(dead_code, reason = "files of light aren't read yet")]
+pub(crate) mod environment;
 mod frame;
 mod framing;
 mod ground;
+pub(crate) mod irradiance;
 pub(crate) mod layout;
 mod leaks;
 mod legend;
+#[cfg(test)]
+mod light_tests;
 mod marks;
 mod materials;
+mod needs;
+mod panorama;
 mod pick;
 mod pipelines;
+pub(crate) mod prefilter;
+pub(crate) mod prefilter_pass;
+#[cfg(test)]
+pub(crate) mod reflectance;
 mod renderer;
 mod scale;
 pub(crate) mod scene;
 #[cfg(test)]
 mod shader_tests;
 mod steps;
+pub(crate) mod studio;
 pub(crate) mod target;
+mod textures;
+pub(crate) mod tone;
 
 pub(crate) use camera::{Camera, Standpoint};
 pub(crate) use deviation::{DEVIATION_PX_SCALE, deviation_scale};
@@ -35,14 +52,17 @@ pub(crate) use target::Target;
 #[cfg(test)]
 pub(crate) use target::samples;
 
-/// The shader files with entry points for drawing and picking. Each makes one shader module.
+/// The shader files with entry points for drawing and picking, and the light that draws read. Each makes one shader module.
 #[cfg(test)]
-static MODULES: [&crate::gpu::WgslFile; 7] = [
+static MODULES: [&crate::gpu::WgslFile; 10] = [
     &coverage::PASS_COVERAGE,
+    &environment::ENVIRONMENT,
     &leaks::DRAW_LEAKS,
     &pick::DRAW_PICK,
     &pipelines::DRAW_GROUND,
     &pipelines::DRAW_LINES,
+    &pipelines::DRAW_LIT,
     &pipelines::DRAW_PLAIN,
     &pipelines::DRAW_SURFACE,
+    &prefilter_pass::PASS_PREFILTER,
 ];

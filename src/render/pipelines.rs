@@ -1,5 +1,12 @@
 //! The pipelines that draw a scene, each made when it is first needed, and their bind group layouts.
 
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::environment::ENVIRONMENT;
+use super::materials::Materials;
+use super::needs::Needs;
+use super::prefilter_pass::REFLECTANCE;
 use super::scene::LineSegment;
 use super::target::{COLOR_FORMAT, DEPTH_FORMAT, samples};
 use crate::gpu::wgsl::{
@@ -12,7 +19,10 @@ pub(super) static DRAW_TYPES: WgslFile = wgsl!("draw_types", TYPES);
 static DRAW_DENSITY: WgslFile = wgsl!("draw_density");
 pub(super) static DRAW_GROUND: WgslFile = wgsl!("draw_ground", DRAW_DENSITY, DRAW_TYPES);
 static DRAW_LIGHT: WgslFile = wgsl!("draw_light");
+pub(super) static DRAW_LIT: WgslFile =
+    wgsl!("draw_lit", DRAW_LIGHT, DRAW_MATERIAL, DRAW_NORMAL, DRAW_TYPES, OCTAHEDRAL_NORMAL, SURFACE, TYPES);
 static DRAW_LOOKS: WgslFile = wgsl!("draw_looks", DRAW_DENSITY);
+static DRAW_MATERIAL: WgslFile = wgsl!("draw_material", DRAW_NORMAL, DRAW_TYPES, ENVIRONMENT, REFLECTANCE, TYPES);
 static DRAW_NORMAL: WgslFile = wgsl!("draw_normal", FACTORS, LOAD_NET, LOADS, NORMAL, TYPES);
 pub(super) static DRAW_PLAIN: WgslFile =
     wgsl!("draw_plain", DRAW_LIGHT, DRAW_NORMAL, DRAW_TYPES, OCTAHEDRAL_NORMAL, SURFACE, TYPES);
@@ -22,6 +32,7 @@ pub(super) static DRAW_SURFACE: WgslFile = wgsl!(
     DRAW_DENSITY,
     DRAW_LIGHT,
     DRAW_LOOKS,
+    DRAW_MATERIAL,
     DRAW_NORMAL,
     DRAW_TYPES,
     FACTORS,
@@ -32,7 +43,7 @@ pub(super) static DRAW_SURFACE: WgslFile = wgsl!(
 pub(super) static DRAW_LINES: WgslFile = wgsl!("draw_lines", DRAW_TYPES, FACTORS, OCTAHEDRAL_NORMAL, TYPES);
 
 /// What a pipeline draws.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Draw {
     /// Emitted triangles with the material's colour alone.
     Plain(Faces),
@@ -47,6 +58,14 @@ pub(super) enum Draw {
     Pulled(Faces, NormalsAt),
     /// The input triangles, with any overlays.
     Source,
+    /// Emitted triangles with materials in light from all around.
+    Lit(Faces, NormalsAt, Needs),
+    /// [`Self::Indexed`] with such materials.
+    LitIndexed(Faces, NormalsAt, Needs),
+    /// [`Self::Pulled`] with such materials.
+    LitPulled(Faces, NormalsAt, Needs),
+    /// [`Self::Source`] with such materials.
+    LitSource(Needs),
     /// The grid on the ground.
     Ground,
     /// Lines over the mesh.
@@ -56,7 +75,7 @@ pub(super) enum Draw {
 }
 
 /// Which faces are drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Faces {
     Both,
     /// Those that face the eye.
@@ -64,7 +83,7 @@ pub(super) enum Faces {
 }
 
 /// Which part of a line is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Occluded {
     /// All of it, faintly, even behind surfaces.
     Through,
@@ -73,8 +92,8 @@ pub(super) enum Occluded {
 }
 
 impl Draw {
-    /// Every pipeline that there is.
-    pub(super) const ALL: [Self; 20] = [
+    /// Every pipeline that there is; of those that light materials, the ones with all that materials can need.
+    pub(super) const ALL: [Self; 33] = [
         Self::Plain(Faces::Both),
         Self::Plain(Faces::Fronts),
         Self::Textured(Faces::Both),
@@ -90,6 +109,19 @@ impl Draw {
         Self::Pulled(Faces::Both, NormalsAt::Pixels),
         Self::Pulled(Faces::Fronts, NormalsAt::Pixels),
         Self::Source,
+        Self::Lit(Faces::Both, NormalsAt::Vertices, Needs::ALL),
+        Self::Lit(Faces::Fronts, NormalsAt::Vertices, Needs::ALL),
+        Self::Lit(Faces::Both, NormalsAt::Pixels, Needs::ALL),
+        Self::Lit(Faces::Fronts, NormalsAt::Pixels, Needs::ALL),
+        Self::LitIndexed(Faces::Both, NormalsAt::Vertices, Needs::ALL),
+        Self::LitIndexed(Faces::Fronts, NormalsAt::Vertices, Needs::ALL),
+        Self::LitIndexed(Faces::Both, NormalsAt::Pixels, Needs::ALL),
+        Self::LitIndexed(Faces::Fronts, NormalsAt::Pixels, Needs::ALL),
+        Self::LitPulled(Faces::Both, NormalsAt::Vertices, Needs::ALL),
+        Self::LitPulled(Faces::Fronts, NormalsAt::Vertices, Needs::ALL),
+        Self::LitPulled(Faces::Both, NormalsAt::Pixels, Needs::ALL),
+        Self::LitPulled(Faces::Fronts, NormalsAt::Pixels, Needs::ALL),
+        Self::LitSource(Needs::ALL),
         Self::Ground,
         Self::Lines(Occluded::Through),
         Self::Lines(Occluded::InSight),
@@ -107,6 +139,10 @@ impl Draw {
             NormalsAt::Vertices => "surface_fragment",
             NormalsAt::Pixels => "pixel_surface_fragment",
         };
+        let lit_surface = |places| match places {
+            NormalsAt::Vertices => "lit_surface_fragment",
+            NormalsAt::Pixels => "pixel_lit_surface_fragment",
+        };
         match self {
             Self::Plain(_) => ("plain_vertex", "plain_fragment"),
             Self::Textured(_) => ("textured_vertex", "textured_fragment"),
@@ -114,6 +150,11 @@ impl Draw {
             Self::Indexed(_, places) => ("indexed_vertex", surface(places)),
             Self::Pulled(_, places) => ("pulled_vertex", surface(places)),
             Self::Source => ("source_vertex", "surface_fragment"),
+            Self::Lit(_, NormalsAt::Vertices, _) => ("lit_vertex", "lit_fragment"),
+            Self::Lit(_, NormalsAt::Pixels, _) => ("lit_vertex", "pixel_lit_fragment"),
+            Self::LitIndexed(_, places, _) => ("indexed_vertex", lit_surface(places)),
+            Self::LitPulled(_, places, _) => ("pulled_vertex", lit_surface(places)),
+            Self::LitSource(_) => ("source_vertex", "lit_surface_fragment"),
             Self::Ground => ("ground_vertex", "ground_fragment"),
             Self::Lines(Occluded::Through) => ("hidden_line_vertex", line(Occluded::Through)),
             Self::Lines(Occluded::InSight) => ("line_vertex", line(Occluded::InSight)),
@@ -125,10 +166,10 @@ impl Draw {
     fn vertex_buffers(self) -> Vec<Option<wgpu::VertexBufferLayout<'static>>> {
         match self {
             Self::Plain(_) => vertex_halves(wgpu::VertexStepMode::Vertex)[..1].to_vec(),
-            Self::Textured(_) | Self::PixelNormals(_) | Self::Indexed(..) => {
+            Self::Textured(_) | Self::PixelNormals(_) | Self::Indexed(..) | Self::Lit(..) | Self::LitIndexed(..) => {
                 vertex_halves(wgpu::VertexStepMode::Vertex).to_vec()
             }
-            Self::Pulled(..) | Self::Source | Self::Ground => Vec::new(),
+            Self::Pulled(..) | Self::LitPulled(..) | Self::Source | Self::LitSource(_) | Self::Ground => Vec::new(),
             Self::Lines(_) => vec![Some(wgpu::VertexBufferLayout {
                 array_stride: size_of::<LineSegment>() as u64,
                 step_mode: wgpu::VertexStepMode::Instance,
@@ -156,11 +197,25 @@ impl Draw {
         | Self::Textured(faces)
         | Self::PixelNormals(faces)
         | Self::Indexed(faces, _)
-        | Self::Pulled(faces, _)) = self
+        | Self::Pulled(faces, _)
+        | Self::Lit(faces, ..)
+        | Self::LitIndexed(faces, ..)
+        | Self::LitPulled(faces, ..)) = self
         else {
             return None;
         };
         (faces == Faces::Fronts).then_some(wgpu::Face::Back)
+    }
+
+    /// What it needs for the mesh's materials; none if it doesn't light them.
+    fn needs(self) -> Option<Needs> {
+        match self {
+            Self::Lit(.., needs)
+            | Self::LitIndexed(.., needs)
+            | Self::LitPulled(.., needs)
+            | Self::LitSource(needs) => Some(needs),
+            _ => None,
+        }
     }
 }
 
@@ -181,31 +236,36 @@ fn vertex_halves(step_mode: wgpu::VertexStepMode) -> [Option<wgpu::VertexBufferL
 /// The pipeline of each [`Draw`], and the layouts of their bind groups.
 pub(super) struct DrawPipelines {
     /// Group 0: the frame, points, corners, patches, the arena's vertices and indices, the frame once more as a uniform, curve
-    /// nets, and the parameters of the passes.
+    /// nets, the parameters of the passes, and details of corners.
     pub scene_layout: wgpu::BindGroupLayout,
     /// Group 1: a material's constants, texture and sampler.
-    pub material_layout: wgpu::BindGroupLayout,
+    material_layout: wgpu::BindGroupLayout,
+    /// Group 1 where materials are lit: all of a material, and the light.
+    lit_layout: wgpu::BindGroupLayout,
     /// Group 2: the slab of the chunk that is drawn, and the factors of the slab's patches.
     pub chunk_layout: wgpu::BindGroupLayout,
     /// Group 3: what was measured of a chunk's triangles, their distances to the reference surface, and of patches, their own
     /// least.
     pub measured_layout: wgpu::BindGroupLayout,
     plain: ShaderModule,
+    lit: ShaderModule,
     surface: ShaderModule,
     ground: ShaderModule,
     lines: ShaderModule,
-    pipelines: [Lazy<wgpu::RenderPipeline>; Draw::ALL.len()],
+    pipelines: Mutex<HashMap<Draw, Arc<Lazy<wgpu::RenderPipeline>>>>,
 }
 
 impl DrawPipelines {
     /// Makes the layouts. Compiles nothing yet.
-    pub(super) fn new(gpu: &Gpu, material_layout: wgpu::BindGroupLayout) -> Self {
+    pub(super) fn new(gpu: &Gpu, materials: &Materials) -> Self {
         Self {
             scene_layout: scene_layout(gpu),
-            material_layout,
+            material_layout: materials.layout.clone(),
+            lit_layout: materials.lit_layout.clone(),
             chunk_layout: chunk_layout(gpu),
             measured_layout: measured_layout(gpu),
             plain: ShaderModule::new(&DRAW_PLAIN),
+            lit: ShaderModule::new(&DRAW_LIT),
             surface: ShaderModule::new(&DRAW_SURFACE),
             ground: ShaderModule::new(&DRAW_GROUND),
             lines: ShaderModule::new(&DRAW_LINES),
@@ -217,27 +277,33 @@ impl DrawPipelines {
     ///
     /// # Errors
     /// Out of memory, or a lost device.
-    pub(super) fn get(&self, gpu: &Gpu, draw: Draw) -> Result<&wgpu::RenderPipeline, GpuError> {
+    pub(super) fn get(&self, gpu: &Gpu, draw: Draw) -> Result<wgpu::RenderPipeline, GpuError> {
         let module = match draw {
             Draw::Plain(_) | Draw::Textured(_) | Draw::PixelNormals(_) => &self.plain,
+            Draw::Lit(..) => &self.lit,
             Draw::Indexed(..) | Draw::Pulled(..) | Draw::Source => &self.surface,
+            Draw::LitIndexed(..) | Draw::LitPulled(..) | Draw::LitSource(_) => &self.surface,
             Draw::Ground => &self.ground,
             Draw::Lines(_) | Draw::Normals(_) => &self.lines,
         };
         let module = module.get(gpu)?;
-        // `ALL` has every pipeline.
-        let place = Draw::ALL.iter().position(|known| *known == draw).unwrap_or_default();
-        self.pipelines[place].get_or_make(gpu, || pipeline(gpu, &self.layouts(draw), module, draw))
+        // Nothing is made while the lock is held, so that a picture doesn't wait for pipelines of another.
+        let own = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner).entry(draw).or_default().clone();
+        own.get_or_make(gpu, || pipeline(gpu, &self.layouts(draw), module, draw)).cloned()
     }
 
     /// The layouts of the groups that a pipeline binds.
     fn layouts(&self, draw: Draw) -> Vec<Option<&wgpu::BindGroupLayout>> {
         let (scene, material) = (Some(&self.scene_layout), Some(&self.material_layout));
         let (chunk, deviation) = (Some(&self.chunk_layout), Some(&self.measured_layout));
+        let lit = Some(&self.lit_layout);
         match draw {
             Draw::Plain(_) | Draw::Textured(_) | Draw::PixelNormals(_) => vec![scene, material],
             Draw::Indexed(..) | Draw::Pulled(..) => vec![scene, material, chunk, deviation],
             Draw::Source => vec![scene, material, None, deviation],
+            Draw::Lit(..) => vec![scene, lit],
+            Draw::LitIndexed(..) | Draw::LitPulled(..) => vec![scene, lit, chunk, deviation],
+            Draw::LitSource(_) => vec![scene, lit, None, deviation],
             Draw::Ground | Draw::Lines(_) => vec![scene],
             Draw::Normals(_) => vec![scene, None, chunk],
         }
@@ -252,6 +318,7 @@ fn scene_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     // Vertex shaders have as many storage buffers as WebGPU allows.
     entries.push(buffer_entry(7, READ, fragment));
     entries.push(buffer_entry(8, wgpu::BufferBindingType::Uniform, fragment));
+    entries.push(buffer_entry(9, READ, fragment));
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("scene"), entries: &entries })
 }
 
@@ -285,6 +352,7 @@ fn pipeline(
     draw: Draw,
 ) -> wgpu::RenderPipeline {
     let (vertex, fragment) = draw.entry_points();
+    let constants = draw.needs().map(Needs::constants);
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(vertex),
         bind_group_layouts: layouts,
@@ -311,7 +379,10 @@ fn pipeline(
         fragment: Some(wgpu::FragmentState {
             module,
             entry_point: Some(fragment),
-            compilation_options: Default::default(),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: constants.as_ref().map_or(&[], |constants| constants.as_slice()),
+                ..Default::default()
+            },
             targets: &[Some(wgpu::ColorTargetState {
                 format: COLOR_FORMAT,
                 blend: (!draw.is_opaque()).then_some(wgpu::BlendState::ALPHA_BLENDING),

@@ -4,23 +4,27 @@ use std::ops::Range;
 
 use super::coverage::{Coverage, CoveragePipelines};
 use super::deviation::Deviations;
+use super::environment::{Environment, LightView};
 use super::frame::frame;
 use super::layout::{linear, overlay_bits};
 use super::materials::Materials;
+use super::needs::Needs;
 use super::pipelines::{Draw, DrawPipelines, Faces, Occluded};
 use super::steps::{Step, halves, steps};
 use super::target::samples;
+use super::tone::{TONE_CURVE_NEUTRAL, TONE_CURVE_NONE};
 use super::{Camera, Scene, Target};
 use crate::gpu::layout::DrawArgs;
-use crate::gpu::{ChunkBuffers, Gpu, GpuError, Recorder, bind_group};
+use crate::gpu::{ChunkBuffers, Gpu, GpuError, Lazy, Recorder, bind_group};
 use crate::mesh::Mesh;
-use crate::settings::{Colors, NormalsAt, Overlays, Settings, SplitSide};
+use crate::settings::{Colors, NormalsAt, Overlays, Settings, SplitSide, ToneCurve};
 use crate::tessellate::CoverageView;
 
 /// Draws pictures of any scene on a device. Its pipelines are made when they are first needed.
 pub struct Renderer {
     gpu: Gpu,
     materials: Materials,
+    studio: Lazy<Environment>,
     pipelines: DrawPipelines,
     coverage: CoveragePipelines,
     /// The buffer that is bound where deviations, or patches' own least, aren't known.
@@ -44,13 +48,23 @@ impl Renderer {
         let materials = Materials::new(gpu);
         Self {
             gpu: gpu.clone(),
-            pipelines: DrawPipelines::new(gpu, materials.layout.clone()),
+            pipelines: DrawPipelines::new(gpu, &materials),
             materials,
+            studio: Lazy::default(),
             coverage: CoveragePipelines::new(),
             unknown: Deviations::unknown(gpu),
             samples: samples(gpu),
             sift_from: if gpu.is_software() { SIFT_FROM_IN_SOFTWARE } else { SIFT_FROM },
         }
+    }
+
+    /// The same, with another light in place of the studio's.
+    #[cfg(test)]
+    pub(crate) fn lit_by(gpu: &Gpu, environment: Environment) -> Self {
+        let renderer = Self::new(gpu);
+        // There is none yet, so that nothing fails.
+        let _ = renderer.studio.get_or_try_make(|| Ok(environment));
+        renderer
     }
 
     /// What the materials of all scenes share.
@@ -69,6 +83,9 @@ impl Renderer {
         } else {
             Faces::Both
         };
+        if settings.shows_materials() {
+            self.studio()?;
+        }
         let (materials, _) = surface_draws(settings, scene.tessellator.mesh(), faces);
         let mut draws: Vec<_> = scene
             .tessellator
@@ -78,7 +95,7 @@ impl Renderer {
             .map(|own| materials[usize::from(own.texture.is_some())])
             .collect();
         if settings.split.is_some() && settings.half(SplitSide::Left).is_none() {
-            draws.push(Draw::Source);
+            draws.push(source_draw(settings, scene.tessellator.mesh()));
         }
         if settings.overlays.colors == Colors::Excess {
             scene.tessellator.prepare_own_least(settings.tessellation.partitioning)?;
@@ -136,6 +153,7 @@ impl Renderer {
         let rects = halves(target.size, settings.split);
         let frames =
             SplitSide::BOTH.map(|half| scene.half(half).map(|half| frame(&self.gpu, half, target, camera, settings)));
+        let materials = self.material_groups(scene, settings)?;
         let steps = steps(scene, settings);
         let has_left = settings.half(SplitSide::Left).and(scene.half(SplitSide::Left)).is_some();
         for (index, step) in steps.iter().enumerate().take(range.end).skip(range.start) {
@@ -156,7 +174,7 @@ impl Renderer {
             let (Some(drawn), Some(frame)) = (scene.half(half), &frames[half as usize]) else { continue };
             let (group, rect) = (self.scene_group(drawn, frame), rects[half as usize]);
             let source = if first && !has_left && rects[SplitSide::Left as usize][2] > 0 {
-                Some(self.get(Draw::Source)?)
+                Some(self.get(source_draw(settings, scene.tessellator.mesh()))?)
             } else {
                 None
             };
@@ -167,27 +185,27 @@ impl Renderer {
             let normals = if let Step::Normals(..) = step { Some(self.line_pipelines(Draw::Normals)?) } else { None };
             recorder.render("draw", color, target.depth(first), |pass| {
                 pass.set_bind_group(0, &group, &[]);
-                if let Some(source) = source {
-                    self.draw_source(pass, source, scene, rects[SplitSide::Left as usize]);
+                if let Some(source) = &source {
+                    self.draw_source(pass, source, scene, &materials, rects[SplitSide::Left as usize]);
                 }
                 match *step {
                     Step::Surface(_, chunk) => {
                         pass.set_bind_group(3, &self.measured_group(drawn, Some(chunk)), &[]);
-                        self.draw_chunk(pass, drawn, rect, &surfaces, &drawn.tessellator.chunk(chunk));
+                        self.draw_chunk(pass, drawn, &materials, rect, &surfaces, &drawn.tessellator.chunk(chunk));
                     }
                     Step::Normals(_, chunk) => {
                         let pipelines = normals.iter().flatten();
-                        self.draw_normals(pass, pipelines.copied(), rect, &drawn.tessellator.chunk(chunk));
+                        self.draw_normals(pass, pipelines, rect, &drawn.tessellator.chunk(chunk));
                     }
                     Step::Nothing => {}
                 }
-                if let Some(ground) = ground {
+                if let Some(ground) = &ground {
                     // Both halves have the same ground.
                     pass.set_scissor_rect(0, 0, target.size[0], target.size[1]);
                     pass.set_pipeline(ground);
                     pass.draw(0..6, 0..1);
                 }
-                if let Some(lines) = lines {
+                if let Some(lines) = &lines {
                     draw_lines(pass, lines, scene, rects[SplitSide::Right as usize]);
                     if let Some(left) = scene.half(SplitSide::Left).filter(|_| has_left) {
                         draw_lines(pass, lines, left, rects[SplitSide::Left as usize]);
@@ -198,12 +216,27 @@ impl Renderer {
         Ok(())
     }
 
-    fn get(&self, draw: Draw) -> Result<&wgpu::RenderPipeline, GpuError> {
+    fn get(&self, draw: Draw) -> Result<wgpu::RenderPipeline, GpuError> {
         self.pipelines.get(&self.gpu, draw)
     }
 
+    /// The light of a studio, which is made at the first call.
+    fn studio(&self) -> Result<&Environment, GpuError> {
+        self.studio.get_or_try_make(|| Environment::studio(&self.gpu))
+    }
+
+    /// The bind groups of a scene's materials for a picture with these settings.
+    fn material_groups(&self, scene: &Scene, settings: &Settings) -> Result<Vec<wgpu::BindGroup>, GpuError> {
+        if !settings.shows_materials() {
+            return Ok(scene.materials.iter().map(|own| own.group.clone()).collect());
+        }
+        let studio = self.studio()?;
+        let surroundings = studio.surroundings(&self.gpu, &light_view(settings));
+        Ok(self.materials.lit_groups(&self.gpu, &scene.materials, studio, &surroundings))
+    }
+
     /// The pipelines for lines: first for all of them, faintly, then for the parts in sight.
-    fn line_pipelines(&self, draw: fn(Occluded) -> Draw) -> Result<[&wgpu::RenderPipeline; 2], GpuError> {
+    fn line_pipelines(&self, draw: fn(Occluded) -> Draw) -> Result<[wgpu::RenderPipeline; 2], GpuError> {
         Ok([self.get(draw(Occluded::Through))?, self.get(draw(Occluded::InSight))?])
     }
 
@@ -214,14 +247,14 @@ impl Renderer {
         target: &Target,
         camera: &Camera,
         settings: &Settings,
-    ) -> Result<Surfaces<'_>, GpuError> {
+    ) -> Result<Surfaces, GpuError> {
         let Overlays { folds, back_faces, .. } = settings.overlays;
         let clip_from_object = camera.clip_from_object(target.viewport(), &scene.bounds);
         // These two overlays show faces from behind.
         let fronts = !folds && !back_faces && scene.tessellator.shows_fronts_only(clip_from_object);
         let (mesh, faces) = (scene.tessellator.mesh(), if fronts { Faces::Fronts } else { Faces::Both });
         let (draws, pulled) = surface_draws(settings, mesh, faces);
-        let mut materials = [None; 2];
+        let mut materials = [None, None];
         for own in &mesh.materials {
             let textured = usize::from(own.texture.is_some());
             materials[textured] = Some(self.get(draws[textured])?);
@@ -262,6 +295,7 @@ impl Renderer {
         pass: &mut wgpu::RenderPass,
         pipeline: &wgpu::RenderPipeline,
         scene: &Scene,
+        materials: &[wgpu::BindGroup],
         [x, y, width, height]: [u32; 4],
     ) {
         if width == 0 || height == 0 {
@@ -270,7 +304,7 @@ impl Renderer {
         pass.set_scissor_rect(x, y, width, height);
         pass.set_pipeline(pipeline);
         pass.set_bind_group(3, &self.measured_group(scene, None), &[]);
-        for (material, patches) in scene.materials.iter().zip(&scene.tessellator.topology().material_patches) {
+        for (material, patches) in materials.iter().zip(&scene.tessellator.topology().material_patches) {
             pass.set_bind_group(1, material, &[]);
             pass.draw(3 * patches.start..3 * patches.end, 0..1);
         }
@@ -280,6 +314,7 @@ impl Renderer {
         &self,
         pass: &mut wgpu::RenderPass,
         scene: &Scene,
+        materials: &[wgpu::BindGroup],
         [x, y, width, height]: [u32; 4],
         surfaces: &Surfaces,
         chunk: &ChunkBuffers,
@@ -298,9 +333,9 @@ impl Renderer {
             set_vertices(pass, chunk);
             pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
         }
-        for (material, own) in scene.materials.iter().zip(&scene.tessellator.mesh().materials) {
+        for (material, own) in materials.iter().zip(&scene.tessellator.mesh().materials) {
             // `surfaces` has a pipeline for every material.
-            let Some(pipeline) = surfaces.materials[usize::from(own.texture.is_some())] else { continue };
+            let Some(pipeline) = &surfaces.materials[usize::from(own.texture.is_some())] else { continue };
             pass.set_pipeline(pipeline);
             pass.set_bind_group(1, material, &[]);
             if surfaces.pulled {
@@ -336,8 +371,9 @@ impl Renderer {
         let buffers = scene.tessellator.buffers();
         let (vertices, indices) = scene.tessellator.arena();
         let (nets, params) = (&buffers.curve_nets, scene.tessellator.params());
+        let of_mesh = [&buffers.points, &buffers.corners, &buffers.patches];
         let bound =
-            [frame, &buffers.points, &buffers.corners, &buffers.patches, vertices, indices, frame, nets, params];
+            [&[frame][..], &of_mesh, &[vertices, indices, frame, nets, params, &buffers.corner_details]].concat();
         let bound: Vec<_> = (0..).zip(bound).collect();
         bind_group(&self.gpu, "scene", &self.pipelines.scene_layout, &bound)
     }
@@ -360,18 +396,46 @@ fn surface_draws(settings: &Settings, mesh: &Mesh, faces: Faces) -> ([Draw; 2], 
     // These overlays need data of whole triangles.
     let Overlays { wireframe, folds, colors, .. } = settings.overlays;
     let pulled = wireframe || folds || matches!(colors, Colors::TriangleSize | Colors::Deviation);
+    let has_overlays = overlay_bits(&settings.overlays) != 0;
     let draws = match pulled {
+        _ if settings.shows_materials() => {
+            let draw = if pulled {
+                Draw::LitPulled
+            } else if has_overlays {
+                Draw::LitIndexed
+            } else {
+                Draw::Lit
+            };
+            [draw(faces, places, Needs::of(mesh)); 2]
+        }
         true => [Draw::Pulled(faces, places); 2],
-        false if overlay_bits(&settings.overlays) != 0 => [Draw::Indexed(faces, places); 2],
+        false if has_overlays => [Draw::Indexed(faces, places); 2],
         false if places == NormalsAt::Pixels => [Draw::PixelNormals(faces); 2],
         false => [Draw::Plain(faces), Draw::Textured(faces)],
     };
     (draws, pulled)
 }
 
+/// The pipeline for input triangles.
+fn source_draw(settings: &Settings, mesh: &Mesh) -> Draw {
+    if settings.shows_materials() { Draw::LitSource(Needs::of(mesh)) } else { Draw::Source }
+}
+
+/// How settings turn and show the light.
+fn light_view(settings: &Settings) -> LightView {
+    LightView {
+        rotation: settings.light_rotation,
+        exposure: settings.exposure,
+        tone_curve: match settings.tone_curve {
+            ToneCurve::Neutral => TONE_CURVE_NEUTRAL,
+            ToneCurve::None => TONE_CURVE_NONE,
+        },
+    }
+}
+
 fn draw_lines(
     pass: &mut wgpu::RenderPass,
-    pipelines: [&wgpu::RenderPipeline; 2],
+    pipelines: &[wgpu::RenderPipeline; 2],
     scene: &Scene,
     [x, y, width, height]: [u32; 4],
 ) {
@@ -395,9 +459,9 @@ fn set_vertices(pass: &mut wgpu::RenderPass, chunk: &ChunkBuffers) {
 }
 
 /// How emitted triangles are drawn.
-struct Surfaces<'a> {
+struct Surfaces {
     /// The pipelines for materials without a texture, and with one; `None` if there is no such material.
-    materials: [Option<&'a wgpu::RenderPipeline>; 2],
+    materials: [Option<wgpu::RenderPipeline>; 2],
     /// Whether shaders pull the corners of triangles.
     pulled: bool,
     /// Whether faces that are seen from behind are left out.

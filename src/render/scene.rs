@@ -10,7 +10,7 @@ use super::Scale;
 use super::coverage::Coverage;
 use super::deviation::Deviations;
 use super::layout::linear;
-use super::materials::Materials;
+use super::materials::{Materials, UploadedMaterial};
 use crate::gpu::{ComputePipelines, Gpu, GpuError, Tessellator};
 use crate::measure::DeviationField;
 use crate::mesh::{Bounds, Mesh, Moment, Topology};
@@ -25,7 +25,7 @@ pub struct Scene {
     pub bounds: Bounds,
     /// See [`ulp`].
     pub(super) ulp: f32,
-    pub(super) materials: Vec<wgpu::BindGroup>,
+    pub(super) materials: Vec<UploadedMaterial>,
     pub(super) lines: Option<(wgpu::Buffer, u32)>,
     /// Made when a picture first has enough triangles.
     pub(super) coverage: Option<Coverage>,
@@ -72,7 +72,7 @@ impl Scene {
         arena_bytes: u64,
     ) -> Result<Self, GpuError> {
         let tessellator = Tessellator::new(gpu, pipelines, mesh.clone(), topology, arena_bytes)?;
-        let materials = materials.groups(gpu, &mesh.materials);
+        let materials = materials.upload(gpu, &mesh.materials);
         let ulp = ulp(tessellator.topology()) as f32;
         Ok(Self::at_rest(tessellator, mesh.bounds(), ulp, materials))
     }
@@ -84,7 +84,7 @@ impl Scene {
         move || Ok(Self::at_rest(tessellator()?, bounds, ulp, materials))
     }
 
-    fn at_rest(tessellator: Tessellator, bounds: Bounds, ulp: f32, materials: Vec<wgpu::BindGroup>) -> Self {
+    fn at_rest(tessellator: Tessellator, bounds: Bounds, ulp: f32, materials: Vec<UploadedMaterial>) -> Self {
         Self { tessellator, bounds, ulp, materials, lines: None, coverage: None, deviation: None, left: None }
     }
 

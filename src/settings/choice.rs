@@ -335,7 +335,7 @@ impl Choice for Displacement {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Colors, DeviationUnit, NormalsAt, Overlay};
+    use super::super::{Colors, DeviationUnit, Lighting, NormalsAt, Overlay, ToneCurve};
     use super::*;
 
     fn check<T: Choice + std::fmt::Debug>() {
@@ -365,6 +365,8 @@ mod tests {
         check::<Displacement>();
         check::<DeviationUnit>();
         check::<NormalsAt>();
+        check::<Lighting>();
+        check::<ToneCurve>();
         check::<Overlay>();
         check::<Colors>();
     }

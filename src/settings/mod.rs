@@ -4,6 +4,7 @@
 //! the window's rows are made from these declarations.
 
 mod choice;
+mod light;
 pub(crate) mod options;
 mod overlays;
 #[cfg(test)]
@@ -19,6 +20,7 @@ use crate::tessellate::{
 };
 
 pub(crate) use choice::{Choice, Description, descriptions};
+pub(crate) use light::{Lighting, ToneCurve};
 pub(crate) use overlays::{Colors, Control, Overlay, Overlays};
 pub(crate) use value::{Access, Declaration, Kind, Range, Value};
 
@@ -37,6 +39,14 @@ pub struct Settings {
     /// Where shading normals are evaluated; a displaced surface has them at vertices. See [`Self::used_normals_at`].
     pub normals_at: NormalsAt,
     pub overlays: Overlays,
+    /// The light that the mesh's own materials are seen in.
+    pub lighting: Lighting,
+    /// How bright the picture is, in EV: each step doubles the light. Only under [`Lighting::Studio`], as what follows.
+    pub exposure: f32,
+    /// How light becomes colours of the picture.
+    pub tone_curve: ToneCurve,
+    /// How far the light is turned about the vertical axis, in degrees.
+    pub light_rotation: f32,
     /// The unit of the distances that the deviation overlay colours.
     pub deviation_in: DeviationUnit,
     /// Where the picture is split, as a fraction of its width from the left; none if it isn't.
@@ -53,6 +63,10 @@ impl Default for Settings {
             tessellation: Tessellation::default(),
             normals_at: NormalsAt::Vertices,
             overlays: Overlays::default(),
+            lighting: Lighting::default(),
+            exposure: 0.0,
+            tone_curve: ToneCurve::default(),
+            light_rotation: 0.0,
             deviation_in: DeviationUnit::Units,
             split: None,
             split_surface: None,
@@ -61,9 +75,11 @@ impl Default for Settings {
     }
 }
 
+/// The settings of what measures or compares tessellations: lit by the camera's lights, so that pictures depend on nothing but
+/// the surface and its base colours.
 impl From<Tessellation> for Settings {
     fn from(tessellation: Tessellation) -> Self {
-        Self { tessellation, ..Self::default() }
+        Self { tessellation, lighting: Lighting::Camera, ..Self::default() }
     }
 }
 
@@ -79,7 +95,7 @@ impl SplitSide {
 }
 
 /// Where the normals that a surface is shaded with are evaluated.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum NormalsAt {
     /// At emitted vertices; triangles interpolate them.
     #[default]
@@ -191,6 +207,11 @@ impl Settings {
     pub fn used_normals_at(&self, mesh: &Mesh) -> NormalsAt {
         let is_displaced = mesh.heights.is_some() && self.tessellation.displacement != Displacement::Off;
         if is_displaced { NormalsAt::Vertices } else { self.normals_at }
+    }
+
+    /// Whether materials are drawn as glTF describes them, in light from all around.
+    pub fn shows_materials(&self) -> bool {
+        self.lighting == Lighting::Studio && self.overlays.colors == Colors::Material
     }
 
     /// The settings of one half of the picture; none where that half doesn't exist or shows the untessellated mesh.

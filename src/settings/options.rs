@@ -5,8 +5,8 @@
 
 use super::value::Field;
 use super::{
-    Access, Colors, Declaration, Description, DeviationUnit, Kind, NormalsAt, Overlay, Range, Settings, Value,
-    descriptions,
+    Access, Colors, Declaration, Description, DeviationUnit, Kind, Lighting, NormalsAt, Overlay, Range, Settings,
+    ToneCurve, Value, descriptions,
 };
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface, Tessellation};
 
@@ -31,8 +31,18 @@ pub(crate) static TESSELLATION: [&Declaration; 16] = [
 ];
 
 /// The options of commands that draw a picture.
-pub(crate) static PICTURE: [&Declaration; 6] =
-    [&NORMALS_AT, &OVERLAY, &DEVIATION_IN, &SPLIT, &SPLIT_SURFACE, &BACKGROUND];
+pub(crate) static PICTURE: [&Declaration; 10] = [
+    &NORMALS_AT,
+    &OVERLAY,
+    &LIGHTING,
+    &EXPOSURE,
+    &TONE_CURVE,
+    &LIGHT_ROTATION,
+    &DEVIATION_IN,
+    &SPLIT,
+    &SPLIT_SURFACE,
+    &BACKGROUND,
+];
 
 /// Tessellation factors, as Direct3D 11 has them.
 pub(crate) const FACTOR_RANGE: Range = Range::new(1.0, 64.0, "").decimals(3).logarithmic();
@@ -315,6 +325,61 @@ pub(crate) static OVERLAY: Declaration = Declaration {
     saved_as: &["overlays"],
     no_effect: always_has_effect,
     access: field!(overlays),
+};
+
+pub(crate) static LIGHTING: Declaration = Declaration {
+    name: "lighting",
+    label: "Lighting",
+    placeholder: "LIGHT",
+    text: "The light that the mesh's own materials are seen in.",
+    kind: Kind::Choice(descriptions::<Lighting>),
+    unset: None,
+    saved_as: &["lighting"],
+    no_effect: |settings| {
+        let is_idle = settings.overlays.colors != Colors::Material;
+        is_idle.then_some("The overlay that colours the surface has a light of its own.")
+    },
+    access: field!(lighting),
+};
+
+fn not_in_studio(settings: &Settings) -> Option<&'static str> {
+    (!settings.shows_materials()).then_some("Only the mesh's own materials in studio light have it.")
+}
+
+pub(crate) static EXPOSURE: Declaration = Declaration {
+    name: "exposure",
+    label: "Exposure",
+    placeholder: "EV",
+    text: "Brightness of studio light: each step of 1 EV doubles it.",
+    kind: Kind::Number(Range::new(-10.0, 10.0, "EV")),
+    unset: None,
+    saved_as: &["exposure"],
+    no_effect: not_in_studio,
+    access: field!(exposure),
+};
+
+pub(crate) static TONE_CURVE: Declaration = Declaration {
+    name: "tone-curve",
+    label: "Tone curve",
+    placeholder: "CURVE",
+    text: "How studio light that is brighter than a picture can show becomes colours.",
+    kind: Kind::Choice(descriptions::<ToneCurve>),
+    unset: None,
+    saved_as: &["tone_curve"],
+    no_effect: not_in_studio,
+    access: field!(tone_curve),
+};
+
+pub(crate) static LIGHT_ROTATION: Declaration = Declaration {
+    name: "light-rotation",
+    label: "Turn light",
+    placeholder: "DEGREES",
+    text: "How far studio light is turned about the vertical axis, counterclockwise as seen from above.",
+    kind: Kind::Number(Range::new(0.0, 360.0, "°").decimals(0)),
+    unset: None,
+    saved_as: &["light_rotation"],
+    no_effect: not_in_studio,
+    access: field!(light_rotation),
 };
 
 pub(crate) static DEVIATION_IN: Declaration = Declaration {

@@ -52,7 +52,7 @@ pub(crate) enum Kind {
 pub struct Range {
     pub least: f32,
     pub most: f32,
-    /// After the number: `px`, or `r` for bounding radii; empty for a plain number.
+    /// After the number: `px`, `EV`, `°`, or `r` for bounding radii; empty for a plain number.
     pub unit: &'static str,
     /// Decimals that a slider shows, at most.
     pub decimals: usize,
@@ -119,6 +119,8 @@ impl Range {
         match self.unit {
             "" => "",
             "r" => " bounding radii",
+            "EV" => " EV",
+            "°" => " degrees",
             _ => " px",
         }
     }

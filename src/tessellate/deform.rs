@@ -1,7 +1,7 @@
-//! Linear blend skinning: a corner's position and normal are transformed by the weighted mean of its joints' matrices.
+//! Linear blend skinning: a corner's position, normal and tangent are transformed by the weighted mean of its joints' matrices.
 //! Twin: `shaders/deform.wgsl`.
 
-use glam::{Vec3, vec3};
+use glam::{Vec3, Vec4, vec3};
 
 use super::normal::unit_or;
 use crate::mesh::rig::JointMatrix;
@@ -37,6 +37,19 @@ pub(super) fn deform_normal(matrix: &JointMatrix, normal: Vec3) -> Vec3 {
     let [x, y, z] = rows.map(|row| row * scale);
     let turned = vec3(y.cross(z).dot(normal), z.cross(x).dot(normal), x.cross(y).dot(normal));
     scaled_unit_or(if x.dot(y.cross(z)) < 0.0 { -turned } else { turned }, normal)
+}
+
+/// Transforms a unit tangent, whose last component is the sign of the bitangent: a matrix that mirrors turns that around. If
+/// the result has no direction, returns the tangent itself.
+pub(super) fn deform_tangent(matrix: &JointMatrix, tangent: Vec4) -> Vec4 {
+    let rows = matrix.rows().map(|row| Vec3::from_slice(&row));
+    // Scale the matrix, as above.
+    let scale = 1.0 / rows.map(largest_component).into_iter().fold(1e-30, f32::max);
+    let [x, y, z] = rows.map(|row| row * scale);
+    let own = tangent.truncate();
+    let turned = vec3(x.dot(own), y.dot(own), z.dot(own));
+    let sign = if x.dot(y.cross(z)) < 0.0 { -tangent.w } else { tangent.w };
+    scaled_unit_or(turned, own).extend(sign)
 }
 
 /// Returns `vector` at unit length, or `otherwise` if it is zero. No square overflows or underflows.

@@ -334,16 +334,18 @@ impl<'a> MeshDisplacement<'a> {
 /// Returns the gradients of both texture coordinates at each corner: their mean over the patches around it, weighted by
 /// area.
 fn frames(mesh: &Mesh, topology: &Topology) -> Vec<[Vec3; 2]> {
+    let alike = mesh.alike_corners();
     let mut sums = vec![([Vec3::ZERO; 2], 0.0_f32); mesh.corners.len()];
     for (index, patch) in (0..).zip(&topology.patches) {
         let uvs = topology.corners(patch).map(|corner| mesh.corners[corner as usize].uv);
         let (gradients, area) = uv_gradients(topology.patch_positions(index), uvs);
         for corner in topology.corners(patch) {
-            let sum = &mut sums[corner as usize];
+            let sum = &mut sums[alike[corner as usize] as usize];
             *sum = ([sum.0[0] + gradients[0], sum.0[1] + gradients[1]], sum.1 + area);
         }
     }
-    sums.into_iter().map(|(sum, area)| if area > 0.0 { sum.map(|x| x * (1.0 / area)) } else { sum }).collect()
+    let mean = |(sum, area): ([Vec3; 2], f32)| if area > 0.0 { sum.map(|x| x * (1.0 / area)) } else { sum };
+    alike.iter().map(|&corner| mean(sums[corner as usize])).collect()
 }
 
 /// Returns the direction of displacement of each point: the mean of the normals there, weighted by angle, or the normal
@@ -363,7 +365,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::mesh::{Corner, Material};
+    use crate::mesh::{Corner, CornerDetail, Material, Shape};
     use crate::progress::Progress;
     use crate::tessellate::{LimitSurface, LodView, Partitioning, Surface, Tessellation, tessellate};
     use glam::{Mat4, vec2, vec3};
@@ -388,6 +390,26 @@ mod tests {
         let map = HeightMap::new([64, 64], (0..4096).map(height).collect());
         mesh.heights = Some(Arc::new(Heights::everywhere(&mesh, map)));
         mesh
+    }
+
+    #[test]
+    fn corners_that_differ_in_details_alone_have_one_frame() {
+        let whole = Shape::Torus.build();
+        let mut split = whole.clone();
+        let count = whole.corners.len() as u32;
+        split.corners.extend(whole.corners.clone());
+        let mut details = vec![CornerDetail::default(); split.corners.len()];
+        details[count as usize..].iter_mut().for_each(|detail| detail.color.x = 0.0);
+        split.details = Some(Arc::new(details));
+        for triangle in Arc::make_mut(&mut split.triangles).iter_mut().step_by(2) {
+            *triangle = triangle.map(|corner| corner + count);
+        }
+        let [own, other] = [&whole, &split].map(|mesh| frames(mesh, &Topology::of(mesh)));
+        for (corners, copies) in whole.triangles.iter().zip(split.triangles.iter()) {
+            for (&corner, &copy) in corners.iter().zip(copies) {
+                assert_eq!(own[corner as usize], other[copy as usize]);
+            }
+        }
     }
 
     #[test]

@@ -3,9 +3,9 @@
 
 use std::sync::{Arc, OnceLock};
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
-use super::deform::{blend, deform_normal, deform_position};
+use super::deform::{blend, deform_normal, deform_position, deform_tangent};
 use super::normal::unit_or;
 use crate::mesh::rig::{Binding, JointMatrix};
 use crate::mesh::{Bounds, Mesh, Moment, Pose, Rig, Topology};
@@ -72,6 +72,12 @@ pub(crate) fn deform(mesh: &Mesh, topology: &Topology, pose: &Pose) -> (Mesh, To
         corner.position = topology.points[point as usize];
         corner.normal = posed_normal(&rig, pose, index);
     }
+    if let Some(details) = mesh.details.as_mut().filter(|_| !rig.tangents.is_empty()) {
+        for (index, detail) in (0..).zip(Arc::make_mut(details)) {
+            let tangent = posed_tangent(&rig, pose, index);
+            (detail.tangent, detail.bitangent_sign) = (tangent.truncate(), tangent.w);
+        }
+    }
     (mesh, topology)
 }
 
@@ -109,6 +115,12 @@ fn posed_normal(rig: &Rig, pose: &Pose, corner: u32) -> Vec3 {
         normal += Vec3::from(delta.normal) * pose.weights[delta.weight as usize];
     }
     deform_normal(&posed_matrix(pose, bound), unit_or(normal, bound.normal.into()))
+}
+
+/// Applies joints to a corner's tangent.
+fn posed_tangent(rig: &Rig, pose: &Pose, corner: u32) -> Vec4 {
+    let bound = &rig.bindings[corner as usize];
+    deform_tangent(&posed_matrix(pose, bound), rig.tangents[corner as usize].into())
 }
 
 /// Returns the blended matrix of a corner's joints.

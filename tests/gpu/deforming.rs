@@ -5,7 +5,7 @@ use std::sync::Arc;
 use pnaen::engine::{Loaded, Preparation, Runs, load};
 use pnaen::gpu::{Timing, read_buffer, take_times};
 use pnaen::load::Source;
-use pnaen::mesh::{Mesh, Moment, Rig};
+use pnaen::mesh::{CornerDetail, Mesh, Moment, Rig};
 use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::{ARENA_BYTES, Settings};
@@ -65,6 +65,44 @@ fn the_device_deforms_as_the_cpu_does() {
         for (own, other) in corners.iter().zip(&posed.mesh.corners) {
             let apart = glam::Vec3::from_slice(own).distance(other.normal);
             assert!(apart < 2e-6, "{moment:?}: {own:?} {}", other.normal);
+        }
+    }
+}
+
+#[test]
+fn the_device_deforms_tangents_as_the_cpu_does() {
+    let (loaded, _) = scene();
+    let mut mesh = Mesh::clone(&loaded.mesh);
+    let of = |(i, corner): (usize, &pnaen::mesh::Corner)| CornerDetail {
+        tangent: corner.normal.any_orthonormal_vector(),
+        bitangent_sign: if i % 2 == 0 { 1.0 } else { -1.0 },
+        uvs: [corner.uv, glam::Vec2::splat(i as f32)],
+        ..CornerDetail::default()
+    };
+    let details: Vec<CornerDetail> = mesh.corners.iter().enumerate().map(of).collect();
+    let rig = Arc::make_mut(mesh.rig.as_mut().expect("a document with clips"));
+    rig.tangents = details.iter().map(|detail| detail.tangent.extend(detail.bitangent_sign).to_array()).collect();
+    mesh.details = Some(Arc::new(details));
+    let loaded = Loaded { mesh: Arc::new(mesh), ..loaded };
+    let mut scene = engine().scene(&loaded, ARENA_BYTES).expect("a small mesh");
+    for moment in moments(&loaded.mesh, 3) {
+        scene.set_moment(Some(moment)).expect("a small rig");
+        engine().count(&mut scene, &inputs(&loaded, &Settings::default()), &mut Timing::Off).expect("counts");
+        let buffer = &scene.tessellator.buffers().corner_details;
+        let bytes = read_buffer(&engine().gpu, buffer, 0, buffer.size()).expect("a readback");
+        let on_device: Vec<[f32; 12]> = bytemuck::pod_collect_to_vec(&bytes);
+        let posed = loaded.posed(Some(moment));
+        let on_host = posed.mesh.details.as_ref().expect("they stay");
+        assert_eq!(on_device.len(), on_host.len());
+        for (own, other) in on_device.iter().zip(on_host.iter()) {
+            let [u, v, w, z] = [own[0], own[1], own[2], own[3]];
+            assert_eq!([u, v, w, z], [other.uvs[0].x, other.uvs[0].y, other.uvs[1].x, other.uvs[1].y]);
+            assert_eq!(own[4..8], [1.0; 4]);
+            assert!(
+                glam::Vec3::from_slice(&own[8..11]).distance(other.tangent) < 2e-6,
+                "{moment:?}: {own:?} {other:?}"
+            );
+            assert_eq!(own[11], other.bitangent_sign, "{moment:?}");
         }
     }
 }

@@ -12,9 +12,11 @@ mod displacement;
 mod domain;
 mod embed;
 mod error;
+mod light;
 mod limits;
 mod lines;
 mod looks;
+mod materials;
 #[path = "../documents/moving.rs"]
 pub(crate) mod moving;
 mod passes;
@@ -32,7 +34,7 @@ use pnaen::load::Source;
 use pnaen::mesh::Shape;
 use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene, Target, crack_lines};
-use pnaen::settings::{ARENA_BYTES, Settings};
+use pnaen::settings::{ARENA_BYTES, Lighting, Settings};
 
 /// One engine for all tests: compiling its pipelines is what takes long.
 pub(crate) fn engine() -> &'static Engine {
@@ -56,8 +58,9 @@ pub(crate) fn scene(shape: Shape) -> (Loaded, Scene) {
     (loaded, scene)
 }
 
-/// Draws what `pnaen render` would.
+/// Draws what `pnaen render --lighting camera` would.
 pub(crate) fn picture(scene: &mut Scene, settings: &Settings, size: [u32; 2]) -> image::RgbaImage {
+    let settings = &Settings { lighting: Lighting::Camera, ..*settings };
     let engine = engine();
     let target = Target::new(&engine.gpu, size).expect("a small picture");
     let camera = Camera::framing(&scene.bounds, target.viewport());

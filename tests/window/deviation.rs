@@ -76,7 +76,7 @@ fn a_reference_surface_is_loaded_and_stays_if_the_next_one_fails() {
     assert_eq!(harness.state().deviation(SplitSide::Right), Some(bulge), "the reference surface before it stays");
     click(&mut harness, "Close");
     click(&mut harness, "File");
-    click(&mut harness, "No reference surface");
+    click(&mut harness, "Forget reference surface");
     assert_eq!((harness.state().truth(), harness.state().deviation(SplitSide::Right)), (None, Some(limit)));
 }
 

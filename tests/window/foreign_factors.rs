@@ -50,7 +50,7 @@ fn factors_of_a_file_are_shown_with_their_disagreements_and_the_convention_that_
     assert_eq!(harness.state().settings().tessellation.convention, Convention::AmdPn);
     assert_eq!(harness.state().cracks().expect("measured").different_factors, 0);
     assert!(harness.query_by_label_contains(" edges with different factors").is_none());
-    harness.get_by_role_and_label(Role::Button, "Back to LOD").click();
+    harness.get_by_role_and_label(Role::Button, "Close the file").click();
     settle(&mut harness);
     assert_eq!((harness.state().factors_file(), harness.state().totals()), (None, before));
 }
@@ -74,7 +74,7 @@ fn the_lod_before_comes_back_and_a_bad_file_changes_nothing() {
     // Loaded again, the mesh keeps the file; another mesh doesn't.
     press(&mut harness, egui::Key::R);
     assert_eq!((harness.state().factors_file(), harness.state().totals()), (Some(&*good), sevens));
-    harness.get_by_role_and_label(Role::Button, "Back to LOD").click();
+    harness.get_by_role_and_label(Role::Button, "Close the file").click();
     settle(&mut harness);
     assert_eq!(harness.state().settings().tessellation.lod, lod);
     open(&mut harness, &good);

@@ -11,6 +11,7 @@ use pnaen::settings::{Colors, Settings};
 use tempfile::TempDir;
 
 use crate::gpu_tests::moving::{CLIPS, moving};
+use crate::window_tests::editing::press_with;
 use crate::window_tests::{choose, click, press, settle, switch, uniform, window};
 
 /// A window of this size that was never open before, with all sections as they are then.
@@ -127,7 +128,48 @@ fn the_verdict_counts_what_is_wrong_and_leads_there() {
     assert!(harness.state().settings().overlays.cracks);
     assert_eq!(harness.state().selected_edge(), Some(worst));
     harness.get_by_label("Worst edges");
-    assert!(harness.query_by_label_contains("warning").is_none());
+    harness.get_by_label("No warnings");
+}
+
+#[test]
+fn the_verdicts_lines_stay_where_they_are() {
+    let mut harness = first_start([1280.0, 720.0], Some(Source::Shape(Shape::CubeSplit)));
+    let places = |harness: &Harness<App>| harness.get_by_label("Waste").rect().top();
+    let before = places(&harness);
+    for dim in ["No cracks", "No folds", "No T-junctions", "No patch at the maximum factor", "No warnings"] {
+        harness.get_by_label(dim);
+    }
+    choose(&mut harness, "Surface", "PN");
+    harness.get_by_label_contains("12 cracked edges, widest ");
+    assert_eq!(places(&harness), before);
+}
+
+#[test]
+fn the_widest_crack_is_found_by_words() {
+    let mut harness = first_start([1280.0, 720.0], Some(Source::Shape(Shape::CubeSplit)));
+    choose(&mut harness, "Surface", "PN");
+    let worst = harness.state().cracks().expect("measured").edges[0].edge;
+    press_with(&mut harness, egui::Modifiers::COMMAND, egui::Key::P);
+    harness.get_by_role(Role::TextInput).type_text("worst");
+    settle(&mut harness);
+    press(&mut harness, egui::Key::Enter);
+    assert_eq!(harness.state().selected_edge(), Some(worst));
+}
+
+#[test]
+fn menus_fit_a_low_window_and_one_click_goes_from_one_to_another() {
+    let mut harness = first_start([640.0, 400.0], Some(Source::Shape(Shape::CubeSplit)));
+    let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(640.0, 400.0));
+    harness.get_by_role_and_label(Role::Button, "View").click();
+    settle(&mut harness);
+    harness.get_by_label("Dark theme").scroll_to_me();
+    harness.run_steps(30);
+    let last = harness.get_by_label("Dark theme").rect();
+    assert!(screen.contains_rect(last), "{last:?}");
+    harness.get_by_role_and_label(Role::Button, "Help").click();
+    settle(&mut harness);
+    harness.get_by_label_contains("Keys");
+    assert!(harness.query_by_label("Dark theme").is_none());
 }
 
 #[test]

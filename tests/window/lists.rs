@@ -56,7 +56,7 @@ fn the_worst_edges_are_listed_and_a_click_frames_one() {
     }
     assert_eq!(harness.get_all_by_label("8.00000").count(), 2, "both sides' factors");
     assert_eq!(harness.get_all_by_label("9").count(), 2, "both sides' segments");
-    assert_eq!(harness.get_all_by_label_contains("apart, units").count(), 1, "their points");
+    assert_eq!(harness.get_all_by_label_contains("gap, units").count(), 2, "of the worst edges, and of their points");
     harness.get_by_label("Deselect").click();
     settle(&mut harness);
     assert_eq!(harness.state().selected_edge(), None);

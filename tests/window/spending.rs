@@ -21,9 +21,9 @@ fn only_one_colouring_is_shown_and_has_a_legend() {
         "Legend: Factor",
         "Legend: Triangle size, px",
         "Legend: Factors below 2",
-        "Legend: Triangles, times the own least",
+        "Legend: Triangles / fewest needed",
         "Legend: Barycentric, weights in the patch",
-        "Legend: Jump: break of tangent; kink: of curvature",
+        "Legend: Stripes break at creases",
         "Legend: Normal: x red, y green, z blue",
         "Legend: UV: a square is 1/8 of a unit",
     ];

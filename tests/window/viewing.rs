@@ -12,7 +12,9 @@ use pnaen::render::layout::{AXIS_COLORS, LOD_CAMERA_COLOR};
 use pnaen::render::{Camera, Standpoint};
 
 use crate::window_tests::editing::{assert_draws, copied, press_with};
-use crate::window_tests::{PATIENCE, click, copy_vase, open_all_sections, press, settle, switch, uniform, window};
+use crate::window_tests::{
+    PATIENCE, choose, click, copy_vase, open_all_sections, press, settle, switch, uniform, window,
+};
 
 /// How many px of the picture have about this sRGB colour.
 fn pixels_of(harness: &Harness<App>, color: [u8; 3]) -> usize {
@@ -149,6 +151,31 @@ fn the_background_follows_the_theme_unless_it_is_set() {
 }
 
 #[test]
+fn light_is_chosen_where_materials_are_seen() {
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
+    open_all_sections(&mut harness);
+    let has_row = |harness: &Harness<App>, role, name| harness.query_by_role_and_label(role, name).is_some();
+    let of_studio = [(Role::Slider, "Exposure"), (Role::ComboBox, "Tone curve"), (Role::Slider, "Turn light")];
+    assert!(of_studio.iter().all(|&(role, name)| has_row(&harness, role, name)));
+    let studio = harness.state().read_picture().expect("a device");
+    harness.get_by_role_and_label(Role::Slider, "Exposure").set_value_accesskit(1.0);
+    settle(&mut harness);
+    assert_eq!(harness.state().settings().exposure, 1.0);
+    assert_ne!(harness.state().read_picture().expect("a device"), studio, "it is brighter");
+    let command = copied(&mut harness);
+    assert!(command.contains("--exposure 1"), "{command}");
+    assert_draws(&harness, &command, "torus-view");
+    press(&mut harness, Key::Escape);
+    choose(&mut harness, "Lighting", "Camera");
+    assert!(
+        of_studio.iter().all(|&(role, name)| !has_row(&harness, role, name)),
+        "the camera's lights have none of it"
+    );
+    press_with(&mut harness, Modifiers::SHIFT, Key::C);
+    assert!(!has_row(&harness, Role::ComboBox, "Lighting"), "clay has a light of its own");
+}
+
+#[test]
 fn the_divider_is_seen_on_a_light_background() {
     let mut harness = window(None);
     harness.ctx.set_theme(Theme::Light);
@@ -249,7 +276,9 @@ fn bookmarks_are_kept_with_the_file() {
     press(&mut harness, Key::Num3);
     let right = *harness.state().camera();
     press_with(&mut harness, Modifiers::COMMAND, Key::D);
+    harness.get_by_label("Bookmark 1");
     press(&mut harness, Key::Num7);
+    assert!(harness.query_by_label("Bookmark 1").is_none(), "another view");
     press_with(&mut harness, Modifiers::COMMAND, Key::D);
     press_with(&mut harness, Modifiers::ALT, Key::Num1);
     assert_eq!(*harness.state().camera(), right);

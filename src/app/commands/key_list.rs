@@ -1,7 +1,7 @@
 //! Help > Keys: every key and what it does, made from the table of commands.
 
 use crate::app::App;
-use crate::commands::{GESTURES, all};
+use crate::commands::{GESTURES, all, shown_key};
 
 /// Points that the list leaves free above and below it, so that its whole window fits on the screen.
 const MARGIN: f32 = 120.0;
@@ -27,7 +27,7 @@ impl App {
                         };
                         GESTURES.iter().for_each(|(gesture, text)| row(gesture, text, text));
                         for command in commands.iter().filter(|command| !command.keys.is_empty()) {
-                            let keys: Vec<_> = command.keys.iter().map(|key| context.format_shortcut(key)).collect();
+                            let keys: Vec<_> = command.keys.iter().map(|key| shown_key(context, key)).collect();
                             row(&keys.join(", "), &command.name, &command.text);
                         }
                     });

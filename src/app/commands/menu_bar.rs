@@ -5,13 +5,14 @@ use std::path::Path;
 
 use crate::app::App;
 use crate::app::text::shortened;
-use crate::commands::{Action, Availability, CameraAction, Command, FileAction, Menu, Place, Submenu, all};
+use crate::commands::{Action, Availability, CameraAction, Command, FileAction, Menu, Place, Submenu, all, shown_key};
 
 impl App {
     pub(in crate::app) fn menu_bar(&mut self, ui: &mut egui::Ui) {
         egui::MenuBar::new().ui(ui, |ui| {
             for menu in Menu::ALL {
-                ui.menu_button(menu.name(), |ui| self.menu(ui, menu));
+                let shown = ui.menu_button(menu.name(), |ui| scrolled(ui, |ui| self.menu(ui, menu)));
+                self.keep_open(menu, &shown);
             }
             let source = self.document.as_ref().map(|document| &document.loaded.source);
             let (title, whole) = source.map_or_else(Default::default, |source| (source.title(), source.to_string()));
@@ -21,6 +22,20 @@ impl App {
                 ui.add(egui::Label::new(egui::RichText::new(title).strong()).truncate()).on_hover_text(whole);
             });
         });
+    }
+
+    /// Keeps a menu open that is clicked after it opened because the pointer came over its name from another open menu. egui closes
+    /// it again. The second click on a name closes its menu.
+    fn keep_open(&mut self, menu: Menu, shown: &egui::InnerResponse<Option<()>>) {
+        if !shown.response.clicked() {
+            return;
+        }
+        let is_second = self.commands.clicked_menu == Some(menu);
+        if shown.inner.is_none() && !is_second && self.commands.clicked_menu.is_some() {
+            egui::Popup::open_id(&shown.response.ctx, egui::Popup::default_response_id(&shown.response));
+            shown.response.ctx.request_repaint();
+        }
+        self.commands.clicked_menu = (!(is_second && shown.inner.is_none())).then_some(menu);
     }
 
     /// The commands of a menu, with a line between groups. Submenus come at the ends of their groups.
@@ -55,7 +70,7 @@ impl App {
     /// Shows a command in a menu. Returns true if it is chosen.
     fn menu_entry(&self, ui: &mut egui::Ui, command: &Command, now: &Availability) -> bool {
         let why_not = command.why_not(now);
-        let key = command.keys.first().map(|key| ui.ctx().format_shortcut(key)).unwrap_or_default();
+        let key = command.keys.first().map(|key| shown_key(ui.ctx(), key)).unwrap_or_default();
         let response = ui.add_enabled_ui(why_not.is_none(), |ui| match self.is_on(ui.ctx(), &command.action) {
             Some(is_on) if matches!(command.action, Action::Theme(_)) => ui.radio(is_on, &*command.name),
             Some(mut is_on) => ui.checkbox(&mut is_on, &*command.name),
@@ -111,6 +126,7 @@ impl App {
             | Action::ForgetBookmarks
             | Action::Background
             | Action::MeasureChart
+            | Action::WidestCrack
             | Action::LargerText
             | Action::SmallerText
             | Action::UsualText
@@ -124,6 +140,15 @@ impl App {
             | Action::WhitePaper => None,
         }
     }
+}
+
+/// Points that a menu leaves free above and below it.
+const MARGIN: f32 = 60.0;
+
+/// Shows a menu's entries, in a list that scrolls where the window is too low for all of them.
+fn scrolled(ui: &mut egui::Ui, entries: impl FnOnce(&mut egui::Ui)) {
+    let most = (ui.ctx().content_rect().height() - MARGIN).max(100.0);
+    egui::ScrollArea::vertical().min_scrolled_height(most).max_height(most).show(ui, entries);
 }
 
 /// Shows a submenu. Returns the command that is chosen in it.
@@ -142,7 +167,7 @@ fn submenu_entries<'a>(
 }
 
 fn entry(ui: &mut egui::Ui, command: &Command, now: &Availability) -> bool {
-    let key = command.keys.first().map(|key| ui.ctx().format_shortcut(key)).unwrap_or_default();
+    let key = command.keys.first().map(|key| shown_key(ui.ctx(), key)).unwrap_or_default();
     let button = match &command.action {
         Action::File(FileAction::OpenRecent(path)) => recent_button(path),
         _ if key.is_empty() => egui::Button::new(command.value_name()),

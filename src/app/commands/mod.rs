@@ -8,7 +8,7 @@ mod menu_bar;
 mod palette;
 mod perform;
 
-use crate::commands::Action;
+use crate::commands::{Action, Menu};
 use palette::Palette;
 
 /// The open windows that belong to commands.
@@ -19,6 +19,8 @@ pub(super) struct Commands {
     pub palette: Option<Palette>,
     /// The command line that was copied, while it is shown.
     pub copied: Option<String>,
+    /// The menu of the bar whose name was clicked last, unless that closed it.
+    pub clicked_menu: Option<Menu>,
     /// The action that was performed last.
     pub last: Option<Action>,
 }

@@ -3,7 +3,7 @@
 use egui::{Button, Context, Key, TextEdit};
 
 use crate::app::App;
-use crate::commands::{Availability, Command, all};
+use crate::commands::{Availability, Command, all, shown_key};
 
 /// How many commands are listed at once.
 const LISTED: usize = 14;
@@ -18,24 +18,26 @@ pub(crate) struct Palette {
     now: Availability,
 }
 
-/// Returns the commands whose names contain every word of the query, ignoring case. Those where the query's words begin
-/// words of the name come first.
+/// Returns the commands whose names or descriptions contain every word of the query, ignoring case. Those where the query's words
+/// begin words of the name come first, then others whose names contain them, then those whose descriptions do.
 fn found(commands: &[Command], query: &str) -> Vec<usize> {
     let words: Vec<String> = query.split_whitespace().map(str::to_lowercase).collect();
     let begins = |name: &str, word: &String| {
         name.split(|c: char| !c.is_alphanumeric()).any(|own| own.starts_with(word.as_str()))
     };
-    let rank = |index: &usize| {
-        let name = commands[*index].name.to_lowercase();
-        !words.iter().all(|word| begins(&name, word))
+    let rank = |command: &Command| {
+        let (name, text) = (command.name.to_lowercase(), command.text.to_lowercase());
+        match () {
+            () if words.iter().all(|word| begins(&name, word)) => Some(0),
+            () if words.iter().all(|word| name.contains(word.as_str())) => Some(1),
+            () if words.iter().all(|word| begins(&name, word) || begins(&text, word)) => Some(2),
+            () => None,
+        }
     };
-    let has = |index: &usize| {
-        let name = commands[*index].name.to_lowercase();
-        words.iter().all(|word| name.contains(word.as_str()))
-    };
-    let mut found: Vec<usize> = (0..commands.len()).filter(has).collect();
-    found.sort_by_key(rank);
-    found
+    let mut found: Vec<(u8, usize)> =
+        commands.iter().enumerate().filter_map(|(index, command)| Some((rank(command)?, index))).collect();
+    found.sort();
+    found.into_iter().map(|(_, index)| index).collect()
 }
 
 impl Palette {
@@ -60,7 +62,7 @@ impl Palette {
             }
         }
         if found.is_empty() {
-            ui.weak("No command's name has these words.");
+            ui.weak("No command has these words.");
         }
         chosen
     }
@@ -75,7 +77,7 @@ impl Palette {
         let why_not = command.why_not(&self.now);
         let button = Button::selectable(is_selected, &*command.name).truncate();
         let button = match command.keys.first() {
-            Some(key) => button.shortcut_text(ui.ctx().format_shortcut(key)),
+            Some(key) => button.shortcut_text(shown_key(ui.ctx(), key)),
             None => button,
         };
         let button = button.min_size(egui::vec2(ui.available_width(), 0.0));
@@ -123,10 +125,20 @@ mod tests {
     fn every_word_must_match_and_beginnings_of_words_come_first() {
         assert_eq!(names("", usize::MAX).len(), all(&Availability::default()).len());
         assert_eq!(names("FRAC odd", 9), ["Partitioning: Fractional odd"]);
-        assert_eq!(names("frame", 9), ["Frame", "Frame patch", "Overlay: Wireframe"]);
-        assert_eq!(names("surf fl", 9), ["Surface: Flat"]);
+        assert_eq!(names("frame", 3), ["Frame", "Frame patch", "Overlay: Wireframe"]);
+        assert_eq!(names("surf fl", 1), ["Surface: Flat"]);
         assert_eq!(names("rame", 9), ["Frame", "Frame patch", "Overlay: Wireframe"]);
         assert_eq!(names("frame odd", 9), [""; 0]);
+    }
+
+    #[test]
+    fn words_of_descriptions_are_found_after_names() {
+        let tolerance = names("tolerance", usize::MAX);
+        assert!(tolerance.iter().any(|name| name == "Colours: Excess triangles"), "{tolerance:?}");
+        let edge = names("edge", usize::MAX);
+        let last_named =
+            edge.iter().rposition(|name| name.to_lowercase().contains("edge")).expect("commands about edges");
+        assert!(edge[..last_named].iter().all(|name| name.to_lowercase().contains("edge")), "{edge:?}");
     }
 
     #[test]

@@ -82,6 +82,7 @@ impl App {
             Action::Background => self.dialogs.chooses_background = true,
             Action::Chart => self.toggle_chart(),
             Action::MeasureChart => self.measure_chart(context),
+            Action::WidestCrack => self.go_to_widest_crack(),
             Action::Theme(theme) => context.set_theme(*theme),
             Action::LargerText => gui_zoom::zoom_in(context),
             Action::SmallerText => gui_zoom::zoom_out(context),

@@ -171,7 +171,9 @@ impl TypedPath {
             state.cursor.set_char_range(Some(all));
             state.store(ui.ctx(), response.id);
         }
-        let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        // Taken, so that it doesn't close the message about this path as well.
+        let takes_enter = |input: &mut egui::InputState| input.consume_key(egui::Modifiers::NONE, Key::Enter);
+        let entered = response.lost_focus() && ui.input_mut(takes_enter);
         let is_empty = self.path.trim().is_empty();
         ui.horizontal(|ui| {
             let accepted =

@@ -112,7 +112,7 @@ impl App {
         let window = egui::Window::new(title).resizable(false).collapsible(false).anchor(anchor.0, anchor.1);
         window.default_width(420.0).show(context, |ui| {
             ui.label(text);
-            closed = ui.button("Close").clicked();
+            closed = ui.button("Close").clicked() || ui.input(|input| input.key_pressed(egui::Key::Enter));
         });
         if closed && self.dialogs.error.take().is_none() {
             self.dialogs.notice = None;

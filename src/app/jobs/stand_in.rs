@@ -59,6 +59,7 @@ impl StandIn {
 fn simplified(mesh: &Mesh, topology: &Topology, triangles: usize) -> Mesh {
     let bytes: &[u8] = bytemuck::cast_slice(&topology.points);
     let Ok(points) = meshopt::VertexDataAdapter::new(bytes, size_of::<glam::Vec3>(), 0) else { return Mesh::default() };
+    let mut details = Vec::new();
     let mut small = Mesh { name: mesh.name.clone(), ..Mesh::default() };
     let part = triangles as f64 / mesh.triangles.len().max(1) as f64;
     let mut kept = Vec::new();
@@ -80,7 +81,9 @@ fn simplified(mesh: &Mesh, topology: &Topology, triangles: usize) -> Mesh {
                 let number = &mut number_of[point as usize];
                 if *number == u32::MAX {
                     *number = small.corners.len() as u32;
-                    small.corners.push(mesh.corners[corner_of[point as usize] as usize]);
+                    let corner = corner_of[point as usize] as usize;
+                    small.corners.push(mesh.corners[corner]);
+                    details.extend(mesh.details.as_ref().map(|details| details[corner]));
                 }
                 *number
             }));
@@ -88,13 +91,14 @@ fn simplified(mesh: &Mesh, topology: &Topology, triangles: usize) -> Mesh {
         small.materials.push(Material { triangles: first..kept.len() as u32, ..material.clone() });
     }
     small.triangles = Arc::new(kept);
+    small.details = mesh.details.as_ref().map(|_| Arc::new(details));
     small
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{Corner, Shape};
+    use crate::mesh::{Corner, CornerDetail, Shape};
 
     /// A torus of many quads.
     fn large() -> Mesh {
@@ -144,8 +148,11 @@ mod tests {
 
     #[test]
     fn a_stand_in_has_few_triangles_and_the_same_extent() {
-        let mesh = large();
+        let mut mesh = large();
+        let detail = |corner: &Corner| CornerDetail { color: corner.position.extend(1.0), ..CornerDetail::default() };
+        mesh.details = Some(Arc::new(mesh.corners.iter().map(detail).collect()));
         let few = simplified(&mesh, &Topology::of(&mesh), 3_000);
+        assert_eq!(few.details, Some(Arc::new(few.corners.iter().map(detail).collect())));
         assert!(mesh.triangles.len() > 50_000, "the mesh is large: {}", mesh.triangles.len());
         assert!((500..=3_000).contains(&few.triangles.len()), "{} triangles", few.triangles.len());
         assert_eq!(few.materials.len(), mesh.materials.len());

@@ -6,13 +6,14 @@ use glam::{Vec2, Vec3};
 use crate::app::App;
 use crate::app::jobs::deviation_job::{DeviationBasis, DeviationJob, DeviationResult};
 use crate::app::jobs::measure_job::Trouble;
+use crate::app::panels::option_rows::option_row;
 use crate::app::sections::Section;
 use crate::app::text::{grouped, short, shortened};
 use crate::app::widgets::{fact, number, swatch};
 use crate::measure::{DeviationTarget, MOST_TRIANGLES};
 use crate::render::layout::WORST_COLOR;
 use crate::render::{DEVIATION_PX_SCALE, Distances, LineSegment, Scale, deviation_scale, worst_lines};
-use crate::settings::{Choice, Colors, DeviationUnit, Settings, SplitSide};
+use crate::settings::{Choice, Colors, DeviationUnit, Settings, SplitSide, options};
 use crate::tessellate::{Clip, Inputs, Lod};
 use crate::view::project;
 
@@ -155,6 +156,7 @@ impl App {
             let hover = "The surface that distances are measured to: the exact surface of a shape made in code, a file chosen \
                          under File, or else the surface that the tessellation converges to.";
             fact(ui, "Reference", &shortened(&name, 20), hover);
+            option_row(ui, &options::DEVIATION_IN, &mut self.settings, "");
             for half in SplitSide::BOTH {
                 let Some(settings) = self.settings.half(half) else { continue };
                 let place = if half == SplitSide::Left { "Left" } else { "Right" };

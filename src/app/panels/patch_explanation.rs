@@ -141,7 +141,7 @@ impl ShownExplanation<'_> {
     fn least_rows(&self, ui: &mut Ui) {
         let Some((explained, factors)) = self.explained.zip(self.factors) else {
             ui.label(dense(format!("{:<12}{UNKNOWN:>6}", "own least")));
-            ui.label(dense(format!("{:<12}{UNKNOWN:>6}", "has")));
+            ui.label(dense(format!("{:<12}{UNKNOWN:>6}", "drawn")));
             return;
         };
         let least = explained.own_least;
@@ -157,9 +157,9 @@ impl ShownExplanation<'_> {
         ui.label(dense(format!("{:<12}{:>6} triangles", "own least", least.triangles))).on_hover_text(hover);
         let has = triangle_count(factors);
         let times = f64::from(has) / f64::from(least.triangles.max(1));
-        let hover = "The triangles that are emitted, and how many times as many as the own least they are. The overlay of excess \
+        let hover = "The triangles that are drawn, and how many times as many as the own least they are. The overlay of excess \
                      triangles shows this number for all patches.";
-        ui.label(dense(format!("{:<12}{has:>6} triangles{times:>5.2}x", "has"))).on_hover_text(hover);
+        ui.label(dense(format!("{:<12}{has:>6} triangles{times:>5.2}x", "drawn"))).on_hover_text(hover);
     }
 
     /// A row, in the colour of warnings if its triangles are beyond the tolerance.

@@ -41,7 +41,6 @@ impl App {
                 ui.end_row();
             }
         }
-        shown_option_row(ui, &options::DEVIATION_IN, &mut self.settings);
     }
 
     fn surface_rows(&mut self, ui: &mut egui::Ui) {
@@ -73,8 +72,8 @@ impl App {
             ui.add(egui::Label::new(given.name()).truncate()).on_hover_text(given.path.display().to_string());
             ui.end_row();
             ui.label("");
-            let button = ui.button("Back to LOD");
-            let is_over = button.on_hover_text("Closes the file of factors. LOD is as it was before.").clicked();
+            let button = ui.button("Close the file");
+            let is_over = button.on_hover_text("Closes the file of factors. LOD computes factors again.").clicked();
             ui.end_row();
             if is_over {
                 self.forget_factors();
@@ -166,6 +165,9 @@ impl App {
                 self.settings.split = Some(self.viewport.last_split);
             }
             ui.end_row();
+        }
+        for option in [&options::LIGHTING, &options::EXPOSURE, &options::TONE_CURVE, &options::LIGHT_ROTATION] {
+            shown_option_row(ui, option, &mut self.settings);
         }
         self.background_row(ui);
     }

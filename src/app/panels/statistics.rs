@@ -216,7 +216,7 @@ impl App {
         let hover = "Edges where the normals of two sides point in opposite directions.";
         fact(ui, "Normals opposite", &count(faults.map(|faults| faults.opposite)), hover);
         let hover = "Corners whose normal runs along one of their edges.";
-        fact(ui, "Normals along edge", &count(faults.map(|faults| faults.along_edge)), hover);
+        fact(ui, "Normals along edges", &count(faults.map(|faults| faults.along_edge)), hover);
     }
 }
 

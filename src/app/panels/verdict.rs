@@ -1,4 +1,5 @@
-//! What is wrong with the picture, in a few lines at the top of the right panel. A click on one shows the place.
+//! What is wrong with the picture, in a few lines at the top of the right panel. A click on one shows the place. A line where all
+//! is well is dim, but there, so that nothing below moves while numbers change.
 
 use egui::{Color32, RichText};
 
@@ -53,23 +54,19 @@ impl App {
         ui.add_space(6.0);
         let lines: Vec<Line> = [
             Some(self.cracks_line()),
-            self.leaks_line(),
+            Some(self.leaks_line()),
             Some(self.folds_line()),
-            self.junctions_line(),
+            Some(self.junctions_line()),
             self.given_line(ui.visuals().warn_fg_color),
-            self.sizes_line(ui.visuals().text_color()),
-            self.limit_line(ui.visuals().warn_fg_color),
-            self.warnings_line(ui.visuals().warn_fg_color),
+            Some(self.sizes_line(ui.visuals().text_color())),
+            Some(self.limit_line(ui.visuals().warn_fg_color)),
+            Some(self.warnings_line(ui.visuals().warn_fg_color)),
         ]
         .into_iter()
         .flatten()
         .collect();
         for line in lines {
-            let Some(color) = line.color else {
-                ui.weak(line.text).on_hover_text(line.hover);
-                continue;
-            };
-            if ui.button(RichText::new(line.text).color(color)).on_hover_text(line.hover).clicked() {
+            if row(ui, line.text, line.color, line.hover) {
                 self.follow(line.leads);
             }
         }
@@ -91,11 +88,22 @@ impl App {
         }
     }
 
-    fn leaks_line(&self) -> Option<Line> {
+    fn leaks_line(&self) -> Line {
         let hover = "Pixels of this view through which one can see into the closed mesh. A click goes to the cracked edge at the \
                      largest group of them.";
-        let leaks = self.may_leak().then(|| self.leaks());
-        Some(match leaks? {
+        let waits = self.jobs.measure.found().is_none();
+        let junctions = self.document.as_ref().and_then(|document| document.checks.t_junctions());
+        let has_cracks = self.jobs.measure.cracks().is_none_or(|cracks| !cracks.edges.is_empty());
+        let is_whole = !has_cracks && junctions.is_some_and(|junctions| junctions.is_empty());
+        if !waits && !self.may_leak() && is_whole {
+            return Line::dim("No leaks in this view", "No edge is cracked.", Destination::Leaks);
+        }
+        if !waits && !self.may_leak() {
+            let why = "Leaks are counted in views of a closed mesh that is beyond the near plane and wholly drawn. One can see \
+                       into others anyway.";
+            return Line::dim("Leaks aren't counted", why, Destination::Leaks);
+        }
+        match self.leaks().filter(|_| !waits) {
             None => Line::dim("Leaks \u{2026}", "Leaks are counted while the picture rests.", Destination::Leaks),
             Some([]) => Line::dim("No leaks in this view", hover, Destination::Leaks),
             Some(leaks) => {
@@ -103,7 +111,7 @@ impl App {
                 let text = format!("{} px leak in this view", grouped(pixels));
                 Line::bad(text, rgb(CRACK_COLOR), hover, Destination::Leaks)
             }
-        })
+        }
     }
 
     fn folds_line(&self) -> Line {
@@ -116,12 +124,18 @@ impl App {
         }
     }
 
-    fn junctions_line(&self) -> Option<Line> {
-        let junctions = self.document.as_ref()?.checks.t_junctions().filter(|junctions| !junctions.is_empty())?;
+    fn junctions_line(&self) -> Line {
+        let junctions = self.document.as_ref().and_then(|document| document.checks.t_junctions());
         let hover = "Points of the mesh that lie on the open edge of another triangle, which no tessellation closes. A click \
                      shows them and goes to the first.";
-        let text = counted(junctions.len() as u64, "T-junction");
-        Some(Line::bad(text, rgb(T_JUNCTION_COLOR), hover, Destination::TJunctions))
+        match junctions {
+            None => Line::dim("T-junctions \u{2026}", hover, Destination::TJunctions),
+            Some([]) => Line::dim("No T-junctions", hover, Destination::TJunctions),
+            Some(all) => {
+                let text = counted(all.len() as u64, "T-junction");
+                Line::bad(text, rgb(T_JUNCTION_COLOR), hover, Destination::TJunctions)
+            }
+        }
     }
 
     fn given_line(&self, color: Color32) -> Option<Line> {
@@ -133,38 +147,54 @@ impl App {
         (edges > 0).then(|| Line::bad(text, color, hover, Destination::GivenFactors))
     }
 
-    fn sizes_line(&self, color: Color32) -> Option<Line> {
-        let sizes = self.sizes_shown().filter(|sizes| sizes.small > 0)?;
-        let percent = 100.0 * sizes.small as f64 / sizes.in_view.max(1) as f64;
+    fn sizes_line(&self, color: Color32) -> Line {
         let hover = "Triangles in view that are smaller than half of a square with sides of 3 px: a GPU shades up to four times \
                      as many px for them as they cover. A click colours triangles by their size.";
+        let Some(sizes) = self.sizes_shown() else {
+            return Line::dim("Triangles below 3 px \u{2026}", hover, Destination::Sizes);
+        };
+        let percent = 100.0 * sizes.small as f64 / sizes.in_view.max(1) as f64;
         let text = format!("{percent:.0} % of triangles below 3 px");
-        (percent >= 0.5).then(|| Line::bad(text, color, hover, Destination::Sizes))
+        match percent >= 0.5 {
+            true => Line::bad(text, color, hover, Destination::Sizes),
+            false => Line::dim(text, hover, Destination::Sizes),
+        }
     }
 
-    fn limit_line(&self, color: Color32) -> Option<Line> {
-        let patches = self.jobs.measure.found()?.patches_at_limit;
+    fn limit_line(&self, color: Color32) -> Line {
         let hover = "Patches with a factor of 63 or 64, the most there is. LOD by error may miss its tolerance there. A click \
                      colours the surface by factors.";
-        let text = format!("{} at the maximum factor", counted(patches.into(), "patch"));
-        (patches > 0).then(|| Line::bad(text, color, hover, Destination::Factors))
+        match self.jobs.measure.found().map(|found| found.patches_at_limit) {
+            None => Line::dim("Patches at the maximum factor \u{2026}", hover, Destination::Factors),
+            Some(0) => Line::dim("No patch at the maximum factor", hover, Destination::Factors),
+            Some(patches) => {
+                let text = format!("{} at the maximum factor", counted(patches.into(), "patch"));
+                Line::bad(text, color, hover, Destination::Factors)
+            }
+        }
     }
 
-    fn warnings_line(&self, color: Color32) -> Option<Line> {
-        let warnings = self.document.as_ref()?.loaded.warnings.len() as u64;
+    fn warnings_line(&self, color: Color32) -> Line {
+        let warnings = self.document.as_ref().map_or(0, |document| document.loaded.warnings.len() as u64);
         let hover = "What was repaired or left out when the file was read. A click lists it.";
-        (warnings > 0).then(|| Line::bad(counted(warnings, "warning"), color, hover, Destination::Warnings))
+        match warnings {
+            0 => Line::dim("No warnings", hover, Destination::Warnings),
+            _ => Line::bad(counted(warnings, "warning"), color, hover, Destination::Warnings),
+        }
+    }
+
+    /// Shows the cracks, and selects the edge with the widest gap.
+    pub(in crate::app) fn go_to_widest_crack(&mut self) {
+        self.settings.overlays.cracks = true;
+        self.panels.open.set(Section::Cracks, true);
+        let widest = self.jobs.measure.cracks().and_then(|cracks| cracks.edges.first()).map(|crack| crack.edge);
+        widest.into_iter().for_each(|edge| self.select_edge(edge));
     }
 
     fn follow(&mut self, leads: Destination) {
         let overlays = &mut self.settings.overlays;
         match leads {
-            Destination::Cracks => {
-                overlays.cracks = true;
-                self.panels.open.set(Section::Cracks, true);
-                let widest = self.jobs.measure.cracks().and_then(|cracks| cracks.edges.first()).map(|crack| crack.edge);
-                widest.into_iter().for_each(|edge| self.select_edge(edge));
-            }
+            Destination::Cracks => self.go_to_widest_crack(),
             Destination::Leaks => {
                 self.panels.open.set(Section::Cracks, true);
                 let largest = self.leaks().and_then(|leaks| leaks.first()).copied();
@@ -195,4 +225,23 @@ impl App {
             Destination::Warnings => self.dialogs.shows_warnings = true,
         }
     }
+}
+
+/// Shows a line: a button in a colour, or where there is none, weak text at the same place and as high. Returns whether it was
+/// clicked.
+fn row(ui: &mut egui::Ui, text: String, color: Option<Color32>, hover: &str) -> bool {
+    let size = egui::vec2(ui.available_width(), ui.spacing().interact_size.y + 2.0);
+    let layout = egui::Layout::left_to_right(egui::Align::Center);
+    ui.allocate_ui_with_layout(size, layout, |ui| {
+        ui.set_min_height(size.y);
+        match color {
+            Some(color) => ui.button(RichText::new(text).color(color)).on_hover_text(hover).clicked(),
+            None => {
+                ui.add_space(ui.spacing().button_padding.x);
+                ui.weak(text).on_hover_text(hover);
+                false
+            }
+        }
+    })
+    .inner
 }

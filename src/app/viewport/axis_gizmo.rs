@@ -15,7 +15,7 @@ pub(super) const SIZE: f32 = 84.0;
 const REACH: f32 = 29.0;
 const RADII: [f32; 2] = [9.0, 7.0];
 /// The smallest picture, in points, that has room for the axes.
-const LEAST_PICTURE: Vec2 = vec2(280.0, 220.0);
+const LEAST_PICTURE: Vec2 = vec2(230.0, 200.0);
 
 /// An end of an axis.
 struct End {

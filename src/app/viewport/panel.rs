@@ -254,7 +254,9 @@ impl App {
         });
         let mut position = rect.left_bottom() + egui::vec2(10.0, -10.0);
         let distance = self.viewport.ruler.map(|ruler| ruler.text());
-        for text in [previewed, frozen, grid, distance].into_iter().flatten() {
+        let bookmarked = self.viewport.bookmarks.iter().position(|bookmark| *bookmark == self.viewport.camera);
+        let bookmark = bookmarked.map(|index| format!("Bookmark {}", index + 1));
+        for text in [previewed, frozen, grid, distance, bookmark].into_iter().flatten() {
             let galley = note_text(ui, &text, egui::Color32::from_gray(235));
             let place = egui::Align2::LEFT_BOTTOM.anchor_size(position, galley.size());
             let response = ui.interact(place, ui.scope_id().with(("note", &text)), Sense::empty());

@@ -1,8 +1,9 @@
 //! Binds the vertices of a primitive of an animated mesh.
 
 use super::GltfError;
+use super::primitive_data::{MorphTarget, PrimitiveData};
 use super::rig_builder::{MAX_BOUND, NodeBinder, UndeformedVertex, VertexFrame};
-use super::vertices::{MorphTarget, PrimitiveData, Vertices};
+use super::vertices::Vertices;
 use crate::mesh::MemoryAccount;
 use crate::mesh::mesh_builder::InputCorner;
 use crate::mesh::rig::Delta;

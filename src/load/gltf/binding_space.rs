@@ -2,6 +2,7 @@
 
 use glam::{DMat3, DMat4, DVec3, Vec3};
 
+use crate::mesh::CornerDetail;
 use crate::mesh::rig::{Binding, Delta, Pose};
 
 /// The transform from a mesh's own space to that of the animated node that it is attached to.
@@ -46,6 +47,23 @@ impl BindingSpace {
 fn finite(vector: DVec3) -> [f32; 3] {
     let vector = vector.as_vec3();
     if vector.is_finite() { vector.to_array() } else { [0.0; 3] }
+}
+
+/// Returns the tangent of a binding, and the sign of its bitangent, that become those of `detail` in a pose. Where the blended
+/// matrix has no inverse, the tangent is that of the pose.
+pub(super) fn unturned(binding: &Binding, pose: &Pose, detail: &CornerDetail) -> [f32; 4] {
+    let mut rows = [DVec3::ZERO; 3];
+    for (&joint, &weight) in binding.joints.iter().zip(&binding.weights) {
+        for (sum, row) in rows.iter_mut().zip(pose.palette[joint as usize].rows()) {
+            *sum += Vec3::from_slice(&row).as_dvec3() * f64::from(weight);
+        }
+    }
+    let linear = DMat3::from_cols(rows[0], rows[1], rows[2]).transpose();
+    let determinant = linear.determinant();
+    let own = (linear.inverse() * detail.tangent.as_dvec3()).try_normalize().map(DVec3::as_vec3);
+    let tangent = own.filter(|_| determinant != 0.0).unwrap_or(detail.tangent);
+    let sign = if determinant < 0.0 { -detail.bitangent_sign } else { detail.bitangent_sign };
+    tangent.extend(sign).to_array()
 }
 
 /// Returns the normal of a binding that becomes `normal` in a pose: the transpose of its blended matrix times `normal`.

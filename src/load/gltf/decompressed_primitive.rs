@@ -5,6 +5,8 @@ pub(crate) struct DecompressedPrimitive {
     /// The indices of vertices, three for each triangle.
     pub indices: Vec<u32>,
     pub attributes: Vec<Attribute>,
+    /// The names of attributes that should be there but can't be read, and that a primitive can do without.
+    pub left_out: Vec<String>,
 }
 
 /// The values of one attribute.
@@ -21,6 +23,11 @@ impl DecompressedPrimitive {
     pub(crate) fn values<const N: usize>(&self, name: &str) -> Option<&[[f32; N]]> {
         let attribute = self.attributes.iter().find(|attribute| attribute.name == name && attribute.width == N)?;
         Some(attribute.values.as_chunks().0)
+    }
+
+    /// Returns whether an attribute should be there but can't be read.
+    pub(crate) fn lacks(&self, name: &str) -> bool {
+        self.left_out.iter().any(|left_out| left_out == name)
     }
 
     /// Returns the size in memory, in bytes.

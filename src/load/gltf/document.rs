@@ -6,9 +6,12 @@ use ::gltf::json::validation::Error as ValidationError;
 use serde_json::{Map, Value, json};
 
 use super::extensions::{self, Extensions};
+use super::json::objects;
+use super::material_lists::MaterialLists;
+use super::notes::Notes;
 use super::{GltfError, glb, json, schema, schema_check};
 use crate::load::memory_budget::Budget;
-use crate::mesh::MemoryAccount;
+use crate::mesh::{MemoryAccount, MemoryRefused};
 use crate::progress::Progress;
 
 /// A validated document, the binary chunk of a `.glb`, and what was left out.
@@ -18,7 +21,9 @@ pub(super) struct Parsed {
     pub extensions: Extensions,
     /// The document's animations as JSON, not yet checked (see [`super::animations`]).
     pub animations: Vec<Value>,
-    pub warnings: Vec<String>,
+    /// The document's materials and images, not yet checked (see [`super::materials`]).
+    pub lists: MaterialLists,
+    pub notes: Notes,
 }
 
 /// Parses and validates a `.gltf` or `.glb`; the first bytes tell which.
@@ -51,15 +56,19 @@ pub(super) fn parse(mut bytes: Vec<u8>, budget: &Budget, progress: &Progress) ->
         Some(Value::Array(animations)) => animations,
         _ => Vec::new(),
     };
+    let mut notes = Notes::default();
+    let lists = MaterialLists::take(root, &mut notes);
     schema_check::check(root, schema::DOCUMENT)?;
     let extensions = Extensions::of(root, requires_draco);
     complete(root);
     complete_bare(root, budget)?;
-    let warnings = complete_textures(root);
     let root: Root = serde_json::from_value(value).map_err(not_gltf)?;
     let document = Document::from_json(root).map_err(first_fault)?;
     budget.give_back_to(0);
-    Ok(Parsed { document, blob, extensions, animations, warnings })
+    let too_large =
+        |refused: MemoryRefused| GltfError::Document { pointer: "its JSON".to_owned(), reason: refused.into() };
+    budget.hold(lists.bytes()).map_err(too_large)?;
+    Ok(Parsed { document, blob, extensions, animations, lists, notes })
 }
 
 fn not_gltf(reason: impl ToString) -> GltfError {
@@ -89,14 +98,6 @@ fn check_version(root: &Map<String, Value>) -> Result<(), GltfError> {
         Some(version) => Err(not_gltf(format!("its /asset/version is {:?}", crate::load::uri::shown(version)))),
         None => Err(not_gltf("it has no /asset/version")),
     }
-}
-
-/// Returns the objects in one of the document's lists.
-pub(super) fn objects<'a>(
-    root: &'a mut Map<String, Value>,
-    list: &str,
-) -> impl Iterator<Item = &'a mut Map<String, Value>> {
-    root.get_mut(list).and_then(Value::as_array_mut).into_iter().flatten().filter_map(Value::as_object_mut)
 }
 
 /// Adds members that the crate's validation requires.
@@ -136,34 +137,4 @@ fn complete_bare(root: &mut Map<String, Value>, budget: &Budget) -> Result<(), G
         accessor.insert("sparse".to_owned(), json!({ "count": 0, "indices": indices, "values": values }));
     }
     Ok(())
-}
-
-/// Gives a source to each texture without one (the image is in a format of an extension), since the crate requires it.
-/// Materials lose such a texture, with a warning; the entry stays, so that the other textures keep their indices.
-fn complete_textures(root: &mut Map<String, Value>) -> Vec<String> {
-    let mut without = Vec::new();
-    for (i, texture) in objects(root, "textures").enumerate() {
-        if !texture.contains_key("source") {
-            texture.insert("source".to_owned(), json!(0));
-            without.push(i as u64);
-        }
-    }
-    if without.is_empty() {
-        return Vec::new();
-    }
-    if let Some(images) = root.entry("images").or_insert(json!([])).as_array_mut()
-        && images.is_empty()
-    {
-        images.push(json!({ "uri": "" }));
-    }
-    for pbr in objects(root, "materials").filter_map(|m| m.get_mut("pbrMetallicRoughness")?.as_object_mut()) {
-        let texture = pbr.get("baseColorTexture").and_then(|info| info.get("index")).and_then(Value::as_u64);
-        if texture.is_some_and(|texture| without.binary_search(&texture).is_ok()) {
-            pbr.remove("baseColorTexture");
-        }
-    }
-    without
-        .iter()
-        .map(|i| format!("texture {i} has no PNG or JPEG image; its materials are shown without it."))
-        .collect()
 }

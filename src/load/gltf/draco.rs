@@ -20,7 +20,7 @@ use super::accessor::component;
 use super::decompressed_primitive::{Attribute, DecompressedPrimitive};
 use super::extensions::DracoExtension;
 use super::nodes::Placed;
-use super::schema::DRACO;
+use super::schema::{DRACO, is_detail};
 use super::{Accessors, GltfError};
 use crate::mesh::MemoryAccount;
 use crate::progress::Progress;
@@ -127,7 +127,8 @@ impl Stream<'_> {
             return Err("names no POSITION among its attributes".to_owned());
         }
         // An accessor with zero sparse values isn't sparse (see `document`).
-        match found.iter().find(|(_, accessor)| accessor.sparse().is_some_and(|sparse| sparse.count() > 0)) {
+        let mut strict = found.iter().filter(|(name, _)| !is_detail(name));
+        match strict.find(|(_, accessor)| accessor.sparse().is_some_and(|sparse| sparse.count() > 0)) {
             Some((name, _)) => Err(format!("holds {name}, but its accessor is sparse")),
             None => Ok(found),
         }
@@ -159,10 +160,16 @@ fn taken(
         let from = from.ok_or_else(|| format!("says that {name} is attribute {id}, which its data doesn't have"))?;
         Ok(Attribute { name: name.clone(), width: width(accessor), values: values(name, from, accessor, vertices)? })
     };
-    Ok(DecompressedPrimitive {
-        indices: mesh.faces().as_flattened().iter().map(|point| point.0).collect(),
-        attributes: attributes.iter().map(attribute).collect::<Result<_, String>>()?,
-    })
+    let (mut read, mut left_out) = (Vec::new(), Vec::new());
+    for named in attributes {
+        match attribute(named) {
+            Ok(values) => read.push(values),
+            Err(_) if is_detail(&named.0) => left_out.push(named.0.clone()),
+            Err(reason) => return Err(reason),
+        }
+    }
+    let indices = mesh.faces().as_flattened().iter().map(|point| point.0).collect();
+    Ok(DecompressedPrimitive { indices, attributes: read, left_out })
 }
 
 /// Converts an attribute's numbers, vertex by vertex, to what its accessor says that they mean.

@@ -1,7 +1,7 @@
 //! Parses a document's JSON, after a check of how deep it is nested and how much memory it takes.
 
-use serde_json::Value;
 use serde_json::error::Category;
+use serde_json::{Map, Value};
 
 use super::GltfError;
 use crate::load::memory_budget::Budget;
@@ -39,6 +39,29 @@ pub(super) fn parse(text: &[u8], budget: &Budget, progress: &Progress) -> Result
     budget.borrow(shape.values * PER_VALUE + shape.objects * PER_OBJECT).map_err(too_large)?;
     budget.hold(shape.objects * PER_READ).map_err(too_large)?;
     serde_json::from_slice(text).map_err(|error| GltfError::NotGltf { reason: reason(&error) })
+}
+
+/// Returns the objects in one of an object's lists.
+pub(super) fn objects<'a>(
+    object: &'a mut Map<String, Value>,
+    list: &str,
+) -> impl Iterator<Item = &'a mut Map<String, Value>> {
+    object.get_mut(list).and_then(Value::as_array_mut).into_iter().flatten().filter_map(Value::as_object_mut)
+}
+
+/// Returns the memory of a value that has been parsed, in bytes, by the same estimate.
+pub(super) fn bytes(value: &Value) -> u64 {
+    let inside = match value {
+        Value::Object(object) if object.is_empty() => 0,
+        Value::Object(object) => {
+            let members = object.iter().map(|(name, value)| name.len() as u64 + bytes(value));
+            PER_OBJECT + members.sum::<u64>()
+        }
+        Value::Array(values) => values.iter().map(bytes).sum(),
+        Value::String(text) => text.len() as u64,
+        Value::Null | Value::Bool(_) | Value::Number(_) => 0,
+    };
+    PER_VALUE + inside
 }
 
 /// The size of a document, counted from brackets and commas.

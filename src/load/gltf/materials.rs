@@ -1,113 +1,269 @@
-//! Reads materials: the base colour and its texture. Each is made when a primitive first uses it.
+//! Makes materials of what a document says about them. Each is made when a primitive first uses it.
 
-use std::borrow::Cow;
-use std::collections::HashMap;
+use std::cell::RefCell;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 use ::gltf::Document;
 
-use super::Accessors;
-use super::extensions::UvTransform;
+use super::lenient::Members;
+use super::material_lists::MaterialLists;
+use super::material_source::{MapSource, MaterialSource, Uvs};
+use super::nodes::Placed;
+use super::notes::Notes;
+use super::texture_source;
+use super::uv_transform::UvTransform;
+use super::{Accessors, GltfError};
 use crate::load::images::decode_texture;
 use crate::load::memory_budget::Budget;
-use crate::load::uri::{self, Files};
+use crate::load::uri::Files;
 use crate::mesh::mesh_builder::MeshBuilder;
-use crate::mesh::{Material, Texture};
+use crate::mesh::{Alpha, Look, Map, MapUv, Material, MemoryAccount, MemoryRefused, Sampling, Slot, Texture};
 
-/// A material's index in the builder, and its texture coordinates.
+/// How many materials a sentence names.
+const NAMED: usize = 3;
+
+/// A material's index in the builder, and what its corners need.
 #[derive(Clone, Copy)]
 pub(super) struct Resolved {
     pub index: usize,
     pub uvs: Uvs,
+    pub needs: DetailNeeds,
 }
 
-/// Which texture coordinates a material uses, and how they are transformed.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Uvs {
-    /// The n of TEXCOORD_n.
-    pub set: u32,
-    pub transform: Option<UvTransform>,
+/// What the corners of a material need beside position, normal and texture coordinates.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct DetailNeeds {
+    /// Texture coordinates TEXCOORD_0 and TEXCOORD_1, untransformed.
+    pub sets: [bool; 2],
+    pub tangents: bool,
 }
 
 /// The materials that have been used so far.
 pub(super) struct Materials<'a> {
-    document: &'a Document,
+    lists: &'a MaterialLists,
     accessors: &'a Accessors<'a>,
     files: &'a Files<'a>,
-    transforms: &'a [Option<UvTransform>],
     budget: &'a Budget,
-    /// By the index in the document; none for the default material.
+    /// Those that are used, by the index in the document; none for the default material.
+    sources: HashMap<Option<usize>, MaterialSource>,
     resolved: HashMap<Option<usize>, Resolved>,
-    /// By the image's index in the document; none for an image that can't be read.
-    textures: HashMap<usize, Option<Arc<Texture>>>,
-    pub warnings: Vec<String>,
+    /// By the texture's index: that of its image, and how it is sampled.
+    textures: HashMap<usize, Option<(usize, Sampling)>>,
+    /// By the image's index; none for an image that can't be read.
+    images: HashMap<usize, Option<Arc<Texture>>>,
+    /// For what isn't drawn, the materials that have it.
+    undrawn: BTreeMap<String, NamedMaterials>,
+    notes: RefCell<Notes>,
+}
+
+/// Some materials, of which the first few are named.
+#[derive(Default)]
+struct NamedMaterials {
+    named: Vec<String>,
+    count: usize,
 }
 
 impl<'a> Materials<'a> {
+    /// Reads the materials of everything that is shown, without their images.
+    ///
+    /// # Errors
+    /// [`GltfError::TooLarge`].
     pub(super) fn new(
-        document: &'a Document,
-        accessors: &'a Accessors<'a>,
-        files: &'a Files<'a>,
-        transforms: &'a [Option<UvTransform>],
+        lists: &'a MaterialLists,
+        document: &Document,
+        placed: &Placed,
+        (accessors, files): (&'a Accessors<'a>, &'a Files<'a>),
         budget: &'a Budget,
-    ) -> Self {
-        let (resolved, textures) = (HashMap::new(), HashMap::new());
-        Self { document, accessors, files, transforms, budget, resolved, textures, warnings: Vec::new() }
+    ) -> Result<Self, GltfError> {
+        let mut materials = Self {
+            lists,
+            accessors,
+            files,
+            budget,
+            sources: HashMap::new(),
+            resolved: HashMap::new(),
+            textures: HashMap::new(),
+            images: HashMap::new(),
+            undrawn: BTreeMap::new(),
+            notes: RefCell::default(),
+        };
+        let mut seen = vec![false; document.meshes().len()];
+        for mesh in placed.shown.iter().filter_map(|&node| document.nodes().nth(node)?.mesh()) {
+            if std::mem::replace(&mut seen[mesh.index()], true) {
+                continue;
+            }
+            for primitive in mesh.primitives() {
+                materials.look_at(primitive.material().index())?;
+            }
+        }
+        Ok(materials)
+    }
+
+    fn look_at(&mut self, index: Option<usize>) -> Result<(), GltfError> {
+        if self.sources.contains_key(&index) {
+            return Ok(());
+        }
+        self.hold(size_of::<MaterialSource>() + size_of::<Material>())?;
+        let value = index.and_then(|index| Some((index, self.lists.materials.get(index)?)));
+        let members = value.and_then(|(i, value)| Members::of(value, format!("/materials/{i}"), &self.notes));
+        let source = MaterialSource::of(members.as_ref(), self.lists.textures.len());
+        let name = name(&source, index);
+        for undrawn in &source.undrawn {
+            self.undrawn.entry(undrawn.clone()).or_default().add(&name);
+        }
+        if source.look.alpha == Alpha::Blend {
+            self.undrawn.entry(BLEND.to_owned()).or_default().add(&name);
+        }
+        self.sources.insert(index, source);
+        Ok(())
+    }
+
+    fn hold(&self, bytes: usize) -> Result<(), GltfError> {
+        let too_large =
+            |refused: MemoryRefused| GltfError::TooLarge { what: "its materials".to_owned(), reason: refused.into() };
+        self.budget.hold(bytes as u64).map_err(too_large)
+    }
+
+    /// Returns whether corners of this material need more than position, normal and texture coordinates.
+    pub(super) fn needs_details(&self, material: &::gltf::Material) -> bool {
+        self.sources.get(&material.index()).is_some_and(MaterialSource::needs_details)
     }
 
     /// Finds a material, or adds it to the builder. A texture that is missing or broken causes a warning.
-    pub(super) fn resolve(&mut self, material: &::gltf::Material, builder: &mut MeshBuilder) -> Resolved {
-        if let Some(&resolved) = self.resolved.get(&material.index()) {
-            return resolved;
+    ///
+    /// # Errors
+    /// [`GltfError::TooLarge`].
+    pub(super) fn resolve(
+        &mut self,
+        material: &::gltf::Material,
+        builder: &mut MeshBuilder,
+    ) -> Result<Resolved, GltfError> {
+        let key = material.index();
+        if let Some(&resolved) = self.resolved.get(&key) {
+            return Ok(resolved);
         }
-        let pbr = material.pbr_metallic_roughness();
-        let name = match (material.name(), material.index()) {
-            (Some(name), _) => name.to_owned(),
-            (None, Some(index)) => format!("material {index}"),
-            (None, None) => "default".to_owned(),
-        };
-        let info = pbr.base_color_texture();
-        let texture = info.as_ref().and_then(|info| self.texture(info.texture().source().index(), &name));
-        let transform = material.index().and_then(|index| *self.transforms.get(index)?);
-        let own_set = info.map_or(0, |info| info.tex_coord());
-        let set = transform.and_then(|transform| transform.uv_set).unwrap_or(own_set);
-        let double_sided = material.double_sided();
-        let plain = Material::plain(&name, pbr.base_color_factor());
-        let index = builder.material(Material { texture, double_sided, ..plain });
-        let resolved = Resolved { index, uvs: Uvs { set, transform } };
-        self.resolved.insert(material.index(), resolved);
-        resolved
+        self.look_at(key)?;
+        let Some(source) = self.sources.get(&key).cloned() else { return Ok(Resolved::of(0, Uvs::default(), None)) };
+        let name = name(&source, key);
+        let base = source.base_map.and_then(|map| self.texture(map.texture, "texture", &name));
+        let mut look = source.look.clone();
+        for slot in Slot::ALL {
+            let map = source.maps[slot as usize];
+            look.maps[slot as usize] = map.and_then(|map| self.map(map, slot, source.own_uvs(), &name));
+        }
+        let (texture, sampling) =
+            base.map_or((None, Sampling::default()), |(texture, sampling)| (Some(texture), sampling));
+        let resolved = Resolved::of(0, source.own_uvs(), Some(&look));
+        let MaterialSource { base_color, double_sided, .. } = source;
+        let triangles = 0..0;
+        let made = Material { name, base_color, texture, sampling, double_sided, look, triangles };
+        let resolved = Resolved { index: builder.material(made), ..resolved };
+        self.resolved.insert(key, resolved);
+        Ok(resolved)
     }
 
-    fn texture(&mut self, image: usize, material: &str) -> Option<Arc<Texture>> {
-        if let Some(texture) = self.textures.get(&image) {
+    fn map(&mut self, map: MapSource, slot: Slot, own: Uvs, material: &str) -> Option<Map> {
+        let what = slot_name(slot);
+        let (texture, sampling) = self.texture(map.texture, what, material)?;
+        let Uvs { set, transform } = map.uvs;
+        let uv = match set {
+            _ if map.uvs == own => MapUv::Own,
+            0 | 1 => MapUv::Set(set as usize, UvTransform::affine(transform)),
+            _ => {
+                let said = "only TEXCOORD_0 and TEXCOORD_1 are read for it; TEXCOORD_0 is used";
+                let said = format!("the {what} of material \"{material}\" has TEXCOORD_{set}, but {said}.");
+                self.notes.get_mut().push(said);
+                MapUv::Set(0, UvTransform::affine(transform))
+            }
+        };
+        Some(Map { texture, uv, sampling })
+    }
+
+    fn texture(&mut self, texture: usize, what: &str, material: &str) -> Option<(Arc<Texture>, Sampling)> {
+        let MaterialLists { textures, samplers, images, .. } = self.lists;
+        let found = self
+            .textures
+            .entry(texture)
+            .or_insert_with(|| texture_source::texture(textures, samplers, images.len(), texture, &self.notes));
+        let (image, sampling) = (*found)?;
+        Some((self.image(image, what, material)?, sampling))
+    }
+
+    fn image(&mut self, image: usize, what: &str, material: &str) -> Option<Arc<Texture>> {
+        if let Some(texture) = self.images.get(&image) {
             return texture.clone();
         }
-        let texture = self.read(image).and_then(|bytes| decode_texture(&bytes, self.budget)).map(Arc::new);
+        let bytes = texture_source::image(&self.lists.images, image, self.accessors, self.files);
+        let texture = bytes.and_then(|bytes| decode_texture(&bytes, self.budget)).map(Arc::new);
         let texture = texture.map_err(|reason| {
-            self.warnings.push(format!("the texture of material \"{material}\" is left out: {reason}."));
+            self.notes.get_mut().push(format!("the {what} of material \"{material}\" is left out: {reason}."));
         });
-        self.textures.insert(image, texture.clone().ok());
+        self.images.insert(image, texture.clone().ok());
         texture.ok()
     }
 
-    /// Returns the bytes of an image.
-    fn read(&self, image: usize) -> Result<Cow<'_, [u8]>, String> {
-        // Reads the document's JSON, since the crate's own access panics on an image without a type.
-        let Some(json) = self.document.as_json().images.get(image) else {
-            return Err(format!("there is no /images/{image}"));
-        };
-        if let Some(view) = json.buffer_view.and_then(|view| self.accessors.view(view.value())) {
-            let bytes = self.accessors.view_bytes(&view).map(Cow::Borrowed);
-            return bytes.map_err(|reason| format!("/images/{image} {reason}"));
+    /// Returns what was repaired or left out.
+    pub(super) fn into_notes(self) -> Notes {
+        let mut notes = self.notes.into_inner();
+        notes.extend(self.undrawn.into_iter().map(|(what, materials)| {
+            let verb = if what == BLEND { "is drawn opaque" } else { "isn't drawn" };
+            format!("{what} {verb}; {materials}.")
+        }));
+        notes
+    }
+}
+
+const BLEND: &str = "alphaMode BLEND";
+
+impl Resolved {
+    fn of(index: usize, uvs: Uvs, look: Option<&Look>) -> Self {
+        let mut needs = DetailNeeds::default();
+        for map in look.into_iter().flat_map(|look| look.maps.iter().flatten()) {
+            if let MapUv::Set(set, _) = map.uv {
+                needs.sets[set] = true;
+            }
         }
-        match &json.uri {
-            Some(uri) => self
-                .files
-                .read(uri, false)
-                .map(Cow::Owned)
-                .map_err(|reason| format!("/images/{image} ({}) can't be read: {reason}", uri::shown(uri))),
-            None => Err(format!("/images/{image} has neither a file nor a buffer view")),
+        needs.tangents = look.is_some_and(|look| look.maps[Slot::Normal as usize].is_some());
+        Self { index, uvs, needs }
+    }
+}
+
+impl NamedMaterials {
+    fn add(&mut self, name: &str) {
+        self.count += 1;
+        if self.named.len() < NAMED {
+            self.named.push(crate::load::uri::shown(name));
         }
+    }
+}
+
+impl std::fmt::Display for NamedMaterials {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        let names: Vec<_> = self.named.iter().map(|name| format!("\"{name}\"")).collect();
+        match self.count - self.named.len() {
+            0 if self.count == 1 => write!(f, "material {} has it", names.concat()),
+            0 => write!(f, "materials {} have it", names.join(", ")),
+            more => write!(f, "materials {} and {more} more have it", names.join(", ")),
+        }
+    }
+}
+
+/// What a map is, for people.
+fn slot_name(slot: Slot) -> &'static str {
+    match slot {
+        Slot::MetallicRoughness => "metallic-roughness map",
+        Slot::Normal => "normal map",
+        Slot::Occlusion => "occlusion map",
+        Slot::Emissive => "emissive map",
+    }
+}
+
+/// Returns a material's name, or one made of its index.
+fn name(source: &MaterialSource, index: Option<usize>) -> String {
+    match (&source.name, index) {
+        (Some(name), _) => name.clone(),
+        (None, Some(index)) => format!("material {index}"),
+        (None, None) => "default".to_owned(),
     }
 }

@@ -6,12 +6,16 @@ use ::gltf::{Document, Mesh, Primitive};
 use super::accessor::List;
 use super::animated_vertices::AnimatedVertices;
 use super::materials::Resolved;
+use super::notes::Notes;
+use super::primitive_data::PrimitiveData;
 use super::rig_builder::NodeBinder;
+use super::vertex_details::{DetailRepairs, VertexDetails};
+use crate::mesh::detail_table::DetailTable;
 use crate::mesh::{MemoryAccount, MemoryRefused};
 
 pub(super) use super::vertices::NodePose;
-use super::vertices::{PrimitiveData, Vertex, Vertices};
-use super::{Accessors, GltfError, vertices};
+use super::vertices::{Vertex, Vertices};
+use super::{Accessors, GltfError};
 use crate::mesh::mesh_builder::{CornerRepairs, MeshBuilder, StoredCorner};
 
 /// Reads primitives, and counts what was repaired or left out.
@@ -26,6 +30,9 @@ pub(super) struct PrimitiveReader {
     bad_uvs: usize,
     /// Vertices with unusable weights.
     bad_weights: usize,
+    details: DetailRepairs,
+    /// What is wrong with attributes that a primitive can do without.
+    pub notes: Notes,
     /// Indices at the end of a list that don't make a whole triangle.
     left_over: usize,
     /// Corners of triangles whose normal wasn't of unit length in the file.
@@ -40,6 +47,8 @@ pub(super) struct Job<'a, 'b> {
     pub material: Resolved,
     pub accessors: &'a Accessors<'a>,
     pub builder: &'b mut MeshBuilder,
+    /// None if no material needs details of corners.
+    pub details: Option<&'b mut DetailTable>,
 }
 
 /// The vertices of a primitive's triangles. Without indices they are in order.
@@ -71,11 +80,14 @@ impl PrimitiveReader {
     /// # Errors
     /// [`GltfError::Accessor`], [`GltfError::Primitive`] and [`GltfError::TooLarge`].
     pub(super) fn read(&mut self, job: Job, binder: Option<&mut NodeBinder>) -> Result<(), GltfError> {
-        let Job { mesh, primitive, pose, material, accessors, builder } = job;
+        let Job { mesh, primitive, pose, material, accessors, builder, mut details } = job;
         let name = name(mesh, primitive);
         let unpacked = accessors.unpacked.get(&[mesh.index(), primitive.index()]);
         let source = PrimitiveData { primitive, name: &name, accessors, unpacked };
         let mut vertices = Vertices::new(source, pose, material.uvs)?;
+        if details.is_some() {
+            vertices.details = Some(VertexDetails::new(source, vertices.count, material.needs, &mut self.notes));
+        }
         let mut moving = binder.map(|binder| AnimatedVertices::new(source, &vertices, binder));
         let list = primitive.indices().map(|accessor| match unpacked {
             Some(unpacked) => Ok(List::of(&unpacked.indices, 0)),
@@ -100,9 +112,13 @@ impl PrimitiveReader {
                 continue;
             }
             builder.make_room(1, budget).map_err(too_large)?;
+            let binding = match &mut details {
+                Some(details) => details.number(vertex.detail, binding, budget).map_err(too_large)?,
+                None => binding,
+            };
             kept.push(builder.corner(vertex.corner, binding), &vertex);
         }
-        self.count(&vertices.repairs, mode, count);
+        self.count(&vertices, mode, count);
         builder.make_room_for_triangles(material.index, most_triangles(mode, count), budget).map_err(too_large)?;
         for [a, b, c] in triangles(mode, count, |i| indices.get(i)) {
             let outward = if kept.has(a, KeptVertices::MIRRORED) { [a, c, b] } else { [a, b, c] };
@@ -112,8 +128,15 @@ impl PrimitiveReader {
         Ok(())
     }
 
-    fn count(&mut self, repairs: &vertices::VertexRepairs, mode: Mode, indices: usize) {
+    fn count(&mut self, vertices: &Vertices, mode: Mode, indices: usize) {
         self.read += 1;
+        let repairs = &vertices.repairs;
+        if let Some(VertexDetails { repairs, .. }) = &vertices.details {
+            self.details.bad_colors += repairs.bad_colors;
+            self.details.bad_tangents += repairs.bad_tangents;
+            self.details.missing_uvs += repairs.missing_uvs;
+            self.bad_uvs += repairs.bad_uvs;
+        }
         self.without_normals += usize::from(repairs.no_normals > 0);
         self.bad_uvs += repairs.bad_uvs;
         self.bad_weights += repairs.bad_weights;
@@ -127,6 +150,9 @@ impl PrimitiveReader {
         let sentences = [
             (self.without_normals, "primitives without normals, which got ones that are smooth within 60 degrees"),
             (self.bad_uvs, "uvs that aren't finite, replaced by (0, 0)"),
+            (self.details.missing_uvs, "primitives without the texture coordinates of a map, which has (0, 0) there"),
+            (self.details.bad_colors, "colours of vertices that aren't finite, replaced by white"),
+            (self.details.bad_tangents, "tangents without a direction, replaced by ones that are computed"),
             (self.bad_weights, "vertices with unusable joints or weights, left unskinned"),
             (self.left_over, "indices at the end of triangle lists that make no whole triangle, left out"),
             (self.points, "primitives of points, left out"),

@@ -6,13 +6,13 @@ use ::gltf::Document;
 use glam::{DMat4, Vec3};
 
 use super::attachment::{self, Attachment, carries_shown};
-use super::binding_space::{BindingSpace, untwisted};
+use super::binding_space::{BindingSpace, unturned, untwisted};
 use super::nodes::{self, Placed};
 use super::skin;
-use crate::mesh::Mesh;
 use crate::mesh::mesh_builder::InputCorner;
 use crate::mesh::normals::GivenNormal;
 use crate::mesh::rig::{AnimatedNode, Binding, Clip, Delta, Joint, Morph, Property, Reach, Rig};
+use crate::mesh::{CornerDetails, Mesh};
 
 /// The greatest number of bound vertices, and of their displacements, which limits the memory.
 pub(super) const MAX_BOUND: usize = 1 << 24;
@@ -150,6 +150,7 @@ impl RigBuilder {
         }
         let mut rig = Rig {
             bindings: corners.iter().map(|&id| self.bound[id as usize].binding).collect(),
+            tangents: Vec::new(),
             alike: corners.iter().map(|&id| self.bound[id as usize].alike).collect(),
             deltas: self.deltas,
             nodes: self.nodes,
@@ -163,6 +164,10 @@ impl RigBuilder {
             if self.bound[id as usize].without_normal {
                 binding.normal = untwisted(binding, &rest, corner.normal).to_array();
             }
+        }
+        if let Some(details) = mesh.details.as_ref().filter(|details| has_tangents(details)) {
+            let bindings = rig.bindings.iter().zip(details.iter());
+            rig.tangents = bindings.map(|(binding, detail)| unturned(binding, &rest, detail)).collect();
         }
         rig.reach = Reach::of(&rig.bindings, &rig.deltas);
         Ok(rig)
@@ -206,6 +211,10 @@ impl RigBuilder {
         }
         id
     }
+}
+
+fn has_tangents(details: &CornerDetails) -> bool {
+    details.iter().any(|detail| detail.tangent != Vec3::ZERO)
 }
 
 /// Binds the vertices of one node's mesh.

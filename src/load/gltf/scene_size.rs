@@ -10,6 +10,7 @@ use super::nodes::Placed;
 use super::{Accessors, GltfError, primitive};
 use crate::load::memory_budget::Budget;
 use crate::mesh::build_limits::MAX_TRIANGLES;
+use crate::mesh::detail_table::DetailTable;
 use crate::mesh::interner::Interner;
 use crate::mesh::{MemoryAccount, MemoryRefused};
 
@@ -23,9 +24,18 @@ const PER_TRIANGLE: u64 = 12;
 /// What a vertex without data in the file counts as, in bytes: it takes time, and adds nothing to the file's size.
 const PER_ZERO: u64 = 100;
 /// Memory for the binding of a corner of an animated mesh, in bytes.
-const PER_BOUND: u64 = 240;
+const PER_BOUND: u64 = 256;
 /// Memory for reading a primitive and its node, in bytes, besides its elements.
 const PER_PRIMITIVE: u64 = 200;
+
+/// What vertices have beside position, normal and texture coordinates.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct PerVertex {
+    /// Bindings to joints.
+    pub moves: bool,
+    /// Details of corners.
+    pub is_detailed: bool,
+}
 
 /// The size of a mesh, or of all that is shown.
 #[derive(Clone, Copy, Debug, Default)]
@@ -51,7 +61,7 @@ pub(crate) fn check(
     placed: &Placed,
     accessors: &Accessors,
     budget: &Budget,
-    moves: bool,
+    beside: PerVertex,
 ) -> Result<[usize; 2], GltfError> {
     let mut known: HashMap<usize, SceneSize> = HashMap::new();
     let mut all = SceneSize::default();
@@ -79,7 +89,8 @@ pub(crate) fn check(
     if all.elements > MAX_ELEMENTS {
         return refuse(all.elements, "vertices, displacements of vertices and indices", MAX_ELEMENTS);
     }
-    let moving = if moves { all.vertices.saturating_mul(PER_BOUND) } else { 0 };
+    let moving = if beside.moves { all.vertices.saturating_mul(PER_BOUND) } else { 0 };
+    let details = if beside.is_detailed { DetailTable::bytes_for(all.corners as usize) } else { 0 };
     let read = Interner::bytes_for(all.corners as usize) + all.triangles * PER_TRIANGLE;
     // All triangles are put into one list after the buffers have been freed.
     let finished = (all.corners * 4 + all.triangles * 2 * PER_TRIANGLE).saturating_sub(accessors.buffer_bytes());
@@ -89,7 +100,7 @@ pub(crate) fn check(
         reason: refused.into(),
     };
     let beside = moving.saturating_add(all.primitives.saturating_mul(PER_PRIMITIVE));
-    let ahead = all.corners * PER_CORNER + all.zeros * PER_ZERO + read.max(finished);
+    let ahead = all.corners * PER_CORNER + all.zeros * PER_ZERO + details + read.max(finished);
     let borrowed = budget.borrowed();
     budget.hold(beside).and_then(|()| budget.borrow(ahead)).map_err(too_large)?;
     // This was only a check: the builder takes the memory as it goes.

@@ -1,5 +1,5 @@
-//! The members of a document that are read, and the values that each may have. [Animations](super::animations) aren't
-//! included.
+//! The members of a document that are read, and the values that each may have. [Animations](super::animations) and
+//! [materials](super::material_source) aren't included.
 //!
 //! Source: glTF 2.0 specification, section 5 (properties reference).
 
@@ -20,8 +20,6 @@ pub(super) enum MemberKind {
         least: u64,
         most: u64,
     },
-    /// A number that fits an f32.
-    Number,
     /// A list of numbers that fit an f32, with this length if there is one.
     Numbers(Option<usize>),
     /// A list of `count` numbers from `least` to `most`.
@@ -50,8 +48,7 @@ pub(super) enum MemberKind {
 }
 
 use MemberKind::{
-    Attributes, Code, Flag, Ids, Index, Indices, Name, Number, Numbers, Object, Objects, Targets, Text, Whole, Within,
-    Word,
+    Attributes, Code, Flag, Ids, Index, Indices, Name, Numbers, Object, Objects, Targets, Text, Whole, Within, Word,
 };
 
 const fn needed(name: &'static str, kind: MemberKind) -> Field {
@@ -77,9 +74,7 @@ pub(super) static DOCUMENT: &[Field] = &[
     may("nodes", Objects(NODE)),
     may("meshes", Objects(MESH)),
     may("skins", Objects(SKIN)),
-    may("materials", Objects(MATERIAL)),
-    may("textures", Objects(&[may("source", Index("images"))])),
-    may("images", Objects(&[may("uri", Text), may("bufferView", Index("bufferViews"))])),
+    may("materials", Objects(&[])),
     may("accessors", Objects(ACCESSOR)),
     may("bufferViews", Objects(VIEW)),
     may("buffers", Objects(BUFFER)),
@@ -112,34 +107,6 @@ static PRIMITIVE: &[Field] = &[
 static PACKED: &[Field] = &[needed("bufferView", Index("bufferViews")), needed("attributes", Ids)];
 
 static SKIN: &[Field] = &[needed("joints", Indices("nodes")), may("inverseBindMatrices", Index("accessors"))];
-
-static MATERIAL: &[Field] = &[
-    may("name", Name),
-    may("doubleSided", Flag),
-    may(
-        "pbrMetallicRoughness",
-        Object(&[
-            may("baseColorFactor", Within { count: 4, least: 0.0, most: 1.0 }),
-            may("baseColorTexture", Object(TEXTURE_INFO)),
-        ]),
-    ),
-];
-
-static TEXTURE_INFO: &[Field] = &[
-    needed("index", Index("textures")),
-    may("texCoord", TEXTURE_COORDINATES),
-    may("extensions", Object(&[may(TRANSFORM, Object(TEXTURE_TRANSFORM))])),
-];
-
-static TEXTURE_TRANSFORM: &[Field] = &[
-    may("offset", Numbers(Some(2))),
-    may("rotation", Number),
-    may("scale", Numbers(Some(2))),
-    may("texCoord", TEXTURE_COORDINATES),
-];
-
-/// The n of TEXCOORD_n.
-const TEXTURE_COORDINATES: MemberKind = Whole { least: 0, most: u32::MAX as u64 };
 
 static ACCESSOR: &[Field] = &[
     may("bufferView", Index("bufferViews")),
@@ -189,7 +156,12 @@ static BUFFER: &[Field] = &[
 
 pub(super) fn is_attribute(name: &str) -> bool {
     let known = ["POSITION", "NORMAL", "JOINTS_0", "WEIGHTS_0"].contains(&name);
-    known || name.strip_prefix("TEXCOORD_").is_some_and(|set| set.parse::<u32>().is_ok())
+    known || is_detail(name) || name.strip_prefix("TEXCOORD_").is_some_and(|set| set.parse::<u32>().is_ok())
+}
+
+/// Returns whether an attribute is one that a primitive can do without.
+pub(super) fn is_detail(name: &str) -> bool {
+    ["COLOR_0", "TANGENT"].contains(&name)
 }
 
 fn is_displacement(name: &str) -> bool {

@@ -88,7 +88,6 @@ impl Checker {
             MemberKind::Whole { least, most } => whole(value, *least, *most, path),
             MemberKind::Numbers(count) => numbers(value, *count, NUMBER, path),
             MemberKind::Within { count, least, most } => numbers(value, Some(*count), [*least, *most], path),
-            MemberKind::Number => number(value, NUMBER, path),
             MemberKind::Text | MemberKind::Name => {
                 if value.is_string() {
                     Ok(())
@@ -200,7 +199,7 @@ fn one_of<T: ToString>(choices: &[T]) -> String {
 }
 
 /// Formats a value for a message, short and on one line.
-fn shown(value: &Value) -> String {
+pub(super) fn shown(value: &Value) -> String {
     match value {
         Value::Array(values) => format!("a list of {}", values.len()),
         Value::Object(_) => "an object".to_owned(),

@@ -1,14 +1,15 @@
 //! Reads a primitive's vertices in their rest pose: attributes, morph targets, then the skin or the node's transform.
 
-use ::gltf::accessor::Accessor;
-use ::gltf::{Primitive, Semantic};
+use ::gltf::Semantic;
 use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
 
+use super::GltfError;
 use super::accessor::List;
-use super::decompressed_primitive::DecompressedPrimitive;
-use super::extensions::UvTransform;
-use super::materials::Uvs;
-use super::{Accessors, GltfError};
+use super::material_source::Uvs;
+use super::primitive_data::{MorphTarget, PrimitiveData};
+use super::uv_transform::UvTransform;
+use super::vertex_details::VertexDetails;
+use crate::mesh::CornerDetail;
 use crate::mesh::mesh_builder::InputCorner;
 use crate::mesh::normals::GivenNormal;
 use crate::mesh::rig::LARGEST_COORDINATE;
@@ -26,6 +27,7 @@ pub(super) struct NodePose<'a> {
 /// A vertex in the scene's space.
 pub(super) struct Vertex {
     pub corner: InputCorner,
+    pub detail: CornerDetail,
     /// Whether its transform mirrors, so that its triangles must be wound the other way.
     pub mirrored: bool,
     /// Whether its normal has a direction, but wasn't of unit length in the file.
@@ -44,19 +46,23 @@ pub(super) struct VertexRepairs {
     pub bad_weights: usize,
 }
 
-/// The displacements by a morph target at weight 1.
-pub(super) struct MorphTarget<'a> {
-    pub positions: Option<List<'a, [f32; 3]>>,
-    pub normals: Option<List<'a, [f32; 3]>>,
-}
-
 /// The joints of a skin that move each vertex, and their weights.
 struct Influences<'a> {
     joints: List<'a, [f32; 4]>,
     weights: List<'a, [f32; 4]>,
 }
 
-impl Influences<'_> {
+impl<'a> Influences<'a> {
+    /// Returns the joints and weights of a primitive; none without a skin.
+    fn read(source: PrimitiveData<'a>, pose: &NodePose, count: usize) -> Result<Option<Self>, GltfError> {
+        if pose.joints.is_empty() {
+            return Ok(None);
+        }
+        let joints = source.attribute::<4>(Semantic::Joints(0), count)?;
+        let weights = source.attribute::<4>(Semantic::Weights(0), count)?;
+        Ok(joints.zip(weights).map(|(joints, weights)| Self { joints, weights }))
+    }
+
     /// Collects the joints of a vertex, with weights that are scaled to add up to 1, since quantised weights don't
     /// exactly. Returns false if they are unusable with a skin of `joint_count` joints.
     fn of(&self, vertex: usize, joint_count: usize, found: &mut Vec<(usize, f64)>) -> bool {
@@ -83,6 +89,8 @@ pub(super) struct Vertices<'a> {
     influences: Option<Influences<'a>>,
     /// The joints of the vertex that was read last; none if they are unusable.
     joints: Option<Vec<(usize, f64)>>,
+    /// What corners have beside that; none if no material needs it.
+    pub details: Option<VertexDetails<'a>>,
     pub repairs: VertexRepairs,
 }
 
@@ -106,8 +114,9 @@ impl<'a> Vertices<'a> {
             targets: weighed
                 .map(|(target, weight)| Ok((weight, source.target(&target, count)?)))
                 .collect::<Result<_, GltfError>>()?,
-            influences: source.influences(pose, count)?,
+            influences: Influences::read(source, pose, count)?,
             joints: None,
+            details: None,
             repairs: VertexRepairs::default(),
             source,
         })
@@ -170,7 +179,8 @@ impl<'a> Vertices<'a> {
         }
         let rescaled = matches!(own, Some(GivenNormal::Rescaled(_))) && normal != Some(Vec3::ZERO);
         let mirrored = linear.determinant() < 0.0;
-        Ok(Vertex { corner: InputCorner { position, normal, uv }, mirrored, rescaled })
+        let detail = self.details.as_mut().map_or_else(CornerDetail::default, |details| details.read(i, &linear));
+        Ok(Vertex { corner: InputCorner { position, normal, uv }, detail, mirrored, rescaled })
     }
 
     /// Returns the matrix of a vertex: the weighted mean of its joints' matrices, or the node's transform if it isn't
@@ -201,74 +211,4 @@ fn turned(normal: Vec3, linear: &DMat3) -> Option<Vec3> {
     let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
     let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
     (sign * (cofactors * normal.as_dvec3())).try_normalize().map(DVec3::as_vec3)
-}
-
-/// The source of a primitive's attributes.
-#[derive(Clone, Copy)]
-pub(super) struct PrimitiveData<'a> {
-    pub primitive: &'a Primitive<'a>,
-    /// The primitive's place in the document, for messages.
-    pub name: &'a str,
-    pub accessors: &'a Accessors<'a>,
-    /// The decompressed data, if Draco compressed the primitive.
-    pub unpacked: Option<&'a DecompressedPrimitive>,
-}
-
-impl<'a> PrimitiveData<'a> {
-    pub(super) fn problem(&self, reason: impl Into<String>) -> GltfError {
-        GltfError::Primitive { primitive: self.name.to_owned(), reason: reason.into() }
-    }
-
-    /// # Errors
-    /// [`GltfError::Accessor`].
-    pub(super) fn target(
-        &self,
-        target: &::gltf::mesh::MorphTarget,
-        count: usize,
-    ) -> Result<MorphTarget<'a>, GltfError> {
-        let list = |accessor: Option<Accessor>, attribute| {
-            accessor.map(|accessor| self.list(&accessor, attribute, count)).transpose()
-        };
-        Ok(MorphTarget {
-            positions: list(target.positions(), "POSITION of a morph target")?,
-            normals: list(target.normals(), "NORMAL of a morph target")?,
-        })
-    }
-
-    /// Returns the joints and weights; none without a skin.
-    fn influences(&self, pose: &NodePose, count: usize) -> Result<Option<Influences<'a>>, GltfError> {
-        if pose.joints.is_empty() {
-            return Ok(None);
-        }
-        let joints = self.attribute::<4>(Semantic::Joints(0), count)?;
-        let weights = self.attribute::<4>(Semantic::Weights(0), count)?;
-        Ok(joints.zip(weights).map(|(joints, weights)| Influences { joints, weights }))
-    }
-
-    fn attribute<const N: usize>(
-        &self,
-        semantic: Semantic,
-        count: usize,
-    ) -> Result<Option<List<'a, [f32; N]>>, GltfError> {
-        let accessor = self.primitive.get(&semantic);
-        accessor.map(|accessor| self.list(&accessor, &semantic.to_string(), count)).transpose()
-    }
-
-    /// Returns an attribute's values, of which there must be as many as vertices.
-    fn list<const N: usize>(
-        &self,
-        accessor: &Accessor,
-        attribute: &str,
-        count: usize,
-    ) -> Result<List<'a, [f32; N]>, GltfError> {
-        let role = format!("{attribute} of {}", self.name);
-        if accessor.count() != count {
-            let reason = format!("has {} elements for {count} vertices", accessor.count());
-            return Err(GltfError::Accessor { accessor: accessor.index(), role, reason });
-        }
-        match self.unpacked.and_then(|unpacked| unpacked.values(attribute)) {
-            Some(values) => Ok(List::of(values, [0.0; N])),
-            None => self.accessors.list(accessor, &role),
-        }
-    }
 }

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::files::Limits;
 use crate::load::Budget;
-use crate::mesh::{EdgeCounts, EdgeKind, Material, MemoryRefused, Shape, Side, Unlimited, weld};
+use crate::mesh::{CornerDetail, EdgeCounts, EdgeKind, Material, MemoryRefused, Shape, Side, Unlimited, weld};
 use crate::stability::{CASES, soup};
 
 fn topology(mesh: &Mesh) -> Topology {
@@ -390,4 +390,29 @@ fn the_second_side_of_a_sheet_has_a_narrower_band() {
     let narrow = |&distance: &f32| (distance - 0.1 / 1.125).abs() < 1e-5;
     assert!(inside.iter().any(wide) && inside.iter().any(narrow), "{inside:?}");
     assert!(inside.iter().all(|distance| wide(distance) || narrow(distance)), "{inside:?}");
+}
+
+/// Details that are linear in the position stay so in the band, and change nothing else.
+#[test]
+fn details_of_corners_are_interpolated() {
+    let plain = Shape::CubeSplit.build();
+    let mut detailed = plain.clone();
+    let detail = |position: Vec3| CornerDetail {
+        uvs: [position.truncate(), Vec2::splat(position.z)],
+        color: position.extend(1.0),
+        tangent: Vec3::X,
+        bitangent_sign: -1.0,
+    };
+    detailed.details = Some(Arc::new(plain.corners.iter().map(|corner| detail(corner.position)).collect()));
+    let [(plain, ..), (made, ..)] = [&plain, &detailed].map(|mesh| banded(mesh, 0.05));
+    assert_eq!(triangles(&plain).collect::<Vec<_>>(), triangles(&made).collect::<Vec<_>>());
+    let details = made.details.as_ref().expect("they stay");
+    assert_eq!(details.len(), made.corners.len());
+    assert!(made.corners.len() > detailed.corners.len());
+    for (corner, own) in made.corners.iter().zip(details.iter()) {
+        let expected = detail(corner.position);
+        assert!(own.uvs[0].distance(expected.uvs[0]) < 1e-5 && own.uvs[1].distance(expected.uvs[1]) < 1e-5, "{own:?}");
+        assert!(own.color.distance(expected.color) < 1e-5 && own.tangent.distance(Vec3::X) < 1e-5, "{own:?}");
+        assert_eq!(own.bitangent_sign, -1.0);
+    }
 }

@@ -10,13 +10,17 @@ use crate::gpu::{
     GRID_WIDTH, MOST_WORKGROUPS, NEXT_EDGES, NEXT_PATCHES, SEARCH_AGAIN, SEARCH_ASKED, SEARCH_COUNTERS, SEARCH_INSIDE,
     WORKGROUP,
 };
-use crate::mesh::{EdgeKind, MAX_LEVELS, MAX_MAPS};
+use crate::mesh::{EdgeKind, MAX_LEVELS, MAX_MAPS, Slot};
+use crate::render::blur_levels::ENVIRONMENT_LEVELS;
 use crate::render::coverage::TILE;
+use crate::render::dfg::DFG_SIZE;
 use crate::render::layout::{
     AXIS_COLORS, BACK_FACE_COLOR, CHECKER_LIGHT, CHECKER_LINE, CHECKER_U, CHECKER_V, FOLD_COLOR, FOUND_EMITTED,
     NORMAL_COLOR, WASTE_COLOR, edge_color, linear, overlay_bits,
 };
+use crate::render::reflectance::{COAT_F0, LEAST_ALPHA};
 use crate::render::scale::Scale;
+use crate::render::tone::{COMPRESSION_START, DESATURATION, TONE_CURVE_NEUTRAL, TONE_CURVE_NONE};
 use crate::settings::{Colors, Overlays};
 use crate::tessellate::shared_constants::{
     AGREEING, ASKED_SEGMENT, BEYOND_LAST, BITS_63, BITS_64, BITS_896, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP,
@@ -55,6 +59,7 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
         &["CLAY_COLOR", "ZEBRA_STRIPES", "ZEBRA_AXIS", "ZEBRA_DARK", "ZEBRA_LIGHT", "CHECKER_SQUARES", "CHECKER_DARK"],
         "how the surface looks",
     ),
+    (&["LEAST_TANGENT"], "only draws read normal maps"),
     (&["GROUND_REACH", "GROUND_FADES_FROM", "GROUND_COLOR", "GROUND_OPACITY"], "how the ground looks"),
 ];
 
@@ -98,6 +103,15 @@ fn table() -> Vec<(&'static str, Expected)> {
         ("DOMAIN_POINTS", number(DOMAIN_POINTS as u32)),
         ("DOMAIN_TRIANGLES", number(DOMAIN_TRIANGLES as u32)),
         ("TILE", number(TILE)),
+        ("PI", number(std::f32::consts::PI)),
+        ("ENVIRONMENT_LEVELS", number(ENVIRONMENT_LEVELS)),
+        ("DFG_SIZE", number(DFG_SIZE)),
+        ("TONE_CURVE_NEUTRAL", number(TONE_CURVE_NEUTRAL)),
+        ("TONE_CURVE_NONE", number(TONE_CURVE_NONE)),
+        ("COMPRESSION_START", number(COMPRESSION_START)),
+        ("DESATURATION", number(DESATURATION)),
+        ("COAT_F0", number(COAT_F0)),
+        ("LEAST_ALPHA", number(LEAST_ALPHA)),
         ("SCALE_STOPS", number(Scale::STOPS as u32)),
         ("FOUND_EMITTED", number(FOUND_EMITTED)),
         ("OVERLAY_WIREFRAME", overlay(Overlays { wireframe: true, ..none })),
@@ -235,6 +249,11 @@ fn of_enums() -> Vec<(&'static str, Expected)> {
         ("SURFACE_PHONG_AEN", number(Surface::PhongAen as u32)),
         ("SURFACE_NAGATA", number(Surface::Nagata as u32)),
         ("SURFACE_NAGATA_AEN", number(Surface::NagataAen as u32)),
+        ("SLOT_METALLIC_ROUGHNESS", number(Slot::MetallicRoughness as u32)),
+        ("SLOT_NORMAL", number(Slot::Normal as u32)),
+        ("SLOT_OCCLUSION", number(Slot::Occlusion as u32)),
+        ("SLOT_EMISSIVE", number(Slot::Emissive as u32)),
+        ("MAP_COUNT", number(Slot::COUNT as u32)),
     ]
 }
 

@@ -5,11 +5,14 @@ use std::mem::{offset_of, size_of};
 use super::modules;
 use crate::gpu::DomainParams;
 use crate::gpu::layout::{
-    Binding, Chunk, Corner, Curve, CurveNet, Delta, DrawArgs, EmitArgs, HeightMap, JointMatrix, LodView, Params, Patch,
-    PatchFactors, Share, Slab, Vertex,
+    Binding, Chunk, Corner, CornerDetail, Curve, CurveNet, Delta, DrawArgs, EmitArgs, HeightMap, JointMatrix, LodView,
+    Params, Patch, PatchFactors, Share, Slab, Vertex,
 };
 use crate::render::coverage::Sieve;
-use crate::render::layout::{Frame, Material, Pick};
+use crate::render::environment::Surroundings;
+use crate::render::layout::{Frame, MapPlace, Material, Pick};
+use crate::render::prefilter_pass::PrefilterParams;
+use crate::render::reflectance::LookAt;
 use crate::tessellate::CoverageView;
 
 /// The size of a struct in WGSL, and the name and offset of each member.
@@ -70,6 +73,7 @@ fn shared_structs_have_the_same_layout() {
     same!(HeightMap { size, levels, start, repeats });
     same!(Patch { points, corners, curves, factors });
     same!(Corner { normal, uv });
+    same!(CornerDetail { uvs, color, tangent });
     same!(Curve { points, first_side, side_count });
     same!(CurveNet { ab, ba });
     same!(PatchFactors { outside, inside });
@@ -102,8 +106,38 @@ fn shared_structs_have_the_same_layout() {
         ground,
         scale,
     });
+    same!(Surroundings { irradiance, light_from_object, brightness, exposure, tone_curve });
+    same!(LookAt {
+        base_color,
+        metallic,
+        specular_color,
+        specular,
+        coat_normal,
+        coat,
+        roughness,
+        coat_roughness,
+        ior,
+        occlusion,
+    });
+    same!(PrefilterParams { roughness, sample_count, size, source_size });
     same!(CoverageView { clip_from_object, slack, viewport, sample_count, fronts_only, snap });
-    same!(Material { base_color });
+    same!(Material {
+        base_color,
+        emissive,
+        metallic,
+        specular_color,
+        roughness,
+        ior,
+        specular,
+        coat,
+        coat_roughness,
+        normal_scale,
+        occlusion_strength,
+        cutoff,
+        unlit,
+        maps,
+    });
+    same!(MapPlace { u, v });
     same!(Sieve { view, triangle_count, material_count, first_draw });
     same!(Pick { vertices, found, patch_index, triangle, weight });
 }

@@ -7,7 +7,19 @@ use crate::settings::random;
 
 /// Every field with its value. Patterns have no `..`, so a new field must be named here and then reached by a declaration.
 fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
-    let Settings { tessellation, normals_at, overlays, deviation_in, split, split_surface, background } = settings;
+    let Settings {
+        tessellation,
+        normals_at,
+        overlays,
+        lighting,
+        exposure,
+        tone_curve,
+        light_rotation,
+        deviation_in,
+        split,
+        split_surface,
+        background,
+    } = settings;
     let Tessellation {
         surface,
         alpha,
@@ -47,6 +59,10 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         ("midlevel", format!("{midlevel:?}")),
         ("normals_at", format!("{normals_at:?}")),
         ("overlays", format!("{overlays:?}")),
+        ("lighting", format!("{lighting:?}")),
+        ("exposure", format!("{exposure:?}")),
+        ("tone_curve", format!("{tone_curve:?}")),
+        ("light_rotation", format!("{light_rotation:?}")),
         ("deviation_in", format!("{deviation_in:?}")),
         ("split", format!("{split:?}")),
         ("split_surface", format!("{split_surface:?}")),
@@ -159,7 +175,8 @@ fn unused_options_have_no_effect() {
         all().filter(|option| (option.no_effect)(settings).is_some()).map(|option| option.name).collect()
     };
     let lod = |lod| Settings::from(Tessellation { lod, ..Tessellation::default() });
-    let elsewhere = ["height-scale", "midlevel", "deviation-in", "split-surface"];
+    let elsewhere =
+        ["height-scale", "midlevel", "exposure", "tone-curve", "light-rotation", "deviation-in", "split-surface"];
     let with = |own: &[&'static str]| -> Vec<_> { own.iter().copied().chain(elsewhere).collect() };
     assert_eq!(idle(&lod(Lod::Uniform)), with(&["alpha", "pixels", "tolerance", "distances"]));
     assert_eq!(idle(&lod(Lod::Distance)), with(&["alpha", "pixels", "tolerance"]));
@@ -168,15 +185,25 @@ fn unused_options_have_no_effect() {
     assert_eq!(idle(&lod(Lod::Error)), with(&["alpha", "factor", "pixels", "distances"]));
     let mut excess = lod(Lod::Paper);
     excess.overlays.colors = Colors::Excess;
-    assert_eq!(idle(&excess), with(&["alpha", "factor", "distances"]));
+    let mut expected = with(&["alpha", "factor", "distances"]);
+    expected.insert(5, "lighting");
+    assert_eq!(idle(&excess), expected);
     let mut phong_left = lod(Lod::Uniform);
     phong_left.tessellation.displacement = Displacement::On;
     phong_left.tessellation.partitioning = Partitioning::Subtriangulation;
     phong_left.overlays.colors = Colors::Deviation;
     phong_left.split_surface = Some(Surface::Phong);
-    assert_eq!(idle(&phong_left), ["alpha", "lod", "pixels", "tolerance", "distances", "normals-at", "split-surface"]);
+    let of_light = ["lighting", "exposure", "tone-curve", "light-rotation"];
+    let with_light = |before: &[&'static str], after: &[&'static str]| [before, &of_light, after].concat();
+    assert_eq!(
+        idle(&phong_left),
+        with_light(&["alpha", "lod", "pixels", "tolerance", "distances", "normals-at"], &["split-surface"])
+    );
     phong_left.split = Some(0.5);
-    assert_eq!(idle(&phong_left), ["lod", "pixels", "tolerance", "distances", "normals-at"]);
+    assert_eq!(idle(&phong_left), with_light(&["lod", "pixels", "tolerance", "distances", "normals-at"], &[]));
+    phong_left.overlays.colors = Colors::Material;
+    phong_left.lighting = Lighting::Studio;
+    assert!(idle(&phong_left).iter().all(|name| !of_light.contains(name)), "all are used in studio light");
 }
 
 #[test]

@@ -56,7 +56,7 @@ pub fn subject(engine: &Engine, mesh: Mesh, size: [u32; 2], arena_bytes: u64) ->
     let scene = engine.scene_of(mesh, topology, arena_bytes)?;
     let target = Target::new(&engine.gpu, size)?;
     let camera = Camera::framing(&scene.bounds, target.viewport());
-    Ok(Subject { scene, target, camera, settings: Settings::default() })
+    Ok(Subject { scene, target, camera, settings: Settings::from(Tessellation::default()) })
 }
 
 /// Where factors come from.

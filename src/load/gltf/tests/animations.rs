@@ -86,6 +86,47 @@ fn skins_follow_their_joints() {
     assert_eq!(rig(&mesh).animated_counts(clip), AnimatedCounts { joints: 1, nodes: 0, targets: 0 });
 }
 
+/// Gives a triangle a normal map, and the tangents that it says.
+fn normal_mapped(mut draft: Draft, tangent: [f32; 4]) -> Draft {
+    let uvs = draft.floats("VEC2", &[0.0, 1.0, 1.0, 1.0, 0.0, 0.0]);
+    let tangents = draft.floats("VEC4", &[tangent; 3].concat());
+    let primitive = &mut draft.root["meshes"][0]["primitives"][0];
+    (primitive["attributes"]["TEXCOORD_0"], primitive["attributes"]["TANGENT"]) = (json!(uvs), json!(tangents));
+    primitive["material"] = json!(0);
+    draft.root["materials"] = json!([{ "normalTexture": { "index": 0 } }]);
+    draft.root["textures"] = json!([{ "source": 0 }]);
+    draft.root["images"] = json!([{ "uri": files::png_uri() }]);
+    draft
+}
+
+fn tangents(mesh: &Mesh) -> Vec<(Vec3, f32)> {
+    let details = mesh.details.as_ref().expect("details");
+    details.iter().map(|detail| (detail.tangent, detail.bitangent_sign)).collect()
+}
+
+#[test]
+fn tangents_follow_their_joints() {
+    let mesh = normal_mapped(skinned(), [1.0, 0.0, 0.0, -1.0]).read().unwrap();
+    assert!(mesh.warnings.is_empty(), "{:?}", mesh.warnings);
+    assert_eq!(tangents(&mesh), [(Vec3::X, -1.0); 3]);
+    let bent = tangents(&posed(&mesh, 1.0));
+    let half = Vec3::new(1.0, 0.0, -1.0).normalize();
+    for ((tangent, sign), expected) in bent.into_iter().zip([Vec3::X, Vec3::NEG_Z, half]) {
+        assert!(tangent.distance(expected) < 1e-6 && sign == -1.0, "{tangent} {sign}");
+    }
+}
+
+#[test]
+fn tangents_of_nodes_turn_and_mirror_with_them() {
+    let mut draft = normal_mapped(triangle(), [1.0, 0.0, 0.0, 1.0]);
+    draft.root["nodes"][0] = json!({ "mesh": 0, "scale": [-2.0, 1.0, 1.0] });
+    draft.animate(0, "scale", "VEC3", &[0.0, 1.0], &[-2.0, 1.0, 1.0, 3.0, 1.0, 1.0]);
+    let mesh = draft.read().unwrap();
+    assert_eq!(tangents(&mesh), [(Vec3::NEG_X, -1.0); 3]);
+    assert_eq!(tangents(&posed(&mesh, 0.0)), [(Vec3::NEG_X, -1.0); 3]);
+    assert_eq!(tangents(&posed(&mesh, 1.0)), [(Vec3::X, 1.0); 3], "no longer mirrored");
+}
+
 #[test]
 fn morph_targets_follow_their_weights() {
     let mut draft = triangle();

@@ -20,6 +20,11 @@ fn textured(image: Value) -> Draft {
     draft
 }
 
+/// An image of two px, within a document.
+pub(super) fn png_uri() -> String {
+    format!("data:image/png;base64,{}", BASE64_STANDARD.encode(png()))
+}
+
 fn png() -> Vec<u8> {
     let pixels = image::RgbaImage::from_raw(2, 1, vec![255, 0, 0, 255, 0, 0, 255, 128]).unwrap();
     let mut bytes = std::io::Cursor::new(Vec::new());
@@ -29,7 +34,7 @@ fn png() -> Vec<u8> {
 
 #[test]
 fn textures_are_decoded_wherever_they_are() {
-    let data = json!({ "uri": format!("data:image/png;base64,{}", BASE64_STANDARD.encode(png())) });
+    let data = json!({ "uri": png_uri() });
     let mut in_view = textured(json!({ "mimeType": "image/png", "bufferView": 0 }));
     let view = in_view.view(&png());
     in_view.root["images"][0]["bufferView"] = json!(view);

@@ -46,6 +46,7 @@ fn subjects() -> Vec<Subject> {
     let mut subjects = vec![
         Subject::own("a triangle", triangle().document().to_string().into_bytes()),
         Subject::own("something of everything", rich().glb()),
+        Subject::own("a material with everything", materials::everything().document().to_string().into_bytes()),
         Subject::own("a compressed grid", compressed::grid().glb()),
         Subject::own("a packed grid", packed::grid(packed::Order::Walked).glb()),
         Subject::own("a packed triangle that is skinned", packed::skinned().glb()),
@@ -62,6 +63,7 @@ pub(crate) fn seeds() -> Vec<(&'static str, String, Vec<u8>)> {
     let drafts = [
         ("triangle", triangle()),
         ("rich", rich()),
+        ("materials", materials::everything()),
         ("compressed", compressed::grid()),
         ("packed", packed::grid(packed::Order::Walked)),
         ("packed-skinned", packed::skinned()),

@@ -1,6 +1,7 @@
 //! Members that are missing or have a wrong value.
 
 use super::*;
+use crate::load::gltf::tests::files::png_uri;
 
 /// 2 to the power of 62.
 const HUGE: u64 = 1 << 62;
@@ -23,6 +24,16 @@ fn with(name: &'static str, pointer: &str, value: Value, expected: &str) -> Case
     let mut draft = dressed();
     set(&mut draft.root, pointer, value);
     Case::refused(name, draft.document().to_string(), expected)
+}
+
+/// The dressed triangle with another value in one place, and its material in use, with a normal map.
+fn repaired(name: &'static str, pointer: &str, value: Value, parts: &'static str) -> Case {
+    let mut draft = dressed();
+    draft.root["images"] = json!([{ "uri": png_uri() }]);
+    draft.root["meshes"][0]["primitives"][0]["material"] = json!(0);
+    draft.root["materials"][0]["normalTexture"] = json!({ "index": 0 });
+    set(&mut draft.root, pointer, value);
+    Case::draft(name, &draft, Gets::Repaired(parts))
 }
 
 pub(super) fn cases() -> Vec<Case> {
@@ -94,11 +105,14 @@ pub(super) fn cases() -> Vec<Case> {
             json!(7),
             "Document | /meshes/0/primitives/0/mode | 0 | 1 | 2 | 3 | 4 | 5 | 6 | 7",
         ),
-        Case::with(
+        Case::draft(
             "a material that isn't there",
-            "/meshes/0/primitives/0/material",
-            json!(0),
-            "Document | /meshes/0/primitives/0/material | 0 | /materials",
+            &{
+                let mut draft = triangle();
+                set(&mut draft.root, "/meshes/0/primitives/0/material", json!(0));
+                draft
+            },
+            Gets::Repaired("/meshes/0/primitives/0/material | 0 materials | default material"),
         ),
         Case::with(
             "positions that aren't there",
@@ -164,37 +178,64 @@ pub(super) fn cases() -> Vec<Case> {
             "Document | /bufferViews/0/byteStride | 256 | at most 252",
         ),
         without("a view of no buffer", "/bufferViews/0/buffer", "Document | /bufferViews/0/buffer | missing"),
-        with(
+        repaired(
             "texture coordinates beyond 32 bits",
             "/materials/0/pbrMetallicRoughness/baseColorTexture/texCoord",
             json!(HUGE),
-            "Document | /materials/0/pbrMetallicRoughness/baseColorTexture/texCoord | 4611686018427387904 | 4294967295",
+            "/materials/0/pbrMetallicRoughness/baseColorTexture/texCoord | 4611686018427387904 | 4294967295 | 0 is used",
         ),
-        with(
+        repaired(
             "a colour beyond 1",
             "/materials/0/pbrMetallicRoughness/baseColorFactor",
             json!([1, 1, 1, 1.5]),
-            "Document | /materials/0/pbrMetallicRoughness/baseColorFactor/3 | 1.5 | at most | 1.0",
+            "/materials/0/pbrMetallicRoughness/baseColorFactor/3 | 1.5 | at most | 1.0 | 1 is used",
         ),
-        with(
+        repaired(
             "sides that are text",
             "/materials/0/doubleSided",
             json!("yes"),
-            "Document | /materials/0/doubleSided | \"yes\" | true or false",
+            "/materials/0/doubleSided | \"yes\" | true or false | false is used",
         ),
-        with(
+        repaired(
             "a texture that isn't there",
             "/materials/0/pbrMetallicRoughness/baseColorTexture/index",
             json!(1),
-            "Document | /materials/0/pbrMetallicRoughness/baseColorTexture/index | 1 | /textures",
+            "/materials/0/pbrMetallicRoughness/baseColorTexture/index | 1 | /textures",
         ),
-        with(
-            "an image that isn't there",
-            "/textures/0/source",
-            json!(9),
-            "Document | /textures/0/source | 9 | /images | 1",
+        repaired("an image that isn't there", "/textures/0/source", json!(9), "/textures/0/source | 9 | /images | 1"),
+        repaired("a path that is a number", "/images/0/uri", json!(5), "texture | /images/0/uri | text"),
+        repaired("materials that are text", "/materials", json!("none"), "/materials | \"none\" | list"),
+        repaired("a material that is a list", "/materials/0", json!([[]]), "/materials/0 | list of 1 | object"),
+        repaired(
+            "an emission beyond f32",
+            "/materials/0/extensions",
+            json!({ "KHR_materials_emissive_strength": { "emissiveStrength": 1e300 } }),
+            "/materials/0/extensions/KHR_materials_emissive_strength/emissiveStrength | 1e+300 | at most",
         ),
-        with("a path that is a number", "/images/0/uri", json!(5), "Document | /images/0/uri | 5 | text"),
+        repaired(
+            "a transform that is a number",
+            "/materials/0/normalTexture",
+            json!({ "index": 0, "extensions": { "KHR_texture_transform": 7 } }),
+            "/materials/0/normalTexture/extensions/KHR_texture_transform | 7 | object",
+        ),
+        repaired(
+            "a sampler that isn't there",
+            "/textures/0/sampler",
+            json!(HUGE),
+            "/textures/0/sampler | /samplers | 0",
+        ),
+        repaired(
+            "colours that aren't there",
+            "/meshes/0/primitives/0/attributes/COLOR_0",
+            json!(77),
+            "/meshes/0/primitives/0/attributes/COLOR_0 | 2 accessors | left out",
+        ),
+        repaired(
+            "tangents of three numbers",
+            "/meshes/0/primitives/0/attributes/TANGENT",
+            json!(1),
+            "/accessors/1 | TANGENT of /meshes/0/primitives/0 | left out",
+        ),
         with(
             "a joint that isn't there",
             "/skins/0/joints",

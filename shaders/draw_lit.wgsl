@@ -1,0 +1,44 @@
+// Draws the surface with nothing on it but its materials, in light from all around.
+
+// A uniform, which GPUs read fastest where all invocations read the same. No branch depends on it: see draw_surface.wgsl.
+@group(0) @binding(6) var<uniform> lit_frame: Frame;
+
+struct LitVaryings {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) normal: vec3<f32>,
+    @location(1) uv: vec2<f32>,
+    // Weights u and v in the patch.
+    @location(2) weights: vec2<f32>,
+    @location(3) @interpolate(flat) patch_index: u32,
+}
+
+@vertex
+fn lit_vertex(
+    @location(0) position: vec3<f32>,
+    @location(1) normal: u32,
+    @location(2) key: vec2<u32>,
+    @location(3) uv: vec2<f32>,
+) -> LitVaryings {
+    let clip = lit_frame.clip_from_object * vec4<f32>(position, 1.0);
+    return LitVaryings(clip, unpack_normal(normal), uv, vec2<f32>(key_uv(key)) * UNIT, key_patch(key));
+}
+
+fn lit_color(in: LitVaryings, normal: vec3<f32>, front: bool) -> vec4<f32> {
+    let to_eye = toward_eye(lit_frame.clip_from_object, lit_frame.viewport, in.clip.xy);
+    let place = surface_place(in.uv, in.weights, in.patch_index, normal, front, to_eye);
+    let color = material_color(place);
+    if HAS_MASK && color.a == 0.0 {
+        discard;
+    }
+    return vec4<f32>(color.rgb, 1.0);
+}
+
+@fragment
+fn lit_fragment(in: LitVaryings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    return lit_color(in, normalize(in.normal), front);
+}
+
+@fragment
+fn pixel_lit_fragment(in: LitVaryings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    return lit_color(in, pixel_normal(in.patch_index, in.weights), front);
+}

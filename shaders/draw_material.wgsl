@@ -1,0 +1,194 @@
+// Materials as glTF 2.0 describes them (specification, section 3.9), in the light of environment.wgsl.
+
+// What the mesh's materials need. Each part that isn't needed is left out when the pipeline is made.
+override HAS_MAPS: bool = true;
+override HAS_DETAILS: bool = true;
+override HAS_COAT: bool = true;
+override HAS_MASK: bool = true;
+
+// One element for each corner, if HAS_DETAILS.
+@group(0) @binding(9) var<storage, read> corner_details: array<CornerDetail>;
+@group(1) @binding(0) var<uniform> material: Material;
+@group(1) @binding(1) var base_texture: texture_2d<f32>;
+@group(1) @binding(2) var base_sampler: sampler;
+@group(1) @binding(3) var metallic_roughness_texture: texture_2d<f32>;
+@group(1) @binding(4) var metallic_roughness_sampler: sampler;
+@group(1) @binding(5) var normal_texture: texture_2d<f32>;
+@group(1) @binding(6) var normal_sampler: sampler;
+@group(1) @binding(7) var occlusion_texture: texture_2d<f32>;
+@group(1) @binding(8) var occlusion_sampler: sampler;
+@group(1) @binding(9) var emissive_texture: texture_2d<f32>;
+@group(1) @binding(10) var emissive_sampler: sampler;
+
+// The order of Material.maps.
+const SLOT_METALLIC_ROUGHNESS: u32 = 0u;
+const SLOT_NORMAL: u32 = 1u;
+const SLOT_OCCLUSION: u32 = 2u;
+const SLOT_EMISSIVE: u32 = 3u;
+
+// Shorter tangents, squared, say nothing about a direction.
+const LEAST_TANGENT: f32 = 1e-12;
+
+// A place on an image, and how far it moves from a pixel to the next one on the right, and below.
+struct ImagePlace {
+    uv: vec2<f32>,
+    right: vec2<f32>,
+    below: vec2<f32>,
+}
+
+// What is seen at a pixel. Only varyings have derivatives that can be relied on: for pixels beside a triangle, which derivatives
+// are taken with, some drivers read no buffers.
+struct SurfacePlace {
+    // On the image of the base colour.
+    own: ImagePlace,
+    // In the patch, and how they change like places on images.
+    weights: vec3<f32>,
+    weights_right: vec3<f32>,
+    weights_below: vec3<f32>,
+    patch_index: u32,
+    // The unit shading normal of the side that the triangle's winding makes the front.
+    normal: vec3<f32>,
+    front: bool,
+    to_eye: vec3<f32>,
+}
+
+// CornerDetail in the middle of a pixel, and how its texture coordinates change.
+struct PlaceDetail {
+    uvs: vec4<f32>,
+    uvs_right: vec4<f32>,
+    uvs_below: vec4<f32>,
+    color: vec4<f32>,
+    tangent: vec3<f32>,
+    bitangent_sign: f32,
+}
+
+fn surface_place(
+    uv: vec2<f32>,
+    weights: vec2<f32>,
+    patch_index: u32,
+    normal: vec3<f32>,
+    front: bool,
+    to_eye: vec3<f32>,
+) -> SurfacePlace {
+    let right = dpdx(weights);
+    let below = dpdy(weights);
+    return SurfacePlace(
+        ImagePlace(uv, dpdx(uv), dpdy(uv)),
+        vec3<f32>(weights, 1.0 - weights.x - weights.y),
+        vec3<f32>(right, -right.x - right.y),
+        vec3<f32>(below, -below.x - below.y),
+        patch_index,
+        normal,
+        front,
+        to_eye,
+    );
+}
+
+// What the corners of the place's patch have, linear between them.
+fn place_detail(place: SurfacePlace) -> PlaceDetail {
+    var sum: PlaceDetail;
+    sum.color = vec4<f32>(1.0);
+    sum.bitangent_sign = 1.0;
+    if HAS_DETAILS {
+        let own = patches[place.patch_index].corners;
+        sum.color = vec4<f32>(0.0);
+        for (var k = 0u; k < 3u; k++) {
+            let corner = corner_details[own[k]];
+            let weight = place.weights[k];
+            sum.uvs += weight * corner.uvs;
+            sum.uvs_right += place.weights_right[k] * corner.uvs;
+            sum.uvs_below += place.weights_below[k] * corner.uvs;
+            sum.color += weight * corner.color;
+            sum.tangent += weight * corner.tangent.xyz;
+        }
+        sum.bitangent_sign = corner_details[own[0]].tangent.w;
+        // At a triangle's border the middle of a pixel may lie outside the patch.
+        sum.color = clamp(sum.color, vec4<f32>(0.0), vec4<f32>(1.0));
+    }
+    return sum;
+}
+
+// The place that a map is read at: u and v of one of the texture coordinates, mapped as KHR_texture_transform says.
+fn map_place(place: SurfacePlace, detail: PlaceDetail, slot: u32) -> ImagePlace {
+    if !HAS_DETAILS {
+        return place.own;
+    }
+    let map = material.maps[slot];
+    let is_own = map.u.w < 0.5;
+    let is_second = map.u.w > 1.5;
+    let uv = select(select(detail.uvs.xy, detail.uvs.zw, is_second), place.own.uv, is_own);
+    let right = select(select(detail.uvs_right.xy, detail.uvs_right.zw, is_second), place.own.right, is_own);
+    let below = select(select(detail.uvs_below.xy, detail.uvs_below.zw, is_second), place.own.below, is_own);
+    let turned = mat2x2<f32>(map.u.x, map.v.x, map.u.y, map.v.y);
+    return ImagePlace(turned * uv + vec2<f32>(map.u.z, map.v.z), turned * right, turned * below);
+}
+
+fn texel(image: texture_2d<f32>, image_sampler: sampler, at: ImagePlace) -> vec4<f32> {
+    return textureSampleGrad(image, image_sampler, at.uv, at.right, at.below);
+}
+
+// The unit normal that a normal map makes of a unit shading normal (glTF 2.0, section 3.9.3), on the front. The tangent is made
+// perpendicular to the shading normal, which may be another one than at the corners, for example where the surface is displaced.
+fn mapped_normal(normal: vec3<f32>, tangent: vec3<f32>, bitangent_sign: f32, from_map: vec3<f32>) -> vec3<f32> {
+    let along = tangent - normal * dot(tangent, normal);
+    if dot(along, along) < LEAST_TANGENT {
+        return normal;
+    }
+    let t = normalize(along);
+    let b = bitangent_sign * cross(normal, t);
+    return normalize(from_map.x * t + from_map.y * b + from_map.z * normal);
+}
+
+// What a normal map says, as a direction in tangent space.
+fn map_direction(texel: vec3<f32>) -> vec3<f32> {
+    return (2.0 * texel - 1.0) * vec3<f32>(material.normal_scale, material.normal_scale, 1.0);
+}
+
+// What the material is at a place, without the base colour.
+fn look_at(place: SurfacePlace, detail: PlaceDetail, base: vec3<f32>) -> LookAt {
+    var look: LookAt;
+    look.base_color = base;
+    look.metallic = material.metallic;
+    look.roughness = material.roughness;
+    look.specular_color = material.specular_color;
+    look.specular = material.specular;
+    look.ior = material.ior;
+    look.occlusion = 1.0;
+    if HAS_MAPS {
+        let at = map_place(place, detail, SLOT_METALLIC_ROUGHNESS);
+        let numbers = texel(metallic_roughness_texture, metallic_roughness_sampler, at);
+        look.roughness *= numbers.g;
+        look.metallic *= numbers.b;
+        let occlusion = texel(occlusion_texture, occlusion_sampler, map_place(place, detail, SLOT_OCCLUSION)).r;
+        look.occlusion = 1.0 + material.occlusion_strength * (occlusion - 1.0);
+    }
+    // A map of normals doesn't change the coat's (KHR_materials_clearcoat).
+    look.coat_normal = select(-place.normal, place.normal, place.front);
+    if HAS_COAT {
+        look.coat = material.coat;
+        look.coat_roughness = material.coat_roughness;
+    }
+    return look;
+}
+
+// The colour that a picture shows of a place, in linear light, and 0 in place of 1 where the material has no surface.
+fn material_color(place: SurfacePlace) -> vec4<f32> {
+    let detail = place_detail(place);
+    let base = material.base_color * detail.color * texel(base_texture, base_sampler, place.own);
+    let look = look_at(place, detail, base.rgb);
+    var normal = place.normal;
+    var emitted = material.emissive;
+    if HAS_MAPS {
+        let texel_of_normal = texel(normal_texture, normal_sampler, map_place(place, detail, SLOT_NORMAL)).rgb;
+        if HAS_DETAILS {
+            normal = mapped_normal(normal, detail.tangent, detail.bitangent_sign, map_direction(texel_of_normal));
+        }
+        emitted *= texel(emissive_texture, emissive_sampler, map_place(place, detail, SLOT_EMISSIVE)).rgb;
+    }
+    // From behind, all of the relief is seen the other way round (section 3.9.5).
+    normal = select(-normal, normal, place.front);
+    let radiance = ambient_reflection(look, normal, place.to_eye) + emitted * coat_transmission(look, place.to_eye);
+    let color = select(exposed(radiance), base.rgb, material.unlit > 0.5);
+    let is_there = !HAS_MASK || base.a >= material.cutoff;
+    return vec4<f32>(color, f32(is_there));
+}

@@ -1,0 +1,83 @@
+// The light from all around, which src/render/environment.rs makes: a cube map that is blurred by roughness from level to level, a
+// table of directional albedos, and irradiance as spherical harmonics. Directions are in object space.
+
+struct Surroundings {
+    // Irradiance divided by PI: coefficients of 1, y, z, x, xy, yz, 3zz - 1, xz and xx - yy, in linear RGB.
+    irradiance: array<vec4<f32>, 9>,
+    // Turns a direction in object space into the light's own.
+    light_from_object: mat3x3<f32>,
+    // Factor of all light.
+    brightness: f32,
+    // Factor of what the camera sees, 2 to the power of the exposure value.
+    exposure: f32,
+    // TONE_CURVE_*.
+    tone_curve: u32,
+}
+
+// Levels of the cube map: from a mirror's to that of roughness 1.
+const ENVIRONMENT_LEVELS: u32 = 6u;
+
+// Width and height of the table, in texels. The first and the last are for cosine and roughness 0 and 1.
+const DFG_SIZE: u32 = 64u;
+
+@group(1) @binding(16) var environment_map: texture_cube<f32>;
+@group(1) @binding(17) var environment_sampler: sampler;
+@group(1) @binding(18) var dfg_table: texture_2d<f32>;
+@group(1) @binding(19) var<uniform> surroundings: Surroundings;
+
+// The level of the cube map that has a roughness. Levels are closer where surfaces are smooth.
+fn level_of_roughness(roughness: f32) -> f32 {
+    return f32(ENVIRONMENT_LEVELS - 1u) * pow(roughness, 2.0 / 3.0);
+}
+
+// Radiance from a direction, blurred as a surface of that roughness would.
+fn environment_radiance(direction: vec3<f32>, roughness: f32) -> vec3<f32> {
+    let turned = surroundings.light_from_object * direction;
+    return surroundings.brightness * textureSampleLevel(environment_map, environment_sampler, turned, level_of_roughness(roughness)).rgb;
+}
+
+// Irradiance of a surface with that normal, divided by PI (Ramamoorthi and Hanrahan 2001, equation 11).
+fn environment_irradiance(normal: vec3<f32>) -> vec3<f32> {
+    let n = surroundings.light_from_object * normal;
+    let c = surroundings.irradiance;
+    let sum = c[0] + c[1] * n.y + c[2] * n.z + c[3] * n.x + c[4] * (n.x * n.y) + c[5] * (n.y * n.z)
+        + c[6] * (3.0 * n.z * n.z - 1.0) + c[7] * (n.x * n.z) + c[8] * (n.x * n.x - n.y * n.y);
+    return surroundings.brightness * max(sum.rgb, vec3<f32>(0.0));
+}
+
+// Factors of f0 and f90 in the part of light that microfacets reflect at once.
+fn environment_dfg(facing: f32, roughness: f32) -> vec2<f32> {
+    let size = f32(DFG_SIZE);
+    let at = (vec2<f32>(facing, roughness) * (size - 1.0) + 0.5) / size;
+    return textureSampleLevel(dfg_table, environment_sampler, at, 0.0).rg;
+}
+
+// Radiance towards the eye from a surface under this light. `normal` and `to_eye` are of unit length.
+fn ambient_reflection(look: LookAt, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
+    var light: AmbientLight;
+    light.diffuse = environment_irradiance(normal);
+    light.facing = clamp(dot(normal, to_eye), 0.0, 1.0);
+    light.reflected = environment_radiance(dominant_direction(normal, to_eye, look.roughness), look.roughness);
+    light.dfg = environment_dfg(light.facing, look.roughness);
+    if look.coat > 0.0 {
+        light.coat_facing = clamp(dot(look.coat_normal, to_eye), 0.0, 1.0);
+        let coat_direction = dominant_direction(look.coat_normal, to_eye, look.coat_roughness);
+        light.coat_reflected = environment_radiance(coat_direction, look.coat_roughness);
+        light.coat_dfg = environment_dfg(light.coat_facing, look.coat_roughness);
+    }
+    return reflect_ambient(look, light);
+}
+
+// The part of emitted light that gets through the coat towards the eye.
+fn coat_transmission(look: LookAt, to_eye: vec3<f32>) -> f32 {
+    if look.coat <= 0.0 {
+        return 1.0;
+    }
+    let facing = clamp(dot(look.coat_normal, to_eye), 0.0, 1.0);
+    return 1.0 - coat_albedo(look, environment_dfg(facing, look.coat_roughness));
+}
+
+// What the screen shows of radiance towards the eye, in linear RGB.
+fn exposed(radiance: vec3<f32>) -> vec3<f32> {
+    return tone_mapped(radiance * surroundings.exposure, surroundings.tone_curve);
+}

@@ -1,0 +1,168 @@
+//! What `pnaen info` says about materials.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use crate::mesh::{Alpha, Look, Map, MapUv, Material, Slot};
+use crate::names::shown;
+
+/// A material in numbers.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct MaterialInfo {
+    pub name: String,
+    pub triangles: u32,
+    /// Width and height in px of the base colour's image, where there is one.
+    pub texture: Option<[u32; 2]>,
+    /// Linear RGBA.
+    pub base_color: [f32; 4],
+    pub metallic: f32,
+    pub roughness: f32,
+    /// Linear RGB.
+    pub emissive: [f32; 3],
+    /// `opaque`, `mask` or `blend`.
+    pub alpha: &'static str,
+    /// Below this alpha there is no surface.
+    pub alpha_cutoff: Option<f32>,
+    pub double_sided: bool,
+    pub unlit: bool,
+    pub ior: f32,
+    pub specular: f32,
+    /// Linear RGB.
+    pub specular_color: [f32; 3],
+    pub clearcoat: f32,
+    pub clearcoat_roughness: f32,
+    pub maps: Vec<MapInfo>,
+}
+
+/// An image beside that of the base colour.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct MapInfo {
+    /// `metallic-roughness`, `normal`, `occlusion` or `emissive`.
+    pub slot: &'static str,
+    /// Width and height in px.
+    pub size: [u32; 2],
+    /// The n of TEXCOORD_n; none for the base colour's own texture coordinates.
+    pub uv_set: Option<usize>,
+    /// Factor of the normals' first two components, or how much of the occlusion counts.
+    pub strength: Option<f32>,
+}
+
+impl MaterialInfo {
+    pub(super) fn of(material: &Material) -> Self {
+        let Look { metallic, roughness, emissive, unlit, ior, specular, specular_color, .. } = material.look;
+        let Look { clearcoat, clearcoat_roughness, .. } = material.look;
+        let (alpha, alpha_cutoff) = match material.look.alpha {
+            Alpha::Opaque => ("opaque", None),
+            Alpha::Mask(cutoff) => ("mask", Some(cutoff)),
+            Alpha::Blend => ("blend", None),
+        };
+        let map = |slot| Some(map(slot, material.look.maps[slot as usize].as_ref()?, &material.look));
+        Self {
+            name: material.name.clone(),
+            triangles: material.triangles.len() as u32,
+            texture: material.texture.as_ref().map(|texture| texture.size),
+            base_color: material.base_color,
+            metallic,
+            roughness,
+            emissive,
+            alpha,
+            alpha_cutoff,
+            double_sided: material.double_sided,
+            unlit,
+            ior,
+            specular,
+            specular_color,
+            clearcoat,
+            clearcoat_roughness,
+            maps: Slot::ALL.into_iter().filter_map(map).collect(),
+        }
+    }
+
+    /// What is told about all materials, and what differs from a plain one.
+    fn parts(&self) -> Vec<String> {
+        let usual = Look::default();
+        let mut parts = vec![format!("metallic {}, roughness {}", self.metallic, self.roughness)];
+        let mut add = |is_told: bool, part: String| parts.extend(is_told.then_some(part));
+        add(self.base_color != [1.0; 4], format!("base colour {}", numbers(&self.base_color)));
+        add(self.emissive != usual.emissive, format!("emits {}", numbers(&self.emissive)));
+        add(self.ior != usual.ior, format!("index of refraction {}", self.ior));
+        add(self.specular != usual.specular, format!("specular {}", self.specular));
+        let color = self.specular_color;
+        add(color != usual.specular_color, format!("specular colour {}", numbers(&color)));
+        add(self.clearcoat > 0.0, format!("clear coat {} of roughness {}", self.clearcoat, self.clearcoat_roughness));
+        add(self.alpha == "blend", "blended".to_owned());
+        let cutoff = self.alpha_cutoff;
+        add(cutoff.is_some(), format!("cut out below alpha {}", cutoff.unwrap_or_default()));
+        add(self.unlit, "unlit".to_owned());
+        add(self.double_sided, "double-sided".to_owned());
+        parts
+    }
+}
+
+fn map(slot: Slot, map: &Map, look: &Look) -> MapInfo {
+    let (slot, strength) = match slot {
+        Slot::MetallicRoughness => ("metallic-roughness", None),
+        Slot::Normal => ("normal", Some(look.normal_scale)),
+        Slot::Occlusion => ("occlusion", Some(look.occlusion_strength)),
+        Slot::Emissive => ("emissive", None),
+    };
+    let uv_set = match map.uv {
+        MapUv::Own => None,
+        MapUv::Set(set, _) => Some(set),
+    };
+    MapInfo { slot, size: map.texture.size, uv_set, strength }
+}
+
+/// Numbers of a colour, separated by spaces.
+fn numbers(color: &[f32]) -> String {
+    color.iter().map(f32::to_string).collect::<Vec<_>>().join(" ")
+}
+
+impl fmt::Display for MaterialInfo {
+    /// Writes a line with name and size, a line with how it looks, and a line for each map.
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let texture = self.texture.map_or_else(String::new, |[w, h]| format!(", texture {w} x {h} px"));
+        writeln!(f, "material      {}: {} triangles{texture}", shown(&self.name), self.triangles)?;
+        writeln!(f, "  look          {}", self.parts().join(", "))?;
+        for MapInfo { slot, size: [w, h], uv_set, strength } in &self.maps {
+            let set = uv_set.map_or_else(String::new, |set| format!(", on TEXCOORD_{set}"));
+            let strength = strength.filter(|strength| *strength != 1.0);
+            let strength = strength.map_or_else(String::new, |strength| format!(", strength {strength}"));
+            writeln!(f, "  map           {slot} {w} x {h} px{set}{strength}")?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::mesh::{Sampling, Texture};
+
+    #[test]
+    fn a_plain_material_has_two_lines() {
+        let text = MaterialInfo::of(&Material::plain("clay", [1.0; 4])).to_string();
+        assert_eq!(text, "material      clay: 0 triangles\n  look          metallic 0, roughness 0.5\n");
+    }
+
+    #[test]
+    fn everything_that_a_material_has_is_told() {
+        let texture = Arc::new(Texture { size: [2, 1], rgba: vec![255; 8] });
+        let mut material = Material::plain("paint", [0.5, 0.25, 0.0, 1.0]);
+        let uv = MapUv::Set(1, [1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+        let look = &mut material.look;
+        look.maps[Slot::Normal as usize] = Some(Map { texture, uv, sampling: Sampling::default() });
+        (look.normal_scale, look.clearcoat, look.alpha, look.unlit) = (0.5, 1.0, Alpha::Mask(0.25), true);
+        let info = MaterialInfo::of(&material);
+        let text = info.to_string();
+        let look = "metallic 0, roughness 0.5, base colour 0.5 0.25 0 1, clear coat 1 of roughness 0, cut out below alpha 0.25, unlit";
+        assert!(text.contains(&format!("\n  look          {look}\n")), "{text}");
+        assert!(text.ends_with("\n  map           normal 2 x 1 px, on TEXCOORD_1, strength 0.5\n"), "{text}");
+        let json = serde_json::to_value(&info).unwrap();
+        assert_eq!((&json["alpha"], &json["alpha_cutoff"]), (&"mask".into(), &0.25.into()));
+        assert_eq!((&json["maps"][0]["slot"], &json["maps"][0]["uv_set"]), (&"normal".into(), &1.into()));
+    }
+}

@@ -1,0 +1,427 @@
+//! Materials: their numbers, maps and samplers, what corners get for them, and what is wrong with some.
+
+use glam::Vec4;
+
+use super::*;
+use crate::mesh::{Alpha, CornerDetail, Look, MapUv, Material, Sampling, Slot, Wrap};
+
+/// The square of 1 in the xy plane that faces +Z, of two triangles.
+const SQUARE: [[f32; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+const QUARTER: [f32; 2] = [0.25, 0.25];
+
+/// A square with two sets of texture coordinates, and three textures of 2 x 1 px.
+fn square(material: Value) -> Draft {
+    let mut draft = Draft::new();
+    let (at, normals) = (draft.vectors(&SQUARE), draft.vectors(&[[0.0, 0.0, 1.0]; 4]));
+    let first = draft.floats("VEC2", &[0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0]);
+    let second = draft.floats("VEC2", &[QUARTER; 4].concat());
+    let indices = draft.indices(&[0, 1, 2, 2, 1, 3]);
+    let attributes = json!({ "POSITION": at, "NORMAL": normals, "TEXCOORD_0": first, "TEXCOORD_1": second });
+    draft.primitive(json!({ "attributes": attributes, "indices": indices, "material": 0 }));
+    draft.root["materials"] = json!([material]);
+    draft.root["images"] = json!([{ "uri": files::png_uri() }]);
+    draft.root["textures"] = json!([{ "source": 0 }, { "source": 0, "sampler": 0 }, { "source": 0 }]);
+    draft.root["samplers"] = json!([{ "wrapS": 33071, "wrapT": 33648, "magFilter": 9728, "minFilter": 9985 }]);
+    draft
+}
+
+/// A square whose material has everything that is read, and some that isn't.
+pub(super) fn everything() -> Draft {
+    let moved =
+        json!({ "KHR_texture_transform": { "offset": [0.5, 0], "rotation": 1, "scale": [2, 3], "texCoord": 1 } });
+    let mut draft = square(json!({
+        "name": "paint", "doubleSided": true, "alphaMode": "MASK", "alphaCutoff": 0.25, "emissiveFactor": [0.5, 0.25, 0],
+        "pbrMetallicRoughness": {
+            "baseColorFactor": [0.1, 0.2, 0.3, 0.4], "metallicFactor": 0.5, "roughnessFactor": 0.75,
+            "baseColorTexture": { "index": 0 }, "metallicRoughnessTexture": { "index": 1 },
+        },
+        "normalTexture": { "index": 0, "scale": 2, "extensions": moved },
+        "occlusionTexture": { "index": 2, "strength": 0.125, "texCoord": 1 },
+        "emissiveTexture": { "index": 0 },
+        "extensions": {
+            "KHR_materials_emissive_strength": { "emissiveStrength": 8 }, "KHR_materials_ior": { "ior": 1.25 },
+            "KHR_materials_specular": { "specularFactor": 0.5, "specularColorFactor": [1, 2, 3] },
+            "KHR_materials_clearcoat": { "clearcoatFactor": 0.5, "clearcoatTexture": { "index": 0 } },
+            "KHR_materials_sheen": {},
+        },
+    }));
+    let colors = draft.floats("VEC4", &[0.5; 16]);
+    attribute(&mut draft, "COLOR_0", colors);
+    draft
+}
+
+fn attribute(draft: &mut Draft, name: &str, accessor: usize) {
+    draft.root["meshes"][0]["primitives"][0]["attributes"][name] = json!(accessor);
+}
+
+/// The material of a square, which must be read without warnings.
+fn material(of: Value) -> Material {
+    let loaded = square(of).read().unwrap();
+    assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
+    loaded.mesh.materials[0].clone()
+}
+
+fn details(mesh: &Mesh) -> &[CornerDetail] {
+    let details = mesh.details.as_ref().expect("details");
+    assert_eq!(details.len(), mesh.corners.len());
+    details
+}
+
+#[test]
+fn silent_materials_are_rough_metal() {
+    for of in [json!({}), json!({ "pbrMetallicRoughness": {} })] {
+        let Look { metallic, roughness, emissive, alpha, ior, .. } = material(of).look;
+        assert_eq!((metallic, roughness, emissive, alpha, ior), (1.0, 1.0, [0.0; 3], Alpha::Opaque, 1.5));
+    }
+    let default = triangle().read().unwrap();
+    assert_eq!((default.materials[0].look.metallic, default.details.is_none()), (1.0, true));
+}
+
+#[test]
+fn all_numbers_are_read() {
+    let read = material(json!({
+        "name": "paint", "doubleSided": true, "alphaMode": "MASK", "alphaCutoff": 0.25, "emissiveFactor": [0.5, 0.25, 0],
+        "pbrMetallicRoughness": { "baseColorFactor": [0.1, 0.2, 0.3, 0.4], "metallicFactor": 0.5, "roughnessFactor": 0.75 },
+        "normalTexture": { "index": 0, "scale": -2 }, "occlusionTexture": { "index": 0, "strength": 0.125 },
+        "extensions": {
+            "KHR_materials_emissive_strength": { "emissiveStrength": 8 }, "KHR_materials_ior": { "ior": 1.25 },
+            "KHR_materials_specular": { "specularFactor": 0.5, "specularColorFactor": [1, 2, 3] },
+            "KHR_materials_clearcoat": { "clearcoatFactor": 0.5, "clearcoatRoughnessFactor": 0.25 },
+            "KHR_materials_unlit": {},
+        },
+    }));
+    let look = &read.look;
+    assert_eq!((read.name.as_str(), read.double_sided, read.base_color), ("paint", true, [0.1, 0.2, 0.3, 0.4]));
+    assert_eq!((look.metallic, look.roughness, look.emissive), (0.5, 0.75, [4.0, 2.0, 0.0]));
+    assert_eq!((look.normal_scale, look.occlusion_strength, look.alpha), (-2.0, 0.125, Alpha::Mask(0.25)));
+    assert_eq!((look.ior, look.specular, look.specular_color, look.unlit), (1.25, 0.5, [1.0, 2.0, 3.0], true));
+    assert_eq!((look.clearcoat, look.clearcoat_roughness), (0.5, 0.25));
+    let cut = material(json!({ "alphaMode": "MASK" })).look.alpha;
+    assert_eq!(cut, Alpha::Mask(0.5));
+}
+
+#[test]
+fn specular_and_glossiness_are_converted() {
+    let glossy =
+        json!({ "diffuseFactor": [0.5, 0.5, 0.5, 1], "specularFactor": [0.25, 0.5, 1], "glossinessFactor": 0.75 });
+    let both = json!({
+        "pbrMetallicRoughness": { "baseColorFactor": [1, 0, 0, 1] },
+        "extensions": { "KHR_materials_pbrSpecularGlossiness": glossy },
+    });
+    let Material { base_color, look, .. } = material(both);
+    assert_eq!((base_color, look.metallic, look.roughness), ([0.5, 0.5, 0.5, 1.0], 0.0, 0.25));
+    // With an infinite index the reflection seen head-on is the specular colour itself.
+    assert_eq!((look.ior, look.specular, look.specular_color), (0.0, 1.0, [0.25, 0.5, 1.0]));
+    let diffuse = json!({ "diffuseTexture": { "index": 0 } });
+    assert!(material(json!({ "extensions": { "KHR_materials_pbrSpecularGlossiness": diffuse } })).texture.is_some());
+}
+
+#[test]
+fn maps_know_their_coordinates_and_sampling() {
+    let moved = json!({ "KHR_texture_transform": { "offset": [0.5, 0], "scale": [2, 3], "texCoord": 1 } });
+    let read = material(json!({
+        "pbrMetallicRoughness": {
+            "baseColorTexture": { "index": 0 }, "metallicRoughnessTexture": { "index": 1 },
+        },
+        "occlusionTexture": { "index": 0, "texCoord": 1 },
+        "emissiveTexture": { "index": 0, "extensions": moved },
+        "emissiveFactor": [1, 1, 1],
+    }));
+    let map = |slot: Slot| read.look.maps[slot as usize].as_ref();
+    let rough = map(Slot::MetallicRoughness).expect("a map");
+    assert_eq!(rough.uv, MapUv::Own);
+    let expected = Sampling {
+        wrap: [Wrap::Clamp, Wrap::Mirror],
+        magnify_linear: false,
+        minify_linear: true,
+        mip_linear: Some(false),
+    };
+    assert_eq!((rough.sampling, read.sampling), (expected, Sampling::default()));
+    assert_eq!(map(Slot::Occlusion).expect("a map").uv, MapUv::Set(1, [1.0, 0.0, 0.0, 0.0, 1.0, 0.0]));
+    assert_eq!(map(Slot::Emissive).expect("a map").uv, MapUv::Set(1, [2.0, 0.0, 0.5, 0.0, 3.0, 0.0]));
+    assert!(map(Slot::Normal).is_none());
+    let image = read.texture.as_ref().expect("a texture");
+    assert!(std::sync::Arc::ptr_eq(image, &rough.texture), "one image is read once");
+}
+
+#[test]
+fn corners_have_the_sets_that_maps_use() {
+    let second = json!({ "emissiveFactor": [1, 1, 1], "emissiveTexture": { "index": 0, "texCoord": 1 } });
+    let mesh = square(second).read().unwrap();
+    for (corner, detail) in mesh.corners.iter().zip(details(&mesh)) {
+        assert_eq!(detail.uvs, [Vec2::ZERO, QUARTER.into()], "only what is used");
+        assert_eq!(corner.uv, Vec2::new(corner.position.x, 1.0 - corner.position.y));
+        assert_eq!((detail.color, detail.tangent), (Vec4::ONE, Vec3::ZERO));
+    }
+    // A transform of the base colour alone: maps beside it have the coordinates of the file.
+    let moved = json!({ "index": 0, "extensions": { "KHR_texture_transform": { "offset": [8, 8] } } });
+    let apart = json!({ "pbrMetallicRoughness": { "baseColorTexture": moved }, "occlusionTexture": { "index": 0 } });
+    let mesh = square(apart).read().unwrap();
+    for (corner, detail) in mesh.corners.iter().zip(details(&mesh)) {
+        assert_eq!(corner.uv, detail.uvs[0] + Vec2::splat(8.0));
+    }
+    let plain = json!({ "pbrMetallicRoughness": { "metallicRoughnessTexture": { "index": 0 } } });
+    assert!(square(plain).read().unwrap().details.is_none());
+}
+
+#[test]
+fn a_set_beyond_the_second_is_replaced_and_told() {
+    let mut draft = square(json!({ "name": "m", "occlusionTexture": { "index": 0, "texCoord": 5 } }));
+    let mesh = draft.read().unwrap();
+    assert!(matches!(mesh.materials[0].look.maps[Slot::Occlusion as usize].as_ref().unwrap().uv, MapUv::Set(0, _)));
+    assert!(mesh.warnings[0].contains("occlusion map of material \"m\" has TEXCOORD_5"), "{:?}", mesh.warnings);
+    draft.root["materials"][0] = json!({ "occlusionTexture": { "index": 0, "texCoord": 1 } });
+    draft.root["meshes"][0]["primitives"][0]["attributes"].as_object_mut().unwrap().remove("TEXCOORD_1");
+    let mesh = draft.read().unwrap();
+    assert!(mesh.warnings[0].contains("primitives without the texture coordinates of a map"), "{:?}", mesh.warnings);
+}
+
+#[test]
+fn colours_of_all_types_multiply() {
+    let expected = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 1.0, 1.0]];
+    for (component, width) in [(5121, 3), (5121, 4), (5123, 3), (5123, 4), (5126, 3), (5126, 4)] {
+        let mut bytes = Vec::new();
+        for [r, g, b] in expected {
+            for value in &[r, g, b, 0.0][..width] {
+                match component {
+                    5121 => bytes.push((value * 255.0) as u8),
+                    5123 => bytes.extend(((value * 65535.0) as u16).to_le_bytes()),
+                    _ => bytes.extend(f32::to_le_bytes(*value)),
+                }
+            }
+        }
+        let mut draft = square(json!({}));
+        let kind = if width == 3 { "VEC3" } else { "VEC4" };
+        let colors = draft.accessor(&bytes, component, kind, 4);
+        draft.root["accessors"][colors]["normalized"] = json!(component != 5126);
+        attribute(&mut draft, "COLOR_0", colors);
+        let mesh = draft.read().unwrap();
+        assert!(mesh.warnings.is_empty(), "{component} {width} {:?}", mesh.warnings);
+        for (corner, detail) in mesh.corners.iter().zip(details(&mesh)) {
+            let place = SQUARE.iter().position(|at| Vec3::from(*at) == corner.position).unwrap();
+            let alpha = if width == 3 { 1.0 } else { 0.0 };
+            assert_eq!(detail.color, Vec3::from(expected[place]).extend(alpha), "{component} {width}");
+        }
+    }
+}
+
+#[test]
+fn corners_that_differ_in_colour_alone_do_not_tear() {
+    let mut draft = square(json!({}));
+    let plain = draft.read().unwrap();
+    // The second triangle once more as a primitive of its own, with colours: its corners lie on the first's.
+    let at = draft.root["meshes"][0]["primitives"][0]["attributes"].clone();
+    let (first, second) = (draft.indices(&[0, 1, 2]), draft.indices(&[2, 1, 3]));
+    let colors = draft.floats("VEC4", &[[1.0, 0.0, 0.0, 1.0]; 4].concat());
+    let mut colored = at.clone();
+    colored["COLOR_0"] = json!(colors);
+    draft.root["meshes"][0]["primitives"] = json!([
+        { "attributes": at, "indices": first, "material": 0 }, { "attributes": colored, "indices": second, "material": 0 },
+    ]);
+    let split = draft.read().unwrap();
+    assert_eq!((plain.corners.len(), split.corners.len(), split.triangles.len()), (4, 6, 2));
+    let [a, b] = [&plain.mesh, &split.mesh].map(Topology::of);
+    assert_eq!((a.points.clone(), a.edge_counts()), (b.points.clone(), b.edge_counts()));
+    assert_eq!(b.edge_counts().smooth, 1);
+}
+
+#[test]
+fn tangents_of_the_file_are_used() {
+    let normal = json!({ "normalTexture": { "index": 0 } });
+    let mut draft = square(normal.clone());
+    let tangents = draft.floats("VEC4", &[[0.0, 2.0, 0.0, -1.0]; 4].concat());
+    attribute(&mut draft, "TANGENT", tangents);
+    let all = |draft: &Draft| {
+        let mesh = draft.read().unwrap();
+        assert!(mesh.warnings.is_empty(), "{:?}", mesh.warnings);
+        details(&mesh).iter().map(|detail| (detail.tangent, detail.bitangent_sign)).collect::<Vec<_>>()
+    };
+    assert_eq!(all(&draft), [(Vec3::Y, -1.0); 4]);
+    // A quarter turn about z, and a mirror: the bitangent is a cross product, which a mirror turns around.
+    draft.root["nodes"][0]["rotation"] =
+        json!([0.0, 0.0, std::f32::consts::FRAC_1_SQRT_2, std::f32::consts::FRAC_1_SQRT_2]);
+    let turned = all(&draft);
+    assert!(turned.iter().all(|(tangent, sign)| tangent.distance(Vec3::NEG_X) < 1e-6 && *sign == -1.0), "{turned:?}");
+    draft.root["nodes"][0] = json!({ "mesh": 0, "scale": [1, -3, 1] });
+    assert_eq!(all(&draft), [(Vec3::NEG_Y, 1.0); 4]);
+    // Without normals in the file, its tangents don't fit the normals that are made.
+    let mut without = square(normal);
+    let tangents = without.floats("VEC4", &[[0.0, 2.0, 0.0, -1.0]; 4].concat());
+    attribute(&mut without, "TANGENT", tangents);
+    without.root["meshes"][0]["primitives"][0]["attributes"].as_object_mut().unwrap().remove("NORMAL");
+    let mesh = without.read().unwrap();
+    assert!(details(&mesh).iter().all(|detail| detail.tangent.distance(Vec3::X) < 1e-6));
+}
+
+/// In the square u grows along x, and v along -y: the image stands upright, and the bitangent points up.
+#[test]
+fn tangents_are_computed_as_files_have_them() {
+    let normal = json!({ "normalTexture": { "index": 0 } });
+    let mesh = square(normal.clone()).read().unwrap();
+    assert!(mesh.warnings.is_empty(), "{:?}", mesh.warnings);
+    for detail in details(&mesh) {
+        assert!(detail.tangent.distance(Vec3::X) < 1e-6 && detail.bitangent_sign == 1.0, "{detail:?}");
+    }
+    // Mirrored: u grows along -x, and the image is seen from behind.
+    let mut mirrored = square(normal.clone());
+    mirrored.root["nodes"][0]["scale"] = json!([-1, 1, 1]);
+    for detail in details(&mirrored.read().unwrap()) {
+        assert!(detail.tangent.distance(Vec3::NEG_X) < 1e-6 && detail.bitangent_sign == -1.0, "{detail:?}");
+    }
+    // On the normal map's own coordinates: turned by a quarter in the image, u grows along y.
+    let quarter = json!({ "KHR_texture_transform": { "rotation": std::f32::consts::FRAC_PI_2 } });
+    let turned = json!({ "normalTexture": { "index": 0, "extensions": quarter } });
+    for detail in details(&square(turned).read().unwrap()) {
+        assert!(detail.tangent.distance(Vec3::NEG_Y) < 1e-6 && detail.bitangent_sign == 1.0, "{detail:?}");
+    }
+}
+
+/// A roof whose image is mirrored at the ridge: the corners there have two tangents, and become two each.
+#[test]
+fn corners_with_two_tangents_are_split_but_do_not_tear() {
+    let roof = [[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 1.0], [-1.0, 1.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]];
+    let mut draft = square(json!({ "normalTexture": { "index": 0 } }));
+    let (at, normals) = (draft.vectors(&roof), draft.vectors(&[[0.0, 0.0, 1.0]; 6]));
+    let uvs = draft.floats("VEC2", &[0.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
+    let indices = draft.indices(&[0, 1, 2, 0, 2, 3, 1, 4, 5, 1, 5, 2]);
+    let attributes = json!({ "POSITION": at, "NORMAL": normals, "TEXCOORD_0": uvs });
+    draft.root["meshes"][0]["primitives"] = json!([{ "attributes": attributes, "indices": indices, "material": 0 }]);
+    let mesh = draft.read().unwrap();
+    assert_eq!((mesh.corners.len(), details(&mesh).len()), (8, 8));
+    for (triangle, left) in mesh.triangles.iter().zip([true, true, false, false]) {
+        for detail in triangle.map(|corner| details(&mesh)[corner as usize]) {
+            let (tangent, sign) = (detail.tangent, detail.bitangent_sign);
+            assert_eq!((tangent.x > 0.0, sign), (left, if left { 1.0 } else { -1.0 }), "{detail:?}");
+        }
+    }
+    let topology = Topology::of(&mesh);
+    assert_eq!((topology.points.len(), topology.edge_counts().boundary), (6, 6));
+    assert_eq!((topology.edge_counts().smooth, topology.edge_counts().split), (3, 0));
+}
+
+#[test]
+fn broken_materials_are_repaired_and_told() {
+    let cases = [
+        (json!(7), "/materials/0 is 7, not an object"),
+        (
+            json!({ "pbrMetallicRoughness": { "metallicFactor": 1.5 } }),
+            "metallicFactor is 1.5, but must be at most 1.0; 1 is used",
+        ),
+        (
+            json!({ "pbrMetallicRoughness": { "roughnessFactor": "no" } }),
+            "roughnessFactor is \"no\", not a number; 1 is used",
+        ),
+        (json!({ "emissiveFactor": [1, 1] }), "emissiveFactor is a list of 2, not 3 numbers"),
+        (json!({ "emissiveFactor": [1, -1, 0] }), "emissiveFactor/1 is -1, but must be at least 0.0; 0 is used"),
+        (json!({ "alphaMode": "GLASS" }), "alphaMode is \"GLASS\", not OPAQUE or MASK or BLEND; OPAQUE is used"),
+        (json!({ "normalTexture": { "index": 9 } }), "/materials/0/normalTexture/index is 9, but /textures has 3"),
+        (json!({ "normalTexture": {} }), "/materials/0/normalTexture has no index"),
+        (json!({ "normalTexture": { "index": 0, "scale": [] } }), "normalTexture/scale is a list of 0, not a number"),
+        (json!({ "extensions": { "KHR_materials_ior": { "ior": 0.5 } } }), "index of refraction 0.5"),
+        (
+            json!({ "alphaMode": "BLEND", "name": "glass" }),
+            "alphaMode BLEND is drawn opaque; material \"glass\" has it.",
+        ),
+        (
+            json!({ "name": "silk", "extensions": { "KHR_materials_sheen": {} } }),
+            "KHR_materials_sheen isn't drawn; material \"silk\" has it.",
+        ),
+        (
+            json!({ "extensions": { "KHR_materials_clearcoat": { "clearcoatNormalTexture": { "index": 0 } } } }),
+            "clearcoatNormalTexture of KHR_materials_clearcoat isn't drawn; material \"material 0\" has it.",
+        ),
+    ];
+    for (of, expected) in cases {
+        let mesh = square(of).read().unwrap();
+        assert_eq!(mesh.warnings.len(), 1, "{expected}: {:?}", mesh.warnings);
+        assert!(mesh.warnings[0].contains(expected), "{expected}: {:?}", mesh.warnings);
+    }
+}
+
+#[test]
+fn broken_textures_are_left_out_and_told() {
+    let occlusion = json!({ "name": "m", "occlusionTexture": { "index": 0 } });
+    let cases = [
+        ("textures", json!([{ "source": 5 }]), "/textures/0/source is 5, but /images has 1"),
+        ("textures", json!([[]]), "/textures/0 is a list of 0, not an object"),
+        ("textures", json!([{ "source": 0, "sampler": 3 }]), "/textures/0/sampler is 3, but /samplers has 1"),
+        ("textures", json!("none"), "/textures is \"none\", not a list"),
+        ("images", json!([{ "uri": 5 }]), "the occlusion map of material \"m\" is left out: /images/0/uri isn't text"),
+        ("images", json!([{ "bufferView": 99 }]), "/images/0/bufferView isn't one of the document's buffer views"),
+    ];
+    for (list, value, expected) in cases {
+        let mut draft = square(occlusion.clone());
+        draft.root[list] = value;
+        let mesh = draft.read().unwrap();
+        assert!(mesh.warnings[0].contains(expected), "{expected}: {:?}", mesh.warnings);
+    }
+    let mut draft = square(json!({ "occlusionTexture": { "index": 1 } }));
+    draft.root["samplers"][0]["wrapS"] = json!(5);
+    let said = draft.read().unwrap().warnings;
+    assert!(said[0].contains("/samplers/0/wrapS is 5, not 10497 or 33071 or 33648"), "{said:?}");
+}
+
+#[test]
+fn broken_colours_and_tangents_are_left_out_and_told() {
+    let normal = || square(json!({ "normalTexture": { "index": 0 } }));
+    let mut short = normal();
+    let few = short.floats("VEC4", &[1.0; 4]);
+    attribute(&mut short, "COLOR_0", few);
+    let mut beyond = normal();
+    attribute(&mut beyond, "TANGENT", 99);
+    let mut flat = normal();
+    let pairs = flat.floats("VEC2", &[1.0; 8]);
+    attribute(&mut flat, "TANGENT", pairs);
+    let mut odd = normal();
+    let colors = odd.floats("VEC4", &[[f32::NAN; 4], [9.0; 4], [-1.0; 4], [0.5; 4]].concat());
+    attribute(&mut odd, "COLOR_0", colors);
+    let mut zero = normal();
+    let tangents = zero.floats("VEC4", &[0.0; 16]);
+    attribute(&mut zero, "TANGENT", tangents);
+    let cases = [
+        (short, "(COLOR_0 of /meshes/0/primitives/0 (\"thing\")) has 1 elements for 4 vertices; it is left out."),
+        (beyond, "/attributes/TANGENT isn't one of the 5 accessors; it is left out."),
+        (flat, "(TANGENT of /meshes/0/primitives/0 (\"thing\"))"),
+        (odd, "colours of vertices that aren't finite, replaced by white: 1."),
+        (zero, "tangents without a direction, replaced by ones that are computed: 4."),
+    ];
+    for (draft, expected) in cases {
+        let mesh = draft.read().unwrap();
+        assert_eq!(mesh.warnings.len(), 1, "{expected}: {:?}", mesh.warnings);
+        assert!(mesh.warnings[0].contains(expected), "{expected}: {:?}", mesh.warnings);
+        for detail in details(&mesh) {
+            assert!(detail.tangent.distance(Vec3::X) < 1e-6, "{expected}: {detail:?}");
+            assert!(detail.color.cmpge(Vec4::ZERO).all() && detail.color.cmple(Vec4::ONE).all(), "{detail:?}");
+        }
+    }
+}
+
+#[test]
+fn a_material_that_is_not_there_is_the_default() {
+    for index in [json!(4), json!(-1), json!("first")] {
+        let mut draft = square(json!({ "name": "there" }));
+        draft.root["meshes"][0]["primitives"][0]["material"] = index;
+        let mesh = draft.read().unwrap();
+        assert_eq!(mesh.materials[0].name, "default");
+        assert!(
+            mesh.warnings[0].contains("/meshes/0/primitives/0/material isn't one of the 1 materials"),
+            "{:?}",
+            mesh.warnings
+        );
+    }
+}
+
+#[test]
+fn many_materials_with_the_same_extension_are_one_sentence() {
+    let mut draft = square(json!({ "name": "a", "extensions": { "KHR_materials_sheen": {} } }));
+    let one = draft.root["meshes"][0]["primitives"][0].clone();
+    for i in 1..5 {
+        let mut next = one.clone();
+        next["material"] = json!(i);
+        draft.primitive(next);
+        draft.push("materials", json!({ "name": format!("m{i}"), "extensions": { "KHR_materials_sheen": {} } }));
+    }
+    let warnings = draft.read().unwrap().warnings;
+    let expected = "KHR_materials_sheen isn't drawn; materials \"a\", \"m1\", \"m2\" and 2 more have it.";
+    assert_eq!(warnings, [expected]);
+}

@@ -1,0 +1,87 @@
+//! Reads what a document says about textures, and their samplers and images.
+//!
+//! Source: glTF 2.0 specification, section 3.8.
+
+use std::borrow::Cow;
+use std::cell::RefCell;
+
+use serde_json::Value;
+
+use super::Accessors;
+use super::lenient::Members;
+use super::notes::Notes;
+use crate::load::uri::{self, Files};
+use crate::mesh::{Sampling, Wrap};
+
+/// Reads a texture: the index of its image, and how it is sampled; none if it has no image that is read.
+pub(super) fn texture(
+    textures: &[Value],
+    samplers: &[Value],
+    images: usize,
+    index: usize,
+    notes: &RefCell<Notes>,
+) -> Option<(usize, Sampling)> {
+    let members = Members::of(textures.get(index)?, format!("/textures/{index}"), notes)?;
+    if !members.has("source") {
+        let said = format!("texture {index} has no PNG or JPEG image; its materials are shown without it.");
+        notes.borrow_mut().push(said);
+        return None;
+    }
+    let image = members.index("source", "images", images)?;
+    let sampler = members.index("sampler", "samplers", samplers.len());
+    let sampling = sampler.and_then(|sampler| {
+        Members::of(&samplers[sampler], format!("/samplers/{sampler}"), notes).map(|members| sampling(&members))
+    });
+    Some((image, sampling.unwrap_or_default()))
+}
+
+/// Reads a sampler. The codes are OpenGL's.
+fn sampling(members: &Members) -> Sampling {
+    const WRAPS: [(u64, Wrap); 3] = [(10497, Wrap::Repeat), (33071, Wrap::Clamp), (33648, Wrap::Mirror)];
+    const MAGNIFY: [(u64, bool); 2] = [(9728, false), (9729, true)];
+    // Whether texels are blended, and whether mip levels are.
+    const MINIFY: [(u64, (bool, Option<bool>)); 6] = [
+        (9728, (false, None)),
+        (9729, (true, None)),
+        (9984, (false, Some(false))),
+        (9985, (true, Some(false))),
+        (9986, (false, Some(true))),
+        (9987, (true, Some(true))),
+    ];
+    let default = Sampling::default();
+    let (minify_linear, mip_linear) = members.code("minFilter", &MINIFY, (default.minify_linear, default.mip_linear));
+    Sampling {
+        wrap: ["wrapS", "wrapT"].map(|name| members.code(name, &WRAPS, Wrap::Repeat)),
+        magnify_linear: members.code("magFilter", &MAGNIFY, default.magnify_linear),
+        minify_linear,
+        mip_linear,
+    }
+}
+
+/// Returns the bytes of an image.
+///
+/// # Errors
+/// A clause that says what is wrong.
+pub(super) fn image<'a>(
+    images: &[Value],
+    index: usize,
+    accessors: &'a Accessors,
+    files: &Files,
+) -> Result<Cow<'a, [u8]>, String> {
+    let member = |name: &str| images.get(index).and_then(|image| image.get(name)).filter(|value| !value.is_null());
+    if let Some(view) = member("bufferView") {
+        let view = view.as_u64().and_then(|view| accessors.view(usize::try_from(view).ok()?));
+        let view =
+            view.ok_or_else(|| format!("/images/{index}/bufferView isn't one of the document's buffer views"))?;
+        let bytes = accessors.view_bytes(&view).map(Cow::Borrowed);
+        return bytes.map_err(|reason| format!("/images/{index} {reason}"));
+    }
+    match member("uri").map(Value::as_str) {
+        Some(Some(uri)) => files
+            .read(uri, false)
+            .map(Cow::Owned)
+            .map_err(|reason| format!("/images/{index} ({}) can't be read: {reason}", uri::shown(uri))),
+        Some(None) => Err(format!("/images/{index}/uri isn't text")),
+        None => Err(format!("/images/{index} has neither a file nor a buffer view")),
+    }
+}

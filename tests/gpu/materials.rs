@@ -1,0 +1,374 @@
+//! Materials in light from all around: each part of a material against a picture that must be the same, and pictures of all of them.
+
+use std::sync::Arc;
+
+use glam::{Vec2, Vec3, Vec4, vec2, vec3};
+use image::RgbaImage;
+use pnaen::engine::Engine;
+use pnaen::gpu::Timing;
+use pnaen::mesh::mesh_builder::{InputCorner, MeshBuilder};
+use pnaen::mesh::{Alpha, CornerDetail, Look, Map, MapUv, Material, Mesh, Sampling, Shape, Slot, Texture};
+use pnaen::progress::Progress;
+use pnaen::render::environment::Environment;
+use pnaen::render::layout::{linear, srgb};
+use pnaen::render::{Camera, Renderer, Target};
+use pnaen::settings::{Lighting, NormalsAt, Overlays, Settings, ToneCurve};
+use pnaen::tessellate::{Surface, Tessellation};
+
+use crate::gpu_tests::engine;
+use crate::gpu_tests::pictures::differing;
+use crate::gpu_tests::stability::{scene_of, seen};
+
+/// The sides of pictures of a square in px.
+const SIDE: u32 = 64;
+
+/// Flat patches in studio light, whose colours aren't changed by a tone curve.
+fn studio() -> Settings {
+    let tessellation = Tessellation { surface: Surface::Flat, factor: 3.0, ..Tessellation::default() };
+    Settings { lighting: Lighting::Studio, tone_curve: ToneCurve::None, ..Settings::from(tessellation) }
+}
+
+/// Every way in which the surface is drawn, each with a shader of its own.
+fn every_way(settings: Settings) -> [Settings; 5] {
+    let with = |overlays| Settings { overlays, ..settings };
+    [
+        settings,
+        Settings { normals_at: NormalsAt::Pixels, ..settings },
+        with(Overlays { adjacency: true, ..Overlays::default() }),
+        with(Overlays { folds: true, ..Overlays::default() }),
+        Settings { split: Some(1.0), ..settings },
+    ]
+}
+
+/// A square from -1 to 1 in the plane z = 0, which faces +z. All its corners have one normal, and u and v run from 0 to 1, v
+/// downwards.
+fn square(normal: Vec3, material: Material) -> Mesh {
+    let mut builder = MeshBuilder::new();
+    let material = builder.material(material);
+    let corner = |x: f32, y: f32| InputCorner {
+        position: vec3(x, y, 0.0),
+        normal: Some(normal),
+        uv: vec2(0.5 + 0.5 * x, 0.5 - 0.5 * y),
+    };
+    let [a, b, c, d] = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+    builder.triangle(material, [a, b, c]);
+    builder.triangle(material, [a, c, d]);
+    builder.finish("square".to_owned(), &Progress::default()).expect("nobody cancels")
+}
+
+/// The mesh with details of every corner, made of its texture coordinates.
+fn with_details(mut mesh: Mesh, detail: impl Fn(Vec2) -> CornerDetail) -> Mesh {
+    mesh.details = Some(Arc::new(mesh.corners.iter().map(|corner| detail(corner.uv)).collect()));
+    mesh
+}
+
+/// A picture of a square from the front, or from behind: it fills the view.
+fn picture(mesh: &Mesh, settings: &Settings, azimuth: f32) -> RgbaImage {
+    let mut scene = scene_of(mesh.clone(), 0.0);
+    let target = Target::new(&engine().gpu, [SIDE; 2]).expect("a small picture");
+    let framed = Camera::framing(&scene.bounds, target.viewport());
+    let distance = framed.distance * 2.0 / (SIDE as f32 * framed.units_per_pixel(SIDE as f32));
+    let camera = Camera { azimuth, elevation: 0.0, orthographic: true, distance, ..framed };
+    seen(&mut scene, &target, settings, &camera)
+}
+
+/// The colour at a place of a square's texture coordinates.
+fn at(picture: &RgbaImage, uv: [f32; 2]) -> [u8; 3] {
+    let [x, y] = uv.map(|part| (part * SIDE as f32) as u32);
+    let [r, g, b, _] = picture.get_pixel(x, y).0;
+    [r, g, b]
+}
+
+/// Places that no line of an overlay comes near.
+const PLACES: [[f32; 2]; 4] = [[0.2, 0.45], [0.4, 0.12], [0.62, 0.87], [0.9, 0.6]];
+
+fn assert_near(found: [u8; 3], expected: [u8; 3], most: u8, what: &str) {
+    let is_near = found.iter().zip(expected).all(|(a, b)| a.abs_diff(b) <= most);
+    assert!(is_near, "{what}: {found:?}, not {expected:?}");
+}
+
+/// Checks that two meshes look the same from the front and from behind, however they are drawn.
+fn assert_same(found: &Mesh, expected: &Mesh, what: &str) {
+    for azimuth in [0.0, 180.0] {
+        let expected = picture(expected, &studio(), azimuth);
+        for settings in every_way(studio()) {
+            let found = picture(found, &settings, azimuth);
+            for place in PLACES {
+                let name = format!("{what} at {place:?} from {azimuth} with {settings:?}");
+                assert_near(at(&found, place), at(&expected, place), 2, &name);
+            }
+        }
+    }
+}
+
+/// A material with this look.
+fn material(base_color: [f32; 3], look: Look) -> Material {
+    let [r, g, b] = base_color;
+    Material { look, double_sided: true, ..Material::plain("material", [r, g, b, 1.0]) }
+}
+
+/// An image of a few pixels.
+fn image(size: [u32; 2], pixels: &[[u8; 4]]) -> Arc<Texture> {
+    Arc::new(Texture { size, rgba: pixels.concat() })
+}
+
+/// A map whose texels aren't blended.
+fn map(texture: Arc<Texture>, uv: MapUv) -> Map {
+    let sampling = Sampling { magnify_linear: false, minify_linear: false, mip_linear: None, ..Sampling::default() };
+    Map { texture, uv, sampling }
+}
+
+fn look_with(slot: Slot, map: Map, look: Look) -> Look {
+    let mut look = look;
+    look.maps[slot as usize] = Some(map);
+    look
+}
+
+const GLOSSY: f32 = 0.3;
+
+/// Something that shows from where light comes.
+fn glossy() -> Look {
+    Look { roughness: GLOSSY, metallic: 0.5, ..Look::default() }
+}
+
+#[test]
+fn a_normal_map_tilts_normals_as_a_tilted_normal_does_and_mirrored_tangents_mirror_it() {
+    let texel = [180, 90, 230];
+    let own = texel.map(|byte| 2.0 * f32::from(byte) / 255.0 - 1.0);
+    let normals = image([1, 1], &[[texel[0], texel[1], texel[2], 255]]);
+    for (scale, tangent, sign) in
+        [(1.0, Vec3::X, 1.0), (1.0, Vec3::X, -1.0), (0.5, Vec3::Y, 1.0), (1.5, Vec3::NEG_X, -1.0)]
+    {
+        let look = look_with(Slot::Normal, map(normals.clone(), MapUv::Own), Look { normal_scale: scale, ..glossy() });
+        let detail = CornerDetail { tangent, bitangent_sign: sign, ..CornerDetail::default() };
+        let mapped = with_details(square(Vec3::Z, material([0.8, 0.5, 0.2], look)), |_| detail);
+        let bitangent = sign * Vec3::Z.cross(tangent);
+        let normal = (scale * own[0] * tangent + scale * own[1] * bitangent + own[2] * Vec3::Z).normalize();
+        let tilted = square(normal, material([0.8, 0.5, 0.2], glossy()));
+        assert_same(&mapped, &tilted, &format!("scale {scale}, tangent {tangent}, sign {sign}"));
+    }
+}
+
+#[test]
+fn a_tangent_is_made_perpendicular_to_the_shading_normal_and_none_leaves_it() {
+    let normals = image([1, 1], &[[200, 128, 220, 255]]);
+    let look = look_with(Slot::Normal, map(normals, MapUv::Own), glossy());
+    let own = |tangent: Vec3| {
+        let detail = CornerDetail { tangent, ..CornerDetail::default() };
+        with_details(square(Vec3::Z, material([0.8; 3], look.clone())), |_| detail)
+    };
+    assert_same(&own(vec3(0.6, 0.0, 0.8)), &own(Vec3::X), "a tangent that isn't perpendicular");
+    assert_same(&own(Vec3::ZERO), &square(Vec3::Z, material([0.8; 3], glossy())), "no tangent");
+}
+
+/// Four colours.
+fn quarters() -> Arc<Texture> {
+    image([2, 2], &[[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [255, 255, 255, 255]])
+}
+
+#[test]
+fn maps_are_read_at_their_own_texture_coordinates() {
+    // Nothing but what it emits.
+    let dark = Look { emissive: [0.5; 3], specular: 0.0, ..Look::default() };
+    let of = |uv| square(Vec3::Z, material([0.0; 3], look_with(Slot::Emissive, map(quarters(), uv), dark.clone())));
+    let expected = of(MapUv::Own);
+    for (place, color) in [([0.2, 0.2], [188, 0, 0]), ([0.7, 0.2], [0, 188, 0]), ([0.7, 0.7], [188; 3])] {
+        assert_near(at(&picture(&expected, &studio(), 0.0), place), color, 1, "half of the image's colour");
+    }
+    let second = with_details(of(MapUv::Set(1, [1.0, 0.0, 0.0, 0.0, 1.0, 0.0])), |uv| CornerDetail {
+        uvs: [Vec2::ZERO, uv],
+        ..CornerDetail::default()
+    });
+    assert_same(&second, &expected, "the second set");
+    // The transform takes back what the file's coordinates have too much: a quarter of a turn, a scale and an offset.
+    let turned = with_details(of(MapUv::Set(0, [0.0, 0.5, 0.25, -0.25, 0.0, 1.0])), |uv| CornerDetail {
+        uvs: [vec2(4.0 * (1.0 - uv.y), 2.0 * (uv.x - 0.25)), Vec2::ZERO],
+        ..CornerDetail::default()
+    });
+    assert_same(&turned, &expected, "a transform");
+}
+
+#[test]
+fn metalness_roughness_and_occlusion_are_read_from_their_channels() {
+    let texel = |texel: [u8; 4], slot, look| look_with(slot, map(image([1, 1], &[texel]), MapUv::Own), look);
+    let full = Look { metallic: 1.0, roughness: 1.0, ..Look::default() };
+    let mapped = square(Vec3::Z, material([0.7, 0.4, 0.2], texel([255, 51, 204, 255], Slot::MetallicRoughness, full)));
+    let numbers = Look { metallic: 0.8, roughness: 0.2, ..Look::default() };
+    assert_same(&mapped, &square(Vec3::Z, material([0.7, 0.4, 0.2], numbers)), "metalness and roughness");
+    // Without reflection, occlusion only darkens: half of it, of a strength of a half.
+    let matte = Look { specular: 0.0, occlusion_strength: 0.5, ..Look::default() };
+    let occluded = square(Vec3::Z, material([0.8; 3], texel([51, 255, 255, 255], Slot::Occlusion, matte.clone())));
+    assert_same(&occluded, &square(Vec3::Z, material([0.8 * 0.6; 3], matte)), "occlusion");
+}
+
+#[test]
+fn colours_of_corners_multiply_the_base_colour() {
+    let color = [0.5, 0.25, 1.0];
+    let detail = CornerDetail { color: Vec4::new(color[0], color[1], color[2], 1.0), ..CornerDetail::default() };
+    let colored = with_details(square(Vec3::Z, material([0.6, 0.8, 0.4], Look::default())), |_| detail);
+    assert_same(&colored, &square(Vec3::Z, material([0.3, 0.2, 0.4], Look::default())), "one colour");
+    let unlit = Look { unlit: true, ..Look::default() };
+    let gradient = with_details(square(Vec3::Z, material([1.0; 3], unlit)), |uv| CornerDetail {
+        color: Vec4::new(uv.x, uv.y, 0.0, 1.0),
+        ..CornerDetail::default()
+    });
+    for settings in every_way(studio()) {
+        let picture = picture(&gradient, &settings, 0.0);
+        for place in PLACES {
+            let middle = place.map(|part| ((part * SIDE as f32).floor() + 0.5) / SIDE as f32);
+            let expected = [srgb(middle[0]), srgb(middle[1]), 0];
+            assert_near(at(&picture, place), expected, 1, "linear between corners");
+        }
+    }
+}
+
+#[test]
+fn a_mask_leaves_out_where_alpha_is_below_the_cutoff() {
+    let alphas = image([2, 1], &[[255, 255, 255, 100], [255, 255, 255, 180]]);
+    let background = [10, 20, 30];
+    for (cutoff, alpha, seen) in [(0.5, 1.0, [false, true]), (0.3, 1.0, [true; 2]), (0.5, 0.6, [false; 2])] {
+        let mut leaf = material([0.0, 0.5, 0.0], Look { alpha: Alpha::Mask(cutoff), unlit: true, ..Look::default() });
+        leaf.base_color[3] = alpha;
+        leaf.texture = Some(alphas.clone());
+        leaf.sampling = map(alphas.clone(), MapUv::Own).sampling;
+        let mesh = square(Vec3::Z, leaf);
+        for settings in every_way(studio()) {
+            let picture = picture(&mesh, &Settings { background: Some(background), ..settings }, 0.0);
+            for (place, is_seen) in [[0.2, 0.45], [0.9, 0.6]].into_iter().zip(seen) {
+                let expected = if is_seen { [0, 188, 0] } else { background };
+                assert_near(at(&picture, place), expected, 1, &format!("cutoff {cutoff} with {settings:?}"));
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_emitted_is_exposed_and_what_is_unlit_is_shown_as_it_is() {
+    let glowing =
+        square(Vec3::Z, material([0.0; 3], Look { emissive: [0.1, 0.2, 0.05], specular: 0.0, ..Look::default() }));
+    let unlit = square(Vec3::Z, material([0.1, 0.2, 0.05], Look { unlit: true, ..Look::default() }));
+    for exposure in [0.0, 1.0, -2.0] {
+        let settings = Settings { exposure, ..studio() };
+        let expected = [0.1, 0.2, 0.05].map(|light: f32| srgb(light * exposure.exp2()));
+        assert_near(at(&picture(&glowing, &settings, 0.0), PLACES[0]), expected, 1, "emitted");
+        let neutral = Settings { tone_curve: ToneCurve::Neutral, ..settings };
+        for settings in [settings, neutral] {
+            let expected = [0.1, 0.2, 0.05].map(srgb);
+            assert_near(at(&picture(&unlit, &settings, 0.0), PLACES[0]), expected, 1, "unlit");
+        }
+    }
+}
+
+#[test]
+fn the_light_turns_with_its_rotation_alone() {
+    let tilted = |turn: f32| {
+        let normal = glam::Quat::from_rotation_y(turn.to_radians()) * vec3(0.3, 0.5, 0.8).normalize();
+        square(normal, material([0.8; 3], Look { specular: 0.0, ..Look::default() }))
+    };
+    let turned = picture(&tilted(40.0), &Settings { light_rotation: 40.0, ..studio() }, 0.0);
+    assert_near(at(&turned, PLACES[0]), at(&picture(&tilted(0.0), &studio(), 0.0), PLACES[0]), 1, "both are turned");
+    let all_round = picture(&tilted(0.0), &Settings { light_rotation: 360.0, ..studio() }, 0.0);
+    assert_near(at(&all_round, PLACES[0]), at(&picture(&tilted(0.0), &studio(), 0.0), PLACES[0]), 1, "once around");
+}
+
+/// Balls side by side, one for each of these materials, in rows of `across`. Texture coordinates are those of the shape.
+fn balls(materials: Vec<Material>, across: usize) -> Mesh {
+    let ball = Shape::Icosphere.build();
+    let mut builder = MeshBuilder::new();
+    for (index, material) in materials.into_iter().enumerate() {
+        let material = builder.material(material);
+        let offset = vec3((index % across) as f32, -((index / across) as f32), 0.0) * 2.2;
+        for triangle in ball.triangles.iter() {
+            let corner = |corner: u32| {
+                let own = &ball.corners[corner as usize];
+                InputCorner { position: own.position + offset, normal: Some(own.normal), uv: own.uv }
+            };
+            builder.triangle(material, triangle.map(corner));
+        }
+    }
+    builder.finish("balls".to_owned(), &Progress::default()).expect("nobody cancels")
+}
+
+fn of_picture(tone_curve: ToneCurve) -> Settings {
+    let tessellation = Tessellation { surface: Surface::PnAen, factor: 6.0, ..Tessellation::default() };
+    Settings { lighting: Lighting::Studio, tone_curve, ..Settings::from(tessellation) }
+}
+
+#[test]
+fn white_balls_cannot_be_told_from_an_even_light() {
+    let gpu = &engine().gpu;
+    // Here a step of a picture's bytes is 0.9 %.
+    let [light, ..] = linear([250; 3]);
+    let mut engine: Engine = engine().clone();
+    let environment = Environment::uniform(gpu, [light; 3]).expect("a device");
+    engine.renderer = Arc::new(Renderer::lit_by(gpu, environment));
+    let metal = |roughness| material([1.0; 3], Look { metallic: 1.0, roughness, ..Look::default() });
+    let matte = |roughness| material([1.0; 3], Look { roughness, ..Look::default() });
+    let materials = [0.0, 0.25, 0.5, 0.75, 1.0].into_iter().flat_map(|roughness| [metal(roughness), matte(roughness)]);
+    let mut scene = scene_of(balls(materials.collect(), 5), 0.0);
+    let target = Target::new(gpu, [320, 160]).expect("a small picture");
+    let camera = Camera::framing(&scene.bounds, target.viewport());
+    let settings = Settings { background: Some([srgb(light); 3]), ..of_picture(ToneCurve::None) };
+    engine.draw(&mut scene, &target, &camera, &settings, &mut Timing::Off).expect("a draw");
+    let picture = target.read(gpu).expect("a readback");
+    let farthest = picture.pixels().flat_map(|pixel| linear([pixel.0[0], pixel.0[1], pixel.0[2]]));
+    let farthest = farthest.map(|value| (value / light - 1.0).abs()).fold(0.0, f32::max);
+    assert!(farthest < 0.01, "{farthest}");
+}
+
+/// Bumps, as a normal map.
+fn bumps() -> Arc<Texture> {
+    const SIZE: u32 = 256;
+    let texel = |index: u32| {
+        let turns = |at: u32, bumps: f32| std::f32::consts::TAU * bumps * (at as f32 + 0.5) / SIZE as f32;
+        let (x, y) = (turns(index % SIZE, 16.0), turns(index / SIZE, 8.0));
+        let normal = vec3(-0.8 * x.cos() * y.sin(), 0.8 * x.sin() * y.cos(), 1.0).normalize();
+        let [r, g, b] = normal.to_array().map(|part| (127.5 + 127.5 * part).round() as u8);
+        [r, g, b, 255]
+    };
+    image([SIZE; 2], &(0..SIZE * SIZE).map(texel).collect::<Vec<_>>())
+}
+
+/// The mesh with the tangents that its texture coordinates have.
+fn with_tangents(mut mesh: Mesh) -> Mesh {
+    let mut details = vec![CornerDetail::default(); mesh.corners.len()];
+    for triangle in mesh.triangles.iter() {
+        let [a, b, c] = triangle.map(|corner| mesh.corners[corner as usize]);
+        let [ab, ac] = [b.uv - a.uv, c.uv - a.uv];
+        let tangent = ((b.position - a.position) * ac.y - (c.position - a.position) * ab.y) * ab.perp_dot(ac).signum();
+        triangle.iter().for_each(|&corner| details[corner as usize].tangent += tangent.normalize_or_zero());
+        triangle.iter().for_each(|&corner| details[corner as usize].bitangent_sign = -ab.perp_dot(ac).signum());
+    }
+    mesh.details = Some(Arc::new(details));
+    mesh
+}
+
+#[test]
+fn materials_look_as_they_did() {
+    let row = |metallic, color| {
+        let look = move |roughness| Look { metallic, roughness, ..Look::default() };
+        [0.0, 0.25, 0.5, 0.75, 1.0].map(|roughness| material(color, look(roughness)))
+    };
+    let spheres =
+        balls([row(1.0, [0.95, 0.93, 0.88]), row(1.0, [1.0, 0.77, 0.34]), row(0.0, [0.8, 0.1, 0.1])].concat(), 5);
+    let coat = |clearcoat, clearcoat_roughness| {
+        let look = Look { metallic: 0.6, roughness: 0.6, clearcoat, clearcoat_roughness, ..Look::default() };
+        material([0.1, 0.2, 0.7], look)
+    };
+    let coats = balls(vec![coat(0.0, 0.0), coat(1.0, 0.0), coat(1.0, 0.4)], 3);
+    let mut torus = Shape::Torus.build();
+    for own in &mut torus.materials {
+        own.base_color = [0.4, 0.4, 0.45, 1.0];
+        let lamps = image([2, 2], &[[255, 120, 0, 255], [0, 0, 0, 255], [0, 0, 0, 255], [0, 0, 0, 255]]);
+        let look = look_with(Slot::Emissive, map(lamps, MapUv::Own), Look { emissive: [2.0; 3], ..glossy() });
+        own.look = look_with(Slot::Normal, Map { sampling: Sampling::default(), ..map(bumps(), MapUv::Own) }, look);
+    }
+    let pictures = [("spheres", spheres), ("coats", coats), ("maps", with_tangents(torus))];
+    let pictures = pictures.into_iter().map(|(name, mesh)| {
+        let mut scene = scene_of(mesh, 0.0);
+        let target = Target::new(&engine().gpu, [320, 200]).expect("a small picture");
+        let camera = Camera { azimuth: 10.0, elevation: 15.0, ..Camera::framing(&scene.bounds, target.viewport()) };
+        (format!("material-{name}"), seen(&mut scene, &target, &of_picture(ToneCurve::Neutral), &camera))
+    });
+    assert_eq!(differing(pictures.collect()), Vec::<String>::new());
+}
