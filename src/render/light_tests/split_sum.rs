@@ -98,7 +98,7 @@ fn a_metal_sphere_is_near_its_integral() {
     assert!(found.iter().all(|&(_, off)| off < 0.07), "{found:?}");
 }
 
-/// A matte white sphere: nine harmonics against the integral, 2.0 %.
+/// A matte white sphere: nine harmonics against the integral, 0.9 %.
 #[test]
 fn a_matte_sphere_is_near_its_integral() {
     let studio = Studio::new();
