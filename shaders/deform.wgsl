@@ -46,12 +46,10 @@ fn deform_position(matrix: JointMatrix, position: vec3<f32>) -> vec3<f32> {
 
 // Transforms a unit normal by the cofactor matrix. If the result has no direction, returns `normal` itself.
 fn deform_normal(matrix: JointMatrix, normal: vec3<f32>) -> vec3<f32> {
-    // Scale the matrix, so that no product of two entries overflows or underflows.
-    let largest_xy = max(largest_component(matrix.x.xyz), largest_component(matrix.y.xyz));
-    let scale = 1.0 / max(largest_xy, max(largest_component(matrix.z.xyz), 1e-30));
-    let x = matrix.x.xyz * scale;
-    let y = matrix.y.xyz * scale;
-    let z = matrix.z.xyz * scale;
+    let rows = scaled_rows(matrix);
+    let x = rows[0];
+    let y = rows[1];
+    let z = rows[2];
     let turned = vec3<f32>(dot(cross(y, z), normal), dot(cross(z, x), normal), dot(cross(x, y), normal));
     return scaled_unit_or(turned * select(1.0, -1.0, dot(x, cross(y, z)) < 0.0), normal);
 }
@@ -59,15 +57,20 @@ fn deform_normal(matrix: JointMatrix, normal: vec3<f32>) -> vec3<f32> {
 // Transforms a unit tangent, whose w is the sign of the bitangent: a matrix that mirrors turns that around. If the result has
 // no direction, returns the tangent itself.
 fn deform_tangent(matrix: JointMatrix, tangent: vec4<f32>) -> vec4<f32> {
-    // Scale the matrix, as above.
-    let largest_xy = max(largest_component(matrix.x.xyz), largest_component(matrix.y.xyz));
-    let scale = 1.0 / max(largest_xy, max(largest_component(matrix.z.xyz), 1e-30));
-    let x = matrix.x.xyz * scale;
-    let y = matrix.y.xyz * scale;
-    let z = matrix.z.xyz * scale;
+    let rows = scaled_rows(matrix);
+    let x = rows[0];
+    let y = rows[1];
+    let z = rows[2];
     let turned = vec3<f32>(dot(x, tangent.xyz), dot(y, tangent.xyz), dot(z, tangent.xyz));
     let sign = tangent.w * select(1.0, -1.0, dot(x, cross(y, z)) < 0.0);
     return vec4<f32>(scaled_unit_or(turned, tangent.xyz), sign);
+}
+
+// Returns the rows of the linear part, scaled so that no product of two entries overflows or underflows.
+fn scaled_rows(matrix: JointMatrix) -> array<vec3<f32>, 3> {
+    let largest_xy = max(largest_component(matrix.x.xyz), largest_component(matrix.y.xyz));
+    let scale = 1.0 / max(largest_xy, max(largest_component(matrix.z.xyz), 1e-30));
+    return array<vec3<f32>, 3>(matrix.x.xyz * scale, matrix.y.xyz * scale, matrix.z.xyz * scale);
 }
 
 // Returns `vector` at unit length, or `otherwise` if it is zero. No square overflows or underflows.

@@ -31,10 +31,7 @@ pub(super) fn deform_position(matrix: &JointMatrix, position: Vec3) -> Vec3 {
 ///
 /// The cofactor matrix is the inverse transpose times the determinant. Unlike the inverse it always exists.
 pub(super) fn deform_normal(matrix: &JointMatrix, normal: Vec3) -> Vec3 {
-    let rows = matrix.rows().map(|row| Vec3::from_slice(&row));
-    // Scale the matrix, so that no product of two entries overflows or underflows.
-    let scale = 1.0 / rows.map(largest_component).into_iter().fold(1e-30, f32::max);
-    let [x, y, z] = rows.map(|row| row * scale);
+    let [x, y, z] = scaled_rows(matrix);
     let turned = vec3(y.cross(z).dot(normal), z.cross(x).dot(normal), x.cross(y).dot(normal));
     scaled_unit_or(if x.dot(y.cross(z)) < 0.0 { -turned } else { turned }, normal)
 }
@@ -42,14 +39,18 @@ pub(super) fn deform_normal(matrix: &JointMatrix, normal: Vec3) -> Vec3 {
 /// Transforms a unit tangent, whose last component is the sign of the bitangent: a matrix that mirrors turns that around. If
 /// the result has no direction, returns the tangent itself.
 pub(super) fn deform_tangent(matrix: &JointMatrix, tangent: Vec4) -> Vec4 {
-    let rows = matrix.rows().map(|row| Vec3::from_slice(&row));
-    // Scale the matrix, as above.
-    let scale = 1.0 / rows.map(largest_component).into_iter().fold(1e-30, f32::max);
-    let [x, y, z] = rows.map(|row| row * scale);
+    let [x, y, z] = scaled_rows(matrix);
     let own = tangent.truncate();
     let turned = vec3(x.dot(own), y.dot(own), z.dot(own));
     let sign = if x.dot(y.cross(z)) < 0.0 { -tangent.w } else { tangent.w };
     scaled_unit_or(turned, own).extend(sign)
+}
+
+/// Returns the rows of the linear part, scaled so that no product of two entries overflows or underflows.
+fn scaled_rows(matrix: &JointMatrix) -> [Vec3; 3] {
+    let rows = matrix.rows().map(|row| Vec3::from_slice(&row));
+    let scale = 1.0 / rows.map(largest_component).into_iter().fold(1e-30, f32::max);
+    rows.map(|row| row * scale)
 }
 
 /// Returns `vector` at unit length, or `otherwise` if it is zero. No square overflows or underflows.

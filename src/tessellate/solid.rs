@@ -3,9 +3,9 @@
 use glam::{Mat4, Vec3};
 
 use super::{Displacement, Edges, Inputs, Surface, beyond_near, side_control_points, straight_control_point};
-use crate::mesh::{EdgeKind, Mesh, Topology};
+use crate::mesh::{Alpha, EdgeKind, Material, Mesh, Topology};
 
-/// A closed mesh whose parts are all wound outward and whose materials are single-sided.
+/// A closed mesh whose parts are all wound outward and whose materials are single-sided, without places where they have no surface.
 ///
 /// A line of sight that starts outside enters the mesh before it leaves it, so each back face is hidden by a front
 /// face. (If a mesh intersects itself inside out, a back face may come first. Leaving it out then shows what is behind
@@ -24,8 +24,10 @@ pub(crate) struct Solid {
 impl Solid {
     /// Returns the mesh as a solid, or `None` if it isn't one.
     pub(crate) fn find(mesh: &Mesh, topology: &Topology) -> Option<Self> {
-        let single_sided = mesh.materials.iter().all(|material| !material.double_sided);
-        if !single_sided || !topology.is_closed_and_oriented() || topology.part_volumes().any(|volume| volume <= 0.0) {
+        // Backs can be seen through the holes of a mask.
+        let hides = |material: &Material| !material.double_sided && !matches!(material.look.alpha, Alpha::Mask(_));
+        let are_hidden = mesh.materials.iter().all(hides);
+        if !are_hidden || !topology.is_closed_and_oriented() || topology.part_volumes().any(|volume| volume <= 0.0) {
             return None;
         }
         let bounds = mesh.bounds();
@@ -102,6 +104,9 @@ mod tests {
             let mut double = mesh.clone();
             double.materials[0].double_sided = true;
             assert_eq!(solid(&double), None, "{shape:?} with a double-sided material");
+            let mut pierced = mesh.clone();
+            pierced.materials[0].look.alpha = Alpha::Mask(0.5);
+            assert_eq!(solid(&pierced), None, "{shape:?} with holes in its material");
         }
     }
 

@@ -22,9 +22,9 @@ const SIDE: u32 = 400;
 
 /// A square from -1 to 1 in the plane z = 0, which faces +z. All its corners have one normal, and u and v run from 0 to `uv`, v
 /// downwards.
-fn square(normal: Vec3, uv: Vec2) -> Mesh {
+pub(super) fn square_of(material: Material, normal: Vec3, uv: Vec2) -> Mesh {
     let mut builder = MeshBuilder::new();
-    let material = builder.material(Material::plain("square", [0.6, 0.6, 0.6, 1.0]));
+    let material = builder.material(material);
     let corner = |x: f32, y: f32| InputCorner {
         position: vec3(x, y, 0.0),
         normal: Some(normal),
@@ -34,6 +34,11 @@ fn square(normal: Vec3, uv: Vec2) -> Mesh {
     builder.triangle(material, [a, b, c]);
     builder.triangle(material, [a, c, d]);
     builder.finish("square".to_owned(), &Progress::default()).expect("nobody cancels")
+}
+
+/// A grey square.
+fn square(normal: Vec3, uv: Vec2) -> Mesh {
+    square_of(Material::plain("square", [0.6, 0.6, 0.6, 1.0]), normal, uv)
 }
 
 /// Flat patches in these colours.
@@ -47,14 +52,18 @@ fn flat(colors: Colors) -> Settings {
     Settings { overlays: Overlays { colors, ..Overlays::default() }, ..Settings::from(tessellation) }
 }
 
-/// A square's picture from the front, or from behind: it fills the view. A px has `2 / SIDE` object units.
-fn drawn(mesh: &Mesh, settings: &Settings, azimuth: f32) -> RgbaImage {
+/// A square's picture from the front, or from behind: it fills the view. A px has `2 / side` object units.
+pub(super) fn square_picture(mesh: &Mesh, settings: &Settings, azimuth: f32, side: u32) -> RgbaImage {
     let mut scene = scene_of(mesh.clone(), 0.0);
-    let target = Target::new(&engine().gpu, [SIDE; 2]).expect("a small picture");
+    let target = Target::new(&engine().gpu, [side; 2]).expect("a small picture");
     let framed = Camera::framing(&scene.bounds, target.viewport());
-    let distance = framed.distance * 2.0 / (SIDE as f32 * framed.units_per_pixel(SIDE as f32));
+    let distance = framed.distance * 2.0 / (side as f32 * framed.units_per_pixel(side as f32));
     let camera = Camera { azimuth, elevation: 0.0, orthographic: true, distance, ..framed };
     seen(&mut scene, &target, settings, &camera)
+}
+
+fn drawn(mesh: &Mesh, settings: &Settings, azimuth: f32) -> RgbaImage {
+    square_picture(mesh, settings, azimuth, SIDE)
 }
 
 fn middle(picture: &RgbaImage) -> [u8; 3] {

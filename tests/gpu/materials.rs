@@ -16,6 +16,7 @@ use pnaen::settings::{Lighting, NormalsAt, Overlays, Settings, ToneCurve};
 use pnaen::tessellate::{Surface, Tessellation};
 
 use crate::gpu_tests::engine;
+use crate::gpu_tests::looks::{square_of, square_picture};
 use crate::gpu_tests::pictures::differing;
 use crate::gpu_tests::stability::{scene_of, seen};
 
@@ -43,17 +44,7 @@ fn every_way(settings: Settings) -> [Settings; 5] {
 /// A square from -1 to 1 in the plane z = 0, which faces +z. All its corners have one normal, and u and v run from 0 to 1, v
 /// downwards.
 fn square(normal: Vec3, material: Material) -> Mesh {
-    let mut builder = MeshBuilder::new();
-    let material = builder.material(material);
-    let corner = |x: f32, y: f32| InputCorner {
-        position: vec3(x, y, 0.0),
-        normal: Some(normal),
-        uv: vec2(0.5 + 0.5 * x, 0.5 - 0.5 * y),
-    };
-    let [a, b, c, d] = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
-    builder.triangle(material, [a, b, c]);
-    builder.triangle(material, [a, c, d]);
-    builder.finish("square".to_owned(), &Progress::default()).expect("nobody cancels")
+    square_of(material, normal, Vec2::ONE)
 }
 
 /// The mesh with details of every corner, made of its texture coordinates.
@@ -64,12 +55,7 @@ fn with_details(mut mesh: Mesh, detail: impl Fn(Vec2) -> CornerDetail) -> Mesh {
 
 /// A picture of a square from the front, or from behind: it fills the view.
 fn picture(mesh: &Mesh, settings: &Settings, azimuth: f32) -> RgbaImage {
-    let mut scene = scene_of(mesh.clone(), 0.0);
-    let target = Target::new(&engine().gpu, [SIDE; 2]).expect("a small picture");
-    let framed = Camera::framing(&scene.bounds, target.viewport());
-    let distance = framed.distance * 2.0 / (SIDE as f32 * framed.units_per_pixel(SIDE as f32));
-    let camera = Camera { azimuth, elevation: 0.0, orthographic: true, distance, ..framed };
-    seen(&mut scene, &target, settings, &camera)
+    square_picture(mesh, settings, azimuth, SIDE)
 }
 
 /// The colour at a place of a square's texture coordinates.
