@@ -20,10 +20,11 @@ use crate::view::ScreenView;
 const LATE_MS: f64 = 25.0;
 /// A camera that hasn't moved for so long rests.
 const REST: Duration = Duration::from_millis(150);
-/// About the number of triangles that a preview has, on a software driver and on graphics cards.
-const TRIANGLES_IN_SOFTWARE: f32 = 40_000.0;
+/// About the number of triangles that a preview has, on a software driver and on graphics cards. A software driver shades blocks
+/// of 4 x 4 px, of which each triangle costs one at least.
+const TRIANGLES_IN_SOFTWARE: f32 = 6_000.0;
 const TRIANGLES: f32 = 2_000_000.0;
-/// A mesh with so many times as many patches as a preview has triangles gets a mesh of fewer triangles in its place.
+/// A mesh with more than so many times as many patches gets a mesh of that many triangles in its place.
 const LARGE: f32 = 2.0;
 /// The largest factor of a preview. More can't be seen at its resolution.
 const LARGEST_FACTOR: f32 = 8.0;
@@ -232,7 +233,7 @@ fn shape_of(
     }
     if patches > LARGE * most
         && document.moment.is_none()
-        && document.stand_in.is_made(context, engine, &document.loaded, most as usize)
+        && document.stand_in.is_made(context, engine, &document.loaded, (LARGE * most) as usize)
     {
         return Shape::StandIn;
     }
