@@ -4,7 +4,7 @@ use egui::RichText;
 
 use crate::app::App;
 use crate::app::text::{counted, grouped, mebibytes, short};
-use crate::app::widgets::{rgb, status};
+use crate::app::widgets::{legible, rgb, status, text_width};
 use crate::gpu::DRAWING;
 use crate::render::layout::CRACK_COLOR;
 
@@ -13,7 +13,8 @@ impl App {
         ui.horizontal(|ui| {
             ui.set_min_height(22.0);
             let Some(document) = &self.document else {
-                ui.weak("nothing is open");
+                let text = if self.jobs.load.is_some() { "" } else { "nothing is open" };
+                ui.weak(text);
                 return;
             };
             let scene = &document.scene;
@@ -29,20 +30,20 @@ impl App {
             let before = (document.loaded.mesh.triangles.len() as u64, document.loaded.mesh.corners.len() as u64);
             status(
                 ui,
-                170.0,
+                202.0,
                 format!("{} to {triangles}", grouped(before.0)),
                 "Triangles before and after tessellation.",
             );
             self.status_of_cracks(ui);
             status(
                 ui,
-                120.0,
+                text_width(ui, &format!("{0} of {0} patches", grouped(patches))).max(120.0),
                 format!("{} of {} patches", grouped(drawn), grouped(patches)),
                 "Patches that are drawn, out of all. The others are out of view or face away.",
             );
             status(
                 ui,
-                160.0,
+                190.0,
                 format!("{} to {} vertices", grouped(before.1), vertices),
                 "Vertices before and after tessellation.",
             );
@@ -95,7 +96,7 @@ impl App {
             Some(cracks) => {
                 let (count, px) = (grouped(cracks.edges.len() as u64), short(self.viewport.picture.gap_px(cracks)));
                 let text = RichText::new(format!("cracks {count}, {px} px"));
-                status(ui, WIDTH, text.color(rgb(CRACK_COLOR)).strong(), hover);
+                status(ui, WIDTH, text.color(legible(ui, rgb(CRACK_COLOR))).strong(), hover);
             }
         }
     }

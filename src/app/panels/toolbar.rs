@@ -87,7 +87,9 @@ impl App {
 /// A button that stays pressed while something is on, with a name for screen readers that says more than its label. Returns
 /// whether it was clicked.
 fn toggle(ui: &mut egui::Ui, is_on: bool, [label, name]: [&str; 2], hover: &str) -> bool {
-    let response = ui.add(egui::Button::selectable(is_on, label)).on_hover_text(hover);
+    // With a frame also while it is off: without one it would look like a mere word beside the buttons.
+    let button = egui::Button::selectable(is_on, label).frame_when_inactive(true);
+    let response = ui.add(button).on_hover_text(hover);
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, is_on, name));
     response.clicked()
 }
