@@ -6,7 +6,10 @@ pub(super) fn style(context: &egui::Context) {
     context.options_mut(|options| options.zoom_with_keyboard = false);
     context.all_styles_mut(|style| {
         style.spacing.item_spacing = egui::vec2(8.0, 6.0);
+        style.spacing.slider_width = 80.0;
+        // A slider with its number is as wide as a combo box.
         style.spacing.interact_size.x = 58.0;
+        style.spacing.combo_width = 146.0;
         // A scroll bar lies beside what it scrolls, not over it, and shows from the start that there is more.
         style.spacing.scroll.floating_allocated_width = style.spacing.scroll.bar_width;
         style.spacing.scroll.dormant_handle_opacity = 0.5;

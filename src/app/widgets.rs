@@ -141,6 +141,12 @@ fn next_row(ui: &egui::Ui, index: usize, count: usize) -> Option<usize> {
 /// Width and height of a swatch, in points.
 pub(super) const SWATCH: egui::Vec2 = egui::vec2(14.0, 10.0);
 
+/// A button that stays pressed while something is on. It has a frame also while that is off: without one it would look like a
+/// mere word beside other buttons.
+pub(super) fn switch_button(is_on: bool, label: &str) -> egui::Button<'_> {
+    egui::Button::selectable(is_on, label).frame_when_inactive(true)
+}
+
 /// The width of a text in the usual font, in points.
 pub(super) fn text_width(ui: &egui::Ui, text: &str) -> f32 {
     text_width_in(ui, text, egui::TextStyle::Body.resolve(ui.style()))

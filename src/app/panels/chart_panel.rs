@@ -6,7 +6,7 @@ use super::chart_diagram::{Diagram, Inks, Spot, line, marker};
 use crate::app::App;
 use crate::app::jobs::chart_job::Charted;
 use crate::app::text::{grouped, short};
-use crate::app::widgets::{dense, list, text_width, unclicked};
+use crate::app::widgets::{dense, list, switch_button, text_width, unclicked};
 use crate::chart::{Cost, LodKind, MethodStyle, Plan, Probe, Row, Setting, dash, method_styles};
 use crate::settings::Choice;
 use crate::tessellate::Surface;
@@ -82,10 +82,15 @@ impl App {
              {most} triangles are left out."
         ));
         ui.separator();
-        let cost = &mut self.panels.chart.cost;
-        ui.selectable_value(cost, Cost::Ms, "Time").on_hover_text("Error against the time to tessellate and draw.");
-        let hover = "Error against the number of triangles.";
-        ui.selectable_value(cost, Cost::Triangles, "Triangles").on_hover_text(hover);
+        for (cost, name, hover) in [
+            (Cost::Ms, "Time", "Error against the time to tessellate and draw."),
+            (Cost::Triangles, "Triangles", "Error against the number of triangles."),
+        ] {
+            let is_shown = self.panels.chart.cost == cost;
+            if ui.add(switch_button(is_shown, name)).on_hover_text(hover).clicked() {
+                self.panels.chart.cost = cost;
+            }
+        }
         ui.separator();
         self.methods_menu(ui);
         let has_rows = !self.chart_rows().is_empty() && self.panels.chart.saving.is_none();

@@ -8,6 +8,10 @@ use crate::app::widgets::{legible, rgb, status, text_width};
 use crate::gpu::DRAWING;
 use crate::render::layout::CRACK_COLOR;
 
+/// The triangles and vertices that a patch has at most: all of its factors are 64.
+const MOST_TRIANGLES: u64 = 64 * 64;
+const MOST_VERTICES: u64 = 65 * 66 / 2;
+
 impl App {
     pub(in crate::app) fn status_line(&mut self, ui: &mut egui::Ui) {
         ui.horizontal(|ui| {
@@ -28,22 +32,26 @@ impl App {
             let patches = document.loaded.topology.patches.len() as u64;
             let drawn = patches - u64::from(self.jobs.measure.found().map_or(0, |found| found.culled.total()));
             let before = (document.loaded.mesh.triangles.len() as u64, document.loaded.mesh.corners.len() as u64);
+            // A field has the width of the largest numbers that this mesh can have.
+            let widest = |ui: &egui::Ui, text: String| text_width(ui, &text).max(120.0);
+            let most = grouped(patches * MOST_TRIANGLES);
             status(
                 ui,
-                202.0,
+                widest(ui, format!("{} to {most} triangles", grouped(before.0))),
                 format!("{} to {triangles}", grouped(before.0)),
                 "Triangles before and after tessellation.",
             );
             self.status_of_cracks(ui);
             status(
                 ui,
-                text_width(ui, &format!("{0} of {0} patches", grouped(patches))).max(120.0),
+                widest(ui, format!("{0} of {0} patches", grouped(patches))),
                 format!("{} of {} patches", grouped(drawn), grouped(patches)),
                 "Patches that are drawn, out of all. The others are out of view or face away.",
             );
+            let most = grouped(patches * MOST_VERTICES);
             status(
                 ui,
-                190.0,
+                widest(ui, format!("{} to {most} vertices", grouped(before.1))),
                 format!("{} to {} vertices", grouped(before.1), vertices),
                 "Vertices before and after tessellation.",
             );
@@ -55,8 +63,12 @@ impl App {
             );
             let (ms, hover) = self.times();
             status(ui, 112.0, ms, &hover);
-            ui.add(egui::Label::new(RichText::new(&self.engine.gpu.info.name).weak()).truncate())
-                .on_hover_text(format!("Graphics adapter: {}.", self.engine.gpu.info.name));
+            let adapter = &self.engine.gpu.info.name;
+            // A few letters of its name would say nothing.
+            if ui.available_width() > 0.5 * text_width(ui, adapter) {
+                ui.add(egui::Label::new(RichText::new(adapter).weak()).truncate())
+                    .on_hover_text(format!("Graphics adapter: {adapter}."));
+            }
         });
     }
 
