@@ -89,9 +89,6 @@ fn error(row: &Row) -> f64 {
 #[test]
 fn the_chart_is_measured_and_a_setting_of_its_front_is_applied() {
     let mut harness = charting(plan(), effort());
-    // A narrow window.
-    harness.set_size(egui::vec2(1080.0, 960.0));
-    settle(&mut harness);
     assert!(harness.state().chart_rows().is_empty(), "measuring doesn't start by itself");
     click(&mut harness, "Measure");
     assert_eq!(harness.state().charting().map(|(_, all)| all), Some(11), "ten settings and the window's own");
