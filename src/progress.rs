@@ -2,7 +2,7 @@
 //! for it.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU32, Ordering};
 
 /// The error of a job that was cancelled. It has stopped, and nothing was changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -17,6 +17,8 @@ pub enum Stage {
     Mesh,
     /// Height images are being read.
     Heights,
+    /// The mesh is being brought to the device, and its shaders are compiled.
+    Device,
 }
 
 /// A handle on one job. Clones share their state: the code that waits keeps one, and the job gets another.
@@ -38,7 +40,8 @@ struct Shared {
     cancelled: AtomicBool,
     /// The bits of an f32, since there is no atomic float.
     fraction: AtomicU32,
-    reads_heights: AtomicBool,
+    /// A [`Stage`].
+    stage: AtomicU8,
 }
 
 impl Progress {
@@ -79,12 +82,13 @@ impl Progress {
 
     /// Reports which part of a load is running from now on.
     pub fn enter(&self, stage: Stage) {
-        self.shared.reads_heights.store(stage == Stage::Heights, Ordering::Relaxed);
+        self.shared.stage.store(stage as u8, Ordering::Relaxed);
     }
 
     /// Returns which part of a load is running.
     pub fn stage(&self) -> Stage {
-        if self.shared.reads_heights.load(Ordering::Relaxed) { Stage::Heights } else { Stage::Mesh }
+        let stage = self.shared.stage.load(Ordering::Relaxed);
+        [Stage::Heights, Stage::Device].into_iter().find(|one| *one as u8 == stage).unwrap_or_default()
     }
 
     /// Returns how much of the job is done, 0 to 1.

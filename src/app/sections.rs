@@ -134,14 +134,18 @@ fn triangle(place: Rect, is_open: bool, color: Color32) -> Shape {
     Shape::convex_polygon(points, color, Stroke::NONE)
 }
 
-/// Shows contents in the width that is left, and never takes more: whatever is wider is cut off. So no number that grows can
-/// move the picture.
-pub(in crate::app) fn in_fixed_width(ui: &mut egui::Ui, show: impl FnOnce(&mut egui::Ui)) {
-    let room = ui.available_rect_before_wrap();
-    let mut inside = ui.new_child(egui::UiBuilder::new().max_rect(room));
-    let clip = ui.clip_rect();
-    inside.set_clip_rect(clip.intersect(Rect::from_x_y_ranges(room.x_range().expand(2.0), clip.y_range())));
-    show(&mut inside);
-    let used = Rect::from_min_size(room.min, vec2(room.width(), inside.min_rect().height()));
-    ui.allocate_rect(used, Sense::hover());
+/// Shows the contents of a panel, which scroll. They have the width that a scroll bar leaves, also where there is none, and never
+/// take more: whatever is wider is cut off. So neither a section that opens nor a number that grows can move anything sideways.
+pub(in crate::app) fn scrolling_column(ui: &mut egui::Ui, show: impl FnOnce(&mut egui::Ui)) {
+    let width = ui.available_width() - ui.spacing().scroll.allocated_width();
+    egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        let room = ui.available_rect_before_wrap();
+        let room = room.with_max_x(room.left() + width);
+        let mut inside = ui.new_child(egui::UiBuilder::new().max_rect(room));
+        let clip = ui.clip_rect();
+        inside.set_clip_rect(clip.intersect(Rect::from_x_y_ranges(room.x_range().expand(2.0), clip.y_range())));
+        show(&mut inside);
+        let used = Rect::from_min_size(room.min, vec2(room.width(), inside.min_rect().height()));
+        ui.allocate_rect(used, Sense::hover());
+    });
 }

@@ -9,9 +9,10 @@ pub(super) fn style(context: &egui::Context) {
         style.spacing.slider_width = 80.0;
         // A slider with its number is as wide as a combo box.
         style.spacing.interact_size.x = 58.0;
-        // A scroll bar lies beside what it scrolls, not over it.
-        style.spacing.scroll.floating_allocated_width = style.spacing.scroll.bar_width;
         style.spacing.combo_width = 146.0;
+        // A scroll bar lies beside what it scrolls, not over it, and shows from the start that there is more.
+        style.spacing.scroll.floating_allocated_width = style.spacing.scroll.bar_width;
+        style.spacing.scroll.dormant_handle_opacity = 0.5;
         style.interaction.tooltip_delay = 0.4;
     });
     // egui's own colour is too dim on black.

@@ -60,10 +60,15 @@ pub(super) fn number(ui: &mut egui::Ui, text: &str) {
 /// A row of text in columns that can't be clicked, aligned with rows that can. Headers are weak.
 pub(super) fn columns(ui: &mut egui::Ui, text: &str, is_weak: bool) -> egui::Response {
     let text = RichText::new(text).monospace();
+    unclicked(ui, if is_weak { text.weak() } else { text })
+}
+
+/// A row of text that can't be clicked, aligned with rows that can.
+pub(super) fn unclicked(ui: &mut egui::Ui, text: RichText) -> egui::Response {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 0.0;
         ui.add_space(ui.spacing().button_padding.x);
-        ui.label(if is_weak { text.weak() } else { text })
+        ui.label(text)
     })
     .inner
 }
@@ -136,9 +141,30 @@ fn next_row(ui: &egui::Ui, index: usize, count: usize) -> Option<usize> {
 /// Width and height of a swatch, in points.
 pub(super) const SWATCH: egui::Vec2 = egui::vec2(14.0, 10.0);
 
+/// A button that stays pressed while something is on. It has a frame also while that is off: without one it would look like a
+/// mere word beside other buttons.
+pub(super) fn switch_button(is_on: bool, label: &str) -> egui::Button<'_> {
+    egui::Button::selectable(is_on, label).frame_when_inactive(true)
+}
+
+/// The width of a text in the usual font, in points.
+pub(super) fn text_width(ui: &egui::Ui, text: &str) -> f32 {
+    text_width_in(ui, text, egui::TextStyle::Body.resolve(ui.style()))
+}
+
+/// The width of a text in points.
+pub(super) fn text_width_in(ui: &egui::Ui, text: &str, font: egui::FontId) -> f32 {
+    ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::PLACEHOLDER).size().x
+}
+
 /// An sRGB colour as egui has it.
 pub(super) fn rgb([r, g, b]: [u8; 3]) -> egui::Color32 {
     egui::Color32::from_rgb(r, g, b)
+}
+
+/// A colour of the picture as that of a text: darker in a light theme, on whose panels it would be too pale.
+pub(super) fn legible(ui: &egui::Ui, color: egui::Color32) -> egui::Color32 {
+    if ui.visuals().dark_mode { color } else { color.lerp_to_gamma(egui::Color32::BLACK, 0.3) }
 }
 
 /// A small rectangle of a colour.
@@ -147,7 +173,8 @@ pub(super) fn swatch(ui: &mut egui::Ui, color: [u8; 3]) {
     ui.painter().rect_filled(rect, 2.0, rgb(color));
 }
 
-/// A field of the status line. Its width doesn't depend on its text. Where there is no room for all of it, it is left out.
+/// A field of the status line. Its width doesn't depend on its text: what is longer is cut off, and its hover text has all of it.
+/// Where there is no room for the field, it is left out.
 pub(super) fn status(ui: &mut egui::Ui, width: f32, text: impl Into<egui::WidgetText>, hover: &str) {
     if ui.available_width() < width {
         return;
@@ -155,7 +182,7 @@ pub(super) fn status(ui: &mut egui::Ui, width: f32, text: impl Into<egui::Widget
     let height = ui.spacing().interact_size.y;
     ui.allocate_ui_with_layout(egui::vec2(width, height), egui::Layout::left_to_right(egui::Align::Center), |ui| {
         ui.set_min_width(width);
-        ui.label(text).on_hover_text(hover);
+        ui.add(egui::Label::new(text).truncate()).on_hover_text(hover);
     });
     ui.separator();
 }

@@ -8,6 +8,9 @@ use super::layout::{CRACK_COLOR, FACTOR_COLORS, LOD_CAMERA_COLOR, OUTLINE_COLOR,
 use crate::measure::{CrackedEdge, Measured};
 use crate::mesh::{Bounds, TJunction, Topology};
 
+/// Half the width of the lines of cracked edges, in px. Between two sides that are 3 px apart one still sees the gap.
+const CRACK_HALF_WIDTH: f32 = 0.75;
+
 /// The lines of every side of every cracked edge.
 pub(crate) fn crack_lines(measured: &Measured, topology: &Topology) -> Vec<LineSegment> {
     crack_lines_in(measured, topology, |_| CRACK_COLOR)
@@ -27,7 +30,11 @@ pub(crate) fn crack_lines_in(
         let times = sides.len() as f32;
         for side in &sides {
             let points: Vec<_> = side.positions().collect();
-            let line = |ends: &[Vec3]| LineSegment { times, ..LineSegment::new(ends[0], ends[1], color) };
+            let line = |ends: &[Vec3]| LineSegment {
+                times,
+                half_width: CRACK_HALF_WIDTH,
+                ..LineSegment::new(ends[0], ends[1], color)
+            };
             lines.extend(points.windows(2).map(line));
         }
     }
@@ -64,8 +71,8 @@ pub(crate) fn patch_lines(edges: &[Vec<Vec3>; 3]) -> Vec<LineSegment> {
         let ends = points.windows(2).map(move |ends| LineSegment::new(ends[0], ends[1], color));
         ends.map(|line| LineSegment { half_width, ..line }).collect::<Vec<_>>()
     };
-    let outline = edges.iter().flat_map(|points| edge(points, OUTLINE_COLOR, 4.0));
-    let colored = edges.iter().zip(FACTOR_COLORS).flat_map(|(points, color)| edge(points, color, 2.75));
+    let outline = edges.iter().flat_map(|points| edge(points, OUTLINE_COLOR, 2.75));
+    let colored = edges.iter().zip(FACTOR_COLORS).flat_map(|(points, color)| edge(points, color, 1.75));
     outline.chain(colored).collect()
 }
 

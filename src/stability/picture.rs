@@ -29,6 +29,8 @@ pub(crate) enum PictureError {
 
 /// The width and height of each method's picture, in px.
 const PART: [u32; 2] = [300, 240];
+/// Half the width of cracks' lines, in px: in so small a picture they only say where cracks are.
+const CRACK_HALF_WIDTH: f32 = 2.0;
 /// The pictures in a row.
 const COLUMNS: u32 = 3;
 /// The height of captions in px.
@@ -73,7 +75,8 @@ fn parts(case: &Subject, engine: &Engine) -> Result<Vec<RgbImage>, GpuError> {
         let inputs = settings.inputs(camera.lod_view(viewport, &scene.bounds));
         engine.count(&mut scene, &inputs, &mut Timing::Off)?;
         let (_, posed) = scene.tessellator.posed().deformed();
-        let mut lines: Vec<LineSegment> = crack_lines(&engine.measure(&mut scene)?, &posed);
+        let cracks = crack_lines(&engine.measure(&mut scene)?, &posed).into_iter();
+        let mut lines: Vec<_> = cracks.map(|line| LineSegment { half_width: CRACK_HALF_WIDTH, ..line }).collect();
         lines.extend(t_junction_lines(&topology, &junctions));
         scene.set_lines(&engine.gpu, &lines);
         engine.draw(&mut scene, &target, &camera, &settings, &mut Timing::Off)?;

@@ -11,6 +11,7 @@ use pnaen::engine::Runs;
 use pnaen::load::Source;
 use pnaen::measure::AccuracyOptions;
 use pnaen::mesh::Shape;
+use pnaen::settings::Choice;
 use pnaen::tessellate::{Clip, Surface};
 
 use crate::window_tests::{PATIENCE, choose, click, press, settle, window};
@@ -68,6 +69,19 @@ fn measure(harness: &mut Harness<App>, button: &str) {
     wait(harness, |app| app.charting().is_none());
 }
 
+/// Checks that no name of the legend is broken, no setting in the list is cut off, and errors that are due
+/// to rounding are 0.
+fn legend_and_list_are_whole(harness: &Harness<App>) {
+    for name in ["Flat", "PN-AEN", "Uniform factor", "LOD by error", "Front"] {
+        let height = harness.get_by_role_and_label(Role::Label, name).rect().height();
+        assert!(height < 20.0, "{name} is {height} points high");
+    }
+    let edge = harness.get_by_label("Viewport").rect().right();
+    let rows: Vec<_> = harness.query_all_by_label_contains("Apply ").map(|row| row.rect()).collect();
+    assert!(!rows.is_empty() && rows.iter().all(|row| row.right() < edge - 12.0), "{rows:?} {edge}");
+    assert!(harness.query_by_label_contains("Apply Flat factor 1: 0 %, ").is_some(), "flat triangles are exact");
+}
+
 fn error(row: &Row) -> f64 {
     row.errors.map_or(f64::INFINITY, |errors| errors.largest)
 }
@@ -80,6 +94,7 @@ fn the_chart_is_measured_and_a_setting_of_its_front_is_applied() {
     assert_eq!(harness.state().charting().map(|(_, all)| all), Some(11), "ten settings and the window's own");
     wait(&mut harness, |app| !app.chart_rows().is_empty());
     wait(&mut harness, |app| app.charting().is_none());
+    legend_and_list_are_whole(&harness);
     let rows = harness.state().chart_rows().to_vec();
     assert_eq!(rows.len(), 10);
     assert!(rows.iter().all(|row| row.time.total() > 0.0 && error(row) > 0.0 && row.mesh == "shape:icosahedron"));
@@ -92,7 +107,7 @@ fn the_chart_is_measured_and_a_setting_of_its_front_is_applied() {
     assert_ne!(Setting::of(&before), Some(best));
     harness.get_by_role_and_label(Role::Button, "Triangles").click();
     settle(&mut harness);
-    harness.get_by_label_contains(&format!("Apply {} ({})", best.method, best.label())).click();
+    harness.get_by_label_contains(&format!("Apply {} {best}:", best.method.surface.label())).click();
     settle(&mut harness);
     assert_eq!(*harness.state().settings(), best.applied(&before), "nothing else changes");
     let folder = tempfile::tempdir().expect("a writable temporary folder");
@@ -193,7 +208,7 @@ fn methods_can_be_chosen_and_without_a_reference_surface_errors_are_in_px() {
     }
     press(&mut harness, egui::Key::Escape);
     click(&mut harness, "Methods");
-    for name in ["flat", "LOD by error", "pn"] {
+    for name in ["Flat", "LOD by error", "PN"] {
         harness.get_by_role_and_label(Role::CheckBox, name).click();
         settle(&mut harness);
     }

@@ -47,6 +47,10 @@ fn a_number_that_grows_moves_nothing() {
     choose(&mut harness, "LOD", "Uniform");
     click(&mut harness, "Waste");
     let before = viewport(&harness);
+    let status = |harness: &Harness<App>| {
+        ["of 256 patches", "vertices", "MiB"].map(|text| harness.get_by_label_contains(text).rect().left())
+    };
+    let fields = status(&harness);
     // A million triangles, all of them below 3 px, whose count and share are a long text.
     harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(64.0);
     settle(&mut harness);
@@ -54,6 +58,7 @@ fn a_number_that_grows_moves_nothing() {
     assert!(triangles > 500_000, "{triangles}");
     harness.get_by_label_contains("% of triangles below 3 px");
     assert_eq!(viewport(&harness), before);
+    assert_eq!(status(&harness), fields);
     let pictures = harness.state().pictures();
     harness.run_steps(10);
     assert_eq!(harness.state().pictures(), pictures, "nothing is drawn when nothing changed");
@@ -81,6 +86,13 @@ fn the_toolbar_switches_what_is_used_every_day() {
     let mut harness = first_start([1280.0, 720.0], Some(Source::Shape(Shape::Torus)));
     let toolbar = ["Split view", "Wireframe", "Cracks", "Freeze LOD camera"];
     let frame = viewport(&harness);
+    let picture = harness.render().expect("a picture of the window");
+    let beside = picture.get_pixel(frame.left() as u32 + 3, frame.top() as u32 - 6);
+    for name in toolbar {
+        let button = harness.get_by_role_and_label(Role::CheckBox, name).rect();
+        let within = picture.get_pixel(button.left() as u32 + 3, button.center().y as u32);
+        assert_ne!(within, beside, "{name} is off, and looks like a button all the same");
+    }
     for name in toolbar {
         let button = harness.get_by_role_and_label(Role::CheckBox, name).rect();
         assert!(button.bottom() <= frame.top() && button.left() >= frame.left(), "{name}: {button:?} is not over it");
@@ -132,6 +144,36 @@ fn the_verdict_counts_what_is_wrong_and_leads_there() {
 }
 
 #[test]
+fn a_crack_that_is_gone_to_is_beside_the_divider() {
+    let mut harness = first_start([1280.0, 720.0], Some(Source::Shape(Shape::CubeSplit)));
+    switch(&mut harness, "Split view");
+    choose(&mut harness, "Surface", "PN");
+    assert_eq!(harness.state().settings().split, Some(0.5));
+    harness.get_by_label_contains("12 cracked edges, widest ").click();
+    settle(&mut harness);
+    assert_eq!(harness.state().settings().split, Some(0.2), "the edge is in the middle of the view");
+    press_with(&mut harness, egui::Modifiers::COMMAND, egui::Key::Z);
+    assert_eq!(harness.state().settings().split, Some(0.5), "undo brings it back");
+}
+
+#[test]
+fn a_section_that_opens_moves_nothing_sideways() {
+    let mut harness = first_start([1280.0, 500.0], Some(Source::Shape(Shape::CubeSplit)));
+    let sides = |harness: &Harness<App>| {
+        let titles = ["Surface", "Patch"].map(|title| {
+            let title = harness.get_by_role_and_label(Role::DisclosureTriangle, title).rect();
+            (title.left(), title.right())
+        });
+        (titles, harness.get_by_role_and_label(Role::ComboBox, "Surface").rect().right())
+    };
+    let before = sides(&harness);
+    assert!((before.1 - before.0[0].1).abs() < 1.0, "lists end where the titles' lines do: {before:?}");
+    crate::window_tests::open_all_sections(&mut harness);
+    settle(&mut harness);
+    assert_eq!(sides(&harness), before);
+}
+
+#[test]
 fn the_verdicts_lines_stay_where_they_are() {
     let mut harness = first_start([1280.0, 720.0], Some(Source::Shape(Shape::CubeSplit)));
     let places = |harness: &Harness<App>| harness.get_by_label("Waste").rect().top();
@@ -164,6 +206,7 @@ fn menus_fit_a_low_window_and_one_click_goes_from_one_to_another() {
     settle(&mut harness);
     harness.get_by_label("Dark theme").scroll_to_me();
     harness.run_steps(30);
+    harness.get_by_label("G");
     let last = harness.get_by_label("Dark theme").rect();
     assert!(screen.contains_rect(last), "{last:?}");
     harness.get_by_role_and_label(Role::Button, "Help").click();
@@ -244,6 +287,13 @@ fn a_narrow_window_leaves_out_panels_before_it_covers_anything() {
         let screen = harness.ctx.content_rect();
         let picture = viewport(&harness);
         assert!(screen.contains_rect(picture) && picture.width() >= 200.0, "{size:?} x {zoom}: {picture:?}");
+        switch(&mut harness, "Split view");
+        for title in ["Left: untessellated", "Right: tessellated"] {
+            let title = harness.get_by_label(title).rect();
+            assert!(picture.contains_rect(title), "{size:?} x {zoom}: {title:?} {picture:?}");
+            let end = harness.query_by_label("Look from the top").map(|end| end.rect());
+            assert!(!end.is_some_and(|end| end.intersects(title)), "{size:?} x {zoom}: {title:?} {end:?}");
+        }
         let left = harness.query_by_role_and_label(Role::DisclosureTriangle, "Surface");
         let right = harness.query_by_role_and_label(Role::DisclosureTriangle, "Patch");
         let shown: Vec<_> = [left, right].into_iter().flatten().map(|node| node.rect()).collect();

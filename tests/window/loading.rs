@@ -11,7 +11,7 @@ use pnaen::files::Limits;
 use pnaen::load::Source;
 use pnaen::mesh::Shape;
 
-use crate::window_tests::{click, copy_vase, press, settle, uniform, vase};
+use crate::window_tests::{PATIENCE, click, copy_vase, press, settle, uniform, vase};
 
 #[derive(Debug)]
 struct Dropped(PathBuf);
@@ -46,6 +46,34 @@ fn open(harness: &mut Harness<App>, source: Source) {
 
 fn says_nothing(harness: &Harness<App>) {
     assert!(harness.query_by_label("Problem").is_none() && harness.query_by_label("Close").is_none());
+}
+
+#[test]
+fn before_the_first_picture_the_view_has_its_background_and_everything_its_place() {
+    let builder = Harness::builder().with_size([1280.0, 720.0]).with_theme(egui::Theme::Dark).wgpu();
+    let mut harness = builder.build_eframe(|context| {
+        App::new(context, None, Limits::default()).expect("these tests need a graphics adapter")
+    });
+    harness.step();
+    assert_eq!(harness.state().source(), None, "it is still being loaded");
+    let below = harness.get_by_label("Waste").rect();
+    assert!(harness.query_by_label("Left: untessellated").is_none(), "there is nothing yet that is untessellated");
+    assert!(harness.query_by_label_contains("Drag to turn").is_none(), "the progress is there");
+    let picture = harness.render().expect("a picture of the window");
+    let corner = harness.get_by_label("Viewport").rect().left_top();
+    let [r, g, b] = harness.state().settings().background_color();
+    assert_eq!(picture.get_pixel(corner.x as u32 + 20, corner.y as u32 + 60).0, [r, g, b, 255]);
+    // Compiling shaders takes the longest, and has a name.
+    let start = Instant::now();
+    while harness.query_by_label("Preparing to draw Vase").is_none() {
+        assert!(harness.state().source().is_none() && start.elapsed() < PATIENCE, "it wasn't said");
+        std::thread::sleep(Duration::from_millis(1));
+        harness.step();
+    }
+    settle(&mut harness);
+    assert_eq!(harness.get_by_label("Waste").rect(), below);
+    harness.get_by_label("Left: untessellated");
+    harness.get_by_label_contains("Drag to turn");
 }
 
 #[test]

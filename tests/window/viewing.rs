@@ -3,13 +3,14 @@
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Theme};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::{App, Persistence};
 use pnaen::files::Limits;
 use pnaen::load::Source;
 use pnaen::mesh::Shape;
-use pnaen::render::layout::{AXIS_COLORS, LOD_CAMERA_COLOR};
+use pnaen::render::layout::{AXIS_COLORS, CRACK_COLOR, LOD_CAMERA_COLOR};
 use pnaen::render::{Camera, Standpoint};
+use pnaen::view::project;
 
 use crate::window_tests::editing::{assert_draws, copied, press_with};
 use crate::window_tests::{
@@ -173,6 +174,57 @@ fn light_is_chosen_where_materials_are_seen() {
     );
     press_with(&mut harness, Modifiers::SHIFT, Key::C);
     assert!(!has_row(&harness, Role::ComboBox, "Lighting"), "clay has a light of its own");
+}
+
+#[test]
+fn the_exposures_slider_is_fine_and_more_can_be_typed() {
+    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    let slider = harness.get_by_role_and_label(Role::Slider, "Exposure");
+    slider.scroll_to_me();
+    settle(&mut harness);
+    let slider = harness.get_by_role_and_label(Role::Slider, "Exposure");
+    let node = slider.accesskit_node();
+    assert_eq!((node.min_numeric_value(), node.max_numeric_value()), (Some(-5.0), Some(5.0)));
+    let middle = slider.rect().center().y;
+    for (typed, taken) in [("8.5", 8.5), ("80", 10.0)] {
+        let number = harness.query_all_by_role(Role::SpinButton);
+        let number = number.filter(|number| (number.rect().center().y - middle).abs() < 3.0).collect::<Vec<_>>();
+        number.first().expect("the slider's number").click();
+        drop(number);
+        settle(&mut harness);
+        harness.event(egui::Event::Text(typed.into()));
+        press(&mut harness, Key::Enter);
+        assert_eq!(harness.state().settings().exposure, taken, "up to the option's own end");
+    }
+}
+
+#[test]
+fn a_gap_is_seen_between_the_lines_of_its_sides() {
+    let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
+    choose(&mut harness, "Surface", "PN");
+    press(&mut harness, Key::C);
+    let widest = harness.state().cracks().expect("measured").edges[0].clone();
+    harness.state_mut().select_edge(widest.edge);
+    press(&mut harness, Key::Escape);
+    assert_eq!(harness.state().selected_edge(), None);
+    let bounds = harness.state().loaded().expect("a mesh").mesh.bounds();
+    // The gap in the picture, in px, and whether a line covers all of its middle.
+    let seen = |harness: &Harness<App>| {
+        let picture = harness.state().read_picture().expect("a device").expect("a picture");
+        let viewport = glam::vec2(picture.width() as f32, picture.height() as f32);
+        let clip_from_object = harness.state().camera().clip_from_object(viewport, &bounds);
+        let [a, b] = widest.widest;
+        let middle = project(clip_from_object, viewport, 0.5 * (a + b)).expect("in front of the eye");
+        let [x, y] = [middle.x as u32, middle.y as u32];
+        let around = (x - 1..=x + 1).flat_map(|x| (y - 1..=y + 1).map(move |y| (x, y)));
+        let is_line = |(x, y)| (0..3).all(|c| picture.get_pixel(x, y).0[c].abs_diff(CRACK_COLOR[c]) < 60);
+        (widest.gap_px(clip_from_object, viewport), around.map(is_line).all(|is_line| is_line))
+    };
+    while seen(&harness).0 > 3.4 {
+        press(&mut harness, Key::PageDown);
+    }
+    let (gap, is_covered) = seen(&harness);
+    assert!(gap > 2.7 && !is_covered, "a gap of {gap} px");
 }
 
 #[test]

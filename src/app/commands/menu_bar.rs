@@ -73,17 +73,12 @@ impl App {
         let key = command.keys.first().map(|key| shown_key(ui.ctx(), key)).unwrap_or_default();
         let response = ui.add_enabled_ui(why_not.is_none(), |ui| match self.is_on(ui.ctx(), &command.action) {
             Some(is_on) if matches!(command.action, Action::Theme(_)) => ui.radio(is_on, &*command.name),
-            Some(mut is_on) => ui.checkbox(&mut is_on, &*command.name),
+            Some(mut is_on) => with_key_beside(ui, &key, |ui| ui.checkbox(&mut is_on, &*command.name)),
             None if key.is_empty() => ui.button(&*command.name),
             None => ui.add(egui::Button::new(&*command.name).shortcut_text(&key)),
         });
-        // A checkbox can't show its key, so the hover text does.
-        let text = match (self.is_on(ui.ctx(), &command.action), key.is_empty()) {
-            (Some(_), false) => format!("{} ({key})", command.text),
-            _ => command.text.to_string(),
-        };
-        let response = response.inner.on_hover_text(text).on_disabled_hover_text(why_not.unwrap_or_default());
-        response.clicked()
+        let response = response.inner.on_hover_text(&*command.text);
+        response.on_disabled_hover_text(why_not.unwrap_or_default()).clicked()
     }
 
     /// Whether a menu's command that switches something is on; none for other commands, also those that are in no menu.
@@ -140,6 +135,23 @@ impl App {
             | Action::WhitePaper => None,
         }
     }
+}
+
+/// Shows a control of a menu, and its key at the menu's right border, where buttons have theirs.
+fn with_key_beside(ui: &mut egui::Ui, key: &str, show: impl FnOnce(&mut egui::Ui) -> egui::Response) -> egui::Response {
+    let is_sizing = ui.is_sizing_pass();
+    ui.horizontal(|ui| {
+        let response = show(ui);
+        if is_sizing {
+            // The menu gets as wide as its entries ask for.
+            ui.add_space(2.0 * ui.spacing().item_spacing.x);
+            ui.weak(key);
+        } else {
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.weak(key));
+        }
+        response
+    })
+    .inner
 }
 
 /// Points that a menu leaves free above and below it.

@@ -11,7 +11,7 @@ use crate::files::FileError;
 use crate::gpu::GpuError;
 use crate::load::{LoadError, Source};
 use crate::mesh::{EdgeCounts, Moment};
-use crate::progress::Progress;
+use crate::progress::{Progress, Stage};
 use crate::render::Scene;
 use crate::settings::{ARENA_BYTES, Settings, SplitSide};
 use crate::tessellate::Deformed;
@@ -132,6 +132,9 @@ impl Drop for Load {
     }
 }
 
+/// The part of a load that reading the mesh counts as. Compiling shaders, of which no part is known, is the rest.
+const READ: f32 = 0.8;
+
 fn load(
     engine: &Engine,
     context: &egui::Context,
@@ -141,7 +144,7 @@ fn load(
     progress: &Progress,
     generation: u64,
 ) -> Result<Document, Option<NotLoaded>> {
-    let loaded = match engine::load(source, preparation, progress) {
+    let loaded = match engine::load(source, preparation, &progress.part(0.0, READ)) {
         Ok(loaded) => loaded,
         Err(LoadError::Cancelled(_)) => return Err(None),
         Err(error) => {
@@ -151,6 +154,8 @@ fn load(
         }
     };
     let no_room = |error: GpuError| Some(NotLoaded::because(format!("{}: {error}", source.title())));
+    progress.enter(Stage::Device);
+    progress.set(READ);
     let scene = scene_of(engine, &loaded).map_err(no_room)?;
     // Pipelines are made here, so that the first picture doesn't wait for the driver's compiler.
     engine.prepare(&scene, settings).map_err(no_room)?;

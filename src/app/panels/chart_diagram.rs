@@ -251,6 +251,11 @@ pub(super) fn line(painter: &egui::Painter, points: &[Pos2], stroke: Stroke, das
         None => {
             painter.line(points.to_vec(), stroke);
         }
+        // A dash that is no longer than the line is wide would hardly be seen.
+        Some([drawn, left_out]) if drawn <= f64::from(stroke.width) => {
+            let (spacing, radius) = ((drawn + left_out) as f32, 0.75 * stroke.width);
+            painter.extend(egui::Shape::dotted_line(points, stroke.color, spacing, radius));
+        }
         Some([drawn, left_out]) => {
             painter.extend(egui::Shape::dashed_line(points, stroke, drawn as f32, left_out as f32));
         }

@@ -6,15 +6,17 @@ use super::chart_diagram::{Diagram, Inks, Spot, line, marker};
 use crate::app::App;
 use crate::app::jobs::chart_job::Charted;
 use crate::app::text::{grouped, short};
-use crate::app::widgets::{columns, list};
-use crate::chart::{Cost, LodKind, MethodStyle, Probe, Row, Setting, dash, method_styles};
+use crate::app::widgets::{dense, list, switch_button, text_width, unclicked};
+use crate::chart::{Cost, LodKind, MethodStyle, Plan, Probe, Row, Setting, dash, method_styles};
 use crate::settings::Choice;
 use crate::tessellate::Surface;
 
 /// Heights of the panel, and the width of the list in it, in points.
 const HEIGHT: f32 = 320.0;
 const HEIGHTS: std::ops::RangeInclusive<f32> = 200.0..=700.0;
-const LIST_WIDTH: f32 = 360.0;
+const LIST_WIDTH: f32 = 372.0;
+/// The least width of the diagram beside the list, in points.
+const DIAGRAM_WIDTH: f32 = 270.0;
 /// The width of the button's longest text, in points, so that nothing beside it moves.
 const BUTTON_WIDTH: f32 = 96.0;
 /// Says how many settings aren't in the chart because they have too many triangles.
@@ -46,8 +48,10 @@ impl App {
                 let is_stale = self.chart_outdated().is_some();
                 let own = Setting::of(&self.settings);
                 let diagram = Diagram { charted, cost: self.panels.chart.cost, is_stale, own };
-                legend(ui, charted, is_stale);
-                let left = ui.available_width() - LIST_WIDTH.min(0.45 * ui.available_width());
+                // While it is measured, the legend has what is still to come, so that it doesn't grow.
+                let plan = self.charting().map(|_| &self.panels.chart.plan);
+                legend(ui, charted, plan, is_stale);
+                let left = (ui.available_width() - LIST_WIDTH).max(DIAGRAM_WIDTH.min(0.5 * ui.available_width()));
                 ui.horizontal_top(|ui| {
                     let size = egui::vec2(left, ui.available_height());
                     applied = ui.allocate_ui(size, |ui| picked(ui, &diagram)).inner;
@@ -78,10 +82,15 @@ impl App {
              {most} triangles are left out."
         ));
         ui.separator();
-        let cost = &mut self.panels.chart.cost;
-        ui.selectable_value(cost, Cost::Ms, "Time").on_hover_text("Error against the time to tessellate and draw.");
-        let hover = "Error against the number of triangles.";
-        ui.selectable_value(cost, Cost::Triangles, "Triangles").on_hover_text(hover);
+        for (cost, name, hover) in [
+            (Cost::Ms, "Time", "Error against the time to tessellate and draw."),
+            (Cost::Triangles, "Triangles", "Error against the number of triangles."),
+        ] {
+            let is_shown = self.panels.chart.cost == cost;
+            if ui.add(switch_button(is_shown, name)).on_hover_text(hover).clicked() {
+                self.panels.chart.cost = cost;
+            }
+        }
         ui.separator();
         self.methods_menu(ui);
         let has_rows = !self.chart_rows().is_empty() && self.panels.chart.saving.is_none();
@@ -144,7 +153,7 @@ impl App {
         let plan = &mut self.panels.chart.plan;
         let (response, _) = button.ui(ui, |ui| {
             ui.weak("Surfaces");
-            Surface::ALL.into_iter().for_each(|surface| switch(ui, &mut plan.surfaces, surface, surface.name()));
+            Surface::ALL.into_iter().for_each(|surface| switch(ui, &mut plan.surfaces, surface, surface.label()));
             ui.weak("Level of detail");
             LodKind::ALL.into_iter().for_each(|lod| switch(ui, &mut plan.lods, lod, lod_name(lod)));
         });
@@ -154,8 +163,8 @@ impl App {
 
 fn lod_name(lod: LodKind) -> &'static str {
     match lod {
-        LodKind::Uniform => "uniform factor",
-        LodKind::Paper => "white paper's LOD",
+        LodKind::Uniform => "Uniform factor",
+        LodKind::Paper => "White paper's LOD",
         LodKind::Error => "LOD by error",
         LodKind::ErrorRows => "LOD by error, rows",
     }
@@ -177,7 +186,7 @@ fn switch<T: PartialEq>(ui: &mut egui::Ui, all: &mut Vec<T>, one: T, name: &str)
 fn picked(ui: &mut egui::Ui, diagram: &Diagram) -> Option<Setting> {
     let (spot, is_clicked) = diagram.show(ui)?;
     let text = match spot {
-        Spot::Row(row) => format!("{}\n{}", diagram.charted.subject.named(row), facts(diagram.charted, &probe(row))),
+        Spot::Row(row) => format!("{}\n{}", named(&row.setting), facts(diagram.charted, &probe(row))),
         Spot::Current => {
             let measured = diagram.charted.current.and_then(|(_, probe)| probe)?;
             format!("The window's settings\n{}", facts(diagram.charted, &measured))
@@ -194,6 +203,11 @@ fn picked(ui: &mut egui::Ui, diagram: &Diagram) -> Option<Setting> {
         Spot::Row(row) if is_clicked => Some(row.setting),
         _ => None,
     }
+}
+
+/// A setting in the words of the settings panel.
+fn named(setting: &Setting) -> String {
+    format!("{} {setting}", setting.method.surface.label())
 }
 
 fn probe(row: &Row) -> Probe {
@@ -222,34 +236,51 @@ fn facts(charted: &Charted, probe: &Probe) -> String {
     lines.join("\n")
 }
 
-/// The legend of points and lines.
-fn legend(ui: &mut egui::Ui, charted: &Charted, is_stale: bool) {
+/// The legend of points and lines, for what is measured and for what a plan adds to it.
+fn legend(ui: &mut egui::Ui, charted: &Charted, plan: Option<&Plan>, is_stale: bool) {
     let inks = Inks::new(ui, is_stale);
-    let styles = method_styles(&charted.subject);
-    let (mut surfaces, mut lods): (Vec<Surface>, Vec<LodKind>) = Default::default();
-    for (method, _) in &styles {
-        surfaces.extend((!surfaces.contains(&method.surface)).then_some(method.surface));
-        lods.extend((!lods.contains(&method.lod)).then_some(method.lod));
-    }
+    let methods: Vec<_> = method_styles(&charted.subject).into_iter().map(|(method, _)| method).collect();
+    let has_surface = |surface: Surface| {
+        let is_planned = plan.is_some_and(|plan| plan.surfaces.contains(&surface));
+        is_planned || methods.iter().any(|method| method.surface == surface)
+    };
+    let has_lod = |lod: LodKind| {
+        let is_planned = plan.is_some_and(|plan| plan.lods.contains(&lod));
+        is_planned || methods.iter().any(|method| method.lod == lod)
+    };
     ui.horizontal_wrapped(|ui| {
-        let sample =
-            |ui: &mut egui::Ui, width: f32| ui.allocate_exact_size(egui::vec2(width, 14.0), egui::Sense::hover()).0;
-        for surface in surfaces {
-            let rect = sample(ui, 10.0);
-            marker(ui.painter(), rect.center(), &MethodStyle::of_surface(surface), &inks);
-            ui.label(surface.name());
+        for surface in Surface::ALL.into_iter().filter(|surface| has_surface(*surface)) {
+            let place = legend_entry(ui, 10.0, surface.label(), surface.text());
+            marker(ui.painter(), place.center(), &MethodStyle::of_surface(surface), &inks);
         }
-        for lod in lods {
-            let rect = sample(ui, 30.0);
-            let ends = [rect.left_center(), rect.right_center()];
-            line(ui.painter(), &ends, egui::Stroke::new(1.4, inks.text()), dash(lod));
-            ui.label(lod_name(lod));
+        let sample = |ui: &egui::Ui, place: egui::Rect, stroke: egui::Stroke, dash: Option<[f64; 2]>| {
+            line(ui.painter(), &[place.left_center(), place.right_center()], stroke, dash);
+        };
+        for lod in LodKind::ALL.into_iter().filter(|lod| has_lod(*lod)) {
+            let place = legend_entry(ui, 30.0, lod_name(lod), "The dashes of lines between settings with this LOD.");
+            sample(ui, place, egui::Stroke::new(1.4, inks.text()), dash(lod));
         }
-        let rect = sample(ui, 26.0);
-        let ends = [rect.left_center(), rect.right_center()];
-        line(ui.painter(), &ends, egui::Stroke::new(9.0, inks.front()), None);
-        ui.label("front").on_hover_text("Settings that no other setting beats in both error and cost.");
+        let place = legend_entry(ui, 26.0, "Front", "Settings that no other setting beats in both error and cost.");
+        sample(ui, place, egui::Stroke::new(9.0, inks.front()), None);
     });
+}
+
+/// Shows a name in a legend, and returns the place for its sample before it. Both stay together where a row ends.
+fn legend_entry(ui: &mut egui::Ui, sample: f32, name: &str, hover: &str) -> egui::Rect {
+    let gap = ui.spacing().item_spacing.x;
+    let size = egui::vec2(sample + gap + text_width(ui, name) + gap, ui.text_style_height(&egui::TextStyle::Body));
+    let (place, response) = ui.allocate_exact_size(size, egui::Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, name));
+    response.on_hover_text(hover);
+    let (font, color) = (egui::TextStyle::Body.resolve(ui.style()), ui.visuals().text_color());
+    ui.painter().text(
+        place.left_center() + egui::vec2(sample + gap, 0.0),
+        egui::Align2::LEFT_CENTER,
+        name,
+        font,
+        color,
+    );
+    place.with_max_x(place.left() + sample)
 }
 
 /// Lists the settings of the front as buttons that apply them. Returns the setting whose button was pressed.
@@ -258,29 +289,34 @@ fn front_list(ui: &mut egui::Ui, diagram: &Diagram) -> Option<Setting> {
     let races = subject.races();
     let front: Vec<_> = races.iter().flat_map(|race| race.front(|row| diagram.cost.of(row))).collect();
     let unit = if subject.truth.is_some() { "%" } else { "px" };
-    let cost = if diagram.cost == Cost::Ms { "ms" } else { "tri" };
+    // Numbers of triangles are longer than times.
+    let (cost_unit, cost_name, width) = match diagram.cost {
+        Cost::Ms => ("ms", "ms", 6),
+        Cost::Triangles => ("tri", "triangles", 9),
+    };
     ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Truncate);
-    columns(ui, &format!("{unit:>8} {cost:>8}  setting"), true).on_hover_text(
+    unclicked(ui, dense(format!("{unit:>7} {cost_unit:>width$}  setting")).weak()).on_hover_text(
         "The front: settings that no other setting beats in both error and cost, the cheapest first. A click on one \
          applies it.",
     );
     let mut applied = None;
     list(ui, "Front", front.len(), |ui, index| {
         let (row, error) = front[index];
-        let error = short(error * subject.unit());
-        let (cost, cost_unit) = match diagram.cost {
-            Cost::Ms => (short(row.time.total()), "ms"),
-            Cost::Triangles => (grouped(row.triangles), "triangles"),
+        // As in the diagram, what is due to rounding counts as 0.
+        let error = if error > subject.floor() { short(error * subject.unit()) } else { "0".to_owned() };
+        let cost = match diagram.cost {
+            Cost::Ms => short(row.time.total()),
+            Cost::Triangles => grouped(row.triangles),
         };
-        let name = format!("{} {}", row.setting.method.surface.name(), row.setting);
-        let text = RichText::new(format!("{error:>8} {cost:>8}  {name}")).monospace();
+        let name = named(&row.setting);
+        let text = dense(format!("{error:>7} {cost:>width$}  {name}"));
         let response = ui.add(egui::Button::selectable(diagram.own == Some(row.setting), text));
-        let said = format!("Apply {}: {error} {unit}, {cost} {cost_unit}", subject.named(row));
+        let said = format!("Apply {name}: {error} {unit}, {cost} {cost_name}");
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &said));
         if response.clicked() {
             applied = Some(row.setting);
         }
-        response.on_hover_text(format!("{}\n{}", subject.named(row), facts(diagram.charted, &probe(row))))
+        response.on_hover_text(format!("{name}\n{}", facts(diagram.charted, &probe(row))))
     });
     applied
 }

@@ -142,6 +142,7 @@ impl App {
         let Some(chosen) = topology.edges.get(edge as usize) else { return };
         let ends = topology.edge_points(chosen).map(|point| topology.points[point as usize]);
         self.viewport.camera.frame_edge(ends, topology.edge_facing(chosen), &document.scene.bounds);
+        self.clear_middle();
         self.viewport.selected_edge = Some(edge);
         self.keep_triangle_of(edge);
     }
@@ -169,14 +170,13 @@ impl App {
             let ends = points.windows(2).map(move |ends| [ends[0], ends[1]]);
             ends.map(|[a, b]| LineSegment { half_width, ..LineSegment::new(a, b, color) }).collect::<Vec<_>>()
         };
-        let outline = polylines.iter().flat_map(|points| strip(points, OUTLINE_COLOR, 4.0));
-        let colored = polylines
-            .iter()
-            .enumerate()
-            .flat_map(|(k, points)| strip(points, SIDE_COLORS[k % SIDE_COLORS.len()], if k == 0 { 2.5 } else { 1.25 }));
+        let outline = polylines.iter().flat_map(|points| strip(points, OUTLINE_COLOR, 2.5));
+        let colored = polylines.iter().enumerate().flat_map(|(k, points)| {
+            strip(points, SIDE_COLORS[k % SIDE_COLORS.len()], if k == 0 { 1.75 } else { 0.75 })
+        });
         let gap = self.crack_of(edge, half).filter(|crack| crack.gap > 0.0).map(|crack| crack.widest);
         let dots = gap.into_iter().flatten();
-        let dots = dots.map(|place| LineSegment { half_width: 4.0, ..LineSegment::new(place, place, CRACK_COLOR) });
+        let dots = dots.map(|place| LineSegment { half_width: 3.0, ..LineSegment::new(place, place, CRACK_COLOR) });
         outline.chain(colored).chain(dots).collect()
     }
 }

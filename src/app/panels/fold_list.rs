@@ -53,5 +53,6 @@ impl App {
         self.select_triangle(Some(triangle));
         self.frame_patch();
         self.viewport.camera.target = folded.place;
+        self.clear_middle();
     }
 }

@@ -7,6 +7,7 @@ use super::patch_explanation::ShownExplanation;
 use super::patch_pattern::{pattern_plot, weights_text};
 use super::statistics::EDGE_KINDS;
 use crate::app::App;
+use crate::app::jobs::document::Document;
 use crate::app::jobs::explain_job::EmittedPatch;
 use crate::app::patch_names::{LETTERS, ends_text, letter, mistake};
 use crate::app::text::{factor, short};
@@ -49,9 +50,12 @@ struct SelectedPatch<'a> {
 
 impl App {
     pub(in crate::app) fn patch_section(&mut self, ui: &mut Ui) {
-        let Some(document) = &self.document else { return };
-        let at_rest = || (document.loaded.mesh.clone(), document.loaded.topology.clone());
-        let (mesh, topology) = &self.selected_triangle().map_or_else(at_rest, |_| document.shown());
+        let shown = |document: &Document| match self.selected_triangle() {
+            Some(_) => document.shown(),
+            None => (document.loaded.mesh.clone(), document.loaded.topology.clone()),
+        };
+        // Before a mesh is there, the rows have their places.
+        let (mesh, topology) = &self.document.as_ref().map_or_else(Default::default, shown);
         let mut wish = chosen_triangle(ui, mesh, topology, self.selected_triangle());
         match (self.selected_triangle(), self.selected_patch()) {
             (None, _) => drop(ui.weak("Click a triangle, or type its number.")),

@@ -2,7 +2,7 @@
 
 use super::option_rows::{option_hover, option_row};
 use crate::app::App;
-use crate::app::sections::{Section, in_fixed_width};
+use crate::app::sections::{Section, scrolling_column};
 use crate::app::text::short;
 use crate::app::widgets::{LABEL_WIDTH, fixed};
 use crate::commands::{Action, BACKS_ARE_SEEN, Change, key_name, with_key};
@@ -14,16 +14,19 @@ pub(super) const ON_TOOLBAR: [Overlay; 2] = [Overlay::Wireframe, Overlay::Cracks
 
 impl App {
     pub(in crate::app) fn settings_panel(&mut self, ui: &mut egui::Ui) {
-        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            in_fixed_width(ui, |ui| {
-                self.section(ui, Section::Surface, Self::surface_rows);
-                self.section(ui, Section::LevelOfDetail, Self::lod_rows);
-                self.section(ui, Section::Displacement, Self::height_rows);
-                self.animation_section(ui);
-                self.section(ui, Section::Overlays, Self::overlay_rows);
-                self.section(ui, Section::View, Self::view_rows);
-                self.section(ui, Section::Advanced, Self::advanced_rows);
-            });
+        scrolling_column(ui, |ui| {
+            // Lists, and sliders with their numbers, end where the lines under the titles do.
+            let (gap, room) = (ui.spacing().item_spacing.x, ui.available_width());
+            let controls = room - LABEL_WIDTH - gap;
+            ui.spacing_mut().combo_width = controls;
+            ui.spacing_mut().slider_width = controls - gap - ui.spacing().interact_size.x;
+            self.section(ui, Section::Surface, Self::surface_rows);
+            self.section(ui, Section::LevelOfDetail, Self::lod_rows);
+            self.section(ui, Section::Displacement, Self::height_rows);
+            self.animation_section(ui);
+            self.section(ui, Section::Overlays, Self::overlay_rows);
+            self.section(ui, Section::View, Self::view_rows);
+            self.section(ui, Section::Advanced, Self::advanced_rows);
         });
     }
 

@@ -1,7 +1,7 @@
 //! The panel on the right: statistics of the tessellation and the mesh.
 
 use crate::app::App;
-use crate::app::sections::{Section, in_fixed_width};
+use crate::app::sections::{Section, scrolling_column};
 use crate::app::text::{grouped, part, short};
 use crate::app::widgets::{fact, number, swatch};
 use crate::measure::{Cracks, Culled};
@@ -24,37 +24,35 @@ pub(in crate::app) const EDGE_KINDS: [(EdgeKind, &str, &str); 5] = [
 
 impl App {
     pub(in crate::app) fn facts_panel(&mut self, ui: &mut egui::Ui) {
-        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            in_fixed_width(ui, |ui| {
-                // Each in a scope of its own, so that rows that come and go don't take the focus from those below.
-                ui.push_id("verdict", |ui| self.verdict(ui));
-                if self.panels.open.title(ui, Section::Patch) {
-                    ui.push_id("patch", |ui| self.patch_section(ui));
-                }
-                ui.push_id("given", |ui| self.given_section(ui));
-                self.deviation_section(ui);
-                if self.panels.open.title(ui, Section::Cracks) {
-                    self.crack_facts(ui);
-                    self.worst_edges(ui);
-                    self.leak_list(ui);
-                    self.fold_list(ui);
-                    self.t_junction_list(ui);
-                }
-                self.edge_details(ui);
-                if self.panels.open.title(ui, Section::Patches) {
-                    self.patch_facts(ui);
-                }
-                if self.panels.open.title(ui, Section::Waste) {
-                    self.waste_facts(ui);
-                }
-                if self.panels.open.title(ui, Section::Edges) {
-                    self.edge_legend(ui);
-                }
-                if self.panels.open.title(ui, Section::Mesh) {
-                    self.mesh_facts(ui);
-                }
-                self.pass_times(ui);
-            });
+        scrolling_column(ui, |ui| {
+            // Each in a scope of its own, so that rows that come and go don't take the focus from those below.
+            ui.push_id("verdict", |ui| self.verdict(ui));
+            if self.panels.open.title(ui, Section::Patch) {
+                ui.push_id("patch", |ui| self.patch_section(ui));
+            }
+            ui.push_id("given", |ui| self.given_section(ui));
+            self.deviation_section(ui);
+            if self.panels.open.title(ui, Section::Cracks) {
+                self.crack_facts(ui);
+                self.worst_edges(ui);
+                self.leak_list(ui);
+                self.fold_list(ui);
+                self.t_junction_list(ui);
+            }
+            self.edge_details(ui);
+            if self.panels.open.title(ui, Section::Patches) {
+                self.patch_facts(ui);
+            }
+            if self.panels.open.title(ui, Section::Waste) {
+                self.waste_facts(ui);
+            }
+            if self.panels.open.title(ui, Section::Edges) {
+                self.edge_legend(ui);
+            }
+            if self.panels.open.title(ui, Section::Mesh) {
+                self.mesh_facts(ui);
+            }
+            self.pass_times(ui);
         });
     }
 

@@ -4,16 +4,21 @@ use egui::RichText;
 
 use crate::app::App;
 use crate::app::text::{counted, grouped, mebibytes, short};
-use crate::app::widgets::{rgb, status};
+use crate::app::widgets::{legible, rgb, status, text_width};
 use crate::gpu::DRAWING;
 use crate::render::layout::CRACK_COLOR;
+
+/// The triangles and vertices that a patch has at most: all of its factors are 64.
+const MOST_TRIANGLES: u64 = 64 * 64;
+const MOST_VERTICES: u64 = 65 * 66 / 2;
 
 impl App {
     pub(in crate::app) fn status_line(&mut self, ui: &mut egui::Ui) {
         ui.horizontal(|ui| {
             ui.set_min_height(22.0);
             let Some(document) = &self.document else {
-                ui.weak("nothing is open");
+                let text = if self.jobs.load.is_some() { "" } else { "nothing is open" };
+                ui.weak(text);
                 return;
             };
             let scene = &document.scene;
@@ -27,22 +32,26 @@ impl App {
             let patches = document.loaded.topology.patches.len() as u64;
             let drawn = patches - u64::from(self.jobs.measure.found().map_or(0, |found| found.culled.total()));
             let before = (document.loaded.mesh.triangles.len() as u64, document.loaded.mesh.corners.len() as u64);
+            // A field has the width of the largest numbers that this mesh can have.
+            let widest = |ui: &egui::Ui, text: String| text_width(ui, &text).max(120.0);
+            let most = grouped(patches * MOST_TRIANGLES);
             status(
                 ui,
-                170.0,
+                widest(ui, format!("{} to {most} triangles", grouped(before.0))),
                 format!("{} to {triangles}", grouped(before.0)),
                 "Triangles before and after tessellation.",
             );
             self.status_of_cracks(ui);
             status(
                 ui,
-                120.0,
+                widest(ui, format!("{0} of {0} patches", grouped(patches))),
                 format!("{} of {} patches", grouped(drawn), grouped(patches)),
                 "Patches that are drawn, out of all. The others are out of view or face away.",
             );
+            let most = grouped(patches * MOST_VERTICES);
             status(
                 ui,
-                160.0,
+                widest(ui, format!("{} to {most} vertices", grouped(before.1))),
                 format!("{} to {} vertices", grouped(before.1), vertices),
                 "Vertices before and after tessellation.",
             );
@@ -54,8 +63,12 @@ impl App {
             );
             let (ms, hover) = self.times();
             status(ui, 112.0, ms, &hover);
-            ui.add(egui::Label::new(RichText::new(&self.engine.gpu.info.name).weak()).truncate())
-                .on_hover_text(format!("Graphics adapter: {}.", self.engine.gpu.info.name));
+            let adapter = &self.engine.gpu.info.name;
+            // A few letters of its name would say nothing.
+            if ui.available_width() > 0.5 * text_width(ui, adapter) {
+                ui.add(egui::Label::new(RichText::new(adapter).weak()).truncate())
+                    .on_hover_text(format!("Graphics adapter: {adapter}."));
+            }
         });
     }
 
@@ -95,7 +108,7 @@ impl App {
             Some(cracks) => {
                 let (count, px) = (grouped(cracks.edges.len() as u64), short(self.viewport.picture.gap_px(cracks)));
                 let text = RichText::new(format!("cracks {count}, {px} px"));
-                status(ui, WIDTH, text.color(rgb(CRACK_COLOR)).strong(), hover);
+                status(ui, WIDTH, text.color(legible(ui, rgb(CRACK_COLOR))).strong(), hover);
             }
         }
     }

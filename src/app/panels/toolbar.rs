@@ -2,6 +2,7 @@
 
 use super::settings_panel::{ON_TOOLBAR, colors_hover, overlay_hover};
 use crate::app::App;
+use crate::app::widgets::switch_button;
 use crate::commands::{Action, Availability, CameraAction, Command, FileAction, NO_TEXTURE_COORDINATES, all, with_key};
 use crate::settings::{Choice, Colors, Control};
 
@@ -87,7 +88,7 @@ impl App {
 /// A button that stays pressed while something is on, with a name for screen readers that says more than its label. Returns
 /// whether it was clicked.
 fn toggle(ui: &mut egui::Ui, is_on: bool, [label, name]: [&str; 2], hover: &str) -> bool {
-    let response = ui.add(egui::Button::selectable(is_on, label)).on_hover_text(hover);
+    let response = ui.add(switch_button(is_on, label)).on_hover_text(hover);
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, is_on, name));
     response.clicked()
 }

@@ -6,7 +6,7 @@ use egui::{Color32, RichText};
 use crate::app::App;
 use crate::app::sections::Section;
 use crate::app::text::{counted, grouped, short};
-use crate::app::widgets::rgb;
+use crate::app::widgets::{legible, rgb};
 use crate::render::layout::{CRACK_COLOR, FOLD_COLOR, T_JUNCTION_COLOR};
 use crate::settings::{Colors, Overlay};
 
@@ -48,9 +48,6 @@ impl Line {
 
 impl App {
     pub(in crate::app) fn verdict(&mut self, ui: &mut egui::Ui) {
-        if self.document.is_none() {
-            return;
-        }
         ui.add_space(6.0);
         let lines: Vec<Line> = [
             Some(self.cracks_line()),
@@ -178,6 +175,7 @@ impl App {
         let warnings = self.document.as_ref().map_or(0, |document| document.loaded.warnings.len() as u64);
         let hover = "What was repaired or left out when the file was read. A click lists it.";
         match warnings {
+            _ if self.document.is_none() => Line::dim("Warnings \u{2026}", hover, Destination::Warnings),
             0 => Line::dim("No warnings", hover, Destination::Warnings),
             _ => Line::bad(counted(warnings, "warning"), color, hover, Destination::Warnings),
         }
@@ -235,7 +233,10 @@ fn row(ui: &mut egui::Ui, text: String, color: Option<Color32>, hover: &str) -> 
     ui.allocate_ui_with_layout(size, layout, |ui| {
         ui.set_min_height(size.y);
         match color {
-            Some(color) => ui.button(RichText::new(text).color(color)).on_hover_text(hover).clicked(),
+            Some(color) => {
+                let text = RichText::new(text).color(legible(ui, color));
+                ui.button(text).on_hover_text(hover).clicked()
+            }
             None => {
                 ui.add_space(ui.spacing().button_padding.x);
                 ui.weak(text).on_hover_text(hover);

@@ -16,6 +16,8 @@ const REACH: f32 = 29.0;
 const RADII: [f32; 2] = [9.0, 7.0];
 /// The smallest picture, in points, that has room for the axes.
 const LEAST_PICTURE: Vec2 = vec2(230.0, 200.0);
+/// What the title of a split's right half takes at most, in points: it stands between the divider and the axes, or above them.
+const TITLE: Vec2 = vec2(110.0, 26.0);
 
 /// An end of an axis.
 struct End {
@@ -28,10 +30,13 @@ struct End {
     depth: f32,
 }
 
-/// Where the axes are in a picture, if it has room for them.
-pub(super) fn axes_place(picture: Rect) -> Option<Rect> {
+/// Where the axes are in a picture with this split, if it has room for them.
+pub(super) fn axes_place(picture: Rect, split: Option<f32>) -> Option<Rect> {
     let has_room = picture.width() >= LEAST_PICTURE.x && picture.height() >= LEAST_PICTURE.y;
     let place = Align2::RIGHT_TOP.align_size_within_rect(Vec2::splat(SIZE), picture.shrink(4.0));
+    let divider = split.map(|split| picture.left() + split * picture.width());
+    let is_narrow = divider.is_some_and(|divider| place.left() - divider < TITLE.x);
+    let place = if is_narrow { place.translate(vec2(0.0, TITLE.y)) } else { place };
     has_room.then_some(place)
 }
 
@@ -63,7 +68,7 @@ fn ends(middle: Pos2, [right, up, back]: [Vec3; 3]) -> [End; 6] {
 impl App {
     /// Shows the axes as the camera sees them, and looks from where one is clicked.
     pub(in crate::app) fn axis_gizmo(&mut self, ui: &Ui, picture: Rect) {
-        let Some(place) = axes_place(picture).filter(|_| self.document.is_some()) else { return };
+        let Some(place) = axes_place(picture, self.settings.split).filter(|_| self.document.is_some()) else { return };
         for end in &ends(place.center(), self.viewport.camera.axes()) {
             if end_button(ui, place.center(), end) {
                 self.viewport.camera.look_from(end.standpoint);
@@ -79,9 +84,10 @@ fn end_button(ui: &Ui, middle: Pos2, end: &End) -> bool {
     let id = ui.scope_id().with(("axis", name));
     let response = ui.interact(Rect::from_center_size(end.at, Vec2::splat(2.0 * radius)), id, Sense::click());
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, name));
-    // What is behind is darker, so that one sees which way an axis points.
+    // What is behind is paler, so that one sees which way an axis points.
     let lit = 0.7 + 0.3 * end.depth;
-    let color = rgb(AXIS_COLORS[end.axis]).lerp_to_gamma(Color32::from_gray(50), 0.5 * (1.0 - lit));
+    let far = Color32::from_gray(if ui.visuals().dark_mode { 50 } else { 190 });
+    let color = rgb(AXIS_COLORS[end.axis]).lerp_to_gamma(far, 0.5 * (1.0 - lit));
     let is_marked = response.hovered() || response.has_focus();
     let painter = ui.painter();
     if end.is_positive {
@@ -90,10 +96,10 @@ fn end_button(ui: &Ui, middle: Pos2, end: &End) -> bool {
         let letter = ["X", "Y", "Z"][end.axis];
         painter.text(end.at, Align2::CENTER_CENTER, letter, FontId::proportional(11.0), Color32::from_gray(20));
     } else {
-        painter.circle(end.at, radius, color.lerp_to_gamma(Color32::from_gray(60), 0.65), Stroke::new(1.5, color));
+        painter.circle(end.at, radius, color.lerp_to_gamma(far, 0.65), Stroke::new(1.5, color));
     }
     if is_marked {
-        painter.circle_stroke(end.at, radius + 1.5, Stroke::new(2.0, Color32::from_gray(245)));
+        painter.circle_stroke(end.at, radius + 1.5, Stroke::new(2.0, ui.visuals().strong_text_color()));
     }
     let response = response.on_hover_cursor(egui::CursorIcon::PointingHand);
     response.on_hover_text(with_key(&format!("{name}."), &action)).clicked()
@@ -129,9 +135,17 @@ mod tests {
 
     #[test]
     fn a_small_picture_has_no_axes() {
-        let of = |width, height| axes_place(Rect::from_min_size(Pos2::ZERO, vec2(width, height)));
+        let of = |width, height| axes_place(Rect::from_min_size(Pos2::ZERO, vec2(width, height)), None);
         assert_eq!((of(200.0, 600.0), of(600.0, 150.0)), (None, None));
         let picture = Rect::from_min_size(Pos2::ZERO, vec2(600.0, 400.0));
         assert!(of(600.0, 400.0).is_some_and(|place| picture.contains_rect(place)));
+    }
+
+    #[test]
+    fn axes_are_beside_the_title_of_a_wide_half_and_under_that_of_a_narrow_one() {
+        let of = |width, split| axes_place(Rect::from_min_size(Pos2::ZERO, vec2(width, 400.0)), split);
+        assert_eq!(of(600.0, Some(0.5)), of(600.0, None));
+        let (narrow, whole) = (of(270.0, Some(0.5)).expect("room"), of(270.0, None).expect("room"));
+        assert_eq!(narrow, whole.translate(vec2(0.0, TITLE.y)));
     }
 }

@@ -12,6 +12,8 @@ const DEGREES_PER_KEY: f32 = 7.5;
 const POINTS_PER_KEY: f32 = 40.0;
 /// The factor by which a press of a key changes the distance to the mesh.
 const CLOSER: f32 = 0.8;
+/// Where the divider goes if it would cover the middle of the view, as a part of the view's width.
+const ASIDE: f32 = 0.2;
 
 impl App {
     pub(in crate::app) fn move_camera_by(&mut self, context: &egui::Context, action: CameraAction) {
@@ -42,6 +44,11 @@ impl App {
             self.viewport.camera.frame(&document.scene.drawn_bounds(&self.settings), self.viewport.picture.size());
             self.viewport.framed = Some(self.viewport.camera);
         }
+    }
+
+    /// Moves the divider of a split to the left, so that the middle of the view shows the tessellation.
+    pub(in crate::app) fn clear_middle(&mut self) {
+        self.settings.split = self.settings.split.map(|split| split.min(ASIDE));
     }
 
     /// Whether the camera has its target and distance of the last [`Self::frame`]. It may have turned.

@@ -4,7 +4,7 @@ mod barycentric;
 
 use egui::{Align2, Color32, Pos2, Rect, Sense, pos2, vec2};
 
-use crate::app::widgets::rgb;
+use crate::app::widgets::{rgb, text_width_in};
 use crate::render::layout::WASTE_COLOR;
 use crate::render::{BARYCENTRIC_TITLE, COLUMNS, Distances, Scale, Shown, legend_of, tick_text};
 use crate::settings::Colors;
@@ -29,7 +29,7 @@ pub(crate) fn legend(ui: &mut egui::Ui, picture: Rect, colors: Colors, distances
     let plate = |size| plate(ui, picture, size, &legend.title, &legend.meaning);
     match &legend.shown {
         Shown::Title => {
-            let inner = plate(vec2(width(ui, &legend.title), 14.0));
+            let inner = plate(vec2(text_width_in(ui, &legend.title, egui::FontId::proportional(TEXT)), 14.0));
             text(ui, inner.left_center(), Align2::LEFT_CENTER, &legend.title);
         }
         Shown::Waste => named(ui, plate(vec2(106.0, 14.0)).left_center(), WASTE_COLOR, &legend.title),
@@ -70,12 +70,6 @@ fn waste_block(ui: &egui::Ui, at: Pos2, least: f32) {
     let block = Rect::from_min_size(at, vec2(BLOCK_WIDTH, BAR.y));
     ui.painter().rect_filled(block, 0.0, rgb(WASTE_COLOR));
     text(ui, block.center_bottom() + vec2(0.0, 4.0), Align2::CENTER_TOP, &format!("below {least}"));
-}
-
-/// The width of a text in points.
-fn width(ui: &egui::Ui, text: &str) -> f32 {
-    let font = egui::FontId::proportional(TEXT);
-    ui.painter().layout_no_wrap(text.to_owned(), font, Color32::PLACEHOLDER).size().x
 }
 
 /// Shows the dark plate of a legend of this size inside, and returns where that is.

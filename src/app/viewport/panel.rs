@@ -11,6 +11,7 @@ use super::picture::Wanted;
 use crate::app::App;
 use crate::app::jobs::measure_job::Trouble;
 use crate::app::text::counted;
+use crate::app::widgets::rgb;
 use crate::commands::{Action, with_key};
 use crate::gpu::GpuError;
 use crate::load::Source;
@@ -57,13 +58,26 @@ impl App {
             Some(_) => self.viewport.preview.texture(),
             None => self.viewport.picture.shown().filter(|_| is_whole),
         };
-        if let Some(id) = texture {
-            let whole = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
-            ui.painter().image(id, rect, whole, egui::Color32::WHITE);
+        match texture {
+            Some(id) => {
+                let whole = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
+                ui.painter().image(id, rect, whole, egui::Color32::WHITE);
+                self.over_picture(ui, rect);
+            }
+            None => {
+                let background = self.settings_in(ui.ctx().theme()).background_color();
+                ui.painter().rect_filled(rect, 0.0, rgb(background));
+            }
         }
+        self.viewport_notes(ui, rect);
+    }
+
+    /// What lies over a picture, and explains it.
+    fn over_picture(&mut self, ui: &mut egui::Ui, rect: egui::Rect) {
         self.patch_labels(ui, rect);
         self.divider(ui, rect);
-        self.viewport_notes(ui, rect);
+        self.greeting(ui, rect);
+        self.corner_notes(ui, rect);
         self.axis_gizmo(ui, rect);
         legend(ui, rect, self.settings.overlays.colors, &self.legend_distances());
     }
@@ -215,8 +229,9 @@ impl App {
             (Some(left), Some(right)) => [left, right],
             _ => ["untessellated", "tessellated"].map(str::to_owned),
         };
-        // The axes are in the right half's corner.
-        let end = axes_place(rect).map_or(rect.right(), |axes| axes.left());
+        // The axes are in the right half's corner, or under the titles.
+        let beside = axes_place(rect, Some(*split)).filter(|axes| Some(*axes) == axes_place(rect, None));
+        let end = beside.map_or(rect.right(), |axes| axes.left());
         let halves = [rect.with_max_x(at.min(end)), rect.with_min_x(at).with_max_x(end.max(at))];
         for ((half, place), (title, align)) in halves.into_iter().zip(["Left", "Right"]).zip(titles.iter().zip(ALIGN)) {
             half_note(ui, half, align, title, &format!("{place}: {title}"));
@@ -266,16 +281,23 @@ impl App {
         }
     }
 
-    /// Notes over the picture: what is on, a preview's mark, and the progress of loading, writing and drawing.
-    fn viewport_notes(&mut self, ui: &mut egui::Ui, rect: egui::Rect) {
+    /// The line of help at a first start, at the lower border of the picture. It leaves that place to the progress of a load.
+    fn greeting(&mut self, ui: &egui::Ui, rect: egui::Rect) {
         self.viewport.greets &= self.is_untouched();
-        if self.viewport.greets {
-            let position = rect.center_bottom() + egui::vec2(0.0, -14.0);
-            let (font, gray) = (egui::TextStyle::Body.resolve(ui.style()), egui::Color32::from_gray(235));
-            let text = ui.painter().layout(GREETING.to_owned(), font, gray, rect.width() - 28.0);
-            paint_note(ui, egui::Align2::CENTER_BOTTOM.anchor_size(position, text.size()), text);
+        if !self.viewport.greets || self.jobs.load.is_some() {
+            return;
         }
-        self.corner_notes(ui, rect);
+        let position = rect.center_bottom() + egui::vec2(0.0, -14.0);
+        let (font, gray) = (egui::TextStyle::Body.resolve(ui.style()), egui::Color32::from_gray(235));
+        let text = ui.painter().layout(GREETING.to_owned(), font, gray, rect.width() - 28.0);
+        let place = egui::Align2::CENTER_BOTTOM.anchor_size(position, text.size());
+        let response = ui.interact(place, ui.scope_id().with("greeting"), Sense::empty());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, GREETING));
+        paint_note(ui, place, text);
+    }
+
+    /// Notes about what is under way: the progress of loading, writing and drawing.
+    fn viewport_notes(&mut self, ui: &mut egui::Ui, rect: egui::Rect) {
         let is_old = self.document.as_ref().map(|document| document.generation)
             != self.viewport.picture.drawn.as_ref().map(|drawn| drawn.document);
         let is_cancelled = self.viewport.picture.cancelled.is_some();
@@ -285,6 +307,7 @@ impl App {
         if let Some(load) = &self.jobs.load {
             let title = match (load.progress.stage(), &load.preparation.heights) {
                 (Stage::Heights, Some(heights)) => format!("Reading heights: {}", heights.title()),
+                (Stage::Device, _) => format!("Preparing to draw {}", load.source.title()),
                 _ => format!("Loading {}", load.source.title()),
             };
             let (done, hover) = (Some((load.progress.fraction(), None)), "Stops loading. The mesh that is open stays.");

@@ -248,10 +248,11 @@ impl Picture {
         Ok(())
     }
 
-    /// The texture that is shown: the picture, or until it is drawn for the first time the one before it.
+    /// The texture that is shown: the picture, or until it is drawn for the first time in this size the one before it. None
+    /// before the first picture.
     pub(crate) fn shown(&self) -> Option<egui::TextureId> {
-        let before = self.before.as_ref().filter(|_| self.drawn.is_none());
-        before.or(self.target.as_ref()).map(|(_, id)| *id)
+        let drawn = self.target.as_ref().filter(|_| self.drawn.is_some());
+        drawn.or(self.before.as_ref()).map(|(_, id)| *id)
     }
 
     /// Draws what is wanted, if it isn't drawn yet and the device is free. The counts come back first; until then, and
