@@ -1,5 +1,8 @@
 // Colours that show how a surface is shaped, and how a texture would lie on it.
 
+// Values of LOOK. src/render/look.rs has the same.
+const LOOK_SURFACE_NORMALS: u32 = 1u;
+
 // A matte warm grey, light enough that shadows show.
 const CLAY_COLOR: vec3<f32> = vec3<f32>(0.82, 0.73, 0.64);
 

@@ -16,6 +16,11 @@
 // The own least of every patch of the mesh: see pass_least.wgsl. One element if it isn't known.
 @group(3) @binding(1) var<storage, read> least_triangles: array<u32>;
 
+// One of LOOK_*, or 0. The code of other looks is left out when the pipeline is made.
+override LOOK: u32 = 0u;
+// Whether the input triangles are drawn, whose surface is flat.
+override DRAWS_SOURCE: bool = false;
+
 struct Varyings {
     @builtin(position) clip: vec4<f32>,
     @location(1) normal: vec3<f32>,
@@ -361,6 +366,21 @@ fn zebra_place(normal: vec3<f32>, px: vec2<f32>) -> f32 {
     return reflected_place(frame.clip_from_object, normalize(normal), to_eye);
 }
 
+// The surface that patches are drawn as.
+fn drawn_surface() -> u32 {
+    return select(params.surface, SURFACE_FLAT, DRAWS_SOURCE);
+}
+
+// The unit normal of the patch itself, without displacement, or the shading normal where it has none.
+fn geometric_normal(in: Varyings, shading_normal: vec3<f32>) -> vec3<f32> {
+    let place = patch_place(in.domain.xy);
+    return surface_normal(drawn_surface(), load_net(in.patch_index), place.x, place.y, shading_normal);
+}
+
+fn normal_color(normal: vec3<f32>) -> vec3<f32> {
+    return from_srgb(0.5 + 0.5 * normal);
+}
+
 // The colour of a surface that isn't lit, and 1 if there is one.
 fn unlit(in: Varyings, normal: vec3<f32>, change: Changes) -> vec4<f32> {
     if (frame.overlays & OVERLAY_ZEBRA) != 0u {
@@ -371,7 +391,10 @@ fn unlit(in: Varyings, normal: vec3<f32>, change: Changes) -> vec4<f32> {
         return vec4<f32>(zebra_color(place, length(vec2<f32>(right - place, below - place))), 1.0);
     }
     if (frame.overlays & OVERLAY_SHADING_NORMALS) != 0u {
-        return vec4<f32>(from_srgb(0.5 + 0.5 * normal), 1.0);
+        return vec4<f32>(normal_color(normal), 1.0);
+    }
+    if LOOK == LOOK_SURFACE_NORMALS {
+        return vec4<f32>(normal_color(geometric_normal(in, normal)), 1.0);
     }
     if (frame.overlays & OVERLAY_UV_CHECKER) != 0u {
         let right = change.uv_right;

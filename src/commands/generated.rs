@@ -63,6 +63,7 @@ fn overlay_key(overlay: Overlay) -> KeyboardShortcut {
         Overlay::Clay => return shift(Key::C),
         Overlay::Zebra => return shift(Key::S),
         Overlay::ShadingNormals => return shift(Key::N),
+        Overlay::SurfaceNormals => return shift(Key::G),
         Overlay::UvChecker => return shift(Key::U),
         Overlay::Wireframe => Key::W,
         Overlay::Patches => Key::P,

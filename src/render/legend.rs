@@ -72,6 +72,12 @@ pub(crate) fn legend_of(colors: Colors, distances: &Distances) -> Option<Legend>
              and 1 is 255. Seen from behind, the surface has the same colours.",
             Shown::Colors(normal_colors()),
         ),
+        Colors::SurfaceNormals => legend(
+            "Surface normal: x red, y green, z blue",
+            "Colours of the normals of the curved patches themselves, without displacement, in object space, as normal maps have \
+             them: a coordinate of -1 is 0 in its channel, and 1 is 255. Seen from behind, the surface has the same colours.",
+            Shown::Colors(normal_colors()),
+        ),
         Colors::UvChecker => legend(
             "UV: a square is 1/8 of a unit",
             "A checker over texture coordinates. Red grows with u and green with v up to the next whole number, where there \

@@ -17,6 +17,7 @@ mod leaks;
 mod legend;
 #[cfg(test)]
 mod light_tests;
+mod look;
 mod marks;
 mod materials;
 mod needs;

@@ -7,6 +7,7 @@ use super::deviation::Deviations;
 use super::environment::{Environment, LightView};
 use super::frame::frame;
 use super::layout::{linear, overlay_bits};
+use super::look::Look;
 use super::materials::Materials;
 use super::needs::Needs;
 use super::pipelines::{Draw, DrawPipelines, Faces, Occluded};
@@ -112,7 +113,7 @@ impl Renderer {
     /// # Errors
     /// Out of memory, or a lost device.
     pub fn prepare_all(&self) -> Result<(), GpuError> {
-        Draw::ALL.into_iter().try_for_each(|draw| self.pipelines.get(&self.gpu, draw).map(|_| ()))
+        Draw::ALL.into_iter().chain(Draw::of_looks()).try_for_each(|draw| self.pipelines.get(&self.gpu, draw).map(|_| ()))
     }
 
     /// Draws the scene into the target, chunk after chunk. The scene must be counted. A chunk is emitted unless the arena still
@@ -397,7 +398,7 @@ fn surface_draws(settings: &Settings, mesh: &Mesh, faces: Faces) -> ([Draw; 2], 
     let Overlays { wireframe, folds, colors, .. } = settings.overlays;
     let pulled = wireframe || folds || matches!(colors, Colors::TriangleSize | Colors::Deviation);
     let has_overlays = overlay_bits(&settings.overlays) != 0;
-    let draws = match pulled {
+    let draws = match (pulled, Look::of(colors)) {
         _ if settings.shows_materials() => {
             let draw = if pulled {
                 Draw::LitPulled
@@ -408,17 +409,23 @@ fn surface_draws(settings: &Settings, mesh: &Mesh, faces: Faces) -> ([Draw; 2], 
             };
             [draw(faces, places, Needs::of(mesh)); 2]
         }
-        true => [Draw::Pulled(faces, places); 2],
-        false if has_overlays => [Draw::Indexed(faces, places); 2],
-        false if places == NormalsAt::Pixels => [Draw::PixelNormals(faces); 2],
-        false => [Draw::Plain(faces), Draw::Textured(faces)],
+        (true, Some(look)) => [Draw::LookPulled(faces, places, look); 2],
+        (false, Some(look)) => [Draw::LookIndexed(faces, places, look); 2],
+        (true, None) => [Draw::Pulled(faces, places); 2],
+        (false, None) if has_overlays => [Draw::Indexed(faces, places); 2],
+        (false, None) if places == NormalsAt::Pixels => [Draw::PixelNormals(faces); 2],
+        (false, None) => [Draw::Plain(faces), Draw::Textured(faces)],
     };
     (draws, pulled)
 }
 
 /// The pipeline for input triangles.
 fn source_draw(settings: &Settings, mesh: &Mesh) -> Draw {
-    if settings.shows_materials() { Draw::LitSource(Needs::of(mesh)) } else { Draw::Source }
+    match Look::of(settings.overlays.colors) {
+        _ if settings.shows_materials() => Draw::LitSource(Needs::of(mesh)),
+        Some(look) => Draw::LookSource(look),
+        None => Draw::Source,
+    }
 }
 
 /// How settings turn and show the light.

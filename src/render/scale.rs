@@ -74,6 +74,7 @@ impl Scale {
             | Colors::Clay
             | Colors::Zebra
             | Colors::ShadingNormals
+            | Colors::SurfaceNormals
             | Colors::UvChecker
             | Colors::Barycentric
             | Colors::LowFactors

@@ -318,8 +318,8 @@ pub(crate) static OVERLAY: Declaration = Declaration {
     name: "overlay",
     label: "Overlays",
     placeholder: "OVERLAY,..",
-    text: "What is drawn over the surface. At most one of clay, zebra, shading-normals, uv-checker, barycentric, \
-           factors, triangle-size, low-factors, excess and deviation, which colour all of it.",
+    text: "What is drawn over the surface. At most one of clay, zebra, shading-normals, surface-normals, uv-checker, \
+           barycentric, factors, triangle-size, low-factors, excess and deviation, which colour all of it.",
     kind: Kind::Several(descriptions::<Overlay>),
     unset: None,
     saved_as: &["overlays"],

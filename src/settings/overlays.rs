@@ -15,6 +15,8 @@ pub enum Colors {
     Zebra,
     /// The directions of shading normals.
     ShadingNormals,
+    /// The directions of the normals of the curved surface itself.
+    SurfaceNormals,
     /// A checker over texture coordinates.
     UvChecker,
     /// Domain coordinates: u red, v green, w blue.
@@ -63,6 +65,7 @@ pub enum Overlay {
     Clay,
     Zebra,
     ShadingNormals,
+    SurfaceNormals,
     UvChecker,
     Barycentric,
     Adjacency,
@@ -80,8 +83,8 @@ pub enum Overlay {
 }
 
 impl Overlay {
-    pub const ALL: [Self; 19] = every![Overlay:
-        Wireframe, Patches, Clay, Zebra, ShadingNormals, UvChecker, Barycentric, Adjacency, Cracks, Folds, TJunctions,
+    pub const ALL: [Self; 20] = every![Overlay:
+        Wireframe, Patches, Clay, Zebra, ShadingNormals, SurfaceNormals, UvChecker, Barycentric, Adjacency, Cracks, Folds, TJunctions,
         BackFaces, Factors, TriangleSize, LowFactors, Excess, Normals, Grid, Deviation,
     ];
 }
@@ -110,6 +113,13 @@ impl Choice for Overlay {
                 "Shading normals",
                 "Colours the surface by its unit shading normal in object space, as normal maps do: x red, y green, z blue, \
                  each from -1 (0) to 1 (255).",
+            ),
+            Self::SurfaceNormals => (
+                "surface-normals",
+                "Surface normals",
+                "Colours the surface by the unit normal of each curved patch itself, in the colours of the shading normals. \
+                 They differ from the shading normals where shading pretends, and jump where patches meet at an angle. \
+                 Displacement isn't in them.",
             ),
             Self::UvChecker => (
                 "uv-checker",
@@ -188,7 +198,7 @@ impl Choice for Overlay {
 
 impl Choice for Colors {
     const ALL: &'static [Self] = &every![Colors:
-        Material, Clay, Zebra, ShadingNormals, UvChecker, Barycentric, Factors, TriangleSize, LowFactors, Excess, Deviation,
+        Material, Clay, Zebra, ShadingNormals, SurfaceNormals, UvChecker, Barycentric, Factors, TriangleSize, LowFactors, Excess, Deviation,
     ];
 
     fn description(self) -> Description {
@@ -197,6 +207,7 @@ impl Choice for Colors {
             Self::Clay => Overlay::Clay.description(),
             Self::Zebra => Overlay::Zebra.description(),
             Self::ShadingNormals => Overlay::ShadingNormals.description(),
+            Self::SurfaceNormals => Overlay::SurfaceNormals.description(),
             Self::UvChecker => Overlay::UvChecker.description(),
             Self::Barycentric => Overlay::Barycentric.description(),
             Self::Factors => Overlay::Factors.description(),
@@ -221,6 +232,7 @@ impl Overlays {
             Overlay::Clay => return Control::Colors(&mut self.colors, Colors::Clay),
             Overlay::Zebra => return Control::Colors(&mut self.colors, Colors::Zebra),
             Overlay::ShadingNormals => return Control::Colors(&mut self.colors, Colors::ShadingNormals),
+            Overlay::SurfaceNormals => return Control::Colors(&mut self.colors, Colors::SurfaceNormals),
             Overlay::UvChecker => return Control::Colors(&mut self.colors, Colors::UvChecker),
             Overlay::Barycentric => return Control::Colors(&mut self.colors, Colors::Barycentric),
             Overlay::Factors => return Control::Colors(&mut self.colors, Colors::Factors),

@@ -126,6 +126,7 @@ fn the_legend_is_in_the_lower_right_corner_of_colours_that_stand_for_something()
         "barycentric",
         "zebra",
         "shading-normals",
+        "surface-normals",
         "uv-checker",
     ] {
         let options = ["shape:torus", "--lod", "error", "--overlay", colors];

@@ -93,6 +93,41 @@ fn shading_normals_have_the_colours_of_normal_maps() {
     }
 }
 
+#[test]
+fn surface_normals_are_those_of_the_patch_whatever_it_is_shaded_with() {
+    // Normals that lean bend no flat patch, and the mesh itself is flat.
+    let leaning = square(vec3(0.6, 0.0, 0.8), Vec2::ONE);
+    for settings in also(flat(Colors::SurfaceNormals)) {
+        for azimuth in [0.0, 180.0] {
+            let found = middle(&drawn(&leaning, &settings, azimuth));
+            let is_near = found.iter().zip([128, 128, 255]).all(|(found, expected)| found.abs_diff(expected) <= 1);
+            assert!(is_near, "{found:?} from {azimuth} with {settings:?}");
+        }
+    }
+}
+
+#[test]
+fn surface_normals_of_curved_patches_are_those_of_the_mathematics() {
+    for surface in [Surface::PnAen, Surface::PhongAen, Surface::NagataAen] {
+        let settings = flat(Colors::SurfaceNormals);
+        let settings = settings.with(Tessellation { surface, normals: Normals::Surface, ..settings.tessellation });
+        let shading = Settings { normals_at: NormalsAt::Pixels, ..settings };
+        let shading = Settings { overlays: Overlays { colors: Colors::ShadingNormals, ..shading.overlays }, ..shading };
+        let (_, mut sphere) = scene(Shape::Icosphere);
+        let target = Target::new(&engine().gpu, [SIDE; 2]).expect("a small picture");
+        let camera = Camera::framing(&sphere.bounds, target.viewport());
+        // Surface normals at pixels are tested against the CPU; these must be the same whatever shades the surface.
+        let expected = seen(&mut sphere, &target, &shading, &camera);
+        for normals in [Normals::Linear, Normals::Surface] {
+            let own = settings.with(Tessellation { normals, ..settings.tessellation });
+            for overlays in [own.overlays, Overlays { folds: true, ..own.overlays }] {
+                let found = seen(&mut sphere, &target, &Settings { overlays, ..own }, &camera);
+                assert!(found == expected, "{surface:?} {normals:?} {overlays:?}");
+            }
+        }
+    }
+}
+
 /// The square with another material: a red one with a texture of two colours.
 fn painted(mesh: &Mesh) -> Mesh {
     let mut painted = mesh.clone();

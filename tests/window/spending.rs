@@ -26,6 +26,7 @@ fn only_one_colouring_is_shown_and_has_a_legend() {
         "Legend: Stripes break at creases",
         "Legend: Normal: x red, y green, z blue",
         "Legend: UV: a square is 1/8 of a unit",
+        "Legend: Surface normal: x red, y green, z blue",
     ];
     let shown = |harness: &Harness<App>| -> Vec<_> {
         (0..legends.len()).filter(|&legend| harness.query_by_label(legends[legend]).is_some()).collect()
@@ -41,6 +42,7 @@ fn only_one_colouring_is_shown_and_has_a_legend() {
         ("Zebra", Colors::Zebra, Some(5)),
         ("Shading normals", Colors::ShadingNormals, Some(6)),
         ("UV checker", Colors::UvChecker, Some(7)),
+        ("Surface normals", Colors::SurfaceNormals, Some(8)),
         ("Material", Colors::Material, None),
     ] {
         let pictures = harness.state().pictures();
@@ -64,6 +66,7 @@ fn only_one_colouring_is_shown_and_has_a_legend() {
         (egui::Key::C, Colors::Clay),
         (egui::Key::S, Colors::Zebra),
         (egui::Key::N, Colors::ShadingNormals),
+        (egui::Key::G, Colors::SurfaceNormals),
         (egui::Key::U, Colors::UvChecker),
         (egui::Key::U, Colors::Material),
     ] {

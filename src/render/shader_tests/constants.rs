@@ -18,6 +18,7 @@ use crate::render::layout::{
     AXIS_COLORS, BACK_FACE_COLOR, CHECKER_LIGHT, CHECKER_LINE, CHECKER_U, CHECKER_V, FOLD_COLOR, FOUND_EMITTED,
     NORMAL_COLOR, WASTE_COLOR, edge_color, linear, overlay_bits,
 };
+use crate::render::look::Look;
 use crate::render::reflectance::{COAT_F0, LEAST_ALPHA};
 use crate::render::scale::Scale;
 use crate::render::tone::{COMPRESSION_START, DESATURATION, TONE_CURVE_NEUTRAL, TONE_CURVE_NONE};
@@ -129,6 +130,7 @@ fn table() -> Vec<(&'static str, Expected)> {
         ("OVERLAY_SHADING_NORMALS", colors(Colors::ShadingNormals)),
         ("OVERLAY_UV_CHECKER", colors(Colors::UvChecker)),
         ("OVERLAY_DEVIATION", colors(Colors::Deviation)),
+        ("LOOK_SURFACE_NORMALS", number(Look::SurfaceNormals as u32)),
         ("FOLD_COLOR", color(FOLD_COLOR)),
         ("BACK_FACE_COLOR", color(BACK_FACE_COLOR)),
         ("WASTE_COLOR", color(WASTE_COLOR)),
