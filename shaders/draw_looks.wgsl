@@ -2,6 +2,7 @@
 
 // Values of LOOK. src/render/look.rs has the same.
 const LOOK_SURFACE_NORMALS: u32 = 1u;
+const LOOK_CURVATURE: u32 = 2u;
 
 // A matte warm grey, light enough that shadows show.
 const CLAY_COLOR: vec3<f32> = vec3<f32>(0.82, 0.73, 0.64);

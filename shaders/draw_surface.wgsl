@@ -244,7 +244,15 @@ fn from_srgb(color: vec3<f32>) -> vec3<f32> {
 
 // As in src/render/scale.rs, in linear light.
 fn scale_color(number: f32) -> vec3<f32> {
-    let place = log(number / frame.scale_least) / log(frame.scale_most / frame.scale_least);
+    return color_at_place(log(number / frame.scale_least) / log(frame.scale_most / frame.scale_least));
+}
+
+// The same on an even scale.
+fn even_scale_color(number: f32) -> vec3<f32> {
+    return color_at_place((number - frame.scale_least) / (frame.scale_most - frame.scale_least));
+}
+
+fn color_at_place(place: f32) -> vec3<f32> {
     let at = clamp(place, 0.0, 1.0) * f32(SCALE_STOPS - 1u);
     let below = min(u32(at), SCALE_STOPS - 2u);
     return from_srgb(mix(frame.scale[below].rgb, frame.scale[below + 1u].rgb, at - f32(below)));
@@ -298,8 +306,25 @@ fn deviation_color(in: Varyings) -> vec4<f32> {
     return vec4<f32>(scale_color(max(number, frame.scale_least)), f32(distance >= 0.0));
 }
 
+// The surface that patches are drawn as.
+fn drawn_surface() -> u32 {
+    return select(params.surface, SURFACE_FLAT, DRAWS_SOURCE);
+}
+
+// The mean curvature of the patch itself, without displacement, in 1 / object unit.
+fn curvature_at(in: Varyings) -> f32 {
+    let place = patch_place(in.domain.xy);
+    let surface = drawn_surface();
+    let net = load_net(in.patch_index);
+    let second = patch_second_derivatives(surface, net, place.x, place.y);
+    return mean_curvature(patch_tangents(surface, net, place.x, place.y), second);
+}
+
 // The colour that an overlay gives the surface in place of the material's, and 1 if there is one.
 fn meaning(in: Varyings, to_edges: vec3<f32>, edge_heights: vec3<f32>) -> vec4<f32> {
+    if LOOK == LOOK_CURVATURE {
+        return vec4<f32>(even_scale_color(curvature_at(in)), 1.0);
+    }
     if (frame.overlays & OVERLAY_FACTORS) != 0u && in.factors.w > 0.0 {
         return vec4<f32>(factor_color(in.factors, to_edges, edge_heights), 1.0);
     }
@@ -364,11 +389,6 @@ fn changes(in: Varyings) -> Changes {
 fn zebra_place(normal: vec3<f32>, px: vec2<f32>) -> f32 {
     let to_eye = toward_eye(frame.clip_from_object, frame.viewport, px);
     return reflected_place(frame.clip_from_object, normalize(normal), to_eye);
-}
-
-// The surface that patches are drawn as.
-fn drawn_surface() -> u32 {
-    return select(params.surface, SURFACE_FLAT, DRAWS_SOURCE);
 }
 
 // The unit normal of the patch itself, without displacement, or the shading normal where it has none.

@@ -167,7 +167,7 @@ impl Shot {
         self.draw(&progress.part(MEASURING, 1.0))?;
         let mut picture = self.target.read(&self.engine.gpu)?;
         if self.view.legend {
-            draw_legend(&mut picture, self.subject.settings.overlays.colors, &self.distances())?;
+            draw_legend(&mut picture, &self.subject.settings, self.scene.bounds.radius(), &self.distances())?;
         }
         Ok(picture)
     }

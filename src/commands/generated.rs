@@ -64,6 +64,7 @@ fn overlay_key(overlay: Overlay) -> KeyboardShortcut {
         Overlay::Zebra => return shift(Key::S),
         Overlay::ShadingNormals => return shift(Key::N),
         Overlay::SurfaceNormals => return shift(Key::G),
+        Overlay::Curvature => return shift(Key::K),
         Overlay::UvChecker => return shift(Key::U),
         Overlay::Wireframe => Key::W,
         Overlay::Patches => Key::P,

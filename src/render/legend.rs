@@ -1,8 +1,8 @@
 //! What a legend says about the surface's colours. The window paints it over the viewport, and commands into their pictures.
 
 use super::layout::{CHECKER_LIGHT, CHECKER_LINE, CHECKER_U, CHECKER_V, srgb};
-use super::{DEVIATION_PX_SCALE, EXCESS_SCALE, FACTOR_SCALE, SIZE_SCALE, Scale};
-use crate::settings::{Colors, DeviationUnit};
+use super::{DEVIATION_PX_SCALE, EXCESS_SCALE, FACTOR_SCALE, SIZE_SCALE, Scale, curvature_scale};
+use crate::settings::{Colors, DeviationUnit, Settings};
 
 /// The contents of a legend.
 pub(crate) struct Legend {
@@ -52,13 +52,14 @@ pub(crate) fn has_legend(colors: Colors) -> bool {
     !matches!(colors, Colors::Material | Colors::Clay)
 }
 
-/// The legend of these colours, if they have one. That of barycentric colours is a drawing instead.
-pub(crate) fn legend_of(colors: Colors, distances: &Distances) -> Option<Legend> {
+/// The legend of a picture's colours, if they have one. That of barycentric colours is a drawing instead. `radius` is the mesh's
+/// bounding radius in object units.
+pub(crate) fn legend_of(settings: &Settings, radius: f32, distances: &Distances) -> Option<Legend> {
     let legend = |title: &str, meaning: &str, shown: Shown| {
         Some(Legend { title: title.to_owned(), meaning: meaning.to_owned(), shown })
     };
     let scale = |scale: Scale, ticks: &[f32], waste: bool| Shown::Scale { scale, ticks: ticks.to_vec(), waste };
-    match colors {
+    match settings.overlays.colors {
         Colors::Material | Colors::Clay | Colors::Barycentric => None,
         Colors::Zebra => legend(
             "Stripes break at creases",
@@ -78,6 +79,17 @@ pub(crate) fn legend_of(colors: Colors, distances: &Distances) -> Option<Legend>
              them: a coordinate of -1 is 0 in its channel, and 1 is 255. Seen from behind, the surface has the same colours.",
             Shown::Colors(normal_colors()),
         ),
+        Colors::Curvature => {
+            let own = curvature_scale(settings.curvature_scale, radius);
+            legend(
+                "Mean curvature, 1/unit",
+                "Colours of the mean curvature of the curved patches themselves, without displacement, in 1 / object unit: a \
+                 sphere of radius r has 1 / r. It is above 0 where the surface bulges towards the side that it faces, below 0 \
+                 where it is hollow, and 0 where it is flat or a saddle. Curvature up to, in the section Overlays, sets the \
+                 scale's ends.",
+                scale(own, &[own.least, 0.0, own.most], false),
+            )
+        }
         Colors::UvChecker => legend(
             "UV: a square is 1/8 of a unit",
             "A checker over texture coordinates. Red grows with u and green with v up to the next whole number, where there \
@@ -156,7 +168,10 @@ fn deviation_legend(distances: &Distances) -> Legend {
 
 /// Formats a tick as shortly as possible. The ends of scales are round numbers.
 pub(crate) fn tick_text(tick: f32) -> String {
-    if (1e-3..1e5).contains(&tick) {
+    if tick < 0.0 {
+        return format!("-{}", tick_text(-tick));
+    }
+    if tick == 0.0 || (1e-3..1e5).contains(&tick) {
         let rounded = format!("{tick:.5}");
         rounded.trim_end_matches('0').trim_end_matches('.').to_owned()
     } else {
@@ -173,5 +188,6 @@ mod tests {
     fn ticks_are_short() {
         let texts = [64.0, 3.0, 0.1, 0.0025, 0.25, 1.5e-4, 2e-7, 150.0].map(tick_text);
         assert_eq!(texts, ["64", "3", "0.1", "0.0025", "0.25", "1.5e-4", "2e-7", "150"]);
+        assert_eq!([0.0, -2.4, -3e-7].map(tick_text), ["0", "-2.4", "-3e-7"]);
     }
 }

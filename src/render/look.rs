@@ -8,15 +8,17 @@ use crate::settings::Colors;
 #[repr(u32)]
 pub(crate) enum Look {
     SurfaceNormals = 1,
+    Curvature = 2,
 }
 
 impl Look {
-    pub(super) const ALL: [Self; 1] = every![Look: SurfaceNormals];
+    pub(super) const ALL: [Self; 2] = every![Look: SurfaceNormals, Curvature];
 
     /// The variant that shows these colours, if they have one.
     pub(super) fn of(colors: Colors) -> Option<Self> {
         match colors {
             Colors::SurfaceNormals => Some(Self::SurfaceNormals),
+            Colors::Curvature => Some(Self::Curvature),
             Colors::Material
             | Colors::Clay
             | Colors::Zebra

@@ -11,7 +11,7 @@ use super::prefilter_pass::REFLECTANCE;
 use super::scene::LineSegment;
 use super::target::{COLOR_FORMAT, DEPTH_FORMAT, samples};
 use crate::gpu::wgsl::{
-    CONVENTION, FACTORS, LOAD_NET, LOADS, NORMAL, OCTAHEDRAL_NORMAL, SURFACE, TYPES, WgslFile, wgsl,
+    CONVENTION, CURVATURE, FACTORS, LOAD_NET, LOADS, NORMAL, OCTAHEDRAL_NORMAL, SURFACE, TYPES, WgslFile, wgsl,
 };
 use crate::gpu::{Gpu, GpuError, Lazy, ShaderModule, VERTEX_HALF};
 use crate::settings::{Choice, NormalsAt};
@@ -30,6 +30,7 @@ pub(super) static DRAW_PLAIN: WgslFile =
 pub(super) static DRAW_SURFACE: WgslFile = wgsl!(
     "draw_surface",
     CONVENTION,
+    CURVATURE,
     DRAW_DENSITY,
     DRAW_LIGHT,
     DRAW_LOOKS,

@@ -49,6 +49,8 @@ pub struct Settings {
     pub light_rotation: f32,
     /// The unit of the distances that the deviation overlay colours.
     pub deviation_in: DeviationUnit,
+    /// The mean curvature at the ends of the curvature overlay's scale, in 1 / bounding radius.
+    pub curvature_scale: f32,
     /// Where the picture is split, as a fraction of its width from the left; none if it isn't.
     pub split: Option<f32>,
     /// The surface left of the split, with all other settings the same; none for the untessellated mesh.
@@ -68,6 +70,7 @@ impl Default for Settings {
             tone_curve: ToneCurve::default(),
             light_rotation: 0.0,
             deviation_in: DeviationUnit::Units,
+            curvature_scale: 4.0,
             split: None,
             split_surface: None,
             background: None,

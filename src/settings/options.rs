@@ -31,7 +31,7 @@ pub(crate) static TESSELLATION: [&Declaration; 16] = [
 ];
 
 /// The options of commands that draw a picture.
-pub(crate) static PICTURE: [&Declaration; 10] = [
+pub(crate) static PICTURE: [&Declaration; 11] = [
     &NORMALS_AT,
     &OVERLAY,
     &LIGHTING,
@@ -39,6 +39,7 @@ pub(crate) static PICTURE: [&Declaration; 10] = [
     &TONE_CURVE,
     &LIGHT_ROTATION,
     &DEVIATION_IN,
+    &CURVATURE_SCALE,
     &SPLIT,
     &SPLIT_SURFACE,
     &BACKGROUND,
@@ -318,8 +319,8 @@ pub(crate) static OVERLAY: Declaration = Declaration {
     name: "overlay",
     label: "Overlays",
     placeholder: "OVERLAY,..",
-    text: "What is drawn over the surface. At most one of clay, zebra, shading-normals, surface-normals, uv-checker, \
-           barycentric, factors, triangle-size, low-factors, excess and deviation, which colour all of it.",
+    text: "What is drawn over the surface. At most one of clay, zebra, shading-normals, surface-normals, curvature, \
+           uv-checker, barycentric, factors, triangle-size, low-factors, excess and deviation, which colour all of it.",
     kind: Kind::Several(descriptions::<Overlay>),
     unset: None,
     saved_as: &["overlays"],
@@ -394,6 +395,20 @@ pub(crate) static DEVIATION_IN: Declaration = Declaration {
         (settings.overlays.colors != Colors::Deviation).then_some("Only the deviation overlay colours distances.")
     },
     access: field!(deviation_in),
+};
+
+pub(crate) static CURVATURE_SCALE: Declaration = Declaration {
+    name: "curvature-scale",
+    label: "Curvature up to",
+    placeholder: "C",
+    text: "The mean curvature at the ends of the curvature overlay's scale, in 1 / bounding radius of the mesh: a sphere has 1.",
+    kind: Kind::Number(Range::new(0.1, 1000.0, "/r").logarithmic()),
+    unset: None,
+    saved_as: &["curvature_scale"],
+    no_effect: |settings| {
+        (settings.overlays.colors != Colors::Curvature).then_some("Only the curvature overlay colours curvature.")
+    },
+    access: field!(curvature_scale),
 };
 
 pub(crate) static SPLIT: Declaration = Declaration {

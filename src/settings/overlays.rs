@@ -17,6 +17,8 @@ pub enum Colors {
     ShadingNormals,
     /// The directions of the normals of the curved surface itself.
     SurfaceNormals,
+    /// The mean curvature of the curved surface itself.
+    Curvature,
     /// A checker over texture coordinates.
     UvChecker,
     /// Domain coordinates: u red, v green, w blue.
@@ -66,6 +68,7 @@ pub enum Overlay {
     Zebra,
     ShadingNormals,
     SurfaceNormals,
+    Curvature,
     UvChecker,
     Barycentric,
     Adjacency,
@@ -83,8 +86,8 @@ pub enum Overlay {
 }
 
 impl Overlay {
-    pub const ALL: [Self; 20] = every![Overlay:
-        Wireframe, Patches, Clay, Zebra, ShadingNormals, SurfaceNormals, UvChecker, Barycentric, Adjacency, Cracks, Folds, TJunctions,
+    pub const ALL: [Self; 21] = every![Overlay:
+        Wireframe, Patches, Clay, Zebra, ShadingNormals, SurfaceNormals, Curvature, UvChecker, Barycentric, Adjacency, Cracks, Folds, TJunctions,
         BackFaces, Factors, TriangleSize, LowFactors, Excess, Normals, Grid, Deviation,
     ];
 }
@@ -120,6 +123,13 @@ impl Choice for Overlay {
                 "Colours the surface by the unit normal of each curved patch itself, in the colours of the shading normals. \
                  They differ from the shading normals where shading pretends, and jump where patches meet at an angle. \
                  Displacement isn't in them.",
+            ),
+            Self::Curvature => (
+                "curvature",
+                "Curvature",
+                "Colours the surface by the mean curvature of each curved patch itself, in 1 / object unit: red where it \
+                 bulges, blue where it is hollow, and light grey where it is flat or a saddle. A sphere of radius r has 1 / r. \
+                 Displacement isn't in it.",
             ),
             Self::UvChecker => (
                 "uv-checker",
@@ -198,7 +208,7 @@ impl Choice for Overlay {
 
 impl Choice for Colors {
     const ALL: &'static [Self] = &every![Colors:
-        Material, Clay, Zebra, ShadingNormals, SurfaceNormals, UvChecker, Barycentric, Factors, TriangleSize, LowFactors, Excess, Deviation,
+        Material, Clay, Zebra, ShadingNormals, SurfaceNormals, Curvature, UvChecker, Barycentric, Factors, TriangleSize, LowFactors, Excess, Deviation,
     ];
 
     fn description(self) -> Description {
@@ -208,6 +218,7 @@ impl Choice for Colors {
             Self::Zebra => Overlay::Zebra.description(),
             Self::ShadingNormals => Overlay::ShadingNormals.description(),
             Self::SurfaceNormals => Overlay::SurfaceNormals.description(),
+            Self::Curvature => Overlay::Curvature.description(),
             Self::UvChecker => Overlay::UvChecker.description(),
             Self::Barycentric => Overlay::Barycentric.description(),
             Self::Factors => Overlay::Factors.description(),
@@ -233,6 +244,7 @@ impl Overlays {
             Overlay::Zebra => return Control::Colors(&mut self.colors, Colors::Zebra),
             Overlay::ShadingNormals => return Control::Colors(&mut self.colors, Colors::ShadingNormals),
             Overlay::SurfaceNormals => return Control::Colors(&mut self.colors, Colors::SurfaceNormals),
+            Overlay::Curvature => return Control::Colors(&mut self.colors, Colors::Curvature),
             Overlay::UvChecker => return Control::Colors(&mut self.colors, Colors::UvChecker),
             Overlay::Barycentric => return Control::Colors(&mut self.colors, Colors::Barycentric),
             Overlay::Factors => return Control::Colors(&mut self.colors, Colors::Factors),

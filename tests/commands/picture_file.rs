@@ -127,6 +127,7 @@ fn the_legend_is_in_the_lower_right_corner_of_colours_that_stand_for_something()
         "zebra",
         "shading-normals",
         "surface-normals",
+        "curvature",
         "uv-checker",
     ] {
         let options = ["shape:torus", "--lod", "error", "--overlay", colors];

@@ -184,6 +184,7 @@ fn colours_look_as_they_did() {
         ("zebra", Shape::Bicubic, Colors::Zebra, Settings { normals_at: NormalsAt::Pixels, ..Settings::default() }),
         ("shading-normals", Shape::CubeSplit, Colors::ShadingNormals, Settings::default()),
         ("surface-normals", Shape::Icosphere, Colors::SurfaceNormals, Settings { split: Some(0.5), ..Settings::default() }),
+        ("curvature", Shape::Torus, Colors::Curvature, Settings { split: Some(0.5), ..Settings::default() }),
         ("uv-checker", Shape::Torus, Colors::UvChecker, Settings { split: Some(0.5), ..Settings::default() }),
     ] {
         let (_, mut scene) = scene(shape);

@@ -27,6 +27,7 @@ fn only_one_colouring_is_shown_and_has_a_legend() {
         "Legend: Normal: x red, y green, z blue",
         "Legend: UV: a square is 1/8 of a unit",
         "Legend: Surface normal: x red, y green, z blue",
+        "Legend: Mean curvature, 1/unit",
     ];
     let shown = |harness: &Harness<App>| -> Vec<_> {
         (0..legends.len()).filter(|&legend| harness.query_by_label(legends[legend]).is_some()).collect()
@@ -43,6 +44,7 @@ fn only_one_colouring_is_shown_and_has_a_legend() {
         ("Shading normals", Colors::ShadingNormals, Some(6)),
         ("UV checker", Colors::UvChecker, Some(7)),
         ("Surface normals", Colors::SurfaceNormals, Some(8)),
+        ("Curvature", Colors::Curvature, Some(9)),
         ("Material", Colors::Material, None),
     ] {
         let pictures = harness.state().pictures();
@@ -67,6 +69,7 @@ fn only_one_colouring_is_shown_and_has_a_legend() {
         (egui::Key::S, Colors::Zebra),
         (egui::Key::N, Colors::ShadingNormals),
         (egui::Key::G, Colors::SurfaceNormals),
+        (egui::Key::K, Colors::Curvature),
         (egui::Key::U, Colors::UvChecker),
         (egui::Key::U, Colors::Material),
     ] {

@@ -41,6 +41,7 @@ impl App {
                 ui.end_row();
             }
         }
+        shown_option_row(ui, &options::CURVATURE_SCALE, &mut self.settings);
     }
 
     fn surface_rows(&mut self, ui: &mut egui::Ui) {

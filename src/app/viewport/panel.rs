@@ -65,7 +65,9 @@ impl App {
         self.divider(ui, rect);
         self.viewport_notes(ui, rect);
         self.axis_gizmo(ui, rect);
-        legend(ui, rect, self.settings.overlays.colors, &self.legend_distances());
+        if let Some(document) = &self.document {
+            legend(ui, rect, &self.settings, document.scene.bounds.radius(), &self.legend_distances());
+        }
     }
 
     /// Goes on with drawing and all measurements.
