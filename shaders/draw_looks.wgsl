@@ -3,6 +3,10 @@
 // Values of LOOK. src/render/look.rs has the same.
 const LOOK_SURFACE_NORMALS: u32 = 1u;
 const LOOK_CURVATURE: u32 = 2u;
+const LOOK_MATCAP: u32 = 3u;
+
+// How far the sphere of a matcap reaches, as a part of half of its picture.
+const MATCAP_REACH: f32 = 0.98;
 
 // A matte warm grey, light enough that shadows show.
 const CLAY_COLOR: vec3<f32> = vec3<f32>(0.82, 0.73, 0.64);
@@ -53,6 +57,14 @@ fn reflected_place(clip_from_object: mat4x4<f32>, normal: vec3<f32>, to_eye: vec
     let half_way = reflect(-to_eye, normal) + back;
     let across = dot(half_way, ZEBRA_AXIS.x * up - ZEBRA_AXIS.y * right);
     return ZEBRA_STRIPES / 3.14159265 * atan2(across, max(dot(half_way, back), 1e-6));
+}
+
+// The place on a matcap, a picture of a lit sphere (Sloan et al. 2001), where the sphere has a normal. Right and up are taken across
+// the line of sight, so that a sphere shows all of the matcap wherever it is in the view.
+fn matcap_place(clip_from_object: mat4x4<f32>, to_eye: vec3<f32>, normal: vec3<f32>) -> vec2<f32> {
+    let right = normalize(cross(transpose(clip_from_object)[1].xyz, to_eye));
+    let up = cross(to_eye, right);
+    return 0.5 + 0.5 * MATCAP_REACH * vec2<f32>(dot(right, normal), -dot(up, normal));
 }
 
 fn zebra_color(place: f32, in_pixel: f32) -> vec3<f32> {

@@ -424,6 +424,14 @@ fn unlit(in: Varyings, normal: vec3<f32>, change: Changes) -> vec4<f32> {
     return vec4<f32>(0.0);
 }
 
+// The colour of the matcap, which is bound in place of the material's image, at a unit normal of the side that is seen.
+fn matcap_color(normal: vec3<f32>, to_eye: vec3<f32>, change: Changes) -> vec3<f32> {
+    let place = matcap_place(frame.clip_from_object, to_eye, normal);
+    let right = matcap_place(frame.clip_from_object, to_eye, normal + change.normal_right) - place;
+    let below = matcap_place(frame.clip_from_object, to_eye, normal + change.normal_below) - place;
+    return textureSampleGrad(base_texture, base_sampler, place, right, below).rgb;
+}
+
 // The colour of the surface without lines over it. `lit` is the material's in light from all around, if its fourth component isn't
 // 0.
 fn bare_color(
@@ -470,6 +478,9 @@ fn bare_color(
     let unlit_color = unlit(in, normalize(own_normal), change);
     if unlit_color.a > 0.0 {
         color = unlit_color.rgb;
+    }
+    if LOOK == LOOK_MATCAP {
+        color = matcap_color(normal, to_eye, change);
     }
     // Unlit, since folds mostly face away from the light.
     return select(color, FOLD_COLOR, in.folded != 0u);

@@ -61,6 +61,7 @@ fn settings() -> Vec<Command> {
 fn overlay_key(overlay: Overlay) -> KeyboardShortcut {
     plain(match overlay {
         Overlay::Clay => return shift(Key::C),
+        Overlay::Matcap => return shift(Key::M),
         Overlay::Zebra => return shift(Key::S),
         Overlay::ShadingNormals => return shift(Key::N),
         Overlay::SurfaceNormals => return shift(Key::G),

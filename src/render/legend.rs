@@ -49,7 +49,7 @@ pub(crate) struct Distances {
 
 /// Whether colours have a legend.
 pub(crate) fn has_legend(colors: Colors) -> bool {
-    !matches!(colors, Colors::Material | Colors::Clay)
+    !matches!(colors, Colors::Material | Colors::Clay | Colors::Matcap)
 }
 
 /// The legend of a picture's colours, if they have one. That of barycentric colours is a drawing instead. `radius` is the mesh's
@@ -60,7 +60,7 @@ pub(crate) fn legend_of(settings: &Settings, radius: f32, distances: &Distances)
     };
     let scale = |scale: Scale, ticks: &[f32], waste: bool| Shown::Scale { scale, ticks: ticks.to_vec(), waste };
     match settings.overlays.colors {
-        Colors::Material | Colors::Clay | Colors::Barycentric => None,
+        Colors::Material | Colors::Clay | Colors::Matcap | Colors::Barycentric => None,
         Colors::Zebra => legend(
             "Stripes break at creases",
             "Stripes that the surface reflects. A stripe breaks off where the surface has a crease, and has a corner where only \

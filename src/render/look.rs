@@ -9,16 +9,18 @@ use crate::settings::Colors;
 pub(crate) enum Look {
     SurfaceNormals = 1,
     Curvature = 2,
+    Matcap = 3,
 }
 
 impl Look {
-    pub(super) const ALL: [Self; 2] = every![Look: SurfaceNormals, Curvature];
+    pub(super) const ALL: [Self; 3] = every![Look: SurfaceNormals, Curvature, Matcap];
 
     /// The variant that shows these colours, if they have one.
     pub(super) fn of(colors: Colors) -> Option<Self> {
         match colors {
             Colors::SurfaceNormals => Some(Self::SurfaceNormals),
             Colors::Curvature => Some(Self::Curvature),
+            Colors::Matcap => Some(Self::Matcap),
             Colors::Material
             | Colors::Clay
             | Colors::Zebra

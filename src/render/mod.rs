@@ -19,6 +19,7 @@ mod legend;
 mod light_tests;
 mod look;
 mod marks;
+pub(crate) mod matcap;
 mod materials;
 mod needs;
 mod panorama;

@@ -8,6 +8,7 @@ use super::environment::{Environment, LightView};
 use super::frame::frame;
 use super::layout::{linear, overlay_bits};
 use super::look::Look;
+use super::matcap::Matcaps;
 use super::materials::Materials;
 use super::needs::Needs;
 use super::pipelines::{Draw, DrawPipelines, Faces, Occluded};
@@ -26,6 +27,7 @@ pub struct Renderer {
     gpu: Gpu,
     materials: Materials,
     studio: Lazy<Environment>,
+    matcaps: Matcaps,
     pipelines: DrawPipelines,
     coverage: CoveragePipelines,
     /// The buffer that is bound where deviations, or patches' own least, aren't known.
@@ -52,6 +54,7 @@ impl Renderer {
             pipelines: DrawPipelines::new(gpu, &materials),
             materials,
             studio: Lazy::default(),
+            matcaps: Matcaps::new(),
             coverage: CoveragePipelines::new(),
             unknown: Deviations::unknown(gpu),
             samples: samples(gpu),
@@ -86,6 +89,9 @@ impl Renderer {
         };
         if settings.shows_materials() {
             self.studio()?;
+        }
+        if settings.overlays.colors == Colors::Matcap {
+            self.matcaps.group(&self.gpu, &self.materials, settings.matcap)?;
         }
         let (materials, _) = surface_draws(settings, scene.tessellator.mesh(), faces);
         let mut draws: Vec<_> = scene
@@ -228,6 +234,10 @@ impl Renderer {
 
     /// The bind groups of a scene's materials for a picture with these settings.
     fn material_groups(&self, scene: &Scene, settings: &Settings) -> Result<Vec<wgpu::BindGroup>, GpuError> {
+        if settings.overlays.colors == Colors::Matcap {
+            let group = self.matcaps.group(&self.gpu, &self.materials, settings.matcap)?;
+            return Ok(vec![group.clone(); scene.materials.len()]);
+        }
         if !settings.shows_materials() {
             return Ok(scene.materials.iter().map(|own| own.group.clone()).collect());
         }

@@ -95,6 +95,7 @@ impl Scale {
             Colors::Excess => Some(&EXCESS_SCALE),
             Colors::Material
             | Colors::Clay
+            | Colors::Matcap
             | Colors::Zebra
             | Colors::ShadingNormals
             | Colors::SurfaceNormals

@@ -5,7 +5,7 @@
 
 use super::value::Field;
 use super::{
-    Access, Colors, Declaration, Description, DeviationUnit, Kind, Lighting, NormalsAt, Overlay, Range, Settings,
+    Access, Colors, Declaration, Description, DeviationUnit, Kind, Lighting, Matcap, NormalsAt, Overlay, Range, Settings,
     ToneCurve, Value, descriptions,
 };
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface, Tessellation};
@@ -31,7 +31,7 @@ pub(crate) static TESSELLATION: [&Declaration; 16] = [
 ];
 
 /// The options of commands that draw a picture.
-pub(crate) static PICTURE: [&Declaration; 11] = [
+pub(crate) static PICTURE: [&Declaration; 12] = [
     &NORMALS_AT,
     &OVERLAY,
     &LIGHTING,
@@ -40,6 +40,7 @@ pub(crate) static PICTURE: [&Declaration; 11] = [
     &LIGHT_ROTATION,
     &DEVIATION_IN,
     &CURVATURE_SCALE,
+    &MATCAP,
     &SPLIT,
     &SPLIT_SURFACE,
     &BACKGROUND,
@@ -319,8 +320,8 @@ pub(crate) static OVERLAY: Declaration = Declaration {
     name: "overlay",
     label: "Overlays",
     placeholder: "OVERLAY,..",
-    text: "What is drawn over the surface. At most one of clay, zebra, shading-normals, surface-normals, curvature, \
-           uv-checker, barycentric, factors, triangle-size, low-factors, excess and deviation, which colour all of it.",
+    text: "What is drawn over the surface. At most one of clay, matcap, zebra, shading-normals, surface-normals, \
+           curvature, uv-checker, barycentric, factors, triangle-size, low-factors, excess and deviation, which colour all of it.",
     kind: Kind::Several(descriptions::<Overlay>),
     unset: None,
     saved_as: &["overlays"],
@@ -409,6 +410,20 @@ pub(crate) static CURVATURE_SCALE: Declaration = Declaration {
         (settings.overlays.colors != Colors::Curvature).then_some("Only the curvature overlay colours curvature.")
     },
     access: field!(curvature_scale),
+};
+
+pub(crate) static MATCAP: Declaration = Declaration {
+    name: "matcap",
+    label: "Lit sphere",
+    placeholder: "NAME",
+    text: "The lit sphere whose colours the matcap overlay shows.",
+    kind: Kind::Choice(descriptions::<Matcap>),
+    unset: None,
+    saved_as: &["matcap"],
+    no_effect: |settings| {
+        (settings.overlays.colors != Colors::Matcap).then_some("Only the matcap overlay shows a lit sphere.")
+    },
+    access: field!(matcap),
 };
 
 pub(crate) static SPLIT: Declaration = Declaration {

@@ -11,6 +11,8 @@ pub enum Colors {
     Material,
     /// One matte material for all of the mesh, so that the shape alone is judged.
     Clay,
+    /// The colours of a lit sphere at the same normals.
+    Matcap,
     /// Stripes that the surface reflects.
     Zebra,
     /// The directions of shading normals.
@@ -65,6 +67,7 @@ pub enum Overlay {
     Wireframe,
     Patches,
     Clay,
+    Matcap,
     Zebra,
     ShadingNormals,
     SurfaceNormals,
@@ -86,8 +89,8 @@ pub enum Overlay {
 }
 
 impl Overlay {
-    pub const ALL: [Self; 21] = every![Overlay:
-        Wireframe, Patches, Clay, Zebra, ShadingNormals, SurfaceNormals, Curvature, UvChecker, Barycentric, Adjacency, Cracks, Folds, TJunctions,
+    pub const ALL: [Self; 22] = every![Overlay:
+        Wireframe, Patches, Clay, Matcap, Zebra, ShadingNormals, SurfaceNormals, Curvature, UvChecker, Barycentric, Adjacency, Cracks, Folds, TJunctions,
         BackFaces, Factors, TriangleSize, LowFactors, Excess, Normals, Grid, Deviation,
     ];
 }
@@ -104,6 +107,12 @@ impl Choice for Overlay {
                 "Clay",
                 "Shows the mesh in one matte warm grey, without its own colours, textures and gloss, so that only its shape \
                  is seen.",
+            ),
+            Self::Matcap => (
+                "matcap",
+                "Matcap",
+                "Gives each place of the surface the colour that a lit sphere has at the same shading normal, as sculpting \
+                 programs do. The light stays with the view.",
             ),
             Self::Zebra => (
                 "zebra",
@@ -208,13 +217,14 @@ impl Choice for Overlay {
 
 impl Choice for Colors {
     const ALL: &'static [Self] = &every![Colors:
-        Material, Clay, Zebra, ShadingNormals, SurfaceNormals, Curvature, UvChecker, Barycentric, Factors, TriangleSize, LowFactors, Excess, Deviation,
+        Material, Clay, Matcap, Zebra, ShadingNormals, SurfaceNormals, Curvature, UvChecker, Barycentric, Factors, TriangleSize, LowFactors, Excess, Deviation,
     ];
 
     fn description(self) -> Description {
         match self {
             Self::Material => Description::new("material", "Material", "The mesh's own colours."),
             Self::Clay => Overlay::Clay.description(),
+            Self::Matcap => Overlay::Matcap.description(),
             Self::Zebra => Overlay::Zebra.description(),
             Self::ShadingNormals => Overlay::ShadingNormals.description(),
             Self::SurfaceNormals => Overlay::SurfaceNormals.description(),
@@ -241,6 +251,7 @@ impl Overlays {
     pub fn control(&mut self, overlay: Overlay) -> Control<'_> {
         Control::Switch(match overlay {
             Overlay::Clay => return Control::Colors(&mut self.colors, Colors::Clay),
+            Overlay::Matcap => return Control::Colors(&mut self.colors, Colors::Matcap),
             Overlay::Zebra => return Control::Colors(&mut self.colors, Colors::Zebra),
             Overlay::ShadingNormals => return Control::Colors(&mut self.colors, Colors::ShadingNormals),
             Overlay::SurfaceNormals => return Control::Colors(&mut self.colors, Colors::SurfaceNormals),

@@ -138,7 +138,11 @@ fn the_legend_is_in_the_lower_right_corner_of_colours_that_stand_for_something()
         assert_eq!(most, [309, 229], "{colors}");
         assert!(least[0] > 30 && least[1] > 130, "{colors}: {least:?}");
     }
-    for options in [&["shape:torus"][..], &["shape:torus", "--overlay", "clay"]] {
+    for options in [
+        &["shape:torus"][..],
+        &["shape:torus", "--overlay", "clay"],
+        &["shape:torus", "--overlay", "matcap", "--matcap", "pearl"],
+    ] {
         let (plain, with) = (drawn(options, &path), drawn(&[options, &["--legend"]].concat(), &path));
         assert_eq!(difference(&plain, &with), None, "one material stands for nothing");
     }

@@ -9,8 +9,9 @@ use pnaen::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use pnaen::mesh::{Material, Mesh, Shape, Texture};
 use pnaen::progress::Progress;
 use pnaen::render::layout::{linear, srgb};
+use pnaen::render::matcap::{MATCAP_REACH, picture};
 use pnaen::render::{Camera, Scene, Target, curvature_scale};
-use pnaen::settings::{Colors, NormalsAt, Overlays, Settings};
+use pnaen::settings::{Colors, Matcap, NormalsAt, Overlays, Settings};
 use pnaen::tessellate::{
     LimitSurface, Normals, Partitioning, Surface, Tessellation, linear_normal, mean_curvature, patch_position,
     patch_second_derivatives, patch_tangents,
@@ -91,6 +92,28 @@ fn shading_normals_have_the_colours_of_normal_maps() {
                 // Vertices have their normals packed in 32 bits, and the picture rounds each channel.
                 let is_near = (0..3).all(|k| (found[k] - expected[k]).abs() <= 1.0);
                 assert!(is_near, "{normal}: {found:?}, not {expected:?}, from {azimuth} with {settings:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_matcap_shows_the_colour_that_its_sphere_has_at_the_same_normal() {
+    for matcap in [Matcap::RedClay, Matcap::TwoTone] {
+        let sphere = picture(matcap);
+        for normal in [Vec3::Z, vec3(0.6, 0.0, 0.8), vec3(0.0, -0.6, 0.8), vec3(-0.48, 0.64, 0.6), vec3(-0.8, 0.0, 0.6)] {
+            let mesh = painted(&square(normal, Vec2::ONE));
+            // The square is seen along z: from behind its normal is turned over, and right is -x.
+            for (azimuth, seen) in [(0.0, normal), (180.0, vec3(normal.x, -normal.y, normal.z))] {
+                let side = sphere.size[0] as f32;
+                let place = 0.5 * side * (1.0 + MATCAP_REACH * vec2(seen.x, -seen.y));
+                let at = 4 * (place.y as usize * sphere.size[0] as usize + place.x as usize);
+                let expected = &sphere.rgba[at..at + 3];
+                for settings in also(Settings { matcap, ..flat(Colors::Matcap) }) {
+                    let found = middle(&drawn(&mesh, &settings, azimuth));
+                    let is_near = found.iter().zip(expected).all(|(found, expected)| found.abs_diff(*expected) <= 3);
+                    assert!(is_near, "{matcap:?} {normal}: {found:?}, not {expected:?}, from {azimuth} with {settings:?}");
+                }
             }
         }
     }

@@ -37,6 +37,7 @@ fn only_one_colouring_is_shown_and_has_a_legend() {
         ("Factors", Colors::Factors, Some(0)),
         ("Triangle size", Colors::TriangleSize, Some(1)),
         ("Clay", Colors::Clay, None),
+        ("Matcap", Colors::Matcap, None),
         ("Factors below 2", Colors::LowFactors, Some(2)),
         ("Excess triangles", Colors::Excess, Some(3)),
         ("Barycentric", Colors::Barycentric, Some(4)),
@@ -66,6 +67,7 @@ fn only_one_colouring_is_shown_and_has_a_legend() {
     }
     for (key, colors) in [
         (egui::Key::C, Colors::Clay),
+        (egui::Key::M, Colors::Matcap),
         (egui::Key::S, Colors::Zebra),
         (egui::Key::N, Colors::ShadingNormals),
         (egui::Key::G, Colors::SurfaceNormals),

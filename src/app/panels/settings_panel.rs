@@ -42,6 +42,7 @@ impl App {
             }
         }
         shown_option_row(ui, &options::CURVATURE_SCALE, &mut self.settings);
+        shown_option_row(ui, &options::MATCAP, &mut self.settings);
     }
 
     fn surface_rows(&mut self, ui: &mut egui::Ui) {

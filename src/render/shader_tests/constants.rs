@@ -19,6 +19,7 @@ use crate::render::layout::{
     NORMAL_COLOR, WASTE_COLOR, edge_color, linear, overlay_bits,
 };
 use crate::render::look::Look;
+use crate::render::matcap::MATCAP_REACH;
 use crate::render::reflectance::{COAT_F0, LEAST_ALPHA};
 use crate::render::scale::Scale;
 use crate::render::tone::{COMPRESSION_START, DESATURATION, TONE_CURVE_NEUTRAL, TONE_CURVE_NONE};
@@ -132,6 +133,8 @@ fn table() -> Vec<(&'static str, Expected)> {
         ("OVERLAY_DEVIATION", colors(Colors::Deviation)),
         ("LOOK_SURFACE_NORMALS", number(Look::SurfaceNormals as u32)),
         ("LOOK_CURVATURE", number(Look::Curvature as u32)),
+        ("LOOK_MATCAP", number(Look::Matcap as u32)),
+        ("MATCAP_REACH", number(MATCAP_REACH)),
         ("FOLD_COLOR", color(FOLD_COLOR)),
         ("BACK_FACE_COLOR", color(BACK_FACE_COLOR)),
         ("WASTE_COLOR", color(WASTE_COLOR)),

@@ -17,6 +17,7 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         light_rotation,
         deviation_in,
         curvature_scale,
+        matcap,
         split,
         split_surface,
         background,
@@ -66,6 +67,7 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         ("light_rotation", format!("{light_rotation:?}")),
         ("deviation_in", format!("{deviation_in:?}")),
         ("curvature_scale", format!("{curvature_scale:?}")),
+        ("matcap", format!("{matcap:?}")),
         ("split", format!("{split:?}")),
         ("split_surface", format!("{split_surface:?}")),
         ("background", format!("{background:?}")),
@@ -185,6 +187,7 @@ fn unused_options_have_no_effect() {
         "light-rotation",
         "deviation-in",
         "curvature-scale",
+        "matcap",
         "split-surface",
     ];
     let with = |own: &[&'static str]| -> Vec<_> { own.iter().copied().chain(elsewhere).collect() };
@@ -207,10 +210,10 @@ fn unused_options_have_no_effect() {
     let with_light = |before: &[&'static str], after: &[&'static str]| [before, &of_light, after].concat();
     assert_eq!(
         idle(&phong_left),
-        with_light(&["alpha", "lod", "pixels", "tolerance", "distances", "normals-at"], &["curvature-scale", "split-surface"])
+        with_light(&["alpha", "lod", "pixels", "tolerance", "distances", "normals-at"], &["curvature-scale", "matcap", "split-surface"])
     );
     phong_left.split = Some(0.5);
-    assert_eq!(idle(&phong_left), with_light(&["lod", "pixels", "tolerance", "distances", "normals-at"], &["curvature-scale"]));
+    assert_eq!(idle(&phong_left), with_light(&["lod", "pixels", "tolerance", "distances", "normals-at"], &["curvature-scale", "matcap"]));
     phong_left.overlays.colors = Colors::Material;
     phong_left.lighting = Lighting::Studio;
     assert!(idle(&phong_left).iter().all(|name| !of_light.contains(name)), "all are used in studio light");
