@@ -321,9 +321,13 @@ fn curvature_at(in: Varyings) -> f32 {
 }
 
 // The colour that an overlay gives the surface in place of the material's, and 1 if there is one.
-fn meaning(in: Varyings, to_edges: vec3<f32>, edge_heights: vec3<f32>) -> vec4<f32> {
+fn meaning(in: Varyings, change: Changes, to_edges: vec3<f32>, edge_heights: vec3<f32>) -> vec4<f32> {
     if LOOK == LOOK_CURVATURE {
         return vec4<f32>(even_scale_color(curvature_at(in)), 1.0);
+    }
+    if LOOK == LOOK_TEXEL_DENSITY {
+        let density = texel_density(textureDimensions(base_texture), change.uv_right, change.uv_below);
+        return vec4<f32>(scale_color(max(density, frame.scale_least)), f32(density > 0.0));
     }
     if (frame.overlays & OVERLAY_FACTORS) != 0u && in.factors.w > 0.0 {
         return vec4<f32>(factor_color(in.factors, to_edges, edge_heights), 1.0);
@@ -448,7 +452,8 @@ fn bare_color(
     let texel = textureSample(base_texture, base_sampler, in.uv);
     let change = changes(in);
     var base = material.base_color.rgb * texel.rgb;
-    if (frame.overlays & (OVERLAY_LOW_FACTORS | OVERLAY_EXCESS | OVERLAY_DEVIATION)) != 0u {
+    let is_measured = (frame.overlays & (OVERLAY_LOW_FACTORS | OVERLAY_EXCESS | OVERLAY_DEVIATION)) != 0u;
+    if is_measured || LOOK == LOOK_TEXEL_DENSITY {
         // Grey, since the mesh's own colours could be mistaken for the overlay's.
         base = vec3<f32>(0.5);
     }
@@ -459,7 +464,7 @@ fn bare_color(
     if marked_back {
         base = BACK_FACE_COLOR;
     }
-    let meant = meaning(in, to_edges, edge_heights);
+    let meant = meaning(in, change, to_edges, edge_heights);
     let lights = Lights(frame.key_light.xyz, frame.fill_light.xyz, to_eye);
     var color = shade(lights, base, normal);
     if marked_back {

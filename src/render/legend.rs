@@ -1,7 +1,7 @@
 //! What a legend says about the surface's colours. The window paints it over the viewport, and commands into their pictures.
 
-use super::layout::{CHECKER_LIGHT, CHECKER_LINE, CHECKER_U, CHECKER_V, srgb};
-use super::{DEVIATION_PX_SCALE, EXCESS_SCALE, FACTOR_SCALE, SIZE_SCALE, Scale, curvature_scale};
+use super::layout::{CHECKER_LIGHT, CHECKER_LINE, CHECKER_U, CHECKER_V, TEXELS_WITHOUT_IMAGE, srgb};
+use super::{DENSITY_SCALE, DEVIATION_PX_SCALE, EXCESS_SCALE, FACTOR_SCALE, SIZE_SCALE, Scale, curvature_scale};
 use crate::settings::{Colors, DeviationUnit, Settings};
 
 /// The contents of a legend.
@@ -95,6 +95,16 @@ pub(crate) fn legend_of(settings: &Settings, radius: f32, distances: &Distances)
             "A checker over texture coordinates. Red grows with u and green with v up to the next whole number, where there \
              is a line. Triangles without texture coordinates are plain grey, and so are squares smaller than a px.",
             Shown::Colors(checker_colors()),
+        ),
+        Colors::TexelDensity => legend(
+            "Texels per px",
+            &format!(
+                "Colours of how many texels of the base colour's image lie side by side in a px of the picture, 1/8 to 8. Below 1 \
+                 the image is magnified and looks blurred; above 1 it has more detail than the picture shows. A material without \
+                 an image counts as if it had one of {TEXELS_WITHOUT_IMAGE} x {TEXELS_WITHOUT_IMAGE} px. Triangles without \
+                 texture coordinates are plain grey."
+            ),
+            scale(DENSITY_SCALE, &[0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0], false),
         ),
         Colors::Factors => legend(
             "Factor",

@@ -10,10 +10,11 @@ pub(crate) enum Look {
     SurfaceNormals = 1,
     Curvature = 2,
     Matcap = 3,
+    TexelDensity = 4,
 }
 
 impl Look {
-    pub(super) const ALL: [Self; 3] = every![Look: SurfaceNormals, Curvature, Matcap];
+    pub(super) const ALL: [Self; 4] = every![Look: SurfaceNormals, Curvature, Matcap, TexelDensity];
 
     /// The variant that shows these colours, if they have one.
     pub(super) fn of(colors: Colors) -> Option<Self> {
@@ -21,6 +22,7 @@ impl Look {
             Colors::SurfaceNormals => Some(Self::SurfaceNormals),
             Colors::Curvature => Some(Self::Curvature),
             Colors::Matcap => Some(Self::Matcap),
+            Colors::TexelDensity => Some(Self::TexelDensity),
             Colors::Material
             | Colors::Clay
             | Colors::Zebra

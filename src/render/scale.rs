@@ -62,6 +62,22 @@ pub(crate) const EXCESS_SCALE: Scale = Scale {
     ],
 };
 
+/// The scale for texels of an image beside one px of the picture: orange where there are fewer than one, purple where there are more,
+/// and light grey at one (ColorBrewer's PuOr, which people with any colour vision can tell apart).
+pub(crate) const DENSITY_SCALE: Scale = Scale {
+    least: 0.125,
+    most: 8.0,
+    colors: [
+        [0xb3, 0x58, 0x06],
+        [0xf1, 0xa3, 0x40],
+        [0xfe, 0xe0, 0xb6],
+        [0xf7, 0xf7, 0xf7],
+        [0xd8, 0xda, 0xeb],
+        [0x99, 0x8e, 0xc3],
+        [0x54, 0x27, 0x88],
+    ],
+};
+
 /// The colours of the scale of curvature: blue where it is below 0, red where it is above, and light grey at 0 (ColorBrewer's
 /// RdBu, which people with any colour vision can tell apart).
 const CURVATURE_COLORS: [[u8; 3]; Scale::STOPS] = [
@@ -93,6 +109,7 @@ impl Scale {
             Colors::Factors => Some(&FACTOR_SCALE),
             Colors::TriangleSize => Some(&SIZE_SCALE),
             Colors::Excess => Some(&EXCESS_SCALE),
+            Colors::TexelDensity => Some(&DENSITY_SCALE),
             Colors::Material
             | Colors::Clay
             | Colors::Matcap

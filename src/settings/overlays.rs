@@ -23,6 +23,8 @@ pub enum Colors {
     Curvature,
     /// A checker over texture coordinates.
     UvChecker,
+    /// How many texels of an image lie in a px.
+    TexelDensity,
     /// Domain coordinates: u red, v green, w blue.
     Barycentric,
     /// Factors as the tessellator uses them: inside each patch, and along each edge.
@@ -73,6 +75,7 @@ pub enum Overlay {
     SurfaceNormals,
     Curvature,
     UvChecker,
+    TexelDensity,
     Barycentric,
     Adjacency,
     Cracks,
@@ -89,8 +92,8 @@ pub enum Overlay {
 }
 
 impl Overlay {
-    pub const ALL: [Self; 22] = every![Overlay:
-        Wireframe, Patches, Clay, Matcap, Zebra, ShadingNormals, SurfaceNormals, Curvature, UvChecker, Barycentric, Adjacency, Cracks, Folds, TJunctions,
+    pub const ALL: [Self; 23] = every![Overlay:
+        Wireframe, Patches, Clay, Matcap, Zebra, ShadingNormals, SurfaceNormals, Curvature, UvChecker, TexelDensity, Barycentric, Adjacency, Cracks, Folds, TJunctions,
         BackFaces, Factors, TriangleSize, LowFactors, Excess, Normals, Grid, Deviation,
     ];
 }
@@ -145,6 +148,13 @@ impl Choice for Overlay {
                 "UV checker",
                 "A checker over texture coordinates, with 8 by 8 squares in one unit of u and v and blue lines around each \
                  unit. Red grows with u and green with v, so that mirrored and turned charts are seen.",
+            ),
+            Self::TexelDensity => (
+                "texel-density",
+                "Texel density",
+                "Colours the surface by how many texels of the base colour's image lie side by side in a px of the picture: \
+                 orange where the image is magnified, purple where it has more detail than is seen. A material without an \
+                 image counts as if it had one of 1024 x 1024 px.",
             ),
             Self::Barycentric => (
                 "barycentric",
@@ -217,7 +227,7 @@ impl Choice for Overlay {
 
 impl Choice for Colors {
     const ALL: &'static [Self] = &every![Colors:
-        Material, Clay, Matcap, Zebra, ShadingNormals, SurfaceNormals, Curvature, UvChecker, Barycentric, Factors, TriangleSize, LowFactors, Excess, Deviation,
+        Material, Clay, Matcap, Zebra, ShadingNormals, SurfaceNormals, Curvature, UvChecker, TexelDensity, Barycentric, Factors, TriangleSize, LowFactors, Excess, Deviation,
     ];
 
     fn description(self) -> Description {
@@ -230,6 +240,7 @@ impl Choice for Colors {
             Self::SurfaceNormals => Overlay::SurfaceNormals.description(),
             Self::Curvature => Overlay::Curvature.description(),
             Self::UvChecker => Overlay::UvChecker.description(),
+            Self::TexelDensity => Overlay::TexelDensity.description(),
             Self::Barycentric => Overlay::Barycentric.description(),
             Self::Factors => Overlay::Factors.description(),
             Self::TriangleSize => Overlay::TriangleSize.description(),
@@ -237,6 +248,13 @@ impl Choice for Colors {
             Self::Excess => Overlay::Excess.description(),
             Self::Deviation => Overlay::Deviation.description(),
         }
+    }
+}
+
+impl Colors {
+    /// Whether they show nothing of a mesh without texture coordinates.
+    pub fn are_of_texture_coordinates(self) -> bool {
+        matches!(self, Self::UvChecker | Self::TexelDensity)
     }
 }
 
@@ -257,6 +275,7 @@ impl Overlays {
             Overlay::SurfaceNormals => return Control::Colors(&mut self.colors, Colors::SurfaceNormals),
             Overlay::Curvature => return Control::Colors(&mut self.colors, Colors::Curvature),
             Overlay::UvChecker => return Control::Colors(&mut self.colors, Colors::UvChecker),
+            Overlay::TexelDensity => return Control::Colors(&mut self.colors, Colors::TexelDensity),
             Overlay::Barycentric => return Control::Colors(&mut self.colors, Colors::Barycentric),
             Overlay::Factors => return Control::Colors(&mut self.colors, Colors::Factors),
             Overlay::TriangleSize => return Control::Colors(&mut self.colors, Colors::TriangleSize),

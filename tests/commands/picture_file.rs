@@ -128,6 +128,7 @@ fn the_legend_is_in_the_lower_right_corner_of_colours_that_stand_for_something()
         "shading-normals",
         "surface-normals",
         "curvature",
+        "texel-density",
         "uv-checker",
     ] {
         let options = ["shape:torus", "--lod", "error", "--overlay", colors];

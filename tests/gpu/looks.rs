@@ -10,7 +10,7 @@ use pnaen::mesh::{Material, Mesh, Shape, Texture};
 use pnaen::progress::Progress;
 use pnaen::render::layout::{linear, srgb};
 use pnaen::render::matcap::{MATCAP_REACH, picture};
-use pnaen::render::{Camera, Scene, Target, curvature_scale};
+use pnaen::render::{Camera, DENSITY_SCALE, Scene, Target, curvature_scale};
 use pnaen::settings::{Colors, Matcap, NormalsAt, Overlays, Settings};
 use pnaen::tessellate::{
     LimitSurface, Normals, Partitioning, Surface, Tessellation, linear_normal, mean_curvature, patch_position,
@@ -150,6 +150,38 @@ fn surface_normals_of_curved_patches_are_those_of_the_mathematics() {
                 let found = seen(&mut sphere, &target, &Settings { overlays, ..own }, &camera);
                 let is_near = |(a, b): (&u8, &u8)| a.abs_diff(*b) <= 2;
                 assert!(found.iter().zip(expected.iter()).all(is_near), "{surface:?} {normals:?} {overlays:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn texel_density_is_that_of_the_base_colours_image() {
+    let grey = linear([188; 3]);
+    for (size, units, expected) in [
+        (Some([SIDE, SIDE]), 1.0, Some(1.0)),
+        // A px covers 2 by 1/2 texels, and then 4 by 1.
+        (Some([2 * SIDE, SIDE / 2]), 1.0, Some(1.0)),
+        (Some([2 * SIDE, SIDE / 2]), 2.0, Some(2.0)),
+        (Some([SIDE / 4, SIDE / 4]), 1.0, Some(0.25)),
+        (Some([4, 4]), 1.0, Some(0.01)),
+        (None, 1.0, Some(1024.0 / SIDE as f32)),
+        (None, 0.0, None),
+    ] {
+        let mut mesh = square(Vec3::Z, Vec2::splat(units));
+        if let Some([width, height]) = size {
+            let texture = Texture { size: [width, height], rgba: vec![90; 4 * (width * height) as usize] };
+            mesh.materials[0].texture = Some(Arc::new(texture));
+        }
+        let expected = expected.map(|density| DENSITY_SCALE.color(DENSITY_SCALE.place(density)));
+        for settings in also(flat(Colors::TexelDensity)) {
+            let found = middle(&drawn(&mesh, &settings, 0.0));
+            match expected {
+                Some(color) => {
+                    let is_near = found.iter().zip(color).all(|(found, expected)| found.abs_diff(expected) <= 2);
+                    assert!(is_near, "{size:?} {units}: {found:?}, not {color:?}, with {settings:?}");
+                }
+                None => assert!(found[0] == found[1] && linear(found)[0] < grey[0] * 1.1, "grey: {found:?}"),
             }
         }
     }

@@ -187,6 +187,7 @@ fn colours_look_as_they_did() {
         ("matcap-chrome", Shape::Bicubic, Colors::Matcap, Settings { matcap: Matcap::Chrome, ..Settings::default() }),
         ("matcap-pearl", Shape::Bicubic, Colors::Matcap, Settings { matcap: Matcap::Pearl, ..Settings::default() }),
         ("matcap-two-tone", Shape::Bicubic, Colors::Matcap, Settings { matcap: Matcap::TwoTone, ..Settings::default() }),
+        ("texel-density", Shape::Torus, Colors::TexelDensity, Settings::default()),
         ("surface-normals", Shape::Icosphere, Colors::SurfaceNormals, Settings { split: Some(0.5), ..Settings::default() }),
         ("curvature", Shape::Torus, Colors::Curvature, Settings { split: Some(0.5), ..Settings::default() }),
         ("uv-checker", Shape::Torus, Colors::UvChecker, Settings { split: Some(0.5), ..Settings::default() }),

@@ -28,6 +28,7 @@ fn only_one_colouring_is_shown_and_has_a_legend() {
         "Legend: UV: a square is 1/8 of a unit",
         "Legend: Surface normal: x red, y green, z blue",
         "Legend: Mean curvature, 1/unit",
+        "Legend: Texels per px",
     ];
     let shown = |harness: &Harness<App>| -> Vec<_> {
         (0..legends.len()).filter(|&legend| harness.query_by_label(legends[legend]).is_some()).collect()
@@ -46,6 +47,7 @@ fn only_one_colouring_is_shown_and_has_a_legend() {
         ("UV checker", Colors::UvChecker, Some(7)),
         ("Surface normals", Colors::SurfaceNormals, Some(8)),
         ("Curvature", Colors::Curvature, Some(9)),
+        ("Texel density", Colors::TexelDensity, Some(10)),
         ("Material", Colors::Material, None),
     ] {
         let pictures = harness.state().pictures();
@@ -72,6 +74,7 @@ fn only_one_colouring_is_shown_and_has_a_legend() {
         (egui::Key::N, Colors::ShadingNormals),
         (egui::Key::G, Colors::SurfaceNormals),
         (egui::Key::K, Colors::Curvature),
+        (egui::Key::T, Colors::TexelDensity),
         (egui::Key::U, Colors::UvChecker),
         (egui::Key::U, Colors::Material),
     ] {
@@ -89,6 +92,7 @@ fn a_mesh_without_texture_coordinates_has_no_checker() {
         open_list(&mut harness, "Colours");
         let is_disabled = |name| harness.get_by_label(name).accesskit_node().is_disabled();
         assert_eq!([is_disabled("UV checker"), is_disabled("Zebra")], [!has_checker, false], "{shape:?}");
+        assert_eq!(is_disabled("Texel density"), !has_checker, "{shape:?}");
         press(&mut harness, egui::Key::Escape);
         press_with(&mut harness, egui::Modifiers::SHIFT, egui::Key::U);
         assert_eq!(harness.state().settings().overlays.colors == Colors::UvChecker, has_checker, "{shape:?}");

@@ -16,7 +16,7 @@ use crate::render::coverage::TILE;
 use crate::render::dfg::DFG_SIZE;
 use crate::render::layout::{
     AXIS_COLORS, BACK_FACE_COLOR, CHECKER_LIGHT, CHECKER_LINE, CHECKER_U, CHECKER_V, FOLD_COLOR, FOUND_EMITTED,
-    NORMAL_COLOR, WASTE_COLOR, edge_color, linear, overlay_bits,
+    NORMAL_COLOR, TEXELS_WITHOUT_IMAGE, WASTE_COLOR, edge_color, linear, overlay_bits,
 };
 use crate::render::look::Look;
 use crate::render::matcap::MATCAP_REACH;
@@ -134,6 +134,8 @@ fn table() -> Vec<(&'static str, Expected)> {
         ("LOOK_SURFACE_NORMALS", number(Look::SurfaceNormals as u32)),
         ("LOOK_CURVATURE", number(Look::Curvature as u32)),
         ("LOOK_MATCAP", number(Look::Matcap as u32)),
+        ("LOOK_TEXEL_DENSITY", number(Look::TexelDensity as u32)),
+        ("TEXELS_WITHOUT_IMAGE", number(TEXELS_WITHOUT_IMAGE)),
         ("MATCAP_REACH", number(MATCAP_REACH)),
         ("FOLD_COLOR", color(FOLD_COLOR)),
         ("BACK_FACE_COLOR", color(BACK_FACE_COLOR)),
