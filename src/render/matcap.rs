@@ -37,6 +37,16 @@ impl Matcaps {
     }
 }
 
+/// A picture of a lit sphere on the device, in place of those that are made in code.
+#[derive(Clone)]
+pub struct MatcapPicture(pub(super) wgpu::BindGroup);
+
+impl MatcapPicture {
+    pub(super) fn new(gpu: &Gpu, materials: &Materials, picture: &Texture) -> Self {
+        Self(bind_group(gpu, materials, picture))
+    }
+}
+
 fn bind_group(gpu: &Gpu, materials: &Materials, picture: &Texture) -> wgpu::BindGroup {
     // Nothing of the material is seen.
     let constants = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {

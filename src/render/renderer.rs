@@ -8,7 +8,7 @@ use super::environment::{Environment, LightView};
 use super::frame::frame;
 use super::layout::{linear, overlay_bits};
 use super::look::Look;
-use super::matcap::Matcaps;
+use super::matcap::{MatcapPicture, Matcaps};
 use super::materials::Materials;
 use super::needs::Needs;
 use super::pipelines::{Draw, DrawPipelines, Faces, Occluded};
@@ -18,7 +18,7 @@ use super::tone::{TONE_CURVE_NEUTRAL, TONE_CURVE_NONE};
 use super::{Camera, Scene, Target};
 use crate::gpu::layout::DrawArgs;
 use crate::gpu::{ChunkBuffers, Gpu, GpuError, Lazy, Recorder, bind_group};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Texture};
 use crate::settings::{Colors, NormalsAt, Overlays, Settings, SplitSide, ToneCurve};
 use crate::tessellate::CoverageView;
 
@@ -69,6 +69,11 @@ impl Renderer {
         // There is none yet, so that nothing fails.
         let _ = renderer.studio.get_or_try_make(|| Ok(environment));
         renderer
+    }
+
+    /// Uploads a picture of a lit sphere, for [`Scene::matcap`].
+    pub fn matcap(&self, picture: &Texture) -> MatcapPicture {
+        MatcapPicture::new(&self.gpu, &self.materials, picture)
     }
 
     /// What the materials of all scenes share.
@@ -235,7 +240,8 @@ impl Renderer {
     /// The bind groups of a scene's materials for a picture with these settings.
     fn material_groups(&self, scene: &Scene, settings: &Settings) -> Result<Vec<wgpu::BindGroup>, GpuError> {
         if settings.overlays.colors == Colors::Matcap {
-            let group = self.matcaps.group(&self.gpu, &self.materials, settings.matcap)?;
+            let own = scene.matcap.as_ref().map(|picture| &picture.0);
+            let group = own.map_or_else(|| self.matcaps.group(&self.gpu, &self.materials, settings.matcap), Ok)?;
             return Ok(vec![group.clone(); scene.materials.len()]);
         }
         if !settings.shows_materials() {

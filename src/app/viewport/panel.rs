@@ -81,7 +81,7 @@ impl App {
         self.mark();
         let deviation = self.deviation_shown();
         let moment = self.moment();
-        let given = self.give_factors()?;
+        let (given, matcap) = (self.give_factors()?, self.give_matcap());
         let settings = self.settings_in(context.theme());
         let Some(document) = &mut self.document else { return Ok(()) };
         let viewport = vec2(size[0] as f32, size[1] as f32);
@@ -94,6 +94,7 @@ impl App {
             lines: self.viewport.highlight.map_or(0, |marked| marked.generation),
             deviation,
             given,
+            matcap,
             camera: self.viewport.camera,
             settings,
             inputs,
