@@ -19,7 +19,8 @@ pub(super) fn commands() -> Vec<Command> {
 }
 
 /// What a picture of a lit sphere is for.
-pub(crate) const MATCAP_IMAGE: &str = "Opens a PNG or JPEG image of a lit sphere, and shows the surface in its colours.";
+pub(crate) const MATCAP_IMAGE: &str =
+    "Opens a PNG or JPEG image of a lit sphere, and shows the surface in its colours.";
 
 /// What a file of factors is for.
 const FACTORS: &str = "Opens the tessellation factors that another engine wrote, in place of those of LOD, and lists where they disagree.";
@@ -42,7 +43,9 @@ fn file() -> Vec<Command> {
         Command::new(Action::File(FileAction::HeightImage), "Height image…", HEIGHT_IMAGE)
             .menu(File, 1)
             .unless(when::document),
-        Command::new(Action::File(FileAction::Matcap), "Matcap image…", MATCAP_IMAGE).menu(File, 1).unless(when::document),
+        Command::new(Action::File(FileAction::Matcap), "Matcap image…", MATCAP_IMAGE)
+            .menu(File, 1)
+            .unless(when::document),
         Command::new(Action::File(FileAction::Reload), "Reload", "Loads the file again; settings and camera stay.")
             .keys([plain(Key::R)])
             .menu(File, 1)

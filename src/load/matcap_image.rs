@@ -47,7 +47,7 @@ mod tests {
             let said = load_matcap(&path(name), &Limits::default()).expect_err("no image").to_string();
             assert!(said.contains(name) && !said.contains('\n'), "{said}");
         }
-        let small = Limits { memory: 0, ..Limits::default() };
+        let small = Limits { memory: 100 << 10, ..Limits::default() };
         image::RgbaImage::new(400, 400).save(path("large.png")).expect("written");
         let said = load_matcap(&path("large.png"), &small).expect_err("too large").to_string();
         assert!(said.contains("400 x 400 px") && said.contains("scale it down"), "{said}");

@@ -150,7 +150,7 @@ fn pearl(normal: Vec3) -> Vec3 {
 fn two_tone(normal: Vec3) -> Vec3 {
     // The line where both lights meet leans a little, so that it doesn't run along upright edges.
     let side = normal.dot(vec3(-0.94, 0.28, 0.18).normalize());
-    let cool = vec3(0.035, 0.10, 0.20) + vec3(0.06, 0.16, 0.28) * (-side).max(0.0).sqrt();
+    let cool = vec3(0.018, 0.055, 0.12) + vec3(0.10, 0.24, 0.38) * (-side).max(0.0);
     let warm = vec3(0.52, 0.30, 0.14) + vec3(0.42, 0.34, 0.24) * side.max(0.0);
     cool.lerp(warm, step(-0.16, 0.22, side)) * (0.7 + 0.3 * step(0.0, 0.5, normal.z))
 }

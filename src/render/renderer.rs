@@ -124,7 +124,10 @@ impl Renderer {
     /// # Errors
     /// Out of memory, or a lost device.
     pub fn prepare_all(&self) -> Result<(), GpuError> {
-        Draw::ALL.into_iter().chain(Draw::of_looks()).try_for_each(|draw| self.pipelines.get(&self.gpu, draw).map(|_| ()))
+        Draw::ALL
+            .into_iter()
+            .chain(Draw::of_looks())
+            .try_for_each(|draw| self.pipelines.get(&self.gpu, draw).map(|_| ()))
     }
 
     /// Draws the scene into the target, chunk after chunk. The scene must be counted. A chunk is emitted unless the arena still

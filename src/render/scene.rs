@@ -88,7 +88,17 @@ impl Scene {
     }
 
     fn at_rest(tessellator: Tessellator, bounds: Bounds, ulp: f32, materials: Vec<UploadedMaterial>) -> Self {
-        Self { tessellator, bounds, ulp, materials, lines: None, coverage: None, deviation: None, matcap: None, left: None }
+        Self {
+            tessellator,
+            bounds,
+            ulp,
+            materials,
+            lines: None,
+            coverage: None,
+            deviation: None,
+            matcap: None,
+            left: None,
+        }
     }
 
     /// Sets what is drawn left of the split: another scene of the mesh, which takes the current pose, or `None` for the mesh

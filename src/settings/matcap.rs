@@ -19,17 +19,21 @@ impl Choice for Matcap {
 
     fn description(self) -> Description {
         let (name, label, text) = match self {
-            Self::RedClay => {
-                ("red-clay", "Red clay", "Dark red clay with a soft sheen, as in sculpting programs. It shows fine relief.")
-            }
+            Self::RedClay => (
+                "red-clay",
+                "Red clay",
+                "Dark red clay with a soft sheen, as in sculpting programs. It shows fine relief.",
+            ),
             Self::Chrome => (
                 "chrome",
                 "Chrome",
                 "A mirror under a bright sky, with a sharp horizon and lamps. Their reflections show dents and kinks.",
             ),
-            Self::Pearl => {
-                ("pearl", "Pearl", "Pale and smooth, with colours that change towards the outline. It shows soft changes of form.")
-            }
+            Self::Pearl => (
+                "pearl",
+                "Pearl",
+                "Pale and smooth, with colours that change towards the outline. It shows soft changes of form.",
+            ),
             Self::TwoTone => (
                 "two-tone",
                 "Two-tone",

@@ -70,9 +70,9 @@ pub(crate) use convention::{corner_weights, domain_side, factor_side, weight_cor
 pub(crate) use coverage::CoverageView;
 #[cfg(test)]
 pub(crate) use coverage::{covers_nothing, screen_corner};
+pub(crate) use cull::{FACING_AWAY, NOT_CULLED, OUT_OF_VIEW, cull_reason, planes_outside};
 #[cfg(test)]
 pub(crate) use curvature::{mean_curvature, patch_second_derivatives};
-pub(crate) use cull::{FACING_AWAY, NOT_CULLED, OUT_OF_VIEW, cull_reason, planes_outside};
 pub(crate) use displacement_factor::SURFACE_SHARE;
 pub(crate) use domain::{domain_plan, domain_point, domain_triangle};
 #[cfg(test)]
@@ -102,9 +102,9 @@ pub(crate) use piece_error::{SeenPatch, piece_error};
 pub(crate) use posed_mesh::deform;
 pub(crate) use posed_mesh::{Deformed, PosedMesh, bounds_through};
 pub(crate) use solid::{Solid, is_beyond_near};
-pub(crate) use surface::{ControlNet, edge_position, edge_uv, linear_uv, outline_place, patch_position};
 #[cfg(test)]
 pub(crate) use surface::patch_tangents;
+pub(crate) use surface::{ControlNet, edge_position, edge_uv, linear_uv, outline_place, patch_position};
 pub(crate) use texel_lengths::{TexelLength, map_number, texel_lengths};
 pub(crate) use triangle_budget::tolerance_within_budget;
 #[cfg(test)]

@@ -150,6 +150,31 @@ fn the_legend_is_in_the_lower_right_corner_of_colours_that_stand_for_something()
 }
 
 #[test]
+fn a_matcap_of_a_file_colours_the_surface() {
+    let folder = Folder::new();
+    let [path, sphere, none] = ["out.png", "sphere.png", "none.png"].map(|name| folder.path(name));
+    let blue = image::Rgba([9, 80, 200, 255]);
+    RgbaImage::from_pixel(8, 8, blue).save(&sphere).expect("a writable folder");
+    let colors = ["shape:torus", "--overlay", "matcap"];
+    let picture = drawn(&[&colors[..], &["--matcap-image", &sphere]].concat(), &path);
+    let count = picture.pixels().filter(|pixel| **pixel == blue).count();
+    assert!(count > 5000, "{count} px");
+    assert!(drawn(&colors, &path).pixels().all(|pixel| *pixel != blue), "the usual one is made in code");
+    let said = failure(&["render", "shape:torus", "-o", &path, "--matcap-image", &sphere], 2);
+    assert!(said.contains("--overlay matcap"), "{said}");
+    let of = |image: &str, more: &[&str], code: i32| {
+        let own = ["render", "-o", &path, "--matcap-image", image];
+        failure(&[&own[..], &colors, more].concat(), code)
+    };
+    let said = of(&sphere, &["--matcap", "pearl"], 2);
+    assert!(said.contains("--matcap"), "{said}");
+    let said = of(&none, &[], 1);
+    assert!(said.contains("none.png") && said.contains("there is no such file"), "{said}");
+    let said = of(&path, &[], 1);
+    assert!(said.contains("isn't overwritten"), "{said}");
+}
+
+#[test]
 fn the_legend_grows_with_the_picture_and_fits_a_small_one() {
     let folder = Folder::new();
     let path = folder.path("out.png");

@@ -8,10 +8,10 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::App;
 use pnaen::load::Source;
 use pnaen::mesh::Shape;
-use pnaen::settings::Colors;
+use pnaen::settings::{Colors, Matcap};
 use pnaen::tessellate::Convention;
 
-use crate::window_tests::editing::press_with;
+use crate::window_tests::editing::{assert_draws, copied, press_with};
 use crate::window_tests::{PATIENCE, choose, click, open_list, press, run_command, settle, uniform};
 
 #[test]
@@ -83,6 +83,56 @@ fn only_one_colouring_is_shown_and_has_a_legend() {
     }
     press(&mut harness, egui::Key::N);
     assert!(harness.state().settings().overlays.normals);
+}
+
+#[test]
+fn an_image_of_a_lit_sphere_takes_the_place_of_those_that_are_made_in_code() {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let [blue, text] = ["blue.png", "text.png"].map(|name| folder.path().join(name));
+    image::RgbaImage::from_pixel(8, 8, image::Rgba([9, 80, 200, 255])).save(&blue).expect("written");
+    std::fs::write(&text, "no image").expect("written");
+    let blues = |harness: &Harness<App>| {
+        let picture = harness.state().read_picture().expect("a device").expect("a picture");
+        picture.pixels().filter(|pixel| pixel.0 == [9, 80, 200, 255]).count()
+    };
+    let open = |harness: &mut Harness<App>, path: &std::path::Path| {
+        let context = harness.ctx.clone();
+        harness.state_mut().open_matcap(&context, path.to_owned());
+        settle(harness);
+    };
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
+    open(&mut harness, &text);
+    harness.get_by_label_contains("text.png can't be used as a matcap");
+    assert_eq!(harness.state().settings().overlays.colors, Colors::Material, "all stays as it was");
+    press(&mut harness, egui::Key::Escape);
+    open(&mut harness, &blue);
+    assert_eq!(harness.state().settings().overlays.colors, Colors::Matcap);
+    assert_eq!(harness.state().matcap_image(), Some(&*blue));
+    assert!(blues(&harness) > 10_000, "{}", blues(&harness));
+    let command = copied(&mut harness);
+    assert!(command.contains("--matcap-image ") && command.contains("--overlay matcap"), "{command}");
+    assert_draws(&harness, &command, "torus-view");
+    press(&mut harness, egui::Key::Escape);
+    // The image stays with another mesh.
+    let context = harness.ctx.clone();
+    harness.state_mut().open(&context, Source::Shape(Shape::Icosphere));
+    settle(&mut harness);
+    assert!(blues(&harness) > 10_000, "{}", blues(&harness));
+    choose(&mut harness, "Lit sphere", "Chrome");
+    assert_eq!((harness.state().matcap_image(), harness.state().settings().matcap), (None, Matcap::Chrome));
+    assert_eq!(blues(&harness), 0);
+}
+
+#[test]
+fn the_scale_of_curvature_has_a_row_while_it_is_shown() {
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
+    assert!(harness.query_by_label("Curvature up to").is_none());
+    choose(&mut harness, "Colours", "Curvature");
+    let picture = harness.state().read_picture().expect("a device");
+    harness.get_by_role_and_label(Role::Slider, "Curvature up to").set_value_accesskit(20.0);
+    settle(&mut harness);
+    assert_eq!(harness.state().settings().curvature_scale, 20.0);
+    assert!(harness.state().read_picture().expect("a device") != picture, "the colours are paler");
 }
 
 #[test]

@@ -6,7 +6,6 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::background_job::BackgroundJob;
 use crate::app::App;
-use crate::app::dialogs::typed_path::Purpose;
 use crate::load::load_matcap;
 use crate::mesh::Texture;
 use crate::names::shown_path;
@@ -45,14 +44,6 @@ impl MatcapJob {
 }
 
 impl App {
-    /// Asks for a picture of a lit sphere.
-    pub(in crate::app) fn matcap_dialog(&mut self, context: &egui::Context) {
-        self.dialog(Purpose::Matcap, context, || {
-            let dialog = rfd::FileDialog::new().set_title("Open a matcap");
-            dialog.add_filter("Images", &["png", "jpg", "jpeg"]).pick_file()
-        });
-    }
-
     /// Starts to read a picture of a lit sphere, which the surface then shows. Until it is read, all stays as it is.
     pub fn open_matcap(&mut self, context: &egui::Context, path: PathBuf) {
         // The copied command needs the whole path.

@@ -1,13 +1,12 @@
 //! The settings in the left panel.
 
-use super::option_rows::{option_hover, option_row, with_note};
+use super::option_rows::{option_hover, option_row};
 use crate::app::App;
-use crate::app::jobs::matcap::ChosenMatcap;
 use crate::app::sections::{Section, in_fixed_width};
 use crate::app::text::short;
 use crate::app::widgets::{LABEL_WIDTH, fixed};
-use crate::commands::{Action, BACKS_ARE_SEEN, Change, MATCAP_IMAGE, key_name, with_key};
-use crate::settings::{Choice, Colors, Control, Declaration, Kind, Matcap, Overlay, Overlays, Range, Settings, options};
+use crate::commands::{Action, BACKS_ARE_SEEN, Change, key_name, with_key};
+use crate::settings::{Choice, Colors, Control, Declaration, Kind, Overlay, Overlays, Range, Settings, options};
 use crate::tessellate::{Displacement, Lod, Tessellation};
 
 /// The overlays that have a button in the toolbar, and so no row here.
@@ -43,32 +42,7 @@ impl App {
             }
         }
         shown_option_row(ui, &options::CURVATURE_SCALE, &mut self.settings);
-        if (options::MATCAP.no_effect)(&self.settings).is_none() {
-            self.matcap_row(ui);
-        }
-    }
-
-    /// The row for the lit sphere: one that is made in code, or that of an image.
-    fn matcap_row(&mut self, ui: &mut egui::Ui) {
-        let label = ui.label(options::MATCAP.label);
-        let own = self.settings.matcap;
-        let image = self.matcap.as_ref().map(ChosenMatcap::name);
-        let shown = image.clone().unwrap_or_else(|| own.label().to_owned());
-        let combo = egui::ComboBox::from_id_salt("Lit sphere").selected_text(shown).truncate();
-        let combo = combo.show_ui(ui, |ui| {
-            for &matcap in Matcap::ALL {
-                let is_shown = image.is_none() && own == matcap;
-                if ui.selectable_label(is_shown, matcap.label()).on_hover_text(matcap.text()).clicked() {
-                    self.settings.matcap = matcap;
-                    self.forget_matcap();
-                }
-            }
-            if ui.selectable_label(image.is_some(), "Image file…").on_hover_text(MATCAP_IMAGE).clicked() {
-                self.matcap_dialog(ui.ctx());
-            }
-        });
-        combo.response.labelled_by(label.id).on_hover_text(with_note(options::MATCAP.text, "--matcap, --matcap-image"));
-        ui.end_row();
+        self.matcap_row(ui);
     }
 
     fn surface_rows(&mut self, ui: &mut egui::Ui) {

@@ -210,10 +210,16 @@ fn unused_options_have_no_effect() {
     let with_light = |before: &[&'static str], after: &[&'static str]| [before, &of_light, after].concat();
     assert_eq!(
         idle(&phong_left),
-        with_light(&["alpha", "lod", "pixels", "tolerance", "distances", "normals-at"], &["curvature-scale", "matcap", "split-surface"])
+        with_light(
+            &["alpha", "lod", "pixels", "tolerance", "distances", "normals-at"],
+            &["curvature-scale", "matcap", "split-surface"]
+        )
     );
     phong_left.split = Some(0.5);
-    assert_eq!(idle(&phong_left), with_light(&["lod", "pixels", "tolerance", "distances", "normals-at"], &["curvature-scale", "matcap"]));
+    assert_eq!(
+        idle(&phong_left),
+        with_light(&["lod", "pixels", "tolerance", "distances", "normals-at"], &["curvature-scale", "matcap"])
+    );
     phong_left.overlays.colors = Colors::Material;
     phong_left.lighting = Lighting::Studio;
     assert!(idle(&phong_left).iter().all(|name| !of_light.contains(name)), "all are used in studio light");
