@@ -1,5 +1,14 @@
 // Colours that show how a surface is shaped, and how a texture would lie on it.
 
+// Values of LOOK. src/render/look.rs has the same.
+const LOOK_SURFACE_NORMALS: u32 = 1u;
+const LOOK_CURVATURE: u32 = 2u;
+const LOOK_MATCAP: u32 = 3u;
+const LOOK_TEXEL_DENSITY: u32 = 4u;
+
+// How far the sphere of a matcap reaches, as a part of half of its picture.
+const MATCAP_REACH: f32 = 0.98;
+
 // A matte warm grey, light enough that shadows show.
 const CLAY_COLOR: vec3<f32> = vec3<f32>(0.82, 0.73, 0.64);
 
@@ -51,6 +60,14 @@ fn reflected_place(clip_from_object: mat4x4<f32>, normal: vec3<f32>, to_eye: vec
     return ZEBRA_STRIPES / 3.14159265 * atan2(across, max(dot(half_way, back), 1e-6));
 }
 
+// The place on a matcap, a picture of a lit sphere (Sloan et al. 2001), where the sphere has a normal. Right and up are taken across
+// the line of sight, so that a sphere shows all of the matcap wherever it is in the view.
+fn matcap_place(clip_from_object: mat4x4<f32>, to_eye: vec3<f32>, normal: vec3<f32>) -> vec2<f32> {
+    let right = normalize(cross(transpose(clip_from_object)[1].xyz, to_eye));
+    let up = cross(to_eye, right);
+    return 0.5 + 0.5 * MATCAP_REACH * vec2<f32>(dot(right, normal), -dot(up, normal));
+}
+
 fn zebra_color(place: f32, in_pixel: f32) -> vec3<f32> {
     return vec3<f32>(mix(ZEBRA_DARK, ZEBRA_LIGHT, 0.5 + 0.5 * stripes(place, in_pixel)));
 }
@@ -71,4 +88,15 @@ fn checker_color(uv: vec2<f32>, in_pixel: vec2<f32>) -> vec3<f32> {
     let to_line = abs(fract(uv + 0.5) - 0.5) / max(in_pixel, vec2<f32>(1e-6));
     let on_line = left * vec2<f32>(line_coverage(to_line.x, 1.25), line_coverage(to_line.y, 1.25));
     return mix(color, CHECKER_LINE, max(on_line.x, on_line.y));
+}
+
+// The sides in px of the image that texel density is counted in where a material has none.
+const TEXELS_WITHOUT_IMAGE: f32 = 1024.0;
+
+// How many texels of an image lie side by side in a pixel: the root of the area in texels that the pixel covers, where texture
+// coordinates change this much to the next pixel on the right, and below. 0 where they don't change. A material without an image
+// has one of a single texel.
+fn texel_density(image: vec2<u32>, right: vec2<f32>, below: vec2<f32>) -> f32 {
+    let size = select(vec2<f32>(image), vec2<f32>(TEXELS_WITHOUT_IMAGE), image.x * image.y == 1u);
+    return sqrt(abs(right.x * below.y - right.y * below.x) * size.x * size.y);
 }

@@ -7,13 +7,20 @@
 // What the passes were given. A software driver compiles the shader for each surface and kind of normals.
 @group(0) @binding(8) var<uniform> params: Params;
 
-// Returns the unit normal of a patch that isn't displaced, at weights u and v from 0 to 1.
-fn pixel_normal(patch_index: u32, weights: vec2<f32>) -> vec3<f32> {
-    // At a triangle's border the middle of a pixel may lie outside the patch. Its border's normal is shown there.
+// Returns weights u and v from 0 to 1 in 16.16 fixed point. At a triangle's border the middle of a pixel may lie outside the
+// patch. The nearest place on its border is returned there.
+fn patch_place(weights: vec2<f32>) -> vec2<u32> {
     let inside = max(vec3<f32>(weights, 1.0 - weights.x - weights.y), vec3<f32>(0.0));
     let scaled = inside.xy / (inside.x + inside.y + inside.z) * f32(FIXED_ONE);
     let u = min(u32(scaled.x + 0.5), FIXED_ONE);
-    let v = min(u32(scaled.y + 0.5), FIXED_ONE - u);
+    return vec2<u32>(u, min(u32(scaled.y + 0.5), FIXED_ONE - u));
+}
+
+// Returns the unit normal of a patch that isn't displaced, at weights u and v from 0 to 1.
+fn pixel_normal(patch_index: u32, weights: vec2<f32>) -> vec3<f32> {
+    let place = patch_place(weights);
+    let u = place.x;
+    let v = place.y;
     let own = patches[patch_index];
     let normals = array<vec3<f32>, 3>(
         corners[own.corners[0]].normal,

@@ -16,6 +16,11 @@
 // The own least of every patch of the mesh: see pass_least.wgsl. One element if it isn't known.
 @group(3) @binding(1) var<storage, read> least_triangles: array<u32>;
 
+// One of LOOK_*, or 0. The code of other looks is left out when the pipeline is made.
+override LOOK: u32 = 0u;
+// Whether the input triangles are drawn, whose surface is flat.
+override DRAWS_SOURCE: bool = false;
+
 struct Varyings {
     @builtin(position) clip: vec4<f32>,
     @location(1) normal: vec3<f32>,
@@ -239,7 +244,15 @@ fn from_srgb(color: vec3<f32>) -> vec3<f32> {
 
 // As in src/render/scale.rs, in linear light.
 fn scale_color(number: f32) -> vec3<f32> {
-    let place = log(number / frame.scale_least) / log(frame.scale_most / frame.scale_least);
+    return color_at_place(log(number / frame.scale_least) / log(frame.scale_most / frame.scale_least));
+}
+
+// The same on an even scale.
+fn even_scale_color(number: f32) -> vec3<f32> {
+    return color_at_place((number - frame.scale_least) / (frame.scale_most - frame.scale_least));
+}
+
+fn color_at_place(place: f32) -> vec3<f32> {
     let at = clamp(place, 0.0, 1.0) * f32(SCALE_STOPS - 1u);
     let below = min(u32(at), SCALE_STOPS - 2u);
     return from_srgb(mix(frame.scale[below].rgb, frame.scale[below + 1u].rgb, at - f32(below)));
@@ -293,8 +306,29 @@ fn deviation_color(in: Varyings) -> vec4<f32> {
     return vec4<f32>(scale_color(max(number, frame.scale_least)), f32(distance >= 0.0));
 }
 
+// The surface that patches are drawn as.
+fn drawn_surface() -> u32 {
+    return select(params.surface, SURFACE_FLAT, DRAWS_SOURCE);
+}
+
+// The mean curvature of the patch itself, without displacement, in 1 / object unit.
+fn curvature_at(in: Varyings) -> f32 {
+    let place = patch_place(in.domain.xy);
+    let surface = drawn_surface();
+    let net = load_net(in.patch_index);
+    let second = patch_second_derivatives(surface, net, place.x, place.y);
+    return mean_curvature(patch_tangents(surface, net, place.x, place.y), second);
+}
+
 // The colour that an overlay gives the surface in place of the material's, and 1 if there is one.
-fn meaning(in: Varyings, to_edges: vec3<f32>, edge_heights: vec3<f32>) -> vec4<f32> {
+fn meaning(in: Varyings, change: Changes, to_edges: vec3<f32>, edge_heights: vec3<f32>) -> vec4<f32> {
+    if LOOK == LOOK_CURVATURE {
+        return vec4<f32>(even_scale_color(curvature_at(in)), 1.0);
+    }
+    if LOOK == LOOK_TEXEL_DENSITY {
+        let density = texel_density(textureDimensions(base_texture), change.uv_right, change.uv_below);
+        return vec4<f32>(scale_color(max(density, frame.scale_least)), f32(density > 0.0));
+    }
     if (frame.overlays & OVERLAY_FACTORS) != 0u && in.factors.w > 0.0 {
         return vec4<f32>(factor_color(in.factors, to_edges, edge_heights), 1.0);
     }
@@ -361,6 +395,16 @@ fn zebra_place(normal: vec3<f32>, px: vec2<f32>) -> f32 {
     return reflected_place(frame.clip_from_object, normalize(normal), to_eye);
 }
 
+// The unit normal of the patch itself, without displacement, or the shading normal where it has none.
+fn geometric_normal(in: Varyings, shading_normal: vec3<f32>) -> vec3<f32> {
+    let place = patch_place(in.domain.xy);
+    return surface_normal(drawn_surface(), load_net(in.patch_index), place.x, place.y, shading_normal);
+}
+
+fn normal_color(normal: vec3<f32>) -> vec3<f32> {
+    return from_srgb(0.5 + 0.5 * normal);
+}
+
 // The colour of a surface that isn't lit, and 1 if there is one.
 fn unlit(in: Varyings, normal: vec3<f32>, change: Changes) -> vec4<f32> {
     if (frame.overlays & OVERLAY_ZEBRA) != 0u {
@@ -371,7 +415,10 @@ fn unlit(in: Varyings, normal: vec3<f32>, change: Changes) -> vec4<f32> {
         return vec4<f32>(zebra_color(place, length(vec2<f32>(right - place, below - place))), 1.0);
     }
     if (frame.overlays & OVERLAY_SHADING_NORMALS) != 0u {
-        return vec4<f32>(from_srgb(0.5 + 0.5 * normal), 1.0);
+        return vec4<f32>(normal_color(normal), 1.0);
+    }
+    if LOOK == LOOK_SURFACE_NORMALS {
+        return vec4<f32>(normal_color(geometric_normal(in, normal)), 1.0);
     }
     if (frame.overlays & OVERLAY_UV_CHECKER) != 0u {
         let right = change.uv_right;
@@ -379,6 +426,14 @@ fn unlit(in: Varyings, normal: vec3<f32>, change: Changes) -> vec4<f32> {
         return vec4<f32>(checker_color(in.uv, sqrt(right * right + below * below)), 1.0);
     }
     return vec4<f32>(0.0);
+}
+
+// The colour of the matcap, which is bound in place of the material's image, at a unit normal of the side that is seen.
+fn matcap_color(normal: vec3<f32>, to_eye: vec3<f32>, change: Changes) -> vec3<f32> {
+    let place = matcap_place(frame.clip_from_object, to_eye, normal);
+    let right = matcap_place(frame.clip_from_object, to_eye, normal + change.normal_right) - place;
+    let below = matcap_place(frame.clip_from_object, to_eye, normal + change.normal_below) - place;
+    return textureSampleGrad(base_texture, base_sampler, place, right, below).rgb;
 }
 
 // The colour of the surface without lines over it. `lit` is the material's in light from all around, if its fourth component isn't
@@ -397,7 +452,8 @@ fn bare_color(
     let texel = textureSample(base_texture, base_sampler, in.uv);
     let change = changes(in);
     var base = material.base_color.rgb * texel.rgb;
-    if (frame.overlays & (OVERLAY_LOW_FACTORS | OVERLAY_EXCESS | OVERLAY_DEVIATION)) != 0u {
+    let is_measured = (frame.overlays & (OVERLAY_LOW_FACTORS | OVERLAY_EXCESS | OVERLAY_DEVIATION)) != 0u;
+    if is_measured || LOOK == LOOK_TEXEL_DENSITY {
         // Grey, since the mesh's own colours could be mistaken for the overlay's.
         base = vec3<f32>(0.5);
     }
@@ -408,7 +464,7 @@ fn bare_color(
     if marked_back {
         base = BACK_FACE_COLOR;
     }
-    let meant = meaning(in, to_edges, edge_heights);
+    let meant = meaning(in, change, to_edges, edge_heights);
     let lights = Lights(frame.key_light.xyz, frame.fill_light.xyz, to_eye);
     var color = shade(lights, base, normal);
     if marked_back {
@@ -427,6 +483,9 @@ fn bare_color(
     let unlit_color = unlit(in, normalize(own_normal), change);
     if unlit_color.a > 0.0 {
         color = unlit_color.rgb;
+    }
+    if LOOK == LOOK_MATCAP {
+        color = matcap_color(normal, to_eye, change);
     }
     // Unlit, since folds mostly face away from the light.
     return select(color, FOLD_COLOR, in.folded != 0u);

@@ -10,7 +10,7 @@ use crate::engine::Preparation;
 use crate::files::Limits;
 use crate::load::{HeightSource, Source};
 use crate::render::Camera;
-use crate::settings::{Declaration, Settings, Value, options};
+use crate::settings::{Colors, Declaration, Settings, Value, options};
 use crate::tessellate::{Displacement, Tessellation};
 
 /// What a window shows, and from where.
@@ -30,6 +30,8 @@ pub(crate) struct CopiedCommand<'a> {
     pub truth: Option<&'a Source>,
     /// The file whose factors take the place of those of LOD.
     pub factors: Option<&'a Path>,
+    /// The picture of a lit sphere that takes the place of that of the settings.
+    pub matcap_image: Option<&'a Path>,
     /// The selected triangle's number in the mesh, from 0.
     pub triangle: Option<u32>,
     /// Whether nothing is behind the mesh, rather than the background's colour.
@@ -103,8 +105,11 @@ impl CopiedCommand<'_> {
             Some(_) => (shown, displaced(Displacement::On, &Settings::default())),
             None => (displaced(Displacement::Off, &shown), Settings::default()),
         };
-        let is_lod = |name: &str| self.factors.is_some() && INSTEAD_OF_FACTORS.contains(&name);
-        let written = |option: &&Declaration| (option.no_effect)(&own).is_none() && !is_lod(option.name);
+        let is_replaced = |name: &str| {
+            (self.factors.is_some() && INSTEAD_OF_FACTORS.contains(&name))
+                || (self.matcap_image.is_some() && name == options::MATCAP.name)
+        };
+        let written = |option: &&Declaration| (option.no_effect)(&own).is_none() && !is_replaced(option.name);
         for option in options::all().filter(written) {
             let (name, value) = (format!("--{}", option.name), option.get(&own));
             match value {
@@ -115,10 +120,13 @@ impl CopiedCommand<'_> {
         }
     }
 
-    /// Writes the file of factors, the reference surface, the selection, the pose and the camera.
+    /// Writes the files of factors and of a matcap, the reference surface, the selection, the pose and the camera.
     fn view(&self, line: &mut Line) {
         if let Some(path) = self.factors {
             line.option("--factors", named(&Source::File(path.to_owned())));
+        }
+        if let Some(path) = self.matcap_image.filter(|_| self.settings.overlays.colors == Colors::Matcap) {
+            line.option("--matcap-image", named(&Source::File(path.to_owned())));
         }
         if let (Some(truth), None) = (self.truth, self.animation) {
             line.option("--truth", named(truth));
@@ -220,7 +228,7 @@ mod tests {
     use crate::cli::options::PictureOptions;
     use crate::cli::{Cli, Command, render};
     use crate::mesh::Bounds;
-    use crate::settings::random;
+    use crate::settings::{Matcap, Overlays, random};
 
     /// Splits a line into words as a shell does.
     fn words(line: &str) -> Vec<String> {
@@ -255,6 +263,7 @@ mod tests {
             animation: None,
             truth: None,
             factors: None,
+            matcap_image: None,
             triangle: None,
             transparent: false,
             legend: false,
@@ -325,6 +334,25 @@ mod tests {
         let args = parsed(&CopiedCommand { transparent: true, legend: true, output, ..shown }.line());
         assert_eq!((args.shot.transparent, args.shot.legend, args.shot.picture.0.background), (true, true, None));
         assert_eq!(args.output, Path::new("./-odd name.png"));
+    }
+
+    #[test]
+    fn a_matcap_of_a_file_is_written_in_place_of_the_one_that_is_made_in_code() {
+        let (source, preparation) = ("shape:torus".parse().expect("a shape"), Preparation::default());
+        let overlays = Overlays { colors: Colors::Matcap, ..Overlays::default() };
+        let settings = Settings { overlays, matcap: Matcap::Pearl, ..Settings::default() };
+        let camera = camera();
+        let shown = |settings, matcap_image| {
+            let shown = CopiedCommand { matcap_image, ..shown(&source, &preparation, settings, &camera) };
+            parsed(&shown.line())
+        };
+        let args = shown(&settings, None);
+        assert_eq!((args.shot.picture.0.matcap, args.shot.matcap_image), (Matcap::Pearl, None));
+        let path = Path::new("-a sphere.png");
+        let args = shown(&settings, Some(path));
+        assert_eq!(args.shot.matcap_image.as_deref(), Some(Path::new("./-a sphere.png")));
+        assert_eq!(args.shot.picture.0.overlays, overlays);
+        assert_eq!(shown(&Settings::default(), Some(path)).shot.matcap_image, None, "it isn't shown");
     }
 
     #[test]

@@ -9,7 +9,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use crate::plot::{self, ChartError, DENSITY};
 use crate::render::layout::{WASTE_COLOR, srgb};
 use crate::render::{BARYCENTRIC_TITLE, COLUMNS, Distances, Scale, Shown, legend_of, tick_text};
-use crate::settings::Colors;
+use crate::settings::{Colors, Settings};
 
 /// Sizes in points: the bar of the scale, the block of one colour before it, the margin, and the text.
 const BAR: [f64; 2] = [196.0, 12.0];
@@ -29,15 +29,21 @@ const LEFT_TOP: Pos = Pos { h_pos: HPos::Left, v_pos: VPos::Top };
 const MIDDLE_TOP: Pos = Pos { h_pos: HPos::Center, v_pos: VPos::Top };
 const LEFT: Pos = Pos { h_pos: HPos::Left, v_pos: VPos::Center };
 
-/// Draws the legend into the lower right corner, if these colours have one.
+/// Draws the legend into the lower right corner, if the picture's colours have one. `radius` is the mesh's bounding radius in
+/// object units.
 ///
 /// # Errors
 /// The font can't be used.
-pub(super) fn draw_legend(picture: &mut RgbaImage, colors: Colors, distances: &Distances) -> Result<(), ChartError> {
-    if colors == Colors::Barycentric {
+pub(super) fn draw_legend(
+    picture: &mut RgbaImage,
+    settings: &Settings,
+    radius: f32,
+    distances: &Distances,
+) -> Result<(), ChartError> {
+    if settings.overlays.colors == Colors::Barycentric {
         return draw_plate(picture, BARYCENTRIC, barycentric);
     }
-    let Some(legend) = legend_of(colors, distances) else { return Ok(()) };
+    let Some(legend) = legend_of(settings, radius, distances) else { return Ok(()) };
     let title = &legend.title;
     match &legend.shown {
         Shown::Title => draw_plate(picture, TITLE, |pen| pen.text(title, [0.0, 7.0], LEFT)),

@@ -59,7 +59,7 @@ use crate::export::ExportError;
 use crate::files::Limits;
 use crate::files::file_reason;
 use crate::gpu::GpuError;
-use crate::load::{LoadError, Source};
+use crate::load::{LoadError, MatcapError, Source};
 use crate::names::{on_one_line, shown_path};
 use crate::progress::{Cancelled, Progress};
 use crate::settings::Settings;
@@ -129,6 +129,8 @@ pub(crate) enum CliError {
     Gpu(#[from] GpuError),
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    #[error(transparent)]
+    Matcap(#[from] MatcapError),
     #[error(transparent)]
     Export(#[from] ExportError),
     #[error("{path}: could not be {doing} ({reason})")]

@@ -1,6 +1,7 @@
 //! One picture, and all that is measured for it: what `render` and `turntable` draw, and what the window saves.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use glam::Vec2;
 use image::RgbaImage;
@@ -13,7 +14,7 @@ use super::{CliError, to_json, write_text};
 use crate::engine::{Engine, Loaded, MeasurementResults, Measurements, Runs};
 use crate::gpu::{GpuError, Recorder, Timing};
 use crate::measure::{AccuracyOptions, DeviationField, patch_edges};
-use crate::mesh::{Moment, t_junctions};
+use crate::mesh::{Moment, Texture, t_junctions};
 use crate::progress::Progress;
 use crate::render::{
     Camera, DEVIATION_PX_SCALE, Distances, LineSegment, Renderer, Scale, Scene, Target, axis_lines, crack_lines,
@@ -30,6 +31,8 @@ pub(crate) struct Subject {
     pub moment: Option<Moment>,
     /// Factors of a file in place of those that LOD computes, one for each patch.
     pub given: Option<Vec<HullFactors>>,
+    /// A picture of a lit sphere in place of that of the settings, for the matcap overlay.
+    pub matcap: Option<Arc<Texture>>,
     pub settings: Settings,
     pub reference_surface: Option<ReferenceSurface>,
     /// The patch that is outlined.
@@ -85,11 +88,12 @@ pub(crate) struct Shot {
 }
 
 impl Subject {
-    /// Gives a scene of the mesh its factors and its pose.
+    /// Gives a scene of the mesh its factors, its matcap and its pose.
     ///
     /// # Errors
     /// The mesh's rig needs larger buffers than the adapter can bind.
-    pub(crate) fn dress(&self, scene: &mut Scene) -> Result<(), GpuError> {
+    pub(crate) fn dress(&self, engine: &Engine, scene: &mut Scene) -> Result<(), GpuError> {
+        scene.matcap = self.matcap.as_ref().map(|picture| engine.renderer.matcap(picture));
         scene.tessellator.give(self.given.clone())?;
         scene.frame_clip(self.moment.map(|moment| moment.clip));
         scene.set_moment(self.moment)
@@ -167,7 +171,7 @@ impl Shot {
         self.draw(&progress.part(MEASURING, 1.0))?;
         let mut picture = self.target.read(&self.engine.gpu)?;
         if self.view.legend {
-            draw_legend(&mut picture, self.subject.settings.overlays.colors, &self.distances())?;
+            draw_legend(&mut picture, &self.subject.settings, self.scene.bounds.radius(), &self.distances())?;
         }
         Ok(picture)
     }

@@ -1,6 +1,7 @@
 //! The options of commands that draw pictures: what a picture shows, and from where.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::factors_option::FactorsFile;
 use super::options::{LodCameraOption, PictureOptions};
@@ -8,7 +9,7 @@ use super::shot::{Shot, ShotView, Subject};
 use super::{CliError, FactorsOption, SurfaceOptions, TruthOption, file_of, file_of_heights, keep_apart, load_apart};
 use crate::engine::{Engine, Loaded};
 use crate::gpu::Timing;
-use crate::load::Source;
+use crate::load::{Source, load_matcap};
 use crate::settings::{Colors, Settings};
 
 #[derive(Clone, Debug, Default, clap::Args)]
@@ -27,6 +28,9 @@ pub(crate) struct ShotOptions {
     /// and blue
     #[arg(long, value_name = "TRIANGLE")]
     pub select: Option<u32>,
+    /// PNG or JPEG image of a lit sphere for the matcap overlay, in place of that of --matcap
+    #[arg(long, value_name = "IMAGE", conflicts_with = "matcap")]
+    pub matcap_image: Option<PathBuf>,
     /// Draw on nothing in place of a colour: where no mesh, line or grid is, the picture is transparent
     #[arg(long, conflicts_with = "background")]
     pub transparent: bool,
@@ -43,9 +47,13 @@ impl ShotOptions {
     /// Names the options that can't be together, or the file.
     pub(super) fn check(&self, file: &Source, read: Option<&Path>, written: &[Option<&Path>]) -> Result<(), CliError> {
         self.surface.check_with(self.picture.0.split_surface)?;
+        if self.matcap_image.is_some() && self.picture.0.overlays.colors != Colors::Matcap {
+            return Err(CliError::Usage("--matcap-image needs --overlay matcap, which shows it"));
+        }
         let truth = self.truth.truth.as_ref().and_then(file_of);
         let heights = file_of_heights(self.surface.height.as_ref());
-        let own = [file_of(file), truth, heights, self.given.given.as_deref(), read];
+        let (factors, matcap) = (self.given.given.as_deref(), self.matcap_image.as_deref());
+        let own = [file_of(file), truth, heights, factors, matcap, read];
         keep_apart(own, written.iter().copied())
     }
 
@@ -58,7 +66,9 @@ impl ShotOptions {
         file: &Source,
         written: &[Option<&Path>],
     ) -> Result<(Subject, Option<FactorsFile>), CliError> {
-        let loaded = load_apart(file, &self.surface.preparation(), written)?;
+        let preparation = self.surface.preparation();
+        let matcap = self.matcap_image.as_ref().map(|path| load_matcap(path, &preparation.limits)).transpose()?;
+        let loaded = load_apart(file, &preparation, written)?;
         let given = self.given.read(&loaded.mesh, &loaded.topology, &self.surface.tessellation())?;
         let is_shown = self.picture.0.overlays.colors == Colors::Deviation;
         let reference_surface = self.truth.reference_surface(&loaded, &self.surface, is_shown)?;
@@ -69,6 +79,7 @@ impl ShotOptions {
             settings: self.picture.0.with(self.surface.tessellation()),
             loaded,
             given,
+            matcap: matcap.map(Arc::new),
             reference_surface,
             selected,
             more_lines: Default::default(),
@@ -83,7 +94,7 @@ impl ShotOptions {
     /// Those of the device, or there are too many triangles at any tolerance.
     pub(super) fn shot(&self, engine: Engine, mut subject: Subject) -> Result<Shot, CliError> {
         let mut scene = engine.scene(&subject.loaded, subject.arena_bytes)?;
-        subject.dress(&mut scene)?;
+        subject.dress(&engine, &mut scene)?;
         let mesh = &subject.loaded.mesh;
         let view = ShotView {
             camera: self.surface.camera(mesh, &scene.bounds),

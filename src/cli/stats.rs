@@ -8,7 +8,7 @@ use super::factors_option::FactorsFile;
 use super::truth::{AccuracyStats, DeviationStats};
 use crate::engine::{Engine, Loaded};
 use crate::gpu::PassTime;
-use crate::measure::Measured;
+use crate::measure::{Measured, Seams};
 use crate::mesh::{EdgeCounts, Topology};
 use crate::render::Scene;
 use crate::settings::{Choice, Declaration, Settings, options};
@@ -40,6 +40,7 @@ pub(super) struct Stats {
     vertices_out: u64,
     bytes: Bytes,
     cracks: CrackStats,
+    seams: SeamStats,
     /// Px through which one can see into the mesh; none if it is open, reaches the near plane, or patches that face away were
     /// left out.
     pub leaks: Option<u64>,
@@ -179,6 +180,34 @@ impl CrackStats {
     }
 }
 
+/// Angles between the shading normals of both sides of uv seams and split normals, in degrees.
+#[derive(Debug, Serialize)]
+struct SeamStats {
+    edges: u64,
+    points: u64,
+    max_degrees: f64,
+    mean_degrees: f64,
+    /// Of the mesh's own normals, at the same places.
+    source_max_degrees: f64,
+    source_mean_degrees: f64,
+    /// The most by which the tessellation's angle at a point is larger than the mesh's.
+    max_added_degrees: f64,
+}
+
+impl SeamStats {
+    fn new(seams: &Seams) -> Self {
+        Self {
+            edges: seams.edges,
+            points: seams.points,
+            max_degrees: seams.emitted.most,
+            mean_degrees: seams.mean(seams.emitted),
+            source_max_degrees: seams.source.most,
+            source_mean_degrees: seams.mean(seams.source),
+            max_added_degrees: seams.most_added,
+        }
+    }
+}
+
 impl Stats {
     /// The stats that every picture has, seen from `view`. The others are left empty.
     pub(super) fn new(
@@ -217,6 +246,7 @@ impl Stats {
                 arena: scene.tessellator.arena_bytes(),
             },
             cracks: CrackStats::new(measured, topology, view),
+            seams: SeamStats::new(&measured.seams),
             leaks: None,
             folds: measured.folds,
             not_finite: measured.not_finite,
@@ -260,6 +290,7 @@ pub(super) struct LeftStats {
     triangles_out: u64,
     vertices_out: u64,
     cracks: CrackStats,
+    seams: SeamStats,
     folds: u64,
     pub max_error_px: Option<f64>,
     pub accuracy: Option<AccuracyStats>,
@@ -275,6 +306,7 @@ impl LeftStats {
             triangles_out,
             vertices_out,
             cracks: CrackStats::new(measured, scene.tessellator.topology(), view),
+            seams: SeamStats::new(&measured.seams),
             folds: measured.folds,
             max_error_px: None,
             accuracy: None,

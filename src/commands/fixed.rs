@@ -18,6 +18,10 @@ pub(super) fn commands() -> Vec<Command> {
     [file(), edit(), view(), standpoints(), camera(), look(), tessellation(), help()].into_iter().flatten().collect()
 }
 
+/// What a picture of a lit sphere is for.
+pub(crate) const MATCAP_IMAGE: &str =
+    "Opens a PNG or JPEG image of a lit sphere, and shows the surface in its colours.";
+
 /// What a file of factors is for.
 const FACTORS: &str = "Opens the tessellation factors that another engine wrote, in place of those of LOD, and lists where they disagree.";
 
@@ -37,6 +41,9 @@ fn file() -> Vec<Command> {
         .keys([ctrl(Key::L)])
         .menu(File, 0),
         Command::new(Action::File(FileAction::HeightImage), "Height image…", HEIGHT_IMAGE)
+            .menu(File, 1)
+            .unless(when::document),
+        Command::new(Action::File(FileAction::Matcap), "Matcap image…", MATCAP_IMAGE)
             .menu(File, 1)
             .unless(when::document),
         Command::new(Action::File(FileAction::Reload), "Reload", "Loads the file again; settings and camera stay.")

@@ -61,9 +61,13 @@ fn settings() -> Vec<Command> {
 fn overlay_key(overlay: Overlay) -> KeyboardShortcut {
     plain(match overlay {
         Overlay::Clay => return shift(Key::C),
+        Overlay::Matcap => return shift(Key::M),
         Overlay::Zebra => return shift(Key::S),
         Overlay::ShadingNormals => return shift(Key::N),
+        Overlay::SurfaceNormals => return shift(Key::G),
+        Overlay::Curvature => return shift(Key::K),
         Overlay::UvChecker => return shift(Key::U),
+        Overlay::TexelDensity => return shift(Key::T),
         Overlay::Wireframe => Key::W,
         Overlay::Patches => Key::P,
         Overlay::Barycentric => Key::B,
@@ -90,11 +94,11 @@ fn colors_and_overlays() -> Vec<Command> {
     let mut all = vec![Command::new(Action::Setting(Change::MaterialColors), own, material.text())];
     all.extend(Overlay::ALL.iter().map(|&overlay| {
         let mut overlays = Overlays::default();
-        let name = match overlays.control(overlay) {
-            Control::Colors(_, given) => format!("{colors}: {}", given.label()),
-            Control::Switch(_) => format!("Overlay: {}", overlay.label()),
+        let (name, needs_coordinates) = match overlays.control(overlay) {
+            Control::Colors(_, given) => (format!("{colors}: {}", given.label()), given.are_of_texture_coordinates()),
+            Control::Switch(_) => (format!("Overlay: {}", overlay.label()), false),
         };
-        let why_not = if overlay == Overlay::UvChecker { when::texture_coordinates } else { when::always };
+        let why_not = if needs_coordinates { when::texture_coordinates } else { when::always };
         let command = Command::new(Action::Setting(Change::Overlay(overlay)), name, overlay.text());
         command.keys([overlay_key(overlay)]).unless(why_not)
     }));

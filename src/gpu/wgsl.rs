@@ -40,6 +40,7 @@ pub(crate) static CONVENTION: WgslFile = wgsl!("convention", FACTORS);
 pub(crate) static SURFACE: WgslFile = wgsl!("surface", FACTORS);
 pub(crate) static OCTAHEDRAL_NORMAL: WgslFile = wgsl!("octahedral_normal");
 pub(crate) static NORMAL: WgslFile = wgsl!("normal", FACTORS, SURFACE);
+pub(crate) static CURVATURE: WgslFile = wgsl!("curvature", FACTORS, SURFACE);
 pub(crate) static LOD: WgslFile = wgsl!("lod");
 pub(crate) static TYPES: WgslFile = wgsl!("types", LOD);
 pub(crate) static DISPLACEMENT_FACTOR: WgslFile = wgsl!("displacement_factor", LOD, TYPES);

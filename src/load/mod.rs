@@ -9,6 +9,7 @@ mod hostile_files;
 mod images;
 mod jpeg_memory;
 mod loaded_mesh;
+mod matcap_image;
 pub(crate) mod memory_budget;
 pub(crate) mod mesh_file;
 mod obj;
@@ -24,6 +25,7 @@ pub use crate::files::{FileError, Limits};
 pub use gltf::GltfError;
 pub use heights::HeightError;
 pub use loaded_mesh::LoadedMesh;
+pub use matcap_image::{MatcapError, load_matcap};
 pub use mesh_file::{LoadError, load};
 pub use read_error::{FilePosition, ReadError};
 

@@ -2,8 +2,10 @@
 
 use glam::{DVec3, Mat4, Vec2, Vec3};
 
-use super::outlines::{EdgeSide, OutlinePoint, Outlines};
-use crate::mesh::{EdgeKind, Mesh, Topology};
+#[cfg(test)]
+use super::outlines::Outlines;
+use super::outlines::{EdgeSide, OutlinePoint};
+use crate::mesh::{Mesh, Topology};
 use crate::view::project;
 
 /// The cracks of a tessellation.
@@ -42,26 +44,31 @@ pub struct CrackedEdge {
 
 impl Cracks {
     /// Compares every edge's sides.
-    pub fn find(mesh: &Mesh, topology: &Topology, outlines: &Outlines) -> Self {
+    #[cfg(test)]
+    fn find(mesh: &Mesh, topology: &Topology, outlines: &Outlines) -> Self {
         let mut cracks = Self::default();
-        for (index, edge) in (0..).zip(&topology.edges) {
-            if edge.kind == EdgeKind::Boundary {
-                continue;
-            }
-            cracks.edges_compared += 1;
-            let sides = outlines.edge(topology, index);
-            cracks.edge_points += points_compared(&sides);
-            let different_normals = different_normals(mesh, topology, index, &sides);
-            if let Some(crack) = compare(index, &sides, different_normals) {
-                cracks.different_bits += u64::from(crack.different_bits);
-                cracks.different_normals += u64::from(crack.different_normals);
-                cracks.different_factors += u64::from(crack.different_factors);
-                cracks.edges.push(crack);
-            }
+        outlines.shared_edges(topology).for_each(|(edge, sides)| cracks.take(mesh, topology, edge, &sides));
+        cracks.sorted()
+    }
+
+    /// Compares the sides of an edge, an index in [`Topology::edges`].
+    pub(super) fn take(&mut self, mesh: &Mesh, topology: &Topology, edge: u32, sides: &[EdgeSide]) {
+        self.edges_compared += 1;
+        self.edge_points += points_compared(sides);
+        let different_normals = different_normals(mesh, topology, edge, sides);
+        if let Some(crack) = compare(edge, sides, different_normals) {
+            self.different_bits += u64::from(crack.different_bits);
+            self.different_normals += u64::from(crack.different_normals);
+            self.different_factors += u64::from(crack.different_factors);
+            self.edges.push(crack);
         }
+    }
+
+    /// The cracks with the widest gap first, after all edges are taken.
+    pub(super) fn sorted(mut self) -> Self {
         let bits = |edge: &CrackedEdge| (edge.different_bits, edge.different_normals);
-        cracks.edges.sort_by(|a, b| b.gap.total_cmp(&a.gap).then(bits(b).cmp(&bits(a))));
-        cracks
+        self.edges.sort_by(|a, b| b.gap.total_cmp(&a.gap).then(bits(b).cmp(&bits(a))));
+        self
     }
 
     /// Edges whose positions or factors differ. Light may pass through them.

@@ -1,11 +1,14 @@
 //! The outlines of patches, gathered from what was emitted: the points that each side of an edge has.
 
+use std::ops::RangeInclusive;
+
 use glam::Vec3;
 
 use super::asked_factors::AskedFactors;
-use crate::mesh::Topology;
+use crate::mesh::{EdgeKind, Side, Topology};
 use crate::tessellate::{
-    Convention, PatchFactors, Vertex, domain_side, outer_count, patch_is_culled, patch_is_low, point_count, segments,
+    Convention, FIXED_ONE, PatchFactors, Vertex, domain_plan, domain_point, domain_side, outer_count, patch_is_culled,
+    patch_is_low, point_count, segments,
 };
 
 /// A vertex on a patch's outline.
@@ -134,19 +137,52 @@ impl Outlines {
         self.factors[patch as usize]
     }
 
-    fn side(&self, topology: &Topology, index: u32) -> Option<EdgeSide> {
+    /// The edges with several sides, as indices in [`Topology::edges`], with the sides of each as [`Self::edge`] has them.
+    pub fn shared_edges(&self, topology: &Topology) -> impl Iterator<Item = (u32, Vec<EdgeSide>)> {
+        let shared = (0..).zip(&topology.edges).filter(|(_, edge)| edge.kind != EdgeKind::Boundary);
+        shared.map(|(index, _)| (index, self.edge(topology, index)))
+    }
+
+    /// Where the points of a side (an index into [`Topology::sides`]) lie on its edge: the weight of the edge's end at each, in
+    /// 16.16 fixed point. Empty if its patch emits nothing.
+    pub fn weights(&self, topology: &Topology, index: u32) -> Vec<u32> {
         let side = topology.sides[index as usize];
-        let patch = side.patch();
-        let outline = self.outline(patch);
-        if outline.is_empty() {
+        let Some((_, range)) = self.side_points(side) else { return Vec::new() };
+        let count = self.outline(side.patch()).len() as u32;
+        let plan = domain_plan(self.factors[side.patch() as usize]);
+        let weights = |point: u32| {
+            let [u, v] = domain_point(&plan, point % count);
+            [u, v, FIXED_ONE - u - v]
+        };
+        // Whichever corner of the domain it is, its weight is 1 where the edge ends.
+        let end = if side.reversed() { *range.start() } else { *range.end() };
+        let corner = weights(end).iter().position(|&weight| weight == FIXED_ONE).unwrap_or(0);
+        let mut all: Vec<u32> = range.map(|point| weights(point)[corner]).collect();
+        if side.reversed() {
+            all.reverse();
+        }
+        all
+    }
+
+    /// Which of its patch's factors cuts a side, and the numbers of its points on the patch's outline, where the last may be the
+    /// first of all once more. `None` if the patch emits nothing.
+    fn side_points(&self, side: Side) -> Option<(usize, RangeInclusive<u32>)> {
+        if self.outline(side.patch()).is_empty() {
             return None;
         }
         // The outline has the edges of factors 0, 1 and 2 one after another.
-        let words = self.factors[patch as usize].outside;
+        let words = self.factors[side.patch() as usize].outside;
         let factor = self.asked.index(side.index());
         let first: u32 = words[..factor].iter().map(|&word| segments(word)).sum();
-        let last = first + segments(words[factor]);
-        let mut points: Vec<_> = (first..=last).map(|p| outline[p as usize % outline.len()]).collect();
+        Some((factor, first..=first + segments(words[factor])))
+    }
+
+    fn side(&self, topology: &Topology, index: u32) -> Option<EdgeSide> {
+        let side = topology.sides[index as usize];
+        let patch = side.patch();
+        let (factor, range) = self.side_points(side)?;
+        let (outline, words) = (self.outline(patch), self.factors[patch as usize].outside);
+        let mut points: Vec<_> = range.map(|p| outline[p as usize % outline.len()]).collect();
         if side.reversed() {
             points.reverse();
         }

@@ -6,6 +6,7 @@ use super::asked_factors::AskedFactors;
 use super::cracks::Cracks;
 use super::folds::{self, FoldedPatch};
 use super::outlines::Outlines;
+use super::seams::Seams;
 use super::visitor::{EmittedChunk, Visitor};
 use crate::mesh::{Mesh, Topology};
 use crate::tessellate::{FACING_AWAY, OUT_OF_VIEW, PatchFactors, Tessellated, patch_is_culled};
@@ -59,6 +60,7 @@ pub struct Measured {
     /// Emitted patches with a factor of 63 or more: see [`Outlines::at_limit`].
     pub patches_at_limit: u32,
     pub cracks: Cracks,
+    pub seams: Seams,
     /// Triangles that face away from the side that their patch faces.
     pub folds: u64,
     /// The patches with such triangles, those with the largest area first.
@@ -81,12 +83,18 @@ impl<'a> Survey<'a> {
 
     /// Compares the sides of every edge, after all chunks are taken.
     pub(crate) fn finish(mut self) -> Measured {
+        let (mut cracks, mut seams) = (Cracks::default(), Seams::default());
+        for (edge, sides) in self.outlines.shared_edges(self.topology) {
+            cracks.take(self.mesh, self.topology, edge, &sides);
+            seams.take(self.mesh, self.topology, &self.outlines, edge, &sides);
+        }
         self.folded.sort_by(|a, b| b.area.total_cmp(&a.area));
         Measured {
             culled: self.culled,
             patches_low: self.outlines.low(),
             patches_at_limit: self.outlines.at_limit(),
-            cracks: Cracks::find(self.mesh, self.topology, &self.outlines),
+            cracks: cracks.sorted(),
+            seams,
             folds: self.folded.iter().map(|patch| u64::from(patch.folds)).sum(),
             folded: self.folded,
             not_finite: self.not_finite,

@@ -3,7 +3,7 @@
 use wgpu::util::DeviceExt;
 
 use super::Scale;
-use super::scale::FACTOR_SCALE;
+use super::scale::{FACTOR_SCALE, curvature_scale};
 use crate::gpu::Gpu;
 use crate::measure::DeviationField;
 use crate::settings::{Colors, DeviationUnit, Settings};
@@ -74,11 +74,13 @@ pub(crate) fn deviation_scale(largest: f64, ulp: f32) -> Scale {
     Scale { least: (most / SPAN) as f32, most: most as f32, ..DEVIATION_PX_SCALE }
 }
 
-/// The scale for the numbers that a picture's colours stand for; any scale if they stand for none.
-pub(super) fn scale_of(settings: &Settings, known: Option<&Deviations>) -> Scale {
+/// The scale for the numbers that a picture's colours stand for, of a mesh with this bounding radius in object units; any scale if
+/// they stand for none.
+pub(super) fn scale_of(settings: &Settings, known: Option<&Deviations>, radius: f32) -> Scale {
     match (settings.overlays.colors, settings.deviation_in) {
         (Colors::Deviation, DeviationUnit::Units) => known.map_or(DEVIATION_PX_SCALE, |known| known.scale),
         (Colors::Deviation, DeviationUnit::Px) => DEVIATION_PX_SCALE,
+        (Colors::Curvature, _) => curvature_scale(settings.curvature_scale, radius),
         (colors, _) => *Scale::of(colors).unwrap_or(&FACTOR_SCALE),
     }
 }

@@ -14,7 +14,7 @@ pub(super) fn frame(gpu: &Gpu, scene: &Scene, target: &Target, camera: &Camera, 
     let viewport = target.viewport();
     let [right, up, back] = camera.axes();
     let eye = if camera.orthographic { back.extend(0.0) } else { camera.eye().extend(1.0) };
-    let scale = scale_of(settings, scene.known_deviation());
+    let scale = scale_of(settings, scene.known_deviation(), scene.bounds.radius());
     // In clip space, w is 1 everywhere in an orthographic view, and the distance from the eye in a perspective view.
     let px_where_w_is_1 =
         (if camera.orthographic { 1.0 } else { camera.distance }) / camera.units_per_pixel(viewport.y);

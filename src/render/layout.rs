@@ -162,6 +162,10 @@ pub(crate) const CHECKER_V: [f32; 3] = [0.6, 1.1, 0.55];
 /// light.
 pub(crate) const CHECKER_LINE: [u8; 3] = [32, 64, 160];
 
+/// The sides in px of the image that texel density is counted in where a material has none; the same in
+/// `shaders/draw_looks.wgsl`.
+pub(crate) const TEXELS_WITHOUT_IMAGE: f32 = 1024.0;
+
 /// sRGB colours of the axes x, y and z.
 pub(crate) const AXIS_COLORS: [[u8; 3]; 3] = [[232, 82, 92], [122, 184, 58], [84, 140, 240]];
 

@@ -1,8 +1,8 @@
 //! What a legend says about the surface's colours. The window paints it over the viewport, and commands into their pictures.
 
-use super::layout::{CHECKER_LIGHT, CHECKER_LINE, CHECKER_U, CHECKER_V, srgb};
-use super::{DEVIATION_PX_SCALE, EXCESS_SCALE, FACTOR_SCALE, SIZE_SCALE, Scale};
-use crate::settings::{Colors, DeviationUnit};
+use super::layout::{CHECKER_LIGHT, CHECKER_LINE, CHECKER_U, CHECKER_V, TEXELS_WITHOUT_IMAGE, srgb};
+use super::{DENSITY_SCALE, DEVIATION_PX_SCALE, EXCESS_SCALE, FACTOR_SCALE, SIZE_SCALE, Scale, curvature_scale};
+use crate::settings::{Colors, DeviationUnit, Settings};
 
 /// The contents of a legend.
 pub(crate) struct Legend {
@@ -49,17 +49,18 @@ pub(crate) struct Distances {
 
 /// Whether colours have a legend.
 pub(crate) fn has_legend(colors: Colors) -> bool {
-    !matches!(colors, Colors::Material | Colors::Clay)
+    !matches!(colors, Colors::Material | Colors::Clay | Colors::Matcap)
 }
 
-/// The legend of these colours, if they have one. That of barycentric colours is a drawing instead.
-pub(crate) fn legend_of(colors: Colors, distances: &Distances) -> Option<Legend> {
+/// The legend of a picture's colours, if they have one. That of barycentric colours is a drawing instead. `radius` is the mesh's
+/// bounding radius in object units.
+pub(crate) fn legend_of(settings: &Settings, radius: f32, distances: &Distances) -> Option<Legend> {
     let legend = |title: &str, meaning: &str, shown: Shown| {
         Some(Legend { title: title.to_owned(), meaning: meaning.to_owned(), shown })
     };
     let scale = |scale: Scale, ticks: &[f32], waste: bool| Shown::Scale { scale, ticks: ticks.to_vec(), waste };
-    match colors {
-        Colors::Material | Colors::Clay | Colors::Barycentric => None,
+    match settings.overlays.colors {
+        Colors::Material | Colors::Clay | Colors::Matcap | Colors::Barycentric => None,
         Colors::Zebra => legend(
             "Stripes break at creases",
             "Stripes that the surface reflects. A stripe breaks off where the surface has a crease, and has a corner where only \
@@ -72,11 +73,38 @@ pub(crate) fn legend_of(colors: Colors, distances: &Distances) -> Option<Legend>
              and 1 is 255. Seen from behind, the surface has the same colours.",
             Shown::Colors(normal_colors()),
         ),
+        Colors::SurfaceNormals => legend(
+            "Surface normal: x red, y green, z blue",
+            "Colours of the normals of the curved patches themselves, without displacement, in object space, as normal maps have \
+             them: a coordinate of -1 is 0 in its channel, and 1 is 255. Seen from behind, the surface has the same colours.",
+            Shown::Colors(normal_colors()),
+        ),
+        Colors::Curvature => {
+            let own = curvature_scale(settings.curvature_scale, radius);
+            legend(
+                "Mean curvature, 1/unit",
+                "Colours of the mean curvature of the curved patches themselves, without displacement, in 1 / object unit: a \
+                 sphere of radius r has 1 / r. It is above 0 where the surface bulges towards the side that it faces, below 0 \
+                 where it is hollow, and 0 where it is flat or a saddle. Curvature up to, in the section Overlays, sets the \
+                 scale's ends.",
+                scale(own, &[own.least, 0.0, own.most], false),
+            )
+        }
         Colors::UvChecker => legend(
             "UV: a square is 1/8 of a unit",
             "A checker over texture coordinates. Red grows with u and green with v up to the next whole number, where there \
              is a line. Triangles without texture coordinates are plain grey, and so are squares smaller than a px.",
             Shown::Colors(checker_colors()),
+        ),
+        Colors::TexelDensity => legend(
+            "Texels per px",
+            &format!(
+                "Colours of how many texels of the base colour's image lie side by side in a px of the picture, 1/8 to 8. Below 1 \
+                 the image is magnified and looks blurred; above 1 it has more detail than the picture shows. A material without \
+                 an image counts as if it had one of {TEXELS_WITHOUT_IMAGE} x {TEXELS_WITHOUT_IMAGE} px. Triangles without \
+                 texture coordinates are plain grey."
+            ),
+            scale(DENSITY_SCALE, &[0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0], false),
         ),
         Colors::Factors => legend(
             "Factor",
@@ -150,7 +178,10 @@ fn deviation_legend(distances: &Distances) -> Legend {
 
 /// Formats a tick as shortly as possible. The ends of scales are round numbers.
 pub(crate) fn tick_text(tick: f32) -> String {
-    if (1e-3..1e5).contains(&tick) {
+    if tick < 0.0 {
+        return format!("-{}", tick_text(-tick));
+    }
+    if tick == 0.0 || (1e-3..1e5).contains(&tick) {
         let rounded = format!("{tick:.5}");
         rounded.trim_end_matches('0').trim_end_matches('.').to_owned()
     } else {
@@ -167,5 +198,6 @@ mod tests {
     fn ticks_are_short() {
         let texts = [64.0, 3.0, 0.1, 0.0025, 0.25, 1.5e-4, 2e-7, 150.0].map(tick_text);
         assert_eq!(texts, ["64", "3", "0.1", "0.0025", "0.25", "1.5e-4", "2e-7", "150"]);
+        assert_eq!([0.0, -2.4, -3e-7].map(tick_text), ["0", "-2.4", "-3e-7"]);
     }
 }

@@ -17,7 +17,9 @@ mod leaks;
 mod legend;
 #[cfg(test)]
 mod light_tests;
+mod look;
 mod marks;
+pub(crate) mod matcap;
 mod materials;
 mod needs;
 mod panorama;
@@ -46,7 +48,7 @@ pub(crate) use legend::{BARYCENTRIC_TITLE, COLUMNS, Distances, Shown, has_legend
 pub(crate) use marks::{crack_lines, crack_lines_in, lod_camera_lines, patch_lines, t_junction_lines, worst_lines};
 pub(crate) use pick::{Picked, PickedTriangle, Picker, Picking, Pixel};
 pub(crate) use renderer::Renderer;
-pub(crate) use scale::{EXCESS_SCALE, FACTOR_SCALE, SIZE_SCALE, Scale};
+pub(crate) use scale::{DENSITY_SCALE, EXCESS_SCALE, FACTOR_SCALE, SIZE_SCALE, Scale, curvature_scale};
 pub(crate) use scene::{LineSegment, Scene};
 pub(crate) use target::Target;
 #[cfg(test)]

@@ -4,16 +4,17 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::environment::ENVIRONMENT;
+use super::look::Look;
 use super::materials::Materials;
 use super::needs::Needs;
 use super::prefilter_pass::REFLECTANCE;
 use super::scene::LineSegment;
 use super::target::{COLOR_FORMAT, DEPTH_FORMAT, samples};
 use crate::gpu::wgsl::{
-    CONVENTION, FACTORS, LOAD_NET, LOADS, NORMAL, OCTAHEDRAL_NORMAL, SURFACE, TYPES, WgslFile, wgsl,
+    CONVENTION, CURVATURE, FACTORS, LOAD_NET, LOADS, NORMAL, OCTAHEDRAL_NORMAL, SURFACE, TYPES, WgslFile, wgsl,
 };
 use crate::gpu::{Gpu, GpuError, Lazy, ShaderModule, VERTEX_HALF};
-use crate::settings::NormalsAt;
+use crate::settings::{Choice, NormalsAt};
 
 pub(super) static DRAW_TYPES: WgslFile = wgsl!("draw_types", TYPES);
 static DRAW_DENSITY: WgslFile = wgsl!("draw_density");
@@ -29,6 +30,7 @@ pub(super) static DRAW_PLAIN: WgslFile =
 pub(super) static DRAW_SURFACE: WgslFile = wgsl!(
     "draw_surface",
     CONVENTION,
+    CURVATURE,
     DRAW_DENSITY,
     DRAW_LIGHT,
     DRAW_LOOKS,
@@ -36,6 +38,8 @@ pub(super) static DRAW_SURFACE: WgslFile = wgsl!(
     DRAW_NORMAL,
     DRAW_TYPES,
     FACTORS,
+    LOAD_NET,
+    NORMAL,
     OCTAHEDRAL_NORMAL,
     SURFACE,
     TYPES
@@ -66,6 +70,12 @@ pub(super) enum Draw {
     LitPulled(Faces, NormalsAt, Needs),
     /// [`Self::Source`] with such materials.
     LitSource(Needs),
+    /// [`Self::Indexed`] in the variant of a look.
+    LookIndexed(Faces, NormalsAt, Look),
+    /// [`Self::Pulled`] in such a variant.
+    LookPulled(Faces, NormalsAt, Look),
+    /// [`Self::Source`] in such a variant.
+    LookSource(Look),
     /// The grid on the ground.
     Ground,
     /// Lines over the mesh.
@@ -82,6 +92,10 @@ pub(super) enum Faces {
     Fronts,
 }
 
+impl Faces {
+    const BOTH: [Self; 2] = [Self::Both, Self::Fronts];
+}
+
 /// Which part of a line is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Occluded {
@@ -92,7 +106,7 @@ pub(super) enum Occluded {
 }
 
 impl Draw {
-    /// Every pipeline that there is; of those that light materials, the ones with all that materials can need.
+    /// Every pipeline that there is but those of looks; of those that light materials, the ones with all that materials can need.
     pub(super) const ALL: [Self; 33] = [
         Self::Plain(Faces::Both),
         Self::Plain(Faces::Fronts),
@@ -129,6 +143,17 @@ impl Draw {
         Self::Normals(Occluded::InSight),
     ];
 
+    /// The pipelines of all looks.
+    pub(super) fn of_looks() -> impl Iterator<Item = Self> {
+        let kinds = Faces::BOTH.into_iter().flat_map(|faces| NormalsAt::ALL.iter().map(move |&places| (faces, places)));
+        Look::ALL.into_iter().flat_map(move |look| {
+            let emitted = kinds.clone().flat_map(move |(faces, places)| {
+                [Self::LookIndexed(faces, places, look), Self::LookPulled(faces, places, look)]
+            });
+            emitted.chain([Self::LookSource(look)])
+        })
+    }
+
     /// The names of the vertex and the fragment shader.
     fn entry_points(self) -> (&'static str, &'static str) {
         let line = |part| match part {
@@ -147,9 +172,9 @@ impl Draw {
             Self::Plain(_) => ("plain_vertex", "plain_fragment"),
             Self::Textured(_) => ("textured_vertex", "textured_fragment"),
             Self::PixelNormals(_) => ("pixel_vertex", "pixel_fragment"),
-            Self::Indexed(_, places) => ("indexed_vertex", surface(places)),
-            Self::Pulled(_, places) => ("pulled_vertex", surface(places)),
-            Self::Source => ("source_vertex", "surface_fragment"),
+            Self::Indexed(_, places) | Self::LookIndexed(_, places, _) => ("indexed_vertex", surface(places)),
+            Self::Pulled(_, places) | Self::LookPulled(_, places, _) => ("pulled_vertex", surface(places)),
+            Self::Source | Self::LookSource(_) => ("source_vertex", "surface_fragment"),
             Self::Lit(_, NormalsAt::Vertices, _) => ("lit_vertex", "lit_fragment"),
             Self::Lit(_, NormalsAt::Pixels, _) => ("lit_vertex", "pixel_lit_fragment"),
             Self::LitIndexed(_, places, _) => ("indexed_vertex", lit_surface(places)),
@@ -166,10 +191,14 @@ impl Draw {
     fn vertex_buffers(self) -> Vec<Option<wgpu::VertexBufferLayout<'static>>> {
         match self {
             Self::Plain(_) => vertex_halves(wgpu::VertexStepMode::Vertex)[..1].to_vec(),
-            Self::Textured(_) | Self::PixelNormals(_) | Self::Indexed(..) | Self::Lit(..) | Self::LitIndexed(..) => {
-                vertex_halves(wgpu::VertexStepMode::Vertex).to_vec()
-            }
-            Self::Pulled(..) | Self::LitPulled(..) | Self::Source | Self::LitSource(_) | Self::Ground => Vec::new(),
+            Self::Textured(_)
+            | Self::PixelNormals(_)
+            | Self::Indexed(..)
+            | Self::Lit(..)
+            | Self::LitIndexed(..)
+            | Self::LookIndexed(..) => vertex_halves(wgpu::VertexStepMode::Vertex).to_vec(),
+            Self::Pulled(..) | Self::LitPulled(..) | Self::LookPulled(..) => Vec::new(),
+            Self::Source | Self::LitSource(_) | Self::LookSource(_) | Self::Ground => Vec::new(),
             Self::Lines(_) => vec![Some(wgpu::VertexBufferLayout {
                 array_stride: size_of::<LineSegment>() as u64,
                 step_mode: wgpu::VertexStepMode::Instance,
@@ -200,21 +229,25 @@ impl Draw {
         | Self::Pulled(faces, _)
         | Self::Lit(faces, ..)
         | Self::LitIndexed(faces, ..)
-        | Self::LitPulled(faces, ..)) = self
+        | Self::LitPulled(faces, ..)
+        | Self::LookIndexed(faces, ..)
+        | Self::LookPulled(faces, ..)) = self
         else {
             return None;
         };
         (faces == Faces::Fronts).then_some(wgpu::Face::Back)
     }
 
-    /// What it needs for the mesh's materials; none if it doesn't light them.
-    fn needs(self) -> Option<Needs> {
+    /// The values of the shader's constants that aren't the usual ones.
+    fn constants(self) -> Vec<(&'static str, f64)> {
         match self {
             Self::Lit(.., needs)
             | Self::LitIndexed(.., needs)
             | Self::LitPulled(.., needs)
-            | Self::LitSource(needs) => Some(needs),
-            _ => None,
+            | Self::LitSource(needs) => needs.constants().to_vec(),
+            Self::LookIndexed(.., look) | Self::LookPulled(.., look) => vec![("LOOK", f64::from(look as u32))],
+            Self::LookSource(look) => vec![("LOOK", f64::from(look as u32)), ("DRAWS_SOURCE", 1.0)],
+            _ => Vec::new(),
         }
     }
 }
@@ -283,6 +316,7 @@ impl DrawPipelines {
             Draw::Lit(..) => &self.lit,
             Draw::Indexed(..) | Draw::Pulled(..) | Draw::Source => &self.surface,
             Draw::LitIndexed(..) | Draw::LitPulled(..) | Draw::LitSource(_) => &self.surface,
+            Draw::LookIndexed(..) | Draw::LookPulled(..) | Draw::LookSource(_) => &self.surface,
             Draw::Ground => &self.ground,
             Draw::Lines(_) | Draw::Normals(_) => &self.lines,
         };
@@ -299,8 +333,10 @@ impl DrawPipelines {
         let lit = Some(&self.lit_layout);
         match draw {
             Draw::Plain(_) | Draw::Textured(_) | Draw::PixelNormals(_) => vec![scene, material],
-            Draw::Indexed(..) | Draw::Pulled(..) => vec![scene, material, chunk, deviation],
-            Draw::Source => vec![scene, material, None, deviation],
+            Draw::Indexed(..) | Draw::Pulled(..) | Draw::LookIndexed(..) | Draw::LookPulled(..) => {
+                vec![scene, material, chunk, deviation]
+            }
+            Draw::Source | Draw::LookSource(_) => vec![scene, material, None, deviation],
             Draw::Lit(..) => vec![scene, lit],
             Draw::LitIndexed(..) | Draw::LitPulled(..) => vec![scene, lit, chunk, deviation],
             Draw::LitSource(_) => vec![scene, lit, None, deviation],
@@ -352,7 +388,7 @@ fn pipeline(
     draw: Draw,
 ) -> wgpu::RenderPipeline {
     let (vertex, fragment) = draw.entry_points();
-    let constants = draw.needs().map(Needs::constants);
+    let constants = draw.constants();
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(vertex),
         bind_group_layouts: layouts,
@@ -379,10 +415,7 @@ fn pipeline(
         fragment: Some(wgpu::FragmentState {
             module,
             entry_point: Some(fragment),
-            compilation_options: wgpu::PipelineCompilationOptions {
-                constants: constants.as_ref().map_or(&[], |constants| constants.as_slice()),
-                ..Default::default()
-            },
+            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
             targets: &[Some(wgpu::ColorTargetState {
                 format: COLOR_FORMAT,
                 blend: (!draw.is_opaque()).then_some(wgpu::BlendState::ALPHA_BLENDING),

@@ -7,6 +7,8 @@ use super::deviation::Deviations;
 use super::environment::{Environment, LightView};
 use super::frame::frame;
 use super::layout::{linear, overlay_bits};
+use super::look::Look;
+use super::matcap::{MatcapPicture, Matcaps};
 use super::materials::Materials;
 use super::needs::Needs;
 use super::pipelines::{Draw, DrawPipelines, Faces, Occluded};
@@ -16,7 +18,7 @@ use super::tone::{TONE_CURVE_NEUTRAL, TONE_CURVE_NONE};
 use super::{Camera, Scene, Target};
 use crate::gpu::layout::DrawArgs;
 use crate::gpu::{ChunkBuffers, Gpu, GpuError, Lazy, Recorder, bind_group};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Texture};
 use crate::settings::{Colors, NormalsAt, Overlays, Settings, SplitSide, ToneCurve};
 use crate::tessellate::CoverageView;
 
@@ -25,6 +27,7 @@ pub struct Renderer {
     gpu: Gpu,
     materials: Materials,
     studio: Lazy<Environment>,
+    matcaps: Matcaps,
     pipelines: DrawPipelines,
     coverage: CoveragePipelines,
     /// The buffer that is bound where deviations, or patches' own least, aren't known.
@@ -51,6 +54,7 @@ impl Renderer {
             pipelines: DrawPipelines::new(gpu, &materials),
             materials,
             studio: Lazy::default(),
+            matcaps: Matcaps::new(),
             coverage: CoveragePipelines::new(),
             unknown: Deviations::unknown(gpu),
             samples: samples(gpu),
@@ -65,6 +69,11 @@ impl Renderer {
         // There is none yet, so that nothing fails.
         let _ = renderer.studio.get_or_try_make(|| Ok(environment));
         renderer
+    }
+
+    /// Uploads a picture of a lit sphere, for [`Scene::matcap`].
+    pub fn matcap(&self, picture: &Texture) -> MatcapPicture {
+        MatcapPicture::new(&self.gpu, &self.materials, picture)
     }
 
     /// What the materials of all scenes share.
@@ -85,6 +94,9 @@ impl Renderer {
         };
         if settings.shows_materials() {
             self.studio()?;
+        }
+        if settings.overlays.colors == Colors::Matcap {
+            self.matcaps.group(&self.gpu, &self.materials, settings.matcap)?;
         }
         let (materials, _) = surface_draws(settings, scene.tessellator.mesh(), faces);
         let mut draws: Vec<_> = scene
@@ -112,7 +124,10 @@ impl Renderer {
     /// # Errors
     /// Out of memory, or a lost device.
     pub fn prepare_all(&self) -> Result<(), GpuError> {
-        Draw::ALL.into_iter().try_for_each(|draw| self.pipelines.get(&self.gpu, draw).map(|_| ()))
+        Draw::ALL
+            .into_iter()
+            .chain(Draw::of_looks())
+            .try_for_each(|draw| self.pipelines.get(&self.gpu, draw).map(|_| ()))
     }
 
     /// Draws the scene into the target, chunk after chunk. The scene must be counted. A chunk is emitted unless the arena still
@@ -227,6 +242,11 @@ impl Renderer {
 
     /// The bind groups of a scene's materials for a picture with these settings.
     fn material_groups(&self, scene: &Scene, settings: &Settings) -> Result<Vec<wgpu::BindGroup>, GpuError> {
+        if settings.overlays.colors == Colors::Matcap {
+            let own = scene.matcap.as_ref().map(|picture| &picture.0);
+            let group = own.map_or_else(|| self.matcaps.group(&self.gpu, &self.materials, settings.matcap), Ok)?;
+            return Ok(vec![group.clone(); scene.materials.len()]);
+        }
         if !settings.shows_materials() {
             return Ok(scene.materials.iter().map(|own| own.group.clone()).collect());
         }
@@ -397,7 +417,7 @@ fn surface_draws(settings: &Settings, mesh: &Mesh, faces: Faces) -> ([Draw; 2], 
     let Overlays { wireframe, folds, colors, .. } = settings.overlays;
     let pulled = wireframe || folds || matches!(colors, Colors::TriangleSize | Colors::Deviation);
     let has_overlays = overlay_bits(&settings.overlays) != 0;
-    let draws = match pulled {
+    let draws = match (pulled, Look::of(colors)) {
         _ if settings.shows_materials() => {
             let draw = if pulled {
                 Draw::LitPulled
@@ -408,17 +428,23 @@ fn surface_draws(settings: &Settings, mesh: &Mesh, faces: Faces) -> ([Draw; 2], 
             };
             [draw(faces, places, Needs::of(mesh)); 2]
         }
-        true => [Draw::Pulled(faces, places); 2],
-        false if has_overlays => [Draw::Indexed(faces, places); 2],
-        false if places == NormalsAt::Pixels => [Draw::PixelNormals(faces); 2],
-        false => [Draw::Plain(faces), Draw::Textured(faces)],
+        (true, Some(look)) => [Draw::LookPulled(faces, places, look); 2],
+        (false, Some(look)) => [Draw::LookIndexed(faces, places, look); 2],
+        (true, None) => [Draw::Pulled(faces, places); 2],
+        (false, None) if has_overlays => [Draw::Indexed(faces, places); 2],
+        (false, None) if places == NormalsAt::Pixels => [Draw::PixelNormals(faces); 2],
+        (false, None) => [Draw::Plain(faces), Draw::Textured(faces)],
     };
     (draws, pulled)
 }
 
 /// The pipeline for input triangles.
 fn source_draw(settings: &Settings, mesh: &Mesh) -> Draw {
-    if settings.shows_materials() { Draw::LitSource(Needs::of(mesh)) } else { Draw::Source }
+    match Look::of(settings.overlays.colors) {
+        _ if settings.shows_materials() => Draw::LitSource(Needs::of(mesh)),
+        Some(look) => Draw::LookSource(look),
+        None => Draw::Source,
+    }
 }
 
 /// How settings turn and show the light.

@@ -3,7 +3,8 @@
 use crate::measure::SMALL_PX;
 use crate::settings::Colors;
 
-/// A colour scale. Its colours are evenly spaced on a logarithmic scale. Numbers beyond an end have the colour of that end.
+/// A colour scale. Its colours are evenly spaced: on a logarithmic scale, or on an even one if that has numbers below 0. Numbers
+/// beyond an end have the colour of that end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
     pub least: f32,
@@ -61,6 +62,44 @@ pub(crate) const EXCESS_SCALE: Scale = Scale {
     ],
 };
 
+/// The scale for texels of an image beside one px of the picture: orange where there are fewer than one, purple where there are more,
+/// and light grey at one (ColorBrewer's PuOr, which people with any colour vision can tell apart).
+pub(crate) const DENSITY_SCALE: Scale = Scale {
+    least: 0.125,
+    most: 8.0,
+    colors: [
+        [0xb3, 0x58, 0x06],
+        [0xf1, 0xa3, 0x40],
+        [0xfe, 0xe0, 0xb6],
+        [0xf7, 0xf7, 0xf7],
+        [0xd8, 0xda, 0xeb],
+        [0x99, 0x8e, 0xc3],
+        [0x54, 0x27, 0x88],
+    ],
+};
+
+/// The colours of the scale of curvature: blue where it is below 0, red where it is above, and light grey at 0 (ColorBrewer's
+/// RdBu, which people with any colour vision can tell apart).
+const CURVATURE_COLORS: [[u8; 3]; Scale::STOPS] = [
+    [0x21, 0x66, 0xac],
+    [0x67, 0xa9, 0xcf],
+    [0xd1, 0xe5, 0xf0],
+    [0xf7, 0xf7, 0xf7],
+    [0xfd, 0xdb, 0xc7],
+    [0xef, 0x8a, 0x62],
+    [0xb2, 0x18, 0x2b],
+];
+
+/// The scale of mean curvatures in 1 / object unit, for a mesh with this bounding radius in object units. `ends` is the curvature
+/// at its ends in 1 / bounding radius. The result has two digits.
+pub(crate) fn curvature_scale(ends: f32, radius: f32) -> Scale {
+    // Not so large or small that a shader's division of two curvatures leaves f32.
+    let most = (f64::from(ends) / f64::from(radius)).clamp(1e-30, 1e30);
+    let digit = 10.0_f64.powf(most.log10().floor() - 1.0);
+    let most = ((most / digit).round() * digit) as f32;
+    Scale { least: -most, most, colors: CURVATURE_COLORS }
+}
+
 impl Scale {
     pub const STOPS: usize = 7;
 
@@ -70,10 +109,14 @@ impl Scale {
             Colors::Factors => Some(&FACTOR_SCALE),
             Colors::TriangleSize => Some(&SIZE_SCALE),
             Colors::Excess => Some(&EXCESS_SCALE),
+            Colors::TexelDensity => Some(&DENSITY_SCALE),
             Colors::Material
             | Colors::Clay
+            | Colors::Matcap
             | Colors::Zebra
             | Colors::ShadingNormals
+            | Colors::SurfaceNormals
+            | Colors::Curvature
             | Colors::UvChecker
             | Colors::Barycentric
             | Colors::LowFactors
@@ -83,7 +126,12 @@ impl Scale {
 
     /// The place of a number on the scale, from 0 for the least to 1 for the most.
     pub fn place(&self, number: f32) -> f32 {
-        ((number / self.least).ln() / (self.most / self.least).ln()).clamp(0.0, 1.0)
+        let place = if self.least < 0.0 {
+            (number - self.least) / (self.most - self.least)
+        } else {
+            (number / self.least).ln() / (self.most / self.least).ln()
+        };
+        place.clamp(0.0, 1.0)
     }
 
     /// The sRGB colour at a place from 0 to 1; `scale_color` in `shaders/draw_surface.wgsl` does the same.
@@ -114,6 +162,19 @@ mod tests {
     }
 
     #[test]
+    fn curvature_has_an_even_scale_around_0_whose_ends_have_two_digits() {
+        let scale = curvature_scale(4.0, 1.7);
+        assert_eq!((scale.least, scale.most), (-2.4, 2.4));
+        assert_eq!([-9.0, -2.4, 0.0, 1.2, 2.4].map(|number| scale.place(number)), [0.0, 0.0, 0.5, 0.75, 1.0]);
+        assert_eq!(scale.color(scale.place(0.0)), [0xf7; 3]);
+        assert_eq!(curvature_scale(4.0, 3e-7).most, 1.3e7);
+        for radius in [0.0, f32::MIN_POSITIVE, f32::MAX] {
+            let Scale { least, most, .. } = curvature_scale(1.0, radius);
+            assert!(most > 0.0 && most.is_finite() && least == -most, "{radius}: {most}");
+        }
+    }
+
+    #[test]
     fn scales_are_ordered_by_lightness() {
         let luminance = |rgb: [u8; 3]| {
             let [r, g, b] = linear(rgb);
@@ -123,6 +184,9 @@ mod tests {
         assert!(steps(&FACTOR_SCALE).windows(2).all(|pair| pair[0] * 1.15 < pair[1]), "{:?}", steps(&FACTOR_SCALE));
         let rising = steps(&DEVIATION_PX_SCALE);
         assert!(rising.windows(2).all(|pair| pair[0] * 1.15 < pair[1]), "{rising:?}");
+        let both_ways = steps(&curvature_scale(1.0, 1.0));
+        assert!(both_ways[..4].windows(2).all(|pair| pair[0] * 1.15 < pair[1]), "{both_ways:?}");
+        assert!(both_ways[3..].windows(2).all(|pair| pair[0] > pair[1] * 1.15), "{both_ways:?}");
         for falling in [&SIZE_SCALE, &EXCESS_SCALE] {
             assert!(steps(falling).windows(2).all(|pair| pair[0] > pair[1] * 1.15), "{:?}", steps(falling));
         }

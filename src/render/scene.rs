@@ -10,6 +10,7 @@ use super::Scale;
 use super::coverage::Coverage;
 use super::deviation::Deviations;
 use super::layout::linear;
+use super::matcap::MatcapPicture;
 use super::materials::{Materials, UploadedMaterial};
 use crate::gpu::{ComputePipelines, Gpu, GpuError, Tessellator};
 use crate::measure::DeviationField;
@@ -31,6 +32,8 @@ pub struct Scene {
     pub(super) coverage: Option<Coverage>,
     /// The distances from what was emitted to the reference surface, once they are known.
     deviation: Option<Deviations>,
+    /// The lit sphere of the matcap overlay, in place of that of the settings.
+    pub matcap: Option<MatcapPicture>,
     /// The same mesh, tessellated with another surface for the left half of a split view.
     left: Option<Box<Scene>>,
 }
@@ -85,7 +88,17 @@ impl Scene {
     }
 
     fn at_rest(tessellator: Tessellator, bounds: Bounds, ulp: f32, materials: Vec<UploadedMaterial>) -> Self {
-        Self { tessellator, bounds, ulp, materials, lines: None, coverage: None, deviation: None, left: None }
+        Self {
+            tessellator,
+            bounds,
+            ulp,
+            materials,
+            lines: None,
+            coverage: None,
+            deviation: None,
+            matcap: None,
+            left: None,
+        }
     }
 
     /// Sets what is drawn left of the split: another scene of the mesh, which takes the current pose, or `None` for the mesh

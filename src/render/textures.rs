@@ -87,7 +87,12 @@ fn sampler(gpu: &Gpu, sampling: Sampling) -> wgpu::Sampler {
 
 /// A white pixel, for what has no image.
 pub(super) fn white(gpu: &Gpu) -> wgpu::TextureView {
-    view(&upload(gpu, &white_pixel()), Meaning::Colors)
+    color_image(gpu, &white_pixel())
+}
+
+/// A view of an image of colours, which is uploaded.
+pub(super) fn color_image(gpu: &Gpu, texture: &Texture) -> wgpu::TextureView {
+    view(&upload(gpu, texture), Meaning::Colors)
 }
 
 fn white_pixel() -> Texture {

@@ -5,6 +5,7 @@
 
 mod choice;
 mod light;
+mod matcap;
 pub(crate) mod options;
 mod overlays;
 #[cfg(test)]
@@ -21,6 +22,7 @@ use crate::tessellate::{
 
 pub(crate) use choice::{Choice, Description, descriptions};
 pub(crate) use light::{Lighting, ToneCurve};
+pub(crate) use matcap::Matcap;
 pub(crate) use overlays::{Colors, Control, Overlay, Overlays};
 pub(crate) use value::{Access, Declaration, Kind, Range, Value};
 
@@ -49,6 +51,10 @@ pub struct Settings {
     pub light_rotation: f32,
     /// The unit of the distances that the deviation overlay colours.
     pub deviation_in: DeviationUnit,
+    /// The mean curvature at the ends of the curvature overlay's scale, in 1 / bounding radius.
+    pub curvature_scale: f32,
+    /// The lit sphere that the matcap overlay shows.
+    pub matcap: Matcap,
     /// Where the picture is split, as a fraction of its width from the left; none if it isn't.
     pub split: Option<f32>,
     /// The surface left of the split, with all other settings the same; none for the untessellated mesh.
@@ -68,6 +74,8 @@ impl Default for Settings {
             tone_curve: ToneCurve::default(),
             light_rotation: 0.0,
             deviation_in: DeviationUnit::Units,
+            curvature_scale: 4.0,
+            matcap: Matcap::default(),
             split: None,
             split_surface: None,
             background: None,

@@ -5,8 +5,8 @@
 
 use super::value::Field;
 use super::{
-    Access, Colors, Declaration, Description, DeviationUnit, Kind, Lighting, NormalsAt, Overlay, Range, Settings,
-    ToneCurve, Value, descriptions,
+    Access, Colors, Declaration, Description, DeviationUnit, Kind, Lighting, Matcap, NormalsAt, Overlay, Range,
+    Settings, ToneCurve, Value, descriptions,
 };
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface, Tessellation};
 
@@ -31,7 +31,7 @@ pub(crate) static TESSELLATION: [&Declaration; 16] = [
 ];
 
 /// The options of commands that draw a picture.
-pub(crate) static PICTURE: [&Declaration; 10] = [
+pub(crate) static PICTURE: [&Declaration; 12] = [
     &NORMALS_AT,
     &OVERLAY,
     &LIGHTING,
@@ -39,6 +39,8 @@ pub(crate) static PICTURE: [&Declaration; 10] = [
     &TONE_CURVE,
     &LIGHT_ROTATION,
     &DEVIATION_IN,
+    &CURVATURE_SCALE,
+    &MATCAP,
     &SPLIT,
     &SPLIT_SURFACE,
     &BACKGROUND,
@@ -318,8 +320,8 @@ pub(crate) static OVERLAY: Declaration = Declaration {
     name: "overlay",
     label: "Overlays",
     placeholder: "OVERLAY,..",
-    text: "What is drawn over the surface. At most one of clay, zebra, shading-normals, uv-checker, barycentric, \
-           factors, triangle-size, low-factors, excess and deviation, which colour all of it.",
+    text: "What is drawn over the surface. At most one of clay, matcap, zebra, shading-normals, surface-normals, \
+           curvature, uv-checker, texel-density, barycentric, factors, triangle-size, low-factors, excess and deviation, which colour all of it.",
     kind: Kind::Several(descriptions::<Overlay>),
     unset: None,
     saved_as: &["overlays"],
@@ -394,6 +396,34 @@ pub(crate) static DEVIATION_IN: Declaration = Declaration {
         (settings.overlays.colors != Colors::Deviation).then_some("Only the deviation overlay colours distances.")
     },
     access: field!(deviation_in),
+};
+
+pub(crate) static CURVATURE_SCALE: Declaration = Declaration {
+    name: "curvature-scale",
+    label: "Curvature up to",
+    placeholder: "C",
+    text: "The mean curvature at the ends of the curvature overlay's scale, in 1 / bounding radius of the mesh: a sphere has 1.",
+    kind: Kind::Number(Range::new(0.1, 1000.0, "/r").logarithmic()),
+    unset: None,
+    saved_as: &["curvature_scale"],
+    no_effect: |settings| {
+        (settings.overlays.colors != Colors::Curvature).then_some("Only the curvature overlay colours curvature.")
+    },
+    access: field!(curvature_scale),
+};
+
+pub(crate) static MATCAP: Declaration = Declaration {
+    name: "matcap",
+    label: "Lit sphere",
+    placeholder: "NAME",
+    text: "The lit sphere whose colours the matcap overlay shows.",
+    kind: Kind::Choice(descriptions::<Matcap>),
+    unset: None,
+    saved_as: &["matcap"],
+    no_effect: |settings| {
+        (settings.overlays.colors != Colors::Matcap).then_some("Only the matcap overlay shows a lit sphere.")
+    },
+    access: field!(matcap),
 };
 
 pub(crate) static SPLIT: Declaration = Declaration {

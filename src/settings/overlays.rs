@@ -11,12 +11,20 @@ pub enum Colors {
     Material,
     /// One matte material for all of the mesh, so that the shape alone is judged.
     Clay,
+    /// The colours of a lit sphere at the same normals.
+    Matcap,
     /// Stripes that the surface reflects.
     Zebra,
     /// The directions of shading normals.
     ShadingNormals,
+    /// The directions of the normals of the curved surface itself.
+    SurfaceNormals,
+    /// The mean curvature of the curved surface itself.
+    Curvature,
     /// A checker over texture coordinates.
     UvChecker,
+    /// How many texels of an image lie in a px.
+    TexelDensity,
     /// Domain coordinates: u red, v green, w blue.
     Barycentric,
     /// Factors as the tessellator uses them: inside each patch, and along each edge.
@@ -61,9 +69,13 @@ pub enum Overlay {
     Wireframe,
     Patches,
     Clay,
+    Matcap,
     Zebra,
     ShadingNormals,
+    SurfaceNormals,
+    Curvature,
     UvChecker,
+    TexelDensity,
     Barycentric,
     Adjacency,
     Cracks,
@@ -80,8 +92,8 @@ pub enum Overlay {
 }
 
 impl Overlay {
-    pub const ALL: [Self; 19] = every![Overlay:
-        Wireframe, Patches, Clay, Zebra, ShadingNormals, UvChecker, Barycentric, Adjacency, Cracks, Folds, TJunctions,
+    pub const ALL: [Self; 23] = every![Overlay:
+        Wireframe, Patches, Clay, Matcap, Zebra, ShadingNormals, SurfaceNormals, Curvature, UvChecker, TexelDensity, Barycentric, Adjacency, Cracks, Folds, TJunctions,
         BackFaces, Factors, TriangleSize, LowFactors, Excess, Normals, Grid, Deviation,
     ];
 }
@@ -99,6 +111,12 @@ impl Choice for Overlay {
                 "Shows the mesh in one matte warm grey, without its own colours, textures and gloss, so that only its shape \
                  is seen.",
             ),
+            Self::Matcap => (
+                "matcap",
+                "Matcap",
+                "Gives each place of the surface the colour that a lit sphere has at the same shading normal, as sculpting \
+                 programs do. The light stays with the view.",
+            ),
             Self::Zebra => (
                 "zebra",
                 "Zebra",
@@ -111,11 +129,32 @@ impl Choice for Overlay {
                 "Colours the surface by its unit shading normal in object space, as normal maps do: x red, y green, z blue, \
                  each from -1 (0) to 1 (255).",
             ),
+            Self::SurfaceNormals => (
+                "surface-normals",
+                "Surface normals",
+                "Colours the surface by the unit normal of each curved patch itself, in the colours of the shading normals. \
+                 They differ from the shading normals where shading pretends, and jump where patches meet at an angle. \
+                 Displacement isn't in them.",
+            ),
+            Self::Curvature => (
+                "curvature",
+                "Curvature",
+                "Colours the surface by the mean curvature of each curved patch itself, in 1 / object unit: red where it \
+                 bulges, blue where it is hollow, and light grey where it is flat or a saddle. A sphere of radius r has 1 / r. \
+                 Displacement isn't in it.",
+            ),
             Self::UvChecker => (
                 "uv-checker",
                 "UV checker",
                 "A checker over texture coordinates, with 8 by 8 squares in one unit of u and v and blue lines around each \
                  unit. Red grows with u and green with v, so that mirrored and turned charts are seen.",
+            ),
+            Self::TexelDensity => (
+                "texel-density",
+                "Texel density",
+                "Colours the surface by how many texels of the base colour's image lie side by side in a px of the picture: \
+                 orange where the image is magnified, purple where it has more detail than is seen. A material without an \
+                 image counts as if it had one of 1024 x 1024 px.",
             ),
             Self::Barycentric => (
                 "barycentric",
@@ -188,16 +227,20 @@ impl Choice for Overlay {
 
 impl Choice for Colors {
     const ALL: &'static [Self] = &every![Colors:
-        Material, Clay, Zebra, ShadingNormals, UvChecker, Barycentric, Factors, TriangleSize, LowFactors, Excess, Deviation,
+        Material, Clay, Matcap, Zebra, ShadingNormals, SurfaceNormals, Curvature, UvChecker, TexelDensity, Barycentric, Factors, TriangleSize, LowFactors, Excess, Deviation,
     ];
 
     fn description(self) -> Description {
         match self {
             Self::Material => Description::new("material", "Material", "The mesh's own colours."),
             Self::Clay => Overlay::Clay.description(),
+            Self::Matcap => Overlay::Matcap.description(),
             Self::Zebra => Overlay::Zebra.description(),
             Self::ShadingNormals => Overlay::ShadingNormals.description(),
+            Self::SurfaceNormals => Overlay::SurfaceNormals.description(),
+            Self::Curvature => Overlay::Curvature.description(),
             Self::UvChecker => Overlay::UvChecker.description(),
+            Self::TexelDensity => Overlay::TexelDensity.description(),
             Self::Barycentric => Overlay::Barycentric.description(),
             Self::Factors => Overlay::Factors.description(),
             Self::TriangleSize => Overlay::TriangleSize.description(),
@@ -205,6 +248,13 @@ impl Choice for Colors {
             Self::Excess => Overlay::Excess.description(),
             Self::Deviation => Overlay::Deviation.description(),
         }
+    }
+}
+
+impl Colors {
+    /// Whether they show nothing of a mesh without texture coordinates.
+    pub fn are_of_texture_coordinates(self) -> bool {
+        matches!(self, Self::UvChecker | Self::TexelDensity)
     }
 }
 
@@ -219,9 +269,13 @@ impl Overlays {
     pub fn control(&mut self, overlay: Overlay) -> Control<'_> {
         Control::Switch(match overlay {
             Overlay::Clay => return Control::Colors(&mut self.colors, Colors::Clay),
+            Overlay::Matcap => return Control::Colors(&mut self.colors, Colors::Matcap),
             Overlay::Zebra => return Control::Colors(&mut self.colors, Colors::Zebra),
             Overlay::ShadingNormals => return Control::Colors(&mut self.colors, Colors::ShadingNormals),
+            Overlay::SurfaceNormals => return Control::Colors(&mut self.colors, Colors::SurfaceNormals),
+            Overlay::Curvature => return Control::Colors(&mut self.colors, Colors::Curvature),
             Overlay::UvChecker => return Control::Colors(&mut self.colors, Colors::UvChecker),
+            Overlay::TexelDensity => return Control::Colors(&mut self.colors, Colors::TexelDensity),
             Overlay::Barycentric => return Control::Colors(&mut self.colors, Colors::Barycentric),
             Overlay::Factors => return Control::Colors(&mut self.colors, Colors::Factors),
             Overlay::TriangleSize => return Control::Colors(&mut self.colors, Colors::TriangleSize),

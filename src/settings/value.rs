@@ -52,7 +52,7 @@ pub(crate) enum Kind {
 pub struct Range {
     pub least: f32,
     pub most: f32,
-    /// After the number: `px`, `EV`, `°`, or `r` for bounding radii; empty for a plain number.
+    /// After the number: `px`, `EV`, `°`, `r` for bounding radii, or `/r` for 1 / bounding radius; empty for a plain number.
     pub unit: &'static str,
     /// Decimals that a slider shows, at most.
     pub decimals: usize,
@@ -121,6 +121,7 @@ impl Range {
             "r" => " bounding radii",
             "EV" => " EV",
             "°" => " degrees",
+            "/r" => " / bounding radius",
             _ => " px",
         }
     }

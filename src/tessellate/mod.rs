@@ -15,6 +15,8 @@ mod convention;
 )]
 mod coverage;
 mod cull;
+#[cfg(test)]
+mod curvature;
 mod deform;
 mod displace;
 mod displacement_factor;
@@ -69,6 +71,8 @@ pub(crate) use coverage::CoverageView;
 #[cfg(test)]
 pub(crate) use coverage::{covers_nothing, screen_corner};
 pub(crate) use cull::{FACING_AWAY, NOT_CULLED, OUT_OF_VIEW, cull_reason, planes_outside};
+#[cfg(test)]
+pub(crate) use curvature::{mean_curvature, patch_second_derivatives};
 pub(crate) use displacement_factor::SURFACE_SHARE;
 pub(crate) use domain::{domain_plan, domain_point, domain_triangle};
 #[cfg(test)]
@@ -98,6 +102,8 @@ pub(crate) use piece_error::{SeenPatch, piece_error};
 pub(crate) use posed_mesh::deform;
 pub(crate) use posed_mesh::{Deformed, PosedMesh, bounds_through};
 pub(crate) use solid::{Solid, is_beyond_near};
+#[cfg(test)]
+pub(crate) use surface::patch_tangents;
 pub(crate) use surface::{ControlNet, edge_position, edge_uv, linear_uv, outline_place, patch_position};
 pub(crate) use texel_lengths::{TexelLength, map_number, texel_lengths};
 pub(crate) use triangle_budget::tolerance_within_budget;
@@ -113,6 +119,7 @@ pub(crate) mod shared_constants {
     pub(crate) use super::cull::{
         FACING_AWAY, FACING_MARGIN, FACING_ROUNDING, NOT_CULLED, OUT_OF_VIEW, POLAR_INDICES, POLAR_WEIGHTS,
     };
+    pub(crate) use super::curvature::FLAT_ANGLE;
     pub(crate) use super::displacement_factor::{DETAIL_SHARE, SURFACE_SHARE, TURN_SHARE};
     pub(crate) use super::domain::FIXED_TWO_THIRDS;
     pub(crate) use super::factors::{

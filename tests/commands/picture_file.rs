@@ -126,6 +126,9 @@ fn the_legend_is_in_the_lower_right_corner_of_colours_that_stand_for_something()
         "barycentric",
         "zebra",
         "shading-normals",
+        "surface-normals",
+        "curvature",
+        "texel-density",
         "uv-checker",
     ] {
         let options = ["shape:torus", "--lod", "error", "--overlay", colors];
@@ -136,10 +139,39 @@ fn the_legend_is_in_the_lower_right_corner_of_colours_that_stand_for_something()
         assert_eq!(most, [309, 229], "{colors}");
         assert!(least[0] > 30 && least[1] > 130, "{colors}: {least:?}");
     }
-    for options in [&["shape:torus"][..], &["shape:torus", "--overlay", "clay"]] {
+    for options in [
+        &["shape:torus"][..],
+        &["shape:torus", "--overlay", "clay"],
+        &["shape:torus", "--overlay", "matcap", "--matcap", "pearl"],
+    ] {
         let (plain, with) = (drawn(options, &path), drawn(&[options, &["--legend"]].concat(), &path));
         assert_eq!(difference(&plain, &with), None, "one material stands for nothing");
     }
+}
+
+#[test]
+fn a_matcap_of_a_file_colours_the_surface() {
+    let folder = Folder::new();
+    let [path, sphere, none] = ["out.png", "sphere.png", "none.png"].map(|name| folder.path(name));
+    let blue = image::Rgba([9, 80, 200, 255]);
+    RgbaImage::from_pixel(8, 8, blue).save(&sphere).expect("a writable folder");
+    let colors = ["shape:torus", "--overlay", "matcap"];
+    let picture = drawn(&[&colors[..], &["--matcap-image", &sphere]].concat(), &path);
+    let count = picture.pixels().filter(|pixel| **pixel == blue).count();
+    assert!(count > 5000, "{count} px");
+    assert!(drawn(&colors, &path).pixels().all(|pixel| *pixel != blue), "the usual one is made in code");
+    let said = failure(&["render", "shape:torus", "-o", &path, "--matcap-image", &sphere], 2);
+    assert!(said.contains("--overlay matcap"), "{said}");
+    let of = |image: &str, more: &[&str], code: i32| {
+        let own = ["render", "-o", &path, "--matcap-image", image];
+        failure(&[&own[..], &colors, more].concat(), code)
+    };
+    let said = of(&sphere, &["--matcap", "pearl"], 2);
+    assert!(said.contains("--matcap"), "{said}");
+    let said = of(&none, &[], 1);
+    assert!(said.contains("none.png") && said.contains("there is no such file"), "{said}");
+    let said = of(&path, &[], 1);
+    assert!(said.contains("isn't overwritten"), "{said}");
 }
 
 #[test]

@@ -24,6 +24,11 @@ fn stats_have_counts_cracks_memory_and_times() {
         assert_eq!(number(&format!("/cracks/{zero}")), 0.0, "{zero}");
     }
     assert_eq!(["/leaks", "/folds", "/not_finite"].map(number), [0.0; 3]);
+    // Its seams are of texture coordinates alone, of 4 segments each.
+    assert_eq!(["/seams/edges", "/seams/points"].map(number), [24.0, 120.0]);
+    for angle in ["max", "mean", "source_max", "source_mean", "max_added"] {
+        assert_eq!(number(&format!("/seams/{angle}_degrees")), 0.0, "{angle}");
+    }
     for bytes in ["input", "topology", "arena"] {
         assert!(number(&format!("/bytes/{bytes}")) > 0.0);
     }
@@ -43,6 +48,9 @@ fn pn_cracks_on_split_normals_and_pn_aen_does_not() {
     assert!(pn["leaks"].as_u64() > Some(100), "one can see through the cracks: {pn}");
     for whole in [pn_aen, flat] {
         assert_eq!((&whole["cracks"]["different_bits"], &whole["leaks"]), (&0.into(), &0.into()));
+        let angle = |name: &str| number(&whole, &format!("/seams/{name}_degrees"));
+        assert!((angle("max") - angle("source_max")).abs() < 0.02 && angle("source_max") > 45.0, "{whole}");
+        assert!((angle("mean") - angle("source_mean")).abs() < 0.02 && angle("max_added") < 0.02, "{whole}");
     }
 }
 

@@ -8,10 +8,14 @@ use image::RgbaImage;
 use pnaen::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use pnaen::mesh::{Material, Mesh, Shape, Texture};
 use pnaen::progress::Progress;
-use pnaen::render::layout::linear;
-use pnaen::render::{Camera, Scene, Target};
-use pnaen::settings::{Colors, NormalsAt, Overlays, Settings};
-use pnaen::tessellate::{Normals, Partitioning, Surface, Tessellation};
+use pnaen::render::layout::{linear, srgb};
+use pnaen::render::matcap::{MATCAP_REACH, picture};
+use pnaen::render::{Camera, DENSITY_SCALE, Scene, Target, curvature_scale};
+use pnaen::settings::{Colors, Matcap, NormalsAt, Overlays, Settings};
+use pnaen::tessellate::{
+    LimitSurface, Normals, Partitioning, Surface, Tessellation, linear_normal, mean_curvature, patch_position,
+    patch_second_derivatives, patch_tangents,
+};
 use pnaen::view::project;
 
 use crate::gpu_tests::stability::{scene_of, seen};
@@ -91,6 +95,171 @@ fn shading_normals_have_the_colours_of_normal_maps() {
             }
         }
     }
+}
+
+#[test]
+fn a_matcap_shows_the_colour_that_its_sphere_has_at_the_same_normal() {
+    for matcap in [Matcap::RedClay, Matcap::TwoTone] {
+        let sphere = picture(matcap);
+        for normal in [Vec3::Z, vec3(0.6, 0.0, 0.8), vec3(0.0, -0.6, 0.8), vec3(-0.48, 0.64, 0.6), vec3(-0.8, 0.0, 0.6)]
+        {
+            let mesh = painted(&square(normal, Vec2::ONE));
+            // The square is seen along z: from behind its normal is turned over, and right is -x.
+            for (azimuth, seen) in [(0.0, normal), (180.0, vec3(normal.x, -normal.y, normal.z))] {
+                let side = sphere.size[0] as f32;
+                let place = 0.5 * side * (1.0 + MATCAP_REACH * vec2(seen.x, -seen.y));
+                let at = 4 * (place.y as usize * sphere.size[0] as usize + place.x as usize);
+                let expected = &sphere.rgba[at..at + 3];
+                for settings in also(Settings { matcap, ..flat(Colors::Matcap) }) {
+                    let found = middle(&drawn(&mesh, &settings, azimuth));
+                    let is_near = found.iter().zip(expected).all(|(found, expected)| found.abs_diff(*expected) <= 3);
+                    assert!(
+                        is_near,
+                        "{matcap:?} {normal}: {found:?}, not {expected:?}, from {azimuth} with {settings:?}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn surface_normals_are_those_of_the_patch_whatever_it_is_shaded_with() {
+    // Normals that lean bend no flat patch, and the mesh itself is flat.
+    let leaning = square(vec3(0.6, 0.0, 0.8), Vec2::ONE);
+    for settings in also(flat(Colors::SurfaceNormals)) {
+        for azimuth in [0.0, 180.0] {
+            let found = middle(&drawn(&leaning, &settings, azimuth));
+            let is_near = found.iter().zip([128, 128, 255]).all(|(found, expected)| found.abs_diff(expected) <= 1);
+            assert!(is_near, "{found:?} from {azimuth} with {settings:?}");
+        }
+    }
+}
+
+#[test]
+fn surface_normals_of_curved_patches_are_those_of_the_mathematics() {
+    for surface in [Surface::PnAen, Surface::PhongAen, Surface::NagataAen] {
+        let settings = flat(Colors::SurfaceNormals);
+        let settings = settings.with(Tessellation { surface, normals: Normals::Surface, ..settings.tessellation });
+        let shading = Settings { normals_at: NormalsAt::Pixels, ..settings };
+        let shading = Settings { overlays: Overlays { colors: Colors::ShadingNormals, ..shading.overlays }, ..shading };
+        let (_, mut sphere) = scene(Shape::Icosphere);
+        let target = Target::new(&engine().gpu, [SIDE; 2]).expect("a small picture");
+        let camera = Camera::framing(&sphere.bounds, target.viewport());
+        // Surface normals at pixels are tested against the CPU; these must be the same whatever shades the surface.
+        let expected = seen(&mut sphere, &target, &shading, &camera);
+        for normals in [Normals::Linear, Normals::Surface] {
+            let own = settings.with(Tessellation { normals, ..settings.tessellation });
+            for overlays in [own.overlays, Overlays { folds: true, ..own.overlays }] {
+                let found = seen(&mut sphere, &target, &Settings { overlays, ..own }, &camera);
+                // At borders of patches, pixels that triangles share may take either side's colour.
+                let differs =
+                    |(a, b): (&image::Rgba<u8>, &image::Rgba<u8>)| (0..3).any(|k| a.0[k].abs_diff(b.0[k]) > 2);
+                let different = found.pixels().zip(expected.pixels()).filter(|&pair| differs(pair)).count();
+                assert!(different < 160, "{different} px: {surface:?} {normals:?} {overlays:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn texel_density_is_that_of_the_base_colours_image() {
+    let grey = linear([188; 3]);
+    for (size, units, expected) in [
+        (Some([SIDE, SIDE]), 1.0, Some(1.0)),
+        // A px covers 2 by 1/2 texels, and then 4 by 1.
+        (Some([2 * SIDE, SIDE / 2]), 1.0, Some(1.0)),
+        (Some([2 * SIDE, SIDE / 2]), 2.0, Some(2.0)),
+        (Some([SIDE / 4, SIDE / 4]), 1.0, Some(0.25)),
+        (Some([4, 4]), 1.0, Some(0.01)),
+        (None, 1.0, Some(1024.0 / SIDE as f32)),
+        (None, 0.0, None),
+    ] {
+        let mut mesh = square(Vec3::Z, Vec2::splat(units));
+        if let Some([width, height]) = size {
+            let texture = Texture { size: [width, height], rgba: vec![90; 4 * (width * height) as usize] };
+            mesh.materials[0].texture = Some(Arc::new(texture));
+        }
+        let expected = expected.map(|density| DENSITY_SCALE.color(DENSITY_SCALE.place(density)));
+        for settings in also(flat(Colors::TexelDensity)) {
+            let found = middle(&drawn(&mesh, &settings, 0.0));
+            match expected {
+                Some(color) => {
+                    let is_near = found.iter().zip(color).all(|(found, expected)| found.abs_diff(expected) <= 2);
+                    assert!(is_near, "{size:?} {units}: {found:?}, not {color:?}, with {settings:?}");
+                }
+                None => assert!(found[0] == found[1] && linear(found)[0] < grey[0] * 1.1, "grey: {found:?}"),
+            }
+        }
+    }
+}
+
+/// What curvature looks like in a picture: a colour of the scale, in very little light.
+fn curvature_color(curvature: f32, settings: &Settings, radius: f32, facing: f32) -> [u8; 3] {
+    let scale = curvature_scale(settings.curvature_scale, radius);
+    linear(scale.color(scale.place(curvature))).map(|channel| srgb(channel * (0.7 + 0.3 * facing)))
+}
+
+#[test]
+fn curvature_at_pixels_is_that_of_the_mathematics() {
+    const PLACES: [[u32; 2]; 4] = [[21845, 21845], [40000, 13000], [9000, 20000], [3000, 58000]];
+    for (shape, surface) in [
+        (Shape::Icosahedron, Surface::PnAen),
+        (Shape::Icosahedron, Surface::PhongAen),
+        (Shape::Icosahedron, Surface::NagataAen),
+        (Shape::Icosahedron, Surface::Flat),
+        (Shape::Saddle, Surface::PnAen),
+    ] {
+        let (_, mut scene) = scene(shape);
+        let settings = flat(Colors::Curvature);
+        let settings = settings.with(Tessellation { surface, factor: 32.0, ..settings.tessellation });
+        let target = Target::new(&engine().gpu, [SIDE; 2]).expect("a small picture");
+        let camera = Camera { orthographic: true, ..Camera::framing(&scene.bounds, target.viewport()) };
+        let (clip, to_eye) = (camera.clip_from_object(target.viewport(), &scene.bounds), camera.axes()[2]);
+        let (mesh, topology) = (scene.tessellator.mesh().clone(), scene.tessellator.topology().clone());
+        let inputs = settings.inputs(camera.lod_view(target.viewport(), &scene.bounds));
+        let limit = LimitSurface::new(&mesh, &topology, &inputs);
+        for settings in [settings, Settings { overlays: Overlays { folds: true, ..settings.overlays }, ..settings }] {
+            let picture = seen(&mut scene, &target, &settings, &camera);
+            let (mut tried, mut range) = (0, [f32::INFINITY, f32::NEG_INFINITY]);
+            for (patch, [u, v]) in (0..topology.patches.len() as u32).flat_map(|patch| PLACES.map(|at| (patch, at))) {
+                let net = limit.net(patch);
+                let normals =
+                    topology.corners(&topology.patches[patch as usize]).map(|c| mesh.corners[c as usize].normal);
+                let facing = linear_normal(normals, u, v).dot(to_eye);
+                if facing < 0.5 {
+                    continue;
+                }
+                let second = patch_second_derivatives(surface, &net, u, v);
+                let curvature = mean_curvature(patch_tangents(surface, &net, u, v), second);
+                let at = project(clip, target.viewport(), patch_position(surface, &net, u, v)).expect("in view");
+                let found = picture.get_pixel(at.x as u32, at.y as u32).0;
+                let expected = curvature_color(curvature, &settings, scene.bounds.radius(), facing);
+                let is_near = (0..3).all(|k| found[k].abs_diff(expected[k]) <= 5);
+                assert!(is_near, "{shape:?} {surface:?} {patch} {u} {v}: {found:?}, not {expected:?}");
+                range = [range[0].min(curvature), range[1].max(curvature)];
+                tried += 1;
+            }
+            assert!(
+                tried > 9 && (surface == Surface::Flat || range[1] - range[0] > 0.03),
+                "{shape:?}: {tried} {range:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_mesh_itself_has_no_curvature() {
+    let settings = Settings { split: Some(1.0), ..flat(Colors::Curvature) };
+    let settings = settings.with(Tessellation { surface: Surface::PnAen, ..settings.tessellation });
+    let (_, mut sphere) = scene(Shape::Icosphere);
+    let target = Target::new(&engine().gpu, [SIDE; 2]).expect("a small picture");
+    let camera = Camera::framing(&sphere.bounds, target.viewport());
+    let [r, g, b] = middle(&seen(&mut sphere, &target, &settings, &camera));
+    assert!(r == g && g == b && r > 200, "light grey: {:?}", [r, g, b]);
+    let curved = Settings { split: None, ..settings };
+    let [r, g, b] = middle(&seen(&mut sphere, &target, &curved, &camera));
+    assert!(r > g + 10 && r > b + 10, "a sphere bulges: {:?}", [r, g, b]);
 }
 
 /// The square with another material: a red one with a texture of two colours.

@@ -11,7 +11,7 @@ use pnaen::mesh::{EdgeKind, Shape, t_junctions};
 use pnaen::progress::Progress;
 use pnaen::render::layout::{CRACK_COLOR, FOLD_COLOR, NORMAL_COLOR, T_JUNCTION_COLOR, WASTE_COLOR, edge_color};
 use pnaen::render::{Camera, EXCESS_SCALE, FACTOR_SCALE, Scene, Target, t_junction_lines};
-use pnaen::settings::{ARENA_BYTES, Choice, Colors, NormalsAt, Overlay, Overlays, Settings};
+use pnaen::settings::{ARENA_BYTES, Choice, Colors, Matcap, NormalsAt, Overlay, Overlays, Settings};
 use pnaen::tessellate::{
     Convention, Displacement, FACTOR_ODD, FIXED_ONE, Lod, Normals, Partitioning, Surface, Tessellation, domain_side,
     triangle_count,
@@ -183,6 +183,23 @@ fn colours_look_as_they_did() {
         ("clay", Shape::Bicubic, Colors::Clay, Settings::default()),
         ("zebra", Shape::Bicubic, Colors::Zebra, Settings { normals_at: NormalsAt::Pixels, ..Settings::default() }),
         ("shading-normals", Shape::CubeSplit, Colors::ShadingNormals, Settings::default()),
+        ("matcap-red-clay", Shape::Bicubic, Colors::Matcap, Settings::default()),
+        ("matcap-chrome", Shape::Bicubic, Colors::Matcap, Settings { matcap: Matcap::Chrome, ..Settings::default() }),
+        ("matcap-pearl", Shape::Bicubic, Colors::Matcap, Settings { matcap: Matcap::Pearl, ..Settings::default() }),
+        (
+            "matcap-two-tone",
+            Shape::Bicubic,
+            Colors::Matcap,
+            Settings { matcap: Matcap::TwoTone, ..Settings::default() },
+        ),
+        ("texel-density", Shape::Torus, Colors::TexelDensity, Settings::default()),
+        (
+            "surface-normals",
+            Shape::Icosphere,
+            Colors::SurfaceNormals,
+            Settings { split: Some(0.5), ..Settings::default() },
+        ),
+        ("curvature", Shape::Torus, Colors::Curvature, Settings { split: Some(0.5), ..Settings::default() }),
         ("uv-checker", Shape::Torus, Colors::UvChecker, Settings { split: Some(0.5), ..Settings::default() }),
     ] {
         let (_, mut scene) = scene(shape);

@@ -8,10 +8,10 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::App;
 use pnaen::load::Source;
 use pnaen::mesh::Shape;
-use pnaen::settings::Colors;
+use pnaen::settings::{Colors, Matcap};
 use pnaen::tessellate::Convention;
 
-use crate::window_tests::editing::press_with;
+use crate::window_tests::editing::{assert_draws, copied, press_with};
 use crate::window_tests::{PATIENCE, choose, click, open_list, press, run_command, settle, uniform};
 
 #[test]
@@ -26,6 +26,9 @@ fn only_one_colouring_is_shown_and_has_a_legend() {
         "Legend: Stripes break at creases",
         "Legend: Normal: x red, y green, z blue",
         "Legend: UV: a square is 1/8 of a unit",
+        "Legend: Surface normal: x red, y green, z blue",
+        "Legend: Mean curvature, 1/unit",
+        "Legend: Texels per px",
     ];
     let shown = |harness: &Harness<App>| -> Vec<_> {
         (0..legends.len()).filter(|&legend| harness.query_by_label(legends[legend]).is_some()).collect()
@@ -35,12 +38,16 @@ fn only_one_colouring_is_shown_and_has_a_legend() {
         ("Factors", Colors::Factors, Some(0)),
         ("Triangle size", Colors::TriangleSize, Some(1)),
         ("Clay", Colors::Clay, None),
+        ("Matcap", Colors::Matcap, None),
         ("Factors below 2", Colors::LowFactors, Some(2)),
         ("Excess triangles", Colors::Excess, Some(3)),
         ("Barycentric", Colors::Barycentric, Some(4)),
         ("Zebra", Colors::Zebra, Some(5)),
         ("Shading normals", Colors::ShadingNormals, Some(6)),
         ("UV checker", Colors::UvChecker, Some(7)),
+        ("Surface normals", Colors::SurfaceNormals, Some(8)),
+        ("Curvature", Colors::Curvature, Some(9)),
+        ("Texel density", Colors::TexelDensity, Some(10)),
         ("Material", Colors::Material, None),
     ] {
         let pictures = harness.state().pictures();
@@ -62,8 +69,12 @@ fn only_one_colouring_is_shown_and_has_a_legend() {
     }
     for (key, colors) in [
         (egui::Key::C, Colors::Clay),
+        (egui::Key::M, Colors::Matcap),
         (egui::Key::S, Colors::Zebra),
         (egui::Key::N, Colors::ShadingNormals),
+        (egui::Key::G, Colors::SurfaceNormals),
+        (egui::Key::K, Colors::Curvature),
+        (egui::Key::T, Colors::TexelDensity),
         (egui::Key::U, Colors::UvChecker),
         (egui::Key::U, Colors::Material),
     ] {
@@ -75,12 +86,63 @@ fn only_one_colouring_is_shown_and_has_a_legend() {
 }
 
 #[test]
+fn an_image_of_a_lit_sphere_takes_the_place_of_those_that_are_made_in_code() {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let [blue, text] = ["blue.png", "text.png"].map(|name| folder.path().join(name));
+    image::RgbaImage::from_pixel(8, 8, image::Rgba([9, 80, 200, 255])).save(&blue).expect("written");
+    std::fs::write(&text, "no image").expect("written");
+    let blues = |harness: &Harness<App>| {
+        let picture = harness.state().read_picture().expect("a device").expect("a picture");
+        picture.pixels().filter(|pixel| pixel.0 == [9, 80, 200, 255]).count()
+    };
+    let open = |harness: &mut Harness<App>, path: &std::path::Path| {
+        let context = harness.ctx.clone();
+        harness.state_mut().open_matcap(&context, path.to_owned());
+        settle(harness);
+    };
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
+    open(&mut harness, &text);
+    harness.get_by_label_contains("text.png can't be used as a matcap");
+    assert_eq!(harness.state().settings().overlays.colors, Colors::Material, "all stays as it was");
+    press(&mut harness, egui::Key::Escape);
+    open(&mut harness, &blue);
+    assert_eq!(harness.state().settings().overlays.colors, Colors::Matcap);
+    assert_eq!(harness.state().matcap_image(), Some(&*blue));
+    assert!(blues(&harness) > 10_000, "{}", blues(&harness));
+    let command = copied(&mut harness);
+    assert!(command.contains("--matcap-image ") && command.contains("--overlay matcap"), "{command}");
+    assert_draws(&harness, &command, "torus-view");
+    press(&mut harness, egui::Key::Escape);
+    // The image stays with another mesh.
+    let context = harness.ctx.clone();
+    harness.state_mut().open(&context, Source::Shape(Shape::Icosphere));
+    settle(&mut harness);
+    assert!(blues(&harness) > 10_000, "{}", blues(&harness));
+    choose(&mut harness, "Lit sphere", "Chrome");
+    assert_eq!((harness.state().matcap_image(), harness.state().settings().matcap), (None, Matcap::Chrome));
+    assert_eq!(blues(&harness), 0);
+}
+
+#[test]
+fn the_scale_of_curvature_has_a_row_while_it_is_shown() {
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
+    assert!(harness.query_by_label("Curvature up to").is_none());
+    choose(&mut harness, "Colours", "Curvature");
+    let picture = harness.state().read_picture().expect("a device");
+    harness.get_by_role_and_label(Role::Slider, "Curvature up to").set_value_accesskit(20.0);
+    settle(&mut harness);
+    assert_eq!(harness.state().settings().curvature_scale, 20.0);
+    assert!(harness.state().read_picture().expect("a device") != picture, "the colours are paler");
+}
+
+#[test]
 fn a_mesh_without_texture_coordinates_has_no_checker() {
     for (shape, has_checker) in [(Shape::Icosphere, false), (Shape::Torus, true)] {
         let mut harness = uniform(Some(Source::Shape(shape)));
         open_list(&mut harness, "Colours");
         let is_disabled = |name| harness.get_by_label(name).accesskit_node().is_disabled();
         assert_eq!([is_disabled("UV checker"), is_disabled("Zebra")], [!has_checker, false], "{shape:?}");
+        assert_eq!(is_disabled("Texel density"), !has_checker, "{shape:?}");
         press(&mut harness, egui::Key::Escape);
         press_with(&mut harness, egui::Modifiers::SHIFT, egui::Key::U);
         assert_eq!(harness.state().settings().overlays.colors == Colors::UvChecker, has_checker, "{shape:?}");

@@ -113,6 +113,7 @@ impl App {
             FileAction::Factors => self.factors_dialog(context),
             FileAction::FactorsPath => self.type_path(Purpose::Factors),
             FileAction::ForgetFactors => self.forget_factors(),
+            FileAction::Matcap => self.matcap_dialog(context),
             FileAction::SavePicture => self.dialogs.picture.is_open = true,
             FileAction::SavePicturePath => self.type_path(Purpose::SavePicture),
             FileAction::SaveTurntable => self.dialogs.turntable.is_open = true,

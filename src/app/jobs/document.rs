@@ -26,6 +26,8 @@ pub(crate) struct Document {
     pub moment: Option<Moment>,
     /// The number of the factors of a file that the scene has; 0 for those of LOD.
     pub given: u64,
+    /// The number of the picture of a lit sphere that the scene has; 0 for those that are made in code.
+    pub matcap: u64,
     pub checks: Checks,
     /// What previews draw in place of a large mesh.
     pub stand_in: StandIn,
@@ -170,6 +172,7 @@ fn load(
         edges,
         moment: None,
         given: 0,
+        matcap: 0,
         checks,
         stand_in: StandIn::default(),
         diagonal,

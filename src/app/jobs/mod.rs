@@ -9,6 +9,7 @@ pub(super) mod export_job;
 pub(super) mod given_factors;
 pub(super) mod leak_job;
 pub(super) mod loading;
+pub(super) mod matcap;
 pub(super) mod measure_job;
 pub(super) mod mesh_checks;
 pub(super) mod picture_job;
@@ -23,6 +24,7 @@ use document::Load;
 use explain_job::ExplainJob;
 use given_factors::FactorsJob;
 use leak_job::LeakJob;
+use matcap::MatcapJob;
 use measure_job::MeasureJob;
 use truth::TruthLoad;
 use writing_job::WritingJob;
@@ -35,6 +37,7 @@ pub(super) struct Jobs {
     pub load: Option<Load>,
     pub truth_load: Option<TruthLoad>,
     pub factors: Option<FactorsJob>,
+    pub matcap: Option<MatcapJob>,
     pub measure: MeasureJob,
     pub leaks: LeakJob,
     pub deviation: DeviationJob,

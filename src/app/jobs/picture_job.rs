@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::document::arena_bytes;
+use super::matcap::ChosenMatcap;
 use crate::app::App;
 use crate::cli::{
     CliError, ReferenceSurface, Shot, ShotView, Stamp, StatsWanted, Subject, Turn, write_factors, write_stamped,
@@ -93,7 +94,7 @@ impl ShotParts {
         let own = engine.clone();
         let attempted = engine.gpu.attempt(move || {
             let mut scene = make()?;
-            subject.dress(&mut scene)?;
+            subject.dress(&own, &mut scene)?;
             let inputs = subject.settings.inputs(view.lod_view(&scene));
             write_factors(&own, &mut scene, &inputs, path, progress)
         });
@@ -110,7 +111,7 @@ impl ShotParts {
         // What the device refuses, such as a picture that is too large for its memory, is this file's error.
         let attempted = engine.gpu.attempt(move || {
             let mut scene = make()?;
-            subject.dress(&mut scene)?;
+            subject.dress(&own, &mut scene)?;
             draw(&mut Shot::new(own, scene, subject, view)?)
         });
         said(attempted)
@@ -147,6 +148,7 @@ impl App {
             loaded: document.loaded.clone(),
             moment: document.moment,
             given: document.scene.tessellator.given().map(<[_]>::to_vec),
+            matcap: self.matcap.as_ref().map(ChosenMatcap::picture),
             settings,
             reference_surface: self.reference_surface(&settings),
             selected: self.selected_patch().filter(|_| choices.overlays),

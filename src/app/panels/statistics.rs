@@ -4,7 +4,7 @@ use crate::app::App;
 use crate::app::sections::{Section, scrolling_column};
 use crate::app::text::{grouped, part, short};
 use crate::app::widgets::{fact, number, swatch};
-use crate::measure::{Cracks, Culled};
+use crate::measure::{Cracks, Culled, Seams};
 use crate::mesh::EdgeKind;
 use crate::render::layout::{CRACK_COLOR, FOLD_COLOR, WASTE_COLOR, edge_color};
 use crate::view::ulp;
@@ -67,6 +67,25 @@ impl App {
                 number(ui, &grouped(count as u64));
                 ui.end_row();
             }
+        });
+        self.seam_facts(ui);
+    }
+
+    /// How far shading normals turn at seams. Until that is measured, the rows show ellipses.
+    fn seam_facts(&self, ui: &mut egui::Ui) {
+        let seams = self.jobs.measure.found().map(|found| found.seams);
+        let angle = |of: fn(&Seams) -> f64| {
+            seams.map_or_else(|| "…".into(), |seams| if seams.edges > 0 { degrees(of(&seams)) } else { "-".into() })
+        };
+        egui::Grid::new("seams").num_columns(2).min_col_width(104.0).show(ui, |ui| {
+            let hover = "The largest angle between the shading normals of the two sides of an edge with split normals or a uv \
+                         seam.";
+            fact(ui, "Angle at seams", &angle(|seams| seams.emitted.most), hover);
+            let hover = "The largest such angle between the mesh's own normals.";
+            fact(ui, "of the mesh", &angle(|seams| seams.source.most), hover);
+            let hover = "The most by which tessellation makes the angle at a point larger than the mesh has it there, right to \
+                         about 0.01°.";
+            fact(ui, "added", &angle(|seams| seams.most_added), hover);
         });
     }
 
@@ -216,6 +235,10 @@ impl App {
         let hover = "Corners whose normal runs along one of their edges.";
         fact(ui, "Normals along edges", &count(faults.map(|faults| faults.along_edge)), hover);
     }
+}
+
+fn degrees(angle: f64) -> String {
+    format!("{angle:.2}°")
 }
 
 /// A row with the colour that marks waste on the mesh.

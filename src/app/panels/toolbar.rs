@@ -51,9 +51,9 @@ impl App {
         let colors = &mut self.settings.overlays.colors;
         let combo = egui::ComboBox::from_id_salt("Colours").selected_text(colors.label()).width(COLORS_WIDTH);
         // High enough for all entries.
-        let combo = combo.height(320.0).show_ui(ui, |ui| {
+        let combo = combo.height(420.0).show_ui(ui, |ui| {
             for &choice in Colors::ALL {
-                let is_possible = choice != Colors::UvChecker || has_coordinates;
+                let is_possible = has_coordinates || !choice.are_of_texture_coordinates();
                 let entry = egui::Button::selectable(*colors == choice, choice.label());
                 let entry = ui.add_enabled(is_possible, entry).on_hover_text(colors_hover(choice));
                 if entry.on_disabled_hover_text(NO_TEXTURE_COORDINATES).clicked() {

@@ -7,7 +7,7 @@ use egui::{Align2, Color32, Pos2, Rect, Sense, pos2, vec2};
 use crate::app::widgets::{rgb, text_width_in};
 use crate::render::layout::WASTE_COLOR;
 use crate::render::{BARYCENTRIC_TITLE, COLUMNS, Distances, Scale, Shown, legend_of, tick_text};
-use crate::settings::Colors;
+use crate::settings::{Colors, Settings};
 
 /// Sizes in points: the bar of the scale at its widest, the block of one colour before it, the margin, and the text.
 const BAR: egui::Vec2 = vec2(196.0, 12.0);
@@ -19,13 +19,13 @@ const ROW: f32 = 17.0;
 /// The number of pieces that the bar is painted in.
 const PIECES: u16 = 98;
 
-/// The legend of these colours over a picture, if they have one.
-pub(crate) fn legend(ui: &mut egui::Ui, picture: Rect, colors: Colors, distances: &Distances) {
-    if colors == Colors::Barycentric {
+/// The legend of the colours over a picture, if they have one. `radius` is the mesh's bounding radius in object units.
+pub(crate) fn legend(ui: &mut egui::Ui, picture: Rect, settings: &Settings, radius: f32, distances: &Distances) {
+    if settings.overlays.colors == Colors::Barycentric {
         let inner = plate(ui, picture, barycentric::SIZE, BARYCENTRIC_TITLE, barycentric::MEANING);
         return barycentric::paint(ui, inner);
     }
-    let Some(legend) = legend_of(colors, distances) else { return };
+    let Some(legend) = legend_of(settings, radius, distances) else { return };
     let plate = |size| plate(ui, picture, size, &legend.title, &legend.meaning);
     match &legend.shown {
         Shown::Title => {

@@ -79,7 +79,9 @@ impl App {
         self.greeting(ui, rect);
         self.corner_notes(ui, rect);
         self.axis_gizmo(ui, rect);
-        legend(ui, rect, self.settings.overlays.colors, &self.legend_distances());
+        if let Some(document) = &self.document {
+            legend(ui, rect, &self.settings, document.scene.bounds.radius(), &self.legend_distances());
+        }
     }
 
     /// Goes on with drawing and all measurements.
@@ -93,7 +95,7 @@ impl App {
         self.mark();
         let deviation = self.deviation_shown();
         let moment = self.moment();
-        let given = self.give_factors()?;
+        let (given, matcap) = (self.give_factors()?, self.give_matcap());
         let settings = self.settings_in(context.theme());
         let Some(document) = &mut self.document else { return Ok(()) };
         let viewport = vec2(size[0] as f32, size[1] as f32);
@@ -106,6 +108,7 @@ impl App {
             lines: self.viewport.highlight.map_or(0, |marked| marked.generation),
             deviation,
             given,
+            matcap,
             camera: self.viewport.camera,
             settings,
             inputs,

@@ -283,7 +283,10 @@ impl App {
         let preview = &mut self.viewport.preview;
         preview.fit(&self.render_state, &self.engine, full.viewport)?;
         let scene = match (shape, document.stand_in.scene()) {
-            (Shape::StandIn, Some(stand_in)) => stand_in,
+            (Shape::StandIn, Some(stand_in)) => {
+                stand_in.matcap.clone_from(&document.scene.matcap);
+                stand_in
+            }
             _ => &mut document.scene,
         };
         preview.totals = preview.totals.or(totals);

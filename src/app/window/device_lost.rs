@@ -120,7 +120,7 @@ impl App {
         (self.engine, self.render_state, self.viewport.picture) = (engine, render_state, viewport);
         self.viewport.preview = preview;
         if let Some((document, scene)) = self.document.as_mut().zip(scene) {
-            (document.scene, document.moment, document.given) = (scene, None, 0);
+            (document.scene, document.moment, document.given, document.matcap) = (scene, None, 0, 0);
             if document.checks.is_busy() {
                 document.checks = Checks::start(context, &document.loaded);
             }
@@ -149,6 +149,7 @@ impl App {
             load.wake(context);
         }
         self.jobs.factors = self.jobs.factors.take().map(|job| job.waking(context));
+        self.jobs.matcap = self.jobs.matcap.take().map(|job| job.waking(context));
         if let Some(writing) = &mut self.jobs.writing {
             writing.wake(context);
         }

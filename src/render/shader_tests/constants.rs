@@ -16,8 +16,10 @@ use crate::render::coverage::TILE;
 use crate::render::dfg::DFG_SIZE;
 use crate::render::layout::{
     AXIS_COLORS, BACK_FACE_COLOR, CHECKER_LIGHT, CHECKER_LINE, CHECKER_U, CHECKER_V, FOLD_COLOR, FOUND_EMITTED,
-    NORMAL_COLOR, WASTE_COLOR, edge_color, linear, overlay_bits,
+    NORMAL_COLOR, TEXELS_WITHOUT_IMAGE, WASTE_COLOR, edge_color, linear, overlay_bits,
 };
+use crate::render::look::Look;
+use crate::render::matcap::MATCAP_REACH;
 use crate::render::reflectance::{COAT_F0, LEAST_ALPHA};
 use crate::render::scale::Scale;
 use crate::render::tone::{COMPRESSION_START, DESATURATION, TONE_CURVE_NEUTRAL, TONE_CURVE_NONE};
@@ -25,7 +27,7 @@ use crate::settings::{Colors, Overlays};
 use crate::tessellate::shared_constants::{
     AGREEING, ASKED_SEGMENT, BEYOND_LAST, BITS_63, BITS_64, BITS_896, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP,
     BITS_ONE_AND_STEP, BITS_TWO, BOUND_SHARE, CANCELLED, DETAIL_SHARE, FACING_AWAY, FACING_MARGIN, FACING_ROUNDING,
-    FACTOR_ODD, FACTOR_VALUE, FINEST_GRID, FIXED_HALF, FIXED_ONE, FIXED_TWO_THIRDS, LESSENINGS, NOT_CULLED,
+    FACTOR_ODD, FACTOR_VALUE, FINEST_GRID, FIXED_HALF, FIXED_ONE, FIXED_TWO_THIRDS, FLAT_ANGLE, LESSENINGS, NOT_CULLED,
     OUT_OF_VIEW, PARALLEL, PARTIAL_STEPS, PATTERN_HALVES, PATTERN_STEPS, POLAR_INDICES, POLAR_WEIGHTS, ROW_BASE_SHIFT,
     ROW_BASE_STEP, ROW_FLIP_SHIFT, ROW_REACH, ROW_SAMPLES, ROWS, SPREAD, SUBTRIANGULATED, SURFACE_SHARE, TOGETHER,
     TURN_SHARE, TWO_POINTS, UNIT,
@@ -129,6 +131,12 @@ fn table() -> Vec<(&'static str, Expected)> {
         ("OVERLAY_SHADING_NORMALS", colors(Colors::ShadingNormals)),
         ("OVERLAY_UV_CHECKER", colors(Colors::UvChecker)),
         ("OVERLAY_DEVIATION", colors(Colors::Deviation)),
+        ("LOOK_SURFACE_NORMALS", number(Look::SurfaceNormals as u32)),
+        ("LOOK_CURVATURE", number(Look::Curvature as u32)),
+        ("LOOK_MATCAP", number(Look::Matcap as u32)),
+        ("LOOK_TEXEL_DENSITY", number(Look::TexelDensity as u32)),
+        ("TEXELS_WITHOUT_IMAGE", number(TEXELS_WITHOUT_IMAGE)),
+        ("MATCAP_REACH", number(MATCAP_REACH)),
         ("FOLD_COLOR", color(FOLD_COLOR)),
         ("BACK_FACE_COLOR", color(BACK_FACE_COLOR)),
         ("WASTE_COLOR", color(WASTE_COLOR)),
@@ -154,6 +162,7 @@ fn of_the_mathematics() -> Vec<(&'static str, Expected)> {
         ("PARALLEL", number(PARALLEL)),
         ("UNIT", number(UNIT)),
         ("CANCELLED", number(CANCELLED)),
+        ("FLAT_ANGLE", number(FLAT_ANGLE)),
         ("ROW_SAMPLES", numbers(ROW_SAMPLES)),
         ("FACING_MARGIN", number(FACING_MARGIN)),
         ("FACING_ROUNDING", number(FACING_ROUNDING)),

@@ -16,6 +16,8 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         tone_curve,
         light_rotation,
         deviation_in,
+        curvature_scale,
+        matcap,
         split,
         split_surface,
         background,
@@ -64,6 +66,8 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         ("tone_curve", format!("{tone_curve:?}")),
         ("light_rotation", format!("{light_rotation:?}")),
         ("deviation_in", format!("{deviation_in:?}")),
+        ("curvature_scale", format!("{curvature_scale:?}")),
+        ("matcap", format!("{matcap:?}")),
         ("split", format!("{split:?}")),
         ("split_surface", format!("{split_surface:?}")),
         ("background", format!("{background:?}")),
@@ -175,8 +179,17 @@ fn unused_options_have_no_effect() {
         all().filter(|option| (option.no_effect)(settings).is_some()).map(|option| option.name).collect()
     };
     let lod = |lod| Settings::from(Tessellation { lod, ..Tessellation::default() });
-    let elsewhere =
-        ["height-scale", "midlevel", "exposure", "tone-curve", "light-rotation", "deviation-in", "split-surface"];
+    let elsewhere = [
+        "height-scale",
+        "midlevel",
+        "exposure",
+        "tone-curve",
+        "light-rotation",
+        "deviation-in",
+        "curvature-scale",
+        "matcap",
+        "split-surface",
+    ];
     let with = |own: &[&'static str]| -> Vec<_> { own.iter().copied().chain(elsewhere).collect() };
     assert_eq!(idle(&lod(Lod::Uniform)), with(&["alpha", "pixels", "tolerance", "distances"]));
     assert_eq!(idle(&lod(Lod::Distance)), with(&["alpha", "pixels", "tolerance"]));
@@ -197,10 +210,16 @@ fn unused_options_have_no_effect() {
     let with_light = |before: &[&'static str], after: &[&'static str]| [before, &of_light, after].concat();
     assert_eq!(
         idle(&phong_left),
-        with_light(&["alpha", "lod", "pixels", "tolerance", "distances", "normals-at"], &["split-surface"])
+        with_light(
+            &["alpha", "lod", "pixels", "tolerance", "distances", "normals-at"],
+            &["curvature-scale", "matcap", "split-surface"]
+        )
     );
     phong_left.split = Some(0.5);
-    assert_eq!(idle(&phong_left), with_light(&["lod", "pixels", "tolerance", "distances", "normals-at"], &[]));
+    assert_eq!(
+        idle(&phong_left),
+        with_light(&["lod", "pixels", "tolerance", "distances", "normals-at"], &["curvature-scale", "matcap"])
+    );
     phong_left.overlays.colors = Colors::Material;
     phong_left.lighting = Lighting::Studio;
     assert!(idle(&phong_left).iter().all(|name| !of_light.contains(name)), "all are used in studio light");
