@@ -8,9 +8,9 @@ use crate::app::widgets::{legible, rgb, status, text_width};
 use crate::gpu::DRAWING;
 use crate::render::layout::CRACK_COLOR;
 
-/// The triangles and vertices that a patch has at most: 64 rows with a width of 127.
-const MOST_TRIANGLES: u64 = 8_128;
-const MOST_VERTICES: u64 = 4_161;
+/// The triangles and vertices that a patch has at most: rings whose factors are all 64.
+const MOST_TRIANGLES: u64 = 6_144;
+const MOST_VERTICES: u64 = 3_169;
 
 impl App {
     pub(in crate::app) fn status_line(&mut self, ui: &mut egui::Ui) {
