@@ -44,6 +44,13 @@ pub(super) fn some_rows() -> Vec<Row> {
 }
 
 #[test]
+fn an_error_that_is_due_to_rounding_is_0() {
+    let shown = |truth, error| subject(truth, Vec::new()).shown_error(error);
+    assert_eq!([2.93e-14, 1.94].map(|px| shown(None, px)), ["0", "1.94"]);
+    assert_eq!([5e-8, 0.0593].map(|part| shown(Some("it"), part)), ["0", "5.93"], "in percent");
+}
+
+#[test]
 fn the_front_has_the_points_that_no_other_beats() {
     assert_eq!(front(&[]), [0usize; 0]);
     assert_eq!(front(&[(1.0, 5.0), (2.0, 6.0), (2.0, 4.0), (3.0, 4.0), (4.0, 1.0)]), [0, 2, 4]);

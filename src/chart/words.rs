@@ -22,6 +22,11 @@ impl Subject {
         if self.truth.is_some() { 100.0 } else { 1.0 }
     }
 
+    /// An error in the unit in which errors are shown. As in the charts, one that is due to rounding is 0.
+    pub(crate) fn shown_error(&self, error: f64) -> String {
+        if error > self.floor() { short(error * self.unit()) } else { "0".into() }
+    }
+
     /// The label of the error axis, with its unit.
     pub(crate) fn error_name(&self) -> &'static str {
         match self.truth {

@@ -69,8 +69,7 @@ fn measure(harness: &mut Harness<App>, button: &str) {
     wait(harness, |app| app.charting().is_none());
 }
 
-/// Checks that no name of the legend is broken, no setting in the list is cut off, and errors that are due
-/// to rounding are 0.
+/// Checks that no name of the legend is broken, and no setting in the list is cut off.
 fn legend_and_list_are_whole(harness: &Harness<App>) {
     for name in ["Flat", "PN-AEN", "Uniform factor", "LOD by error", "Front"] {
         let height = harness.get_by_role_and_label(Role::Label, name).rect().height();
@@ -79,7 +78,6 @@ fn legend_and_list_are_whole(harness: &Harness<App>) {
     let edge = harness.get_by_label("Viewport").rect().right();
     let rows: Vec<_> = harness.query_all_by_label_contains("Apply ").map(|row| row.rect()).collect();
     assert!(!rows.is_empty() && rows.iter().all(|row| row.right() < edge - 12.0), "{rows:?} {edge}");
-    assert!(harness.query_by_label_contains("Apply Flat factor 1: 0 %, ").is_some(), "flat triangles are exact");
 }
 
 fn error(row: &Row) -> f64 {

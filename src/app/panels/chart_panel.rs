@@ -302,8 +302,7 @@ fn front_list(ui: &mut egui::Ui, diagram: &Diagram) -> Option<Setting> {
     let mut applied = None;
     list(ui, "Front", front.len(), |ui, index| {
         let (row, error) = front[index];
-        // As in the diagram, what is due to rounding counts as 0.
-        let error = if error > subject.floor() { short(error * subject.unit()) } else { "0".to_owned() };
+        let error = subject.shown_error(error);
         let cost = match diagram.cost {
             Cost::Ms => short(row.time.total()),
             Cost::Triangles => grouped(row.triangles),
