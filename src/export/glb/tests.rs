@@ -53,11 +53,13 @@ fn a_material_comes_back_with_its_numbers_and_maps() {
             normal_scale: 2.0,
             occlusion_strength: 0.5,
             alpha: Alpha::Mask(0.375),
+            transmission: 0.625,
             maps: [
                 own(&numbers, Sampling::default()),
                 own(&normals, sampling),
                 own(&numbers, Sampling::default()),
                 None,
+                own(&numbers, sampling),
             ],
             ..Look::default()
         },
@@ -71,6 +73,7 @@ fn a_material_comes_back_with_its_numbers_and_maps() {
     let numbers_of = |look: &Look| {
         (look.metallic, look.roughness, look.emissive, look.normal_scale, look.occlusion_strength, look.alpha)
     };
+    assert_eq!(got.look.transmission, given.look.transmission);
     assert_eq!(numbers_of(&got.look), numbers_of(&given.look));
     for slot in Slot::ALL {
         let [given, got] = [given, got].map(|material| material.look.maps[slot as usize].as_ref());

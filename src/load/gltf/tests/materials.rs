@@ -319,8 +319,21 @@ fn broken_materials_are_repaired_and_told() {
         (json!({ "normalTexture": { "index": 0, "scale": [] } }), "normalTexture/scale is a list of 0, not a number"),
         (json!({ "extensions": { "KHR_materials_ior": { "ior": 0.5 } } }), "index of refraction 0.5"),
         (
-            json!({ "alphaMode": "BLEND", "name": "glass" }),
-            "alphaMode BLEND is drawn opaque; material \"glass\" has it.",
+            json!({ "extensions": { "KHR_materials_transmission": { "transmissionFactor": 1.5 } },
+                "pbrMetallicRoughness": { "roughnessFactor": 0 } }),
+            "/materials/0/extensions/KHR_materials_transmission/transmissionFactor is 1.5, but must be at most 1.0; 1 is used",
+        ),
+        (
+            json!({ "extensions": { "KHR_materials_transmission": { "transmissionFactor": "all" } } }),
+            "transmissionFactor is \"all\", not a number; 0 is used",
+        ),
+        (
+            json!({ "name": "frosted", "extensions": { "KHR_materials_transmission": { "transmissionFactor": 1 } } }),
+            "blur of what is behind rough surfaces (KHR_materials_transmission) isn't drawn; material \"frosted\" has it.",
+        ),
+        (
+            json!({ "name": "jar", "extensions": { "KHR_materials_volume": { "thicknessFactor": 1 } } }),
+            "KHR_materials_volume isn't drawn; material \"jar\" has it.",
         ),
         (
             json!({ "name": "silk", "extensions": { "KHR_materials_sheen": {} } }),
