@@ -16,8 +16,10 @@ const LAYER_ADD: u32 = 2u;
 // Whether a depth is beyond the last layer, in the direction in which the draw looks, and nothing hides it.
 fn is_beyond_last(clip: vec4<f32>, sample: u32) -> bool {
     let passed = passed_depth(clip.xy, sample);
-    let is_beyond = select(clip.z < passed, clip.z > passed, TOWARD_EYE);
-    return is_beyond && clip.z > hiding_depth(clip.xy, sample);
+    if TOWARD_EYE {
+        return clip.z > max(passed, hiding_depth(clip.xy, sample));
+    }
+    return clip.z < passed && clip.z > hiding_depth(clip.xy, sample);
 }
 
 // Whether a depth is that of the last layer. Where there was none, its depth is 1.

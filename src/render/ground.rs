@@ -2,8 +2,8 @@
 
 use glam::{Vec3, vec3};
 
-use super::{Camera, LineSegment};
 use super::layout::AXIS_COLORS;
+use super::{Camera, LineSegment};
 use crate::mesh::Bounds;
 
 /// A horizontal plane under a mesh. Its lines are at multiples of a round number of object units from the origin.

@@ -12,8 +12,8 @@ mod frame;
 mod framing;
 mod ground;
 pub(crate) mod irradiance;
-pub(crate) mod layout;
 mod layers;
+pub(crate) mod layout;
 mod leaks;
 mod legend;
 #[cfg(test)]

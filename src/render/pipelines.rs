@@ -49,8 +49,7 @@ static DRAW_LIT_LAYERS: WgslFile =
 static DRAW_SURFACE_LAYERS: WgslFile =
     wgsl!("draw_surface_layers", DRAW_LAYERS, DRAW_LIGHT, DRAW_MATERIAL, DRAW_NORMAL, DRAW_SURFACE);
 pub(super) static LAYERS_SINGLE: WgslFile = wgsl!("layers_single", DRAW_LIT_LAYERS, DRAW_SURFACE_LAYERS);
-pub(super) static LAYERS_MULTISAMPLED: WgslFile =
-    wgsl!("layers_multisampled", DRAW_LIT_LAYERS, DRAW_SURFACE_LAYERS);
+pub(super) static LAYERS_MULTISAMPLED: WgslFile = wgsl!("layers_multisampled", DRAW_LIT_LAYERS, DRAW_SURFACE_LAYERS);
 
 /// What a pipeline draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -242,7 +241,9 @@ impl Draw {
             Self::Textured(_) | Self::PixelNormals(_) | Self::Indexed(..) | Self::Lit(..) | Self::LitIndexed(..) => {
                 vertex_halves(wgpu::VertexStepMode::Vertex).to_vec()
             }
-            Self::Layer(_, Triangles::Lit | Triangles::Indexed, ..) => vertex_halves(wgpu::VertexStepMode::Vertex).to_vec(),
+            Self::Layer(_, Triangles::Lit | Triangles::Indexed, ..) => {
+                vertex_halves(wgpu::VertexStepMode::Vertex).to_vec()
+            }
             Self::Layer(_, Triangles::Pulled | Triangles::Source, ..) => Vec::new(),
             Self::Pulled(..) | Self::LitPulled(..) | Self::Source | Self::LitSource(_) | Self::Ground => Vec::new(),
             Self::Lines(_) => vec![Some(wgpu::VertexBufferLayout {
@@ -330,11 +331,8 @@ impl Draw {
 
 /// A sum of what is drawn and what is there, with these factors: of what is drawn, and of the colour and the alpha that are there.
 fn both(drawn: wgpu::BlendFactor, color: wgpu::BlendFactor, alpha: wgpu::BlendFactor) -> wgpu::BlendState {
-    let component = |there| wgpu::BlendComponent {
-        src_factor: drawn,
-        dst_factor: there,
-        operation: wgpu::BlendOperation::Add,
-    };
+    let component =
+        |there| wgpu::BlendComponent { src_factor: drawn, dst_factor: there, operation: wgpu::BlendOperation::Add };
     wgpu::BlendState { color: component(color), alpha: component(alpha) }
 }
 
@@ -521,10 +519,7 @@ fn pipeline(
         fragment: Some(wgpu::FragmentState {
             module,
             entry_point: Some(fragment),
-            compilation_options: wgpu::PipelineCompilationOptions {
-                constants: &constants,
-                ..Default::default()
-            },
+            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
             targets: color.as_slice(),
         }),
         multiview_mask: None,

@@ -121,7 +121,7 @@ impl Renderer {
     }
 
     /// Draws the scene into the target, chunk after chunk. The scene must be counted. A chunk is emitted unless the arena still
-    /// holds it. Normals are drawn in a second walk over all chunks, since surfaces may hide them.
+    /// holds it. Layers and normals are drawn in further walks over all chunks, since surfaces may hide them.
     ///
     /// # Errors
     /// A pipeline can't be made: out of memory, or a lost device.
@@ -198,7 +198,8 @@ impl Renderer {
             let has_lines =
                 scene.lines.is_some() || scene.half(SplitSide::Left).is_some_and(|left| left.lines.is_some());
             let lines = if last && has_lines { Some(self.line_pipelines(Draw::Lines)?) } else { None };
-            let ground = if index == ground_step && settings.overlays.grid { Some(self.get(Draw::Ground)?) } else { None };
+            let ground =
+                if index == ground_step && settings.overlays.grid { Some(self.get(Draw::Ground)?) } else { None };
             let normals = if let Step::Normals(..) = step { Some(self.line_pipelines(Draw::Normals)?) } else { None };
             recorder.render("draw", Some(color), Some(target.depth(first)), |pass| {
                 pass.set_bind_group(0, &group, &[]);

@@ -59,9 +59,8 @@ impl Step {
 /// All steps of a picture, in order.
 pub(super) fn steps(scene: &Scene, settings: &Settings) -> Vec<Step> {
     let drawn = |half| settings.half(half).and(scene.half(half));
-    let chunks = |half| {
-        (0..drawn(half).map_or(0, |drawn| drawn.tessellator.chunk_count())).map(move |chunk| (half, chunk))
-    };
+    let chunks =
+        |half| (0..drawn(half).map_or(0, |drawn| drawn.tessellator.chunk_count())).map(move |chunk| (half, chunk));
     let all: Vec<_> = SplitSide::BOTH.into_iter().flat_map(chunks).collect();
     let mut steps: Vec<_> = all.iter().map(|&(half, chunk)| Step::Surface(half, chunk)).collect();
     if settings.shows_materials() && has_layers(scene.tessellator.mesh()) {

@@ -26,8 +26,7 @@ impl Renderer {
         let Picture { target, settings, rects, frames, materials } = picture;
         let depths = target.layer_depths(&self.gpu)?;
         let found = pass.found();
-        let depth =
-            found.map(|(texture, nothing)| depth_attachment(&depths[texture], is_first.then_some(nothing)));
+        let depth = found.map(|(texture, nothing)| depth_attachment(&depths[texture], is_first.then_some(nothing)));
         let color = found.is_none().then(|| target.color(wgpu::Color::TRANSPARENT, false, false));
         let half = match part {
             Some(LayerPart::Chunk(half, _)) => half,
@@ -88,13 +87,7 @@ impl Renderer {
 }
 
 /// The draws of a material in a pass, in order.
-fn draws(
-    mesh: &Mesh,
-    material: &Material,
-    pass: LayerPass,
-    triangles: Triangles,
-    settings: &Settings,
-) -> Vec<Draw> {
+fn draws(mesh: &Mesh, material: &Material, pass: LayerPass, triangles: Triangles, settings: &Settings) -> Vec<Draw> {
     let own: &[_] = match pass {
         _ if !material.shows_behind() => &[],
         LayerPass::Begin => &[],
