@@ -4,7 +4,8 @@
 @group(0) @binding(6) var<uniform> lit_frame: Frame;
 
 struct LitVaryings {
-    @builtin(position) clip: vec4<f32>,
+    // Invariant, since draws of one layer must agree on depths.
+    @builtin(position) @invariant clip: vec4<f32>,
     @location(0) normal: vec3<f32>,
     @location(1) uv: vec2<f32>,
     // Weights u and v in the patch.
@@ -27,7 +28,7 @@ fn lit_color(in: LitVaryings, normal: vec3<f32>, front: bool) -> vec4<f32> {
     let to_eye = toward_eye(lit_frame.clip_from_object, lit_frame.viewport, in.clip.xy);
     let place = surface_place(in.uv, in.weights, in.patch_index, normal, front, to_eye);
     let color = material_color(place);
-    if HAS_MASK && color.a == 0.0 {
+    if (HAS_MASK || HAS_TRANSMISSION) && color.a == 0.0 {
         discard;
     }
     return vec4<f32>(color.rgb, 1.0);

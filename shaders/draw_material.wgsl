@@ -5,6 +5,7 @@ override HAS_MAPS: bool = true;
 override HAS_DETAILS: bool = true;
 override HAS_COAT: bool = true;
 override HAS_MASK: bool = true;
+override HAS_TRANSMISSION: bool = true;
 
 // One element for each corner, if HAS_DETAILS.
 @group(0) @binding(9) var<storage, read> corner_details: array<CornerDetail>;
@@ -19,12 +20,15 @@ override HAS_MASK: bool = true;
 @group(1) @binding(8) var occlusion_sampler: sampler;
 @group(1) @binding(9) var emissive_texture: texture_2d<f32>;
 @group(1) @binding(10) var emissive_sampler: sampler;
+@group(1) @binding(11) var transmission_texture: texture_2d<f32>;
+@group(1) @binding(12) var transmission_sampler: sampler;
 
 // The order of Material.maps.
 const SLOT_METALLIC_ROUGHNESS: u32 = 0u;
 const SLOT_NORMAL: u32 = 1u;
 const SLOT_OCCLUSION: u32 = 2u;
 const SLOT_EMISSIVE: u32 = 3u;
+const SLOT_TRANSMISSION: u32 = 4u;
 
 // Shorter tangents, squared, say nothing about a direction.
 const LEAST_TANGENT: f32 = 1e-12;
@@ -34,6 +38,17 @@ struct ImagePlace {
     uv: vec2<f32>,
     right: vec2<f32>,
     below: vec2<f32>,
+}
+
+// Less of what is behind a place can't be seen: it is half a step of a picture's channels.
+const LEAST_SEEN: f32 = 1.0 / 512.0;
+
+// What is seen of a place.
+struct Seen {
+    // Linear RGB, of as much of the place as the surface covers.
+    color: vec3<f32>,
+    // Factor of what is seen behind, in linear RGB.
+    behind: vec3<f32>,
 }
 
 // What is seen at a pixel. Only varyings have derivatives that can be relied on: for pixels beside a triangle, which derivatives
@@ -171,24 +186,84 @@ fn look_at(place: SurfacePlace, detail: PlaceDetail, base: vec3<f32>) -> LookAt 
     return look;
 }
 
-// The colour that a picture shows of a place, in linear light, and 0 in place of 1 where the material has no surface.
-fn material_color(place: SurfacePlace) -> vec4<f32> {
-    let detail = place_detail(place);
-    let base = material.base_color * detail.color * texel(base_texture, base_sampler, place.own);
-    let look = look_at(place, detail, base.rgb);
-    var normal = place.normal;
-    var emitted = material.emissive;
+fn base_color(place: SurfacePlace, detail: PlaceDetail) -> vec4<f32> {
+    return material.base_color * detail.color * texel(base_texture, base_sampler, place.own);
+}
+
+fn transmission_at(place: SurfacePlace, detail: PlaceDetail) -> f32 {
+    if !HAS_TRANSMISSION {
+        return 0.0;
+    }
+    var transmission = material.transmission;
     if HAS_MAPS {
+        transmission *= texel(transmission_texture, transmission_sampler, map_place(place, detail, SLOT_TRANSMISSION)).r;
+    }
+    return transmission;
+}
+
+// Whether the surface is there, but doesn't hide all that is behind it. Such places are drawn in layers, and all others before.
+fn shows_behind(place: SurfacePlace) -> bool {
+    let detail = place_detail(place);
+    let alpha = base_color(place, detail).a;
+    let blends = material.blends > 0.5;
+    let is_there = alpha >= select(material.cutoff, LEAST_SEEN, blends);
+    // A place that is opaque but for a rounding may be drawn twice. None is left out.
+    let is_sheer = blends && alpha < 1.0 - 0.5 * LEAST_SEEN;
+    return is_there && (is_sheer || transmission_at(place, detail) >= LEAST_SEEN);
+}
+
+// The unit normal on the side that is seen.
+fn shown_normal(place: SurfacePlace, detail: PlaceDetail) -> vec3<f32> {
+    var normal = place.normal;
+    if HAS_MAPS && HAS_DETAILS {
         let texel_of_normal = texel(normal_texture, normal_sampler, map_place(place, detail, SLOT_NORMAL)).rgb;
-        if HAS_DETAILS {
-            normal = mapped_normal(normal, detail.tangent, detail.bitangent_sign, map_direction(texel_of_normal));
-        }
-        emitted *= texel(emissive_texture, emissive_sampler, map_place(place, detail, SLOT_EMISSIVE)).rgb;
+        normal = mapped_normal(normal, detail.tangent, detail.bitangent_sign, map_direction(texel_of_normal));
     }
     // From behind, all of the relief is seen the other way round (section 3.9.5).
-    normal = select(-normal, normal, place.front);
+    return select(-normal, normal, place.front);
+}
+
+// The colour that a picture shows of the surface, in linear light.
+fn surface_radiance(
+    place: SurfacePlace,
+    detail: PlaceDetail,
+    base: vec3<f32>,
+    look: LookAt,
+    normal: vec3<f32>,
+) -> vec3<f32> {
+    var emitted = material.emissive;
+    if HAS_MAPS {
+        emitted *= texel(emissive_texture, emissive_sampler, map_place(place, detail, SLOT_EMISSIVE)).rgb;
+    }
     let radiance = ambient_reflection(look, normal, place.to_eye) + emitted * coat_transmission(look, place.to_eye);
-    let color = select(exposed(radiance), base.rgb, material.unlit > 0.5);
-    let is_there = !HAS_MASK || base.a >= material.cutoff;
-    return vec4<f32>(color, f32(is_there));
+    return select(exposed(radiance), base, material.unlit > 0.5);
+}
+
+// The colour that a picture shows of a place which hides what is behind it, in linear light; and 0 in place of 1 where there is no
+// such surface.
+fn material_color(place: SurfacePlace) -> vec4<f32> {
+    let detail = place_detail(place);
+    let base = base_color(place, detail);
+    let color = surface_radiance(place, detail, base.rgb, look_at(place, detail, base.rgb), shown_normal(place, detail));
+    var hides = !HAS_MASK || base.a >= material.cutoff;
+    if HAS_TRANSMISSION {
+        hides = hides && transmission_at(place, detail) < LEAST_SEEN;
+    }
+    return vec4<f32>(color, f32(hides));
+}
+
+// What is seen of a place that shows what is behind it.
+fn material_seen(place: SurfacePlace) -> Seen {
+    let detail = place_detail(place);
+    let base = base_color(place, detail);
+    var look = look_at(place, detail, base.rgb);
+    look.transmission = transmission_at(place, detail);
+    let normal = shown_normal(place, detail);
+    let coverage = select(1.0, clamp(base.a, 0.0, 1.0), material.blends > 0.5);
+    let color = coverage * surface_radiance(place, detail, base.rgb, look, normal);
+    var behind = vec3<f32>(1.0 - coverage);
+    if HAS_TRANSMISSION {
+        behind += coverage * transmitted_through(look, normal, place.to_eye);
+    }
+    return Seen(color, behind);
 }

@@ -22,7 +22,8 @@ override LOOK: u32 = 0u;
 override DRAWS_SOURCE: bool = false;
 
 struct Varyings {
-    @builtin(position) clip: vec4<f32>,
+    // Invariant, since draws of one layer must agree on depths.
+    @builtin(position) @invariant clip: vec4<f32>,
     @location(1) normal: vec3<f32>,
     @location(2) uv: vec2<f32>,
     // Domain coordinates in the patch.
@@ -347,12 +348,13 @@ fn meaning(in: Varyings, change: Changes, to_edges: vec3<f32>, edge_heights: vec
 // The last argument is the colour of the material in light from all around: none, since the lights at the camera take its place.
 @fragment
 fn surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    return surface_color(in, in.normal, front, vec4<f32>(0.0));
+    return vec4<f32>(surface_color(in, in.normal, front, vec4<f32>(0.0)).rgb, 1.0);
 }
 
 @fragment
 fn pixel_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    return surface_color(in, pixel_normal(in.patch_index, in.domain.xy), front, vec4<f32>(0.0));
+    let normal = pixel_normal(in.patch_index, in.domain.xy);
+    return vec4<f32>(surface_color(in, normal, front, vec4<f32>(0.0)).rgb, 1.0);
 }
 
 @fragment
@@ -369,10 +371,10 @@ fn lit_surface_color(in: Varyings, normal: vec3<f32>, front: bool) -> vec4<f32> 
     let to_eye = toward_eye(frame.clip_from_object, frame.viewport, in.clip.xy);
     let own = material_color(surface_place(in.uv, in.domain.xy, in.patch_index, normalize(normal), front, to_eye));
     let color = surface_color(in, normal, front, vec4<f32>(own.rgb, 1.0));
-    if HAS_MASK && own.a == 0.0 {
+    if (HAS_MASK || HAS_TRANSMISSION) && own.a == 0.0 {
         discard;
     }
-    return color;
+    return vec4<f32>(color.rgb, 1.0);
 }
 
 // How varyings change from a pixel to the next one on the right, and below. Only varyings have derivatives that can be relied on:
@@ -437,7 +439,7 @@ fn matcap_color(normal: vec3<f32>, to_eye: vec3<f32>, change: Changes) -> vec3<f
 }
 
 // The colour of the surface without lines over it. `lit` is the material's in light from all around, if its fourth component isn't
-// 0.
+// 0. The fourth component of the result is 1 if an overlay marks the place in a colour of its own.
 fn bare_color(
     in: Varyings,
     own_normal: vec3<f32>,
@@ -445,7 +447,7 @@ fn bare_color(
     lit: vec4<f32>,
     to_edges: vec3<f32>,
     edge_heights: vec3<f32>,
-) -> vec3<f32> {
+) -> vec4<f32> {
     let normal = normalize(select(-own_normal, own_normal, front));
     let to_eye = toward_eye(frame.clip_from_object, frame.viewport, in.clip.xy);
     // Samples and derivatives first: both need uniform control flow.
@@ -468,7 +470,7 @@ fn bare_color(
     let lights = Lights(frame.key_light.xyz, frame.fill_light.xyz, to_eye);
     var color = shade(lights, base, normal);
     if marked_back {
-        return select(color, FOLD_COLOR, in.folded != 0u);
+        return vec4<f32>(select(color, FOLD_COLOR, in.folded != 0u), 1.0);
     }
     if lit.a > 0.0 {
         color = lit.rgb;
@@ -488,9 +490,10 @@ fn bare_color(
         color = matcap_color(normal, to_eye, change);
     }
     // Unlit, since folds mostly face away from the light.
-    return select(color, FOLD_COLOR, in.folded != 0u);
+    return vec4<f32>(select(color, FOLD_COLOR, in.folded != 0u), f32(in.folded != 0u));
 }
 
+// The colour of the surface with lines over it, and how much of the place marks and lines cover.
 fn surface_color(in: Varyings, own_normal: vec3<f32>, front: bool, lit: vec4<f32>) -> vec4<f32> {
     // Derivatives first: they need uniform control flow.
     let edge_heights = heights(in.domain);
@@ -500,10 +503,10 @@ fn surface_color(in: Varyings, own_normal: vec3<f32>, front: bool, lit: vec4<f32
     var color = bare_color(in, own_normal, front, lit, to_edges, edge_heights);
     if (frame.overlays & OVERLAY_WIREFRAME) != 0u {
         let opacity = 0.75 * sides_opacity(to_sides, side_heights, 0.5);
-        color = mix(color, vec3<f32>(0.008, 0.010, 0.014), opacity);
+        color = mix(color, vec4<f32>(0.008, 0.010, 0.014, 1.0), opacity);
     }
     if (frame.overlays & OVERLAY_PATCHES) != 0u {
-        color = mix(color, vec3<f32>(0.93, 0.94, 0.96), sides_opacity(to_edges, edge_heights, 0.9));
+        color = mix(color, vec4<f32>(0.93, 0.94, 0.96, 1.0), sides_opacity(to_edges, edge_heights, 0.9));
     }
     if (frame.overlays & OVERLAY_ADJACENCY) != 0u {
         let nearest_edge = least(to_edges);
@@ -518,7 +521,8 @@ fn surface_color(in: Varyings, own_normal: vec3<f32>, front: bool, lit: vec4<f32
         // Smooth edges are the most frequent and the least interesting, so their lines are thin, and fade where they are dense.
         let is_smooth = kind == EDGE_SMOOTH;
         let opacity = select(1.0, left_by_density(least(edge_heights)), is_smooth);
-        color = mix(color, edge_color(kind), opacity * line_coverage(nearest_edge, select(1.75, 0.75, is_smooth)));
+        let covered = opacity * line_coverage(nearest_edge, select(1.75, 0.75, is_smooth));
+        color = mix(color, vec4<f32>(edge_color(kind), 1.0), covered);
     }
-    return vec4<f32>(color, 1.0);
+    return color;
 }

@@ -31,7 +31,7 @@ struct Frame {
 }
 
 // Images of a material beside that of the base colour.
-const MAP_COUNT: u32 = 4u;
+const MAP_COUNT: u32 = 5u;
 
 struct Material {
     // Linear RGBA.
@@ -51,10 +51,14 @@ struct Material {
     // 0 without a normal map.
     normal_scale: f32,
     occlusion_strength: f32,
-    // With less alpha there is no surface.
+    // With less alpha there is no surface, or if it blends, none that hides what is behind.
     cutoff: f32,
     // 1 if the base colour is shown as it is.
     unlit: f32,
+    // 1 if alpha says how much of a place the surface covers.
+    blends: f32,
+    // How much of a dielectric's light goes through it.
+    transmission: f32,
     maps: array<MapPlace, MAP_COUNT>,
 }
 

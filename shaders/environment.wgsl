@@ -77,6 +77,13 @@ fn coat_transmission(look: LookAt, to_eye: vec3<f32>) -> f32 {
     return 1.0 - coat_albedo(look, environment_dfg(facing, look.coat_roughness));
 }
 
+// The part of the light from right behind a thin surface that comes through it towards the eye.
+fn transmitted_through(look: LookAt, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
+    let facing = clamp(dot(normal, to_eye), 0.0, 1.0);
+    let coat_facing = clamp(dot(look.coat_normal, to_eye), 0.0, 1.0);
+    return transmitted(look, environment_dfg(facing, look.roughness), environment_dfg(coat_facing, look.coat_roughness));
+}
+
 // What the screen shows of radiance towards the eye, in linear RGB.
 fn exposed(radiance: vec3<f32>) -> vec3<f32> {
     return tone_mapped(radiance * surroundings.exposure, surroundings.tone_curve);

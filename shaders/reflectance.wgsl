@@ -1,5 +1,5 @@
 // How surfaces reflect light: the materials of glTF 2.0 (specification, appendix B) with the extensions KHR_materials_ior,
-// KHR_materials_specular and KHR_materials_clearcoat. Nothing here reads a texture or a buffer.
+// KHR_materials_specular, KHR_materials_clearcoat and KHR_materials_transmission. Nothing here reads a texture or a buffer.
 // src/render/reflectance.rs has the same functions.
 
 const PI: f32 = 3.14159265;
@@ -28,6 +28,8 @@ struct LookAt {
     ior: f32,
     // How much of the light from all around reaches the place, 0 to 1.
     occlusion: f32,
+    // How much of a dielectric's light goes through it in place of being scattered, 0 to 1.
+    transmission: f32,
 }
 
 // The light from all around that matters at a place.
@@ -117,7 +119,7 @@ fn reflect_ambient(look: LookAt, light: AmbientLight) -> vec3<f32> {
     let once = albedo_at_once(f0, look.specular, light.dfg);
     let more = albedo_of_more(f0, look.specular, light.dfg);
     let left = max(1.0 - largest_component(once + more), 0.0);
-    let dielectric = once * reflected + (more + left * look.base_color) * diffuse;
+    let dielectric = once * reflected + (more + left * (1.0 - look.transmission) * look.base_color) * diffuse;
     let metal = albedo_at_once(look.base_color, 1.0, light.dfg) * reflected
         + albedo_of_more(look.base_color, 1.0, light.dfg) * diffuse;
     let base = mix(dielectric, metal, look.metallic);
@@ -130,6 +132,16 @@ fn reflect_ambient(look: LookAt, light: AmbientLight) -> vec3<f32> {
     let coat = albedo_at_once(coat_f0, 1.0, light.coat_dfg) * coat_reflected
         + albedo_of_more(coat_f0, 1.0, light.coat_dfg) * diffuse;
     return base * (1.0 - coat_albedo(look, light.coat_dfg)) + look.coat * coat;
+}
+
+// The part of the light from right behind a thin surface that comes through it towards the eye: what isn't reflected, in the base
+// colour (KHR_materials_transmission, thin surfaces). The surface bends and blurs nothing.
+fn transmitted(look: LookAt, dfg: vec2<f32>, coat_dfg: vec2<f32>) -> vec3<f32> {
+    let f0 = dielectric_f0(look);
+    let reflected = albedo_at_once(f0, look.specular, dfg) + albedo_of_more(f0, look.specular, dfg);
+    let left = max(1.0 - largest_component(reflected), 0.0);
+    let through = (1.0 - look.metallic) * look.transmission * left * look.base_color;
+    return through * (1.0 - coat_albedo(look, coat_dfg));
 }
 
 // Radiance towards the eye per irradiance that a surface across the light would get, for light from a single direction. All
@@ -176,7 +188,8 @@ fn direct_base_reflection(
     let f0 = dielectric_f0(look);
     let fresnel = f0 + (vec3<f32>(look.specular) - f0) * schlick;
     let lit = select(0.0, max(dot(normal, to_light), 0.0), dot(normal, to_eye) > 0.0);
-    let dielectric = look.base_color * ((1.0 - largest_component(fresnel)) * lit / PI) + fresnel * lobe;
+    let left = (1.0 - largest_component(fresnel)) * (1.0 - look.transmission);
+    let dielectric = look.base_color * (left * lit / PI) + fresnel * lobe;
     let metal = (look.base_color + (vec3<f32>(1.0) - look.base_color) * schlick) * lobe;
     return mix(dielectric, metal, look.metallic);
 }

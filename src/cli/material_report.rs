@@ -32,13 +32,14 @@ pub(super) struct MaterialInfo {
     pub specular_color: [f32; 3],
     pub clearcoat: f32,
     pub clearcoat_roughness: f32,
+    pub transmission: f32,
     pub maps: Vec<MapInfo>,
 }
 
 /// An image beside that of the base colour.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct MapInfo {
-    /// `metallic-roughness`, `normal`, `occlusion` or `emissive`.
+    /// `metallic-roughness`, `normal`, `occlusion`, `emissive` or `transmission`.
     pub slot: &'static str,
     /// Width and height in px.
     pub size: [u32; 2],
@@ -51,7 +52,7 @@ pub(super) struct MapInfo {
 impl MaterialInfo {
     pub(super) fn of(material: &Material) -> Self {
         let Look { metallic, roughness, emissive, unlit, ior, specular, specular_color, .. } = material.look;
-        let Look { clearcoat, clearcoat_roughness, .. } = material.look;
+        let Look { clearcoat, clearcoat_roughness, transmission, .. } = material.look;
         let (alpha, alpha_cutoff) = match material.look.alpha {
             Alpha::Opaque => ("opaque", None),
             Alpha::Mask(cutoff) => ("mask", Some(cutoff)),
@@ -75,6 +76,7 @@ impl MaterialInfo {
             specular_color,
             clearcoat,
             clearcoat_roughness,
+            transmission,
             maps: Slot::ALL.into_iter().filter_map(map).collect(),
         }
     }
@@ -91,6 +93,7 @@ impl MaterialInfo {
         let color = self.specular_color;
         add(color != usual.specular_color, format!("specular colour {}", numbers(&color)));
         add(self.clearcoat > 0.0, format!("clear coat {} of roughness {}", self.clearcoat, self.clearcoat_roughness));
+        add(self.transmission > 0.0, format!("transmission {}", self.transmission));
         add(self.alpha == "blend", "blended".to_owned());
         let cutoff = self.alpha_cutoff;
         add(cutoff.is_some(), format!("cut out below alpha {}", cutoff.unwrap_or_default()));
@@ -106,6 +109,7 @@ fn map(slot: Slot, map: &Map, look: &Look) -> MapInfo {
         Slot::Normal => ("normal", Some(look.normal_scale)),
         Slot::Occlusion => ("occlusion", Some(look.occlusion_strength)),
         Slot::Emissive => ("emissive", None),
+        Slot::Transmission => ("transmission", None),
     };
     let uv_set = match map.uv {
         MapUv::Own => None,
@@ -156,13 +160,15 @@ mod tests {
         let look = &mut material.look;
         look.maps[Slot::Normal as usize] = Some(Map { texture, uv, sampling: Sampling::default() });
         (look.normal_scale, look.clearcoat, look.alpha, look.unlit) = (0.5, 1.0, Alpha::Mask(0.25), true);
+        look.transmission = 0.75;
         let info = MaterialInfo::of(&material);
         let text = info.to_string();
-        let look = "metallic 0, roughness 0.5, base colour 0.5 0.25 0 1, clear coat 1 of roughness 0, cut out below alpha 0.25, unlit";
+        let look = "metallic 0, roughness 0.5, base colour 0.5 0.25 0 1, clear coat 1 of roughness 0, transmission 0.75, cut out below alpha 0.25, unlit";
         assert!(text.contains(&format!("\n  look          {look}\n")), "{text}");
         assert!(text.ends_with("\n  map           normal 2 x 1 px, on TEXCOORD_1, strength 0.5\n"), "{text}");
         let json = serde_json::to_value(&info).unwrap();
         assert_eq!((&json["alpha"], &json["alpha_cutoff"]), (&"mask".into(), &0.25.into()));
+        assert_eq!(json["transmission"], 0.75);
         assert_eq!((&json["maps"][0]["slot"], &json["maps"][0]["uv_set"]), (&"normal".into(), &1.into()));
     }
 }

@@ -52,7 +52,7 @@ impl<T> Lazy<T> {
     }
 
     /// Whether it was made.
-    #[cfg(test)]
+    #[cfg(any(test, feature = "cli"))]
     pub(crate) fn is_made(&self) -> bool {
         self.made.get().is_some()
     }

@@ -77,19 +77,19 @@ impl<'a> Recorder<'a> {
         &mut self.encoder
     }
 
-    /// Records one render pass named `pass`, with a colour and a depth attachment.
+    /// Records one render pass named `pass`, with a colour attachment, a depth attachment, or both.
     pub fn render(
         &mut self,
         pass: &'static str,
-        color: wgpu::RenderPassColorAttachment,
-        depth: wgpu::RenderPassDepthStencilAttachment,
+        color: Option<wgpu::RenderPassColorAttachment>,
+        depth: Option<wgpu::RenderPassDepthStencilAttachment>,
         record: impl FnOnce(&mut wgpu::RenderPass),
     ) {
         self.timed(pass, |encoder, query| {
             record(&mut encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some(pass),
-                color_attachments: &[Some(color)],
-                depth_stencil_attachment: Some(depth),
+                color_attachments: if color.is_some() { std::slice::from_ref(&color) } else { &[] },
+                depth_stencil_attachment: depth,
                 timestamp_writes: query.and_then(|query| query.render_pass_timestamp_writes()),
                 ..Default::default()
             }));

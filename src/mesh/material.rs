@@ -36,6 +36,11 @@ impl Material {
             triangles: 0..0,
         }
     }
+
+    /// Whether one may see what is behind its triangles: it blends, or it transmits light.
+    pub(crate) fn shows_behind(&self) -> bool {
+        self.look.alpha == Alpha::Blend || self.look.transmits()
+    }
 }
 
 /// An 8-bit image with straight alpha, stored row by row from the top. Colours are sRGB; the numbers of normal maps and of the
@@ -75,6 +80,9 @@ pub struct Look {
     pub clearcoat: f32,
     /// Perceptual roughness of the coat.
     pub clearcoat_roughness: f32,
+    /// How much of a dielectric's light goes through it in place of being scattered, 0 to 1. The surface is thin: it bends no light
+    /// (KHR_materials_transmission).
+    pub transmission: f32,
     /// The images beside that of the base colour, by [`Slot`].
     pub maps: [Option<Map>; Slot::COUNT],
 }
@@ -94,8 +102,16 @@ impl Default for Look {
             specular_color: [1.0; 3],
             clearcoat: 0.0,
             clearcoat_roughness: 0.0,
+            transmission: 0.0,
             maps: Default::default(),
         }
+    }
+}
+
+impl Look {
+    /// Whether light goes through it. None does where it is unlit.
+    pub(crate) fn transmits(&self) -> bool {
+        self.transmission > 0.0 && !self.unlit
     }
 }
 
@@ -122,13 +138,16 @@ pub enum Slot {
     Occlusion,
     /// Emitted colour, sRGB.
     Emissive,
+    /// How much light goes through in red, linear.
+    Transmission,
 }
 
 impl Slot {
     /// How many there are.
-    pub const COUNT: usize = 4;
+    pub const COUNT: usize = 5;
     /// All of them, in the order of [`Look::maps`].
-    pub const ALL: [Self; Self::COUNT] = [Self::MetallicRoughness, Self::Normal, Self::Occlusion, Self::Emissive];
+    pub const ALL: [Self; Self::COUNT] =
+        [Self::MetallicRoughness, Self::Normal, Self::Occlusion, Self::Emissive, Self::Transmission];
 }
 
 /// An image on a surface.

@@ -2,8 +2,8 @@
 
 use glam::{Vec3, vec3};
 
-use super::LineSegment;
 use super::layout::AXIS_COLORS;
+use super::{Camera, LineSegment};
 use crate::mesh::Bounds;
 
 /// A horizontal plane under a mesh. Its lines are at multiples of a round number of object units from the origin.
@@ -26,6 +26,11 @@ impl Ground {
         let snapped = |x: f32| ((f64::from(x) / spacing).round() * spacing) as f32;
         let center = bounds.center();
         Self { middle: vec3(snapped(center.x), bounds.min.y, snapped(center.z)), spacing: spacing as f32 }
+    }
+
+    /// Whether a camera looks at its upper side.
+    pub(super) fn is_seen_from_above(&self, camera: &Camera) -> bool {
+        if camera.orthographic { camera.axes()[2].y > 0.0 } else { camera.eye().y > self.middle.y }
     }
 
     /// As `Frame` in `shaders/draw_types.wgsl` has it.

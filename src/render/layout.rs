@@ -57,13 +57,21 @@ pub(crate) struct Material {
     /// 0 without a normal map.
     pub normal_scale: f32,
     pub occlusion_strength: f32,
-    /// With less alpha there is no surface.
+    /// With less alpha there is no surface, or if it blends, none that hides what is behind.
     pub cutoff: f32,
     /// 1 if the base colour is shown as it is.
     pub unlit: f32,
+    /// 1 if alpha says how much of a place the surface covers.
+    pub blends: f32,
+    /// How much of a dielectric's light goes through it.
+    pub transmission: f32,
+    pub _pad: [f32; 2],
     /// In the order of [`Slot::ALL`].
     pub maps: [MapPlace; Slot::COUNT],
 }
+
+/// Less of what is behind a place can't be seen: it is half a step of a picture's channels.
+pub(crate) const LEAST_SEEN: f32 = 1.0 / 512.0;
 
 /// Where an image is read: u' = `u[0]` u + `u[1]` v + `u[2]`, and v' likewise. `u[3]` is 0 for the texture coordinates of the base
 /// colour, and 1 or 2 for the first or second of the corners' details.

@@ -3,7 +3,7 @@
 use wgpu::util::DeviceExt;
 
 use super::environment::Environment;
-use super::layout::{self, MapPlace};
+use super::layout::{self, LEAST_SEEN, MapPlace};
 use super::textures::{Meaning, Samplers, Textures, white};
 use crate::gpu::Gpu;
 use crate::mesh::{Alpha, Map, MapUv, Material, Sampling, Slot};
@@ -67,9 +67,9 @@ impl Materials {
             Some(map) => (textures.view(gpu, &map.texture, meaning(slot)), sampler(map.sampling)),
             None => (self.white.clone(), sampler(Sampling::default())),
         });
-        let [first, second, third, fourth] = maps;
+        let [first, second, third, fourth, fifth] = maps;
         let base = (base.unwrap_or_else(|| self.white.clone()), sampler(material.sampling));
-        let images = [base, first, second, third, fourth];
+        let images = [base, first, second, third, fourth, fifth];
         let entries = [vec![entry(0, constants.as_entire_binding())], entries_of(&images[..1])].concat();
         let group = bind_group(gpu, "material", &self.layout, &entries);
         UploadedMaterial { group, constants, images }
@@ -95,7 +95,7 @@ impl Materials {
 
 fn meaning(slot: Slot) -> Meaning {
     match slot {
-        Slot::MetallicRoughness | Slot::Normal | Slot::Occlusion => Meaning::Numbers,
+        Slot::MetallicRoughness | Slot::Normal | Slot::Occlusion | Slot::Transmission => Meaning::Numbers,
         Slot::Emissive => Meaning::Colors,
     }
 }
@@ -116,8 +116,15 @@ fn constants(material: &Material) -> layout::Material {
         coat_roughness: look.clearcoat_roughness,
         normal_scale: if has_normals { look.normal_scale } else { 0.0 },
         occlusion_strength: look.occlusion_strength,
-        cutoff: if let Alpha::Mask(cutoff) = look.alpha { cutoff } else { f32::NEG_INFINITY },
+        cutoff: match look.alpha {
+            Alpha::Opaque => f32::NEG_INFINITY,
+            Alpha::Mask(cutoff) => cutoff,
+            Alpha::Blend => 1.0 - LEAST_SEEN,
+        },
         unlit: f32::from(u8::from(look.unlit)),
+        blends: f32::from(u8::from(look.alpha == Alpha::Blend)),
+        transmission: if look.transmits() { look.transmission } else { 0.0 },
+        _pad: [0.0; 2],
         maps: look.maps.each_ref().map(|map| map_place(map.as_ref())),
     }
 }

@@ -12,6 +12,7 @@ mod frame;
 mod framing;
 mod ground;
 pub(crate) mod irradiance;
+mod layers;
 pub(crate) mod layout;
 mod leaks;
 mod legend;
@@ -56,7 +57,7 @@ pub(crate) use target::samples;
 
 /// The shader files with entry points for drawing and picking, and the light that draws read. Each makes one shader module.
 #[cfg(test)]
-static MODULES: [&crate::gpu::WgslFile; 10] = [
+static MODULES: [&crate::gpu::WgslFile; 12] = [
     &coverage::PASS_COVERAGE,
     &environment::ENVIRONMENT,
     &leaks::DRAW_LEAKS,
@@ -66,5 +67,7 @@ static MODULES: [&crate::gpu::WgslFile; 10] = [
     &pipelines::DRAW_LIT,
     &pipelines::DRAW_PLAIN,
     &pipelines::DRAW_SURFACE,
+    &pipelines::LAYERS_MULTISAMPLED,
+    &pipelines::LAYERS_SINGLE,
     &prefilter_pass::PASS_PREFILTER,
 ];

@@ -1,6 +1,6 @@
 //! What the shader that lights a mesh's materials must have.
 
-use crate::mesh::{Alpha, Mesh};
+use crate::mesh::{Alpha, Material, Mesh};
 
 /// What a mesh's materials need of the shader that lights them. What they don't need is left out of it when its pipeline is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -11,41 +11,56 @@ pub(super) struct Needs {
     pub details: bool,
     /// A clear coat.
     pub coat: bool,
-    /// Places where there is no surface.
+    /// Places where there is no surface that hides what is behind, by alpha.
     pub mask: bool,
+    /// Light that goes through.
+    pub transmission: bool,
 }
 
 impl Needs {
     /// Everything that any mesh needs.
-    pub(super) const ALL: Self = Self { maps: true, details: true, coat: true, mask: true };
+    pub(super) const ALL: Self = Self { maps: true, details: true, coat: true, mask: true, transmission: true };
 
     /// What a mesh needs.
     pub(super) fn of(mesh: &Mesh) -> Self {
-        let mut needs = Self { maps: false, details: mesh.details.is_some(), coat: false, mask: false };
+        let details = mesh.details.is_some();
+        let mut needs = Self { maps: false, details, coat: false, mask: false, transmission: false };
         for look in mesh.materials.iter().map(|material| &material.look) {
             needs.maps |= look.maps.iter().any(Option::is_some);
             needs.coat |= look.clearcoat > 0.0;
-            needs.mask |= matches!(look.alpha, Alpha::Mask(_));
+            needs.mask |= look.alpha != Alpha::Opaque;
+            needs.transmission |= look.transmits();
         }
         needs
     }
 
     /// The values of the constants of `shaders/draw_material.wgsl`.
-    pub(super) fn constants(self) -> [(&'static str, f64); 4] {
-        [("HAS_MAPS", self.maps), ("HAS_DETAILS", self.details), ("HAS_COAT", self.coat), ("HAS_MASK", self.mask)]
-            .map(|(name, is_needed)| (name, f64::from(u8::from(is_needed))))
+    pub(super) fn constants(self) -> [(&'static str, f64); 5] {
+        [
+            ("HAS_MAPS", self.maps),
+            ("HAS_DETAILS", self.details),
+            ("HAS_COAT", self.coat),
+            ("HAS_MASK", self.mask),
+            ("HAS_TRANSMISSION", self.transmission),
+        ]
+        .map(|(name, is_needed)| (name, f64::from(u8::from(is_needed))))
     }
+}
+
+/// Whether a mesh has materials that are drawn in layers.
+pub(super) fn has_layers(mesh: &Mesh) -> bool {
+    mesh.materials.iter().any(Material::shows_behind)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{Material, Shape};
+    use crate::mesh::{Look, Shape};
 
     #[test]
     fn a_mesh_needs_what_any_of_its_materials_does() {
         let mut mesh = Shape::CubeSplit.build();
-        let nothing = Needs { maps: false, details: false, coat: false, mask: false };
+        let nothing = Needs { maps: false, details: false, coat: false, mask: false, transmission: false };
         assert_eq!(Needs::of(&mesh), nothing);
         let mut coated = Material::plain("coated", [1.0; 4]);
         coated.look.clearcoat = 0.5;
@@ -55,5 +70,16 @@ mod tests {
         leaves.look.alpha = Alpha::Mask(0.5);
         mesh.materials.push(leaves);
         assert_eq!(Needs::of(&mesh), Needs { coat: true, mask: true, ..nothing });
+        assert!(!has_layers(&mesh));
+        let mut glass = Material::plain("glass", [1.0; 4]);
+        glass.look.transmission = 1.0;
+        let mut painted = glass.clone();
+        painted.look.unlit = true;
+        mesh.materials = vec![painted];
+        assert_eq!((Needs::of(&mesh), has_layers(&mesh)), (nothing, false));
+        mesh.materials.push(glass);
+        assert_eq!((Needs::of(&mesh), has_layers(&mesh)), (Needs { transmission: true, ..nothing }, true));
+        mesh.materials[1].look = Look { alpha: Alpha::Blend, ..Look::default() };
+        assert_eq!((Needs::of(&mesh), has_layers(&mesh)), (Needs { mask: true, ..nothing }, true));
     }
 }

@@ -223,7 +223,7 @@ impl<'a> Run<'a> {
             stencil_ops: None,
         };
         let group = self.group(scene, &draw.get_bind_group_layout(0), search.draw_bindings);
-        recorder.render("pick", color, depth, |pass| {
+        recorder.render("pick", Some(color), Some(depth), |pass| {
             pass.set_pipeline(draw);
             pass.set_bind_group(0, &group, &[]);
             pass.draw(0..corners, 0..1);

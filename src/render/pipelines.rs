@@ -46,6 +46,15 @@ pub(super) static DRAW_SURFACE: WgslFile = wgsl!(
 );
 pub(super) static DRAW_LINES: WgslFile = wgsl!("draw_lines", DRAW_TYPES, FACTORS, OCTAHEDRAL_NORMAL, TYPES);
 
+/// The module that has it declares the depths that it compares with.
+static DRAW_LAYERS: WgslFile = wgsl!("draw_layers", DRAW_MATERIAL);
+static DRAW_LIT_LAYERS: WgslFile =
+    wgsl!("draw_lit_layers", DRAW_LAYERS, DRAW_LIGHT, DRAW_LIT, DRAW_MATERIAL, DRAW_NORMAL);
+static DRAW_SURFACE_LAYERS: WgslFile =
+    wgsl!("draw_surface_layers", DRAW_LAYERS, DRAW_LIGHT, DRAW_MATERIAL, DRAW_NORMAL, DRAW_SURFACE);
+pub(super) static LAYERS_SINGLE: WgslFile = wgsl!("layers_single", DRAW_LIT_LAYERS, DRAW_SURFACE_LAYERS);
+pub(super) static LAYERS_MULTISAMPLED: WgslFile = wgsl!("layers_multisampled", DRAW_LIT_LAYERS, DRAW_SURFACE_LAYERS);
+
 /// What a pipeline draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Draw {
@@ -76,12 +85,42 @@ pub(super) enum Draw {
     LookPulled(Faces, NormalsAt, Look),
     /// [`Self::Source`] in such a variant.
     LookSource(Look),
+    /// Triangles with such materials where they show what is behind them.
+    Layer(LayerDraw, Triangles, NormalsAt, Needs),
     /// The grid on the ground.
     Ground,
     /// Lines over the mesh.
     Lines(Occluded),
     /// A line along the normal of every emitted vertex.
     Normals(Occluded),
+}
+
+/// What a pipeline does with layers. The first three are numbers of LAYER_* in `shaders/draw_layers.wgsl`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum LayerDraw {
+    /// Composites the layer that was found, which covers what is behind.
+    Over,
+    /// Multiplies what is behind that layer by its colours.
+    Filter,
+    /// Adds the light that comes from that layer itself.
+    Add,
+    /// Finds the depths of the next layer away from the eye.
+    Away,
+    /// Finds those of the next layer toward the eye.
+    Toward,
+}
+
+/// How a pipeline for layers gets its triangles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Triangles {
+    /// As [`Draw::Lit`] does.
+    Lit,
+    /// As [`Draw::LitIndexed`] does.
+    Indexed,
+    /// As [`Draw::LitPulled`] does.
+    Pulled,
+    /// As [`Draw::LitSource`] does.
+    Source,
 }
 
 /// Which faces are drawn.
@@ -107,7 +146,23 @@ pub(super) enum Occluded {
 
 impl Draw {
     /// Every pipeline that there is but those of looks; of those that light materials, the ones with all that materials can need.
-    pub(super) const ALL: [Self; 33] = [
+    pub(super) fn all() -> Vec<Self> {
+        let triangles = [Triangles::Lit, Triangles::Indexed, Triangles::Pulled, Triangles::Source];
+        let layers = triangles.into_iter().flat_map(|triangles| {
+            let places: &[_] = match triangles {
+                Triangles::Source => &[NormalsAt::Vertices],
+                _ => &[NormalsAt::Vertices, NormalsAt::Pixels],
+            };
+            let composites = [LayerDraw::Over, LayerDraw::Filter, LayerDraw::Add].into_iter();
+            let composites = composites.flat_map(|draw| places.iter().map(move |&at| (draw, at)));
+            let finds = [LayerDraw::Away, LayerDraw::Toward].map(|draw| (draw, NormalsAt::Vertices));
+            composites.chain(finds).map(move |(draw, at)| Self::Layer(draw, triangles, at, Needs::ALL))
+        });
+        Self::OTHERS.into_iter().chain(layers).collect()
+    }
+
+    /// Those that don't draw layers.
+    const OTHERS: [Self; 33] = [
         Self::Plain(Faces::Both),
         Self::Plain(Faces::Fronts),
         Self::Textured(Faces::Both),
@@ -168,7 +223,24 @@ impl Draw {
             NormalsAt::Vertices => "lit_surface_fragment",
             NormalsAt::Pixels => "pixel_lit_surface_fragment",
         };
+        let layer = |triangles, draw, places| match (triangles, draw, places) {
+            (Triangles::Lit, LayerDraw::Away | LayerDraw::Toward, _) => "lit_depth_fragment",
+            (Triangles::Lit, _, NormalsAt::Vertices) => "lit_layer_fragment",
+            (Triangles::Lit, _, NormalsAt::Pixels) => "pixel_lit_layer_fragment",
+            (_, LayerDraw::Away | LayerDraw::Toward, _) => "surface_depth_fragment",
+            (_, _, NormalsAt::Vertices) => "surface_layer_fragment",
+            (_, _, NormalsAt::Pixels) => "pixel_surface_layer_fragment",
+        };
         match self {
+            Self::Layer(draw, triangles, places, _) => {
+                let vertex = match triangles {
+                    Triangles::Lit => "lit_vertex",
+                    Triangles::Indexed => "indexed_vertex",
+                    Triangles::Pulled => "pulled_vertex",
+                    Triangles::Source => "source_vertex",
+                };
+                (vertex, layer(triangles, draw, places))
+            }
             Self::Plain(_) => ("plain_vertex", "plain_fragment"),
             Self::Textured(_) => ("textured_vertex", "textured_fragment"),
             Self::PixelNormals(_) => ("pixel_vertex", "pixel_fragment"),
@@ -196,8 +268,12 @@ impl Draw {
             | Self::Indexed(..)
             | Self::Lit(..)
             | Self::LitIndexed(..)
-            | Self::LookIndexed(..) => vertex_halves(wgpu::VertexStepMode::Vertex).to_vec(),
+            | Self::LookIndexed(..)
+            | Self::Layer(_, Triangles::Lit | Triangles::Indexed, ..) => {
+                vertex_halves(wgpu::VertexStepMode::Vertex).to_vec()
+            }
             Self::Pulled(..) | Self::LitPulled(..) | Self::LookPulled(..) => Vec::new(),
+            Self::Layer(_, Triangles::Pulled | Triangles::Source, ..) => Vec::new(),
             Self::Source | Self::LitSource(_) | Self::LookSource(_) | Self::Ground => Vec::new(),
             Self::Lines(_) => vec![Some(wgpu::VertexBufferLayout {
                 array_stride: size_of::<LineSegment>() as u64,
@@ -208,17 +284,40 @@ impl Draw {
         }
     }
 
-    /// Depth is reversed, so that nearer surfaces have a greater depth.
-    fn depth_compare(self) -> wgpu::CompareFunction {
-        match self {
+    /// How depths are tested and written; `None` for what composites a layer, whose depth a shader compares. Depth is reversed, so
+    /// that nearer surfaces have a greater depth.
+    fn depth_stencil(self) -> Option<wgpu::DepthStencilState> {
+        let compare = match self {
+            Self::Layer(LayerDraw::Over | LayerDraw::Filter | LayerDraw::Add, ..) => return None,
+            Self::Layer(LayerDraw::Toward, ..) => wgpu::CompareFunction::Less,
             Self::Lines(Occluded::Through) | Self::Normals(Occluded::Through) => wgpu::CompareFunction::Always,
             _ => wgpu::CompareFunction::Greater,
-        }
+        };
+        Some(wgpu::DepthStencilState {
+            format: DEPTH_FORMAT,
+            // The ground and lines are blended over surfaces.
+            depth_write_enabled: Some(!matches!(self, Self::Ground | Self::Lines(_) | Self::Normals(_))),
+            depth_compare: Some(compare),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        })
     }
 
-    /// Surfaces are opaque and write depth; the ground and lines are blended over them.
-    fn is_opaque(self) -> bool {
-        !matches!(self, Self::Ground | Self::Lines(_) | Self::Normals(_))
+    /// How colours are written; `None` for what only finds depths.
+    fn color_target(self) -> Option<wgpu::ColorTargetState> {
+        let blend = match self {
+            Self::Layer(LayerDraw::Away | LayerDraw::Toward, ..) => return None,
+            Self::Layer(LayerDraw::Over, ..) => Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+            Self::Layer(LayerDraw::Filter, ..) => {
+                Some(both(wgpu::BlendFactor::Zero, wgpu::BlendFactor::Src, wgpu::BlendFactor::SrcAlpha))
+            }
+            Self::Layer(LayerDraw::Add, ..) => {
+                Some(both(wgpu::BlendFactor::One, wgpu::BlendFactor::One, wgpu::BlendFactor::One))
+            }
+            Self::Ground | Self::Lines(_) | Self::Normals(_) => Some(wgpu::BlendState::ALPHA_BLENDING),
+            _ => None,
+        };
+        Some(wgpu::ColorTargetState { format: COLOR_FORMAT, blend, write_mask: wgpu::ColorWrites::ALL })
     }
 
     fn cull_mode(self) -> Option<wgpu::Face> {
@@ -245,11 +344,23 @@ impl Draw {
             | Self::LitIndexed(.., needs)
             | Self::LitPulled(.., needs)
             | Self::LitSource(needs) => needs.constants().to_vec(),
+            Self::Layer(draw, .., needs) => {
+                let toward_eye = f64::from(u8::from(draw == LayerDraw::Toward));
+                let of_layer = [("TOWARD_EYE", toward_eye), ("LAYER_DRAW", f64::from(draw as u32))];
+                needs.constants().into_iter().chain(of_layer).collect()
+            }
             Self::LookIndexed(.., look) | Self::LookPulled(.., look) => vec![("LOOK", f64::from(look as u32))],
             Self::LookSource(look) => vec![("LOOK", f64::from(look as u32)), ("DRAWS_SOURCE", 1.0)],
             _ => Vec::new(),
         }
     }
+}
+
+/// A sum of what is drawn and what is there, with these factors: of what is drawn, and of the colour and the alpha that are there.
+fn both(drawn: wgpu::BlendFactor, color: wgpu::BlendFactor, alpha: wgpu::BlendFactor) -> wgpu::BlendState {
+    let component =
+        |there| wgpu::BlendComponent { src_factor: drawn, dst_factor: there, operation: wgpu::BlendOperation::Add };
+    wgpu::BlendState { color: component(color), alpha: component(alpha) }
 }
 
 /// The attributes of an emitted vertex's first half: position and normal.
@@ -280,9 +391,13 @@ pub(super) struct DrawPipelines {
     /// Group 3: what was measured of a chunk's triangles, their distances to the reference surface, and of patches, their own
     /// least.
     pub measured_layout: wgpu::BindGroupLayout,
+    /// Group 3 where layers are drawn: the same, the depths of the layer that was found last, and those of what hides everything
+    /// behind it.
+    pub layer_layout: wgpu::BindGroupLayout,
     plain: ShaderModule,
     lit: ShaderModule,
     surface: ShaderModule,
+    layers: ShaderModule,
     ground: ShaderModule,
     lines: ShaderModule,
     pipelines: Mutex<HashMap<Draw, Arc<Lazy<wgpu::RenderPipeline>>>>,
@@ -291,15 +406,18 @@ pub(super) struct DrawPipelines {
 impl DrawPipelines {
     /// Makes the layouts. Compiles nothing yet.
     pub(super) fn new(gpu: &Gpu, materials: &Materials) -> Self {
+        let is_multisampled = samples(gpu) > 1;
         Self {
             scene_layout: scene_layout(gpu),
             material_layout: materials.layout.clone(),
             lit_layout: materials.lit_layout.clone(),
             chunk_layout: chunk_layout(gpu),
             measured_layout: measured_layout(gpu),
+            layer_layout: layer_layout(gpu, is_multisampled),
             plain: ShaderModule::new(&DRAW_PLAIN),
             lit: ShaderModule::new(&DRAW_LIT),
             surface: ShaderModule::new(&DRAW_SURFACE),
+            layers: ShaderModule::new(if is_multisampled { &LAYERS_MULTISAMPLED } else { &LAYERS_SINGLE }),
             ground: ShaderModule::new(&DRAW_GROUND),
             lines: ShaderModule::new(&DRAW_LINES),
             pipelines: Default::default(),
@@ -317,6 +435,7 @@ impl DrawPipelines {
             Draw::Indexed(..) | Draw::Pulled(..) | Draw::Source => &self.surface,
             Draw::LitIndexed(..) | Draw::LitPulled(..) | Draw::LitSource(_) => &self.surface,
             Draw::LookIndexed(..) | Draw::LookPulled(..) | Draw::LookSource(_) => &self.surface,
+            Draw::Layer(..) => &self.layers,
             Draw::Ground => &self.ground,
             Draw::Lines(_) | Draw::Normals(_) => &self.lines,
         };
@@ -330,7 +449,7 @@ impl DrawPipelines {
     fn layouts(&self, draw: Draw) -> Vec<Option<&wgpu::BindGroupLayout>> {
         let (scene, material) = (Some(&self.scene_layout), Some(&self.material_layout));
         let (chunk, deviation) = (Some(&self.chunk_layout), Some(&self.measured_layout));
-        let lit = Some(&self.lit_layout);
+        let (lit, layer) = (Some(&self.lit_layout), Some(&self.layer_layout));
         match draw {
             Draw::Plain(_) | Draw::Textured(_) | Draw::PixelNormals(_) => vec![scene, material],
             Draw::Indexed(..) | Draw::Pulled(..) | Draw::LookIndexed(..) | Draw::LookPulled(..) => {
@@ -340,6 +459,8 @@ impl DrawPipelines {
             Draw::Lit(..) => vec![scene, lit],
             Draw::LitIndexed(..) | Draw::LitPulled(..) => vec![scene, lit, chunk, deviation],
             Draw::LitSource(_) => vec![scene, lit, None, deviation],
+            Draw::Layer(_, Triangles::Lit | Triangles::Source, ..) => vec![scene, lit, None, layer],
+            Draw::Layer(_, Triangles::Indexed | Triangles::Pulled, ..) => vec![scene, lit, chunk, layer],
             Draw::Ground | Draw::Lines(_) => vec![scene],
             Draw::Normals(_) => vec![scene, None, chunk],
         }
@@ -364,10 +485,28 @@ fn chunk_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("chunk"), entries: &entries })
 }
 
+fn measured_entries() -> [wgpu::BindGroupLayoutEntry; 2] {
+    [buffer_entry(0, READ, wgpu::ShaderStages::FRAGMENT), buffer_entry(1, READ, wgpu::ShaderStages::VERTEX)]
+}
+
 fn measured_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let entries =
-        [buffer_entry(0, READ, wgpu::ShaderStages::FRAGMENT), buffer_entry(1, READ, wgpu::ShaderStages::VERTEX)];
+    let entries = measured_entries();
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("measured"), entries: &entries })
+}
+
+fn layer_layout(gpu: &Gpu, multisampled: bool) -> wgpu::BindGroupLayout {
+    let depths = |binding| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::FRAGMENT,
+        ty: wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Depth,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled,
+        },
+        count: None,
+    };
+    let entries = [&measured_entries()[..], &[depths(2), depths(3)]].concat();
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("layer"), entries: &entries })
 }
 
 const READ: wgpu::BufferBindingType = wgpu::BufferBindingType::Storage { read_only: true };
@@ -389,6 +528,7 @@ fn pipeline(
 ) -> wgpu::RenderPipeline {
     let (vertex, fragment) = draw.entry_points();
     let constants = draw.constants();
+    let color = draw.color_target().map(Some);
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(vertex),
         bind_group_layouts: layouts,
@@ -404,23 +544,13 @@ fn pipeline(
             buffers: &draw.vertex_buffers(),
         },
         primitive: wgpu::PrimitiveState { cull_mode: draw.cull_mode(), ..Default::default() },
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: DEPTH_FORMAT,
-            depth_write_enabled: Some(draw.is_opaque()),
-            depth_compare: Some(draw.depth_compare()),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState::default(),
-        }),
+        depth_stencil: draw.depth_stencil(),
         multisample: wgpu::MultisampleState { count: samples(gpu), ..Default::default() },
         fragment: Some(wgpu::FragmentState {
             module,
             entry_point: Some(fragment),
             compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
-            targets: &[Some(wgpu::ColorTargetState {
-                format: COLOR_FORMAT,
-                blend: (!draw.is_opaque()).then_some(wgpu::BlendState::ALPHA_BLENDING),
-                write_mask: wgpu::ColorWrites::ALL,
-            })],
+            targets: color.as_slice(),
         }),
         multiview_mask: None,
         cache: None,

@@ -26,6 +26,8 @@ pub(crate) struct LookAt {
     pub coat_roughness: f32,
     pub ior: f32,
     pub occlusion: f32,
+    pub transmission: f32,
+    pub _pad: [f32; 3],
 }
 
 impl Default for LookAt {
@@ -41,6 +43,8 @@ impl Default for LookAt {
             coat_roughness: 0.0,
             ior: 1.5,
             occlusion: 1.0,
+            transmission: 0.0,
+            _pad: [0.0; 3],
         }
     }
 }
@@ -117,7 +121,7 @@ pub(crate) fn reflect_ambient(look: &LookAt, light: &AmbientLight) -> Vec3 {
     let once = albedo_at_once(f0, look.specular, light.dfg);
     let more = albedo_of_more(f0, look.specular, light.dfg);
     let left = (1.0 - largest_component(once + more)).max(0.0);
-    let dielectric = once * reflected + (more + left * look.base_color) * diffuse;
+    let dielectric = once * reflected + (more + left * (1.0 - look.transmission) * look.base_color) * diffuse;
     let metal = albedo_at_once(look.base_color, 1.0, light.dfg) * reflected
         + albedo_of_more(look.base_color, 1.0, light.dfg) * diffuse;
     let base = dielectric.lerp(metal, look.metallic);
@@ -130,6 +134,14 @@ pub(crate) fn reflect_ambient(look: &LookAt, light: &AmbientLight) -> Vec3 {
     let coat = albedo_at_once(coat_f0, 1.0, light.coat_dfg) * coat_reflected
         + albedo_of_more(coat_f0, 1.0, light.coat_dfg) * diffuse;
     base * (1.0 - coat_albedo(look, light.coat_dfg)) + look.coat * coat
+}
+
+pub(crate) fn transmitted(look: &LookAt, dfg: Vec2, coat_dfg: Vec2) -> Vec3 {
+    let f0 = dielectric_f0(look);
+    let reflected = albedo_at_once(f0, look.specular, dfg) + albedo_of_more(f0, look.specular, dfg);
+    let left = (1.0 - largest_component(reflected)).max(0.0);
+    let through = (1.0 - look.metallic) * look.transmission * left * look.base_color;
+    through * (1.0 - coat_albedo(look, coat_dfg))
 }
 
 pub(crate) fn direct_reflection(look: &LookAt, normal: Vec3, to_eye: Vec3, to_light: Vec3) -> Vec3 {
@@ -165,7 +177,8 @@ pub(crate) fn direct_base_reflection(
     let f0 = dielectric_f0(look);
     let fresnel = f0 + (look.specular - f0) * schlick;
     let lit = if normal.dot(to_eye) > 0.0 { normal.dot(to_light).max(0.0) } else { 0.0 };
-    let dielectric = look.base_color * ((1.0 - largest_component(fresnel)) * lit / PI) + fresnel * lobe;
+    let left = (1.0 - largest_component(fresnel)) * (1.0 - look.transmission);
+    let dielectric = look.base_color * (left * lit / PI) + fresnel * lobe;
     let metal = (look.base_color + (1.0 - look.base_color) * schlick) * lobe;
     dielectric.lerp(metal, look.metallic)
 }

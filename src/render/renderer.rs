@@ -1,18 +1,22 @@
 //! Draws pictures, in the same way for the window, the commands and the tests.
 
+mod layer_passes;
+
 use std::ops::Range;
 
+use self::layer_passes::layer_draws;
 use super::coverage::{Coverage, CoveragePipelines};
 use super::deviation::Deviations;
 use super::environment::{Environment, LightView};
 use super::frame::frame;
+use super::ground::Ground;
 use super::layout::{linear, overlay_bits};
 use super::look::Look;
 use super::matcap::{MatcapPicture, Matcaps};
 use super::materials::Materials;
 use super::needs::Needs;
-use super::pipelines::{Draw, DrawPipelines, Faces, Occluded};
-use super::steps::{Step, halves, steps};
+use super::pipelines::{Draw, DrawPipelines, Faces, Occluded, Triangles};
+use super::steps::{Step, halves, runs, steps};
 use super::target::samples;
 use super::tone::{TONE_CURVE_NEUTRAL, TONE_CURVE_NONE};
 use super::{Camera, Scene, Target};
@@ -112,6 +116,7 @@ impl Renderer {
         if settings.overlays.colors == Colors::Excess {
             scene.tessellator.prepare_own_least(settings.tessellation.partitioning)?;
         }
+        draws.extend(layer_draws(settings, scene.tessellator.mesh()));
         draws.extend(settings.overlays.grid.then_some(Draw::Ground));
         if settings.overlays.normals {
             draws.extend([Occluded::Through, Occluded::InSight].map(Draw::Normals));
@@ -124,14 +129,14 @@ impl Renderer {
     /// # Errors
     /// Out of memory, or a lost device.
     pub fn prepare_all(&self) -> Result<(), GpuError> {
-        Draw::ALL
+        Draw::all()
             .into_iter()
             .chain(Draw::of_looks())
             .try_for_each(|draw| self.pipelines.get(&self.gpu, draw).map(|_| ()))
     }
 
     /// Draws the scene into the target, chunk after chunk. The scene must be counted. A chunk is emitted unless the arena still
-    /// holds it. Normals are drawn in a second walk over all chunks, since surfaces may hide them.
+    /// holds it. Layers and normals are drawn in further walks over all chunks, since surfaces may hide them.
     ///
     /// # Errors
     /// A pipeline can't be made: out of memory, or a lost device.
@@ -149,7 +154,7 @@ impl Renderer {
 
     /// The number of steps in which [`Self::draw_steps`] draws the scene: at least 1.
     pub fn step_count(scene: &Scene, settings: &Settings) -> usize {
-        steps(scene, settings).len()
+        runs(scene, &steps(scene, settings)).len()
     }
 
     /// Draws some of the steps of a picture. The target shows the picture after all steps were drawn in order.
@@ -165,13 +170,21 @@ impl Renderer {
         settings: &Settings,
         range: Range<usize>,
     ) -> Result<(), GpuError> {
-        let rects = halves(target.size, settings.split);
-        let frames =
-            SplitSide::BOTH.map(|half| scene.half(half).map(|half| frame(&self.gpu, half, target, camera, settings)));
-        let materials = self.material_groups(scene, settings)?;
+        let picture = Picture {
+            target,
+            settings,
+            rects: halves(target.size, settings.split),
+            frames: SplitSide::BOTH
+                .map(|half| scene.half(half).map(|half| frame(&self.gpu, half, target, camera, settings))),
+            materials: self.material_groups(scene, settings)?,
+        };
+        let Picture { rects, frames, materials, .. } = &picture;
         let steps = steps(scene, settings);
+        let ground_step = ground_step(&steps, scene, camera);
+        let runs = runs(scene, &steps);
         let has_left = settings.half(SplitSide::Left).and(scene.half(SplitSide::Left)).is_some();
-        for (index, step) in steps.iter().enumerate().take(range.end).skip(range.start) {
+        for index in runs.into_iter().take(range.end).skip(range.start).flatten() {
+            let step = &steps[index];
             let half = step.half();
             let Some(drawn) = scene.half_mut(half) else { continue };
             if let Some(chunk) = step.chunk() {
@@ -179,6 +192,10 @@ impl Renderer {
                 if settings.overlays.colors == Colors::Excess {
                     drawn.tessellator.record_own_least(recorder)?;
                 }
+            }
+            if let Step::Layer(layer) = *step {
+                self.draw_layer(recorder, scene, &picture, layer)?;
+                continue;
             }
             let (first, last) = (index == 0, index + 1 == steps.len());
             let color = target.color(linear_color(settings.background_color()), first, last);
@@ -189,30 +206,32 @@ impl Renderer {
             let (Some(drawn), Some(frame)) = (scene.half(half), &frames[half as usize]) else { continue };
             let (group, rect) = (self.scene_group(drawn, frame), rects[half as usize]);
             let source = if first && !has_left && rects[SplitSide::Left as usize][2] > 0 {
-                Some(self.get(source_draw(settings, scene.tessellator.mesh()))?)
+                Some(self.source_pipelines(scene.tessellator.mesh(), settings)?)
             } else {
                 None
             };
             let has_lines =
                 scene.lines.is_some() || scene.half(SplitSide::Left).is_some_and(|left| left.lines.is_some());
             let lines = if last && has_lines { Some(self.line_pipelines(Draw::Lines)?) } else { None };
-            let ground = if last && settings.overlays.grid { Some(self.get(Draw::Ground)?) } else { None };
+            let ground =
+                if index == ground_step && settings.overlays.grid { Some(self.get(Draw::Ground)?) } else { None };
             let normals = if let Step::Normals(..) = step { Some(self.line_pipelines(Draw::Normals)?) } else { None };
-            recorder.render("draw", color, target.depth(first), |pass| {
+            recorder.render("draw", Some(color), Some(target.depth(first)), |pass| {
                 pass.set_bind_group(0, &group, &[]);
                 if let Some(source) = &source {
-                    self.draw_source(pass, source, scene, &materials, rects[SplitSide::Left as usize]);
+                    pass.set_bind_group(3, &self.measured_group(scene, None), &[]);
+                    self.draw_source(pass, source, scene, materials, rects[SplitSide::Left as usize]);
                 }
                 match *step {
                     Step::Surface(_, chunk) => {
                         pass.set_bind_group(3, &self.measured_group(drawn, Some(chunk)), &[]);
-                        self.draw_chunk(pass, drawn, &materials, rect, &surfaces, &drawn.tessellator.chunk(chunk));
+                        self.draw_chunk(pass, drawn, materials, rect, &surfaces, &drawn.tessellator.chunk(chunk));
                     }
                     Step::Normals(_, chunk) => {
                         let pipelines = normals.iter().flatten();
                         self.draw_normals(pass, pipelines, rect, &drawn.tessellator.chunk(chunk));
                     }
-                    Step::Nothing => {}
+                    Step::Over | Step::Layer(_) => {}
                 }
                 if let Some(ground) = &ground {
                     // Both halves have the same ground.
@@ -274,12 +293,14 @@ impl Renderer {
         let fronts = !folds && !back_faces && scene.tessellator.shows_fronts_only(clip_from_object);
         let (mesh, faces) = (scene.tessellator.mesh(), if fronts { Faces::Fronts } else { Faces::Both });
         let (draws, pulled) = surface_draws(settings, mesh, faces);
-        let mut materials = [None, None];
-        for own in &mesh.materials {
-            let textured = usize::from(own.texture.is_some());
-            materials[textured] = Some(self.get(draws[textured])?);
-        }
-        Ok(Surfaces { materials, pulled, fronts, sifted: false })
+        let pipelines = mesh.materials.iter().map(|own| Ok(vec![self.get(draws[usize::from(own.texture.is_some())])?]));
+        Ok(Surfaces { materials: pipelines.collect::<Result<_, GpuError>>()?, pulled, fronts, sifted: false })
+    }
+
+    /// The pipelines that draw input triangles, for each of the mesh's materials.
+    fn source_pipelines(&self, mesh: &Mesh, settings: &Settings) -> Result<Vec<Vec<wgpu::RenderPipeline>>, GpuError> {
+        let pipeline = self.get(source_draw(settings, mesh))?;
+        Ok(vec![vec![pipeline]; mesh.materials.len()])
     }
 
     /// Removes triangles that cover no sample from an emitted chunk, if that saves time. Returns false if all of the chunk has to
@@ -313,7 +334,7 @@ impl Renderer {
     fn draw_source(
         &self,
         pass: &mut wgpu::RenderPass,
-        pipeline: &wgpu::RenderPipeline,
+        pipelines: &[Vec<wgpu::RenderPipeline>],
         scene: &Scene,
         materials: &[wgpu::BindGroup],
         [x, y, width, height]: [u32; 4],
@@ -322,11 +343,13 @@ impl Renderer {
             return;
         }
         pass.set_scissor_rect(x, y, width, height);
-        pass.set_pipeline(pipeline);
-        pass.set_bind_group(3, &self.measured_group(scene, None), &[]);
-        for (material, patches) in materials.iter().zip(&scene.tessellator.topology().material_patches) {
-            pass.set_bind_group(1, material, &[]);
-            pass.draw(3 * patches.start..3 * patches.end, 0..1);
+        let patches = &scene.tessellator.topology().material_patches;
+        for ((material, patches), pipelines) in materials.iter().zip(patches).zip(pipelines) {
+            for pipeline in pipelines {
+                pass.set_pipeline(pipeline);
+                pass.set_bind_group(1, material, &[]);
+                pass.draw(3 * patches.start..3 * patches.end, 0..1);
+            }
         }
     }
 
@@ -353,15 +376,15 @@ impl Renderer {
             set_vertices(pass, chunk);
             pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
         }
-        for (material, own) in materials.iter().zip(&scene.tessellator.mesh().materials) {
-            // `surfaces` has a pipeline for every material.
-            let Some(pipeline) = &surfaces.materials[usize::from(own.texture.is_some())] else { continue };
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(1, material, &[]);
-            if surfaces.pulled {
-                pass.draw_indirect(draw_args, args + PULL_ARGS);
-            } else {
-                pass.draw_indexed_indirect(draw_args, args);
+        for (material, pipelines) in materials.iter().zip(&surfaces.materials) {
+            for pipeline in pipelines {
+                pass.set_pipeline(pipeline);
+                pass.set_bind_group(1, material, &[]);
+                if surfaces.pulled {
+                    pass.draw_indirect(draw_args, args + PULL_ARGS);
+                } else {
+                    pass.draw_indexed_indirect(draw_args, args);
+                }
             }
             args += size_of::<DrawArgs>() as u64;
         }
@@ -413,29 +436,46 @@ impl Renderer {
 /// The pipelines for emitted triangles without and with a texture, and whether they pull their vertices.
 fn surface_draws(settings: &Settings, mesh: &Mesh, faces: Faces) -> ([Draw; 2], bool) {
     let places = settings.used_normals_at(mesh);
-    // These overlays need data of whole triangles.
-    let Overlays { wireframe, folds, colors, .. } = settings.overlays;
-    let pulled = wireframe || folds || matches!(colors, Colors::TriangleSize | Colors::Deviation);
-    let has_overlays = overlay_bits(&settings.overlays) != 0;
-    let draws = match (pulled, Look::of(colors)) {
+    let triangles = emitted_triangles(settings);
+    let draws = match (triangles, Look::of(settings.overlays.colors)) {
         _ if settings.shows_materials() => {
-            let draw = if pulled {
-                Draw::LitPulled
-            } else if has_overlays {
-                Draw::LitIndexed
-            } else {
-                Draw::Lit
+            let draw = match triangles {
+                Triangles::Pulled => Draw::LitPulled,
+                Triangles::Indexed => Draw::LitIndexed,
+                _ => Draw::Lit,
             };
             [draw(faces, places, Needs::of(mesh)); 2]
         }
-        (true, Some(look)) => [Draw::LookPulled(faces, places, look); 2],
-        (false, Some(look)) => [Draw::LookIndexed(faces, places, look); 2],
-        (true, None) => [Draw::Pulled(faces, places); 2],
-        (false, None) if has_overlays => [Draw::Indexed(faces, places); 2],
-        (false, None) if places == NormalsAt::Pixels => [Draw::PixelNormals(faces); 2],
-        (false, None) => [Draw::Plain(faces), Draw::Textured(faces)],
+        (Triangles::Pulled, Some(look)) => [Draw::LookPulled(faces, places, look); 2],
+        (_, Some(look)) => [Draw::LookIndexed(faces, places, look); 2],
+        (Triangles::Pulled, None) => [Draw::Pulled(faces, places); 2],
+        (Triangles::Indexed, None) => [Draw::Indexed(faces, places); 2],
+        _ if places == NormalsAt::Pixels => [Draw::PixelNormals(faces); 2],
+        _ => [Draw::Plain(faces), Draw::Textured(faces)],
     };
-    (draws, pulled)
+    (draws, triangles == Triangles::Pulled)
+}
+
+/// How pipelines get emitted triangles.
+fn emitted_triangles(settings: &Settings) -> Triangles {
+    // These overlays need data of whole triangles.
+    let Overlays { wireframe, folds, colors, .. } = settings.overlays;
+    if wireframe || folds || matches!(colors, Colors::TriangleSize | Colors::Deviation) {
+        Triangles::Pulled
+    } else if overlay_bits(&settings.overlays) != 0 {
+        Triangles::Indexed
+    } else {
+        Triangles::Lit
+    }
+}
+
+/// The index of the step after whose surfaces the ground is drawn: the last one. But where layers are in front of the ground, it
+/// is drawn before them. The whole mesh lies above the ground, so that it is in front of all of it or behind all of it.
+fn ground_step(steps: &[Step], scene: &Scene, camera: &Camera) -> usize {
+    let has_layers = steps.iter().any(|step| matches!(step, Step::Layer(_)));
+    let last_surface = steps.iter().rposition(|step| matches!(step, Step::Surface(..)));
+    let before_layers = last_surface.filter(|_| has_layers && Ground::under(&scene.bounds).is_seen_from_above(camera));
+    before_layers.unwrap_or(steps.len() - 1)
 }
 
 /// The pipeline for input triangles.
@@ -484,10 +524,22 @@ fn set_vertices(pass: &mut wgpu::RenderPass, chunk: &ChunkBuffers) {
     }
 }
 
+/// What all steps of a picture share.
+struct Picture<'a> {
+    target: &'a Target,
+    settings: &'a Settings,
+    /// Of both halves: x, y, width and height in px.
+    rects: [[u32; 4]; 2],
+    /// The constants of both halves.
+    frames: [Option<wgpu::Buffer>; 2],
+    /// The bind groups of the scene's materials.
+    materials: Vec<wgpu::BindGroup>,
+}
+
 /// How emitted triangles are drawn.
 struct Surfaces {
-    /// The pipelines for materials without a texture, and with one; `None` if there is no such material.
-    materials: [Option<wgpu::RenderPipeline>; 2],
+    /// For each of the mesh's materials the pipelines that draw it, one after another.
+    materials: Vec<Vec<wgpu::RenderPipeline>>,
     /// Whether shaders pull the corners of triangles.
     pulled: bool,
     /// Whether faces that are seen from behind are left out.

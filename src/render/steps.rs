@@ -1,47 +1,107 @@
 //! The steps of a picture: what each render pass draws, and in which half.
 
+use std::ops::Range;
+
 use super::Scene;
+use super::layers::LayerPass;
+use super::needs::has_layers;
 use crate::settings::{Settings, SplitSide};
 
 /// What one render pass of a picture draws.
 pub(super) enum Step {
-    /// Only the background, since nothing is emitted.
-    Nothing,
-    /// The triangles of a half's chunk.
+    /// Only the background, and what is drawn over surfaces.
+    Over,
+    /// The triangles of a half's chunk, where they hide what is behind them.
     Surface(SplitSide, usize),
+    /// Triangles that show what is behind them.
+    Layer(LayerStep),
     /// The normals of a half's chunk.
     Normals(SplitSide, usize),
+}
+
+/// What a render pass does with layers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct LayerStep {
+    pub pass: LayerPass,
+    /// The triangles; none for a pass that only clears.
+    pub part: Option<LayerPart>,
+    /// Whether it is the first step of its pass.
+    pub is_first: bool,
+}
+
+/// Triangles that are drawn in layers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum LayerPart {
+    /// Those of the mesh, in the left half.
+    Source,
+    /// Those of a half's chunk.
+    Chunk(SplitSide, usize),
 }
 
 impl Step {
     pub(super) fn half(&self) -> SplitSide {
         match self {
-            Self::Nothing => SplitSide::Right,
             Self::Surface(half, _) | Self::Normals(half, _) => *half,
+            Self::Layer(LayerStep { part: Some(LayerPart::Chunk(half, _)), .. }) => *half,
+            Self::Over | Self::Layer(_) => SplitSide::Right,
         }
     }
 
     pub(super) fn chunk(&self) -> Option<usize> {
         match self {
-            Self::Nothing => None,
             Self::Surface(_, chunk) | Self::Normals(_, chunk) => Some(*chunk),
+            Self::Layer(LayerStep { part: Some(LayerPart::Chunk(_, chunk)), .. }) => Some(*chunk),
+            Self::Over | Self::Layer(_) => None,
         }
     }
 }
 
 /// All steps of a picture, in order.
 pub(super) fn steps(scene: &Scene, settings: &Settings) -> Vec<Step> {
-    let chunks = |half| {
-        let drawn = settings.half(half).and(scene.half(half));
-        (0..drawn.map_or(0, |drawn| drawn.tessellator.chunk_count())).map(move |chunk| (half, chunk))
-    };
+    let drawn = |half| settings.half(half).and(scene.half(half));
+    let chunks =
+        |half| (0..drawn(half).map_or(0, |drawn| drawn.tessellator.chunk_count())).map(move |chunk| (half, chunk));
     let all: Vec<_> = SplitSide::BOTH.into_iter().flat_map(chunks).collect();
-    if all.is_empty() {
-        return vec![Step::Nothing];
+    let mut steps: Vec<_> = all.iter().map(|&(half, chunk)| Step::Surface(half, chunk)).collect();
+    if settings.shows_materials() && has_layers(scene.tessellator.mesh()) {
+        let source = (settings.split.is_some() && drawn(SplitSide::Left).is_none()).then_some(LayerPart::Source);
+        let parts = source.into_iter().chain(all.iter().map(|&(half, chunk)| LayerPart::Chunk(half, chunk)));
+        steps.extend(layer_steps(&parts.collect::<Vec<_>>()));
     }
-    let with_normals = if settings.overlays.normals { all.len() } else { 0 };
-    let surfaces = all.iter().map(|&(half, chunk)| Step::Surface(half, chunk));
-    surfaces.chain(all[..with_normals].iter().map(|&(half, chunk)| Step::Normals(half, chunk))).collect()
+    if settings.overlays.normals {
+        steps.extend(all.iter().map(|&(half, chunk)| Step::Normals(half, chunk)));
+    }
+    if matches!(steps.last(), None | Some(Step::Layer(_))) {
+        steps.push(Step::Over);
+    }
+    steps
+}
+
+fn layer_steps(parts: &[LayerPart]) -> impl Iterator<Item = Step> {
+    let passes = LayerPass::all().filter(|_| !parts.is_empty());
+    passes.flat_map(|pass| {
+        let first = match pass {
+            LayerPass::Begin => None,
+            _ => parts.first().copied(),
+        };
+        let rest = if first.is_some() { &parts[1..] } else { &[] };
+        let step = move |part, is_first| Step::Layer(LayerStep { pass, part, is_first });
+        std::iter::once(step(first, true)).chain(rest.iter().map(move |&part| step(Some(part), false)))
+    })
+}
+
+/// The runs of steps that a device gets at once. A step begins a run if it may have to emit a chunk, or draws one for the first
+/// time.
+pub(super) fn runs(scene: &Scene, steps: &[Step]) -> Vec<Range<usize>> {
+    let has_many = |half| scene.half(half).is_some_and(|half| half.tessellator.chunk_count() > 1);
+    let begins = |index: &usize| match &steps[*index] {
+        Step::Surface(..) | Step::Normals(..) => true,
+        step @ Step::Layer(_) => *index == 0 || (step.chunk().is_some() && has_many(step.half())),
+        Step::Over => *index == 0,
+    };
+    let starts: Vec<_> = (0..steps.len()).filter(begins).collect();
+    let ends = starts.iter().skip(1).copied().chain([steps.len()]);
+    starts.iter().zip(ends).map(|(&start, end)| start..end).collect()
 }
 
 /// The rectangles left and right of the split: x, y, width and height in px.

@@ -1,7 +1,7 @@
 //! The texture that a picture is drawn into.
 
 use super::layout::{linear, srgb};
-use crate::gpu::{Gpu, GpuError, read_texture};
+use crate::gpu::{Gpu, GpuError, Lazy, read_texture};
 
 /// The format in which pictures are drawn and resolved: 8-bit RGBA, encoded as sRGB.
 pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
@@ -20,6 +20,8 @@ pub struct Target {
     resolved_srgb: wgpu::TextureView,
     multisampled: Option<wgpu::TextureView>,
     depth: wgpu::TextureView,
+    /// Made when a picture first has layers: see [`super::layers`].
+    layer_depths: Lazy<[wgpu::TextureView; 2]>,
     /// Whether pictures have no background: where nothing is drawn they are transparent.
     is_transparent: bool,
 }
@@ -59,8 +61,9 @@ impl Target {
         let samples = samples(gpu);
         let multisampled =
             (samples > 1).then(|| view(texture("target.multisampled", COLOR_FORMAT, samples, drawn, &[])));
-        let depth = view(texture("target.depth", DEPTH_FORMAT, samples, drawn, &[]));
-        Ok(Self { size: [width, height], resolved, resolved_srgb, multisampled, depth, is_transparent: false })
+        let depth = depth_view(gpu, "target.depth", [width, height]);
+        let (size, layer_depths, is_transparent) = ([width, height], Lazy::default(), false);
+        Ok(Self { size, resolved, resolved_srgb, multisampled, depth, layer_depths, is_transparent })
     }
 
     /// The same, for pictures that are transparent where nothing is drawn.
@@ -100,19 +103,28 @@ impl Target {
 
     /// The depth attachment for one of several passes. Depth is reversed, so the first clears it to 0, the far end.
     pub fn depth(&self, first: bool) -> wgpu::RenderPassDepthStencilAttachment<'_> {
-        let load = if first { wgpu::LoadOp::Clear(0.0) } else { wgpu::LoadOp::Load };
-        wgpu::RenderPassDepthStencilAttachment {
-            view: &self.depth,
-            depth_ops: Some(wgpu::Operations { load, store: wgpu::StoreOp::Store }),
-            stencil_ops: None,
-        }
+        depth_attachment(&self.depth, first.then_some(0.0))
+    }
+
+    /// The depths that [`Self::depth`] attaches, for shaders that read them.
+    pub(super) fn depths(&self) -> &wgpu::TextureView {
+        &self.depth
+    }
+
+    /// Two more textures of depths, for layers. They are made at the first call.
+    ///
+    /// # Errors
+    /// Out of memory, or a lost device.
+    pub(super) fn layer_depths(&self, gpu: &Gpu) -> Result<&[wgpu::TextureView; 2], GpuError> {
+        self.layer_depths.get_or_make(gpu, || [0, 1].map(|_| depth_view(gpu, "target.layer depth", self.size)))
     }
 
     /// The size of all its textures in bytes.
     pub fn bytes(&self) -> u64 {
         let pixels = u64::from(self.size[0]) * u64::from(self.size[1]);
         let samples = if self.multisampled.is_some() { 4 } else { 1 };
-        pixels * 4 * (1 + samples + if samples > 1 { samples } else { 0 })
+        let layers = if self.layer_depths.is_made() { 2 * samples } else { 0 };
+        pixels * 4 * (1 + samples + if samples > 1 { samples } else { 0 } + layers)
     }
 
     /// Reads the picture back, with straight alpha as PNG files have it. Waits for the device.
@@ -128,6 +140,34 @@ impl Target {
             picture.pixels_mut().for_each(|pixel| pixel.0 = straight(pixel.0));
         }
         Ok(picture)
+    }
+}
+
+/// A texture of depths that can be attached, and read by shaders.
+fn depth_view(gpu: &Gpu, label: &str, [width, height]: [u32; 2]) -> wgpu::TextureView {
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: samples(gpu),
+        dimension: wgpu::TextureDimension::D2,
+        format: DEPTH_FORMAT,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+/// A depth attachment that is first cleared to a depth, or keeps what it has.
+pub(super) fn depth_attachment(
+    view: &wgpu::TextureView,
+    clear: Option<f32>,
+) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    let load = clear.map_or(wgpu::LoadOp::Load, wgpu::LoadOp::Clear);
+    wgpu::RenderPassDepthStencilAttachment {
+        view,
+        depth_ops: Some(wgpu::Operations { load, store: wgpu::StoreOp::Store }),
+        stencil_ops: None,
     }
 }
 

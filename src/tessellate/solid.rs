@@ -5,7 +5,8 @@ use glam::{Mat4, Vec3};
 use super::{Displacement, Edges, Inputs, Surface, beyond_near, side_control_points, straight_control_point};
 use crate::mesh::{Alpha, EdgeKind, Material, Mesh, Topology};
 
-/// A closed mesh whose parts are all wound outward and whose materials are single-sided, without places where they have no surface.
+/// A closed mesh whose parts are all wound outward and whose materials are single-sided, without places where one sees what is
+/// behind them.
 ///
 /// A line of sight that starts outside enters the mesh before it leaves it, so each back face is hidden by a front
 /// face. (If a mesh intersects itself inside out, a back face may come first. Leaving it out then shows what is behind
@@ -24,8 +25,10 @@ pub(crate) struct Solid {
 impl Solid {
     /// Returns the mesh as a solid, or `None` if it isn't one.
     pub(crate) fn find(mesh: &Mesh, topology: &Topology) -> Option<Self> {
-        // Backs can be seen through the holes of a mask.
-        let hides = |material: &Material| !material.double_sided && !matches!(material.look.alpha, Alpha::Mask(_));
+        // Backs can be seen through the holes of a mask, and through what blends or transmits light.
+        let hides = |material: &Material| {
+            !material.double_sided && material.look.alpha == Alpha::Opaque && !material.shows_behind()
+        };
         let are_hidden = mesh.materials.iter().all(hides);
         if !are_hidden || !topology.is_closed_and_oriented() || topology.part_volumes().any(|volume| volume <= 0.0) {
             return None;
@@ -83,7 +86,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::mesh::Shape;
+    use crate::mesh::{Look, Shape};
     use crate::progress::Progress;
     use crate::settings::Settings;
     use crate::tessellate::{LimitSurface, LodView, Tessellation};
@@ -107,6 +110,11 @@ mod tests {
             let mut pierced = mesh.clone();
             pierced.materials[0].look.alpha = Alpha::Mask(0.5);
             assert_eq!(solid(&pierced), None, "{shape:?} with holes in its material");
+            let mut glass = mesh.clone();
+            glass.materials[0].look.alpha = Alpha::Blend;
+            assert_eq!(solid(&glass), None, "{shape:?} that blends");
+            glass.materials[0].look = Look { transmission: 0.5, ..Look::default() };
+            assert_eq!(solid(&glass), None, "{shape:?} that transmits light");
         }
     }
 

@@ -11,7 +11,7 @@ use pnaen::render::dfg::environment_dfg;
 use pnaen::render::environment::{ENVIRONMENT, Environment, LightView};
 use pnaen::render::irradiance::{irradiance, irradiance_of};
 use pnaen::render::reflectance::{
-    AmbientLight, LookAt, coat_albedo, direct_reflection, dominant_direction, reflect_ambient,
+    AmbientLight, LookAt, coat_albedo, direct_reflection, dominant_direction, reflect_ambient, transmitted,
 };
 use pnaen::render::studio::studio_light;
 use pnaen::render::tone::{TONE_CURVE_NEUTRAL, TONE_CURVE_NONE, tone_mapped};
@@ -36,6 +36,7 @@ struct Found {
     irradiance: vec3<f32>,
     radiance: vec3<f32>,
     dfg: vec2<f32>,
+    through: vec3<f32>,
 }
 
 @group(0) @binding(0) var<storage, read> cases: array<Case>;
@@ -55,6 +56,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     found.irradiance = environment_irradiance(one.normal);
     found.radiance = environment_radiance(one.normal, one.look.roughness);
     found.dfg = environment_dfg(dot(one.normal, one.to_eye), one.look.roughness);
+    found.through = transmitted_through(one.look, one.normal, one.to_eye);
     results[id.x] = found;
 }
 ";
@@ -79,6 +81,7 @@ struct Found {
     radiance: Vec4,
     dfg: Vec2,
     _pad: Vec2,
+    through: Vec4,
 }
 
 /// Runs the shader over all cases under an environment, which is neither turned nor exposed.
@@ -152,6 +155,8 @@ fn cases(count: usize) -> Vec<Case> {
             coat_roughness: unit(),
             ior: 1.0 + unit(),
             occlusion: [1.0, unit()][index / 2 % 2],
+            transmission: [0.0, unit()][index / 4 % 2],
+            ..LookAt::default()
         };
         Case { look, normal: normal.extend(0.0), to_eye: to_eye.extend(0.0), to_light: to_light.extend(0.0) }
     };
@@ -208,7 +213,7 @@ fn shaders_light_as_their_twins_do() {
     let view = LightView { rotation: 40.0, exposure: -0.5, tone_curve: TONE_CURVE_NEUTRAL };
     let twin = Twin::studio(view.rotation);
     let cases = cases(2000);
-    let mut most = [0.0_f32; 7];
+    let mut most = [0.0_f32; 8];
     for (case, found) in cases.iter().zip(run_in(&environment, &view, &cases)) {
         let [normal, to_eye, to_light] = [case.normal, case.to_eye, case.to_light].map(Vec4::truncate);
         let light = twin.ambient_light(case);
@@ -223,11 +228,12 @@ fn shaders_light_as_their_twins_do() {
             off(found.irradiance.truncate(), light.diffuse),
             off(found.radiance.truncate(), twin.radiance(normal, case.look.roughness)),
             (found.dfg - light.dfg).abs().max_element(),
+            off(found.through.truncate(), transmitted(&case.look, light.dfg, light.coat_dfg)),
         ];
         most = std::array::from_fn(|index| most[index].max(offs[index]));
     }
     println!("{most:?}");
-    let allowed = [0.02, 0.004, 1e-3, 1e-5, 1e-5, 0.02, 0.004];
+    let allowed = [0.02, 0.004, 1e-3, 1e-5, 1e-5, 0.02, 0.004, 0.004];
     assert!(most.iter().zip(allowed).all(|(most, allowed)| *most <= allowed), "{most:?}");
 }
 
@@ -241,7 +247,9 @@ fn white_surfaces_cannot_be_seen_in_a_white_room() {
     };
     let cases: Vec<Case> = cases(1000).into_iter().map(white).collect();
     for (case, found) in cases.iter().zip(run(&environment, &cases)) {
-        assert!(found.ambient.distance(Vec3::ONE) < 0.01, "{case:?}: {}", found.ambient);
+        // What is seen through them is white, too.
+        let seen = found.ambient + found.through.truncate();
+        assert!(seen.distance(Vec3::ONE) < 0.01, "{case:?}: {seen}");
     }
 }
 

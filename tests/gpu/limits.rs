@@ -5,10 +5,10 @@ use std::sync::Arc;
 use pnaen::engine::Engine;
 use pnaen::gpu::{Gpu, GpuError, Timing, best_adapter};
 use pnaen::load::{Budget, HeightSource};
-use pnaen::mesh::Shape;
+use pnaen::mesh::{Alpha, Shape};
 use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene, Target};
-use pnaen::settings::{ARENA_BYTES, Colors, Overlays, Settings};
+use pnaen::settings::{ARENA_BYTES, Colors, NormalsAt, Overlays, Settings};
 use pnaen::tessellate::{Clip, Displacement, Lod, Normals, Surface, Tessellation};
 
 use crate::gpu_tests::{engine, loaded};
@@ -97,6 +97,23 @@ fn heights_need_no_more_either() {
         seen(engine, &mut scene, &settings).expect("a picture")
     });
     assert!(expected == found);
+}
+
+#[test]
+fn layers_need_no_more_either() {
+    let small = small(None);
+    let mut mesh = loaded(Shape::Torus);
+    let own = &mut Arc::make_mut(&mut mesh.mesh).materials[0];
+    (own.look.alpha, own.look.transmission, own.base_color[3]) = (Alpha::Blend, 0.5, 0.5);
+    let overlays = Overlays { wireframe: true, folds: true, normals: true, grid: true, ..Overlays::default() };
+    for overlays in [Overlays::default(), overlays] {
+        let settings = Settings { overlays, normals_at: NormalsAt::Pixels, split: Some(0.3), ..Settings::opening() };
+        let [expected, found] = [engine(), &small].map(|engine| {
+            let mut scene = engine.scene(&mesh, ARENA_BYTES).expect("shapes are small");
+            seen(engine, &mut scene, &settings).expect("a picture")
+        });
+        assert!(expected == found, "{overlays:?}");
+    }
 }
 
 #[test]

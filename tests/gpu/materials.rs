@@ -21,16 +21,16 @@ use crate::gpu_tests::pictures::differing;
 use crate::gpu_tests::stability::{scene_of, seen};
 
 /// The sides of pictures of a square in px.
-const SIDE: u32 = 64;
+pub(super) const SIDE: u32 = 64;
 
 /// Flat patches in studio light, whose colours aren't changed by a tone curve.
-fn studio() -> Settings {
+pub(super) fn studio() -> Settings {
     let tessellation = Tessellation { surface: Surface::Flat, factor: 3.0, ..Tessellation::default() };
     Settings { lighting: Lighting::Studio, tone_curve: ToneCurve::None, ..Settings::from(tessellation) }
 }
 
 /// Every way in which the surface is drawn, each with a shader of its own.
-fn every_way(settings: Settings) -> [Settings; 5] {
+pub(super) fn every_way(settings: Settings) -> [Settings; 5] {
     let with = |overlays| Settings { overlays, ..settings };
     [
         settings,
@@ -59,16 +59,16 @@ fn picture(mesh: &Mesh, settings: &Settings, azimuth: f32) -> RgbaImage {
 }
 
 /// The colour at a place of a square's texture coordinates.
-fn at(picture: &RgbaImage, uv: [f32; 2]) -> [u8; 3] {
+pub(super) fn at(picture: &RgbaImage, uv: [f32; 2]) -> [u8; 3] {
     let [x, y] = uv.map(|part| (part * SIDE as f32) as u32);
     let [r, g, b, _] = picture.get_pixel(x, y).0;
     [r, g, b]
 }
 
 /// Places that no line of an overlay comes near.
-const PLACES: [[f32; 2]; 4] = [[0.2, 0.45], [0.4, 0.12], [0.62, 0.87], [0.9, 0.6]];
+pub(super) const PLACES: [[f32; 2]; 4] = [[0.2, 0.45], [0.4, 0.12], [0.62, 0.87], [0.9, 0.6]];
 
-fn assert_near(found: [u8; 3], expected: [u8; 3], most: u8, what: &str) {
+pub(super) fn assert_near(found: [u8; 3], expected: [u8; 3], most: u8, what: &str) {
     let is_near = found.iter().zip(expected).all(|(a, b)| a.abs_diff(b) <= most);
     assert!(is_near, "{what}: {found:?}, not {expected:?}");
 }
@@ -88,23 +88,23 @@ fn assert_same(found: &Mesh, expected: &Mesh, what: &str) {
 }
 
 /// A material with this look.
-fn material(base_color: [f32; 3], look: Look) -> Material {
+pub(super) fn material(base_color: [f32; 3], look: Look) -> Material {
     let [r, g, b] = base_color;
     Material { look, double_sided: true, ..Material::plain("material", [r, g, b, 1.0]) }
 }
 
 /// An image of a few pixels.
-fn image(size: [u32; 2], pixels: &[[u8; 4]]) -> Arc<Texture> {
+pub(super) fn image(size: [u32; 2], pixels: &[[u8; 4]]) -> Arc<Texture> {
     Arc::new(Texture { size, rgba: pixels.concat() })
 }
 
 /// A map whose texels aren't blended.
-fn map(texture: Arc<Texture>, uv: MapUv) -> Map {
+pub(super) fn map(texture: Arc<Texture>, uv: MapUv) -> Map {
     let sampling = Sampling { magnify_linear: false, minify_linear: false, mip_linear: None, ..Sampling::default() };
     Map { texture, uv, sampling }
 }
 
-fn look_with(slot: Slot, map: Map, look: Look) -> Look {
+pub(super) fn look_with(slot: Slot, map: Map, look: Look) -> Look {
     let mut look = look;
     look.maps[slot as usize] = Some(map);
     look
@@ -258,7 +258,7 @@ fn the_light_turns_with_its_rotation_alone() {
 }
 
 /// Balls side by side, one for each of these materials, in rows of `across`. Texture coordinates are those of the shape.
-fn balls(materials: Vec<Material>, across: usize) -> Mesh {
+pub(super) fn balls(materials: Vec<Material>, across: usize) -> Mesh {
     let ball = Shape::Icosphere.build();
     let mut builder = MeshBuilder::new();
     for (index, material) in materials.into_iter().enumerate() {
@@ -275,7 +275,7 @@ fn balls(materials: Vec<Material>, across: usize) -> Mesh {
     builder.finish("balls".to_owned(), &Progress::default()).expect("nobody cancels")
 }
 
-fn of_picture(tone_curve: ToneCurve) -> Settings {
+pub(super) fn of_picture(tone_curve: ToneCurve) -> Settings {
     let tessellation = Tessellation { surface: Surface::PnAen, factor: 6.0, ..Tessellation::default() };
     Settings { lighting: Lighting::Studio, tone_curve, ..Settings::from(tessellation) }
 }

@@ -12,6 +12,7 @@ mod displacement;
 mod domain;
 mod embed;
 mod error;
+mod layers;
 mod light;
 mod limits;
 mod lines;

@@ -1,5 +1,5 @@
 //! Writes materials with their images. Vertices have the texture coordinates of the base colour alone, so that maps with others are left
-//! out, and so are colours of vertices and the numbers of extensions.
+//! out, and so are colours of vertices and the numbers of extensions other than KHR_materials_transmission.
 
 use std::io::Cursor;
 use std::sync::Arc;
@@ -37,7 +37,8 @@ impl Writer {
         for (map, index) in look.maps.iter().zip(&mut maps) {
             *index = map.as_ref().filter(has_own_uv).map(|map| texture(&map.texture, map.sampling)).transpose()?;
         }
-        let [metallic_roughness, normal, occlusion, emissive] = maps;
+        let [metallic_roughness, normal, occlusion, emissive, transmission] = maps;
+        let extensions = look.transmits().then(|| self.transmission(look, transmission));
         Ok(self.root.push(json::Material {
             name: Some(material.name.clone()),
             double_sided: material.double_sided,
@@ -71,8 +72,27 @@ impl Writer {
             emissive_texture: emissive.map(info),
             // What is beyond 1 would need an extension.
             emissive_factor: json::material::EmissiveFactor(look.emissive.map(|part| part.clamp(0.0, 1.0))),
+            extensions,
             ..Default::default()
         }))
+    }
+
+    /// Returns the extension for light that goes through, and names it in the document.
+    fn transmission(
+        &mut self,
+        look: &Look,
+        texture: Option<Index<json::Texture>>,
+    ) -> json::extensions::material::Material {
+        let name = "KHR_materials_transmission";
+        if !self.root.extensions_used.iter().any(|used| used == name) {
+            self.root.extensions_used.push(name.to_owned());
+        }
+        let transmission = json::extensions::material::Transmission {
+            transmission_factor: json::extensions::material::TransmissionFactor(look.transmission),
+            transmission_texture: texture.map(info),
+            extras: Default::default(),
+        };
+        json::extensions::material::Material { transmission: Some(transmission) }
     }
 
     /// Returns the texture for an image that is sampled in a way.

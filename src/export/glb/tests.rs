@@ -58,6 +58,7 @@ fn a_material_comes_back_with_its_numbers_and_maps() {
                 own(&normals, sampling),
                 own(&numbers, Sampling::default()),
                 None,
+                None,
             ],
             ..Look::default()
         },
@@ -80,4 +81,23 @@ fn a_material_comes_back_with_its_numbers_and_maps() {
     let shared =
         [got.texture.as_ref(), got.look.maps[0].as_ref().map(|map| &map.texture)].map(|image| image.map(Arc::as_ptr));
     assert_eq!(shared[0], shared[1], "an image is written once");
+}
+
+#[test]
+fn what_blends_and_what_transmits_light_come_back() {
+    let mut mesh = Shape::Torus.build();
+    mesh.materials[0].look.alpha = Alpha::Blend;
+    mesh.materials[0].base_color = [0.25, 0.5, 0.75, 0.5];
+    let read = read_back(&mesh);
+    assert_eq!((read.materials[0].look.alpha, read.materials[0].base_color), (Alpha::Blend, [0.25, 0.5, 0.75, 0.5]));
+    assert_eq!(read.materials[0].look.transmission, 0.0);
+    let image = Arc::new(Texture { size: [1, 1], rgba: vec![77; 4] });
+    let map = Map { texture: image, uv: MapUv::Own, sampling: Sampling::default() };
+    let mut look = Look { transmission: 0.625, roughness: 0.0, ..Look::default() };
+    look.maps[Slot::Transmission as usize] = Some(map);
+    mesh.materials[0].look = look;
+    let read = read_back(&mesh).materials.remove(0).look;
+    assert_eq!((read.alpha, read.transmission), (Alpha::Opaque, 0.625));
+    let map = read.maps[Slot::Transmission as usize].as_ref().expect("a map");
+    assert_eq!((&map.texture.rgba, map.uv), (&vec![77; 4], MapUv::Own));
 }

@@ -1,7 +1,8 @@
 //! Reads what a document says about a material, without its images.
 //!
 //! Sources: glTF 2.0 specification, section 3.9; Khronos' extensions KHR_materials_clearcoat, KHR_materials_emissive_strength,
-//! KHR_materials_ior, KHR_materials_specular, KHR_materials_unlit and KHR_materials_pbrSpecularGlossiness.
+//! KHR_materials_ior, KHR_materials_specular, KHR_materials_transmission, KHR_materials_unlit and
+//! KHR_materials_pbrSpecularGlossiness.
 
 use super::lenient::Members;
 use super::schema::TRANSFORM;
@@ -38,6 +39,8 @@ pub(super) struct Uvs {
     pub set: u32,
     pub transform: Option<UvTransform>,
 }
+
+const TRANSMISSION: &str = "KHR_materials_transmission";
 
 /// From 0 to 1.
 const UNIT: [f32; 2] = [0.0, 1.0];
@@ -117,6 +120,10 @@ impl MaterialSource {
             look.clearcoat_roughness = coat.number("clearcoatRoughnessFactor", 0.0, UNIT);
         }
         look.unlit = extensions.has("KHR_materials_unlit");
+        if let Some(transmission) = extensions.inside(TRANSMISSION) {
+            look.transmission = transmission.number("transmissionFactor", 0.0, UNIT);
+            self.map(Slot::Transmission, MapSource::of(&transmission, "transmissionTexture", textures));
+        }
         if let Some(glossy) = extensions.inside("KHR_materials_pbrSpecularGlossiness") {
             self.glossy(&glossy, textures);
         }
@@ -144,6 +151,12 @@ impl MaterialSource {
                 "KHR_materials_specular" => &["specularTexture", "specularColorTexture"],
                 "KHR_materials_pbrSpecularGlossiness" => &["specularGlossinessTexture"],
                 "KHR_materials_emissive_strength" | "KHR_materials_ior" | "KHR_materials_unlit" => &[],
+                TRANSMISSION => {
+                    if self.look.transmits() && self.look.roughness > 0.0 {
+                        self.undrawn.push(format!("blur of what is behind rough surfaces ({TRANSMISSION})"));
+                    }
+                    continue;
+                }
                 _ => {
                     self.undrawn.push(crate::load::uri::shown(name));
                     continue;

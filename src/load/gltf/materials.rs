@@ -18,7 +18,7 @@ use crate::load::images::decode_texture;
 use crate::load::memory_budget::Budget;
 use crate::load::uri::Files;
 use crate::mesh::mesh_builder::MeshBuilder;
-use crate::mesh::{Alpha, Look, Map, MapUv, Material, MemoryAccount, MemoryRefused, Sampling, Slot, Texture};
+use crate::mesh::{Look, Map, MapUv, Material, MemoryAccount, MemoryRefused, Sampling, Slot, Texture};
 
 /// How many materials a sentence names.
 const NAMED: usize = 3;
@@ -112,9 +112,6 @@ impl<'a> Materials<'a> {
         for undrawn in &source.undrawn {
             self.undrawn.entry(undrawn.clone()).or_default().add(&name);
         }
-        if source.look.alpha == Alpha::Blend {
-            self.undrawn.entry(BLEND.to_owned()).or_default().add(&name);
-        }
         self.sources.insert(index, source);
         Ok(())
     }
@@ -206,15 +203,10 @@ impl<'a> Materials<'a> {
     /// Returns what was repaired or left out.
     pub(super) fn into_notes(self) -> Notes {
         let mut notes = self.notes.into_inner();
-        notes.extend(self.undrawn.into_iter().map(|(what, materials)| {
-            let verb = if what == BLEND { "is drawn opaque" } else { "isn't drawn" };
-            format!("{what} {verb}; {materials}.")
-        }));
+        notes.extend(self.undrawn.into_iter().map(|(what, materials)| format!("{what} isn't drawn; {materials}.")));
         notes
     }
 }
-
-const BLEND: &str = "alphaMode BLEND";
 
 impl Resolved {
     fn of(index: usize, uvs: Uvs, look: Option<&Look>) -> Self {
@@ -256,6 +248,7 @@ fn slot_name(slot: Slot) -> &'static str {
         Slot::Normal => "normal map",
         Slot::Occlusion => "occlusion map",
         Slot::Emissive => "emissive map",
+        Slot::Transmission => "transmission map",
     }
 }
 

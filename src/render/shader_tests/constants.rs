@@ -16,10 +16,11 @@ use crate::render::coverage::TILE;
 use crate::render::dfg::DFG_SIZE;
 use crate::render::layout::{
     AXIS_COLORS, BACK_FACE_COLOR, CHECKER_LIGHT, CHECKER_LINE, CHECKER_U, CHECKER_V, FOLD_COLOR, FOUND_EMITTED,
-    NORMAL_COLOR, TEXELS_WITHOUT_IMAGE, WASTE_COLOR, edge_color, linear, overlay_bits,
+    LEAST_SEEN, NORMAL_COLOR, TEXELS_WITHOUT_IMAGE, WASTE_COLOR, edge_color, linear, overlay_bits,
 };
 use crate::render::look::Look;
 use crate::render::matcap::MATCAP_REACH;
+use crate::render::pipelines::LayerDraw;
 use crate::render::reflectance::{COAT_F0, LEAST_ALPHA};
 use crate::render::scale::Scale;
 use crate::render::tone::{COMPRESSION_START, DESATURATION, TONE_CURVE_NEUTRAL, TONE_CURVE_NONE};
@@ -114,6 +115,7 @@ fn table() -> Vec<(&'static str, Expected)> {
         ("DESATURATION", number(DESATURATION)),
         ("COAT_F0", number(COAT_F0)),
         ("LEAST_ALPHA", number(LEAST_ALPHA)),
+        ("LEAST_SEEN", number(LEAST_SEEN)),
         ("SCALE_STOPS", number(Scale::STOPS as u32)),
         ("FOUND_EMITTED", number(FOUND_EMITTED)),
         ("OVERLAY_WIREFRAME", overlay(Overlays { wireframe: true, ..none })),
@@ -262,6 +264,10 @@ fn of_enums() -> Vec<(&'static str, Expected)> {
         ("SLOT_NORMAL", number(Slot::Normal as u32)),
         ("SLOT_OCCLUSION", number(Slot::Occlusion as u32)),
         ("SLOT_EMISSIVE", number(Slot::Emissive as u32)),
+        ("SLOT_TRANSMISSION", number(Slot::Transmission as u32)),
+        ("LAYER_OVER", number(LayerDraw::Over as u32)),
+        ("LAYER_FILTER", number(LayerDraw::Filter as u32)),
+        ("LAYER_ADD", number(LayerDraw::Add as u32)),
         ("MAP_COUNT", number(Slot::COUNT as u32)),
     ]
 }

@@ -118,6 +118,7 @@ fn shared_structs_have_the_same_layout() {
         coat_roughness,
         ior,
         occlusion,
+        transmission,
     });
     same!(PrefilterParams { roughness, sample_count, size, source_size });
     same!(CoverageView { clip_from_object, slack, viewport, sample_count, fronts_only, snap });
@@ -135,6 +136,8 @@ fn shared_structs_have_the_same_layout() {
         occlusion_strength,
         cutoff,
         unlit,
+        blends,
+        transmission,
         maps,
     });
     same!(MapPlace { u, v });

@@ -87,6 +87,7 @@ fn all_numbers_are_read() {
             "KHR_materials_emissive_strength": { "emissiveStrength": 8 }, "KHR_materials_ior": { "ior": 1.25 },
             "KHR_materials_specular": { "specularFactor": 0.5, "specularColorFactor": [1, 2, 3] },
             "KHR_materials_clearcoat": { "clearcoatFactor": 0.5, "clearcoatRoughnessFactor": 0.25 },
+            "KHR_materials_transmission": { "transmissionFactor": 0.375, "transmissionTexture": { "index": 0 } },
             "KHR_materials_unlit": {},
         },
     }));
@@ -96,6 +97,7 @@ fn all_numbers_are_read() {
     assert_eq!((look.normal_scale, look.occlusion_strength, look.alpha), (-2.0, 0.125, Alpha::Mask(0.25)));
     assert_eq!((look.ior, look.specular, look.specular_color, look.unlit), (1.25, 0.5, [1.0, 2.0, 3.0], true));
     assert_eq!((look.clearcoat, look.clearcoat_roughness), (0.5, 0.25));
+    assert_eq!((look.transmission, look.maps[Slot::Transmission as usize].is_some()), (0.375, true));
     let cut = material(json!({ "alphaMode": "MASK" })).look.alpha;
     assert_eq!(cut, Alpha::Mask(0.5));
 }
@@ -319,8 +321,21 @@ fn broken_materials_are_repaired_and_told() {
         (json!({ "normalTexture": { "index": 0, "scale": [] } }), "normalTexture/scale is a list of 0, not a number"),
         (json!({ "extensions": { "KHR_materials_ior": { "ior": 0.5 } } }), "index of refraction 0.5"),
         (
-            json!({ "alphaMode": "BLEND", "name": "glass" }),
-            "alphaMode BLEND is drawn opaque; material \"glass\" has it.",
+            json!({ "extensions": { "KHR_materials_transmission": { "transmissionFactor": 1.5 } },
+                "pbrMetallicRoughness": { "roughnessFactor": 0 } }),
+            "/materials/0/extensions/KHR_materials_transmission/transmissionFactor is 1.5, but must be at most 1.0; 1 is used",
+        ),
+        (
+            json!({ "extensions": { "KHR_materials_transmission": { "transmissionFactor": "all" } } }),
+            "transmissionFactor is \"all\", not a number; 0 is used",
+        ),
+        (
+            json!({ "name": "frosted", "extensions": { "KHR_materials_transmission": { "transmissionFactor": 1 } } }),
+            "blur of what is behind rough surfaces (KHR_materials_transmission) isn't drawn; material \"frosted\" has it.",
+        ),
+        (
+            json!({ "name": "jar", "extensions": { "KHR_materials_volume": { "thicknessFactor": 1 } } }),
+            "KHR_materials_volume isn't drawn; material \"jar\" has it.",
         ),
         (
             json!({ "name": "silk", "extensions": { "KHR_materials_sheen": {} } }),

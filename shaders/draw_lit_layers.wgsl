@@ -1,0 +1,43 @@
+// Draws layers of surfaces with nothing on them but their materials: draw_lit.wgsl draws what hides everything behind it.
+
+@fragment
+fn lit_depth_fragment(
+    in: LitVaryings,
+    @builtin(front_facing) front: bool,
+    @builtin(sample_index) sample: u32,
+) -> @builtin(frag_depth) f32 {
+    // Neither the normal nor the eye matters.
+    let place = surface_place(in.uv, in.weights, in.patch_index, in.normal, front, in.normal);
+    if !is_beyond_last(in.clip, sample) || !shows_behind(place) {
+        discard;
+    }
+    return in.clip.z;
+}
+
+fn lit_layer(in: LitVaryings, normal: vec3<f32>, front: bool, sample: u32) -> vec4<f32> {
+    let to_eye = toward_eye(lit_frame.clip_from_object, lit_frame.viewport, in.clip.xy);
+    let place = surface_place(in.uv, in.weights, in.patch_index, normal, front, to_eye);
+    // Derivatives are known by now, so that what isn't shown needn't be lit.
+    if !is_last(in.clip, sample) {
+        discard;
+    }
+    return layer_output(material_seen(place));
+}
+
+@fragment
+fn lit_layer_fragment(
+    in: LitVaryings,
+    @builtin(front_facing) front: bool,
+    @builtin(sample_index) sample: u32,
+) -> @location(0) vec4<f32> {
+    return lit_layer(in, normalize(in.normal), front, sample);
+}
+
+@fragment
+fn pixel_lit_layer_fragment(
+    in: LitVaryings,
+    @builtin(front_facing) front: bool,
+    @builtin(sample_index) sample: u32,
+) -> @location(0) vec4<f32> {
+    return lit_layer(in, pixel_normal(in.patch_index, in.weights), front, sample);
+}

@@ -1,0 +1,44 @@
+// Draws layers of surfaces with overlays: draw_surface.wgsl draws what hides everything behind it.
+
+@fragment
+fn surface_depth_fragment(
+    in: Varyings,
+    @builtin(front_facing) front: bool,
+    @builtin(sample_index) sample: u32,
+) -> @builtin(frag_depth) f32 {
+    // Neither the normal nor the eye matters.
+    let place = surface_place(in.uv, in.domain.xy, in.patch_index, in.normal, front, in.normal);
+    if !is_beyond_last(in.clip, sample) || !shows_behind(place) {
+        discard;
+    }
+    return in.clip.z;
+}
+
+fn surface_layer(in: Varyings, normal: vec3<f32>, front: bool, sample: u32) -> vec4<f32> {
+    let to_eye = toward_eye(frame.clip_from_object, frame.viewport, in.clip.xy);
+    let own = material_seen(surface_place(in.uv, in.domain.xy, in.patch_index, normalize(normal), front, to_eye));
+    // Lines and marks aren't seen through.
+    let color = surface_color(in, normal, front, vec4<f32>(own.color, 1.0));
+    if !is_last(in.clip, sample) {
+        discard;
+    }
+    return layer_output(Seen(color.rgb, own.behind * (1.0 - color.a)));
+}
+
+@fragment
+fn surface_layer_fragment(
+    in: Varyings,
+    @builtin(front_facing) front: bool,
+    @builtin(sample_index) sample: u32,
+) -> @location(0) vec4<f32> {
+    return surface_layer(in, in.normal, front, sample);
+}
+
+@fragment
+fn pixel_surface_layer_fragment(
+    in: Varyings,
+    @builtin(front_facing) front: bool,
+    @builtin(sample_index) sample: u32,
+) -> @location(0) vec4<f32> {
+    return surface_layer(in, pixel_normal(in.patch_index, in.domain.xy), front, sample);
+}
