@@ -5,6 +5,8 @@ override HAS_MAPS: bool = true;
 override HAS_DETAILS: bool = true;
 override HAS_COAT: bool = true;
 override HAS_MASK: bool = true;
+// Lights of the file that shine.
+override LIGHT_COUNT: u32 = MOST_LIGHTS;
 
 // One element for each corner, if HAS_DETAILS.
 @group(0) @binding(9) var<storage, read> corner_details: array<CornerDetail>;
@@ -19,6 +21,7 @@ override HAS_MASK: bool = true;
 @group(1) @binding(8) var occlusion_sampler: sampler;
 @group(1) @binding(9) var emissive_texture: texture_2d<f32>;
 @group(1) @binding(10) var emissive_sampler: sampler;
+@group(1) @binding(20) var<uniform> lights: array<PunctualLight, MOST_LIGHTS>;
 
 // The order of Material.maps.
 const SLOT_METALLIC_ROUGHNESS: u32 = 0u;
@@ -50,6 +53,8 @@ struct SurfacePlace {
     normal: vec3<f32>,
     front: bool,
     to_eye: vec3<f32>,
+    // In object space, if LIGHT_COUNT isn't 0.
+    position: vec3<f32>,
 }
 
 // CornerDetail in the middle of a pixel, and how its texture coordinates change.
@@ -69,6 +74,7 @@ fn surface_place(
     normal: vec3<f32>,
     front: bool,
     to_eye: vec3<f32>,
+    position: vec3<f32>,
 ) -> SurfacePlace {
     let right = dpdx(weights);
     let below = dpdy(weights);
@@ -81,6 +87,7 @@ fn surface_place(
         normal,
         front,
         to_eye,
+        position,
     );
 }
 
@@ -171,6 +178,16 @@ fn look_at(place: SurfacePlace, detail: PlaceDetail, base: vec3<f32>) -> LookAt 
     return look;
 }
 
+// Radiance towards the eye of what the lights of the file shine on.
+fn lights_reflection(look: LookAt, normal: vec3<f32>, place: SurfacePlace) -> vec3<f32> {
+    var sum = vec3<f32>(0.0);
+    for (var i = 0u; i < LIGHT_COUNT; i++) {
+        let light = direct_light(lights[i], place.position);
+        sum += light.illuminance * direct_reflection(look, normal, place.to_eye, light.to_light);
+    }
+    return sum;
+}
+
 // The colour that a picture shows of a place, in linear light, and 0 in place of 1 where the material has no surface.
 fn material_color(place: SurfacePlace) -> vec4<f32> {
     let detail = place_detail(place);
@@ -187,7 +204,10 @@ fn material_color(place: SurfacePlace) -> vec4<f32> {
     }
     // From behind, all of the relief is seen the other way round (section 3.9.5).
     normal = select(-normal, normal, place.front);
-    let radiance = ambient_reflection(look, normal, place.to_eye) + emitted * coat_transmission(look, place.to_eye);
+    var radiance = ambient_reflection(look, normal, place.to_eye) + emitted * coat_transmission(look, place.to_eye);
+    if LIGHT_COUNT > 0u {
+        radiance += lights_reflection(look, normal, place);
+    }
     let color = select(exposed(radiance), base.rgb, material.unlit > 0.5);
     let is_there = !HAS_MASK || base.a >= material.cutoff;
     return vec4<f32>(color, f32(is_there));

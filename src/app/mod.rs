@@ -29,6 +29,7 @@ use dialogs::Dialogs;
 use history::{History, ViewHistory};
 use jobs::Jobs;
 use jobs::document::Document;
+use jobs::environment_job::OpenEnvironment;
 use jobs::given_factors::GivenFactors;
 use jobs::truth::ChosenTruth;
 use panels::{FACTS_WIDTH, Panels, SETTINGS_WIDTH};
@@ -51,6 +52,8 @@ pub struct App {
     truth: Option<ChosenTruth>,
     /// Factors of a file in place of those of LOD, if there are any.
     given: Option<GivenFactors>,
+    /// The file of light that is open, if one is.
+    environment: Option<OpenEnvironment>,
     viewport: Viewport,
     panels: Panels,
     jobs: Jobs,
@@ -78,6 +81,7 @@ impl App {
             document: None,
             truth: None,
             given: None,
+            environment: None,
             panels: Panels::default(),
             jobs: Jobs { limits, ..Jobs::default() },
             dialogs: Dialogs::default(),
@@ -170,7 +174,10 @@ impl App {
 
     /// Whether something is still being loaded, drawn or measured.
     pub fn is_busy(&self) -> bool {
-        let loads = self.jobs.load.is_some() || self.jobs.truth_load.is_some() || self.jobs.factors.is_some();
+        let loads = self.jobs.load.is_some()
+            || self.jobs.truth_load.is_some()
+            || self.jobs.environment.is_some()
+            || self.jobs.factors.is_some();
         let measures = self.jobs.measure.is_busy()
             || self.jobs.leaks.is_busy()
             || self.jobs.deviation.is_busy()
@@ -220,6 +227,7 @@ impl eframe::App for App {
         self.take_loaded(context);
         self.take_truth();
         self.take_factors(context);
+        self.take_environment();
         self.take_checks();
         self.take_explained();
         self.take_dialog(context);

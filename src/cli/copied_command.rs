@@ -10,7 +10,7 @@ use crate::engine::Preparation;
 use crate::files::Limits;
 use crate::load::{HeightSource, Source};
 use crate::render::Camera;
-use crate::settings::{Declaration, Settings, Value, options};
+use crate::settings::{Declaration, Lighting, Settings, Value, options};
 use crate::tessellate::{Displacement, Tessellation};
 
 /// What a window shows, and from where.
@@ -30,6 +30,8 @@ pub(crate) struct CopiedCommand<'a> {
     pub truth: Option<&'a Source>,
     /// The file whose factors take the place of those of LOD.
     pub factors: Option<&'a Path>,
+    /// The file that the light comes from.
+    pub environment: Option<&'a Path>,
     /// The selected triangle's number in the mesh, from 0.
     pub triangle: Option<u32>,
     /// Whether nothing is behind the mesh, rather than the background's colour.
@@ -115,10 +117,14 @@ impl CopiedCommand<'_> {
         }
     }
 
-    /// Writes the file of factors, the reference surface, the selection, the pose and the camera.
+    /// Writes the files of factors and of light, the reference surface, the selection, the pose and the camera.
     fn view(&self, line: &mut Line) {
         if let Some(path) = self.factors {
             line.option("--factors", named(&Source::File(path.to_owned())));
+        }
+        let uses_file = self.settings.lighting == Lighting::Environment && self.settings.shows_materials();
+        if let Some(path) = self.environment.filter(|_| uses_file) {
+            line.option("--environment", named(&Source::File(path.to_owned())));
         }
         if let (Some(truth), None) = (self.truth, self.animation) {
             line.option("--truth", named(truth));
@@ -218,7 +224,7 @@ mod tests {
 
     use super::*;
     use crate::cli::options::PictureOptions;
-    use crate::cli::{Cli, Command, render};
+    use crate::cli::{Cli, CliError, Command, render};
     use crate::mesh::Bounds;
     use crate::settings::random;
 
@@ -255,6 +261,7 @@ mod tests {
             animation: None,
             truth: None,
             factors: None,
+            environment: None,
             triangle: None,
             transparent: false,
             legend: false,
@@ -325,6 +332,24 @@ mod tests {
         let args = parsed(&CopiedCommand { transparent: true, legend: true, output, ..shown }.line());
         assert_eq!((args.shot.transparent, args.shot.legend, args.shot.picture.0.background), (true, true, None));
         assert_eq!(args.output, Path::new("./-odd name.png"));
+    }
+
+    #[test]
+    fn the_file_of_the_light_is_written_while_it_is_used() {
+        let (source, preparation) = ("shape:torus".parse().expect("a shape"), Preparation::default());
+        let (settings, camera) = (Settings { lighting: Lighting::Environment, ..Settings::default() }, camera());
+        let environment = Some(Path::new("-sky.hdr"));
+        let shown = CopiedCommand { environment, ..shown(&source, &preparation, &settings, &camera) };
+        let args = parsed(&shown.line());
+        assert_eq!(args.shot.environment.as_deref(), Some(Path::new("./-sky.hdr")));
+        assert_eq!(args.shot.picture.0.lighting, Lighting::Environment);
+        let settings = Settings { lighting: Lighting::Studio, ..settings };
+        let line = CopiedCommand { settings: &settings, ..shown }.line();
+        assert!(!line.contains("--environment"), "{line}");
+        let implied = parsed("pnaen render shape:torus -o a.png --environment sky.hdr").shot;
+        assert_eq!(implied.picture.0.lighting, Lighting::Environment);
+        let other = parsed("pnaen render shape:torus -o a.png --environment sky.hdr --lighting studio").shot;
+        assert!(other.check(&source, None, &[]).is_err_and(|error| matches!(error, CliError::Usage(_))));
     }
 
     #[test]

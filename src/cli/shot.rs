@@ -12,6 +12,7 @@ use super::truth::{AccuracyStats, DeviationStats, ReferenceSurface};
 use super::{CliError, to_json, write_text};
 use crate::engine::{Engine, Loaded, MeasurementResults, Measurements, Runs};
 use crate::gpu::{GpuError, Recorder, Timing};
+use crate::load::panorama::Panorama;
 use crate::measure::{AccuracyOptions, DeviationField, patch_edges};
 use crate::mesh::{Moment, t_junctions};
 use crate::progress::Progress;
@@ -30,6 +31,8 @@ pub(crate) struct Subject {
     pub moment: Option<Moment>,
     /// Factors of a file in place of those that LOD computes, one for each patch.
     pub given: Option<Vec<HullFactors>>,
+    /// The light of a file that is still to be uploaded, if the scene doesn't have it already.
+    pub environment: Option<Panorama>,
     pub settings: Settings,
     pub reference_surface: Option<ReferenceSurface>,
     /// The patch that is outlined.

@@ -1,6 +1,7 @@
 //! What the shader that lights a mesh's materials must have.
 
-use crate::mesh::{Alpha, Mesh};
+use crate::mesh::{Alpha, MOST_LIGHTS, Mesh};
+use crate::settings::{FileLights, Settings};
 
 /// What a mesh's materials need of the shader that lights them. What they don't need is left out of it when its pipeline is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -13,15 +14,18 @@ pub(super) struct Needs {
     pub coat: bool,
     /// Places where there is no surface.
     pub mask: bool,
+    /// How many lights of the file shine.
+    pub lights: usize,
 }
 
 impl Needs {
     /// Everything that any mesh needs.
-    pub(super) const ALL: Self = Self { maps: true, details: true, coat: true, mask: true };
+    pub(super) const ALL: Self = Self { maps: true, details: true, coat: true, mask: true, lights: MOST_LIGHTS };
 
-    /// What a mesh needs.
-    pub(super) fn of(mesh: &Mesh) -> Self {
-        let mut needs = Self { maps: false, details: mesh.details.is_some(), coat: false, mask: false };
+    /// What a mesh needs under these settings.
+    pub(super) fn of(mesh: &Mesh, settings: &Settings) -> Self {
+        let lights = if settings.lights == FileLights::On { mesh.lights.len().min(MOST_LIGHTS) } else { 0 };
+        let mut needs = Self { maps: false, details: mesh.details.is_some(), coat: false, mask: false, lights };
         for look in mesh.materials.iter().map(|material| &material.look) {
             needs.maps |= look.maps.iter().any(Option::is_some);
             needs.coat |= look.clearcoat > 0.0;
@@ -31,29 +35,42 @@ impl Needs {
     }
 
     /// The values of the constants of `shaders/draw_material.wgsl`.
-    pub(super) fn constants(self) -> [(&'static str, f64); 4] {
-        [("HAS_MAPS", self.maps), ("HAS_DETAILS", self.details), ("HAS_COAT", self.coat), ("HAS_MASK", self.mask)]
-            .map(|(name, is_needed)| (name, f64::from(u8::from(is_needed))))
+    pub(super) fn constants(self) -> [(&'static str, f64); 5] {
+        let switch = |is_needed| f64::from(u8::from(is_needed));
+        [
+            ("HAS_MAPS", switch(self.maps)),
+            ("HAS_DETAILS", switch(self.details)),
+            ("HAS_COAT", switch(self.coat)),
+            ("HAS_MASK", switch(self.mask)),
+            ("LIGHT_COUNT", self.lights as f64),
+        ]
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+
     use super::*;
-    use crate::mesh::{Material, Shape};
+    use crate::mesh::{Light, LightKind, Material, Shape};
 
     #[test]
     fn a_mesh_needs_what_any_of_its_materials_does() {
         let mut mesh = Shape::CubeSplit.build();
-        let nothing = Needs { maps: false, details: false, coat: false, mask: false };
-        assert_eq!(Needs::of(&mesh), nothing);
+        let settings = Settings::default();
+        let nothing = Needs { maps: false, details: false, coat: false, mask: false, lights: 0 };
+        assert_eq!(Needs::of(&mesh, &settings), nothing);
         let mut coated = Material::plain("coated", [1.0; 4]);
         coated.look.clearcoat = 0.5;
         mesh.materials.push(coated);
-        assert_eq!(Needs::of(&mesh), Needs { coat: true, ..nothing });
+        assert_eq!(Needs::of(&mesh, &settings), Needs { coat: true, ..nothing });
         let mut leaves = Material::plain("leaves", [1.0; 4]);
         leaves.look.alpha = Alpha::Mask(0.5);
         mesh.materials.push(leaves);
-        assert_eq!(Needs::of(&mesh), Needs { coat: true, mask: true, ..nothing });
+        assert_eq!(Needs::of(&mesh, &settings), Needs { coat: true, mask: true, ..nothing });
+        let sun = Light { kind: LightKind::Directional, intensity: Vec3::ONE, place: Vec3::ZERO, direction: Vec3::NEG_Y };
+        mesh.lights = vec![sun; 3];
+        assert_eq!(Needs::of(&mesh, &settings).lights, 3);
+        assert_eq!(Needs::of(&mesh, &Settings { lights: FileLights::Off, ..settings }).lights, 0);
     }
 }

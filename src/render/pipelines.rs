@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::environment::ENVIRONMENT;
+use super::environment::{Backdrop, ENVIRONMENT};
 use super::materials::Materials;
 use super::needs::Needs;
 use super::prefilter_pass::REFLECTANCE;
@@ -16,13 +16,16 @@ use crate::gpu::{Gpu, GpuError, Lazy, ShaderModule, VERTEX_HALF};
 use crate::settings::NormalsAt;
 
 pub(super) static DRAW_TYPES: WgslFile = wgsl!("draw_types", TYPES);
+pub(super) static DRAW_BACKGROUND: WgslFile = wgsl!("draw_background", DRAW_TYPES, ENVIRONMENT, REFLECTANCE);
 static DRAW_DENSITY: WgslFile = wgsl!("draw_density");
 pub(super) static DRAW_GROUND: WgslFile = wgsl!("draw_ground", DRAW_DENSITY, DRAW_TYPES);
 static DRAW_LIGHT: WgslFile = wgsl!("draw_light");
 pub(super) static DRAW_LIT: WgslFile =
     wgsl!("draw_lit", DRAW_LIGHT, DRAW_MATERIAL, DRAW_NORMAL, DRAW_TYPES, OCTAHEDRAL_NORMAL, SURFACE, TYPES);
 static DRAW_LOOKS: WgslFile = wgsl!("draw_looks", DRAW_DENSITY);
-static DRAW_MATERIAL: WgslFile = wgsl!("draw_material", DRAW_NORMAL, DRAW_TYPES, ENVIRONMENT, REFLECTANCE, TYPES);
+static PUNCTUAL: WgslFile = wgsl!("punctual");
+static DRAW_MATERIAL: WgslFile =
+    wgsl!("draw_material", DRAW_NORMAL, DRAW_TYPES, ENVIRONMENT, PUNCTUAL, REFLECTANCE, TYPES);
 static DRAW_NORMAL: WgslFile = wgsl!("draw_normal", FACTORS, LOAD_NET, LOADS, NORMAL, TYPES);
 pub(super) static DRAW_PLAIN: WgslFile =
     wgsl!("draw_plain", DRAW_LIGHT, DRAW_NORMAL, DRAW_TYPES, OCTAHEDRAL_NORMAL, SURFACE, TYPES);
@@ -66,6 +69,8 @@ pub(super) enum Draw {
     LitPulled(Faces, NormalsAt, Needs),
     /// [`Self::Source`] with such materials.
     LitSource(Needs),
+    /// The light from all around, behind everything.
+    Background,
     /// The grid on the ground.
     Ground,
     /// Lines over the mesh.
@@ -93,7 +98,7 @@ pub(super) enum Occluded {
 
 impl Draw {
     /// Every pipeline that there is; of those that light materials, the ones with all that materials can need.
-    pub(super) const ALL: [Self; 33] = [
+    pub(super) const ALL: [Self; 34] = [
         Self::Plain(Faces::Both),
         Self::Plain(Faces::Fronts),
         Self::Textured(Faces::Both),
@@ -122,6 +127,7 @@ impl Draw {
         Self::LitPulled(Faces::Both, NormalsAt::Pixels, Needs::ALL),
         Self::LitPulled(Faces::Fronts, NormalsAt::Pixels, Needs::ALL),
         Self::LitSource(Needs::ALL),
+        Self::Background,
         Self::Ground,
         Self::Lines(Occluded::Through),
         Self::Lines(Occluded::InSight),
@@ -155,6 +161,7 @@ impl Draw {
             Self::LitIndexed(_, places, _) => ("indexed_vertex", lit_surface(places)),
             Self::LitPulled(_, places, _) => ("pulled_vertex", lit_surface(places)),
             Self::LitSource(_) => ("source_vertex", "lit_surface_fragment"),
+            Self::Background => ("background_vertex", "background_fragment"),
             Self::Ground => ("ground_vertex", "ground_fragment"),
             Self::Lines(Occluded::Through) => ("hidden_line_vertex", line(Occluded::Through)),
             Self::Lines(Occluded::InSight) => ("line_vertex", line(Occluded::InSight)),
@@ -169,7 +176,8 @@ impl Draw {
             Self::Textured(_) | Self::PixelNormals(_) | Self::Indexed(..) | Self::Lit(..) | Self::LitIndexed(..) => {
                 vertex_halves(wgpu::VertexStepMode::Vertex).to_vec()
             }
-            Self::Pulled(..) | Self::LitPulled(..) | Self::Source | Self::LitSource(_) | Self::Ground => Vec::new(),
+            Self::Pulled(..) | Self::LitPulled(..) | Self::Source | Self::LitSource(_) => Vec::new(),
+            Self::Background | Self::Ground => Vec::new(),
             Self::Lines(_) => vec![Some(wgpu::VertexBufferLayout {
                 array_stride: size_of::<LineSegment>() as u64,
                 step_mode: wgpu::VertexStepMode::Instance,
@@ -183,6 +191,8 @@ impl Draw {
     fn depth_compare(self) -> wgpu::CompareFunction {
         match self {
             Self::Lines(Occluded::Through) | Self::Normals(Occluded::Through) => wgpu::CompareFunction::Always,
+            // It is first, and at the far end.
+            Self::Background => wgpu::CompareFunction::Always,
             _ => wgpu::CompareFunction::Greater,
         }
     }
@@ -242,6 +252,8 @@ pub(super) struct DrawPipelines {
     material_layout: wgpu::BindGroupLayout,
     /// Group 1 where materials are lit: all of a material, and the light.
     lit_layout: wgpu::BindGroupLayout,
+    /// Group 1 of the background: a panorama, its sampler, and how the light is shown.
+    pub background_layout: wgpu::BindGroupLayout,
     /// Group 2: the slab of the chunk that is drawn, and the factors of the slab's patches.
     pub chunk_layout: wgpu::BindGroupLayout,
     /// Group 3: what was measured of a chunk's triangles, their distances to the reference surface, and of patches, their own
@@ -250,6 +262,7 @@ pub(super) struct DrawPipelines {
     plain: ShaderModule,
     lit: ShaderModule,
     surface: ShaderModule,
+    background: ShaderModule,
     ground: ShaderModule,
     lines: ShaderModule,
     pipelines: Mutex<HashMap<Draw, Arc<Lazy<wgpu::RenderPipeline>>>>,
@@ -262,11 +275,13 @@ impl DrawPipelines {
             scene_layout: scene_layout(gpu),
             material_layout: materials.layout.clone(),
             lit_layout: materials.lit_layout.clone(),
+            background_layout: background_layout(gpu),
             chunk_layout: chunk_layout(gpu),
             measured_layout: measured_layout(gpu),
             plain: ShaderModule::new(&DRAW_PLAIN),
             lit: ShaderModule::new(&DRAW_LIT),
             surface: ShaderModule::new(&DRAW_SURFACE),
+            background: ShaderModule::new(&DRAW_BACKGROUND),
             ground: ShaderModule::new(&DRAW_GROUND),
             lines: ShaderModule::new(&DRAW_LINES),
             pipelines: Default::default(),
@@ -283,6 +298,7 @@ impl DrawPipelines {
             Draw::Lit(..) => &self.lit,
             Draw::Indexed(..) | Draw::Pulled(..) | Draw::Source => &self.surface,
             Draw::LitIndexed(..) | Draw::LitPulled(..) | Draw::LitSource(_) => &self.surface,
+            Draw::Background => &self.background,
             Draw::Ground => &self.ground,
             Draw::Lines(_) | Draw::Normals(_) => &self.lines,
         };
@@ -304,6 +320,7 @@ impl DrawPipelines {
             Draw::Lit(..) => vec![scene, lit],
             Draw::LitIndexed(..) | Draw::LitPulled(..) => vec![scene, lit, chunk, deviation],
             Draw::LitSource(_) => vec![scene, lit, None, deviation],
+            Draw::Background => vec![scene, Some(&self.background_layout)],
             Draw::Ground | Draw::Lines(_) => vec![scene],
             Draw::Normals(_) => vec![scene, None, chunk],
         }
@@ -326,6 +343,11 @@ fn chunk_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     let entries = [(0, wgpu::BufferBindingType::Uniform), (1, READ)]
         .map(|(binding, ty)| buffer_entry(binding, ty, wgpu::ShaderStages::VERTEX));
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("chunk"), entries: &entries })
+}
+
+fn background_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+    let entries = Backdrop::layout_entries();
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("background"), entries: &entries })
 }
 
 fn measured_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {

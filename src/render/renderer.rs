@@ -1,6 +1,7 @@
 //! Draws pictures, in the same way for the window, the commands and the tests.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::coverage::{Coverage, CoveragePipelines};
 use super::deviation::Deviations;
@@ -17,14 +18,14 @@ use super::{Camera, Scene, Target};
 use crate::gpu::layout::DrawArgs;
 use crate::gpu::{ChunkBuffers, Gpu, GpuError, Lazy, Recorder, bind_group};
 use crate::mesh::Mesh;
-use crate::settings::{Colors, NormalsAt, Overlays, Settings, SplitSide, ToneCurve};
+use crate::settings::{Colors, Lighting, NormalsAt, Overlays, Settings, SplitSide, ToneCurve};
 use crate::tessellate::CoverageView;
 
 /// Draws pictures of any scene on a device. Its pipelines are made when they are first needed.
 pub struct Renderer {
     gpu: Gpu,
     materials: Materials,
-    studio: Lazy<Environment>,
+    studio: Lazy<Arc<Environment>>,
     pipelines: DrawPipelines,
     coverage: CoveragePipelines,
     /// The buffer that is bound where deviations, or patches' own least, aren't known.
@@ -63,7 +64,7 @@ impl Renderer {
     pub(crate) fn lit_by(gpu: &Gpu, environment: Environment) -> Self {
         let renderer = Self::new(gpu);
         // There is none yet, so that nothing fails.
-        let _ = renderer.studio.get_or_try_make(|| Ok(environment));
+        let _ = renderer.studio.get_or_try_make(|| Ok(Arc::new(environment)));
         renderer
     }
 
@@ -83,7 +84,7 @@ impl Renderer {
         } else {
             Faces::Both
         };
-        if settings.shows_materials() {
+        if settings.shows_materials() && settings.lighting == Lighting::Studio {
             self.studio()?;
         }
         let (materials, _) = surface_draws(settings, scene.tessellator.mesh(), faces);
@@ -100,6 +101,7 @@ impl Renderer {
         if settings.overlays.colors == Colors::Excess {
             scene.tessellator.prepare_own_least(settings.tessellation.partitioning)?;
         }
+        draws.extend(settings.shows_environment().then_some(Draw::Background));
         draws.extend(settings.overlays.grid.then_some(Draw::Ground));
         if settings.overlays.normals {
             draws.extend([Occluded::Through, Occluded::InSight].map(Draw::Normals));
@@ -153,7 +155,12 @@ impl Renderer {
         let rects = halves(target.size, settings.split);
         let frames =
             SplitSide::BOTH.map(|half| scene.half(half).map(|half| frame(&self.gpu, half, target, camera, settings)));
-        let materials = self.material_groups(scene, settings)?;
+        let light = self.light(scene, settings)?;
+        let materials = self.material_groups(scene, light.as_ref());
+        let background = match &light {
+            Some(light) if settings.shows_environment() && !target.is_transparent() => Some(self.background(light)?),
+            _ => None,
+        };
         let steps = steps(scene, settings);
         let has_left = settings.half(SplitSide::Left).and(scene.half(SplitSide::Left)).is_some();
         for (index, step) in steps.iter().enumerate().take(range.end).skip(range.start) {
@@ -185,6 +192,11 @@ impl Renderer {
             let normals = if let Step::Normals(..) = step { Some(self.line_pipelines(Draw::Normals)?) } else { None };
             recorder.render("draw", color, target.depth(first), |pass| {
                 pass.set_bind_group(0, &group, &[]);
+                if let Some((pipeline, group)) = background.as_ref().filter(|_| first) {
+                    pass.set_pipeline(pipeline);
+                    pass.set_bind_group(1, group, &[]);
+                    pass.draw(0..3, 0..1);
+                }
                 if let Some(source) = &source {
                     self.draw_source(pass, source, scene, &materials, rects[SplitSide::Left as usize]);
                 }
@@ -221,18 +233,37 @@ impl Renderer {
     }
 
     /// The light of a studio, which is made at the first call.
-    fn studio(&self) -> Result<&Environment, GpuError> {
-        self.studio.get_or_try_make(|| Environment::studio(&self.gpu))
+    fn studio(&self) -> Result<&Arc<Environment>, GpuError> {
+        self.studio.get_or_try_make(|| Environment::studio(&self.gpu).map(Arc::new))
     }
 
-    /// The bind groups of a scene's materials for a picture with these settings.
-    fn material_groups(&self, scene: &Scene, settings: &Settings) -> Result<Vec<wgpu::BindGroup>, GpuError> {
+    /// The light from all around of a picture with these settings; none if no material needs it.
+    fn light(&self, scene: &Scene, settings: &Settings) -> Result<Option<PictureLight>, GpuError> {
         if !settings.shows_materials() {
-            return Ok(scene.materials.iter().map(|own| own.group.clone()).collect());
+            return Ok(None);
         }
-        let studio = self.studio()?;
-        let surroundings = studio.surroundings(&self.gpu, &light_view(settings));
-        Ok(self.materials.lit_groups(&self.gpu, &scene.materials, studio, &surroundings))
+        let environment = match &scene.environment {
+            Some(environment) if settings.lighting == Lighting::Environment => environment.clone(),
+            _ => self.studio()?.clone(),
+        };
+        let surroundings = environment.surroundings(&self.gpu, &light_view(settings));
+        Ok(Some(PictureLight { environment, surroundings }))
+    }
+
+    /// The bind groups of a scene's materials in this light.
+    fn material_groups(&self, scene: &Scene, light: Option<&PictureLight>) -> Vec<wgpu::BindGroup> {
+        let Some(PictureLight { environment, surroundings }) = light else {
+            return scene.materials.iter().map(|own| own.group.clone()).collect();
+        };
+        self.materials.lit_groups(&self.gpu, &scene.materials, (environment, surroundings), scene.lights.as_ref())
+    }
+
+    /// The pipeline and the bind group that draw this light behind everything.
+    fn background(&self, light: &PictureLight) -> Result<(wgpu::RenderPipeline, wgpu::BindGroup), GpuError> {
+        let entries = light.environment.backdrop(&self.gpu)?.entries(&light.surroundings);
+        let layout = &self.pipelines.background_layout;
+        let descriptor = wgpu::BindGroupDescriptor { label: Some("background"), layout, entries: &entries };
+        Ok((self.get(Draw::Background)?, self.gpu.device.create_bind_group(&descriptor)))
     }
 
     /// The pipelines for lines: first for all of them, faintly, then for the parts in sight.
@@ -406,7 +437,7 @@ fn surface_draws(settings: &Settings, mesh: &Mesh, faces: Faces) -> ([Draw; 2], 
             } else {
                 Draw::Lit
             };
-            [draw(faces, places, Needs::of(mesh)); 2]
+            [draw(faces, places, Needs::of(mesh, settings)); 2]
         }
         true => [Draw::Pulled(faces, places); 2],
         false if has_overlays => [Draw::Indexed(faces, places); 2],
@@ -418,12 +449,13 @@ fn surface_draws(settings: &Settings, mesh: &Mesh, faces: Faces) -> ([Draw; 2], 
 
 /// The pipeline for input triangles.
 fn source_draw(settings: &Settings, mesh: &Mesh) -> Draw {
-    if settings.shows_materials() { Draw::LitSource(Needs::of(mesh)) } else { Draw::Source }
+    if settings.shows_materials() { Draw::LitSource(Needs::of(mesh, settings)) } else { Draw::Source }
 }
 
 /// How settings turn and show the light.
 fn light_view(settings: &Settings) -> LightView {
     LightView {
+        brightness: settings.environment_brightness,
         rotation: settings.light_rotation,
         exposure: settings.exposure,
         tone_curve: match settings.tone_curve {
@@ -456,6 +488,13 @@ fn set_vertices(pass: &mut wgpu::RenderPass, chunk: &ChunkBuffers) {
     for (slot, (buffer, bytes)) in (0..).zip(chunk.vertices()) {
         pass.set_vertex_buffer(slot, buffer.slice(bytes));
     }
+}
+
+/// The light from all around in a picture.
+struct PictureLight {
+    environment: Arc<Environment>,
+    /// Says how it is turned and shown.
+    surroundings: wgpu::Buffer,
 }
 
 /// How emitted triangles are drawn.

@@ -59,6 +59,7 @@ impl App {
             animation: animation.as_ref().map(|(name, time)| (&**name, *time)),
             truth: truth.as_ref(),
             factors: self.factors_file(),
+            environment: self.environment_file(),
             triangle: self.selected_triangle().filter(|_| choices.overlays),
             transparent: choices.transparent,
             legend: choices.legend,

@@ -19,6 +19,7 @@ pub(crate) enum Purpose {
     Heights,
     Truth,
     Factors,
+    Environment,
     SaveChart,
     SavePicture,
     /// A turntable as PNG files.
@@ -69,6 +70,7 @@ impl Purpose {
             Self::Heights => "Height image path",
             Self::Truth => "Reference surface path",
             Self::Factors => "Factors path",
+            Self::Environment => "Environment path",
             Self::SaveChart => "Save chart",
             Self::SavePicture => "Save picture",
             Self::SaveFolder | Self::SaveGif => "Save turntable",
@@ -81,16 +83,17 @@ impl Purpose {
 
     /// Whether the path is that of a file to write.
     fn is_written(self) -> bool {
-        !matches!(self, Self::Open | Self::Heights | Self::Truth | Self::Factors)
+        !matches!(self, Self::Open | Self::Heights | Self::Truth | Self::Factors | Self::Environment)
     }
 
     /// The kinds of file that can be typed.
     fn takes(self) -> String {
         match self {
-            Self::Open => format!("A {} file, shape:NAME, or a height image (.png, .jpg)", known_extensions()),
+            Self::Open => format!("A {} file, shape:NAME, a height image (.png, .jpg), or an environment (.hdr, .exr)", known_extensions()),
             Self::Heights => "A .png or .jpg image".to_owned(),
             Self::Truth => format!("A {} file, or shape:NAME", known_extensions()),
             Self::Factors => "A .csv file with the factors of every triangle".to_owned(),
+            Self::Environment => "A .hdr or .exr panorama".to_owned(),
             Self::SaveChart => "A new .svg, .png or .csv file".to_owned(),
             Self::SavePicture => "A new .png file".to_owned(),
             Self::SaveFolder => "A new folder".to_owned(),
@@ -104,7 +107,7 @@ impl Purpose {
 
     fn button(self) -> &'static str {
         match self {
-            Self::Open | Self::Heights | Self::Truth | Self::Factors => "Open",
+            Self::Open | Self::Heights | Self::Truth | Self::Factors | Self::Environment => "Open",
             Self::ExportMesh => "Export",
             _ => "Save",
         }
@@ -115,7 +118,7 @@ impl Purpose {
         let title = open.map_or_else(|| "mesh".to_owned(), Source::title);
         match (self, open) {
             (Self::Open | Self::Truth, Some(Source::File(path))) => path.display().to_string(),
-            (Self::Open | Self::Truth | Self::Heights | Self::Factors, _) => String::new(),
+            (Self::Open | Self::Truth | Self::Heights | Self::Factors | Self::Environment, _) => String::new(),
             (Self::SaveChart, _) => absolute("chart.svg"),
             (Self::SavePicture, _) => absolute(&name_beside(&title, "-view.png")),
             (Self::SaveFolder, _) => absolute(&name_beside(&title, "-turntable")),
@@ -251,7 +254,7 @@ impl App {
             _ if purpose.is_written() && Path::new(path).exists() => {
                 Err(format!("{} exists already: choose another name", shown_path(Path::new(path))))
             }
-            _ if purpose.is_written() || purpose == Purpose::Factors => {
+            _ if purpose.is_written() || matches!(purpose, Purpose::Factors | Purpose::Environment) => {
                 self.take_source(context, purpose, Source::File(path.into()))
             }
             _ => match path.parse() {
@@ -273,6 +276,7 @@ impl App {
         match (purpose, source) {
             (Purpose::Truth, source) => self.open_truth(context, source),
             (Purpose::Factors, Source::File(path)) => self.open_factors(context, path),
+            (Purpose::Environment, Source::File(path)) => self.open_environment(context, path),
             (Purpose::SaveChart, Source::File(path)) => self.save_chart_beside(context, path),
             (Purpose::SavePicture, Source::File(path)) => self.save_picture(context, path)?,
             (Purpose::SaveFolder | Purpose::SaveGif, Source::File(path)) => self.save_turntable(context, path)?,

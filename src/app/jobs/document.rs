@@ -26,6 +26,8 @@ pub(crate) struct Document {
     pub moment: Option<Moment>,
     /// The number of the factors of a file that the scene has; 0 for those of LOD.
     pub given: u64,
+    /// The number of the file whose light the scene has; 0 for none.
+    pub environment: u64,
     pub checks: Checks,
     /// What previews draw in place of a large mesh.
     pub stand_in: StandIn,
@@ -165,6 +167,7 @@ fn load(
         edges,
         moment: None,
         given: 0,
+        environment: 0,
         checks,
         stand_in: StandIn::default(),
         diagonal,

@@ -147,6 +147,8 @@ impl App {
             loaded: document.loaded.clone(),
             moment: document.moment,
             given: document.scene.tessellator.given().map(<[_]>::to_vec),
+            // The scene is made from one that has it.
+            environment: None,
             settings,
             reference_surface: self.reference_surface(&settings),
             selected: self.selected_patch().filter(|_| choices.overlays),

@@ -175,7 +175,7 @@ impl App {
     }
 
     fn warnings_line(&self, color: Color32) -> Line {
-        let warnings = self.document.as_ref().map_or(0, |document| document.loaded.warnings.len() as u64);
+        let warnings = self.warnings().count() as u64;
         let hover = "What was repaired or left out when the file was read. A click lists it.";
         match warnings {
             0 => Line::dim("No warnings", hover, Destination::Warnings),

@@ -26,6 +26,8 @@ pub(crate) struct Wanted {
     pub deviation: u64,
     /// The number of the factors of a file; 0 for those of LOD.
     pub given: u64,
+    /// The number of the file whose light it has; 0 for none.
+    pub environment: u64,
     pub camera: Camera,
     pub settings: Settings,
     pub inputs: Inputs,
