@@ -6,7 +6,9 @@ use std::sync::Arc;
 use super::factors_option::FactorsFile;
 use super::options::{LodCameraOption, PictureOptions};
 use super::shot::{Shot, ShotView, Subject};
-use super::{CliError, FactorsOption, SurfaceOptions, TruthOption, file_of, file_of_heights, keep_apart, load_apart, warn};
+use super::{
+    CliError, FactorsOption, SurfaceOptions, TruthOption, file_of, file_of_heights, keep_apart, load_apart, warn,
+};
 use crate::engine::{Engine, Loaded};
 use crate::gpu::Timing;
 use crate::load::Source;

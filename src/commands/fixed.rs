@@ -22,7 +22,8 @@ pub(super) fn commands() -> Vec<Command> {
 const FACTORS: &str = "Opens the tessellation factors that another engine wrote, in place of those of LOD, and lists where they disagree.";
 
 /// What a file of light is for.
-pub(crate) const ENVIRONMENT: &str = "Opens a panorama (.hdr or .exr) whose light shines on the mesh in place of the studio's.";
+pub(crate) const ENVIRONMENT: &str =
+    "Opens a panorama (.hdr or .exr) whose light shines on the mesh in place of the studio's.";
 
 const TRUTH: &str = "Opens the mesh that deviation and charts compare with, such as the high-poly original.";
 const PICTURE: &str = "Writes the picture as a PNG file, in any size, with or without background, overlays and legend.";

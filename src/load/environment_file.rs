@@ -170,7 +170,8 @@ fn pixels(
             decode(decoder, budget, |_| 0)
         }
         Kind::OpenExr => {
-            let headers = MetaData::read_from_buffered(bytes, false).map_err(undecoded_exr)?.headers;
+            let headers =
+                MetaData::read_from_buffered(bytes, false).map_err(|error| because(&error.to_string()))?.headers;
             let block = headers.iter().map(block_bytes).max().unwrap_or(0);
             let decoder = exr_decoder(reader).map_err(undecoded)?;
             // The decoder has a copy of the pixels, and of a block about three while it is unpacked.
@@ -186,7 +187,9 @@ fn exr_decoder<'a>(reader: BufReader<WatchedBytes<'a>>) -> ImageResult<OpenExrDe
 /// The size of a decompressed block of an OpenEXR layer, in bytes.
 fn block_bytes(header: &Header) -> u64 {
     let pixels = match header.blocks {
-        BlockDescription::Tiles(tiles) => (tiles.tile_size.width() as u64).saturating_mul(tiles.tile_size.height() as u64),
+        BlockDescription::Tiles(tiles) => {
+            (tiles.tile_size.width() as u64).saturating_mul(tiles.tile_size.height() as u64)
+        }
         BlockDescription::ScanLines => {
             (header.layer_size.width() as u64).saturating_mul(header.compression.scan_lines_per_block() as u64)
         }
@@ -218,18 +221,21 @@ fn decode(
     Ok((size, pixels))
 }
 
+/// What the `exr` crate says of a file that ends too early; it has no kind of error for that.
+const MISSING_BYTES: &str = "reference to missing bytes";
+
 fn undecoded(error: ImageError) -> EnvironmentFault {
     match error {
         ImageError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => EnvironmentFault::Short,
-        error => EnvironmentFault::Undecoded { reason: shown(&error.to_string()) },
+        error => because(&error.to_string()),
     }
 }
 
-fn undecoded_exr(error: exr::error::Error) -> EnvironmentFault {
-    match error {
-        exr::error::Error::Io(error) if error.kind() == ErrorKind::UnexpectedEof => EnvironmentFault::Short,
-        error => EnvironmentFault::Undecoded { reason: shown(&error.to_string()) },
+fn because(reason: &str) -> EnvironmentFault {
+    if reason.ends_with(MISSING_BYTES) {
+        return EnvironmentFault::Short;
     }
+    EnvironmentFault::Undecoded { reason: shown(reason) }
 }
 
 /// Sentences about what was changed.
@@ -241,8 +247,8 @@ fn warnings(size: [u32; 2], kept: [u32; 2], repaired: Repaired) -> Vec<String> {
             "it has {width} x {height} px; a panorama of all directions is twice as wide as high, so what it shows is stretched."
         )
     });
-    let reduced =
-        (kept != size).then(|| format!("it has {width} x {height} px, and was reduced to {} x {} px.", kept[0], kept[1]));
+    let reduced = (kept != size)
+        .then(|| format!("it has {width} x {height} px, and was reduced to {} x {} px.", kept[0], kept[1]));
     let replaced = |count: usize, what: &str, by: &str| {
         (count > 0).then(|| format!("numbers of its pixels that are {what} were replaced by {by}: {count}."))
     };

@@ -1,6 +1,7 @@
 //! Loads meshes from glTF, OBJ, STL and PLY files, height images and textures, within limits of file size and memory.
 //! Everything in a file is checked before it is used.
 
+#[cfg(feature = "cli")]
 pub(crate) mod environment_file;
 mod face_builder;
 mod gltf;
@@ -13,6 +14,7 @@ mod loaded_mesh;
 pub(crate) mod memory_budget;
 pub(crate) mod mesh_file;
 mod obj;
+#[cfg(feature = "cli")]
 pub(crate) mod panorama;
 mod ply;
 mod read_error;

@@ -45,11 +45,7 @@ impl Materials {
         let lights = [Environment::layout_entries(LIGHT_BINDING).to_vec(), vec![uniform_entry(FILE_LIGHTS_BINDING)]];
         Self {
             layout: bind_group_layout(gpu, "material", &own(1)),
-            lit_layout: bind_group_layout(
-                gpu,
-                "lit material",
-                &[own(IMAGES), lights.concat()].concat(),
-            ),
+            lit_layout: bind_group_layout(gpu, "lit material", &[own(IMAGES), lights.concat()].concat()),
             white: white(gpu),
             no_lights: upload_lights(gpu, &[]),
             samplers: Samplers::default(),

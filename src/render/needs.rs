@@ -68,7 +68,8 @@ mod tests {
         leaves.look.alpha = Alpha::Mask(0.5);
         mesh.materials.push(leaves);
         assert_eq!(Needs::of(&mesh, &settings), Needs { coat: true, mask: true, ..nothing });
-        let sun = Light { kind: LightKind::Directional, intensity: Vec3::ONE, place: Vec3::ZERO, direction: Vec3::NEG_Y };
+        let sun =
+            Light { kind: LightKind::Directional, intensity: Vec3::ONE, place: Vec3::ZERO, direction: Vec3::NEG_Y };
         mesh.lights = vec![sun; 3];
         assert_eq!(Needs::of(&mesh, &settings).lights, 3);
         assert_eq!(Needs::of(&mesh, &Settings { lights: FileLights::Off, ..settings }).lights, 0);

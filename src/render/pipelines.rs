@@ -347,7 +347,8 @@ fn chunk_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
 
 fn background_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     let entries = Backdrop::layout_entries();
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("background"), entries: &entries })
+    gpu.device
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("background"), entries: &entries })
 }
 
 fn measured_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {

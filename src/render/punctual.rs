@@ -91,12 +91,8 @@ mod tests {
     use super::*;
 
     fn light(kind: LightKind) -> PunctualLight {
-        let light = Light {
-            kind,
-            intensity: vec3(10.0, 20.0, 40.0),
-            place: vec3(0.0, 2.0, 0.0),
-            direction: Vec3::NEG_Y,
-        };
+        let light =
+            Light { kind, intensity: vec3(10.0, 20.0, 40.0), place: vec3(0.0, 2.0, 0.0), direction: Vec3::NEG_Y };
         (&light).into()
     }
 
@@ -118,7 +114,9 @@ mod tests {
         let sun = light(LightKind::Directional);
         for place in [Vec3::ZERO, vec3(100.0, -7.0, 3.0)] {
             let found = direct_light(&sun, place);
-            assert!(found.to_light.distance(Vec3::Y) < 1e-6 && found.illuminance.distance(vec3(10.0, 20.0, 40.0)) < 1e-4);
+            assert!(
+                found.to_light.distance(Vec3::Y) < 1e-6 && found.illuminance.distance(vec3(10.0, 20.0, 40.0)) < 1e-4
+            );
         }
     }
 
@@ -133,7 +131,9 @@ mod tests {
             direct_light(&spot, place).illuminance.x / 10.0
         };
         let half_way = (inner.cos() + outer.cos()) / 2.0;
-        for (cosine, expected) in [(1.0, 1.0), (inner.cos() + 1e-4, 1.0), (half_way, 0.25), (outer.cos() - 1e-4, 0.0), (-1.0, 0.0)] {
+        for (cosine, expected) in
+            [(1.0, 1.0), (inner.cos() + 1e-4, 1.0), (half_way, 0.25), (outer.cos() - 1e-4, 0.0), (-1.0, 0.0)]
+        {
             assert!((at(cosine) - expected).abs() < 1e-3, "{cosine}: {}", at(cosine));
         }
     }

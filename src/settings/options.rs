@@ -5,8 +5,8 @@
 
 use super::value::Field;
 use super::{
-    Access, Colors, Declaration, Description, DeviationUnit, FileLights, Kind, Lighting, NormalsAt, Overlay, Range, Settings,
-    ToneCurve, Value, descriptions,
+    Access, Colors, Declaration, Description, DeviationUnit, FileLights, Kind, Lighting, NormalsAt, Overlay, Range,
+    Settings, ToneCurve, Value, descriptions,
 };
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface, Tessellation};
 

@@ -54,7 +54,8 @@ fn a_panorama_lights_the_mesh_and_is_its_background() {
 #[test]
 fn files_that_are_no_panoramas_are_refused_with_a_sentence() {
     let folder = Folder::new();
-    let render = |file: &str| ["render", "shape:torus", "-o", &folder.path("out.png"), "--environment", file].map(str::to_owned);
+    let render =
+        |file: &str| ["render", "shape:torus", "-o", &folder.path("out.png"), "--environment", file].map(str::to_owned);
     let refused = |file: &str, words: &[&str]| {
         let arguments = render(file);
         sentence(&arguments.each_ref().map(String::as_str), words);
@@ -98,15 +99,16 @@ fn lights_of_a_file_shine_and_are_in_info() {
         { "type": "spot", "color": [0, 1, 0], "intensity": 20, "range": 9, "spot": { "outerConeAngle": 0.5 } },
         { "type": "directional", "intensity": 0.5 },
     ] } });
-    let node = |light: usize, z: f32| {
-        json!({ "translation": [0.25, 0.25, z], "extensions": { "KHR_lights_punctual": { "light": light } } })
-    };
+    let node = |light: usize, z: f32| json!({ "translation": [0.25, 0.25, z], "extensions": { "KHR_lights_punctual": { "light": light } } });
     document["nodes"] = json!([{ "mesh": 0 }, node(0, 2.0), node(1, 0.0)]);
     document["scenes"] = json!([{ "nodes": [0, 1, 2] }]);
     std::fs::write(&path, document.to_string()).expect("a writable folder");
     let text = output(&["info", &path]);
     let spot = "\nlight         spot, 0 20 0 cd, at 0.25 0.25 2, towards 0 0 -1, up to 9, cone 0 to 28.647";
-    assert!(text.contains(spot) && text.contains("\nlight         directional, 0.5 0.5 0.5 lx, towards 0 0 -1\n"), "{text}");
+    assert!(
+        text.contains(spot) && text.contains("\nlight         directional, 0.5 0.5 0.5 lx, towards 0 0 -1\n"),
+        "{text}"
+    );
     let json: Value = serde_json::from_str(&output(&["info", &path, "--json"])).expect("JSON");
     assert_eq!(json["lights"][0]["intensity"], json!([0.0, 20.0, 0.0]));
     assert_eq!((&json["lights"][1]["kind"], &json["lights"][1]["place"]), (&json!("directional"), &Value::Null));

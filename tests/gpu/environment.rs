@@ -92,12 +92,14 @@ fn one_bright_pixel_lights_the_side_that_it_is_on() {
         ([0, 15], 0, 90.0),
     ] {
         let mut pixels = vec![[0.01; 3]; 64 * 32];
-        pixels[(pixel[1] * size[0] + pixel[0]) as usize] = [300.0; 3];
+        // As much light from a pixel near a pole, which is small.
+        let latitude = (0.5 - (pixel[1] as f32 + 0.5) / size[1] as f32) * PI;
+        pixels[(pixel[1] * size[0] + pixel[0]) as usize] = [300.0 / latitude.cos(); 3];
         let panorama = Panorama::new(size, pixels).0;
         let picture = ball_under(panorama, &Settings { light_rotation: rotation, ..lit_by_file() });
         let lights = BESIDE.map(|place| linear_of(&picture, place).x);
         for (k, light) in lights.into_iter().enumerate().filter(|(k, _)| *k != brightest) {
-            assert!(lights[brightest] > light + 0.1, "{pixel:?}: {lights:?}, where {k} should be darker");
+            assert!(lights[brightest] > 1.3 * light + 0.02, "{pixel:?}: {lights:?}, where {k} should be darker");
         }
     }
 }
@@ -114,9 +116,13 @@ fn the_brightness_is_that_of_the_light_from_all_around_alone() {
         let picture = self::seen(&mut scene, &target, &Settings { environment_brightness, ..lit_by_file() }, &camera);
         linear_of(&picture, [32, 32]).x
     };
-    let [usual, double, glowing, glowing_double] = [(0.0, 0.0), (1.0, 0.0), (0.0, 0.2), (1.0, 0.2)].map(|(ev, own)| seen(ev, own));
+    let [usual, double, glowing, glowing_double] =
+        [(0.0, 0.0), (1.0, 0.0), (0.0, 0.2), (1.0, 0.2)].map(|(ev, own)| seen(ev, own));
     assert!((double / usual - 2.0).abs() < 0.03, "{usual} {double}");
-    assert!((glowing - usual - 0.2).abs() < 0.01 && (glowing_double - double - 0.2).abs() < 0.01, "{glowing} {glowing_double}");
+    assert!(
+        (glowing - usual - 0.2).abs() < 0.01 && (glowing_double - double - 0.2).abs() < 0.01,
+        "{glowing} {glowing_double}"
+    );
 }
 
 /// The direction that a perspective view has at a place of the picture.
@@ -146,11 +152,12 @@ fn the_light_is_seen_behind_the_mesh() {
         let target = Target::new(&engine().gpu, size).expect("a small picture");
         let picture = seen(&mut scene, &target, &settings, &camera);
         let radiance = if settings.lighting == Lighting::Studio { studio_light } else { colors };
-        for px in [[2, 2], [157, 3], [80, 2], [4, 86], [150, 80]] {
+        for px in [[2, 2], [157, 3], [24, 2], [4, 86], [150, 80]] {
             let at = Vec2::from(px.map(|side| side as f32 + 0.5));
             let turn = glam::Mat3::from_rotation_y(-settings.light_rotation.to_radians());
             let light = radiance(turn * direction(&camera, viewport, at));
-            let shown = tone_mapped(light * (settings.exposure + settings.environment_brightness).exp2(), TONE_CURVE_NEUTRAL);
+            let shown =
+                tone_mapped(light * (settings.exposure + settings.environment_brightness).exp2(), TONE_CURVE_NEUTRAL);
             let found = linear_of(&picture, px);
             assert!(found.distance(shown) < 0.015, "{px:?} {camera:?}: {found}, not {shown}");
         }
@@ -185,7 +192,8 @@ fn square_under(lights: Vec<Light>) -> Mesh {
 
 /// Three lights before a square from -1 to 1 in the plane z = 0.
 fn three_lights() -> Vec<Light> {
-    let light = |kind, intensity, place: Vec3, toward: Vec3| Light { kind, intensity, place, direction: toward.normalize() };
+    let light =
+        |kind, intensity, place: Vec3, toward: Vec3| Light { kind, intensity, place, direction: toward.normalize() };
     vec![
         light(LightKind::Directional, vec3(0.0, 0.8, 0.0), Vec3::ZERO, vec3(1.0, 0.0, -1.0)),
         light(LightKind::Point { range: Some(1.5) }, vec3(1.0, 0.2, 0.2), vec3(-0.5, 0.25, 0.5), Vec3::NEG_Z),
@@ -230,7 +238,8 @@ fn lights_of_the_file_shine_on_a_matte_square_as_the_formula_says() {
                 let found = picture.get_pixel(x, y).0;
                 let is_near = (0..3).all(|k| found[k].abs_diff(expected[k]) <= 2);
                 // Lines of the adjacency lie over the borders of the two patches.
-                let is_beside_lines = settings.overlays.adjacency && (x.abs_diff(SIDE - 1 - y) < 4 || x.min(y) < 3 || x.max(y) > 60);
+                let is_beside_lines =
+                    settings.overlays.adjacency && (x.abs_diff(SIDE - 1 - y) < 4 || x.min(y) < 3 || x.max(y) > 60);
                 assert!(is_near || is_beside_lines, "[{x}, {y}]: {found:?}, not {expected:?}, with {settings:?}");
             }
             assert!(brightest > 100, "{brightest}");

@@ -17,7 +17,7 @@ use tempfile::TempDir;
 
 use crate::window_tests::editing::{assert_draws, copied};
 use crate::window_tests::loading::drop_files;
-use crate::window_tests::{choose, click, press, settle, switch, uniform};
+use crate::window_tests::{choose, click, copy_vase, press, settle, switch, uniform};
 
 /// A panorama with red light above and blue light below.
 fn panorama(folder: &TempDir, name: &str) -> PathBuf {
@@ -134,6 +134,12 @@ fn a_panorama_that_is_dropped_lights_the_mesh_that_is_open() {
     settle(&mut harness);
     assert_eq!((harness.state().environment_file(), lighting(&harness)), (Some(&*path), Lighting::Environment));
     assert_eq!(harness.state().source(), Some(&Source::Shape(Shape::Torus)), "the mesh stays");
+    let (mesh, other) = (copy_vase(&folder, "vase.glb"), panorama(&folder, "other.hdr"));
+    drop_files(&mut harness, &[other.clone(), mesh.clone()]);
+    settle(&mut harness);
+    assert_eq!(harness.state().source(), Some(&Source::File(mesh)), "a mesh and a panorama go together");
+    assert_eq!((harness.state().environment_file(), lighting(&harness)), (Some(&*other), Lighting::Environment));
+    assert!(harness.query_by_label_contains("files were dropped").is_none());
 }
 
 #[test]
@@ -149,7 +155,8 @@ fn a_typed_path_opens_an_environment_and_repairs_are_listed() {
     click(&mut harness, "Open");
     assert_eq!(harness.state().environment_file(), Some(&*path));
     click(&mut harness, "1 warning");
-    harness.get_by_label_contains("square.hdr: it has 16 x 16 px; a panorama of all directions is twice as wide as high");
+    harness
+        .get_by_label_contains("square.hdr: it has 16 x 16 px; a panorama of all directions is twice as wide as high");
     press(&mut harness, egui::Key::Escape);
     give(&mut harness, FileAction::CloseEnvironment);
     assert_eq!(harness.state().environment_file(), None);
@@ -229,7 +236,8 @@ fn lights_of_a_file_can_be_switched_off() {
         "bufferViews": [{ "buffer": 0, "byteLength": 36 }] }"#,
     )
     .expect("JSON");
-    let bytes: Vec<u8> = [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].into_iter().flat_map(f32::to_le_bytes).collect();
+    let bytes: Vec<u8> =
+        [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].into_iter().flat_map(f32::to_le_bytes).collect();
     write(&folder, "triangle.bin", &bytes);
     document["buffers"] = serde_json::json!([{ "byteLength": 36, "uri": "triangle.bin" }]);
     let path = write(&folder, "lit.gltf", document.to_string().as_bytes());
@@ -245,6 +253,8 @@ fn lights_of_a_file_can_be_switched_off() {
     let context = harness.ctx.clone();
     harness.state_mut().open(&context, Source::Shape(Shape::Torus));
     settle(&mut harness);
-    let has_row = harness.get_all_by_role(Role::ComboBox).any(|node| node.accesskit_node().label().as_deref() == Some("File's lights"));
+    let has_row = harness
+        .get_all_by_role(Role::ComboBox)
+        .any(|node| node.accesskit_node().label().as_deref() == Some("File's lights"));
     assert!(!has_row);
 }

@@ -89,7 +89,10 @@ impl Purpose {
     /// The kinds of file that can be typed.
     fn takes(self) -> String {
         match self {
-            Self::Open => format!("A {} file, shape:NAME, a height image (.png, .jpg), or an environment (.hdr, .exr)", known_extensions()),
+            Self::Open => format!(
+                "A {} file, shape:NAME, a height image (.png, .jpg), or an environment (.hdr, .exr)",
+                known_extensions()
+            ),
             Self::Heights => "A .png or .jpg image".to_owned(),
             Self::Truth => format!("A {} file, or shape:NAME", known_extensions()),
             Self::Factors => "A .csv file with the factors of every triangle".to_owned(),

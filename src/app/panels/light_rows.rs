@@ -22,12 +22,9 @@ impl App {
         if has_lights {
             option_row(ui, &options::LIGHTS, settings, "");
         }
-        for option in [
-            &options::ENVIRONMENT_BRIGHTNESS,
-            &options::EXPOSURE,
-            &options::TONE_CURVE,
-            &options::LIGHT_ROTATION,
-        ] {
+        for option in
+            [&options::ENVIRONMENT_BRIGHTNESS, &options::EXPOSURE, &options::TONE_CURVE, &options::LIGHT_ROTATION]
+        {
             option_row(ui, option, settings, "");
         }
         ui.label("");

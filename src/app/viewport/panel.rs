@@ -116,7 +116,8 @@ impl App {
         if let Some(left) = document.scene.half(SplitSide::Left) {
             self.viewport.left.measuring.keep_only(document.generation, left.tessellator.generation());
         }
-        let is_ready = has_light && document.moment == moment && given == self.given.as_ref().map_or(0, |given| given.generation);
+        let is_ready =
+            has_light && document.moment == moment && given == self.given.as_ref().map_or(0, |given| given.generation);
         let shown = is_ready && self.viewport.picture.drawn.as_ref() == Some(&wanted);
         self.viewport.picture.outdated = !shown && self.viewport.picture.cancelled.is_none();
         let still = shown && !self.viewport.playback.is_playing();

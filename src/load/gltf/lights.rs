@@ -38,7 +38,8 @@ impl LightSources {
         let collected = RefCell::new(std::mem::take(notes));
         let lights = match extension.get("lights") {
             Some(Value::Array(lights)) => {
-                let light = |(i, light)| light_source(&Members::of(light, format!("{pointer}/lights/{i}"), &collected)?);
+                let light =
+                    |(i, light)| light_source(&Members::of(light, format!("{pointer}/lights/{i}"), &collected)?);
                 lights.iter().enumerate().map(light).collect()
             }
             _ => {
