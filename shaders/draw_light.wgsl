@@ -16,6 +16,19 @@ fn toward_eye(clip_from_object: mat4x4<f32>, viewport: vec2<f32>, px: vec2<f32>)
     return normalize(cross(rows[0].xyz - at.x * rows[3].xyz, rows[1].xyz - at.y * rows[3].xyz));
 }
 
+// The place in object space that a fragment is of, by its builtin position. It lies in three planes, whose equations come from rows
+// of the matrix.
+fn fragment_place(clip_from_object: mat4x4<f32>, viewport: vec2<f32>, fragment: vec4<f32>) -> vec3<f32> {
+    let at = vec2<f32>(2.0, -2.0) * fragment.xy / viewport + vec2<f32>(-1.0, 1.0);
+    let rows = transpose(clip_from_object);
+    let a = rows[0] - at.x * rows[3];
+    let b = rows[1] - at.y * rows[3];
+    let c = rows[2] - fragment.z * rows[3];
+    let bc = cross(b.xyz, c.xyz);
+    let sum = a.w * bc + b.w * cross(c.xyz, a.xyz) + c.w * cross(a.xyz, b.xyz);
+    return -sum / dot(a.xyz, bc);
+}
+
 // How bright a matte white surface is.
 fn brightness(lights: Lights, normal: vec3<f32>) -> f32 {
     let key = max(dot(normal, lights.key), 0.0);

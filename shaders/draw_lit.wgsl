@@ -26,7 +26,11 @@ fn lit_vertex(
 
 fn lit_color(in: LitVaryings, normal: vec3<f32>, front: bool) -> vec4<f32> {
     let to_eye = toward_eye(lit_frame.clip_from_object, lit_frame.viewport, in.clip.xy);
-    let place = surface_place(in.uv, in.weights, in.patch_index, normal, front, to_eye);
+    var position: vec3<f32>;
+    if LIGHT_COUNT > 0u {
+        position = fragment_place(lit_frame.clip_from_object, lit_frame.viewport, in.clip);
+    }
+    let place = surface_place(in.uv, in.weights, in.patch_index, normal, front, to_eye, position);
     let color = material_color(place);
     if (HAS_MASK || HAS_TRANSMISSION) && color.a == 0.0 {
         discard;

@@ -6,8 +6,8 @@ fn lit_depth_fragment(
     @builtin(front_facing) front: bool,
     @builtin(sample_index) sample: u32,
 ) -> @builtin(frag_depth) f32 {
-    // Neither the normal nor the eye matters.
-    let place = surface_place(in.uv, in.weights, in.patch_index, in.normal, front, in.normal);
+    // Neither the normal, the eye nor the position matters.
+    let place = surface_place(in.uv, in.weights, in.patch_index, in.normal, front, in.normal, in.normal);
     if !is_beyond_last(in.clip, sample) || !shows_behind(place) {
         discard;
     }
@@ -16,7 +16,11 @@ fn lit_depth_fragment(
 
 fn lit_layer(in: LitVaryings, normal: vec3<f32>, front: bool, sample: u32) -> vec4<f32> {
     let to_eye = toward_eye(lit_frame.clip_from_object, lit_frame.viewport, in.clip.xy);
-    let place = surface_place(in.uv, in.weights, in.patch_index, normal, front, to_eye);
+    var position: vec3<f32>;
+    if LIGHT_COUNT > 0u {
+        position = fragment_place(lit_frame.clip_from_object, lit_frame.viewport, in.clip);
+    }
+    let place = surface_place(in.uv, in.weights, in.patch_index, normal, front, to_eye, position);
     // Derivatives are known by now, so that what isn't shown needn't be lit.
     if !is_last(in.clip, sample) {
         discard;

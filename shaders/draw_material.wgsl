@@ -6,6 +6,8 @@ override HAS_DETAILS: bool = true;
 override HAS_COAT: bool = true;
 override HAS_MASK: bool = true;
 override HAS_TRANSMISSION: bool = true;
+// Lights of the file that shine.
+override LIGHT_COUNT: u32 = MOST_LIGHTS;
 
 // One element for each corner, if HAS_DETAILS.
 @group(0) @binding(9) var<storage, read> corner_details: array<CornerDetail>;
@@ -22,6 +24,7 @@ override HAS_TRANSMISSION: bool = true;
 @group(1) @binding(10) var emissive_sampler: sampler;
 @group(1) @binding(11) var transmission_texture: texture_2d<f32>;
 @group(1) @binding(12) var transmission_sampler: sampler;
+@group(1) @binding(20) var<uniform> lights: array<PunctualLight, MOST_LIGHTS>;
 
 // The order of Material.maps.
 const SLOT_METALLIC_ROUGHNESS: u32 = 0u;
@@ -65,6 +68,8 @@ struct SurfacePlace {
     normal: vec3<f32>,
     front: bool,
     to_eye: vec3<f32>,
+    // In object space, if LIGHT_COUNT isn't 0.
+    position: vec3<f32>,
 }
 
 // CornerDetail in the middle of a pixel, and how its texture coordinates change.
@@ -84,6 +89,7 @@ fn surface_place(
     normal: vec3<f32>,
     front: bool,
     to_eye: vec3<f32>,
+    position: vec3<f32>,
 ) -> SurfacePlace {
     let right = dpdx(weights);
     let below = dpdy(weights);
@@ -96,6 +102,7 @@ fn surface_place(
         normal,
         front,
         to_eye,
+        position,
     );
 }
 
@@ -186,6 +193,16 @@ fn look_at(place: SurfacePlace, detail: PlaceDetail, base: vec3<f32>) -> LookAt 
     return look;
 }
 
+// Radiance towards the eye of what the lights of the file shine on.
+fn lights_reflection(look: LookAt, normal: vec3<f32>, place: SurfacePlace) -> vec3<f32> {
+    var sum = vec3<f32>(0.0);
+    for (var i = 0u; i < LIGHT_COUNT; i++) {
+        let light = direct_light(lights[i], place.position);
+        sum += light.illuminance * direct_reflection(look, normal, place.to_eye, light.to_light);
+    }
+    return sum;
+}
+
 fn base_color(place: SurfacePlace, detail: PlaceDetail) -> vec4<f32> {
     return material.base_color * detail.color * texel(base_texture, base_sampler, place.own);
 }
@@ -235,7 +252,10 @@ fn surface_radiance(
     if HAS_MAPS {
         emitted *= texel(emissive_texture, emissive_sampler, map_place(place, detail, SLOT_EMISSIVE)).rgb;
     }
-    let radiance = ambient_reflection(look, normal, place.to_eye) + emitted * coat_transmission(look, place.to_eye);
+    var radiance = ambient_reflection(look, normal, place.to_eye) + emitted * coat_transmission(look, place.to_eye);
+    if LIGHT_COUNT > 0u {
+        radiance += lights_reflection(look, normal, place);
+    }
     return select(exposed(radiance), base, material.unlit > 0.5);
 }
 

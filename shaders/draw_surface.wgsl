@@ -369,7 +369,12 @@ fn pixel_lit_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) 
 
 fn lit_surface_color(in: Varyings, normal: vec3<f32>, front: bool) -> vec4<f32> {
     let to_eye = toward_eye(frame.clip_from_object, frame.viewport, in.clip.xy);
-    let own = material_color(surface_place(in.uv, in.domain.xy, in.patch_index, normalize(normal), front, to_eye));
+    var position: vec3<f32>;
+    if LIGHT_COUNT > 0u {
+        position = fragment_place(frame.clip_from_object, frame.viewport, in.clip);
+    }
+    let place = surface_place(in.uv, in.domain.xy, in.patch_index, normalize(normal), front, to_eye, position);
+    let own = material_color(place);
     let color = surface_color(in, normal, front, vec4<f32>(own.rgb, 1.0));
     if (HAS_MASK || HAS_TRANSMISSION) && own.a == 0.0 {
         discard;

@@ -57,8 +57,12 @@ impl<T: Copy + PartialEq> History<T> {
 impl History<Settings> {
     /// Sets displacement in all steps, because it follows from the mesh and can't be undone.
     pub(super) fn displace(&mut self, displacement: Displacement) {
-        let all = self.now.iter_mut().chain(&mut self.past).chain(&mut self.future);
-        all.for_each(|settings| settings.tessellation.displacement = displacement);
+        self.change_all(|settings| settings.tessellation.displacement = displacement);
+    }
+
+    /// Changes all steps, by what no step can undo.
+    pub(super) fn change_all(&mut self, change: impl Fn(&mut Settings)) {
+        self.now.iter_mut().chain(&mut self.past).chain(&mut self.future).for_each(change);
     }
 }
 

@@ -29,6 +29,7 @@ use dialogs::Dialogs;
 use history::{History, ViewHistory};
 use jobs::Jobs;
 use jobs::document::Document;
+use jobs::environment_job::OpenEnvironment;
 use jobs::given_factors::GivenFactors;
 use jobs::matcap::ChosenMatcap;
 use jobs::truth::ChosenTruth;
@@ -54,6 +55,8 @@ pub struct App {
     given: Option<GivenFactors>,
     /// A picture of a lit sphere in place of those that are made in code, if one was opened.
     matcap: Option<ChosenMatcap>,
+    /// The file of light that is open, if one is.
+    environment: Option<OpenEnvironment>,
     viewport: Viewport,
     panels: Panels,
     jobs: Jobs,
@@ -82,6 +85,7 @@ impl App {
             truth: None,
             given: None,
             matcap: None,
+            environment: None,
             panels: Panels::default(),
             jobs: Jobs { limits, ..Jobs::default() },
             dialogs: Dialogs::default(),
@@ -176,6 +180,7 @@ impl App {
     pub fn is_busy(&self) -> bool {
         let loads = self.jobs.load.is_some()
             || self.jobs.truth_load.is_some()
+            || self.jobs.environment.is_some()
             || self.jobs.factors.is_some()
             || self.jobs.matcap.is_some();
         let measures = self.jobs.measure.is_busy()
@@ -228,6 +233,7 @@ impl eframe::App for App {
         self.take_truth();
         self.take_factors(context);
         self.take_matcap();
+        self.take_environment();
         self.take_checks();
         self.take_explained();
         self.take_dialog(context);

@@ -10,7 +10,7 @@ use crate::engine::Preparation;
 use crate::files::Limits;
 use crate::load::{HeightSource, Source};
 use crate::render::Camera;
-use crate::settings::{Colors, Declaration, Settings, Value, options};
+use crate::settings::{Colors, Declaration, Lighting, Settings, Value, options};
 use crate::tessellate::{Displacement, Tessellation};
 
 /// What a window shows, and from where.
@@ -32,6 +32,8 @@ pub(crate) struct CopiedCommand<'a> {
     pub factors: Option<&'a Path>,
     /// The picture of a lit sphere that takes the place of that of the settings.
     pub matcap_image: Option<&'a Path>,
+    /// The file that the light comes from.
+    pub environment: Option<&'a Path>,
     /// The selected triangle's number in the mesh, from 0.
     pub triangle: Option<u32>,
     /// Whether nothing is behind the mesh, rather than the background's colour.
@@ -120,13 +122,17 @@ impl CopiedCommand<'_> {
         }
     }
 
-    /// Writes the files of factors and of a matcap, the reference surface, the selection, the pose and the camera.
+    /// Writes the files of factors, of a matcap and of light, the reference surface, the selection, the pose and the camera.
     fn view(&self, line: &mut Line) {
         if let Some(path) = self.factors {
             line.option("--factors", named(&Source::File(path.to_owned())));
         }
         if let Some(path) = self.matcap_image.filter(|_| self.settings.overlays.colors == Colors::Matcap) {
             line.option("--matcap-image", named(&Source::File(path.to_owned())));
+        }
+        let uses_file = self.settings.lighting == Lighting::Environment && self.settings.shows_materials();
+        if let Some(path) = self.environment.filter(|_| uses_file) {
+            line.option("--environment", named(&Source::File(path.to_owned())));
         }
         if let (Some(truth), None) = (self.truth, self.animation) {
             line.option("--truth", named(truth));
@@ -226,7 +232,7 @@ mod tests {
 
     use super::*;
     use crate::cli::options::PictureOptions;
-    use crate::cli::{Cli, Command, render};
+    use crate::cli::{Cli, CliError, Command, render};
     use crate::mesh::Bounds;
     use crate::settings::{Matcap, Overlays, random};
 
@@ -264,6 +270,7 @@ mod tests {
             truth: None,
             factors: None,
             matcap_image: None,
+            environment: None,
             triangle: None,
             transparent: false,
             legend: false,
@@ -353,6 +360,24 @@ mod tests {
         assert_eq!(args.shot.matcap_image.as_deref(), Some(Path::new("./-a sphere.png")));
         assert_eq!(args.shot.picture.0.overlays, overlays);
         assert_eq!(shown(&Settings::default(), Some(path)).shot.matcap_image, None, "it isn't shown");
+    }
+
+    #[test]
+    fn the_file_of_the_light_is_written_while_it_is_used() {
+        let (source, preparation) = ("shape:torus".parse().expect("a shape"), Preparation::default());
+        let (settings, camera) = (Settings { lighting: Lighting::Environment, ..Settings::default() }, camera());
+        let environment = Some(Path::new("-sky.hdr"));
+        let shown = CopiedCommand { environment, ..shown(&source, &preparation, &settings, &camera) };
+        let args = parsed(&shown.line());
+        assert_eq!(args.shot.environment.as_deref(), Some(Path::new("./-sky.hdr")));
+        assert_eq!(args.shot.picture.0.lighting, Lighting::Environment);
+        let settings = Settings { lighting: Lighting::Studio, ..settings };
+        let line = CopiedCommand { settings: &settings, ..shown }.line();
+        assert!(!line.contains("--environment"), "{line}");
+        let implied = parsed("pnaen render shape:torus -o a.png --environment sky.hdr").shot;
+        assert_eq!(implied.picture.0.lighting, Lighting::Environment);
+        let other = parsed("pnaen render shape:torus -o a.png --environment sky.hdr --lighting studio").shot;
+        assert!(other.check(&source, None, &[]).is_err_and(|error| matches!(error, CliError::Usage(_))));
     }
 
     #[test]

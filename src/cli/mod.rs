@@ -11,6 +11,7 @@ mod factors_option;
 mod gallery;
 mod info;
 mod legend;
+mod light_report;
 mod material_report;
 mod mesh_report;
 mod options;
@@ -59,6 +60,7 @@ use crate::export::ExportError;
 use crate::files::Limits;
 use crate::files::file_reason;
 use crate::gpu::GpuError;
+use crate::load::environment_file::EnvironmentError;
 use crate::load::{LoadError, MatcapError, Source};
 use crate::names::{on_one_line, shown_path};
 use crate::progress::{Cancelled, Progress};
@@ -125,6 +127,8 @@ pub(crate) enum Command {
 pub(crate) enum CliError {
     #[error(transparent)]
     Load(#[from] LoadError),
+    #[error(transparent)]
+    Environment(#[from] EnvironmentError),
     #[error(transparent)]
     Gpu(#[from] GpuError),
     #[error(transparent)]

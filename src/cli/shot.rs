@@ -13,6 +13,7 @@ use super::truth::{AccuracyStats, DeviationStats, ReferenceSurface};
 use super::{CliError, to_json, write_text};
 use crate::engine::{Engine, Loaded, MeasurementResults, Measurements, Runs};
 use crate::gpu::{GpuError, Recorder, Timing};
+use crate::load::panorama::Panorama;
 use crate::measure::{AccuracyOptions, DeviationField, patch_edges};
 use crate::mesh::{Moment, Texture, t_junctions};
 use crate::progress::Progress;
@@ -33,6 +34,8 @@ pub(crate) struct Subject {
     pub given: Option<Vec<HullFactors>>,
     /// A picture of a lit sphere in place of that of the settings, for the matcap overlay.
     pub matcap: Option<Arc<Texture>>,
+    /// The light of a file that is still to be uploaded, if the scene doesn't have it already.
+    pub environment: Option<Panorama>,
     pub settings: Settings,
     pub reference_surface: Option<ReferenceSurface>,
     /// The patch that is outlined.

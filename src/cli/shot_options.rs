@@ -6,11 +6,17 @@ use std::sync::Arc;
 use super::factors_option::FactorsFile;
 use super::options::{LodCameraOption, PictureOptions};
 use super::shot::{Shot, ShotView, Subject};
-use super::{CliError, FactorsOption, SurfaceOptions, TruthOption, file_of, file_of_heights, keep_apart, load_apart};
+use super::{
+    CliError, FactorsOption, SurfaceOptions, TruthOption, file_of, file_of_heights, keep_apart, load_apart, warn,
+};
 use crate::engine::{Engine, Loaded};
 use crate::gpu::Timing;
+use crate::load::environment_file::EnvironmentFile;
+use crate::load::panorama::Panorama;
 use crate::load::{Source, load_matcap};
-use crate::settings::{Colors, Settings};
+use crate::progress::Progress;
+use crate::render::environment::Environment;
+use crate::settings::{Colors, Lighting, Settings};
 
 #[derive(Clone, Debug, Default, clap::Args)]
 pub(crate) struct ShotOptions {
@@ -22,6 +28,10 @@ pub(crate) struct ShotOptions {
     pub given: FactorsOption,
     #[command(flatten)]
     pub picture: PictureOptions,
+    /// Panorama whose light shines in place of the studio's: a Radiance (.hdr) or OpenEXR (.exr) file, longitude across and
+    /// latitude down, with -Z in its middle
+    #[arg(long, value_name = "FILE")]
+    pub environment: Option<PathBuf>,
     #[command(flatten)]
     pub truth: TruthOption,
     /// Outline the patch of this triangle (its number in the mesh, from 0); the edges of factors 0, 1 and 2 are red, green
@@ -50,10 +60,19 @@ impl ShotOptions {
         if self.matcap_image.is_some() && self.picture.0.overlays.colors != Colors::Matcap {
             return Err(CliError::Usage("--matcap-image needs --overlay matcap, which shows it"));
         }
+        match (&self.environment, self.picture.0.lighting == Lighting::Environment) {
+            (Some(_), false) => {
+                return Err(CliError::Usage("--environment is the light of --lighting environment: choose one light"));
+            }
+            (None, true) => {
+                return Err(CliError::Usage("--lighting environment needs --environment, the file that has the light"));
+            }
+            _ => {}
+        }
         let truth = self.truth.truth.as_ref().and_then(file_of);
         let heights = file_of_heights(self.surface.height.as_ref());
         let (factors, matcap) = (self.given.given.as_deref(), self.matcap_image.as_deref());
-        let own = [file_of(file), truth, heights, factors, matcap, read];
+        let own = [file_of(file), truth, heights, factors, matcap, self.environment.as_deref(), read];
         keep_apart(own, written.iter().copied())
     }
 
@@ -73,6 +92,7 @@ impl ShotOptions {
         let is_shown = self.picture.0.overlays.colors == Colors::Deviation;
         let reference_surface = self.truth.reference_surface(&loaded, &self.surface, is_shown)?;
         let selected = self.select.map(|triangle| selected_patch(&loaded, triangle)).transpose()?;
+        let environment = self.environment.as_deref().map(|path| self.environment(path)).transpose()?;
         let (given, factors_file) = given.map(|given| (given.factors, given.stats)).unzip();
         let subject = Subject {
             moment: self.surface.animation.moment(&loaded)?,
@@ -80,12 +100,21 @@ impl ShotOptions {
             loaded,
             given,
             matcap: matcap.map(Arc::new),
+            environment,
             reference_surface,
             selected,
             more_lines: Default::default(),
             arena_bytes: self.surface.arena_bytes(),
         };
         Ok((subject, factors_file))
+    }
+
+    /// Reads the light of a file. Standard error tells what was repaired.
+    fn environment(&self, path: &Path) -> Result<Panorama, CliError> {
+        let EnvironmentFile { panorama, warnings } =
+            EnvironmentFile::load(path, &self.surface.weld.limit.limits(), &Progress::new())?;
+        warn(&warnings);
+        Ok(panorama)
     }
 
     /// Uploads the subject, and tessellates it as these options say, within the budget of triangles.
@@ -95,6 +124,9 @@ impl ShotOptions {
     pub(super) fn shot(&self, engine: Engine, mut subject: Subject) -> Result<Shot, CliError> {
         let mut scene = engine.scene(&subject.loaded, subject.arena_bytes)?;
         subject.dress(&engine, &mut scene)?;
+        if let Some(panorama) = subject.environment.take() {
+            scene.set_environment(Some(Arc::new(Environment::of_panorama(&engine.gpu, panorama)?)));
+        }
         let mesh = &subject.loaded.mesh;
         let view = ShotView {
             camera: self.surface.camera(mesh, &scene.bounds),

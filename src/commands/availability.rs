@@ -17,6 +17,8 @@ pub struct Availability {
     pub has_truth: bool,
     /// Whether factors of a file take the place of LOD's.
     pub has_factors: bool,
+    /// Whether a file of light is open.
+    pub has_environment: bool,
     pub can_undo: bool,
     pub can_redo: bool,
     /// Whether there is a view before the present one, and one after it.
@@ -64,6 +66,7 @@ impl Availability {
             has_picture: true,
             has_truth: true,
             has_factors: true,
+            has_environment: true,
             can_undo: true,
             can_redo: true,
             has_view_before: true,
@@ -130,6 +133,10 @@ pub(super) fn redo(now: &Availability) -> Option<&'static str> {
 
 pub(super) fn factors(now: &Availability) -> Option<&'static str> {
     unless(now.has_factors, "No file of factors is open.")
+}
+
+pub(super) fn environment(now: &Availability) -> Option<&'static str> {
+    unless(now.has_environment, "No environment is open.")
 }
 
 pub(super) fn view_before(now: &Availability) -> Option<&'static str> {

@@ -25,6 +25,10 @@ pub(crate) const MATCAP_IMAGE: &str =
 /// What a file of factors is for.
 const FACTORS: &str = "Opens the tessellation factors that another engine wrote, in place of those of LOD, and lists where they disagree.";
 
+/// What a file of light is for.
+pub(crate) const ENVIRONMENT: &str =
+    "Opens a panorama (.hdr or .exr) whose light shines on the mesh in place of the studio's.";
+
 const TRUTH: &str = "Opens the mesh that deviation and charts compare with, such as the high-poly original.";
 const PICTURE: &str = "Writes the picture as a PNG file, in any size, with or without background, overlays and legend.";
 const MESH: &str = "Writes the tessellated mesh as a .glb or .obj file, as it is emitted for this view.";
@@ -36,7 +40,7 @@ fn file() -> Vec<Command> {
         Command::new(
             Action::File(FileAction::OpenPath),
             "Open path…",
-            "Opens a mesh file, a shape or a height image by its typed path.",
+            "Opens a mesh file, a shape, a height image or an environment by its typed path.",
         )
         .keys([ctrl(Key::L)])
         .menu(File, 0),
@@ -81,6 +85,20 @@ fn file() -> Vec<Command> {
         )
         .menu(File, 2)
         .unless(when::factors),
+        Command::new(Action::File(FileAction::Environment), "Open environment…", ENVIRONMENT).menu(File, 2),
+        Command::new(
+            Action::File(FileAction::EnvironmentPath),
+            "Environment path…",
+            "Opens a panorama of light by its typed path.",
+        )
+        .menu(File, 2),
+        Command::new(
+            Action::File(FileAction::CloseEnvironment),
+            "Close environment",
+            "Closes the panorama of light. The studio shines again.",
+        )
+        .menu(File, 2)
+        .unless(when::environment),
     ];
     commands.extend(Shape::ALL.map(|shape| {
         let text = format!("Opens the shape {}, made in code.", shape.name());

@@ -19,7 +19,7 @@ use crate::render::Standpoint;
 
 pub(crate) use availability::{Availability, BACKS_ARE_SEEN, MOST_BOOKMARKS, NO_TEXTURE_COORDINATES};
 pub(crate) use change::Change;
-pub(crate) use fixed::{HEIGHT_IMAGE, MATCAP_IMAGE};
+pub(crate) use fixed::{ENVIRONMENT, HEIGHT_IMAGE, MATCAP_IMAGE};
 
 /// What the window does when a command is given.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,6 +80,9 @@ pub enum FileAction {
     FactorsPath,
     ForgetFactors,
     Matcap,
+    Environment,
+    EnvironmentPath,
+    CloseEnvironment,
     SavePicture,
     SavePicturePath,
     SaveTurntable,

@@ -19,6 +19,7 @@ mod glb;
 mod gltf_error;
 mod json;
 mod lenient;
+mod lights;
 mod material_lists;
 mod material_source;
 mod materials;
@@ -80,7 +81,7 @@ pub(super) fn read(
     progress: &Progress,
 ) -> Result<LoadedMesh, GltfError> {
     let budget = Budget::new(bytes.len(), limits);
-    let document::Parsed { document, blob, extensions, animations, lists, mut notes } =
+    let document::Parsed { document, blob, extensions, animations, lists, lights, mut notes } =
         document::parse(bytes, &budget, progress)?;
     progress.check()?;
     let files = Files::new(folder, limits, &budget, progress);
@@ -130,6 +131,7 @@ pub(super) fn read(
     let mut mesh = finished(name, (builder, details, binder), &mut notes, (&budget, progress))?;
     // The builder gets transformed normals of unit length, so the reader counts those that weren't in the file.
     mesh.repairs.normals_rescaled += primitives.rescaled;
+    mesh.lights = lights.shown(&placed, &mut notes);
     warnings = notes.into_warnings();
     warnings.extend(repair_warnings(&mesh.repairs));
     Ok(LoadedMesh { mesh, warnings, files: files.named(), file_bytes: budget.files() })

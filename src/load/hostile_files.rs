@@ -1,7 +1,7 @@
 //! Tests with OBJ, STL and PLY files that are broken or hostile: what the loader answers, and that it never takes long.
 
 mod mutated;
-pub(super) mod page;
+pub(in crate::load) mod page;
 mod seeds;
 mod table;
 
@@ -20,7 +20,7 @@ const LIMIT: Duration = Duration::from_secs(1);
 
 /// Returns this thread's CPU time, to which other tests on a busy machine don't add. Returns the elapsed time on systems without
 /// such a clock.
-pub(super) fn time() -> Duration {
+pub(in crate::load) fn time() -> Duration {
     static START: LazyLock<Instant> = LazyLock::new(Instant::now);
     let said = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
     let nanoseconds = said.and_then(|said| said.split(' ').next()?.parse().ok());
@@ -29,7 +29,7 @@ pub(super) fn time() -> Duration {
 
 /// Whether an error is the expected one: its variant, followed by parts of its message (the place and the numbers), all separated
 /// by ` | `. The pages in `docs/hostile` hold the whole sentences.
-pub(super) fn is_expected(error: &(impl Debug + Display), expected: &str) -> bool {
+pub(in crate::load) fn is_expected(error: &(impl Debug + Display), expected: &str) -> bool {
     let (variant, parts) = expected.split_once(" | ").unwrap_or((expected, ""));
     let debug = format!("{error:?}");
     let own = debug.split(|letter: char| !letter.is_alphanumeric()).next();
@@ -37,7 +37,7 @@ pub(super) fn is_expected(error: &(impl Debug + Display), expected: &str) -> boo
 }
 
 /// Whether a message has all these parts, which are separated by ` | `, as whole words and numbers.
-pub(super) fn mentions(message: &str, parts: &str) -> bool {
+pub(in crate::load) fn mentions(message: &str, parts: &str) -> bool {
     let in_word = |letter: Option<char>| letter.is_some_and(char::is_alphanumeric);
     let is_whole = |start: usize, part: &str| {
         let (before, after) = (&message[..start], &message[start + part.len()..]);

@@ -1,6 +1,8 @@
 //! Loads meshes from glTF, OBJ, STL and PLY files, height images and textures, within limits of file size and memory.
 //! Everything in a file is checked before it is used.
 
+#[cfg(feature = "cli")]
+pub(crate) mod environment_file;
 mod face_builder;
 mod gltf;
 pub(crate) mod heights;
@@ -13,6 +15,8 @@ mod matcap_image;
 pub(crate) mod memory_budget;
 pub(crate) mod mesh_file;
 mod obj;
+#[cfg(feature = "cli")]
+pub(crate) mod panorama;
 mod ply;
 mod read_error;
 pub(crate) mod source;

@@ -146,7 +146,12 @@ fn rebuilt(
     }
     let (made, numbers) = builder.finish_bound(mesh.name.clone(), budget, progress)?;
     let details = details.map(|(_, table)| table.into_lists(&numbers, budget)).transpose()?;
-    Ok(Mesh { repairs: mesh.repairs, details: details.map(|(details, _)| Arc::new(details)), ..made })
+    Ok(Mesh {
+        repairs: mesh.repairs,
+        details: details.map(|(details, _)| Arc::new(details)),
+        lights: mesh.lights.clone(),
+        ..made
+    })
 }
 
 /// Returns a corner of the mesh, moved to its point.

@@ -14,6 +14,7 @@ mod dominance;
 pub(crate) mod generate_normals;
 pub(crate) mod heights;
 pub(crate) mod interner;
+mod light;
 pub(crate) mod material;
 pub(crate) mod mesh_builder;
 pub(crate) mod normal_faults;
@@ -37,6 +38,7 @@ use glam::{Vec2, Vec3};
 pub use bounds::Bounds;
 pub use corner_details::{CornerDetail, CornerDetails};
 pub use heights::{HeightMap, Heights};
+pub use light::{Light, LightKind, MOST_LIGHTS};
 pub use material::{Alpha, Look, Map, MapUv, Material, Sampling, Slot, Texture, Wrap};
 pub use repairs::Repairs;
 pub use rig::clip::Clip;
@@ -88,6 +90,8 @@ pub struct Mesh {
     pub repairs: Repairs,
     /// The joints, morph targets and clips of an animated mesh.
     pub rig: Option<Arc<rig::Rig>>,
+    /// The lights of the file, at most [`MOST_LIGHTS`].
+    pub lights: Vec<Light>,
 }
 
 impl Mesh {

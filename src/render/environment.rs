@@ -9,19 +9,25 @@ use super::blur_levels::ENVIRONMENT_LEVELS;
 use super::cube_map::CubeMap;
 use super::dfg::{DFG_SIZE, dfg_table};
 use super::irradiance::{Irradiance, irradiance};
-use super::panorama::Panorama;
 use super::prefilter_pass::{REFLECTANCE, cube_view, prefilter};
 use super::studio::studio_light;
 use super::tone::TONE_CURVE_NEUTRAL;
 use crate::gpu::wgsl::{WgslFile, wgsl};
-use crate::gpu::{Gpu, GpuError, uniform_buffer};
+use crate::gpu::{Gpu, GpuError, Lazy, uniform_buffer};
+use crate::load::panorama::Panorama;
 
 static TONE: WgslFile = wgsl!("tone");
 /// A shader module that has it binds [`Environment::entries`] in group 1 from binding 16 on.
 pub(crate) static ENVIRONMENT: WgslFile = wgsl!("environment", REFLECTANCE, TONE);
 
+/// The binding of the `Surroundings` in `shaders/environment.wgsl`.
+const SURROUNDINGS_BINDING: u32 = 19;
+
 /// Width of a face of the cube map's first level, in texels.
 const ENVIRONMENT_SIZE: u32 = 128;
+
+/// Width and height of the studio's panorama, in px. Its soft boxes have edges that are five px wide.
+const STUDIO_SIZE: [u32; 2] = [512, 256];
 
 /// Twin of `Surroundings` in `shaders/environment.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -43,6 +49,8 @@ pub(crate) struct Surroundings {
 /// How an environment is turned and shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LightView {
+    /// In EV: each doubles the light from all around.
+    pub brightness: f32,
     /// By how many degrees the light is turned about +Y, from +Z towards +X.
     pub rotation: f32,
     /// In EV: each doubles what is seen.
@@ -53,7 +61,7 @@ pub(crate) struct LightView {
 
 impl Default for LightView {
     fn default() -> Self {
-        Self { rotation: 0.0, exposure: 0.0, tone_curve: TONE_CURVE_NEUTRAL }
+        Self { brightness: 0.0, rotation: 0.0, exposure: 0.0, tone_curve: TONE_CURVE_NEUTRAL }
     }
 }
 
@@ -65,6 +73,15 @@ pub(crate) struct Environment {
     sampler: wgpu::Sampler,
     dfg: wgpu::TextureView,
     irradiance: Irradiance,
+    /// That of a file comes with it; the studio's is made when it is first seen.
+    backdrop: Lazy<Backdrop>,
+}
+
+/// A panorama on the device, which is seen behind the mesh.
+#[derive(Debug)]
+pub(crate) struct Backdrop {
+    panorama: wgpu::TextureView,
+    sampler: wgpu::Sampler,
 }
 
 impl Environment {
@@ -80,19 +97,22 @@ impl Environment {
     ///
     /// # Errors
     /// Out of memory, or a lost device.
+    #[cfg(test)]
     pub(crate) fn uniform(gpu: &Gpu, light: [f32; 3]) -> Result<Self, GpuError> {
         Self::of(gpu, &CubeMap::of(ENVIRONMENT_SIZE, |_| light.into()))
     }
 
-    /// The light of a panorama of `size` (width and height) pixels in linear RGB, row by row from the top, longitude across and
-    /// latitude down. Its middle is at -Z, and +X is to the right of it. What isn't a number, or is negative, counts as black.
+    /// The light of a panorama.
     ///
     /// # Errors
     /// Out of memory, or a lost device.
-    pub(crate) fn from_panorama(gpu: &Gpu, size: [u32; 2], pixels: &[[f32; 3]]) -> Result<Self, GpuError> {
+    pub(crate) fn of_panorama(gpu: &Gpu, panorama: Panorama) -> Result<Self, GpuError> {
+        let backdrop = Lazy::default();
+        backdrop.get_or_make(gpu, || Backdrop::new(gpu, &panorama))?;
         // A quarter of a turn has at least as many pixels as a face has texels, and at most twice as many.
-        let panorama = Panorama::new(size, pixels, 4 * ENVIRONMENT_SIZE as usize);
-        Self::of(gpu, &CubeMap::of(ENVIRONMENT_SIZE, |direction| panorama.light_from(direction)))
+        let panorama = panorama.reduced(4 * ENVIRONMENT_SIZE as usize);
+        let own = Self::of(gpu, &CubeMap::of(ENVIRONMENT_SIZE, |direction| panorama.light_from(direction)))?;
+        Ok(Self { backdrop, ..own })
     }
 
     fn of(gpu: &Gpu, light: &CubeMap) -> Result<Self, GpuError> {
@@ -100,7 +120,15 @@ impl Environment {
         let (source, cube, dfg, sampler) =
             gpu.attempt(|| (upload(gpu, light), empty_cube(gpu, light.size), upload_dfg(gpu), linear_sampler(gpu)))?;
         prefilter(gpu, &source, &cube, &sampler)?;
-        Ok(Self { cube: cube_view(&cube), sampler, dfg, irradiance })
+        Ok(Self { cube: cube_view(&cube), sampler, dfg, irradiance, backdrop: Lazy::default() })
+    }
+
+    /// What is seen behind the mesh.
+    ///
+    /// # Errors
+    /// Out of memory, or a lost device.
+    pub(crate) fn backdrop(&self, gpu: &Gpu) -> Result<&Backdrop, GpuError> {
+        self.backdrop.get_or_make(gpu, || Backdrop::new(gpu, &Panorama::of(STUDIO_SIZE, studio_light)))
     }
 
     /// The `Surroundings` of a picture for which the light is turned and shown like this. Each picture has its own, so that one
@@ -145,13 +173,46 @@ impl Environment {
     }
 }
 
+impl Backdrop {
+    fn new(gpu: &Gpu, panorama: &Panorama) -> Self {
+        let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("panorama"),
+            address_mode_u: wgpu::AddressMode::Repeat,
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            ..Default::default()
+        });
+        Self { panorama: upload_panorama(gpu, panorama), sampler }
+    }
+
+    /// Layout entries of the panorama, its sampler and the `Surroundings`.
+    pub(super) fn layout_entries() -> [wgpu::BindGroupLayoutEntry; 3] {
+        let [.., panorama, surroundings] = Environment::layout_entries(SURROUNDINGS_BINDING - 3);
+        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+        [
+            wgpu::BindGroupLayoutEntry { binding: 0, ..panorama },
+            wgpu::BindGroupLayoutEntry { binding: 1, ty: sampler, ..panorama },
+            surroundings,
+        ]
+    }
+
+    /// What is bound there, with what [`Environment::surroundings`] returns.
+    pub(super) fn entries<'a>(&'a self, surroundings: &'a wgpu::Buffer) -> [wgpu::BindGroupEntry<'a>; 3] {
+        [
+            wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&self.panorama) },
+            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&self.sampler) },
+            wgpu::BindGroupEntry { binding: SURROUNDINGS_BINDING, resource: surroundings.as_entire_binding() },
+        ]
+    }
+}
+
 fn surroundings(irradiance: &Irradiance, view: &LightView) -> Surroundings {
     let light_from_object = Mat3::from_rotation_y(-view.rotation.to_radians());
     let padded = |vector: Vec3| vector.extend(0.0).to_array();
     Surroundings {
         irradiance: irradiance.map(padded),
         light_from_object: [light_from_object.x_axis, light_from_object.y_axis, light_from_object.z_axis].map(padded),
-        brightness: 1.0,
+        brightness: view.brightness.exp2(),
         exposure: view.exposure.exp2(),
         tone_curve: view.tone_curve,
         _pad: 0,
@@ -186,17 +247,39 @@ fn cube_descriptor(size: u32, levels: u32, usage: wgpu::TextureUsages) -> wgpu::
     }
 }
 
-/// Uploads all levels in half floats, whose largest number is 65,504.
+/// The bytes of a pixel in half floats, whose largest number is 65,504.
+fn half_floats(light: Vec3) -> [u8; 8] {
+    bytemuck::cast(light.min(Vec3::splat(65504.0)).extend(1.0).to_array().map(|value| f16::from_f32(value).to_bits()))
+}
+
+fn upload_panorama(gpu: &Gpu, panorama: &Panorama) -> wgpu::TextureView {
+    let [width, height] = panorama.size();
+    let bytes: Vec<u8> = panorama.pixels().iter().flat_map(|&light| half_floats(light)).collect();
+    let descriptor = wgpu::TextureDescriptor {
+        label: Some("panorama"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba16Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    };
+    let order = wgpu::util::TextureDataOrder::LayerMajor;
+    let texture = gpu.device.create_texture_with_data(&gpu.queue, &descriptor, order, &bytes);
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+/// Uploads all levels.
 fn upload(gpu: &Gpu, light: &CubeMap) -> wgpu::Texture {
-    let mut texels: Vec<[f16; 4]> = Vec::new();
+    let mut bytes: Vec<u8> = Vec::new();
     for face in 0..6 {
         for level in &light.levels {
             let of_face = level.len() / 6;
             let pixels = level[face * of_face..(face + 1) * of_face].iter();
-            texels.extend(pixels.map(|&rgb| rgb.min(Vec3::splat(65504.0)).extend(1.0).to_array().map(f16::from_f32)));
+            bytes.extend(pixels.flat_map(|&light| half_floats(light)));
         }
     }
-    let bytes: Vec<u8> = texels.iter().flatten().flat_map(|value| value.to_ne_bytes()).collect();
     let descriptor = cube_descriptor(light.size, light.levels.len() as u32, wgpu::TextureUsages::empty());
     gpu.device.create_texture_with_data(&gpu.queue, &descriptor, wgpu::util::TextureDataOrder::LayerMajor, &bytes)
 }

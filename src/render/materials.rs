@@ -4,12 +4,15 @@ use wgpu::util::DeviceExt;
 
 use super::environment::Environment;
 use super::layout::{self, LEAST_SEEN, MapPlace};
+use super::punctual::upload_lights;
 use super::textures::{Meaning, Samplers, Textures, white};
 use crate::gpu::Gpu;
 use crate::mesh::{Alpha, Map, MapUv, Material, Sampling, Slot};
 
 /// The first binding of the light in the group of a material that is lit; the same in `shaders/environment.wgsl`.
 const LIGHT_BINDING: u32 = 16;
+/// That of the lights of the file; the same in `shaders/draw_material.wgsl`.
+const FILE_LIGHTS_BINDING: u32 = 20;
 
 /// Images of a material: that of the base colour, and the maps.
 const IMAGES: usize = 1 + Slot::COUNT;
@@ -22,6 +25,8 @@ pub struct Materials {
     pub lit_layout: wgpu::BindGroupLayout,
     /// For what has no image.
     white: wgpu::TextureView,
+    /// For a mesh without lights.
+    no_lights: wgpu::Buffer,
     samplers: Samplers,
 }
 
@@ -36,15 +41,13 @@ pub struct UploadedMaterial {
 
 impl Materials {
     pub fn new(gpu: &Gpu) -> Self {
-        let own = |images| [vec![constants_entry()], image_entries(images)].concat();
+        let own = |images| [vec![uniform_entry(0)], image_entries(images)].concat();
+        let lights = [Environment::layout_entries(LIGHT_BINDING).to_vec(), vec![uniform_entry(FILE_LIGHTS_BINDING)]];
         Self {
             layout: bind_group_layout(gpu, "material", &own(1)),
-            lit_layout: bind_group_layout(
-                gpu,
-                "lit material",
-                &[own(IMAGES), Environment::layout_entries(LIGHT_BINDING).to_vec()].concat(),
-            ),
+            lit_layout: bind_group_layout(gpu, "lit material", &[own(IMAGES), lights.concat()].concat()),
             white: white(gpu),
+            no_lights: upload_lights(gpu, &[]),
             samplers: Samplers::default(),
         }
     }
@@ -75,18 +78,19 @@ impl Materials {
         UploadedMaterial { group, constants, images }
     }
 
-    /// The bind groups of materials that a light shines on.
+    /// The bind groups of materials that a light shines on, and the lights of a file, if there are any.
     pub(super) fn lit_groups(
         &self,
         gpu: &Gpu,
         materials: &[UploadedMaterial],
-        environment: &Environment,
-        surroundings: &wgpu::Buffer,
+        (environment, surroundings): (&Environment, &wgpu::Buffer),
+        lights: Option<&wgpu::Buffer>,
     ) -> Vec<wgpu::BindGroup> {
-        let light = environment.entries(LIGHT_BINDING, surroundings);
+        let lights = entry(FILE_LIGHTS_BINDING, lights.unwrap_or(&self.no_lights).as_entire_binding());
+        let light = [&environment.entries(LIGHT_BINDING, surroundings)[..], &[lights]].concat();
         let group = |own: &UploadedMaterial| {
             let constants = vec![entry(0, own.constants.as_entire_binding())];
-            let entries = [constants, entries_of(&own.images), light.to_vec()].concat();
+            let entries = [constants, entries_of(&own.images), light.clone()].concat();
             bind_group(gpu, "lit material", &self.lit_layout, &entries)
         };
         materials.iter().map(group).collect()
@@ -138,9 +142,9 @@ fn map_place(map: Option<&Map>) -> MapPlace {
     }
 }
 
-fn constants_entry() -> wgpu::BindGroupLayoutEntry {
+fn uniform_entry(binding: u32) -> wgpu::BindGroupLayoutEntry {
     let ty = wgpu::BufferBindingType::Uniform;
-    layout_entry(0, wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None })
+    layout_entry(binding, wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None })
 }
 
 /// A texture and a sampler for each of so many images.

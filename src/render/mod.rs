@@ -6,7 +6,6 @@ mod coverage;
 pub(crate) mod cube_map;
 mod deviation;
 pub(crate) mod dfg;
-#[allow(dead_code, reason = "files of light aren't read yet")]
 pub(crate) mod environment;
 mod frame;
 mod framing;
@@ -23,11 +22,11 @@ mod marks;
 pub(crate) mod matcap;
 mod materials;
 mod needs;
-mod panorama;
 mod pick;
 mod pipelines;
 pub(crate) mod prefilter;
 pub(crate) mod prefilter_pass;
+pub(crate) mod punctual;
 #[cfg(test)]
 pub(crate) mod reflectance;
 mod renderer;
@@ -57,11 +56,12 @@ pub(crate) use target::samples;
 
 /// The shader files with entry points for drawing and picking, and the light that draws read. Each makes one shader module.
 #[cfg(test)]
-static MODULES: [&crate::gpu::WgslFile; 12] = [
+static MODULES: [&crate::gpu::WgslFile; 13] = [
     &coverage::PASS_COVERAGE,
     &environment::ENVIRONMENT,
     &leaks::DRAW_LEAKS,
     &pick::DRAW_PICK,
+    &pipelines::DRAW_BACKGROUND,
     &pipelines::DRAW_GROUND,
     &pipelines::DRAW_LINES,
     &pipelines::DRAW_LIT,

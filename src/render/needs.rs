@@ -1,6 +1,7 @@
 //! What the shader that lights a mesh's materials must have.
 
-use crate::mesh::{Alpha, Material, Mesh};
+use crate::mesh::{Alpha, MOST_LIGHTS, Material, Mesh};
+use crate::settings::{FileLights, Settings};
 
 /// What a mesh's materials need of the shader that lights them. What they don't need is left out of it when its pipeline is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -15,16 +16,20 @@ pub(super) struct Needs {
     pub mask: bool,
     /// Light that goes through.
     pub transmission: bool,
+    /// How many lights of the file shine.
+    pub lights: usize,
 }
 
 impl Needs {
     /// Everything that any mesh needs.
-    pub(super) const ALL: Self = Self { maps: true, details: true, coat: true, mask: true, transmission: true };
+    pub(super) const ALL: Self =
+        Self { maps: true, details: true, coat: true, mask: true, transmission: true, lights: MOST_LIGHTS };
 
-    /// What a mesh needs.
-    pub(super) fn of(mesh: &Mesh) -> Self {
+    /// What a mesh needs under these settings.
+    pub(super) fn of(mesh: &Mesh, settings: &Settings) -> Self {
+        let lights = if settings.lights == FileLights::On { mesh.lights.len().min(MOST_LIGHTS) } else { 0 };
         let details = mesh.details.is_some();
-        let mut needs = Self { maps: false, details, coat: false, mask: false, transmission: false };
+        let mut needs = Self { maps: false, details, coat: false, mask: false, transmission: false, lights };
         for look in mesh.materials.iter().map(|material| &material.look) {
             needs.maps |= look.maps.iter().any(Option::is_some);
             needs.coat |= look.clearcoat > 0.0;
@@ -36,14 +41,15 @@ impl Needs {
 
     /// The values of the constants of `shaders/draw_material.wgsl`.
     pub(super) fn constants(self) -> [(&'static str, f64); 5] {
+        let switch = |is_needed| f64::from(u8::from(is_needed));
         [
-            ("HAS_MAPS", self.maps),
-            ("HAS_DETAILS", self.details),
-            ("HAS_COAT", self.coat),
-            ("HAS_MASK", self.mask),
-            ("HAS_TRANSMISSION", self.transmission),
+            ("HAS_MAPS", switch(self.maps)),
+            ("HAS_DETAILS", switch(self.details)),
+            ("HAS_COAT", switch(self.coat)),
+            ("HAS_MASK", switch(self.mask)),
+            ("HAS_TRANSMISSION", switch(self.transmission)),
+            ("LIGHT_COUNT", self.lights as f64),
         ]
-        .map(|(name, is_needed)| (name, f64::from(u8::from(is_needed))))
     }
 }
 
@@ -54,32 +60,41 @@ pub(super) fn has_layers(mesh: &Mesh) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+
     use super::*;
-    use crate::mesh::{Look, Shape};
+    use crate::mesh::{Light, LightKind, Look, Shape};
 
     #[test]
     fn a_mesh_needs_what_any_of_its_materials_does() {
         let mut mesh = Shape::CubeSplit.build();
-        let nothing = Needs { maps: false, details: false, coat: false, mask: false, transmission: false };
-        assert_eq!(Needs::of(&mesh), nothing);
+        let settings = Settings::default();
+        let nothing =
+            Needs { maps: false, details: false, coat: false, mask: false, transmission: false, lights: 0 };
+        assert_eq!(Needs::of(&mesh, &settings), nothing);
         let mut coated = Material::plain("coated", [1.0; 4]);
         coated.look.clearcoat = 0.5;
         mesh.materials.push(coated);
-        assert_eq!(Needs::of(&mesh), Needs { coat: true, ..nothing });
+        assert_eq!(Needs::of(&mesh, &settings), Needs { coat: true, ..nothing });
         let mut leaves = Material::plain("leaves", [1.0; 4]);
         leaves.look.alpha = Alpha::Mask(0.5);
         mesh.materials.push(leaves);
-        assert_eq!(Needs::of(&mesh), Needs { coat: true, mask: true, ..nothing });
+        assert_eq!(Needs::of(&mesh, &settings), Needs { coat: true, mask: true, ..nothing });
         assert!(!has_layers(&mesh));
         let mut glass = Material::plain("glass", [1.0; 4]);
         glass.look.transmission = 1.0;
         let mut painted = glass.clone();
         painted.look.unlit = true;
         mesh.materials = vec![painted];
-        assert_eq!((Needs::of(&mesh), has_layers(&mesh)), (nothing, false));
+        assert_eq!((Needs::of(&mesh, &settings), has_layers(&mesh)), (nothing, false));
         mesh.materials.push(glass);
-        assert_eq!((Needs::of(&mesh), has_layers(&mesh)), (Needs { transmission: true, ..nothing }, true));
+        assert_eq!((Needs::of(&mesh, &settings), has_layers(&mesh)), (Needs { transmission: true, ..nothing }, true));
         mesh.materials[1].look = Look { alpha: Alpha::Blend, ..Look::default() };
-        assert_eq!((Needs::of(&mesh), has_layers(&mesh)), (Needs { mask: true, ..nothing }, true));
+        assert_eq!((Needs::of(&mesh, &settings), has_layers(&mesh)), (Needs { mask: true, ..nothing }, true));
+        let sun =
+            Light { kind: LightKind::Directional, intensity: Vec3::ONE, place: Vec3::ZERO, direction: Vec3::NEG_Y };
+        mesh.lights = vec![sun; 3];
+        assert_eq!(Needs::of(&mesh, &settings).lights, 3);
+        assert_eq!(Needs::of(&mesh, &Settings { lights: FileLights::Off, ..settings }).lights, 0);
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::environment::ENVIRONMENT;
+use super::environment::{Backdrop, ENVIRONMENT};
 use super::look::Look;
 use super::materials::Materials;
 use super::needs::Needs;
@@ -17,13 +17,16 @@ use crate::gpu::{Gpu, GpuError, Lazy, ShaderModule, VERTEX_HALF};
 use crate::settings::{Choice, NormalsAt};
 
 pub(super) static DRAW_TYPES: WgslFile = wgsl!("draw_types", TYPES);
+pub(super) static DRAW_BACKGROUND: WgslFile = wgsl!("draw_background", DRAW_TYPES, ENVIRONMENT, REFLECTANCE);
 static DRAW_DENSITY: WgslFile = wgsl!("draw_density");
 pub(super) static DRAW_GROUND: WgslFile = wgsl!("draw_ground", DRAW_DENSITY, DRAW_TYPES);
 static DRAW_LIGHT: WgslFile = wgsl!("draw_light");
 pub(super) static DRAW_LIT: WgslFile =
     wgsl!("draw_lit", DRAW_LIGHT, DRAW_MATERIAL, DRAW_NORMAL, DRAW_TYPES, OCTAHEDRAL_NORMAL, SURFACE, TYPES);
 static DRAW_LOOKS: WgslFile = wgsl!("draw_looks", DRAW_DENSITY);
-static DRAW_MATERIAL: WgslFile = wgsl!("draw_material", DRAW_NORMAL, DRAW_TYPES, ENVIRONMENT, REFLECTANCE, TYPES);
+static PUNCTUAL: WgslFile = wgsl!("punctual");
+static DRAW_MATERIAL: WgslFile =
+    wgsl!("draw_material", DRAW_NORMAL, DRAW_TYPES, ENVIRONMENT, PUNCTUAL, REFLECTANCE, TYPES);
 static DRAW_NORMAL: WgslFile = wgsl!("draw_normal", FACTORS, LOAD_NET, LOADS, NORMAL, TYPES);
 pub(super) static DRAW_PLAIN: WgslFile =
     wgsl!("draw_plain", DRAW_LIGHT, DRAW_NORMAL, DRAW_TYPES, OCTAHEDRAL_NORMAL, SURFACE, TYPES);
@@ -87,6 +90,8 @@ pub(super) enum Draw {
     LookSource(Look),
     /// Triangles with such materials where they show what is behind them.
     Layer(LayerDraw, Triangles, NormalsAt, Needs),
+    /// The light from all around, behind everything.
+    Background,
     /// The grid on the ground.
     Ground,
     /// Lines over the mesh.
@@ -162,7 +167,7 @@ impl Draw {
     }
 
     /// Those that don't draw layers.
-    const OTHERS: [Self; 33] = [
+    const OTHERS: [Self; 34] = [
         Self::Plain(Faces::Both),
         Self::Plain(Faces::Fronts),
         Self::Textured(Faces::Both),
@@ -191,6 +196,7 @@ impl Draw {
         Self::LitPulled(Faces::Both, NormalsAt::Pixels, Needs::ALL),
         Self::LitPulled(Faces::Fronts, NormalsAt::Pixels, Needs::ALL),
         Self::LitSource(Needs::ALL),
+        Self::Background,
         Self::Ground,
         Self::Lines(Occluded::Through),
         Self::Lines(Occluded::InSight),
@@ -252,6 +258,7 @@ impl Draw {
             Self::LitIndexed(_, places, _) => ("indexed_vertex", lit_surface(places)),
             Self::LitPulled(_, places, _) => ("pulled_vertex", lit_surface(places)),
             Self::LitSource(_) => ("source_vertex", "lit_surface_fragment"),
+            Self::Background => ("background_vertex", "background_fragment"),
             Self::Ground => ("ground_vertex", "ground_fragment"),
             Self::Lines(Occluded::Through) => ("hidden_line_vertex", line(Occluded::Through)),
             Self::Lines(Occluded::InSight) => ("line_vertex", line(Occluded::InSight)),
@@ -274,7 +281,8 @@ impl Draw {
             }
             Self::Pulled(..) | Self::LitPulled(..) | Self::LookPulled(..) => Vec::new(),
             Self::Layer(_, Triangles::Pulled | Triangles::Source, ..) => Vec::new(),
-            Self::Source | Self::LitSource(_) | Self::LookSource(_) | Self::Ground => Vec::new(),
+            Self::Source | Self::LitSource(_) | Self::LookSource(_) => Vec::new(),
+            Self::Background | Self::Ground => Vec::new(),
             Self::Lines(_) => vec![Some(wgpu::VertexBufferLayout {
                 array_stride: size_of::<LineSegment>() as u64,
                 step_mode: wgpu::VertexStepMode::Instance,
@@ -291,6 +299,8 @@ impl Draw {
             Self::Layer(LayerDraw::Over | LayerDraw::Filter | LayerDraw::Add, ..) => return None,
             Self::Layer(LayerDraw::Toward, ..) => wgpu::CompareFunction::Less,
             Self::Lines(Occluded::Through) | Self::Normals(Occluded::Through) => wgpu::CompareFunction::Always,
+            // It is first, and at the far end.
+            Self::Background => wgpu::CompareFunction::Always,
             _ => wgpu::CompareFunction::Greater,
         };
         Some(wgpu::DepthStencilState {
@@ -386,6 +396,8 @@ pub(super) struct DrawPipelines {
     material_layout: wgpu::BindGroupLayout,
     /// Group 1 where materials are lit: all of a material, and the light.
     lit_layout: wgpu::BindGroupLayout,
+    /// Group 1 of the background: a panorama, its sampler, and how the light is shown.
+    pub background_layout: wgpu::BindGroupLayout,
     /// Group 2: the slab of the chunk that is drawn, and the factors of the slab's patches.
     pub chunk_layout: wgpu::BindGroupLayout,
     /// Group 3: what was measured of a chunk's triangles, their distances to the reference surface, and of patches, their own
@@ -398,6 +410,7 @@ pub(super) struct DrawPipelines {
     lit: ShaderModule,
     surface: ShaderModule,
     layers: ShaderModule,
+    background: ShaderModule,
     ground: ShaderModule,
     lines: ShaderModule,
     pipelines: Mutex<HashMap<Draw, Arc<Lazy<wgpu::RenderPipeline>>>>,
@@ -411,6 +424,7 @@ impl DrawPipelines {
             scene_layout: scene_layout(gpu),
             material_layout: materials.layout.clone(),
             lit_layout: materials.lit_layout.clone(),
+            background_layout: background_layout(gpu),
             chunk_layout: chunk_layout(gpu),
             measured_layout: measured_layout(gpu),
             layer_layout: layer_layout(gpu, is_multisampled),
@@ -418,6 +432,7 @@ impl DrawPipelines {
             lit: ShaderModule::new(&DRAW_LIT),
             surface: ShaderModule::new(&DRAW_SURFACE),
             layers: ShaderModule::new(if is_multisampled { &LAYERS_MULTISAMPLED } else { &LAYERS_SINGLE }),
+            background: ShaderModule::new(&DRAW_BACKGROUND),
             ground: ShaderModule::new(&DRAW_GROUND),
             lines: ShaderModule::new(&DRAW_LINES),
             pipelines: Default::default(),
@@ -436,6 +451,7 @@ impl DrawPipelines {
             Draw::LitIndexed(..) | Draw::LitPulled(..) | Draw::LitSource(_) => &self.surface,
             Draw::LookIndexed(..) | Draw::LookPulled(..) | Draw::LookSource(_) => &self.surface,
             Draw::Layer(..) => &self.layers,
+            Draw::Background => &self.background,
             Draw::Ground => &self.ground,
             Draw::Lines(_) | Draw::Normals(_) => &self.lines,
         };
@@ -461,6 +477,7 @@ impl DrawPipelines {
             Draw::LitSource(_) => vec![scene, lit, None, deviation],
             Draw::Layer(_, Triangles::Lit | Triangles::Source, ..) => vec![scene, lit, None, layer],
             Draw::Layer(_, Triangles::Indexed | Triangles::Pulled, ..) => vec![scene, lit, chunk, layer],
+            Draw::Background => vec![scene, Some(&self.background_layout)],
             Draw::Ground | Draw::Lines(_) => vec![scene],
             Draw::Normals(_) => vec![scene, None, chunk],
         }
@@ -487,6 +504,12 @@ fn chunk_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
 
 fn measured_entries() -> [wgpu::BindGroupLayoutEntry; 2] {
     [buffer_entry(0, READ, wgpu::ShaderStages::FRAGMENT), buffer_entry(1, READ, wgpu::ShaderStages::VERTEX)]
+}
+
+fn background_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+    let entries = Backdrop::layout_entries();
+    gpu.device
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("background"), entries: &entries })
 }
 
 fn measured_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {

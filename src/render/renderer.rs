@@ -3,6 +3,7 @@
 mod layer_passes;
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use self::layer_passes::layer_draws;
 use super::coverage::{Coverage, CoveragePipelines};
@@ -23,14 +24,14 @@ use super::{Camera, Scene, Target};
 use crate::gpu::layout::DrawArgs;
 use crate::gpu::{ChunkBuffers, Gpu, GpuError, Lazy, Recorder, bind_group};
 use crate::mesh::{Mesh, Texture};
-use crate::settings::{Colors, NormalsAt, Overlays, Settings, SplitSide, ToneCurve};
+use crate::settings::{Colors, Lighting, NormalsAt, Overlays, Settings, SplitSide, ToneCurve};
 use crate::tessellate::CoverageView;
 
 /// Draws pictures of any scene on a device. Its pipelines are made when they are first needed.
 pub struct Renderer {
     gpu: Gpu,
     materials: Materials,
-    studio: Lazy<Environment>,
+    studio: Lazy<Arc<Environment>>,
     matcaps: Matcaps,
     pipelines: DrawPipelines,
     coverage: CoveragePipelines,
@@ -71,7 +72,7 @@ impl Renderer {
     pub(crate) fn lit_by(gpu: &Gpu, environment: Environment) -> Self {
         let renderer = Self::new(gpu);
         // There is none yet, so that nothing fails.
-        let _ = renderer.studio.get_or_try_make(|| Ok(environment));
+        let _ = renderer.studio.get_or_try_make(|| Ok(Arc::new(environment)));
         renderer
     }
 
@@ -96,7 +97,7 @@ impl Renderer {
         } else {
             Faces::Both
         };
-        if settings.shows_materials() {
+        if settings.shows_materials() && settings.lighting == Lighting::Studio {
             self.studio()?;
         }
         if settings.overlays.colors == Colors::Matcap {
@@ -117,6 +118,7 @@ impl Renderer {
             scene.tessellator.prepare_own_least(settings.tessellation.partitioning)?;
         }
         draws.extend(layer_draws(settings, scene.tessellator.mesh()));
+        draws.extend(settings.shows_environment().then_some(Draw::Background));
         draws.extend(settings.overlays.grid.then_some(Draw::Ground));
         if settings.overlays.normals {
             draws.extend([Occluded::Through, Occluded::InSight].map(Draw::Normals));
@@ -170,15 +172,20 @@ impl Renderer {
         settings: &Settings,
         range: Range<usize>,
     ) -> Result<(), GpuError> {
+        let light = self.light(scene, settings)?;
         let picture = Picture {
             target,
             settings,
             rects: halves(target.size, settings.split),
             frames: SplitSide::BOTH
                 .map(|half| scene.half(half).map(|half| frame(&self.gpu, half, target, camera, settings))),
-            materials: self.material_groups(scene, settings)?,
+            materials: self.material_groups(scene, settings, light.as_ref())?,
         };
         let Picture { rects, frames, materials, .. } = &picture;
+        let background = match &light {
+            Some(light) if settings.shows_environment() && !target.is_transparent() => Some(self.background(light)?),
+            _ => None,
+        };
         let steps = steps(scene, settings);
         let ground_step = ground_step(&steps, scene, camera);
         let runs = runs(scene, &steps);
@@ -218,6 +225,11 @@ impl Renderer {
             let normals = if let Step::Normals(..) = step { Some(self.line_pipelines(Draw::Normals)?) } else { None };
             recorder.render("draw", Some(color), Some(target.depth(first)), |pass| {
                 pass.set_bind_group(0, &group, &[]);
+                if let Some((pipeline, group)) = background.as_ref().filter(|_| first) {
+                    pass.set_pipeline(pipeline);
+                    pass.set_bind_group(1, group, &[]);
+                    pass.draw(0..3, 0..1);
+                }
                 if let Some(source) = &source {
                     pass.set_bind_group(3, &self.measured_group(scene, None), &[]);
                     self.draw_source(pass, source, scene, materials, rects[SplitSide::Left as usize]);
@@ -255,23 +267,48 @@ impl Renderer {
     }
 
     /// The light of a studio, which is made at the first call.
-    fn studio(&self) -> Result<&Environment, GpuError> {
-        self.studio.get_or_try_make(|| Environment::studio(&self.gpu))
+    fn studio(&self) -> Result<&Arc<Environment>, GpuError> {
+        self.studio.get_or_try_make(|| Environment::studio(&self.gpu).map(Arc::new))
     }
 
-    /// The bind groups of a scene's materials for a picture with these settings.
-    fn material_groups(&self, scene: &Scene, settings: &Settings) -> Result<Vec<wgpu::BindGroup>, GpuError> {
+    /// The light from all around of a picture with these settings; none if no material needs it.
+    fn light(&self, scene: &Scene, settings: &Settings) -> Result<Option<PictureLight>, GpuError> {
+        if !settings.shows_materials() {
+            return Ok(None);
+        }
+        let environment = match &scene.environment {
+            Some(environment) if settings.lighting == Lighting::Environment => environment.clone(),
+            _ => self.studio()?.clone(),
+        };
+        let surroundings = environment.surroundings(&self.gpu, &light_view(settings));
+        Ok(Some(PictureLight { environment, surroundings }))
+    }
+
+    /// The bind groups of a scene's materials for a picture with these settings, in this light.
+    fn material_groups(
+        &self,
+        scene: &Scene,
+        settings: &Settings,
+        light: Option<&PictureLight>,
+    ) -> Result<Vec<wgpu::BindGroup>, GpuError> {
         if settings.overlays.colors == Colors::Matcap {
             let own = scene.matcap.as_ref().map(|picture| &picture.0);
             let group = own.map_or_else(|| self.matcaps.group(&self.gpu, &self.materials, settings.matcap), Ok)?;
             return Ok(vec![group.clone(); scene.materials.len()]);
         }
-        if !settings.shows_materials() {
+        let Some(PictureLight { environment, surroundings }) = light else {
             return Ok(scene.materials.iter().map(|own| own.group.clone()).collect());
-        }
-        let studio = self.studio()?;
-        let surroundings = studio.surroundings(&self.gpu, &light_view(settings));
-        Ok(self.materials.lit_groups(&self.gpu, &scene.materials, studio, &surroundings))
+        };
+        let lights = scene.lights.as_ref();
+        Ok(self.materials.lit_groups(&self.gpu, &scene.materials, (environment, surroundings), lights))
+    }
+
+    /// The pipeline and the bind group that draw this light behind everything.
+    fn background(&self, light: &PictureLight) -> Result<(wgpu::RenderPipeline, wgpu::BindGroup), GpuError> {
+        let entries = light.environment.backdrop(&self.gpu)?.entries(&light.surroundings);
+        let layout = &self.pipelines.background_layout;
+        let descriptor = wgpu::BindGroupDescriptor { label: Some("background"), layout, entries: &entries };
+        Ok((self.get(Draw::Background)?, self.gpu.device.create_bind_group(&descriptor)))
     }
 
     /// The pipelines for lines: first for all of them, faintly, then for the parts in sight.
@@ -444,7 +481,7 @@ fn surface_draws(settings: &Settings, mesh: &Mesh, faces: Faces) -> ([Draw; 2], 
                 Triangles::Indexed => Draw::LitIndexed,
                 _ => Draw::Lit,
             };
-            [draw(faces, places, Needs::of(mesh)); 2]
+            [draw(faces, places, Needs::of(mesh, settings)); 2]
         }
         (Triangles::Pulled, Some(look)) => [Draw::LookPulled(faces, places, look); 2],
         (_, Some(look)) => [Draw::LookIndexed(faces, places, look); 2],
@@ -481,7 +518,7 @@ fn ground_step(steps: &[Step], scene: &Scene, camera: &Camera) -> usize {
 /// The pipeline for input triangles.
 fn source_draw(settings: &Settings, mesh: &Mesh) -> Draw {
     match Look::of(settings.overlays.colors) {
-        _ if settings.shows_materials() => Draw::LitSource(Needs::of(mesh)),
+        _ if settings.shows_materials() => Draw::LitSource(Needs::of(mesh, settings)),
         Some(look) => Draw::LookSource(look),
         None => Draw::Source,
     }
@@ -490,6 +527,7 @@ fn source_draw(settings: &Settings, mesh: &Mesh) -> Draw {
 /// How settings turn and show the light.
 fn light_view(settings: &Settings) -> LightView {
     LightView {
+        brightness: settings.environment_brightness,
         rotation: settings.light_rotation,
         exposure: settings.exposure,
         tone_curve: match settings.tone_curve {
@@ -534,6 +572,13 @@ struct Picture<'a> {
     frames: [Option<wgpu::Buffer>; 2],
     /// The bind groups of the scene's materials.
     materials: Vec<wgpu::BindGroup>,
+}
+
+/// The light from all around in a picture.
+struct PictureLight {
+    environment: Arc<Environment>,
+    /// Says how it is turned and shown.
+    surroundings: wgpu::Buffer,
 }
 
 /// How emitted triangles are drawn.

@@ -9,9 +9,11 @@ use wgpu::util::DeviceExt;
 use super::Scale;
 use super::coverage::Coverage;
 use super::deviation::Deviations;
+use super::environment::Environment;
 use super::layout::linear;
 use super::matcap::MatcapPicture;
 use super::materials::{Materials, UploadedMaterial};
+use super::punctual::upload_lights;
 use crate::gpu::{ComputePipelines, Gpu, GpuError, Tessellator};
 use crate::measure::DeviationField;
 use crate::mesh::{Bounds, Mesh, Moment, Topology};
@@ -27,6 +29,10 @@ pub struct Scene {
     /// See [`ulp`].
     pub(super) ulp: f32,
     pub(super) materials: Vec<UploadedMaterial>,
+    /// The lights of the file, if it has some.
+    pub(super) lights: Option<wgpu::Buffer>,
+    /// The light of a file, if one is open.
+    pub(super) environment: Option<Arc<Environment>>,
     pub(super) lines: Option<(wgpu::Buffer, u32)>,
     /// Made when a picture first has enough triangles.
     pub(super) coverage: Option<Coverage>,
@@ -77,14 +83,16 @@ impl Scene {
         let tessellator = Tessellator::new(gpu, pipelines, mesh.clone(), topology, arena_bytes)?;
         let materials = materials.upload(gpu, &mesh.materials);
         let ulp = ulp(tessellator.topology()) as f32;
-        Ok(Self::at_rest(tessellator, mesh.bounds(), ulp, materials))
+        let lights = (!mesh.lights.is_empty()).then(|| upload_lights(gpu, &mesh.lights));
+        Ok(Self { lights, ..Self::at_rest(tessellator, mesh.bounds(), ulp, materials) })
     }
 
     /// Makes a scene of the same mesh for [`Self::set_left`], on any thread. It shares the mesh, topology and images.
     pub fn beside(&self, arena_bytes: u64) -> impl FnOnce() -> Result<Self, GpuError> + Send + use<> {
         let tessellator = self.tessellator.beside(arena_bytes);
         let (bounds, ulp, materials) = (self.bounds, self.ulp, self.materials.clone());
-        move || Ok(Self::at_rest(tessellator()?, bounds, ulp, materials))
+        let (lights, environment) = (self.lights.clone(), self.environment.clone());
+        move || Ok(Self { lights, environment, ..Self::at_rest(tessellator()?, bounds, ulp, materials) })
     }
 
     fn at_rest(tessellator: Tessellator, bounds: Bounds, ulp: f32, materials: Vec<UploadedMaterial>) -> Self {
@@ -93,6 +101,8 @@ impl Scene {
             bounds,
             ulp,
             materials,
+            lights: None,
+            environment: None,
             lines: None,
             coverage: None,
             deviation: None,
@@ -199,6 +209,11 @@ impl Scene {
     /// One unit in the last place of the mesh's largest coordinate, in object units.
     pub fn ulp(&self) -> f32 {
         self.ulp
+    }
+
+    /// Sets the light of a file, which pictures with [`Lighting::Environment`](crate::settings::Lighting) have; none for the studio's.
+    pub(crate) fn set_environment(&mut self, environment: Option<Arc<Environment>>) {
+        self.environment = environment;
     }
 
     /// Replaces the lines that are drawn over the mesh.

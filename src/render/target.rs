@@ -74,6 +74,11 @@ impl Target {
         Ok(Self { is_transparent: true, ..Self::new(gpu, size)? })
     }
 
+    /// Whether nothing is behind what is drawn.
+    pub(super) fn is_transparent(&self) -> bool {
+        self.is_transparent
+    }
+
     /// The view for showing the picture. Its values are encoded as sRGB.
     pub fn shown_view(&self) -> wgpu::TextureView {
         self.resolved.create_view(&wgpu::TextureViewDescriptor::default())

@@ -9,12 +9,14 @@ pub enum Lighting {
     /// Light from all around, as in a photographer's studio, which materials reflect as glTF says.
     #[default]
     Studio,
+    /// Light from all around, from a file: a panorama of a place. Without such a file it is the studio's.
+    Environment,
     /// Two lights that move with the camera. Of materials only the base colour is seen.
     Camera,
 }
 
 impl Choice for Lighting {
-    const ALL: &'static [Self] = &every![Lighting: Studio, Camera];
+    const ALL: &'static [Self] = &every![Lighting: Studio, Environment, Camera];
 
     fn description(self) -> Description {
         match self {
@@ -24,12 +26,41 @@ impl Choice for Lighting {
                 "Soft light from all around, made in code. It stays with the mesh, and materials reflect it as glTF 2.0 says: \
                  metal, roughness, normal maps, occlusion, emission and clear coats are seen.",
             ),
+            Self::Environment => Description::new(
+                "environment",
+                "Environment file",
+                "The light of a place, from a panorama in a Radiance (.hdr) or OpenEXR (.exr) file. Materials reflect it as they \
+                 reflect the studio.",
+            ),
             Self::Camera => Description::new(
                 "camera",
                 "Camera",
                 "Two lights that move with the camera. Of materials only the base colour is seen, so that pictures of \
                  different tessellations are easy to compare.",
             ),
+        }
+    }
+}
+
+/// Whether the lights that a file has shine on its mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FileLights {
+    #[default]
+    On,
+    Off,
+}
+
+impl Choice for FileLights {
+    const ALL: &'static [Self] = &every![FileLights: On, Off];
+
+    fn description(self) -> Description {
+        match self {
+            Self::On => Description::new(
+                "on",
+                "On",
+                "The lights of the glTF file (KHR_lights_punctual) shine together with the light from all around.",
+            ),
+            Self::Off => Description::new("off", "Off", "Only the light from all around shines."),
         }
     }
 }

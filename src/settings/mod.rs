@@ -21,7 +21,7 @@ use crate::tessellate::{
 };
 
 pub(crate) use choice::{Choice, Description, descriptions};
-pub(crate) use light::{Lighting, ToneCurve};
+pub(crate) use light::{FileLights, Lighting, ToneCurve};
 pub(crate) use matcap::Matcap;
 pub(crate) use overlays::{Colors, Control, Overlay, Overlays};
 pub(crate) use value::{Access, Declaration, Kind, Range, Value};
@@ -43,7 +43,13 @@ pub struct Settings {
     pub overlays: Overlays,
     /// The light that the mesh's own materials are seen in.
     pub lighting: Lighting,
-    /// How bright the picture is, in EV: each step doubles the light. Only under [`Lighting::Studio`], as what follows.
+    /// Whether the lights of the file shine, if it has some. Not under [`Lighting::Camera`], as what follows.
+    pub lights: FileLights,
+    /// How bright the light from all around is beside emission and the lights of the file, in EV: each step doubles it.
+    pub environment_brightness: f32,
+    /// Whether the light from all around is seen behind the mesh.
+    pub environment_background: bool,
+    /// How bright the picture is, in EV: each step doubles the light.
     pub exposure: f32,
     /// How light becomes colours of the picture.
     pub tone_curve: ToneCurve,
@@ -70,6 +76,9 @@ impl Default for Settings {
             normals_at: NormalsAt::Vertices,
             overlays: Overlays::default(),
             lighting: Lighting::default(),
+            lights: FileLights::default(),
+            environment_brightness: 0.0,
+            environment_background: false,
             exposure: 0.0,
             tone_curve: ToneCurve::default(),
             light_rotation: 0.0,
@@ -219,7 +228,12 @@ impl Settings {
 
     /// Whether materials are drawn as glTF describes them, in light from all around.
     pub fn shows_materials(&self) -> bool {
-        self.lighting == Lighting::Studio && self.overlays.colors == Colors::Material
+        self.lighting != Lighting::Camera && self.overlays.colors == Colors::Material
+    }
+
+    /// Whether the light from all around is drawn behind the mesh.
+    pub fn shows_environment(&self) -> bool {
+        self.environment_background && self.shows_materials()
     }
 
     /// The settings of one half of the picture; none where that half doesn't exist or shows the untessellated mesh.

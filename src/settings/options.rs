@@ -5,7 +5,7 @@
 
 use super::value::Field;
 use super::{
-    Access, Colors, Declaration, Description, DeviationUnit, Kind, Lighting, Matcap, NormalsAt, Overlay, Range,
+    Access, Colors, Declaration, Description, DeviationUnit, FileLights, Kind, Lighting, Matcap, NormalsAt, Overlay, Range,
     Settings, ToneCurve, Value, descriptions,
 };
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface, Tessellation};
@@ -31,10 +31,13 @@ pub(crate) static TESSELLATION: [&Declaration; 16] = [
 ];
 
 /// The options of commands that draw a picture.
-pub(crate) static PICTURE: [&Declaration; 12] = [
+pub(crate) static PICTURE: [&Declaration; 15] = [
     &NORMALS_AT,
     &OVERLAY,
     &LIGHTING,
+    &LIGHTS,
+    &ENVIRONMENT_BRIGHTNESS,
+    &ENVIRONMENT_BACKGROUND,
     &EXPOSURE,
     &TONE_CURVE,
     &LIGHT_ROTATION,
@@ -345,14 +348,52 @@ pub(crate) static LIGHTING: Declaration = Declaration {
 };
 
 fn not_in_studio(settings: &Settings) -> Option<&'static str> {
-    (!settings.shows_materials()).then_some("Only the mesh's own materials in studio light have it.")
+    (!settings.shows_materials()).then_some("Only the mesh's own materials in light from all around have it.")
 }
+
+pub(crate) static LIGHTS: Declaration = Declaration {
+    name: "lights",
+    label: "File's lights",
+    placeholder: "SWITCH",
+    text: "Whether the lights of the glTF file shine too: directional, point and spot lights, at most 16.",
+    kind: Kind::Choice(descriptions::<FileLights>),
+    unset: None,
+    saved_as: &["lights"],
+    no_effect: not_in_studio,
+    access: field!(lights),
+};
+
+pub(crate) static ENVIRONMENT_BRIGHTNESS: Declaration = Declaration {
+    name: "environment-brightness",
+    label: "Environment",
+    placeholder: "EV",
+    text: "Brightness of the light from all around, of the studio or of a file, beside emission and the lights of the mesh's \
+           file: each step of 1 EV doubles it.",
+    kind: Kind::Number(Range::new(-10.0, 10.0, "EV")),
+    unset: None,
+    saved_as: &["environment_brightness"],
+    no_effect: not_in_studio,
+    access: field!(environment_brightness),
+};
+
+pub(crate) static ENVIRONMENT_BACKGROUND: Declaration = Declaration {
+    name: "environment-background",
+    label: "Environment as background",
+    placeholder: "",
+    text: "Shows the light from all around behind the mesh, in place of the background's colour. Transparent pictures stay \
+           transparent there.",
+    kind: Kind::Switch,
+    unset: None,
+    saved_as: &["environment_background"],
+    no_effect: not_in_studio,
+    access: field!(environment_background),
+};
 
 pub(crate) static EXPOSURE: Declaration = Declaration {
     name: "exposure",
     label: "Exposure",
     placeholder: "EV",
-    text: "Brightness of studio light: each step of 1 EV doubles it.",
+    text: "Brightness of the picture in light from all around: each step of 1 EV doubles it.",
     kind: Kind::Number(Range::new(-10.0, 10.0, "EV")),
     unset: None,
     saved_as: &["exposure"],
@@ -364,7 +405,7 @@ pub(crate) static TONE_CURVE: Declaration = Declaration {
     name: "tone-curve",
     label: "Tone curve",
     placeholder: "CURVE",
-    text: "How studio light that is brighter than a picture can show becomes colours.",
+    text: "How light that is brighter than a picture can show becomes colours.",
     kind: Kind::Choice(descriptions::<ToneCurve>),
     unset: None,
     saved_as: &["tone_curve"],
@@ -376,7 +417,7 @@ pub(crate) static LIGHT_ROTATION: Declaration = Declaration {
     name: "light-rotation",
     label: "Turn light",
     placeholder: "DEGREES",
-    text: "How far studio light is turned about the vertical axis, counterclockwise as seen from above.",
+    text: "How far the light from all around is turned about the vertical axis, counterclockwise as seen from above.",
     kind: Kind::Number(Range::new(0.0, 360.0, "°").decimals(0)),
     unset: None,
     saved_as: &["light_rotation"],

@@ -6,6 +6,7 @@ mod animation;
 mod chart;
 mod deviation;
 mod domain;
+mod environment;
 mod factors;
 mod formats;
 mod gallery;

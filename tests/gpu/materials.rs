@@ -280,6 +280,23 @@ pub(super) fn of_picture(tone_curve: ToneCurve) -> Settings {
     Settings { lighting: Lighting::Studio, tone_curve, ..Settings::from(tessellation) }
 }
 
+/// White metal and white plastic, polished to rough.
+pub(super) fn white_balls() -> Mesh {
+    let metal = |roughness| material([1.0; 3], Look { metallic: 1.0, roughness, ..Look::default() });
+    let matte = |roughness| material([1.0; 3], Look { roughness, ..Look::default() });
+    let materials = [0.0, 0.25, 0.5, 0.75, 1.0].into_iter().flat_map(|roughness| [metal(roughness), matte(roughness)]);
+    balls(materials.collect(), 5)
+}
+
+/// Gold and red plastic, polished to rough.
+pub(super) fn metal_and_matte_balls() -> Mesh {
+    let row = |metallic, color| {
+        let look = move |roughness| Look { metallic, roughness, ..Look::default() };
+        [0.0, 0.25, 0.5, 1.0].map(|roughness| material(color, look(roughness)))
+    };
+    balls([row(1.0, [1.0, 0.77, 0.34]), row(0.0, [0.8, 0.1, 0.1])].concat(), 4)
+}
+
 #[test]
 fn white_balls_cannot_be_told_from_an_even_light() {
     let gpu = &engine().gpu;
@@ -288,10 +305,7 @@ fn white_balls_cannot_be_told_from_an_even_light() {
     let mut engine: Engine = engine().clone();
     let environment = Environment::uniform(gpu, [light; 3]).expect("a device");
     engine.renderer = Arc::new(Renderer::lit_by(gpu, environment));
-    let metal = |roughness| material([1.0; 3], Look { metallic: 1.0, roughness, ..Look::default() });
-    let matte = |roughness| material([1.0; 3], Look { roughness, ..Look::default() });
-    let materials = [0.0, 0.25, 0.5, 0.75, 1.0].into_iter().flat_map(|roughness| [metal(roughness), matte(roughness)]);
-    let mut scene = scene_of(balls(materials.collect(), 5), 0.0);
+    let mut scene = scene_of(white_balls(), 0.0);
     let target = Target::new(gpu, [320, 160]).expect("a small picture");
     let camera = Camera::framing(&scene.bounds, target.viewport());
     let settings = Settings { background: Some([srgb(light); 3]), ..of_picture(ToneCurve::None) };

@@ -11,6 +11,7 @@ mod deviation;
 mod displacement;
 mod domain;
 mod embed;
+mod environment;
 mod error;
 mod layers;
 mod light;

@@ -6,6 +6,7 @@ mod commands;
 mod deviation;
 mod driver;
 mod editing;
+mod environment;
 mod foreign_factors;
 mod lasting;
 mod layout;
@@ -269,7 +270,7 @@ fn a_file_is_opened_by_its_path_and_reloading_keeps_settings_and_camera() {
     settle(&mut harness);
     let Source::File(path) = vase() else { unreachable!("it is a file") };
     harness
-        .get_by_label("A .gltf, .glb, .obj, .stl or .ply file, shape:NAME, or a height image (.png, .jpg)")
+        .get_by_label("A .gltf, .glb, .obj, .stl or .ply file, shape:NAME, a height image (.png, .jpg), or an environment (.hdr, .exr)")
         .type_text(&path.display().to_string());
     settle(&mut harness);
     click(&mut harness, "Open");

@@ -60,6 +60,7 @@ impl App {
             truth: truth.as_ref(),
             factors: self.factors_file(),
             matcap_image: self.matcap_image(),
+            environment: self.environment_file(),
             triangle: self.selected_triangle().filter(|_| choices.overlays),
             transparent: choices.transparent,
             legend: choices.legend,

@@ -25,6 +25,7 @@ impl App {
             has_picture: self.viewport.picture.drawn.is_some(),
             has_truth: self.truth.is_some(),
             has_factors: self.given.is_some(),
+            has_environment: self.environment.is_some(),
             can_undo: self.can_undo(),
             can_redo: self.can_redo(),
             has_view_before: self.has_view_before(),
@@ -114,6 +115,9 @@ impl App {
             FileAction::FactorsPath => self.type_path(Purpose::Factors),
             FileAction::ForgetFactors => self.forget_factors(),
             FileAction::Matcap => self.matcap_dialog(context),
+            FileAction::Environment => self.environment_dialog(context),
+            FileAction::EnvironmentPath => self.type_path(Purpose::Environment),
+            FileAction::CloseEnvironment => self.close_environment(),
             FileAction::SavePicture => self.dialogs.picture.is_open = true,
             FileAction::SavePicturePath => self.type_path(Purpose::SavePicture),
             FileAction::SaveTurntable => self.dialogs.turntable.is_open = true,
@@ -164,6 +168,7 @@ impl App {
             return self.viewport.picture.cancel();
         }
         (self.jobs.load, self.jobs.truth_load, self.jobs.writing) = (None, None, None);
+        self.cancel_environment();
         (self.dialogs.error, self.dialogs.notice, self.dialogs.typed_path) = (None, None, None);
         (self.commands.shows_keys, self.dialogs.shows_warnings) = (false, false);
         if self.viewport.ruler.take().is_none() {

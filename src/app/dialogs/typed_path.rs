@@ -21,6 +21,7 @@ pub(crate) enum Purpose {
     Factors,
     /// A picture of a lit sphere.
     Matcap,
+    Environment,
     SaveChart,
     SavePicture,
     /// A turntable as PNG files.
@@ -72,6 +73,7 @@ impl Purpose {
             Self::Truth => "Reference surface path",
             Self::Factors => "Factors path",
             Self::Matcap => "Matcap path",
+            Self::Environment => "Environment path",
             Self::SaveChart => "Save chart",
             Self::SavePicture => "Save picture",
             Self::SaveFolder | Self::SaveGif => "Save turntable",
@@ -84,16 +86,22 @@ impl Purpose {
 
     /// Whether the path is that of a file to write.
     fn is_written(self) -> bool {
-        !matches!(self, Self::Open | Self::Heights | Self::Truth | Self::Factors | Self::Matcap)
+        let is_read =
+            matches!(self, Self::Open | Self::Heights | Self::Truth | Self::Factors | Self::Matcap | Self::Environment);
+        !is_read
     }
 
     /// The kinds of file that can be typed.
     fn takes(self) -> String {
         match self {
-            Self::Open => format!("A {} file, shape:NAME, or a height image (.png, .jpg)", known_extensions()),
+            Self::Open => format!(
+                "A {} file, shape:NAME, a height image (.png, .jpg), or an environment (.hdr, .exr)",
+                known_extensions()
+            ),
             Self::Heights | Self::Matcap => "A .png or .jpg image".to_owned(),
             Self::Truth => format!("A {} file, or shape:NAME", known_extensions()),
             Self::Factors => "A .csv file with the factors of every triangle".to_owned(),
+            Self::Environment => "A .hdr or .exr panorama".to_owned(),
             Self::SaveChart => "A new .svg, .png or .csv file".to_owned(),
             Self::SavePicture => "A new .png file".to_owned(),
             Self::SaveFolder => "A new folder".to_owned(),
@@ -107,7 +115,7 @@ impl Purpose {
 
     fn button(self) -> &'static str {
         match self {
-            Self::Open | Self::Heights | Self::Truth | Self::Factors | Self::Matcap => "Open",
+            _ if !self.is_written() => "Open",
             Self::ExportMesh => "Export",
             _ => "Save",
         }
@@ -118,7 +126,7 @@ impl Purpose {
         let title = open.map_or_else(|| "mesh".to_owned(), Source::title);
         match (self, open) {
             (Self::Open | Self::Truth, Some(Source::File(path))) => path.display().to_string(),
-            (Self::Open | Self::Truth | Self::Heights | Self::Factors | Self::Matcap, _) => String::new(),
+            (purpose, _) if !purpose.is_written() => String::new(),
             (Self::SaveChart, _) => absolute("chart.svg"),
             (Self::SavePicture, _) => absolute(&name_beside(&title, "-view.png")),
             (Self::SaveFolder, _) => absolute(&name_beside(&title, "-turntable")),
@@ -254,7 +262,9 @@ impl App {
             _ if purpose.is_written() && Path::new(path).exists() => {
                 Err(format!("{} exists already: choose another name", shown_path(Path::new(path))))
             }
-            _ if purpose.is_written() || matches!(purpose, Purpose::Factors | Purpose::Matcap) => {
+            _ if purpose.is_written()
+                || matches!(purpose, Purpose::Factors | Purpose::Matcap | Purpose::Environment) =>
+            {
                 self.take_source(context, purpose, Source::File(path.into()))
             }
             _ => match path.parse() {
@@ -277,6 +287,7 @@ impl App {
             (Purpose::Truth, source) => self.open_truth(context, source),
             (Purpose::Factors, Source::File(path)) => self.open_factors(context, path),
             (Purpose::Matcap, Source::File(path)) => self.open_matcap(context, path),
+            (Purpose::Environment, Source::File(path)) => self.open_environment(context, path),
             (Purpose::SaveChart, Source::File(path)) => self.save_chart_beside(context, path),
             (Purpose::SavePicture, Source::File(path)) => self.save_picture(context, path)?,
             (Purpose::SaveFolder | Purpose::SaveGif, Source::File(path)) => self.save_turntable(context, path)?,

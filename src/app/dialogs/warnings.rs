@@ -1,13 +1,22 @@
-//! The list of what was repaired or left out when the mesh was read.
+//! The list of what was repaired or left out when files were read.
 
 use crate::app::App;
 
 impl App {
+    /// What was repaired or left out of the mesh's files and of the file of light.
+    pub(in crate::app) fn warnings(&self) -> impl Iterator<Item = &str> {
+        let of_mesh = self.document.iter().flat_map(|document| &document.loaded.warnings);
+        of_mesh.chain(self.environment.iter().flat_map(|open| &open.warnings)).map(String::as_str)
+    }
+
     pub(in crate::app) fn warnings_window(&mut self, context: &egui::Context) {
-        let Some(document) = self.document.as_ref().filter(|_| self.dialogs.shows_warnings) else { return };
-        let warnings = &document.loaded.warnings;
+        if !self.dialogs.shows_warnings {
+            return;
+        }
+        let warnings: Vec<&str> = self.warnings().collect();
         let mut closed = false;
-        let window = egui::Window::new("Warnings").open(&mut self.dialogs.shows_warnings);
+        let mut is_open = true;
+        let window = egui::Window::new("Warnings").open(&mut is_open);
         let window = window.resizable(false).collapsible(false).anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO);
         window.default_width(460.0).show(context, |ui| {
             let height = (context.content_rect().height() - 160.0).max(80.0);
@@ -15,8 +24,8 @@ impl App {
                 if warnings.is_empty() {
                     ui.label("The file was read as it is: nothing was repaired or left out.");
                 }
-                for warning in warnings {
-                    ui.add(egui::Label::new(warning).wrap());
+                for warning in &warnings {
+                    ui.add(egui::Label::new(*warning).wrap());
                     ui.add_space(4.0);
                 }
             });
@@ -28,8 +37,6 @@ impl App {
                 closed = ui.button("Close").clicked();
             });
         });
-        if closed {
-            self.dialogs.shows_warnings = false;
-        }
+        self.dialogs.shows_warnings = is_open && !closed;
     }
 }

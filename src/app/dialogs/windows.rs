@@ -6,6 +6,7 @@ use super::desktop_dialog;
 use super::typed_path::{PendingDialog, Purpose, name_beside};
 use crate::app::App;
 use crate::app::jobs::background_job::BackgroundJob;
+use crate::load::environment_file::ENVIRONMENT_EXTENSIONS;
 use crate::load::mesh_file::EXTENSIONS;
 
 impl App {
@@ -20,6 +21,13 @@ impl App {
     pub(in crate::app) fn factors_dialog(&mut self, context: &egui::Context) {
         self.dialog(Purpose::Factors, context, || {
             rfd::FileDialog::new().set_title("Choose a file of factors").add_filter("CSV", &["csv"]).pick_file()
+        });
+    }
+
+    pub(in crate::app) fn environment_dialog(&mut self, context: &egui::Context) {
+        self.dialog(Purpose::Environment, context, || {
+            let dialog = rfd::FileDialog::new().set_title("Open an environment");
+            dialog.add_filter("Panoramas of light", &ENVIRONMENT_EXTENSIONS).pick_file()
         });
     }
 

@@ -28,6 +28,8 @@ pub(crate) struct Document {
     pub given: u64,
     /// The number of the picture of a lit sphere that the scene has; 0 for those that are made in code.
     pub matcap: u64,
+    /// The number of the file whose light the scene has; 0 for none.
+    pub environment: u64,
     pub checks: Checks,
     /// What previews draw in place of a large mesh.
     pub stand_in: StandIn,
@@ -173,6 +175,7 @@ fn load(
         moment: None,
         given: 0,
         matcap: 0,
+        environment: 0,
         checks,
         stand_in: StandIn::default(),
         diagonal,

@@ -8,6 +8,7 @@ use super::measure_job::MeasureJob;
 use crate::app::App;
 use crate::engine::{Loaded, Preparation};
 use crate::load::Source;
+use crate::load::environment_file::is_environment;
 use crate::load::mesh_file::Format;
 
 impl App {
@@ -99,17 +100,22 @@ impl App {
         }
     }
 
-    /// Opens a file that is dropped on the window. Of several, it opens the first mesh, or else the first file.
+    /// Opens a file that is dropped on the window. Of several, it opens the first mesh, or else the first file, and the first
+    /// environment beside it.
     pub(in crate::app) fn take_dropped(&mut self, context: &egui::Context) {
         let dropped: Vec<PathBuf> =
             context.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect());
-        let mesh = dropped.iter().find(|path| Format::of(path).is_ok());
-        let Some(path) = mesh.or(dropped.first()) else { return };
+        let (environments, others): (Vec<_>, Vec<_>) = dropped.into_iter().partition(|path| is_environment(path));
+        if let Some(path) = environments.into_iter().next() {
+            self.open_environment(context, path);
+        }
+        let mesh = others.iter().find(|path| Format::of(path).is_ok());
+        let Some(path) = mesh.or(others.first()) else { return };
         self.open_path(context, path.clone());
-        if let Some(load) = self.jobs.load.as_mut().filter(|_| dropped.len() > 1) {
+        if let Some(load) = self.jobs.load.as_mut().filter(|_| others.len() > 1) {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             load.remark =
-                Some(format!("{} files were dropped. Only one can be open, so {name} was opened.", dropped.len()));
+                Some(format!("{} files were dropped. Only one can be open, so {name} was opened.", others.len()));
         }
     }
 }

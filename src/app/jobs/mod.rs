@@ -4,6 +4,7 @@ pub(super) mod background_job;
 pub(super) mod chart_job;
 pub(super) mod deviation_job;
 pub(super) mod document;
+pub(super) mod environment_job;
 pub(super) mod explain_job;
 pub(super) mod export_job;
 pub(super) mod given_factors;
@@ -21,6 +22,7 @@ use crate::files::Limits;
 
 use deviation_job::DeviationJob;
 use document::Load;
+use environment_job::EnvironmentLoad;
 use explain_job::ExplainJob;
 use given_factors::FactorsJob;
 use leak_job::LeakJob;
@@ -36,6 +38,7 @@ pub(super) struct Jobs {
     pub limits: Limits,
     pub load: Option<Load>,
     pub truth_load: Option<TruthLoad>,
+    pub environment: Option<EnvironmentLoad>,
     pub factors: Option<FactorsJob>,
     pub matcap: Option<MatcapJob>,
     pub measure: MeasureJob,

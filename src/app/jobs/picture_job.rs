@@ -149,6 +149,8 @@ impl App {
             moment: document.moment,
             given: document.scene.tessellator.given().map(<[_]>::to_vec),
             matcap: self.matcap.as_ref().map(ChosenMatcap::picture),
+            // The scene is made from one that has it.
+            environment: None,
             settings,
             reference_surface: self.reference_surface(&settings),
             selected: self.selected_patch().filter(|_| choices.overlays),

@@ -60,7 +60,7 @@ fn simplified(mesh: &Mesh, topology: &Topology, triangles: usize) -> Mesh {
     let bytes: &[u8] = bytemuck::cast_slice(&topology.points);
     let Ok(points) = meshopt::VertexDataAdapter::new(bytes, size_of::<glam::Vec3>(), 0) else { return Mesh::default() };
     let mut details = Vec::new();
-    let mut small = Mesh { name: mesh.name.clone(), ..Mesh::default() };
+    let mut small = Mesh { name: mesh.name.clone(), lights: mesh.lights.clone(), ..Mesh::default() };
     let part = triangles as f64 / mesh.triangles.len().max(1) as f64;
     let mut kept = Vec::new();
     // The corner that stands for a point, and its number in the small mesh.

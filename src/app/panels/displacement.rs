@@ -7,6 +7,7 @@ use crate::app::App;
 use crate::app::dialogs::typed_path::Purpose;
 use crate::app::text::short;
 use crate::commands::{Action, HEIGHT_IMAGE, key_name};
+use crate::load::environment_file::is_environment;
 use crate::load::{HeightSource, Source};
 use crate::settings::options;
 use crate::tessellate::Displacement;
@@ -18,9 +19,11 @@ fn is_image(path: &Path) -> bool {
 }
 
 impl App {
-    /// Opens a mesh. An image displaces the mesh that is open instead.
+    /// Opens a mesh. An image displaces the mesh that is open instead, and a panorama lights it.
     pub fn open_path(&mut self, context: &egui::Context, path: PathBuf) {
-        if is_image(&path) && self.document.is_some() {
+        if is_environment(&path) {
+            self.open_environment(context, path);
+        } else if is_image(&path) && self.document.is_some() {
             self.displace(context, Some(HeightSource::File(path)));
         } else {
             self.open(context, Source::File(path));

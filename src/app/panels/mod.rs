@@ -11,6 +11,7 @@ pub(super) mod displacement;
 mod factors_list;
 mod fold_list;
 mod leak_list;
+mod light_rows;
 mod matcap;
 mod option_rows;
 mod patch_explanation;

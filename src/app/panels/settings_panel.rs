@@ -171,9 +171,7 @@ impl App {
             }
             ui.end_row();
         }
-        for option in [&options::LIGHTING, &options::EXPOSURE, &options::TONE_CURVE, &options::LIGHT_ROTATION] {
-            shown_option_row(ui, option, &mut self.settings);
-        }
+        self.light_rows(ui);
         self.background_row(ui);
     }
 

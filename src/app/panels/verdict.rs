@@ -172,7 +172,7 @@ impl App {
     }
 
     fn warnings_line(&self, color: Color32) -> Line {
-        let warnings = self.document.as_ref().map_or(0, |document| document.loaded.warnings.len() as u64);
+        let warnings = self.warnings().count() as u64;
         let hover = "What was repaired or left out when the file was read. A click lists it.";
         match warnings {
             _ if self.document.is_none() => Line::dim("Warnings \u{2026}", hover, Destination::Warnings),

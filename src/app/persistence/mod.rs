@@ -107,10 +107,12 @@ impl Persistence {
         context: &egui::Context,
         settings: &Settings,
         open: OpenSections,
+        environment: Option<String>,
         seen: Option<(SavedCamera, Vec<SavedCamera>)>,
     ) {
         self.kept.take_settings(settings);
         self.kept.open = open;
+        self.kept.environment = environment;
         self.kept.frame = frame_now(context, &self.kept.frame);
         let open = self.kept.files.iter_mut().find(|file| Some(&file.path) == self.open.as_ref());
         if let Some((file, seen)) = open.zip(seen) {
@@ -198,6 +200,10 @@ impl App {
             self.settings = *lasting.settings();
             self.viewport.greets = false;
         }
+        match lasting.kept.environment.clone() {
+            Some(path) => self.read_environment(context, path.into(), false),
+            None => self.cancel_environment(),
+        }
         self.panels.open = lasting.kept.open;
         self.viewport.last_split = self.settings.split.unwrap_or(self.viewport.last_split);
         context.set_theme(lasting.kept.frame.theme);
@@ -225,7 +231,8 @@ impl App {
             let saved = |&camera: &Camera| SavedCamera { camera, diagonal };
             (saved(&self.viewport.camera), self.viewport.bookmarks.iter().map(saved).collect())
         });
-        self.persistence.take(context, &self.settings, self.panels.open, seen);
+        let environment = self.environment_file().and_then(Path::to_str).map(str::to_owned);
+        self.persistence.take(context, &self.settings, self.panels.open, environment, seen);
         let failed = self.persistence.write_on(context);
         self.dialogs.error = self.dialogs.error.take().or(failed);
     }
@@ -268,6 +275,7 @@ impl App {
             displacement: self.settings.tessellation.displacement,
             ..Settings::opening().tessellation
         });
+        self.close_environment();
         self.history = Default::default();
         self.view_history = Default::default();
         self.viewport.bookmarks.clear();

@@ -34,6 +34,8 @@ pub(super) struct SavedState {
     pub settings: Settings,
     pub frame: WindowGeometry,
     pub open: OpenSections,
+    /// The absolute path of the file of light that is open.
+    pub environment: Option<String>,
     /// The file that was opened last comes first.
     pub files: Vec<SavedFile>,
 }
@@ -79,6 +81,7 @@ impl Default for SavedState {
             settings: Settings::opening(),
             frame: WindowGeometry::default(),
             open: OpenSections::default(),
+            environment: None,
             files: Vec::new(),
         }
     }
@@ -106,6 +109,7 @@ impl SavedState {
                 settings: read_settings(&all["settings"]),
                 frame: WindowGeometry::read(&all["window"]),
                 open: read_open(&all["sections"]),
+                environment: absolute(&all["environment"]),
                 files,
             }
         })
@@ -121,6 +125,7 @@ impl SavedState {
                 "settings": settings,
                 "window": self.frame.written(),
                 "sections": written_open(&self.open),
+                "environment": self.environment,
                 "files": files,
             })
         )
@@ -135,6 +140,11 @@ impl SavedState {
     pub(super) fn take_settings(&mut self, settings: &Settings) {
         self.settings = settings.with(Tessellation { displacement: Displacement::Off, ..settings.tessellation });
     }
+}
+
+/// Reads an absolute path.
+fn absolute(value: &Value) -> Option<String> {
+    value.as_str().filter(|path| Path::new(path).is_absolute()).map(str::to_owned)
 }
 
 /// Reads which sections are open, by their titles.
@@ -173,11 +183,11 @@ impl WindowGeometry {
 
 impl SavedFile {
     fn read(value: &Value) -> Option<Self> {
-        let path = value["path"].as_str().filter(|path| Path::new(path).is_absolute())?;
+        let path = absolute(&value["path"])?;
         let is_gone = Fields(value).switch("gone", false);
         let bookmarks = value["bookmarks"].as_array().into_iter().flatten().filter_map(SavedCamera::read);
         let bookmarks = bookmarks.take(MOST_BOOKMARKS).collect();
-        Some(Self { path: path.to_owned(), seen: SavedCamera::read(value), bookmarks, is_gone })
+        Some(Self { path, seen: SavedCamera::read(value), bookmarks, is_gone })
     }
 
     fn written(&self) -> Value {

@@ -9,6 +9,7 @@ use super::axis_gizmo::axes_place;
 use super::legend::legend;
 use super::picture::Wanted;
 use crate::app::App;
+use crate::app::jobs::environment_job::file_name;
 use crate::app::jobs::measure_job::Trouble;
 use crate::app::text::counted;
 use crate::app::widgets::rgb;
@@ -96,6 +97,8 @@ impl App {
         let deviation = self.deviation_shown();
         let moment = self.moment();
         let (given, matcap) = (self.give_factors()?, self.give_matcap());
+        let environment = self.give_environment();
+        let has_light = environment == self.environment_wanted();
         let settings = self.settings_in(context.theme());
         let Some(document) = &mut self.document else { return Ok(()) };
         let viewport = vec2(size[0] as f32, size[1] as f32);
@@ -109,6 +112,7 @@ impl App {
             deviation,
             given,
             matcap,
+            environment,
             camera: self.viewport.camera,
             settings,
             inputs,
@@ -129,7 +133,8 @@ impl App {
         if let Some(left) = document.scene.half(SplitSide::Left) {
             self.viewport.left.measuring.keep_only(document.generation, left.tessellator.generation());
         }
-        let is_ready = document.moment == moment && given == self.given.as_ref().map_or(0, |given| given.generation);
+        let is_ready =
+            has_light && document.moment == moment && given == self.given.as_ref().map_or(0, |given| given.generation);
         let shown = is_ready && self.viewport.picture.drawn.as_ref() == Some(&wanted);
         self.viewport.picture.outdated = !shown && self.viewport.picture.cancelled.is_none();
         let still = shown && !self.viewport.playback.is_playing();
@@ -324,6 +329,13 @@ impl App {
                 (Some((load.progress.fraction(), None)), "Stops loading. The reference surface before it stays.");
             if progress(ui, rect, &title, done, ("Cancel", hover)) {
                 self.jobs.truth_load = None;
+            }
+            ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
+        } else if let Some(load) = &self.jobs.environment {
+            let title = format!("Reading the light of {}", file_name(&load.path));
+            let done = Some((load.progress.fraction(), None));
+            if progress(ui, rect, &title, done, ("Cancel", "Stops reading. The light before it stays.")) {
+                self.cancel_environment();
             }
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
         } else if let Some(writing) = &self.jobs.writing {

@@ -28,6 +28,8 @@ pub(crate) struct Wanted {
     pub given: u64,
     /// The number of the picture of a lit sphere; 0 for those that are made in code.
     pub matcap: u64,
+    /// The number of the file whose light it has; 0 for none.
+    pub environment: u64,
     pub camera: Camera,
     pub settings: Settings,
     pub inputs: Inputs,

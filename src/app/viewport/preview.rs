@@ -282,9 +282,11 @@ impl App {
         self.viewport.picture.make_way();
         let preview = &mut self.viewport.preview;
         preview.fit(&self.render_state, &self.engine, full.viewport)?;
+        let light = self.environment.as_ref().filter(|_| full.environment > 0).map(|open| open.environment.clone());
         let scene = match (shape, document.stand_in.scene()) {
             (Shape::StandIn, Some(stand_in)) => {
                 stand_in.matcap.clone_from(&document.scene.matcap);
+                stand_in.set_environment(light);
                 stand_in
             }
             _ => &mut document.scene,

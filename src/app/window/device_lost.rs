@@ -1,6 +1,7 @@
 //! Failures of the graphics device. If it refuses a command, the picture isn't drawn. If it is lost, the window goes on with
 //! another device and keeps its mesh, settings, camera, animation, reference surface, chart and selection.
 
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use super::fatal_screen::FatalScreen;
@@ -15,6 +16,7 @@ use crate::app::viewport::picture::Picture;
 use crate::app::viewport::preview::Preview;
 use crate::engine::Engine;
 use crate::gpu::{Gpu, GpuError};
+use crate::settings::Lighting;
 
 /// A device that is lost sooner than this after the last one isn't replaced automatically.
 const LASTS: Duration = Duration::from_secs(60);
@@ -120,7 +122,8 @@ impl App {
         (self.engine, self.render_state, self.viewport.picture) = (engine, render_state, viewport);
         self.viewport.preview = preview;
         if let Some((document, scene)) = self.document.as_mut().zip(scene) {
-            (document.scene, document.moment, document.given, document.matcap) = (scene, None, 0, 0);
+            (document.scene, document.moment) = (scene, None);
+            (document.given, document.matcap, document.environment) = (0, 0, 0);
             if document.checks.is_busy() {
                 document.checks = Checks::start(context, &document.loaded);
             }
@@ -147,6 +150,12 @@ impl App {
         }
         if let Some(load) = &mut self.jobs.truth_load {
             load.wake(context);
+        }
+        // What the lost device had of it is gone too.
+        if let Some(path) = self.environment_file().map(Path::to_owned) {
+            let is_chosen = self.settings.lighting == Lighting::Environment;
+            self.environment = None;
+            self.read_environment(context, path, is_chosen);
         }
         self.jobs.factors = self.jobs.factors.take().map(|job| job.waking(context));
         self.jobs.matcap = self.jobs.matcap.take().map(|job| job.waking(context));

@@ -2,9 +2,10 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
 use clap::error::ErrorKind;
+use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command, Error, FromArgMatches};
 
-use crate::settings::{Choice, Declaration, Description, Kind, Settings, Value, descriptions, options};
+use crate::settings::{Choice, Declaration, Description, Kind, Lighting, Settings, Value, descriptions, options};
 use crate::tessellate::{Displacement, Tessellation};
 
 /// How a mesh is tessellated.
@@ -73,7 +74,12 @@ impl FromArgMatches for PictureOptions {
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
-        options::PICTURE.iter().try_for_each(|declaration| take(declaration, matches, &mut self.0))
+        options::PICTURE.iter().try_for_each(|declaration| take(declaration, matches, &mut self.0))?;
+        let is_given = matches.value_source(options::LIGHTING.name) == Some(ValueSource::CommandLine);
+        if !is_given && matches.try_contains_id("environment").is_ok_and(|has_file| has_file) {
+            self.0.lighting = Lighting::Environment;
+        }
+        Ok(())
     }
 }
 

@@ -7,6 +7,7 @@ use serde_json::{Map, Value, json};
 
 use super::extensions::{self, Extensions};
 use super::json::objects;
+use super::lights::LightSources;
 use super::material_lists::MaterialLists;
 use super::notes::Notes;
 use super::{GltfError, glb, json, schema, schema_check};
@@ -23,6 +24,7 @@ pub(super) struct Parsed {
     pub animations: Vec<Value>,
     /// The document's materials and images, not yet checked (see [`super::materials`]).
     pub lists: MaterialLists,
+    pub lights: LightSources,
     pub notes: Notes,
 }
 
@@ -58,6 +60,7 @@ pub(super) fn parse(mut bytes: Vec<u8>, budget: &Budget, progress: &Progress) ->
     };
     let mut notes = Notes::default();
     let lists = MaterialLists::take(root, &mut notes);
+    let lights = LightSources::take(root, &mut notes);
     schema_check::check(root, schema::DOCUMENT)?;
     let extensions = Extensions::of(root, requires_draco);
     complete(root);
@@ -67,8 +70,8 @@ pub(super) fn parse(mut bytes: Vec<u8>, budget: &Budget, progress: &Progress) ->
     budget.give_back_to(0);
     let too_large =
         |refused: MemoryRefused| GltfError::Document { pointer: "its JSON".to_owned(), reason: refused.into() };
-    budget.hold(lists.bytes()).map_err(too_large)?;
-    Ok(Parsed { document, blob, extensions, animations, lists, notes })
+    budget.hold(lists.bytes() + lights.bytes()).map_err(too_large)?;
+    Ok(Parsed { document, blob, extensions, animations, lists, lights, notes })
 }
 
 fn not_gltf(reason: impl ToString) -> GltfError {

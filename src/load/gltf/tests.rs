@@ -2,6 +2,7 @@ mod animations;
 mod compressed;
 mod files;
 mod hostile;
+mod lights;
 mod materials;
 mod mutations;
 mod packed;

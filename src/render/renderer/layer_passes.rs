@@ -100,7 +100,7 @@ fn draws(mesh: &Mesh, material: &Material, pass: LayerPass, triangles: Triangles
         LayerPass::Composite { .. } if triangles != Triangles::Source => settings.used_normals_at(mesh),
         _ => NormalsAt::Vertices,
     };
-    own.iter().map(|&draw| Draw::Layer(draw, triangles, places, Needs::of(mesh))).collect()
+    own.iter().map(|&draw| Draw::Layer(draw, triangles, places, Needs::of(mesh, settings))).collect()
 }
 
 /// All draws of a mesh's layers with these settings.

@@ -10,8 +10,9 @@ use crate::gpu::{
     GRID_WIDTH, MOST_WORKGROUPS, NEXT_EDGES, NEXT_PATCHES, SEARCH_AGAIN, SEARCH_ASKED, SEARCH_COUNTERS, SEARCH_INSIDE,
     WORKGROUP,
 };
-use crate::mesh::{EdgeKind, MAX_LEVELS, MAX_MAPS, Slot};
+use crate::mesh::{EdgeKind, MAX_LEVELS, MAX_MAPS, MOST_LIGHTS, Slot};
 use crate::render::blur_levels::ENVIRONMENT_LEVELS;
+use crate::render::camera::FIELD_OF_VIEW;
 use crate::render::coverage::TILE;
 use crate::render::dfg::DFG_SIZE;
 use crate::render::layout::{
@@ -109,6 +110,8 @@ fn table() -> Vec<(&'static str, Expected)> {
         ("PI", number(std::f32::consts::PI)),
         ("ENVIRONMENT_LEVELS", number(ENVIRONMENT_LEVELS)),
         ("DFG_SIZE", number(DFG_SIZE)),
+        ("MOST_LIGHTS", number(MOST_LIGHTS as u32)),
+        ("HALF_VIEW", Expected(vec![f64::from(0.5 * FIELD_OF_VIEW).to_radians().tan()], 1e-7)),
         ("TONE_CURVE_NEUTRAL", number(TONE_CURVE_NEUTRAL)),
         ("TONE_CURVE_NONE", number(TONE_CURVE_NONE)),
         ("COMPRESSION_START", number(COMPRESSION_START)),

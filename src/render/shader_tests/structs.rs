@@ -12,6 +12,7 @@ use crate::render::coverage::Sieve;
 use crate::render::environment::Surroundings;
 use crate::render::layout::{Frame, MapPlace, Material, Pick};
 use crate::render::prefilter_pass::PrefilterParams;
+use crate::render::punctual::PunctualLight;
 use crate::render::reflectance::LookAt;
 use crate::tessellate::CoverageView;
 
@@ -107,6 +108,7 @@ fn shared_structs_have_the_same_layout() {
         scale,
     });
     same!(Surroundings { irradiance, light_from_object, brightness, exposure, tone_curve });
+    same!(PunctualLight { origin, intensity, inverse_range, direction, cone_scale, cone_offset });
     same!(LookAt {
         base_color,
         metallic,

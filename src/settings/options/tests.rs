@@ -12,6 +12,9 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         normals_at,
         overlays,
         lighting,
+        lights,
+        environment_brightness,
+        environment_background,
         exposure,
         tone_curve,
         light_rotation,
@@ -62,6 +65,9 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         ("normals_at", format!("{normals_at:?}")),
         ("overlays", format!("{overlays:?}")),
         ("lighting", format!("{lighting:?}")),
+        ("lights", format!("{lights:?}")),
+        ("environment_brightness", format!("{environment_brightness:?}")),
+        ("environment_background", format!("{environment_background:?}")),
         ("exposure", format!("{exposure:?}")),
         ("tone_curve", format!("{tone_curve:?}")),
         ("light_rotation", format!("{light_rotation:?}")),
@@ -182,6 +188,9 @@ fn unused_options_have_no_effect() {
     let elsewhere = [
         "height-scale",
         "midlevel",
+        "lights",
+        "environment-brightness",
+        "environment-background",
         "exposure",
         "tone-curve",
         "light-rotation",
@@ -206,7 +215,15 @@ fn unused_options_have_no_effect() {
     phong_left.tessellation.partitioning = Partitioning::Subtriangulation;
     phong_left.overlays.colors = Colors::Deviation;
     phong_left.split_surface = Some(Surface::Phong);
-    let of_light = ["lighting", "exposure", "tone-curve", "light-rotation"];
+    let of_light = [
+        "lighting",
+        "lights",
+        "environment-brightness",
+        "environment-background",
+        "exposure",
+        "tone-curve",
+        "light-rotation",
+    ];
     let with_light = |before: &[&'static str], after: &[&'static str]| [before, &of_light, after].concat();
     assert_eq!(
         idle(&phong_left),
@@ -221,8 +238,10 @@ fn unused_options_have_no_effect() {
         with_light(&["lod", "pixels", "tolerance", "distances", "normals-at"], &["curvature-scale", "matcap"])
     );
     phong_left.overlays.colors = Colors::Material;
-    phong_left.lighting = Lighting::Studio;
-    assert!(idle(&phong_left).iter().all(|name| !of_light.contains(name)), "all are used in studio light");
+    for lighting in [Lighting::Studio, Lighting::Environment] {
+        phong_left.lighting = lighting;
+        assert!(idle(&phong_left).iter().all(|name| !of_light.contains(name)), "all are used in light from all around");
+    }
 }
 
 #[test]

@@ -1,0 +1,38 @@
+// Draws what is behind the mesh: the light from all around, as it is seen from the mesh's middle.
+
+// A uniform, as in draw_lit.wgsl. No branch depends on it.
+@group(0) @binding(6) var<uniform> background_frame: Frame;
+// Longitude across and latitude down. Its middle is at -Z, +X is to the right of it, and +Y is at the top.
+@group(1) @binding(0) var panorama: texture_2d<f32>;
+@group(1) @binding(1) var panorama_sampler: sampler;
+
+// The tangent of half the field of view of a perspective view, which has the background of an orthographic view too: all its rays
+// have one direction.
+const HALF_VIEW: f32 = 0.36397023;
+
+@vertex
+fn background_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    // One triangle that holds the picture. Depth is 0 at the far end.
+    let corner = vec2<f32>(f32(index & 1u), f32(index >> 1u));
+    return vec4<f32>(4.0 * corner - 1.0, 0.0, 1.0);
+}
+
+// The direction that is seen at a place of the picture, in px.
+fn seen_direction(px: vec2<f32>) -> vec3<f32> {
+    let viewport = background_frame.viewport;
+    let rows = transpose(background_frame.clip_from_object);
+    let right = normalize(rows[0].xyz);
+    let up = normalize(rows[1].xyz);
+    let at = HALF_VIEW * (vec2<f32>(2.0, -2.0) * px / viewport + vec2<f32>(-1.0, 1.0));
+    return normalize(right * (at.x * viewport.x / viewport.y) + up * at.y - cross(right, up));
+}
+
+@fragment
+fn background_fragment(@builtin(position) px: vec4<f32>) -> @location(0) vec4<f32> {
+    let direction = surroundings.light_from_object * seen_direction(px.xy);
+    let longitude = atan2(direction.x, -direction.z);
+    let latitude = acos(clamp(direction.y, -1.0, 1.0));
+    let at = vec2<f32>(0.5 + longitude / (2.0 * PI), latitude / PI);
+    let radiance = surroundings.brightness * textureSampleLevel(panorama, panorama_sampler, at, 0.0).rgb;
+    return vec4<f32>(exposed(radiance), 1.0);
+}

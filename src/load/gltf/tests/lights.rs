@@ -1,0 +1,108 @@
+//! Lights of documents: where they are, how they shine, and what is wrong with some.
+
+use super::*;
+use crate::mesh::{Light, LightKind};
+
+/// A triangle with these lights, each on a node of its own.
+pub(super) fn lit(lights: Value, nodes: &[Value]) -> Draft {
+    let mut draft = triangle();
+    draft.root["extensions"] = json!({ "KHR_lights_punctual": { "lights": lights } });
+    let first = draft.root["nodes"].as_array().expect("nodes").len();
+    let all = draft.root["nodes"].as_array_mut().expect("nodes");
+    all.extend(nodes.iter().cloned());
+    let count = all.len();
+    if let Some(shown) = draft.root["scenes"][0]["nodes"].as_array_mut() {
+        shown.extend((first..count).map(|node| json!(node)));
+    }
+    draft
+}
+
+/// A node with a light.
+fn node(light: usize, more: Value) -> Value {
+    let mut node = json!({ "extensions": { "KHR_lights_punctual": { "light": light } } });
+    more.as_object().expect("members").iter().for_each(|(name, value)| node[name] = value.clone());
+    node
+}
+
+/// A document with a light of each kind.
+pub(super) fn of_every_kind() -> Draft {
+    let lights = json!([
+        { "type": "directional", "color": [1, 0.5, 0], "intensity": 4, "name": "sun" },
+        { "type": "point", "intensity": 10, "range": 3 },
+        { "type": "spot", "spot": { "innerConeAngle": 0.25, "outerConeAngle": 0.5 } },
+    ]);
+    let turned = json!({ "rotation": [-0.707_106_77, 0, 0, 0.707_106_77], "scale": [1, 2, 3] });
+    let placed = json!({ "translation": [1, 2, 3], "scale": [5, 5, 5] });
+    lit(lights, &[node(0, turned), node(1, placed), node(2, json!({}))])
+}
+
+#[test]
+fn lights_have_the_place_and_the_direction_of_their_nodes() {
+    let loaded = of_every_kind().read().expect("a mesh");
+    assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
+    let [sun, bulb, spot] = &loaded.mesh.lights[..] else { panic!("{:?}", loaded.mesh.lights) };
+    assert_eq!((sun.kind, sun.intensity), (LightKind::Directional, Vec3::new(4.0, 2.0, 0.0)));
+    assert!(sun.direction.distance(Vec3::NEG_Y) < 1e-6, "{}", sun.direction);
+    let expected = Light {
+        kind: LightKind::Point { range: Some(3.0) },
+        intensity: Vec3::splat(10.0),
+        place: Vec3::new(1.0, 2.0, 3.0),
+        direction: Vec3::NEG_Z,
+    };
+    assert_eq!(*bulb, expected);
+    assert_eq!(spot.kind, LightKind::Spot { range: None, inner: 0.25, outer: 0.5 });
+    assert_eq!((spot.intensity, spot.direction), (Vec3::ONE, Vec3::NEG_Z));
+}
+
+#[test]
+fn a_document_without_lights_or_with_lights_on_no_node_has_none() {
+    assert_eq!(triangle().read().expect("a mesh").mesh.lights, []);
+    let unused = lit(json!([{ "type": "point" }]), &[]).read().expect("a mesh");
+    assert_eq!((unused.mesh.lights, unused.warnings), (Vec::new(), Vec::new()));
+}
+
+/// The lights of a triangle with this light, and the warnings.
+fn read_one(light: Value) -> (Vec<Light>, Vec<String>) {
+    let loaded = lit(json!([light]), &[node(0, json!({}))]).read().expect("lights never keep a mesh from loading");
+    (loaded.mesh.lights, loaded.warnings)
+}
+
+#[test]
+fn faults_cost_a_light_or_a_number_and_never_the_mesh() {
+    let none: [(Value, &str); 3] = [
+        (json!({ "type": "area" }), "lights/0 isn't a directional, a point or a spot light; it is left out."),
+        (json!({}), "isn't a directional"),
+        (json!(7), "lights/0 is 7, not an object; it is left out."),
+    ];
+    for (light, said) in none {
+        let (lights, warnings) = read_one(light);
+        assert!(lights.is_empty() && warnings.iter().any(|warning| warning.contains(said)), "{warnings:?}");
+    }
+    let mended = [
+        (json!({ "type": "point", "intensity": -3 }), "intensity is -3, but must be at least 0.0; 0 is used."),
+        (json!({ "type": "point", "color": [2, 1, 1] }), "color/0 is 2, but must be at most 1.0; 1 is used."),
+        (json!({ "type": "point", "range": "far" }), "range is \"far\", not a number; 1 is used."),
+        (
+            json!({ "type": "spot", "spot": { "innerConeAngle": 0.5, "outerConeAngle": 0.25 } }),
+            "lights/0 has an inner cone that is wider than the outer one; the outer one is used for both.",
+        ),
+    ];
+    for (light, said) in mended {
+        let (lights, warnings) = read_one(light);
+        assert!(lights.len() == 1 && warnings.iter().any(|warning| warning.contains(said)), "{warnings:?}");
+    }
+    let mut missing = lit(json!([{ "type": "point" }]), &[node(3, json!({}))]);
+    let loaded = missing.read().expect("a mesh");
+    let said = "/nodes/1/extensions/KHR_lights_punctual/light is 3, but /extensions/KHR_lights_punctual/lights has 1";
+    assert!(loaded.mesh.lights.is_empty() && loaded.warnings[0].starts_with(said), "{:?}", loaded.warnings);
+    missing.root["extensions"]["KHR_lights_punctual"]["lights"] = json!(5);
+    assert!(missing.read().expect("a mesh").warnings[0].contains("lights isn't a list; there are no lights."));
+}
+
+#[test]
+fn of_many_lights_the_first_sixteen_shine() {
+    let nodes: Vec<Value> = (0..40).map(|x| node(0, json!({ "translation": [x, 0, 0] }))).collect();
+    let loaded = lit(json!([{ "type": "point" }]), &nodes).read().expect("a mesh");
+    assert_eq!(loaded.mesh.lights.iter().map(|light| light.place.x).sum::<f32>(), 120.0);
+    assert_eq!(loaded.warnings, ["The scene has 40 lights, of which only the first 16 shine."]);
+}
