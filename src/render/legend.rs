@@ -104,7 +104,7 @@ pub(crate) fn legend_of(settings: &Settings, radius: f32, distances: &Distances)
                  an image counts as if it had one of {TEXELS_WITHOUT_IMAGE} x {TEXELS_WITHOUT_IMAGE} px. Triangles without \
                  texture coordinates are plain grey."
             ),
-            scale(DENSITY_SCALE, &[0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0], false),
+            scale(DENSITY_SCALE, &[0.125, 0.5, 1.0, 2.0, 8.0], false),
         ),
         Colors::Factors => legend(
             "Factor",
