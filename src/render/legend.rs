@@ -85,7 +85,7 @@ pub(crate) fn legend_of(settings: &Settings, radius: f32, distances: &Distances)
                 "Mean curvature, 1/unit",
                 "Colours of the mean curvature of the curved patches themselves, without displacement, in 1 / object unit: a \
                  sphere of radius r has 1 / r. It is above 0 where the surface bulges towards the side that it faces, below 0 \
-                 where it is hollow, and 0 where it is flat or a saddle. Curvature up to, in the section Overlays, sets the \
+                 where it is hollow, and 0 where it is flat or a saddle. Curvature up to, in the section View, sets the \
                  scale's ends.",
                 scale(own, &[own.least, 0.0, own.most], false),
             )

@@ -41,8 +41,6 @@ impl App {
                 ui.end_row();
             }
         }
-        shown_option_row(ui, &options::CURVATURE_SCALE, &mut self.settings);
-        self.matcap_row(ui);
     }
 
     fn surface_rows(&mut self, ui: &mut egui::Ui) {
@@ -168,6 +166,8 @@ impl App {
             }
             ui.end_row();
         }
+        shown_option_row(ui, &options::CURVATURE_SCALE, &mut self.settings);
+        self.matcap_row(ui);
         for option in [&options::LIGHTING, &options::EXPOSURE, &options::TONE_CURVE, &options::LIGHT_ROTATION] {
             shown_option_row(ui, option, &mut self.settings);
         }
