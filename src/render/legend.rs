@@ -85,7 +85,7 @@ pub(crate) fn legend_of(settings: &Settings, radius: f32, distances: &Distances)
                 "Mean curvature, 1/unit",
                 "Colours of the mean curvature of the curved patches themselves, without displacement, in 1 / object unit: a \
                  sphere of radius r has 1 / r. It is above 0 where the surface bulges towards the side that it faces, below 0 \
-                 where it is hollow, and 0 where it is flat or a saddle. Curvature up to, in the section Overlays, sets the \
+                 where it is hollow, and 0 where it is flat or a saddle. Curvature up to, in the section View, sets the \
                  scale's ends.",
                 scale(own, &[own.least, 0.0, own.most], false),
             )
@@ -104,7 +104,7 @@ pub(crate) fn legend_of(settings: &Settings, radius: f32, distances: &Distances)
                  an image counts as if it had one of {TEXELS_WITHOUT_IMAGE} x {TEXELS_WITHOUT_IMAGE} px. Triangles without \
                  texture coordinates are plain grey."
             ),
-            scale(DENSITY_SCALE, &[0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0], false),
+            scale(DENSITY_SCALE, &[0.125, 0.5, 1.0, 2.0, 8.0], false),
         ),
         Colors::Factors => legend(
             "Factor",

@@ -44,8 +44,6 @@ impl App {
                 ui.end_row();
             }
         }
-        shown_option_row(ui, &options::CURVATURE_SCALE, &mut self.settings);
-        self.matcap_row(ui);
     }
 
     fn surface_rows(&mut self, ui: &mut egui::Ui) {
@@ -171,6 +169,8 @@ impl App {
             }
             ui.end_row();
         }
+        shown_option_row(ui, &options::CURVATURE_SCALE, &mut self.settings);
+        self.matcap_row(ui);
         self.light_rows(ui);
         self.background_row(ui);
     }
