@@ -78,7 +78,7 @@ pub(crate) enum EnvironmentFault {
     TooLarge { size: [u32; 2] },
     /// It would take too much memory.
     #[error(
-        "it has {} x {} px and {reason}; scale it to 4096 x 2048 px, or if you trust the file, allow more with --max-memory",
+        "it has {} x {} px and {reason}; scale it to 4096 x 2048 px",
         size[0], size[1]
     )]
     TooMuch { size: [u32; 2], reason: MemoryRefused },
