@@ -40,7 +40,7 @@ impl Needs {
     }
 
     /// The values of the constants of `shaders/draw_material.wgsl`.
-    pub(super) fn constants(self) -> [(&'static str, f64); 5] {
+    pub(super) fn constants(self) -> [(&'static str, f64); 6] {
         let switch = |is_needed| f64::from(u8::from(is_needed));
         [
             ("HAS_MAPS", switch(self.maps)),

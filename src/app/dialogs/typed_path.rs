@@ -126,7 +126,8 @@ impl Purpose {
         let title = open.map_or_else(|| "mesh".to_owned(), Source::title);
         match (self, open) {
             (Self::Open | Self::Truth, Some(Source::File(path))) => path.display().to_string(),
-            (purpose, _) if !purpose.is_written() => String::new(),
+            (Self::Open | Self::Truth | Self::Heights, _) => String::new(),
+            (Self::Factors | Self::Matcap | Self::Environment, _) => String::new(),
             (Self::SaveChart, _) => absolute("chart.svg"),
             (Self::SavePicture, _) => absolute(&name_beside(&title, "-view.png")),
             (Self::SaveFolder, _) => absolute(&name_beside(&title, "-turntable")),
