@@ -34,7 +34,7 @@ pub(crate) struct SurfaceOptions {
     /// Under LOD by error, raise the tolerance until there are no more triangles than this
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub max_triangles: Option<u64>,
-    /// Height map that displaces the surface: a PNG or JPEG image over all materials, its brightness as stored from 0 (black)
+    /// Height map that displaces the surface: a PNG, JPEG or WebP image over all materials, its brightness as stored from 0 (black)
     /// to 1 (white); or `material`, the brightness of each material's base colour image
     #[arg(long, value_name = "IMAGE|material", value_parser = OsStringValueParser::new().map(HeightSource::from))]
     pub height: Option<HeightSource>,

@@ -5,6 +5,7 @@ mod hostile;
 mod materials;
 mod mutations;
 mod packed;
+mod textures;
 pub(crate) use mutations::seeds;
 
 use base64::prelude::{BASE64_STANDARD, Engine};
