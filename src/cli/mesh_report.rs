@@ -31,6 +31,8 @@ pub(super) struct Info {
     pub corners: u32,
     pub points: u32,
     pub materials: Vec<MaterialInfo>,
+    /// The names of the file's material variants.
+    pub variants: Vec<String>,
     pub animations: Vec<AnimationInfo>,
     pub edges: EdgeCounts,
     /// What each weld tolerance on offer would join and collapse, compared with the exact weld.
@@ -105,6 +107,7 @@ impl Info {
             corners: mesh.corners.len() as u32,
             points: topology.points.len() as u32,
             materials: mesh.materials.iter().map(MaterialInfo::of).collect(),
+            variants: Vec::new(),
             animations: mesh.rig.as_deref().map_or_else(Vec::new, animations),
             edges,
             joins: weld_previews(mesh, (weld == 0.0).then_some(topology), progress)?,
@@ -130,6 +133,9 @@ impl fmt::Display for Info {
         writeln!(f, "to            {to_x} {to_y} {to_z}, diagonal {}", exact(self.bounds.diagonal))?;
         for material in &self.materials {
             write!(f, "{material}")?;
+        }
+        for variant in &self.variants {
+            writeln!(f, "variant       {}", shown(variant))?;
         }
         for AnimationInfo { name, duration, moved } in &self.animations {
             // Files have times in f32: an f64 would print digits that the file doesn't have.

@@ -66,17 +66,20 @@ fn decode_ktx2(bytes: &[u8], budget: &Budget) -> Result<Texture, String> {
     check_size(file.size)?;
     let px = file.size.map(u64::from).into_iter().product::<u64>();
     let too_large = |refused| too_large(file.size, refused);
+    let borrowed = budget.borrowed();
     budget.borrow(file.working_bytes()).map_err(too_large)?;
     budget.hold(px * 4).map_err(too_large)?;
-    Ok(Texture { size: file.size, rgba: file.decode()? })
+    let decoded = file.decode().inspect_err(|_| budget.release(px * 4));
+    budget.give_back_to(borrowed);
+    Ok(Texture { size: file.size, rgba: decoded? })
 }
 
 fn check_size([width, height]: [u32; 2]) -> Result<(), String> {
     let advice = "scale it to 4096 px a side or less";
     match width.max(height) > MAX_SIZE {
-        true => Err(format!(
-            "its image has {width} x {height} px, but at most {MAX_SIZE} px a side are read; {advice}"
-        )),
+        true => {
+            Err(format!("its image has {width} x {height} px, but at most {MAX_SIZE} px a side are read; {advice}"))
+        }
         false => Ok(()),
     }
 }

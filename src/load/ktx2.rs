@@ -223,10 +223,7 @@ fn codec(bytes: &[u8], format: u32, offset: u32, length: u32) -> Result<Codec, S
         (163, 1) => Ok(Codec::Etc1s(false)),
         (163, 2) => Ok(Codec::Etc1s(true)),
         (166, 1) => Ok(Codec::Uastc),
-        _ => Err(format!(
-            "its KTX2 data has colour model {model} with {} samples; only {READ} are read",
-            samples / 16
-        )),
+        _ => Err(format!("its KTX2 data has colour model {model} with {} samples; only {READ} are read", samples / 16)),
     }
 }
 

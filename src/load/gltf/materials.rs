@@ -189,7 +189,9 @@ impl<'a> Materials<'a> {
         let TextureSource { images, sampling } = found.clone()?;
         let (last, others) = images.split_last()?;
         let used = "can't be used, so the texture's other image is";
-        let other = others.iter().find_map(|&image| self.image(image, &format!("the {what} of material \"{material}\" {used}")));
+        let other = others
+            .iter()
+            .find_map(|&image| self.image(image, &format!("the {what} of material \"{material}\" {used}")));
         let left_out = format!("the {what} of material \"{material}\" is left out");
         Some((other.or_else(|| self.image(*last, &left_out))?, sampling))
     }

@@ -101,10 +101,13 @@ static MODES: [Mode; 19] = [
 ];
 
 /// Partitions that ASTC and BC7 have in common.
-static TWO_SUBSETS: [[u8; 16]; 30] = subsets(2, [
-    28, 20, 16, 29, 91, 9, 107, 72, 149, 204, 50, 114, 496, 17, 78, 39, 252, 828, 43, 156, 116, 210, 476, 273, 684, 359, 246,
-    195, 694, 524,
-]);
+static TWO_SUBSETS: [[u8; 16]; 30] = subsets(
+    2,
+    [
+        28, 20, 16, 29, 91, 9, 107, 72, 149, 204, 50, 114, 496, 17, 78, 39, 252, 828, 43, 156, 116, 210, 476, 273, 684,
+        359, 246, 195, 694, 524,
+    ],
+);
 static THREE_SUBSETS: [[u8; 16]; 11] = subsets(3, [260, 74, 32, 156, 183, 15, 745, 0, 335, 902, 254]);
 /// Partitions into two, which BC7 has only as partitions into three.
 static OTHER_TWO_SUBSETS: [[u8; 16]; 19] =

@@ -26,7 +26,8 @@ impl Huffman {
                 bytes.iter().flat_map(|byte| [byte >> 4, byte & 15]).take(count).collect()
             }
         };
-        let shares = |weight: &u8| if *weight == 0 { 0 } else { 1_u32.checked_shl(u32::from(*weight) - 1).unwrap_or(0) };
+        let shares =
+            |weight: &u8| if *weight == 0 { 0 } else { 1_u32.checked_shl(u32::from(*weight) - 1).unwrap_or(0) };
         let sum: u32 = weights.iter().map(shares).sum();
         let width = sum.checked_ilog2().ok_or(BROKEN)? + 1;
         let rest = (1 << width) - sum;

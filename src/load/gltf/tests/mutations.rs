@@ -12,8 +12,8 @@ use fastrand::Rng;
 
 use super::*;
 use crate::load::Format;
-use crate::load::ktx2::tests::{ETC1S_ALPHA, UASTC_ZSTD};
 use crate::load::hostile_files::{named_files, time};
+use crate::load::ktx2::tests::{ETC1S_ALPHA, UASTC_ZSTD};
 
 /// The number of copies in every run of the tests.
 const COPIES: usize = 300;
@@ -176,7 +176,7 @@ fn mutations_become_a_mesh_or_a_sentence() {
         let mut bytes = subject.bytes.clone();
         mutate(&mut bytes, &mut random);
         let start = time();
-        let reading = || read(bytes.clone(), &subject.folder, "mutated", &Limits::default(), &Progress::new());
+        let reading = || read(bytes.clone(), &subject.folder, "mutated", None, &Limits::default(), &Progress::new());
         let result = catch_unwind(AssertUnwindSafe(reading));
         let took = time() - start;
         slowest = slowest.max(took);
