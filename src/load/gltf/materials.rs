@@ -188,7 +188,7 @@ impl<'a> Materials<'a> {
             .or_insert_with(|| texture_source::texture(textures, samplers, images.len(), texture, &self.notes));
         let TextureSource { images, sampling } = found.clone()?;
         let (last, others) = images.split_last()?;
-        let used = "can't be used, so the texture's other image is";
+        let used = "can't be used, and the texture's other image takes its place";
         let other = others
             .iter()
             .find_map(|&image| self.image(image, &format!("the {what} of material \"{material}\" {used}")));

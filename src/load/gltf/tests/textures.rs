@@ -68,7 +68,7 @@ fn other_images_take_the_place_of_broken_ones() {
     let (size, warnings) = read(&extended(Some(&webp()), &[(BASISU, &ETC1S[..200])]));
     assert_eq!((size, warnings.len()), (Some([2, 1]), 1), "{warnings:?}");
     let expected =
-        "the texture of material \"skin\" can't be used, so the texture's other image is: its KTX2 codebooks ends";
+        "the texture of material \"skin\" can't be used, and the texture's other image takes its place: level 0";
     assert!(warnings[0].starts_with(expected), "{warnings:?}");
     let (size, warnings) = read(&extended(Some(b"nothing"), &[(WEBP, b"RIFF"), (BASISU, b"none")]));
     assert_eq!((size, warnings.len()), (None, 3), "{warnings:?}");
