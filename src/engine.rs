@@ -35,6 +35,8 @@ pub struct Loaded {
     pub mesh: Arc<Mesh>,
     /// Sentences about what was left out or repaired.
     pub warnings: Vec<String>,
+    /// The names of the material variants that the file has.
+    pub variants: Vec<String>,
     /// Files that the mesh's own file names and that were read, with links resolved.
     pub files: Vec<PathBuf>,
     pub topology: Arc<Topology>,
@@ -61,6 +63,8 @@ pub struct Preparation {
     pub crease_band: f32,
     /// The height images for displacement.
     pub heights: Option<HeightSource>,
+    /// The material variant of the file, by name; none for each primitive's own material.
+    pub variant: Option<String>,
     pub limits: Limits,
 }
 
@@ -72,7 +76,8 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
     let start = Instant::now();
     // Large images take longer than most meshes.
     let of_mesh = if preparation.heights.is_some() { progress.part(0.0, 0.4) } else { progress.clone() };
-    let LoadedMesh { mesh: mut read, mut warnings, files, file_bytes } = source.load(&preparation.limits, &of_mesh)?;
+    let LoadedMesh { mesh: mut read, mut warnings, variants, files, file_bytes } =
+        source.load_variant(preparation.variant.as_deref(), &preparation.limits, &of_mesh)?;
     let loaded = Instant::now();
     let budget = Budget::of_mesh(&read, file_bytes, &preparation.limits);
     let too_large = |what| move |error| unfinished(source, what, error);
@@ -107,6 +112,7 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
         mesh: cut.map_or_else(|| read.clone(), Arc::new),
         read,
         warnings,
+        variants,
         files,
         topology: Arc::new(topology),
         load_ms: (loaded - start).as_secs_f64() * 1e3,

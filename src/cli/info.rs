@@ -21,16 +21,17 @@ pub(crate) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
-    let info = info(&args.file, args.weld)?;
+    let info = info(&args.file, &args.weld)?;
     let text = if args.json { to_json(&info)? } else { info.to_string() };
     write_text("-".as_ref(), &text)
 }
 
 /// Gathers the numbers of a mesh, and the warnings of loading it.
-fn info(source: &Source, options: WeldOption) -> Result<Info, LoadError> {
+fn info(source: &Source, options: &WeldOption) -> Result<Info, LoadError> {
     let progress = Progress::default();
     let loaded = engine::load(source, &options.preparation(), &progress)?;
     let info = Info::of(&loaded.mesh, &loaded.topology, options.weld, &loaded.warnings, &progress)?;
+    let info = Info { variants: loaded.variants, ..info };
     if loaded.crease_band.width == 0.0 {
         return Ok(info);
     }

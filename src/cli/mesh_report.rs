@@ -33,6 +33,8 @@ pub(super) struct Info {
     pub points: u32,
     pub materials: Vec<MaterialInfo>,
     pub lights: Vec<LightInfo>,
+    /// The names of the file's material variants.
+    pub variants: Vec<String>,
     pub animations: Vec<AnimationInfo>,
     pub edges: EdgeCounts,
     /// What each weld tolerance on offer would join and collapse, compared with the exact weld.
@@ -108,6 +110,7 @@ impl Info {
             points: topology.points.len() as u32,
             materials: mesh.materials.iter().map(MaterialInfo::of).collect(),
             lights: mesh.lights.iter().map(LightInfo::of).collect(),
+            variants: Vec::new(),
             animations: mesh.rig.as_deref().map_or_else(Vec::new, animations),
             edges,
             joins: weld_previews(mesh, (weld == 0.0).then_some(topology), progress)?,
@@ -136,6 +139,9 @@ impl fmt::Display for Info {
         }
         for light in &self.lights {
             write!(f, "{light}")?;
+        }
+        for variant in &self.variants {
+            writeln!(f, "variant       {}", shown(variant))?;
         }
         for AnimationInfo { name, duration, moved } in &self.animations {
             // Files have times in f32: an f64 would print digits that the file doesn't have.

@@ -34,7 +34,7 @@ pub(crate) struct SurfaceOptions {
     /// Under LOD by error, raise the tolerance until there are no more triangles than this
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub max_triangles: Option<u64>,
-    /// Height map that displaces the surface: a PNG or JPEG image over all materials, its brightness as stored from 0 (black)
+    /// Height map that displaces the surface: a PNG, JPEG or WebP image over all materials, its brightness as stored from 0 (black)
     /// to 1 (white); or `material`, the brightness of each material's base colour image
     #[arg(long, value_name = "IMAGE|material", value_parser = OsStringValueParser::new().map(HeightSource::from))]
     pub height: Option<HeightSource>,
@@ -187,8 +187,8 @@ impl SurfaceOptions {
     }
 }
 
-/// What is done to a mesh before it is tessellated: points are welded, and creases get a crease band.
-#[derive(Clone, Copy, Debug, Default, Args)]
+/// How a mesh is read, and what is done to it before it is tessellated: points are welded, and creases get a crease band.
+#[derive(Clone, Debug, Default, Args)]
 pub(crate) struct WeldOption {
     /// Weld points within this distance, relative to the bounding diagonal; 0 joins only exactly equal positions
     #[arg(long, value_name = "TOLERANCE", default_value_t = 0.0, value_parser = weld)]
@@ -199,13 +199,22 @@ pub(crate) struct WeldOption {
     /// triangle's incircle
     #[arg(long, alias = "rim", value_name = "WIDTH", default_value_t = 0.0, value_parser = crease_band, allow_hyphen_values = true)]
     pub crease_band: f32,
+    /// Show the materials that a glTF file has for this variant (KHR_materials_variants), by name; `info` lists the variants
+    #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
+    pub variant: Option<String>,
     #[command(flatten)]
     pub limit: LimitOption,
 }
 
 impl WeldOption {
     pub(crate) fn preparation(&self) -> Preparation {
-        Preparation { weld: self.weld, crease_band: self.crease_band, heights: None, limits: self.limit.limits() }
+        Preparation {
+            weld: self.weld,
+            crease_band: self.crease_band,
+            heights: None,
+            variant: self.variant.clone(),
+            limits: self.limit.limits(),
+        }
     }
 }
 

@@ -16,10 +16,10 @@ use crate::names::shown_path;
 pub(super) fn read(path: &Path) -> Result<image::RgbaImage, CliError> {
     let fail = |reason: &dyn std::fmt::Display| file_error(path, "read", reason);
     let file = open_file(path).map_err(|error| fail(&error))?;
-    let file = file.ok_or_else(|| fail(&"it is not a file; name a PNG or JPEG image"))?.0;
+    let file = file.ok_or_else(|| fail(&"it is not a file; name a PNG, JPEG or WebP image"))?.0;
     let reader = ImageReader::new(BufReader::new(file)).with_guessed_format().map_err(|error| fail(&error))?;
     let reference = reader.decode().map_err(|error| match error {
-        ImageError::Unsupported(_) => fail(&"it is no image; name a PNG or JPEG one"),
+        ImageError::Unsupported(_) => fail(&"it is no image; name a PNG, JPEG or WebP one"),
         error => fail(&error),
     })?;
     Ok(reference.to_rgba8())

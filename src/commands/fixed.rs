@@ -11,7 +11,7 @@ use crate::render::Standpoint;
 
 /// What displacing by a height image does.
 pub(crate) const HEIGHT_IMAGE: &str =
-    "Displaces the mesh by the brightness of a PNG or JPEG image, which covers all materials.";
+    "Displaces the mesh by the brightness of a PNG, JPEG or WebP image, which covers all materials.";
 
 /// All of them, in the order of the menus.
 pub(super) fn commands() -> Vec<Command> {

@@ -158,7 +158,7 @@ impl<'a> FaceBuilder<'a> {
         ]));
         let (mesh, _) = self.builder.finish_bound(name.to_owned(), self.memory, progress)?;
         warnings.extend(repair_warnings(&mesh.repairs));
-        Ok(LoadedMesh { mesh, warnings, files: Vec::new(), file_bytes: self.memory.files() })
+        Ok(LoadedMesh { mesh, warnings, file_bytes: self.memory.files(), ..LoadedMesh::default() })
     }
 }
 

@@ -36,6 +36,7 @@ mod skin;
 mod tangents;
 mod texture_source;
 mod uv_transform;
+mod variants;
 mod vertex_details;
 mod vertices;
 
@@ -68,7 +69,7 @@ pub use gltf_error::GltfError;
 
 /// Builds a mesh from a document's bytes.
 ///
-/// `folder` is the document's folder; `name` becomes the mesh's name. `limits` apply to the files that the document
+/// `folder` is the document's folder; `name` becomes the mesh's name. Materials are those of a variant, if the document has it. `limits` apply to the files that the document
 /// names.
 ///
 /// # Errors
@@ -77,12 +78,13 @@ pub(super) fn read(
     bytes: Vec<u8>,
     folder: &Path,
     name: &str,
+    variant: Option<&str>,
     limits: &Limits,
     progress: &Progress,
 ) -> Result<LoadedMesh, GltfError> {
     let budget = Budget::new(bytes.len(), limits);
-    let document::Parsed { document, blob, extensions, animations, lists, lights, mut notes } =
-        document::parse(bytes, &budget, progress)?;
+    let document::Parsed { document, blob, extensions, animations, lists, lights, variants, mut notes } =
+        document::parse(bytes, variant, &budget, progress)?;
     progress.check()?;
     let files = Files::new(folder, limits, &budget, progress);
     let buffers = buffers::load(&document, &files, &extensions.fallback, blob, progress)?;
@@ -134,7 +136,7 @@ pub(super) fn read(
     mesh.lights = lights.shown(&placed, &mut notes);
     warnings = notes.into_warnings();
     warnings.extend(repair_warnings(&mesh.repairs));
-    Ok(LoadedMesh { mesh, warnings, files: files.named(), file_bytes: budget.files() })
+    Ok(LoadedMesh { mesh, warnings, variants, files: files.named(), file_bytes: budget.files() })
 }
 
 /// The scene that is being read, and the mesh that is being built from it.

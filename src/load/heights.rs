@@ -101,7 +101,7 @@ impl From<OsString> for HeightSource {
     }
 }
 
-/// Loads a PNG or JPEG image as the height map of all materials.
+/// Loads a PNG, JPEG or WebP image as the height map of all materials.
 fn from_file(path: &Path, mesh: &Mesh, budget: &Budget, progress: &Progress) -> Result<Heights, HeightError> {
     let map = read_map(path, mesh.corners.len(), budget, &progress.part(0.0, 0.8))?;
     Ok(Heights::all_over(mesh, map, &progress.part(0.8, 1.0))?)

@@ -11,6 +11,8 @@ pub struct LoadedMesh {
     pub mesh: Mesh,
     /// What was left out or repaired, one sentence each.
     pub warnings: Vec<String>,
+    /// The names of its material variants (KHR_materials_variants).
+    pub variants: Vec<String>,
     /// The files that the mesh's own file names and that were read, with links resolved.
     pub files: Vec<PathBuf>,
     /// The size of all files together in bytes, the mesh's own included; 0 for a mesh that was made in code.

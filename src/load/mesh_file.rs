@@ -8,7 +8,7 @@ use super::loaded_mesh::LoadedMesh;
 use super::read_error::ReadError;
 use super::{obj, ply, stl};
 use crate::files::{FileError, Limits, Stamp, read_file};
-use crate::names::shown_path;
+use crate::names::{shown, shown_path};
 use crate::progress::{Cancelled, Progress};
 
 /// The extensions of files that can be read, in lower case, each with its format.
@@ -67,6 +67,20 @@ pub enum LoadError {
     /// The file has no triangles.
     #[error("{} has no triangles to show: {holds}", shown_path(path))]
     Empty { path: PathBuf, holds: String },
+    /// The file doesn't have the material variant.
+    #[error("{} has no material variant {}; {}", shown_path(path), shown(variant), said_of(known))]
+    NoVariant { path: PathBuf, variant: String, known: Vec<String> },
+}
+
+/// Returns which variants there are, as the end of a message.
+fn said_of(known: &[String]) -> String {
+    const NAMED: usize = 20;
+    let names: Vec<_> = known.iter().take(NAMED).map(|name| shown(name)).collect();
+    match known.len().checked_sub(NAMED) {
+        _ if known.is_empty() => "it has no variants, so leave --variant away".to_owned(),
+        None | Some(0) => format!("choose one of {}", names.join(", ")),
+        Some(more) => format!("choose one of {} and {more} more, which `pnaen info` lists", names.join(", ")),
+    }
 }
 
 impl From<FileError> for LoadError {
@@ -97,6 +111,19 @@ impl From<HeightError> for LoadError {
 /// [`LoadError`], whose message says what is wrong, where, and what to do. A missing or broken texture isn't an error
 /// but a warning.
 pub fn load(path: &Path, limits: &Limits, progress: &Progress) -> Result<LoadedMesh, LoadError> {
+    load_variant(path, None, limits, progress)
+}
+
+/// Loads a mesh as [`load`] does, with the materials of a variant.
+///
+/// # Errors
+/// The same, and [`LoadError::NoVariant`].
+pub(crate) fn load_variant(
+    path: &Path,
+    variant: Option<&str>,
+    limits: &Limits,
+    progress: &Progress,
+) -> Result<LoadedMesh, LoadError> {
     progress.set(0.0);
     // Reading a folder, a device or a pipe would fail later, or never end.
     let file = std::fs::metadata(path).map_err(|source| FileError::Io { path: path.to_owned(), source })?;
@@ -105,11 +132,26 @@ pub fn load(path: &Path, limits: &Limits, progress: &Progress) -> Result<LoadedM
     }
     let format = Format::of(path)?;
     let before = Stamp::of(&file);
-    let mesh =
-        read(format, read_file(path, limits, |start| format.fits(start, path), progress)?, path, limits, progress)?;
+    let bytes = read_file(path, limits, |start| format.fits(start, path), progress)?;
+    let mesh = read(format, bytes, path, variant, limits, progress)?;
     before.check(path)?;
+    check_variant(path, variant, &mesh)?;
     progress.set(1.0);
     Ok(mesh)
+}
+
+/// Checks that a mesh has the variant that was asked for.
+///
+/// # Errors
+/// [`LoadError::NoVariant`].
+pub(super) fn check_variant(path: &Path, variant: Option<&str>, loaded: &LoadedMesh) -> Result<(), LoadError> {
+    match variant.filter(|variant| loaded.variants.iter().all(|known| known != variant)) {
+        None => Ok(()),
+        Some(variant) => {
+            let known = loaded.variants.clone();
+            Err(LoadError::NoVariant { path: path.to_owned(), variant: variant.to_owned(), known })
+        }
+    }
 }
 
 /// The format that a file is read as.
@@ -165,7 +207,7 @@ impl Format {
 }
 
 /// Builds a mesh from a file's bytes, as [`load`] does. `path` is the path of the file; the files that it names are
-/// looked for in its folder.
+/// looked for in its folder. A variant that the file doesn't have is left aside.
 ///
 /// # Errors
 /// The same as [`load`]'s.
@@ -173,13 +215,16 @@ pub fn read(
     format: Format,
     bytes: Vec<u8>,
     path: &Path,
+    variant: Option<&str>,
     limits: &Limits,
     progress: &Progress,
 ) -> Result<LoadedMesh, LoadError> {
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let folder = path.parent().unwrap_or(Path::new(""));
     match format {
-        Format::Gltf => gltf::read(bytes, folder, &name, limits, progress).map_err(|problem| of_problem(problem, path)),
+        Format::Gltf => {
+            gltf::read(bytes, folder, &name, variant, limits, progress).map_err(|problem| of_problem(problem, path))
+        }
         Format::Obj => obj::read(bytes, folder, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
         Format::Stl => stl::read(bytes, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
         Format::Ply => ply::read(bytes, &name, limits, progress).map_err(|fault| of_fault(fault, path)),

@@ -1,6 +1,7 @@
 //! Loads meshes from glTF, OBJ, STL and PLY files, height images and textures, within limits of file size and memory.
 //! Everything in a file is checked before it is used.
 
+mod bits;
 #[cfg(feature = "cli")]
 pub(crate) mod environment_file;
 mod face_builder;
@@ -10,6 +11,7 @@ pub(crate) mod heights;
 mod hostile_files;
 mod images;
 mod jpeg_memory;
+mod ktx2;
 mod loaded_mesh;
 mod matcap_image;
 pub(crate) mod memory_budget;
@@ -24,6 +26,8 @@ mod stl;
 mod text_lines;
 mod uri;
 mod warnings;
+mod webp_memory;
+mod zstd;
 
 pub use crate::files::{FileError, Limits};
 pub use gltf::GltfError;

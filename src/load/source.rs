@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use super::loaded_mesh::LoadedMesh;
-use super::mesh_file::{Format, LoadError, load, read};
+use super::mesh_file::{Format, LoadError, check_variant, load_variant, read};
 use crate::files::Limits;
 use crate::mesh::shapes::{MAX_LEVEL, Shape, ShapeError};
 use crate::progress::Progress;
@@ -33,17 +33,32 @@ impl Source {
     /// Builds the shape, or loads the file within `limits`.
     ///
     /// # Errors
-    /// The same as [`load`]'s; a shape has none.
+    /// The same as [`load_variant`]'s; a shape has none.
     pub fn load(&self, limits: &Limits, progress: &Progress) -> Result<LoadedMesh, LoadError> {
-        match self {
+        self.load_variant(None, limits, progress)
+    }
+
+    /// Builds the shape, or loads the file within `limits` with the materials of a variant.
+    ///
+    /// # Errors
+    /// The same as [`load_variant`]'s; a shape has only [`LoadError::NoVariant`].
+    pub fn load_variant(
+        &self,
+        variant: Option<&str>,
+        limits: &Limits,
+        progress: &Progress,
+    ) -> Result<LoadedMesh, LoadError> {
+        let loaded = match self {
             Self::Shape(shape) => Ok(LoadedMesh { mesh: shape.build(), ..LoadedMesh::default() }),
             Self::FineShape(shape, level) => Ok(LoadedMesh { mesh: shape.build_at(*level), ..LoadedMesh::default() }),
             Self::Vase => {
                 let bytes = include_bytes!("../../assets/vase.glb").to_vec();
-                read(Format::Gltf, bytes, Path::new("vase.glb"), limits, progress)
+                read(Format::Gltf, bytes, Path::new("vase.glb"), None, limits, progress)
             }
-            Self::File(path) => load(path, limits, progress),
-        }
+            Self::File(path) => return load_variant(path, variant, limits, progress),
+        }?;
+        check_variant(self.to_string().as_ref(), variant, &loaded)?;
+        Ok(loaded)
     }
 
     /// Returns a shape at the level that followed its name.

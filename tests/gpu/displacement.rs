@@ -66,6 +66,7 @@ fn on_device(shape: Shape, mesh: Mesh) -> (Loaded, Scene) {
             crease_band: CreaseBand::default(),
             mesh,
             warnings: Vec::new(),
+            variants: Vec::new(),
             files: Vec::new(),
             topology,
             load_ms: 0.0,

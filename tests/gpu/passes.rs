@@ -325,6 +325,7 @@ pub(super) fn sheet(columns: u32, rows: u32) -> Loaded {
         read,
         mesh,
         warnings: Vec::new(),
+        variants: Vec::new(),
         files: Vec::new(),
         topology,
         load_ms: 0.0,

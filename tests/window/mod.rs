@@ -19,6 +19,7 @@ mod spending;
 mod tasks;
 mod techniques;
 mod typing;
+mod variants;
 mod viewing;
 
 use std::path::{Path, PathBuf};

@@ -15,7 +15,7 @@ use crate::tessellate::Displacement;
 /// Whether a path names an image rather than a mesh.
 fn is_image(path: &Path) -> bool {
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
-    matches!(extension.as_deref(), Some("png" | "jpg" | "jpeg"))
+    matches!(extension.as_deref(), Some("png" | "jpg" | "jpeg" | "webp"))
 }
 
 impl App {
@@ -34,7 +34,7 @@ impl App {
     pub(in crate::app) fn height_dialog(&mut self, context: &egui::Context) {
         self.dialog(Purpose::Heights, context, || {
             let dialog = rfd::FileDialog::new().set_title("Open a height image");
-            dialog.add_filter("Images", &["png", "jpg", "jpeg"]).pick_file()
+            dialog.add_filter("Images", &["png", "jpg", "jpeg", "webp"]).pick_file()
         });
     }
 

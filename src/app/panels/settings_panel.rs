@@ -4,7 +4,7 @@ use super::option_rows::{option_hover, option_row};
 use crate::app::App;
 use crate::app::sections::{Section, scrolling_column};
 use crate::app::text::short;
-use crate::app::widgets::{LABEL_WIDTH, fixed};
+use crate::app::widgets::{LABEL_WIDTH, chooser, fixed};
 use crate::commands::{Action, BACKS_ARE_SEEN, Change, key_name, with_key};
 use crate::settings::{Choice, Colors, Control, Declaration, Kind, Overlay, Overlays, Range, Settings, options};
 use crate::tessellate::{Displacement, Lod, Tessellation};
@@ -47,6 +47,7 @@ impl App {
     }
 
     fn surface_rows(&mut self, ui: &mut egui::Ui) {
+        self.variant_row(ui);
         let settings = &mut self.settings;
         option_row(ui, &options::SURFACE, settings, "");
         shown_option_row(ui, &options::ALPHA, settings);
@@ -124,6 +125,26 @@ impl App {
     }
 
     /// The row for the weld tolerance. Its list says what each tolerance would join. A new one loads the mesh again.
+    /// A choice of material variants, which is there only if the file has some. Another variant loads the mesh again.
+    fn variant_row(&mut self, ui: &mut egui::Ui) {
+        let Some(document) = self.document.as_ref().filter(|document| !document.loaded.variants.is_empty()) else {
+            return;
+        };
+        let own = document.loaded.preparation.variant.as_deref();
+        let mut chosen = own;
+        let names = document.loaded.variants.iter().map(String::as_str);
+        let choices: Vec<_> = [(None, "File's own", "Each primitive has its own material.")]
+            .into_iter()
+            .chain(names.map(|name| (Some(name), name, "Primitives have the materials of this variant.")))
+            .collect();
+        let hover = "Which of the file's variants the materials are those of (--variant).";
+        chooser(ui, "Variant", hover, &mut chosen, &choices);
+        if chosen != own {
+            let chosen = chosen.map(str::to_owned);
+            self.prepare(ui.ctx(), |preparation| preparation.variant = chosen);
+        }
+    }
+
     fn weld_row(&mut self, ui: &mut egui::Ui) {
         let Some(document) = &self.document else { return };
         let weld = document.loaded.preparation.weld;

@@ -10,7 +10,7 @@ use super::json::objects;
 use super::lights::LightSources;
 use super::material_lists::MaterialLists;
 use super::notes::Notes;
-use super::{GltfError, glb, json, schema, schema_check};
+use super::{GltfError, glb, json, schema, schema_check, variants};
 use crate::load::memory_budget::Budget;
 use crate::mesh::{MemoryAccount, MemoryRefused};
 use crate::progress::Progress;
@@ -25,14 +25,22 @@ pub(super) struct Parsed {
     /// The document's materials and images, not yet checked (see [`super::materials`]).
     pub lists: MaterialLists,
     pub lights: LightSources,
+    /// The names of the document's material variants.
+    pub variants: Vec<String>,
     pub notes: Notes,
 }
 
-/// Parses and validates a `.gltf` or `.glb`; the first bytes tell which.
+/// Parses and validates a `.gltf` or `.glb`; the first bytes tell which. Primitives get the materials of a variant, if the document
+/// has it.
 ///
 /// # Errors
 /// [`GltfError::NotGltf`], [`GltfError::Extension`], [`GltfError::Document`], and [`GltfError::Cancelled`].
-pub(super) fn parse(mut bytes: Vec<u8>, budget: &Budget, progress: &Progress) -> Result<Parsed, GltfError> {
+pub(super) fn parse(
+    mut bytes: Vec<u8>,
+    variant: Option<&str>,
+    budget: &Budget,
+    progress: &Progress,
+) -> Result<Parsed, GltfError> {
     let mut blob = None;
     let mut value = if glb::is_glb(&bytes) {
         let parts = glb::parts(&bytes)?;
@@ -59,6 +67,7 @@ pub(super) fn parse(mut bytes: Vec<u8>, budget: &Budget, progress: &Progress) ->
         _ => Vec::new(),
     };
     let mut notes = Notes::default();
+    let variants = variants::choose(root, variant, &mut notes);
     let lists = MaterialLists::take(root, &mut notes);
     let lights = LightSources::take(root, &mut notes);
     schema_check::check(root, schema::DOCUMENT)?;
@@ -71,7 +80,7 @@ pub(super) fn parse(mut bytes: Vec<u8>, budget: &Budget, progress: &Progress) ->
     let too_large =
         |refused: MemoryRefused| GltfError::Document { pointer: "its JSON".to_owned(), reason: refused.into() };
     budget.hold(lists.bytes() + lights.bytes()).map_err(too_large)?;
-    Ok(Parsed { document, blob, extensions, animations, lists, lights, notes })
+    Ok(Parsed { document, blob, extensions, animations, lists, lights, variants, notes })
 }
 
 fn not_gltf(reason: impl ToString) -> GltfError {

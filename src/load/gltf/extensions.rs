@@ -5,15 +5,17 @@ use std::collections::BTreeMap;
 use serde_json::{Map, Value};
 
 use super::GltfError;
-use super::schema::{DRACO, MESHOPT, TRANSFORM, is_attribute};
+use super::schema::{BASISU, DRACO, MESHOPT, TRANSFORM, WEBP, is_attribute};
 
 /// Extensions that a document may require: those that are read, and others that can be ignored, since they don't change the
 /// shape.
-const KNOWN: [&str; 18] = [
+const KNOWN: [&str; 20] = [
     "KHR_mesh_quantization",
     DRACO,
     MESHOPT,
     TRANSFORM,
+    BASISU,
+    WEBP,
     "KHR_lights_punctual",
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",

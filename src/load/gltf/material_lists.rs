@@ -29,11 +29,6 @@ impl MaterialLists {
             }
         };
         let [materials, textures, samplers, images] = ["materials", "textures", "samplers", "images"].map(&mut list);
-        let variants = |root: &Map<String, Value>| root.get("extensions")?.get("KHR_materials_variants").map(|_| ());
-        if variants(root).is_some() {
-            let said = "KHR_materials_variants aren't drawn: each primitive has its own material.";
-            notes.push(said.to_owned());
-        }
         let accessors = root.get("accessors").and_then(Value::as_array).map_or(0, Vec::len);
         mend_primitives(root, materials.len(), accessors, notes);
         if !materials.is_empty() {

@@ -11,7 +11,7 @@ use super::material_lists::MaterialLists;
 use super::material_source::{MapSource, MaterialSource, Uvs};
 use super::nodes::Placed;
 use super::notes::Notes;
-use super::texture_source;
+use super::texture_source::{self, TextureSource};
 use super::uv_transform::UvTransform;
 use super::{Accessors, GltfError};
 use crate::load::images::decode_texture;
@@ -48,8 +48,8 @@ pub(super) struct Materials<'a> {
     /// Those that are used, by the index in the document; none for the default material.
     sources: HashMap<Option<usize>, MaterialSource>,
     resolved: HashMap<Option<usize>, Resolved>,
-    /// By the texture's index: that of its image, and how it is sampled.
-    textures: HashMap<usize, Option<(usize, Sampling)>>,
+    /// By the texture's index.
+    textures: HashMap<usize, Option<TextureSource>>,
     /// By the image's index; none for an image that can't be read.
     images: HashMap<usize, Option<Arc<Texture>>>,
     /// For what isn't drawn, the materials that have it.
@@ -183,18 +183,25 @@ impl<'a> Materials<'a> {
             .textures
             .entry(texture)
             .or_insert_with(|| texture_source::texture(textures, samplers, images.len(), texture, &self.notes));
-        let (image, sampling) = (*found)?;
-        Some((self.image(image, what, material)?, sampling))
+        let TextureSource { images, sampling } = found.clone()?;
+        let (last, others) = images.split_last()?;
+        let used = "can't be used, and the texture's other image takes its place";
+        let other = others
+            .iter()
+            .find_map(|&image| self.image(image, &format!("the {what} of material \"{material}\" {used}")));
+        let left_out = format!("the {what} of material \"{material}\" is left out");
+        Some((other.or_else(|| self.image(*last, &left_out))?, sampling))
     }
 
-    fn image(&mut self, image: usize, what: &str, material: &str) -> Option<Arc<Texture>> {
+    /// Reads an image. If it can't be read, the sentence about it begins with `otherwise`.
+    fn image(&mut self, image: usize, otherwise: &str) -> Option<Arc<Texture>> {
         if let Some(texture) = self.images.get(&image) {
             return texture.clone();
         }
         let bytes = texture_source::image(&self.lists.images, image, self.accessors, self.files);
         let texture = bytes.and_then(|bytes| decode_texture(&bytes, self.budget)).map(Arc::new);
         let texture = texture.map_err(|reason| {
-            self.notes.get_mut().push(format!("the {what} of material \"{material}\" is left out: {reason}."));
+            self.notes.get_mut().push(format!("{otherwise}: {reason}."));
         });
         self.images.insert(image, texture.clone().ok());
         texture.ok()

@@ -66,6 +66,9 @@ const COUNT: MemberKind = Whole { least: 0, most: u64::MAX };
 pub(super) const MESHOPT: &str = "EXT_meshopt_compression";
 /// The extension that compresses primitives.
 pub(super) const DRACO: &str = "KHR_draco_mesh_compression";
+/// The extensions that name another image of a texture.
+pub(super) const BASISU: &str = "KHR_texture_basisu";
+pub(super) const WEBP: &str = "EXT_texture_webp";
 /// The extension that transforms texture coordinates.
 pub(super) const TRANSFORM: &str = "KHR_texture_transform";
 

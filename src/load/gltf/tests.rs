@@ -6,6 +6,8 @@ mod lights;
 mod materials;
 mod mutations;
 mod packed;
+mod textures;
+mod variants;
 pub(crate) use mutations::seeds;
 
 use base64::prelude::{BASE64_STANDARD, Engine};
@@ -111,7 +113,7 @@ impl Draft {
 
 /// Reads a document that names no files.
 fn read_bytes(bytes: &[u8]) -> Result<LoadedMesh, GltfError> {
-    read(bytes.to_vec(), Path::new("nowhere"), "draft", &Limits::default(), &Progress::new())
+    read(bytes.to_vec(), Path::new("nowhere"), "draft", None, &Limits::default(), &Progress::new())
 }
 
 const TRIANGLE: [[f32; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];

@@ -1,6 +1,6 @@
 //! Reads what a document says about textures, and their samplers and images.
 //!
-//! Source: glTF 2.0 specification, section 3.8.
+//! Sources: glTF 2.0 specification, section 3.8; the extensions KHR_texture_basisu and EXT_texture_webp.
 
 use std::borrow::Cow;
 use std::cell::RefCell;
@@ -10,29 +10,45 @@ use serde_json::Value;
 use super::Accessors;
 use super::lenient::Members;
 use super::notes::Notes;
+use super::schema::{BASISU, WEBP};
 use crate::load::uri::{self, Files};
 use crate::mesh::{Sampling, Wrap};
 
-/// Reads a texture: the index of its image, and how it is sampled; none if it has no image that is read.
+/// A texture of a document.
+#[derive(Clone)]
+pub(super) struct TextureSource {
+    /// The indices of its images. The first one that can be read is used.
+    pub images: Vec<usize>,
+    pub sampling: Sampling,
+}
+
+/// Reads a texture; none if it has no image that is read.
 pub(super) fn texture(
     textures: &[Value],
     samplers: &[Value],
     images: usize,
     index: usize,
     notes: &RefCell<Notes>,
-) -> Option<(usize, Sampling)> {
+) -> Option<TextureSource> {
     let members = Members::of(textures.get(index)?, format!("/textures/{index}"), notes)?;
-    if !members.has("source") {
-        let said = format!("texture {index} has no PNG or JPEG image; its materials are shown without it.");
+    let source = |members: &Members| members.index("source", "images", images);
+    let extensions = members.inside("extensions");
+    let extended = |name| source(&extensions.as_ref()?.inside(name)?);
+    let is_silent = !members.has("source") && extensions.as_ref().is_none_or(|own| !own.has(BASISU) && !own.has(WEBP));
+    if is_silent {
+        let said = format!("texture {index} has no PNG, JPEG, WebP or KTX2 image; its materials are shown without it.");
         notes.borrow_mut().push(said);
         return None;
     }
-    let image = members.index("source", "images", images)?;
+    let images: Vec<_> = [extended(BASISU), extended(WEBP), source(&members)].into_iter().flatten().collect();
+    if images.is_empty() {
+        return None;
+    }
     let sampler = members.index("sampler", "samplers", samplers.len());
     let sampling = sampler.and_then(|sampler| {
         Members::of(&samplers[sampler], format!("/samplers/{sampler}"), notes).map(|members| sampling(&members))
     });
-    Some((image, sampling.unwrap_or_default()))
+    Some(TextureSource { images, sampling: sampling.unwrap_or_default() })
 }
 
 /// Reads a sampler. The codes are OpenGL's.

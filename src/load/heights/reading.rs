@@ -12,6 +12,7 @@ use crate::files::{file_reason, open_file};
 use crate::load::images::metadata_limits;
 use crate::load::jpeg_memory::{coefficient_bytes, most_coefficient_bytes};
 use crate::load::memory_budget::Budget;
+use crate::load::webp_memory::webp_bytes;
 use crate::mesh::build_limits::{MemoryAccount, MemoryRefused};
 use crate::mesh::heights::{HeightMap, angle_bytes};
 use crate::progress::{Cancelled, Progress};
@@ -19,8 +20,8 @@ use crate::progress::{Cancelled, Progress};
 /// The bytes before a PNG image's width and height, which have 4 bytes each.
 const PNG_START: &[u8; 16] = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR";
 
-/// Reads a PNG or JPEG image. A PNG is read row by row, so that a large image takes no more memory than its map; a
-/// JPEG, and an interlaced PNG, is decoded whole. The file's size is added to the budget. `corners` is the number of
+/// Reads a PNG, JPEG or WebP image. A PNG is read row by row, so that a large image takes no more memory than its map; a
+/// JPEG, a WebP, and an interlaced PNG, is decoded whole. The file's size is added to the budget. `corners` is the number of
 /// corners of the mesh.
 ///
 /// # Errors
@@ -34,7 +35,7 @@ pub(super) fn read_map(
     progress.check()?;
     let image = ImageFile { path, corners, budget, progress };
     let unread = |error: io::Error| image.fail(file_reason(&error));
-    let no_file = || image.fail("it is not a file; choose a PNG or JPEG image".to_owned());
+    let no_file = || image.fail("it is not a file; choose a PNG, JPEG or WebP image".to_owned());
     let (mut file, about) = open_file(path).map_err(unread)?.ok_or_else(no_file)?;
     let size = png_size(&mut file).map_err(unread)?;
     image.check(size.unwrap_or_default())?;
@@ -136,11 +137,12 @@ impl ImageFile<'_> {
     /// Reads any image by decoding all its pixels at once.
     fn read_whole(&self, mut reader: BufReader<ProgressReader>, length: u64) -> Result<HeightMap, HeightError> {
         let undecoded = |error: ImageError| match error {
-            ImageError::Unsupported(_) => self.fail("choose a PNG or JPEG image".to_owned()),
+            ImageError::Unsupported(_) => self.fail("choose a PNG, JPEG or WebP image".to_owned()),
             error => self.stopped_or(self.fail(error.to_string())),
         };
         let unread = |error: io::Error| self.stopped_or(self.fail(error.to_string()));
         let known = coefficient_bytes(&mut reader).map_err(unread)?;
+        let of_webp = webp_bytes(&mut reader).map_err(unread)?;
         let mut reader = ImageReader::new(reader).with_guessed_format().map_err(unread)?;
         self.budget.allow(length);
         let borrowed = self.budget.borrowed();
@@ -151,9 +153,9 @@ impl ImageFile<'_> {
         let decoder = reader.into_decoder().map_err(undecoded)?;
         let size = self.check(decoder.dimensions().into())?;
         let (color, count) = (decoder.color_type(), decoder.total_bytes());
-        let coefficients = if is_jpeg { known.unwrap_or_else(|| most_coefficient_bytes(size)) } else { 0 };
-        // They are freed before a map is made from the pixels. A JPEG decoder also keeps the file's bytes.
-        self.afford(size, length, count, coefficients)?;
+        let working = if is_jpeg { known.unwrap_or_else(|| most_coefficient_bytes(size)) } else { of_webp };
+        // It is freed before a map is made from the pixels. A JPEG decoder also keeps the file's bytes.
+        self.afford(size, length, count, working)?;
         let mut bytes = vec![0; count as usize];
         decoder.read_image(&mut bytes).map_err(undecoded)?;
         self.budget.give_back_to(borrowed);

@@ -7,7 +7,7 @@ use crate::load::{LoadError, load};
 use crate::progress::Cancelled;
 
 /// A triangle whose material has an image.
-fn textured(image: Value) -> Draft {
+pub(super) fn textured(image: Value) -> Draft {
     let mut draft = triangle();
     let uvs = draft.floats("VEC2", &[0.0, 0.0, 1.0, 0.0, 0.0, 1.0]);
     let primitive = &mut draft.root["meshes"][0]["primitives"][0];
@@ -63,8 +63,8 @@ fn missing_and_broken_textures_are_warnings() {
         assert!(mesh.warnings[0].contains("\"skin\"") && mesh.warnings[0].contains(reason), "{}", mesh.warnings[0]);
     }
     let mut elsewhere = textured(json!({}));
-    elsewhere.root["textures"] = json!([{ "extensions": { "KHR_texture_basisu": { "source": 0 } } }]);
-    assert!(elsewhere.read().unwrap().warnings[0].contains("texture 0 has no PNG or JPEG"));
+    elsewhere.root["textures"] = json!([{ "extensions": { "MSFT_texture_dds": { "source": 0 } } }]);
+    assert!(elsewhere.read().unwrap().warnings[0].contains("texture 0 has no PNG, JPEG, WebP or KTX2"));
 }
 
 #[test]

@@ -71,7 +71,7 @@ impl Case {
 
     fn attempt(&self) -> Result<String, String> {
         let start = time();
-        let read = || read(self.bytes.clone(), &self.folder, "hostile", &Limits::default(), &Progress::new());
+        let read = || read(self.bytes.clone(), &self.folder, "hostile", None, &Limits::default(), &Progress::new());
         let result = catch_unwind(AssertUnwindSafe(read)).map_err(|_| "panics".to_owned())?;
         let took = time() - start;
         let answer = match (result, &self.gets) {

@@ -13,6 +13,7 @@ use fastrand::Rng;
 use super::*;
 use crate::load::Format;
 use crate::load::hostile_files::{named_files, time};
+use crate::load::ktx2::tests::{ETC1S_ALPHA, UASTC_ZSTD};
 
 /// The number of copies in every run of the tests.
 const COPIES: usize = 300;
@@ -51,6 +52,9 @@ fn subjects() -> Vec<Subject> {
         Subject::own("a compressed grid", compressed::grid().glb()),
         Subject::own("a packed grid", packed::grid(packed::Order::Walked).glb()),
         Subject::own("a packed triangle that is skinned", packed::skinned().glb()),
+        Subject::own("a texture in ETC1S", textures::extended(None, &[("KHR_texture_basisu", ETC1S_ALPHA)]).glb()),
+        Subject::own("a texture in UASTC", textures::extended(None, &[("KHR_texture_basisu", UASTC_ZSTD)]).glb()),
+        Subject::own("a texture in WebP", textures::extended(None, &[("EXT_texture_webp", &textures::webp())]).glb()),
         Subject::file(vase),
     ];
     let of_documents = |path: &PathBuf| Format::of(path).is_ok_and(|format| format == Format::Gltf);
@@ -69,6 +73,9 @@ pub(crate) fn seeds() -> Vec<(&'static str, String, Vec<u8>)> {
         ("compressed", compressed::grid()),
         ("packed", packed::grid(packed::Order::Walked)),
         ("packed-skinned", packed::skinned()),
+        ("etc1s", textures::extended(None, &[("KHR_texture_basisu", ETC1S_ALPHA)])),
+        ("uastc", textures::extended(None, &[("KHR_texture_basisu", UASTC_ZSTD)])),
+        ("webp", textures::extended(None, &[("EXT_texture_webp", &textures::webp())])),
     ];
     let both = |(name, draft): (&str, Draft)| {
         let document = draft.document().to_string().into_bytes();
@@ -171,7 +178,7 @@ fn mutations_become_a_mesh_or_a_sentence() {
         let mut bytes = subject.bytes.clone();
         mutate(&mut bytes, &mut random);
         let start = time();
-        let reading = || read(bytes.clone(), &subject.folder, "mutated", &Limits::default(), &Progress::new());
+        let reading = || read(bytes.clone(), &subject.folder, "mutated", None, &Limits::default(), &Progress::new());
         let result = catch_unwind(AssertUnwindSafe(reading));
         let took = time() - start;
         slowest = slowest.max(took);

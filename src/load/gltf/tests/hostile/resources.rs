@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::load::gltf::schema::MESHOPT;
+use crate::load::ktx2::tests::{ETC1S, plain, with};
 use crate::load::uri;
 use base64::prelude::{BASE64_STANDARD, Engine};
 use tempfile::TempDir;
@@ -77,6 +78,40 @@ fn compressed(name: &'static str, change: impl FnOnce(&mut Value), expected: &st
     Case::draft(name, &draft, Gets::Refused(expected.to_owned()))
 }
 
+/// WebP and KTX2 images, and parts of the warning that each gets.
+fn images() -> [(&'static str, Vec<u8>, &'static str); 15] {
+    let webp = textures::webp();
+    let lossy = |width: u16, height: u16| {
+        let size = [width, height].map(u16::to_le_bytes);
+        [&b"VP8 \x0a\0\0\0\0\0\0\x9d\x01\x2a"[..], size.as_flattened()].concat()
+    };
+    let riff = |chunks: &[u8]| [&b"RIFF\xff\0\0\0WEBP"[..], chunks].concat();
+    let canvas = |flags: u8| [b"VP8X\x0a\0\0\0", &[flags, 0, 0, 0, 0, 0, 0, 0, 0, 0][..]].concat();
+    let mut bomb = plain(37, [16_384, 16_384], &[0; 40]);
+    bomb[44] = 2;
+    bomb[96..104].copy_from_slice(&(1_u64 << 30).to_le_bytes());
+    let mut lie = plain(37, [1, 1], &[0; 40]);
+    lie[44] = 2;
+    lie[96] = 4;
+    [
+        ("a WebP image that is cut off", webp[..webp.len() / 2].to_vec(), "texture | \"m\" | decoded"),
+        ("a WebP image of no px", riff(&lossy(0, 0)), "texture | \"m\" | decoded"),
+        ("a WebP image of 16,383 px without data", riff(&lossy(16_383, 16_383)), "texture | \"m\" | 16383 | 256"),
+        ("a WebP image within a smaller one", riff(&[canvas(0), lossy(9_999, 9_999)].concat()), "1 x 1 | 9999 x 9999"),
+        ("a WebP animation", riff(&canvas(2)), "texture | \"m\" | animation"),
+        ("a KTX2 header that is cut off", plain(37, [1, 1], &[0; 4])[..60].to_vec(), "KTX2 header | 68 | 60"),
+        ("a KTX2 image of no px", plain(37, [0, 9], &[]), "0 x 9 px"),
+        ("a KTX2 image of 20,000 px", with(&bomb, 20, 20_000), "level 0 | 1310720000"),
+        ("a KTX2 image of 1 GiB in 144 bytes", bomb, "16384 x 16384 | 256"),
+        ("a KTX2 level past the end", with(&plain(37, [1, 1], &[0; 4]), 80, 4_000_000), "4000004 | 108"),
+        ("a KTX2 level that is too short", plain(37, [2, 2], &[0; 4]), "4 bytes | 16"),
+        ("a KTX2 file of 2^32 - 1 levels", with(ETC1S, 40, u32::MAX), "4294967295 levels"),
+        ("a supercompression that there isn't", with(ETC1S, 44, 9), "supercompression 9"),
+        ("Zstandard data that isn't", lie, "Zstandard"),
+        ("codebooks of zeros", [&ETC1S[..184], &[0; 144]].concat(), "ETC1S data is broken"),
+    ]
+}
+
 pub(super) fn cases(folder: &Folder) -> Vec<Case> {
     let mut cases = vec![
         compressed(
@@ -134,6 +169,7 @@ pub(super) fn cases(folder: &Folder) -> Vec<Case> {
         Case::new("an image of no px", textured(&png(0, 1)), Gets::Repaired("texture | \"m\" | dimensions")),
         Case::new("an image that is cut off", textured(&png(1, 1)), Gets::Repaired("texture | \"m\" | unexpected end")),
     ];
+    cases.extend(images().map(|(name, image, expected)| Case::new(name, textured(&image), Gets::Repaired(expected))));
     let uris = [
         ("a buffer that isn't there", "missing.bin", "{folder}/missing.bin | no such file"),
         ("a buffer above", "../secret.bin", "leads out | .."),

@@ -1,0 +1,279 @@
+//! Reads images of KTX 2.0 files: Basis Universal (ETC1S and UASTC), and plain RGB and RGBA of 8 bits. Of a file with mip levels
+//! any one can be read.
+//!
+//! Sources: KTX 2.0 specification, <https://registry.khronos.org/KTX/specs/2.0/ktxspec.v2.html>, sections 3 and 4; Khronos,
+//! `KHR_texture_basisu`, <https://github.com/KhronosGroup/glTF/tree/main/extensions/2.0/Khronos/KHR_texture_basisu>.
+
+mod etc1s;
+mod huffman;
+#[cfg(test)]
+pub(super) mod tests;
+mod uastc;
+
+use std::borrow::Cow;
+
+use super::zstd;
+use etc1s::Codebooks;
+
+/// The first bytes of every file.
+const START: [u8; 12] = *b"\xabKTX 20\xbb\r\n\x1a\n";
+/// The length of what precedes the list of levels, and of a level's entry, in bytes.
+const HEADER: u64 = 80;
+const LEVEL: u64 = 24;
+/// The most levels that a file of less than 2^31 px a side can have.
+const MOST_LEVELS: u32 = 31;
+
+/// A file whose header has been read: it has one image, whose levels are in the file.
+pub(super) struct Ktx2<'a> {
+    bytes: &'a [u8],
+    /// Width and height in px.
+    pub size: [u32; 2],
+    codec: Codec,
+    is_zstd: bool,
+    /// The largest first.
+    levels: Vec<Level<'a>>,
+    /// Where the data that all levels share is.
+    global: [u64; 2],
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Codec {
+    /// With a slice of alpha.
+    Etc1s(bool),
+    Uastc,
+    /// Numbers of 8 bits, so many a pixel.
+    Plain(usize),
+}
+
+/// The data of a level.
+struct Level<'a> {
+    bytes: &'a [u8],
+    /// Its length once it is decompressed, in bytes.
+    length: u64,
+}
+
+/// Returns whether bytes begin as a KTX 2.0 file does.
+pub(super) fn is_ktx2(bytes: &[u8]) -> bool {
+    bytes.starts_with(&START)
+}
+
+impl<'a> Ktx2<'a> {
+    /// Reads the header. Sizes and places are checked, nothing is decoded.
+    ///
+    /// # Errors
+    /// A clause that says what is wrong.
+    pub(super) fn read(bytes: &'a [u8]) -> Result<Self, String> {
+        let word = |at: usize| -> Result<u32, String> {
+            let word = bytes.get(at..).and_then(|rest| rest.first_chunk());
+            word.map(|word| u32::from_le_bytes(*word)).ok_or_else(|| short("its KTX2 header", at as u64 + 4, bytes))
+        };
+        let long = |at: usize| Ok::<_, String>(u64::from(word(at)?) | u64::from(word(at + 4)?) << 32);
+        let [format, width, height, depth, layers, faces, count, scheme] = {
+            let words = [12, 20, 24, 28, 32, 36, 40, 44].map(word);
+            let mut read = [0; 8];
+            for (to, from) in read.iter_mut().zip(words) {
+                *to = from?;
+            }
+            read
+        };
+        if width == 0 || height == 0 {
+            return Err(format!("its KTX2 header says {width} x {height} px"));
+        }
+        if depth > 1 || layers > 1 || faces != 1 {
+            return Err(format!(
+                "its KTX2 header says depth {depth}, {layers} layers and {faces} faces; only single images are read"
+            ));
+        }
+        if count > MOST_LEVELS {
+            return Err(format!("its KTX2 header says {count} levels, but at most {MOST_LEVELS} are possible"));
+        }
+        let codec = codec(bytes, format, word(48)?, word(52)?)?;
+        let is_zstd = match (scheme, codec) {
+            (1, Codec::Etc1s(_)) => false,
+            (0, Codec::Uastc | Codec::Plain(_)) => false,
+            (2, Codec::Uastc | Codec::Plain(_)) => true,
+            _ => return Err(format!("its KTX2 header says supercompression {scheme}, which isn't read for {codec}")),
+        };
+        let mut file =
+            Self { bytes, size: [width, height], codec, is_zstd, levels: Vec::new(), global: [long(64)?, long(72)?] };
+        for level in 0..count.max(1) {
+            let at = (HEADER + LEVEL * u64::from(level)) as usize;
+            file.add_level(long(at)?, long(at + 8)?, long(at + 16)?)?;
+        }
+        if matches!(codec, Codec::Etc1s(_)) {
+            part(bytes, file.global, "its KTX2 codebooks")?;
+        }
+        Ok(file)
+    }
+
+    fn add_level(&mut self, offset: u64, length: u64, unpacked: u64) -> Result<(), String> {
+        let level = self.levels.len();
+        let name = format!("level {level} of its KTX2 file");
+        let bytes = part(self.bytes, [offset, length], &name)?;
+        let needed = self.data_bytes(level);
+        let length = if self.is_zstd { unpacked } else { length };
+        if needed.is_some_and(|needed| length != needed) {
+            let needed = needed.unwrap_or(0);
+            return Err(format!("{name} has {length} bytes, but its {} needs {needed}", self.codec));
+        }
+        self.levels.push(Level { bytes, length });
+        Ok(())
+    }
+
+    /// Returns the width and height of a level, in px.
+    fn level_size(&self, level: usize) -> [u32; 2] {
+        self.size.map(|side| side.checked_shr(level as u32).unwrap_or(0).max(1))
+    }
+
+    /// Returns how many bytes the data of a level has; none if its size doesn't say.
+    fn data_bytes(&self, level: usize) -> Option<u64> {
+        let sides = self.level_size(level).map(u64::from);
+        let blocks = sides.map(|side| side.div_ceil(4));
+        match self.codec {
+            Codec::Etc1s(_) => None,
+            Codec::Uastc => Some((blocks[0] * blocks[1]).saturating_mul(uastc::BLOCK as u64)),
+            Codec::Plain(width) => Some((sides[0] * sides[1]).saturating_mul(width as u64)),
+        }
+    }
+
+    /// Returns how much memory it takes to decode the image beside its pixels, in bytes.
+    pub(super) fn working_bytes(&self) -> u64 {
+        match self.codec {
+            // The codebooks' entries have at most 8 bytes, and there are at most 65,535 of each; the rest is a few rows.
+            Codec::Etc1s(_) => (1 << 20) + 16 * u64::from(self.size[0]),
+            _ if self.is_zstd => self.levels[0].length + zstd::WORKING_BYTES,
+            _ => 0,
+        }
+    }
+
+    /// Decodes the image to RGBA, row by row. The caller has made sure that there is memory for it, and for
+    /// [`Self::working_bytes`].
+    ///
+    /// # Errors
+    /// A clause that says what is wrong.
+    pub(super) fn decode(&self) -> Result<Vec<u8>, String> {
+        let level = &self.levels[0];
+        let data = if self.is_zstd {
+            let unpacked = zstd::decompress(level.bytes, level.length as usize);
+            unpacked.map(Cow::Owned).map_err(|reason| format!("its Zstandard data {reason}"))?
+        } else {
+            Cow::Borrowed(level.bytes)
+        };
+        match self.codec {
+            Codec::Plain(width) => Ok(rgba(&data, width)),
+            Codec::Uastc => self.uastc(&data),
+            Codec::Etc1s(has_alpha) => self.etc1s(&data, has_alpha),
+        }
+    }
+
+    fn uastc(&self, data: &[u8]) -> Result<Vec<u8>, String> {
+        let mut image = Image::new(self.size);
+        let across = image.blocks()[0];
+        for (index, block) in data.as_chunks().0.iter().enumerate() {
+            let texels = uastc::texels(block).ok_or_else(|| format!("its UASTC block {index} has no mode"))?;
+            image.put([index % across, index / across], |to, texel| to.copy_from_slice(&texels[texel]));
+        }
+        Ok(image.rgba)
+    }
+
+    fn etc1s(&self, data: &[u8], has_alpha: bool) -> Result<Vec<u8>, String> {
+        let global = part(self.bytes, self.global, "its KTX2 codebooks")?;
+        let wrong = || "its ETC1S data is broken".to_owned();
+        let books = Codebooks::read(global, self.levels.len()).ok_or_else(wrong)?;
+        let slices = etc1s::slices(global, 0).ok_or_else(wrong)?;
+        let mut image = Image::new(self.size);
+        let blocks = image.blocks();
+        let color = part(data, slices.color.map(u64::from), "its ETC1S colours")?;
+        let put = |at, texels: [[u8; 3]; 16]| image.put(at, |to, texel| to[..3].copy_from_slice(&texels[texel]));
+        books.decode(color, blocks, put).ok_or_else(wrong)?;
+        if has_alpha {
+            let alpha = part(data, slices.alpha.map(u64::from), "its ETC1S alpha")?;
+            let put = |at, texels: [[u8; 3]; 16]| image.put(at, |to, texel| to[3] = texels[texel][1]);
+            books.decode(alpha, blocks, put).ok_or_else(wrong)?;
+        }
+        Ok(image.rgba)
+    }
+}
+
+impl std::fmt::Display for Codec {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Etc1s(_) => "ETC1S",
+            Self::Uastc => "UASTC",
+            Self::Plain(3) => "R8G8B8",
+            Self::Plain(_) => "R8G8B8A8",
+        })
+    }
+}
+
+/// Reads how a file's data is stored: from the format (a `VkFormat`), or from the data format descriptor if that is 0.
+fn codec(bytes: &[u8], format: u32, offset: u32, length: u32) -> Result<Codec, String> {
+    match format {
+        23 | 29 => return Ok(Codec::Plain(3)),
+        37 | 43 => return Ok(Codec::Plain(4)),
+        0 => {}
+        _ => return Err(format!("its KTX2 format is VkFormat {format}; only {READ} are read")),
+    }
+    let descriptor = part(bytes, [offset, length].map(u64::from), "its KTX2 data format descriptor")?;
+    // After the length of all follows one block: 24 bytes, then 16 for each sample.
+    let (&[model, ..], Some(samples)) = (descriptor.get(12..).unwrap_or(&[]), descriptor.len().checked_sub(28)) else {
+        return Err(format!("its KTX2 data format descriptor has {length} bytes, but needs at least 44"));
+    };
+    match (model, samples / 16) {
+        (163, 1) => Ok(Codec::Etc1s(false)),
+        (163, 2) => Ok(Codec::Etc1s(true)),
+        (166, 1) => Ok(Codec::Uastc),
+        _ => Err(format!("its KTX2 data has colour model {model} with {} samples; only {READ} are read", samples / 16)),
+    }
+}
+
+const READ: &str = "ETC1S, UASTC, R8G8B8 and R8G8B8A8";
+
+/// Returns the bytes at an offset, of a length.
+fn part<'a>(bytes: &'a [u8], [offset, length]: [u64; 2], what: &str) -> Result<&'a [u8], String> {
+    let end = offset.saturating_add(length);
+    let range = usize::try_from(offset).ok().zip(usize::try_from(end).ok());
+    range.and_then(|(start, end)| bytes.get(start..end)).ok_or_else(|| short(what, end, bytes))
+}
+
+fn short(what: &str, end: u64, bytes: &[u8]) -> String {
+    format!("{what} ends at byte {end} of {}", bytes.len())
+}
+
+/// Returns RGBA of numbers that have 3 or 4 components.
+fn rgba(data: &[u8], width: usize) -> Vec<u8> {
+    match width {
+        3 => data.as_chunks().0.iter().flat_map(|&[r, g, b]| [r, g, b, 255]).collect(),
+        _ => data.to_vec(),
+    }
+}
+
+/// An image that is put together from blocks of 4 x 4 px, of which those at the right and at the bottom may reach beyond it.
+struct Image {
+    size: [usize; 2],
+    rgba: Vec<u8>,
+}
+
+impl Image {
+    /// Makes an opaque black image.
+    fn new(size: [u32; 2]) -> Self {
+        let size = size.map(|side| side as usize);
+        Self { size, rgba: [0, 0, 0, 255].repeat(size[0] * size[1]) }
+    }
+
+    fn blocks(&self) -> [usize; 2] {
+        self.size.map(|side| side.div_ceil(4))
+    }
+
+    /// Calls `set` with each pixel of a block, and the index of its texel.
+    fn put(&mut self, [x, y]: [usize; 2], set: impl Fn(&mut [u8], usize)) {
+        let [width, height] = self.size;
+        for row in 0..4.min(height - 4 * y) {
+            let start = 4 * ((4 * y + row) * width + 4 * x);
+            let columns = 4.min(width - 4 * x);
+            for (column, px) in self.rgba[start..start + 4 * columns].chunks_exact_mut(4).enumerate() {
+                set(px, 4 * row + column);
+            }
+        }
+    }
+}

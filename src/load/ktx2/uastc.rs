@@ -1,0 +1,287 @@
+//! Decodes UASTC, one of the two codecs of Basis Universal: blocks of 4 x 4 px in 128 bits, which use a part of ASTC with
+//! another packing.
+//!
+//! Sources: KTX 2.0 specification, appendix "UASTC texture encoding"; Khronos Data Format Specification 1.3, chapter 23 (ASTC):
+//! section 23.13 for endpoints, 23.15 for weights, 23.21 for partitions.
+
+/// The number of bytes of a block.
+pub(super) const BLOCK: usize = 16;
+
+/// How a block is stored. A block begins with the code of its mode.
+struct Mode {
+    /// The code and its length in bits.
+    code: (u8, u32),
+    /// Bits for other transcoders, which are passed over.
+    hints: u32,
+    weight_bits: u32,
+    endpoints: Endpoints,
+    /// 2 (luminance and alpha), 3 (RGB) or 4 (RGBA).
+    components: usize,
+    partition: Partition,
+    plane: Plane,
+}
+
+/// The codes that endpoints have: a trit or a quint, above some bits.
+#[derive(Clone, Copy)]
+struct Endpoints {
+    bits: u32,
+    /// 3 with trits, 5 with quints, 1 with neither.
+    base: u32,
+}
+
+/// How texels are divided into subsets, which have endpoints of their own.
+#[derive(Clone, Copy)]
+enum Partition {
+    One,
+    /// Bits of an index into seeds of ASTC's partitions, how many subsets these have, and the subsets by index and texel.
+    Of(u32, usize, &'static [[u8; 16]]),
+}
+
+/// Which component has weights of its own.
+#[derive(Clone, Copy)]
+enum Plane {
+    None,
+    /// The block says which.
+    Told,
+    Alpha,
+}
+
+/// The mode of blocks of one colour.
+const SOLID: usize = 8;
+
+const fn bits(bits: u32) -> Endpoints {
+    Endpoints { bits, base: 1 }
+}
+
+const fn trits(bits: u32) -> Endpoints {
+    Endpoints { bits, base: 3 }
+}
+
+const fn quints(bits: u32) -> Endpoints {
+    Endpoints { bits, base: 5 }
+}
+
+const fn mode(
+    code: (u8, u32),
+    hints: u32,
+    weight_bits: u32,
+    endpoints: Endpoints,
+    components: usize,
+    partition: Partition,
+    plane: Plane,
+) -> Mode {
+    Mode { code, hints, weight_bits, endpoints, components, partition, plane }
+}
+
+const TWO: Partition = Partition::Of(5, 2, &TWO_SUBSETS);
+const OTHER_TWO: Partition = Partition::Of(5, 2, &OTHER_TWO_SUBSETS);
+const THREE: Partition = Partition::Of(4, 3, &THREE_SUBSETS);
+
+#[rustfmt::skip]
+static MODES: [Mode; 19] = [
+    mode((0x01, 4), 15, 4, trits(6), 3, Partition::One, Plane::None),
+    mode((0x35, 6), 15, 2, bits(8), 3, Partition::One, Plane::None),
+    mode((0x1d, 5), 15, 3, bits(4), 3, TWO, Plane::None),
+    mode((0x03, 5), 15, 2, trits(2), 3, THREE, Plane::None),
+    mode((0x13, 5), 15, 2, quints(3), 3, TWO, Plane::None),
+    mode((0x0b, 5), 15, 3, bits(8), 3, Partition::One, Plane::None),
+    mode((0x1b, 5), 15, 2, quints(5), 3, Partition::One, Plane::Told),
+    mode((0x07, 5), 15, 2, quints(3), 3, OTHER_TWO, Plane::None),
+    mode((0x17, 5), 0, 0, bits(8), 4, Partition::One, Plane::None),
+    mode((0x0f, 5), 23, 2, bits(4), 4, TWO, Plane::None),
+    mode((0x02, 3), 17, 4, trits(4), 4, Partition::One, Plane::None),
+    mode((0x00, 2), 17, 2, trits(4), 4, Partition::One, Plane::Told),
+    mode((0x06, 3), 17, 3, trits(6), 4, Partition::One, Plane::None),
+    mode((0x1f, 5), 23, 1, bits(8), 4, Partition::One, Plane::Told),
+    mode((0x0d, 5), 23, 2, bits(8), 4, Partition::One, Plane::None),
+    mode((0x05, 7), 23, 4, bits(8), 2, Partition::One, Plane::None),
+    mode((0x15, 6), 23, 2, bits(8), 2, TWO, Plane::None),
+    mode((0x25, 6), 23, 2, bits(8), 2, Partition::One, Plane::Alpha),
+    mode((0x09, 4), 15, 5, bits(5), 3, Partition::One, Plane::None),
+];
+
+/// Partitions that ASTC and BC7 have in common.
+static TWO_SUBSETS: [[u8; 16]; 30] = subsets(
+    2,
+    [
+        28, 20, 16, 29, 91, 9, 107, 72, 149, 204, 50, 114, 496, 17, 78, 39, 252, 828, 43, 156, 116, 210, 476, 273, 684,
+        359, 246, 195, 694, 524,
+    ],
+);
+static THREE_SUBSETS: [[u8; 16]; 11] = subsets(3, [260, 74, 32, 156, 183, 15, 745, 0, 335, 902, 254]);
+/// Partitions into two, which BC7 has only as partitions into three.
+static OTHER_TWO_SUBSETS: [[u8; 16]; 19] =
+    subsets(2, [36, 48, 61, 137, 161, 183, 226, 281, 302, 307, 479, 495, 593, 594, 605, 799, 812, 988, 993]);
+
+const fn subsets<const N: usize>(count: u32, seeds: [u32; N]) -> [[u8; 16]; N] {
+    let mut all = [[0; 16]; N];
+    let mut i = 0;
+    while i < N {
+        let mut texel = 0;
+        while texel < 16 {
+            all[i][texel] = subset(seeds[i], count, texel as u32 % 4, texel as u32 / 4);
+            texel += 1;
+        }
+        i += 1;
+    }
+    all
+}
+
+/// Returns the subset of a texel of a block of 4 x 4, for 2 or 3 subsets.
+const fn subset(seed: u32, count: u32, x: u32, y: u32) -> u8 {
+    let seed = seed + (count - 1) * 1024;
+    let number = hashed(seed);
+    let odd = if seed & 2 != 0 { 4 } else { 5 };
+    let even = if count == 3 { 6 } else { 5 };
+    let [along_x, along_y] = if seed & 1 != 0 { [odd, even] } else { [even, odd] };
+    // Small blocks are looked at in twice their size.
+    let [x, y] = [2 * x, 2 * y];
+    let mut sums = [0; 3];
+    let mut i = 0;
+    while i < count as usize {
+        let [a, b] = [(number >> (8 * i)) & 15, (number >> (8 * i + 4)) & 15];
+        let constant = number >> (14 - 4 * i);
+        sums[i] = (((a * a) >> along_x) * x + ((b * b) >> along_y) * y + constant) & 63;
+        i += 1;
+    }
+    if sums[0] >= sums[1] && sums[0] >= sums[2] {
+        0
+    } else if sums[1] >= sums[2] {
+        1
+    } else {
+        2
+    }
+}
+
+const fn hashed(seed: u32) -> u32 {
+    let mut p = seed;
+    p ^= p >> 15;
+    p = p.wrapping_sub(p << 17);
+    p = p.wrapping_add(p << 7);
+    p = p.wrapping_add(p << 4);
+    p ^= p >> 5;
+    p = p.wrapping_add(p << 16);
+    p ^= p >> 7;
+    p ^= p >> 3;
+    p ^= p << 6;
+    p ^ (p >> 17)
+}
+
+/// The bits of a block that haven't been read, the next one lowest.
+struct BlockBits(u128);
+
+impl BlockBits {
+    fn take(&mut self, count: u32) -> u32 {
+        let bits = self.0 as u32 & ((1 << count) - 1);
+        self.0 >>= count;
+        bits
+    }
+}
+
+/// Returns the texels of a block as RGBA, row by row; none if it is no block of UASTC.
+pub(super) fn texels(block: &[u8; BLOCK]) -> Option<[[u8; 4]; 16]> {
+    let mut bits = BlockBits(u128::from_le_bytes(*block));
+    let is_code = |mode: &Mode| u32::from(block[0]) & ((1 << mode.code.1) - 1) == u32::from(mode.code.0);
+    let index = MODES.iter().position(is_code)?;
+    let mode = &MODES[index];
+    bits.take(mode.code.1);
+    if index == SOLID {
+        return Some([[0; 4].map(|_: u8| bits.take(8) as u8); 16]);
+    }
+    bits.take(mode.hints);
+    let (count, subsets) = match mode.partition {
+        Partition::One => (1, &[0; 16]),
+        Partition::Of(width, count, subsets) => (count, subsets.get(bits.take(width) as usize)?),
+    };
+    let second = match mode.plane {
+        Plane::None => None,
+        Plane::Told => Some(bits.take(2) as usize),
+        Plane::Alpha => Some(3),
+    };
+    let ends = mode.ends(&mut bits, count);
+    let mut texels = [[0; 4]; 16];
+    let mut seen = [false; 3];
+    for (texel, &subset) in texels.iter_mut().zip(subsets) {
+        // The highest bit of the first weight of a subset is 0, and isn't stored.
+        let is_first = !std::mem::replace(&mut seen[usize::from(subset)], true);
+        let mut weight = || unquantized(bits.take(mode.weight_bits - u32::from(is_first)), mode.weight_bits);
+        let all = weight();
+        let own = second.map(|component| (component, weight()));
+        for (component, value) in texel.iter_mut().enumerate() {
+            let weight = own.filter(|own| own.0 == component).map_or(all, |own| own.1);
+            let [low, high] = ends[usize::from(subset)][component].map(|end| end * 257);
+            *value = ((low * (64 - weight) + high * weight + 32) >> 14) as u8;
+        }
+    }
+    Some(texels)
+}
+
+/// Returns a weight of up to 5 bits as a number from 0 to 64.
+fn unquantized(weight: u32, bits: u32) -> u32 {
+    let six = match bits {
+        1 => weight * 63,
+        2 => weight * 21,
+        3 => weight * 9,
+        4 => weight << 2 | weight >> 2,
+        _ => weight << 1 | weight >> 4,
+    };
+    six + u32::from(six > 32)
+}
+
+impl Mode {
+    /// Reads the ends of the lines of colours: for each subset and component the low and the high one, 0 to 255.
+    fn ends(&self, bits: &mut BlockBits, subsets: usize) -> [[[u32; 2]; 4]; 3] {
+        let count = 2 * self.components * subsets;
+        let mut values = [0; 18];
+        self.endpoints.read(bits, &mut values[..count]);
+        let mut ends = [[[0, 0], [0, 0], [0, 0], [255, 255]]; 3];
+        for (own, values) in ends.iter_mut().zip(values[..count].chunks_exact(2 * self.components)) {
+            let pairs = values.as_chunks::<2>().0;
+            match *pairs {
+                [luminance, alpha] => *own = [luminance, luminance, luminance, alpha],
+                _ => own[..pairs.len()].copy_from_slice(pairs),
+            }
+        }
+        ends
+    }
+}
+
+impl Endpoints {
+    /// Reads endpoints, from 0 to 255. All groups of trits or quints stand before the bits.
+    fn read(self, bits: &mut BlockBits, values: &mut [u32]) {
+        // How many values are in a group, and how many bits a group of so many values has.
+        let sizes: &[u32] = match self.base {
+            3 => &[0, 2, 4, 5, 7, 8],
+            5 => &[0, 3, 5, 7],
+            _ => &[],
+        };
+        let mut above = [0; 18];
+        for group in above[..values.len()].chunks_mut(sizes.len().max(2) - 1) {
+            let mut packed = if sizes.is_empty() { 0 } else { bits.take(sizes[group.len()]) };
+            for value in group {
+                (*value, packed) = (packed % self.base, packed / self.base);
+            }
+        }
+        for (value, above) in values.iter_mut().zip(above) {
+            *value = self.unquantized(bits.take(self.bits), above);
+        }
+    }
+
+    /// Returns the number from 0 to 255 of some bits and the trit or quint above. The factors and the places of bits are those of
+    /// the tables in section 23.13.
+    fn unquantized(self, bits: u32, above: u32) -> u32 {
+        let x = bits >> 1;
+        let (factor, places) = match (self.base, self.bits) {
+            (1, 8) => return bits,
+            (1, 5) => return bits << 3 | bits >> 2,
+            (1, _) => return bits * 17,
+            (3, 2) => (93, x * 0b1_0001_0110),
+            (3, 4) => (22, x << 6 | x),
+            (3, _) => (5, x << 4 | x >> 4),
+            (_, 3) => (26, x << 7 | x << 1 | x >> 1),
+            (_, _) => (6, x << 5 | x >> 3),
+        };
+        let lowest = if bits & 1 != 0 { 511 } else { 0 };
+        (lowest & 128) | ((above * factor + places) ^ lowest) >> 2
+    }
+}

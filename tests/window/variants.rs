@@ -1,0 +1,56 @@
+//! The choice of material variants.
+
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use pnaen::app::App;
+use pnaen::load::Source;
+use pnaen::mesh::Shape;
+
+use crate::window_tests::{choose, press, uniform, window};
+
+/// A triangle that is red, and blue in the variant `Night`.
+const LAMP: &str = r#"{
+    "asset": { "version": "2.0" },
+    "extensions": { "KHR_materials_variants": { "variants": [{ "name": "Night" }] } },
+    "nodes": [{ "mesh": 0 }],
+    "scenes": [{ "nodes": [0] }],
+    "scene": 0,
+    "buffers": [{ "byteLength": 36, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA" }],
+    "bufferViews": [{ "buffer": 0, "byteLength": 36 }],
+    "accessors": [{ "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3" }],
+    "materials": [{ "name": "red" }, { "name": "blue" }],
+    "meshes": [{ "primitives": [{
+        "attributes": { "POSITION": 0 },
+        "material": 0,
+        "extensions": { "KHR_materials_variants": { "mappings": [{ "material": 1, "variants": [0] }] } }
+    }] }]
+}"#;
+
+fn material(harness: &Harness<App>) -> String {
+    harness.state().loaded().expect("a mesh").mesh.materials[0].name.clone()
+}
+
+#[test]
+fn a_variant_is_chosen_and_the_view_stays() {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let path = folder.path().join("lamp.gltf");
+    std::fs::write(&path, LAMP).expect("a writable temporary folder");
+    let mut harness = uniform(Some(Source::File(path)));
+    assert_eq!(material(&harness), "red");
+    press(&mut harness, egui::Key::Num3);
+    let camera = *harness.state().camera();
+    choose(&mut harness, "Variant", "Night");
+    assert_eq!((material(&harness).as_str(), *harness.state().camera()), ("blue", camera));
+    // The variant stays when the file is loaded again.
+    press(&mut harness, egui::Key::R);
+    assert_eq!(material(&harness), "blue");
+    choose(&mut harness, "Variant", "File's own");
+    assert_eq!(material(&harness), "red");
+}
+
+#[test]
+fn a_mesh_without_variants_has_no_choice() {
+    let harness = window(Some(Source::Shape(Shape::Torus)));
+    assert_eq!(harness.query_all_by_role_and_label(Role::ComboBox, "Variant").count(), 0);
+}
