@@ -203,7 +203,7 @@ fn a_gap_is_seen_between_the_lines_of_its_sides() {
     let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
     choose(&mut harness, "Surface", "PN");
     press(&mut harness, Key::C);
-    let widest = harness.state().cracks().expect("measured").edges[0].clone();
+    let widest = harness.state().cracks().expect("measured").edges[0];
     harness.state_mut().select_edge(widest.edge);
     press(&mut harness, Key::Escape);
     assert_eq!(harness.state().selected_edge(), None);
@@ -216,9 +216,9 @@ fn a_gap_is_seen_between_the_lines_of_its_sides() {
         let [a, b] = widest.widest;
         let middle = project(clip_from_object, viewport, 0.5 * (a + b)).expect("in front of the eye");
         let [x, y] = [middle.x as u32, middle.y as u32];
-        let around = (x - 1..=x + 1).flat_map(|x| (y - 1..=y + 1).map(move |y| (x, y)));
+        let mut around = (x - 1..=x + 1).flat_map(|x| (y - 1..=y + 1).map(move |y| (x, y)));
         let is_line = |(x, y)| (0..3).all(|c| picture.get_pixel(x, y).0[c].abs_diff(CRACK_COLOR[c]) < 60);
-        (widest.gap_px(clip_from_object, viewport), around.map(is_line).all(|is_line| is_line))
+        (widest.gap_px(clip_from_object, viewport), around.all(is_line))
     };
     while seen(&harness).0 > 3.4 {
         press(&mut harness, Key::PageDown);
