@@ -393,29 +393,37 @@ fn layers_of_many_chunks_and_of_both_halves_give_the_same_picture() {
     assert!(found == whole.1);
 }
 
-#[test]
-fn the_ground_is_seen_through_what_is_in_front_of_it() {
-    let settings = Settings { background: Some(BACKGROUND), ..of_picture(ToneCurve::Neutral) };
-    let grid = Settings { overlays: Overlays { grid: true, ..Overlays::default() }, ..settings };
+/// By how much the ground changes the green light of each pixel in the middle of a picture of a blended ball with this alpha.
+fn ground_in_front_of_ball(alpha: f32, elevation: f32) -> Vec<f32> {
     let mut ball = blended_ball();
-    ball.base_color[3] = 0.5;
+    ball.base_color[3] = alpha;
     let mut scene = scene_of(balls(vec![ball], 1), 0.0);
     let target = Target::new(&engine().gpu, [160, 120]).expect("a small picture");
-    let framed = Camera::framing(&scene.bounds, target.viewport());
-    let change = |scene: &mut pnaen::render::Scene, elevation: f32| {
-        let camera = Camera { azimuth: 20.0, elevation, ..framed };
-        let [without, with] = [settings, grid].map(|settings| seen(scene, &target, &settings, &camera));
-        // Around the ball's middle.
-        let inside = (0..40 * 40).map(|index| (60 + index % 40, 40 + index / 40));
-        let change = |(x, y)| {
-            let [a, b] = [&without, &with].map(|picture| picture.get_pixel(x, y).0);
-            a.iter().zip(b).map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0)
-        };
-        inside.map(change).max().unwrap_or(0)
+    let camera = Camera { azimuth: 20.0, elevation, ..Camera::framing(&scene.bounds, target.viewport()) };
+    let settings = Settings { background: Some(BACKGROUND), ..of_picture(ToneCurve::Neutral) };
+    let overlays = Overlays { grid: true, ..Overlays::default() };
+    let [without, with] =
+        [settings, Settings { overlays, ..settings }].map(|settings| seen(&mut scene, &target, &settings, &camera));
+    let green = |picture: &RgbaImage, index: u32| {
+        let [r, g, b, _] = picture.get_pixel(60 + index % 40, 40 + index / 40).0;
+        linear([r, g, b])[1]
     };
-    let [above, below] = [change(&mut scene, 40.0), change(&mut scene, -40.0)];
-    // A quarter of the ground is seen through both walls, and all of it in front of them.
-    assert!(above > 0 && 2 * above < below, "{above} and {below} steps");
+    (0..40 * 40).map(|index| green(&with, index) - green(&without, index)).collect()
+}
+
+#[test]
+fn the_ground_is_seen_through_what_is_in_front_of_it() {
+    // Where alpha is 0 there is no ball.
+    let [alone, through] = [0.0, 0.5].map(|alpha| ground_in_front_of_ball(alpha, 40.0));
+    let most = alone.iter().copied().fold(0.0, f32::max);
+    assert!(most > 0.12, "the ground has lines here: {most}");
+    // A quarter of it comes through both walls.
+    for (alone, through) in alone.iter().zip(&through) {
+        assert!((through - 0.25 * alone).abs() < 0.015, "{through}, not a quarter of {alone}");
+    }
+    // From below, nothing is in front of it.
+    let below = ground_in_front_of_ball(0.9, -40.0).into_iter().map(f32::abs).fold(0.0, f32::max);
+    assert!(below > 0.1, "{below}");
 }
 
 #[test]
