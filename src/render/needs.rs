@@ -69,8 +69,7 @@ mod tests {
     fn a_mesh_needs_what_any_of_its_materials_does() {
         let mut mesh = Shape::CubeSplit.build();
         let settings = Settings::default();
-        let nothing =
-            Needs { maps: false, details: false, coat: false, mask: false, transmission: false, lights: 0 };
+        let nothing = Needs { maps: false, details: false, coat: false, mask: false, transmission: false, lights: 0 };
         assert_eq!(Needs::of(&mesh, &settings), nothing);
         let mut coated = Material::plain("coated", [1.0; 4]);
         coated.look.clearcoat = 0.5;

@@ -5,8 +5,8 @@
 
 use super::value::Field;
 use super::{
-    Access, Colors, Declaration, Description, DeviationUnit, FileLights, Kind, Lighting, Matcap, NormalsAt, Overlay, Range,
-    Settings, ToneCurve, Value, descriptions,
+    Access, Colors, Declaration, Description, DeviationUnit, FileLights, Kind, Lighting, Matcap, NormalsAt, Overlay,
+    Range, Settings, ToneCurve, Value, descriptions,
 };
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface, Tessellation};
 
@@ -378,7 +378,7 @@ pub(crate) static ENVIRONMENT_BRIGHTNESS: Declaration = Declaration {
 
 pub(crate) static ENVIRONMENT_BACKGROUND: Declaration = Declaration {
     name: "environment-background",
-    label: "Environment as background",
+    label: "Show environment",
     placeholder: "",
     text: "Shows the light from all around behind the mesh, in place of the background's colour. Transparent pictures stay \
            transparent there.",

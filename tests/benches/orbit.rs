@@ -37,9 +37,10 @@ fn window(source: &Source) -> Harness<'static, App> {
     let source = Some(source.clone());
     // As the program paints: without the slower filtering that makes pictures of tests predictable.
     let options = egui_wgpu::RendererOptions::default();
-    let mut harness = Harness::builder().with_size(SIZE).with_render_options(options).wgpu().build_eframe(move |context| {
-        App::new(context, source, Limits::default()).expect("the bench needs a graphics adapter")
-    });
+    let mut harness =
+        Harness::builder().with_size(SIZE).with_render_options(options).wgpu().build_eframe(move |context| {
+            App::new(context, source, Limits::default()).expect("the bench needs a graphics adapter")
+        });
     settle(&mut harness);
     harness
 }

@@ -44,7 +44,7 @@ pub fn ply(data: &[u8]) {
 /// Reads bytes as a file, which must give a valid mesh or an error.
 fn mesh(format: Format, data: &[u8]) {
     let progress = Progress::new();
-    match read(format, data.to_vec(), Path::new("nowhere/fuzzed"), &Limits::default(), &progress) {
+    match read(format, data.to_vec(), Path::new("nowhere/fuzzed"), None, &Limits::default(), &progress) {
         Ok(loaded) => assert_sound(&loaded.mesh, &progress),
         Err(error) => {
             let said = error.to_string();

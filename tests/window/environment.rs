@@ -170,7 +170,7 @@ fn the_background_shows_the_environment() {
     let mut harness = torus();
     open(&mut harness, &path);
     let plain = *shown(&harness).get_pixel(3, 3);
-    switch(&mut harness, "Environment as background");
+    switch(&mut harness, "Show environment");
     let picture = shown(&harness);
     assert_ne!(*picture.get_pixel(3, 3), plain);
     assert!(picture.get_pixel(3, 3).0[0] > 200 || picture.get_pixel(3, 3).0[2] > 200, "{:?}", picture.get_pixel(3, 3));

@@ -249,8 +249,12 @@ fn sections_fold_and_the_next_window_remembers_it() {
     };
     let mut harness = resumed(folder.path());
     assert!(harness.query_by_role_and_label(Role::ComboBox, "Convention").is_none(), "specialists open it");
+    harness.get_by_label("Advanced").scroll_to_me();
+    settle(&mut harness);
     click(&mut harness, "Advanced");
     harness.get_by_role_and_label(Role::ComboBox, "Convention");
+    harness.get_by_role_and_label(Role::DisclosureTriangle, "Surface").scroll_to_me();
+    settle(&mut harness);
     harness.get_by_role_and_label(Role::DisclosureTriangle, "Surface").click();
     settle(&mut harness);
     assert!(harness.query_by_role_and_label(Role::ComboBox, "Partitioning").is_none());

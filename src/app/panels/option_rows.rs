@@ -1,11 +1,11 @@
 //! Rows of the settings panel, made from the declarations of options.
 
 use crate::app::widgets::{chooser, fixed};
-use crate::settings::{Declaration, Range, Settings, Value, options};
+use crate::settings::{Declaration, Range, Settings, Value};
 
-/// The exposures that the slider reaches, in EV. More can be typed, up to the option's own range, but over all of that a step of
-/// the slider would be too coarse.
-const SLID_EXPOSURES: std::ops::RangeInclusive<f32> = -5.0..=5.0;
+/// What sliders of light reach, in EV. More can be typed, up to the option's own range, but over all of that a step of the slider
+/// would be too coarse.
+const SLID_EV: std::ops::RangeInclusive<f32> = -5.0..=5.0;
 
 /// A row that changes an option, greyed out where the option has no effect. `key` names the key that changes it too.
 pub(super) fn option_row(ui: &mut egui::Ui, option: &Declaration, settings: &mut Settings, key: &str) {
@@ -44,7 +44,7 @@ fn number_row(
 ) {
     let unit = if range.unit.is_empty() { String::new() } else { format!(" {}", range.unit) };
     let label = ui.label(option.label).on_hover_text(hover);
-    let slid = if option.name == options::EXPOSURE.name { SLID_EXPOSURES } else { range.least..=range.most };
+    let slid = if range.unit == "EV" { SLID_EV } else { range.least..=range.most };
     let slider = egui::Slider::new(&mut number, slid)
         .clamping(egui::SliderClamping::Never)
         .max_decimals(range.decimals)

@@ -24,6 +24,9 @@ const REST: Duration = Duration::from_millis(150);
 /// of 4 x 4 px, of which each triangle costs one at least.
 const TRIANGLES_IN_SOFTWARE: f32 = 6_000.0;
 const TRIANGLES: f32 = 2_000_000.0;
+/// As many triangles that don't depend on the camera are drawn as they are. With others in their place, they would have to be
+/// measured again.
+const KEPT_IN_SOFTWARE: f32 = 40_000.0;
 /// A mesh with more than so many times as many patches gets a mesh of that many triangles in its place.
 const LARGE: f32 = 2.0;
 /// The largest factor of a preview. More can't be seen at its resolution.
@@ -219,7 +222,8 @@ fn shape_of(
     wanted: &Wanted,
     is_frozen: bool,
 ) -> Shape {
-    let most = if engine.gpu.is_software() { TRIANGLES_IN_SOFTWARE } else { TRIANGLES };
+    let is_software = engine.gpu.is_software();
+    let (most, kept) = if is_software { (TRIANGLES_IN_SOFTWARE, KEPT_IN_SOFTWARE) } else { (TRIANGLES, TRIANGLES) };
     let Tessellation { lod, factor, clip, cull_back_faces, .. } = wanted.inputs.tessellation;
     let follows = !is_frozen && (lod != Lod::Uniform || clip != Clip::Off || cull_back_faces);
     let (tessellator, patches) = (&document.scene.tessellator, document.loaded.topology.patches.len() as f32);
@@ -228,7 +232,7 @@ fn shape_of(
         _ => tessellator.totals().1 as f32,
     };
     // Factors of a file stay as they are, however many triangles they ask for.
-    if !follows && (triangles <= most || wanted.given != 0) {
+    if !follows && (triangles <= kept || wanted.given != 0) {
         return Shape::Same;
     }
     if patches > LARGE * most
