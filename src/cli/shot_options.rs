@@ -38,7 +38,7 @@ pub(crate) struct ShotOptions {
     /// and blue
     #[arg(long, value_name = "TRIANGLE")]
     pub select: Option<u32>,
-    /// PNG or JPEG image of a lit sphere for the matcap overlay, in place of that of --matcap
+    /// PNG, JPEG or WebP image of a lit sphere for the matcap overlay, in place of that of --matcap
     #[arg(long, value_name = "IMAGE", conflicts_with = "matcap")]
     pub matcap_image: Option<PathBuf>,
     /// Draw on nothing in place of a colour: where no mesh, line or grid is, the picture is transparent

@@ -20,7 +20,7 @@ pub(super) fn commands() -> Vec<Command> {
 
 /// What a picture of a lit sphere is for.
 pub(crate) const MATCAP_IMAGE: &str =
-    "Opens a PNG or JPEG image of a lit sphere, and shows the surface in its colours.";
+    "Opens a PNG, JPEG or WebP image of a lit sphere, and shows the surface in its colours.";
 
 /// What a file of factors is for.
 const FACTORS: &str = "Opens the tessellation factors that another engine wrote, in place of those of LOD, and lists where they disagree.";

@@ -17,11 +17,11 @@ pub enum MatcapError {
     #[error(transparent)]
     File(#[from] FileError),
     /// The file isn't an image, or takes too much memory.
-    #[error("{} can't be used as a matcap: {reason}; choose a PNG or JPEG image", shown_path(path))]
+    #[error("{} can't be used as a matcap: {reason}; choose a PNG, JPEG or WebP image", shown_path(path))]
     Image { path: PathBuf, reason: String },
 }
 
-/// Reads a PNG or JPEG image of a lit sphere, which fills it from border to border.
+/// Reads a PNG, JPEG or WebP image of a lit sphere, which fills it from border to border.
 ///
 /// # Errors
 /// [`MatcapError`].

@@ -11,6 +11,8 @@ mod factors;
 mod formats;
 mod gallery;
 mod info;
+#[path = "../documents/lamp.rs"]
+mod lamp;
 mod lod;
 mod manual;
 #[path = "../documents/moving.rs"]
@@ -22,6 +24,7 @@ mod techniques;
 mod tessellate;
 mod turntable;
 mod usage;
+mod variants;
 #[cfg(unix)]
 mod writing;
 

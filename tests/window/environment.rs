@@ -6,9 +6,8 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use image::RgbaImage;
-use pnaen::app::{App, Persistence};
+use pnaen::app::App;
 use pnaen::commands::{Action, FileAction, all};
-use pnaen::files::Limits;
 use pnaen::load::Source;
 use pnaen::load::environment_file::tests::{open_exr_file, radiance_file};
 use pnaen::mesh::Shape;
@@ -17,7 +16,7 @@ use tempfile::TempDir;
 
 use crate::window_tests::editing::{assert_draws, copied};
 use crate::window_tests::loading::drop_files;
-use crate::window_tests::{choose, click, copy_vase, press, settle, switch, uniform};
+use crate::window_tests::{choose, click, copy_vase, press, resumed, settle, switch, uniform};
 
 /// A panorama with red light above and blue light below.
 fn panorama(folder: &TempDir, name: &str) -> PathBuf {
@@ -190,15 +189,7 @@ fn the_background_shows_the_environment() {
 
 /// A window that saves its state in a folder.
 fn kept(folder: &TempDir) -> Harness<'static, App> {
-    let kept = folder.path().join("kept");
-    let mut harness = Harness::builder().with_size([1200.0, 960.0]).wgpu().build_eframe(move |context| {
-        let source = Some(Source::Shape(Shape::Torus));
-        let mut app = App::new(context, source, Limits::default()).expect("these tests need a graphics adapter");
-        app.resume(&context.egui_ctx, Persistence::read(Some(&kept)));
-        app
-    });
-    settle(&mut harness);
-    harness
+    resumed(&folder.path().join("kept"), [1200.0, 960.0], Some(Source::Shape(Shape::Torus)))
 }
 
 #[test]

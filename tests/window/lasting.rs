@@ -6,14 +6,13 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::{App, Persistence};
-use pnaen::files::Limits;
 use pnaen::load::Source;
 use pnaen::mesh::Shape;
 use pnaen::settings::Settings;
 use pnaen::tessellate::{Displacement, Surface};
 use tempfile::TempDir;
 
-use crate::window_tests::{choose, click, copy_vase, press, settle, vase};
+use crate::window_tests::{choose, click, copy_vase, press, resumed, settle, vase};
 
 /// The file that settings are saved in.
 fn settings_file(folder: &TempDir) -> PathBuf {
@@ -27,14 +26,7 @@ fn mesh(folder: &TempDir, name: &str) -> Source {
 
 /// A window that saves its state in a folder.
 fn window(folder: &TempDir, source: Option<Source>) -> Harness<'static, App> {
-    let kept = folder.path().join("kept");
-    let mut harness = Harness::builder().with_size([1200.0, 960.0]).wgpu().build_eframe(move |context| {
-        let mut app = App::new(context, source, Limits::default()).expect("these tests need a graphics adapter");
-        app.resume(&context.egui_ctx, Persistence::read(Some(&kept)));
-        app
-    });
-    settle(&mut harness);
-    harness
+    resumed(&folder.path().join("kept"), [1200.0, 960.0], source)
 }
 
 /// Closes a window.

@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use pnaen::app::{App, Persistence};
+use pnaen::app::App;
 use pnaen::files::Limits;
 use pnaen::load::Source;
 use pnaen::mesh::Shape;
@@ -12,7 +12,7 @@ use tempfile::TempDir;
 
 use crate::gpu_tests::moving::{CLIPS, moving};
 use crate::window_tests::editing::press_with;
-use crate::window_tests::{choose, click, press, settle, switch, uniform, window};
+use crate::window_tests::{choose, click, press, resumed, settle, switch, uniform, window};
 
 /// A window of this size that was never open before, with all sections as they are then.
 pub(super) fn first_start(size: [f32; 2], source: Option<Source>) -> Harness<'static, App> {
@@ -236,18 +236,8 @@ fn warnings_are_listed() {
 #[test]
 fn sections_fold_and_the_next_window_remembers_it() {
     let folder: TempDir = tempfile::tempdir().expect("a writable temporary folder");
-    let resumed = |kept: &std::path::Path| {
-        let kept = kept.to_owned();
-        let mut harness = Harness::builder().with_size([1280.0, 720.0]).wgpu().build_eframe(move |context| {
-            let source = Some(Source::Shape(Shape::Torus));
-            let mut app = App::new(context, source, Limits::default()).expect("these tests need a graphics adapter");
-            app.resume(&context.egui_ctx, Persistence::read(Some(&kept)));
-            app
-        });
-        settle(&mut harness);
-        harness
-    };
-    let mut harness = resumed(folder.path());
+    let opened = || resumed(folder.path(), [1280.0, 720.0], Some(Source::Shape(Shape::Torus)));
+    let mut harness = opened();
     assert!(harness.query_by_role_and_label(Role::ComboBox, "Convention").is_none(), "specialists open it");
     harness.get_by_label("Advanced").scroll_to_me();
     settle(&mut harness);
@@ -260,7 +250,7 @@ fn sections_fold_and_the_next_window_remembers_it() {
     assert!(harness.query_by_role_and_label(Role::ComboBox, "Partitioning").is_none());
     eframe::App::on_exit(harness.state_mut());
     drop(harness);
-    let harness = resumed(folder.path());
+    let harness = opened();
     harness.get_by_role_and_label(Role::ComboBox, "Convention");
     assert!(harness.query_by_role_and_label(Role::ComboBox, "Partitioning").is_none());
 }

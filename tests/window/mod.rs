@@ -29,7 +29,7 @@ use clap::Parser;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use pnaen::app::App;
+use pnaen::app::{App, Persistence};
 use pnaen::cli::Cli;
 use pnaen::commands::{Action, all};
 use pnaen::files::Limits;
@@ -47,6 +47,18 @@ fn window(source: Option<Source>) -> Harness<'static, App> {
         App::new(context, source, Limits::default()).expect("these tests need a graphics adapter")
     });
     open_all_sections(&mut harness);
+    settle(&mut harness);
+    harness
+}
+
+/// A window that goes on where the last one with this folder ended, and keeps its own state there.
+fn resumed(kept: &Path, size: [f32; 2], source: Option<Source>) -> Harness<'static, App> {
+    let kept = kept.to_owned();
+    let mut harness = Harness::builder().with_size(size).wgpu().build_eframe(move |context| {
+        let mut app = App::new(context, source, Limits::default()).expect("these tests need a graphics adapter");
+        app.resume(&context.egui_ctx, Persistence::read(Some(&kept)));
+        app
+    });
     settle(&mut harness);
     harness
 }
@@ -271,7 +283,7 @@ fn a_file_is_opened_by_its_path_and_reloading_keeps_settings_and_camera() {
     settle(&mut harness);
     let Source::File(path) = vase() else { unreachable!("it is a file") };
     harness
-        .get_by_label("A .gltf, .glb, .obj, .stl or .ply file, shape:NAME, a height image (.png, .jpg), or an environment (.hdr, .exr)")
+        .get_by_label("A .gltf, .glb, .obj, .stl or .ply file, shape:NAME, a height image (.png, .jpg, .webp), or an environment (.hdr, .exr)")
         .type_text(&path.display().to_string());
     settle(&mut harness);
     click(&mut harness, "Open");

@@ -4,7 +4,7 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers, Theme};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use pnaen::app::{App, Persistence};
+use pnaen::app::App;
 use pnaen::files::Limits;
 use pnaen::load::Source;
 use pnaen::mesh::Shape;
@@ -14,7 +14,7 @@ use pnaen::view::project;
 
 use crate::window_tests::editing::{assert_draws, copied, press_with};
 use crate::window_tests::{
-    PATIENCE, choose, click, copy_vase, open_all_sections, press, settle, switch, uniform, window,
+    PATIENCE, choose, click, copy_vase, open_all_sections, press, resumed, settle, switch, uniform, window,
 };
 
 /// How many px of the picture have about this sRGB colour.
@@ -313,17 +313,7 @@ fn open_bookmarks(harness: &mut Harness<App>) {
 fn bookmarks_are_kept_with_the_file() {
     let folder = tempfile::tempdir().expect("a writable temporary folder");
     let file = copy_vase(&folder, "vase.glb");
-    let kept = folder.path().to_owned();
-    let opened = || {
-        let (kept, file) = (kept.clone(), file.clone());
-        let mut harness = Harness::builder().with_size([1000.0, 700.0]).wgpu().build_eframe(move |context| {
-            let mut app = App::new(context, Some(Source::File(file)), Limits::default()).expect("an adapter");
-            app.resume(&context.egui_ctx, Persistence::read(Some(&kept)));
-            app
-        });
-        settle(&mut harness);
-        harness
-    };
+    let opened = || resumed(folder.path(), [1000.0, 700.0], Some(Source::File(file.clone())));
     let mut harness = opened();
     press(&mut harness, Key::Num3);
     let right = *harness.state().camera();

@@ -95,10 +95,10 @@ impl Purpose {
     fn takes(self) -> String {
         match self {
             Self::Open => format!(
-                "A {} file, shape:NAME, a height image (.png, .jpg), or an environment (.hdr, .exr)",
+                "A {} file, shape:NAME, a height image (.png, .jpg, .webp), or an environment (.hdr, .exr)",
                 known_extensions()
             ),
-            Self::Heights | Self::Matcap => "A .png or .jpg image".to_owned(),
+            Self::Heights | Self::Matcap => "A .png, .jpg or .webp image".to_owned(),
             Self::Truth => format!("A {} file, or shape:NAME", known_extensions()),
             Self::Factors => "A .csv file with the factors of every triangle".to_owned(),
             Self::Environment => "A .hdr or .exr panorama".to_owned(),

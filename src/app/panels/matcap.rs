@@ -12,7 +12,7 @@ impl App {
     pub(in crate::app) fn matcap_dialog(&mut self, context: &egui::Context) {
         self.dialog(Purpose::Matcap, context, || {
             let dialog = rfd::FileDialog::new().set_title("Open a matcap");
-            dialog.add_filter("Images", &["png", "jpg", "jpeg"]).pick_file()
+            dialog.add_filter("Images", &["png", "jpg", "jpeg", "webp"]).pick_file()
         });
     }
 

@@ -67,7 +67,11 @@ impl LightSources {
     /// The lights of the nodes that the scene shows, where they are at rest: at most [`MOST_LIGHTS`].
     pub(super) fn shown(&self, placed: &Placed, notes: &mut Notes) -> Vec<Light> {
         let mut is_shown = vec![false; if self.of_nodes.is_empty() { 0 } else { placed.global.len() }];
-        placed.shown.iter().for_each(|&node| is_shown.iter_mut().skip(node).take(1).for_each(|shown| *shown = true));
+        for &node in &placed.shown {
+            if let Some(shown) = is_shown.get_mut(node) {
+                *shown = true;
+            }
+        }
         let shown = self.of_nodes.iter().filter(|[node, _]| is_shown.get(*node) == Some(&true));
         let all: Vec<_> = shown.filter_map(|&[node, light]| Some((node, self.lights[light]?))).collect();
         if all.len() > MOST_LIGHTS {
