@@ -4,6 +4,7 @@ mod commands;
 mod dialogs;
 mod history;
 mod jobs;
+mod painting;
 mod panels;
 mod patch_names;
 pub(crate) mod persistence;
@@ -33,6 +34,7 @@ use jobs::environment_job::OpenEnvironment;
 use jobs::given_factors::GivenFactors;
 use jobs::matcap::ChosenMatcap;
 use jobs::truth::ChosenTruth;
+use painting::{Painting, panel_frame};
 use panels::{FACTS_WIDTH, Panels, SETTINGS_WIDTH};
 use viewport::Viewport;
 use window::WindowState;
@@ -44,6 +46,7 @@ pub(crate) use window::{WindowError, run};
 pub struct App {
     engine: Engine,
     render_state: egui_wgpu::RenderState,
+    painting: Painting,
     settings: Settings,
     history: History<Settings>,
     view_history: ViewHistory,
@@ -72,12 +75,14 @@ impl App {
     pub fn new(context: &eframe::CreationContext, source: Option<Source>, limits: Limits) -> Result<Self, GpuError> {
         let render_state = context.wgpu_render_state.clone().ok_or(GpuError::NoAdapter)?;
         let gpu = Gpu::new(&render_state.adapter, render_state.device.clone(), render_state.queue.clone());
+        let painting = Painting::new(&gpu, render_state.target_format)?;
         let engine = Engine::new(gpu);
         style::style(&context.egui_ctx);
         let mut app = Self {
             viewport: Viewport::new(&engine),
             engine,
             render_state,
+            painting,
             settings: if source.is_some() { Settings::opening() } else { Settings::greeting() },
             history: History::default(),
             view_history: ViewHistory::default(),
@@ -253,19 +258,21 @@ impl eframe::App for App {
         if self.window.fatal_screen.is_some() {
             return self.show_fatal_screen(ui);
         }
-        egui::Panel::top("menu").show(ui, |ui| self.menu_bar(ui));
-        egui::Panel::bottom("status").show(ui, |ui| self.status_line(ui));
+        ui.painter().add(self.painting.fill(ui.ctx().content_rect(), ui.visuals().panel_fill));
+        let frame = panel_frame(ui);
+        egui::Panel::top("menu").frame(frame).show(ui, |ui| self.menu_bar(ui));
+        egui::Panel::bottom("status").frame(frame).show(ui, |ui| self.status_line(ui));
         let [left, right] = self.panels.shown(ui.available_width());
         if left {
             let panel = egui::Panel::left("settings").resizable(false).exact_size(SETTINGS_WIDTH);
-            panel.show(ui, |ui| self.settings_panel(ui));
+            panel.frame(frame).show(ui, |ui| self.settings_panel(ui));
         }
         if right {
             let panel = egui::Panel::right("facts").resizable(false).exact_size(FACTS_WIDTH);
-            panel.show(ui, |ui| self.facts_panel(ui));
+            panel.frame(frame).show(ui, |ui| self.facts_panel(ui));
         }
         self.chart_panel(ui);
-        egui::Panel::top("toolbar").show(ui, |ui| self.toolbar(ui));
+        egui::Panel::top("toolbar").frame(frame).show(ui, |ui| self.toolbar(ui));
         egui::CentralPanel::no_frame().show(ui, |ui| self.viewport_panel(ui));
         self.windows(ui.ctx());
         self.hold_chart();

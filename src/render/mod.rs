@@ -39,6 +39,8 @@ pub(crate) mod studio;
 pub(crate) mod target;
 mod textures;
 pub(crate) mod tone;
+#[cfg(feature = "app")]
+mod window;
 
 pub(crate) use camera::{Camera, Standpoint};
 pub(crate) use deviation::{DEVIATION_PX_SCALE, deviation_scale};
@@ -53,10 +55,12 @@ pub(crate) use scene::{LineSegment, Scene};
 pub(crate) use target::Target;
 #[cfg(test)]
 pub(crate) use target::samples;
+#[cfg(feature = "app")]
+pub(crate) use window::WindowPipelines;
 
 /// The shader files with entry points for drawing and picking, and the light that draws read. Each makes one shader module.
 #[cfg(test)]
-static MODULES: [&crate::gpu::WgslFile; 13] = [
+static MODULES: [&crate::gpu::WgslFile; 14] = [
     &coverage::PASS_COVERAGE,
     &environment::ENVIRONMENT,
     &leaks::DRAW_LEAKS,
@@ -70,4 +74,6 @@ static MODULES: [&crate::gpu::WgslFile; 13] = [
     &pipelines::LAYERS_MULTISAMPLED,
     &pipelines::LAYERS_SINGLE,
     &prefilter_pass::PASS_PREFILTER,
+    #[cfg(feature = "app")]
+    &window::DRAW_WINDOW,
 ];

@@ -79,8 +79,11 @@ impl Target {
         self.is_transparent
     }
 
-    /// The view for showing the picture. Its values are encoded as sRGB.
-    pub fn shown_view(&self) -> wgpu::TextureView {
+    /// The view for showing the picture. Its values are encoded as sRGB, or are linear light for a texture that encodes them.
+    pub(super) fn shown_view(&self, is_linear: bool) -> wgpu::TextureView {
+        if is_linear {
+            return self.resolved_srgb.clone();
+        }
         self.resolved.create_view(&wgpu::TextureViewDescriptor::default())
     }
 

@@ -5,6 +5,7 @@ use egui::RichText;
 use super::chart_diagram::{Diagram, Inks, Spot, line, marker};
 use crate::app::App;
 use crate::app::jobs::chart_job::Charted;
+use crate::app::painting::panel_frame;
 use crate::app::text::{grouped, short};
 use crate::app::widgets::{dense, list, switch_button, text_width, unclicked};
 use crate::chart::{Cost, LodKind, MethodStyle, Plan, Probe, Row, Setting, dash, method_styles};
@@ -39,7 +40,7 @@ impl App {
             return;
         }
         let panel = egui::Panel::bottom("chart").resizable(true).default_size(HEIGHT).size_range(HEIGHTS);
-        panel.show(ui, |ui| {
+        panel.frame(panel_frame(ui)).show(ui, |ui| {
             ui.add_space(2.0);
             ui.horizontal_wrapped(|ui| self.chart_controls(ui));
             self.chart_facts(ui);

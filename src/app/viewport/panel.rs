@@ -55,19 +55,18 @@ impl App {
         // A picture that the device refused may be half drawn.
         let is_whole = self.viewport.picture.drawn.is_some() || self.viewport.picture.cancelled.is_none();
         let previewed = self.viewport.preview.shown(&self.viewport.picture).map(|(_, shape)| shape);
-        let texture = match previewed {
-            Some(_) => self.viewport.preview.texture(),
+        let picture = match previewed {
+            Some(_) => self.viewport.preview.picture(),
             None => self.viewport.picture.shown().filter(|_| is_whole),
         };
-        match texture {
-            Some(id) => {
-                let whole = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
-                ui.painter().image(id, rect, whole, egui::Color32::WHITE);
+        match picture {
+            Some(picture) => {
+                ui.painter().add(picture.over(rect));
                 self.over_picture(ui, rect);
             }
             None => {
                 let background = self.settings_in(ui.ctx().theme()).background_color();
-                ui.painter().rect_filled(rect, 0.0, rgb(background));
+                ui.painter().add(self.painting.fill(rect, rgb(background)));
             }
         }
         self.viewport_notes(ui, rect);
@@ -89,7 +88,7 @@ impl App {
     fn advance(&mut self, context: &egui::Context, size: [u32; 2]) -> Result<(), Trouble> {
         // Callbacks of readbacks run here; a lost device reports through its own callback.
         self.engine.gpu.poll(wgpu::PollType::Poll);
-        self.viewport.picture.fit(&self.render_state, &self.engine, size)?;
+        self.viewport.picture.fit(&self.painting, &self.engine, size)?;
         self.viewport.picture.land(&self.engine);
         self.keep_left(context)?;
         self.pose()?;

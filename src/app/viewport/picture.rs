@@ -7,6 +7,7 @@ use std::time::Instant;
 use glam::{Mat4, Vec2, vec2};
 
 use crate::app::Document;
+use crate::app::painting::{Painting, ShownPicture};
 use crate::engine::Engine;
 use crate::gpu::{GpuError, PassTime, Recorder, Timing, take_times};
 use crate::measure::{CrackedEdge, Cracks};
@@ -78,11 +79,9 @@ pub(crate) const SHORT: usize = 8;
 
 /// The picture and what it cost.
 pub(crate) struct Picture {
-    pub target: Option<(Target, egui::TextureId)>,
+    pub target: Option<(Target, ShownPicture)>,
     /// The last picture, of another size. It is shown stretched until the first one of the new size is drawn.
-    before: Option<(Target, egui::TextureId)>,
-    /// A texture that is shown no more, until egui has forgotten it.
-    unused: Option<egui::TextureId>,
+    before: Option<ShownPicture>,
     pub drawn: Option<Wanted>,
     /// The picture that the device is counting for. It is drawn before any newer one, so that a long drag shows pictures.
     counting: Option<Wanted>,
@@ -117,7 +116,6 @@ impl Picture {
         Self {
             target: None,
             before: None,
-            unused: None,
             drawn: None,
             counting: None,
             drawing: None,
@@ -209,7 +207,7 @@ impl Picture {
                 self.pass_times_hold = drawing.steps == 1;
                 self.whole_ms = self.begun.take().map(|begun| begun.elapsed().as_secs_f64() * 1e3).or(self.whole_ms);
                 self.drawn = Some(drawing.wanted);
-                self.unused = self.before.take().map(|(_, id)| id).or(self.unused);
+                self.before = None;
                 self.pictures += 1;
             }
         }
@@ -221,42 +219,26 @@ impl Picture {
         }
     }
 
-    /// Makes a target of this size, registered with egui, if there is none yet.
-    pub(crate) fn fit(
-        &mut self,
-        app: &egui_wgpu::RenderState,
-        engine: &Engine,
-        size: [u32; 2],
-    ) -> Result<(), GpuError> {
-        if let Some(id) = self.unused.take() {
-            app.renderer.write().free_texture(&id);
-        }
+    /// Makes a target of this size, if there is none yet.
+    pub(crate) fn fit(&mut self, painting: &Painting, engine: &Engine, size: [u32; 2]) -> Result<(), GpuError> {
         if self.target.as_ref().is_some_and(|(target, _)| target.size == size) {
             return Ok(());
         }
         let target = Target::new(&engine.gpu, size)?;
         if self.drawn.take().is_some() {
-            self.unused = std::mem::replace(&mut self.before, self.target.take()).map(|(_, id)| id);
+            self.before = self.target.take().map(|(_, shown)| shown);
         }
-        let mut renderer = app.renderer.write();
-        let (view, filter) = (target.shown_view(), wgpu::FilterMode::Nearest);
-        let id = match self.target.take() {
-            Some((_, id)) => {
-                renderer.update_egui_texture_from_wgpu_texture(&engine.gpu.device, &view, filter, id);
-                id
-            }
-            None => renderer.register_native_texture(&engine.gpu.device, &view, filter),
-        };
-        self.target = Some((target, id));
+        let shown = painting.shown(&engine.gpu, &target, wgpu::FilterMode::Nearest);
+        self.target = Some((target, shown));
         self.drawing = None;
         Ok(())
     }
 
-    /// The texture that is shown: the picture, or until it is drawn for the first time in this size the one before it. None
-    /// before the first picture.
-    pub(crate) fn shown(&self) -> Option<egui::TextureId> {
+    /// What is shown: the picture, or until it is drawn for the first time in this size the one before it. None before the first
+    /// picture.
+    pub(crate) fn shown(&self) -> Option<&ShownPicture> {
         let drawn = self.target.as_ref().filter(|_| self.drawn.is_some());
-        drawn.or(self.before.as_ref()).map(|(_, id)| *id)
+        drawn.map(|(_, shown)| shown).or(self.before.as_ref())
     }
 
     /// Draws what is wanted, if it isn't drawn yet and the device is free. The counts come back first; until then, and

@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use super::picture::{Picture, Wanted};
 use crate::app::App;
 use crate::app::jobs::document::Document;
+use crate::app::painting::{Painting, ShownPicture};
 use crate::engine::Engine;
 use crate::gpu::{GpuError, Recorder, Timing};
 use crate::render::{Camera, Scene, Target};
@@ -51,7 +52,7 @@ pub(crate) struct Preview {
     pub is_on: bool,
     camera: Option<Camera>,
     moved: Option<Instant>,
-    target: Option<(Target, egui::TextureId)>,
+    target: Option<(Target, ShownPicture)>,
     /// How many times as many px the full picture has along each axis.
     coarseness: u32,
     /// The preview that was drawn last, until the full picture follows.
@@ -106,8 +107,9 @@ impl Preview {
         self.drawn.as_ref().filter(|(drawn, _)| Some(drawn.camera) != full).map(|(drawn, shape)| (drawn, *shape))
     }
 
-    pub(crate) fn texture(&self) -> Option<egui::TextureId> {
-        self.target.as_ref().map(|(_, id)| *id)
+    /// The preview that was drawn last.
+    pub(crate) fn picture(&self) -> Option<&ShownPicture> {
+        self.target.as_ref().map(|(_, shown)| shown)
     }
 
     /// The mark over a preview, which says what it shows.
@@ -141,7 +143,7 @@ impl Preview {
     }
 
     /// Makes a target for a full picture of this size, and coarser than before if the last preview was late.
-    fn fit(&mut self, app: &egui_wgpu::RenderState, engine: &Engine, full: glam::Vec2) -> Result<(), GpuError> {
+    fn fit(&mut self, painting: &Painting, engine: &Engine, full: glam::Vec2) -> Result<(), GpuError> {
         let size = |times: u32| full.to_array().map(|side| (side as u32).div_ceil(times).max(1));
         if let Some((_, time)) = self.in_flight.take_if(|(done, _)| done.load(Ordering::Acquire))
             && time.load(Ordering::Acquire) as f64 > LATE_MS * 1e3
@@ -153,16 +155,8 @@ impl Preview {
             return Ok(());
         }
         let target = Target::new(&engine.gpu, size(self.coarseness))?;
-        let mut renderer = app.renderer.write();
-        let (view, filter) = (target.shown_view(), wgpu::FilterMode::Linear);
-        let id = match self.target.take() {
-            Some((_, id)) => {
-                renderer.update_egui_texture_from_wgpu_texture(&engine.gpu.device, &view, filter, id);
-                id
-            }
-            None => renderer.register_native_texture(&engine.gpu.device, &view, filter),
-        };
-        self.target = Some((target, id));
+        let shown = painting.shown(&engine.gpu, &target, wgpu::FilterMode::Linear);
+        self.target = Some((target, shown));
         // The new target is empty.
         self.drawn = None;
         Ok(())
@@ -285,7 +279,7 @@ impl App {
         let wanted = Wanted { settings, inputs: Inputs::new(&settings.tessellation, full.inputs.view), ..*full };
         self.viewport.picture.make_way();
         let preview = &mut self.viewport.preview;
-        preview.fit(&self.render_state, &self.engine, full.viewport)?;
+        preview.fit(&self.painting, &self.engine, full.viewport)?;
         let light = self.environment.as_ref().filter(|_| full.environment > 0).map(|open| open.environment.clone());
         let scene = match (shape, document.stand_in.scene()) {
             (Shape::StandIn, Some(stand_in)) => {

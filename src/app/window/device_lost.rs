@@ -10,6 +10,7 @@ use crate::app::dialogs::typed_path::PendingDialog;
 use crate::app::jobs::document::{Load, scene_of};
 use crate::app::jobs::leak_job::LeakJob;
 use crate::app::jobs::mesh_checks::Checks;
+use crate::app::painting::Painting;
 use crate::app::persistence::WindowGeometry;
 use crate::app::style::style;
 use crate::app::viewport::picture::Picture;
@@ -115,12 +116,13 @@ impl App {
         render_state: egui_wgpu::RenderState,
     ) -> Result<(), GpuError> {
         let engine = gpu.attempt(|| Engine::new(gpu.clone()))?;
+        let painting = Painting::new(&gpu, render_state.target_format)?;
         let scene = self.document.as_ref().map(|document| scene_of(&engine, &document.loaded)).transpose()?;
         let mut viewport = Picture::new(&engine);
         viewport.cancelled = self.viewport.picture.cancelled;
         let preview = Preview::new(&engine).with(self.viewport.preview.is_on);
-        (self.engine, self.render_state, self.viewport.picture) = (engine, render_state, viewport);
-        self.viewport.preview = preview;
+        (self.engine, self.render_state, self.painting) = (engine, render_state, painting);
+        (self.viewport.picture, self.viewport.preview) = (viewport, preview);
         if let Some((document, scene)) = self.document.as_mut().zip(scene) {
             (document.scene, document.moment) = (scene, None);
             (document.given, document.matcap, document.environment) = (0, 0, 0);
