@@ -19,6 +19,10 @@ use crate::view::ScreenView;
 /// A full picture that takes longer than this is late: 30 pictures a second leave 33 ms for each, and the window itself takes
 /// some of it.
 const LATE_MS: f64 = 25.0;
+/// A preview that is finished later than this is late. It is noticed once a frame of the window.
+const LATE_PREVIEW_MS: f64 = 34.0;
+/// After so many late previews in a row they get coarser. The first one of a mesh is late because the driver compiles shaders.
+const LATE_IN_A_ROW: u32 = 4;
 /// A camera that hasn't moved for so long rests.
 const REST: Duration = Duration::from_millis(150);
 /// About the number of triangles that a preview has, on a software driver and on graphics cards. A software driver shades blocks
@@ -29,7 +33,7 @@ const TRIANGLES: f32 = 2_000_000.0;
 /// measured again.
 const KEPT_IN_SOFTWARE: f32 = 40_000.0;
 /// A mesh with more than so many times as many patches gets a mesh of that many triangles in its place.
-const LARGE: f32 = 2.0;
+const LARGE: f32 = 1.0;
 /// The largest factor of a preview. More can't be seen at its resolution.
 const LARGEST_FACTOR: f32 = 8.0;
 /// The full picture has at most so many times as many px along each axis as a preview.
@@ -55,6 +59,10 @@ pub(crate) struct Preview {
     target: Option<(Target, ShownPicture)>,
     /// How many times as many px the full picture has along each axis.
     coarseness: u32,
+    /// The same for the first preview of a mesh.
+    finest: u32,
+    /// How many previews in a row were late.
+    late: u32,
     /// The preview that was drawn last, until the full picture follows.
     drawn: Option<(Wanted, Shape)>,
     /// The vertices and triangles of the full picture, while previews use its tessellator.
@@ -66,12 +74,15 @@ pub(crate) struct Preview {
 
 impl Preview {
     pub(crate) fn new(engine: &Engine) -> Self {
+        let finest = if engine.gpu.is_software() { 2 } else { 1 };
         Self {
             is_on: true,
             camera: None,
             moved: None,
             target: None,
-            coarseness: if engine.gpu.is_software() { 2 } else { 1 },
+            coarseness: finest,
+            finest,
+            late: 0,
             drawn: None,
             totals: None,
             in_flight: None,
@@ -140,17 +151,22 @@ impl Preview {
     pub(crate) fn forget(&mut self) {
         self.end();
         (self.moved, self.camera) = (None, None);
+        (self.coarseness, self.late) = (self.finest, 0);
     }
 
-    /// Makes a target for a full picture of this size, and coarser than before if the last preview was late.
+    /// Notes how long the last preview took, once it is finished. If it and those before it were late, the next ones are coarser.
+    fn land(&mut self) {
+        let Some((_, time)) = self.in_flight.take_if(|(done, _)| done.load(Ordering::Acquire)) else { return };
+        let is_late = time.load(Ordering::Acquire) as f64 > LATE_PREVIEW_MS * 1e3;
+        self.late = if is_late { self.late + 1 } else { 0 };
+        if self.late == LATE_IN_A_ROW && self.coarseness < COARSEST {
+            (self.coarseness, self.late) = (self.coarseness + 1, 0);
+        }
+    }
+
+    /// Makes a target for a full picture of this size.
     fn fit(&mut self, painting: &Painting, engine: &Engine, full: glam::Vec2) -> Result<(), GpuError> {
         let size = |times: u32| full.to_array().map(|side| (side as u32).div_ceil(times).max(1));
-        if let Some((_, time)) = self.in_flight.take_if(|(done, _)| done.load(Ordering::Acquire))
-            && time.load(Ordering::Acquire) as f64 > LATE_MS * 1e3
-            && self.coarseness < COARSEST
-        {
-            self.coarseness += 1;
-        }
         if self.target.as_ref().is_some_and(|(target, _)| target.size == size(self.coarseness)) {
             return Ok(());
         }
@@ -279,6 +295,7 @@ impl App {
         let wanted = Wanted { settings, inputs: Inputs::new(&settings.tessellation, full.inputs.view), ..*full };
         self.viewport.picture.make_way();
         let preview = &mut self.viewport.preview;
+        preview.land();
         preview.fit(&self.painting, &self.engine, full.viewport)?;
         let light = self.environment.as_ref().filter(|_| full.environment > 0).map(|open| open.environment.clone());
         let scene = match (shape, document.stand_in.scene()) {
@@ -292,7 +309,8 @@ impl App {
         preview.totals = preview.totals.or(totals);
         preview.draw(&self.engine, scene, &wanted, shape)?;
         self.engine.gpu.check()?;
-        if preview.drawn == Some((wanted, shape)) {
+        // The frame in which the device has finished says how long it took.
+        if preview.drawn == Some((wanted, shape)) && preview.in_flight.is_none() {
             context.request_repaint_after(left);
         } else {
             context.request_repaint();
