@@ -1,7 +1,7 @@
 //! Reads Wavefront OBJ: polygons with texture coordinates and normals, and the colours of their materials.
 //!
-//! All groups and objects become one mesh. Smoothing groups, vertex colours and weights are ignored. The file is read
-//! twice, first vertices and then faces, so that faces may come before their vertices.
+//! All groups and objects become one mesh. Weights are ignored. The file is read twice, first vertices and then faces, so that
+//! faces may come before their vertices; and a third time in between if smoothing groups make normals.
 //!
 //! The crate `tobj` isn't used. It panics on an index near 2^63, gives a corner without a normal the normal of another
 //! corner, doesn't know continued lines, and names no line in its errors.
@@ -10,31 +10,33 @@
 
 mod materials;
 mod mtl;
+mod smoothing;
 
 use std::borrow::Cow;
 use std::path::Path;
 
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec4};
 
-use super::face_builder::{FaceBuilder, MAX_CORNERS, counted};
+use super::face_builder::{FaceBuilder, FaceCorner, MAX_CORNERS, counted, linear_color};
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::read_error::ReadError;
-use super::text_lines::{Line, Lines, first_word, numbers, shown, words};
+use super::text_lines::{Line, Lines, first_word, numbers_or_nan, of_utf16, shown, words};
 use super::uri::Files;
 use crate::files::Limits;
 use crate::mesh::MemoryAccount;
+use crate::mesh::build_limits::MemoryRefused;
 use crate::mesh::chunked_vec::ChunkedVec;
 use crate::mesh::mesh_builder::InputCorner;
 use crate::progress::Progress;
 
 use materials::Materials;
+use smoothing::Smoothing;
 
 /// Statements that are ignored without a warning, since they change neither shape nor colour here.
-const SILENT: [&[u8]; 24] = [
+const SILENT: [&[u8]; 23] = [
     b"g",
     b"o",
-    b"s",
     b"vp",
     b"mg",
     b"lod",
@@ -72,22 +74,33 @@ pub(super) fn read(
     progress: &Progress,
 ) -> Result<LoadedMesh, ReadError> {
     let budget = Budget::new(bytes.len(), limits);
+    let bytes = of_utf16(&bytes, |bytes| budget.hold(bytes)).map_err(too_large)?.unwrap_or(bytes);
     let files = Files::new(folder, limits, &budget, progress);
     let mut vertices = Vertices::default();
     each(&bytes, &progress.part(0.0, 0.2), |line| vertices.take(line, &budget))?;
+    let mut smoothing = Smoothing::new(&vertices, &budget);
+    if vertices.is_smoothed {
+        each(&bytes, &progress.part(0.2, 0.3), |line| smoothing.take(line))?;
+    }
     let mut reader = Reader {
         vertices: &vertices,
         above: [0; 3],
         faces: FaceBuilder::new(bytes.len(), &budget),
         materials: Materials::new(&files, &budget),
+        smoothing: vertices.is_smoothed.then_some(smoothing),
         corners: Vec::new(),
+        indices: Vec::new(),
         found: StatementCounts::default(),
     };
-    each(&bytes, &progress.part(0.2, 0.5), |line| reader.take(line))?;
+    if !vertices.colors.is_empty() {
+        reader.faces.color();
+    }
+    each(&bytes, &progress.part(0.3, 0.5), |line| reader.take(line))?;
     let mut warnings = reader.materials.warnings();
     warnings.extend(reader.found.warnings());
     let holds = reader.found.holds(&vertices);
     let (length, faces) = (bytes.len() as u64, reader.faces);
+    reader.smoothing.into_iter().for_each(Smoothing::release);
     budget.release(length + vertices.bytes());
     drop((bytes, vertices));
     let loaded = faces.finish(name, holds, warnings, &progress.part(0.5, 1.0))?;
@@ -147,31 +160,45 @@ struct Vertices {
     positions: ChunkedVec<Vec3>,
     uvs: ChunkedVec<Vec2>,
     normals: ChunkedVec<Vec3>,
+    /// Colours of positions, encoded as sRGB. Positions that have none are white; those after the last coloured one are missing.
+    colors: ChunkedVec<[u8; 4]>,
+    /// Whether any faces are in a smoothing group.
+    is_smoothed: bool,
 }
 
 impl Vertices {
     /// Stores the vertex data of a statement.
     fn take(&mut self, line: &Line, budget: &Budget) -> Result<(), ReadError> {
         let (word, rest) = first_word(line.text);
-        let wrong = |reason| line.place().error(reason);
-        let hold = |bytes| budget.hold(bytes).map_err(|refused| ReadError::TooLarge { reason: refused.into() });
+        let hold = |bytes| budget.hold(bytes).map_err(too_large);
         match word {
             b"v" => {
                 hold(self.positions.next_bytes())?;
-                self.positions.push(numbers::<3>("v", rest).map_err(wrong)?.into());
+                self.positions.push(numbers_or_nan(rest).into());
+                // With four numbers the last one is a weight, and with seven the first three are followed by one.
+                let count = words(rest).take(8).count();
+                if matches!(count, 6 | 7) {
+                    let numbers: [f32; 7] = numbers_or_nan(rest);
+                    let color = stored_color([0, 1, 2].map(|i| numbers[count - 3 + i]));
+                    while self.colors.len() < self.positions.len() {
+                        hold(self.colors.next_bytes())?;
+                        let is_own = self.colors.len() + 1 == self.positions.len();
+                        self.colors.push(if is_own { color } else { [255; 4] });
+                    }
+                }
             }
             b"vn" => {
                 hold(self.normals.next_bytes())?;
-                self.normals.push(numbers::<3>("vn", rest).map_err(wrong)?.into());
+                self.normals.push(numbers_or_nan(rest).into());
             }
             b"vt" => {
                 hold(self.uvs.next_bytes())?;
-                let [u] = numbers("vt", rest).map_err(wrong)?;
-                let has_v = words(rest).nth(1).is_some();
-                let v = if has_v { numbers::<2>("vt", rest).map_err(wrong)?[1] } else { 0.0 };
+                let [u, v] = numbers_or_nan(rest);
+                let v = if words(rest).nth(1).is_some() { v } else { 0.0 };
                 // The file's v points upwards, the mesh's downwards.
                 self.uvs.push(Vec2::new(u, 1.0 - v));
             }
+            b"s" => self.is_smoothed |= smoothing::group(rest) != 0,
             _ => {}
         }
         Ok(())
@@ -179,8 +206,20 @@ impl Vertices {
 
     /// Returns the size in memory, in bytes.
     fn bytes(&self) -> u64 {
-        self.positions.bytes() + self.uvs.bytes() + self.normals.bytes()
+        self.positions.bytes() + self.uvs.bytes() + self.normals.bytes() + self.colors.bytes()
     }
+}
+
+/// Returns a colour as bytes. Scanning programs write 0 to 1, and some 0 to 255.
+fn stored_color(color: [f32; 3]) -> [u8; 4] {
+    let scale = if color.iter().any(|channel| *channel > 1.0) { 1.0 } else { 255.0 };
+    // The conversion takes NaN for 0.
+    let [r, g, b] = color.map(|channel| (channel * scale).round() as u8);
+    [r, g, b, 255]
+}
+
+fn too_large(refused: MemoryRefused) -> ReadError {
+    ReadError::TooLarge { reason: refused.into() }
 }
 
 /// Numbers of statements that don't make triangles; for points, the number of points.
@@ -193,6 +232,11 @@ struct StatementCounts {
     unknown: usize,
     /// Faces with a corner that has no normal.
     without_normals: usize,
+    /// Faces whose missing normals came from their smoothing groups.
+    smoothed: usize,
+    /// Corners whose normal, or whose texture coordinates, aren't in the file.
+    absent_normals: usize,
+    absent_uvs: usize,
 }
 
 impl StatementCounts {
@@ -202,6 +246,9 @@ impl StatementCounts {
                 self.without_normals,
                 "faces without normals, or with some missing, which got ones that are smooth within 60 degrees",
             ),
+            (self.smoothed, "faces without normals, or with some missing, which got those of their smoothing groups"),
+            (self.absent_normals, "corners with the number of a normal that isn't in the file, left out"),
+            (self.absent_uvs, "corners with the number of texture coordinates that aren't in the file, replaced by (0, 0)"),
             (self.points, "points (p), left out"),
             (self.lines, "lines (l), left out"),
             (self.surfaces, "free-form curves and surfaces (curv, curv2, surf), which aren't read"),
@@ -230,8 +277,11 @@ struct Reader<'v, 'a> {
     above: [usize; 3],
     faces: FaceBuilder<'a>,
     materials: Materials<'a>,
-    /// The corners of the face that is being read.
-    corners: Vec<InputCorner>,
+    /// The normals that smoothing groups make, if there are groups.
+    smoothing: Option<Smoothing<'v>>,
+    /// The corners of the face that is being read, and the numbers of their positions.
+    corners: Vec<FaceCorner>,
+    indices: Vec<usize>,
     found: StatementCounts,
 }
 
@@ -244,6 +294,7 @@ impl Reader<'_, '_> {
             b"vt" => self.above[1] += 1,
             b"vn" => self.above[2] += 1,
             b"f" | b"fo" => self.face(line, rest)?,
+            b"s" => self.smoothing.iter_mut().for_each(|smoothing| smoothing.enter(rest)),
             b"usemtl" => self.materials.enter(rest),
             b"mtllib" => self.materials.add_library(rest),
             b"p" => self.found.points += words(rest).count(),
@@ -258,13 +309,19 @@ impl Reader<'_, '_> {
         self.found.faces += 1;
         let mut corners = std::mem::take(&mut self.corners);
         corners.clear();
+        self.indices.clear();
         for word in words(rest) {
             if corners.len() == MAX_CORNERS {
                 return Err(line.place().error(format!("the face has more than {MAX_CORNERS} corners")));
             }
-            corners.push(self.corner(word).map_err(|reason| line.place().error(reason))?);
+            let (index, corner) = self.corner(word).map_err(|reason| line.place().error(reason))?;
+            corners.push(corner);
+            self.indices.push(index);
         }
-        self.found.without_normals += usize::from(corners.iter().any(|corner| corner.normal.is_none()));
+        if corners.iter().any(|at| at.corner.normal.is_none()) {
+            let smoothed = self.smoothing.as_ref().is_some_and(|smoothing| smoothing.complete(&self.indices, &mut corners));
+            *if smoothed { &mut self.found.smoothed } else { &mut self.found.without_normals } += 1;
+        }
         let material = self.materials.current(&mut self.faces)?;
         self.faces.add(material, &mut corners, line.place())?;
         self.corners = corners;
@@ -272,19 +329,28 @@ impl Reader<'_, '_> {
     }
 
     /// Parses a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`.
-    fn corner(&self, word: &[u8]) -> Result<InputCorner, String> {
+    /// Returns the number of its position too.
+    fn corner(&mut self, word: &[u8]) -> Result<(usize, FaceCorner), String> {
         let mut parts = word.split(|&byte| byte == b'/');
         let [position, uv, normal] = [0, 1, 2].map(|_| parts.next().filter(|part| !part.is_empty()));
         let (None, Some(position)) = (parts.next(), position) else {
             return Err(format!("{} isn't a corner, such as 1, 1/2, 1//3 or 1/2/3", shown(word)));
         };
-        let Vertices { positions, uvs, normals } = self.vertices;
-        let position = index(position, "position", self.above[0], positions.len())?;
-        let uv = uv.map(|uv| index(uv, "texture coordinate", self.above[1], uvs.len())).transpose()?;
-        let normal = normal.map(|normal| index(normal, "normal", self.above[2], normals.len())).transpose()?;
+        let Vertices { positions, uvs, normals, colors, .. } = self.vertices;
+        let number = index(position, "position", self.above[0], positions.len())?;
+        // A corner needs its position alone.
+        let optional = |word: Option<&[u8]>, above, count, absent: &mut usize| {
+            let found = word.and_then(|word| index(word, "", above, count).ok());
+            *absent += usize::from(word.is_some() && found.is_none());
+            found
+        };
+        let uv = optional(uv, self.above[1], uvs.len(), &mut self.found.absent_uvs);
+        let normal = optional(normal, self.above[2], normals.len(), &mut self.found.absent_normals);
         let uv = uv.and_then(|uv| uvs.get(uv)).copied().unwrap_or_default();
-        let position = positions.get(position).copied().unwrap_or_default();
-        Ok(InputCorner { position, normal: normal.and_then(|normal| normals.get(normal)).copied(), uv })
+        let normal = normal.and_then(|normal| normals.get(normal)).copied();
+        let position = positions.get(number).copied().unwrap_or_default();
+        let color = colors.get(number).map_or(Vec4::ONE, |&color| linear_color(color));
+        Ok((number, FaceCorner { corner: InputCorner { position, normal, uv }, color }))
     }
 }
 

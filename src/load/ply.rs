@@ -8,9 +8,9 @@
 mod header;
 mod values;
 
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec4};
 
-use super::face_builder::{FaceBuilder, MAX_CORNERS, counted};
+use super::face_builder::{FaceBuilder, FaceCorner, MAX_CORNERS, counted, linear_color};
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::read_error::{FilePosition, ReadError};
@@ -20,11 +20,11 @@ use crate::mesh::mesh_builder::InputCorner;
 use crate::mesh::{Material, MemoryAccount};
 use crate::progress::Progress;
 
-use header::{Element, Property, PropertyKind};
+use header::{Element, Header, Property, PropertyKind, Scalar};
 use values::{Values, plain};
 
 /// The properties of a vertex that are read, and the attribute that each sets. Texture coordinates have three names.
-const ATTRIBUTES: [(&[u8], usize); 12] = [
+const ATTRIBUTES: [(&[u8], usize); 19] = [
     (b"x", 0),
     (b"y", 1),
     (b"z", 2),
@@ -37,7 +37,16 @@ const ATTRIBUTES: [(&[u8], usize); 12] = [
     (b"t", 7),
     (b"texture_u", 6),
     (b"texture_v", 7),
+    (b"red", 8),
+    (b"green", 9),
+    (b"blue", 10),
+    (b"alpha", 11),
+    (b"diffuse_red", 8),
+    (b"diffuse_green", 9),
+    (b"diffuse_blue", 10),
 ];
+/// How many attributes there are.
+const SLOTS: usize = 12;
 
 /// Builds a mesh called `name` from a file's bytes.
 ///
@@ -60,39 +69,60 @@ fn gather<'a>(
     let header = header::read(bytes)?;
     let mut faces = FaceBuilder::new(bytes.len(), budget);
     let material = faces.material(Material::plain("default", [1.0; 4]))?;
-    let mut reader = Reader { faces, material, vertices: None, corners: Vec::new(), budget, progress };
+    let mut reader = Reader {
+        faces,
+        material,
+        vertices: None,
+        corners: Vec::new(),
+        wedges: Vec::new(),
+        cut_short: None,
+        budget,
+        progress,
+    };
     let mut values = Values::new(&header, bytes.len());
     let mut before_vertices = Vec::new();
     for element in &header.elements {
-        values.check(element)?;
         match (element.name, &reader.vertices) {
-            (b"vertex", None) => reader.vertices = Some(reader.read_vertices(element, &mut values)?),
+            (b"vertex", None) => {
+                values.check(element)?;
+                reader.vertices = Some(reader.read_vertices(element, &mut values)?);
+            }
             (b"vertex", Some(_)) => return Err(values.place().error("the header has two elements named \"vertex\"")),
             (b"face" | b"tristrips", Some(_)) => reader.read_lists(element, &mut values)?,
-            (name, _) => {
+            (name, vertices) => {
+                let is_needed = vertices.is_none();
                 if matches!(name, b"face" | b"tristrips") {
                     before_vertices.push((element, values.clone()));
                 }
-                values.skip(element, |values, i| reader.at(values, i))?;
+                let skipped = values
+                    .check(element)
+                    .and_then(|()| values.skip(element, |values, i| reader.at(values, i)));
+                // What comes after the faces isn't shown.
+                skipped.or_else(|error| if is_needed { Err(error) } else { reader.cut(&values, element, error) })?;
             }
+        }
+        if reader.cut_short.is_some() {
+            break;
         }
     }
     for (element, mut values) in before_vertices {
         reader.read_lists(element, &mut values)?;
     }
-    Ok(reader.finish(&header.elements, values.left_over()))
+    Ok(reader.finish(&header, values.left_over()))
 }
 
-/// The attributes of the vertices. Normals or uvs are empty if the file has none.
+/// The attributes of the vertices. Normals, uvs or colours are empty if the file has none.
 #[derive(Default)]
 struct Vertices {
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
     uvs: Vec<Vec2>,
+    /// Bytes of red, green and blue, encoded as sRGB, and of alpha.
+    colors: Vec<[u8; 4]>,
 }
 
 impl Vertices {
-    fn corner(&self, index: f64, place: FilePosition) -> Result<InputCorner, ReadError> {
+    fn corner(&self, index: f64, place: FilePosition) -> Result<FaceCorner, ReadError> {
         let vertex = index as usize;
         // The conversion changes an index that is negative, not whole or not finite.
         let position = self.positions.get(vertex).filter(|_| vertex as f64 == index).ok_or_else(|| {
@@ -100,7 +130,9 @@ impl Vertices {
             place.error(format!("the face uses vertex {index}, but the file has {count}, counted from 0"))
         })?;
         let uv = self.uvs.get(vertex).copied().unwrap_or_default();
-        Ok(InputCorner { position: *position, normal: self.normals.get(vertex).copied(), uv })
+        let corner = InputCorner { position: *position, normal: self.normals.get(vertex).copied(), uv };
+        let color = self.colors.get(vertex).map_or(Vec4::ONE, |&color| linear_color(color));
+        Ok(FaceCorner { corner, color })
     }
 }
 
@@ -109,7 +141,11 @@ struct Reader<'a> {
     material: usize,
     vertices: Option<Vertices>,
     /// The corners of the face that is being read.
-    corners: Vec<InputCorner>,
+    corners: Vec<FaceCorner>,
+    /// Its own texture coordinates, u and v in turn; empty if it has none.
+    wedges: Vec<f32>,
+    /// A warning about a file that ends too early.
+    cut_short: Option<String>,
     budget: &'a Budget,
     progress: &'a Progress,
 }
@@ -121,21 +157,26 @@ impl<'a> Reader<'a> {
         if !(has(0) && has(1) && has(2)) {
             return Err(values.place().error("the vertices have no x, y and z"));
         }
-        let (has_normals, has_uvs) = ((3..6).all(has), (6..8).all(has));
+        let (has_normals, has_uvs, has_colors) = ((3..6).all(has), (6..8).all(has), (8..11).all(has));
+        let scale = color_scale(element, &slots);
         // `values.check` has compared the count with the remaining bytes.
         let count = usize::try_from(element.count).unwrap_or_default();
-        let bytes = count as u64 * (12 + 12 * u64::from(has_normals) + 8 * u64::from(has_uvs));
+        let beside = 12 * u64::from(has_normals) + 8 * u64::from(has_uvs) + 4 * u64::from(has_colors);
+        let bytes = count as u64 * (12 + beside);
         self.budget.hold(bytes).map_err(|refused| ReadError::TooLarge { reason: refused.into() })?;
         let room = |has: bool| if has { count } else { 0 };
         let mut vertices = Vertices {
             positions: Vec::with_capacity(count),
             normals: Vec::with_capacity(room(has_normals)),
             uvs: Vec::with_capacity(room(has_uvs)),
+            colors: Vec::with_capacity(room(has_colors)),
         };
         for i in 0..element.count {
             self.at(values, i)?;
             values.begin(element, i)?;
-            let mut found = [0.0; 8];
+            let mut found = [0.0; SLOTS];
+            // Alpha, where there is none.
+            found[11] = 1.0 / scale;
             for (property, slot) in element.properties.iter().zip(&slots) {
                 match (property.kind, slot) {
                     (PropertyKind::One(scalar), Some(slot)) => found[*slot] = values.next(scalar)? as f32,
@@ -143,7 +184,7 @@ impl<'a> Reader<'a> {
                 }
             }
             values.end(element)?;
-            let [x, y, z, nx, ny, nz, u, v] = found;
+            let [x, y, z, nx, ny, nz, u, v, color @ ..] = found;
             vertices.positions.push(Vec3::new(x, y, z));
             if has_normals {
                 vertices.normals.push(Vec3::new(nx, ny, nz));
@@ -152,13 +193,41 @@ impl<'a> Reader<'a> {
                 // The file's v points upwards, the mesh's downwards.
                 vertices.uvs.push(Vec2::new(u, 1.0 - v));
             }
+            if has_colors {
+                // The conversion takes NaN for 0.
+                vertices.colors.push(color.map(|channel| (channel * scale * 255.0).round() as u8));
+            }
         }
         Ok(vertices)
     }
 
-    /// Reads an element of faces or of triangle strips.
+    /// Reads an element of faces or of triangle strips, as far as the file goes.
     fn read_lists(&mut self, element: &Element, values: &mut Values) -> Result<(), ReadError> {
         let vertices = self.vertices.take().unwrap_or_default();
+        let read = self.read_whole_lists(element, values, &vertices);
+        self.vertices = Some(vertices);
+        read.or_else(|error| self.cut(values, element, error))
+    }
+
+    /// Turns an error into a warning, if it is that the file ends too early.
+    fn cut(&mut self, values: &Values, element: &Element, error: ReadError) -> Result<(), ReadError> {
+        if !values.ends {
+            return Err(error);
+        }
+        let Element { name, count, .. } = element;
+        let name = shown(name);
+        self.cut_short = Some(format!(
+            "The file was cut short within its {count} elements {name}. What comes before its end is shown."
+        ));
+        Ok(())
+    }
+
+    fn read_whole_lists(
+        &mut self,
+        element: &Element,
+        values: &mut Values,
+        vertices: &Vertices,
+    ) -> Result<(), ReadError> {
         let is_list = |property: &Property| {
             matches!(property.name, b"vertex_indices" | b"vertex_index")
                 && matches!(property.kind, PropertyKind::List { .. })
@@ -167,16 +236,20 @@ impl<'a> Reader<'a> {
             let reason = format!("the element {} has no list named \"vertex_indices\"", shown(element.name));
             return Err(values.place().error(reason));
         };
-        // Both counts have been compared with the remaining bytes.
-        let faces = usize::try_from(element.count).unwrap_or_default();
+        let wedges = element.properties.iter().position(|property| property.name == b"texcoord");
+        if !vertices.colors.is_empty() {
+            self.faces.color();
+        }
+        let faces = usize::try_from(values.most(element)).unwrap_or_default();
         self.faces.expect(faces, vertices.positions.len().min(faces.saturating_mul(4)));
         for i in 0..element.count {
             self.at(values, i)?;
             values.begin(element, i)?;
+            let place = values.place();
+            self.wedges.clear();
             for (k, property) in element.properties.iter().enumerate() {
                 match property.kind {
                     PropertyKind::List { count, item } if k == list => {
-                        let place = values.place();
                         let mut left = values.count(count, item)?;
                         let next = || {
                             let Some(less) = left.checked_sub(1) else { return Ok(None) };
@@ -184,19 +257,42 @@ impl<'a> Reader<'a> {
                             values.next(item).map(Some)
                         };
                         match element.name {
-                            b"face" => self.face(next, &vertices, place)?,
-                            _ => self.strip(next, &vertices, place)?,
+                            b"face" => self.face(next, vertices, place)?,
+                            _ => self.strip(next, vertices, place)?,
+                        }
+                    }
+                    PropertyKind::List { count, item } if Some(k) == wedges => {
+                        let length = values.count(count, item)?;
+                        for i in 0..length {
+                            let value = values.next(item)? as f32;
+                            if i < 2 * MAX_CORNERS {
+                                self.wedges.push(value);
+                            }
                         }
                     }
                     kind => values.skip_one(kind)?,
                 }
             }
             values.end(element)?;
+            if element.name == b"face" {
+                self.add_face(place)?;
+            }
         }
-        self.vertices = Some(vertices);
         Ok(())
     }
 
+    /// Adds the face that was read.
+    fn add_face(&mut self, place: FilePosition) -> Result<(), ReadError> {
+        let wedges = self.wedges.as_chunks::<2>().0;
+        if wedges.len() == self.corners.len() {
+            for (at, &[u, v]) in self.corners.iter_mut().zip(wedges) {
+                at.corner.uv = Vec2::new(u, 1.0 - v);
+            }
+        }
+        self.faces.add(self.material, &mut self.corners, place)
+    }
+
+    /// Reads the corners of a face.
     fn face(
         &mut self,
         mut next: impl FnMut() -> Result<Option<f64>, ReadError>,
@@ -210,7 +306,7 @@ impl<'a> Reader<'a> {
             }
             self.corners.push(vertices.corner(index, place)?);
         }
-        self.faces.add(self.material, &mut self.corners, place)
+        Ok(())
     }
 
     /// Reads a triangle strip. Each vertex makes a triangle with the two vertices before it, with alternating winding;
@@ -252,20 +348,33 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn finish(self, elements: &[Element], left_over: usize) -> (FaceBuilder<'a>, String, Vec<String>) {
+    fn finish(self, header: &Header, left_over: usize) -> (FaceBuilder<'a>, String, Vec<String>) {
         let count =
-            |name: &[u8]| elements.iter().filter(|element| element.name == name).map(|element| element.count).sum();
+            |name: &[u8]| header.elements.iter().filter(|element| element.name == name).map(|element| element.count).sum();
         let [vertices, faces, strips]: [u64; 3] = [b"vertex" as &[u8], b"face", b"tristrips"].map(count);
-        let holds = format!("it holds {vertices} vertices, {faces} faces and {strips} strips of triangles");
+        let cut = if self.cut_short.is_some() { ", but it was cut short" } else { "" };
+        let holds = format!("it holds {vertices} vertices, {faces} faces and {strips} strips of triangles{cut}");
         let read = self.vertices.unwrap_or_default();
         let without_normals = if read.normals.is_empty() { read.positions.len() } else { 0 };
-        let warnings = counted([
+        let mut warnings = Vec::from_iter(self.cut_short);
+        warnings.extend(counted([
+            (header.other_lines, "lines of the header that aren't part of the format, left out"),
             (without_normals, "vertices without normals, which got ones that are smooth within 60 degrees"),
             (left_over, "bytes after the last element, left out"),
-        ]);
-        self.budget
-            .release((12 * read.positions.capacity() + 12 * read.normals.capacity() + 8 * read.uvs.capacity()) as u64);
-        (self.faces, holds, warnings.collect())
+        ]));
+        let beside = 12 * read.normals.capacity() + 8 * read.uvs.capacity() + 4 * read.colors.capacity();
+        self.budget.release((12 * read.positions.capacity() + beside) as u64);
+        (self.faces, holds, warnings)
+    }
+}
+
+/// Returns what colours are multiplied by to lie from 0 to 1. Whole numbers go up to the largest of their type.
+fn color_scale(element: &Element, slots: &[Option<usize>]) -> f32 {
+    let of_red = element.properties.iter().zip(slots).find(|(_, slot)| **slot == Some(8));
+    match of_red.map(|(property, _)| property.kind) {
+        Some(PropertyKind::One(Scalar::F32 | Scalar::F64)) => 1.0,
+        Some(PropertyKind::One(Scalar::U16)) => 1.0 / 65535.0,
+        _ => 1.0 / 255.0,
     }
 }
 

@@ -10,11 +10,11 @@
 
 use glam::{Vec2, Vec3};
 
-use super::face_builder::{FaceBuilder, counted};
+use super::face_builder::{FaceBuilder, FaceCorner, counted};
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::read_error::{FilePosition, ReadError};
-use super::text_lines::{Line, Lines, first_word, number, shown, words};
+use super::text_lines::{Line, Lines, first_word, numbers_or_nan, shown};
 use crate::files::Limits;
 use crate::mesh::mesh_builder::InputCorner;
 use crate::mesh::{Material, MemoryAccount};
@@ -34,21 +34,22 @@ pub(super) fn read(bytes: Vec<u8>, name: &str, limits: &Limits, progress: &Progr
     let budget = Budget::new(bytes.len(), limits);
     let mut faces = FaceBuilder::new(bytes.len(), &budget);
     let material = faces.material(Material::plain("default", [1.0; 4]))?;
-    let mut reader = Reader { faces, material, corners: Vec::new(), progress, bytes: bytes.len() };
+    let mut reader = Reader { faces, material, corners: Vec::new(), progress, bytes: bytes.len(), other_lines: 0, cut_short: None };
     let (holds, warnings) = if is_text(&bytes) { reader.text(&bytes)? } else { reader.binary(&bytes)? };
     budget.release(bytes.len() as u64);
     drop(bytes);
     reader.faces.finish(name, holds, warnings, &progress.part(0.5, 1.0))
 }
 
-/// Returns whether the file is text. Many binary files begin with "solid" too, but their size fits, or control
-/// characters follow.
+/// Returns whether the file is text. Some have no line with "solid" before their first facet. Many binary files begin with
+/// "solid" too, but their size fits, or control characters follow.
 fn is_text(bytes: &[u8]) -> bool {
     let exact = triangles_said(bytes).is_some_and(|count| bytes.len() as u64 == size(count));
     let start = &bytes[..bytes.len().min(1024)];
     let start = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
-    let is_solid = first_word(start).0.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
-    is_solid && !exact && !start.iter().any(|byte| byte.is_ascii_control() && !byte.is_ascii_whitespace())
+    let word = first_word(start).0;
+    let begins = |with: &[u8]| word.get(..with.len()).is_some_and(|word| word.eq_ignore_ascii_case(with));
+    (begins(b"solid") || begins(b"facet")) && !exact && !start.iter().any(|byte| byte.is_ascii_control() && !byte.is_ascii_whitespace())
 }
 
 /// Returns the number of triangles in a binary file's header.
@@ -65,10 +66,14 @@ struct Reader<'a> {
     faces: FaceBuilder<'a>,
     material: usize,
     /// The corners of the triangle that is being added.
-    corners: Vec<InputCorner>,
+    corners: Vec<FaceCorner>,
     progress: &'a Progress,
     /// The file's size, in bytes.
     bytes: usize,
+    /// Lines of a text file that aren't part of the format.
+    other_lines: usize,
+    /// A warning about a text file that ends too early.
+    cut_short: Option<String>,
 }
 
 impl Reader<'_> {
@@ -81,17 +86,10 @@ impl Reader<'_> {
             );
             return Err(FilePosition::Everywhere.error(reason));
         };
-        let said = size(count);
-        let Some(surplus) = (bytes.len() as u64).checked_sub(said) else {
-            let length = bytes.len();
-            let reason = format!(
-                "its header says that it has {count} triangles, which take {said} bytes, but the file has {length}"
-            );
-            return Err(FilePosition::Byte(HEADER - 4).error(reason));
-        };
         let triangles = bytes[HEADER..].as_chunks::<TRIANGLE>().0;
+        let there = triangles.len().min(count as usize);
         // A closed surface has half as many points as triangles.
-        self.faces.expect(count as usize, count as usize / 2);
+        self.faces.expect(there, there / 2);
         for (i, triangle) in triangles.iter().take(count as usize).enumerate() {
             if i % 4096 == 0 {
                 self.at(HEADER + i * TRIANGLE)?;
@@ -100,7 +98,15 @@ impl Reader<'_> {
             let [_, a, b, c, ..] = triangle.as_chunks::<12>().0 else { continue };
             self.add([a, b, c].map(position_of), FilePosition::Byte(HEADER + i * TRIANGLE))?;
         }
-        let warnings = counted([(surplus as usize, "bytes after the last triangle, left out")]);
+        if there < count as usize {
+            let warning = format!(
+                "The file was cut short: its header says that it has {count} triangles, but it ends after {there}. Only \
+                 those are shown."
+            );
+            return Ok((format!("its header says that it has {count} triangles, but none is whole"), vec![warning]));
+        }
+        let surplus = bytes.len() - size(count) as usize;
+        let warnings = counted([(surplus, "bytes after the last triangle, left out")]);
         Ok(("its header says that it has 0 triangles".to_owned(), warnings.collect()))
     }
 
@@ -118,11 +124,16 @@ impl Reader<'_> {
                 b"solid" => (solids, open) = (solids + 1, true),
                 b"endsolid" => open = false,
                 b"facet" => self.facet(&line, &mut lines)?,
-                _ => return Err(unexpected(&line, "facet, endsolid or solid")),
+                b"outer" | b"vertex" | b"endloop" | b"endfacet" => return Err(unexpected(&line, "facet, endsolid or solid")),
+                _ => self.other_lines += 1,
             }
         }
-        let warnings = counted([(usize::from(open), "solids without an end: the file may have been cut short")]);
-        Ok((format!("it holds {solids} solids without facets"), warnings.collect()))
+        let mut warnings = Vec::from_iter(self.cut_short.take());
+        warnings.extend(counted([
+            (usize::from(open), "solids without an end: the file may have been cut short"),
+            (self.other_lines, "lines that aren't part of the format, left out"),
+        ]));
+        Ok((format!("it holds {solids} solids without facets"), warnings))
     }
 
     /// Reads the lines after a facet's first line.
@@ -133,23 +144,26 @@ impl Reader<'_> {
             match word.to_ascii_lowercase().as_slice() {
                 b"" | b"outer" | b"endloop" => {}
                 b"vertex" => {
-                    let position = position(rest).map_err(|reason| line.place().error(reason))?;
                     if let Some(slot) = positions.get_mut(count) {
-                        *slot = position;
+                        *slot = numbers_or_nan(rest).into();
                     }
                     count += 1;
                 }
                 b"endfacet" if count == 3 => return self.add(positions, line.place()),
                 b"endfacet" => return Err(line.place().error(format!("the facet has {count} vertices instead of 3"))),
-                _ => return Err(unexpected(&line, "vertex, endloop or endfacet")),
+                b"facet" | b"solid" | b"endsolid" => return Err(unexpected(&line, "vertex, endloop or endfacet")),
+                // Some programs write colours and notes in lines of their own.
+                _ => self.other_lines += 1,
             }
         }
-        let reason = format!("the file ends within the facet that begins in line {}", first.number);
-        Err(FilePosition::Line(lines.count()).error(reason))
+        let number = first.number;
+        self.cut_short =
+            Some(format!("The file ends within the facet that begins in line {number}. That facet is left out."));
+        Ok(())
     }
 
     fn add(&mut self, positions: [Vec3; 3], place: FilePosition) -> Result<(), ReadError> {
-        let corner = |position| InputCorner { position, normal: None, uv: Vec2::ZERO };
+        let corner = |position| FaceCorner::from(InputCorner { position, normal: None, uv: Vec2::ZERO });
         self.corners.clear();
         self.corners.extend(positions.map(corner));
         self.faces.add(self.material, &mut self.corners, place)
@@ -164,18 +178,6 @@ impl Reader<'_> {
 
 fn position_of(&[a, b, c, d, e, f, g, h, i, j, k, l]: &[u8; 12]) -> Vec3 {
     Vec3::new(f32::from_le_bytes([a, b, c, d]), f32::from_le_bytes([e, f, g, h]), f32::from_le_bytes([i, j, k, l]))
-}
-
-fn position(text: &[u8]) -> Result<Vec3, String> {
-    let count = words(text).count();
-    if count != 3 {
-        return Err(format!("vertex needs 3 numbers, but has {count}"));
-    }
-    let mut position = [0.0; 3];
-    for (slot, word) in position.iter_mut().zip(words(text)) {
-        *slot = number(word)?;
-    }
-    Ok(position.into())
 }
 
 fn unexpected(line: &Line, expected: &str) -> ReadError {

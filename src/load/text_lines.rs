@@ -15,6 +15,8 @@ pub(super) struct Lines<'a> {
     end: u8,
     /// The number of lines that have been read.
     count: usize,
+    /// Whether the line that was read last has no end.
+    is_open: bool,
 }
 
 /// A line without its end.
@@ -34,7 +36,7 @@ impl<'a> Lines<'a> {
 
     /// Splits a text into lines that end with this byte. A byte order mark isn't part of the first line.
     pub(super) fn ending(bytes: &'a [u8], end: u8) -> Self {
-        Self { rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), end, count: 0 }
+        Self { rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), end, count: 0, is_open: false }
     }
 
     /// Returns the next line, if there is one.
@@ -46,7 +48,9 @@ impl<'a> Lines<'a> {
             return Ok(None);
         }
         self.count += 1;
-        let length = memchr(self.end, self.rest).unwrap_or(self.rest.len());
+        let end = memchr(self.end, self.rest);
+        self.is_open = end.is_none();
+        let length = end.unwrap_or(self.rest.len());
         self.check(length)?;
         let text = &self.rest[..length];
         self.rest = self.rest.get(length + 1..).unwrap_or_default();
@@ -68,6 +72,11 @@ impl<'a> Lines<'a> {
     /// Returns the text that hasn't been read.
     pub(super) fn rest(&self) -> &'a [u8] {
         self.rest
+    }
+
+    /// Returns whether the line that was read last has no end, because the text ends within it or just after it.
+    pub(super) fn is_open(&self) -> bool {
+        self.is_open
     }
 
     /// Returns how many lines have been read.
@@ -113,6 +122,31 @@ pub(super) fn numbers<const N: usize>(name: &str, text: &[u8]) -> Result<[f32; N
         *slot = number(word)?;
     }
     Ok(found)
+}
+
+/// Parses the first N words as [`numbers`] does. What isn't a number, or isn't there, is NaN.
+pub(super) fn numbers_or_nan<const N: usize>(text: &[u8]) -> [f32; N] {
+    let mut words = words(text);
+    [(); N].map(|()| words.next().and_then(|word| number(word).ok()).unwrap_or(f32::NAN))
+}
+
+/// Returns a text in UTF-8, if it is in UTF-16 and says so with a byte order mark; `hold` is asked before memory is taken.
+pub(super) fn of_utf16<E>(bytes: &[u8], hold: impl FnOnce(u64) -> Result<(), E>) -> Result<Option<Vec<u8>>, E> {
+    let (is_big, units) = match bytes {
+        [0xff, 0xfe, units @ ..] => (false, units),
+        [0xfe, 0xff, units @ ..] => (true, units),
+        _ => return Ok(None),
+    };
+    // A unit of 16 bits becomes 3 bytes at most.
+    hold(3 * (units.len() / 2) as u64)?;
+    let mut text = Vec::with_capacity(3 * (units.len() / 2));
+    let units = units.as_chunks::<2>().0.iter().map(|&unit| {
+        if is_big { u16::from_be_bytes(unit) } else { u16::from_le_bytes(unit) }
+    });
+    for letter in char::decode_utf16(units) {
+        text.extend(letter.unwrap_or(char::REPLACEMENT_CHARACTER).encode_utf8(&mut [0; 4]).bytes());
+    }
+    Ok(Some(text))
 }
 
 /// Returns the start of a word for a message, in quotes.
@@ -162,5 +196,24 @@ mod tests {
         assert_eq!(numbers::<3>("v", b"1 2"), Err("v needs 3 numbers, but has 2".to_owned()));
         assert_eq!(numbers::<1>("v", b"1,5"), Err("\"1,5\" isn't a number".to_owned()));
         assert_eq!(shown(&[0xff; 500]), format!("\"{}...\"", "\u{fffd}".repeat(40)));
+    }
+
+    #[test]
+    fn what_is_not_a_number_is_nan() {
+        let found: [f32; 4] = numbers_or_nan(b"1.5 1.#IND 2,5");
+        assert_eq!(found[0], 1.5);
+        assert!(found[1..].iter().all(|number| number.is_nan()));
+    }
+
+    #[test]
+    fn utf_16_is_read_in_both_byte_orders() {
+        let text = "v 1 \u{1f98a}\n";
+        let units = |bytes: fn(u16) -> [u8; 2]| text.encode_utf16().flat_map(bytes).collect::<Vec<_>>();
+        let read = |mark: [u8; 2], units: Vec<u8>| of_utf16(&[mark.to_vec(), units].concat(), |_| Ok::<(), ()>(()));
+        assert_eq!(read([0xff, 0xfe], units(u16::to_le_bytes)), Ok(Some(text.as_bytes().to_vec())));
+        assert_eq!(read([0xfe, 0xff], units(u16::to_be_bytes)), Ok(Some(text.as_bytes().to_vec())));
+        assert_eq!(of_utf16(text.as_bytes(), |_| Ok::<(), ()>(())), Ok(None));
+        assert_eq!(of_utf16(&[0xff, 0xfe, b'v', 0], Err), Err(3));
+        assert_eq!(read([0xff, 0xfe], vec![0, 0xd8, b'v']), Ok(Some("\u{fffd}".as_bytes().to_vec())), "half of a pair");
     }
 }

@@ -34,8 +34,10 @@ pub(crate) fn assert_cube(mesh: &Mesh) {
     }
 }
 
-fn corners(places: &[[f32; 2]]) -> Vec<InputCorner> {
-    let corner = |&[x, y]: &[f32; 2]| InputCorner { position: Vec3::new(x, y, 0.0), normal: None, uv: Vec2::ZERO };
+fn corners(places: &[[f32; 2]]) -> Vec<FaceCorner> {
+    let corner = |&[x, y]: &[f32; 2]| {
+        FaceCorner::from(InputCorner { position: Vec3::new(x, y, 0.0), normal: None, uv: Vec2::ZERO })
+    };
     places.iter().map(corner).collect()
 }
 
@@ -71,9 +73,36 @@ fn faces_with_fewer_than_three_corners_are_left_out() {
 }
 
 #[test]
-fn positions_must_be_finite_and_leave_room_for_sums() {
-    let at = |x| added(&[&[[0.0, 0.0], [x, 0.0], [0.0, 1.0]]]).unwrap_err().to_string();
-    let unfit = "line 7: the face has a position that isn't finite; export the model again";
-    assert_eq!([at(f32::NAN), at(f32::NEG_INFINITY)], [unfit; 2]);
-    assert_eq!(at(-1.1e37), "line 7: the face has a coordinate beyond 1e37; export the model again");
+fn faces_at_impossible_positions_are_left_out() {
+    let whole: &[[f32; 2]] = &[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+    let unfit = "1 faces with a position that isn't a number or lies beyond 1e37, the first at line 7";
+    for x in [f32::NAN, f32::NEG_INFINITY, -1.1e37] {
+        let wrong: &[[f32; 2]] = &[[0.0, 0.0], [x, 0.0], [0.0, 1.0]];
+        let mesh = added(&[whole, wrong]).unwrap();
+        assert_eq!((mesh.triangles.len(), mesh.warnings[1].as_str()), (1, &*format!("{unfit}; they are left out.")));
+        assert_eq!(added(&[wrong]).unwrap_err().to_string(), format!("no triangles: nothing, and {unfit}"));
+    }
+}
+
+#[test]
+fn corners_keep_their_colours() {
+    let budget = Budget::unlimited();
+    let mut faces = FaceBuilder::new(0, &budget);
+    let material = faces.material(Material::plain("default", [1.0; 4])).unwrap();
+    faces.color();
+    let mut square = corners(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
+    let colors = [[255, 0, 0, 255], [0, 188, 0, 128], [0, 0, 0, 255], [255, 255, 255, 255]].map(linear_color);
+    square.iter_mut().zip(colors).for_each(|(at, color)| at.color = color);
+    faces.add(material, &mut square, FilePosition::Everywhere).unwrap();
+    // The same corners in other colours are other corners.
+    square.iter_mut().for_each(|at| at.color = Vec4::ONE);
+    faces.add(material, &mut square, FilePosition::Everywhere).unwrap();
+    let mesh = faces.finish("faces", String::new(), Vec::new(), &Progress::new()).unwrap();
+    let details = mesh.details.as_ref().expect("it has colours");
+    assert_eq!((mesh.corners.len(), details.len()), (7, 7), "the white corner is shared");
+    for (corner, detail) in mesh.corners.iter().zip(details.iter()).take(4) {
+        let at = square.iter().position(|at| at.corner.position == corner.position).unwrap();
+        assert_eq!(detail.color, colors[at]);
+    }
+    assert!((colors[1].y - 0.503).abs() < 0.001, "sRGB is decoded: {}", colors[1].y);
 }

@@ -114,3 +114,38 @@ fn cancelling_stops_the_work() {
         Err(ReadError::Cancelled(_))
     ));
 }
+
+#[test]
+fn smoothing_groups_make_the_normals_that_are_missing() {
+    // A roof of two squares with an edge of 90 degrees, and the ground under it.
+    let points = "v 0 0 0\nv 1 1 0\nv 2 0 0\nv 0 0 1\nv 1 1 1\nv 2 0 1\n";
+    let normals = |groups: [&str; 3]| {
+        let [a, b, c] = groups;
+        let mesh = read(&format!("{points}s {a}\nf 1 4 5 2\ns {b}\nf 2 5 6 3\ns {c}\nf 1 3 6 4\n"));
+        let ridge = mesh.corners.iter().filter(|corner| corner.position == Vec3::new(1.0, 1.0, 0.0));
+        (ridge.map(|corner| corner.normal).collect::<Vec<_>>(), mesh.warnings)
+    };
+    let smoothed = "faces without normals, or with some missing, which got those of their smoothing groups: 3.".to_owned();
+    let (smooth, warnings) = normals(["1", "1", "off"]);
+    assert_eq!((smooth.len(), warnings), (1, vec![smoothed.clone()]));
+    assert!(smooth[0].distance(Vec3::Y) < 1e-6, "{smooth:?}");
+    let (creased, warnings) = normals(["1", "2", "0"]);
+    assert_eq!((creased.len(), warnings), (2, vec![smoothed]));
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    assert!(creased[0].distance(Vec3::new(-half, half, 0.0)) < 1e-6, "{creased:?}");
+    // Many programs write "s off" whatever they mean, so alone it says nothing.
+    assert_eq!(normals(["off", "off", "off"]).1, [format!("{WITHOUT_NORMALS}: 3.")]);
+}
+
+#[test]
+fn vertices_may_have_colours() {
+    let mesh = read("v 0 0 0\nv 1 0 0 0 0.5 1\nv 0 1 0 1 0 255 0\nv 1 1 0 1\nf 1 2 3\nf 2 4 3\n");
+    let color = |x: f32, y: f32| {
+        let corner = mesh.corners.iter().position(|corner| corner.position == Vec3::new(x, y, 0.0)).unwrap();
+        mesh.details.as_ref().expect("it has colours")[corner].color
+    };
+    assert_eq!((color(0.0, 0.0), color(1.0, 1.0)), (Vec4::ONE, Vec4::ONE), "the last number is a weight");
+    assert_eq!(color(0.0, 1.0), Vec4::new(0.0, 1.0, 0.0, 1.0), "after a weight, from 0 to 255");
+    assert!((color(1.0, 0.0) - Vec4::new(0.0, 0.2159, 1.0, 1.0)).abs().max_element() < 1e-3);
+    assert!(read(&cube()).details.is_none());
+}

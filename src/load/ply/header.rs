@@ -22,6 +22,8 @@ pub(super) enum Scalar {
     U32,
     F32,
     F64,
+    I64,
+    U64,
 }
 
 impl Scalar {
@@ -35,6 +37,9 @@ impl Scalar {
             b"uint" | b"uint32" => Self::U32,
             b"float" | b"float32" => Self::F32,
             b"double" | b"float64" => Self::F64,
+            // Not in the original format; some programs write them.
+            b"long" | b"int64" => Self::I64,
+            b"ulong" | b"uint64" => Self::U64,
             _ => return None,
         })
     }
@@ -45,7 +50,7 @@ impl Scalar {
             Self::I8 | Self::U8 => 1,
             Self::I16 | Self::U16 => 2,
             Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::F64 => 8,
+            Self::F64 | Self::I64 | Self::U64 => 8,
         }
     }
 }
@@ -87,6 +92,8 @@ pub(super) struct Header<'a> {
     pub elements: Vec<Element<'a>>,
     /// The lines after the header.
     pub lines: Lines<'a>,
+    /// How many lines of the header aren't part of the format.
+    pub other_lines: usize,
 }
 
 /// Reads a header.
@@ -101,7 +108,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Header<'_>, ReadError> {
     // A binary file may have any bytes after the header, so the header's first line tells how its lines end.
     let of_old_macs = bytes[3] == b'\r' && bytes.get(4) != Some(&b'\n');
     let mut lines = Lines::ending(bytes, if of_old_macs { b'\r' } else { b'\n' });
-    let (mut encoding, mut elements) = (None, Vec::new());
+    let (mut encoding, mut elements, mut other_lines) = (None, Vec::new(), 0);
     lines.next()?;
     while let Some(line) = lines.next()? {
         let mut words = line.words();
@@ -118,9 +125,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<Header<'_>, ReadError> {
             }
             Some(b"end_header") => {
                 let encoding = encoding.ok_or_else(|| fault("the header has no format".to_owned()))?;
-                return Ok(Header { encoding, elements, lines });
+                return Ok(Header { encoding, elements, lines, other_lines });
             }
-            Some(word) => return Err(fault(format!("{} isn't a statement of a PLY header", shown(word)))),
+            Some(_) => other_lines += 1,
         }
     }
     Err(FilePosition::Line(lines.count()).error("the file ends within its header"))

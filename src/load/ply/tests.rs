@@ -26,6 +26,8 @@ impl Writer {
             Scalar::U32 => (x as u32).to_le_bytes().to_vec(),
             Scalar::F32 => (x as f32).to_le_bytes().to_vec(),
             Scalar::F64 => x.to_le_bytes().to_vec(),
+            Scalar::I64 => (x as i64).to_le_bytes().to_vec(),
+            Scalar::U64 => (x as u64).to_le_bytes().to_vec(),
         };
         match self.encoding {
             Encoding::Text => self.bytes.extend(format!("{x} ").bytes()),
@@ -47,7 +49,7 @@ const ENCODINGS: [(Encoding, &str); 3] = [
     (Encoding::BigEndian, "binary_big_endian"),
 ];
 
-const SCALARS: [(Scalar, &str); 8] = [
+const SCALARS: [(Scalar, &str); 10] = [
     (Scalar::I8, "char"),
     (Scalar::U8, "uint8"),
     (Scalar::I16, "short"),
@@ -56,6 +58,8 @@ const SCALARS: [(Scalar, &str); 8] = [
     (Scalar::U32, "uint32"),
     (Scalar::F32, "float"),
     (Scalar::F64, "float64"),
+    (Scalar::I64, "int64"),
+    (Scalar::U64, "ulong"),
 ];
 
 /// A cube of quads, with other elements and properties that a file may have.
@@ -89,7 +93,7 @@ pub(crate) fn cube(encoding: usize, position: usize, index: usize) -> Vec<u8> {
 #[test]
 fn every_encoding_and_every_type_is_the_same_cube() {
     for encoding in 0..3 {
-        for (position, index) in [(0, 0), (2, 1), (4, 2), (6, 3), (7, 4), (6, 5)] {
+        for (position, index) in [(0, 0), (2, 1), (4, 2), (6, 3), (7, 4), (6, 5), (8, 9), (0, 8)] {
             let mesh = read(&cube(encoding, position, index));
             assert_cube(&mesh);
             let expected = "vertices without normals, which got ones that are smooth within 60 degrees: 8.";
@@ -168,4 +172,22 @@ fn cancelling_stops_the_work() {
     let progress = Progress::new();
     progress.cancel();
     assert!(matches!(super::read(cube(1, 6, 4), "", &Limits::default(), &progress), Err(ReadError::Cancelled(_))));
+}
+
+#[test]
+fn vertices_may_have_colours_and_faces_texture_coordinates_of_their_own() {
+    for (kind, [red, half]) in [("uchar", ["255", "128"]), ("float", ["1", "0.50196"]), ("ushort", ["65535", "32896"])] {
+        let text = format!(
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+             property {kind} red\nproperty {kind} green\nproperty {kind} blue\nelement face 1\n\
+             property list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n\
+             0 0 0 {red} 0 0\n1 0 0 0 {half} 0\n0 1 0 0 0 0\n3 0 1 2 6 0 0 1 0 0 0.25\n"
+        );
+        let mesh = read(text.as_bytes());
+        let colors: Vec<_> = mesh.details.as_ref().expect("it has colours").iter().map(|detail| detail.color).collect();
+        assert_eq!((colors[0], colors[2]), (Vec4::new(1.0, 0.0, 0.0, 1.0), Vec4::W), "{kind}");
+        assert!((colors[1] - Vec4::new(0.0, 0.2159, 0.0, 1.0)).abs().max_element() < 1e-3, "{kind}");
+        let uvs: Vec<_> = mesh.corners.iter().map(|corner| corner.uv).collect();
+        assert_eq!(uvs, [Vec2::Y, Vec2::ONE, Vec2::new(0.0, 0.75)]);
+    }
 }

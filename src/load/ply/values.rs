@@ -18,13 +18,15 @@ pub(super) struct Values<'a> {
     bytes: &'a [u8],
     /// The file's size, in bytes.
     size: usize,
+    /// Whether the last error is that the file ends too early.
+    pub ends: bool,
 }
 
 impl<'a> Values<'a> {
     pub(super) fn new(header: &Header<'a>, size: usize) -> Self {
         let lines = header.lines.clone();
         let line = Line { text: &[], number: lines.count() };
-        Self { encoding: header.encoding, bytes: lines.rest(), lines, line, left: &[], size }
+        Self { encoding: header.encoding, bytes: lines.rest(), lines, line, left: &[], size, ends: false }
     }
 
     /// Returns the position of the next value, for messages.
@@ -46,11 +48,7 @@ impl<'a> Values<'a> {
     /// # Errors
     /// [`ReadError::Broken`].
     pub(super) fn check(&self, element: &Element) -> Result<(), ReadError> {
-        let (left, least) = match self.encoding {
-            // A digit and a separator, which the last value may lack.
-            Encoding::Text => (self.lines.rest().len() + 1, 2 * element.properties.len() as u64),
-            _ => (self.bytes.len(), element.least().0),
-        };
+        let (left, least) = self.room(element);
         let needed = element.count.checked_mul(least);
         if needed.is_some_and(|needed| needed <= left as u64) {
             return Ok(());
@@ -63,6 +61,21 @@ impl<'a> Values<'a> {
             shown(name)
         );
         Err(self.place().error(reason))
+    }
+
+    /// Returns how many bytes are left, and how many an element takes at least.
+    fn room(&self, element: &Element) -> (usize, u64) {
+        match self.encoding {
+            // A digit and a separator, which the last value may lack.
+            Encoding::Text => (self.lines.rest().len() + 1, 2 * element.properties.len() as u64),
+            _ => (self.bytes.len(), element.least().0),
+        }
+    }
+
+    /// Returns how many of the elements that the header announces can be there at most.
+    pub(super) fn most(&self, element: &Element) -> u64 {
+        let (left, least) = self.room(element);
+        (left as u64).checked_div(least).map_or(element.count, |most| element.count.min(most))
     }
 
     /// Skips an element, for which [`check`](Self::check) has succeeded.
@@ -124,11 +137,14 @@ impl<'a> Values<'a> {
         }
         while let Some(line) = self.lines.next()? {
             (self.line, self.left) = (line, line.text.trim_ascii());
-            if !self.left.is_empty() {
+            // If more should follow, the file may have been cut within this line's last number.
+            let is_cut = self.lines.is_open() && i + 1 < element.count;
+            if !self.left.is_empty() && !is_cut {
                 return Ok(());
             }
         }
         let Element { name, count, .. } = element;
+        self.ends = true;
         Err(self.place().error(format!("the file ends after {i} of {count} elements {}", shown(name))))
     }
 
@@ -161,6 +177,8 @@ impl<'a> Values<'a> {
                 Scalar::U32 => u32::from_le_bytes(self.take()?).into(),
                 Scalar::F32 => f32::from_le_bytes(self.take()?).into(),
                 Scalar::F64 => f64::from_le_bytes(self.take()?),
+                Scalar::I64 => i64::from_le_bytes(self.take()?) as f64,
+                Scalar::U64 => u64::from_le_bytes(self.take()?) as f64,
             }),
             Encoding::BigEndian => Ok(match scalar {
                 Scalar::I8 => i8::from_be_bytes(self.take()?).into(),
@@ -171,6 +189,8 @@ impl<'a> Values<'a> {
                 Scalar::U32 => u32::from_be_bytes(self.take()?).into(),
                 Scalar::F32 => f32::from_be_bytes(self.take()?).into(),
                 Scalar::F64 => f64::from_be_bytes(self.take()?),
+                Scalar::I64 => i64::from_be_bytes(self.take()?) as f64,
+                Scalar::U64 => u64::from_be_bytes(self.take()?) as f64,
             }),
         }
     }
@@ -190,15 +210,22 @@ impl<'a> Values<'a> {
             _ => (self.bytes.len(), said * item.size() as f64),
         };
         if needed > left as f64 {
+            self.ends = self.is_last();
             let unit = if self.encoding == Encoding::Text { "are in its line" } else { "bytes are left" };
             return Err(place.error(format!("a list says that it has {} values, but {left} {unit}", plain(said))));
         }
         Ok(said as usize)
     }
 
+    /// Whether nothing follows the present line of a text file. In a binary file whatever is missing would follow.
+    fn is_last(&self) -> bool {
+        self.encoding != Encoding::Text || self.lines.rest().trim_ascii().is_empty()
+    }
+
     fn word(&mut self) -> Result<f64, ReadError> {
         let (word, rest) = crate::load::text_lines::first_word(self.left);
         if word.is_empty() {
+            self.ends = self.is_last();
             let count = words(self.line.text).count();
             return Err(self.place().error(format!("the line has {count} numbers, but the element has more")));
         }
@@ -211,6 +238,7 @@ impl<'a> Values<'a> {
     fn take<const N: usize>(&mut self) -> Result<[u8; N], ReadError> {
         let Some((value, rest)) = self.bytes.split_first_chunk() else {
             let left = self.bytes.len();
+            self.ends = true;
             return Err(self.place().error(format!("a value takes {N} bytes, but {left} are left")));
         };
         self.bytes = rest;

@@ -25,17 +25,23 @@ pub(super) fn cases() -> Vec<Case> {
         obj!("f 1 2 4611686018427387904\n", Refused("Broken | line 4 | 4611686018427387904 | 3")),
         obj!("f 1 2 -9223372036854775808\n", Refused("Broken | line 4 | -9223372036854775808 | 3")),
         obj!("f 1 2 99999999999999999999\n", Refused("Broken | line 4 | \"99999999999999999999\" | position")),
-        obj!("vn 0 0 1\nf 1//9223372036854775807 2 3\n", Refused("Broken | line 5 | normal 9223372036854775807 | 1")),
-        obj!("f 1/1 2 3\n", Refused("Broken | line 4 | texture coordinate 1 | 0")),
+        obj!("vn 0 0 1\nf 1//9223372036854775807 2 3\n", Repaired(1, "a normal that isn't in the file | 1")),
+        obj!("f 1/1 2 3\n", Repaired(1, "texture coordinates that aren't in the file | 1")),
+        obj!("vt 0 0\nvn 0 0 1\nf 1/0/1 2/x/1 3/1/0\n", Repaired(1, "texture coordinates that aren't in the file | 2")),
         obj!("f 1/2/3/4 2 3\n", Refused("Broken | line 4 | \"1/2/3/4\" | corner")),
         obj!("f a b c\n", Refused("Broken | line 4 | \"a\" | position")),
         obj!("f 1.0 2 3\n", Refused("Broken | line 4 | \"1.0\" | position")),
-        case(Obj, "v 0 0 0\nv 1 0\n", Refused("Broken | line 2 | 3 numbers | 2")),
-        case(Obj, "v 0 0 zero\n", Refused("Broken | line 1 | \"zero\"")),
-        case(Obj, "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n", Refused("Broken | line 4 | position | finite")),
-        case(Obj, "v 0 0 0\nv 1e308 0 0\nv 0 1 0\nf 1 2 3\n", Refused("Broken | line 4 | position | finite")),
-        case(Obj, "v 0 0 0\nv 2e37 0 0\nv 0 1 0\nf 1 2 3\n", Refused("Broken | line 4 | 1e37 | coordinate")),
-        obj!("vt nan 0\nvt\n", Refused("Broken | line 5 | 1 numbers | 0")),
+        case(Obj, "v 0 0 0\nv 1 0\nv 0 1 0\nf 1 2 3\n", Refused("Empty | 1 faces | a number | line 4")),
+        case(Obj, "v 0,5 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", Refused("Empty | 1 faces | a number | line 4")),
+        obj!("v nan 0 0\nf 1 2 4\nf 1 2 3\n", Repaired(1, "1 faces | a number | 1e37 | line 5 | left out")),
+        obj!("v 1.#IND -nan(ind) 3.1+e2\nf 1 2 4\nf 1 2 3\n", Repaired(1, "1 faces | a number | line 5 | left out")),
+        obj!("v 1e308 0 0\nf 1 2 4\nf 1 2 3\n", Repaired(1, "1 faces | a number | line 5 | left out")),
+        obj!("v 2e37 0 0\nf 1 2 4\nf 1 2 3\n", Repaired(1, "1 faces | 1e37 | line 5 | left out")),
+        obj!("vn 1.#QNAN 0 0\nvn 0 0\nf 1//1 2//2 3//1\n", Repaired(1, "normals without a direction | 3")),
+        obj!("vt nan 0\nvt\nf 1/1 2/2 3/2\n", Repaired(1, "uvs that aren't finite | 3")),
+        obj!("s 1\nf 1 2 3\n", Repaired(1, "smoothing groups | 1")),
+        obj!("s 1\nf 1 2 2\ns x\nf 1 2 3\n", Repaired(2, "faces without normals | 1")),
+        (Obj, utf16("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), Repaired(1, "faces without normals | 1")),
         case(Obj, format!("# {}", "x".repeat(100_000_000)), Refused("Broken | line 1 | 100000002 | 4194304")),
         case(
             Obj,
@@ -53,6 +59,12 @@ pub(super) fn cases() -> Vec<Case> {
         obj!("v 2 0 0\nv 3 0 0\nf 1 2 4 5\n", Repaired(2, "may overlap | 1")),
         case(Obj, comb(12_000), Repaired(23_999, "may overlap | 1")),
     ]
+}
+
+/// A text in UTF-16 that ends within a unit.
+fn utf16(text: &str) -> std::borrow::Cow<'static, [u8]> {
+    let units = text.encode_utf16().flat_map(u16::to_be_bytes);
+    [0xfe, 0xff].into_iter().chain(units).chain([0]).collect()
 }
 
 /// A material for every face.

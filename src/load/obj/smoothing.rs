@@ -1,0 +1,121 @@
+//! Normals of faces that have none, from the smoothing groups that the file puts them in (the statement `s`).
+
+use std::collections::HashMap;
+
+use foldhash::fast::RandomState;
+use glam::Vec3;
+
+use super::{MAX_CORNERS, Vertices, index, too_large};
+use crate::load::face_builder::FaceCorner;
+use crate::load::memory_budget::Budget;
+use crate::load::read_error::ReadError;
+use crate::load::text_lines::{Line, first_word, words};
+use crate::mesh::MemoryAccount;
+
+/// Memory for an entry of the table while it grows, in bytes: the old and the new table exist at the same time.
+const PER_ENTRY: u64 = 3 * (size_of::<((usize, u32), Vec3)>() as u64 + 1);
+
+/// The sums of normals at positions, by smoothing group.
+pub(super) struct Smoothing<'v> {
+    vertices: &'v Vertices,
+    budget: &'v Budget,
+    /// The group of the next faces. Faces in group 0 are flat.
+    group: u32,
+    /// The number of positions above the current statement.
+    above: usize,
+    sums: HashMap<(usize, u32), Vec3, RandomState>,
+    held: u64,
+    /// The positions of the face that is being read.
+    outline: Vec<usize>,
+}
+
+/// Parses the number of a group: 0 for `off`, and for what isn't a number.
+pub(super) fn group(text: &[u8]) -> u32 {
+    std::str::from_utf8(first_word(text).0).ok().and_then(|word| word.parse().ok()).unwrap_or(0)
+}
+
+impl<'v> Smoothing<'v> {
+    pub(super) fn new(vertices: &'v Vertices, budget: &'v Budget) -> Self {
+        let sums = HashMap::default();
+        Self { vertices, budget, group: 0, above: 0, sums, held: 0, outline: Vec::new() }
+    }
+
+    /// Gives back the memory of the table.
+    pub(super) fn release(self) {
+        self.budget.release(self.held);
+    }
+
+    /// Reads the group of the next faces.
+    pub(super) fn enter(&mut self, text: &[u8]) {
+        self.group = group(text);
+    }
+
+    /// Adds the face of a statement, if it is one, to the sums of its group. What is wrong with a face is said when it is read as
+    /// a face.
+    ///
+    /// # Errors
+    /// [`ReadError::TooLarge`].
+    pub(super) fn take(&mut self, line: &Line) -> Result<(), ReadError> {
+        let (word, rest) = first_word(line.text);
+        match word {
+            b"v" => self.above += 1,
+            b"s" => self.enter(rest),
+            b"f" | b"fo" if self.group != 0 => self.add(rest)?,
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn add(&mut self, rest: &[u8]) -> Result<(), ReadError> {
+        let count = self.vertices.positions.len();
+        let number = |word: &[u8]| {
+            let position = word.split(|&byte| byte == b'/').next().unwrap_or_default();
+            index(position, "", self.above, count).ok()
+        };
+        self.outline.clear();
+        self.outline.extend(words(rest).take(MAX_CORNERS).filter_map(number));
+        let positions: Vec<Vec3> = self.outline.iter().map(|&number| self.position(number)).collect();
+        let face = face_normal(&positions);
+        if !face.is_finite() {
+            return Ok(());
+        }
+        for (i, &number) in self.outline.iter().enumerate() {
+            let at = |step: usize| positions[(i + step) % positions.len()];
+            let angle = (at(1) - at(0)).angle_between(at(positions.len() - 1) - at(0));
+            let key = (number, self.group);
+            if self.sums.len() == self.sums.capacity() && !self.sums.contains_key(&key) {
+                let more = self.sums.len().max(64) as u64 * PER_ENTRY;
+                self.budget.hold(more).map_err(too_large)?;
+                self.held += more;
+            }
+            // An edge without a length has no angle.
+            *self.sums.entry(key).or_default() += if angle.is_finite() { angle * face } else { Vec3::ZERO };
+        }
+        Ok(())
+    }
+
+    fn position(&self, number: usize) -> Vec3 {
+        self.vertices.positions.get(number).copied().unwrap_or(Vec3::NAN)
+    }
+
+    /// Gives a face's corners the normals that they lack. `numbers` are those of their positions. Returns false if a group has
+    /// none, because its faces have no area.
+    pub(super) fn complete(&self, numbers: &[usize], corners: &mut [FaceCorner]) -> bool {
+        let positions: Vec<Vec3> = corners.iter().map(|at| at.corner.position).collect();
+        let face = face_normal(&positions);
+        let mut is_whole = true;
+        for (&number, at) in numbers.iter().zip(corners).filter(|(_, at)| at.corner.normal.is_none()) {
+            let sum = if self.group == 0 { Some(&face) } else { self.sums.get(&(number, self.group)) };
+            at.corner.normal = sum.and_then(|sum| sum.try_normalize());
+            is_whole &= at.corner.normal.is_some();
+        }
+        is_whole
+    }
+}
+
+/// Returns a polygon's normal, of unit length, by Newell's method; NaN for one without area.
+fn face_normal(positions: &[Vec3]) -> Vec3 {
+    let first = positions.first().copied().unwrap_or_default();
+    let pairs = positions.iter().zip(positions.iter().skip(1));
+    pairs.map(|(&a, &b)| (a - first).cross(b - first)).sum::<Vec3>().normalize()
+}
