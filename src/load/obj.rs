@@ -248,7 +248,10 @@ impl StatementCounts {
             ),
             (self.smoothed, "faces without normals, or with some missing, which got those of their smoothing groups"),
             (self.absent_normals, "corners with the number of a normal that isn't in the file, left out"),
-            (self.absent_uvs, "corners with the number of texture coordinates that aren't in the file, replaced by (0, 0)"),
+            (
+                self.absent_uvs,
+                "corners with the number of texture coordinates that aren't in the file, replaced by (0, 0)",
+            ),
             (self.points, "points (p), left out"),
             (self.lines, "lines (l), left out"),
             (self.surfaces, "free-form curves and surfaces (curv, curv2, surf), which aren't read"),
@@ -319,10 +322,12 @@ impl Reader<'_, '_> {
             self.indices.push(index);
         }
         if corners.iter().any(|at| at.corner.normal.is_none()) {
-            let smoothed = self.smoothing.as_ref().is_some_and(|smoothing| smoothing.complete(&self.indices, &mut corners));
+            let smoothed =
+                self.smoothing.as_ref().is_some_and(|smoothing| smoothing.complete(&self.indices, &mut corners));
             *if smoothed { &mut self.found.smoothed } else { &mut self.found.without_normals } += 1;
         }
         let material = self.materials.current(&mut self.faces)?;
+        corners.iter_mut().for_each(|at| at.corner.uv = self.materials.placed(material, at.corner.uv));
         self.faces.add(material, &mut corners, line.place())?;
         self.corners = corners;
         Ok(())

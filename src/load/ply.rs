@@ -94,9 +94,8 @@ fn gather<'a>(
                 if matches!(name, b"face" | b"tristrips") {
                     before_vertices.push((element, values.clone()));
                 }
-                let skipped = values
-                    .check(element)
-                    .and_then(|()| values.skip(element, |values, i| reader.at(values, i)));
+                let skipped =
+                    values.check(element).and_then(|()| values.skip(element, |values, i| reader.at(values, i)));
                 // What comes after the faces isn't shown.
                 skipped.or_else(|error| if is_needed { Err(error) } else { reader.cut(&values, element, error) })?;
             }
@@ -349,8 +348,9 @@ impl<'a> Reader<'a> {
     }
 
     fn finish(self, header: &Header, left_over: usize) -> (FaceBuilder<'a>, String, Vec<String>) {
-        let count =
-            |name: &[u8]| header.elements.iter().filter(|element| element.name == name).map(|element| element.count).sum();
+        let count = |name: &[u8]| {
+            header.elements.iter().filter(|element| element.name == name).map(|element| element.count).sum()
+        };
         let [vertices, faces, strips]: [u64; 3] = [b"vertex" as &[u8], b"face", b"tristrips"].map(count);
         let cut = if self.cut_short.is_some() { ", but it was cut short" } else { "" };
         let holds = format!("it holds {vertices} vertices, {faces} faces and {strips} strips of triangles{cut}");

@@ -34,7 +34,8 @@ pub(super) fn read(bytes: Vec<u8>, name: &str, limits: &Limits, progress: &Progr
     let budget = Budget::new(bytes.len(), limits);
     let mut faces = FaceBuilder::new(bytes.len(), &budget);
     let material = faces.material(Material::plain("default", [1.0; 4]))?;
-    let mut reader = Reader { faces, material, corners: Vec::new(), progress, bytes: bytes.len(), other_lines: 0, cut_short: None };
+    let mut reader =
+        Reader { faces, material, corners: Vec::new(), progress, bytes: bytes.len(), other_lines: 0, cut_short: None };
     let (holds, warnings) = if is_text(&bytes) { reader.text(&bytes)? } else { reader.binary(&bytes)? };
     budget.release(bytes.len() as u64);
     drop(bytes);
@@ -49,7 +50,9 @@ fn is_text(bytes: &[u8]) -> bool {
     let start = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
     let word = first_word(start).0;
     let begins = |with: &[u8]| word.get(..with.len()).is_some_and(|word| word.eq_ignore_ascii_case(with));
-    (begins(b"solid") || begins(b"facet")) && !exact && !start.iter().any(|byte| byte.is_ascii_control() && !byte.is_ascii_whitespace())
+    (begins(b"solid") || begins(b"facet"))
+        && !exact
+        && !start.iter().any(|byte| byte.is_ascii_control() && !byte.is_ascii_whitespace())
 }
 
 /// Returns the number of triangles in a binary file's header.
@@ -124,7 +127,9 @@ impl Reader<'_> {
                 b"solid" => (solids, open) = (solids + 1, true),
                 b"endsolid" => open = false,
                 b"facet" => self.facet(&line, &mut lines)?,
-                b"outer" | b"vertex" | b"endloop" | b"endfacet" => return Err(unexpected(&line, "facet, endsolid or solid")),
+                b"outer" | b"vertex" | b"endloop" | b"endfacet" => {
+                    return Err(unexpected(&line, "facet, endsolid or solid"));
+                }
                 _ => self.other_lines += 1,
             }
         }

@@ -113,18 +113,7 @@ pub(super) fn number(word: &[u8]) -> Result<f32, String> {
     number.ok_or_else(|| format!("{} isn't a number", shown(word)))
 }
 
-/// Parses the first N words as the numbers of a statement of this name, and ignores further words.
-pub(super) fn numbers<const N: usize>(name: &str, text: &[u8]) -> Result<[f32; N], String> {
-    let mut found = [0.0; N];
-    let mut words = words(text);
-    for (i, slot) in found.iter_mut().enumerate() {
-        let word = words.next().ok_or_else(|| format!("{name} needs {N} numbers, but has {i}"))?;
-        *slot = number(word)?;
-    }
-    Ok(found)
-}
-
-/// Parses the first N words as [`numbers`] does. What isn't a number, or isn't there, is NaN.
+/// Parses the first N words as numbers, and ignores further words. What isn't a number, or isn't there, is NaN.
 pub(super) fn numbers_or_nan<const N: usize>(text: &[u8]) -> [f32; N] {
     let mut words = words(text);
     [(); N].map(|()| words.next().and_then(|word| number(word).ok()).unwrap_or(f32::NAN))
@@ -140,9 +129,11 @@ pub(super) fn of_utf16<E>(bytes: &[u8], hold: impl FnOnce(u64) -> Result<(), E>)
     // A unit of 16 bits becomes 3 bytes at most.
     hold(3 * (units.len() / 2) as u64)?;
     let mut text = Vec::with_capacity(3 * (units.len() / 2));
-    let units = units.as_chunks::<2>().0.iter().map(|&unit| {
-        if is_big { u16::from_be_bytes(unit) } else { u16::from_le_bytes(unit) }
-    });
+    let units = units
+        .as_chunks::<2>()
+        .0
+        .iter()
+        .map(|&unit| if is_big { u16::from_be_bytes(unit) } else { u16::from_le_bytes(unit) });
     for letter in char::decode_utf16(units) {
         text.extend(letter.unwrap_or(char::REPLACEMENT_CHARACTER).encode_utf8(&mut [0; 4]).bytes());
     }
@@ -192,9 +183,8 @@ mod tests {
     fn words_and_numbers() {
         assert_eq!(first_word(b"\t usemtl  old  wood \r"), (&b"usemtl"[..], &b"old  wood"[..]));
         assert_eq!(first_word(b"  "), (&b""[..], &b""[..]));
-        assert_eq!(numbers("v", b" 1\t-2.5e1 +.5 7"), Ok([1.0, -25.0, 0.5]));
-        assert_eq!(numbers::<3>("v", b"1 2"), Err("v needs 3 numbers, but has 2".to_owned()));
-        assert_eq!(numbers::<1>("v", b"1,5"), Err("\"1,5\" isn't a number".to_owned()));
+        assert_eq!(numbers_or_nan(b" 1\t-2.5e1 +.5 7"), [1.0, -25.0, 0.5]);
+        assert_eq!(number(b"1,5"), Err("\"1,5\" isn't a number".to_owned()));
         assert_eq!(shown(&[0xff; 500]), format!("\"{}...\"", "\u{fffd}".repeat(40)));
     }
 

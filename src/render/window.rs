@@ -54,12 +54,8 @@ impl WindowPipelines {
 }
 
 fn picture_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::FRAGMENT,
-        ty,
-        count: None,
-    };
+    let entry =
+        |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None };
     let texture = wgpu::BindingType::Texture {
         sample_type: wgpu::TextureSampleType::Float { filterable: true },
         view_dimension: wgpu::TextureViewDimension::D2,
@@ -85,8 +81,7 @@ fn pipeline(
         ..Default::default()
     });
     let constants = [("window_encodes", f64::from(u8::from(format.is_srgb())))];
-    let compilation_options =
-        wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
+    let compilation_options = wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(vertex),
         layout: Some(&layout),

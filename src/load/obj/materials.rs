@@ -3,14 +3,16 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::mtl::{self, MtlMaterial};
+use glam::Vec2;
+
+use super::mtl::{self, MtlMaterial, MtlTexture};
 use crate::load::face_builder::{FaceBuilder, counted};
 use crate::load::images::decode_texture;
 use crate::load::memory_budget::Budget;
 use crate::load::read_error::ReadError;
 use crate::load::text_lines::{shown, words};
 use crate::load::uri::Files;
-use crate::mesh::{Material, MemoryAccount, Texture};
+use crate::mesh::{Alpha, Look, Map, MapUv, Material, MemoryAccount, Sampling, Slot, Texture, Wrap};
 
 /// The greatest number of material files that are read.
 const MAX_LIBRARIES: usize = 64;
@@ -27,6 +29,8 @@ pub(super) struct Materials<'a> {
     /// The index of that material, once a face uses it.
     index: Option<usize>,
     indices: HashMap<Vec<u8>, usize>,
+    /// How texture coordinates are placed, by the index of a material: what they are multiplied by, and what is added.
+    places: HashMap<usize, [Vec2; 2]>,
     /// Textures by file name; none for one that can't be read.
     textures: HashMap<String, Option<Arc<Texture>>>,
     problems: Vec<String>,
@@ -45,6 +49,7 @@ impl<'a> Materials<'a> {
             name: Vec::new(),
             index: None,
             indices: HashMap::new(),
+            places: HashMap::new(),
             textures: HashMap::new(),
             problems: Vec::new(),
             bad_statements: 0,
@@ -114,27 +119,58 @@ impl<'a> Materials<'a> {
             self.index = Some(index);
             return Ok(index);
         }
-        let index = faces.material(self.make())?;
+        let (material, place) = self.make();
+        let index = faces.material(material)?;
+        if let Some(place) = place {
+            self.places.insert(index, place);
+        }
         self.indices.insert(self.name.clone(), index);
         self.index = Some(index);
         Ok(index)
     }
 
-    fn make(&mut self) -> Material {
+    /// Returns where on the image of a material a corner with these texture coordinates is. The file's v points upwards, the
+    /// mesh's downwards.
+    pub(super) fn placed(&self, material: usize, uv: Vec2) -> Vec2 {
+        let Some([scale, offset]) = self.places.get(&material) else { return uv };
+        let [u, v] = (Vec2::new(uv.x, 1.0 - uv.y) * scale + offset).to_array();
+        Vec2::new(u, 1.0 - v)
+    }
+
+    /// Makes the material of the next faces. Also returns how its texture coordinates are placed, if not as they are.
+    fn make(&mut self) -> (Material, Option<[Vec2; 2]>) {
         if self.name.is_empty() {
-            return Material::plain("default", [1.0; 4]);
+            return (Material::plain("default", [1.0; 4]), None);
         }
         let shown = String::from_utf8_lossy(&self.name).into_owned();
         let Some(described) = self.described.get(&self.name).cloned() else {
             self.undescribed += 1;
-            return Material::plain(&shown, [1.0; 4]);
+            return (Material::plain(&shown, [1.0; 4]), None);
         };
-        let [r, g, b] = described.color;
-        let texture = described.texture.and_then(|name| self.texture(&name, &shown));
-        Material { texture, ..Material::plain(&shown, [r, g, b, 1.0]) }
+        let MtlMaterial { color: [r, g, b], alpha, ref texture, ref emissive_texture, .. } = described;
+        // Some programs write 0 for what they show as opaque.
+        let is_transparent = alpha > 0.0 && alpha < 1.0;
+        let base_color = [r, g, b, if is_transparent { alpha } else { 1.0 }];
+        // One place serves both images.
+        let placing = texture.as_ref().or(emissive_texture.as_ref());
+        let place = placing.map(|texture| [texture.scale, texture.offset].map(Vec2::from));
+        let wrap = if placing.is_some_and(|texture| texture.is_clamped) { Wrap::Clamp } else { Wrap::Repeat };
+        let sampling = Sampling { wrap: [wrap; 2], ..Sampling::default() };
+        let image = texture.as_ref().and_then(|texture| self.texture(texture, &shown));
+        let glow = emissive_texture.as_ref().and_then(|texture| self.texture(texture, &shown));
+        let mut look = Look::default();
+        look.roughness = described.roughness.unwrap_or(look.roughness);
+        look.metallic = described.metallic.unwrap_or(look.metallic);
+        // A texture alone shines as it is.
+        let is_given = described.emissive != [0.0; 3] || glow.is_none();
+        look.emissive = if is_given { described.emissive } else { [1.0; 3] };
+        look.alpha = if is_transparent { Alpha::Blend } else { Alpha::Opaque };
+        look.maps[Slot::Emissive as usize] = glow.map(|texture| Map { texture, uv: MapUv::Own, sampling });
+        let material = Material { texture: image, sampling, look, ..Material::plain(&shown, base_color) };
+        (material, place.filter(|place| *place != [Vec2::ONE, Vec2::ZERO]))
     }
 
-    fn texture(&mut self, name: &str, material: &str) -> Option<Arc<Texture>> {
+    fn texture(&mut self, MtlTexture { file: name, .. }: &MtlTexture, material: &str) -> Option<Arc<Texture>> {
         if let Some(texture) = self.textures.get(name) {
             return texture.clone();
         }
@@ -153,16 +189,22 @@ impl<'a> Materials<'a> {
     pub(super) fn warnings(&mut self) -> Vec<String> {
         let mut warnings = std::mem::take(&mut self.problems);
         warnings.extend(counted([
-            (self.bad_statements, "colours in material files that can't be read, left out"),
+            (self.bad_statements, "numbers in material files that can't be read, left out"),
             (self.libraries_left_out, "material files beyond the first 64, left out"),
             (self.undescribed, "materials that no material file describes, shown white"),
         ]));
         warnings
     }
 
-    /// Reads a file in the OBJ file's folder or below it, under the same rules as a glTF document's URIs.
+    /// Reads a file in the OBJ file's folder or below it, under the same rules as a glTF document's URIs. Of an absolute path the
+    /// last name is looked for in the folder.
     fn beside(&self, name: &str) -> Result<Vec<u8>, String> {
-        self.files.read(&name.replace('%', "%25").replace('\\', "/"), false)
+        let name = name.replace('%', "%25").replace('\\', "/");
+        let drive =
+            name.as_bytes().get(..3).is_some_and(|start| start[0].is_ascii_alphabetic() && &start[1..] == b":/");
+        // The path on somebody else's machine doesn't lead anywhere here.
+        let shortened = if drive || name.starts_with('/') { name.rsplit('/').next() } else { None };
+        self.files.read(shortened.unwrap_or(&name), false)
     }
 }
 

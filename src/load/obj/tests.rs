@@ -125,7 +125,8 @@ fn smoothing_groups_make_the_normals_that_are_missing() {
         let ridge = mesh.corners.iter().filter(|corner| corner.position == Vec3::new(1.0, 1.0, 0.0));
         (ridge.map(|corner| corner.normal).collect::<Vec<_>>(), mesh.warnings)
     };
-    let smoothed = "faces without normals, or with some missing, which got those of their smoothing groups: 3.".to_owned();
+    let smoothed =
+        "faces without normals, or with some missing, which got those of their smoothing groups: 3.".to_owned();
     let (smooth, warnings) = normals(["1", "1", "off"]);
     assert_eq!((smooth.len(), warnings), (1, vec![smoothed.clone()]));
     assert!(smooth[0].distance(Vec3::Y) < 1e-6, "{smooth:?}");

@@ -176,7 +176,8 @@ fn cancelling_stops_the_work() {
 
 #[test]
 fn vertices_may_have_colours_and_faces_texture_coordinates_of_their_own() {
-    for (kind, [red, half]) in [("uchar", ["255", "128"]), ("float", ["1", "0.50196"]), ("ushort", ["65535", "32896"])] {
+    for (kind, [red, half]) in [("uchar", ["255", "128"]), ("float", ["1", "0.50196"]), ("ushort", ["65535", "32896"])]
+    {
         let text = format!(
             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
              property {kind} red\nproperty {kind} green\nproperty {kind} blue\nelement face 1\n\

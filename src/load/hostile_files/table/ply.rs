@@ -79,7 +79,11 @@ pub(super) fn cases() -> Vec<Case> {
         case(Ply, ply("face 1", "face 3") + "3 0 2 1\n3 0 2", Repaired(2, "cut short | 3 | \"face\"")),
         // The last number may have had more digits.
         case(Ply, ply("face 1", "face 3") + "3 0 2 1", Repaired(1, "cut short | 3 | \"face\"")),
-        case(Ply, ply("end_header", "element edge 2\nproperty int a\nend_header"), Repaired(1, "cut short | 2 | \"edge\"")),
+        case(
+            Ply,
+            ply("end_header", "element edge 2\nproperty int a\nend_header"),
+            Repaired(1, "cut short | 2 | \"edge\""),
+        ),
         case(Ply, ply("3 0 1 2", "-1 0 1 2"), Refused("Broken | line 13 | -1 | list")),
         case(Ply, ply("3 0 1 2", "4611686018427387904 0 1 2"), Refused("Empty | cut short | 1 faces")),
         case(Ply, ply("3 0 1 2", "3 0 1 3"), Refused("Broken | line 13 | vertex 3 | 0")),

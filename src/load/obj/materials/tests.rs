@@ -4,6 +4,7 @@ use tempfile::TempDir;
 
 use crate::files::Limits;
 use crate::load::{LoadedMesh, load};
+use crate::mesh::{Alpha, Material, Slot, Wrap};
 use crate::progress::Progress;
 
 /// A folder with a folder of textures in it.
@@ -62,19 +63,18 @@ fn missing_and_broken_files_cause_warnings() {
     let folder = folder();
     write(&folder, "m.mtl", b"newmtl a\nKd x\nmap_Kd ../up.png\nnewmtl b\nmap_Kd maps/b.png\nnewmtl c\nmap_Kd c.png\n");
     write(&folder, "c.png", b"no image");
-    let libraries = "mtllib m.mtl\nmtllib /etc/passwd\nmtllib ../m.mtl\nmtllib gone.mtl\nmtllib C:\\m.mtl\nmtllib maps";
+    let libraries = "mtllib m.mtl\nmtllib /etc/passwd\nmtllib ../m.mtl\nmtllib gone.mtl\nmtllib maps";
     let mesh = read(&folder, libraries, &["a", "b", "c"]);
     assert!(mesh.materials.iter().all(|material| material.texture.is_none()));
     let expected = [
-        ("the material file \"/etc/passwd\" is left out: ", "an absolute path"),
+        ("the material file \"/etc/passwd\" is left out: ", "passwd can't be read"),
         ("the material file \"../m.mtl\" is left out: ", "with .."),
         ("the material file \"gone.mtl\" is left out: ", "gone.mtl"),
-        ("the material file \"C:\\\\m.mtl\" is left out: ", "another place"),
         ("the material file \"maps\" is left out: ", "is not a file"),
         ("the texture \"../up.png\" of material \"a\" is left out: ", "with .."),
         ("the texture \"maps/b.png\" of material \"b\" is left out: ", "b.png"),
         ("the texture \"c.png\" of material \"c\" is left out: ", "can't be decoded"),
-        ("colours in material files that can't be read, left out: 1.", ""),
+        ("numbers in material files that can't be read, left out: 1.", ""),
     ];
     assert_eq!(mesh.warnings.len(), expected.len(), "{:?}", mesh.warnings);
     for (warning, (start, word)) in mesh.warnings.iter().zip(expected) {
@@ -89,4 +89,36 @@ fn only_64_material_files_are_read() {
     let warnings = read(&folder, &libraries, &["a"]).warnings;
     assert_eq!(warnings.len(), 64 + 2);
     assert!(warnings[64].starts_with("material files beyond the first 64, left out: "), "{}", warnings[64]);
+}
+
+#[test]
+fn absolute_paths_of_another_machine_are_looked_for_beside_the_model() {
+    let folder = folder();
+    write(&folder, "m.mtl", b"newmtl a\nmap_Kd C:\\art\\wood.png\nnewmtl b\nmap_Kd /home/artist/wood.png\n");
+    write(&folder, "wood.png", &png());
+    let mesh = read(&folder, "mtllib D:\\scenes\\m.mtl", &["a", "b"]);
+    assert!(mesh.materials.iter().all(|material| material.texture.is_some()), "{:?}", mesh.warnings);
+}
+
+#[test]
+fn materials_shine_are_transparent_and_repeat_their_images_as_the_file_says() {
+    let folder = folder();
+    write(
+        &folder,
+        "m.mtl",
+        b"newmtl glass\nd 0.25\nPr 0.125\nPm 0\nnewmtl lamp\nKe 4 2 1\nnewmtl screen\nmap_Ke -clamp on w.png\nnewmtl tiles\n\
+          map_Kd -s 2 4 -o 0.5 0 w.png\nnewmtl odd\nd 0\n",
+    );
+    write(&folder, "w.png", &png());
+    let mesh = read(&folder, "mtllib m.mtl", &["glass", "lamp", "screen", "tiles", "odd"]);
+    let [glass, lamp, screen, tiles, odd] = &mesh.materials[..] else { panic!("{:?}", mesh.materials) };
+    assert_eq!((glass.base_color[3], glass.look.alpha, glass.look.roughness), (0.25, Alpha::Blend, 0.125));
+    assert_eq!((lamp.look.emissive, odd.look.alpha, odd.base_color), ([4.0, 2.0, 1.0], Alpha::Opaque, [1.0; 4]));
+    let glow = screen.look.maps[Slot::Emissive as usize].as_ref().expect("a texture that shines");
+    assert_eq!((screen.look.emissive, glow.sampling.wrap), ([1.0; 3], [Wrap::Clamp; 2]));
+    // The file's texture coordinates are (0, 0), and its v points upwards.
+    let uv =
+        |material: &Material| mesh.corners[mesh.triangles[material.triangles.start as usize][0] as usize].uv.to_array();
+    assert_eq!((uv(tiles), uv(lamp)), ([0.5, 1.0], [0.0, 1.0]));
+    assert!(tiles.texture.is_some() && mesh.warnings.is_empty(), "{:?}", mesh.warnings);
 }
