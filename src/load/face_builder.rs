@@ -1,4 +1,4 @@
-//! Builds a mesh from the faces of OBJ, STL and PLY files: checks them, cuts polygons into triangles, and counts
+//! Builds a mesh from the faces of FBX, OBJ, STL and PLY files: checks them, cuts polygons into triangles, and counts
 //! repairs.
 
 use glam::{Vec2, Vec3};
@@ -7,11 +7,11 @@ use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::read_error::{FilePosition, ReadError};
 use super::warnings::repair_warnings;
-use crate::mesh::Material;
 use crate::mesh::build_limits::MAX_TRIANGLES;
 use crate::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use crate::mesh::polygon::{self, CutQuality, triangulate};
 use crate::mesh::rig::LARGEST_COORDINATE;
+use crate::mesh::{Material, Mesh};
 use crate::progress::Progress;
 
 /// The greatest number of materials. A file with more is refused, since each takes memory and a draw call.
@@ -19,6 +19,39 @@ const MAX_MATERIALS: usize = 1 << 16;
 
 /// The greatest number of corners of a face. A file with a larger face is refused.
 pub(super) const MAX_CORNERS: usize = 1 << 19;
+
+/// A corner of a face.
+pub(super) trait FaceCorner: Copy {
+    fn corner(&mut self) -> &mut InputCorner;
+
+    /// A number of the reader's. Corners with different ones aren't merged.
+    fn number(&self) -> u32 {
+        0
+    }
+}
+
+impl FaceCorner for InputCorner {
+    fn corner(&mut self) -> &mut InputCorner {
+        self
+    }
+}
+
+/// A corner with its number.
+#[derive(Clone, Copy)]
+pub(super) struct NumberedCorner {
+    pub corner: InputCorner,
+    pub number: u32,
+}
+
+impl FaceCorner for NumberedCorner {
+    fn corner(&mut self) -> &mut InputCorner {
+        &mut self.corner
+    }
+
+    fn number(&self) -> u32 {
+        self.number
+    }
+}
 
 /// The mesh that is being built, and counts of what was repaired or left out.
 pub(super) struct FaceBuilder<'a> {
@@ -81,10 +114,10 @@ impl<'a> FaceBuilder<'a> {
     pub(super) fn add(
         &mut self,
         material: usize,
-        corners: &mut Vec<InputCorner>,
+        corners: &mut Vec<impl FaceCorner>,
         place: FilePosition,
     ) -> Result<(), ReadError> {
-        for corner in corners.iter_mut() {
+        for corner in corners.iter_mut().map(FaceCorner::corner) {
             check(corner.position).map_err(|reason| place.error(reason))?;
             if !corner.uv.is_finite() {
                 corner.uv = Vec2::ZERO;
@@ -93,8 +126,9 @@ impl<'a> FaceBuilder<'a> {
         }
         if corners.len() > 3 {
             let given = corners.len();
-            corners.dedup_by_key(|corner| corner.position);
-            if corners.len() > 1 && corners.first().map(|c| c.position) == corners.last().map(|c| c.position) {
+            corners.dedup_by_key(|corner| corner.corner().position);
+            let first = corners.first_mut().map(|corner| corner.corner().position);
+            if corners.len() > 1 && first == corners.last_mut().map(|corner| corner.corner().position) {
                 corners.pop();
             }
             self.repeated += given - corners.len();
@@ -115,17 +149,22 @@ impl<'a> FaceBuilder<'a> {
         Ok(())
     }
 
-    fn cut(&mut self, material: usize, corners: &[InputCorner]) {
-        if let Ok(triangle) = corners.try_into() {
-            self.builder.triangle(material, triangle);
+    fn cut<C: FaceCorner>(&mut self, material: usize, corners: &mut [C]) {
+        let builder = &mut self.builder;
+        let mut add = |triangle: [C; 3]| {
+            let stored = triangle.map(|mut corner| builder.corner(*corner.corner(), corner.number()));
+            builder.stored_triangle(material, stored);
+        };
+        if let Ok(triangle) = (&*corners).try_into() {
+            add(triangle);
             return;
         }
-        let outline: Vec<Vec3> = corners.iter().map(|corner| corner.position).collect();
+        let outline: Vec<Vec3> = corners.iter_mut().map(|corner| corner.corner().position).collect();
         self.cut.clear();
         let cut = triangulate(&outline, &mut self.work, &mut self.cut);
         self.somehow += usize::from(cut == CutQuality::MayOverlap);
         for triangle in &self.cut {
-            self.builder.triangle(material, triangle.map(|i| corners[i]));
+            add(triangle.map(|i| corners[i]));
         }
     }
 
@@ -137,9 +176,25 @@ impl<'a> FaceBuilder<'a> {
         self,
         name: &str,
         holds: String,
-        mut warnings: Vec<String>,
+        warnings: Vec<String>,
         progress: &Progress,
     ) -> Result<LoadedMesh, ReadError> {
+        let file_bytes = self.memory.files();
+        let (mesh, _, warnings) = self.finish_numbered(name, holds, warnings, progress)?;
+        Ok(LoadedMesh { mesh, warnings, file_bytes, ..LoadedMesh::default() })
+    }
+
+    /// Builds the mesh as [`finish`](Self::finish) does, and returns each corner's number and the warnings too.
+    ///
+    /// # Errors
+    /// As [`finish`](Self::finish).
+    pub(super) fn finish_numbered(
+        self,
+        name: &str,
+        holds: String,
+        mut warnings: Vec<String>,
+        progress: &Progress,
+    ) -> Result<(Mesh, Vec<u32>, Vec<String>), ReadError> {
         if self.builder.is_empty() {
             let small = match self.too_small {
                 0 => String::new(),
@@ -156,9 +211,9 @@ impl<'a> FaceBuilder<'a> {
                 "polygons that have no area, cross themselves or are too large, cut into triangles that may overlap",
             ),
         ]));
-        let (mesh, _) = self.builder.finish_bound(name.to_owned(), self.memory, progress)?;
+        let (mesh, numbers) = self.builder.finish_bound(name.to_owned(), self.memory, progress)?;
         warnings.extend(repair_warnings(&mesh.repairs));
-        Ok(LoadedMesh { mesh, warnings, file_bytes: self.memory.files(), ..LoadedMesh::default() })
+        Ok((mesh, numbers, warnings))
     }
 }
 
