@@ -39,8 +39,8 @@ pub(super) fn warn(scene: &Scene, notes: &mut Notes) {
 fn repaired(warning: WarningType) -> Option<&'static str> {
     Some(match warning {
         WarningType::MissingExternalFile | WarningType::ImplicitMtl | WarningType::UnknownObjDirective => return None,
-        // Each use of such an index is counted where it is found.
-        WarningType::IndexClamped | WarningType::EmptyFaceRemoved => return None,
+        WarningType::EmptyFaceRemoved => return None,
+        WarningType::IndexClamped => "indices of something that doesn't exist, whose uses are left out",
         WarningType::TruncatedArray => "lists that are shorter than they should be, filled with what they end with",
         WarningType::MissingGeometryData => "meshes whose geometry is missing, left out",
         WarningType::DuplicateConnection => "connections that the file has twice",

@@ -7,6 +7,9 @@ use ufbx::{MaterialMap, Mesh, ShaderType, Texture};
 use super::convert::{matrix, vec4};
 use crate::mesh::{Alpha, Look};
 
+/// The brightest emission.
+const MOST_LIGHT: f32 = 65504.0;
+
 /// A texture of a material, and where it lies on a mesh.
 #[derive(Clone, Copy)]
 pub(super) struct MapSource<'a> {
@@ -60,7 +63,7 @@ impl<'a> LookSource<'a> {
         let color = |own: &MaterialMap, factor: &MaterialMap, is_mapped: bool, default: f64| {
             // A texture replaces the colour, and the factor stays.
             let color = if is_mapped { DVec3::ONE } else { rgb(own).unwrap_or(DVec3::splat(default)) };
-            (color * number(factor, 1.0)).as_vec3().max(Vec3::ZERO)
+            (color * number(factor, 1.0)).as_vec3().clamp(Vec3::ZERO, Vec3::splat(MOST_LIGHT))
         };
         let base_color = color(&pbr.base_color, &pbr.base_factor, base.is_some(), 1.0).min(Vec3::ONE);
         let opacity = opacity(material);

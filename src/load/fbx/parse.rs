@@ -38,9 +38,22 @@ pub(super) fn scene(bytes: &[u8], budget: &Budget, progress: &Progress) -> Resul
         progress_cb: ProgressCb::Mut(&mut watch),
         ..LoadOpts::default()
     };
-    let scene = ufbx::load_memory(bytes, options).map_err(|error| refused(&error, budget))?;
+    let scene = ufbx::load_memory(bytes, options).map_err(|error| match error.type_ {
+        ErrorType::TruncatedFile if !is_fbx(bytes) => no_fbx(),
+        _ => refused(&error, budget),
+    })?;
     budget.hold(scene.metadata.result_memory_used as u64).map_err(too_large)?;
     Ok(scene)
+}
+
+/// Whether a file says that it is FBX: binary ones begin so, and texts say it in their first entries.
+fn is_fbx(bytes: &[u8]) -> bool {
+    const START: usize = 4096;
+    bytes.is_empty() || memchr::memmem::find(&bytes[..bytes.len().min(START)], b"FBX").is_some()
+}
+
+fn no_fbx() -> ReadError {
+    FilePosition::Everywhere.error("it isn't an FBX file, neither a binary one nor a text")
 }
 
 /// Allows half of the memory that is left: ufbx takes memory for its work, and for its result. It uses Rust's allocator.
@@ -62,14 +75,12 @@ pub(super) fn refused(error: &ufbx::Error, budget: &Budget) -> ReadError {
             }
         }
         ErrorType::EmptyFile | ErrorType::TruncatedFile | ErrorType::Io => everywhere("the file ends too early"),
-        ErrorType::UnrecognizedFileFormat => everywhere("it isn't an FBX file, neither a binary one nor a text"),
+        ErrorType::UnrecognizedFileFormat => no_fbx(),
         ErrorType::UnsupportedVersion => everywhere("it has a version of FBX that isn't read"),
         ErrorType::NodeDepthLimit => everywhere(&format!("its nodes are nested more than {MAX_DEPTH} deep")),
         ErrorType::BadIndex => everywhere("it has an index of something that doesn't exist"),
         ErrorType::InvalidUtf8 => everywhere("it has a text that isn't UTF-8"),
-        _ => {
-            let said = crate::names::shown(error.description.as_ref());
-            everywhere(&format!("its structure can't be read ({said})"))
-        }
+        // ufbx says no more about these.
+        _ => everywhere("an entry breaks the format: its type, its length or an index in it is wrong"),
     }
 }

@@ -1,7 +1,6 @@
 //! Tests with small files that are made here.
 
 pub(in crate::load) mod documents;
-mod fox;
 mod moving;
 mod shapes;
 mod surfaces;

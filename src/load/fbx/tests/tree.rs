@@ -27,6 +27,8 @@ pub(in crate::load) enum Value {
     Longs(Vec<i64>),
     Reals(Vec<f64>),
     Bytes(Vec<u8>),
+    /// The bytes that stand for a value in a binary file; nothing in a text.
+    Raw(Vec<u8>),
 }
 
 /// How the arrays of a binary file are stored.
@@ -124,6 +126,7 @@ fn write_text(entry: &Entry, depth: usize, text: &mut String) {
         Value::Longs(values) => array(values.iter().map(i64::to_string).collect()),
         Value::Reals(values) => array(values.iter().map(|value| format!("{value:?}")).collect()),
         Value::Bytes(bytes) => format!(", \"{}\"", BASE64_STANDARD.encode(bytes)),
+        Value::Raw(_) => String::new(),
     });
     let values: Vec<String> = values.collect();
     let _ = write!(text, "{indent}{}: {}", entry.name, values.join(", "));
@@ -190,6 +193,7 @@ fn write_value(value: &Value, arrays: Arrays, bytes: &mut Vec<u8>) {
             write_blob(b'S', stored.as_bytes(), bytes);
         }
         Value::Bytes(value) => write_blob(b'R', value, bytes),
+        Value::Raw(value) => bytes.extend(value),
     }
 }
 
