@@ -2,8 +2,8 @@
 //! shapes and animations. Axes are turned so that Y points up, and the file's unit becomes metres.
 //!
 //! FBX has no public specification. The library ufbx parses the file, with limits on its memory; what it returns is checked like
-//! the file itself, since its lists hold what the file says. It runs in this process, on a thread of its own, because its need for
-//! stack is known and not small (see the design notes).
+//! the file itself, since its lists hold what the file says. It runs in this process, on a thread of its own, so that the stack is the
+//! same on every system (see the design notes).
 
 mod clips;
 mod convert;
@@ -38,8 +38,8 @@ use crate::progress::Progress;
 use nodes::Placed;
 use surfaces::Surfaces;
 
-/// The stack of the thread that reads, in bytes. ufbx needs less than 300 KiB, since the frames of all its functions together have
-/// 160 KiB and nothing recurses more than 32 times; decoders of images, and MikkTSpace, need more.
+/// The stack of the thread that reads, in bytes. ufbx needs less than 128 KiB, since it hardly recurses; decoders of images, and
+/// MikkTSpace, need more.
 const STACK: usize = 8 << 20;
 
 /// Builds a mesh from a file's bytes.

@@ -126,7 +126,7 @@ pub(in crate::load) fn curves(
 }
 
 /// The value of the first key frame, as a list.
-fn first<'a>(keys: &'a [(f64, f64)]) -> &'a [f64] {
+fn first(keys: &[(f64, f64)]) -> &[f64] {
     keys.first().map_or(&[], |key| std::slice::from_ref(&key.1))
 }
 
