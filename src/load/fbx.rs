@@ -80,7 +80,7 @@ pub(super) fn read_here(
     drop(bytes);
     let mut notes = Notes::default();
     left_out::warn(&scene, &mut notes);
-    let placed = Placed::new(&scene, &mut notes);
+    let placed = Placed::new(&scene, &budget, &mut notes)?;
     let clips = clips::read(&scene, &placed, (&budget, &progress.part(0.3, 0.4)), &mut notes)?;
     let mut warnings = Vec::new();
     let binder = RigBuilder::new(clips, &placed.scene, &mut warnings);

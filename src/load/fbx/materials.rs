@@ -1,9 +1,9 @@
 //! Makes the mesh's materials: each when a polygon first uses it.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 
-use ufbx::{Mesh, Node};
+use ufbx::{Mesh, Node, RefList};
 
 use super::looks::{LookSource, MapSource, MapUvs};
 use super::packing;
@@ -60,7 +60,11 @@ impl<'a> Materials<'a> {
         faces: &mut FaceBuilder,
     ) -> Result<Resolved, ReadError> {
         let Some(material) = of_node(node, mesh, index) else {
-            return self.made((None, Vec::new()), || Ok(Made::plain(Material::plain("default", [1.0; 4]))), faces);
+            let key = (None, Vec::new());
+            return match self.resolved.get(&key) {
+                Some(&resolved) => Ok(resolved),
+                None => self.add(key, Made::plain(Material::plain("default", [1.0; 4])), faces),
+            };
         };
         let source = LookSource::new(material, mesh);
         let maps = [&source.base, &source.normal, &source.roughness, &source.metalness, &source.emission];
@@ -74,19 +78,15 @@ impl<'a> Materials<'a> {
             self.undrawn.entry(what).or_default().push(source.name.clone());
         }
         let made = self.make(&source);
-        self.made(key, || Ok(made), faces)
+        self.add(key, made, faces)
     }
 
-    fn made(
+    fn add(
         &mut self,
         key: (Option<u32>, Vec<usize>),
-        make: impl FnOnce() -> Result<Made, ReadError>,
+        Made { material, own, sets }: Made,
         faces: &mut FaceBuilder,
     ) -> Result<Resolved, ReadError> {
-        if let Some(&resolved) = self.resolved.get(&key) {
-            return Ok(resolved);
-        }
-        let Made { material, own, sets } = make()?;
         let resolved = Resolved { index: faces.material(material)?, own, sets };
         self.resolved.insert(key, resolved);
         Ok(resolved)
@@ -226,8 +226,17 @@ fn of_node<'a>(node: &'a Node, mesh: &'a Mesh, index: u32) -> Option<&'a ufbx::M
     own.map(AsRef::as_ref)
 }
 
-/// Whether corners of a node's mesh need more than position, normal and the base colour's texture coordinates.
-pub(super) fn need_details(node: &Node, mesh: &Mesh) -> bool {
-    let materials = node.materials.into_iter().chain(&mesh.materials);
-    mesh.vertex_color.exists || materials.into_iter().any(|material| LookSource::new(material, mesh).needs_details())
+/// Whether corners of the meshes of these nodes need more than position, normal and the base colour's texture coordinates.
+pub(super) fn need_details<'a>(meshes: impl Iterator<Item = (&'a Node, &'a Mesh)>) -> bool {
+    let needed = |materials: &RefList<ufbx::Material>, mesh: &Mesh| {
+        materials.into_iter().any(|material| LookSource::new(material, mesh).needs_details())
+    };
+    let mut seen = HashSet::new();
+    for (node, mesh) in meshes {
+        let is_new = seen.insert(mesh.element.typed_id);
+        if needed(&node.materials, mesh) || is_new && (mesh.vertex_color.exists || needed(&mesh.materials, mesh)) {
+            return true;
+        }
+    }
+    false
 }

@@ -1,13 +1,19 @@
 //! Places the nodes of a scene: their global transforms, and which ones the file shows.
 
 use glam::DMat4;
-use ufbx::{Node, Scene};
+use ufbx::{Mesh, Node, Scene};
 
 use super::convert::placement;
 use super::morphs;
 use crate::load::attachment::{LocalTransform, SceneNodes};
+use crate::load::memory_budget::Budget;
 use crate::load::notes::Notes;
+use crate::load::read_error::ReadError;
 use crate::mesh::rig::Placement;
+
+/// How many corners, vertices, joints and shapes all nodes may have, and how many more for each byte of the file.
+const MOST_ITEMS: u64 = 1 << 24;
+const ITEMS_A_BYTE: u64 = 16;
 
 /// The nodes of a scene with their places. A node's index is its `typed_id`.
 pub(super) struct Placed {
@@ -22,7 +28,11 @@ pub(super) struct Placed {
 
 impl Placed {
     /// Places all nodes. Adds a warning about meshes that are hidden.
-    pub(super) fn new(scene: &Scene, notes: &mut Notes) -> Self {
+    ///
+    /// # Errors
+    /// [`ReadError::TooMany`] if so many nodes have large meshes that reading them would take very long.
+    pub(super) fn new(scene: &Scene, budget: &Budget, notes: &mut Notes) -> Result<Self, ReadError> {
+        check_instances(scene, budget)?;
         let nodes = &scene.nodes;
         let parents: Vec<Option<usize>> =
             nodes.into_iter().map(|node| node.parent.as_ref().map(|parent| index(parent))).collect();
@@ -49,7 +59,29 @@ impl Placed {
         });
         let morphed = morphed.collect();
         let local = rest.into_iter().map(LocalTransform::Placement).collect();
-        Self { scene: SceneNodes { parents, order, local, carries, morphed }, global, shown, hidden }
+        Ok(Self { scene: SceneNodes { parents, order, local, carries, morphed }, global, shown, hidden })
+    }
+}
+
+/// Adds up what is read for every node with a mesh: corners, vertices, joints, materials, shapes and their offsets. A small file may
+/// have many nodes that share a large mesh.
+fn check_instances(scene: &Scene, budget: &Budget) -> Result<(), ReadError> {
+    let of_mesh = |mesh: &Mesh| {
+        let keys = || morphs::channels(mesh).flat_map(|channel| channel.keyframes.iter());
+        let offsets = keys().fold(0_u64, |sum, key| sum.saturating_add(1 + key.shape.offset_vertices.len() as u64));
+        let joints: usize = mesh.skin_deformers.into_iter().map(|skin| skin.clusters.len()).sum();
+        let lists = mesh.num_indices + mesh.num_vertices + joints + mesh.materials.len();
+        offsets.saturating_add(lists as u64).saturating_add(morphs::channels(mesh).count() as u64)
+    };
+    let costs: Vec<u64> = scene.meshes.into_iter().map(of_mesh).collect();
+    let limit = MOST_ITEMS.saturating_add(budget.files().saturating_mul(ITEMS_A_BYTE));
+    let meshes = scene.nodes.into_iter().filter_map(|node| node.mesh.as_ref());
+    let cost = |mesh: &Mesh| costs.get(mesh.element.typed_id as usize).copied().unwrap_or_default();
+    match meshes.fold(0_u64, |sum, mesh| sum.saturating_add(cost(mesh))) {
+        all if all > limit => {
+            Err(ReadError::TooMany { limit, what: "corners, vertices, joints and shapes in all copies of meshes" })
+        }
+        _ => Ok(()),
     }
 }
 

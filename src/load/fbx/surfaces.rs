@@ -59,11 +59,17 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         (files, budget): (&'a Files<'a>, &'a Budget),
         binder: Option<RigBuilder>,
     ) -> Result<Self, ReadError> {
-        let meshes =
-            || placed.shown.iter().filter_map(|&node| Some((&scene.nodes[node], scene.nodes[node].mesh.as_ref()?)));
-        let is_detailed = meshes().any(|(node, mesh)| materials::need_details(node, mesh));
+        let meshes = || {
+            let nodes = placed.shown.iter().map(|&node| &scene.nodes[node]);
+            nodes.filter_map(|node| Some((node, node.mesh.as_deref()?)))
+        };
+        let is_detailed = materials::need_details(meshes());
         let mut faces = FaceBuilder::new(usize::try_from(budget.files()).unwrap_or(usize::MAX), budget);
         let triangles = meshes().fold(0_usize, |sum, (_, mesh)| sum.saturating_add(mesh.num_triangles));
+        // Many copies of a mesh are refused before any is read.
+        let memory = (triangles as u64).saturating_mul(12);
+        budget.hold(memory).map_err(too_large)?;
+        budget.release(memory);
         faces.expect(triangles, 0);
         Ok(Self {
             scene,

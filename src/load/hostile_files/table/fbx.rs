@@ -6,7 +6,7 @@ use crate::load::Format::Fbx;
 use crate::load::fbx::tests::documents::{
     Link, curves, document, geometry, image, layer, model, morphed_square, skinned_strip, stack, textured_square,
 };
-use crate::load::fbx::tests::tree::{Arrays, Entry, Value, binary, list, one, text, zlib_zeros};
+use crate::load::fbx::tests::tree::{Arrays, Entry, Value, binary, list, object, one, text, zlib_zeros};
 
 const SQUARE: [f64; 12] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0];
 
@@ -46,6 +46,22 @@ fn chain(count: i64) -> Vec<Entry> {
     let links: Vec<Link> = (0..count).map(|i| Link(1000 + i, if i == 0 { 0 } else { 999 + i }, "")).collect();
     let last = [Link(10, 999 + count, "")];
     document(false, 100.0, objects, &links.into_iter().chain(last).collect::<Vec<_>>())
+}
+
+/// Nodes that share a mesh, whose shape moves so many vertices that it doesn't have.
+fn copies(nodes: i64, offsets: i32) -> Vec<Entry> {
+    let shape =
+        vec![one("Indexes", (4..4 + offsets).collect::<Vec<i32>>()), one("Vertices", vec![0.0; 3 * offsets as usize])];
+    let mut objects = vec![
+        geometry(10, &SQUARE, &[&[0, 1, 2, 3]], Vec::new()),
+        object("Deformer", 40, "Deformer::shapes", "BlendShape", Vec::new()),
+        object("Deformer", 41, "SubDeformer::many", "BlendShapeChannel", vec![one("FullWeights", vec![100.0])]),
+        object("Geometry", 42, "Geometry::shape", "Shape", shape),
+    ];
+    objects.extend((0..nodes).map(|i| model(1000 + i, "copy", "Mesh", &[])));
+    let mut links = vec![Link(40, 10, ""), Link(41, 40, ""), Link(42, 41, "")];
+    links.extend((0..nodes).flat_map(|i| [Link(1000 + i, 0, ""), Link(10, 1000 + i, "")]));
+    document(false, 100.0, objects, &links)
 }
 
 /// A square that moves along X by these keys.
@@ -224,6 +240,10 @@ fn scenes() -> Vec<(&'static str, Case)> {
         ("nodes that are each other's parent", of_text(&circle, Refused("Broken"))),
         ("5000 nodes, each the child of the one before", of_text(&chain(5000), Refused("Broken | nested | 4096"))),
         ("2000 nodes, each the child of the one before", of_text(&chain(2000), Repaired(2, "normals"))),
+        (
+            "4000 nodes that share a mesh with 50000 offsets of a shape",
+            (Fbx, binary(&copies(4000, 50_000), Arrays::Plain).into(), Refused("TooMany | copies of meshes")),
+        ),
         ("a unit of 0 cm", of_text(&unit(0.0), Repaired(2, "meshes without normals"))),
         ("a unit that is NaN", (Fbx, binary(&unit(f64::NAN), Arrays::Plain).into(), Refused("Broken | finite"))),
         ("a unit of 1e300 cm", of_text(&unit(1e300), Refused("Broken"))),
