@@ -1,4 +1,4 @@
-//! Builds a mesh from the faces of OBJ, STL and PLY files: checks them, cuts polygons into triangles, and counts
+//! Builds a mesh from the faces of FBX, OBJ, STL and PLY files: checks them, cuts polygons into triangles, and counts
 //! repairs.
 
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use crate::mesh::detail_table::DetailTable;
 use crate::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use crate::mesh::polygon::{self, CutQuality, triangulate};
 use crate::mesh::rig::LARGEST_COORDINATE;
-use crate::mesh::{CornerDetail, Material};
+use crate::mesh::{CornerDetail, Material, Mesh};
 use crate::numbers::linear;
 use crate::progress::Progress;
 
@@ -25,16 +25,35 @@ const MAX_MATERIALS: usize = 1 << 16;
 pub(super) const MAX_CORNERS: usize = 1 << 19;
 
 /// A corner of a face.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct FaceCorner {
-    pub corner: InputCorner,
-    /// Linear RGBA that multiplies the material's colour. It counts only in a file that [has colours](FaceBuilder::color).
-    pub color: Vec4,
+pub(super) trait FaceCorner: Copy {
+    fn corner(&mut self) -> &mut InputCorner;
+
+    /// A number of the reader's. Corners with different ones aren't merged.
+    fn number(&self) -> u32 {
+        0
+    }
 }
 
-impl From<InputCorner> for FaceCorner {
-    fn from(corner: InputCorner) -> Self {
-        Self { corner, color: Vec4::ONE }
+impl FaceCorner for InputCorner {
+    fn corner(&mut self) -> &mut InputCorner {
+        self
+    }
+}
+
+/// A corner with its number.
+#[derive(Clone, Copy)]
+pub(super) struct NumberedCorner {
+    pub corner: InputCorner,
+    pub number: u32,
+}
+
+impl FaceCorner for NumberedCorner {
+    fn corner(&mut self) -> &mut InputCorner {
+        &mut self.corner
+    }
+
+    fn number(&self) -> u32 {
+        self.number
     }
 }
 
@@ -92,9 +111,19 @@ impl<'a> FaceBuilder<'a> {
         Ok(self.builder.material(material))
     }
 
-    /// Keeps the colours of corners. Faces that were added before are white.
+    /// Keeps the colours of corners.
     pub(super) fn color(&mut self) {
         self.colors.get_or_insert_default();
+    }
+
+    /// Returns the number of a corner of this colour, which multiplies the material's: linear RGBA. It is 0 in a file without
+    /// [colours](Self::color).
+    ///
+    /// # Errors
+    /// [`ReadError::TooLarge`].
+    pub(super) fn number(&mut self, color: Vec4) -> Result<u32, ReadError> {
+        let Some(colors) = &mut self.colors else { return Ok(0) };
+        colors.number(CornerDetail { color, ..CornerDetail::default() }, 0, self.memory).map_err(too_large)
     }
 
     /// Announces that about `triangles` more triangles, and about `corners` more distinct corners, will be added.
@@ -110,16 +139,17 @@ impl<'a> FaceBuilder<'a> {
     pub(super) fn add(
         &mut self,
         material: usize,
-        corners: &mut Vec<FaceCorner>,
+        corners: &mut Vec<impl FaceCorner>,
         place: FilePosition,
     ) -> Result<(), ReadError> {
         // A comparison with NaN is false.
-        if !corners.iter().all(|at| at.corner.position.abs().cmple(Vec3::splat(LARGEST_COORDINATE)).all()) {
+        let is_near = |corner: &InputCorner| corner.position.abs().cmple(Vec3::splat(LARGEST_COORDINATE)).all();
+        if !corners.iter_mut().all(|corner| is_near(corner.corner())) {
             self.unplaced.0 += 1;
             self.unplaced.1.get_or_insert(place);
             return Ok(());
         }
-        for FaceCorner { corner, .. } in corners.iter_mut() {
+        for corner in corners.iter_mut().map(FaceCorner::corner) {
             if !corner.uv.is_finite() {
                 corner.uv = Vec2::ZERO;
                 self.bad_uvs += 1;
@@ -127,9 +157,9 @@ impl<'a> FaceBuilder<'a> {
         }
         if corners.len() > 3 {
             let given = corners.len();
-            corners.dedup_by_key(|at| at.corner.position);
-            let ends = [corners.first(), corners.last()].map(|end| end.map(|at| at.corner.position));
-            if corners.len() > 1 && ends[0] == ends[1] {
+            corners.dedup_by_key(|corner| corner.corner().position);
+            let first = corners.first_mut().map(|corner| corner.corner().position);
+            if corners.len() > 1 && first == corners.last_mut().map(|corner| corner.corner().position) {
                 corners.pop();
             }
             self.repeated += given - corners.len();
@@ -145,46 +175,28 @@ impl<'a> FaceBuilder<'a> {
         let memory = self.memory;
         let room = self.builder.make_room_for_triangles(material, corners.len() - 2, memory);
         room.and_then(|()| self.builder.make_room(corners.len(), memory))
-            .and_then(|()| self.cut(material, corners))
-            .map_err(|refused| ReadError::TooLarge { reason: refused.into() })
-    }
-
-    fn cut(&mut self, material: usize, corners: &[FaceCorner]) -> Result<(), MemoryRefused> {
-        if let &[a, b, c] = corners {
-            return self.triangle(material, [a, b, c]);
-        }
-        let outline: Vec<Vec3> = corners.iter().map(|at| at.corner.position).collect();
-        let mut cut = std::mem::take(&mut self.cut);
-        cut.clear();
-        let quality = triangulate(&outline, &mut self.work, &mut cut);
-        self.somehow += usize::from(quality == CutQuality::MayOverlap);
-        let added = cut.iter().try_for_each(|triangle| self.triangle(material, triangle.map(|i| corners[i])));
-        self.cut = cut;
-        added
-    }
-
-    fn triangle(&mut self, material: usize, corners: [FaceCorner; 3]) -> Result<(), MemoryRefused> {
-        let Some(colors) = &mut self.colors else {
-            self.builder.triangle(material, corners.map(|at| at.corner));
-            return Ok(());
-        };
-        let mut numbers = [0; 3];
-        for (number, FaceCorner { color, .. }) in numbers.iter_mut().zip(corners) {
-            *number = colors.number(CornerDetail { color, ..CornerDetail::default() }, 0, self.memory)?;
-        }
-        let stored = [0, 1, 2].map(|i| self.builder.corner(corners[i].corner, numbers[i]));
-        self.builder.stored_triangle(material, stored);
+            .map_err(too_large)?;
+        self.cut(material, corners);
         Ok(())
     }
 
-    /// Says how many faces have impossible positions, if any.
-    fn unplaced(&self) -> Option<String> {
-        let (count, Some(first)) = self.unplaced else { return None };
-        let first = first.to_string();
-        let first = first.trim_end_matches(": ");
-        Some(format!(
-            "{count} faces with a position that isn't a number or lies beyond {LARGEST_COORDINATE:e}, the first at {first}"
-        ))
+    fn cut<C: FaceCorner>(&mut self, material: usize, corners: &mut [C]) {
+        let builder = &mut self.builder;
+        let mut add = |triangle: [C; 3]| {
+            let stored = triangle.map(|mut corner| builder.corner(*corner.corner(), corner.number()));
+            builder.stored_triangle(material, stored);
+        };
+        if let Ok(triangle) = (&*corners).try_into() {
+            add(triangle);
+            return;
+        }
+        let outline: Vec<Vec3> = corners.iter_mut().map(|corner| corner.corner().position).collect();
+        self.cut.clear();
+        let cut = triangulate(&outline, &mut self.work, &mut self.cut);
+        self.somehow += usize::from(cut == CutQuality::MayOverlap);
+        for triangle in &self.cut {
+            add(triangle.map(|i| corners[i]));
+        }
     }
 
     /// Builds the mesh. `holds` says what the file has instead if it has no triangles; `warnings` are the reader's own.
@@ -192,12 +204,32 @@ impl<'a> FaceBuilder<'a> {
     /// # Errors
     /// [`ReadError::Empty`] and [`ReadError::Cancelled`].
     pub(super) fn finish(
+        mut self,
+        name: &str,
+        holds: String,
+        warnings: Vec<String>,
+        progress: &Progress,
+    ) -> Result<LoadedMesh, ReadError> {
+        let (file_bytes, memory, colors) = (self.memory.files(), self.memory, self.colors.take());
+        let (mut mesh, numbers, warnings) = self.finish_numbered(name, holds, warnings, progress)?;
+        if let Some(colors) = colors {
+            let (details, _) = colors.into_lists(&numbers, memory).map_err(too_large)?;
+            mesh.details = Some(Arc::new(details));
+        }
+        Ok(LoadedMesh { mesh, warnings, file_bytes, ..LoadedMesh::default() })
+    }
+
+    /// Builds the mesh as [`finish`](Self::finish) does, and returns each corner's number and the warnings too.
+    ///
+    /// # Errors
+    /// As [`finish`](Self::finish).
+    pub(super) fn finish_numbered(
         self,
         name: &str,
         holds: String,
         mut warnings: Vec<String>,
         progress: &Progress,
-    ) -> Result<LoadedMesh, ReadError> {
+    ) -> Result<(Mesh, Vec<u32>, Vec<String>), ReadError> {
         if self.builder.is_empty() {
             let small = match self.too_small {
                 0 => String::new(),
@@ -216,15 +248,25 @@ impl<'a> FaceBuilder<'a> {
                 "polygons that have no area, cross themselves or are too large, cut into triangles that may overlap",
             ),
         ]));
-        let (mut mesh, numbers) = self.builder.finish_bound(name.to_owned(), self.memory, progress)?;
-        if let Some(colors) = self.colors {
-            let too_large = |refused: MemoryRefused| ReadError::TooLarge { reason: refused.into() };
-            let (details, _) = colors.into_lists(&numbers, self.memory).map_err(too_large)?;
-            mesh.details = Some(Arc::new(details));
-        }
+        let (mesh, numbers) = self.builder.finish_bound(name.to_owned(), self.memory, progress)?;
         warnings.extend(repair_warnings(&mesh.repairs));
-        Ok(LoadedMesh { mesh, warnings, file_bytes: self.memory.files(), ..LoadedMesh::default() })
+        Ok((mesh, numbers, warnings))
     }
+
+    /// Says how many faces have impossible positions, if any.
+    fn unplaced(&self) -> Option<String> {
+        let (count, Some(first)) = self.unplaced else { return None };
+        let place = first.to_string();
+        let first = match place.trim_end_matches(": ") {
+            "" => String::new(),
+            place => format!(", the first at {place}"),
+        };
+        Some(format!("{count} faces with a position that isn't a number or lies beyond {LARGEST_COORDINATE:e}{first}"))
+    }
+}
+
+fn too_large(refused: MemoryRefused) -> ReadError {
+    ReadError::TooLarge { reason: refused.into() }
 }
 
 /// Decodes a vertex's colour: red, green and blue are encoded as sRGB, as scanners and painting programs write them.

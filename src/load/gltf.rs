@@ -8,8 +8,6 @@
 mod accessor;
 mod animated_vertices;
 mod animations;
-mod attachment;
-mod binding_space;
 mod buffers;
 mod decompressed_primitive;
 mod document;
@@ -25,15 +23,13 @@ mod material_source;
 mod materials;
 mod meshopt;
 mod nodes;
-mod notes;
 mod primitive;
 mod primitive_data;
-mod rig_builder;
+mod rig_nodes;
 pub(super) mod scene_size;
 mod schema;
 mod schema_check;
 mod skin;
-mod tangents;
 mod texture_source;
 mod uv_transform;
 mod variants;
@@ -48,8 +44,12 @@ use glam::DMat4;
 
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
+use super::notes::Notes;
+use super::rig_builder::RigBuilder;
+use super::tangents::{self, DetailedMesh};
 use super::uri::Files;
 use super::warnings::repair_warnings;
+use super::{notes, rig_builder};
 use crate::files::Limits;
 use crate::mesh::detail_table::DetailTable;
 use crate::mesh::mesh_builder::MeshBuilder;
@@ -59,11 +59,8 @@ use crate::progress::Progress;
 use accessor::Accessors;
 use materials::Materials;
 use nodes::Placed;
-use notes::Notes;
 use primitive::PrimitiveReader;
-use rig_builder::RigBuilder;
 use scene_size::PerVertex;
-use tangents::DetailedMesh;
 
 pub use gltf_error::GltfError;
 
@@ -95,7 +92,10 @@ pub(super) fn read(
     let mut warnings = Vec::new();
     let clips = animations::read(animations, &document, &accessors, &mut warnings);
     progress.check()?;
-    let binder = RigBuilder::new(clips, &document, &placed, &mut warnings);
+    let binder = match clips.is_empty() {
+        true => None,
+        false => RigBuilder::new(clips, &rig_nodes::of(&document, &placed), &mut warnings),
+    };
     notes.extend(std::mem::take(&mut warnings));
     let materials = Materials::new(&lists, &document, &placed, (&accessors, &files), &budget)?;
     let is_detailed = needs_details(&document, &placed, &materials);
@@ -158,7 +158,7 @@ impl<'a> Scene<'a> {
     fn add(&mut self, node: usize, progress: &Progress) -> Result<(), GltfError> {
         let Some(node) = self.document.nodes().nth(node) else { return Ok(()) };
         let Some(mesh) = node.mesh() else { return Ok(()) };
-        let skin = node.skin().map(|skin| skin::Joints::read(&skin, self.accessors)).transpose()?;
+        let skin = node.skin().map(|skin| skin::read(&skin, self.accessors)).transpose()?;
         let joints = skin.as_ref().map_or_else(Vec::new, |skin| skin.matrices(&self.placed.global));
         let mut binder = self.binder.as_mut().map(|binder| binder.node(node.index(), skin.as_ref()));
         let global = self.placed.global.get(node.index()).copied().unwrap_or(DMat4::IDENTITY);

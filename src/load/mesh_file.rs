@@ -6,16 +6,22 @@ use super::gltf::{self, GltfError};
 use super::heights::HeightError;
 use super::loaded_mesh::LoadedMesh;
 use super::read_error::ReadError;
-use super::{obj, ply, stl};
+use super::{fbx, obj, ply, stl};
 use crate::files::{FileError, Limits, Stamp, read_file};
 use crate::names::{shown, shown_path};
 use crate::progress::{Cancelled, Progress};
 
 /// The extensions of files that can be read, in lower case, each with its format.
-pub(crate) const EXTENSIONS: [(&str, Format); 5] =
-    [("gltf", Format::Gltf), ("glb", Format::Gltf), ("obj", Format::Obj), ("stl", Format::Stl), ("ply", Format::Ply)];
+pub(crate) const EXTENSIONS: [(&str, Format); 6] = [
+    ("gltf", Format::Gltf),
+    ("glb", Format::Gltf),
+    ("fbx", Format::Fbx),
+    ("obj", Format::Obj),
+    ("stl", Format::Stl),
+    ("ply", Format::Ply),
+];
 
-/// The extensions of files that can be read, for messages: ".gltf, .glb, .obj, .stl or .ply".
+/// The extensions of files that can be read, for messages: ".gltf, .glb, .fbx, .obj, .stl or .ply".
 pub(crate) fn known_extensions() -> String {
     let [others @ .., last] = EXTENSIONS.map(|(extension, _)| format!(".{extension}"));
     format!("{} or {last}", others.join(", "))
@@ -55,7 +61,7 @@ pub enum LoadError {
     /// The glTF document can't be read.
     #[error("{}: {problem}", shown_path(path))]
     Gltf { path: PathBuf, problem: Box<GltfError> },
-    /// The OBJ, STL or PLY file can't be read.
+    /// The FBX, OBJ, STL or PLY file can't be read.
     #[error("{}: {fault}", shown_path(path))]
     Broken { path: PathBuf, fault: Box<ReadError> },
     /// A height image can't be read.
@@ -102,7 +108,7 @@ impl From<HeightError> for LoadError {
     }
 }
 
-/// Loads a mesh from a file: `.gltf`, `.glb`, `.obj`, `.stl` or `.ply`, in upper or lower case.
+/// Loads a mesh from a file: `.gltf`, `.glb`, `.fbx`, `.obj`, `.stl` or `.ply`, in upper or lower case.
 ///
 /// Sets `progress` from 0 to 1. Files that the model names are only read from its folder and folders below it. No file
 /// may be larger than `limits` allows.
@@ -159,6 +165,8 @@ pub(super) fn check_variant(path: &Path, variant: Option<&str>, loaded: &LoadedM
 pub enum Format {
     /// `.gltf` or `.glb`; the first bytes tell which.
     Gltf,
+    /// Text or binary; the first bytes tell which.
+    Fbx,
     Obj,
     Stl,
     Ply,
@@ -197,6 +205,9 @@ impl Format {
         if self != Self::Ply && (start.starts_with(b"ply\n") || start.starts_with(b"ply\r")) {
             return Err(LoadError::Misnamed { path: path(), is: "a .ply file" });
         }
+        if self != Self::Fbx && start.starts_with(b"Kaydara FBX Binary") {
+            return Err(LoadError::Misnamed { path: path(), is: "a .fbx file" });
+        }
         let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start).trim_ascii_start();
         // A list isn't a document either, but the parser also reports how deep it is nested.
         if self == Self::Gltf && !is_glb && !matches!(text.first(), None | Some(b'{' | b'[')) {
@@ -225,6 +236,7 @@ pub fn read(
         Format::Gltf => {
             gltf::read(bytes, folder, &name, variant, limits, progress).map_err(|problem| of_problem(problem, path))
         }
+        Format::Fbx => fbx::read(bytes, folder, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
         Format::Obj => obj::read(bytes, folder, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
         Format::Stl => stl::read(bytes, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
         Format::Ply => ply::read(bytes, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
@@ -260,7 +272,8 @@ mod tests {
     #[test]
     fn unknown_formats_name_the_known_ones() {
         let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
-        let expected = "can't be read, since it has the extension .toml; choose a .gltf, .glb, .obj, .stl or .ply file";
+        let expected =
+            "can't be read, since it has the extension .toml; choose a .gltf, .glb, .fbx, .obj, .stl or .ply file";
         assert_eq!(message(manifest), format!("{manifest} {expected}"));
         assert!(message(concat!(env!("CARGO_MANIFEST_DIR"), "/LICENSE")).contains("no extension"));
     }
@@ -295,11 +308,14 @@ mod tests {
                 .unwrap();
             message(path.to_str().expect("it is of letters"))
         };
-        for name in ["a.obj", "a.stl", "a.ply"] {
+        for name in ["a.fbx", "a.obj", "a.stl", "a.ply"] {
             assert!(said(name, b"glTF\x02\0\0\0").contains("begins like a .glb file"), "{name}");
         }
-        for name in ["a.obj", "a.stl", "a.gltf", "a.glb"] {
+        for name in ["a.fbx", "a.obj", "a.stl", "a.gltf", "a.glb"] {
             assert!(said(name, b"ply\nformat").contains("begins like a .ply file"), "{name}");
+        }
+        for name in ["a.obj", "a.stl", "a.ply", "a.gltf"] {
+            assert!(said(name, b"Kaydara FBX Binary  \0").contains("begins like a .fbx file"), "{name}");
         }
         assert!(
             said("a.glb", b"\0\0\0\0").contains("isn't a glTF file: it begins neither with \"glTF\" nor with a {;")

@@ -1,10 +1,13 @@
-//! Loads meshes from glTF, OBJ, STL and PLY files, height images and textures, within limits of file size and memory.
+//! Loads meshes from glTF, FBX, OBJ, STL and PLY files, height images and textures, within limits of file size and memory.
 //! Everything in a file is checked before it is used.
 
+mod attachment;
+mod binding_space;
 mod bits;
 #[cfg(feature = "cli")]
 pub(crate) mod environment_file;
 mod face_builder;
+mod fbx;
 mod gltf;
 pub(crate) mod heights;
 #[cfg(test)]
@@ -16,13 +19,16 @@ mod loaded_mesh;
 mod matcap_image;
 pub(crate) mod memory_budget;
 pub(crate) mod mesh_file;
+mod notes;
 mod obj;
 #[cfg(feature = "cli")]
 pub(crate) mod panorama;
 mod ply;
 mod read_error;
+mod rig_builder;
 pub(crate) mod source;
 mod stl;
+mod tangents;
 mod text_lines;
 mod uri;
 mod warnings;

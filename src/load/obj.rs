@@ -17,7 +17,7 @@ use std::path::Path;
 
 use glam::{Vec2, Vec3, Vec4};
 
-use super::face_builder::{FaceBuilder, FaceCorner, MAX_CORNERS, counted, linear_color};
+use super::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, counted, linear_color};
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::read_error::ReadError;
@@ -283,7 +283,7 @@ struct Reader<'v, 'a> {
     /// The normals that smoothing groups make, if there are groups.
     smoothing: Option<Smoothing<'v>>,
     /// The corners of the face that is being read, and the numbers of their positions.
-    corners: Vec<FaceCorner>,
+    corners: Vec<NumberedCorner>,
     indices: Vec<usize>,
     found: StatementCounts,
 }
@@ -318,7 +318,8 @@ impl Reader<'_, '_> {
                 return Err(line.place().error(format!("the face has more than {MAX_CORNERS} corners")));
             }
             let (index, corner) = self.corner(word).map_err(|reason| line.place().error(reason))?;
-            corners.push(corner);
+            let color = self.vertices.colors.get(index).map_or(Vec4::ONE, |&color| linear_color(color));
+            corners.push(NumberedCorner { corner, number: self.faces.number(color)? });
             self.indices.push(index);
         }
         if corners.iter().any(|at| at.corner.normal.is_none()) {
@@ -335,13 +336,13 @@ impl Reader<'_, '_> {
 
     /// Parses a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`.
     /// Returns the number of its position too.
-    fn corner(&mut self, word: &[u8]) -> Result<(usize, FaceCorner), String> {
+    fn corner(&mut self, word: &[u8]) -> Result<(usize, InputCorner), String> {
         let mut parts = word.split(|&byte| byte == b'/');
         let [position, uv, normal] = [0, 1, 2].map(|_| parts.next().filter(|part| !part.is_empty()));
         let (None, Some(position)) = (parts.next(), position) else {
             return Err(format!("{} isn't a corner, such as 1, 1/2, 1//3 or 1/2/3", shown(word)));
         };
-        let Vertices { positions, uvs, normals, colors, .. } = self.vertices;
+        let Vertices { positions, uvs, normals, .. } = self.vertices;
         let number = index(position, "position", self.above[0], positions.len())?;
         // A corner needs its position alone.
         let optional = |word: Option<&[u8]>, above, count, absent: &mut usize| {
@@ -354,8 +355,7 @@ impl Reader<'_, '_> {
         let uv = uv.and_then(|uv| uvs.get(uv)).copied().unwrap_or_default();
         let normal = normal.and_then(|normal| normals.get(normal)).copied();
         let position = positions.get(number).copied().unwrap_or_default();
-        let color = colors.get(number).map_or(Vec4::ONE, |&color| linear_color(color));
-        Ok((number, FaceCorner { corner: InputCorner { position, normal, uv }, color }))
+        Ok((number, InputCorner { position, normal, uv }))
     }
 }
 

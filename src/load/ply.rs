@@ -10,7 +10,7 @@ mod values;
 
 use glam::{Vec2, Vec3, Vec4};
 
-use super::face_builder::{FaceBuilder, FaceCorner, MAX_CORNERS, counted, linear_color};
+use super::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, counted, linear_color};
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::read_error::{FilePosition, ReadError};
@@ -121,7 +121,8 @@ struct Vertices {
 }
 
 impl Vertices {
-    fn corner(&self, index: f64, place: FilePosition) -> Result<FaceCorner, ReadError> {
+    /// Returns a vertex, and its colour: linear RGBA.
+    fn corner(&self, index: f64, place: FilePosition) -> Result<(InputCorner, Vec4), ReadError> {
         let vertex = index as usize;
         // The conversion changes an index that is negative, not whole or not finite.
         let position = self.positions.get(vertex).filter(|_| vertex as f64 == index).ok_or_else(|| {
@@ -131,7 +132,7 @@ impl Vertices {
         let uv = self.uvs.get(vertex).copied().unwrap_or_default();
         let corner = InputCorner { position: *position, normal: self.normals.get(vertex).copied(), uv };
         let color = self.colors.get(vertex).map_or(Vec4::ONE, |&color| linear_color(color));
-        Ok(FaceCorner { corner, color })
+        Ok((corner, color))
     }
 }
 
@@ -140,7 +141,7 @@ struct Reader<'a> {
     material: usize,
     vertices: Option<Vertices>,
     /// The corners of the face that is being read.
-    corners: Vec<FaceCorner>,
+    corners: Vec<NumberedCorner>,
     /// Its own texture coordinates, u and v in turn; empty if it has none.
     wedges: Vec<f32>,
     /// A warning about a file that ends too early.
@@ -303,8 +304,14 @@ impl<'a> Reader<'a> {
             if self.corners.len() == MAX_CORNERS {
                 return Err(place.error(format!("the face has more than {MAX_CORNERS} corners")));
             }
-            self.corners.push(vertices.corner(index, place)?);
+            self.push(vertices.corner(index, place)?)?;
         }
+        Ok(())
+    }
+
+    fn push(&mut self, (corner, color): (InputCorner, Vec4)) -> Result<(), ReadError> {
+        let number = self.faces.number(color)?;
+        self.corners.push(NumberedCorner { corner, number });
         Ok(())
     }
 
@@ -331,7 +338,7 @@ impl<'a> Reader<'a> {
             let triangle = if length % 2 == 1 { [a, b, index] } else { [b, a, index] };
             self.corners.clear();
             for index in triangle {
-                self.corners.push(vertices.corner(index, place)?);
+                self.push(vertices.corner(index, place)?)?;
             }
             self.faces.add(self.material, &mut self.corners, place)?;
         }

@@ -1,11 +1,11 @@
-//! Errors in OBJ, STL and PLY files.
+//! Errors in FBX, OBJ, STL and PLY files.
 
 use std::fmt;
 
 use crate::mesh::build_limits::BuildError;
 use crate::progress::Cancelled;
 
-/// Why an OBJ, STL or PLY file could not be loaded. The message doesn't contain the file's path.
+/// Why an FBX, OBJ, STL or PLY file could not be loaded. The message doesn't contain the file's path.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the messages say what the fields are")]
 pub enum ReadError {
@@ -21,6 +21,9 @@ pub enum ReadError {
     /// The mesh would take too much memory, or have too many triangles.
     #[error("its mesh {reason}; split it into several files")]
     TooLarge { reason: String },
+    /// The thread that reads the file can't be started.
+    #[error("no thread can be started to read it ({reason}); close other programs and try again")]
+    NoThread { reason: String },
     /// The file has no triangles.
     #[error("no triangles: {holds}")]
     Empty { holds: String },

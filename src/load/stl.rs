@@ -10,7 +10,7 @@
 
 use glam::{Vec2, Vec3};
 
-use super::face_builder::{FaceBuilder, FaceCorner, counted};
+use super::face_builder::{FaceBuilder, counted};
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::read_error::{FilePosition, ReadError};
@@ -69,7 +69,7 @@ struct Reader<'a> {
     faces: FaceBuilder<'a>,
     material: usize,
     /// The corners of the triangle that is being added.
-    corners: Vec<FaceCorner>,
+    corners: Vec<InputCorner>,
     progress: &'a Progress,
     /// The file's size, in bytes.
     bytes: usize,
@@ -168,7 +168,7 @@ impl Reader<'_> {
     }
 
     fn add(&mut self, positions: [Vec3; 3], place: FilePosition) -> Result<(), ReadError> {
-        let corner = |position| FaceCorner::from(InputCorner { position, normal: None, uv: Vec2::ZERO });
+        let corner = |position| InputCorner { position, normal: None, uv: Vec2::ZERO };
         self.corners.clear();
         self.corners.extend(positions.map(corner));
         self.faces.add(self.material, &mut self.corners, place)

@@ -27,7 +27,7 @@ mod slices;
 mod spatial_hash;
 pub(crate) mod t_junctions;
 pub(crate) mod topology;
-mod union_find;
+pub(crate) mod union_find;
 pub(crate) mod weld;
 pub(crate) mod weld_preview;
 

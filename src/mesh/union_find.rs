@@ -1,19 +1,19 @@
 //! Disjoint sets that can be merged (union-find).
 
 /// Items 0 to n - 1, each in one set (Tarjan 1975: union by linking, with path halving).
-pub(super) struct UnionFind {
+pub(crate) struct UnionFind {
     /// For each item, another item of the same set; or itself, if it stands for the set.
     links: Vec<u32>,
 }
 
 impl UnionFind {
     /// Makes a set of its own for each item.
-    pub(super) fn new(items: usize) -> Self {
+    pub(crate) fn new(items: usize) -> Self {
         Self { links: (0..items as u32).collect() }
     }
 
     /// Returns the set of an item, named by one of its items. All items of a set get the same name until the next join.
-    pub(super) fn of(&mut self, mut item: u32) -> u32 {
+    pub(crate) fn of(&mut self, mut item: u32) -> u32 {
         while self.links[item as usize] != item {
             let next = self.links[item as usize];
             self.links[item as usize] = self.links[next as usize];
@@ -23,7 +23,7 @@ impl UnionFind {
     }
 
     /// Merges the sets of two items. The lower of their two names is the name of the result.
-    pub(super) fn join(&mut self, a: u32, b: u32) {
+    pub(crate) fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.of(a), self.of(b));
         self.links[a.max(b) as usize] = a.min(b);
     }

@@ -29,6 +29,10 @@ pub fn glb(data: &[u8]) {
     mesh(Format::Gltf, &data);
 }
 
+pub fn fbx(data: &[u8]) {
+    mesh(Format::Fbx, data);
+}
+
 pub fn obj(data: &[u8]) {
     mesh(Format::Obj, data);
 }

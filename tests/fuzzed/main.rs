@@ -69,6 +69,11 @@ fn glb() {
 }
 
 #[test]
+fn fbx() {
+    run("fbx", 1000, bodies::fbx);
+}
+
+#[test]
 fn obj() {
     run("obj", 1000, bodies::obj);
 }

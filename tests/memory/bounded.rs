@@ -29,7 +29,7 @@ pub fn loaded(file: &Path, preparation: &Preparation, memory: u64) -> (Result<Lo
 
 /// Loads a file with more and more memory. A load may ask for `most` times the memory that it takes; `image` is the
 /// size of the height image file.
-fn assert_bounded(name: &str, bytes: &[u8], image: usize, preparation: &Preparation, most: f64) {
+pub fn assert_bounded(name: &str, bytes: &[u8], image: usize, preparation: &Preparation, most: f64) {
     let file = temporary(name, bytes);
     let (result, needed) = loaded(&file, preparation, u64::MAX);
     let triangles = result.expect("a file without a fault").read.triangles.len();

@@ -7,6 +7,7 @@
 mod bounded;
 #[path = "../counting/mod.rs"]
 mod counting;
+mod fbx;
 mod glb;
 mod grid;
 mod heights;

@@ -34,10 +34,8 @@ pub(crate) fn assert_cube(mesh: &Mesh) {
     }
 }
 
-fn corners(places: &[[f32; 2]]) -> Vec<FaceCorner> {
-    let corner = |&[x, y]: &[f32; 2]| {
-        FaceCorner::from(InputCorner { position: Vec3::new(x, y, 0.0), normal: None, uv: Vec2::ZERO })
-    };
+fn corners(places: &[[f32; 2]]) -> Vec<InputCorner> {
+    let corner = |&[x, y]: &[f32; 2]| InputCorner { position: Vec3::new(x, y, 0.0), normal: None, uv: Vec2::ZERO };
     places.iter().map(corner).collect()
 }
 
@@ -90,18 +88,19 @@ fn corners_keep_their_colours() {
     let mut faces = FaceBuilder::new(0, &budget);
     let material = faces.material(Material::plain("default", [1.0; 4])).unwrap();
     faces.color();
-    let mut square = corners(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
+    let square = corners(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
     let colors = [[255, 0, 0, 255], [0, 188, 0, 128], [0, 0, 0, 255], [255, 255, 255, 255]].map(linear_color);
-    square.iter_mut().zip(colors).for_each(|(at, color)| at.color = color);
-    faces.add(material, &mut square, FilePosition::Everywhere).unwrap();
     // The same corners in other colours are other corners.
-    square.iter_mut().for_each(|at| at.color = Vec4::ONE);
-    faces.add(material, &mut square, FilePosition::Everywhere).unwrap();
+    for colors in [colors, [Vec4::ONE; 4]] {
+        let numbers = colors.map(|color| faces.number(color).unwrap());
+        let numbered = square.iter().zip(numbers).map(|(&corner, number)| NumberedCorner { corner, number });
+        faces.add(material, &mut numbered.collect(), FilePosition::Everywhere).unwrap();
+    }
     let mesh = faces.finish("faces", String::new(), Vec::new(), &Progress::new()).unwrap();
     let details = mesh.details.as_ref().expect("it has colours");
     assert_eq!((mesh.corners.len(), details.len()), (7, 7), "the white corner is shared");
     for (corner, detail) in mesh.corners.iter().zip(details.iter()).take(4) {
-        let at = square.iter().position(|at| at.corner.position == corner.position).unwrap();
+        let at = square.iter().position(|at| at.position == corner.position).unwrap();
         assert_eq!(detail.color, colors[at]);
     }
     assert!((colors[1].y - 0.503).abs() < 0.001, "sRGB is decoded: {}", colors[1].y);

@@ -1,5 +1,7 @@
 //! Binds the vertices of a primitive of an animated mesh.
 
+use glam::DMat4;
+
 use super::GltfError;
 use super::primitive_data::{MorphTarget, PrimitiveData};
 use super::rig_builder::{MAX_BOUND, NodeBinder, UndeformedVertex, VertexFrame};
@@ -27,7 +29,7 @@ pub(super) struct AnimatedVertices<'a, 'b, 'c> {
 
 impl<'a, 'b, 'c> AnimatedVertices<'a, 'b, 'c> {
     pub(super) fn new(source: PrimitiveData<'a>, vertices: &Vertices, binder: &'b mut NodeBinder<'c>) -> Self {
-        let (frame, first_weight) = (binder.frame(vertices.is_skinned()), binder.first_weight());
+        let (frame, first_weight) = (binder.frame(vertices.is_skinned(), DMat4::IDENTITY), binder.first_weight());
         let mut moving =
             Self { binder, frame, source, first_weight, targets: Vec::new(), deltas: Vec::new(), found: 0 };
         if first_weight.is_some() {

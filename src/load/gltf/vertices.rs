@@ -1,7 +1,7 @@
 //! Reads a primitive's vertices in their rest pose: attributes, morph targets, then the skin or the node's transform.
 
 use ::gltf::Semantic;
-use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
+use glam::{DMat3, DMat4, Vec2, Vec3};
 
 use super::GltfError;
 use super::accessor::List;
@@ -9,6 +9,7 @@ use super::material_source::Uvs;
 use super::primitive_data::{MorphTarget, PrimitiveData};
 use super::uv_transform::UvTransform;
 use super::vertex_details::VertexDetails;
+use crate::load::binding_space::turned;
 use crate::mesh::CornerDetail;
 use crate::mesh::mesh_builder::InputCorner;
 use crate::mesh::normals::GivenNormal;
@@ -197,18 +198,4 @@ impl<'a> Vertices<'a> {
         self.joints = Some(joints);
         matrix
     }
-}
-
-/// Transforms a normal by the inverse transpose of a linear map, and normalises it; returns none if the result has no
-/// direction.
-fn turned(normal: Vec3, linear: &DMat3) -> Option<Vec3> {
-    let normal = GivenNormal::new(normal).unit()?;
-    if *linear == DMat3::IDENTITY {
-        return Some(normal);
-    }
-    // The cofactors are the inverse transpose times the determinant, and exist even where the inverse doesn't.
-    let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
-    let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
-    let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
-    (sign * (cofactors * normal.as_dvec3())).try_normalize().map(DVec3::as_vec3)
 }

@@ -8,8 +8,8 @@ use std::time::Duration;
 use fastrand::Rng;
 
 use super::{read, time};
-use crate::load::Format::{self, Obj, Ply, Stl};
-use crate::load::{obj, ply, stl};
+use crate::load::Format::{self, Fbx, Obj, Ply, Stl};
+use crate::load::{fbx, obj, ply, stl};
 
 /// The texts that replace a number.
 const NUMBERS: [&str; 5] = ["0", "-1", "4611686018427387904", "1e308", "nan"];
@@ -22,6 +22,7 @@ pub(super) fn originals() -> Vec<(Format, Vec<u8>)> {
         (Stl, stl::tests::binary(b"solid cube")),
         (Ply, ply::tests::strip("0 1 2 -1 3 4 5").into_bytes()),
     ];
+    originals.extend(fbx::tests::files().into_iter().map(|file| (Fbx, file)));
     originals.extend((0..3).map(|encoding| (Ply, ply::tests::cube(encoding, 6, 4))));
     originals
 }

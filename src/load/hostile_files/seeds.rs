@@ -3,13 +3,14 @@
 use std::path::Path;
 
 use super::mutated;
-use crate::load::Format::{Gltf, Obj, Ply, Stl};
+use crate::load::Format::{Fbx, Gltf, Obj, Ply, Stl};
 use crate::load::gltf;
 
 fn made() -> Vec<(&'static str, String, Vec<u8>)> {
     let mut made = Vec::new();
     for (i, (format, bytes)) in mutated::originals().into_iter().enumerate() {
         let target = match format {
+            Fbx => "fbx",
             Obj => "obj",
             Stl => "stl",
             Ply => "ply",

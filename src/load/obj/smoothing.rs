@@ -6,7 +6,7 @@ use foldhash::fast::RandomState;
 use glam::Vec3;
 
 use super::{MAX_CORNERS, Vertices, index, too_large};
-use crate::load::face_builder::FaceCorner;
+use crate::load::face_builder::NumberedCorner;
 use crate::load::memory_budget::Budget;
 use crate::load::read_error::ReadError;
 use crate::load::text_lines::{Line, first_word, words};
@@ -100,7 +100,7 @@ impl<'v> Smoothing<'v> {
 
     /// Gives a face's corners the normals that they lack. `numbers` are those of their positions. Returns false if a group has
     /// none, because its faces have no area.
-    pub(super) fn complete(&self, numbers: &[usize], corners: &mut [FaceCorner]) -> bool {
+    pub(super) fn complete(&self, numbers: &[usize], corners: &mut [NumberedCorner]) -> bool {
         let positions: Vec<Vec3> = corners.iter().map(|at| at.corner.position).collect();
         let face = face_normal(&positions);
         let mut is_whole = true;

@@ -3,6 +3,7 @@
 use glam::{DMat3, DMat4, DVec3, Vec3};
 
 use crate::mesh::CornerDetail;
+use crate::mesh::normals::GivenNormal;
 use crate::mesh::rig::{Binding, Delta, Pose};
 
 /// The transform from a mesh's own space to that of the animated node that it is attached to.
@@ -41,6 +42,20 @@ impl BindingSpace {
         let position = if is_there { position } else { self.matrix.transform_point3(position.as_dvec3()).as_vec3() };
         (position.to_array(), finite(turned * scale))
     }
+}
+
+/// Transforms a normal by the inverse transpose of a linear map, and normalises it; returns none if the result has no
+/// direction.
+pub(super) fn turned(normal: Vec3, linear: &DMat3) -> Option<Vec3> {
+    let normal = GivenNormal::new(normal).unit()?;
+    if *linear == DMat3::IDENTITY {
+        return Some(normal);
+    }
+    // The cofactors are the inverse transpose times the determinant, and exist even where the inverse doesn't.
+    let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
+    let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
+    let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
+    (sign * (cofactors * normal.as_dvec3())).try_normalize().map(DVec3::as_vec3)
 }
 
 /// Returns zero for a vector that doesn't fit f32.

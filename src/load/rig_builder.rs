@@ -2,13 +2,10 @@
 
 use std::collections::HashMap;
 
-use ::gltf::Document;
 use glam::{DMat4, Vec3};
 
-use super::attachment::{self, Attachment, carries_shown};
+use super::attachment::{Attachment, SceneNodes, attachments};
 use super::binding_space::{BindingSpace, unturned, untwisted};
-use super::nodes::{self, Placed};
-use super::skin;
 use crate::mesh::mesh_builder::InputCorner;
 use crate::mesh::normals::GivenNormal;
 use crate::mesh::rig::{AnimatedNode, Binding, Clip, Delta, Joint, Morph, Property, Reach, Rig};
@@ -24,7 +21,7 @@ pub(super) struct RigBuilder {
     /// The targets of their channels are `nodes` and `morphs`.
     clips: Vec<Clip>,
     nodes: Vec<AnimatedNode>,
-    /// For each node of the document, the animated node that moves it.
+    /// For each node of the scene, the animated node that moves it.
     attachments: Vec<Attachment>,
     morphs: Vec<Morph>,
     /// For each node whose morph targets a clip weights, its index in `morphs`.
@@ -42,6 +39,24 @@ pub(super) struct RigBuilder {
     problem: Option<String>,
 }
 
+/// The joints of a skin.
+pub(super) struct SkinJoints {
+    /// Indices of the scene's nodes.
+    pub nodes: Vec<usize>,
+    /// The transforms from the mesh's bind pose to each joint's own space.
+    pub inverse_binds: Vec<DMat4>,
+}
+
+impl SkinJoints {
+    /// Returns, for each joint, the matrix that takes a vertex from the mesh's bind pose to the scene: the joint's
+    /// global transform times its inverse bind matrix. The skinned node's own transform isn't used (glTF 2.0
+    /// specification, section 3.7.3).
+    pub(super) fn matrices(&self, global: &[DMat4]) -> Vec<DMat4> {
+        let place = |&joint: &usize| global.get(joint).copied().unwrap_or(DMat4::IDENTITY);
+        self.nodes.iter().map(place).zip(&self.inverse_binds).map(|(joint, inverse)| joint * *inverse).collect()
+    }
+}
+
 /// A vertex that will be deformed.
 struct BoundVertex {
     binding: Binding,
@@ -51,24 +66,18 @@ struct BoundVertex {
 }
 
 impl RigBuilder {
-    /// Prepares for some clips, whose targets are nodes of the document. Returns none if no clip moves anything that is
+    /// Prepares for some clips, whose targets are nodes of the scene. Returns none if no clip moves anything that is
     /// shown. Adds a warning for each clip that doesn't.
-    pub(super) fn new(
-        clips: Vec<Clip>,
-        document: &Document,
-        placed: &Placed,
-        warnings: &mut Vec<String>,
-    ) -> Option<Self> {
+    pub(super) fn new(clips: Vec<Clip>, scene: &SceneNodes, warnings: &mut Vec<String>) -> Option<Self> {
         if clips.is_empty() {
             return None;
         }
-        let mut moved = vec![false; placed.global.len()];
+        let mut moved = vec![false; scene.local.len()];
         for channel in clips.iter().flat_map(|clip| &clip.channels) {
             moved[channel.target as usize] |= channel.property != Property::Weights;
         }
-        let carries = carries_shown(document, placed);
-        moved.iter_mut().zip(&carries).for_each(|(moved, carries)| *moved &= carries);
-        let (nodes, attachments) = attachment::attachments(document, placed, &moved);
+        moved.iter_mut().zip(&scene.carries).for_each(|(moved, carries)| *moved &= carries);
+        let (nodes, attachments) = attachments(scene, &moved);
         let mut binder = Self {
             clips: Vec::new(),
             nodes,
@@ -84,7 +93,7 @@ impl RigBuilder {
             displaced: 0,
             problem: None,
         };
-        binder.add_morphs(&clips, document, placed);
+        binder.add_morphs(&clips, scene);
         for clip in clips {
             let (name, clip) = (clip.name.clone(), binder.retargeted(clip, &moved));
             if clip.channels.is_empty() {
@@ -97,19 +106,16 @@ impl RigBuilder {
     }
 
     /// Adds the morph targets of the nodes that are shown and whose weights a clip changes.
-    fn add_morphs(&mut self, clips: &[Clip], document: &Document, placed: &Placed) {
-        let mut weighed = vec![false; placed.global.len()];
+    fn add_morphs(&mut self, clips: &[Clip], scene: &SceneNodes) {
+        let mut weighed = vec![false; scene.local.len()];
         for channel in clips.iter().flat_map(|clip| &clip.channels) {
             weighed[channel.target as usize] |= channel.property == Property::Weights;
         }
         let mut first_weight = 0;
-        for &index in placed.shown.iter().filter(|&&node| weighed[node]) {
-            let Some(node) = document.nodes().nth(index) else { continue };
-            let mut rest = super::weights(&node).to_vec();
-            rest.resize(nodes::target_count(&node), 0.0);
-            self.node_morphs.insert(index, self.morphs.len());
-            self.morphs.push(Morph { first_weight, rest });
-            first_weight += self.morphs.last().map_or(0, |morph| morph.rest.len() as u32);
+        for (node, rest) in scene.morphed.iter().filter(|(node, _)| weighed[*node]) {
+            self.node_morphs.insert(*node, self.morphs.len());
+            self.morphs.push(Morph { first_weight, rest: rest.clone() });
+            first_weight += rest.len() as u32;
         }
     }
 
@@ -128,7 +134,7 @@ impl RigBuilder {
     }
 
     /// Returns a binder for the vertices of a node's mesh.
-    pub(super) fn node<'a>(&'a mut self, node: usize, skin: Option<&'a skin::Joints>) -> NodeBinder<'a> {
+    pub(super) fn node<'a>(&'a mut self, node: usize, skin: Option<&'a SkinJoints>) -> NodeBinder<'a> {
         for &joint in skin.map_or(&[][..], |skin| &skin.nodes) {
             if let Some(Attachment { node: Some(node), .. }) = self.attachments.get(joint) {
                 self.nodes[*node as usize].is_joint = true;
@@ -220,7 +226,7 @@ fn has_tangents(details: &CornerDetails) -> bool {
 /// Binds the vertices of one node's mesh.
 pub(super) struct NodeBinder<'a> {
     node: usize,
-    skin: Option<&'a skin::Joints>,
+    skin: Option<&'a SkinJoints>,
     /// For each joint of the skin, its index in the palette once it is used.
     skin_joints: Vec<Option<u32>>,
     binder: &'a mut RigBuilder,
@@ -267,14 +273,19 @@ impl NodeBinder<'_> {
         self.binder.give_up(reason);
     }
 
-    /// Returns the joint and the space of a primitive's vertices.
-    pub(super) fn frame(&mut self, is_skinned: bool) -> VertexFrame {
+    /// Returns the joint and the space of a mesh's vertices; `to_node` takes them to the node's own space.
+    pub(super) fn frame(&mut self, is_skinned: bool, to_node: DMat4) -> VertexFrame {
         let attachment = self.binder.attachments[self.node];
         if is_skinned {
             return VertexFrame { rigid: None, space: BindingSpace::new(DMat4::IDENTITY) };
         }
         let rigid = self.binder.joint(Joint { node: attachment.node, offset: DMat4::IDENTITY });
-        VertexFrame { rigid: Some(rigid), space: BindingSpace::new(attachment.below) }
+        VertexFrame { rigid: Some(rigid), space: BindingSpace::new(attachment.below * to_node) }
+    }
+
+    /// Returns how many displacements are stored, of all vertices together.
+    pub(super) fn deltas(&self) -> usize {
+        self.binder.deltas.len()
     }
 
     /// Returns the number of a vertex's binding. `corner` is the vertex at rest.

@@ -1,0 +1,70 @@
+//! Finds out which animated node each node of a scene is attached to: the nearest ancestor that a clip moves.
+
+use glam::DMat4;
+
+use crate::mesh::rig::{AnimatedNode, Placement};
+
+/// What a rig needs to know of a scene's nodes, whatever the format.
+pub(super) struct SceneNodes {
+    pub parents: Vec<Option<usize>>,
+    /// All nodes, parents before children.
+    pub order: Vec<usize>,
+    /// Each node's own transform.
+    pub local: Vec<LocalTransform>,
+    /// Which nodes carry something that is shown, on them or below them: a mesh, or a joint of a mesh's skin.
+    pub carries: Vec<bool>,
+    /// The nodes that are shown and have morph targets, with the targets' weights at rest.
+    pub morphed: Vec<(usize, Vec<f32>)>,
+}
+
+/// A node's own transform.
+#[derive(Clone, Copy)]
+pub(super) enum LocalTransform {
+    /// One that a clip may move.
+    Placement(Placement),
+    Matrix(DMat4),
+}
+
+impl LocalTransform {
+    fn placement(&self) -> Option<Placement> {
+        match self {
+            Self::Placement(placement) => Some(*placement),
+            Self::Matrix(_) => None,
+        }
+    }
+
+    fn matrix(&self) -> DMat4 {
+        match self {
+            Self::Placement(placement) if *placement == Placement::default() => DMat4::IDENTITY,
+            Self::Placement(placement) => placement.matrix(),
+            Self::Matrix(matrix) => *matrix,
+        }
+    }
+}
+
+/// The animated node that a node is attached to, and its transform relative to that.
+#[derive(Clone, Copy)]
+pub(super) struct Attachment {
+    /// An index into the animated nodes; none if no clip moves the node.
+    pub node: Option<u32>,
+    pub below: DMat4,
+}
+
+/// Returns the animated nodes, parents before children, and the attachment of each of the scene's nodes.
+pub(super) fn attachments(scene: &SceneNodes, moved: &[bool]) -> (Vec<AnimatedNode>, Vec<Attachment>) {
+    let root = Attachment { node: None, below: DMat4::IDENTITY };
+    let mut animated = Vec::new();
+    let mut attachments = vec![root; scene.local.len()];
+    for &node in &scene.order {
+        let above = scene.parents[node].map_or(root, |parent| attachments[parent]);
+        let local = &scene.local[node];
+        attachments[node] = match local.placement().filter(|_| moved[node]) {
+            Some(rest) => {
+                animated.push(AnimatedNode { parent: above.node, between: above.below, rest, is_joint: false });
+                Attachment { node: Some(animated.len() as u32 - 1), below: DMat4::IDENTITY }
+            }
+            None => Attachment { below: above.below * local.matrix(), ..above },
+        };
+    }
+    (animated, attachments)
+}

@@ -1,0 +1,138 @@
+//! Reads FBX, binary and text: the polygons of all meshes that the file shows, in their rest pose, with materials, skins, blend
+//! shapes and animations. Axes are turned so that Y points up, and the file's unit becomes metres.
+//!
+//! FBX has no public specification. The library ufbx parses the file, with limits on its memory; what it returns is checked like
+//! the file itself, since its lists hold what the file says. It runs in this process, on a thread of its own, so that the stack is the
+//! same on every system (see the design notes).
+
+mod clips;
+mod convert;
+mod left_out;
+mod looks;
+mod materials;
+mod morphs;
+mod nodes;
+mod packing;
+mod parse;
+mod skin;
+mod smoothing;
+mod surfaces;
+mod textures;
+mod vertices;
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::loaded_mesh::LoadedMesh;
+use super::memory_budget::Budget;
+use super::notes::Notes;
+use super::read_error::ReadError;
+use super::rig_builder::RigBuilder;
+use super::tangents::{self, DetailedMesh};
+use super::uri::Files;
+use crate::files::Limits;
+use crate::mesh::detail_table::DetailTable;
+use crate::mesh::{MemoryAccount, MemoryRefused, Mesh};
+use crate::progress::Progress;
+
+use nodes::Placed;
+use surfaces::Surfaces;
+
+/// The stack of the thread that reads, in bytes. ufbx needs less than 128 KiB, since it hardly recurses; decoders of images, and
+/// MikkTSpace, need more.
+const STACK: usize = 8 << 20;
+
+/// Builds a mesh from a file's bytes.
+///
+/// `folder` is the file's folder; `name` becomes the mesh's name. `limits` apply to the textures that the file names.
+///
+/// # Errors
+/// [`ReadError`]. A missing texture isn't an error but a warning.
+pub(super) fn read(
+    bytes: Vec<u8>,
+    folder: &Path,
+    name: &str,
+    limits: &Limits,
+    progress: &Progress,
+) -> Result<LoadedMesh, ReadError> {
+    let job = || read_here(bytes, folder, name, limits, progress);
+    std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().name("fbx".to_owned()).stack_size(STACK).spawn_scoped(scope, job);
+        let thread = thread.map_err(|error| ReadError::NoThread { reason: error.to_string() })?;
+        thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    })
+}
+
+/// Builds a mesh as [`read`] does, on the caller's thread.
+///
+/// # Errors
+/// As [`read`].
+pub(super) fn read_here(
+    bytes: Vec<u8>,
+    folder: &Path,
+    name: &str,
+    limits: &Limits,
+    progress: &Progress,
+) -> Result<LoadedMesh, ReadError> {
+    let budget = Budget::new(bytes.len(), limits);
+    let scene = parse::scene(&bytes, &budget, &progress.part(0.0, 0.3))?;
+    budget.release(bytes.len() as u64);
+    drop(bytes);
+    let mut notes = Notes::default();
+    left_out::warn(&scene, &mut notes);
+    let placed = Placed::new(&scene, &budget, &mut notes)?;
+    let clips = clips::read(&scene, &placed, (&budget, &progress.part(0.3, 0.4)), &mut notes)?;
+    let mut warnings = Vec::new();
+    let binder = RigBuilder::new(clips, &placed.scene, &mut warnings);
+    notes.extend(warnings);
+    let files = Files::new(folder, limits, &budget, progress);
+    let mut surfaces = Surfaces::new(&scene, &placed, (&files, &budget), binder)?;
+    for (i, &node) in placed.shown.iter().enumerate() {
+        progress.set(0.4 + 0.4 * i as f32 / placed.shown.len() as f32);
+        surfaces.add(node, progress)?;
+    }
+    let holds = left_out::holds(&scene, &placed);
+    let (faces, details, binder) = surfaces.into_parts(&mut notes);
+    budget.release(scene.metadata.result_memory_used as u64);
+    budget.give_back_to(0);
+    drop(placed);
+    drop(scene);
+    progress.set(0.8);
+    let (mut mesh, mut numbers, warnings) = faces.finish_numbered(name, holds, Vec::new(), &progress.part(0.8, 1.0))?;
+    notes.extend(warnings);
+    if let Some(details) = details {
+        numbers = with_details(&mut mesh, details, &numbers, &mut notes, (&budget, progress))?;
+    }
+    match binder.map(|binder| binder.finish(&mesh, &numbers)) {
+        Some(Ok(rig)) => mesh.rig = Some(Arc::new(rig)),
+        Some(Err(warning)) => notes.push(warning),
+        None => {}
+    }
+    let (files, file_bytes) = (files.named(), budget.files());
+    Ok(LoadedMesh { mesh, warnings: notes.into_warnings(), files, file_bytes, ..LoadedMesh::default() })
+}
+
+/// Gives the mesh the details of its corners, whose numbers in the table these are. Returns their bindings to joints.
+///
+/// # Errors
+/// [`ReadError::TooLarge`] and [`ReadError::Cancelled`].
+fn with_details(
+    mesh: &mut Mesh,
+    table: DetailTable,
+    numbers: &[u32],
+    notes: &mut Notes,
+    (budget, progress): (&Budget, &Progress),
+) -> Result<Vec<u32>, ReadError> {
+    let (mut details, mut bindings) = table.into_lists(numbers, budget).map_err(too_large)?;
+    let detailed = DetailedMesh { mesh, details: &mut details, bindings: &mut bindings };
+    notes.extend(tangents::complete(detailed, budget, progress)?);
+    mesh.details = Some(Arc::new(details));
+    Ok(bindings)
+}
+
+fn too_large(refused: MemoryRefused) -> ReadError {
+    ReadError::TooLarge { reason: refused.into() }
+}
+
+#[cfg(test)]
+pub(super) mod tests;

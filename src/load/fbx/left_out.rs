@@ -1,0 +1,61 @@
+//! Warnings about what a file has and isn't read, and about what the parser repaired.
+
+use ufbx::{Mesh, Scene, SkinningMethod, SubdivisionDisplayMode, WarningType};
+
+use super::nodes::Placed;
+use crate::load::face_builder::counted;
+use crate::load::notes::Notes;
+
+/// Adds a warning for each kind of thing that is left out.
+pub(super) fn warn(scene: &Scene, notes: &mut Notes) {
+    let curves = scene.nurbs_curves.len() + scene.line_curves.len();
+    let surfaces = scene.nurbs_surfaces.len() + scene.procedural_geometries.len();
+    let caches = scene.cache_deformers.len() + scene.cache_files.len();
+    let meshes = |has: fn(&Mesh) -> bool| scene.meshes.into_iter().filter(|mesh| has(mesh)).count();
+    let dual = |method| matches!(method, SkinningMethod::DualQuaternion | SkinningMethod::BlendedDqLinear);
+    let dual = scene.skin_deformers.into_iter().filter(|skin| dual(skin.skinning_method)).count();
+    notes.extend(counted([
+        (scene.cameras.len() + scene.stereo_cameras.len(), "cameras, which aren't read"),
+        (scene.lights.len(), "lights, which aren't read"),
+        (curves, "lines and curves, left out"),
+        (surfaces, "NURBS and procedural surfaces, which aren't read"),
+        (caches, "geometry caches, which aren't read"),
+        (scene.constraints.len(), "constraints, left out; the animation shows what the exporter has baked"),
+        (dual, "skins for dual quaternions, whose joints are blended linearly"),
+        (meshes(|mesh| mesh.skin_deformers.len() > 1), "meshes with several skins, of which the first is used"),
+        (
+            meshes(|mesh| mesh.subdivision_display_mode != SubdivisionDisplayMode::Disabled),
+            "meshes that are meant to be subdivided, shown as their control cage",
+        ),
+    ]));
+    for warning in &scene.metadata.warnings {
+        if let Some(sentence) = repaired(warning.type_) {
+            notes.push(format!("{sentence}: {}.", warning.count.max(1)));
+        }
+    }
+}
+
+/// Returns what the parser did; none if nobody needs to know.
+fn repaired(warning: WarningType) -> Option<&'static str> {
+    Some(match warning {
+        WarningType::MissingExternalFile | WarningType::ImplicitMtl | WarningType::UnknownObjDirective => return None,
+        WarningType::EmptyFaceRemoved => return None,
+        WarningType::IndexClamped => "indices of something that doesn't exist, whose uses are left out",
+        WarningType::TruncatedArray => "lists that are shorter than they should be, filled with what they end with",
+        WarningType::MissingGeometryData => "meshes whose geometry is missing, left out",
+        WarningType::DuplicateConnection => "connections that the file has twice",
+        WarningType::BadVertexWAttribute => "fourth components of vertices that can't be read, left out",
+        WarningType::MissingPolygonMapping => "lists whose mapping to polygons is missing, for which one was guessed",
+        WarningType::UnsupportedVersion => "versions of FBX that may be read wrongly",
+        WarningType::BadUnicode => "names that aren't UTF-8, with letters replaced",
+        WarningType::BadBase64Content => "embedded files that aren't base64, left out",
+        WarningType::BadElementConnectedToRoot => "things that hang at the root though they can't, left out",
+        WarningType::DuplicateObjectId => "objects with the number of another one",
+    })
+}
+
+/// Returns what the file holds, for the error that says that there are no triangles.
+pub(super) fn holds(scene: &Scene, placed: &Placed) -> String {
+    let meshes = scene.meshes.len();
+    format!("it holds {meshes} meshes, {} hidden nodes with meshes, and {} nodes", placed.hidden, scene.nodes.len())
+}

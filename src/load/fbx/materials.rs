@@ -1,0 +1,242 @@
+//! Makes the mesh's materials: each when a polygon first uses it.
+
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::sync::Arc;
+
+use ufbx::{Mesh, Node, RefList};
+
+use super::looks::{LookSource, MapSource, MapUvs};
+use super::packing;
+use super::textures::{Textures, of_file, sampling};
+use super::too_large;
+use crate::load::face_builder::FaceBuilder;
+use crate::load::memory_budget::Budget;
+use crate::load::notes::Notes;
+use crate::load::read_error::ReadError;
+use crate::load::uri::Files;
+use crate::mesh::{Alpha, Map, MapUv, Material, MemoryAccount, Sampling, Slot, Texture};
+
+/// The materials of all polygons.
+pub(super) struct Materials<'a> {
+    textures: Textures<'a>,
+    budget: &'a Budget,
+    /// By material (none for polygons without one) and the sets of its maps, which depend on the mesh.
+    resolved: HashMap<(Option<u32>, Vec<usize>), Resolved>,
+    /// By what isn't drawn, the names of the materials that have it.
+    undrawn: BTreeMap<&'static str, Vec<String>>,
+    notes: Notes,
+}
+
+/// A material on a mesh.
+#[derive(Clone, Copy)]
+pub(super) struct Resolved {
+    /// Its index in the builder.
+    pub index: usize,
+    /// The texture coordinates that corners have themselves.
+    pub own: MapUvs,
+    /// Which of the sets 0 and 1 some map uses in another way.
+    pub sets: [bool; 2],
+}
+
+impl<'a> Materials<'a> {
+    pub(super) fn new(files: &'a Files<'a>, budget: &'a Budget) -> Self {
+        Self {
+            textures: Textures::new(files, budget),
+            budget,
+            resolved: HashMap::new(),
+            undrawn: BTreeMap::new(),
+            notes: Notes::default(),
+        }
+    }
+
+    /// Finds a material of a node's mesh by its index there, or adds it to the builder.
+    ///
+    /// # Errors
+    /// [`ReadError::TooMany`] and [`ReadError::TooLarge`].
+    pub(super) fn resolve(
+        &mut self,
+        index: u32,
+        (node, mesh): (&Node, &Mesh),
+        faces: &mut FaceBuilder,
+    ) -> Result<Resolved, ReadError> {
+        let Some(material) = of_node(node, mesh, index) else {
+            let key = (None, Vec::new());
+            return match self.resolved.get(&key) {
+                Some(&resolved) => Ok(resolved),
+                None => self.add(key, Made::plain(Material::plain("default", [1.0; 4])), faces),
+            };
+        };
+        let source = LookSource::new(material, mesh);
+        let maps = [&source.base, &source.normal, &source.roughness, &source.metalness, &source.emission];
+        let sets = maps.into_iter().chain([&source.occlusion]).flatten().map(|map| map.uvs.set).collect();
+        let key = (Some(material.element.typed_id), sets);
+        if let Some(&resolved) = self.resolved.get(&key) {
+            return Ok(resolved);
+        }
+        self.budget.hold(size_of::<Material>() as u64).map_err(too_large)?;
+        for what in &source.undrawn {
+            self.undrawn.entry(what).or_default().push(source.name.clone());
+        }
+        let made = self.make(&source);
+        self.add(key, made, faces)
+    }
+
+    fn add(
+        &mut self,
+        key: (Option<u32>, Vec<usize>),
+        Made { material, own, sets }: Made,
+        faces: &mut FaceBuilder,
+    ) -> Result<Resolved, ReadError> {
+        let resolved = Resolved { index: faces.material(material)?, own, sets };
+        self.resolved.insert(key, resolved);
+        Ok(resolved)
+    }
+
+    fn make(&mut self, source: &LookSource) -> Made {
+        let own = source.own_uvs();
+        let mut look = source.look.clone();
+        look.maps[Slot::MetallicRoughness as usize] = self.metallic_roughness(source);
+        for (slot, map, what) in [
+            (Slot::Normal, source.normal, "normal map"),
+            (Slot::Emissive, source.emission, "emissive map"),
+            (Slot::Occlusion, source.occlusion, "occlusion map"),
+        ] {
+            look.maps[slot as usize] = map.and_then(|map| {
+                let texture = self.image(map, what, source)?;
+                Some(self.map(map, texture, what, source))
+            });
+        }
+        let (texture, sampling) = self.base(source);
+        if texture.is_none() && source.look.alpha == Alpha::Blend && source.base_color[3] >= 1.0 {
+            // Its opacity was to come from an image.
+            look.alpha = Alpha::Opaque;
+        }
+        if look.maps[Slot::Emissive as usize].is_none() && source.emission.is_some() {
+            look.emissive = [0.0; 3];
+        }
+        let mut sets = [false; 2];
+        for map in look.maps.iter().flatten() {
+            if let MapUv::Set(set, _) = map.uv {
+                sets[set] = true;
+            }
+        }
+        let LookSource { name, base_color, double_sided, .. } = source;
+        let (name, base_color, double_sided) = (name.clone(), *base_color, *double_sided);
+        Made {
+            material: Material { name, base_color, texture, sampling, double_sided, look, triangles: 0..0 },
+            own,
+            sets,
+        }
+    }
+
+    /// Returns the image of the base colour, with the opacity as its alpha.
+    fn base(&mut self, source: &LookSource) -> (Option<Arc<Texture>>, Sampling) {
+        let color = source.base.and_then(|base| self.image(base, "texture", source));
+        let opacity = source.opacity.and_then(|opacity| self.image(opacity, "opacity map", source));
+        let map = source.base.or(source.opacity);
+        let sampling = map.map_or_else(Sampling::default, |map| sampling(map.texture));
+        let Some(opacity) = opacity else { return (color, sampling) };
+        match packing::with_opacity(color.as_deref(), &opacity, self.budget) {
+            Ok(joined) => (Some(Arc::new(joined)), sampling),
+            Err(reason) => {
+                self.notes.push(format!("the opacity map of material \"{}\" is left out: it {reason}.", source.name));
+                (color, sampling)
+            }
+        }
+    }
+
+    fn metallic_roughness(&mut self, source: &LookSource) -> Option<Map> {
+        let what = "metallic-roughness map";
+        let roughness = source.roughness.and_then(|map| self.image(map, what, source));
+        let metalness = source.metalness.and_then(|map| self.image(map, what, source));
+        let map = source.roughness.filter(|_| roughness.is_some()).or(source.metalness)?;
+        let texture = match (&roughness, &metalness) {
+            (None, None) => return None,
+            (Some(roughness), Some(metalness)) if Arc::ptr_eq(roughness, metalness) && !source.is_glossiness => {
+                roughness.clone()
+            }
+            (roughness, metalness) => {
+                let packed = packing::metallic_roughness(
+                    roughness.as_deref(),
+                    source.is_glossiness,
+                    metalness.as_deref(),
+                    self.budget,
+                );
+                let left_out = |reason| format!("the {what} of material \"{}\" is left out: it {reason}.", source.name);
+                Arc::new(packed.map_err(|reason: String| self.notes.push(left_out(reason))).ok()?)
+            }
+        };
+        Some(self.map(map, texture, what, source))
+    }
+
+    fn image(&mut self, map: MapSource, what: &str, source: &LookSource) -> Option<Arc<Texture>> {
+        let what = format!("the {what} of material \"{}\"", source.name);
+        self.textures.image(map.texture, &what, &mut self.notes)
+    }
+
+    fn map(&mut self, map: MapSource, texture: Arc<Texture>, what: &str, source: &LookSource) -> Map {
+        let MapUvs { set, transform } = map.uvs;
+        let uv = match set {
+            _ if map.uvs == source.own_uvs() => MapUv::Own,
+            0 | 1 => MapUv::Set(set, transform),
+            _ => {
+                let said = "only the first two sets are read for it; the first is used";
+                self.notes.push(format!(
+                    "the {what} of material \"{}\" has a third set of texture coordinates, but {said}.",
+                    source.name
+                ));
+                MapUv::Set(0, transform)
+            }
+        };
+        let sampling = of_file(map.texture).map_or_else(Sampling::default, sampling);
+        Map { texture, uv, sampling }
+    }
+
+    /// Returns what was repaired or left out.
+    pub(super) fn into_notes(self) -> Notes {
+        const NAMED: usize = 5;
+        let mut notes = self.notes;
+        for (what, materials) in self.undrawn {
+            let mut names: Vec<_> = materials.iter().take(NAMED).map(|name| format!("\"{name}\"")).collect();
+            if materials.len() > NAMED {
+                names.push(format!("and {} more", materials.len() - NAMED));
+            }
+            notes.push(format!("materials with {what}, which isn't drawn: {}.", names.join(", ")));
+        }
+        notes
+    }
+}
+
+/// A material that was made.
+struct Made {
+    material: Material,
+    own: MapUvs,
+    sets: [bool; 2],
+}
+
+impl Made {
+    fn plain(material: Material) -> Self {
+        Self { material, own: MapUvs::default(), sets: [false; 2] }
+    }
+}
+
+/// Returns a material of a node's mesh by its index there. Nodes may have others than their mesh.
+fn of_node<'a>(node: &'a Node, mesh: &'a Mesh, index: u32) -> Option<&'a ufbx::Material> {
+    let own = node.materials.get(index as usize).or_else(|| mesh.materials.get(index as usize));
+    own.map(AsRef::as_ref)
+}
+
+/// Whether corners of the meshes of these nodes need more than position, normal and the base colour's texture coordinates.
+pub(super) fn need_details<'a>(meshes: impl Iterator<Item = (&'a Node, &'a Mesh)>) -> bool {
+    let needed = |materials: &RefList<ufbx::Material>, mesh: &Mesh| {
+        materials.into_iter().any(|material| LookSource::new(material, mesh).needs_details())
+    };
+    let mut seen = HashSet::new();
+    for (node, mesh) in meshes {
+        let is_new = seen.insert(mesh.element.typed_id);
+        if needed(&node.materials, mesh) || is_new && (mesh.vertex_color.exists || needed(&mesh.materials, mesh)) {
+            return true;
+        }
+    }
+    false
+}

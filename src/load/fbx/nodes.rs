@@ -1,0 +1,131 @@
+//! Places the nodes of a scene: their global transforms, and which ones the file shows.
+
+use glam::DMat4;
+use ufbx::{Mesh, Node, Scene};
+
+use super::convert::placement;
+use super::morphs;
+use crate::load::attachment::{LocalTransform, SceneNodes};
+use crate::load::memory_budget::Budget;
+use crate::load::notes::Notes;
+use crate::load::read_error::ReadError;
+use crate::mesh::rig::Placement;
+
+/// How many corners, vertices, joints and shapes all nodes may have, and how many more for each byte of the file.
+const MOST_ITEMS: u64 = 1 << 24;
+const ITEMS_A_BYTE: u64 = 16;
+
+/// The nodes of a scene with their places. A node's index is its `typed_id`.
+pub(super) struct Placed {
+    pub scene: SceneNodes,
+    /// The transform from each node's own space to the scene's.
+    pub global: Vec<DMat4>,
+    /// The nodes with a mesh that the file shows, in its order.
+    pub shown: Vec<usize>,
+    /// How many nodes with a mesh it hides.
+    pub hidden: usize,
+}
+
+impl Placed {
+    /// Places all nodes. Adds a warning about meshes that are hidden.
+    ///
+    /// # Errors
+    /// [`ReadError::TooMany`] if so many nodes have large meshes that reading them would take very long.
+    pub(super) fn new(scene: &Scene, budget: &Budget, notes: &mut Notes) -> Result<Self, ReadError> {
+        check_instances(scene, budget)?;
+        let nodes = &scene.nodes;
+        let parents: Vec<Option<usize>> =
+            nodes.into_iter().map(|node| node.parent.as_ref().map(|parent| index(parent))).collect();
+        let mut order: Vec<usize> = (0..nodes.len()).collect();
+        // A stable sort, which keeps siblings in order.
+        order.sort_by_key(|&node| nodes[node].node_depth);
+        let rest: Vec<Placement> = nodes.into_iter().map(|node| placement(&node.local_transform)).collect();
+        let mut global = vec![DMat4::IDENTITY; rest.len()];
+        for &node in &order {
+            let above = parents[node].map_or(DMat4::IDENTITY, |parent| global[parent]);
+            global[node] = above * rest[node].matrix();
+        }
+        let is_hidden = hidden(scene, &order, &parents, notes);
+        let with_mesh = || (0..nodes.len()).filter(|&node| nodes[node].mesh.is_some());
+        let shown: Vec<usize> = with_mesh().filter(|&node| !is_hidden[node]).collect();
+        let hidden = with_mesh().count() - shown.len();
+        if hidden > 0 {
+            notes.push(format!("meshes that the file hides, left out: {hidden}."));
+        }
+        let carries = carries_shown(scene, &shown, &order, &parents);
+        let morphed = shown.iter().filter_map(|&node| {
+            let rest = morphs::rest_weights(nodes[node].mesh.as_ref()?);
+            (!rest.is_empty()).then_some((node, rest))
+        });
+        let morphed = morphed.collect();
+        let local = rest.into_iter().map(LocalTransform::Placement).collect();
+        Ok(Self { scene: SceneNodes { parents, order, local, carries, morphed }, global, shown, hidden })
+    }
+}
+
+/// Adds up what is read for every node with a mesh: corners, vertices, joints, materials, shapes and their offsets. A small file may
+/// have many nodes that share a large mesh.
+fn check_instances(scene: &Scene, budget: &Budget) -> Result<(), ReadError> {
+    let of_mesh = |mesh: &Mesh| {
+        let keys = || morphs::channels(mesh).flat_map(|channel| channel.keyframes.iter());
+        let offsets = keys().fold(0_u64, |sum, key| sum.saturating_add(1 + key.shape.offset_vertices.len() as u64));
+        let joints: usize = mesh.skin_deformers.into_iter().map(|skin| skin.clusters.len()).sum();
+        let lists = mesh.num_indices + mesh.num_vertices + joints + mesh.materials.len();
+        offsets.saturating_add(lists as u64).saturating_add(morphs::channels(mesh).count() as u64)
+    };
+    let costs: Vec<u64> = scene.meshes.into_iter().map(of_mesh).collect();
+    let limit = MOST_ITEMS.saturating_add(budget.files().saturating_mul(ITEMS_A_BYTE));
+    let meshes = scene.nodes.into_iter().filter_map(|node| node.mesh.as_ref());
+    let cost = |mesh: &Mesh| costs.get(mesh.element.typed_id as usize).copied().unwrap_or_default();
+    match meshes.fold(0_u64, |sum, mesh| sum.saturating_add(cost(mesh))) {
+        all if all > limit => {
+            Err(ReadError::TooMany { limit, what: "corners, vertices, joints and shapes in all copies of meshes" })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Returns a node's index in the scene.
+pub(super) fn index(node: &Node) -> usize {
+    node.element.typed_id as usize
+}
+
+/// Returns which nodes the file hides: those that are switched off, those below them that inherit it, and what is shown only from
+/// far away (levels of detail other than the first).
+fn hidden(scene: &Scene, order: &[usize], parents: &[Option<usize>], notes: &mut Notes) -> Vec<bool> {
+    let inherits = |node: &Node| {
+        ufbx::find_prop(&node.element.props, "Visibility Inheritance").is_none_or(|prop| prop.value_int != 0)
+    };
+    let mut hidden = vec![false; order.len()];
+    let mut is_far = vec![false; order.len()];
+    let groups = scene.lod_groups.into_iter().flat_map(|group| &group.element.instances);
+    groups.flat_map(|group| group.children.into_iter().skip(1)).for_each(|child| is_far[index(child)] = true);
+    if is_far.contains(&true) {
+        notes.push("of levels of detail only the first is shown.".to_owned());
+    }
+    for &node in order {
+        let (own, above) = (&scene.nodes[node], parents[node]);
+        is_far[node] |= above.is_some_and(|above| is_far[above]);
+        hidden[node] = !own.visible || is_far[node] || above.is_some_and(|above| hidden[above] && inherits(own));
+    }
+    hidden
+}
+
+/// Returns which nodes carry something that is shown, on them or below them: a mesh, or a joint of a mesh's skin.
+fn carries_shown(scene: &Scene, shown: &[usize], order: &[usize], parents: &[Option<usize>]) -> Vec<bool> {
+    let mut carries = vec![false; order.len()];
+    for &node in shown {
+        carries[node] = true;
+        let skins = scene.nodes[node].mesh.iter().flat_map(|mesh| &mesh.skin_deformers);
+        for bone in skins.flat_map(|skin| &skin.clusters).filter_map(|cluster| cluster.bone_node.as_ref()) {
+            carries[index(bone)] = true;
+        }
+    }
+    // Children before parents.
+    for &node in order.iter().rev() {
+        if let Some(parent) = parents[node].filter(|_| carries[node]) {
+            carries[parent] = true;
+        }
+    }
+    carries
+}

@@ -1,0 +1,308 @@
+//! Reads the polygons of all meshes that a scene shows.
+
+use glam::{DMat3, Vec2, Vec3, Vec4};
+use ufbx::{Face, Mesh, Node, Scene, VertexVec2};
+
+use super::convert::{vec2, vec4};
+use super::materials::{self, Materials, Resolved};
+use super::nodes::Placed;
+use super::skin::Skin;
+use super::too_large;
+use super::vertices::Vertices;
+use crate::load::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, counted};
+use crate::load::memory_budget::Budget;
+use crate::load::notes::Notes;
+use crate::load::read_error::{FilePosition, ReadError};
+use crate::load::rig_builder::{NodeBinder, RigBuilder, UndeformedVertex, VertexFrame};
+use crate::load::uri::Files;
+use crate::mesh::detail_table::DetailTable;
+use crate::mesh::rig::Delta;
+use crate::mesh::{CornerDetail, MemoryAccount};
+use crate::progress::Progress;
+
+/// How many polygons are read before the job asks whether it was cancelled.
+const POLYGONS: usize = 4096;
+
+/// Memory for a displacement of a bound vertex, and for finding equal ones, in bytes.
+const PER_DELTA: u64 = 250;
+
+/// Collects polygons.
+pub(super) struct Surfaces<'s, 'a> {
+    scene: &'s Scene,
+    placed: &'s Placed,
+    budget: &'a Budget,
+    materials: Materials<'a>,
+    faces: FaceBuilder<'a>,
+    /// None if no material needs details of corners.
+    details: Option<DetailTable>,
+    /// None if nothing is animated.
+    binder: Option<RigBuilder>,
+    found: Counts,
+}
+
+/// What was repaired or left out.
+#[derive(Default)]
+struct Counts {
+    without_normals: usize,
+    holes: usize,
+    bad_uvs: usize,
+    bad_colors: usize,
+    many_joints: usize,
+}
+
+impl<'s, 'a> Surfaces<'s, 'a> {
+    /// # Errors
+    /// [`ReadError::TooLarge`].
+    pub(super) fn new(
+        scene: &'s Scene,
+        placed: &'s Placed,
+        (files, budget): (&'a Files<'a>, &'a Budget),
+        binder: Option<RigBuilder>,
+    ) -> Result<Self, ReadError> {
+        let meshes = || {
+            let nodes = placed.shown.iter().map(|&node| &scene.nodes[node]);
+            nodes.filter_map(|node| Some((node, node.mesh.as_deref()?)))
+        };
+        let is_detailed = materials::need_details(meshes());
+        let mut faces = FaceBuilder::new(usize::try_from(budget.files()).unwrap_or(usize::MAX), budget);
+        let triangles = meshes().fold(0_usize, |sum, (_, mesh)| sum.saturating_add(mesh.num_triangles));
+        // Many copies of a mesh are refused before any is read.
+        let memory = (triangles as u64).saturating_mul(12);
+        budget.hold(memory).map_err(too_large)?;
+        budget.release(memory);
+        faces.expect(triangles, 0);
+        Ok(Self {
+            scene,
+            placed,
+            budget,
+            materials: Materials::new(files, budget),
+            faces,
+            details: is_detailed.then(DetailTable::default),
+            binder,
+            found: Counts::default(),
+        })
+    }
+
+    /// Adds the polygons of a node's mesh.
+    ///
+    /// # Errors
+    /// [`ReadError`].
+    pub(super) fn add(&mut self, index: usize, progress: &Progress) -> Result<(), ReadError> {
+        let node = &self.scene.nodes[index];
+        let Some(mesh) = node.mesh.as_ref() else { return Ok(()) };
+        self.budget.give_back_to(0);
+        let global = &self.placed.global;
+        let skin = Skin::new(mesh, global);
+        let vertices = Vertices::new((node, mesh), global[index], skin.as_ref(), self.budget)?;
+        self.found.without_normals += usize::from(vertices.is_without_normals());
+        let binder = self.binder.as_mut().map(|binder| {
+            let binder = binder.node(index, skin.as_ref().map(|skin| &skin.joints));
+            Binder::new(binder, &vertices)
+        });
+        let mut reader = MeshReader {
+            node,
+            mesh,
+            vertices,
+            binder,
+            budget: self.budget,
+            materials: &mut self.materials,
+            faces: &mut self.faces,
+            details: self.details.as_mut(),
+            found: &mut self.found,
+            resolved: Vec::new(),
+            influences: Vec::new(),
+            deltas: Vec::new(),
+        };
+        let mut corners = Vec::new();
+        for (i, face) in mesh.faces.iter().enumerate() {
+            if i % POLYGONS == 0 {
+                progress.check()?;
+            }
+            reader.face(i, *face, &mut corners)?;
+        }
+        Ok(())
+    }
+
+    /// Returns what was collected; `notes` gets what was repaired or left out.
+    pub(super) fn into_parts(self, notes: &mut Notes) -> (FaceBuilder<'a>, Option<DetailTable>, Option<RigBuilder>) {
+        notes.append(self.materials.into_notes());
+        let Counts { without_normals, holes, bad_uvs, bad_colors, many_joints } = self.found;
+        notes.extend(counted([
+            (without_normals, "meshes without normals, which got ones that are smooth within 60 degrees"),
+            (holes, "polygons that are holes, left out"),
+            (bad_uvs, "uvs that aren't finite or don't exist, replaced by (0, 0)"),
+            (bad_colors, "colours of corners that aren't finite or don't exist, replaced by white"),
+            (
+                many_joints,
+                "corners that more than four joints move, of which the four with the largest weights are used",
+            ),
+        ]));
+        (self.faces, self.details, self.binder)
+    }
+}
+
+/// Reads the polygons of one mesh.
+struct MeshReader<'a, 'b, 'f> {
+    node: &'a Node,
+    mesh: &'a Mesh,
+    vertices: Vertices<'a>,
+    binder: Option<Binder<'b>>,
+    budget: &'a Budget,
+    materials: &'b mut Materials<'f>,
+    faces: &'b mut FaceBuilder<'f>,
+    details: Option<&'b mut DetailTable>,
+    found: &'b mut Counts,
+    /// The mesh's materials, once they are used.
+    resolved: Vec<Option<Resolved>>,
+    /// The joints of the corner that is being read, and its displacements.
+    influences: Vec<(usize, f64)>,
+    deltas: Vec<Delta>,
+}
+
+impl MeshReader<'_, '_, '_> {
+    fn face(&mut self, i: usize, face: Face, corners: &mut Vec<NumberedCorner>) -> Result<(), ReadError> {
+        if self.mesh.face_hole.get(i) == Some(&true) {
+            self.found.holes += 1;
+            return Ok(());
+        }
+        if face.num_indices as usize > MAX_CORNERS {
+            let reason = format!("a polygon has more than {MAX_CORNERS} corners");
+            return Err(FilePosition::Everywhere.error(reason));
+        }
+        let material = self.material(i)?;
+        corners.clear();
+        let mut is_mirrored = false;
+        for corner in (face.index_begin as usize..).take(face.num_indices as usize) {
+            let (read, mirrored) = self.corner(corner, &material)?;
+            corners.push(read);
+            is_mirrored = mirrored;
+        }
+        if is_mirrored {
+            corners.reverse();
+        }
+        self.faces.add(material.index, corners, FilePosition::Everywhere)
+    }
+
+    fn material(&mut self, face: usize) -> Result<Resolved, ReadError> {
+        let index = self.mesh.face_material.get(face).copied().unwrap_or(0);
+        // Lists of materials are short, but indices may be anything.
+        let slot = (index as usize).min(self.mesh.materials.len().max(self.node.materials.len()));
+        if slot >= self.resolved.len() {
+            self.resolved.resize(slot + 1, None);
+        }
+        if let Some(resolved) = self.resolved[slot] {
+            return Ok(resolved);
+        }
+        let resolved = self.materials.resolve(slot as u32, (self.node, self.mesh), self.faces)?;
+        self.resolved[slot] = Some(resolved);
+        Ok(resolved)
+    }
+
+    /// Reads a corner. Also returns whether its transform mirrors.
+    fn corner(&mut self, corner: usize, material: &Resolved) -> Result<(NumberedCorner, bool), ReadError> {
+        let vertex = self.vertices.vertex(corner)?;
+        self.vertices.morphs.of(vertex, &mut self.deltas);
+        self.influences.clear();
+        if let Some(skin) = self.vertices.skin {
+            self.found.many_joints += usize::from(skin.influences(vertex, &mut self.influences));
+        }
+        let mut posed = self.vertices.posed((corner, vertex), &self.influences, &self.deltas)?;
+        posed.corner.uv = self.own_uv(corner, material);
+        let mut number = 0;
+        if let Some(binder) = &mut self.binder {
+            let undeformed = self.vertices.undeformed(&posed, &self.deltas, binder.first_weight.is_some());
+            let at = (undeformed, &posed.corner);
+            number = binder.bind(at, &self.influences, &mut self.deltas, self.budget)?;
+        }
+        if let Some(table) = self.details.take() {
+            let detail = self.detail(corner, material);
+            number = table.number(detail, number, self.budget).map_err(too_large)?;
+            self.details = Some(table);
+        }
+        Ok((NumberedCorner { corner: posed.corner, number }, mirrors(&posed.linear)))
+    }
+
+    fn own_uv(&mut self, corner: usize, material: &Resolved) -> Vec2 {
+        let uv = self.uv(material.own.set, corner);
+        let [a, b, c, d, e, f] = material.own.transform;
+        Vec2::new(a * uv.x + b * uv.y + c, d * uv.x + e * uv.y + f)
+    }
+
+    /// Returns the texture coordinates of a set, counted from the top.
+    fn uv(&mut self, set: usize, corner: usize) -> Vec2 {
+        let list: &VertexVec2 = match self.mesh.uv_sets.get(set) {
+            Some(set) if set.vertex_uv.exists => &set.vertex_uv,
+            _ => return Vec2::ZERO,
+        };
+        let uv = list.indices.get(corner).and_then(|&index| list.values.get(index as usize));
+        let uv = uv.map(|uv| vec2(uv).as_vec2()).filter(|uv| uv.is_finite());
+        self.found.bad_uvs += usize::from(uv.is_none());
+        uv.map_or(Vec2::ZERO, |uv| Vec2::new(uv.x, 1.0 - uv.y))
+    }
+
+    fn detail(&mut self, corner: usize, material: &Resolved) -> CornerDetail {
+        let uvs = [0, 1].map(|set| if material.sets[set] { self.uv(set, corner) } else { Vec2::ZERO });
+        CornerDetail { uvs, color: self.color(corner), ..CornerDetail::default() }
+    }
+
+    fn color(&mut self, corner: usize) -> Vec4 {
+        let list = &self.mesh.vertex_color;
+        if !list.exists {
+            return Vec4::ONE;
+        }
+        let color = list.indices.get(corner).and_then(|&index| list.values.get(index as usize));
+        let color = color.map(|color| vec4(color).as_vec4()).filter(|color| color.is_finite());
+        self.found.bad_colors += usize::from(color.is_none());
+        color.map_or(Vec4::ONE, |color| color.clamp(Vec4::ZERO, Vec4::ONE))
+    }
+}
+
+fn mirrors(linear: &DMat3) -> bool {
+    linear.determinant() < 0.0
+}
+
+/// Binds the corners of one mesh to joints and morph targets.
+struct Binder<'b> {
+    node: NodeBinder<'b>,
+    skinned: VertexFrame,
+    /// For corners that no joint moves.
+    rigid: VertexFrame,
+    /// Where the node's weights start, if a clip changes them.
+    first_weight: Option<u32>,
+}
+
+impl<'b> Binder<'b> {
+    fn new(mut node: NodeBinder<'b>, vertices: &Vertices) -> Self {
+        let (skinned, rigid) = (node.frame(true, vertices.to_node), node.frame(false, vertices.to_node));
+        let first_weight = node.first_weight().filter(|_| !vertices.morphs.is_empty());
+        Self { node, skinned, rigid, first_weight }
+    }
+
+    /// Returns the number of a corner's binding.
+    fn bind(
+        &mut self,
+        ((position, normal), corner): ((Vec3, Option<Vec3>), &crate::mesh::mesh_builder::InputCorner),
+        influences: &[(usize, f64)],
+        deltas: &mut Vec<Delta>,
+        budget: &Budget,
+    ) -> Result<u32, ReadError> {
+        match self.first_weight {
+            Some(first) => deltas.iter_mut().for_each(|delta| delta.weight += first),
+            None => deltas.clear(),
+        }
+        let (frame, influences) = match influences.is_empty() {
+            true => (&self.rigid, None),
+            false => (&self.skinned, Some(influences)),
+        };
+        let memory = deltas.len() as u64 * PER_DELTA;
+        budget.hold(memory).map_err(too_large)?;
+        let before = self.node.deltas();
+        let vertex = UndeformedVertex { position, normal: normal.unwrap_or_default(), influences, deltas };
+        let number = self.node.bind(frame, vertex, corner);
+        if self.node.deltas() == before {
+            // Another corner has the same.
+            budget.release(memory);
+        }
+        Ok(number)
+    }
+}

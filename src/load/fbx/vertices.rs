@@ -1,0 +1,140 @@
+//! Puts the corners of a node's mesh into their rest pose.
+
+use glam::{DMat3, DMat4, DVec3, Vec3};
+use ufbx::{Mesh, Node};
+
+use super::convert::{matrix, vec3};
+use super::looks;
+use super::morphs::{Morphs, rest_weights};
+use super::skin::Skin;
+use super::smoothing;
+use crate::load::binding_space::turned;
+use crate::load::memory_budget::Budget;
+use crate::load::read_error::{FilePosition, ReadError};
+use crate::mesh::mesh_builder::InputCorner;
+use crate::mesh::rig::{Delta, LARGEST_COORDINATE};
+
+/// The vertices of a node's mesh.
+pub(super) struct Vertices<'a> {
+    pub mesh: &'a Mesh,
+    pub skin: Option<&'a Skin<'a>>,
+    pub morphs: Morphs<'a>,
+    /// The weights of its morph targets.
+    rest: Vec<f32>,
+    /// The transform from the mesh's space to the scene's.
+    rigid: DMat4,
+    /// The transform from the mesh's space to the node's.
+    pub to_node: DMat4,
+    /// The normals of corners that the file doesn't have, but says how smooth they are.
+    made: Option<Vec<Vec3>>,
+}
+
+/// A corner in its rest pose, and as it was before.
+pub(super) struct PosedCorner {
+    pub corner: InputCorner,
+    /// The position and normal in the mesh's space, without blend shapes.
+    pub undeformed: (Vec3, Option<Vec3>),
+    /// Transforms its directions.
+    pub linear: DMat3,
+}
+
+impl<'a> Vertices<'a> {
+    /// Prepares to read; `at` is the node's place.
+    ///
+    /// # Errors
+    /// [`ReadError::TooLarge`].
+    pub(super) fn new(
+        (node, mesh): (&Node, &'a Mesh),
+        at: DMat4,
+        skin: Option<&'a Skin<'a>>,
+        budget: &Budget,
+    ) -> Result<Self, ReadError> {
+        let to_node = matrix(&node.geometry_to_node);
+        let made = if mesh.vertex_normal.exists { None } else { smoothing::normals(mesh, budget)? };
+        Ok(Self {
+            mesh,
+            skin,
+            morphs: Morphs::new(mesh, budget)?,
+            rest: rest_weights(mesh),
+            rigid: at * to_node,
+            to_node,
+            made,
+        })
+    }
+
+    /// Returns whether its corners get normals that are computed from angles.
+    pub(super) fn is_without_normals(&self) -> bool {
+        !self.mesh.vertex_normal.exists && self.made.is_none()
+    }
+
+    /// Returns the vertex of a corner.
+    ///
+    /// # Errors
+    /// [`ReadError::Broken`] if there is no such vertex.
+    pub(super) fn vertex(&self, corner: usize) -> Result<usize, ReadError> {
+        let vertex = self.mesh.vertex_indices.get(corner).map(|&vertex| vertex as usize);
+        let vertex = vertex.filter(|&vertex| vertex < self.mesh.vertices.len());
+        vertex.ok_or_else(|| self.problem("has a polygon with a vertex that doesn't exist".to_owned()))
+    }
+
+    /// Returns a corner in the scene's space, without texture coordinates. `influences` are the joints of its vertex, and `deltas`
+    /// what its morph targets add.
+    ///
+    /// # Errors
+    /// [`ReadError::Broken`] if its position isn't finite or is too far away.
+    pub(super) fn posed(
+        &self,
+        (corner, vertex): (usize, usize),
+        influences: &[(usize, f64)],
+        deltas: &[Delta],
+    ) -> Result<PosedCorner, ReadError> {
+        let own = self.mesh.vertices.get(vertex).map_or(DVec3::ZERO, vec3);
+        let normal = self.normal(corner);
+        let (mut position, mut morphed) = (own, normal);
+        for delta in deltas {
+            let weight = self.rest.get(delta.weight as usize).copied().unwrap_or_default();
+            position += Vec3::from(delta.position).as_dvec3() * f64::from(weight);
+            morphed = morphed.map(|normal| normal + Vec3::from(delta.normal) * weight);
+        }
+        let matrix = match self.skin {
+            Some(skin) if !influences.is_empty() => skin.matrix(influences),
+            _ => self.rigid,
+        };
+        let position = matrix.transform_point3(position).as_vec3();
+        if !position.is_finite() {
+            return Err(self.problem(format!("has a position that isn't finite, at vertex {vertex}")));
+        }
+        if position.abs().max_element() > LARGEST_COORDINATE {
+            return Err(self.problem(format!("has a coordinate beyond {LARGEST_COORDINATE:e}, at vertex {vertex}")));
+        }
+        let linear = DMat3::from_mat4(matrix);
+        // A normal without a direction becomes zero, which the builder replaces and counts.
+        let turned = morphed.map(|normal| turned(normal, &linear).unwrap_or(Vec3::ZERO));
+        let corner = InputCorner { position, normal: turned, uv: glam::Vec2::ZERO };
+        Ok(PosedCorner { corner, undeformed: (own.as_vec3(), normal), linear })
+    }
+
+    fn normal(&self, corner: usize) -> Option<Vec3> {
+        if let Some(made) = &self.made {
+            return made.get(corner).copied();
+        }
+        let normals = &self.mesh.vertex_normal;
+        let normal = normals.indices.get(corner).and_then(|&index| normals.values.get(index as usize));
+        normal.map(|normal| vec3(normal).as_vec3())
+    }
+
+    /// Returns the position and normal that poses start from: with blend shapes at rest, unless a clip weighs them.
+    pub(super) fn undeformed(&self, posed: &PosedCorner, deltas: &[Delta], is_weighed: bool) -> (Vec3, Option<Vec3>) {
+        let (mut position, mut normal) = posed.undeformed;
+        for delta in deltas.iter().filter(|_| !is_weighed) {
+            let weight = self.rest.get(delta.weight as usize).copied().unwrap_or_default();
+            position += Vec3::from(delta.position) * weight;
+            normal = normal.map(|normal| normal + Vec3::from(delta.normal) * weight);
+        }
+        (position, normal)
+    }
+
+    fn problem(&self, reason: String) -> ReadError {
+        FilePosition::Everywhere.error(format!("mesh \"{}\" {reason}", looks::name(&self.mesh.element)))
+    }
+}
