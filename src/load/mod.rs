@@ -21,6 +21,7 @@ mod obj;
 pub(crate) mod panorama;
 mod ply;
 mod read_error;
+pub(crate) mod selection;
 pub(crate) mod source;
 mod stl;
 mod text_lines;

@@ -14,9 +14,9 @@ pub enum GltfError {
     /// The file is no glTF 2.0 document.
     #[error("not a glTF 2.0 document: {reason}; export the model again as glTF 2.0")]
     NotGltf { reason: String },
-    /// The document requires an extension that isn't supported.
-    #[error("/extensionsRequired/{place} is {name}, which isn't supported; export the model without it")]
-    Extension { place: usize, name: String },
+    /// The document requires an extension that changes the shape and isn't read, or that isn't known.
+    #[error("/extensionsRequired/{place} is {name}, {reason}; {remedy}")]
+    Extension { place: usize, name: String, reason: String, remedy: &'static str },
     /// A member of the document has a value that it can't have.
     #[error("{pointer} {reason}; export the model again")]
     Document { pointer: String, reason: String },

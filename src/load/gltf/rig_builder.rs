@@ -127,15 +127,20 @@ impl RigBuilder {
         clip
     }
 
-    /// Returns a binder for the vertices of a node's mesh.
-    pub(super) fn node<'a>(&'a mut self, node: usize, skin: Option<&'a skin::Joints>) -> NodeBinder<'a> {
+    /// Returns a binder for the vertices of a node's mesh. `instance` is the transform from their space to the node's.
+    pub(super) fn node<'a>(
+        &'a mut self,
+        node: usize,
+        skin: Option<&'a skin::Joints>,
+        instance: DMat4,
+    ) -> NodeBinder<'a> {
         for &joint in skin.map_or(&[][..], |skin| &skin.nodes) {
             if let Some(Attachment { node: Some(node), .. }) = self.attachments.get(joint) {
                 self.nodes[*node as usize].is_joint = true;
             }
         }
         let skin_joints = vec![None; skin.map_or(0, |skin| skin.nodes.len())];
-        NodeBinder { node, skin, skin_joints, binder: self }
+        NodeBinder { node, instance, skin, skin_joints, binder: self }
     }
 
     /// Gives up building a rig. The first reason is reported.
@@ -220,6 +225,7 @@ fn has_tangents(details: &CornerDetails) -> bool {
 /// Binds the vertices of one node's mesh.
 pub(super) struct NodeBinder<'a> {
     node: usize,
+    instance: DMat4,
     skin: Option<&'a skin::Joints>,
     /// For each joint of the skin, its index in the palette once it is used.
     skin_joints: Vec<Option<u32>>,
@@ -274,7 +280,7 @@ impl NodeBinder<'_> {
             return VertexFrame { rigid: None, space: BindingSpace::new(DMat4::IDENTITY) };
         }
         let rigid = self.binder.joint(Joint { node: attachment.node, offset: DMat4::IDENTITY });
-        VertexFrame { rigid: Some(rigid), space: BindingSpace::new(attachment.below) }
+        VertexFrame { rigid: Some(rigid), space: BindingSpace::new(nodes::below(attachment.below, self.instance)) }
     }
 
     /// Returns the number of a vertex's binding. `corner` is the vertex at rest.
