@@ -143,7 +143,14 @@ pub(super) fn read(
     }
     let Scene { materials, builder, mut primitives, binder, details, .. } = scene;
     if builder.is_empty() {
-        return Err(GltfError::Empty { holds: primitives.holds(&document) });
+        let mut holds = match reach.hidden {
+            0 => primitives.holds(&document),
+            hidden => format!("KHR_node_visibility hides the {hidden} nodes of its scene that have a mesh"),
+        };
+        if scenes.names.len() > 1 {
+            holds += "; --scene shows another of its scenes";
+        }
+        return Err(GltfError::Empty { holds });
     }
     notes.append(materials.into_notes());
     notes.append(std::mem::take(&mut primitives.notes));

@@ -7,11 +7,8 @@ use pnaen::app::App;
 use pnaen::load::Source;
 use pnaen::mesh::Shape;
 
-#[path = "../documents/lamp.rs"]
-mod lamp;
-
+use super::variants::lamp::LAMP;
 use crate::window_tests::{choose, press, uniform, window};
-use lamp::LAMP;
 
 fn farthest(harness: &Harness<App>) -> f32 {
     harness.state().loaded().expect("a mesh").mesh.bounds().max.x

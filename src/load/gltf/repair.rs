@@ -156,7 +156,8 @@ fn repair_rotation(node: &mut Map<String, Value>, i: usize, notes: &mut Notes) {
     let length = largest * over;
     let is_far = (length - 1.0).abs() > ROUNDING;
     if is_far {
-        notes.push(format!("/nodes/{i}/rotation is a quaternion of length {length:.4e}, not 1; it is scaled to 1."));
+        let length = if length < 1000.0 { format!("{length:.3}") } else { format!("{length:.1e}") };
+        notes.push(format!("/nodes/{i}/rotation is a quaternion of length {length}, not 1; it is scaled to 1."));
     }
     if is_far || largest > 1.0 {
         let unit: Vec<_> = numbers.iter().map(|x| x / largest / over).collect();

@@ -246,3 +246,11 @@ fn a_vrm_file_is_a_glb_file() {
         assert_eq!((loaded.triangles.len(), loaded.warnings.len()), (1, 0), "{:?}", loaded.warnings);
     }
 }
+
+#[test]
+fn the_draft_of_every_kind_is_read() {
+    let loaded = of_every_kind().read().expect("three triangles");
+    assert_eq!((loaded.triangles.len(), loaded.scene), (3, Some(1)));
+    assert!(loaded.rig.is_some());
+    assert_eq!(loaded.warnings.len(), 2, "{:?}", loaded.warnings);
+}

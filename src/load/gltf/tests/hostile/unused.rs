@@ -209,7 +209,7 @@ fn scenes_and_versions() -> Vec<Case> {
         read("another scene with nodes that aren't there", |root| {
             root["scenes"] = json!([{ "nodes": [0] }, { "nodes": [99, "x"], "name": 3 }]);
         }),
-        refused("a scene of hidden nodes", "Empty | node | mesh", |root| {
+        refused("a scene of hidden nodes", "Empty | KHR_node_visibility | 1 nodes", |root| {
             root["nodes"] = json!([{ "children": [1], "extensions": { "KHR_node_visibility": { "visible": false } } }, { "mesh": 0 }]);
         }),
         repaired("a hidden node with a broken mesh", "KHR_node_visibility | 1", |root| {
