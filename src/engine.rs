@@ -13,6 +13,7 @@ use crate::gpu::{
     AdapterChoice, ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, read_buffers, take_times,
     vertices_of,
 };
+use crate::load::selection::Selection;
 use crate::load::{Budget, HeightSource, LoadError, LoadedMesh, Source, crease_band_warnings, untextured_warning};
 use crate::measure::{AskedFactors, EmittedChunk, Visitor};
 use crate::mesh::{BuildError, CreaseBand, Mesh, Moment, Topology, with_crease_band};
@@ -37,6 +38,10 @@ pub struct Loaded {
     pub warnings: Vec<String>,
     /// The names of the material variants that the file has.
     pub variants: Vec<String>,
+    /// The names of the scenes that the file has.
+    pub scenes: Vec<String>,
+    /// Which of them this is.
+    pub scene: Option<usize>,
     /// Files that the mesh's own file names and that were read, with links resolved.
     pub files: Vec<PathBuf>,
     pub topology: Arc<Topology>,
@@ -65,6 +70,8 @@ pub struct Preparation {
     pub heights: Option<HeightSource>,
     /// The material variant of the file, by name; none for each primitive's own material.
     pub variant: Option<String>,
+    /// The scene of the file, by name or by number from 0; none for its default scene.
+    pub scene: Option<String>,
     pub limits: Limits,
 }
 
@@ -76,8 +83,9 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
     let start = Instant::now();
     // Large images take longer than most meshes.
     let of_mesh = if preparation.heights.is_some() { progress.part(0.0, 0.4) } else { progress.clone() };
-    let LoadedMesh { mesh: mut read, mut warnings, variants, files, file_bytes } =
-        source.load_variant(preparation.variant.as_deref(), &preparation.limits, &of_mesh)?;
+    let selected = Selection { variant: preparation.variant.as_deref(), scene: preparation.scene.as_deref() };
+    let LoadedMesh { mesh: mut read, mut warnings, variants, scenes, scene, files, file_bytes } =
+        source.load_selected(selected, &preparation.limits, &of_mesh)?;
     let loaded = Instant::now();
     let budget = Budget::of_mesh(&read, file_bytes, &preparation.limits);
     let too_large = |what| move |error| unfinished(source, what, error);
@@ -113,6 +121,8 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
         read,
         warnings,
         variants,
+        scenes,
+        scene,
         files,
         topology: Arc::new(topology),
         load_ms: (loaded - start).as_secs_f64() * 1e3,

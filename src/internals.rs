@@ -15,6 +15,7 @@ pub use crate::gpu::recorder::{DRAWING, PASSES, PassTime, Timing, take_times};
 pub use crate::load::heights::{HeightError, HeightSource};
 pub use crate::load::memory_budget::Budget;
 pub use crate::load::mesh_file::{Format, read};
+pub use crate::load::selection::Selection;
 pub use crate::load::source::Source;
 pub use crate::measure::optimum::{Compared, Optimum, compare_with_optimum};
 pub use crate::mesh::adjacency::Layout;

@@ -30,7 +30,7 @@ use crate::truth::Truth;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// .gltf, .glb, .fbx, .obj, .stl or .ply files, or shapes made in code such as shape:torus, or shape:torus@2 (finer); with
+    /// .gltf, .glb, .vrm, .fbx, .obj, .stl or .ply files, or shapes made in code such as shape:torus, or shape:torus@2 (finer); with
     /// --report, by default seven shapes, and assets/vase.glb where there is one
     #[arg(value_parser = options::source(), required_unless_present = "report")]
     pub files: Vec<Source>,

@@ -84,11 +84,12 @@ impl CopiedCommand<'_> {
 
     /// Writes the options for loading and preparing the mesh.
     fn mesh(&self, line: &mut Line) {
-        let Preparation { weld, crease_band, heights, variant, limits } = self.preparation;
+        let Preparation { weld, crease_band, heights, variant, scene, limits } = self.preparation;
         let Limits { file, memory } = Limits::default();
         line.changed("--weld", weld, &0.0);
         line.changed("--crease-band", crease_band, &0.0);
         variant.iter().for_each(|name| line.option("--variant", name));
+        scene.iter().for_each(|name| line.option("--scene", name));
         line.changed("--max-size", &limits.file, &file);
         line.changed("--max-memory", &limits.memory, &memory);
         let Some(heights) = heights else { return };
@@ -300,8 +301,14 @@ mod tests {
         let (source, truth) = (Source::File("-x.glb".into()), Source::File("shape:y".into()));
         let limits = Limits { memory: 1 << 31, ..Limits::default() };
         let heights = Some(HeightSource::File("material".into()));
-        let preparation =
-            Preparation { weld: 1e-5, crease_band: 0.02, heights, variant: Some("-matte".to_owned()), limits };
+        let preparation = Preparation {
+            weld: 1e-5,
+            crease_band: 0.02,
+            heights,
+            variant: Some("-matte".to_owned()),
+            scene: Some("Night sky".to_owned()),
+            limits,
+        };
         let settings = Settings::opening().with(Tessellation {
             displacement: Displacement::PerPatch,
             height_scale: -0.5,

@@ -10,7 +10,7 @@ use crate::progress::Progress;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// A .gltf, .glb, .fbx, .obj, .stl or .ply file, or a shape made in code such as shape:cube-split, or shape:torus@2 (finer)
+    /// A .gltf, .glb, .vrm, .fbx, .obj, .stl or .ply file, or a shape made in code such as shape:cube-split, or shape:torus@2 (finer)
     #[arg(value_parser = super::options::source())]
     pub file: Source,
     #[command(flatten)]
@@ -31,7 +31,7 @@ fn info(source: &Source, options: &WeldOption) -> Result<Info, LoadError> {
     let progress = Progress::default();
     let loaded = engine::load(source, &options.preparation(), &progress)?;
     let info = Info::of(&loaded.mesh, &loaded.topology, options.weld, &loaded.warnings, &progress)?;
-    let info = Info { variants: loaded.variants, ..info };
+    let info = Info { variants: loaded.variants, scenes: loaded.scenes, scene: loaded.scene, ..info };
     if loaded.crease_band.width == 0.0 {
         return Ok(info);
     }

@@ -35,6 +35,10 @@ pub(super) struct Info {
     pub lights: Vec<LightInfo>,
     /// The names of the file's material variants.
     pub variants: Vec<String>,
+    /// The names of the file's scenes.
+    pub scenes: Vec<String>,
+    /// Which of them this is; none if the file has no scenes.
+    pub scene: Option<usize>,
     pub animations: Vec<AnimationInfo>,
     pub edges: EdgeCounts,
     /// What each weld tolerance on offer would join and collapse, compared with the exact weld.
@@ -111,6 +115,8 @@ impl Info {
             materials: mesh.materials.iter().map(MaterialInfo::of).collect(),
             lights: mesh.lights.iter().map(LightInfo::of).collect(),
             variants: Vec::new(),
+            scenes: Vec::new(),
+            scene: None,
             animations: mesh.rig.as_deref().map_or_else(Vec::new, animations),
             edges,
             joins: weld_previews(mesh, (weld == 0.0).then_some(topology), progress)?,
@@ -142,6 +148,11 @@ impl fmt::Display for Info {
         }
         for variant in &self.variants {
             writeln!(f, "variant       {}", shown(variant))?;
+        }
+        // Most files have one scene, of which nothing is to be said.
+        for (i, scene) in self.scenes.iter().enumerate().filter(|_| self.scenes.len() > 1) {
+            let is_read = if Some(i) == self.scene { ", which is shown" } else { "" };
+            writeln!(f, "scene         {}{is_read}", shown(scene))?;
         }
         for AnimationInfo { name, duration, moved } in &self.animations {
             // Files have times in f32: an f64 would print digits that the file doesn't have.

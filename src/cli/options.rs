@@ -202,6 +202,9 @@ pub(crate) struct WeldOption {
     /// Show the materials that a glTF file has for this variant (KHR_materials_variants), by name; `info` lists the variants
     #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
     pub variant: Option<String>,
+    /// Show this scene of a glTF file instead of its default scene, by name, or by number from 0; `info` lists the scenes
+    #[arg(long, value_name = "NAME|N", allow_hyphen_values = true)]
+    pub scene: Option<String>,
     #[command(flatten)]
     pub limit: LimitOption,
 }
@@ -213,6 +216,7 @@ impl WeldOption {
             crease_band: self.crease_band,
             heights: None,
             variant: self.variant.clone(),
+            scene: self.scene.clone(),
             limits: self.limit.limits(),
         }
     }

@@ -1,4 +1,7 @@
-//! Reads glTF 2.0 (`.gltf` and `.glb`): the triangles of the default scene in their rest pose, and its animations.
+//! Reads glTF 2.0 (`.gltf`, `.glb` and `.vrm`): the triangles of one scene in their rest pose, and its animations.
+//!
+//! [`reach`] finds what the scene uses. What the shape depends on is checked strictly, and a fault is an error. A fault of anything
+//! else costs a warning ([`repair`]).
 //!
 //! The `gltf` crate parses the document. Its accessor readers aren't used, since they panic on some broken files;
 //! [`accessor`] reads instead, and checks every range.
@@ -12,9 +15,11 @@ mod buffers;
 mod decompressed_primitive;
 mod document;
 mod draco;
+mod extension_table;
 mod extensions;
 mod glb;
 mod gltf_error;
+mod instances;
 mod json;
 mod lenient;
 mod lights;
@@ -25,8 +30,11 @@ mod meshopt;
 mod nodes;
 mod primitive;
 mod primitive_data;
+mod reach;
+mod repair;
 mod rig_nodes;
 pub(super) mod scene_size;
+pub(super) mod scenes;
 mod schema;
 mod schema_check;
 mod skin;
@@ -36,6 +44,7 @@ mod variants;
 mod vertex_details;
 mod vertices;
 
+use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -45,7 +54,8 @@ use glam::DMat4;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::notes::Notes;
-use super::rig_builder::RigBuilder;
+use super::rig_builder::{RigBuilder, SkinJoints};
+use super::selection::Selection;
 use super::tangents::{self, DetailedMesh};
 use super::uri::Files;
 use super::warnings::repair_warnings;
@@ -57,6 +67,8 @@ use crate::mesh::{MemoryAccount, MemoryRefused, Mesh};
 use crate::progress::Progress;
 
 use accessor::Accessors;
+use extensions::InstancingExtension;
+use instances::Instances;
 use materials::Materials;
 use nodes::Placed;
 use primitive::PrimitiveReader;
@@ -66,8 +78,8 @@ pub use gltf_error::GltfError;
 
 /// Builds a mesh from a document's bytes.
 ///
-/// `folder` is the document's folder; `name` becomes the mesh's name. Materials are those of a variant, if the document has it. `limits` apply to the files that the document
-/// names.
+/// `folder` is the document's folder; `name` becomes the mesh's name. `selected` says which scene is read, and with the materials of
+/// which variant, if the document has it. `limits` apply to the files that the document names.
 ///
 /// # Errors
 /// [`GltfError`].
@@ -75,19 +87,30 @@ pub(super) fn read(
     bytes: Vec<u8>,
     folder: &Path,
     name: &str,
-    variant: Option<&str>,
+    selected: Selection,
     limits: &Limits,
     progress: &Progress,
 ) -> Result<LoadedMesh, GltfError> {
     let budget = Budget::new(bytes.len(), limits);
-    let document::Parsed { document, blob, extensions, animations, lists, lights, variants, mut notes } =
-        document::parse(bytes, variant, &budget, progress)?;
+    let document::Parsed {
+        document,
+        blob,
+        extensions,
+        animations,
+        lists,
+        lights,
+        variants,
+        scenes,
+        reach,
+        faults,
+        mut notes,
+    } = document::parse(bytes, selected, &budget, progress)?;
     progress.check()?;
     let files = Files::new(folder, limits, &budget, progress);
-    let buffers = buffers::load(&document, &files, &extensions.fallback, blob, progress)?;
+    let buffers = buffers::load(&document, &files, (&reach.buffers, &extensions.fallback), blob, &mut notes, progress)?;
     progress.set(0.3);
-    let placed = nodes::place(&document)?;
-    let mut accessors = Accessors::new(&document, &extensions, &buffers, &budget)?;
+    let placed = nodes::place(&document, &reach.hiding)?;
+    let mut accessors = Accessors::new(&document, &extensions, (&buffers, faults, &reach.views), &budget)?;
     accessors.unpacked = draco::unpack(&accessors, &document, &placed, &extensions.packed, progress)?;
     let mut warnings = Vec::new();
     let clips = animations::read(animations, &document, &accessors, &mut warnings);
@@ -100,10 +123,12 @@ pub(super) fn read(
     let materials = Materials::new(&lists, &document, &placed, (&accessors, &files), &budget)?;
     let is_detailed = needs_details(&document, &placed, &materials);
     let beside = PerVertex { moves: binder.is_some(), is_detailed };
-    let [vertices, corners] = scene_size::check(&document, &placed, &accessors, &budget, beside)?;
+    let [vertices, corners] =
+        scene_size::check(&document, (&placed, &extensions.instances), &accessors, &budget, beside)?;
     let mut scene = Scene {
         document: &document,
         placed: &placed,
+        instances: &extensions.instances,
         accessors: &accessors,
         materials,
         builder: MeshBuilder::new(),
@@ -118,7 +143,14 @@ pub(super) fn read(
     }
     let Scene { materials, builder, mut primitives, binder, details, .. } = scene;
     if builder.is_empty() {
-        return Err(GltfError::Empty { holds: primitives.holds(&document) });
+        let mut holds = match reach.hidden {
+            0 => primitives.holds(&document),
+            hidden => format!("KHR_node_visibility hides the {hidden} nodes of its scene that have a mesh"),
+        };
+        if scenes.names.len() > 1 {
+            holds += "; --scene shows another of its scenes";
+        }
+        return Err(GltfError::Empty { holds });
     }
     notes.append(materials.into_notes());
     notes.append(std::mem::take(&mut primitives.notes));
@@ -136,13 +168,17 @@ pub(super) fn read(
     mesh.lights = lights.shown(&placed, &mut notes);
     warnings = notes.into_warnings();
     warnings.extend(repair_warnings(&mesh.repairs));
-    Ok(LoadedMesh { mesh, warnings, variants, files: files.named(), file_bytes: budget.files() })
+    let scenes::Scenes { names, shown } = scenes;
+    let (files, file_bytes) = (files.named(), budget.files());
+    Ok(LoadedMesh { mesh, warnings, variants, scenes: names, scene: shown, files, file_bytes })
 }
 
 /// The scene that is being read, and the mesh that is being built from it.
 struct Scene<'a> {
     document: &'a Document,
     placed: &'a Placed,
+    /// By node, the instances of its mesh.
+    instances: &'a HashMap<usize, InstancingExtension>,
     accessors: &'a Accessors<'a>,
     materials: Materials<'a>,
     builder: MeshBuilder,
@@ -154,24 +190,54 @@ struct Scene<'a> {
 }
 
 impl<'a> Scene<'a> {
-    /// Adds the triangles of a node's mesh, if it has one.
+    /// Adds the triangles of a node's mesh, if it has one: once, or once for each of its instances.
     fn add(&mut self, node: usize, progress: &Progress) -> Result<(), GltfError> {
         let Some(node) = self.document.nodes().nth(node) else { return Ok(()) };
         let Some(mesh) = node.mesh() else { return Ok(()) };
         let skin = node.skin().map(|skin| skin::read(&skin, self.accessors)).transpose()?;
         let joints = skin.as_ref().map_or_else(Vec::new, |skin| skin.matrices(&self.placed.global));
-        let mut binder = self.binder.as_mut().map(|binder| binder.node(node.index(), skin.as_ref()));
+        let Some(own) = self.instances.get(&node.index()) else {
+            return self.add_once(&node, &mesh, (skin.as_ref(), &joints), DMat4::IDENTITY, progress);
+        };
+        if skin.is_some() {
+            // Vertices of a skin don't move with their node.
+            let said = "has instances of a mesh that a skin moves, which EXT_mesh_gpu_instancing doesn't define";
+            self.primitives.notes.push(format!("/nodes/{} {said}; it is shown once.", node.index()));
+            return self.add_once(&node, &mesh, (skin.as_ref(), &joints), DMat4::IDENTITY, progress);
+        }
+        let (document, accessors) = (self.document, self.accessors);
+        let borrowed = accessors.budget.borrowed();
+        let instances = Instances::read(document, accessors, own, node.index())?;
+        for instance in instances.transforms() {
+            self.add_once(&node, &mesh, (None, &[]), instance, progress)?;
+        }
+        accessors.budget.give_back_to(borrowed);
+        Ok(())
+    }
+
+    /// Adds the triangles of a node's mesh. `instance` is the transform from the mesh's space to the node's.
+    fn add_once(
+        &mut self,
+        node: &Node,
+        mesh: &::gltf::Mesh,
+        (skin, joints): (Option<&SkinJoints>, &[DMat4]),
+        instance: DMat4,
+        progress: &Progress,
+    ) -> Result<(), GltfError> {
+        let mut binder = self.binder.as_mut().map(|binder| binder.node(node.index(), skin));
         let global = self.placed.global.get(node.index()).copied().unwrap_or(DMat4::IDENTITY);
+        let global = nodes::below(global, instance);
+        let borrowed = self.accessors.budget.borrowed();
         for primitive in mesh.primitives() {
             progress.check()?;
-            self.accessors.budget.give_back_to(0);
+            self.accessors.budget.give_back_to(borrowed);
             if self.primitives.skip(&primitive) {
                 continue;
             }
             let material = self.materials.resolve(&primitive.material(), &mut self.builder)?;
-            let pose = primitive::NodePose { global, joints: &joints, weights: weights(&node) };
+            let pose = primitive::NodePose { global, instance, joints, weights: weights(node) };
             let job = primitive::Job {
-                mesh: &mesh,
+                mesh,
                 primitive: &primitive,
                 pose: &pose,
                 material,
@@ -181,6 +247,7 @@ impl<'a> Scene<'a> {
             };
             self.primitives.read(job, binder.as_mut())?;
         }
+        self.accessors.budget.give_back_to(borrowed);
         Ok(())
     }
 }

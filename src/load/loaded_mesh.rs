@@ -13,6 +13,10 @@ pub struct LoadedMesh {
     pub warnings: Vec<String>,
     /// The names of its material variants (KHR_materials_variants).
     pub variants: Vec<String>,
+    /// The names of its scenes. A scene without a name is called `scene 0`, by its number in the file.
+    pub scenes: Vec<String>,
+    /// Which of them was read; none if the file has no scenes.
+    pub scene: Option<usize>,
     /// The files that the mesh's own file names and that were read, with links resolved.
     pub files: Vec<PathBuf>,
     /// The size of all files together in bytes, the mesh's own included; 0 for a mesh that was made in code.

@@ -2,26 +2,28 @@
 
 use std::path::{Path, PathBuf};
 
-use super::gltf::{self, GltfError};
+use super::gltf::{self, GltfError, scenes};
 use super::heights::HeightError;
 use super::loaded_mesh::LoadedMesh;
 use super::read_error::ReadError;
+use super::selection::Selection;
 use super::{fbx, obj, ply, stl};
 use crate::files::{FileError, Limits, Stamp, read_file};
 use crate::names::{shown, shown_path};
 use crate::progress::{Cancelled, Progress};
 
 /// The extensions of files that can be read, in lower case, each with its format.
-pub(crate) const EXTENSIONS: [(&str, Format); 6] = [
+pub(crate) const EXTENSIONS: [(&str, Format); 7] = [
     ("gltf", Format::Gltf),
     ("glb", Format::Gltf),
+    ("vrm", Format::Gltf),
     ("fbx", Format::Fbx),
     ("obj", Format::Obj),
     ("stl", Format::Stl),
     ("ply", Format::Ply),
 ];
 
-/// The extensions of files that can be read, for messages: ".gltf, .glb, .fbx, .obj, .stl or .ply".
+/// The extensions of files that can be read, for messages: ".gltf, .glb, .vrm, .fbx, .obj, .stl or .ply".
 pub(crate) fn known_extensions() -> String {
     let [others @ .., last] = EXTENSIONS.map(|(extension, _)| format!(".{extension}"));
     format!("{} or {last}", others.join(", "))
@@ -76,14 +78,25 @@ pub enum LoadError {
     /// The file doesn't have the material variant.
     #[error("{} has no material variant {}; {}", shown_path(path), shown(variant), said_of(known))]
     NoVariant { path: PathBuf, variant: String, known: Vec<String> },
+    /// The file doesn't have the scene.
+    #[error("{} has no scene {}; {}", shown_path(path), shown(scene), said_of_scenes(known))]
+    NoScene { path: PathBuf, scene: String, known: Vec<String> },
 }
 
 /// Returns which variants there are, as the end of a message.
 fn said_of(known: &[String]) -> String {
+    if known.is_empty() { "it has no variants, so leave --variant away".to_owned() } else { choice(known) }
+}
+
+/// Returns which scenes there are, as the end of a message.
+fn said_of_scenes(known: &[String]) -> String {
+    if known.is_empty() { "it has no scenes, so leave --scene away".to_owned() } else { choice(known) }
+}
+
+fn choice(known: &[String]) -> String {
     const NAMED: usize = 20;
     let names: Vec<_> = known.iter().take(NAMED).map(|name| shown(name)).collect();
     match known.len().checked_sub(NAMED) {
-        _ if known.is_empty() => "it has no variants, so leave --variant away".to_owned(),
         None | Some(0) => format!("choose one of {}", names.join(", ")),
         Some(more) => format!("choose one of {} and {more} more, which `pnaen info` lists", names.join(", ")),
     }
@@ -108,7 +121,7 @@ impl From<HeightError> for LoadError {
     }
 }
 
-/// Loads a mesh from a file: `.gltf`, `.glb`, `.fbx`, `.obj`, `.stl` or `.ply`, in upper or lower case.
+/// Loads a mesh from a file: `.gltf`, `.glb`, `.vrm`, `.fbx`, `.obj`, `.stl` or `.ply`, in upper or lower case.
 ///
 /// Sets `progress` from 0 to 1. Files that the model names are only read from its folder and folders below it. No file
 /// may be larger than `limits` allows.
@@ -117,16 +130,16 @@ impl From<HeightError> for LoadError {
 /// [`LoadError`], whose message says what is wrong, where, and what to do. A missing or broken texture isn't an error
 /// but a warning.
 pub fn load(path: &Path, limits: &Limits, progress: &Progress) -> Result<LoadedMesh, LoadError> {
-    load_variant(path, None, limits, progress)
+    load_selected(path, Selection::default(), limits, progress)
 }
 
-/// Loads a mesh as [`load`] does, with the materials of a variant.
+/// Loads a mesh as [`load`] does, with the materials of a variant, or another scene than the default one.
 ///
 /// # Errors
-/// The same, and [`LoadError::NoVariant`].
-pub(crate) fn load_variant(
+/// The same, [`LoadError::NoVariant`] and [`LoadError::NoScene`].
+pub(crate) fn load_selected(
     path: &Path,
-    variant: Option<&str>,
+    selected: Selection,
     limits: &Limits,
     progress: &Progress,
 ) -> Result<LoadedMesh, LoadError> {
@@ -139,19 +152,23 @@ pub(crate) fn load_variant(
     let format = Format::of(path)?;
     let before = Stamp::of(&file);
     let bytes = read_file(path, limits, |start| format.fits(start, path), progress)?;
-    let mesh = read(format, bytes, path, variant, limits, progress)?;
+    let mesh = read(format, bytes, path, selected, limits, progress)?;
     before.check(path)?;
-    check_variant(path, variant, &mesh)?;
+    check_selected(path, selected, &mesh)?;
     progress.set(1.0);
     Ok(mesh)
 }
 
-/// Checks that a mesh has the variant that was asked for.
+/// Checks that a mesh has the variant and the scene that were asked for.
 ///
 /// # Errors
-/// [`LoadError::NoVariant`].
-pub(super) fn check_variant(path: &Path, variant: Option<&str>, loaded: &LoadedMesh) -> Result<(), LoadError> {
-    match variant.filter(|variant| loaded.variants.iter().all(|known| known != variant)) {
+/// [`LoadError::NoVariant`] and [`LoadError::NoScene`].
+pub(super) fn check_selected(path: &Path, selected: Selection, loaded: &LoadedMesh) -> Result<(), LoadError> {
+    if let Some(scene) = selected.scene.filter(|scene| scenes::number(&loaded.scenes, scene).is_none()) {
+        let known = loaded.scenes.clone();
+        return Err(LoadError::NoScene { path: path.to_owned(), scene: scene.to_owned(), known });
+    }
+    match selected.variant.filter(|variant| loaded.variants.iter().all(|known| known != variant)) {
         None => Ok(()),
         Some(variant) => {
             let known = loaded.variants.clone();
@@ -163,7 +180,7 @@ pub(super) fn check_variant(path: &Path, variant: Option<&str>, loaded: &LoadedM
 /// The format that a file is read as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// `.gltf` or `.glb`; the first bytes tell which.
+    /// `.gltf`, `.glb` or `.vrm`; the first bytes tell whether it is text or binary.
     Gltf,
     /// Text or binary; the first bytes tell which.
     Fbx,
@@ -218,7 +235,7 @@ impl Format {
 }
 
 /// Builds a mesh from a file's bytes, as [`load`] does. `path` is the path of the file; the files that it names are
-/// looked for in its folder. A variant that the file doesn't have is left aside.
+/// looked for in its folder. A variant or a scene that the file doesn't have is left aside.
 ///
 /// # Errors
 /// The same as [`load`]'s.
@@ -226,7 +243,7 @@ pub fn read(
     format: Format,
     bytes: Vec<u8>,
     path: &Path,
-    variant: Option<&str>,
+    selected: Selection,
     limits: &Limits,
     progress: &Progress,
 ) -> Result<LoadedMesh, LoadError> {
@@ -234,7 +251,7 @@ pub fn read(
     let folder = path.parent().unwrap_or(Path::new(""));
     match format {
         Format::Gltf => {
-            gltf::read(bytes, folder, &name, variant, limits, progress).map_err(|problem| of_problem(problem, path))
+            gltf::read(bytes, folder, &name, selected, limits, progress).map_err(|problem| of_problem(problem, path))
         }
         Format::Fbx => fbx::read(bytes, folder, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
         Format::Obj => obj::read(bytes, folder, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
@@ -273,7 +290,7 @@ mod tests {
     fn unknown_formats_name_the_known_ones() {
         let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
         let expected =
-            "can't be read, since it has the extension .toml; choose a .gltf, .glb, .fbx, .obj, .stl or .ply file";
+            "can't be read, since it has the extension .toml; choose a .gltf, .glb, .vrm, .fbx, .obj, .stl or .ply file";
         assert_eq!(message(manifest), format!("{manifest} {expected}"));
         assert!(message(concat!(env!("CARGO_MANIFEST_DIR"), "/LICENSE")).contains("no extension"));
     }

@@ -26,6 +26,7 @@ pub(crate) mod panorama;
 mod ply;
 mod read_error;
 mod rig_builder;
+pub(crate) mod selection;
 pub(crate) mod source;
 mod stl;
 mod tangents;

@@ -12,6 +12,13 @@ pub(super) struct Notes {
 }
 
 impl Notes {
+    /// Adds a sentence about a mesh, unless it is there: a mesh may be shown several times.
+    pub(super) fn push_once(&mut self, sentence: String) {
+        if !self.kept.contains(&sentence) {
+            self.push(sentence);
+        }
+    }
+
     pub(super) fn push(&mut self, sentence: String) {
         if self.kept.len() < MAX_WARNINGS {
             self.kept.push(sentence);

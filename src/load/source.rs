@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use super::loaded_mesh::LoadedMesh;
-use super::mesh_file::{Format, LoadError, check_variant, load_variant, read};
+use super::mesh_file::{Format, LoadError, check_selected, load_selected, read};
+use super::selection::Selection;
 use crate::files::Limits;
 use crate::mesh::shapes::{MAX_LEVEL, Shape, ShapeError};
 use crate::progress::Progress;
@@ -33,18 +34,18 @@ impl Source {
     /// Builds the shape, or loads the file within `limits`.
     ///
     /// # Errors
-    /// The same as [`load_variant`]'s; a shape has none.
+    /// The same as [`load_selected`]'s; a shape has none.
     pub fn load(&self, limits: &Limits, progress: &Progress) -> Result<LoadedMesh, LoadError> {
-        self.load_variant(None, limits, progress)
+        self.load_selected(Selection::default(), limits, progress)
     }
 
-    /// Builds the shape, or loads the file within `limits` with the materials of a variant.
+    /// Builds the shape, or loads the file within `limits` with the materials of a variant, or another scene than the default one.
     ///
     /// # Errors
-    /// The same as [`load_variant`]'s; a shape has only [`LoadError::NoVariant`].
-    pub fn load_variant(
+    /// The same as [`load_selected`]'s; a shape has only [`LoadError::NoVariant`] and [`LoadError::NoScene`].
+    pub(crate) fn load_selected(
         &self,
-        variant: Option<&str>,
+        selected: Selection,
         limits: &Limits,
         progress: &Progress,
     ) -> Result<LoadedMesh, LoadError> {
@@ -53,11 +54,11 @@ impl Source {
             Self::FineShape(shape, level) => Ok(LoadedMesh { mesh: shape.build_at(*level), ..LoadedMesh::default() }),
             Self::Vase => {
                 let bytes = include_bytes!("../../assets/vase.glb").to_vec();
-                read(Format::Gltf, bytes, Path::new("vase.glb"), None, limits, progress)
+                read(Format::Gltf, bytes, Path::new("vase.glb"), Selection::default(), limits, progress)
             }
-            Self::File(path) => return load_variant(path, variant, limits, progress),
+            Self::File(path) => return load_selected(path, selected, limits, progress),
         }?;
-        check_variant(self.to_string().as_ref(), variant, &loaded)?;
+        check_selected(self.to_string().as_ref(), selected, &loaded)?;
         Ok(loaded)
     }
 

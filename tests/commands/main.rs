@@ -19,6 +19,7 @@ mod manual;
 mod moving;
 mod picture_file;
 mod render;
+mod scenes;
 mod stability;
 mod techniques;
 mod tessellate;

@@ -5,7 +5,8 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use pnaen::internals::{
-    Format, HullFactors, domain_plan, domain_point, domain_triangle, outer_count, point_count, read, triangle_count,
+    Format, HullFactors, Selection, domain_plan, domain_point, domain_triangle, outer_count, point_count, read,
+    triangle_count,
 };
 use pnaen::load::Limits;
 use pnaen::mesh::{Mesh, Topology};
@@ -48,7 +49,8 @@ pub fn ply(data: &[u8]) {
 /// Reads bytes as a file, which must give a valid mesh or an error.
 fn mesh(format: Format, data: &[u8]) {
     let progress = Progress::new();
-    match read(format, data.to_vec(), Path::new("nowhere/fuzzed"), None, &Limits::default(), &progress) {
+    match read(format, data.to_vec(), Path::new("nowhere/fuzzed"), Selection::default(), &Limits::default(), &progress)
+    {
         Ok(loaded) => assert_sound(&loaded.mesh, &progress),
         Err(error) => {
             let said = error.to_string();

@@ -67,6 +67,8 @@ fn on_device(shape: Shape, mesh: Mesh) -> (Loaded, Scene) {
             mesh,
             warnings: Vec::new(),
             variants: Vec::new(),
+            scenes: Vec::new(),
+            scene: None,
             files: Vec::new(),
             topology,
             load_ms: 0.0,

@@ -326,6 +326,8 @@ pub(super) fn sheet(columns: u32, rows: u32) -> Loaded {
         mesh,
         warnings: Vec::new(),
         variants: Vec::new(),
+        scenes: Vec::new(),
+        scene: None,
         files: Vec::new(),
         topology,
         load_ms: 0.0,

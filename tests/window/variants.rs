@@ -8,7 +8,7 @@ use pnaen::load::Source;
 use pnaen::mesh::Shape;
 
 #[path = "../documents/lamp.rs"]
-mod lamp;
+pub(super) mod lamp;
 
 use crate::window_tests::{choose, press, uniform, window};
 use lamp::LAMP;

@@ -67,14 +67,17 @@ impl App {
                 self.panels.chart.stop();
                 let title = format!("{} - pnaen", document.loaded.source.title());
                 context.send_viewport_cmd(egui::ViewportCommand::Title(title));
+                let scene = document.loaded.scene;
                 let before = self.document.replace(document);
+                // Scenes may be at different places, and of different sizes.
+                let is_other_scene = before.as_ref().is_some_and(|before| before.loaded.scene != scene);
                 if before.is_some() {
                     self.dialogs.error = None;
                 }
                 self.dialogs.error = remark.or(self.dialogs.error.take());
                 self.take_heights(before.and_then(|document| document.loaded.preparation.heights).as_ref());
                 self.keep_playback(keep_view);
-                if !keep_view {
+                if !keep_view || is_other_scene {
                     self.frame();
                 }
                 self.look_as_before(keep_view);

@@ -47,6 +47,7 @@ impl App {
     }
 
     fn surface_rows(&mut self, ui: &mut egui::Ui) {
+        self.scene_row(ui);
         self.variant_row(ui);
         let settings = &mut self.settings;
         option_row(ui, &options::SURFACE, settings, "");
@@ -142,6 +143,25 @@ impl App {
         if chosen != own {
             let chosen = chosen.map(str::to_owned);
             self.prepare(ui.ctx(), |preparation| preparation.variant = chosen);
+        }
+    }
+
+    /// A choice of scenes, which is there only if the file has several. Another scene loads the mesh again.
+    fn scene_row(&mut self, ui: &mut egui::Ui) {
+        let Some(document) = self.document.as_ref().filter(|document| document.loaded.scenes.len() > 1) else { return };
+        let loaded = &document.loaded;
+        let own = loaded.scene;
+        let mut chosen = own;
+        let names = loaded.scenes.iter().enumerate();
+        let choices: Vec<_> =
+            names.map(|(i, name)| (Some(i), name.as_str(), "What is shown of the file is this scene.")).collect();
+        chooser(ui, "Scene", "Which of the file's scenes is shown (--scene).", &mut chosen, &choices);
+        if let Some(scene) = chosen.filter(|_| chosen != own) {
+            // By name if that is unique, so that it stays right when the file changes.
+            let name = &loaded.scenes[scene];
+            let is_first = loaded.scenes.iter().position(|other| other == name) == Some(scene);
+            let name = if is_first { name.clone() } else { scene.to_string() };
+            self.prepare(ui.ctx(), |preparation| preparation.scene = Some(name));
         }
     }
 

@@ -11,6 +11,8 @@ use super::GltfError;
 use super::decompressed_primitive::DecompressedPrimitive;
 use super::extensions::{Extensions, MeshoptExtension, MeshoptMode};
 use super::meshopt::{Decompressed, decompress};
+use super::reach::Use;
+use super::repair::Faults;
 use crate::load::memory_budget::Budget;
 use crate::mesh::MemoryAccount;
 
@@ -26,6 +28,8 @@ pub(crate) struct Accessors<'a> {
     decompressed: Vec<Option<(Decompressed, usize)>>,
     /// By mesh and primitive, the data that Draco compressed.
     pub unpacked: HashMap<[usize; 2], DecompressedPrimitive>,
+    /// What can't be read, because it is broken and only details use it.
+    faults: Faults,
     pub budget: &'a Budget,
 }
 
@@ -81,25 +85,43 @@ impl<'a> Elements<'a> {
 }
 
 impl<'a> Accessors<'a> {
-    /// Decompresses the compressed buffer views.
+    /// Decompresses the compressed buffer views. One that can't be and that only details use becomes a fault.
     ///
     /// # Errors
     /// [`GltfError::Document`] for a view that can't be decompressed.
     pub(crate) fn new(
         document: &'a Document,
         extensions: &Extensions,
-        buffers: &'a [Vec<u8>],
+        (buffers, faults, views): (&'a [Vec<u8>], Faults, &[Use]),
         budget: &'a Budget,
     ) -> Result<Self, GltfError> {
-        let mut accessors = Self { document, buffers, decompressed: Vec::new(), unpacked: HashMap::new(), budget };
+        let (decompressed, unpacked) = (Vec::new(), HashMap::new());
+        let mut accessors = Self { document, buffers, decompressed, unpacked, faults, budget };
         for (view, compressed) in document.views().zip(&extensions.compressed) {
             let made = compressed.as_ref().map(|compressed| accessors.decompress(&view, compressed)).transpose();
-            accessors.decompressed.push(made.map_err(|reason| {
-                let pointer = format!("/bufferViews/{}/extensions/{}", view.index(), super::schema::MESHOPT);
-                GltfError::Document { pointer, reason }
-            })?);
+            let made = match made {
+                Ok(made) => made,
+                Err(reason) => {
+                    let i = view.index();
+                    let pointer = format!("/bufferViews/{i}/extensions/{}", super::schema::MESHOPT);
+                    if views.get(i) == Some(&Use::Shape) {
+                        return Err(GltfError::Document { pointer, reason });
+                    }
+                    accessors.faults.views.insert(i, format!("can't be used: {pointer} {reason}"));
+                    None
+                }
+            };
+            accessors.decompressed.push(made);
         }
         Ok(accessors)
+    }
+
+    /// # Errors
+    /// [`GltfError::Accessor`] for one that is broken and that only details use.
+    pub(crate) fn check_sound(&self, accessor: &Accessor, role: &str) -> Result<(), GltfError> {
+        let fault = self.faults.accessors.get(&accessor.index()).cloned();
+        let fail = |reason| Err(GltfError::Accessor { accessor: accessor.index(), role: role.to_owned(), reason });
+        fault.map_or(Ok(()), fail)
     }
 
     fn decompress(&self, view: &buffer::View, compressed: &MeshoptExtension) -> Result<(Decompressed, usize), String> {
@@ -145,6 +167,7 @@ impl<'a> Accessors<'a> {
         role: &str,
     ) -> Result<List<'_, [f32; N]>, GltfError> {
         let fail = |reason| GltfError::Accessor { accessor: accessor.index(), role: role.to_owned(), reason };
+        self.check_sound(accessor, role)?;
         if accessor.dimensions().multiplicity() != N {
             return Err(fail(format!(
                 "has {:?} elements, but {N} numbers an element are needed",
@@ -192,6 +215,9 @@ impl<'a> Accessors<'a> {
     /// A clause that names the view if its buffer is too short.
     pub(crate) fn view_bytes(&self, view: &buffer::View) -> Result<&[u8], String> {
         let i = view.index();
+        if let Some(fault) = self.faults.views.get(&i) {
+            return Err(format!("uses /bufferViews/{i}, which {fault}"));
+        }
         if let Some(Some((decompressed, _))) = self.decompressed.get(i) {
             return Ok(decompressed.bytes());
         }

@@ -28,8 +28,14 @@ pub(super) struct AnimatedVertices<'a, 'b, 'c> {
 }
 
 impl<'a, 'b, 'c> AnimatedVertices<'a, 'b, 'c> {
-    pub(super) fn new(source: PrimitiveData<'a>, vertices: &Vertices, binder: &'b mut NodeBinder<'c>) -> Self {
-        let (frame, first_weight) = (binder.frame(vertices.is_skinned(), DMat4::IDENTITY), binder.first_weight());
+    /// `instance` is the transform from the mesh's space to its node's.
+    pub(super) fn new(
+        source: PrimitiveData<'a>,
+        vertices: &Vertices,
+        instance: DMat4,
+        binder: &'b mut NodeBinder<'c>,
+    ) -> Self {
+        let (frame, first_weight) = (binder.frame(vertices.is_skinned(), instance), binder.first_weight());
         let mut moving =
             Self { binder, frame, source, first_weight, targets: Vec::new(), deltas: Vec::new(), found: 0 };
         if first_weight.is_some() {

@@ -51,13 +51,21 @@ pub(super) fn read(
     accessors: &Accessors,
     warnings: &mut Vec<String>,
 ) -> Vec<Clip> {
-    let mut reader = Reader { document, accessors, numbers_left: MAX_NUMBERS, target_counts: HashMap::new() };
+    let target_counts = HashMap::new();
+    let mut reader = Reader { document, accessors, numbers_left: MAX_NUMBERS, target_counts, pointers: 0 };
     let mut clips = Vec::new();
     for (i, value) in animations.into_iter().enumerate() {
         let own_name = own_name(&value);
         let quoted = own_name.as_ref().map_or_else(String::new, |name| format!(" \"{name}\""));
         match reader.clip(own_name.unwrap_or_else(|| format!("animation {i}")), value) {
-            Ok(clip) => clips.push(clip),
+            Ok(clip) => {
+                if reader.pointers > 0 {
+                    let (count, said) = (reader.pointers, "which aren't read; the others are played");
+                    warnings
+                        .push(format!("animation {i}{quoted} has {count} channels of KHR_animation_pointer, {said}."));
+                }
+                clips.push(clip);
+            }
             Err(reason) => warnings.push(format!("animation {i}{quoted} is left out: {reason}.")),
         }
     }
@@ -76,6 +84,8 @@ struct Reader<'a> {
     numbers_left: usize,
     /// The number of morph targets of each node.
     target_counts: HashMap<usize, usize>,
+    /// How many channels of the animation that was read last move something else than nodes (KHR_animation_pointer).
+    pointers: usize,
 }
 
 impl Reader<'_> {
@@ -85,6 +95,7 @@ impl Reader<'_> {
         let animation: Animation =
             serde_json::from_value(value).map_err(|error| format!("it can't be read ({error})"))?;
         let mut channels: Vec<Channel> = Vec::new();
+        self.pointers = animation.channels.iter().filter(|entry| entry.target.path == "pointer").count();
         for (i, entry) in animation.channels.iter().enumerate() {
             let channel = self.channel(entry, &animation.samplers).map_err(|reason| format!("channel {i} {reason}"))?;
             channels.extend(channel);
@@ -101,6 +112,10 @@ impl Reader<'_> {
             let count = self.document.nodes().len();
             format!("moves node {index}, but /nodes has {count}")
         })?;
+        // A channel of a node without a mesh, or whose mesh isn't shown, moves nothing.
+        if entry.target.path == "weights" && node.mesh().is_none() {
+            return Ok(None);
+        }
         let (property, width) = match entry.target.path.as_str() {
             "translation" => (Property::Translation, 3),
             "rotation" => (Property::Rotation, 4),

@@ -3,26 +3,35 @@
 use ::gltf::Document;
 
 use super::GltfError;
+use super::notes::Notes;
+use super::reach::Use;
 use crate::load::uri::{self, Files};
 use crate::progress::Progress;
 
-/// Reads all buffers, and cuts each to the length in the document. `blob` is the binary chunk of a `.glb`. A buffer
-/// that is marked in `fallback` stays empty, since its data is decompressed from another buffer.
+/// Reads the buffers that are used, and cuts each to the length in the document. `blob` is the binary chunk of a `.glb`. A buffer
+/// that is marked in `fallback` stays empty, since its data is decompressed from another buffer. So does one that only details
+/// use and that can't be read.
 ///
 /// # Errors
 /// [`GltfError::Buffer`] for a buffer that is missing or too short, and [`GltfError::Cancelled`].
 pub(super) fn load(
     document: &Document,
     files: &Files,
-    fallback: &[bool],
+    (uses, fallback): (&[Use], &[bool]),
     mut blob: Option<Vec<u8>>,
+    notes: &mut Notes,
     progress: &Progress,
 ) -> Result<Vec<Vec<u8>>, GltfError> {
     let json = &document.as_json().buffers;
     let mut buffers = Vec::with_capacity(json.len());
     for (i, buffer) in json.iter().enumerate() {
         progress.check()?;
-        if fallback.get(i) == Some(&true) {
+        let used = uses.get(i).copied().unwrap_or_default();
+        if used == Use::None && fallback.get(i) != Some(&true) && buffer.uri.is_none() {
+            // The chunk belongs to this buffer and to no other.
+            blob = None;
+        }
+        if used == Use::None || fallback.get(i) == Some(&true) {
             buffers.push(Vec::new());
             continue;
         }
@@ -35,10 +44,16 @@ pub(super) fn load(
         };
         // A cancelled read isn't an error of the buffer.
         progress.check()?;
-        buffers.push(bytes.and_then(|bytes| cut(bytes, length)).map_err(|reason| {
-            let uri = buffer.uri.as_deref().map_or("the binary chunk".to_owned(), uri::shown);
-            GltfError::Buffer { buffer: i, uri, reason }
-        })?);
+        let uri = || buffer.uri.as_deref().map_or("the binary chunk".to_owned(), uri::shown);
+        let bytes = match bytes.and_then(|bytes| cut(bytes, length)) {
+            Ok(bytes) => bytes,
+            Err(reason) if used == Use::Shape => return Err(GltfError::Buffer { buffer: i, uri: uri(), reason }),
+            Err(reason) => {
+                notes.push(format!("/buffers/{i} ({}) can't be read: {reason}. It is left out.", uri()));
+                Vec::new()
+            }
+        };
+        buffers.push(bytes);
         progress.set(0.3 * (i + 1) as f32 / json.len() as f32);
     }
     Ok(buffers)

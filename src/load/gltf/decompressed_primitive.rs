@@ -5,8 +5,8 @@ pub(crate) struct DecompressedPrimitive {
     /// The indices of vertices, three for each triangle.
     pub indices: Vec<u32>,
     pub attributes: Vec<Attribute>,
-    /// The names of attributes that should be there but can't be read, and that a primitive can do without.
-    pub left_out: Vec<String>,
+    /// The names of attributes that should be there but can't be read, and that a primitive can do without; and why, as a clause.
+    pub left_out: Vec<(String, String)>,
 }
 
 /// The values of one attribute.
@@ -25,9 +25,9 @@ impl DecompressedPrimitive {
         Some(attribute.values.as_chunks().0)
     }
 
-    /// Returns whether an attribute should be there but can't be read.
-    pub(crate) fn lacks(&self, name: &str) -> bool {
-        self.left_out.iter().any(|left_out| left_out == name)
+    /// Returns why an attribute that should be there can't be read, as a clause.
+    pub(crate) fn lacks(&self, name: &str) -> Option<&str> {
+        self.left_out.iter().find(|(left_out, _)| left_out == name).map(|(_, reason)| reason.as_str())
     }
 
     /// Returns the size in memory, in bytes.

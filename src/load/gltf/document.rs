@@ -5,13 +5,18 @@ use ::gltf::json::Root;
 use ::gltf::json::validation::Error as ValidationError;
 use serde_json::{Map, Value, json};
 
-use super::extensions::{self, Extensions};
+use super::extensions::Extensions;
 use super::json::objects;
 use super::lights::LightSources;
 use super::material_lists::MaterialLists;
 use super::notes::Notes;
-use super::{GltfError, glb, json, schema, schema_check, variants};
+use super::reach::{Beside, Reach};
+use super::repair::{self, Faults};
+use super::scenes::Scenes;
+use super::schema_check::Replaced;
+use super::{GltfError, extension_table, glb, json, schema, schema_check, variants};
 use crate::load::memory_budget::Budget;
+use crate::load::selection::Selection;
 use crate::mesh::{MemoryAccount, MemoryRefused};
 use crate::progress::Progress;
 
@@ -27,17 +32,21 @@ pub(super) struct Parsed {
     pub lights: LightSources,
     /// The names of the document's material variants.
     pub variants: Vec<String>,
+    pub scenes: Scenes,
+    /// What the scene uses.
+    pub reach: Reach,
+    pub faults: Faults,
     pub notes: Notes,
 }
 
-/// Parses and validates a `.gltf` or `.glb`; the first bytes tell which. Primitives get the materials of a variant, if the document
-/// has it.
+/// Parses and validates a `.gltf` or `.glb`; the first bytes tell which. `selected` says which of its variants and scenes is read,
+/// if the document has it.
 ///
 /// # Errors
 /// [`GltfError::NotGltf`], [`GltfError::Extension`], [`GltfError::Document`], and [`GltfError::Cancelled`].
 pub(super) fn parse(
     mut bytes: Vec<u8>,
-    variant: Option<&str>,
+    selected: Selection,
     budget: &Budget,
     progress: &Progress,
 ) -> Result<Parsed, GltfError> {
@@ -58,20 +67,24 @@ pub(super) fn parse(
         value
     };
     let Value::Object(root) = &mut value else { return Err(not_gltf("its JSON isn't an object")) };
-    check_version(root)?;
-    extensions::check_required(root)?;
-    let requires_draco = extensions::requires(root, schema::DRACO);
+    let mut notes = Notes::default();
+    check_version(root, &mut notes)?;
+    extension_table::check(root, &mut notes)?;
+    let requires_draco = extension_table::requires(root, schema::DRACO);
     // Read separately, so that an error in an animation doesn't keep the model from loading.
     let animations = match root.remove("animations") {
         Some(Value::Array(animations)) => animations,
         _ => Vec::new(),
     };
-    let mut notes = Notes::default();
-    let variants = variants::choose(root, variant, &mut notes);
+    let variants = variants::choose(root, selected.variant, &mut notes);
+    let scenes = Scenes::choose(root, selected.scene, &mut notes);
     let lists = MaterialLists::take(root, &mut notes);
     let lights = LightSources::take(root, &mut notes);
-    schema_check::check(root, schema::DOCUMENT)?;
-    let extensions = Extensions::of(root, requires_draco);
+    let reach = Reach::of(root, &Beside { animations: &animations, images: &lists.images, requires_draco });
+    let faults = repair::repair(root, &reach, (lists.materials.len(), requires_draco), budget, &mut notes)?;
+    schema_check::check(root, schema::DOCUMENT, &faults.replaced)?;
+    let extensions = Extensions::of(root);
+    add_spares(root, &faults.replaced);
     complete(root);
     complete_bare(root, budget)?;
     let root: Root = serde_json::from_value(value).map_err(not_gltf)?;
@@ -80,7 +93,7 @@ pub(super) fn parse(
     let too_large =
         |refused: MemoryRefused| GltfError::Document { pointer: "its JSON".to_owned(), reason: refused.into() };
     budget.hold(lists.bytes() + lights.bytes()).map_err(too_large)?;
-    Ok(Parsed { document, blob, extensions, animations, lists, lights, variants, notes })
+    Ok(Parsed { document, blob, extensions, animations, lists, lights, variants, scenes, reach, faults, notes })
 }
 
 fn not_gltf(reason: impl ToString) -> GltfError {
@@ -103,12 +116,65 @@ fn first_fault(error: ::gltf::Error) -> GltfError {
     GltfError::Document { pointer, reason: reason.to_owned() }
 }
 
-fn check_version(root: &Map<String, Value>) -> Result<(), GltfError> {
-    let version = root.get("asset").and_then(|asset| asset.get("version")).and_then(Value::as_str);
-    match version {
-        Some(version) if version.starts_with("2.") => Ok(()),
-        Some(version) => Err(not_gltf(format!("its /asset/version is {:?}", crate::load::uri::shown(version)))),
-        None => Err(not_gltf("it has no /asset/version")),
+/// Checks that the document is one of glTF 2.0, and needs no later version.
+fn check_version(root: &mut Map<String, Value>, notes: &mut Notes) -> Result<(), GltfError> {
+    let asset = root.get("asset");
+    let version = |name| asset.and_then(|asset| asset.get(name)).and_then(Value::as_str);
+    let own = match (version("version"), asset.and_then(|asset| asset.get("version")).and_then(Value::as_f64)) {
+        (Some(own), _) => own.to_owned(),
+        (None, Some(number)) => {
+            notes.push(format!("/asset/version is the number {number}, not text; it is read as {number:.1}."));
+            format!("{number:.1}")
+        }
+        (None, None) => return Err(not_gltf("it has no /asset/version")),
+    };
+    let said = |own: &str| format!("{:?}", crate::load::uri::shown(own));
+    if !own.starts_with("2.") {
+        return Err(not_gltf(format!("its /asset/version is {}", said(&own))));
+    }
+    // A later 2.x can be read as far as it is 2.0, unless the document says that it can't.
+    if let Some(least) = version("minVersion").filter(|least| !is_known(least)) {
+        return Err(not_gltf(format!("its /asset/minVersion is {}, but 2.0 is read", said(least))));
+    }
+    root.insert("asset".to_owned(), json!({ "version": "2.0" }));
+    Ok(())
+}
+
+/// Returns whether a minimum version is at most 2.0. One that is no version number is left aside.
+fn is_known(least: &str) -> bool {
+    let parts = least.split_once('.').map(|(major, minor)| (major.parse::<u64>(), minor.parse::<u64>()));
+    !matches!(parts, Some((Ok(major), Ok(minor))) if (major, minor) > (2, 0))
+}
+
+/// Adds what empty elements refer to. A primitive without positions is never read, but the crate requires them.
+fn add_spares(root: &mut Map<String, Value>, replaced: &Replaced) {
+    let accessors = root.get("accessors").and_then(Value::as_array).map_or(0, Vec::len);
+    let mut is_bare = false;
+    for mesh in objects(root, "meshes") {
+        for primitive in objects(mesh, "primitives") {
+            let Some(Value::Object(attributes)) = primitive.get_mut("attributes") else { continue };
+            attributes.entry("POSITION").or_insert_with(|| {
+                is_bare = true;
+                accessors.into()
+            });
+        }
+    }
+    let list = |root: &mut Map<String, Value>, name: &str, spare: Value| {
+        if let Value::Array(values) = root.entry(name).or_insert_with(|| json!([])) {
+            values.push(spare);
+        }
+    };
+    if is_bare {
+        list(root, "accessors", json!({ "componentType": 5126, "count": 0, "type": "VEC3" }));
+    }
+    let is_empty =
+        |root: &Map<String, Value>, name: &str| root.get(name).and_then(Value::as_array).is_none_or(Vec::is_empty);
+    let needs_view = is_bare || !replaced.accessors.is_empty();
+    if is_empty(root, "bufferViews") && needs_view {
+        list(root, "bufferViews", json!({ "buffer": 0, "byteLength": 0 }));
+    }
+    if is_empty(root, "buffers") && !is_empty(root, "bufferViews") {
+        list(root, "buffers", json!({ "byteLength": 0, "uri": "" }));
     }
 }
 

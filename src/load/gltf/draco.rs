@@ -164,7 +164,7 @@ fn taken(
     for named in attributes {
         match attribute(named) {
             Ok(values) => read.push(values),
-            Err(_) if is_detail(&named.0) => left_out.push(named.0.clone()),
+            Err(reason) if is_detail(&named.0) => left_out.push((named.0.clone(), reason)),
             Err(reason) => return Err(reason),
         }
     }

@@ -1,36 +1,11 @@
-//! Extensions: which ones a document may require, and the data of those that are read.
+//! The data of those extensions that change the shape and are read.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 use serde_json::{Map, Value};
 
-use super::GltfError;
-use super::schema::{BASISU, DRACO, MESHOPT, TRANSFORM, WEBP, is_attribute};
-
-/// Extensions that a document may require: those that are read, and others that can be ignored, since they don't change the
-/// shape.
-const KNOWN: [&str; 20] = [
-    "KHR_mesh_quantization",
-    DRACO,
-    MESHOPT,
-    TRANSFORM,
-    BASISU,
-    WEBP,
-    "KHR_lights_punctual",
-    "KHR_materials_anisotropy",
-    "KHR_materials_clearcoat",
-    "KHR_materials_dispersion",
-    "KHR_materials_emissive_strength",
-    "KHR_materials_ior",
-    "KHR_materials_iridescence",
-    "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_sheen",
-    "KHR_materials_specular",
-    "KHR_materials_transmission",
-    "KHR_materials_unlit",
-    "KHR_materials_variants",
-    "KHR_materials_volume",
-];
+use super::reach::list;
+use super::schema::{DRACO, INSTANCING, MESHOPT, is_attribute};
 
 /// The data of a document's extensions.
 #[derive(Debug, Default)]
@@ -41,6 +16,16 @@ pub(crate) struct Extensions {
     pub fallback: Vec<bool>,
     /// One for each primitive of each mesh.
     pub packed: Vec<Vec<Option<DracoExtension>>>,
+    /// By node, the instances of its mesh.
+    pub instances: HashMap<usize, InstancingExtension>,
+}
+
+/// `EXT_mesh_gpu_instancing` of a node: the accessors of its instances' transforms.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct InstancingExtension {
+    pub translation: Option<usize>,
+    pub rotation: Option<usize>,
+    pub scale: Option<usize>,
 }
 
 /// `EXT_meshopt_compression` of a buffer view.
@@ -81,45 +66,34 @@ pub(crate) enum MeshoptFilter {
     Exponential,
 }
 
-/// Checks that all required extensions are known.
-/// # Errors
-/// [`GltfError::Extension`] for the first that isn't.
-pub(super) fn check_required(root: &Map<String, Value>) -> Result<(), GltfError> {
-    let required = root.get("extensionsRequired").and_then(Value::as_array).into_iter().flatten();
-    let names = required.enumerate().filter_map(|(i, name)| Some((i, name.as_str()?)));
-    let Some((place, name)) = names.into_iter().find(|(_, name)| !KNOWN.contains(name)) else { return Ok(()) };
-    Err(GltfError::Extension { place, name: crate::load::uri::shown(name) })
-}
-
-/// Returns whether a document requires this extension.
-pub(super) fn requires(root: &Map<String, Value>, extension: &str) -> bool {
-    let required = root.get("extensionsRequired").and_then(Value::as_array);
-    required.is_some_and(|names| names.iter().any(|name| name == extension))
-}
-
 impl Extensions {
-    /// Reads the extensions of a document that has been [checked](super::schema_check). If the document doesn't require
-    /// Draco, primitives that also have uncompressed data are read from that.
-    pub(crate) fn of(root: &Map<String, Value>, requires_draco: bool) -> Self {
-        let list = |name: &str| root.get(name).and_then(Value::as_array).into_iter().flatten();
+    /// Reads the extensions of a document that has been [repaired](super::repair) and [checked](super::schema_check).
+    pub(crate) fn of(root: &Map<String, Value>) -> Self {
         let extension = |value: &'_ Value, name: &str| value.get("extensions")?.get(name).cloned();
         let fallback = |buffer| extension(buffer, MESHOPT)?.get("fallback")?.as_bool();
-        let is_beside = |primitive: &Value| {
-            let position = primitive.pointer("/attributes/POSITION")?.as_u64()?;
-            root.get("accessors")?.get(usize::try_from(position).ok()?)?.get("bufferView")
-        };
-        let packed = |primitive: &Value| {
-            let extension = extension(primitive, DRACO).filter(|_| requires_draco || is_beside(primitive).is_none())?;
-            DracoExtension::of(&extension)
-        };
+        let packed = |primitive: &Value| DracoExtension::of(&extension(primitive, DRACO)?);
         let primitives = |mesh: &Value| -> Vec<_> {
             mesh.get("primitives").and_then(Value::as_array).into_iter().flatten().map(packed).collect()
         };
+        let instances = |(i, node)| Some((i, InstancingExtension::of(&extension(node, INSTANCING)?)?));
         Self {
-            compressed: list("bufferViews").map(|view| MeshoptExtension::of(&extension(view, MESHOPT)?)).collect(),
-            fallback: list("buffers").map(|buffer| fallback(buffer).unwrap_or(false)).collect(),
-            packed: list("meshes").map(primitives).collect(),
+            compressed: list(root, "bufferViews")
+                .iter()
+                .map(|view| MeshoptExtension::of(&extension(view, MESHOPT)?))
+                .collect(),
+            fallback: list(root, "buffers").iter().map(|buffer| fallback(buffer).unwrap_or(false)).collect(),
+            packed: list(root, "meshes").iter().map(primitives).collect(),
+            instances: list(root, "nodes").iter().enumerate().filter_map(instances).collect(),
         }
+    }
+}
+
+impl InstancingExtension {
+    fn of(value: &Value) -> Option<Self> {
+        let attributes = value.get("attributes")?.as_object()?;
+        let accessor = |name| attributes.get(name)?.as_u64().map(|accessor| accessor as usize);
+        let [translation, rotation, scale] = ["TRANSLATION", "ROTATION", "SCALE"].map(accessor);
+        Some(Self { translation, rotation, scale })
     }
 }
 

@@ -14,11 +14,11 @@ pub enum GltfError {
     /// The file is no glTF 2.0 document.
     #[error("not a glTF 2.0 document: {reason}; export the model again as glTF 2.0")]
     NotGltf { reason: String },
-    /// The document requires an extension that isn't supported.
-    #[error("/extensionsRequired/{place} is {name}, which isn't supported; export the model without it")]
-    Extension { place: usize, name: String },
+    /// The document requires an extension that changes the shape and isn't read, or that isn't known.
+    #[error("/extensionsRequired/{place} is {name}, {reason}; {remedy}")]
+    Extension { place: usize, name: String, reason: String, remedy: &'static str },
     /// A member of the document has a value that it can't have.
-    #[error("{pointer} {reason}; export the model again")]
+    #[error("{pointer} {reason}; {}", remedy(pointer))]
     Document { pointer: String, reason: String },
     /// A buffer could not be read.
     #[error("/buffers/{buffer} ({uri}) can't be read: {reason}")]
@@ -38,6 +38,16 @@ pub enum GltfError {
     /// The scene has no triangles.
     #[error("no triangles: {holds}")]
     Empty { holds: String },
+}
+
+/// Returns what a user can do about a member.
+fn remedy(pointer: &str) -> &'static str {
+    if pointer.starts_with("/skins/") || pointer.ends_with("/skin") {
+        // Vertices may lie anywhere before their joints place them.
+        "without its skin the shape isn't known: export the model again, or without bones and as it stands"
+    } else {
+        "export the model again"
+    }
 }
 
 impl From<BuildError> for GltfError {

@@ -19,7 +19,7 @@ const PER_VALUE: u64 = 72;
 /// Memory for an object's first node of members, in bytes.
 pub(super) const PER_OBJECT: u64 = 640;
 /// Memory for what is read from an object, in bytes.
-const PER_READ: u64 = 400;
+pub(super) const PER_READ: u64 = 400;
 
 /// Parses a text.
 ///
@@ -38,7 +38,27 @@ pub(super) fn parse(text: &[u8], budget: &Budget, progress: &Progress) -> Result
         |refused: MemoryRefused| GltfError::Document { pointer: "its JSON".to_owned(), reason: refused.into() };
     budget.borrow(shape.values * PER_VALUE + shape.objects * PER_OBJECT).map_err(too_large)?;
     budget.hold(shape.objects * PER_READ).map_err(too_large)?;
-    serde_json::from_slice(text).map_err(|error| GltfError::NotGltf { reason: reason(&error) })
+    let mut value = serde_json::from_slice(text).map_err(|error| GltfError::NotGltf { reason: reason(&error) })?;
+    make_whole(&mut value);
+    Ok(value)
+}
+
+/// Replaces floating-point numbers that are whole by integers, so that an index may be written as 4.0 or 4e0: JSON doesn't tell
+/// them apart (RFC 8259, section 6). Numbers from 2^53 on stay, since not every integer there is an f64.
+fn make_whole(value: &mut Value) {
+    const EXACT: f64 = (1_u64 << 53) as f64;
+    match value {
+        Value::Array(values) => values.iter_mut().for_each(make_whole),
+        Value::Object(object) => object.values_mut().for_each(make_whole),
+        Value::Number(number) if number.is_f64() => {
+            let float = number.as_f64().filter(|float| float.fract() == 0.0 && float.abs() < EXACT);
+            // -0.0 has no integer.
+            if let Some(float) = float.filter(|float| *float != 0.0 || float.is_sign_positive()) {
+                *number = (float as i64).into();
+            }
+        }
+        _ => {}
+    }
 }
 
 /// Returns the objects in one of an object's lists.
@@ -134,6 +154,14 @@ mod tests {
         let shape = of(br#"{"a[\"{[":[[1,2],{}],"b\\":"]"}"#);
         assert_eq!(shape, JsonSize { depth: 3, values: 7, objects: 2 });
         assert_eq!(of(b"]]]["), JsonSize { depth: 1, values: 1, objects: 0 });
+    }
+
+    #[test]
+    fn whole_numbers_may_be_written_as_floats() {
+        let text = br#"[4.0, {"a": 4e0}, -2.0, 0.5, -0.0, 1e300, 0.0]"#;
+        let value = parse(text, &Budget::unlimited(), &Progress::new()).expect("JSON");
+        let expected = serde_json::json!([4, { "a": 4 }, -2, 0.5, -0.0, 1e300, 0]);
+        assert_eq!(value, expected);
     }
 
     #[test]

@@ -19,28 +19,26 @@ pub(crate) struct Placed {
     pub order: Vec<usize>,
 }
 
-/// Places all nodes, and lists those of the default scene: the scene that the document names, or else its first scene,
-/// or else all nodes without a parent. Doesn't recurse, since chains of nodes may be long.
+/// Places all nodes, and lists those of the scene that the document names, or else all nodes; those that hide themselves, and what
+/// is below, are left out. Doesn't recurse, since chains of nodes may be long.
 ///
 /// # Errors
 /// [`GltfError::Document`] for a node with two parents, and for a node that is its own ancestor.
-pub(super) fn place(document: &Document) -> Result<Placed, GltfError> {
+pub(super) fn place(document: &Document, hiding: &[bool]) -> Result<Placed, GltfError> {
     let nodes: Vec<Node> = document.nodes().collect();
     let parents = parents(&nodes)?;
     let roots: Vec<usize> = (0..nodes.len()).filter(|&node| parents[node].is_none()).collect();
     let mut global = vec![DMat4::IDENTITY; nodes.len()];
-    let order = walk(&nodes, &roots);
+    let order = walk(&nodes, &roots, &[]);
     if order.len() < nodes.len() {
         return Err(circle(&parents, &order));
     }
     for &node in &order {
         let above = parents[node].map_or(DMat4::IDENTITY, |parent| global[parent]);
-        let own = local(&nodes[node]);
-        global[node] = if own == DMat4::IDENTITY { above } else { above * own };
+        global[node] = below(above, local(&nodes[node]));
     }
-    let scene = document.default_scene().or_else(|| document.scenes().next());
-    let roots = scene.map_or(roots, |scene| scene.nodes().map(|node| node.index()).collect());
-    Ok(Placed { global, shown: walk(&nodes, &roots), parents, order })
+    let roots = document.default_scene().map_or(roots, |scene| scene.nodes().map(|node| node.index()).collect());
+    Ok(Placed { global, shown: walk(&nodes, &roots, hiding), parents, order })
 }
 
 /// Returns the parent of each node.
@@ -71,12 +69,13 @@ fn circle(parents: &[Option<usize>], reached: &[usize]) -> GltfError {
     GltfError::Document { pointer: format!("/nodes/{node}/children"), reason }
 }
 
-fn walk(nodes: &[Node], roots: &[usize]) -> Vec<usize> {
+/// Returns nodes and what is below them, without those that are hidden.
+fn walk(nodes: &[Node], roots: &[usize], hiding: &[bool]) -> Vec<usize> {
     let mut seen = vec![false; nodes.len()];
     let mut order = Vec::new();
     let mut open: Vec<usize> = roots.iter().rev().copied().collect();
     while let Some(node) = open.pop() {
-        if !std::mem::replace(&mut seen[node], true) {
+        if !std::mem::replace(&mut seen[node], true) && hiding.get(node) != Some(&true) {
             order.push(node);
             let first = open.len();
             open.extend(nodes[node].children().map(|child| child.index()));
@@ -84,6 +83,11 @@ fn walk(nodes: &[Node], roots: &[usize]) -> Vec<usize> {
         }
     }
     order
+}
+
+/// Returns the product of two transforms. Most nodes have none: that is worth a shortcut where there are hundreds of thousands.
+pub(super) fn below(above: DMat4, own: DMat4) -> DMat4 {
+    if own == DMat4::IDENTITY { above } else { above * own }
 }
 
 /// Returns a node's own transform.

@@ -30,6 +30,9 @@ pub(super) struct PrimitiveReader {
     bad_uvs: usize,
     /// Vertices with unusable weights.
     bad_weights: usize,
+    /// Vertices that more than four joints move, and the largest part of a vertex's weights that was left out.
+    cut_weights: usize,
+    largest_cut: f64,
     details: DetailRepairs,
     /// What is wrong with attributes that a primitive can do without.
     pub notes: Notes,
@@ -84,11 +87,11 @@ impl PrimitiveReader {
         let name = name(mesh, primitive);
         let unpacked = accessors.unpacked.get(&[mesh.index(), primitive.index()]);
         let source = PrimitiveData { primitive, name: &name, accessors, unpacked };
-        let mut vertices = Vertices::new(source, pose, material.uvs)?;
+        let mut vertices = Vertices::new(source, pose, material.uvs, &mut self.notes)?;
         if details.is_some() {
             vertices.details = Some(VertexDetails::new(source, vertices.count, material.needs, &mut self.notes));
         }
-        let mut moving = binder.map(|binder| AnimatedVertices::new(source, &vertices, binder));
+        let mut moving = binder.map(|binder| AnimatedVertices::new(source, &vertices, pose.instance, binder));
         let list = primitive.indices().map(|accessor| match unpacked {
             Some(unpacked) => Ok(List::of(&unpacked.indices, 0)),
             None => accessors.indices(&accessor, &format!("indices of {name}")),
@@ -140,6 +143,8 @@ impl PrimitiveReader {
         self.without_normals += usize::from(repairs.no_normals > 0);
         self.bad_uvs += repairs.bad_uvs;
         self.bad_weights += repairs.bad_weights;
+        self.cut_weights += repairs.cut_weights;
+        self.largest_cut = self.largest_cut.max(repairs.largest_cut);
         if mode == Mode::Triangles {
             self.left_over += indices % 3;
         }
@@ -159,7 +164,13 @@ impl PrimitiveReader {
             (self.lines, "primitives of lines, left out"),
         ];
         let found = sentences.into_iter().filter(|(count, _)| *count > 0);
-        found.map(|(count, sentence)| format!("{sentence}: {count}.")).collect()
+        let mut found: Vec<_> = found.map(|(count, sentence)| format!("{sentence}: {count}.")).collect();
+        if self.cut_weights > 0 {
+            let (count, percent) = (self.cut_weights, self.largest_cut * 100.0);
+            let said = "vertices that more than four joints move, of which the four with the largest weights are kept";
+            found.push(format!("{said}: {count}. At most {percent:.2} % of a vertex's weights are left out."));
+        }
+        found
     }
 
     /// Returns what the document holds instead of triangles.

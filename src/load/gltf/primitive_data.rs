@@ -5,6 +5,7 @@ use ::gltf::{Primitive, Semantic};
 
 use super::accessor::List;
 use super::decompressed_primitive::DecompressedPrimitive;
+use super::notes::Notes;
 use super::{Accessors, GltfError};
 
 /// The displacements by a morph target at weight 1.
@@ -56,6 +57,26 @@ impl<'a> PrimitiveData<'a> {
         accessor.map(|accessor| self.list(&accessor, &semantic.to_string(), count)).transpose()
     }
 
+    /// Returns an attribute that the primitive can do without. If it can't be read, it is left out with a note.
+    pub(super) fn detail<const N: usize>(
+        &self,
+        semantic: Semantic,
+        count: usize,
+        notes: &mut Notes,
+    ) -> Option<List<'a, [f32; N]>> {
+        match self.attribute(semantic, count) {
+            Ok(list) => list,
+            Err(GltfError::Accessor { accessor, role, reason }) => {
+                notes.push_once(format!("/accessors/{accessor} ({role}) {reason}; it is left out."));
+                None
+            }
+            Err(other) => {
+                notes.push_once(format!("{other}; it is left out."));
+                None
+            }
+        }
+    }
+
     /// Returns an attribute's values, of which there must be as many as vertices.
     ///
     /// # Errors
@@ -67,18 +88,21 @@ impl<'a> PrimitiveData<'a> {
         count: usize,
     ) -> Result<List<'a, [f32; N]>, GltfError> {
         let role = format!("{attribute} of {}", self.name);
+        self.accessors.check_sound(accessor, &role)?;
         if accessor.count() != count {
             let reason = format!("has {} elements for {count} vertices", accessor.count());
             return Err(GltfError::Accessor { accessor: accessor.index(), role, reason });
         }
         match self.unpacked.and_then(|unpacked| unpacked.values(attribute)) {
             Some(values) => Ok(List::of(values, [0.0; N])),
-            // Draco data without it, where the accessor has no other data.
-            None if self.unpacked.is_some_and(|unpacked| unpacked.lacks(attribute)) => {
-                let reason = "isn't in the compressed data".to_owned();
-                Err(GltfError::Accessor { accessor: accessor.index(), role, reason })
-            }
-            None => self.accessors.list(accessor, &role),
+            None => match self.unpacked.and_then(|unpacked| unpacked.lacks(attribute)) {
+                // The accessor has no other data.
+                Some(reason) => {
+                    let reason = format!("can't be decompressed, since its primitive {reason}");
+                    Err(GltfError::Accessor { accessor: accessor.index(), role, reason })
+                }
+                None => self.accessors.list(accessor, &role),
+            },
         }
     }
 }

@@ -6,8 +6,9 @@ use ::gltf::accessor::Accessor;
 use ::gltf::mesh::Mode;
 use ::gltf::{Document, Mesh, Semantic};
 
+use super::extensions::InstancingExtension;
 use super::nodes::Placed;
-use super::{Accessors, GltfError, primitive};
+use super::{Accessors, GltfError, instances, primitive};
 use crate::load::memory_budget::Budget;
 use crate::mesh::build_limits::MAX_TRIANGLES;
 use crate::mesh::detail_table::DetailTable;
@@ -58,7 +59,7 @@ struct SceneSize {
 /// [`GltfError::Accessor`], and [`GltfError::TooLarge`].
 pub(crate) fn check(
     document: &Document,
-    placed: &Placed,
+    (placed, instances): (&Placed, &HashMap<usize, InstancingExtension>),
     accessors: &Accessors,
     budget: &Budget,
     beside: PerVertex,
@@ -75,7 +76,8 @@ pub(crate) fn check(
                 size
             }
         };
-        all.add(size);
+        let own = instances.get(&node.index()).filter(|_| node.skin().is_none());
+        all.add(size.times(own.map_or(1, |own| instances::count(document, own) as u64)));
         let joints = node.skin().map_or(0, |skin| skin.joints().len() as u64);
         all.elements = all.elements.saturating_add(joints);
     }
@@ -143,6 +145,18 @@ impl SceneSize {
             });
         }
         Ok(size)
+    }
+
+    /// Returns the size of so many instances.
+    fn times(self, count: u64) -> Self {
+        Self {
+            triangles: self.triangles.saturating_mul(count),
+            corners: self.corners.saturating_mul(count),
+            vertices: self.vertices.saturating_mul(count),
+            zeros: self.zeros.saturating_mul(count),
+            elements: self.elements.saturating_mul(count),
+            primitives: self.primitives.saturating_mul(count),
+        }
     }
 
     fn add(&mut self, other: Self) {

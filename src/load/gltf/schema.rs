@@ -43,8 +43,8 @@ pub(super) enum MemberKind {
     Attributes(fn(&str) -> bool),
     /// A list of morph targets, each like `Attributes`.
     Targets(fn(&str) -> bool),
-    /// Whole numbers of 32 bits, by any name.
-    Ids,
+    /// Whole numbers of 32 bits by attribute name; the function says which names are read.
+    Ids(fn(&str) -> bool),
 }
 
 use MemberKind::{
@@ -69,6 +69,10 @@ pub(super) const DRACO: &str = "KHR_draco_mesh_compression";
 /// The extensions that name another image of a texture.
 pub(super) const BASISU: &str = "KHR_texture_basisu";
 pub(super) const WEBP: &str = "EXT_texture_webp";
+/// The extension that shows a node's mesh several times.
+pub(super) const INSTANCING: &str = "EXT_mesh_gpu_instancing";
+/// The extension that hides nodes.
+pub(super) const VISIBILITY: &str = "KHR_node_visibility";
 /// The extension that transforms texture coordinates.
 pub(super) const TRANSFORM: &str = "KHR_texture_transform";
 
@@ -94,6 +98,7 @@ static NODE: &[Field] = &[
     may("rotation", Within { count: 4, least: -1.0, most: 1.0 }),
     may("scale", Numbers(Some(3))),
     may("weights", Numbers(None)),
+    may("extensions", Object(&[may(INSTANCING, Object(&[needed("attributes", Attributes(is_placement))]))])),
 ];
 
 static MESH: &[Field] = &[may("name", Name), needed("primitives", Objects(PRIMITIVE)), may("weights", Numbers(None))];
@@ -107,11 +112,11 @@ static PRIMITIVE: &[Field] = &[
     may("extensions", Object(&[may(DRACO, Object(PACKED))])),
 ];
 
-static PACKED: &[Field] = &[needed("bufferView", Index("bufferViews")), needed("attributes", Ids)];
+static PACKED: &[Field] = &[needed("bufferView", Index("bufferViews")), needed("attributes", Ids(is_attribute))];
 
 static SKIN: &[Field] = &[needed("joints", Indices("nodes")), may("inverseBindMatrices", Index("accessors"))];
 
-static ACCESSOR: &[Field] = &[
+pub(super) static ACCESSOR: &[Field] = &[
     may("bufferView", Index("bufferViews")),
     may("byteOffset", COUNT),
     needed("componentType", Code(&[5120, 5121, 5122, 5123, 5125, 5126])),
@@ -133,7 +138,7 @@ static SPARSE_INDICES: &[Field] = &[
     needed("componentType", Code(&[5121, 5123, 5125])),
 ];
 
-static VIEW: &[Field] = &[
+pub(super) static VIEW: &[Field] = &[
     needed("buffer", Index("buffers")),
     may("byteOffset", COUNT),
     needed("byteLength", COUNT),
@@ -151,22 +156,33 @@ static COMPRESSED: &[Field] = &[
     may("filter", Word(&["NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"])),
 ];
 
-static BUFFER: &[Field] = &[
+pub(super) static BUFFER: &[Field] = &[
     needed("byteLength", COUNT),
     may("uri", Text),
     may("extensions", Object(&[may(MESHOPT, Object(&[may("fallback", Flag)]))])),
 ];
 
+/// Returns whether an attribute of a primitive is read.
 pub(super) fn is_attribute(name: &str) -> bool {
-    let known = ["POSITION", "NORMAL", "JOINTS_0", "WEIGHTS_0"].contains(&name);
-    known || is_detail(name) || name.strip_prefix("TEXCOORD_").is_some_and(|set| set.parse::<u32>().is_ok())
+    let is_influence = ["JOINTS_", "WEIGHTS_"].iter().any(|prefix| is_numbered(name, prefix));
+    ["POSITION", "NORMAL"].contains(&name) || is_influence || is_detail(name)
 }
 
-/// Returns whether an attribute is one that a primitive can do without.
+/// Returns whether an attribute is one that a primitive can do without, since it doesn't change the shape.
 pub(super) fn is_detail(name: &str) -> bool {
-    ["COLOR_0", "TANGENT"].contains(&name)
+    ["COLOR_0", "TANGENT"].contains(&name) || is_numbered(name, "TEXCOORD_")
 }
 
-fn is_displacement(name: &str) -> bool {
+fn is_numbered(name: &str, prefix: &str) -> bool {
+    name.strip_prefix(prefix).is_some_and(|set| set.parse::<u32>().is_ok())
+}
+
+/// Returns whether an attribute of instances is read.
+pub(super) fn is_placement(name: &str) -> bool {
+    ["TRANSLATION", "ROTATION", "SCALE"].contains(&name)
+}
+
+/// Returns whether an attribute of a morph target is read.
+pub(super) fn is_displacement(name: &str) -> bool {
     ["POSITION", "NORMAL"].contains(&name)
 }

@@ -13,10 +13,33 @@ use super::schema::{Field, MemberKind};
 ///
 /// # Errors
 /// [`GltfError::Document`] for the first member that is wrong.
-pub(super) fn check(document: &mut Map<String, Value>, schema: &'static [Field]) -> Result<(), GltfError> {
-    let count = |field: &Field| Some((field.name, document.get(field.name)?.as_array()?.len() as u64));
-    let checker = Checker { counts: schema.iter().filter_map(count).collect() };
-    checker.object(document, schema, &JsonPointer(None, Part::Root))
+pub(super) fn check(
+    document: &mut Map<String, Value>,
+    schema: &'static [Field],
+    replaced: &Replaced,
+) -> Result<(), GltfError> {
+    Checker::new(document, schema, replaced).object(document, schema, &JsonPointer(None, Part::Root))
+}
+
+/// Which elements of a document's lists were replaced by empty ones, and aren't checked.
+#[derive(Debug, Default)]
+pub(crate) struct Replaced {
+    pub accessors: Vec<bool>,
+    pub views: Vec<bool>,
+}
+
+impl Replaced {
+    fn has(&self, path: &JsonPointer) -> bool {
+        let JsonPointer(Some(JsonPointer(Some(JsonPointer(None, _)), Part::Name(list))), Part::Place(place)) = path
+        else {
+            return false;
+        };
+        match *list {
+            "accessors" => self.accessors.get(*place) == Some(&true),
+            "bufferViews" => self.views.get(*place) == Some(&true),
+            _ => false,
+        }
+    }
 }
 
 /// A place in the document.
@@ -52,12 +75,35 @@ impl JsonPointer<'_> {
     }
 }
 
-struct Checker {
+/// Checks objects of one document.
+pub(super) struct Checker<'a> {
     /// The number of elements of each of the document's lists.
     counts: HashMap<&'static str, u64>,
+    replaced: &'a Replaced,
 }
 
-impl Checker {
+impl<'a> Checker<'a> {
+    pub(super) fn new(document: &Map<String, Value>, schema: &'static [Field], replaced: &'a Replaced) -> Self {
+        let count = |field: &Field| Some((field.name, document.get(field.name)?.as_array()?.len() as u64));
+        Self { counts: schema.iter().filter_map(count).collect(), replaced }
+    }
+
+    /// Checks one element of one of the document's lists.
+    ///
+    /// # Errors
+    /// [`GltfError::Document`] for the first member that is wrong.
+    pub(super) fn element(
+        &self,
+        list: &str,
+        place: usize,
+        value: &mut Value,
+        fields: &'static [Field],
+    ) -> Result<(), GltfError> {
+        let path = JsonPointer(None, Part::Root);
+        let path = JsonPointer(Some(&path), Part::Name(list));
+        self.value(value, &MemberKind::Object(fields), &JsonPointer(Some(&path), Part::Place(place)))
+    }
+
     fn object(
         &self,
         object: &mut Map<String, Value>,
@@ -114,12 +160,13 @@ impl Checker {
                 Value::Object(object) => self.object(object, fields, path),
                 other => path.should_be("an object", other),
             },
-            MemberKind::Objects(fields) => {
-                each(value, path, |value, path| self.value(value, &MemberKind::Object(fields), path))
-            }
+            MemberKind::Objects(fields) => each(value, path, |value, path| match self.replaced.has(path) {
+                true => Ok(()),
+                false => self.value(value, &MemberKind::Object(fields), path),
+            }),
             MemberKind::Attributes(is_read) => self.attributes(value, *is_read, path),
             MemberKind::Targets(is_read) => each(value, path, |value, path| self.attributes(value, *is_read, path)),
-            MemberKind::Ids => ids(value, path),
+            MemberKind::Ids(is_read) => ids(value, *is_read, path),
         }
     }
 
@@ -143,9 +190,11 @@ impl Checker {
     }
 }
 
-fn ids(value: &Value, path: &JsonPointer) -> Result<(), GltfError> {
+/// Checks an object whose members are ids of attributes. Those of attributes that aren't read may be anything.
+fn ids(value: &Value, is_read: fn(&str) -> bool, path: &JsonPointer) -> Result<(), GltfError> {
     let Value::Object(ids) = value else { return path.should_be("an object", value) };
-    ids.iter().try_for_each(|(name, id)| whole(id, 0, u64::from(u32::MAX), &JsonPointer(Some(path), Part::Name(name))))
+    let mut read = ids.iter().filter(|(name, _)| is_read(name));
+    read.try_for_each(|(name, id)| whole(id, 0, u64::from(u32::MAX), &JsonPointer(Some(path), Part::Name(name))))
 }
 
 fn each(

@@ -6,6 +6,7 @@ mod lights;
 mod materials;
 mod mutations;
 mod packed;
+mod scenes;
 mod textures;
 mod variants;
 pub(crate) use mutations::seeds;
@@ -113,7 +114,7 @@ impl Draft {
 
 /// Reads a document that names no files.
 fn read_bytes(bytes: &[u8]) -> Result<LoadedMesh, GltfError> {
-    read(bytes.to_vec(), Path::new("nowhere"), "draft", None, &Limits::default(), &Progress::new())
+    read(bytes.to_vec(), Path::new("nowhere"), "draft", Selection::default(), &Limits::default(), &Progress::new())
 }
 
 const TRIANGLE: [[f32; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];

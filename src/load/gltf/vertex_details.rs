@@ -5,7 +5,6 @@ use ::gltf::Semantic;
 use ::gltf::accessor::Dimensions;
 use glam::{DMat3, DVec3, Vec2, Vec3, Vec4};
 
-use super::GltfError;
 use super::accessor::List;
 use super::materials::DetailNeeds;
 use super::notes::Notes;
@@ -46,7 +45,7 @@ impl<'a> VertexDetails<'a> {
         let has_normals = source.primitive.get(&Semantic::Normals).is_some();
         let mut read = Self {
             sets: [0, 1].map(|set| {
-                let list = needs.sets[set].then(|| attribute(source, Semantic::TexCoords(set as u32), count, notes));
+                let list = needs.sets[set].then(|| source.detail(Semantic::TexCoords(set as u32), count, notes));
                 list.flatten()
             }),
             colors: colors(source, count, notes),
@@ -54,7 +53,7 @@ impl<'a> VertexDetails<'a> {
             repairs: DetailRepairs::default(),
         };
         if needs.tangents && has_normals {
-            read.tangents = attribute(source, Semantic::Tangents, count, notes);
+            read.tangents = source.detail(Semantic::Tangents, count, notes);
         }
         let is_missing = (0..2).any(|set| needs.sets[set] && read.sets[set].is_none());
         read.repairs.missing_uvs = usize::from(is_missing);
@@ -107,26 +106,7 @@ impl<'a> VertexDetails<'a> {
 fn colors<'a>(source: PrimitiveData<'a>, count: usize, notes: &mut Notes) -> Option<Colors<'a>> {
     let semantic = Semantic::Colors(0);
     match source.primitive.get(&semantic)?.dimensions() {
-        Dimensions::Vec3 => attribute(source, semantic, count, notes).map(Colors::Rgb),
-        _ => attribute(source, semantic, count, notes).map(Colors::Rgba),
-    }
-}
-
-fn attribute<'a, const N: usize>(
-    source: PrimitiveData<'a>,
-    semantic: Semantic,
-    count: usize,
-    notes: &mut Notes,
-) -> Option<List<'a, [f32; N]>> {
-    match source.attribute(semantic, count) {
-        Ok(list) => list,
-        Err(GltfError::Accessor { accessor, role, reason }) => {
-            notes.push(format!("/accessors/{accessor} ({role}) {reason}; it is left out."));
-            None
-        }
-        Err(other) => {
-            notes.push(format!("{other}; it is left out."));
-            None
-        }
+        Dimensions::Vec3 => source.detail(semantic, count, notes).map(Colors::Rgb),
+        _ => source.detail(semantic, count, notes).map(Colors::Rgba),
     }
 }

@@ -6,6 +6,7 @@ use glam::{DMat3, DMat4, Vec2, Vec3};
 use super::GltfError;
 use super::accessor::List;
 use super::material_source::Uvs;
+use super::notes::Notes;
 use super::primitive_data::{MorphTarget, PrimitiveData};
 use super::uv_transform::UvTransform;
 use super::vertex_details::VertexDetails;
@@ -15,10 +16,15 @@ use crate::mesh::mesh_builder::InputCorner;
 use crate::mesh::normals::GivenNormal;
 use crate::mesh::rig::LARGEST_COORDINATE;
 
+/// The greatest number of joints that move a vertex.
+const MOST_JOINTS: usize = 4;
+
 /// The pose of a primitive's node.
 pub(super) struct NodePose<'a> {
-    /// The transform from the node's own space to the scene's.
+    /// The transform from the mesh's space to the scene's.
     pub global: DMat4,
+    /// The transform from the mesh's space to the node's.
+    pub instance: DMat4,
     /// The matrices of the joints (see [`super::skin`]); empty without a skin.
     pub joints: &'a [DMat4],
     /// The weights of the morph targets; missing ones are 0.
@@ -36,7 +42,7 @@ pub(super) struct Vertex {
 }
 
 /// Counts of repaired vertices.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct VertexRepairs {
     /// Vertices of a primitive without normals.
     pub no_normals: usize,
@@ -45,35 +51,87 @@ pub(super) struct VertexRepairs {
     /// Vertices whose weights don't add up to anything, or that name a joint that doesn't exist; they stay where the
     /// mesh has them.
     pub bad_weights: usize,
+    /// Vertices that more than [`MOST_JOINTS`] joints move.
+    pub cut_weights: usize,
+    /// The largest part of a vertex's weights that was left out, of 1.
+    pub largest_cut: f64,
 }
 
-/// The joints of a skin that move each vertex, and their weights.
+/// The joints of a skin that move each vertex, and their weights, in sets of four.
 struct Influences<'a> {
-    joints: List<'a, [f32; 4]>,
-    weights: List<'a, [f32; 4]>,
+    sets: Vec<[List<'a, [f32; 4]>; 2]>,
+}
+
+/// What is done with a vertex's joints.
+enum Influenced {
+    /// They are used; this part of their weights is left out.
+    By(f64),
+    /// They can't be used.
+    Unusable,
 }
 
 impl<'a> Influences<'a> {
     /// Returns the joints and weights of a primitive; none without a skin.
-    fn read(source: PrimitiveData<'a>, pose: &NodePose, count: usize) -> Result<Option<Self>, GltfError> {
+    fn read(
+        source: PrimitiveData<'a>,
+        pose: &NodePose,
+        count: usize,
+        notes: &mut Notes,
+    ) -> Result<Option<Self>, GltfError> {
         if pose.joints.is_empty() {
             return Ok(None);
         }
-        let joints = source.attribute::<4>(Semantic::Joints(0), count)?;
-        let weights = source.attribute::<4>(Semantic::Weights(0), count)?;
-        Ok(joints.zip(weights).map(|(joints, weights)| Self { joints, weights }))
+        let mut sets = Vec::new();
+        for set in 0.. {
+            let joints = source.attribute::<4>(Semantic::Joints(set), count)?;
+            let weights = source.attribute::<4>(Semantic::Weights(set), count)?;
+            match (joints, weights) {
+                (Some(joints), Some(weights)) => sets.push([joints, weights]),
+                (None, None) => break,
+                (joints, _) => {
+                    let (has, lacks) = if joints.is_some() { ("JOINTS", "WEIGHTS") } else { ("WEIGHTS", "JOINTS") };
+                    let said = format!("{} has {has}_{set} but no {lacks}_{set}; it is left out.", source.name);
+                    notes.push_once(said);
+                    break;
+                }
+            }
+        }
+        Ok((!sets.is_empty()).then_some(Self { sets }))
     }
 
     /// Collects the joints of a vertex, with weights that are scaled to add up to 1, since quantised weights don't
-    /// exactly. Returns false if they are unusable with a skin of `joint_count` joints.
-    fn of(&self, vertex: usize, joint_count: usize, found: &mut Vec<(usize, f64)>) -> bool {
-        let slots = self.joints.get(vertex).into_iter().zip(self.weights.get(vertex));
+    /// exactly. Of more than [`MOST_JOINTS`] those with the largest weights are kept. The skin has `joint_count` joints.
+    fn of(&self, vertex: usize, joint_count: usize, found: &mut Vec<(usize, f64)>) -> Influenced {
+        let slots =
+            self.sets.iter().flat_map(|[joints, weights]| joints.get(vertex).into_iter().zip(weights.get(vertex)));
         let slots = slots.filter(|(_, weight)| *weight != 0.0);
         let total: f64 = slots.clone().map(|(_, weight)| f64::from(weight)).sum();
         found.clear();
         found.extend(slots.map(|(joint, weight)| (joint as usize, f64::from(weight) / total)));
-        total.is_finite() && total > 0.0 && found.iter().all(|(joint, _)| *joint < joint_count)
+        if !total.is_finite() || total <= 0.0 || found.iter().any(|(joint, _)| *joint >= joint_count) {
+            return Influenced::Unusable;
+        }
+        Influenced::By(if found.len() > MOST_JOINTS { cut(found) } else { 0.0 })
     }
+}
+
+/// Keeps the joints with the largest weights, whose sum becomes 1 again. Returns the sum of the others.
+fn cut(found: &mut Vec<(usize, f64)>) -> f64 {
+    found.sort_by_key(|(joint, _)| *joint);
+    found.dedup_by(|next, kept| {
+        let is_same = next.0 == kept.0;
+        kept.1 += if is_same { next.1 } else { 0.0 };
+        is_same
+    });
+    if found.len() <= MOST_JOINTS {
+        return 0.0;
+    }
+    // A stable sort, so that of equal weights those of the first joints are kept.
+    found.sort_by(|(_, a), (_, b)| b.total_cmp(a));
+    let left_out = found.drain(MOST_JOINTS..).map(|(_, weight)| weight).sum::<f64>();
+    let kept: f64 = found.iter().map(|(_, weight)| weight).sum();
+    found.iter_mut().for_each(|(_, weight)| *weight /= kept);
+    left_out
 }
 
 /// Reads a primitive's vertices, and puts them into their rest pose.
@@ -96,11 +154,16 @@ pub(super) struct Vertices<'a> {
 }
 
 impl<'a> Vertices<'a> {
-    /// Prepares to read; `uvs` says which texture coordinates.
+    /// Prepares to read; `uvs` says which texture coordinates. Texture coordinates that can't be read are left out, with a note.
     ///
     /// # Errors
     /// [`GltfError::Accessor`] and [`GltfError::Primitive`].
-    pub(super) fn new(source: PrimitiveData<'a>, pose: &'a NodePose<'a>, uvs: Uvs) -> Result<Self, GltfError> {
+    pub(super) fn new(
+        source: PrimitiveData<'a>,
+        pose: &'a NodePose<'a>,
+        uvs: Uvs,
+        notes: &mut Notes,
+    ) -> Result<Self, GltfError> {
         let positions = source.primitive.get(&Semantic::Positions).ok_or_else(|| source.problem("has no positions"))?;
         let count = positions.count();
         let weights = pose.weights.iter().copied();
@@ -111,11 +174,11 @@ impl<'a> Vertices<'a> {
             count,
             positions: source.list(&positions, "POSITION", count)?,
             normals: source.attribute(Semantic::Normals, count)?,
-            uvs: source.attribute(Semantic::TexCoords(uvs.set), count)?,
+            uvs: source.detail(Semantic::TexCoords(uvs.set), count, notes),
             targets: weighed
                 .map(|(target, weight)| Ok((weight, source.target(&target, count)?)))
                 .collect::<Result<_, GltfError>>()?,
-            influences: Influences::read(source, pose, count)?,
+            influences: Influences::read(source, pose, count, notes)?,
             joints: None,
             details: None,
             repairs: VertexRepairs::default(),
@@ -189,9 +252,15 @@ impl<'a> Vertices<'a> {
     fn matrix(&mut self, i: usize) -> DMat4 {
         let Some(influences) = &self.influences else { return self.pose.global };
         let mut joints = self.joints.take().unwrap_or_default();
-        if !influences.of(i, self.pose.joints.len(), &mut joints) {
-            self.repairs.bad_weights += 1;
-            return DMat4::IDENTITY;
+        match influences.of(i, self.pose.joints.len(), &mut joints) {
+            Influenced::By(cut) => {
+                self.repairs.cut_weights += usize::from(cut > 0.0);
+                self.repairs.largest_cut = self.repairs.largest_cut.max(cut);
+            }
+            Influenced::Unusable => {
+                self.repairs.bad_weights += 1;
+                return DMat4::IDENTITY;
+            }
         }
         let weighed = |sum, &(joint, weight): &(usize, f64)| sum + self.pose.joints[joint] * weight;
         let matrix = joints.iter().fold(DMat4::ZERO, weighed);

@@ -47,12 +47,13 @@ impl<'a> Values<'a> {
     ///
     /// # Errors
     /// [`ReadError::Broken`].
-    pub(super) fn check(&self, element: &Element) -> Result<(), ReadError> {
+    pub(super) fn check(&mut self, element: &Element) -> Result<(), ReadError> {
         let (left, least) = self.room(element);
         let needed = element.count.checked_mul(least);
         if needed.is_some_and(|needed| needed <= left as u64) {
             return Ok(());
         }
+        self.ends = true;
         let Element { name, count, .. } = element;
         let needed =
             needed.map_or("more bytes than any file has".to_owned(), |needed| format!("at least {needed} bytes"));

@@ -8,6 +8,7 @@ mod members;
 mod much;
 mod packed;
 mod resources;
+mod unused;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
@@ -71,7 +72,16 @@ impl Case {
 
     fn attempt(&self) -> Result<String, String> {
         let start = time();
-        let read = || read(self.bytes.clone(), &self.folder, "hostile", None, &Limits::default(), &Progress::new());
+        let read = || {
+            read(
+                self.bytes.clone(),
+                &self.folder,
+                "hostile",
+                Selection::default(),
+                &Limits::default(),
+                &Progress::new(),
+            )
+        };
         let result = catch_unwind(AssertUnwindSafe(read)).map_err(|_| "panics".to_owned())?;
         let took = time() - start;
         let answer = match (result, &self.gets) {
@@ -112,6 +122,7 @@ fn hostile_documents_get_the_answers_in_the_table() {
     cases.extend(much::cases());
     cases.extend(packed::cases());
     cases.extend(resources::cases(&folder));
+    cases.extend(unused::cases());
     let names: std::collections::HashSet<_> = cases.iter().map(|case| case.name).collect();
     assert!(cases.len() >= 130 && names.len() == cases.len(), "{} of {}", names.len(), cases.len());
     let answers: Vec<_> = cases.iter().map(Case::answer).collect();

@@ -49,6 +49,7 @@ fn subjects() -> Vec<Subject> {
         Subject::own("something of everything", rich().glb()),
         Subject::own("a material with everything", materials::everything().document().to_string().into_bytes()),
         Subject::own("lights of every kind", lights::of_every_kind().document().to_string().into_bytes()),
+        Subject::own("scenes and instances", scenes::of_every_kind().document().to_string().into_bytes()),
         Subject::own("a compressed grid", compressed::grid().glb()),
         Subject::own("a packed grid", packed::grid(packed::Order::Walked).glb()),
         Subject::own("a packed triangle that is skinned", packed::skinned().glb()),
@@ -70,6 +71,7 @@ pub(crate) fn seeds() -> Vec<(&'static str, String, Vec<u8>)> {
         ("rich", rich()),
         ("materials", materials::everything()),
         ("lights", lights::of_every_kind()),
+        ("scenes", scenes::of_every_kind()),
         ("compressed", compressed::grid()),
         ("packed", packed::grid(packed::Order::Walked)),
         ("packed-skinned", packed::skinned()),
@@ -178,7 +180,9 @@ fn mutations_become_a_mesh_or_a_sentence() {
         let mut bytes = subject.bytes.clone();
         mutate(&mut bytes, &mut random);
         let start = time();
-        let reading = || read(bytes.clone(), &subject.folder, "mutated", None, &Limits::default(), &Progress::new());
+        let reading = || {
+            read(bytes.clone(), &subject.folder, "mutated", Selection::default(), &Limits::default(), &Progress::new())
+        };
         let result = catch_unwind(AssertUnwindSafe(reading));
         let took = time() - start;
         slowest = slowest.max(took);

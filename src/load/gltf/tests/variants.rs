@@ -22,7 +22,15 @@ fn draft() -> Draft {
 
 fn loaded(draft: &Draft, variant: Option<&str>) -> LoadedMesh {
     let bytes = draft.document().to_string().into_bytes();
-    read(bytes, Path::new("nowhere"), "draft", variant, &Limits::default(), &Progress::new()).expect("triangles")
+    read(
+        bytes,
+        Path::new("nowhere"),
+        "draft",
+        Selection { variant, ..Selection::default() },
+        &Limits::default(),
+        &Progress::new(),
+    )
+    .expect("triangles")
 }
 
 #[test]
@@ -63,7 +71,13 @@ fn a_variant_that_is_not_there_is_an_error_with_the_names() {
     let folder = tempfile::tempdir().expect("a writable temporary folder");
     let path = folder.path().join("lamp.gltf");
     std::fs::write(&path, draft().document().to_string()).expect("a writable temporary folder");
-    let load = |source: Source, name| source.load_variant(Some(name), &Limits::default(), &Progress::new());
+    let load = |source: Source, name| {
+        source.load_selected(
+            Selection { variant: Some(name), ..Selection::default() },
+            &Limits::default(),
+            &Progress::new(),
+        )
+    };
     assert_eq!(load(Source::File(path.clone()), "night").expect("a variant").mesh.materials.len(), 2);
     let error = load(Source::File(path), "Night").expect_err("another name");
     assert!(matches!(error, LoadError::NoVariant { .. }));

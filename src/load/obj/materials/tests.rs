@@ -67,7 +67,7 @@ fn missing_and_broken_files_cause_warnings() {
     let mesh = read(&folder, libraries, &["a", "b", "c"]);
     assert!(mesh.materials.iter().all(|material| material.texture.is_none()));
     let expected = [
-        ("the material file \"/etc/passwd\" is left out: ", "passwd can't be read"),
+        ("the material file \"/etc/passwd\" is left out: ", "passwd: there is no such file"),
         ("the material file \"../m.mtl\" is left out: ", "with .."),
         ("the material file \"gone.mtl\" is left out: ", "gone.mtl"),
         ("the material file \"maps\" is left out: ", "is not a file"),

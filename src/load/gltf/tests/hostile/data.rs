@@ -60,11 +60,13 @@ fn refused(name: &'static str, draft: &Draft, expected: &str) -> Case {
 
 pub(super) fn cases() -> Vec<Case> {
     let mode = |mode: u32| changed(|draft| draft.root["meshes"][0]["primitives"][0]["mode"] = json!(mode));
-    let short_skin = changed(|draft| {
-        let binds = draft.floats("MAT4", &glam::Mat4::IDENTITY.to_cols_array());
-        draft.root["nodes"] = json!([{ "mesh": 0, "skin": 0 }, {}]);
-        draft.root["skins"] = json!([{ "joints": [1, 1], "inverseBindMatrices": binds }]);
-    });
+    let mut short_skin = skinned(0, 1.0);
+    let binds = short_skin.floats("MAT4", &glam::Mat4::IDENTITY.to_cols_array());
+    short_skin.root["skins"] = json!([{ "joints": [1, 1], "inverseBindMatrices": binds }]);
+    let mut jointless = skinned(0, 1.0);
+    jointless.root["skins"] = json!([{ "joints": [1, 9] }]);
+    let mut skinless = skinned(0, 1.0);
+    skinless.root["nodes"][0]["skin"] = json!(5);
     vec![
         Case::with(
             "a count of 2^62",
@@ -132,12 +134,7 @@ pub(super) fn cases() -> Vec<Case> {
             json!(2),
             "Accessor | /accessors/1 | NORMAL | /meshes/0/primitives/0 | \"thing\" | 2 | 3",
         ),
-        Case::with(
-            "no positions",
-            "/meshes/0/primitives/0/attributes",
-            json!({}),
-            "Document | /meshes/0/primitives/0/attributes/POSITION | missing",
-        ),
+        Case::with("no positions", "/meshes/0/primitives/0/attributes", json!({}), "Empty | 1 primitives | empty"),
         refused(
             "sparse values beyond the list",
             &sparse(1, 9),
@@ -179,7 +176,9 @@ pub(super) fn cases() -> Vec<Case> {
             json!(0),
             "Accessor | /accessors/0 | /meshes/0/primitives/0 | \"thing\" | Vec3 | F32",
         ),
-        refused("fewer matrices than joints", &short_skin, "Accessor | /accessors/2 | skin 0 | 1 | 2"),
+        refused("fewer matrices than joints", &short_skin, "Accessor | /accessors/4 | skin 0 | 1 | 2"),
+        refused("a joint that isn't there", &jointless, "Document | /skins/0/joints/1 | 9 | /nodes | 2"),
+        refused("a skin that isn't there", &skinless, "Document | /nodes/0/skin | 5 | /skins | 1"),
         refused("points only", &mode(0), "Empty | 1 | points | 0 | lines"),
         refused("lines only", &mode(1), "Empty | 0 | points | 1 | lines"),
         refused(

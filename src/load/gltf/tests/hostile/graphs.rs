@@ -37,9 +37,15 @@ pub(super) fn cases() -> Vec<Case> {
             nodes(vec![json!({ "mesh": 0, "children": [0] })]),
             "Document | /nodes/0/children | 0 | ancestor",
         ),
-        Case::refused(
-            "a circle beside a tree",
+        Case::new(
+            "a circle beside the scene",
             nodes(vec![json!({ "children": [1] }), json!({ "children": [0] }), json!({ "mesh": 0 })]),
+            Gets::Read,
+        ),
+        Case::refused(
+            "a circle beside a tree, without scenes",
+            nodes(vec![json!({ "children": [1] }), json!({ "children": [0] }), json!({ "mesh": 0 })])
+                .replace("\"scenes\"", "\"others\""),
             "Document | /nodes/0/children | 0 | ancestor",
         ),
         Case::refused("a circle of 200,000", nodes(circle), "Document | /nodes/0/children | 0 | ancestor"),

@@ -1,0 +1,207 @@
+//! Which extensions change the shape, and what is said of those that aren't read.
+//!
+//! Source: Khronos, glTF extension registry, <https://github.com/KhronosGroup/glTF/blob/main/extensions/README.md>, and the
+//! registries of VRM and of the Open Metaverse Interoperability group.
+
+use serde_json::{Map, Value};
+
+use super::GltfError;
+use super::notes::Notes;
+use super::schema::{BASISU, DRACO, INSTANCING, MESHOPT, TRANSFORM, VISIBILITY, WEBP};
+use crate::load::uri::shown;
+
+/// How an extension changes a model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Effect {
+    /// It is read, or it changes nothing of the shape at rest: looks, light, sound, behaviour, descriptions.
+    None,
+    /// It changes the shape and isn't read.
+    Shape {
+        /// What it does to the model.
+        does: &'static str,
+        /// What a user can do.
+        remedy: &'static str,
+    },
+}
+
+/// How many unknown extensions a sentence names.
+const NAMED: usize = 5;
+
+const EXPORT: &str = "export the model without it";
+
+/// The extensions whose effect is known, besides those whose [names](concerns_looks) tell it.
+const KNOWN: [(&str, Effect); 49] = [
+    ("AGI_articulations", shape("places parts by articulations", EXPORT)),
+    ("AGI_stk_metadata", Effect::None),
+    ("CESIUM_primitive_outline", Effect::None),
+    ("EXT_instance_features", Effect::None),
+    ("EXT_mesh_features", Effect::None),
+    (INSTANCING, Effect::None),
+    ("EXT_mesh_manifold", Effect::None),
+    ("EXT_mesh_primitive_edge_visibility", Effect::None),
+    (MESHOPT, Effect::None),
+    ("EXT_primitive_voxels", shape("makes voxels of its primitives", "export the voxels as triangles")),
+    ("EXT_structural_metadata", Effect::None),
+    ("FB_geometry_metadata", Effect::None),
+    ("GODOT_single_root", Effect::None),
+    ("GRIFFEL_bim_data", Effect::None),
+    ("KHR_animation_pointer", Effect::None),
+    ("KHR_audio_emitter", Effect::None),
+    ("KHR_collision_shapes", Effect::None),
+    (DRACO, Effect::None),
+    ("KHR_gaussian_splatting", shape("makes splats of points", "convert the splats to triangles")),
+    ("KHR_implicit_shapes", Effect::None),
+    ("KHR_interactivity", Effect::None),
+    ("KHR_mesh_quantization", Effect::None),
+    (
+        "KHR_meshopt_compression",
+        shape(
+            "compresses vertices and indices",
+            "decompress the model first, or compress it with EXT_meshopt_compression, for example with gltfpack",
+        ),
+    ),
+    ("KHR_node_hoverability", Effect::None),
+    ("KHR_node_selectability", Effect::None),
+    (VISIBILITY, Effect::None),
+    ("KHR_physics_rigid_bodies", Effect::None),
+    ("KHR_techniques_webgl", shape("has shaders of its own, which may move vertices", EXPORT)),
+    ("KHR_xmp", Effect::None),
+    ("KHR_xmp_json_ld", Effect::None),
+    ("MAXAR_image_ortho", Effect::None),
+    ("MAXAR_mesh_variants", shape("has several variants of its meshes, of which the first is shown", EXPORT)),
+    ("MOZ_hubs_components", Effect::None),
+    ("MPEG_accessor_timed", shape("changes vertices over time", EXPORT)),
+    ("MPEG_audio_spatial", Effect::None),
+    ("MPEG_media", Effect::None),
+    ("MPEG_mesh_linking", shape("moves meshes with others", EXPORT)),
+    ("MPEG_scene_dynamic", shape("changes the scene over time", EXPORT)),
+    // The node that has it is the finest level.
+    ("MSFT_lod", Effect::None),
+    ("MSFT_packing_normalRoughnessMetallic", Effect::None),
+    ("MSFT_packing_occlusionRoughnessMetallic", Effect::None),
+    ("OMI_physics_body", Effect::None),
+    ("OMI_physics_shape", Effect::None),
+    ("VRM", Effect::None),
+    ("VRMC_node_constraint", Effect::None),
+    ("VRMC_springBone", Effect::None),
+    ("VRMC_springBone_extended_collider", Effect::None),
+    ("VRMC_vrm", Effect::None),
+    ("VRMC_vrm_animation", Effect::None),
+];
+
+const fn shape(does: &'static str, remedy: &'static str) -> Effect {
+    Effect::Shape { does, remedy }
+}
+
+/// Returns whether an extension is one of materials, textures or lights, whose names say so behind the vendor's prefix.
+fn concerns_looks(name: &str) -> bool {
+    let subject = name.split_once('_').map_or("", |(_, subject)| subject);
+    [BASISU, WEBP, TRANSFORM].contains(&name)
+        || ["materials_", "texture_", "lights_"].iter().any(|prefix| subject.starts_with(prefix))
+}
+
+/// Returns an extension's effect; none if it isn't known.
+fn effect(name: &str) -> Option<Effect> {
+    if concerns_looks(name) {
+        return Some(Effect::None);
+    }
+    KNOWN.iter().find(|(known, _)| *known == name).map(|(_, effect)| *effect)
+}
+
+/// Checks that the shape can be known without the extensions that aren't read. Says which extensions that the document only uses
+/// change the shape, or aren't known.
+///
+/// # Errors
+/// [`GltfError::Extension`] for the first required extension that changes the shape or isn't known.
+pub(super) fn check(root: &Map<String, Value>, notes: &mut Notes) -> Result<(), GltfError> {
+    for (place, name) in names(root, "extensionsRequired") {
+        let (reason, remedy) = match effect(name) {
+            Some(Effect::None) => continue,
+            Some(Effect::Shape { does, remedy }) => (format!("which {does} and isn't read"), remedy),
+            None => ("which isn't known, and may change the shape".to_owned(), EXPORT),
+        };
+        return Err(GltfError::Extension { place, name: shown(name), reason, remedy });
+    }
+    let mut unknown = Vec::new();
+    for (_, name) in names(root, "extensionsUsed") {
+        match effect(name) {
+            Some(Effect::None) => {}
+            Some(Effect::Shape { does, .. }) => {
+                notes.push(format!("{name} isn't read: it {does}. What is shown may differ from what the file means."));
+            }
+            None if unknown.contains(&name) => {}
+            None => unknown.push(name),
+        }
+        if unknown.len() > NAMED {
+            break;
+        }
+    }
+    if let Some(sentence) = unknown_sentence(&unknown) {
+        notes.push(sentence);
+    }
+    Ok(())
+}
+
+fn names<'a>(root: &'a Map<String, Value>, list: &str) -> impl Iterator<Item = (usize, &'a str)> {
+    let names = root.get(list).and_then(Value::as_array).into_iter().flatten();
+    names.enumerate().filter_map(|(i, name)| Some((i, name.as_str()?)))
+}
+
+fn unknown_sentence(unknown: &[&str]) -> Option<String> {
+    let names: Vec<_> = unknown.iter().take(NAMED).map(|name| shown(name)).collect();
+    let more = if unknown.len() > NAMED { " and more" } else { "" };
+    match names.len() {
+        0 => None,
+        1 => Some(format!("the extension {} isn't known, and is left out.", names[0])),
+        _ => Some(format!("the extensions {}{more} aren't known, and are left out.", names.join(", "))),
+    }
+}
+
+/// Returns whether a document requires this extension.
+pub(super) fn requires(root: &Map<String, Value>, extension: &str) -> bool {
+    names(root, "extensionsRequired").any(|(_, name)| name == extension)
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    fn checked(root: &Value) -> Result<Vec<String>, String> {
+        let mut notes = Notes::default();
+        let root = root.as_object().expect("an object");
+        check(root, &mut notes).map_err(|error| error.to_string()).map(|()| notes.into_warnings())
+    }
+
+    #[test]
+    fn names_are_sorted_and_stand_once() {
+        assert!(KNOWN.windows(2).all(|pair| pair[0].0 < pair[1].0));
+        assert!(KNOWN.iter().all(|(name, _)| !concerns_looks(name)));
+    }
+
+    #[test]
+    fn looks_may_be_required_and_shapes_may_not() {
+        let fine = ["KHR_materials_fuzz", "EXT_texture_avif", "KHR_xmp_json_ld", "KHR_animation_pointer", DRACO];
+        assert_eq!(checked(&json!({ "extensionsRequired": fine })), Ok(Vec::new()));
+        let said = checked(&json!({ "extensionsRequired": ["VRM", "KHR_meshopt_compression"] })).unwrap_err();
+        assert!(said.contains("/extensionsRequired/1 is KHR_meshopt_compression, which compresses vertices"), "{said}");
+        assert!(said.ends_with("for example with gltfpack"), "{said}");
+        let said = checked(&json!({ "extensionsRequired": ["A_b"] })).unwrap_err();
+        assert!(
+            said.contains("A_b, which isn't known, and may change the shape; export the model without it"),
+            "{said}"
+        );
+    }
+
+    #[test]
+    fn what_is_only_used_is_said() {
+        let said = checked(&json!({ "extensionsUsed": ["A_b", "VRM", "A_b", "MPEG_mesh_linking"] })).expect("no error");
+        assert_eq!(said.len(), 2, "{said:?}");
+        assert!(said[0].starts_with("MPEG_mesh_linking isn't read: it moves meshes with others."), "{said:?}");
+        assert_eq!(said[1], "the extension A_b isn't known, and is left out.");
+        let many: Vec<_> = (0..9).map(|i| format!("A_{i}")).collect();
+        let said = checked(&json!({ "extensionsUsed": many })).expect("no error");
+        assert_eq!(said, ["the extensions A_0, A_1, A_2, A_3, A_4 and more aren't known, and are left out."]);
+    }
+}
