@@ -3,6 +3,7 @@
 pub(crate) mod blur_levels;
 pub(crate) mod camera;
 mod coverage;
+mod covered_area;
 pub(crate) mod cube_map;
 mod deviation;
 pub(crate) mod dfg;
@@ -34,6 +35,7 @@ mod scale;
 pub(crate) mod scene;
 #[cfg(test)]
 mod shader_tests;
+pub(crate) mod sheen;
 mod steps;
 pub(crate) mod studio;
 pub(crate) mod target;
@@ -56,12 +58,13 @@ pub(crate) use target::samples;
 
 /// The shader files with entry points for drawing and picking, and the light that draws read. Each makes one shader module.
 #[cfg(test)]
-static MODULES: [&crate::gpu::WgslFile; 13] = [
+static MODULES: [&crate::gpu::WgslFile; 14] = [
     &coverage::PASS_COVERAGE,
     &environment::ENVIRONMENT,
     &leaks::DRAW_LEAKS,
     &pick::DRAW_PICK,
     &pipelines::DRAW_BACKGROUND,
+    &pipelines::DRAW_CLEAR,
     &pipelines::DRAW_GROUND,
     &pipelines::DRAW_LINES,
     &pipelines::DRAW_LIT,
