@@ -24,33 +24,35 @@ pub(super) fn covered_area(bounds: &Bounds, clip_from_object: Mat4, [width, heig
     let error = places.map(|place| magnitudes * place.abs().extend(1.0)).into_iter().reduce(DVec4::max);
     let error = error.unwrap_or_default() * ROUNDING;
     let seen = seen_corners(places.map(|place| matrix * place.extend(1.0)), error);
-    let mut extent = [(f64::INFINITY, f64::NEG_INFINITY); 2];
-    for corner in &seen {
-        let least_w = corner.w - error.w;
-        if least_w.is_nan() || least_w <= 0.0 {
-            return whole;
-        }
-        for (axis, (least, most)) in extent.iter_mut().enumerate() {
-            for (place, w) in [-1.0, 1.0].into_iter().flat_map(|side| {
-                let place = corner[axis] + side * error[axis];
-                [(place, least_w), (place, corner.w + error.w)]
-            }) {
-                (*least, *most) = (least.min(place / w), most.max(place / w));
-            }
-        }
+    if seen.is_empty() {
+        return [0; 4];
     }
-    let [(left, right), (bottom, top)] = extent;
+    let Some([(left, right), (bottom, top)]) = extent(&seen, error) else { return whole };
     let range = |from: f64, to: f64, size: u32| {
         let px = |at: f64| (0.5 + 0.5 * at) * f64::from(size);
         let start = (px(from) - SNAPPING).floor().clamp(0.0, f64::from(size)) as u32;
         let end = (px(to) + SNAPPING).ceil().clamp(0.0, f64::from(size)) as u32;
         (start, end.saturating_sub(start))
     };
-    if seen.is_empty() {
-        return [0; 4];
-    }
     let ((x, width), (y, height)) = (range(left, right, width), range(-top, -bottom, height));
     if width == 0 || height == 0 { [0; 4] } else { [x, y, width, height] }
+}
+
+/// Returns the least and the greatest x / w, and y / w, of corners in clip space that are off by up to `error`; `None` if w may be 0.
+fn extent(corners: &[DVec4], error: DVec4) -> Option<[(f64, f64); 2]> {
+    let mut extent = [(f64::INFINITY, f64::NEG_INFINITY); 2];
+    for corner in corners {
+        let [nearest, farthest] = [corner.w - error.w, corner.w + error.w];
+        if nearest.is_nan() || nearest <= 0.0 {
+            return None;
+        }
+        for (axis, (least, most)) in extent.iter_mut().enumerate() {
+            let (low, high) = (corner[axis] - error[axis], corner[axis] + error[axis]);
+            *least = least.min(low / nearest).min(low / farthest);
+            *most = most.max(high / nearest).max(high / farthest);
+        }
+    }
+    Some(extent)
 }
 
 /// Returns the corners in clip space of the part of a box that lies beyond the near plane, or all but for rounding. A corner's three
