@@ -13,8 +13,12 @@ const LAYER_FILTER: u32 = 1u;
 // Adds the light that comes from the layer itself.
 const LAYER_ADD: u32 = 2u;
 
-// Whether a depth is beyond the last layer, in the direction in which the draw looks, and nothing hides it.
-fn is_beyond_last(clip: vec4<f32>, sample: u32) -> bool {
+// Whether a depth is beyond the last layer, in the direction in which the draw looks, and nothing hides it. `left` is the first
+// column of the half: the scissors of some software drivers let samples through in the column beside it.
+fn is_beyond_last(clip: vec4<f32>, sample: u32, left: f32) -> bool {
+    if clip.x < left {
+        return false;
+    }
     let passed = passed_depth(clip.xy, sample);
     if TOWARD_EYE {
         return clip.z > max(passed, hiding_depth(clip.xy, sample));
@@ -23,9 +27,9 @@ fn is_beyond_last(clip: vec4<f32>, sample: u32) -> bool {
 }
 
 // Whether a depth is that of the last layer. Where there was none, its depth is 1.
-fn is_last(clip: vec4<f32>, sample: u32) -> bool {
+fn is_last(clip: vec4<f32>, sample: u32, left: f32) -> bool {
     let passed = passed_depth(clip.xy, sample);
-    return clip.z == passed && passed < 1.0;
+    return clip.x >= left && clip.z == passed && passed < 1.0;
 }
 
 // What is blended with the picture. The fourth component of a picture says how much of a pixel is covered; what is behind a

@@ -24,18 +24,37 @@ fn lit_vertex(
     return LitVaryings(clip, unpack_normal(normal), uv, vec2<f32>(key_uv(key)) * UNIT, key_patch(key));
 }
 
-fn lit_color(in: LitVaryings, normal: vec3<f32>, front: bool) -> vec4<f32> {
+fn lit_place(in: LitVaryings, normal: vec3<f32>, front: bool) -> SurfacePlace {
     let to_eye = toward_eye(lit_frame.clip_from_object, lit_frame.viewport, in.clip.xy);
     var position: vec3<f32>;
     if LIGHT_COUNT > 0u {
         position = fragment_place(lit_frame.clip_from_object, lit_frame.viewport, in.clip);
     }
-    let place = surface_place(in.uv, in.weights, in.patch_index, normal, front, to_eye, position);
-    let color = material_color(place);
+    return surface_place(in.uv, in.weights, in.patch_index, normal, front, to_eye, position);
+}
+
+fn lit_color(in: LitVaryings, normal: vec3<f32>, front: bool) -> vec4<f32> {
+    let color = material_color(lit_place(in, normal, front));
     if (HAS_MASK || HAS_TRANSMISSION) && color.a == 0.0 {
         discard;
     }
     return vec4<f32>(color.rgb, 1.0);
+}
+
+// A pixel of a surface with a mask, and which of its samples the mask leaves.
+struct MaskedPixel {
+    @location(0) color: vec4<f32>,
+    @builtin(sample_mask) samples: u32,
+}
+
+fn masked_lit_pixel(in: LitVaryings, normal: vec3<f32>, front: bool) -> MaskedPixel {
+    let place = lit_place(in, normal, front);
+    let color = material_color(place).rgb;
+    let samples = mask_samples(place);
+    if samples == 0u {
+        discard;
+    }
+    return MaskedPixel(vec4<f32>(color, 1.0), samples);
 }
 
 @fragment
@@ -46,4 +65,14 @@ fn lit_fragment(in: LitVaryings, @builtin(front_facing) front: bool) -> @locatio
 @fragment
 fn pixel_lit_fragment(in: LitVaryings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     return lit_color(in, pixel_normal(in.patch_index, in.weights), front);
+}
+
+@fragment
+fn masked_lit_fragment(in: LitVaryings, @builtin(front_facing) front: bool) -> MaskedPixel {
+    return masked_lit_pixel(in, normalize(in.normal), front);
+}
+
+@fragment
+fn pixel_masked_lit_fragment(in: LitVaryings, @builtin(front_facing) front: bool) -> MaskedPixel {
+    return masked_lit_pixel(in, pixel_normal(in.patch_index, in.weights), front);
 }

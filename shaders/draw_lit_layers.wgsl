@@ -8,21 +8,16 @@ fn lit_depth_fragment(
 ) -> @builtin(frag_depth) f32 {
     // Neither the normal, the eye nor the position matters.
     let place = surface_place(in.uv, in.weights, in.patch_index, in.normal, front, in.normal, in.normal);
-    if !is_beyond_last(in.clip, sample) || !shows_behind(place) {
+    if !is_beyond_last(in.clip, sample, lit_frame.left) || !shows_behind(place) {
         discard;
     }
     return in.clip.z;
 }
 
 fn lit_layer(in: LitVaryings, normal: vec3<f32>, front: bool, sample: u32) -> vec4<f32> {
-    let to_eye = toward_eye(lit_frame.clip_from_object, lit_frame.viewport, in.clip.xy);
-    var position: vec3<f32>;
-    if LIGHT_COUNT > 0u {
-        position = fragment_place(lit_frame.clip_from_object, lit_frame.viewport, in.clip);
-    }
-    let place = surface_place(in.uv, in.weights, in.patch_index, normal, front, to_eye, position);
+    let place = lit_place(in, normal, front);
     // Derivatives are known by now, so that what isn't shown needn't be lit.
-    if !is_last(in.clip, sample) {
+    if !is_last(in.clip, sample, lit_frame.left) {
         discard;
     }
     return layer_output(material_seen(place));

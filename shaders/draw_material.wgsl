@@ -6,6 +6,7 @@ override HAS_DETAILS: bool = true;
 override HAS_COAT: bool = true;
 override HAS_MASK: bool = true;
 override HAS_TRANSMISSION: bool = true;
+override HAS_SHEEN: bool = true;
 // Lights of the file that shine.
 override LIGHT_COUNT: u32 = MOST_LIGHTS;
 
@@ -24,6 +25,10 @@ override LIGHT_COUNT: u32 = MOST_LIGHTS;
 @group(1) @binding(10) var emissive_sampler: sampler;
 @group(1) @binding(11) var transmission_texture: texture_2d<f32>;
 @group(1) @binding(12) var transmission_sampler: sampler;
+@group(1) @binding(21) var sheen_color_texture: texture_2d<f32>;
+@group(1) @binding(22) var sheen_color_sampler: sampler;
+@group(1) @binding(23) var sheen_roughness_texture: texture_2d<f32>;
+@group(1) @binding(24) var sheen_roughness_sampler: sampler;
 @group(1) @binding(20) var<uniform> lights: array<PunctualLight, MOST_LIGHTS>;
 
 // The order of Material.maps.
@@ -32,6 +37,8 @@ const SLOT_NORMAL: u32 = 1u;
 const SLOT_OCCLUSION: u32 = 2u;
 const SLOT_EMISSIVE: u32 = 3u;
 const SLOT_TRANSMISSION: u32 = 4u;
+const SLOT_SHEEN_COLOR: u32 = 5u;
+const SLOT_SHEEN_ROUGHNESS: u32 = 6u;
 
 // Shorter tangents, squared, say nothing about a direction.
 const LEAST_TANGENT: f32 = 1e-12;
@@ -78,6 +85,8 @@ struct PlaceDetail {
     uvs_right: vec4<f32>,
     uvs_below: vec4<f32>,
     color: vec4<f32>,
+    // How much the colours' alpha changes from a pixel to the next one on the right, and below.
+    alpha_change: vec2<f32>,
     tangent: vec3<f32>,
     bitangent_sign: f32,
 }
@@ -121,6 +130,7 @@ fn place_detail(place: SurfacePlace) -> PlaceDetail {
             sum.uvs_right += place.weights_right[k] * corner.uvs;
             sum.uvs_below += place.weights_below[k] * corner.uvs;
             sum.color += weight * corner.color;
+            sum.alpha_change += vec2<f32>(place.weights_right[k], place.weights_below[k]) * corner.color.a;
             sum.tangent += weight * corner.tangent.xyz;
         }
         sum.bitangent_sign = corner_details[own[0]].tangent.w;
@@ -166,8 +176,8 @@ fn map_direction(texel: vec3<f32>) -> vec3<f32> {
     return (2.0 * texel - 1.0) * vec3<f32>(material.normal_scale, material.normal_scale, 1.0);
 }
 
-// What the material is at a place, without the base colour.
-fn look_at(place: SurfacePlace, detail: PlaceDetail, base: vec3<f32>) -> LookAt {
+// What the material is at a place with that base colour and shown normal.
+fn look_at(place: SurfacePlace, detail: PlaceDetail, base: vec3<f32>, normal: vec3<f32>) -> LookAt {
     var look: LookAt;
     look.base_color = base;
     look.metallic = material.metallic;
@@ -190,6 +200,17 @@ fn look_at(place: SurfacePlace, detail: PlaceDetail, base: vec3<f32>) -> LookAt 
         look.coat = material.coat;
         look.coat_roughness = material.coat_roughness;
     }
+    if HAS_SHEEN {
+        look.sheen_color = material.sheen_color;
+        look.sheen_roughness = material.sheen_roughness;
+        if HAS_MAPS {
+            let at = map_place(place, detail, SLOT_SHEEN_COLOR);
+            look.sheen_color *= texel(sheen_color_texture, sheen_color_sampler, at).rgb;
+            let roughness_at = map_place(place, detail, SLOT_SHEEN_ROUGHNESS);
+            look.sheen_roughness *= texel(sheen_roughness_texture, sheen_roughness_sampler, roughness_at).a;
+        }
+        look.sheen_albedo = environment_sheen(clamp(dot(normal, place.to_eye), 0.0, 1.0), look.sheen_roughness);
+    }
     return look;
 }
 
@@ -205,6 +226,36 @@ fn lights_reflection(look: LookAt, normal: vec3<f32>, place: SurfacePlace) -> ve
 
 fn base_color(place: SurfacePlace, detail: PlaceDetail) -> vec4<f32> {
     return material.base_color * detail.color * texel(base_texture, base_sampler, place.own);
+}
+
+// Where the four samples of a pixel are, in px from its middle: the standard sample locations of the Vulkan specification (section
+// "Multisampling"), which are also those of Direct3D.
+const SAMPLE_PLACES: array<vec2<f32>, 4> = array<vec2<f32>, 4>(
+    vec2<f32>(-0.125, -0.375),
+    vec2<f32>(0.375, -0.125),
+    vec2<f32>(-0.375, 0.125),
+    vec2<f32>(0.125, 0.375),
+);
+
+// Which of a pixel's samples a mask leaves. Alpha counts as linear in a pixel, so that where the border of the mask crosses it, as
+// many samples are left as the surface covers there. This does in a shader what alpha to coverage does with alpha that is sharpened
+// about the cutoff by its change from pixel to pixel (Golus 2017, "Anti-aliased Alpha Test"). So the pattern is the same on all
+// devices, and the picture's own alpha stays 1.
+fn mask_samples(place: SurfacePlace) -> u32 {
+    let detail = place_detail(place);
+    let alpha = base_color(place, detail).a;
+    // Only varyings have derivatives that can be relied on, so that the next pixels' alpha is computed here.
+    let own = place.own;
+    let right = texel(base_texture, base_sampler, ImagePlace(own.uv + own.right, own.right, own.below)).a;
+    let below = texel(base_texture, base_sampler, ImagePlace(own.uv + own.below, own.right, own.below)).a;
+    let colors = material.base_color.a * (vec2<f32>(detail.color.a) + detail.alpha_change);
+    let change = colors * vec2<f32>(right, below) - alpha;
+    var samples = 0u;
+    for (var i = 0u; i < 4u; i++) {
+        let sampled = alpha + dot(change, SAMPLE_PLACES[i]);
+        samples |= select(0u, 1u << i, sampled >= material.cutoff);
+    }
+    return samples;
 }
 
 fn transmission_at(place: SurfacePlace, detail: PlaceDetail) -> f32 {
@@ -264,7 +315,8 @@ fn surface_radiance(
 fn material_color(place: SurfacePlace) -> vec4<f32> {
     let detail = place_detail(place);
     let base = base_color(place, detail);
-    let color = surface_radiance(place, detail, base.rgb, look_at(place, detail, base.rgb), shown_normal(place, detail));
+    let normal = shown_normal(place, detail);
+    let color = surface_radiance(place, detail, base.rgb, look_at(place, detail, base.rgb, normal), normal);
     var hides = !HAS_MASK || base.a >= material.cutoff;
     if HAS_TRANSMISSION {
         hides = hides && transmission_at(place, detail) < LEAST_SEEN;
@@ -276,9 +328,9 @@ fn material_color(place: SurfacePlace) -> vec4<f32> {
 fn material_seen(place: SurfacePlace) -> Seen {
     let detail = place_detail(place);
     let base = base_color(place, detail);
-    var look = look_at(place, detail, base.rgb);
-    look.transmission = transmission_at(place, detail);
     let normal = shown_normal(place, detail);
+    var look = look_at(place, detail, base.rgb, normal);
+    look.transmission = transmission_at(place, detail);
     let coverage = select(1.0, clamp(base.a, 0.0, 1.0), material.blends > 0.5);
     let color = coverage * surface_radiance(place, detail, base.rgb, look, normal);
     var behind = vec3<f32>(1.0 - coverage);

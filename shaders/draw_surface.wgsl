@@ -367,14 +367,44 @@ fn pixel_lit_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) 
     return lit_surface_color(in, pixel_normal(in.patch_index, in.domain.xy), front);
 }
 
-fn lit_surface_color(in: Varyings, normal: vec3<f32>, front: bool) -> vec4<f32> {
+// A pixel of a surface with a mask, and which of its samples the mask leaves.
+struct MaskedSurfacePixel {
+    @location(0) color: vec4<f32>,
+    @builtin(sample_mask) samples: u32,
+}
+
+@fragment
+fn masked_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> MaskedSurfacePixel {
+    return masked_surface_pixel(in, in.normal, front);
+}
+
+@fragment
+fn pixel_masked_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> MaskedSurfacePixel {
+    return masked_surface_pixel(in, pixel_normal(in.patch_index, in.domain.xy), front);
+}
+
+fn masked_surface_pixel(in: Varyings, normal: vec3<f32>, front: bool) -> MaskedSurfacePixel {
+    let place = lit_surface_place(in, normal, front);
+    let own = material_color(place);
+    let color = surface_color(in, normal, front, vec4<f32>(own.rgb, 1.0));
+    let samples = mask_samples(place);
+    if samples == 0u {
+        discard;
+    }
+    return MaskedSurfacePixel(vec4<f32>(color.rgb, 1.0), samples);
+}
+
+fn lit_surface_place(in: Varyings, normal: vec3<f32>, front: bool) -> SurfacePlace {
     let to_eye = toward_eye(frame.clip_from_object, frame.viewport, in.clip.xy);
     var position: vec3<f32>;
     if LIGHT_COUNT > 0u {
         position = fragment_place(frame.clip_from_object, frame.viewport, in.clip);
     }
-    let place = surface_place(in.uv, in.domain.xy, in.patch_index, normalize(normal), front, to_eye, position);
-    let own = material_color(place);
+    return surface_place(in.uv, in.domain.xy, in.patch_index, normalize(normal), front, to_eye, position);
+}
+
+fn lit_surface_color(in: Varyings, normal: vec3<f32>, front: bool) -> vec4<f32> {
+    let own = material_color(lit_surface_place(in, normal, front));
     let color = surface_color(in, normal, front, vec4<f32>(own.rgb, 1.0));
     if (HAS_MASK || HAS_TRANSMISSION) && own.a == 0.0 {
         discard;

@@ -8,23 +8,18 @@ fn surface_depth_fragment(
 ) -> @builtin(frag_depth) f32 {
     // Neither the normal, the eye nor the position matters.
     let place = surface_place(in.uv, in.domain.xy, in.patch_index, in.normal, front, in.normal, in.normal);
-    if !is_beyond_last(in.clip, sample) || !shows_behind(place) {
+    if !is_beyond_last(in.clip, sample, frame.left) || !shows_behind(place) {
         discard;
     }
     return in.clip.z;
 }
 
 fn surface_layer(in: Varyings, normal: vec3<f32>, front: bool, sample: u32) -> vec4<f32> {
-    let to_eye = toward_eye(frame.clip_from_object, frame.viewport, in.clip.xy);
-    var position: vec3<f32>;
-    if LIGHT_COUNT > 0u {
-        position = fragment_place(frame.clip_from_object, frame.viewport, in.clip);
-    }
-    let place = surface_place(in.uv, in.domain.xy, in.patch_index, normalize(normal), front, to_eye, position);
+    let place = lit_surface_place(in, normal, front);
     let own = material_seen(place);
     // Lines and marks aren't seen through.
     let color = surface_color(in, normal, front, vec4<f32>(own.color, 1.0));
-    if !is_last(in.clip, sample) {
+    if !is_last(in.clip, sample, frame.left) {
         discard;
     }
     return layer_output(Seen(color.rgb, own.behind * (1.0 - color.a)));

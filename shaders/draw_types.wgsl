@@ -28,10 +28,12 @@ struct Frame {
     ground: vec4<f32>,
     // The scale's colours in sRGB, 0 to 1; the fourth component is unused.
     scale: array<vec4<f32>, SCALE_STOPS>,
+    // The first column of pixels of the half that is drawn, in px.
+    left: f32,
 }
 
 // Images of a material beside that of the base colour.
-const MAP_COUNT: u32 = 5u;
+const MAP_COUNT: u32 = 7u;
 
 struct Material {
     // Linear RGBA.
@@ -59,6 +61,9 @@ struct Material {
     blends: f32,
     // How much of a dielectric's light goes through it.
     transmission: f32,
+    // Linear RGB of the sheen; 0 without one.
+    sheen_color: vec3<f32>,
+    sheen_roughness: f32,
     maps: array<MapPlace, MAP_COUNT>,
 }
 

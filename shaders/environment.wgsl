@@ -47,9 +47,18 @@ fn environment_irradiance(normal: vec3<f32>) -> vec3<f32> {
 
 // Factors of f0 and f90 in the part of light that microfacets reflect at once.
 fn environment_dfg(facing: f32, roughness: f32) -> vec2<f32> {
+    return dfg_texel(facing, roughness).rg;
+}
+
+fn dfg_texel(facing: f32, roughness: f32) -> vec4<f32> {
     let size = f32(DFG_SIZE);
     let at = (vec2<f32>(facing, roughness) * (size - 1.0) + 0.5) / size;
-    return textureSampleLevel(dfg_table, environment_sampler, at, 0.0).rg;
+    return textureSampleLevel(dfg_table, environment_sampler, at, 0.0);
+}
+
+// The part of light that a white sheen reflects.
+fn environment_sheen(facing: f32, roughness: f32) -> f32 {
+    return dfg_texel(facing, roughness).b;
 }
 
 // Radiance towards the eye from a surface under this light. `normal` and `to_eye` are of unit length.
@@ -64,6 +73,9 @@ fn ambient_reflection(look: LookAt, normal: vec3<f32>, to_eye: vec3<f32>) -> vec
         let coat_direction = dominant_direction(look.coat_normal, to_eye, look.coat_roughness);
         light.coat_reflected = environment_radiance(coat_direction, look.coat_roughness);
         light.coat_dfg = environment_dfg(light.coat_facing, look.coat_roughness);
+    }
+    if has_sheen(look) {
+        light.sheen = environment_irradiance(sheen_direction(normal, to_eye));
     }
     return reflect_ambient(look, light);
 }

@@ -1,6 +1,6 @@
 // How surfaces reflect light: the materials of glTF 2.0 (specification, appendix B) with the extensions KHR_materials_ior,
-// KHR_materials_specular, KHR_materials_clearcoat and KHR_materials_transmission. Nothing here reads a texture or a buffer.
-// src/render/reflectance.rs has the same functions.
+// KHR_materials_specular, KHR_materials_clearcoat, KHR_materials_transmission and KHR_materials_sheen. Nothing here reads a texture or
+// a buffer. src/render/reflectance.rs has the same functions.
 
 const PI: f32 = 3.14159265;
 
@@ -28,8 +28,14 @@ struct LookAt {
     ior: f32,
     // How much of the light from all around reaches the place, 0 to 1.
     occlusion: f32,
+    // Linear RGB of the sheen; 0 without one.
+    sheen_color: vec3<f32>,
     // How much of a dielectric's light goes through it in place of being scattered, 0 to 1.
     transmission: f32,
+    // Perceptual roughness of the sheen.
+    sheen_roughness: f32,
+    // The part of an even light from all around that a white sheen reflects towards the eye, from the table. It may exceed 1.
+    sheen_albedo: f32,
 }
 
 // The light from all around that matters at a place.
@@ -39,6 +45,8 @@ struct AmbientLight {
     // Radiance from the dominant direction, blurred by the surface's roughness, and by the coat's.
     reflected: vec3<f32>,
     coat_reflected: vec3<f32>,
+    // Irradiance of the sheen divided by PI.
+    sheen: vec3<f32>,
     // From the table of directional albedos, for the surface and for the coat.
     dfg: vec2<f32>,
     coat_dfg: vec2<f32>,
@@ -111,6 +119,23 @@ fn coat_albedo(look: LookAt, coat_dfg: vec2<f32>) -> f32 {
     return look.coat * (albedo_at_once(f0, 1.0, coat_dfg).x + albedo_of_more(f0, 1.0, coat_dfg).x);
 }
 
+// The direction about which a sheen gathers light, of unit length. Fibres reflect light from far around, and more of it backwards than
+// a mirror's way. Half way to the eye is an approximation: tests say how near it is.
+fn sheen_direction(normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
+    let between = normal + to_eye;
+    return between * inverseSqrt(max(dot(between, between), 1e-12));
+}
+
+fn has_sheen(look: LookAt) -> bool {
+    return largest_component(look.sheen_color) > 0.0;
+}
+
+// The part of light that gets through the sheen to what is below it, and from there to the eye (KHR_materials_sheen, "Albedo-scaling
+// technique", with the cosine towards the eye alone).
+fn sheen_scaling(look: LookAt) -> f32 {
+    return 1.0 - largest_component(look.sheen_color) * min(look.sheen_albedo, 1.0);
+}
+
 // Radiance towards the eye under light from all around.
 fn reflect_ambient(look: LookAt, light: AmbientLight) -> vec3<f32> {
     let diffuse = light.diffuse * look.occlusion;
@@ -122,7 +147,11 @@ fn reflect_ambient(look: LookAt, light: AmbientLight) -> vec3<f32> {
     let dielectric = once * reflected + (more + left * (1.0 - look.transmission) * look.base_color) * diffuse;
     let metal = albedo_at_once(look.base_color, 1.0, light.dfg) * reflected
         + albedo_of_more(look.base_color, 1.0, light.dfg) * diffuse;
-    let base = mix(dielectric, metal, look.metallic);
+    var base = mix(dielectric, metal, look.metallic);
+    if has_sheen(look) {
+        let sheen = look.sheen_color * light.sheen * (look.occlusion * min(look.sheen_albedo, 1.0));
+        base = base * sheen_scaling(look) + sheen;
+    }
     if look.coat <= 0.0 {
         return base;
     }
@@ -141,7 +170,7 @@ fn transmitted(look: LookAt, dfg: vec2<f32>, coat_dfg: vec2<f32>) -> vec3<f32> {
     let reflected = albedo_at_once(f0, look.specular, dfg) + albedo_of_more(f0, look.specular, dfg);
     let left = max(1.0 - largest_component(reflected), 0.0);
     let through = (1.0 - look.metallic) * look.transmission * left * look.base_color;
-    return through * (1.0 - coat_albedo(look, coat_dfg));
+    return through * (sheen_scaling(look) * (1.0 - coat_albedo(look, coat_dfg)));
 }
 
 // Radiance towards the eye per irradiance that a surface across the light would get, for light from a single direction. All
@@ -149,7 +178,10 @@ fn transmitted(look: LookAt, dfg: vec2<f32>, coat_dfg: vec2<f32>) -> vec3<f32> {
 fn direct_reflection(look: LookAt, normal: vec3<f32>, to_eye: vec3<f32>, to_light: vec3<f32>) -> vec3<f32> {
     let half_way = normalize(to_eye + to_light);
     let schlick = fifth_power(1.0 - clamp(dot(half_way, to_eye), 0.0, 1.0));
-    let base = direct_base_reflection(look, normal, to_eye, to_light, half_way, schlick);
+    var base = direct_base_reflection(look, normal, to_eye, to_light, half_way, schlick);
+    if has_sheen(look) {
+        base = base * sheen_scaling(look) + look.sheen_color * direct_sheen(look, normal, to_eye, to_light, half_way);
+    }
     if look.coat <= 0.0 {
         return base;
     }
@@ -175,7 +207,21 @@ fn direct_lobe(
     return ggx_distribution(normal, half_way, alpha) * ggx_visibility(lit, facing, alpha) * lit;
 }
 
-// The same as direct_reflection without a coat; `schlick` is the fifth power in Schlick's approximation.
+// Reflection by a white sheen. Where it would reflect more of an even light than there is, which smooth ones do that are seen from
+// the side, it is scaled down to all of it.
+fn direct_sheen(look: LookAt, normal: vec3<f32>, to_eye: vec3<f32>, to_light: vec3<f32>, half_way: vec3<f32>) -> f32 {
+    let lit = dot(normal, to_light);
+    let facing = dot(normal, to_eye);
+    if lit <= 0.0 || facing <= 0.0 {
+        return 0.0;
+    }
+    let alpha = max(look.sheen_roughness * look.sheen_roughness, LEAST_SHEEN_ALPHA);
+    let sine = min(length(cross(normal, half_way)), 1.0);
+    let lobe = charlie_distribution(sine, alpha) * charlie_visibility(lit, facing, alpha);
+    return lobe / max(look.sheen_albedo, 1.0);
+}
+
+// The same as direct_reflection without coat and sheen; `schlick` is the fifth power in Schlick's approximation.
 fn direct_base_reflection(
     look: LookAt,
     normal: vec3<f32>,

@@ -27,6 +27,7 @@ pub use crate::plot::{BLUE, FONT, INK, use_font};
 pub use crate::render::camera::Camera;
 pub use crate::render::scene::Scene;
 pub use crate::render::target::{Target, samples};
+pub use crate::settings::light::Lighting;
 pub use crate::settings::options::TOLERANCE_RANGE;
 pub use crate::settings::{ARENA_BYTES, Settings};
 pub use crate::tessellate::domain::{domain_plan, domain_point, domain_triangle};

@@ -33,13 +33,16 @@ pub(super) struct MaterialInfo {
     pub clearcoat: f32,
     pub clearcoat_roughness: f32,
     pub transmission: f32,
+    /// Linear RGB.
+    pub sheen_color: [f32; 3],
+    pub sheen_roughness: f32,
     pub maps: Vec<MapInfo>,
 }
 
 /// An image beside that of the base colour.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct MapInfo {
-    /// `metallic-roughness`, `normal`, `occlusion`, `emissive` or `transmission`.
+    /// `metallic-roughness`, `normal`, `occlusion`, `emissive`, `transmission`, `sheen-color` or `sheen-roughness`.
     pub slot: &'static str,
     /// Width and height in px.
     pub size: [u32; 2],
@@ -52,7 +55,7 @@ pub(super) struct MapInfo {
 impl MaterialInfo {
     pub(super) fn of(material: &Material) -> Self {
         let Look { metallic, roughness, emissive, unlit, ior, specular, specular_color, .. } = material.look;
-        let Look { clearcoat, clearcoat_roughness, transmission, .. } = material.look;
+        let Look { clearcoat, clearcoat_roughness, transmission, sheen_color, sheen_roughness, .. } = material.look;
         let (alpha, alpha_cutoff) = match material.look.alpha {
             Alpha::Opaque => ("opaque", None),
             Alpha::Mask(cutoff) => ("mask", Some(cutoff)),
@@ -77,6 +80,8 @@ impl MaterialInfo {
             clearcoat,
             clearcoat_roughness,
             transmission,
+            sheen_color,
+            sheen_roughness,
             maps: Slot::ALL.into_iter().filter_map(map).collect(),
         }
     }
@@ -94,6 +99,8 @@ impl MaterialInfo {
         add(color != usual.specular_color, format!("specular colour {}", numbers(&color)));
         add(self.clearcoat > 0.0, format!("clear coat {} of roughness {}", self.clearcoat, self.clearcoat_roughness));
         add(self.transmission > 0.0, format!("transmission {}", self.transmission));
+        let sheen = numbers(&self.sheen_color);
+        add(self.sheen_color != usual.sheen_color, format!("sheen {sheen} of roughness {}", self.sheen_roughness));
         add(self.alpha == "blend", "blended".to_owned());
         let cutoff = self.alpha_cutoff;
         add(cutoff.is_some(), format!("cut out below alpha {}", cutoff.unwrap_or_default()));
@@ -110,6 +117,8 @@ fn map(slot: Slot, map: &Map, look: &Look) -> MapInfo {
         Slot::Occlusion => ("occlusion", Some(look.occlusion_strength)),
         Slot::Emissive => ("emissive", None),
         Slot::Transmission => ("transmission", None),
+        Slot::SheenColor => ("sheen-color", None),
+        Slot::SheenRoughness => ("sheen-roughness", None),
     };
     let uv_set = match map.uv {
         MapUv::Own => None,
@@ -161,9 +170,10 @@ mod tests {
         look.maps[Slot::Normal as usize] = Some(Map { texture, uv, sampling: Sampling::default() });
         (look.normal_scale, look.clearcoat, look.alpha, look.unlit) = (0.5, 1.0, Alpha::Mask(0.25), true);
         look.transmission = 0.75;
+        (look.sheen_color, look.sheen_roughness) = ([0.5, 0.0, 1.0], 0.25);
         let info = MaterialInfo::of(&material);
         let text = info.to_string();
-        let look = "metallic 0, roughness 0.5, base colour 0.5 0.25 0 1, clear coat 1 of roughness 0, transmission 0.75, cut out below alpha 0.25, unlit";
+        let look = "metallic 0, roughness 0.5, base colour 0.5 0.25 0 1, clear coat 1 of roughness 0, transmission 0.75, sheen 0.5 0 1 of roughness 0.25, cut out below alpha 0.25, unlit";
         assert!(text.contains(&format!("\n  look          {look}\n")), "{text}");
         assert!(text.ends_with("\n  map           normal 2 x 1 px, on TEXCOORD_1, strength 0.5\n"), "{text}");
         let json = serde_json::to_value(&info).unwrap();

@@ -46,6 +46,11 @@ impl Bounds {
         Self { min: self.min - by, max: self.max + by, radius: self.radius + by }
     }
 
+    /// Returns whether all coordinates are finite.
+    pub(crate) fn is_finite(&self) -> bool {
+        self.min.is_finite() && self.max.is_finite()
+    }
+
     /// Returns a length relative to the diagonal, in object units. The result is an f64, since the diagonal itself may
     /// leave f32.
     pub(super) fn part(&self, relative: f64) -> f64 {

@@ -83,6 +83,10 @@ pub struct Look {
     /// How much of a dielectric's light goes through it in place of being scattered, 0 to 1. The surface is thin: it bends no light
     /// (KHR_materials_transmission).
     pub transmission: f32,
+    /// Linear RGB of the light that fibres over the surface reflect, as those of cloth do; 0 without them (KHR_materials_sheen).
+    pub sheen_color: [f32; 3],
+    /// Perceptual roughness of the fibres, 0 (they stand upright) to 1.
+    pub sheen_roughness: f32,
     /// The images beside that of the base colour, by [`Slot`].
     pub maps: [Option<Map>; Slot::COUNT],
 }
@@ -103,6 +107,8 @@ impl Default for Look {
             clearcoat: 0.0,
             clearcoat_roughness: 0.0,
             transmission: 0.0,
+            sheen_color: [0.0; 3],
+            sheen_roughness: 0.0,
             maps: Default::default(),
         }
     }
@@ -112,6 +118,11 @@ impl Look {
     /// Whether light goes through it. None does where it is unlit.
     pub(crate) fn transmits(&self) -> bool {
         self.transmission > 0.0 && !self.unlit
+    }
+
+    /// Whether fibres over the surface reflect light. None do where it is unlit.
+    pub(crate) fn has_sheen(&self) -> bool {
+        self.sheen_color.iter().any(|channel| *channel > 0.0) && !self.unlit
     }
 }
 
@@ -140,14 +151,25 @@ pub enum Slot {
     Emissive,
     /// How much light goes through in red, linear.
     Transmission,
+    /// Colour of the sheen, sRGB.
+    SheenColor,
+    /// Roughness of the sheen in alpha, linear.
+    SheenRoughness,
 }
 
 impl Slot {
     /// How many there are.
-    pub const COUNT: usize = 5;
+    pub const COUNT: usize = 7;
     /// All of them, in the order of [`Look::maps`].
-    pub const ALL: [Self; Self::COUNT] =
-        [Self::MetallicRoughness, Self::Normal, Self::Occlusion, Self::Emissive, Self::Transmission];
+    pub const ALL: [Self; Self::COUNT] = [
+        Self::MetallicRoughness,
+        Self::Normal,
+        Self::Occlusion,
+        Self::Emissive,
+        Self::Transmission,
+        Self::SheenColor,
+        Self::SheenRoughness,
+    ];
 }
 
 /// An image on a surface.

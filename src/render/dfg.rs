@@ -1,4 +1,5 @@
-//! How much of an even light microfacets reflect at once: the second factor of the split sum (Karis 2013).
+//! How much of an even light microfacets reflect at once: the second factor of the split sum (Karis 2013). And how much of it a white
+//! sheen reflects.
 
 use std::f32::consts::TAU;
 use std::sync::OnceLock;
@@ -6,6 +7,7 @@ use std::sync::OnceLock;
 use glam::{Vec3, vec3};
 
 use super::prefilter::hammersley;
+use super::sheen::{LEAST_SHEEN_ALPHA, charlie_distribution, charlie_lambda};
 
 /// Width and height of the table; `DFG_SIZE` in `shaders/environment.wgsl`.
 pub(crate) const DFG_SIZE: u32 = 64;
@@ -13,15 +15,59 @@ pub(crate) const DFG_SIZE: u32 = 64;
 /// Microfacets that an entry is computed from. With four times as many, no entry changes by more than 0.002.
 const SAMPLES: u32 = 128;
 
-/// The table, computed when it is first needed: [`albedo_factors`] by the cosine, then by the roughness. The first and the last
-/// entry are for 0 and 1.
-pub(crate) fn dfg_table() -> &'static [[f32; 2]] {
-    static TABLE: OnceLock<Vec<[f32; 2]>> = OnceLock::new();
+/// Directions that the sheen of an entry is computed from: cosines, and angles about the normal on one side. With more, no entry of up
+/// to 1 changes by more than 0.002.
+const SHEEN_SAMPLES: [u32; 2] = [16, 12];
+
+/// The table, computed when it is first needed: [`albedo_factors`], the [albedo of sheen](sheen_albedo) and 0, by the cosine, then by
+/// the roughness. The first and the last entry are for 0 and 1.
+pub(crate) fn dfg_table() -> &'static [[f32; 4]] {
+    static TABLE: OnceLock<Vec<[f32; 4]>> = OnceLock::new();
     TABLE.get_or_init(|| {
         let part = |index: u32| index as f32 / (DFG_SIZE - 1) as f32;
-        let row = |roughness| (0..DFG_SIZE).map(move |cosine| albedo_factors(part(cosine), part(roughness), SAMPLES));
+        let row = |roughness| {
+            let lambdas = sheen_lambdas(part(roughness));
+            (0..DFG_SIZE).map(move |cosine| {
+                let [first, second] = albedo_factors(part(cosine), part(roughness), SAMPLES);
+                [first, second, sheen_albedo(part(cosine), part(roughness), &lambdas), 0.0]
+            })
+        };
         (0..DFG_SIZE).flat_map(row).collect()
     })
+}
+
+/// The square roots of the cosines of lights that a sheen's albedo is computed from. They lie closer together along the surface, where
+/// smooth sheen reflects.
+fn sheen_roots() -> impl Iterator<Item = f32> {
+    (0..SHEEN_SAMPLES[0]).map(|index| (index as f32 + 0.5) / SHEEN_SAMPLES[0] as f32)
+}
+
+fn sheen_alpha(roughness: f32) -> f32 {
+    (roughness * roughness).max(LEAST_SHEEN_ALPHA)
+}
+
+/// Smith's lambda of these lights.
+fn sheen_lambdas(roughness: f32) -> Vec<f32> {
+    sheen_roots().map(|root| charlie_lambda(root * root, sheen_alpha(roughness))).collect()
+}
+
+/// The part of an even light that a white sheen reflects towards an eye at that cosine from the normal. It may exceed 1.
+fn sheen_albedo(cosine: f32, roughness: f32, lambdas: &[f32]) -> f32 {
+    let (alpha, cosine) = (sheen_alpha(roughness), cosine.max(1e-4));
+    let (across, eye_lambda) = ((1.0 - cosine * cosine).max(0.0).sqrt(), charlie_lambda(cosine, alpha));
+    let mut sum = 0.0;
+    for (root, lambda) in sheen_roots().zip(lambdas) {
+        let (light, weight) = (root * root, 2.0 * root);
+        let radius = (1.0 - light * light).sqrt();
+        for index in 0..SHEEN_SAMPLES[1] {
+            let angle = std::f32::consts::PI * (index as f32 + 0.5) / SHEEN_SAMPLES[1] as f32;
+            let (y, x) = angle.sin_cos();
+            let half_way = vec3(across + radius * x, radius * y, cosine + light).normalize();
+            let sine = half_way.truncate().length();
+            sum += weight * charlie_distribution(sine, alpha) / (4.0 * cosine * (1.0 + eye_lambda + lambda));
+        }
+    }
+    sum * TAU / (SHEEN_SAMPLES[0] * SHEEN_SAMPLES[1]) as f32
 }
 
 /// Factors of f0 and f90 in the part of an even light that GGX microfacets reflect at once, towards an eye at that cosine from the
@@ -68,6 +114,18 @@ fn seen_facet(to_eye: Vec3, alpha: f32, [first, second]: [f32; 2]) -> Vec3 {
 /// Twin of `environment_dfg` in `shaders/environment.wgsl`.
 #[cfg(test)]
 pub(crate) fn environment_dfg(facing: f32, roughness: f32) -> [f32; 2] {
+    let [first, second, ..] = dfg_texel(facing, roughness);
+    [first, second]
+}
+
+/// Twin of `environment_sheen`.
+#[cfg(test)]
+pub(crate) fn environment_sheen(facing: f32, roughness: f32) -> f32 {
+    dfg_texel(facing, roughness)[2]
+}
+
+#[cfg(test)]
+fn dfg_texel(facing: f32, roughness: f32) -> [f32; 4] {
     let table = dfg_table();
     let last = DFG_SIZE as usize - 1;
     let split = |part: f32| {

@@ -9,8 +9,15 @@ use super::{Camera, Scene, Target};
 use crate::gpu::Gpu;
 use crate::settings::{DeviationUnit, Settings};
 
-/// Uploads the constants of a picture of a scene.
-pub(super) fn frame(gpu: &Gpu, scene: &Scene, target: &Target, camera: &Camera, settings: &Settings) -> wgpu::Buffer {
+/// Uploads the constants of a picture of a scene, or of a half of it that begins at the column `left`.
+pub(super) fn frame(
+    gpu: &Gpu,
+    scene: &Scene,
+    target: &Target,
+    camera: &Camera,
+    settings: &Settings,
+    left: u32,
+) -> wgpu::Buffer {
     let viewport = target.viewport();
     let [right, up, back] = camera.axes();
     let eye = if camera.orthographic { back.extend(0.0) } else { camera.eye().extend(1.0) };
@@ -33,6 +40,8 @@ pub(super) fn frame(gpu: &Gpu, scene: &Scene, target: &Target, camera: &Camera, 
         px_per_unit: if in_px { px_where_w_is_1 } else { 0.0 },
         ground: Ground::under(&scene.bounds).packed(),
         scale: scale.colors.map(|[r, g, b]| [r, g, b, 0].map(|byte| f32::from(byte) / 255.0)),
+        left: left as f32,
+        _pad: [0.0; 3],
     };
     gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
         label: Some("frame"),

@@ -12,19 +12,21 @@ pub(super) const LAYERS: usize = 8;
 pub(super) enum LayerPass {
     /// Sets the depths of the last layer to that of the near plane, where the search begins.
     Begin,
-    /// Finds the next layer. The number counts these passes.
-    Find { number: usize, toward_eye: bool },
-    /// Composites what the pass of this number has found.
-    Composite { number: usize },
+    /// Finds the next layer away from the eye. The number counts all passes but the first.
+    Away { number: usize },
+    /// Composites the layer that the pass before found on the way back, and finds the next one toward the eye. The first of these
+    /// passes has nothing to composite, and the last one nothing to find.
+    Back { number: usize, composites: bool, finds: bool },
 }
 
 impl LayerPass {
     /// All passes of a picture, in order.
     pub(super) fn all() -> impl Iterator<Item = Self> {
         // One more than are composited: the others lie in front of it.
-        let away = (0..=LAYERS).map(|number| Self::Find { number, toward_eye: false });
-        let back = (LAYERS + 1..2 * LAYERS + 1)
-            .flat_map(|number| [Self::Find { number, toward_eye: true }, Self::Composite { number }]);
+        let away = (0..=LAYERS).map(|number| Self::Away { number });
+        let (first, last) = (LAYERS + 1, 2 * LAYERS + 1);
+        let back =
+            (first..=last).map(move |number| Self::Back { number, composites: number > first, finds: number < last });
         std::iter::once(Self::Begin).chain(away).chain(back)
     }
 
@@ -32,18 +34,21 @@ impl LayerPass {
     pub(super) fn passed(self) -> usize {
         match self {
             Self::Begin => 1,
-            Self::Find { number, .. } => number % 2,
-            Self::Composite { number } => (number + 1) % 2,
+            Self::Away { number } | Self::Back { number, .. } => number % 2,
         }
     }
 
-    /// The texture that gets depths, if any does, and what they are where nothing is found.
-    pub(super) fn found(self) -> Option<(usize, f32)> {
-        let other = 1 - self.passed();
+    /// The texture that gets depths.
+    pub(super) fn found(self) -> usize {
+        1 - self.passed()
+    }
+
+    /// What these depths are where nothing is found. `None` for the pass that finds nothing.
+    pub(super) fn nothing(self) -> Option<f32> {
         match self {
-            Self::Begin | Self::Find { toward_eye: true, .. } => Some((other, 1.0)),
-            Self::Find { toward_eye: false, .. } => Some((other, 0.0)),
-            Self::Composite { .. } => None,
+            Self::Begin | Self::Back { finds: true, .. } => Some(1.0),
+            Self::Away { .. } => Some(0.0),
+            Self::Back { finds: false, .. } => None,
         }
     }
 }
@@ -58,22 +63,16 @@ mod tests {
         let mut composited = Vec::new();
         for pass in LayerPass::all() {
             let passed = textures[pass.passed()];
-            match pass {
-                LayerPass::Begin => {}
-                LayerPass::Composite { .. } => {
-                    composited.extend(depths.iter().filter(|depth| **depth == passed && passed < 1.0));
-                }
-                LayerPass::Find { toward_eye, .. } => {
-                    let is_beyond = |depth: &&f32| if toward_eye { **depth > passed } else { **depth < passed };
-                    let beyond = depths.iter().filter(is_beyond).copied();
-                    let next = if toward_eye { beyond.reduce(f32::min) } else { beyond.reduce(f32::max) };
-                    let (texture, nothing) = pass.found().expect("depths");
-                    textures[texture] = next.unwrap_or(nothing);
-                    continue;
-                }
+            if let LayerPass::Back { composites: true, .. } = pass {
+                composited.extend(depths.iter().filter(|depth| **depth == passed && passed < 1.0));
             }
-            if let Some((texture, nothing)) = pass.found() {
-                textures[texture] = nothing;
+            let next = match pass {
+                LayerPass::Begin | LayerPass::Back { finds: false, .. } => None,
+                LayerPass::Away { .. } => depths.iter().copied().filter(|depth| *depth < passed).reduce(f32::max),
+                LayerPass::Back { .. } => depths.iter().copied().filter(|depth| *depth > passed).reduce(f32::min),
+            };
+            if let Some(depth) = next.or(pass.nothing()) {
+                textures[pass.found()] = depth;
             }
         }
         composited

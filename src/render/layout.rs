@@ -35,6 +35,9 @@ pub(crate) struct Frame {
     pub ground: [f32; 4],
     /// The scale's colours in sRGB, 0 to 1; the fourth component is unused.
     pub scale: [[f32; 4]; Scale::STOPS],
+    /// The first column of pixels of the half that is drawn, in px.
+    pub left: f32,
+    pub _pad: [f32; 3],
 }
 
 /// A material's constants.
@@ -67,6 +70,9 @@ pub(crate) struct Material {
     /// How much of a dielectric's light goes through it.
     pub transmission: f32,
     pub _pad: [f32; 2],
+    /// Linear RGB of the sheen; 0 without one.
+    pub sheen_color: [f32; 3],
+    pub sheen_roughness: f32,
     /// In the order of [`Slot::ALL`].
     pub maps: [MapPlace; Slot::COUNT],
 }

@@ -14,8 +14,13 @@ const LIGHT_BINDING: u32 = 16;
 /// That of the lights of the file; the same in `shaders/draw_material.wgsl`.
 const FILE_LIGHTS_BINDING: u32 = 20;
 
+/// That of the first image whose binding isn't below the light's; the same in `shaders/draw_material.wgsl`.
+const LATER_IMAGES_BINDING: u32 = 21;
+
 /// Images of a material: that of the base colour, and the maps.
 const IMAGES: usize = 1 + Slot::COUNT;
+/// So many of them have bindings below the light's.
+const EARLY_IMAGES: usize = 6;
 
 /// What the materials of all scenes share: layouts, samplers and a white texture.
 pub struct Materials {
@@ -70,9 +75,8 @@ impl Materials {
             Some(map) => (textures.view(gpu, &map.texture, meaning(slot)), sampler(map.sampling)),
             None => (self.white.clone(), sampler(Sampling::default())),
         });
-        let [first, second, third, fourth, fifth] = maps;
         let base = (base.unwrap_or_else(|| self.white.clone()), sampler(material.sampling));
-        let images = [base, first, second, third, fourth, fifth];
+        let images = std::array::from_fn(|index| if index == 0 { base.clone() } else { maps[index - 1].clone() });
         let entries = [vec![entry(0, constants.as_entire_binding())], entries_of(&images[..1])].concat();
         let group = bind_group(gpu, "material", &self.layout, &entries);
         UploadedMaterial { group, constants, images }
@@ -100,7 +104,8 @@ impl Materials {
 fn meaning(slot: Slot) -> Meaning {
     match slot {
         Slot::MetallicRoughness | Slot::Normal | Slot::Occlusion | Slot::Transmission => Meaning::Numbers,
-        Slot::Emissive => Meaning::Colors,
+        Slot::SheenRoughness => Meaning::Numbers,
+        Slot::Emissive | Slot::SheenColor => Meaning::Colors,
     }
 }
 
@@ -129,6 +134,8 @@ fn constants(material: &Material) -> layout::Material {
         blends: f32::from(u8::from(look.alpha == Alpha::Blend)),
         transmission: if look.transmits() { look.transmission } else { 0.0 },
         _pad: [0.0; 2],
+        sheen_color: if look.has_sheen() { look.sheen_color } else { [0.0; 3] },
+        sheen_roughness: look.sheen_roughness,
         maps: look.maps.each_ref().map(|map| map_place(map.as_ref())),
     }
 }
@@ -156,7 +163,12 @@ fn image_entries(images: usize) -> Vec<wgpu::BindGroupLayoutEntry> {
     };
     let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
     let both = std::iter::repeat_n([texture, sampler], images).flatten();
-    (1..).zip(both).map(|(binding, ty)| layout_entry(binding, ty)).collect()
+    image_bindings().zip(both).map(|(binding, ty)| layout_entry(binding, ty)).collect()
+}
+
+/// The bindings of textures and samplers.
+fn image_bindings() -> impl Iterator<Item = u32> {
+    (1..=2 * EARLY_IMAGES as u32).chain(LATER_IMAGES_BINDING..)
 }
 
 fn layout_entry(binding: u32, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEntry {
@@ -176,7 +188,7 @@ fn entries_of(images: &[(wgpu::TextureView, wgpu::Sampler)]) -> Vec<wgpu::BindGr
     let both = images.iter().flat_map(|(view, sampler)| {
         [wgpu::BindingResource::TextureView(view), wgpu::BindingResource::Sampler(sampler)]
     });
-    (1..).zip(both).map(|(binding, resource)| entry(binding, resource)).collect()
+    image_bindings().zip(both).map(|(binding, resource)| entry(binding, resource)).collect()
 }
 
 fn bind_group(

@@ -3,6 +3,7 @@
 pub(crate) mod blur_levels;
 pub(crate) mod camera;
 mod coverage;
+mod covered_area;
 pub(crate) mod cube_map;
 mod deviation;
 pub(crate) mod dfg;
@@ -34,6 +35,7 @@ mod scale;
 pub(crate) mod scene;
 #[cfg(test)]
 mod shader_tests;
+pub(crate) mod sheen;
 mod steps;
 pub(crate) mod studio;
 pub(crate) mod target;
@@ -66,6 +68,7 @@ static MODULES: [&crate::gpu::WgslFile; 14] = [
     &leaks::DRAW_LEAKS,
     &pick::DRAW_PICK,
     &pipelines::DRAW_BACKGROUND,
+    &pipelines::DRAW_CLEAR,
     &pipelines::DRAW_GROUND,
     &pipelines::DRAW_LINES,
     &pipelines::DRAW_LIT,

@@ -16,31 +16,52 @@ pub(super) struct Needs {
     pub mask: bool,
     /// Light that goes through.
     pub transmission: bool,
+    /// A sheen.
+    pub sheen: bool,
     /// How many lights of the file shine.
     pub lights: usize,
+    /// Whether a pixel's samples are masked one by one: see [`Self::own`].
+    pub masked_samples: bool,
 }
 
 impl Needs {
     /// Everything that any mesh needs.
-    pub(super) const ALL: Self =
-        Self { maps: true, details: true, coat: true, mask: true, transmission: true, lights: MOST_LIGHTS };
+    pub(super) const ALL: Self = Self {
+        maps: true,
+        details: true,
+        coat: true,
+        mask: true,
+        transmission: true,
+        sheen: true,
+        lights: MOST_LIGHTS,
+        masked_samples: false,
+    };
 
     /// What a mesh needs under these settings.
     pub(super) fn of(mesh: &Mesh, settings: &Settings) -> Self {
         let lights = if settings.lights == FileLights::On { mesh.lights.len().min(MOST_LIGHTS) } else { 0 };
         let details = mesh.details.is_some();
-        let mut needs = Self { maps: false, details, coat: false, mask: false, transmission: false, lights };
+        let nothing = Self { maps: false, coat: false, mask: false, transmission: false, sheen: false, ..Self::ALL };
+        let mut needs = Self { details, lights, ..nothing };
         for look in mesh.materials.iter().map(|material| &material.look) {
             needs.maps |= look.maps.iter().any(Option::is_some);
             needs.coat |= look.clearcoat > 0.0;
             needs.mask |= look.alpha != Alpha::Opaque;
             needs.transmission |= look.transmits();
+            needs.sheen |= look.has_sheen();
         }
         needs
     }
 
+    /// The same for the pipeline of one of the mesh's materials, which hides what is behind it, in pictures with so many samples a
+    /// pixel: the border of a mask covers a part of them. Layers have each sample's alpha as it is.
+    pub(super) fn own(self, material: &Material, samples: u32) -> Self {
+        let has_border = matches!(material.look.alpha, Alpha::Mask(_)) && !material.shows_behind();
+        Self { masked_samples: has_border && samples > 1, ..self }
+    }
+
     /// The values of the constants of `shaders/draw_material.wgsl`.
-    pub(super) fn constants(self) -> [(&'static str, f64); 6] {
+    pub(super) fn constants(self) -> [(&'static str, f64); 7] {
         let switch = |is_needed| f64::from(u8::from(is_needed));
         [
             ("HAS_MAPS", switch(self.maps)),
@@ -48,6 +69,7 @@ impl Needs {
             ("HAS_COAT", switch(self.coat)),
             ("HAS_MASK", switch(self.mask)),
             ("HAS_TRANSMISSION", switch(self.transmission)),
+            ("HAS_SHEEN", switch(self.sheen)),
             ("LIGHT_COUNT", self.lights as f64),
         ]
     }
@@ -69,7 +91,16 @@ mod tests {
     fn a_mesh_needs_what_any_of_its_materials_does() {
         let mut mesh = Shape::CubeSplit.build();
         let settings = Settings::default();
-        let nothing = Needs { maps: false, details: false, coat: false, mask: false, transmission: false, lights: 0 };
+        let nothing = Needs {
+            maps: false,
+            details: false,
+            coat: false,
+            mask: false,
+            transmission: false,
+            sheen: false,
+            lights: 0,
+            masked_samples: false,
+        };
         assert_eq!(Needs::of(&mesh, &settings), nothing);
         let mut coated = Material::plain("coated", [1.0; 4]);
         coated.look.clearcoat = 0.5;
@@ -79,6 +110,8 @@ mod tests {
         leaves.look.alpha = Alpha::Mask(0.5);
         mesh.materials.push(leaves);
         assert_eq!(Needs::of(&mesh, &settings), Needs { coat: true, mask: true, ..nothing });
+        let own = |samples| mesh.materials.iter().map(move |own| nothing.own(own, samples).masked_samples);
+        assert!(own(4).eq([false, false, true]) && own(1).eq([false; 3]));
         assert!(!has_layers(&mesh));
         let mut glass = Material::plain("glass", [1.0; 4]);
         glass.look.transmission = 1.0;
@@ -90,6 +123,13 @@ mod tests {
         assert_eq!((Needs::of(&mesh, &settings), has_layers(&mesh)), (Needs { transmission: true, ..nothing }, true));
         mesh.materials[1].look = Look { alpha: Alpha::Blend, ..Look::default() };
         assert_eq!((Needs::of(&mesh, &settings), has_layers(&mesh)), (Needs { mask: true, ..nothing }, true));
+        let mut velvet = Material::plain("velvet", [1.0; 4]);
+        velvet.look.sheen_color = [0.0, 0.1, 0.0];
+        mesh.materials = vec![velvet.clone()];
+        assert_eq!(Needs::of(&mesh, &settings), Needs { sheen: true, ..nothing });
+        velvet.look.unlit = true;
+        mesh.materials = vec![velvet];
+        assert_eq!(Needs::of(&mesh, &settings), nothing);
         let sun =
             Light { kind: LightKind::Directional, intensity: Vec3::ONE, place: Vec3::ZERO, direction: Vec3::NEG_Y };
         mesh.lights = vec![sun; 3];

@@ -18,6 +18,7 @@ use crate::settings::{Choice, NormalsAt};
 
 pub(super) static DRAW_TYPES: WgslFile = wgsl!("draw_types", TYPES);
 pub(super) static DRAW_BACKGROUND: WgslFile = wgsl!("draw_background", DRAW_TYPES, ENVIRONMENT, REFLECTANCE);
+pub(super) static DRAW_CLEAR: WgslFile = wgsl!("draw_clear");
 static DRAW_DENSITY: WgslFile = wgsl!("draw_density");
 pub(super) static DRAW_GROUND: WgslFile = wgsl!("draw_ground", DRAW_DENSITY, DRAW_TYPES);
 static DRAW_LIGHT: WgslFile = wgsl!("draw_light");
@@ -51,10 +52,9 @@ pub(super) static DRAW_LINES: WgslFile = wgsl!("draw_lines", DRAW_TYPES, FACTORS
 
 /// The module that has it declares the depths that it compares with.
 static DRAW_LAYERS: WgslFile = wgsl!("draw_layers", DRAW_MATERIAL);
-static DRAW_LIT_LAYERS: WgslFile =
-    wgsl!("draw_lit_layers", DRAW_LAYERS, DRAW_LIGHT, DRAW_LIT, DRAW_MATERIAL, DRAW_NORMAL);
+static DRAW_LIT_LAYERS: WgslFile = wgsl!("draw_lit_layers", DRAW_LAYERS, DRAW_LIT, DRAW_MATERIAL, DRAW_NORMAL);
 static DRAW_SURFACE_LAYERS: WgslFile =
-    wgsl!("draw_surface_layers", DRAW_LAYERS, DRAW_LIGHT, DRAW_MATERIAL, DRAW_NORMAL, DRAW_SURFACE);
+    wgsl!("draw_surface_layers", DRAW_LAYERS, DRAW_MATERIAL, DRAW_NORMAL, DRAW_SURFACE);
 pub(super) static LAYERS_SINGLE: WgslFile = wgsl!("layers_single", DRAW_LIT_LAYERS, DRAW_SURFACE_LAYERS);
 pub(super) static LAYERS_MULTISAMPLED: WgslFile = wgsl!("layers_multisampled", DRAW_LIT_LAYERS, DRAW_SURFACE_LAYERS);
 
@@ -90,6 +90,8 @@ pub(super) enum Draw {
     LookSource(Look),
     /// Triangles with such materials where they show what is behind them.
     Layer(LayerDraw, Triangles, NormalsAt, Needs),
+    /// Depths of layers where nothing is found.
+    LayerClear(LayerClear),
     /// The light from all around, behind everything.
     Background,
     /// The grid on the ground.
@@ -113,6 +115,17 @@ pub(super) enum LayerDraw {
     Away,
     /// Finds those of the next layer toward the eye.
     Toward,
+}
+
+/// Which depths of layers a pipeline sets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum LayerClear {
+    /// Those before the search begins: the depth of the near plane.
+    Begin,
+    /// Those of a pass away from the eye: the depth at infinity.
+    Away,
+    /// Those of a pass back toward the eye, which has colours too: the depth of the near plane.
+    Back,
 }
 
 /// How a pipeline for layers gets its triangles.
@@ -163,11 +176,16 @@ impl Draw {
             let finds = [LayerDraw::Away, LayerDraw::Toward].map(|draw| (draw, NormalsAt::Vertices));
             composites.chain(finds).map(move |(draw, at)| Self::Layer(draw, triangles, at, Needs::ALL))
         });
-        Self::OTHERS.into_iter().chain(layers).collect()
+        let masked = Needs { masked_samples: true, ..Needs::ALL };
+        let masks = NormalsAt::ALL.iter().flat_map(move |&at| {
+            let kinds = [Self::Lit, Self::LitIndexed, Self::LitPulled];
+            kinds.map(|kind: fn(Faces, NormalsAt, Needs) -> Self| kind(Faces::Both, at, masked))
+        });
+        Self::OTHERS.into_iter().chain(layers).chain(masks).chain([Self::LitSource(masked)]).collect()
     }
 
     /// Those that don't draw layers.
-    const OTHERS: [Self; 34] = [
+    const OTHERS: [Self; 37] = [
         Self::Plain(Faces::Both),
         Self::Plain(Faces::Fronts),
         Self::Textured(Faces::Both),
@@ -196,6 +214,9 @@ impl Draw {
         Self::LitPulled(Faces::Both, NormalsAt::Pixels, Needs::ALL),
         Self::LitPulled(Faces::Fronts, NormalsAt::Pixels, Needs::ALL),
         Self::LitSource(Needs::ALL),
+        Self::LayerClear(LayerClear::Begin),
+        Self::LayerClear(LayerClear::Away),
+        Self::LayerClear(LayerClear::Back),
         Self::Background,
         Self::Ground,
         Self::Lines(Occluded::Through),
@@ -225,9 +246,17 @@ impl Draw {
             NormalsAt::Vertices => "surface_fragment",
             NormalsAt::Pixels => "pixel_surface_fragment",
         };
-        let lit_surface = |places| match places {
-            NormalsAt::Vertices => "lit_surface_fragment",
-            NormalsAt::Pixels => "pixel_lit_surface_fragment",
+        let lit = |places, needs: Needs| match (places, needs.masked_samples) {
+            (NormalsAt::Vertices, false) => "lit_fragment",
+            (NormalsAt::Pixels, false) => "pixel_lit_fragment",
+            (NormalsAt::Vertices, true) => "masked_lit_fragment",
+            (NormalsAt::Pixels, true) => "pixel_masked_lit_fragment",
+        };
+        let lit_surface = |places, needs: Needs| match (places, needs.masked_samples) {
+            (NormalsAt::Vertices, false) => "lit_surface_fragment",
+            (NormalsAt::Pixels, false) => "pixel_lit_surface_fragment",
+            (NormalsAt::Vertices, true) => "masked_surface_fragment",
+            (NormalsAt::Pixels, true) => "pixel_masked_surface_fragment",
         };
         let layer = |triangles, draw, places| match (triangles, draw, places) {
             (Triangles::Lit, LayerDraw::Away | LayerDraw::Toward, _) => "lit_depth_fragment",
@@ -253,11 +282,11 @@ impl Draw {
             Self::Indexed(_, places) | Self::LookIndexed(_, places, _) => ("indexed_vertex", surface(places)),
             Self::Pulled(_, places) | Self::LookPulled(_, places, _) => ("pulled_vertex", surface(places)),
             Self::Source | Self::LookSource(_) => ("source_vertex", "surface_fragment"),
-            Self::Lit(_, NormalsAt::Vertices, _) => ("lit_vertex", "lit_fragment"),
-            Self::Lit(_, NormalsAt::Pixels, _) => ("lit_vertex", "pixel_lit_fragment"),
-            Self::LitIndexed(_, places, _) => ("indexed_vertex", lit_surface(places)),
-            Self::LitPulled(_, places, _) => ("pulled_vertex", lit_surface(places)),
-            Self::LitSource(_) => ("source_vertex", "lit_surface_fragment"),
+            Self::Lit(_, places, needs) => ("lit_vertex", lit(places, needs)),
+            Self::LitIndexed(_, places, needs) => ("indexed_vertex", lit_surface(places, needs)),
+            Self::LitPulled(_, places, needs) => ("pulled_vertex", lit_surface(places, needs)),
+            Self::LitSource(needs) => ("source_vertex", lit_surface(NormalsAt::Vertices, needs)),
+            Self::LayerClear(_) => ("clear_vertex", "clear_fragment"),
             Self::Background => ("background_vertex", "background_fragment"),
             Self::Ground => ("ground_vertex", "ground_fragment"),
             Self::Lines(Occluded::Through) => ("hidden_line_vertex", line(Occluded::Through)),
@@ -282,7 +311,7 @@ impl Draw {
             Self::Pulled(..) | Self::LitPulled(..) | Self::LookPulled(..) => Vec::new(),
             Self::Layer(_, Triangles::Pulled | Triangles::Source, ..) => Vec::new(),
             Self::Source | Self::LitSource(_) | Self::LookSource(_) => Vec::new(),
-            Self::Background | Self::Ground => Vec::new(),
+            Self::Background | Self::Ground | Self::LayerClear(_) => Vec::new(),
             Self::Lines(_) => vec![Some(wgpu::VertexBufferLayout {
                 array_stride: size_of::<LineSegment>() as u64,
                 step_mode: wgpu::VertexStepMode::Instance,
@@ -292,31 +321,38 @@ impl Draw {
         }
     }
 
-    /// How depths are tested and written; `None` for what composites a layer, whose depth a shader compares. Depth is reversed, so
-    /// that nearer surfaces have a greater depth.
-    fn depth_stencil(self) -> Option<wgpu::DepthStencilState> {
+    /// How depths are tested and written. Depth is reversed, so that nearer surfaces have a greater depth.
+    fn depth_stencil(self) -> wgpu::DepthStencilState {
         let compare = match self {
-            Self::Layer(LayerDraw::Over | LayerDraw::Filter | LayerDraw::Add, ..) => return None,
+            // A shader compares the depth of what composites a layer.
+            Self::Layer(LayerDraw::Over | LayerDraw::Filter | LayerDraw::Add, ..) => wgpu::CompareFunction::Always,
+            Self::LayerClear(_) => wgpu::CompareFunction::Always,
             Self::Layer(LayerDraw::Toward, ..) => wgpu::CompareFunction::Less,
             Self::Lines(Occluded::Through) | Self::Normals(Occluded::Through) => wgpu::CompareFunction::Always,
             // It is first, and at the far end.
             Self::Background => wgpu::CompareFunction::Always,
             _ => wgpu::CompareFunction::Greater,
         };
-        Some(wgpu::DepthStencilState {
+        // The ground, lines and layers are blended over surfaces.
+        let is_blended = matches!(self, Self::Ground | Self::Lines(_) | Self::Normals(_))
+            || matches!(self, Self::Layer(LayerDraw::Over | LayerDraw::Filter | LayerDraw::Add, ..));
+        wgpu::DepthStencilState {
             format: DEPTH_FORMAT,
-            // The ground and lines are blended over surfaces.
-            depth_write_enabled: Some(!matches!(self, Self::Ground | Self::Lines(_) | Self::Normals(_))),
+            depth_write_enabled: Some(!is_blended),
             depth_compare: Some(compare),
             stencil: wgpu::StencilState::default(),
             bias: wgpu::DepthBiasState::default(),
-        })
+        }
     }
 
-    /// How colours are written; `None` for what only finds depths.
+    /// How colours are written; `None` in passes without colours.
     fn color_target(self) -> Option<wgpu::ColorTargetState> {
         let blend = match self {
-            Self::Layer(LayerDraw::Away | LayerDraw::Toward, ..) => return None,
+            Self::Layer(LayerDraw::Away, ..) | Self::LayerClear(LayerClear::Begin | LayerClear::Away) => return None,
+            Self::Layer(LayerDraw::Toward, ..) | Self::LayerClear(LayerClear::Back) => {
+                let write_mask = wgpu::ColorWrites::empty();
+                return Some(wgpu::ColorTargetState { format: COLOR_FORMAT, blend: None, write_mask });
+            }
             Self::Layer(LayerDraw::Over, ..) => Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
             Self::Layer(LayerDraw::Filter, ..) => {
                 Some(both(wgpu::BlendFactor::Zero, wgpu::BlendFactor::Src, wgpu::BlendFactor::SrcAlpha))
@@ -358,6 +394,9 @@ impl Draw {
                 let toward_eye = f64::from(u8::from(draw == LayerDraw::Toward));
                 let of_layer = [("TOWARD_EYE", toward_eye), ("LAYER_DRAW", f64::from(draw as u32))];
                 needs.constants().into_iter().chain(of_layer).collect()
+            }
+            Self::LayerClear(clear) => {
+                vec![("CLEAR_DEPTH", if clear == LayerClear::Away { 0.0 } else { 1.0 })]
             }
             Self::LookIndexed(.., look) | Self::LookPulled(.., look) => vec![("LOOK", f64::from(look as u32))],
             Self::LookSource(look) => vec![("LOOK", f64::from(look as u32)), ("DRAWS_SOURCE", 1.0)],
@@ -410,6 +449,7 @@ pub(super) struct DrawPipelines {
     lit: ShaderModule,
     surface: ShaderModule,
     layers: ShaderModule,
+    clear: ShaderModule,
     background: ShaderModule,
     ground: ShaderModule,
     lines: ShaderModule,
@@ -432,6 +472,7 @@ impl DrawPipelines {
             lit: ShaderModule::new(&DRAW_LIT),
             surface: ShaderModule::new(&DRAW_SURFACE),
             layers: ShaderModule::new(if is_multisampled { &LAYERS_MULTISAMPLED } else { &LAYERS_SINGLE }),
+            clear: ShaderModule::new(&DRAW_CLEAR),
             background: ShaderModule::new(&DRAW_BACKGROUND),
             ground: ShaderModule::new(&DRAW_GROUND),
             lines: ShaderModule::new(&DRAW_LINES),
@@ -451,6 +492,7 @@ impl DrawPipelines {
             Draw::LitIndexed(..) | Draw::LitPulled(..) | Draw::LitSource(_) => &self.surface,
             Draw::LookIndexed(..) | Draw::LookPulled(..) | Draw::LookSource(_) => &self.surface,
             Draw::Layer(..) => &self.layers,
+            Draw::LayerClear(_) => &self.clear,
             Draw::Background => &self.background,
             Draw::Ground => &self.ground,
             Draw::Lines(_) | Draw::Normals(_) => &self.lines,
@@ -477,6 +519,7 @@ impl DrawPipelines {
             Draw::LitSource(_) => vec![scene, lit, None, deviation],
             Draw::Layer(_, Triangles::Lit | Triangles::Source, ..) => vec![scene, lit, None, layer],
             Draw::Layer(_, Triangles::Indexed | Triangles::Pulled, ..) => vec![scene, lit, chunk, layer],
+            Draw::LayerClear(_) => Vec::new(),
             Draw::Background => vec![scene, Some(&self.background_layout)],
             Draw::Ground | Draw::Lines(_) => vec![scene],
             Draw::Normals(_) => vec![scene, None, chunk],
@@ -563,11 +606,11 @@ fn pipeline(
         vertex: wgpu::VertexState {
             module,
             entry_point: Some(vertex),
-            compilation_options: Default::default(),
+            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
             buffers: &draw.vertex_buffers(),
         },
         primitive: wgpu::PrimitiveState { cull_mode: draw.cull_mode(), ..Default::default() },
-        depth_stencil: draw.depth_stencil(),
+        depth_stencil: Some(draw.depth_stencil()),
         multisample: wgpu::MultisampleState { count: samples(gpu), ..Default::default() },
         fragment: Some(wgpu::FragmentState {
             module,

@@ -8,7 +8,8 @@ use super::blur_levels::{ENVIRONMENT_LEVELS, SAMPLE_COUNT, roughness_of_level};
 use crate::gpu::wgsl::{WgslFile, wgsl};
 use crate::gpu::{ComputePipeline, Gpu, GpuError, ShaderModule, uniform_buffer};
 
-pub(crate) static REFLECTANCE: WgslFile = wgsl!("reflectance");
+static SHEEN: WgslFile = wgsl!("sheen");
+pub(crate) static REFLECTANCE: WgslFile = wgsl!("reflectance", SHEEN);
 static PREFILTER: WgslFile = wgsl!("prefilter", REFLECTANCE);
 pub(crate) static PASS_PREFILTER: WgslFile = wgsl!("pass_prefilter", PREFILTER);
 

@@ -6,6 +6,8 @@ use std::f32::consts::PI;
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};
 
+use super::sheen::{LEAST_SHEEN_ALPHA, charlie_distribution, charlie_visibility};
+
 /// How much a clear coat reflects head-on.
 pub(crate) const COAT_F0: f32 = 0.04;
 
@@ -26,8 +28,11 @@ pub(crate) struct LookAt {
     pub coat_roughness: f32,
     pub ior: f32,
     pub occlusion: f32,
+    pub sheen_color: Vec3,
     pub transmission: f32,
-    pub _pad: [f32; 3],
+    pub sheen_roughness: f32,
+    pub sheen_albedo: f32,
+    pub _pad: [f32; 2],
 }
 
 impl Default for LookAt {
@@ -43,8 +48,11 @@ impl Default for LookAt {
             coat_roughness: 0.0,
             ior: 1.5,
             occlusion: 1.0,
+            sheen_color: Vec3::ZERO,
             transmission: 0.0,
-            _pad: [0.0; 3],
+            sheen_roughness: 0.0,
+            sheen_albedo: 0.0,
+            _pad: [0.0; 2],
         }
     }
 }
@@ -55,6 +63,7 @@ pub(crate) struct AmbientLight {
     pub diffuse: Vec3,
     pub reflected: Vec3,
     pub coat_reflected: Vec3,
+    pub sheen: Vec3,
     pub dfg: Vec2,
     pub coat_dfg: Vec2,
     pub facing: f32,
@@ -114,6 +123,19 @@ pub(crate) fn coat_albedo(look: &LookAt, coat_dfg: Vec2) -> f32 {
     look.coat * (albedo_at_once(f0, 1.0, coat_dfg).x + albedo_of_more(f0, 1.0, coat_dfg).x)
 }
 
+pub(crate) fn sheen_direction(normal: Vec3, to_eye: Vec3) -> Vec3 {
+    let between = normal + to_eye;
+    between / between.length_squared().max(1e-12).sqrt()
+}
+
+pub(crate) fn has_sheen(look: &LookAt) -> bool {
+    largest_component(look.sheen_color) > 0.0
+}
+
+pub(crate) fn sheen_scaling(look: &LookAt) -> f32 {
+    1.0 - largest_component(look.sheen_color) * look.sheen_albedo.min(1.0)
+}
+
 pub(crate) fn reflect_ambient(look: &LookAt, light: &AmbientLight) -> Vec3 {
     let diffuse = light.diffuse * look.occlusion;
     let reflected = light.reflected * unoccluded_reflection(look.occlusion, light.facing, look.roughness);
@@ -124,7 +146,11 @@ pub(crate) fn reflect_ambient(look: &LookAt, light: &AmbientLight) -> Vec3 {
     let dielectric = once * reflected + (more + left * (1.0 - look.transmission) * look.base_color) * diffuse;
     let metal = albedo_at_once(look.base_color, 1.0, light.dfg) * reflected
         + albedo_of_more(look.base_color, 1.0, light.dfg) * diffuse;
-    let base = dielectric.lerp(metal, look.metallic);
+    let mut base = dielectric.lerp(metal, look.metallic);
+    if has_sheen(look) {
+        let sheen = look.sheen_color * light.sheen * (look.occlusion * look.sheen_albedo.min(1.0));
+        base = base * sheen_scaling(look) + sheen;
+    }
     if look.coat <= 0.0 {
         return base;
     }
@@ -141,13 +167,16 @@ pub(crate) fn transmitted(look: &LookAt, dfg: Vec2, coat_dfg: Vec2) -> Vec3 {
     let reflected = albedo_at_once(f0, look.specular, dfg) + albedo_of_more(f0, look.specular, dfg);
     let left = (1.0 - largest_component(reflected)).max(0.0);
     let through = (1.0 - look.metallic) * look.transmission * left * look.base_color;
-    through * (1.0 - coat_albedo(look, coat_dfg))
+    through * (sheen_scaling(look) * (1.0 - coat_albedo(look, coat_dfg)))
 }
 
 pub(crate) fn direct_reflection(look: &LookAt, normal: Vec3, to_eye: Vec3, to_light: Vec3) -> Vec3 {
     let half_way = (to_eye + to_light).normalize();
     let schlick = fifth_power(1.0 - half_way.dot(to_eye).clamp(0.0, 1.0));
-    let base = direct_base_reflection(look, normal, to_eye, to_light, half_way, schlick);
+    let mut base = direct_base_reflection(look, normal, to_eye, to_light, half_way, schlick);
+    if has_sheen(look) {
+        base = base * sheen_scaling(look) + look.sheen_color * direct_sheen(look, normal, to_eye, to_light, half_way);
+    }
     if look.coat <= 0.0 {
         return base;
     }
@@ -163,6 +192,17 @@ pub(crate) fn direct_lobe(normal: Vec3, to_eye: Vec3, to_light: Vec3, half_way: 
     }
     let alpha = (roughness * roughness).max(LEAST_ALPHA);
     ggx_distribution(normal, half_way, alpha) * ggx_visibility(lit, facing, alpha) * lit
+}
+
+pub(crate) fn direct_sheen(look: &LookAt, normal: Vec3, to_eye: Vec3, to_light: Vec3, half_way: Vec3) -> f32 {
+    let (lit, facing) = (normal.dot(to_light), normal.dot(to_eye));
+    if lit <= 0.0 || facing <= 0.0 {
+        return 0.0;
+    }
+    let alpha = (look.sheen_roughness * look.sheen_roughness).max(LEAST_SHEEN_ALPHA);
+    let sine = normal.cross(half_way).length().min(1.0);
+    let lobe = charlie_distribution(sine, alpha) * charlie_visibility(lit, facing, alpha);
+    lobe / look.sheen_albedo.max(1.0)
 }
 
 pub(crate) fn direct_base_reflection(

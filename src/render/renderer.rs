@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use self::layer_passes::layer_draws;
 use super::coverage::{Coverage, CoveragePipelines};
+use super::covered_area::{Area, is_empty};
 use super::deviation::Deviations;
 use super::environment::{Environment, LightView};
 use super::frame::frame;
@@ -23,7 +24,7 @@ use super::tone::{TONE_CURVE_NEUTRAL, TONE_CURVE_NONE};
 use super::{Camera, Scene, Target};
 use crate::gpu::layout::DrawArgs;
 use crate::gpu::{ChunkBuffers, Gpu, GpuError, Lazy, Recorder, bind_group};
-use crate::mesh::{Mesh, Texture};
+use crate::mesh::{Material, Mesh, Texture};
 use crate::settings::{Colors, Lighting, NormalsAt, Overlays, Settings, SplitSide, ToneCurve};
 use crate::tessellate::CoverageView;
 
@@ -40,6 +41,8 @@ pub struct Renderer {
     samples: u32,
     /// From this many triangles per pixel on, those that cover no sample are removed before the others are drawn.
     pub sift_from: f32,
+    /// Whether passes over layers go over whole pictures, and not only over the part that layers can cover.
+    pub peels_everywhere: bool,
 }
 
 /// With fewer triangles per pixel, a GPU draws all of them in less time than it takes to remove some.
@@ -63,6 +66,7 @@ impl Renderer {
             coverage: CoveragePipelines::new(),
             unknown: Deviations::unknown(gpu),
             samples: samples(gpu),
+            peels_everywhere: false,
             sift_from: if gpu.is_software() { SIFT_FROM_IN_SOFTWARE } else { SIFT_FROM },
         }
     }
@@ -103,16 +107,11 @@ impl Renderer {
         if settings.overlays.colors == Colors::Matcap {
             self.matcaps.group(&self.gpu, &self.materials, settings.matcap)?;
         }
-        let (materials, _) = surface_draws(settings, scene.tessellator.mesh(), faces);
-        let mut draws: Vec<_> = scene
-            .tessellator
-            .mesh()
-            .materials
-            .iter()
-            .map(|own| materials[usize::from(own.texture.is_some())])
-            .collect();
+        let mesh = scene.tessellator.mesh();
+        let mut draws: Vec<_> =
+            mesh.materials.iter().map(|own| surface_draw(settings, mesh, own, faces, self.samples)).collect();
         if settings.split.is_some() && settings.half(SplitSide::Left).is_none() {
-            draws.push(source_draw(settings, scene.tessellator.mesh()));
+            draws.extend(mesh.materials.iter().map(|own| source_draw(settings, mesh, own, self.samples)));
         }
         if settings.overlays.colors == Colors::Excess {
             scene.tessellator.prepare_own_least(settings.tessellation.partitioning)?;
@@ -173,12 +172,19 @@ impl Renderer {
         range: Range<usize>,
     ) -> Result<(), GpuError> {
         let light = self.light(scene, settings)?;
+        let rects = halves(target.size, settings.split);
+        let half_frame = |half| {
+            let [left, _, width, _] = rects[half as usize];
+            // The mesh without tessellation is drawn with the right half's scene.
+            let drawn = scene.half(half).or((width > 0).then_some(&*scene))?;
+            Some(frame(&self.gpu, drawn, target, camera, settings, left))
+        };
         let picture = Picture {
             target,
             settings,
-            rects: halves(target.size, settings.split),
-            frames: SplitSide::BOTH
-                .map(|half| scene.half(half).map(|half| frame(&self.gpu, half, target, camera, settings))),
+            rects,
+            layer_areas: self.layer_areas(scene, target, camera, settings, rects),
+            frames: SplitSide::BOTH.map(half_frame),
             materials: self.material_groups(scene, settings, light.as_ref())?,
         };
         let Picture { rects, frames, materials, .. } = &picture;
@@ -193,6 +199,9 @@ impl Renderer {
         for index in runs.into_iter().take(range.end).skip(range.start).flatten() {
             let step = &steps[index];
             let half = step.half();
+            if matches!(step, Step::Layer(_)) && picture.layer_areas.into_iter().all(is_empty) {
+                continue;
+            }
             let Some(drawn) = scene.half_mut(half) else { continue };
             if let Some(chunk) = step.chunk() {
                 drawn.tessellator.emit(recorder, chunk)?;
@@ -329,15 +338,16 @@ impl Renderer {
         // These two overlays show faces from behind.
         let fronts = !folds && !back_faces && scene.tessellator.shows_fronts_only(clip_from_object);
         let (mesh, faces) = (scene.tessellator.mesh(), if fronts { Faces::Fronts } else { Faces::Both });
-        let (draws, pulled) = surface_draws(settings, mesh, faces);
-        let pipelines = mesh.materials.iter().map(|own| Ok(vec![self.get(draws[usize::from(own.texture.is_some())])?]));
-        Ok(Surfaces { materials: pipelines.collect::<Result<_, GpuError>>()?, pulled, fronts, sifted: false })
+        let draws = mesh.materials.iter().map(|own| surface_draw(settings, mesh, own, faces, self.samples));
+        let materials = draws.map(|draw| Ok(vec![self.get(draw)?])).collect::<Result<_, GpuError>>()?;
+        let pulled = emitted_triangles(settings) == Triangles::Pulled;
+        Ok(Surfaces { materials, pulled, fronts, sifted: false })
     }
 
     /// The pipelines that draw input triangles, for each of the mesh's materials.
     fn source_pipelines(&self, mesh: &Mesh, settings: &Settings) -> Result<Vec<Vec<wgpu::RenderPipeline>>, GpuError> {
-        let pipeline = self.get(source_draw(settings, mesh))?;
-        Ok(vec![vec![pipeline]; mesh.materials.len()])
+        let draws = mesh.materials.iter().map(|own| source_draw(settings, mesh, own, self.samples));
+        draws.map(|draw| Ok(vec![self.get(draw)?])).collect()
     }
 
     /// Removes triangles that cover no sample from an emitted chunk, if that saves time. Returns false if all of the chunk has to
@@ -470,27 +480,27 @@ impl Renderer {
     }
 }
 
-/// The pipelines for emitted triangles without and with a texture, and whether they pull their vertices.
-fn surface_draws(settings: &Settings, mesh: &Mesh, faces: Faces) -> ([Draw; 2], bool) {
+/// The pipeline for emitted triangles of a material, in pictures with so many samples a pixel.
+fn surface_draw(settings: &Settings, mesh: &Mesh, material: &Material, faces: Faces, samples: u32) -> Draw {
     let places = settings.used_normals_at(mesh);
     let triangles = emitted_triangles(settings);
-    let draws = match (triangles, Look::of(settings.overlays.colors)) {
+    match (triangles, Look::of(settings.overlays.colors)) {
         _ if settings.shows_materials() => {
             let draw = match triangles {
                 Triangles::Pulled => Draw::LitPulled,
                 Triangles::Indexed => Draw::LitIndexed,
                 _ => Draw::Lit,
             };
-            [draw(faces, places, Needs::of(mesh, settings)); 2]
+            draw(faces, places, Needs::of(mesh, settings).own(material, samples))
         }
-        (Triangles::Pulled, Some(look)) => [Draw::LookPulled(faces, places, look); 2],
-        (_, Some(look)) => [Draw::LookIndexed(faces, places, look); 2],
-        (Triangles::Pulled, None) => [Draw::Pulled(faces, places); 2],
-        (Triangles::Indexed, None) => [Draw::Indexed(faces, places); 2],
-        _ if places == NormalsAt::Pixels => [Draw::PixelNormals(faces); 2],
-        _ => [Draw::Plain(faces), Draw::Textured(faces)],
-    };
-    (draws, triangles == Triangles::Pulled)
+        (Triangles::Pulled, Some(look)) => Draw::LookPulled(faces, places, look),
+        (_, Some(look)) => Draw::LookIndexed(faces, places, look),
+        (Triangles::Pulled, None) => Draw::Pulled(faces, places),
+        (Triangles::Indexed, None) => Draw::Indexed(faces, places),
+        _ if places == NormalsAt::Pixels => Draw::PixelNormals(faces),
+        _ if material.texture.is_some() => Draw::Textured(faces),
+        _ => Draw::Plain(faces),
+    }
 }
 
 /// How pipelines get emitted triangles.
@@ -515,10 +525,10 @@ fn ground_step(steps: &[Step], scene: &Scene, camera: &Camera) -> usize {
     before_layers.unwrap_or(steps.len() - 1)
 }
 
-/// The pipeline for input triangles.
-fn source_draw(settings: &Settings, mesh: &Mesh) -> Draw {
+/// The pipeline for input triangles of a material, in pictures with so many samples a pixel.
+fn source_draw(settings: &Settings, mesh: &Mesh, material: &Material, samples: u32) -> Draw {
     match Look::of(settings.overlays.colors) {
-        _ if settings.shows_materials() => Draw::LitSource(Needs::of(mesh, settings)),
+        _ if settings.shows_materials() => Draw::LitSource(Needs::of(mesh, settings).own(material, samples)),
         Some(look) => Draw::LookSource(look),
         None => Draw::Source,
     }
@@ -567,7 +577,9 @@ struct Picture<'a> {
     target: &'a Target,
     settings: &'a Settings,
     /// Of both halves: x, y, width and height in px.
-    rects: [[u32; 4]; 2],
+    rects: [Area; 2],
+    /// The parts of both halves that layers can cover.
+    layer_areas: [Area; 2],
     /// The constants of both halves.
     frames: [Option<wgpu::Buffer>; 2],
     /// The bind groups of the scene's materials.

@@ -4,7 +4,7 @@
 //! the window's rows are made from these declarations.
 
 mod choice;
-mod light;
+pub(crate) mod light;
 mod matcap;
 pub(crate) mod options;
 mod overlays;

@@ -36,6 +36,7 @@ mod mesh_factors;
 mod mesh_tessellation;
 mod normal;
 mod octahedral_normal;
+mod patch_bounds;
 mod piece_error;
 mod posed_mesh;
 mod quotients;

@@ -1,12 +1,14 @@
 //! Meshes deformed into a pose on the CPU, as the deform pass does on the GPU: for measuring, exporting and finding
 //! positions.
 
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 use glam::{Vec3, Vec4};
 
 use super::deform::{blend, deform_normal, deform_position, deform_tangent};
 use super::normal::unit_or;
+use super::patch_bounds::PatchBounds;
 use crate::mesh::rig::{Binding, JointMatrix};
 use crate::mesh::{Bounds, Mesh, Moment, Pose, Rig, Topology};
 
@@ -26,6 +28,8 @@ pub struct PosedMesh {
     /// `None` for the mesh at rest.
     pose: Option<Arc<Pose>>,
     deformed: Arc<OnceLock<Deformed>>,
+    /// See [`Self::see_through_bounds`].
+    see_through: Arc<OnceLock<Option<Vec<PatchBounds>>>>,
 }
 
 /// A mesh and its topology.
@@ -33,7 +37,7 @@ pub(crate) type Deformed = (Arc<Mesh>, Arc<Topology>);
 
 impl PosedMesh {
     pub fn new(mesh: Arc<Mesh>, topology: Arc<Topology>, pose: Option<Arc<Pose>>) -> Self {
-        Self { mesh, topology, pose, deformed: Arc::default() }
+        Self { mesh, topology, pose, deformed: Arc::default(), see_through: Arc::default() }
     }
 
     pub fn pose(&self) -> Option<&Pose> {
@@ -57,6 +61,30 @@ impl PosedMesh {
     pub fn deformed_if_quick(&self) -> Option<Deformed> {
         let is_quick = self.pose.is_none() || self.mesh.corners.len() <= QUICK;
         if is_quick { Some(self.deformed()) } else { self.deformed.get().cloned() }
+    }
+
+    /// Returns the bounds of some patches in this pose, or `None` if there are none.
+    pub(crate) fn bounds_of(&self, patches: Range<u32>) -> Option<PatchBounds> {
+        let moving = self.mesh.rig.as_ref().zip(self.pose.as_ref());
+        let position = |point: u32| match moving {
+            None => self.topology.points[point as usize],
+            Some((rig, pose)) => posed_position(rig, pose, self.topology.point_corners[point as usize]),
+        };
+        let points = |corner: u32| self.topology.corner_points[corner as usize];
+        PatchBounds::of(patches.map(|patch| self.topology.patch_corners(patch).map(points).map(position)))
+    }
+
+    /// Returns the bounds of each material that shows what is behind it, or `None` if finding them takes long in this pose. They
+    /// are found at the first call; clones share them.
+    pub(crate) fn see_through_bounds(&self) -> Option<&[PatchBounds]> {
+        let find = || {
+            let materials = self.mesh.materials.iter().zip(&self.topology.material_patches);
+            let patches = materials.filter(|(material, _)| material.shows_behind()).map(|(_, patches)| patches.clone());
+            let count: usize = patches.clone().map(|patches| patches.len()).sum();
+            let is_quick = self.pose.is_none() || count <= QUICK / 3;
+            is_quick.then(|| patches.filter_map(|patches| self.bounds_of(patches)).collect())
+        };
+        self.see_through.get_or_init(find).as_deref()
     }
 }
 

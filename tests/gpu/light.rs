@@ -8,11 +8,12 @@ use pnaen::gpu::read_buffer;
 use pnaen::load::panorama::Panorama;
 use pnaen::render::blur_levels::{ENVIRONMENT_LEVELS, level_of_roughness, prefiltered, roughness_of_level};
 use pnaen::render::cube_map::CubeMap;
-use pnaen::render::dfg::environment_dfg;
+use pnaen::render::dfg::{environment_dfg, environment_sheen};
 use pnaen::render::environment::{ENVIRONMENT, Environment, LightView};
 use pnaen::render::irradiance::{irradiance, irradiance_of};
 use pnaen::render::reflectance::{
-    AmbientLight, LookAt, coat_albedo, direct_reflection, dominant_direction, reflect_ambient, transmitted,
+    AmbientLight, LookAt, coat_albedo, direct_reflection, dominant_direction, reflect_ambient, sheen_direction,
+    transmitted,
 };
 use pnaen::render::studio::studio_light;
 use pnaen::render::tone::{TONE_CURVE_NEUTRAL, TONE_CURVE_NONE, tone_mapped};
@@ -37,6 +38,7 @@ struct Found {
     irradiance: vec3<f32>,
     radiance: vec3<f32>,
     dfg: vec2<f32>,
+    sheen: f32,
     through: vec3<f32>,
 }
 
@@ -57,6 +59,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     found.irradiance = environment_irradiance(one.normal);
     found.radiance = environment_radiance(one.normal, one.look.roughness);
     found.dfg = environment_dfg(dot(one.normal, one.to_eye), one.look.roughness);
+    found.sheen = environment_sheen(clamp(dot(one.normal, one.to_eye), 0.0, 1.0), one.look.sheen_roughness);
     found.through = transmitted_through(one.look, one.normal, one.to_eye);
     results[id.x] = found;
 }
@@ -81,7 +84,8 @@ struct Found {
     irradiance: Vec4,
     radiance: Vec4,
     dfg: Vec2,
-    _pad: Vec2,
+    sheen: f32,
+    _pad: f32,
     through: Vec4,
 }
 
@@ -157,8 +161,12 @@ fn cases(count: usize) -> Vec<Case> {
             ior: 1.0 + unit(),
             occlusion: [1.0, unit()][index / 2 % 2],
             transmission: [0.0, unit()][index / 4 % 2],
+            sheen_color: [Vec3::ZERO, vec3(unit(), unit(), unit())][index / 8 % 2],
+            sheen_roughness: 0.1 + 0.9 * unit(),
             ..LookAt::default()
         };
+        let sheen_albedo = environment_sheen(normal.dot(to_eye).clamp(0.0, 1.0), look.sheen_roughness);
+        let look = LookAt { sheen_albedo, ..look };
         Case { look, normal: normal.extend(0.0), to_eye: to_eye.extend(0.0), to_light: to_light.extend(0.0) }
     };
     (0..count).map(&mut case).collect()
@@ -193,6 +201,7 @@ impl Twin {
             diffuse: irradiance_of(&self.irradiance, self.turn * normal),
             reflected: reflected(normal, look.roughness),
             coat_reflected: reflected(look.coat_normal, look.coat_roughness),
+            sheen: irradiance_of(&self.irradiance, self.turn * sheen_direction(normal, to_eye)),
             dfg: environment_dfg(facing, look.roughness).into(),
             coat_dfg: environment_dfg(coat_facing, look.coat_roughness).into(),
             facing,
@@ -214,7 +223,7 @@ fn shaders_light_as_their_twins_do() {
     let view = LightView { brightness: 0.0, rotation: 40.0, exposure: -0.5, tone_curve: TONE_CURVE_NEUTRAL };
     let twin = Twin::studio(view.rotation);
     let cases = cases(2000);
-    let mut most = [0.0_f32; 8];
+    let mut most = [0.0_f32; 9];
     for (case, found) in cases.iter().zip(run_in(&environment, &view, &cases)) {
         let [normal, to_eye, to_light] = [case.normal, case.to_eye, case.to_light].map(Vec4::truncate);
         let light = twin.ambient_light(case);
@@ -230,11 +239,12 @@ fn shaders_light_as_their_twins_do() {
             off(found.radiance.truncate(), twin.radiance(normal, case.look.roughness)),
             (found.dfg - light.dfg).abs().max_element(),
             off(found.through.truncate(), transmitted(&case.look, light.dfg, light.coat_dfg)),
+            off(Vec3::splat(found.sheen), Vec3::splat(case.look.sheen_albedo)),
         ];
         most = std::array::from_fn(|index| most[index].max(offs[index]));
     }
     println!("{most:?}");
-    let allowed = [0.02, 0.004, 1e-3, 1e-5, 1e-5, 0.02, 0.004, 0.004];
+    let allowed = [0.02, 0.004, 1e-3, 1e-5, 1e-5, 0.02, 0.004, 0.004, 0.01];
     assert!(most.iter().zip(allowed).all(|(most, allowed)| *most <= allowed), "{most:?}");
 }
 
@@ -244,7 +254,8 @@ fn white_surfaces_cannot_be_seen_in_a_white_room() {
     let environment = Environment::uniform(&engine().gpu, [1.0; 3]).expect("a small environment");
     let white = |case: Case| {
         let look = LookAt { base_color: Vec3::ONE, specular_color: Vec3::ONE, occlusion: 1.0, ..case.look };
-        Case { look: LookAt { specular: 1.0, coat_normal: case.normal.truncate(), ..look }, ..case }
+        let sheen_color = Vec3::splat(case.look.sheen_color.x);
+        Case { look: LookAt { specular: 1.0, coat_normal: case.normal.truncate(), sheen_color, ..look }, ..case }
     };
     let cases: Vec<Case> = cases(1000).into_iter().map(white).collect();
     for (case, found) in cases.iter().zip(run(&environment, &cases)) {

@@ -316,6 +316,30 @@ fn white_balls_cannot_be_told_from_an_even_light() {
     assert!(farthest < 0.01, "{farthest}");
 }
 
+/// The picture of a sheen whose maps say what its numbers say.
+#[test]
+fn maps_of_a_sheen_multiply_its_numbers() {
+    let numbers = Look { sheen_color: [0.5, 0.25, 1.0], sheen_roughness: 0.5, roughness: 1.0, ..Look::default() };
+    let texel = |color: [f32; 3], alpha: u8| {
+        let [r, g, b] = color.map(srgb);
+        image([1, 1], &[[r, g, b, alpha]])
+    };
+    let color = texel([1.0, 0.5, 0.2], 7);
+    let base = Look { sheen_color: [0.5, 0.5, 1.0], sheen_roughness: 1.0, ..numbers.clone() };
+    let mapped = look_with(Slot::SheenColor, map(color, MapUv::Own), base.clone());
+    let of_color = material([0.1; 3], Look { sheen_roughness: 0.5, ..mapped });
+    let expected = Look { sheen_color: [0.5, 0.25, 0.2], ..numbers.clone() };
+    let of_roughness = look_with(Slot::SheenRoughness, map(texel([0.0; 3], 128), MapUv::Own), base);
+    let tilted = vec3(0.8, 0.0, 0.6);
+    for settings in every_way(studio()) {
+        let seen = |own: Material| at(&picture(&square(tilted, own), &settings, 0.0), PLACES[0]);
+        assert_near(seen(of_color.clone()), seen(material([0.1; 3], expected.clone())), 1, "colour");
+        let plain = Look { sheen_color: [0.5, 0.5, 1.0], ..numbers.clone() };
+        assert_near(seen(material([0.1; 3], of_roughness.clone())), seen(material([0.1; 3], plain)), 1, "roughness");
+        assert!(seen(of_color.clone()) != seen(material([0.1; 3], Look { sheen_color: [0.0; 3], ..numbers.clone() })));
+    }
+}
+
 /// Bumps, as a normal map.
 fn bumps() -> Arc<Texture> {
     const SIZE: u32 = 256;
@@ -363,7 +387,12 @@ fn materials_look_as_they_did() {
         let look = look_with(Slot::Emissive, map(lamps, MapUv::Own), Look { emissive: [2.0; 3], ..glossy() });
         own.look = look_with(Slot::Normal, Map { sampling: Sampling::default(), ..map(bumps(), MapUv::Own) }, look);
     }
-    let pictures = [("spheres", spheres), ("coats", coats), ("maps", with_tangents(torus))];
+    let velvet = |sheen_roughness| {
+        let look = Look { roughness: 0.8, sheen_color: [1.0, 0.6, 0.5], sheen_roughness, ..Look::default() };
+        material([0.15, 0.01, 0.02], look)
+    };
+    let sheens = balls([0.1, 0.3, 0.5, 1.0].map(velvet).into(), 4);
+    let pictures = [("spheres", spheres), ("coats", coats), ("sheen", sheens), ("maps", with_tangents(torus))];
     let pictures = pictures.into_iter().map(|(name, mesh)| {
         let mut scene = scene_of(mesh, 0.0);
         let target = Target::new(&engine().gpu, [320, 200]).expect("a small picture");

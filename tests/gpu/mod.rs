@@ -18,6 +18,7 @@ mod light;
 mod limits;
 mod lines;
 mod looks;
+mod masks;
 mod materials;
 #[path = "../documents/moving.rs"]
 pub(crate) mod moving;

@@ -37,7 +37,7 @@ impl Writer {
         for (map, index) in look.maps.iter().zip(&mut maps) {
             *index = map.as_ref().filter(has_own_uv).map(|map| texture(&map.texture, map.sampling)).transpose()?;
         }
-        let [metallic_roughness, normal, occlusion, emissive, transmission] = maps;
+        let [metallic_roughness, normal, occlusion, emissive, transmission, ..] = maps;
         let extensions = look.transmits().then(|| self.transmission(look, transmission));
         Ok(self.root.push(json::Material {
             name: Some(material.name.clone()),

@@ -59,6 +59,8 @@ fn a_material_comes_back_with_its_numbers_and_maps() {
                 own(&numbers, Sampling::default()),
                 None,
                 None,
+                None,
+                None,
             ],
             ..Look::default()
         },

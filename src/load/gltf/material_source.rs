@@ -1,7 +1,7 @@
 //! Reads what a document says about a material, without its images.
 //!
 //! Sources: glTF 2.0 specification, section 3.9; Khronos' extensions KHR_materials_clearcoat, KHR_materials_emissive_strength,
-//! KHR_materials_ior, KHR_materials_specular, KHR_materials_transmission, KHR_materials_unlit and
+//! KHR_materials_ior, KHR_materials_sheen, KHR_materials_specular, KHR_materials_transmission, KHR_materials_unlit and
 //! KHR_materials_pbrSpecularGlossiness.
 
 use super::lenient::Members;
@@ -124,6 +124,15 @@ impl MaterialSource {
             look.transmission = transmission.number("transmissionFactor", 0.0, UNIT);
             self.map(Slot::Transmission, MapSource::of(&transmission, "transmissionTexture", textures));
         }
+        if let Some(sheen) = extensions.inside("KHR_materials_sheen") {
+            self.look.sheen_color = sheen.numbers("sheenColorFactor", [0.0; 3], UNIT);
+            self.look.sheen_roughness = sheen.number("sheenRoughnessFactor", 0.0, UNIT);
+            // Images of a sheen that isn't there needn't be read.
+            if self.look.has_sheen() {
+                self.map(Slot::SheenColor, MapSource::of(&sheen, "sheenColorTexture", textures));
+                self.map(Slot::SheenRoughness, MapSource::of(&sheen, "sheenRoughnessTexture", textures));
+            }
+        }
         if let Some(glossy) = extensions.inside("KHR_materials_pbrSpecularGlossiness") {
             self.glossy(&glossy, textures);
         }
@@ -150,7 +159,8 @@ impl MaterialSource {
                 }
                 "KHR_materials_specular" => &["specularTexture", "specularColorTexture"],
                 "KHR_materials_pbrSpecularGlossiness" => &["specularGlossinessTexture"],
-                "KHR_materials_emissive_strength" | "KHR_materials_ior" | "KHR_materials_unlit" => &[],
+                "KHR_materials_emissive_strength" | "KHR_materials_ior" => &[],
+                "KHR_materials_sheen" | "KHR_materials_unlit" => &[],
                 TRANSMISSION => {
                     if self.look.transmits() && self.look.roughness > 0.0 {
                         self.undrawn.push(format!("blur of what is behind rough surfaces ({TRANSMISSION})"));

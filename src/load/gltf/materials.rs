@@ -256,6 +256,8 @@ fn slot_name(slot: Slot) -> &'static str {
         Slot::Occlusion => "occlusion map",
         Slot::Emissive => "emissive map",
         Slot::Transmission => "transmission map",
+        Slot::SheenColor => "sheen colour map",
+        Slot::SheenRoughness => "sheen roughness map",
     }
 }
 

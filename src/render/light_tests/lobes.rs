@@ -76,7 +76,7 @@ fn microfacets_seen_from_above_have_the_area_of_the_surface() {
 }
 
 /// Directions that are spread evenly over the half above the surface.
-fn hemisphere(count: u32) -> impl Iterator<Item = Vec3> {
+pub(super) fn hemisphere(count: u32) -> impl Iterator<Item = Vec3> {
     (0..count).map(move |index| {
         let point = hammersley(index, count);
         let height = point.x + 0.5 / count as f32;

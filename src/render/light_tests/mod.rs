@@ -2,6 +2,7 @@
 
 mod furnace;
 mod lobes;
+mod sheen;
 mod split_sum;
 
 use glam::{Vec2, Vec3, vec2, vec3};
@@ -34,6 +35,7 @@ fn white_light(facing: f32, roughness: f32, coat_roughness: f32) -> AmbientLight
         diffuse: Vec3::ONE,
         reflected: Vec3::ONE,
         coat_reflected: Vec3::ONE,
+        sheen: Vec3::ONE,
         dfg: dfg(facing, roughness),
         coat_dfg: dfg(facing, coat_roughness),
         facing,

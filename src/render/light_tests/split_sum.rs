@@ -13,14 +13,14 @@ use crate::render::reflectance::{
 use crate::render::studio::studio_light;
 
 /// The studio as the CPU's twins make it.
-struct Studio {
+pub(super) struct Studio {
     source: CubeMap,
     filtered: CubeMap,
-    irradiance: Irradiance,
+    pub(super) irradiance: Irradiance,
 }
 
 impl Studio {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         let source = CubeMap::of(128, studio_light);
         Self { filtered: prefiltered(&source), irradiance: irradiance(&source), source }
     }
@@ -59,7 +59,7 @@ impl Studio {
 }
 
 /// Normals of the half of a sphere that faces the eye, evenly over the disc that is seen, but for its border.
-fn normals() -> impl Iterator<Item = Vec3> {
+pub(super) fn normals() -> impl Iterator<Item = Vec3> {
     let steps = || (-6..=6).map(|step| step as f32 / 6.2);
     let places = steps().flat_map(move |y| steps().map(move |x| vec2(x, y)));
     places.filter(|place: &Vec2| place.length() < 0.95).map(|place| {

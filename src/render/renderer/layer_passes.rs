@@ -3,13 +3,18 @@
 use super::{Picture, Renderer, Surfaces, emitted_triangles};
 use crate::gpu::{GpuError, Recorder};
 use crate::mesh::{Material, Mesh};
-use crate::render::Scene;
+use crate::render::covered_area::{Area, covered_area, intersection, is_empty, union};
 use crate::render::layers::LayerPass;
 use crate::render::needs::{Needs, has_layers};
-use crate::render::pipelines::{Draw, LayerDraw, Triangles};
+use crate::render::pipelines::{Draw, LayerClear, LayerDraw, Triangles};
 use crate::render::steps::{LayerPart, LayerStep};
 use crate::render::target::depth_attachment;
+use crate::render::{Camera, Scene, Target};
 use crate::settings::{NormalsAt, Settings, SplitSide};
+use crate::tessellate::{Surface, Tessellation};
+
+/// How far rounding moves a vertex at most, in units in the last place of the mesh's largest coordinate.
+const ROUNDING_ULPS: f32 = 64.0;
 
 impl Renderer {
     /// Records one step of a pass over layers. The arena holds the step's chunk.
@@ -23,35 +28,54 @@ impl Renderer {
         picture: &Picture,
         LayerStep { pass, part, is_first }: LayerStep,
     ) -> Result<(), GpuError> {
-        let Picture { target, settings, rects, frames, materials } = picture;
-        let depths = target.layer_depths(&self.gpu)?;
-        let found = pass.found();
-        let depth = found.map(|(texture, nothing)| depth_attachment(&depths[texture], is_first.then_some(nothing)));
-        let color = found.is_none().then(|| target.color(wgpu::Color::TRANSPARENT, false, false));
+        let Picture { target, settings, layer_areas, frames, materials, .. } = picture;
+        let all = union(layer_areas[0], layer_areas[1]);
+        if is_empty(all) {
+            return Ok(());
+        }
         let half = match part {
             Some(LayerPart::Chunk(half, _)) => half,
-            Some(LayerPart::Source) | None => SplitSide::Right,
+            Some(LayerPart::Source) => SplitSide::Left,
+            None => SplitSide::Right,
         };
-        let (Some(drawn), Some(frame)) = (scene.half(half), &frames[half as usize]) else { return Ok(()) };
+        let Some(frame) = &frames[half as usize] else { return Ok(()) };
+        // The mesh without tessellation is drawn with the right half's scene.
+        let drawn = scene.half(half).unwrap_or(scene);
         let triangles = match part {
             Some(LayerPart::Source) => Triangles::Source,
             _ => emitted_triangles(settings),
         };
         let pipelines = self.layer_pipelines(drawn.tessellator.mesh(), pass, triangles, settings)?;
         let (scene_group, layer_group) = (self.scene_group(drawn, frame), self.layer_group(picture, pass)?);
-        recorder.render("draw", color, depth, |render_pass| {
+        let nothing = pass.nothing().filter(|_| is_first);
+        // A clear of all of a picture is faster than a draw, but takes far longer than a draw of a small part.
+        let (whole, part_clear) = match nothing {
+            Some(depth) if all == [0, 0, target.size[0], target.size[1]] => (Some(depth), None),
+            Some(_) => (None, Some(self.get(Draw::LayerClear(clear_of(pass)))?)),
+            None => (None, None),
+        };
+        let depth = depth_attachment(&target.layer_depths(&self.gpu)?[pass.found()], whole);
+        let has_colors = matches!(pass, LayerPass::Back { .. });
+        let color = has_colors.then(|| target.color(wgpu::Color::TRANSPARENT, false, false));
+        recorder.render("draw", color, Some(depth), |render_pass| {
+            if let Some(pipeline) = &part_clear {
+                let [x, y, width, height] = all;
+                render_pass.set_scissor_rect(x, y, width, height);
+                render_pass.set_pipeline(pipeline);
+                render_pass.draw(0..3, 0..1);
+            }
             render_pass.set_bind_group(0, &scene_group, &[]);
             render_pass.set_bind_group(3, &layer_group, &[]);
             match part {
                 None => {}
                 Some(LayerPart::Source) => {
-                    self.draw_source(render_pass, &pipelines, drawn, materials, rects[SplitSide::Left as usize]);
+                    self.draw_source(render_pass, &pipelines, drawn, materials, layer_areas[half as usize]);
                 }
                 Some(LayerPart::Chunk(_, chunk)) => {
                     let pulled = triangles == Triangles::Pulled;
                     let surfaces = Surfaces { materials: pipelines, pulled, fronts: false, sifted: false };
                     let chunk = drawn.tessellator.chunk(chunk);
-                    self.draw_chunk(render_pass, drawn, materials, rects[half as usize], &surfaces, &chunk);
+                    self.draw_chunk(render_pass, drawn, materials, layer_areas[half as usize], &surfaces, &chunk);
                 }
             }
         });
@@ -70,6 +94,30 @@ impl Renderer {
         draws.map(|draws| draws.into_iter().map(|draw| self.get(draw)).collect()).collect()
     }
 
+    /// The parts of both halves, which lie in `rects`, that layers can cover: nothing in a picture without layers.
+    pub(super) fn layer_areas(
+        &self,
+        scene: &Scene,
+        target: &Target,
+        camera: &Camera,
+        settings: &Settings,
+        rects: [Area; 2],
+    ) -> [Area; 2] {
+        if !settings.shows_materials() || !has_layers(scene.tessellator.mesh()) {
+            return [[0; 4]; 2];
+        }
+        if self.peels_everywhere {
+            return rects;
+        }
+        SplitSide::BOTH.map(|half| {
+            let drawn = settings.half(half).zip(scene.half(half));
+            // Without a scene of its own, the left half shows the mesh without tessellation.
+            let flat = || settings.with(Tessellation { surface: Surface::Flat, ..settings.tessellation });
+            let (settings, scene) = drawn.unwrap_or_else(|| (flat(), scene));
+            intersection(layer_area(scene, target, camera, &settings), rects[half as usize])
+        })
+    }
+
     fn layer_group(&self, picture: &Picture, pass: LayerPass) -> Result<wgpu::BindGroup, GpuError> {
         let passed = &picture.target.layer_depths(&self.gpu)?[pass.passed()];
         // Colours that show measurements hide everything behind them.
@@ -86,21 +134,50 @@ impl Renderer {
     }
 }
 
+/// How a pass sets depths where nothing is found.
+fn clear_of(pass: LayerPass) -> LayerClear {
+    match pass {
+        LayerPass::Begin => LayerClear::Begin,
+        LayerPass::Away { .. } => LayerClear::Away,
+        LayerPass::Back { .. } => LayerClear::Back,
+    }
+}
+
+/// An area that holds all pixels which layers cover in a picture of a scene with these settings.
+fn layer_area(scene: &Scene, target: &Target, camera: &Camera, settings: &Settings) -> Area {
+    let whole = [0, 0, target.size[0], target.size[1]];
+    let Some(bounds) = scene.tessellator.posed().see_through_bounds() else { return whole };
+    let clip_from_object = camera.clip_from_object(target.viewport(), &scene.bounds);
+    let room = settings.reach(scene.tessellator.mesh()) + ROUNDING_ULPS * scene.ulp();
+    let areas = bounds.iter().map(|own| match own.of_surface(settings.tessellation.surface) {
+        Some(bounds) => covered_area(&bounds.grown(room), clip_from_object, target.size),
+        None => whole,
+    });
+    areas.fold([0; 4], union)
+}
+
 /// The draws of a material in a pass, in order.
 fn draws(mesh: &Mesh, material: &Material, pass: LayerPass, triangles: Triangles, settings: &Settings) -> Vec<Draw> {
     let own: &[_] = match pass {
         _ if !material.shows_behind() => &[],
         LayerPass::Begin => &[],
-        LayerPass::Find { toward_eye: false, .. } => &[LayerDraw::Away],
-        LayerPass::Find { toward_eye: true, .. } => &[LayerDraw::Toward],
-        LayerPass::Composite { .. } if material.look.transmits() => &[LayerDraw::Filter, LayerDraw::Add],
-        LayerPass::Composite { .. } => &[LayerDraw::Over],
+        LayerPass::Away { .. } => &[LayerDraw::Away],
+        LayerPass::Back { composites: false, .. } => &[LayerDraw::Toward],
+        LayerPass::Back { finds, .. } => {
+            let all: &[_] = if material.look.transmits() {
+                &[LayerDraw::Filter, LayerDraw::Add, LayerDraw::Toward]
+            } else {
+                &[LayerDraw::Over, LayerDraw::Toward]
+            };
+            if finds { all } else { &all[..all.len() - 1] }
+        }
     };
-    let places = match pass {
-        LayerPass::Composite { .. } if triangles != Triangles::Source => settings.used_normals_at(mesh),
-        _ => NormalsAt::Vertices,
+    let places = |draw| match draw {
+        LayerDraw::Away | LayerDraw::Toward => NormalsAt::Vertices,
+        _ if triangles == Triangles::Source => NormalsAt::Vertices,
+        _ => settings.used_normals_at(mesh),
     };
-    own.iter().map(|&draw| Draw::Layer(draw, triangles, places, Needs::of(mesh, settings))).collect()
+    own.iter().map(|&draw| Draw::Layer(draw, triangles, places(draw), Needs::of(mesh, settings))).collect()
 }
 
 /// All draws of a mesh's layers with these settings.
@@ -114,5 +191,6 @@ pub(super) fn layer_draws(settings: &Settings, mesh: &Mesh) -> Vec<Draw> {
         let passes = mesh.materials.iter().flat_map(|material| LayerPass::all().map(move |pass| (material, pass)));
         passes.flat_map(move |(material, pass)| draws(mesh, material, pass, triangles, settings))
     };
-    triangles.flat_map(of).collect()
+    let clears = [LayerClear::Begin, LayerClear::Away, LayerClear::Back].map(Draw::LayerClear);
+    triangles.flat_map(of).chain(clears).collect()
 }

@@ -24,6 +24,7 @@ use crate::render::matcap::MATCAP_REACH;
 use crate::render::pipelines::LayerDraw;
 use crate::render::reflectance::{COAT_F0, LEAST_ALPHA};
 use crate::render::scale::Scale;
+use crate::render::sheen::LEAST_SHEEN_ALPHA;
 use crate::render::tone::{COMPRESSION_START, DESATURATION, TONE_CURVE_NEUTRAL, TONE_CURVE_NONE};
 use crate::settings::{Colors, Overlays};
 use crate::tessellate::shared_constants::{
@@ -64,6 +65,7 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
         "how the surface looks",
     ),
     (&["LEAST_TANGENT"], "only draws read normal maps"),
+    (&["SAMPLE_PLACES"], "only draws have samples"),
     (&["GROUND_REACH", "GROUND_FADES_FROM", "GROUND_COLOR", "GROUND_OPACITY"], "how the ground looks"),
 ];
 
@@ -118,6 +120,7 @@ fn table() -> Vec<(&'static str, Expected)> {
         ("DESATURATION", number(DESATURATION)),
         ("COAT_F0", number(COAT_F0)),
         ("LEAST_ALPHA", number(LEAST_ALPHA)),
+        ("LEAST_SHEEN_ALPHA", number(LEAST_SHEEN_ALPHA)),
         ("LEAST_SEEN", number(LEAST_SEEN)),
         ("SCALE_STOPS", number(Scale::STOPS as u32)),
         ("FOUND_EMITTED", number(FOUND_EMITTED)),
@@ -268,6 +271,8 @@ fn of_enums() -> Vec<(&'static str, Expected)> {
         ("SLOT_OCCLUSION", number(Slot::Occlusion as u32)),
         ("SLOT_EMISSIVE", number(Slot::Emissive as u32)),
         ("SLOT_TRANSMISSION", number(Slot::Transmission as u32)),
+        ("SLOT_SHEEN_COLOR", number(Slot::SheenColor as u32)),
+        ("SLOT_SHEEN_ROUGHNESS", number(Slot::SheenRoughness as u32)),
         ("LAYER_OVER", number(LayerDraw::Over as u32)),
         ("LAYER_FILTER", number(LayerDraw::Filter as u32)),
         ("LAYER_ADD", number(LayerDraw::Add as u32)),

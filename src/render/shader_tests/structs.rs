@@ -106,6 +106,7 @@ fn shared_structs_have_the_same_layout() {
         px_per_unit,
         ground,
         scale,
+        left,
     });
     same!(Surroundings { irradiance, light_from_object, brightness, exposure, tone_curve });
     same!(PunctualLight { origin, intensity, inverse_range, direction, cone_scale, cone_offset });
@@ -120,7 +121,10 @@ fn shared_structs_have_the_same_layout() {
         coat_roughness,
         ior,
         occlusion,
+        sheen_color,
         transmission,
+        sheen_roughness,
+        sheen_albedo,
     });
     same!(PrefilterParams { roughness, sample_count, size, source_size });
     same!(CoverageView { clip_from_object, slack, viewport, sample_count, fronts_only, snap });
@@ -140,6 +144,8 @@ fn shared_structs_have_the_same_layout() {
         unlit,
         blends,
         transmission,
+        sheen_color,
+        sheen_roughness,
         maps,
     });
     same!(MapPlace { u, v });

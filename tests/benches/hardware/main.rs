@@ -3,11 +3,13 @@
 //! The peer draws the same patches with Vulkan's hull shader, fixed-function tessellator and domain shader. It gets the control
 //! nets that our nets pass computed, and the factors that our counts pass used. Times are medians. On software drivers, whose
 //! timestamps are wrong, they are times of whole submissions. The bench reports its results, and no result makes it fail.
-//! `cargo bench --bench hardware -- emission` prints only how long rows take to emit beside rings.
+//! `cargo bench --bench hardware -- emission` prints only how long rows take to emit beside rings, and `-- materials MESH...` only
+//! how long pictures of mesh files take in the light of a studio, with layers and without.
 
 mod copy;
 mod error;
 mod growth;
+mod materials;
 mod memory;
 mod numbers;
 mod ours;
@@ -82,6 +84,11 @@ fn main() -> ExitCode {
 
 fn run(engine: &Engine) -> Result<(), BenchError> {
     let scale = Scale::of(engine);
+    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| !argument.starts_with("--")).collect();
+    if let Some(("materials", files)) = arguments.split_first().map(|(part, files)| (part.as_str(), files)) {
+        Report::begin(engine, &scale, None).materials(&materials::measure(engine, &scale, files)?);
+        return Ok(());
+    }
     if std::env::args().any(|argument| argument == "emission") {
         Report::begin(engine, &scale, None).patterns(&patterns::measure(engine, &scale)?);
         return Ok(());

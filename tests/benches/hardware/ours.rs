@@ -159,6 +159,20 @@ impl Subject {
         Ok(Spread::of(runs.iter().map(|run| run.sum(&["draw"])).filter(|ms| *ms > 0.0)))
     }
 
+    /// The time of drawing what was emitted before, in ms.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn time_drawing(&mut self, engine: &Engine, effort: Effort) -> Result<Spread, GpuError> {
+        let mut timing = Timing::on(&engine.gpu);
+        let runs = effort.repeat(|_| {
+            engine.draw(&mut self.scene, &self.target, &self.camera, &self.settings, &mut timing)?;
+            engine.gpu.wait();
+            Ok::<_, GpuError>(Run { passes: take_times(&engine.gpu, &mut timing) })
+        })?;
+        Ok(Spread::of(runs.iter().map(|run| run.sum(&DRAWING)).filter(|ms| *ms > 0.0)))
+    }
+
     /// The least number of bytes that our tessellation passes must move: their output; all data of the mesh that they read, once;
     /// and the factors and offsets of patches and factors of edges, which pass from one to the next, written once and read once.
     /// Repeated reads, and the data by which an invocation finds its patch, don't count.

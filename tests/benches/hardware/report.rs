@@ -5,6 +5,7 @@ use pnaen::internals::Engine;
 use super::Scale;
 use super::copy::Copies;
 use super::error::{self, EqualError, PAPER_PIXELS};
+use super::materials::{self, Drawn};
 use super::numbers::{Spread, table, whole};
 use super::patterns::{self, Pair};
 use super::rows::{self, Named, rate_of};
@@ -80,6 +81,12 @@ impl Report {
     pub fn patterns(&self, pairs: &[Pair]) {
         println!("## Emission of rows and of rings\n\n{}", patterns::table_of(pairs));
         println!("One factor for all edges of a torus; rings are those of integer partitioning.\n");
+    }
+
+    /// Prints what materials cost.
+    pub fn materials(&self, rows: &[Drawn]) {
+        println!("## Materials\n\n{}", materials::table_of(rows));
+        println!("Drawing alone: what is drawn was emitted before.");
     }
 
     /// Prints how cost grows.

@@ -53,6 +53,20 @@ pub fn columns(patches: u64) -> usize {
 pub fn subject(engine: &Engine, mesh: Mesh, size: [u32; 2], arena_bytes: u64) -> Result<Subject, GpuError> {
     let mesh = Arc::new(mesh);
     let topology = Arc::new(Topology::build(&mesh, &Progress::new()).unwrap_or_default());
+    subject_of(engine, mesh, topology, size, arena_bytes)
+}
+
+/// The same with a topology.
+///
+/// # Errors
+/// The same.
+pub fn subject_of(
+    engine: &Engine,
+    mesh: Arc<Mesh>,
+    topology: Arc<Topology>,
+    size: [u32; 2],
+    arena_bytes: u64,
+) -> Result<Subject, GpuError> {
     let scene = engine.scene_of(mesh, topology, arena_bytes)?;
     let target = Target::new(&engine.gpu, size)?;
     let camera = Camera::framing(&scene.bounds, target.viewport());

@@ -2,6 +2,7 @@
 
 use pnaen::embed::GpuError;
 use pnaen::internals::{CompareError, Engine, Timing, compare};
+use pnaen::load::LoadError;
 use pnaen::tessellate::Partitioning;
 use thiserror::Error;
 
@@ -20,6 +21,8 @@ pub enum BenchError {
     Vulkan(#[from] VulkanError),
     #[error(transparent)]
     Compare(#[from] CompareError),
+    #[error(transparent)]
+    Load(#[from] LoadError),
 }
 
 /// The peer's times for a subject in ms. For each, the faster of its two ways to read control nets counts.

@@ -103,6 +103,22 @@ fn all_numbers_are_read() {
 }
 
 #[test]
+fn a_sheen_has_a_colour_a_roughness_and_maps() {
+    let sheen = json!({
+        "sheenColorFactor": [0.5, 0.25, 1], "sheenRoughnessFactor": 0.75, "sheenColorTexture": { "index": 0 },
+        "sheenRoughnessTexture": { "index": 1 },
+    });
+    let read = material(json!({ "extensions": { "KHR_materials_sheen": sheen } })).look;
+    assert_eq!((read.sheen_color, read.sheen_roughness, read.has_sheen()), ([0.5, 0.25, 1.0], 0.75, true));
+    let slots = [Slot::SheenColor, Slot::SheenRoughness];
+    assert!(slots.iter().all(|&slot| read.maps[slot as usize].is_some()));
+    // Without a colour there is no sheen, whatever its roughness is.
+    let none = json!({ "sheenRoughnessFactor": 0.75, "sheenColorTexture": { "index": 0 } });
+    let read = material(json!({ "extensions": { "KHR_materials_sheen": none } })).look;
+    assert!(!read.has_sheen() && slots.iter().all(|&slot| read.maps[slot as usize].is_none()));
+}
+
+#[test]
 fn specular_and_glossiness_are_converted() {
     let glossy =
         json!({ "diffuseFactor": [0.5, 0.5, 0.5, 1], "specularFactor": [0.25, 0.5, 1], "glossinessFactor": 0.75 });
@@ -338,8 +354,12 @@ fn broken_materials_are_repaired_and_told() {
             "KHR_materials_volume isn't drawn; material \"jar\" has it.",
         ),
         (
-            json!({ "name": "silk", "extensions": { "KHR_materials_sheen": {} } }),
-            "KHR_materials_sheen isn't drawn; material \"silk\" has it.",
+            json!({ "name": "hair", "extensions": { "KHR_materials_anisotropy": {} } }),
+            "KHR_materials_anisotropy isn't drawn; material \"hair\" has it.",
+        ),
+        (
+            json!({ "extensions": { "KHR_materials_sheen": { "sheenColorFactor": [2, 0, 0] } } }),
+            "/materials/0/extensions/KHR_materials_sheen/sheenColorFactor/0 is 2, but must be at most 1.0; 1 is used",
         ),
         (
             json!({ "extensions": { "KHR_materials_clearcoat": { "clearcoatNormalTexture": { "index": 0 } } } }),
@@ -428,15 +448,15 @@ fn a_material_that_is_not_there_is_the_default() {
 
 #[test]
 fn many_materials_with_the_same_extension_are_one_sentence() {
-    let mut draft = square(json!({ "name": "a", "extensions": { "KHR_materials_sheen": {} } }));
+    let mut draft = square(json!({ "name": "a", "extensions": { "KHR_materials_anisotropy": {} } }));
     let one = draft.root["meshes"][0]["primitives"][0].clone();
     for i in 1..5 {
         let mut next = one.clone();
         next["material"] = json!(i);
         draft.primitive(next);
-        draft.push("materials", json!({ "name": format!("m{i}"), "extensions": { "KHR_materials_sheen": {} } }));
+        draft.push("materials", json!({ "name": format!("m{i}"), "extensions": { "KHR_materials_anisotropy": {} } }));
     }
     let warnings = draft.read().unwrap().warnings;
-    let expected = "KHR_materials_sheen isn't drawn; materials \"a\", \"m1\", \"m2\" and 2 more have it.";
+    let expected = "KHR_materials_anisotropy isn't drawn; materials \"a\", \"m1\", \"m2\" and 2 more have it.";
     assert_eq!(warnings, [expected]);
 }
