@@ -97,10 +97,11 @@ pub(super) fn read(
     progress.check()?;
     let binder = RigBuilder::new(clips, &document, &placed, &mut warnings);
     notes.extend(std::mem::take(&mut warnings));
-    let materials = Materials::new(&lists, &document, &placed, (&accessors, &files), &budget)?;
+    let mut materials = Materials::new(&lists, &document, &placed, (&accessors, &files), &budget)?;
     let is_detailed = needs_details(&document, &placed, &materials);
     let beside = PerVertex { moves: binder.is_some(), is_detailed };
-    let [vertices, corners] = scene_size::check(&document, &placed, &accessors, &budget, beside)?;
+    let needs = scene_size::check(&document, &placed, &accessors, &budget, beside)?;
+    materials.read_images(needs.bytes, progress)?;
     let mut scene = Scene {
         document: &document,
         placed: &placed,
@@ -111,7 +112,7 @@ pub(super) fn read(
         binder,
         details: is_detailed.then(DetailTable::default),
     };
-    scene.builder.expect(vertices, corners);
+    scene.builder.expect(needs.vertices, needs.corners);
     for (i, &node) in placed.shown.iter().enumerate() {
         progress.set(0.3 + 0.5 * i as f32 / placed.shown.len() as f32);
         scene.add(node, progress)?;

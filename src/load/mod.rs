@@ -24,6 +24,7 @@ mod read_error;
 pub(crate) mod source;
 mod stl;
 mod text_lines;
+mod texture_room;
 mod uri;
 mod warnings;
 mod webp_memory;

@@ -17,6 +17,7 @@ pub(crate) mod interner;
 mod light;
 pub(crate) mod material;
 pub(crate) mod mesh_builder;
+pub(crate) mod mipmap;
 pub(crate) mod normal_faults;
 pub(crate) mod normals;
 pub(crate) mod polygon;

@@ -21,6 +21,7 @@ mod look;
 mod marks;
 pub(crate) mod matcap;
 mod materials;
+pub(crate) mod mipmap_pass;
 mod needs;
 mod pick;
 mod pipelines;
@@ -56,10 +57,11 @@ pub(crate) use target::samples;
 
 /// The shader files with entry points for drawing and picking, and the light that draws read. Each makes one shader module.
 #[cfg(test)]
-static MODULES: [&crate::gpu::WgslFile; 13] = [
+static MODULES: [&crate::gpu::WgslFile; 14] = [
     &coverage::PASS_COVERAGE,
     &environment::ENVIRONMENT,
     &leaks::DRAW_LEAKS,
+    &mipmap_pass::PASS_MIPMAP,
     &pick::DRAW_PICK,
     &pipelines::DRAW_BACKGROUND,
     &pipelines::DRAW_GROUND,
