@@ -1,17 +1,19 @@
 //! Builds a mesh from the faces of OBJ, STL and PLY files: checks them, cuts polygons into triangles, and counts
 //! repairs.
 
+use std::sync::Arc;
+
 use glam::{Vec2, Vec3};
 
 use super::loaded_mesh::LoadedMesh;
-use super::memory_budget::Budget;
+use super::memory_budget::{Budget, edge_bytes};
 use super::read_error::{FilePosition, ReadError};
 use super::warnings::repair_warnings;
-use crate::mesh::Material;
 use crate::mesh::build_limits::MAX_TRIANGLES;
 use crate::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use crate::mesh::polygon::{self, CutQuality, triangulate};
 use crate::mesh::rig::LARGEST_COORDINATE;
+use crate::mesh::{Material, Texture};
 use crate::progress::Progress;
 
 /// The greatest number of materials. A file with more is refused, since each takes memory and a draw call.
@@ -66,6 +68,20 @@ impl<'a> FaceBuilder<'a> {
             return Err(ReadError::TooMany { limit: MAX_MATERIALS as u64, what: "materials" });
         }
         Ok(self.builder.material(material))
+    }
+
+    /// Gives a material the image of its base colour.
+    ///
+    /// # Panics
+    /// If `material` isn't an index that [`material`](Self::material) returned.
+    pub(super) fn texture(&mut self, material: usize, texture: &Arc<Texture>) {
+        self.builder.material_mut(material).texture = Some(texture.clone());
+    }
+
+    /// Returns how much more memory the mesh takes until it has its edges, in bytes, if no more faces are added.
+    pub(super) fn bytes_to_finish(&self) -> u64 {
+        let [corners, triangles] = [self.builder.distinct_corners(), self.triangles].map(|count| count as u64);
+        edge_bytes(corners, triangles).saturating_sub(32 * corners + 12 * triangles)
     }
 
     /// Announces that about `triangles` more triangles, and about `corners` more distinct corners, will be added.

@@ -11,6 +11,7 @@ mod animations;
 mod attachment;
 mod binding_space;
 mod buffers;
+mod cameras;
 mod decompressed_primitive;
 mod document;
 mod draco;
@@ -83,7 +84,7 @@ pub(super) fn read(
     progress: &Progress,
 ) -> Result<LoadedMesh, GltfError> {
     let budget = Budget::new(bytes.len(), limits);
-    let document::Parsed { document, blob, extensions, animations, lists, lights, variants, mut notes } =
+    let document::Parsed { document, blob, extensions, animations, lists, lights, cameras, variants, mut notes } =
         document::parse(bytes, variant, &budget, progress)?;
     progress.check()?;
     let files = Files::new(folder, limits, &budget, progress);
@@ -135,6 +136,7 @@ pub(super) fn read(
     // The builder gets transformed normals of unit length, so the reader counts those that weren't in the file.
     mesh.repairs.normals_rescaled += primitives.rescaled;
     mesh.lights = lights.shown(&placed, &mut notes);
+    mesh.cameras = cameras.shown(&placed, &mut notes);
     warnings = notes.into_warnings();
     warnings.extend(repair_warnings(&mesh.repairs));
     Ok(LoadedMesh { mesh, warnings, variants, files: files.named(), file_bytes: budget.files() })

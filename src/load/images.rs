@@ -81,6 +81,7 @@ fn decode_file(bytes: &[u8], halvings: u32, filter: MipFilter, budget: &Budget) 
     let of_webp = webp_bytes(&mut Cursor::new(bytes)).map_err(|error| error.to_string())?;
     let known = coefficient_bytes(&mut Cursor::new(bytes)).map_err(|error| error.to_string())?;
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| error.to_string())?;
+    let before = budget.borrowed();
     if reader.format() == Some(ImageFormat::Png) {
         reader.limits(metadata_limits(budget));
     }
@@ -90,9 +91,11 @@ fn decode_file(bytes: &[u8], halvings: u32, filter: MipFilter, budget: &Budget) 
     check_size(size)?;
     // The decoder frees its own memory before the pixels are converted to RGBA.
     let working = if is_jpeg { known.unwrap_or_else(|| most_coefficient_bytes(size)) } else { of_webp };
+    let has_rows = png_header(bytes).is_some_and(|(_, is_interlaced)| !is_interlaced);
     let room = budget.borrow(decoder.total_bytes().saturating_add(working.max(decoded_bytes(size))));
-    if let Some((_, false)) = png_header(bytes).filter(|_| halvings > 0 || room.is_err()) {
+    if has_rows && (halvings > 0 || room.is_err()) {
         drop(decoder);
+        budget.give_back_to(before);
         return decode_rows(bytes, halvings, filter, budget);
     }
     room.map_err(|refused| too_large(size, refused))?;

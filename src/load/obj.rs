@@ -84,11 +84,13 @@ pub(super) fn read(
         found: StatementCounts::default(),
     };
     each(&bytes, &progress.part(0.2, 0.5), |line| reader.take(line))?;
+    let freed = bytes.len() as u64 + vertices.bytes();
+    reader.materials.read_textures(&mut reader.faces, freed, progress)?;
     let mut warnings = reader.materials.warnings();
     warnings.extend(reader.found.warnings());
     let holds = reader.found.holds(&vertices);
-    let (length, faces) = (bytes.len() as u64, reader.faces);
-    budget.release(length + vertices.bytes());
+    let faces = reader.faces;
+    budget.release(freed);
     drop((bytes, vertices));
     let loaded = faces.finish(name, holds, warnings, &progress.part(0.5, 1.0))?;
     Ok(LoadedMesh { files: files.named(), ..loaded })

@@ -7,6 +7,7 @@ pub(crate) mod cube_map;
 mod deviation;
 pub(crate) mod dfg;
 pub(crate) mod environment;
+mod file_view;
 mod frame;
 mod framing;
 mod ground;

@@ -3,6 +3,7 @@
 mod adapters;
 mod adjacency;
 mod animation;
+mod cameras;
 mod chart;
 mod deviation;
 mod domain;
@@ -19,6 +20,8 @@ mod manual;
 mod moving;
 mod picture_file;
 mod render;
+#[path = "../documents/shot.rs"]
+mod shot;
 mod stability;
 mod techniques;
 mod tessellate;

@@ -5,6 +5,7 @@ use ::gltf::json::Root;
 use ::gltf::json::validation::Error as ValidationError;
 use serde_json::{Map, Value, json};
 
+use super::cameras::CameraSources;
 use super::extensions::{self, Extensions};
 use super::json::objects;
 use super::lights::LightSources;
@@ -25,6 +26,7 @@ pub(super) struct Parsed {
     /// The document's materials and images, not yet checked (see [`super::materials`]).
     pub lists: MaterialLists,
     pub lights: LightSources,
+    pub cameras: CameraSources,
     /// The names of the document's material variants.
     pub variants: Vec<String>,
     pub notes: Notes,
@@ -70,6 +72,7 @@ pub(super) fn parse(
     let variants = variants::choose(root, variant, &mut notes);
     let lists = MaterialLists::take(root, &mut notes);
     let lights = LightSources::take(root, &mut notes);
+    let cameras = CameraSources::take(root, &mut notes);
     schema_check::check(root, schema::DOCUMENT)?;
     let extensions = Extensions::of(root, requires_draco);
     complete(root);
@@ -79,8 +82,8 @@ pub(super) fn parse(
     budget.give_back_to(0);
     let too_large =
         |refused: MemoryRefused| GltfError::Document { pointer: "its JSON".to_owned(), reason: refused.into() };
-    budget.hold(lists.bytes() + lights.bytes()).map_err(too_large)?;
-    Ok(Parsed { document, blob, extensions, animations, lists, lights, variants, notes })
+    budget.hold(lists.bytes() + lights.bytes() + cameras.bytes()).map_err(too_large)?;
+    Ok(Parsed { document, blob, extensions, animations, lists, lights, cameras, variants, notes })
 }
 
 fn not_gltf(reason: impl ToString) -> GltfError {

@@ -170,7 +170,8 @@ impl<'a> Materials<'a> {
                 let Some(TextureSource { images, .. }) = self.texture_source(texture) else { continue };
                 progress.check()?;
                 // The first one that looks right; if it turns out not to be, the next one is read when it is needed.
-                let image = images.into_iter().find_map(|image| Some(FoundImage { image, filter, size: self.size(image)? }));
+                let image =
+                    images.into_iter().find_map(|image| Some(FoundImage { image, filter, size: self.size(image)? }));
                 found.extend(image.filter(|image| seen.insert(image.image)));
             }
         }
@@ -198,7 +199,8 @@ impl<'a> Materials<'a> {
     fn read_image(&mut self, FoundImage { image, filter, size }: FoundImage, scaling: Scaling) {
         let borrowed = self.budget.borrowed();
         let bytes = texture_source::image(&self.lists.images, image, self.accessors, self.files);
-        let texture = bytes.and_then(|bytes| decode_halved(&bytes, scaling.halvings, filter, self.budget)).map(Arc::new);
+        let texture =
+            bytes.and_then(|bytes| decode_halved(&bytes, scaling.halvings, filter, self.budget)).map(Arc::new);
         self.budget.give_back_to(borrowed);
         let scaled = (scaling.halvings > 0 && texture.is_ok()).then_some((size, scaling.reason));
         self.images.insert(image, ReadImage { texture, scaled });

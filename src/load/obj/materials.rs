@@ -5,12 +5,15 @@ use std::sync::Arc;
 
 use super::mtl::{self, MtlMaterial};
 use crate::load::face_builder::{FaceBuilder, counted};
-use crate::load::images::decode_texture;
+use crate::load::images::{decode_halved, texture_size};
 use crate::load::memory_budget::Budget;
 use crate::load::read_error::ReadError;
 use crate::load::text_lines::{shown, words};
+use crate::load::texture_room::{Scaling, TextureRoom};
 use crate::load::uri::Files;
-use crate::mesh::{Material, MemoryAccount, Texture};
+use crate::mesh::mipmap::MipFilter;
+use crate::mesh::{Material, MemoryAccount};
+use crate::progress::Progress;
 
 /// The greatest number of material files that are read.
 const MAX_LIBRARIES: usize = 64;
@@ -27,8 +30,10 @@ pub(super) struct Materials<'a> {
     /// The index of that material, once a face uses it.
     index: Option<usize>,
     indices: HashMap<Vec<u8>, usize>,
-    /// Textures by file name; none for one that can't be read.
-    textures: HashMap<String, Option<Arc<Texture>>>,
+    /// The names of texture files, in order, with the materials that use them: index and name.
+    textures: Vec<(String, Vec<(usize, String)>)>,
+    /// Places in that list by file name.
+    places: HashMap<String, usize>,
     problems: Vec<String>,
     bad_statements: usize,
     libraries_left_out: usize,
@@ -45,7 +50,8 @@ impl<'a> Materials<'a> {
             name: Vec::new(),
             index: None,
             indices: HashMap::new(),
-            textures: HashMap::new(),
+            textures: Vec::new(),
+            places: HashMap::new(),
             problems: Vec::new(),
             bad_statements: 0,
             libraries_left_out: 0,
@@ -114,39 +120,80 @@ impl<'a> Materials<'a> {
             self.index = Some(index);
             return Ok(index);
         }
-        let index = faces.material(self.make())?;
+        let (material, texture) = self.make();
+        let user = material.name.clone();
+        let index = faces.material(material)?;
+        if let Some(texture) = texture {
+            let place = *self.places.entry(texture.clone()).or_insert(self.textures.len());
+            if place == self.textures.len() {
+                self.textures.push((texture, Vec::new()));
+            }
+            self.textures[place].1.push((index, user));
+        }
         self.indices.insert(self.name.clone(), index);
         self.index = Some(index);
         Ok(index)
     }
 
-    fn make(&mut self) -> Material {
+    /// The material of the next faces, and the name of its texture's file.
+    fn make(&mut self) -> (Material, Option<String>) {
         if self.name.is_empty() {
-            return Material::plain("default", [1.0; 4]);
+            return (Material::plain("default", [1.0; 4]), None);
         }
         let shown = String::from_utf8_lossy(&self.name).into_owned();
         let Some(described) = self.described.get(&self.name).cloned() else {
             self.undescribed += 1;
-            return Material::plain(&shown, [1.0; 4]);
+            return (Material::plain(&shown, [1.0; 4]), None);
         };
         let [r, g, b] = described.color;
-        let texture = described.texture.and_then(|name| self.texture(&name, &shown));
-        Material { texture, ..Material::plain(&shown, [r, g, b, 1.0]) }
+        (Material::plain(&shown, [r, g, b, 1.0]), described.texture)
     }
 
-    fn texture(&mut self, name: &str, material: &str) -> Option<Arc<Texture>> {
-        if let Some(texture) = self.textures.get(name) {
-            return texture.clone();
-        }
-        let borrowed = self.budget.borrowed();
-        let texture = self.beside(name).and_then(|bytes| decode_texture(&bytes, self.budget)).map(Arc::new);
-        self.budget.give_back_to(borrowed);
-        let texture = texture.map_err(|reason| {
+    /// Reads all textures, and scales the largest down until they fit. `freed` is the memory that is freed before the mesh is
+    /// finished, in bytes.
+    ///
+    /// # Errors
+    /// [`ReadError::Cancelled`].
+    pub(super) fn read_textures(
+        &mut self,
+        faces: &mut FaceBuilder,
+        freed: u64,
+        progress: &Progress,
+    ) -> Result<(), ReadError> {
+        let textures = std::mem::take(&mut self.textures);
+        let size =
+            |(name, _): &(String, _)| self.borrowing(|| self.beside(name).ok().and_then(|bytes| texture_size(&bytes)));
+        let sizes: Vec<_> = textures.iter().map(|texture| size(texture).unwrap_or_default()).collect();
+        let room = TextureRoom::of(self.budget, faces.bytes_to_finish().saturating_sub(freed));
+        for (((name, users), size), Scaling { halvings, reason }) in
+            textures.iter().zip(&sizes).zip(room.scalings(&sizes))
+        {
+            progress.check()?;
+            let decode = |bytes: Vec<u8>| decode_halved(&bytes, halvings, MipFilter::Colors, self.budget);
+            let texture = self.borrowing(|| self.beside(name).and_then(decode)).map(Arc::new);
+            let said = match &texture {
+                Err(reason) => Some(format!("is left out: {reason}")),
+                Ok(texture) => {
+                    let [[a, b], [c, d]] = [*size, texture.size];
+                    (halvings > 0).then(|| format!("is scaled down from {a} x {b} px to {c} x {d} px: {reason}"))
+                }
+            };
+            let first = users.first().map_or("", |(_, name)| name);
             let image = shown(name.as_bytes());
-            self.problems.push(format!("the texture {image} of material \"{material}\" is left out: {reason}."));
-        });
-        self.textures.insert(name.to_owned(), texture.clone().ok());
-        texture.ok()
+            self.problems.extend(said.map(|said| format!("the texture {image} of material \"{first}\" {said}.")));
+            if let Ok(texture) = texture {
+                users.iter().for_each(|(material, _)| faces.texture(*material, &texture));
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives back what `read` borrows.
+    fn borrowing<T>(&self, read: impl FnOnce() -> T) -> T {
+        let borrowed = self.budget.borrowed();
+        let result = read();
+        self.budget.give_back_to(borrowed);
+        result
     }
 
     /// Returns what is missing or broken, one sentence each.

@@ -109,7 +109,10 @@ fn as_much_of_a_mask_passes_on_every_level() {
             let (found, wanted) = (covered(&made, least), u64::from(wanted_texels(all, size, level)));
             // Several texels may have one alpha, and then pass together.
             let texels = u64::from(made.size[0] * made.size[1]);
-            assert!(found.abs_diff(wanted) <= 1 + texels / 40, "{size:?} level {level}: {found}, not {wanted} of {texels}");
+            assert!(
+                found.abs_diff(wanted) <= 1 + texels / 40,
+                "{size:?} level {level}: {found}, not {wanted} of {texels}"
+            );
         }
     }
     // Without that, thin parts vanish: a tenth of the texels are covered.

@@ -2,8 +2,8 @@ use super::*;
 use crate::gpu::read_texture;
 use crate::gpu_tests::engine;
 use crate::mesh::Texture;
-use crate::mesh::mipmap::{covered, mip_levels};
 use crate::mesh::mipmap::tests::noise;
+use crate::mesh::mipmap::{covered, mip_levels};
 use crate::render::textures::first_level;
 
 /// The levels of an image that the passes make, but the first.
@@ -34,7 +34,10 @@ fn read_level(gpu: &Gpu, image: &wgpu::Texture, level: u32) -> Texture {
 
 /// The largest difference of a byte of two lists of levels.
 fn difference(a: &[Texture], b: &[Texture]) -> u8 {
-    assert_eq!(a.iter().map(|level| level.size).collect::<Vec<_>>(), b.iter().map(|level| level.size).collect::<Vec<_>>());
+    assert_eq!(
+        a.iter().map(|level| level.size).collect::<Vec<_>>(),
+        b.iter().map(|level| level.size).collect::<Vec<_>>()
+    );
     let bytes = |levels: &[Texture]| levels.iter().flat_map(|level| level.rgba.clone()).collect::<Vec<_>>();
     bytes(a).into_iter().zip(bytes(b)).map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0)
 }
