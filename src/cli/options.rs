@@ -258,8 +258,8 @@ pub(crate) struct LimitOption {
     /// unit KiB, MiB or GiB
     #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = bytes)]
     pub max_size: u64,
-    /// Refuse a mesh that would take more memory to load than this plus four times the size of its files: a number of bytes,
-    /// or one with the unit KiB, MiB or GiB
+    /// Refuse a mesh that would take more memory to load than this plus four times the size of its files, and scale textures down
+    /// to it: a number of bytes, or one with the unit KiB, MiB or GiB
     #[arg(long, value_name = "SIZE", default_value = "256MiB", value_parser = bytes)]
     pub max_memory: u64,
 }
