@@ -93,7 +93,8 @@ mod tests {
         let bytes = document.to_string().into_bytes();
         let loaded = read(Format::Gltf, bytes, Path::new("a.gltf"), None, &Limits::default(), &Progress::new());
         let loaded = loaded.expect("a triangle with a camera");
-        assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
+        let about_cameras = loaded.warnings.iter().filter(|warning| !warning.starts_with("primitives without normals"));
+        assert_eq!(about_cameras.count(), 0, "{:?}", loaded.warnings);
         let [camera] = &loaded.mesh.cameras[..] else { panic!("{:?}", loaded.mesh.cameras) };
         // The scale isn't part of a camera's own transform: only where it stands.
         let eye = turn * (2.0 * place) + shift;

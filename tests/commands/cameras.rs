@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::shot::SHOT;
-use crate::{Folder, output, sentence};
+use crate::{Folder, failure, output, sentence};
 
 #[test]
 fn cameras_of_a_file_are_listed_and_looked_through_and_others_are_refused() {
@@ -35,9 +35,8 @@ fn cameras_of_a_file_are_listed_and_looked_through_and_others_are_refused() {
     let by_numbers = picture("numbers.png", &numbers);
     let differing = by_name.pixels().zip(by_numbers.pixels()).filter(|(a, b)| a != b).count();
     assert!(differing < 20, "{differing} px");
-    sentence(
-        &["render", &shot, "-o", &folder.path("no.png"), "--file-camera", "Far"],
-        &["shot", "Far", "Close", "camera 1"],
-    );
+    // A warning about normals comes before.
+    let said = failure(&["render", &shot, "-o", &folder.path("no.png"), "--file-camera", "Far"], 1);
+    assert!(said.contains("pnaen: shot has no camera Far; choose one of Close, camera 1\n"), "{said}");
     sentence(&["render", "shape:torus", "-o", &folder.path("no.png"), "--file-camera", "0"], &["no cameras"]);
 }

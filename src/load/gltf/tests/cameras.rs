@@ -80,7 +80,7 @@ fn broken_cameras_cost_a_warning() {
     assert_eq!(cameras[0].projection, Projection::Perspective(170_f32.to_radians()));
     assert!(warnings.len() == 1 && warnings[0].starts_with("/cameras/0/perspective/yfov is 40"), "{warnings:?}");
     for (cameras, node, expected) in [
-        (json!({}), json!({ "camera": 0 }), "/cameras is {"),
+        (json!({}), json!({ "camera": 0 }), "/cameras is an object, not a list"),
         (json!([perspective()]), json!({ "camera": 1 }), "/nodes/1/camera is 1, but /cameras has 1"),
         (json!([perspective()]), json!({ "camera": "x" }), "/nodes/1/camera is"),
         (json!([perspective()]), json!({ "camera": 0, "scale": [0, 0, 0] }), "/nodes/1 has a camera without"),
