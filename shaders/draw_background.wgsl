@@ -6,8 +6,7 @@
 @group(1) @binding(0) var panorama: texture_2d<f32>;
 @group(1) @binding(1) var panorama_sampler: sampler;
 
-// The tangent of half the field of view of a perspective view, which has the background of an orthographic view too: all its rays
-// have one direction.
+// The tangent of half the usual field of view, which the background of an orthographic view has: all rays of that have one direction.
 const HALF_VIEW: f32 = 0.36397023;
 
 @vertex
@@ -23,7 +22,10 @@ fn seen_direction(px: vec2<f32>) -> vec3<f32> {
     let rows = transpose(background_frame.clip_from_object);
     let right = normalize(rows[0].xyz);
     let up = normalize(rows[1].xyz);
-    let at = HALF_VIEW * (vec2<f32>(2.0, -2.0) * px / viewport + vec2<f32>(-1.0, 1.0));
+    // In a perspective view, w is the depth.
+    let depth = length(rows[3].xyz);
+    let half_view = select(HALF_VIEW, depth / length(rows[1].xyz), depth > 0.0);
+    let at = half_view * (vec2<f32>(2.0, -2.0) * px / viewport + vec2<f32>(-1.0, 1.0));
     return normalize(right * (at.x * viewport.x / viewport.y) + up * at.y - cross(right, up));
 }
 

@@ -156,10 +156,12 @@ impl CopiedCommand<'_> {
 
     /// Writes the options of a camera, whose names begin with `prefix`.
     fn camera(&self, line: &mut Line, prefix: &str, camera: &Camera) {
-        let Camera { target, azimuth, elevation, distance, orthographic } = camera;
+        let Camera { target, azimuth, elevation, distance, orthographic, field_of_view, roll } = camera;
         line.option(&format!("--{prefix}camera"), format!("{azimuth},{elevation},{}", distance / self.radius));
         line.option(&format!("--{prefix}target"), format!("{},{},{}", target.x, target.y, target.z));
         line.switch(&format!("--{prefix}orthographic"), *orthographic);
+        line.changed(&format!("--{prefix}field-of-view"), field_of_view, &Camera::default().field_of_view);
+        line.changed(&format!("--{prefix}roll"), roll, &0.0);
     }
 }
 
@@ -314,7 +316,8 @@ mod tests {
             height_scale: -0.5,
             ..Settings::opening().tessellation
         });
-        let camera = Camera { orthographic: true, target: Vec3::new(-1.5, 0.0, 1e-7), ..camera() };
+        let target = Vec3::new(-1.5, 0.0, 1e-7);
+        let camera = Camera { orthographic: true, target, field_of_view: 25.5, roll: -12.25, ..camera() };
         let shown = CopiedCommand {
             truth: Some(&truth),
             triangle: Some(7),
@@ -327,6 +330,7 @@ mod tests {
         assert_eq!(args.shot.surface.preparation(), Preparation { heights, ..preparation.clone() });
         assert_eq!((args.shot.select, args.shot.surface.orthographic), (Some(7), true));
         assert_eq!(args.shot.surface.target.map(|place| place.0), Some(camera.target));
+        assert_eq!((args.shot.surface.field_of_view, args.shot.surface.roll), (25.5, -12.25));
         assert_eq!(args.shot.surface.tessellation().height_scale, -0.5);
         let moving = CopiedCommand { animation: Some(("-run, fast", 0.1)), ..shown };
         let args = parsed(&moving.line());

@@ -4,6 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
+use super::camera_report::CameraInfo;
 use super::light_report::LightInfo;
 use super::material_report::MaterialInfo;
 use crate::mesh::crease_band::CreaseBand;
@@ -33,6 +34,7 @@ pub(super) struct Info {
     pub points: u32,
     pub materials: Vec<MaterialInfo>,
     pub lights: Vec<LightInfo>,
+    pub cameras: Vec<CameraInfo>,
     /// The names of the file's material variants.
     pub variants: Vec<String>,
     /// The names of the file's scenes.
@@ -114,6 +116,7 @@ impl Info {
             points: topology.points.len() as u32,
             materials: mesh.materials.iter().map(MaterialInfo::of).collect(),
             lights: mesh.lights.iter().map(LightInfo::of).collect(),
+            cameras: mesh.cameras.iter().map(CameraInfo::of).collect(),
             variants: Vec::new(),
             scenes: Vec::new(),
             scene: None,
@@ -145,6 +148,9 @@ impl fmt::Display for Info {
         }
         for light in &self.lights {
             write!(f, "{light}")?;
+        }
+        for camera in &self.cameras {
+            write!(f, "{camera}")?;
         }
         for variant in &self.variants {
             writeln!(f, "variant       {}", shown(variant))?;

@@ -3,6 +3,7 @@
 mod adapters;
 mod adjacency;
 mod animation;
+mod camera_report;
 mod chart;
 mod copied_command;
 mod domain;
@@ -62,7 +63,7 @@ use crate::files::file_reason;
 use crate::gpu::GpuError;
 use crate::load::environment_file::EnvironmentError;
 use crate::load::{LoadError, MatcapError, Source};
-use crate::names::{on_one_line, shown_path};
+use crate::names::{on_one_line, shown, shown_path};
 use crate::progress::{Cancelled, Progress};
 use crate::settings::Settings;
 
@@ -169,6 +170,8 @@ pub(crate) enum CliError {
     Budget { most: u64, least: u64, largest: f32 },
     #[error("{file} has triangles 0 to {last}, and no triangle {triangle}")]
     NoTriangle { file: String, last: usize, triangle: u32 },
+    #[error("{} has no camera {}; {}", shown(mesh), shown(wanted), said_of_cameras(known))]
+    NoCamera { mesh: String, wanted: String, known: Vec<String> },
     #[error("triangle {triangle} of {file} is degenerate: it has no patch")]
     NoPatch { file: String, triangle: u32 },
     #[error("{path}: {fault}")]
@@ -185,6 +188,17 @@ pub(crate) enum CliError {
     Chart(#[from] crate::plot::ChartError),
     #[error("the output could not be written: {0}")]
     Output(std::io::Error),
+}
+
+/// Returns which cameras there are, as the end of a message.
+fn said_of_cameras(known: &[String]) -> String {
+    const NAMED: usize = 20;
+    let names: Vec<_> = known.iter().take(NAMED).map(|name| shown(name)).collect();
+    match known.len().saturating_sub(NAMED) {
+        _ if known.is_empty() => "it has no cameras, so leave --file-camera away".to_owned(),
+        0 => format!("choose one of {}", names.join(", ")),
+        more => format!("choose one of {} and {more} more, which `pnaen info` lists", names.join(", ")),
+    }
 }
 
 /// Runs a command. A closed pipe is no failure: the reader wants no more.

@@ -14,8 +14,9 @@ use super::{AnimationOption, CliError};
 use crate::engine::Preparation;
 use crate::files::Limits;
 use crate::load::HeightSource;
-use crate::mesh::{Bounds, Mesh};
+use crate::mesh::{Bounds, FileCamera, Mesh};
 use crate::render::Camera;
+use crate::render::camera::FIELD_OF_VIEW;
 use crate::settings::options::TOLERANCE_RANGE;
 use crate::settings::{ARENA_BYTES, Settings};
 use crate::tessellate::{Displacement, Lod, Partitioning, Surface, Tessellation, tolerance_within_budget};
@@ -24,7 +25,7 @@ pub(crate) use declared::{PictureOptions, TessellationOptions, choice, number_of
 pub(crate) use lod_camera::LodCameraOption;
 pub(crate) use values::{CameraOption, Position, Size, model, picture, source, threshold};
 
-use values::{bytes, crease_band, weld};
+use values::{angle, bytes, crease_band, field_of_view, weld};
 
 /// How a mesh is tessellated, and where it is seen from.
 #[derive(Clone, Debug, Args)]
@@ -58,6 +59,21 @@ pub(crate) struct SurfaceOptions {
     /// Orthographic projection, without perspective
     #[arg(long)]
     pub orthographic: bool,
+    /// Vertical field of view in degrees, 0.1 to 170. An orthographic view is as high as a perspective one is at its target
+    #[arg(long, value_name = "DEGREES", default_value_t = FIELD_OF_VIEW, value_parser = field_of_view)]
+    pub field_of_view: f32,
+    /// Turn the camera about its direction of view, counterclockwise by so many degrees
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, value_parser = angle, allow_hyphen_values = true)]
+    pub roll: f32,
+    /// Look through a camera of the glTF file, by its name or its number from 0; `info` lists them. The picture has the camera's
+    /// height, whatever its width
+    #[arg(
+        long,
+        value_name = "NAME|N",
+        allow_hyphen_values = true,
+        conflicts_with_all = ["camera", "target", "orthographic", "field_of_view", "roll"]
+    )]
+    pub file_camera: Option<String>,
 }
 
 impl Default for SurfaceOptions {
@@ -170,21 +186,38 @@ impl SurfaceOptions {
     }
 
     /// Returns the camera of these options for a mesh with these bounds. Without a distance it shows everything that is drawn.
-    pub(crate) fn camera(&self, mesh: &Mesh, bounds: &Bounds) -> Camera {
-        let mut camera = Camera::framing(&bounds.grown(self.settings().reach(mesh)), self.viewport());
-        (camera.azimuth, camera.elevation) = (self.camera.azimuth, self.camera.elevation.clamp(-89.9, 89.9));
+    ///
+    /// # Errors
+    /// The mesh has no camera of the name that was asked for.
+    pub(crate) fn camera(&self, mesh: &Mesh, bounds: &Bounds) -> Result<Camera, CliError> {
+        if let Some(wanted) = &self.file_camera {
+            return file_camera(mesh, wanted).map(|camera| Camera::of_file(camera, bounds));
+        }
+        let mut camera = Camera { field_of_view: self.field_of_view, roll: self.roll, ..Camera::default() };
+        camera.frame(&bounds.grown(self.settings().reach(mesh)), self.viewport());
+        (camera.azimuth, camera.elevation) = (self.camera.azimuth, self.camera.elevation.clamp(-90.0, 90.0));
         if let Some(radii) = self.camera.distance {
             camera.distance = radii * bounds.radius();
         }
         camera.target = self.target.map_or(camera.target, |place| place.0);
         camera.orthographic = self.orthographic;
-        camera
+        Ok(camera)
     }
 
     /// Width and height in px.
     pub(crate) fn viewport(&self) -> Vec2 {
         Vec2::new(self.size.0[0] as f32, self.size.0[1] as f32)
     }
+}
+
+/// Finds a camera of the file by its name, or by its number from 0 if none has that name.
+fn file_camera<'a>(mesh: &'a Mesh, wanted: &str) -> Result<&'a FileCamera, CliError> {
+    let named = mesh.cameras.iter().find(|camera| camera.name == wanted);
+    let numbered = || mesh.cameras.get(wanted.parse::<usize>().ok()?);
+    named.or_else(numbered).ok_or_else(|| {
+        let known = mesh.cameras.iter().map(|camera| camera.name.clone()).collect();
+        CliError::NoCamera { mesh: mesh.name.clone(), wanted: wanted.to_owned(), known }
+    })
 }
 
 /// How a mesh is read, and what is done to it before it is tessellated: points are welded, and creases get a crease band.
@@ -229,8 +262,8 @@ pub(crate) struct LimitOption {
     /// unit KiB, MiB or GiB
     #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = bytes)]
     pub max_size: u64,
-    /// Refuse a mesh that would take more memory to load than this plus four times the size of its files: a number of bytes,
-    /// or one with the unit KiB, MiB or GiB
+    /// Refuse a mesh that would take more memory to load than this plus four times the size of its files, and scale textures down
+    /// to it: a number of bytes, or one with the unit KiB, MiB or GiB
     #[arg(long, value_name = "SIZE", default_value = "256MiB", value_parser = bytes)]
     pub max_memory: u64,
 }

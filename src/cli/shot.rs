@@ -96,7 +96,7 @@ impl Subject {
     /// # Errors
     /// The mesh's rig needs larger buffers than the adapter can bind.
     pub(crate) fn dress(&self, engine: &Engine, scene: &mut Scene) -> Result<(), GpuError> {
-        scene.matcap = self.matcap.as_ref().map(|picture| engine.renderer.matcap(picture));
+        scene.matcap = self.matcap.as_ref().map(|picture| engine.renderer.matcap(picture)).transpose()?;
         scene.tessellator.give(self.given.clone())?;
         scene.frame_clip(self.moment.map(|moment| moment.clip));
         scene.set_moment(self.moment)

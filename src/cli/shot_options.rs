@@ -129,8 +129,8 @@ impl ShotOptions {
         }
         let mesh = &subject.loaded.mesh;
         let view = ShotView {
-            camera: self.surface.camera(mesh, &scene.bounds),
-            lod_camera: self.lod.camera(&self.surface, mesh, &scene.bounds),
+            camera: self.surface.camera(mesh, &scene.bounds)?,
+            lod_camera: self.lod.camera(&self.surface, mesh, &scene.bounds)?,
             size: self.surface.size.0,
             transparent: self.transparent,
             legend: self.legend,

@@ -60,7 +60,7 @@ pub(crate) fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuE
     let (mesh, topology) = (&posed.mesh, &posed.topology);
     let given = args.given.read(mesh, topology, &args.surface.tessellation())?.map(|given| given.factors);
     let bounds = bounds_through(&loaded.mesh, moment.map(|moment| moment.clip));
-    let view = args.surface.camera(mesh, &bounds).lod_view(args.surface.viewport(), &bounds);
+    let view = args.surface.camera(mesh, &bounds)?.lod_view(args.surface.viewport(), &bounds);
     let tessellated = match args.device {
         Device::Cpu => {
             let count = |settings: &Settings| Ok(tessellate::totals(mesh, topology, &settings.inputs(view)).1);

@@ -51,6 +51,8 @@ pub struct Availability {
     pub has_chart: bool,
     /// Whether a file is being written, other than the chart's.
     pub is_writing: bool,
+    /// The names of the file's cameras.
+    pub file_cameras: Vec<String>,
     /// The names of the mesh's animation clips.
     pub clips: Vec<String>,
     /// Files that were opened last, the last one first.
@@ -86,6 +88,7 @@ impl Availability {
             can_measure_chart: true,
             has_chart: true,
             is_writing: false,
+            file_cameras: vec!["Shot".into()],
             clips: vec!["Walk".into()],
             recent: vec!["/meshes/vase.glb".into()],
         }

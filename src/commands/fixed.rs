@@ -223,7 +223,7 @@ fn view() -> Vec<Command> {
     let theme =
         |theme, name: &'static str, text: &'static str| Command::new(Action::Theme(theme), name, text).menu(View, 3);
     vec![
-        Command::new(Action::Camera(CameraAction::Frame), "Frame", "Shows all of the mesh.")
+        Command::new(Action::Camera(CameraAction::Frame), "Frame", "Shows all of the mesh, upright and with the usual field of view.")
             .keys([plain(Key::F)])
             .menu(View, 0),
         Command::new(

@@ -23,6 +23,7 @@ pub(super) fn commands(now: &Availability) -> Vec<Command> {
     all.extend(clips(now));
     all.extend(recent(now));
     all.extend(bookmarks(now));
+    all.extend(file_cameras(now));
     all
 }
 
@@ -153,6 +154,15 @@ fn recent(now: &Availability) -> Vec<Command> {
         Command::new(Action::File(FileAction::OpenRecent(path.clone())), name, text).submenu(Submenu::OpenRecent)
     };
     now.recent.iter().map(open).collect()
+}
+
+fn file_cameras(now: &Availability) -> Vec<Command> {
+    let go = |(index, name): (usize, &String)| {
+        let text = "Looks through this camera of the file: with its place, direction and height of view.";
+        Command::new(Action::Camera(CameraAction::OfFile(index)), format!("Camera: {}", shortened(name, 40)), text)
+            .submenu(Submenu::FileCameras)
+    };
+    now.file_cameras.iter().enumerate().map(go).collect()
 }
 
 /// The keys of the bookmarks, from the first one on.

@@ -106,6 +106,8 @@ pub enum CameraAction {
     After,
     /// An index into the bookmarks.
     Bookmark(usize),
+    /// Through a camera of the file: an index into the mesh's cameras.
+    OfFile(usize),
     /// To where the frozen LOD camera is.
     ThroughFrozen,
     Orthographic,
@@ -160,7 +162,7 @@ impl Menu {
     pub fn submenus(self) -> &'static [(u8, Submenu)] {
         match self {
             Self::File => &[(0, Submenu::OpenRecent), (3, Submenu::Shapes)],
-            Self::View => &[(0, Submenu::LookFrom), (0, Submenu::Bookmarks)],
+            Self::View => &[(0, Submenu::LookFrom), (0, Submenu::FileCameras), (0, Submenu::Bookmarks)],
             _ => &[],
         }
     }
@@ -173,6 +175,7 @@ pub enum Submenu {
     Shapes,
     Bookmarks,
     LookFrom,
+    FileCameras,
 }
 
 impl Submenu {
@@ -182,6 +185,7 @@ impl Submenu {
             Self::Shapes => "Shapes",
             Self::Bookmarks => "Bookmarks",
             Self::LookFrom => "Look from",
+            Self::FileCameras => "Cameras of the file",
         }
     }
 }

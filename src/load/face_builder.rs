@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::{Vec2, Vec3, Vec4};
 
 use super::loaded_mesh::LoadedMesh;
-use super::memory_budget::Budget;
+use super::memory_budget::{Budget, edge_bytes};
 use super::read_error::{FilePosition, ReadError};
 use super::warnings::repair_warnings;
 use crate::mesh::build_limits::{MAX_TRIANGLES, MemoryRefused};
@@ -109,6 +109,20 @@ impl<'a> FaceBuilder<'a> {
             return Err(ReadError::TooMany { limit: MAX_MATERIALS as u64, what: "materials" });
         }
         Ok(self.builder.material(material))
+    }
+
+    /// A material that was added.
+    ///
+    /// # Panics
+    /// If `material` isn't an index that [`material`](Self::material) returned.
+    pub(super) fn material_mut(&mut self, material: usize) -> &mut Material {
+        self.builder.material_mut(material)
+    }
+
+    /// Returns how much more memory the mesh takes until it has its edges, in bytes, if no more faces are added.
+    pub(super) fn bytes_to_finish(&self) -> u64 {
+        let [corners, triangles] = [self.builder.distinct_corners(), self.triangles].map(|count| count as u64);
+        edge_bytes(corners, triangles).saturating_sub(32 * corners + 12 * triangles)
     }
 
     /// Keeps the colours of corners.

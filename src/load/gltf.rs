@@ -12,6 +12,7 @@ mod accessor;
 mod animated_vertices;
 mod animations;
 mod buffers;
+mod cameras;
 mod decompressed_primitive;
 mod document;
 mod draco;
@@ -99,6 +100,7 @@ pub(super) fn read(
         animations,
         lists,
         lights,
+        cameras,
         variants,
         scenes,
         reach,
@@ -120,11 +122,11 @@ pub(super) fn read(
         false => RigBuilder::new(clips, &rig_nodes::of(&document, &placed), &mut warnings),
     };
     notes.extend(std::mem::take(&mut warnings));
-    let materials = Materials::new(&lists, &document, &placed, (&accessors, &files), &budget)?;
+    let mut materials = Materials::new(&lists, &document, &placed, (&accessors, &files), &budget)?;
     let is_detailed = needs_details(&document, &placed, &materials);
     let beside = PerVertex { moves: binder.is_some(), is_detailed };
-    let [vertices, corners] =
-        scene_size::check(&document, (&placed, &extensions.instances), &accessors, &budget, beside)?;
+    let needs = scene_size::check(&document, (&placed, &extensions.instances), &accessors, &budget, beside)?;
+    materials.read_images(needs.bytes, progress)?;
     let mut scene = Scene {
         document: &document,
         placed: &placed,
@@ -136,7 +138,7 @@ pub(super) fn read(
         binder,
         details: is_detailed.then(DetailTable::default),
     };
-    scene.builder.expect(vertices, corners);
+    scene.builder.expect(needs.vertices, needs.corners);
     for (i, &node) in placed.shown.iter().enumerate() {
         progress.set(0.3 + 0.5 * i as f32 / placed.shown.len() as f32);
         scene.add(node, progress)?;
@@ -166,6 +168,7 @@ pub(super) fn read(
     // The builder gets transformed normals of unit length, so the reader counts those that weren't in the file.
     mesh.repairs.normals_rescaled += primitives.rescaled;
     mesh.lights = lights.shown(&placed, &mut notes);
+    mesh.cameras = cameras.shown(&placed, &mut notes);
     warnings = notes.into_warnings();
     warnings.extend(repair_warnings(&mesh.repairs));
     let scenes::Scenes { names, shown } = scenes;

@@ -7,11 +7,13 @@ use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Li
 use super::jpeg_memory::{coefficient_bytes, most_coefficient_bytes};
 use super::ktx2::{self, Ktx2};
 use super::memory_budget::Budget;
+use super::texture_room::decoded_bytes;
 use super::webp_memory::webp_bytes;
 use crate::mesh::Texture;
 use crate::mesh::build_limits::{MemoryAccount, MemoryRefused};
+use crate::mesh::mipmap::{MipFilter, RowHalver, halved, level_size};
 
-/// The greatest width and height of a texture, in px, that common GPUs support.
+/// The greatest width and height of a texture that is read, in px.
 const MAX_SIZE: u32 = 16384;
 
 /// The greatest amount of memory for an image's colour profile and text, in bytes.
@@ -27,51 +29,152 @@ pub(super) fn metadata_limits(budget: &Budget) -> Limits {
     limits
 }
 
+/// Returns the width and height of a PNG, JPEG, WebP or KTX2 image in px, without decoding it; none if it isn't one that is read.
+pub(super) fn texture_size(bytes: &[u8]) -> Option<[u32; 2]> {
+    if ktx2::is_ktx2(bytes) {
+        return Ktx2::read(bytes).ok().map(|file| file.size).filter(|size| check_size(*size).is_ok());
+    }
+    let size = match png_header(bytes) {
+        Some((size, _)) => size,
+        None => {
+            let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().ok()?;
+            reader.into_dimensions().ok()?.into()
+        }
+    };
+    check_size(size).is_ok().then_some(size)
+}
+
 /// Decodes a PNG, JPEG, WebP or KTX2 image (its first bytes tell which) to RGBA, unless its header says that it is too large.
 ///
 /// # Errors
 /// A clause that says what is wrong.
 pub(super) fn decode_texture(bytes: &[u8], budget: &Budget) -> Result<Texture, String> {
-    if ktx2::is_ktx2(bytes) {
-        return decode_ktx2(bytes, budget);
-    }
+    decode_halved(bytes, 0, MipFilter::Colors, budget)
+}
+
+/// Decodes an image as [`decode_texture`] does, and halves it so many times.
+///
+/// # Errors
+/// The same.
+pub(super) fn decode_halved(
+    bytes: &[u8],
+    halvings: u32,
+    filter: MipFilter,
+    budget: &Budget,
+) -> Result<Texture, String> {
+    let borrowed = budget.borrowed();
+    let decoded = if ktx2::is_ktx2(bytes) {
+        decode_ktx2(bytes, halvings, filter, budget)
+    } else {
+        decode_file(bytes, halvings, filter, budget)
+    };
+    budget.give_back_to(borrowed);
+    let texture = decoded?;
+    let refused = |refused| too_large(texture.size, refused);
+    budget.hold(decoded_bytes(texture.size)).map_err(refused)?;
+    Ok(texture)
+}
+
+/// Decodes a PNG, JPEG or WebP image. All memory is borrowed.
+fn decode_file(bytes: &[u8], halvings: u32, filter: MipFilter, budget: &Budget) -> Result<Texture, String> {
     let undecoded = |error: ImageError| format!("its image can't be decoded: {error}");
     let of_webp = webp_bytes(&mut Cursor::new(bytes)).map_err(|error| error.to_string())?;
     let known = coefficient_bytes(&mut Cursor::new(bytes)).map_err(|error| error.to_string())?;
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| error.to_string())?;
+    let before = budget.borrowed();
     if reader.format() == Some(ImageFormat::Png) {
         reader.limits(metadata_limits(budget));
     }
     let is_jpeg = reader.format() == Some(ImageFormat::Jpeg);
     let mut decoder = reader.into_decoder().map_err(undecoded)?;
-    let size @ [width, height] = decoder.dimensions().into();
+    let size = decoder.dimensions().into();
     check_size(size)?;
-    let px = u64::from(width) * u64::from(height);
-    let too_large = |refused| too_large(size, refused);
-    budget.borrow(decoder.total_bytes()).map_err(too_large)?;
-    // The decoder frees them before the pixels are converted to RGBA.
+    // The decoder frees its own memory before the pixels are converted to RGBA.
     let working = if is_jpeg { known.unwrap_or_else(|| most_coefficient_bytes(size)) } else { of_webp };
-    budget.hold(working).map_err(too_large)?;
-    budget.release(working);
-    budget.hold(px * 4).map_err(too_large)?;
+    let has_rows = png_header(bytes).is_some_and(|(_, is_interlaced)| !is_interlaced);
+    let room = budget.borrow(decoder.total_bytes().saturating_add(working.max(decoded_bytes(size))));
+    if has_rows && (halvings > 0 || room.is_err()) {
+        drop(decoder);
+        budget.give_back_to(before);
+        return decode_rows(bytes, halvings, filter, budget);
+    }
+    room.map_err(|refused| too_large(size, refused))?;
     let mut limits = Limits::default();
     limits.max_alloc = Some(budget.left().max(1 << 20).saturating_add(decoder.total_bytes()));
     decoder.set_limits(limits).map_err(undecoded)?;
     let pixels = DynamicImage::from_decoder(decoder).map_err(undecoded)?.into_rgba8();
-    Ok(Texture { size: pixels.dimensions().into(), rgba: pixels.into_raw() })
+    let whole = Texture { size: pixels.dimensions().into(), rgba: pixels.into_raw() };
+    Ok((0..halvings).fold(whole, |texture, _| halved(&texture, filter)))
 }
 
-fn decode_ktx2(bytes: &[u8], budget: &Budget) -> Result<Texture, String> {
+/// Decodes a PNG image that isn't interlaced row by row, so that it takes little more memory than the smaller image. All memory is
+/// borrowed.
+fn decode_rows(bytes: &[u8], halvings: u32, filter: MipFilter, budget: &Budget) -> Result<Texture, String> {
+    let undecoded = |error: png::DecodingError| format!("its image can't be decoded: {error}");
+    let most = metadata_limits(budget).max_alloc.unwrap_or(0);
+    let limits = png::Limits { bytes: usize::try_from(most).unwrap_or(usize::MAX) };
+    let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
+    decoder.set_ignore_iccp_chunk(true);
+    decoder.set_ignore_text_chunk(true);
+    decoder.set_transformations(png::Transformations::EXPAND);
+    let mut reader = decoder.read_info().map_err(undecoded)?;
+    let size = reader.info().size().into();
+    check_size(size)?;
+    let (color, depth) = reader.output_color_type();
+    let line = reader.output_line_size(size[0]).ok_or("its rows are too long")?;
+    let made = level_size(size, halvings);
+    // The decoder keeps two rows, this keeps one, and each halving three.
+    let rows = 3 * line as u64 + 8 * decoded_bytes([size[0], 1]);
+    budget.borrow(decoded_bytes(made).saturating_add(rows)).map_err(|refused| too_large(size, refused))?;
+    let mut line = vec![0; line];
+    let mut halvers: Vec<_> = (0..halvings).map(|level| RowHalver::new(level_size(size, level), filter)).collect();
+    let mut rgba = Vec::with_capacity(decoded_bytes(made) as usize);
+    for _ in 0..size[1] {
+        reader.read_row(&mut line).map_err(undecoded)?;
+        let row = rgba_row(&line, color, depth == png::BitDepth::Sixteen);
+        let row = halvers.iter_mut().try_fold(row, |row, halver| halver.push(row));
+        rgba.extend(row.unwrap_or_default());
+    }
+    Ok(Texture { size: made, rgba })
+}
+
+/// Converts a row of pixels of 8 or 16 bits a channel to RGBA of 8 bits.
+fn rgba_row(line: &[u8], color: png::ColorType, is_wide: bool) -> Vec<u8> {
+    let (channels, width) = (color.samples(), if is_wide { 2 } else { 1 });
+    let channel = |px: &[u8], index: usize| match is_wide {
+        // 65535 is 257 times 255.
+        true => ((u32::from(u16::from_be_bytes([px[2 * index], px[2 * index + 1]])) + 128) / 257) as u8,
+        false => px[index],
+    };
+    let pixels = line.chunks_exact(channels * width);
+    let rgba = pixels.flat_map(|px| match channels {
+        1 => [channel(px, 0), channel(px, 0), channel(px, 0), 255],
+        2 => [channel(px, 0), channel(px, 0), channel(px, 0), channel(px, 1)],
+        3 => [channel(px, 0), channel(px, 1), channel(px, 2), 255],
+        _ => [0, 1, 2, 3].map(|index| channel(px, index)),
+    });
+    rgba.collect()
+}
+
+/// Decodes a level of a KTX2 image, and halves it if the file doesn't have the one that is needed. All memory is borrowed.
+fn decode_ktx2(bytes: &[u8], halvings: u32, filter: MipFilter, budget: &Budget) -> Result<Texture, String> {
     let file = Ktx2::read(bytes)?;
     check_size(file.size)?;
-    let px = file.size.map(u64::from).into_iter().product::<u64>();
-    let too_large = |refused| too_large(file.size, refused);
-    let borrowed = budget.borrowed();
-    budget.borrow(file.working_bytes()).map_err(too_large)?;
-    budget.hold(px * 4).map_err(too_large)?;
-    let decoded = file.decode().inspect_err(|_| budget.release(px * 4));
-    budget.give_back_to(borrowed);
-    Ok(Texture { size: file.size, rgba: decoded? })
+    let level = halvings.min(file.level_count().saturating_sub(1));
+    let size = level_size(file.size, level);
+    let needed = file.working_bytes(level).saturating_add(decoded_bytes(size));
+    // A smaller level is made while the one before is still there.
+    let more = if halvings > level { decoded_bytes(level_size(size, 1)) } else { 0 };
+    budget.borrow(needed.saturating_add(more)).map_err(|refused| too_large(file.size, refused))?;
+    let decoded = Texture { size, rgba: file.decode(level)? };
+    Ok((level..halvings).fold(decoded, |texture, _| halved(&texture, filter)))
+}
+
+/// Returns the width and height in the header of a PNG image in px, and whether it is interlaced; none for another file.
+fn png_header(bytes: &[u8]) -> Option<([u32; 2], bool)> {
+    let header = bytes.strip_prefix(b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR")?.first_chunk::<13>()?;
+    let side = |at: usize| u32::from_be_bytes(std::array::from_fn(|k| header[at + k]));
+    Some(([side(0), side(4)], header[12] != 0))
 }
 
 fn check_size([width, height]: [u32; 2]) -> Result<(), String> {
@@ -87,3 +190,6 @@ fn check_size([width, height]: [u32; 2]) -> Result<(), String> {
 fn too_large([width, height]: [u32; 2], refused: MemoryRefused) -> String {
     format!("its image of {width} x {height} px {refused}; scale it down")
 }
+
+#[cfg(test)]
+mod tests;

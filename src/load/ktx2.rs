@@ -13,6 +13,7 @@ mod uastc;
 use std::borrow::Cow;
 
 use super::zstd;
+use crate::mesh::mipmap::level_size;
 use etc1s::Codebooks;
 
 /// The first bytes of every file.
@@ -122,7 +123,7 @@ impl<'a> Ktx2<'a> {
 
     /// Returns the width and height of a level, in px.
     fn level_size(&self, level: usize) -> [u32; 2] {
-        self.size.map(|side| side.checked_shr(level as u32).unwrap_or(0).max(1))
+        level_size(self.size, level as u32)
     }
 
     /// Returns how many bytes the data of a level has; none if its size doesn't say.
@@ -136,23 +137,29 @@ impl<'a> Ktx2<'a> {
         }
     }
 
-    /// Returns how much memory it takes to decode the image beside its pixels, in bytes.
-    pub(super) fn working_bytes(&self) -> u64 {
+    /// Returns how many levels the file has: at least one.
+    pub(super) fn level_count(&self) -> u32 {
+        self.levels.len() as u32
+    }
+
+    /// Returns how much memory it takes to decode a level that the file has beside its pixels, in bytes.
+    pub(super) fn working_bytes(&self, level: u32) -> u64 {
         match self.codec {
             // The codebooks' entries have at most 8 bytes, and there are at most 65,535 of each; the rest is a few rows.
             Codec::Etc1s(_) => (1 << 20) + 16 * u64::from(self.size[0]),
-            _ if self.is_zstd => self.levels[0].length + zstd::WORKING_BYTES,
+            _ if self.is_zstd => self.levels[level as usize].length + zstd::WORKING_BYTES,
             _ => 0,
         }
     }
 
-    /// Decodes the image to RGBA, row by row. The caller has made sure that there is memory for it, and for
+    /// Decodes a level that the file has to RGBA, row by row. The caller has made sure that there is memory for it, and for
     /// [`Self::working_bytes`].
     ///
     /// # Errors
     /// A clause that says what is wrong.
-    pub(super) fn decode(&self) -> Result<Vec<u8>, String> {
-        let level = &self.levels[0];
+    pub(super) fn decode(&self, index: u32) -> Result<Vec<u8>, String> {
+        let index = index as usize;
+        let level = &self.levels[index];
         let data = if self.is_zstd {
             let unpacked = zstd::decompress(level.bytes, level.length as usize);
             unpacked.map(Cow::Owned).map_err(|reason| format!("its Zstandard data {reason}"))?
@@ -161,13 +168,13 @@ impl<'a> Ktx2<'a> {
         };
         match self.codec {
             Codec::Plain(width) => Ok(rgba(&data, width)),
-            Codec::Uastc => self.uastc(&data),
-            Codec::Etc1s(has_alpha) => self.etc1s(&data, has_alpha),
+            Codec::Uastc => self.uastc(&data, index),
+            Codec::Etc1s(has_alpha) => self.etc1s(&data, index, has_alpha),
         }
     }
 
-    fn uastc(&self, data: &[u8]) -> Result<Vec<u8>, String> {
-        let mut image = Image::new(self.size);
+    fn uastc(&self, data: &[u8], level: usize) -> Result<Vec<u8>, String> {
+        let mut image = Image::new(self.level_size(level));
         let across = image.blocks()[0];
         for (index, block) in data.as_chunks().0.iter().enumerate() {
             let texels = uastc::texels(block).ok_or_else(|| format!("its UASTC block {index} has no mode"))?;
@@ -176,12 +183,12 @@ impl<'a> Ktx2<'a> {
         Ok(image.rgba)
     }
 
-    fn etc1s(&self, data: &[u8], has_alpha: bool) -> Result<Vec<u8>, String> {
+    fn etc1s(&self, data: &[u8], level: usize, has_alpha: bool) -> Result<Vec<u8>, String> {
         let global = part(self.bytes, self.global, "its KTX2 codebooks")?;
         let wrong = || "its ETC1S data is broken".to_owned();
         let books = Codebooks::read(global, self.levels.len()).ok_or_else(wrong)?;
-        let slices = etc1s::slices(global, 0).ok_or_else(wrong)?;
-        let mut image = Image::new(self.size);
+        let slices = etc1s::slices(global, level).ok_or_else(wrong)?;
+        let mut image = Image::new(self.level_size(level));
         let blocks = image.blocks();
         let color = part(data, slices.color.map(u64::from), "its ETC1S colours")?;
         let put = |at, texels: [[u8; 3]; 16]| image.put(at, |to, texel| to[..3].copy_from_slice(&texels[texel]));

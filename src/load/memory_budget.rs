@@ -72,7 +72,7 @@ impl Budget {
     }
 
     /// Returns how many bytes may be in use.
-    fn allowed(&self) -> u64 {
+    pub(super) fn allowed(&self) -> u64 {
         self.free.saturating_add(self.files.get().saturating_mul(PER_BYTE))
     }
 
@@ -112,6 +112,12 @@ impl MemoryAccount for Budget {
     fn give_back_to(&self, borrowed: u64) {
         self.passing.set(borrowed);
     }
+}
+
+/// Returns how much memory a mesh of so many corners and triangles takes until its topology is built, in bytes: see above. There are at
+/// most as many points as corners, and an ordinary mesh has three edges for two triangles.
+pub(super) fn edge_bytes(corners: u64, triangles: u64) -> u64 {
+    corners.saturating_mul(32 + 32 + 16 + 4).saturating_add(triangles.saturating_mul(12 + 40 + 12))
 }
 
 /// Returns the size of a mesh in memory, in bytes. A texture that materials share counts once.

@@ -31,6 +31,7 @@ pub(crate) mod source;
 mod stl;
 mod tangents;
 mod text_lines;
+mod texture_room;
 mod uri;
 mod warnings;
 mod webp_memory;

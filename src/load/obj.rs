@@ -96,12 +96,14 @@ pub(super) fn read(
         reader.faces.color();
     }
     each(&bytes, &progress.part(0.3, 0.5), |line| reader.take(line))?;
+    reader.smoothing.take().into_iter().for_each(Smoothing::release);
+    let freed = bytes.len() as u64 + vertices.bytes();
+    reader.materials.read_textures(&mut reader.faces, freed, progress)?;
     let mut warnings = reader.materials.warnings();
     warnings.extend(reader.found.warnings());
     let holds = reader.found.holds(&vertices);
-    let (length, faces) = (bytes.len() as u64, reader.faces);
-    reader.smoothing.into_iter().for_each(Smoothing::release);
-    budget.release(length + vertices.bytes());
+    let faces = reader.faces;
+    budget.release(freed);
     drop((bytes, vertices));
     let loaded = faces.finish(name, holds, warnings, &progress.part(0.5, 1.0))?;
     Ok(LoadedMesh { files: files.named(), ..loaded })

@@ -150,6 +150,7 @@ fn rebuilt(
         repairs: mesh.repairs,
         details: details.map(|(details, _)| Arc::new(details)),
         lights: mesh.lights.clone(),
+        cameras: mesh.cameras.clone(),
         ..made
     })
 }

@@ -131,6 +131,19 @@ impl MeshBuilder {
         self.groups.len() - 1
     }
 
+    /// A material that was added.
+    ///
+    /// # Panics
+    /// If `material` isn't an index that [`material`](Self::material) returned.
+    pub(crate) fn material_mut(&mut self, material: usize) -> &mut Material {
+        &mut self.groups[material].material
+    }
+
+    /// The number of distinct corners so far.
+    pub(crate) fn distinct_corners(&self) -> usize {
+        self.distinct.corners.len()
+    }
+
     /// Adds a triangle; its corners are counter-clockwise seen from outside.
     ///
     /// # Panics

@@ -11,12 +11,14 @@ pub(crate) mod crease_band;
 pub(crate) mod curves;
 pub(crate) mod detail_table;
 mod dominance;
+mod file_camera;
 pub(crate) mod generate_normals;
 pub(crate) mod heights;
 pub(crate) mod interner;
 mod light;
 pub(crate) mod material;
 pub(crate) mod mesh_builder;
+pub(crate) mod mipmap;
 pub(crate) mod normal_faults;
 pub(crate) mod normals;
 pub(crate) mod polygon;
@@ -37,6 +39,7 @@ use glam::{Vec2, Vec3};
 
 pub use bounds::Bounds;
 pub use corner_details::{CornerDetail, CornerDetails};
+pub use file_camera::{FileCamera, Projection};
 pub use heights::{HeightMap, Heights};
 pub use light::{Light, LightKind, MOST_LIGHTS};
 pub use material::{Alpha, Look, Map, MapUv, Material, Sampling, Slot, Texture, Wrap};
@@ -92,6 +95,8 @@ pub struct Mesh {
     pub rig: Option<Arc<rig::Rig>>,
     /// The lights of the file, at most [`MOST_LIGHTS`].
     pub lights: Vec<Light>,
+    /// The cameras of the file.
+    pub cameras: Vec<FileCamera>,
 }
 
 impl Mesh {

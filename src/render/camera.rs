@@ -8,13 +8,15 @@ use crate::mesh::Bounds;
 use crate::names::every;
 use crate::tessellate::LodView;
 
-/// Vertical field of view, in degrees.
+/// The usual vertical field of view, in degrees.
 pub(crate) const FIELD_OF_VIEW: f32 = 40.0;
+/// The allowed vertical fields of view, in degrees.
+pub(crate) const FIELDS_OF_VIEW: std::ops::RangeInclusive<f32> = 0.1..=170.0;
 /// The allowed distances between the target and the eye, in object units.
 const DISTANCES: std::ops::RangeInclusive<f32> = 1e-30..=1e30;
 /// The distance of the near plane from the eye of a perspective view, in distances between eye and target.
 const NEAR: f32 = 1e-3;
-/// The steepest elevation, in degrees. At 90 the direction that is up on screen would be undefined.
+/// The steepest elevation that the camera can be turned to, in degrees. At 90 turning about the vertical axis would only roll it.
 pub(crate) const MAX_ELEVATION: f32 = 89.9;
 
 /// How far a frustum that is drawn reaches beyond the middle of the mesh, in bounding radii: a little more than the mesh.
@@ -31,6 +33,18 @@ pub struct Camera {
     /// The distance from the target to the eye, in object units.
     pub distance: f32,
     pub orthographic: bool,
+    /// Vertical, in degrees. An orthographic view is as high as a perspective view is at the target.
+    pub field_of_view: f32,
+    /// Degrees that the camera is turned about its direction of view, counterclockwise as it sees that.
+    pub roll: f32,
+}
+
+impl Default for Camera {
+    /// A camera in front of the origin, 1 object unit away.
+    fn default() -> Self {
+        let (target, field_of_view) = (Vec3::ZERO, FIELD_OF_VIEW);
+        Self { target, azimuth: 0.0, elevation: 0.0, distance: 1.0, orthographic: false, field_of_view, roll: 0.0 }
+    }
 }
 
 /// Directions of view along an axis.
@@ -63,20 +77,23 @@ impl Standpoint {
 impl Camera {
     /// A camera that sees all of `bounds` in a viewport of this size (px), from the front, the right and a little above.
     pub fn framing(bounds: &Bounds, viewport: Vec2) -> Self {
-        let mut camera =
-            Self { target: Vec3::ZERO, azimuth: 30.0, elevation: 20.0, distance: 1.0, orthographic: false };
+        let mut camera = Self { azimuth: 30.0, elevation: 20.0, ..Self::default() };
         camera.frame(bounds, viewport);
         camera
     }
 
     /// Whether all values are finite and in their ranges, as they are after any movement. A saved camera may be damaged.
     pub fn is_sound(&self) -> bool {
-        let turned = self.azimuth.is_finite() && (-MAX_ELEVATION..=MAX_ELEVATION).contains(&self.elevation);
-        turned && self.target.is_finite() && DISTANCES.contains(&self.distance)
+        let turned = self.azimuth.is_finite() && (-90.0..=90.0).contains(&self.elevation) && self.roll.is_finite();
+        turned
+            && FIELDS_OF_VIEW.contains(&self.field_of_view)
+            && self.target.is_finite()
+            && DISTANCES.contains(&self.distance)
     }
 
-    /// Turns the camera so that it looks along an axis.
+    /// Turns the camera so that it looks along an axis, upright.
     pub fn look_from(&mut self, standpoint: Standpoint) {
+        self.roll = 0.0;
         (self.azimuth, self.elevation) = match standpoint {
             Standpoint::Front => (0.0, 0.0),
             Standpoint::Back => (180.0, 0.0),
@@ -91,8 +108,13 @@ impl Camera {
     pub fn axes(&self) -> [Vec3; 3] {
         let (azimuth, elevation) = (self.azimuth.to_radians(), self.elevation.to_radians());
         let back = vec3(azimuth.sin() * elevation.cos(), elevation.sin(), azimuth.cos() * elevation.cos());
-        let right = vec3(azimuth.cos(), 0.0, -azimuth.sin());
-        [right, back.cross(right), back]
+        let level = vec3(azimuth.cos(), 0.0, -azimuth.sin());
+        let upright = back.cross(level);
+        if self.roll == 0.0 {
+            return [level, upright, back];
+        }
+        let (sine, cosine) = self.roll.to_radians().sin_cos();
+        [level * cosine + upright * sine, upright * cosine - level * sine, back]
     }
 
     pub fn eye(&self) -> Vec3 {
@@ -124,7 +146,7 @@ impl Camera {
 
     /// Object units per px at the target's depth, in a viewport that is `height` px high.
     pub fn units_per_pixel(&self, height: f32) -> f32 {
-        2.0 * self.distance * (0.5 * FIELD_OF_VIEW).to_radians().tan() / height.max(1.0)
+        2.0 * self.distance * (0.5 * self.field_of_view).to_radians().tan() / height.max(1.0)
     }
 
     /// The matrix from object units to clip space, for a viewport of `viewport` px. In an orthographic view, the depth range
@@ -142,7 +164,7 @@ impl Camera {
             let depth = radius + (bounds.center() - self.target).length() + self.distance;
             proj::orthographic(-half.x, half.x, -half.y, half.y, self.distance + depth, self.distance - depth)
         } else {
-            proj::perspective_infinite_reverse(FIELD_OF_VIEW.to_radians(), aspect, self.distance * NEAR)
+            proj::perspective_infinite_reverse(self.field_of_view.to_radians(), aspect, self.distance * NEAR)
         };
         projection * view
     }

@@ -6,7 +6,8 @@ use super::Camera;
 use super::camera::{FIELD_OF_VIEW, MAX_ELEVATION};
 use crate::mesh::Bounds;
 
-/// The distance from which a framed edge is seen, in lengths of the edge. It then is two thirds of the view's height long.
+/// The distance from which a framed edge is seen with the usual field of view, in lengths of the edge. It then is two thirds of the
+/// view's height long.
 const FRAMED_EDGE: f32 = 2.06;
 /// The part of the viewport that fitted positions fill. The rest is margin.
 const FITTED: f64 = 0.93;
@@ -22,7 +23,7 @@ impl Camera {
         let radius = bounds.radius();
         let radius = if radius > 0.0 && radius.is_finite() { radius } else { 1.0 };
         let aspect = viewport.x.max(1.0) / viewport.y.max(1.0);
-        let half_angle = ((0.5 * FIELD_OF_VIEW).to_radians().tan() * aspect.min(1.0)).atan();
+        let half_angle = ((0.5 * self.field_of_view).to_radians().tan() * aspect.min(1.0)).atan();
         self.target = bounds.center();
         self.distance = radius / half_angle.sin();
     }
@@ -45,7 +46,7 @@ impl Camera {
         let middle = 0.5 * (least.z + most.z);
         places.iter_mut().for_each(|place| place.z -= middle);
         let aspect = viewport.x.max(1.0) / viewport.y.max(1.0);
-        let slopes = ((0.5 * FIELD_OF_VIEW).to_radians().tan() * vec2(aspect, 1.0)).as_dvec2() * FITTED;
+        let slopes = ((0.5 * self.field_of_view).to_radians().tan() * vec2(aspect, 1.0)).as_dvec2() * FITTED;
         let (_, half) = self.between(&places, reach, slopes);
         let clearance = 0.5 * (most.z - least.z) + reach + LEAST_CLEARANCE * extent;
         let distance = (half / slopes).max_element().max(clearance);
@@ -93,7 +94,9 @@ impl Camera {
 
     fn frame_at(&mut self, target: Vec3, length: f32, facing: Vec3, bounds: &Bounds) {
         self.target = target;
-        self.distance = (FRAMED_EDGE * length).max(1e-4 * bounds.radius());
+        let half = |angle: f32| (0.5 * angle).to_radians().tan();
+        let nearer = half(FIELD_OF_VIEW) / half(self.field_of_view);
+        self.distance = (FRAMED_EDGE * length * nearer).max(1e-4 * bounds.radius());
         if facing != Vec3::ZERO {
             self.azimuth = facing.x.atan2(facing.z).to_degrees().rem_euclid(360.0);
             self.elevation = facing.y.clamp(-1.0, 1.0).asin().to_degrees().clamp(-MAX_ELEVATION, MAX_ELEVATION);

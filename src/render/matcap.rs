@@ -7,9 +7,10 @@ use wgpu::util::DeviceExt;
 
 use super::layout::{self, srgb};
 use super::materials::Materials;
-use super::textures::color_image;
+use super::textures::{ImageUse, upload};
 use crate::gpu::{Gpu, GpuError, Lazy};
 use crate::mesh::Texture;
+use crate::mesh::mipmap::MipFilter;
 use crate::settings::{Choice, Matcap};
 
 /// The sides of a matcap's picture, in px.
@@ -33,7 +34,7 @@ impl Matcaps {
     /// # Errors
     /// Out of memory, or a lost device.
     pub(super) fn group(&self, gpu: &Gpu, materials: &Materials, matcap: Matcap) -> Result<&wgpu::BindGroup, GpuError> {
-        self.groups[matcap as usize].get_or_make(gpu, || bind_group(gpu, materials, &picture(matcap)))
+        self.groups[matcap as usize].get_or_try_make(|| bind_group(gpu, materials, &picture(matcap)))
     }
 }
 
@@ -42,12 +43,14 @@ impl Matcaps {
 pub struct MatcapPicture(pub(super) wgpu::BindGroup);
 
 impl MatcapPicture {
-    pub(super) fn new(gpu: &Gpu, materials: &Materials, picture: &Texture) -> Self {
-        Self(bind_group(gpu, materials, picture))
+    /// # Errors
+    /// Out of memory, or a lost device.
+    pub(super) fn new(gpu: &Gpu, materials: &Materials, picture: &Texture) -> Result<Self, GpuError> {
+        bind_group(gpu, materials, picture).map(Self)
     }
 }
 
-fn bind_group(gpu: &Gpu, materials: &Materials, picture: &Texture) -> wgpu::BindGroup {
+fn bind_group(gpu: &Gpu, materials: &Materials, picture: &Texture) -> Result<wgpu::BindGroup, GpuError> {
     // Nothing of the material is seen.
     let constants = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
         label: Some("matcap"),
@@ -61,9 +64,9 @@ fn bind_group(gpu: &Gpu, materials: &Materials, picture: &Texture) -> wgpu::Bind
         mipmap_filter: wgpu::MipmapFilterMode::Linear,
         ..Default::default()
     });
-    let view = color_image(gpu, picture);
+    let view = upload(gpu, &materials.mipmaps, picture, ImageUse::of(MipFilter::Colors))?;
     let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+    Ok(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("matcap"),
         layout: &materials.layout,
         entries: &[
@@ -71,7 +74,7 @@ fn bind_group(gpu: &Gpu, materials: &Materials, picture: &Texture) -> wgpu::Bind
             entry(1, wgpu::BindingResource::TextureView(&view)),
             entry(2, wgpu::BindingResource::Sampler(&sampler)),
         ],
-    })
+    }))
 }
 
 /// The picture of a sphere. Outside the sphere it goes on as on its outline.

@@ -4,9 +4,11 @@ use wgpu::util::DeviceExt;
 
 use super::environment::Environment;
 use super::layout::{self, LEAST_SEEN, MapPlace};
+use super::mipmap_pass::Mipmaps;
 use super::punctual::upload_lights;
-use super::textures::{Meaning, Samplers, Textures, white};
-use crate::gpu::Gpu;
+use super::textures::{ImageUse, Samplers, Textures, white};
+use crate::gpu::{Gpu, GpuError};
+use crate::mesh::mipmap::MipFilter;
 use crate::mesh::{Alpha, Map, MapUv, Material, Sampling, Slot};
 
 /// The first binding of the light in the group of a material that is lit; the same in `shaders/environment.wgsl`.
@@ -33,6 +35,7 @@ pub struct Materials {
     /// For a mesh without lights.
     no_lights: wgpu::Buffer,
     samplers: Samplers,
+    pub(super) mipmaps: Mipmaps,
 }
 
 /// A material on the device.
@@ -54,32 +57,45 @@ impl Materials {
             white: white(gpu),
             no_lights: upload_lights(gpu, &[]),
             samplers: Samplers::default(),
+            mipmaps: Mipmaps::new(),
         }
     }
 
-    /// Uploads materials. An image that several of them use is uploaded once.
-    pub fn upload(&self, gpu: &Gpu, materials: &[Material]) -> Vec<UploadedMaterial> {
+    /// Uploads materials. An image that several of them use in the same way is uploaded once.
+    ///
+    /// # Errors
+    /// Out of memory, or a lost device.
+    pub fn upload(&self, gpu: &Gpu, materials: &[Material]) -> Result<Vec<UploadedMaterial>, GpuError> {
         let mut textures = Textures::default();
         materials.iter().map(|material| self.upload_one(gpu, material, &mut textures)).collect()
     }
 
-    fn upload_one(&self, gpu: &Gpu, material: &Material, textures: &mut Textures) -> UploadedMaterial {
+    fn upload_one(
+        &self,
+        gpu: &Gpu,
+        material: &Material,
+        textures: &mut Textures,
+    ) -> Result<UploadedMaterial, GpuError> {
         let constants = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("material"),
             contents: bytemuck::bytes_of(&constants(material)),
             usage: wgpu::BufferUsages::UNIFORM,
         });
         let sampler = |sampling| self.samplers.get(gpu, sampling);
-        let base = material.texture.as_ref().map(|texture| textures.view(gpu, texture, Meaning::Colors));
-        let maps = Slot::ALL.map(|slot| match &material.look.maps[slot as usize] {
-            Some(map) => (textures.view(gpu, &map.texture, meaning(slot)), sampler(map.sampling)),
-            None => (self.white.clone(), sampler(Sampling::default())),
-        });
-        let base = (base.unwrap_or_else(|| self.white.clone()), sampler(material.sampling));
-        let images = std::array::from_fn(|index| if index == 0 { base.clone() } else { maps[index - 1].clone() });
+        let mut images = std::array::from_fn(|_| (self.white.clone(), sampler(Sampling::default())));
+        if let Some(texture) = &material.texture {
+            let view = textures.view(gpu, &self.mipmaps, texture, ImageUse::base_color(material))?;
+            images[0] = (view, sampler(material.sampling));
+        }
+        for slot in Slot::ALL {
+            if let Some(map) = &material.look.maps[slot as usize] {
+                let view = textures.view(gpu, &self.mipmaps, &map.texture, ImageUse::of(MipFilter::of_map(slot)))?;
+                images[1 + slot as usize] = (view, sampler(map.sampling));
+            }
+        }
         let entries = [vec![entry(0, constants.as_entire_binding())], entries_of(&images[..1])].concat();
         let group = bind_group(gpu, "material", &self.layout, &entries);
-        UploadedMaterial { group, constants, images }
+        Ok(UploadedMaterial { group, constants, images })
     }
 
     /// The bind groups of materials that a light shines on, and the lights of a file, if there are any.
@@ -98,14 +114,6 @@ impl Materials {
             bind_group(gpu, "lit material", &self.lit_layout, &entries)
         };
         materials.iter().map(group).collect()
-    }
-}
-
-fn meaning(slot: Slot) -> Meaning {
-    match slot {
-        Slot::MetallicRoughness | Slot::Normal | Slot::Occlusion | Slot::Transmission => Meaning::Numbers,
-        Slot::SheenRoughness => Meaning::Numbers,
-        Slot::Emissive | Slot::SheenColor => Meaning::Colors,
     }
 }
 

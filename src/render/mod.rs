@@ -8,6 +8,7 @@ pub(crate) mod cube_map;
 mod deviation;
 pub(crate) mod dfg;
 pub(crate) mod environment;
+mod file_view;
 mod frame;
 mod framing;
 mod ground;
@@ -22,6 +23,7 @@ mod look;
 mod marks;
 pub(crate) mod matcap;
 mod materials;
+pub(crate) mod mipmap_pass;
 mod needs;
 mod pick;
 mod pipelines;
@@ -66,6 +68,7 @@ static MODULES: [&crate::gpu::WgslFile; 14] = [
     &coverage::PASS_COVERAGE,
     &environment::ENVIRONMENT,
     &leaks::DRAW_LEAKS,
+    &mipmap_pass::PASS_MIPMAP,
     &pick::DRAW_PICK,
     &pipelines::DRAW_BACKGROUND,
     &pipelines::DRAW_CLEAR,

@@ -81,7 +81,10 @@ impl Renderer {
     }
 
     /// Uploads a picture of a lit sphere, for [`Scene::matcap`].
-    pub fn matcap(&self, picture: &Texture) -> MatcapPicture {
+    ///
+    /// # Errors
+    /// Out of memory, or a lost device.
+    pub fn matcap(&self, picture: &Texture) -> Result<MatcapPicture, GpuError> {
         MatcapPicture::new(&self.gpu, &self.materials, picture)
     }
 

@@ -71,7 +71,7 @@ impl Scene {
     /// Uploads a mesh. It needs no window, and may run on any thread.
     ///
     /// # Errors
-    /// The mesh needs larger buffers than the adapter can bind.
+    /// The mesh needs larger buffers than the adapter can bind, or its textures more memory than there is.
     pub fn new(
         gpu: &Gpu,
         materials: &Materials,
@@ -81,7 +81,7 @@ impl Scene {
         arena_bytes: u64,
     ) -> Result<Self, GpuError> {
         let tessellator = Tessellator::new(gpu, pipelines, mesh.clone(), topology, arena_bytes)?;
-        let materials = materials.upload(gpu, &mesh.materials);
+        let materials = materials.upload(gpu, &mesh.materials)?;
         let ulp = ulp(tessellator.topology()) as f32;
         let lights = (!mesh.lights.is_empty()).then(|| upload_lights(gpu, &mesh.lights));
         Ok(Self { lights, ..Self::at_rest(tessellator, mesh.bounds(), ulp, materials) })

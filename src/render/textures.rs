@@ -3,46 +3,77 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use image::imageops::FilterType;
-use wgpu::util::DeviceExt;
+use super::mipmap_pass::{AlphaTest, Mipmaps, level_bytes};
+use crate::gpu::{Gpu, GpuError};
+use crate::mesh::mipmap::{MipFilter, covered, halved, level_count};
+use crate::mesh::{Alpha, Material, Sampling, Texture, Wrap};
 
-use crate::gpu::Gpu;
-use crate::mesh::{Sampling, Texture, Wrap};
-
-/// What the bytes of an image are.
+/// What an image is to a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Meaning {
-    /// Colours, encoded as sRGB.
-    Colors,
-    /// Numbers.
-    Numbers,
+pub(super) struct ImageUse {
+    pub filter: MipFilter,
+    /// The least alpha, 1 to 255, that passes the test of a mask; none if there is no such test.
+    pub least_alpha: Option<u32>,
 }
 
-impl Meaning {
+impl ImageUse {
+    /// Without a test of alpha.
+    pub(super) fn of(filter: MipFilter) -> Self {
+        Self { filter, least_alpha: None }
+    }
+
+    /// As the image of a material's base colour.
+    pub(super) fn base_color(material: &Material) -> Self {
+        let filter = MipFilter::of_base_color(material.look.alpha);
+        let least_alpha = match material.look.alpha {
+            Alpha::Mask(cutoff) => Some((255.0 * cutoff / material.base_color[3] - ROUNDING).ceil()),
+            Alpha::Opaque | Alpha::Blend => None,
+        };
+        // Where everything passes, or nothing, no scale changes that.
+        let least_alpha = least_alpha.filter(|least| (1.0..=255.0).contains(least)).map(|least| least as u32);
+        Self { filter, least_alpha }
+    }
+
     fn format(self) -> wgpu::TextureFormat {
-        match self {
-            Self::Colors => wgpu::TextureFormat::Rgba8UnormSrgb,
-            Self::Numbers => wgpu::TextureFormat::Rgba8Unorm,
+        match self.filter {
+            MipFilter::Colors | MipFilter::AlphaWeighted => COLORS,
+            MipFilter::Numbers | MipFilter::Normals => NUMBERS,
         }
     }
 }
 
-/// The images of a mesh's materials. One that several materials use, or one material for several things, is uploaded once.
+/// A cutoff that is meant to be a byte's alpha may be a little more.
+const ROUNDING: f32 = 1e-3;
+
+/// The formats of views of images: with sRGB's transfer function, and without.
+const COLORS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+const NUMBERS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+/// The images of a mesh's materials. One that several materials use in the same way is uploaded once.
 #[derive(Default)]
 pub(super) struct Textures {
-    uploaded: Vec<(*const Texture, wgpu::Texture)>,
+    uploaded: Vec<(*const Texture, ImageUse, wgpu::TextureView)>,
 }
 
 impl Textures {
     /// A view of an image, which is uploaded if it isn't there yet.
-    pub(super) fn view(&mut self, gpu: &Gpu, texture: &Arc<Texture>, meaning: Meaning) -> wgpu::TextureView {
+    ///
+    /// # Errors
+    /// Out of memory, or a lost device.
+    pub(super) fn view(
+        &mut self,
+        gpu: &Gpu,
+        mipmaps: &Mipmaps,
+        texture: &Arc<Texture>,
+        image_use: ImageUse,
+    ) -> Result<wgpu::TextureView, GpuError> {
         let key = Arc::as_ptr(texture);
-        let known = self.uploaded.iter().find(|(known, _)| *known == key);
-        let on_device = known.map_or_else(|| upload(gpu, texture), |(_, on_device)| on_device.clone());
-        if self.uploaded.iter().all(|(known, _)| *known != key) {
-            self.uploaded.push((key, on_device.clone()));
+        if let Some((.., view)) = self.uploaded.iter().find(|(known, of, _)| (*known, *of) == (key, image_use)) {
+            return Ok(view.clone());
         }
-        view(&on_device, meaning)
+        let view = upload(gpu, mipmaps, texture, image_use)?;
+        self.uploaded.push((key, image_use, view.clone()));
+        Ok(view)
     }
 }
 
@@ -87,49 +118,65 @@ fn sampler(gpu: &Gpu, sampling: Sampling) -> wgpu::Sampler {
 
 /// A white pixel, for what has no image.
 pub(super) fn white(gpu: &Gpu) -> wgpu::TextureView {
-    color_image(gpu, &white_pixel())
+    let pixel = Texture { size: [1, 1], rgba: vec![255; 4] };
+    view(&first_level(gpu, &pixel, wgpu::TextureUsages::empty()), COLORS)
 }
 
-/// A view of an image of colours, which is uploaded.
-pub(super) fn color_image(gpu: &Gpu, texture: &Texture) -> wgpu::TextureView {
-    view(&upload(gpu, texture), Meaning::Colors)
+fn view(texture: &wgpu::Texture, format: wgpu::TextureFormat) -> wgpu::TextureView {
+    texture.create_view(&wgpu::TextureViewDescriptor { format: Some(format), ..Default::default() })
 }
 
-fn white_pixel() -> Texture {
-    Texture { size: [1, 1], rgba: vec![255; 4] }
+/// A view of an image that is uploaded, with all its mip levels. An image that is larger than the adapter's textures can be is halved
+/// until it isn't.
+///
+/// # Errors
+/// Out of memory, or a lost device.
+pub(super) fn upload(
+    gpu: &Gpu,
+    mipmaps: &Mipmaps,
+    texture: &Texture,
+    image_use: ImageUse,
+) -> Result<wgpu::TextureView, GpuError> {
+    let smaller =
+        std::iter::successors((!fits(gpu, texture.size)).then(|| halved(texture, image_use.filter)), |larger| {
+            (!fits(gpu, larger.size)).then(|| halved(larger, image_use.filter))
+        });
+    let smaller = smaller.last();
+    let texture = smaller.as_ref().unwrap_or(texture);
+    let on_device = gpu.attempt(|| first_level(gpu, texture, wgpu::TextureUsages::empty()))?;
+    let first = on_device.create_view(&wgpu::TextureViewDescriptor {
+        format: Some(NUMBERS),
+        mip_level_count: Some(1),
+        ..Default::default()
+    });
+    let test = image_use.least_alpha.map(|least| AlphaTest { least, covered: covered(texture, least) });
+    mipmaps.fill(gpu, &on_device, &first, image_use.filter, test)?;
+    Ok(view(&on_device, image_use.format()))
 }
 
-fn view(texture: &wgpu::Texture, meaning: Meaning) -> wgpu::TextureView {
-    texture.create_view(&wgpu::TextureViewDescriptor { format: Some(meaning.format()), ..Default::default() })
+/// Whether the adapter's textures can be so large, in px, and its buffers hold their levels.
+fn fits(gpu: &Gpu, size: [u32; 2]) -> bool {
+    let limits = gpu.device.limits();
+    let most = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+    size.iter().all(|side| *side <= limits.max_texture_dimension_2d) && level_bytes(size) <= most
 }
 
-/// Uploads an image with all its mip levels. If it is larger than the adapter's textures can be, it is made smaller first.
-fn upload(gpu: &Gpu, texture: &Texture) -> wgpu::Texture {
-    let limit = gpu.device.limits().max_texture_dimension_2d;
+/// An image on the device, with room for all its mip levels, of which the first is there. It can be sampled and copied to, and used
+/// as `usage` says.
+pub(super) fn first_level(gpu: &Gpu, texture: &Texture, usage: wgpu::TextureUsages) -> wgpu::Texture {
     let [width, height] = texture.size;
-    let Some(mut level) = image::RgbaImage::from_raw(width, height, texture.rgba.clone()) else {
-        return upload(gpu, &white_pixel());
-    };
-    if width > limit || height > limit {
-        let fitted = image::DynamicImage::ImageRgba8(level).resize(limit, limit, FilterType::Triangle);
-        level = fitted.to_rgba8();
-    }
-    let (mut bytes, size) = (level.as_raw().clone(), level.dimensions());
-    let mip_level_count = size.0.max(size.1).ilog2() + 1;
-    for _ in 1..mip_level_count {
-        let (width, height) = ((level.width() / 2).max(1), (level.height() / 2).max(1));
-        level = image::imageops::resize(&level, width, height, FilterType::Triangle);
-        bytes.extend_from_slice(level.as_raw());
-    }
-    let descriptor = wgpu::TextureDescriptor {
+    let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+    let on_device = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("material"),
-        size: wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 },
-        mip_level_count,
+        size,
+        mip_level_count: level_count(texture.size),
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
-        format: Meaning::Colors.format(),
-        usage: wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[Meaning::Numbers.format()],
-    };
-    gpu.device.create_texture_with_data(&gpu.queue, &descriptor, wgpu::util::TextureDataOrder::LayerMajor, &bytes)
+        format: COLORS,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST | usage,
+        view_formats: &[NUMBERS],
+    });
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * width), rows_per_image: None };
+    gpu.queue.write_texture(on_device.as_image_copy(), &texture.rgba, layout, size);
+    on_device
 }

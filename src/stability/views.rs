@@ -26,6 +26,7 @@ pub(crate) fn random(bounds: &Bounds, index: u32) -> Camera {
         elevation: (2.0 * height - 1.0).asin().to_degrees().clamp(-89.0, 89.0),
         distance: radius * (0.25 + 6.0 * depth * depth),
         orthographic: index % 8 == 7,
+        ..Camera::default()
     }
 }
 

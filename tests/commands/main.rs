@@ -3,6 +3,7 @@
 mod adapters;
 mod adjacency;
 mod animation;
+mod cameras;
 mod chart;
 mod deviation;
 mod domain;
@@ -20,6 +21,8 @@ mod moving;
 mod picture_file;
 mod render;
 mod scenes;
+#[path = "../documents/shot.rs"]
+mod shot;
 mod stability;
 mod techniques;
 mod tessellate;

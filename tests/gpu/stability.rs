@@ -212,7 +212,7 @@ fn any_camera() -> impl Strategy<Value = Camera> {
     (target, 0f32..360.0, -89f32..89.0, -3f32..1.0, prop::bool::weighted(0.1)).prop_map(
         |(target, azimuth, elevation, magnitude, orthographic)| {
             let distance = 10f32.powf(magnitude);
-            Camera { target: target.into(), azimuth, elevation, distance, orthographic }
+            Camera { target: target.into(), azimuth, elevation, distance, orthographic, ..Camera::default() }
         },
     )
 }
@@ -462,7 +462,7 @@ fn leaks_say_nothing_where_what_is_behind_the_eye_was_left_out() {
     let (_, mut torus) = scene(Shape::Torus);
     // Inside the tube: all that is emitted lies beyond the near plane, the rest of the torus does not.
     let (target, azimuth, elevation) = (Vec3::new(0.424, -0.136, -0.498), 267.0, 62.0);
-    let inside = Camera { target, azimuth, elevation, distance: 0.25, orthographic: false };
+    let inside = Camera { target, azimuth, elevation, distance: 0.25, ..Camera::default() };
     let clipped = Settings::from(Tessellation {
         surface: Surface::Flat,
         clip: Clip::Frustum,

@@ -7,6 +7,7 @@ mod deviation;
 mod driver;
 mod editing;
 mod environment;
+mod file_cameras;
 mod foreign_factors;
 mod lasting;
 mod layout;

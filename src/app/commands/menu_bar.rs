@@ -92,6 +92,7 @@ impl App {
                 | CameraAction::Before
                 | CameraAction::After
                 | CameraAction::Bookmark(_)
+                | CameraAction::OfFile(_)
                 | CameraAction::ThroughFrozen
                 | CameraAction::Orbit(_)
                 | CameraAction::Pan(_)

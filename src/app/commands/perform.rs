@@ -45,6 +45,7 @@ impl App {
             can_measure_chart: self.can_measure_chart(),
             has_chart: !self.chart_rows().is_empty() && self.panels.chart.saving.is_none(),
             is_writing: self.is_writing(),
+            file_cameras: self.file_camera_names(),
             clips: self.clip_names(),
             recent: self.persistence.recent().map(Into::into).collect(),
         }

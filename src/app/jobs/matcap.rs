@@ -86,8 +86,15 @@ impl App {
         let Some(document) = &mut self.document else { return 0 };
         if document.matcap != wanted && self.viewport.picture.is_free() {
             let upload = |chosen: &ChosenMatcap| self.engine.renderer.matcap(&chosen.picture);
-            document.scene.matcap = self.matcap.as_ref().map(upload);
-            document.matcap = wanted;
+            match self.matcap.as_ref().map(upload).transpose() {
+                Ok(picture) => (document.scene.matcap, document.matcap) = (picture, wanted),
+                Err(error) => {
+                    (document.scene.matcap, document.matcap) = (None, 0);
+                    self.forget_matcap();
+                    self.dialogs.error = Some(error.to_string());
+                    return 0;
+                }
+            }
         }
         document.matcap
     }

@@ -213,13 +213,15 @@ impl SavedFile {
 impl SavedCamera {
     /// Writes it into the object of a file or of a bookmark.
     fn write(&self, written: &mut Value) {
-        let Camera { target, azimuth, elevation, distance, orthographic } = &self.camera;
+        let Camera { target, azimuth, elevation, distance, orthographic, field_of_view, roll } = &self.camera;
         written["camera"] = json!({
             "target": target.to_array(),
             "azimuth": azimuth,
             "elevation": elevation,
             "distance": distance,
             "orthographic": orthographic,
+            "field_of_view": field_of_view,
+            "roll": roll,
         });
         written["diagonal"] = json!(self.diagonal);
     }
@@ -227,6 +229,8 @@ impl SavedCamera {
     fn read(file: &Value) -> Option<Self> {
         let number = |value: &Value| value.as_f64().map(|number| number as f32).filter(|number| number.is_finite());
         let camera = &file["camera"];
+        // Files of earlier versions don't have all of them.
+        let later = |name: &str, usual| camera.get(name).map_or(Some(usual), number);
         let target = [0, 1, 2].map(|i| number(&camera["target"][i]));
         let [Some(x), Some(y), Some(z)] = target else { return None };
         let camera = Camera {
@@ -235,6 +239,8 @@ impl SavedCamera {
             elevation: number(&camera["elevation"])?,
             distance: number(&camera["distance"])?,
             orthographic: camera["orthographic"].as_bool()?,
+            field_of_view: later("field_of_view", Camera::default().field_of_view)?,
+            roll: later("roll", 0.0)?,
         };
         camera.is_sound().then_some(Self { camera, diagonal: number(&file["diagonal"])? })
     }

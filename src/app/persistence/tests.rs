@@ -31,12 +31,15 @@ prop_compose! {
     fn seen()(
         target in proptest::array::uniform3(-1e9f32..1e9),
         azimuth in 0.0f32..360.0,
-        elevation in -89.9f32..=89.9,
+        elevation in -90.0f32..=90.0,
         distance in 1e-20f32..1e20,
         orthographic in proptest::bool::ANY,
+        field_of_view in 0.1f32..=170.0,
+        roll in -180.0f32..=180.0,
         diagonal in 0.0f32..1e20,
     ) -> SavedCamera {
-        SavedCamera { camera: Camera { target: Vec3::from(target), azimuth, elevation, distance, orthographic }, diagonal }
+        let target = Vec3::from(target);
+        SavedCamera { camera: Camera { target, azimuth, elevation, distance, orthographic, field_of_view, roll }, diagonal }
     }
 }
 
@@ -168,7 +171,10 @@ fn invalid_cameras_are_refused() {
         ("target", json!([0, 1e39, 0])),
         ("target", json!([0, 1])),
         ("azimuth", json!(1e39)),
-        ("elevation", json!(90)),
+        ("elevation", json!(90.1)),
+        ("field_of_view", json!(171)),
+        ("field_of_view", json!(null)),
+        ("roll", json!(1e39)),
         ("distance", json!(0)),
         ("distance", json!(-1)),
         ("orthographic", json!(null)),

@@ -26,6 +26,7 @@ impl App {
             CameraAction::Before => self.view_before(),
             CameraAction::After => self.view_after(),
             CameraAction::Bookmark(index) => *camera = self.viewport.bookmarks.get(index).copied().unwrap_or(*camera),
+            CameraAction::OfFile(index) => self.look_through_file_camera(index),
             CameraAction::ThroughFrozen => self.look_through_frozen(),
             CameraAction::Orthographic => camera.orthographic = !camera.orthographic,
             CameraAction::Orbit(direction) => camera.orbit(towards(direction) * DEGREES_PER_KEY),
@@ -38,9 +39,26 @@ impl App {
         }
     }
 
-    /// Moves the camera so that all of the mesh is in view, over its whole clip and with its displacement.
+    /// The names of the file's cameras.
+    pub(in crate::app) fn file_camera_names(&self) -> Vec<String> {
+        let cameras = self.document.as_ref().map(|document| &document.loaded.mesh.cameras);
+        cameras.into_iter().flatten().map(|camera| camera.name.clone()).collect()
+    }
+
+    /// Moves the camera to where a camera of the file is, and gives it the same field of view, or height.
+    fn look_through_file_camera(&mut self, index: usize) {
+        let Some(document) = &self.document else { return };
+        if let Some(camera) = document.loaded.mesh.cameras.get(index) {
+            self.viewport.camera = Camera::of_file(camera, &document.scene.bounds);
+        }
+    }
+
+    /// Moves the camera so that all of the mesh is in view, upright and with the usual field of view, over its whole clip and with its
+    /// displacement.
     pub(in crate::app) fn frame(&mut self) {
         if let Some(document) = &self.document {
+            let camera = &mut self.viewport.camera;
+            (camera.field_of_view, camera.roll) = (Camera::default().field_of_view, 0.0);
             self.viewport.camera.frame(&document.scene.drawn_bounds(&self.settings), self.viewport.picture.size());
             self.viewport.framed = Some(self.viewport.camera);
         }

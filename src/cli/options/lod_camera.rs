@@ -3,12 +3,15 @@
 use clap::Args;
 use glam::Vec2;
 
+use super::values::{angle, field_of_view};
 use super::{CameraOption, Position, Size, SurfaceOptions};
+use crate::cli::CliError;
 use crate::mesh::{Bounds, Mesh};
 use crate::render::Camera;
+use crate::render::camera::FIELD_OF_VIEW;
 
 /// A camera that LOD, clipping and culling are computed for, in place of the picture's.
-#[derive(Clone, Copy, Debug, Default, Args)]
+#[derive(Clone, Copy, Debug, Args)]
 pub(crate) struct LodCameraOption {
     /// Compute LOD, clipping and culling for this camera in place of the picture's, and draw its frustum as lines; the numbers are
     /// those of --camera
@@ -23,18 +26,49 @@ pub(crate) struct LodCameraOption {
     /// Orthographic projection for the LOD camera
     #[arg(long, requires = "lod_camera")]
     pub lod_orthographic: bool,
+    /// Vertical field of view of the LOD camera in degrees, 0.1 to 170
+    #[arg(long, value_name = "DEGREES", default_value_t = FIELD_OF_VIEW, value_parser = field_of_view, requires = "lod_camera")]
+    pub lod_field_of_view: f32,
+    /// Turn the LOD camera about its direction of view, counterclockwise by so many degrees
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, value_parser = angle, allow_hyphen_values = true, requires = "lod_camera")]
+    pub lod_roll: f32,
+}
+
+impl Default for LodCameraOption {
+    fn default() -> Self {
+        Self {
+            lod_camera: None,
+            lod_target: None,
+            lod_size: None,
+            lod_orthographic: false,
+            lod_field_of_view: FIELD_OF_VIEW,
+            lod_roll: 0.0,
+        }
+    }
 }
 
 impl LodCameraOption {
     /// The LOD camera and its view's size in px, if it isn't the picture's. `own` are the options of the picture's camera.
-    pub(crate) fn camera(&self, own: &SurfaceOptions, mesh: &Mesh, bounds: &Bounds) -> Option<(Camera, Vec2)> {
+    ///
+    /// # Errors
+    /// None of its own: those of [`SurfaceOptions::camera`].
+    pub(crate) fn camera(
+        &self,
+        own: &SurfaceOptions,
+        mesh: &Mesh,
+        bounds: &Bounds,
+    ) -> Result<Option<(Camera, Vec2)>, CliError> {
+        let Some(camera) = self.lod_camera else { return Ok(None) };
         let options = SurfaceOptions {
-            camera: self.lod_camera?,
+            camera,
             target: self.lod_target,
             size: self.lod_size.unwrap_or(own.size),
             orthographic: self.lod_orthographic,
+            field_of_view: self.lod_field_of_view,
+            roll: self.lod_roll,
+            file_camera: None,
             ..own.clone()
         };
-        Some((options.camera(mesh, bounds), options.viewport()))
+        Ok(Some((options.camera(mesh, bounds)?, options.viewport())))
     }
 }

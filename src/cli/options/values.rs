@@ -8,6 +8,7 @@ use glam::Vec3;
 
 use crate::load::Source;
 use crate::mesh::crease_band::WIDEST;
+use crate::render::camera::FIELDS_OF_VIEW;
 
 /// Parses the path of a picture. Refuses endings of other formats than PNG.
 pub(crate) fn picture() -> impl TypedValueParser<Value = PathBuf> {
@@ -70,6 +71,19 @@ impl FromStr for CameraOption {
             _ => Err("expected AZIMUTH,ELEVATION in degrees and perhaps a DISTANCE above 0 in bounding radii, such as 30,20,2.5".into()),
         }
     }
+}
+
+/// Parses a vertical field of view in degrees.
+pub(crate) fn field_of_view(text: &str) -> Result<f32, String> {
+    let angle = text.trim().parse().ok().filter(|angle| FIELDS_OF_VIEW.contains(angle));
+    let [least, most] = [FIELDS_OF_VIEW.start(), FIELDS_OF_VIEW.end()];
+    angle.ok_or_else(|| format!("expected degrees from {least} to {most}"))
+}
+
+/// Parses an angle in degrees.
+pub(crate) fn angle(text: &str) -> Result<f32, String> {
+    let angle = text.trim().parse().ok().filter(|angle: &f32| angle.is_finite());
+    angle.ok_or_else(|| "expected a number of degrees".to_owned())
 }
 
 /// A position in object units.

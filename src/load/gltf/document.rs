@@ -5,6 +5,7 @@ use ::gltf::json::Root;
 use ::gltf::json::validation::Error as ValidationError;
 use serde_json::{Map, Value, json};
 
+use super::cameras::CameraSources;
 use super::extensions::Extensions;
 use super::json::objects;
 use super::lights::LightSources;
@@ -30,6 +31,7 @@ pub(super) struct Parsed {
     /// The document's materials and images, not yet checked (see [`super::materials`]).
     pub lists: MaterialLists,
     pub lights: LightSources,
+    pub cameras: CameraSources,
     /// The names of the document's material variants.
     pub variants: Vec<String>,
     pub scenes: Scenes,
@@ -80,6 +82,7 @@ pub(super) fn parse(
     let scenes = Scenes::choose(root, selected.scene, &mut notes);
     let lists = MaterialLists::take(root, &mut notes);
     let lights = LightSources::take(root, &mut notes);
+    let cameras = CameraSources::take(root, &mut notes);
     let reach = Reach::of(root, &Beside { animations: &animations, images: &lists.images, requires_draco });
     let faults = repair::repair(root, &reach, (lists.materials.len(), requires_draco), budget, &mut notes)?;
     schema_check::check(root, schema::DOCUMENT, &faults.replaced)?;
@@ -92,8 +95,21 @@ pub(super) fn parse(
     budget.give_back_to(0);
     let too_large =
         |refused: MemoryRefused| GltfError::Document { pointer: "its JSON".to_owned(), reason: refused.into() };
-    budget.hold(lists.bytes() + lights.bytes()).map_err(too_large)?;
-    Ok(Parsed { document, blob, extensions, animations, lists, lights, variants, scenes, reach, faults, notes })
+    budget.hold(lists.bytes() + lights.bytes() + cameras.bytes()).map_err(too_large)?;
+    Ok(Parsed {
+        document,
+        blob,
+        extensions,
+        animations,
+        lists,
+        lights,
+        cameras,
+        variants,
+        scenes,
+        reach,
+        faults,
+        notes,
+    })
 }
 
 fn not_gltf(reason: impl ToString) -> GltfError {

@@ -66,12 +66,7 @@ impl LightSources {
 
     /// The lights of the nodes that the scene shows, where they are at rest: at most [`MOST_LIGHTS`].
     pub(super) fn shown(&self, placed: &Placed, notes: &mut Notes) -> Vec<Light> {
-        let mut is_shown = vec![false; if self.of_nodes.is_empty() { 0 } else { placed.global.len() }];
-        for &node in &placed.shown {
-            if let Some(shown) = is_shown.get_mut(node) {
-                *shown = true;
-            }
-        }
+        let is_shown = if self.of_nodes.is_empty() { Vec::new() } else { placed.is_shown() };
         let shown = self.of_nodes.iter().filter(|[node, _]| is_shown.get(*node) == Some(&true));
         let all: Vec<_> = shown.filter_map(|&[node, light]| Some((node, self.lights[light]?))).collect();
         if all.len() > MOST_LIGHTS {

@@ -1,7 +1,7 @@
 //! Makes materials of what a document says about them. Each is made when a primitive first uses it.
 
 use std::cell::RefCell;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 
 use ::gltf::Document;
@@ -14,11 +14,14 @@ use super::notes::Notes;
 use super::texture_source::{self, TextureSource};
 use super::uv_transform::UvTransform;
 use super::{Accessors, GltfError};
-use crate::load::images::decode_texture;
+use crate::load::images::{decode_halved, texture_size};
 use crate::load::memory_budget::Budget;
+use crate::load::texture_room::{Scaling, TextureRoom, decoded_bytes};
 use crate::load::uri::Files;
 use crate::mesh::mesh_builder::MeshBuilder;
+use crate::mesh::mipmap::MipFilter;
 use crate::mesh::{Look, Map, MapUv, Material, MemoryAccount, MemoryRefused, Sampling, Slot, Texture};
+use crate::progress::Progress;
 
 /// How many materials a sentence names.
 const NAMED: usize = 3;
@@ -50,11 +53,30 @@ pub(super) struct Materials<'a> {
     resolved: HashMap<Option<usize>, Resolved>,
     /// By the texture's index.
     textures: HashMap<usize, Option<TextureSource>>,
-    /// By the image's index; none for an image that can't be read.
-    images: HashMap<usize, Option<Arc<Texture>>>,
+    /// By the image's index.
+    images: HashMap<usize, ReadImage>,
+    /// The memory that the rest of the load takes, in bytes.
+    reserved: u64,
     /// For what isn't drawn, the materials that have it.
     undrawn: BTreeMap<String, NamedMaterials>,
     notes: RefCell<Notes>,
+}
+
+/// An image that will be read.
+struct FoundImage {
+    image: usize,
+    filter: MipFilter,
+    /// In px.
+    size: [u32; 2],
+}
+
+/// An image that was read.
+#[derive(Clone)]
+struct ReadImage {
+    /// What was read, or a clause that says why it can't be.
+    texture: Result<Arc<Texture>, String>,
+    /// From which size it was scaled down, and why; none once a warning said so.
+    scaled: Option<([u32; 2], String)>,
 }
 
 /// Some materials, of which the first few are named.
@@ -85,6 +107,7 @@ impl<'a> Materials<'a> {
             resolved: HashMap::new(),
             textures: HashMap::new(),
             images: HashMap::new(),
+            reserved: 0,
             undrawn: BTreeMap::new(),
             notes: RefCell::default(),
         };
@@ -127,6 +150,62 @@ impl<'a> Materials<'a> {
         self.sources.get(&material.index()).is_some_and(MaterialSource::needs_details)
     }
 
+    /// Reads the images of all materials that are used, and scales the largest down until all fit. `reserved` is the memory that
+    /// the rest of the load takes, in bytes.
+    ///
+    /// # Errors
+    /// [`GltfError::Cancelled`].
+    pub(super) fn read_images(&mut self, reserved: u64, progress: &Progress) -> Result<(), GltfError> {
+        self.reserved = reserved;
+        let mut keys: Vec<_> = self.sources.keys().copied().collect();
+        keys.sort_unstable();
+        let mut found: Vec<FoundImage> = Vec::new();
+        let mut seen = HashSet::new();
+        for key in keys {
+            let Some(source) = self.sources.get(&key).cloned() else { continue };
+            let base = source.base_map.map(|map| (map.texture, MipFilter::of_base_color(source.look.alpha)));
+            let maps = Slot::ALL.into_iter().zip(source.maps);
+            let maps = maps.filter_map(|(slot, map)| Some((map?.texture, MipFilter::of_map(slot))));
+            for (texture, filter) in base.into_iter().chain(maps) {
+                let Some(TextureSource { images, .. }) = self.texture_source(texture) else { continue };
+                progress.check()?;
+                // The first one that looks right; if it turns out not to be, the next one is read when it is needed.
+                let image =
+                    images.into_iter().find_map(|image| Some(FoundImage { image, filter, size: self.size(image)? }));
+                found.extend(image.filter(|image| seen.insert(image.image)));
+            }
+        }
+        let sizes: Vec<_> = found.iter().map(|image| image.size).collect();
+        let scalings = TextureRoom::of(self.budget, reserved).scalings(&sizes);
+        // What takes most memory while it is decoded comes first, while the others don't take any yet.
+        let mut order: Vec<_> = found.into_iter().zip(scalings).collect();
+        order.sort_by_key(|(image, _)| std::cmp::Reverse(decoded_bytes(image.size)));
+        for (image, scaling) in order {
+            progress.check()?;
+            self.read_image(image, scaling);
+        }
+        Ok(())
+    }
+
+    /// The size of an image in px; none if it can't be read.
+    fn size(&self, image: usize) -> Option<[u32; 2]> {
+        let borrowed = self.budget.borrowed();
+        let bytes = texture_source::image(&self.lists.images, image, self.accessors, self.files);
+        let size = bytes.ok().and_then(|bytes| texture_size(&bytes));
+        self.budget.give_back_to(borrowed);
+        size
+    }
+
+    fn read_image(&mut self, FoundImage { image, filter, size }: FoundImage, scaling: Scaling) {
+        let borrowed = self.budget.borrowed();
+        let bytes = texture_source::image(&self.lists.images, image, self.accessors, self.files);
+        let texture =
+            bytes.and_then(|bytes| decode_halved(&bytes, scaling.halvings, filter, self.budget)).map(Arc::new);
+        self.budget.give_back_to(borrowed);
+        let scaled = (scaling.halvings > 0 && texture.is_ok()).then_some((size, scaling.reason));
+        self.images.insert(image, ReadImage { texture, scaled });
+    }
+
     /// Finds a material, or adds it to the builder. A texture that is missing or broken causes a warning.
     ///
     /// # Errors
@@ -143,7 +222,8 @@ impl<'a> Materials<'a> {
         self.look_at(key)?;
         let Some(source) = self.sources.get(&key).cloned() else { return Ok(Resolved::of(0, Uvs::default(), None)) };
         let name = name(&source, key);
-        let base = source.base_map.and_then(|map| self.texture(map.texture, "texture", &name));
+        let filter = MipFilter::of_base_color(source.look.alpha);
+        let base = source.base_map.and_then(|map| self.texture(map.texture, filter, "texture", &name));
         let mut look = source.look.clone();
         for slot in Slot::ALL {
             let map = source.maps[slot as usize];
@@ -162,7 +242,7 @@ impl<'a> Materials<'a> {
 
     fn map(&mut self, map: MapSource, slot: Slot, own: Uvs, material: &str) -> Option<Map> {
         let what = slot_name(slot);
-        let (texture, sampling) = self.texture(map.texture, what, material)?;
+        let (texture, sampling) = self.texture(map.texture, MipFilter::of_map(slot), what, material)?;
         let Uvs { set, transform } = map.uvs;
         let uv = match set {
             _ if map.uvs == own => MapUv::Own,
@@ -177,34 +257,54 @@ impl<'a> Materials<'a> {
         Some(Map { texture, uv, sampling })
     }
 
-    fn texture(&mut self, texture: usize, what: &str, material: &str) -> Option<(Arc<Texture>, Sampling)> {
+    fn texture_source(&mut self, texture: usize) -> Option<TextureSource> {
         let MaterialLists { textures, samplers, images, .. } = self.lists;
-        let found = self
-            .textures
-            .entry(texture)
-            .or_insert_with(|| texture_source::texture(textures, samplers, images.len(), texture, &self.notes));
-        let TextureSource { images, sampling } = found.clone()?;
-        let (last, others) = images.split_last()?;
-        let used = "can't be used, and the texture's other image takes its place";
-        let other = others
-            .iter()
-            .find_map(|&image| self.image(image, &format!("the {what} of material \"{material}\" {used}")));
-        let left_out = format!("the {what} of material \"{material}\" is left out");
-        Some((other.or_else(|| self.image(*last, &left_out))?, sampling))
+        let read = || texture_source::texture(textures, samplers, images.len(), texture, &self.notes);
+        self.textures.entry(texture).or_insert_with(read).clone()
     }
 
-    /// Reads an image. If it can't be read, the sentence about it begins with `otherwise`.
-    fn image(&mut self, image: usize, otherwise: &str) -> Option<Arc<Texture>> {
-        if let Some(texture) = self.images.get(&image) {
-            return texture.clone();
+    fn texture(
+        &mut self,
+        texture: usize,
+        filter: MipFilter,
+        what: &str,
+        material: &str,
+    ) -> Option<(Arc<Texture>, Sampling)> {
+        let TextureSource { images, sampling } = self.texture_source(texture)?;
+        let (last, others) = images.split_last()?;
+        let name = format!("the {what} of material \"{material}\"");
+        let used = "can't be used, and the texture's other image takes its place";
+        let other = others.iter().find_map(|&image| self.image(image, filter, &name, used));
+        Some((other.or_else(|| self.image(*last, filter, &name, "is left out"))?, sampling))
+    }
+
+    /// An image, which is read unless it was already. If it can't be read, the sentence about it has `otherwise` in it; `name` says
+    /// where it is used.
+    fn image(&mut self, image: usize, filter: MipFilter, name: &str, otherwise: &str) -> Option<Arc<Texture>> {
+        let is_new = !self.images.contains_key(&image);
+        if is_new {
+            let size = self.size(image).unwrap_or_default();
+            let mut scalings = TextureRoom::of(self.budget, self.reserved).scalings(&[size]);
+            self.read_image(FoundImage { image, filter, size }, scalings.pop().unwrap_or_default());
         }
-        let bytes = texture_source::image(&self.lists.images, image, self.accessors, self.files);
-        let texture = bytes.and_then(|bytes| decode_texture(&bytes, self.budget)).map(Arc::new);
-        let texture = texture.map_err(|reason| {
-            self.notes.get_mut().push(format!("{otherwise}: {reason}."));
-        });
-        self.images.insert(image, texture.clone().ok());
-        texture.ok()
+        let ReadImage { texture, scaled } = self.images.get_mut(&image)?;
+        match texture {
+            Ok(texture) => {
+                if let Some((size, reason)) = scaled.take() {
+                    let [[a, b], [c, d]] = [size, texture.size];
+                    let said = format!("{name} is scaled down from {a} x {b} px to {c} x {d} px: {reason}.");
+                    self.notes.get_mut().push(said);
+                }
+                Some(texture.clone())
+            }
+            Err(reason) => {
+                // Said once.
+                if !reason.is_empty() {
+                    self.notes.get_mut().push(format!("{name} {otherwise}: {}.", std::mem::take(reason)));
+                }
+                None
+            }
+        }
     }
 
     /// Returns what was repaired or left out.

@@ -19,6 +19,19 @@ pub(crate) struct Placed {
     pub order: Vec<usize>,
 }
 
+impl Placed {
+    /// Returns for each node whether the scene shows it.
+    pub(super) fn is_shown(&self) -> Vec<bool> {
+        let mut is_shown = vec![false; self.global.len()];
+        for &node in &self.shown {
+            if let Some(shown) = is_shown.get_mut(node) {
+                *shown = true;
+            }
+        }
+        is_shown
+    }
+}
+
 /// Places all nodes, and lists those of the scene that the document names, or else all nodes; those that hide themselves, and what
 /// is below, are left out. Doesn't recurse, since chains of nodes may be long.
 ///

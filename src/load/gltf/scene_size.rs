@@ -9,7 +9,7 @@ use ::gltf::{Document, Mesh, Semantic};
 use super::extensions::InstancingExtension;
 use super::nodes::Placed;
 use super::{Accessors, GltfError, instances, primitive};
-use crate::load::memory_budget::Budget;
+use crate::load::memory_budget::{Budget, edge_bytes};
 use crate::mesh::build_limits::MAX_TRIANGLES;
 use crate::mesh::detail_table::DetailTable;
 use crate::mesh::interner::Interner;
@@ -28,6 +28,9 @@ const PER_ZERO: u64 = 100;
 const PER_BOUND: u64 = 256;
 /// Memory for reading a primitive and its node, in bytes, besides its elements.
 const PER_PRIMITIVE: u64 = 200;
+
+/// Memory for the details of a corner once they are read, in bytes.
+const PER_DETAIL: u64 = 104;
 
 /// What vertices have beside position, normal and texture coordinates.
 #[derive(Clone, Copy, Debug, Default)]
@@ -52,8 +55,18 @@ struct SceneSize {
     primitives: u64,
 }
 
-/// Checks that the data of everything that is shown is there, and that the budget has room for it. Returns the greatest
-/// number of vertices of triangles, and of distinct corners.
+/// What is known of a scene before it is read.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SceneNeeds {
+    /// The greatest number of vertices of triangles.
+    pub vertices: usize,
+    /// The greatest number of distinct corners.
+    pub corners: usize,
+    /// The memory that the rest of the load takes beside textures, in bytes, until the mesh has its edges.
+    pub bytes: u64,
+}
+
+/// Checks that the data of everything that is shown is there, and that the budget has room for it.
 ///
 /// # Errors
 /// [`GltfError::Accessor`], and [`GltfError::TooLarge`].
@@ -63,7 +76,7 @@ pub(crate) fn check(
     accessors: &Accessors,
     budget: &Budget,
     beside: PerVertex,
-) -> Result<[usize; 2], GltfError> {
+) -> Result<SceneNeeds, GltfError> {
     let mut known: HashMap<usize, SceneSize> = HashMap::new();
     let mut all = SceneSize::default();
     for node in placed.shown.iter().filter_map(|&index| document.nodes().nth(index)) {
@@ -91,8 +104,9 @@ pub(crate) fn check(
     if all.elements > MAX_ELEMENTS {
         return refuse(all.elements, "vertices, displacements of vertices and indices", MAX_ELEMENTS);
     }
+    let is_detailed = beside.is_detailed;
     let moving = if beside.moves { all.vertices.saturating_mul(PER_BOUND) } else { 0 };
-    let details = if beside.is_detailed { DetailTable::bytes_for(all.corners as usize) } else { 0 };
+    let details = if is_detailed { DetailTable::bytes_for(all.corners as usize) } else { 0 };
     let read = Interner::bytes_for(all.corners as usize) + all.triangles * PER_TRIANGLE;
     // All triangles are put into one list after the buffers have been freed.
     let finished = (all.corners * 4 + all.triangles * 2 * PER_TRIANGLE).saturating_sub(accessors.buffer_bytes());
@@ -107,7 +121,10 @@ pub(crate) fn check(
     budget.hold(beside).and_then(|()| budget.borrow(ahead)).map_err(too_large)?;
     // This was only a check: the builder takes the memory as it goes.
     budget.give_back_to(borrowed);
-    Ok([all.vertices as usize, all.corners as usize])
+    // By then the file's data has been freed.
+    let edges = edge_bytes(all.corners, all.triangles) + if is_detailed { all.corners * PER_DETAIL } else { 0 };
+    let bytes = ahead.max(edges.saturating_sub(accessors.buffer_bytes()));
+    Ok(SceneNeeds { vertices: all.vertices as usize, corners: all.corners as usize, bytes })
 }
 
 impl SceneSize {

@@ -1,4 +1,5 @@
 mod animations;
+mod cameras;
 mod compressed;
 mod files;
 mod hostile;

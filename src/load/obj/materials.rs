@@ -7,15 +7,52 @@ use glam::Vec2;
 
 use super::mtl::{self, MtlMaterial, MtlTexture};
 use crate::load::face_builder::{FaceBuilder, counted};
-use crate::load::images::decode_texture;
+use crate::load::images::{decode_halved, texture_size};
 use crate::load::memory_budget::Budget;
 use crate::load::read_error::ReadError;
 use crate::load::text_lines::{shown, words};
+use crate::load::texture_room::{Scaling, TextureRoom};
 use crate::load::uri::Files;
+use crate::mesh::mipmap::MipFilter;
 use crate::mesh::{Alpha, Look, Map, MapUv, Material, MemoryAccount, Sampling, Slot, Texture, Wrap};
+use crate::progress::Progress;
 
 /// The greatest number of material files that are read.
 const MAX_LIBRARIES: usize = 64;
+
+/// A file with an image, and what uses it.
+struct TextureFile {
+    name: String,
+    /// The name of the first material that uses it.
+    first: String,
+    /// The indices of materials.
+    users: Vec<(usize, TextureUse)>,
+}
+
+/// What an image is for.
+#[derive(Clone, Copy)]
+enum TextureUse {
+    BaseColor,
+    Emissive,
+}
+
+impl TextureUse {
+    /// Gives the image to a material.
+    fn give(self, material: &mut Material, texture: &Arc<Texture>) {
+        let texture = texture.clone();
+        match self {
+            Self::BaseColor => material.texture = Some(texture),
+            Self::Emissive => {
+                // A texture alone shines as it is.
+                if material.look.emissive == [0.0; 3] {
+                    material.look.emissive = [1.0; 3];
+                }
+                let map = Map { texture, uv: MapUv::Own, sampling: material.sampling };
+                material.look.maps[Slot::Emissive as usize] = Some(map);
+            }
+        }
+    }
+}
 
 /// The materials of the faces.
 pub(super) struct Materials<'a> {
@@ -31,8 +68,9 @@ pub(super) struct Materials<'a> {
     indices: HashMap<Vec<u8>, usize>,
     /// How texture coordinates are placed, by the index of a material: what they are multiplied by, and what is added.
     places: HashMap<usize, [Vec2; 2]>,
-    /// Textures by file name; none for one that can't be read.
-    textures: HashMap<String, Option<Arc<Texture>>>,
+    /// The texture files, in order, and their numbers by name.
+    textures: Vec<TextureFile>,
+    numbers: HashMap<String, usize>,
     problems: Vec<String>,
     bad_statements: usize,
     libraries_left_out: usize,
@@ -50,7 +88,8 @@ impl<'a> Materials<'a> {
             index: None,
             indices: HashMap::new(),
             places: HashMap::new(),
-            textures: HashMap::new(),
+            textures: Vec::new(),
+            numbers: HashMap::new(),
             problems: Vec::new(),
             bad_statements: 0,
             libraries_left_out: 0,
@@ -119,10 +158,18 @@ impl<'a> Materials<'a> {
             self.index = Some(index);
             return Ok(index);
         }
-        let (material, place) = self.make();
+        let (material, textures) = self.make();
+        let name = material.name.clone();
         let index = faces.material(material)?;
-        if let Some(place) = place {
-            self.places.insert(index, place);
+        // One place serves all images of a material.
+        let place = textures.first().map(|(_, texture)| [texture.scale, texture.offset].map(Vec2::from));
+        self.places.extend(place.filter(|place| *place != [Vec2::ONE, Vec2::ZERO]).map(|place| (index, place)));
+        for (kind, MtlTexture { file, .. }) in textures {
+            let number = *self.numbers.entry(file.clone()).or_insert(self.textures.len());
+            if number == self.textures.len() {
+                self.textures.push(TextureFile { name: file, first: name.clone(), users: Vec::new() });
+            }
+            self.textures[number].users.push((index, kind));
         }
         self.indices.insert(self.name.clone(), index);
         self.index = Some(index);
@@ -137,52 +184,80 @@ impl<'a> Materials<'a> {
         Vec2::new(u, 1.0 - v)
     }
 
-    /// Makes the material of the next faces. Also returns how its texture coordinates are placed, if not as they are.
-    fn make(&mut self) -> (Material, Option<[Vec2; 2]>) {
+    /// The material of the next faces, and its textures, which are read last.
+    fn make(&mut self) -> (Material, Vec<(TextureUse, MtlTexture)>) {
         if self.name.is_empty() {
-            return (Material::plain("default", [1.0; 4]), None);
+            return (Material::plain("default", [1.0; 4]), Vec::new());
         }
         let shown = String::from_utf8_lossy(&self.name).into_owned();
         let Some(described) = self.described.get(&self.name).cloned() else {
             self.undescribed += 1;
-            return (Material::plain(&shown, [1.0; 4]), None);
+            return (Material::plain(&shown, [1.0; 4]), Vec::new());
         };
-        let MtlMaterial { color: [r, g, b], alpha, ref texture, ref emissive_texture, .. } = described;
+        let MtlMaterial { color: [r, g, b], texture, emissive, emissive_texture, alpha, roughness, metallic, .. } =
+            described;
+        let uses = [(TextureUse::BaseColor, texture), (TextureUse::Emissive, emissive_texture)];
+        let textures: Vec<_> = uses.into_iter().filter_map(|(kind, texture)| Some((kind, texture?))).collect();
+        let is_clamped = textures.first().is_some_and(|(_, texture)| texture.is_clamped);
+        let wrap = if is_clamped { Wrap::Clamp } else { Wrap::Repeat };
         // Some programs write 0 for what they show as opaque.
         let is_transparent = alpha > 0.0 && alpha < 1.0;
-        let base_color = [r, g, b, if is_transparent { alpha } else { 1.0 }];
-        // One place serves both images.
-        let placing = texture.as_ref().or(emissive_texture.as_ref());
-        let place = placing.map(|texture| [texture.scale, texture.offset].map(Vec2::from));
-        let wrap = if placing.is_some_and(|texture| texture.is_clamped) { Wrap::Clamp } else { Wrap::Repeat };
+        let own = Look::default();
+        let look = Look {
+            roughness: roughness.unwrap_or(own.roughness),
+            metallic: metallic.unwrap_or(own.metallic),
+            emissive,
+            alpha: if is_transparent { Alpha::Blend } else { Alpha::Opaque },
+            ..own
+        };
         let sampling = Sampling { wrap: [wrap; 2], ..Sampling::default() };
-        let image = texture.as_ref().and_then(|texture| self.texture(texture, &shown));
-        let glow = emissive_texture.as_ref().and_then(|texture| self.texture(texture, &shown));
-        let mut look = Look::default();
-        look.roughness = described.roughness.unwrap_or(look.roughness);
-        look.metallic = described.metallic.unwrap_or(look.metallic);
-        // A texture alone shines as it is.
-        let is_given = described.emissive != [0.0; 3] || glow.is_none();
-        look.emissive = if is_given { described.emissive } else { [1.0; 3] };
-        look.alpha = if is_transparent { Alpha::Blend } else { Alpha::Opaque };
-        look.maps[Slot::Emissive as usize] = glow.map(|texture| Map { texture, uv: MapUv::Own, sampling });
-        let material = Material { texture: image, sampling, look, ..Material::plain(&shown, base_color) };
-        (material, place.filter(|place| *place != [Vec2::ONE, Vec2::ZERO]))
+        let base_color = [r, g, b, if is_transparent { alpha } else { 1.0 }];
+        (Material { sampling, look, ..Material::plain(&shown, base_color) }, textures)
     }
 
-    fn texture(&mut self, MtlTexture { file: name, .. }: &MtlTexture, material: &str) -> Option<Arc<Texture>> {
-        if let Some(texture) = self.textures.get(name) {
-            return texture.clone();
+    /// Reads all textures, and scales the largest down until they fit. `freed` is the memory that is freed before the mesh is
+    /// finished, in bytes.
+    ///
+    /// # Errors
+    /// [`ReadError::Cancelled`].
+    pub(super) fn read_textures(
+        &mut self,
+        faces: &mut FaceBuilder,
+        freed: u64,
+        progress: &Progress,
+    ) -> Result<(), ReadError> {
+        let textures = std::mem::take(&mut self.textures);
+        let size = |file: &TextureFile| {
+            self.borrowing(|| self.beside(&file.name).ok().and_then(|bytes| texture_size(&bytes))).unwrap_or_default()
+        };
+        let sizes: Vec<_> = textures.iter().map(size).collect();
+        let room = TextureRoom::of(self.budget, faces.bytes_to_finish().saturating_sub(freed));
+        for ((file, size), Scaling { halvings, reason }) in textures.iter().zip(&sizes).zip(room.scalings(&sizes)) {
+            progress.check()?;
+            let decode = |bytes: Vec<u8>| decode_halved(&bytes, halvings, MipFilter::Colors, self.budget);
+            let texture = self.borrowing(|| self.beside(&file.name).and_then(decode)).map(Arc::new);
+            let said = match &texture {
+                Err(reason) => Some(format!("is left out: {reason}")),
+                Ok(texture) => {
+                    let [[a, b], [c, d]] = [*size, texture.size];
+                    (halvings > 0).then(|| format!("is scaled down from {a} x {b} px to {c} x {d} px: {reason}"))
+                }
+            };
+            let (image, first) = (shown(file.name.as_bytes()), &file.first);
+            self.problems.extend(said.map(|said| format!("the texture {image} of material \"{first}\" {said}.")));
+            if let Ok(texture) = texture {
+                file.users.iter().for_each(|&(material, kind)| kind.give(faces.material_mut(material), &texture));
+            }
         }
+        Ok(())
+    }
+
+    /// Gives back what `read` borrows.
+    fn borrowing<T>(&self, read: impl FnOnce() -> T) -> T {
         let borrowed = self.budget.borrowed();
-        let texture = self.beside(name).and_then(|bytes| decode_texture(&bytes, self.budget)).map(Arc::new);
+        let result = read();
         self.budget.give_back_to(borrowed);
-        let texture = texture.map_err(|reason| {
-            let image = shown(name.as_bytes());
-            self.problems.push(format!("the texture {image} of material \"{material}\" is left out: {reason}."));
-        });
-        self.textures.insert(name.to_owned(), texture.clone().ok());
-        texture.ok()
+        result
     }
 
     /// Returns what is missing or broken, one sentence each.

@@ -10,6 +10,7 @@ use crate::gpu::{
     GRID_WIDTH, MOST_WORKGROUPS, NEXT_EDGES, NEXT_PATCHES, SEARCH_AGAIN, SEARCH_ASKED, SEARCH_COUNTERS, SEARCH_INSIDE,
     WORKGROUP,
 };
+use crate::mesh::mipmap::MipFilter;
 use crate::mesh::{EdgeKind, MAX_LEVELS, MAX_MAPS, MOST_LIGHTS, Slot};
 use crate::render::blur_levels::ENVIRONMENT_LEVELS;
 use crate::render::camera::FIELD_OF_VIEW;
@@ -21,6 +22,7 @@ use crate::render::layout::{
 };
 use crate::render::look::Look;
 use crate::render::matcap::MATCAP_REACH;
+use crate::render::mipmap_pass::ALPHAS;
 use crate::render::pipelines::LayerDraw;
 use crate::render::reflectance::{COAT_F0, LEAST_ALPHA};
 use crate::render::scale::Scale;
@@ -122,6 +124,11 @@ fn table() -> Vec<(&'static str, Expected)> {
         ("LEAST_ALPHA", number(LEAST_ALPHA)),
         ("LEAST_SHEEN_ALPHA", number(LEAST_SHEEN_ALPHA)),
         ("LEAST_SEEN", number(LEAST_SEEN)),
+        ("ALPHAS", number(ALPHAS)),
+        ("MIP_COLORS", number(MipFilter::Colors as u32)),
+        ("MIP_ALPHA_WEIGHTED", number(MipFilter::AlphaWeighted as u32)),
+        ("MIP_NUMBERS", number(MipFilter::Numbers as u32)),
+        ("MIP_NORMALS", number(MipFilter::Normals as u32)),
         ("SCALE_STOPS", number(Scale::STOPS as u32)),
         ("FOUND_EMITTED", number(FOUND_EMITTED)),
         ("OVERLAY_WIREFRAME", overlay(Overlays { wireframe: true, ..none })),

@@ -11,6 +11,7 @@ use crate::gpu::layout::{
 use crate::render::coverage::Sieve;
 use crate::render::environment::Surroundings;
 use crate::render::layout::{Frame, MapPlace, Material, Pick};
+use crate::render::mipmap_pass::MipParams;
 use crate::render::prefilter_pass::PrefilterParams;
 use crate::render::punctual::PunctualLight;
 use crate::render::reflectance::LookAt;
@@ -127,6 +128,18 @@ fn shared_structs_have_the_same_layout() {
         sheen_albedo,
     });
     same!(PrefilterParams { roughness, sample_count, size, source_size });
+    same!(MipParams {
+        source_size,
+        target_size,
+        source_start,
+        source_stride,
+        target_start,
+        target_stride,
+        level,
+        mip_filter,
+        least_alpha,
+        wanted,
+    });
     same!(CoverageView { clip_from_object, slack, viewport, sample_count, fronts_only, snap });
     same!(Material {
         base_color,

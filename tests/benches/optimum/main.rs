@@ -80,6 +80,7 @@ fn cameras(mesh: &Mesh, count: usize) -> Vec<Camera> {
             elevation: 80.0 * part(&mut random),
             distance: near * bounds.radius(),
             orthographic: index % 4 == 3,
+            ..Camera::default()
         }
     };
     std::iter::once(framing).chain((0..count).map(other)).collect()

@@ -1,0 +1,70 @@
+use image::{DynamicImage, ImageBuffer, Luma, LumaA, Rgb, Rgba};
+
+use super::*;
+use crate::mesh::mipmap::tests::noise;
+
+fn encoded(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    image.write_to(&mut bytes, format).expect("in memory");
+    bytes.into_inner()
+}
+
+fn of(texture: &Texture) -> DynamicImage {
+    let [width, height] = texture.size;
+    image::RgbaImage::from_raw(width, height, texture.rgba.clone()).expect("4 bytes a px").into()
+}
+
+#[test]
+fn rows_of_every_kind_become_what_the_whole_image_becomes() {
+    let number = |x: u32, y: u32, k: u32| (x * 7919 + y * 104_729 + k * 31 + 12_345) as u16;
+    let images: [DynamicImage; 6] = [
+        of(&noise([9, 5])),
+        ImageBuffer::from_fn(9, 5, |x, y| Rgb([0, 1, 2].map(|k| number(x, y, k) as u8))).into(),
+        ImageBuffer::from_fn(9, 5, |x, y| Luma([number(x, y, 0)])).into(),
+        ImageBuffer::from_fn(9, 5, |x, y| LumaA([0, 1].map(|k| number(x, y, k) as u8))).into(),
+        ImageBuffer::from_fn(9, 5, |x, y| Rgba([0, 1, 2, 3].map(|k| number(x, y, k)))).into(),
+        ImageBuffer::from_fn(9, 5, |x, y| Luma([number(x, y, 0) as u8])).into(),
+    ];
+    for image in images {
+        let bytes = encoded(&image, ImageFormat::Png);
+        let whole = decode_texture(&bytes, &Budget::unlimited()).expect("an image");
+        let rows = decode_rows(&bytes, 0, MipFilter::Colors, &Budget::unlimited()).expect("an image");
+        assert_eq!((rows.size, rows.rgba), (whole.size, whole.rgba), "{:?}", image.color());
+    }
+}
+
+#[test]
+fn images_are_halved_as_levels_are_made() {
+    let source = noise([37, 22]);
+    for format in [ImageFormat::Png, ImageFormat::WebP] {
+        let bytes = encoded(&of(&source), format);
+        assert_eq!(texture_size(&bytes), Some([37, 22]));
+        for halvings in 0..7 {
+            let budget = Budget::new(0, &crate::files::Limits::default());
+            let left = budget.left();
+            let made = decode_halved(&bytes, halvings, MipFilter::AlphaWeighted, &budget).expect("an image");
+            let expected = (0..halvings).fold(source.clone(), |texture, _| halved(&texture, MipFilter::AlphaWeighted));
+            assert_eq!((made.size, &made.rgba), (expected.size, &expected.rgba), "{format:?} {halvings}");
+            assert_eq!(left - budget.left(), decoded_bytes(made.size), "what is kept is held");
+        }
+    }
+}
+
+#[test]
+fn a_png_is_read_in_rows_where_the_whole_image_does_not_fit() {
+    let image: DynamicImage = image::RgbImage::from_pixel(2000, 1000, Rgb([9, 8, 7])).into();
+    let limits = crate::files::Limits { memory: 10 << 20, ..Default::default() };
+    // 8 MB of pixels, and 6 MB of the decoder's if it is decoded whole.
+    let decoded = decode_texture(&encoded(&image, ImageFormat::Png), &Budget::new(0, &limits));
+    assert_eq!(decoded.map(|texture| texture.size), Ok([2000, 1000]));
+    let refused = decode_texture(&encoded(&image, ImageFormat::Jpeg), &Budget::new(0, &limits));
+    assert!(refused.is_err_and(|said| said.contains("2000 x 1000 px would take at least 14 MiB")));
+}
+
+#[test]
+fn files_that_are_no_images_have_no_size() {
+    assert_eq!(texture_size(b"no image"), None);
+    assert_eq!(texture_size(b""), None);
+    let wide = encoded(&DynamicImage::new_luma8(MAX_SIZE + 1, 1), ImageFormat::Png);
+    assert_eq!(texture_size(&wide), None);
+}

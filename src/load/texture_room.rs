@@ -1,0 +1,145 @@
+//! How small a mesh's textures must be, so that all of them fit the memory that they may take.
+
+use std::collections::BinaryHeap;
+
+use super::memory_budget::Budget;
+use crate::mesh::MemoryRefused;
+use crate::mesh::mipmap::{level_count, level_size};
+
+/// The greatest width and height of a texture that is shown, in px: every adapter has textures of that size (WebGPU, default limits).
+pub(super) const MOST_SIDE: u32 = 8192;
+
+/// The memory that textures may take, in bytes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TextureRoom {
+    /// Decoded.
+    host: u64,
+    /// On the graphics card, with all mip levels.
+    device: u64,
+    /// What is in use already, or will be.
+    used: u64,
+}
+
+/// How often a texture is halved, and why; the reason is empty if it isn't.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Scaling {
+    pub halvings: u32,
+    pub reason: String,
+}
+
+impl TextureRoom {
+    /// The room in a budget of which `reserved` bytes are left for the rest of the load. On the graphics card, textures may take as
+    /// much as the whole load.
+    pub(super) fn of(budget: &Budget, reserved: u64) -> Self {
+        let host = budget.left().saturating_sub(reserved);
+        let device = budget.allowed();
+        Self { host, device, used: device.saturating_sub(host) }
+    }
+
+    /// Halves the largest of these sizes, in px, until all textures fit, the first of several of one size first.
+    pub(super) fn scalings(&self, sizes: &[[u32; 2]]) -> Vec<Scaling> {
+        let mut halvings: Vec<u32> = sizes.iter().map(|size| within_most_side(*size)).collect();
+        let too_wide = halvings.clone();
+        let [mut host, mut device] = [0_u64; 2];
+        for (size, halvings) in sizes.iter().zip(&halvings) {
+            host += decoded_bytes(level_size(*size, *halvings));
+            device += device_bytes(level_size(*size, *halvings));
+        }
+        let reason = self.refused(host, device);
+        let largest =
+            |(index, size): (usize, &[u32; 2])| (pixels(level_size(*size, too_wide[index])), usize::MAX - index);
+        let mut largest: BinaryHeap<_> = sizes.iter().enumerate().map(largest).collect();
+        while host > self.host || device > self.device {
+            let Some((_, inverse)) = largest.pop() else { break };
+            let index = usize::MAX - inverse;
+            let before = level_size(sizes[index], halvings[index]);
+            let after = level_size(before, 1);
+            if after == before {
+                continue;
+            }
+            halvings[index] += 1;
+            host = host - decoded_bytes(before) + decoded_bytes(after);
+            device = device - device_bytes(before) + device_bytes(after);
+            largest.push((pixels(after), inverse));
+        }
+        let scaling = |(halvings, too_wide): (u32, u32)| match (halvings, &reason) {
+            (0, _) => Scaling::default(),
+            (_, Some(reason)) if halvings > too_wide => Scaling { halvings, reason: reason.clone() },
+            _ => Scaling { halvings, reason: format!("at most {MOST_SIDE} px a side are shown") },
+        };
+        halvings.into_iter().zip(too_wide).map(scaling).collect()
+    }
+
+    /// Why textures that take so many bytes don't fit, as a clause; none if they do.
+    fn refused(&self, host: u64, device: u64) -> Option<String> {
+        let allowed = self.device;
+        if host > self.host {
+            let refused = MemoryRefused { needed: self.used.saturating_add(host), allowed };
+            return Some(format!("with all textures, the load {refused}"));
+        }
+        let refused = MemoryRefused { needed: device, allowed };
+        (device > allowed).then(|| format!("on the graphics card, all textures with their mip levels {refused}"))
+    }
+}
+
+/// How often a texture of a size in px is halved, so that no side has more than [`MOST_SIDE`] px.
+fn within_most_side(size: [u32; 2]) -> u32 {
+    let fits = |halvings: &u32| level_size(size, *halvings).iter().all(|side| *side <= MOST_SIDE);
+    (0..u32::BITS).find(fits).unwrap_or(0)
+}
+
+fn pixels([width, height]: [u32; 2]) -> u64 {
+    u64::from(width) * u64::from(height)
+}
+
+/// The size of a decoded texture, in bytes.
+pub(super) fn decoded_bytes(size: [u32; 2]) -> u64 {
+    4 * pixels(size)
+}
+
+/// The size of a texture with all its mip levels, in bytes.
+fn device_bytes(size: [u32; 2]) -> u64 {
+    (0..level_count(size)).map(|level| decoded_bytes(level_size(size, level))).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn halvings(room: TextureRoom, sizes: &[[u32; 2]]) -> Vec<u32> {
+        room.scalings(sizes).into_iter().map(|scaling| scaling.halvings).collect()
+    }
+
+    const MIB: u64 = 1 << 20;
+
+    #[test]
+    fn the_largest_are_halved_first() {
+        let sizes = [[256, 256], [1024, 1024], [512, 512], [1024, 1024]];
+        let room = |host, device| TextureRoom { host, device, used: 7 * MIB };
+        assert_eq!(halvings(room(100 * MIB, 100 * MIB), &sizes), [0; 4]);
+        // 9.25 MiB decoded, and a third more on the graphics card.
+        assert_eq!(halvings(room(9 * MIB, 100 * MIB), &sizes), [0, 1, 0, 0]);
+        assert_eq!(halvings(room(100 * MIB, 12 * MIB), &sizes), [0, 1, 0, 0]);
+        assert_eq!(halvings(room(MIB, 100 * MIB), &sizes), [0, 2, 1, 2]);
+        assert_eq!(halvings(room(0, 0), &[[1, 1], [3, 9]]), [0, 3]);
+    }
+
+    #[test]
+    fn reasons_name_both_numbers() {
+        let said =
+            |host, device| TextureRoom { host, device, used: 7 * MIB }.scalings(&[[2048, 2048]]).remove(0).reason;
+        let host = said(10 * MIB, 17 * MIB);
+        assert!(host.contains("would take at least 23 MiB") && host.contains("only 17 MiB"), "{host}");
+        let device = said(100 * MIB, 17 * MIB);
+        assert!(device.contains("mip levels would take at least 22 MiB") && device.contains("only 17 MiB"), "{device}");
+        assert_eq!(said(100 * MIB, 100 * MIB), "");
+    }
+
+    #[test]
+    fn no_side_has_more_than_the_most() {
+        let room = TextureRoom { host: u64::MAX, device: u64::MAX, used: 0 };
+        let scalings = room.scalings(&[[16384, 3], [8192, 8192], [8193, 1], [16384, 16384]]);
+        assert_eq!(scalings.iter().map(|scaling| scaling.halvings).collect::<Vec<_>>(), [1, 0, 1, 1]);
+        assert_eq!(scalings[0].reason, "at most 8192 px a side are shown");
+    }
+}

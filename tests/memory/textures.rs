@@ -1,0 +1,95 @@
+//! Textures: those that are too large are scaled down to the memory that they may take, and the model is shown.
+
+use std::io::Cursor;
+use std::sync::PoisonError;
+
+use image::{GrayImage, ImageFormat, Luma};
+use pnaen::internals::Preparation;
+
+use super::bounded::loaded;
+use super::{ALONE, temporary, textures, with_image};
+
+const MIB: usize = 1 << 20;
+
+/// Loads a file with so much memory beyond four times its size, and checks that it takes no more. Returns the sizes of its
+/// textures, and the warnings about them.
+fn sizes(name: &str, bytes: &[u8], memory: usize) -> (Vec<Option<[u32; 2]>>, Vec<String>) {
+    let file = temporary(name, bytes);
+    let (result, took) = loaded(&file, &Preparation::default(), memory as u64);
+    let allowed = memory + 4 * bytes.len() + MIB;
+    println!("{name}: {took} of {allowed} bytes");
+    assert!(took <= allowed, "{name}: {took} of {allowed} bytes");
+    let loaded = result.expect("a model whatever its textures are");
+    let texture = |material: &pnaen::mesh::Material| material.texture.as_ref().map(|texture| texture.size);
+    let of_textures = |warning: &String| warning.starts_with("the texture of ");
+    let warnings = loaded.warnings.iter().filter(|warning| of_textures(warning)).cloned().collect();
+    (loaded.read.materials.iter().map(texture).collect(), warnings)
+}
+
+fn encoded(size: [u32; 2], format: ImageFormat) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    let image = GrayImage::from_fn(size[0], size[1], |x, _| Luma([(x / 64) as u8]));
+    image.write_to(&mut bytes, format).expect("in memory");
+    bytes.into_inner()
+}
+
+#[test]
+fn a_texture_that_is_too_wide_is_scaled_down_row_by_row() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let bytes = with_image(&encoded([16384, 256], ImageFormat::Png));
+    let (found, warnings) = sizes("wide.glb", &bytes, 64 * MIB);
+    assert_eq!(found, [Some([8192, 128])]);
+    let said = "is scaled down from 16384 x 256 px to 8192 x 128 px: at most 8192 px a side are shown.";
+    assert!(warnings.len() == 1 && warnings[0].ends_with(said), "{warnings:?}");
+    // Decoded it has 16 MiB.
+    let (found, warnings) = sizes("wide-in-little.glb", &bytes, 3 * MIB);
+    assert_eq!(found, [Some([4096, 64])]);
+    assert!(
+        warnings[0].contains("to 4096 x 64 px: ") && warnings[0].contains("(--max-memory allows more)"),
+        "{warnings:?}"
+    );
+}
+
+#[test]
+fn an_image_that_can_not_be_decoded_in_the_memory_is_left_out() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let (found, warnings) = sizes("jpeg.glb", &with_image(&encoded([4096, 1024], ImageFormat::Jpeg)), 3 * MIB);
+    assert_eq!(found, [None]);
+    assert!(
+        warnings.len() == 1 && warnings[0].contains("is left out: its image of 4096 x 1024 px would take"),
+        "{warnings:?}"
+    );
+    // The header of a PNG image of 16384 x 16384 px, with next to no data.
+    let mut header = encoded([1, 1], ImageFormat::Png);
+    header[16..24].copy_from_slice(&[0, 0, 0x40, 0, 0, 0, 0x40, 0]);
+    let crc = crc32(&header[12..29]);
+    header[29..33].copy_from_slice(&crc.to_be_bytes());
+    let (found, warnings) = sizes("header.glb", &with_image(&header), 20 * MIB);
+    assert_eq!(found, [None]);
+    assert!(warnings.len() == 1 && warnings[0].contains("is left out: its image can't be decoded"), "{warnings:?}");
+}
+
+/// The checksum of a chunk of a PNG file (PNG specification, annex D).
+fn crc32(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(u32::MAX, |crc, &byte| {
+        (0..8).fold(crc ^ u32::from(byte), |crc, _| (crc >> 1) ^ (0xedb8_8320 * (crc & 1)))
+    })
+}
+
+#[test]
+fn the_largest_textures_are_scaled_down_first_and_one_warning_names_each() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    // Each takes 4 MiB decoded, and 5.3 on the graphics card.
+    let bytes = textures(4, 1024);
+    let (found, warnings) = sizes("four.glb", &bytes, 15 * MIB);
+    assert_eq!(found.iter().flatten().map(|size| size[0]).collect::<Vec<_>>(), [512, 512, 1024, 1024]);
+    assert_eq!(warnings.len(), 2, "{warnings:?}");
+    for (index, warning) in warnings.iter().enumerate() {
+        let start = format!(
+            "the texture of material \"material {index}\" is scaled down from 1024 x 1024 px to 512 x 512 px: "
+        );
+        assert!(warning.starts_with(&start), "{warning}");
+    }
+    let (found, warnings) = sizes("four-that-fit.glb", &bytes, 40 * MIB);
+    assert_eq!((found, warnings.len()), (vec![Some([1024; 2]); 4], 0));
+}
