@@ -22,6 +22,7 @@ mod marks;
 pub(crate) mod matcap;
 mod materials;
 mod needs;
+mod outlines_picture;
 mod pick;
 mod pipelines;
 pub(crate) mod prefilter;
@@ -34,6 +35,7 @@ mod scale;
 pub(crate) mod scene;
 #[cfg(test)]
 mod shader_tests;
+mod silhouette;
 mod steps;
 pub(crate) mod studio;
 pub(crate) mod target;
@@ -46,17 +48,19 @@ pub(crate) use ground::{Ground, axis_lines};
 pub(crate) use leaks::{Leak, LeakCount, LeakCounter, leaks_in};
 pub(crate) use legend::{BARYCENTRIC_TITLE, COLUMNS, Distances, Shown, has_legend, legend_of, tick_text};
 pub(crate) use marks::{crack_lines, crack_lines_in, lod_camera_lines, patch_lines, t_junction_lines, worst_lines};
+pub(crate) use outlines_picture::{lay_over, outlines_picture};
 pub(crate) use pick::{Picked, PickedTriangle, Picker, Picking, Pixel};
 pub(crate) use renderer::Renderer;
 pub(crate) use scale::{DENSITY_SCALE, EXCESS_SCALE, FACTOR_SCALE, SIZE_SCALE, Scale, curvature_scale};
 pub(crate) use scene::{LineSegment, Scene};
+pub(crate) use silhouette::{SilhouetteCoverage, SilhouetteDrawer, padded_clip};
 pub(crate) use target::Target;
 #[cfg(test)]
 pub(crate) use target::samples;
 
 /// The shader files with entry points for drawing and picking, and the light that draws read. Each makes one shader module.
 #[cfg(test)]
-static MODULES: [&crate::gpu::WgslFile; 13] = [
+static MODULES: [&crate::gpu::WgslFile; 14] = [
     &coverage::PASS_COVERAGE,
     &environment::ENVIRONMENT,
     &leaks::DRAW_LEAKS,
@@ -70,4 +74,5 @@ static MODULES: [&crate::gpu::WgslFile; 13] = [
     &pipelines::LAYERS_MULTISAMPLED,
     &pipelines::LAYERS_SINGLE,
     &prefilter_pass::PASS_PREFILTER,
+    &silhouette::DRAW_SILHOUETTE,
 ];

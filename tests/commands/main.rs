@@ -19,6 +19,7 @@ mod manual;
 mod moving;
 mod picture_file;
 mod render;
+mod silhouette;
 mod stability;
 mod techniques;
 mod tessellate;

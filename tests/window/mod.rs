@@ -15,6 +15,7 @@ mod loading;
 mod lost;
 mod picking;
 mod saving;
+mod silhouette;
 mod spending;
 mod tasks;
 mod techniques;
