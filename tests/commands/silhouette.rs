@@ -7,14 +7,14 @@ use crate::{Folder, number, output, stats};
 #[test]
 fn stats_say_how_far_the_outline_is_from_the_sources_and_the_surfaces() {
     let of = |factor: &str| {
-        let options = ["--factor", factor, "--partitioning", "integer", "--size", "400x300"];
+        let options = ["--factor", factor, "--partitioning", "integer"];
         stats(&[&["shape:icosahedron", "--overlay", "silhouette"][..], &options].concat())
     };
     let coarse = of("1");
     let bulge = number(&coarse, "/silhouette/from_surface_px");
     assert!(number(&coarse, "/silhouette/from_source_px") == 0.0 && bulge > 5.0, "{coarse}");
     let at = ["/silhouette/from_surface_at/0", "/silhouette/from_surface_at/1"].map(|place| number(&coarse, place));
-    assert!((0.0..400.0).contains(&at[0]) && (0.0..300.0).contains(&at[1]), "{at:?}");
+    assert!((0.0..160.0).contains(&at[0]) && (0.0..120.0).contains(&at[1]), "{at:?}");
     assert_eq!(coarse["silhouette"]["samples_per_px"], 2);
     let fine = of("32");
     assert!((number(&fine, "/silhouette/from_source_px") - bulge).abs() <= 1.0, "{fine}");
