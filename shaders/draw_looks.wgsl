@@ -11,6 +11,8 @@ const MATCAP_REACH: f32 = 0.98;
 
 // A matte warm grey, light enough that shadows show.
 const CLAY_COLOR: vec3<f32> = vec3<f32>(0.82, 0.73, 0.64);
+// How bright clay is under outlines, which must stand out from it.
+const CLAY_UNDER_OUTLINES: f32 = 0.1;
 
 // Stripes over half a turn of the normal.
 const ZEBRA_STRIPES: f32 = 24.0;

@@ -513,6 +513,9 @@ fn bare_color(
     if (frame.overlays & OVERLAY_CLAY) != 0u {
         color = CLAY_COLOR * brightness(lights, normal);
     }
+    if (frame.overlays & OVERLAY_SILHOUETTE) != 0u {
+        color = CLAY_UNDER_OUTLINES * CLAY_COLOR * brightness(lights, normal);
+    }
     if meant.a > 0.0 {
         color = shade_flat(meant.rgb, normal, to_eye);
     }

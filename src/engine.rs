@@ -2,6 +2,7 @@
 //! without a window: upload it, tessellate it, draw it, read it back and time it.
 
 pub(crate) mod measurements;
+pub(crate) mod silhouette;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -18,11 +19,12 @@ use crate::load::{Budget, HeightSource, LoadError, LoadedMesh, Source, crease_ba
 use crate::measure::{AskedFactors, EmittedChunk, Visitor};
 use crate::mesh::{BuildError, CreaseBand, Mesh, Moment, Topology, with_crease_band};
 use crate::progress::{Progress, Stage};
-use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, Target};
+use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, SilhouetteDrawer, Target};
 use crate::settings::{Settings, SplitSide};
 use crate::tessellate::{Inputs, Lod, LodView, Partitioning, PatchFactors, PosedMesh, Tessellated, Tessellation};
 
 pub(crate) use measurements::{MeasurementResults, Measurements};
+pub(crate) use silhouette::{SilhouetteDrawing, SilhouetteView};
 
 /// A mesh with its topology, and how long both took.
 #[derive(Clone, Debug)]
@@ -161,6 +163,7 @@ pub struct Engine {
     pub renderer: Arc<Renderer>,
     pub picker: Arc<Picker>,
     leaks: Arc<LeakCounter>,
+    silhouettes: Arc<SilhouetteDrawer>,
     /// See [`Self::chunks_read`].
     chunks_read: Arc<AtomicU64>,
 }
@@ -170,7 +173,8 @@ impl Engine {
         let pipelines = Arc::new(ComputePipelines::new());
         let renderer = Arc::new(Renderer::new(&gpu));
         let (picker, leaks) = (Arc::new(Picker::new()), Arc::new(LeakCounter::new()));
-        Self { gpu, pipelines, renderer, picker, leaks, chunks_read: Arc::default() }
+        let silhouettes = Arc::new(SilhouetteDrawer::new());
+        Self { gpu, pipelines, renderer, picker, leaks, silhouettes, chunks_read: Arc::default() }
     }
 
     /// Makes an engine on the machine's best adapter, without a window.

@@ -153,7 +153,10 @@ impl App {
     /// # Errors
     /// The device was lost.
     pub fn read_picture(&self) -> Result<Option<RgbaImage>, GpuError> {
-        self.viewport.picture.target.as_ref().map(|(target, _)| target.read(&self.engine.gpu)).transpose()
+        let read = self.viewport.picture.target.as_ref().map(|(target, _)| target.read(&self.engine.gpu));
+        let mut picture = read.transpose()?;
+        picture.iter_mut().for_each(|picture| self.lay_outlines_over(picture));
+        Ok(picture)
     }
 
     /// How many pictures have been drawn.
@@ -190,6 +193,7 @@ impl App {
             || self.jobs.matcap.is_some();
         let measures = self.jobs.measure.is_busy()
             || self.jobs.leaks.is_busy()
+            || self.jobs.silhouette.is_busy()
             || self.jobs.deviation.is_busy()
             || self.viewport.left.is_busy();
         loads

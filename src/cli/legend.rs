@@ -56,6 +56,11 @@ pub(super) fn draw_legend(
             let rows = colors.len().div_ceil(COLUMNS);
             draw_plate(picture, [BAR[0], 18.0 + ROW * rows as f64], |pen| named_colors(pen, title, colors))
         }
+        Shown::Rows(rows) => draw_plate(picture, [BAR[0], 18.0 + ROW * rows.len() as f64], |pen| {
+            pen.text(title, [0.0, 0.0], LEFT_TOP)?;
+            let middles = (0..).map(|row| 18.0 + ROW * (f64::from(row) + 0.5));
+            rows.iter().zip(middles).try_for_each(|((color, text), middle)| named(pen, [0.0, middle], *color, text))
+        }),
     }
 }
 

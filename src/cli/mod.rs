@@ -23,6 +23,7 @@ mod reference;
 mod render;
 mod shot;
 mod shot_options;
+mod silhouette;
 mod stability;
 mod stats;
 mod tessellate;

@@ -8,18 +8,19 @@ use image::RgbaImage;
 
 use super::factors_option::FactorsFile;
 use super::legend::draw_legend;
+use super::silhouette::SilhouetteStats;
 use super::stats::{AnimationStats, LeftStats, Stats};
 use super::truth::{AccuracyStats, DeviationStats, ReferenceSurface};
 use super::{CliError, to_json, write_text};
-use crate::engine::{Engine, Loaded, MeasurementResults, Measurements, Runs};
+use crate::engine::{Engine, Loaded, MeasurementResults, Measurements, Runs, SilhouetteView};
 use crate::gpu::{GpuError, Recorder, Timing};
 use crate::load::panorama::Panorama;
-use crate::measure::{AccuracyOptions, DeviationField, patch_edges};
+use crate::measure::{AccuracyOptions, DeviationField, Silhouette, patch_edges};
 use crate::mesh::{Moment, Texture, t_junctions};
 use crate::progress::Progress;
 use crate::render::{
     Camera, DEVIATION_PX_SCALE, Distances, LineSegment, Renderer, Scale, Scene, Target, axis_lines, crack_lines,
-    deviation_scale, lod_camera_lines, patch_lines, t_junction_lines, worst_lines,
+    deviation_scale, lay_over, lod_camera_lines, outlines_picture, patch_lines, t_junction_lines, worst_lines,
 };
 use crate::settings::{Colors, DeviationUnit, Settings, SplitSide};
 use crate::tessellate::{HullFactors, Inputs, LodView};
@@ -88,6 +89,8 @@ pub(crate) struct Shot {
     results: ByHalf<MeasurementResults>,
     /// The colour scale of the deviation overlay.
     scale: Scale,
+    /// The outlines, if they are shown.
+    silhouette: Option<Silhouette>,
 }
 
 impl Subject {
@@ -128,7 +131,7 @@ impl Shot {
         }
         let (posed, scale) = (subject.loaded.posed(subject.moment), deviation_scale(0.0, scene.ulp()));
         let (lod_view, results) = (view.lod_view(&scene), Default::default());
-        let mut shot = Self { subject, posed, engine, scene, target, view, lod_view, results, scale };
+        let mut shot = Self { subject, posed, engine, scene, target, view, lod_view, results, scale, silhouette: None };
         shot.count()?;
         Ok(shot)
     }
@@ -173,6 +176,9 @@ impl Shot {
         self.mark(progress)?;
         self.draw(&progress.part(MEASURING, 1.0))?;
         let mut picture = self.target.read(&self.engine.gpu)?;
+        if let Some(silhouette) = &self.silhouette {
+            lay_over(&mut picture, &outlines_picture(silhouette));
+        }
         if self.view.legend {
             draw_legend(&mut picture, &self.subject.settings, self.scene.bounds.radius(), &self.distances())?;
         }
@@ -204,7 +210,8 @@ impl Shot {
         };
         let mut fields = self.results.iter().flatten().filter_map(|results| results.deviation.as_ref());
         let is_partial = fields.any(|field| field.left_out > 0);
-        Distances { unit, scale: Some(scale), is_partial, measured: None }
+        let outlines = self.silhouette.as_ref().map(|silhouette| silhouette.distances);
+        Distances { unit, scale: Some(scale), is_partial, measured: None, outlines }
     }
 
     /// What a half is tessellated with, if there is one.
@@ -240,6 +247,18 @@ impl Shot {
             progress.check()?;
         }
         self.show_deviation();
+        self.compare_outlines(progress)
+    }
+
+    /// Compares outlines, if they are shown: those of the right half, in all of the picture.
+    fn compare_outlines(&mut self, progress: &Progress) -> Result<(), CliError> {
+        if self.subject.settings.overlays.colors == Colors::Silhouette {
+            let seen = self.view.camera.lod_view(self.target.viewport(), &self.scene.bounds);
+            let view = SilhouetteView { size: self.target.size, seen, lod: self.lod_view };
+            let tessellation = &self.subject.settings.tessellation;
+            self.silhouette = self.engine.silhouette(&self.scene, tessellation, &view, progress)?;
+            progress.check()?;
+        }
         Ok(())
     }
 
@@ -347,6 +366,7 @@ impl Shot {
         stats.factors_capped = factors_capped;
         stats.accuracy = accuracy;
         stats.deviation = self.deviation(SplitSide::Right);
+        stats.silhouette = self.silhouette.as_ref().map(SilhouetteStats::new);
         stats.left = self.left_stats();
         stats.animation = moment.zip(self.subject.loaded.mesh.rig.as_ref()).map(|(Moment { clip, time }, rig)| {
             let name = rig.clip_name(clip);

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::factors_option::FactorsFile;
+use super::silhouette::SilhouetteStats;
 use super::truth::{AccuracyStats, DeviationStats};
 use crate::engine::{Engine, Loaded};
 use crate::gpu::PassTime;
@@ -66,6 +67,8 @@ pub(super) struct Stats {
     pub accuracy: Option<AccuracyStats>,
     /// What the deviation overlay shows, if it is on.
     pub deviation: Option<DeviationStats>,
+    /// How far the outline is from others, if the silhouette is shown.
+    pub silhouette: Option<SilhouetteStats>,
     /// The left half of a split view, if it has another surface; all else here is about the right half.
     pub left: Option<LeftStats>,
     /// None at rest.
@@ -257,6 +260,7 @@ impl Stats {
             factors_file: None,
             accuracy: None,
             deviation: None,
+            silhouette: None,
             left: None,
             animation: None,
             ms,

@@ -69,6 +69,7 @@ fn overlay_key(overlay: Overlay) -> KeyboardShortcut {
         Overlay::Curvature => return shift(Key::K),
         Overlay::UvChecker => return shift(Key::U),
         Overlay::TexelDensity => return shift(Key::T),
+        Overlay::Silhouette => return shift(Key::O),
         Overlay::Wireframe => Key::W,
         Overlay::Patches => Key::P,
         Overlay::Barycentric => Key::B,

@@ -125,6 +125,7 @@ pub(crate) fn overlay_bits(overlays: &Overlays) -> u32 {
         | u32::from(overlays.colors == Colors::Zebra) << 12
         | u32::from(overlays.colors == Colors::ShadingNormals) << 13
         | u32::from(overlays.colors == Colors::UvChecker) << 14
+        | u32::from(overlays.colors == Colors::Silhouette) << 15
 }
 
 /// sRGB colour of an edge kind, for legends; `edge_color` in `shaders/draw_surface.wgsl` has the same in linear light.

@@ -1,7 +1,9 @@
 //! What a legend says about the surface's colours. The window paints it over the viewport, and commands into their pictures.
 
 use super::layout::{CHECKER_LIGHT, CHECKER_LINE, CHECKER_U, CHECKER_V, TEXELS_WITHOUT_IMAGE, srgb};
+use super::outlines_picture::SILHOUETTE_COLORS;
 use super::{DENSITY_SCALE, DEVIATION_PX_SCALE, EXCESS_SCALE, FACTOR_SCALE, SIZE_SCALE, Scale, curvature_scale};
+use crate::measure::{OutlineDistance, OutlineDistances, OutlineOf};
 use crate::settings::{Colors, DeviationUnit, Settings};
 
 /// The contents of a legend.
@@ -28,6 +30,8 @@ pub(crate) enum Shown {
     },
     /// sRGB colours under the title, in rows of [`COLUMNS`], with their names.
     Colors(Vec<([u8; 3], &'static str)>),
+    /// sRGB colours under the title, each in a row with what is said of it.
+    Rows(Vec<([u8; 3], String)>),
 }
 
 /// How many colours stand in a row.
@@ -36,7 +40,7 @@ pub(crate) const COLUMNS: usize = 3;
 /// The title of the legend of barycentric colours.
 pub(crate) const BARYCENTRIC_TITLE: &str = "Barycentric, weights in the patch";
 
-/// What is known of the distances to the reference surface.
+/// What is known of the distances to the reference surface, and between outlines.
 pub(crate) struct Distances {
     pub unit: DeviationUnit,
     /// None until something is measured.
@@ -45,6 +49,8 @@ pub(crate) struct Distances {
     pub is_partial: bool,
     /// The progress of the measurement, 0 to 1; none if none is under way.
     pub measured: Option<f32>,
+    /// How far the triangles' outline is from the others; none until that is known.
+    pub outlines: Option<OutlineDistances>,
 }
 
 /// Whether colours have a legend.
@@ -129,6 +135,7 @@ pub(crate) fn legend_of(settings: &Settings, radius: f32, distances: &Distances)
             scale(EXCESS_SCALE, &[1.0, 2.0, 4.0, 8.0, 16.0], false),
         ),
         Colors::Deviation => Some(deviation_legend(distances)),
+        Colors::Silhouette => Some(silhouette_legend(distances.outlines)),
     }
 }
 
@@ -173,6 +180,28 @@ fn deviation_legend(distances: &Distances) -> Legend {
             ticks: if distances.scale.is_some() { ticks.to_vec() } else { Vec::new() },
             waste: false,
         },
+    }
+}
+
+fn silhouette_legend(distances: Option<OutlineDistances>) -> Legend {
+    let away = |distance: fn(&OutlineDistances) -> Option<OutlineDistance>| match &distances {
+        None => "comparing\u{2026}".to_owned(),
+        Some(known) => distance(known)
+            .map_or_else(|| "not both in view".to_owned(), |found| format!("up to {:.1} px away", found.px)),
+    };
+    let row = |of: OutlineOf, text: String| (SILHOUETTE_COLORS[of as usize], text);
+    Legend {
+        title: "Outlines".to_owned(),
+        meaning: "The outline of the tessellated triangles, that of the source mesh, which are the mesh's own triangles, and that of \
+                  the curved surface, drawn to within 0.1 px. The numbers are the largest distances of the triangles' outline from \
+                  each of the others, in px, right to about half a px: a ring in the other's colour is around the place. A round \
+                  outline is near the surface's; how far it is from the source's is what tessellation has gained."
+            .to_owned(),
+        shown: Shown::Rows(vec![
+            row(OutlineOf::Triangles, "triangles".to_owned()),
+            row(OutlineOf::Source, format!("source: {}", away(|known| known.from_source))),
+            row(OutlineOf::Surface, format!("surface: {}", away(|known| known.from_surface))),
+        ]),
     }
 }
 

@@ -33,7 +33,8 @@ impl Look {
             | Colors::TriangleSize
             | Colors::LowFactors
             | Colors::Excess
-            | Colors::Deviation => None,
+            | Colors::Deviation
+            | Colors::Silhouette => None,
         }
     }
 }

@@ -25,6 +25,7 @@ pub(crate) mod matcap;
 mod materials;
 pub(crate) mod mipmap_pass;
 mod needs;
+mod outlines_picture;
 mod pick;
 mod pipelines;
 pub(crate) mod prefilter;
@@ -38,6 +39,7 @@ pub(crate) mod scene;
 #[cfg(test)]
 mod shader_tests;
 pub(crate) mod sheen;
+mod silhouette;
 mod steps;
 pub(crate) mod studio;
 pub(crate) mod target;
@@ -52,10 +54,12 @@ pub(crate) use ground::{Ground, axis_lines};
 pub(crate) use leaks::{Leak, LeakCount, LeakCounter, leaks_in};
 pub(crate) use legend::{BARYCENTRIC_TITLE, COLUMNS, Distances, Shown, has_legend, legend_of, tick_text};
 pub(crate) use marks::{crack_lines, crack_lines_in, lod_camera_lines, patch_lines, t_junction_lines, worst_lines};
+pub(crate) use outlines_picture::{lay_over, outlines_picture};
 pub(crate) use pick::{Picked, PickedTriangle, Picker, Picking, Pixel};
 pub(crate) use renderer::Renderer;
 pub(crate) use scale::{DENSITY_SCALE, EXCESS_SCALE, FACTOR_SCALE, SIZE_SCALE, Scale, curvature_scale};
 pub(crate) use scene::{LineSegment, Scene};
+pub(crate) use silhouette::{SilhouetteCoverage, SilhouetteDrawer, padded_clip};
 pub(crate) use target::Target;
 #[cfg(test)]
 pub(crate) use target::samples;
@@ -64,7 +68,7 @@ pub(crate) use window::WindowPipelines;
 
 /// The shader files with entry points for drawing and picking, and the light that draws read. Each makes one shader module.
 #[cfg(test)]
-static MODULES: [&crate::gpu::WgslFile; 14] = [
+static MODULES: [&crate::gpu::WgslFile; 17] = [
     &coverage::PASS_COVERAGE,
     &environment::ENVIRONMENT,
     &leaks::DRAW_LEAKS,
@@ -80,6 +84,7 @@ static MODULES: [&crate::gpu::WgslFile; 14] = [
     &pipelines::LAYERS_MULTISAMPLED,
     &pipelines::LAYERS_SINGLE,
     &prefilter_pass::PASS_PREFILTER,
+    &silhouette::DRAW_SILHOUETTE,
     #[cfg(feature = "app")]
     &window::DRAW_WINDOW,
 ];

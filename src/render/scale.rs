@@ -120,7 +120,8 @@ impl Scale {
             | Colors::UvChecker
             | Colors::Barycentric
             | Colors::LowFactors
-            | Colors::Deviation => None,
+            | Colors::Deviation
+            | Colors::Silhouette => None,
         }
     }
 

@@ -324,7 +324,7 @@ pub(crate) static OVERLAY: Declaration = Declaration {
     label: "Overlays",
     placeholder: "OVERLAY,..",
     text: "What is drawn over the surface. At most one of clay, matcap, zebra, shading-normals, surface-normals, \
-           curvature, uv-checker, texel-density, barycentric, factors, triangle-size, low-factors, excess and deviation, which colour all of it.",
+           curvature, uv-checker, texel-density, barycentric, factors, triangle-size, low-factors, excess, deviation and silhouette, which colour all of it.",
     kind: Kind::Several(descriptions::<Overlay>),
     unset: None,
     saved_as: &["overlays"],

@@ -37,6 +37,8 @@ pub enum Colors {
     Excess,
     /// The distance to the reference surface.
     Deviation,
+    /// Dim clay, over which the outlines of the triangles, of the source mesh and of the surface are drawn.
+    Silhouette,
 }
 
 /// What is drawn over the shaded surface; any of them together.
@@ -89,12 +91,13 @@ pub enum Overlay {
     Normals,
     Grid,
     Deviation,
+    Silhouette,
 }
 
 impl Overlay {
-    pub const ALL: [Self; 23] = every![Overlay:
+    pub const ALL: [Self; 24] = every![Overlay:
         Wireframe, Patches, Clay, Matcap, Zebra, ShadingNormals, SurfaceNormals, Curvature, UvChecker, TexelDensity, Barycentric, Adjacency, Cracks, Folds, TJunctions,
-        BackFaces, Factors, TriangleSize, LowFactors, Excess, Normals, Grid, Deviation,
+        BackFaces, Factors, TriangleSize, LowFactors, Excess, Normals, Grid, Deviation, Silhouette,
     ];
 }
 
@@ -220,6 +223,13 @@ impl Choice for Overlay {
                 "Colours the surface by its distance to the reference surface: the exact surface of a shape made in code, a \
                  mesh that was chosen, or else the surface that the tessellation converges to.",
             ),
+            Self::Silhouette => (
+                "silhouette",
+                "Silhouette",
+                "Shows the outline of the tessellated triangles over those of the source mesh and of the curved surface, and how \
+                 many px it is from them at most. Where only one line is seen, the outlines agree. A ring is around the place \
+                 where two are farthest apart.",
+            ),
         };
         Description::new(name, label, text)
     }
@@ -227,7 +237,7 @@ impl Choice for Overlay {
 
 impl Choice for Colors {
     const ALL: &'static [Self] = &every![Colors:
-        Material, Clay, Matcap, Zebra, ShadingNormals, SurfaceNormals, Curvature, UvChecker, TexelDensity, Barycentric, Factors, TriangleSize, LowFactors, Excess, Deviation,
+        Material, Clay, Matcap, Zebra, ShadingNormals, SurfaceNormals, Curvature, UvChecker, TexelDensity, Barycentric, Factors, TriangleSize, LowFactors, Excess, Deviation, Silhouette,
     ];
 
     fn description(self) -> Description {
@@ -247,6 +257,7 @@ impl Choice for Colors {
             Self::LowFactors => Overlay::LowFactors.description(),
             Self::Excess => Overlay::Excess.description(),
             Self::Deviation => Overlay::Deviation.description(),
+            Self::Silhouette => Overlay::Silhouette.description(),
         }
     }
 }
@@ -282,6 +293,7 @@ impl Overlays {
             Overlay::LowFactors => return Control::Colors(&mut self.colors, Colors::LowFactors),
             Overlay::Excess => return Control::Colors(&mut self.colors, Colors::Excess),
             Overlay::Deviation => return Control::Colors(&mut self.colors, Colors::Deviation),
+            Overlay::Silhouette => return Control::Colors(&mut self.colors, Colors::Silhouette),
             Overlay::Wireframe => &mut self.wireframe,
             Overlay::Patches => &mut self.patches,
             Overlay::Adjacency => &mut self.adjacency,
@@ -335,7 +347,7 @@ mod tests {
             overlays.toggle(overlay);
             assert_ne!(overlays, Overlays::default(), "{overlay:?}");
         }
-        assert_eq!(overlays.colors, Colors::Deviation, "the last one");
+        assert_eq!(overlays.colors, Colors::Silhouette, "the last one");
         overlays.toggle(Overlay::Factors);
         assert_eq!(overlays.colors, Colors::Factors);
         overlays.toggle(Overlay::Factors);

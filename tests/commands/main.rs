@@ -23,6 +23,7 @@ mod render;
 mod scenes;
 #[path = "../documents/shot.rs"]
 mod shot;
+mod silhouette;
 mod stability;
 mod techniques;
 mod tessellate;

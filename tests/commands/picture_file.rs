@@ -129,6 +129,7 @@ fn the_legend_is_in_the_lower_right_corner_of_colours_that_stand_for_something()
         "surface-normals",
         "curvature",
         "texel-density",
+        "silhouette",
         "uv-checker",
     ] {
         let options = ["shape:torus", "--lod", "error", "--overlay", colors];

@@ -27,6 +27,8 @@ mod picking;
 mod pictures;
 mod pixel_normals;
 mod readbacks;
+mod scenes;
+mod silhouette;
 mod stability;
 
 use std::sync::OnceLock;

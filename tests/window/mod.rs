@@ -17,6 +17,7 @@ mod lost;
 mod picking;
 mod saving;
 mod scenes;
+mod silhouette;
 mod spending;
 mod tasks;
 mod techniques;

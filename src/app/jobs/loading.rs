@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::document::{Load, NotLoaded};
 use super::leak_job::LeakJob;
 use super::measure_job::MeasureJob;
+use super::silhouette_job::SilhouetteJob;
 use crate::app::App;
 use crate::engine::{Loaded, Preparation};
 use crate::load::Source;
@@ -83,6 +84,7 @@ impl App {
                 self.look_as_before(keep_view);
                 self.jobs.measure = MeasureJob::default();
                 self.jobs.leaks = LeakJob::default();
+                self.jobs.silhouette = SilhouetteJob::default();
                 self.viewport.left.forget();
                 self.viewport.preview.forget();
                 self.keep_factors(context, keep_view);

@@ -25,6 +25,8 @@ pub(crate) enum Trouble {
     Measuring(Stopped),
     #[error("counting leaks {0}; any other setting starts a new count")]
     Leaking(Stopped),
+    #[error("comparing outlines {0}; any other setting starts a new comparison")]
+    Comparing(Stopped),
     #[error("measuring the deviation {0}; any other setting starts a new measurement")]
     Deviating(Stopped),
 }

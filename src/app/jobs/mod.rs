@@ -14,6 +14,7 @@ pub(super) mod matcap;
 pub(super) mod measure_job;
 pub(super) mod mesh_checks;
 pub(super) mod picture_job;
+pub(super) mod silhouette_job;
 pub(super) mod stand_in;
 pub(super) mod truth;
 pub(super) mod writing_job;
@@ -28,6 +29,7 @@ use given_factors::FactorsJob;
 use leak_job::LeakJob;
 use matcap::MatcapJob;
 use measure_job::MeasureJob;
+use silhouette_job::SilhouetteJob;
 use truth::TruthLoad;
 use writing_job::WritingJob;
 
@@ -43,6 +45,7 @@ pub(super) struct Jobs {
     pub matcap: Option<MatcapJob>,
     pub measure: MeasureJob,
     pub leaks: LeakJob,
+    pub silhouette: SilhouetteJob,
     pub deviation: DeviationJob,
     /// Of the selected patch.
     pub explain: ExplainJob,

@@ -126,7 +126,8 @@ impl App {
         let known = |half| self.known_deviation(half);
         let is_partial = SplitSide::BOTH.into_iter().filter_map(known).any(|found| found.left_out > 0);
         let measured = SplitSide::BOTH.into_iter().filter_map(|half| self.deviating(half).fraction()).reduce(f32::min);
-        Distances { unit, scale, is_partial, measured }
+        let outlines = self.silhouette_shown().map(|silhouette| silhouette.distances);
+        Distances { unit, scale, is_partial, measured, outlines }
     }
 
     /// The largest distance of a half, in the overlay's unit; none without the overlay. Until it is known, it is an ellipsis.

@@ -26,7 +26,14 @@ pub(crate) fn legend(ui: &mut egui::Ui, picture: Rect, settings: &Settings, radi
         return barycentric::paint(ui, inner);
     }
     let Some(legend) = legend_of(settings, radius, distances) else { return };
-    let plate = |size| plate(ui, picture, size, &legend.title, &legend.meaning);
+    let spoken = match &legend.shown {
+        Shown::Rows(rows) => {
+            let rows: Vec<_> = rows.iter().map(|(_, text)| text.as_str()).collect();
+            format!("{}: {}", legend.title, rows.join(", "))
+        }
+        _ => legend.title.clone(),
+    };
+    let plate = |size| plate(ui, picture, size, &spoken, &legend.meaning);
     match &legend.shown {
         Shown::Title => {
             let inner = plate(vec2(text_width_in(ui, &legend.title, egui::FontId::proportional(TEXT)), 14.0));
@@ -53,6 +60,15 @@ pub(crate) fn legend(ui: &mut egui::Ui, picture: Rect, settings: &Settings, radi
                 let [column, row] = [index % COLUMNS, index / COLUMNS].map(|place| place as f32);
                 let place = vec2(column * BAR.x / COLUMNS as f32, 18.0 + ROW * (row + 0.5));
                 named(ui, inner.left_top() + place, color, name);
+            }
+        }
+        Shown::Rows(rows) => {
+            let inner = plate(vec2(BAR.x, 18.0 + ROW * rows.len() as f32));
+            text(ui, inner.left_top(), Align2::LEFT_TOP, &legend.title);
+            let mut middle = inner.left_top() + vec2(0.0, 18.0 + 0.5 * ROW);
+            for (color, name) in rows {
+                named(ui, middle, *color, name);
+                middle.y += ROW;
             }
         }
     }

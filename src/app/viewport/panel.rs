@@ -14,6 +14,7 @@ use crate::app::jobs::measure_job::Trouble;
 use crate::app::text::counted;
 use crate::app::widgets::rgb;
 use crate::commands::{Action, with_key};
+use crate::engine::SilhouetteView;
 use crate::gpu::GpuError;
 use crate::load::Source;
 use crate::progress::Stage;
@@ -62,6 +63,10 @@ impl App {
         match picture {
             Some(picture) => {
                 ui.painter().add(picture.over(rect));
+                if let Some(outlines) = self.outlines_texture().filter(|_| previewed.is_none()) {
+                    let whole = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
+                    ui.painter().image(outlines, rect, whole, egui::Color32::WHITE);
+                }
                 self.over_picture(ui, rect);
             }
             None => {
@@ -101,8 +106,8 @@ impl App {
         let settings = self.settings_in(context.theme());
         let Some(document) = &mut self.document else { return Ok(()) };
         let viewport = vec2(size[0] as f32, size[1] as f32);
-        let own = || self.viewport.camera.lod_view(viewport, &document.scene.bounds);
-        let view = self.viewport.frozen.map_or_else(own, |frozen| frozen.view);
+        let seen = self.viewport.camera.lod_view(viewport, &document.scene.bounds);
+        let view = self.viewport.frozen.map_or(seen, |frozen| frozen.view);
         let inputs = settings.inputs(view);
         let wanted = Wanted {
             document: document.generation,
@@ -143,11 +148,14 @@ impl App {
             self.jobs.measure.go_on(&self.engine.gpu, &mut document.scene, document.generation, view, follows)?;
             self.measure_left(view)?;
             self.count_leaks(context, view)?;
+            let silhouette = SilhouetteView { size, seen, lod: inputs.view };
+            self.compare_outlines(context, &settings.tessellation, &silhouette, view)?;
         }
         self.deviate(&inputs)?;
         if let Err(problem) = self.engine.gpu.check() {
             self.jobs.measure.give_up();
             self.jobs.leaks.give_up();
+            self.jobs.silhouette.give_up();
             self.viewport.left.measuring.give_up();
             self.jobs.deviation.give_up();
             self.viewport.left.deviating.give_up();

@@ -10,6 +10,7 @@ use crate::app::dialogs::typed_path::PendingDialog;
 use crate::app::jobs::document::{Load, scene_of};
 use crate::app::jobs::leak_job::LeakJob;
 use crate::app::jobs::mesh_checks::Checks;
+use crate::app::jobs::silhouette_job::SilhouetteJob;
 use crate::app::painting::Painting;
 use crate::app::persistence::WindowGeometry;
 use crate::app::style::style;
@@ -134,6 +135,7 @@ impl App {
         }
         self.jobs.measure.forget();
         self.jobs.leaks = LeakJob::default();
+        self.jobs.silhouette = SilhouetteJob::default();
         self.jobs.deviation.forget();
         self.viewport.left.forget();
         self.viewport.highlight = None;

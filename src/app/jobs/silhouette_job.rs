@@ -1,0 +1,185 @@
+//! Compares the outlines of what is shown while the window goes on: a chunk is drawn at a time, and a thread of its own compares
+//! them.
+
+use egui::TextureHandle;
+use image::RgbaImage;
+
+use super::background_job::BackgroundJob;
+use super::measure_job::Trouble;
+use crate::app::App;
+use crate::engine::silhouette::beside;
+use crate::engine::{Engine, SilhouetteDrawing, SilhouetteView};
+use crate::gpu::{GpuError, Readback, Tessellator};
+use crate::measure::{SampleGrid, Silhouette};
+use crate::render::{Scene, lay_over, outlines_picture};
+use crate::settings::Colors;
+use crate::tessellate::Tessellation;
+use crate::view::ScreenView;
+
+/// The comparison of outlines, and its last result.
+#[derive(Default)]
+pub(crate) struct SilhouetteJob {
+    /// The document, the tessellation and the view that outlines are compared for.
+    of: Option<(u64, u64, ScreenView)>,
+    under_way: Option<Comparing>,
+    found: Option<Found>,
+    /// A tessellator of this document, kept for the next comparison.
+    kept: Option<(u64, Tessellator)>,
+}
+
+enum Comparing {
+    Making(BackgroundJob<Result<Tessellator, GpuError>>),
+    Drawing(Box<SilhouetteDrawing>),
+    Copying(Readback, SampleGrid),
+    Finding(BackgroundJob<Option<(Silhouette, RgbaImage)>>),
+}
+
+/// A result.
+struct Found {
+    silhouette: Silhouette,
+    picture: RgbaImage,
+    texture: TextureHandle,
+}
+
+impl SilhouetteJob {
+    pub(crate) fn is_busy(&self) -> bool {
+        self.under_way.is_some()
+    }
+
+    /// Stops comparing. It isn't started again by itself.
+    pub(crate) fn give_up(&mut self) {
+        self.under_way = None;
+    }
+
+    fn found(&self, of: (u64, u64, ScreenView)) -> Option<&Found> {
+        self.found.as_ref().filter(|_| self.of == Some(of))
+    }
+
+    /// Goes on comparing what the scene of document `document` shows, whose counts must be known, or starts over if its
+    /// tessellation or the view has changed.
+    ///
+    /// # Errors
+    /// The device was lost or has no memory left, or a thread panicked.
+    fn go_on(
+        &mut self,
+        context: &egui::Context,
+        engine: &Engine,
+        scene: &Scene,
+        document: u64,
+        (tessellation, view, screen): (&Tessellation, &SilhouetteView, ScreenView),
+    ) -> Result<(), Trouble> {
+        let of = Some((document, scene.tessellator.generation(), screen));
+        if self.of != of {
+            if let Some(Comparing::Drawing(drawing)) = self.under_way.take() {
+                self.kept =
+                    Some((document, drawing.tessellator)).filter(|_| self.of.is_some_and(|of| of.0 == document));
+            }
+            (self.of, self.found) = (of, None);
+            self.under_way = Some(match self.kept.take().filter(|kept| kept.0 == document) {
+                Some((_, tessellator)) => draw(engine, scene, tessellator, tessellation, view)?,
+                None => {
+                    let (gpu, make) = (engine.gpu.clone(), beside(scene));
+                    Comparing::Making(BackgroundJob::start(context, move || gpu.attempt(make)?))
+                }
+            });
+            return Ok(());
+        }
+        self.under_way = match self.under_way.take() {
+            None => None,
+            Some(Comparing::Making(job)) => Some(match job.take() {
+                None => Comparing::Making(job),
+                Some(made) => draw(engine, scene, made.map_err(Trouble::Comparing)??, tessellation, view)?,
+            }),
+            Some(Comparing::Drawing(mut drawing)) => Some(match drawing.step(&engine.gpu)? {
+                None => Comparing::Drawing(drawing),
+                Some(texels) => {
+                    self.kept = Some((document, drawing.tessellator));
+                    Comparing::Copying(texels, drawing.grid)
+                }
+            }),
+            Some(Comparing::Copying(mut texels, grid)) => Some(match texels.poll()? {
+                false => Comparing::Copying(texels, grid),
+                true => Comparing::Finding(BackgroundJob::start(context, move || {
+                    // No bytes come from a lost device, which is reported elsewhere.
+                    let silhouette = Silhouette::find(grid, &texels.bytes().ok()?);
+                    let picture = outlines_picture(&silhouette);
+                    Some((silhouette, picture))
+                })),
+            }),
+            Some(Comparing::Finding(job)) => match job.take() {
+                None => Some(Comparing::Finding(job)),
+                Some(found) => {
+                    self.found = found.map_err(Trouble::Comparing)?.map(|found| uploaded(context, found));
+                    None
+                }
+            },
+        };
+        Ok(())
+    }
+}
+
+fn draw(
+    engine: &Engine,
+    scene: &Scene,
+    tessellator: Tessellator,
+    tessellation: &Tessellation,
+    view: &SilhouetteView,
+) -> Result<Comparing, GpuError> {
+    Ok(Comparing::Drawing(Box::new(engine.start_silhouette(scene, tessellator, tessellation, view)?)))
+}
+
+fn uploaded(context: &egui::Context, (silhouette, picture): (Silhouette, RgbaImage)) -> Found {
+    let size = [picture.width(), picture.height()].map(|side| side as usize);
+    let image = egui::ColorImage::from_rgba_unmultiplied(size, picture.as_raw());
+    let texture = context.load_texture("outlines", image, egui::TextureOptions::NEAREST);
+    Found { silhouette, picture, texture }
+}
+
+impl App {
+    fn shows_silhouette(&self) -> bool {
+        self.settings.overlays.colors == Colors::Silhouette
+    }
+
+    /// Goes on comparing outlines, once all else that is shown was measured. Without the overlay nothing of it is kept.
+    pub(in crate::app) fn compare_outlines(
+        &mut self,
+        context: &egui::Context,
+        tessellation: &Tessellation,
+        view: &SilhouetteView,
+        screen: ScreenView,
+    ) -> Result<(), Trouble> {
+        if !self.shows_silhouette() {
+            self.jobs.silhouette = SilhouetteJob::default();
+            return Ok(());
+        }
+        if self.jobs.measure.is_busy() || self.jobs.leaks.is_busy() {
+            return Ok(());
+        }
+        let Some(document) = &self.document else { return Ok(()) };
+        let what = (tessellation, view, screen);
+        self.jobs.silhouette.go_on(context, &self.engine, &document.scene, document.generation, what)
+    }
+
+    fn found_outlines(&self) -> Option<&Found> {
+        let document = self.document.as_ref().filter(|_| self.shows_silhouette())?;
+        let view = self.viewport.picture.seen_from()?;
+        self.jobs.silhouette.found((document.generation, document.scene.tessellator.generation(), view))
+    }
+
+    /// The outlines of what is shown, once they are compared.
+    pub(in crate::app) fn silhouette_shown(&self) -> Option<&Silhouette> {
+        self.found_outlines().map(|found| &found.silhouette)
+    }
+
+    /// The texture of the outlines that lie over the picture.
+    pub(in crate::app) fn outlines_texture(&self) -> Option<egui::TextureId> {
+        self.found_outlines().map(|found| found.texture.id())
+    }
+
+    /// Lays the outlines over a copy of the picture that is shown.
+    pub(in crate::app) fn lay_outlines_over(&self, picture: &mut RgbaImage) {
+        if let Some(found) = self.found_outlines() {
+            lay_over(picture, &found.picture);
+        }
+    }
+}
