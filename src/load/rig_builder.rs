@@ -141,7 +141,7 @@ impl RigBuilder {
             }
         }
         let skin_joints = vec![None; skin.map_or(0, |skin| skin.nodes.len())];
-        NodeBinder { node, instance, skin, skin_joints, binder: self }
+        NodeBinder { node, skin, skin_joints, binder: self }
     }
 
     /// Gives up building a rig. The first reason is reported.
