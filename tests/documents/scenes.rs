@@ -13,9 +13,12 @@ pub(crate) struct MaterialScene {
     pub glb: Vec<u8>,
 }
 
+/// Adds to a document what its scene is about.
+type Feature = fn(&mut Document);
+
 /// All of them.
 pub(crate) fn material_scenes() -> Vec<MaterialScene> {
-    let all: [(&str, fn(&mut Document)); 12] = [
+    let all: [(&str, Feature); 12] = [
         ("alpha-modes", alpha_modes),
         ("mirrored-normals", mirrored_normals),
         ("two-uv-sets", two_uv_sets),
