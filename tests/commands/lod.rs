@@ -44,6 +44,19 @@ fn lod_by_error_keeps_its_tolerance_with_fewer_triangles() {
 }
 
 #[test]
+fn patches_that_no_factors_suffice_for_get_the_largest() {
+    let of = |partitioning: &str| {
+        let options = ["--lod", "error", "--tolerance", "0.001", "--partitioning", partitioning];
+        stats(&[&["shape:cube-smooth"], &options[..]].concat())
+    };
+    let [integer, rows] = ["integer", "rows"].map(of);
+    let [by_rings, by_rows] = [&integer, &rows].map(|stats| number(stats, "/max_error_px"));
+    assert!(by_rings > 0.001 && by_rings < 0.2, "{integer}");
+    // Rows have about as many points as rings have at factor 64, but not in the same places.
+    assert!(by_rows < 2.0 * by_rings, "{by_rows} px with rows, {by_rings} px with rings");
+}
+
+#[test]
 fn stats_have_the_numbers_that_the_lod_uses() {
     let adaptive = ["--pixels", "20", "--tolerance", "3", "--distances", "2,5", "--measure-error", "false"];
     for (lod, used) in [
