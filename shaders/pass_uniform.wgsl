@@ -114,10 +114,14 @@ fn search_uniform_factor_main(
                 dont_take(bits_up_to(factor) & ~bits_up_to(factor - 1u));
             }
         }
+        // Some software drivers end the loops of an invocation after 65,535 turns of all of them. What hasn't been looked at may
+        // not be enough.
+        if lane == 0u && any(factors != vec2<u32>(0u)) {
+            dont_take(factors);
+        }
         index += workgroups.x;
         factors = factors_left();
     }
-    // Some software drivers end loops after 65,535 turns. What hasn't been looked at may not be enough.
     if lane == 0u && index < params.patch_count {
         dont_take(factors);
     }

@@ -44,14 +44,22 @@ fn lod_by_error_keeps_its_tolerance_with_fewer_triangles() {
 }
 
 #[test]
-fn patches_that_no_factors_suffice_for_get_the_largest() {
-    let of = |partitioning: &str| {
-        let options = ["--lod", "error", "--tolerance", "0.001", "--partitioning", partitioning];
+fn patches_that_need_very_many_triangles_get_them() {
+    let of = |partitioning: &str, tolerance: &str| {
+        let options = ["--lod", "error", "--tolerance", tolerance, "--partitioning", partitioning];
         stats(&[&["shape:cube-smooth"], &options[..]].concat())
     };
-    let [integer, rows] = ["integer", "rows"].map(of);
+    for partitioning in ["integer", "rows"] {
+        for tolerance in [0.025, 0.03, 0.04] {
+            let stats = of(partitioning, &tolerance.to_string());
+            // Software drivers end a search that takes long, and then a patch may lie a little beyond.
+            assert!(number(&stats, "/max_error_px") <= 1.5 * tolerance, "{stats}");
+        }
+    }
+    // Here none are enough.
+    let [integer, rows] = ["integer", "rows"].map(|partitioning| of(partitioning, "0.01"));
     let [by_rings, by_rows] = [&integer, &rows].map(|stats| number(stats, "/max_error_px"));
-    assert!(by_rings > 0.001 && by_rings < 0.2, "{integer}");
+    assert!(by_rings > 0.01 && by_rings < 0.1, "{integer}");
     // Rows have about as many points as rings have at factor 64, but not in the same places.
     assert!(by_rows < 2.0 * by_rings, "{by_rows} px with rows, {by_rings} px with rings");
 }
