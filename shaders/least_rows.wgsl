@@ -286,7 +286,7 @@ fn fewest_rows(seen: ptr<function, SeenPatch>, tolerance: f32, sought: Sought) -
 const ASKED_SEGMENT: f32 = 1.75;
 
 // Returns the factors that a patch asks its edges for, and the rows that it would take beside these. If no rows are enough, it asks
-// for as many as there are; or for the least factors, if the surface isn't finite. See fewest_rows.
+// for as many as there are. See fewest_rows.
 fn asked_rows(seen: ptr<function, SeenPatch>, tolerance: f32, least: vec3<f32>, inside: f32) -> Chosen {
     let sought = Sought(least, inside, false, ASKED_SEGMENT);
     let fewest = fewest_rows(seen, tolerance, sought);
@@ -306,9 +306,6 @@ fn most_rows(seen: ptr<function, SeenPatch>, within: f32, sought: Sought) -> Cho
         costs[base] = expected_cost(sought, base, expected);
     }
     let base = bases_by_cost(costs).x;
-    if costs[base] >= 3e38 {
-        return Chosen(sought.least, BEYOND_LAST, 0.0);
-    }
     let most = Tried(base, flips[base], 64.0, 64.0, 64.0, vec2<f32>(0.0), 0u);
     return Chosen(vec3<f32>(64.0), inside_of_rows(most), 0.0);
 }

@@ -188,8 +188,7 @@ impl<'a> FaceBuilder<'a> {
         }
         let memory = self.memory;
         let room = self.builder.make_room_for_triangles(material, corners.len() - 2, memory);
-        room.and_then(|()| self.builder.make_room(corners.len(), memory))
-            .map_err(too_large)?;
+        room.and_then(|()| self.builder.make_room(corners.len(), memory)).map_err(too_large)?;
         self.cut(material, corners);
         Ok(())
     }

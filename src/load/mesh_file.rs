@@ -289,8 +289,7 @@ mod tests {
     #[test]
     fn unknown_formats_name_the_known_ones() {
         let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
-        let expected =
-            "can't be read, since it has the extension .toml; choose a .gltf, .glb, .vrm, .fbx, .obj, .stl or .ply file";
+        let expected = "can't be read, since it has the extension .toml; choose a .gltf, .glb, .vrm, .fbx, .obj, .stl or .ply file";
         assert_eq!(message(manifest), format!("{manifest} {expected}"));
         assert!(message(concat!(env!("CARGO_MANIFEST_DIR"), "/LICENSE")).contains("no extension"));
     }

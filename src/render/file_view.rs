@@ -91,7 +91,8 @@ mod tests {
             "buffers": [{ "byteLength": 36, "uri": uri }],
         });
         let bytes = document.to_string().into_bytes();
-        let loaded = read(Format::Gltf, bytes, Path::new("a.gltf"), Default::default(), &Limits::default(), &Progress::new());
+        let loaded =
+            read(Format::Gltf, bytes, Path::new("a.gltf"), Default::default(), &Limits::default(), &Progress::new());
         let loaded = loaded.expect("a triangle with a camera");
         let about_cameras = loaded.warnings.iter().filter(|warning| !warning.starts_with("primitives without normals"));
         assert_eq!(about_cameras.count(), 0, "{:?}", loaded.warnings);

@@ -310,7 +310,7 @@ pub(crate) const ASKED_SEGMENT: f32 = 1.75;
 
 /// Returns the factors that a patch asks its edges for, and the rows that it would take beside these. `least` are the least
 /// factors that the edges may get, and `inside` is the least number of rows and of segments of a row. If no rows are enough, it
-/// asks for as many as there are; or for the least factors, if the surface isn't finite.
+/// asks for as many as there are.
 pub(super) fn asked_rows(patch: &SeenPatch, tolerance: f32, least: [f32; 3], inside: f32) -> Chosen {
     let sought = Sought { least, inside, is_given: false, segment: ASKED_SEGMENT };
     let fewest = fewest_rows(patch, tolerance, &sought);
@@ -322,9 +322,6 @@ fn most_rows(patch: &SeenPatch, within: f32, sought: &Sought) -> Chosen {
     let all = [0, 1, 2].map(|base| expected_rows(patch, base, within));
     let costs = [0, 1, 2].map(|base| expected_cost(sought, base, &all[base]));
     let base = bases_by_cost(costs)[0];
-    if costs[base] >= 3e38 {
-        return Chosen { edges: sought.least, inside: BEYOND_LAST, inner: 0.0 };
-    }
     let flips = all[base].flips;
     let most = Tried { base, flips, rows: 64.0, width: 64.0, segments: 64.0, fewer: [0.0; 2], lessened: 0 };
     Chosen { edges: [64.0; 3], inside: inside_of_rows(&most), inner: 0.0 }
