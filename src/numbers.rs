@@ -73,11 +73,6 @@ fn date(days: u64) -> (u64, u64, u64) {
     (400 * era + year + next, month, day)
 }
 
-/// Decodes a channel of sRGB, 0 to 1 (IEC 61966-2-1).
-pub(crate) fn linear(encoded: f32) -> f32 {
-    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
-}
-
 #[cfg(test)]
 mod tests {
     use std::time::Duration;

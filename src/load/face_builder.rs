@@ -12,10 +12,10 @@ use super::warnings::repair_warnings;
 use crate::mesh::build_limits::{MAX_TRIANGLES, MemoryRefused};
 use crate::mesh::detail_table::DetailTable;
 use crate::mesh::mesh_builder::{InputCorner, MeshBuilder};
+use crate::mesh::mipmap::SRGB_TABLE;
 use crate::mesh::polygon::{self, CutQuality, triangulate};
 use crate::mesh::rig::LARGEST_COORDINATE;
 use crate::mesh::{CornerDetail, Material, Mesh};
-use crate::numbers::linear;
 use crate::progress::Progress;
 
 /// The greatest number of materials. A file with more is refused, since each takes memory and a draw call.
@@ -284,7 +284,7 @@ fn too_large(refused: MemoryRefused) -> ReadError {
 
 /// Decodes a vertex's colour: red, green and blue are encoded as sRGB, as scanners and painting programs write them.
 pub(super) fn linear_color([r, g, b, a]: [u8; 4]) -> Vec4 {
-    let [r, g, b] = [r, g, b].map(|byte| linear(f32::from(byte) / 255.0));
+    let [r, g, b] = [r, g, b].map(|byte| SRGB_TABLE[usize::from(byte)]);
     Vec4::new(r, g, b, f32::from(a) / 255.0)
 }
 

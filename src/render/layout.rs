@@ -5,7 +5,6 @@ use bytemuck::{Pod, Zeroable};
 use super::Scale;
 use crate::gpu::layout::Vertex;
 use crate::mesh::{EdgeKind, Slot};
-use crate::numbers;
 use crate::settings::{Colors, Overlays};
 
 /// The constants of a picture.
@@ -195,7 +194,10 @@ pub(crate) const FACTOR_COLORS: [[u8; 3]; 3] = [[240, 90, 130], [120, 185, 40], 
 
 /// Converts sRGB bytes to linear light, from 0 to 1.
 pub(crate) fn linear(srgb: [u8; 3]) -> [f32; 3] {
-    srgb.map(|byte| numbers::linear(f32::from(byte) / 255.0))
+    srgb.map(|byte| {
+        let x = f32::from(byte) / 255.0;
+        if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
+    })
 }
 
 /// The byte that sRGB encodes a linear colour's channel as.
