@@ -56,12 +56,9 @@ fn patches_that_need_very_many_triangles_get_them() {
             assert!(number(&stats, "/max_error_px") <= 1.5 * tolerance, "{stats}");
         }
     }
-    // Here none are enough.
-    let [integer, rows] = ["integer", "rows"].map(|partitioning| of(partitioning, "0.01"));
-    let [by_rings, by_rows] = [&integer, &rows].map(|stats| number(stats, "/max_error_px"));
-    assert!(by_rings > 0.01 && by_rings < 0.1, "{integer}");
-    // Rows have about as many points as rings have at factor 64, but not in the same places.
-    assert!(by_rows < 2.0 * by_rings, "{by_rows} px with rows, {by_rings} px with rings");
+    // Here none are enough: 64 rows of 64 segments leave an error of about 0.03 px.
+    let stats = of("rows", "0.01");
+    assert!(number(&stats, "/factors_capped") > 0.0 && number(&stats, "/max_error_px") < 0.05, "{stats}");
 }
 
 #[test]
