@@ -285,29 +285,9 @@ fn fewest_rows(seen: ptr<function, SeenPatch>, tolerance: f32, sought: Sought) -
 // As how many triangles a segment of an edge counts where a patch asks for it.
 const ASKED_SEGMENT: f32 = 1.75;
 
-// Returns the factors that a patch asks its edges for, and the rows that it would take beside these. If no rows are enough, it asks
-// for as many as there are. See fewest_rows.
+// Returns the factors that a patch asks its edges for, and the rows that it would take beside these. See fewest_rows.
 fn asked_rows(seen: ptr<function, SeenPatch>, tolerance: f32, least: vec3<f32>, inside: f32) -> Chosen {
-    let sought = Sought(least, inside, false, ASKED_SEGMENT);
-    let fewest = fewest_rows(seen, tolerance, sought);
-    if fewest.inside != BEYOND_LAST {
-        return fewest;
-    }
-    return most_rows(seen, BOUND_SHARE * tolerance, sought);
-}
-
-// Returns the most rows of the greatest width, beside the base for which second derivatives ask for the fewest.
-fn most_rows(seen: ptr<function, SeenPatch>, within: f32, sought: Sought) -> Chosen {
-    var flips: vec3<bool>;
-    var costs: vec3<f32>;
-    for (var base = 0u; base < 3u; base++) {
-        let expected = expected_rows(seen, base, within);
-        flips[base] = expected.flips;
-        costs[base] = expected_cost(sought, base, expected);
-    }
-    let base = bases_by_cost(costs).x;
-    let most = Tried(base, flips[base], 64.0, 64.0, 64.0, vec2<f32>(0.0), 0u);
-    return Chosen(vec3<f32>(64.0), inside_of_rows(most), 0.0);
+    return fewest_rows(seen, tolerance, Sought(least, inside, false, ASKED_SEGMENT));
 }
 
 // Returns the factors with which a patch has the fewest triangles if no neighbour asks for anything. See fewest_rows.

@@ -309,22 +309,9 @@ fn fewest_rows(patch: &SeenPatch, tolerance: f32, sought: &Sought) -> Chosen {
 pub(crate) const ASKED_SEGMENT: f32 = 1.75;
 
 /// Returns the factors that a patch asks its edges for, and the rows that it would take beside these. `least` are the least
-/// factors that the edges may get, and `inside` is the least number of rows and of segments of a row. If no rows are enough, it
-/// asks for as many as there are.
+/// factors that the edges may get, and `inside` is the least number of rows and of segments of a row.
 pub(super) fn asked_rows(patch: &SeenPatch, tolerance: f32, least: [f32; 3], inside: f32) -> Chosen {
-    let sought = Sought { least, inside, is_given: false, segment: ASKED_SEGMENT };
-    let fewest = fewest_rows(patch, tolerance, &sought);
-    if fewest.inside != BEYOND_LAST { fewest } else { most_rows(patch, BOUND_SHARE * tolerance, &sought) }
-}
-
-/// Returns the most rows of the greatest width, beside the base for which second derivatives ask for the fewest.
-fn most_rows(patch: &SeenPatch, within: f32, sought: &Sought) -> Chosen {
-    let all = [0, 1, 2].map(|base| expected_rows(patch, base, within));
-    let costs = [0, 1, 2].map(|base| expected_cost(sought, base, &all[base]));
-    let base = bases_by_cost(costs)[0];
-    let flips = all[base].flips;
-    let most = Tried { base, flips, rows: 64.0, width: 64.0, segments: 64.0, fewer: [0.0; 2], lessened: 0 };
-    Chosen { edges: [64.0; 3], inside: inside_of_rows(&most), inner: 0.0 }
+    fewest_rows(patch, tolerance, &Sought { least, inside, is_given: false, segment: ASKED_SEGMENT })
 }
 
 /// Returns the factors with which a patch has the fewest triangles if no neighbour asks for anything.

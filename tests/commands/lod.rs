@@ -56,9 +56,6 @@ fn patches_that_need_very_many_triangles_get_them() {
             assert!(number(&stats, "/max_error_px") <= 1.5 * tolerance, "{stats}");
         }
     }
-    // Here none are enough: 64 rows of 64 segments leave an error of about 0.03 px.
-    let stats = of("rows", "0.01");
-    assert!(number(&stats, "/factors_capped") > 0.0 && number(&stats, "/max_error_px") < 0.05, "{stats}");
 }
 
 #[test]
