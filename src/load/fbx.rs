@@ -28,11 +28,10 @@ use super::memory_budget::Budget;
 use super::notes::Notes;
 use super::read_error::ReadError;
 use super::rig_builder::RigBuilder;
-use super::tangents::{self, DetailedMesh};
+use super::tangents;
 use super::uri::Files;
 use crate::files::Limits;
-use crate::mesh::detail_table::DetailTable;
-use crate::mesh::{MemoryAccount, MemoryRefused, Mesh};
+use crate::mesh::{MemoryAccount, MemoryRefused};
 use crate::progress::Progress;
 
 use nodes::Placed;
@@ -101,7 +100,7 @@ pub(super) fn read_here(
     let (mut mesh, mut numbers, warnings) = faces.finish_numbered(name, holds, Vec::new(), &progress.part(0.8, 1.0))?;
     notes.extend(warnings);
     if let Some(details) = details {
-        numbers = with_details(&mut mesh, details, &numbers, &mut notes, (&budget, progress))?;
+        numbers = tangents::with_details(&mut mesh, details, &numbers, &mut notes, (&budget, progress))?;
     }
     match binder.map(|binder| binder.finish(&mesh, &numbers)) {
         Some(Ok(rig)) => mesh.rig = Some(Arc::new(rig)),
@@ -110,24 +109,6 @@ pub(super) fn read_here(
     }
     let (files, file_bytes) = (files.named(), budget.files());
     Ok(LoadedMesh { mesh, warnings: notes.into_warnings(), files, file_bytes, ..LoadedMesh::default() })
-}
-
-/// Gives the mesh the details of its corners, whose numbers in the table these are. Returns their bindings to joints.
-///
-/// # Errors
-/// [`ReadError::TooLarge`] and [`ReadError::Cancelled`].
-fn with_details(
-    mesh: &mut Mesh,
-    table: DetailTable,
-    numbers: &[u32],
-    notes: &mut Notes,
-    (budget, progress): (&Budget, &Progress),
-) -> Result<Vec<u32>, ReadError> {
-    let (mut details, mut bindings) = table.into_lists(numbers, budget).map_err(too_large)?;
-    let detailed = DetailedMesh { mesh, details: &mut details, bindings: &mut bindings };
-    notes.extend(tangents::complete(detailed, budget, progress)?);
-    mesh.details = Some(Arc::new(details));
-    Ok(bindings)
 }
 
 fn too_large(refused: MemoryRefused) -> ReadError {

@@ -57,14 +57,14 @@ use super::memory_budget::Budget;
 use super::notes::Notes;
 use super::rig_builder::{RigBuilder, SkinJoints};
 use super::selection::Selection;
-use super::tangents::{self, DetailedMesh};
+use super::tangents;
 use super::uri::Files;
 use super::warnings::repair_warnings;
 use super::{notes, rig_builder};
 use crate::files::Limits;
 use crate::mesh::detail_table::DetailTable;
 use crate::mesh::mesh_builder::MeshBuilder;
-use crate::mesh::{MemoryAccount, MemoryRefused, Mesh};
+use crate::mesh::{MemoryAccount, Mesh};
 use crate::progress::Progress;
 
 use accessor::Accessors;
@@ -279,7 +279,7 @@ fn finished(
 ) -> Result<Mesh, GltfError> {
     let (mut mesh, mut bindings) = builder.finish_bound(name.to_owned(), budget, progress)?;
     if let Some(details) = details {
-        bindings = with_details(&mut mesh, details, &bindings, notes, (budget, progress))?;
+        bindings = tangents::with_details(&mut mesh, details, &bindings, notes, (budget, progress))?;
     }
     match binder.map(|binder| binder.finish(&mesh, &bindings)) {
         Some(Ok(rig)) => mesh.rig = Some(Arc::new(rig)),
@@ -287,26 +287,6 @@ fn finished(
         None => {}
     }
     Ok(mesh)
-}
-
-/// Gives the mesh the details of its corners, whose numbers in the table these are. Returns their bindings to joints.
-///
-/// # Errors
-/// [`GltfError::TooLarge`] and [`GltfError::Cancelled`].
-fn with_details(
-    mesh: &mut Mesh,
-    table: DetailTable,
-    numbers: &[u32],
-    notes: &mut Notes,
-    (budget, progress): (&Budget, &Progress),
-) -> Result<Vec<u32>, GltfError> {
-    let too_large =
-        |refused: MemoryRefused| GltfError::TooLarge { what: "the scene".to_owned(), reason: refused.into() };
-    let (mut details, mut bindings) = table.into_lists(numbers, budget).map_err(too_large)?;
-    let detailed = DetailedMesh { mesh, details: &mut details, bindings: &mut bindings };
-    notes.extend(tangents::complete(detailed, budget, progress)?);
-    mesh.details = Some(Arc::new(details));
-    Ok(bindings)
 }
 
 /// Returns the weights of a node's morph targets at rest: the node's own, or else those of its mesh.

@@ -7,6 +7,9 @@ use std::sync::Arc;
 use bevy_mikktspace::{Geometry, TangentSpace, generate_tangents};
 use glam::{Vec2, Vec3};
 
+use super::notes::Notes;
+use crate::mesh::build_limits::BuildError;
+use crate::mesh::detail_table::DetailTable;
 use crate::mesh::weld::weld;
 use crate::mesh::{Corner, CornerDetail, CornerDetails, MapUv, Material, MemoryAccount, Mesh, Slot};
 use crate::progress::{Cancelled, Progress};
@@ -24,11 +27,30 @@ const MAX_FAN: u64 = 4096;
 const MAX_PAIRS: u64 = 1 << 24;
 const PAIRS_A_TRIANGLE: u64 = 100;
 
+/// Gives a mesh the details of its corners, whose numbers in the table these are, with tangents. Returns their bindings to joints;
+/// `notes` gets a warning for each material that gets no tangents.
+///
+/// # Errors
+/// [`BuildError::Memory`] and [`BuildError::Cancelled`].
+pub(super) fn with_details(
+    mesh: &mut Mesh,
+    table: DetailTable,
+    numbers: &[u32],
+    notes: &mut Notes,
+    (budget, progress): (&dyn MemoryAccount, &Progress),
+) -> Result<Vec<u32>, BuildError> {
+    let (mut details, mut bindings) = table.into_lists(numbers, budget)?;
+    let detailed = DetailedMesh { mesh, details: &mut details, bindings: &mut bindings };
+    notes.extend(complete(detailed, budget, progress)?);
+    mesh.details = Some(Arc::new(details));
+    Ok(bindings)
+}
+
 /// A mesh that is being finished: its corners' details, and their bindings to joints.
-pub(super) struct DetailedMesh<'a> {
-    pub mesh: &'a mut Mesh,
-    pub details: &'a mut CornerDetails,
-    pub bindings: &'a mut Vec<u32>,
+struct DetailedMesh<'a> {
+    mesh: &'a mut Mesh,
+    details: &'a mut CornerDetails,
+    bindings: &'a mut Vec<u32>,
 }
 
 /// Gives tangents to the corners of normal-mapped triangles that have none. A corner that gets several becomes several corners,
@@ -36,11 +58,7 @@ pub(super) struct DetailedMesh<'a> {
 ///
 /// # Errors
 /// [`Cancelled`].
-pub(super) fn complete(
-    detailed: DetailedMesh,
-    budget: &dyn MemoryAccount,
-    progress: &Progress,
-) -> Result<Vec<String>, Cancelled> {
+fn complete(detailed: DetailedMesh, budget: &dyn MemoryAccount, progress: &Progress) -> Result<Vec<String>, Cancelled> {
     complete_by(BATCH, detailed, budget, progress)
 }
 
