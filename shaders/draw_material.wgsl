@@ -7,6 +7,9 @@ override HAS_COAT: bool = true;
 override HAS_MASK: bool = true;
 override HAS_TRANSMISSION: bool = true;
 override HAS_SHEEN: bool = true;
+// Whether pictures are drafts: the images of the mesh's materials count by their mean, but for that of the base colour, and its
+// normals are those of the surface. A place that shows more than half of what is behind it isn't there, and any other hides it.
+override IS_DRAFT: bool = false;
 // Lights of the file that shine.
 override LIGHT_COUNT: u32 = MOST_LIGHTS;
 
@@ -159,6 +162,14 @@ fn texel(image: texture_2d<f32>, image_sampler: sampler, at: ImagePlace) -> vec4
     return textureSampleGrad(image, image_sampler, at.uv, at.right, at.below);
 }
 
+// What an image other than that of the base colour says. The last mip level is the mean of an image.
+fn map_texel(image: texture_2d<f32>, image_sampler: sampler, at: ImagePlace) -> vec4<f32> {
+    if IS_DRAFT {
+        return textureLoad(image, vec2<i32>(0), textureNumLevels(image) - 1u);
+    }
+    return texel(image, image_sampler, at);
+}
+
 // The unit normal that a normal map makes of a unit shading normal (glTF 2.0, section 3.9.3), on the front. The tangent is made
 // perpendicular to the shading normal, which may be another one than at the corners, for example where the surface is displaced.
 fn mapped_normal(normal: vec3<f32>, tangent: vec3<f32>, bitangent_sign: f32, from_map: vec3<f32>) -> vec3<f32> {
@@ -188,10 +199,10 @@ fn look_at(place: SurfacePlace, detail: PlaceDetail, base: vec3<f32>, normal: ve
     look.occlusion = 1.0;
     if HAS_MAPS {
         let at = map_place(place, detail, SLOT_METALLIC_ROUGHNESS);
-        let numbers = texel(metallic_roughness_texture, metallic_roughness_sampler, at);
+        let numbers = map_texel(metallic_roughness_texture, metallic_roughness_sampler, at);
         look.roughness *= numbers.g;
         look.metallic *= numbers.b;
-        let occlusion = texel(occlusion_texture, occlusion_sampler, map_place(place, detail, SLOT_OCCLUSION)).r;
+        let occlusion = map_texel(occlusion_texture, occlusion_sampler, map_place(place, detail, SLOT_OCCLUSION)).r;
         look.occlusion = 1.0 + material.occlusion_strength * (occlusion - 1.0);
     }
     // A map of normals doesn't change the coat's (KHR_materials_clearcoat).
@@ -205,9 +216,9 @@ fn look_at(place: SurfacePlace, detail: PlaceDetail, base: vec3<f32>, normal: ve
         look.sheen_roughness = material.sheen_roughness;
         if HAS_MAPS {
             let at = map_place(place, detail, SLOT_SHEEN_COLOR);
-            look.sheen_color *= texel(sheen_color_texture, sheen_color_sampler, at).rgb;
+            look.sheen_color *= map_texel(sheen_color_texture, sheen_color_sampler, at).rgb;
             let roughness_at = map_place(place, detail, SLOT_SHEEN_ROUGHNESS);
-            look.sheen_roughness *= texel(sheen_roughness_texture, sheen_roughness_sampler, roughness_at).a;
+            look.sheen_roughness *= map_texel(sheen_roughness_texture, sheen_roughness_sampler, roughness_at).a;
         }
         look.sheen_albedo = environment_sheen(clamp(dot(normal, place.to_eye), 0.0, 1.0), look.sheen_roughness);
     }
@@ -264,7 +275,7 @@ fn transmission_at(place: SurfacePlace, detail: PlaceDetail) -> f32 {
     }
     var transmission = material.transmission;
     if HAS_MAPS {
-        transmission *= texel(transmission_texture, transmission_sampler, map_place(place, detail, SLOT_TRANSMISSION)).r;
+        transmission *= map_texel(transmission_texture, transmission_sampler, map_place(place, detail, SLOT_TRANSMISSION)).r;
     }
     return transmission;
 }
@@ -283,7 +294,7 @@ fn shows_behind(place: SurfacePlace) -> bool {
 // The unit normal on the side that is seen.
 fn shown_normal(place: SurfacePlace, detail: PlaceDetail) -> vec3<f32> {
     var normal = place.normal;
-    if HAS_MAPS && HAS_DETAILS {
+    if HAS_MAPS && HAS_DETAILS && !IS_DRAFT {
         let texel_of_normal = texel(normal_texture, normal_sampler, map_place(place, detail, SLOT_NORMAL)).rgb;
         normal = mapped_normal(normal, detail.tangent, detail.bitangent_sign, map_direction(texel_of_normal));
     }
@@ -301,7 +312,7 @@ fn surface_radiance(
 ) -> vec3<f32> {
     var emitted = material.emissive;
     if HAS_MAPS {
-        emitted *= texel(emissive_texture, emissive_sampler, map_place(place, detail, SLOT_EMISSIVE)).rgb;
+        emitted *= map_texel(emissive_texture, emissive_sampler, map_place(place, detail, SLOT_EMISSIVE)).rgb;
     }
     var radiance = ambient_reflection(look, normal, place.to_eye) + emitted * coat_transmission(look, place.to_eye);
     if LIGHT_COUNT > 0u {
@@ -317,9 +328,10 @@ fn material_color(place: SurfacePlace) -> vec4<f32> {
     let base = base_color(place, detail);
     let normal = shown_normal(place, detail);
     let color = surface_radiance(place, detail, base.rgb, look_at(place, detail, base.rgb, normal), normal);
-    var hides = !HAS_MASK || base.a >= material.cutoff;
+    let is_draft_of_blend = IS_DRAFT && material.blends > 0.5;
+    var hides = !HAS_MASK || base.a >= select(material.cutoff, 0.5, is_draft_of_blend);
     if HAS_TRANSMISSION {
-        hides = hides && transmission_at(place, detail) < LEAST_SEEN;
+        hides = hides && transmission_at(place, detail) < select(LEAST_SEEN, 0.5, IS_DRAFT);
     }
     return vec4<f32>(color, f32(hides));
 }

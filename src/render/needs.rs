@@ -22,6 +22,8 @@ pub(super) struct Needs {
     pub lights: usize,
     /// Whether a pixel's samples are masked one by one: see [`Self::own`].
     pub masked_samples: bool,
+    /// Whether it is for drafts: see [`Target::draft`](super::Target::draft).
+    pub draft: bool,
 }
 
 impl Needs {
@@ -35,6 +37,7 @@ impl Needs {
         sheen: true,
         lights: MOST_LIGHTS,
         masked_samples: false,
+        draft: false,
     };
 
     /// What a mesh needs under these settings.
@@ -53,15 +56,16 @@ impl Needs {
         needs
     }
 
-    /// The same for the pipeline of one of the mesh's materials, which hides what is behind it, in pictures with so many samples a
-    /// pixel: the border of a mask covers a part of them. Layers have each sample's alpha as it is.
-    pub(super) fn own(self, material: &Material, samples: u32) -> Self {
+    /// The same for the pipeline of one of the mesh's materials, which hides what is behind it, in such pictures: the border of a
+    /// mask covers a part of a pixel's samples. Layers have each sample's alpha as it is.
+    pub(super) fn own(self, material: &Material, quality: Quality) -> Self {
         let has_border = matches!(material.look.alpha, Alpha::Mask(_)) && !material.shows_behind();
-        Self { masked_samples: has_border && samples > 1, ..self }
+        let masked_samples = has_border && quality.samples > 1 && !quality.is_draft;
+        Self { masked_samples, draft: quality.is_draft, ..self }
     }
 
     /// The values of the constants of `shaders/draw_material.wgsl`.
-    pub(super) fn constants(self) -> [(&'static str, f64); 7] {
+    pub(super) fn constants(self) -> [(&'static str, f64); 8] {
         let switch = |is_needed| f64::from(u8::from(is_needed));
         [
             ("HAS_MAPS", switch(self.maps)),
@@ -70,9 +74,19 @@ impl Needs {
             ("HAS_MASK", switch(self.mask)),
             ("HAS_TRANSMISSION", switch(self.transmission)),
             ("HAS_SHEEN", switch(self.sheen)),
+            ("IS_DRAFT", switch(self.draft)),
             ("LIGHT_COUNT", self.lights as f64),
         ]
     }
+}
+
+/// How good the pictures are that a pipeline draws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Quality {
+    /// Samples a pixel.
+    pub samples: u32,
+    /// See [`Target::draft`](super::Target::draft).
+    pub is_draft: bool,
 }
 
 /// Whether a mesh has materials that are drawn in layers.
@@ -100,6 +114,7 @@ mod tests {
             sheen: false,
             lights: 0,
             masked_samples: false,
+            draft: false,
         };
         assert_eq!(Needs::of(&mesh, &settings), nothing);
         let mut coated = Material::plain("coated", [1.0; 4]);
@@ -110,8 +125,10 @@ mod tests {
         leaves.look.alpha = Alpha::Mask(0.5);
         mesh.materials.push(leaves);
         assert_eq!(Needs::of(&mesh, &settings), Needs { coat: true, mask: true, ..nothing });
-        let own = |samples| mesh.materials.iter().map(move |own| nothing.own(own, samples).masked_samples);
-        assert!(own(4).eq([false, false, true]) && own(1).eq([false; 3]));
+        let quality = |samples, is_draft| Quality { samples, is_draft };
+        let own = |quality| mesh.materials.iter().map(move |own| nothing.own(own, quality).masked_samples);
+        assert!(own(quality(4, false)).eq([false, false, true]));
+        assert!(own(quality(1, false)).eq([false; 3]) && own(quality(4, true)).eq([false; 3]));
         assert!(!has_layers(&mesh));
         let mut glass = Material::plain("glass", [1.0; 4]);
         glass.look.transmission = 1.0;

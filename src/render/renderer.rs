@@ -16,7 +16,7 @@ use super::layout::{linear, overlay_bits};
 use super::look::Look;
 use super::matcap::{MatcapPicture, Matcaps};
 use super::materials::Materials;
-use super::needs::Needs;
+use super::needs::{Needs, Quality};
 use super::pipelines::{Draw, DrawPipelines, Faces, Occluded, Triangles};
 use super::steps::{Step, halves, runs, steps};
 use super::target::samples;
@@ -110,11 +110,11 @@ impl Renderer {
         if settings.overlays.colors == Colors::Matcap {
             self.matcaps.group(&self.gpu, &self.materials, settings.matcap)?;
         }
-        let mesh = scene.tessellator.mesh();
+        let (mesh, full) = (scene.tessellator.mesh(), Quality { samples: self.samples, is_draft: false });
         let mut draws: Vec<_> =
-            mesh.materials.iter().map(|own| surface_draw(settings, mesh, own, faces, self.samples)).collect();
+            mesh.materials.iter().map(|own| surface_draw(settings, mesh, own, faces, full)).collect();
         if settings.split.is_some() && settings.half(SplitSide::Left).is_none() {
-            draws.extend(mesh.materials.iter().map(|own| source_draw(settings, mesh, own, self.samples)));
+            draws.extend(mesh.materials.iter().map(|own| source_draw(settings, mesh, own, full)));
         }
         if settings.overlays.colors == Colors::Excess {
             scene.tessellator.prepare_own_least(settings.tessellation.partitioning)?;
@@ -225,7 +225,7 @@ impl Renderer {
             let (Some(drawn), Some(frame)) = (scene.half(half), &frames[half as usize]) else { continue };
             let (group, rect) = (self.scene_group(drawn, frame), rects[half as usize]);
             let source = if first && !has_left && rects[SplitSide::Left as usize][2] > 0 {
-                Some(self.source_pipelines(scene.tessellator.mesh(), settings)?)
+                Some(self.source_pipelines(scene.tessellator.mesh(), target, settings)?)
             } else {
                 None
             };
@@ -323,6 +323,10 @@ impl Renderer {
         Ok((self.get(Draw::Background)?, self.gpu.device.create_bind_group(&descriptor)))
     }
 
+    fn quality(&self, target: &Target) -> Quality {
+        Quality { samples: self.samples, is_draft: target.is_draft() }
+    }
+
     /// The pipelines for lines: first for all of them, faintly, then for the parts in sight.
     fn line_pipelines(&self, draw: fn(Occluded) -> Draw) -> Result<[wgpu::RenderPipeline; 2], GpuError> {
         Ok([self.get(draw(Occluded::Through))?, self.get(draw(Occluded::InSight))?])
@@ -341,15 +345,20 @@ impl Renderer {
         // These two overlays show faces from behind.
         let fronts = !folds && !back_faces && scene.tessellator.shows_fronts_only(clip_from_object);
         let (mesh, faces) = (scene.tessellator.mesh(), if fronts { Faces::Fronts } else { Faces::Both });
-        let draws = mesh.materials.iter().map(|own| surface_draw(settings, mesh, own, faces, self.samples));
+        let draws = mesh.materials.iter().map(|own| surface_draw(settings, mesh, own, faces, self.quality(target)));
         let materials = draws.map(|draw| Ok(vec![self.get(draw)?])).collect::<Result<_, GpuError>>()?;
         let pulled = emitted_triangles(settings) == Triangles::Pulled;
         Ok(Surfaces { materials, pulled, fronts, sifted: false })
     }
 
     /// The pipelines that draw input triangles, for each of the mesh's materials.
-    fn source_pipelines(&self, mesh: &Mesh, settings: &Settings) -> Result<Vec<Vec<wgpu::RenderPipeline>>, GpuError> {
-        let draws = mesh.materials.iter().map(|own| source_draw(settings, mesh, own, self.samples));
+    fn source_pipelines(
+        &self,
+        mesh: &Mesh,
+        target: &Target,
+        settings: &Settings,
+    ) -> Result<Vec<Vec<wgpu::RenderPipeline>>, GpuError> {
+        let draws = mesh.materials.iter().map(|own| source_draw(settings, mesh, own, self.quality(target)));
         draws.map(|draw| Ok(vec![self.get(draw)?])).collect()
     }
 
@@ -483,8 +492,8 @@ impl Renderer {
     }
 }
 
-/// The pipeline for emitted triangles of a material, in pictures with so many samples a pixel.
-fn surface_draw(settings: &Settings, mesh: &Mesh, material: &Material, faces: Faces, samples: u32) -> Draw {
+/// The pipeline for emitted triangles of a material, in such pictures.
+fn surface_draw(settings: &Settings, mesh: &Mesh, material: &Material, faces: Faces, quality: Quality) -> Draw {
     let places = settings.used_normals_at(mesh);
     let triangles = emitted_triangles(settings);
     match (triangles, Look::of(settings.overlays.colors)) {
@@ -494,7 +503,7 @@ fn surface_draw(settings: &Settings, mesh: &Mesh, material: &Material, faces: Fa
                 Triangles::Indexed => Draw::LitIndexed,
                 _ => Draw::Lit,
             };
-            draw(faces, places, Needs::of(mesh, settings).own(material, samples))
+            draw(faces, places, Needs::of(mesh, settings).own(material, quality))
         }
         (Triangles::Pulled, Some(look)) => Draw::LookPulled(faces, places, look),
         (_, Some(look)) => Draw::LookIndexed(faces, places, look),
@@ -528,10 +537,10 @@ fn ground_step(steps: &[Step], scene: &Scene, camera: &Camera) -> usize {
     before_layers.unwrap_or(steps.len() - 1)
 }
 
-/// The pipeline for input triangles of a material, in pictures with so many samples a pixel.
-fn source_draw(settings: &Settings, mesh: &Mesh, material: &Material, samples: u32) -> Draw {
+/// The pipeline for input triangles of a material, in such pictures.
+fn source_draw(settings: &Settings, mesh: &Mesh, material: &Material, quality: Quality) -> Draw {
     match Look::of(settings.overlays.colors) {
-        _ if settings.shows_materials() => Draw::LitSource(Needs::of(mesh, settings).own(material, samples)),
+        _ if settings.shows_materials() => Draw::LitSource(Needs::of(mesh, settings).own(material, quality)),
         Some(look) => Draw::LookSource(look),
         None => Draw::Source,
     }

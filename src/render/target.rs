@@ -24,6 +24,8 @@ pub struct Target {
     layer_depths: Lazy<[wgpu::TextureView; 2]>,
     /// Whether pictures have no background: where nothing is drawn they are transparent.
     is_transparent: bool,
+    /// Whether pictures leave out what takes a software driver longest: see [`Self::draft`].
+    is_draft: bool,
 }
 
 /// The format that egui shows and a PNG holds: bytes encoded as sRGB, which sampling doesn't decode.
@@ -62,8 +64,9 @@ impl Target {
         let multisampled =
             (samples > 1).then(|| view(texture("target.multisampled", COLOR_FORMAT, samples, drawn, &[])));
         let depth = depth_view(gpu, "target.depth", [width, height]);
-        let (size, layer_depths, is_transparent) = ([width, height], Lazy::default(), false);
-        Ok(Self { size, resolved, resolved_srgb, multisampled, depth, layer_depths, is_transparent })
+        let (size, layer_depths) = ([width, height], Lazy::default());
+        let (is_transparent, is_draft) = (false, false);
+        Ok(Self { size, resolved, resolved_srgb, multisampled, depth, layer_depths, is_transparent, is_draft })
     }
 
     /// The same, for pictures that are transparent where nothing is drawn.
@@ -72,6 +75,20 @@ impl Target {
     /// The same.
     pub fn transparent(gpu: &Gpu, size: [u32; 2]) -> Result<Self, GpuError> {
         Ok(Self { is_transparent: true, ..Self::new(gpu, size)? })
+    }
+
+    /// The same, for drafts of pictures. The images of a material count by their mean, but for that of the base colour, and its
+    /// normals are those of the surface. A place that shows more than half of what is behind it isn't drawn, and any other hides
+    /// what is behind.
+    ///
+    /// # Errors
+    /// The same.
+    pub(crate) fn draft(gpu: &Gpu, size: [u32; 2]) -> Result<Self, GpuError> {
+        Ok(Self { is_draft: true, ..Self::new(gpu, size)? })
+    }
+
+    pub(super) fn is_draft(&self) -> bool {
+        self.is_draft
     }
 
     /// Whether nothing is behind what is drawn.

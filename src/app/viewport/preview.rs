@@ -170,7 +170,8 @@ impl Preview {
         if self.target.as_ref().is_some_and(|(target, _)| target.size == size(self.coarseness)) {
             return Ok(());
         }
-        let target = Target::new(&engine.gpu, size(self.coarseness))?;
+        let make = if engine.gpu.is_software() { Target::draft } else { Target::new };
+        let target = make(&engine.gpu, size(self.coarseness))?;
         let shown = painting.shown(&engine.gpu, &target, wgpu::FilterMode::Linear);
         self.target = Some((target, shown));
         // The new target is empty.

@@ -94,7 +94,7 @@ impl Renderer {
         draws.map(|draws| draws.into_iter().map(|draw| self.get(draw)).collect()).collect()
     }
 
-    /// The parts of both halves, which lie in `rects`, that layers can cover: nothing in a picture without layers.
+    /// The parts of both halves, which lie in `rects`, that layers can cover: nothing in a picture without layers, or in a draft.
     pub(super) fn layer_areas(
         &self,
         scene: &Scene,
@@ -103,7 +103,7 @@ impl Renderer {
         settings: &Settings,
         rects: [Area; 2],
     ) -> [Area; 2] {
-        if !settings.shows_materials() || !has_layers(scene.tessellator.mesh()) {
+        if target.is_draft() || !settings.shows_materials() || !has_layers(scene.tessellator.mesh()) {
             return [[0; 4]; 2];
         }
         if self.peels_everywhere {
