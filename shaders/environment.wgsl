@@ -23,6 +23,8 @@ const DFG_SIZE: u32 = 64u;
 @group(1) @binding(16) var environment_map: texture_cube<f32>;
 @group(1) @binding(17) var environment_sampler: sampler;
 @group(1) @binding(18) var dfg_table: texture_2d<f32>;
+// No branch depends on this uniform, nor on those of materials and lights: see draw_surface.wgsl. Where a material has no coat or no
+// sheen, these count as 0; where no material of the mesh has one, compilers leave them out.
 @group(1) @binding(19) var<uniform> surroundings: Surroundings;
 
 // The level of the cube map that has a roughness. Levels are closer where surfaces are smooth.
@@ -68,25 +70,18 @@ fn ambient_reflection(look: LookAt, normal: vec3<f32>, to_eye: vec3<f32>) -> vec
     light.facing = clamp(dot(normal, to_eye), 0.0, 1.0);
     light.reflected = environment_radiance(dominant_direction(normal, to_eye, look.roughness), look.roughness);
     light.dfg = environment_dfg(light.facing, look.roughness);
-    if look.coat > 0.0 {
-        light.coat_facing = clamp(dot(look.coat_normal, to_eye), 0.0, 1.0);
-        let coat_direction = dominant_direction(look.coat_normal, to_eye, look.coat_roughness);
-        light.coat_reflected = environment_radiance(coat_direction, look.coat_roughness);
-        light.coat_dfg = environment_dfg(light.coat_facing, look.coat_roughness);
-    }
-    if has_sheen(look) {
-        light.sheen = environment_irradiance(sheen_direction(normal, to_eye));
-    }
+    light.coat_facing = clamp(dot(look.coat_normal, to_eye), 0.0, 1.0);
+    let coat_direction = dominant_direction(look.coat_normal, to_eye, look.coat_roughness);
+    light.coat_reflected = environment_radiance(coat_direction, look.coat_roughness);
+    light.coat_dfg = environment_dfg(light.coat_facing, look.coat_roughness);
+    light.sheen = environment_irradiance(sheen_direction(normal, to_eye));
     return reflect_ambient(look, light);
 }
 
 // The part of emitted light that gets through the coat towards the eye.
 fn coat_transmission(look: LookAt, to_eye: vec3<f32>) -> f32 {
-    if look.coat <= 0.0 {
-        return 1.0;
-    }
     let facing = clamp(dot(look.coat_normal, to_eye), 0.0, 1.0);
-    return 1.0 - coat_albedo(look, environment_dfg(facing, look.coat_roughness));
+    return select(1.0, 1.0 - coat_albedo(look, environment_dfg(facing, look.coat_roughness)), look.coat > 0.0);
 }
 
 // The part of the light from right behind a thin surface that comes through it towards the eye.

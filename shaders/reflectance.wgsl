@@ -148,19 +148,14 @@ fn reflect_ambient(look: LookAt, light: AmbientLight) -> vec3<f32> {
     let metal = albedo_at_once(look.base_color, 1.0, light.dfg) * reflected
         + albedo_of_more(look.base_color, 1.0, light.dfg) * diffuse;
     var base = mix(dielectric, metal, look.metallic);
-    if has_sheen(look) {
-        let sheen = look.sheen_color * light.sheen * (look.occlusion * min(look.sheen_albedo, 1.0));
-        base = base * sheen_scaling(look) + sheen;
-    }
-    if look.coat <= 0.0 {
-        return base;
-    }
+    let sheen = look.sheen_color * light.sheen * (look.occlusion * min(look.sheen_albedo, 1.0));
+    base = select(base, base * sheen_scaling(look) + sheen, has_sheen(look));
     let coat_f0 = vec3<f32>(COAT_F0);
     let coat_reflected =
         light.coat_reflected * unoccluded_reflection(look.occlusion, light.coat_facing, look.coat_roughness);
     let coat = albedo_at_once(coat_f0, 1.0, light.coat_dfg) * coat_reflected
         + albedo_of_more(coat_f0, 1.0, light.coat_dfg) * diffuse;
-    return base * (1.0 - coat_albedo(look, light.coat_dfg)) + look.coat * coat;
+    return select(base, base * (1.0 - coat_albedo(look, light.coat_dfg)) + look.coat * coat, look.coat > 0.0);
 }
 
 // The part of the light from right behind a thin surface that comes through it towards the eye: what isn't reflected, in the base
@@ -179,15 +174,12 @@ fn direct_reflection(look: LookAt, normal: vec3<f32>, to_eye: vec3<f32>, to_ligh
     let half_way = normalize(to_eye + to_light);
     let schlick = fifth_power(1.0 - clamp(dot(half_way, to_eye), 0.0, 1.0));
     var base = direct_base_reflection(look, normal, to_eye, to_light, half_way, schlick);
-    if has_sheen(look) {
-        base = base * sheen_scaling(look) + look.sheen_color * direct_sheen(look, normal, to_eye, to_light, half_way);
-    }
-    if look.coat <= 0.0 {
-        return base;
-    }
+    let sheen = look.sheen_color * direct_sheen(look, normal, to_eye, to_light, half_way);
+    base = select(base, base * sheen_scaling(look) + sheen, has_sheen(look));
     let coat_fresnel = COAT_F0 + (1.0 - COAT_F0) * fifth_power(1.0 - abs(dot(look.coat_normal, to_eye)));
     let coat = look.coat * coat_fresnel;
-    return base * (1.0 - coat) + coat * direct_lobe(look.coat_normal, to_eye, to_light, half_way, look.coat_roughness);
+    let coat_lobe = direct_lobe(look.coat_normal, to_eye, to_light, half_way, look.coat_roughness);
+    return select(base, base * (1.0 - coat) + coat * coat_lobe, look.coat > 0.0);
 }
 
 // Reflection by microfacets that are perfect mirrors.

@@ -27,8 +27,5 @@ fn neutral_tone(color: vec3<f32>) -> vec3<f32> {
 // Linear RGB to show, by the curve of that number; 0 to 1 under the neutral one.
 fn tone_mapped(color: vec3<f32>, curve: u32) -> vec3<f32> {
     let light = max(color, vec3<f32>(0.0));
-    if curve == TONE_CURVE_NEUTRAL {
-        return neutral_tone(light);
-    }
-    return light;
+    return select(light, neutral_tone(light), curve == TONE_CURVE_NEUTRAL);
 }
