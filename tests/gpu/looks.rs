@@ -60,10 +60,16 @@ fn flat(colors: Colors) -> Settings {
 pub(super) fn square_picture(mesh: &Mesh, settings: &Settings, azimuth: f32, side: u32) -> RgbaImage {
     let mut scene = scene_of(mesh.clone(), 0.0);
     let target = Target::new(&engine().gpu, [side; 2]).expect("a small picture");
-    let framed = Camera::framing(&scene.bounds, target.viewport());
-    let distance = framed.distance * 2.0 / (side as f32 * framed.units_per_pixel(side as f32));
-    let camera = Camera { azimuth, elevation: 0.0, orthographic: true, distance, ..framed };
+    let camera = Camera { azimuth, ..facing(&scene, &target) };
     seen(&mut scene, &target, settings, &camera)
+}
+
+/// The camera for which a square fills the view, seen from the front.
+pub(super) fn facing(scene: &Scene, target: &Target) -> Camera {
+    let side = target.viewport().y;
+    let framed = Camera::framing(&scene.bounds, target.viewport());
+    let distance = framed.distance * 2.0 / (side * framed.units_per_pixel(side));
+    Camera { azimuth: 0.0, elevation: 0.0, orthographic: true, distance, ..framed }
 }
 
 fn drawn(mesh: &Mesh, settings: &Settings, azimuth: f32) -> RgbaImage {

@@ -48,7 +48,7 @@ fn square(normal: Vec3, material: Material) -> Mesh {
 }
 
 /// The mesh with details of every corner, made of its texture coordinates.
-fn with_details(mut mesh: Mesh, detail: impl Fn(Vec2) -> CornerDetail) -> Mesh {
+pub(super) fn with_details(mut mesh: Mesh, detail: impl Fn(Vec2) -> CornerDetail) -> Mesh {
     mesh.details = Some(Arc::new(mesh.corners.iter().map(|corner| detail(corner.uv)).collect()));
     mesh
 }

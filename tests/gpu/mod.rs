@@ -10,6 +10,7 @@ mod deforming;
 mod deviation;
 mod displacement;
 mod domain;
+mod drafts;
 mod embed;
 mod environment;
 mod error;

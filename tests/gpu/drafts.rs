@@ -1,0 +1,86 @@
+//! Drafts of pictures: what they leave out, and what they must not.
+
+use glam::{Vec2, Vec3};
+use image::RgbaImage;
+use pnaen::mesh::{Alpha, CornerDetail, Look, MapUv, Material, Slot};
+use pnaen::render::Target;
+use pnaen::settings::Settings;
+
+use crate::gpu_tests::engine;
+use crate::gpu_tests::looks::{facing, square_of};
+use crate::gpu_tests::materials::{
+    PLACES, SIDE, assert_near, at, every_way, image, look_with, map, material, studio, with_details,
+};
+use crate::gpu_tests::stability::{scene_of, seen};
+
+/// A draft and the whole picture of a square that fills the view.
+fn both(material: Material, settings: &Settings) -> [RgbaImage; 2] {
+    // With details, images may have texture coordinates of their own.
+    let mesh = with_details(square_of(material, Vec3::Z, Vec2::ONE), |uv| CornerDetail {
+        uvs: [uv; 2],
+        tangent: Vec3::X,
+        ..CornerDetail::default()
+    });
+    let gpu = &engine().gpu;
+    [Target::draft, Target::new].map(|make| {
+        let target = make(gpu, [SIDE; 2]).expect("a small picture");
+        let mut scene = scene_of(mesh.clone(), 0.0);
+        let camera = facing(&scene, &target);
+        seen(&mut scene, &target, settings, &camera)
+    })
+}
+
+fn assert_same(material: &Material, what: &str) {
+    for settings in every_way(studio()) {
+        let [draft, whole] = both(material.clone(), &settings);
+        for place in PLACES {
+            assert_near(at(&draft, place), at(&whole, place), 1, &format!("{what} at {place:?} with {settings:?}"));
+        }
+    }
+}
+
+#[test]
+fn a_draft_has_the_colours_of_a_material_whose_images_are_even() {
+    assert_same(&material([0.7, 0.4, 0.2], Look { metallic: 0.5, roughness: 0.3, ..Look::default() }), "no images");
+    let look = Look { metallic: 1.0, roughness: 1.0, emissive: [0.5; 3], ..Look::default() };
+    let even = |texel: [u8; 4]| map(image([4, 2], &[texel; 8]), MapUv::Own);
+    let look = look_with(Slot::MetallicRoughness, even([0, 100, 30, 255]), look);
+    let look = look_with(Slot::Emissive, even([200, 20, 90, 255]), look);
+    assert_same(&material([0.7, 0.4, 0.2], look), "even images");
+}
+
+#[test]
+fn a_draft_has_the_mean_of_an_uneven_image_and_no_normal_map() {
+    let look = Look { metallic: 1.0, roughness: 1.0, ..Look::default() };
+    let checks = [[0, 40, 0, 255], [0, 200, 255, 255]];
+    let uneven = map(image([2, 2], &[checks[0], checks[1], checks[1], checks[0]]), MapUv::Own);
+    let mean = map(image([1, 1], &[[0, 120, 128, 255]]), MapUv::Own);
+    let leaning = map(image([1, 1], &[[200, 128, 200, 255]]), MapUv::Own);
+    let uneven = look_with(Slot::Normal, leaning, look_with(Slot::MetallicRoughness, uneven, look.clone()));
+    let even = look_with(Slot::MetallicRoughness, mean, look);
+    let [draft, whole] = both(material([0.7, 0.4, 0.2], uneven), &studio());
+    let [_, expected] = both(material([0.7, 0.4, 0.2], even), &studio());
+    for place in PLACES {
+        assert_near(at(&draft, place), at(&expected, place), 2, &format!("the mean at {place:?}"));
+    }
+    assert!(PLACES.iter().any(|&place| at(&draft, place) != at(&whole, place)), "the whole picture has the images");
+}
+
+/// A square of one colour, of which so much is seen.
+fn blended(alpha: f32) -> Material {
+    let look = Look { alpha: Alpha::Blend, unlit: true, ..Look::default() };
+    Material { look, double_sided: true, ..Material::plain("glass", [0.2, 0.6, 0.9, alpha]) }
+}
+
+#[test]
+fn a_draft_shows_a_surface_wholly_or_not_at_all() {
+    let background = [40, 60, 30];
+    let settings = Settings { background: Some(background), ..studio() };
+    let shown = |material| at(&both(material, &settings)[0], PLACES[0]);
+    let opaque = shown(Material { look: Look { unlit: true, ..Look::default() }, ..blended(1.0) });
+    assert_eq!(shown(blended(0.45)), background, "more than half of the background is seen");
+    assert_eq!(shown(blended(0.55)), opaque, "less than half of the background is seen");
+    let clear = |transmission| material([0.7; 3], Look { transmission, ..Look::default() });
+    assert_eq!(shown(clear(0.6)), background, "more than half of the light comes through");
+    assert_ne!(shown(clear(0.4)), background, "less than half of the light comes through");
+}
