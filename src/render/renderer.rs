@@ -16,7 +16,7 @@ use super::layout::{linear, overlay_bits};
 use super::look::Look;
 use super::matcap::{MatcapPicture, Matcaps};
 use super::materials::Materials;
-use super::needs::Needs;
+use super::needs::{Cut, Needs};
 use super::pipelines::{Draw, DrawPipelines, Faces, Occluded, Triangles};
 use super::steps::{Step, halves, runs, steps};
 use super::target::samples;
@@ -487,6 +487,10 @@ impl Renderer {
 fn surface_draw(settings: &Settings, mesh: &Mesh, material: &Material, faces: Faces, samples: u32) -> Draw {
     let places = settings.used_normals_at(mesh);
     let triangles = emitted_triangles(settings);
+    if let Some(cut) = Cut::of(settings, mesh, material, samples) {
+        let triangles = if triangles == Triangles::Lit { Triangles::Indexed } else { triangles };
+        return Draw::Cut(triangles, faces, places, cut);
+    }
     match (triangles, Look::of(settings.overlays.colors)) {
         _ if settings.shows_materials() => {
             let draw = match triangles {
@@ -530,6 +534,9 @@ fn ground_step(steps: &[Step], scene: &Scene, camera: &Camera) -> usize {
 
 /// The pipeline for input triangles of a material, in pictures with so many samples a pixel.
 fn source_draw(settings: &Settings, mesh: &Mesh, material: &Material, samples: u32) -> Draw {
+    if let Some(cut) = Cut::of(settings, mesh, material, samples) {
+        return Draw::Cut(Triangles::Source, Faces::Both, NormalsAt::Vertices, cut);
+    }
     match Look::of(settings.overlays.colors) {
         _ if settings.shows_materials() => Draw::LitSource(Needs::of(mesh, settings).own(material, samples)),
         Some(look) => Draw::LookSource(look),
