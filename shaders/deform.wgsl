@@ -66,6 +66,18 @@ fn deform_tangent(matrix: JointMatrix, tangent: vec4<f32>) -> vec4<f32> {
     return vec4<f32>(scaled_unit_or(turned, tangent.xyz), sign);
 }
 
+// Turns a vector by the least rotation that takes one unit vector to another (Möller and Hughes 1999). Returns the vector itself if
+// the two are opposite.
+fn turn_along(vector: vec3<f32>, start: vec3<f32>, end: vec3<f32>) -> vec3<f32> {
+    let axis = cross(start, end);
+    let cosine = dot(start, end);
+    if 1.0 + cosine < 1e-6 {
+        return vector;
+    }
+    let across = cross(axis, vector);
+    return vector + across + cross(axis, across) * (1.0 / (1.0 + cosine));
+}
+
 // Returns the rows of the linear part, scaled so that no product of two entries overflows or underflows.
 fn scaled_rows(matrix: JointMatrix) -> array<vec3<f32>, 3> {
     let largest_xy = max(largest_component(matrix.x.xyz), largest_component(matrix.y.xyz));

@@ -394,6 +394,46 @@ fn masked_surface_pixel(in: Varyings, normal: vec3<f32>, front: bool) -> MaskedS
     return MaskedSurfacePixel(vec4<f32>(color.rgb, 1.0), samples);
 }
 
+// The same with the lights at the camera.
+@fragment
+fn cut_samples_fragment(in: Varyings, @builtin(front_facing) front: bool) -> MaskedSurfacePixel {
+    return cut_samples_pixel(in, in.normal, front);
+}
+
+@fragment
+fn pixel_cut_samples_fragment(in: Varyings, @builtin(front_facing) front: bool) -> MaskedSurfacePixel {
+    return cut_samples_pixel(in, pixel_normal(in.patch_index, in.domain.xy), front);
+}
+
+fn cut_samples_pixel(in: Varyings, normal: vec3<f32>, front: bool) -> MaskedSurfacePixel {
+    let place = lit_surface_place(in, normal, front);
+    let color = surface_color(in, normal, front, vec4<f32>(0.0));
+    let samples = mask_samples(place);
+    if samples == 0u {
+        discard;
+    }
+    return MaskedSurfacePixel(vec4<f32>(color.rgb, 1.0), samples);
+}
+
+@fragment
+fn cut_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    return cut_surface_color(in, in.normal, front);
+}
+
+@fragment
+fn pixel_cut_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    return cut_surface_color(in, pixel_normal(in.patch_index, in.domain.xy), front);
+}
+
+fn cut_surface_color(in: Varyings, normal: vec3<f32>, front: bool) -> vec4<f32> {
+    let place = lit_surface_place(in, normal, front);
+    let color = surface_color(in, normal, front, vec4<f32>(0.0));
+    if base_color(place, place_detail(place)).a < material.cutoff {
+        discard;
+    }
+    return vec4<f32>(color.rgb, 1.0);
+}
+
 fn lit_surface_place(in: Varyings, normal: vec3<f32>, front: bool) -> SurfacePlace {
     let to_eye = toward_eye(frame.clip_from_object, frame.viewport, in.clip.xy);
     var position: vec3<f32>;

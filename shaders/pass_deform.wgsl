@@ -25,14 +25,24 @@ fn posed_position(corner: u32) -> vec3<f32> {
     return deform_position(posed_matrix(bound), position);
 }
 
-fn posed_normal(corner: u32) -> vec3<f32> {
-    let bound = bindings[corner];
+// The unit normal of a corner that morph targets have turned.
+fn morphed_normal(bound: Binding) -> vec3<f32> {
     var normal = bound.normal;
     for (var i = 0u; i < bound.delta_count; i++) {
         let delta = deltas[bound.first_delta + i];
         normal += delta.normal * morph_weights[delta.weight];
     }
-    return deform_normal(posed_matrix(bound), unit_or(normal, bound.normal));
+    return unit_or(normal, bound.normal);
+}
+
+// Morph targets turn a corner's tangent along with its normal.
+fn posed_tangent(corner: u32, normal: vec3<f32>) -> vec4<f32> {
+    let bound = bindings[corner];
+    var tangent = tangents[corner];
+    if bound.delta_count > 0u {
+        tangent = vec4<f32>(turn_along(tangent.xyz, unit_or(bound.normal, bound.normal), normal), tangent.w);
+    }
+    return deform_tangent(posed_matrix(bound), tangent);
 }
 
 fn posed_matrix(bound: Binding) -> JointMatrix {
@@ -48,9 +58,11 @@ fn deform_corners_main(
 ) {
     let index = grid_index(workgroup, workgroups, local);
     if index < arrayLength(&bindings) {
-        corners[index].normal = posed_normal(index);
+        let bound = bindings[index];
+        let normal = morphed_normal(bound);
+        corners[index].normal = deform_normal(posed_matrix(bound), normal);
         if index < arrayLength(&tangents) {
-            corner_details[index].tangent = deform_tangent(posed_matrix(bindings[index]), tangents[index]);
+            corner_details[index].tangent = posed_tangent(index, normal);
         }
     }
 }

@@ -12,6 +12,7 @@ pub use crate::gpu::device::Gpu;
 pub use crate::gpu::layout::{CurveNet, Patch as PatchLayout};
 pub use crate::gpu::readback::read_buffer;
 pub use crate::gpu::recorder::{DRAWING, PASSES, PassTime, Timing, take_times};
+pub use crate::load::environment_file::{EnvironmentFault, EnvironmentFile};
 pub use crate::load::heights::{HeightError, HeightSource};
 pub use crate::load::memory_budget::Budget;
 pub use crate::load::mesh_file::{Format, read};

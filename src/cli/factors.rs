@@ -40,7 +40,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let posed = loaded.posed(moment);
     let (mesh, topology) = (&posed.mesh, &posed.topology);
     let bounds = bounds_through(&loaded.mesh, moment.map(|moment| moment.clip));
-    let view = args.surface.camera(mesh, &bounds)?.lod_view(args.surface.viewport(), &bounds);
+    let view = args.surface.camera(mesh, moment, &bounds)?.lod_view(args.surface.viewport(), &bounds);
     let written = match args.device {
         Device::Cpu => {
             let count = |settings: &Settings| Ok(tessellate::totals(mesh, topology, &settings.inputs(view)).1);

@@ -14,7 +14,7 @@ use super::{AnimationOption, CliError};
 use crate::engine::Preparation;
 use crate::files::Limits;
 use crate::load::HeightSource;
-use crate::mesh::{Bounds, FileCamera, Mesh};
+use crate::mesh::{Bounds, FileCamera, Mesh, Moment};
 use crate::render::Camera;
 use crate::render::camera::FIELD_OF_VIEW;
 use crate::settings::options::TOLERANCE_RANGE;
@@ -185,13 +185,15 @@ impl SurfaceOptions {
         self.arena << 20
     }
 
-    /// Returns the camera of these options for a mesh with these bounds. Without a distance it shows everything that is drawn.
+    /// Returns the camera of these options for a mesh with these bounds, at a moment of one of its clips. Without a distance it shows
+    /// everything that is drawn.
     ///
     /// # Errors
     /// The mesh has no camera of the name that was asked for.
-    pub(crate) fn camera(&self, mesh: &Mesh, bounds: &Bounds) -> Result<Camera, CliError> {
+    pub(crate) fn camera(&self, mesh: &Mesh, moment: Option<Moment>, bounds: &Bounds) -> Result<Camera, CliError> {
         if let Some(wanted) = &self.file_camera {
-            return file_camera(mesh, wanted).map(|camera| Camera::of_file(camera, bounds));
+            let cameras = mesh.cameras_at(moment);
+            return file_camera(&mesh.name, &cameras, wanted).map(|camera| Camera::of_file(camera, bounds));
         }
         let mut camera = Camera { field_of_view: self.field_of_view, roll: self.roll, ..Camera::default() };
         camera.frame(&bounds.grown(self.settings().reach(mesh)), self.viewport());
@@ -211,12 +213,12 @@ impl SurfaceOptions {
 }
 
 /// Finds a camera of the file by its name, or by its number from 0 if none has that name.
-fn file_camera<'a>(mesh: &'a Mesh, wanted: &str) -> Result<&'a FileCamera, CliError> {
-    let named = mesh.cameras.iter().find(|camera| camera.name == wanted);
-    let numbered = || mesh.cameras.get(wanted.parse::<usize>().ok()?);
+fn file_camera<'a>(mesh: &str, cameras: &'a [FileCamera], wanted: &str) -> Result<&'a FileCamera, CliError> {
+    let named = cameras.iter().find(|camera| camera.name == wanted);
+    let numbered = || cameras.get(wanted.parse::<usize>().ok()?);
     named.or_else(numbered).ok_or_else(|| {
-        let known = mesh.cameras.iter().map(|camera| camera.name.clone()).collect();
-        CliError::NoCamera { mesh: mesh.name.clone(), wanted: wanted.to_owned(), known }
+        let known = cameras.iter().map(|camera| camera.name.clone()).collect();
+        CliError::NoCamera { mesh: mesh.to_owned(), wanted: wanted.to_owned(), known }
     })
 }
 

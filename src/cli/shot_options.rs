@@ -129,7 +129,7 @@ impl ShotOptions {
         }
         let mesh = &subject.loaded.mesh;
         let view = ShotView {
-            camera: self.surface.camera(mesh, &scene.bounds)?,
+            camera: self.surface.camera(mesh, subject.moment, &scene.bounds)?,
             lod_camera: self.lod.camera(&self.surface, mesh, &scene.bounds)?,
             size: self.surface.size.0,
             transparent: self.transparent,

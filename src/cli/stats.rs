@@ -9,7 +9,7 @@ use super::silhouette::SilhouetteStats;
 use super::truth::{AccuracyStats, DeviationStats};
 use crate::engine::{Engine, Loaded};
 use crate::gpu::PassTime;
-use crate::measure::{Measured, Seams};
+use crate::measure::{MappedSeams, Measured, Seams};
 use crate::mesh::{EdgeCounts, Topology};
 use crate::render::Scene;
 use crate::settings::{Choice, Declaration, Settings, options};
@@ -195,6 +195,33 @@ struct SeamStats {
     source_mean_degrees: f64,
     /// The most by which the tessellation's angle at a point is larger than the mesh's.
     max_added_degrees: f64,
+    /// The same under normal maps; null if no seam has one.
+    mapped: Option<MappedSeamStats>,
+}
+
+#[derive(Debug, Serialize)]
+struct MappedSeamStats {
+    edges: u64,
+    points: u64,
+    max_degrees: f64,
+    mean_degrees: f64,
+    source_max_degrees: f64,
+    source_mean_degrees: f64,
+    max_added_degrees: f64,
+}
+
+impl MappedSeamStats {
+    fn new(mapped: &MappedSeams) -> Self {
+        Self {
+            edges: mapped.edges,
+            points: mapped.points,
+            max_degrees: mapped.emitted.most,
+            mean_degrees: mapped.mean(mapped.emitted),
+            source_max_degrees: mapped.source.most,
+            source_mean_degrees: mapped.mean(mapped.source),
+            max_added_degrees: mapped.most_added,
+        }
+    }
 }
 
 impl SeamStats {
@@ -207,6 +234,7 @@ impl SeamStats {
             source_max_degrees: seams.source.most,
             source_mean_degrees: seams.mean(seams.source),
             max_added_degrees: seams.most_added,
+            mapped: (seams.mapped.edges > 0).then(|| MappedSeamStats::new(&seams.mapped)),
         }
     }
 }

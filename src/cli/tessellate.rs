@@ -6,6 +6,7 @@ use clap::ValueEnum;
 
 use super::{
     AdapterOption, CliError, FactorsOption, SurfaceOptions, file_of, file_of_heights, keep_apart, load_apart, options,
+    warn,
 };
 use crate::engine::Engine;
 use crate::export::Exported;
@@ -51,7 +52,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 pub(crate) fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
     args.surface.check()?;
     args.adapter.check(args.device == Device::Cpu)?;
-    Exported::check(&args.output, 0, 0)?;
+    Exported::check_ending(&args.output)?;
     let heights = file_of_heights(args.surface.height.as_ref());
     keep_apart([file_of(&args.file), heights, args.given.given.as_deref()], [Some(&*args.output)])?;
     let loaded = load_apart(&args.file, &args.surface.preparation(), &[Some(&args.output)])?;
@@ -60,7 +61,7 @@ pub(crate) fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuE
     let (mesh, topology) = (&posed.mesh, &posed.topology);
     let given = args.given.read(mesh, topology, &args.surface.tessellation())?.map(|given| given.factors);
     let bounds = bounds_through(&loaded.mesh, moment.map(|moment| moment.clip));
-    let view = args.surface.camera(mesh, &bounds)?.lod_view(args.surface.viewport(), &bounds);
+    let view = args.surface.camera(mesh, moment, &bounds)?.lod_view(args.surface.viewport(), &bounds);
     let tessellated = match args.device {
         Device::Cpu => {
             let count = |settings: &Settings| Ok(tessellate::totals(mesh, topology, &settings.inputs(view)).1);
@@ -69,7 +70,7 @@ pub(crate) fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuE
                 Some(given) => tessellate::given_totals(given, &inputs),
                 None => tessellate::totals(mesh, topology, &inputs),
             };
-            Exported::check(&args.output, vertices, triangles)?;
+            Exported::check(&args.output, mesh, vertices, triangles)?;
             match &given {
                 Some(given) => tessellate::tessellate_given(mesh, topology, &inputs, given),
                 None => tessellate::tessellate(mesh, topology, &inputs, None),
@@ -87,9 +88,10 @@ pub(crate) fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuE
             let inputs = settings.inputs(view);
             engine.count(&mut scene, &inputs, &mut Timing::Off)?;
             let (vertices, triangles) = scene.tessellator.totals();
-            Exported::check(&args.output, vertices, triangles)?;
+            Exported::check(&args.output, mesh, vertices, triangles)?;
             engine.read_tessellated(&mut scene)?
         }
     };
-    Ok(Exported::new(mesh, topology, &tessellated).write(&args.output)?)
+    warn(&Exported::new(mesh, topology, &tessellated).write(&args.output)?);
+    Ok(())
 }

@@ -1,175 +1,223 @@
-//! Writes binary glTF 2.0: positions, normals, uvs, and materials.
+//! Writes binary glTF 2.0: the attributes of vertices, the materials with their images, and the lights. What other programs draw
+//! of it is what this one draws, as far as they know the extensions.
 
+mod lights;
 mod materials;
 
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 
-use glam::Vec3;
-use gltf::json::validation::Checked::Valid;
-use gltf::json::validation::USize64;
-use gltf::json::{self, Index, Root};
+use glam::{Vec3, Vec4};
+use serde_json::{Map, Value, json};
 
+use super::attributes::Attributes;
 use super::{ExportError, Exported};
+use crate::mesh::CornerDetail;
 
-use materials::Written;
+use materials::{Images, UvSet, UvSets};
 
 /// The most bytes of binary data. The length of a GLB file has 32 bits, and its JSON needs room as well.
 pub(super) const MAX_BYTES: u64 = u32::MAX as u64 - (1 << 24);
 
+const FLOAT: u32 = 5126;
+const UNSIGNED_INT: u32 = 5125;
+const ARRAY_BUFFER: u32 = 34962;
+const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+const TRIANGLES: u32 = 4;
+
 /// Returns the size of a mesh's attributes and indices in bytes.
-pub(super) fn bytes(vertices: u64, triangles: u64) -> u64 {
-    vertices * 32 + triangles * 12
+pub(super) fn bytes(attributes: Attributes, vertices: u64, triangles: u64) -> u64 {
+    vertices * attributes.bytes() + triangles * 12
 }
 
-/// Returns the bytes of a file; `path` is for messages.
+/// Returns the bytes of a file, and sentences about what is drawn but has no place in it; `path` is for messages.
 ///
 /// # Errors
 /// The file would be larger than 4 GiB, or a texture can't be encoded.
-pub(super) fn encode(mesh: &Exported, path: &str) -> Result<Vec<u8>, ExportError> {
+pub(super) fn encode(mesh: &Exported, path: &str) -> Result<(Vec<u8>, Vec<String>), ExportError> {
     let triangles: usize = mesh.triangles.iter().map(Vec::len).sum();
-    let bytes = bytes(mesh.positions.len() as u64, triangles as u64);
+    let used = Attributes::of(mesh.mesh);
+    let bytes = bytes(used, mesh.positions.len() as u64, triangles as u64);
     if bytes > MAX_BYTES {
         return Err(ExportError::TooLarge { path: path.to_owned(), triangles: triangles as u64 });
     }
-    let mut writer = Writer { root: Root::default(), bin: Vec::with_capacity(bytes as usize) };
-    let attributes = writer.attributes(mesh);
+    let mut writer = Writer { bin: Vec::with_capacity(bytes as usize), ..Writer::default() };
+    let accessors = writer.vertices(mesh, used);
     let mut primitives = Vec::new();
-    let mut written = Written::default();
+    let mut images = Images::default();
     for (material, triangles) in mesh.mesh.materials.iter().zip(&mesh.triangles) {
         if triangles.is_empty() {
             continue;
         }
-        let material = writer.material(material, &mut written, path)?;
-        primitives.push(writer.primitive(attributes.clone(), triangles, material));
+        let sets = UvSets::of(material);
+        let index = writer.material(material, &sets, &mut images, path)?;
+        primitives.push(writer.primitive(accessors.attributes(&sets), triangles, index));
     }
-    writer.finish(&mesh.mesh.name, primitives).map_err(|reason| ExportError::Texture { path: path.to_owned(), reason })
+    writer.finish(mesh, primitives).map_err(|reason| ExportError::Texture { path: path.to_owned(), reason })
 }
 
-type Attributes = std::collections::BTreeMap<json::validation::Checked<json::mesh::Semantic>, Index<json::Accessor>>;
-
+/// A document that is being written, and its binary data.
+#[derive(Default)]
 struct Writer {
-    root: Root,
     bin: Vec<u8>,
+    views: Vec<Value>,
+    accessors: Vec<Value>,
+    images: Vec<Value>,
+    samplers: Vec<Value>,
+    textures: Vec<Value>,
+    materials: Vec<Value>,
+    extensions: BTreeSet<&'static str>,
+    warnings: Vec<String>,
+}
+
+/// Indices of the accessors of all vertices.
+struct VertexAccessors {
+    position: usize,
+    normal: usize,
+    /// The texture coordinates of the base colour.
+    uv: usize,
+    sets: [Option<usize>; 2],
+    color: Option<usize>,
+    tangent: Option<usize>,
+}
+
+impl VertexAccessors {
+    /// Returns the attributes of a primitive with these texture coordinates.
+    fn attributes(&self, sets: &UvSets) -> Value {
+        let mut attributes = json!({ "POSITION": self.position, "NORMAL": self.normal });
+        for (n, set) in sets.written().enumerate() {
+            let accessor = match set {
+                UvSet::Own => Some(self.uv),
+                UvSet::File(set) => self.sets[set],
+            };
+            // Without details, maps are drawn at the texture coordinates of the base colour.
+            attributes[format!("TEXCOORD_{n}")] = json!(accessor.unwrap_or(self.uv));
+        }
+        for (name, accessor) in [("COLOR_0", self.color), ("TANGENT", self.tangent)] {
+            if let Some(accessor) = accessor {
+                attributes[name] = json!(accessor);
+            }
+        }
+        attributes
+    }
 }
 
 impl Writer {
     /// Appends bytes as a new buffer view, which starts at a multiple of 4.
-    fn view(&mut self, bytes: &[u8], target: Option<json::buffer::Target>) -> Index<json::buffer::View> {
+    fn view(&mut self, bytes: &[u8], target: Option<u32>) -> usize {
         let offset = self.bin.len();
         self.bin.extend_from_slice(bytes);
         self.bin.resize(self.bin.len().next_multiple_of(4), 0);
-        self.root.push(json::buffer::View {
-            buffer: Index::new(0),
-            byte_length: USize64::from(bytes.len()),
-            byte_offset: Some(USize64::from(offset)),
-            byte_stride: None,
-            name: None,
-            target: target.map(Valid),
-            extensions: None,
-            extras: Default::default(),
-        })
-    }
-
-    fn accessor(
-        &mut self,
-        bytes: &[u8],
-        count: usize,
-        kind: json::accessor::Type,
-        component: json::accessor::ComponentType,
-        bounds: Option<[Vec3; 2]>,
-    ) -> Index<json::Accessor> {
-        let target = match component {
-            json::accessor::ComponentType::U32 => json::buffer::Target::ElementArrayBuffer,
-            _ => json::buffer::Target::ArrayBuffer,
-        };
-        let view = self.view(bytes, Some(target));
-        let value = |v: Vec3| json::Value::from(v.to_array().to_vec());
-        self.root.push(json::Accessor {
-            buffer_view: Some(view),
-            byte_offset: None,
-            count: USize64::from(count),
-            component_type: Valid(json::accessor::GenericComponentType(component)),
-            type_: Valid(kind),
-            min: bounds.map(|[min, _]| value(min)),
-            max: bounds.map(|[_, max]| value(max)),
-            name: None,
-            normalized: false,
-            sparse: None,
-            extensions: None,
-            extras: Default::default(),
-        })
-    }
-
-    fn attributes(&mut self, mesh: &Exported) -> Attributes {
-        use json::accessor::{ComponentType::F32, Type};
-        let zero = mesh.positions.first().copied().unwrap_or_default();
-        let bounds = mesh.positions.iter().fold([zero; 2], |[min, max], p| [min.min(*p), max.max(*p)]);
-        let count = mesh.positions.len();
-        let positions = bytemuck::cast_slice(&mesh.positions);
-        Attributes::from([
-            (Valid(json::mesh::Semantic::Positions), self.accessor(positions, count, Type::Vec3, F32, Some(bounds))),
-            (
-                Valid(json::mesh::Semantic::Normals),
-                self.accessor(bytemuck::cast_slice(&mesh.normals), count, Type::Vec3, F32, None),
-            ),
-            (
-                Valid(json::mesh::Semantic::TexCoords(0)),
-                self.accessor(bytemuck::cast_slice(&mesh.uvs), count, Type::Vec2, F32, None),
-            ),
-        ])
-    }
-
-    fn primitive(
-        &mut self,
-        attributes: Attributes,
-        triangles: &[[u32; 3]],
-        material: Index<json::Material>,
-    ) -> json::mesh::Primitive {
-        let (bytes, count) = (bytemuck::cast_slice(triangles), triangles.len() * 3);
-        let indices =
-            self.accessor(bytes, count, json::accessor::Type::Scalar, json::accessor::ComponentType::U32, None);
-        json::mesh::Primitive {
-            attributes,
-            indices: Some(indices),
-            material: Some(material),
-            mode: Valid(json::mesh::Mode::Triangles),
-            targets: None,
-            extensions: None,
-            extras: Default::default(),
+        let mut view = json!({ "buffer": 0, "byteOffset": offset, "byteLength": bytes.len() });
+        if let Some(target) = target {
+            view["target"] = json!(target);
         }
+        pushed(&mut self.views, view)
     }
 
-    fn finish(mut self, name: &str, primitives: Vec<json::mesh::Primitive>) -> Result<Vec<u8>, String> {
+    /// Appends vectors of floats, one for each vertex.
+    fn floats<const N: usize>(&mut self, values: &[[f32; N]]) -> usize {
+        let view = self.view(bytemuck::cast_slice(values.as_flattened()), Some(ARRAY_BUFFER));
+        let (kind, count) = (format!("VEC{N}"), values.len());
+        pushed(&mut self.accessors, json!({ "bufferView": view, "componentType": FLOAT, "count": count, "type": kind }))
+    }
+
+    fn vertices(&mut self, mesh: &Exported, used: Attributes) -> VertexAccessors {
+        let zero = mesh.positions.first().copied().unwrap_or_default();
+        let [min, max] = mesh.positions.iter().fold([zero; 2], |[min, max], p| [min.min(*p), max.max(*p)]);
+        let position = self.floats::<3>(bytemuck::cast_slice(&mesh.positions));
+        self.accessors[position]["min"] = json!(min.to_array());
+        self.accessors[position]["max"] = json!(max.to_array());
+        let normal = self.floats::<3>(bytemuck::cast_slice(&mesh.normals));
+        let uv = self.floats::<2>(bytemuck::cast_slice(&mesh.uvs));
+        let mut accessors = VertexAccessors { position, normal, uv, sets: [None; 2], color: None, tangent: None };
+        let details = &mesh.details;
+        for set in (0..2).filter(|&set| used.sets[set]) {
+            let uvs: Vec<_> = details.iter().map(|detail| detail.uvs[set].to_array()).collect();
+            accessors.sets[set] = Some(self.floats(&uvs));
+        }
+        if used.colors {
+            let colors: Vec<_> = details.iter().map(|detail| detail.color.to_array()).collect();
+            accessors.color = Some(self.floats(&colors));
+        }
+        if used.tangents {
+            let tangents = details.iter().zip(&mesh.normals).map(|(detail, normal)| tangent(detail, *normal));
+            accessors.tangent = Some(self.floats(&tangents.collect::<Vec<_>>()));
+        }
+        accessors
+    }
+
+    fn primitive(&mut self, attributes: Value, triangles: &[[u32; 3]], material: usize) -> Value {
+        let view = self.view(bytemuck::cast_slice(triangles), Some(ELEMENT_ARRAY_BUFFER));
+        let count = triangles.len() * 3;
+        let indices = pushed(
+            &mut self.accessors,
+            json!({ "bufferView": view, "componentType": UNSIGNED_INT, "count": count, "type": "SCALAR" }),
+        );
+        json!({ "attributes": attributes, "indices": indices, "material": material, "mode": TRIANGLES })
+    }
+
+    /// Adds an extension to an object, and names it in the document.
+    fn extend(&mut self, object: &mut Value, name: &'static str, members: Value) {
+        object["extensions"][name] = members;
+        self.extensions.insert(name);
+    }
+
+    fn finish(mut self, mesh: &Exported, primitives: Vec<Value>) -> Result<(Vec<u8>, Vec<String>), String> {
+        let mut nodes = Vec::new();
+        let mut root = json!({
+            "asset": { "version": "2.0", "generator": concat!("pnaen ", env!("CARGO_PKG_VERSION")) },
+        });
         // A mesh without primitives is not valid glTF; an empty scene is.
         if !primitives.is_empty() {
-            let mesh = self.root.push(json::Mesh {
-                name: Some(name.to_owned()),
-                primitives,
-                weights: None,
-                extensions: None,
-                extras: Default::default(),
-            });
-            self.root.push(json::Node { mesh: Some(mesh), ..Default::default() });
+            root["meshes"] = json!([{ "name": mesh.mesh.name, "primitives": primitives }]);
+            nodes.push(json!({ "mesh": 0 }));
         }
-        self.root.asset.generator = Some(concat!("pnaen ", env!("CARGO_PKG_VERSION")).to_owned());
-        let nodes = (0..self.root.nodes.len() as u32).map(Index::new).collect();
-        let scene = self.root.push(json::Scene { name: None, nodes, extensions: None, extras: Default::default() });
-        self.root.scene = Some(scene);
-        self.root.push(json::Buffer {
-            byte_length: USize64::from(self.bin.len()),
-            name: None,
-            uri: None,
-            extensions: None,
-            extras: Default::default(),
-        });
-        let json = self.root.to_vec().map_err(|error| error.to_string())?;
+        self.lights(&mesh.mesh.lights, &mut root, &mut nodes);
+        let mut scene = Map::new();
+        if !nodes.is_empty() {
+            scene.insert("nodes".to_owned(), (0..nodes.len()).collect());
+        }
+        root["scene"] = json!(0);
+        root["scenes"] = json!([scene]);
+        if !self.bin.is_empty() {
+            root["buffers"] = json!([{ "byteLength": self.bin.len() }]);
+        }
+        let lists = [
+            ("nodes", nodes),
+            ("bufferViews", self.views),
+            ("accessors", self.accessors),
+            ("images", self.images),
+            ("samplers", self.samplers),
+            ("textures", self.textures),
+            ("materials", self.materials),
+            ("extensionsUsed", self.extensions.into_iter().map(Value::from).collect()),
+        ];
+        // Empty lists are not valid glTF.
+        for (name, list) in lists.into_iter().filter(|(_, list)| !list.is_empty()) {
+            root[name] = Value::Array(list);
+        }
+        let json = serde_json::to_vec(&root).map_err(|error| error.to_string())?;
         let glb = gltf::binary::Glb {
             header: gltf::binary::Header { magic: *b"glTF", version: 2, length: 0 },
             json: Cow::Owned(json),
-            bin: Some(Cow::Owned(self.bin)),
+            bin: (!self.bin.is_empty()).then_some(Cow::Owned(self.bin)),
         };
-        glb.to_vec().map_err(|error| error.to_string())
+        Ok((glb.to_vec().map_err(|error| error.to_string())?, self.warnings))
     }
+}
+
+/// Appends to a list, and returns the index.
+fn pushed(list: &mut Vec<Value>, value: Value) -> usize {
+    list.push(value);
+    list.len() - 1
+}
+
+/// Returns the tangent of a vertex as glTF has it: of unit length, also where none is known.
+fn tangent(detail: &CornerDetail, normal: Vec3) -> [f32; 4] {
+    let known = detail.tangent.try_normalize();
+    let tangent = known.unwrap_or_else(|| normal.try_normalize().unwrap_or(Vec3::Z).any_orthonormal_vector());
+    Vec4::from((tangent, detail.bitangent_sign)).to_array()
 }
 
 #[cfg(test)]

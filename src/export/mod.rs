@@ -1,5 +1,6 @@
 //! Writes tessellated meshes to files.
 
+mod attributes;
 mod glb;
 mod obj;
 
@@ -8,19 +9,26 @@ use std::path::Path;
 use glam::{Vec2, Vec3};
 use thiserror::Error;
 
+use attributes::Attributes;
+
 use crate::files::{file_reason, write_whole};
-use crate::mesh::{Mesh, Topology};
+use crate::mesh::{CornerDetail, Mesh, Topology};
 use crate::names::shown_path;
-use crate::tessellate::{Tessellated, linear_normal, linear_uv};
+use crate::tessellate::{Tessellated, Vertex, linear_normal, linear_uv, unpack_normal};
+
+/// The greatest sine of the angle between a unit normal and the same once it was packed: 0.004 degrees, and a little more.
+const PACKING_ERROR: f32 = 1e-4;
 
 /// A tessellated mesh: the attributes of each vertex, and a list of triangles for each material.
 pub(crate) struct Exported<'a> {
-    /// The mesh that was tessellated: its name and materials are written.
+    /// The mesh that was tessellated: its name, materials and lights are written.
     pub mesh: &'a Mesh,
     /// In object units.
     pub positions: Vec<Vec3>,
     pub normals: Vec<Vec3>,
     pub uvs: Vec<Vec2>,
+    /// What vertices have beside these; empty if the mesh's corners have no more.
+    pub details: Vec<CornerDetail>,
     /// The triangles of each material, as indices of vertices.
     pub triangles: Vec<Vec<[u32; 3]>>,
 }
@@ -41,16 +49,21 @@ pub(crate) enum ExportError {
 }
 
 impl<'a> Exported<'a> {
-    /// Collects the attributes of every emitted vertex. Positions are those that were emitted. Normals and uvs are interpolated
-    /// once more, since emitted normals are packed, which is precise enough only for drawing.
+    /// Collects the attributes of every emitted vertex. Positions are those that were emitted, and so are normals, but those that
+    /// are linear between corners are interpolated once more: emitted normals are packed, which is precise enough only for
+    /// drawing.
     pub(crate) fn new(mesh: &'a Mesh, topology: &Topology, tessellated: &Tessellated) -> Self {
-        let corners = |patch: u32| topology.patch_corners(patch).map(|c| &mesh.corners[c as usize]);
         let vertices = &tessellated.vertices;
+        let corners = |vertex: &Vertex| topology.patch_corners(vertex.patch());
         let attributes = vertices.iter().map(|vertex| {
-            let ([u, v], corners) = (vertex.domain(), corners(vertex.patch()));
-            (linear_normal(corners.map(|c| c.normal), u, v), linear_uv(corners.map(|c| c.uv), u, v))
+            let ([u, v], corners) = (vertex.domain(), corners(vertex).map(|c| &mesh.corners[c as usize]));
+            (normal(vertex, corners.map(|c| c.normal)), linear_uv(corners.map(|c| c.uv), u, v))
         });
         let (normals, uvs) = attributes.unzip();
+        let details = mesh.details.iter().flat_map(|details| {
+            let own = |vertex| corners(vertex).map(|corner| &details[corner as usize]);
+            vertices.iter().map(move |vertex| CornerDetail::blended(own(vertex), vertex.weights()))
+        });
         let mut triangles = vec![Vec::new(); mesh.materials.len()];
         for &triangle in &tessellated.triangles {
             let patch = vertices[triangle[0] as usize].patch();
@@ -58,41 +71,63 @@ impl<'a> Exported<'a> {
             triangles[material].push(triangle);
         }
         let positions = vertices.iter().map(|vertex| Vec3::from(vertex.position)).collect();
-        Self { mesh, positions, normals, uvs, triangles }
+        Self { mesh, positions, normals, uvs, details: details.collect(), triangles }
     }
 
-    /// Checks that a file with this name can hold so many vertices and triangles, before they are read back.
+    /// Checks that a file's name has an ending that can be written.
     ///
     /// # Errors
-    /// The ending is neither .glb nor .obj, or the format can't hold that many.
-    pub(crate) fn check(path: &Path, vertices: u64, triangles: u64) -> Result<(), ExportError> {
-        let shown = shown_path(path);
+    /// The ending is neither .glb nor .obj.
+    pub(crate) fn check_ending(path: &Path) -> Result<(), ExportError> {
         match ending(path).as_str() {
-            // This program writes 32-bit indices in both formats.
-            "obj" if vertices <= u64::from(u32::MAX) => Ok(()),
-            "glb" if glb::bytes(vertices, triangles) <= glb::MAX_BYTES => Ok(()),
-            "glb" | "obj" => Err(ExportError::TooLarge { path: shown, triangles }),
-            _ => Err(ExportError::Extension { path: shown }),
+            "glb" | "obj" => Ok(()),
+            _ => Err(ExportError::Extension { path: shown_path(path) }),
         }
     }
 
+    /// Checks that a file with this name can hold so many vertices and triangles of a mesh, before they are read back.
+    ///
+    /// # Errors
+    /// The ending is neither .glb nor .obj, or the format can't hold that many.
+    pub(crate) fn check(path: &Path, mesh: &Mesh, vertices: u64, triangles: u64) -> Result<(), ExportError> {
+        Self::check_ending(path)?;
+        // This program writes 32-bit indices in both formats.
+        let fits = match ending(path).as_str() {
+            "obj" => vertices <= u64::from(u32::MAX),
+            _ => glb::bytes(Attributes::of(mesh), vertices, triangles) <= glb::MAX_BYTES,
+        };
+        if fits { Ok(()) } else { Err(ExportError::TooLarge { path: shown_path(path), triangles }) }
+    }
+
     /// Writes a .glb or .obj file, depending on the path's ending. The file is written under another name first and then renamed,
-    /// so that a failure leaves an older file intact.
+    /// so that a failure leaves an older file intact. Returns sentences about what is drawn but couldn't be written.
     ///
     /// # Errors
     /// The ending is another one, the file can't be written, or the format can't hold that many triangles.
-    pub(crate) fn write(&self, path: &Path) -> Result<(), ExportError> {
+    pub(crate) fn write(&self, path: &Path) -> Result<Vec<String>, ExportError> {
         let shown = shown_path(path);
-        let bytes = match ending(path).as_str() {
+        let (bytes, warnings) = match ending(path).as_str() {
             "glb" => glb::encode(self, &shown)?,
-            "obj" => obj::encode(self),
+            "obj" => (obj::encode(self), obj::left_out(self.mesh, &shown).into_iter().collect()),
             _ => return Err(ExportError::Extension { path: shown }),
         };
-        write_whole(path, &bytes).map_err(|reason| ExportError::Io { path: shown, reason })
+        write_whole(path, &bytes).map_err(|reason| ExportError::Io { path: shown, reason })?;
+        Ok(warnings)
     }
+}
+
+/// Returns the normal of an emitted vertex, of a patch whose corners have these normals.
+fn normal(vertex: &Vertex, corners: [Vec3; 3]) -> Vec3 {
+    let [u, v] = vertex.domain();
+    let (linear, emitted) = (linear_normal(corners, u, v), unpack_normal(vertex.normal));
+    let is_linear = linear.cross(emitted).length() < PACKING_ERROR && linear.dot(emitted) > 0.0;
+    if is_linear { linear } else { emitted }
 }
 
 /// Returns the ending of a file's name without its dot, in lower case; empty if there is none.
 pub(crate) fn ending(path: &Path) -> String {
     path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase()
 }
+
+#[cfg(test)]
+mod tests;

@@ -2,7 +2,10 @@
 
 use std::fmt::Write;
 
+use glam::Vec4;
+
 use super::Exported;
+use crate::mesh::{Material, Mesh};
 
 /// Returns the text of a file.
 pub(super) fn encode(mesh: &Exported) -> Vec<u8> {
@@ -24,4 +27,21 @@ pub(super) fn encode(mesh: &Exported) -> Vec<u8> {
         }
     }
     text.into_bytes()
+}
+
+/// Returns a sentence about what is drawn of a mesh but isn't written, if there is something.
+pub(super) fn left_out(mesh: &Mesh, path: &str) -> Option<String> {
+    let materials = &mesh.materials;
+    let is_plain = |own: &Material| own.texture.is_none() && own.look.maps.iter().all(Option::is_none);
+    let has_materials = materials.len() > 1 || !materials.iter().all(is_plain);
+    let has_colors = mesh.details.iter().any(|details| details.iter().any(|detail| detail.color != Vec4::ONE));
+    let parts = [
+        (has_materials, "its materials"),
+        (has_colors, "the colours of its vertices"),
+        (!mesh.lights.is_empty(), "its lights"),
+    ];
+    let parts: Vec<&str> = parts.into_iter().filter(|(has, _)| *has).map(|(_, part)| part).collect();
+    let (last, others) = parts.split_last()?;
+    let all = if others.is_empty() { (*last).to_owned() } else { format!("{} and {last}", others.join(", ")) };
+    Some(format!("{path}: the mesh is written without {all}; a .glb file holds them."))
 }

@@ -11,7 +11,7 @@ pub(super) struct SceneNodes {
     pub order: Vec<usize>,
     /// Each node's own transform.
     pub local: Vec<LocalTransform>,
-    /// Which nodes carry something that is shown, on them or below them: a mesh, or a joint of a mesh's skin.
+    /// Which nodes carry something that is shown, on them or below them: a mesh, a joint of a mesh's skin, a light or a camera.
     pub carries: Vec<bool>,
     /// The nodes that are shown and have morph targets, with the targets' weights at rest.
     pub morphed: Vec<(usize, Vec<f32>)>,

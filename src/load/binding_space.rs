@@ -1,6 +1,6 @@
 //! Transforms vertices into the space that the matrices of their joints start from.
 
-use glam::{DMat3, DMat4, DVec3, Vec3};
+use glam::{DMat3, DMat4, DQuat, DVec3, Vec3};
 
 use crate::mesh::CornerDetail;
 use crate::mesh::normals::GivenNormal;
@@ -65,8 +65,8 @@ fn finite(vector: DVec3) -> [f32; 3] {
 }
 
 /// Returns the tangent of a binding, and the sign of its bitangent, that become those of `detail` in a pose. Where the blended
-/// matrix has no inverse, the tangent is that of the pose.
-pub(super) fn unturned(binding: &Binding, pose: &Pose, detail: &CornerDetail) -> [f32; 4] {
+/// matrix has no inverse, the tangent is that of the pose. `deltas` are those of the rig.
+pub(super) fn unturned(binding: &Binding, deltas: &[Delta], pose: &Pose, detail: &CornerDetail) -> [f32; 4] {
     let mut rows = [DVec3::ZERO; 3];
     for (&joint, &weight) in binding.joints.iter().zip(&binding.weights) {
         for (sum, row) in rows.iter_mut().zip(pose.palette[joint as usize].rows()) {
@@ -77,8 +77,23 @@ pub(super) fn unturned(binding: &Binding, pose: &Pose, detail: &CornerDetail) ->
     let determinant = linear.determinant();
     let own = (linear.inverse() * detail.tangent.as_dvec3()).try_normalize().map(DVec3::as_vec3);
     let tangent = own.filter(|_| determinant != 0.0).unwrap_or(detail.tangent);
+    let tangent = unmorphed(tangent, binding, deltas, pose);
     let sign = if determinant < 0.0 { -detail.bitangent_sign } else { detail.bitangent_sign };
     tangent.extend(sign).to_array()
+}
+
+/// Returns the tangent that morph targets turn to `tangent` in a pose, along with the normal of the binding.
+fn unmorphed(tangent: Vec3, binding: &Binding, deltas: &[Delta], pose: &Pose) -> Vec3 {
+    let own = Vec3::from(binding.normal).as_dvec3();
+    let mut morphed = own;
+    for delta in &deltas[binding.first_delta as usize..][..binding.delta_count as usize] {
+        morphed += Vec3::from(delta.normal).as_dvec3() * f64::from(pose.weights[delta.weight as usize]);
+    }
+    let (Some(own), Some(morphed)) = (own.try_normalize(), morphed.try_normalize()) else { return tangent };
+    if morphed == own {
+        return tangent;
+    }
+    (DQuat::from_rotation_arc(morphed, own) * tangent.as_dvec3()).as_vec3()
 }
 
 /// Returns the normal of a binding that becomes `normal` in a pose: the transpose of its blended matrix times `normal`.

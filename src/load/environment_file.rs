@@ -34,9 +34,9 @@ const OPEN_EXR: &[u8] = b"\x76\x2f\x31\x01";
 
 /// The light of a file, and what was repaired.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct EnvironmentFile {
+pub struct EnvironmentFile {
     /// At most 4096 x 2048 px.
-    pub panorama: Panorama,
+    pub(crate) panorama: Panorama,
     /// In sentences, after the file's name if it has one.
     pub warnings: Vec<String>,
 }
@@ -57,7 +57,7 @@ pub(crate) enum EnvironmentError {
 
 /// What is wrong in a file. The message doesn't contain the file's path.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum EnvironmentFault {
+pub enum EnvironmentFault {
     /// Reading was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -100,6 +100,16 @@ pub(crate) fn is_environment(path: &Path) -> bool {
 }
 
 impl EnvironmentFile {
+    /// Width and height of the panorama in px.
+    pub fn size(&self) -> [u32; 2] {
+        self.panorama.size()
+    }
+
+    /// The radiance of all pixels: their red, green and blue, one after another.
+    pub fn radiance(&self) -> impl Iterator<Item = f32> {
+        self.panorama.pixels().iter().flat_map(|pixel| pixel.to_array())
+    }
+
     /// Reads a file; its first bytes tell the format. Sets `progress` from 0 to 1.
     ///
     /// # Errors
@@ -121,7 +131,7 @@ impl EnvironmentFile {
     ///
     /// # Errors
     /// [`EnvironmentFault`].
-    pub(crate) fn read(bytes: &[u8], limits: &Limits, progress: &Progress) -> Result<Self, EnvironmentFault> {
+    pub fn read(bytes: &[u8], limits: &Limits, progress: &Progress) -> Result<Self, EnvironmentFault> {
         let kind = Kind::of(bytes)?;
         let budget = Budget::new(bytes.len(), limits);
         let pixels = pixels(kind, bytes, &budget, &progress.part(0.0, 0.7));

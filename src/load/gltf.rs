@@ -64,6 +64,7 @@ use super::{notes, rig_builder};
 use crate::files::Limits;
 use crate::mesh::detail_table::DetailTable;
 use crate::mesh::mesh_builder::MeshBuilder;
+use crate::mesh::rig::Joint;
 use crate::mesh::{MemoryAccount, Mesh};
 use crate::progress::Progress;
 
@@ -117,15 +118,31 @@ pub(super) fn read(
     let mut warnings = Vec::new();
     let clips = animations::read(animations, &document, &accessors, &mut warnings);
     progress.check()?;
-    let binder = match clips.is_empty() {
+    let moves_meshes = rig_nodes::move_meshes(&clips, &document, &placed);
+    let mut binder = match clips.is_empty() {
         true => None,
-        false => RigBuilder::new(clips, &rig_nodes::of(&document, &placed), &mut warnings),
+        false => {
+            let also = lights.nodes().chain(cameras.nodes());
+            RigBuilder::new(clips, &rig_nodes::of(&document, &placed, also), &mut warnings)
+        }
     };
     notes.extend(std::mem::take(&mut warnings));
     let mut materials = Materials::new(&lists, &document, &placed, (&accessors, &files), &budget)?;
     let is_detailed = needs_details(&document, &placed, &materials);
-    let beside = PerVertex { moves: binder.is_some(), is_detailed };
-    let needs = scene_size::check(&document, (&placed, &extensions.instances), &accessors, &budget, beside)?;
+    let check = |moves| {
+        let beside = PerVertex { moves, is_detailed };
+        scene_size::check(&document, (&placed, &extensions.instances), &accessors, &budget, beside)
+    };
+    let needs = match check(binder.is_some()) {
+        Err(GltfError::TooLarge { .. }) if binder.is_some() && !moves_meshes => {
+            binder = None;
+            let said = "animations are left out: they move only lights and cameras, and for a mesh of this size that takes too \
+                        much memory.";
+            notes.push(said.to_owned());
+            check(false)?
+        }
+        checked => checked?,
+    };
     materials.read_images(needs.bytes, progress)?;
     let mut scene = Scene {
         document: &document,
@@ -164,11 +181,24 @@ pub(super) fn read(
     budget.release(lists.bytes());
     drop(lists);
     progress.set(0.8);
+    let (mut of_lights, mut of_cameras) = (Notes::default(), Notes::default());
+    let lights = lights.shown(&placed, &mut of_lights);
+    let cameras = cameras.shown(&placed, &mut of_cameras);
+    let mounts = |nodes: Vec<usize>| -> Vec<Joint> {
+        let all: Vec<_> = binder.iter().flat_map(|own| nodes.iter().map(|node| own.mount(*node))).collect();
+        if all.iter().any(|mount| mount.node.is_some()) { all } else { Vec::new() }
+    };
+    let mounts = [mounts(nodes_of(&lights)), mounts(nodes_of(&cameras))];
     let mut mesh = finished(name, (builder, details, binder), &mut notes, (&budget, progress))?;
+    if let Some(rig) = mesh.rig.as_mut().and_then(Arc::get_mut) {
+        [rig.lights, rig.cameras] = mounts;
+    }
     // The builder gets transformed normals of unit length, so the reader counts those that weren't in the file.
     mesh.repairs.normals_rescaled += primitives.rescaled;
-    mesh.lights = lights.shown(&placed, &mut notes);
-    mesh.cameras = cameras.shown(&placed, &mut notes);
+    mesh.lights = lights.into_iter().map(|(_, light)| light).collect();
+    mesh.cameras = cameras.into_iter().map(|(_, camera)| camera).collect();
+    notes.append(of_lights);
+    notes.append(of_cameras);
     warnings = notes.into_warnings();
     warnings.extend(repair_warnings(&mesh.repairs));
     let scenes::Scenes { names, shown } = scenes;
@@ -265,6 +295,11 @@ fn needs_details(document: &Document, placed: &Placed, materials: &Materials) ->
             primitive.get(&Semantic::Colors(0)).is_some() || materials.needs_details(&primitive.material())
         })
     })
+}
+
+/// The nodes of what was shown.
+fn nodes_of<T>(shown: &[(usize, T)]) -> Vec<usize> {
+    shown.iter().map(|(node, _)| *node).collect()
 }
 
 /// Builds the mesh from what was collected, with the details of its corners and its rig.

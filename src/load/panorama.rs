@@ -73,11 +73,10 @@ impl Panorama {
     fn halved(&self) -> Self {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
         let mean = |x: usize, y: usize| {
-            let sum: Vec3 = [(0, 0), (1, 0), (0, 1), (1, 1)]
-                .map(|(right, down)| self.pixel(2 * x + right, 2 * y + down))
-                .iter()
-                .sum();
-            sum / 4.0
+            // A quarter of each, since the sum of four may be beyond the largest number.
+            let quarters =
+                [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(right, down)| 0.25 * self.pixel(2 * x + right, 2 * y + down));
+            quarters.iter().sum::<Vec3>()
         };
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| mean(x, y)).collect();
         Self { width, height, pixels }
@@ -112,6 +111,12 @@ fn repair(value: &mut f32, repaired: &mut Repaired) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_mean_of_the_brightest_light_is_finite() {
+        let (bright, repaired) = Panorama::new([4, 2], vec![[3e38; 3]; 8]);
+        assert_eq!((bright.reduced(1).pixels(), repaired), (&[Vec3::splat(3e38); 2][..], Repaired::default()));
+    }
 
     #[test]
     fn a_direction_finds_its_pixel_also_in_a_smaller_copy() {

@@ -144,6 +144,12 @@ impl RigBuilder {
         NodeBinder { node, skin, skin_joints, binder: self }
     }
 
+    /// Returns what moves something that is on a node, in the node's own space.
+    pub(super) fn mount(&self, node: usize) -> Joint {
+        let attachment = self.attachments.get(node);
+        Joint { node: attachment.and_then(|own| own.node), offset: attachment.map_or(DMat4::IDENTITY, |own| own.below) }
+    }
+
     /// Gives up building a rig. The first reason is reported.
     fn give_up(&mut self, reason: String) {
         self.problem.get_or_insert(reason);
@@ -163,6 +169,8 @@ impl RigBuilder {
             joints: self.joints,
             morphs: self.morphs,
             clips: self.clips,
+            lights: Vec::new(),
+            cameras: Vec::new(),
             reach: Reach::default(),
         };
         let rest = rig.rest();
@@ -173,7 +181,7 @@ impl RigBuilder {
         }
         if let Some(details) = mesh.details.as_ref().filter(|details| has_tangents(details)) {
             let bindings = rig.bindings.iter().zip(details.iter());
-            rig.tangents = bindings.map(|(binding, detail)| unturned(binding, &rest, detail)).collect();
+            rig.tangents = bindings.map(|(binding, detail)| unturned(binding, &rig.deltas, &rest, detail)).collect();
         }
         rig.reach = Reach::of(&rig.bindings, &rig.deltas);
         Ok(rig)

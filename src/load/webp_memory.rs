@@ -7,9 +7,13 @@ use std::io::{self, Error, ErrorKind, Read, Seek, SeekFrom};
 /// The memory that any image takes, in bytes: tables, and rows at the borders of blocks.
 const ALWAYS: u64 = 1 << 20;
 
-/// Returns how much memory decoding takes beside the pixels, in bytes, or 0 for a file of another format. Lossless images have
-/// tables of codes whose size only decoding tells; they are taken to be 16 times as large as the file. Afterwards the file is at
+/// Returns how much memory decoding takes beside the pixels, in bytes, or 0 for a file of another format. Afterwards the file is at
 /// its start.
+///
+/// Planes, coefficients and pixels are bounded by the size of the image. The tables of prefix codes of lossless images are not: there
+/// are five for each of up to 65,536 groups (RFC 9649, section 6.2.2), and the decoder keeps up to 4 KiB for each, of which a file can
+/// ask for one with about 12 bytes. How many there are only decoding tells. They are taken to be 16 times as large as the file, which is
+/// more than encoders need; in a file that was made to do harm they may be 340 times as large, and at most 1.3 GiB.
 ///
 /// # Errors
 /// The errors of reading; and [`ErrorKind::InvalidData`], with a clause, for an animation, and for a file that says two sizes.

@@ -3,6 +3,7 @@
 
 use glam::Vec3;
 
+use super::mapped_normals::MappedSide;
 use super::outlines::{EdgeSide, Outlines};
 use crate::mesh::{EdgeKind, Mesh, Topology};
 use crate::tessellate::{edge_normal, unpack_normal};
@@ -21,6 +22,40 @@ pub struct Seams {
     pub source: SeamAngles,
     /// By how much the emitted angle at a point is larger than that of the mesh, in degrees: the most, at least 0.
     pub most_added: f64,
+    /// The same under normal maps.
+    pub mapped: MappedSeams,
+}
+
+/// The angles between what normal maps make of the normals of both sides, as drawn without mip levels, at seams where at least one side
+/// has a normal map. They are 0 where there are none.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MappedSeams {
+    pub edges: u64,
+    pub points: u64,
+    pub emitted: SeamAngles,
+    pub source: SeamAngles,
+    /// See [`Seams::most_added`].
+    pub most_added: f64,
+}
+
+impl MappedSeams {
+    /// Compares the sides of an edge at a place, `t` in 16.16 fixed point along it: their emitted normals, and the mesh's own.
+    fn take(&mut self, sides: &[Option<MappedSide>; 2], t: u32, emitted: [Vec3; 2], source: [Vec3; 2]) {
+        let angle = |normals: [Vec3; 2]| {
+            let mapped = |k: usize| sides[k].as_ref().map_or(normals[k], |side| side.normal(normals[k], t));
+            degrees(mapped(0), mapped(1))
+        };
+        let (emitted, source) = (angle(emitted), angle(source));
+        self.points += 1;
+        self.emitted.add(emitted);
+        self.source.add(source);
+        self.most_added = self.most_added.max(emitted - source);
+    }
+
+    /// The mean of angles over all points, in degrees; 0 without any.
+    pub fn mean(&self, angles: SeamAngles) -> f64 {
+        angles.sum / self.points.max(1) as f64
+    }
 }
 
 /// Angles at seams, in degrees.
@@ -61,6 +96,9 @@ impl Seams {
             topology.side_corners(&topology.sides[side as usize]).map(|corner| mesh.corners[corner as usize].normal)
         });
         self.edges += 1;
+        let mapped = [first, second].map(|side| MappedSide::of(mesh, topology, side));
+        let is_mapped = mapped.iter().any(Option::is_some);
+        self.mapped.edges += u64::from(is_mapped);
         for ((t, a), b) in outlines.weights(topology, first).into_iter().zip(&a.points).zip(&b.points) {
             let [of_a, of_b] = normals.map(|[start, end]| edge_normal(start, end, t));
             let source = if normals[0] == normals[1] { 0.0 } else { degrees(of_a, of_b) };
@@ -70,6 +108,9 @@ impl Seams {
             self.source.add(source);
             self.emitted.add(emitted);
             self.most_added = self.most_added.max(emitted - source);
+            if is_mapped {
+                self.mapped.take(&mapped, t, [a.normal, b.normal].map(unpack_normal), [of_a, of_b]);
+            }
         }
     }
 
@@ -87,12 +128,14 @@ fn degrees(a: Vec3, b: Vec3) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use glam::{Mat4, Vec2, vec2, vec3};
 
     use super::*;
     use crate::measure::{AskedFactors, Measured};
     use crate::mesh::mesh_builder::{InputCorner, MeshBuilder};
-    use crate::mesh::{Material, Shape};
+    use crate::mesh::{Corner, CornerDetail, Map, MapUv, Material, Sampling, Shape, Slot, Texture};
     use crate::progress::Progress;
     use crate::tessellate::{Convention, Inputs, LodView, Normals, Partitioning, Tessellation, tessellate};
 
@@ -162,6 +205,57 @@ mod tests {
         assert_eq!((shaded.emitted.most, shaded.most_added, shaded.source.most), (0.0, 0.0, 0.0));
         assert!(shaded.edges == own.edges && own.edges > 10, "{shaded:?} {own:?}");
         assert!(own.most_added > 0.5 && own.emitted.most == own.most_added && own.source.most == 0.0, "{own:?}");
+    }
+
+    /// The roof with a normal map that leans every normal by 30 degrees along its tangent, which points to +X on one side of the
+    /// ridge, and to `tangent` on the other.
+    fn mapped_roof(lean: [f32; 2], tangent: Vec3) -> Mesh {
+        let mut mesh = roof(lean, 0.5);
+        let byte = |part: f32| (127.5 + 127.5 * part).round() as u8;
+        let rgba = vec![byte(0.5), byte(0.0), byte(0.75_f32.sqrt()), 255];
+        let texture = Arc::new(Texture { size: [1, 1], rgba });
+        let map = Map { texture, uv: MapUv::Own, sampling: Sampling::default() };
+        mesh.materials[0].look.maps[Slot::Normal as usize] = Some(map);
+        // Corners of the first side have shifted texture coordinates.
+        let of = |corner: &Corner| {
+            let is_first = corner.uv != corner.position.truncate();
+            CornerDetail { tangent: if is_first { Vec3::X } else { tangent }, ..CornerDetail::default() }
+        };
+        mesh.details = Some(Arc::new(mesh.corners.iter().map(of).collect()));
+        mesh
+    }
+
+    #[test]
+    fn normal_maps_turn_normals_as_far_as_on_the_mesh_itself() {
+        let near = |found: f64, expected: f64| (found - expected).abs() < 0.3;
+        for factor in [1.0, 7.0, 64.0] {
+            let tessellation = Tessellation { factor, ..Tessellation::default() };
+            // One direction on both sides, and two that lean apart by 30 degrees each.
+            for (tangent, expected) in [(Vec3::X, 0.0), (Vec3::NEG_X, 60.0)] {
+                let found = seams(&mapped_roof([0.0; 2], tangent), tessellation);
+                let mapped = found.mapped;
+                assert!(mapped.edges == 1 && mapped.points == found.points, "{found:?}");
+                assert!(near(mapped.emitted.most, expected) && near(mapped.source.most, expected), "{found:?}");
+                assert!(near(mapped.mean(mapped.emitted), expected) && mapped.most_added < 0.02, "{found:?}");
+                assert_eq!(found.emitted.most, 0.0, "the shading normals alone have no seam");
+            }
+            // Normals that lean apart by 20 degrees each.
+            let found = seams(&mapped_roof([20.0; 2], Vec3::NEG_X), tessellation);
+            assert!(near(found.mapped.emitted.most, 100.0) && found.mapped.most_added < 0.02, "{found:?}");
+        }
+        assert_eq!(seams(&roof([20.0; 2], 0.5), Tessellation::default()).mapped, MappedSeams::default());
+        // What adds to the seam without a map does so with one.
+        let mut torus = Shape::Torus.build();
+        torus.materials[0].look.maps[Slot::Normal as usize] =
+            mapped_roof([0.0; 2], Vec3::X).materials[0].look.maps[1].clone();
+        let of = |corner: &Corner| {
+            let tangent = corner.normal.any_orthonormal_vector();
+            CornerDetail { tangent, ..CornerDetail::default() }
+        };
+        torus.details = Some(Arc::new(torus.corners.iter().map(of).collect()));
+        let found = seams(&torus, Tessellation { normals: Normals::Surface, ..Tessellation::default() });
+        assert!(found.most_added > 0.5 && found.mapped.most_added > 0.5, "{found:?}");
+        assert!(seams(&torus, Tessellation::default()).mapped.most_added < 0.02);
     }
 
     #[test]

@@ -22,5 +22,19 @@ impl Default for CornerDetail {
     }
 }
 
+impl CornerDetail {
+    /// Returns what is between a triangle's corners with these weights, which add up to 1. The bitangents of a triangle's corners
+    /// have one sign, unless its normal map is mirrored between them; the first corner's is taken, as when the triangle is drawn.
+    pub(crate) fn blended([a, b, c]: [&Self; 3], [u, v, w]: [f32; 3]) -> Self {
+        let set = |i: usize| a.uvs[i] * u + b.uvs[i] * v + c.uvs[i] * w;
+        Self {
+            uvs: [set(0), set(1)],
+            color: a.color * u + b.color * v + c.color * w,
+            tangent: (a.tangent * u + b.tangent * v + c.tangent * w).normalize_or_zero(),
+            bitangent_sign: a.bitangent_sign,
+        }
+    }
+}
+
 /// One [`CornerDetail`] for each of a mesh's corners.
 pub type CornerDetails = Vec<CornerDetail>;

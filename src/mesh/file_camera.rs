@@ -1,8 +1,8 @@
 //! Cameras that a file has besides its mesh.
 
-use glam::Vec3;
+use glam::{DMat4, DVec3, Vec3};
 
-/// A camera of a file, as glTF 2.0 describes it (specification, section 3.10), where its node is at rest.
+/// A camera of a file, as glTF 2.0 describes it (specification, section 3.10), where its node is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileCamera {
     /// The name of its node, or else its own.
@@ -13,6 +13,17 @@ pub struct FileCamera {
     pub axes: [Vec3; 3],
     /// How it projects.
     pub projection: Projection,
+}
+
+impl FileCamera {
+    /// The place and the axes of a camera on a node with this transform to object space, or none without a finite place and
+    /// direction. Scales and mirrors have no part in them.
+    pub(crate) fn view_axes(global: &DMat4) -> Option<(Vec3, [Vec3; 3])> {
+        let back = global.transform_vector3(DVec3::Z).try_normalize()?;
+        let right = global.transform_vector3(DVec3::Y).cross(back).try_normalize()?;
+        let eye = global.w_axis.truncate().as_vec3();
+        eye.is_finite().then(|| (eye, [right, back.cross(right), back].map(|axis| axis.as_vec3())))
+    }
 }
 
 /// How a camera projects what it sees.

@@ -1,6 +1,6 @@
 //! Lights that a file has besides its mesh.
 
-use glam::Vec3;
+use glam::{DMat4, DVec3, Vec3};
 
 /// The greatest number of lights of a mesh; `MOST_LIGHTS` in `shaders/punctual.wgsl`.
 pub const MOST_LIGHTS: usize = 16;
@@ -16,6 +16,16 @@ pub struct Light {
     pub place: Vec3,
     /// The unit direction that it shines in.
     pub direction: Vec3,
+}
+
+impl Light {
+    /// The same light on a node with this transform to object space; none at no finite place. A scale changes neither intensity nor
+    /// range.
+    pub(crate) fn at(self, global: &DMat4) -> Option<Self> {
+        let direction = global.transform_vector3(DVec3::NEG_Z).try_normalize().unwrap_or(DVec3::NEG_Z).as_vec3();
+        let place = global.w_axis.truncate().as_vec3();
+        (place.is_finite() && direction.is_finite()).then_some(Self { place, direction, ..self })
+    }
 }
 
 /// What a light shines from.

@@ -100,6 +100,32 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// Returns the lights of the file in a pose. One without a finite place there stays where it is at rest.
+    pub(crate) fn lights_in(&self, pose: &Pose) -> Vec<Light> {
+        let mut lights = self.lights.clone();
+        for (light, global) in lights.iter_mut().zip(&pose.lights) {
+            *light = light.at(global).unwrap_or(*light);
+        }
+        lights
+    }
+
+    /// Returns the cameras of the file in a pose. One without a finite place and direction there stays where it is at rest.
+    pub(crate) fn cameras_in(&self, pose: &Pose) -> Vec<FileCamera> {
+        let mut cameras = self.cameras.clone();
+        for (camera, global) in cameras.iter_mut().zip(&pose.cameras) {
+            if let Some((eye, axes)) = FileCamera::view_axes(global) {
+                (camera.eye, camera.axes) = (eye, axes);
+            }
+        }
+        cameras
+    }
+
+    /// Returns the cameras of the file at a moment of one of its clips; without one, where they are at rest.
+    pub(crate) fn cameras_at(&self, moment: Option<Moment>) -> Vec<FileCamera> {
+        let pose = moment.zip(self.rig.as_ref()).map(|(moment, rig)| rig.pose(moment));
+        pose.map_or_else(|| self.cameras.clone(), |pose| self.cameras_in(&pose))
+    }
+
     /// Whether texture coordinates differ anywhere. Without any in the file, those of all corners are 0.
     pub(crate) fn has_texture_coordinates(&self) -> bool {
         self.corners.windows(2).any(|pair| pair[0].uv != pair[1].uv)

@@ -24,7 +24,8 @@ pub struct Rig {
     /// One binding for each of the mesh's corners.
     pub(crate) bindings: Vec<Binding>,
     /// For each binding, the corner's tangent (see [`CornerDetail`](super::CornerDetail)) in the space that its joints' matrices
-    /// start from, and the sign of its bitangent there. Empty without tangents. Morph targets don't change them.
+    /// start from, and the sign of its bitangent there. Empty without tangents. Morph targets
+    /// turn them along with the normals.
     pub(crate) tangents: Vec<[f32; 4]>,
     /// The displacements by morph targets: one part for each binding, with an entry for each target that moves or turns
     /// it.
@@ -40,6 +41,10 @@ pub struct Rig {
     pub(crate) morphs: Vec<Morph>,
     /// The clips that move something.
     pub clips: Vec<Clip>,
+    /// What moves each of the mesh's lights, which are at the origin and shine along -Z there. Empty if no clip does.
+    pub(crate) lights: Vec<Joint>,
+    /// The same for its cameras, which look along -Z.
+    pub(crate) cameras: Vec<Joint>,
     /// Bounds on the coordinates before deformation.
     pub(crate) reach: Reach,
 }
@@ -123,6 +128,9 @@ pub struct Pose {
     pub(crate) palette: Vec<JointMatrix>,
     /// The weights of all morph targets of all nodes. Never empty, so that a buffer for them can be bound.
     pub(crate) weights: Vec<f32>,
+    /// The transforms of the mesh's lights and of its cameras to object space; empty if no clip moves any.
+    pub(crate) lights: Vec<DMat4>,
+    pub(crate) cameras: Vec<DMat4>,
 }
 
 impl Pose {
@@ -211,7 +219,7 @@ impl Rig {
                 placements[target].animate(channel, time);
             }
         }
-        let pose = Pose { palette: self.palette(&placements), weights };
+        let pose = self.posed(&placements, weights);
         if self.is_held(&pose) { pose } else { self.rest() }
     }
 
@@ -226,13 +234,26 @@ impl Rig {
             + size_of_val(&self.alike[..])
             + size_of_val(&self.nodes[..])
             + size_of_val(&self.joints[..])
+            + size_of_val(&self.lights[..])
+            + size_of_val(&self.cameras[..])
             + clips.sum::<usize>()
     }
 
     /// Returns the pose without any clip.
     pub fn rest(&self) -> Pose {
         let placements: Vec<Placement> = self.nodes.iter().map(|node| node.rest).collect();
-        Pose { palette: self.palette(&placements), weights: self.rest_weights() }
+        self.posed(&placements, self.rest_weights())
+    }
+
+    fn posed(&self, placements: &[Placement], weights: Vec<f32>) -> Pose {
+        let global = self.global(placements);
+        let matrix = |joint: &Joint| joint.node.map_or(joint.offset, |node| global[node as usize] * joint.offset);
+        Pose {
+            palette: self.joints.iter().map(|joint| JointMatrix::new(matrix(joint))).collect(),
+            weights,
+            lights: self.lights.iter().map(matrix).collect(),
+            cameras: self.cameras.iter().map(matrix).collect(),
+        }
     }
 
     /// Counts what a clip moves.
@@ -268,16 +289,14 @@ impl Rig {
         weights
     }
 
-    fn palette(&self, placements: &[Placement]) -> Vec<JointMatrix> {
+    /// Returns the transform of each animated node to object space.
+    fn global(&self, placements: &[Placement]) -> Vec<DMat4> {
         let mut global: Vec<DMat4> = Vec::with_capacity(self.nodes.len());
         for (node, placement) in self.nodes.iter().zip(placements) {
             let above = node.parent.map_or(DMat4::IDENTITY, |parent| global[parent as usize]);
             global.push(above * node.between * placement.matrix());
         }
-        let matrix = |joint: &Joint| {
-            JointMatrix::new(joint.node.map_or(joint.offset, |node| global[node as usize] * joint.offset))
-        };
-        self.joints.iter().map(matrix).collect()
+        global
     }
 
     /// Returns whether all corners stay within [`LARGEST_COORDINATE`] in this pose, by bounds on their coordinates.

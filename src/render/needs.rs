@@ -1,7 +1,7 @@
 //! What the shader that lights a mesh's materials must have.
 
 use crate::mesh::{Alpha, MOST_LIGHTS, Material, Mesh};
-use crate::settings::{FileLights, Settings};
+use crate::settings::{Colors, FileLights, Settings};
 
 /// What a mesh's materials need of the shader that lights them. What they don't need is left out of it when its pipeline is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -87,6 +87,24 @@ pub(super) struct Quality {
     pub samples: u32,
     /// See [`Target::draft`](super::Target::draft).
     pub is_draft: bool,
+}
+
+/// How a mask cuts a surface that the lights at the camera shine on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Cut {
+    /// Whether corners have details, whose colours have an alpha too.
+    pub details: bool,
+    /// Whether a pixel's samples are cut one by one.
+    pub samples: bool,
+}
+
+impl Cut {
+    /// How one of a mesh's materials is cut under these settings, in such pictures; none if it isn't, or if it is lit from all around.
+    pub(super) fn of(settings: &Settings, mesh: &Mesh, material: &Material, quality: Quality) -> Option<Self> {
+        let is_seen = settings.overlays.colors == Colors::Material && !settings.shows_materials();
+        let is_cut = is_seen && matches!(material.look.alpha, Alpha::Mask(_));
+        is_cut.then_some(Self { details: mesh.details.is_some(), samples: quality.samples > 1 })
+    }
 }
 
 /// Whether a mesh has materials that are drawn in layers.

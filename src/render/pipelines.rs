@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::environment::{Backdrop, ENVIRONMENT};
 use super::look::Look;
 use super::materials::Materials;
-use super::needs::Needs;
+use super::needs::{Cut, Needs};
 use super::prefilter_pass::REFLECTANCE;
 use super::scene::LineSegment;
 use super::target::{COLOR_FORMAT, DEPTH_FORMAT, samples};
@@ -82,6 +82,8 @@ pub(super) enum Draw {
     LitPulled(Faces, NormalsAt, Needs),
     /// [`Self::Source`] with such materials.
     LitSource(Needs),
+    /// [`Self::Indexed`], [`Self::Pulled`] or [`Self::Source`] of a material that a mask cuts.
+    Cut(Triangles, Faces, NormalsAt, Cut),
     /// [`Self::Indexed`] in the variant of a look.
     LookIndexed(Faces, NormalsAt, Look),
     /// [`Self::Pulled`] in such a variant.
@@ -181,7 +183,14 @@ impl Draw {
             let kinds = [Self::Lit, Self::LitIndexed, Self::LitPulled];
             kinds.map(|kind: fn(Faces, NormalsAt, Needs) -> Self| kind(Faces::Both, at, masked))
         });
-        Self::OTHERS.into_iter().chain(layers).chain(masks).chain([Self::LitSource(masked)]).collect()
+        let cuts = [false, true].into_iter().flat_map(|samples| {
+            let cut = Cut { details: true, samples };
+            let emitted = NormalsAt::ALL.iter().flat_map(move |&at| {
+                [Triangles::Indexed, Triangles::Pulled].map(|triangles| Self::Cut(triangles, Faces::Both, at, cut))
+            });
+            emitted.chain([Self::Cut(Triangles::Source, Faces::Both, NormalsAt::Vertices, cut)])
+        });
+        Self::OTHERS.into_iter().chain(layers).chain(masks).chain([Self::LitSource(masked)]).chain(cuts).collect()
     }
 
     /// Those that don't draw layers.
@@ -266,16 +275,21 @@ impl Draw {
             (_, _, NormalsAt::Vertices) => "surface_layer_fragment",
             (_, _, NormalsAt::Pixels) => "pixel_surface_layer_fragment",
         };
+        let vertex = |triangles| match triangles {
+            Triangles::Lit => "lit_vertex",
+            Triangles::Indexed => "indexed_vertex",
+            Triangles::Pulled => "pulled_vertex",
+            Triangles::Source => "source_vertex",
+        };
+        let cut = |places, cut: Cut| match (places, cut.samples) {
+            (NormalsAt::Vertices, false) => "cut_surface_fragment",
+            (NormalsAt::Pixels, false) => "pixel_cut_surface_fragment",
+            (NormalsAt::Vertices, true) => "cut_samples_fragment",
+            (NormalsAt::Pixels, true) => "pixel_cut_samples_fragment",
+        };
         match self {
-            Self::Layer(draw, triangles, places, _) => {
-                let vertex = match triangles {
-                    Triangles::Lit => "lit_vertex",
-                    Triangles::Indexed => "indexed_vertex",
-                    Triangles::Pulled => "pulled_vertex",
-                    Triangles::Source => "source_vertex",
-                };
-                (vertex, layer(triangles, draw, places))
-            }
+            Self::Layer(draw, triangles, places, _) => (vertex(triangles), layer(triangles, draw, places)),
+            Self::Cut(triangles, _, places, own) => (vertex(triangles), cut(places, own)),
             Self::Plain(_) => ("plain_vertex", "plain_fragment"),
             Self::Textured(_) => ("textured_vertex", "textured_fragment"),
             Self::PixelNormals(_) => ("pixel_vertex", "pixel_fragment"),
@@ -305,11 +319,13 @@ impl Draw {
             | Self::Lit(..)
             | Self::LitIndexed(..)
             | Self::LookIndexed(..)
+            | Self::Cut(Triangles::Lit | Triangles::Indexed, ..)
             | Self::Layer(_, Triangles::Lit | Triangles::Indexed, ..) => {
                 vertex_halves(wgpu::VertexStepMode::Vertex).to_vec()
             }
             Self::Pulled(..) | Self::LitPulled(..) | Self::LookPulled(..) => Vec::new(),
             Self::Layer(_, Triangles::Pulled | Triangles::Source, ..) => Vec::new(),
+            Self::Cut(Triangles::Pulled | Triangles::Source, ..) => Vec::new(),
             Self::Source | Self::LitSource(_) | Self::LookSource(_) => Vec::new(),
             Self::Background | Self::Ground | Self::LayerClear(_) => Vec::new(),
             Self::Lines(_) => vec![Some(wgpu::VertexBufferLayout {
@@ -375,6 +391,7 @@ impl Draw {
         | Self::Lit(faces, ..)
         | Self::LitIndexed(faces, ..)
         | Self::LitPulled(faces, ..)
+        | Self::Cut(_, faces, ..)
         | Self::LookIndexed(faces, ..)
         | Self::LookPulled(faces, ..)) = self
         else {
@@ -394,6 +411,9 @@ impl Draw {
                 let toward_eye = f64::from(u8::from(draw == LayerDraw::Toward));
                 let of_layer = [("TOWARD_EYE", toward_eye), ("LAYER_DRAW", f64::from(draw as u32))];
                 needs.constants().into_iter().chain(of_layer).collect()
+            }
+            Self::Cut(.., cut) => {
+                vec![("HAS_DETAILS", f64::from(u8::from(cut.details))), ("LIGHT_COUNT", 0.0)]
             }
             Self::LayerClear(clear) => {
                 vec![("CLEAR_DEPTH", if clear == LayerClear::Away { 0.0 } else { 1.0 })]
@@ -491,6 +511,7 @@ impl DrawPipelines {
             Draw::Indexed(..) | Draw::Pulled(..) | Draw::Source => &self.surface,
             Draw::LitIndexed(..) | Draw::LitPulled(..) | Draw::LitSource(_) => &self.surface,
             Draw::LookIndexed(..) | Draw::LookPulled(..) | Draw::LookSource(_) => &self.surface,
+            Draw::Cut(..) => &self.surface,
             Draw::Layer(..) => &self.layers,
             Draw::LayerClear(_) => &self.clear,
             Draw::Background => &self.background,
@@ -514,6 +535,8 @@ impl DrawPipelines {
                 vec![scene, material, chunk, deviation]
             }
             Draw::Source | Draw::LookSource(_) => vec![scene, material, None, deviation],
+            Draw::Cut(Triangles::Source, ..) => vec![scene, material, None, deviation],
+            Draw::Cut(..) => vec![scene, material, chunk, deviation],
             Draw::Lit(..) => vec![scene, lit],
             Draw::LitIndexed(..) | Draw::LitPulled(..) => vec![scene, lit, chunk, deviation],
             Draw::LitSource(_) => vec![scene, lit, None, deviation],

@@ -16,7 +16,7 @@ use super::layout::{linear, overlay_bits};
 use super::look::Look;
 use super::matcap::{MatcapPicture, Matcaps};
 use super::materials::Materials;
-use super::needs::{Needs, Quality};
+use super::needs::{Cut, Needs, Quality};
 use super::pipelines::{Draw, DrawPipelines, Faces, Occluded, Triangles};
 use super::steps::{Step, halves, runs, steps};
 use super::target::samples;
@@ -496,6 +496,10 @@ impl Renderer {
 fn surface_draw(settings: &Settings, mesh: &Mesh, material: &Material, faces: Faces, quality: Quality) -> Draw {
     let places = settings.used_normals_at(mesh);
     let triangles = emitted_triangles(settings);
+    if let Some(cut) = Cut::of(settings, mesh, material, quality) {
+        let triangles = if triangles == Triangles::Lit { Triangles::Indexed } else { triangles };
+        return Draw::Cut(triangles, faces, places, cut);
+    }
     match (triangles, Look::of(settings.overlays.colors)) {
         _ if settings.shows_materials() => {
             let draw = match triangles {
@@ -539,6 +543,9 @@ fn ground_step(steps: &[Step], scene: &Scene, camera: &Camera) -> usize {
 
 /// The pipeline for input triangles of a material, in such pictures.
 fn source_draw(settings: &Settings, mesh: &Mesh, material: &Material, quality: Quality) -> Draw {
+    if let Some(cut) = Cut::of(settings, mesh, material, quality) {
+        return Draw::Cut(Triangles::Source, Faces::Both, NormalsAt::Vertices, cut);
+    }
     match Look::of(settings.overlays.colors) {
         _ if settings.shows_materials() => Draw::LitSource(Needs::of(mesh, settings).own(material, quality)),
         Some(look) => Draw::LookSource(look),

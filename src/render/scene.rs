@@ -125,6 +125,7 @@ impl Scene {
     fn follow(&mut self) -> Result<(), GpuError> {
         let Some(left) = &mut self.left else { return Ok(()) };
         (left.bounds, left.ulp) = (self.bounds, self.ulp);
+        left.lights = self.lights.clone();
         left.tessellator.pose_as(self.tessellator.posed())
     }
 
@@ -178,8 +179,14 @@ impl Scene {
     /// # Errors
     /// The mesh's rig needs larger buffers than the adapter can bind.
     pub fn set_moment(&mut self, moment: Option<Moment>) -> Result<(), GpuError> {
-        let rig = self.tessellator.mesh().rig.clone();
-        self.tessellator.set_pose(moment.zip(rig).map(|(moment, rig)| Arc::new(rig.pose(moment))))?;
+        let mesh = self.tessellator.mesh().clone();
+        let pose = moment.zip(mesh.rig.as_ref()).map(|(moment, rig)| Arc::new(rig.pose(moment)));
+        if mesh.rig.as_ref().is_some_and(|rig| !rig.lights.is_empty()) {
+            let lights = pose.as_ref().map_or_else(|| mesh.lights.clone(), |pose| mesh.lights_in(pose));
+            // Another buffer, since scenes beside this one may be in another pose.
+            self.lights = Some(upload_lights(self.tessellator.gpu(), &lights));
+        }
+        self.tessellator.set_pose(pose)?;
         self.follow()
     }
 

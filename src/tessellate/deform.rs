@@ -46,6 +46,17 @@ pub(super) fn deform_tangent(matrix: &JointMatrix, tangent: Vec4) -> Vec4 {
     scaled_unit_or(turned, own).extend(sign)
 }
 
+/// Turns a vector by the least rotation that takes one unit vector to another (Möller and Hughes 1999, "Efficiently building a matrix
+/// to rotate one vector to another"). Returns the vector itself if the two are opposite.
+pub(super) fn turn_along(vector: Vec3, from: Vec3, to: Vec3) -> Vec3 {
+    let (axis, cosine) = (from.cross(to), from.dot(to));
+    if 1.0 + cosine < 1e-6 {
+        return vector;
+    }
+    let across = axis.cross(vector);
+    vector + across + axis.cross(across) * (1.0 / (1.0 + cosine))
+}
+
 /// Returns the rows of the linear part, scaled so that no product of two entries overflows or underflows.
 fn scaled_rows(matrix: &JointMatrix) -> [Vec3; 3] {
     let rows = matrix.rows().map(|row| Vec3::from_slice(&row));
@@ -61,4 +72,36 @@ fn scaled_unit_or(vector: Vec3, otherwise: Vec3) -> Vec3 {
 /// Returns the largest absolute value of the components.
 fn largest_component(vector: Vec3) -> f32 {
     vector.abs().max_element()
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn a_vector_turns_along_with_another(own in [-1f32..1.0, -1f32..1.0, -1f32..1.0], a in [-1f32..1.0, -1f32..1.0, -1f32..1.0],
+            b in [-1f32..1.0, -1f32..1.0, -1f32..1.0]) {
+            let [own, a, b] = [own, a, b].map(Vec3::from);
+            let (Some(a), Some(b)) = (a.try_normalize(), b.try_normalize()) else { return Ok(()) };
+            if a.dot(b) < -0.99 {
+                return Ok(());
+            }
+            prop_assert!(turn_along(a, a, b).distance(b) < 1e-4);
+            let turned = turn_along(own, a, b);
+            prop_assert!((turned.length() - own.length()).abs() < 1e-4);
+            prop_assert!((turned.dot(b) - own.dot(a)).abs() < 1e-4);
+            // What both are perpendicular to is the axis.
+            prop_assert!((turned.dot(a.cross(b)) - own.dot(a.cross(b))).abs() < 1e-4);
+        }
+    }
+
+    #[test]
+    fn nothing_turns_without_a_rotation() {
+        assert_eq!(turn_along(Vec3::X, Vec3::Z, Vec3::Z), Vec3::X);
+        assert_eq!(turn_along(Vec3::X, Vec3::Z, Vec3::NEG_Z), Vec3::X);
+        assert_eq!(turn_along(Vec3::X, Vec3::ZERO, Vec3::ZERO), Vec3::X);
+    }
 }

@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 
 use glam::{Vec3, Vec4};
 
-use super::deform::{blend, deform_normal, deform_position, deform_tangent};
+use super::deform::{blend, deform_normal, deform_position, deform_tangent, turn_along};
 use super::normal::unit_or;
 use super::patch_bounds::PatchBounds;
 use crate::mesh::rig::{Binding, JointMatrix};
@@ -93,6 +93,7 @@ impl PosedMesh {
 pub(crate) fn deform(mesh: &Mesh, topology: &Topology, pose: &Pose) -> (Mesh, Topology) {
     let (mut mesh, mut topology) = (mesh.clone(), topology.clone());
     let Some(rig) = mesh.rig.take() else { return (mesh, topology) };
+    (mesh.lights, mesh.cameras) = (mesh.lights_in(pose), mesh.cameras_in(pose));
     for (point, &corner) in topology.points.iter_mut().zip(&topology.point_corners) {
         *point = posed_position(&rig, pose, corner);
     }
@@ -138,17 +139,28 @@ fn posed_position(rig: &Rig, pose: &Pose, corner: u32) -> Vec3 {
 /// Applies morph targets and then joints to a corner's normal.
 fn posed_normal(rig: &Rig, pose: &Pose, corner: u32) -> Vec3 {
     let bound = &rig.bindings[corner as usize];
+    deform_normal(&posed_matrix(pose, bound), morphed_normal(rig, pose, bound))
+}
+
+/// Returns the unit normal of a corner that morph targets have turned.
+fn morphed_normal(rig: &Rig, pose: &Pose, bound: &Binding) -> Vec3 {
     let mut normal = Vec3::from(bound.normal);
     for delta in &rig.deltas[bound.first_delta as usize..][..bound.delta_count as usize] {
         normal += Vec3::from(delta.normal) * pose.weights[delta.weight as usize];
     }
-    deform_normal(&posed_matrix(pose, bound), unit_or(normal, bound.normal.into()))
+    unit_or(normal, bound.normal.into())
 }
 
-/// Applies joints to a corner's tangent.
+/// Turns a corner's tangent along with its normal as morph targets turn that, and then applies joints.
 fn posed_tangent(rig: &Rig, pose: &Pose, corner: u32) -> Vec4 {
     let bound = &rig.bindings[corner as usize];
-    deform_tangent(&posed_matrix(pose, bound), rig.tangents[corner as usize].into())
+    let mut tangent = Vec4::from(rig.tangents[corner as usize]);
+    if bound.delta_count > 0 {
+        let normal = Vec3::from(bound.normal);
+        let turned = turn_along(tangent.truncate(), unit_or(normal, normal), morphed_normal(rig, pose, bound));
+        tangent = turned.extend(tangent.w);
+    }
+    deform_tangent(&posed_matrix(pose, bound), tangent)
 }
 
 /// Returns the blended matrix of a corner's joints.

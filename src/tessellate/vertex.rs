@@ -3,6 +3,9 @@
 
 use bytemuck::{Pod, Zeroable};
 
+use super::factors::FIXED_ONE;
+use super::surface::UNIT;
+
 /// An emitted vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -27,6 +30,12 @@ impl Vertex {
     /// them.
     pub fn domain(&self) -> [u32; 2] {
         [self.key[0] & 0x1ffff, (self.key[0] >> 17) | ((self.key[1] & 3) << 15)]
+    }
+
+    /// Returns how much each of the patch's corners counts at the domain point. They add up to 1.
+    pub(crate) fn weights(&self) -> [f32; 3] {
+        let [u, v] = self.domain();
+        [u, v, FIXED_ONE - u - v].map(|weight| weight as f32 * UNIT)
     }
 }
 

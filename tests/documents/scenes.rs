@@ -40,6 +40,22 @@ pub(crate) fn material_scenes() -> Vec<MaterialScene> {
     made.collect()
 }
 
+/// A panorama as a Radiance file: three lamps in grey surroundings of radiance 0.5.
+pub(crate) fn three_lamps() -> Vec<u8> {
+    const SIZE: [u32; 2] = [256, 128];
+    /// Columns and rows of a lamp, and the mantissa and the exponent of its radiance: 8, 4 and 6.
+    const LAMPS: [([u32; 4], [u8; 2]); 3] =
+        [([100, 140, 16, 36], [128, 132]), ([30, 50, 40, 70], [128, 131]), ([200, 230, 50, 60], [192, 131])];
+    let mut file = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n", SIZE[1], SIZE[0]).into_bytes();
+    for (y, x) in (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (y, x))) {
+        let holds = |[left, right, top, bottom]: [u32; 4]| (left..right).contains(&x) && (top..bottom).contains(&y);
+        let lamp = LAMPS.into_iter().find(|(place, _)| holds(*place));
+        let [mantissa, exponent] = lamp.map_or([128, 128], |(_, radiance)| radiance);
+        file.extend([mantissa, mantissa, mantissa, exponent]);
+    }
+    file
+}
+
 /// A document that is being made. Every shape is a mesh of its own at the scene's root.
 #[derive(Default)]
 struct Document {

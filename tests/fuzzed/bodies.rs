@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use pnaen::internals::{
-    Format, HullFactors, Selection, domain_plan, domain_point, domain_triangle, outer_count, point_count, read,
-    triangle_count,
+    EnvironmentFile, Format, HullFactors, Selection, domain_plan, domain_point, domain_triangle, outer_count,
+    point_count, read, triangle_count,
 };
 use pnaen::load::Limits;
 use pnaen::mesh::{Mesh, Topology};
@@ -73,6 +73,22 @@ fn assert_sound(mesh: &Mesh, progress: &Progress) {
     if mesh.triangles.len() <= MOST_TRIANGLES {
         let topology = Topology::build(mesh, progress).expect("nobody cancels");
         assert_eq!(topology.patches.len() + topology.degenerate as usize, mesh.triangles.len());
+    }
+}
+
+/// Reads bytes as a panorama, which must give light or an error: its pixels are finite and not negative.
+pub fn panorama(data: &[u8]) {
+    match EnvironmentFile::read(data, &Limits::default(), &Progress::new()) {
+        Ok(file) => {
+            let [width, height] = file.size();
+            assert!(width > 0 && height > 0);
+            assert!(file.radiance().all(|channel| channel.is_finite() && channel >= 0.0));
+            assert!(file.warnings.iter().all(|said| said.len() < 1000 && !said.contains(char::is_control)));
+        }
+        Err(fault) => {
+            let said = fault.to_string();
+            assert!(said.len() < 1000 && !said.contains(char::is_control), "{said:?}");
+        }
     }
 }
 

@@ -89,6 +89,11 @@ fn ply() {
 }
 
 #[test]
+fn panorama() {
+    run("panorama", 1000, bodies::panorama);
+}
+
+#[test]
 fn factors() {
     run("factors", 200, bodies::factors);
 }

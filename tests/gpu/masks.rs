@@ -6,7 +6,7 @@ use pnaen::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use pnaen::mesh::{Alpha, Look, Material, Mesh};
 use pnaen::progress::Progress;
 use pnaen::render::layout::linear;
-use pnaen::settings::Settings;
+use pnaen::settings::{Lighting, Settings};
 
 use crate::gpu_tests::engine;
 use crate::gpu_tests::layers::{drawn_by, single_sampled};
@@ -93,4 +93,29 @@ fn a_transparent_picture_is_opaque_where_a_mask_is_whole() {
     let mean = alphas.iter().map(|alpha| f32::from(*alpha) / 255.0).sum::<f32>() / (SIDE * SIDE) as f32;
     assert!(count(0) > 1000 && count(255) > 1000, "{} and {}", count(0), count(255));
     assert!((mean - expected_coverage(0.5)).abs() < 0.28 / SIDE as f32, "{mean}");
+}
+
+/// The lights at the camera show masks as light from all around does: leaves stay leaves.
+#[test]
+fn a_mask_cuts_what_the_lights_at_the_camera_shine_on() {
+    for settings in every_way(Settings { lighting: Lighting::Camera, ..studio() }) {
+        for (engine, several) in [(engine(), true), (&single_sampled(), false)] {
+            let picture = drawn_by(engine, &ramp(0.5), &settings, true);
+            // The borders of patches have a colour of their own, in one of these ways, along the sides of the picture.
+            let inside = |at: u32| (4..SIDE - 4).contains(&at);
+            let inner = picture.enumerate_pixels().filter(|(x, y, _)| inside(*x) && inside(*y));
+            let alphas: Vec<u8> = inner.map(|(.., pixel)| pixel.0[3]).collect();
+            let count = |least, most| alphas.iter().filter(|own| (least..=most).contains(*own)).count();
+            let [clear, border, whole] = [count(0, 0), count(1, 254), count(255, 255)];
+            assert!(clear > 1000 && whole > 1000, "{clear}, {border} and {whole} pixels, {settings:?}");
+            if settings.overlays == studio().overlays {
+                assert_eq!(border > SIDE as usize / 2, several, "{border} pixels, {settings:?}");
+                let mean = alphas.iter().map(|alpha| f32::from(*alpha) / 255.0).sum::<f32>() / alphas.len() as f32;
+                // The view's sides are left out, and with them 4 of its pixels.
+                let (half, expected) = (SIDE as f32 / 2.0, expected_coverage(0.5));
+                let expected = 0.5 + (expected - 0.5) * half / (half - 4.0);
+                assert!((mean - expected).abs() < 1.0 / SIDE as f32, "{mean}, not {expected}");
+            }
+        }
+    }
 }

@@ -104,6 +104,7 @@ impl App {
         path: PathBuf,
         write: impl FnOnce(&Path, &Progress) -> Result<(), String> + Send + 'static,
     ) {
+        let write = |path: &Path, progress: &Progress| write(path, progress).map(|()| Vec::new());
         self.jobs.writing = Some(WritingJob::start(context, "Saving", path, write));
     }
 
@@ -112,7 +113,7 @@ impl App {
     /// # Errors
     /// The path has another ending; as a sentence.
     pub fn export_mesh(&mut self, context: &egui::Context, path: PathBuf) -> Result<(), String> {
-        Exported::check(&path, 0, 0).map_err(|error| error.to_string())?;
+        Exported::check_ending(&path).map_err(|error| error.to_string())?;
         let Some(document) = &self.document else { return Ok(()) };
         let view = self.viewport.camera.lod_view(self.viewport.picture.size(), &document.scene.bounds);
         let inputs = self.settings.inputs(self.viewport.frozen.map_or(view, |frozen| frozen.view));

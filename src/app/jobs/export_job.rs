@@ -23,7 +23,8 @@ pub(crate) struct Export {
 }
 
 impl Export {
-    /// Tessellates in a scene of its own, so that the window's isn't changed. Writes nothing if it was cancelled.
+    /// Tessellates in a scene of its own, so that the window's isn't changed. Writes nothing if it was cancelled. Returns sentences
+    /// about what is drawn but couldn't be written.
     ///
     /// # Errors
     /// The device fails, or the file can't be written; as a sentence.
@@ -32,18 +33,18 @@ impl Export {
         make: impl FnOnce() -> Result<Scene, GpuError>,
         path: &Path,
         progress: &Progress,
-    ) -> Result<(), String> {
+    ) -> Result<Vec<String>, String> {
         let failed = |error: GpuError| error.to_string();
         let mut scene = self.engine.gpu.attempt(make).and_then(|scene| scene).map_err(failed)?;
         scene.set_moment(self.moment).map_err(failed)?;
         self.engine.count(&mut scene, &self.inputs, &mut Timing::Off).map_err(failed)?;
         let (vertices, triangles) = scene.tessellator.totals();
-        Exported::check(path, vertices, triangles).map_err(|error| error.to_string())?;
-        let Some(tessellated) = self.read(&mut scene, progress).map_err(failed)? else { return Ok(()) };
+        Exported::check(path, &self.loaded.mesh, vertices, triangles).map_err(|error| error.to_string())?;
+        let Some(tessellated) = self.read(&mut scene, progress).map_err(failed)? else { return Ok(Vec::new()) };
         let posed = self.loaded.posed(self.moment);
         let exported = Exported::new(&posed.mesh, &posed.topology, &tessellated);
         if progress.check().is_err() {
-            return Ok(());
+            return Ok(Vec::new());
         }
         exported.write(path).map_err(|error| error.to_string())
     }

@@ -13,16 +13,17 @@ pub(crate) struct WritingJob {
     doing: &'static str,
     path: PathBuf,
     /// None only for a moment, inside [`Self::wake`].
-    job: Option<BackgroundJob<Result<(), String>>>,
+    job: Option<BackgroundJob<Result<Vec<String>, String>>>,
 }
 
 impl WritingJob {
-    /// Starts to write a file. `write` fails with a sentence, and ends early if it is cancelled.
+    /// Starts to write a file. `write` returns sentences about what couldn't be written, or fails with one, and ends early if it is
+    /// cancelled.
     pub(crate) fn start(
         context: &egui::Context,
         doing: &'static str,
         path: PathBuf,
-        write: impl FnOnce(&Path, &Progress) -> Result<(), String> + Send + 'static,
+        write: impl FnOnce(&Path, &Progress) -> Result<Vec<String>, String> + Send + 'static,
     ) -> Self {
         let progress = Progress::new();
         let (own_path, own_progress) = (path.clone(), progress.clone());
@@ -35,11 +36,12 @@ impl WritingJob {
         format!("{} {}", self.doing, shown_path(Path::new(self.path.file_name().unwrap_or_default())))
     }
 
-    /// Returns a sentence once the file is written, or as an error why nothing was.
+    /// Returns sentences once the file is written, or as an error why nothing was.
     pub(crate) fn take(&self) -> Option<Result<String, String>> {
         let stopped = |stopped: Stopped| Err(format!("{}: writing it {stopped}", shown_path(&self.path)));
         let ended = self.job.as_ref()?.take()?.unwrap_or_else(stopped);
-        Some(ended.map(|()| format!("{} is written.", shown_path(&self.path))))
+        let said = |warnings| [vec![format!("{} is written.", shown_path(&self.path))], warnings].concat().join("\n");
+        Some(ended.map(said))
     }
 
     /// Lets the job repaint another window when it ends.

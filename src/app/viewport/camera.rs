@@ -45,10 +45,10 @@ impl App {
         cameras.into_iter().flatten().map(|camera| camera.name.clone()).collect()
     }
 
-    /// Moves the camera to where a camera of the file is, and gives it the same field of view, or height.
+    /// Moves the camera to where a camera of the file is at this moment, and gives it the same field of view, or height.
     fn look_through_file_camera(&mut self, index: usize) {
         let Some(document) = &self.document else { return };
-        if let Some(camera) = document.loaded.mesh.cameras.get(index) {
+        if let Some(camera) = document.loaded.mesh.cameras_at(document.moment).get(index) {
             self.viewport.camera = Camera::of_file(camera, &document.scene.bounds);
         }
     }

@@ -128,9 +128,10 @@ fn save(loaded: &Loaded, moment: Option<Moment>, inputs: &Inputs, path: &Path) -
     let (mesh, topology) = (&posed.mesh, &posed.topology);
     let (vertices, triangles) = totals(mesh, topology, inputs);
     let write = || {
-        Exported::check(path, vertices, triangles)?;
+        Exported::check(path, mesh, vertices, triangles)?;
         let tessellated = tessellate(mesh, topology, inputs, None);
         Exported::new(mesh, topology, &tessellated).write(path)
     };
-    write().map(|()| format!("{} is written.", path.display())).map_err(|error| error.to_string())
+    let said = |warnings: Vec<String>| [vec![format!("{} is written.", path.display())], warnings].concat().join("\n");
+    write().map(said).map_err(|error| error.to_string())
 }

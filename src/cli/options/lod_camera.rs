@@ -69,6 +69,6 @@ impl LodCameraOption {
             file_camera: None,
             ..own.clone()
         };
-        Ok(Some((options.camera(mesh, bounds)?, options.viewport())))
+        Ok(Some((options.camera(mesh, None, bounds)?, options.viewport())))
     }
 }

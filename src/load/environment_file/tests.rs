@@ -31,6 +31,18 @@ pub(crate) fn open_exr_file(size: [u32; 2], pixels: &[[f32; 3]]) -> Vec<u8> {
     bytes.into_inner()
 }
 
+/// Small files of both formats, for a fuzzer.
+pub(in crate::load) fn seeds() -> Vec<(&'static str, String, Vec<u8>)> {
+    let seed = |name: &str, bytes| ("panorama", name.to_owned(), bytes);
+    let flat = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\n\n-Y 2 +X 4\n".to_vec();
+    vec![
+        seed("runs.hdr", radiance_file([16, 8], &pixels([16, 8]))),
+        seed("flat.hdr", [flat, [128, 64, 32, 129].repeat(8)].concat()),
+        seed("lines.exr", open_exr_file([8, 4], &pixels([8, 4]))),
+        seed("high.exr", open_exr_file([1, 3], &[[0.0; 3], [1e30, 0.5, 2.0], [-1.0, f32::INFINITY, f32::NAN]])),
+    ]
+}
+
 fn read(bytes: &[u8]) -> Result<EnvironmentFile, EnvironmentFault> {
     let start = time();
     let file = EnvironmentFile::read(bytes, &Limits::default(), &Progress::new());

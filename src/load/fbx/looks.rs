@@ -5,6 +5,7 @@ use glam::{DVec3, Vec3};
 use ufbx::{MaterialMap, Mesh, ShaderType, Texture};
 
 use super::convert::{matrix, vec4};
+use crate::mesh::mipmap::MipFilter;
 use crate::mesh::{Alpha, Look};
 
 /// The brightest emission.
@@ -108,6 +109,20 @@ impl<'a> LookSource<'a> {
     /// Returns the texture coordinates of the base colour, which corners have themselves.
     pub(super) fn own_uvs(&self) -> MapUvs {
         self.base.as_ref().map_or_else(MapUvs::default, |base| base.uvs)
+    }
+
+    /// Returns its textures, and how texels of each are averaged.
+    pub(super) fn images(&self) -> impl Iterator<Item = (&'a Texture, MipFilter)> {
+        let filters = [
+            (self.base, MipFilter::of_base_color(self.look.alpha)),
+            (self.opacity, MipFilter::Numbers),
+            (self.roughness, MipFilter::Numbers),
+            (self.metalness, MipFilter::Numbers),
+            (self.normal, MipFilter::Normals),
+            (self.emission, MipFilter::Colors),
+            (self.occlusion, MipFilter::Numbers),
+        ];
+        filters.into_iter().filter_map(|(map, filter)| Some((map?.texture, filter)))
     }
 
     /// Whether its corners need more than position, normal and the base colour's texture coordinates.

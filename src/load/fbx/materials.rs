@@ -49,6 +49,18 @@ impl<'a> Materials<'a> {
         }
     }
 
+    /// Plans how the images of all materials of these meshes fit; `reserved` is the memory that the rest of the load takes, in bytes.
+    pub(super) fn plan<'m>(&mut self, meshes: impl Iterator<Item = (&'m Node, &'m Mesh)>, reserved: u64) {
+        let mut seen = HashSet::new();
+        let sources = meshes.flat_map(|(node, mesh)| {
+            let is_new = seen.insert(mesh.element.typed_id);
+            let own = mesh.materials.iter().filter(move |_| is_new);
+            node.materials.iter().chain(own).map(move |material| LookSource::new(material, mesh))
+        });
+        let images: Vec<_> = sources.flat_map(|source| source.images().collect::<Vec<_>>()).collect();
+        self.textures.plan(images.into_iter(), reserved);
+    }
+
     /// Finds a material of a node's mesh by its index there, or adds it to the builder.
     ///
     /// # Errors

@@ -10,7 +10,7 @@ use super::skin::Skin;
 use super::too_large;
 use super::vertices::Vertices;
 use crate::load::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, counted};
-use crate::load::memory_budget::Budget;
+use crate::load::memory_budget::{Budget, edge_bytes};
 use crate::load::notes::Notes;
 use crate::load::read_error::{FilePosition, ReadError};
 use crate::load::rig_builder::{NodeBinder, RigBuilder, UndeformedVertex, VertexFrame};
@@ -23,6 +23,8 @@ use crate::progress::Progress;
 /// How many polygons are read before the job asks whether it was cancelled.
 const POLYGONS: usize = 4096;
 
+/// Memory for a corner while the mesh is built, in bytes.
+const PER_CORNER: u64 = 32;
 /// Memory for a displacement of a bound vertex, and for finding equal ones, in bytes.
 const PER_DELTA: u64 = 250;
 
@@ -71,11 +73,19 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         budget.hold(memory).map_err(too_large)?;
         budget.release(memory);
         faces.expect(triangles, 0);
+        let mut materials = Materials::new(files, budget);
+        let corners = meshes().fold(0_u64, |sum, (_, mesh)| sum.saturating_add(mesh.num_indices as u64));
+        let details = if is_detailed { DetailTable::bytes_for(corners as usize) } else { 0 };
+        // What the parsed file takes has been freed when the edges are made.
+        let parsed = scene.metadata.result_memory_used as u64;
+        let edges = edge_bytes(corners, triangles as u64).saturating_sub(parsed);
+        let ahead = corners.saturating_mul(PER_CORNER).saturating_add(memory);
+        materials.plan(meshes(), ahead.max(edges).saturating_add(details));
         Ok(Self {
             scene,
             placed,
             budget,
-            materials: Materials::new(files, budget),
+            materials,
             faces,
             details: is_detailed.then(DetailTable::default),
             binder,

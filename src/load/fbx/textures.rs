@@ -1,12 +1,14 @@
 //! Reads the images of textures: embedded ones, or files beside the model.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
-use crate::load::images::decode_texture;
+use crate::load::images::{decode_halved, texture_size};
 use crate::load::memory_budget::Budget;
 use crate::load::notes::Notes;
+use crate::load::texture_room::{Scaling, TextureRoom};
 use crate::load::uri::Files;
+use crate::mesh::mipmap::MipFilter;
 use crate::mesh::{MemoryAccount, Sampling, Texture, Wrap};
 
 /// Images by texture.
@@ -15,11 +17,41 @@ pub(super) struct Textures<'a> {
     budget: &'a Budget,
     /// By the number of the file, the image; none for one that can't be read.
     images: HashMap<u32, Option<Arc<Texture>>>,
+    /// How images that don't fit are scaled down, likewise.
+    planned: HashMap<u32, Planned>,
+}
+
+/// What is known of an image before it is read.
+struct Planned {
+    /// In px.
+    size: [u32; 2],
+    filter: MipFilter,
+    scaling: Scaling,
 }
 
 impl<'a> Textures<'a> {
     pub(super) fn new(files: &'a Files<'a>, budget: &'a Budget) -> Self {
-        Self { files, budget, images: HashMap::new() }
+        Self { files, budget, images: HashMap::new(), planned: HashMap::new() }
+    }
+
+    /// Looks how large the images of these textures are, and plans to scale the largest down until all fit. `reserved` is the memory
+    /// that the rest of the load takes, in bytes.
+    pub(super) fn plan<'t>(&mut self, used: impl Iterator<Item = (&'t ufbx::Texture, MipFilter)>, reserved: u64) {
+        let (mut found, mut seen) = (Vec::new(), HashSet::new());
+        for (file, filter) in used.filter_map(|(texture, filter)| Some((of_file(texture)?, filter))) {
+            if !seen.insert(file.file_index) {
+                continue;
+            }
+            let borrowed = self.budget.borrowed();
+            let size = self.with_bytes(file, |bytes| Ok(texture_size(bytes))).ok().flatten();
+            self.budget.give_back_to(borrowed);
+            found.extend(size.map(|size| (file.file_index, size, filter)));
+        }
+        let sizes: Vec<_> = found.iter().map(|(_, size, _)| *size).collect();
+        let scalings = TextureRoom::of(self.budget, reserved).scalings(&sizes);
+        let planned = found.into_iter().zip(scalings);
+        self.planned =
+            planned.map(|((file, size, filter), scaling)| (file, Planned { size, filter, scaling })).collect();
     }
 
     /// Reads the image of a texture. One that is missing or broken causes a warning, which begins with `what`.
@@ -32,24 +64,36 @@ impl<'a> Textures<'a> {
             return image.clone();
         }
         let borrowed = self.budget.borrowed();
-        let image = self.read(file).map(Arc::new);
+        let planned = self.planned.get(&file.file_index);
+        let (halvings, filter) = planned.map_or((0, MipFilter::Colors), |own| (own.scaling.halvings, own.filter));
+        let image = self.with_bytes(file, |bytes| decode_halved(bytes, halvings, filter, self.budget)).map(Arc::new);
         self.budget.give_back_to(borrowed);
+        if let (Some(Planned { size, scaling, .. }), Ok(image)) = (planned.filter(|_| halvings > 0), &image) {
+            let [[a, b], [c, d]] = [*size, image.size];
+            notes.push(format!("{what} is scaled down from {a} x {b} px to {c} x {d} px: {}.", scaling.reason));
+        }
         let image = image.map_err(|reason| notes.push(format!("{what} is left out: {reason}.")));
         self.images.insert(file.file_index, image.clone().ok());
         image.ok()
     }
 
+    /// Hands the bytes of an image to `read`.
+    ///
     /// # Errors
-    /// A clause that says what is wrong.
-    fn read(&self, texture: &ufbx::Texture) -> Result<Texture, String> {
+    /// Those of `read`, and a clause that says why there are no bytes.
+    fn with_bytes<T>(
+        &self,
+        texture: &ufbx::Texture,
+        read: impl FnOnce(&[u8]) -> Result<T, String>,
+    ) -> Result<T, String> {
         if !texture.content.is_empty() {
-            return decode_texture(&texture.content, self.budget);
+            return read(&texture.content);
         }
         let mut problem = "it names no file; export the model again".to_owned();
         for name in names(texture) {
             // The name isn't a URI, so a % is a letter.
             match self.files.read(&name.replace('%', "%25"), false) {
-                Ok(bytes) => return decode_texture(&bytes, self.budget),
+                Ok(bytes) => return read(&bytes),
                 Err(reason) => problem = reason,
             }
         }

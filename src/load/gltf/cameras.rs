@@ -4,7 +4,6 @@
 
 use std::cell::RefCell;
 
-use glam::{DMat4, DVec3};
 use serde_json::{Map, Value, json};
 
 use super::json::objects;
@@ -78,8 +77,13 @@ impl CameraSources {
         (names.sum::<usize>() + size_of_val(&self.cameras[..]) + size_of_val(&self.of_nodes[..])) as u64
     }
 
-    /// The cameras of the nodes that the scene shows, where they are at rest: at most [`MOST_CAMERAS`].
-    pub(super) fn shown(&self, placed: &Placed, notes: &mut Notes) -> Vec<FileCamera> {
+    /// The nodes that have a camera.
+    pub(super) fn nodes(&self) -> impl Iterator<Item = usize> {
+        self.of_nodes.iter().map(|own| own.node)
+    }
+
+    /// The cameras of the nodes that the scene shows, where they are at rest, each with its node: at most [`MOST_CAMERAS`].
+    pub(super) fn shown(&self, placed: &Placed, notes: &mut Notes) -> Vec<(usize, FileCamera)> {
         if self.of_nodes.is_empty() {
             return Vec::new();
         }
@@ -93,10 +97,9 @@ impl CameraSources {
         for (own, source) in all.into_iter().take(MOST_CAMERAS) {
             let name = own.name.clone().or_else(|| source.name.clone());
             let name = name.unwrap_or_else(|| format!("camera {}", own.camera));
-            match placed.global.get(own.node).and_then(view_axes) {
+            match placed.global.get(own.node).and_then(FileCamera::view_axes) {
                 Some((eye, axes)) => {
-                    let [eye, axes] = [[eye; 3], axes].map(|vectors| vectors.map(|v| v.as_vec3()));
-                    cameras.push(FileCamera { name, eye: eye[0], axes, projection: source.projection });
+                    cameras.push((own.node, FileCamera { name, eye, axes, projection: source.projection }));
                 }
                 None => notes.push(format!(
                     "/nodes/{} has a camera without a finite place and direction; it is left out.",
@@ -129,12 +132,4 @@ fn camera_source(members: &Members) -> Option<CameraSource> {
         members.say("has no field of view or height; it is left out");
     }
     Some(CameraSource { name, projection: projection? })
-}
-
-/// The eye of a camera with this transform, and unit vectors to its right, up and back. Scales and mirrors have no part in them.
-fn view_axes(global: &DMat4) -> Option<(DVec3, [DVec3; 3])> {
-    let back = global.transform_vector3(DVec3::Z).try_normalize()?;
-    let right = global.transform_vector3(DVec3::Y).cross(back).try_normalize()?;
-    let eye = global.w_axis.truncate();
-    eye.as_vec3().is_finite().then_some((eye, [right, back.cross(right), back]))
 }

@@ -5,7 +5,7 @@
 use std::cell::RefCell;
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 
-use glam::{DMat4, DVec3, Vec3};
+use glam::Vec3;
 use serde_json::{Map, Value};
 
 use super::json::objects;
@@ -64,8 +64,13 @@ impl LightSources {
         (size_of_val(&self.lights[..]) + size_of_val(&self.of_nodes[..])) as u64
     }
 
-    /// The lights of the nodes that the scene shows, where they are at rest: at most [`MOST_LIGHTS`].
-    pub(super) fn shown(&self, placed: &Placed, notes: &mut Notes) -> Vec<Light> {
+    /// The nodes that have a light.
+    pub(super) fn nodes(&self) -> impl Iterator<Item = usize> {
+        self.of_nodes.iter().map(|[node, _]| *node)
+    }
+
+    /// The lights of the nodes that the scene shows, where they are at rest, each with its node: at most [`MOST_LIGHTS`].
+    pub(super) fn shown(&self, placed: &Placed, notes: &mut Notes) -> Vec<(usize, Light)> {
         let is_shown = if self.of_nodes.is_empty() { Vec::new() } else { placed.is_shown() };
         let shown = self.of_nodes.iter().filter(|[node, _]| is_shown.get(*node) == Some(&true));
         let all: Vec<_> = shown.filter_map(|&[node, light]| Some((node, self.lights[light]?))).collect();
@@ -74,8 +79,8 @@ impl LightSources {
         }
         let mut lights = Vec::new();
         for (node, light) in all.into_iter().take(MOST_LIGHTS) {
-            match placed.global.get(node).and_then(|global| at(light, global)) {
-                Some(light) => lights.push(light),
+            match placed.global.get(node).and_then(|global| light.at(global)) {
+                Some(light) => lights.push((node, light)),
                 None => notes.push(format!("/nodes/{node} has a light at no finite place; it is left out.")),
             }
         }
@@ -113,11 +118,4 @@ fn spot(members: &Members, range: Option<f32>) -> LightKind {
         members.say("has an inner cone that is wider than the outer one; the outer one is used for both");
     }
     LightKind::Spot { range, inner: inner.min(outer), outer }
-}
-
-/// A light with the place and the direction of a node. Its scale changes neither intensity nor range.
-fn at(light: Light, global: &DMat4) -> Option<Light> {
-    let direction = global.transform_vector3(DVec3::NEG_Z).try_normalize().unwrap_or(DVec3::NEG_Z).as_vec3();
-    let place = global.w_axis.truncate().as_vec3();
-    (place.is_finite() && direction.is_finite()).then_some(Light { place, direction, ..light })
 }

@@ -4,9 +4,11 @@ use ::gltf::Document;
 
 use super::nodes::{self, Placed};
 use crate::load::attachment::{LocalTransform, SceneNodes};
+use crate::mesh::rig::{Clip, Property};
 
-/// Describes the nodes of a document, with the morph targets of those that are shown.
-pub(super) fn of(document: &Document, placed: &Placed) -> SceneNodes {
+/// Describes the nodes of a document, with the morph targets of those that are shown. `also` are nodes that carry something beside
+/// meshes, if they are shown.
+pub(super) fn of(document: &Document, placed: &Placed, also: impl Iterator<Item = usize>) -> SceneNodes {
     let local = |node| match nodes::placement(&node) {
         Some(placement) => LocalTransform::Placement(placement),
         None => LocalTransform::Matrix(nodes::local(&node)),
@@ -22,14 +24,25 @@ pub(super) fn of(document: &Document, placed: &Placed) -> SceneNodes {
     SceneNodes {
         parents: placed.parents.clone(),
         order: placed.order.clone(),
-        carries: carries_shown(document, placed),
+        carries: carries_shown(document, placed, also),
         morphed: morphed.collect(),
         local: all.iter().cloned().map(local).collect(),
     }
 }
 
-/// Returns which nodes carry something that is shown, on them or below them: a mesh, or a joint of a mesh's skin.
-fn carries_shown(document: &Document, placed: &Placed) -> Vec<bool> {
+/// Returns whether clips, whose targets are nodes of the document, move or deform a mesh that is shown.
+pub(super) fn move_meshes(clips: &[Clip], document: &Document, placed: &Placed) -> bool {
+    if clips.is_empty() {
+        return false;
+    }
+    let carries = carries_shown(document, placed, std::iter::empty());
+    let mut channels = clips.iter().flat_map(|clip| &clip.channels);
+    channels.any(|channel| channel.property == Property::Weights || carries.get(channel.target as usize) == Some(&true))
+}
+
+/// Returns which nodes carry something that is shown, on them or below them: a mesh, a joint of a mesh's skin, or what they carry
+/// besides.
+fn carries_shown(document: &Document, placed: &Placed, also: impl Iterator<Item = usize>) -> Vec<bool> {
     let mut carries = vec![false; placed.global.len()];
     let mut seen_skins = vec![false; document.skins().len()];
     for node in placed.shown.iter().filter_map(|&index| document.nodes().nth(index)) {
@@ -41,6 +54,8 @@ fn carries_shown(document: &Document, placed: &Placed) -> Vec<bool> {
             skin.joints().for_each(|joint| carries[joint.index()] = true);
         }
     }
+    let is_shown = placed.is_shown();
+    also.filter(|node| is_shown.get(*node) == Some(&true)).for_each(|node| carries[node] = true);
     // Children before parents.
     for &node in placed.order.iter().rev() {
         if let Some(parent) = placed.parents[node].filter(|_| carries[node]) {

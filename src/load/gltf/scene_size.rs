@@ -118,7 +118,8 @@ pub(crate) fn check(
     let beside = moving.saturating_add(all.primitives.saturating_mul(PER_PRIMITIVE));
     let ahead = all.corners * PER_CORNER + all.zeros * PER_ZERO + details + read.max(finished);
     let borrowed = budget.borrowed();
-    budget.hold(beside).and_then(|()| budget.borrow(ahead)).map_err(too_large)?;
+    let ahead_of = || budget.borrow(ahead).inspect_err(|_| budget.release(beside));
+    budget.hold(beside).and_then(|()| ahead_of()).map_err(too_large)?;
     // This was only a check: the builder takes the memory as it goes.
     budget.give_back_to(borrowed);
     // By then the file's data has been freed.

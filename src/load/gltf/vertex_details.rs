@@ -3,7 +3,7 @@
 
 use ::gltf::Semantic;
 use ::gltf::accessor::Dimensions;
-use glam::{DMat3, DVec3, Vec2, Vec3, Vec4};
+use glam::{DMat3, DQuat, DVec3, Vec2, Vec3, Vec4};
 
 use super::accessor::List;
 use super::materials::DetailNeeds;
@@ -60,9 +60,9 @@ impl<'a> VertexDetails<'a> {
         read
     }
 
-    /// Reads a vertex. `linear` transforms its directions into the scene's space.
-    pub(super) fn read(&mut self, i: usize, linear: &DMat3) -> CornerDetail {
-        let (tangent, bitangent_sign) = self.tangent(i, linear);
+    /// Reads a vertex. Morph targets turn its tangent by `turn`, and then `linear` transforms its directions into the scene's space.
+    pub(super) fn read(&mut self, i: usize, linear: &DMat3, turn: Option<DQuat>) -> CornerDetail {
+        let (tangent, bitangent_sign) = self.tangent(i, linear, turn);
         CornerDetail { uvs: [0, 1].map(|set| self.uv(set, i)), color: self.color(i), tangent, bitangent_sign }
     }
 
@@ -89,11 +89,13 @@ impl<'a> VertexDetails<'a> {
     }
 
     /// A map that mirrors turns the bitangent around: it is a cross product.
-    fn tangent(&mut self, i: usize, linear: &DMat3) -> (Vec3, f32) {
+    fn tangent(&mut self, i: usize, linear: &DMat3, turn: Option<DQuat>) -> (Vec3, f32) {
         let Some(tangents) = &self.tangents else { return (Vec3::ZERO, 1.0) };
         let [x, y, z, sign] = tangents.get(i);
         let own = Vec3::new(x, y, z);
-        let turned = (*linear * own.as_dvec3().normalize_or_zero()).try_normalize().map(DVec3::as_vec3);
+        let unit = own.as_dvec3().normalize_or_zero();
+        let morphed = turn.map_or(unit, |turn| turn * unit);
+        let turned = (*linear * morphed).try_normalize().map(DVec3::as_vec3);
         let Some(tangent) = turned.filter(|_| own.is_finite() && !sign.is_nan()) else {
             self.repairs.bad_tangents += 1;
             return (Vec3::ZERO, 1.0);

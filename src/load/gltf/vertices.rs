@@ -1,7 +1,7 @@
 //! Reads a primitive's vertices in their rest pose: attributes, morph targets, then the skin or the node's transform.
 
 use ::gltf::Semantic;
-use glam::{DMat3, DMat4, Vec2, Vec3};
+use glam::{DMat3, DMat4, DQuat, Vec2, Vec3};
 
 use super::GltfError;
 use super::accessor::List;
@@ -243,8 +243,20 @@ impl<'a> Vertices<'a> {
         }
         let rescaled = matches!(own, Some(GivenNormal::Rescaled(_))) && normal != Some(Vec3::ZERO);
         let mirrored = linear.determinant() < 0.0;
-        let detail = self.details.as_mut().map_or_else(CornerDetail::default, |details| details.read(i, &linear));
+        let turn = self.turned_at_rest(i);
+        let read = |details: &mut VertexDetails| details.read(i, &linear, turn);
+        let detail = self.details.as_mut().map_or_else(CornerDetail::default, read);
         Ok(Vertex { corner: InputCorner { position, normal, uv }, detail, mirrored, rescaled })
+    }
+
+    /// Returns how the morph targets turn a vertex's normal at rest; none if they don't, or if nothing needs to know.
+    fn turned_at_rest(&self, i: usize) -> Option<DQuat> {
+        if self.targets.is_empty() || self.details.is_none() {
+            return None;
+        }
+        let unit = |is_morphed| self.undeformed(i, is_morphed).1?.as_dvec3().try_normalize();
+        let (own, morphed) = (unit(false)?, unit(true)?);
+        (own != morphed).then(|| DQuat::from_rotation_arc(own, morphed))
     }
 
     /// Returns the matrix of a vertex: the weighted mean of its joints' matrices, or the node's transform if it isn't

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::mutated;
 use crate::load::Format::{Fbx, Gltf, Obj, Ply, Stl};
-use crate::load::gltf;
+use crate::load::{environment_file, gltf};
 
 fn made() -> Vec<(&'static str, String, Vec<u8>)> {
     let mut made = Vec::new();
@@ -22,6 +22,7 @@ fn made() -> Vec<(&'static str, String, Vec<u8>)> {
     made.push(("obj", "short.obj".to_owned(), short));
     made.push(("stl", "nothing.stl".to_owned(), vec![0; 84]));
     made.extend(gltf::tests::seeds());
+    made.extend(environment_file::tests::seeds());
     let factors = [
         ("ones", [1.0, 1.0, 1.0, 1.0]),
         ("largest", [64.0, 63.0, 64.0, f32::MAX]),

@@ -20,7 +20,7 @@ pub(super) fn detail_in(
         return own[k];
     }
     let weights = weights(positions.map(|position| position.as_dvec3()), corner.position.as_dvec3());
-    blended(&own, weights.map(|weight| weight as f32))
+    CornerDetail::blended(own.each_ref(), weights.map(|weight| weight as f32))
 }
 
 /// Returns how much each of three points counts at a position between them. They add up to 1.
@@ -30,17 +30,4 @@ fn weights([a, b, c]: [DVec3; 3], at: DVec3) -> [f64; 3] {
     let parts = [part(b, c), part(c, a), part(a, b)];
     let sum: f64 = parts.iter().sum();
     if sum > 0.0 && sum.is_finite() { parts.map(|part| part / sum) } else { [1.0, 0.0, 0.0] }
-}
-
-/// The bitangents of a triangle's corners have one sign, unless its normal map is mirrored between them.
-fn blended(own: &[CornerDetail; 3], weights: [f32; 3]) -> CornerDetail {
-    let [a, b, c] = own;
-    let [u, v, w] = weights;
-    let set = |i: usize| a.uvs[i] * u + b.uvs[i] * v + c.uvs[i] * w;
-    CornerDetail {
-        uvs: [set(0), set(1)],
-        color: a.color * u + b.color * v + c.color * w,
-        tangent: (a.tangent * u + b.tangent * v + c.tangent * w).normalize_or_zero(),
-        bitangent_sign: a.bitangent_sign,
-    }
 }

@@ -203,6 +203,29 @@ fn images_are_looked_for_beside_the_model_and_nowhere_else() {
 }
 
 #[test]
+fn images_that_do_not_fit_are_halved() {
+    let read = |size: [u32; 2], memory| {
+        let mut png = std::io::Cursor::new(Vec::new());
+        let gray = image::GrayImage::from_pixel(size[0], size[1], image::Luma([128]));
+        gray.write_to(&mut png, image::ImageFormat::Png).expect("an image in memory");
+        let bytes = text(&textured_square(Ok(png.get_ref())));
+        let limits = Limits { memory, ..Limits::default() };
+        let read = read_here(bytes, std::path::Path::new("nowhere"), "test", &limits, &Progress::new());
+        let read = read.expect("a mesh, whatever its textures are");
+        (read.materials[0].texture.as_ref().map(|texture| texture.size), read.warnings.join("\n"))
+    };
+    assert_eq!(read([2048, 2048], 64 << 20), (Some([2048; 2]), String::new()));
+    // Decoded it has 16 MiB.
+    let (size, said) = read([2048, 2048], 12 << 20);
+    assert_eq!(size, Some([1024; 2]), "{said}");
+    let expected = "the texture of material \"paint\" is scaled down from 2048 x 2048 px to 1024 x 1024 px: ";
+    assert!(said.starts_with(expected) && said.contains("--max-memory"), "{said}");
+    let (size, said) = read([16384, 4], 64 << 20);
+    assert_eq!(size, Some([8192, 2]), "{said}");
+    assert!(said.ends_with("at most 8192 px a side are shown."), "{said}");
+}
+
+#[test]
 fn what_is_not_read_is_named() {
     let attribute = |id, kind: &str| {
         super::tree::object("NodeAttribute", id, "NodeAttribute::x", kind, vec![one("TypeFlags", kind)])

@@ -117,6 +117,30 @@ fn tangents_follow_their_joints() {
 }
 
 #[test]
+fn morph_targets_turn_tangents_along_with_normals() {
+    let mut draft = normal_mapped(triangle(), [1.0, 0.0, 0.0, -1.0]);
+    let still = draft.vectors(&[[0.0; 3]; 3]);
+    // From +Z to +X.
+    let turn = draft.vectors(&[[1.0, 0.0, -1.0]; 3]);
+    draft.root["meshes"][0]["primitives"][0]["targets"] = json!([{ "POSITION": still, "NORMAL": turn }]);
+    draft.animate(0, "weights", "SCALAR", &[0.0, 1.0], &[0.0, 1.0]);
+    let assert_turned = |mesh: &Mesh, tangent: Vec3| {
+        for (own, sign) in tangents(mesh) {
+            assert!(own.distance(tangent) < 1e-6 && sign == -1.0, "{own} {sign}, not {tangent}");
+        }
+    };
+    let mesh = draft.read().unwrap();
+    assert_turned(&mesh, Vec3::X);
+    assert_turned(&posed(&mesh, 0.0), Vec3::X);
+    assert_turned(&posed(&mesh, 1.0), Vec3::NEG_Z);
+    draft.root["meshes"][0]["weights"] = json!([1.0]);
+    let mesh = draft.read().unwrap();
+    assert_turned(&mesh, Vec3::NEG_Z);
+    assert_turned(&posed(&mesh, 0.0), Vec3::X);
+    assert_turned(&posed(&mesh, 1.0), Vec3::NEG_Z);
+}
+
+#[test]
 fn tangents_of_nodes_turn_and_mirror_with_them() {
     let mut draft = normal_mapped(triangle(), [1.0, 0.0, 0.0, 1.0]);
     draft.root["nodes"][0] = json!({ "mesh": 0, "scale": [-2.0, 1.0, 1.0] });

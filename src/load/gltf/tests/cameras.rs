@@ -6,7 +6,7 @@ use super::*;
 use crate::mesh::{FileCamera, Projection};
 
 /// A triangle, and nodes with these cameras: the first is shown, turned by half a turn and a half, and scaled; the second isn't.
-fn with_cameras(cameras: &Value, nodes: &Value) -> Draft {
+pub(super) fn with_cameras(cameras: &Value, nodes: &Value) -> Draft {
     let mut draft = triangle();
     draft.root["cameras"] = cameras.clone();
     let mut all = vec![json!({ "mesh": 0 })];

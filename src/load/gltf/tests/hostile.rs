@@ -8,6 +8,7 @@ mod members;
 mod much;
 mod packed;
 mod resources;
+mod seen;
 mod unused;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -122,6 +123,7 @@ fn hostile_documents_get_the_answers_in_the_table() {
     cases.extend(much::cases());
     cases.extend(packed::cases());
     cases.extend(resources::cases(&folder));
+    cases.extend(seen::cases());
     cases.extend(unused::cases());
     let names: std::collections::HashSet<_> = cases.iter().map(|case| case.name).collect();
     assert!(cases.len() >= 130 && names.len() == cases.len(), "{} of {}", names.len(), cases.len());

@@ -1,7 +1,7 @@
 //! Lights of documents: where they are, how they shine, and what is wrong with some.
 
 use super::*;
-use crate::mesh::{Light, LightKind};
+use crate::mesh::{Light, LightKind, Moment};
 
 /// A triangle with these lights, each on a node of its own.
 pub(super) fn lit(lights: Value, nodes: &[Value]) -> Draft {
@@ -105,4 +105,65 @@ fn of_many_lights_the_first_sixteen_shine() {
     let loaded = lit(json!([{ "type": "point" }]), &nodes).read().expect("a mesh");
     assert_eq!(loaded.mesh.lights.iter().map(|light| light.place.x).sum::<f32>(), 120.0);
     assert_eq!(loaded.warnings, ["The scene has 40 lights, of which only the first 16 shine."]);
+}
+
+/// A document with two lights and a camera. A clip moves a light, turns the camera, and moves their parent, but neither the other light nor
+/// the triangle.
+fn moving() -> Draft {
+    let lights = json!([{ "type": "point", "intensity": 10 }, { "type": "spot" }]);
+    let camera = json!({ "camera": 0, "name": "Shot" });
+    let mut draft = lit(lights, &[node(0, json!({})), node(1, json!({ "translation": [0, 0, 1] })), camera]);
+    draft.root["cameras"] = json!([{ "type": "perspective", "perspective": { "yfov": 0.5, "znear": 0.1 } }]);
+    let nodes = draft.root["nodes"].as_array_mut().expect("nodes");
+    let first = nodes.len() - 3;
+    nodes.push(json!({ "children": [first, first + 2], "scale": [2, 2, 2] }));
+    let parent = nodes.len() - 1;
+    draft.root["scenes"][0]["nodes"] = json!([0, first + 1, parent]);
+    let times = draft.floats("SCALAR", &[0.0, 1.0]);
+    draft.root["accessors"][times]["min"] = json!([0.0]);
+    draft.root["accessors"][times]["max"] = json!([1.0]);
+    let places = draft.floats("VEC3", &[0.0, 0.0, 0.0, 1.0, 2.0, 3.0]);
+    let turns = draft.floats("VEC4", &[0.0, 0.0, 0.0, 1.0, -0.707_106_77, 0.0, 0.0, 0.707_106_77]);
+    let sampler = |output: usize| json!({ "input": times, "output": output });
+    let channel = |node: usize, path: &str, sampler: usize| json!({ "sampler": sampler, "target": { "node": node, "path": path } });
+    draft.root["animations"] = json!([{
+        "samplers": [sampler(places), sampler(turns)],
+        "channels": [
+            channel(first, "translation", 0),
+            channel(first + 2, "rotation", 1),
+            channel(parent, "translation", 0),
+        ],
+    }]);
+    draft
+}
+
+#[test]
+fn lights_and_cameras_move_with_their_nodes() {
+    let loaded = moving().read().expect("a mesh");
+    assert_eq!(loaded.warnings, Vec::<String>::new());
+    let mesh = &loaded.mesh;
+    let rig = mesh.rig.as_ref().expect("a clip moves something that is shown");
+    let at = |time| rig.pose(Moment { clip: 0, time });
+    assert_eq!((mesh.lights_in(&at(0.0)), mesh.cameras_in(&at(0.0))), (mesh.lights.clone(), mesh.cameras.clone()));
+    let [bulb, still] = mesh.lights_in(&at(1.0))[..] else { panic!("two lights") };
+    // The node moves by (1, 2, 3), scaled by two, and so does its parent, in the scene.
+    assert_eq!((bulb.place, bulb.intensity), (Vec3::new(3.0, 6.0, 9.0), Vec3::splat(10.0)));
+    assert_eq!((still, still.place), (mesh.lights[1], Vec3::Z));
+    let [camera] = &mesh.cameras_in(&at(1.0))[..] else { panic!("one camera") };
+    assert_eq!((camera.eye, &*camera.name), (Vec3::new(1.0, 2.0, 3.0), "Shot"));
+    let [right, up, back] = camera.axes;
+    assert!(right.abs_diff_eq(Vec3::X, 1e-6) && up.abs_diff_eq(Vec3::NEG_Z, 1e-6), "{right} {up}");
+    assert!(back.abs_diff_eq(Vec3::Y, 1e-6), "it looks down: {back}");
+    assert_eq!(mesh.cameras_at(Some(Moment { clip: 0, time: 1.0 })), mesh.cameras_in(&at(1.0)));
+}
+
+/// Vertices without data in the file take memory that the file's size doesn't pay for.
+#[test]
+fn a_mesh_that_leaves_no_room_for_a_rig_loads_without_the_motion_of_its_lights() {
+    let mut draft = moving();
+    let zeros = draft.push("accessors", json!({ "componentType": 5126, "type": "VEC3", "count": 1_200_000 }));
+    draft.primitive(json!({ "attributes": { "POSITION": zeros } }));
+    let loaded = draft.read().expect("it fits without a rig");
+    assert!(loaded.mesh.rig.is_none() && loaded.mesh.lights.len() == 2);
+    assert!(loaded.warnings.iter().any(|said| said.contains("move only lights and cameras")), "{:?}", loaded.warnings);
 }
