@@ -75,7 +75,7 @@ pub(super) fn cases() -> Vec<(&'static str, Case)> {
         case(
             "4 GiB of nothing",
             with_model(Entry { unpacked: u32::MAX - 1, ..own() }),
-            Refused("TooLarge | 4096 MiB | 256"),
+            Refused("TooLarge | 4097 MiB | 256"),
         ),
         case(
             "200 MiB of nothing",
