@@ -111,7 +111,7 @@ impl Stamp {
 /// Reads a whole file, unless it is larger than `limits` allows, by its length or by what is read. The bytes all belong
 /// to one version of the file: a file that changes while it is read is refused.
 ///
-/// `check_start` gets the first bytes (at most 4,096) before the rest is read, and may refuse the file.
+/// `check_start` gets the first bytes (at most 65,536) before the rest is read, and may refuse the file.
 ///
 /// # Errors
 /// [`FileError`], and the errors of `check_start`.
@@ -134,7 +134,7 @@ pub(crate) fn read_file<E: From<FileError>>(
 }
 
 /// How many bytes at the start of a file are enough to recognise its format.
-const START: u64 = 4096;
+const START: u64 = 1 << 16;
 /// How many bytes are read between two checks for cancellation.
 const PIECE: u64 = 1 << 24;
 

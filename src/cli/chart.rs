@@ -30,8 +30,8 @@ use crate::truth::Truth;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// .gltf, .glb, .vrm, .fbx, .obj, .stl or .ply files, or shapes made in code such as shape:torus, or shape:torus@2 (finer); with
-    /// --report, by default seven shapes, and assets/vase.glb where there is one
+    /// .gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf files, or shapes made in code such as shape:torus, or
+    /// shape:torus@2 (finer); with --report, by default seven shapes, and assets/vase.glb where there is one
     #[arg(value_parser = options::source(), required_unless_present = "report")]
     pub files: Vec<Source>,
     /// Reference surface that errors are measured against: a mesh, such as the high-poly original, or a shape. By default

@@ -13,7 +13,8 @@ use crate::settings::options::{FACTOR, HEIGHT_SCALE, MIDLEVEL};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// A .gltf, .glb, .vrm, .fbx, .obj, .stl or .ply file, or a shape made in code; without one, each exhibit has the shape that suits it
+    /// A .gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf file, or a shape made in code; without one, each exhibit has
+    /// the shape that suits it
     #[arg(value_parser = super::options::source())]
     pub file: Option<Source>,
     /// Folder for a picture of each exhibit, and a page that explains them, gallery.md; made if it isn't there

@@ -74,8 +74,8 @@ use crate::settings::Settings;
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub command: Option<Command>,
-    /// Mesh that the window opens: a .gltf, .glb, .vrm, .fbx, .obj, .stl or .ply file, or a shape made in code such as shape:cube-split,
-    /// or shape:torus@2 (finer)
+    /// Mesh that the window opens: a .gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf file, or a shape made in code such
+    /// as shape:cube-split, or shape:torus@2 (finer)
     #[arg(value_parser = options::source())]
     pub file: Option<Source>,
     #[command(flatten)]

@@ -17,7 +17,8 @@ use crate::tessellate::{self, bounds_through};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// A .gltf, .glb, .vrm, .fbx, .obj, .stl or .ply file, or a shape made in code such as shape:cube-split, or shape:torus@2 (finer)
+    /// A .gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf file, or a shape made in code such as shape:cube-split, or
+    /// shape:torus@2 (finer)
     #[arg(value_parser = super::options::source())]
     pub file: Source,
     /// Mesh to write, a .glb or .obj file

@@ -17,9 +17,9 @@ use crate::truth::Truth;
 
 #[derive(Clone, Debug, Default, Args)]
 pub(crate) struct TruthOption {
-    /// Reference surface for the deviation overlay and the stats: a .gltf, .glb, .vrm, .fbx, .obj, .stl or .ply file, such as the
-    /// high-poly original, or a shape. By default the exact surface of a shape; for other meshes the overlay takes the
-    /// surface that the tessellation converges to
+    /// Reference surface for the deviation overlay and the stats: a .gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf
+    /// file, such as the high-poly original, or a shape. By default the exact surface of a shape; for other meshes the overlay
+    /// takes the surface that the tessellation converges to
     #[arg(long, value_name = "FILE", value_parser = options::source())]
     pub truth: Option<Source>,
 }

@@ -19,7 +19,8 @@ use crate::render::Camera;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// A .gltf, .glb, .vrm, .fbx, .obj, .stl or .ply file, or a shape made in code such as shape:cube-split, or shape:torus@2 (finer)
+    /// A .gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf file, or a shape made in code such as shape:cube-split, or
+    /// shape:torus@2 (finer)
     #[arg(value_parser = super::options::source())]
     pub file: Source,
     /// Folder for numbered PNG files, frame-0000.png and so on, which is made if it isn't there; or a .gif file

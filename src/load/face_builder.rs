@@ -1,5 +1,5 @@
-//! Builds a mesh from the faces of FBX, OBJ, STL and PLY files: checks them, cuts polygons into triangles, and counts
-//! repairs.
+//! Builds a mesh from the faces of FBX, OBJ, STL, PLY, OFF and 3MF files: checks them, cuts polygons into triangles, and
+//! counts repairs.
 
 use std::sync::Arc;
 

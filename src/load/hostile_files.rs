@@ -1,4 +1,4 @@
-//! Tests with FBX, OBJ, STL and PLY files that are broken or hostile: what the loader answers, and that it never takes long.
+//! Tests with FBX, OBJ, STL, PLY, OFF and 3MF files that are broken or hostile: what the loader answers, and that it never takes long.
 
 mod mutated;
 pub(in crate::load) mod page;
@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
-use super::{Format, ReadError, fbx, obj, ply, stl};
+use super::{Format, ReadError, fbx, obj, off, ply, stl, threemf};
 use crate::files::Limits;
 use crate::load::LoadedMesh;
 use crate::progress::Progress;
@@ -63,6 +63,8 @@ fn read(format: Format, bytes: &[u8]) -> Result<LoadedMesh, ReadError> {
         Format::Obj => obj::read(bytes.to_vec(), Path::new("nowhere"), "broken", &Limits::default(), &progress),
         Format::Stl => stl::read(bytes.to_vec(), "broken", &Limits::default(), &progress),
         Format::Ply => ply::read(bytes.to_vec(), "broken", &Limits::default(), &progress),
+        Format::Off => off::read(bytes.to_vec(), "broken", &Limits::default(), &progress),
+        Format::ThreeMf => threemf::read(bytes.to_vec(), "broken", &Limits::default(), &progress),
         Format::Gltf => panic!("glTF has hostile files of its own, in gltf/tests"),
     };
     let (took, length) = (time() - start, bytes.len());

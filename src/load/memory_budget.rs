@@ -7,7 +7,7 @@
 //!
 //! - while it is read, `F + 32 V + 5 S + 12 T`: the file's bytes, corners, the table that finds equal corners (`S` is
 //!   the first power of two from `8 V / 7` on), and triangles. Each vertex of the glTF primitive that is being read takes
-//!   5 more, and each vertex of an OBJ or PLY file takes its attributes. If the number of corners isn't known beforehand,
+//!   5 more, and each vertex of an OBJ, PLY, OFF or 3MF file takes its attributes. If the number of corners isn't known beforehand,
 //!   their list grows by half, and the old and the new list exist at the same time: `80 V`.
 //! - while normals are computed, after the file's bytes have been freed: `32 V + 24 T + 4 P`, and 16 for each corner
 //!   that a crease adds.

@@ -1,33 +1,20 @@
-//! Loads a mesh from a file, with the reader for its extension.
+//! Loads a mesh from a file, with the reader for its content, or for its extension if its content shows no format.
 
 use std::path::{Path, PathBuf};
 
+use super::content::{self, Content};
+use super::format::{Format, extension_of, known_extensions};
 use super::gltf::{self, GltfError, scenes};
 use super::heights::HeightError;
 use super::loaded_mesh::LoadedMesh;
 use super::read_error::ReadError;
 use super::selection::Selection;
-use super::{fbx, obj, ply, stl};
+use super::text_lines::of_utf16;
+use super::unread_formats::{self, UnreadFormat};
+use super::{fbx, obj, off, ply, stl, threemf};
 use crate::files::{FileError, Limits, Stamp, read_file};
 use crate::names::{shown, shown_path};
 use crate::progress::{Cancelled, Progress};
-
-/// The extensions of files that can be read, in lower case, each with its format.
-pub(crate) const EXTENSIONS: [(&str, Format); 7] = [
-    ("gltf", Format::Gltf),
-    ("glb", Format::Gltf),
-    ("vrm", Format::Gltf),
-    ("fbx", Format::Fbx),
-    ("obj", Format::Obj),
-    ("stl", Format::Stl),
-    ("ply", Format::Ply),
-];
-
-/// The extensions of files that can be read, for messages: ".gltf, .glb, .vrm, .fbx, .obj, .stl or .ply".
-pub(crate) fn known_extensions() -> String {
-    let [others @ .., last] = EXTENSIONS.map(|(extension, _)| format!(".{extension}"));
-    format!("{} or {last}", others.join(", "))
-}
 
 /// Why a file could not be loaded as a mesh.
 #[derive(Debug, thiserror::Error)]
@@ -36,9 +23,16 @@ pub enum LoadError {
     /// The load was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// The extension is none of those that are read.
-    #[error("{} can't be read, since it has {extension}; choose a {} file", shown_path(path), known_extensions())]
+    /// Neither the content nor the extension is that of a format.
+    #[error(
+        "{} can't be read: its content shows no format, and it has {extension}; choose a {} file",
+        shown_path(path),
+        known_extensions()
+    )]
     UnknownFormat { path: PathBuf, extension: String },
+    /// The file has a format that isn't read.
+    #[error("{} is {is}, which isn't read; {advice}", shown_path(path))]
+    NotRead { path: PathBuf, is: &'static str, advice: &'static str },
     /// The path leads to a folder, a device or a pipe.
     #[error("{} is not a file; choose a {} file", shown_path(path), known_extensions())]
     NotAFile { path: PathBuf },
@@ -48,12 +42,6 @@ pub enum LoadError {
     /// The file is empty.
     #[error("{} is empty; export the model again", shown_path(path))]
     NoBytes { path: PathBuf },
-    /// The content belongs to another format than the extension.
-    #[error(
-        "{} begins like {is}, which doesn't fit its extension; rename it, or export the model again",
-        shown_path(path)
-    )]
-    Misnamed { path: PathBuf, is: &'static str },
     /// The file is neither glTF JSON nor a binary glTF.
     #[error(
         "{} isn't a glTF file: it begins neither with \"glTF\" nor with a {{; export the model again",
@@ -63,7 +51,7 @@ pub enum LoadError {
     /// The glTF document can't be read.
     #[error("{}: {problem}", shown_path(path))]
     Gltf { path: PathBuf, problem: Box<GltfError> },
-    /// The FBX, OBJ, STL or PLY file can't be read.
+    /// The FBX, OBJ, STL, PLY, OFF or 3MF file can't be read.
     #[error("{}: {fault}", shown_path(path))]
     Broken { path: PathBuf, fault: Box<ReadError> },
     /// A height image can't be read.
@@ -121,7 +109,8 @@ impl From<HeightError> for LoadError {
     }
 }
 
-/// Loads a mesh from a file: `.gltf`, `.glb`, `.vrm`, `.fbx`, `.obj`, `.stl` or `.ply`, in upper or lower case.
+/// Loads a mesh from a file of glTF, FBX, OBJ, STL, PLY, OFF or 3MF. Its first bytes tell the format, whatever its name; where they
+/// could belong to any, its extension does, in upper or lower case.
 ///
 /// Sets `progress` from 0 to 1. Files that the model names are only read from its folder and folders below it. No file
 /// may be larger than `limits` allows.
@@ -149,10 +138,15 @@ pub(crate) fn load_selected(
     if !file.is_file() {
         return Err(LoadError::NotAFile { path: path.to_owned() });
     }
-    let format = Format::of(path)?;
     let before = Stamp::of(&file);
-    let bytes = read_file(path, limits, |start| format.fits(start, path), progress)?;
-    let mesh = read(format, bytes, path, selected, limits, progress)?;
+    let mut judged = None;
+    let judge = |start: &[u8]| Judged::of(path, start, file.len()).map(|found| judged = Some(found));
+    let bytes = read_file(path, limits, judge, progress)?;
+    let Some(Judged { format, is_utf16, warning }) = judged else {
+        return Err(LoadError::NoBytes { path: path.to_owned() });
+    };
+    let mut mesh = read(format, if is_utf16 { in_utf8(bytes) } else { bytes }, path, selected, limits, progress)?;
+    mesh.warnings.splice(0..0, warning);
     before.check(path)?;
     check_selected(path, selected, &mesh)?;
     progress.set(1.0);
@@ -177,61 +171,84 @@ pub(super) fn check_selected(path: &Path, selected: Selection, loaded: &LoadedMe
     }
 }
 
-/// The format that a file is read as.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// `.gltf`, `.glb` or `.vrm`; the first bytes tell whether it is text or binary.
-    Gltf,
-    /// Text or binary; the first bytes tell which.
-    Fbx,
-    Obj,
-    Stl,
-    Ply,
+/// What a file is read as.
+#[derive(Debug)]
+struct Judged {
+    format: Format,
+    /// Whether it is a text in UTF-16.
+    is_utf16: bool,
+    /// That the name says something else than the content.
+    warning: Option<String>,
 }
 
-impl Format {
-    /// Returns the format of a file by its extension.
+impl Judged {
+    /// Judges a file by its first bytes, and by its name if they show no format. `length` is the file's size in bytes.
     ///
     /// # Errors
-    /// [`LoadError::UnknownFormat`].
-    pub fn of(path: &Path) -> Result<Self, LoadError> {
-        let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
-        let known = EXTENSIONS.into_iter().find(|(known, _)| extension.as_deref() == Some(*known));
-        known.map(|(_, format)| format).ok_or_else(|| {
-            let extension =
-                extension.map_or("no extension".to_owned(), |extension| format!("the extension .{extension}"));
-            LoadError::UnknownFormat { path: path.to_owned(), extension }
-        })
-    }
-}
-
-impl Format {
-    /// Checks whether a file's first bytes fit this format, so that another file isn't read whole.
-    ///
-    /// # Errors
-    /// [`LoadError::NoBytes`], [`LoadError::Misnamed`] and [`LoadError::NoGltf`].
-    fn fits(self, start: &[u8], path: &Path) -> Result<(), LoadError> {
-        let path = || path.to_owned();
-        let is_glb = start.starts_with(b"glTF");
+    /// [`LoadError::NoBytes`], [`LoadError::NotRead`], [`LoadError::UnknownFormat`] and [`LoadError::NoGltf`].
+    fn of(path: &Path, start: &[u8], length: u64) -> Result<Self, LoadError> {
         if start.is_empty() {
-            return Err(LoadError::NoBytes { path: path() });
+            return Err(LoadError::NoBytes { path: path.to_owned() });
         }
-        if self != Self::Gltf && is_glb {
-            return Err(LoadError::Misnamed { path: path(), is: "a .glb file" });
+        let (named, extension) = (Format::of_name(path), extension_of(path).unwrap_or_default());
+        let by_name = |format| Self { format, is_utf16: false, warning: None };
+        // Whatever an OBJ file begins with, lines that OBJ doesn't have are left out.
+        let is_binary = start.contains(&0);
+        if named == Some(Format::Obj) && !is_binary && content::has_vertex(start) {
+            return Ok(by_name(Format::Obj));
         }
-        if self != Self::Ply && (start.starts_with(b"ply\n") || start.starts_with(b"ply\r")) {
-            return Err(LoadError::Misnamed { path: path(), is: "a .ply file" });
+        match (content::recognised(start, length), named) {
+            (Some(Content::Read { format, is_utf16 }), _) => {
+                let warning = (named != Some(format)).then(|| taken_for(format, &extension));
+                // The reader of OBJ does this itself.
+                Ok(Self { format, is_utf16: is_utf16 && format != Format::Obj, warning })
+            }
+            (Some(Content::Unread(format)), _) => {
+                Err(unread(path, unread_formats::of_compressed(start, &extension).unwrap_or(format)))
+            }
+            (None, Some(Format::Gltf)) if !begins_as_json(start) => Err(LoadError::NoGltf { path: path.to_owned() }),
+            (None, Some(format)) => Ok(by_name(format)),
+            (None, None) => Err(match unread_formats::of_extension(&extension) {
+                Some(format) => unread(path, format),
+                None => unknown(path, &extension),
+            }),
         }
-        if self != Self::Fbx && start.starts_with(b"Kaydara FBX Binary") {
-            return Err(LoadError::Misnamed { path: path(), is: "a .fbx file" });
-        }
-        let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start).trim_ascii_start();
-        // A list isn't a document either, but the parser also reports how deep it is nested.
-        if self == Self::Gltf && !is_glb && !matches!(text.first(), None | Some(b'{' | b'[')) {
-            return Err(LoadError::NoGltf { path: path() });
-        }
-        Ok(())
     }
+}
+
+fn unread(path: &Path, &UnreadFormat { is, advice, .. }: &UnreadFormat) -> LoadError {
+    LoadError::NotRead { path: path.to_owned(), is, advice }
+}
+
+fn unknown(path: &Path, extension: &str) -> LoadError {
+    let extension = match extension {
+        "" => "no extension".to_owned(),
+        extension => format!("the extension .{}", shown(extension)),
+    };
+    LoadError::UnknownFormat { path: path.to_owned(), extension }
+}
+
+/// A warning about a file whose content isn't what its name says.
+fn taken_for(format: Format, extension: &str) -> String {
+    let title = format.title();
+    match extension {
+        "" => format!("The file's name has no extension. Its content is {title}, so it was read as {title}."),
+        extension => {
+            let extension = shown(extension);
+            format!("The file's name ends in .{extension}, but its content is {title}, so it was read as {title}.")
+        }
+    }
+}
+
+/// A list isn't a document either, but the parser also reports how deep it is nested.
+fn begins_as_json(start: &[u8]) -> bool {
+    let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start).trim_ascii_start();
+    matches!(text.first(), None | Some(b'{' | b'['))
+}
+
+/// Returns a text in UTF-16 in UTF-8. That takes half as much memory again, which every file is allowed.
+fn in_utf8(bytes: Vec<u8>) -> Vec<u8> {
+    of_utf16(&bytes, |_| Ok::<(), ()>(())).ok().flatten().unwrap_or(bytes)
 }
 
 /// Builds a mesh from a file's bytes, as [`load`] does. `path` is the path of the file; the files that it names are
@@ -257,6 +274,8 @@ pub fn read(
         Format::Obj => obj::read(bytes, folder, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
         Format::Stl => stl::read(bytes, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
         Format::Ply => ply::read(bytes, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
+        Format::Off => off::read(bytes, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
+        Format::ThreeMf => threemf::read(bytes, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
     }
 }
 
@@ -289,9 +308,10 @@ mod tests {
     #[test]
     fn unknown_formats_name_the_known_ones() {
         let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
-        let expected = "can't be read, since it has the extension .toml; choose a .gltf, .glb, .vrm, .fbx, .obj, .stl or .ply file";
+        let expected = "can't be read: its content shows no format, and it has the extension .toml; choose a .gltf, .glb, .vrm, \
+                        .fbx, .obj, .stl, .ply, .off or .3mf file";
         assert_eq!(message(manifest), format!("{manifest} {expected}"));
-        assert!(message(concat!(env!("CARGO_MANIFEST_DIR"), "/LICENSE")).contains("no extension"));
+        assert!(message(concat!(env!("CARGO_MANIFEST_DIR"), "/LICENSE")).contains("it has no extension;"));
     }
 
     #[test]
@@ -310,36 +330,113 @@ mod tests {
         assert!(message.contains(&expected) && message.contains("--max-size"), "{message}");
     }
 
-    #[test]
-    fn files_of_another_format_are_recognised_by_their_start() {
+    /// Writes a file and loads it.
+    fn loaded(name: &str, bytes: &[u8]) -> Result<LoadedMesh, LoadError> {
         let folder = tempfile::tempdir().unwrap();
-        let said = |name: &str, bytes: &[u8]| {
-            let path = folder.path().join(name);
-            std::fs::write(&path, bytes).unwrap();
-            // Too large to read in the time that a test may take.
-            File::options()
-                .write(true)
-                .open(&path)
-                .and_then(|file| file.set_len(bytes.len() as u64 + (1 << 30)))
-                .unwrap();
-            message(path.to_str().expect("it is of letters"))
-        };
-        for name in ["a.fbx", "a.obj", "a.stl", "a.ply"] {
-            assert!(said(name, b"glTF\x02\0\0\0").contains("begins like a .glb file"), "{name}");
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        load(&path, &Limits::default(), &Progress::new())
+    }
+
+    #[test]
+    fn the_content_decides_whatever_the_name_says() {
+        let vase = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/vase.glb")).unwrap();
+        let originals = [
+            (Format::Gltf, vase),
+            (Format::Obj, obj::tests::cube().into_bytes()),
+            (Format::Stl, stl::tests::text().into_bytes()),
+            (Format::Stl, stl::tests::binary(b"solid cube")),
+            (Format::Ply, ply::tests::cube(0, 6, 4)),
+            (Format::Ply, ply::tests::cube(1, 6, 4)),
+            (Format::Fbx, fbx::tests::files().swap_remove(0)),
+            (Format::Off, off::tests::cube().into_bytes()),
+            (Format::ThreeMf, threemf::tests::cube()),
+        ];
+        let names = ["a.gltf", "a.fbx", "a.obj", "a.stl", "a.ply", "a.off", "a.3mf", "a.txt", "a.dae", "a"];
+        for (format, bytes) in originals {
+            for name in names {
+                let title = format.title();
+                let mesh = loaded(name, &bytes).unwrap_or_else(|error| panic!("{title} as {name}: {error}"));
+                let said = format!("content is {title}, so it was read as {title}.");
+                let is_said = mesh.warnings.first().is_some_and(|warning| warning.ends_with(&said));
+                assert_eq!(is_said, Format::of_name(Path::new(name)) != Some(format), "{title} as {name}");
+            }
         }
-        for name in ["a.fbx", "a.obj", "a.stl", "a.gltf", "a.glb"] {
-            assert!(said(name, b"ply\nformat").contains("begins like a .ply file"), "{name}");
+    }
+
+    #[test]
+    fn texts_in_utf_16_are_read() {
+        let document =
+            std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fuzzed/seeds/gltf/triangle.gltf"));
+        let texts = [
+            ("a.gltf", document.unwrap()),
+            ("a.obj", obj::tests::cube()),
+            ("a.stl", stl::tests::text()),
+            ("a.off", off::tests::cube()),
+        ];
+        for (name, text) in texts {
+            let utf16 = [vec![0xff, 0xfe], text.encode_utf16().flat_map(u16::to_le_bytes).collect()].concat();
+            let mesh = loaded(name, &utf16).unwrap_or_else(|error| panic!("{name}: {error}"));
+            assert_eq!(mesh.warnings, loaded(name, text.as_bytes()).unwrap().warnings, "{name}");
         }
-        for name in ["a.obj", "a.stl", "a.ply", "a.gltf"] {
-            assert!(said(name, b"Kaydara FBX Binary  \0").contains("begins like a .fbx file"), "{name}");
+    }
+
+    /// Such files have always been read as their names say.
+    #[test]
+    fn the_name_decides_where_the_content_could_be_anything() {
+        let obj = format!("OFF\n8 6 12\n{}", obj::tests::cube());
+        let text = stl::tests::text();
+        let stl_without_solid = text.lines().filter(|line| !line.contains("solid")).collect::<Vec<_>>().join("\n");
+        let comments = format!("{}\n{}", "# a comment\n".repeat(10_000), obj::tests::cube());
+        let cut = stl::tests::binary(b"OFF the shelf")[..400].to_vec();
+        let cases = [
+            ("a.obj", obj.into_bytes()),
+            ("a.stl", stl_without_solid.into_bytes()),
+            ("a.obj", comments.into_bytes()),
+            ("a.stl", cut),
+        ];
+        for (name, bytes) in cases {
+            let mesh = loaded(name, &bytes).unwrap_or_else(|error| panic!("{name}: {error}"));
+            assert!(mesh.warnings.iter().all(|warning| !warning.contains("so it was read as")), "{:?}", mesh.warnings);
         }
-        assert!(
-            said("a.glb", b"\0\0\0\0").contains("isn't a glTF file: it begins neither with \"glTF\" nor with a {;")
-        );
-        assert!(said("a.gltf", b"\xff\xfe{\0").contains("isn't a glTF file"));
-        let empty = folder.path().join("empty.gltf");
-        std::fs::write(&empty, b"").unwrap();
-        assert!(message(empty.to_str().expect("it is of letters")).ends_with("is empty; export the model again"));
+    }
+
+    #[test]
+    fn formats_that_are_not_read_get_advice() {
+        let said = |name: &str, bytes: &[u8]| loaded(name, bytes).unwrap_err().to_string();
+        for name in ["a.blend", "a.obj", "a.glb", "a"] {
+            let message = said(name, b"BLENDER-v300");
+            assert!(
+                message.contains(&format!("{name} is a Blender file, which isn't read; export it with `blender ")),
+                "{message}"
+            );
+        }
+        let by_name = [
+            ("a.usd", "usd2gltf -i"),
+            ("a.DAE", "assimp export FILE.dae"),
+            ("a.abc", "alembic_import"),
+            ("a.max", "3ds Max"),
+            ("a.stp", "gmsh"),
+            ("a.mtl", "open the .obj file"),
+        ];
+        for (name, advice) in by_name {
+            assert!(said(name, b"could be anything").contains(advice), "{name}");
+        }
+        assert!(said("a.ply.gz", b"\x1f\x8b\x08").contains("is compressed with gzip"));
+        assert!(said("a.ply", b"\x1f\x8b\x08").contains("is compressed with gzip"));
+        assert!(said("a.blend", b"\x1f\x8b\x08").contains("is a Blender file"));
+    }
+
+    #[test]
+    fn a_file_that_is_refused_is_not_read_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.glb");
+        std::fs::write(&path, b"\0\0\0\0").unwrap();
+        // Too large to read in the time that a test may take.
+        File::options().write(true).open(&path).and_then(|file| file.set_len(1 << 30)).unwrap();
+        let said = message(path.to_str().expect("it is of letters"));
+        assert!(said.contains("isn't a glTF file: it begins neither with \"glTF\" nor with a {;"), "{said}");
+        assert!(loaded("empty.gltf", b"").unwrap_err().to_string().ends_with("is empty; export the model again"));
     }
 
     #[test]

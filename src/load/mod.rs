@@ -1,13 +1,15 @@
-//! Loads meshes from glTF, FBX, OBJ, STL and PLY files, height images and textures, within limits of file size and memory.
+//! Loads meshes from glTF, FBX, OBJ, STL, PLY, OFF and 3MF files, height images and textures, within limits of file size and memory.
 //! Everything in a file is checked before it is used.
 
 mod attachment;
 mod binding_space;
 mod bits;
+mod content;
 #[cfg(feature = "cli")]
 pub(crate) mod environment_file;
 mod face_builder;
 mod fbx;
+pub(crate) mod format;
 mod gltf;
 pub(crate) mod heights;
 #[cfg(test)]
@@ -21,6 +23,7 @@ pub(crate) mod memory_budget;
 pub(crate) mod mesh_file;
 mod notes;
 mod obj;
+mod off;
 #[cfg(feature = "cli")]
 pub(crate) mod panorama;
 mod ply;
@@ -32,6 +35,8 @@ mod stl;
 mod tangents;
 mod text_lines;
 mod texture_room;
+mod threemf;
+mod unread_formats;
 mod uri;
 mod warnings;
 mod webp_memory;
@@ -45,9 +50,9 @@ pub use matcap_image::{MatcapError, load_matcap};
 pub use mesh_file::{LoadError, load};
 pub use read_error::{FilePosition, ReadError};
 
+#[cfg(test)]
+pub(crate) use format::Format;
 pub(crate) use heights::HeightSource;
 pub(crate) use memory_budget::Budget;
-#[cfg(test)]
-pub(crate) use mesh_file::Format;
 pub(crate) use source::Source;
 pub(crate) use warnings::{crease_band_warnings, untextured_warning};

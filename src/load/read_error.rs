@@ -1,11 +1,11 @@
-//! Errors in FBX, OBJ, STL and PLY files.
+//! Errors in FBX, OBJ, STL, PLY, OFF and 3MF files.
 
 use std::fmt;
 
 use crate::mesh::build_limits::BuildError;
 use crate::progress::Cancelled;
 
-/// Why an FBX, OBJ, STL or PLY file could not be loaded. The message doesn't contain the file's path.
+/// Why an FBX, OBJ, STL, PLY, OFF or 3MF file could not be loaded. The message doesn't contain the file's path.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the messages say what the fields are")]
 pub enum ReadError {
@@ -24,6 +24,12 @@ pub enum ReadError {
     /// The thread that reads the file can't be started.
     #[error("no thread can be started to read it ({reason}); close other programs and try again")]
     NoThread { reason: String },
+    /// The file is a zip archive, but not one of 3MF.
+    #[error(
+        "it is a zip archive without a 3MF model, which holds {count} files, such as {first}; unpack it and open a model of \
+         those"
+    )]
+    NoModel { count: usize, first: String },
     /// The file has no triangles.
     #[error("no triangles: {holds}")]
     Empty { holds: String },

@@ -5,8 +5,9 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use super::format::Format;
 use super::loaded_mesh::LoadedMesh;
-use super::mesh_file::{Format, LoadError, check_selected, load_selected, read};
+use super::mesh_file::{LoadError, check_selected, load_selected, read};
 use super::selection::Selection;
 use crate::files::Limits;
 use crate::mesh::shapes::{MAX_LEVEL, Shape, ShapeError};

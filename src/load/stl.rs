@@ -42,17 +42,26 @@ pub(super) fn read(bytes: Vec<u8>, name: &str, limits: &Limits, progress: &Progr
     reader.faces.finish(name, holds, warnings, &progress.part(0.5, 1.0))
 }
 
-/// Returns whether the file is text. Some have no line with "solid" before their first facet. Many binary files begin with
-/// "solid" too, but their size fits, or control characters follow.
+/// Returns whether the file is text. Many binary files begin with "solid" too, but their size fits.
 fn is_text(bytes: &[u8]) -> bool {
     let exact = triangles_said(bytes).is_some_and(|count| bytes.len() as u64 == size(count));
+    begins_as_text(bytes) && !exact
+}
+
+/// Returns whether a file begins as text does. Some have no line with "solid" before their first facet. In binary files control
+/// characters follow.
+pub(super) fn begins_as_text(bytes: &[u8]) -> bool {
     let start = &bytes[..bytes.len().min(1024)];
     let start = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
     let word = first_word(start).0;
     let begins = |with: &[u8]| word.get(..with.len()).is_some_and(|word| word.eq_ignore_ascii_case(with));
     (begins(b"solid") || begins(b"facet"))
-        && !exact
         && !start.iter().any(|byte| byte.is_ascii_control() && !byte.is_ascii_whitespace())
+}
+
+/// Returns whether a file of `length` bytes that begins so is binary and has as many triangles as it says, at least one.
+pub(super) fn has_exact_size(start: &[u8], length: u64) -> bool {
+    triangles_said(start).is_some_and(|count| count > 0 && length == size(count))
 }
 
 /// Returns the number of triangles in a binary file's header.

@@ -1,4 +1,4 @@
-//! Splits text into lines and words, for OBJ, MTL, and STL and PLY in text.
+//! Splits text into lines and words, for OBJ, MTL, OFF, and STL and PLY in text.
 
 use memchr::memchr;
 

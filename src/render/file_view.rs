@@ -57,7 +57,8 @@ mod tests {
 
     use super::*;
     use crate::files::Limits;
-    use crate::load::mesh_file::{Format, read};
+    use crate::load::format::Format;
+    use crate::load::mesh_file::read;
     use crate::progress::Progress;
     use crate::view::project;
 

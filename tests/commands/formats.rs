@@ -1,8 +1,8 @@
-//! OBJ, STL and PLY files: they open like glTF files, and broken ones are refused.
+//! OBJ, STL, PLY, OFF and 3MF files: they open like glTF files, and broken ones are refused; so are files of formats that aren't read.
 
 use serde_json::Value;
 
-use crate::{Folder, output, read_obj, sentence};
+use crate::{Folder, output, package, read_obj, sentence};
 
 fn info(path: &str) -> Value {
     serde_json::from_str(&output(&["info", path, "--json"])).expect("JSON")
@@ -19,8 +19,8 @@ fn triangles(obj: &str) -> Vec<[[u32; 3]; 3]> {
     faces.iter().map(|face| from_the_least(face.map(|point| positions[point]))).collect()
 }
 
-/// The triangles of an OBJ file as STL in text, and as PLY with three vertices each.
-fn rewrite(folder: &Folder, obj: &str) -> [String; 2] {
+/// The triangles of an OBJ file as STL in text, and as PLY, OFF and 3MF with three vertices each.
+fn rewrite(folder: &Folder, obj: &str) -> [String; 4] {
     let triangles: Vec<_> = triangles(obj).into_iter().map(|t| t.map(|p| p.map(f32::from_bits))).collect();
     let (mut stl, mut rows, mut faces) = ("solid a\n".to_owned(), String::new(), String::new());
     for (i, triangle) in triangles.iter().enumerate() {
@@ -38,9 +38,16 @@ fn rewrite(folder: &Folder, obj: &str) -> [String; 2] {
         3 * triangles.len(),
         triangles.len()
     );
-    let paths = [("a.STL", stl + "endsolid a\n"), ("a.Ply", ply)];
-    paths.map(|(name, text)| {
-        std::fs::write(folder.path(name), text).expect("a writable folder");
+    let off = format!("OFF\n{} {} 0\n{rows}{faces}", 3 * triangles.len(), triangles.len());
+    // In 3MF files Z points up.
+    let vertices = triangles.iter().flatten().map(|[x, y, z]| [*x, -z, *y]);
+    let mesh = package::mesh(vertices, (0..triangles.len()).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]));
+    let model = package::model(&format!("<object id=\"1\">{mesh}</object>"), "<item objectid=\"1\"/>");
+    let texts =
+        [("a.STL", stl + "endsolid a\n"), ("a.Ply", ply), ("a.off", off)].map(|(name, text)| (name, text.into_bytes()));
+    let [stl, ply, off] = texts;
+    [stl, ply, off, ("a.3MF", package::package(&model))].map(|(name, bytes)| {
+        std::fs::write(folder.path(name), bytes).expect("a writable folder");
         folder.path(name)
     })
 }
@@ -55,8 +62,8 @@ fn one_mesh_is_the_same_in_every_format() {
     }
     let expected = info(&glb);
     assert_eq!((&expected["triangles"], &expected["points"]), (&12.into(), &8.into()));
-    let [stl, ply] = rewrite(&folder, &obj);
-    for path in [&obj, &stl, &ply] {
+    let [stl, ply, off, threemf] = rewrite(&folder, &obj);
+    for path in [&obj, &stl, &ply, &off, &threemf] {
         let found = info(path);
         for key in ["triangles", "points", "edges", "closed", "euler_characteristic", "bounds", "degenerate"] {
             assert_eq!(found[key], expected[key], "{key} of {path}");
@@ -97,6 +104,55 @@ fn broken_files_are_refused_with_place_and_numbers() {
         std::fs::write(folder.path(name), bytes).expect("a writable folder");
         sentence(&["info", &folder.path(name)], expected);
         sentence(&["render", &folder.path(name), "-o", &folder.path("out.png")], expected);
+    }
+}
+
+#[test]
+fn a_file_opens_by_its_content_whatever_its_name() {
+    let folder = Folder::new();
+    let [glb, obj] = ["a.glb", "a.obj"].map(|name| folder.path(name));
+    for path in [&glb, &obj] {
+        output(&[
+            "tessellate",
+            "shape:cube-split",
+            "--surface",
+            "flat",
+            "--factor",
+            "1",
+            "--device",
+            "cpu",
+            "-o",
+            path,
+        ]);
+    }
+    for (from, name, said) in [
+        (&glb, "b.obj", "The file's name ends in .obj, but its content is glTF, so it was read as glTF."),
+        (&obj, "b.txt", "The file's name ends in .txt, but its content is OBJ, so it was read as OBJ."),
+        (&obj, "b", "The file's name has no extension. Its content is OBJ, so it was read as OBJ."),
+    ] {
+        std::fs::copy(from, folder.path(name)).expect("a writable folder");
+        let found = info(&folder.path(name));
+        assert_eq!((&found["triangles"], &found["warnings"]), (&12.into(), &serde_json::json!([said])), "{name}");
+    }
+}
+
+#[test]
+fn formats_that_are_not_read_are_named_with_a_converter() {
+    let folder = Folder::new();
+    let archive = package::zip(&[package::Entry::stored("scene.gltf", b"{}")]);
+    let cases: [(&str, &[u8], &[&str]); 4] = [
+        (
+            "a.blend",
+            b"BLENDER-v405",
+            &["a.blend is a Blender file, which isn't read", "blender --background FILE.blend"],
+        ),
+        ("a.usda", b"#usda 1.0\n", &["a.usda is a USD file", "usd2gltf -i FILE.usd -o FILE.glb"]),
+        ("a.obj", b"ISO-10303-21;\n", &["a.obj is a STEP file", "gmsh"]),
+        ("a.zip", &archive, &["a.zip: it is a zip archive without a 3MF model", "such as scene.gltf"]),
+    ];
+    for (name, bytes, expected) in cases {
+        std::fs::write(folder.path(name), bytes).expect("a writable folder");
+        sentence(&["info", &folder.path(name)], expected);
     }
 }
 

@@ -18,6 +18,8 @@ mod lod;
 mod manual;
 #[path = "../documents/moving.rs"]
 mod moving;
+#[path = "../documents/package.rs"]
+mod package;
 mod picture_file;
 mod render;
 mod scenes;

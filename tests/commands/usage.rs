@@ -11,7 +11,7 @@ fn failures_are_one_line_and_exit_code_1() {
     std::fs::write(&text, "no mesh").expect("a writable folder");
     std::fs::write(&broken, "{\"asset\":").expect("a writable folder");
     sentence(&["info", "nowhere.glb"], &["nowhere.glb", "can't be read"]);
-    sentence(&["info", &text], &["notes.txt", ".gltf, .glb, .vrm, .fbx, .obj, .stl or .ply"]);
+    sentence(&["info", &text], &["notes.txt", ".gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf"]);
     sentence(&["info", &folder.path("")], &["is not a file"]);
     sentence(&["info", &broken], &["broken.gltf", "not a glTF 2.0 document"]);
     sentence(

@@ -46,6 +46,14 @@ pub fn ply(data: &[u8]) {
     mesh(Format::Ply, data);
 }
 
+pub fn off(data: &[u8]) {
+    mesh(Format::Off, data);
+}
+
+pub fn threemf(data: &[u8]) {
+    mesh(Format::ThreeMf, data);
+}
+
 /// Reads bytes as a file, which must give a valid mesh or an error.
 fn mesh(format: Format, data: &[u8]) {
     let progress = Progress::new();

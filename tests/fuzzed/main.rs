@@ -94,6 +94,16 @@ fn panorama() {
 }
 
 #[test]
+fn off() {
+    run("off", 10_000, bodies::off);
+}
+
+#[test]
+fn threemf() {
+    run("threemf", 10_000, bodies::threemf);
+}
+
+#[test]
 fn factors() {
     run("factors", 200, bodies::factors);
 }

@@ -70,6 +70,8 @@ fn the_limit_includes_edges() {
     assert_bounded("apart.stl", &grid.stl(0.1), 0, &plain, 1.1);
     assert_bounded("creased.ply", &Grid::of(TRIANGLES, 40.0).ply(false), 0, &plain, 1.1);
     assert_bounded("plain.obj", &grid.obj(false), 0, &plain, 1.1);
+    assert_bounded("plain.off", &grid.off(), 0, &plain, 1.1);
+    assert_bounded("plain.3mf", &grid.threemf(), 0, &plain, 1.1);
 }
 
 #[test]

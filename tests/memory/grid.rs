@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use super::package;
+
 /// A wavy sheet of squares, each cut into two triangles.
 #[derive(Clone, Copy)]
 pub struct Grid {
@@ -79,6 +81,29 @@ impl Grid {
             false => self.triangles().for_each(|triangle| face(&triangle)),
         }
         bytes
+    }
+
+    /// Writes OFF.
+    pub fn off(self) -> Vec<u8> {
+        let mut text = format!("OFF\n{} {} 0\n", self.side * self.rows, self.triangle_count());
+        for [x, y, z] in self.positions() {
+            let _ = writeln!(text, "{x} {y} {z:.3}");
+        }
+        for [a, b, c] in self.triangles() {
+            let _ = writeln!(text, "3 {a} {b} {c}");
+        }
+        text.into_bytes()
+    }
+
+    /// Writes 3MF, whose model is compressed.
+    pub fn threemf(self) -> Vec<u8> {
+        let object = format!("<object id=\"1\">{}</object>", package::mesh(self.positions(), self.triangles()));
+        let model = package::model(&object, "<item objectid=\"1\"/>");
+        let relationships = package::relationships();
+        package::zip(&[
+            package::Entry::stored("_rels/.rels", relationships.as_bytes()),
+            package::Entry::deflated(package::MODEL, model.as_bytes()),
+        ])
     }
 
     /// Writes OBJ with or without texture coordinates and normals.

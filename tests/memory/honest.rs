@@ -62,6 +62,11 @@ fn obj() {
 }
 
 #[test]
+fn off() {
+    assert_within("plain.off", 4, |count| Grid::of(count, 0.0).off());
+}
+
+#[test]
 fn gltf() {
     assert_within("floats.glb", 4, |count| indexed(Grid::of(count, 0.0), false));
     assert_within("quantised.glb", 4, |count| indexed(Grid::of(count, 0.0), true));

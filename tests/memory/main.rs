@@ -12,6 +12,8 @@ mod glb;
 mod grid;
 mod heights;
 mod honest;
+#[path = "../documents/package.rs"]
+mod package;
 mod packed;
 mod textures;
 
@@ -179,6 +181,12 @@ fn loads_take_no_more_than_their_size_allows() {
     // A progressive image keeps twice as much for each pixel until its last scan, whatever the file's size.
     let (result, took) = measured("progressive-image", with_image(&heights::jpeg(6000, 0xc2)));
     assert!(result.is_ok_and(|loaded| loaded.mesh.materials[0].texture.is_none()) && took < 20);
+    // What would unpack to a thousand times its size is refused before it does.
+    let spaces = format!("{}{}", package::model("", ""), " ".repeat(200_000_000));
+    let bomb = package::zip(&[package::Entry::deflated("bomb.model", spaces.as_bytes())]);
+    drop(spaces);
+    let (result, took) = taken("bomb.3mf", bomb);
+    assert!(result.is_err_and(|error| error.to_string().contains("unpack to 200000")) && took < 4 << 20, "{took}");
     assert!(measured("nodes", chain(200_000)).0.is_err_and(|error| error.to_string().contains("no meshes")));
     let many = format!(r#"{{"asset":{{"version":"2.0"}},"extras":[{}0]}}"#, "0,".repeat(4_000_000));
     assert!(measured("numbers", many.into_bytes()).0.is_err());

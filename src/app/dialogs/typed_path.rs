@@ -9,7 +9,7 @@ use super::desktop_dialog::Asked;
 use crate::app::App;
 use crate::app::jobs::background_job::BackgroundJob;
 use crate::load::Source;
-use crate::load::mesh_file::known_extensions;
+use crate::load::format::known_extensions;
 use crate::names::shown_path;
 
 /// What a path is for.

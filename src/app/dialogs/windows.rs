@@ -7,7 +7,7 @@ use super::typed_path::{PendingDialog, Purpose, name_beside};
 use crate::app::App;
 use crate::app::jobs::background_job::BackgroundJob;
 use crate::load::environment_file::ENVIRONMENT_EXTENSIONS;
-use crate::load::mesh_file::EXTENSIONS;
+use crate::load::format::EXTENSIONS;
 
 impl App {
     pub(in crate::app) fn open_dialog(&mut self, context: &egui::Context) {
@@ -129,5 +129,7 @@ impl App {
 }
 
 fn meshes(title: &str) -> rfd::FileDialog {
-    rfd::FileDialog::new().set_title(title).add_filter("Meshes", &EXTENSIONS.map(|(extension, _)| extension))
+    // A mesh is told by its content, so it may have any name.
+    let dialog = rfd::FileDialog::new().set_title(title);
+    dialog.add_filter("Meshes", &EXTENSIONS.map(|(extension, _)| extension)).add_filter("All files", &["*"])
 }

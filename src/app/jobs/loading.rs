@@ -10,7 +10,7 @@ use crate::app::App;
 use crate::engine::{Loaded, Preparation};
 use crate::load::Source;
 use crate::load::environment_file::is_environment;
-use crate::load::mesh_file::Format;
+use crate::load::format::Format;
 
 impl App {
     /// Starts to load a mesh on a thread of its own; a load that is under way is cancelled. If it is the mesh that is open,
@@ -114,7 +114,7 @@ impl App {
         if let Some(path) = environments.into_iter().next() {
             self.open_environment(context, path);
         }
-        let mesh = others.iter().find(|path| Format::of(path).is_ok());
+        let mesh = others.iter().find(|path| Format::of_name(path).is_some());
         let Some(path) = mesh.or(others.first()) else { return };
         self.open_path(context, path.clone());
         if let Some(load) = self.jobs.load.as_mut().filter(|_| others.len() > 1) {

@@ -8,8 +8,8 @@ use std::time::Duration;
 use fastrand::Rng;
 
 use super::{read, time};
-use crate::load::Format::{self, Fbx, Obj, Ply, Stl};
-use crate::load::{fbx, obj, ply, stl};
+use crate::load::Format::{self, Fbx, Obj, Off, Ply, Stl, ThreeMf};
+use crate::load::{fbx, obj, off, ply, stl, threemf};
 
 /// The texts that replace a number.
 const NUMBERS: [&str; 5] = ["0", "-1", "4611686018427387904", "1e308", "nan"];
@@ -24,13 +24,15 @@ pub(super) fn originals() -> Vec<(Format, Vec<u8>)> {
     ];
     originals.extend(fbx::tests::files().into_iter().map(|file| (Fbx, file)));
     originals.extend((0..3).map(|encoding| (Ply, ply::tests::cube(encoding, 6, 4))));
+    originals.extend([off::tests::cube(), off::tests::everything()].map(|text| (Off, text.into_bytes())));
+    originals.extend([threemf::tests::cube(), threemf::tests::everything()].map(|file| (ThreeMf, file)));
     originals
 }
 
 /// Returns the files that `PNAEN_MUTATE` names, without those of glTF, whose own tests take them.
 fn files() -> impl Iterator<Item = (Format, Vec<u8>)> {
     crate::load::hostile_files::named_files().into_iter().filter_map(|path| {
-        let format = Format::of(&path).ok().filter(|format| *format != Format::Gltf)?;
+        let format = Format::of_name(&path).filter(|format| *format != Format::Gltf)?;
         Some((format, std::fs::read(path).expect("a file that can be read")))
     })
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::mutated;
-use crate::load::Format::{Fbx, Gltf, Obj, Ply, Stl};
+use crate::load::Format::{Fbx, Gltf, Obj, Off, Ply, Stl, ThreeMf};
 use crate::load::{environment_file, gltf};
 
 fn made() -> Vec<(&'static str, String, Vec<u8>)> {
@@ -14,6 +14,8 @@ fn made() -> Vec<(&'static str, String, Vec<u8>)> {
             Obj => "obj",
             Stl => "stl",
             Ply => "ply",
+            Off => "off",
+            ThreeMf => "threemf",
             Gltf => unreachable!("its seeds come from its own tests"),
         };
         made.push((target, format!("{i}.{target}"), bytes));
@@ -21,6 +23,10 @@ fn made() -> Vec<(&'static str, String, Vec<u8>)> {
     let short = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf -3//1 -2//-1 -1//1 \\\n\np 1\n".to_vec();
     made.push(("obj", "short.obj".to_owned(), short));
     made.push(("stl", "nothing.stl".to_owned(), vec![0; 84]));
+    let colored =
+        b"COFF 3 1 3\n0 0 0 255 0 0 255\n1 0 0 0 255 0\n0 1 0 0.1 0.2 1\n3 0 1 2 0.5 0.5 0.5 # gray\n".to_vec();
+    made.push(("off", "colored.off".to_owned(), colored));
+    made.push(("threemf", "empty.threemf".to_owned(), [&b"PK\x05\x06"[..], &[0; 18]].concat()));
     made.extend(gltf::tests::seeds());
     made.extend(environment_file::tests::seeds());
     let factors = [

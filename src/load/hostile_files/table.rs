@@ -2,8 +2,10 @@
 
 mod fbx;
 mod obj;
+mod off;
 mod ply;
 mod stl;
+mod threemf;
 
 use std::borrow::Cow;
 
@@ -30,15 +32,19 @@ fn case(format: Format, text: impl Into<Cow<'static, str>>, gets: Gets) -> Case 
 
 #[test]
 fn every_hostile_file_gets_its_error_or_warning() {
-    // Whole FBX files differ in few bytes, so words say in which.
-    let (names, mut cases): (Vec<&str>, Vec<Case>) = fbx::cases().into_iter().unzip();
-    cases.extend(obj::cases().into_iter().chain(stl::cases()).chain(ply::cases()));
-    assert!(cases.len() >= 140, "{}", cases.len());
+    // Whole files of FBX and 3MF differ in few bytes, so words say in which.
+    let named = |cases: Vec<(&'static str, Case)>| cases.into_iter().map(|(name, case)| (Some(name), case));
+    let texts = obj::cases().into_iter().chain(stl::cases()).chain(ply::cases()).chain(off::cases());
+    let all = named(fbx::cases()).chain(texts.map(|case| (None, case))).chain(named(threemf::cases()));
+    let (names, cases): (Vec<Option<&str>>, Vec<Case>) = all.unzip();
+    assert!(cases.len() >= 200, "{}", cases.len());
     let answers: Vec<_> = cases.iter().map(answer).collect();
     let wrong: Vec<_> = answers.iter().filter_map(|answer| answer.as_ref().err()).map(String::as_str).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    let shown = |(format, bytes, _): &Case| format!("{} {}", format!("{format:?}").to_uppercase(), page::shown(bytes));
-    let name = |(i, case): (usize, &Case)| names.get(i).map_or_else(|| shown(case), |name| format!("FBX: {name}"));
+    let name = |(i, (format, bytes, _)): (usize, &Case)| match names[i] {
+        Some(name) => format!("{}: {name}", format.title()),
+        None => format!("{} {}", format.title(), page::shown(bytes)),
+    };
     let rows: Vec<_> = cases
         .iter()
         .enumerate()
@@ -46,7 +52,7 @@ fn every_hostile_file_gets_its_error_or_warning() {
         .zip(answers)
         .filter_map(|(name, answer)| Some((name, answer.ok()?)))
         .collect();
-    page::hold("others.md", "Hostile FBX, OBJ, STL and PLY files", &rows);
+    page::hold("others.md", "Hostile FBX, OBJ, STL, PLY, OFF and 3MF files", &rows);
 }
 
 /// Reads a file. Returns the answer for the page, or what is wrong with it.

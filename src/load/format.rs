@@ -1,0 +1,64 @@
+//! The formats of mesh files that are read, and the endings of their names.
+
+use std::path::Path;
+
+/// The extensions of files that can be read, in lower case, each with its format.
+pub(crate) const EXTENSIONS: [(&str, Format); 9] = [
+    ("gltf", Format::Gltf),
+    ("glb", Format::Gltf),
+    ("vrm", Format::Gltf),
+    ("fbx", Format::Fbx),
+    ("obj", Format::Obj),
+    ("stl", Format::Stl),
+    ("ply", Format::Ply),
+    ("off", Format::Off),
+    ("3mf", Format::ThreeMf),
+];
+
+/// The extensions of files that can be read, for messages: ".gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf".
+pub(crate) fn known_extensions() -> String {
+    let [others @ .., last] = EXTENSIONS.map(|(extension, _)| format!(".{extension}"));
+    format!("{} or {last}", others.join(", "))
+}
+
+/// The extension of a file's name, in lower case.
+pub(super) fn extension_of(path: &Path) -> Option<String> {
+    path.extension().map(|extension| extension.to_string_lossy().to_lowercase())
+}
+
+/// The format that a file is read as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// `.gltf`, `.glb` or `.vrm`; the first bytes tell whether it is text or binary.
+    Gltf,
+    /// Text or binary; the first bytes tell which.
+    Fbx,
+    Obj,
+    Stl,
+    Ply,
+    /// Geomview's Object File Format.
+    Off,
+    /// The 3D Manufacturing Format.
+    ThreeMf,
+}
+
+impl Format {
+    /// Returns the format that a file's name says, by its extension.
+    pub fn of_name(path: &Path) -> Option<Self> {
+        let extension = extension_of(path)?;
+        EXTENSIONS.into_iter().find(|(known, _)| extension == *known).map(|(_, format)| format)
+    }
+
+    /// The format's name in sentences.
+    pub(crate) fn title(self) -> &'static str {
+        match self {
+            Self::Gltf => "glTF",
+            Self::Fbx => "FBX",
+            Self::Obj => "OBJ",
+            Self::Stl => "STL",
+            Self::Ply => "PLY",
+            Self::Off => "OFF",
+            Self::ThreeMf => "3MF",
+        }
+    }
+}

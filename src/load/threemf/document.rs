@@ -1,0 +1,171 @@
+//! Finds the model in an archive, and reads its parts.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use super::archive::{Archive, Unpacked};
+use super::model::{Geometry, ModelReader, Part, Placed};
+use super::{broken, xml};
+use crate::load::format::Format;
+use crate::load::memory_budget::Budget;
+use crate::load::notes::Notes;
+use crate::load::read_error::ReadError;
+use crate::mesh::MemoryAccount;
+use crate::names::shown;
+use crate::progress::Progress;
+
+/// The type of the relationship to the model (core specification, appendix C.2).
+const MODEL: &str = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
+
+/// Where the archive's relationships are.
+const RELATIONSHIPS: &str = "_rels/.rels";
+
+/// How many tags are read before the job asks whether it was cancelled.
+const TAGS: u64 = 4096;
+
+/// All parts of a model.
+pub(super) struct Document {
+    /// The first has the build.
+    pub parts: Vec<Part>,
+    pub geometry: Geometry,
+    /// The numbers of parts by name. None for parts that aren't in the archive.
+    numbers: HashMap<String, Option<usize>>,
+}
+
+/// Where an object is: the number of its part, and its own.
+pub(super) type ObjectAt = (usize, u32);
+
+impl Document {
+    /// Reads the model, and the parts that it names (production extension).
+    ///
+    /// # Errors
+    /// [`ReadError`].
+    pub(super) fn read(
+        archive: &Archive,
+        budget: &Budget,
+        progress: &Progress,
+        notes: &mut Notes,
+    ) -> Result<Self, ReadError> {
+        let root = root(archive, notes)?;
+        let mut document = Self { parts: Vec::new(), geometry: Geometry::default(), numbers: HashMap::new() };
+        let mut reading = Reading { archive, budget, progress, notes, before: 0 };
+        let part = archive
+            .open(&root)?
+            .ok_or_else(|| broken(&root, "the archive's relationships name it, but it isn't there"))?;
+        reading.part(&mut document, &root, part)?;
+        let mut next = 0;
+        while let Some(part) = document.parts.get(next) {
+            for path in part.paths() {
+                if document.numbers.contains_key(&key(&path)) {
+                    continue;
+                }
+                match archive.open(&path)? {
+                    Some(part) => reading.part(&mut document, &path, part)?,
+                    None => {
+                        reading
+                            .notes
+                            .push(format!("{} isn't in the archive, so its objects are left out.", shown(&path)));
+                        document.numbers.insert(key(&path), None);
+                    }
+                }
+            }
+            next += 1;
+        }
+        Ok(document)
+    }
+
+    /// Returns where an object is that a part places, if it is anywhere.
+    pub(super) fn find(&self, part: usize, placed: &Placed) -> Option<ObjectAt> {
+        let part = match &placed.path {
+            Some(path) => self.numbers.get(&key(path)).copied().flatten()?,
+            None => part,
+        };
+        self.parts[part].objects.contains_key(&placed.object).then_some((part, placed.object))
+    }
+
+    /// Says what it holds in case it has no triangles.
+    pub(super) fn holds(&self) -> String {
+        let objects: usize = self.parts.iter().map(|part| part.objects.len()).sum();
+        let items = self.parts.first().map_or(0, |part| part.items.len());
+        let triangles = self.geometry.triangles.len();
+        format!("it holds {objects} objects with {triangles} triangles, and its build has {items} items")
+    }
+
+    /// Gives its memory back, which ends once it is dropped.
+    pub(super) fn release(&self, budget: &Budget) {
+        budget.release(self.geometry.held());
+    }
+}
+
+impl Part {
+    /// The paths of other parts that it names.
+    fn paths(&self) -> Vec<std::rc::Rc<str>> {
+        let components = self.order.iter().filter_map(|id| self.objects.get(id)).flat_map(|object| &object.components);
+        let mut paths: Vec<_> = self.items.iter().chain(components).filter_map(|placed| placed.path.clone()).collect();
+        paths.dedup();
+        paths
+    }
+}
+
+/// A part's name as others may write it.
+fn key(path: &str) -> String {
+    path.trim_start_matches('/').to_ascii_lowercase()
+}
+
+struct Reading<'a> {
+    archive: &'a Archive<'a>,
+    budget: &'a Budget,
+    progress: &'a Progress,
+    notes: &'a mut Notes,
+    /// How many bytes the parts before had.
+    before: u64,
+}
+
+impl Reading<'_> {
+    fn part(&mut self, document: &mut Document, name: &str, bytes: Unpacked) -> Result<(), ReadError> {
+        let mut reader = ModelReader::new(name, &mut document.geometry, self.budget, self.notes);
+        let (mut tags, mut end) = (0_u64, 0);
+        let all = self.archive.model_bytes().max(1) as f32;
+        xml::walk(name, bytes, |step, at| {
+            if tags.is_multiple_of(TAGS) {
+                self.progress.set((self.before + at) as f32 / all);
+                self.progress.check()?;
+            }
+            (tags, end) = (tags + 1, at);
+            reader.take(step)
+        })?;
+        self.before += end;
+        let part = reader.finish()?;
+        document.numbers.insert(key(name), Some(document.parts.len()));
+        document.parts.push(part);
+        Ok(())
+    }
+}
+
+/// Returns the name of the part with the build.
+fn root(archive: &Archive, notes: &mut Notes) -> Result<String, ReadError> {
+    let mut target = None;
+    if let Some(relationships) = archive.open(RELATIONSHIPS)? {
+        let read = xml::walk(RELATIONSHIPS, relationships, |step, _| {
+            if let xml::Step::Open(element) = step
+                && target.is_none()
+                && element.text(b"Type").is_some_and(|kind| kind.trim() == MODEL)
+            {
+                target = element.text(b"Target");
+            }
+            Ok(())
+        });
+        notes.extend(read.err().map(|error| error.to_string()));
+    }
+    if let Some(target) = target {
+        return Ok(target);
+    }
+    let model = archive.names().find(|name| name.to_ascii_lowercase().ends_with(".model"));
+    if let Some(name) = model {
+        notes.push(format!("The archive doesn't say which part is its model, so {} is shown.", shown(name)));
+        return Ok(name.to_owned());
+    }
+    let known = archive.names().find(|name| Format::of_name(Path::new(name)).is_some());
+    let first = known.or(archive.names().find(|name| !name.ends_with('/'))).unwrap_or("none");
+    Err(ReadError::NoModel { count: archive.len(), first: shown(first) })
+}

@@ -1,0 +1,513 @@
+//! Reads one part of a model: its objects, groups of properties, and build.
+
+use std::collections::HashMap;
+use std::ops::Range;
+use std::rc::Rc;
+
+use glam::{DAffine3, DMat3, DVec3, Vec3};
+
+use super::xml::{Element, Step};
+use super::{broken, too_large};
+use crate::load::memory_budget::Budget;
+use crate::load::notes::Notes;
+use crate::load::read_error::ReadError;
+use crate::load::text_lines::{number, shown, words};
+use crate::mesh::MemoryAccount;
+use crate::mesh::chunked_vec::ChunkedVec;
+use crate::names;
+
+/// Memory for an object or for a group besides what it holds, in bytes; maps grow to twice what they need.
+const PER_ENTRY: u64 = 400;
+
+/// What extensions are called in messages, by a part of their namespaces, and whether they are read.
+const EXTENSIONS: [(&str, &str, bool); 8] = [
+    ("3dmanufacturing/production", "production", true),
+    ("3dmanufacturing/material", "materials and properties", true),
+    ("3dmanufacturing/trianglesets", "triangle sets", true),
+    ("3dmanufacturing/beamlattice", "beam lattice", false),
+    ("3dmanufacturing/slice", "slices", false),
+    ("3dmanufacturing/displacement", "displacement", false),
+    ("3dmanufacturing/volumetric", "volumetric data", false),
+    ("3dmanufacturing/securecontent", "secure content", false),
+];
+
+/// The vertices and triangles of all objects. Each object has a range of both.
+#[derive(Default)]
+pub(super) struct Geometry {
+    pub vertices: ChunkedVec<Vec3>,
+    pub triangles: ChunkedVec<Triangle>,
+    /// The distinct properties of triangles.
+    pub looks: Vec<TriangleLook>,
+    numbers: HashMap<TriangleLook, u32>,
+    held: u64,
+}
+
+/// A triangle of an object.
+#[derive(Clone, Copy)]
+pub(super) struct Triangle {
+    /// Its corners in the object's vertices.
+    pub corners: [u32; 3],
+    /// Its properties in [`Geometry::looks`], counted from 1; 0 if it has none.
+    pub look: u32,
+}
+
+/// A triangle's properties: its own group, or else the object's, and which of its entries each corner has.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) struct TriangleLook {
+    pub group: Option<u32>,
+    pub entries: [Option<u32>; 3],
+}
+
+impl Geometry {
+    fn hold(&mut self, bytes: u64, budget: &Budget) -> Result<(), ReadError> {
+        budget.hold(bytes).map_err(too_large)?;
+        self.held += bytes;
+        Ok(())
+    }
+
+    /// How many bytes the budget holds for it.
+    pub(super) fn held(&self) -> u64 {
+        self.held
+    }
+
+    /// Returns the number of properties for [`Triangle::look`].
+    fn look(&mut self, look: TriangleLook, budget: &Budget) -> Result<u32, ReadError> {
+        if let Some(number) = self.numbers.get(&look) {
+            return Ok(*number);
+        }
+        // The list grows by half, and the map to twice its size.
+        self.hold(6 * size_of::<TriangleLook>() as u64, budget)?;
+        self.looks.push(look);
+        let number = self.looks.len() as u32;
+        self.numbers.insert(look, number);
+        Ok(number)
+    }
+}
+
+/// One part of a model.
+pub(super) struct Part {
+    /// Its name in the archive.
+    pub name: String,
+    /// The length of its unit in metres.
+    pub unit: f64,
+    pub objects: HashMap<u32, Object>,
+    /// The numbers of its objects, in the file's order.
+    pub order: Vec<u32>,
+    pub groups: HashMap<u32, Group>,
+    /// What its build places.
+    pub items: Vec<Placed>,
+}
+
+/// An object: a mesh, or components.
+#[derive(Default)]
+pub(super) struct Object {
+    pub vertices: Range<usize>,
+    pub triangles: Range<usize>,
+    /// The group of properties that triangles have which name none, and the entry.
+    pub group: Option<u32>,
+    pub entry: Option<u32>,
+    pub components: Vec<Placed>,
+    pub unread: Unread,
+}
+
+/// What an object has that isn't read.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Unread {
+    pub beams: bool,
+    pub slices: bool,
+    /// A shape that is neither a mesh nor components.
+    pub shape: bool,
+}
+
+/// An object at a place.
+#[derive(Clone)]
+pub(super) struct Placed {
+    pub object: u32,
+    /// The part that has the object; none for the same part.
+    pub path: Option<Rc<str>>,
+    pub transform: DAffine3,
+}
+
+/// A group of properties.
+pub(super) enum Group {
+    /// Materials, with their names and colours.
+    Materials(Vec<(String, [u8; 4])>),
+    Colors(Vec<[u8; 4]>),
+    /// Textures, mixtures and layers, which aren't read.
+    Other,
+}
+
+/// The elements that mean something, by where they stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Document,
+    Model,
+    Resources,
+    Build,
+    Item,
+    Object,
+    Mesh,
+    Vertices,
+    Vertex,
+    Triangles,
+    Triangle,
+    Components,
+    Component,
+    Beams,
+    Shape,
+    Materials,
+    Material,
+    Colors,
+    Color,
+    OtherGroup,
+    Ignored,
+}
+
+impl Kind {
+    fn of(parent: Self, name: &[u8]) -> Self {
+        match (parent, name) {
+            (Self::Document, b"model") => Self::Model,
+            (Self::Model, b"resources") => Self::Resources,
+            (Self::Model, b"build") => Self::Build,
+            (Self::Build, b"item") => Self::Item,
+            (Self::Resources, b"object") => Self::Object,
+            (Self::Resources, b"basematerials") => Self::Materials,
+            (Self::Materials, b"base") => Self::Material,
+            (Self::Resources, b"colorgroup") => Self::Colors,
+            (Self::Colors, b"color") => Self::Color,
+            (Self::Resources, b"texture2dgroup" | b"compositematerials" | b"multiproperties") => Self::OtherGroup,
+            (Self::Object, b"mesh") => Self::Mesh,
+            (Self::Object, b"components") => Self::Components,
+            (Self::Object, b"metadatagroup") => Self::Ignored,
+            (Self::Object, _) => Self::Shape,
+            (Self::Components, b"component") => Self::Component,
+            (Self::Mesh, b"vertices") => Self::Vertices,
+            (Self::Vertices, b"vertex") => Self::Vertex,
+            (Self::Mesh, b"triangles") => Self::Triangles,
+            (Self::Triangles, b"triangle") => Self::Triangle,
+            (Self::Mesh, b"beamlattice") => Self::Beams,
+            _ => Self::Ignored,
+        }
+    }
+}
+
+/// Numbers of what was repaired or left out.
+#[derive(Default)]
+struct Counts {
+    repeated: usize,
+    bad_colors: usize,
+}
+
+/// Collects what a part has from its tags.
+pub(super) struct ModelReader<'a> {
+    part: Part,
+    geometry: &'a mut Geometry,
+    budget: &'a Budget,
+    open: Vec<Kind>,
+    /// The object that is open, with its number.
+    object: Option<(u32, Object)>,
+    group: Option<(u32, Group)>,
+    paths: HashMap<String, Rc<str>>,
+    is_model: bool,
+    found: Counts,
+    notes: &'a mut Notes,
+}
+
+impl<'a> ModelReader<'a> {
+    pub(super) fn new(name: &str, geometry: &'a mut Geometry, budget: &'a Budget, notes: &'a mut Notes) -> Self {
+        let part = Part {
+            name: name.to_owned(),
+            unit: 1e-3,
+            objects: HashMap::new(),
+            order: Vec::new(),
+            groups: HashMap::new(),
+            items: Vec::new(),
+        };
+        Self {
+            part,
+            geometry,
+            budget,
+            open: Vec::new(),
+            object: None,
+            group: None,
+            paths: HashMap::new(),
+            is_model: false,
+            found: Counts::default(),
+            notes,
+        }
+    }
+
+    /// # Errors
+    /// [`ReadError::Broken`] and [`ReadError::TooLarge`].
+    pub(super) fn take(&mut self, step: Step) -> Result<(), ReadError> {
+        match step {
+            Step::Open(element) => {
+                let parent = self.open.last().copied().unwrap_or(Kind::Document);
+                let kind = Kind::of(parent, element.name());
+                self.open.push(kind);
+                self.enter(kind, &element)
+            }
+            Step::Close => {
+                match self.open.pop() {
+                    Some(Kind::Object) => self.end_object(),
+                    Some(Kind::Materials | Kind::Colors | Kind::OtherGroup) => self.end_group(),
+                    _ => {}
+                }
+                Ok(())
+            }
+        }
+    }
+
+    fn enter(&mut self, kind: Kind, element: &Element) -> Result<(), ReadError> {
+        match kind {
+            Kind::Model => self.model(element),
+            Kind::Object => self.begin_object(element)?,
+            Kind::Vertex => self.vertex(element)?,
+            Kind::Triangle => self.triangle(element)?,
+            Kind::Item => {
+                let item = self.placed(element)?;
+                self.part.items.push(item);
+            }
+            Kind::Component => {
+                let component = self.placed(element)?;
+                self.object.iter_mut().for_each(|(_, object)| object.components.push(component.clone()));
+            }
+            Kind::Beams => self.unread(|unread| unread.beams = true),
+            Kind::Shape => self.unread(|unread| unread.shape = true),
+            Kind::Materials => self.begin_group(element, Group::Materials(Vec::new()))?,
+            Kind::Colors => self.begin_group(element, Group::Colors(Vec::new()))?,
+            Kind::OtherGroup => self.begin_group(element, Group::Other)?,
+            Kind::Material | Kind::Color => self.entry(element)?,
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn broken(&self, reason: impl std::fmt::Display) -> ReadError {
+        broken(&self.part.name, reason)
+    }
+
+    fn unread(&mut self, set: impl FnOnce(&mut Unread)) {
+        if let Some((_, object)) = &mut self.object {
+            set(&mut object.unread);
+        }
+    }
+
+    fn model(&mut self, element: &Element) {
+        self.is_model = true;
+        let unit = element.text(b"unit").unwrap_or_default();
+        self.part.unit = match unit.trim() {
+            "micron" => 1e-6,
+            "" | "millimeter" => 1e-3,
+            "centimeter" => 1e-2,
+            "inch" => 0.0254,
+            "foot" => 0.3048,
+            "meter" => 1.0,
+            other => {
+                let unit = shown(other.as_bytes());
+                self.notes.push_once(format!("The unit {unit} isn't one of 3MF, so lengths count as millimetres."));
+                1e-3
+            }
+        };
+        let required = element.text(b"requiredextensions").unwrap_or_default();
+        for prefix in required.split_ascii_whitespace() {
+            let declared = [b"xmlns:", prefix.as_bytes()].concat();
+            let namespace = element.attributes().find(|(key, _)| *key == declared).map(|(_, value)| value);
+            let namespace = String::from_utf8_lossy(namespace.as_deref().unwrap_or(prefix.as_bytes())).into_owned();
+            let known = EXTENSIONS.iter().find(|(part, ..)| namespace.contains(part));
+            let name = match known {
+                Some((.., true)) => continue,
+                Some((_, name, false)) => (*name).to_owned(),
+                None => names::shown(&namespace),
+            };
+            self.notes
+                .push_once(format!("The file requires an extension that isn't read, so it may lack a part: {name}."));
+        }
+    }
+
+    fn begin_object(&mut self, element: &Element) -> Result<(), ReadError> {
+        let id = self.id(element, "object")?;
+        self.geometry.hold(PER_ENTRY, self.budget)?;
+        let (vertices, triangles) = (self.geometry.vertices.len(), self.geometry.triangles.len());
+        let object = Object {
+            vertices: vertices..vertices,
+            triangles: triangles..triangles,
+            group: element.number(b"pid"),
+            entry: element.number(b"pindex"),
+            unread: Unread { slices: element.attribute(b"slicestackid").is_some(), ..Unread::default() },
+            ..Object::default()
+        };
+        self.object = Some((id, object));
+        Ok(())
+    }
+
+    fn end_object(&mut self) {
+        let Some((id, mut object)) = self.object.take() else { return };
+        object.vertices.end = self.geometry.vertices.len();
+        object.triangles.end = self.geometry.triangles.len();
+        if self.part.objects.contains_key(&id) {
+            self.found.repeated += 1;
+            return;
+        }
+        self.part.order.push(id);
+        self.part.objects.insert(id, object);
+    }
+
+    fn id(&self, element: &Element, what: &str) -> Result<u32, ReadError> {
+        element.number(b"id").ok_or_else(|| self.broken(format!("one of its elements {what} has no number as its id")))
+    }
+
+    /// What isn't a number becomes NaN, and leaves the faces out that use it.
+    fn vertex(&mut self, element: &Element) -> Result<(), ReadError> {
+        let mut position = Vec3::NAN;
+        for (key, value) in element.attributes() {
+            let axis = match key {
+                b"x" => &mut position.x,
+                b"y" => &mut position.y,
+                b"z" => &mut position.z,
+                _ => continue,
+            };
+            *axis = number(value.trim_ascii()).unwrap_or(f32::NAN);
+        }
+        self.geometry.hold(self.geometry.vertices.next_bytes(), self.budget)?;
+        self.geometry.vertices.push(position);
+        Ok(())
+    }
+
+    fn triangle(&mut self, element: &Element) -> Result<(), ReadError> {
+        let mut corners = [None; 3];
+        let mut look = TriangleLook { group: None, entries: [None; 3] };
+        for (key, value) in element.attributes() {
+            let slot = match key {
+                b"v1" => &mut corners[0],
+                b"v2" => &mut corners[1],
+                b"v3" => &mut corners[2],
+                b"pid" => &mut look.group,
+                b"p1" => &mut look.entries[0],
+                b"p2" => &mut look.entries[1],
+                b"p3" => &mut look.entries[2],
+                _ => continue,
+            };
+            *slot = std::str::from_utf8(value.trim_ascii()).ok().and_then(|value| value.parse().ok());
+        }
+        let [Some(a), Some(b), Some(c)] = corners else {
+            let (id, triangle) = self.place();
+            return Err(
+                self.broken(format!("triangle {triangle} of object {id} doesn't have the numbers of three vertices"))
+            );
+        };
+        let is_plain = look.entries[0].is_none();
+        let look = if is_plain { 0 } else { self.geometry.look(look, self.budget)? };
+        self.geometry.hold(self.geometry.triangles.next_bytes(), self.budget)?;
+        self.geometry.triangles.push(Triangle { corners: [a, b, c], look });
+        Ok(())
+    }
+
+    /// The number of the open object, and of the triangle that comes next in it, counted from 0.
+    fn place(&self) -> (u32, usize) {
+        let (id, first) = self.object.as_ref().map_or((0, 0), |(id, object)| (*id, object.triangles.start));
+        (id, self.geometry.triangles.len() - first)
+    }
+
+    /// Reads an item of the build, or a component of an object.
+    fn placed(&mut self, element: &Element) -> Result<Placed, ReadError> {
+        self.geometry.hold(2 * size_of::<Placed>() as u64, self.budget)?;
+        let object =
+            element.number(b"objectid").ok_or_else(|| self.broken("a component or an item has no objectid"))?;
+        let path = match element.text(b"path") {
+            Some(path) => Some(self.path(path)?),
+            None => None,
+        };
+        let transform = match element.attribute(b"transform") {
+            Some(text) => self.transform(&text, object)?,
+            None => DAffine3::IDENTITY,
+        };
+        Ok(Placed { object, path, transform })
+    }
+
+    /// Returns a path, which those that are equal share.
+    fn path(&mut self, path: String) -> Result<Rc<str>, ReadError> {
+        if let Some(known) = self.paths.get(&path) {
+            return Ok(known.clone());
+        }
+        self.geometry.hold(PER_ENTRY + 2 * path.len() as u64, self.budget)?;
+        let shared: Rc<str> = Rc::from(path.as_str());
+        self.paths.insert(path, shared.clone());
+        Ok(shared)
+    }
+
+    /// Parses the rows of a matrix that stands behind a row vector (core specification, section 3.3).
+    fn transform(&self, text: &[u8], object: u32) -> Result<DAffine3, ReadError> {
+        let mut numbers = [f64::NAN; 12];
+        let mut count = 0;
+        for word in words(text) {
+            let number = std::str::from_utf8(word).ok().and_then(|word| word.parse::<f64>().ok());
+            numbers.iter_mut().skip(count).take(1).for_each(|slot| *slot = number.unwrap_or(f64::NAN));
+            count += 1;
+        }
+        if count != 12 || !numbers.iter().all(|number| number.is_finite()) {
+            let text = shown(text);
+            return Err(self.broken(format!("the transform {text} of object {object} isn't 12 finite numbers")));
+        }
+        let [a, b, c, d] = [0, 3, 6, 9].map(|i| DVec3::from_slice(&numbers[i..i + 3]));
+        Ok(DAffine3::from_mat3_translation(DMat3::from_cols(a, b, c), d))
+    }
+
+    fn begin_group(&mut self, element: &Element, group: Group) -> Result<(), ReadError> {
+        self.geometry.hold(PER_ENTRY, self.budget)?;
+        self.group = Some((self.id(element, "of properties")?, group));
+        Ok(())
+    }
+
+    fn end_group(&mut self) {
+        let Some((id, group)) = self.group.take() else { return };
+        self.part.groups.entry(id).or_insert(group);
+    }
+
+    /// Reads an entry of a group.
+    fn entry(&mut self, element: &Element) -> Result<(), ReadError> {
+        let names = [&b"displaycolor"[..], b"color"];
+        let text = names.iter().find_map(|name| element.attribute(name));
+        let color = text.as_deref().and_then(color);
+        // A material may have none.
+        self.found.bad_colors += usize::from(text.is_some() && color.is_none());
+        let color = color.unwrap_or([255; 4]);
+        match &mut self.group {
+            Some((_, Group::Materials(materials))) => {
+                let name = element.text(b"name").unwrap_or_default();
+                self.geometry.hold(3 * (size_of::<(String, [u8; 4])>() + name.len()) as u64, self.budget)?;
+                materials.push((name, color));
+            }
+            Some((_, Group::Colors(colors))) => {
+                self.geometry.hold(3 * size_of::<[u8; 4]>() as u64, self.budget)?;
+                colors.push(color);
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Returns the part, and says what was left out.
+    ///
+    /// # Errors
+    /// [`ReadError::Broken`] if it isn't the part of a model.
+    pub(super) fn finish(self) -> Result<Part, ReadError> {
+        if !self.is_model {
+            return Err(self.broken("it isn't a 3MF model: its first element isn't called \"model\""));
+        }
+        let Counts { repeated, bad_colors } = self.found;
+        self.notes.extend(crate::load::face_builder::counted([
+            (repeated, "objects with the id of another, left out"),
+            (bad_colors, "colours that aren't #RRGGBB or #RRGGBBAA, replaced by white"),
+        ]));
+        Ok(self.part)
+    }
+}
+
+/// Parses a colour: `#RRGGBB` or `#RRGGBBAA`.
+fn color(text: &[u8]) -> Option<[u8; 4]> {
+    let digits = std::str::from_utf8(text.trim_ascii().strip_prefix(b"#")?).ok()?;
+    let is_hexadecimal = matches!(digits.len(), 6 | 8) && digits.bytes().all(|digit| digit.is_ascii_hexdigit());
+    let bits = u32::from_str_radix(digits, 16).ok().filter(|_| is_hexadecimal)?;
+    Some(if digits.len() == 6 { bits << 8 | 0xff } else { bits }.to_be_bytes())
+}

@@ -1,0 +1,325 @@
+//! Places the objects of a build: their triangles, transformed, with their materials and colours.
+
+use std::collections::HashMap;
+
+use glam::{DAffine3, DMat3, DVec3, Vec2, Vec4};
+
+use super::document::{Document, ObjectAt};
+use super::model::{Group, Object, Part, Placed, Triangle, TriangleLook};
+use super::{broken, too_large};
+use crate::load::face_builder::{FaceBuilder, NumberedCorner, counted, linear_color};
+use crate::load::memory_budget::{Budget, edge_bytes};
+use crate::load::notes::Notes;
+use crate::load::read_error::{FilePosition, ReadError};
+use crate::mesh::build_limits::MAX_TRIANGLES;
+use crate::mesh::mesh_builder::InputCorner;
+use crate::mesh::{Alpha, Material, MemoryAccount};
+use crate::names::shown;
+use crate::progress::Progress;
+
+/// How deep components may be nested.
+const MAX_NESTING: usize = 64;
+
+/// How many triangles are placed before the job asks whether it was cancelled.
+const TRIANGLES: u64 = 4096;
+
+/// Places everything that the build has, or all objects if it has nothing.
+///
+/// # Errors
+/// [`ReadError`].
+pub(super) fn place<'a>(
+    document: &Document,
+    budget: &'a Budget,
+    progress: &Progress,
+    notes: &mut Notes,
+) -> Result<FaceBuilder<'a>, ReadError> {
+    let items = items(document, notes);
+    let mut counter = Counter { document, counted: HashMap::new(), missing: 0 };
+    let mut total = 0_u64;
+    for item in &items {
+        total = total.saturating_add(counter.placed(0, item, 0)?);
+    }
+    if total > MAX_TRIANGLES {
+        return Err(ReadError::TooMany { limit: MAX_TRIANGLES, what: "triangles" });
+    }
+    // Many copies of an object are refused before any is made.
+    let least = edge_bytes(0, total);
+    budget.hold(least).map_err(too_large)?;
+    budget.release(least);
+    let mut faces = FaceBuilder::new(usize::try_from(budget.files()).unwrap_or(usize::MAX), budget);
+    faces.expect(usize::try_from(total).unwrap_or(usize::MAX), document.geometry.vertices.len());
+    let has_colors =
+        |part: &Part| part.groups.values().any(|group| matches!(group, Group::Colors(colors) if !colors.is_empty()));
+    if document.parts.iter().any(has_colors) {
+        faces.color();
+    }
+    let root = of_axes() * DAffine3::from_scale(DVec3::splat(document.parts.first().map_or(1.0, |part| part.unit)));
+    let mut placer = Placer {
+        document,
+        counted: &counter.counted,
+        faces,
+        materials: HashMap::new(),
+        plain: None,
+        corners: Vec::new(),
+        found: Counts::default(),
+        progress,
+        done: 0,
+        total,
+    };
+    for item in &items {
+        placer.placed(0, item, root)?;
+    }
+    notes.extend(counted([(counter.missing, "components and items whose object isn't in the file, left out")]));
+    notes.extend(unread(document, counter.counted.keys()));
+    notes.extend(placer.found.warnings());
+    Ok(placer.faces)
+}
+
+/// Turns axes so that Y points up in place of Z.
+fn of_axes() -> DAffine3 {
+    DAffine3::from_mat3(DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y))
+}
+
+/// What is shown: the items of the build. A library of objects has none, so all objects are that aren't components.
+fn items(document: &Document, notes: &mut Notes) -> Vec<Placed> {
+    let Some(root) = document.parts.first() else { return Vec::new() };
+    if !root.items.is_empty() || root.objects.is_empty() {
+        return root.items.clone();
+    }
+    notes.push("The build has no items, so all objects are shown.".to_owned());
+    let components = || root.objects.values().flat_map(|object| &object.components);
+    let within: std::collections::HashSet<u32> = components().map(|component| component.object).collect();
+    let alone = root.order.iter().filter(|id| !within.contains(id));
+    alone.map(|&object| Placed { object, path: None, transform: DAffine3::IDENTITY }).collect()
+}
+
+/// Counts triangles, and checks that no object is among its own components.
+struct Counter<'d> {
+    document: &'d Document,
+    /// The triangles of each object with its components; none while they are being counted.
+    counted: HashMap<ObjectAt, Option<u64>>,
+    missing: usize,
+}
+
+impl Counter<'_> {
+    fn placed(&mut self, part: usize, placed: &Placed, nesting: usize) -> Result<u64, ReadError> {
+        let Some(at) = self.document.find(part, placed) else {
+            self.missing += 1;
+            return Ok(0);
+        };
+        let wrong = |reason: String| {
+            let part = &self.document.parts[at.0].name;
+            Err(broken(part, format!("object {} {reason}", at.1)))
+        };
+        match self.counted.get(&at) {
+            Some(Some(count)) => return Ok(*count),
+            Some(None) => return wrong("is among its own components".to_owned()),
+            None => {}
+        }
+        if nesting == MAX_NESTING {
+            return wrong(format!("is a component of others, nested more than {MAX_NESTING} deep"));
+        }
+        self.counted.insert(at, None);
+        let object = &self.document.parts[at.0].objects[&at.1];
+        let mut count = object.triangles.len() as u64;
+        for component in &object.components {
+            count = count.saturating_add(self.placed(at.0, component, nesting + 1)?);
+        }
+        self.counted.insert(at, Some(count));
+        Ok(count)
+    }
+}
+
+/// Says what isn't read of these objects.
+fn unread<'o>(document: &Document, shown: impl Iterator<Item = &'o ObjectAt>) -> impl Iterator<Item = String> {
+    let [mut beams, mut slices, mut shapes] = [0; 3];
+    for (part, id) in shown {
+        let unread = document.parts[*part].objects[id].unread;
+        beams += usize::from(unread.beams);
+        slices += usize::from(unread.slices);
+        shapes += usize::from(unread.shape);
+    }
+    counted([
+        (beams, "objects of the build with beams (beam lattice extension), which aren't read"),
+        (slices, "objects of the build with slices (slice extension), which aren't read"),
+        (shapes, "objects of the build that are neither a mesh nor components, which aren't read"),
+    ])
+}
+
+/// Numbers of triangles that are shown without their properties.
+#[derive(Default)]
+struct Counts {
+    /// Their properties are of a kind that isn't read.
+    other: usize,
+    /// Their properties aren't in the file.
+    absent: usize,
+}
+
+impl Counts {
+    fn warnings(&self) -> impl Iterator<Item = String> + use<> {
+        counted([
+            (self.other, "triangles with textures, mixtures or layers of properties, which aren't read"),
+            (self.absent, "triangles whose material or colour isn't in the file, shown without"),
+        ])
+    }
+}
+
+/// The material of a triangle, and the numbers of its corners' colours.
+#[derive(Clone, Copy)]
+struct Resolved {
+    material: usize,
+    numbers: [u32; 3],
+    fault: Option<Fault>,
+}
+
+/// Why a triangle is shown without its properties.
+#[derive(Clone, Copy)]
+enum Fault {
+    Other,
+    Absent,
+}
+
+struct Placer<'d, 'a> {
+    document: &'d Document,
+    counted: &'d HashMap<ObjectAt, Option<u64>>,
+    faces: FaceBuilder<'a>,
+    /// Materials that are used, by part, group and entry.
+    materials: HashMap<(usize, u32, u32), usize>,
+    /// The material of triangles without one.
+    plain: Option<usize>,
+    corners: Vec<NumberedCorner>,
+    found: Counts,
+    progress: &'d Progress,
+    done: u64,
+    total: u64,
+}
+
+impl Placer<'_, '_> {
+    fn placed(&mut self, part: usize, placed: &Placed, outer: DAffine3) -> Result<(), ReadError> {
+        let Some(at) = self.document.find(part, placed) else { return Ok(()) };
+        // Components without triangles may be very many.
+        if self.counted.get(&at).copied().flatten().unwrap_or(0) == 0 {
+            return Ok(());
+        }
+        let transform = outer * placed.transform;
+        let object = &self.document.parts[at.0].objects[&at.1];
+        self.mesh(at, object, transform)?;
+        object.components.iter().try_for_each(|component| self.placed(at.0, component, transform))
+    }
+
+    fn mesh(&mut self, at: ObjectAt, object: &Object, transform: DAffine3) -> Result<(), ReadError> {
+        let is_mirrored = transform.matrix3.determinant() < 0.0;
+        let mut last: Option<(u32, Resolved)> = None;
+        for i in object.triangles.clone() {
+            if self.done.is_multiple_of(TRIANGLES) {
+                self.progress.set(self.done as f32 / self.total.max(1) as f32);
+                self.progress.check()?;
+            }
+            self.done += 1;
+            let Some(&Triangle { corners, look }) = self.document.geometry.triangles.get(i) else { continue };
+            let resolved = match last {
+                Some((number, resolved)) if number == look => resolved,
+                _ => self.resolve(at.0, object, look)?,
+            };
+            last = Some((look, resolved));
+            match resolved.fault {
+                Some(Fault::Other) => self.found.other += 1,
+                Some(Fault::Absent) => self.found.absent += 1,
+                None => {}
+            }
+            self.corners.clear();
+            for (corner, number) in corners.into_iter().zip(resolved.numbers) {
+                let vertex = object.vertices.clone().nth(corner as usize);
+                let position =
+                    vertex.and_then(|vertex| self.document.geometry.vertices.get(vertex)).ok_or_else(|| {
+                        let (part, triangle) = (&self.document.parts[at.0].name, i - object.triangles.start);
+                        let (id, count) = (at.1, object.vertices.len());
+                        broken(
+                            part,
+                            format!("triangle {triangle} of object {id} uses vertex {corner}, but it has {count}"),
+                        )
+                    })?;
+                let position = transform.transform_point3(position.as_dvec3()).as_vec3();
+                let corner = InputCorner { position, normal: None, uv: Vec2::ZERO };
+                self.corners.push(NumberedCorner { corner, number });
+            }
+            if is_mirrored {
+                self.corners.reverse();
+            }
+            self.faces.add(resolved.material, &mut self.corners, FilePosition::Everywhere)?;
+        }
+        Ok(())
+    }
+
+    /// Finds a triangle's material and colours (core specification, section 4.1.4.1).
+    fn resolve(&mut self, part: usize, object: &Object, look: u32) -> Result<Resolved, ReadError> {
+        let own = (look as usize).checked_sub(1).and_then(|look| self.document.geometry.looks.get(look));
+        let own = own.copied().unwrap_or(TriangleLook { group: None, entries: [None; 3] });
+        // The group counts for nothing without the first entry.
+        let (group, first) = match own.entries[0] {
+            Some(first) => (own.group.or(object.group), Some(first)),
+            None => (object.group, object.entry),
+        };
+        let Some((group, first)) = group.zip(first) else { return self.unpainted(None) };
+        match self.document.parts[part].groups.get(&group) {
+            Some(Group::Materials(materials)) => match materials.get(first as usize) {
+                Some((name, color)) => {
+                    let material = self.material((part, group, first), name, *color)?;
+                    let number = self.faces.number(Vec4::ONE)?;
+                    Ok(Resolved { material, numbers: [number; 3], fault: None })
+                }
+                None => self.unpainted(Some(Fault::Absent)),
+            },
+            Some(Group::Colors(colors)) => {
+                // Without all three, the first counts for the whole triangle.
+                let entries = match own.entries {
+                    [Some(_), Some(second), Some(third)] => [first, second, third],
+                    _ => [first; 3],
+                };
+                let mut numbers = [0; 3];
+                for (number, entry) in numbers.iter_mut().zip(entries) {
+                    let Some(color) = colors.get(entry as usize) else {
+                        return self.unpainted(Some(Fault::Absent));
+                    };
+                    *number = self.faces.number(linear_color(*color))?;
+                }
+                Ok(Resolved { material: self.plain()?, numbers, fault: None })
+            }
+            Some(Group::Other) => self.unpainted(Some(Fault::Other)),
+            None => self.unpainted(Some(Fault::Absent)),
+        }
+    }
+
+    fn unpainted(&mut self, fault: Option<Fault>) -> Result<Resolved, ReadError> {
+        let number = self.faces.number(Vec4::ONE)?;
+        Ok(Resolved { material: self.plain()?, numbers: [number; 3], fault })
+    }
+
+    fn plain(&mut self) -> Result<usize, ReadError> {
+        if let Some(plain) = self.plain {
+            return Ok(plain);
+        }
+        let plain = self.faces.material(Material::plain("default", [1.0; 4]))?;
+        self.plain = Some(plain);
+        Ok(plain)
+    }
+
+    fn material(&mut self, key: (usize, u32, u32), name: &str, color: [u8; 4]) -> Result<usize, ReadError> {
+        if let Some(known) = self.materials.get(&key) {
+            return Ok(*known);
+        }
+        let mut color = linear_color(color);
+        // Some programs write 0 for materials that are meant to be seen.
+        if color.w == 0.0 {
+            color.w = 1.0;
+        }
+        let name = if name.is_empty() { format!("material {}", key.2) } else { shown(name) };
+        let mut material = Material::plain(&name, color.to_array());
+        if color.w < 1.0 {
+            material.look.alpha = Alpha::Blend;
+        }
+        let index = self.faces.material(material)?;
+        self.materials.insert(key, index);
+        Ok(index)
+    }
+}

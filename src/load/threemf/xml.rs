@@ -1,0 +1,148 @@
+//! Reads the tags of a part in XML, within limits on their length and depth. Namespaces are left aside: where a tag stands says
+//! what it means.
+
+use std::borrow::Cow;
+use std::io::{self, BufRead, BufReader, Read};
+
+use quick_xml::Error;
+use quick_xml::events::{BytesStart, Event};
+use quick_xml::reader::Reader;
+
+use super::broken;
+use crate::load::read_error::ReadError;
+
+/// How deep elements may be nested.
+const MAX_DEPTH: usize = 256;
+
+/// The greatest length of a tag, or of a text between tags, in bytes.
+const MAX_LENGTH: usize = 1 << 22;
+
+/// How many bytes are unpacked at a time.
+const PIECE: usize = 1 << 16;
+
+/// A step of the walk through the elements. An element without content opens and closes.
+pub(super) enum Step<'e> {
+    Open(Element<'e>),
+    Close,
+}
+
+/// An opening tag.
+pub(super) struct Element<'e>(BytesStart<'e>);
+
+impl Element<'_> {
+    /// The name without its prefix.
+    pub(super) fn name(&self) -> &[u8] {
+        self.0.local_name().into_inner()
+    }
+
+    /// The attributes with their whole names, up to the first that can't be read.
+    pub(super) fn attributes(&self) -> impl Iterator<Item = (&[u8], Cow<'_, [u8]>)> {
+        let mut all = self.0.attributes();
+        all.with_checks(false);
+        all.map_while(Result::ok).map(|attribute| (attribute.key.into_inner(), attribute.value))
+    }
+
+    /// The attribute with this name, after a prefix or without one.
+    pub(super) fn attribute(&self, name: &[u8]) -> Option<Cow<'_, [u8]>> {
+        self.attributes().find(|(key, _)| without_prefix(key) == name).map(|(_, value)| value)
+    }
+
+    /// The same as a text.
+    pub(super) fn text(&self, name: &[u8]) -> Option<String> {
+        let value = self.attribute(name)?;
+        let text = String::from_utf8_lossy(&value);
+        let unescaped = quick_xml::escape::unescape(&text).map(Cow::into_owned);
+        Some(unescaped.unwrap_or_else(|_| text.clone().into_owned()))
+    }
+
+    /// The same as a number; none also if it isn't one.
+    pub(super) fn number(&self, name: &[u8]) -> Option<u32> {
+        std::str::from_utf8(&self.attribute(name)?).ok()?.trim().parse().ok()
+    }
+}
+
+/// Returns an attribute's name without its prefix.
+fn without_prefix(name: &[u8]) -> &[u8] {
+    memchr::memrchr(b':', name).map_or(name, |colon| &name[colon + 1..])
+}
+
+/// Calls `take` with every tag of the part called `part`, and with how many bytes have been read.
+///
+/// # Errors
+/// [`ReadError::Broken`], and the errors of `take`.
+pub(super) fn walk(
+    part: &str,
+    bytes: impl Read,
+    mut take: impl FnMut(Step, u64) -> Result<(), ReadError>,
+) -> Result<(), ReadError> {
+    let mut metered = Metered { inner: BufReader::with_capacity(PIECE, bytes), left: MAX_LENGTH };
+    let start = metered.fill_buf().map_err(|error| broken(part, error))?;
+    if matches!(start, [0xff, 0xfe, ..] | [0xfe, 0xff, ..]) {
+        return Err(broken(part, "its XML is in UTF-16, but only UTF-8 is read"));
+    }
+    let mut reader = Reader::from_reader(metered);
+    let (mut buffer, mut depth) = (Vec::new(), 0);
+    loop {
+        buffer.clear();
+        reader.get_mut().left = MAX_LENGTH;
+        let event = reader.read_event_into(&mut buffer);
+        let event = event.map_err(|error| broken(part, said(&error)));
+        let at = reader.buffer_position();
+        match event? {
+            Event::Start(start) => {
+                depth += 1;
+                if depth > MAX_DEPTH {
+                    return Err(broken(part, format!("its elements are nested more than {MAX_DEPTH} deep")));
+                }
+                take(Step::Open(Element(start)), at)?;
+            }
+            Event::Empty(start) => {
+                take(Step::Open(Element(start)), at)?;
+                take(Step::Close, at)?;
+            }
+            Event::End(_) => {
+                depth -= 1;
+                take(Step::Close, at)?;
+            }
+            Event::Eof if depth > 0 => return Err(broken(part, "its XML ends within an element")),
+            Event::Eof => return Ok(()),
+            _ => {}
+        }
+    }
+}
+
+/// Returns what an error means, without texts of the file.
+fn said(error: &Error) -> String {
+    match error {
+        Error::Io(error) => error.to_string(),
+        _ => "its XML isn't well-formed".to_owned(),
+    }
+}
+
+/// Reads bytes, and refuses to read more than so many for one tag.
+struct Metered<R> {
+    inner: BufReader<R>,
+    left: usize,
+}
+
+impl<R: Read> BufRead for Metered<R> {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        match self.left {
+            0 => Err(io::Error::other(format!("it has a tag or a text of more than {MAX_LENGTH} bytes"))),
+            _ => self.inner.fill_buf(),
+        }
+    }
+
+    fn consume(&mut self, count: usize) {
+        self.left = self.left.saturating_sub(count);
+        self.inner.consume(count);
+    }
+}
+
+impl<R: Read> Read for Metered<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.fill_buf()?.read(buffer)?;
+        self.consume(count);
+        Ok(count)
+    }
+}
