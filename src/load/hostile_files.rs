@@ -1,6 +1,7 @@
 //! Tests with FBX, OBJ, STL and PLY files that are broken or hostile: what the loader answers, and that it never takes long.
 
 mod mutated;
+pub(in crate::load) mod odd;
 pub(in crate::load) mod page;
 mod seeds;
 mod table;
