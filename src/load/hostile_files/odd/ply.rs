@@ -149,7 +149,7 @@ fn elements() -> Vec<Odd> {
 fn binaries() -> Vec<Odd> {
     let elements = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\n";
     let positions = [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
-    let little = [&bytemuck::cast_slice(&positions)[..], &[3], bytemuck::cast_slice(&[0_i32, 1, 2])].concat();
+    let little = [bytemuck::cast_slice::<f32, u8>(&positions), &[3], bytemuck::cast_slice(&[0_i32, 1, 2])].concat();
     let big: Vec<u8> = positions
         .iter()
         .flat_map(|x| x.to_be_bytes())
