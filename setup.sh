@@ -1,6 +1,7 @@
 #!/bin/sh
 # Installs what pnaen needs and this machine lacks: a Vulkan loader and driver (a software one if there is no other),
-# the libraries that a window uses, and for the tests a C++ compiler and a display without a screen. Does nothing where nothing is missing.
+# the libraries that a window uses, and for the tests a C++ compiler, a display without a screen, and strace. Does nothing
+# where nothing is missing.
 set -eu
 
 have_library() { ldconfig -p 2>/dev/null | grep -q "$1" || find /usr/lib /usr/local/lib /lib -name "$1*" 2>/dev/null | grep -q .; }
@@ -34,6 +35,7 @@ have_library libxkbcommon-x11.so.0 || missing="$missing libxkbcommon-x11-0"
 command -v cc >/dev/null || missing="$missing gcc libc6-dev"
 command -v c++ >/dev/null || missing="$missing g++"
 command -v Xvfb >/dev/null || missing="$missing xvfb"
+command -v strace >/dev/null || missing="$missing strace"
 [ -z "$missing" ] && exit 0
 
 command -v apt-get >/dev/null || {

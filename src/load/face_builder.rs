@@ -76,6 +76,8 @@ pub(super) struct FaceBuilder<'a> {
     bad_uvs: usize,
     /// Faces with a position that isn't finite or is too far away, and the place of the first one.
     unplaced: (usize, Option<FilePosition>),
+    /// Faces with the number of a position that the file doesn't have, and the place of the first one.
+    misnumbered: (usize, Option<FilePosition>),
     /// The triangles of the polygon that is being cut.
     cut: Vec<[usize; 3]>,
 }
@@ -95,6 +97,7 @@ impl<'a> FaceBuilder<'a> {
             somehow: 0,
             bad_uvs: 0,
             unplaced: (0, None),
+            misnumbered: (0, None),
             cut: Vec::new(),
         }
     }
@@ -143,6 +146,12 @@ impl<'a> FaceBuilder<'a> {
     /// Announces that about `triangles` more triangles, and about `corners` more distinct corners, will be added.
     pub(super) fn expect(&mut self, triangles: usize, corners: usize) {
         self.builder.expect(triangles.saturating_mul(3), corners);
+    }
+
+    /// Leaves out a face with the number of a position that the file doesn't have.
+    pub(super) fn leave_out(&mut self, place: FilePosition) {
+        self.misnumbered.0 += 1;
+        self.misnumbered.1.get_or_insert(place);
     }
 
     /// Adds a face with any number of corners. Corners that can be repaired are repaired, in `corners` too. A face with a
@@ -248,10 +257,10 @@ impl<'a> FaceBuilder<'a> {
                 0 => String::new(),
                 count => format!(", and {count} faces of fewer than 3 corners"),
             };
-            let unplaced = self.unplaced().map(|unplaced| format!(", and {unplaced}")).unwrap_or_default();
-            return Err(ReadError::Empty { holds: holds + &small + &unplaced });
+            let flawed: String = self.flawed().map(|flawed| format!(", and {flawed}")).collect();
+            return Err(ReadError::Empty { holds: holds + &small + &flawed });
         }
-        warnings.extend(self.unplaced().map(|unplaced| format!("{unplaced}; they are left out.")));
+        warnings.extend(self.flawed().map(|flawed| format!("{flawed}; they are left out.")));
         warnings.extend(counted([
             (self.bad_uvs, "uvs that aren't finite, replaced by (0, 0)"),
             (self.too_small, "faces of fewer than 3 corners, left out"),
@@ -266,15 +275,18 @@ impl<'a> FaceBuilder<'a> {
         Ok((mesh, numbers, warnings))
     }
 
-    /// Says how many faces have impossible positions, if any.
-    fn unplaced(&self) -> Option<String> {
-        let (count, Some(first)) = self.unplaced else { return None };
-        let place = first.to_string();
-        let first = match place.trim_end_matches(": ") {
-            "" => String::new(),
-            place => format!(", the first at {place}"),
-        };
-        Some(format!("{count} faces with a position that isn't a number or lies beyond {LARGEST_COORDINATE:e}{first}"))
+    /// Says how many faces have impossible positions, and how many have numbers of positions that aren't there, if any.
+    fn flawed(&self) -> impl Iterator<Item = String> + use<> {
+        let unplaced = format!("a position that isn't a number or lies beyond {LARGEST_COORDINATE:e}");
+        let misnumbered = "the number of a position that isn't in the file".to_owned();
+        [(self.unplaced, unplaced), (self.misnumbered, misnumbered)].into_iter().filter_map(|((count, first), what)| {
+            let place = first?.to_string();
+            let first = match place.trim_end_matches(": ") {
+                "" => String::new(),
+                place => format!(", the first at {place}"),
+            };
+            Some(format!("{count} faces with {what}{first}"))
+        })
     }
 }
 

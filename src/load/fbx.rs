@@ -5,6 +5,7 @@
 //! the file itself, since its lists hold what the file says. It runs in this process, on a thread of its own, so that the stack is the
 //! same on every system (see the design notes).
 
+mod beyond;
 mod clips;
 mod convert;
 mod left_out;

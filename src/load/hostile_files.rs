@@ -1,6 +1,7 @@
 //! Tests with FBX, OBJ, STL, PLY, OFF and 3MF files that are broken or hostile: what the loader answers, and that it never takes long.
 
 mod mutated;
+pub(in crate::load) mod odd;
 pub(in crate::load) mod page;
 mod seeds;
 mod table;

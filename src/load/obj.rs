@@ -21,7 +21,7 @@ use super::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, counted, lin
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::read_error::ReadError;
-use super::text_lines::{Line, Lines, first_word, numbers_or_nan, of_utf16, shown, words};
+use super::text_lines::{Line, Lines, first_word, has_comma, numbers_or_nan, of_utf16, shown, words};
 use super::uri::Files;
 use crate::files::Limits;
 use crate::mesh::MemoryAccount;
@@ -176,7 +176,8 @@ impl Vertices {
         match word {
             b"v" => {
                 hold(self.positions.next_bytes())?;
-                self.positions.push(numbers_or_nan(rest).into());
+                let [x, y, z] = numbers_or_nan(rest);
+                self.positions.push(Vec3::new(x, y, if is_flat(rest) { 0.0 } else { z }));
                 // With four numbers the last one is a weight, and with seven the first three are followed by one.
                 let count = words(rest).take(8).count();
                 if matches!(count, 6 | 7) {
@@ -212,6 +213,11 @@ impl Vertices {
     }
 }
 
+/// Whether a position has x and y alone, as drawings in a plane have it.
+fn is_flat(numbers: &[u8]) -> bool {
+    words(numbers).take(3).count() == 2
+}
+
 /// Returns a colour as bytes. Scanning programs write 0 to 1, and some 0 to 255.
 fn stored_color(color: [f32; 3]) -> [u8; 4] {
     let scale = if color.iter().any(|channel| *channel > 1.0) { 1.0 } else { 255.0 };
@@ -236,6 +242,12 @@ struct StatementCounts {
     without_normals: usize,
     /// Faces whose missing normals came from their smoothing groups.
     smoothed: usize,
+    /// Statements whose numbers have a comma instead of a point.
+    with_commas: usize,
+    /// Positions of two numbers.
+    flat: usize,
+    /// Corners with more than three numbers.
+    long_corners: usize,
     /// Corners whose normal, or whose texture coordinates, aren't in the file.
     absent_normals: usize,
     absent_uvs: usize,
@@ -249,6 +261,9 @@ impl StatementCounts {
                 "faces without normals, or with some missing, which got ones that are smooth within 60 degrees",
             ),
             (self.smoothed, "faces without normals, or with some missing, which got those of their smoothing groups"),
+            (self.with_commas, "statements with a comma in a number, which was taken for its point"),
+            (self.flat, "positions of two numbers, which are placed at z = 0"),
+            (self.long_corners, "corners with more than three numbers, of which the first three are read"),
             (self.absent_normals, "corners with the number of a normal that isn't in the file, left out"),
             (
                 self.absent_uvs,
@@ -295,9 +310,15 @@ impl Reader<'_, '_> {
         let (word, rest) = first_word(line.text);
         match word {
             b"" => {}
-            b"v" => self.above[0] += 1,
-            b"vt" => self.above[1] += 1,
-            b"vn" => self.above[2] += 1,
+            b"v" | b"vt" | b"vn" => {
+                self.above[match word {
+                    b"v" => 0,
+                    b"vt" => 1,
+                    _ => 2,
+                }] += 1;
+                self.found.with_commas += usize::from(has_comma(rest));
+                self.found.flat += usize::from(word == b"v" && is_flat(rest));
+            }
             b"f" | b"fo" => self.face(line, rest)?,
             b"s" => self.smoothing.iter_mut().for_each(|smoothing| smoothing.enter(rest)),
             b"usemtl" => self.materials.enter(rest),
@@ -319,7 +340,12 @@ impl Reader<'_, '_> {
             if corners.len() == MAX_CORNERS {
                 return Err(line.place().error(format!("the face has more than {MAX_CORNERS} corners")));
             }
-            let (index, corner) = self.corner(word).map_err(|reason| line.place().error(reason))?;
+            let found = self.corner(word).map_err(|reason| line.place().error(reason))?;
+            let Some((index, corner)) = found else {
+                self.faces.leave_out(line.place());
+                self.corners = corners;
+                return Ok(());
+            };
             let color = self.vertices.colors.get(index).map_or(Vec4::ONE, |&color| linear_color(color));
             corners.push(NumberedCorner { corner, number: self.faces.number(color)? });
             self.indices.push(index);
@@ -336,19 +362,22 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// Parses a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`.
-    /// Returns the number of its position too.
-    fn corner(&mut self, word: &[u8]) -> Result<(usize, InputCorner), String> {
+    /// Parses a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`. Returns the number of its position too; none if that isn't in the file.
+    ///
+    /// # Errors
+    /// A clause that says what isn't a number.
+    fn corner(&mut self, word: &[u8]) -> Result<Option<(usize, InputCorner)>, String> {
         let mut parts = word.split(|&byte| byte == b'/');
         let [position, uv, normal] = [0, 1, 2].map(|_| parts.next().filter(|part| !part.is_empty()));
-        let (None, Some(position)) = (parts.next(), position) else {
+        self.found.long_corners += usize::from(parts.next().is_some());
+        let Some(position) = position else {
             return Err(format!("{} isn't a corner, such as 1, 1/2, 1//3 or 1/2/3", shown(word)));
         };
         let Vertices { positions, uvs, normals, .. } = self.vertices;
-        let number = index(position, "position", self.above[0], positions.len())?;
+        let Some(number) = index(position, self.above[0], positions.len())? else { return Ok(None) };
         // A corner needs its position alone.
         let optional = |word: Option<&[u8]>, above, count, absent: &mut usize| {
-            let found = word.and_then(|word| index(word, "", above, count).ok());
+            let found = word.and_then(|word| index(word, above, count).ok().flatten());
             *absent += usize::from(word.is_some() && found.is_none());
             found
         };
@@ -357,25 +386,27 @@ impl Reader<'_, '_> {
         let uv = uv.and_then(|uv| uvs.get(uv)).copied().unwrap_or_default();
         let normal = normal.and_then(|normal| normals.get(normal)).copied();
         let position = positions.get(number).copied().unwrap_or_default();
-        Ok((number, InputCorner { position, normal, uv }))
+        Ok(Some((number, InputCorner { position, normal, uv })))
     }
 }
 
-/// Parses an index into a list of `count` items, and returns it counted from 0. The file counts from 1, or backwards
-/// from the last of the `above` items before the statement, which is -1.
-fn index(word: &[u8], what: &str, above: usize, count: usize) -> Result<usize, String> {
-    let number: i64 = std::str::from_utf8(word)
-        .ok()
-        .and_then(|word| word.parse().ok())
-        .ok_or_else(|| format!("{} isn't the index of a {what}", shown(word)))?;
+/// Parses an index into a list of `count` items, and returns it counted from 0; none if the list has no such item. The file counts
+/// from 1, or backwards from the last of the `above` items before the statement, which is -1. Some programs write 1.0 for 1.
+///
+/// # Errors
+/// A clause that says what isn't a number.
+fn index(word: &[u8], above: usize, count: usize) -> Result<Option<usize>, String> {
+    let said = std::str::from_utf8(word).ok();
+    let whole = |number: f64| (number.fract() == 0.0).then_some(number as i128);
+    let digits = |word: &str| word.parse::<i64>().ok().map(i128::from);
+    let number = said.and_then(|word| digits(word).or_else(|| whole(word.parse().ok()?)));
+    let number = number.ok_or_else(|| format!("{} isn't the index of a position", shown(word)))?;
     let distance = usize::try_from(number.unsigned_abs()).unwrap_or(usize::MAX);
-    match number {
-        0 => Err(format!("the face uses {what} 0, but indices start at 1")),
-        1.. if distance <= count => Ok(distance - 1),
-        1.. => Err(format!("the face uses {what} {number}, but the file has {count}")),
-        _ if distance <= above => Ok(above - distance),
-        _ => Err(format!("the face uses {what} {number}, but {above} are above the face")),
-    }
+    Ok(match number {
+        0 => None,
+        1.. => (distance <= count).then(|| distance - 1),
+        _ => above.checked_sub(distance),
+    })
 }
 
 #[cfg(test)]

@@ -21,7 +21,7 @@ use crate::mesh::{Material, MemoryAccount};
 use crate::progress::Progress;
 
 use header::{Element, Header, Property, PropertyKind, Scalar};
-use values::{Values, plain};
+use values::Values;
 
 /// The properties of a vertex that are read, and the attribute that each sets. Texture coordinates have three names.
 const ATTRIBUTES: [(&[u8], usize); 19] = [
@@ -107,7 +107,7 @@ fn gather<'a>(
     for (element, mut values) in before_vertices {
         reader.read_lists(element, &mut values)?;
     }
-    Ok(reader.finish(&header, values.left_over()))
+    Ok(reader.finish(&header, (values.left_over(), values.long_lines)))
 }
 
 /// The attributes of the vertices. Normals, uvs or colours are empty if the file has none.
@@ -121,18 +121,15 @@ struct Vertices {
 }
 
 impl Vertices {
-    /// Returns a vertex, and its colour: linear RGBA.
-    fn corner(&self, index: f64, place: FilePosition) -> Result<(InputCorner, Vec4), ReadError> {
+    /// Returns a vertex, and its colour: linear RGBA. None if there is no such vertex.
+    fn corner(&self, index: f64) -> Option<(InputCorner, Vec4)> {
         let vertex = index as usize;
         // The conversion changes an index that is negative, not whole or not finite.
-        let position = self.positions.get(vertex).filter(|_| vertex as f64 == index).ok_or_else(|| {
-            let (index, count) = (plain(index), self.positions.len());
-            place.error(format!("the face uses vertex {index}, but the file has {count}, counted from 0"))
-        })?;
+        let position = self.positions.get(vertex).filter(|_| vertex as f64 == index)?;
         let uv = self.uvs.get(vertex).copied().unwrap_or_default();
         let corner = InputCorner { position: *position, normal: self.normals.get(vertex).copied(), uv };
         let color = self.colors.get(vertex).map_or(Vec4::ONE, |&color| linear_color(color));
-        Ok((corner, color))
+        Some((corner, color))
     }
 }
 
@@ -183,7 +180,7 @@ impl<'a> Reader<'a> {
                     (kind, _) => values.skip_one(kind)?,
                 }
             }
-            values.end(element)?;
+            values.end();
             let [x, y, z, nx, ny, nz, u, v, color @ ..] = found;
             vertices.positions.push(Vec3::new(x, y, z));
             if has_normals {
@@ -247,6 +244,7 @@ impl<'a> Reader<'a> {
             values.begin(element, i)?;
             let place = values.place();
             self.wedges.clear();
+            let mut is_whole = true;
             for (k, property) in element.properties.iter().enumerate() {
                 match property.kind {
                     PropertyKind::List { count, item } if k == list => {
@@ -257,7 +255,7 @@ impl<'a> Reader<'a> {
                             values.next(item).map(Some)
                         };
                         match element.name {
-                            b"face" => self.face(next, vertices, place)?,
+                            b"face" => is_whole = self.face(next, vertices, place)?,
                             _ => self.strip(next, vertices, place)?,
                         }
                     }
@@ -273,9 +271,11 @@ impl<'a> Reader<'a> {
                     kind => values.skip_one(kind)?,
                 }
             }
-            values.end(element)?;
-            if element.name == b"face" {
-                self.add_face(place)?;
+            values.end();
+            match element.name {
+                b"face" if is_whole => self.add_face(place)?,
+                b"face" => self.faces.leave_out(place),
+                _ => {}
             }
         }
         Ok(())
@@ -292,21 +292,25 @@ impl<'a> Reader<'a> {
         self.faces.add(self.material, &mut self.corners, place)
     }
 
-    /// Reads the corners of a face.
+    /// Reads the corners of a face. Returns whether the file has all of its vertices.
     fn face(
         &mut self,
         mut next: impl FnMut() -> Result<Option<f64>, ReadError>,
         vertices: &Vertices,
         place: FilePosition,
-    ) -> Result<(), ReadError> {
+    ) -> Result<bool, ReadError> {
         self.corners.clear();
+        let mut is_whole = true;
         while let Some(index) = next()? {
             if self.corners.len() == MAX_CORNERS {
                 return Err(place.error(format!("the face has more than {MAX_CORNERS} corners")));
             }
-            self.push(vertices.corner(index, place)?)?;
+            match vertices.corner(index) {
+                Some(corner) => self.push(corner)?,
+                None => is_whole = false,
+            }
         }
-        Ok(())
+        Ok(is_whole)
     }
 
     fn push(&mut self, (corner, color): (InputCorner, Vec4)) -> Result<(), ReadError> {
@@ -336,9 +340,13 @@ impl<'a> Reader<'a> {
                 continue;
             }
             let triangle = if length % 2 == 1 { [a, b, index] } else { [b, a, index] };
+            let [Some(a), Some(b), Some(c)] = triangle.map(|index| vertices.corner(index)) else {
+                self.faces.leave_out(place);
+                continue;
+            };
             self.corners.clear();
-            for index in triangle {
-                self.push(vertices.corner(index, place)?)?;
+            for corner in [a, b, c] {
+                self.push(corner)?;
             }
             self.faces.add(self.material, &mut self.corners, place)?;
         }
@@ -354,7 +362,11 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn finish(self, header: &Header, left_over: usize) -> (FaceBuilder<'a>, String, Vec<String>) {
+    fn finish(
+        self,
+        header: &Header,
+        (left_over, long_lines): (usize, usize),
+    ) -> (FaceBuilder<'a>, String, Vec<String>) {
         let count = |name: &[u8]| {
             header.elements.iter().filter(|element| element.name == name).map(|element| element.count).sum()
         };
@@ -367,6 +379,7 @@ impl<'a> Reader<'a> {
         warnings.extend(counted([
             (header.other_lines, "lines of the header that aren't part of the format, left out"),
             (without_normals, "vertices without normals, which got ones that are smooth within 60 degrees"),
+            (long_lines, "lines with more numbers than their element has, left out"),
             (left_over, "bytes after the last element, left out"),
         ]));
         let beside = 12 * read.normals.capacity() + 8 * read.uvs.capacity() + 4 * read.colors.capacity();

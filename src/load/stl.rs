@@ -14,7 +14,7 @@ use super::face_builder::{FaceBuilder, counted};
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::read_error::{FilePosition, ReadError};
-use super::text_lines::{Line, Lines, first_word, numbers_or_nan, shown};
+use super::text_lines::{Line, Lines, first_word, has_comma, numbers_or_nan, shown};
 use crate::files::Limits;
 use crate::mesh::mesh_builder::InputCorner;
 use crate::mesh::{Material, MemoryAccount};
@@ -34,8 +34,17 @@ pub(super) fn read(bytes: Vec<u8>, name: &str, limits: &Limits, progress: &Progr
     let budget = Budget::new(bytes.len(), limits);
     let mut faces = FaceBuilder::new(bytes.len(), &budget);
     let material = faces.material(Material::plain("default", [1.0; 4]))?;
-    let mut reader =
-        Reader { faces, material, corners: Vec::new(), progress, bytes: bytes.len(), other_lines: 0, cut_short: None };
+    let mut reader = Reader {
+        faces,
+        material,
+        corners: Vec::new(),
+        progress,
+        bytes: bytes.len(),
+        other_lines: 0,
+        open_facets: 0,
+        with_commas: 0,
+        cut_short: None,
+    };
     let (holds, warnings) = if is_text(&bytes) { reader.text(&bytes)? } else { reader.binary(&bytes)? };
     budget.release(bytes.len() as u64);
     drop(bytes);
@@ -84,6 +93,10 @@ struct Reader<'a> {
     bytes: usize,
     /// Lines of a text file that aren't part of the format.
     other_lines: usize,
+    /// Facets of a text file without an end.
+    open_facets: usize,
+    /// Lines of a text file whose numbers have a comma instead of a point.
+    with_commas: usize,
     /// A warning about a text file that ends too early.
     cut_short: Option<String>,
 }
@@ -99,10 +112,13 @@ impl Reader<'_> {
             return Err(FilePosition::Everywhere.error(reason));
         };
         let triangles = bytes[HEADER..].as_chunks::<TRIANGLE>().0;
-        let there = triangles.len().min(count as usize);
+        // Programs that write while they compute leave the count at 0.
+        let is_uncounted = count == 0 && !triangles.is_empty();
+        let said = if is_uncounted { triangles.len() } else { count as usize };
+        let there = triangles.len().min(said);
         // A closed surface has half as many points as triangles.
         self.faces.expect(there, there / 2);
-        for (i, triangle) in triangles.iter().take(count as usize).enumerate() {
+        for (i, triangle) in triangles.iter().take(said).enumerate() {
             if i % 4096 == 0 {
                 self.at(HEADER + i * TRIANGLE)?;
             }
@@ -110,7 +126,12 @@ impl Reader<'_> {
             let [_, a, b, c, ..] = triangle.as_chunks::<12>().0 else { continue };
             self.add([a, b, c].map(position_of), FilePosition::Byte(HEADER + i * TRIANGLE))?;
         }
-        if there < count as usize {
+        if is_uncounted {
+            let warning =
+                format!("The header says that the file has 0 triangles. The {said} that follow it are shown.");
+            return Ok((String::new(), vec![warning]));
+        }
+        if there < said {
             let warning = format!(
                 "The file was cut short: its header says that it has {count} triangles, but it ends after {there}. Only \
                  those are shown."
@@ -126,45 +147,54 @@ impl Reader<'_> {
     fn text(&mut self, bytes: &[u8]) -> Result<(String, Vec<String>), ReadError> {
         let mut lines = Lines::new(bytes);
         let (mut solids, mut open) = (0, false);
-        while let Some(line) = lines.next()? {
+        let mut next = lines.next()?;
+        while let Some(line) = next {
             if line.number % 4096 == 0 {
                 self.at(bytes.len() - lines.rest().len())?;
             }
-            let (word, _) = first_word(line.text);
-            match word.to_ascii_lowercase().as_slice() {
+            next = None;
+            match keyword(&line).as_slice() {
                 b"" => {}
                 b"solid" => (solids, open) = (solids + 1, true),
                 b"endsolid" => open = false,
-                b"facet" => self.facet(&line, &mut lines)?,
-                b"outer" | b"vertex" | b"endloop" | b"endfacet" => {
-                    return Err(unexpected(&line, "facet, endsolid or solid"));
-                }
+                b"facet" => next = self.facet(&line, &mut lines)?,
+                b"outer" | b"vertex" => return Err(unexpected(&line, "facet, endsolid or solid")),
                 _ => self.other_lines += 1,
+            }
+            if next.is_none() {
+                next = lines.next()?;
             }
         }
         let mut warnings = Vec::from_iter(self.cut_short.take());
         warnings.extend(counted([
+            (self.open_facets, "facets without an end"),
+            (self.with_commas, "lines with a comma in a number, which was taken for its point"),
             (usize::from(open), "solids without an end: the file may have been cut short"),
             (self.other_lines, "lines that aren't part of the format, left out"),
         ]));
         Ok((format!("it holds {solids} solids without facets"), warnings))
     }
 
-    /// Reads the lines after a facet's first line.
-    fn facet(&mut self, first: &Line, lines: &mut Lines) -> Result<(), ReadError> {
+    /// Reads the lines after a facet's first line. Returns the line after it, if it was read to find that the facet has no end.
+    fn facet<'l>(&mut self, first: &Line, lines: &mut Lines<'l>) -> Result<Option<Line<'l>>, ReadError> {
         let (mut positions, mut count) = ([Vec3::ZERO; 3], 0);
         while let Some(line) = lines.next()? {
-            let (word, rest) = first_word(line.text);
-            match word.to_ascii_lowercase().as_slice() {
+            match keyword(&line).as_slice() {
                 b"" | b"outer" | b"endloop" => {}
                 b"vertex" => {
+                    let rest = first_word(line.text).1;
+                    self.with_commas += usize::from(has_comma(rest));
                     if let Some(slot) = positions.get_mut(count) {
                         *slot = numbers_or_nan(rest).into();
                     }
                     count += 1;
                 }
-                b"endfacet" if count == 3 => return self.add(positions, line.place()),
+                b"endfacet" if count == 3 => return self.add(positions, line.place()).map(|()| None),
                 b"endfacet" => return Err(line.place().error(format!("the facet has {count} vertices instead of 3"))),
+                b"facet" | b"solid" | b"endsolid" if count == 3 => {
+                    self.open_facets += 1;
+                    return self.add(positions, line.place()).map(|()| Some(line));
+                }
                 b"facet" | b"solid" | b"endsolid" => return Err(unexpected(&line, "vertex, endloop or endfacet")),
                 // Some programs write colours and notes in lines of their own.
                 _ => self.other_lines += 1,
@@ -173,7 +203,7 @@ impl Reader<'_> {
         let number = first.number;
         self.cut_short =
             Some(format!("The file ends within the facet that begins in line {number}. That facet is left out."));
-        Ok(())
+        Ok(None)
     }
 
     fn add(&mut self, positions: [Vec3; 3], place: FilePosition) -> Result<(), ReadError> {
@@ -188,6 +218,19 @@ impl Reader<'_> {
         self.progress.set(0.5 * byte as f32 / self.bytes as f32);
         Ok(self.progress.check()?)
     }
+}
+
+/// Returns a line's first word in small letters. Some programs write the words that begin with `end` as two.
+fn keyword(line: &Line) -> Vec<u8> {
+    let (word, rest) = first_word(line.text);
+    let mut word = word.to_ascii_lowercase();
+    if word == b"end" {
+        let second = first_word(rest).0.to_ascii_lowercase();
+        if matches!(second.as_slice(), b"loop" | b"facet" | b"solid") {
+            word.extend(second);
+        }
+    }
+    word
 }
 
 fn position_of(&[a, b, c, d, e, f, g, h, i, j, k, l]: &[u8; 12]) -> Vec3 {

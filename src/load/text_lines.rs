@@ -113,10 +113,24 @@ pub(super) fn number(word: &[u8]) -> Result<f32, String> {
     number.ok_or_else(|| format!("{} isn't a number", shown(word)))
 }
 
-/// Parses the first N words as numbers, and ignores further words. What isn't a number, or isn't there, is NaN.
+/// Parses the first N words as numbers, and ignores further words. What isn't a number, or isn't there, is NaN. A comma may stand for
+/// the point, as programs write it that take numbers from the system's language.
 pub(super) fn numbers_or_nan<const N: usize>(text: &[u8]) -> [f32; N] {
     let mut words = words(text);
-    [(); N].map(|()| words.next().and_then(|word| number(word).ok()).unwrap_or(f32::NAN))
+    let read = |word: &[u8]| number(word).ok().or_else(|| number(&with_point(word)?).ok());
+    [(); N].map(|()| words.next().and_then(read).unwrap_or(f32::NAN))
+}
+
+/// Returns a word with a point instead of its comma, if it has a single comma and no point.
+fn with_point(word: &[u8]) -> Option<Vec<u8>> {
+    let at = memchr(b',', word)?;
+    let is_single = memchr(b',', &word[at + 1..]).is_none() && memchr(b'.', word).is_none();
+    is_single.then(|| [&word[..at], b".", &word[at + 1..]].concat())
+}
+
+/// Whether numbers have a comma instead of a point, which is worth a warning.
+pub(super) fn has_comma(text: &[u8]) -> bool {
+    memchr(b',', text).is_some()
 }
 
 /// Returns a text in UTF-8, if it is in UTF-16 and says so with a byte order mark; `hold` is asked before memory is taken.
@@ -190,9 +204,14 @@ mod tests {
 
     #[test]
     fn what_is_not_a_number_is_nan() {
-        let found: [f32; 4] = numbers_or_nan(b"1.5 1.#IND 2,5");
+        let found: [f32; 6] = numbers_or_nan(b"1.5 1.#IND 2,5,1 2.5,1 ,");
         assert_eq!(found[0], 1.5);
         assert!(found[1..].iter().all(|number| number.is_nan()));
+    }
+
+    #[test]
+    fn a_comma_may_stand_for_the_point() {
+        assert_eq!(numbers_or_nan(b"1,5 -2,5e1 0,"), [1.5, -25.0, 0.0]);
     }
 
     #[test]

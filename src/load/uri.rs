@@ -109,7 +109,7 @@ fn strip_scheme<'a>(uri: &'a str, scheme: &str) -> Option<&'a str> {
 
 fn read_data(data: &str, limit: usize) -> Result<Vec<u8>, String> {
     let (header, body) = data.split_once(',').ok_or("the data URI has no comma; export the model again")?;
-    let is_base64 = header.ends_with(";base64");
+    let is_base64 = header.to_ascii_lowercase().ends_with(";base64");
     let size = if is_base64 { body.len() / 4 * 3 } else { body.len() };
     if size > limit {
         return Err(format!("the data URI holds {size} bytes, but at most {limit} are read; export as .glb"));

@@ -18,6 +18,8 @@ mod lod;
 mod manual;
 #[path = "../documents/moving.rs"]
 mod moving;
+#[cfg(target_os = "linux")]
+mod opened;
 #[path = "../documents/package.rs"]
 mod package;
 mod picture_file;

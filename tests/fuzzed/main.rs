@@ -60,32 +60,32 @@ fn run(target: &str, copies: u32, body: fn(&[u8])) {
 
 #[test]
 fn gltf() {
-    run("gltf", 1000, bodies::gltf);
+    run("gltf", 10_000, bodies::gltf);
 }
 
 #[test]
 fn glb() {
-    run("glb", 1000, bodies::glb);
+    run("glb", 10_000, bodies::glb);
 }
 
 #[test]
 fn fbx() {
-    run("fbx", 1000, bodies::fbx);
+    run("fbx", 10_000, bodies::fbx);
 }
 
 #[test]
 fn obj() {
-    run("obj", 1000, bodies::obj);
+    run("obj", 10_000, bodies::obj);
 }
 
 #[test]
 fn stl() {
-    run("stl", 1000, bodies::stl);
+    run("stl", 10_000, bodies::stl);
 }
 
 #[test]
 fn ply() {
-    run("ply", 1000, bodies::ply);
+    run("ply", 10_000, bodies::ply);
 }
 
 #[test]

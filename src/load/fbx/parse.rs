@@ -38,6 +38,8 @@ pub(super) fn scene(bytes: &[u8], budget: &Budget, progress: &Progress) -> Resul
         progress_cb: ProgressCb::Mut(&mut watch),
         ..LoadOpts::default()
     };
+    // Editors of text add a byte order mark, which ufbx doesn't know.
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let scene = ufbx::load_memory(bytes, options).map_err(|error| match error.type_ {
         ErrorType::TruncatedFile if !is_fbx(bytes) => no_fbx(),
         _ => refused(&error, budget),

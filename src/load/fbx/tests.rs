@@ -3,6 +3,7 @@
 pub(in crate::load) mod documents;
 mod moving;
 mod shapes;
+mod spans;
 mod surfaces;
 pub(in crate::load) mod tree;
 

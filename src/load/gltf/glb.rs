@@ -44,9 +44,11 @@ pub(super) fn parts(bytes: &[u8]) -> Result<Parts, GltfError> {
         return Err(fail(format!("its header says that the file has {length} bytes, but it has {}", bytes.len())));
     }
     let mut chunks = Chunks { bytes: &bytes[..length], next: HEADER, count: 0 };
-    let Some((b"JSON", json)) = chunks.next()? else {
+    let Some((b"JSON", mut json)) = chunks.next()? else {
         return Err(fail("its first chunk isn't JSON".to_owned()));
     };
+    // The padding should be spaces, but some exporters write zeros.
+    json.end -= bytes[json.clone()].iter().rev().take_while(|byte| **byte == 0).count();
     while let Some((kind, range)) = chunks.next()? {
         if kind == b"BIN\0" {
             return Ok(Parts { json, bin: Some(range) });

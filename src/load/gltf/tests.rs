@@ -6,11 +6,13 @@ mod hostile;
 mod lights;
 mod materials;
 mod mutations;
+mod odd;
 mod packed;
 mod scenes;
 mod textures;
 mod variants;
 pub(crate) use mutations::seeds;
+pub(in crate::load) use odd::odd;
 
 use base64::prelude::{BASE64_STANDARD, Engine};
 use glam::{Vec2, Vec3};

@@ -70,7 +70,7 @@ impl<'v> Smoothing<'v> {
         let count = self.vertices.positions.len();
         let number = |word: &[u8]| {
             let position = word.split(|&byte| byte == b'/').next().unwrap_or_default();
-            index(position, "", self.above, count).ok()
+            index(position, self.above, count).ok().flatten()
         };
         self.outline.clear();
         self.outline.extend(words(rest).take(MAX_CORNERS).filter_map(number));

@@ -101,6 +101,8 @@ pub(super) struct Header<'a> {
 /// # Errors
 /// [`ReadError::Broken`].
 pub(super) fn read(bytes: &[u8]) -> Result<Header<'_>, ReadError> {
+    // Editors of text add a byte order mark.
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let is_ply = bytes.get(..4).is_some_and(|start| start.starts_with(b"ply") && start[3].is_ascii_whitespace());
     if !is_ply {
         return Err(FilePosition::Everywhere.error("it isn't a PLY file: its first line isn't \"ply\""));
@@ -160,11 +162,7 @@ fn property<'a>(line: &Line<'a>) -> Result<Property<'a>, String> {
     let scalar = |name| Scalar::named(name).ok_or_else(|| format!("{} isn't a type of numbers", shown(name)));
     match words[..] {
         [b"list", count, item, name] => {
-            let (count, item) = (scalar(count)?, scalar(item)?);
-            if matches!(count, Scalar::F32 | Scalar::F64) {
-                return Err("the type of a list's count isn't a type of whole numbers".to_owned());
-            }
-            Ok(Property { name, kind: PropertyKind::List { count, item } })
+            Ok(Property { name, kind: PropertyKind::List { count: scalar(count)?, item: scalar(item)? } })
         }
         [kind, name] => Ok(Property { name, kind: PropertyKind::One(scalar(kind)?) }),
         _ => Err("a property needs a type and a name; a list needs two types and a name".to_owned()),

@@ -20,13 +20,24 @@ pub(super) struct Values<'a> {
     size: usize,
     /// Whether the last error is that the file ends too early.
     pub ends: bool,
+    /// Lines of a text file with more numbers than their element has.
+    pub long_lines: usize,
 }
 
 impl<'a> Values<'a> {
     pub(super) fn new(header: &Header<'a>, size: usize) -> Self {
         let lines = header.lines.clone();
         let line = Line { text: &[], number: lines.count() };
-        Self { encoding: header.encoding, bytes: lines.rest(), lines, line, left: &[], size, ends: false }
+        Self {
+            encoding: header.encoding,
+            bytes: lines.rest(),
+            lines,
+            line,
+            left: &[],
+            size,
+            ends: false,
+            long_lines: 0,
+        }
     }
 
     /// Returns the position of the next value, for messages.
@@ -149,17 +160,9 @@ impl<'a> Values<'a> {
         Err(self.place().error(format!("the file ends after {i} of {count} elements {}", shown(name))))
     }
 
-    /// Checks that the line of an element has no further values.
-    ///
-    /// # Errors
-    /// [`ReadError::Broken`].
-    pub(super) fn end(&self, element: &Element) -> Result<(), ReadError> {
-        if self.left.is_empty() {
-            return Ok(());
-        }
-        let (all, more) = (words(self.line.text).count(), words(self.left).count());
-        let reason = format!("the line has {all} numbers, but the element {} has {}", shown(element.name), all - more);
-        Err(self.place().error(reason))
+    /// Leaves out what follows the values of an element in its line.
+    pub(super) fn end(&mut self) {
+        self.long_lines += usize::from(!self.left.is_empty());
     }
 
     /// Returns the next value.
@@ -256,6 +259,6 @@ impl<'a> Values<'a> {
 }
 
 /// Formats a number for a message.
-pub(super) fn plain(x: f64) -> String {
+fn plain(x: f64) -> String {
     if x == 0.0 || (1e-3..1e15).contains(&x.abs()) { x.to_string() } else { format!("{x:e}") }
 }

@@ -135,22 +135,16 @@ const LAYER: i64 = 901;
 
 /// A stack with one layer, from 0 to a time in s.
 pub(in crate::load) fn stack(name: &str, end: f64) -> (Vec<Entry>, Vec<Link>) {
-    let times = list(
-        "Properties70",
-        vec![
-            entry("P", vec!["LocalStart".into(), "KTime".into(), "Time".into(), "".into(), 0.into()]),
-            entry(
-                "P",
-                vec![
-                    "LocalStop".into(),
-                    "KTime".into(),
-                    "Time".into(),
-                    "".into(),
-                    ((end * SECOND as f64) as i64).into(),
-                ],
-            ),
-        ],
-    );
+    span(name, [0.0, end])
+}
+
+/// A stack with one layer, between two times in s.
+pub(in crate::load) fn span(name: &str, [start, stop]: [f64; 2]) -> (Vec<Entry>, Vec<Link>) {
+    let time = |name: &str, seconds: f64| {
+        let ticks = (seconds * SECOND as f64) as i64;
+        entry("P", vec![name.into(), "KTime".into(), "Time".into(), "".into(), ticks.into()])
+    };
+    let times = list("Properties70", vec![time("LocalStart", start), time("LocalStop", stop)]);
     let objects = vec![
         object("AnimationStack", 900, &format!("AnimStack::{name}"), "", vec![times]),
         object("AnimationLayer", LAYER, "AnimLayer::base", "", vec![one("Version", 100)]),

@@ -10,14 +10,14 @@ use crate::progress::Progress;
 use crate::tessellate::deform;
 
 /// The corners' positions at rest, and at a time of the first clip.
-fn at(loaded: &LoadedMesh, time: f64) -> Vec<(Vec3, Vec3)> {
+pub(super) fn at(loaded: &LoadedMesh, time: f64) -> Vec<(Vec3, Vec3)> {
     let pose = loaded.rig.as_ref().expect("a rig").pose(Moment { clip: 0, time });
     let topology = Topology::build(&loaded.mesh, &Progress::new()).expect("nobody cancels");
     let (posed, _) = deform(&loaded.mesh, &topology, &pose);
     loaded.corners.iter().zip(&posed.corners).map(|(rest, posed)| (rest.position, posed.position)).collect()
 }
 
-fn assert_near(posed: Vec3, expected: Vec3, what: &str) {
+pub(super) fn assert_near(posed: Vec3, expected: Vec3, what: &str) {
     assert!((posed - expected).length() < 1e-5, "{what}: {posed} instead of {expected}");
 }
 

@@ -1,6 +1,7 @@
 //! Tests with hostile documents: each is refused with an error, or read with a warning, and none takes longer than a second in any
 //! build.
 
+mod alone;
 mod containers;
 mod data;
 mod graphs;
@@ -127,16 +128,25 @@ fn hostile_documents_get_the_answers_in_the_table() {
     cases.extend(unused::cases());
     let names: std::collections::HashSet<_> = cases.iter().map(|case| case.name).collect();
     assert!(cases.len() >= 130 && names.len() == cases.len(), "{} of {}", names.len(), cases.len());
+    for (i, case) in cases.iter().enumerate() {
+        let kind = if case.bytes.starts_with(b"glTF") { "glb" } else { "gltf" };
+        page::keep(&format!("gltf-{i:03}.{kind}"), &case.bytes);
+    }
     let answers: Vec<_> = cases.iter().map(Case::answer).collect();
     let fault =
         |(case, answer): (&Case, &Result<String, String>)| Some(format!("{}: {}", case.name, answer.as_ref().err()?));
     let faults: Vec<_> = cases.iter().zip(&answers).filter_map(fault).collect();
     assert!(faults.is_empty(), "{} of {}:\n{}", faults.len(), cases.len(), faults.join("\n"));
+    let is_refused = |name| cases.iter().any(|case| case.name == name && matches!(case.gets, Gets::Refused(_)));
+    for name in alone::ALONE.iter().flat_map(|(_, names)| *names) {
+        assert!(is_refused(*name), "{name} isn't refused");
+    }
     // Some sentences contain the system's own messages.
     #[cfg(target_os = "linux")]
     {
         let row = |(case, answer): (&Case, Result<String, String>)| Some((plain(case.name), answer.ok()?));
         let rows: Vec<_> = cases.iter().zip(answers).filter_map(row).collect();
-        page::hold("gltf.md", "Hostile glTF files", &rows);
+        let whys = alone::ALONE.iter().flat_map(|(why, names)| names.iter().map(move |name| (plain(name), *why)));
+        page::hold_with("gltf.md", "Hostile glTF files", &rows, &whys.collect::<Vec<_>>());
     }
 }

@@ -45,10 +45,10 @@ pub(super) fn cases() -> Vec<Case> {
             Refused("Broken | line 100008 | 100003 | 3"),
         ),
         case(Stl, FACET.replace("vertex 1 0 0", "vertex 1 0"), Refused("Empty | 1 faces | a number | line 8")),
-        case(Stl, FACET.replace("vertex 1 0 0", "vertex 1 0 0,"), Refused("Empty | 1 faces | a number | line 8")),
+        case(Stl, FACET.replace("vertex 1 0 0", "vertex 1 0 0,"), Repaired(1, "a comma in a number | 1")),
         case(Stl, FACET.replace("vertex 1 0 0", "vertex 1 0 nan"), Refused("Empty | 1 faces | a number | line 8")),
         case(Stl, FACET.replace("facet normal", "face normal"), Refused("Broken | line 3 | \"outer\" | facet")),
-        case(Stl, FACET.replace("endloop", "endsolid a"), Refused("Broken | line 7 | \"endsolid\"")),
+        case(Stl, FACET.replace("endloop", "endsolid a"), Repaired(1, "facets without an end | 1")),
         case(Stl, format!("solid {}", "1 ".repeat(50_000_000)), Refused("Broken | line 1 | 100000006 | 4194304")),
         case(Stl, FACET, Repaired(1, "solids without an end | 1")),
     ]
