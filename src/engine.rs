@@ -15,7 +15,9 @@ use crate::gpu::{
     vertices_of,
 };
 use crate::load::selection::Selection;
-use crate::load::{Budget, HeightSource, LoadError, LoadedMesh, Source, crease_band_warnings, untextured_warning};
+use crate::load::{
+    Budget, HeightSource, Import, LoadError, LoadedMesh, Source, crease_band_warnings, untextured_warning,
+};
 use crate::measure::{AskedFactors, EmittedChunk, Visitor};
 use crate::mesh::{BuildError, CreaseBand, Mesh, Moment, Topology, with_crease_band};
 use crate::progress::{Progress, Stage};
@@ -74,6 +76,8 @@ pub struct Preparation {
     pub variant: Option<String>,
     /// The scene of the file, by name or by number from 0; none for its default scene.
     pub scene: Option<String>,
+    /// How the geometry of the file is taken.
+    pub import: Import,
     pub limits: Limits,
 }
 
@@ -85,7 +89,11 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
     let start = Instant::now();
     // Large images take longer than most meshes.
     let of_mesh = if preparation.heights.is_some() { progress.part(0.0, 0.4) } else { progress.clone() };
-    let selected = Selection { variant: preparation.variant.as_deref(), scene: preparation.scene.as_deref() };
+    let selected = Selection {
+        variant: preparation.variant.as_deref(),
+        scene: preparation.scene.as_deref(),
+        import: preparation.import,
+    };
     let LoadedMesh { mesh: mut read, mut warnings, variants, scenes, scene, files, file_bytes } =
         source.load_selected(selected, &preparation.limits, &of_mesh)?;
     let loaded = Instant::now();

@@ -21,7 +21,7 @@ use crate::settings::options::TOLERANCE_RANGE;
 use crate::settings::{ARENA_BYTES, Settings};
 use crate::tessellate::{Displacement, Lod, Partitioning, Surface, Tessellation, tolerance_within_budget};
 
-pub(crate) use declared::{PictureOptions, TessellationOptions, choice, number_of};
+pub(crate) use declared::{ImportOptions, PictureOptions, TessellationOptions, choice, number_of};
 pub(crate) use lod_camera::LodCameraOption;
 pub(crate) use values::{CameraOption, Position, Size, model, picture, source, threshold};
 
@@ -149,7 +149,12 @@ impl SurfaceOptions {
 
     /// Settings with these options and no overlays.
     pub(crate) fn settings(&self) -> Settings {
-        self.tessellation().into()
+        Settings { import: self.weld.import.0, ..self.tessellation().into() }
+    }
+
+    /// The settings of a picture with these options.
+    pub(crate) fn settings_of(&self, picture: &Settings) -> Settings {
+        Settings { import: self.weld.import.0, ..picture.with(self.tessellation()) }
     }
 
     /// Returns settings whose tolerance is raised until there are no more triangles than `--max-triangles` allows. Standard
@@ -239,6 +244,8 @@ pub(crate) struct WeldOption {
     #[arg(long, value_name = "NAME|N", allow_hyphen_values = true)]
     pub scene: Option<String>,
     #[command(flatten)]
+    pub import: ImportOptions,
+    #[command(flatten)]
     pub limit: LimitOption,
 }
 
@@ -250,6 +257,7 @@ impl WeldOption {
             heights: None,
             variant: self.variant.clone(),
             scene: self.scene.clone(),
+            import: self.import.0,
             limits: self.limit.limits(),
         }
     }

@@ -133,8 +133,8 @@ pub(super) fn read(
         instances: &extensions.instances,
         accessors: &accessors,
         materials,
-        builder: MeshBuilder::new(),
-        primitives: PrimitiveReader::default(),
+        builder: MeshBuilder::with_crease_angle(selected.import.crease_angle),
+        primitives: PrimitiveReader::importing(selected.import),
         binder,
         details: is_detailed.then(DetailTable::default),
     };
@@ -170,7 +170,7 @@ pub(super) fn read(
     mesh.lights = lights.shown(&placed, &mut notes);
     mesh.cameras = cameras.shown(&placed, &mut notes);
     warnings = notes.into_warnings();
-    warnings.extend(repair_warnings(&mesh.repairs));
+    warnings.extend(repair_warnings(&mesh.repairs, &selected.import));
     let scenes::Scenes { names, shown } = scenes;
     let (files, file_bytes) = (files.named(), budget.files());
     Ok(LoadedMesh { mesh, warnings, variants, scenes: names, scene: shown, files, file_bytes })

@@ -78,6 +78,9 @@ pub enum LoadError {
     /// The file doesn't have the material variant.
     #[error("{} has no material variant {}; {}", shown_path(path), shown(variant), said_of(known))]
     NoVariant { path: PathBuf, variant: String, known: Vec<String> },
+    /// The shape is made in code, where Y is up.
+    #[error("{shape} is made in code with Y up, in metres: leave --up and --unit away")]
+    Shape { shape: String },
     /// The file doesn't have the scene.
     #[error("{} has no scene {}; {}", shown_path(path), shown(scene), said_of_scenes(known))]
     NoScene { path: PathBuf, scene: String, known: Vec<String> },
@@ -249,15 +252,18 @@ pub fn read(
 ) -> Result<LoadedMesh, LoadError> {
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let folder = path.parent().unwrap_or(Path::new(""));
-    match format {
+    let import = selected.import;
+    let mut loaded = match format {
         Format::Gltf => {
             gltf::read(bytes, folder, &name, selected, limits, progress).map_err(|problem| of_problem(problem, path))
         }
-        Format::Fbx => fbx::read(bytes, folder, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
-        Format::Obj => obj::read(bytes, folder, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
-        Format::Stl => stl::read(bytes, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
-        Format::Ply => ply::read(bytes, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
-    }
+        Format::Fbx => fbx::read(bytes, folder, &name, import, limits, progress).map_err(|fault| of_fault(fault, path)),
+        Format::Obj => obj::read(bytes, folder, &name, import, limits, progress).map_err(|fault| of_fault(fault, path)),
+        Format::Stl => stl::read(bytes, &name, import, limits, progress).map_err(|fault| of_fault(fault, path)),
+        Format::Ply => ply::read(bytes, &name, import, limits, progress).map_err(|fault| of_fault(fault, path)),
+    }?;
+    import.place(&mut loaded.mesh);
+    Ok(loaded)
 }
 
 fn of_problem(problem: GltfError, path: &Path) -> LoadError {

@@ -13,6 +13,7 @@ pub(crate) mod heights;
 #[cfg(test)]
 mod hostile_files;
 mod images;
+pub(crate) mod import;
 mod jpeg_memory;
 mod ktx2;
 mod loaded_mesh;
@@ -21,6 +22,7 @@ pub(crate) mod memory_budget;
 pub(crate) mod mesh_file;
 mod notes;
 mod obj;
+mod packing;
 #[cfg(feature = "cli")]
 pub(crate) mod panorama;
 mod ply;
@@ -46,6 +48,7 @@ pub use mesh_file::{LoadError, load};
 pub use read_error::{FilePosition, ReadError};
 
 pub(crate) use heights::HeightSource;
+pub(crate) use import::{Import, LengthUnit, NormalSource};
 pub(crate) use memory_budget::Budget;
 #[cfg(test)]
 pub(crate) use mesh_file::Format;

@@ -1,7 +1,7 @@
 //! Reads Wavefront OBJ: polygons with texture coordinates and normals, and the colours of their materials.
 //!
-//! All groups and objects become one mesh. Weights are ignored. The file is read twice, first vertices and then faces, so that
-//! faces may come before their vertices; and a third time in between if smoothing groups make normals.
+//! All groups and objects become one mesh. Weights are ignored. The file is read twice, first vertices and materials and then faces, so
+//! that faces may come before their vertices; and a third time in between if smoothing groups make normals.
 //!
 //! The crate `tobj` isn't used. It panics on an index near 2^63, gives a corner without a normal the normal of another
 //! corner, doesn't know continued lines, and names no line in its errors.
@@ -11,6 +11,7 @@
 mod materials;
 mod mtl;
 mod smoothing;
+mod textures;
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -18,6 +19,7 @@ use std::path::Path;
 use glam::{Vec2, Vec3, Vec4};
 
 use super::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, counted, linear_color};
+use super::import::Import;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::read_error::ReadError;
@@ -70,6 +72,7 @@ pub(super) fn read(
     bytes: Vec<u8>,
     folder: &Path,
     name: &str,
+    import: Import,
     limits: &Limits,
     progress: &Progress,
 ) -> Result<LoadedMesh, ReadError> {
@@ -77,22 +80,29 @@ pub(super) fn read(
     let bytes = of_utf16(&bytes, |bytes| budget.hold(bytes)).map_err(too_large)?.unwrap_or(bytes);
     let files = Files::new(folder, limits, &budget, progress);
     let mut vertices = Vertices::default();
-    each(&bytes, &progress.part(0.0, 0.2), |line| vertices.take(line, &budget))?;
+    let mut materials = Materials::new(&files, &budget);
+    each(&bytes, &progress.part(0.0, 0.2), |line| {
+        if let (b"mtllib", names) = first_word(line.text) {
+            materials.add_library(names);
+        }
+        vertices.take(line, &budget)
+    })?;
     let mut smoothing = Smoothing::new(&vertices, &budget);
-    if vertices.is_smoothed {
+    let is_smoothed = vertices.is_smoothed && !import.makes_normals();
+    if is_smoothed {
         each(&bytes, &progress.part(0.2, 0.3), |line| smoothing.take(line))?;
     }
     let mut reader = Reader {
         vertices: &vertices,
         above: [0; 3],
-        faces: FaceBuilder::new(bytes.len(), &budget),
-        materials: Materials::new(&files, &budget),
-        smoothing: vertices.is_smoothed.then_some(smoothing),
+        faces: FaceBuilder::new(bytes.len(), &budget).importing(import),
+        materials,
+        smoothing: is_smoothed.then_some(smoothing),
         corners: Vec::new(),
         indices: Vec::new(),
         found: StatementCounts::default(),
     };
-    if !vertices.colors.is_empty() {
+    if !vertices.colors.is_empty() || reader.materials.have_normal_maps() {
         reader.faces.color();
     }
     each(&bytes, &progress.part(0.3, 0.5), |line| reader.take(line))?;
@@ -100,7 +110,7 @@ pub(super) fn read(
     let freed = bytes.len() as u64 + vertices.bytes();
     reader.materials.read_textures(&mut reader.faces, freed, progress)?;
     let mut warnings = reader.materials.warnings();
-    warnings.extend(reader.found.warnings());
+    warnings.extend(reader.found.warnings(&import));
     let holds = reader.found.holds(&vertices);
     let faces = reader.faces;
     budget.release(freed);
@@ -242,12 +252,10 @@ struct StatementCounts {
 }
 
 impl StatementCounts {
-    fn warnings(&self) -> impl Iterator<Item = String> {
-        counted([
-            (
-                self.without_normals,
-                "faces without normals, or with some missing, which got ones that are smooth within 60 degrees",
-            ),
+    fn warnings(&self, import: &Import) -> impl Iterator<Item = String> {
+        let made =
+            format!("faces without normals, or with some missing, which got ones that are {}", import.smoothness());
+        let others = counted([
             (self.smoothed, "faces without normals, or with some missing, which got those of their smoothing groups"),
             (self.absent_normals, "corners with the number of a normal that isn't in the file, left out"),
             (
@@ -258,7 +266,8 @@ impl StatementCounts {
             (self.lines, "lines (l), left out"),
             (self.surfaces, "free-form curves and surfaces (curv, curv2, surf), which aren't read"),
             (self.unknown, "statements that OBJ doesn't have, left out"),
-        ])
+        ]);
+        counted([(self.without_normals, made)]).chain(others)
     }
 
     fn holds(&self, vertices: &Vertices) -> String {
@@ -301,7 +310,8 @@ impl Reader<'_, '_> {
             b"f" | b"fo" => self.face(line, rest)?,
             b"s" => self.smoothing.iter_mut().for_each(|smoothing| smoothing.enter(rest)),
             b"usemtl" => self.materials.enter(rest),
-            b"mtllib" => self.materials.add_library(rest),
+            // Material files were read with the vertices.
+            b"mtllib" => {}
             b"p" => self.found.points += words(rest).count(),
             b"l" => self.found.lines += 1,
             b"curv" | b"curv2" | b"surf" => self.found.surfaces += 1,

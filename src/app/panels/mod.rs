@@ -10,6 +10,7 @@ mod deviation;
 pub(super) mod displacement;
 mod factors_list;
 mod fold_list;
+mod import;
 mod leak_list;
 mod light_rows;
 mod matcap;

@@ -4,7 +4,15 @@ use super::*;
 use crate::load::face_builder::tests::{POINTS, SIDES, assert_cube};
 
 fn read(text: &str) -> LoadedMesh {
-    super::read(text.as_bytes().to_vec(), Path::new("nowhere"), "cube", &Limits::default(), &Progress::new()).unwrap()
+    super::read(
+        text.as_bytes().to_vec(),
+        Path::new("nowhere"),
+        "cube",
+        Import::default(),
+        &Limits::default(),
+        &Progress::new(),
+    )
+    .unwrap()
 }
 
 /// A cube of quads without normals.
@@ -110,7 +118,7 @@ fn cancelling_stops_the_work() {
     let progress = Progress::new();
     progress.cancel();
     assert!(matches!(
-        super::read(b"v 0 0 0\n".to_vec(), Path::new(""), "", &Limits::default(), &progress),
+        super::read(b"v 0 0 0\n".to_vec(), Path::new(""), "", Import::default(), &Limits::default(), &progress),
         Err(ReadError::Cancelled(_))
     ));
 }
