@@ -515,7 +515,7 @@ pub(crate) static BACKGROUND: Declaration = Declaration {
 pub(crate) static MESH_NORMALS: Declaration = Declaration {
     name: "mesh-normals",
     label: "Normals",
-    placeholder: "WHOSE",
+    placeholder: "NAME",
     text: "The normals that the corners of the mesh have. The shape of curved patches is made of them.",
     kind: Kind::Choice(descriptions::<NormalSource>),
     unset: None,

@@ -69,9 +69,9 @@ impl<'a> Vertices<'a> {
         })
     }
 
-    /// Returns whether its corners get normals that are computed from angles.
+    /// Returns whether its corners get normals that are computed from angles although nobody asked for them.
     pub(super) fn is_without_normals(&self) -> bool {
-        !self.mesh.vertex_normal.exists && self.made.is_none()
+        !self.mesh.vertex_normal.exists && self.made.is_none() && !self.makes_normals
     }
 
     /// Returns the vertex of a corner.

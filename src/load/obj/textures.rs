@@ -80,9 +80,9 @@ impl Giving {
     pub(super) fn finish(self, faces: &mut FaceBuilder, budget: &Budget) -> Vec<String> {
         let mut problems = Vec::new();
         // Materials that join the same images share the result.
-        let mut known: HashMap<[Option<*const Texture>; 2], Arc<Texture>> = HashMap::new();
-        let mut joined = |images: [&Option<Arc<Texture>>; 2], join: &dyn Fn() -> Result<Texture, String>| {
-            let key = images.map(|image| image.as_ref().map(Arc::as_ptr));
+        let mut known: HashMap<(&str, [Option<*const Texture>; 2]), Arc<Texture>> = HashMap::new();
+        let mut joined = |what, images: [&Option<Arc<Texture>>; 2], join: &dyn Fn() -> Result<Texture, String>| {
+            let key = (what, images.map(|image| image.as_ref().map(Arc::as_ptr)));
             if let Some(texture) = known.get(&key) {
                 return Ok(texture.clone());
             }
@@ -97,11 +97,12 @@ impl Giving {
             if let Some(image) = opacity {
                 let color = material.texture.clone();
                 let join = || with_opacity(color.as_deref(), image, budget);
-                looks.0 = joined([&color, opacity], &join).map_err(|reason| warn("the opacity", reason)).ok();
+                looks.0 =
+                    joined("opacity", [&color, opacity], &join).map_err(|reason| warn("the opacity", reason)).ok();
             }
             if roughness.is_some() || metalness.is_some() {
                 let join = || metallic_roughness(roughness.as_deref(), false, metalness.as_deref(), budget);
-                let texture = joined([roughness, metalness], &join);
+                let texture = joined("roughness and metalness", [roughness, metalness], &join);
                 looks.1 = texture.map_err(|reason| warn("the texture of roughness and metalness", reason)).ok();
             }
             if let Some(texture) = looks.0 {
