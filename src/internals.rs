@@ -16,6 +16,7 @@ pub use crate::load::heights::{HeightError, HeightSource};
 pub use crate::load::import::{Import, LengthUnit, NormalSource};
 pub use crate::load::memory_budget::Budget;
 pub use crate::load::mesh_file::{Format, read};
+pub use crate::load::parts::Part;
 pub use crate::load::selection::Selection;
 pub use crate::load::source::Source;
 pub use crate::measure::optimum::{Compared, Optimum, compare_with_optimum};

@@ -7,6 +7,7 @@ use egui::{Color32, Rect, Sense, Shape, Stroke, pos2, vec2};
 pub(in crate::app) enum Section {
     Surface,
     Import,
+    Parts,
     LevelOfDetail,
     Displacement,
     Animation,
@@ -25,8 +26,8 @@ pub(in crate::app) enum Section {
 }
 
 impl Section {
-    pub(in crate::app) const ALL: [Self; 17] = crate::names::every![Section:
-        Surface, Import, LevelOfDetail, Displacement, Animation, Overlays, View, Advanced, Patch, Factors, Deviation, Cracks, Patches, Waste,
+    pub(in crate::app) const ALL: [Self; 18] = crate::names::every![Section:
+        Surface, Import, Parts, LevelOfDetail, Displacement, Animation, Overlays, View, Advanced, Patch, Factors, Deviation, Cracks, Patches, Waste,
         Edges, Mesh, Passes,
     ];
 
@@ -35,6 +36,7 @@ impl Section {
         match self {
             Self::Surface => "Surface",
             Self::Import => "Import",
+            Self::Parts => "Parts",
             Self::LevelOfDetail => "Level of detail",
             Self::Displacement => "Displacement",
             Self::Animation => "Animation",

@@ -85,12 +85,13 @@ impl CopiedCommand<'_> {
     /// Writes the options for loading and preparing the mesh.
     fn mesh(&self, line: &mut Line) {
         // How the geometry is taken is among the settings.
-        let Preparation { weld, crease_band, heights, variant, scene, import: _, limits } = self.preparation;
+        let Preparation { weld, crease_band, heights, variant, scene, hidden, import: _, limits } = self.preparation;
         let Limits { file, memory } = Limits::default();
         line.changed("--weld", weld, &0.0);
         line.changed("--crease-band", crease_band, &0.0);
         variant.iter().for_each(|name| line.option("--variant", name));
         scene.iter().for_each(|name| line.option("--scene", name));
+        hidden.iter().for_each(|name| line.option("--hide-part", name));
         line.changed("--max-size", &limits.file, &file);
         line.changed("--max-memory", &limits.memory, &memory);
         let Some(heights) = heights else { return };
@@ -311,6 +312,7 @@ mod tests {
             heights,
             variant: Some("-matte".to_owned()),
             scene: Some("Night sky".to_owned()),
+            hidden: vec!["-left door".to_owned(), "b, c".to_owned()],
             import: Import::default(),
             limits,
         };

@@ -243,6 +243,10 @@ pub(crate) struct WeldOption {
     /// Show this scene of a glTF file instead of its default scene, by name, or by number from 0; `info` lists the scenes
     #[arg(long, value_name = "NAME|N", allow_hyphen_values = true)]
     pub scene: Option<String>,
+    /// Leave out this part of an OBJ file or of a text file of STL, by the name of its object, group or solid; may be given several
+    /// times. `info` lists the parts
+    #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
+    pub hide_part: Vec<String>,
     #[command(flatten)]
     pub import: ImportOptions,
     #[command(flatten)]
@@ -257,6 +261,7 @@ impl WeldOption {
             heights: None,
             variant: self.variant.clone(),
             scene: self.scene.clone(),
+            hidden: self.hide_part.clone(),
             import: self.import.0,
             limits: self.limit.limits(),
         }

@@ -9,6 +9,7 @@ use super::import::Import;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::{Budget, edge_bytes};
 use super::notes::Notes;
+use super::parts::Parts;
 use super::read_error::{FilePosition, ReadError};
 use super::tangents;
 use super::warnings::repair_warnings;
@@ -64,6 +65,7 @@ impl FaceCorner for NumberedCorner {
 pub(super) struct FaceBuilder<'a> {
     memory: &'a Budget,
     import: Import,
+    parts: Parts,
     builder: MeshBuilder,
     /// The colours of corners, if the file has any, or if corners may need tangents.
     colors: Option<DetailTable>,
@@ -90,6 +92,7 @@ impl<'a> FaceBuilder<'a> {
         Self {
             memory,
             import: Import::default(),
+            parts: Parts::default(),
             builder: MeshBuilder::new(),
             colors: None,
             materials: 0,
@@ -107,6 +110,24 @@ impl<'a> FaceBuilder<'a> {
     /// Makes normals as these options say. No face was added yet.
     pub(super) fn importing(self, import: Import) -> Self {
         Self { import, builder: MeshBuilder::with_crease_angle(import.crease_angle), ..self }
+    }
+
+    /// Leaves out the faces of parts with these names.
+    pub(super) fn hiding(self, hidden: &[String]) -> Self {
+        Self { parts: Parts::hiding(hidden), ..self }
+    }
+
+    /// Says which part the next faces belong to, by its name.
+    ///
+    /// # Errors
+    /// [`ReadError::TooLarge`].
+    pub(super) fn enter_part(&mut self, name: &[u8]) -> Result<(), ReadError> {
+        self.parts.enter(name, self.memory).map_err(too_large)
+    }
+
+    /// Whether any part was entered.
+    pub(super) fn has_parts(&self) -> bool {
+        self.parts.have_begun()
     }
 
     /// Adds a material and returns its index for [`add`](Self::add).
@@ -195,6 +216,9 @@ impl<'a> FaceBuilder<'a> {
             self.too_small += 1;
             return Ok(());
         }
+        if self.parts.leave_out(corners.len() - 2) {
+            return Ok(());
+        }
         self.triangles += corners.len() - 2;
         if self.triangles as u64 > MAX_TRIANGLES {
             return Err(ReadError::TooMany { limit: MAX_TRIANGLES, what: "triangles" });
@@ -237,13 +261,18 @@ impl<'a> FaceBuilder<'a> {
         progress: &Progress,
     ) -> Result<LoadedMesh, ReadError> {
         let (file_bytes, memory, colors) = (self.memory.files(), self.memory, self.colors.take());
+        let hides_all = self.builder.is_empty() && self.parts.are_hidden();
+        let holds = if hides_all { format!("{holds}, and its parts are hidden") } else { holds };
+        let (parts, beyond) = std::mem::take(&mut self.parts).into_list();
         let (mut mesh, numbers, mut warnings) = self.finish_numbered(name, holds, warnings, progress)?;
         if let Some(colors) = colors {
             let mut notes = Notes::default();
             tangents::with_details(&mut mesh, colors, &numbers, &mut notes, (memory, progress))?;
             warnings.extend(notes.into_warnings());
         }
-        Ok(LoadedMesh { mesh, warnings, file_bytes, ..LoadedMesh::default() })
+        let beyond = (beyond, "objects and groups beyond the first 65,536, which can't be hidden");
+        warnings.extend(counted([beyond]));
+        Ok(LoadedMesh { mesh, warnings, parts, file_bytes, ..LoadedMesh::default() })
     }
 
     /// Builds the mesh as [`finish`](Self::finish) does, and returns each corner's number and the warnings too.

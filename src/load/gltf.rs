@@ -173,7 +173,7 @@ pub(super) fn read(
     warnings.extend(repair_warnings(&mesh.repairs, &selected.import));
     let scenes::Scenes { names, shown } = scenes;
     let (files, file_bytes) = (files.named(), budget.files());
-    Ok(LoadedMesh { mesh, warnings, variants, scenes: names, scene: shown, files, file_bytes })
+    Ok(LoadedMesh { mesh, warnings, variants, scenes: names, scene: shown, files, file_bytes, ..LoadedMesh::default() })
 }
 
 /// The scene that is being read, and the mesh that is being built from it.

@@ -12,6 +12,7 @@ use std::time::{Duration, Instant};
 
 use super::{Format, ReadError, fbx, obj, ply, stl};
 use crate::files::Limits;
+use crate::load::selection::Selection;
 use crate::load::{Import, LoadedMesh};
 use crate::progress::Progress;
 
@@ -67,10 +68,15 @@ fn read(format: Format, bytes: &[u8]) -> Result<LoadedMesh, ReadError> {
             &Limits::default(),
             &progress,
         ),
-        Format::Obj => {
-            obj::read(bytes.to_vec(), Path::new("nowhere"), "broken", Import::default(), &Limits::default(), &progress)
-        }
-        Format::Stl => stl::read(bytes.to_vec(), "broken", Import::default(), &Limits::default(), &progress),
+        Format::Obj => obj::read(
+            bytes.to_vec(),
+            Path::new("nowhere"),
+            "broken",
+            Selection::default(),
+            &Limits::default(),
+            &progress,
+        ),
+        Format::Stl => stl::read(bytes.to_vec(), "broken", Selection::default(), &Limits::default(), &progress),
         Format::Ply => ply::read(bytes.to_vec(), "broken", Import::default(), &Limits::default(), &progress),
         Format::Gltf => panic!("glTF has hostile files of its own, in gltf/tests"),
     };

@@ -25,6 +25,7 @@ mod obj;
 mod packing;
 #[cfg(feature = "cli")]
 pub(crate) mod panorama;
+pub(crate) mod parts;
 mod ply;
 mod read_error;
 mod rig_builder;

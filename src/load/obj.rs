@@ -1,6 +1,6 @@
 //! Reads Wavefront OBJ: polygons with texture coordinates and normals, and the colours of their materials.
 //!
-//! All groups and objects become one mesh. Weights are ignored. The file is read twice, first vertices and materials and then faces, so
+//! All groups and objects become one mesh, of which some may be left out. Weights are ignored. The file is read twice, first vertices and materials and then faces, so
 //! that faces may come before their vertices; and a third time in between if smoothing groups make normals.
 //!
 //! The crate `tobj` isn't used. It panics on an index near 2^63, gives a corner without a normal the normal of another
@@ -23,6 +23,7 @@ use super::import::Import;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::read_error::ReadError;
+use super::selection::Selection;
 use super::text_lines::{Line, Lines, first_word, numbers_or_nan, of_utf16, shown, words};
 use super::uri::Files;
 use crate::files::Limits;
@@ -36,9 +37,7 @@ use materials::Materials;
 use smoothing::Smoothing;
 
 /// Statements that are ignored without a warning, since they change neither shape nor colour here.
-const SILENT: [&[u8]; 23] = [
-    b"g",
-    b"o",
+const SILENT: [&[u8]; 21] = [
     b"vp",
     b"mg",
     b"lod",
@@ -62,6 +61,9 @@ const SILENT: [&[u8]; 23] = [
     b"trace_obj",
 ];
 
+/// The part of faces that belong to no object and no group; the specification calls it so.
+const DEFAULT_PART: &[u8] = b"default";
+
 /// Builds a mesh from a file's bytes.
 ///
 /// `folder` is the file's folder; `name` becomes the mesh's name.
@@ -72,10 +74,11 @@ pub(super) fn read(
     bytes: Vec<u8>,
     folder: &Path,
     name: &str,
-    import: Import,
+    selected: Selection,
     limits: &Limits,
     progress: &Progress,
 ) -> Result<LoadedMesh, ReadError> {
+    let Selection { import, hidden, .. } = selected;
     let budget = Budget::new(bytes.len(), limits);
     let bytes = of_utf16(&bytes, |bytes| budget.hold(bytes)).map_err(too_large)?.unwrap_or(bytes);
     let files = Files::new(folder, limits, &budget, progress);
@@ -95,8 +98,9 @@ pub(super) fn read(
     let mut reader = Reader {
         vertices: &vertices,
         above: [0; 3],
-        faces: FaceBuilder::new(bytes.len(), &budget).importing(import),
+        faces: FaceBuilder::new(bytes.len(), &budget).importing(import).hiding(hidden),
         materials,
+        part: Default::default(),
         smoothing: is_smoothed.then_some(smoothing),
         corners: Vec::new(),
         indices: Vec::new(),
@@ -291,6 +295,8 @@ struct Reader<'v, 'a> {
     above: [usize; 3],
     faces: FaceBuilder<'a>,
     materials: Materials<'a>,
+    /// The names of the object and of the group that the next faces belong to.
+    part: [Vec<u8>; 2],
     /// The normals that smoothing groups make, if there are groups.
     smoothing: Option<Smoothing<'v>>,
     /// The corners of the face that is being read, and the numbers of their positions.
@@ -309,6 +315,7 @@ impl Reader<'_, '_> {
             b"vn" => self.above[2] += 1,
             b"f" | b"fo" => self.face(line, rest)?,
             b"s" => self.smoothing.iter_mut().for_each(|smoothing| smoothing.enter(rest)),
+            b"o" | b"g" => self.enter_part(word, rest)?,
             b"usemtl" => self.materials.enter(rest),
             // Material files were read with the vertices.
             b"mtllib" => {}
@@ -320,8 +327,23 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
+    /// Begins an object (`o`) or a group (`g`). A part is a group of an object.
+    fn enter_part(&mut self, word: &[u8], name: &[u8]) -> Result<(), ReadError> {
+        self.part[usize::from(word == b"g")] = name.to_vec();
+        let [object, group] = &self.part;
+        match (object.is_empty(), group.is_empty()) {
+            (true, true) => self.faces.enter_part(DEFAULT_PART),
+            (true, false) => self.faces.enter_part(group),
+            (false, _) if group.is_empty() || group == object => self.faces.enter_part(object),
+            (false, _) => self.faces.enter_part(&[object, &b"/"[..], group].concat()),
+        }
+    }
+
     fn face(&mut self, line: &Line, rest: &[u8]) -> Result<(), ReadError> {
         self.found.faces += 1;
+        if !self.faces.has_parts() {
+            self.faces.enter_part(DEFAULT_PART)?;
+        }
         let mut corners = std::mem::take(&mut self.corners);
         corners.clear();
         self.indices.clear();

@@ -9,6 +9,8 @@ pub struct Selection<'a> {
     pub variant: Option<&'a str>,
     /// The scene, by name or by number from 0; none for the file's default scene.
     pub scene: Option<&'a str>,
+    /// The names of parts that are left out.
+    pub hidden: &'a [String],
     /// How the geometry is taken.
     pub import: Import,
 }

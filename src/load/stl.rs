@@ -13,10 +13,10 @@ mod colors;
 use glam::{Vec2, Vec3, Vec4};
 
 use super::face_builder::{FaceBuilder, NumberedCorner, counted};
-use super::import::Import;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::read_error::{FilePosition, ReadError};
+use super::selection::Selection;
 use super::text_lines::{Line, Lines, first_word, numbers_or_nan, shown};
 use crate::files::Limits;
 use crate::mesh::mesh_builder::InputCorner;
@@ -38,12 +38,12 @@ const TRIANGLE: usize = 50;
 pub(super) fn read(
     bytes: Vec<u8>,
     name: &str,
-    import: Import,
+    selected: Selection,
     limits: &Limits,
     progress: &Progress,
 ) -> Result<LoadedMesh, ReadError> {
     let budget = Budget::new(bytes.len(), limits);
-    let mut faces = FaceBuilder::new(bytes.len(), &budget).importing(import);
+    let mut faces = FaceBuilder::new(bytes.len(), &budget).importing(selected.import).hiding(selected.hidden);
     let material = faces.material(Material::plain("default", [1.0; 4]))?;
     let mut reader =
         Reader { faces, material, corners: Vec::new(), progress, bytes: bytes.len(), other_lines: 0, cut_short: None };
@@ -142,10 +142,16 @@ impl Reader<'_> {
             if line.number % 4096 == 0 {
                 self.at(bytes.len() - lines.rest().len())?;
             }
-            let (word, _) = first_word(line.text);
+            let (word, rest) = first_word(line.text);
             match word.to_ascii_lowercase().as_slice() {
                 b"" => {}
-                b"solid" => (solids, open) = (solids + 1, true),
+                b"solid" => {
+                    (solids, open) = (solids + 1, true);
+                    match rest {
+                        b"" => self.faces.enter_part(format!("solid {solids}").as_bytes())?,
+                        name => self.faces.enter_part(name)?,
+                    }
+                }
                 b"endsolid" => open = false,
                 b"facet" => self.facet(&line, &mut lines)?,
                 b"outer" | b"vertex" | b"endloop" | b"endfacet" => {

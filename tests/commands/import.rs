@@ -25,6 +25,22 @@ fn normals_are_made_with_the_crease_angle() {
 }
 
 #[test]
+fn parts_are_listed_and_left_out() {
+    let folder = Folder::new();
+    let parts = folder.path("parts.obj");
+    let text = "v 0 0 0\nv 2 0 0\nv 2 3 0\no left door\nf 1 2 3\no -right\nf 3 2 1\nf 2 3 1\n";
+    std::fs::write(&parts, text).expect("a writable folder");
+    let json = info(&[&parts]);
+    assert_eq!(json["parts"][1], serde_json::json!({ "name": "-right", "triangles": 2, "hidden": false }));
+    assert!(output(&["info", &parts]).contains("part          left door: 1 triangles\n"));
+    let json = info(&[&parts, "--hide-part", "-right"]);
+    assert_eq!((number(&json, "/triangles"), &json["parts"][1]["hidden"]), (1.0, &Value::Bool(true)));
+    sentence(&["info", &parts, "--hide-part", "bonnet"], &["bonnet", "left door", "-right"]);
+    sentence(&["info", &parts, "--hide-part", "left door", "--hide-part=-right"], &["parts are hidden"]);
+    sentence(&["info", vase(), "--hide-part", "left door"], &["no named parts"]);
+}
+
+#[test]
 fn axis_and_unit_are_chosen_and_a_shape_has_its_own() {
     let folder = Folder::new();
     let ground = folder.path("ground.obj");

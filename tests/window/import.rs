@@ -96,6 +96,30 @@ fn an_axis_and_a_unit_turn_and_scale_the_mesh_and_belong_to_its_file() {
 }
 
 #[test]
+fn parts_are_hidden_and_shown_again_while_the_camera_stays() {
+    let folder = TempDir::new().expect("a folder");
+    let path = folder.path().join("parts.obj");
+    let text = BENT.replace("f 1 4", "o floor\nf 1 4").replace("f 1 2", "o wall\nf 1 2");
+    std::fs::write(&path, text).expect("a writable temporary folder");
+    let mut harness = uniform(Some(Source::File(path)));
+    let camera = *harness.state().camera();
+    let triangles = |harness: &Harness<App>| harness.state().loaded().expect("a mesh").mesh.triangles.len();
+    assert_eq!(triangles(&harness), 4);
+    super::switch(&mut harness, "wall");
+    assert_eq!((triangles(&harness), *harness.state().camera()), (2, camera));
+    let line = copied(&mut harness);
+    assert!(line.contains("--hide-part wall"), "{line}");
+    press(&mut harness, Key::Escape);
+    super::switch(&mut harness, "floor");
+    harness.get_by_label_contains("its parts are hidden");
+    assert_eq!(triangles(&harness), 2, "what is shown stays");
+    harness.get_by_role_and_label(Role::Button, "Show all parts").scroll_to_me();
+    settle(&mut harness);
+    super::click(&mut harness, "Show all parts");
+    assert_eq!(triangles(&harness), 4);
+}
+
+#[test]
 fn a_file_that_is_gone_leaves_the_mesh_and_its_settings_as_they_are() {
     let folder = TempDir::new().expect("a folder");
     let source = bent(&folder);

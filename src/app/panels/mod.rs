@@ -15,6 +15,7 @@ mod leak_list;
 mod light_rows;
 mod matcap;
 mod option_rows;
+mod parts;
 mod patch_explanation;
 mod patch_panel;
 mod patch_pattern;

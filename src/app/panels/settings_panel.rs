@@ -22,6 +22,7 @@ impl App {
             ui.spacing_mut().slider_width = controls - gap - ui.spacing().interact_size.x;
             self.section(ui, Section::Surface, Self::surface_rows);
             self.section(ui, Section::Import, Self::import_rows);
+            self.parts_section(ui);
             self.section(ui, Section::LevelOfDetail, Self::lod_rows);
             self.section(ui, Section::Displacement, Self::height_rows);
             self.animation_section(ui);

@@ -4,7 +4,7 @@ use super::*;
 use crate::load::face_builder::tests::{POINTS, assert_cube, triangles};
 
 fn read(bytes: &[u8]) -> LoadedMesh {
-    super::read(bytes.to_vec(), "cube", Import::default(), &Limits::default(), &Progress::new()).unwrap()
+    super::read(bytes.to_vec(), "cube", Selection::default(), &Limits::default(), &Progress::new()).unwrap()
 }
 
 /// A cube with wrong normals.
@@ -68,6 +68,22 @@ fn triangles_of_a_binary_file_have_the_colours_that_programs_give_them() {
 }
 
 #[test]
+fn solids_of_text_files_are_parts() {
+    let hidden = ["one".to_owned()];
+    let selected = Selection { hidden: &hidden, ..Selection::default() };
+    let text = text() + FACET_WITHOUT_NAME;
+    let mesh =
+        super::read(text.into_bytes(), "cube", selected, &Limits::default(), &Progress::new()).expect("triangles");
+    let parts: Vec<_> = mesh.parts.iter().map(|part| (part.name.as_str(), part.triangles, part.is_hidden)).collect();
+    assert_eq!(parts, [("one", 5, true), ("two", 7, false), ("solid 3", 1, false)]);
+    assert_eq!(mesh.triangles.len(), 8);
+    assert!(read(&binary(b"solid one")).parts.is_empty());
+}
+
+const FACET_WITHOUT_NAME: &str =
+    "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n";
+
+#[test]
 fn text_is_forgiven_its_case_its_spaces_and_its_ends_of_lines() {
     let text = text();
     let bom = format!("\u{feff}{text}");
@@ -105,7 +121,7 @@ fn cancelling_stops_the_work() {
     progress.cancel();
     for bytes in [text().into_bytes(), binary(b"")] {
         assert!(matches!(
-            super::read(bytes.to_vec(), "", Import::default(), &Limits::default(), &progress),
+            super::read(bytes.to_vec(), "", Selection::default(), &Limits::default(), &progress),
             Err(ReadError::Cancelled(_))
         ));
     }
