@@ -14,8 +14,11 @@ use crate::gpu::{
     AdapterChoice, ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, read_buffers, take_times,
     vertices_of,
 };
+use crate::load::parts::Part;
 use crate::load::selection::Selection;
-use crate::load::{Budget, HeightSource, LoadError, LoadedMesh, Source, crease_band_warnings, untextured_warning};
+use crate::load::{
+    Budget, HeightSource, Import, LoadError, LoadedMesh, Source, crease_band_warnings, untextured_warning,
+};
 use crate::measure::{AskedFactors, EmittedChunk, Visitor};
 use crate::mesh::{BuildError, CreaseBand, Mesh, Moment, Topology, with_crease_band};
 use crate::progress::{Progress, Stage};
@@ -44,6 +47,8 @@ pub struct Loaded {
     pub scenes: Vec<String>,
     /// Which of them this is.
     pub scene: Option<usize>,
+    /// The parts of the file, also those that are left out.
+    pub parts: Arc<Vec<Part>>,
     /// Files that the mesh's own file names and that were read, with links resolved.
     pub files: Vec<PathBuf>,
     pub topology: Arc<Topology>,
@@ -74,6 +79,10 @@ pub struct Preparation {
     pub variant: Option<String>,
     /// The scene of the file, by name or by number from 0; none for its default scene.
     pub scene: Option<String>,
+    /// The names of parts of the file that are left out.
+    pub hidden: Vec<String>,
+    /// How the geometry of the file is taken.
+    pub import: Import,
     pub limits: Limits,
 }
 
@@ -85,8 +94,13 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
     let start = Instant::now();
     // Large images take longer than most meshes.
     let of_mesh = if preparation.heights.is_some() { progress.part(0.0, 0.4) } else { progress.clone() };
-    let selected = Selection { variant: preparation.variant.as_deref(), scene: preparation.scene.as_deref() };
-    let LoadedMesh { mesh: mut read, mut warnings, variants, scenes, scene, files, file_bytes } =
+    let selected = Selection {
+        variant: preparation.variant.as_deref(),
+        scene: preparation.scene.as_deref(),
+        hidden: &preparation.hidden,
+        import: preparation.import,
+    };
+    let LoadedMesh { mesh: mut read, mut warnings, variants, scenes, scene, parts, files, file_bytes } =
         source.load_selected(selected, &preparation.limits, &of_mesh)?;
     let loaded = Instant::now();
     let budget = Budget::of_mesh(&read, file_bytes, &preparation.limits);
@@ -125,6 +139,7 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
         variants,
         scenes,
         scene,
+        parts: Arc::new(parts),
         files,
         topology: Arc::new(topology),
         load_ms: (loaded - start).as_secs_f64() * 1e3,

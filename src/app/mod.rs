@@ -253,6 +253,7 @@ impl eframe::App for App {
         self.hold_typing(context);
         self.shortcuts(context);
         self.play_on(context);
+        self.follow_import(context);
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {

@@ -6,6 +6,8 @@ use egui::{Color32, Rect, Sense, Shape, Stroke, pos2, vec2};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::app) enum Section {
     Surface,
+    Import,
+    Parts,
     LevelOfDetail,
     Displacement,
     Animation,
@@ -24,8 +26,8 @@ pub(in crate::app) enum Section {
 }
 
 impl Section {
-    pub(in crate::app) const ALL: [Self; 16] = crate::names::every![Section:
-        Surface, LevelOfDetail, Displacement, Animation, Overlays, View, Advanced, Patch, Factors, Deviation, Cracks, Patches, Waste,
+    pub(in crate::app) const ALL: [Self; 18] = crate::names::every![Section:
+        Surface, Import, Parts, LevelOfDetail, Displacement, Animation, Overlays, View, Advanced, Patch, Factors, Deviation, Cracks, Patches, Waste,
         Edges, Mesh, Passes,
     ];
 
@@ -33,6 +35,8 @@ impl Section {
     pub(in crate::app) fn title(self) -> &'static str {
         match self {
             Self::Surface => "Surface",
+            Self::Import => "Import",
+            Self::Parts => "Parts",
             Self::LevelOfDetail => "Level of detail",
             Self::Displacement => "Displacement",
             Self::Animation => "Animation",
@@ -55,7 +59,8 @@ impl Section {
     fn opens(self) -> bool {
         !matches!(
             self,
-            Self::Displacement
+            Self::Import
+                | Self::Displacement
                 | Self::Advanced
                 | Self::Cracks
                 | Self::Patches

@@ -161,7 +161,8 @@ impl Args {
             return Ok(exact.map(|exact| (exact, "the exact surface".to_owned())));
         };
         let none = || CliError::NoTruth { file: source.to_string() };
-        let truth = Truth::load(source, &self.weld.limit.limits(), &Progress::new())?.ok_or_else(none)?;
+        let truth =
+            Truth::load(source, self.weld.import.0, &self.weld.limit.limits(), &Progress::new())?.ok_or_else(none)?;
         Ok(Some((truth, source.title())))
     }
 }

@@ -84,12 +84,14 @@ impl CopiedCommand<'_> {
 
     /// Writes the options for loading and preparing the mesh.
     fn mesh(&self, line: &mut Line) {
-        let Preparation { weld, crease_band, heights, variant, scene, limits } = self.preparation;
+        // How the geometry is taken is among the settings.
+        let Preparation { weld, crease_band, heights, variant, scene, hidden, import: _, limits } = self.preparation;
         let Limits { file, memory } = Limits::default();
         line.changed("--weld", weld, &0.0);
         line.changed("--crease-band", crease_band, &0.0);
         variant.iter().for_each(|name| line.option("--variant", name));
         scene.iter().for_each(|name| line.option("--scene", name));
+        hidden.iter().for_each(|name| line.option("--hide-part", name));
         line.changed("--max-size", &limits.file, &file);
         line.changed("--max-memory", &limits.memory, &memory);
         let Some(heights) = heights else { return };
@@ -237,6 +239,7 @@ mod tests {
     use super::*;
     use crate::cli::options::PictureOptions;
     use crate::cli::{Cli, CliError, Command, render};
+    use crate::load::Import;
     use crate::mesh::Bounds;
     use crate::settings::{Matcap, Overlays, random};
 
@@ -309,6 +312,8 @@ mod tests {
             heights,
             variant: Some("-matte".to_owned()),
             scene: Some("Night sky".to_owned()),
+            hidden: vec!["-left door".to_owned(), "b, c".to_owned()],
+            import: Import::default(),
             limits,
         };
         let settings = Settings::opening().with(Tessellation {
@@ -451,7 +456,7 @@ mod tests {
             let heights = has_heights.then_some(HeightSource::Materials);
             let displacement = if has_heights { Displacement::AsPublished } else { Displacement::Off };
             let settings = settings.with(Tessellation { displacement, ..settings.tessellation });
-            let preparation = Preparation { heights, ..Preparation::default() };
+            let preparation = Preparation { heights, import: settings.import, ..Preparation::default() };
             let (source, camera) = ("shape:torus@2".parse().expect("a shape"), camera());
             let args = parsed(&shown(&source, &preparation, &settings, &camera).line());
             let PictureOptions(picture) = args.shot.picture;
@@ -465,7 +470,7 @@ mod tests {
                 }
                 used
             };
-            prop_assert_eq!(used(picture.with(args.shot.surface.tessellation())), used(settings));
+            prop_assert_eq!(used(args.shot.surface.settings_of(&picture)), used(settings));
         }
     }
 }

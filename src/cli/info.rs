@@ -1,6 +1,6 @@
 //! `pnaen info`: prints what a file holds.
 
-use super::mesh_report::Info;
+use super::mesh_report::{Info, PartInfo};
 use super::options::WeldOption;
 use super::{CliError, to_json, write_text};
 use crate::engine;
@@ -33,6 +33,7 @@ fn info(source: &Source, options: &WeldOption) -> Result<Info, LoadError> {
     let loaded = engine::load(source, &options.preparation(), &progress)?;
     let info = Info::of(&loaded.mesh, &loaded.topology, options.weld, &loaded.warnings, &progress)?;
     let info = Info { variants: loaded.variants, scenes: loaded.scenes, scene: loaded.scene, ..info };
+    let info = Info { parts: loaded.parts.iter().map(PartInfo::of).collect(), ..info };
     if loaded.crease_band.width == 0.0 {
         return Ok(info);
     }

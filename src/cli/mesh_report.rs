@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::camera_report::CameraInfo;
 use super::light_report::LightInfo;
 use super::material_report::MaterialInfo;
+use crate::load::parts::Part;
 use crate::mesh::crease_band::CreaseBand;
 use crate::mesh::rig::{AnimatedCounts, Clip, Rig};
 use crate::mesh::{
@@ -41,6 +42,8 @@ pub(super) struct Info {
     pub scenes: Vec<String>,
     /// Which of them this is; none if the file has no scenes.
     pub scene: Option<usize>,
+    /// The parts that the file has; empty for formats without any.
+    pub parts: Vec<PartInfo>,
     pub animations: Vec<AnimationInfo>,
     pub edges: EdgeCounts,
     /// What each weld tolerance on offer would join and collapse, compared with the exact weld.
@@ -68,6 +71,21 @@ pub(super) struct AnimationInfo {
     /// What it moves, as counts.
     #[serde(flatten)]
     pub moved: AnimatedCounts,
+}
+
+/// A part of the file.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct PartInfo {
+    pub name: String,
+    pub triangles: u32,
+    /// Whether it is left out.
+    pub hidden: bool,
+}
+
+impl PartInfo {
+    pub(super) fn of(part: &Part) -> Self {
+        Self { name: part.name.clone(), triangles: part.triangles, hidden: part.is_hidden }
+    }
 }
 
 /// A T-junction with positions, in object units.
@@ -120,6 +138,7 @@ impl Info {
             variants: Vec::new(),
             scenes: Vec::new(),
             scene: None,
+            parts: Vec::new(),
             animations: mesh.rig.as_deref().map_or_else(Vec::new, animations),
             edges,
             joins: weld_previews(mesh, (weld == 0.0).then_some(topology), progress)?,
@@ -159,6 +178,10 @@ impl fmt::Display for Info {
         for (i, scene) in self.scenes.iter().enumerate().filter(|_| self.scenes.len() > 1) {
             let is_read = if Some(i) == self.scene { ", which is shown" } else { "" };
             writeln!(f, "scene         {}{is_read}", shown(scene))?;
+        }
+        for PartInfo { name, triangles, hidden } in self.parts.iter().filter(|_| self.parts.len() > 1) {
+            let is_hidden = if *hidden { ", left out" } else { "" };
+            writeln!(f, "part          {}: {triangles} triangles{is_hidden}", shown(name))?;
         }
         for AnimationInfo { name, duration, moved } in &self.animations {
             // Files have times in f32: an f64 would print digits that the file doesn't have.

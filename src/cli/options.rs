@@ -21,7 +21,7 @@ use crate::settings::options::TOLERANCE_RANGE;
 use crate::settings::{ARENA_BYTES, Settings};
 use crate::tessellate::{Displacement, Lod, Partitioning, Surface, Tessellation, tolerance_within_budget};
 
-pub(crate) use declared::{PictureOptions, TessellationOptions, choice, number_of};
+pub(crate) use declared::{ImportOptions, PictureOptions, TessellationOptions, choice, number_of};
 pub(crate) use lod_camera::LodCameraOption;
 pub(crate) use values::{CameraOption, Position, Size, model, picture, source, threshold};
 
@@ -149,7 +149,12 @@ impl SurfaceOptions {
 
     /// Settings with these options and no overlays.
     pub(crate) fn settings(&self) -> Settings {
-        self.tessellation().into()
+        Settings { import: self.weld.import.0, ..self.tessellation().into() }
+    }
+
+    /// The settings of a picture with these options.
+    pub(crate) fn settings_of(&self, picture: &Settings) -> Settings {
+        Settings { import: self.weld.import.0, ..picture.with(self.tessellation()) }
     }
 
     /// Returns settings whose tolerance is raised until there are no more triangles than `--max-triangles` allows. Standard
@@ -240,6 +245,12 @@ pub(crate) struct WeldOption {
     /// Show this scene of a glTF file instead of its default scene, by name, or by number from 0; `info` lists the scenes
     #[arg(long, value_name = "NAME|N", allow_hyphen_values = true)]
     pub scene: Option<String>,
+    /// Leave out this part of an OBJ file or of a text file of STL, by the name of its object, group or solid; may be given several
+    /// times. `info` lists the parts
+    #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
+    pub hide_part: Vec<String>,
+    #[command(flatten)]
+    pub import: ImportOptions,
     #[command(flatten)]
     pub limit: LimitOption,
 }
@@ -252,6 +263,8 @@ impl WeldOption {
             heights: None,
             variant: self.variant.clone(),
             scene: self.scene.clone(),
+            hidden: self.hide_part.clone(),
+            import: self.import.0,
             limits: self.limit.limits(),
         }
     }

@@ -96,7 +96,7 @@ impl ShotOptions {
         let (given, factors_file) = given.map(|given| (given.factors, given.stats)).unzip();
         let subject = Subject {
             moment: self.surface.animation.moment(&loaded)?,
-            settings: self.picture.0.with(self.surface.tessellation()),
+            settings: self.surface.settings_of(&self.picture.0),
             loaded,
             given,
             matcap: matcap.map(Arc::new),

@@ -51,7 +51,8 @@ impl TruthOption {
                 ));
             }
             let none = || CliError::NoTruth { file: source.to_string() };
-            let truth = Truth::load(source, &surface.weld.limit.limits(), &Progress::new())?.ok_or_else(none)?;
+            let truth = Truth::load(source, surface.weld.import.0, &surface.weld.limit.limits(), &Progress::new())?
+                .ok_or_else(none)?;
             return Ok(Some(ReferenceSurface::Truth(source.to_string(), Arc::new(truth))));
         }
         if !is_shown {

@@ -11,6 +11,8 @@ pub(crate) const MOST_BOOKMARKS: usize = 9;
 #[derive(Clone, Debug, Default)]
 pub struct Availability {
     pub has_document: bool,
+    /// Whether the mesh is one that a file has, with axes and a unit, and not a shape that is made in code.
+    pub is_of_a_file: bool,
     /// Whether a picture of the document has been drawn.
     pub has_picture: bool,
     /// Whether a reference surface was chosen for the mesh.
@@ -65,6 +67,7 @@ impl Availability {
     pub fn everything() -> Self {
         Self {
             has_document: true,
+            is_of_a_file: true,
             has_picture: true,
             has_truth: true,
             has_factors: true,
@@ -106,6 +109,13 @@ pub(super) fn always(_: &Availability) -> Option<&'static str> {
 
 pub(super) fn document(now: &Availability) -> Option<&'static str> {
     unless(now.has_document, "No mesh is open.")
+}
+
+/// Why a shape has neither axis nor unit.
+pub(crate) const MADE_IN_CODE: &str = "Shapes are made in code with Y up. Files have axes and units.";
+
+pub(super) fn file(now: &Availability) -> Option<&'static str> {
+    document(now).or(unless(now.is_of_a_file, MADE_IN_CODE))
 }
 
 pub(super) fn picture(now: &Availability) -> Option<&'static str> {

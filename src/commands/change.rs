@@ -1,5 +1,7 @@
 //! Changes of settings that are commands.
 
+use crate::load::{LengthUnit, NormalSource};
+use crate::mesh::UpAxis;
 use crate::settings::options::FACTOR_RANGE;
 use crate::settings::{Colors, DeviationUnit, NormalsAt, Overlay, Settings};
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
@@ -27,6 +29,11 @@ pub enum Change {
     MaterialColors,
     DeviationIn(DeviationUnit),
     Overlay(Overlay),
+    MeshNormals(NormalSource),
+    /// None is the axis that the file says.
+    Up(Option<UpAxis>),
+    /// None is the unit that the file says.
+    Unit(Option<LengthUnit>),
 }
 
 impl Change {
@@ -54,6 +61,9 @@ impl Change {
             Self::MaterialColors => settings.overlays.colors = Colors::Material,
             Self::DeviationIn(unit) => settings.deviation_in = unit,
             Self::Overlay(overlay) => settings.overlays.toggle(overlay),
+            Self::MeshNormals(normals) => settings.import.normals = normals,
+            Self::Up(axis) => settings.import.up = axis,
+            Self::Unit(unit) => settings.import.unit = unit,
         }
     }
 }

@@ -6,9 +6,11 @@ use egui::{Key, KeyboardShortcut};
 
 use super::availability as when;
 use super::{Action, Availability, CameraAction, Change, Command, FileAction, Preparing, Submenu, alt, plain, shift};
+use crate::load::{LengthUnit, NormalSource};
+use crate::mesh::UpAxis;
 use crate::mesh::weld_preview::TOLERANCES;
 use crate::names::shortened;
-use crate::settings::{Choice, Colors, Control, DeviationUnit, NormalsAt, Overlay, Overlays, options};
+use crate::settings::{Choice, Colors, Control, Declaration, DeviationUnit, NormalsAt, Overlay, Overlays, options};
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
 
 /// The greatest number of clips that are listed.
@@ -36,6 +38,15 @@ fn values<T: Choice>(label: &str, change: impl Fn(T) -> Change, why_not: super::
     T::ALL.iter().map(command).collect()
 }
 
+/// The same for a setting of the mesh's file that may have no value.
+fn values_or_none<T: Choice>(option: &Declaration, change: impl Fn(Option<T>) -> Change) -> Vec<Command> {
+    let none = option.unset.iter().map(|unset| {
+        Command::new(Action::Setting(change(None)), format!("{}: {}", option.label, unset.label), unset.text)
+            .unless(when::file)
+    });
+    none.chain(values(option.label, |value| change(Some(value)), when::file)).collect()
+}
+
 fn settings() -> Vec<Command> {
     let always = when::always;
     let mut all = values::<Surface>(options::SURFACE.label, Change::Surface, always);
@@ -54,6 +65,9 @@ fn settings() -> Vec<Command> {
     all.extend(values::<Convention>(options::CONVENTION.label, Change::Convention, always));
     all.extend(values::<Displacement>(options::DISPLACEMENT.label, Change::Displacement, when::heights));
     all.extend(values::<DeviationUnit>(options::DEVIATION_IN.label, Change::DeviationIn, when::deviation));
+    all.extend(values::<NormalSource>(options::MESH_NORMALS.label, Change::MeshNormals, always));
+    all.extend(values_or_none::<UpAxis>(&options::UP, Change::Up));
+    all.extend(values_or_none::<LengthUnit>(&options::UNIT, Change::Unit));
     all
 }
 

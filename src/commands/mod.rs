@@ -17,7 +17,7 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 use crate::mesh::Shape;
 use crate::render::Standpoint;
 
-pub(crate) use availability::{Availability, BACKS_ARE_SEEN, MOST_BOOKMARKS, NO_TEXTURE_COORDINATES};
+pub(crate) use availability::{Availability, BACKS_ARE_SEEN, MADE_IN_CODE, MOST_BOOKMARKS, NO_TEXTURE_COORDINATES};
 pub(crate) use change::Change;
 pub(crate) use fixed::{ENVIRONMENT, HEIGHT_IMAGE, MATCAP_IMAGE};
 

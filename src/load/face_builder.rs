@@ -1,13 +1,17 @@
 //! Builds a mesh from the faces of FBX, OBJ, STL, PLY, OFF and 3MF files: checks them, cuts polygons into triangles, and
 //! counts repairs.
 
-use std::sync::Arc;
+use std::fmt::Display;
 
 use glam::{Vec2, Vec3, Vec4};
 
+use super::import::Import;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::{Budget, edge_bytes};
+use super::notes::Notes;
+use super::parts::Parts;
 use super::read_error::{FilePosition, ReadError};
+use super::tangents;
 use super::warnings::repair_warnings;
 use crate::mesh::build_limits::{MAX_TRIANGLES, MemoryRefused};
 use crate::mesh::detail_table::DetailTable;
@@ -60,8 +64,10 @@ impl FaceCorner for NumberedCorner {
 /// The mesh that is being built, and counts of what was repaired or left out.
 pub(super) struct FaceBuilder<'a> {
     memory: &'a Budget,
+    import: Import,
+    parts: Parts,
     builder: MeshBuilder,
-    /// The colours of corners, if the file has any.
+    /// The colours of corners, if the file has any, or if corners may need tangents.
     colors: Option<DetailTable>,
     materials: usize,
     triangles: usize,
@@ -87,6 +93,8 @@ impl<'a> FaceBuilder<'a> {
     pub(super) fn new(bytes: usize, memory: &'a Budget) -> Self {
         Self {
             memory,
+            import: Import::default(),
+            parts: Parts::default(),
             builder: MeshBuilder::new(),
             colors: None,
             materials: 0,
@@ -100,6 +108,29 @@ impl<'a> FaceBuilder<'a> {
             misnumbered: (0, None),
             cut: Vec::new(),
         }
+    }
+
+    /// Makes normals as these options say. No face was added yet.
+    pub(super) fn importing(self, import: Import) -> Self {
+        Self { import, builder: MeshBuilder::with_crease_angle(import.crease_angle), ..self }
+    }
+
+    /// Leaves out the faces of parts with these names.
+    pub(super) fn hiding(self, hidden: &[String]) -> Self {
+        Self { parts: Parts::hiding(hidden), ..self }
+    }
+
+    /// Says which part the next faces belong to, by its name.
+    ///
+    /// # Errors
+    /// [`ReadError::TooLarge`].
+    pub(super) fn enter_part(&mut self, name: &[u8]) -> Result<(), ReadError> {
+        self.parts.enter(name, self.memory).map_err(too_large)
+    }
+
+    /// Whether any part was entered.
+    pub(super) fn has_parts(&self) -> bool {
+        self.parts.have_begun()
     }
 
     /// Adds a material and returns its index for [`add`](Self::add).
@@ -128,7 +159,7 @@ impl<'a> FaceBuilder<'a> {
         edge_bytes(corners, triangles).saturating_sub(32 * corners + 12 * triangles)
     }
 
-    /// Keeps the colours of corners.
+    /// Keeps the colours of corners, and gives them tangents where a normal map needs them.
     pub(super) fn color(&mut self) {
         self.colors.get_or_insert_default();
     }
@@ -173,6 +204,9 @@ impl<'a> FaceBuilder<'a> {
             return Ok(());
         }
         for corner in corners.iter_mut().map(FaceCorner::corner) {
+            if self.import.makes_normals() {
+                corner.normal = None;
+            }
             if !corner.uv.is_finite() {
                 corner.uv = Vec2::ZERO;
                 self.bad_uvs += 1;
@@ -189,6 +223,9 @@ impl<'a> FaceBuilder<'a> {
         }
         if corners.len() < 3 {
             self.too_small += 1;
+            return Ok(());
+        }
+        if self.parts.leave_out(corners.len() - 2) {
             return Ok(());
         }
         self.triangles += corners.len() - 2;
@@ -233,12 +270,18 @@ impl<'a> FaceBuilder<'a> {
         progress: &Progress,
     ) -> Result<LoadedMesh, ReadError> {
         let (file_bytes, memory, colors) = (self.memory.files(), self.memory, self.colors.take());
-        let (mut mesh, numbers, warnings) = self.finish_numbered(name, holds, warnings, progress)?;
+        let hides_all = self.builder.is_empty() && self.parts.are_hidden();
+        let holds = if hides_all { format!("{holds}, and its parts are hidden") } else { holds };
+        let (parts, beyond) = std::mem::take(&mut self.parts).into_list();
+        let (mut mesh, numbers, mut warnings) = self.finish_numbered(name, holds, warnings, progress)?;
         if let Some(colors) = colors {
-            let (details, _) = colors.into_lists(&numbers, memory).map_err(too_large)?;
-            mesh.details = Some(Arc::new(details));
+            let mut notes = Notes::default();
+            tangents::with_details(&mut mesh, colors, &numbers, &mut notes, (memory, progress))?;
+            warnings.extend(notes.into_warnings());
         }
-        Ok(LoadedMesh { mesh, warnings, file_bytes, ..LoadedMesh::default() })
+        let beyond = (beyond, "objects and groups beyond the first 65,536, which can't be hidden");
+        warnings.extend(counted([beyond]));
+        Ok(LoadedMesh { mesh, warnings, parts, file_bytes, ..LoadedMesh::default() })
     }
 
     /// Builds the mesh as [`finish`](Self::finish) does, and returns each corner's number and the warnings too.
@@ -271,7 +314,7 @@ impl<'a> FaceBuilder<'a> {
             ),
         ]));
         let (mesh, numbers) = self.builder.finish_bound(name.to_owned(), self.memory, progress)?;
-        warnings.extend(repair_warnings(&mesh.repairs));
+        warnings.extend(repair_warnings(&mesh.repairs, &self.import));
         Ok((mesh, numbers, warnings))
     }
 
@@ -301,7 +344,7 @@ pub(super) fn linear_color([r, g, b, a]: [u8; 4]) -> Vec4 {
 }
 
 /// Returns a sentence for each count that isn't 0.
-pub(super) fn counted(sentences: impl IntoIterator<Item = (usize, &'static str)>) -> impl Iterator<Item = String> {
+pub(super) fn counted<S: Display>(sentences: impl IntoIterator<Item = (usize, S)>) -> impl Iterator<Item = String> {
     let found = sentences.into_iter().filter(|(count, _)| *count > 0);
     found.map(|(count, sentence)| format!("{sentence}: {count}."))
 }

@@ -1,5 +1,6 @@
 //! Reads FBX, binary and text: the polygons of all meshes that the file shows, in their rest pose, with materials, skins, blend
-//! shapes and animations. Axes are turned so that Y points up, and the file's unit becomes metres.
+//! shapes and animations. Axes are turned so that Y points up, and the file's unit becomes metres, unless another axis or unit was
+//! chosen: then its coordinates are taken as they are.
 //!
 //! FBX has no public specification. The library ufbx parses the file, with limits on its memory; what it returns is checked like
 //! the file itself, since its lists hold what the file says. It runs in this process, on a thread of its own, so that the stack is the
@@ -13,7 +14,6 @@ mod looks;
 mod materials;
 mod morphs;
 mod nodes;
-mod packing;
 mod parse;
 mod skin;
 mod smoothing;
@@ -24,6 +24,7 @@ mod vertices;
 use std::path::Path;
 use std::sync::Arc;
 
+use super::import::Import;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::notes::Notes;
@@ -52,10 +53,11 @@ pub(super) fn read(
     bytes: Vec<u8>,
     folder: &Path,
     name: &str,
+    import: Import,
     limits: &Limits,
     progress: &Progress,
 ) -> Result<LoadedMesh, ReadError> {
-    let job = || read_here(bytes, folder, name, limits, progress);
+    let job = || read_here(bytes, folder, name, import, limits, progress);
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().name("fbx".to_owned()).stack_size(STACK).spawn_scoped(scope, job);
         let thread = thread.map_err(|error| ReadError::NoThread { reason: error.to_string() })?;
@@ -71,11 +73,12 @@ pub(super) fn read_here(
     bytes: Vec<u8>,
     folder: &Path,
     name: &str,
+    import: Import,
     limits: &Limits,
     progress: &Progress,
 ) -> Result<LoadedMesh, ReadError> {
     let budget = Budget::new(bytes.len(), limits);
-    let scene = parse::scene(&bytes, &budget, &progress.part(0.0, 0.3))?;
+    let scene = parse::scene(&bytes, &import, &budget, &progress.part(0.0, 0.3))?;
     budget.release(bytes.len() as u64);
     drop(bytes);
     let mut notes = Notes::default();
@@ -86,7 +89,7 @@ pub(super) fn read_here(
     let binder = RigBuilder::new(clips, &placed.scene, &mut warnings);
     notes.extend(warnings);
     let files = Files::new(folder, limits, &budget, progress);
-    let mut surfaces = Surfaces::new(&scene, &placed, (&files, &budget), binder)?;
+    let mut surfaces = Surfaces::new(&scene, &placed, import, (&files, &budget), binder)?;
     for (i, &node) in placed.shown.iter().enumerate() {
         progress.set(0.4 + 0.4 * i as f32 / placed.shown.len() as f32);
         surfaces.add(node, progress)?;

@@ -150,8 +150,8 @@ pub(super) fn read(
         instances: &extensions.instances,
         accessors: &accessors,
         materials,
-        builder: MeshBuilder::new(),
-        primitives: PrimitiveReader::default(),
+        builder: MeshBuilder::with_crease_angle(selected.import.crease_angle),
+        primitives: PrimitiveReader::importing(selected.import),
         binder,
         details: is_detailed.then(DetailTable::default),
     };
@@ -200,10 +200,10 @@ pub(super) fn read(
     notes.append(of_lights);
     notes.append(of_cameras);
     warnings = notes.into_warnings();
-    warnings.extend(repair_warnings(&mesh.repairs));
+    warnings.extend(repair_warnings(&mesh.repairs, &selected.import));
     let scenes::Scenes { names, shown } = scenes;
     let (files, file_bytes) = (files.named(), budget.files());
-    Ok(LoadedMesh { mesh, warnings, variants, scenes: names, scene: shown, files, file_bytes })
+    Ok(LoadedMesh { mesh, warnings, variants, scenes: names, scene: shown, files, file_bytes, ..LoadedMesh::default() })
 }
 
 /// The scene that is being read, and the mesh that is being built from it.

@@ -13,7 +13,8 @@ use std::time::{Duration, Instant};
 
 use super::{Format, ReadError, fbx, obj, off, ply, stl, threemf};
 use crate::files::Limits;
-use crate::load::LoadedMesh;
+use crate::load::selection::Selection;
+use crate::load::{Import, LoadedMesh};
 use crate::progress::Progress;
 
 /// The longest time that reading a file may take, in CPU time of this thread.
@@ -60,12 +61,26 @@ fn read(format: Format, bytes: &[u8]) -> Result<LoadedMesh, ReadError> {
     let progress = Progress::new();
     let loaded = match format {
         // On this thread, whose time is measured.
-        Format::Fbx => fbx::read_here(bytes.to_vec(), Path::new("nowhere"), "broken", &Limits::default(), &progress),
-        Format::Obj => obj::read(bytes.to_vec(), Path::new("nowhere"), "broken", &Limits::default(), &progress),
-        Format::Stl => stl::read(bytes.to_vec(), "broken", &Limits::default(), &progress),
-        Format::Ply => ply::read(bytes.to_vec(), "broken", &Limits::default(), &progress),
-        Format::Off => off::read(bytes.to_vec(), "broken", &Limits::default(), &progress),
-        Format::ThreeMf => threemf::read(bytes.to_vec(), "broken", &Limits::default(), &progress),
+        Format::Fbx => fbx::read_here(
+            bytes.to_vec(),
+            Path::new("nowhere"),
+            "broken",
+            Import::default(),
+            &Limits::default(),
+            &progress,
+        ),
+        Format::Obj => obj::read(
+            bytes.to_vec(),
+            Path::new("nowhere"),
+            "broken",
+            Selection::default(),
+            &Limits::default(),
+            &progress,
+        ),
+        Format::Stl => stl::read(bytes.to_vec(), "broken", Selection::default(), &Limits::default(), &progress),
+        Format::Ply => ply::read(bytes.to_vec(), "broken", Import::default(), &Limits::default(), &progress),
+        Format::Off => off::read(bytes.to_vec(), "broken", Import::default(), &Limits::default(), &progress),
+        Format::ThreeMf => threemf::read(bytes.to_vec(), "broken", Import::default(), &Limits::default(), &progress),
         Format::Gltf => panic!("glTF has hostile files of its own, in gltf/tests"),
     };
     let (took, length) = (time() - start, bytes.len());

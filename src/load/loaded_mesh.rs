@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::parts::Part;
 use crate::mesh::Mesh;
 
 /// A mesh as its file describes it.
@@ -17,6 +18,8 @@ pub struct LoadedMesh {
     pub scenes: Vec<String>,
     /// Which of them was read; none if the file has no scenes.
     pub scene: Option<usize>,
+    /// The parts of the file that have triangles, also those that were left out. Only some formats have any.
+    pub parts: Vec<Part>,
     /// The files that the mesh's own file names and that were read, with links resolved.
     pub files: Vec<PathBuf>,
     /// The size of all files together in bytes, the mesh's own included; 0 for a mesh that was made in code.

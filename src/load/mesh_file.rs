@@ -66,6 +66,12 @@ pub enum LoadError {
     /// The file doesn't have the material variant.
     #[error("{} has no material variant {}; {}", shown_path(path), shown(variant), said_of(known))]
     NoVariant { path: PathBuf, variant: String, known: Vec<String> },
+    /// The file doesn't have a part that should be left out.
+    #[error("{} has no part {}; {}", shown_path(path), shown(part), said_of_parts(known))]
+    NoPart { path: PathBuf, part: String, known: Vec<String> },
+    /// The shape is made in code, where Y is up.
+    #[error("{shape} is made in code with Y up, in metres: leave --up and --unit away")]
+    Shape { shape: String },
     /// The file doesn't have the scene.
     #[error("{} has no scene {}; {}", shown_path(path), shown(scene), said_of_scenes(known))]
     NoScene { path: PathBuf, scene: String, known: Vec<String> },
@@ -79,6 +85,11 @@ fn said_of(known: &[String]) -> String {
 /// Returns which scenes there are, as the end of a message.
 fn said_of_scenes(known: &[String]) -> String {
     if known.is_empty() { "it has no scenes, so leave --scene away".to_owned() } else { choice(known) }
+}
+
+/// Returns which parts there are, as the end of a message.
+fn said_of_parts(known: &[String]) -> String {
+    if known.is_empty() { "it has no named parts, so leave --hide-part away".to_owned() } else { choice(known) }
 }
 
 fn choice(known: &[String]) -> String {
@@ -153,14 +164,19 @@ pub(crate) fn load_selected(
     Ok(mesh)
 }
 
-/// Checks that a mesh has the variant and the scene that were asked for.
+/// Checks that a mesh has the variant, the scene and the parts that were named.
 ///
 /// # Errors
-/// [`LoadError::NoVariant`] and [`LoadError::NoScene`].
+/// [`LoadError::NoVariant`], [`LoadError::NoScene`] and [`LoadError::NoPart`].
 pub(super) fn check_selected(path: &Path, selected: Selection, loaded: &LoadedMesh) -> Result<(), LoadError> {
     if let Some(scene) = selected.scene.filter(|scene| scenes::number(&loaded.scenes, scene).is_none()) {
         let known = loaded.scenes.clone();
         return Err(LoadError::NoScene { path: path.to_owned(), scene: scene.to_owned(), known });
+    }
+    let is_unknown = |name: &&String| loaded.parts.iter().all(|part| part.name != **name);
+    if let Some(part) = selected.hidden.iter().find(is_unknown) {
+        let known = loaded.parts.iter().map(|part| part.name.clone()).collect();
+        return Err(LoadError::NoPart { path: path.to_owned(), part: part.clone(), known });
     }
     match selected.variant.filter(|variant| loaded.variants.iter().all(|known| known != variant)) {
         None => Ok(()),
@@ -266,17 +282,22 @@ pub fn read(
 ) -> Result<LoadedMesh, LoadError> {
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let folder = path.parent().unwrap_or(Path::new(""));
-    match format {
+    let import = selected.import;
+    let mut loaded = match format {
         Format::Gltf => {
             gltf::read(bytes, folder, &name, selected, limits, progress).map_err(|problem| of_problem(problem, path))
         }
-        Format::Fbx => fbx::read(bytes, folder, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
-        Format::Obj => obj::read(bytes, folder, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
-        Format::Stl => stl::read(bytes, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
-        Format::Ply => ply::read(bytes, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
-        Format::Off => off::read(bytes, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
-        Format::ThreeMf => threemf::read(bytes, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
-    }
+        Format::Fbx => fbx::read(bytes, folder, &name, import, limits, progress).map_err(|fault| of_fault(fault, path)),
+        Format::Obj => {
+            obj::read(bytes, folder, &name, selected, limits, progress).map_err(|fault| of_fault(fault, path))
+        }
+        Format::Stl => stl::read(bytes, &name, selected, limits, progress).map_err(|fault| of_fault(fault, path)),
+        Format::Ply => ply::read(bytes, &name, import, limits, progress).map_err(|fault| of_fault(fault, path)),
+        Format::Off => off::read(bytes, &name, import, limits, progress).map_err(|fault| of_fault(fault, path)),
+        Format::ThreeMf => threemf::read(bytes, &name, import, limits, progress).map_err(|fault| of_fault(fault, path)),
+    }?;
+    import.place(&mut loaded.mesh);
+    Ok(loaded)
 }
 
 fn of_problem(problem: GltfError, path: &Path) -> LoadError {

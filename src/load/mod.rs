@@ -15,6 +15,7 @@ pub(crate) mod heights;
 #[cfg(test)]
 mod hostile_files;
 mod images;
+pub(crate) mod import;
 mod jpeg_memory;
 mod ktx2;
 mod loaded_mesh;
@@ -24,8 +25,10 @@ pub(crate) mod mesh_file;
 mod notes;
 mod obj;
 mod off;
+mod packing;
 #[cfg(feature = "cli")]
 pub(crate) mod panorama;
+pub(crate) mod parts;
 mod ply;
 mod read_error;
 mod rig_builder;
@@ -53,6 +56,7 @@ pub use read_error::{FilePosition, ReadError};
 #[cfg(test)]
 pub(crate) use format::Format;
 pub(crate) use heights::HeightSource;
+pub(crate) use import::{Import, LengthUnit, NormalSource};
 pub(crate) use memory_budget::Budget;
 pub(crate) use source::Source;
 pub(crate) use warnings::{crease_band_warnings, untextured_warning};

@@ -1,7 +1,7 @@
 //! Reads Wavefront OBJ: polygons with texture coordinates and normals, and the colours of their materials.
 //!
-//! All groups and objects become one mesh. Weights are ignored. The file is read twice, first vertices and then faces, so that
-//! faces may come before their vertices; and a third time in between if smoothing groups make normals.
+//! All groups and objects become one mesh, of which some may be left out. Weights are ignored. The file is read twice, first vertices and materials and then faces, so
+//! that faces may come before their vertices; and a third time in between if smoothing groups make normals.
 //!
 //! The crate `tobj` isn't used. It panics on an index near 2^63, gives a corner without a normal the normal of another
 //! corner, doesn't know continued lines, and names no line in its errors.
@@ -11,6 +11,7 @@
 mod materials;
 mod mtl;
 mod smoothing;
+mod textures;
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -18,9 +19,11 @@ use std::path::Path;
 use glam::{Vec2, Vec3, Vec4};
 
 use super::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, counted, linear_color};
+use super::import::Import;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::read_error::ReadError;
+use super::selection::Selection;
 use super::text_lines::{Line, Lines, first_word, has_comma, numbers_or_nan, of_utf16, shown, words};
 use super::uri::Files;
 use crate::files::Limits;
@@ -34,9 +37,7 @@ use materials::Materials;
 use smoothing::Smoothing;
 
 /// Statements that are ignored without a warning, since they change neither shape nor colour here.
-const SILENT: [&[u8]; 23] = [
-    b"g",
-    b"o",
+const SILENT: [&[u8]; 21] = [
     b"vp",
     b"mg",
     b"lod",
@@ -60,6 +61,9 @@ const SILENT: [&[u8]; 23] = [
     b"trace_obj",
 ];
 
+/// The part of faces that belong to no object and no group; the specification calls it so.
+const DEFAULT_PART: &[u8] = b"default";
+
 /// Builds a mesh from a file's bytes.
 ///
 /// `folder` is the file's folder; `name` becomes the mesh's name.
@@ -70,29 +74,39 @@ pub(super) fn read(
     bytes: Vec<u8>,
     folder: &Path,
     name: &str,
+    selected: Selection,
     limits: &Limits,
     progress: &Progress,
 ) -> Result<LoadedMesh, ReadError> {
+    let Selection { import, hidden, .. } = selected;
     let budget = Budget::new(bytes.len(), limits);
     let bytes = of_utf16(&bytes, |bytes| budget.hold(bytes)).map_err(too_large)?.unwrap_or(bytes);
     let files = Files::new(folder, limits, &budget, progress);
     let mut vertices = Vertices::default();
-    each(&bytes, &progress.part(0.0, 0.2), |line| vertices.take(line, &budget))?;
+    let mut materials = Materials::new(&files, &budget);
+    each(&bytes, &progress.part(0.0, 0.2), |line| {
+        if let (b"mtllib", names) = first_word(line.text) {
+            materials.add_library(names);
+        }
+        vertices.take(line, &budget)
+    })?;
     let mut smoothing = Smoothing::new(&vertices, &budget);
-    if vertices.is_smoothed {
+    let is_smoothed = vertices.is_smoothed && !import.makes_normals();
+    if is_smoothed {
         each(&bytes, &progress.part(0.2, 0.3), |line| smoothing.take(line))?;
     }
     let mut reader = Reader {
         vertices: &vertices,
         above: [0; 3],
-        faces: FaceBuilder::new(bytes.len(), &budget),
-        materials: Materials::new(&files, &budget),
-        smoothing: vertices.is_smoothed.then_some(smoothing),
+        faces: FaceBuilder::new(bytes.len(), &budget).importing(import).hiding(hidden),
+        materials,
+        part: Default::default(),
+        smoothing: is_smoothed.then_some(smoothing),
         corners: Vec::new(),
         indices: Vec::new(),
         found: StatementCounts::default(),
     };
-    if !vertices.colors.is_empty() {
+    if !vertices.colors.is_empty() || reader.materials.have_normal_maps() {
         reader.faces.color();
     }
     each(&bytes, &progress.part(0.3, 0.5), |line| reader.take(line))?;
@@ -100,7 +114,7 @@ pub(super) fn read(
     let freed = bytes.len() as u64 + vertices.bytes();
     reader.materials.read_textures(&mut reader.faces, freed, progress)?;
     let mut warnings = reader.materials.warnings();
-    warnings.extend(reader.found.warnings());
+    warnings.extend(reader.found.warnings(&import));
     let holds = reader.found.holds(&vertices);
     let faces = reader.faces;
     budget.release(freed);
@@ -254,12 +268,10 @@ struct StatementCounts {
 }
 
 impl StatementCounts {
-    fn warnings(&self) -> impl Iterator<Item = String> {
-        counted([
-            (
-                self.without_normals,
-                "faces without normals, or with some missing, which got ones that are smooth within 60 degrees",
-            ),
+    fn warnings(&self, import: &Import) -> impl Iterator<Item = String> {
+        let made =
+            format!("faces without normals, or with some missing, which got ones that are {}", import.smoothness());
+        let others = counted([
             (self.smoothed, "faces without normals, or with some missing, which got those of their smoothing groups"),
             (self.with_commas, "statements with a comma in a number, which was taken for its point"),
             (self.flat, "positions of two numbers, which are placed at z = 0"),
@@ -273,7 +285,8 @@ impl StatementCounts {
             (self.lines, "lines (l), left out"),
             (self.surfaces, "free-form curves and surfaces (curv, curv2, surf), which aren't read"),
             (self.unknown, "statements that OBJ doesn't have, left out"),
-        ])
+        ]);
+        counted([(self.without_normals, made)]).chain(others)
     }
 
     fn holds(&self, vertices: &Vertices) -> String {
@@ -297,6 +310,8 @@ struct Reader<'v, 'a> {
     above: [usize; 3],
     faces: FaceBuilder<'a>,
     materials: Materials<'a>,
+    /// The names of the object and of the group that the next faces belong to.
+    part: [Vec<u8>; 2],
     /// The normals that smoothing groups make, if there are groups.
     smoothing: Option<Smoothing<'v>>,
     /// The corners of the face that is being read, and the numbers of their positions.
@@ -321,8 +336,10 @@ impl Reader<'_, '_> {
             }
             b"f" | b"fo" => self.face(line, rest)?,
             b"s" => self.smoothing.iter_mut().for_each(|smoothing| smoothing.enter(rest)),
+            b"o" | b"g" => self.enter_part(word, rest)?,
             b"usemtl" => self.materials.enter(rest),
-            b"mtllib" => self.materials.add_library(rest),
+            // Material files were read with the vertices.
+            b"mtllib" => {}
             b"p" => self.found.points += words(rest).count(),
             b"l" => self.found.lines += 1,
             b"curv" | b"curv2" | b"surf" => self.found.surfaces += 1,
@@ -331,8 +348,23 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
+    /// Begins an object (`o`) or a group (`g`). A part is a group of an object.
+    fn enter_part(&mut self, word: &[u8], name: &[u8]) -> Result<(), ReadError> {
+        self.part[usize::from(word == b"g")] = name.to_vec();
+        let [object, group] = &self.part;
+        match (object.is_empty(), group.is_empty()) {
+            (true, true) => self.faces.enter_part(DEFAULT_PART),
+            (true, false) => self.faces.enter_part(group),
+            (false, _) if group.is_empty() || group == object => self.faces.enter_part(object),
+            (false, _) => self.faces.enter_part(&[object, &b"/"[..], group].concat()),
+        }
+    }
+
     fn face(&mut self, line: &Line, rest: &[u8]) -> Result<(), ReadError> {
         self.found.faces += 1;
+        if !self.faces.has_parts() {
+            self.faces.enter_part(DEFAULT_PART)?;
+        }
         let mut corners = std::mem::take(&mut self.corners);
         corners.clear();
         self.indices.clear();

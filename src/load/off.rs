@@ -28,9 +28,15 @@ const LEAST_FACE: usize = 4;
 ///
 /// # Errors
 /// [`ReadError`].
-pub(super) fn read(bytes: Vec<u8>, name: &str, limits: &Limits, progress: &Progress) -> Result<LoadedMesh, ReadError> {
+pub(super) fn read(
+    bytes: Vec<u8>,
+    name: &str,
+    import: Import,
+    limits: &Limits,
+    progress: &Progress,
+) -> Result<LoadedMesh, ReadError> {
     let budget = Budget::new(bytes.len(), limits);
-    let (faces, holds, warnings) = gather(&bytes, &budget, progress)?;
+    let (faces, holds, warnings) = gather(&bytes, import, &budget, progress)?;
     budget.release(bytes.len() as u64);
     drop(bytes);
     faces.finish(name, holds, warnings, &progress.part(0.5, 1.0))
@@ -54,13 +60,14 @@ pub(super) fn begins(text: &[u8]) -> bool {
 /// Reads all faces. Also returns what the file holds in case it has no triangles, and warnings.
 fn gather<'a>(
     bytes: &[u8],
+    import: Import,
     budget: &'a Budget,
     progress: &'a Progress,
 ) -> Result<(FaceBuilder<'a>, String, Vec<String>), ReadError> {
     let mut rows = Rows::new(bytes, Some(progress));
     let header = Header::read(&mut rows)?;
     let vertices = Vertices::read(&header, &mut rows, budget)?;
-    let mut faces = FaceBuilder::new(bytes.len(), budget);
+    let mut faces = FaceBuilder::new(bytes.len(), budget).importing(import);
     let material = faces.material(Material::plain("default", [1.0; 4]))?;
     let most = header.faces.min(bytes.len() / LEAST_FACE);
     faces.expect(most, vertices.positions.len().min(most.saturating_mul(4)));

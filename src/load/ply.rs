@@ -11,6 +11,7 @@ mod values;
 use glam::{Vec2, Vec3, Vec4};
 
 use super::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, counted, linear_color};
+use super::import::Import;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::read_error::{FilePosition, ReadError};
@@ -52,9 +53,15 @@ const SLOTS: usize = 12;
 ///
 /// # Errors
 /// [`ReadError`].
-pub(super) fn read(bytes: Vec<u8>, name: &str, limits: &Limits, progress: &Progress) -> Result<LoadedMesh, ReadError> {
+pub(super) fn read(
+    bytes: Vec<u8>,
+    name: &str,
+    import: Import,
+    limits: &Limits,
+    progress: &Progress,
+) -> Result<LoadedMesh, ReadError> {
     let budget = Budget::new(bytes.len(), limits);
-    let (faces, holds, warnings) = gather(&bytes, &budget, progress)?;
+    let (faces, holds, warnings) = gather(&bytes, import, &budget, progress)?;
     budget.release(bytes.len() as u64);
     drop(bytes);
     faces.finish(name, holds, warnings, &progress.part(0.5, 1.0))
@@ -63,11 +70,12 @@ pub(super) fn read(bytes: Vec<u8>, name: &str, limits: &Limits, progress: &Progr
 /// Reads all faces. Also returns what the file holds in case it has no triangles, and warnings.
 fn gather<'a>(
     bytes: &[u8],
+    import: Import,
     budget: &'a Budget,
     progress: &'a Progress,
 ) -> Result<(FaceBuilder<'a>, String, Vec<String>), ReadError> {
     let header = header::read(bytes)?;
-    let mut faces = FaceBuilder::new(bytes.len(), budget);
+    let mut faces = FaceBuilder::new(bytes.len(), budget).importing(import);
     let material = faces.material(Material::plain("default", [1.0; 4]))?;
     let mut reader = Reader {
         faces,
@@ -107,7 +115,7 @@ fn gather<'a>(
     for (element, mut values) in before_vertices {
         reader.read_lists(element, &mut values)?;
     }
-    Ok(reader.finish(&header, (values.left_over(), values.long_lines)))
+    Ok(reader.finish(&header, &import, (values.left_over(), values.long_lines)))
 }
 
 /// The attributes of the vertices. Normals, uvs or colours are empty if the file has none.
@@ -365,6 +373,7 @@ impl<'a> Reader<'a> {
     fn finish(
         self,
         header: &Header,
+        import: &Import,
         (left_over, long_lines): (usize, usize),
     ) -> (FaceBuilder<'a>, String, Vec<String>) {
         let count = |name: &[u8]| {
@@ -376,9 +385,10 @@ impl<'a> Reader<'a> {
         let read = self.vertices.unwrap_or_default();
         let without_normals = if read.normals.is_empty() { read.positions.len() } else { 0 };
         let mut warnings = Vec::from_iter(self.cut_short);
+        let made = format!("vertices without normals, which got ones that are {}", import.smoothness());
         warnings.extend(counted([
             (header.other_lines, "lines of the header that aren't part of the format, left out"),
-            (without_normals, "vertices without normals, which got ones that are smooth within 60 degrees"),
+            (without_normals, made.as_str()),
             (long_lines, "lines with more numbers than their element has, left out"),
             (left_over, "bytes after the last element, left out"),
         ]));

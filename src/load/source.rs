@@ -6,12 +6,15 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use super::format::Format;
+use super::import::{Import, NormalSource};
 use super::loaded_mesh::LoadedMesh;
 use super::mesh_file::{LoadError, check_selected, load_selected, read};
 use super::selection::Selection;
 use crate::files::Limits;
+use crate::mesh::Mesh;
+use crate::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use crate::mesh::shapes::{MAX_LEVEL, Shape, ShapeError};
-use crate::progress::Progress;
+use crate::progress::{Cancelled, Progress};
 
 /// The prefix of a shape's name.
 const SHAPE: &str = "shape:";
@@ -43,7 +46,8 @@ impl Source {
     /// Builds the shape, or loads the file within `limits` with the materials of a variant, or another scene than the default one.
     ///
     /// # Errors
-    /// The same as [`load_selected`]'s; a shape has only [`LoadError::NoVariant`] and [`LoadError::NoScene`].
+    /// The same as [`load_selected`]'s; a shape has only [`LoadError::NoVariant`], [`LoadError::NoScene`], [`LoadError::Shape`] and
+    /// [`LoadError::Cancelled`].
     pub(crate) fn load_selected(
         &self,
         selected: Selection,
@@ -51,16 +55,30 @@ impl Source {
         progress: &Progress,
     ) -> Result<LoadedMesh, LoadError> {
         let loaded = match self {
-            Self::Shape(shape) => Ok(LoadedMesh { mesh: shape.build(), ..LoadedMesh::default() }),
-            Self::FineShape(shape, level) => Ok(LoadedMesh { mesh: shape.build_at(*level), ..LoadedMesh::default() }),
+            Self::Shape(shape) => self.made(shape.build(), selected.import, progress),
+            Self::FineShape(shape, level) => self.made(shape.build_at(*level), selected.import, progress),
             Self::Vase => {
                 let bytes = include_bytes!("../../assets/vase.glb").to_vec();
-                read(Format::Gltf, bytes, Path::new("vase.glb"), Selection::default(), limits, progress)
+                let selected = Selection { import: selected.import, ..Selection::default() };
+                read(Format::Gltf, bytes, Path::new("vase.glb"), selected, limits, progress)
             }
             Self::File(path) => return load_selected(path, selected, limits, progress),
         }?;
         check_selected(self.to_string().as_ref(), selected, &loaded)?;
         Ok(loaded)
+    }
+
+    /// Returns a shape, whose normals may be made anew.
+    ///
+    /// # Errors
+    /// [`LoadError::Shape`] if another place was asked for, since its exact surface doesn't move, and [`LoadError::Cancelled`].
+    fn made(&self, mesh: Mesh, import: Import, progress: &Progress) -> Result<LoadedMesh, LoadError> {
+        if import.moves() {
+            return Err(LoadError::Shape { shape: self.to_string() });
+        }
+        let mesh =
+            if import.normals == NormalSource::Made { with_made_normals(mesh, &import, progress)? } else { mesh };
+        Ok(LoadedMesh { mesh, ..LoadedMesh::default() })
     }
 
     /// Returns a shape at the level that followed its name.
@@ -92,6 +110,22 @@ impl Source {
             Self::File(path) => path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned(),
         }
     }
+}
+
+/// Returns a shape with normals that are made from its triangles.
+///
+/// # Errors
+/// [`Cancelled`].
+fn with_made_normals(mesh: Mesh, import: &Import, progress: &Progress) -> Result<Mesh, Cancelled> {
+    let mut builder = MeshBuilder::with_crease_angle(import.crease_angle);
+    for material in &mesh.materials {
+        let own = builder.material(material.clone());
+        for triangle in &mesh.triangles[material.triangles.start as usize..material.triangles.end as usize] {
+            let corner = |id: u32| InputCorner { normal: None, ..mesh.corners[id as usize].into() };
+            builder.triangle(own, triangle.map(corner));
+        }
+    }
+    builder.finish(mesh.name, progress)
 }
 
 impl TryFrom<OsString> for Source {

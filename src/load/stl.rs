@@ -1,38 +1,49 @@
 //! Reads STL, in text and in binary.
 //!
 //! The normals in the file are ignored: they belong to facets, and are often zero or wrong. All corners get computed
-//! normals, smooth where facets meet at up to 60 degrees.
+//! normals, smooth where facets meet at up to the crease angle.
 //!
 //! The crate `stl_io` isn't used. It takes a binary file that begins with "solid" for text, silently drops all solids
 //! but the first, refuses normals of NaN, and takes 30 bytes of memory for each byte of a long line.
 //!
 //! Source: 3D Systems 1989, "StereoLithography Interface Specification".
 
-use glam::{Vec2, Vec3};
+mod colors;
 
-use super::face_builder::{FaceBuilder, counted};
+use glam::{Vec2, Vec3, Vec4};
+
+use super::face_builder::{FaceBuilder, NumberedCorner, counted};
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::read_error::{FilePosition, ReadError};
+use super::selection::Selection;
 use super::text_lines::{Line, Lines, first_word, has_comma, numbers_or_nan, shown};
 use crate::files::Limits;
 use crate::mesh::mesh_builder::InputCorner;
 use crate::mesh::{Material, MemoryAccount};
 use crate::progress::Progress;
 
+use colors::Colors;
+
 /// The size of a binary file's header with its number of triangles, in bytes.
 const HEADER: usize = 84;
 
-/// The size of a binary triangle in bytes: a normal, three positions, and 16 bits without a fixed meaning.
+/// The size of a binary triangle in bytes: a normal, three positions, and 16 bits, in which some programs put a [colour](colors).
 const TRIANGLE: usize = 50;
 
 /// Builds a mesh called `name` from a file's bytes.
 ///
 /// # Errors
 /// [`ReadError`].
-pub(super) fn read(bytes: Vec<u8>, name: &str, limits: &Limits, progress: &Progress) -> Result<LoadedMesh, ReadError> {
+pub(super) fn read(
+    bytes: Vec<u8>,
+    name: &str,
+    selected: Selection,
+    limits: &Limits,
+    progress: &Progress,
+) -> Result<LoadedMesh, ReadError> {
     let budget = Budget::new(bytes.len(), limits);
-    let mut faces = FaceBuilder::new(bytes.len(), &budget);
+    let mut faces = FaceBuilder::new(bytes.len(), &budget).importing(selected.import).hiding(selected.hidden);
     let material = faces.material(Material::plain("default", [1.0; 4]))?;
     let mut reader = Reader {
         faces,
@@ -87,7 +98,7 @@ struct Reader<'a> {
     faces: FaceBuilder<'a>,
     material: usize,
     /// The corners of the triangle that is being added.
-    corners: Vec<InputCorner>,
+    corners: Vec<NumberedCorner>,
     progress: &'a Progress,
     /// The file's size, in bytes.
     bytes: usize,
@@ -118,13 +129,23 @@ impl Reader<'_> {
         let there = triangles.len().min(said);
         // A closed surface has half as many points as triangles.
         self.faces.expect(there, there / 2);
-        for (i, triangle) in triangles.iter().take(said).enumerate() {
+        let attributes = triangles.iter().take(there).map(|&[.., low, high]| u16::from_le_bytes([low, high]));
+        let colors = Colors::of(&bytes[..HEADER - 4], attributes.clone());
+        if let Some(colors) = &colors {
+            self.faces.material_mut(self.material).base_color = colors.of_all();
+        }
+        let of_triangles = colors.filter(|colors| colors.are_many);
+        if of_triangles.is_some() {
+            self.faces.color();
+        }
+        for (i, (triangle, bits)) in triangles.iter().zip(attributes).enumerate() {
             if i % 4096 == 0 {
                 self.at(HEADER + i * TRIANGLE)?;
             }
             // The first vector is the normal.
             let [_, a, b, c, ..] = triangle.as_chunks::<12>().0 else { continue };
-            self.add([a, b, c].map(position_of), FilePosition::Byte(HEADER + i * TRIANGLE))?;
+            let color = of_triangles.map_or(Vec4::ONE, |colors| colors.of_triangle(bits));
+            self.add([a, b, c].map(position_of), color, FilePosition::Byte(HEADER + i * TRIANGLE))?;
         }
         if is_uncounted {
             let warning =
@@ -153,9 +174,16 @@ impl Reader<'_> {
                 self.at(bytes.len() - lines.rest().len())?;
             }
             next = None;
+            let rest = first_word(line.text).1;
             match keyword(&line).as_slice() {
                 b"" => {}
-                b"solid" => (solids, open) = (solids + 1, true),
+                b"solid" => {
+                    (solids, open) = (solids + 1, true);
+                    match rest {
+                        b"" => self.faces.enter_part(format!("solid {solids}").as_bytes())?,
+                        name => self.faces.enter_part(name)?,
+                    }
+                }
                 b"endsolid" => open = false,
                 b"facet" => next = self.facet(&line, &mut lines)?,
                 b"outer" | b"vertex" => return Err(unexpected(&line, "facet, endsolid or solid")),
@@ -189,11 +217,11 @@ impl Reader<'_> {
                     }
                     count += 1;
                 }
-                b"endfacet" if count == 3 => return self.add(positions, line.place()).map(|()| None),
+                b"endfacet" if count == 3 => return self.add(positions, Vec4::ONE, line.place()).map(|()| None),
                 b"endfacet" => return Err(line.place().error(format!("the facet has {count} vertices instead of 3"))),
                 b"facet" | b"solid" | b"endsolid" if count == 3 => {
                     self.open_facets += 1;
-                    return self.add(positions, line.place()).map(|()| Some(line));
+                    return self.add(positions, Vec4::ONE, line.place()).map(|()| Some(line));
                 }
                 b"facet" | b"solid" | b"endsolid" => return Err(unexpected(&line, "vertex, endloop or endfacet")),
                 // Some programs write colours and notes in lines of their own.
@@ -206,8 +234,12 @@ impl Reader<'_> {
         Ok(None)
     }
 
-    fn add(&mut self, positions: [Vec3; 3], place: FilePosition) -> Result<(), ReadError> {
-        let corner = |position| InputCorner { position, normal: None, uv: Vec2::ZERO };
+    fn add(&mut self, positions: [Vec3; 3], color: Vec4, place: FilePosition) -> Result<(), ReadError> {
+        let number = self.faces.number(color)?;
+        let corner = |position| {
+            let corner = InputCorner { position, normal: None, uv: Vec2::ZERO };
+            NumberedCorner { corner, number }
+        };
         self.corners.clear();
         self.corners.extend(positions.map(corner));
         self.faces.add(self.material, &mut self.corners, place)

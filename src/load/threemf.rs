@@ -1,5 +1,6 @@
 //! Reads 3MF: the objects that a file's build places, with their components, base materials and colours. Axes are turned so that Y
-//! points up, and the file's unit becomes metres.
+//! points up, and the file's unit becomes metres, unless another axis or unit was chosen: then its coordinates are taken as they
+//! are.
 //!
 //! A file is a zip archive with parts in XML. Parts are unpacked and parsed piece by piece, so none is in memory as a whole.
 //!
@@ -11,6 +12,7 @@ mod model;
 mod placing;
 mod xml;
 
+use super::import::Import;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::notes::Notes;
@@ -27,7 +29,13 @@ use document::Document;
 ///
 /// # Errors
 /// [`ReadError`].
-pub(super) fn read(bytes: Vec<u8>, name: &str, limits: &Limits, progress: &Progress) -> Result<LoadedMesh, ReadError> {
+pub(super) fn read(
+    bytes: Vec<u8>,
+    name: &str,
+    import: Import,
+    limits: &Limits,
+    progress: &Progress,
+) -> Result<LoadedMesh, ReadError> {
     let budget = Budget::new(bytes.len(), limits);
     let mut notes = Notes::default();
     let document = {
@@ -39,7 +47,7 @@ pub(super) fn read(bytes: Vec<u8>, name: &str, limits: &Limits, progress: &Progr
     };
     budget.release(bytes.len() as u64);
     drop(bytes);
-    let faces = placing::place(&document, &budget, &progress.part(0.4, 0.5), &mut notes)?;
+    let faces = placing::place(&document, &import, &budget, &progress.part(0.4, 0.5), &mut notes)?;
     let holds = document.holds();
     document.release(&budget);
     drop(document);

@@ -1,13 +1,15 @@
 //! Warnings about a mesh that was loaded or changed, as sentences.
 
+use super::import::Import;
 use crate::mesh::crease_band::CreaseBand;
 use crate::mesh::{Heights, Mesh, Repairs};
 
 /// Returns warnings about corners that were repaired. Normals that were missing don't cause one here, since files may
 /// leave them out on purpose.
-pub(super) fn repair_warnings(repairs: &Repairs) -> Vec<String> {
+pub(super) fn repair_warnings(repairs: &Repairs, import: &Import) -> Vec<String> {
+    let replaced = format!("normals without a direction, replaced by ones that are {}", import.smoothness());
     let sentences = [
-        (repairs.normals_replaced, "normals without a direction, replaced by ones that are smooth within 60 degrees"),
+        (repairs.normals_replaced, replaced.as_str()),
         (repairs.normals_rescaled, "normals whose length wasn't 1, scaled to it"),
         (repairs.denormals, "positions with coordinates too small for some devices (below 1.2e-38), set to 0"),
     ];
@@ -52,9 +54,12 @@ mod tests {
 
     #[test]
     fn repairs_are_counted_in_sentences_but_normals_that_were_made_are_not() {
-        assert!(repair_warnings(&Repairs { normals_made: 3, ..Repairs::default() }).is_empty());
+        assert!(repair_warnings(&Repairs { normals_made: 3, ..Repairs::default() }, &Import::default()).is_empty());
         let all = Repairs { normals_made: 1, normals_replaced: 2, normals_rescaled: 3, denormals: 4 };
-        let counts = repair_warnings(&all).iter().map(|warning| warning.chars().rev().nth(1)).collect::<Vec<_>>();
+        let counts = repair_warnings(&all, &Import::default())
+            .iter()
+            .map(|warning| warning.chars().rev().nth(1))
+            .collect::<Vec<_>>();
         assert_eq!(counts, [Some('2'), Some('3'), Some('4')]);
     }
 

@@ -23,7 +23,7 @@ pub(crate) struct UnfinishedMesh {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// Gives every corner without a normal one, computed from the faces around its point. Corners with exactly equal
+/// Gives every corner without a normal one, computed from the faces around its point with a crease angle in degrees. Corners with exactly equal
 /// positions lie on one point. Some corners may be left without a use. Takes time linear in the number of triangles,
 /// times the logarithm of the largest fan's faces where those give different normals.
 ///
@@ -31,6 +31,7 @@ pub(crate) struct UnfinishedMesh {
 /// [`BuildError`].
 pub(crate) fn generate_normals(
     mesh: &mut UnfinishedMesh,
+    crease_angle: f32,
     budget: &dyn MemoryAccount,
     progress: &Progress,
 ) -> Result<(), BuildError> {
@@ -43,7 +44,7 @@ pub(crate) fn generate_normals(
         if point % 4096 == 0 {
             progress.check()?;
         }
-        fan.fill(mesh, around.of(point));
+        fan.fill(mesh, around.of(point), crease_angle);
         fan.number(mesh, &mut added)?;
         around.of(point).copy_from_slice(&fan.ids);
     }
@@ -181,7 +182,7 @@ struct Fan {
 impl Fan {
     /// Collects the faces of some corners of triangles (3 * triangle + k), and the normal that each gets. A corner with
     /// a normal keeps it.
-    fn fill(&mut self, mesh: &UnfinishedMesh, corners: &[u32]) {
+    fn fill(&mut self, mesh: &UnfinishedMesh, corners: &[u32], crease_angle: f32) {
         self.faces.clear();
         self.ids.clear();
         for &corner in corners {
@@ -189,7 +190,7 @@ impl Fan {
             self.faces.push(Face::new(triangle.map(|id| mesh.corners[id as usize].position), k));
             self.ids.push(triangle[k]);
         }
-        fan_normals(&self.faces, &mut self.normals);
+        fan_normals(&self.faces, crease_angle, &mut self.normals);
         for (normal, &id) in self.normals.iter_mut().zip(&self.ids) {
             let given = mesh.corners[id as usize].normal;
             *normal = if given.x.is_nan() { plus_zero3(*normal) } else { given };

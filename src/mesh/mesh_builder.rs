@@ -8,7 +8,7 @@ use glam::{Vec2, Vec3};
 
 use super::build_limits::{BuildError, MemoryAccount, MemoryRefused, Unlimited};
 use super::generate_normals::{UnfinishedMesh, generate_normals};
-use super::normals::GivenNormal;
+use super::normals::{CREASE_ANGLE, GivenNormal};
 use super::weld::{plus_zero2, plus_zero3};
 use super::{Corner, Material, Mesh, Repairs};
 use crate::progress::{Cancelled, Progress};
@@ -37,7 +37,6 @@ impl From<Corner> for InputCorner {
 
 /// Collects triangles and builds a mesh. Equal corners are stored once: the memory that a builder takes grows with the
 /// number of distinct corners, plus 12 bytes a triangle (the formula is in `load::memory_budget`).
-#[derive(Default)]
 pub struct MeshBuilder {
     groups: Vec<Group>,
     distinct: DistinctCorners,
@@ -48,6 +47,14 @@ pub struct MeshBuilder {
     expected: [usize; 2],
     /// Counts of the repairs so far.
     repairs: Repairs,
+    /// The angle up to which faces are smooth where normals are made, in degrees.
+    crease_angle: f32,
+}
+
+impl Default for MeshBuilder {
+    fn default() -> Self {
+        Self::with_crease_angle(CREASE_ANGLE)
+    }
 }
 
 /// The triangles of one material.
@@ -72,6 +79,19 @@ impl Group {
 impl MeshBuilder {
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// Starts a mesh whose missing normals are smooth where faces meet at up to this angle, in degrees from 0 to 180.
+    pub(crate) fn with_crease_angle(crease_angle: f32) -> Self {
+        Self {
+            groups: Vec::new(),
+            distinct: DistinctCorners::default(),
+            triangles: 0,
+            offered: 0,
+            expected: [0; 2],
+            repairs: Repairs::default(),
+            crease_angle,
+        }
     }
 
     /// Announces that about `offered` more corners will be added, and that about `distinct` of them will be distinct.
@@ -221,7 +241,7 @@ impl MeshBuilder {
         let DistinctCorners { corners, bindings, .. } = self.distinct;
         let mut mesh = UnfinishedMesh { corners, bindings, triangles };
         if mesh.corners.iter().any(|corner| corner.normal.x.is_nan()) {
-            generate_normals(&mut mesh, budget, progress)?;
+            generate_normals(&mut mesh, self.crease_angle, budget, progress)?;
         }
         budget.borrow(mesh.corners.len() as u64 * 4)?;
         renumber(&mut mesh);

@@ -1,12 +1,15 @@
 //! Checks the normals that a mesh comes with, and computes normals where there is no usable one: smooth between faces
-//! that meet at up to 60 degrees, creased elsewhere.
+//! that meet at up to the crease angle, creased elsewhere.
 
 use std::collections::HashMap;
 
 use glam::{DVec3, Vec3};
 
-/// The cosine of 60 degrees, with room for rounding: faces that meet at exactly 60 degrees count as smooth.
-const COS_LIMIT: f64 = 0.5 - 1e-5;
+/// The crease angle unless another one is chosen, in degrees.
+pub(crate) const CREASE_ANGLE: f32 = 60.0;
+
+/// Room for rounding, in radians: faces that meet at exactly the crease angle count as smooth.
+const ROOM: f64 = 1.1547e-5;
 
 /// Around a point with more faces than this, faces are first grouped by direction, which keeps the work linear.
 const FAN_LIMIT: usize = 256;
@@ -14,6 +17,9 @@ const FAN_LIMIT: usize = 256;
 /// Numbers of cells along each axis of the grid of directions that groups such faces. The first cells are about 1.3
 /// degrees wide; the coarser ones are used where faces point in very different directions.
 const CELLS: [f64; 4] = [45.0, 23.0, 12.0, 6.0];
+
+/// The width of the first cells, in degrees. Below such a crease angle, faces of a large fan would be smoothed by the cells alone.
+const CELL_ANGLE: f32 = 1.3;
 
 /// The greatest number of cells in a grid, unless the grid is the coarsest one.
 const MAX_CELLS: usize = 1024;
@@ -86,17 +92,25 @@ impl Face {
 /// Computes a unit normal for each face around a point.
 ///
 /// The normal of face f is the mean of the surface normals of all faces g around the point (f among them) that lie
-/// within 60 degrees of f's, each weighted by g's angle at the point. Faces without area have weight 0; their own
-/// normals are the mean over all faces, or +Z if no face has area. If there are more than 256 faces, they are first
-/// grouped in cells of directions, about 1.3 degrees wide (up to 10 where they point in very different directions), and
-/// the mean normal of a cell is used for each of its faces.
+/// within the crease angle (in degrees, 0 to 180) of f's, each weighted by g's angle at the point. Faces without area have
+/// weight 0; their own normals are the mean over all faces, or +Z if no face has area. If there are more than 256 faces, they
+/// are first grouped in cells of directions, about 1.3 degrees wide (up to 10 where they point in very different directions),
+/// and the mean normal of a cell is used for each of its faces. With a crease angle below 1.3 degrees such faces keep their own
+/// normals.
 ///
 /// Takes time linear in the number of faces, except in fans of up to 256 faces. Source of the weights: Thürmer and
 /// Wüthrich 1998, "Computing vertex normals from polygonal facets".
-pub(crate) fn fan_normals(fan: &[Face], normals: &mut Vec<Vec3>) {
+pub(crate) fn fan_normals(fan: &[Face], crease_angle: f32, normals: &mut Vec<Vec3>) {
     normals.clear();
+    let limit = (f64::from(crease_angle).to_radians() + ROOM).min(std::f64::consts::PI).cos();
     if fan.len() <= FAN_LIMIT {
-        normals.extend(averages(fan));
+        normals.extend(averages(fan, limit));
+        return;
+    }
+    if crease_angle < CELL_ANGLE {
+        let all: DVec3 = fan.iter().map(|face| face.angle * face.normal).sum();
+        let mean = all.try_normalize().unwrap_or(DVec3::Z);
+        normals.extend(fan.iter().map(|face| face.normal.try_normalize().unwrap_or(mean).as_vec3()));
         return;
     }
     let (mut cells, mut cell_of) = gather(fan, CELLS[0]);
@@ -105,14 +119,15 @@ pub(crate) fn fan_normals(fan: &[Face], normals: &mut Vec<Vec3>) {
             (cells, cell_of) = gather(fan, along);
         }
     }
-    let of_cells: Vec<Vec3> = averages(&cells).collect();
+    let of_cells: Vec<Vec3> = averages(&cells, limit).collect();
     normals.extend(cell_of.iter().map(|&cell| of_cells[cell as usize]));
 }
 
-fn averages(fan: &[Face]) -> impl Iterator<Item = Vec3> {
-    fan.iter().map(|own| {
+/// Returns the mean normals of faces. `limit` is the cosine of the crease angle.
+fn averages(fan: &[Face], limit: f64) -> impl Iterator<Item = Vec3> {
+    fan.iter().map(move |own| {
         let lone = own.normal == DVec3::ZERO;
-        let near = |g: &&Face| lone || own.normal.dot(g.normal) >= COS_LIMIT;
+        let near = |g: &&Face| lone || own.normal.dot(g.normal) >= limit;
         let sum: DVec3 = fan.iter().filter(near).map(|g| g.angle * g.normal).sum();
         sum.try_normalize().unwrap_or(own.normal).try_normalize().unwrap_or(DVec3::Z).as_vec3()
     })
@@ -149,7 +164,11 @@ mod tests {
 
     /// Returns the normals that triangles get, corner by corner.
     fn smooth(triangles: &[[Vec3; 3]], progress: &Progress) -> Result<Vec<[Vec3; 3]>, Cancelled> {
-        let mut builder = MeshBuilder::new();
+        creased(triangles, CREASE_ANGLE, progress)
+    }
+
+    fn creased(triangles: &[[Vec3; 3]], degrees: f32, progress: &Progress) -> Result<Vec<[Vec3; 3]>, Cancelled> {
+        let mut builder = MeshBuilder::with_crease_angle(degrees);
         let material = builder.material(Material::plain("plain", [1.0; 4]));
         for triangle in triangles {
             let corner = |position| InputCorner { position, normal: None, uv: Vec2::ZERO };
@@ -174,7 +193,7 @@ mod tests {
         let face = |i: usize| Face { normal: directions[i % 2], angle: 0.5 + i as f64 / 100.0 };
         let fan: Vec<Face> = (0..=FAN_LIMIT).map(face).collect();
         let mut normals = Vec::new();
-        fan_normals(&fan, &mut normals);
+        fan_normals(&fan, CREASE_ANGLE, &mut normals);
         assert_eq!(normals.len(), fan.len());
         for (normal, face) in normals.iter().zip(&fan) {
             assert!(normal.as_dvec3().distance(face.normal) < 1e-6, "{normal}, not {}", face.normal);
@@ -294,6 +313,41 @@ mod tests {
             let expected = (30.0 * right_up + 90.0 * left_up).normalize().as_vec3();
             for normal in normals.iter().map(|corners| corners[0]) {
                 assert!(normal.distance(expected) < 1e-6, "{normal} and not {expected}");
+            }
+        }
+    }
+
+    fn normal_of(p: &[Vec3; 3]) -> Vec3 {
+        (p[1] - p[0]).cross(p[2] - p[0]).normalize()
+    }
+
+    #[test]
+    fn faces_are_smooth_up_to_the_crease_angle_and_creased_beyond_it() {
+        // Two squares that share the edge along y, the second one bent by an angle.
+        for bend in [0.1_f32, 1.0, 29.0, 60.0, 89.0, 91.0, 150.0, 179.0] {
+            let (sin, cos) = bend.to_radians().sin_cos();
+            let triangles = [[Vec3::ZERO, Vec3::Y, Vec3::NEG_X], [Vec3::Y, Vec3::ZERO, Vec3::new(cos, 0.0, -sin)]];
+            for (crease, is_smooth) in [(bend - 0.05, false), (bend, true), (bend + 0.05, true)] {
+                let normals = creased(&triangles, crease, &Progress::new()).unwrap();
+                let joined = normals[0][0].distance(normals[1][1]) < 1e-6;
+                assert_eq!(joined, is_smooth, "bent by {bend} degrees with a crease angle of {crease}");
+            }
+        }
+    }
+
+    #[test]
+    fn with_a_crease_angle_of_0_everything_is_flat_and_with_180_every_point_has_one_normal() {
+        // The last one is a fan of more faces than are compared with each other.
+        for triangles in [made(Shape::Icosphere).0, made(Shape::CubeSmooth).0, cone(5_000, 1.0)] {
+            let flat = creased(&triangles, 0.0, &Progress::new()).unwrap();
+            for (p, normals) in triangles.iter().zip(&flat) {
+                assert!(normals.iter().all(|n| n.distance(normal_of(p)) < 2e-5), "{normals:?}, not {}", normal_of(p));
+            }
+            let smooth = creased(&triangles, 180.0, &Progress::new()).unwrap();
+            let mut of_point = HashMap::new();
+            for (p, n) in triangles.iter().flatten().zip(smooth.iter().flatten()) {
+                let first = *of_point.entry(p.to_array().map(|x| (x + 0.0).to_bits())).or_insert(*n);
+                assert!(first.distance(*n) < 1e-5, "{first} and {n} at {p}");
             }
         }
     }

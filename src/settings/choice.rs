@@ -335,6 +335,9 @@ impl Choice for Displacement {
 
 #[cfg(test)]
 mod tests {
+    use crate::load::{LengthUnit, NormalSource};
+    use crate::mesh::UpAxis;
+
     use super::super::{Colors, DeviationUnit, Lighting, NormalsAt, Overlay, ToneCurve};
     use super::*;
 
@@ -369,5 +372,8 @@ mod tests {
         check::<ToneCurve>();
         check::<Overlay>();
         check::<Colors>();
+        check::<NormalSource>();
+        check::<UpAxis>();
+        check::<LengthUnit>();
     }
 }

@@ -4,6 +4,7 @@
 //! the window's rows are made from these declarations.
 
 mod choice;
+mod import;
 pub(crate) mod light;
 mod matcap;
 pub(crate) mod options;
@@ -14,6 +15,7 @@ mod value;
 
 use glam::{Mat4, Vec2};
 
+use crate::load::Import;
 use crate::mesh::Mesh;
 use crate::names::every;
 use crate::tessellate::{
@@ -67,6 +69,8 @@ pub struct Settings {
     pub split_surface: Option<Surface>,
     /// sRGB colour behind the mesh; none for that of the window's theme, and in commands [`DARK_BACKGROUND`].
     pub background: Option<[u8; 3]>,
+    /// How the geometry of the mesh's file is taken. The mesh is read again when it changes.
+    pub import: Import,
 }
 
 impl Default for Settings {
@@ -88,6 +92,7 @@ impl Default for Settings {
             split: None,
             split_surface: None,
             background: None,
+            import: Import::default(),
         }
     }
 }

@@ -1,13 +1,15 @@
 //! Every option of [`Settings`], declared once.
 //!
 //! To add one: put a field into [`Settings`] or [`crate::tessellate::Tessellation`], declare it here, and list it in
-//! [`TESSELLATION`] or [`PICTURE`].
+//! [`TESSELLATION`], [`PICTURE`] or [`IMPORT`].
 
 use super::value::Field;
 use super::{
     Access, Colors, Declaration, Description, DeviationUnit, FileLights, Kind, Lighting, Matcap, NormalsAt, Overlay,
     Range, Settings, ToneCurve, Value, descriptions,
 };
+use crate::load::{LengthUnit, NormalSource};
+use crate::mesh::UpAxis;
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface, Tessellation};
 
 /// The options of every command that tessellates.
@@ -49,6 +51,9 @@ pub(crate) static PICTURE: [&Declaration; 15] = [
     &BACKGROUND,
 ];
 
+/// The options of commands that read a mesh.
+pub(crate) static IMPORT: [&Declaration; 4] = [&MESH_NORMALS, &CREASE_ANGLE, &UP, &UNIT];
+
 /// Tessellation factors, as Direct3D 11 has them.
 pub(crate) const FACTOR_RANGE: Range = Range::new(1.0, 64.0, "").decimals(3).logarithmic();
 /// Tolerances of LOD by error, in px.
@@ -58,7 +63,7 @@ pub(crate) const DISTANCE_RANGE: Range = Range::new(0.1, 1000.0, "r");
 
 /// All options.
 pub(crate) fn all() -> impl Iterator<Item = &'static Declaration> {
-    TESSELLATION.into_iter().chain(PICTURE)
+    TESSELLATION.into_iter().chain(PICTURE).chain(IMPORT)
 }
 
 /// A field of settings, by its path.
@@ -505,6 +510,66 @@ pub(crate) static BACKGROUND: Declaration = Declaration {
     saved_as: &["background"],
     no_effect: always_has_effect,
     access: field!(background),
+};
+
+pub(crate) static MESH_NORMALS: Declaration = Declaration {
+    name: "mesh-normals",
+    label: "Normals",
+    placeholder: "NAME",
+    text: "The normals that the corners of the mesh have. The shape of curved patches is made of them.",
+    kind: Kind::Choice(descriptions::<NormalSource>),
+    unset: None,
+    saved_as: &["mesh_normals"],
+    no_effect: always_has_effect,
+    access: field!(import.normals),
+};
+
+pub(crate) static CREASE_ANGLE: Declaration = Declaration {
+    name: "crease-angle",
+    label: "Crease angle",
+    placeholder: "DEGREES",
+    text: "Where normals are made, triangles that meet at up to this angle are smooth, and others make a crease: 0 makes every \
+           triangle flat, and 180 everything smooth.",
+    kind: Kind::Number(Range::new(0.0, 180.0, "°").decimals(0)),
+    unset: None,
+    saved_as: &["crease_angle"],
+    no_effect: always_has_effect,
+    access: field!(import.crease_angle),
+};
+
+/// It is saved with the file, as the camera is.
+pub(crate) static UP: Declaration = Declaration {
+    name: "up",
+    label: "Up axis",
+    placeholder: "AXIS",
+    text: "The axis of the file's coordinates that points up. The mesh is turned, with everything that belongs to it.",
+    kind: Kind::Choice(descriptions::<UpAxis>),
+    unset: Some(Description::new(
+        "file",
+        "As the file says",
+        "FBX files say which axis points up. In glTF files it is Y. OBJ, STL and PLY files don't say, and count as Y up.",
+    )),
+    saved_as: &[],
+    no_effect: always_has_effect,
+    access: field!(import.up),
+};
+
+/// It is saved with the file too.
+pub(crate) static UNIT: Declaration = Declaration {
+    name: "unit",
+    label: "Unit",
+    placeholder: "UNIT",
+    text: "The unit of the file's coordinates. The mesh is scaled to metres, with everything that belongs to it.",
+    kind: Kind::Choice(descriptions::<LengthUnit>),
+    unset: Some(Description::new(
+        "file",
+        "As the file says",
+        "FBX files say what their unit is. In glTF files it is the metre. OBJ, STL and PLY files don't say, and their numbers are \
+         taken as they are.",
+    )),
+    saved_as: &[],
+    no_effect: always_has_effect,
+    access: field!(import.unit),
 };
 
 #[cfg(test)]

@@ -22,7 +22,8 @@ pub(crate) use spread::radical_inverse;
 pub(crate) use triangles::{Closest, Triangles};
 
 use crate::files::Limits;
-use crate::load::{LoadError, Source};
+use crate::load::selection::Selection;
+use crate::load::{Import, LoadError, Source};
 use crate::mesh::{Mesh, Shape};
 use crate::progress::Progress;
 
@@ -62,16 +63,24 @@ impl Truth {
         of_shape(shape).map(Self::Exact)
     }
 
-    /// Returns the reference surface of a source: the exact surface of a shape, or the mesh. `None` if that has no
-    /// triangle.
+    /// Returns the reference surface of a source: the exact surface of a shape, or the mesh of a file, turned and scaled as
+    /// `import` says of the mesh that is compared with it. `None` if that has no triangle.
     ///
     /// # Errors
     /// The file can't be read as a mesh, or `progress` was cancelled.
-    pub fn load(source: &Source, limits: &Limits, progress: &Progress) -> Result<Option<Self>, LoadError> {
-        match source.shape().and_then(Self::of_shape) {
-            Some(exact) => Ok(Some(exact)),
-            None => Ok(Self::of_mesh(&source.load(limits, progress)?.mesh)),
+    pub fn load(
+        source: &Source,
+        import: Import,
+        limits: &Limits,
+        progress: &Progress,
+    ) -> Result<Option<Self>, LoadError> {
+        let shape = source.shape();
+        if let Some(exact) = shape.and_then(Self::of_shape) {
+            return Ok(Some(exact));
         }
+        let import = if shape.is_some() { Import::default() } else { import.placement() };
+        let selected = Selection { import, ..Selection::default() };
+        Ok(Self::of_mesh(&source.load_selected(selected, limits, progress)?.mesh))
     }
 
     /// Returns a mesh as reference surface, with its interpolated normals, or `None` if it has no triangle. It needn't

@@ -11,6 +11,7 @@ mod environment;
 mod factors;
 mod formats;
 mod gallery;
+mod import;
 mod info;
 #[path = "../documents/lamp.rs"]
 mod lamp;

@@ -69,6 +69,7 @@ fn on_device(shape: Shape, mesh: Mesh) -> (Loaded, Scene) {
             variants: Vec::new(),
             scenes: Vec::new(),
             scene: None,
+            parts: Arc::default(),
             files: Vec::new(),
             topology,
             load_ms: 0.0,

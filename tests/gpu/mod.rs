@@ -23,6 +23,7 @@ mod masks;
 mod materials;
 #[path = "../documents/moving.rs"]
 pub(crate) mod moving;
+mod orientation;
 mod passes;
 mod picking;
 mod pictures;

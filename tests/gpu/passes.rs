@@ -328,6 +328,7 @@ pub(super) fn sheet(columns: u32, rows: u32) -> Loaded {
         variants: Vec::new(),
         scenes: Vec::new(),
         scene: None,
+        parts: Arc::default(),
         files: Vec::new(),
         topology,
         load_ms: 0.0,

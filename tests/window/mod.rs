@@ -9,6 +9,7 @@ mod editing;
 mod environment;
 mod file_cameras;
 mod foreign_factors;
+mod import;
 mod lasting;
 mod layout;
 mod lists;

@@ -5,7 +5,7 @@ use egui::{Context, OpenUrl, ViewportCommand, gui_zoom};
 use crate::app::App;
 use crate::app::dialogs::typed_path::Purpose;
 use crate::commands::{Action, Availability, Command, FileAction, Preparing};
-use crate::load::{HeightSource, Source};
+use crate::load::{HeightSource, Import, Source};
 use crate::settings::{Colors, Declaration, Settings, options};
 use crate::tessellate::Tessellation;
 
@@ -22,6 +22,7 @@ impl App {
         let has_effect = |option: &Declaration| (option.no_effect)(&self.settings).is_none();
         Availability {
             has_document: self.document.is_some(),
+            is_of_a_file: self.source().is_some_and(|source| source.shape().is_none()),
             has_picture: self.viewport.picture.drawn.is_some(),
             has_truth: self.truth.is_some(),
             has_factors: self.given.is_some(),
@@ -147,12 +148,12 @@ impl App {
         }
     }
 
-    /// Goes back to the settings of a first start. Whether displacement is on depends on the mesh, so it stays.
-    fn reset_settings(&mut self) {
-        self.settings = Settings::opening().with(Tessellation {
-            displacement: self.settings.tessellation.displacement,
-            ..Settings::opening().tessellation
-        });
+    /// Goes back to the settings of a first start. Whether displacement is on depends on the mesh, and so do axis and unit: they stay.
+    pub(in crate::app) fn reset_settings(&mut self) {
+        let Settings { tessellation: Tessellation { displacement, .. }, import, .. } = self.settings;
+        let usual = Settings::opening();
+        let import = Import { up: import.up, unit: import.unit, ..usual.import };
+        self.settings = Settings { import, ..usual.with(Tessellation { displacement, ..usual.tessellation }) };
     }
 
     /// Closes the small windows that a command opened; or if there are none, stops a long drawing; or if there is none,
@@ -169,6 +170,7 @@ impl App {
             return self.viewport.picture.cancel();
         }
         (self.jobs.load, self.jobs.truth_load, self.jobs.writing) = (None, None, None);
+        self.keep_import();
         self.cancel_environment();
         (self.dialogs.error, self.dialogs.notice, self.dialogs.typed_path) = (None, None, None);
         (self.commands.shows_keys, self.dialogs.shows_warnings) = (false, false);

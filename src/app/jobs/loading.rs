@@ -8,9 +8,10 @@ use super::measure_job::MeasureJob;
 use super::silhouette_job::SilhouetteJob;
 use crate::app::App;
 use crate::engine::{Loaded, Preparation};
-use crate::load::Source;
 use crate::load::environment_file::is_environment;
 use crate::load::format::Format;
+use crate::load::{Import, Source};
+use crate::settings::Settings;
 
 impl App {
     /// Starts to load a mesh on a thread of its own; a load that is under way is cancelled. If it is the mesh that is open,
@@ -19,7 +20,7 @@ impl App {
         let same = self.document.as_ref().filter(|document| document.loaded.source == source);
         let preparation = same.map(|document| document.loaded.preparation.clone());
         let keep_view = preparation.is_some();
-        let preparation = preparation.unwrap_or_else(|| self.plain());
+        let preparation = preparation.unwrap_or_else(|| self.plain(&source));
         self.jobs.load = Some(Load::start(&self.engine, context, source, preparation, self.settings, keep_view));
     }
 
@@ -35,12 +36,44 @@ impl App {
     pub(in crate::app) fn preparation(&self) -> Preparation {
         let again = self.jobs.load.as_ref().filter(|load| load.keep_view).map(|load| &load.preparation);
         let shown = self.document.as_ref().map(|document| &document.loaded.preparation);
-        again.or(shown).cloned().unwrap_or_else(|| self.plain())
+        again.or(shown).cloned().unwrap_or_else(|| self.plain(&Source::default()))
     }
 
-    /// A preparation that leaves the mesh as the file has it.
-    fn plain(&self) -> Preparation {
-        Preparation { limits: self.jobs.limits, ..Preparation::default() }
+    /// A preparation that leaves the mesh as the file has it, but for normals, axis and unit that were chosen.
+    fn plain(&self, source: &Source) -> Preparation {
+        let import = self.persistence.import_of(source, &self.settings);
+        Preparation { limits: self.jobs.limits, import, ..Preparation::default() }
+    }
+
+    /// Loads the mesh again if its normals, its axis or its unit were changed, also by undo. While something is dragged, and while
+    /// another mesh is being loaded, it waits.
+    pub(in crate::app) fn follow_import(&mut self, context: &egui::Context) {
+        let opens_another = self.jobs.load.as_ref().is_some_and(|load| !load.keep_view);
+        if self.document.is_none() || opens_another || context.egui_is_using_pointer() {
+            return;
+        }
+        let wanted = self.settings.import;
+        if self.preparation().import != wanted {
+            self.prepare(context, |preparation| preparation.import = wanted);
+        }
+    }
+
+    /// Goes back to the normals, the axis and the unit that the mesh has, after a load that came to nothing.
+    pub(in crate::app) fn keep_import(&mut self) {
+        if let Some(document) = &self.document {
+            self.settings.import = document.loaded.preparation.import;
+        }
+    }
+
+    /// Takes over the axis and the unit of a mesh that was opened. This isn't a step of undo, because it follows from the mesh.
+    fn take_placement(&mut self) {
+        let Some(document) = &self.document else { return };
+        let Import { up, unit, .. } = document.loaded.preparation.import;
+        let place = move |settings: &mut Settings| {
+            (settings.import.up, settings.import.unit) = (up, unit);
+        };
+        place(&mut self.settings);
+        self.history.change_all(place);
     }
 
     /// Loads the same mesh again; settings and camera stay.
@@ -68,17 +101,26 @@ impl App {
                 self.panels.chart.stop();
                 let title = format!("{} - pnaen", document.loaded.source.title());
                 context.send_viewport_cmd(egui::ViewportCommand::Title(title));
-                let scene = document.loaded.scene;
+                let place = |loaded: &Loaded| (loaded.scene, loaded.preparation.import.placement());
+                let placed = place(&document.loaded);
                 let before = self.document.replace(document);
                 // Scenes may be at different places, and of different sizes.
-                let is_other_scene = before.as_ref().is_some_and(|before| before.loaded.scene != scene);
+                let is_placed_anew = before.as_ref().is_some_and(|before| place(&before.loaded) != placed);
+                let is_turned = before.as_ref().is_some_and(|before| place(&before.loaded).1 != placed.1);
+                if keep_view && is_turned {
+                    (self.viewport.frozen, self.viewport.ruler) = (None, None);
+                    self.follow_truth(context);
+                }
+                if !keep_view {
+                    self.take_placement();
+                }
                 if before.is_some() {
                     self.dialogs.error = None;
                 }
                 self.dialogs.error = remark.or(self.dialogs.error.take());
                 self.take_heights(before.and_then(|document| document.loaded.preparation.heights).as_ref());
                 self.keep_playback(keep_view);
-                if !keep_view || is_other_scene {
+                if !keep_view || is_placed_anew {
                     self.frame();
                 }
                 self.look_as_before(keep_view);
@@ -95,6 +137,7 @@ impl App {
                     why += "; it was removed from the recent files";
                 }
                 self.dialogs.error = Some(why);
+                self.keep_import();
                 // If the first file can't be loaded, the window shows its default mesh.
                 if self.document.is_none() {
                     self.open(context, Source::default());

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::background_job::BackgroundJob;
 use crate::app::App;
 use crate::files::Limits;
-use crate::load::{LoadError, Source};
+use crate::load::{Import, LoadError, Source};
 use crate::progress::Progress;
 use crate::settings::Colors;
 use crate::tessellate::Displacement;
@@ -29,12 +29,12 @@ pub(crate) struct TruthLoad {
 
 impl TruthLoad {
     /// Starts to load on a thread of its own.
-    fn start(context: &egui::Context, source: Source, limits: Limits) -> Self {
+    fn start(context: &egui::Context, source: Source, import: Import, limits: Limits) -> Self {
         static GENERATION: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(2);
         let generation = GENERATION.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         let progress = Progress::new();
         let (wanted, own_progress) = (source.clone(), progress.clone());
-        let load = move || match Truth::load(&wanted, &limits, &own_progress) {
+        let load = move || match Truth::load(&wanted, import, &limits, &own_progress) {
             Ok(Some(truth)) => Ok(ChosenTruth { source: wanted, truth: Arc::new(truth), generation }),
             Ok(None) => Err(Some(format!("{wanted} can't be a reference surface: it has no triangles"))),
             Err(LoadError::Cancelled(_)) => Err(None),
@@ -58,7 +58,15 @@ impl Drop for TruthLoad {
 impl App {
     /// Starts to load a reference surface. Until it is loaded, the one before it stays.
     pub fn open_truth(&mut self, context: &egui::Context, source: Source) {
-        self.jobs.truth_load = Some(TruthLoad::start(context, source, self.jobs.limits));
+        self.jobs.truth_load = Some(TruthLoad::start(context, source, self.preparation().import, self.jobs.limits));
+    }
+
+    /// Loads a reference surface of a file again, which is turned and scaled as the mesh is.
+    pub(in crate::app) fn follow_truth(&mut self, context: &egui::Context) {
+        let chosen = self.truth.as_ref().map(|chosen| chosen.source.clone());
+        if let Some(source @ (Source::File(_) | Source::Vase)) = chosen {
+            self.open_truth(context, source);
+        }
     }
 
     /// The reference surface that was chosen for the mesh.

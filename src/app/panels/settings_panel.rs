@@ -21,6 +21,8 @@ impl App {
             ui.spacing_mut().combo_width = controls;
             ui.spacing_mut().slider_width = controls - gap - ui.spacing().interact_size.x;
             self.section(ui, Section::Surface, Self::surface_rows);
+            self.section(ui, Section::Import, Self::import_rows);
+            self.parts_section(ui);
             self.section(ui, Section::LevelOfDetail, Self::lod_rows);
             self.section(ui, Section::Displacement, Self::height_rows);
             self.animation_section(ui);
@@ -52,6 +54,8 @@ impl App {
         let settings = &mut self.settings;
         option_row(ui, &options::SURFACE, settings, "");
         shown_option_row(ui, &options::ALPHA, settings);
+        self.normals_rows(ui);
+        let settings = &mut self.settings;
         option_row(ui, &options::NORMALS, settings, "");
         option_row(ui, &options::PARTITIONING, settings, "");
     }

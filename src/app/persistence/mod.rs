@@ -13,12 +13,11 @@ use egui::ViewportCommand;
 use crate::app::App;
 use crate::app::jobs::background_job::BackgroundJob;
 use crate::app::sections::OpenSections;
-use crate::load::Source;
+use crate::load::{Import, Source};
 use crate::render::Camera;
 use crate::settings::Settings;
-use crate::tessellate::Tessellation;
 
-use saved_state::{MAX_FILES, SavedCamera, SavedFile, SavedState};
+use saved_state::{MAX_FILES, Placement, SavedCamera, SavedFile, SavedState};
 
 pub(super) use saved_state::{LEAST_SIZE, WindowGeometry};
 pub(super) use state_file::folder;
@@ -74,14 +73,21 @@ impl Persistence {
         let Some(path) = self.open.clone() else { return Default::default() };
         let files = &mut self.kept.files;
         let known = files.iter().position(|file| file.path == path);
-        let mut file = known
-            .map_or(SavedFile { path, seen: None, bookmarks: Vec::new(), is_gone: false }, |index| files.remove(index));
+        let mut file = known.map_or_else(|| SavedFile::new(path), |index| files.remove(index));
         file.is_gone = false;
         let camera = file.seen.and_then(|seen| seen.camera_for(diagonal));
         let bookmarks = file.bookmarks.iter().filter_map(|bookmark| bookmark.camera_for(diagonal)).collect();
         files.insert(0, file);
         files.truncate(MAX_FILES);
         (camera, bookmarks)
+    }
+
+    /// Returns how the geometry of a file is taken: as these settings say, with the axis and the unit that were chosen for the file.
+    pub(in crate::app) fn import_of(&self, source: &Source, settings: &Settings) -> Import {
+        let path = path_of(source);
+        let known = self.kept.files.iter().find(|file| Some(&file.path) == path.as_ref());
+        let Placement { up, unit } = known.map(|file| file.placement).unwrap_or_default();
+        Import { up, unit, ..settings.import }
     }
 
     /// Removes a file that no longer exists from the list. Returns whether it was listed. Its camera is kept.
@@ -108,6 +114,7 @@ impl Persistence {
         settings: &Settings,
         open: OpenSections,
         environment: Option<String>,
+        placement: Placement,
         seen: Option<(SavedCamera, Vec<SavedCamera>)>,
     ) {
         self.kept.take_settings(settings);
@@ -116,7 +123,7 @@ impl Persistence {
         self.kept.frame = frame_now(context, &self.kept.frame);
         let open = self.kept.files.iter_mut().find(|file| Some(&file.path) == self.open.as_ref());
         if let Some((file, seen)) = open.zip(seen) {
-            (file.seen, file.bookmarks) = (Some(seen.0), seen.1);
+            (file.placement, file.seen, file.bookmarks) = (placement, Some(seen.0), seen.1);
         }
     }
 
@@ -210,6 +217,14 @@ impl App {
         context.set_zoom_factor(lasting.kept.frame.zoom);
         self.dialogs.error = lasting.said.take().or(self.dialogs.error.take());
         self.persistence = lasting;
+        // The mesh that is being opened may have been turned or scaled before.
+        let opening = self.jobs.load.as_ref().filter(|load| !load.keep_view);
+        let opening = opening.map(|load| (load.source.clone(), load.preparation.import));
+        let is_otherwise =
+            |(source, import): &(Source, Import)| self.persistence.import_of(source, &self.settings) != *import;
+        if let Some((source, _)) = opening.filter(is_otherwise) {
+            self.open(context, source);
+        }
     }
 
     /// Sets the camera that the mesh was last seen with, if it is known. A mesh that was loaded again keeps its view.
@@ -232,7 +247,12 @@ impl App {
             (saved(&self.viewport.camera), self.viewport.bookmarks.iter().map(saved).collect())
         });
         let environment = self.environment_file().and_then(Path::to_str).map(str::to_owned);
-        self.persistence.take(context, &self.settings, self.panels.open, environment, seen);
+        let placement = self.document.as_ref().map(|document| {
+            let Import { up, unit, .. } = document.loaded.preparation.import;
+            Placement { up, unit }
+        });
+        let placement = placement.unwrap_or_default();
+        self.persistence.take(context, &self.settings, self.panels.open, environment, placement, seen);
         let failed = self.persistence.write_on(context);
         self.dialogs.error = self.dialogs.error.take().or(failed);
     }
@@ -271,10 +291,7 @@ impl App {
     /// Goes back to the state of a first start. The mesh stays open, and is framed.
     fn forget_all(&mut self, context: &egui::Context) {
         let frame = WindowGeometry::default();
-        self.settings = Settings::opening().with(Tessellation {
-            displacement: self.settings.tessellation.displacement,
-            ..Settings::opening().tessellation
-        });
+        self.reset_settings();
         self.close_environment();
         self.history = Default::default();
         self.view_history = Default::default();

@@ -11,8 +11,10 @@ use serde_json::{Value, json};
 use super::saved_settings::{read_settings, written_settings};
 use crate::app::sections::{OpenSections, Section};
 use crate::commands::MOST_BOOKMARKS;
+use crate::load::LengthUnit;
+use crate::mesh::UpAxis;
 use crate::render::Camera;
-use crate::settings::Settings;
+use crate::settings::{Choice, Settings};
 use crate::tessellate::{Displacement, Tessellation};
 
 /// The greatest number of files that are saved with their cameras.
@@ -30,7 +32,7 @@ const THEMES: [(ThemePreference, &str); 3] =
 /// Everything that is saved.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct SavedState {
-    /// Without displacement, which depends on the mesh.
+    /// Without displacement, axis and unit, which depend on the mesh.
     pub settings: Settings,
     pub frame: WindowGeometry,
     pub open: OpenSections,
@@ -55,10 +57,19 @@ pub struct WindowGeometry {
 pub(super) struct SavedFile {
     /// The absolute path.
     pub path: String,
+    /// Which of its axes points up and what its unit is, if that was chosen: the names of these options' values.
+    pub placement: Placement,
     pub seen: Option<SavedCamera>,
     pub bookmarks: Vec<SavedCamera>,
     /// Whether the file was missing when it was last opened. It isn't listed until it can be loaded again.
     pub is_gone: bool,
+}
+
+/// Which axis of a file points up, and what its unit is, if that was chosen.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Placement {
+    pub up: Option<UpAxis>,
+    pub unit: Option<LengthUnit>,
 }
 
 /// The camera that a mesh was last seen with.
@@ -136,9 +147,10 @@ impl SavedState {
         self.settings == Settings::opening() && self.files.is_empty()
     }
 
-    /// Takes settings, without displacement, which depends on the mesh.
+    /// Takes settings, without displacement, axis and unit, which depend on the mesh.
     pub(super) fn take_settings(&mut self, settings: &Settings) {
-        self.settings = settings.with(Tessellation { displacement: Displacement::Off, ..settings.tessellation });
+        let own = settings.with(Tessellation { displacement: Displacement::Off, ..settings.tessellation });
+        self.settings = Settings { import: own.import.without_placement(), ..own };
     }
 }
 
@@ -182,18 +194,32 @@ impl WindowGeometry {
 }
 
 impl SavedFile {
+    /// A file of which nothing is known but its path.
+    pub(super) fn new(path: String) -> Self {
+        Self { path, placement: Placement::default(), seen: None, bookmarks: Vec::new(), is_gone: false }
+    }
+
     fn read(value: &Value) -> Option<Self> {
         let path = absolute(&value["path"])?;
         let is_gone = Fields(value).switch("gone", false);
         let bookmarks = value["bookmarks"].as_array().into_iter().flatten().filter_map(SavedCamera::read);
         let bookmarks = bookmarks.take(MOST_BOOKMARKS).collect();
-        Some(Self { path, seen: SavedCamera::read(value), bookmarks, is_gone })
+        let placement = Placement {
+            up: value["up"].as_str().and_then(UpAxis::named),
+            unit: value["unit"].as_str().and_then(LengthUnit::named),
+        };
+        Some(Self { path, placement, seen: SavedCamera::read(value), bookmarks, is_gone })
     }
 
     fn written(&self) -> Value {
         let mut written = json!({ "path": self.path });
         if self.is_gone {
             written["gone"] = true.into();
+        }
+        let Placement { up, unit } = self.placement;
+        let names = [("up", up.map(Choice::name)), ("unit", unit.map(Choice::name))];
+        for (member, name) in names.into_iter().filter_map(|(member, name)| Some((member, name?))) {
+            written[member] = name.into();
         }
         if let Some(seen) = &self.seen {
             seen.write(&mut written);

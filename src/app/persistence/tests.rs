@@ -7,9 +7,9 @@ use proptest::prelude::*;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use super::saved_state::{MAX_FILES, SavedCamera, SavedFile, SavedState, WindowGeometry};
+use super::saved_state::{MAX_FILES, Placement, SavedCamera, SavedFile, SavedState, WindowGeometry};
 use super::{Persistence, state_file};
-use crate::load::Source;
+use crate::load::{Import, Source};
 use crate::render::Camera;
 use crate::settings::random::settings;
 use crate::settings::{Overlays, Settings};
@@ -58,7 +58,11 @@ prop_compose! {
         ),
     ) -> SavedState {
         let absolute = |name: String| std::env::temp_dir().join(name).to_str().unwrap().to_owned();
-        let file = |(name, (seen, is_gone))| SavedFile { path: absolute(name), seen, bookmarks: seen.into_iter().collect(), is_gone };
+        let Import { up, unit, .. } = settings.import;
+        let file = |(name, (seen, is_gone))| {
+            let (placement, bookmarks) = (Placement { up, unit }, Option::into_iter(seen).collect());
+            SavedFile { path: absolute(name), placement, seen, bookmarks, is_gone }
+        };
         let files = files.into_iter().map(file).collect();
         let frame = WindowGeometry { size: [width, height], is_maximized, theme, zoom };
         let mut saved = SavedState { frame, files, ..SavedState::default() };

@@ -5,6 +5,7 @@ use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command, Error, FromArgMatches};
 
+use crate::load::Import;
 use crate::settings::{Choice, Declaration, Description, Kind, Lighting, Settings, Value, descriptions, options};
 use crate::tessellate::{Displacement, Tessellation};
 
@@ -19,6 +20,10 @@ pub(crate) struct TessellationOptions {
 /// How a picture is drawn: settings with the usual tessellation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct PictureOptions(pub Settings);
+
+/// How the geometry of a file is taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct ImportOptions(pub Import);
 
 const WITHOUT_DISPLACEMENT: &str =
     "By default on with --height, else off. Without --height, the materials' images are the height map";
@@ -83,13 +88,39 @@ impl FromArgMatches for PictureOptions {
     }
 }
 
+impl clap::Args for ImportOptions {
+    fn augment_args(command: Command) -> Command {
+        command.args(options::IMPORT.map(|declaration| with_default(arg(declaration), declaration)))
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for ImportOptions {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
+        let mut own = Self::default();
+        own.update_from_arg_matches(matches)?;
+        Ok(own)
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
+        let mut settings = Settings { import: self.0, ..Settings::default() };
+        options::IMPORT.iter().try_for_each(|declaration| take(declaration, matches, &mut settings))?;
+        self.0 = settings.import;
+        Ok(())
+    }
+}
+
 /// An option of the command line. Help texts have no period at their end.
 fn arg(declaration: &'static Declaration) -> Arg {
     let arg = Arg::new(declaration.name).long(declaration.name).help(help(declaration));
     if matches!(declaration.kind, Kind::Switch) {
         return arg.action(ArgAction::SetTrue);
     }
-    let takes_negative = declaration.range().is_some_and(|range| range.least < 0.0);
+    let takes_negative = declaration.range().is_some_and(|range| range.least < 0.0)
+        || declaration.kind.descriptions().iter().any(|value| value.name.starts_with('-'));
     let arg =
         arg.value_name(declaration.placeholder).allow_hyphen_values(takes_negative).value_parser(parser(declaration));
     if matches!(declaration.kind, Kind::Several(_)) { arg.action(ArgAction::Append).value_delimiter(',') } else { arg }
@@ -197,7 +228,10 @@ mod tests {
     fn read(arguments: &[String]) -> Result<Settings, Error> {
         let usual = ["pnaen", "render", "a.glb", "-o", "a.png"].map(String::from);
         match Cli::try_parse_from(usual.iter().chain(arguments))?.command {
-            Some(Run::Render(args)) => Ok(args.shot.picture.0.with(args.shot.surface.tessellation.tessellation)),
+            Some(Run::Render(args)) => Ok(Settings {
+                import: args.shot.surface.weld.import.0,
+                ..args.shot.picture.0.with(args.shot.surface.tessellation.tessellation)
+            }),
             other => panic!("{other:?}"),
         }
     }

@@ -6,12 +6,12 @@ use std::sync::Arc;
 use ufbx::{Mesh, Node, RefList};
 
 use super::looks::{LookSource, MapSource, MapUvs};
-use super::packing;
 use super::textures::{Textures, of_file, sampling};
 use super::too_large;
 use crate::load::face_builder::FaceBuilder;
 use crate::load::memory_budget::Budget;
 use crate::load::notes::Notes;
+use crate::load::packing;
 use crate::load::read_error::ReadError;
 use crate::load::uri::Files;
 use crate::mesh::{Alpha, Map, MapUv, Material, MemoryAccount, Sampling, Slot, Texture};

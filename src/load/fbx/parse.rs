@@ -1,9 +1,12 @@
 //! Calls ufbx: the one place where a file's bytes reach its C code.
 
-use ufbx::{AllocatorOpts, ErrorType, FileFormat, IndexErrorHandling, InheritModeHandling, LoadOpts, MirrorAxis};
+use ufbx::{
+    AllocatorOpts, CoordinateAxes, ErrorType, FileFormat, IndexErrorHandling, InheritModeHandling, LoadOpts, MirrorAxis,
+};
 use ufbx::{ProgressCb, ProgressResult, SceneRoot};
 
 use super::too_large;
+use crate::load::import::Import;
 use crate::load::memory_budget::Budget;
 use crate::load::read_error::{FilePosition, ReadError};
 use crate::mesh::MemoryAccount;
@@ -12,11 +15,16 @@ use crate::progress::{Cancelled, Progress};
 /// How deep nodes may be nested.
 const MAX_DEPTH: u32 = 1 << 12;
 
-/// Parses a file. The budget holds the memory of the result, which is `metadata.result_memory_used`.
+/// Parses a file. What `import` says of axis and unit takes the place of what the file says. The budget holds the memory of the result, which is `metadata.result_memory_used`.
 ///
 /// # Errors
 /// [`ReadError::Broken`], [`ReadError::TooLarge`] and [`ReadError::Cancelled`].
-pub(super) fn scene(bytes: &[u8], budget: &Budget, progress: &Progress) -> Result<SceneRoot, ReadError> {
+pub(super) fn scene(
+    bytes: &[u8],
+    import: &Import,
+    budget: &Budget,
+    progress: &Progress,
+) -> Result<SceneRoot, ReadError> {
     let mut watch = |at: &ufbx::Progress| {
         progress.set(at.bytes_read as f32 / at.bytes_total.max(1) as f32);
         if progress.check().is_ok() { ProgressResult::Continue } else { ProgressResult::Cancel }
@@ -28,9 +36,10 @@ pub(super) fn scene(bytes: &[u8], budget: &Budget, progress: &Progress) -> Resul
         // A wrong index becomes one that no list has, and is refused or repaired where it is used.
         index_error_handling: IndexErrorHandling::NoIndex,
         inherit_mode_handling: InheritModeHandling::HelperNodes,
-        handedness_conversion_axis: MirrorAxis::X,
-        target_axes: ufbx::axes_right_handed_y_up(),
-        target_unit_meters: 1.0,
+        handedness_conversion_axis: if import.up.is_none() { MirrorAxis::X } else { MirrorAxis::None },
+        // Without a target nothing is converted.
+        target_axes: if import.up.is_none() { ufbx::axes_right_handed_y_up() } else { CoordinateAxes::default() },
+        target_unit_meters: if import.unit.is_none() { 1.0 } else { 0.0 },
         clean_skin_weights: true,
         skip_mesh_parts: true,
         use_blender_pbr_material: true,

@@ -10,6 +10,7 @@ use super::skin::Skin;
 use super::too_large;
 use super::vertices::Vertices;
 use crate::load::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, counted};
+use crate::load::import::Import;
 use crate::load::memory_budget::{Budget, edge_bytes};
 use crate::load::notes::Notes;
 use crate::load::read_error::{FilePosition, ReadError};
@@ -32,6 +33,7 @@ const PER_DELTA: u64 = 250;
 pub(super) struct Surfaces<'s, 'a> {
     scene: &'s Scene,
     placed: &'s Placed,
+    import: Import,
     budget: &'a Budget,
     materials: Materials<'a>,
     faces: FaceBuilder<'a>,
@@ -58,6 +60,7 @@ impl<'s, 'a> Surfaces<'s, 'a> {
     pub(super) fn new(
         scene: &'s Scene,
         placed: &'s Placed,
+        import: Import,
         (files, budget): (&'a Files<'a>, &'a Budget),
         binder: Option<RigBuilder>,
     ) -> Result<Self, ReadError> {
@@ -66,7 +69,8 @@ impl<'s, 'a> Surfaces<'s, 'a> {
             nodes.filter_map(|node| Some((node, node.mesh.as_deref()?)))
         };
         let is_detailed = materials::need_details(meshes());
-        let mut faces = FaceBuilder::new(usize::try_from(budget.files()).unwrap_or(usize::MAX), budget);
+        let mut faces =
+            FaceBuilder::new(usize::try_from(budget.files()).unwrap_or(usize::MAX), budget).importing(import);
         let triangles = meshes().fold(0_usize, |sum, (_, mesh)| sum.saturating_add(mesh.num_triangles));
         // Many copies of a mesh are refused before any is read.
         let memory = (triangles as u64).saturating_mul(12);
@@ -84,6 +88,7 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         Ok(Self {
             scene,
             placed,
+            import,
             budget,
             materials,
             faces,
@@ -103,7 +108,7 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         self.budget.give_back_to(0);
         let global = &self.placed.global;
         let skin = Skin::new(mesh, global);
-        let vertices = Vertices::new((node, mesh), global[index], skin.as_ref(), self.budget)?;
+        let vertices = Vertices::new((node, mesh), global[index], skin.as_ref(), &self.import, self.budget)?;
         self.found.without_normals += usize::from(vertices.is_without_normals());
         let binder = self.binder.as_mut().map(|binder| {
             let binder = binder.node(index, skin.as_ref().map(|skin| &skin.joints));
@@ -137,8 +142,9 @@ impl<'s, 'a> Surfaces<'s, 'a> {
     pub(super) fn into_parts(self, notes: &mut Notes) -> (FaceBuilder<'a>, Option<DetailTable>, Option<RigBuilder>) {
         notes.append(self.materials.into_notes());
         let Counts { without_normals, holes, bad_uvs, bad_colors, many_joints } = self.found;
+        let made = format!("meshes without normals, which got ones that are {}", self.import.smoothness());
         notes.extend(counted([
-            (without_normals, "meshes without normals, which got ones that are smooth within 60 degrees"),
+            (without_normals, made.as_str()),
             (holes, "polygons that are holes, left out"),
             (bad_uvs, "uvs that aren't finite or don't exist, replaced by (0, 0)"),
             (bad_colors, "colours of corners that aren't finite or don't exist, replaced by white"),

@@ -11,6 +11,7 @@ use std::path::Path;
 
 use super::read_here;
 use crate::files::Limits;
+use crate::load::import::Import;
 use crate::load::loaded_mesh::LoadedMesh;
 use crate::load::read_error::ReadError;
 use crate::progress::Progress;
@@ -18,7 +19,7 @@ use crate::progress::Progress;
 use tree::{Arrays, Entry, binary, text};
 
 fn read(bytes: &[u8]) -> Result<LoadedMesh, ReadError> {
-    read_here(bytes.to_vec(), Path::new("nowhere"), "test", &Limits::default(), &Progress::new())
+    read_here(bytes.to_vec(), Path::new("nowhere"), "test", Import::default(), &Limits::default(), &Progress::new())
 }
 
 /// Reads a file as text, as plain binary and as compressed binary. All must give the same mesh.

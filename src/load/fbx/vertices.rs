@@ -9,6 +9,7 @@ use super::morphs::{Morphs, rest_weights};
 use super::skin::Skin;
 use super::smoothing;
 use crate::load::binding_space::turned;
+use crate::load::import::Import;
 use crate::load::memory_budget::Budget;
 use crate::load::read_error::{FilePosition, ReadError};
 use crate::mesh::mesh_builder::InputCorner;
@@ -27,6 +28,8 @@ pub(super) struct Vertices<'a> {
     pub to_node: DMat4,
     /// The normals of corners that the file doesn't have, but says how smooth they are.
     made: Option<Vec<Vec3>>,
+    /// Whether all normals are made, whatever the file has.
+    makes_normals: bool,
 }
 
 /// A corner in its rest pose, and as it was before.
@@ -47,10 +50,13 @@ impl<'a> Vertices<'a> {
         (node, mesh): (&Node, &'a Mesh),
         at: DMat4,
         skin: Option<&'a Skin<'a>>,
+        import: &Import,
         budget: &Budget,
     ) -> Result<Self, ReadError> {
         let to_node = matrix(&node.geometry_to_node);
-        let made = if mesh.vertex_normal.exists { None } else { smoothing::normals(mesh, budget)? };
+        let makes_normals = import.makes_normals();
+        let is_told = mesh.vertex_normal.exists || makes_normals;
+        let made = if is_told { None } else { smoothing::normals(mesh, budget)? };
         Ok(Self {
             mesh,
             skin,
@@ -59,12 +65,13 @@ impl<'a> Vertices<'a> {
             rigid: at * to_node,
             to_node,
             made,
+            makes_normals,
         })
     }
 
-    /// Returns whether its corners get normals that are computed from angles.
+    /// Returns whether its corners get normals that are computed from angles although nobody asked for them.
     pub(super) fn is_without_normals(&self) -> bool {
-        !self.mesh.vertex_normal.exists && self.made.is_none()
+        !self.mesh.vertex_normal.exists && self.made.is_none() && !self.makes_normals
     }
 
     /// Returns the vertex of a corner.
@@ -115,6 +122,9 @@ impl<'a> Vertices<'a> {
     }
 
     fn normal(&self, corner: usize) -> Option<Vec3> {
+        if self.makes_normals {
+            return None;
+        }
         if let Some(made) = &self.made {
             return made.get(corner).copied();
         }

@@ -10,6 +10,7 @@ use super::notes::Notes;
 use super::primitive_data::PrimitiveData;
 use super::rig_builder::NodeBinder;
 use super::vertex_details::{DetailRepairs, VertexDetails};
+use crate::load::import::Import;
 use crate::mesh::detail_table::DetailTable;
 use crate::mesh::{MemoryAccount, MemoryRefused};
 
@@ -21,6 +22,7 @@ use crate::mesh::mesh_builder::{CornerRepairs, MeshBuilder, StoredCorner};
 /// Reads primitives, and counts what was repaired or left out.
 #[derive(Debug, Default)]
 pub(super) struct PrimitiveReader {
+    import: Import,
     read: usize,
     points: usize,
     lines: usize,
@@ -67,6 +69,11 @@ impl Indices<'_> {
 }
 
 impl PrimitiveReader {
+    /// Prepares to read; normals are those that `import` says.
+    pub(super) fn importing(import: Import) -> Self {
+        Self { import, ..Self::default() }
+    }
+
     /// Returns whether a primitive consists of points or lines, and counts it if so.
     pub(super) fn skip(&mut self, primitive: &Primitive) -> bool {
         let count = match primitive.mode() {
@@ -86,7 +93,8 @@ impl PrimitiveReader {
         let Job { mesh, primitive, pose, material, accessors, builder, mut details } = job;
         let name = name(mesh, primitive);
         let unpacked = accessors.unpacked.get(&[mesh.index(), primitive.index()]);
-        let source = PrimitiveData { primitive, name: &name, accessors, unpacked };
+        let source =
+            PrimitiveData { primitive, name: &name, accessors, unpacked, makes_normals: self.import.makes_normals() };
         let mut vertices = Vertices::new(source, pose, material.uvs, &mut self.notes)?;
         if details.is_some() {
             vertices.details = Some(VertexDetails::new(source, vertices.count, material.needs, &mut self.notes));
@@ -140,7 +148,7 @@ impl PrimitiveReader {
             self.details.missing_uvs += repairs.missing_uvs;
             self.bad_uvs += repairs.bad_uvs;
         }
-        self.without_normals += usize::from(repairs.no_normals > 0);
+        self.without_normals += usize::from(repairs.no_normals > 0 && !self.import.makes_normals());
         self.bad_uvs += repairs.bad_uvs;
         self.bad_weights += repairs.bad_weights;
         self.cut_weights += repairs.cut_weights;
@@ -152,8 +160,9 @@ impl PrimitiveReader {
 
     /// Returns what was left out or repaired, one sentence each, except for the mesh's own repairs.
     pub(super) fn warnings(&self) -> Vec<String> {
+        let made = format!("primitives without normals, which got ones that are {}", self.import.smoothness());
         let sentences = [
-            (self.without_normals, "primitives without normals, which got ones that are smooth within 60 degrees"),
+            (self.without_normals, made.as_str()),
             (self.bad_uvs, "uvs that aren't finite, replaced by (0, 0)"),
             (self.details.missing_uvs, "primitives without the texture coordinates of a map, which has (0, 0) there"),
             (self.details.bad_colors, "colours of vertices that aren't finite, replaced by white"),

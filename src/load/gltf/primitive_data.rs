@@ -23,6 +23,8 @@ pub(super) struct PrimitiveData<'a> {
     pub accessors: &'a Accessors<'a>,
     /// The decompressed data, if Draco compressed the primitive.
     pub unpacked: Option<&'a DecompressedPrimitive>,
+    /// Whether all normals are made, as if the primitive had none.
+    pub makes_normals: bool,
 }
 
 impl<'a> PrimitiveData<'a> {
@@ -55,6 +57,14 @@ impl<'a> PrimitiveData<'a> {
     ) -> Result<Option<List<'a, [f32; N]>>, GltfError> {
         let accessor = self.primitive.get(&semantic);
         accessor.map(|accessor| self.list(&accessor, &semantic.to_string(), count)).transpose()
+    }
+
+    /// Returns the normals that are used; none if they are made.
+    ///
+    /// # Errors
+    /// [`GltfError::Accessor`].
+    pub(super) fn normals(&self, count: usize) -> Result<Option<List<'a, [f32; 3]>>, GltfError> {
+        if self.makes_normals { Ok(None) } else { self.attribute(Semantic::Normals, count) }
     }
 
     /// Returns an attribute that the primitive can do without. If it can't be read, it is left out with a note.

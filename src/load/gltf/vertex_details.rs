@@ -39,10 +39,10 @@ pub(super) struct DetailRepairs {
 }
 
 impl<'a> VertexDetails<'a> {
-    /// Prepares to read the details of `count` vertices. Without normals in the file, its tangents aren't used (specification,
+    /// Prepares to read the details of `count` vertices. Without normals of the file, its tangents aren't used (specification,
     /// section 3.7.2.1).
     pub(super) fn new(source: PrimitiveData<'a>, count: usize, needs: DetailNeeds, notes: &mut Notes) -> Self {
-        let has_normals = source.primitive.get(&Semantic::Normals).is_some();
+        let has_normals = !source.makes_normals && source.primitive.get(&Semantic::Normals).is_some();
         let mut read = Self {
             sets: [0, 1].map(|set| {
                 let list = needs.sets[set].then(|| source.detail(Semantic::TexCoords(set as u32), count, notes));

@@ -173,7 +173,7 @@ impl<'a> Vertices<'a> {
             transform: uvs.transform,
             count,
             positions: source.list(&positions, "POSITION", count)?,
-            normals: source.attribute(Semantic::Normals, count)?,
+            normals: source.normals(count)?,
             uvs: source.detail(Semantic::TexCoords(uvs.set), count, notes),
             targets: weighed
                 .map(|(target, weight)| Ok((weight, source.target(&target, count)?)))

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use glam::Vec2;
 
 use super::mtl::{self, MtlMaterial, MtlTexture};
+use super::textures::{Giving, TextureUse};
 use crate::load::face_builder::{FaceBuilder, counted};
 use crate::load::images::{decode_halved, texture_size};
 use crate::load::memory_budget::Budget;
@@ -14,7 +15,7 @@ use crate::load::text_lines::{shown, words};
 use crate::load::texture_room::{Scaling, TextureRoom};
 use crate::load::uri::Files;
 use crate::mesh::mipmap::MipFilter;
-use crate::mesh::{Alpha, Look, Map, MapUv, Material, MemoryAccount, Sampling, Slot, Texture, Wrap};
+use crate::mesh::{Alpha, Look, Material, MemoryAccount, Sampling, Wrap};
 use crate::progress::Progress;
 
 /// The greatest number of material files that are read.
@@ -27,31 +28,6 @@ struct TextureFile {
     first: String,
     /// The indices of materials.
     users: Vec<(usize, TextureUse)>,
-}
-
-/// What an image is for.
-#[derive(Clone, Copy)]
-enum TextureUse {
-    BaseColor,
-    Emissive,
-}
-
-impl TextureUse {
-    /// Gives the image to a material.
-    fn give(self, material: &mut Material, texture: &Arc<Texture>) {
-        let texture = texture.clone();
-        match self {
-            Self::BaseColor => material.texture = Some(texture),
-            Self::Emissive => {
-                // A texture alone shines as it is.
-                if material.look.emissive == [0.0; 3] {
-                    material.look.emissive = [1.0; 3];
-                }
-                let map = Map { texture, uv: MapUv::Own, sampling: material.sampling };
-                material.look.maps[Slot::Emissive as usize] = Some(map);
-            }
-        }
-    }
 }
 
 /// The materials of the faces.
@@ -75,6 +51,8 @@ pub(super) struct Materials<'a> {
     bad_statements: usize,
     libraries_left_out: usize,
     undescribed: usize,
+    /// Materials in use that have heights.
+    bumped: usize,
 }
 
 impl<'a> Materials<'a> {
@@ -94,6 +72,7 @@ impl<'a> Materials<'a> {
             bad_statements: 0,
             libraries_left_out: 0,
             undescribed: 0,
+            bumped: 0,
         }
     }
 
@@ -139,6 +118,11 @@ impl<'a> Materials<'a> {
         }
         self.budget.give_back_to(borrowed);
         self.libraries.push(name);
+    }
+
+    /// Whether any material has a normal map.
+    pub(super) fn have_normal_maps(&self) -> bool {
+        self.described.values().any(|material| material.normal_texture.is_some())
     }
 
     /// Reads `usemtl`: the material of the next faces.
@@ -194,9 +178,18 @@ impl<'a> Materials<'a> {
             self.undescribed += 1;
             return (Material::plain(&shown, [1.0; 4]), Vec::new());
         };
-        let MtlMaterial { color: [r, g, b], texture, emissive, emissive_texture, alpha, roughness, metallic, .. } =
-            described;
-        let uses = [(TextureUse::BaseColor, texture), (TextureUse::Emissive, emissive_texture)];
+        let MtlMaterial { color: [r, g, b], emissive, alpha, roughness, metallic, is_bumped, .. } = described;
+        self.bumped += usize::from(is_bumped);
+        let strength = described.normal_texture.as_ref().map_or(1.0, |texture| texture.strength);
+        // The first one says where all are.
+        let uses = [
+            (TextureUse::BaseColor, described.texture),
+            (TextureUse::Emissive, described.emissive_texture),
+            (TextureUse::Normal(strength), described.normal_texture),
+            (TextureUse::Opacity, described.opacity_texture),
+            (TextureUse::Roughness(roughness.unwrap_or(1.0)), described.roughness_texture),
+            (TextureUse::Metalness(metallic.unwrap_or(1.0)), described.metallic_texture),
+        ];
         let textures: Vec<_> = uses.into_iter().filter_map(|(kind, texture)| Some((kind, texture?))).collect();
         let is_clamped = textures.first().is_some_and(|(_, texture)| texture.is_clamped);
         let wrap = if is_clamped { Wrap::Clamp } else { Wrap::Repeat };
@@ -227,6 +220,7 @@ impl<'a> Materials<'a> {
         progress: &Progress,
     ) -> Result<(), ReadError> {
         let textures = std::mem::take(&mut self.textures);
+        let mut giving = Giving::default();
         let size = |file: &TextureFile| {
             self.borrowing(|| self.beside(&file.name).ok().and_then(|bytes| texture_size(&bytes))).unwrap_or_default()
         };
@@ -234,7 +228,8 @@ impl<'a> Materials<'a> {
         let room = TextureRoom::of(self.budget, faces.bytes_to_finish().saturating_sub(freed));
         for ((file, size), Scaling { halvings, reason }) in textures.iter().zip(&sizes).zip(room.scalings(&sizes)) {
             progress.check()?;
-            let decode = |bytes: Vec<u8>| decode_halved(&bytes, halvings, MipFilter::Colors, self.budget);
+            let filter = file.users.first().map_or(MipFilter::Colors, |(_, kind)| kind.filter());
+            let decode = |bytes: Vec<u8>| decode_halved(&bytes, halvings, filter, self.budget);
             let texture = self.borrowing(|| self.beside(&file.name).and_then(decode)).map(Arc::new);
             let said = match &texture {
                 Err(reason) => Some(format!("is left out: {reason}")),
@@ -246,9 +241,10 @@ impl<'a> Materials<'a> {
             let (image, first) = (shown(file.name.as_bytes()), &file.first);
             self.problems.extend(said.map(|said| format!("the texture {image} of material \"{first}\" {said}.")));
             if let Ok(texture) = texture {
-                file.users.iter().for_each(|&(material, kind)| kind.give(faces.material_mut(material), &texture));
+                file.users.iter().for_each(|&(material, kind)| giving.give(faces, material, kind, &texture));
             }
         }
+        self.problems.extend(giving.finish(faces, self.budget));
         Ok(())
     }
 
@@ -267,6 +263,10 @@ impl<'a> Materials<'a> {
             (self.bad_statements, "numbers in material files that can't be read, left out"),
             (self.libraries_left_out, "material files beyond the first 64, left out"),
             (self.undescribed, "materials that no material file describes, shown white"),
+            (
+                self.bumped,
+                "materials with a bump map (map_Bump, bump), whose heights aren't drawn; norm names a normal map",
+            ),
         ]));
         warnings
     }

@@ -1,4 +1,4 @@
-//! Reads MTL, the material files of OBJ: the colours and colour textures of materials.
+//! Reads MTL, the material files of OBJ: the colours and textures of materials.
 //!
 //! The crate `tobj` isn't used. It drops a whole file because of one statement that it can't read, and takes the
 //! options of `map_Kd` for a part of the file name.
@@ -23,6 +23,16 @@ pub(super) struct MtlMaterial {
     pub roughness: Option<f32>,
     /// Pm: 0 for dielectrics, 1 for metals.
     pub metallic: Option<f32>,
+    /// map_d: how opaque it is.
+    pub opacity_texture: Option<MtlTexture>,
+    /// map_Pr: the texture that multiplies the roughness.
+    pub roughness_texture: Option<MtlTexture>,
+    /// map_Pm: the texture that multiplies how much of a metal it is.
+    pub metallic_texture: Option<MtlTexture>,
+    /// norm: normals in tangent space.
+    pub normal_texture: Option<MtlTexture>,
+    /// map_Bump or bump: whether it has heights.
+    pub is_bumped: bool,
 }
 
 impl MtlMaterial {
@@ -37,6 +47,11 @@ impl MtlMaterial {
             alpha: 1.0,
             roughness: None,
             metallic: None,
+            opacity_texture: None,
+            roughness_texture: None,
+            metallic_texture: None,
+            normal_texture: None,
+            is_bumped: false,
         }
     }
 }
@@ -50,6 +65,8 @@ pub(super) struct MtlTexture {
     pub offset: [f32; 2],
     /// -clamp on: there is no image beyond its border.
     pub is_clamped: bool,
+    /// -bm: what the slopes of a normal map are multiplied by.
+    pub strength: f32,
 }
 
 /// Reads the materials of a file. Also returns how many statements that are understood have numbers that can't be read.
@@ -80,6 +97,11 @@ fn take(material: &mut MtlMaterial, word: &[u8], rest: &[u8]) -> Option<()> {
         b"Pm" => material.metallic = Some(part(rest)?),
         b"map_Kd" => material.texture = Some(texture(rest)),
         b"map_Ke" => material.emissive_texture = Some(texture(rest)),
+        b"map_d" => material.opacity_texture = Some(texture(rest)),
+        b"map_Pr" => material.roughness_texture = Some(texture(rest)),
+        b"map_Pm" => material.metallic_texture = Some(texture(rest)),
+        b"norm" => material.normal_texture = Some(texture(rest)),
+        b"map_Bump" | b"map_bump" | b"bump" => material.is_bumped = true,
         _ => {}
     }
     Some(())
@@ -102,7 +124,8 @@ fn part(text: &[u8]) -> Option<f32> {
 
 /// Parses a file name after options. Options about anything but its place are ignored.
 fn texture(mut text: &[u8]) -> MtlTexture {
-    let mut found = MtlTexture { file: String::new(), scale: [1.0; 2], offset: [0.0; 2], is_clamped: false };
+    let mut found =
+        MtlTexture { file: String::new(), scale: [1.0; 2], offset: [0.0; 2], is_clamped: false, strength: 1.0 };
     loop {
         let (word, mut rest) = first_word(text);
         let count = match word {
@@ -119,6 +142,7 @@ fn texture(mut text: &[u8]) -> MtlTexture {
         let place = numbers_or_nan::<2>(rest);
         match word {
             b"-clamp" => found.is_clamped = first_word(rest).0 == b"on",
+            b"-bm" => found.strength = Some(place[0]).filter(|strength| strength.is_finite()).unwrap_or(1.0),
             b"-s" => replace(&mut found.scale, place, count),
             b"-o" => replace(&mut found.offset, place, count),
             _ => {}
@@ -148,10 +172,9 @@ mod tests {
     #[test]
     fn colours_and_textures_are_read_and_the_rest_is_not() {
         let text = "# made by hand\r\nKd 1 0 0\r\nnewmtl old wood\r\nNs x\r\nKd 0.5 .25 2\r\nmap_Kd -s 2 3 1 -clamp on \
-                    a b.png\r\nPr 0.25\r\nPm 7\r\nd 0.5\r\nKe 2\r\nmap_Ke -o 0.5 glow.png\r\nnewmtl plain\r\n\tKd \
+                    a b.png\r\nPr 0.25\r\nPm 7\r\nd 0.5\r\nKe 2\r\nmap_Ke -o 0.5 glow.png\r\nnorm -bm 2.5 n.png\r\nmap_bump b.png\r\nmap_d d.png\r\nmap_Pr r.png\r\nmap_Pm m.png\r\nnewmtl plain\r\n\tKd \
                     spectral a.rfl\r\nKd 0.5\r\nd\r\n";
-        let place =
-            |file: &str| MtlTexture { file: file.to_owned(), scale: [1.0; 2], offset: [0.0; 2], is_clamped: false };
+        let place = |file: &str| MtlTexture { file: file.to_owned(), ..texture(b"") };
         let wood = MtlMaterial {
             color: [0.5, 0.25, 1.0],
             texture: Some(MtlTexture { scale: [2.0, 3.0], is_clamped: true, ..place("a b.png") }),
@@ -160,12 +183,18 @@ mod tests {
             alpha: 0.5,
             roughness: Some(0.25),
             metallic: Some(1.0),
+            normal_texture: Some(MtlTexture { strength: 2.5, ..place("n.png") }),
+            opacity_texture: Some(place("d.png")),
+            roughness_texture: Some(place("r.png")),
+            metallic_texture: Some(place("m.png")),
+            is_bumped: true,
             ..MtlMaterial::named(b"old wood")
         };
         let plain = MtlMaterial { color: [0.5; 3], ..MtlMaterial::named(b"plain") };
         assert_eq!(read(text.as_bytes()), Ok((vec![wood, plain], 2)));
         assert_eq!(texture(b"-o 1 2.png"), MtlTexture { offset: [1.0, 0.0], ..place("2.png") });
-        assert_eq!(texture(b"-mm 0 1 -bm 2 -t 1 x"), place("x"));
+        assert_eq!(texture(b"-mm 0 1 -bm 2 -t 1 x"), MtlTexture { strength: 2.0, ..place("x") });
+        assert_eq!(texture(b"-bm x y"), place("y"));
         assert_eq!(texture(b"-s"), place(""));
     }
 }

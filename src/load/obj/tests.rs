@@ -4,7 +4,15 @@ use super::*;
 use crate::load::face_builder::tests::{POINTS, SIDES, assert_cube};
 
 fn read(text: &str) -> LoadedMesh {
-    super::read(text.as_bytes().to_vec(), Path::new("nowhere"), "cube", &Limits::default(), &Progress::new()).unwrap()
+    super::read(
+        text.as_bytes().to_vec(),
+        Path::new("nowhere"),
+        "cube",
+        Selection::default(),
+        &Limits::default(),
+        &Progress::new(),
+    )
+    .unwrap()
 }
 
 /// A cube of quads without normals.
@@ -30,6 +38,30 @@ fn a_cube_of_quadrilaterals_is_a_cube() {
     assert_cube(&mesh);
     assert_eq!((mesh.name.as_str(), mesh.materials[0].name.as_str()), ("cube", "default"));
     assert_eq!(mesh.warnings, [format!("{WITHOUT_NORMALS}: 6.")]);
+}
+
+#[test]
+fn objects_and_groups_are_parts_and_hidden_ones_are_left_out() {
+    let faces = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no car\nf 1 2 3\ng wheel left\nf 1 2 3\nf 3 2 1\no car\ng\nf 2 3 1\n\
+                 o empty\no bike\ng bike\nf 1 2 3\n";
+    let hiding = |hidden: &[&str]| {
+        let hidden: Vec<String> = hidden.iter().map(|name| (*name).to_owned()).collect();
+        let selected = Selection { hidden: &hidden, ..Selection::default() };
+        super::read(faces.as_bytes().to_vec(), Path::new(""), "", selected, &Limits::default(), &Progress::new())
+    };
+    let parts = |loaded: &LoadedMesh| -> Vec<(String, u32, bool)> {
+        loaded.parts.iter().map(|part| (part.name.clone(), part.triangles, part.is_hidden)).collect()
+    };
+    let named = |hidden: bool| {
+        [("default", 1, false), ("car", 2, false), ("car/wheel left", 2, hidden), ("bike", 1, false)]
+            .map(|(name, triangles, is_hidden)| (name.to_owned(), triangles, is_hidden))
+    };
+    let whole = hiding(&[]).expect("triangles");
+    assert_eq!((whole.triangles.len(), parts(&whole)), (6, named(false).to_vec()));
+    let some = hiding(&["car/wheel left"]).expect("triangles");
+    assert_eq!((some.triangles.len(), parts(&some)), (4, named(true).to_vec()));
+    let none = hiding(&["default", "car", "car/wheel left", "bike"]).map(|_| ()).expect_err("all are hidden");
+    assert!(matches!(&none, ReadError::Empty { holds } if holds.ends_with("and its parts are hidden")), "{none:?}");
 }
 
 #[test]
@@ -110,7 +142,7 @@ fn cancelling_stops_the_work() {
     let progress = Progress::new();
     progress.cancel();
     assert!(matches!(
-        super::read(b"v 0 0 0\n".to_vec(), Path::new(""), "", &Limits::default(), &progress),
+        super::read(b"v 0 0 0\n".to_vec(), Path::new(""), "", Selection::default(), &Limits::default(), &progress),
         Err(ReadError::Cancelled(_))
     ));
 }

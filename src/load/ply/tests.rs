@@ -6,7 +6,7 @@ use super::*;
 use crate::load::face_builder::tests::{POINTS, SIDES, assert_cube};
 
 fn read(bytes: &[u8]) -> LoadedMesh {
-    super::read(bytes.to_vec(), "cube", &Limits::default(), &Progress::new()).unwrap()
+    super::read(bytes.to_vec(), "cube", Import::default(), &Limits::default(), &Progress::new()).unwrap()
 }
 
 /// Writes numbers in one of the encodings.
@@ -171,7 +171,10 @@ fn strips_alternate_begin_anew_and_are_stitched() {
 fn cancelling_stops_the_work() {
     let progress = Progress::new();
     progress.cancel();
-    assert!(matches!(super::read(cube(1, 6, 4), "", &Limits::default(), &progress), Err(ReadError::Cancelled(_))));
+    assert!(matches!(
+        super::read(cube(1, 6, 4), "", Import::default(), &Limits::default(), &progress),
+        Err(ReadError::Cancelled(_))
+    ));
 }
 
 #[test]

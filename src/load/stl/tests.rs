@@ -4,7 +4,7 @@ use super::*;
 use crate::load::face_builder::tests::{POINTS, assert_cube, triangles};
 
 fn read(bytes: &[u8]) -> LoadedMesh {
-    super::read(bytes.to_vec(), "cube", &Limits::default(), &Progress::new()).unwrap()
+    super::read(bytes.to_vec(), "cube", Selection::default(), &Limits::default(), &Progress::new()).unwrap()
 }
 
 /// A cube with wrong normals.
@@ -39,6 +39,49 @@ fn both_kinds_are_a_cube_with_made_normals() {
         assert!(mesh.warnings.is_empty(), "{:?}", mesh.warnings);
     }
 }
+
+#[test]
+fn triangles_of_a_binary_file_have_the_colours_that_programs_give_them() {
+    let colored = |header: &[u8], bits: [u16; 2]| {
+        let mut bytes = binary(header);
+        for (i, triangle) in bytes[HEADER..].as_chunks_mut::<TRIANGLE>().0.iter_mut().enumerate() {
+            triangle[48..].copy_from_slice(&bits[i % 2].to_le_bytes());
+        }
+        bytes
+    };
+    // A red one, and one without a colour.
+    let mesh = read(&colored(b"made by a test", [0xfc00, 0]));
+    assert_cube(&mesh);
+    let details = mesh.details.as_ref().expect("colours");
+    let colors = |i: usize| mesh.triangles[i].map(|corner| details[corner as usize].color);
+    let red = Vec4::new(1.0, 0.0, 0.0, 1.0);
+    assert_eq!([colors(0), colors(1), colors(2)], [[red; 3], [Vec4::ONE; 3], [red; 3]]);
+    // The same bits are blue to Magics, and bit 15 stands for the colour of the part.
+    let mesh = read(&colored(b"COLOR=\x00\xff\x00\xff", [0x7c00, 0x8000]));
+    let details = mesh.details.as_ref().expect("colours");
+    assert_eq!(details[mesh.triangles[0][0] as usize].color, Vec4::new(0.0, 0.0, 1.0, 1.0));
+    assert_eq!(details[mesh.triangles[1][0] as usize].color, Vec4::new(0.0, 1.0, 0.0, 1.0));
+    // A part of one colour needs no details.
+    let mesh = read(&colored(b"COLOR=\x00\xff\x00\xff", [0x8000, 0x8000]));
+    assert_eq!((mesh.materials[0].base_color, mesh.details.is_none()), ([0.0, 1.0, 0.0, 1.0], true));
+    assert!(read(&binary(b"")).details.is_none(), "other bits are no colours");
+}
+
+#[test]
+fn solids_of_text_files_are_parts() {
+    let hidden = ["one".to_owned()];
+    let selected = Selection { hidden: &hidden, ..Selection::default() };
+    let text = text() + FACET_WITHOUT_NAME;
+    let mesh =
+        super::read(text.into_bytes(), "cube", selected, &Limits::default(), &Progress::new()).expect("triangles");
+    let parts: Vec<_> = mesh.parts.iter().map(|part| (part.name.as_str(), part.triangles, part.is_hidden)).collect();
+    assert_eq!(parts, [("one", 5, true), ("two", 7, false), ("solid 3", 1, false)]);
+    assert_eq!(mesh.triangles.len(), 8);
+    assert!(read(&binary(b"solid one")).parts.is_empty());
+}
+
+const FACET_WITHOUT_NAME: &str =
+    "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n";
 
 #[test]
 fn text_is_forgiven_its_case_its_spaces_and_its_ends_of_lines() {
@@ -77,6 +120,9 @@ fn cancelling_stops_the_work() {
     let progress = Progress::new();
     progress.cancel();
     for bytes in [text().into_bytes(), binary(b"")] {
-        assert!(matches!(super::read(bytes.to_vec(), "", &Limits::default(), &progress), Err(ReadError::Cancelled(_))));
+        assert!(matches!(
+            super::read(bytes.to_vec(), "", Selection::default(), &Limits::default(), &progress),
+            Err(ReadError::Cancelled(_))
+        ));
     }
 }

@@ -29,6 +29,7 @@ const TRIANGLES: u64 = 4096;
 /// [`ReadError`].
 pub(super) fn place<'a>(
     document: &Document,
+    import: &Import,
     budget: &'a Budget,
     progress: &Progress,
     notes: &mut Notes,
@@ -46,14 +47,15 @@ pub(super) fn place<'a>(
     let least = edge_bytes(0, total);
     budget.hold(least).map_err(too_large)?;
     budget.release(least);
-    let mut faces = FaceBuilder::new(usize::try_from(budget.files()).unwrap_or(usize::MAX), budget);
+    let mut faces =
+        FaceBuilder::new(usize::try_from(budget.files()).unwrap_or(usize::MAX), budget).importing(*import);
     faces.expect(usize::try_from(total).unwrap_or(usize::MAX), document.geometry.vertices.len());
     let has_colors =
         |part: &Part| part.groups.values().any(|group| matches!(group, Group::Colors(colors) if !colors.is_empty()));
     if document.parts.iter().any(has_colors) {
         faces.color();
     }
-    let root = of_axes() * DAffine3::from_scale(DVec3::splat(document.parts.first().map_or(1.0, |part| part.unit)));
+    let root = of_file(document, import);
     let mut placer = Placer {
         document,
         counted: &counter.counted,
@@ -75,9 +77,14 @@ pub(super) fn place<'a>(
     Ok(placer.faces)
 }
 
-/// Turns axes so that Y points up in place of Z.
-fn of_axes() -> DAffine3 {
-    DAffine3::from_mat3(DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y))
+/// Turns axes so that Y points up in place of Z, and scales the file's unit to metres, unless another axis or unit was chosen.
+fn of_file(document: &Document, import: &Import) -> DAffine3 {
+    let turn = match import.up {
+        None => DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y),
+        Some(_) => DMat3::IDENTITY,
+    };
+    let unit = document.parts.first().map_or(1.0, |part| part.unit);
+    DAffine3::from_mat3(turn * if import.unit.is_none() { unit } else { 1.0 })
 }
 
 /// What is shown: the items of the build. A library of objects has none, so all objects are that aren't components.

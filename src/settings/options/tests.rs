@@ -3,6 +3,7 @@ use std::collections::BTreeSet;
 use proptest::prelude::*;
 
 use super::*;
+use crate::load::Import;
 use crate::settings::random;
 
 /// Every field with its value. Patterns have no `..`, so a new field must be named here and then reached by a declaration.
@@ -24,7 +25,9 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         split,
         split_surface,
         background,
+        import,
     } = settings;
+    let Import { normals: mesh_normals, crease_angle, up, unit } = import;
     let Tessellation {
         surface,
         alpha,
@@ -77,6 +80,10 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         ("split", format!("{split:?}")),
         ("split_surface", format!("{split_surface:?}")),
         ("background", format!("{background:?}")),
+        ("mesh_normals", format!("{mesh_normals:?}")),
+        ("crease_angle", format!("{crease_angle:?}")),
+        ("up", format!("{up:?}")),
+        ("unit", format!("{unit:?}")),
     ]
 }
 

@@ -4,6 +4,7 @@ use super::super::{morphs, parse};
 use super::documents::morphed_square;
 use super::tree::text;
 use crate::files::Limits;
+use crate::load::import::Import;
 use crate::load::memory_budget::Budget;
 use crate::progress::Progress;
 
@@ -11,7 +12,7 @@ use crate::progress::Progress;
 fn weights_are_linear_between_shapes_and_beyond_the_last() {
     let bytes = text(&morphed_square());
     let budget = Budget::new(bytes.len(), &Limits::default());
-    let scene = parse::scene(&bytes, &budget, &Progress::new()).expect("a file without a fault");
+    let scene = parse::scene(&bytes, &Import::default(), &budget, &Progress::new()).expect("a file without a fault");
     let channel = &scene.blend_channels[0];
     for (weight, expected) in [
         (0.0, [0.0, 0.0]),

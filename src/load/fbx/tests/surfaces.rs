@@ -7,6 +7,7 @@ use super::tree::{one, text};
 use super::{loaded, near, read};
 use crate::files::Limits;
 use crate::load::fbx::{read as read_on_a_thread, read_here};
+use crate::load::import::Import;
 use crate::load::read_error::ReadError;
 use crate::mesh::{Alpha, Wrap};
 use crate::progress::Progress;
@@ -187,7 +188,8 @@ fn images_are_looked_for_beside_the_model_and_nowhere_else() {
     std::fs::write(folder.path().join("outside.png"), image()).expect("a file");
     let read = |path: &str| {
         let bytes = text(&textured_square(Err(path)));
-        let read = read_here(bytes, &inner, "test", &Limits::default(), &Progress::new()).expect("a mesh");
+        let read =
+            read_here(bytes, &inner, "test", Import::default(), &Limits::default(), &Progress::new()).expect("a mesh");
         (read.materials[0].texture.is_some(), read.warnings.join("\n"), read.files.len())
     };
     for path in ["C:\\\\work\\\\wood.png", "wood.png", "/elsewhere/wood.png", "..\\\\wood.png", "maps\\\\oak 50%25.png"]
@@ -252,11 +254,18 @@ fn a_load_can_be_cancelled_and_runs_within_its_memory() {
     let bytes = text(&smoothed_prism());
     let progress = Progress::new();
     progress.cancel();
-    let cancelled =
-        read_on_a_thread(bytes.clone(), std::path::Path::new("nowhere"), "test", &Limits::default(), &progress);
+    let cancelled = read_on_a_thread(
+        bytes.clone(),
+        std::path::Path::new("nowhere"),
+        "test",
+        Import::default(),
+        &Limits::default(),
+        &progress,
+    );
     assert!(matches!(cancelled, Err(ReadError::Cancelled(_))), "{cancelled:?}");
     let limits = Limits { memory: 0, ..Limits::default() };
-    let refused = read_here(bytes, std::path::Path::new("nowhere"), "test", &limits, &Progress::new());
+    let refused =
+        read_here(bytes, std::path::Path::new("nowhere"), "test", Import::default(), &limits, &Progress::new());
     let said = refused.map(|_| ()).expect_err("a parser needs more than that").to_string();
     assert!(
         said.contains(" of memory, but files of this size may take only ") && said.contains("--max-memory"),

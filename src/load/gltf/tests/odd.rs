@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::load::hostile_files::odd::Odd;
-use crate::load::mesh_file::Format;
+use crate::load::Format;
 
 fn of(name: &'static str, bytes: impl Into<Vec<u8>>, triangles: usize, warning: &'static str) -> Odd {
     Odd { name, format: Format::Gltf, bytes: bytes.into(), triangles, warning }

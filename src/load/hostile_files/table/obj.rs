@@ -15,6 +15,7 @@ pub(super) fn cases() -> Vec<Case> {
     vec![
         case(Obj, "", Refused("Empty | vertices")),
         (Obj, vec![0xff; 1000].into(), Refused("Empty | vertices | 1 | statements")),
+        case(Obj, many_parts(), Repaired(1, "objects and groups | 65,536 | 4464")),
         obj!("p 1 2 3\n", Refused("Empty | 3 positions | 3 points | 0 lines")),
         obj!("l 1 2\nl 2 3\n", Refused("Empty | 3 positions | 0 points | 2 lines")),
         obj!("surf 0 1 0 1 1 2 3\n", Refused("Empty | 3 positions | 0 lines | 1 free-form")),
@@ -72,6 +73,12 @@ pub(super) fn cases() -> Vec<Case> {
 fn utf16(text: &str) -> std::borrow::Cow<'static, [u8]> {
     let units = text.encode_utf16().flat_map(u16::to_be_bytes);
     [0xfe, 0xff].into_iter().chain(units).chain([0]).collect()
+}
+
+/// More objects than have names, and a face in the last one.
+fn many_parts() -> String {
+    let objects: String = (0..70_000).map(|i| format!("o {i}\n")).collect();
+    format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{objects}f 1 2 3\n")
 }
 
 /// A material for every face.

@@ -4,6 +4,14 @@ use super::Gets::{Refused, Repaired};
 use super::{Case, case};
 use crate::load::Format::Stl;
 
+/// A binary file with this header, which ends after its first triangle and these bits.
+fn colored(header: &[u8], bits: u16) -> Vec<u8> {
+    let mut bytes = stl(2, &[[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]]);
+    bytes[..header.len()].copy_from_slice(header);
+    bytes[132..].copy_from_slice(&bits.to_le_bytes());
+    bytes
+}
+
 /// A binary file that says it has so many triangles, and has others.
 fn stl(said: u32, triangles: &[[f32; 9]]) -> Vec<u8> {
     let mut bytes = b"solid in name only".to_vec();
@@ -33,6 +41,12 @@ pub(super) fn cases() -> Vec<Case> {
         (Stl, stl(0, &[]).into(), Refused("Empty | 0 | triangles | header")),
         (Stl, stl(2, &[triangle, infinite]).into(), Repaired(1, "1 faces | a number | byte 134 | left out")),
         (Stl, stl(1, &[triangle; 2]).into(), Repaired(1, "bytes after the last triangle | 50")),
+        (Stl, colored(b"odd.stl with all bits set", u16::MAX).into(), Repaired(1, "cut short | 2 triangles | after 1")),
+        (
+            Stl,
+            colored(&[b"x".repeat(73), b"COLOR=\xff".to_vec()].concat(), 7).into(),
+            Repaired(1, "cut short | 2 triangles | after 1"),
+        ),
         case(Stl, "solid", Refused("Empty | 1 | triangles | solids")),
         case(Stl, FACET.replace("endloop\nendfacet\n", ""), Refused("Empty | 1 | solids")),
         case(Stl, format!("{FACET}facet normal 0 0 1\nouter loop\n"), Repaired(1, "ends within the facet | line 9")),

@@ -82,6 +82,47 @@ fn missing_and_broken_files_cause_warnings() {
     }
 }
 
+/// A square that lies in its texture coordinates, with a material.
+const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvn 0 0 1\nusemtl m\n\
+                      f 1/1/1 2/2/1 3/3/1 4/4/1\n";
+
+fn square(folder: &TempDir, materials: &str) -> LoadedMesh {
+    write(folder, "m.mtl", format!("newmtl m\n{materials}").as_bytes());
+    write(folder, "w.png", &png());
+    write(folder, "square.obj", format!("mtllib m.mtl\n{SQUARE}").as_bytes());
+    load(&folder.path().join("square.obj"), &Limits::default(), &Progress::new()).unwrap()
+}
+
+#[test]
+fn normal_maps_have_tangents_along_their_texture_coordinates() {
+    let mesh = square(&folder(), "norm -bm 0.5 w.png\nmap_Bump w.png\n");
+    let look = &mesh.materials[0].look;
+    assert!(look.maps[Slot::Normal as usize].is_some() && look.normal_scale == 0.5);
+    let details = mesh.details.as_ref().expect("tangents");
+    assert_eq!(details.len(), 4);
+    for detail in details.iter() {
+        assert!(detail.tangent.distance(glam::Vec3::X) < 1e-6, "u grows along x, and not along {}", detail.tangent);
+        // The bitangent points where the image's rows go up.
+        assert_eq!(detail.bitangent_sign, 1.0);
+    }
+    assert!(mesh.warnings.len() == 1 && mesh.warnings[0].contains("bump map"), "{:?}", mesh.warnings);
+    assert!(square(&folder(), "Kd 1 1 1\n").details.is_none(), "nothing needs tangents");
+}
+
+#[test]
+fn opacity_roughness_and_metalness_come_from_images() {
+    let mesh = square(&folder(), "map_Kd w.png\nmap_d w.png\nmap_Pr w.png\nPm 0.5\nmap_Pm w.png\n");
+    let material = &mesh.materials[0];
+    assert_eq!((material.look.alpha, material.look.roughness, material.look.metallic), (Alpha::Blend, 1.0, 0.5));
+    let texture = material.texture.as_ref().expect("a base colour");
+    assert_eq!(texture.rgba, [255, 0, 0, 255, 0, 0, 255, 128], "its alpha is that of the opacity map");
+    let map = material.look.maps[Slot::MetallicRoughness as usize].as_ref().expect("roughness and metalness");
+    assert_eq!(map.texture.rgba, [255, 0, 0, 255, 255, 0, 255, 255], "green of one, and blue of the other");
+    let mesh = square(&folder(), "map_Pm gone.png\nmap_d gone.png\n");
+    let look = &mesh.materials[0].look;
+    assert_eq!((look.metallic, look.alpha, mesh.warnings.len()), (0.0, Alpha::Opaque, 1), "{:?}", mesh.warnings);
+}
+
 #[test]
 fn only_64_material_files_are_read() {
     let folder = folder();

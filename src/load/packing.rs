@@ -1,4 +1,4 @@
-//! Joins images that FBX keeps apart: roughness and metalness, colour and opacity.
+//! Joins images that FBX and OBJ keep apart: roughness and metalness, colour and opacity.
 
 use crate::load::memory_budget::Budget;
 use crate::mesh::{MemoryAccount, Texture};

@@ -1,0 +1,92 @@
+//! How the geometry of a file is taken: whose normals, which axis points up, and how long its unit is.
+
+use crate::mesh::normals::CREASE_ANGLE;
+use crate::mesh::orientation::reorient;
+use crate::mesh::{Mesh, UpAxis};
+
+/// Whose normals the corners of a mesh have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum NormalSource {
+    /// Those of the file. Corners without one get one that is made.
+    #[default]
+    File,
+    /// All are made.
+    Made,
+}
+
+/// The unit of a file's coordinates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum LengthUnit {
+    Millimetre,
+    Centimetre,
+    Metre,
+    Inch,
+    Foot,
+}
+
+impl LengthUnit {
+    /// Its length in metres. Inch and foot are the international ones (National Bureau of Standards 1959, "Refinement of values for
+    /// the yard and the pound").
+    pub(crate) fn metres(self) -> f64 {
+        match self {
+            Self::Millimetre => 0.001,
+            Self::Centimetre => 0.01,
+            Self::Metre => 1.0,
+            Self::Inch => 0.0254,
+            Self::Foot => 0.3048,
+        }
+    }
+}
+
+/// How the geometry of a file is taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Import {
+    pub normals: NormalSource,
+    /// The angle up to which faces are smooth where normals are made, in degrees from 0 to 180.
+    pub crease_angle: f32,
+    /// The axis of the file's coordinates that points up; none for that which the file or its format says, or else Y.
+    pub up: Option<UpAxis>,
+    /// The unit of the file's coordinates; none for that which the file or its format says, or else the metre.
+    pub unit: Option<LengthUnit>,
+}
+
+impl Default for Import {
+    fn default() -> Self {
+        Self { normals: NormalSource::File, crease_angle: CREASE_ANGLE, up: None, unit: None }
+    }
+}
+
+impl Import {
+    /// Whether all normals are made.
+    pub(super) fn makes_normals(&self) -> bool {
+        self.normals == NormalSource::Made
+    }
+
+    /// Whether the mesh has another place than the file says.
+    pub(crate) fn moves(&self) -> bool {
+        self.up.is_some() || self.unit.is_some()
+    }
+
+    /// The same without axis and unit, which are those of one file.
+    pub(crate) fn without_placement(self) -> Self {
+        Self { up: None, unit: None, ..self }
+    }
+
+    /// Axis and unit alone, as another file of the same scene takes them.
+    pub(crate) fn placement(self) -> Self {
+        Self { up: self.up, unit: self.unit, ..Self::default() }
+    }
+
+    /// Says how normals are made, as the end of a sentence.
+    pub(super) fn smoothness(&self) -> String {
+        format!("smooth within {} degrees", self.crease_angle)
+    }
+
+    /// Turns and scales a mesh as the axis and the unit say that were chosen, so that Y points up and the unit is the metre.
+    pub(super) fn place(&self, mesh: &mut Mesh) {
+        reorient(mesh, self.up.unwrap_or_default(), self.unit.map_or(1.0, LengthUnit::metres));
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,154 @@
+//! Normals that are made, in every format; and axes and units that are chosen.
+
+use std::path::Path;
+
+use glam::{Vec3, vec3};
+use proptest::prelude::*;
+
+use super::*;
+use crate::files::Limits;
+use crate::load::face_builder::tests::{POINTS, SIDES, assert_cube};
+use crate::load::fbx::tests::documents::{Link, document, geometry, model, smoothed_prism};
+use crate::load::fbx::tests::tree::text;
+use crate::load::loaded_mesh::LoadedMesh;
+use crate::load::mesh_file::{Format, LoadError, read};
+use crate::load::selection::Selection;
+use crate::load::source::Source;
+use crate::mesh::shapes::Shape;
+use crate::progress::Progress;
+
+const MADE: Import = Import { normals: NormalSource::Made, crease_angle: 60.0, up: None, unit: None };
+
+fn loaded(format: Format, bytes: &[u8], import: Import) -> LoadedMesh {
+    let selected = Selection { import, ..Selection::default() };
+    read(format, bytes.to_vec(), Path::new("nowhere/test"), selected, &Limits::default(), &Progress::new())
+        .expect("a file without a fault")
+}
+
+/// The cube of the readers' tests, with a normal of all corners, and in one smoothing group.
+fn smooth_cube() -> String {
+    let vertices: String = POINTS.iter().map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect();
+    let corner = |i: &usize| format!(" {}//1", i + 1);
+    let face = |side: &[usize; 4]| format!("f{}\n", side.iter().map(corner).collect::<String>());
+    format!("{vertices}vn 0 1 0\ns 1\n{}", SIDES.iter().map(face).collect::<String>())
+}
+
+/// The same as PLY, with the wrong normals of vertices.
+fn ply_cube() -> String {
+    let vertices: String = POINTS.iter().map(|[x, y, z]| format!("{x} {y} {z} 0 1 0\n")).collect();
+    let face = |[a, b, c, d]: &[usize; 4]| format!("4 {a} {b} {c} {d}\n");
+    let properties: String = ["x", "y", "z", "nx", "ny", "nz"].map(|name| format!("property float {name}\n")).concat();
+    format!(
+        "ply\nformat ascii 1.0\nelement vertex 8\n{properties}element face 6\nproperty list uchar int vertex_indices\n\
+         end_header\n{vertices}{}",
+        SIDES.iter().map(face).collect::<String>()
+    )
+}
+
+/// Checks that the normals of every triangle are its own.
+fn assert_flat(mesh: &Mesh) {
+    for triangle in mesh.triangles.iter() {
+        let corners = triangle.map(|id| mesh.corners[id as usize]);
+        let [a, b, c] = corners.map(|corner| corner.position);
+        let face = (b - a).cross(c - a).normalize();
+        assert!(corners.iter().all(|corner| corner.normal.distance(face) < 1e-4), "{corners:?}, not {face}");
+    }
+}
+
+#[test]
+fn made_normals_take_the_place_of_wrong_ones_and_of_smoothing_groups() {
+    for (format, bytes) in [(Format::Obj, smooth_cube()), (Format::Ply, ply_cube())] {
+        let own = loaded(format, bytes.as_bytes(), Import::default());
+        assert!(own.corners.iter().all(|corner| corner.normal == Vec3::Y), "{format:?} has the file's");
+        let made = loaded(format, bytes.as_bytes(), MADE);
+        assert_cube(&made);
+        assert_eq!((made.warnings.len(), made.repairs.normals_made), (0, 36), "{format:?} was asked for them");
+    }
+}
+
+#[test]
+fn the_crease_angle_holds_where_normals_are_missing_and_warnings_name_it() {
+    let missing = smooth_cube().replace("//1", "").replace("s 1\n", "");
+    let import = Import { crease_angle: 95.0, ..Import::default() };
+    let mesh = loaded(Format::Obj, missing.as_bytes(), import);
+    let diagonal = |corner: &crate::mesh::Corner| corner.normal.distance(corner.position.normalize()) < 1e-6;
+    assert!(mesh.corners.iter().all(diagonal), "the three sides of a corner are smooth");
+    assert!(mesh.warnings[0].contains("smooth within 95 degrees"), "{:?}", mesh.warnings);
+    assert_cube(&loaded(Format::Obj, missing.as_bytes(), Import { crease_angle: 89.0, ..Import::default() }));
+}
+
+#[test]
+fn gltf_and_fbx_files_get_normals_that_are_made() {
+    let vase = include_bytes!("../../../assets/vase.glb");
+    let prism = text(&smoothed_prism());
+    for (format, bytes) in [(Format::Gltf, &vase[..]), (Format::Fbx, &prism)] {
+        let own = loaded(format, bytes, Import::default());
+        let flat = loaded(format, bytes, Import { crease_angle: 0.0, ..MADE });
+        assert_flat(&flat);
+        assert_eq!(flat.triangles.len(), own.triangles.len());
+        assert_eq!(flat.repairs.normals_made as usize, 3 * flat.triangles.len());
+        assert!(flat.warnings.iter().all(|warning| !warning.contains("normals")), "{:?}", flat.warnings);
+        assert!(own.repairs.normals_made == 0, "{format:?} has normals of its own");
+    }
+}
+
+#[test]
+fn shapes_get_made_normals_too_and_have_no_other_axis() {
+    let load = |import| {
+        let selected = Selection { import, ..Selection::default() };
+        Source::Shape(Shape::Torus).load_selected(selected, &Limits::default(), &Progress::new())
+    };
+    assert_flat(&load(Import { crease_angle: 0.0, ..MADE }).expect("a shape").mesh);
+    for import in [Import { up: Some(UpAxis::Z), ..MADE }, Import { unit: Some(LengthUnit::Inch), ..MADE }] {
+        let refused = load(import).map(|_| ()).expect_err("its exact surface doesn't move");
+        assert!(matches!(refused, LoadError::Shape { .. }), "{refused}");
+    }
+}
+
+/// A triangle in centimetres, in a file that says which axis points up.
+fn fbx(z_up: bool) -> Vec<u8> {
+    let objects = vec![
+        geometry(10, &[0.0, 0.0, 0.0, 100.0, 0.0, 0.0, 0.0, 200.0, 300.0], &[&[0, 1, 2]], Vec::new()),
+        model(20, "triangle", "Mesh", &[]),
+    ];
+    text(&document(z_up, 1.0, objects, &[Link(20, 0, ""), Link(10, 20, "")]))
+}
+
+#[test]
+fn what_was_chosen_takes_the_place_of_what_an_fbx_file_says() {
+    let last = |z_up, import| loaded(Format::Fbx, &fbx(z_up), import).corners[2].position;
+    let near = |a: Vec3, b: Vec3| assert!(a.distance(b) < 1e-5 * b.length(), "{a}, not {b}");
+    let import = |up, unit| Import { up, unit, ..Import::default() };
+    near(last(true, import(None, None)), vec3(0.0, 3.0, -2.0));
+    near(last(true, import(Some(UpAxis::Y), None)), vec3(0.0, 2.0, 3.0));
+    near(last(false, import(Some(UpAxis::Z), None)), vec3(0.0, 3.0, -2.0));
+    near(last(false, import(None, Some(LengthUnit::Metre))), vec3(0.0, 200.0, 300.0));
+    near(last(true, import(Some(UpAxis::Y), Some(LengthUnit::Millimetre))), vec3(0.0, 0.2, 0.3));
+}
+
+/// The lengths of units do what their definitions say.
+#[test]
+fn twelve_inches_are_a_foot() {
+    assert!((12.0 * LengthUnit::Inch.metres() - LengthUnit::Foot.metres()).abs() < 1e-15);
+    assert_eq!(10.0 * LengthUnit::Millimetre.metres(), LengthUnit::Centimetre.metres());
+}
+
+proptest! {
+    #[test]
+    fn a_file_in_another_unit_is_that_much_larger(
+        points in prop::array::uniform3(prop::array::uniform3(-1e6_f32..1e6)),
+        up in prop::sample::select(vec![UpAxis::Y, UpAxis::Z, UpAxis::NegX]),
+        unit in prop::sample::select(vec![LengthUnit::Millimetre, LengthUnit::Foot, LengthUnit::Metre]),
+    ) {
+        let vertices: String = points.iter().map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect();
+        let text = format!("{vertices}f 1 2 3\n");
+        let plain = loaded(Format::Obj, text.as_bytes(), Import::default());
+        let placed = loaded(Format::Obj, text.as_bytes(), Import { up: Some(up), unit: Some(unit), ..Import::default() });
+        prop_assert_eq!(plain.corners.len(), placed.corners.len());
+        for (own, placed) in plain.corners.iter().zip(&placed.corners) {
+            let expected = up.turn(own.position).as_dvec3() * unit.metres();
+            prop_assert!((placed.position.as_dvec3() - expected).abs().max_element() <= 1e-7 * expected.abs().max_element());
+            prop_assert_eq!(placed.normal, up.turn(own.normal));
+        }
+    }
+}

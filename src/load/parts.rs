@@ -1,0 +1,109 @@
+//! The parts of a file: its objects and groups, or its solids, by name. Those that are hidden are left out.
+
+use std::collections::HashMap;
+
+use super::memory_budget::Budget;
+use crate::mesh::{MemoryAccount, MemoryRefused};
+
+/// The greatest number of parts. The triangles of others belong to none, and are always shown.
+const MAX_PARTS: usize = 1 << 16;
+
+/// Memory for a part besides its name, which is stored twice, in bytes.
+const PER_PART: u64 = 150;
+
+/// A part of a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Part {
+    pub name: String,
+    /// How many triangles it has, also while they are left out.
+    pub triangles: u32,
+    pub is_hidden: bool,
+}
+
+/// The parts of a file that is being read.
+#[derive(Default)]
+pub(super) struct Parts {
+    /// The names of parts that are left out.
+    hidden: Vec<String>,
+    found: Vec<Part>,
+    numbers: HashMap<Vec<u8>, usize>,
+    /// The part that the next faces belong to.
+    current: Option<usize>,
+    /// How often a part was entered that is one too many.
+    beyond: usize,
+}
+
+impl Parts {
+    pub(super) fn hiding(hidden: &[String]) -> Self {
+        Self { hidden: hidden.to_vec(), ..Self::default() }
+    }
+
+    /// Says which part the next faces belong to, by its name.
+    ///
+    /// # Errors
+    /// [`MemoryRefused`].
+    pub(super) fn enter(&mut self, name: &[u8], budget: &Budget) -> Result<(), MemoryRefused> {
+        if let Some(&number) = self.numbers.get(name) {
+            self.current = Some(number);
+            return Ok(());
+        }
+        if self.found.len() == MAX_PARTS {
+            (self.current, self.beyond) = (None, self.beyond + 1);
+            return Ok(());
+        }
+        budget.hold(PER_PART + 2 * name.len() as u64)?;
+        let number = self.found.len();
+        let shown = String::from_utf8_lossy(name).into_owned();
+        let is_hidden = self.hidden.contains(&shown);
+        self.found.push(Part { name: shown, triangles: 0, is_hidden });
+        self.numbers.insert(name.to_vec(), number);
+        self.current = Some(number);
+        Ok(())
+    }
+
+    /// Whether any part was entered.
+    pub(super) fn have_begun(&self) -> bool {
+        !self.found.is_empty()
+    }
+
+    /// Counts triangles of the current part. Returns whether they are left out.
+    pub(super) fn leave_out(&mut self, triangles: usize) -> bool {
+        let Some(part) = self.current.map(|number| &mut self.found[number]) else { return false };
+        part.triangles = part.triangles.saturating_add(triangles as u32);
+        part.is_hidden
+    }
+
+    /// Returns the parts that have triangles, and how often one was entered that is one too many.
+    pub(super) fn into_list(mut self) -> (Vec<Part>, usize) {
+        self.found.retain(|part| part.triangles > 0);
+        (self.found, self.beyond)
+    }
+
+    /// Whether triangles are left out.
+    pub(super) fn are_hidden(&self) -> bool {
+        self.found.iter().any(|part| part.is_hidden && part.triangles > 0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_may_be_entered_again_and_one_too_many_belongs_to_none() {
+        let budget = Budget::unlimited();
+        let mut parts = Parts::hiding(&["b".to_owned()]);
+        assert!(!parts.leave_out(1), "there is none yet");
+        for (name, triangles) in [("a", 2), ("b", 3), ("empty", 0), ("a", 5)] {
+            parts.enter(name.as_bytes(), &budget).expect("memory is unlimited");
+            assert_eq!(parts.leave_out(triangles), name == "b");
+        }
+        for i in 0..MAX_PARTS {
+            parts.enter(format!("{i}").as_bytes(), &budget).expect("memory is unlimited");
+        }
+        assert!(!parts.leave_out(7));
+        let (found, beyond) = parts.into_list();
+        let part = |name: &str, triangles, is_hidden| Part { name: name.to_owned(), triangles, is_hidden };
+        assert_eq!((found, beyond), (vec![part("a", 7, false), part("b", 3, true)], 3));
+    }
+}

@@ -1,0 +1,66 @@
+//! Whose normals a mesh has, which axis of its file points up, and what the file's unit is.
+
+use serde_json::Value;
+
+use crate::{Folder, failure, number, output, sentence, stats, vase};
+
+/// A square in the ground plane of a file whose z axis points up, 2 wide and 3 deep in millimetres.
+const GROUND: &str = "v 0 0 0\nv 2 0 0\nv 2 3 0\nv 0 3 0\nf 1 2 3 4\n";
+
+fn info(arguments: &[&str]) -> Value {
+    serde_json::from_str(&output(&[&["info", "--json"], arguments].concat())).expect("JSON")
+}
+
+#[test]
+fn normals_are_made_with_the_crease_angle() {
+    let corners = |arguments: &[&str]| number(&info(&[&[vase()], arguments].concat()), "/corners");
+    let flat = corners(&["--mesh-normals", "made", "--crease-angle", "0"]);
+    assert!(flat > corners(&["--mesh-normals", "made", "--crease-angle", "180"]), "flat triangles share no corners");
+    assert_eq!(corners(&["--crease-angle", "0"]), corners(&[]), "the file has normals");
+    let curved = stats(&[vase(), "--mesh-normals", "made", "--crease-angle", "0", "--surface", "pn"]);
+    assert!(number(&curved, "/patches") > 0.0);
+    let errors = failure(&["info", vase(), "--crease-angle", "181"], 2);
+    assert!(errors.contains("from 0 to 180"), "{errors}");
+    failure(&["info", vase(), "--mesh-normals", "smooth"], 2);
+}
+
+#[test]
+fn parts_are_listed_and_left_out() {
+    let folder = Folder::new();
+    let parts = folder.path("parts.obj");
+    let text = "v 0 0 0\nv 2 0 0\nv 2 3 0\no left door\nf 1 2 3\no -right\nf 3 2 1\nf 2 3 1\n";
+    std::fs::write(&parts, text).expect("a writable folder");
+    let json = info(&[&parts]);
+    assert_eq!(json["parts"][1], serde_json::json!({ "name": "-right", "triangles": 2, "hidden": false }));
+    assert!(output(&["info", &parts]).contains("part          left door: 1 triangles\n"));
+    let json = info(&[&parts, "--hide-part", "-right"]);
+    assert_eq!((number(&json, "/triangles"), &json["parts"][1]["hidden"]), (1.0, &Value::Bool(true)));
+    sentence(&["info", &parts, "--hide-part", "bonnet"], &["bonnet", "left door", "-right"]);
+    sentence(&["info", &parts, "--hide-part", "left door", "--hide-part=-right"], &["parts are hidden"]);
+    sentence(&["info", vase(), "--hide-part", "left door"], &["no named parts"]);
+}
+
+#[test]
+fn axis_and_unit_are_chosen_and_a_shape_has_its_own() {
+    let folder = Folder::new();
+    let ground = folder.path("ground.obj");
+    std::fs::write(&ground, GROUND).expect("a writable folder");
+    let out = folder.path("turned.obj");
+    let positions = |options: &[&str]| {
+        output(&[&["tessellate", &ground, "-o", &out, "--factor", "1"], options].concat());
+        let text = std::fs::read_to_string(&out).expect("what was written");
+        let of_line = |line: &str| line.split(' ').skip(1).map(|word| word.parse::<f64>().expect("a number")).collect();
+        let mut all: Vec<Vec<f64>> = text.lines().filter(|line| line.starts_with("v ")).map(of_line).collect();
+        all.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
+        all
+    };
+    assert_eq!(positions(&[]).last(), Some(&vec![2.0, 3.0, 0.0]));
+    assert_eq!(positions(&["--up", "z"]).last(), Some(&vec![2.0, 0.0, 0.0]));
+    assert_eq!(positions(&["--up", "z"])[0], [0.0, 0.0, -3.0]);
+    assert_eq!(positions(&["--up", "-y"])[0], [0.0, -3.0, 0.0]);
+    let metres = positions(&["--unit", "mm"]);
+    let last = metres.last().expect("corners");
+    assert!((last[1] - 0.003).abs() < 1e-9, "{metres:?}");
+    sentence(&["info", "shape:torus", "--up", "z"], &["shape:torus", "Y up", "--up"]);
+    failure(&["info", &ground, "--unit", "yd"], 2);
+}

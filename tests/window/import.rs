@@ -1,0 +1,142 @@
+//! Whose normals the mesh has, which of its axes points up, and what its unit is.
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use pnaen::app::App;
+use pnaen::load::{Import, LengthUnit, NormalSource, Source};
+use pnaen::mesh::{Shape, UpAxis};
+use pnaen::render::Camera;
+use tempfile::TempDir;
+
+use crate::window_tests::editing::{assert_draws, copied, press_with};
+use crate::window_tests::{choose, press, resumed, settle, uniform, vase, window};
+
+/// Two squares that meet in an edge at a right angle, 1 high, 2 wide and 3 deep, without normals.
+const BENT: &str = "v 0 0 0\nv 2 0 0\nv 2 0 3\nv 0 0 3\nv 0 1 0\nv 2 1 0\nf 1 4 3 2\nf 1 2 6 5\n";
+
+fn bent(folder: &TempDir) -> Source {
+    let path = folder.path().join("bent.obj");
+    std::fs::write(&path, BENT).expect("a writable temporary folder");
+    Source::File(path)
+}
+
+fn import(harness: &Harness<App>) -> Import {
+    harness.state().loaded().expect("a mesh").preparation.import
+}
+
+fn corners(harness: &Harness<App>) -> usize {
+    harness.state().loaded().expect("a mesh").mesh.corners.len()
+}
+
+fn size(harness: &Harness<App>) -> [f32; 3] {
+    let bounds = harness.state().loaded().expect("a mesh").mesh.bounds();
+    (bounds.max - bounds.min).to_array()
+}
+
+#[test]
+fn normals_are_made_anew_with_a_crease_angle_and_undone_while_the_camera_stays() {
+    let mut harness = uniform(Some(vase()));
+    press(&mut harness, Key::Num3);
+    let (camera, before): (Camera, usize) = (*harness.state().camera(), corners(&harness));
+    assert!(harness.query_by_role_and_label(Role::Slider, "Crease angle").is_none(), "all normals are the file's");
+    choose(&mut harness, "Normals", "Made anew");
+    assert_eq!(import(&harness).normals, NormalSource::Made);
+    let made = corners(&harness);
+    harness.get_by_role_and_label(Role::Slider, "Crease angle").set_value_accesskit(0.0);
+    settle(&mut harness);
+    assert_eq!(import(&harness).crease_angle, 0.0);
+    assert!(corners(&harness) > made, "flat triangles share no corners");
+    assert_eq!(*harness.state().camera(), camera);
+    let line = copied(&mut harness);
+    assert!(line.contains("--mesh-normals made --crease-angle 0"), "{line}");
+    press(&mut harness, Key::Escape);
+    assert_draws(&harness, &line, "vase-view");
+    press_with(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!((import(&harness).crease_angle, corners(&harness)), (60.0, made), "the mesh follows undo");
+    press_with(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!((import(&harness), corners(&harness)), (Import::default(), before));
+    press_with(&mut harness, Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
+    assert_eq!(import(&harness).normals, NormalSource::Made);
+}
+
+#[test]
+fn an_axis_and_a_unit_turn_and_scale_the_mesh_and_belong_to_its_file() {
+    let (folder, state) = (TempDir::new().expect("a folder"), TempDir::new().expect("a folder"));
+    let source = bent(&folder);
+    let mut harness = resumed(state.path(), [1200.0, 960.0], Some(source.clone()));
+    assert_eq!(size(&harness), [2.0, 1.0, 3.0]);
+    harness.get_by_role_and_label(Role::Slider, "Crease angle");
+    super::open_all_sections(&mut harness);
+    settle(&mut harness);
+    let distance = harness.state().camera().distance;
+    choose(&mut harness, "Up axis", "Z");
+    assert_eq!(size(&harness), [2.0, 3.0, 1.0]);
+    choose(&mut harness, "Unit", "Centimetre");
+    let [x, y, z] = size(&harness);
+    assert!((x - 0.02).abs() < 1e-6 && (y - 0.03).abs() < 1e-6 && (z - 0.01).abs() < 1e-6);
+    assert!(harness.state().camera().distance < 0.1 * distance, "the camera shows all of it again");
+    let line = copied(&mut harness);
+    assert!(line.contains("--up z --unit cm"), "{line}");
+    press(&mut harness, Key::Escape);
+    // Another file has an axis and a unit of its own; this isn't a step that can be undone.
+    let context = harness.ctx.clone();
+    harness.state_mut().open(&context, vase());
+    settle(&mut harness);
+    assert_eq!(import(&harness), Import::default());
+    harness.state_mut().open(&context, source.clone());
+    settle(&mut harness);
+    let chosen = Import { up: Some(UpAxis::Z), unit: Some(LengthUnit::Centimetre), ..Import::default() };
+    assert_eq!((import(&harness), harness.state().settings().import), (chosen, chosen));
+    eframe::App::on_exit(harness.state_mut());
+    drop(harness);
+    let harness = resumed(state.path(), [1200.0, 960.0], Some(source));
+    assert_eq!(import(&harness), chosen, "the next window knows the file");
+}
+
+#[test]
+fn parts_are_hidden_and_shown_again_while_the_camera_stays() {
+    let folder = TempDir::new().expect("a folder");
+    let path = folder.path().join("parts.obj");
+    let text = BENT.replace("f 1 4", "o floor\nf 1 4").replace("f 1 2", "o wall\nf 1 2");
+    std::fs::write(&path, text).expect("a writable temporary folder");
+    let mut harness = uniform(Some(Source::File(path)));
+    let camera = *harness.state().camera();
+    let triangles = |harness: &Harness<App>| harness.state().loaded().expect("a mesh").mesh.triangles.len();
+    assert_eq!(triangles(&harness), 4);
+    super::switch(&mut harness, "wall");
+    assert_eq!((triangles(&harness), *harness.state().camera()), (2, camera));
+    let line = copied(&mut harness);
+    assert!(line.contains("--hide-part wall"), "{line}");
+    press(&mut harness, Key::Escape);
+    super::switch(&mut harness, "floor");
+    harness.get_by_label_contains("its parts are hidden");
+    assert_eq!(triangles(&harness), 2, "what is shown stays");
+    harness.get_by_role_and_label(Role::Button, "Show all parts").scroll_to_me();
+    settle(&mut harness);
+    super::click(&mut harness, "Show all parts");
+    assert_eq!(triangles(&harness), 4);
+}
+
+#[test]
+fn a_file_that_is_gone_leaves_the_mesh_and_its_settings_as_they_are() {
+    let folder = TempDir::new().expect("a folder");
+    let source = bent(&folder);
+    let mut harness = uniform(Some(source.clone()));
+    let Source::File(path) = source else { unreachable!("it is a file") };
+    std::fs::remove_file(path).expect("a file");
+    choose(&mut harness, "Normals", "Made anew");
+    assert_eq!((import(&harness), harness.state().settings().import), (Import::default(), Import::default()));
+    harness.get_by_label_contains("bent.obj can't be read");
+}
+
+#[test]
+fn a_shape_has_no_other_axis() {
+    let harness = window(Some(Source::Shape(Shape::Torus)));
+    for name in ["Up axis", "Unit"] {
+        let list = harness.get_by_role_and_label(Role::ComboBox, name);
+        assert!(list.accesskit_node().is_disabled());
+        assert_eq!(list.value().as_deref(), Some("As the file says"));
+    }
+}
