@@ -25,6 +25,7 @@ mod obj;
 pub(crate) mod panorama;
 mod ply;
 mod read_error;
+mod recent_corners;
 mod rig_builder;
 pub(crate) mod selection;
 pub(crate) mod source;

@@ -20,7 +20,8 @@ use glam::{Vec2, Vec3, Vec4};
 use super::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, counted, linear_color};
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
-use super::read_error::ReadError;
+use super::read_error::{FilePosition, ReadError};
+use super::recent_corners::VertexNumbers;
 use super::text_lines::{Line, Lines, first_word, numbers_or_nan, of_utf16, shown, words};
 use super::uri::Files;
 use crate::files::Limits;
@@ -109,11 +110,39 @@ pub(super) fn read(
     Ok(LoadedMesh { files: files.named(), ..loaded })
 }
 
-/// Calls `take` with each statement: a line without its comment, joined with the lines that continue it.
+/// A statement: a line, joined with the lines that continue it.
+struct Statement<'a> {
+    /// The number of its first line, from 1.
+    number: usize,
+    /// Its first word; empty if it has none.
+    word: &'a [u8],
+    /// What follows, with a comment if there is one.
+    rest: &'a [u8],
+}
+
+impl<'a> Statement<'a> {
+    fn of(line: &Line<'a>) -> Self {
+        let (word, rest) = first_word(line.text);
+        let is_comment = word.first() == Some(&b'#');
+        let (word, rest) = if is_comment { (&b""[..], &b""[..]) } else { (word, rest) };
+        Self { number: line.number, word, rest }
+    }
+
+    /// Returns what follows the first word, without a comment.
+    fn rest(&self) -> &'a [u8] {
+        without_comment(self.rest)
+    }
+
+    fn place(&self) -> FilePosition {
+        FilePosition::Line(self.number)
+    }
+}
+
+/// Calls `take` with each statement.
 fn each(
     bytes: &[u8],
     progress: &Progress,
-    mut take: impl FnMut(&Line) -> Result<(), ReadError>,
+    mut take: impl FnMut(&Statement) -> Result<(), ReadError>,
 ) -> Result<(), ReadError> {
     let mut lines = Lines::new(bytes);
     let mut next = 0;
@@ -124,11 +153,13 @@ fn each(
             progress.check()?;
         }
         // A comment may end with a backslash, as in the path of a Windows folder.
-        if line.text.trim_ascii_start().starts_with(b"#") {
+        let is_whole = line.text.last() != Some(&b'\\') || line.text.trim_ascii_start().starts_with(b"#");
+        if is_whole {
+            take(&Statement::of(&line))?;
             continue;
         }
         let text = continued(line.text, &mut lines)?;
-        take(&Line { text: without_comment(&text), number: line.number })?;
+        take(&Statement::of(&Line { text: &text, number: line.number }))?;
     }
     Ok(())
 }
@@ -170,12 +201,12 @@ struct Vertices {
 
 impl Vertices {
     /// Stores the vertex data of a statement.
-    fn take(&mut self, line: &Line, budget: &Budget) -> Result<(), ReadError> {
-        let (word, rest) = first_word(line.text);
+    fn take(&mut self, statement: &Statement, budget: &Budget) -> Result<(), ReadError> {
         let hold = |bytes| budget.hold(bytes).map_err(too_large);
-        match word {
+        match statement.word {
             b"v" => {
                 hold(self.positions.next_bytes())?;
+                let rest = statement.rest();
                 self.positions.push(numbers_or_nan(rest).into());
                 // With four numbers the last one is a weight, and with seven the first three are followed by one.
                 let count = words(rest).take(8).count();
@@ -191,16 +222,17 @@ impl Vertices {
             }
             b"vn" => {
                 hold(self.normals.next_bytes())?;
-                self.normals.push(numbers_or_nan(rest).into());
+                self.normals.push(numbers_or_nan(statement.rest()).into());
             }
             b"vt" => {
                 hold(self.uvs.next_bytes())?;
+                let rest = statement.rest();
                 let [u, v] = numbers_or_nan(rest);
                 let v = if words(rest).nth(1).is_some() { v } else { 0.0 };
                 // The file's v points upwards, the mesh's downwards.
                 self.uvs.push(Vec2::new(u, 1.0 - v));
             }
-            b"s" => self.is_smoothed |= smoothing::group(rest) != 0,
+            b"s" => self.is_smoothed |= smoothing::group(statement.rest()) != 0,
             _ => {}
         }
         Ok(())
@@ -291,18 +323,17 @@ struct Reader<'v, 'a> {
 }
 
 impl Reader<'_, '_> {
-    fn take(&mut self, line: &Line) -> Result<(), ReadError> {
-        let (word, rest) = first_word(line.text);
-        match word {
+    fn take(&mut self, statement: &Statement) -> Result<(), ReadError> {
+        match statement.word {
             b"" => {}
             b"v" => self.above[0] += 1,
             b"vt" => self.above[1] += 1,
             b"vn" => self.above[2] += 1,
-            b"f" | b"fo" => self.face(line, rest)?,
-            b"s" => self.smoothing.iter_mut().for_each(|smoothing| smoothing.enter(rest)),
-            b"usemtl" => self.materials.enter(rest),
-            b"mtllib" => self.materials.add_library(rest),
-            b"p" => self.found.points += words(rest).count(),
+            b"f" | b"fo" => self.face(statement)?,
+            b"s" => self.smoothing.iter_mut().for_each(|smoothing| smoothing.enter(statement.rest())),
+            b"usemtl" => self.materials.enter(statement.rest()),
+            b"mtllib" => self.materials.add_library(statement.rest()),
+            b"p" => self.found.points += words(statement.rest()).count(),
             b"l" => self.found.lines += 1,
             b"curv" | b"curv2" | b"surf" => self.found.surfaces += 1,
             word => self.found.unknown += usize::from(!SILENT.contains(&word)),
@@ -310,18 +341,18 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    fn face(&mut self, line: &Line, rest: &[u8]) -> Result<(), ReadError> {
+    fn face(&mut self, statement: &Statement) -> Result<(), ReadError> {
         self.found.faces += 1;
         let mut corners = std::mem::take(&mut self.corners);
         corners.clear();
         self.indices.clear();
-        for word in words(rest) {
+        for word in words(statement.rest()) {
             if corners.len() == MAX_CORNERS {
-                return Err(line.place().error(format!("the face has more than {MAX_CORNERS} corners")));
+                return Err(statement.place().error(format!("the face has more than {MAX_CORNERS} corners")));
             }
-            let (index, corner) = self.corner(word).map_err(|reason| line.place().error(reason))?;
+            let (index, corner, vertex) = self.corner(word).map_err(|reason| statement.place().error(reason))?;
             let color = self.vertices.colors.get(index).map_or(Vec4::ONE, |&color| linear_color(color));
-            corners.push(NumberedCorner { corner, number: self.faces.number(color)? });
+            corners.push(NumberedCorner { corner, number: self.faces.number(color)?, vertex });
             self.indices.push(index);
         }
         if corners.iter().any(|at| at.corner.normal.is_none()) {
@@ -330,15 +361,20 @@ impl Reader<'_, '_> {
             *if smoothed { &mut self.found.smoothed } else { &mut self.found.without_normals } += 1;
         }
         let material = self.materials.current(&mut self.faces)?;
-        corners.iter_mut().for_each(|at| at.corner.uv = self.materials.placed(material, at.corner.uv));
-        self.faces.add(material, &mut corners, line.place())?;
+        for at in &mut corners {
+            let placed = self.materials.placed(material, at.corner.uv);
+            // Another material may place them elsewhere.
+            at.vertex = at.vertex.filter(|_| placed == at.corner.uv);
+            at.corner.uv = placed;
+        }
+        self.faces.add(material, &mut corners, statement.place())?;
         self.corners = corners;
         Ok(())
     }
 
     /// Parses a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`.
-    /// Returns the number of its position too.
-    fn corner(&mut self, word: &[u8]) -> Result<(usize, InputCorner), String> {
+    /// Returns the number of its position too, and what determines it.
+    fn corner(&mut self, word: &[u8]) -> Result<(usize, InputCorner, Option<VertexNumbers>), String> {
         let mut parts = word.split(|&byte| byte == b'/');
         let [position, uv, normal] = [0, 1, 2].map(|_| parts.next().filter(|part| !part.is_empty()));
         let (None, Some(position)) = (parts.next(), position) else {
@@ -354,20 +390,28 @@ impl Reader<'_, '_> {
         };
         let uv = optional(uv, self.above[1], uvs.len(), &mut self.found.absent_uvs);
         let normal = optional(normal, self.above[2], normals.len(), &mut self.found.absent_normals);
+        let vertex = vertex_numbers([Some(number), uv, normal]);
         let uv = uv.and_then(|uv| uvs.get(uv)).copied().unwrap_or_default();
         let normal = normal.and_then(|normal| normals.get(normal)).copied();
         let position = positions.get(number).copied().unwrap_or_default();
-        Ok((number, InputCorner { position, normal, uv }))
+        Ok((number, InputCorner { position, normal, uv }, vertex))
     }
+}
+
+/// Returns what determines a corner: the numbers of its position, texture coordinates and normal. None if one of them is too
+/// large.
+fn vertex_numbers(numbers: [Option<usize>; 3]) -> Option<VertexNumbers> {
+    // The greatest number stands for none.
+    let fitting = |number| u32::try_from(number).ok().filter(|number| *number != u32::MAX);
+    let numbers = numbers.map(|number| number.map_or(Some(u32::MAX), fitting));
+    let [Some(position), Some(uv), Some(normal)] = numbers else { return None };
+    Some([position, uv, normal])
 }
 
 /// Parses an index into a list of `count` items, and returns it counted from 0. The file counts from 1, or backwards
 /// from the last of the `above` items before the statement, which is -1.
 fn index(word: &[u8], what: &str, above: usize, count: usize) -> Result<usize, String> {
-    let number: i64 = std::str::from_utf8(word)
-        .ok()
-        .and_then(|word| word.parse().ok())
-        .ok_or_else(|| format!("{} isn't the index of a {what}", shown(word)))?;
+    let number = whole_number(word).ok_or_else(|| format!("{} isn't the index of a {what}", shown(word)))?;
     let distance = usize::try_from(number.unsigned_abs()).unwrap_or(usize::MAX);
     match number {
         0 => Err(format!("the face uses {what} 0, but indices start at 1")),
@@ -376,6 +420,16 @@ fn index(word: &[u8], what: &str, above: usize, count: usize) -> Result<usize, S
         _ if distance <= above => Ok(above - distance),
         _ => Err(format!("the face uses {what} {number}, but {above} are above the face")),
     }
+}
+
+/// Parses a whole number.
+fn whole_number(word: &[u8]) -> Option<i64> {
+    // Nearly all are a few digits, for which the general parser takes several times as long.
+    let is_short = (1..10).contains(&word.len()) && word.iter().all(u8::is_ascii_digit);
+    if is_short {
+        return Some(word.iter().fold(0, |number, digit| 10 * number + i64::from(digit - b'0')));
+    }
+    std::str::from_utf8(word).ok().and_then(|word| word.parse().ok())
 }
 
 #[cfg(test)]
