@@ -41,6 +41,7 @@ pub mod mesh;
 pub mod progress;
 pub mod tessellate;
 
+mod cores;
 mod gpu;
 mod names;
 

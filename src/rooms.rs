@@ -13,7 +13,7 @@ use syn::{Item, UseTree};
 
 /// Every room. Those of one line are side by side and don't import each other; a room imports from lines above its own.
 const ORDER: &[&[&str]] = &[
-    &["names", "numbers", "markdown", "plot", "progress"],
+    &["cores", "names", "numbers", "markdown", "plot", "progress"],
     &["files"],
     &["mesh"],
     &["load", "tessellate"],

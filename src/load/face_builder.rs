@@ -11,6 +11,7 @@ use super::memory_budget::{Budget, edge_bytes};
 use super::notes::Notes;
 use super::parts::Parts;
 use super::read_error::{FilePosition, ReadError};
+use super::recent_corners::{RecentCorners, VertexNumbers};
 use super::tangents;
 use super::warnings::repair_warnings;
 use crate::mesh::build_limits::{MAX_TRIANGLES, MemoryRefused};
@@ -36,6 +37,11 @@ pub(super) trait FaceCorner: Copy {
     fn number(&self) -> u32 {
         0
     }
+
+    /// What determines the corner and its number, if the file has numbers for it.
+    fn vertex(&self) -> Option<VertexNumbers> {
+        None
+    }
 }
 
 impl FaceCorner for InputCorner {
@@ -49,6 +55,8 @@ impl FaceCorner for InputCorner {
 pub(super) struct NumberedCorner {
     pub corner: InputCorner,
     pub number: u32,
+    /// What determines both, if the file has numbers for it. Then corners with the same numbers must be the same.
+    pub vertex: Option<VertexNumbers>,
 }
 
 impl FaceCorner for NumberedCorner {
@@ -59,6 +67,10 @@ impl FaceCorner for NumberedCorner {
     fn number(&self) -> u32 {
         self.number
     }
+
+    fn vertex(&self) -> Option<VertexNumbers> {
+        self.vertex
+    }
 }
 
 /// The mesh that is being built, and counts of what was repaired or left out.
@@ -67,6 +79,7 @@ pub(super) struct FaceBuilder<'a> {
     import: Import,
     parts: Parts,
     builder: MeshBuilder,
+    recent: RecentCorners,
     /// The colours of corners, if the file has any, or if corners may need tangents.
     colors: Option<DetailTable>,
     materials: usize,
@@ -96,6 +109,7 @@ impl<'a> FaceBuilder<'a> {
             import: Import::default(),
             parts: Parts::default(),
             builder: MeshBuilder::new(),
+            recent: RecentCorners::default(),
             colors: None,
             materials: 0,
             triangles: 0,
@@ -240,9 +254,16 @@ impl<'a> FaceBuilder<'a> {
     }
 
     fn cut<C: FaceCorner>(&mut self, material: usize, corners: &mut [C]) {
-        let builder = &mut self.builder;
+        let (builder, recent) = (&mut self.builder, &mut self.recent);
         let mut add = |triangle: [C; 3]| {
-            let stored = triangle.map(|mut corner| builder.corner(*corner.corner(), corner.number()));
+            let stored = triangle.map(|mut corner| {
+                let vertex = corner.vertex();
+                let mut store = || builder.corner(*corner.corner(), corner.number());
+                match vertex {
+                    Some(vertex) => recent.get(vertex, store),
+                    None => store(),
+                }
+            });
             builder.stored_triangle(material, stored);
         };
         if let Ok(triangle) = (&*corners).try_into() {
@@ -289,12 +310,14 @@ impl<'a> FaceBuilder<'a> {
     /// # Errors
     /// As [`finish`](Self::finish).
     pub(super) fn finish_numbered(
-        self,
+        mut self,
         name: &str,
         holds: String,
         mut warnings: Vec<String>,
         progress: &Progress,
     ) -> Result<(Mesh, Vec<u32>, Vec<String>), ReadError> {
+        // No more corners are stored.
+        self.recent = RecentCorners::default();
         if self.builder.is_empty() {
             let small = match self.too_small {
                 0 => String::new(),

@@ -31,6 +31,7 @@ pub(crate) mod panorama;
 pub(crate) mod parts;
 mod ply;
 mod read_error;
+mod recent_corners;
 mod rig_builder;
 pub(crate) mod selection;
 pub(crate) mod source;

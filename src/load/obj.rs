@@ -22,7 +22,8 @@ use super::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, counted, lin
 use super::import::Import;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
-use super::read_error::ReadError;
+use super::read_error::{FilePosition, ReadError};
+use super::recent_corners::VertexNumbers;
 use super::selection::Selection;
 use super::text_lines::{Line, Lines, first_word, has_comma, numbers_or_nan, of_utf16, shown, words};
 use super::uri::Files;
@@ -84,11 +85,11 @@ pub(super) fn read(
     let files = Files::new(folder, limits, &budget, progress);
     let mut vertices = Vertices::default();
     let mut materials = Materials::new(&files, &budget);
-    each(&bytes, &progress.part(0.0, 0.2), |line| {
-        if let (b"mtllib", names) = first_word(line.text) {
-            materials.add_library(names);
+    each(&bytes, &progress.part(0.0, 0.2), |statement| {
+        if statement.word == b"mtllib" {
+            materials.add_library(statement.rest());
         }
-        vertices.take(line, &budget)
+        vertices.take(statement, &budget)
     })?;
     let mut smoothing = Smoothing::new(&vertices, &budget);
     let is_smoothed = vertices.is_smoothed && !import.makes_normals();
@@ -123,11 +124,39 @@ pub(super) fn read(
     Ok(LoadedMesh { files: files.named(), ..loaded })
 }
 
-/// Calls `take` with each statement: a line without its comment, joined with the lines that continue it.
+/// A statement: a line, joined with the lines that continue it.
+struct Statement<'a> {
+    /// The number of its first line, from 1.
+    number: usize,
+    /// Its first word; empty if it has none.
+    word: &'a [u8],
+    /// What follows, with a comment if there is one.
+    rest: &'a [u8],
+}
+
+impl<'a> Statement<'a> {
+    fn of(line: &Line<'a>) -> Self {
+        let (word, rest) = first_word(line.text);
+        let is_comment = word.first() == Some(&b'#');
+        let (word, rest) = if is_comment { (&b""[..], &b""[..]) } else { (word, rest) };
+        Self { number: line.number, word, rest }
+    }
+
+    /// Returns what follows the first word, without a comment.
+    fn rest(&self) -> &'a [u8] {
+        without_comment(self.rest)
+    }
+
+    fn place(&self) -> FilePosition {
+        FilePosition::Line(self.number)
+    }
+}
+
+/// Calls `take` with each statement.
 fn each(
     bytes: &[u8],
     progress: &Progress,
-    mut take: impl FnMut(&Line) -> Result<(), ReadError>,
+    mut take: impl FnMut(&Statement) -> Result<(), ReadError>,
 ) -> Result<(), ReadError> {
     let mut lines = Lines::new(bytes);
     let mut next = 0;
@@ -138,11 +167,13 @@ fn each(
             progress.check()?;
         }
         // A comment may end with a backslash, as in the path of a Windows folder.
-        if line.text.trim_ascii_start().starts_with(b"#") {
+        let is_whole = line.text.last() != Some(&b'\\') || line.text.trim_ascii_start().starts_with(b"#");
+        if is_whole {
+            take(&Statement::of(&line))?;
             continue;
         }
         let text = continued(line.text, &mut lines)?;
-        take(&Line { text: without_comment(&text), number: line.number })?;
+        take(&Statement::of(&Line { text: &text, number: line.number }))?;
     }
     Ok(())
 }
@@ -184,12 +215,12 @@ struct Vertices {
 
 impl Vertices {
     /// Stores the vertex data of a statement.
-    fn take(&mut self, line: &Line, budget: &Budget) -> Result<(), ReadError> {
-        let (word, rest) = first_word(line.text);
+    fn take(&mut self, statement: &Statement, budget: &Budget) -> Result<(), ReadError> {
         let hold = |bytes| budget.hold(bytes).map_err(too_large);
-        match word {
+        match statement.word {
             b"v" => {
                 hold(self.positions.next_bytes())?;
+                let rest = statement.rest();
                 let [x, y, z] = numbers_or_nan(rest);
                 self.positions.push(Vec3::new(x, y, if is_flat(rest) { 0.0 } else { z }));
                 // With four numbers the last one is a weight, and with seven the first three are followed by one.
@@ -206,16 +237,17 @@ impl Vertices {
             }
             b"vn" => {
                 hold(self.normals.next_bytes())?;
-                self.normals.push(numbers_or_nan(rest).into());
+                self.normals.push(numbers_or_nan(statement.rest()).into());
             }
             b"vt" => {
                 hold(self.uvs.next_bytes())?;
+                let rest = statement.rest();
                 let [u, v] = numbers_or_nan(rest);
                 let v = if words(rest).nth(1).is_some() { v } else { 0.0 };
                 // The file's v points upwards, the mesh's downwards.
                 self.uvs.push(Vec2::new(u, 1.0 - v));
             }
-            b"s" => self.is_smoothed |= smoothing::group(rest) != 0,
+            b"s" => self.is_smoothed |= smoothing::group(statement.rest()) != 0,
             _ => {}
         }
         Ok(())
@@ -321,26 +353,26 @@ struct Reader<'v, 'a> {
 }
 
 impl Reader<'_, '_> {
-    fn take(&mut self, line: &Line) -> Result<(), ReadError> {
-        let (word, rest) = first_word(line.text);
-        match word {
+    fn take(&mut self, statement: &Statement) -> Result<(), ReadError> {
+        match statement.word {
             b"" => {}
-            b"v" | b"vt" | b"vn" => {
+            word @ (b"v" | b"vt" | b"vn") => {
                 self.above[match word {
                     b"v" => 0,
                     b"vt" => 1,
                     _ => 2,
                 }] += 1;
+                let rest = statement.rest();
                 self.found.with_commas += usize::from(has_comma(rest));
                 self.found.flat += usize::from(word == b"v" && is_flat(rest));
             }
-            b"f" | b"fo" => self.face(line, rest)?,
-            b"s" => self.smoothing.iter_mut().for_each(|smoothing| smoothing.enter(rest)),
-            b"o" | b"g" => self.enter_part(word, rest)?,
-            b"usemtl" => self.materials.enter(rest),
+            b"f" | b"fo" => self.face(statement)?,
+            b"s" => self.smoothing.iter_mut().for_each(|smoothing| smoothing.enter(statement.rest())),
+            word @ (b"o" | b"g") => self.enter_part(word, statement.rest())?,
+            b"usemtl" => self.materials.enter(statement.rest()),
             // Material files were read with the vertices.
             b"mtllib" => {}
-            b"p" => self.found.points += words(rest).count(),
+            b"p" => self.found.points += words(statement.rest()).count(),
             b"l" => self.found.lines += 1,
             b"curv" | b"curv2" | b"surf" => self.found.surfaces += 1,
             word => self.found.unknown += usize::from(!SILENT.contains(&word)),
@@ -360,7 +392,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    fn face(&mut self, line: &Line, rest: &[u8]) -> Result<(), ReadError> {
+    fn face(&mut self, statement: &Statement) -> Result<(), ReadError> {
         self.found.faces += 1;
         if !self.faces.has_parts() {
             self.faces.enter_part(DEFAULT_PART)?;
@@ -368,18 +400,18 @@ impl Reader<'_, '_> {
         let mut corners = std::mem::take(&mut self.corners);
         corners.clear();
         self.indices.clear();
-        for word in words(rest) {
+        for word in words(statement.rest()) {
             if corners.len() == MAX_CORNERS {
-                return Err(line.place().error(format!("the face has more than {MAX_CORNERS} corners")));
+                return Err(statement.place().error(format!("the face has more than {MAX_CORNERS} corners")));
             }
-            let found = self.corner(word).map_err(|reason| line.place().error(reason))?;
-            let Some((index, corner)) = found else {
-                self.faces.leave_out(line.place());
+            let found = self.corner(word).map_err(|reason| statement.place().error(reason))?;
+            let Some((index, corner, vertex)) = found else {
+                self.faces.leave_out(statement.place());
                 self.corners = corners;
                 return Ok(());
             };
             let color = self.vertices.colors.get(index).map_or(Vec4::ONE, |&color| linear_color(color));
-            corners.push(NumberedCorner { corner, number: self.faces.number(color)? });
+            corners.push(NumberedCorner { corner, number: self.faces.number(color)?, vertex });
             self.indices.push(index);
         }
         if corners.iter().any(|at| at.corner.normal.is_none()) {
@@ -388,17 +420,23 @@ impl Reader<'_, '_> {
             *if smoothed { &mut self.found.smoothed } else { &mut self.found.without_normals } += 1;
         }
         let material = self.materials.current(&mut self.faces)?;
-        corners.iter_mut().for_each(|at| at.corner.uv = self.materials.placed(material, at.corner.uv));
-        self.faces.add(material, &mut corners, line.place())?;
+        for at in &mut corners {
+            let placed = self.materials.placed(material, at.corner.uv);
+            // Another material may place them elsewhere.
+            at.vertex = at.vertex.filter(|_| placed == at.corner.uv);
+            at.corner.uv = placed;
+        }
+        self.faces.add(material, &mut corners, statement.place())?;
         self.corners = corners;
         Ok(())
     }
 
-    /// Parses a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`. Returns the number of its position too; none if that isn't in the file.
+    /// Parses a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`. Returns the number of its position too, and what determines it; none if the
+    /// position isn't in the file.
     ///
     /// # Errors
     /// A clause that says what isn't a number.
-    fn corner(&mut self, word: &[u8]) -> Result<Option<(usize, InputCorner)>, String> {
+    fn corner(&mut self, word: &[u8]) -> Result<Option<(usize, InputCorner, Option<VertexNumbers>)>, String> {
         let mut parts = word.split(|&byte| byte == b'/');
         let [position, uv, normal] = [0, 1, 2].map(|_| parts.next().filter(|part| !part.is_empty()));
         self.found.long_corners += usize::from(parts.next().is_some());
@@ -415,11 +453,22 @@ impl Reader<'_, '_> {
         };
         let uv = optional(uv, self.above[1], uvs.len(), &mut self.found.absent_uvs);
         let normal = optional(normal, self.above[2], normals.len(), &mut self.found.absent_normals);
+        let vertex = vertex_numbers([Some(number), uv, normal]);
         let uv = uv.and_then(|uv| uvs.get(uv)).copied().unwrap_or_default();
         let normal = normal.and_then(|normal| normals.get(normal)).copied();
         let position = positions.get(number).copied().unwrap_or_default();
-        Ok(Some((number, InputCorner { position, normal, uv })))
+        Ok(Some((number, InputCorner { position, normal, uv }, vertex)))
     }
+}
+
+/// Returns what determines a corner: the numbers of its position, texture coordinates and normal. None if one of them is too
+/// large.
+fn vertex_numbers(numbers: [Option<usize>; 3]) -> Option<VertexNumbers> {
+    // The greatest number stands for none.
+    let fitting = |number| u32::try_from(number).ok().filter(|number| *number != u32::MAX);
+    let numbers = numbers.map(|number| number.map_or(Some(u32::MAX), fitting));
+    let [Some(position), Some(uv), Some(normal)] = numbers else { return None };
+    Some([position, uv, normal])
 }
 
 /// Parses an index into a list of `count` items, and returns it counted from 0; none if the list has no such item. The file counts
@@ -428,10 +477,9 @@ impl Reader<'_, '_> {
 /// # Errors
 /// A clause that says what isn't a number.
 fn index(word: &[u8], above: usize, count: usize) -> Result<Option<usize>, String> {
-    let said = std::str::from_utf8(word).ok();
     let whole = |number: f64| (number.fract() == 0.0).then_some(number as i128);
-    let digits = |word: &str| word.parse::<i64>().ok().map(i128::from);
-    let number = said.and_then(|word| digits(word).or_else(|| whole(word.parse().ok()?)));
+    let float = || whole(std::str::from_utf8(word).ok()?.parse().ok()?);
+    let number = whole_number(word).map(i128::from).or_else(float);
     let number = number.ok_or_else(|| format!("{} isn't the index of a position", shown(word)))?;
     let distance = usize::try_from(number.unsigned_abs()).unwrap_or(usize::MAX);
     Ok(match number {
@@ -439,6 +487,16 @@ fn index(word: &[u8], above: usize, count: usize) -> Result<Option<usize>, Strin
         1.. => (distance <= count).then(|| distance - 1),
         _ => above.checked_sub(distance),
     })
+}
+
+/// Parses a whole number.
+fn whole_number(word: &[u8]) -> Option<i64> {
+    // Nearly all are a few digits, for which the general parser takes several times as long.
+    let is_short = (1..10).contains(&word.len()) && word.iter().all(u8::is_ascii_digit);
+    if is_short {
+        return Some(word.iter().fold(0, |number, digit| 10 * number + i64::from(digit - b'0')));
+    }
+    std::str::from_utf8(word).ok().and_then(|word| word.parse().ok())
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@
 use glam::{Vec2, Vec3, Vec4};
 
 use super::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, counted, linear_color};
+use super::import::Import;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::read_error::{FilePosition, ReadError};
@@ -74,7 +75,7 @@ fn gather<'a>(
     let (corners, colors, found) = (Vec::new(), Vec::new(), Counts::default());
     let mut reader = Reader { faces, material, vertices: &vertices, corners, colors, is_colored: false, found };
     let mut warnings = reader.read(&header, &mut rows)?;
-    warnings.extend(reader.found.warnings(&vertices));
+    warnings.extend(reader.found.warnings(&vertices, &import));
     let holds = format!("it holds {} vertices and {} faces", header.vertices, header.faces);
     let faces = reader.faces;
     budget.release(vertices.bytes());
@@ -294,14 +295,14 @@ struct Counts {
 }
 
 impl Counts {
-    fn warnings(&self, vertices: &Vertices) -> impl Iterator<Item = String> + use<> {
+    fn warnings(&self, vertices: &Vertices, import: &Import) -> impl Iterator<Item = String> + use<> {
         let without_normals = if vertices.normals.is_empty() { vertices.positions.len() } else { 0 };
-        counted([
-            (without_normals, "vertices without normals, which got ones that are smooth within 60 degrees"),
+        let made = format!("vertices without normals, which got ones that are {}", import.smoothness());
+        counted([(without_normals, made)]).chain(counted([
             (self.mapped, "faces with a number of a colour map, which isn't read"),
             (self.bad_colors, "faces with a colour that isn't 3 or 4 numbers, left out"),
             (self.after_faces, "lines after the last face, left out"),
-        ])
+        ]))
     }
 }
 
@@ -373,7 +374,7 @@ impl Reader<'_, '_> {
                 row.place().error(reason)
             })?;
             self.colors.push(color);
-            self.corners.push(NumberedCorner { corner, number: 0 });
+            self.corners.push(NumberedCorner { corner, number: 0, vertex: None });
         }
         let face_color = if self.vertices.colors.is_empty() { self.face_color(words) } else { None };
         if face_color.is_some() && !self.is_colored {

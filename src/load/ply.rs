@@ -129,15 +129,15 @@ struct Vertices {
 }
 
 impl Vertices {
-    /// Returns a vertex, and its colour: linear RGBA. None if there is no such vertex.
-    fn corner(&self, index: f64) -> Option<(InputCorner, Vec4)> {
+    /// Returns the number of a vertex, its corner, and its colour: linear RGBA. None if there is no such vertex.
+    fn corner(&self, index: f64) -> Option<(usize, InputCorner, Vec4)> {
         let vertex = index as usize;
         // The conversion changes an index that is negative, not whole or not finite.
         let position = self.positions.get(vertex).filter(|_| vertex as f64 == index)?;
         let uv = self.uvs.get(vertex).copied().unwrap_or_default();
         let corner = InputCorner { position: *position, normal: self.normals.get(vertex).copied(), uv };
         let color = self.colors.get(vertex).map_or(Vec4::ONE, |&color| linear_color(color));
-        Some((corner, color))
+        Some((vertex, corner, color))
     }
 }
 
@@ -295,6 +295,7 @@ impl<'a> Reader<'a> {
         if wedges.len() == self.corners.len() {
             for (at, &[u, v]) in self.corners.iter_mut().zip(wedges) {
                 at.corner.uv = Vec2::new(u, 1.0 - v);
+                at.vertex = None;
             }
         }
         self.faces.add(self.material, &mut self.corners, place)
@@ -321,9 +322,10 @@ impl<'a> Reader<'a> {
         Ok(is_whole)
     }
 
-    fn push(&mut self, (corner, color): (InputCorner, Vec4)) -> Result<(), ReadError> {
+    fn push(&mut self, (vertex, corner, color): (usize, InputCorner, Vec4)) -> Result<(), ReadError> {
         let number = self.faces.number(color)?;
-        self.corners.push(NumberedCorner { corner, number });
+        let vertex = u32::try_from(vertex).ok().map(|vertex| [vertex, 0, 0]);
+        self.corners.push(NumberedCorner { corner, number, vertex });
         Ok(())
     }
 

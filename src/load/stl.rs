@@ -238,7 +238,7 @@ impl Reader<'_> {
         let number = self.faces.number(color)?;
         let corner = |position| {
             let corner = InputCorner { position, normal: None, uv: Vec2::ZERO };
-            NumberedCorner { corner, number }
+            NumberedCorner { corner, number, vertex: None }
         };
         self.corners.clear();
         self.corners.extend(positions.map(corner));

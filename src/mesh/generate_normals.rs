@@ -1,6 +1,8 @@
 //! Computes normals for corners without one. A corner may get different normals from different triangles, and is then
 //! split.
 
+use std::ops::Range;
+
 use glam::Vec3;
 
 use super::Corner;
@@ -8,11 +10,26 @@ use super::build_limits::BuildError;
 use super::chunked_vec::ChunkedVec;
 use super::normals::{Face, fan_normals};
 use super::weld::{plus_zero3, weld};
+use crate::cores::in_ranges;
 use crate::mesh::build_limits::MemoryAccount;
 use crate::progress::Progress;
 
 /// Memory for each face of the largest fan, in bytes.
 const PER_FACE: u64 = 160;
+
+/// How many corners of triangles a block of fans has at most, unless it is a single fan. The normals of a block are
+/// computed on all cores.
+const BLOCK: usize = 1 << 15;
+
+/// Memory for each corner of a block, in bytes: its normal, and what the threads use.
+const PER_BLOCK_CORNER: u64 = 20;
+
+/// The least number of fans that are worth a thread.
+const LEAST: usize = 1 << 9;
+
+/// The greatest number of faces of a fan whose block is divided among threads: larger fans take more memory, which is
+/// counted for one of them.
+const SMALL_FAN: usize = 256;
 
 /// A mesh that is being built. Missing normals are NaN.
 #[derive(Default)]
@@ -21,6 +38,13 @@ pub(crate) struct UnfinishedMesh {
     /// The binding of each corner; empty if all are 0.
     pub bindings: Vec<u32>,
     pub triangles: Vec<[u32; 3]>,
+}
+
+impl UnfinishedMesh {
+    /// Returns the corner that a triangle has in one of its places (3 * triangle + k).
+    fn corner(&self, place: u32) -> u32 {
+        self.triangles[place as usize / 3][place as usize % 3]
+    }
 }
 
 /// Gives every corner without a normal one, computed from the faces around its point with a crease angle in degrees. Corners with exactly equal
@@ -39,14 +63,20 @@ pub(crate) fn generate_normals(
     let points = CornerPoints::of(mesh, budget)?;
     let mut around = CornersByPoint::new(mesh, &points, budget)?;
     let mut added = AddedCorners { made: ChunkedVec::default(), first: mesh.corners.len() as u32, budget };
-    let mut fan = Fan::default();
-    for point in 0..around.ends.len() {
-        if point % 4096 == 0 {
-            progress.check()?;
+    let (mut fan, mut next) = (Fan::default(), 0);
+    while next < around.ends.len() {
+        progress.check()?;
+        let block = around.block(next);
+        next = block.end;
+        for (points, normals) in normals_of(mesh, &around, block, crease_angle) {
+            let mut normals = normals.as_slice();
+            for point in points {
+                let corners = around.of_mut(point);
+                let (own, others) = normals.split_at(corners.len());
+                normals = others;
+                fan.number(mesh, corners, own, &mut added)?;
+            }
         }
-        fan.fill(mesh, around.of(point), crease_angle);
-        fan.number(mesh, &mut added)?;
-        around.of(point).copy_from_slice(&fan.ids);
     }
     around.hand_out(mesh, &points);
     drop((around, points));
@@ -102,7 +132,7 @@ impl CornersByPoint {
         let mut ends = vec![0_u32; count];
         corners.iter().for_each(|&corner| ends[points.at(corner)] += 1);
         let largest = ends.iter().copied().max().unwrap_or_default();
-        budget.borrow(PER_FACE * u64::from(largest))?;
+        budget.borrow(PER_FACE * u64::from(largest) + PER_BLOCK_CORNER * corners.len().min(BLOCK) as u64)?;
         let mut start = 0;
         for end in &mut ends {
             start += std::mem::replace(end, start);
@@ -116,9 +146,24 @@ impl CornersByPoint {
         Ok(Self { ends, list })
     }
 
-    fn of(&mut self, point: usize) -> &mut [u32] {
-        let start = if point == 0 { 0 } else { self.ends[point - 1] };
-        &mut self.list[start as usize..self.ends[point] as usize]
+    fn of(&self, point: usize) -> &[u32] {
+        &self.list[self.start(point)..self.ends[point] as usize]
+    }
+
+    fn of_mut(&mut self, point: usize) -> &mut [u32] {
+        let start = self.start(point);
+        &mut self.list[start..self.ends[point] as usize]
+    }
+
+    fn start(&self, point: usize) -> usize {
+        if point == 0 { 0 } else { self.ends[point - 1] as usize }
+    }
+
+    /// Returns the block of points that begins with a point.
+    fn block(&self, first: usize) -> Range<usize> {
+        let most = self.start(first) + BLOCK;
+        let count = self.ends[first..].partition_point(|end| *end as usize <= most);
+        first..first + count.max(1)
     }
 
     /// Replaces the corners of triangles by those that the list now has in the places of their numbers.
@@ -168,11 +213,39 @@ impl AddedCorners<'_> {
     }
 }
 
+/// Computes the normals of a block's points on all cores: parts of the block, and for each corner of a triangle on their
+/// points the normal that it gets. A corner with a normal keeps it.
+fn normals_of(
+    mesh: &UnfinishedMesh,
+    around: &CornersByPoint,
+    block: Range<usize>,
+    crease_angle: f32,
+) -> Vec<(Range<usize>, Vec<Vec3>)> {
+    let largest = block.clone().map(|point| around.of(point).len()).max().unwrap_or_default();
+    let least = if largest <= SMALL_FAN { LEAST } else { block.len() };
+    in_ranges(block.len(), least, |range| {
+        let points = block.start + range.start..block.start + range.end;
+        let count = points.clone().map(|point| around.of(point).len()).sum();
+        let (mut all, mut faces, mut made) = (Vec::with_capacity(count), Vec::new(), Vec::new());
+        for point in points.clone() {
+            let corners = around.of(point);
+            faces.clear();
+            faces.extend(corners.iter().map(|&corner| {
+                let triangle = mesh.triangles[corner as usize / 3];
+                Face::new(triangle.map(|id| mesh.corners[id as usize].position), corner as usize % 3)
+            }));
+            fan_normals(&faces, crease_angle, &mut made);
+            let given = corners.iter().map(|&corner| mesh.corners[mesh.corner(corner) as usize].normal);
+            let normals = made.iter().zip(given);
+            all.extend(normals.map(|(made, given)| if given.x.is_nan() { plus_zero3(*made) } else { given }));
+        }
+        (points, all)
+    })
+}
+
 /// The faces around one point.
 #[derive(Default)]
 struct Fan {
-    faces: Vec<Face>,
-    normals: Vec<Vec3>,
     /// For each face, its corner on the point.
     ids: Vec<u32>,
     /// Indices of faces, sorted by the corner that they will use.
@@ -180,41 +253,38 @@ struct Fan {
 }
 
 impl Fan {
-    /// Collects the faces of some corners of triangles (3 * triangle + k), and the normal that each gets. A corner with
-    /// a normal keeps it.
-    fn fill(&mut self, mesh: &UnfinishedMesh, corners: &[u32], crease_angle: f32) {
-        self.faces.clear();
-        self.ids.clear();
-        for &corner in corners {
-            let (triangle, k) = (mesh.triangles[corner as usize / 3], corner as usize % 3);
-            self.faces.push(Face::new(triangle.map(|id| mesh.corners[id as usize].position), k));
-            self.ids.push(triangle[k]);
-        }
-        fan_normals(&self.faces, crease_angle, &mut self.normals);
-        for (normal, &id) in self.normals.iter_mut().zip(&self.ids) {
-            let given = mesh.corners[id as usize].normal;
-            *normal = if given.x.is_nan() { plus_zero3(*normal) } else { given };
-        }
-    }
-
-    /// Chooses a corner for each face's normal: one with that normal, one without a normal, or a new one.
-    fn number(&mut self, mesh: &mut UnfinishedMesh, added: &mut AddedCorners) -> Result<(), BuildError> {
-        let Self { normals, ids, order, .. } = self;
+    /// Chooses a corner for the normal of each of a fan's faces: one with that normal, one without a normal, or a new one.
+    /// It replaces the corners of triangles (3 * triangle + k).
+    fn number(
+        &mut self,
+        mesh: &mut UnfinishedMesh,
+        corners: &mut [u32],
+        normals: &[Vec3],
+        added: &mut AddedCorners,
+    ) -> Result<(), BuildError> {
+        let Self { ids, order } = self;
+        ids.clear();
+        ids.extend(corners.iter().map(|&corner| mesh.corner(corner)));
+        order.clear();
+        order.extend(0..ids.len() as u32);
         let key = |i: u32, ids: &[u32], mesh: &UnfinishedMesh| {
             let (id, normal) = (ids[i as usize], normals[i as usize]);
             let uv = mesh.corners[id as usize].uv.to_array().map(f32::to_bits);
             (uv, mesh.bindings.get(id as usize).copied(), normal.to_array().map(f32::to_bits))
         };
-        order.clear();
-        order.extend(0..ids.len() as u32);
-        let first = |i: &u32| ids[*i as usize] == ids[0] && normals[*i as usize] == normals[0];
-        if !order.iter().all(first) {
+        let is_first = |i: &u32| ids[*i as usize] == ids[0] && normals[*i as usize] == normals[0];
+        let is_smooth = order.iter().all(is_first);
+        if !is_smooth {
             order.sort_unstable_by_key(|&i| (key(i, ids, mesh), i));
         }
         let mut start = 0;
         while start < order.len() {
-            let own = key(order[start], ids, mesh);
-            let length = order[start..].iter().take_while(|&&i| key(i, ids, mesh) == own).count();
+            let length = if is_smooth {
+                order.len()
+            } else {
+                let own = key(order[start], ids, mesh);
+                order[start..].iter().take_while(|&&i| key(i, ids, mesh) == own).count()
+            };
             let alike = &order[start..start + length];
             let (like, normal) = (ids[alike[0] as usize], normals[alike[0] as usize]);
             let normal_of = |i: &&u32| mesh.corners[ids[**i as usize] as usize].normal;
@@ -230,6 +300,7 @@ impl Fan {
             alike.iter().for_each(|&i| ids[i as usize] = id);
             start += length;
         }
+        corners.copy_from_slice(ids);
         Ok(())
     }
 }

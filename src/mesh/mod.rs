@@ -19,6 +19,7 @@ mod light;
 pub(crate) mod material;
 pub(crate) mod mesh_builder;
 pub(crate) mod mipmap;
+mod near_points;
 pub(crate) mod normal_faults;
 pub(crate) mod normals;
 pub(crate) mod orientation;

@@ -6,7 +6,8 @@ use glam::{DVec3, Vec3};
 use serde::Serialize;
 
 use super::Mesh;
-use super::topology::{Edge, Patch, Topology};
+use super::topology::{Edge, Patch, Side, Topology};
+use crate::cores::in_ranges;
 
 /// Two unit vectors count as parallel if the magnitude of their dot product is greater than this: within 2.6 degrees.
 const PARALLEL: f64 = 0.999;
@@ -14,6 +15,9 @@ const PARALLEL: f64 = 0.999;
 /// The greatest number of an edge's sides that are compared with each other. Comparing more would take quadratic time
 /// and tell little.
 const TRIES: usize = 256;
+
+/// The least number of patches, or of edges, that are worth a thread.
+const LEAST: usize = 1 << 14;
 
 /// Numbers of suspicious normals. All three can be intended, as in a Möbius strip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -33,13 +37,20 @@ impl NormalFaults {
     /// Counts the suspicious normals, in f64, after welding. Takes linear time: of an edge with more than 256 sides,
     /// the first 256 are compared.
     pub(crate) fn of(mesh: &Mesh, topology: &Topology) -> Self {
-        let mut faults = Self::default();
-        for patch in &topology.patches {
-            faults.add(mesh, topology, patch);
+        let of_patches = in_ranges(topology.patches.len(), LEAST, |range| {
+            let mut faults = Self::default();
+            topology.patches[range].iter().for_each(|patch| faults.add(mesh, topology, patch));
+            faults
+        });
+        // The same corners have the same normals.
+        let opposed = |edge: &&Edge| !edge.shares_corners && (0..2).any(|end| opposed(mesh, topology, edge, end));
+        let of_edges =
+            in_ranges(topology.edges.len(), LEAST, |range| topology.edges[range].iter().filter(opposed).count());
+        Self {
+            against_face: of_patches.iter().map(|faults| faults.against_face).sum(),
+            opposite: of_edges.into_iter().sum::<usize>() as u32,
+            along_edge: of_patches.iter().map(|faults| faults.along_edge).sum(),
         }
-        let opposed = |edge: &&Edge| (0..2).any(|end| opposed(mesh, topology, edge, end));
-        faults.opposite = topology.edges.iter().filter(opposed).count() as u32;
-        faults
     }
 
     fn add(&mut self, mesh: &Mesh, topology: &Topology, patch: &Patch) {
@@ -49,20 +60,32 @@ impl NormalFaults {
         let face = (at[1] - at[0]).cross(at[2] - at[0]);
         for (k, corner) in corners.into_iter().enumerate() {
             let normal = mesh.corners[corner as usize].normal.as_dvec3();
-            let parallel = |other: DVec3| (other - at[k]).normalize_or_zero().dot(normal).abs() > PARALLEL;
+            let parallel = |other: DVec3| is_parallel(other - at[k], normal);
             self.against_face += u32::from(face.dot(normal) < 0.0);
             self.along_edge += u32::from(parallel(at[(k + 1) % 3]) || parallel(at[(k + 2) % 3]));
         }
     }
 }
 
+/// Returns whether a vector of any length is parallel to a unit normal.
+fn is_parallel(vector: DVec3, normal: DVec3) -> bool {
+    let along = vector.dot(normal);
+    // For most vectors the squares tell, and no root is needed: here the cosine is below 0.95.
+    let is_clear = along * along < 0.9 * vector.length_squared();
+    !is_clear && vector.normalize_or_zero().dot(normal).abs() > PARALLEL
+}
+
 /// Returns whether two sides of an edge have opposite normals at one of its ends.
 fn opposed(mesh: &Mesh, topology: &Topology, edge: &Edge, end: usize) -> bool {
-    let normal = |corner: u32| mesh.corners[corner as usize].normal;
-    let normals = topology.edge_sides(edge).iter().take(TRIES).map(|side| normal(topology.side_corners(side)[end]));
+    let normal = |side: &Side| mesh.corners[topology.side_corners(side)[end] as usize].normal;
+    let opposite = |a: &Vec3, b: &Vec3| a.as_dvec3().dot(b.as_dvec3()) < -PARALLEL;
+    let sides = topology.edge_sides(edge);
+    if let [a, b] = sides {
+        return opposite(&normal(a), &normal(b));
+    }
+    let normals = sides.iter().take(TRIES).map(normal);
     let mut seen = HashSet::new();
     let distinct: Vec<Vec3> = normals.filter(|normal| seen.insert(normal.to_array().map(f32::to_bits))).collect();
-    let opposite = |a: &Vec3, b: &Vec3| a.as_dvec3().dot(b.as_dvec3()) < -PARALLEL;
     distinct.iter().enumerate().any(|(i, a)| distinct[..i].iter().any(|b| opposite(a, b)))
 }
 
@@ -112,6 +135,21 @@ mod tests {
         let mut mesh = Shape::Torus.build();
         Arc::make_mut(&mut mesh.triangles).iter_mut().for_each(|triangle| triangle.reverse());
         assert_eq!(faults(&mesh), NormalFaults { against_face: 3 * 256, ..NormalFaults::default() });
+    }
+
+    #[test]
+    fn squares_tell_the_same_as_roots() {
+        let mut random = fastrand::Rng::with_seed(1);
+        let mut number = || random.f32() - 0.5;
+        for i in 0..20_000 {
+            let normal = Vec3::new(number(), number(), number()).normalize().as_dvec3();
+            let away = Vec3::new(number(), number(), number()).as_dvec3() * f64::from(i % 100) / 100.0;
+            // Of all lengths that differences of f32 numbers have.
+            let vector = (normal + away) * f64::from(i % 250 - 140).exp2();
+            let expected = vector.normalize_or_zero().dot(normal).abs() > PARALLEL;
+            assert_eq!(is_parallel(vector, normal), expected, "{vector} and {normal}");
+        }
+        assert!(!is_parallel(DVec3::ZERO, DVec3::X));
     }
 
     #[test]

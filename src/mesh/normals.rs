@@ -49,10 +49,12 @@ impl GivenNormal {
     pub(crate) fn new(normal: Vec3) -> Self {
         let wide = normal.as_dvec3();
         let square = wide.length_squared();
-        let Some(unit) = wide.try_normalize().filter(|_| normal.is_finite()) else { return Self::None };
+        // Most normals are, and need no root.
         if (square - 1.0).abs() < ROUNDING {
-            Self::Unit(normal)
-        } else if (square.sqrt() - 1.0).abs() <= LENGTH_TOLERANCE {
+            return Self::Unit(normal);
+        }
+        let Some(unit) = wide.try_normalize().filter(|_| normal.is_finite()) else { return Self::None };
+        if (square.sqrt() - 1.0).abs() <= LENGTH_TOLERANCE {
             Self::Unit(unit.as_vec3())
         } else {
             Self::Rescaled(unit.as_vec3())
@@ -125,11 +127,22 @@ pub(crate) fn fan_normals(fan: &[Face], crease_angle: f32, normals: &mut Vec<Vec
 
 /// Returns the mean normals of faces. `limit` is the cosine of the crease angle.
 fn averages(fan: &[Face], limit: f64) -> impl Iterator<Item = Vec3> {
+    // In most fans all faces lie near each other, and have the same mean: the last one, and which faces it is the mean of.
+    let mut last: Option<(u64, Vec3)> = None;
     fan.iter().map(move |own| {
         let lone = own.normal == DVec3::ZERO;
-        let near = |g: &&Face| lone || own.normal.dot(g.normal) >= limit;
-        let sum: DVec3 = fan.iter().filter(near).map(|g| g.angle * g.normal).sum();
-        sum.try_normalize().unwrap_or(own.normal).try_normalize().unwrap_or(DVec3::Z).as_vec3()
+        let is_near = |g: &&Face| lone || own.normal.dot(g.normal) >= limit;
+        let bits = || fan.iter().fold(0, |bits, g| bits << 1 | u64::from(is_near(&g)));
+        let near = (fan.len() <= u64::BITS as usize).then(bits);
+        if let Some((_, normal)) = last.filter(|(same, _)| Some(*same) == near) {
+            return normal;
+        }
+        let sum: DVec3 = fan.iter().filter(is_near).map(|g| g.angle * g.normal).sum();
+        let mean = sum.try_normalize();
+        let normal = mean.unwrap_or(own.normal).try_normalize().unwrap_or(DVec3::Z).as_vec3();
+        // Faces whose sum has no direction keep their own normals.
+        last = near.filter(|_| mean.is_some()).map(|near| (near, normal));
+        normal
     })
 }
 

@@ -50,11 +50,11 @@ impl SpatialHash {
         cells.filter_map(move |cell| self.find(key(cell), &place_of))
     }
 
-    fn find(&self, own: [u64; 3], place_of: &impl Fn(u32) -> DVec3) -> Option<u32> {
+    fn find(&self, own: CellKey, place_of: &impl Fn(u32) -> DVec3) -> Option<u32> {
         self.cells.find(self.hasher.hash_one(own), |&id| self.key(place_of(id)) == own).copied()
     }
 
-    fn key(&self, place: DVec3) -> [u64; 3] {
+    fn key(&self, place: DVec3) -> CellKey {
         key(cell(self.reach, place))
     }
 
@@ -71,12 +71,29 @@ fn cell(reach: f64, place: DVec3) -> [f64; 3] {
 }
 
 fn cell_along(reach: f64, x: f64) -> f64 {
-    (x / (2.0 * reach)).floor()
+    floor(x / (2.0 * reach))
 }
 
-/// Returns the bits of a cell's coordinates, which are the same for equal cells: adding 0 turns -0 into +0.
-fn key(cell: [f64; 3]) -> [u64; 3] {
-    cell.map(|x| (x + 0.0).to_bits())
+/// Rounds down, as [`f64::floor`] does, which is a call of a function on processors that may lack the instruction. A zero
+/// may have another sign.
+fn floor(x: f64) -> f64 {
+    /// From here on all numbers are whole.
+    const WHOLE: f64 = (1_u64 << 52) as f64;
+    if x.abs() < WHOLE {
+        let cut = x as i64 as f64;
+        cut - f64::from(u8::from(cut > x))
+    } else {
+        x
+    }
+}
+
+/// The bits of a cell's coordinates: three words, which foldhash hashes several times faster than an array.
+type CellKey = (u64, u64, u64);
+
+/// Returns the key of a cell, which is the same for equal cells: adding 0 turns -0 into +0.
+fn key(cell: [f64; 3]) -> CellKey {
+    let [x, y, z] = cell.map(|x| (x + 0.0).to_bits());
+    (x, y, z)
 }
 
 #[cfg(test)]
@@ -124,6 +141,16 @@ mod tests {
             [0.0, 7.5, -3.0].map(|x| grid.at(DVec3::splat(x), |id| places[id as usize])),
             [Some(3), Some(2), None]
         );
+    }
+
+    #[test]
+    fn numbers_are_rounded_down() {
+        let numbers =
+            [0.0, 0.5, 1.0, 1.5, 7.999, 4e9, 4_503_599_627_370_495.5, 4_503_599_627_370_496.0, 1e300, f64::MAX];
+        for x in numbers.into_iter().flat_map(|x| [x, -x]).chain([5e-324, -5e-324, f64::INFINITY, f64::NEG_INFINITY]) {
+            assert_eq!(floor(x), x.floor());
+        }
+        assert!(floor(f64::NAN).is_nan());
     }
 
     proptest! {

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::num::NonZero;
 
+use foldhash::fast::RandomState;
 use glam::{DVec3, Vec2, Vec3};
 
 use super::interner::Interner;
@@ -59,15 +60,21 @@ pub(crate) fn weld_alike(positions: impl Iterator<Item = (Vec3, u32)>, tolerance
     if tolerance.is_nan() || tolerance <= 0.0 {
         return (distinct.into_iter().map(|(point, _)| point).collect(), point_of);
     }
-    let mut grids: HashMap<u32, SpatialHash> = HashMap::new();
+    let (points, merged) = merge_within(distinct.into_iter(), tolerance);
+    point_of.iter_mut().for_each(|point| *point = merged[*point as usize]);
+    (points, point_of)
+}
+
+/// Joins distinct positions as [`weld_alike`] does, within a tolerance above 0.
+pub(super) fn merge_within(distinct: impl Iterator<Item = (Vec3, u32)>, tolerance: f64) -> (Vec<Vec3>, Vec<u32>) {
+    let mut grids: HashMap<u32, SpatialHash, RandomState> = HashMap::default();
     let mut apart = Apart::default();
-    let mut merged = Vec::with_capacity(distinct.len());
+    let mut merged = Vec::with_capacity(distinct.size_hint().0);
     for (position, number) in distinct {
         let grid = grids.entry(number).or_insert_with(|| SpatialHash::new(tolerance));
         merged.push(apart.nearest(grid, position, tolerance).unwrap_or_else(|| apart.push(grid, position)));
     }
-    point_of.iter_mut().for_each(|point| *point = merged[*point as usize]);
-    (apart.points, point_of)
+    (apart.points, merged)
 }
 
 /// Points that are more than one tolerance apart. `before` links each point to the one before it in its cell; a list

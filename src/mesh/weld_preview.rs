@@ -1,5 +1,6 @@
 //! What welding within various tolerances would change, for choosing one.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::fmt;
 
@@ -7,7 +8,10 @@ use foldhash::fast::RandomState;
 use serde::Serialize;
 
 use super::Mesh;
-use super::topology::{EdgeKind, Topology, is_degenerate, weld_corners};
+use super::near_points::NearPoints;
+use super::topology::{EdgeKind, Topology, is_degenerate};
+use super::weld::merge_within;
+use crate::cores::in_ranges;
 use crate::progress::{Cancelled, Progress};
 
 /// What welding within a tolerance changes, compared with the exact weld.
@@ -38,9 +42,9 @@ impl fmt::Display for WeldPreview {
 pub(crate) const TOLERANCES: [f32; 6] = [1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
 
 /// Returns how many edges a weld within each of [`TOLERANCES`] would join, and how many triangles it would collapse, in
-/// their order. `exact` is the mesh's topology without a tolerance, if the caller has it. To save time and memory, no
-/// topology is built for the welded meshes: only the edges that were open are looked up in them. `progress` goes from 0
-/// to 1.
+/// their order. `exact` is the mesh's topology without a tolerance, if the caller has it. To save time and memory, only
+/// points that have another one nearby are welded, and no topology is built for the welded meshes: only the edges that
+/// were open are looked up in them. `progress` goes from 0 to 1.
 ///
 /// # Errors
 /// [`Cancelled`] when `progress` says so.
@@ -51,46 +55,86 @@ pub fn weld_previews(
 ) -> Result<Vec<WeldPreview>, Cancelled> {
     progress.set(0.0);
     progress.check()?;
+    let mut previews = TOLERANCES.map(|tolerance| WeldPreview { tolerance, edges: 0, collapsed: 0 });
+    let bounds = mesh.bounds();
+    let distances = TOLERANCES.map(|tolerance| bounds.part(tolerance.into()));
     let exact = match exact {
-        Some(exact) => Exact::of(exact),
-        // This topology is freed before anything is welded.
-        None => Exact::of(&Topology::build(mesh, progress)?),
+        Some(exact) => Exact::of(mesh, Cow::Borrowed(exact)),
+        None => Exact::of(mesh, Cow::Owned(Topology::build(mesh, progress)?)),
     };
-    let mut previews = Vec::with_capacity(TOLERANCES.len());
-    for tolerance in TOLERANCES {
-        let part = (previews.len() + 1) as f32 / (TOLERANCES.len() + 1) as f32;
-        progress.set(part);
-        progress.check()?;
-        let (_, corner_points) = weld_corners(mesh, tolerance);
-        progress.check()?;
-        let [edges, collapsed] = exact.welded(mesh, &corner_points);
-        previews.push(WeldPreview { tolerance, edges, collapsed });
+    // All positions may be the same.
+    if distances[0] > 0.0 {
+        let near = NearPoints::find(&exact.topology.points, &exact.numbers, &distances, bounds.min.as_dvec3());
+        let changed: Vec<usize> = (0..TOLERANCES.len()).filter(|&k| near.within(k).next().is_some()).collect();
+        // Two at a time: more would take much memory.
+        for (step, pair) in changed.chunks(2).enumerate() {
+            progress.set((2 * step + 1) as f32 / (changed.len() + 1) as f32);
+            progress.check()?;
+            let count = |k: usize| exact.welded(mesh, &exact.merged(near.within(k), distances[k]));
+            let counted = in_ranges(pair.len(), 1, |range| pair[range].iter().map(|&k| count(k)).collect::<Vec<_>>());
+            for (&k, counted) in pair.iter().zip(counted.into_iter().flatten()) {
+                [previews[k].edges, previews[k].collapsed] = counted;
+            }
+        }
     }
     progress.set(1.0);
-    Ok(previews)
+    Ok(previews.to_vec())
 }
 
-/// The facts about the exact topology that the welded meshes are compared with.
-struct Exact {
+/// The exact topology, with which the welded meshes are compared.
+struct Exact<'a> {
+    /// Only its points and the points of corners are used. If it isn't the caller's, it has nothing else, to save memory.
+    topology: Cow<'a, Topology>,
+    /// A number for each point; those with different ones aren't joined. Empty if all are the same.
+    numbers: Vec<u32>,
     /// Boundary edges: the triangle, and which of its sides.
     open: Vec<(u32, u8)>,
     /// The number of degenerate triangles.
     degenerate: u32,
 }
 
-impl Exact {
-    fn of(topology: &Topology) -> Self {
+impl<'a> Exact<'a> {
+    fn of(mesh: &Mesh, mut topology: Cow<'a, Topology>) -> Self {
         let open = topology.edges.iter().filter(|edge| edge.kind == EdgeKind::Boundary);
         let open = open.map(|edge| {
             let side = topology.sides[edge.first_side as usize];
             (topology.patches[side.patch() as usize].triangle, side.index() as u8)
         });
-        Self { open: open.collect(), degenerate: topology.degenerate }
+        let (open, degenerate) = (open.collect(), topology.degenerate);
+        let alike = mesh.rig.as_ref().map_or(&[][..], |rig| &rig.alike);
+        let number = |&corner: &u32| alike.get(corner as usize).copied().unwrap_or_default();
+        let numbers = if alike.is_empty() { Vec::new() } else { topology.point_corners.iter().map(number).collect() };
+        if let Cow::Owned(topology) = &mut topology {
+            (topology.patches, topology.sides, topology.edges) = Default::default();
+        }
+        Self { topology, numbers, open, degenerate }
     }
 
-    /// Returns how many boundary edges are joined, and how many triangles collapse, if corners lie on these points.
-    fn welded(&self, mesh: &Mesh, corner_points: &[u32]) -> [u32; 2] {
-        let points = |triangle: &[u32; 3]| triangle.map(|corner| corner_points[corner as usize]);
+    /// Returns for each point a point that it is joined with by a weld within a tolerance in object units: the same one
+    /// for all that are joined. `near` are the points that may be joined with another, in ascending order.
+    fn merged(&self, near: impl Iterator<Item = u32> + Clone, tolerance: f64) -> Vec<u32> {
+        let points = &self.topology.points;
+        let mut joined: Vec<u32> = (0..points.len() as u32).collect();
+        let place = |point: u32| {
+            let number = self.numbers.get(point as usize).copied().unwrap_or_default();
+            (points[point as usize], number)
+        };
+        let (_, merged) = merge_within(near.clone().map(place), tolerance);
+        // For each merged point, the first that it was made of.
+        let mut first = Vec::new();
+        for (point, merged) in near.zip(merged) {
+            if merged as usize == first.len() {
+                first.push(point);
+            }
+            joined[point as usize] = first[merged as usize];
+        }
+        joined
+    }
+
+    /// Returns how many boundary edges are joined, and how many triangles collapse, if points are joined like this.
+    fn welded(&self, mesh: &Mesh, joined: &[u32]) -> [u32; 2] {
+        let points =
+            |triangle: &[u32; 3]| triangle.map(|corner| joined[self.topology.corner_points[corner as usize] as usize]);
         // For each edge that a boundary edge becomes, given by its points (the lower first), the number of its sides.
         let key = |points: [u32; 3], side: usize| {
             let [a, b] = [points[side], points[(side + 1) % 3]];
@@ -102,13 +146,17 @@ impl Exact {
         };
         let mut sides: HashMap<[u32; 2], u32, RandomState> =
             self.open.iter().filter_map(own).map(|key| (key, 0)).collect();
+        // Few points of most meshes are ends of boundary edges.
+        let mut is_end = vec![false; joined.len()];
+        sides.keys().flatten().for_each(|&point| is_end[point as usize] = true);
         let mut degenerate = 0;
         for points in mesh.triangles.iter().map(points) {
             if is_degenerate(points) {
                 degenerate += 1;
                 continue;
             }
-            for side in 0..3 {
+            let ends = points.map(|point| is_end[point as usize]);
+            for side in (0..3).filter(|&side| ends[side] && ends[(side + 1) % 3]) {
                 if let Some(count) = sides.get_mut(&key(points, side)) {
                     *count += 1;
                 }
@@ -121,11 +169,68 @@ impl Exact {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use glam::{Vec2, Vec3};
+    use proptest::prelude::*;
 
     use super::*;
-    use crate::mesh::Corner;
     use crate::mesh::shapes::Shape;
+    use crate::mesh::topology::{Edge, weld_corners};
+    use crate::mesh::{Corner, Rig};
+
+    /// The same as [`weld_previews`], found by welding all corners within each tolerance and comparing the topologies'
+    /// triangles.
+    fn slow_previews(mesh: &Mesh) -> Vec<WeldPreview> {
+        let exact = Topology::build(mesh, &Progress::new()).unwrap();
+        let of_edge = |edge: &Edge| {
+            let side = exact.sides[edge.first_side as usize];
+            (exact.patches[side.patch() as usize].triangle as usize, side.index())
+        };
+        let open: Vec<_> = exact.edges.iter().filter(|edge| edge.kind == EdgeKind::Boundary).map(of_edge).collect();
+        let preview = |tolerance: f32| {
+            let (_, corner_points) = weld_corners(mesh, tolerance);
+            let triangles: Vec<[u32; 3]> =
+                mesh.triangles.iter().map(|triangle| triangle.map(|corner| corner_points[corner as usize])).collect();
+            let whole = || triangles.iter().filter(|points| !is_degenerate(**points));
+            let edge = |points: &[u32; 3], side: usize| [points[side], points[(side + 1) % 3]];
+            let sides_at = |[a, b]: [u32; 2]| {
+                let all = whole().flat_map(|points| [0, 1, 2].map(|side| edge(points, side)));
+                all.filter(|ends| *ends == [a, b] || *ends == [b, a]).count()
+            };
+            let joined = |&&(triangle, side): &&(usize, usize)| {
+                !is_degenerate(triangles[triangle]) && sides_at(edge(&triangles[triangle], side)) > 1
+            };
+            let edges = open.iter().filter(joined).count() as u32;
+            WeldPreview { tolerance, edges, collapsed: (triangles.len() - whole().count()) as u32 - exact.degenerate }
+        };
+        TOLERANCES.map(preview).to_vec()
+    }
+
+    proptest! {
+        #[test]
+        fn only_near_points_make_a_difference(
+            places in prop::collection::vec((prop::array::uniform3(0_i8..4), prop::array::uniform3(0_u8..7)), 3..40),
+            numbers in prop::collection::vec(0_u32..2, 40),
+            is_rigged in any::<bool>(),
+        ) {
+            // Points that are about as far apart as the tolerances, with many that are exactly that far apart.
+            let steps = [0.0, 1e-7, 2e-6, 1e-5, 1e-4, 1e-3, 1e-2];
+            let corner = |(at, moved): &([i8; 3], [u8; 3])| Corner {
+                position: Vec3::from(at.map(f32::from)) + Vec3::from(moved.map(|step| steps[usize::from(step)])),
+                normal: Vec3::Z,
+                uv: Vec2::ZERO,
+            };
+            let corners: Vec<Corner> = places.iter().map(corner).collect();
+            let count = corners.len() as u32;
+            let triangles: Vec<_> = (0..count).map(|i| [i, (i + 1) % count, (i + 2) % count]).collect();
+            let rig = is_rigged.then(|| Rig { alike: numbers[..corners.len()].to_vec(), ..Rig::default() });
+            let mesh = Mesh { corners, triangles: triangles.into(), rig: rig.map(Arc::new), ..Mesh::default() };
+            prop_assert_eq!(weld_previews(&mesh, None, &Progress::new()).unwrap(), slow_previews(&mesh));
+            let exact = Topology::build(&mesh, &Progress::new()).unwrap();
+            prop_assert_eq!(weld_previews(&mesh, Some(&exact), &Progress::new()).unwrap(), slow_previews(&mesh));
+        }
+    }
 
     /// Triangles that share no corners.
     fn soup(triangles: &[[[f32; 2]; 3]]) -> Mesh {

@@ -93,7 +93,8 @@ fn corners_keep_their_colours() {
     // The same corners in other colours are other corners.
     for colors in [colors, [Vec4::ONE; 4]] {
         let numbers = colors.map(|color| faces.number(color).unwrap());
-        let numbered = square.iter().zip(numbers).map(|(&corner, number)| NumberedCorner { corner, number });
+        let numbered =
+            square.iter().zip(numbers).map(|(&corner, number)| NumberedCorner { corner, number, vertex: None });
         faces.add(material, &mut numbered.collect(), FilePosition::Everywhere).unwrap();
     }
     let mesh = faces.finish("faces", String::new(), Vec::new(), &Progress::new()).unwrap();

@@ -235,7 +235,7 @@ impl MeshReader<'_, '_, '_> {
             number = table.number(detail, number, self.budget).map_err(too_large)?;
             self.details = Some(table);
         }
-        Ok((NumberedCorner { corner: posed.corner, number }, mirrors(&posed.linear)))
+        Ok((NumberedCorner { corner: posed.corner, number, vertex: None }, mirrors(&posed.linear)))
     }
 
     fn own_uv(&mut self, corner: usize, material: &Resolved) -> Vec2 {

@@ -182,7 +182,11 @@ impl<'a> Accessors<'a> {
             }
             numbers
         };
-        self.read(accessor, [0.0; N], Box::new(decode)).map_err(fail)
+        let decode: Decode<[f32; N]> = match kind {
+            DataType::F32 => Box::new(floats),
+            _ => Box::new(decode),
+        };
+        self.read(accessor, [0.0; N], decode).map_err(fail)
     }
 
     /// Returns a list of single unsigned integers.
@@ -335,6 +339,16 @@ fn zeros(count: usize) -> Result<(), String> {
         0..=MAX_ZEROS => Ok(()),
         _ => Err(format!("has {count} elements without data, but at most {MAX_ZEROS} such elements are read")),
     }
+}
+
+/// Decodes an element of N floats, which most attributes consist of: without a look at their type, this takes a fraction of
+/// the time.
+fn floats<const N: usize>(bytes: &[u8]) -> [f32; N] {
+    let mut numbers = [0.0; N];
+    for (number, bytes) in numbers.iter_mut().zip(bytes.as_chunks::<4>().0) {
+        *number = f32::from_le_bytes(*bytes);
+    }
+    numbers
 }
 
 fn unsigned_integer(bytes: &[u8]) -> u32 {

@@ -5,11 +5,11 @@ use std::collections::HashMap;
 use foldhash::fast::RandomState;
 use glam::Vec3;
 
-use super::{MAX_CORNERS, Vertices, index, too_large};
+use super::{MAX_CORNERS, Statement, Vertices, index, too_large};
 use crate::load::face_builder::NumberedCorner;
 use crate::load::memory_budget::Budget;
 use crate::load::read_error::ReadError;
-use crate::load::text_lines::{Line, first_word, words};
+use crate::load::text_lines::{first_word, words};
 use crate::mesh::MemoryAccount;
 
 /// Memory for an entry of the table while it grows, in bytes: the old and the new table exist at the same time.
@@ -55,12 +55,11 @@ impl<'v> Smoothing<'v> {
     ///
     /// # Errors
     /// [`ReadError::TooLarge`].
-    pub(super) fn take(&mut self, line: &Line) -> Result<(), ReadError> {
-        let (word, rest) = first_word(line.text);
-        match word {
+    pub(super) fn take(&mut self, statement: &Statement) -> Result<(), ReadError> {
+        match statement.word {
             b"v" => self.above += 1,
-            b"s" => self.enter(rest),
-            b"f" | b"fo" if self.group != 0 => self.add(rest)?,
+            b"s" => self.enter(statement.rest()),
+            b"f" | b"fo" if self.group != 0 => self.add(statement.rest())?,
             _ => {}
         }
         Ok(())
@@ -107,6 +106,8 @@ impl<'v> Smoothing<'v> {
         for (&number, at) in numbers.iter().zip(corners).filter(|(_, at)| at.corner.normal.is_none()) {
             let sum = if self.group == 0 { Some(&face) } else { self.sums.get(&(number, self.group)) };
             at.corner.normal = sum.and_then(|sum| sum.try_normalize());
+            // The group determines it too.
+            at.vertex = None;
             is_whole &= at.corner.normal.is_some();
         }
         is_whole

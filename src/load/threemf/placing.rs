@@ -8,6 +8,7 @@ use super::document::{Document, ObjectAt};
 use super::model::{Group, Object, Part, Placed, Triangle, TriangleLook};
 use super::{broken, too_large};
 use crate::load::face_builder::{FaceBuilder, NumberedCorner, counted, linear_color};
+use crate::load::import::Import;
 use crate::load::memory_budget::{Budget, edge_bytes};
 use crate::load::notes::Notes;
 use crate::load::read_error::{FilePosition, ReadError};
@@ -47,8 +48,7 @@ pub(super) fn place<'a>(
     let least = edge_bytes(0, total);
     budget.hold(least).map_err(too_large)?;
     budget.release(least);
-    let mut faces =
-        FaceBuilder::new(usize::try_from(budget.files()).unwrap_or(usize::MAX), budget).importing(*import);
+    let mut faces = FaceBuilder::new(usize::try_from(budget.files()).unwrap_or(usize::MAX), budget).importing(*import);
     faces.expect(usize::try_from(total).unwrap_or(usize::MAX), document.geometry.vertices.len());
     let has_colors =
         |part: &Part| part.groups.values().any(|group| matches!(group, Group::Colors(colors) if !colors.is_empty()));
@@ -248,7 +248,7 @@ impl Placer<'_, '_> {
                     })?;
                 let position = transform.transform_point3(position.as_dvec3()).as_vec3();
                 let corner = InputCorner { position, normal: None, uv: Vec2::ZERO };
-                self.corners.push(NumberedCorner { corner, number });
+                self.corners.push(NumberedCorner { corner, number, vertex: None });
             }
             if is_mirrored {
                 self.corners.reverse();

@@ -1,8 +1,8 @@
 //! Odd documents that open (see `load/hostile_files/odd.rs`).
 
 use super::*;
-use crate::load::hostile_files::odd::Odd;
 use crate::load::Format;
+use crate::load::hostile_files::odd::Odd;
 
 fn of(name: &'static str, bytes: impl Into<Vec<u8>>, triangles: usize, warning: &'static str) -> Odd {
     Odd { name, format: Format::Gltf, bytes: bytes.into(), triangles, warning }

@@ -1,0 +1,51 @@
+//! Divides work among the processor's cores.
+
+use std::iter::once;
+use std::num::NonZero;
+use std::ops::Range;
+use std::panic::resume_unwind;
+use std::thread;
+
+/// Divides the numbers below `count` into ranges of at least `least` numbers, one for each core, and returns what `work`
+/// makes of each range, in the order of the ranges. What is made of all of them together must not depend on where one
+/// range ends and the next begins. Returns after the last range is done.
+pub(crate) fn in_ranges<R: Send>(count: usize, least: usize, work: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
+    let cores = thread::available_parallelism().map_or(1, NonZero::get);
+    let ranges = cores.min(count / least.max(1)).max(1);
+    let range = |number: usize| number * count / ranges..(number + 1) * count / ranges;
+    let work = &work;
+    thread::scope(|scope| {
+        let start = |number| (number, thread::Builder::new().spawn_scoped(scope, move || work(range(number))));
+        let others: Vec<_> = (1..ranges).map(start).collect();
+        let first = work(range(0));
+        let others = others.into_iter().map(|(number, thread)| match thread {
+            Ok(thread) => thread.join().unwrap_or_else(|panic| resume_unwind(panic)),
+            // The system has no further thread.
+            Err(_) => work(range(number)),
+        });
+        once(first).chain(others).collect()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_number_is_in_one_range_and_ranges_are_in_order() {
+        for (count, least) in [(0, 1), (1, 1), (1, 100), (7, 2), (1000, 1), (1000, 999), (1001, 0)] {
+            let ranges = in_ranges(count, least, |range| range);
+            assert!(ranges.iter().cloned().flatten().eq(0..count), "{count}, {least}: {ranges:?}");
+            assert!(
+                ranges.len() == 1 || ranges.iter().all(|range| range.len() >= least),
+                "{count}, {least}: {ranges:?}"
+            );
+        }
+    }
+
+    #[test]
+    #[should_panic(expected = "the last range")]
+    fn a_panic_goes_on_in_the_caller() {
+        in_ranges(1000, 1, |range| assert!(range.end < 1000, "the last range"));
+    }
+}
