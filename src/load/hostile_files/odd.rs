@@ -10,9 +10,10 @@ use std::path::Path;
 
 use super::{LIMIT, mentions, page, time};
 use crate::files::Limits;
+use crate::load::Format;
 use crate::load::fbx::tests::documents::image;
 use crate::load::gltf;
-use crate::load::mesh_file::{Format, read};
+use crate::load::mesh_file::read;
 use crate::load::selection::Selection;
 use crate::progress::Progress;
 

@@ -7,11 +7,12 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::files::Limits;
+use crate::load::Format;
 use crate::load::face_builder::tests::{POINTS, SIDES, assert_cube};
 use crate::load::fbx::tests::documents::{Link, document, geometry, model, smoothed_prism};
 use crate::load::fbx::tests::tree::text;
 use crate::load::loaded_mesh::LoadedMesh;
-use crate::load::mesh_file::{Format, LoadError, read};
+use crate::load::mesh_file::{LoadError, read};
 use crate::load::selection::Selection;
 use crate::load::source::Source;
 use crate::mesh::shapes::Shape;
@@ -124,6 +125,24 @@ fn what_was_chosen_takes_the_place_of_what_an_fbx_file_says() {
     near(last(false, import(Some(UpAxis::Z), None)), vec3(0.0, 3.0, -2.0));
     near(last(false, import(None, Some(LengthUnit::Metre))), vec3(0.0, 200.0, 300.0));
     near(last(true, import(Some(UpAxis::Y), Some(LengthUnit::Millimetre))), vec3(0.0, 0.2, 0.3));
+}
+
+/// 3MF files are in millimetres, and Z points up.
+#[test]
+fn what_was_chosen_takes_the_place_of_what_a_3mf_file_means() {
+    let bytes = crate::load::threemf::tests::cube();
+    let bounds = |import| {
+        let bounds = loaded(Format::ThreeMf, &bytes, import).bounds();
+        (bounds.min, bounds.max)
+    };
+    let import = |up, unit| Import { up, unit, ..Import::default() };
+    let (own, numbers) = (bounds(import(None, None)), bounds(import(Some(UpAxis::Y), Some(LengthUnit::Metre))));
+    let near = |a: Vec3, b: Vec3| assert!(a.distance(b) < 1e-6 * b.length().max(1e-6), "{a}, not {b}");
+    let turned = |point: Vec3| 0.001 * UpAxis::Z.turn(point);
+    let corners = [turned(numbers.0), turned(numbers.1)];
+    near(own.0, corners[0].min(corners[1]));
+    near(own.1, corners[0].max(corners[1]));
+    assert_eq!(bounds(import(Some(UpAxis::Z), Some(LengthUnit::Millimetre))), own, "the same, said once more");
 }
 
 /// The lengths of units do what their definitions say.

@@ -12,7 +12,7 @@ use crate::mesh::Alpha;
 use package::{Entry, MODEL, mesh, model, relationships, zip};
 
 fn read(bytes: &[u8]) -> LoadedMesh {
-    super::read(bytes.to_vec(), "cube", &Limits::default(), &Progress::new()).unwrap()
+    super::read(bytes.to_vec(), "cube", Import::default(), &Limits::default(), &Progress::new()).unwrap()
 }
 
 /// The mesh of a cube.
@@ -191,5 +191,8 @@ fn the_directory_may_be_one_for_large_archives_and_offsets_may_be_off() {
 fn cancelling_stops_the_work() {
     let progress = Progress::new();
     progress.cancel();
-    assert!(matches!(super::read(cube(), "", &Limits::default(), &progress), Err(ReadError::Cancelled(_))));
+    assert!(matches!(
+        super::read(cube(), "", Import::default(), &Limits::default(), &progress),
+        Err(ReadError::Cancelled(_))
+    ));
 }

@@ -212,7 +212,8 @@ fn images_that_do_not_fit_are_halved() {
         gray.write_to(&mut png, image::ImageFormat::Png).expect("an image in memory");
         let bytes = text(&textured_square(Ok(png.get_ref())));
         let limits = Limits { memory, ..Limits::default() };
-        let read = read_here(bytes, std::path::Path::new("nowhere"), "test", &limits, &Progress::new());
+        let read =
+            read_here(bytes, std::path::Path::new("nowhere"), "test", Import::default(), &limits, &Progress::new());
         let read = read.expect("a mesh, whatever its textures are");
         (read.materials[0].texture.as_ref().map(|texture| texture.size), read.warnings.join("\n"))
     };
