@@ -115,7 +115,7 @@ fn lights() -> Vec<Case> {
             "a cone that is wider than all directions",
             spot(0.0, 7.0),
             json!({}),
-            Gets::Repaired("/lights/0/spot/outerConeAngle | 7.0 | at most"),
+            Gets::Repaired("/lights/0/spot/outerConeAngle | 7 | at most"),
         ),
         light("a light of an unknown kind", json!({ "type": 7 }), json!({}), Gets::Repaired("/lights/0 | left out")),
         light(
