@@ -328,10 +328,10 @@ impl StatementCounts {
                 if *unknown > 0 { format!(", and {unknown} statements that OBJ doesn't have") } else { String::new() };
             return format!("it has no vertices{unknown}");
         }
-        format!(
-            "it holds {} positions, {points} points (p), {lines} lines (l), and {surfaces} free-form curves and surfaces",
-            vertices.positions.len()
-        )
+        let others = [(points, "points (p)"), (lines, "lines (l)"), (surfaces, "free-form curves and surfaces")];
+        let others = others.into_iter().filter(|(count, _)| **count > 0);
+        let others: String = others.map(|(count, what)| format!(", {count} {what}")).collect();
+        format!("it holds {} positions{others}", vertices.positions.len())
     }
 }
 

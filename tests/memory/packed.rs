@@ -98,19 +98,56 @@ fn files_from_an_encoder_fit() {
     }
 }
 
-/// A file is refused for the memory that decoding might take, not for what it does take; with --max-memory it can be
-/// read.
+/// A scan is read within the default limit. A file is refused for the memory that decoding might take, not for what it does
+/// take.
 #[test]
-fn larger_files_are_read_with_more_memory() {
+fn scans_are_read_and_larger_files_with_more_memory() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let grid = Grid::of(500_000, 0.0);
     let bytes = sheet(grid, &[("TEXCOORD_0".to_owned(), 2)], false, 5);
     let file = temporary("packed-trusted.glb", &bytes);
-    let said = loaded(&file, &Preparation::default(), Limits::default().memory).0.map(|_| ()).expect_err("too much");
+    let said = loaded(&file, &Preparation::default(), 100 << 20).0.map(|_| ()).expect_err("too much");
     assert!(said.to_string().contains("(--max-memory allows more); decompress the model first"), "{said}");
-    let (result, took) = loaded(&file, &Preparation::default(), 2 << 30);
+    let memory = Limits::default().memory;
+    let (result, took) = loaded(&file, &Preparation::default(), memory);
     println!("packed-trusted: {} bytes of file, {} MiB taken", bytes.len(), took >> 20);
+    assert!(took <= 4 * bytes.len() + memory as usize, "{took}");
     assert_eq!(result.expect("a file without a fault").mesh.triangles.len(), grid.triangle_count());
+}
+
+/// Returns the least limit under which a file can be read, in bytes, and how much memory that takes. A refusal says how much
+/// it lacks.
+fn least_limit(name: &str, bytes: &[u8]) -> (usize, usize) {
+    let file = temporary(name, bytes);
+    let mut limit = 1 << 20;
+    loop {
+        let allowed = limit as usize + 4 * bytes.len();
+        let (result, took) = loaded(&file, &Preparation::default(), limit);
+        match result {
+            Ok(_) => return (allowed, took),
+            Err(refused) => {
+                let said = refused.to_string();
+                let needed = said.split_once("at least ").and_then(|(_, rest)| rest.split_once(" MiB"));
+                let needed: usize = needed.and_then(|(number, _)| number.parse().ok()).expect("a number of MiB");
+                assert!(needed << 20 > allowed, "{said}");
+                limit = ((needed << 20) - 4 * bytes.len()) as u64;
+            }
+        }
+    }
+}
+
+/// A file is refused for no more than twice what it would take, and one that isn't takes no more than it may.
+#[test]
+fn what_is_said_to_be_needed_is_near_what_is_taken() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    for (speed, others) in [(5, 0), (5, 1), (0, 1), (10, 1)] {
+        let others = vec![("TEXCOORD_0".to_owned(), 2); others];
+        let bytes = sheet(Grid::of(200_000, 0.0), &others, false, speed);
+        let (allowed, took) = least_limit("packed-least.glb", &bytes);
+        println!("packed-least, speed {speed}: {} MiB needed, {} taken", allowed >> 20, took >> 20);
+        assert!(took <= allowed, "speed {speed}: {took} of {allowed} bytes");
+        assert!(allowed <= 2 * took, "speed {speed}: {allowed} bytes for {took}");
+    }
 }
 
 /// The indices of one triangle, encoded with a table of as many symbols as its bytes can name, followed by `rest`.

@@ -8,6 +8,7 @@
 //! <https://github.com/KhronosGroup/glTF/tree/main/extensions/2.0/Khronos/KHR_draco_mesh_compression>.
 
 mod header;
+mod tables;
 
 use std::collections::HashMap;
 

@@ -127,7 +127,7 @@ fn what_was_chosen_takes_the_place_of_what_an_fbx_file_says() {
     near(last(true, import(Some(UpAxis::Y), Some(LengthUnit::Millimetre))), vec3(0.0, 0.2, 0.3));
 }
 
-/// 3MF files are in millimetres, and Z points up.
+/// In 3MF files Z points up. The unit of this one is the metre.
 #[test]
 fn what_was_chosen_takes_the_place_of_what_a_3mf_file_means() {
     let bytes = crate::load::threemf::tests::cube();
@@ -136,13 +136,13 @@ fn what_was_chosen_takes_the_place_of_what_a_3mf_file_means() {
         (bounds.min, bounds.max)
     };
     let import = |up, unit| Import { up, unit, ..Import::default() };
-    let (own, numbers) = (bounds(import(None, None)), bounds(import(Some(UpAxis::Y), Some(LengthUnit::Metre))));
-    let near = |a: Vec3, b: Vec3| assert!(a.distance(b) < 1e-6 * b.length().max(1e-6), "{a}, not {b}");
-    let turned = |point: Vec3| 0.001 * UpAxis::Z.turn(point);
-    let corners = [turned(numbers.0), turned(numbers.1)];
-    near(own.0, corners[0].min(corners[1]));
-    near(own.1, corners[0].max(corners[1]));
-    assert_eq!(bounds(import(Some(UpAxis::Z), Some(LengthUnit::Millimetre))), own, "the same, said once more");
+    let own = bounds(import(None, None));
+    let numbers = bounds(import(Some(UpAxis::Y), Some(LengthUnit::Metre)));
+    let corners = [numbers.0, numbers.1].map(|corner| UpAxis::Z.turn(corner));
+    assert_eq!(own, (corners[0].min(corners[1]), corners[0].max(corners[1])));
+    assert_eq!(bounds(import(Some(UpAxis::Z), Some(LengthUnit::Metre))), own, "the same, said once more");
+    let small = bounds(import(None, Some(LengthUnit::Millimetre)));
+    assert!(small.1.distance(0.001 * own.1) < 1e-9, "{small:?}");
 }
 
 /// The lengths of units do what their definitions say.

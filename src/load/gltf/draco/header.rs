@@ -4,17 +4,18 @@
 
 use draco_core::{DecoderBuffer, DracoError, GeometryMetadata};
 
+use super::tables::{self, Connectivity};
+
 /// The flag that says that metadata follows.
 const METADATA: u16 = 0x8000;
 /// The version that glTF uses.
 const VERSION: [u8; 2] = [2, 2];
 
-/// Memory for each symbol of a table of probabilities, in bytes.
-const PER_SYMBOL: u64 = 8;
-/// Memory for each symbol of a complete table, in bytes: it grows to the next power of two, with the old and the new table in memory.
-const PER_WHOLE_SYMBOL: u64 = 3 * PER_SYMBOL;
-/// How many symbols the decoder reserves for each remaining byte of the data.
-const SYMBOLS_A_BYTE: u64 = 64;
+/// Memory for each byte of the header, most of which may be metadata, in bytes.
+const PER_HEADER_BYTE: u64 = 128;
+/// Memory for each byte of the data: an event of the connectivity takes 16 bytes of memory and two of data at least, and an
+/// attribute some 500 bytes of memory and 25 of data.
+const PER_DATA_BYTE: u64 = 24;
 /// Memory for each triangle, in bytes: the neighbours of its edges, its corners' vertices, and the order of the
 /// traversal.
 const PER_TRIANGLE: u64 = 212;
@@ -34,6 +35,9 @@ pub(super) struct Header {
     vertices: Option<u64>,
     /// The number of attributes with seams of their own.
     seamed: u64,
+    connectivity: Connectivity,
+    /// Where the header ends.
+    end: usize,
 }
 
 impl Header {
@@ -61,13 +65,18 @@ impl Header {
         }
         if method == 0 {
             let triangles = buffer.decode_varint().map_err(cut)?;
-            return Ok(Self { triangles, vertices: Some(buffer.decode_varint().map_err(cut)?), seamed: 0 });
+            let points = buffer.decode_varint().map_err(cut)?;
+            let connectivity = Connectivity::Sequential { triangles, points };
+            let end = buffer.position();
+            return Ok(Self { triangles, vertices: Some(points), seamed: 0, connectivity, end });
         }
-        // The traversal method, and the number of vertices before seams split them.
-        buffer.decode_u8().map_err(cut)?;
+        let traversal = buffer.decode_u8().map_err(cut)?;
+        // The number of vertices before seams split them.
         buffer.decode_varint().map_err(cut)?;
         let triangles = buffer.decode_varint().map_err(cut)?;
-        Ok(Self { triangles, vertices: None, seamed: u64::from(buffer.decode_u8().map_err(cut)?) })
+        let seamed = u64::from(buffer.decode_u8().map_err(cut)?);
+        let connectivity = Connectivity::Edgebreaker { traversal, seamed };
+        Ok(Self { triangles, vertices: None, seamed, connectivity, end: buffer.position() })
     }
 
     /// Checks that the size agrees with the accessors.
@@ -85,17 +94,18 @@ impl Header {
         }
     }
 
+    /// Returns where the data of the connectivity begins, and what kind it is.
+    #[cfg(test)]
+    pub(super) fn start(&self) -> (usize, Connectivity) {
+        (self.end, self.connectivity)
+    }
+
     /// Returns the greatest amount of memory, in bytes, that decoding takes if the result has `values` bytes of values.
     pub(super) fn memory(&self, bytes: &[u8], values: u64) -> u64 {
-        let tables = (bytes.len() as u64 * SYMBOLS_A_BYTE * PER_SYMBOL).max(symbols(bytes) * PER_WHOLE_SYMBOL);
+        let tables = tables::memory(bytes, self.end, self.connectivity);
+        let tables = tables + self.end as u64 * PER_HEADER_BYTE + bytes.len() as u64 * PER_DATA_BYTE;
         let seams = if self.seamed > 0 { SEAMS + self.seamed * PER_SEAMED } else { 0 };
         let triangles = self.triangles.saturating_mul(PER_TRIANGLE + seams);
         tables.saturating_add(triangles).saturating_add(values.saturating_mul(PER_VALUE)).saturating_add(FIXED)
     }
-}
-
-/// Returns the greatest number of symbols of a complete table in these bytes. A byte whose two lowest bits are set says
-/// how many further symbols have probability zero; any other byte is a symbol's probability, or a part of it.
-fn symbols(bytes: &[u8]) -> u64 {
-    bytes.iter().map(|byte| if byte & 3 == 3 { u64::from(byte >> 2) + 1 } else { 1 }).sum()
 }

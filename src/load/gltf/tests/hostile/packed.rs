@@ -166,7 +166,7 @@ pub(super) fn cases() -> Vec<Case> {
         Case::refused(
             "a table of 2^26 symbols",
             table().document().to_string(),
-            &format!("Draco | {EXTENSION} | 523 | 261"),
+            &format!("Draco | {EXTENSION} | 1571 | 261"),
         ),
     ]);
     cases

@@ -1,0 +1,384 @@
+//! Bounds the memory for tables of probabilities in Draco data, by walking over it without decoding it.
+//!
+//! The decoder allocates as many symbols as a table says that it has, as long as these are no more than 64 for each byte that
+//! is left. Data that was made to do harm may say so in a few bytes; tables that an encoder writes have a few thousand symbols.
+//! The walk reads what each table says. It ends where the length of the data is known only after decoding: at values that are
+//! coded with tags, or not at all. From there on, 64 symbols a byte are counted.
+//!
+//! Source: Google, Draco bitstream specification, sections 4 to 14, <https://google.github.io/draco/spec/>.
+
+use draco_core::DecoderBuffer;
+
+/// Memory for each symbol of a table of probabilities, in bytes.
+const PER_SYMBOL: u64 = 8;
+/// Memory for each symbol of a complete table, in bytes: it grows to the next power of two, with the old and the new table in
+/// memory.
+const PER_WHOLE_SYMBOL: u64 = 3 * PER_SYMBOL;
+/// How many symbols the decoder reserves for each remaining byte of the data.
+const SYMBOLS_A_BYTE: u64 = 64;
+
+/// The connectivity of a mesh, as its header has it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Connectivity {
+    Sequential {
+        triangles: u64,
+        points: u64,
+    },
+    /// The traversal is 0 for the standard one, 2 for one by valence.
+    Edgebreaker {
+        traversal: u8,
+        seamed: u64,
+    },
+}
+
+/// Returns the greatest amount of memory that tables of probabilities take at one time, in bytes. `start` is where the header
+/// ends.
+pub(super) fn memory(bytes: &[u8], start: usize, connectivity: Connectivity) -> u64 {
+    let mut walk = Walk { buffer: DecoderBuffer::new(bytes), walked: start, symbols: 0 };
+    walk.buffer.set_version(2, 2);
+    if walk.buffer.set_position(start).is_err() || walk.mesh(connectivity).is_none() {
+        let rest = &bytes[walk.walked.min(bytes.len())..];
+        let unknown = rest.len() as u64 * SYMBOLS_A_BYTE * PER_SYMBOL;
+        return unknown.max(symbols(rest) * PER_WHOLE_SYMBOL).max(walk.symbols * PER_WHOLE_SYMBOL);
+    }
+    walk.symbols * PER_WHOLE_SYMBOL
+}
+
+/// Returns the greatest number of symbols of a complete table in these bytes. A byte whose two lowest bits are set says
+/// how many further symbols have probability zero; any other byte is a symbol's probability, or a part of it.
+fn symbols(bytes: &[u8]) -> u64 {
+    bytes.iter().map(|byte| if byte & 3 == 3 { u64::from(byte >> 2) + 1 } else { 1 }).sum()
+}
+
+/// An attribute, as its decoder's header has it.
+struct Coded {
+    components: u64,
+    /// 0 for values as they are, 1 for integers, 2 for quantised values, 3 for normals.
+    decoder: u8,
+}
+
+/// How many parallelograms a prediction may use, each with a list of flags of its own.
+const PARALLELOGRAMS: usize = 4;
+/// The bytes of a prediction's transform: two numbers.
+const TRANSFORM: u64 = 8;
+/// How many contexts the symbols of a traversal by valence have.
+const VALENCES: usize = 6;
+
+/// Each step returns none where it can't go on.
+struct Walk<'a> {
+    buffer: DecoderBuffer<'a>,
+    /// Where the part ends that the walk is sure of.
+    walked: usize,
+    /// The greatest number of symbols of a table.
+    symbols: u64,
+}
+
+impl Walk<'_> {
+    fn mesh(&mut self, connectivity: Connectivity) -> Option<()> {
+        match connectivity {
+            Connectivity::Sequential { triangles, points } => self.indices(triangles.checked_mul(3)?, points)?,
+            Connectivity::Edgebreaker { traversal, seamed } => self.edgebreaker(traversal, seamed)?,
+        }
+        let is_edgebreaker = matches!(connectivity, Connectivity::Edgebreaker { .. });
+        self.attributes(is_edgebreaker)
+    }
+
+    fn byte(&mut self) -> Option<u8> {
+        self.buffer.decode_u8().ok()
+    }
+
+    fn varint(&mut self) -> Option<u64> {
+        self.buffer.decode_varint().ok()
+    }
+
+    fn skip(&mut self, bytes: u64) -> Option<()> {
+        self.buffer.try_advance(usize::try_from(bytes).ok()?).ok()
+    }
+
+    /// Notes that the walk has come this far.
+    fn reached(&mut self) {
+        self.walked = self.buffer.position();
+    }
+
+    /// The vertices of the triangles.
+    fn indices(&mut self, count: u64, points: u64) -> Option<()> {
+        match (self.byte()?, points) {
+            // Without symbols or points nothing is read, and the list ends elsewhere.
+            (_, 0) => return None,
+            (0, _) if count > 0 => self.symbols()?,
+            (1, 0..0x100) => self.skip(count)?,
+            (1, 0x100..0x1_0000) => self.skip(count.checked_mul(2)?)?,
+            (1, 0x1_0000..0x20_0000) => (0..count).try_for_each(|_| self.varint().map(|_| ()))?,
+            (1, _) => self.skip(count.checked_mul(4)?)?,
+            _ => return None,
+        }
+        self.reached();
+        Some(())
+    }
+
+    fn edgebreaker(&mut self, traversal: u8, seamed: u64) -> Option<()> {
+        // The numbers of symbols, of which one is needed for every few triangles, and of those that split the boundary.
+        let (symbols, _) = (self.varint()?, self.varint()?);
+        let events = self.varint()?;
+        for _ in 0..events {
+            self.varint()?;
+            self.varint()?;
+        }
+        // One bit an event.
+        self.skip(events.div_ceil(8))?;
+        if symbols == 0 {
+            return None;
+        }
+        self.reached();
+        match traversal {
+            0 => {
+                let length = self.varint()?;
+                self.skip(length)?;
+                self.bits()?;
+                (0..seamed).try_for_each(|_| self.bits())?;
+            }
+            2 => {
+                self.bits()?;
+                (0..seamed).try_for_each(|_| self.bits())?;
+                for _ in 0..VALENCES {
+                    self.reached();
+                    if self.varint()? > 0 {
+                        self.symbols()?;
+                    }
+                }
+            }
+            _ => return None,
+        }
+        self.reached();
+        Some(())
+    }
+
+    /// Coded bits: their probability, their length in bytes, and they themselves.
+    fn bits(&mut self) -> Option<()> {
+        self.byte()?;
+        let length = self.varint()?;
+        self.skip(u64::from(length as u32))
+    }
+
+    /// Coded symbols.
+    fn symbols(&mut self) -> Option<()> {
+        let (is_raw, bits) = (self.byte()? == 1, self.byte()?);
+        if !is_raw || !(1..=18).contains(&bits) {
+            return None;
+        }
+        self.table()?;
+        let length = self.varint()?;
+        self.skip(length)
+    }
+
+    /// A table of probabilities: the number of its symbols, then one to three bytes for each, or one byte for up to 64 symbols
+    /// of probability zero.
+    fn table(&mut self) -> Option<()> {
+        let count = self.varint()?;
+        if count > self.buffer.remaining_size() as u64 * SYMBOLS_A_BYTE {
+            return None;
+        }
+        self.symbols = self.symbols.max(count);
+        let mut read = 0;
+        while read < count {
+            let byte = self.byte()?;
+            match byte & 3 {
+                3 => read += u64::from(byte >> 2) + 1,
+                more => {
+                    self.skip(u64::from(more))?;
+                    read += 1;
+                }
+            }
+        }
+        (read == count).then_some(())
+    }
+
+    fn attributes(&mut self, is_edgebreaker: bool) -> Option<()> {
+        let decoders = self.byte()?;
+        // The connectivity, the kind and the traversal of each.
+        self.skip(if is_edgebreaker { 3 * u64::from(decoders) } else { 0 })?;
+        let mut all = Vec::new();
+        for _ in 0..decoders {
+            all.push(self.header()?);
+        }
+        for coded in all {
+            for attribute in &coded {
+                self.reached();
+                self.values(attribute)?;
+            }
+            for attribute in coded {
+                self.skip(match attribute.decoder {
+                    // The least values, the range and the number of bits.
+                    2 => 4 * (attribute.components + 1) + 1,
+                    3 => 1,
+                    _ => 0,
+                })?;
+            }
+        }
+        Some(())
+    }
+
+    /// Returns the attributes of a decoder. Each takes five bytes at least, so that the list isn't longer than the data.
+    fn header(&mut self) -> Option<Vec<Coded>> {
+        let count = self.varint()?;
+        if count > self.buffer.remaining_size() as u64 / 5 {
+            return None;
+        }
+        let mut coded = Vec::new();
+        for _ in 0..count {
+            // The meaning and the type.
+            self.skip(2)?;
+            let components = u64::from(self.byte()?);
+            // Whether it is normalised.
+            self.byte()?;
+            self.varint()?;
+            coded.push(Coded { components, decoder: 0 });
+        }
+        for attribute in &mut coded {
+            attribute.decoder = self.byte()?;
+        }
+        Some(coded)
+    }
+
+    /// The values of an attribute, with what their prediction needs.
+    fn values(&mut self, attribute: &Coded) -> Option<()> {
+        if !(1..=3).contains(&attribute.decoder) {
+            return None;
+        }
+        let method = self.byte()?;
+        let is_predicted = method < 0xfe;
+        if is_predicted {
+            // The transform.
+            self.byte()?;
+        }
+        if self.byte()? == 0 {
+            return None;
+        }
+        self.symbols()?;
+        match method {
+            // Differences, and parallelograms.
+            0 | 1 => self.skip(TRANSFORM),
+            // Several parallelograms, of which flags say which are used.
+            4 => {
+                for _ in 0..PARALLELOGRAMS {
+                    if self.varint()? as u32 > 0 {
+                        self.bits()?;
+                    }
+                }
+                self.skip(TRANSFORM)
+            }
+            // Texture coordinates by positions: the number of orientations, and these.
+            5 => {
+                self.skip(4)?;
+                self.bits()?;
+                self.skip(TRANSFORM)
+            }
+            // Normals of neighbouring triangles, and which are flipped.
+            6 => {
+                self.skip(TRANSFORM)?;
+                self.bits()
+            }
+            _ if !is_predicted => Some(()),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use draco_core::{
+        DataType, EncoderBuffer, EncoderOptions, GeometryAttributeType as Kind, Mesh, MeshEncoder, PointAttribute,
+    };
+
+    use super::super::header::Header;
+    use super::*;
+
+    /// Returns how far a walk comes in bytes, or none if it doesn't come to the end; and the memory of the tables in bytes.
+    fn walk(bytes: &[u8]) -> (Option<usize>, u64) {
+        let (start, connectivity) = Header::read(bytes).expect("a header").start();
+        let mut walk = Walk { buffer: DecoderBuffer::new(bytes), walked: start, symbols: 0 };
+        walk.buffer.set_version(2, 2);
+        walk.buffer.set_position(start).expect("within the data");
+        let reached = walk.mesh(connectivity).map(|()| walk.buffer.position());
+        (reached, memory(bytes, start, connectivity))
+    }
+
+    /// A wavy sheet of 2 * 60 * 60 triangles. With seams each row has texture coordinates of its own.
+    fn sheet(method: i32, speed: i32, has_seams: bool) -> Vec<u8> {
+        const SIDE: usize = 60;
+        let next = SIDE + 1;
+        let squares = (0..SIDE * SIDE).map(|i| i / SIDE * next + i % SIDE);
+        let triangles: Vec<[usize; 3]> =
+            squares.flat_map(|a| [[a, a + 1, a + next], [a + 1, a + next + 1, a + next]]).collect();
+        let corners = triangles.as_flattened();
+        let mut mesh = Mesh::new();
+        mesh.set_num_points(corners.len());
+        mesh.try_set_num_faces(triangles.len()).expect("memory");
+        for i in 0..triangles.len() {
+            mesh.set_face_from_indices(i, [0, 1, 2].map(|k| (3 * i + k) as u32));
+        }
+        let mut options = EncoderOptions::new();
+        options.set_encoding_method(method);
+        options.set_global_int("encoding_speed", speed);
+        options.set_global_int("decoding_speed", speed);
+        let mut add = |kind: Kind, width: u8, value: &dyn Fn(usize, usize) -> Vec<f32>| {
+            let mut attribute = PointAttribute::new();
+            attribute.init(kind, width, DataType::Float32, false, corners.len());
+            let numbers = corners.iter().enumerate().flat_map(|(i, corner)| value(i, *corner));
+            attribute.buffer_mut().write(0, &numbers.flat_map(f32::to_le_bytes).collect::<Vec<u8>>());
+            let id = mesh.add_attribute(attribute);
+            options.set_attribute_quantization(id, 11);
+        };
+        let at = |corner: usize| [(corner % next) as f32, (corner / next) as f32];
+        add(Kind::Position, 3, &|_, corner| vec![at(corner)[0], at(corner)[1], (at(corner)[0] * 0.3).sin()]);
+        add(Kind::Normal, 3, &|_, corner| {
+            let slope = (at(corner)[0] * 0.3).cos();
+            vec![-slope / slope.hypot(1.0), 0.0, 1.0 / slope.hypot(1.0)]
+        });
+        add(Kind::TexCoord, 2, &|i, corner| {
+            let row = if has_seams { (i / (6 * SIDE)) as f32 } else { 0.0 };
+            vec![at(corner)[0] / 60.0, at(corner)[1] / 60.0 + row]
+        });
+        mesh.deduplicate_attribute_values().expect("attributes that can be compared");
+        mesh.deduplicate_point_ids();
+        let (mut encoder, mut bytes) = (MeshEncoder::new(), EncoderBuffer::new());
+        encoder.set_mesh(mesh);
+        encoder.encode(&options, &mut bytes).expect("a mesh that can be compressed");
+        bytes.data().to_vec()
+    }
+
+    /// A walk that read something differently from the decoder wouldn't end where the data does.
+    #[test]
+    fn walks_end_where_the_data_ends() {
+        let cube = include_bytes!("../tests/cube.drc");
+        let mut streams = vec![("cube".to_owned(), cube.to_vec())];
+        for (method, speed) in [(0, 5), (1, 0), (1, 1), (1, 3), (1, 5), (1, 7), (1, 10)] {
+            for has_seams in [false, true] {
+                let name = format!("method {method}, speed {speed}, seams {has_seams}");
+                streams.push((name, sheet(method, speed, has_seams)));
+            }
+        }
+        let mut whole = 0;
+        for (name, bytes) in &streams {
+            let (reached, memory) = walk(bytes);
+            println!("{name}: {reached:?} of {} bytes, {} KiB of tables", bytes.len(), memory >> 10);
+            if let Some(reached) = reached {
+                whole += 1;
+                assert_eq!(reached, bytes.len(), "{name}");
+            }
+        }
+        assert!(whole * 3 >= streams.len() * 2, "{whole} of {}", streams.len());
+    }
+
+    /// One triangle whose indices have a table that says that it has 2^20 symbols, of which few follow.
+    #[test]
+    fn a_table_counts_for_what_it_says() {
+        let start = b"DRACO\x02\x02\x01\0\0\0\x01\x03\0\x01\x01";
+        let claim = [0x80, 0x80, 0x40];
+        let bytes = [&start[..], &claim, &[0; 20_000]].concat();
+        assert!(walk(&bytes).1 >= 3 * 8 << 20);
+        // More than 64 symbols a byte are refused by the decoder before it takes memory for them.
+        let short = [&start[..], &claim, &[0; 2000]].concat();
+        assert!(walk(&short).1 < 2 << 20);
+    }
+}
