@@ -14,7 +14,7 @@ use pnaen::render::Leak;
 use pnaen::tessellate::Surface;
 use tempfile::TempDir;
 
-use crate::window_tests::{PATIENCE, choose, click, press, settle, uniform};
+use crate::window_tests::{PATIENCE, choose, click, open_list, press, settle, uniform};
 
 #[test]
 fn pn_triangles_crack_and_the_status_line_counts_it() {
@@ -167,8 +167,7 @@ fn escape_closes_a_list_before_it_deselects() {
     let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
     harness.state_mut().select_edge(3);
     settle(&mut harness);
-    harness.get_by_role_and_label(Role::ComboBox, "Surface").click();
-    settle(&mut harness);
+    open_list(&mut harness, "Surface");
     press(&mut harness, egui::Key::Escape);
     assert_eq!(harness.state().selected_edge(), Some(3));
     press(&mut harness, egui::Key::Escape);
