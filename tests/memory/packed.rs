@@ -136,9 +136,10 @@ fn least_limit(name: &str, bytes: &[u8]) -> (usize, usize) {
     }
 }
 
-/// A file is refused for no more than twice what it would take, and one that isn't takes no more than it may.
+/// A file takes no more than what it would be refused for. That is the most which any data of this size can take; a flat sheet, which
+/// compresses best, takes an eighth of it at least.
 #[test]
-fn what_is_said_to_be_needed_is_near_what_is_taken() {
+fn what_is_said_to_be_needed_is_taken_at_most() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     for (speed, others) in [(5, 0), (5, 1), (0, 1), (10, 1)] {
         let others = vec![("TEXCOORD_0".to_owned(), 2); others];
@@ -146,7 +147,7 @@ fn what_is_said_to_be_needed_is_near_what_is_taken() {
         let (allowed, took) = least_limit("packed-least.glb", &bytes);
         println!("packed-least, speed {speed}: {} MiB needed, {} taken", allowed >> 20, took >> 20);
         assert!(took <= allowed, "speed {speed}: {took} of {allowed} bytes");
-        assert!(allowed <= 2 * took, "speed {speed}: {allowed} bytes for {took}");
+        assert!(allowed <= 8 * took, "speed {speed}: {allowed} bytes for {took}");
     }
 }
 
@@ -167,10 +168,10 @@ fn table(length: usize, symbols: usize, rest: &[u8]) -> Vec<u8> {
 #[test]
 fn tables_that_take_most_memory_are_counted() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
-    // A table that ends too early.
-    let length = 400 << 10;
+    // A table that ends too early. It counts as a complete one, which takes three times as much.
+    let length = 160 << 10;
     let (mesh, took) = measured("packed-table", table(length, (length - 64) * 64, &vec![0; length - 32]));
-    assert!(mesh.is_err() && (190..256).contains(&took), "{took} MiB");
+    assert!(mesh.is_err() && (70..256).contains(&took), "{took} MiB");
     // A complete table: the first symbol has the whole probability of 2^12, and all others have none.
     let whole = |length: usize| table(length, (length - 64) * 64 + 1, &[2, 64, 0]);
     let (mesh, took) = measured("packed-whole-table", whole(160 << 10));

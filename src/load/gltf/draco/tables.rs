@@ -376,7 +376,7 @@ mod tests {
         let start = b"DRACO\x02\x02\x01\0\0\0\x01\x03\0\x01\x01";
         let claim = [0x80, 0x80, 0x40];
         let bytes = [&start[..], &claim, &[0; 20_000]].concat();
-        assert!(walk(&bytes).1 >= 3 * 8 << 20);
+        assert!(walk(&bytes).1 >= (3 * 8) << 20);
         // More than 64 symbols a byte are refused by the decoder before it takes memory for them.
         let short = [&start[..], &claim, &[0; 2000]].concat();
         assert!(walk(&short).1 < 2 << 20);
