@@ -9,7 +9,7 @@ use super::silhouette::SilhouetteStats;
 use super::truth::{AccuracyStats, DeviationStats};
 use crate::engine::{Engine, Loaded};
 use crate::gpu::PassTime;
-use crate::measure::{MappedSeams, Measured, Seams};
+use crate::measure::{Measured, SeamTurns, Seams};
 use crate::mesh::{EdgeCounts, Topology};
 use crate::render::Scene;
 use crate::settings::{Choice, Declaration, Settings, options};
@@ -183,9 +183,17 @@ impl CrackStats {
     }
 }
 
-/// Angles between the shading normals of both sides of uv seams and split normals, in degrees.
+/// Angles between the shading normals of both sides of uv seams and split normals.
 #[derive(Debug, Serialize)]
 struct SeamStats {
+    #[serde(flatten)]
+    shading: SeamTurnStats,
+    /// The same under normal maps; null if no seam has one.
+    mapped: Option<SeamTurnStats>,
+}
+
+#[derive(Debug, Serialize)]
+struct SeamTurnStats {
     edges: u64,
     points: u64,
     max_degrees: f64,
@@ -195,46 +203,28 @@ struct SeamStats {
     source_mean_degrees: f64,
     /// The most by which the tessellation's angle at a point is larger than the mesh's.
     max_added_degrees: f64,
-    /// The same under normal maps; null if no seam has one.
-    mapped: Option<MappedSeamStats>,
-}
-
-#[derive(Debug, Serialize)]
-struct MappedSeamStats {
-    edges: u64,
-    points: u64,
-    max_degrees: f64,
-    mean_degrees: f64,
-    source_max_degrees: f64,
-    source_mean_degrees: f64,
-    max_added_degrees: f64,
-}
-
-impl MappedSeamStats {
-    fn new(mapped: &MappedSeams) -> Self {
-        Self {
-            edges: mapped.edges,
-            points: mapped.points,
-            max_degrees: mapped.emitted.most,
-            mean_degrees: mapped.mean(mapped.emitted),
-            source_max_degrees: mapped.source.most,
-            source_mean_degrees: mapped.mean(mapped.source),
-            max_added_degrees: mapped.most_added,
-        }
-    }
 }
 
 impl SeamStats {
     fn new(seams: &Seams) -> Self {
+        let has_mapped = seams.mapped.edges > 0;
         Self {
-            edges: seams.edges,
-            points: seams.points,
-            max_degrees: seams.emitted.most,
-            mean_degrees: seams.mean(seams.emitted),
-            source_max_degrees: seams.source.most,
-            source_mean_degrees: seams.mean(seams.source),
-            max_added_degrees: seams.most_added,
-            mapped: (seams.mapped.edges > 0).then(|| MappedSeamStats::new(&seams.mapped)),
+            shading: SeamTurnStats::new(&seams.shading),
+            mapped: has_mapped.then(|| SeamTurnStats::new(&seams.mapped)),
+        }
+    }
+}
+
+impl SeamTurnStats {
+    fn new(turns: &SeamTurns) -> Self {
+        Self {
+            edges: turns.edges,
+            points: turns.points,
+            max_degrees: turns.emitted.most,
+            mean_degrees: turns.mean(turns.emitted),
+            source_max_degrees: turns.source.most,
+            source_mean_degrees: turns.mean(turns.source),
+            max_added_degrees: turns.most_added,
         }
     }
 }

@@ -28,7 +28,7 @@ pub(crate) use folds::FoldedPatch;
 pub(crate) use indices::{IndexDifference, Meaning, index_differences};
 pub(crate) use outlines::{EdgeSide, patch_edges};
 pub(crate) use screen_error::{ScreenError, ScreenErrorMeasurement};
-pub(crate) use seams::{MappedSeams, Seams};
+pub(crate) use seams::{SeamTurns, Seams};
 pub(crate) use silhouette::{OutlineDistance, OutlineDistances, OutlineOf, SampleGrid, Silhouette};
 pub(crate) use sizes::{SMALL_PX, Sizes};
 pub(crate) use survey::{Culled, Measured, Survey};

@@ -8,10 +8,20 @@ use super::outlines::{EdgeSide, Outlines};
 use crate::mesh::{EdgeKind, Mesh, Topology};
 use crate::tessellate::{edge_normal, unpack_normal};
 
-/// The angles between the shading normals of both sides of seams: edges of two triangles whose normals or texture coordinates
-/// differ. Emitted normals have 32 bits, so that an angle is right to about 0.01 degrees, and exactly 0 for equal normals.
+/// Seams: edges of two triangles whose normals or texture coordinates differ. Emitted normals have 32 bits, so that an angle is
+/// right to about 0.01 degrees, and exactly 0 for equal normals.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Seams {
+    /// Between the shading normals of both sides.
+    pub shading: SeamTurns,
+    /// Between what normal maps make of these, as drawn without mip levels, at seams where at least one side has a normal map. They
+    /// are 0 where there are none.
+    pub mapped: SeamTurns,
+}
+
+/// How far normals turn where the sides of seams meet.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SeamTurns {
     /// Compared edges. Where a patch is left out, or the sides have different numbers of points, there is nothing to compare.
     pub edges: u64,
     /// Compared points: those of every compared edge.
@@ -22,37 +32,18 @@ pub struct Seams {
     pub source: SeamAngles,
     /// By how much the emitted angle at a point is larger than that of the mesh, in degrees: the most, at least 0.
     pub most_added: f64,
-    /// The same under normal maps.
-    pub mapped: MappedSeams,
 }
 
-/// The angles between what normal maps make of the normals of both sides, as drawn without mip levels, at seams where at least one side
-/// has a normal map. They are 0 where there are none.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct MappedSeams {
-    pub edges: u64,
-    pub points: u64,
-    pub emitted: SeamAngles,
-    pub source: SeamAngles,
-    /// See [`Seams::most_added`].
-    pub most_added: f64,
-}
-
-impl MappedSeams {
-    /// Compares the sides of an edge at a place, `t` in 16.16 fixed point along it: their emitted normals, and the mesh's own.
-    fn take(&mut self, sides: &[Option<MappedSide>; 2], t: u32, emitted: [Vec3; 2], source: [Vec3; 2]) {
-        let angle = |normals: [Vec3; 2]| {
-            let mapped = |k: usize| sides[k].as_ref().map_or(normals[k], |side| side.normal(normals[k], t));
-            degrees(mapped(0), mapped(1))
-        };
-        let (emitted, source) = (angle(emitted), angle(source));
+impl SeamTurns {
+    /// Adds the angles at a point of a seam, in degrees.
+    fn add(&mut self, emitted: f64, source: f64) {
         self.points += 1;
         self.emitted.add(emitted);
         self.source.add(source);
         self.most_added = self.most_added.max(emitted - source);
     }
 
-    /// The mean of angles over all points, in degrees; 0 without any.
+    /// The mean of angles over all points, in degrees; 0 without seams.
     pub fn mean(&self, angles: SeamAngles) -> f64 {
         angles.sum / self.points.max(1) as f64
     }
@@ -95,7 +86,7 @@ impl Seams {
         let normals = [first, second].map(|side| {
             topology.side_corners(&topology.sides[side as usize]).map(|corner| mesh.corners[corner as usize].normal)
         });
-        self.edges += 1;
+        self.shading.edges += 1;
         let mapped = [first, second].map(|side| MappedSide::of(mesh, topology, side));
         let is_mapped = mapped.iter().any(Option::is_some);
         self.mapped.edges += u64::from(is_mapped);
@@ -104,20 +95,19 @@ impl Seams {
             let source = if normals[0] == normals[1] { 0.0 } else { degrees(of_a, of_b) };
             let same = a.normal == b.normal;
             let emitted = if same { 0.0 } else { degrees(unpack_normal(a.normal), unpack_normal(b.normal)) };
-            self.points += 1;
-            self.source.add(source);
-            self.emitted.add(emitted);
-            self.most_added = self.most_added.max(emitted - source);
+            self.shading.add(emitted, source);
             if is_mapped {
-                self.mapped.take(&mapped, t, [a.normal, b.normal].map(unpack_normal), [of_a, of_b]);
+                let angle = |normals| mapped_angle(&mapped, t, normals);
+                self.mapped.add(angle([a.normal, b.normal].map(unpack_normal)), angle([of_a, of_b]));
             }
         }
     }
+}
 
-    /// The mean of angles over all points, in degrees; 0 without seams.
-    pub fn mean(&self, angles: SeamAngles) -> f64 {
-        angles.sum / self.points.max(1) as f64
-    }
+/// The angle between what the sides' normal maps make of their normals at `t` along the edge, in 16.16 fixed point; in degrees.
+fn mapped_angle(sides: &[Option<MappedSide>; 2], t: u32, normals: [Vec3; 2]) -> f64 {
+    let mapped = |k: usize| sides[k].as_ref().map_or(normals[k], |side| side.normal(normals[k], t));
+    degrees(mapped(0), mapped(1))
 }
 
 /// The angle between two directions, in degrees.
@@ -170,7 +160,7 @@ mod tests {
 
     #[test]
     fn a_seam_of_texture_coordinates_alone_turns_no_normal() {
-        let found = seams(&roof([0.0; 2], 0.5), Tessellation { factor: 7.0, ..Tessellation::default() });
+        let found = seams(&roof([0.0; 2], 0.5), Tessellation { factor: 7.0, ..Tessellation::default() }).shading;
         assert_eq!((found.edges, found.points), (1, 8));
         assert_eq!((found.emitted.most, found.source.most, found.most_added), (0.0, 0.0, 0.0));
         // Without the seam there is nothing to compare.
@@ -182,13 +172,13 @@ mod tests {
         for partitioning in Partitioning::ALL {
             for convention in [Convention::D3d11, Convention::AmdPn, Convention::EdgeOrder] {
                 let tessellation = Tessellation { factor: 5.6, partitioning, convention, ..Tessellation::default() };
-                let even = seams(&roof([20.0; 2], 0.0), tessellation);
+                let even = seams(&roof([20.0; 2], 0.0), tessellation).shading;
                 let near = |found: f64, expected: f64| (found - expected).abs() < 0.02;
                 assert!(even.edges == 1 && even.points > 2, "{partitioning:?} {even:?}");
                 let [emitted, source] = [even.emitted, even.source].map(|angles| [angles.most, even.mean(angles)]);
                 assert!(emitted.into_iter().chain(source).all(|angle| near(angle, 40.0)), "{partitioning:?} {even:?}");
                 // Angles change along the edge, and points that don't lie where they are compared would show.
-                let uneven = seams(&roof([20.0, 0.0], 0.0), tessellation);
+                let uneven = seams(&roof([20.0, 0.0], 0.0), tessellation).shading;
                 let (mean, own) = (uneven.mean(uneven.emitted), uneven.mean(uneven.source));
                 assert!(near(uneven.emitted.most, 40.0) && near(uneven.source.most, 40.0), "{uneven:?}");
                 assert!(near(mean, own) && (15.0..25.0).contains(&mean), "{partitioning:?} {convention:?} {uneven:?}");
@@ -201,7 +191,8 @@ mod tests {
     fn normals_of_the_surface_itself_add_to_seams() {
         let tessellation = Tessellation { normals: Normals::Surface, ..Tessellation::default() };
         let torus = Shape::Torus.build();
-        let [shaded, own] = [Tessellation::default(), tessellation].map(|tessellation| seams(&torus, tessellation));
+        let [shaded, own] =
+            [Tessellation::default(), tessellation].map(|tessellation| seams(&torus, tessellation).shading);
         assert_eq!((shaded.emitted.most, shaded.most_added, shaded.source.most), (0.0, 0.0, 0.0));
         assert!(shaded.edges == own.edges && own.edges > 10, "{shaded:?} {own:?}");
         assert!(own.most_added > 0.5 && own.emitted.most == own.most_added && own.source.most == 0.0, "{own:?}");
@@ -234,16 +225,16 @@ mod tests {
             for (tangent, expected) in [(Vec3::X, 0.0), (Vec3::NEG_X, 60.0)] {
                 let found = seams(&mapped_roof([0.0; 2], tangent), tessellation);
                 let mapped = found.mapped;
-                assert!(mapped.edges == 1 && mapped.points == found.points, "{found:?}");
+                assert!(mapped.edges == 1 && mapped.points == found.shading.points, "{found:?}");
                 assert!(near(mapped.emitted.most, expected) && near(mapped.source.most, expected), "{found:?}");
                 assert!(near(mapped.mean(mapped.emitted), expected) && mapped.most_added < 0.02, "{found:?}");
-                assert_eq!(found.emitted.most, 0.0, "the shading normals alone have no seam");
+                assert_eq!(found.shading.emitted.most, 0.0, "the shading normals alone have no seam");
             }
             // Normals that lean apart by 20 degrees each.
             let found = seams(&mapped_roof([20.0; 2], Vec3::NEG_X), tessellation);
             assert!(near(found.mapped.emitted.most, 100.0) && found.mapped.most_added < 0.02, "{found:?}");
         }
-        assert_eq!(seams(&roof([20.0; 2], 0.5), Tessellation::default()).mapped, MappedSeams::default());
+        assert_eq!(seams(&roof([20.0; 2], 0.5), Tessellation::default()).mapped, SeamTurns::default());
         // What adds to the seam without a map does so with one.
         let mut torus = Shape::Torus.build();
         torus.materials[0].look.maps[Slot::Normal as usize] =
@@ -254,7 +245,7 @@ mod tests {
         };
         torus.details = Some(Arc::new(torus.corners.iter().map(of).collect()));
         let found = seams(&torus, Tessellation { normals: Normals::Surface, ..Tessellation::default() });
-        assert!(found.most_added > 0.5 && found.mapped.most_added > 0.5, "{found:?}");
+        assert!(found.shading.most_added > 0.5 && found.mapped.most_added > 0.5, "{found:?}");
         assert!(seams(&torus, Tessellation::default()).mapped.most_added < 0.02);
     }
 
@@ -269,6 +260,6 @@ mod tests {
         let out = tessellate(&mesh, &topology, &inputs, Some(&factors));
         let asked = AskedFactors::new(mirrored.edges, mirrored.convention, factors);
         let found = Measured::of(&mesh, &topology, asked, &out).seams;
-        assert!(found.edges < 12, "{found:?}");
+        assert!(found.shading.edges < 12, "{found:?}");
     }
 }

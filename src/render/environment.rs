@@ -253,10 +253,14 @@ fn half_floats(light: Vec3) -> [u8; 8] {
 }
 
 fn upload_panorama(gpu: &Gpu, panorama: &Panorama) -> wgpu::TextureView {
-    let [width, height] = panorama.size();
     let bytes: Vec<u8> = panorama.pixels().iter().flat_map(|&light| half_floats(light)).collect();
+    upload_flat(gpu, "panorama", panorama.size(), &bytes)
+}
+
+/// Uploads an image of one level, four half floats a pixel.
+fn upload_flat(gpu: &Gpu, label: &str, [width, height]: [u32; 2], bytes: &[u8]) -> wgpu::TextureView {
     let descriptor = wgpu::TextureDescriptor {
-        label: Some("panorama"),
+        label: Some(label),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
         mip_level_count: 1,
         sample_count: 1,
@@ -266,7 +270,7 @@ fn upload_panorama(gpu: &Gpu, panorama: &Panorama) -> wgpu::TextureView {
         view_formats: &[],
     };
     let order = wgpu::util::TextureDataOrder::LayerMajor;
-    let texture = gpu.device.create_texture_with_data(&gpu.queue, &descriptor, order, &bytes);
+    let texture = gpu.device.create_texture_with_data(&gpu.queue, &descriptor, order, bytes);
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
@@ -286,17 +290,5 @@ fn upload(gpu: &Gpu, light: &CubeMap) -> wgpu::Texture {
 
 fn upload_dfg(gpu: &Gpu) -> wgpu::TextureView {
     let bytes: Vec<u8> = dfg_table().iter().flatten().flat_map(|&part| f16::from_f32(part).to_ne_bytes()).collect();
-    let descriptor = wgpu::TextureDescriptor {
-        label: Some("directional albedo"),
-        size: wgpu::Extent3d { width: DFG_SIZE, height: DFG_SIZE, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba16Float,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    };
-    let order = wgpu::util::TextureDataOrder::LayerMajor;
-    let texture = gpu.device.create_texture_with_data(&gpu.queue, &descriptor, order, &bytes);
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
+    upload_flat(gpu, "directional albedo", [DFG_SIZE; 2], &bytes)
 }

@@ -7,8 +7,9 @@ use glam::{DVec2, Mat4, Vec2, dvec2};
 use wgpu::util::DeviceExt;
 
 use super::Scene;
+use super::adding_pipeline::Adding;
 use crate::gpu::wgsl::wgsl;
-use crate::gpu::{Gpu, GpuError, Lazy, Readback, Recorder, ShaderModule, Timing, VERTEX_HALF, WgslFile, bind_group};
+use crate::gpu::{Gpu, GpuError, Lazy, Readback, Recorder, ShaderModule, Timing, WgslFile, bind_group};
 
 pub(super) static DRAW_LEAKS: WgslFile = wgsl!("draw_leaks");
 
@@ -182,41 +183,14 @@ pub(crate) fn leaks_in(counts: &[u8], width: usize) -> Vec<Leak> {
 }
 
 fn pipeline(gpu: &Gpu, module: &wgpu::ShaderModule) -> wgpu::RenderPipeline {
-    let add = wgpu::BlendComponent {
-        src_factor: wgpu::BlendFactor::One,
-        dst_factor: wgpu::BlendFactor::One,
-        operation: wgpu::BlendOperation::Add,
+    let adding = Adding {
+        label: "leaks",
+        entry_points: ["leak_vertex", "leak_fragment"],
+        format: FORMAT,
+        factor: wgpu::BlendFactor::One,
+        channels: wgpu::ColorWrites::RED,
     };
-    let vertex = wgpu::VertexBufferLayout {
-        array_stride: VERTEX_HALF,
-        step_mode: wgpu::VertexStepMode::Vertex,
-        attributes: &wgpu::vertex_attr_array![0 => Float32x3],
-    };
-    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("leaks"),
-        layout: None,
-        vertex: wgpu::VertexState {
-            module,
-            entry_point: Some("leak_vertex"),
-            compilation_options: Default::default(),
-            buffers: &[Some(vertex)],
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module,
-            entry_point: Some("leak_fragment"),
-            compilation_options: Default::default(),
-            targets: &[Some(wgpu::ColorTargetState {
-                format: FORMAT,
-                blend: Some(wgpu::BlendState { color: add, alpha: add }),
-                write_mask: wgpu::ColorWrites::RED,
-            })],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
+    adding.pipeline(gpu, module)
 }
 
 #[cfg(test)]

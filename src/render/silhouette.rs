@@ -3,10 +3,9 @@
 use glam::{Mat4, Vec3};
 use wgpu::util::DeviceExt;
 
+use super::adding_pipeline::Adding;
 use crate::gpu::wgsl::wgsl;
-use crate::gpu::{
-    ChunkBuffers, Gpu, GpuError, Lazy, Readback, Recorder, ShaderModule, VERTEX_HALF, WgslFile, bind_group,
-};
+use crate::gpu::{ChunkBuffers, Gpu, GpuError, Lazy, Readback, Recorder, ShaderModule, WgslFile, bind_group};
 use crate::measure::{OutlineOf, SampleGrid};
 
 pub(super) static DRAW_SILHOUETTE: WgslFile = wgsl!("draw_silhouette");
@@ -117,41 +116,14 @@ impl SilhouetteCoverage {
 
 fn pipeline(gpu: &Gpu, module: &wgpu::ShaderModule) -> wgpu::RenderPipeline {
     // A channel stays at 1 however many triangles cover a sample.
-    let add = wgpu::BlendComponent {
-        src_factor: wgpu::BlendFactor::Constant,
-        dst_factor: wgpu::BlendFactor::One,
-        operation: wgpu::BlendOperation::Add,
+    let adding = Adding {
+        label: "silhouette",
+        entry_points: ["silhouette_vertex", "silhouette_fragment"],
+        format: FORMAT,
+        factor: wgpu::BlendFactor::Constant,
+        channels: wgpu::ColorWrites::ALL,
     };
-    let vertex = wgpu::VertexBufferLayout {
-        array_stride: VERTEX_HALF,
-        step_mode: wgpu::VertexStepMode::Vertex,
-        attributes: &wgpu::vertex_attr_array![0 => Float32x3],
-    };
-    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("silhouette"),
-        layout: None,
-        vertex: wgpu::VertexState {
-            module,
-            entry_point: Some("silhouette_vertex"),
-            compilation_options: Default::default(),
-            buffers: &[Some(vertex)],
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module,
-            entry_point: Some("silhouette_fragment"),
-            compilation_options: Default::default(),
-            targets: &[Some(wgpu::ColorTargetState {
-                format: FORMAT,
-                blend: Some(wgpu::BlendState { color: add, alpha: add }),
-                write_mask: wgpu::ColorWrites::ALL,
-            })],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
+    adding.pipeline(gpu, module)
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use crate::app::App;
 use crate::app::sections::{Section, scrolling_column};
 use crate::app::text::{grouped, part, short};
 use crate::app::widgets::{fact, number, swatch};
-use crate::measure::{Cracks, Culled, Seams};
+use crate::measure::{Cracks, Culled, SeamTurns};
 use crate::mesh::EdgeKind;
 use crate::render::layout::{CRACK_COLOR, FOLD_COLOR, WASTE_COLOR, edge_color};
 use crate::view::ulp;
@@ -73,8 +73,8 @@ impl App {
 
     /// How far shading normals turn at seams. Until that is measured, the rows show ellipses.
     fn seam_facts(&self, ui: &mut egui::Ui) {
-        let seams = self.jobs.measure.found().map(|found| found.seams);
-        let angle = |of: fn(&Seams) -> f64| {
+        let seams = self.jobs.measure.found().map(|found| found.seams.shading);
+        let angle = |of: fn(&SeamTurns) -> f64| {
             seams.map_or_else(|| "…".into(), |seams| if seams.edges > 0 { degrees(of(&seams)) } else { "-".into() })
         };
         egui::Grid::new("seams").num_columns(2).min_col_width(104.0).show(ui, |ui| {
