@@ -19,14 +19,15 @@ fn background_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) ve
 // The direction that is seen at a place of the picture, in px.
 fn seen_direction(px: vec2<f32>) -> vec3<f32> {
     let viewport = background_frame.viewport;
+    let at = vec2<f32>(2.0, -2.0) * px / viewport + vec2<f32>(-1.0, 1.0);
     let rows = transpose(background_frame.clip_from_object);
+    // All points on a line of sight have one x / w and one y / w: see toward_eye.
+    let seen = cross(rows[1].xyz - at.y * rows[3].xyz, rows[0].xyz - at.x * rows[3].xyz);
     let right = normalize(rows[0].xyz);
     let up = normalize(rows[1].xyz);
-    // In a perspective view, w is the depth.
-    let depth = length(rows[3].xyz);
-    let half_view = select(HALF_VIEW, depth / length(rows[1].xyz), depth > 0.0);
-    let at = half_view * (vec2<f32>(2.0, -2.0) * px / viewport + vec2<f32>(-1.0, 1.0));
-    return normalize(right * (at.x * viewport.x / viewport.y) + up * at.y - cross(right, up));
+    let across = HALF_VIEW * vec2<f32>(at.x * viewport.x / viewport.y, at.y);
+    let in_parallel_view = right * across.x + up * across.y - cross(right, up);
+    return normalize(select(in_parallel_view, seen, length(rows[3].xyz) > 0.0));
 }
 
 @fragment

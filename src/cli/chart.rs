@@ -233,7 +233,8 @@ impl Session {
         let Loading { loaded, truth } = mesh;
         let title = loaded.source.title();
         let scene = self.engine.scene(loaded, ARENA_BYTES)?;
-        let view = SurfaceOptions { size: args.size, camera: args.camera, ..SurfaceOptions::default() };
+        let mut view = SurfaceOptions { size: args.size, ..SurfaceOptions::default() };
+        view.view.camera = args.camera;
         let mut bench = Bench {
             engine: &self.engine,
             mesh: loaded.source.to_string(),

@@ -158,7 +158,8 @@ impl CopiedCommand<'_> {
 
     /// Writes the options of a camera, whose names begin with `prefix`.
     fn camera(&self, line: &mut Line, prefix: &str, camera: &Camera) {
-        let Camera { target, azimuth, elevation, distance, orthographic, field_of_view, roll } = camera;
+        // The window has no cameras of matrices.
+        let Camera { target, azimuth, elevation, distance, orthographic, field_of_view, roll, rows: _ } = camera;
         line.option(&format!("--{prefix}camera"), format!("{azimuth},{elevation},{}", distance / self.radius));
         line.option(&format!("--{prefix}target"), format!("{},{},{}", target.x, target.y, target.z));
         line.switch(&format!("--{prefix}orthographic"), *orthographic);
@@ -333,9 +334,9 @@ mod tests {
         assert_eq!(args.shot.truth.truth, Some(Source::File("./shape:y".into())));
         let heights = Some(HeightSource::File("./material".into()));
         assert_eq!(args.shot.surface.preparation(), Preparation { heights, ..preparation.clone() });
-        assert_eq!((args.shot.select, args.shot.surface.orthographic), (Some(7), true));
-        assert_eq!(args.shot.surface.target.map(|place| place.0), Some(camera.target));
-        assert_eq!((args.shot.surface.field_of_view, args.shot.surface.roll), (25.5, -12.25));
+        assert_eq!((args.shot.select, args.shot.surface.view.orthographic), (Some(7), true));
+        assert_eq!(args.shot.surface.view.target.map(|place| place.0), Some(camera.target));
+        assert_eq!((args.shot.surface.view.field_of_view, args.shot.surface.view.roll), (25.5, -12.25));
         assert_eq!(args.shot.surface.tessellation().height_scale, -0.5);
         let moving = CopiedCommand { animation: Some(("-run, fast", 0.1)), ..shown };
         let args = parsed(&moving.line());
@@ -395,7 +396,7 @@ mod tests {
         let implied = parsed("pnaen render shape:torus -o a.png --environment sky.hdr").shot;
         assert_eq!(implied.picture.0.lighting, Lighting::Environment);
         let other = parsed("pnaen render shape:torus -o a.png --environment sky.hdr --lighting studio").shot;
-        assert!(other.check(&source, None, &[]).is_err_and(|error| matches!(error, CliError::Usage(_))));
+        assert!(other.check(&source, &[], &[]).is_err_and(|error| matches!(error, CliError::Usage(_))));
     }
 
     #[test]

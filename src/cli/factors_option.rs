@@ -152,7 +152,7 @@ fn order_text(agreement: &Agreement, convention: Convention) -> Option<String> {
 }
 
 /// The report as JSON.
-#[derive(Debug, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub(crate) struct FactorsFile {
     path: String,
     convention: &'static str,
@@ -167,7 +167,7 @@ pub(crate) struct FactorsFile {
 }
 
 /// How many edges differ if a patch's factors are in this order.
-#[derive(Debug, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 struct OrderStats {
     /// Side k runs from corner k to corner k + 1.
     sides: [u32; 3],
@@ -176,21 +176,21 @@ struct OrderStats {
     edges_different: u64,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 struct EdgeStats {
     /// Object units.
     points: [[f32; 3]; 2],
     sides: Vec<SideStats>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 struct SideStats {
     triangle: u32,
     factor: Number,
 }
 
 /// JSON has no infinity.
-#[derive(Debug, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 #[serde(untagged)]
 enum Number {
     Finite(f32),

@@ -19,6 +19,7 @@ mod options;
 mod output_guard;
 pub(crate) mod picture_comparison;
 mod picture_file;
+mod pixel_differences;
 mod reference;
 mod render;
 mod shot;
@@ -29,6 +30,7 @@ mod stats;
 mod tessellate;
 mod truth;
 mod turntable;
+mod view_report;
 
 use std::io::{Read, Write};
 use std::path::Path;
@@ -47,7 +49,9 @@ pub(crate) use adjacency::write_adjacency;
 pub(crate) use copied_command::CopiedCommand;
 pub(crate) use factors::write_factors;
 pub(crate) use options::{LimitOption, SurfaceOptions, WeldOption};
-pub(crate) use picture_comparison::{CompareError, compare};
+pub(crate) use picture_comparison::CompareError;
+#[cfg(test)]
+pub(crate) use picture_comparison::{PictureTolerance, compare};
 pub(crate) use picture_file::{Stamp, write_picture, write_stamped};
 #[cfg(test)]
 pub(crate) use render::run_with as render_with;
@@ -147,8 +151,8 @@ pub(crate) enum CliError {
     Taken { path: String, by: &'static str },
     #[error("{reference}: {reason}")]
     Reference { reference: String, reason: CompareError },
-    #[error("{picture} differs from {reference} by {difference:.4}, more than {threshold}{see}")]
-    Different { picture: String, reference: String, difference: f64, threshold: f64, see: String },
+    #[error("{picture} differs from {reference} {how}{see}")]
+    Different { picture: String, reference: String, how: String, see: String },
     #[error("{path}, line {line}: {reason}")]
     Line { path: String, line: usize, reason: String },
     #[error(
@@ -173,6 +177,10 @@ pub(crate) enum CliError {
     NoTriangle { file: String, last: usize, triangle: u32 },
     #[error("{} has no camera {}; {}", shown(mesh), shown(wanted), said_of_cameras(known))]
     NoCamera { mesh: String, wanted: String, known: Vec<String> },
+    #[error(transparent)]
+    ViewProjection(#[from] crate::render::view_projection::ViewProjectionError),
+    #[error("{different} of {all} pictures differ from their references")]
+    ManyDifferent { different: usize, all: usize },
     #[error("triangle {triangle} of {file} is degenerate: it has no patch")]
     NoPatch { file: String, triangle: u32 },
     #[error("{path}: {fault}")]

@@ -1,8 +1,10 @@
 //! Options that several commands share.
 
+mod cameras;
 mod declared;
 mod lod_camera;
 mod values;
+mod view;
 
 use std::io::Write;
 
@@ -16,16 +18,17 @@ use crate::files::Limits;
 use crate::load::HeightSource;
 use crate::mesh::{Bounds, FileCamera, Mesh, Moment};
 use crate::render::Camera;
-use crate::render::camera::FIELD_OF_VIEW;
 use crate::settings::options::TOLERANCE_RANGE;
 use crate::settings::{ARENA_BYTES, Settings};
 use crate::tessellate::{Displacement, Lod, Partitioning, Surface, Tessellation, tolerance_within_budget};
 
+pub(crate) use cameras::{CamerasOption, NamedView};
 pub(crate) use declared::{ImportOptions, PictureOptions, TessellationOptions, choice, number_of};
 pub(crate) use lod_camera::LodCameraOption;
-pub(crate) use values::{CameraOption, Position, Size, model, picture, source, threshold};
+pub(crate) use values::{CameraOption, Position, Size, model, picture, source, steps, threshold};
+pub(crate) use view::ViewOptions;
 
-use values::{angle, bytes, crease_band, field_of_view, weld};
+use values::{bytes, crease_band, weld};
 
 /// How a mesh is tessellated, and where it is seen from.
 #[derive(Clone, Debug, Args)]
@@ -49,31 +52,8 @@ pub(crate) struct SurfaceOptions {
     /// Width and height of the view, in px
     #[arg(long, value_name = "WxH", default_value = "1280x720")]
     pub size: Size,
-    /// Where the camera is: degrees from the front to the right, degrees upwards, and the distance from the centre in
-    /// bounding radii (by default far enough to show everything)
-    #[arg(long, value_name = "AZIMUTH,ELEVATION[,DISTANCE]", default_value = "30,20", allow_hyphen_values = true)]
-    pub camera: CameraOption,
-    /// The point that the camera looks at, in object units (by default the centre of everything that is shown)
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
-    pub target: Option<Position>,
-    /// Orthographic projection, without perspective
-    #[arg(long)]
-    pub orthographic: bool,
-    /// Vertical field of view in degrees, 0.1 to 170. An orthographic view is as high as a perspective one is at its target
-    #[arg(long, value_name = "DEGREES", default_value_t = FIELD_OF_VIEW, value_parser = field_of_view)]
-    pub field_of_view: f32,
-    /// Turn the camera about its direction of view, counterclockwise by so many degrees
-    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, value_parser = angle, allow_hyphen_values = true)]
-    pub roll: f32,
-    /// Look through a camera of the glTF file, by its name or its number from 0; `info` lists them. The picture has the camera's
-    /// height, whatever its width
-    #[arg(
-        long,
-        value_name = "NAME|N",
-        allow_hyphen_values = true,
-        conflicts_with_all = ["camera", "target", "orthographic", "field_of_view", "roll"]
-    )]
-    pub file_camera: Option<String>,
+    #[command(flatten)]
+    pub view: ViewOptions,
 }
 
 impl Default for SurfaceOptions {
@@ -194,21 +174,9 @@ impl SurfaceOptions {
     /// everything that is drawn.
     ///
     /// # Errors
-    /// The mesh has no camera of the name that was asked for.
+    /// The mesh has no camera of the name that was asked for, or the matrix isn't that of a view.
     pub(crate) fn camera(&self, mesh: &Mesh, moment: Option<Moment>, bounds: &Bounds) -> Result<Camera, CliError> {
-        if let Some(wanted) = &self.file_camera {
-            let cameras = mesh.cameras_at(moment);
-            return file_camera(&mesh.name, &cameras, wanted).map(|camera| Camera::of_file(camera, bounds));
-        }
-        let mut camera = Camera { field_of_view: self.field_of_view, roll: self.roll, ..Camera::default() };
-        camera.frame(&bounds.grown(self.settings().reach(mesh)), self.viewport());
-        (camera.azimuth, camera.elevation) = (self.camera.azimuth, self.camera.elevation.clamp(-90.0, 90.0));
-        if let Some(radii) = self.camera.distance {
-            camera.distance = radii * bounds.radius();
-        }
-        camera.target = self.target.map_or(camera.target, |place| place.0);
-        camera.orthographic = self.orthographic;
-        Ok(camera)
+        self.view.camera(self, mesh, moment, bounds)
     }
 
     /// Width and height in px.

@@ -2,12 +2,18 @@
 
 use std::path::{Path, PathBuf};
 
-use super::options::{PictureOptions, TessellationOptions};
+use super::options::{CamerasOption, NamedView, PictureOptions, TessellationOptions};
 use super::picture_file::{Stamp, write_stamped};
-use super::shot::StatsWanted;
+use super::reference::{self, Reference, ReferenceOptions};
+use super::shot::{Shot, StatsWanted};
 use super::shot_options::ShotOptions;
-use super::{AdapterOption, CliError, LimitOption, SurfaceOptions, WeldOption, options, reference};
+use super::stats::Stats;
+use super::{
+    AdapterOption, CliError, LimitOption, SurfaceOptions, WeldOption, file_error, options, to_json, write_text,
+};
 use crate::engine::Engine;
+use crate::export::ending;
+use crate::files::file_reason;
 use crate::gpu::GpuError;
 use crate::load::Source;
 use crate::progress::Progress;
@@ -19,23 +25,21 @@ pub(crate) struct Args {
     /// shape:torus@2 (finer)
     #[arg(value_parser = super::options::source())]
     pub file: Source,
-    /// Picture to write, a PNG file
+    /// Picture to write, a PNG file. With --cameras, a folder, or a name with {} where each view's name goes
     #[arg(short, long, value_name = "OUT.png", value_parser = options::picture())]
     pub output: PathBuf,
     #[command(flatten)]
     pub shot: ShotOptions,
-    /// Write statistics and timings as JSON (- for standard output)
+    #[command(flatten)]
+    pub cameras: CamerasOption,
+    /// Write statistics and timings as JSON (- for standard output). With --cameras, an array with one object for each view
     #[arg(long, value_name = "FILE")]
     pub stats: Option<PathBuf>,
     /// Whether stats include the largest distance on screen between the triangles and the surface, sampled on the CPU
     #[arg(long, value_name = "BOOL", default_value_t = true, action = clap::ArgAction::Set)]
     pub measure_error: bool,
-    /// Fail if the picture differs from this one by more than the threshold, and write a picture of the difference beside it
-    #[arg(long, value_name = "PNG")]
-    pub reference: Option<PathBuf>,
-    /// Largest difference that passes: 0 for equal pictures, 1 for nothing in common (1 minus structural similarity)
-    #[arg(long, value_name = "T", default_value_t = 0.01, value_parser = options::threshold)]
-    pub threshold: f64,
+    #[command(flatten)]
+    pub reference: ReferenceOptions,
     #[command(flatten)]
     pub adapter: AdapterOption,
 }
@@ -58,8 +62,8 @@ impl Args {
             shot: ShotOptions { surface, picture: PictureOptions(settings), ..ShotOptions::default() },
             stats: None,
             measure_error: true,
-            reference: None,
-            threshold: 0.01,
+            cameras: CamerasOption::default(),
+            reference: ReferenceOptions::default(),
             adapter,
         }
     }
@@ -79,19 +83,149 @@ pub(crate) fn run_with(
     line: &str,
     engine: impl FnOnce() -> Result<Engine, GpuError>,
 ) -> Result<(), CliError> {
-    let written = [Some(&*args.output), args.stats.as_deref()];
-    args.shot.check(&args.file, args.reference.as_deref(), &written)?;
-    let reference = args.reference.as_deref().map(reference::read).transpose()?;
+    if args.cameras.cameras.is_some() && names_one_picture(&args.output) {
+        return Err(CliError::Usage(
+            "--cameras draws several pictures: name a folder with -o, or put {} where the views' names go",
+        ));
+    }
+    let views = args.pictures()?;
+    let mut written: Vec<_> =
+        views.iter().map(|view| view.output.as_path()).filter(|path| is_checked(path, args)).collect();
+    written.extend(args.stats.as_deref());
+    let written: Vec<_> = written.into_iter().map(Some).collect();
+    let read: Vec<_> = views.iter().map(|view| view.reference.as_deref()).chain([args.cameras.file()]).collect();
+    args.shot.check(&args.file, &read, &written)?;
+    let read = |path: &Path| Reference::read(path, &args.reference);
+    let references = views.iter().map(|view| view.reference.as_deref().map(read).transpose());
+    let references = references.collect::<Result<Vec<_>, _>>()?;
     let (subject, factors_file) = args.shot.subject(&args.file, &written)?;
     let mut shot = args.shot.shot(engine()?, subject)?;
-    let stats = args.stats.as_ref().map(|_| StatsWanted { error: args.measure_error });
-    let picture = shot.picture(stats, &Progress::new())?;
-    write_stamped(&args.output, &picture, &Stamp { command: line, settings: shot.settings() })?;
-    if let Some(path) = args.stats.as_deref() {
-        shot.write_stats(factors_file, path)?;
+    make_folder(args)?;
+    let mut stats = Vec::new();
+    let mut judgements = Vec::new();
+    for (view, reference) in views.iter().zip(references) {
+        let drawn = draw(args, line, &mut shot, view, reference.as_ref())?;
+        judgements.extend(drawn.judgement);
+        if let Some(mut own) = drawn.stats {
+            own.factors_file = factors_file.clone();
+            stats.push(own);
+        }
     }
-    match args.reference.as_deref().zip(reference) {
-        Some((path, reference)) => reference::compare_with(&args.output, &picture, path, &reference, args.threshold),
-        None => Ok(()),
+    if let Some(path) = args.stats.as_deref() {
+        let text = match &stats[..] {
+            [own] if args.cameras.cameras.is_none() => to_json(own)?,
+            all => to_json(&all)?,
+        };
+        write_text(path, &text)?;
+    }
+    reference::conclude(judgements)
+}
+
+/// A picture that the command draws.
+struct Picture {
+    /// The view, if it isn't that of the command's own camera options.
+    view: Option<NamedView>,
+    output: PathBuf,
+    reference: Option<PathBuf>,
+}
+
+/// What came of a picture.
+struct Drawn {
+    stats: Option<Stats>,
+    judgement: Option<Result<String, CliError>>,
+}
+
+impl Args {
+    /// The pictures that are drawn: one, or one for each of several views.
+    fn pictures(&self) -> Result<Vec<Picture>, CliError> {
+        let reference = self.reference.reference.as_deref();
+        let Some(views) = self.cameras.views(&self.shot.surface.view)? else {
+            return Ok(vec![Picture {
+                view: None,
+                output: self.output.clone(),
+                reference: reference.map(Path::to_owned),
+            }]);
+        };
+        let picture = |view: NamedView| Picture {
+            output: of_view(&self.output, &view.name),
+            reference: reference.map(|place| of_view(place, &view.name)),
+            view: Some(view),
+        };
+        Ok(views.into_iter().map(picture).collect())
+    }
+}
+
+/// What stands for a view's name in names of files.
+const NAME: &str = "{}";
+
+/// The file of a view: in a folder, or where a name has {} in it.
+fn of_view(place: &Path, name: &str) -> PathBuf {
+    match place.file_name().and_then(|own| own.to_str()).filter(|own| own.contains(NAME)) {
+        Some(pattern) => place.with_file_name(pattern.replace(NAME, name)),
+        None => place.join(format!("{name}.png")),
+    }
+}
+
+/// Whether a path has the name of a single picture.
+fn names_one_picture(path: &Path) -> bool {
+    ending(path) == "png" && !is_pattern(path)
+}
+
+fn is_pattern(path: &Path) -> bool {
+    path.file_name().and_then(|own| own.to_str()).is_some_and(|own| own.contains(NAME))
+}
+
+/// Whether the folder of a picture must be there before the command begins. A folder for views is made if it isn't.
+fn is_checked(picture: &Path, args: &Args) -> bool {
+    args.cameras.cameras.is_none() || is_pattern(&args.output) || picture.parent().is_some_and(Path::is_dir)
+}
+
+/// Makes the folder for views, if it isn't there.
+fn make_folder(args: &Args) -> Result<(), CliError> {
+    if args.cameras.cameras.is_none() || is_pattern(&args.output) {
+        return Ok(());
+    }
+    std::fs::create_dir_all(&args.output).map_err(|error| file_error(&args.output, "made", &file_reason(&error)))
+}
+
+/// Draws a picture, writes it, measures it and compares it with its reference.
+fn draw(
+    args: &Args,
+    line: &str,
+    shot: &mut Shot,
+    picture: &Picture,
+    reference: Option<&Reference>,
+) -> Result<Drawn, CliError> {
+    if let Some(own) = &picture.view {
+        let (mesh, moment, bounds) = shot.place();
+        let camera = own.view.camera(&args.shot.surface, mesh, moment, bounds)?;
+        args.shot.check_camera(&camera)?;
+        shot.look_from(camera)?;
+    }
+    let wanted = args.stats.as_ref().map(|_| StatsWanted { error: args.measure_error });
+    let drawn = shot.picture(wanted, &Progress::new())?;
+    write_stamped(&picture.output, &drawn, &Stamp { command: line, settings: shot.settings() })?;
+    let mut stats = wanted.is_some().then(|| shot.stats()).transpose()?.flatten();
+    let judged = reference.map(|reference| reference.judge(&picture.output, &drawn)).transpose()?;
+    let (compared, judgement) = judged.map(|judged| (judged.stats, judged.said)).unzip();
+    if let Some(stats) = &mut stats {
+        stats.view = picture.view.as_ref().map(|own| own.name.clone());
+        stats.reference = compared;
+    }
+    Ok(Drawn { stats, judgement })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn views_have_files_of_their_own_names() {
+        for (place, expected) in
+            [("views", "views/top.png"), ("out-{}.png", "out-top.png"), ("a/{}-x.png", "a/top-x.png")]
+        {
+            assert_eq!(of_view(Path::new(place), "top"), Path::new(expected));
+        }
+        assert!(names_one_picture(Path::new("a/b.png")) && !names_one_picture(Path::new("a/{}.png")));
     }
 }

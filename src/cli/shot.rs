@@ -11,12 +11,13 @@ use super::legend::draw_legend;
 use super::silhouette::SilhouetteStats;
 use super::stats::{AnimationStats, LeftStats, Stats};
 use super::truth::{AccuracyStats, DeviationStats, ReferenceSurface};
+use super::view_report::ViewStats;
 use super::{CliError, to_json, write_text};
 use crate::engine::{Engine, Loaded, MeasurementResults, Measurements, Runs, SilhouetteView};
 use crate::gpu::{GpuError, Recorder, Timing};
 use crate::load::panorama::Panorama;
 use crate::measure::{AccuracyOptions, DeviationField, Silhouette, patch_edges};
-use crate::mesh::{Moment, Texture, t_junctions};
+use crate::mesh::{Bounds, Mesh, Moment, Texture, t_junctions};
 use crate::progress::Progress;
 use crate::render::{
     Camera, DEVIATION_PX_SCALE, Distances, LineSegment, Renderer, Scale, Scene, Target, axis_lines, crack_lines,
@@ -151,6 +152,11 @@ impl Shot {
         &self.view.camera
     }
 
+    /// Where it is seen from: the mesh in its pose, its moment, and the bounds that cameras are made for.
+    pub(crate) fn place(&self) -> (&Mesh, Option<Moment>, &Bounds) {
+        (&self.subject.loaded.mesh, self.subject.moment, &self.scene.bounds)
+    }
+
     /// What it is drawn with.
     pub(crate) fn settings(&self) -> &Settings {
         &self.subject.settings
@@ -178,6 +184,9 @@ impl Shot {
         let mut picture = self.target.read(&self.engine.gpu)?;
         if let Some(silhouette) = &self.silhouette {
             lay_over(&mut picture, &outlines_picture(silhouette));
+        }
+        if self.view.camera.is_mirrored() {
+            image::imageops::flip_horizontal_in_place(&mut picture);
         }
         if self.view.legend {
             draw_legend(&mut picture, &self.subject.settings, self.scene.bounds.radius(), &self.distances())?;
@@ -341,7 +350,7 @@ impl Shot {
     ///
     /// # Errors
     /// The device was lost.
-    fn stats(&mut self) -> Result<Option<Stats>, CliError> {
+    pub(super) fn stats(&mut self) -> Result<Option<Stats>, CliError> {
         let (view, accuracy) = (self.view(), self.accuracy(SplitSide::Right));
         let Self { engine, scene, target, lod_view, results, .. } = self;
         let (settings, camera, moment) = (&self.subject.settings, &self.view.camera, self.subject.moment);
@@ -366,7 +375,9 @@ impl Shot {
         stats.factors_capped = factors_capped;
         stats.accuracy = accuracy;
         stats.deviation = self.deviation(SplitSide::Right);
-        stats.silhouette = self.silhouette.as_ref().map(SilhouetteStats::new);
+        let mirrored = self.view.camera.is_mirrored().then_some(self.view.size[0]);
+        stats.silhouette = self.silhouette.as_ref().map(|silhouette| SilhouetteStats::new(silhouette, mirrored));
+        stats.camera = Some(ViewStats::new(&self.view.camera, self.view.size, &self.scene.bounds));
         stats.left = self.left_stats();
         stats.animation = moment.zip(self.subject.loaded.mesh.rig.as_ref()).map(|(Moment { clip, time }, rig)| {
             let name = rig.clip_name(clip);

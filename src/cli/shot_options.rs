@@ -15,6 +15,7 @@ use crate::load::environment_file::EnvironmentFile;
 use crate::load::panorama::Panorama;
 use crate::load::{Source, load_matcap};
 use crate::progress::Progress;
+use crate::render::Camera;
 use crate::render::environment::Environment;
 use crate::settings::{Colors, Lighting, Settings};
 
@@ -55,7 +56,12 @@ impl ShotOptions {
     ///
     /// # Errors
     /// Names the options that can't be together, or the file.
-    pub(super) fn check(&self, file: &Source, read: Option<&Path>, written: &[Option<&Path>]) -> Result<(), CliError> {
+    pub(super) fn check(
+        &self,
+        file: &Source,
+        read: &[Option<&Path>],
+        written: &[Option<&Path>],
+    ) -> Result<(), CliError> {
         self.surface.check_with(self.picture.0.split_surface)?;
         if self.matcap_image.is_some() && self.picture.0.overlays.colors != Colors::Matcap {
             return Err(CliError::Usage("--matcap-image needs --overlay matcap, which shows it"));
@@ -72,8 +78,21 @@ impl ShotOptions {
         let truth = self.truth.truth.as_ref().and_then(file_of);
         let heights = file_of_heights(self.surface.height.as_ref());
         let (factors, matcap) = (self.given.given.as_deref(), self.matcap_image.as_deref());
-        let own = [file_of(file), truth, heights, factors, matcap, self.environment.as_deref(), read];
-        keep_apart(own, written.iter().copied())
+        let own = [file_of(file), truth, heights, factors, matcap, self.environment.as_deref()];
+        keep_apart(own.into_iter().chain(read.iter().copied()), written.iter().copied())
+    }
+
+    /// Checks a camera that isn't known before the mesh is.
+    ///
+    /// # Errors
+    /// It can't be together with other options.
+    pub(super) fn check_camera(&self, camera: &Camera) -> Result<(), CliError> {
+        match camera.is_mirrored() && self.picture.0.split.is_some() {
+            true => Err(CliError::Usage(
+                "--split can't be combined with a --view-projection that mirrors: its halves would change places",
+            )),
+            false => Ok(()),
+        }
     }
 
     /// Reads the mesh and all other files. Returns what is drawn, and what was found about a file of factors.
@@ -135,6 +154,7 @@ impl ShotOptions {
             transparent: self.transparent,
             legend: self.legend,
         };
+        self.check_camera(&view.camera)?;
         let lod_view = view.lod_view(&scene);
         let within: Settings = self.surface.within_budget(|settings| {
             engine.count(&mut scene, &settings.inputs(lod_view), &mut Timing::Off)?;

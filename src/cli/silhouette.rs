@@ -17,8 +17,10 @@ pub(super) struct SilhouetteStats {
 }
 
 impl SilhouetteStats {
-    pub(super) fn new(silhouette: &Silhouette) -> Self {
-        let place = |distance: Option<OutlineDistance>| distance.map(|distance| distance.at.to_array());
+    /// `mirrored` is the width of the picture in px if it was mirrored after the outlines were found.
+    pub(super) fn new(silhouette: &Silhouette, mirrored: Option<u32>) -> Self {
+        let shown = |[x, y]: [f64; 2]| [mirrored.map_or(x, |width| f64::from(width) - x), y];
+        let place = |distance: Option<OutlineDistance>| distance.map(|distance| shown(distance.at.to_array()));
         let distances = &silhouette.distances;
         Self {
             from_source_px: distances.from_source.map(|distance| distance.px),

@@ -5,8 +5,10 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::factors_option::FactorsFile;
+use super::reference::ReferenceStats;
 use super::silhouette::SilhouetteStats;
 use super::truth::{AccuracyStats, DeviationStats};
+use super::view_report::ViewStats;
 use crate::engine::{Engine, Loaded};
 use crate::gpu::PassTime;
 use crate::measure::{Measured, SeamTurns, Seams};
@@ -19,6 +21,9 @@ use crate::view::{ScreenView, ulp};
 /// What was done and what it cost. Times are medians in ms.
 #[derive(Debug, Serialize)]
 pub(super) struct Stats {
+    /// The name of the view, if there are several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub view: Option<String>,
     adapter: String,
     settings: SettingsStats,
     triangles_in: u64,
@@ -73,6 +78,10 @@ pub(super) struct Stats {
     pub left: Option<LeftStats>,
     /// None at rest.
     pub animation: Option<AnimationStats>,
+    /// Where it is seen from.
+    pub camera: Option<ViewStats>,
+    /// How the picture differs from its reference, if it has one.
+    pub reference: Option<ReferenceStats>,
     ms: BTreeMap<&'static str, f64>,
 }
 
@@ -245,6 +254,7 @@ impl Stats {
         let mut ms: BTreeMap<_, _> = passes.iter().map(|time| (time.pass, time.ms)).collect();
         ms.extend([("load", loaded.load_ms), ("topology", loaded.topology_ms)]);
         Self {
+            view: None,
             adapter: engine.gpu.info.name.clone(),
             settings: SettingsStats::new(settings),
             triangles_in: mesh.triangles.len() as u64,
@@ -281,6 +291,8 @@ impl Stats {
             silhouette: None,
             left: None,
             animation: None,
+            camera: None,
+            reference: None,
             ms,
         }
     }

@@ -60,7 +60,10 @@ pub(super) fn run(args: &Args, line: &str) -> Result<(), CliError> {
     let turn = Turn { frames: args.frames, fps: args.fps };
     let written = turn.files(&args.output);
     let written: Vec<_> = written.iter().map(|path| Some(path.as_path())).collect();
-    args.shot.check(&args.file, None, &written)?;
+    args.shot.check(&args.file, &[], &written)?;
+    if args.shot.surface.view.view_projection.is_some() {
+        return Err(CliError::Usage("--view-projection is one view, and a turntable turns its camera: use --camera"));
+    }
     let (subject, _) = args.shot.subject(&args.file, &written)?;
     let mut shot = args.shot.shot(Engine::chosen(&args.adapter.choice())?, subject)?;
     let mut telling = Telling::new();

@@ -4,6 +4,7 @@
 use glam::camera::rh::proj::directx as proj;
 use glam::{Mat4, Vec2, Vec3, vec3};
 
+use super::view_projection::ClipRows;
 use crate::mesh::Bounds;
 use crate::names::every;
 use crate::tessellate::LodView;
@@ -22,6 +23,10 @@ pub(crate) const MAX_ELEVATION: f32 = 89.9;
 /// How far a frustum that is drawn reaches beyond the middle of the mesh, in bounding radii: a little more than the mesh.
 const FRUSTUM_REACH: f32 = 1.2;
 
+/// How far a mesh reaches from its middle at most, in bounding radii: surfaces bulge beyond the corners, and heights lift them by
+/// at most a bounding radius.
+const BULGE: f32 = 2.0;
+
 /// A camera that looks at `target` from `distance` away.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
@@ -37,13 +42,17 @@ pub struct Camera {
     pub field_of_view: f32,
     /// Degrees that the camera is turned about its direction of view, counterclockwise as it sees that.
     pub roll: f32,
+    /// What an engine's matrix says about where points land, in place of what the rest says. The window has no such cameras, and
+    /// moving one has no effect.
+    pub rows: Option<ClipRows>,
 }
 
 impl Default for Camera {
     /// A camera in front of the origin, 1 object unit away.
     fn default() -> Self {
         let (target, field_of_view) = (Vec3::ZERO, FIELD_OF_VIEW);
-        Self { target, azimuth: 0.0, elevation: 0.0, distance: 1.0, orthographic: false, field_of_view, roll: 0.0 }
+        let (azimuth, elevation, distance, orthographic, roll) = (0.0, 0.0, 1.0, false, 0.0);
+        Self { target, azimuth, elevation, distance, orthographic, field_of_view, roll, rows: None }
     }
 }
 
@@ -118,7 +127,8 @@ impl Camera {
     }
 
     pub fn eye(&self) -> Vec3 {
-        self.target + self.axes()[2] * self.distance
+        let of_rows = self.rows.and_then(|rows| rows.eye());
+        of_rows.unwrap_or_else(|| self.target + self.axes()[2] * self.distance)
     }
 
     /// Turns around the target by `degrees`, to the right and upwards.
@@ -144,14 +154,26 @@ impl Camera {
         self.target += (right * from_center.x - up * from_center.y) * moved;
     }
 
+    /// Whether an engine's matrix shows the mesh as in a mirror. What is drawn for it isn't: the whole picture is mirrored afterwards,
+    /// so that which way triangles are wound stays the same.
+    pub fn is_mirrored(&self) -> bool {
+        self.rows.is_some_and(|rows| rows.is_mirrored)
+    }
+
     /// Object units per px at the target's depth, in a viewport that is `height` px high.
     pub fn units_per_pixel(&self, height: f32) -> f32 {
+        if let Some(rows) = self.rows {
+            return if self.orthographic { 1.0 } else { self.distance } / rows.px_where_w_is_1(height.max(1.0));
+        }
         2.0 * self.distance * (0.5 * self.field_of_view).to_radians().tan() / height.max(1.0)
     }
 
     /// The matrix from object units to clip space, for a viewport of `viewport` px. In an orthographic view, the depth range
     /// holds `bounds`.
     pub fn clip_from_object(&self, viewport: Vec2, bounds: &Bounds) -> Mat4 {
+        if let Some(rows) = self.rows {
+            return rows.clip_from_object(bounds.center(), BULGE * bounds.radius());
+        }
         let [right, up, back] = self.axes();
         let eye = self.eye();
         let view = Mat4::from_cols(right.extend(0.0), up.extend(0.0), back.extend(0.0), glam::Vec4::W).transpose()
@@ -159,8 +181,7 @@ impl Camera {
         let aspect = viewport.x.max(1.0) / viewport.y.max(1.0);
         let projection = if self.orthographic {
             let half = 0.5 * self.units_per_pixel(viewport.y) * viewport.max(Vec2::ONE);
-            // Surfaces bulge beyond the corners, and heights lift them by at most a bounding radius.
-            let radius = 2.0 * bounds.radius();
+            let radius = BULGE * bounds.radius();
             let depth = radius + (bounds.center() - self.target).length() + self.distance;
             proj::orthographic(-half.x, half.x, -half.y, half.y, self.distance + depth, self.distance - depth)
         } else {
@@ -177,9 +198,12 @@ impl Camera {
         let (near, far) = if self.orthographic {
             (middle - FRUSTUM_REACH * bounds.radius(), middle + FRUSTUM_REACH * bounds.radius())
         } else {
-            let near = self.distance * NEAR;
+            let near = self.rows.map_or(self.distance * NEAR, |rows| rows.near());
             (near, (middle + FRUSTUM_REACH * bounds.radius()).max(2.0 * near))
         };
+        if let Some(rows) = self.rows {
+            return [near, far].map(|depth| rows.corners(depth, eye - back * depth));
+        }
         let at_target = 0.5 * self.units_per_pixel(viewport.y) * viewport.max(Vec2::ONE);
         [near, far].map(|depth| {
             let half = if self.orthographic { at_target } else { at_target * (depth / self.distance) };

@@ -34,6 +34,7 @@ impl Camera {
             orthographic: false,
             field_of_view: FIELD_OF_VIEW,
             roll: roll.to_degrees() as f32,
+            rows: None,
         };
         match file.projection {
             Projection::Perspective(angle) => {

@@ -46,6 +46,7 @@ pub(crate) mod studio;
 pub(crate) mod target;
 mod textures;
 pub(crate) mod tone;
+pub(crate) mod view_projection;
 #[cfg(feature = "app")]
 mod window;
 

@@ -35,6 +35,7 @@ mod tessellate;
 mod turntable;
 mod usage;
 mod variants;
+mod views;
 #[cfg(unix)]
 mod writing;
 

@@ -29,6 +29,7 @@ mod picking;
 mod pictures;
 mod pixel_normals;
 mod readbacks;
+mod reference;
 mod scenes;
 mod silhouette;
 mod stability;

@@ -239,7 +239,8 @@ impl SavedFile {
 impl SavedCamera {
     /// Writes it into the object of a file or of a bookmark.
     fn write(&self, written: &mut Value) {
-        let Camera { target, azimuth, elevation, distance, orthographic, field_of_view, roll } = &self.camera;
+        // The window has no cameras of matrices.
+        let Camera { target, azimuth, elevation, distance, orthographic, field_of_view, roll, rows: _ } = &self.camera;
         written["camera"] = json!({
             "target": target.to_array(),
             "azimuth": azimuth,
@@ -267,6 +268,7 @@ impl SavedCamera {
             orthographic: camera["orthographic"].as_bool()?,
             field_of_view: later("field_of_view", Camera::default().field_of_view)?,
             roll: later("roll", 0.0)?,
+            rows: None,
         };
         camera.is_sound().then_some(Self { camera, diagonal: number(&file["diagonal"])? })
     }

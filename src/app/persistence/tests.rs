@@ -39,7 +39,8 @@ prop_compose! {
         diagonal in 0.0f32..1e20,
     ) -> SavedCamera {
         let target = Vec3::from(target);
-        SavedCamera { camera: Camera { target, azimuth, elevation, distance, orthographic, field_of_view, roll }, diagonal }
+        let camera = Camera { target, azimuth, elevation, distance, orthographic, field_of_view, roll, rows: None };
+        SavedCamera { camera, diagonal }
     }
 }
 

@@ -4,7 +4,7 @@ use clap::Args;
 use glam::Vec2;
 
 use super::values::{angle, field_of_view};
-use super::{CameraOption, Position, Size, SurfaceOptions};
+use super::{CameraOption, Position, Size, SurfaceOptions, ViewOptions};
 use crate::cli::CliError;
 use crate::mesh::{Bounds, Mesh};
 use crate::render::Camera;
@@ -59,16 +59,17 @@ impl LodCameraOption {
         bounds: &Bounds,
     ) -> Result<Option<(Camera, Vec2)>, CliError> {
         let Some(camera) = self.lod_camera else { return Ok(None) };
-        let options = SurfaceOptions {
+        let view = ViewOptions {
             camera,
             target: self.lod_target,
-            size: self.lod_size.unwrap_or(own.size),
             orthographic: self.lod_orthographic,
             field_of_view: self.lod_field_of_view,
             roll: self.lod_roll,
             file_camera: None,
-            ..own.clone()
+            view_projection: None,
+            ..own.view.clone()
         };
+        let options = SurfaceOptions { view, size: self.lod_size.unwrap_or(own.size), ..own.clone() };
         Ok(Some((options.camera(mesh, None, bounds)?, options.viewport())))
     }
 }

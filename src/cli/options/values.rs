@@ -73,6 +73,12 @@ impl FromStr for CameraOption {
     }
 }
 
+/// Parses a difference of colours in steps of 255.
+pub(crate) fn steps(text: &str) -> Result<f32, String> {
+    let steps = text.trim().parse().ok().filter(|steps| (0.0..=255.0).contains(steps));
+    steps.ok_or_else(|| "expected a number from 0 to 255".to_owned())
+}
+
 /// Parses a vertical field of view in degrees.
 pub(crate) fn field_of_view(text: &str) -> Result<f32, String> {
     let angle = text.trim().parse().ok().filter(|angle| FIELDS_OF_VIEW.contains(angle));

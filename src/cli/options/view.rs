@@ -1,0 +1,200 @@
+//! The options of a camera: ours, one of the file, or the matrix of an engine's frame.
+
+use std::str::FromStr;
+
+use clap::{Args, ValueEnum};
+use glam::DMat4;
+
+use super::values::{angle, field_of_view};
+use super::{CameraOption, Position, SurfaceOptions, file_camera};
+use crate::cli::CliError;
+use crate::mesh::{Bounds, Mesh, Moment};
+use crate::render::Camera;
+use crate::render::camera::FIELD_OF_VIEW;
+use crate::render::view_projection::{ClipY, DepthRange, ViewProjection};
+
+/// Where the mesh is seen from.
+#[derive(Clone, Debug, PartialEq, Args)]
+pub(crate) struct ViewOptions {
+    /// Where the camera is: degrees from the front to the right, degrees upwards, and the distance from the centre in
+    /// bounding radii (by default far enough to show everything)
+    #[arg(long, value_name = "AZIMUTH,ELEVATION[,DISTANCE]", default_value = "30,20", allow_hyphen_values = true)]
+    pub camera: CameraOption,
+    /// The point that the camera looks at, in object units (by default the centre of everything that is shown)
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub target: Option<Position>,
+    /// Orthographic projection, without perspective
+    #[arg(long)]
+    pub orthographic: bool,
+    /// Vertical field of view in degrees, 0.1 to 170. An orthographic view is as high as a perspective one is at its target
+    #[arg(long, value_name = "DEGREES", default_value_t = FIELD_OF_VIEW, value_parser = field_of_view)]
+    pub field_of_view: f32,
+    /// Turn the camera about its direction of view, counterclockwise by so many degrees
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, value_parser = angle, allow_hyphen_values = true)]
+    pub roll: f32,
+    /// Look through a camera of the glTF file, by its name or its number from 0; `info` lists them. The picture has the camera's
+    /// height, whatever its width
+    #[arg(
+        long,
+        value_name = "NAME|N",
+        allow_hyphen_values = true,
+        conflicts_with_all = ["camera", "target", "orthographic", "field_of_view", "roll"]
+    )]
+    pub file_camera: Option<String>,
+    /// The matrix of an engine's frame, from object units to clip space, in place of a camera: 16 numbers. --size is the
+    /// engine's viewport
+    #[arg(
+        long,
+        value_name = "16 NUMBERS",
+        allow_hyphen_values = true,
+        conflicts_with_all = ["camera", "target", "orthographic", "field_of_view", "roll", "file_camera"]
+    )]
+    pub view_projection: Option<MatrixNumbers>,
+    /// How the 16 numbers are listed, of the matrix that multiplies column vectors (M * v). Engines with row vectors (v * M) that
+    /// list rows have them column-major
+    #[arg(long, value_enum, default_value_t = MatrixOrder::ColumnMajor, requires = "view_projection")]
+    pub matrix_order: MatrixOrder,
+    /// The depth that the matrix gives the near plane and what is far away
+    #[arg(long, value_enum, default_value_t = Depth::ZeroToOne, requires = "view_projection")]
+    pub depth: Depth,
+    /// Where the matrix has +y on the screen
+    #[arg(long, value_enum, default_value_t = Upwards::Up, requires = "view_projection")]
+    pub clip_y: Upwards,
+}
+
+impl Default for ViewOptions {
+    /// The options of an empty command line.
+    fn default() -> Self {
+        SurfaceOptions::default().view
+    }
+}
+
+/// The numbers of a matrix, in the order in which they are given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct MatrixNumbers(pub [f64; 16]);
+
+impl FromStr for MatrixNumbers {
+    type Err = String;
+
+    /// Numbers may be separated by commas, blanks and lines, and be in brackets, as programs print arrays.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let is_between = |c: char| c.is_whitespace() || matches!(c, ',' | ';' | '[' | ']' | '(' | ')' | '{' | '}');
+        let words = text.split(is_between).filter(|word| !word.is_empty());
+        let numbers = words.enumerate().map(|(index, word)| {
+            let number = word.parse().ok().filter(|number: &f64| number.is_finite());
+            number.ok_or_else(|| format!("expected 16 numbers, and the {}. is {word}", index + 1))
+        });
+        let numbers = numbers.collect::<Result<Vec<_>, _>>()?;
+        let found = numbers.len();
+        numbers.try_into().map(Self).map_err(|_| format!("expected 16 numbers, found {found}"))
+    }
+}
+
+/// How the 16 numbers of a matrix that multiplies column vectors are listed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MatrixOrder {
+    /// Row after row: M * v as it is written on paper (Unity, Blender, NumPy)
+    RowMajor,
+    /// Column after column: OpenGL, glTF, glm, three.js, Bevy and Godot; also row after row of a matrix for row vectors, v * M
+    /// (DirectXMath, Unreal Engine)
+    ColumnMajor,
+}
+
+/// Depth after the division by w.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Depth {
+    /// 0 on the near plane, 1 far away (Direct3D, Vulkan, Metal, WebGPU)
+    ZeroToOne,
+    /// 1 on the near plane, 0 far away (the same with depth reversed)
+    Reversed,
+    /// -1 on the near plane, 1 far away (OpenGL)
+    MinusOneToOne,
+}
+
+impl From<Depth> for DepthRange {
+    fn from(depth: Depth) -> Self {
+        match depth {
+            Depth::ZeroToOne => Self::ZeroToOne,
+            Depth::Reversed => Self::Reversed,
+            Depth::MinusOneToOne => Self::MinusOneToOne,
+        }
+    }
+}
+
+/// Where +y of clip space is on the screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Upwards {
+    /// Direct3D, Metal, WebGPU, OpenGL
+    Up,
+    /// Vulkan
+    Down,
+}
+
+impl From<Upwards> for ClipY {
+    fn from(upwards: Upwards) -> Self {
+        match upwards {
+            Upwards::Up => Self::Up,
+            Upwards::Down => Self::Down,
+        }
+    }
+}
+
+impl ViewOptions {
+    /// Returns the camera of these options for a mesh with these bounds, at a moment of one of its clips. Without a distance it shows
+    /// everything that is drawn as `surface` says.
+    ///
+    /// # Errors
+    /// The mesh has no camera of the name that was asked for, or the matrix isn't that of a view.
+    pub(crate) fn camera(
+        &self,
+        surface: &SurfaceOptions,
+        mesh: &Mesh,
+        moment: Option<Moment>,
+        bounds: &Bounds,
+    ) -> Result<Camera, CliError> {
+        if let Some(matrix) = self.matrix() {
+            return Ok(Camera::of_matrix(&matrix, bounds)?);
+        }
+        if let Some(wanted) = &self.file_camera {
+            let cameras = mesh.cameras_at(moment);
+            return file_camera(&mesh.name, &cameras, wanted).map(|camera| Camera::of_file(camera, bounds));
+        }
+        let mut camera = Camera { field_of_view: self.field_of_view, roll: self.roll, ..Camera::default() };
+        camera.frame(&bounds.grown(surface.settings().reach(mesh)), surface.viewport());
+        (camera.azimuth, camera.elevation) = (self.camera.azimuth, self.camera.elevation.clamp(-90.0, 90.0));
+        if let Some(radii) = self.camera.distance {
+            camera.distance = radii * bounds.radius();
+        }
+        camera.target = self.target.map_or(camera.target, |place| place.0);
+        camera.orthographic = self.orthographic;
+        Ok(camera)
+    }
+
+    /// The matrix of an engine's frame, if there is one.
+    fn matrix(&self) -> Option<ViewProjection> {
+        let listed = DMat4::from_cols_array(&self.view_projection?.0);
+        let clip_from_object = match self.matrix_order {
+            MatrixOrder::ColumnMajor => listed,
+            MatrixOrder::RowMajor => listed.transpose(),
+        };
+        Some(ViewProjection { clip_from_object, depth: self.depth.into(), y: self.clip_y.into() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_read_as_programs_print_them_and_others_are_refused() {
+        let numbers: Vec<String> = (1..=16).map(|number| number.to_string()).collect();
+        let expected = MatrixNumbers([1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16].map(f64::from));
+        for text in [numbers.join(","), numbers.join(" "), format!("[\n  {}\n]", numbers.join(",\n  "))] {
+            assert_eq!(text.parse(), Ok(expected), "{text}");
+        }
+        let refused = |text: String| text.parse::<MatrixNumbers>().expect_err("no matrix");
+        assert_eq!(refused(numbers[1..].join(" ")), "expected 16 numbers, found 15");
+        assert_eq!(refused(numbers.join(" ").replace("16", "NaN")), "expected 16 numbers, and the 16. is NaN");
+        assert_eq!(refused(numbers.join(" ").replace("2 3", "2 x")), "expected 16 numbers, and the 3. is x");
+    }
+}

@@ -1,0 +1,122 @@
+//! `--cameras`, and `--view-projection` with the matrices that stats print.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::{Folder, failure, number, output, run, sentence};
+
+fn json(path: &str) -> Value {
+    serde_json::from_str(&std::fs::read_to_string(path).expect("a file")).expect("JSON")
+}
+
+fn picture(path: &str) -> image::RgbaImage {
+    image::open(path).expect("a picture").into_rgba8()
+}
+
+/// The matrix of stats, as it is printed there.
+fn matrix(stats: &Value) -> String {
+    stats.pointer("/camera/view_projection").expect("a matrix").to_string()
+}
+
+#[test]
+fn many_views_are_drawn_by_one_command_and_a_matrix_from_stats_draws_one_again() {
+    let folder = Folder::new();
+    let [views, stats, again] = ["views", "stats.json", "again.png"].map(|name| folder.path(name));
+    let base = ["render", "shape:torus", "--size", "80x60", "--lod", "paper", "--measure-error", "false"];
+    let around = |more: &[&str]| run(&[&base[..], &["--cameras", "3"], more].concat());
+    let drawn = around(&["-o", &views, "--stats", &stats]);
+    assert!(drawn.status.success(), "{}", String::from_utf8_lossy(&drawn.stderr));
+    let all = json(&stats);
+    let all = all.as_array().expect("an array");
+    let names: Vec<_> = all.iter().map(|own| own["view"].as_str().expect("a name")).collect();
+    assert_eq!(names, ["view-0", "view-1", "view-2"]);
+    // The heights of a spherical Fibonacci point set of three: 2/3, 0 and -2/3.
+    let heights: Vec<_> = all.iter().map(|own| -number(own, "/camera/direction/1")).collect();
+    assert!(heights.iter().zip([2.0 / 3.0, 0.0, -2.0 / 3.0]).all(|(a, b)| (a - b).abs() < 1e-5), "{heights:?}");
+    let own = picture(&folder.path("views/view-1.png"));
+    let matrix = matrix(&all[1]);
+    output(&[&base[..], &["-o", &again, "--depth", "reversed", "--view-projection", &matrix]].concat());
+    assert_eq!(picture(&again), own, "the same numbers land points at the same places");
+    let reference = around(&["-o", &folder.path("now-{}.png"), "--reference", &views]);
+    let said = String::from_utf8_lossy(&reference.stderr).into_owned();
+    assert!(reference.status.success() && said.matches(" is the same as ").count() == 3, "{said}");
+    let differs = around(&["-o", &folder.path("{}.png"), "--reference", &views, "--background", "000000"]);
+    let said = String::from_utf8_lossy(&differs.stderr).into_owned();
+    assert!(differs.status.code() == Some(1) && said.contains("3 of 3 pictures differ"), "{said}");
+    assert!(said.contains("px, more than 0") && Path::new(&folder.path("view-2-diff.png")).exists(), "{said}");
+}
+
+#[test]
+fn views_of_a_file_have_its_names_and_other_files_are_refused() {
+    let folder = Folder::new();
+    let [cameras, out] = ["cameras.txt", "out-{}.png"].map(|name| folder.path(name));
+    let base = ["render", "shape:cone", "--size", "60x40", "--cameras", &cameras];
+    std::fs::write(&cameras, "# two\nfront --camera 0,0\n'from above' --camera 0,80,3 --orthographic\n")
+        .expect("a file");
+    output(&[&base[..], &["-o", &out]].concat());
+    let [front, above] = ["out-front.png", "out-from above.png"].map(|name| picture(&folder.path(name)));
+    assert_ne!(front, above);
+    let single = folder.path("single.png");
+    output(&["render", "shape:cone", "--size", "60x40", "--camera", "0,80,3", "--orthographic", "-o", &single]);
+    assert_eq!(picture(&single), above);
+    std::fs::write(&cameras, "front --camera 0,0\nback --zoom 2\n").expect("a file");
+    sentence(&[&base[..], &["-o", &out]].concat(), &["cameras.txt", "line 2", "--zoom"]);
+    std::fs::write(&cameras, "a --camera 0,0\nA --camera 1,0\n").expect("a file");
+    sentence(&[&base[..], &["-o", &out]].concat(), &["cameras.txt", "two cameras are called A"]);
+    let one = failure(&["render", "shape:cone", "--cameras", "2", "-o", &folder.path("a.png")], 2);
+    assert!(one.contains("name a folder"), "{one}");
+    let beside = failure(&[&base[..], &["-o", &out, "--roll", "3"]].concat(), 2);
+    assert!(beside.contains("--roll"), "{beside}");
+}
+
+#[test]
+fn a_matrix_is_a_camera_for_factors_and_pictures_under_every_convention() {
+    let folder = Folder::new();
+    let stats = folder.path("stats.json");
+    let view = ["--size", "120x90", "--lod", "paper", "--clip", "frustum", "--camera", "70,-15,2"];
+    let [own, csv, other, mirrored] = ["own.png", "own.csv", "other.csv", "mirrored.png"].map(|name| folder.path(name));
+    let drawn = ["render", "shape:torus", "-o", &own, "--stats", &stats, "--measure-error", "false"];
+    output(&[&drawn[..], &view].concat());
+    output(&[&["factors", "shape:torus", "-o", &csv], &view[..]].concat());
+    let matrix: Vec<f64> = serde_json::from_str(&matrix(&json(&stats))).expect("numbers");
+    // By rows, with Vulkan's y.
+    let by_rows = |rows: [f64; 4]| {
+        let entry = |i: usize| (matrix[i % 4 * 4 + i / 4] * rows[i / 4]).to_string();
+        (0..16).map(entry).collect::<Vec<_>>().join(" ")
+    };
+    let options = ["--size", "120x90", "--lod", "paper", "--clip", "frustum", "--matrix-order", "row-major"];
+    let depth = ["--depth", "reversed", "--view-projection"];
+    let vulkan = by_rows([1.0, -1.0, 1.0, 1.0]);
+    output(&[&["factors", "shape:torus", "-o", &other, "--clip-y", "down"], &options[..], &depth, &[&vulkan]].concat());
+    let [csv, other] = [csv, other].map(|path| std::fs::read_to_string(path).expect("a file"));
+    assert_eq!(csv, other, "the same bits of the rows give the same factors");
+    let mirror = by_rows([-1.0, 1.0, 1.0, 1.0]);
+    output(&[&["render", "shape:torus", "-o", &mirrored], &options[..], &depth, &[&mirror]].concat());
+    assert_eq!(image::imageops::flip_horizontal(&picture(&mirrored)), picture(&own));
+    let split = [&["render", "shape:torus", "-o", &mirrored, "--split", "0.5"], &options[..], &depth, &[&mirror]];
+    assert!(failure(&split.concat(), 2).contains("mirrors"));
+}
+
+#[test]
+fn what_is_no_matrix_is_refused_in_a_sentence() {
+    let folder = Folder::new();
+    let out = folder.path("out.png");
+    let base = ["render", "shape:torus", "-o", &out, "--view-projection"];
+    let few = failure(&[&base[..], &["1 2 3 4 5 6 7 8 9 10 11 12 13 14 15"]].concat(), 2);
+    assert!(few.contains("expected 16 numbers, found 15"), "{few}");
+    let nan = failure(&[&base[..], &["1 0 0 0 0 1 0 0 0 0 nan -1 0 0 1 2"]].concat(), 2);
+    assert!(nan.contains("the 11. is nan"), "{nan}");
+    sentence(&[&base[..], &["1 1 0 0 2 2 0 0 3 3 0 -1 0 0 1 2"]].concat(), &["singular"]);
+    sentence(&[&base[..], &["1 0 0 0 0 1 0 0 0 0 0 -1 0 0 1 2"]].concat(), &["--depth"]);
+    let turned = [
+        "turntable",
+        "shape:torus",
+        "-o",
+        &folder.path("turn"),
+        "--view-projection",
+        "1 0 0 0 0 1 0 0 0 0 0 -1 0 0 1 2",
+    ];
+    assert!(failure(&turned, 2).contains("turntable"));
+    assert!(!Path::new(&out).exists());
+}
