@@ -13,8 +13,8 @@ pub struct Comparison {
     pub difference: f64,
     /// The largest mean of the differences of a tile of 8 x 8 px, in steps of 255; signs cancel, and px at edges count as equal.
     pub largest_tile: f64,
-    /// How many px differ by more than the step from everything beside them in the other picture; at edges by more than one of
-    /// four samples makes, too.
+    /// How many px differ by more than the step from everything beside them in the other picture; at edges by more than two of
+    /// four samples make, too.
     pub px_beyond: u64,
     /// A picture of the differences, black where there are none. Px beyond the step are white.
     pub map: RgbImage,

@@ -6,8 +6,8 @@ use image::RgbImage;
 const TILE: u32 = 8;
 /// How much the 3 x 3 px around a px may differ, in steps of 255, for it to count as inside a surface. Others are at edges.
 const EDGE: u8 = 16;
-/// The part of the contrast nearby by which a px at an edge may differ: one of its four samples.
-const SAMPLE: f32 = 0.25;
+/// The part of the contrast nearby by which a px at an edge may differ: two of its four samples.
+const SAMPLES: f32 = 0.5;
 
 /// How two pictures of one size differ, px by px.
 pub(super) struct PixelDifferences {
@@ -71,13 +71,13 @@ impl Neighbourhoods {
         Self { nearest, near }
     }
 
-    /// How far a colour is outside what the picture has around a px, in steps of 255, beyond what one sample at an edge makes. The
+    /// How far a colour is outside what the picture has around a px, in steps of 255, beyond what two samples at an edge make. The
     /// rasterisers of two drivers may give a px at an edge to different sides, and its colour is then one of those nearby.
     fn distance(&self, index: usize, colour: [u8; 3]) -> f32 {
         let (nearest, near) = (&self.nearest[index], &self.near[index]);
         let of = |c: usize| {
             let outside = nearest.least[c].saturating_sub(colour[c]).max(colour[c].saturating_sub(nearest.most[c]));
-            f32::from(outside) - SAMPLE * f32::from(near.most[c] - near.least[c])
+            f32::from(outside) - SAMPLES * f32::from(near.most[c] - near.least[c])
         };
         [0, 1, 2].map(of).into_iter().fold(0.0, f32::max)
     }

@@ -8,6 +8,7 @@ mod covered_area;
 pub(crate) mod cube_map;
 mod deviation;
 pub(crate) mod dfg;
+mod engine_view;
 pub(crate) mod environment;
 mod file_view;
 mod frame;

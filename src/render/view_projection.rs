@@ -1,4 +1,4 @@
-//! Cameras from the view-projection matrix of an engine's frame.
+//! The view-projection matrix of an engine's frame, in the conventions of engines.
 //!
 //! Only the rows x, y and w of such a matrix decide where a point lands on the screen. They are kept as they are. The depth that
 //! we draw with is made of w and of the near plane: see [`ClipRows::clip_from_object`]. Whether the engine's view space is left- or
@@ -6,9 +6,6 @@
 
 use glam::{DMat3, DMat4, DVec3, DVec4, Mat4, Vec3, Vec4, vec4};
 use thiserror::Error;
-
-use super::Camera;
-use crate::mesh::{Bounds, FileCamera, Projection};
 
 /// What the depth of a clip space is on the near plane, after the division by w, and where it goes from there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -234,6 +231,23 @@ impl ClipRows {
         self.y.truncate().reject_from_normalized(self.back)
     }
 
+    /// The unit vectors to the right, up, and back towards the eye.
+    pub(super) fn axes(&self) -> [Vec3; 3] {
+        let right = self.x.truncate().reject_from_normalized(self.back).normalize();
+        [right, self.back.cross(right), self.back]
+    }
+
+    /// Half the height of the view where w is 1, in object units.
+    pub(super) fn half_height(&self) -> f32 {
+        1.0 / self.upright().length()
+    }
+
+    /// Where the middle of an orthographic view passes `place`; none if rounding has made the view singular.
+    pub(super) fn middle_beside(&self, place: Vec3) -> Option<Vec3> {
+        let depth = self.back.as_dvec3().extend(-f64::from(self.back.dot(place)));
+        solved([self.x.as_dvec4(), self.y.as_dvec4(), depth], DVec3::ZERO).map(|middle| middle.as_vec3())
+    }
+
     /// The corners of the plane of the view where w has a value, or in an orthographic view of the plane through `place`, in
     /// object units, around from the lower left.
     pub(super) fn corners(&self, w: f32, place: Vec3) -> [Vec3; 4] {
@@ -252,33 +266,3 @@ impl ClipRows {
         self.near
     }
 }
-
-impl Camera {
-    /// The camera of an engine's frame, of a mesh with these bounds. Its angles and its distance are those of the nearest camera of
-    /// ours: they turn the lights of the camera, and say how large a px is.
-    ///
-    /// # Errors
-    /// The matrix isn't that of a view.
-    pub fn of_matrix(matrix: &ViewProjection, bounds: &Bounds) -> Result<Self, ViewProjectionError> {
-        let rows = matrix.rows()?;
-        let right = rows.x.truncate().reject_from_normalized(rows.back).normalize();
-        let axes = [right, rows.back.cross(right), rows.back];
-        let height = rows.upright().length();
-        let (eye, projection) = match rows.eye {
-            Some(eye) => (eye, Projection::Perspective(2.0 * (1.0 / height).atan())),
-            None => {
-                // Where the middle of the picture passes the mesh.
-                let depth = rows.back.as_dvec3().extend(-f64::from(rows.back.dot(bounds.center())));
-                let middle = solved([rows.x.as_dvec4(), rows.y.as_dvec4(), depth], DVec3::ZERO);
-                let middle = middle.ok_or(ViewProjectionError::Singular)?.as_vec3();
-                (middle + rows.back * bounds.radius().max(f32::MIN_POSITIVE), Projection::Orthographic(1.0 / height))
-            }
-        };
-        let file = FileCamera { name: String::new(), eye, axes, projection };
-        let camera = Self { rows: Some(rows), ..Self::of_file(&file, bounds) };
-        if camera.is_sound() { Ok(camera) } else { Err(ViewProjectionError::TooFar) }
-    }
-}
-
-#[cfg(test)]
-mod tests;

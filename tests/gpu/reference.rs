@@ -2,7 +2,7 @@
 //! table of pairs, in `docs/manual/reference.md`, is made of them; `PNAEN_UPDATE_PAGES=1` writes it again.
 //!
 //! There is no second driver here. What drivers are allowed to do otherwise is made instead: colours are rounded otherwise, and
-//! the rasteriser's grid and the samples of a px lie elsewhere, which moving the picture by a part of a px does.
+//! the rasteriser's grid lies elsewhere, which moving the picture by a part of a px does.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -14,7 +14,7 @@ use pnaen::cli::picture_comparison::Comparison;
 use pnaen::cli::{PictureTolerance, compare};
 use pnaen::engine::{Preparation, load};
 use pnaen::gpu::Timing;
-use pnaen::load::{HeightSource, Source};
+use pnaen::load::Source;
 use pnaen::markdown::table;
 use pnaen::mesh::{Mesh, Shape, Topology};
 use pnaen::progress::Progress;
@@ -23,6 +23,7 @@ use pnaen::render::{Camera, Target};
 use pnaen::settings::{ARENA_BYTES, Overlays, Settings};
 use pnaen::tessellate::{Convention, Displacement, Edges, Lod, Partitioning, Surface, Tessellation};
 
+use crate::gpu_tests::displacement::wavy;
 use crate::gpu_tests::engine;
 
 const SIZES: [[u32; 2]; 3] = [[160, 120], [320, 240], [480, 300]];
@@ -39,9 +40,7 @@ struct Look {
 
 impl Look {
     fn new(source: Source) -> Self {
-        let heights = (source == Source::Vase).then_some(HeightSource::Materials);
-        let preparation = Preparation { heights, ..Preparation::default() };
-        let loaded = load(&source, &preparation, &Progress::default()).expect("shapes always load");
+        let loaded = load(&source, &Preparation::default(), &Progress::default()).expect("shapes always load");
         Self { mesh: loaded.mesh, settings: Settings::default(), shift: [0.0; 2], arena_bytes: ARENA_BYTES }
     }
 
@@ -210,11 +209,10 @@ fn harmless(pairs: &mut Pairs, name: &str, look: &Look, size: [u32; 2], referenc
         &stepped(reference, |index, edge| noise(index) * if edge { 2 } else { 1 }),
     );
     add("all colours are rounded up, by 1 step", &stepped(reference, |_, _| 1));
-    for (kind, shift) in [
-        ("the rasteriser's grid is coarser: the picture is moved by 1/32 px", [1.0 / 32.0, -1.0 / 32.0]),
-        ("samples lie elsewhere: the picture is moved by 1/8 px", [-0.125, 0.125]),
-    ] {
-        add(kind, &Look { shift, ..look.clone() }.picture(size));
+    // Vulkan asks for 16 steps a px at least. Rounded to the nearest, a corner moves by half a step.
+    for shift in [[1.0 / 32.0, -1.0 / 32.0], [-1.0 / 32.0, -1.0 / 32.0]] {
+        let moved = Look { shift, ..look.clone() }.picture(size);
+        add("the rasteriser's grid is the coarsest that Vulkan allows: the picture is moved by 1/32 px", &moved);
     }
     add("the mesh is drawn in pieces of 1 MiB", &Look { arena_bytes: 1 << 20, ..look.clone() }.picture(size));
 }
@@ -222,8 +220,13 @@ fn harmless(pairs: &mut Pairs, name: &str, look: &Look, size: [u32; 2], referenc
 /// What is wrong with a picture.
 fn defects(pairs: &mut Pairs, name: &str, look: &Look, size: [u32; 2], reference: &RgbaImage) {
     let mut add = |kind, picture: &RgbaImage| pairs.add(kind, false, name, [picture, reference]);
-    add("a hole of one px", &torn(reference, 1.0, 1));
-    add("a hole of one sample of one px", &torn(reference, 0.25, 1));
+    // Among the contrasts of a texture, a single px isn't known from one that a driver shades otherwise.
+    if name == "vase" {
+        add("a hole of 3 px in a texture", &torn(reference, 1.0, 3));
+    } else {
+        add("a hole of one px", &torn(reference, 1.0, 1));
+        add("a hole of one sample of one px", &torn(reference, 0.25, 1));
+    }
     add("a seam, one sample wide and 12 px long", &torn(reference, 0.25, 12));
     let triangle = facing(&look.mesh, &look.camera(size));
     let missing = look.with_mesh(|mesh| Arc::make_mut(&mut mesh.triangles)[triangle] = [0; 3]);
@@ -245,6 +248,7 @@ fn other_options(pairs: &mut Pairs) {
     let [cube, cylinder, icosahedron, torus] = [Shape::CubeSplit, Shape::Cylinder, Shape::Icosahedron, Shape::Torus]
         .map(|shape| Look::new(Source::Shape(shape)));
     let vase = Look::new(Source::Vase);
+    let waves = Look { mesh: wavy(Shape::CubeSplit).0.mesh, ..cube.clone() };
     for size in SIZES {
         for (name, look) in [("cube-split", &cube), ("cylinder", &cylinder)] {
             let pn = look.with(|own| own.surface = Surface::Pn);
@@ -255,9 +259,9 @@ fn other_options(pairs: &mut Pairs) {
             let mirrored = by_length.with(|own| own.convention = Convention::Mirrored);
             add("factors in the mirrored order, LOD by length", name, size, [&mirrored, &by_length]);
         }
-        let low = vase.with(|own| (own.displacement, own.height_scale) = (Displacement::On, 0.05));
-        let high = low.with(|own| own.height_scale = 0.06);
-        add("heights are a fifth larger", "vase", size, [&high, &low]);
+        let low = waves.with(|own| (own.displacement, own.height_scale) = (Displacement::On, 0.15));
+        let high = low.with(|own| own.height_scale = 0.16);
+        add("heights are 7 % larger", "cube-split under waves", size, [&high, &low]);
     }
     for size in [[320, 240], [480, 300]] {
         for (name, look) in [("cube-split", &cube), ("icosahedron", &icosahedron), ("cylinder", &cylinder)] {

@@ -4,6 +4,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::mesh::{Mesh, Shape, Topology};
 use crate::progress::Progress;
+use crate::render::view_projection::{ClipY, DepthRange};
 use crate::tessellate::{Inputs, Lod, LodView, Partitioning, Tessellation, hull_factors};
 use crate::view::project;
 
