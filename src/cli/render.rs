@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::gate_options::{GateOptions, pass};
 use super::options::{PictureOptions, TessellationOptions};
 use super::picture_file::{Stamp, write_stamped};
 use super::shot::StatsWanted;
@@ -37,6 +38,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "T", default_value_t = 0.01, value_parser = options::threshold)]
     pub threshold: f64,
     #[command(flatten)]
+    pub gates: GateOptions,
+    #[command(flatten)]
     pub adapter: AdapterOption,
 }
 
@@ -60,6 +63,7 @@ impl Args {
             measure_error: true,
             reference: None,
             threshold: 0.01,
+            gates: GateOptions::default(),
             adapter,
         }
     }
@@ -87,11 +91,29 @@ pub(crate) fn run_with(
     let stats = args.stats.as_ref().map(|_| StatsWanted { error: args.measure_error });
     let picture = shot.picture(stats, &Progress::new())?;
     write_stamped(&args.output, &picture, &Stamp { command: line, settings: shot.settings() })?;
+    let tolerance_px = args.shot.surface.tessellation().tolerance;
+    let judged = shot.judge(&args.gates.gates.fail_on, tolerance_px, &Progress::new())?;
     if let Some(path) = args.stats.as_deref() {
         shot.write_stats(factors_file, path)?;
     }
+    args.gates.write_evidence(&mut shot, &judged, &args.output)?;
+    let passed = pass(&args.file, &judged);
     match args.reference.as_deref().zip(reference) {
-        Some((path, reference)) => reference::compare_with(&args.output, &picture, path, &reference, args.threshold),
-        None => Ok(()),
+        Some((path, reference)) => {
+            let compared = reference::compare_with(&args.output, &picture, path, &reference, args.threshold);
+            both(passed, compared)
+        }
+        None => passed,
+    }
+}
+
+/// Fails if either does, with the sentences of both.
+fn both(gates: Result<(), CliError>, compared: Result<(), CliError>) -> Result<(), CliError> {
+    match (gates, compared) {
+        (Err(CliError::Gates(mut sentences)), Err(different)) => {
+            sentences.push(different.to_string());
+            Err(CliError::Gates(sentences))
+        }
+        (gates, compared) => gates.and(compared),
     }
 }

@@ -8,6 +8,7 @@ use super::factors_option::FactorsFile;
 use super::silhouette::SilhouetteStats;
 use super::truth::{AccuracyStats, DeviationStats};
 use crate::engine::{Engine, Loaded};
+use crate::gates::Judgement;
 use crate::gpu::PassTime;
 use crate::measure::{MappedSeams, Measured, Seams};
 use crate::mesh::{EdgeCounts, Topology};
@@ -73,6 +74,8 @@ pub(super) struct Stats {
     pub left: Option<LeftStats>,
     /// None at rest.
     pub animation: Option<AnimationStats>,
+    /// How the gates of `--fail-on` judged.
+    pub gates: Vec<Judgement>,
     ms: BTreeMap<&'static str, f64>,
 }
 
@@ -291,6 +294,7 @@ impl Stats {
             silhouette: None,
             left: None,
             animation: None,
+            gates: Vec::new(),
             ms,
         }
     }
