@@ -55,6 +55,8 @@ mod adjacency_file;
 #[cfg(feature = "cli")]
 mod chart;
 #[cfg(feature = "cli")]
+mod check;
+#[cfg(feature = "cli")]
 mod cli;
 #[cfg(feature = "cli")]
 mod engine;
@@ -64,6 +66,8 @@ mod export;
 mod factors_file;
 #[cfg(feature = "cli")]
 mod gallery;
+#[cfg(feature = "cli")]
+mod gates;
 #[cfg(feature = "cli")]
 mod measure;
 #[cfg(feature = "cli")]

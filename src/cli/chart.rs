@@ -10,6 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
 
+use super::interrupt::stop_on_interrupt;
 use super::options::{CameraOption, Size};
 use super::{
     AdapterOption, CliError, SurfaceOptions, Telling, WeldOption, file_error, file_of, keep_apart, load_apart, options,
@@ -91,9 +92,6 @@ pub(crate) struct Args {
     #[command(flatten)]
     pub adapter: AdapterOption,
 }
-
-/// The exit code after Ctrl-C: 128 + SIGINT, as shells return it.
-pub(super) const INTERRUPTED: u8 = 130;
 
 /// Parses the path of a picture, whose ending gives its format.
 fn picture() -> impl TypedValueParser<Value = PathBuf> {
@@ -191,7 +189,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         target: Target::new(&engine.gpu, args.size.0)?,
         engine,
         tables: tables.map(|path| Table::new(&path)).collect::<Result<_, CliError>>()?,
-        stop: stop_on_interrupt(),
+        stop: stop_on_interrupt("setting"),
         telling: Telling::new(),
         done: 0,
         all: settings.len() * meshes.len(),
@@ -210,7 +208,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let subjects: Vec<Subject> = parts.into_iter().map(|part| part.subject).collect();
     publish(args, &subjects)?;
     if session.stop.load(Ordering::Relaxed) && session.done < session.all {
-        return Err(CliError::Interrupted { done: session.done, all: session.all });
+        return Err(CliError::Interrupted { done: session.done, all: session.all, what: "settings" });
     }
     Ok(())
 }
@@ -325,21 +323,6 @@ impl Table {
             false => file_error(&self.path, "written", &error),
         })
     }
-}
-
-/// Returns a flag that Ctrl-C sets. A second Ctrl-C ends the program.
-fn stop_on_interrupt() -> Arc<AtomicBool> {
-    let stop = Arc::new(AtomicBool::new(false));
-    let set = stop.clone();
-    // Without a handler, Ctrl-C ends the program at once, and the lines of the table stay.
-    let _ = ctrlc::set_handler(move || {
-        if set.swap(true, Ordering::Relaxed) {
-            std::process::exit(i32::from(INTERRUPTED));
-        }
-        let said = "pnaen: ending after this setting; Ctrl-C again ends at once";
-        let _ = writeln!(std::io::stderr(), "{said}");
-    });
-    stop
 }
 
 #[cfg(test)]

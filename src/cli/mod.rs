@@ -5,12 +5,15 @@ mod adjacency;
 mod animation;
 mod camera_report;
 mod chart;
+mod check;
 mod copied_command;
 mod domain;
 mod factors;
 mod factors_option;
 mod gallery;
+mod gate_options;
 mod info;
+mod interrupt;
 mod legend;
 mod light_report;
 mod material_report;
@@ -61,6 +64,7 @@ pub(crate) use tessellate::run_with as tessellate_with;
 pub(crate) use truth::{ReferenceSurface, TruthOption};
 pub(crate) use turntable::{FPS, FRAMES, Turn, frame_name};
 
+use crate::check::ConfigError;
 use crate::engine::{Loaded, Preparation};
 use crate::export::ExportError;
 use crate::files::Limits;
@@ -122,6 +126,11 @@ pub(crate) enum Command {
     /// not compared with each other. Ctrl-C ends the command after the current setting: the CSV and the picture have what was
     /// done, and the exit code is 130. A second Ctrl-C ends it at once.
     Chart(chart::Args),
+    /// Hold a folder of assets to gates, and report what was found
+    ///
+    /// The exit code is 1 if an asset fails a gate or can't be checked. Ctrl-C ends the command after the assets that are being
+    /// checked: the report has what was done, and the exit code is 130. A second Ctrl-C ends it at once.
+    Check(check::Args),
     /// Print what a file holds, and which parts of it are left out
     Info(info::Args),
     /// List the graphics adapters
@@ -191,10 +200,18 @@ pub(crate) enum CliError {
     NoTruth { file: String },
     #[error("{file} has no animation \"{name}\": it has {has}")]
     NoAnimation { file: String, name: String, has: String },
-    #[error("interrupted after {done} of {all} settings: what was done is written")]
-    Interrupted { done: usize, all: usize },
+    #[error("interrupted after {done} of {all} {what}: what was done is written")]
+    Interrupted { done: usize, all: usize, what: &'static str },
     #[error(transparent)]
     Chart(#[from] crate::plot::ChartError),
+    #[error("{}", .0.join("; "))]
+    Gates(Vec<String>),
+    #[error("{0}")]
+    Check(String),
+    #[error(transparent)]
+    Config(ConfigError),
+    #[error("there is nothing to check: the folders have no meshes in them; name others")]
+    NoAssets,
     #[error("the output could not be written: {0}")]
     Output(std::io::Error),
 }
@@ -223,6 +240,7 @@ pub(crate) fn run(command: Command) -> ExitCode {
         Command::Stability(args) => stability::run(&args),
         Command::Gallery(args) => gallery::run(&args),
         Command::Chart(args) => chart::run(&args),
+        Command::Check(args) => check::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Adapters(args) => adapters::run(&args),
     };
@@ -235,7 +253,11 @@ pub(crate) fn run(command: Command) -> ExitCode {
         }
         Err(error @ CliError::Interrupted { .. }) => {
             fail(&error);
-            ExitCode::from(chart::INTERRUPTED)
+            ExitCode::from(interrupt::INTERRUPTED)
+        }
+        Err(CliError::Gates(sentences)) => {
+            sentences.iter().for_each(|sentence| note(sentence));
+            ExitCode::FAILURE
         }
         Err(error) => fail(&error),
     }
@@ -353,6 +375,11 @@ impl Telling {
             let _ = writeln!(std::io::stderr(), "pnaen: {}", text());
         }
     }
+}
+
+/// Says something on standard error that is no error.
+fn note(text: &str) {
+    let _ = writeln!(std::io::stderr(), "pnaen: {}", on_one_line(text));
 }
 
 fn warn(warnings: &[String]) {

@@ -23,10 +23,15 @@ const SETTINGS: &str = "pnaen settings";
 
 /// Writes a PNG file, whatever its name ends in.
 pub(crate) fn write_picture(path: &Path, picture: &DynamicImage) -> Result<(), CliError> {
+    write(path, &png_bytes(picture).map_err(|error| file_error(path, "encoded", &error))?)
+}
+
+/// A picture as a PNG file.
+pub(super) fn png_bytes(picture: &DynamicImage) -> image::ImageResult<Vec<u8>> {
     let mut bytes = Vec::new();
     let encoder = PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, FilterType::Adaptive);
-    picture.write_with_encoder(encoder).map_err(|error| file_error(path, "encoded", &error))?;
-    write(path, &bytes)
+    picture.write_with_encoder(encoder)?;
+    Ok(bytes)
 }
 
 /// Writes a PNG file with texts that say how to draw it again.

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::gate_options::{GateOptions, failures};
 use super::options::{CamerasOption, NamedView, PictureOptions, TessellationOptions};
 use super::picture_file::{Stamp, write_stamped};
 use super::reference::{self, Reference, ReferenceOptions};
@@ -16,6 +17,7 @@ use crate::export::ending;
 use crate::files::file_reason;
 use crate::gpu::GpuError;
 use crate::load::Source;
+use crate::names::shown;
 use crate::progress::Progress;
 use crate::settings::Settings;
 
@@ -41,6 +43,8 @@ pub(crate) struct Args {
     #[command(flatten)]
     pub reference: ReferenceOptions,
     #[command(flatten)]
+    pub gates: GateOptions,
+    #[command(flatten)]
     pub adapter: AdapterOption,
 }
 
@@ -64,6 +68,7 @@ impl Args {
             measure_error: true,
             cameras: CamerasOption::default(),
             reference: ReferenceOptions::default(),
+            gates: GateOptions::default(),
             adapter,
         }
     }
@@ -102,10 +107,11 @@ pub(crate) fn run_with(
     let mut shot = args.shot.shot(engine()?, subject)?;
     make_folder(args)?;
     let mut stats = Vec::new();
-    let mut judgements = Vec::new();
+    let (mut judgements, mut failed) = (Vec::new(), Vec::new());
     for (view, reference) in views.iter().zip(references) {
         let drawn = draw(args, line, &mut shot, view, reference.as_ref())?;
         judgements.extend(drawn.judgement);
+        failed.extend(drawn.failed);
         if let Some(mut own) = drawn.stats {
             own.factors_file = factors_file.clone();
             stats.push(own);
@@ -118,7 +124,12 @@ pub(crate) fn run_with(
         };
         write_text(path, &text)?;
     }
-    reference::conclude(judgements)
+    let compared = reference::conclude(judgements);
+    if failed.is_empty() {
+        return compared;
+    }
+    failed.extend(compared.err().map(|different| different.to_string()));
+    Err(CliError::Gates(failed))
 }
 
 /// A picture that the command draws.
@@ -129,10 +140,23 @@ struct Picture {
     reference: Option<PathBuf>,
 }
 
+impl Picture {
+    /// The mesh's name, with the view's if there are several.
+    fn name_of(&self, mesh: &Source) -> String {
+        let mesh = shown(&mesh.to_string());
+        match &self.view {
+            Some(NamedView { name, .. }) => format!("{mesh} from {name}"),
+            None => mesh,
+        }
+    }
+}
+
 /// What came of a picture.
 struct Drawn {
     stats: Option<Stats>,
     judgement: Option<Result<String, CliError>>,
+    /// A sentence for each gate that failed.
+    failed: Vec<String>,
 }
 
 impl Args {
@@ -205,6 +229,8 @@ fn draw(
     let wanted = args.stats.as_ref().map(|_| StatsWanted { error: args.measure_error });
     let drawn = shot.picture(wanted, &Progress::new())?;
     write_stamped(&picture.output, &drawn, &Stamp { command: line, settings: shot.settings() })?;
+    let tolerance_px = args.shot.surface.tessellation().tolerance;
+    let gates = shot.judge(&args.gates.gates.fail_on, tolerance_px, &Progress::new())?;
     let mut stats = wanted.is_some().then(|| shot.stats()).transpose()?.flatten();
     let judged = reference.map(|reference| reference.judge(&picture.output, &drawn)).transpose()?;
     let (compared, judgement) = judged.map(|judged| (judged.stats, judged.said)).unzip();
@@ -212,7 +238,8 @@ fn draw(
         stats.view = picture.view.as_ref().map(|own| own.name.clone());
         stats.reference = compared;
     }
-    Ok(Drawn { stats, judgement })
+    args.gates.write_evidence(shot, &gates, &picture.output)?;
+    Ok(Drawn { stats, judgement, failed: failures(&picture.name_of(&args.file), &gates) })
 }
 
 #[cfg(test)]

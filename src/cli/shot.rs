@@ -1,5 +1,7 @@
 //! One picture, and all that is measured for it: what `render` and `turntable` draw, and what the window saves.
 
+mod judging;
+
 use std::path::Path;
 use std::sync::Arc;
 
@@ -14,9 +16,10 @@ use super::truth::{AccuracyStats, DeviationStats, ReferenceSurface};
 use super::view_report::ViewStats;
 use super::{CliError, to_json, write_text};
 use crate::engine::{Engine, Loaded, MeasurementResults, Measurements, Runs, SilhouetteView};
+use crate::gates::Judgement;
 use crate::gpu::{GpuError, Recorder, Timing};
 use crate::load::panorama::Panorama;
-use crate::measure::{AccuracyOptions, DeviationField, Silhouette, patch_edges};
+use crate::measure::{AccuracyOptions, DeviationField, ScreenError, Silhouette, patch_edges};
 use crate::mesh::{Bounds, Mesh, Moment, Texture, t_junctions};
 use crate::progress::Progress;
 use crate::render::{
@@ -92,6 +95,10 @@ pub(crate) struct Shot {
     scale: Scale,
     /// The outlines, if they are shown.
     silhouette: Option<Silhouette>,
+    /// How gates judged it, if they did.
+    judged: Vec<Judgement>,
+    /// The worst place of the gate that compares the error with the tolerance.
+    error_place: Option<ScreenError>,
 }
 
 impl Subject {
@@ -132,7 +139,21 @@ impl Shot {
         }
         let (posed, scale) = (subject.loaded.posed(subject.moment), deviation_scale(0.0, scene.ulp()));
         let (lod_view, results) = (view.lod_view(&scene), Default::default());
-        let mut shot = Self { subject, posed, engine, scene, target, view, lod_view, results, scale, silhouette: None };
+        let (silhouette, judged, error_place) = (None, Vec::new(), None);
+        let mut shot = Self {
+            subject,
+            posed,
+            engine,
+            scene,
+            target,
+            view,
+            lod_view,
+            results,
+            scale,
+            silhouette,
+            judged,
+            error_place,
+        };
         shot.count()?;
         Ok(shot)
     }
@@ -144,6 +165,7 @@ impl Shot {
     pub(crate) fn look_from(&mut self, camera: Camera) -> Result<(), GpuError> {
         self.view.camera = camera;
         self.lod_view = self.view.lod_view(&self.scene);
+        (self.results, self.judged, self.error_place) = Default::default();
         self.count()
     }
 
@@ -379,6 +401,7 @@ impl Shot {
         stats.silhouette = self.silhouette.as_ref().map(|silhouette| SilhouetteStats::new(silhouette, mirrored));
         stats.camera = Some(ViewStats::new(&self.view.camera, self.view.size, &self.scene.bounds));
         stats.left = self.left_stats();
+        stats.gates = self.judged.clone();
         stats.animation = moment.zip(self.subject.loaded.mesh.rig.as_ref()).map(|(Moment { clip, time }, rig)| {
             let name = rig.clip_name(clip);
             AnimationStats { name, time }

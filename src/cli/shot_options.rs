@@ -104,9 +104,16 @@ impl ShotOptions {
         file: &Source,
         written: &[Option<&Path>],
     ) -> Result<(Subject, Option<FactorsFile>), CliError> {
-        let preparation = self.surface.preparation();
-        let matcap = self.matcap_image.as_ref().map(|path| load_matcap(path, &preparation.limits)).transpose()?;
-        let loaded = load_apart(file, &preparation, written)?;
+        self.subject_of(load_apart(file, &self.surface.preparation(), written)?)
+    }
+
+    /// Like [`Self::subject`], for a mesh that was loaded as these options say.
+    ///
+    /// # Errors
+    /// A file can't be read, or isn't for this mesh.
+    pub(super) fn subject_of(&self, loaded: Loaded) -> Result<(Subject, Option<FactorsFile>), CliError> {
+        let limits = self.surface.weld.limit.limits();
+        let matcap = self.matcap_image.as_ref().map(|path| load_matcap(path, &limits)).transpose()?;
         let given = self.given.read(&loaded.mesh, &loaded.topology, &self.surface.tessellation())?;
         let is_shown = self.picture.0.overlays.colors == Colors::Deviation;
         let reference_surface = self.truth.reference_surface(&loaded, &self.surface, is_shown)?;

@@ -3,15 +3,20 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use clap::builder::PossibleValuesParser;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 
+use super::gate_options::FailOnOption;
 use super::tessellate::Device;
 use super::{AdapterOption, CliError, WeldOption, file_error, to_json, write_text};
 use crate::engine::Engine;
 use crate::files::file_reason;
+use crate::gates::{Facts, GateKind, Judgement, judge};
 use crate::load::Source;
+use crate::mesh::{Topology, t_junctions};
+use crate::progress::Progress;
 use crate::stability::{
-    CASES, Case, Effort, LEGEND, PAGE, Row, Section, Subject, Verdict, lines, page, picture, run as run_case, table,
+    CASES, Case, Effort, LEGEND, Method, PAGE, Row, Section, Subject, Verdict, failures, lines, page, picture,
+    run as run_case, table,
 };
 
 #[derive(Debug, clap::Args)]
@@ -25,6 +30,9 @@ pub(crate) struct Args {
     /// Run only this case; may be given several times
     #[arg(long = "case", value_name = "NAME", value_parser = PossibleValuesParser::new(CASES.map(|case| case.name)))]
     pub cases: Vec<String>,
+    /// Run only this method; may be given several times
+    #[arg(long = "method", value_name = "METHOD", value_parser = method())]
+    pub methods: Vec<Method>,
     /// Where to tessellate: cpu or gpu; without it, both
     #[arg(long, value_enum)]
     pub device: Option<Device>,
@@ -38,10 +46,41 @@ pub(crate) struct Args {
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
+    pub gates: FailOnOption,
+    #[command(flatten)]
     pub adapter: AdapterOption,
 }
 
+/// Parses a method's name.
+fn method() -> impl TypedValueParser<Value = Method> {
+    let unknown = "no such method";
+    PossibleValuesParser::new(Method::ALL.map(Method::option))
+        .try_map(move |name| Method::ALL.into_iter().find(|method| method.option() == name).ok_or(unknown))
+}
+
+/// What runs, and the warnings of loading it.
+struct Loaded {
+    subject: Subject,
+    warnings: Vec<String>,
+}
+
 impl Args {
+    /// Refuses gates that judge one tessellation.
+    fn check(&self) -> Result<(), CliError> {
+        self.adapter.check(self.device == Some(Device::Cpu))?;
+        let single = [GateKind::AboveTolerance, GateKind::Triangles, GateKind::Bytes];
+        if single.into_iter().any(|kind| self.gates.has(kind)) {
+            return Err(CliError::Usage(
+                "--fail-on above-tolerance, triangles and bytes judge one tessellation, and stability runs many: use render or \
+                 tessellate",
+            ));
+        }
+        if self.gates.has(GateKind::Leaks) && self.device == Some(Device::Cpu) {
+            return Err(CliError::Usage("--fail-on leaks needs --device gpu, which draws"));
+        }
+        Ok(())
+    }
+
     fn cases(&self) -> impl Iterator<Item = Subject> {
         let all = self.cases.is_empty() && self.files.is_empty();
         let chosen = CASES.iter().filter(move |case| all || self.cases.iter().any(|name| name == case.name));
@@ -49,29 +88,56 @@ impl Args {
     }
 
     /// The chosen cases, then the files as cases of their own. All are loaded before the first one runs.
-    fn subjects(&self) -> Result<Vec<Subject>, CliError> {
-        let mut subjects: Vec<_> = self.cases().collect();
+    fn subjects(&self) -> Result<Vec<Loaded>, CliError> {
+        let cases = self.cases().map(|subject| Loaded { subject, warnings: Vec::new() });
+        let mut subjects: Vec<_> = cases.collect();
         for source in &self.files {
             let loaded = super::load(source, &self.weld.preparation())?;
             let name = free_name(&source.title(), &subjects);
             // With a crease band the mesh is welded already.
             let weld = if loaded.crease_band.width > 0.0 { 0.0 } else { self.weld.weld };
-            subjects.push(Subject::new(name, Arc::unwrap_or_clone(loaded.mesh), weld));
+            let subject = Subject::new(name, Arc::unwrap_or_clone(loaded.mesh), weld);
+            subjects.push(Loaded { subject, warnings: loaded.warnings });
         }
         Ok(subjects)
+    }
+
+    fn effort(&self) -> Effort {
+        let mut effort = Effort { cameras: self.cameras, cpu: self.device != Some(Device::Gpu), ..Effort::default() };
+        if !self.methods.is_empty() {
+            effort.methods.clone_from(&self.methods);
+        }
+        effort.folds = self.gates.has(GateKind::Folds);
+        effort
+    }
+
+    /// Judges a mesh by the gates that are about the mesh itself. Returns a sentence for each that fails.
+    fn judge_mesh(&self, Loaded { subject, warnings }: &Loaded) -> Result<Vec<String>, CliError> {
+        let gates: Vec<_> = self.gates.fail_on.iter().copied().filter(|gate| gate.kind.is_of_mesh()).collect();
+        if gates.is_empty() {
+            return Ok(Vec::new());
+        }
+        let topology = Topology::build_within(&subject.mesh, subject.weld, &Progress::new())?;
+        let junctions = t_junctions(&topology, &Progress::new())?;
+        let facts = Facts { junctions: Some(&junctions), warnings, ..Facts::of_mesh(&topology) };
+        let judged = judge(&gates, &facts);
+        let failed = judged.iter().filter(|judgement| judgement.failed());
+        Ok(failed.map(|judgement: &Judgement| judgement.sentence_of(&subject.name)).collect())
     }
 }
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
-    args.adapter.check(args.device == Some(Device::Cpu))?;
+    args.check()?;
     let subjects = args.subjects()?;
     let engine = if args.device == Some(Device::Cpu) { None } else { Some(Engine::chosen(&args.adapter.choice())?) };
-    let effort = Effort { cameras: args.cameras, cpu: args.device != Some(Device::Gpu), ..Effort::default() };
+    let effort = args.effort();
     if let Some(folder) = &args.output {
         std::fs::create_dir_all(folder).map_err(|error| file_error(folder, "made", &file_reason(&error)))?;
     }
-    let (mut rows, mut sections) = (Vec::new(), Vec::new());
-    for subject in subjects {
+    let (mut rows, mut sections, mut failed) = (Vec::new(), Vec::new(), Vec::new());
+    for loaded in subjects {
+        failed.extend(args.judge_mesh(&loaded)?);
+        let subject = loaded.subject;
         let own = run_case(&subject, engine.as_ref(), &effort)?;
         if !args.json {
             let text = table(&lines(&own));
@@ -97,12 +163,20 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     } else {
         write_text("-".as_ref(), &format!("\n{LEGEND}\n"))?;
     }
-    judge(&rows)
+    failed.extend(failures(&args.gates.fail_on, &rows));
+    match keep_promises(&rows) {
+        Err(broken) => {
+            failed.push(broken.to_string());
+            Err(CliError::Gates(failed))
+        }
+        Ok(()) if failed.is_empty() => Ok(()),
+        Ok(()) => Err(CliError::Gates(failed)),
+    }
 }
 
 /// Returns the title, with a number added if another subject, or its picture, has that name already.
-fn free_name(title: &str, taken: &[Subject]) -> String {
-    let is_free = |name: &String| taken.iter().all(|subject| file_name(&subject.name) != file_name(name));
+fn free_name(title: &str, taken: &[Loaded]) -> String {
+    let is_free = |name: &String| taken.iter().all(|loaded| file_name(&loaded.subject.name) != file_name(name));
     let numbered = (2..).map(|number| {
         let (stem, extension) = title.rsplit_once('.').map_or((title, None), |(stem, rest)| (stem, Some(rest)));
         extension.map_or(format!("{stem} ({number})"), |extension| format!("{stem} ({number}).{extension}"))
@@ -118,7 +192,7 @@ fn file_name(name: &str) -> String {
 }
 
 /// Fails if a promise doesn't hold.
-fn judge(rows: &[Row]) -> Result<(), CliError> {
+fn keep_promises(rows: &[Row]) -> Result<(), CliError> {
     let broken: Vec<_> = lines(rows).into_iter().filter(|line| line.verdict == Verdict::BreaksPromise).collect();
     match broken.first() {
         None => Ok(()),
@@ -133,12 +207,13 @@ mod tests {
 
     #[test]
     fn names_and_pictures_are_unique() {
-        let mut taken = vec![CASES[0].subject()];
+        let loaded = |subject| Loaded { subject, warnings: Vec::new() };
+        let mut taken = vec![loaded(CASES[0].subject())];
         for name in ["split-normals.glb", "a.glb", "a.glb", "a.gltf", "a", "a"] {
             let name = free_name(name, &taken);
-            taken.push(Subject::new(name, Mesh::default(), 0.0));
+            taken.push(loaded(Subject::new(name, Mesh::default(), 0.0)));
         }
-        let names: Vec<_> = taken.iter().map(|subject| subject.name.as_str()).collect();
+        let names: Vec<_> = taken.iter().map(|loaded| loaded.subject.name.as_str()).collect();
         let expected = ["split-normals (2).glb", "a.glb", "a (2).glb", "a (3).gltf", "a (4)", "a (5)"];
         assert_eq!(names[1..], expected);
     }

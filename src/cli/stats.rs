@@ -10,6 +10,7 @@ use super::silhouette::SilhouetteStats;
 use super::truth::{AccuracyStats, DeviationStats};
 use super::view_report::ViewStats;
 use crate::engine::{Engine, Loaded};
+use crate::gates::Judgement;
 use crate::gpu::PassTime;
 use crate::measure::{Measured, SeamTurns, Seams};
 use crate::mesh::{EdgeCounts, Topology};
@@ -82,6 +83,8 @@ pub(super) struct Stats {
     pub camera: Option<ViewStats>,
     /// How the picture differs from its reference, if it has one.
     pub reference: Option<ReferenceStats>,
+    /// How the gates of `--fail-on` judged.
+    pub gates: Vec<Judgement>,
     ms: BTreeMap<&'static str, f64>,
 }
 
@@ -293,6 +296,7 @@ impl Stats {
             animation: None,
             camera: None,
             reference: None,
+            gates: Vec::new(),
             ms,
         }
     }

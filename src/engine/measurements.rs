@@ -3,15 +3,15 @@
 use glam::{Mat4, Vec3};
 
 use super::Engine;
-use crate::gpu::GpuError;
+use crate::gpu::{GpuError, Timing};
 use crate::measure::{
     Accuracy, AccuracyMeasurement, AccuracyOptions, DeviationField, DeviationMeasurement, DeviationTarget, Measured,
-    ScreenError, ScreenErrorMeasurement, Sizes, Survey, Visitor,
+    PatchesAbove, ScreenError, ScreenErrorMeasurement, Sizes, Survey, Visitor,
 };
 use crate::mesh::{Mesh, Topology};
 use crate::progress::Progress;
-use crate::render::{Camera, LeakCount, Scene};
-use crate::tessellate::{Inputs, LodView, is_beyond_near};
+use crate::render::{Camera, LeakCount, Leaks, Scene};
+use crate::tessellate::{Inputs, LodView, Tessellation, is_beyond_near};
 use crate::truth::Truth;
 use crate::view::ScreenView;
 
@@ -145,6 +145,60 @@ impl Engine {
             return Ok(None);
         }
         self.leaks.count(&self.gpu, scene, size, clip_from_object).map(Some)
+    }
+
+    /// Finds the leaks in a view, also where patches that face away are left out: these are emitted for it. The scene must have
+    /// been counted with `inputs` and `measured`, and is when this returns.
+    ///
+    /// # Errors
+    /// The picture is larger than the adapter draws, or the device was lost.
+    pub(crate) fn find_leaks(
+        &self,
+        scene: &mut Scene,
+        inputs: &Inputs,
+        measured: &Measured,
+        size: [u32; 2],
+        camera: &Camera,
+    ) -> Result<Leaks, GpuError> {
+        let (mesh, topology) = scene.tessellator.posed().deformed();
+        if !topology.is_closed_and_oriented() {
+            return Ok(Leaks::Open);
+        }
+        if measured.culled.facing_away > 0 {
+            let tessellation = Tessellation { cull_back_faces: false, ..inputs.tessellation };
+            let whole = Inputs { tessellation, ..*inputs };
+            self.count(scene, &whole, &mut Timing::Off)?;
+            let measured = self.measure(scene)?;
+            let leaks = self.find_leaks(scene, &whole, &measured, size, camera)?;
+            self.count(scene, inputs, &mut Timing::Off)?;
+            return Ok(leaks);
+        }
+        let viewport = glam::vec2(size[0] as f32, size[1] as f32);
+        let clip_from_object = camera.clip_from_object(viewport, &scene.bounds);
+        let is_beyond = |extent| is_beyond_near(clip_from_object, extent);
+        if !closed_extent(&mesh, &topology, measured).is_some_and(is_beyond) {
+            return Ok(Leaks::NearPlane);
+        }
+        self.leaks.find(&self.gpu, scene, size, clip_from_object).map(Leaks::Counted)
+    }
+
+    /// Counts the patches that are farther than a tolerance from the surface that they approximate, on screen. The inputs must be
+    /// those of the counts, and they give the view.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub(crate) fn patches_above(
+        &self,
+        scene: &mut Scene,
+        inputs: &Inputs,
+        tolerance_px: f32,
+    ) -> Result<PatchesAbove, GpuError> {
+        let (mesh, topology) = scene.tessellator.posed().deformed();
+        let (_, triangles) = scene.tessellator.totals();
+        let measurement = ScreenErrorMeasurement::new(&mesh, &topology, inputs, triangles);
+        let mut measurement = measurement.counting_above(tolerance_px);
+        self.visit(scene, &mut [&mut measurement])?;
+        Ok(measurement.above())
     }
 }
 

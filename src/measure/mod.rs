@@ -27,7 +27,7 @@ pub(crate) use deviation_field::{DeviationField, DeviationMeasurement, Deviation
 pub(crate) use folds::FoldedPatch;
 pub(crate) use indices::{IndexDifference, Meaning, index_differences};
 pub(crate) use outlines::{EdgeSide, patch_edges};
-pub(crate) use screen_error::{ScreenError, ScreenErrorMeasurement};
+pub(crate) use screen_error::{PatchesAbove, ScreenError, ScreenErrorMeasurement};
 pub(crate) use seams::{SeamTurns, Seams};
 pub(crate) use silhouette::{OutlineDistance, OutlineDistances, OutlineOf, SampleGrid, Silhouette};
 pub(crate) use sizes::{SMALL_PX, Sizes};

@@ -19,6 +19,11 @@ pub(crate) struct ScreenErrorMeasurement<'a> {
     /// The number of segments that each edge of a triangle is divided into for sampling.
     steps: u32,
     worst: Option<ScreenError>,
+    /// Patches with a larger distance than this, in px, are counted.
+    tolerance_px: f64,
+    above: u64,
+    /// The last patch that was counted.
+    last_above: Option<u32>,
 }
 
 /// A view that distances are measured in.
@@ -37,6 +42,15 @@ pub struct ScreenError {
     pub limit: DVec3,
 }
 
+/// The patches that are farther from their surface than a tolerance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PatchesAbove {
+    pub tolerance_px: f32,
+    pub patches: u64,
+    /// The worst place of all patches; none if nothing was in view.
+    pub worst: Option<ScreenError>,
+}
+
 /// Up to this many triangles, edges are divided into 8 segments for sampling; up to ten times as many, into 4; else into 2.
 const FINE: u64 = 100_000;
 
@@ -51,7 +65,18 @@ impl<'a> ScreenErrorMeasurement<'a> {
         };
         let limit = LimitSurface::new(mesh, topology, inputs);
         let patches = topology.patches.len() as u32;
-        Self { limit, inputs: *inputs, patches, screen: Screen::new(&inputs.view), steps, worst: None }
+        let (inputs, screen, tolerance_px) = (*inputs, Screen::new(&inputs.view), f64::INFINITY);
+        Self { limit, inputs, patches, screen, steps, worst: None, tolerance_px, above: 0, last_above: None }
+    }
+
+    /// Counts the patches whose distance is above a tolerance, too.
+    pub(crate) fn counting_above(self, tolerance_px: f32) -> Self {
+        Self { tolerance_px: f64::from(tolerance_px), ..self }
+    }
+
+    /// The patches above the tolerance of [`Self::counting_above`], after all chunks were taken.
+    pub(crate) fn above(&self) -> PatchesAbove {
+        PatchesAbove { tolerance_px: self.tolerance_px as f32, patches: self.above, worst: self.worst }
     }
 
     /// The worst place so far; `None` if nothing was in view.
@@ -64,8 +89,10 @@ impl<'a> ScreenErrorMeasurement<'a> {
         (0..self.patches).filter(|&patch| self.limit.slides(&self.inputs, patch)).count() as u64
     }
 
-    fn worst_of(&self, vertices: &[Vertex], triangles: &[[u32; 3]]) -> Option<ScreenError> {
+    /// The worst place on some triangles, and the patches of these that are above the tolerance, in order.
+    fn worst_of(&self, vertices: &[Vertex], triangles: &[[u32; 3]]) -> (Option<ScreenError>, Vec<u32>) {
         let mut known: Option<(u32, ControlNet, bool)> = None;
+        let mut above = Vec::new();
         let worst = triangles.iter().filter_map(|triangle| {
             let corners = triangle.map(|i| &vertices[i as usize]);
             // Triangles come patch after patch.
@@ -74,9 +101,12 @@ impl<'a> ScreenErrorMeasurement<'a> {
             let (_, net, slides) = known.take().filter(|(of, ..)| *of == patch).unwrap_or_else(found);
             let worst = self.worst_on(corners, &net, slides);
             known = Some((patch, net, slides));
+            if worst.is_some_and(|worst| worst.px > self.tolerance_px) && above.last() != Some(&patch) {
+                above.push(patch);
+            }
             worst
         });
-        worst.reduce(worse)
+        (worst.reduce(worse), above)
     }
 
     fn worst_on(&self, corners: [&Vertex; 3], net: &ControlNet, slides: bool) -> Option<ScreenError> {
@@ -111,15 +141,19 @@ impl Visitor for ScreenErrorMeasurement<'_> {
         let workers = thread::available_parallelism().map_or(1, |cores| cores.get());
         let share = chunk.triangles.len().div_ceil(workers).max(1);
         let this = &*self;
-        let worst = thread::scope(|scope| {
+        let found: Vec<_> = thread::scope(|scope| {
             let run = |part| scope.spawn(move || this.worst_of(chunk.vertices, part));
             let threads: Vec<_> = chunk.triangles.chunks(share).map(run).collect();
-            let found = threads
-                .into_iter()
-                .filter_map(|thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
-            found.reduce(worse)
+            let joined = threads.into_iter().map(thread::ScopedJoinHandle::join);
+            joined.map(|found| found.unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
         });
-        self.worst = self.worst.into_iter().chain(worst).reduce(worse);
+        for (worst, above) in found {
+            self.worst = self.worst.into_iter().chain(worst).reduce(worse);
+            // The triangles of a patch may have been divided among threads.
+            let again = u64::from(self.last_above.is_some() && self.last_above == above.first().copied());
+            self.above += above.len() as u64 - again;
+            self.last_above = above.last().copied().or(self.last_above);
+        }
     }
 }
 
@@ -182,11 +216,34 @@ mod tests {
                 });
                 let mut measurement = ScreenErrorMeasurement::new(&mesh, &topology, &inputs, triangles);
                 measurement.take(&EmittedChunk::whole(&vertices, &[[0, 1, 2]]));
+                assert_eq!(measurement.above().patches, 0, "no tolerance was given");
                 // The corner itself is 10 px off, and isn't sampled.
                 let expected = 10.0 * f64::from(steps - 1) / f64::from(steps);
                 let worst = measurement.worst().expect("it is in view");
                 assert!((worst.px - expected).abs() < 1e-4, "{triangles}, corner {shifted}: {worst:?}");
             }
+        }
+    }
+
+    #[test]
+    fn patches_above_a_tolerance_are_counted_once_however_they_are_divided() {
+        let mesh = Shape::CubeSmooth.build();
+        let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
+        let settings = Settings::from(Tessellation { surface: Surface::Flat, ..Tessellation::default() });
+        let inputs = settings.inputs(LodView::new(Mat4::IDENTITY, Vec2::splat(100.0)));
+        // Patch 1 lies on its surface, and patches 0 and 2 are moved aside, each with three triangles on top of each other.
+        let corner = |patch: u32, k: usize| Vertex {
+            position: (topology.patch_positions(patch)[k] + if patch == 1 { Vec3::ZERO } else { Vec3::X * 0.1 })
+                .to_array(),
+            key: pack_key(patch, [[65536, 0], [0, 65536], [0, 0]][k]),
+            ..bytemuck::Zeroable::zeroed()
+        };
+        let vertices: Vec<Vertex> = (0..3).flat_map(|patch| [0, 1, 2].map(|k| corner(patch, k))).collect();
+        let triangles: Vec<[u32; 3]> = (0..9).map(|triangle| [0, 1, 2].map(|k| triangle / 3 * 3 + k)).collect();
+        for (tolerance, patches) in [(0.5, 2), (20.0, 0)] {
+            let mut measurement = ScreenErrorMeasurement::new(&mesh, &topology, &inputs, 9).counting_above(tolerance);
+            measurement.take(&EmittedChunk::whole(&vertices, &triangles));
+            assert_eq!(measurement.above().patches, patches, "above {tolerance} px");
         }
     }
 }

@@ -82,13 +82,26 @@ impl LeakCounter {
     /// # Errors
     /// The picture is larger than the adapter draws, or the device was lost.
     pub(crate) fn count(&self, gpu: &Gpu, scene: &mut Scene, size: [u32; 2], clip: Mat4) -> Result<u64, GpuError> {
+        Ok(leaking_pixels(&self.counts(gpu, scene, size, clip)?).count() as u64)
+    }
+
+    /// The same leaks with their places, the largest first.
+    ///
+    /// # Errors
+    /// The same.
+    pub(crate) fn find(&self, gpu: &Gpu, scene: &mut Scene, size: [u32; 2], clip: Mat4) -> Result<Vec<Leak>, GpuError> {
+        Ok(leaks_in(&self.counts(gpu, scene, size, clip)?, size[0].max(1) as usize))
+    }
+
+    /// The counts of all pixels.
+    fn counts(&self, gpu: &Gpu, scene: &mut Scene, size: [u32; 2], clip: Mat4) -> Result<Vec<u8>, GpuError> {
         let mut count = self.start(gpu, size, clip)?;
         let mut counts = loop {
             if let Some(counts) = count.draw_next(gpu, scene)? {
                 break counts;
             }
         };
-        Ok(leaking_pixels(&counts.wait(gpu)?).count() as u64)
+        counts.wait(gpu)
     }
 }
 
@@ -157,6 +170,17 @@ pub(crate) struct Leak {
     pub middle: Vec2,
     /// How many they are.
     pub pixels: u32,
+}
+
+/// The leaks of a mesh in a view, or why none can be counted.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Leaks {
+    /// The largest first.
+    Counted(Vec<Leak>),
+    /// The mesh is open: one sees its inside past its border.
+    Open,
+    /// The near plane of the view cuts the mesh open.
+    NearPlane,
 }
 
 /// The leaks of a picture `width` px wide, the largest first, by the bytes of a [`LeakCount`].

@@ -54,7 +54,7 @@ mod window;
 pub(crate) use camera::{Camera, Standpoint};
 pub(crate) use deviation::{DEVIATION_PX_SCALE, deviation_scale};
 pub(crate) use ground::{Ground, axis_lines};
-pub(crate) use leaks::{Leak, LeakCount, LeakCounter, leaks_in};
+pub(crate) use leaks::{Leak, LeakCount, LeakCounter, Leaks, leaks_in};
 pub(crate) use legend::{BARYCENTRIC_TITLE, COLUMNS, Distances, Shown, has_legend, legend_of, tick_text};
 pub(crate) use marks::{crack_lines, crack_lines_in, lod_camera_lines, patch_lines, t_junction_lines, worst_lines};
 pub(crate) use outlines_picture::{lay_over, outlines_picture};

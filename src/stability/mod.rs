@@ -3,6 +3,7 @@
 //! like any mesh.
 
 pub(crate) mod cases;
+mod gates;
 mod meshes;
 mod picture;
 mod report;
@@ -11,6 +12,7 @@ mod sweep_chart;
 mod views;
 
 pub(crate) use cases::{CASES, Case, CaseView, DEFAULT_VIEW, Probe};
+pub(crate) use gates::failures;
 #[cfg(test)]
 pub(crate) use meshes::soup;
 pub(crate) use picture::{PictureError, picture};
@@ -85,6 +87,11 @@ impl Method {
             Self::Nagata => "Nagata",
             Self::NagataAen => "Nagata AEN",
         }
+    }
+
+    /// The name on the command line.
+    pub(crate) fn option(self) -> String {
+        self.name().to_lowercase().replace(' ', "-")
     }
 
     /// The surface of this method.

@@ -32,11 +32,16 @@ pub(crate) struct Effort {
     pub cpu: bool,
     /// The last factor of a sweep, which starts at 1.
     pub sweep_to: f32,
+    /// The methods that run.
+    pub methods: Vec<Method>,
+    /// Whether folds are counted on every mesh, and not only on the case that is about them.
+    pub folds: bool,
 }
 
 impl Default for Effort {
     fn default() -> Self {
-        Self { factors: vec![1.0, 2.4, 7.0, 16.0], cameras: 6, cpu: true, sweep_to: 64.0 }
+        let (factors, methods) = (vec![1.0, 2.4, 7.0, 16.0], Method::ALL.to_vec());
+        Self { factors, cameras: 6, cpu: true, sweep_to: 64.0, methods, folds: false }
     }
 }
 
@@ -93,7 +98,7 @@ pub(crate) fn run(case: &Subject, engine: Option<&Engine>, effort: &Effort) -> R
     // Nobody else holds these handles, so nobody can cancel.
     let topology = Arc::new(Topology::build_within(&mesh, case.weld, &Progress::new()).unwrap_or_default());
     let pairs = |method| Partitioning::ALL.map(move |partitioning| (method, partitioning));
-    let jobs: Vec<_> = Method::ALL.into_iter().flat_map(pairs).collect();
+    let jobs: Vec<_> = effort.methods.iter().copied().flat_map(pairs).collect();
     let (next, done) = (AtomicUsize::new(0), Mutex::new(BTreeMap::new()));
     let work = || -> Result<(), GpuError> {
         let mut running = Running::new(case, mesh.clone(), topology.clone(), engine)?;
@@ -193,7 +198,8 @@ impl<'a> Running<'a> {
                 settings.tessellation.convention,
                 out.edge_factors.clone(),
             );
-            self.take(&mut worst, &Measured::of(&mesh, &topology, asked, &out), &settings, &view);
+            let measured = Measured::of(&mesh, &topology, asked, &out);
+            self.take(&mut worst, &measured, &settings, &view, effort);
         }
         if self.case.probe == Probe::Sweep {
             let view = LodView::new(glam::Mat4::IDENTITY, views::viewport());
@@ -219,7 +225,7 @@ impl<'a> Running<'a> {
                     worst.take(Quantity::Leaks, leaks as f64);
                 }
             }
-            self.take(&mut worst, &measured, &settings, &view);
+            self.take(&mut worst, &measured, &settings, &view, effort);
             if self.case.probe == Probe::View && settings.tessellation.clip != Clip::Off {
                 let missing = self.missing(&settings, &camera)?;
                 worst.take(Quantity::Missing, missing as f64);
@@ -228,8 +234,11 @@ impl<'a> Running<'a> {
         Ok(worst)
     }
 
-    fn take(&self, worst: &mut Worst, measured: &Measured, settings: &Settings, view: &LodView) {
+    fn take(&self, worst: &mut Worst, measured: &Measured, settings: &Settings, view: &LodView, effort: &Effort) {
         worst.take_all(measured);
+        if effort.folds {
+            worst.take(Quantity::Folds, measured.folds as f64);
+        }
         let camera = views::camera(&self.bounds, &self.case.view, views::viewport());
         let is_case_view = *view == camera.lod_view(views::viewport(), &self.bounds);
         match self.case.probe {

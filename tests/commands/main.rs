@@ -5,12 +5,14 @@ mod adjacency;
 mod animation;
 mod cameras;
 mod chart;
+mod check;
 mod deviation;
 mod domain;
 mod environment;
 mod factors;
 mod formats;
 mod gallery;
+mod gates;
 mod import;
 mod info;
 #[path = "../documents/lamp.rs"]

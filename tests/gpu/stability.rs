@@ -60,7 +60,7 @@ fn rows() -> &'static [Row] {
     static ROWS: OnceLock<Vec<Row>> = OnceLock::new();
     ROWS.get_or_init(|| {
         let all = |cpu: bool| {
-            let effort = Effort { factors: vec![2.4], cameras: 1, cpu, sweep_to: 2.1 };
+            let effort = Effort { factors: vec![2.4], cameras: 1, cpu, sweep_to: 2.1, ..Effort::default() };
             let engine = (!cpu).then(engine);
             let of = |case: &pnaen::stability::Case| run(&case.subject(), engine, &effort).expect("small meshes");
             CASES.iter().flat_map(of).collect::<Vec<_>>()

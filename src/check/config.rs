@@ -1,0 +1,330 @@
+//! The configuration of a check: a TOML file with gates, options of `render`, cameras, and sections for some of the files.
+
+use std::ops::Range;
+use std::path::Path;
+
+use thiserror::Error;
+use toml::de::{DeTable, DeValue};
+
+use super::pattern::Pattern;
+use crate::files::file_reason;
+use crate::gates::Gate;
+use crate::names::{shown, shown_path};
+
+/// The most bytes that a configuration may have.
+const MOST_BYTES: u64 = 1 << 20;
+
+/// What is wrong with a configuration.
+#[derive(Debug, Error)]
+pub(crate) enum ConfigError {
+    #[error("{path}, line {line}: {reason}")]
+    At { path: String, line: usize, reason: String },
+    #[error("{path}: {reason}")]
+    Clash { path: String, reason: String },
+    #[error("{path}: could not be read ({reason})")]
+    Unreadable { path: String, reason: String },
+}
+
+/// A configuration.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Config {
+    /// Its path, for messages.
+    path: String,
+    base: Section,
+    files: Vec<(Pattern, Section)>,
+}
+
+/// What a configuration says about some assets.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Section {
+    /// None if it says nothing about gates.
+    pub gates: Option<Vec<Gate>>,
+    pub options: Vec<OptionValue>,
+    /// Named views, each with options of the camera. Empty if it says nothing about them.
+    pub cameras: Vec<(String, Vec<OptionValue>)>,
+}
+
+/// A value of an option of `render`.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct OptionValue {
+    /// The option's name on the command line, without `--`.
+    pub name: String,
+    /// What follows it on the command line, once for each time that it is given. None for a switch that is on.
+    pub values: Vec<Option<String>>,
+    pub line: usize,
+}
+
+/// The options that a configuration may have.
+#[derive(Clone, Copy, Debug)]
+struct KnownOptions<'a> {
+    all: &'a [String],
+    /// Those of them that a named view may have.
+    camera: &'a [&'a str],
+}
+
+impl Config {
+    /// Reads a configuration.
+    ///
+    /// # Errors
+    /// The file can't be read, is no TOML, or has an unknown key or a value of the wrong type.
+    pub(crate) fn read(path: &Path, options: &[String], camera: &[&str]) -> Result<Self, ConfigError> {
+        let shown = shown_path(path);
+        let unreadable = |reason: String| ConfigError::Unreadable { path: shown.clone(), reason };
+        let about = std::fs::metadata(path).map_err(|error| unreadable(file_reason(&error)))?;
+        if !about.is_file() {
+            return Err(unreadable("it is no file; name a TOML file".to_owned()));
+        }
+        if about.len() > MOST_BYTES {
+            return Err(unreadable(format!("it has {} bytes, and at most {MOST_BYTES} are read", about.len())));
+        }
+        let bytes = std::fs::read(path).map_err(|error| unreadable(file_reason(&error)))?;
+        let text = String::from_utf8(bytes).map_err(|error| unreadable(error.to_string()))?;
+        Self::parse(&shown, &text, KnownOptions { all: options, camera })
+    }
+
+    /// Reads a configuration from its text. `path` names it in messages.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    fn parse(path: &str, text: &str, known: KnownOptions) -> Result<Self, ConfigError> {
+        let reader = Reader { path, text, known };
+        let table = DeTable::parse(text).map_err(|error| {
+            let at = error.span().unwrap_or_default();
+            reader.error(at, &format!("this is no TOML: {}", error.message()))
+        })?;
+        let mut config = Self { path: path.to_owned(), ..Self::default() };
+        for (key, value) in table.get_ref().iter() {
+            match key.get_ref().as_ref() {
+                "files" => config.files = reader.files(value)?,
+                name if reader.take(name, value, &mut config.base)? => {}
+                name => return Err(reader.unknown(key.span(), name, &["fail-on", "options", "cameras", "files"])),
+            }
+        }
+        Ok(config)
+    }
+
+    /// What holds for the asset at a path with `/` between its folders: what the sections say whose patterns match it, the last one
+    /// of them first.
+    pub(crate) fn section(&self, path: &str) -> Section {
+        let mut all = self.base.clone();
+        for (_, own) in self.files.iter().filter(|(pattern, _)| pattern.matches(path)) {
+            all.gates = own.gates.clone().or(all.gates);
+            for option in &own.options {
+                all.options.retain(|other| other.name != option.name);
+                all.options.push(option.clone());
+            }
+            if !own.cameras.is_empty() {
+                all.cameras.clone_from(&own.cameras);
+            }
+        }
+        all
+    }
+
+    /// The error of an option that its command doesn't take.
+    pub(crate) fn wrong(&self, option: &OptionValue, reason: &str) -> ConfigError {
+        ConfigError::At { path: self.path.clone(), line: option.line, reason: reason.to_owned() }
+    }
+
+    /// The error of options that can't be together.
+    pub(crate) fn clash(&self, reason: &str) -> ConfigError {
+        ConfigError::Clash { path: self.path.clone(), reason: reason.to_owned() }
+    }
+}
+
+/// A value with its place in the text.
+type Value<'a> = toml::Spanned<DeValue<'a>>;
+
+struct Reader<'a> {
+    path: &'a str,
+    text: &'a str,
+    known: KnownOptions<'a>,
+}
+
+impl Reader<'_> {
+    fn line(&self, at: Range<usize>) -> usize {
+        1 + self.text.bytes().take(at.start).filter(|byte| *byte == b'\n').count()
+    }
+
+    fn error(&self, at: Range<usize>, reason: &str) -> ConfigError {
+        ConfigError::At { path: self.path.to_owned(), line: self.line(at), reason: reason.to_owned() }
+    }
+
+    fn unknown(&self, at: Range<usize>, name: &str, known: &[&str]) -> ConfigError {
+        let nearest = known.iter().min_by_key(|other| distance(name, other));
+        let meant = nearest.filter(|other| distance(name, other) <= 1 + name.chars().count() / 3);
+        let meant = meant.map(|other| format!("; did you mean {other}?")).unwrap_or_default();
+        self.error(at, &format!("there is no key {}{meant}", shown(name)))
+    }
+
+    /// Takes a key that every section may have. False if it is none of these.
+    fn take(&self, name: &str, value: &Value, section: &mut Section) -> Result<bool, ConfigError> {
+        match name {
+            "fail-on" => section.gates = Some(self.gates(value)?),
+            "options" => {
+                let all: Vec<&str> = self.known.all.iter().map(String::as_str).collect();
+                section.options = self.options(value, &all)?;
+            }
+            "cameras" => {
+                for (key, camera) in self.table(value, "named cameras, such as [cameras.front]")? {
+                    let options = self.options(camera, self.known.camera)?;
+                    section.cameras.push((key.get_ref().to_string(), options));
+                }
+            }
+            _ => return Ok(false),
+        }
+        Ok(true)
+    }
+
+    fn files(&self, value: &Value) -> Result<Vec<(Pattern, Section)>, ConfigError> {
+        let expected = "expected sections that begin with [[files]]";
+        let Some(sections) = value.get_ref().as_array() else { return Err(self.error(value.span(), expected)) };
+        let mut files = Vec::new();
+        for section in sections.iter() {
+            let (mut pattern, mut own) = (None, Section::default());
+            for (key, value) in self.table(section, "a section that begins with [[files]]")? {
+                match key.get_ref().as_ref() {
+                    "path" => pattern = Some(self.text(value)?),
+                    name if self.take(name, value, &mut own)? => {}
+                    name => return Err(self.unknown(key.span(), name, &["path", "fail-on", "options", "cameras"])),
+                }
+            }
+            let without =
+                || self.error(section.span(), "a section of [[files]] needs a path, such as path = \"props/*.glb\"");
+            files.push((Pattern::new(&pattern.ok_or_else(without)?), own));
+        }
+        Ok(files)
+    }
+
+    fn table<'a, 'b>(&self, value: &'a Value<'b>, expected: &str) -> Result<&'a DeTable<'b>, ConfigError> {
+        value.get_ref().as_table().ok_or_else(|| self.error(value.span(), &format!("expected {expected}")))
+    }
+
+    fn text(&self, value: &Value) -> Result<String, ConfigError> {
+        let text = value.get_ref().as_str().map(str::to_owned);
+        text.ok_or_else(|| self.error(value.span(), "expected a text in quotation marks"))
+    }
+
+    fn gates(&self, value: &Value) -> Result<Vec<Gate>, ConfigError> {
+        let expected = "expected a list of gates, such as [\"cracks\", \"triangles:100000\"]";
+        let all = value.get_ref().as_array().ok_or_else(|| self.error(value.span(), expected))?;
+        let gate = |value: &Value| {
+            let text = value.get_ref().as_str().ok_or_else(|| self.error(value.span(), expected))?;
+            text.parse().map_err(|reason: String| self.error(value.span(), &format!("{}: {reason}", shown(text))))
+        };
+        all.iter().map(gate).collect()
+    }
+
+    fn options(&self, value: &Value, known: &[&str]) -> Result<Vec<OptionValue>, ConfigError> {
+        let mut options = Vec::new();
+        for (key, value) in self.table(value, "options of `pnaen render`, such as tolerance = 0.5")? {
+            let name = key.get_ref().as_ref();
+            if !known.contains(&name) {
+                return Err(self.unknown(key.span(), name, known));
+            }
+            let (values, line) = (self.values(value)?, self.line(key.span()));
+            options.push(OptionValue { name: name.to_owned(), values, line });
+        }
+        Ok(options)
+    }
+
+    /// What follows an option on the command line. Numbers of a list belong together, and texts of a list are given one by one.
+    fn values(&self, value: &Value) -> Result<Vec<Option<String>>, ConfigError> {
+        match value.get_ref() {
+            DeValue::Boolean(true) => Ok(vec![None]),
+            DeValue::Boolean(false) => Ok(Vec::new()),
+            DeValue::Array(all) if all.iter().all(|item| item.get_ref().is_str()) => {
+                all.iter().map(|item| self.text(item).map(Some)).collect()
+            }
+            DeValue::Array(all) => {
+                let numbers: Result<Vec<_>, _> = all.iter().map(|item| self.scalar(item)).collect();
+                Ok(vec![Some(numbers?.join(","))])
+            }
+            _ => Ok(vec![Some(self.scalar(value)?)]),
+        }
+    }
+
+    fn scalar(&self, value: &Value) -> Result<String, ConfigError> {
+        match value.get_ref() {
+            DeValue::String(text) => Ok(text.to_string()),
+            DeValue::Integer(number) => Ok(number.as_str().to_owned()),
+            DeValue::Float(number) => Ok(number.as_str().to_owned()),
+            _ => {
+                Err(self.error(value.span(), "expected a number, a text, true or false, or a list of numbers or texts"))
+            }
+        }
+    }
+}
+
+/// The number of letters to insert, delete or replace to make one word of another (Levenshtein 1966).
+fn distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, letter) in a.chars().enumerate() {
+        let mut beside = std::mem::replace(&mut row[0], i + 1);
+        for (j, other) in b.iter().enumerate() {
+            let replaced = beside + usize::from(letter != *other);
+            beside = row[j + 1];
+            row[j + 1] = replaced.min(beside + 1).min(row[j] + 1);
+        }
+    }
+    row[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Config, ConfigError> {
+        let all = ["tolerance", "lod", "camera", "overlay", "cull-back-faces", "hide-part"].map(str::to_owned);
+        Config::parse("pnaen.toml", text, KnownOptions { all: &all, camera: &["camera"] })
+    }
+
+    #[test]
+    fn sections_of_matching_files_come_last() {
+        let text = "fail-on = [\"cracks\"]\n[options]\nlod = \"error\"\ntolerance = 0.5\ncull-back-faces = true\n\
+                    [cameras.front]\ncamera = [0, 10]\n[[files]]\npath = \"props/*.glb\"\nfail-on = [\"triangles:10\"]\n\
+                    [files.options]\ntolerance = 2\ncull-back-faces = false\nhide-part = [\"a\", \"b\"]\n";
+        let config = read(text).expect("a configuration");
+        let value = |section: &Section, name: &str| {
+            section.options.iter().find(|option| option.name == name).map(|option| option.values.clone())
+        };
+        let text = |text: &str| Some(text.to_owned());
+        let usual = config.section("a.glb");
+        assert_eq!(usual.gates, Some(vec!["cracks".parse().expect("a gate")]));
+        assert_eq!(value(&usual, "tolerance"), Some(vec![text("0.5")]));
+        assert_eq!(value(&usual, "cull-back-faces"), Some(vec![None]));
+        assert_eq!((usual.cameras[0].0.as_str(), &usual.cameras[0].1[0].values), ("front", &vec![text("0,10")]));
+        let prop = config.section("props/a.glb");
+        assert_eq!(prop.gates, Some(vec!["triangles:10".parse().expect("a gate")]));
+        assert_eq!(value(&prop, "tolerance"), Some(vec![text("2")]));
+        assert_eq!(value(&prop, "cull-back-faces"), Some(vec![]));
+        assert_eq!(value(&prop, "hide-part"), Some(vec![text("a"), text("b")]));
+        assert_eq!((value(&prop, "lod"), &prop.cameras), (Some(vec![text("error")]), &usual.cameras));
+    }
+
+    #[test]
+    fn what_is_wrong_has_its_line_and_the_nearest_name() {
+        for (text, line, words) in [
+            ("fail-on = [\"cracks\"]\nfail-onn = []", 2, "there is no key fail-onn; did you mean fail-on?"),
+            ("[options]\n\ntolerence = 1", 3, "there is no key tolerence; did you mean tolerance?"),
+            ("[options]\nxyzzyplugh = 1", 2, "there is no key xyzzyplugh"),
+            ("[cameras.front]\nlod = \"error\"", 2, "there is no key lod"),
+            ("fail-on = \"cracks\"", 1, "expected a list of gates"),
+            ("fail-on = [\n\"cracks\",\n\"crack\"]", 3, "crack: expected one of cracks"),
+            ("options = 3", 1, "expected options"),
+            ("[options]\ntolerance = 1979-05-27", 2, "expected a number"),
+            ("[[files]]\nfail-on = []", 1, "needs a path"),
+            ("[[files]]\npath = 3", 2, "expected a text"),
+            ("files = 3", 1, "[[files]]"),
+            ("[options]\ntolerance = \n", 2, "this is no TOML"),
+            ("include = \"other.toml\"", 1, "there is no key include"),
+        ] {
+            let said = read(text).expect_err(text).to_string();
+            assert!(said.starts_with(&format!("pnaen.toml, line {line}: ")), "{text:?}: {said}");
+            assert!(said.contains(words), "{text:?}: {said}");
+        }
+        assert!(!read("[options]\nxyzzyplugh = 1").expect_err("unknown").to_string().contains("did you mean"));
+        let deep = format!("a = {}{}", "[".repeat(100_000), "]".repeat(100_000));
+        assert!(read(&deep).is_err());
+    }
+}

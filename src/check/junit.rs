@@ -1,0 +1,106 @@
+//! The report as JUnit XML, which build servers show as test results: a suite for each asset, and a case for each gate.
+
+use std::io;
+
+use quick_xml::Writer;
+use quick_xml::events::{BytesDecl, BytesText, Event};
+
+use super::report::{Asset, GateResult, Report, Status, gate_title};
+use crate::names::on_one_line;
+
+/// The case that says whether the asset could be checked at all.
+const OPENED: &str = "opens";
+
+/// Writes the report.
+///
+/// # Errors
+/// None that are known: it is written into memory.
+pub(crate) fn junit(report: &Report) -> io::Result<String> {
+    let mut writer = Writer::new_with_indent(Vec::new(), b' ', 2);
+    writer.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
+    let cases: usize = report.assets.iter().map(|asset| 1 + asset.gates().count()).sum();
+    let failed = report.assets.iter().flat_map(Asset::gates).filter(|(_, gate)| gate.failed()).count();
+    let suites = writer.create_element("testsuites").with_attributes([
+        ("name", "pnaen check"),
+        ("tests", cases.to_string().as_str()),
+        ("failures", failed.to_string().as_str()),
+        ("errors", report.count(Status::Broken).to_string().as_str()),
+    ]);
+    suites.write_inner_content(|writer| report.assets.iter().try_for_each(|asset| suite(writer, asset)))?;
+    let mut text = String::from_utf8(writer.into_inner()).map_err(io::Error::other)?;
+    text.push('\n');
+    Ok(text)
+}
+
+type Out = Writer<Vec<u8>>;
+
+fn suite(writer: &mut Out, asset: &Asset) -> io::Result<()> {
+    let count = |of: fn(&GateResult) -> bool| asset.gates().filter(|(_, gate)| of(gate)).count().to_string();
+    let path = on_one_line(&asset.path);
+    let suite = writer.create_element("testsuite").with_attributes([
+        ("name", path.as_str()),
+        ("tests", (1 + asset.gates().count()).to_string().as_str()),
+        ("failures", count(GateResult::failed).as_str()),
+        ("errors", if asset.error.is_some() { "1" } else { "0" }),
+        ("skipped", count(|gate| gate.passed.is_none()).as_str()),
+    ]);
+    suite.write_inner_content(|writer| {
+        case(writer, &path, OPENED, asset.error.as_ref().map(|error| ("error", error.as_str())))?;
+        for (view, gate) in asset.gates() {
+            let outcome = match gate.passed {
+                Some(true) => None,
+                Some(false) => Some(("failure", gate.text.as_str())),
+                None => Some(("skipped", gate.text.as_str())),
+            };
+            case(writer, &path, &gate_title(view, &gate.name), outcome)?;
+        }
+        if asset.unchanged {
+            writer.create_element("system-out").write_text_content(BytesText::new("unchanged: not measured again"))?;
+        }
+        Ok(())
+    })?;
+    Ok(())
+}
+
+/// A case, with what it ended with unless it passed: an element and its message.
+fn case(writer: &mut Out, path: &str, name: &str, outcome: Option<(&str, &str)>) -> io::Result<()> {
+    let name = on_one_line(name);
+    let case = writer.create_element("testcase").with_attributes([("classname", path), ("name", name.as_str())]);
+    match outcome {
+        None => case.write_empty()?,
+        Some((element, message)) => case.write_inner_content(|writer| {
+            let message = on_one_line(message);
+            writer.create_element(element).with_attribute(("message", message.as_str())).write_empty()?;
+            Ok(())
+        })?,
+    };
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check::report::sample;
+
+    #[test]
+    fn each_gate_is_a_case_and_texts_are_escaped() {
+        let text = junit(&sample()).expect("XML");
+        let mut reader = quick_xml::Reader::from_str(&text);
+        let mut elements = Vec::new();
+        loop {
+            match reader.read_event().expect("well formed") {
+                Event::Eof => break,
+                Event::Start(start) | Event::Empty(start) => {
+                    elements.push(String::from_utf8_lossy(start.name().as_ref()).into_owned());
+                }
+                _ => {}
+            }
+        }
+        let count = |name: &str| elements.iter().filter(|element| *element == name).count();
+        let found = ["testsuite", "testcase", "failure", "skipped", "error", "system-out"].map(count);
+        assert_eq!(found, [3, 7, 1, 1, 1, 1], "{text}");
+        assert!(text.contains("torn&lt;&amp;&quot;&gt;.glb"), "{text}");
+        assert!(text.contains("tests=\"7\" failures=\"1\" errors=\"1\""), "{text}");
+        assert!(text.contains("name=\"cracks (front)\""), "{text}");
+    }
+}

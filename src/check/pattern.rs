@@ -1,0 +1,85 @@
+//! Patterns of paths, as shells and `.gitignore` files have them.
+
+/// A pattern of paths. `*` stands for any characters but `/`, `?` for one of them, and `**/` for any folders, also none. A pattern
+/// without `/` is one of file names, in any folder.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Pattern(String);
+
+impl Pattern {
+    pub(super) fn new(text: &str) -> Self {
+        let text = text.strip_prefix("./").unwrap_or(text);
+        Self(if text.contains('/') { text.to_owned() } else { format!("**/{text}") })
+    }
+
+    /// Whether it stands for a path with `/` between its folders.
+    pub(super) fn matches(&self, path: &str) -> bool {
+        let path = path.strip_prefix("./").unwrap_or(path);
+        let [pattern, path]: [Vec<&str>; 2] = [&self.0, path].map(|text| text.split('/').collect());
+        folders_match(&pattern, &path)
+    }
+}
+
+/// Matches part by part. In a table of which ends match, so that patterns with many stars take no longer than their length times
+/// the path's.
+fn folders_match(pattern: &[&str], path: &[&str]) -> bool {
+    ends_match(
+        pattern,
+        path,
+        |part| *part == "**",
+        |part, name| {
+            let [part, name]: [Vec<char>; 2] = [part, name].map(|text| text.chars().collect());
+            ends_match(&part, &name, |c| *c == '*', |c, own| *c == '?' || c == own)
+        },
+    )
+}
+
+/// Whether a pattern matches a whole row of items. `is_star` tells what stands for any number of items, also none.
+fn ends_match<T>(pattern: &[T], items: &[T], is_star: impl Fn(&T) -> bool, is_one: impl Fn(&T, &T) -> bool) -> bool {
+    // Whether the rest of the pattern matches the items from each place on; at first the empty rest.
+    let mut rest: Vec<bool> = (0..=items.len()).map(|from| from == items.len()).collect();
+    for part in pattern.iter().rev() {
+        let mut now = vec![false; items.len() + 1];
+        for from in (0..=items.len()).rev() {
+            now[from] = match is_star(part) {
+                true => rest[from] || now.get(from + 1).copied().unwrap_or(false),
+                false => from < items.len() && rest[from + 1] && is_one(part, &items[from]),
+            };
+        }
+        rest = now;
+    }
+    rest[0]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn patterns_match_names_folders_and_paths() {
+        for (pattern, path, expected) in [
+            ("*.glb", "a.glb", true),
+            ("*.glb", "props/old/a.glb", true),
+            ("*.glb", "a.gltf", false),
+            ("./props/*.glb", "props/a.glb", true),
+            ("props/*.glb", "./props/a.glb", true),
+            ("props/*.glb", "props/old/a.glb", false),
+            ("props/**/*.glb", "props/a.glb", true),
+            ("props/**/*.glb", "props/very/old/a.glb", true),
+            ("props/**", "props/very/old/a.glb", true),
+            ("props/**", "other/a.glb", false),
+            ("**/old/*", "props/old/a.glb", true),
+            ("a?.*", "ab.glb", true),
+            ("a?.*", "a.glb", false),
+            ("", "a", false),
+        ] {
+            assert_eq!(Pattern::new(pattern).matches(path), expected, "{pattern} {path}");
+        }
+    }
+
+    #[test]
+    fn many_stars_take_no_longer() {
+        let pattern = Pattern::new(&"*a".repeat(500));
+        assert!(!pattern.matches(&"a".repeat(400)));
+        assert!(pattern.matches(&"a".repeat(900)));
+    }
+}

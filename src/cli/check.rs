@@ -1,0 +1,151 @@
+//! `pnaen check`: holds a folder of assets to gates, and reports what was found.
+
+mod measuring;
+mod plan;
+
+use std::collections::BTreeMap;
+use std::num::NonZero;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+
+use clap::ValueEnum;
+
+use super::gate_options::FailOnOption;
+use super::interrupt::stop_on_interrupt;
+use super::{AdapterOption, CliError, Telling, file_error, file_of, keep_apart, note, options, write_text};
+use crate::check::{Asset, Cache, Report, junit, page, sarif};
+use crate::cores::in_ranges;
+use crate::engine::Engine;
+use crate::files::file_reason;
+use crate::load::Source;
+
+use plan::Job;
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// Meshes, shapes made in code, and folders, in and below which all meshes are checked
+    #[arg(required = true, value_parser = options::source())]
+    pub files: Vec<Source>,
+    /// Configuration with gates, options of render, cameras, and sections for some of the files; by default pnaen.toml in the
+    /// working folder, if it is there
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
+    /// Gates in place of those of the configuration
+    #[command(flatten)]
+    pub gates: FailOnOption,
+    /// Format of the report
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t = Format::Text)]
+    pub format: Format,
+    /// File for the report (- for standard output)
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    pub output: PathBuf,
+    /// Folder for a page with a picture of each asset and of the worst place of each failed gate, index.html; made if it isn't
+    /// there
+    #[arg(long, value_name = "DIR")]
+    pub page: Option<PathBuf>,
+    /// Folder that keeps what was found, so that an unchanged asset isn't measured again; made if it isn't there
+    #[arg(long, value_name = "DIR")]
+    pub cache: Option<PathBuf>,
+    /// How many assets are loaded and measured at the same time; by default as many as there are cores, and at most 4
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub jobs: Option<u16>,
+    #[command(flatten)]
+    pub adapter: AdapterOption,
+}
+
+/// How the report is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// Lines for people
+    Text,
+    /// Every number, limit and place
+    Json,
+    /// JUnit XML, which build servers show as test results
+    Junit,
+    /// SARIF 2.1.0, which code hosts show beside the files
+    Sarif,
+}
+
+/// The page's file.
+const PAGE: &str = "index.html";
+
+pub(super) fn run(args: &Args) -> Result<(), CliError> {
+    let jobs = plan::plan(args)?;
+    let read = jobs.iter().map(|job| file_of(&job.source));
+    keep_apart(read.chain([args.config.as_deref()]), [Some(&*args.output)])?;
+    for folder in [&args.page, &args.cache].into_iter().flatten() {
+        std::fs::create_dir_all(folder).map_err(|error| file_error(folder, "made", &file_reason(&error)))?;
+    }
+    let stop = stop_on_interrupt("asset");
+    let report = checked(args, &jobs, &stop)?;
+    if let Some(folder) = &args.page {
+        write_text(&folder.join(PAGE), &page(&report))?;
+    }
+    let written = match args.format {
+        Format::Text => Ok(report.text()),
+        Format::Json => report.json().map_err(std::io::Error::from),
+        Format::Junit => junit(&report),
+        Format::Sarif => sarif(&report).map_err(std::io::Error::from),
+    };
+    write_text(&args.output, &written.map_err(CliError::Output)?)?;
+    match report.left_out {
+        0 if report.passed() => Ok(()),
+        0 => Err(CliError::Check(report.summary())),
+        left_out => Err(CliError::Interrupted { done: jobs.len() - left_out, all: jobs.len(), what: "assets" }),
+    }
+}
+
+/// Checks all assets, or until `stop` is set.
+fn checked(args: &Args, jobs: &[Job], stop: &AtomicBool) -> Result<Report, CliError> {
+    let cache = args.cache.as_deref().map(Cache::new);
+    let known = |job: &Job| cache.as_ref().filter(|_| job.is_kept)?.get(job.inputs());
+    let kept = in_ranges(jobs.len(), 1, |range| jobs[range].iter().map(known).collect::<Vec<_>>());
+    let mut found: BTreeMap<usize, Asset> =
+        kept.into_iter().flatten().enumerate().filter_map(|(index, asset)| Some((index, asset?))).collect();
+    let left: Vec<usize> = (0..jobs.len()).filter(|index| !found.contains_key(index)).collect();
+    if !left.is_empty() {
+        let engine = Engine::chosen(&args.adapter.choice())?;
+        found.append(&mut measured(args, jobs, &left, &engine, cache.as_ref(), stop));
+    }
+    let left_out = jobs.len() - found.len();
+    Ok(Report { assets: found.into_values().collect(), left_out })
+}
+
+/// Loads and measures the assets with these indices, several at a time: while one is loaded or measured on the host, the device works
+/// for another.
+fn measured(
+    args: &Args,
+    jobs: &[Job],
+    left: &[usize],
+    engine: &Engine,
+    cache: Option<&Cache>,
+    stop: &AtomicBool,
+) -> BTreeMap<usize, Asset> {
+    let (next, done) = (AtomicUsize::new(0), Mutex::new((BTreeMap::new(), Telling::new())));
+    let work = || {
+        while !stop.load(Ordering::Relaxed) {
+            let Some(&index) = left.get(next.fetch_add(1, Ordering::Relaxed)) else { return };
+            let asset = measuring::measured(&jobs[index], engine, args.page.is_some(), cache);
+            let (found, telling) = &mut *done.lock().unwrap_or_else(PoisonError::into_inner);
+            found.insert(index, asset);
+            telling.say(|| format!("{} of {} assets are checked", found.len(), left.len()));
+        }
+    };
+    let usual = thread::available_parallelism().map_or(1, NonZero::get).min(4);
+    let workers = args.jobs.map_or(usual, usize::from).min(left.len());
+    thread::scope(|scope| {
+        // Where the system has no further thread, those that there are do the work.
+        let others: Vec<_> =
+            (1..workers).filter_map(|_| thread::Builder::new().spawn_scoped(scope, work).ok()).collect();
+        work();
+        drop(others);
+    });
+    done.into_inner().unwrap_or_else(PoisonError::into_inner).0
+}
+
+/// Says on standard error that the cache can't be used.
+fn say_unkept(error: &std::io::Error) {
+    note(&format!("what was found can't be kept: {}", file_reason(error)));
+}

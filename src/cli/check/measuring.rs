@@ -1,0 +1,84 @@
+//! Loads and measures one asset.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use image::imageops::FilterType;
+use image::{DynamicImage, RgbaImage};
+
+use super::plan::Job;
+use super::say_unkept;
+use crate::check::{Asset, Cache, GateResult, View};
+use crate::cli::picture_file::png_bytes;
+use crate::cli::shot::Shot;
+use crate::cli::{CliError, file_error, file_of};
+use crate::engine::Engine;
+use crate::gates::Judgement;
+use crate::names::on_one_line;
+use crate::progress::Progress;
+
+/// The most px along a side of a picture on the page.
+const MOST_PX: u32 = 704;
+
+/// What is found about an asset. An asset that can't be checked has the reason; so has one at which the program panics.
+pub(super) fn measured(job: &Job, engine: &Engine, pictures: bool, cache: Option<&Cache>) -> Asset {
+    let mut asset = Asset { path: job.name.clone(), ..Asset::default() };
+    let ended = catch_unwind(AssertUnwindSafe(|| measure(job, engine, pictures, &mut asset)));
+    let files = match ended {
+        Ok(Ok(files)) => Some(files),
+        Ok(Err(error)) => {
+            asset.error = Some(on_one_line(&error.to_string()));
+            None
+        }
+        Err(_) => {
+            asset.error = Some(format!("{}: checking it stopped unexpectedly, which is an error of pnaen", job.name));
+            None
+        }
+    };
+    if let Some((cache, files)) = cache.filter(|_| job.is_kept).zip(files)
+        && let Err(error) = cache.put(job.inputs(), &files, &asset)
+    {
+        say_unkept(&error);
+    }
+    asset
+}
+
+/// Fills in what is found. Returns the files that were read.
+fn measure(job: &Job, engine: &Engine, pictures: bool, asset: &mut Asset) -> Result<Vec<PathBuf>, CliError> {
+    let progress = Progress::new();
+    let Some((_, first)) = job.views.first() else { return Ok(Vec::new()) };
+    let loaded = crate::engine::load(&job.source, &first.surface.preparation(), &progress)?;
+    asset.warnings.clone_from(&loaded.warnings);
+    for (index, (name, options)) in job.views.iter().enumerate() {
+        let (subject, _) = options.subject_of(loaded.clone())?;
+        let mut shot = options.shot(engine.clone(), subject)?;
+        let picture = if pictures { Some(encoded(job, shot.picture(None, &progress)?)?) } else { None };
+        // What is about the mesh itself is the same in all views.
+        let gates: Vec<_> = job.gates.iter().copied().filter(|gate| index == 0 || !gate.kind.is_of_mesh()).collect();
+        let judged = shot.judge(&gates, options.surface.tessellation().tolerance, &progress)?;
+        let result = |judgement: &Judgement| result(job, &mut shot, judgement, pictures);
+        let gates = judged.iter().map(result).collect::<Result<_, CliError>>()?;
+        asset.views.push(View { name: name.clone(), numbers: shot.numbers(), gates, picture });
+    }
+    let own = file_of(&job.source).map(Path::to_owned);
+    Ok(own.into_iter().chain(loaded.files).chain(job.read.iter().cloned()).collect())
+}
+
+/// How a gate judged, with a picture of its place if it failed and pictures are wanted.
+fn result(job: &Job, shot: &mut Shot, judgement: &Judgement, pictures: bool) -> Result<GateResult, CliError> {
+    let shown = if pictures && judgement.failed() { shot.evidence(judgement, &Progress::new())? } else { None };
+    let evidence = shown.map(|picture| encoded(job, picture)).transpose()?;
+    Ok(GateResult::new(judgement, evidence))
+}
+
+/// A picture as it is on the page: no larger than it is shown there on a dense screen, a PNG file in base64.
+fn encoded(job: &Job, picture: RgbaImage) -> Result<String, CliError> {
+    let mut picture = DynamicImage::from(picture);
+    if picture.width() > MOST_PX || picture.height() > MOST_PX {
+        picture = picture.resize(MOST_PX, MOST_PX, FilterType::Triangle);
+    }
+    let bytes = png_bytes(&picture).map_err(|error| file_error(job.name.as_ref(), "encoded", &error))?;
+    Ok(STANDARD.encode(bytes))
+}

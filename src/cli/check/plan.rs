@@ -1,0 +1,164 @@
+//! What is to be checked, and how: the assets, each with what the configuration says about it.
+
+use std::path::{Path, PathBuf};
+
+use clap::error::ErrorKind;
+use clap::{CommandFactory, Parser};
+
+use super::Args;
+use crate::check::{Config, ConfigError, FolderError, Inputs, OptionValue, Section, assets};
+use crate::cli::shot_options::ShotOptions;
+use crate::cli::{CliError, file_error};
+use crate::files::file_reason;
+use crate::gates::Gate;
+use crate::load::Source;
+use crate::names::on_one_line;
+
+/// The configuration that is read if there is one and none is named.
+const CONFIG: &str = "pnaen.toml";
+/// The options of a camera: those that a named view may have.
+const CAMERA: [&str; 6] = ["camera", "target", "orthographic", "field-of-view", "roll", "file-camera"];
+/// The options whose values are paths, which are relative to the configuration's folder.
+const PATHS: [&str; 5] = ["height", "environment", "truth", "matcap-image", "factors"];
+
+/// An asset, and how it is checked.
+pub(super) struct Job {
+    pub source: Source,
+    /// Its path with `/` between folders.
+    pub name: String,
+    pub gates: Vec<Gate>,
+    /// Named views; the only one has no name.
+    pub views: Vec<(String, ShotOptions)>,
+    /// Files that the options name.
+    pub read: Vec<PathBuf>,
+    /// All of the configuration that holds for it, as text.
+    configuration: String,
+    /// Whether what is found may be kept.
+    pub is_kept: bool,
+}
+
+impl Job {
+    pub(super) fn inputs(&self) -> Inputs<'_> {
+        let path = if let Source::File(path) = &self.source { path } else { Path::new(&self.name) };
+        Inputs { path, configuration: &self.configuration }
+    }
+}
+
+/// All options of `render` that say what is drawn and from where.
+#[derive(Clone, Debug, Parser)]
+#[command(no_binary_name = true, disable_help_flag = true)]
+struct Options {
+    #[command(flatten)]
+    shot: ShotOptions,
+}
+
+/// What is to be checked, in the order in which it is reported.
+///
+/// # Errors
+/// A folder or the configuration can't be read, the configuration is wrong, or there is nothing to check.
+pub(super) fn plan(args: &Args) -> Result<Vec<Job>, CliError> {
+    let usual = Path::new(CONFIG);
+    let path = args.config.as_deref().or_else(|| usual.is_file().then_some(usual));
+    let command = Options::command();
+    let names: Vec<String> = command.get_arguments().filter_map(|arg| arg.get_long().map(str::to_owned)).collect();
+    let config = path.map(|path| Config::read(path, &names, &CAMERA)).transpose()?.unwrap_or_default();
+    let folder = path.and_then(Path::parent).unwrap_or(Path::new(""));
+    let unreadable = |FolderError { folder, error }: FolderError| file_error(&folder, "read", &file_reason(&error));
+    let found = assets(&args.files).map_err(unreadable)?;
+    if found.is_empty() {
+        return Err(CliError::NoAssets);
+    }
+    found.into_iter().map(|source| job(args, &config, folder, source)).collect()
+}
+
+fn job(args: &Args, config: &Config, folder: &Path, source: Source) -> Result<Job, CliError> {
+    let name = on_one_line(&source.to_string());
+    let name = if cfg!(windows) { name.replace('\\', "/") } else { name };
+    let Section { gates, mut options, cameras } = config.section(&name);
+    let gates = if args.gates.fail_on.is_empty() { gates.unwrap_or_default() } else { args.gates.fail_on.clone() };
+    let read = options.iter_mut().filter(|option| PATHS.contains(&option.name.as_str()));
+    let read: Vec<PathBuf> = read.flat_map(|option| resolved(option, folder)).collect();
+    let mut views = Vec::new();
+    if cameras.is_empty() {
+        views.push((String::new(), parsed(config, &options, &source)?));
+    }
+    for (name, camera) in cameras {
+        let others = options.iter().filter(|option| !CAMERA.contains(&option.name.as_str()));
+        let all: Vec<OptionValue> = others.chain(&camera).cloned().collect();
+        views.push((name, parsed(config, &all, &source)?));
+    }
+    // A reference surface that is a file may name other files, which aren't known here.
+    let is_kept = matches!(source, Source::File(_))
+        && views.iter().all(|(_, options)| !matches!(options.truth.truth, Some(Source::File(_))));
+    let pictures = args.page.is_some();
+    let configuration = format!("{gates:?} {views:?} {pictures} {:?}", args.adapter.adapter);
+    Ok(Job { source, name, gates, views, read, configuration, is_kept })
+}
+
+/// Makes the paths of an option relative to the configuration's folder. Returns the files.
+fn resolved(option: &mut OptionValue, folder: &Path) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    for value in option.values.iter_mut().flatten() {
+        let is_file = match option.name.as_str() {
+            "truth" => !value.starts_with("shape:"),
+            "height" => value != "material",
+            _ => true,
+        };
+        if is_file {
+            let path = folder.join(&*value);
+            // Values of a TOML file are UTF-8, and a folder that isn't can't be part of one.
+            *value = path.to_string_lossy().into_owned();
+            files.push(path);
+        }
+    }
+    files
+}
+
+/// Reads options as the command line does.
+///
+/// # Errors
+/// A value is none of its option's, with its line; or options can't be together.
+fn parsed(config: &Config, options: &[OptionValue], source: &Source) -> Result<ShotOptions, CliError> {
+    let words = |option: &OptionValue| {
+        let name = option.name.clone();
+        let word = move |value: &Option<String>| match value {
+            Some(value) => format!("--{name}={value}"),
+            None => format!("--{name}"),
+        };
+        option.values.iter().map(word).collect::<Vec<_>>()
+    };
+    let own = match Options::try_parse_from(options.iter().flat_map(words)) {
+        Ok(own) => own.shot,
+        Err(error) => {
+            let alone = |option: &OptionValue| {
+                let wrong = Options::try_parse_from(words(option)).err()?;
+                // An option that needs another one has it in the whole.
+                let is_wrong = wrong.kind() != ErrorKind::MissingRequiredArgument;
+                is_wrong.then(|| config.wrong(option, &said(&wrong)))
+            };
+            return Err(options.iter().find_map(alone).unwrap_or_else(|| config.clash(&said(&error))).into());
+        }
+    };
+    if own.given.given.as_deref() == Some("-".as_ref()) {
+        return Err(config.clash("factors of a check can't come from standard input; name a file").into());
+    }
+    own.check(source, None, &[]).map_err(|error| match error {
+        CliError::Usage(reason) => config.clash(reason).into(),
+        other => other,
+    })?;
+    Ok(own)
+}
+
+/// What an error of the command line says, in one line.
+fn said(error: &clap::Error) -> String {
+    let text = error.to_string();
+    let lines = text.lines().take_while(|line| !line.trim().is_empty());
+    let line = lines.map(str::trim).collect::<Vec<_>>().join(" ");
+    line.strip_prefix("error: ").unwrap_or(&line).to_owned()
+}
+
+impl From<ConfigError> for CliError {
+    fn from(error: ConfigError) -> Self {
+        Self::Config(error)
+    }
+}

@@ -1,0 +1,76 @@
+//! The options `--fail-on` and `--evidence`: gates, and pictures of what they found.
+
+use std::path::{Path, PathBuf};
+
+use super::shot::Shot;
+use super::{CliError, file_error, write_picture};
+use crate::files::file_reason;
+use crate::gates::{Gate, GateKind, Judgement};
+use crate::load::Source;
+use crate::names::shown;
+use crate::progress::Progress;
+
+#[derive(Clone, Debug, Default, clap::Args)]
+pub(crate) struct GateOptions {
+    #[command(flatten)]
+    pub gates: FailOnOption,
+    /// Folder for a picture of the worst place of each gate that failed, named after the output and the gate; made if it isn't
+    /// there
+    #[arg(long, value_name = "DIR", requires = "fail_on")]
+    pub evidence: Option<PathBuf>,
+}
+
+#[derive(Clone, Debug, Default, clap::Args)]
+pub(crate) struct FailOnOption {
+    /// Fail (exit code 1) if one of these is found: cracks, factors (both sides of an edge were given different ones), leaks,
+    /// folds, t-junctions, warnings (of loading), above-tolerance (patches whose error on screen is above --tolerance),
+    /// triangles:N or bytes:N (more than N). NAME:N allows up to N of any
+    #[arg(long, value_name = "GATE,..", value_delimiter = ',')]
+    pub fail_on: Vec<Gate>,
+}
+
+impl FailOnOption {
+    /// Whether there is a gate of this kind.
+    pub(super) fn has(&self, kind: GateKind) -> bool {
+        self.fail_on.iter().any(|gate| gate.kind == kind)
+    }
+}
+
+impl GateOptions {
+    /// Writes pictures of the failed gates' worst places, if they were asked for. `stem` begins their names.
+    ///
+    /// # Errors
+    /// The folder can't be made, a picture can't be written, or the device was lost.
+    pub(super) fn write_evidence(&self, shot: &mut Shot, judged: &[Judgement], stem: &Path) -> Result<(), CliError> {
+        let Some(folder) = &self.evidence else { return Ok(()) };
+        for judgement in judged.iter().filter(|judgement| judgement.failed()) {
+            let Some(picture) = shot.evidence(judgement, &Progress::new())? else { continue };
+            std::fs::create_dir_all(folder).map_err(|error| file_error(folder, "made", &file_reason(&error)))?;
+            write_picture(&folder.join(evidence_name(stem, judgement.kind)), &picture.into())?;
+        }
+        Ok(())
+    }
+}
+
+/// The name of the picture of a gate, beside an output of this name.
+fn evidence_name(output: &Path, gate: GateKind) -> String {
+    format!("{}-{}.png", output.file_stem().unwrap_or_default().to_string_lossy(), gate.name())
+}
+
+/// Fails if a gate failed. Standard error tells which gates mean nothing for the mesh.
+///
+/// # Errors
+/// A sentence for each gate that failed.
+pub(super) fn pass(mesh: &Source, judged: &[Judgement]) -> Result<(), CliError> {
+    let sentences = failures(&shown(&mesh.to_string()), judged);
+    if sentences.is_empty() { Ok(()) } else { Err(CliError::Gates(sentences)) }
+}
+
+/// Returns a sentence for each gate that failed on the mesh with this name. Standard error tells which gates mean nothing for it.
+pub(super) fn failures(name: &str, judged: &[Judgement]) -> Vec<String> {
+    for judgement in judged.iter().filter(|judgement| judgement.passed.is_none()) {
+        super::note(&format!("{name}: the gate {} is not judged: {}", judgement.gate, judgement.text));
+    }
+    let failed = judged.iter().filter(|judgement| judgement.failed());
+    failed.map(|judgement| judgement.sentence_of(name)).collect()
+}

@@ -1,0 +1,113 @@
+//! Holds what a shot emitted to gates, and draws the worst place that one found.
+
+use image::RgbaImage;
+
+use super::{CliError, Shot};
+use crate::check::Numbers;
+use crate::engine::Measurements;
+use crate::gates::{Facts, Gate, GateKind, Judgement, judge};
+use crate::mesh::t_junctions;
+use crate::progress::Progress;
+use crate::render::worst_lines;
+use crate::settings::{Overlay, Overlays, Settings, SplitSide};
+
+impl Shot {
+    /// Judges the right half, seen from the picture's camera, by each gate, and measures what they need. `tolerance_px` is what
+    /// the error on screen is compared with. The stats have the judgements from now on.
+    ///
+    /// # Errors
+    /// The device was lost, or `progress` was cancelled.
+    pub(crate) fn judge(
+        &mut self,
+        gates: &[Gate],
+        tolerance_px: f32,
+        progress: &Progress,
+    ) -> Result<Vec<Judgement>, CliError> {
+        let has = |kind| gates.iter().any(|gate| gate.kind == kind);
+        let inputs = self.subject.settings.inputs(self.lod_view);
+        let Self { engine, scene, view, target, .. } = self;
+        let results = self.results[SplitSide::Right as usize].get_or_insert_default();
+        if results.survey.is_none() && gates.iter().any(|gate| gate.kind.needs_survey()) {
+            let wanted = Measurements { survey: true, ..Measurements::default() };
+            results.survey = engine.measure_watched(scene, &wanted, progress)?.survey;
+            progress.check()?;
+        }
+        let leaks = match &results.survey {
+            Some(measured) if has(GateKind::Leaks) => {
+                Some(engine.find_leaks(scene, &inputs, measured, target.size, &view.camera)?)
+            }
+            _ => None,
+        };
+        let is_compared = has(GateKind::AboveTolerance);
+        let above = is_compared.then(|| engine.patches_above(scene, &inputs, tolerance_px)).transpose()?;
+        self.error_place = above.and_then(|above| above.worst);
+        let junctions = has(GateKind::TJunctions);
+        let junctions = junctions.then(|| t_junctions(&self.subject.loaded.topology, progress)).transpose()?;
+        let (vertices, triangles) = scene.tessellator.totals();
+        self.judged = judge(
+            gates,
+            &Facts {
+                topology: &self.posed.topology,
+                warnings: &self.subject.loaded.warnings,
+                vertices,
+                triangles,
+                measured: results.survey.as_ref(),
+                junctions: junctions.as_deref(),
+                leaks: leaks.as_ref(),
+                above: above.as_ref(),
+            },
+        );
+        Ok(self.judged.clone())
+    }
+
+    /// How much the mesh has, and how much was emitted.
+    pub(crate) fn numbers(&self) -> Numbers {
+        let (vertices_out, triangles_out) = self.scene.tessellator.totals();
+        let triangles_in = self.posed.mesh.triangles.len() as u64;
+        Numbers { triangles_in, patches: self.posed.topology.patches.len() as u64, triangles_out, vertices_out }
+    }
+
+    /// Draws the worst place that a gate found, with the overlay that shows it, as it was tessellated for the judged picture.
+    /// None if the gate is about no place. The shot keeps its camera and settings.
+    ///
+    /// # Errors
+    /// The device was lost, or `progress` was cancelled.
+    pub(crate) fn evidence(
+        &mut self,
+        judgement: &Judgement,
+        progress: &Progress,
+    ) -> Result<Option<RgbaImage>, CliError> {
+        let Some(place) = &judgement.place else { return Ok(None) };
+        let (camera, settings) = (self.view.camera, self.subject.settings);
+        let (results, silhouette) = (std::mem::take(&mut self.results), self.silhouette.take());
+        let lines = self.subject.more_lines.clone();
+        self.view.camera = place.spot.camera(&camera, self.target.viewport(), &self.scene.bounds);
+        self.subject.settings = Settings { overlays: overlays_of(judgement.kind), split: None, ..settings };
+        if let Some(at) = place.spot.at() {
+            // The error has a line to where the emitted point should be.
+            let worst = self.error_place.filter(|_| judgement.kind == GateKind::AboveTolerance);
+            let mark = worst_lines(at, worst.map_or(at, |worst| worst.limit.as_vec3()));
+            self.subject.more_lines[SplitSide::Right as usize].extend(mark);
+        }
+        let picture = self.picture(None, progress);
+        (self.view.camera, self.subject.settings) = (camera, settings);
+        (self.results, self.silhouette) = (results, silhouette);
+        self.subject.more_lines = lines;
+        picture.map(Some)
+    }
+}
+
+/// The overlays that show what a gate found.
+fn overlays_of(kind: GateKind) -> Overlays {
+    let shown: &[Overlay] = match kind {
+        GateKind::Cracks => &[Overlay::Wireframe, Overlay::Cracks],
+        GateKind::Leaks => &[Overlay::Cracks],
+        GateKind::Factors => &[Overlay::Wireframe, Overlay::Factors],
+        GateKind::Folds => &[Overlay::Wireframe, Overlay::Folds],
+        GateKind::TJunctions => &[Overlay::Patches, Overlay::TJunctions],
+        GateKind::AboveTolerance => &[Overlay::Wireframe, Overlay::Patches],
+        GateKind::Warnings | GateKind::Triangles | GateKind::Bytes => &[],
+    };
+    // None of these lists has two overlays that colour the surface.
+    Overlays::of(shown).unwrap_or_default()
+}

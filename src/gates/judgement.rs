@@ -1,0 +1,255 @@
+//! Compares what was measured with the limits of gates, and finds the worst place of each that fails.
+
+use glam::Vec3;
+use serde::Serialize;
+
+use super::place::{Place, Spot};
+use super::{Gate, GateKind};
+use crate::measure::{CrackedEdge, Measured, PatchesAbove};
+use crate::mesh::{TJunction, Topology};
+use crate::names::shown;
+use crate::numbers::{exact, grouped, hundredths, short};
+use crate::render::{Leak, Leaks};
+use crate::tessellate::Vertex;
+
+/// What gates are judged by. What no gate asked for may be none.
+#[derive(Clone, Copy)]
+pub(crate) struct Facts<'a> {
+    /// The mesh in the pose that was tessellated.
+    pub topology: &'a Topology,
+    pub warnings: &'a [String],
+    /// The numbers of emitted vertices and triangles.
+    pub vertices: u64,
+    pub triangles: u64,
+    pub measured: Option<&'a Measured>,
+    pub junctions: Option<&'a [TJunction]>,
+    pub leaks: Option<&'a Leaks>,
+    pub above: Option<&'a PatchesAbove>,
+}
+
+impl<'a> Facts<'a> {
+    /// Facts of a mesh that nothing was measured of.
+    pub(crate) fn of_mesh(topology: &'a Topology) -> Self {
+        let (measured, junctions, leaks, above) = (None, None, None, None);
+        Self { topology, warnings: &[], vertices: 0, triangles: 0, measured, junctions, leaks, above }
+    }
+}
+
+/// How a gate judged.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Judgement {
+    #[serde(rename = "name")]
+    pub gate: &'static str,
+    #[serde(skip)]
+    pub kind: GateKind,
+    /// The largest number that passes.
+    pub limit: u64,
+    /// What was counted; none if it can't be counted.
+    pub found: Option<u64>,
+    /// None if the gate means nothing for this mesh, so that it neither passed nor failed.
+    pub passed: Option<bool>,
+    /// What was found, or why nothing could be counted, in a sentence without its end.
+    pub text: String,
+    /// The worst place of a gate that failed, if it is about a place.
+    #[serde(rename = "where")]
+    pub place: Option<Place>,
+}
+
+impl Judgement {
+    pub(crate) fn failed(&self) -> bool {
+        self.passed == Some(false)
+    }
+
+    /// The sentence of a gate that failed, about the mesh with this name, without its end.
+    pub(crate) fn sentence_of(&self, mesh: &str) -> String {
+        format!("{mesh} fails the gate {}: {}", self.gate, self.sentence())
+    }
+
+    /// What failed, how much of it there is, and where, in one sentence without its end. Meant for gates that failed.
+    pub(crate) fn sentence(&self) -> String {
+        let place = self.place.as_ref().map(|place| format!("; {}", place.text)).unwrap_or_default();
+        match self.found {
+            Some(_) => format!("{}, and {} may be{place}", self.text, grouped(self.limit)),
+            None => self.text.clone(),
+        }
+    }
+}
+
+/// What was counted for a gate: the number with its words, or why there is none.
+enum Count {
+    Number(u64, String),
+    /// The number means nothing for this mesh.
+    Meaningless(&'static str),
+    /// The number could be had with another view.
+    Unknown(&'static str),
+}
+
+/// Judges by each gate.
+pub(crate) fn judge(gates: &[Gate], facts: &Facts) -> Vec<Judgement> {
+    gates.iter().map(|gate| judged(*gate, facts)).collect()
+}
+
+fn judged(Gate { kind, limit }: Gate, facts: &Facts) -> Judgement {
+    let (found, passed, text) = match count(kind, facts) {
+        Count::Number(found, text) => (Some(found), Some(found <= limit), text),
+        Count::Meaningless(why) => (None, None, why.to_owned()),
+        Count::Unknown(why) => (None, Some(false), why.to_owned()),
+    };
+    let place = if passed == Some(false) { worst(kind, facts) } else { None };
+    Judgement { gate: kind.name(), kind, limit, found, passed, text, place }
+}
+
+fn count(kind: GateKind, facts: &Facts) -> Count {
+    let measured = |number: fn(&Measured) -> u64| facts.measured.map_or(0, number);
+    let some = |number: u64, one: &str, several: &str| {
+        let words = if number == 1 { one } else { several };
+        Count::Number(number, words.replace('#', &grouped(number)))
+    };
+    match kind {
+        GateKind::Cracks => {
+            let cracked = measured(|measured| measured.cracks.cracked().count() as u64);
+            some(cracked, "# edge is cracked", "# edges are cracked")
+        }
+        GateKind::Factors => {
+            let different = measured(|measured| measured.cracks.different_factors);
+            some(different, "# edge has sides with different factors", "# edges have sides with different factors")
+        }
+        GateKind::Folds => some(measured(|measured| measured.folds), "# triangle is folded", "# triangles are folded"),
+        GateKind::Leaks => match facts.leaks {
+            Some(Leaks::Counted(leaks)) => {
+                let px = leaks.iter().map(|leak| u64::from(leak.pixels)).sum();
+                some(px, "# px shows the inside of the mesh", "# px show the inside of the mesh")
+            }
+            Some(Leaks::Open) => Count::Meaningless("leaks are counted in closed meshes, and this one is open"),
+            Some(Leaks::NearPlane) | None => {
+                Count::Unknown("leaks can't be counted where the near plane cuts the mesh: move the camera away")
+            }
+        },
+        GateKind::TJunctions => {
+            let junctions = facts.junctions.map_or(0, |junctions| junctions.len() as u64);
+            some(junctions, "the mesh has # T-junction", "the mesh has # T-junctions")
+        }
+        GateKind::Warnings => match facts.warnings {
+            [] => Count::Number(0, "loading gave no warning".to_owned()),
+            [only] => Count::Number(1, format!("loading gave a warning ({})", clause(only))),
+            [first, ..] => {
+                let count = facts.warnings.len() as u64;
+                Count::Number(count, format!("loading gave {} warnings (the first: {})", grouped(count), clause(first)))
+            }
+        },
+        GateKind::AboveTolerance => {
+            let above = facts.above.map_or(0, |above| above.patches);
+            let tolerance = facts.above.map_or(0.0, |above| above.tolerance_px);
+            let beyond = |words: &str| format!("{words} farther than {} px from its surface", exact(tolerance));
+            some(above, &beyond("# patch is"), &beyond("# patches are").replace("its surface", "their surface"))
+        }
+        GateKind::Triangles => some(facts.triangles, "# triangle is emitted", "# triangles are emitted"),
+        GateKind::Bytes => {
+            let bytes = output_bytes(facts.vertices, facts.triangles);
+            some(bytes, "vertices and indices take # byte", "vertices and indices take # bytes")
+        }
+    }
+}
+
+/// A warning within a sentence.
+fn clause(warning: &str) -> String {
+    shown(warning).trim_end_matches('.').to_owned()
+}
+
+/// The memory of emitted vertices and indices, in bytes.
+fn output_bytes(vertices: u64, triangles: u64) -> u64 {
+    vertices * size_of::<Vertex>() as u64 + triangles * size_of::<[u32; 3]>() as u64
+}
+
+fn worst(kind: GateKind, facts: &Facts) -> Option<Place> {
+    match kind {
+        GateKind::Cracks => worst_crack(facts),
+        GateKind::Factors => worst_factors(facts),
+        GateKind::Leaks => worst_leak(facts),
+        GateKind::Folds => worst_fold(facts),
+        GateKind::TJunctions => worst_junction(facts),
+        GateKind::AboveTolerance => worst_error(facts),
+        GateKind::Warnings | GateKind::Triangles | GateKind::Bytes => None,
+    }
+}
+
+/// A place on an edge of the mesh. `text` makes its words of those for the edge's triangles. Without a position, it is the middle.
+fn edge_place(topology: &Topology, index: u32, at: Option<Vec3>, text: impl FnOnce(&str) -> String) -> Place {
+    let edge = &topology.edges[index as usize];
+    let sides = topology.edge_sides(edge).iter();
+    let triangles: Vec<u32> = sides.map(|side| topology.patches[side.patch() as usize].triangle).collect();
+    let ends = topology.edge_points(edge).map(|point| topology.points[point as usize]);
+    let between = match triangles[..] {
+        [only] => format!("of triangle {only}"),
+        [a, b] => format!("between triangles {a} and {b}"),
+        _ => format!("between {} triangles", triangles.len()),
+    };
+    let at = at.unwrap_or(ends[0] * 0.5 + ends[1] * 0.5);
+    let text = text(&format!("{between} at {}", position(at)));
+    Place { text, triangles, spot: Spot::Edge { ends, facing: topology.edge_facing(edge), at } }
+}
+
+/// A position in object units, in words.
+fn position(place: Vec3) -> String {
+    let [x, y, z] = place.to_array().map(|coordinate| short(f64::from(coordinate)));
+    format!("({x}, {y}, {z})")
+}
+
+fn worst_crack(facts: &Facts) -> Option<Place> {
+    // The widest gap is the first.
+    let crack = facts.measured?.cracks.cracked().next()?;
+    let gap = short(crack.gap);
+    let [a, b] = crack.widest;
+    // Sides may differ in their factors alone.
+    let at = (crack.gap > 0.0).then_some(a * 0.5 + b * 0.5);
+    Some(edge_place(facts.topology, crack.edge, at, |there| format!("the widest gap, {gap} object units, is {there}")))
+}
+
+fn worst_factors(facts: &Facts) -> Option<Place> {
+    let measured = facts.measured?;
+    let range = |crack: &CrackedEdge| {
+        let sides = measured.outlines.edge(facts.topology, crack.edge);
+        let factors = sides.iter().map(|side| side.factor);
+        let (least, most) = (factors.clone().fold(f32::INFINITY, f32::min), factors.fold(f32::NEG_INFINITY, f32::max));
+        (crack.edge, least, most)
+    };
+    let different = measured.cracks.edges.iter().filter(|crack| crack.different_factors).map(range);
+    let (edge, least, most) = different.reduce(|a, b| if b.2 - b.1 > a.2 - a.1 { b } else { a })?;
+    let factors = format!("{} and {}", exact(least), exact(most));
+    Some(edge_place(facts.topology, edge, None, |there| format!("the factors differ most, {factors}, {there}")))
+}
+
+fn worst_leak(facts: &Facts) -> Option<Place> {
+    let Some(Leaks::Counted(leaks)) = facts.leaks else { return None };
+    // The largest is the first.
+    let Leak { middle, pixels } = *leaks.first()?;
+    let text = format!("the largest leak, {pixels} px, is at x {:.0}, y {:.0} px of the picture", middle.x, middle.y);
+    Some(Place { text, triangles: Vec::new(), spot: Spot::Px(middle) })
+}
+
+fn worst_fold(facts: &Facts) -> Option<Place> {
+    // The largest area is the first.
+    let fold = facts.measured?.folded.first()?;
+    let corners = facts.topology.patch_positions(fold.patch);
+    let triangle = facts.topology.patches[fold.patch as usize].triangle;
+    let (folds, place) = (grouped(u64::from(fold.folds)), position(fold.place));
+    let text = format!("the largest are {folds} of triangle {triangle} at {place}");
+    Some(Place { text, triangles: vec![triangle], spot: Spot::Patch { corners, at: fold.place } })
+}
+
+fn worst_junction(facts: &Facts) -> Option<Place> {
+    let worst = facts.junctions?.iter().reduce(|a, b| if b.distance > a.distance { b } else { a })?;
+    let at = facts.topology.points[worst.point as usize];
+    let distance = short(f64::from(worst.distance));
+    let words = |there: &str| format!("the farthest point lies {distance} object units beside the edge {there}");
+    Some(edge_place(facts.topology, worst.edge, Some(at), words))
+}
+
+fn worst_error(facts: &Facts) -> Option<Place> {
+    let worst = facts.above?.worst?;
+    let corners = facts.topology.patch_positions(worst.patch);
+    let triangle = facts.topology.patches[worst.patch as usize].triangle;
+    let at = worst.emitted.as_vec3();
+    let text = format!("the farthest, {} px, is of triangle {triangle} at {}", hundredths(worst.px), position(at));
+    Some(Place { text, triangles: vec![triangle], spot: Spot::Patch { corners, at } })
+}

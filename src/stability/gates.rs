@@ -1,0 +1,79 @@
+//! Holds the rows of a run to gates.
+
+use super::{Quantity, Row};
+use crate::gates::{Gate, GateKind};
+use crate::numbers::{grouped, short};
+
+/// The quantity that a gate judges; none if rows don't have it.
+fn quantity(kind: GateKind) -> Option<Quantity> {
+    match kind {
+        GateKind::Cracks => Some(Quantity::Points),
+        GateKind::Factors => Some(Quantity::Factors),
+        GateKind::Leaks => Some(Quantity::Leaks),
+        GateKind::Folds => Some(Quantity::Folds),
+        GateKind::TJunctions
+        | GateKind::Warnings
+        | GateKind::AboveTolerance
+        | GateKind::Triangles
+        | GateKind::Bytes => None,
+    }
+}
+
+/// A sentence without its end for each gate that a row fails, with the worst of these rows.
+pub(crate) fn failures(gates: &[Gate], rows: &[Row]) -> Vec<String> {
+    gates.iter().filter_map(|gate| failure(gate, rows)).collect()
+}
+
+fn failure(Gate { kind, limit }: &Gate, rows: &[Row]) -> Option<String> {
+    let quantity = quantity(*kind)?;
+    let fails = |row: &&Row| row.quantity == quantity && row.measured > *limit as f64;
+    let worst = rows.iter().filter(fails).reduce(|a, b| if b.measured > a.measured { b } else { a })?;
+    let mut methods: Vec<&str> = Vec::new();
+    for row in rows.iter().filter(fails).filter(|row| row.case == worst.case) {
+        if !methods.contains(&row.method) {
+            methods.push(row.method);
+        }
+    }
+    let others = match methods.len() {
+        1 => String::new(),
+        several => format!("; {several} methods fail there"),
+    };
+    let Row { case, method, device, partitioning, measured, unit, .. } = worst;
+    let number = if measured.fract() == 0.0 { grouped(*measured as u64) } else { short(*measured) };
+    Some(format!(
+        "{case} fails the gate {}: {method} has {number} {unit} with {partitioning} partitioning on {device}, and {} may \
+         be{others}",
+        kind.name(),
+        grouped(*limit),
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_worst_row_of_a_gate_is_named() {
+        let row = |case: &str, method, quantity: Quantity, measured| Row {
+            case: case.into(),
+            method,
+            device: "cpu".into(),
+            partitioning: "integer",
+            measured,
+            unit: quantity.unit(),
+            promised: false,
+            holds: measured <= quantity.limit(),
+            quantity,
+        };
+        let rows = [
+            row("cube", "PN", Quantity::Points, 12.0),
+            row("cube", "Phong", Quantity::Points, 3.0),
+            row("cube", "PN", Quantity::Leaks, 4.0),
+        ];
+        let gate = |text: &str| text.parse::<Gate>().expect("a gate");
+        let said = failures(&[gate("cracks"), gate("leaks:4"), gate("folds"), gate("warnings")], &rows);
+        let expected = "cube fails the gate cracks: PN has 12 edge points that differ with integer partitioning on cpu, and 0 \
+                        may be; 2 methods fail there";
+        assert_eq!(said, [expected]);
+    }
+}

@@ -1,0 +1,242 @@
+//! Gates: `--fail-on` and `--evidence` of `render`, `tessellate` and `stability`.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::{Folder, failure, number, output, run, write_corners};
+
+const VIEW: [&str; 2] = ["--size", "160x120"];
+
+/// Draws a mesh with gates. Returns the exit code, standard error, and the gates of the stats.
+fn drawn(arguments: &[&str]) -> (Option<i32>, String, Vec<Value>) {
+    let folder = Folder::new();
+    let [picture, stats] = ["out.png", "stats.json"].map(|name| folder.path(name));
+    let all =
+        [&["render"], arguments, &VIEW, &["-o", &picture, "--stats", &stats, "--measure-error", "false"]].concat();
+    let ran = run(&all);
+    assert!(Path::new(&picture).exists(), "the picture is written whatever gates say");
+    let stats: Value = serde_json::from_slice(&std::fs::read(&stats).expect("stats")).expect("JSON");
+    let gates = stats["gates"].as_array().expect("an array").clone();
+    (ran.status.code(), String::from_utf8_lossy(&ran.stderr).into_owned(), gates)
+}
+
+/// Writes a mesh of three triangles: a square's half, and beside its long edge two that meet in its middle. `extra` is appended.
+fn write_junction(folder: &Folder, extra: &str) -> String {
+    let path = folder.path("junction.obj");
+    let text = "v 0 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nv 0.5 0.5 0\nf 1 2 3\nf 1 4 5\nf 5 4 2\n";
+    std::fs::write(&path, format!("{text}{extra}")).expect("a writable folder");
+    path
+}
+
+/// Writes a triangle whose normals lean so that its patch turns over.
+fn write_folds(folder: &Folder) -> String {
+    let positions = [[0.0, 0.0, 0.0], [0.28, 0.0, 0.2], [1.0, 0.0, 0.0]];
+    let leaning = [[0.0, 1.0, 0.0], [-0.77, 0.32, -0.56], [0.84, 0.28, 0.45]];
+    write_corners(folder, &[0, 1, 2].map(|k| (positions[k], leaning[k])))
+}
+
+#[test]
+fn a_sound_mesh_passes_all_gates() {
+    let gates = "cracks,factors,leaks,folds,t-junctions,warnings,above-tolerance,triangles:100000,bytes:4000000";
+    let (code, said, gates) = drawn(&["shape:torus", "--lod", "error", "--tolerance", "0.5", "--fail-on", gates]);
+    assert_eq!((code, said.as_str()), (Some(0), ""));
+    assert_eq!(gates.len(), 9);
+    for gate in &gates {
+        assert_eq!((&gate["passed"], &gate["where"]), (&true.into(), &Value::Null), "{gate}");
+    }
+    let found = |index: usize| number(&gates[index], "/found");
+    assert_eq!(number(&gates[7], "/limit"), 100_000.0);
+    // A vertex takes 32 bytes, and a triangle 12. A closed mesh has at least half as many vertices as triangles.
+    assert!(found(8) > found(7) * 28.0, "{gates:?}");
+}
+
+#[test]
+fn every_gate_fails_on_what_it_is_about() {
+    let folder = Folder::new();
+    let (junction, folds) = (write_junction(&folder, ""), write_folds(&folder));
+    let published = ["--edges", "as-published", "--lod", "paper", "--pixels", "4"];
+    let torn = ["shape:cube-split", "--surface", "pn"];
+    let cases: [(&str, &[&str], &[&str]); 9] = [
+        (
+            "cracks",
+            &torn,
+            &["12 edges are cracked, and 0 may be", "the widest gap", "object units", "between triangles"],
+        ),
+        ("cracks:11", &torn, &["12 edges are cracked, and 11 may be"]),
+        ("leaks", &torn, &["px show the inside of the mesh", "the largest leak", "px of the picture"]),
+        ("factors", &[&["shape:torus"], &published[..]].concat(), &["sides with different factors", "differ most"]),
+        ("folds", &[&folds], &["folded", "triangle 0"]),
+        ("t-junctions", &[&junction], &["1 T-junction", "(0.500, 0.500, 0)", "beside the edge of triangle 0"]),
+        (
+            "above-tolerance",
+            &["shape:torus", "--factor", "1"],
+            &["farther than 0.25 px", "the farthest", "of triangle"],
+        ),
+        ("triangles:100", &["shape:torus"], &["triangles are emitted, and 100 may be"]),
+        ("bytes:100", &["shape:torus"], &["vertices and indices take", "bytes, and 100 may be"]),
+    ];
+    for (gate, arguments, words) in cases {
+        let (code, said, gates) = drawn(&[arguments, &["--fail-on", gate]].concat());
+        assert_eq!(code, Some(1), "{gate}: {said}");
+        let name = gate.split(':').next().expect("a name");
+        let line = said.lines().find(|line| line.contains(&format!("fails the gate {name}: ")));
+        let line = line.unwrap_or_else(|| panic!("{gate}: {said}"));
+        for word in words {
+            assert!(line.contains(word), "{word:?} is not in {line}");
+        }
+        assert_eq!(gates.len(), 1);
+        assert_eq!((&gates[0]["name"], &gates[0]["passed"]), (&name.into(), &false.into()));
+        assert!(number(&gates[0], "/found") > number(&gates[0], "/limit"), "{gates:?}");
+        let has_place = !matches!(name, "triangles" | "bytes");
+        assert_eq!(gates[0]["where"]["text"].is_string(), has_place, "{gates:?}");
+    }
+}
+
+#[test]
+fn warnings_of_loading_fail_their_gate_with_the_first_one() {
+    let folder = Folder::new();
+    let odd = write_junction(&folder, "f 1 2 99\n");
+    let (code, said, gates) = drawn(&[&odd, "--fail-on", "warnings,cracks"]);
+    assert_eq!(code, Some(1), "{said}");
+    assert!(
+        said.contains("fails the gate warnings: loading gave 2 warnings (the first: faces without normals"),
+        "{said}"
+    );
+    assert_eq!((&gates[0]["passed"], &gates[1]["passed"]), (&false.into(), &true.into()));
+    let (code, ..) = drawn(&[&odd, "--fail-on", "warnings:2"]);
+    assert_eq!(code, Some(0));
+}
+
+#[test]
+fn each_failed_gate_is_one_sentence() {
+    let gates = "cracks,leaks,folds,triangles:1";
+    let (code, said, found) = drawn(&["shape:cube-split", "--surface", "pn", "--fail-on", gates]);
+    assert_eq!((code, said.lines().count()), (Some(1), 3), "{said}");
+    assert!(said.lines().all(|line| line.starts_with("pnaen: shape:cube-split fails the gate ")), "{said}");
+    let passed: Vec<_> = found.iter().map(|gate| gate["passed"].as_bool()).collect();
+    assert_eq!(passed, [Some(false), Some(false), Some(true), Some(false)]);
+}
+
+#[test]
+fn leaks_are_judged_with_backs_left_out_and_not_for_open_meshes() {
+    let torn = ["shape:cube-split", "--surface", "pn", "--fail-on", "leaks"];
+    let (_, _, whole) = drawn(&torn);
+    let (code, _, culled) = drawn(&[&torn[..], &["--cull-back-faces"]].concat());
+    assert_eq!((code, number(&culled[0], "/found")), (Some(1), number(&whole[0], "/found")));
+    let (code, said, gates) = drawn(&["shape:saddle", "--fail-on", "leaks"]);
+    assert_eq!((code, &gates[0]["passed"], &gates[0]["found"]), (Some(0), &Value::Null, &Value::Null));
+    assert!(said.contains("the gate leaks is not judged") && said.contains("open"), "{said}");
+    // The eye is inside the mesh, and another view would do.
+    let (code, said, gates) = drawn(&["shape:torus", "--camera", "0,0,0.01", "--fail-on", "leaks"]);
+    assert_eq!((code, &gates[0]["passed"], &gates[0]["found"]), (Some(1), &false.into(), &Value::Null));
+    assert!(said.contains("move the camera away"), "{said}");
+}
+
+#[test]
+fn a_raised_tolerance_is_judged_by_the_one_that_was_asked_for() {
+    let options = ["shape:torus", "--lod", "error", "--tolerance", "0.1", "--fail-on", "above-tolerance"];
+    assert_eq!(drawn(&options).0, Some(0));
+    let (code, said, _) = drawn(&[&options[..], &["--max-triangles", "600"]].concat());
+    assert_eq!(code, Some(1), "{said}");
+    assert!(said.contains("tolerance raised from 0.1") && said.contains("farther than 0.1 px"), "{said}");
+}
+
+#[test]
+fn evidence_shows_the_worst_places() {
+    let folder = Folder::new();
+    let [picture, evidence] = ["cube.png", "evidence"].map(|name| folder.path(name));
+    let base = ["render", "shape:cube-split", "--surface", "pn", "-o", &picture, "--evidence", &evidence];
+    output(&[&base[..], &VIEW, &["--fail-on", "folds"]].concat());
+    assert!(!Path::new(&evidence).exists(), "nothing failed");
+    failure(&[&base[..], &VIEW, &["--fail-on", "cracks,leaks,folds,triangles:1"]].concat(), 1);
+    let mut names: Vec<_> =
+        std::fs::read_dir(&evidence).expect("a folder").map(|entry| entry.expect("a file")).collect();
+    names.sort_by_key(std::fs::DirEntry::file_name);
+    let names: Vec<_> = names.iter().map(|entry| entry.file_name().into_string().expect("UTF-8")).collect();
+    assert_eq!(names, ["cube-cracks.png", "cube-leaks.png"]);
+    let plain = image::open(&picture).expect("a PNG file").to_rgba8();
+    // FACTOR and crack colours are those of src/render/layout.rs; a crack is red.
+    let red = |picture: &image::RgbaImage| {
+        picture.pixels().filter(|pixel| pixel.0[0] > 200 && pixel.0[1] < 90 && pixel.0[2] < 90).count()
+    };
+    assert_eq!(red(&plain), 0);
+    for name in names {
+        let shown = image::open(Path::new(&evidence).join(&name)).expect("a PNG file").to_rgba8();
+        assert_eq!(shown.dimensions(), (160, 120));
+        assert!(red(&shown) > 40, "{name} has {} red px", red(&shown));
+    }
+    let written = std::fs::read(&folder.path("cube.png")).expect("a file");
+    let blocked = ["--fail-on", "cracks", "--evidence", &folder.path("cube.png")];
+    let said = failure(
+        &[&["render", "shape:cube-split", "--surface", "pn", "-o", &folder.path("b.png")], &VIEW[..], &blocked]
+            .concat(),
+        1,
+    );
+    assert!(said.contains("cube.png") && said.contains("could not be made"), "{said}");
+    assert_eq!(std::fs::read(folder.path("cube.png")).expect("a file"), written);
+}
+
+#[test]
+fn tessellate_is_judged_alike_on_both_devices() {
+    let folder = Folder::new();
+    let gates = "cracks,factors,folds,t-junctions,above-tolerance,triangles:100,bytes:100";
+    let said = ["cpu", "gpu"].map(|device| {
+        let out = folder.path(&format!("{device}.glb"));
+        let said = failure(
+            &["tessellate", "shape:cube-split", "--surface", "pn", "-o", &out, "--device", device, "--fail-on", gates],
+            1,
+        );
+        assert!(Path::new(&out).exists());
+        said
+    });
+    assert_eq!(said[0], said[1]);
+    assert_eq!(said[0].lines().count(), 4, "cracks, above-tolerance, triangles and bytes: {}", said[0]);
+    let evidence = folder.path("evidence");
+    let out = folder.path("torn.glb");
+    let options = ["-o", &out, "--size", "160x120", "--fail-on", "cracks", "--evidence", &evidence];
+    failure(&[&["tessellate", "shape:cube-split", "--surface", "pn"], &options[..]].concat(), 1);
+    assert!(Path::new(&evidence).join("torn-cracks.png").exists());
+}
+
+#[test]
+fn stability_fails_on_gates_of_the_chosen_methods() {
+    let base = ["stability", "--case", "split-normals", "--device", "cpu", "--cameras", "1"];
+    output(&base);
+    let said = failure(&[&base[..], &["--fail-on", "cracks"]].concat(), 1);
+    assert_eq!(said.lines().count(), 1, "{said}");
+    let words =
+        ["split-normals fails the gate cracks: ", "edge points that differ", " on cpu, and 0 may be", "methods fail"];
+    for word in words {
+        assert!(said.contains(word), "{word:?} is not in {said}");
+    }
+    let table = output(&[&base[..], &["--fail-on", "cracks,folds", "--method", "pn-aen", "--method", "flat"]].concat());
+    assert!(table.contains("PN-AEN") && !table.contains("Nagata"), "{table}");
+    let folder = Folder::new();
+    let junction = write_junction(&folder, "");
+    let said = failure(&["stability", &junction, "--device", "cpu", "--method", "flat", "--fail-on", "t-junctions"], 1);
+    assert!(said.contains("junction.obj fails the gate t-junctions: the mesh has 1 T-junction"), "{said}");
+}
+
+#[test]
+fn gates_that_cannot_be_judged_are_wrong_usage() {
+    let folder = Folder::new();
+    let [glb, png] = ["a.glb", "a.png"].map(|name| folder.path(name));
+    let render = ["render", "shape:torus", "-o", &png];
+    let tessellate = ["tessellate", "shape:torus", "-o", &glb, "--device", "cpu"];
+    let cases: [(&[&str], &[&str], &str); 8] = [
+        (&render, &["--fail-on", "crack"], "t-junctions"),
+        (&render, &["--fail-on", "triangles"], "triangles:100000"),
+        (&render, &["--fail-on", "cracks:-1"], "whole number"),
+        (&render, &["--evidence", "x"], "--fail-on"),
+        (&tessellate, &["--fail-on", "leaks"], "--device gpu"),
+        (&tessellate, &["--fail-on", "cracks", "--evidence", "x"], "--device gpu"),
+        (&["stability"], &["--fail-on", "triangles:5"], "render or tessellate"),
+        (&["stability", "--device", "cpu"], &["--fail-on", "leaks"], "--device gpu"),
+    ];
+    for (command, options, word) in cases {
+        let said = failure(&[command, options].concat(), 2);
+        assert!(said.contains(word), "{word:?} is not in {said}");
+    }
+    assert!(!Path::new(&png).exists() && !Path::new(&glb).exists());
+}
