@@ -24,7 +24,7 @@ const ORDER: &[&[&str]] = &[
     &["measure"],
     &["render"],
     &["engine"],
-    &["export"],
+    &["export", "shader_files"],
     &["chart", "stability", "gallery", "commands"],
     &["cli"],
     &["app"],

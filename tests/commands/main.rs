@@ -26,6 +26,7 @@ mod package;
 mod picture_file;
 mod render;
 mod scenes;
+mod shaders;
 #[path = "../documents/shot.rs"]
 mod shot;
 mod silhouette;

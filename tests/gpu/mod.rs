@@ -14,6 +14,7 @@ mod drafts;
 mod embed;
 mod environment;
 mod error;
+mod exported;
 mod layers;
 mod light;
 mod limits;
@@ -32,6 +33,10 @@ mod readbacks;
 mod scenes;
 mod silhouette;
 mod stability;
+// The bench on hardware has the rest of it.
+#[allow(dead_code, unreachable_pub, unused_imports)]
+#[path = "../vulkan/mod.rs"]
+mod vulkan;
 
 use std::sync::OnceLock;
 
