@@ -93,7 +93,7 @@ impl Annotation<'_> {
         let mut lines: Vec<String> = Vec::new();
         let mut current: Option<&Declaration> = None;
         for line in text.lines().map(str::trim_end) {
-            let line = &zeroed_array(line).unwrap_or_else(|| line.to_owned());
+            let line = &zeroed_array(line).or_else(|| constant_array(line)).unwrap_or_else(|| line.to_owned());
             let starts = line.starts_with(|c: char| c.is_ascii_alphabetic());
             if starts {
                 current = self.declared(line);
@@ -138,6 +138,14 @@ fn zeroed_array(line: &str) -> Option<String> {
     let (element, count) = cast.strip_suffix("])0;")?.split_once('[')?;
     let zeros = vec![format!("({element})0"); count.parse().ok()?];
     Some(format!("{declared} = {{ {} }};", zeros.join(", ")))
+}
+
+/// Returns a line of naga's HLSL that declares a constant array as one with an initializer list: a global may call no function in
+/// glslang.
+fn constant_array(line: &str) -> Option<String> {
+    let (declared, call) = line.strip_prefix("static const ")?.split_once(" = Constructarray")?;
+    let (_, items) = call.strip_suffix(");")?.split_once('(')?;
+    Some(format!("static const {declared} = {{ {items} }};"))
 }
 
 /// The structs that lie in a constant buffer, where HLSL needs naga's padding.
