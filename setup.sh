@@ -1,6 +1,6 @@
 #!/bin/sh
 # Installs what pnaen needs and this machine lacks: a Vulkan loader and driver (a software one if there is no other),
-# the libraries that a window uses, and for the tests a C++ compiler, a display without a screen, and strace. Does nothing
+# the libraries that a window uses, and for the tests a C++ compiler, a display without a screen, strace and a shader compiler. Does nothing
 # where nothing is missing.
 set -eu
 
@@ -36,6 +36,7 @@ command -v cc >/dev/null || missing="$missing gcc libc6-dev"
 command -v c++ >/dev/null || missing="$missing g++"
 command -v Xvfb >/dev/null || missing="$missing xvfb"
 command -v strace >/dev/null || missing="$missing strace"
+command -v glslangValidator >/dev/null || missing="$missing glslang-tools"
 [ -z "$missing" ] && exit 0
 
 command -v apt-get >/dev/null || {

@@ -35,6 +35,7 @@ pub use crate::render::target::{Target, samples};
 pub use crate::settings::light::Lighting;
 pub use crate::settings::options::TOLERANCE_RANGE;
 pub use crate::settings::{ARENA_BYTES, Settings};
+pub use crate::shader_files::{Language, ShaderError, ShaderFile, indices_per_patch, shader_files};
 pub use crate::tessellate::domain::{domain_plan, domain_point, domain_triangle};
 pub use crate::tessellate::factors::{outer_count, point_count, row_base, triangle_count};
 pub use crate::tessellate::hull_factors::HullFactors;

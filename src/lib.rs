@@ -81,6 +81,8 @@ mod render;
 #[cfg(feature = "cli")]
 mod settings;
 #[cfg(feature = "cli")]
+mod shader_files;
+#[cfg(feature = "cli")]
 mod stability;
 #[cfg(feature = "cli")]
 mod truth;

@@ -25,7 +25,7 @@ const ORDER: &[&[&str]] = &[
     &["render"],
     &["gates"],
     &["engine"],
-    &["export"],
+    &["export", "shader_files"],
     &["chart", "check", "stability", "gallery", "commands"],
     &["cli"],
     &["app"],

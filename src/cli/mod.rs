@@ -25,6 +25,7 @@ mod picture_file;
 mod pixel_differences;
 mod reference;
 mod render;
+mod shaders;
 mod shot;
 mod shot_options;
 mod silhouette;
@@ -75,6 +76,7 @@ use crate::load::{LoadError, MatcapError, Source};
 use crate::names::{on_one_line, shown, shown_path};
 use crate::progress::{Cancelled, Progress};
 use crate::settings::Settings;
+use crate::shader_files::ShaderError;
 
 /// Shows what tessellation does to a mesh in a window; commands write pictures, meshes and numbers instead
 #[derive(Debug, Parser)]
@@ -112,6 +114,8 @@ pub(crate) enum Command {
     /// Indices refer to the mesh's distinct corners, which the JSON lists: one for each combination of position, normal and
     /// uv. Patches are the mesh's triangles in order, without degenerate ones; the JSON gives each patch's triangle.
     Adjacency(adjacency::Args),
+    /// Write the shaders of a tessellation for other programs, in HLSL, GLSL or WGSL, with a page on how to run them
+    Shaders(shaders::Args),
     /// Run cases that break tessellators, and report which methods pass and which fail
     ///
     /// Failures of the published methods are printed, but don't make the command fail: the exit code is 1 only if something
@@ -203,6 +207,8 @@ pub(crate) enum CliError {
     #[error("interrupted after {done} of {all} {what}: what was done is written")]
     Interrupted { done: usize, all: usize, what: &'static str },
     #[error(transparent)]
+    Shaders(#[from] ShaderError),
+    #[error(transparent)]
     Chart(#[from] crate::plot::ChartError),
     #[error("{}", .0.join("; "))]
     Gates(Vec<String>),
@@ -237,6 +243,7 @@ pub(crate) fn run(command: Command) -> ExitCode {
         Command::Domain(args) => domain::run(&args),
         Command::Factors(args) => factors::run(&args),
         Command::Adjacency(args) => adjacency::run(&args),
+        Command::Shaders(args) => shaders::run(&args, &line),
         Command::Stability(args) => stability::run(&args),
         Command::Gallery(args) => gallery::run(&args),
         Command::Chart(args) => chart::run(&args),
@@ -247,7 +254,7 @@ pub(crate) fn run(command: Command) -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(CliError::Output(error)) if error.kind() == std::io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
-        Err(error @ CliError::Usage(_)) => {
+        Err(error @ (CliError::Usage(_) | CliError::Shaders(ShaderError::Unexportable { .. }))) => {
             fail(&error);
             ExitCode::from(2)
         }

@@ -6,15 +6,13 @@ use wgpu::util::DeviceExt;
 
 use super::lazy::Lazy;
 use super::wgsl::{
-    CONNECTIVITY_TABLE, CONVENTION, DISPLACE, DISPLACEMENT_FACTOR, DISPLACEMENT_SHARES, DOMAIN, FACTORS, LEAST_FACTORS,
-    LEAST_ROWS, LOAD_NET, LOADS, LOD, NORMAL, OCTAHEDRAL_NORMAL, SEARCH_GROUP, SEARCH_STATE, SLIDES, SURFACE, TYPES,
-    WORKGROUP_SCAN, WgslFile, wgsl,
+    CONNECTIVITY_TABLE, CONTROL_POINTS, CONVENTION, CULL, DISPLACE, DISPLACEMENT_FACTOR, DISPLACEMENT_SHARES, DOMAIN,
+    FACTORS, LEAST_FACTORS, LEAST_ROWS, LOAD_NET, LOADS, LOD, NORMAL, OCTAHEDRAL_NORMAL, SEARCH_GROUP, SEARCH_STATE,
+    SLIDES, SURFACE, TYPES, WORKGROUP_SCAN, WgslFile, wgsl,
 };
 use super::{Gpu, GpuError};
 use crate::tessellate::{Normals, connectivity_table};
 
-static CONTROL_POINTS: WgslFile = wgsl!("control_points", SURFACE);
-static CULL: WgslFile = wgsl!("cull", LOD, SURFACE);
 static DEFORM: WgslFile = wgsl!("deform", NORMAL);
 
 // A module for each of these, in the order in which the passes run.

@@ -28,6 +28,7 @@ mod package;
 mod picture_file;
 mod render;
 mod scenes;
+mod shaders;
 #[path = "../documents/shot.rs"]
 mod shot;
 mod silhouette;

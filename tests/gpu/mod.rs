@@ -14,6 +14,7 @@ mod drafts;
 mod embed;
 mod environment;
 mod error;
+mod exported;
 mod layers;
 mod light;
 mod limits;
@@ -33,6 +34,10 @@ mod reference;
 mod scenes;
 mod silhouette;
 mod stability;
+// The bench on hardware has the rest of it.
+#[allow(dead_code, unreachable_pub, unused_imports)]
+#[path = "../vulkan/mod.rs"]
+mod vulkan;
 
 use std::sync::OnceLock;
 

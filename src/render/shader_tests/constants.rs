@@ -42,6 +42,23 @@ use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Par
 /// Constants that only WGSL has, with the reason.
 const WGSL_ALONE: &[(&[&str], &str)] = &[
     (
+        &[
+            "CHOSEN_SURFACE",
+            "CHOSEN_EDGES",
+            "CHOSEN_LOD",
+            "CHOSEN_PARTITIONING",
+            "CHOSEN_CLIP",
+            "CHOSEN_CULLING",
+            "CHOSEN_CONVENTION",
+            "CHOSEN_NORMALS",
+            "CULLING_OFF",
+            "CULLING_ON",
+            "EXPORTED_WORKGROUP",
+            "SCAN_WORKGROUP",
+        ],
+        "only exported shaders have them",
+    ),
+    (
         &["PATTERN_RINGS", "PATTERN_MINIMAL", "PATTERN_SUBTRIANGULATED", "PATTERN_ROWS"],
         "in Rust, an enum without numbers",
     ),

@@ -17,7 +17,7 @@ fn modules() -> &'static [(&'static WgslFile, naga::Module)] {
             let error = |error: naga::front::wgsl::ParseError| panic!("{}: {}", file.name, error.emit_to_string(&text));
             (file, naga::front::wgsl::parse_str(&text).unwrap_or_else(error))
         };
-        gpu::MODULES.into_iter().chain(super::MODULES).map(parse).collect()
+        gpu::MODULES.into_iter().chain(super::MODULES).chain(crate::shader_files::MODULES).map(parse).collect()
     });
     &MODULES
 }

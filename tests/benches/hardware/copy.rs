@@ -7,7 +7,8 @@ use ash::vk;
 use super::memory::{Buffer, Owned};
 use super::numbers::Spread;
 use super::ours::Effort;
-use super::pipelines::{COPY, Layout, module};
+use super::pipelines::{COPY, Layout};
+use super::vulkan::stages::module;
 use super::vulkan::{Took, Vulkan, VulkanError};
 
 /// The bandwidth of copying one large buffer into another, in bytes per second, read and written.

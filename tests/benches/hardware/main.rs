@@ -4,13 +4,13 @@
 //! nets that our nets pass computed, and the factors that our counts pass used. Times are medians. On software drivers, whose
 //! timestamps are wrong, they are times of whole submissions. The bench reports its results, and no result makes it fail.
 //! `cargo bench --bench hardware -- emission` prints only how long rows take to emit beside rings, and `-- materials MESH...` only
-//! how long pictures of mesh files take in the light of a studio, with layers and without.
+//! how long pictures of mesh files take in the light of a studio, with layers and without. `-- shaders` compares exported shaders on the
+//! driver's stages with our passes.
 
 mod copy;
 mod error;
 mod growth;
 mod materials;
-mod memory;
 mod numbers;
 mod ours;
 mod patterns;
@@ -21,11 +21,12 @@ mod rows;
 mod subjects;
 mod target;
 mod versus;
+#[path = "../../vulkan/mod.rs"]
 mod vulkan;
 
 use std::process::ExitCode;
 
-use pnaen::internals::{ARENA_BYTES, Engine};
+use pnaen::internals::{ARENA_BYTES, Engine, Shape};
 use pnaen::tessellate::Partitioning::{FractionalOdd, Integer};
 
 use copy::Copies;
@@ -34,6 +35,7 @@ use peer::Peer;
 use report::Report;
 use subjects::Factors;
 use versus::{BenchError, Versus};
+use vulkan::{exported, memory};
 
 /// The amount of work for a device.
 #[derive(Clone, Copy, Debug)]
@@ -89,6 +91,9 @@ fn run(engine: &Engine) -> Result<(), BenchError> {
         Report::begin(engine, &scale, None).materials(&materials::measure(engine, &scale, files)?);
         return Ok(());
     }
+    if std::env::args().any(|argument| argument == "shaders") {
+        return shaders(engine);
+    }
     if std::env::args().any(|argument| argument == "emission") {
         Report::begin(engine, &scale, None).patterns(&patterns::measure(engine, &scale)?);
         return Ok(());
@@ -122,6 +127,14 @@ fn run(engine: &Engine) -> Result<(), BenchError> {
     report.growth(&growth::measure(engine, peer.as_ref(), &scale)?);
     report.equal_error(&error::measure(engine, peer.as_ref(), &scale)?);
     report.goals();
+    Ok(())
+}
+
+/// Compares exported shaders on the driver's tessellation stages with our passes.
+fn shaders(engine: &Engine) -> Result<(), BenchError> {
+    let vulkan = vulkan::Vulkan::new(&engine.gpu.info)?;
+    let mut subject = exported::Subject::new(engine, &vulkan, Shape::CubeSplit.build())?;
+    println!("# Exported shaders on {}\n\n{}", engine.gpu.info.name, exported::table(&exported::rows(&mut subject)?));
     Ok(())
 }
 

@@ -9,7 +9,8 @@ use pnaen::internals::{Gpu, HullFactors};
 
 use super::memory::{Buffer, Owned};
 use super::pipelines::{Bound, FRAME_STAGES, Kind, Layout, tessellating};
-use super::target::{Pass, Target};
+use super::target::Target;
+use super::vulkan::pass::Pass;
 use super::vulkan::{Counted, Took, Vulkan, VulkanError};
 
 /// A corner of a patch's control net. Twin of NetCorner in shaders/net.glsl.

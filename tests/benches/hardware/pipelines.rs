@@ -1,6 +1,5 @@
 //! The peer's shaders, layouts and pipelines.
 
-use std::io::Cursor;
 use std::rc::Rc;
 
 use ash::vk;
@@ -8,6 +7,7 @@ use pnaen::tessellate::Partitioning;
 
 use super::memory::{Buffer, Owned};
 use super::peer::PeerFrame;
+use super::vulkan::stages::module;
 use super::vulkan::{Vulkan, VulkanError};
 
 /// How the domain shader gets a patch's control net.
@@ -48,14 +48,6 @@ macro_rules! spirv {
     ($name:literal) => {
         include_bytes!(concat!("shaders/", $name, ".spv"))
     };
-}
-
-/// Makes a shader module from SPIR-V.
-pub fn module(vulkan: &Rc<Vulkan>, code: &[u8]) -> Result<Owned<vk::ShaderModule>, VulkanError> {
-    let words = ash::util::read_spv(&mut Cursor::new(code))?;
-    let info = vk::ShaderModuleCreateInfo::default().code(&words);
-    let handle = unsafe { vulkan.device.create_shader_module(&info, None)? };
-    Ok(Owned::new(vulkan, handle, |device, handle| unsafe { device.destroy_shader_module(handle, None) }))
 }
 
 pub const COPY: &[u8] = spirv!("copy.comp");

@@ -22,6 +22,8 @@ pub enum BenchError {
     #[error(transparent)]
     Compare(#[from] CompareError),
     #[error(transparent)]
+    Exported(#[from] super::vulkan::exported::ExportedError),
+    #[error(transparent)]
     Load(#[from] LoadError),
 }
 

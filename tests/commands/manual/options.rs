@@ -7,13 +7,14 @@ use crate::output;
 
 type Options = BTreeSet<String>;
 
-const COMMANDS: [&str; 12] = [
+const COMMANDS: [&str; 13] = [
     "render",
     "turntable",
     "tessellate",
     "factors",
     "adjacency",
     "check",
+    "shaders",
     "domain",
     "info",
     "stability",

@@ -1,4 +1,4 @@
-//! Vulkan for the peer: the engine's device, opened once more with tessellation stages, its memory, and timed submissions.
+//! The engine's device, opened once more with tessellation stages, its memory, and timed submissions.
 //!
 //! `unsafe`, here and in the files beside it: ash's functions require that handles are alive, come from this device and are used
 //! by one thread. That holds, since all handles are made from one [`Vulkan`], their owners keep it alive, and every submission is
@@ -98,6 +98,8 @@ impl Vulkan {
             let features = vk::PhysicalDeviceFeatures {
                 tessellation_shader: vk::TRUE,
                 pipeline_statistics_query: has.pipeline_statistics_query,
+                geometry_shader: has.geometry_shader,
+                vertex_pipeline_stores_and_atomics: has.vertex_pipeline_stores_and_atomics,
                 ..Default::default()
             };
             let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&[1.0])];

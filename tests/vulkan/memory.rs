@@ -1,10 +1,10 @@
-//! The peer's buffers and pictures on the device.
+//! Buffers and pictures on the device.
 
 use std::rc::Rc;
 
 use ash::vk;
 
-use super::vulkan::{Vulkan, VulkanError};
+use super::device::{Vulkan, VulkanError};
 
 /// A buffer with memory of its own.
 pub struct Buffer {
@@ -53,7 +53,10 @@ impl Buffer {
     ) -> Result<Self, VulkanError> {
         let usage = vk::BufferUsageFlags::STORAGE_BUFFER
             | vk::BufferUsageFlags::TRANSFER_SRC
-            | vk::BufferUsageFlags::TRANSFER_DST;
+            | vk::BufferUsageFlags::TRANSFER_DST
+            | vk::BufferUsageFlags::UNIFORM_BUFFER
+            | vk::BufferUsageFlags::VERTEX_BUFFER
+            | vk::BufferUsageFlags::INDEX_BUFFER;
         unsafe {
             let info = vk::BufferCreateInfo::default().size(bytes.max(4)).usage(usage);
             let handle = vulkan.device.create_buffer(&info, None)?;
@@ -67,7 +70,7 @@ impl Buffer {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn copy_from(&self, from: &Self) -> Result<super::vulkan::Took, VulkanError> {
+    pub fn copy_from(&self, from: &Self) -> Result<super::device::Took, VulkanError> {
         let region = [vk::BufferCopy::default().size(self.bytes)];
         self.vulkan.run(|commands| unsafe {
             self.vulkan.device.cmd_copy_buffer(commands, from.handle, self.handle, &region);

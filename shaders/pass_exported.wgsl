@@ -1,0 +1,190 @@
+// Exported compute passes: tessellates patches of nine indices without any other preparation by the host. It runs hull_main with
+// an invocation a patch, then offsets_main in one workgroup, and then emit_main with a workgroup a patch.
+
+@group(0) @binding(0) var<uniform> constants: StageConstants;
+// The mesh's corners, 8 numbers each: position (object units), unit normal, texture coordinates.
+@group(0) @binding(1) var<storage, read> corners: array<f32>;
+// Nine indices a patch, which `pnaen adjacency` writes.
+@group(0) @binding(2) var<storage, read> indices: array<u32>;
+@group(0) @binding(3) var<storage, read_write> hulls: array<Hull>;
+// Where the output of each patch begins: its vertices (x) and its triangles (y). offsets_main makes that of their numbers.
+@group(0) @binding(4) var<storage, read_write> offsets: array<vec2<u32>>;
+// The output: 8 numbers a vertex, as of corners, and 3 indices a triangle.
+@group(0) @binding(5) var<storage, read_write> out_vertices: array<f32>;
+@group(0) @binding(6) var<storage, read_write> out_indices: array<u32>;
+@group(0) @binding(7) var<storage, read_write> status: Status;
+
+// What hull_main computes for a patch.
+struct Hull {
+    net: ControlNet,
+    factors: PatchFactors,
+}
+
+// Arguments of an indexed indirect draw of all that was emitted, and how much that is. Patches that don't fit the output's
+// buffers are left out; then `vertices` and `triangles`, which count all, are more than the buffers hold.
+struct Status {
+    index_count: u32,
+    instance_count: u32,
+    first_index: u32,
+    base_vertex: i32,
+    first_instance: u32,
+    vertices: u32,
+    triangles: u32,
+}
+
+// Invocations of a workgroup.
+const EXPORTED_WORKGROUP: u32 = 64u;
+const SCAN_WORKGROUP: u32 = 256u;
+
+fn patch_count() -> u32 {
+    return arrayLength(&indices) / 9u;
+}
+
+fn exported_position(corner: u32) -> vec3<f32> {
+    return vec3<f32>(corners[8u * corner], corners[8u * corner + 1u], corners[8u * corner + 2u]);
+}
+
+fn exported_normal(corner: u32) -> vec3<f32> {
+    return vec3<f32>(corners[8u * corner + 3u], corners[8u * corner + 4u], corners[8u * corner + 5u]);
+}
+
+fn exported_uv(corner: u32) -> vec2<f32> {
+    return vec2<f32>(corners[8u * corner + 6u], corners[8u * corner + 7u]);
+}
+
+// What a hull shader's invocation for side `k` computes.
+fn patch_side(first: u32, k: u32) -> HullSide {
+    let start = indices[first + k];
+    let end = indices[first + (k + 1u) % 3u];
+    let across_start = indices[first + 3u + 2u * k];
+    let across_end = indices[first + 4u + 2u * k];
+    return hull_side(
+        constants,
+        exported_position(start),
+        exported_position(end),
+        SideNormals(exported_normal(start), exported_normal(end)),
+        SideNormals(exported_normal(across_start), exported_normal(across_end)),
+    );
+}
+
+// Computes a patch's control net and factors, and counts what it will emit.
+@compute @workgroup_size(EXPORTED_WORKGROUP)
+fn hull_main(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let index = (workgroup.y * workgroups.x + workgroup.x) * EXPORTED_WORKGROUP + local;
+    if index >= patch_count() {
+        return;
+    }
+    var net: ControlNet;
+    var sides: vec3<f32>;
+    for (var k = 0u; k < 3u; k++) {
+        let side = patch_side(9u * index, k);
+        net.corners[k] = exported_position(indices[9u * index + k]);
+        net.edges[2u * k] = side.near_start;
+        net.edges[2u * k + 1u] = side.near_end;
+        sides[k] = side.factor;
+    }
+    net.center = center_control_point(net.corners, net.edges);
+    let written = tessellation_factors(constants, net, sides);
+    let factors = process(CHOSEN_PARTITIONING, written.xyz, written.w);
+    hulls[index] = Hull(net, factors);
+    offsets[index] = vec2<u32>(point_count(factors), triangle_count(factors));
+}
+
+var<workgroup> partial_sums: array<vec2<u32>, SCAN_WORKGROUP>;
+
+// Turns counts into offsets, in one workgroup: each invocation adds up a run of patches (Blelloch 1990, section 1.2, with one
+// level).
+@compute @workgroup_size(SCAN_WORKGROUP)
+fn offsets_main(@builtin(local_invocation_index) local: u32) {
+    let count = patch_count();
+    let run = (count + SCAN_WORKGROUP - 1u) / SCAN_WORKGROUP;
+    let first = min(local * run, count);
+    let end = min(first + run, count);
+    var sum = vec2<u32>(0u);
+    for (var i = first; i < end; i++) {
+        sum += offsets[i];
+    }
+    partial_sums[local] = sum;
+    workgroupBarrier();
+    var before = vec2<u32>(0u);
+    for (var i = 0u; i < local; i++) {
+        before += partial_sums[i];
+    }
+    for (var i = first; i < end; i++) {
+        let own = offsets[i];
+        offsets[i] = before;
+        before += own;
+        if has_room(before) {
+            atomicMax(&fitting_triangles, before.y);
+        }
+    }
+    workgroupBarrier();
+    if local == SCAN_WORKGROUP - 1u {
+        status = Status(3u * atomicLoad(&fitting_triangles), 1u, 0u, 0, 0u, before.x, before.y);
+    }
+}
+
+var<workgroup> fitting_triangles: atomic<u32>;
+
+// Whether the output has room for so many vertices (x) and triangles (y).
+fn has_room(counts: vec2<u32>) -> bool {
+    return counts.x <= arrayLength(&out_vertices) / 8u && counts.y <= arrayLength(&out_indices) / 3u;
+}
+
+fn patch_hull(index: u32) -> StagePatch {
+    let a = indices[9u * index];
+    let b = indices[9u * index + 1u];
+    let c = indices[9u * index + 2u];
+    return StagePatch(
+        hulls[index].net,
+        array<vec3<f32>, 3>(exported_normal(a), exported_normal(b), exported_normal(c)),
+        array<vec2<f32>, 3>(exported_uv(a), exported_uv(b), exported_uv(c)),
+    );
+}
+
+fn put_vertex(index: u32, made: StageVertex) {
+    out_vertices[8u * index] = made.position.x;
+    out_vertices[8u * index + 1u] = made.position.y;
+    out_vertices[8u * index + 2u] = made.position.z;
+    out_vertices[8u * index + 3u] = made.normal.x;
+    out_vertices[8u * index + 4u] = made.normal.y;
+    out_vertices[8u * index + 5u] = made.normal.z;
+    out_vertices[8u * index + 6u] = made.uv.x;
+    out_vertices[8u * index + 7u] = made.uv.y;
+}
+
+// Emits the vertices and triangles of a patch: the fixed-function tessellator's points, numbered and joined as it does, each
+// put through what a domain shader would do.
+@compute @workgroup_size(EXPORTED_WORKGROUP)
+fn emit_main(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let index = workgroup.y * workgroups.x + workgroup.x;
+    if index >= patch_count() {
+        return;
+    }
+    let factors = hulls[index].factors;
+    let counts = vec2<u32>(point_count(factors), triangle_count(factors));
+    let start = offsets[index];
+    if counts.x == 0u || !has_room(start + counts) {
+        return;
+    }
+    let hull = patch_hull(index);
+    let plan = domain_plan(factors);
+    for (var i = local; i < counts.x; i += EXPORTED_WORKGROUP) {
+        put_vertex(start.x + i, stage_vertex(hull, domain_point(plan, i)));
+    }
+    for (var t = local; t < counts.y; t += EXPORTED_WORKGROUP) {
+        let triangle = domain_triangle(plan, t);
+        let at = 3u * (start.y + t);
+        out_indices[at] = start.x + triangle.x;
+        out_indices[at + 1u] = start.x + triangle.y;
+        out_indices[at + 2u] = start.x + triangle.z;
+    }
+}

@@ -1,0 +1,50 @@
+//! `pnaen shaders`: writes our shaders for other programs.
+
+use std::path::PathBuf;
+
+use super::options::TessellationOptions;
+use super::{CliError, file_error, options, write_text};
+use crate::files::file_reason;
+use crate::settings::{Choice, Description};
+use crate::shader_files::{Language, shader_files};
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// Language of the shaders
+    #[arg(long, value_parser = options::choice::<Language>())]
+    pub language: Language,
+    /// Folder to write into; it is made if it isn't there
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub tessellation: TessellationOptions,
+}
+
+impl Choice for Language {
+    const ALL: &'static [Self] = &Language::ALL;
+
+    fn description(self) -> Description {
+        match self {
+            Self::Hlsl => {
+                Description::new("hlsl", "HLSL", "Vertex, hull and domain shader for Direct3D 11 and 12: patch.hlsl.")
+            }
+            Self::Glsl => Description::new(
+                "glsl",
+                "GLSL",
+                "The same stages for Vulkan and OpenGL: patch.vert, patch.tesc and patch.tese.",
+            ),
+            Self::Wgsl => Description::new(
+                "wgsl",
+                "WGSL",
+                "Compute passes for WebGPU, which has no tessellation stages: tessellate.wgsl.",
+            ),
+        }
+    }
+}
+
+/// Runs the command, which was given as this line.
+pub(super) fn run(args: &Args, line: &str) -> Result<(), CliError> {
+    let files = shader_files(args.language, &args.tessellation.tessellation, line)?;
+    std::fs::create_dir_all(&args.output).map_err(|error| file_error(&args.output, "made", &file_reason(&error)))?;
+    files.iter().try_for_each(|file| write_text(&args.output.join(file.name), &file.text))
+}

@@ -1,0 +1,320 @@
+//! Our shaders as files for other programs: vertex, hull and domain shaders in HLSL, their equals in GLSL, and compute passes in
+//! WGSL.
+//!
+//! They are made from the files in `shaders/`: the functions that the options need, without the branches that the options never
+//! take. What differs between languages, the inputs and outputs of the stages, is in `templates/`.
+
+mod branches;
+mod declarations;
+mod readme;
+mod translation;
+
+use thiserror::Error;
+
+use crate::gpu::WgslFile;
+use crate::gpu::wgsl::{
+    CONNECTIVITY, CONTROL_POINTS, CONVENTION, CULL, DOMAIN, FACTORS, LOD, NORMAL, SURFACE, TYPES, wgsl,
+};
+use crate::names::every;
+use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface, Tessellation};
+
+use branches::{Known, without_dead_branches};
+use declarations::{Declaration, declarations, needed};
+use translation::{StageLanguage, TranslationError, translated};
+
+static STAGE_PATCH: WgslFile =
+    wgsl!("stage_patch", CONTROL_POINTS, CONVENTION, CULL, FACTORS, LOD, NORMAL, SURFACE, TYPES);
+static PASS_EXPORTED: WgslFile =
+    wgsl!("pass_exported", CONNECTIVITY, CONTROL_POINTS, DOMAIN, FACTORS, SURFACE, STAGE_PATCH);
+
+/// The modules of shaders that are only exported.
+#[cfg(test)]
+pub(crate) static MODULES: [&WgslFile; 1] = [&PASS_EXPORTED];
+
+/// A shading language.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Language {
+    /// Vertex, hull and domain shader for Direct3D 11 and 12
+    Hlsl,
+    /// Vertex, tessellation control and tessellation evaluation shader for Vulkan and OpenGL
+    Glsl,
+    /// Compute passes for WebGPU
+    Wgsl,
+}
+
+impl Language {
+    pub const ALL: [Self; 3] = every![Language: Hlsl, Glsl, Wgsl];
+}
+
+/// A file of an export.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ShaderFile {
+    pub name: &'static str,
+    pub text: String,
+}
+
+/// Why a tessellation can't be exported.
+#[derive(Debug, Error)]
+pub enum ShaderError {
+    /// The tessellator that the shaders run on can't do it.
+    #[error("{what} can't be exported: {why}; choose {instead}")]
+    Unexportable { what: &'static str, why: &'static str, instead: &'static str },
+    /// An error in our own shaders.
+    #[error(transparent)]
+    Translation(#[from] TranslationError),
+}
+
+/// Returns the files of a tessellation's shaders in a language. `command` is the line that asks for them, which the files name.
+///
+/// # Errors
+/// The language, or the hardware that it runs on, has no equal of the tessellation.
+pub fn shader_files(
+    language: Language,
+    tessellation: &Tessellation,
+    command: &str,
+) -> Result<Vec<ShaderFile>, ShaderError> {
+    check(language, tessellation)?;
+    let export = Export { language, tessellation, command };
+    let mut files = match language {
+        Language::Glsl => export.glsl()?,
+        Language::Hlsl => export.hlsl()?,
+        Language::Wgsl => export.wgsl(),
+    };
+    files.push(ShaderFile { name: "README.md", text: readme::text(&export) });
+    Ok(files)
+}
+
+/// Returns the number of indices that a patch of these shaders has: 3 or 9.
+pub fn indices_per_patch(language: Language, tessellation: &Tessellation) -> usize {
+    let looks_across = match tessellation.surface {
+        Surface::Flat => false,
+        Surface::PnAen | Surface::PnCrease | Surface::PhongAen | Surface::NagataAen => true,
+        // The sides of an edge have curves of different lengths, of which both take the longer one's factor.
+        Surface::Pn | Surface::Phong | Surface::Nagata => {
+            tessellation.edges == Edges::PerEdge && matches!(tessellation.lod, Lod::Paper | Lod::EdgeLength)
+        }
+    };
+    if looks_across || language == Language::Wgsl { 9 } else { 3 }
+}
+
+fn check(language: Language, tessellation: &Tessellation) -> Result<(), ShaderError> {
+    let refuse = |what, why, instead| Err(ShaderError::Unexportable { what, why, instead });
+    if tessellation.displacement != Displacement::Off {
+        return refuse(
+            "displacement",
+            "what its patches share is computed by passes over the whole mesh",
+            "--displacement off, and displace in your own domain shader",
+        );
+    }
+    if tessellation.used_lod() == Lod::Error {
+        return refuse(
+            "LOD by error",
+            "it searches over all patches that share an edge",
+            "--lod uniform, distance, edge-length or paper",
+        );
+    }
+    let pattern = match tessellation.partitioning {
+        Partitioning::Rows => "rows",
+        Partitioning::Subtriangulation => "subtriangulation",
+        Partitioning::Integer | Partitioning::Pow2 | Partitioning::FractionalOdd | Partitioning::FractionalEven => {
+            return Ok(());
+        }
+    };
+    if language == Language::Wgsl {
+        return Ok(());
+    }
+    refuse(
+        pattern,
+        "hardware tessellators don't have the pattern",
+        "--language wgsl, or --partitioning integer, pow2, fractional-odd or fractional-even",
+    )
+}
+
+/// What is exported.
+struct Export<'a> {
+    language: Language,
+    tessellation: &'a Tessellation,
+    command: &'a str,
+}
+
+/// The functions that a GLSL or HLSL stage calls.
+const HULL_ROOTS: [&str; 5] =
+    ["StageConstants", "ControlNet", "hull_side", "center_control_point", "tessellation_factors"];
+const DOMAIN_ROOTS: [&str; 3] = ["StageConstants", "stage_vertex", "fixed_location"];
+/// The functions that must give both sides of an edge the same bits.
+const PRECISE_ROOTS: [&str; 2] = ["hull_side", "edge_position"];
+
+impl Export<'_> {
+    /// The names of the values of every choice, as the shaders have them.
+    fn choices(&self) -> [(&'static str, &'static str); 8] {
+        let own = self.tessellation;
+        [
+            ("CHOSEN_SURFACE", surface_constant(own.surface)),
+            ("CHOSEN_EDGES", if own.edges == Edges::PerEdge { "EDGES_PER_EDGE" } else { "EDGES_AS_PUBLISHED" }),
+            ("CHOSEN_LOD", lod_constant(own.used_lod())),
+            ("CHOSEN_PARTITIONING", partitioning_constant(own.partitioning)),
+            ("CHOSEN_CLIP", clip_constant(own.clip)),
+            ("CHOSEN_CULLING", if own.cull_back_faces { "CULLING_ON" } else { "CULLING_OFF" }),
+            ("CHOSEN_CONVENTION", convention_constant(own.convention)),
+            ("CHOSEN_NORMALS", normals_constant(own.normals)),
+        ]
+    }
+
+    /// All declarations of our shaders with the choices made, and without the branches that they never take.
+    fn declarations(&self, module: &'static WgslFile) -> Vec<Declaration> {
+        let choices = self.choices();
+        let of = |name: &str| choices.iter().find(|(own, _)| *own == name).map_or("", |(_, value)| *value);
+        let mut values = choices.to_vec();
+        values.extend([
+            ("surface", of("CHOSEN_SURFACE")),
+            ("partitioning", of("CHOSEN_PARTITIONING")),
+            ("convention", of("CHOSEN_CONVENTION")),
+        ]);
+        let mut false_conditions = Vec::new();
+        if self.tessellation.partitioning != Partitioning::Rows {
+            false_conditions.extend(["patch_has_rows(factors)", "plan.kind == PATTERN_ROWS"]);
+        }
+        if self.tessellation.partitioning != Partitioning::Subtriangulation {
+            false_conditions.extend(["patch_is_subtriangulated(factors)", "plan.kind == PATTERN_SUBTRIANGULATED"]);
+        }
+        let known = Known { values: &values, false_conditions: &false_conditions };
+        let mut all = declarations(&module.module_text());
+        for own in &mut all {
+            if own.is_function {
+                own.lines = without_dead_branches(&own.lines, &known);
+            } else if let Some((name, value)) = choices.iter().find(|(name, _)| own.name == *name) {
+                own.lines = vec![format!("const {name}: u32 = {value};")];
+                own.comment.clear();
+            }
+        }
+        all
+    }
+
+    fn glsl(&self) -> Result<Vec<ShaderFile>, TranslationError> {
+        let all = self.declarations(&STAGE_PATCH);
+        let functions = |roots: &[&str]| translated(StageLanguage::Glsl, &needed(&all, roots), &PRECISE_ROOTS);
+        let spacing = match self.tessellation.partitioning {
+            Partitioning::FractionalOdd => "fractional_odd_spacing",
+            Partitioning::FractionalEven => "fractional_even_spacing",
+            _ => "equal_spacing",
+        };
+        let across = match self.indices() {
+            9 => "SideNormals(vertex_normal[3 + 2 * k], vertex_normal[4 + 2 * k])",
+            _ => "own",
+        };
+        let control = self.filled(include_str!("templates/patch.tesc"), &functions(&HULL_ROOTS)?);
+        let evaluation = self.filled(include_str!("templates/patch.tese"), &functions(&DOMAIN_ROOTS)?);
+        Ok(vec![
+            ShaderFile { name: "patch.vert", text: self.filled(include_str!("templates/patch.vert"), "") },
+            ShaderFile { name: "patch.tesc", text: control.replace("@ACROSS@", across) },
+            ShaderFile { name: "patch.tese", text: evaluation.replace("@SPACING@", spacing) },
+        ])
+    }
+
+    fn hlsl(&self) -> Result<Vec<ShaderFile>, TranslationError> {
+        let roots = [&HULL_ROOTS[..], &DOMAIN_ROOTS].concat();
+        let functions =
+            translated(StageLanguage::Hlsl, &needed(&self.declarations(&STAGE_PATCH), &roots), &PRECISE_ROOTS)?;
+        let partitioning = match self.tessellation.partitioning {
+            Partitioning::FractionalOdd => "fractional_odd",
+            Partitioning::FractionalEven => "fractional_even",
+            // `written_factor` has rounded those of pow2 already.
+            _ => "integer",
+        };
+        let (at_a, at_b) = match self.indices() {
+            9 => ("corners[3 + 2 * k].normal", "corners[4 + 2 * k].normal"),
+            _ => ("own.at_a", "own.at_b"),
+        };
+        let text = self
+            .filled(include_str!("templates/patch.hlsl"), &functions)
+            .replace("@PARTITIONING@", partitioning)
+            .replace("@ACROSS_A@", at_a)
+            .replace("@ACROSS_B@", at_b);
+        Ok(vec![ShaderFile { name: "patch.hlsl", text }])
+    }
+
+    fn wgsl(&self) -> Vec<ShaderFile> {
+        let texts = needed(&self.declarations(&PASS_EXPORTED), &["hull_main", "offsets_main", "emit_main"]);
+        let mut text = readme::header(self);
+        let mut before: Option<&Declaration> = None;
+        for own in &texts {
+            // Constants without comments stand together.
+            let is_list = before.is_some_and(|before| [before, own].iter().all(|own| own.text().lines().count() == 1));
+            text += if is_list { "" } else { "\n" };
+            text += &own.text();
+            before = Some(own);
+        }
+        vec![ShaderFile { name: "tessellate.wgsl", text }]
+    }
+
+    fn filled(&self, template: &str, functions: &str) -> String {
+        template
+            .replace("@HEADER@", readme::header(self).trim_end())
+            .replace("@FUNCTIONS@", functions.trim_end())
+            .replace("@INDICES@", &self.indices().to_string())
+    }
+
+    fn indices(&self) -> usize {
+        indices_per_patch(self.language, self.tessellation)
+    }
+}
+
+fn surface_constant(surface: Surface) -> &'static str {
+    match surface {
+        Surface::Flat => "SURFACE_FLAT",
+        Surface::Pn => "SURFACE_PN",
+        Surface::PnAen => "SURFACE_PN_AEN",
+        Surface::PnCrease => "SURFACE_PN_CREASE",
+        Surface::Phong => "SURFACE_PHONG",
+        Surface::PhongAen => "SURFACE_PHONG_AEN",
+        Surface::Nagata => "SURFACE_NAGATA",
+        Surface::NagataAen => "SURFACE_NAGATA_AEN",
+    }
+}
+
+fn lod_constant(lod: Lod) -> &'static str {
+    match lod {
+        Lod::Uniform => "LOD_UNIFORM",
+        Lod::Paper => "LOD_PAPER",
+        Lod::EdgeLength => "LOD_EDGE_LENGTH",
+        Lod::Error => "LOD_ERROR",
+        Lod::Distance => "LOD_DISTANCE",
+    }
+}
+
+fn partitioning_constant(partitioning: Partitioning) -> &'static str {
+    match partitioning {
+        Partitioning::Integer => "PARTITIONING_INTEGER",
+        Partitioning::Pow2 => "PARTITIONING_POW2",
+        Partitioning::FractionalOdd => "PARTITIONING_FRACTIONAL_ODD",
+        Partitioning::FractionalEven => "PARTITIONING_FRACTIONAL_EVEN",
+        Partitioning::Subtriangulation => "PARTITIONING_SUBTRIANGULATION",
+        Partitioning::Rows => "PARTITIONING_ROWS",
+    }
+}
+
+fn clip_constant(clip: Clip) -> &'static str {
+    match clip {
+        Clip::Off => "CLIP_OFF",
+        Clip::Paper => "CLIP_PAPER",
+        Clip::Frustum => "CLIP_FRUSTUM",
+    }
+}
+
+fn convention_constant(convention: Convention) -> &'static str {
+    match convention {
+        Convention::D3d11 => "CONVENTION_D3D11",
+        Convention::AmdPn => "CONVENTION_AMD_PN",
+        Convention::EdgeOrder => "CONVENTION_EDGE_ORDER",
+        Convention::Rotated => "CONVENTION_ROTATED",
+        Convention::Mirrored => "CONVENTION_MIRRORED",
+    }
+}
+
+fn normals_constant(normals: Normals) -> &'static str {
+    match normals {
+        Normals::Linear => "NORMALS_LINEAR",
+        Normals::Quadratic => "NORMALS_QUADRATIC",
+        Normals::Surface => "NORMALS_SURFACE",
+    }
+}

@@ -1,0 +1,202 @@
+//! WGSL functions in GLSL and HLSL, by naga, with the comments of the originals.
+
+use std::collections::BTreeSet;
+
+use naga::back::{glsl, hlsl};
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+use thiserror::Error;
+
+use super::declarations::{Declaration, needed, words};
+
+/// Why functions can't be translated: an error in our own shaders.
+#[derive(Debug, Error)]
+#[error("the shaders could not be translated ({0})")]
+pub struct TranslationError(String);
+
+/// The languages that stages are written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum StageLanguage {
+    Glsl,
+    Hlsl,
+}
+
+/// An entry point, which naga's writers want, and which is cut off again.
+const ENTRY: &str = "@compute @workgroup_size(1)\nfn entry_of_translation() {\n}\n";
+
+/// Returns structs, constants and functions in another language. Functions that `precise_roots` need are `precise`: no compiler
+/// may fuse or reorder their operations.
+///
+/// # Errors
+/// naga doesn't take them, which is an error in our own shaders.
+pub(super) fn translated(
+    language: StageLanguage,
+    all: &[Declaration],
+    precise_roots: &[&str],
+) -> Result<String, TranslationError> {
+    let source: String = all.iter().map(|declaration| declaration.text() + "\n").chain([ENTRY.to_owned()]).collect();
+    let fault = |error: &dyn std::fmt::Display| TranslationError(error.to_string());
+    let module = naga::front::wgsl::parse_str(&source).map_err(|error| fault(&error.emit_to_string(&source)))?;
+    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
+    let info = validator.validate(&module).map_err(|error| fault(&error.emit_to_string(&source)))?;
+    let text = match language {
+        StageLanguage::Glsl => glsl_text(&module, &info).map_err(|error| fault(&error))?,
+        StageLanguage::Hlsl => hlsl_text(&module, &info).map_err(|error| fault(&error))?,
+    };
+    let precise = needed(all, precise_roots).into_iter().filter(|own| own.is_function).map(|own| own.name).collect();
+    Ok(Annotation { all, precise }.of(declared_part(&text)))
+}
+
+fn glsl_text(module: &naga::Module, info: &naga::valid::ModuleInfo) -> Result<String, glsl::Error> {
+    let options = glsl::Options {
+        version: glsl::Version::Desktop(450),
+        writer_flags: glsl::WriterFlags::empty(),
+        ..glsl::Options::default()
+    };
+    let entry = glsl::PipelineOptions {
+        shader_stage: naga::ShaderStage::Compute,
+        entry_point: "entry_of_translation".to_owned(),
+        multiview: None,
+    };
+    let mut text = String::new();
+    let policies = naga::proc::BoundsCheckPolicies::default();
+    glsl::Writer::new(&mut text, module, info, &options, &entry, policies)?.write()?;
+    Ok(text)
+}
+
+fn hlsl_text(module: &naga::Module, info: &naga::valid::ModuleInfo) -> Result<String, hlsl::Error> {
+    let options = hlsl::Options {
+        shader_model: hlsl::ShaderModel::V5_0,
+        restrict_indexing: false,
+        force_loop_bounding: false,
+        ..hlsl::Options::default()
+    };
+    let mut text = String::new();
+    hlsl::Writer::new(&mut text, &options, &hlsl::PipelineOptions::default()).write(module, info, None)?;
+    Ok(text)
+}
+
+/// Returns what lies between the header of naga's text and its entry point.
+fn declared_part(text: &str) -> &str {
+    let first = ["struct ", "const ", "static const "].iter().filter_map(|start| text.find(start)).min().unwrap_or(0);
+    let entry = ["void main()", "[numthreads("].iter().filter_map(|start| text.find(start)).min().unwrap_or(text.len());
+    text[first..entry].trim_end()
+}
+
+/// What is added to naga's text.
+struct Annotation<'a> {
+    all: &'a [Declaration],
+    precise: BTreeSet<String>,
+}
+
+impl Annotation<'_> {
+    fn of(&self, text: &str) -> String {
+        let mut lines: Vec<String> = Vec::new();
+        let mut current: Option<&Declaration> = None;
+        for line in text.lines().map(str::trim_end) {
+            let line = &zeroed_array(line).or_else(|| constant_array(line)).unwrap_or_else(|| line.to_owned());
+            let starts = line.starts_with(|c: char| c.is_ascii_alphabetic());
+            if starts {
+                current = self.declared(line);
+                if line.starts_with("struct ") && lines.last().is_some_and(|last| !last.is_empty()) {
+                    lines.push(String::new());
+                }
+                lines.extend(current.iter().flat_map(|own| own.comment.clone()));
+            }
+            let is_blank_twice = line.is_empty() && lines.last().is_some_and(String::is_empty);
+            if is_blank_twice || is_padding(line) && current.is_none_or(|own| !UNIFORMS.contains(&own.name.as_str())) {
+                continue;
+            }
+            match current {
+                Some(own) if own.is_function && self.precise.contains(&own.name) => lines.push(precise(line)),
+                Some(own) if !own.is_function && starts => lines.push(named_value(own, line)),
+                Some(own) if !own.is_function => {
+                    lines.extend(member_comment(own, line).cloned());
+                    lines.push(line.to_owned());
+                }
+                _ => lines.push(line.to_owned()),
+            }
+        }
+        lines.join("\n") + "\n"
+    }
+
+    /// The declaration that a line of naga's text begins: its struct, constant or function has the same name, except that names
+    /// that would be taken otherwise end in an underscore.
+    fn declared(&self, line: &str) -> Option<&Declaration> {
+        let names: Vec<_> = words(line).collect();
+        let name = match names.first()?.0 {
+            "struct" => names.get(1)?.0,
+            "const" | "static" => words(line.split(" = ").next()?).last()?.0,
+            _ => names.iter().find(|(_, is_called)| *is_called)?.0,
+        };
+        self.all.iter().find(|own| own.name == name || own.name == name.trim_end_matches('_'))
+    }
+}
+
+/// Returns a line of naga's HLSL that fills an array with zeros as one with an initializer list: glslang doesn't know the cast.
+fn zeroed_array(line: &str) -> Option<String> {
+    let (declared, cast) = line.split_once(" = (")?;
+    let (element, count) = cast.strip_suffix("])0;")?.split_once('[')?;
+    let zeros = vec![format!("({element})0"); count.parse().ok()?];
+    Some(format!("{declared} = {{ {} }};", zeros.join(", ")))
+}
+
+/// Returns a line of naga's HLSL that declares a constant array as one with an initializer list: a global may call no function in
+/// glslang.
+fn constant_array(line: &str) -> Option<String> {
+    let (declared, call) = line.strip_prefix("static const ")?.split_once(" = Constructarray")?;
+    let (_, items) = call.strip_suffix(");")?.split_once('(')?;
+    Some(format!("static const {declared} = {{ {items} }};"))
+}
+
+/// The structs that lie in a constant buffer, where HLSL needs naga's padding.
+const UNIFORMS: [&str; 2] = ["StageConstants", "LodView"];
+
+/// Whether a line of naga's HLSL is a member that only fills a struct up.
+fn is_padding(line: &str) -> bool {
+    let member = line.trim_start();
+    member.starts_with("int _pad") || member.starts_with("int _end_pad")
+}
+
+/// Returns a line of a constant with the name of its value, where ours has one: naga writes the number.
+fn named_value(own: &Declaration, line: &str) -> String {
+    let value = own.lines.first().and_then(|line| line.split_once(" = ")?.1.strip_suffix(';'));
+    let value = value.filter(|value| value.starts_with(|c: char| c.is_ascii_uppercase()));
+    match (value, line.split_once(" = ")) {
+        (Some(value), Some((before, _))) => {
+            let end = if value.ends_with(|c: char| c.is_ascii_digit()) { "_" } else { "" };
+            format!("{before} = {value}{end};")
+        }
+        _ => line.to_owned(),
+    }
+}
+
+/// The comment above a member of a struct, whose line in naga's text this is.
+fn member_comment<'a>(own: &'a Declaration, line: &str) -> impl Iterator<Item = &'a String> {
+    let name = line
+        .trim()
+        .strip_suffix(';')
+        .and_then(|line| words(line).filter(|(word, _)| word.parse::<u32>().is_err()).last());
+    let at = name.and_then(|(name, _)| {
+        let start = format!("{}:", name.trim_end_matches('_'));
+        own.lines.iter().position(|line| line.trim_start().starts_with(&start))
+    });
+    let before = &own.lines[..at.unwrap_or(0)];
+    let count = before.iter().rev().take_while(|line| line.trim_start().starts_with("//")).count();
+    before[before.len() - count..].iter()
+}
+
+/// Types whose computation may be fused.
+const FLOATS: [&str; 8] = ["float", "vec2", "vec3", "vec4", "float2", "float3", "float4", "CurveNet"];
+
+/// Returns a line that declares a number, or a function that returns one, as `precise`.
+fn precise(line: &str) -> String {
+    let code = line.trim_start();
+    let (is_const, declared) = code.strip_prefix("const ").map_or((false, code), |rest| (true, rest));
+    let is_float = |word: &str| FLOATS.contains(&word) || word.starts_with("ret_");
+    let declares = words(declared).next().is_some_and(|(word, is_called)| is_float(word) && !is_called);
+    if !declares {
+        return line.to_owned();
+    }
+    let indent = &line[..line.len() - code.len()];
+    format!("{indent}precise {}{declared}", if is_const { "const " } else { "" })
+}

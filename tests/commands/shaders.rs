@@ -1,0 +1,46 @@
+//! `pnaen shaders`: which files it writes, and what it refuses.
+
+use crate::{Folder, failure, output};
+
+#[test]
+fn every_language_has_its_files_with_command_licence_and_layout() {
+    let folder = Folder::new();
+    for (language, names) in [
+        ("glsl", &["patch.vert", "patch.tesc", "patch.tese"][..]),
+        ("hlsl", &["patch.hlsl"]),
+        ("wgsl", &["tessellate.wgsl"]),
+    ] {
+        let out = folder.path(language);
+        output(&["shaders", "--language", language, "--lod", "edge-length", "--pixels", "12", "-o", &out]);
+        let mut there: Vec<_> = std::fs::read_dir(&out)
+            .expect("the folder")
+            .map(|entry| entry.expect("an entry").file_name().into_string().expect("UTF-8"))
+            .collect();
+        there.sort();
+        let mut expected: Vec<_> = names.iter().map(ToString::to_string).chain(["README.md".to_owned()]).collect();
+        expected.sort();
+        assert_eq!(there, expected);
+        for name in there {
+            let text = std::fs::read_to_string(format!("{out}/{name}")).expect("a file");
+            assert!(text.contains("MIT OR Apache-2.0"), "{name} has no licence");
+            assert!(text.contains(&format!("--language {language} --lod edge-length")), "{name} has no command");
+            assert!(text.contains("here 12: the length of a segment"), "{name} has no constants");
+            assert!(!text.contains('@') || language == "wgsl", "{name} has something left to fill in");
+        }
+    }
+}
+
+#[test]
+fn what_cant_be_exported_is_refused_before_anything_is_written() {
+    let folder = Folder::new();
+    let out = folder.path("out");
+    for (options, words) in [
+        (["--lod", "error"], "choose --lod uniform"),
+        (["--partitioning", "rows"], "choose --language wgsl"),
+        (["--displacement", "on"], "choose --displacement off"),
+    ] {
+        let said = failure(&["shaders", "--language", "hlsl", options[0], options[1], "-o", &out], 2);
+        assert!(said.contains(words), "{said}");
+        assert!(!std::path::Path::new(&out).exists());
+    }
+}

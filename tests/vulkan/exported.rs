@@ -1,0 +1,235 @@
+//! What the driver's tessellation stages make of our exported shaders, beside what our passes make of the same mesh.
+
+use std::rc::Rc;
+use std::sync::Arc;
+
+use pnaen::embed::GpuError;
+use pnaen::glam::Vec2;
+use pnaen::internals::{
+    ARENA_BYTES, Camera, Engine, HullFactors, Language, Layout, Scene, Settings, ShaderError, Timing,
+    indices_per_patch, shader_files,
+};
+use pnaen::mesh::{Mesh, Topology};
+use pnaen::progress::Progress;
+use pnaen::tessellate::{Lod, LodView, Surface, Tessellation, unpack_normal};
+use thiserror::Error;
+
+use super::agreement::{Agreement, Ours, Weights, compare};
+use super::device::Vulkan;
+use super::stages::{CapturedCorner, Drawn, Exported, StageError};
+
+/// Why there is no comparison.
+#[derive(Debug, Error)]
+pub enum ExportedError {
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    #[error(transparent)]
+    Shaders(#[from] ShaderError),
+    #[error(transparent)]
+    Stages(#[from] StageError),
+}
+
+/// Width and height of the view that LOD is computed for, in px.
+const VIEWPORT: Vec2 = Vec2::new(640.0, 480.0);
+
+/// The LODs that can be exported.
+pub const LODS: [Lod; 4] = [Lod::Uniform, Lod::Distance, Lod::EdgeLength, Lod::Paper];
+/// The languages that run on tessellation stages.
+pub const LANGUAGES: [Language; 2] = [Language::Glsl, Language::Hlsl];
+
+/// A mesh that both tessellate.
+pub struct Subject<'a> {
+    engine: &'a Engine,
+    vulkan: Rc<Vulkan>,
+    mesh: Arc<Mesh>,
+    topology: Arc<Topology>,
+    scene: Scene,
+    view: LodView,
+}
+
+impl<'a> Subject<'a> {
+    /// Uploads a mesh.
+    ///
+    /// # Errors
+    /// No memory.
+    pub fn new(engine: &'a Engine, vulkan: &Rc<Vulkan>, mesh: Mesh) -> Result<Self, ExportedError> {
+        let mesh = Arc::new(mesh);
+        // Nobody else holds this handle, so nobody can cancel.
+        let topology = Arc::new(Topology::build(&mesh, &Progress::new()).unwrap_or_default());
+        let scene = engine.scene_of(mesh.clone(), topology.clone(), ARENA_BYTES)?;
+        let bounds = mesh.bounds();
+        let view = Camera::framing(&bounds, VIEWPORT).lod_view(VIEWPORT, &bounds);
+        Ok(Self { engine, vulkan: vulkan.clone(), mesh, topology, scene, view })
+    }
+
+    /// Runs the exported shaders of a tessellation, and compares. `weights` makes the weights of corners 0 and 1 of U and V, as
+    /// the tessellation's convention says.
+    ///
+    /// # Errors
+    /// It can't be exported, or the device was lost.
+    pub fn agreement(
+        &mut self,
+        language: Language,
+        tessellation: &Tessellation,
+        weights: Weights,
+    ) -> Result<Agreement, ExportedError> {
+        let inputs = Settings::from(*tessellation).inputs(self.view);
+        self.scene.tessellator.give(None)?;
+        self.engine.count(&mut self.scene, &inputs, &mut Timing::Off)?;
+        let written = self.scene.tessellator.hull_factors()?;
+        let room = self.scene.tessellator.totals().1 as usize * 2 + 1000;
+        let captured = self.captured(language, tessellation, room)?;
+        // Factors may differ in their last bits, which moves points: ours are computed again with those of the stages.
+        let mut given = written.clone();
+        for corner in captured.iter().flatten() {
+            let [a, b, c, inside] = corner.factors;
+            given[corner.place[3] as usize] = HullFactors { edges: [a, b, c], inside };
+        }
+        self.scene.tessellator.give(Some(given))?;
+        self.engine.count(&mut self.scene, &inputs, &mut Timing::Off)?;
+        let own = self.engine.read_tessellated(&mut self.scene)?;
+        let keys: Vec<_> = own.vertices.iter().map(|vertex| (vertex.patch(), vertex.domain())).collect();
+        let keys: Vec<_> = keys.into_iter().map(|(patch, [u, v])| (patch, u, v)).collect();
+        let positions: Vec<_> = own.vertices.iter().map(|vertex| vertex.position).collect();
+        let normals: Vec<_> = own.vertices.iter().map(|vertex| unpack_normal(vertex.normal).to_array()).collect();
+        let words = |own: &HullFactors| {
+            let [a, b, c] = own.edges;
+            [a, b, c, own.inside]
+        };
+        let factors: Vec<_> = written.iter().map(words).collect();
+        let ours = Ours {
+            keys: &keys,
+            positions: &positions,
+            normals: &normals,
+            triangles: &own.triangles,
+            factors: &factors,
+        };
+        Ok(compare(&captured, &ours, &self.patch_corners(), weights))
+    }
+
+    fn captured(
+        &self,
+        language: Language,
+        tessellation: &Tessellation,
+        room: usize,
+    ) -> Result<Vec<[CapturedCorner; 3]>, ExportedError> {
+        let files = shader_files(language, tessellation, "a test")?;
+        let text = |name: &str| files.iter().find(|file| file.name == name).map_or("", |file| file.text.as_str());
+        let exported = match language {
+            Language::Hlsl => Exported::Hlsl(text("patch.hlsl")),
+            _ => Exported::Glsl {
+                vertex: text("patch.vert"),
+                control: text("patch.tesc"),
+                evaluation: text("patch.tese"),
+            },
+        };
+        let per_patch = indices_per_patch(language, tessellation);
+        let nine = Layout::Nine.indices(&self.topology);
+        let indices: Vec<_> = nine.chunks(9).flat_map(|patch| &patch[..per_patch]).copied().collect();
+        let (vertices, constants) = (self.vertices(), self.constants(tessellation));
+        let drawn =
+            Drawn { vertices: &vertices, indices: &indices, per_patch: per_patch as u32, constants: &constants, room };
+        Ok(exported.capture(&self.vulkan, &drawn)?)
+    }
+
+    /// The vertex buffer, laid out as the exported files say.
+    fn vertices(&self) -> Vec<[f32; 8]> {
+        let corners = self.mesh.corners.iter().zip(&self.topology.corner_points);
+        let vertex = |(corner, &point): (&pnaen::mesh::Corner, &u32)| {
+            let ([x, y, z], [nx, ny, nz]) = (self.topology.points[point as usize].into(), corner.normal.into());
+            [x, y, z, nx, ny, nz, corner.uv.x, corner.uv.y]
+        };
+        corners.map(vertex).collect()
+    }
+
+    /// The constant buffer, laid out as the exported files say.
+    fn constants(&self, own: &Tessellation) -> [f32; 48] {
+        let mut constants = [0.0; 48];
+        let matrix = self.view.clip_from_object.to_cols_array();
+        constants[..16].copy_from_slice(&matrix);
+        constants[16..32].copy_from_slice(&matrix);
+        constants[32..34].copy_from_slice(&self.view.half_viewport.to_array());
+        constants[36..39].copy_from_slice(&self.view.eye.to_array());
+        constants[39] = self.view.radius;
+        constants[40..45].copy_from_slice(&[own.factor, own.pixels, own.near, own.far, own.alpha]);
+        constants
+    }
+
+    fn patch_corners(&self) -> Vec<[[f32; 3]; 3]> {
+        let position =
+            |corner: u32| self.topology.points[self.topology.corner_points[corner as usize] as usize].to_array();
+        self.topology.patches.iter().map(|patch| self.topology.corners(patch).map(position)).collect()
+    }
+}
+
+/// What was compared, and what came out.
+pub struct Row {
+    pub surface: Surface,
+    pub lod: Lod,
+    pub language: Language,
+    pub agreement: Agreement,
+}
+
+/// Compares every surface under every LOD, in both languages.
+///
+/// # Errors
+/// A shader doesn't compile, or the device was lost.
+pub fn rows(subject: &mut Subject) -> Result<Vec<Row>, ExportedError> {
+    let mut rows = Vec::new();
+    for surface in Surface::ALL {
+        for lod in LODS {
+            let own = Tessellation {
+                surface,
+                lod,
+                factor: 6.3,
+                pixels: 40.0,
+                near: 2.0,
+                far: 6.0,
+                ..Tessellation::default()
+            };
+            for language in LANGUAGES {
+                let agreement = subject.agreement(language, &own, &|weights| weights)?;
+                rows.push(Row { surface, lod, language, agreement });
+            }
+        }
+    }
+    Ok(rows)
+}
+
+/// The name of a value on the command line, such as `pn-aen` for `PnAen`.
+fn option_name(variant: &str) -> String {
+    let mut name = String::new();
+    for letter in variant.chars() {
+        if letter.is_uppercase() && !name.is_empty() {
+            name.push('-');
+        }
+        name.extend(letter.to_lowercase());
+    }
+    name
+}
+
+/// The rows as a Markdown table. Numbers are rounded up, so that the table says what holds.
+pub fn table(rows: &[Row]) -> String {
+    let head = "| surface | LOD | language | triangles | other triangles | factors differ by | positions within | points on \
+                shared edges | of these with other bits |\n| --- | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: |\n";
+    let row = |row: &Row| {
+        let own = &row.agreement;
+        let factors = match own.factors {
+            0.0 => "0".to_owned(),
+            some if some <= 1e-6 => "at most 0.000001".to_owned(),
+            more => format!("{more:.6}"),
+        };
+        format!(
+            "| `{}` | `{}` | {} | {} | {} | {factors} | {} ULP | {} | {} |\n",
+            option_name(&format!("{:?}", row.surface)),
+            option_name(&format!("{:?}", row.lod)),
+            format!("{:?}", row.language).to_uppercase(),
+            own.triangles,
+            own.other_triangles,
+            own.position_ulps.ceil(),
+            own.shared,
+            own.torn,
+        )
+    };
+    head.to_owned() + &rows.iter().map(row).collect::<String>()
+}

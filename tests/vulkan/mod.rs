@@ -1,0 +1,11 @@
+//! Vulkan as it is, for what wgpu has none of: tessellation stages. The bench draws our patches with them, and tests run exported
+//! shaders on them.
+
+pub mod agreement;
+pub mod device;
+pub mod exported;
+pub mod memory;
+pub mod pass;
+pub mod stages;
+
+pub use device::{Counted, Took, Vulkan, VulkanError};
