@@ -65,6 +65,8 @@ mod factors_file;
 #[cfg(feature = "cli")]
 mod gallery;
 #[cfg(feature = "cli")]
+mod lod_shader;
+#[cfg(feature = "cli")]
 mod measure;
 #[cfg(feature = "cli")]
 mod numbers;

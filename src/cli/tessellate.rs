@@ -4,13 +4,14 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 
+use super::lod_shader_option::report_own_lod;
 use super::{
-    AdapterOption, CliError, FactorsOption, SurfaceOptions, file_of, file_of_heights, keep_apart, load_apart, options,
-    warn,
+    AdapterOption, CliError, FactorsOption, LodShaderOption, SurfaceOptions, file_of, file_of_heights, keep_apart,
+    load_apart, options, warn,
 };
 use crate::engine::Engine;
 use crate::export::Exported;
-use crate::gpu::{GpuError, Timing};
+use crate::gpu::{Given, GpuError, Timing};
 use crate::load::Source;
 use crate::settings::Settings;
 use crate::tessellate::{self, bounds_through};
@@ -28,6 +29,8 @@ pub(crate) struct Args {
     pub surface: SurfaceOptions,
     #[command(flatten)]
     pub given: FactorsOption,
+    #[command(flatten)]
+    pub own_lod: LodShaderOption,
     /// Where to tessellate; the CPU needs no graphics driver
     #[arg(long, value_enum, default_value_t = Device::Gpu)]
     pub device: Device,
@@ -53,9 +56,12 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 pub(crate) fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
     args.surface.check()?;
     args.adapter.check(args.device == Device::Cpu)?;
+    args.own_lod.check(args.device == Device::Cpu)?;
     Exported::check_ending(&args.output)?;
     let heights = file_of_heights(args.surface.height.as_ref());
-    keep_apart([file_of(&args.file), heights, args.given.given.as_deref()], [Some(&*args.output)])?;
+    let (factors, shader) = (args.given.given.as_deref(), args.own_lod.lod_shader.as_deref());
+    keep_apart([file_of(&args.file), heights, factors, shader], [Some(&*args.output)])?;
+    let own_lod = args.own_lod.read(&args.surface.tessellation())?;
     let loaded = load_apart(&args.file, &args.surface.preparation(), &[Some(&args.output)])?;
     let moment = args.surface.animation.moment(&loaded)?;
     let posed = loaded.posed(moment);
@@ -80,7 +86,7 @@ pub(crate) fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuE
         Device::Gpu => {
             let engine = engine()?;
             let mut scene = engine.scene(&loaded, args.surface.arena_bytes())?;
-            scene.tessellator.give(given)?;
+            scene.tessellator.give(given.map(Given::from).or(own_lod))?;
             scene.set_moment(moment)?;
             let settings = args.surface.within_budget(|settings| {
                 engine.count(&mut scene, &settings.inputs(view), &mut Timing::Off)?;
@@ -88,6 +94,7 @@ pub(crate) fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuE
             })?;
             let inputs = settings.inputs(view);
             engine.count(&mut scene, &inputs, &mut Timing::Off)?;
+            report_own_lod(&engine, &scene)?;
             let (vertices, triangles) = scene.tessellator.totals();
             Exported::check(&args.output, mesh, vertices, triangles)?;
             engine.read_tessellated(&mut scene)?
