@@ -11,8 +11,8 @@ use std::time::{Duration, Instant};
 
 use crate::files::Limits;
 use crate::gpu::{
-    AdapterChoice, ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, read_buffers, take_times,
-    vertices_of,
+    AdapterChoice, ComputePipelines, Given, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, read_buffers,
+    take_times, vertices_of,
 };
 use crate::load::parts::Part;
 use crate::load::selection::Selection;
@@ -24,7 +24,9 @@ use crate::mesh::{BuildError, CreaseBand, Mesh, Moment, Topology, with_crease_ba
 use crate::progress::{Progress, Stage};
 use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, SilhouetteDrawer, Target};
 use crate::settings::{Settings, SplitSide};
-use crate::tessellate::{Inputs, Lod, LodView, Partitioning, PatchFactors, PosedMesh, Tessellated, Tessellation};
+use crate::tessellate::{
+    HullFactors, Inputs, Lod, LodView, Partitioning, PatchFactors, PosedMesh, Tessellated, Tessellation,
+};
 
 pub(crate) use measurements::{MeasurementResults, Measurements};
 pub(crate) use silhouette::{SilhouetteDrawing, SilhouetteView};
@@ -247,7 +249,7 @@ impl Engine {
     /// Runs the passes that count vertices and triangles, and waits for their results.
     ///
     /// # Errors
-    /// The device was lost.
+    /// The device was lost, or an LOD shader took too long.
     pub fn count(&self, scene: &mut Scene, inputs: &Inputs, timing: &mut Timing) -> Result<(), GpuError> {
         scene.tessellator.set(inputs)?;
         if scene.tessellator.needs_count() {
@@ -255,7 +257,11 @@ impl Engine {
             scene.tessellator.count(&mut recorder)?;
             recorder.submit();
         }
-        scene.tessellator.read_counts()
+        scene.tessellator.read_counts()?;
+        match scene.tessellator.own_lod_report() {
+            Some(report) if report.stopped > 0 => Err(GpuError::OwnLodStopped),
+            _ => Ok(()),
+        }
     }
 
     /// Tessellates for the camera's view and draws it. Waits for the counts, but not for the picture.
@@ -354,18 +360,31 @@ impl Engine {
         Ok(cast(&read_buffers(&self.gpu, parts)?))
     }
 
-    /// The factors that LOD or a file gave, before the tessellator clamps and rounds them.
+    /// The factors that LOD, a file or an LOD shader gave, before the tessellator clamps and rounds them.
     ///
     /// # Errors
     /// The device was lost.
     pub fn asked_factors(&self, scene: &Scene) -> Result<AskedFactors, GpuError> {
         let convention = scene.tessellator.convention();
-        if let Some(given) = scene.tessellator.given() {
-            return Ok(AskedFactors::given(convention, given));
+        match scene.tessellator.given() {
+            Some(Given::Factors(given)) => return Ok(AskedFactors::given(convention, given)),
+            Some(Given::Shader(_)) => return Ok(AskedFactors::given(convention, &self.own_factors(scene)?)),
+            None => {}
         }
         let (buffer, edges) = scene.tessellator.edge_factors();
         let bytes = u64::from(scene.tessellator.buffers().factor_count) * size_of::<f32>() as u64;
         Ok(AskedFactors::new(edges, convention, cast::<f32>(&read_buffer(&self.gpu, buffer, 0, bytes)?)))
+    }
+
+    /// The factors that an LOD shader gave every patch, as it gave them; none without such a shader. The counts must be known.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn own_factors(&self, scene: &Scene) -> Result<Vec<HullFactors>, GpuError> {
+        let Some(buffer) = scene.tessellator.own_factors() else { return Ok(Vec::new()) };
+        let patches = scene.tessellator.topology().patches.len();
+        let bytes = read_buffer(&self.gpu, buffer, 0, (patches * size_of::<HullFactors>()) as u64)?;
+        Ok(cast(&bytes))
     }
 
     /// The number of triangles that LOD by error emits at a tolerance of `tolerance_px` px, with all other inputs as they are;
@@ -386,7 +405,7 @@ impl Engine {
             other => other,
         };
         let by_error = Tessellation { lod: Lod::Error, tolerance: tolerance_px, partitioning, ..own };
-        let given = scene.tessellator.given().map(<[_]>::to_vec);
+        let given = scene.tessellator.given().cloned();
         if given.is_some() {
             scene.tessellator.give(None)?;
         }

@@ -68,6 +68,7 @@ mod factors_file;
 mod gallery;
 #[cfg(feature = "cli")]
 mod gates;
+mod lod_shader;
 #[cfg(feature = "cli")]
 mod measure;
 #[cfg(feature = "cli")]

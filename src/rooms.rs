@@ -19,7 +19,7 @@ const ORDER: &[&[&str]] = &[
     &["load", "tessellate"],
     &["adjacency_file", "factors_file", "truth", "view"],
     &["gpu"],
-    &["embed"],
+    &["embed", "lod_shader"],
     &["settings"],
     &["measure"],
     &["render"],

@@ -32,6 +32,7 @@ use jobs::Jobs;
 use jobs::document::Document;
 use jobs::environment_job::OpenEnvironment;
 use jobs::given_factors::GivenFactors;
+use jobs::lod_shader_job::OpenLodShader;
 use jobs::matcap::ChosenMatcap;
 use jobs::truth::ChosenTruth;
 use painting::{Painting, panel_frame};
@@ -56,6 +57,8 @@ pub struct App {
     truth: Option<ChosenTruth>,
     /// Factors of a file in place of those of LOD, if there are any.
     given: Option<GivenFactors>,
+    /// The file with functions of the user's own in place of LOD, if one is open.
+    lod_shader: Option<OpenLodShader>,
     /// A picture of a lit sphere in place of those that are made in code, if one was opened.
     matcap: Option<ChosenMatcap>,
     /// The file of light that is open, if one is.
@@ -89,6 +92,7 @@ impl App {
             document: None,
             truth: None,
             given: None,
+            lod_shader: None,
             matcap: None,
             environment: None,
             panels: Panels::default(),
@@ -190,6 +194,7 @@ impl App {
             || self.jobs.truth_load.is_some()
             || self.jobs.environment.is_some()
             || self.jobs.factors.is_some()
+            || self.lod_shader.as_ref().is_some_and(OpenLodShader::is_opening)
             || self.jobs.matcap.is_some();
         let measures = self.jobs.measure.is_busy()
             || self.jobs.leaks.is_busy()
@@ -241,6 +246,8 @@ impl eframe::App for App {
         self.take_loaded(context);
         self.take_truth();
         self.take_factors(context);
+        self.take_lod_shader();
+        self.stop_slow_lod_shader();
         self.take_matcap();
         self.take_environment();
         self.take_checks();

@@ -16,6 +16,7 @@ pub(in crate::app) enum Section {
     Advanced,
     Patch,
     Factors,
+    LodShader,
     Deviation,
     Cracks,
     Patches,
@@ -26,8 +27,8 @@ pub(in crate::app) enum Section {
 }
 
 impl Section {
-    pub(in crate::app) const ALL: [Self; 18] = crate::names::every![Section:
-        Surface, Import, Parts, LevelOfDetail, Displacement, Animation, Overlays, View, Advanced, Patch, Factors, Deviation, Cracks, Patches, Waste,
+    pub(in crate::app) const ALL: [Self; 19] = crate::names::every![Section:
+        Surface, Import, Parts, LevelOfDetail, Displacement, Animation, Overlays, View, Advanced, Patch, Factors, LodShader, Deviation, Cracks, Patches, Waste,
         Edges, Mesh, Passes,
     ];
 
@@ -45,6 +46,7 @@ impl Section {
             Self::Advanced => "Advanced",
             Self::Patch => "Patch",
             Self::Factors => "Factors of a file",
+            Self::LodShader => "Factors of a shader",
             Self::Deviation => "Deviation",
             Self::Cracks => "Cracks",
             Self::Patches => "Patches",

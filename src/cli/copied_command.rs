@@ -30,6 +30,8 @@ pub(crate) struct CopiedCommand<'a> {
     pub truth: Option<&'a Source>,
     /// The file whose factors take the place of those of LOD.
     pub factors: Option<&'a Path>,
+    /// The file whose functions take the place of LOD.
+    pub lod_shader: Option<&'a Path>,
     /// The picture of a lit sphere that takes the place of that of the settings.
     pub matcap_image: Option<&'a Path>,
     /// The file that the light comes from.
@@ -112,7 +114,7 @@ impl CopiedCommand<'_> {
             None => (displaced(Displacement::Off, &shown), Settings::default()),
         };
         let is_replaced = |name: &str| {
-            (self.factors.is_some() && INSTEAD_OF_FACTORS.contains(&name))
+            ((self.factors.is_some() || self.lod_shader.is_some()) && INSTEAD_OF_FACTORS.contains(&name))
                 || (self.matcap_image.is_some() && name == options::MATCAP.name)
         };
         let written = |option: &&Declaration| (option.no_effect)(&own).is_none() && !is_replaced(option.name);
@@ -126,10 +128,13 @@ impl CopiedCommand<'_> {
         }
     }
 
-    /// Writes the files of factors, of a matcap and of light, the reference surface, the selection, the pose and the camera.
+    /// Writes the files of factors, of an LOD shader, of a matcap and of light, the reference surface, the selection, the pose and the camera.
     fn view(&self, line: &mut Line) {
         if let Some(path) = self.factors {
             line.option("--factors", named(&Source::File(path.to_owned())));
+        }
+        if let Some(path) = self.lod_shader {
+            line.option("--lod-shader", named(&Source::File(path.to_owned())));
         }
         if let Some(path) = self.matcap_image.filter(|_| self.settings.overlays.colors == Colors::Matcap) {
             line.option("--matcap-image", named(&Source::File(path.to_owned())));
@@ -168,7 +173,7 @@ impl CopiedCommand<'_> {
     }
 }
 
-/// The options that `--factors` excludes.
+/// The options that `--factors` and `--lod-shader` exclude.
 const INSTEAD_OF_FACTORS: [&str; 6] = ["lod", "factor", "pixels", "tolerance", "distances", "max-triangles"];
 
 /// Width and height in px, as the command line takes them.
@@ -277,6 +282,7 @@ mod tests {
             animation: None,
             truth: None,
             factors: None,
+            lod_shader: None,
             matcap_image: None,
             environment: None,
             triangle: None,

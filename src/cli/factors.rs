@@ -2,8 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use super::lod_shader_option::report_own_lod;
 use super::tessellate::Device;
-use super::{AdapterOption, CliError, SurfaceOptions, file_of, file_of_heights, keep_apart, load_apart, write_text};
+use super::{
+    AdapterOption, CliError, LodShaderOption, SurfaceOptions, file_of, file_of_heights, keep_apart, load_apart,
+    write_text,
+};
 use crate::engine::Engine;
 use crate::factors_file::to_csv;
 use crate::gpu::{GpuError, Timing};
@@ -24,6 +28,8 @@ pub(crate) struct Args {
     pub output: PathBuf,
     #[command(flatten)]
     pub surface: SurfaceOptions,
+    #[command(flatten)]
+    pub own_lod: LodShaderOption,
     /// Where to compute; the CPU needs no graphics driver
     #[arg(long, value_enum, default_value_t = Device::Gpu)]
     pub device: Device,
@@ -34,8 +40,11 @@ pub(crate) struct Args {
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
     args.surface.check()?;
     args.adapter.check(args.device == Device::Cpu)?;
+    args.own_lod.check(args.device == Device::Cpu)?;
     let heights = file_of_heights(args.surface.height.as_ref());
-    keep_apart([file_of(&args.file), heights], [Some(&*args.output)])?;
+    let shader = args.own_lod.lod_shader.as_deref();
+    keep_apart([file_of(&args.file), heights, shader], [Some(&*args.output)])?;
+    let own_lod = args.own_lod.read(&args.surface.tessellation())?;
     let loaded = load_apart(&args.file, &args.surface.preparation(), &[Some(&args.output)])?;
     let moment = args.surface.animation.moment(&loaded)?;
     let posed = loaded.posed(moment);
@@ -50,12 +59,15 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         Device::Gpu => {
             let engine = Engine::chosen(&args.adapter.choice())?;
             let mut scene = engine.scene(&loaded, args.surface.arena_bytes())?;
+            scene.tessellator.give(own_lod)?;
             scene.set_moment(moment)?;
             let settings = args.surface.within_budget(|settings| {
                 engine.count(&mut scene, &settings.inputs(view), &mut Timing::Off)?;
                 Ok(scene.tessellator.totals().1)
             })?;
-            computed(&engine, &mut scene, &settings.inputs(view))?
+            let written = computed(&engine, &mut scene, &settings.inputs(view))?;
+            report_own_lod(&engine, &scene)?;
+            written
         }
     };
     write_text(&args.output, &to_csv(topology, &written, args.surface.tessellation().partitioning))

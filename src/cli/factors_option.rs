@@ -21,7 +21,7 @@ pub(crate) struct FactorsOption {
     #[arg(
         long = "factors",
         value_name = "CSV",
-        conflicts_with_all = ["lod", "factor", "pixels", "tolerance", "distances", "max_triangles"]
+        conflicts_with_all = ["lod", "lod_shader", "factor", "pixels", "tolerance", "distances", "max_triangles"]
     )]
     pub given: Option<PathBuf>,
 }
@@ -36,7 +36,7 @@ pub(crate) struct Given {
 /// How many edges standard error lists.
 const SAID: usize = 10;
 /// How many edges the stats list.
-const LISTED: usize = 10_000;
+pub(super) const LISTED: usize = 10_000;
 
 impl FactorsOption {
     /// Reads the file, if one was named, and reports on standard error where its factors disagree.
@@ -88,6 +88,13 @@ pub(crate) fn read_factors(
 
 /// Returns the report, as lines for standard error.
 fn said(topology: &Topology, agreement: &Agreement, convention: Convention) -> Vec<String> {
+    let mut lines = agreement_lines(topology, agreement);
+    lines.extend(order_text(agreement, convention));
+    lines
+}
+
+/// Returns which edges disagree, as lines for standard error.
+pub(super) fn agreement_lines(topology: &Topology, agreement: &Agreement) -> Vec<String> {
     let (different, compared) = (agreement.edges.len(), agreement.edges_compared);
     let mut lines = vec![format!("{different} of {compared} edges have different factors on their sides")];
     if agreement.patches_culled > 0 {
@@ -101,7 +108,6 @@ fn said(topology: &Topology, agreement: &Agreement, convention: Convention) -> V
         lines.push(format!("the {SAID} edges that differ the most:"));
     }
     lines.extend(agreement.edges.iter().take(SAID).map(|edge| edge_text(topology, edge)));
-    lines.extend(order_text(agreement, convention));
     lines
 }
 
@@ -177,7 +183,7 @@ struct OrderStats {
 }
 
 #[derive(Clone, Debug, Serialize)]
-struct EdgeStats {
+pub(super) struct EdgeStats {
     /// Object units.
     points: [[f32; 3]; 2],
     sides: Vec<SideStats>,
@@ -197,18 +203,20 @@ enum Number {
     Infinite(&'static str),
 }
 
+impl EdgeStats {
+    pub(super) fn new(topology: &Topology, edge: &Disagreement) -> Self {
+        let number = |factor: f32| if factor.is_finite() { Number::Finite(factor) } else { Number::Infinite("inf") };
+        let side = |&(triangle, factor): &(u32, f32)| SideStats { triangle, factor: number(factor) };
+        Self { points: end_points(topology, edge.edge), sides: edge.sides.iter().map(side).collect() }
+    }
+}
+
 impl FactorsFile {
     fn new(path: &Path, topology: &Topology, agreement: &Agreement, convention: Convention) -> Self {
         let order = |order: &Order| OrderStats {
             sides: order.sides,
             written_by: order.convention().map(Choice::name),
             edges_different: order.different,
-        };
-        let number = |factor: f32| if factor.is_finite() { Number::Finite(factor) } else { Number::Infinite("inf") };
-        let side = |&(triangle, factor): &(u32, f32)| SideStats { triangle, factor: number(factor) };
-        let edge = |edge: &Disagreement| EdgeStats {
-            points: end_points(topology, edge.edge),
-            sides: edge.sides.iter().map(side).collect(),
         };
         Self {
             path: shown_path(path),
@@ -218,7 +226,7 @@ impl FactorsFile {
             patches_culled: agreement.patches_culled,
             consistent_as: agreement.consistent().filter_map(Order::valid_convention).map(Choice::name).collect(),
             orders: agreement.orders.iter().map(order).collect(),
-            edges: agreement.edges.iter().take(LISTED).map(edge).collect(),
+            edges: agreement.edges.iter().take(LISTED).map(|edge| EdgeStats::new(topology, edge)).collect(),
         }
     }
 }

@@ -16,6 +16,7 @@ mod info;
 mod interrupt;
 mod legend;
 mod light_report;
+mod lod_shader_option;
 mod material_report;
 mod mesh_report;
 mod options;
@@ -47,6 +48,7 @@ use thiserror::Error;
 pub(crate) use adapters::AdapterOption;
 pub(crate) use animation::AnimationOption;
 pub(crate) use factors_option::{FactorsOption, read_factors};
+pub(crate) use lod_shader_option::{LodShaderOption, not_numbers_said};
 use output_guard::{file_of, file_of_heights, keep_apart};
 
 pub(crate) use adjacency::write_adjacency;
@@ -73,6 +75,7 @@ use crate::files::file_reason;
 use crate::gpu::GpuError;
 use crate::load::environment_file::EnvironmentError;
 use crate::load::{LoadError, MatcapError, Source};
+use crate::lod_shader::LodShaderError;
 use crate::names::{on_one_line, shown, shown_path};
 use crate::progress::{Cancelled, Progress};
 use crate::settings::Settings;
@@ -154,6 +157,8 @@ pub(crate) enum CliError {
     Cancelled(#[from] Cancelled),
     #[error(transparent)]
     Matcap(#[from] MatcapError),
+    #[error(transparent)]
+    LodShader(#[from] LodShaderError),
     #[error(transparent)]
     Export(#[from] ExportError),
     #[error("{path}: could not be {doing} ({reason})")]

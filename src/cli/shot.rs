@@ -10,6 +10,7 @@ use image::RgbaImage;
 
 use super::factors_option::FactorsFile;
 use super::legend::draw_legend;
+use super::lod_shader_option::{LodShaderStats, report_own_lod};
 use super::silhouette::SilhouetteStats;
 use super::stats::{AnimationStats, LeftStats, Stats};
 use super::truth::{AccuracyStats, DeviationStats, ReferenceSurface};
@@ -17,7 +18,7 @@ use super::view_report::ViewStats;
 use super::{CliError, to_json, write_text};
 use crate::engine::{Engine, Loaded, MeasurementResults, Measurements, Runs, SilhouetteView};
 use crate::gates::Judgement;
-use crate::gpu::{GpuError, Recorder, Timing};
+use crate::gpu::{Given, GpuError, Recorder, Timing};
 use crate::load::panorama::Panorama;
 use crate::measure::{AccuracyOptions, DeviationField, ScreenError, Silhouette, patch_edges};
 use crate::mesh::{Bounds, Mesh, Moment, Texture, t_junctions};
@@ -27,7 +28,7 @@ use crate::render::{
     deviation_scale, lay_over, lod_camera_lines, outlines_picture, patch_lines, t_junction_lines, worst_lines,
 };
 use crate::settings::{Colors, DeviationUnit, Settings, SplitSide};
-use crate::tessellate::{HullFactors, Inputs, LodView};
+use crate::tessellate::{Inputs, LodView};
 use crate::view::ScreenView;
 
 /// What is drawn.
@@ -35,8 +36,8 @@ pub(crate) struct Subject {
     /// The mesh at rest.
     pub loaded: Loaded,
     pub moment: Option<Moment>,
-    /// Factors of a file in place of those that LOD computes, one for each patch.
-    pub given: Option<Vec<HullFactors>>,
+    /// What takes the place of LOD: factors of a file, or a shader.
+    pub given: Option<Given>,
     /// A picture of a lit sphere in place of that of the settings, for the matcap overlay.
     pub matcap: Option<Arc<Texture>>,
     /// The light of a file that is still to be uploaded, if the scene doesn't have it already.
@@ -156,6 +157,14 @@ impl Shot {
         };
         shot.count()?;
         Ok(shot)
+    }
+
+    /// Reports on standard error where the factors of an LOD shader disagree, if there is one.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub(crate) fn report_own_lod(&self) -> Result<(), GpuError> {
+        report_own_lod(&self.engine, &self.scene)
     }
 
     /// Moves the picture's camera. LOD follows it, unless that has a camera of its own.
@@ -383,6 +392,7 @@ impl Shot {
         let passes = engine.time_for(scene, target, camera, *lod_view, &alone, Runs::default())?;
         let leaks = engine.leaks(scene, measured, target.size, camera)?;
         let factors_capped = engine.factors_capped(scene, &settings.tessellation)?;
+        let lod_shader = LodShaderStats::of(engine, scene)?;
         let mut stats = Stats::new(engine, &self.posed, scene, measured, settings, view, &passes);
         (stats.triangles_in_view, stats.triangles_below_3_px) =
             results.sizes.map_or((0, 0), |sizes| (sizes.in_view, sizes.small));
@@ -394,7 +404,7 @@ impl Shot {
             let triangles = engine.triangles_by_error(scene, &inputs, tolerance_px)?;
             stats.lod_comparison = triangles.map(|triangles| stats.compared(tolerance_px, triangles));
         }
-        stats.factors_capped = factors_capped;
+        (stats.factors_capped, stats.lod_shader) = (factors_capped, lod_shader);
         stats.accuracy = accuracy;
         stats.deviation = self.deviation(SplitSide::Right);
         let mirrored = self.view.camera.is_mirrored().then_some(self.view.size[0]);

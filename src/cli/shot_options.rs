@@ -7,10 +7,11 @@ use super::factors_option::FactorsFile;
 use super::options::{LodCameraOption, PictureOptions};
 use super::shot::{Shot, ShotView, Subject};
 use super::{
-    CliError, FactorsOption, SurfaceOptions, TruthOption, file_of, file_of_heights, keep_apart, load_apart, warn,
+    CliError, FactorsOption, LodShaderOption, SurfaceOptions, TruthOption, file_of, file_of_heights, keep_apart,
+    load_apart, warn,
 };
 use crate::engine::{Engine, Loaded};
-use crate::gpu::Timing;
+use crate::gpu::{Given, Timing};
 use crate::load::environment_file::EnvironmentFile;
 use crate::load::panorama::Panorama;
 use crate::load::{Source, load_matcap};
@@ -27,6 +28,8 @@ pub(crate) struct ShotOptions {
     pub lod: LodCameraOption,
     #[command(flatten)]
     pub given: FactorsOption,
+    #[command(flatten)]
+    pub own_lod: LodShaderOption,
     #[command(flatten)]
     pub picture: PictureOptions,
     /// Panorama whose light shines in place of the studio's: a Radiance (.hdr) or OpenEXR (.exr) file, longitude across and
@@ -78,7 +81,8 @@ impl ShotOptions {
         let truth = self.truth.truth.as_ref().and_then(file_of);
         let heights = file_of_heights(self.surface.height.as_ref());
         let (factors, matcap) = (self.given.given.as_deref(), self.matcap_image.as_deref());
-        let own = [file_of(file), truth, heights, factors, matcap, self.environment.as_deref()];
+        let shader = self.own_lod.lod_shader.as_deref();
+        let own = [file_of(file), truth, heights, factors, shader, matcap, self.environment.as_deref()];
         keep_apart(own.into_iter().chain(read.iter().copied()), written.iter().copied())
     }
 
@@ -113,6 +117,7 @@ impl ShotOptions {
     /// A file can't be read, or isn't for this mesh.
     pub(super) fn subject_of(&self, loaded: Loaded) -> Result<(Subject, Option<FactorsFile>), CliError> {
         let limits = self.surface.weld.limit.limits();
+        let own_lod = self.own_lod.read(&self.surface.tessellation())?;
         let matcap = self.matcap_image.as_ref().map(|path| load_matcap(path, &limits)).transpose()?;
         let given = self.given.read(&loaded.mesh, &loaded.topology, &self.surface.tessellation())?;
         let is_shown = self.picture.0.overlays.colors == Colors::Deviation;
@@ -124,7 +129,7 @@ impl ShotOptions {
             moment: self.surface.animation.moment(&loaded)?,
             settings: self.surface.settings_of(&self.picture.0),
             loaded,
-            given,
+            given: given.map(Given::from).or(own_lod),
             matcap: matcap.map(Arc::new),
             environment,
             reference_surface,
@@ -168,7 +173,9 @@ impl ShotOptions {
             Ok(scene.tessellator.totals().1)
         })?;
         subject.settings = subject.settings.with(within.tessellation);
-        Ok(Shot::new(engine, scene, subject, view)?)
+        let shot = Shot::new(engine, scene, subject, view)?;
+        shot.report_own_lod()?;
+        Ok(shot)
     }
 }
 

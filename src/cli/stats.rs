@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::factors_option::FactorsFile;
 use super::reference::ReferenceStats;
+use super::lod_shader_option::LodShaderStats;
 use super::silhouette::SilhouetteStats;
 use super::truth::{AccuracyStats, DeviationStats};
 use super::view_report::ViewStats;
@@ -69,6 +70,8 @@ pub(super) struct Stats {
     pub factors_capped: u64,
     /// What was found about the factors of a file, if they came from one.
     pub factors_file: Option<FactorsFile>,
+    /// What was found about the factors of an LOD shader, if they came from one.
+    pub lod_shader: Option<LodShaderStats>,
     /// The distance to the reference surface, if there is one.
     pub accuracy: Option<AccuracyStats>,
     /// What the deviation overlay shows, if it is on.
@@ -289,6 +292,7 @@ impl Stats {
             lod_comparison: None,
             factors_capped: 0,
             factors_file: None,
+            lod_shader: None,
             accuracy: None,
             deviation: None,
             silhouette: None,

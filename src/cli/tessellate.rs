@@ -5,15 +5,16 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 
 use super::gate_options::{GateOptions, pass};
+use super::lod_shader_option::report_own_lod;
 use super::shot::{Shot, ShotView, Subject};
 use super::{
-    AdapterOption, CliError, FactorsOption, SurfaceOptions, file_of, file_of_heights, keep_apart, load_apart, options,
-    warn,
+    AdapterOption, CliError, FactorsOption, LodShaderOption, SurfaceOptions, file_of, file_of_heights, keep_apart,
+    load_apart, options, warn,
 };
 use crate::engine::{Engine, Loaded};
 use crate::export::Exported;
 use crate::gates::{Facts, GateKind, judge};
-use crate::gpu::{GpuError, Timing};
+use crate::gpu::{Given, GpuError, Timing};
 use crate::load::Source;
 use crate::measure::{AskedFactors, EmittedChunk, Measured, ScreenErrorMeasurement, Visitor};
 use crate::mesh::{Moment, t_junctions};
@@ -35,6 +36,8 @@ pub(crate) struct Args {
     pub surface: SurfaceOptions,
     #[command(flatten)]
     pub given: FactorsOption,
+    #[command(flatten)]
+    pub own_lod: LodShaderOption,
     /// Where to tessellate; the CPU needs no graphics driver
     #[arg(long, value_enum, default_value_t = Device::Gpu)]
     pub device: Device,
@@ -62,7 +65,9 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 pub(crate) fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
     args.check()?;
     let heights = file_of_heights(args.surface.height.as_ref());
-    keep_apart([file_of(&args.file), heights, args.given.given.as_deref()], [Some(&*args.output)])?;
+    let (factors, shader) = (args.given.given.as_deref(), args.own_lod.lod_shader.as_deref());
+    keep_apart([file_of(&args.file), heights, factors, shader], [Some(&*args.output)])?;
+    let own_lod = args.own_lod.read(&args.surface.tessellation())?;
     let loaded = load_apart(&args.file, &args.surface.preparation(), &[Some(&args.output)])?;
     let moment = args.surface.animation.moment(&loaded)?;
     let posed = loaded.posed(moment);
@@ -80,7 +85,7 @@ pub(crate) fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuE
         Device::Gpu => {
             let engine = engine()?;
             let mut scene = engine.scene(&loaded, args.surface.arena_bytes())?;
-            let subject = args.subject(loaded, moment, given);
+            let subject = args.subject(loaded, moment, given.map(Given::from).or(own_lod));
             subject.dress(&engine, &mut scene)?;
             let (settings, tessellated) = args.on_gpu(&engine, &mut scene, &posed, view)?;
             warn(&Exported::new(mesh, topology, &tessellated).write(&args.output)?);
@@ -94,6 +99,7 @@ impl Args {
     fn check(&self) -> Result<(), CliError> {
         self.surface.check()?;
         self.adapter.check(self.device == Device::Cpu)?;
+        self.own_lod.check(self.device == Device::Cpu)?;
         let draws = self.gates.evidence.is_some() || self.gates.gates.has(GateKind::Leaks);
         if draws && self.device == Device::Cpu {
             return Err(CliError::Usage("--fail-on leaks and --evidence need --device gpu, which draws"));
@@ -137,13 +143,14 @@ impl Args {
             Ok(scene.tessellator.totals().1)
         })?;
         engine.count(scene, &settings.inputs(view), &mut Timing::Off)?;
+        report_own_lod(engine, scene)?;
         let (vertices, triangles) = scene.tessellator.totals();
         Exported::check(&self.output, &posed.mesh, vertices, triangles)?;
         Ok((settings, engine.read_tessellated(scene)?))
     }
 
     /// What a picture of the mesh would be drawn from.
-    fn subject(&self, loaded: Loaded, moment: Option<Moment>, given: Option<Vec<HullFactors>>) -> Subject {
+    fn subject(&self, loaded: Loaded, moment: Option<Moment>, given: Option<Given>) -> Subject {
         Subject {
             loaded,
             moment,

@@ -19,6 +19,8 @@ pub struct Availability {
     pub has_truth: bool,
     /// Whether factors of a file take the place of LOD's.
     pub has_factors: bool,
+    /// Whether a file with functions of the user's own is open in place of LOD.
+    pub has_lod_shader: bool,
     /// Whether a file of light is open.
     pub has_environment: bool,
     pub can_undo: bool,
@@ -71,6 +73,7 @@ impl Availability {
             has_picture: true,
             has_truth: true,
             has_factors: true,
+            has_lod_shader: true,
             has_environment: true,
             can_undo: true,
             can_redo: true,
@@ -148,6 +151,10 @@ pub(super) fn factors(now: &Availability) -> Option<&'static str> {
     unless(now.has_factors, "No file of factors is open.")
 }
 
+pub(super) fn lod_shader(now: &Availability) -> Option<&'static str> {
+    unless(now.has_lod_shader, "No LOD shader is open.")
+}
+
 pub(super) fn environment(now: &Availability) -> Option<&'static str> {
     unless(now.has_environment, "No environment is open.")
 }
@@ -196,9 +203,13 @@ pub(super) fn normals_at(now: &Availability) -> Option<&'static str> {
     unless(now.takes_normals_at, NORMALS_FOLLOW_TRIANGLES)
 }
 
-/// Why factors of LOD can't be set, unless factors come from a file.
+/// Why factors of LOD can't be set, unless factors come from a file or a shader.
 fn from_lod(now: &Availability, why: &'static str) -> &'static str {
-    if now.has_factors { "The factors come from a file." } else { why }
+    match (now.has_factors, now.has_lod_shader) {
+        (true, _) => "The factors come from a file.",
+        (false, true) => "The factors come from an LOD shader.",
+        (false, false) => why,
+    }
 }
 
 pub(super) fn factor(now: &Availability) -> Option<&'static str> {

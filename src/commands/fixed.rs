@@ -25,6 +25,10 @@ pub(crate) const MATCAP_IMAGE: &str =
 /// What a file of factors is for.
 const FACTORS: &str = "Opens the tessellation factors that another engine wrote, in place of those of LOD, and lists where they disagree.";
 
+/// What functions of the user's own are for.
+const LOD_SHADER: &str =
+    "Opens a WGSL file with your own function for factors in place of LOD, and follows its changes.";
+
 /// What a file of light is for.
 pub(crate) const ENVIRONMENT: &str =
     "Opens a panorama (.hdr or .exr) whose light shines on the mesh in place of the studio's.";
@@ -85,6 +89,23 @@ fn file() -> Vec<Command> {
         )
         .menu(File, 2)
         .unless(when::factors),
+        Command::new(Action::File(FileAction::LodShader), "LOD shader…", LOD_SHADER)
+            .menu(File, 2)
+            .unless(when::document),
+        Command::new(
+            Action::File(FileAction::LodShaderPath),
+            "LOD shader path…",
+            "Opens an LOD shader by its typed path.",
+        )
+        .menu(File, 2)
+        .unless(when::document),
+        Command::new(
+            Action::File(FileAction::CloseLodShader),
+            "Close the LOD shader",
+            "Closes the LOD shader. LOD computes factors again.",
+        )
+        .menu(File, 2)
+        .unless(when::lod_shader),
         Command::new(Action::File(FileAction::Environment), "Open environment…", ENVIRONMENT).menu(File, 2),
         Command::new(
             Action::File(FileAction::EnvironmentPath),

@@ -111,7 +111,7 @@ impl Engine {
         let coverage = self.silhouettes.start(&self.gpu, grid, view.seen.clip_from_object)?;
         tessellator.pose_as(scene.tessellator.posed())?;
         if scene.tessellator.given() != tessellator.given() {
-            tessellator.give(scene.tessellator.given().map(<[_]>::to_vec))?;
+            tessellator.give(scene.tessellator.given().cloned())?;
         }
         let rest = OutlineOf::ALL.into_iter().zip(inputs(tessellation, view, grid)).collect();
         Ok(SilhouetteDrawing { tessellator, grid, coverage, rest, is_set: false, next_chunk: 0 })

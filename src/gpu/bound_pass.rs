@@ -3,9 +3,10 @@
 use std::sync::OnceLock;
 
 use super::arena::Arena;
+use super::compute_pipeline::ComputePipeline;
 use super::lazy::get_or_try;
 use super::mesh_buffers::MeshBuffers;
-use super::pipelines::{ComputePipeline, ComputePipelines, bind_group};
+use super::pipelines::{ComputePipelines, bind_group};
 use super::{Gpu, GpuError};
 
 /// What passes are bound to, besides the buffers of a slab.

@@ -7,7 +7,8 @@ use wgpu::util::DeviceExt;
 
 use super::bound_pass::BoundPass;
 use super::buffer::empty;
-use super::pipelines::{ComputePipeline, ShaderModule, WORKGROUP};
+use super::compute_pipeline::{ComputePipeline, ShaderModule};
+use super::pipelines::WORKGROUP;
 use super::readback::read_buffers;
 use super::wgsl::{CONNECTIVITY, DOMAIN, FACTORS, WgslFile, wgsl};
 use super::{Gpu, GpuError};

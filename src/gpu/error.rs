@@ -45,6 +45,11 @@ pub enum GpuError {
     /// A picture is larger than the device allows, in px.
     #[error("a picture of {width} x {height} px is larger than the adapter's {limit} px a side: ask for a smaller one")]
     PictureTooLarge { width: u32, height: u32, limit: u32 },
+    /// Loops of functions of the user's own took too long.
+    #[error(
+        "the loops of the LOD shader took too long, for one edge or for all together, so it was stopped: let them end sooner"
+    )]
+    OwnLodStopped,
     /// The device has no memory left.
     #[error("the graphics device is out of memory: ask for a smaller picture, or open a smaller mesh")]
     OutOfMemory,

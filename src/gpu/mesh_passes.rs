@@ -1,10 +1,13 @@
 //! The passes that run over a whole mesh, each bound to the mesh's buffers when it first runs.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use super::GpuError;
 use super::bound_pass::{BoundPass, PassInputs};
+use super::lazy::get_or_try;
 use super::mesh_buffers::MeshBuffers;
+use super::own_lod::LodShader;
+use super::own_lod_passes::OwnLodPasses;
 use super::relief_buffers::{HeightImages, ReliefBuffers};
 use super::search_passes::SearchPasses;
 
@@ -19,6 +22,7 @@ pub(super) struct MeshPasses {
     heights_inside: OnceLock<BoundPass>,
     factor_levels: OnceLock<BoundPass>,
     point_levels: OnceLock<BoundPass>,
+    own_lod: OnceLock<OwnLodPasses>,
     pub searches: SearchPasses,
 }
 
@@ -76,6 +80,16 @@ impl MeshPasses {
             &on.pipelines.edge_factors,
             &factor_buffers(on.mesh, on.params, &on.mesh.edge_factors),
         )
+    }
+
+    /// The factors of every patch by functions of the user's own, which are always the same.
+    pub(super) fn own_lod(
+        &self,
+        on: &PassInputs,
+        shader: &Arc<LodShader>,
+        report: &wgpu::Buffer,
+    ) -> Result<&OwnLodPasses, GpuError> {
+        get_or_try(&self.own_lod, || OwnLodPasses::new(on, shader, report))
     }
 
     /// The factor that the heights of every patch need inside it.

@@ -11,6 +11,7 @@ pub(crate) mod adapters;
 mod arena;
 mod bound_pass;
 mod buffer;
+mod compute_pipeline;
 pub(crate) mod device;
 pub(crate) mod domain;
 mod error;
@@ -20,6 +21,8 @@ mod lazy;
 mod mesh_buffers;
 mod mesh_passes;
 mod own_least;
+pub(crate) mod own_lod;
+mod own_lod_passes;
 mod params;
 mod pipelines;
 pub(crate) mod readback;
@@ -30,11 +33,13 @@ mod search_passes;
 mod slab;
 mod tessellator;
 pub(crate) mod wgsl;
+pub(crate) mod wgsl_tokens;
 
 pub(crate) use adapters::{AdapterChoice, BACKENDS, adapters, best_adapter, kind};
 pub(crate) use arena::{VERTEX_HALF, vertices_of};
 pub(crate) use bound_pass::BoundPass;
 pub(crate) use buffer::{empty, uniform_buffer};
+pub(crate) use compute_pipeline::{ComputePipeline, ShaderModule};
 pub(crate) use device::{Gpu, device_descriptor};
 #[cfg(test)]
 pub(crate) use domain::DomainParams;
@@ -44,7 +49,8 @@ pub(crate) use lazy::Lazy;
 pub(crate) use mesh_buffers::MeshBuffers;
 #[cfg(test)]
 pub(crate) use mesh_buffers::SEARCH_COUNTERS;
-pub(crate) use pipelines::{ComputePipeline, ComputePipelines, ShaderModule, WORKGROUP, bind_group, grid};
+pub(crate) use own_lod::{Given, LodReport, LodShader};
+pub(crate) use pipelines::{ComputePipelines, WORKGROUP, bind_group, grid};
 #[cfg(test)]
 pub(crate) use pipelines::{GRID_WIDTH, MOST_WORKGROUPS};
 pub(crate) use readback::{Readback, read_buffer, read_buffers, read_texture};
@@ -58,10 +64,11 @@ pub(crate) use wgsl::WgslFile;
 
 /// The files with the entry points of the passes: one shader module each.
 #[cfg(test)]
-pub(crate) static MODULES: [&WgslFile; 13] = [
+pub(crate) static MODULES: [&WgslFile; 14] = [
     &pipelines::PASS_DEFORM,
     &pipelines::PASS_NETS,
     &pipelines::PASS_FACTORS,
+    &own_lod::PASS_OWN_LOD,
     &pipelines::PASS_ASKED,
     &pipelines::PASS_UNIFORM,
     &pipelines::PASS_LEAST,

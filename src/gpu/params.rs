@@ -2,23 +2,25 @@
 
 use super::MeshBuffers;
 use super::layout::{LOD_GIVEN, LodView, Params};
+use super::own_lod::Given;
 use crate::mesh::Mesh;
 use crate::tessellate::{self, Clip, Inputs, Lod};
 
 /// The parameters for these inputs. A parameter that has no effect under them is 0, so that a change of it recomputes nothing.
-/// `is_given`: factors were given in place of LOD's. `culls_back`: patches that face away are left out.
+/// `given` is what takes the place of LOD. `culls_back`: patches that face away are left out.
 pub(super) fn params_of(
     inputs: &Inputs,
     mesh: &Mesh,
     buffers: &MeshBuffers,
-    is_given: bool,
+    given: Option<&Given>,
     culls_back: bool,
 ) -> Params {
-    let lod = if is_given { None } else { Some(inputs.tessellation.lod) };
+    let lod = if given.is_some() { None } else { Some(inputs.tessellation.lod) };
     let (adaptive, by_error) = (lod.is_some_and(|lod| lod != Lod::Uniform), lod == Some(Lod::Error));
     let by_distance = lod == Some(Lod::Distance);
     let by_length = matches!(lod, Some(Lod::Paper | Lod::EdgeLength));
-    let looks = adaptive || inputs.tessellation.clip != Clip::Off || culls_back;
+    let by_shader = matches!(given, Some(Given::Shader(_)));
+    let looks = adaptive || by_shader || inputs.tessellation.clip != Clip::Off || culls_back;
     let view = LodView {
         clip_from_object: inputs.view.clip_from_object.to_cols_array_2d(),
         half_viewport: inputs.view.half_viewport.to_array(),

@@ -1,10 +1,12 @@
-//! Shader modules and compute pipelines, each made when it is first needed, and what binds buffers to them.
+//! The compute pipelines of all passes, and what binds buffers to them.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use wgpu::util::DeviceExt;
 
+use super::compute_pipeline::{ComputePipeline, ShaderModule};
 use super::lazy::Lazy;
+use super::own_lod::{LodShader, OwnLodPipelines};
 use super::wgsl::{
     CONNECTIVITY_TABLE, CONTROL_POINTS, CONVENTION, CULL, DISPLACE, DISPLACEMENT_FACTOR, DISPLACEMENT_SHARES, DOMAIN,
     FACTORS, LEAST_FACTORS, LEAST_ROWS, LOAD_NET, LOADS, LOD, NORMAL, OCTAHEDRAL_NORMAL, SEARCH_GROUP, SEARCH_STATE,
@@ -56,78 +58,6 @@ pub(super) static PASS_DISPLACE: WgslFile = wgsl!(
     SURFACE,
     TYPES
 );
-
-/// A shader module, made when it is first needed.
-pub struct ShaderModule {
-    file: &'static WgslFile,
-    made: Lazy<wgpu::ShaderModule>,
-}
-
-impl ShaderModule {
-    /// The module whose entry points are in `file`.
-    pub fn new(file: &'static WgslFile) -> Self {
-        Self { file, made: Lazy::default() }
-    }
-
-    /// The module on the device, which is the same at every call.
-    ///
-    /// # Errors
-    /// Out of memory, or a lost device.
-    pub fn get(&self, gpu: &Gpu) -> Result<&wgpu::ShaderModule, GpuError> {
-        self.made.get_or_make(gpu, || {
-            gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(self.file.name),
-                source: wgpu::ShaderSource::Wgsl(self.file.module_text().into()),
-            })
-        })
-    }
-}
-
-/// A compute pipeline whose bind group layouts are what its entry point uses, made when it is first needed.
-pub struct ComputePipeline {
-    module: Arc<ShaderModule>,
-    entry_point: &'static str,
-    /// Values of the module's `override` constants, by name.
-    constants: Vec<(&'static str, f64)>,
-    made: Lazy<wgpu::ComputePipeline>,
-}
-
-impl ComputePipeline {
-    pub fn new(module: &Arc<ShaderModule>, entry_point: &'static str) -> Self {
-        Self { module: module.clone(), entry_point, constants: Vec::new(), made: Lazy::default() }
-    }
-
-    /// The same with a value for one of the module's `override` constants.
-    fn with(mut self, constant: &'static str, value: u32) -> Self {
-        self.constants.push((constant, value.into()));
-        self
-    }
-
-    pub fn entry_point(&self) -> &'static str {
-        self.entry_point
-    }
-
-    /// The pipeline on the device, which is the same at every call.
-    ///
-    /// # Errors
-    /// Out of memory, or a lost device.
-    pub fn get(&self, gpu: &Gpu) -> Result<&wgpu::ComputePipeline, GpuError> {
-        let module = self.module.get(gpu)?;
-        self.made.get_or_make(gpu, || {
-            gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(self.entry_point),
-                layout: None,
-                module,
-                entry_point: Some(self.entry_point),
-                compilation_options: wgpu::PipelineCompilationOptions {
-                    constants: &self.constants,
-                    ..Default::default()
-                },
-                cache: None,
-            })
-        })
-    }
-}
 
 /// The pipelines of an entry point that searches factors (see `shaders/search_group.wgsl`), which have workgroups of different
 /// sizes and the same results.
@@ -214,7 +144,12 @@ pub struct ComputePipelines {
     pub emit_triangles: [ComputePipeline; 2],
     pub displace: ComputePipeline,
     patterns: Lazy<wgpu::Buffer>,
+    /// Those of the user's own functions that were asked for last.
+    own_lods: Mutex<Vec<(Arc<LodShader>, Arc<OwnLodPipelines>)>>,
 }
+
+/// For how many of the user's own functions pipelines are kept: those that are shown, and those that replace them.
+const OWN_LODS: usize = 2;
 
 impl Default for ComputePipelines {
     fn default() -> Self {
@@ -273,7 +208,23 @@ impl ComputePipelines {
                 .map(|rows| ComputePipeline::new(&emit, "emit_triangles_main").with("EMIT_ROWS", rows)),
             displace: ComputePipeline::new(&module(&PASS_DISPLACE), "displace_main"),
             patterns: Lazy::default(),
+            own_lods: Mutex::default(),
         }
+    }
+
+    /// The pipelines of functions of the user's own. Those of the same text are the same.
+    pub(crate) fn own_lod(&self, shader: &Arc<LodShader>) -> Arc<OwnLodPipelines> {
+        // What is behind the lock is whole even if a thread panicked while it held it.
+        let mut kept = self.own_lods.lock().unwrap_or_else(PoisonError::into_inner);
+        let place = kept.iter().position(|(known, _)| known == shader);
+        let found = match place {
+            Some(place) => kept.remove(place),
+            None => (shader.clone(), Arc::new(OwnLodPipelines::new(shader))),
+        };
+        let pipelines = found.1.clone();
+        kept.truncate(OWN_LODS - 1);
+        kept.insert(0, found);
+        pipelines
     }
 
     /// The table in which `emit_triangles` looks up which points triangles join: see `shaders/connectivity_table.wgsl`.

@@ -4,8 +4,9 @@ use std::sync::OnceLock;
 
 use super::GpuError;
 use super::bound_pass::{BoundPass, PassInputs};
+use super::compute_pipeline::ComputePipeline;
 use super::mesh_buffers::MeshBuffers;
-use super::pipelines::{ComputePipeline, SearchPipelines, WORKGROUP};
+use super::pipelines::{SearchPipelines, WORKGROUP};
 use crate::tessellate::rounds;
 
 /// These belong to one set of mesh buffers: when those are replaced, so must this be.

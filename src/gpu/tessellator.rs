@@ -1,5 +1,6 @@
 //! One mesh being tessellated: its state, and what is recomputed when.
 
+mod given;
 mod output;
 mod passes;
 
@@ -17,7 +18,7 @@ use super::readback::Readback;
 use super::relief_buffers::HeightImages;
 use super::rig::RigBuffers;
 use super::slab::SlabPasses;
-use super::{ComputePipelines, Gpu, GpuError, MeshBuffers, hull};
+use super::{ComputePipelines, Given, Gpu, GpuError, LodReport, MeshBuffers, hull};
 use crate::mesh::{Mesh, Pose, Sharing, Topology};
 use crate::tessellate::{self, Clip, Convention, Displacement, Edges, HullFactors, Inputs, PosedMesh, Solid, sharing};
 
@@ -43,8 +44,12 @@ pub struct Tessellator {
     params: Params,
     params_buffer: wgpu::Buffer,
     convention: Convention,
-    given: Option<Vec<HullFactors>>,
+    given: Option<Given>,
     given_buffer: wgpu::Buffer,
+    /// Where functions of the user's own report, a [`LodReport`], if they give factors.
+    own_report: Option<wgpu::Buffer>,
+    /// What they reported last.
+    own_lod_report: Option<LodReport>,
     arena: Arena,
     slabs: Vec<SlabPasses>,
     mesh_passes: MeshPasses,
@@ -152,6 +157,8 @@ impl Tessellator {
             convention: Convention::default(),
             given: None,
             given_buffer: filled::<HullFactors>(gpu, "given factors", &[])?,
+            own_report: None,
+            own_lod_report: None,
             arena,
             slabs,
             mesh_passes: MeshPasses::default(),
@@ -178,7 +185,7 @@ impl Tessellator {
         self.inputs = Some(*inputs);
         self.convention = inputs.tessellation.convention;
         let culls_back = inputs.tessellation.cull_back_faces && self.hides_backs(inputs);
-        let params = params_of(inputs, &self.mesh, &self.buffers, self.given.is_some(), culls_back);
+        let params = params_of(inputs, &self.mesh, &self.buffers, self.given.as_ref(), culls_back);
         if params != self.params || self.nets_done.is_none() {
             self.params = params;
             self.gpu.queue.write_buffer(&self.params_buffer, 0, bytemuck::bytes_of(&params));
@@ -226,19 +233,6 @@ impl Tessellator {
         self.is_deformed = false;
         self.nets_done = None;
         self.unbind();
-        Ok(())
-    }
-
-    /// Takes what a hull shader wrote, one for each patch, in place of what LOD gives; none for LOD's. Takes effect with the
-    /// next [`Self::set`].
-    ///
-    /// # Errors
-    /// More patches than the adapter binds memory for.
-    pub fn give(&mut self, given: Option<Vec<HullFactors>>) -> Result<(), GpuError> {
-        self.given_buffer = filled(&self.gpu, "given factors", given.as_deref().unwrap_or_default())?;
-        self.given = given;
-        self.unbind();
-        self.forget();
         Ok(())
     }
 
@@ -341,11 +335,6 @@ impl Tessellator {
     pub fn edge_factors(&self) -> (&wgpu::Buffer, Edges) {
         let published = self.buffers.sharing.is_per_patch();
         (&self.buffers.edge_factors, if published { Edges::AsPublished } else { Edges::PerEdge })
-    }
-
-    /// What a hull shader wrote in place of LOD's factors, if that was given.
-    pub fn given(&self) -> Option<&[HullFactors]> {
-        self.given.as_deref()
     }
 
     /// Under which convention factors were written and weights are read.

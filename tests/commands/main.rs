@@ -18,6 +18,7 @@ mod info;
 #[path = "../documents/lamp.rs"]
 mod lamp;
 mod lod;
+mod lod_shader;
 mod manual;
 #[path = "../documents/moving.rs"]
 mod moving;

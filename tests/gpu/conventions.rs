@@ -181,7 +181,7 @@ fn what_a_hull_shader_wrote_gives_the_same_mesh_again() {
                     tessellation: Tessellation { lod: Lod::Uniform, clip: Clip::Off, ..inputs.tessellation },
                     ..inputs
                 };
-                scene.tessellator.give(Some(written)).expect("small");
+                scene.tessellator.give(Some(written.into())).expect("small");
                 let again = on_gpu(&mut scene, &given);
                 scene.tessellator.give(None).expect("small");
                 assert!(again.vertices == direct.vertices && again.triangles == direct.triangles, "{what}");
@@ -213,7 +213,7 @@ fn given_factors_reach_the_tessellator_as_they_are() {
         for partitioning in Partitioning::ALL {
             let settings = Settings::from(Tessellation { convention, partitioning, ..Tessellation::default() });
             let inputs = inputs(&loaded, &settings);
-            scene.tessellator.give(Some(given.clone())).expect("small");
+            scene.tessellator.give(Some(given.clone().into())).expect("small");
             let (gpu, measured) = on_device(&mut scene, &inputs);
             let cpu = tessellate_given(&loaded.mesh, &loaded.topology, &inputs, &given);
             assert_agree(&loaded, &gpu, &cpu, &format!("{settings:?}"));

@@ -224,7 +224,7 @@ fn factors_that_are_no_numbers_leave_no_hole_in_the_neighbours() {
     let given =
         |patch: usize| HullFactors { edges: [if patch.is_multiple_of(2) { f32::NAN } else { 3.0 }; 3], inside: 3.0 };
     let given: Vec<_> = (0..scene.tessellator.topology().patches.len()).map(given).collect();
-    scene.tessellator.give(Some(given.clone())).expect("few patches");
+    scene.tessellator.give(Some(given.clone().into())).expect("few patches");
     let settings = Settings::from(Tessellation { displacement: Displacement::On, ..Tessellation::default() });
     let viewport = glam::vec2(64.0, 64.0);
     let view = pnaen::render::Camera::framing(&scene.bounds, viewport).lod_view(viewport, &scene.bounds);

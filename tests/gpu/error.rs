@@ -426,8 +426,8 @@ fn lod_by_error_needs_fewer_triangles_for_the_error_that_another_lod_has() {
     let whole = Tessellation { partitioning: Partitioning::Subtriangulation, ..inputs.tessellation };
     assert_eq!(compared(&mut scene, &Inputs { tessellation: whole, ..inputs }, 0.5), Some(expected));
     let given = vec![HullFactors { edges: [3.0; 3], inside: 3.0 }; scene.tessellator.topology().patches.len()];
-    scene.tessellator.give(Some(given.clone())).expect("small");
+    scene.tessellator.give(Some(given.clone().into())).expect("small");
     let of_given = count(&mut scene, &inputs);
     assert_eq!(compared(&mut scene, &inputs, 0.5), Some(expected));
-    assert_eq!((scene.tessellator.given(), scene.tessellator.totals().1), (Some(&given[..]), of_given));
+    assert_eq!((scene.tessellator.given(), scene.tessellator.totals().1), (Some(&given.into()), of_given));
 }

@@ -25,6 +25,7 @@ mod materials;
 #[path = "../documents/moving.rs"]
 pub(crate) mod moving;
 mod orientation;
+mod own_lod;
 mod passes;
 mod picking;
 mod pictures;

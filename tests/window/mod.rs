@@ -14,6 +14,7 @@ mod lasting;
 mod layout;
 mod lists;
 mod loading;
+mod lod_shader;
 mod lost;
 mod picking;
 mod saving;

@@ -59,6 +59,7 @@ impl App {
             animation: animation.as_ref().map(|(name, time)| (&**name, *time)),
             truth: truth.as_ref(),
             factors: self.factors_file(),
+            lod_shader: self.lod_shader_file().filter(|_| self.uses_lod_shader()),
             matcap_image: self.matcap_image(),
             environment: self.environment_file(),
             triangle: self.selected_triangle().filter(|_| choices.overlays),

@@ -20,12 +20,14 @@ impl App {
     /// The state that decides which commands are possible.
     pub fn availability(&self) -> Availability {
         let has_effect = |option: &Declaration| (option.no_effect)(&self.settings).is_none();
+        let lets_lod = self.given.is_none() && !self.uses_lod_shader();
         Availability {
             has_document: self.document.is_some(),
             is_of_a_file: self.source().is_some_and(|source| source.shape().is_none()),
             has_picture: self.viewport.picture.drawn.is_some(),
             has_truth: self.truth.is_some(),
             has_factors: self.given.is_some(),
+            has_lod_shader: self.lod_shader.is_some(),
             has_environment: self.environment.is_some(),
             can_undo: self.can_undo(),
             can_redo: self.can_redo(),
@@ -37,8 +39,8 @@ impl App {
             has_heights: self.has_heights(),
             has_texture_coordinates: self.document.as_ref().is_some_and(|document| document.has_texture_coordinates),
             takes_normals_at: has_effect(&options::NORMALS_AT),
-            takes_factor: has_effect(&options::FACTOR) && self.given.is_none(),
-            takes_lod: has_effect(&options::LOD) && self.given.is_none(),
+            takes_factor: has_effect(&options::FACTOR) && lets_lod,
+            takes_lod: has_effect(&options::LOD) && lets_lod,
             can_cull_back_faces: self.can_cull_back_faces(),
             is_split: self.settings.split.is_some(),
             is_frozen: self.viewport.frozen.is_some(),
@@ -116,6 +118,9 @@ impl App {
             FileAction::Factors => self.factors_dialog(context),
             FileAction::FactorsPath => self.type_path(Purpose::Factors),
             FileAction::ForgetFactors => self.forget_factors(),
+            FileAction::LodShader => self.lod_shader_dialog(context),
+            FileAction::LodShaderPath => self.type_path(Purpose::LodShader),
+            FileAction::CloseLodShader => self.forget_lod_shader(),
             FileAction::Matcap => self.matcap_dialog(context),
             FileAction::Environment => self.environment_dialog(context),
             FileAction::EnvironmentPath => self.type_path(Purpose::Environment),

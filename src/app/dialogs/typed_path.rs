@@ -19,6 +19,7 @@ pub(crate) enum Purpose {
     Heights,
     Truth,
     Factors,
+    LodShader,
     /// A picture of a lit sphere.
     Matcap,
     Environment,
@@ -72,6 +73,7 @@ impl Purpose {
             Self::Heights => "Height image path",
             Self::Truth => "Reference surface path",
             Self::Factors => "Factors path",
+            Self::LodShader => "LOD shader path",
             Self::Matcap => "Matcap path",
             Self::Environment => "Environment path",
             Self::SaveChart => "Save chart",
@@ -86,8 +88,16 @@ impl Purpose {
 
     /// Whether the path is that of a file to write.
     fn is_written(self) -> bool {
-        let is_read =
-            matches!(self, Self::Open | Self::Heights | Self::Truth | Self::Factors | Self::Matcap | Self::Environment);
+        let is_read = matches!(
+            self,
+            Self::Open
+                | Self::Heights
+                | Self::Truth
+                | Self::Factors
+                | Self::LodShader
+                | Self::Matcap
+                | Self::Environment
+        );
         !is_read
     }
 
@@ -101,6 +111,7 @@ impl Purpose {
             Self::Heights | Self::Matcap => "A .png, .jpg or .webp image".to_owned(),
             Self::Truth => format!("A {} file, or shape:NAME", known_extensions()),
             Self::Factors => "A .csv file with the factors of every triangle".to_owned(),
+            Self::LodShader => "A .wgsl file with the function edge_factor".to_owned(),
             Self::Environment => "A .hdr or .exr panorama".to_owned(),
             Self::SaveChart => "A new .svg, .png or .csv file".to_owned(),
             Self::SavePicture => "A new .png file".to_owned(),
@@ -127,7 +138,7 @@ impl Purpose {
         match (self, open) {
             (Self::Open | Self::Truth, Some(Source::File(path))) => path.display().to_string(),
             (Self::Open | Self::Truth | Self::Heights, _) => String::new(),
-            (Self::Factors | Self::Matcap | Self::Environment, _) => String::new(),
+            (Self::Factors | Self::LodShader | Self::Matcap | Self::Environment, _) => String::new(),
             (Self::SaveChart, _) => absolute("chart.svg"),
             (Self::SavePicture, _) => absolute(&name_beside(&title, "-view.png")),
             (Self::SaveFolder, _) => absolute(&name_beside(&title, "-turntable")),
@@ -264,7 +275,10 @@ impl App {
                 Err(format!("{} exists already: choose another name", shown_path(Path::new(path))))
             }
             _ if purpose.is_written()
-                || matches!(purpose, Purpose::Factors | Purpose::Matcap | Purpose::Environment) =>
+                || matches!(
+                    purpose,
+                    Purpose::Factors | Purpose::LodShader | Purpose::Matcap | Purpose::Environment
+                ) =>
             {
                 self.take_source(context, purpose, Source::File(path.into()))
             }
@@ -287,6 +301,7 @@ impl App {
         match (purpose, source) {
             (Purpose::Truth, source) => self.open_truth(context, source),
             (Purpose::Factors, Source::File(path)) => self.open_factors(context, path),
+            (Purpose::LodShader, Source::File(path)) => self.open_lod_shader(context, path),
             (Purpose::Matcap, Source::File(path)) => self.open_matcap(context, path),
             (Purpose::Environment, Source::File(path)) => self.open_environment(context, path),
             (Purpose::SaveChart, Source::File(path)) => self.save_chart_beside(context, path),

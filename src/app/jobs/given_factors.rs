@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::background_job::BackgroundJob;
+use super::lod_shader_job::{OpenLodShader, new_generation};
 use crate::app::App;
 use crate::cli::read_factors;
 use crate::engine::Loaded;
-use crate::gpu::GpuError;
+use crate::gpu::{Given, GpuError};
 use crate::measure::Agreement;
 use crate::mesh::Topology;
 use crate::names::shown_path;
@@ -129,10 +129,10 @@ impl App {
     }
 
     fn take_read(&mut self, path: PathBuf, Read { factors, partitioning, compared }: Read) {
-        static GENERATION: AtomicU64 = AtomicU64::new(1);
+        self.forget_lod_shader();
         let same = self.given.take().filter(|given| Arc::ptr_eq(&given.factors, &factors));
         let lod = same.as_ref().map_or(self.settings.tessellation.lod, |given| given.lod);
-        let generation = same.map_or_else(|| GENERATION.fetch_add(1, Ordering::Relaxed), |given| given.generation);
+        let generation = same.map_or_else(new_generation, |given| given.generation);
         // The file's factors take LOD's place: nothing follows the view.
         self.settings.tessellation.lod = Lod::Uniform;
         self.given = Some(GivenFactors { path, generation, factors, partitioning, compared: Some(compared), lod });
@@ -162,19 +162,22 @@ impl App {
         self.jobs.factors = Some(FactorsJob { path, job: BackgroundJob::start(context, again) });
     }
 
-    /// Gives the scenes the factors of the file, or takes them back, while no picture is under way. Returns the number of those
+    /// Gives the scenes the factors of the file or the functions of the user's own, or takes them back, while no picture is under way. Returns the number of those
     /// that the picture has; 0 for those of LOD.
     ///
     /// # Errors
     /// More patches than the adapter binds memory for.
     pub(in crate::app) fn give_factors(&mut self) -> Result<u64, GpuError> {
-        let wanted = self.given.as_ref().map_or(0, |given| given.generation);
+        let shader = self.lod_shader.as_ref().filter(|_| self.uses_lod_shader()).and_then(OpenLodShader::shader);
+        let of_file = self.given.as_ref().map_or(0, |given| given.generation);
+        let wanted = shader.as_ref().map_or(of_file, |(_, generation)| *generation);
         let Some(document) = &mut self.document else { return Ok(0) };
         if document.given != wanted && self.viewport.picture.is_free() && self.viewport.left.is_made() {
-            let factors = self.given.as_ref().map(|given| given.factors.to_vec());
+            let file = self.given.as_ref().map(|given| Given::Factors(given.factors.to_vec()));
+            let given = shader.map(|(shader, _)| Given::Shader(shader)).or(file);
             for half in SplitSide::BOTH {
                 if let Some(scene) = document.scene.half_mut(half) {
-                    scene.tessellator.give(factors.clone())?;
+                    scene.tessellator.give(given.clone())?;
                 }
             }
             document.given = wanted;

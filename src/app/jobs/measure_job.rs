@@ -8,12 +8,12 @@ use thiserror::Error;
 
 use super::background_job::{Stopped, caught, spawn};
 use crate::engine::measurements::closed_extent;
-use crate::gpu::{Gpu, GpuError, Readback, Recorder, Timing, vertices_of};
-use crate::measure::{AskedFactors, Cracks, EmittedChunk, Measured, Sizes, Survey, Visitor};
+use crate::gpu::{Given, Gpu, GpuError, Readback, Recorder, Timing, vertices_of};
+use crate::measure::{Agreement, AskedFactors, Cracks, EmittedChunk, Measured, Sizes, Survey, Visitor};
 use crate::mesh::{Mesh, Topology};
 use crate::progress::Progress;
 use crate::render::Scene;
-use crate::tessellate::{Convention, Edges, PatchFactors, Vertex, is_beyond_near};
+use crate::tessellate::{Convention, Edges, HullFactors, PatchFactors, Vertex, is_beyond_near};
 use crate::view::ScreenView;
 
 /// Why a measurement ended without a result.
@@ -43,6 +43,7 @@ pub(crate) struct MeasureJob {
     comparing: Option<Comparing>,
     copying: Option<Copying>,
     found: Option<Measured>,
+    agreement: Option<Agreement>,
     /// The extent of a mesh whose leaks can be counted: see [`closed_extent`].
     closed: Option<[Vec3; 2]>,
     sizes: Option<Sizes>,
@@ -55,6 +56,7 @@ struct Surveyed {
     found: Measured,
     closed: Option<[Vec3; 2]>,
     sizes: Sizes,
+    agreement: Option<Agreement>,
 }
 
 /// The thread that measures. It stops when this is dropped.
@@ -83,10 +85,19 @@ pub(in crate::app) const WAITING: usize = 1;
 /// The contents of a part.
 #[derive(Clone, Copy)]
 pub(in crate::app) enum PartKind {
-    /// `patch_bytes` bytes of the patches' factors, then the factors that LOD gave.
-    Factors { patch_bytes: usize, edges: Edges, convention: Convention },
+    /// `patch_bytes` bytes of the patches' factors, then the factors that were asked for.
+    Factors { patch_bytes: usize, asked: Asked, convention: Convention },
     /// The output of patches from `first_patch` on: `vertex_bytes` bytes of vertices, then indices.
     Chunk { first_patch: u32, vertex_bytes: usize },
+}
+
+/// What gave the factors that were asked for.
+#[derive(Clone, Copy)]
+pub(in crate::app) enum Asked {
+    /// LOD, for every edge or every side.
+    Lod(Edges),
+    /// An LOD shader, a [`HullFactors`] for every patch.
+    Shader,
 }
 
 /// A readback that has arrived. The measuring thread copies its bytes out.
@@ -96,6 +107,11 @@ impl MeasureJob {
     /// The results for what is shown, once measured.
     pub(crate) fn found(&self) -> Option<&Measured> {
         self.found.as_ref()
+    }
+
+    /// How the factors of an LOD shader agree, once measured.
+    pub(crate) fn agreement(&self) -> Option<&Agreement> {
+        self.agreement.as_ref()
     }
 
     /// The cracks of what is shown, once measured.
@@ -157,13 +173,15 @@ impl MeasureJob {
         }
         if follows && self.seen_from != Some(view) {
             // Results that don't depend on the view stay.
-            let (found, closed, generation) = (self.found.take(), self.closed, self.generation);
-            *self = Self { of, found, closed, generation, ..Self::start(gpu, scene, view) };
+            let (found, agreement) = (self.found.take(), self.agreement.take());
+            let (closed, generation) = (self.closed, self.generation);
+            *self = Self { of, found, agreement, closed, generation, ..Self::start(gpu, scene, view) };
             return Ok(true);
         }
         copy_on(&mut self.copying, gpu, scene)?;
         match self.comparing.as_ref().map(|comparing| comparing.found.try_recv()) {
-            Some(Ok(Ok(Surveyed { found, closed, sizes }))) => {
+            Some(Ok(Ok(Surveyed { found, closed, sizes, agreement }))) => {
+                self.agreement = agreement;
                 self.comparing = None;
                 self.generation += u64::from(self.found.is_none());
                 self.found = Some(found);
@@ -194,7 +212,10 @@ impl MeasureJob {
         let wanted = Progress::default();
         let posed = scene.tessellator.posed().clone();
         let convention = scene.tessellator.convention();
-        let given = scene.tessellator.given().map(|given| AskedFactors::given(convention, given));
+        let given = match scene.tessellator.given() {
+            Some(Given::Factors(given)) => Some(AskedFactors::given(convention, given)),
+            _ => None,
+        };
         let still_wanted = wanted.clone();
         spawn(move || {
             let measure = || {
@@ -237,11 +258,17 @@ fn copy_factors(gpu: &Gpu, scene: &Scene, parts: SyncSender<Part>) -> Copying {
     let item = size_of::<PatchFactors>() as u64;
     let buffers = scene.tessellator.patch_factors().map(|(buffer, count)| (buffer, 0..u64::from(count) * item));
     let patch_bytes: u64 = buffers.clone().map(|(_, bytes)| bytes.end).sum();
-    let (asked, edges) = scene.tessellator.edge_factors();
-    let asked_bytes = u64::from(scene.tessellator.buffers().factor_count) * size_of::<f32>() as u64;
-    let readback = Readback::start(gpu, buffers.chain([(asked, 0..asked_bytes)]));
+    let sizes = scene.tessellator.buffers();
+    let (asked, buffer, asked_bytes) = match scene.tessellator.own_factors() {
+        Some(own) => (Asked::Shader, own, u64::from(sizes.patch_count) * size_of::<HullFactors>() as u64),
+        None => {
+            let (of_lod, edges) = scene.tessellator.edge_factors();
+            (Asked::Lod(edges), of_lod, u64::from(sizes.factor_count) * size_of::<f32>() as u64)
+        }
+    };
+    let readback = Readback::start(gpu, buffers.chain([(buffer, 0..asked_bytes)]));
     let convention = scene.tessellator.convention();
-    let part = PartKind::Factors { patch_bytes: patch_bytes as usize, edges, convention };
+    let part = PartKind::Factors { patch_bytes: patch_bytes as usize, asked, convention };
     Copying { readback, part, next_chunk: 0, parts }
 }
 
@@ -288,11 +315,19 @@ fn survey(
     view: ScreenView,
     wanted: &Progress,
 ) -> Option<Surveyed> {
-    let Ok(Part(PartKind::Factors { patch_bytes, edges, convention }, readback)) = parts.recv() else { return None };
+    let Ok(Part(PartKind::Factors { patch_bytes, asked, convention }, readback)) = parts.recv() else { return None };
     let bytes = readback.bytes().ok()?;
-    let (factors, asked) = bytes.split_at(patch_bytes);
-    let of_lod = || AskedFactors::new(edges, convention, bytemuck::pod_collect_to_vec(asked));
-    let asked = given.unwrap_or_else(of_lod);
+    let (factors, read) = bytes.split_at(patch_bytes);
+    let own: Vec<HullFactors> = match asked {
+        Asked::Shader => bytemuck::pod_collect_to_vec(read),
+        Asked::Lod(_) => Vec::new(),
+    };
+    let asked = given.unwrap_or_else(|| match asked {
+        Asked::Shader => AskedFactors::given(convention, &own),
+        Asked::Lod(edges) => AskedFactors::new(edges, convention, bytemuck::pod_collect_to_vec(read)),
+    });
+    // Where the sides of edges got different factors from a shader is told as it is of a file.
+    let agreement = (!own.is_empty()).then(|| Agreement::of(topology, &own, convention));
     let mut sizes = Sizes::new(view);
     let mut survey = Survey::new(mesh, topology, bytemuck::pod_collect_to_vec(factors), asked);
     for Part(part, readback) in parts {
@@ -302,5 +337,5 @@ fn survey(
     }
     wanted.check().ok()?;
     let found = survey.finish();
-    Some(Surveyed { closed: closed_extent(mesh, topology, &found), found, sizes })
+    Some(Surveyed { closed: closed_extent(mesh, topology, &found), found, sizes, agreement })
 }

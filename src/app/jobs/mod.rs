@@ -10,6 +10,7 @@ pub(super) mod export_job;
 pub(super) mod given_factors;
 pub(super) mod leak_job;
 pub(super) mod loading;
+pub(super) mod lod_shader_job;
 pub(super) mod matcap;
 pub(super) mod measure_job;
 pub(super) mod mesh_checks;

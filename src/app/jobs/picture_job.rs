@@ -147,7 +147,7 @@ impl App {
         let subject = Subject {
             loaded: document.loaded.clone(),
             moment: document.moment,
-            given: document.scene.tessellator.given().map(<[_]>::to_vec),
+            given: document.scene.tessellator.given().cloned(),
             matcap: self.matcap.as_ref().map(ChosenMatcap::picture),
             // The scene is made from one that has it.
             environment: None,

@@ -1,4 +1,5 @@
-//! Where the factors of a file disagree: the edges whose sides have different factors, and the convention that would fit.
+//! Where the factors of a file or a shader disagree: the edges whose sides have different factors, and for a file the convention that
+//! would fit.
 
 use egui::RichText;
 
@@ -6,7 +7,7 @@ use crate::app::App;
 use crate::app::sections::Section;
 use crate::app::text::{counted, grouped, short};
 use crate::app::widgets::{columns, fact, list};
-use crate::measure::Disagreement;
+use crate::measure::{Agreement, Disagreement};
 use crate::settings::Choice;
 
 impl App {
@@ -20,17 +21,32 @@ impl App {
             ui.weak("The factors are being compared\u{2026}");
             return;
         };
-        let agreement = &compared.agreement;
-        egui::Grid::new("given factors").num_columns(2).min_col_width(104.0).show(ui, |ui| {
-            let hover = "Edges with several sides whose patches emit something.";
-            fact(ui, "Edges compared", &grouped(agreement.edges_compared), hover);
-            let hover = "Edges whose sides have different factors under the convention that is set.";
-            fact(ui, "Different", &grouped(agreement.edges.len() as u64), hover);
-            let hover = "Patches that emit nothing because one of their factors is not greater than 0.";
-            fact(ui, "Patches left out", &grouped(agreement.patches_culled), hover);
-        });
+        agreement_rows(ui, &compared.agreement);
         self.convention_advice(ui);
         self.disagreements(ui);
+    }
+
+    /// The section about factors of an LOD shader, if it gives those that are shown.
+    pub(in crate::app) fn lod_shader_section(&mut self, ui: &mut egui::Ui) {
+        if !self.uses_lod_shader() || !self.panels.open.title(ui, Section::LodShader) {
+            return;
+        }
+        match self.agreement() {
+            Some(agreement) => agreement_rows(ui, agreement),
+            None => return drop(ui.weak("The factors are being compared\u{2026}")),
+        }
+        if let Some(said) = self.not_numbers_said() {
+            ui.add(egui::Label::new(RichText::new(said).color(ui.visuals().warn_fg_color)).wrap());
+        }
+        self.disagreements(ui);
+    }
+
+    /// How the sides of edges agree whose factors come from a file or a shader, once they are compared.
+    pub(super) fn agreement(&self) -> Option<&Agreement> {
+        match self.uses_lod_shader() {
+            true => self.jobs.measure.agreement(),
+            false => Some(&self.given.as_ref()?.compared()?.agreement),
+        }
     }
 
     /// Says which convention fits, if edges differ under the one that is set, and offers it.
@@ -57,13 +73,12 @@ impl App {
 
     /// The list of edges whose sides have different factors, the largest difference first. A click frames one.
     fn disagreements(&mut self, ui: &mut egui::Ui) {
-        let Some(compared) = self.given.as_ref().and_then(|given| given.compared()) else { return };
-        let edges = &compared.agreement.edges;
+        let Some(Agreement { edges, .. }) = self.agreement() else { return };
         if edges.is_empty() {
             return;
         }
         columns(ui, &format!("{:<9}{:>9}{:>9}", "edge", "least", "greatest"), true)
-            .on_hover_text("The least and the greatest factor that the file has for a side of the edge.");
+            .on_hover_text("The least and the greatest factor of a side of the edge.");
         let mut clicked = None;
         list(ui, "different factors", edges.len(), |ui, row| {
             let own = &edges[row];
@@ -81,6 +96,18 @@ impl App {
             self.select_edge(edge);
         }
     }
+}
+
+/// How many edges agree.
+fn agreement_rows(ui: &mut egui::Ui, agreement: &Agreement) {
+    egui::Grid::new("given factors").num_columns(2).min_col_width(104.0).show(ui, |ui| {
+        let hover = "Edges with several sides whose patches emit something.";
+        fact(ui, "Edges compared", &grouped(agreement.edges_compared), hover);
+        let hover = "Edges whose sides have different factors under the convention that is set.";
+        fact(ui, "Different", &grouped(agreement.edges.len() as u64), hover);
+        let hover = "Patches that emit nothing because one of their factors is not greater than 0.";
+        fact(ui, "Patches left out", &grouped(agreement.patches_culled), hover);
+    });
 }
 
 /// What each side of an edge has, in sentences.

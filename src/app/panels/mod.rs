@@ -13,6 +13,7 @@ mod fold_list;
 mod import;
 mod leak_list;
 mod light_rows;
+mod lod_shader;
 mod matcap;
 mod option_rows;
 mod parts;

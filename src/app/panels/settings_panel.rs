@@ -89,6 +89,9 @@ impl App {
             }
             return;
         }
+        if self.lod_shader_rows(ui) {
+            return;
+        }
         let settings = &mut self.settings;
         match (options::LOD.no_effect)(settings) {
             Some(why) => fixed(ui, options::LOD.label, settings.tessellation.used_lod().label(), why),

@@ -31,6 +31,7 @@ impl App {
                 ui.push_id("patch", |ui| self.patch_section(ui));
             }
             ui.push_id("given", |ui| self.given_section(ui));
+            ui.push_id("LOD shader", |ui| self.lod_shader_section(ui));
             self.deviation_section(ui);
             if self.panels.open.title(ui, Section::Cracks) {
                 self.crack_facts(ui);

@@ -136,10 +136,10 @@ impl App {
     }
 
     fn given_line(&self, color: Color32) -> Option<Line> {
-        let compared = self.given.as_ref()?.compared()?;
-        let hover = "Edges whose sides have different factors in the file that is open. A click goes to the one where they \
+        let agreement = self.agreement()?;
+        let hover = "Edges whose sides have different factors in the file or from the shader that is open. A click goes to the one where they \
                      differ the most.";
-        let edges = compared.agreement.edges.len() as u64;
+        let edges = agreement.edges.len() as u64;
         let text = format!("{} with different factors", counted(edges, "edge"));
         (edges > 0).then(|| Line::bad(text, color, hover, Destination::GivenFactors))
     }
@@ -212,9 +212,9 @@ impl App {
                 first.into_iter().for_each(|edge| self.select_edge(edge));
             }
             Destination::GivenFactors => {
-                self.panels.open.set(Section::Factors, true);
-                let compared = self.given.as_ref().and_then(|given| given.compared());
-                let first = compared.and_then(|compared| compared.agreement.edges.first()).map(|first| first.edge);
+                let section = if self.uses_lod_shader() { Section::LodShader } else { Section::Factors };
+                self.panels.open.set(section, true);
+                let first = self.agreement().and_then(|agreement| agreement.edges.first()).map(|first| first.edge);
                 first.into_iter().for_each(|edge| self.select_edge(edge));
             }
             Destination::Sizes if overlays.colors != Colors::TriangleSize => overlays.toggle(Overlay::TriangleSize),

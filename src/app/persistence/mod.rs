@@ -113,13 +113,13 @@ impl Persistence {
         context: &egui::Context,
         settings: &Settings,
         open: OpenSections,
-        environment: Option<String>,
+        [environment, lod_shader]: [Option<String>; 2],
         placement: Placement,
         seen: Option<(SavedCamera, Vec<SavedCamera>)>,
     ) {
         self.kept.take_settings(settings);
         self.kept.open = open;
-        self.kept.environment = environment;
+        (self.kept.environment, self.kept.lod_shader) = (environment, lod_shader);
         self.kept.frame = frame_now(context, &self.kept.frame);
         let open = self.kept.files.iter_mut().find(|file| Some(&file.path) == self.open.as_ref());
         if let Some((file, seen)) = open.zip(seen) {
@@ -211,6 +211,9 @@ impl App {
             Some(path) => self.read_environment(context, path.into(), false),
             None => self.cancel_environment(),
         }
+        if let Some(path) = lasting.kept.lod_shader.clone() {
+            self.open_lod_shader(context, path.into());
+        }
         self.panels.open = lasting.kept.open;
         self.viewport.last_split = self.settings.split.unwrap_or(self.viewport.last_split);
         context.set_theme(lasting.kept.frame.theme);
@@ -246,13 +249,15 @@ impl App {
             let saved = |&camera: &Camera| SavedCamera { camera, diagonal };
             (saved(&self.viewport.camera), self.viewport.bookmarks.iter().map(saved).collect())
         });
-        let environment = self.environment_file().and_then(Path::to_str).map(str::to_owned);
+        let files = [self.environment_file(), self.open_lod_shader_file()];
+        let files = files.map(|file| file.and_then(Path::to_str).map(str::to_owned));
         let placement = self.document.as_ref().map(|document| {
             let Import { up, unit, .. } = document.loaded.preparation.import;
             Placement { up, unit }
         });
         let placement = placement.unwrap_or_default();
-        self.persistence.take(context, &self.settings, self.panels.open, environment, placement, seen);
+        let settings = self.settings_without_lod_shader();
+        self.persistence.take(context, &settings, self.panels.open, files, placement, seen);
         let failed = self.persistence.write_on(context);
         self.dialogs.error = self.dialogs.error.take().or(failed);
     }
@@ -291,6 +296,8 @@ impl App {
     /// Goes back to the state of a first start. The mesh stays open, and is framed.
     fn forget_all(&mut self, context: &egui::Context) {
         let frame = WindowGeometry::default();
+        // The LOD before it comes back, and is reset as well.
+        self.forget_lod_shader();
         self.reset_settings();
         self.close_environment();
         self.history = Default::default();

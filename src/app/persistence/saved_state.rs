@@ -38,6 +38,8 @@ pub(super) struct SavedState {
     pub open: OpenSections,
     /// The absolute path of the file of light that is open.
     pub environment: Option<String>,
+    /// The absolute path of the LOD shader that is open.
+    pub lod_shader: Option<String>,
     /// The file that was opened last comes first.
     pub files: Vec<SavedFile>,
 }
@@ -93,6 +95,7 @@ impl Default for SavedState {
             frame: WindowGeometry::default(),
             open: OpenSections::default(),
             environment: None,
+            lod_shader: None,
             files: Vec::new(),
         }
     }
@@ -121,6 +124,7 @@ impl SavedState {
                 frame: WindowGeometry::read(&all["window"]),
                 open: read_open(&all["sections"]),
                 environment: absolute(&all["environment"]),
+                lod_shader: absolute(&all["lod_shader"]),
                 files,
             }
         })
@@ -137,6 +141,7 @@ impl SavedState {
                 "window": self.frame.written(),
                 "sections": written_open(&self.open),
                 "environment": self.environment,
+                "lod_shader": self.lod_shader,
                 "files": files,
             })
         )

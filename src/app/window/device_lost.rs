@@ -162,6 +162,7 @@ impl App {
             self.read_environment(context, path, is_chosen);
         }
         self.jobs.factors = self.jobs.factors.take().map(|job| job.waking(context));
+        self.reload_lod_shader(context);
         self.jobs.matcap = self.jobs.matcap.take().map(|job| job.waking(context));
         if let Some(writing) = &mut self.jobs.writing {
             writing.wake(context);

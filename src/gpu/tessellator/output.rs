@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::Tessellator;
+use crate::gpu::LodReport;
 use crate::gpu::VERTEX_HALF;
 use crate::gpu::layout::{Chunk, DrawArgs};
 
@@ -32,8 +33,11 @@ impl ChunkBuffers<'_> {
 }
 
 impl Tessellator {
-    /// Takes the chunk tables of all slabs, as the device wrote them.
+    /// Takes the chunk tables of all slabs, as the device wrote them, and what it reports of functions of the user's own.
     pub(super) fn take_chunks(&mut self, tables: &[u8]) {
+        let report_bytes = self.own_report.as_ref().map_or(0, |_| size_of::<LodReport>());
+        let (tables, report) = tables.split_at(tables.len() - report_bytes);
+        self.own_lod_report = self.own_report.as_ref().map(|_| bytemuck::pod_read_unaligned(report));
         let table: Vec<Chunk> = bytemuck::pod_collect_to_vec(tables);
         self.counts_done = true;
         self.chunks.clear();

@@ -22,6 +22,7 @@ impl Tessellator {
     pub fn count(&mut self, recorder: &mut Recorder) -> Result<(), GpuError> {
         self.record_chunks(recorder)?;
         let tables = self.slabs.iter().map(|slab| (&slab.chunks, 0..slab.chunks.size()));
+        let tables = tables.chain(self.own_report.as_ref().map(|report| (report, 0..report.size())));
         self.pending = Some(Readback::of_buffers(&self.gpu, recorder.encoder(), tables));
         Ok(())
     }
@@ -68,6 +69,7 @@ impl Tessellator {
         passes.curve_nets(&on)?;
         passes.centers(&on)?;
         passes.edge_factors(&on)?;
+        self.own_lod()?;
         if tessellation.used_lod() == Lod::Error {
             passes.searches.steps(&on, rows)?;
         }
@@ -97,7 +99,7 @@ impl Tessellator {
     /// More patches than the adapter binds memory for, or a pipeline can't be made.
     pub fn record_own_least(&mut self, recorder: &mut impl RecordPasses) -> Result<(), GpuError> {
         let Some(inputs) = &self.inputs else { return Ok(()) };
-        let params = params_of(&own_least_inputs(inputs), &self.mesh, &self.buffers, false, false);
+        let params = params_of(&own_least_inputs(inputs), &self.mesh, &self.buffers, None, false);
         let mut own_least = match self.own_least.take() {
             Some(own_least) => own_least,
             None => OwnLeast::new(&self.inputs_of_passes())?,
@@ -147,6 +149,9 @@ impl Tessellator {
     /// LOD's factors, and if vertices are displaced the levels at which heights are looked up.
     fn record_factors(&self, recorder: &mut impl RecordPasses) -> Result<(), GpuError> {
         let (on, passes) = (self.inputs_of_passes(), &self.mesh_passes);
+        if let Some(own_lod) = self.own_lod()? {
+            recorder.compute("factors", |pass| own_lod.dispatch(pass, self.buffers.patch_count));
+        }
         if self.given.is_none() {
             let edge_factors = passes.edge_factors(&on)?;
             let by_error = self.params.lod == Lod::Error as u32;

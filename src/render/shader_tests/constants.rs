@@ -72,6 +72,10 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
         &["VERTEX_WORKGROUP", "TRIANGLE_WORKGROUP", "LANES"],
         "how one pass divides its work; it is dispatched indirectly",
     ),
+    (
+        &["WORK_PIECE", "MOST_WORK", "MOST_WORK_OF_ALL"],
+        "how much work functions of the user's own may be, which only the device counts",
+    ),
     (&["LARGE"], "how one pass divides its work; no result depends on it"),
     (&["SMALL", "ROUNDS_OVER", "TRIANGLES", "NOT_TAKEN"], "counters of passes"),
     (&["TILE_WORDS", "ROUNDS"], "follow from TILE"),

@@ -118,7 +118,8 @@ impl Factors {
             far: middle + 1.0 + 2.0 / 3.0,
             ..Tessellation::default()
         });
-        let given = matches!(self, Self::Hashed(_)).then(|| hashed(subject.scene.tessellator.topology(), greatest));
+        let given =
+            matches!(self, Self::Hashed(_)).then(|| hashed(subject.scene.tessellator.topology(), greatest).into());
         subject.scene.tessellator.give(given)?;
         subject.count(engine).map(|(_, triangles)| triangles)
     }

@@ -1,0 +1,60 @@
+//! What takes the place of LOD's factors.
+
+use super::Tessellator;
+use crate::gpu::buffer::{empty, filled};
+use crate::gpu::own_lod_passes::OwnLodPasses;
+use crate::gpu::{Given, GpuError, LodReport};
+use crate::tessellate::HullFactors;
+
+impl Tessellator {
+    /// Takes factors, or what computes them, in place of LOD; none for LOD's. Takes effect with the next [`Self::set`].
+    ///
+    /// # Errors
+    /// More patches than the adapter binds memory for.
+    pub fn give(&mut self, given: Option<Given>) -> Result<(), GpuError> {
+        let patches = self.buffers.patch_count as usize;
+        self.given_buffer = match &given {
+            Some(Given::Shader(_)) => empty::<HullFactors>(&self.gpu, "given factors", patches)?,
+            Some(Given::Factors(factors)) => filled(&self.gpu, "given factors", factors)?,
+            None => filled::<HullFactors>(&self.gpu, "given factors", &[])?,
+        };
+        self.own_report = match &given {
+            Some(Given::Shader(_)) => Some(empty::<LodReport>(&self.gpu, "LOD report", 1)?),
+            _ => None,
+        };
+        // Counts that are on their way belong to what was given before.
+        (self.own_lod_report, self.pending) = (None, None);
+        self.given = given;
+        self.unbind();
+        self.forget();
+        Ok(())
+    }
+
+    /// What takes the place of LOD, if something does.
+    pub fn given(&self) -> Option<&Given> {
+        self.given.as_ref()
+    }
+
+    /// The factors that functions of the user's own have written, a [`HullFactors`] for each patch, if they give factors.
+    pub fn own_factors(&self) -> Option<&wgpu::Buffer> {
+        self.own_report.as_ref().map(|_| &self.given_buffer)
+    }
+
+    /// What functions of the user's own reported when the counts were last known, if they give factors.
+    pub fn own_lod_report(&self) -> Option<LodReport> {
+        self.own_lod_report.filter(|_| self.counts_done)
+    }
+
+    /// The passes of functions of the user's own, if they give factors.
+    ///
+    /// # Errors
+    /// A pipeline can't be made: out of memory, or a lost device.
+    pub(super) fn own_lod(&self) -> Result<Option<&OwnLodPasses>, GpuError> {
+        match (&self.given, &self.own_report) {
+            (Some(Given::Shader(shader)), Some(report)) => {
+                self.mesh_passes.own_lod(&self.inputs_of_passes(), shader, report).map(Some)
+            }
+            _ => Ok(None),
+        }
+    }
+}
