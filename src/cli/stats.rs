@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::factors_option::FactorsFile;
-use super::reference::ReferenceStats;
 use super::lod_shader_option::LodShaderStats;
+use super::reference::ReferenceStats;
 use super::silhouette::SilhouetteStats;
 use super::truth::{AccuracyStats, DeviationStats};
 use super::view_report::ViewStats;

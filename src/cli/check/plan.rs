@@ -19,7 +19,7 @@ const CONFIG: &str = "pnaen.toml";
 /// The options of a camera: those that a named view may have.
 const CAMERA: [&str; 6] = ["camera", "target", "orthographic", "field-of-view", "roll", "file-camera"];
 /// The options whose values are paths, which are relative to the configuration's folder.
-const PATHS: [&str; 5] = ["height", "environment", "truth", "matcap-image", "factors"];
+const PATHS: [&str; 6] = ["height", "environment", "truth", "matcap-image", "factors", "lod-shader"];
 
 /// An asset, and how it is checked.
 pub(super) struct Job {
@@ -142,7 +142,7 @@ fn parsed(config: &Config, options: &[OptionValue], source: &Source) -> Result<S
     if own.given.given.as_deref() == Some("-".as_ref()) {
         return Err(config.clash("factors of a check can't come from standard input; name a file").into());
     }
-    own.check(source, None, &[]).map_err(|error| match error {
+    own.check(source, &[], &[]).map_err(|error| match error {
         CliError::Usage(reason) => config.clash(reason).into(),
         other => other,
     })?;
