@@ -41,7 +41,7 @@ camera = [30, 20, 1.5]
 field-of-view = 30
 
 [[files]]
-path = "odd/*.obj"
+path = "**/odd/*.obj"
 fail-on = ["warnings:1", "t-junctions"]
 "#;
 
