@@ -172,8 +172,8 @@ fn check_names(text: &str, tokens: &[Token]) -> Result<(), Fault> {
 }
 
 fn check_lengths(text: &str, tokens: &[Token]) -> Result<(), Fault> {
-    let statements = tokens.split(|token| matches!(token.text, ";" | "{" | "}"));
-    match statements.into_iter().find(|statement| statement.len() > MOST_TOKENS) {
+    let mut statements = tokens.split(|token| matches!(token.text, ";" | "{" | "}"));
+    match statements.find(|statement| statement.len() > MOST_TOKENS) {
         Some(statement) => Err(Fault { line: line_of(text, statement[0].at), kind: FaultKind::LongStatement }),
         None => Ok(()),
     }
