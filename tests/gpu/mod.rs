@@ -24,6 +24,7 @@ mod materials;
 #[path = "../documents/moving.rs"]
 pub(crate) mod moving;
 mod orientation;
+mod own_shaders;
 mod passes;
 mod picking;
 mod pictures;
