@@ -287,7 +287,8 @@ fn shows_behind(place: SurfacePlace) -> bool {
     let blends = material.blends > 0.5;
     let is_there = alpha >= select(material.cutoff, LEAST_SEEN, blends);
     // A place that is opaque but for a rounding may be drawn twice. None is left out.
-    let is_sheer = blends && alpha < 1.0 - 0.5 * LEAST_SEEN;
+    // Not &&, which would branch on a uniform.
+    let is_sheer = blends & (alpha < 1.0 - 0.5 * LEAST_SEEN);
     return is_there && (is_sheer || transmission_at(place, detail) >= LEAST_SEEN);
 }
 

@@ -1,6 +1,7 @@
-//! Undo and redo: of settings, and separately of views, so that neither is in the way of the other.
+//! Undo and redo: of settings and hidden parts, and separately of views, so that neither is in the way of the other.
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 use super::App;
 use crate::render::Camera;
@@ -12,6 +13,14 @@ const MOST: usize = 200;
 
 /// Movements of the camera that follow each other within so many seconds are one step.
 const ONE_MOVEMENT: f64 = 0.5;
+
+/// What undo brings back.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Undoable {
+    pub settings: Settings,
+    /// The names of parts of the file that are left out.
+    pub hidden: Arc<Vec<String>>,
+}
 
 /// The states before and after the present one.
 pub(super) struct History<T> {
@@ -27,11 +36,13 @@ impl<T> Default for History<T> {
     }
 }
 
-impl<T: Copy + PartialEq> History<T> {
+impl<T: Clone + PartialEq> History<T> {
     /// Records a state. It isn't called while the pointer drags, so that a drag is one step.
     fn note(&mut self, state: &T) {
-        let before = self.now.replace(*state);
-        let Some(before) = before.filter(|before| before != state) else { return };
+        if self.now.as_ref() == Some(state) {
+            return;
+        }
+        let Some(before) = self.now.replace(state.clone()) else { return };
         self.past.push_back(before);
         if self.past.len() > MOST {
             self.past.pop_front();
@@ -42,27 +53,36 @@ impl<T: Copy + PartialEq> History<T> {
     fn undo(&mut self, state: &T) -> Option<T> {
         self.note(state);
         let before = self.past.pop_back()?;
-        self.future.extend(self.now.replace(before));
+        self.future.extend(self.now.replace(before.clone()));
         Some(before)
     }
 
     fn redo(&mut self, state: &T) -> Option<T> {
         self.note(state);
         let after = self.future.pop()?;
-        self.past.extend(self.now.replace(after));
+        self.past.extend(self.now.replace(after.clone()));
         Some(after)
     }
 }
 
-impl History<Settings> {
+impl History<Undoable> {
     /// Sets displacement in all steps, because it follows from the mesh and can't be undone.
     pub(super) fn displace(&mut self, displacement: Displacement) {
         self.change_all(|settings| settings.tessellation.displacement = displacement);
     }
 
-    /// Changes all steps, by what no step can undo.
+    /// Changes the settings of all steps, by what no step can undo.
     pub(super) fn change_all(&mut self, change: impl Fn(&mut Settings)) {
-        self.now.iter_mut().chain(&mut self.past).chain(&mut self.future).for_each(change);
+        self.steps().for_each(|step| change(&mut step.settings));
+    }
+
+    /// Shows all parts in all steps, because another mesh has others.
+    fn forget_parts(&mut self) {
+        self.steps().for_each(|step| step.hidden = Arc::default());
+    }
+
+    fn steps(&mut self) -> impl Iterator<Item = &mut Undoable> {
+        self.now.iter_mut().chain(&mut self.past).chain(&mut self.future)
     }
 }
 
@@ -91,9 +111,19 @@ impl App {
     /// Records settings and view at the end of a frame.
     pub(super) fn note_state(&mut self, context: &egui::Context) {
         if !context.egui_is_using_pointer() {
-            self.history.note(&self.settings);
+            self.history.note(&self.undoable());
             self.view_history.note(&self.viewport.camera, context.input(|input| input.time));
         }
+    }
+
+    fn undoable(&self) -> Undoable {
+        Undoable { settings: self.settings, hidden: self.hidden.clone() }
+    }
+
+    /// Shows all parts, because another mesh was opened. No step hides any.
+    pub(super) fn forget_hidden_parts(&mut self) {
+        self.hidden = Arc::default();
+        self.history.forget_parts();
     }
 
     pub(super) fn can_undo(&self) -> bool {
@@ -124,20 +154,22 @@ impl App {
         self.viewport.camera = after.unwrap_or(self.viewport.camera);
     }
 
-    /// Goes back to the settings before the last change.
+    /// Goes back to the settings and hidden parts before the last change.
     pub fn undo(&mut self) {
-        let before = self.history.undo(&self.settings);
+        let before = self.history.undo(&self.undoable());
         self.take_back(before);
     }
 
     /// Goes forward to those that [`Self::undo`] left.
     pub fn redo(&mut self) {
-        let after = self.history.redo(&self.settings);
+        let after = self.history.redo(&self.undoable());
         self.take_back(after);
     }
 
-    fn take_back(&mut self, settings: Option<Settings>) {
-        self.settings = settings.unwrap_or(self.settings);
+    fn take_back(&mut self, step: Option<Undoable>) {
+        if let Some(Undoable { settings, hidden }) = step {
+            (self.settings, self.hidden) = (settings, hidden);
+        }
     }
 }
 

@@ -15,6 +15,8 @@ mod viewport;
 mod widgets;
 pub(crate) mod window;
 
+use std::sync::Arc;
+
 use image::RgbaImage;
 
 use crate::engine::{Engine, Loaded};
@@ -27,7 +29,7 @@ use crate::settings::Settings;
 
 use commands::Commands;
 use dialogs::Dialogs;
-use history::{History, ViewHistory};
+use history::{History, Undoable, ViewHistory};
 use jobs::Jobs;
 use jobs::document::Document;
 use jobs::environment_job::OpenEnvironment;
@@ -36,7 +38,7 @@ use jobs::lod_shader_job::OpenLodShader;
 use jobs::matcap::ChosenMatcap;
 use jobs::truth::ChosenTruth;
 use painting::{Painting, panel_frame};
-use panels::{FACTS_WIDTH, Panels, SETTINGS_WIDTH};
+use panels::Panels;
 use viewport::Viewport;
 use window::WindowState;
 
@@ -49,7 +51,9 @@ pub struct App {
     render_state: egui_wgpu::RenderState,
     painting: Painting,
     settings: Settings,
-    history: History<Settings>,
+    /// The names of parts of the file that are to be left out.
+    hidden: Arc<Vec<String>>,
+    history: History<Undoable>,
     view_history: ViewHistory,
     /// The mesh that is open; none before the first one is loaded.
     document: Option<Document>,
@@ -87,6 +91,7 @@ impl App {
             render_state,
             painting,
             settings: if source.is_some() { Settings::opening() } else { Settings::greeting() },
+            hidden: Arc::default(),
             history: History::default(),
             view_history: ViewHistory::default(),
             document: None,
@@ -171,6 +176,16 @@ impl App {
     /// How many previews have been drawn while the camera moved.
     pub fn previews(&self) -> u64 {
         self.viewport.preview.drawings()
+    }
+
+    /// How many previews have been drawn out of sight, before the camera moved.
+    pub fn warm_ups(&self) -> u64 {
+        self.viewport.warm_up.drawings()
+    }
+
+    /// Whether such a preview is being drawn.
+    pub fn is_warming_up(&self) -> bool {
+        self.viewport.warm_up.is_busy()
     }
 
     /// Switches previews off or on.
@@ -260,7 +275,7 @@ impl eframe::App for App {
         self.hold_typing(context);
         self.shortcuts(context);
         self.play_on(context);
-        self.follow_import(context);
+        self.follow_file_choices(context);
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
@@ -274,15 +289,7 @@ impl eframe::App for App {
         let frame = panel_frame(ui);
         egui::Panel::top("menu").frame(frame).show(ui, |ui| self.menu_bar(ui));
         egui::Panel::bottom("status").frame(frame).show(ui, |ui| self.status_line(ui));
-        let [left, right] = self.panels.shown(ui.available_width());
-        if left {
-            let panel = egui::Panel::left("settings").resizable(false).exact_size(SETTINGS_WIDTH);
-            panel.frame(frame).show(ui, |ui| self.settings_panel(ui));
-        }
-        if right {
-            let panel = egui::Panel::right("facts").resizable(false).exact_size(FACTS_WIDTH);
-            panel.frame(frame).show(ui, |ui| self.facts_panel(ui));
-        }
+        self.side_panels(ui);
         self.chart_panel(ui);
         egui::Panel::top("toolbar").frame(frame).show(ui, |ui| self.toolbar(ui));
         egui::CentralPanel::no_frame().show(ui, |ui| self.viewport_panel(ui));

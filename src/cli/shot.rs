@@ -46,7 +46,7 @@ pub(crate) struct Subject {
     pub reference_surface: Option<ReferenceSurface>,
     /// The patch that is outlined.
     pub selected: Option<u32>,
-    /// Lines over each half besides those of the overlays.
+    /// Lines over each half besides those of the overlays. The outline of the patch is over them.
     pub more_lines: [Vec<LineSegment>; 2],
     /// Memory for output on the device, of each half.
     pub arena_bytes: u64,
@@ -355,11 +355,11 @@ impl Shot {
         if let Some((camera, viewport)) = self.view.lod_camera.filter(|(camera, _)| *camera != self.view.camera) {
             lines.extend(lod_camera_lines(&camera, viewport, &self.scene.bounds));
         }
+        lines.extend(&self.subject.more_lines[half as usize]);
         if let Some(patch) = self.subject.selected {
             let outlines = measured.map(|measured| &measured.outlines);
             lines.extend(patch_lines(&patch_edges(topology, patch, outlines, settings.tessellation.convention)));
         }
-        lines.extend(&self.subject.more_lines[half as usize]);
         Ok(lines)
     }
 

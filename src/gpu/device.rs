@@ -1,6 +1,7 @@
 //! An adapter and its device, with or without a window.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use super::GpuError;
@@ -20,6 +21,7 @@ pub struct Gpu {
     pub most_samples: u32,
     /// The rasteriser rounds corners to a grid whose spacing is 1 px divided by 2 to the power of this.
     pub subpixel_bits: u32,
+    made: Arc<AtomicU64>,
 }
 
 /// What a device is asked for: WebGPU's default limits, but buffers and textures as large as the adapter has them, and
@@ -145,6 +147,7 @@ impl Gpu {
             reported,
             most_samples: 4,
             subpixel_bits: subpixel_bits(adapter),
+            made: Arc::default(),
         }
     }
 
@@ -159,6 +162,7 @@ impl Gpu {
             reported: Reported::default(),
             most_samples: 1,
             subpixel_bits: LEAST_SUBPIXEL_BITS,
+            made: Arc::default(),
         }
     }
 
@@ -225,6 +229,15 @@ impl Gpu {
             (None, Some(error)) => Err(in_words(error)),
             (None, None) => Ok(made),
         }
+    }
+
+    /// How many pipelines and other things have been made on the device when they were first needed.
+    pub fn made_when_needed(&self) -> u64 {
+        self.made.load(Ordering::Relaxed)
+    }
+
+    pub(super) fn note_made(&self) {
+        self.made.fetch_add(1, Ordering::Relaxed);
     }
 
     /// Whether the adapter runs on the CPU.

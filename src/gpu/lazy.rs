@@ -37,6 +37,7 @@ impl<T> Lazy<T> {
             return Ok(made);
         }
         let made = gpu.attempt(make)?;
+        gpu.note_made();
         Ok(self.made.get_or_init(|| made))
     }
 

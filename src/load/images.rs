@@ -78,7 +78,7 @@ pub(super) fn decode_halved(
 /// Decodes a PNG, JPEG or WebP image. All memory is borrowed.
 fn decode_file(bytes: &[u8], halvings: u32, filter: MipFilter, budget: &Budget) -> Result<Texture, String> {
     let undecoded = |error: ImageError| format!("its image can't be decoded: {error}");
-    let of_webp = webp_bytes(&mut Cursor::new(bytes)).map_err(|error| error.to_string())?;
+    let of_webp = webp_bytes(&mut Cursor::new(bytes), budget.left()).map_err(|error| error.to_string())?;
     let known = coefficient_bytes(&mut Cursor::new(bytes)).map_err(|error| error.to_string())?;
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| error.to_string())?;
     let before = budget.borrowed();

@@ -30,6 +30,7 @@ mod packing;
 pub(crate) mod panorama;
 pub(crate) mod parts;
 mod ply;
+mod prefix_code;
 mod read_error;
 mod recent_corners;
 mod rig_builder;
@@ -44,6 +45,7 @@ mod unread_formats;
 mod uri;
 mod warnings;
 mod webp_memory;
+mod webp_tables;
 mod zstd;
 
 pub use crate::files::{FileError, Limits};

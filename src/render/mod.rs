@@ -59,7 +59,7 @@ pub(crate) use legend::{BARYCENTRIC_TITLE, COLUMNS, Distances, Shown, has_legend
 pub(crate) use marks::{crack_lines, crack_lines_in, lod_camera_lines, patch_lines, t_junction_lines, worst_lines};
 pub(crate) use outlines_picture::{lay_over, outlines_picture};
 pub(crate) use pick::{Picked, PickedTriangle, Picker, Picking, Pixel};
-pub(crate) use renderer::Renderer;
+pub(crate) use renderer::{DraftPipelines, Renderer};
 pub(crate) use scale::{DENSITY_SCALE, EXCESS_SCALE, FACTOR_SCALE, SIZE_SCALE, Scale, curvature_scale};
 pub(crate) use scene::{LineSegment, Scene};
 pub(crate) use silhouette::{SilhouetteCoverage, SilhouetteDrawer, padded_clip};

@@ -40,13 +40,14 @@ impl Needs {
         draft: false,
     };
 
-    /// What a mesh needs under these settings.
-    pub(super) fn of(mesh: &Mesh, settings: &Settings) -> Self {
+    /// What a material of a mesh needs in such pictures with these settings, or all of the mesh's materials together.
+    pub(super) fn of(mesh: &Mesh, material: &Material, settings: &Settings, kind: PictureKind) -> Self {
+        let own = if kind.shares_shaders { &mesh.materials } else { std::slice::from_ref(material) };
         let lights = if settings.lights == FileLights::On { mesh.lights.len().min(MOST_LIGHTS) } else { 0 };
         let details = mesh.details.is_some();
         let nothing = Self { maps: false, coat: false, mask: false, transmission: false, sheen: false, ..Self::ALL };
         let mut needs = Self { details, lights, ..nothing };
-        for look in mesh.materials.iter().map(|material| &material.look) {
+        for look in own.iter().map(|material| &material.look) {
             needs.maps |= look.maps.iter().any(Option::is_some);
             needs.coat |= look.clearcoat > 0.0;
             needs.mask |= look.alpha != Alpha::Opaque;
@@ -58,10 +59,10 @@ impl Needs {
 
     /// The same for the pipeline of one of the mesh's materials, which hides what is behind it, in such pictures: the border of a
     /// mask covers a part of a pixel's samples. Layers have each sample's alpha as it is.
-    pub(super) fn own(self, material: &Material, quality: Quality) -> Self {
+    pub(super) fn own(self, material: &Material, kind: PictureKind) -> Self {
         let has_border = matches!(material.look.alpha, Alpha::Mask(_)) && !material.shows_behind();
-        let masked_samples = has_border && quality.samples > 1 && !quality.is_draft;
-        Self { masked_samples, draft: quality.is_draft, ..self }
+        let masked_samples = has_border && kind.samples > 1 && !kind.is_draft;
+        Self { masked_samples, draft: kind.is_draft, ..self }
     }
 
     /// The values of the constants of `shaders/draw_material.wgsl`.
@@ -80,13 +81,15 @@ impl Needs {
     }
 }
 
-/// How good the pictures are that a pipeline draws.
+/// What a pipeline knows of the pictures that it draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Quality {
+pub(super) struct PictureKind {
     /// Samples a pixel.
     pub samples: u32,
     /// See [`Target::draft`](super::Target::draft).
     pub is_draft: bool,
+    /// Whether all materials of a mesh have the shader that any of them needs: see [`Renderer`](super::Renderer).
+    pub shares_shaders: bool,
 }
 
 /// How a mask cuts a surface that the lights at the camera shine on.
@@ -100,10 +103,10 @@ pub(super) struct Cut {
 
 impl Cut {
     /// How one of a mesh's materials is cut under these settings, in such pictures; none if it isn't, or if it is lit from all around.
-    pub(super) fn of(settings: &Settings, mesh: &Mesh, material: &Material, quality: Quality) -> Option<Self> {
+    pub(super) fn of(settings: &Settings, mesh: &Mesh, material: &Material, kind: PictureKind) -> Option<Self> {
         let is_seen = settings.overlays.colors == Colors::Material && !settings.shows_materials();
         let is_cut = is_seen && matches!(material.look.alpha, Alpha::Mask(_));
-        is_cut.then_some(Self { details: mesh.details.is_some(), samples: quality.samples > 1 })
+        is_cut.then_some(Self { details: mesh.details.is_some(), samples: kind.samples > 1 })
     }
 }
 
@@ -119,56 +122,78 @@ mod tests {
     use super::*;
     use crate::mesh::{Light, LightKind, Look, Shape};
 
+    const NOTHING: Needs = Needs {
+        maps: false,
+        details: false,
+        coat: false,
+        mask: false,
+        transmission: false,
+        sheen: false,
+        lights: 0,
+        masked_samples: false,
+        draft: false,
+    };
+
+    fn kind(samples: u32, is_draft: bool) -> PictureKind {
+        PictureKind { samples, is_draft, shares_shaders: true }
+    }
+
+    /// What the materials of a mesh need together.
+    fn needs(mesh: &Mesh, settings: &Settings) -> Needs {
+        Needs::of(mesh, &mesh.materials[0], settings, kind(4, false))
+    }
+
     #[test]
     fn a_mesh_needs_what_any_of_its_materials_does() {
         let mut mesh = Shape::CubeSplit.build();
         let settings = Settings::default();
-        let nothing = Needs {
-            maps: false,
-            details: false,
-            coat: false,
-            mask: false,
-            transmission: false,
-            sheen: false,
-            lights: 0,
-            masked_samples: false,
-            draft: false,
-        };
-        assert_eq!(Needs::of(&mesh, &settings), nothing);
+        assert_eq!(needs(&mesh, &settings), NOTHING);
         let mut coated = Material::plain("coated", [1.0; 4]);
         coated.look.clearcoat = 0.5;
         mesh.materials.push(coated);
-        assert_eq!(Needs::of(&mesh, &settings), Needs { coat: true, ..nothing });
+        assert_eq!(needs(&mesh, &settings), Needs { coat: true, ..NOTHING });
         let mut leaves = Material::plain("leaves", [1.0; 4]);
         leaves.look.alpha = Alpha::Mask(0.5);
         mesh.materials.push(leaves);
-        assert_eq!(Needs::of(&mesh, &settings), Needs { coat: true, mask: true, ..nothing });
-        let quality = |samples, is_draft| Quality { samples, is_draft };
-        let own = |quality| mesh.materials.iter().map(move |own| nothing.own(own, quality).masked_samples);
-        assert!(own(quality(4, false)).eq([false, false, true]));
-        assert!(own(quality(1, false)).eq([false; 3]) && own(quality(4, true)).eq([false; 3]));
+        assert_eq!(needs(&mesh, &settings), Needs { coat: true, mask: true, ..NOTHING });
+        let own = |kind| mesh.materials.iter().map(move |own| NOTHING.own(own, kind).masked_samples);
+        assert!(own(kind(4, false)).eq([false, false, true]));
+        assert!(own(kind(1, false)).eq([false; 3]) && own(kind(4, true)).eq([false; 3]));
         assert!(!has_layers(&mesh));
         let mut glass = Material::plain("glass", [1.0; 4]);
         glass.look.transmission = 1.0;
         let mut painted = glass.clone();
         painted.look.unlit = true;
         mesh.materials = vec![painted];
-        assert_eq!((Needs::of(&mesh, &settings), has_layers(&mesh)), (nothing, false));
+        assert_eq!((needs(&mesh, &settings), has_layers(&mesh)), (NOTHING, false));
         mesh.materials.push(glass);
-        assert_eq!((Needs::of(&mesh, &settings), has_layers(&mesh)), (Needs { transmission: true, ..nothing }, true));
+        assert_eq!((needs(&mesh, &settings), has_layers(&mesh)), (Needs { transmission: true, ..NOTHING }, true));
         mesh.materials[1].look = Look { alpha: Alpha::Blend, ..Look::default() };
-        assert_eq!((Needs::of(&mesh, &settings), has_layers(&mesh)), (Needs { mask: true, ..nothing }, true));
+        assert_eq!((needs(&mesh, &settings), has_layers(&mesh)), (Needs { mask: true, ..NOTHING }, true));
         let mut velvet = Material::plain("velvet", [1.0; 4]);
         velvet.look.sheen_color = [0.0, 0.1, 0.0];
         mesh.materials = vec![velvet.clone()];
-        assert_eq!(Needs::of(&mesh, &settings), Needs { sheen: true, ..nothing });
+        assert_eq!(needs(&mesh, &settings), Needs { sheen: true, ..NOTHING });
         velvet.look.unlit = true;
         mesh.materials = vec![velvet];
-        assert_eq!(Needs::of(&mesh, &settings), nothing);
+        assert_eq!(needs(&mesh, &settings), NOTHING);
         let sun =
             Light { kind: LightKind::Directional, intensity: Vec3::ONE, place: Vec3::ZERO, direction: Vec3::NEG_Y };
         mesh.lights = vec![sun; 3];
-        assert_eq!(Needs::of(&mesh, &settings).lights, 3);
-        assert_eq!(Needs::of(&mesh, &Settings { lights: FileLights::Off, ..settings }).lights, 0);
+        assert_eq!(needs(&mesh, &settings).lights, 3);
+        assert_eq!(needs(&mesh, &Settings { lights: FileLights::Off, ..settings }).lights, 0);
+    }
+
+    #[test]
+    fn a_material_with_a_shader_of_its_own_needs_nothing_that_only_others_do() {
+        let mut mesh = Shape::CubeSplit.build();
+        let mut coated = Material::plain("coated", [1.0; 4]);
+        coated.look.clearcoat = 0.5;
+        let mut velvet = Material::plain("velvet", [1.0; 4]);
+        velvet.look.sheen_color = [0.1; 3];
+        mesh.materials.extend([coated, velvet]);
+        let kind = PictureKind { shares_shaders: false, ..kind(4, false) };
+        let own = mesh.materials.iter().map(|own| Needs::of(&mesh, own, &Settings::default(), kind));
+        assert!(own.eq([NOTHING, Needs { coat: true, ..NOTHING }, Needs { sheen: true, ..NOTHING }]));
     }
 }

@@ -16,7 +16,7 @@ use super::layout::{linear, overlay_bits};
 use super::look::Look;
 use super::matcap::{MatcapPicture, Matcaps};
 use super::materials::Materials;
-use super::needs::{Cut, Needs, Quality};
+use super::needs::{Cut, Needs, PictureKind};
 use super::pipelines::{Draw, DrawPipelines, Faces, Occluded, Triangles};
 use super::steps::{Step, halves, runs, steps};
 use super::target::samples;
@@ -41,9 +41,16 @@ pub struct Renderer {
     samples: u32,
     /// From this many triangles per pixel on, those that cover no sample are removed before the others are drawn.
     pub sift_from: f32,
+    /// Whether all materials of a mesh have the shader that any of them needs, or each has one that leaves out what it doesn't need itself.
+    /// On a graphics card that is faster; a software driver takes longer to compile a shader than to draw many pictures with it.
+    pub shares_shaders: bool,
     /// Whether passes over layers go over whole pictures, and not only over the part that layers can cover.
     pub peels_everywhere: bool,
 }
+
+/// The pipelines that draw the surfaces of a mesh in drafts of pictures with the same settings.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct DraftPipelines(Vec<Draw>);
 
 /// With fewer triangles per pixel, a GPU draws all of them in less time than it takes to remove some.
 const SIFT_FROM: f32 = 0.5;
@@ -66,6 +73,7 @@ impl Renderer {
             coverage: CoveragePipelines::new(),
             unknown: Deviations::unknown(gpu),
             samples: samples(gpu),
+            shares_shaders: gpu.is_software(),
             peels_everywhere: false,
             sift_from: if gpu.is_software() { SIFT_FROM_IN_SOFTWARE } else { SIFT_FROM },
         }
@@ -99,33 +107,50 @@ impl Renderer {
     /// # Errors
     /// Out of memory, or a lost device.
     pub fn prepare(&self, scene: &Scene, settings: &Settings) -> Result<(), GpuError> {
-        let faces = if settings.tessellation.cull_back_faces && scene.tessellator.is_solid() {
-            Faces::Fronts
-        } else {
-            Faces::Both
-        };
         if settings.shows_materials() && settings.lighting == Lighting::Studio {
             self.studio()?;
         }
         if settings.overlays.colors == Colors::Matcap {
             self.matcaps.group(&self.gpu, &self.materials, settings.matcap)?;
         }
-        let (mesh, full) = (scene.tessellator.mesh(), Quality { samples: self.samples, is_draft: false });
-        let mut draws: Vec<_> =
-            mesh.materials.iter().map(|own| surface_draw(settings, mesh, own, faces, full)).collect();
-        if settings.split.is_some() && settings.half(SplitSide::Left).is_none() {
-            draws.extend(mesh.materials.iter().map(|own| source_draw(settings, mesh, own, full)));
-        }
         if settings.overlays.colors == Colors::Excess {
             scene.tessellator.prepare_own_least(settings.tessellation.partitioning)?;
         }
-        draws.extend(layer_draws(settings, scene.tessellator.mesh()));
+        let mut draws = self.surface_draws(scene, settings, false);
+        draws.extend(layer_draws(settings, scene.tessellator.mesh(), self.kind(false)));
         draws.extend(settings.shows_environment().then_some(Draw::Background));
         draws.extend(settings.overlays.grid.then_some(Draw::Ground));
         if settings.overlays.normals {
             draws.extend([Occluded::Through, Occluded::InSight].map(Draw::Normals));
         }
-        draws.into_iter().try_for_each(|draw| self.pipelines.get(&self.gpu, draw).map(|_| ()))
+        draws.into_iter().try_for_each(|draw| self.get(draw).map(|_| ()))
+    }
+
+    /// The pipelines for surfaces that a [draft](Target::draft) of the scene needs, as far as that is known before the scene is
+    /// counted.
+    pub(crate) fn draft_pipelines(&self, scene: &Scene, settings: &Settings) -> DraftPipelines {
+        let mut draws = self.surface_draws(scene, settings, true);
+        draws.dedup();
+        DraftPipelines(draws)
+    }
+
+    /// Makes these pipelines. It may run on any thread.
+    ///
+    /// # Errors
+    /// Out of memory, or a lost device.
+    pub(crate) fn prepare_draft(&self, DraftPipelines(draws): &DraftPipelines) -> Result<(), GpuError> {
+        draws.iter().try_for_each(|&draw| self.get(draw).map(|_| ()))
+    }
+
+    /// How the surfaces of a scene are drawn, as far as that is known before it is counted.
+    fn surface_draws(&self, scene: &Scene, settings: &Settings, is_draft: bool) -> Vec<Draw> {
+        let culls = settings.tessellation.cull_back_faces && scene.tessellator.is_solid();
+        let faces = if culls { Faces::Fronts } else { Faces::Both };
+        let (mesh, kind) = (scene.tessellator.mesh(), self.kind(is_draft));
+        let emitted = mesh.materials.iter().map(|own| surface_draw(settings, mesh, own, faces, kind));
+        let has_source = settings.split.is_some() && settings.half(SplitSide::Left).is_none();
+        let source = mesh.materials.iter().filter(|_| has_source).map(|own| source_draw(settings, mesh, own, kind));
+        emitted.chain(source).collect()
     }
 
     /// Makes the pipelines of all draws, also of those that no picture has needed yet. Measurements of memory use it.
@@ -323,8 +348,8 @@ impl Renderer {
         Ok((self.get(Draw::Background)?, self.gpu.device.create_bind_group(&descriptor)))
     }
 
-    fn quality(&self, target: &Target) -> Quality {
-        Quality { samples: self.samples, is_draft: target.is_draft() }
+    fn kind(&self, is_draft: bool) -> PictureKind {
+        PictureKind { samples: self.samples, is_draft, shares_shaders: self.shares_shaders }
     }
 
     /// The pipelines for lines: first for all of them, faintly, then for the parts in sight.
@@ -345,7 +370,8 @@ impl Renderer {
         // These two overlays show faces from behind.
         let fronts = !folds && !back_faces && scene.tessellator.shows_fronts_only(clip_from_object);
         let (mesh, faces) = (scene.tessellator.mesh(), if fronts { Faces::Fronts } else { Faces::Both });
-        let draws = mesh.materials.iter().map(|own| surface_draw(settings, mesh, own, faces, self.quality(target)));
+        let draws =
+            mesh.materials.iter().map(|own| surface_draw(settings, mesh, own, faces, self.kind(target.is_draft())));
         let materials = draws.map(|draw| Ok(vec![self.get(draw)?])).collect::<Result<_, GpuError>>()?;
         let pulled = emitted_triangles(settings) == Triangles::Pulled;
         Ok(Surfaces { materials, pulled, fronts, sifted: false })
@@ -358,7 +384,7 @@ impl Renderer {
         target: &Target,
         settings: &Settings,
     ) -> Result<Vec<Vec<wgpu::RenderPipeline>>, GpuError> {
-        let draws = mesh.materials.iter().map(|own| source_draw(settings, mesh, own, self.quality(target)));
+        let draws = mesh.materials.iter().map(|own| source_draw(settings, mesh, own, self.kind(target.is_draft())));
         draws.map(|draw| Ok(vec![self.get(draw)?])).collect()
     }
 
@@ -493,10 +519,10 @@ impl Renderer {
 }
 
 /// The pipeline for emitted triangles of a material, in such pictures.
-fn surface_draw(settings: &Settings, mesh: &Mesh, material: &Material, faces: Faces, quality: Quality) -> Draw {
+fn surface_draw(settings: &Settings, mesh: &Mesh, material: &Material, faces: Faces, kind: PictureKind) -> Draw {
     let places = settings.used_normals_at(mesh);
     let triangles = emitted_triangles(settings);
-    if let Some(cut) = Cut::of(settings, mesh, material, quality) {
+    if let Some(cut) = Cut::of(settings, mesh, material, kind) {
         let triangles = if triangles == Triangles::Lit { Triangles::Indexed } else { triangles };
         return Draw::Cut(triangles, faces, places, cut);
     }
@@ -507,7 +533,7 @@ fn surface_draw(settings: &Settings, mesh: &Mesh, material: &Material, faces: Fa
                 Triangles::Indexed => Draw::LitIndexed,
                 _ => Draw::Lit,
             };
-            draw(faces, places, Needs::of(mesh, settings).own(material, quality))
+            draw(faces, places, Needs::of(mesh, material, settings, kind).own(material, kind))
         }
         (Triangles::Pulled, Some(look)) => Draw::LookPulled(faces, places, look),
         (_, Some(look)) => Draw::LookIndexed(faces, places, look),
@@ -542,12 +568,14 @@ fn ground_step(steps: &[Step], scene: &Scene, camera: &Camera) -> usize {
 }
 
 /// The pipeline for input triangles of a material, in such pictures.
-fn source_draw(settings: &Settings, mesh: &Mesh, material: &Material, quality: Quality) -> Draw {
-    if let Some(cut) = Cut::of(settings, mesh, material, quality) {
+fn source_draw(settings: &Settings, mesh: &Mesh, material: &Material, kind: PictureKind) -> Draw {
+    if let Some(cut) = Cut::of(settings, mesh, material, kind) {
         return Draw::Cut(Triangles::Source, Faces::Both, NormalsAt::Vertices, cut);
     }
     match Look::of(settings.overlays.colors) {
-        _ if settings.shows_materials() => Draw::LitSource(Needs::of(mesh, settings).own(material, quality)),
+        _ if settings.shows_materials() => {
+            Draw::LitSource(Needs::of(mesh, material, settings, kind).own(material, kind))
+        }
         Some(look) => Draw::LookSource(look),
         None => Draw::Source,
     }

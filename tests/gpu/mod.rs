@@ -26,6 +26,7 @@ mod materials;
 pub(crate) mod moving;
 mod orientation;
 mod own_lod;
+mod own_shaders;
 mod passes;
 mod picking;
 mod pictures;

@@ -16,6 +16,8 @@ mod honest;
 mod package;
 mod packed;
 mod textures;
+#[path = "../documents/webp.rs"]
+mod webp;
 
 use std::io::Write;
 use std::sync::{Mutex, PoisonError};

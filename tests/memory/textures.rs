@@ -7,6 +7,7 @@ use image::{GrayImage, ImageFormat, Luma};
 use pnaen::internals::Preparation;
 
 use super::bounded::loaded;
+use super::webp::of_groups;
 use super::{ALONE, temporary, textures, with_image};
 
 const MIB: usize = 1 << 20;
@@ -67,6 +68,21 @@ fn an_image_that_can_not_be_decoded_in_the_memory_is_left_out() {
     let (found, warnings) = sizes("header.glb", &with_image(&header), 20 * MIB);
     assert_eq!(found, [None]);
     assert!(warnings.len() == 1 && warnings[0].contains("is left out: its image can't be decoded"), "{warnings:?}");
+}
+
+#[test]
+fn tables_of_a_lossless_webp_image_are_counted_before_they_are_made() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    // 5,000 tables of 4 KiB, asked for with 60 KB.
+    let bytes = with_image(&of_groups(1000));
+    let (found, warnings) = sizes("tables.glb", &bytes, 8 * MIB);
+    assert_eq!(found, [None]);
+    assert!(
+        warnings.len() == 1 && warnings[0].contains("is left out: its image of 4 x 4 px would take"),
+        "{warnings:?}"
+    );
+    let (found, warnings) = sizes("tables-that-fit.glb", &bytes, 24 * MIB);
+    assert_eq!((found, warnings.len()), (vec![Some([4; 2])], 0), "{warnings:?}");
 }
 
 /// The checksum of a chunk of a PNG file (PNG specification, annex D).

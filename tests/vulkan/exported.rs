@@ -85,7 +85,7 @@ impl<'a> Subject<'a> {
             let [a, b, c, inside] = corner.factors;
             given[corner.place[3] as usize] = HullFactors { edges: [a, b, c], inside };
         }
-        self.scene.tessellator.give(Some(given))?;
+        self.scene.tessellator.give(Some(Given::from(given)))?;
         self.engine.count(&mut self.scene, &inputs, &mut Timing::Off)?;
         let own = self.engine.read_tessellated(&mut self.scene)?;
         let keys: Vec<_> = own.vertices.iter().map(|vertex| (vertex.patch(), vertex.domain())).collect();

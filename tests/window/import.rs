@@ -120,6 +120,42 @@ fn parts_are_hidden_and_shown_again_while_the_camera_stays() {
 }
 
 #[test]
+fn hiding_a_part_is_a_step_of_undo_beside_those_of_settings() {
+    let folder = TempDir::new().expect("a folder");
+    let path = folder.path().join("parts.obj");
+    let text = BENT.replace("f 1 4", "o floor\nf 1 4").replace("f 1 2", "o wall\nf 1 2");
+    std::fs::write(&path, text).expect("a writable temporary folder");
+    let mut harness = uniform(Some(Source::File(path.clone())));
+    let state = |harness: &Harness<App>| {
+        let loaded = harness.state().loaded().expect("a mesh");
+        (loaded.mesh.triangles.len(), harness.state().settings().overlays.wireframe)
+    };
+    super::switch(&mut harness, "wall");
+    press(&mut harness, Key::W);
+    assert_eq!(state(&harness), (2, true));
+    let undo = |harness: &mut Harness<App>| press_with(harness, Modifiers::COMMAND, Key::Z);
+    let redo = |harness: &mut Harness<App>| press_with(harness, Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    undo(&mut harness);
+    assert_eq!(state(&harness), (2, false));
+    undo(&mut harness);
+    assert_eq!(state(&harness), (4, false), "the part is there again");
+    redo(&mut harness);
+    assert_eq!(state(&harness), (2, false));
+    redo(&mut harness);
+    assert_eq!(state(&harness), (2, true));
+    // Another mesh has all its parts, and no step hides any.
+    let context = harness.ctx.clone();
+    harness.state_mut().open(&context, Source::Shape(Shape::Torus));
+    settle(&mut harness);
+    undo(&mut harness);
+    harness.state_mut().open(&context, Source::File(path));
+    settle(&mut harness);
+    assert_eq!(state(&harness), (4, false));
+    undo(&mut harness);
+    assert_eq!(state(&harness).0, 4);
+}
+
+#[test]
 fn a_file_that_is_gone_leaves_the_mesh_and_its_settings_as_they_are() {
     let folder = TempDir::new().expect("a folder");
     let source = bent(&folder);

@@ -43,7 +43,7 @@ fn a_first_start_shows_the_vase_split_with_a_line_of_help_until_something_is_don
 
 #[test]
 fn a_number_that_grows_moves_nothing() {
-    let mut harness = first_start([1000.0, 600.0], Some(Source::Shape(Shape::Torus)));
+    let mut harness = first_start([1200.0, 600.0], Some(Source::Shape(Shape::Torus)));
     choose(&mut harness, "LOD", "Uniform");
     click(&mut harness, "Waste");
     let before = viewport(&harness);
@@ -66,7 +66,7 @@ fn a_number_that_grows_moves_nothing() {
 
 #[test]
 fn a_window_of_another_size_shows_the_last_picture_until_the_next_one_and_frames_the_mesh_again() {
-    let mut harness = first_start([1000.0, 600.0], Some(Source::Vase));
+    let mut harness = first_start([620.0, 600.0], Some(Source::Vase));
     let distance = harness.state().camera().distance;
     harness.set_size(egui::vec2(1600.0, 1000.0));
     harness.step();
@@ -269,18 +269,28 @@ fn hidden_panels_leave_the_picture_all_the_room() {
     assert_eq!(viewport(&harness), before);
 }
 
+/// The titles of sections that are shown of both panels: of settings, and of measurements.
+fn panels(harness: &Harness<App>) -> [bool; 2] {
+    ["Surface", "Patch"].map(|title| harness.query_by_role_and_label(Role::DisclosureTriangle, title).is_some())
+}
+
 #[test]
-fn a_narrow_window_leaves_out_panels_before_it_covers_anything() {
-    for (size, zoom, panels) in
-        [([1280.0, 720.0], 1.5, 2), ([1024.0, 640.0], 1.5, 1), ([1024.0, 640.0], 2.0, 1), ([640.0, 400.0], 1.5, 0)]
-    {
+fn the_picture_keeps_half_of_a_narrow_window_and_nothing_is_covered() {
+    for (size, zoom, shown) in [
+        ([1600.0, 1000.0], 1.0, [true, true]),
+        ([1024.0, 640.0], 1.0, [true, false]),
+        ([1280.0, 720.0], 1.5, [true, false]),
+        ([1024.0, 640.0], 2.0, [true, false]),
+        ([640.0, 400.0], 1.5, [false, false]),
+    ] {
         let mut harness = first_start(size, Some(Source::Shape(Shape::Torus)));
         harness.ctx.set_zoom_factor(zoom);
         harness.set_size(egui::Vec2::from(size) / zoom);
         settle(&mut harness);
         let screen = harness.ctx.content_rect();
         let picture = viewport(&harness);
-        assert!(screen.contains_rect(picture) && picture.width() >= 200.0, "{size:?} x {zoom}: {picture:?}");
+        assert!(screen.contains_rect(picture), "{size:?} x {zoom}: {picture:?}");
+        assert!(picture.width() >= 0.5 * screen.width(), "{size:?} x {zoom}: {picture:?}");
         switch(&mut harness, "Split view");
         for title in ["Left: untessellated", "Right: tessellated"] {
             let title = harness.get_by_label(title).rect();
@@ -288,16 +298,39 @@ fn a_narrow_window_leaves_out_panels_before_it_covers_anything() {
             let end = harness.query_by_label("Look from the top").map(|end| end.rect());
             assert!(!end.is_some_and(|end| end.intersects(title)), "{size:?} x {zoom}: {title:?} {end:?}");
         }
+        assert_eq!(panels(&harness), shown, "{size:?} x {zoom}");
         let left = harness.query_by_role_and_label(Role::DisclosureTriangle, "Surface");
         let right = harness.query_by_role_and_label(Role::DisclosureTriangle, "Patch");
-        let shown: Vec<_> = [left, right].into_iter().flatten().map(|node| node.rect()).collect();
-        assert_eq!(shown.len(), panels, "{size:?} x {zoom}");
-        assert!(shown.iter().all(|title| !title.intersects(picture)), "{shown:?} {picture:?}");
+        let titles: Vec<_> = [left, right].into_iter().flatten().map(|node| node.rect()).collect();
+        assert!(titles.iter().all(|title| !title.intersects(picture)), "{titles:?} {picture:?}");
         for name in ["Split view", "Wireframe", "Cracks", "Freeze LOD camera"] {
             let button = harness.get_by_role_and_label(Role::CheckBox, name).rect();
             assert!(screen.contains_rect(button) && !button.intersects(picture), "{name}: {button:?}, {picture:?}");
         }
     }
+}
+
+#[test]
+fn in_a_narrow_window_tabs_show_settings_or_measurements() {
+    let mut harness = first_start([1024.0, 640.0], Some(Source::Shape(Shape::CubeSplit)));
+    let before = (viewport(&harness), harness.state().pictures());
+    assert_eq!(panels(&harness), [true, false]);
+    harness.get_by_role_and_label(Role::Tab, "Measurements").click();
+    settle(&mut harness);
+    assert_eq!(panels(&harness), [false, true]);
+    harness.get_by_label("No cracks");
+    assert_eq!((viewport(&harness), harness.state().pictures()), before, "the picture stays as it is");
+    harness.get_by_role_and_label(Role::Tab, "Settings").click();
+    settle(&mut harness);
+    choose(&mut harness, "Surface", "PN");
+    harness.get_by_role_and_label(Role::Tab, "Measurements").click();
+    settle(&mut harness);
+    harness.get_by_label_contains("12 cracked edges, widest ");
+    // A wider window has both beside the picture.
+    harness.set_size(egui::vec2(1280.0, 720.0));
+    settle(&mut harness);
+    assert_eq!(panels(&harness), [true, true]);
+    assert!(harness.query_by_role_and_label(Role::Tab, "Measurements").is_none());
 }
 
 /// What can be read or used in the panels: a text, and where it is. Rows that are scrolled out of view count too.
@@ -351,6 +384,16 @@ fn no_row_of_the_panels_is_cut_or_covered_at_any_size_of_the_text() {
             settle(&mut harness);
             no_row_is_cut_or_covered(&harness, zoom);
         }
+        // Below this width, measurements scroll sideways.
+        if let Some(tab) = harness.query_by_role_and_label(Role::Tab, "Measurements").filter(|_| zoom < 1.6) {
+            tab.click();
+            settle(&mut harness);
+            for title in ["Patch", "Mesh"] {
+                harness.get_by_role_and_label(Role::DisclosureTriangle, title).scroll_to_me();
+                settle(&mut harness);
+                no_row_is_cut_or_covered(&harness, zoom);
+            }
+        }
     }
 }
 
@@ -362,7 +405,7 @@ fn no_row_is_cut_or_covered(harness: &Harness<App>, zoom: f32) {
     let left: Vec<_> = all.iter().filter(|(_, rect)| rect.right() < picture.left() + 1.0).cloned().collect();
     let right: Vec<_> = all.iter().filter(|(_, rect)| rect.left() > picture.right() - 1.0).cloned().collect();
     assert!(left.len() > 12, "{zoom}: {left:?}");
-    assert_eq!(right.is_empty(), zoom > 1.3, "the right panel is there if it has room");
+    assert_eq!(right.is_empty(), zoom > 0.9, "the right panel is there if it has room");
     for panel in [left, right] {
         assert_eq!(overlapping(&panel), Vec::<String>::new(), "{zoom}");
     }

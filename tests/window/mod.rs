@@ -26,6 +26,7 @@ mod techniques;
 mod typing;
 mod variants;
 mod viewing;
+mod warm_up;
 
 use std::path::{Path, PathBuf};
 

@@ -6,6 +6,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::App;
 use pnaen::load::Source;
 use pnaen::mesh::{EdgeKind, Shape};
+use pnaen::render::layout::{FACTOR_COLORS, SIDE_COLORS};
 use pnaen::tessellate::Surface;
 
 use crate::window_tests::{choose, click, press, settle, uniform, window};
@@ -199,6 +200,30 @@ fn selecting_an_edge_keeps_the_triangle_only_if_it_has_that_edge() {
     harness.state_mut().select_edge(other);
     settle(&mut harness);
     assert_eq!((harness.state().selected_triangle(), harness.state().selected_edge()), (None, Some(other)));
+}
+
+#[test]
+fn a_selected_edge_shows_the_colour_of_its_factor_and_a_halo() {
+    let mut harness = cube();
+    let count = |harness: &Harness<App>, color: [u8; 3]| {
+        let picture = harness.state().read_picture().expect("a device").expect("a picture");
+        picture.pixels().filter(|pixel| pixel.0[..3] == color).count()
+    };
+    harness.state_mut().select_triangle(Some(0));
+    click(&mut harness, "Frame");
+    let halo = SIDE_COLORS[0];
+    let (alone, white) = (FACTOR_COLORS.map(|color| count(&harness, color)), count(&harness, halo));
+    for (k, edge) in ["0-1", "1-2", "2-0"].into_iter().enumerate() {
+        click(&mut harness, &format!("Edge {edge} of the patch"));
+        assert!(harness.state().selected_edge().is_some());
+        for (color, alone) in FACTOR_COLORS.into_iter().zip(alone) {
+            // Where edges meet, the order of their lines decides.
+            let shown = count(&harness, color);
+            assert!(alone > 200 && shown + 20 > alone, "edge {k}: {shown} of {alone} px of {color:?} are seen");
+        }
+        let seen = count(&harness, halo);
+        assert!(seen > white + 100, "edge {k} has a halo: {seen} px, and {white} before");
+    }
 }
 
 #[test]

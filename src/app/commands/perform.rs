@@ -175,7 +175,7 @@ impl App {
             return self.viewport.picture.cancel();
         }
         (self.jobs.load, self.jobs.truth_load, self.jobs.writing) = (None, None, None);
-        self.keep_import();
+        self.keep_file_choices();
         self.cancel_environment();
         (self.dialogs.error, self.dialogs.notice, self.dialogs.typed_path) = (None, None, None);
         (self.commands.shows_keys, self.dialogs.shows_warnings) = (false, false);

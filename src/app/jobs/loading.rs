@@ -1,6 +1,7 @@
 //! Opens meshes and loads them again. A new load cancels the one before it.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use super::document::{Load, NotLoaded};
 use super::leak_job::LeakJob;
@@ -45,23 +46,27 @@ impl App {
         Preparation { limits: self.jobs.limits, import, ..Preparation::default() }
     }
 
-    /// Loads the mesh again if its normals, its axis or its unit were changed, also by undo. While something is dragged, and while
-    /// another mesh is being loaded, it waits.
-    pub(in crate::app) fn follow_import(&mut self, context: &egui::Context) {
+    /// Loads the mesh again if its normals, its axis, its unit or its hidden parts were changed, also by undo. While something is dragged,
+    /// and while another mesh is being loaded, it waits.
+    pub(in crate::app) fn follow_file_choices(&mut self, context: &egui::Context) {
         let opens_another = self.jobs.load.as_ref().is_some_and(|load| !load.keep_view);
         if self.document.is_none() || opens_another || context.egui_is_using_pointer() {
             return;
         }
-        let wanted = self.settings.import;
-        if self.preparation().import != wanted {
-            self.prepare(context, |preparation| preparation.import = wanted);
+        let (import, hidden) = (self.settings.import, self.hidden.clone());
+        let wanted = |preparation: &Preparation| preparation.import == import && preparation.hidden == *hidden;
+        if !wanted(&self.preparation()) {
+            self.prepare(context, |preparation| {
+                (preparation.import, preparation.hidden) = (import, hidden.to_vec());
+            });
         }
     }
 
-    /// Goes back to the normals, the axis and the unit that the mesh has, after a load that came to nothing.
-    pub(in crate::app) fn keep_import(&mut self) {
+    /// Goes back to the normals, the axis, the unit and the hidden parts that the mesh has, after a load that came to nothing.
+    pub(in crate::app) fn keep_file_choices(&mut self) {
         if let Some(document) = &self.document {
             self.settings.import = document.loaded.preparation.import;
+            self.hidden = Arc::new(document.loaded.preparation.hidden.clone());
         }
     }
 
@@ -113,6 +118,7 @@ impl App {
                 }
                 if !keep_view {
                     self.take_placement();
+                    self.forget_hidden_parts();
                 }
                 if before.is_some() {
                     self.dialogs.error = None;
@@ -137,7 +143,7 @@ impl App {
                     why += "; it was removed from the recent files";
                 }
                 self.dialogs.error = Some(why);
-                self.keep_import();
+                self.keep_file_choices();
                 // If the first file can't be loaded, the window shows its default mesh.
                 if self.document.is_none() {
                     self.open(context, Source::default());

@@ -142,7 +142,7 @@ impl App {
         let topology = document.shown().1;
         let lines = |half| {
             let hit = if half == SplitSide::Right { self.hit_lines() } else { Vec::new() };
-            [self.ruler_lines(), hit, self.selection_lines(&topology, half)].concat()
+            [self.ruler_lines(), self.selection_lines(&topology, half), hit].concat()
         };
         let subject = Subject {
             loaded: document.loaded.clone(),

@@ -26,6 +26,11 @@ impl StandIn {
         self.scene.as_deref_mut()
     }
 
+    /// Whether it will be made soon.
+    pub(crate) fn is_being_made(&self) -> bool {
+        self.making.is_some()
+    }
+
     /// Whether it is made. The first call starts that, with about so many triangles.
     pub(crate) fn is_made(
         &mut self,

@@ -15,6 +15,11 @@ use crate::settings::SplitSide;
 use crate::view::ulp;
 use glam::Vec3;
 
+/// Half the widths of the selected edge's outline, of its first side, of the others, and of the dots at its widest gap, in px.
+const ALONE: [f32; 4] = [2.5, 1.75, 0.75, 3.0];
+/// The same for an edge of the selected patch, whose outline lies over it: what is seen is a halo.
+const HALO: [f32; 4] = [6.25, 5.5, 4.0, 6.5];
+
 impl App {
     /// The list of edges whose sides disagree, the widest gap first. A click frames one.
     pub(in crate::app) fn worst_edges(&mut self, ui: &mut egui::Ui) {
@@ -153,7 +158,8 @@ impl App {
     }
 
     /// The lines that mark the selected edge: each side in a colour of its own, the later ones thinner so that sides that
-    /// coincide both show, and a dot where they are farthest apart. If its patches emit nothing, it is the straight line.
+    /// coincide both show, and a dot where they are farthest apart. If its patches emit nothing, it is the straight line. An edge of
+    /// the selected patch has wider ones, of which a halo is seen around the colour of the edge's factor.
     pub(in crate::app) fn selection_lines(&self, topology: &Topology, half: SplitSide) -> Vec<LineSegment> {
         let Some(edge) = self.viewport.selected_edge else { return Vec::new() };
         let sides = self.measured(half).found().map(|found| found.outlines.edge(topology, edge)).unwrap_or_default();
@@ -170,13 +176,14 @@ impl App {
             let ends = points.windows(2).map(move |ends| [ends[0], ends[1]]);
             ends.map(|[a, b]| LineSegment { half_width, ..LineSegment::new(a, b, color) }).collect::<Vec<_>>()
         };
-        let outline = polylines.iter().flat_map(|points| strip(points, OUTLINE_COLOR, 2.5));
+        let [around, first, later, dot] = if self.patch_has(edge) { HALO } else { ALONE };
+        let outline = polylines.iter().flat_map(|points| strip(points, OUTLINE_COLOR, around));
         let colored = polylines.iter().enumerate().flat_map(|(k, points)| {
-            strip(points, SIDE_COLORS[k % SIDE_COLORS.len()], if k == 0 { 1.75 } else { 0.75 })
+            strip(points, SIDE_COLORS[k % SIDE_COLORS.len()], if k == 0 { first } else { later })
         });
         let gap = self.crack_of(edge, half).filter(|crack| crack.gap > 0.0).map(|crack| crack.widest);
         let dots = gap.into_iter().flatten();
-        let dots = dots.map(|place| LineSegment { half_width: 3.0, ..LineSegment::new(place, place, CRACK_COLOR) });
+        let dots = dots.map(|place| LineSegment { half_width: dot, ..LineSegment::new(place, place, CRACK_COLOR) });
         outline.chain(colored).chain(dots).collect()
     }
 }

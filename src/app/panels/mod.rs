@@ -21,6 +21,7 @@ mod patch_explanation;
 mod patch_panel;
 mod patch_pattern;
 mod settings_panel;
+mod sides;
 mod statistics;
 mod status_line;
 mod toolbar;
@@ -30,11 +31,7 @@ use crate::tessellate::Displacement;
 
 use crate::app::sections::OpenSections;
 use chart::Chart;
-
-/// The widths of the left and of the right panel, and the least that is left for the picture, in points.
-pub(super) const SETTINGS_WIDTH: f32 = 280.0;
-pub(super) const FACTS_WIDTH: f32 = 304.0;
-const LEAST_PICTURE: f32 = 220.0;
+use sides::Side;
 
 /// What the panels remember from one frame to the next.
 pub(super) struct Panels {
@@ -42,19 +39,12 @@ pub(super) struct Panels {
     pub open: OpenSections,
     /// Whether the panels on both sides are hidden, so that the picture has their room.
     pub are_hidden: bool,
+    /// The panel that is shown where both share a side.
+    pub side: Side,
     /// The width of the crease band while it is being dragged, as a part of the bounding diagonal.
     pub dragged_crease_band: Option<f32>,
     /// The displacement before it was last switched.
     pub last_displacement: Displacement,
-}
-
-impl Panels {
-    /// Whether the left and the right panel are shown in a window of this width, in points. A narrow one leaves out the right
-    /// panel, and a very narrow one both.
-    pub(super) fn shown(&self, width: f32) -> [bool; 2] {
-        let fits = |panels: f32| !self.are_hidden && width >= panels + LEAST_PICTURE;
-        [fits(SETTINGS_WIDTH), fits(SETTINGS_WIDTH + FACTS_WIDTH)]
-    }
 }
 
 impl Default for Panels {
@@ -63,6 +53,7 @@ impl Default for Panels {
             chart: Chart::default(),
             open: OpenSections::default(),
             are_hidden: false,
+            side: Side::default(),
             dragged_crease_band: None,
             last_displacement: Displacement::Off,
         }

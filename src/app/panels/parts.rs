@@ -1,5 +1,7 @@
 //! The list of the file's parts, which can be hidden.
 
+use std::sync::Arc;
+
 use crate::app::App;
 use crate::app::sections::Section;
 use crate::app::text::counted;
@@ -10,7 +12,7 @@ use crate::names::{shortened, shown};
 const LONGEST: usize = 40;
 
 impl App {
-    /// A switch for each part, if the file has several. A part that is hidden or shown again loads the mesh again.
+    /// A switch for each part, if the file has several. The mesh is loaded again without those that are hidden.
     pub(in crate::app) fn parts_section(&mut self, ui: &mut egui::Ui) {
         let Some(document) = self.document.as_ref().filter(|document| document.loaded.parts.len() > 1) else { return };
         let parts = document.loaded.parts.clone();
@@ -37,10 +39,10 @@ impl App {
         let all = ui.add_enabled(are_hidden, egui::Button::new("Show all parts"));
         let all = all.on_hover_text("Shows the parts that are hidden.").on_disabled_hover_text("No part is hidden.");
         if all.clicked() {
-            self.prepare(ui.ctx(), |preparation| preparation.hidden.clear());
+            self.hidden = Arc::default();
         }
         if let Some(row) = clicked {
-            self.prepare(ui.ctx(), |preparation| toggle(&mut preparation.hidden, &parts[row].name));
+            toggle(Arc::make_mut(&mut self.hidden), &parts[row].name);
         }
     }
 }

@@ -49,24 +49,31 @@ impl Line {
 impl App {
     pub(in crate::app) fn verdict(&mut self, ui: &mut egui::Ui) {
         ui.add_space(6.0);
-        let lines: Vec<Line> = [
-            Some(self.cracks_line()),
-            Some(self.leaks_line()),
-            Some(self.folds_line()),
-            Some(self.junctions_line()),
-            self.given_line(ui.visuals().warn_fg_color),
-            Some(self.sizes_line(ui.visuals().text_color())),
-            Some(self.limit_line(ui.visuals().warn_fg_color)),
-            Some(self.warnings_line(ui.visuals().warn_fg_color)),
-        ]
-        .into_iter()
-        .flatten()
-        .collect();
-        for line in lines {
+        for line in self.verdict_lines(ui.visuals()) {
             if row(ui, line.text, line.color, line.hover) {
                 self.follow(line.leads);
             }
         }
+    }
+
+    /// The colour of the first line that says what is wrong, rather than what could be better.
+    pub(in crate::app) fn worst(&self, ui: &egui::Ui) -> Option<Color32> {
+        let lines = self.verdict_lines(ui.visuals());
+        lines.into_iter().filter(|line| !matches!(line.leads, Destination::Sizes)).find_map(|line| line.color)
+    }
+
+    fn verdict_lines(&self, visuals: &egui::Visuals) -> Vec<Line> {
+        let lines = [
+            Some(self.cracks_line()),
+            Some(self.leaks_line()),
+            Some(self.folds_line()),
+            Some(self.junctions_line()),
+            self.given_line(visuals.warn_fg_color),
+            Some(self.sizes_line(visuals.text_color())),
+            Some(self.limit_line(visuals.warn_fg_color)),
+            Some(self.warnings_line(visuals.warn_fg_color)),
+        ];
+        lines.into_iter().flatten().collect()
     }
 
     fn cracks_line(&self) -> Line {

@@ -4,6 +4,7 @@ use glam::{Vec2, vec2};
 
 use crate::app::App;
 use crate::commands::{CameraAction, Direction};
+use crate::mesh::Moment;
 use crate::render::Camera;
 
 /// Degrees that the camera turns at a press of an arrow key.
@@ -14,6 +15,16 @@ const POINTS_PER_KEY: f32 = 40.0;
 const CLOSER: f32 = 0.8;
 /// Where the divider goes if it would cover the middle of the view, as a part of the view's width.
 const ASIDE: f32 = 0.2;
+
+/// A camera of the file that is looked through.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FollowedCamera {
+    /// Its number in the file.
+    index: usize,
+    moment: Option<Moment>,
+    /// The view at that moment.
+    camera: Camera,
+}
 
 impl App {
     pub(in crate::app) fn move_camera_by(&mut self, context: &egui::Context, action: CameraAction) {
@@ -45,11 +56,27 @@ impl App {
         cameras.into_iter().flatten().map(|camera| camera.name.clone()).collect()
     }
 
-    /// Moves the camera to where a camera of the file is at this moment, and gives it the same field of view, or height.
+    /// Moves the camera to where a camera of the file is at this moment, and gives it the same field of view, or height. It follows
+    /// that camera while a clip plays.
     fn look_through_file_camera(&mut self, index: usize) {
         let Some(document) = &self.document else { return };
-        if let Some(camera) = document.loaded.mesh.cameras_at(document.moment).get(index) {
-            self.viewport.camera = Camera::of_file(camera, &document.scene.bounds);
+        let moment = document.moment;
+        if let Some(camera) = document.loaded.mesh.cameras_at(moment).get(index) {
+            let camera = Camera::of_file(camera, &document.scene.bounds);
+            self.viewport.camera = camera;
+            self.viewport.through = Some(FollowedCamera { index, moment, camera });
+        }
+    }
+
+    /// Moves the camera along with that of the file which it looks through, if the moment is another one. A camera that was moved
+    /// otherwise follows no more.
+    pub(in crate::app) fn follow_file_camera(&mut self) {
+        let Some(FollowedCamera { index, moment, camera }) = self.viewport.through else { return };
+        if camera != self.viewport.camera {
+            self.viewport.through = None;
+        } else if self.document.as_ref().is_some_and(|document| document.moment != moment) {
+            self.viewport.through = None;
+            self.look_through_file_camera(index);
         }
     }
 

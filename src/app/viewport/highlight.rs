@@ -85,10 +85,10 @@ impl App {
         lines.extend(self.worst_mark(half));
         lines.extend(self.frozen_lines());
         lines.extend(self.ruler_lines());
-        // The selection comes last, so that it is over all other lines.
+        // The selection comes last, so that it is over all other lines, and the colours of factors are over that of an edge.
         if let Some(topology) = posed {
-            lines.extend(self.patch_outline(topology, half));
             lines.extend(self.selection_lines(topology, half));
+            lines.extend(self.patch_outline(topology, half));
         }
         lines
     }

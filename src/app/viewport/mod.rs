@@ -13,10 +13,12 @@ pub(super) mod playback;
 pub(super) mod preview;
 mod ruler;
 pub(super) mod selection;
+pub(super) mod warm_up;
 
 use crate::engine::Engine;
 use crate::render::Camera;
 
+use camera::FollowedCamera;
 use frozen_camera::FrozenCamera;
 use highlight::Highlight;
 use left_half::LeftHalf;
@@ -25,12 +27,15 @@ use playback::Playback;
 use preview::Preview;
 use ruler::Ruler;
 use selection::Selection;
+use warm_up::WarmUp;
 
 /// What the viewport shows, and from where.
 pub(super) struct Viewport {
     pub camera: Camera,
     /// The camera as it was when it last framed the whole mesh.
     pub framed: Option<Camera>,
+    /// The camera of the file that is looked through, until the camera is moved otherwise.
+    pub through: Option<FollowedCamera>,
     /// Views that are kept with the file.
     pub bookmarks: Vec<Camera>,
     /// The camera that LOD and clipping stay computed for, while they are frozen.
@@ -41,6 +46,7 @@ pub(super) struct Viewport {
     pub greets: bool,
     pub picture: Picture,
     pub preview: Preview,
+    pub warm_up: WarmUp,
     pub playback: Playback,
     pub left: LeftHalf,
     /// What the lines over the mesh were last made from.
@@ -57,12 +63,14 @@ impl Viewport {
         Self {
             camera: Camera::framing(&Default::default(), glam::Vec2::ONE),
             framed: None,
+            through: None,
             bookmarks: Vec::new(),
             frozen: None,
             last_split: 0.5,
             greets: false,
             picture: Picture::new(engine),
             preview: Preview::new(engine),
+            warm_up: WarmUp::default(),
             playback: Playback::default(),
             left: LeftHalf::default(),
             highlight: None,

@@ -79,8 +79,8 @@ impl App {
 
     /// What lies over a picture, and explains it.
     fn over_picture(&mut self, ui: &mut egui::Ui, rect: egui::Rect) {
-        self.patch_labels(ui, rect);
         self.divider(ui, rect);
+        self.patch_labels(ui, rect);
         self.greeting(ui, rect);
         self.corner_notes(ui, rect);
         self.axis_gizmo(ui, rect);
@@ -97,6 +97,7 @@ impl App {
         self.viewport.picture.land(&self.engine);
         self.keep_left(context)?;
         self.pose()?;
+        self.follow_file_camera();
         self.mark();
         let deviation = self.deviation_shown();
         let moment = self.moment();
@@ -171,6 +172,7 @@ impl App {
             // Drawing the window more often would only slow the measurement down.
             context.request_repaint_after(std::time::Duration::from_millis(30));
         }
+        self.warm_up(context, &wanted);
         Ok(())
     }
 
@@ -328,6 +330,7 @@ impl App {
             let (done, hover) = (Some((load.progress.fraction(), None)), "Stops loading. The mesh that is open stays.");
             if progress(ui, rect, &title, done, ("Cancel", hover)) {
                 self.jobs.load = None;
+                self.keep_file_choices();
             }
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
         } else if let Some(load) = &self.jobs.truth_load {

@@ -95,6 +95,11 @@ impl Preview {
         Self { is_on, ..self }
     }
 
+    /// Whether a picture that takes as long as the last full one is replaced by a preview while the camera moves.
+    pub(super) fn is_due(&self, full: &Picture) -> bool {
+        self.is_on && full.whole_ms().is_some_and(|ms| ms > LATE_MS)
+    }
+
     /// How many previews have been drawn.
     pub(crate) fn drawings(&self) -> u64 {
         self.drawings
@@ -206,7 +211,7 @@ impl Preview {
 }
 
 /// Lets the device count what each half emits. Returns true once that is known.
-fn count(engine: &Engine, scene: &mut Scene, wanted: &Wanted) -> Result<bool, GpuError> {
+pub(super) fn count(engine: &Engine, scene: &mut Scene, wanted: &Wanted) -> Result<bool, GpuError> {
     let mut is_counted = true;
     for half in SplitSide::BOTH {
         let Some(inputs) = wanted.inputs_of(half) else { continue };
@@ -287,14 +292,13 @@ impl App {
         if self.viewport.picture.drawn.as_ref() == Some(full) {
             self.viewport.preview.end();
         }
-        let is_late = self.viewport.picture.whole_ms().is_some_and(|ms| ms > LATE_MS);
-        let Some(left) = left.filter(|_| is_late && self.viewport.preview.is_on) else { return Ok(false) };
+        let is_due = self.viewport.preview.is_due(&self.viewport.picture);
+        let Some(left) = left.filter(|_| is_due) else { return Ok(false) };
+        let Some((wanted, shape)) = self.cheaper_picture(context, full) else { return Ok(false) };
         let Some(document) = &mut self.document else { return Ok(false) };
         let totals = Some(document.scene.tessellator.totals());
-        let shape = shape_of(context, &self.engine, document, full, self.viewport.frozen.is_some());
-        let settings = settings_of(shape, &full.settings);
-        let wanted = Wanted { settings, inputs: Inputs::new(&settings.tessellation, full.inputs.view), ..*full };
         self.viewport.picture.make_way();
+        self.viewport.warm_up.give_way();
         let preview = &mut self.viewport.preview;
         preview.land();
         preview.fit(&self.painting, &self.engine, full.viewport)?;
@@ -317,6 +321,15 @@ impl App {
             context.request_repaint();
         }
         Ok(true)
+    }
+
+    /// What a preview of the wanted picture draws; none before a mesh is open.
+    pub(super) fn cheaper_picture(&mut self, context: &egui::Context, full: &Wanted) -> Option<(Wanted, Shape)> {
+        let document = self.document.as_mut()?;
+        let shape = shape_of(context, &self.engine, document, full, self.viewport.frozen.is_some());
+        let settings = settings_of(shape, &full.settings);
+        let inputs = Inputs::new(&settings.tessellation, full.inputs.view);
+        Some((Wanted { settings, inputs, ..*full }, shape))
     }
 
     /// The view of what is shown: of a preview, or of the full picture.

@@ -84,7 +84,8 @@ impl App {
         }
     }
 
-    fn patch_has(&self, edge: u32) -> bool {
+    /// Whether it is an edge of the selected patch.
+    pub(in crate::app) fn patch_has(&self, edge: u32) -> bool {
         let (Some(patch), Some(document)) = (self.selected_patch(), &self.document) else { return false };
         let topology = &document.loaded.topology;
         topology.patches[patch as usize].sides.iter().any(|&side| topology.sides[side as usize].edge == edge)
@@ -158,13 +159,12 @@ impl App {
         patch_edges(topology, patch, self.measured(half).found().map(|found| &found.outlines), self.convention())
     }
 
-    /// The lines that mark the selected patch: its edges in their factors' colours, and the emitted triangle clicked on.
+    /// The lines that mark the selected patch: the emitted triangle that was clicked on, and the patch's edges in their factors'
+    /// colours.
     pub(in crate::app) fn patch_outline(&self, topology: &Topology, half: SplitSide) -> Vec<LineSegment> {
         let Some(patch) = self.selected_patch() else { return Vec::new() };
-        let mut lines = patch_lines(&self.patch_edges(topology, patch, half));
-        if half == SplitSide::Right {
-            lines.extend(self.hit_lines());
-        }
+        let mut lines = if half == SplitSide::Right { self.hit_lines() } else { Vec::new() };
+        lines.extend(patch_lines(&self.patch_edges(topology, patch, half)));
         lines
     }
 

@@ -16,6 +16,7 @@ use crate::app::persistence::WindowGeometry;
 use crate::app::style::style;
 use crate::app::viewport::picture::Picture;
 use crate::app::viewport::preview::Preview;
+use crate::app::viewport::warm_up::WarmUp;
 use crate::engine::Engine;
 use crate::gpu::{Gpu, GpuError};
 use crate::settings::Lighting;
@@ -124,6 +125,7 @@ impl App {
         let preview = Preview::new(&engine).with(self.viewport.preview.is_on);
         (self.engine, self.render_state, self.painting) = (engine, render_state, painting);
         (self.viewport.picture, self.viewport.preview) = (viewport, preview);
+        self.viewport.warm_up = WarmUp::default();
         if let Some((document, scene)) = self.document.as_mut().zip(scene) {
             (document.scene, document.moment) = (scene, None);
             (document.given, document.matcap, document.environment) = (0, 0, 0);

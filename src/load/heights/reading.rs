@@ -142,9 +142,9 @@ impl ImageFile<'_> {
         };
         let unread = |error: io::Error| self.stopped_or(self.fail(error.to_string()));
         let known = coefficient_bytes(&mut reader).map_err(unread)?;
-        let of_webp = webp_bytes(&mut reader).map_err(unread)?;
-        let mut reader = ImageReader::new(reader).with_guessed_format().map_err(unread)?;
         self.budget.allow(length);
+        let of_webp = webp_bytes(&mut reader, self.budget.left()).map_err(unread)?;
+        let mut reader = ImageReader::new(reader).with_guessed_format().map_err(unread)?;
         let borrowed = self.budget.borrowed();
         if reader.format() == Some(ImageFormat::Png) {
             reader.limits(metadata_limits(self.budget));

@@ -3,8 +3,9 @@
 //!
 //! Source: KTX 2.0 specification, appendices "BasisLZ" and "ETC1S".
 
-use super::huffman::Huffman;
+use super::huffman::read_code;
 use crate::load::bits::Bits;
+use crate::load::prefix_code::PrefixCode;
 
 /// What is added to the base colour for each of the four shades, by intensity.
 const SHADES: [[i32; 4]; 8] = [
@@ -26,10 +27,10 @@ pub(super) const HEADER: usize = 20;
 pub(super) struct Codebooks {
     endpoints: Vec<Endpoint>,
     selectors: Vec<Selector>,
-    predictions: Huffman,
-    endpoint_steps: Huffman,
-    selector_codes: Huffman,
-    run_lengths: Huffman,
+    predictions: PrefixCode,
+    endpoint_steps: PrefixCode,
+    selector_codes: PrefixCode,
+    run_lengths: PrefixCode,
     /// How many selectors the history holds.
     history: usize,
 }
@@ -71,10 +72,10 @@ impl Codebooks {
         let codebooks = Self {
             endpoints: read_endpoints(&mut Bits::new(endpoints), short(0))?,
             selectors: read_selectors(&mut Bits::new(selectors), short(2))?,
-            predictions: Huffman::read(&mut tables)?,
-            endpoint_steps: Huffman::read(&mut tables)?,
-            selector_codes: Huffman::read(&mut tables)?,
-            run_lengths: Huffman::read(&mut tables)?,
+            predictions: read_code(&mut tables)?,
+            endpoint_steps: read_code(&mut tables)?,
+            selector_codes: read_code(&mut tables)?,
+            run_lengths: read_code(&mut tables)?,
             history: tables.take(13) as usize,
         };
         (!tables.is_past_end() && codebooks.history > 0).then_some(codebooks)
@@ -105,8 +106,8 @@ impl Codebooks {
 
 /// Each component is stored as a step from that of the entry before.
 fn read_endpoints(bits: &mut Bits, count: usize) -> Option<Vec<Endpoint>> {
-    let [low, middle, high] = [Huffman::read(bits)?, Huffman::read(bits)?, Huffman::read(bits)?];
-    let intensities = Huffman::read(bits)?;
+    let [low, middle, high] = [read_code(bits)?, read_code(bits)?, read_code(bits)?];
+    let intensities = read_code(bits)?;
     let is_gray = bits.take(1) == 1;
     let mut last = Endpoint { color: [16; 3], intensity: 0 };
     let mut endpoints = Vec::with_capacity(count);
@@ -133,7 +134,7 @@ fn read_selectors(bits: &mut Bits, count: usize) -> Option<Vec<Selector>> {
     if is_global || is_hybrid {
         return None;
     }
-    let changes = if is_raw { Huffman::default() } else { Huffman::read(bits)? };
+    let changes = if is_raw { PrefixCode::default() } else { read_code(bits)? };
     let mut selectors: Vec<Selector> = Vec::with_capacity(count);
     for _ in 0..count {
         let mut selector = [0; 4];

@@ -5,7 +5,7 @@ use crate::gpu::{GpuError, Recorder};
 use crate::mesh::{Material, Mesh};
 use crate::render::covered_area::{Area, covered_area, intersection, is_empty, union};
 use crate::render::layers::LayerPass;
-use crate::render::needs::{Needs, has_layers};
+use crate::render::needs::{Needs, PictureKind, has_layers};
 use crate::render::pipelines::{Draw, LayerClear, LayerDraw, Triangles};
 use crate::render::steps::{LayerPart, LayerStep};
 use crate::render::target::depth_attachment;
@@ -90,7 +90,8 @@ impl Renderer {
         triangles: Triangles,
         settings: &Settings,
     ) -> Result<Vec<Vec<wgpu::RenderPipeline>>, GpuError> {
-        let draws = mesh.materials.iter().map(|material| draws(mesh, material, pass, triangles, settings));
+        let kind = self.kind(false);
+        let draws = mesh.materials.iter().map(|material| draws(mesh, material, pass, triangles, settings, kind));
         draws.map(|draws| draws.into_iter().map(|draw| self.get(draw)).collect()).collect()
     }
 
@@ -157,7 +158,14 @@ fn layer_area(scene: &Scene, target: &Target, camera: &Camera, settings: &Settin
 }
 
 /// The draws of a material in a pass, in order.
-fn draws(mesh: &Mesh, material: &Material, pass: LayerPass, triangles: Triangles, settings: &Settings) -> Vec<Draw> {
+fn draws(
+    mesh: &Mesh,
+    material: &Material,
+    pass: LayerPass,
+    triangles: Triangles,
+    settings: &Settings,
+    kind: PictureKind,
+) -> Vec<Draw> {
     let own: &[_] = match pass {
         _ if !material.shows_behind() => &[],
         LayerPass::Begin => &[],
@@ -177,11 +185,12 @@ fn draws(mesh: &Mesh, material: &Material, pass: LayerPass, triangles: Triangles
         _ if triangles == Triangles::Source => NormalsAt::Vertices,
         _ => settings.used_normals_at(mesh),
     };
-    own.iter().map(|&draw| Draw::Layer(draw, triangles, places(draw), Needs::of(mesh, settings))).collect()
+    let needs = Needs::of(mesh, material, settings, kind);
+    own.iter().map(|&draw| Draw::Layer(draw, triangles, places(draw), needs)).collect()
 }
 
 /// All draws of a mesh's layers with these settings.
-pub(super) fn layer_draws(settings: &Settings, mesh: &Mesh) -> Vec<Draw> {
+pub(super) fn layer_draws(settings: &Settings, mesh: &Mesh, kind: PictureKind) -> Vec<Draw> {
     if !settings.shows_materials() || !has_layers(mesh) {
         return Vec::new();
     }
@@ -189,7 +198,7 @@ pub(super) fn layer_draws(settings: &Settings, mesh: &Mesh) -> Vec<Draw> {
     let triangles = std::iter::once(emitted_triangles(settings)).chain(source.then_some(Triangles::Source));
     let of = |triangles| {
         let passes = mesh.materials.iter().flat_map(|material| LayerPass::all().map(move |pass| (material, pass)));
-        passes.flat_map(move |(material, pass)| draws(mesh, material, pass, triangles, settings))
+        passes.flat_map(move |(material, pass)| draws(mesh, material, pass, triangles, settings, kind))
     };
     let clears = [LayerClear::Begin, LayerClear::Away, LayerClear::Back].map(Draw::LayerClear);
     triangles.flat_map(of).chain(clears).collect()

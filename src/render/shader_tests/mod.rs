@@ -1,5 +1,6 @@
 //! Tests what Rust and the shaders must agree on, and how shader modules are put together. No test here needs a device.
 
+mod branches;
 mod constants;
 mod structs;
 

@@ -7,6 +7,8 @@ use crate::load::uri;
 use base64::prelude::{BASE64_STANDARD, Engine};
 use tempfile::TempDir;
 
+use crate::load::webp_tables::tests::webp::of_groups;
+
 /// A folder that contains a document's folder, and files around it that the document mustn't read.
 pub(crate) struct Folder(TempDir);
 
@@ -79,7 +81,7 @@ fn compressed(name: &'static str, change: impl FnOnce(&mut Value), expected: &st
 }
 
 /// WebP and KTX2 images, and parts of the warning that each gets.
-fn images() -> [(&'static str, Vec<u8>, &'static str); 15] {
+fn images() -> [(&'static str, Vec<u8>, &'static str); 17] {
     let webp = textures::webp();
     let lossy = |width: u16, height: u16| {
         let size = [width, height].map(u16::to_le_bytes);
@@ -98,6 +100,8 @@ fn images() -> [(&'static str, Vec<u8>, &'static str); 15] {
         ("a WebP image of no px", riff(&lossy(0, 0)), "texture | \"m\" | decoded"),
         ("a WebP image of 16,383 px without data", riff(&lossy(16_383, 16_383)), "texture | \"m\" | 16383 | 256"),
         ("a WebP image within a smaller one", riff(&[canvas(0), lossy(9_999, 9_999)].concat()), "1 x 1 | 9999 x 9999"),
+        ("a WebP image with 293 MiB of prefix codes in 0.8", of_groups(14_000), "texture | \"m\" | 4 x 4 | 296 | 260"),
+        ("a WebP image of prefix codes that are cut off", of_groups(99)[..4000].to_vec(), "texture | \"m\" | decoded"),
         ("a WebP animation", riff(&canvas(2)), "texture | \"m\" | animation"),
         ("a KTX2 header that is cut off", plain(37, [1, 1], &[0; 4])[..60].to_vec(), "KTX2 header | 68 | 60"),
         ("a KTX2 image of no px", plain(37, [0, 9], &[]), "0 x 9 px"),

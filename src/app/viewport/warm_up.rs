@@ -1,0 +1,166 @@
+//! Draws a preview once, out of sight, while the window has nothing else to do. A software driver compiles a shader when it first
+//! draws with it, which takes the better part of a second: the first drag must not wait for that.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use super::picture::Wanted;
+use super::preview::{Shape, count};
+use crate::app::App;
+use crate::app::jobs::background_job::BackgroundJob;
+use crate::app::jobs::document::arena_bytes;
+use crate::engine::Engine;
+use crate::gpu::{GpuError, Recorder, Timing};
+use crate::render::{DraftPipelines, Scene, Target};
+use crate::settings::{Settings, SplitSide};
+
+/// The window must have had nothing to do for so long.
+const IDLE: Duration = Duration::from_millis(300);
+/// How often it is looked whether the driver is done.
+const LOOK: Duration = Duration::from_millis(30);
+/// Width and height of the picture, in px. What a driver compiles doesn't depend on it.
+const SIDE: u32 = 64;
+
+/// What has been drawn before the camera moved, and what is under way.
+#[derive(Default)]
+pub(crate) struct WarmUp {
+    /// The mesh, and the pipelines of its previews that were drawn with. What could not be drawn isn't tried again.
+    done: (u64, Vec<DraftPipelines>),
+    /// Since when the window has had nothing to do.
+    idle: Option<Instant>,
+    step: Option<Step>,
+    drawings: u64,
+}
+
+/// What is under way.
+enum Step {
+    /// A scene of its own is made, since that of the window keeps the triangles of its picture.
+    Making(BackgroundJob<Result<Scene, GpuError>>, Wanted),
+    Counting(Box<Scene>, Wanted),
+    /// Set once the device has finished the picture.
+    Drawing(Arc<AtomicBool>),
+}
+
+impl WarmUp {
+    /// How many pictures have been drawn.
+    pub(crate) fn drawings(&self) -> u64 {
+        self.drawings
+    }
+
+    pub(crate) fn is_busy(&self) -> bool {
+        self.step.is_some()
+    }
+
+    /// Ends, since the camera moves already.
+    pub(super) fn give_way(&mut self) {
+        (self.step, self.idle) = (None, None);
+    }
+
+    /// Whether the window has had nothing to do for long enough. If not, it is looked again when that may be so.
+    fn has_rested(&mut self, context: &egui::Context) -> bool {
+        let idle = self.idle.get_or_insert_with(Instant::now).elapsed();
+        if let Some(left) = IDLE.checked_sub(idle) {
+            context.request_repaint_after(left);
+        }
+        idle >= IDLE
+    }
+
+    /// Goes on with what is under way. Returns what is next.
+    fn go_on(&mut self, context: &egui::Context, engine: &Engine, step: Step) -> Result<Option<Step>, GpuError> {
+        match step {
+            Step::Making(job, wanted) => match job.take() {
+                None => Ok(Some(Step::Making(job, wanted))),
+                Some(Ok(scene)) => {
+                    context.request_repaint();
+                    Ok(Some(Step::Counting(Box::new(scene?), wanted)))
+                }
+                // Previews do without.
+                Some(Err(_)) => Ok(None),
+            },
+            Step::Counting(mut scene, wanted) => {
+                context.request_repaint();
+                if !count(engine, &mut scene, &wanted)? {
+                    return Ok(Some(Step::Counting(scene, wanted)));
+                }
+                self.drawings += 1;
+                draw(engine, &mut scene, &wanted).map(|done| Some(Step::Drawing(done)))
+            }
+            Step::Drawing(done) if done.load(Ordering::Acquire) => Ok(None),
+            Step::Drawing(done) => {
+                context.request_repaint_after(LOOK);
+                Ok(Some(Step::Drawing(done)))
+            }
+        }
+    }
+}
+
+/// Draws a draft of what is wanted. What is returned is set once the device has finished it.
+fn draw(engine: &Engine, scene: &mut Scene, wanted: &Wanted) -> Result<Arc<AtomicBool>, GpuError> {
+    let target = Target::draft(&engine.gpu, [SIDE; 2])?;
+    let mut timing = Timing::Off;
+    let mut recorder = Recorder::new(&engine.gpu, &mut timing);
+    engine.renderer.draw(&mut recorder, scene, &target, &wanted.camera, &wanted.settings)?;
+    recorder.submit();
+    let done = Arc::new(AtomicBool::new(false));
+    let own = done.clone();
+    engine.gpu.queue.on_submitted_work_done(move || own.store(true, Ordering::Release));
+    Ok(done)
+}
+
+/// The same for a scene without a left half. With two surfaces, both halves have the same pipelines.
+fn of_one_scene(mut settings: Settings) -> Settings {
+    if settings.half(SplitSide::Left).is_some() {
+        settings.split = None;
+    }
+    settings
+}
+
+impl App {
+    /// Draws the preview that a drag would begin with, once for each mesh and pipelines, if the window shows the full picture and has
+    /// nothing else to do. Drivers of graphics cards compile when a pipeline is made, and fast, so that nothing is done for these.
+    pub(super) fn warm_up(&mut self, context: &egui::Context, full: &Wanted) {
+        if !self.engine.gpu.is_software() {
+            return;
+        }
+        if let Some(step) = self.viewport.warm_up.step.take() {
+            let warm_up = &mut self.viewport.warm_up;
+            // What fails here fails again in a preview, which says so.
+            let next = self.engine.gpu.attempt(|| warm_up.go_on(context, &self.engine, step));
+            warm_up.step = next.and_then(|next| next).unwrap_or_default();
+            return;
+        }
+        let is_idle = !self.is_busy() && !self.is_playing() && self.viewport.picture.drawn.as_ref() == Some(full);
+        if !is_idle || !self.viewport.preview.is_due(&self.viewport.picture) {
+            self.viewport.warm_up.idle = None;
+            return;
+        }
+        if !self.viewport.warm_up.has_rested(context) {
+            return;
+        }
+        let Some((wanted, shape)) = self.cheaper_picture(context, full) else { return };
+        let Some(document) = self.document.as_mut().filter(|document| !document.stand_in.is_being_made()) else {
+            return;
+        };
+        let scene = match (shape, document.stand_in.scene()) {
+            (Shape::StandIn, Some(stand_in)) => stand_in,
+            _ => &mut document.scene,
+        };
+        let settings = of_one_scene(wanted.settings);
+        let pipelines = self.engine.renderer.draft_pipelines(scene, &settings);
+        let warm_up = &mut self.viewport.warm_up;
+        if warm_up.done.0 != document.generation {
+            warm_up.done = (document.generation, Vec::new());
+        }
+        if warm_up.done.1.contains(&pipelines) {
+            return;
+        }
+        warm_up.done.1.push(pipelines.clone());
+        let (engine, make) = (self.engine.clone(), scene.beside(arena_bytes(&self.engine)));
+        let make = move || -> Result<Scene, GpuError> {
+            engine.renderer.prepare_draft(&pipelines)?;
+            engine.gpu.attempt(make)?
+        };
+        warm_up.step = Some(Step::Making(BackgroundJob::start(context, make), Wanted { settings, ..wanted }));
+    }
+}
