@@ -57,6 +57,8 @@ mod chart;
 #[cfg(feature = "cli")]
 mod cli;
 #[cfg(feature = "cli")]
+mod compare;
+#[cfg(feature = "cli")]
 mod engine;
 #[cfg(feature = "cli")]
 mod export;

@@ -22,6 +22,7 @@ const ORDER: &[&[&str]] = &[
     &["embed"],
     &["settings"],
     &["measure"],
+    &["compare"],
     &["render"],
     &["engine"],
     &["export"],

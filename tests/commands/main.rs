@@ -5,6 +5,7 @@ mod adjacency;
 mod animation;
 mod cameras;
 mod chart;
+mod compare;
 mod deviation;
 mod domain;
 mod environment;

@@ -7,12 +7,13 @@ use crate::output;
 
 type Options = BTreeSet<String>;
 
-const COMMANDS: [&str; 11] = [
+const COMMANDS: [&str; 12] = [
     "render",
     "turntable",
     "tessellate",
     "factors",
     "adjacency",
+    "compare",
     "domain",
     "info",
     "stability",
