@@ -59,6 +59,8 @@ mod check;
 #[cfg(feature = "cli")]
 mod cli;
 #[cfg(feature = "cli")]
+mod compare;
+#[cfg(feature = "cli")]
 mod engine;
 #[cfg(feature = "cli")]
 mod export;

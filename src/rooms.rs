@@ -22,6 +22,7 @@ const ORDER: &[&[&str]] = &[
     &["embed", "lod_shader"],
     &["settings"],
     &["measure"],
+    &["compare"],
     &["render"],
     &["gates"],
     &["engine"],

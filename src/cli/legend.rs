@@ -64,8 +64,42 @@ pub(super) fn draw_legend(
     }
 }
 
-/// Draws a plate with this much room inside, in points, and what `paint` puts there.
+/// A colour and what it stands for.
+pub(super) type Named = ([u8; 3], &'static str);
+
+/// Draws colours with their names into the lower left corner, unless there are none.
+///
+/// # Errors
+/// The font can't be used.
+pub(super) fn draw_key(picture: &mut RgbaImage, title: &str, rows: &[Named]) -> Result<(), ChartError> {
+    if rows.is_empty() {
+        return Ok(());
+    }
+    draw_plate_at(picture, Side::Left, [BAR[0], 18.0 + ROW * rows.len() as f64], |pen| {
+        pen.text(title, [0.0, 0.0], LEFT_TOP)?;
+        let middles = (0..).map(|row| 18.0 + ROW * (f64::from(row) + 0.5));
+        rows.iter().zip(middles).try_for_each(|((color, text), middle)| named(pen, [0.0, middle], *color, text))
+    })
+}
+
+/// Which of the lower corners a plate is in.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Side {
+    Left,
+    Right,
+}
+
+/// Draws a plate into the lower right corner, with this much room inside, in points, and what `paint` puts there.
 fn draw_plate(picture: &mut RgbaImage, inner: [f64; 2], paint: impl FnOnce(&Pen) -> Drawn) -> Result<(), ChartError> {
+    draw_plate_at(picture, Side::Right, inner, paint)
+}
+
+fn draw_plate_at(
+    picture: &mut RgbaImage,
+    side: Side,
+    inner: [f64; 2],
+    paint: impl FnOnce(&Pen) -> Drawn,
+) -> Result<(), ChartError> {
     let (width, height) = picture.dimensions();
     let size = [inner[0] + 2.0 * MARGIN, inner[1] + 12.0];
     let room = [width, height].map(f64::from);
@@ -80,7 +114,8 @@ fn draw_plate(picture: &mut RgbaImage, inner: [f64; 2], paint: impl FnOnce(&Pen)
     let plate = image::DynamicImage::from(plate).to_rgba8();
     let margin = (MARGIN * point).round() as u32;
     let at = [width - px[0].min(width), height - px[1].min(height)].map(|side| i64::from(side.saturating_sub(margin)));
-    imageops::replace(picture, &plate, at[0], at[1]);
+    let left = if side == Side::Left { i64::from(margin) } else { at[0] };
+    imageops::replace(picture, &plate, left, at[1]);
     Ok(())
 }
 

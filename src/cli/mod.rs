@@ -6,6 +6,7 @@ mod animation;
 mod camera_report;
 mod chart;
 mod check;
+mod compare;
 mod copied_command;
 mod domain;
 mod factors;
@@ -119,6 +120,10 @@ pub(crate) enum Command {
     Adjacency(adjacency::Args),
     /// Write the shaders of a tessellation for other programs, in HLSL, GLSL or WGSL, with a page on how to run them
     Shaders(shaders::Args),
+    /// Hold a tessellated mesh that another program emitted against ours, and say what differs
+    ///
+    /// Nothing but positions and triangles is looked at, in any order. The exit code is 0 if they are the same, and 1 if not.
+    Compare(compare::Args),
     /// Run cases that break tessellators, and report which methods pass and which fail
     ///
     /// Failures of the published methods are printed, but don't make the command fail: the exit code is 1 only if something
@@ -153,6 +158,8 @@ pub(crate) enum CliError {
     Environment(#[from] EnvironmentError),
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    #[error(transparent)]
+    Csv(#[from] crate::load::csv_vertices::CsvError),
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     #[error(transparent)]
@@ -205,6 +212,16 @@ pub(crate) enum CliError {
     Indices { path: String, fault: crate::adjacency_file::IndicesFault },
     #[error("{path}: {different} of {patches} patches {differ}: {meanings}")]
     OtherIndices { path: String, different: usize, patches: usize, differ: &'static str, meanings: String },
+    #[error("{file} has no triangles to compare; choose another file")]
+    NothingToCompare { file: String },
+    #[error(
+        "{file}: our tessellation would have {triangles} triangles, more than the {most} that are compared: lower the factor"
+    )]
+    TooFine { file: String, triangles: u64, most: u64 },
+    #[error("{theirs} isn't our tessellation: {count} {} above", if *count == 1 { "difference is" } else { "differences are" })]
+    NotTheSame { theirs: String, count: usize },
+    #[error("no picture is drawn: coordinates are too large")]
+    NothingToDraw,
     #[error("{file} can't be a reference surface: it has no triangles; choose another mesh")]
     NoTruth { file: String },
     #[error("{file} has no animation \"{name}\": it has {has}")]
@@ -249,6 +266,7 @@ pub(crate) fn run(command: Command) -> ExitCode {
         Command::Factors(args) => factors::run(&args),
         Command::Adjacency(args) => adjacency::run(&args),
         Command::Shaders(args) => shaders::run(&args, &line),
+        Command::Compare(args) => compare::run(&args),
         Command::Stability(args) => stability::run(&args),
         Command::Gallery(args) => gallery::run(&args),
         Command::Chart(args) => chart::run(&args),

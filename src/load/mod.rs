@@ -6,6 +6,8 @@ mod binding_space;
 mod bits;
 mod content;
 #[cfg(feature = "cli")]
+pub(crate) mod csv_vertices;
+#[cfg(feature = "cli")]
 pub(crate) mod environment_file;
 mod face_builder;
 mod fbx;

@@ -59,25 +59,23 @@ impl<'a> LimitSurface<'a> {
         target: DVec3,
         on_screen: impl Fn(DVec3) -> DVec2,
     ) -> DVec3 {
-        const STEP: f64 = 1e-4;
-        let seen = |at: DVec2| on_screen(self.surface(net, at.x, at.y));
-        let target = on_screen(target);
-        let start = DVec2::new(u, v);
-        let (mut best, mut least, mut at) = (start, seen(start).distance(target), start);
-        for _ in 0..20 {
-            let place = seen(at);
-            let aside = target - place;
-            if aside.length() < least {
-                (best, least) = (at, aside.length());
-            }
-            let along = [DVec2::X, DVec2::Y].map(|axis| (seen(at + axis * STEP) - place) / STEP);
-            let next = next_weights(at, along, aside);
-            if !next.is_finite() {
-                break;
-            }
-            at = next;
-        }
-        self.surface(net, best.x, best.y)
+        let seen = |point: DVec3| on_screen(point).extend(0.0);
+        let found = nearest_weights(DVec2::new(u, v), seen(target), |at| seen(self.surface(net, at.x, at.y)));
+        self.surface(net, found.x, found.y)
+    }
+
+    /// Returns the weights of corners 0 and 1 of a patch's point that is nearest to `target`, and its distance in object units:
+    /// as [`Self::nearest`], but in space, and with displacement.
+    pub(crate) fn nearest_in_space(
+        &self,
+        patch: u32,
+        net: &ControlNet,
+        [u, v]: [f64; 2],
+        target: DVec3,
+    ) -> ([f64; 2], f64) {
+        let point = |at: DVec2| self.position(patch, net, at.x, at.y);
+        let found = nearest_weights(DVec2::new(u, v), target, point);
+        (found.to_array(), point(found).distance(target))
     }
 
     /// Returns the point without displacement.
@@ -97,30 +95,56 @@ impl<'a> LimitSurface<'a> {
     }
 }
 
+/// Returns the weights of corners 0 and 1 of the point that is nearest to `target`: by Newton's method, starting from `start`.
+/// `point` gives the point at some weights.
+fn nearest_weights(start: DVec2, target: DVec3, point: impl Fn(DVec2) -> DVec3) -> DVec2 {
+    const STEP: f64 = 1e-4;
+    /// A step that is shorter no longer moves the point.
+    const CONVERGED: f64 = 1e-14;
+    let (mut best, mut least, mut at) = (start, point(start).distance(target), start);
+    for _ in 0..20 {
+        let place = point(at);
+        let aside = target - place;
+        if aside.length() < least {
+            (best, least) = (at, aside.length());
+        }
+        let along = [DVec2::X, DVec2::Y].map(|axis| (point(at + axis * STEP) - place) / STEP);
+        let next = next_weights(at, along, aside);
+        if !next.is_finite() || next.distance(at) < CONVERGED {
+            break;
+        }
+        at = next;
+    }
+    best
+}
+
 /// Returns the weights of corners 0 and 1 after a step of Newton's method that doesn't leave the patch. `along` says how the
 /// point changes with each of the two weights, and `aside` what is missing. On a side that the step would lead out of, the step
 /// goes along the side.
-fn next_weights(at: DVec2, along: [DVec2; 2], aside: DVec2) -> DVec2 {
-    let jacobian = DMat2::from_cols(along[0], along[1]);
-    let metric = jacobian.transpose() * jacobian;
+fn next_weights(at: DVec2, along: [DVec3; 2], aside: DVec3) -> DVec2 {
+    let [u, v] = along;
+    let metric = DMat2::from_cols(DVec2::new(u.dot(u), u.dot(v)), DVec2::new(v.dot(u), v.dot(v)));
     // A patch that is seen from the side has no inverse without this.
     let damped = metric + DMat2::from_diagonal(DVec2::splat(1e-9 * (metric.x_axis.x + metric.y_axis.y)));
-    let step = damped.inverse() * (jacobian.transpose() * aside);
+    let step = damped.inverse() * DVec2::new(u.dot(aside), v.dot(aside));
     let (share, side) = share_within(at, step);
     if share > 1e-9 {
         return at + step * share;
     }
     let side = [DVec2::Y, DVec2::X, DVec2::new(1.0, -1.0)][side];
-    let on_screen = jacobian * side;
-    let step = side * (on_screen.dot(aside) / on_screen.length_squared());
+    let moved = u * side.x + v * side.y;
+    let step = side * (moved.dot(aside) / moved.length_squared());
     at + step * share_within(at, step).0
 }
 
 /// Returns the share of a step, 1 at most, that leads no farther than to a side of the patch, and that side: the number of the
 /// corner whose weight is 0 there.
 fn share_within(at: DVec2, step: DVec2) -> (f64, usize) {
+    /// A weight that is less is rounding: the step would shrink to nothing before a side that it is on already.
+    const ON_SIDE: f64 = 1e-12;
     let (weights, changes) = ([at.x, at.y, 1.0 - at.x - at.y], [step.x, step.y, -step.x - step.y]);
-    let share = |k: usize| if changes[k] < 0.0 { weights[k].max(0.0) / -changes[k] } else { f64::INFINITY };
+    let weight = |k: usize| if weights[k] > ON_SIDE { weights[k] } else { 0.0 };
+    let share = |k: usize| if changes[k] < 0.0 { weight(k) / -changes[k] } else { f64::INFINITY };
     let side = (0..3).min_by(|&a, &b| share(a).total_cmp(&share(b))).unwrap_or(0);
     (share(side).min(1.0), side)
 }

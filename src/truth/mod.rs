@@ -19,7 +19,7 @@ use glam::DVec3;
 pub(crate) use exact::{Exact, of_shape};
 pub(crate) use reference::Reference;
 pub(crate) use spread::radical_inverse;
-pub(crate) use triangles::{Closest, Triangles};
+pub(crate) use triangles::{Closest, Triangles, closest_on_triangle};
 
 use crate::files::Limits;
 use crate::load::selection::Selection;

@@ -159,7 +159,7 @@ impl Triangles {
 }
 
 /// Returns the point of a triangle that is nearest to p, and its weights before it. Triangles may be degenerate.
-fn closest_on_triangle([a, b, c]: [DVec3; 3], p: DVec3) -> ([f64; 3], DVec3) {
+pub(crate) fn closest_on_triangle([a, b, c]: [DVec3; 3], p: DVec3) -> ([f64; 3], DVec3) {
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let normal = ab.cross(ac);
     let squared = normal.length_squared();

@@ -6,6 +6,7 @@ mod animation;
 mod cameras;
 mod chart;
 mod check;
+mod compare;
 mod deviation;
 mod domain;
 mod environment;

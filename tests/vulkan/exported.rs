@@ -6,7 +6,7 @@ use std::sync::Arc;
 use pnaen::embed::GpuError;
 use pnaen::glam::Vec2;
 use pnaen::internals::{
-    ARENA_BYTES, Camera, Engine, HullFactors, Language, Layout, Scene, Settings, ShaderError, Timing,
+    ARENA_BYTES, Camera, Engine, Given, HullFactors, Language, Layout, Scene, Settings, ShaderError, Timing,
     indices_per_patch, shader_files,
 };
 use pnaen::mesh::{Mesh, Topology};

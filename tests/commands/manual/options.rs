@@ -7,7 +7,7 @@ use crate::output;
 
 type Options = BTreeSet<String>;
 
-const COMMANDS: [&str; 13] = [
+const COMMANDS: [&str; 14] = [
     "render",
     "turntable",
     "tessellate",
@@ -15,6 +15,7 @@ const COMMANDS: [&str; 13] = [
     "adjacency",
     "check",
     "shaders",
+    "compare",
     "domain",
     "info",
     "stability",

@@ -1,0 +1,211 @@
+//! `pnaen compare`: holds a tessellated mesh that another program emitted against ours.
+
+mod picture;
+mod report;
+
+use std::path::{Path, PathBuf};
+
+use super::{
+    AdapterOption, CliError, FactorsOption, SurfaceOptions, file_of, file_of_heights, keep_apart, load_apart, options,
+    to_json, warn, write_text,
+};
+use crate::compare::{Exactness, ForeignMesh, Ours, compare};
+use crate::engine::Loaded;
+use crate::files::Limits;
+use crate::load::Source;
+use crate::load::csv_vertices::{CsvVertices, read_vertices};
+use crate::names::shown_path;
+use crate::progress::Progress;
+use crate::settings::Settings;
+use crate::tessellate::{self, HullFactors, Inputs, Tessellated, bounds_through};
+use crate::view::ulp;
+
+use report::Report;
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// The tessellated mesh of the other program: a mesh file, or a .csv file of vertices as a frame debugger exports them, three
+    /// lines a triangle
+    #[arg(value_name = "THEIRS")]
+    pub theirs: PathBuf,
+    /// The mesh that both tessellate: a .gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf file, or a shape made in code such
+    /// as shape:cube-split, or shape:torus@2 (finer)
+    #[arg(long, value_name = "FILE", value_parser = options::source())]
+    pub mesh: Source,
+    /// Picture to write, a PNG file: their triangles in the colours of their distance from ours, and what differs as lines
+    #[arg(short, long, value_name = "OUT.png", value_parser = options::picture())]
+    pub output: Option<PathBuf>,
+    /// How far vertices may be from ours and be the same: object units, or ULP of the mesh's largest coordinate, such as 16ulp
+    #[arg(long, value_name = "DISTANCE", default_value = "16ulp", value_parser = within)]
+    pub within: Within,
+    /// The columns of a .csv file that are the position, by their name without the component: position for position.x, position.y
+    /// and position.z
+    #[arg(long, value_name = "NAME")]
+    pub position_column: Option<String>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub surface: SurfaceOptions,
+    #[command(flatten)]
+    pub given: FactorsOption,
+    #[command(flatten)]
+    pub adapter: AdapterOption,
+}
+
+/// A distance of the command line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Within {
+    /// Units in the last place of the mesh's largest coordinate.
+    Ulp(f64),
+    /// Object units.
+    Units(f64),
+}
+
+impl Within {
+    /// The distance in object units. `ulp` is one ULP in object units.
+    fn units(self, ulp: f64) -> f64 {
+        match self {
+            Self::Ulp(count) => count * ulp,
+            Self::Units(units) => units,
+        }
+    }
+}
+
+/// Parses a distance in object units, or with the unit ulp.
+fn within(text: &str) -> Result<Within, String> {
+    let lower = text.trim().to_ascii_lowercase();
+    let number = |text: &str| text.trim().parse().ok().filter(|number: &f64| number.is_finite() && *number >= 0.0);
+    let found = match lower.strip_suffix("ulp") {
+        Some(count) => number(count).map(Within::Ulp),
+        None => number(&lower).map(Within::Units),
+    };
+    found.ok_or_else(|| {
+        "expected a distance that isn't negative, in object units such as 1e-5, or in ULP such as 16ulp".into()
+    })
+}
+
+/// How many triangles of ours are held at most.
+const MOST: u64 = 100_000_000;
+
+pub(super) fn run(args: &Args) -> Result<(), CliError> {
+    args.surface.check()?;
+    if args.adapter.adapter.is_some() && args.output.is_none() {
+        return Err(CliError::Usage("--adapter draws the picture of -o: give -o as well, or leave --adapter out"));
+    }
+    let is_csv = has_csv_ending(&args.theirs);
+    if args.position_column.is_some() && !is_csv {
+        return Err(CliError::Usage("--position-column names a column of a .csv file, which THEIRS isn't"));
+    }
+    let heights = file_of_heights(args.surface.height.as_ref());
+    let read = [Some(&*args.theirs), file_of(&args.mesh), heights, args.given.given.as_deref()];
+    keep_apart(read, [args.output.as_deref()])?;
+    let loaded = load_apart(&args.mesh, &args.surface.preparation(), &[args.output.as_deref()])?;
+    let moment = args.surface.animation.moment(&loaded)?;
+    let posed = loaded.posed(moment);
+    if posed.topology.patches.is_empty() {
+        return Err(CliError::NothingToCompare { file: args.mesh.to_string() });
+    }
+    let given = args.given.read(&posed.mesh, &posed.topology, &args.surface.tessellation())?.map(|given| given.factors);
+    let bounds = bounds_through(&loaded.mesh, moment.map(|moment| moment.clip));
+    let camera = args.surface.camera(&posed.mesh, moment, &bounds)?;
+    let inputs = inputs(args, &posed, camera.lod_view(args.surface.viewport(), &bounds))?;
+    let tessellated = tessellated(args, &posed, &inputs, given.as_deref())?;
+    let (theirs, resolution) = theirs(args, is_csv)?;
+    let one_ulp = ulp(&posed.topology);
+    let within = args.within.units(one_ulp).max(2.0 * resolution);
+    let ours = Ours {
+        mesh: &posed.mesh,
+        topology: &posed.topology,
+        inputs: &inputs,
+        given: given.as_deref(),
+        tessellated: &tessellated,
+    };
+    let exactness = Exactness { within, resolution };
+    let comparison = compare(&ours, &theirs, exactness, &Progress::new())?;
+    let name = shown_path(&args.theirs);
+    let report =
+        Report { theirs: &name, mesh: &args.mesh.to_string(), ours: &ours, comparison: &comparison, exactness };
+    let text = if args.json { to_json(&report.json())? } else { report.text() };
+    write_text("-".as_ref(), &text)?;
+    if let Some(path) = &args.output {
+        picture::draw(args, path, &loaded, &camera, &ours, &theirs, &comparison)?;
+    }
+    match comparison.findings.len() {
+        0 => Ok(()),
+        count => Err(CliError::NotTheSame { theirs: name, count }),
+    }
+}
+
+/// Whether a file's name says that it is CSV.
+fn has_csv_ending(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv") || ending.eq_ignore_ascii_case("tsv"))
+}
+
+/// What our tessellation depends on, within the budget of triangles.
+fn inputs(args: &Args, posed: &Loaded, view: tessellate::LodView) -> Result<Inputs, CliError> {
+    let count = |settings: &Settings| Ok(tessellate::totals(&posed.mesh, &posed.topology, &settings.inputs(view)).1);
+    Ok(args.surface.within_budget(count)?.inputs(view))
+}
+
+/// Our tessellation.
+fn tessellated(
+    args: &Args,
+    posed: &Loaded,
+    inputs: &Inputs,
+    given: Option<&[HullFactors]>,
+) -> Result<Tessellated, CliError> {
+    let (mesh, topology) = (&posed.mesh, &posed.topology);
+    let (_, triangles) = match given {
+        Some(given) => tessellate::given_totals(given, inputs),
+        None => tessellate::totals(mesh, topology, inputs),
+    };
+    if triangles > MOST {
+        return Err(CliError::TooFine { file: args.mesh.to_string(), triangles, most: MOST });
+    }
+    Ok(match given {
+        Some(given) => tessellate::tessellate_given(mesh, topology, inputs, given),
+        None => tessellate::tessellate(mesh, topology, inputs, None),
+    })
+}
+
+/// Reads the other program's triangles, and half a unit of their last decimal. Standard error tells what was left out.
+fn theirs(args: &Args, is_csv: bool) -> Result<(ForeignMesh, f64), CliError> {
+    let limits = args.surface.weld.limit.limits();
+    let (mesh, resolution) = if is_csv { csv(args, &limits)? } else { (of_file(&args.theirs, &limits)?, 0.0) };
+    if mesh.triangles.is_empty() {
+        return Err(CliError::NothingToCompare { file: shown_path(&args.theirs) });
+    }
+    Ok((mesh, resolution))
+}
+
+fn csv(args: &Args, limits: &Limits) -> Result<(ForeignMesh, f64), CliError> {
+    let read = read_vertices(&args.theirs, args.position_column.as_deref(), limits, &Progress::new())?;
+    let CsvVertices { positions, resolution, warnings } = read;
+    warn(&warnings);
+    let count = positions.len() as u32 / 3;
+    Ok((ForeignMesh::new(&positions, (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2])), resolution))
+}
+
+fn of_file(path: &Path, limits: &Limits) -> Result<ForeignMesh, CliError> {
+    let loaded = Source::File(path.to_owned()).load(limits, &Progress::new())?;
+    // What is said about materials and normals has no part in a comparison, but what is said about triangles has.
+    warn(&loaded.warnings);
+    Ok(ForeignMesh::of_mesh(&loaded.mesh))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_are_in_object_units_or_in_ulp() {
+        assert_eq!(within("16ulp"), Ok(Within::Ulp(16.0)));
+        assert_eq!(within(" 0.5 ULP"), Ok(Within::Ulp(0.5)));
+        assert_eq!(within("1e-5"), Ok(Within::Units(1e-5)));
+        for text in ["", "ulp", "-1", "inf", "1m"] {
+            assert!(within(text).is_err(), "{text}");
+        }
+        assert_eq!(Within::Ulp(4.0).units(0.25), 1.0);
+    }
+}

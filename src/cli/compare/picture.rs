@@ -1,0 +1,177 @@
+//! The picture of a comparison: their triangles in the colours of their distance from ours, and what differs as lines.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use super::Args;
+use crate::cli::legend::{Named, draw_key};
+use crate::cli::shot::{Shot, ShotView, Subject};
+use crate::cli::{CliError, ReferenceSurface, write_picture};
+use crate::compare::{Comparison, ForeignMesh, Ours};
+use crate::engine::{Engine, Loaded};
+use crate::mesh::{Mesh, MeshSlices, Topology};
+use crate::progress::Progress;
+use crate::render::{Camera, LineSegment};
+use crate::settings::{Colors, Overlays, Settings};
+use crate::tessellate::{Surface, Tessellation, outline_place};
+use crate::truth::Truth;
+
+/// sRGB colours of what differs: sides that are cut differently, patches that differ, patches without triangles, and vertices
+/// off the surface.
+const SIDE: [u8; 3] = [255, 150, 30];
+const PATCH: [u8; 3] = [240, 228, 66];
+const MISSING: [u8; 3] = [90, 160, 255];
+const MOVED: [u8; 3] = [255, 70, 200];
+
+/// How many lines of each kind are drawn at most.
+const MOST: usize = 200_000;
+
+/// Draws the picture and writes it.
+///
+/// # Errors
+/// There is no adapter, the device was lost, or the file can't be written.
+pub(super) fn draw(
+    args: &Args,
+    path: &Path,
+    loaded: &Loaded,
+    camera: &Camera,
+    ours: &Ours,
+    theirs: &ForeignMesh,
+    comparison: &Comparison,
+) -> Result<(), CliError> {
+    let engine = Engine::chosen(&args.adapter.choice())?;
+    let Some(mesh) = their_mesh(theirs, comparison) else { return Err(CliError::NothingToDraw) };
+    let topology = Topology::of(&mesh);
+    let (mesh, topology) = (Arc::new(mesh), Arc::new(topology));
+    let shown = Loaded { read: mesh.clone(), mesh, topology, ..loaded.clone() };
+    let lines = Lines::of(ours, comparison);
+    let subject = Subject {
+        loaded: shown,
+        moment: None,
+        given: None,
+        matcap: None,
+        environment: None,
+        settings: settings(),
+        reference_surface: our_mesh(ours).map(|truth| ReferenceSurface::Truth("ours".to_owned(), Arc::new(truth))),
+        selected: None,
+        more_lines: [Vec::new(), lines.all()],
+        arena_bytes: args.surface.arena_bytes(),
+    };
+    let scene = engine.scene(&subject.loaded, subject.arena_bytes)?;
+    let view =
+        ShotView { camera: *camera, lod_camera: None, size: args.surface.size.0, transparent: false, legend: true };
+    let mut picture = Shot::new(engine, scene, subject, view)?.picture(None, &Progress::new())?;
+    draw_key(&mut picture, "What differs", &lines.names())?;
+    write_picture(path, &picture.into())
+}
+
+/// Their triangles as they are, in the colours of their distance from ours.
+fn settings() -> Settings {
+    let overlays = Overlays { colors: Colors::Deviation, wireframe: true, ..Overlays::default() };
+    let tessellation = Tessellation { surface: Surface::Flat, factor: 1.0, ..Tessellation::default() };
+    Settings { overlays, ..Settings::from(tessellation) }
+}
+
+/// Their triangles, in our coordinates.
+fn their_mesh(theirs: &ForeignMesh, comparison: &Comparison) -> Option<Mesh> {
+    let positions: Vec<[f32; 3]> = comparison.positions.iter().map(|position| position.as_vec3().to_array()).collect();
+    let slices =
+        MeshSlices { positions: &positions, indices: theirs.triangles.as_flattened(), ..MeshSlices::default() };
+    Mesh::from_slices(&slices).ok()
+}
+
+/// What we emit, as the surface that theirs is compared with.
+fn our_mesh(ours: &Ours) -> Option<Truth> {
+    let out = ours.tessellated;
+    let positions: Vec<[f32; 3]> = out.vertices.iter().map(|vertex| vertex.position).collect();
+    let slices = MeshSlices { positions: &positions, indices: out.triangles.as_flattened(), ..MeshSlices::default() };
+    Truth::of_mesh(&Mesh::from_slices(&slices).ok()?)
+}
+
+/// What differs, as lines and dots.
+#[derive(Default)]
+struct Lines {
+    sides: Vec<LineSegment>,
+    patches: Vec<LineSegment>,
+    missing: Vec<LineSegment>,
+    moved: Vec<LineSegment>,
+}
+
+impl Lines {
+    fn of(ours: &Ours, comparison: &Comparison) -> Self {
+        let outlines = Outlines::new(ours);
+        let of_patches = |patches: &[u32], color, half_width| {
+            let lines = patches.iter().flat_map(|patch| [0, 1, 2].map(|side| (*patch, side)));
+            let lines = lines.flat_map(|(patch, side)| outlines.lines(patch, side, color, half_width));
+            lines.take(MOST).collect()
+        };
+        let of_side = |side: &crate::compare::SideDifference| {
+            let patch = ours.topology.patch_of(side.triangle)?;
+            Some(outlines.lines(patch, side.side as usize, SIDE, 2.0))
+        };
+        let dot = |place: &glam::DVec3| {
+            let place = place.as_vec3();
+            LineSegment { half_width: 4.0, ..LineSegment::new(place, place, MOVED) }
+        };
+        Self {
+            sides: comparison.sides.iter().filter_map(of_side).flatten().take(MOST).collect(),
+            patches: of_patches(&comparison.different, PATCH, 1.0),
+            missing: of_patches(&comparison.missing, MISSING, 2.0),
+            moved: comparison.strays.iter().take(MOST).map(dot).collect(),
+        }
+    }
+
+    /// Those that are seen over others come last.
+    fn all(&self) -> Vec<LineSegment> {
+        [&self.patches[..], &self.sides, &self.missing, &self.moved].concat()
+    }
+
+    /// The names of those that there are.
+    fn names(&self) -> Vec<Named> {
+        let named = [
+            (&self.sides, SIDE, "side that is cut differently"),
+            (&self.patches, PATCH, "patch that differs"),
+            (&self.missing, MISSING, "patch without triangles"),
+            (&self.moved, MOVED, "vertex off the surface"),
+        ];
+        let there = named.into_iter().filter(|(lines, ..)| !lines.is_empty());
+        there.map(|(_, color, name)| (color, name)).collect()
+    }
+}
+
+/// Our vertices on the outlines of patches.
+struct Outlines<'a> {
+    ours: &'a Ours<'a>,
+    /// The first vertex of each patch, and the end.
+    starts: Vec<usize>,
+}
+
+impl<'a> Outlines<'a> {
+    fn new(ours: &'a Ours<'a>) -> Self {
+        let mut starts = vec![0; ours.topology.patches.len() + 1];
+        ours.tessellated.vertices.iter().for_each(|vertex| starts[vertex.patch() as usize + 1] += 1);
+        for patch in 1..starts.len() {
+            starts[patch] += starts[patch - 1];
+        }
+        Self { ours, starts }
+    }
+
+    /// Lines through our vertices on a side of a patch; straight if we emit none.
+    fn lines(&self, patch: u32, side: usize, color: [u8; 3], half_width: f32) -> Vec<LineSegment> {
+        let own = &self.ours.tessellated.vertices[self.starts[patch as usize]..self.starts[patch as usize + 1]];
+        let on_side = own.iter().filter_map(|vertex| {
+            let [u, v] = vertex.domain();
+            let (own, t) = outline_place(u, v)?;
+            (own == side && t > 0).then(|| (t, Vec3::from(vertex.position)))
+        });
+        let corners = self.ours.topology.patch_positions(patch);
+        let mut points: Vec<(u32, Vec3)> = on_side.collect();
+        points.push((0, corners[side]));
+        points.push((crate::tessellate::FIXED_ONE, corners[(side + 1) % 3]));
+        points.sort_by_key(|(t, _)| *t);
+        let line = |ends: &[(u32, Vec3)]| LineSegment { half_width, ..LineSegment::new(ends[0].1, ends[1].1, color) };
+        points.windows(2).map(line).collect()
+    }
+}

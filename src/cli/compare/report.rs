@@ -1,0 +1,196 @@
+//! What `compare` prints: sentences and numbers for people, or JSON.
+
+use std::fmt::Write;
+
+use serde::Serialize;
+
+use crate::compare::{Comparison, Exactness, Farthest, Finding, Ours, SideDifference};
+use crate::names::shown;
+use crate::numbers::{grouped, short};
+
+/// How many sides are printed, and how many JSON has.
+const SAID: usize = 10;
+const LISTED: usize = 10_000;
+
+/// A comparison with the names of what was compared.
+pub(super) struct Report<'a> {
+    pub theirs: &'a str,
+    pub mesh: &'a str,
+    pub ours: &'a Ours<'a>,
+    pub comparison: &'a Comparison,
+    pub exactness: Exactness,
+}
+
+impl Report<'_> {
+    /// Sentences, the most important first, and then numbers.
+    pub(super) fn text(&self) -> String {
+        let found = self.comparison;
+        let mut text = String::new();
+        // Writing into a String can't fail.
+        if found.findings.is_empty() {
+            let _ = writeln!(text, "{} is the same tessellation of {} as ours.", self.theirs, shown(self.mesh));
+        }
+        for finding in &found.findings {
+            let _ = writeln!(text, "{}", finding.text());
+        }
+        let _ = writeln!(
+            text,
+            "\n{} triangles and {} vertices on {} of {} patches; ours are {} triangles.",
+            grouped(found.triangles),
+            grouped(found.vertices),
+            grouped(found.patches),
+            grouped(self.ours.topology.patches.len() as u64),
+            grouped(self.ours.tessellated.triangles.len() as u64)
+        );
+        let _ = writeln!(text, "Largest distance of a vertex from the surface: {}.", self.distance(found.from_surface));
+        if let Some(farthest) = found.farthest {
+            let _ = writeln!(
+                text,
+                "Largest distance from our vertex at the same domain point: {}.",
+                self.distance(farthest.distance)
+            );
+        }
+        let _ = writeln!(text, "Vertices are the same within {}.", self.distance(self.exactness.within));
+        self.write_sides(&mut text);
+        text
+    }
+
+    /// A distance in object units, ULP, and as a part of the diagonal.
+    fn distance(&self, distance: f64) -> String {
+        let Comparison { ulp, diagonal, .. } = self.comparison;
+        format!(
+            "{} object units ({} ULP, {} of the diagonal)",
+            short(distance),
+            short(distance / ulp),
+            short(distance / diagonal)
+        )
+    }
+
+    /// Lists the sides that are cut differently.
+    fn write_sides(&self, text: &mut String) {
+        let sides = &self.comparison.sides;
+        if sides.is_empty() {
+            return;
+        }
+        let count = sides.len();
+        let _ = match count > SAID {
+            true => writeln!(text, "\nThe {SAID} sides that differ the most, of {}:", grouped(count as u64)),
+            false => writeln!(text, "\nSides that are cut differently:"),
+        };
+        for side in sides.iter().take(SAID) {
+            let SideDifference { triangle, side: k, ends, theirs, ours } = side;
+            let [from, to] = ends.map(|[x, y, z]| format!("({x} {y} {z})"));
+            let _ = writeln!(
+                text,
+                "triangle {triangle}, corners {k} to {}, {from} to {to}: {} segments (factor {}), ours {} (factor {})",
+                (k + 1) % 3,
+                theirs.segments,
+                short(theirs.factor),
+                ours.segments,
+                short(ours.factor)
+            );
+        }
+    }
+
+    pub(super) fn json(&self) -> Json<'_> {
+        let found = self.comparison;
+        let distance = |units: f64| Distance { units, ulp: units / found.ulp, of_diagonal: units / found.diagonal };
+        let place = |farthest: Farthest| Place {
+            triangle: self.ours.topology.patches[farthest.patch as usize].triangle,
+            theirs: farthest.theirs.to_array(),
+            ours: farthest.ours.to_array(),
+            distance: distance(farthest.distance),
+        };
+        let triangle = |patch: &u32| self.ours.topology.patches[*patch as usize].triangle;
+        Json {
+            theirs: self.theirs,
+            mesh: self.mesh,
+            same: found.findings.is_empty(),
+            findings: found.findings.iter().map(JsonFinding::of).collect(),
+            vertices: found.vertices,
+            triangles: found.triangles,
+            our_triangles: self.ours.tessellated.triangles.len() as u64,
+            patches: self.ours.topology.patches.len() as u64,
+            patches_with_triangles: found.patches,
+            within: distance(self.exactness.within),
+            from_surface: distance(found.from_surface),
+            farthest: found.farthest.map(place),
+            sides_different: found.sides.len() as u64,
+            sides: found.sides.iter().take(LISTED).map(JsonSide::of).collect(),
+            triangles_different: found.different.iter().take(LISTED).map(triangle).collect(),
+            triangles_missing: found.missing.iter().take(LISTED).map(triangle).collect(),
+        }
+    }
+}
+
+/// The comparison for programs.
+#[derive(Debug, Serialize)]
+pub(super) struct Json<'a> {
+    theirs: &'a str,
+    mesh: &'a str,
+    same: bool,
+    findings: Vec<JsonFinding>,
+    vertices: u64,
+    triangles: u64,
+    our_triangles: u64,
+    patches: u64,
+    patches_with_triangles: u64,
+    within: Distance,
+    from_surface: Distance,
+    farthest: Option<Place>,
+    sides_different: u64,
+    sides: Vec<JsonSide>,
+    /// Triangles of the mesh whose patches differ, and those whose patches have no triangles.
+    triangles_different: Vec<u32>,
+    triangles_missing: Vec<u32>,
+}
+
+#[derive(Debug, Serialize)]
+struct JsonFinding {
+    kind: &'static str,
+    text: String,
+}
+
+impl JsonFinding {
+    fn of(finding: &Finding) -> Self {
+        Self { kind: finding.kind(), text: finding.text() }
+    }
+}
+
+#[derive(Debug, Serialize)]
+struct Distance {
+    units: f64,
+    ulp: f64,
+    of_diagonal: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct Place {
+    triangle: u32,
+    theirs: [f64; 3],
+    ours: [f64; 3],
+    distance: Distance,
+}
+
+#[derive(Debug, Serialize)]
+struct JsonSide {
+    triangle: u32,
+    side: u32,
+    points: [[f32; 3]; 2],
+    theirs: JsonCut,
+    ours: JsonCut,
+}
+
+#[derive(Debug, Serialize)]
+struct JsonCut {
+    segments: u64,
+    factor: f64,
+}
+
+impl JsonSide {
+    fn of(side: &SideDifference) -> Self {
+        let cut = |cut: crate::compare::SideCut| JsonCut { segments: cut.segments, factor: cut.factor };
+        let SideDifference { triangle, side, ends, theirs, ours } = *side;
+        Self { triangle, side, points: ends, theirs: cut(theirs), ours: cut(ours) }
+    }
+}

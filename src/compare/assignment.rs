@@ -1,0 +1,283 @@
+//! Gives every triangle of another program to the patch that it lies on.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+
+use super::foreign::ForeignMesh;
+use super::locator::{Locator, Place};
+use crate::cores::in_ranges;
+use crate::mesh::Topology;
+use crate::progress::{Cancelled, Progress};
+
+/// Another program's mesh over our surface.
+pub(super) struct Overlaid<'a> {
+    pub theirs: &'a ForeignMesh,
+    pub topology: &'a Topology,
+    pub locator: &'a Locator<'a>,
+    /// Their positions in our coordinates.
+    pub positions: &'a [DVec3],
+    /// The nearest place of each of their vertices.
+    pub places: Vec<Place>,
+    /// Vertices that are farther from the surface don't lie on it, in object units.
+    pub fit: f64,
+}
+
+/// Their triangles, patch by patch.
+pub(super) struct Assignment<'a> {
+    pub overlaid: &'a Overlaid<'a>,
+    /// Their triangles in the order of the patches.
+    order: Vec<u32>,
+    /// Where each patch's begin in `order`, and the end.
+    starts: Vec<u32>,
+}
+
+/// Their triangles on one patch.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Part {
+    /// Their vertices, each once: indices into [`ForeignMesh::positions`].
+    pub vertices: Vec<u32>,
+    /// Where each lies on this patch.
+    pub places: Vec<Place>,
+    /// Indices into `vertices`.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// The place of a vertex that is on no patch.
+const NOWHERE: Place = Place { patch: 0, weights: [0.0; 2], distance: f64::INFINITY };
+
+/// How many vertices or triangles are worth a thread.
+const LEAST: usize = 1 << 10;
+/// How many are done between two checks for cancellation.
+const STEP: usize = 1 << 12;
+
+/// Returns what `make` makes of the numbers below `count`, on all cores.
+///
+/// # Errors
+/// [`Cancelled`].
+pub(super) fn made_of_all<R: Send>(
+    count: usize,
+    progress: &Progress,
+    make: impl Fn(usize) -> R + Sync,
+) -> Result<Vec<R>, Cancelled> {
+    let parts = in_ranges(count, LEAST, |range| {
+        let mut made = Vec::with_capacity(range.len());
+        for index in range {
+            if made.len().is_multiple_of(STEP) {
+                progress.check()?;
+            }
+            made.push(make(index));
+        }
+        Ok(made)
+    });
+    Ok(parts.into_iter().collect::<Result<Vec<_>, Cancelled>>()?.into_iter().flatten().collect())
+}
+
+impl<'a> Overlaid<'a> {
+    /// Finds the nearest place of each of their vertices.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(super) fn new(
+        theirs: &'a ForeignMesh,
+        topology: &'a Topology,
+        locator: &'a Locator<'a>,
+        positions: &'a [DVec3],
+        fit: f64,
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
+        let place = |index: usize| locator.place(positions[index]).unwrap_or(NOWHERE);
+        let places = made_of_all(positions.len(), progress, place)?;
+        Ok(Self { theirs, topology, locator, positions, places, fit })
+    }
+
+    /// Their vertices that don't lie on the surface.
+    pub(super) fn strays(&self) -> Vec<u32> {
+        let is_stray = |index: &u32| self.places[*index as usize].distance > self.fit;
+        (0..self.places.len() as u32).filter(is_stray).collect()
+    }
+
+    /// The place of a vertex on one patch.
+    fn place_on(&self, vertex: u32, patch: u32) -> Place {
+        let own = self.places[vertex as usize];
+        if own.patch == patch {
+            return own;
+        }
+        self.locator.place_on(patch, self.positions[vertex as usize]).unwrap_or(NOWHERE)
+    }
+
+    /// Returns the patch that a triangle lies on: the one on whose surface most of its corners are, and which it doesn't show
+    /// its back to.
+    fn patch_of(&self, triangle: [u32; 3]) -> u32 {
+        let middle = triangle.map(|corner| self.positions[corner as usize]).into_iter().sum::<DVec3>() / 3.0;
+        let nearest = self.locator.patch(middle).unwrap_or_default();
+        let fits = |patch: u32| Fit::of(triangle.map(|corner| self.place_on(corner, patch)), self.fit);
+        let first = fits(nearest);
+        if first.is_good() {
+            return nearest;
+        }
+        let own = triangle.map(|corner| self.places[corner as usize].patch);
+        let mut tried = vec![nearest];
+        let mut best = (first, nearest);
+        let mut tries = |patches: &[u32], best: &mut (Fit, u32)| {
+            for &patch in patches {
+                if !tried.contains(&patch) {
+                    tried.push(patch);
+                    let fit = fits(patch);
+                    if fit.beats(&best.0) {
+                        *best = (fit, patch);
+                    }
+                }
+            }
+        };
+        tries(&own, &mut best);
+        for patch in [nearest, own[0], own[1], own[2]] {
+            if best.0.is_good() {
+                break;
+            }
+            tries(&self.neighbours(patch), &mut best);
+        }
+        best.1
+    }
+
+    /// The patches that share an edge with a patch.
+    fn neighbours(&self, patch: u32) -> Vec<u32> {
+        let sides = self.topology.patches[patch as usize].sides;
+        let edges = sides.map(|side| &self.topology.edges[self.topology.sides[side as usize].edge as usize]);
+        edges.into_iter().flat_map(|edge| self.topology.edge_sides(edge)).map(|side| side.patch()).collect()
+    }
+}
+
+/// How well a triangle fits a patch.
+#[derive(Clone, Copy, Debug)]
+struct Fit {
+    /// How many of its corners lie on the patch's surface.
+    corners: usize,
+    /// Whether it is wound as the patch.
+    is_wound_alike: bool,
+    /// The sum of its corners' distances from the patch, in object units.
+    distance: f64,
+}
+
+impl Fit {
+    fn of(places: [Place; 3], fit: f64) -> Self {
+        Self {
+            corners: places.iter().filter(|place| place.distance <= fit).count(),
+            is_wound_alike: domain_area(places.map(|place| place.weights)) > 0.0,
+            distance: places.iter().map(|place| place.distance).sum(),
+        }
+    }
+
+    fn is_good(&self) -> bool {
+        self.corners == 3 && self.is_wound_alike
+    }
+
+    fn beats(&self, other: &Self) -> bool {
+        let rank = |fit: &Self| (fit.corners, fit.corners == 3 && fit.is_wound_alike);
+        match rank(self).cmp(&rank(other)) {
+            std::cmp::Ordering::Equal => self.corners < 3 && self.distance < other.distance,
+            order => order.is_gt(),
+        }
+    }
+}
+
+/// The area of a triangle in the domain, whose own area is 1: negative if it is wound the other way than the patch. Its corners
+/// are weights of the patch's corners 0 and 1.
+pub(super) fn domain_area([a, b, c]: [[f64; 2]; 3]) -> f64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+impl<'a> Assignment<'a> {
+    /// Assigns all triangles.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(super) fn new(overlaid: &'a Overlaid<'a>, progress: &Progress) -> Result<Self, Cancelled> {
+        let triangles = &overlaid.theirs.triangles;
+        let patches = made_of_all(triangles.len(), progress, |index| overlaid.patch_of(triangles[index]))?;
+        let mut starts = vec![0_u32; overlaid.topology.patches.len() + 1];
+        for &patch in &patches {
+            starts[patch as usize + 1] += 1;
+        }
+        for patch in 1..starts.len() {
+            starts[patch] += starts[patch - 1];
+        }
+        let mut order = vec![0; triangles.len()];
+        let mut next = starts.clone();
+        for (triangle, &patch) in (0..).zip(&patches) {
+            order[next[patch as usize] as usize] = triangle;
+            next[patch as usize] += 1;
+        }
+        Ok(Self { overlaid, order, starts })
+    }
+
+    /// The number of their triangles on a patch.
+    pub(super) fn count(&self, patch: u32) -> u32 {
+        self.starts[patch as usize + 1] - self.starts[patch as usize]
+    }
+
+    /// Their triangles on a patch.
+    pub(super) fn part(&self, patch: u32) -> Part {
+        let own = &self.order[self.starts[patch as usize] as usize..self.starts[patch as usize + 1] as usize];
+        let mut part = Part::default();
+        let mut numbers = HashMap::new();
+        for &triangle in own {
+            let corners = self.overlaid.theirs.triangles[triangle as usize].map(|vertex| {
+                *numbers.entry(vertex).or_insert_with(|| {
+                    part.vertices.push(vertex);
+                    part.places.push(self.overlaid.place_on(vertex, patch));
+                    part.vertices.len() as u32 - 1
+                })
+            });
+            part.triangles.push(corners);
+        }
+        part
+    }
+}
+
+impl Part {
+    /// The weights of corners 0 and 1 at a triangle's corners.
+    pub(super) fn weights(&self, triangle: [u32; 3]) -> [[f64; 2]; 3] {
+        triangle.map(|corner| self.places[corner as usize].weights)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compare::locator::FINE;
+    use crate::mesh::Shape;
+    use crate::tessellate::{Inputs, LodView, Surface, Tessellation, tessellate};
+    use glam::Vec3;
+
+    #[test]
+    fn triangles_are_given_to_the_patches_that_emitted_them() {
+        for surface in [Surface::Pn, Surface::PnAen, Surface::Flat] {
+            for shape in [Shape::CubeSplit, Shape::Moebius, Shape::Torus, Shape::Cone] {
+                let mesh = shape.build();
+                let topology = Topology::of(&mesh);
+                let tessellation = Tessellation { surface, ..Tessellation::default() };
+                let inputs = Inputs::new(&tessellation, LodView::default());
+                let out = tessellate(&mesh, &topology, &inputs, None);
+                let positions: Vec<Vec3> = out.vertices.iter().map(|vertex| Vec3::from(vertex.position)).collect();
+                let theirs = ForeignMesh::new(&positions, out.triangles.iter().rev().copied());
+                let locator = Locator::of_surface(&mesh, &topology, &inputs, FINE).expect("it has patches");
+                let own: Vec<DVec3> = theirs.positions.iter().map(|position| position.as_dvec3()).collect();
+                let progress = Progress::new();
+                let overlaid =
+                    Overlaid::new(&theirs, &topology, &locator, &own, 1e-5, &progress).expect("nobody cancels");
+                assert!(overlaid.strays().is_empty(), "{shape} {surface:?}");
+                let assignment = Assignment::new(&overlaid, &progress).expect("nobody cancels");
+                let mut emitted = vec![0; topology.patches.len()];
+                for triangle in &out.triangles {
+                    emitted[out.vertices[triangle[0] as usize].patch() as usize] += 1;
+                }
+                // Slivers between vertices that round to one position are left out.
+                assert_eq!(theirs.degenerate, 0);
+                for patch in 0..topology.patches.len() as u32 {
+                    assert_eq!(assignment.count(patch), emitted[patch as usize], "{shape} {surface:?}, patch {patch}");
+                }
+            }
+        }
+    }
+}

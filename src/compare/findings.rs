@@ -1,0 +1,423 @@
+//! What was found, as sentences: the most important first.
+
+use glam::DVec3;
+
+use super::alignment::Alignment;
+use super::corner_orders::CornerOrder;
+use super::explanations::{Explanation, InsideRule, Rule};
+use super::matching::Farthest;
+use crate::numbers::{grouped, short};
+use crate::settings::Choice;
+use crate::tessellate::{Convention, Displacement, Partitioning, Tessellation};
+
+/// Something about another program's tessellation that isn't as ours.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Finding {
+    /// Most of it isn't near the surface.
+    NotATessellation {
+        far: u64,
+        vertices: u64,
+        distance: f64,
+    },
+    /// All coordinates are turned, mirrored, scaled or moved.
+    Aligned(Alignment),
+    /// Vertices lie on another of our surfaces.
+    OtherSurface {
+        ours: Tessellation,
+        theirs: Tessellation,
+        vertices: u64,
+        of: u64,
+    },
+    /// All vertices are off the surface.
+    Displaced(Displaced),
+    /// A few vertices aren't where ours are.
+    Moved {
+        vertices: u64,
+        farthest: DVec3,
+        distance: f64,
+        triangle: u32,
+    },
+    /// One change of the factors gives their points: the first of these, or any of the others.
+    Factors {
+        ours: Partitioning,
+        convention: Convention,
+        explanations: Vec<Explanation>,
+        patches: u64,
+        of: u64,
+    },
+    /// No change that is known gives their points.
+    UnknownFactors {
+        patches: u64,
+        of: u64,
+        sides: u64,
+        inside: u64,
+        suits: Vec<Partitioning>,
+        ours: Partitioning,
+    },
+    /// Edges whose sides they cut differently.
+    Cracked {
+        edges: u64,
+        of: u64,
+    },
+    /// Patches without triangles of theirs, though we emit some.
+    MissingPatches {
+        patches: u64,
+        of: u64,
+        triangles: Vec<u32>,
+    },
+    /// Patches with triangles of theirs, though we emit none.
+    AdditionalPatches {
+        patches: u64,
+        triangles: Vec<u32>,
+    },
+    MissingTriangles {
+        count: u64,
+        patches: u64,
+    },
+    Doubled {
+        count: u64,
+        patches: u64,
+    },
+    Flipped {
+        count: u64,
+        of: u64,
+    },
+    /// The same points, but other triangles between them.
+    OtherTriangles {
+        count: u64,
+        patches: u64,
+        order: Option<CornerOrder>,
+    },
+    NotFinite {
+        count: u64,
+    },
+    /// Our pattern starts at another corner, which changes nothing but the last bits of points inside.
+    Convention {
+        ours: Convention,
+        theirs: Convention,
+    },
+    /// Nothing but distances that are larger than those allowed.
+    Rounding {
+        farthest: Farthest,
+        ulps: f64,
+        triangle: u32,
+    },
+}
+
+/// How vertices lie off the surface.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Displaced {
+    pub vertices: u64,
+    pub of: u64,
+    /// The largest distance, in object units.
+    pub largest: f64,
+    /// How far outward and inward they are along our normals, in object units.
+    pub outward: f64,
+    pub inward: f64,
+    /// Whether they are moved along our normals.
+    pub is_along_normals: bool,
+    /// Our own displacement.
+    pub ours: Displacement,
+}
+
+impl Finding {
+    /// What it is, as one word for programs.
+    pub(crate) fn kind(&self) -> &'static str {
+        match self {
+            Self::NotATessellation { .. } => "not_a_tessellation",
+            Self::Aligned(_) => "coordinates",
+            Self::OtherSurface { .. } => "surface",
+            Self::Displaced(_) => "displaced",
+            Self::Moved { .. } => "moved_vertices",
+            Self::Factors { ours, explanations, .. } => match explanations.first() {
+                Some(Explanation { rule: Rule::Sides(_), .. }) => "order_of_factors",
+                Some(first) if first.partitioning != *ours => "partitioning",
+                _ => "factors",
+            },
+            Self::UnknownFactors { .. } => "factors",
+            Self::Cracked { .. } => "cracks",
+            Self::MissingPatches { .. } => "missing_patches",
+            Self::AdditionalPatches { .. } => "additional_patches",
+            Self::MissingTriangles { .. } => "missing_triangles",
+            Self::Doubled { .. } => "doubled_triangles",
+            Self::Flipped { .. } => "winding",
+            Self::OtherTriangles { .. } => "diagonals",
+            Self::NotFinite { .. } => "not_finite",
+            Self::Convention { .. } => "convention",
+            Self::Rounding { .. } => "rounding",
+        }
+    }
+
+    /// Whether it only says how coordinates are meant.
+    pub(super) fn is_about_coordinates(&self) -> bool {
+        matches!(self, Self::Aligned(_))
+    }
+
+    /// What it is, in a sentence or two.
+    pub(crate) fn text(&self) -> String {
+        match self {
+            Self::NotATessellation { far, vertices, distance } => format!(
+                "It isn't a tessellation of this mesh: {} of {} vertices are farther than {} object units from the surface.",
+                grouped(*far),
+                grouped(*vertices),
+                short(*distance)
+            ),
+            Self::Aligned(alignment) => alignment_text(alignment),
+            Self::OtherSurface { ours, theirs, vertices, of } => surface_text(ours, theirs, *vertices, *of),
+            Self::Displaced(displaced) => displaced_text(displaced),
+            Self::Moved { vertices, farthest, distance, triangle } => format!(
+                "{} moved, by up to {} object units: the farthest at {}, in triangle {triangle}.",
+                plural(*vertices, "vertex is", "vertices are"),
+                short(*distance),
+                point(*farthest)
+            ),
+            Self::Factors { ours, convention, explanations, patches, of } => {
+                factors_text(*ours, *convention, explanations, *patches, *of)
+            }
+            Self::UnknownFactors { patches, of, sides, inside, suits, ours } => {
+                unknown_text([*patches, *of, *sides, *inside], suits, *ours)
+            }
+            Self::Cracked { edges, of } => format!(
+                "{} of {} edges between patches are cut differently by their sides, so the mesh cracks there.",
+                grouped(*edges),
+                grouped(*of)
+            ),
+            Self::MissingPatches { patches, of, triangles } => format!(
+                "{} of {} patches {} no triangles: {}.",
+                grouped(*patches),
+                grouped(*of),
+                if *patches == 1 { "has" } else { "have" },
+                listed(triangles, *patches)
+            ),
+            Self::AdditionalPatches { patches, triangles } => format!(
+                "{} triangles, though our tessellation leaves {} out: {}.",
+                plural(*patches, "patch has", "patches have"),
+                if *patches == 1 { "it" } else { "them" },
+                listed(triangles, *patches)
+            ),
+            Self::MissingTriangles { count, patches } => {
+                format!("{} missing, in {}.", plural(*count, "triangle is", "triangles are"), patches_text(*patches))
+            }
+            Self::Doubled { count, patches } => {
+                format!("{} more than once, in {}.", plural(*count, "triangle is there", "triangles are there"), patches_text(*patches))
+            }
+            Self::Flipped { count, of } if count == of => {
+                "All triangles are wound the other way: exchange two corners of each, or turn the tessellator's output winding."
+                    .to_owned()
+            }
+            Self::Flipped { count, of } => {
+                format!("{} of {} triangles are wound the other way.", grouped(*count), grouped(*of))
+            }
+            Self::OtherTriangles { count, patches, order } => triangles_text(*count, *patches, *order),
+            Self::NotFinite { count } => format!(
+                "{} a coordinate that is NaN or infinite, and {} compared.",
+                plural(*count, "triangle has", "triangles have"),
+                if *count == 1 { "isn't" } else { "aren't" }
+            ),
+            Self::Convention { ours, theirs } => format!(
+                "Everything agrees but the last bits of points inside of patches, which are those of --convention {}, and not of {}.",
+                theirs.name(),
+                ours.name()
+            ),
+            Self::Rounding { farthest, ulps, triangle } => format!(
+                "Everything agrees but the last digits: vertices differ by up to {} object units ({} ULP), at {} in triangle \
+                 {triangle}. If that is as it should be, allow it with --within {}.",
+                short(farthest.distance),
+                short(*ulps),
+                point(farthest.ours),
+                rounded_up(farthest.distance)
+            ),
+        }
+    }
+}
+
+/// A number and its noun.
+fn plural(count: u64, one: &str, more: &str) -> String {
+    format!("{} {}", grouped(count), if count == 1 { one } else { more })
+}
+
+fn patches_text(patches: u64) -> String {
+    plural(patches, "patch", "patches")
+}
+
+fn point(place: DVec3) -> String {
+    let [x, y, z] = (place + DVec3::ZERO).to_array().map(|coordinate| coordinate as f32);
+    format!("({x} {y} {z})")
+}
+
+/// The least number of two digits that isn't smaller, so that it can be typed.
+fn rounded_up(number: f64) -> String {
+    let unit = 10.0_f64.powf(number.log10().floor() - 1.0);
+    format!("{:.1e}", (number / unit - 1e-6).ceil() * unit)
+}
+
+/// Names triangles of the mesh, of which there are `count`.
+fn listed(triangles: &[u32], count: u64) -> String {
+    let names: Vec<String> = triangles.iter().map(u32::to_string).collect();
+    let more = count - triangles.len() as u64;
+    let noun = if count == 1 { "triangle" } else { "triangles" };
+    if more == 0 {
+        format!("{noun} {}", names.join(", "))
+    } else {
+        format!("{noun} {} and {more} more", names.join(", "))
+    }
+}
+
+fn alignment_text(alignment: &Alignment) -> String {
+    let Alignment { axes, scale, offset } = alignment;
+    let mut parts = Vec::new();
+    if alignment.turns() {
+        let axis = |(axis, is_turned): &(usize, bool)| {
+            format!("{}{}", if *is_turned { "-" } else { "" }, ["x", "y", "z"][*axis])
+        };
+        let doing = if alignment.mirrors() { "mirrored" } else { "turned" };
+        parts.push(format!("{doing} (its x, y, z are our {})", axes.iter().map(axis).collect::<Vec<_>>().join(", ")));
+    }
+    if *scale != 1.0 {
+        parts.push(format!("scaled ({} times ours)", *scale as f32));
+    }
+    if *offset != DVec3::ZERO {
+        parts.push(format!("moved (by {})", point(*offset)));
+    }
+    format!("Its coordinates are {}. What follows is said of them in our coordinates.", parts.join(" and "))
+}
+
+/// The option that gives a surface.
+fn surface_option(tessellation: &Tessellation) -> String {
+    let name = tessellation.surface.name();
+    match tessellation.surface.is_phong() {
+        true => format!("--surface {name} --alpha {}", tessellation.alpha),
+        false => format!("--surface {name}"),
+    }
+}
+
+fn surface_text(ours: &Tessellation, theirs: &Tessellation, vertices: u64, of: u64) -> String {
+    let (vertices, of) = (grouped(vertices), grouped(of));
+    if ours.displacement != Displacement::Off && surface_option(ours) == surface_option(theirs) {
+        return format!(
+            "It isn't displaced: {vertices} of {of} vertices are off our displaced surface, and lie on the surface without \
+             --displacement and --height."
+        );
+    }
+    let also = if ours.displacement == Displacement::Off { "" } else { ", without displacement" };
+    format!(
+        "Its control points are others: {vertices} of {of} vertices are off our surface ({}), and lie on that of {}{also}.",
+        surface_option(ours),
+        surface_option(theirs)
+    )
+}
+
+fn displaced_text(displaced: &Displaced) -> String {
+    let Displaced { vertices, of, largest, outward, inward, is_along_normals, ours } = displaced;
+    let other = if *ours == Displacement::Off { "" } else { " otherwise than ours" };
+    let start =
+        format!("It is displaced{other}: {} of {} vertices are off the surface", grouped(*vertices), grouped(*of));
+    if *is_along_normals {
+        return format!(
+            "{start}, along the normals, by up to {} object units outward and {} inward.",
+            short(*outward),
+            short(*inward)
+        );
+    }
+    format!(
+        "{start}, by up to {} object units, but not along the normals, and on none of our surfaces.",
+        short(*largest)
+    )
+}
+
+fn factors_text(
+    ours: Partitioning,
+    convention: Convention,
+    explanations: &[Explanation],
+    patches: u64,
+    of: u64,
+) -> String {
+    let Some((first, others)) = explanations.split_first() else { return String::new() };
+    let count = format!("({} of {} patches have other points than ours.)", grouped(patches), grouped(of));
+    let mut text = format!("{} {count}", explanation_text(*first, ours, convention));
+    // More than two only happen where hardly anything tells them apart.
+    for other in others.iter().take(2) {
+        text +=
+            &format!(" The same points would come from this: {}", lowered(&explanation_text(*other, ours, convention)));
+    }
+    text
+}
+
+fn lowered(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_lowercase().chain(letters).collect())
+}
+
+fn explanation_text(explanation: Explanation, ours: Partitioning, convention: Convention) -> String {
+    let Explanation { partitioning, rule } = explanation;
+    let cut = (partitioning != ours)
+        .then(|| format!("Its partitioning is {}, and ours is {}", partitioning.name(), ours.name()));
+    let rule = match rule {
+        Rule::Same => None,
+        Rule::Sides(sides) => Some(order_text(rule, sides, convention)),
+        Rule::Down => Some("Its factors are rounded down to whole numbers".to_owned()),
+        Rule::Nearest => Some("Its factors are rounded to the nearest whole numbers".to_owned()),
+        Rule::Inside(InsideRule::Least) => Some("Its inside factors are the least of the edges' factors".to_owned()),
+        Rule::Inside(InsideRule::Mean) => Some("Its inside factors are the mean of the edges' factors".to_owned()),
+        Rule::Inside(InsideRule::Largest) => {
+            Some("Its inside factors are the largest of the edges' factors".to_owned())
+        }
+        Rule::Inside(InsideRule::One) => Some("Its inside factors are 1".to_owned()),
+        Rule::Times(times) => Some(format!("Its factors are {times} times ours")),
+        Rule::AtMost(most) => Some(format!("Its factors are limited to {most}")),
+        Rule::All(all) => Some(format!("All its factors are {all}")),
+    };
+    match (cut, rule) {
+        (Some(cut), Some(rule)) => format!("{cut}; and {}.", lowered(&rule)),
+        (Some(text), None) | (None, Some(text)) => format!("{text}."),
+        (None, None) => "Its factors are ours.".to_owned(),
+    }
+}
+
+fn order_text(rule: Rule, sides: [usize; 3], ours: Convention) -> String {
+    let side = |k: usize| format!("({k}, {})", (k + 1) % 3);
+    let order = sides.map(side).join(", ");
+    let named = rule.convention().filter(|_| ours.is_consistent());
+    let like = named.map_or(String::new(), |convention| format!(", as under --convention {}", convention.name()));
+    format!("Edges have each other's factors: edges (0, 1), (1, 2), (2, 0) are cut with those of {order}{like}")
+}
+
+fn unknown_text([patches, of, sides, inside]: [u64; 4], suits: &[Partitioning], ours: Partitioning) -> String {
+    let start =
+        format!("Its factors are others: {} of {} patches have other points than ours", grouped(patches), grouped(of));
+    let where_ = match (sides, inside) {
+        (0, _) => format!(", inside {} and never on an edge", patches_text(inside)),
+        (_, 0) => format!(", with other cuts on {}", plural(sides, "side", "sides")),
+        _ => format!(
+            ", with other cuts on {}; {} inside alone",
+            plural(sides, "side", "sides"),
+            plural(inside, "patch differs", "patches differ")
+        ),
+    };
+    let names: Vec<&str> = suits.iter().map(|own| own.name()).collect();
+    let suited = match names[..] {
+        [] => "Its sides are cut as under none of our partitionings".to_owned(),
+        _ if suits.contains(&ours) => format!("The cuts of its sides suit our partitioning, {}", ours.name()),
+        _ => format!("The cuts of its sides suit {}, but not our partitioning, {}", names.join(" and "), ours.name()),
+    };
+    format!("{start}{where_}. {suited}.")
+}
+
+fn triangles_text(count: u64, patches: u64, order: Option<CornerOrder>) -> String {
+    let start = format!(
+        "The points are the same, but {} other points than ours, in {}",
+        plural(count, "triangle joins", "triangles join"),
+        patches_text(patches)
+    );
+    match order {
+        Some(order) => match order.convention() {
+            Some(convention) => {
+                format!("{start}: the tessellator's pattern is turned, as under --convention {}.", convention.name())
+            }
+            None => format!(
+                "{start}: the tessellator's pattern is mirrored, as if two corners of each patch were exchanged."
+            ),
+        },
+        None => format!("{start}: diagonals are turned."),
+    }
+}

@@ -1,0 +1,423 @@
+//! What came out for every patch, and what follows from all of them together.
+
+use super::alignment::Alignment;
+use super::assignment::{Assignment, made_of_all};
+use super::corner_orders::CornerOrder;
+use super::cuts::{Cut, cuts_of};
+use super::explanations::{Explainer, Explanation, Rule};
+use super::findings::{Displaced, Finding};
+use super::matching::{Farthest, Match, Reach};
+use super::own_mesh::{OwnMesh, OwnPatch};
+use super::{Exactness, Ours};
+use crate::mesh::EdgeKind;
+use crate::progress::{Cancelled, Progress};
+use crate::tessellate::{FACTOR_VALUE, Inputs, Partitioning, hull_factors, segments};
+use crate::view::ulp;
+
+/// How every patch came out.
+pub(super) struct Outcomes<'a> {
+    own_mesh: &'a OwnMesh<'a>,
+    assignment: &'a Assignment<'a>,
+    reaches: Vec<Reach>,
+    all: Vec<Outcome>,
+    /// Patches that we emit and they don't.
+    pub missing: Vec<u32>,
+    /// Patches that they emit and we don't.
+    additional: Vec<u32>,
+}
+
+/// How one patch came out.
+#[derive(Clone, Debug, Default)]
+struct Outcome {
+    /// Whether both emit triangles for it.
+    is_compared: bool,
+    /// Without the list of vertices.
+    found: Match,
+    farthest: Option<Farthest>,
+    offsets: Offsets,
+}
+
+/// How vertices lie beside ours at the same domain points.
+#[derive(Clone, Copy, Debug, Default)]
+struct Offsets {
+    /// How many there are, and how many of them lie in the direction of our normals or against it.
+    vertices: u64,
+    along_normals: u64,
+    /// The largest distances in both directions, in object units.
+    outward: f64,
+    inward: f64,
+}
+
+/// A side of a patch that is cut differently.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct SideDifference {
+    /// The patch's triangle of the mesh, and which of its sides it is (from corner k to corner k + 1).
+    pub triangle: u32,
+    pub side: u32,
+    /// Both ends, in object units.
+    pub ends: [[f32; 3]; 2],
+    pub theirs: SideCut,
+    pub ours: SideCut,
+}
+
+/// How a side is cut.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SideCut {
+    pub segments: u64,
+    /// The tessellation factor that gives it.
+    pub factor: f64,
+}
+
+impl SideCut {
+    fn of(cut: &Cut) -> Self {
+        Self { segments: cut.segments() as u64, factor: cut.factor() }
+    }
+}
+
+impl SideDifference {
+    /// By how much the factors differ, as a ratio that is at least 1.
+    fn ratio(&self) -> f64 {
+        let ratio = self.theirs.factor / self.ours.factor;
+        if ratio.is_finite() && ratio > 0.0 { ratio.max(ratio.recip()) } else { f64::INFINITY }
+    }
+}
+
+/// Fixed-point places in the domain and Newton's method are at least this exact.
+const LEAST_REACH: f64 = 2e-4;
+/// Far less than the distance of points at factor 64.
+const LARGEST_REACH: f64 = 4e-3;
+/// Points of displaced patches are sought within this part of a segment.
+const OF_SEGMENT: f64 = 0.35;
+/// How many triangles a finding names.
+const NAMED: usize = 10;
+/// How many sides are looked at for the partitionings that they suit.
+const SIDES: usize = 3000;
+/// A partitioning suits if this share of the sides is cut as it cuts them.
+const SUITS: f64 = 0.97;
+
+impl<'a> Outcomes<'a> {
+    /// Compares all patches.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(super) fn new(
+        ours: &Ours,
+        own_mesh: &'a OwnMesh<'a>,
+        assignment: &'a Assignment<'a>,
+        exactness: Exactness,
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
+        let patches = 0..ours.topology.patches.len() as u32;
+        let fit = assignment.overlaid.fit;
+        let exact = exactness.within.max(exactness.resolution).max(8.0 * ulp(ours.topology));
+        let reach = |patch: u32| {
+            let domain = if fit.is_finite() { exact_reach(ours, patch, exact) } else { rough_reach(own_mesh, patch) };
+            Reach { domain, fit }
+        };
+        let reaches: Vec<Reach> = patches.clone().map(reach).collect();
+        let theirs = |patch: &u32| assignment.count(*patch) > 0;
+        let emitted = |patch: &u32| own_mesh.count(*patch) > 0;
+        let all = made_of_all(patches.len(), progress, |patch| {
+            let patch = patch as u32;
+            if !(theirs(&patch) && emitted(&patch)) {
+                return Outcome::default();
+            }
+            Outcome::of(assignment, &own_mesh.patch(patch), patch, reaches[patch as usize])
+        })?;
+        let missing = patches.clone().filter(|patch| emitted(patch) && !theirs(patch)).collect();
+        let additional = patches.filter(|patch| theirs(patch) && !emitted(patch)).collect();
+        Ok(Self { own_mesh, assignment, reaches, all, missing, additional })
+    }
+
+    /// The number of patches that have triangles of theirs.
+    pub(super) fn patches(&self) -> u64 {
+        self.compared().count() as u64 + self.additional.len() as u64
+    }
+
+    fn compared(&self) -> impl Iterator<Item = (u32, &Outcome)> {
+        (0..).zip(&self.all).filter(|(_, outcome)| outcome.is_compared)
+    }
+
+    /// Patches whose points differ.
+    fn different(&self) -> Vec<u32> {
+        self.compared().filter(|(_, outcome)| !outcome.found.has_same_points).map(|(patch, _)| patch).collect()
+    }
+
+    /// Patches of which anything differs but distances.
+    pub(super) fn different_at_all(&self) -> Vec<u32> {
+        let differs = |found: &Match| {
+            !found.has_same_points || found.missing + found.doubled + found.flipped + found.other + found.slid > 0
+        };
+        let different = self.compared().filter(|(_, outcome)| differs(&outcome.found)).map(|(patch, _)| patch);
+        different.chain(self.additional.iter().copied()).collect()
+    }
+
+    /// Whether most patches have the same points.
+    pub(super) fn are_mostly_the_same(&self) -> bool {
+        2 * self.different().len() < self.compared().count()
+    }
+
+    pub(super) fn farthest(&self) -> Option<Farthest> {
+        self.all.iter().filter_map(|outcome| outcome.farthest).reduce(Farthest::farther)
+    }
+
+    /// Says how vertices are displaced, of which none is expected on the surface. What is nearer than `fit` isn't displaced.
+    pub(super) fn displaced(&self, ours: &Ours, fit: f64) -> Displaced {
+        let overlaid = self.assignment.overlaid;
+        let distances = || overlaid.places.iter().map(|place| place.distance);
+        let sum = self.all.iter().fold(Offsets::default(), |sum, outcome| sum.with(outcome.offsets));
+        Displaced {
+            vertices: distances().filter(|distance| *distance > fit).count() as u64,
+            of: overlaid.places.len() as u64,
+            largest: distances().fold(0.0, f64::max),
+            outward: sum.outward,
+            inward: sum.inward,
+            is_along_normals: sum.vertices > 0 && sum.along_normals as f64 >= 0.9 * sum.vertices as f64,
+            ours: ours.inputs.tessellation.displacement,
+        }
+    }
+
+    /// Says which vertices were moved: those off the surface, and those that were moved along it.
+    pub(super) fn moved(&self, ours: &Ours, strays: &[u32]) -> Option<Finding> {
+        let overlaid = self.assignment.overlaid;
+        let slid: u64 = self.all.iter().map(|outcome| outcome.found.slid).sum();
+        let distance = |index: &u32| overlaid.places[*index as usize].distance;
+        let triangle = |patch: u32| ours.topology.patches[patch as usize].triangle;
+        let vertices = strays.len() as u64 + slid;
+        match strays.iter().max_by(|a, b| distance(a).total_cmp(&distance(b))) {
+            Some(worst) => Some(Finding::Moved {
+                vertices,
+                farthest: overlaid.positions[*worst as usize],
+                distance: distance(worst),
+                triangle: triangle(overlaid.places[*worst as usize].patch),
+            }),
+            None => self.farthest().filter(|_| slid > 0).map(|farthest| Finding::Moved {
+                vertices,
+                farthest: farthest.theirs,
+                distance: farthest.distance,
+                triangle: triangle(farthest.patch),
+            }),
+        }
+    }
+
+    /// Explains where points differ, and returns the sides that are cut differently. `other` are our inputs with the surface that
+    /// their vertices lie on, if it isn't ours.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(super) fn explain(
+        &self,
+        ours: &Ours,
+        other: Option<&Inputs>,
+        findings: &mut Vec<Finding>,
+        progress: &Progress,
+    ) -> Result<Vec<SideDifference>, Cancelled> {
+        let different = self.different();
+        if different.is_empty() {
+            return Ok(Vec::new());
+        }
+        let Ours { mesh, inputs, given, .. } = *ours;
+        let explainer = Explainer { mesh, assignment: self.assignment, inputs, other, given, reaches: &self.reaches };
+        let explanations = explainer.explain(&different, progress)?;
+        let (patches, of) = (different.len() as u64, self.compared().count() as u64);
+        let mut sides: Vec<SideDifference> = Vec::new();
+        let (mut inside, mut suited, mut seen) = (0, [0_usize; 4], 0);
+        for &patch in &different {
+            let theirs = self.cuts(patch);
+            let own = self.own_mesh.patch(patch);
+            let before = sides.len();
+            sides.extend(self.side_differences(ours, patch, &theirs, &own));
+            inside += u64::from(sides.len() == before);
+            if seen < SIDES {
+                seen += 3;
+                let reach = self.reaches[patch as usize].domain;
+                for (count, partitioning) in suited.iter_mut().zip(Partitioning::DIRECT3D) {
+                    *count += theirs.iter().filter(|cut| cut.suits(partitioning, reach)).count();
+                }
+            }
+        }
+        sides.sort_by(|a, b| b.ratio().total_cmp(&a.ratio()));
+        let own = Explanation { partitioning: inputs.tessellation.partitioning, rule: Rule::Same };
+        if explanations.first() == Some(&own) {
+            return Ok(sides);
+        }
+        let (ours_is, convention) = (inputs.tessellation.partitioning, inputs.tessellation.convention);
+        findings.push(match explanations.is_empty() {
+            false => Finding::Factors { ours: ours_is, convention, explanations, patches, of },
+            true => {
+                let suits = suited.into_iter().zip(Partitioning::DIRECT3D);
+                let suits = suits.filter(|(count, _)| *count as f64 >= SUITS * seen as f64);
+                let suits = suits.map(|(_, partitioning)| partitioning).collect();
+                Finding::UnknownFactors { patches, of, sides: sides.len() as u64, inside, suits, ours: ours_is }
+            }
+        });
+        findings.extend(self.cracks(ours, progress)?);
+        Ok(sides)
+    }
+
+    /// How their triangles cut the sides of a patch.
+    fn cuts(&self, patch: u32) -> [Cut; 3] {
+        let Reach { domain, fit } = self.reaches[patch as usize];
+        cuts_of(&self.assignment.part(patch), [domain, fit])
+    }
+
+    /// The sides of a patch that are cut differently.
+    fn side_differences(&self, ours: &Ours, patch: u32, theirs: &[Cut; 3], own: &OwnPatch) -> Vec<SideDifference> {
+        let reach = self.reaches[patch as usize].domain;
+        let positions = ours.topology.patch_positions(patch);
+        let difference = |side: usize| {
+            let own = Cut::new(side, own.weights.iter().copied(), reach);
+            (!theirs[side].is_like(&own, reach)).then(|| SideDifference {
+                triangle: ours.topology.patches[patch as usize].triangle,
+                side: side as u32,
+                ends: [positions[side], positions[(side + 1) % 3]].map(|end| end.to_array()),
+                theirs: SideCut::of(&theirs[side]),
+                ours: SideCut::of(&own),
+            })
+        };
+        (0..3).filter_map(difference).collect()
+    }
+
+    /// Counts the edges between two patches that their sides cut differently, if there are any.
+    fn cracks(&self, ours: &Ours, progress: &Progress) -> Result<Option<Finding>, Cancelled> {
+        let topology = ours.topology;
+        let cuts = made_of_all(self.all.len(), progress, |patch| {
+            (self.assignment.count(patch as u32) > 0).then(|| self.cuts(patch as u32).map(|cut| cut.factor() as f32))
+        })?;
+        let (mut edges, mut of) = (0, 0);
+        for edge in topology.edges.iter().filter(|edge| !matches!(edge.kind, EdgeKind::Boundary)) {
+            let cut = |side: &crate::mesh::Side| cuts[side.patch() as usize].map(|cuts| cuts[side.index()]);
+            let own: Vec<_> = topology.edge_sides(edge).iter().filter_map(cut).collect();
+            if own.len() > 1 {
+                of += 1;
+                let differs = own.iter().any(|factor| (factor / own[0] - 1.0).abs() > 0.01);
+                edges += u64::from(differs);
+            }
+        }
+        Ok((edges > 0).then_some(Finding::Cracked { edges, of }))
+    }
+
+    /// Says what is wrong with triangles: those that are missing, doubled, wound the other way, or join other points.
+    pub(super) fn judge_triangles(&self, ours: &Ours, alignment: Option<&Alignment>, findings: &mut Vec<Finding>) {
+        let emitted = (0..self.all.len() as u32).filter(|patch| self.own_mesh.count(*patch) > 0).count() as u64;
+        let names = |patches: &[u32]| -> Vec<u32> {
+            patches.iter().take(NAMED).map(|patch| ours.topology.patches[*patch as usize].triangle).collect()
+        };
+        if !self.missing.is_empty() {
+            let (patches, triangles) = (self.missing.len() as u64, names(&self.missing));
+            findings.push(Finding::MissingPatches { patches, of: emitted, triangles });
+        }
+        if !self.additional.is_empty() {
+            let (patches, triangles) = (self.additional.len() as u64, names(&self.additional));
+            findings.push(Finding::AdditionalPatches { patches, triangles });
+        }
+        let count = |of: fn(&Match) -> u64| {
+            let counts = || self.compared().map(|(_, outcome)| of(&outcome.found));
+            (counts().sum::<u64>(), counts().filter(|count| *count > 0).count() as u64)
+        };
+        let none = (0, 0);
+        // Places of displaced vertices are too rough to tell one triangle from the next.
+        let is_exact = self.assignment.overlaid.fit.is_finite();
+        let exact = |of: fn(&Match) -> u64| if is_exact { count(of) } else { none };
+        let (missing, doubled) = (exact(|found| found.missing), exact(|found| found.doubled));
+        let other = exact(|found| found.other);
+        if missing.0 > 0 {
+            findings.push(Finding::MissingTriangles { count: missing.0, patches: missing.1 });
+        }
+        if doubled.0 > 0 {
+            findings.push(Finding::Doubled { count: doubled.0, patches: doubled.1 });
+        }
+        let (flipped, of) = (count(|found| found.flipped).0, self.compared_triangles());
+        // What is mirrored shows its other side, unless its winding was turned as well.
+        let is_mirrored = alignment.is_some_and(Alignment::mirrors);
+        if flipped > 0 && !(is_mirrored && flipped == of) {
+            findings.push(Finding::Flipped { count: flipped, of });
+        }
+        if other.0 > 0 {
+            findings.push(Finding::OtherTriangles { count: other.0, patches: other.1, order: self.corner_order(ours) });
+        }
+    }
+
+    fn compared_triangles(&self) -> u64 {
+        self.compared().map(|(patch, _)| u64::from(self.assignment.count(patch))).sum()
+    }
+
+    /// The order of corners that explains all triangles that join other points.
+    fn corner_order(&self, ours: &Ours) -> Option<CornerOrder> {
+        let Inputs { tessellation, .. } = *ours.inputs;
+        if tessellation.partitioning == Partitioning::Rows {
+            return None;
+        }
+        let written = match ours.given {
+            Some(given) => given.to_vec(),
+            None => hull_factors(ours.mesh, ours.topology, ours.inputs),
+        };
+        let turned: Vec<u32> =
+            self.compared().filter(|(_, outcome)| outcome.found.other > 0).map(|(patch, _)| patch).collect();
+        let explains = |order: &CornerOrder| {
+            turned.iter().all(|&patch| {
+                let (part, own) = (self.assignment.part(patch), self.own_mesh.patch(patch));
+                let found = Match::of(&part, &own, self.reaches[patch as usize]);
+                let cut = (tessellation.convention, written[patch as usize], tessellation.partitioning);
+                order.explains(&part, &own, &found, cut)
+            })
+        };
+        CornerOrder::ALL.into_iter().find(explains)
+    }
+}
+
+impl Outcome {
+    fn of(assignment: &Assignment, own: &OwnPatch, patch: u32, reach: Reach) -> Self {
+        let part = assignment.part(patch);
+        let found = Match::of(&part, own, reach);
+        let (mut farthest, mut offsets): (Option<Farthest>, _) = (None, Offsets::default());
+        for (&vertex, own_vertex) in part.vertices.iter().zip(&found.own_vertices) {
+            let Some(own_vertex) = *own_vertex else { continue };
+            let theirs = assignment.overlaid.positions[vertex as usize];
+            let ours = own.positions[own_vertex as usize];
+            let apart = Farthest { distance: theirs.distance(ours), patch, theirs, ours };
+            farthest = Some(farthest.map_or(apart, |farthest| farthest.farther(apart)));
+            offsets.add(theirs - ours, own.normals[own_vertex as usize]);
+        }
+        Self { is_compared: true, found: Match { own_vertices: Vec::new(), ..found }, farthest, offsets }
+    }
+}
+
+impl Offsets {
+    fn add(&mut self, offset: glam::DVec3, normal: glam::DVec3) {
+        /// The largest sine of the angle between an offset along a normal and that normal. Where a surface bends, the nearest
+        /// place isn't the one that was displaced.
+        const ASIDE: f64 = 0.3;
+        let along = offset.dot(normal);
+        self.vertices += 1;
+        self.along_normals += u64::from((offset - normal * along).length() <= ASIDE * offset.length());
+        self.outward = self.outward.max(along);
+        self.inward = self.inward.max(-along);
+    }
+
+    fn with(self, other: Self) -> Self {
+        Self {
+            vertices: self.vertices + other.vertices,
+            along_normals: self.along_normals + other.along_normals,
+            outward: self.outward.max(other.outward),
+            inward: self.inward.max(other.inward),
+        }
+    }
+}
+
+/// How near points of a patch are in the domain if they are the same to within `exact` object units.
+fn exact_reach(ours: &Ours, patch: u32, exact: f64) -> f64 {
+    let [a, b, c] = ours.topology.patch_positions(patch).map(|corner| corner.as_dvec3());
+    let (sides, area) = ([a.distance(b), b.distance(c), c.distance(a)], (b - a).cross(c - a).length());
+    // The least height of the triangle: along it, weights change the fastest.
+    let height = area / sides.into_iter().fold(0.0, f64::max);
+    let reach = 4.0 * exact / height;
+    if reach.is_finite() { reach.clamp(LEAST_REACH, LARGEST_REACH) } else { LARGEST_REACH }
+}
+
+/// How near points of a displaced patch are in the domain.
+fn rough_reach(own_mesh: &OwnMesh, patch: u32) -> f64 {
+    let factors = own_mesh.factors(patch);
+    let outside = factors.outside.into_iter().map(segments).max().unwrap_or(1);
+    OF_SEGMENT / f64::from(outside.max((factors.inside & FACTOR_VALUE).div_ceil(1 << 16)).max(1))
+}
