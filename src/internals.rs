@@ -7,7 +7,7 @@ pub use crate::cli::picture_comparison::{CompareError, compare};
 pub use crate::engine::measurements::Measurements;
 pub use crate::engine::{Engine, Loaded, Preparation, load as load_and_prepare};
 pub use crate::files::Limits;
-pub use crate::gpu::Given;
+pub use crate::gpu::own_lod::Given;
 pub use crate::gpu::adapters::AdapterChoice;
 pub use crate::gpu::device::Gpu;
 pub use crate::gpu::layout::{CurveNet, Patch as PatchLayout};
