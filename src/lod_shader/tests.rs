@@ -120,7 +120,7 @@ fn every_loop_reports_its_work() {
     let loops = "fn f() -> u32 {\n  var a = 0u;\n  for (var i = 0u; i < 9u; i++) { a += i; }\n  while a < 20u { a += g(a); }\n\
                  \x20 loop { if a > 30u { break; } a++; continuing { a++; } }\n  /* loop { */ loop {\n    break;\n  }\n\
                  \x20 loop { a++; continuing { a++; break if a > 40u; } }\n  return a;\n}\n\
-                 fn g(a: u32) -> u32 { var b = a; for (;;) { b++; if b > 3u { return b; } } }";
+                 fn g(a: u32) -> u32 { var b = a; for (;;) { b++; if b > 3u { return b; } } return b; }";
     let shader = compile(&format!("{loops}\n{EDGE}")).unwrap_or_else(|fault| panic!("{fault}"));
     let text = shader.module_text();
     let own = &text[..text.find("struct Edge").expect("the contract")];
