@@ -56,7 +56,7 @@ impl App {
             _ if self.panels.are_hidden => {}
             Arrangement::Hidden => {}
             Arrangement::Shared(width) => {
-                let room = FACTS_WIDTH - frame.inner_margin.sum().x;
+                let room = (width < FACTS_WIDTH).then_some(FACTS_WIDTH - frame.inner_margin.sum().x);
                 panel(egui::Panel::left("shared"), width).show(ui, |ui| self.shared_panel(ui, room));
             }
             Arrangement::Beside => {
@@ -66,8 +66,9 @@ impl App {
         }
     }
 
-    /// The tabs, and the panel that is chosen. Measurements need `room` in width, in points; they scroll sideways where there is less.
-    fn shared_panel(&mut self, ui: &mut egui::Ui, room: f32) {
+    /// The tabs, and the panel that is chosen. Where there is too little room for measurements, they scroll sideways, and have `room` in
+    /// width, in points.
+    fn shared_panel(&mut self, ui: &mut egui::Ui, room: Option<f32>) {
         let worst = self.worst(ui);
         ui.horizontal(|ui| {
             let gap = ui.spacing().item_spacing.x;
@@ -76,9 +77,10 @@ impl App {
                 tab(ui, &mut self.panels, (side, name), hover, size, worst);
             }
         });
-        match self.panels.side {
-            Side::Settings => drop(ui.push_id("settings", |ui| self.settings_panel(ui))),
-            Side::Measurements => {
+        match (self.panels.side, room) {
+            (Side::Settings, _) => drop(ui.push_id("settings", |ui| self.settings_panel(ui))),
+            (Side::Measurements, None) => self.facts_panel(ui),
+            (Side::Measurements, Some(room)) => {
                 egui::ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
                     ui.set_width(ui.available_width().max(room));
                     self.facts_panel(ui);
