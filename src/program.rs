@@ -25,8 +25,8 @@ pub fn run() -> ExitCode {
         Ok(reason) => reason,
         Err(code) => return code,
     };
-    let Cli { file, limit, adapter, .. } = arguments;
-    if let Err(error) = cli::preview(file, limit, adapter, Path::new(PREVIEW)) {
+    let Cli { file, opening, limit, adapter, .. } = arguments;
+    if let Err(error) = cli::preview(file, &opening, (limit, adapter), Path::new(PREVIEW)) {
         return cli::fail(&error);
     }
     // A closed standard output is no failure.
@@ -37,8 +37,8 @@ pub fn run() -> ExitCode {
 /// Opens the window and waits until it is closed. Returns the reason if there can be no window, and as an error the
 /// exit code with which the program ends otherwise.
 #[cfg(feature = "app")]
-fn open_window(Cli { file, limit, adapter, .. }: &Cli) -> Result<String, ExitCode> {
-    match app::run(file.clone(), limit.limits(), adapter.choice()) {
+fn open_window(Cli { file, opening, limit, adapter, .. }: &Cli) -> Result<String, ExitCode> {
+    match app::run(file.clone(), opening, limit.limits(), adapter.choice()) {
         Ok(()) => Err(ExitCode::SUCCESS),
         Err(WindowError::NoDisplay(reason)) => Ok(format!("There is no display to open a window on ({reason})")),
         Err(error) => Err(cli::fail(&error)),

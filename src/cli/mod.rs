@@ -55,7 +55,7 @@ use output_guard::{file_of, file_of_heights, keep_apart};
 pub(crate) use adjacency::write_adjacency;
 pub(crate) use copied_command::CopiedCommand;
 pub(crate) use factors::write_factors;
-pub(crate) use options::{LimitOption, SurfaceOptions, WeldOption};
+pub(crate) use options::{LimitOption, OpeningOptions, SurfaceOptions, WeldOption};
 pub(crate) use picture_comparison::CompareError;
 #[cfg(test)]
 pub(crate) use picture_comparison::{PictureTolerance, compare};
@@ -92,6 +92,8 @@ pub(crate) struct Cli {
     /// as shape:cube-split, or shape:torus@2 (finer)
     #[arg(value_parser = options::source())]
     pub file: Option<Source>,
+    #[command(flatten)]
+    pub opening: OpeningOptions,
     #[command(flatten)]
     pub limit: LimitOption,
     #[command(flatten)]
@@ -303,13 +305,17 @@ pub(crate) fn fail(error: &dyn std::fmt::Display) -> ExitCode {
 /// Writes the picture that the window would have shown, for machines without a display.
 pub(crate) fn preview(
     source: Option<Source>,
-    limit: LimitOption,
-    adapter: AdapterOption,
+    opening: &OpeningOptions,
+    (limit, adapter): (LimitOption, AdapterOption),
     path: &Path,
 ) -> Result<(), CliError> {
     let settings = if source.is_some() { Settings::opening() } else { Settings::greeting() };
     let line = copied_command::given(std::env::args_os());
-    render::run(&render::Args::preview(source.unwrap_or_default(), settings, limit, adapter, path), &line)
+    let mut args = render::Args::preview(source.unwrap_or_default(), settings, limit, adapter, path);
+    let weld = &mut args.shot.surface.weld;
+    weld.import.0 = opening.import(weld.import.0);
+    weld.hide_part = opening.hidden().to_vec();
+    render::run(&args, &line)
 }
 
 /// Reads a whole text file, or standard input if the path is `-`.

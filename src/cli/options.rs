@@ -3,6 +3,7 @@
 mod cameras;
 mod declared;
 mod lod_camera;
+mod opening;
 mod values;
 mod view;
 
@@ -25,6 +26,7 @@ use crate::tessellate::{Displacement, Lod, Partitioning, Surface, Tessellation, 
 pub(crate) use cameras::{CamerasOption, NamedView};
 pub(crate) use declared::{ImportOptions, PictureOptions, TessellationOptions, choice, number_of};
 pub(crate) use lod_camera::LodCameraOption;
+pub(crate) use opening::OpeningOptions;
 pub(crate) use values::{CameraOption, Position, Size, model, picture, source, steps, threshold};
 pub(crate) use view::ViewOptions;
 
@@ -213,8 +215,8 @@ pub(crate) struct WeldOption {
     /// Show this scene of a glTF file instead of its default scene, by name, or by number from 0; `info` lists the scenes
     #[arg(long, value_name = "NAME|N", allow_hyphen_values = true)]
     pub scene: Option<String>,
-    /// Leave out this part of an OBJ file or of a text file of STL, by the name of its object, group or solid; may be given several
-    /// times. `info` lists the parts
+    /// Leave out this part of a glTF file, an OBJ file or a text file of STL, by the name of its node, object, group or solid; may be
+    /// given several times. `info` lists the parts
     #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
     pub hide_part: Vec<String>,
     #[command(flatten)]

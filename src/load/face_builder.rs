@@ -16,7 +16,7 @@ use super::tangents;
 use super::warnings::repair_warnings;
 use crate::mesh::build_limits::{MAX_TRIANGLES, MemoryRefused};
 use crate::mesh::detail_table::DetailTable;
-use crate::mesh::mesh_builder::{InputCorner, MeshBuilder};
+use crate::mesh::mesh_builder::{InputCorner, MeshBuilder, StoredCorner};
 use crate::mesh::mipmap::SRGB_TABLE;
 use crate::mesh::polygon::{self, CutQuality, triangulate};
 use crate::mesh::rig::LARGEST_COORDINATE;
@@ -210,13 +210,12 @@ impl<'a> FaceBuilder<'a> {
         corners: &mut Vec<impl FaceCorner>,
         place: FilePosition,
     ) -> Result<(), ReadError> {
-        // A comparison with NaN is false.
-        let is_near = |corner: &InputCorner| corner.position.abs().cmple(Vec3::splat(LARGEST_COORDINATE)).all();
         if !corners.iter_mut().all(|corner| is_near(corner.corner())) {
             self.unplaced.0 += 1;
             self.unplaced.1.get_or_insert(place);
             return Ok(());
         }
+        let bad_uvs = self.bad_uvs;
         for corner in corners.iter_mut().map(FaceCorner::corner) {
             if self.import.makes_normals() {
                 corner.normal = None;
@@ -242,24 +241,65 @@ impl<'a> FaceBuilder<'a> {
         if self.parts.leave_out(corners.len() - 2) {
             return Ok(());
         }
-        self.triangles += corners.len() - 2;
-        if self.triangles as u64 > MAX_TRIANGLES {
-            return Err(ReadError::TooMany { limit: MAX_TRIANGLES, what: "triangles" });
-        }
-        let memory = self.memory;
-        let room = self.builder.make_room_for_triangles(material, corners.len() - 2, memory);
-        room.and_then(|()| self.builder.make_room(corners.len(), memory)).map_err(too_large)?;
-        self.cut(material, corners);
+        self.make_room(material, corners.len() - 2)?;
+        self.builder.make_room(corners.len(), self.memory).map_err(too_large)?;
+        // Repairs are counted again wherever their vertices are used.
+        self.cut(material, corners, bad_uvs == self.bad_uvs);
         Ok(())
     }
 
-    fn cut<C: FaceCorner>(&mut self, material: usize, corners: &mut [C]) {
+    /// Adds a triangle of vertices that have numbers in the file, without a list of its corners. `corner_of` returns a vertex's
+    /// corner, and its [colour](Self::number). Returns false if a corner needs a repair, or if the triangle's part is hidden; then
+    /// [`add`](Self::add) must add it.
+    ///
+    /// # Errors
+    /// As [`add`](Self::add).
+    pub(super) fn add_triangle(
+        &mut self,
+        material: usize,
+        vertices: [VertexNumbers; 3],
+        corner_of: impl Fn(VertexNumbers) -> Option<(InputCorner, Vec4)>,
+    ) -> Result<bool, ReadError> {
+        if self.parts.is_hidden() {
+            return Ok(false);
+        }
+        let mut stored = [StoredCorner::default(); 3];
+        for (stored, vertex) in stored.iter_mut().zip(vertices) {
+            if let Some(known) = self.recent.known(vertex) {
+                *stored = known;
+                continue;
+            }
+            let is_sound = |(corner, _): &(InputCorner, Vec4)| is_near(corner) && corner.uv.is_finite();
+            let Some((corner, color)) = corner_of(vertex).filter(is_sound) else { return Ok(false) };
+            let normal = corner.normal.filter(|_| !self.import.makes_normals());
+            let number = self.number(color)?;
+            self.builder.make_room(1, self.memory).map_err(too_large)?;
+            let (recent, builder) = (&mut self.recent, &mut self.builder);
+            *stored = recent.get(vertex, || builder.corner(InputCorner { normal, ..corner }, number));
+        }
+        self.parts.leave_out(1);
+        self.make_room(material, 1)?;
+        self.builder.stored_triangle(material, stored);
+        Ok(true)
+    }
+
+    /// Counts triangles, and makes room for them.
+    fn make_room(&mut self, material: usize, triangles: usize) -> Result<(), ReadError> {
+        self.triangles += triangles;
+        if self.triangles as u64 > MAX_TRIANGLES {
+            return Err(ReadError::TooMany { limit: MAX_TRIANGLES, what: "triangles" });
+        }
+        self.builder.make_room_for_triangles(material, triangles, self.memory).map_err(too_large)
+    }
+
+    /// Cuts a face into triangles. Corners are remembered for faces with the same vertices, unless they were repaired.
+    fn cut<C: FaceCorner>(&mut self, material: usize, corners: &mut [C], is_remembered: bool) {
         let (builder, recent) = (&mut self.builder, &mut self.recent);
         let mut add = |triangle: [C; 3]| {
             let stored = triangle.map(|mut corner| {
                 let vertex = corner.vertex();
                 let mut store = || builder.corner(*corner.corner(), corner.number());
-                match vertex {
+                match vertex.filter(|_| is_remembered) {
                     Some(vertex) => recent.get(vertex, store),
                     None => store(),
                 }
@@ -354,6 +394,11 @@ impl<'a> FaceBuilder<'a> {
             Some(format!("{count} faces with {what}{first}"))
         })
     }
+}
+
+/// Whether a position can be drawn. A comparison with NaN is false.
+fn is_near(corner: &InputCorner) -> bool {
+    corner.position.abs().cmple(Vec3::splat(LARGEST_COORDINATE)).all()
 }
 
 fn too_large(refused: MemoryRefused) -> ReadError {

@@ -28,6 +28,7 @@ mod material_lists;
 mod material_source;
 mod materials;
 mod meshopt;
+mod node_parts;
 mod nodes;
 mod primitive;
 mod primitive_data;
@@ -104,6 +105,7 @@ pub(super) fn read(
         cameras,
         variants,
         scenes,
+        parts,
         reach,
         faults,
         mut notes,
@@ -112,8 +114,10 @@ pub(super) fn read(
     let files = Files::new(folder, limits, &budget, progress);
     let buffers = buffers::load(&document, &files, (&reach.buffers, &extensions.fallback), blob, &mut notes, progress)?;
     progress.set(0.3);
-    let placed = nodes::place(&document, &reach.hiding)?;
-    let mut accessors = Accessors::new(&document, &extensions, (&buffers, faults, &reach.views), &budget)?;
+    let placed = nodes::place(&document, &reach.hiding, &mut notes)?;
+    let known = (&buffers[..], faults, &reach.views[..]);
+    let read_copy = |buffer| buffers::read_copy(&document, &files, buffer);
+    let mut accessors = Accessors::new(&document, &extensions, known, (&budget, &mut notes), read_copy)?;
     accessors.unpacked = draco::unpack(&accessors, &document, &placed, &extensions.packed, progress)?;
     let mut warnings = Vec::new();
     let clips = animations::read(animations, &document, &accessors, &mut warnings);
@@ -163,6 +167,7 @@ pub(super) fn read(
     let Scene { materials, builder, mut primitives, binder, details, .. } = scene;
     if builder.is_empty() {
         let mut holds = match reach.hidden {
+            0 if parts.is_cut => "its named parts are hidden".to_owned(),
             0 => primitives.holds(&document),
             hidden => format!("KHR_node_visibility hides the {hidden} nodes of its scene that have a mesh"),
         };
@@ -170,6 +175,9 @@ pub(super) fn read(
             holds += "; --scene shows another of its scenes";
         }
         return Err(GltfError::Empty { holds });
+    }
+    if parts.beyond > 0 {
+        notes.push(format!("named nodes beyond the first 65,536, which can't be hidden: {}.", parts.beyond));
     }
     notes.append(materials.into_notes());
     notes.append(std::mem::take(&mut primitives.notes));
@@ -203,7 +211,8 @@ pub(super) fn read(
     warnings.extend(repair_warnings(&mesh.repairs, &selected.import));
     let scenes::Scenes { names, shown } = scenes;
     let (files, file_bytes) = (files.named(), budget.files());
-    Ok(LoadedMesh { mesh, warnings, variants, scenes: names, scene: shown, files, file_bytes, ..LoadedMesh::default() })
+    let parts = parts.list;
+    Ok(LoadedMesh { mesh, warnings, variants, scenes: names, scene: shown, parts, files, file_bytes })
 }
 
 /// The scene that is being read, and the mesh that is being built from it.

@@ -1,22 +1,27 @@
 //! Reads Wavefront OBJ: polygons with texture coordinates and normals, and the colours of their materials.
 //!
-//! All groups and objects become one mesh, of which some may be left out. Weights are ignored. The file is read twice, first vertices and materials and then faces, so
-//! that faces may come before their vertices; and a third time in between if smoothing groups make normals.
+//! All groups and objects become one mesh, of which some may be left out. Weights are ignored. The file is read twice, on all
+//! cores: first vertices and materials, then faces, so that faces may come before their vertices. If smoothing groups make
+//! normals, it is read a third time in between.
 //!
 //! The crate `tobj` isn't used. It panics on an index near 2^63, gives a corner without a normal the normal of another
 //! corner, doesn't know continued lines, and names no line in its errors.
 //!
 //! Source: Wavefront Technologies 1992, "Advanced Visualizer Manual", appendix B1.
 
+mod bump_maps;
+mod faces;
 mod materials;
 mod mtl;
+mod pieces;
 mod smoothing;
 mod textures;
+mod vertices;
 
 use std::borrow::Cow;
 use std::path::Path;
 
-use glam::{Vec2, Vec3, Vec4};
+use glam::Vec4;
 
 use super::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, counted, linear_color};
 use super::import::Import;
@@ -25,42 +30,19 @@ use super::memory_budget::Budget;
 use super::read_error::{FilePosition, ReadError};
 use super::recent_corners::VertexNumbers;
 use super::selection::Selection;
-use super::text_lines::{Line, Lines, first_word, has_comma, numbers_or_nan, of_utf16, shown, words};
+use super::text_lines::{Line, Lines, first_word, of_utf16, shown, words};
 use super::uri::Files;
 use crate::files::Limits;
 use crate::mesh::MemoryAccount;
 use crate::mesh::build_limits::MemoryRefused;
-use crate::mesh::chunked_vec::ChunkedVec;
 use crate::mesh::mesh_builder::InputCorner;
 use crate::progress::Progress;
 
+use faces::{FacePiece, Found, NONE, StatementCounts, fitting, index};
 use materials::Materials;
+use pieces::{Piece, in_pieces};
 use smoothing::Smoothing;
-
-/// Statements that are ignored without a warning, since they change neither shape nor colour here.
-const SILENT: [&[u8]; 21] = [
-    b"vp",
-    b"mg",
-    b"lod",
-    b"bevel",
-    b"c_interp",
-    b"d_interp",
-    b"cstype",
-    b"deg",
-    b"bmat",
-    b"step",
-    b"parm",
-    b"trim",
-    b"hole",
-    b"scrv",
-    b"sp",
-    b"end",
-    b"con",
-    b"usemap",
-    b"maplib",
-    b"shadow_obj",
-    b"trace_obj",
-];
+use vertices::{VertexPiece, Vertices};
 
 /// The part of faces that belong to no object and no group; the specification calls it so.
 const DEFAULT_PART: &[u8] = b"default";
@@ -83,18 +65,22 @@ pub(super) fn read(
     let budget = Budget::new(bytes.len(), limits);
     let bytes = of_utf16(&bytes, |bytes| budget.hold(bytes)).map_err(too_large)?.unwrap_or(bytes);
     let files = Files::new(folder, limits, &budget, progress);
-    let mut vertices = Vertices::default();
+    let pieces = Piece::all(&bytes);
+    let (mut vertices, mut above) = (Vertices::default(), Vec::with_capacity(pieces.len()));
     let mut materials = Materials::new(&files, &budget);
-    each(&bytes, &progress.part(0.0, 0.2), |statement| {
-        if statement.word == b"mtllib" {
-            materials.add_library(statement.rest());
-        }
-        vertices.take(statement, &budget)
-    })?;
+    let take = |_: &Piece, more: VertexPiece| {
+        above.push(vertices.counts());
+        vertices.add(&more, &budget)?;
+        more.libraries.iter().for_each(|names| materials.add_library(names));
+        more.error.map_or(Ok(()), Err)
+    };
+    in_pieces(&pieces, |_, piece| VertexPiece::parse(piece), take, (&budget, &progress.part(0.0, 0.2)))?;
+    bump_maps::find_normal_maps(&mut materials, &pieces, (&budget, &progress.part(0.2, 0.25)))?;
+    let counts = vertices.counts();
     let mut smoothing = Smoothing::new(&vertices, &budget);
     let is_smoothed = vertices.is_smoothed && !import.makes_normals();
     if is_smoothed {
-        each(&bytes, &progress.part(0.2, 0.3), |line| smoothing.take(line))?;
+        each(&bytes, &progress.part(0.25, 0.3), |line| smoothing.take(line))?;
     }
     let mut reader = Reader {
         vertices: &vertices,
@@ -104,21 +90,24 @@ pub(super) fn read(
         part: Default::default(),
         smoothing: is_smoothed.then_some(smoothing),
         corners: Vec::new(),
-        indices: Vec::new(),
-        found: StatementCounts::default(),
+        numbers: Vec::new(),
+        found: Counts::default(),
     };
     if !vertices.colors.is_empty() || reader.materials.have_normal_maps() {
         reader.faces.color();
     }
-    each(&bytes, &progress.part(0.3, 0.5), |line| reader.take(line))?;
+    let parse = |i: usize, piece: &Piece| FacePiece::parse(piece, above[i], counts);
+    let take = |piece: &Piece, made| reader.take_piece(piece, made);
+    in_pieces(&pieces, parse, take, (&budget, &progress.part(0.3, 0.5)))?;
     reader.smoothing.take().into_iter().for_each(Smoothing::release);
     let freed = bytes.len() as u64 + vertices.bytes();
     reader.materials.read_textures(&mut reader.faces, freed, progress)?;
     let mut warnings = reader.materials.warnings();
-    warnings.extend(reader.found.warnings(&import));
+    warnings.extend(reader.found.warnings(&import, &vertices));
     let holds = reader.found.holds(&vertices);
     let faces = reader.faces;
     budget.release(freed);
+    drop(pieces);
     drop((bytes, vertices));
     let loaded = faces.finish(name, holds, warnings, &progress.part(0.5, 1.0))?;
     Ok(LoadedMesh { files: files.named(), ..loaded })
@@ -158,24 +147,34 @@ fn each(
     progress: &Progress,
     mut take: impl FnMut(&Statement) -> Result<(), ReadError>,
 ) -> Result<(), ReadError> {
-    let mut lines = Lines::new(bytes);
-    let mut next = 0;
-    while let Some(line) = lines.next()? {
-        if line.number >= next {
-            next = line.number + 4096;
+    let (mut lines, mut next) = (Lines::new(bytes), 0);
+    let mut taken = Ok(());
+    while next_statement(&mut lines, |statement| taken = take(statement))? {
+        std::mem::replace(&mut taken, Ok(()))?;
+        if lines.count() >= next {
+            next = lines.count() + 4096;
             progress.set(1.0 - lines.rest().len() as f32 / bytes.len() as f32);
             progress.check()?;
         }
-        // A comment may end with a backslash, as in the path of a Windows folder.
-        let is_whole = line.text.last() != Some(&b'\\') || line.text.trim_ascii_start().starts_with(b"#");
-        if is_whole {
-            take(&Statement::of(&line))?;
-            continue;
-        }
-        let text = continued(line.text, &mut lines)?;
-        take(&Statement::of(&Line { text: &text, number: line.number }))?;
     }
     Ok(())
+}
+
+/// Passes the next statement to `take`. Returns false at the end of the text.
+///
+/// # Errors
+/// [`ReadError::Broken`] for a line that is too long.
+fn next_statement(lines: &mut Lines, take: impl FnOnce(&Statement)) -> Result<bool, ReadError> {
+    let Some(line) = lines.next()? else { return Ok(false) };
+    // A comment may end with a backslash, as in the path of a Windows folder.
+    let is_whole = line.text.last() != Some(&b'\\') || line.text.trim_ascii_start().starts_with(b"#");
+    if is_whole {
+        take(&Statement::of(&line));
+    } else {
+        let text = continued(line.text, lines)?;
+        take(&Statement::of(&Line { text: &text, number: line.number }));
+    }
+    Ok(true)
 }
 
 /// Returns a line joined with the lines that continue it. A line that ends with `\` is continued.
@@ -201,97 +200,19 @@ fn without_comment(text: &[u8]) -> &[u8] {
     &text[..comment.unwrap_or(text.len())]
 }
 
-/// The positions, texture coordinates and normals that corners refer to.
-#[derive(Default)]
-struct Vertices {
-    positions: ChunkedVec<Vec3>,
-    uvs: ChunkedVec<Vec2>,
-    normals: ChunkedVec<Vec3>,
-    /// Colours of positions, encoded as sRGB. Positions that have none are white; those after the last coloured one are missing.
-    colors: ChunkedVec<[u8; 4]>,
-    /// Whether any faces are in a smoothing group.
-    is_smoothed: bool,
-}
-
-impl Vertices {
-    /// Stores the vertex data of a statement.
-    fn take(&mut self, statement: &Statement, budget: &Budget) -> Result<(), ReadError> {
-        let hold = |bytes| budget.hold(bytes).map_err(too_large);
-        match statement.word {
-            b"v" => {
-                hold(self.positions.next_bytes())?;
-                let rest = statement.rest();
-                let [x, y, z] = numbers_or_nan(rest);
-                self.positions.push(Vec3::new(x, y, if is_flat(rest) { 0.0 } else { z }));
-                // With four numbers the last one is a weight, and with seven the first three are followed by one.
-                let count = words(rest).take(8).count();
-                if matches!(count, 6 | 7) {
-                    let numbers: [f32; 7] = numbers_or_nan(rest);
-                    let color = stored_color([0, 1, 2].map(|i| numbers[count - 3 + i]));
-                    while self.colors.len() < self.positions.len() {
-                        hold(self.colors.next_bytes())?;
-                        let is_own = self.colors.len() + 1 == self.positions.len();
-                        self.colors.push(if is_own { color } else { [255; 4] });
-                    }
-                }
-            }
-            b"vn" => {
-                hold(self.normals.next_bytes())?;
-                self.normals.push(numbers_or_nan(statement.rest()).into());
-            }
-            b"vt" => {
-                hold(self.uvs.next_bytes())?;
-                let rest = statement.rest();
-                let [u, v] = numbers_or_nan(rest);
-                let v = if words(rest).nth(1).is_some() { v } else { 0.0 };
-                // The file's v points upwards, the mesh's downwards.
-                self.uvs.push(Vec2::new(u, 1.0 - v));
-            }
-            b"s" => self.is_smoothed |= smoothing::group(statement.rest()) != 0,
-            _ => {}
-        }
-        Ok(())
-    }
-
-    /// Returns the size in memory, in bytes.
-    fn bytes(&self) -> u64 {
-        self.positions.bytes() + self.uvs.bytes() + self.normals.bytes() + self.colors.bytes()
-    }
-}
-
-/// Whether a position has x and y alone, as drawings in a plane have it.
-fn is_flat(numbers: &[u8]) -> bool {
-    words(numbers).take(3).count() == 2
-}
-
-/// Returns a colour as bytes. Scanning programs write 0 to 1, and some 0 to 255.
-fn stored_color(color: [f32; 3]) -> [u8; 4] {
-    let scale = if color.iter().any(|channel| *channel > 1.0) { 1.0 } else { 255.0 };
-    // The conversion takes NaN for 0.
-    let [r, g, b] = color.map(|channel| (channel * scale).round() as u8);
-    [r, g, b, 255]
-}
-
 fn too_large(refused: MemoryRefused) -> ReadError {
     ReadError::TooLarge { reason: refused.into() }
 }
 
-/// Numbers of statements that don't make triangles; for points, the number of points.
+/// What was found among the faces.
 #[derive(Default)]
-struct StatementCounts {
+struct Counts {
+    statements: StatementCounts,
     faces: usize,
-    points: usize,
-    lines: usize,
-    surfaces: usize,
-    unknown: usize,
     /// Faces with a corner that has no normal.
     without_normals: usize,
     /// Faces whose missing normals came from their smoothing groups.
     smoothed: usize,
-    /// Statements whose numbers have a comma instead of a point.
-    with_commas: usize,
-    /// Positions of two numbers.
-    flat: usize,
     /// Corners with more than three numbers.
     long_corners: usize,
     /// Corners whose normal, or whose texture coordinates, aren't in the file.
@@ -299,37 +220,38 @@ struct StatementCounts {
     absent_uvs: usize,
 }
 
-impl StatementCounts {
-    fn warnings(&self, import: &Import) -> impl Iterator<Item = String> {
+impl Counts {
+    fn warnings(&self, import: &Import, vertices: &Vertices) -> impl Iterator<Item = String> {
         let made =
             format!("faces without normals, or with some missing, which got ones that are {}", import.smoothness());
+        let StatementCounts { points, lines, surfaces, unknown } = self.statements;
         let others = counted([
             (self.smoothed, "faces without normals, or with some missing, which got those of their smoothing groups"),
-            (self.with_commas, "statements with a comma in a number, which was taken for its point"),
-            (self.flat, "positions of two numbers, which are placed at z = 0"),
+            (vertices.with_commas, "statements with a comma in a number, which was taken for its point"),
+            (vertices.flat, "positions of two numbers, which are placed at z = 0"),
             (self.long_corners, "corners with more than three numbers, of which the first three are read"),
             (self.absent_normals, "corners with the number of a normal that isn't in the file, left out"),
             (
                 self.absent_uvs,
                 "corners with the number of texture coordinates that aren't in the file, replaced by (0, 0)",
             ),
-            (self.points, "points (p), left out"),
-            (self.lines, "lines (l), left out"),
-            (self.surfaces, "free-form curves and surfaces (curv, curv2, surf), which aren't read"),
-            (self.unknown, "statements that OBJ doesn't have, left out"),
+            (points, "points (p), left out"),
+            (lines, "lines (l), left out"),
+            (surfaces, "free-form curves and surfaces (curv, curv2, surf), which aren't read"),
+            (unknown, "statements that OBJ doesn't have, left out"),
         ]);
         counted([(self.without_normals, made)]).chain(others)
     }
 
     fn holds(&self, vertices: &Vertices) -> String {
-        let Self { faces, points, lines, surfaces, unknown, .. } = self;
-        if vertices.positions.is_empty() && faces + points + lines + surfaces == 0 {
+        let StatementCounts { points, lines, surfaces, unknown } = self.statements;
+        if vertices.positions.is_empty() && self.faces + points + lines + surfaces == 0 {
             let unknown =
-                if *unknown > 0 { format!(", and {unknown} statements that OBJ doesn't have") } else { String::new() };
+                if unknown > 0 { format!(", and {unknown} statements that OBJ doesn't have") } else { String::new() };
             return format!("it has no vertices{unknown}");
         }
         let others = [(points, "points (p)"), (lines, "lines (l)"), (surfaces, "free-form curves and surfaces")];
-        let others = others.into_iter().filter(|(count, _)| **count > 0);
+        let others = others.into_iter().filter(|(count, _)| *count > 0);
         let others: String = others.map(|(count, what)| format!(", {count} {what}")).collect();
         format!("it holds {} positions{others}", vertices.positions.len())
     }
@@ -346,36 +268,44 @@ struct Reader<'v, 'a> {
     part: [Vec<u8>; 2],
     /// The normals that smoothing groups make, if there are groups.
     smoothing: Option<Smoothing<'v>>,
-    /// The corners of the face that is being read, and the numbers of their positions.
+    /// The corners of the face that is being read, and their numbers.
     corners: Vec<NumberedCorner>,
-    indices: Vec<usize>,
-    found: StatementCounts,
+    numbers: Vec<VertexNumbers>,
+    found: Counts,
 }
 
 impl Reader<'_, '_> {
+    /// Takes the faces of the next piece of the file, and what else it has.
+    fn take_piece(&mut self, piece: &Piece, made: FacePiece) -> Result<(), ReadError> {
+        self.found.statements.add(made.counts);
+        let mut start = 0;
+        for found in made.found {
+            match found {
+                Found::Face { line, end } => {
+                    self.found.faces += 1;
+                    self.add_face(&made.corners[start..end as usize], FilePosition::Line(line))?;
+                    start = end as usize;
+                }
+                Found::Other { at, lines, above } => {
+                    self.above = above.map(|count| count as usize);
+                    let mut taken = Ok(());
+                    let mut lines = piece.lines_from(at as usize, lines);
+                    next_statement(&mut lines, |statement| taken = self.take(statement))?;
+                    taken?;
+                }
+            }
+        }
+        made.error.map_or(Ok(()), Err)
+    }
+
+    /// Takes a statement that isn't a plain face.
     fn take(&mut self, statement: &Statement) -> Result<(), ReadError> {
         match statement.word {
-            b"" => {}
-            word @ (b"v" | b"vt" | b"vn") => {
-                self.above[match word {
-                    b"v" => 0,
-                    b"vt" => 1,
-                    _ => 2,
-                }] += 1;
-                let rest = statement.rest();
-                self.found.with_commas += usize::from(has_comma(rest));
-                self.found.flat += usize::from(word == b"v" && is_flat(rest));
-            }
             b"f" | b"fo" => self.face(statement)?,
             b"s" => self.smoothing.iter_mut().for_each(|smoothing| smoothing.enter(statement.rest())),
             word @ (b"o" | b"g") => self.enter_part(word, statement.rest())?,
             b"usemtl" => self.materials.enter(statement.rest()),
-            // Material files were read with the vertices.
-            b"mtllib" => {}
-            b"p" => self.found.points += words(statement.rest()).count(),
-            b"l" => self.found.lines += 1,
-            b"curv" | b"curv2" | b"surf" => self.found.surfaces += 1,
-            word => self.found.unknown += usize::from(!SILENT.contains(&word)),
+            _ => {}
         }
         Ok(())
     }
@@ -394,29 +324,48 @@ impl Reader<'_, '_> {
 
     fn face(&mut self, statement: &Statement) -> Result<(), ReadError> {
         self.found.faces += 1;
-        if !self.faces.has_parts() {
-            self.faces.enter_part(DEFAULT_PART)?;
+        let mut numbers = std::mem::take(&mut self.numbers);
+        numbers.clear();
+        for word in words(statement.rest()) {
+            if numbers.len() == MAX_CORNERS {
+                return Err(statement.place().error(format!("the face has more than {MAX_CORNERS} corners")));
+            }
+            match self.corner(word).map_err(|reason| statement.place().error(reason))? {
+                Some(corner) => numbers.push(corner),
+                None => {
+                    self.begin_parts()?;
+                    self.faces.leave_out(statement.place());
+                    self.numbers = numbers;
+                    return Ok(());
+                }
+            }
+        }
+        self.add_face(&numbers, statement.place())?;
+        self.numbers = numbers;
+        Ok(())
+    }
+
+    /// Enters the part of faces that belong to none, if there was none before.
+    fn begin_parts(&mut self) -> Result<(), ReadError> {
+        if self.faces.has_parts() { Ok(()) } else { self.faces.enter_part(DEFAULT_PART) }
+    }
+
+    /// Adds a face with these corners.
+    fn add_face(&mut self, numbers: &[VertexNumbers], place: FilePosition) -> Result<(), ReadError> {
+        self.begin_parts()?;
+        if let Ok(triangle) = <[VertexNumbers; 3]>::try_from(numbers)
+            && self.add_triangle(triangle)?
+        {
+            return Ok(());
         }
         let mut corners = std::mem::take(&mut self.corners);
         corners.clear();
-        self.indices.clear();
-        for word in words(statement.rest()) {
-            if corners.len() == MAX_CORNERS {
-                return Err(statement.place().error(format!("the face has more than {MAX_CORNERS} corners")));
-            }
-            let found = self.corner(word).map_err(|reason| statement.place().error(reason))?;
-            let Some((index, corner, vertex)) = found else {
-                self.faces.leave_out(statement.place());
-                self.corners = corners;
-                return Ok(());
-            };
-            let color = self.vertices.colors.get(index).map_or(Vec4::ONE, |&color| linear_color(color));
-            corners.push(NumberedCorner { corner, number: self.faces.number(color)?, vertex });
-            self.indices.push(index);
+        for &vertex in numbers {
+            let (corner, color) = corner_of(self.vertices, vertex);
+            corners.push(NumberedCorner { corner, number: self.faces.number(color)?, vertex: Some(vertex) });
         }
         if corners.iter().any(|at| at.corner.normal.is_none()) {
-            let smoothed =
-                self.smoothing.as_ref().is_some_and(|smoothing| smoothing.complete(&self.indices, &mut corners));
+            let smoothed = self.smoothing.as_ref().is_some_and(|smoothing| smoothing.complete(numbers, &mut corners));
             *if smoothed { &mut self.found.smoothed } else { &mut self.found.without_normals } += 1;
         }
         let material = self.materials.current(&mut self.faces)?;
@@ -426,77 +375,59 @@ impl Reader<'_, '_> {
             at.vertex = at.vertex.filter(|_| placed == at.corner.uv);
             at.corner.uv = placed;
         }
-        self.faces.add(material, &mut corners, statement.place())?;
+        self.faces.add(material, &mut corners, place)?;
         self.corners = corners;
         Ok(())
     }
 
-    /// Parses a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`. Returns the number of its position too, and what determines it; none if the
-    /// position isn't in the file.
+    /// Adds a triangle whose corners are as the file has them. Returns false if the general way must do it.
+    fn add_triangle(&mut self, triangle: [VertexNumbers; 3]) -> Result<bool, ReadError> {
+        let lacks_normals = triangle.iter().any(|[.., normal]| *normal == NONE);
+        let material = self.materials.current(&mut self.faces)?;
+        if self.materials.moves(material) || lacks_normals && self.smoothing.is_some() {
+            return Ok(false);
+        }
+        let vertices = self.vertices;
+        let is_added = self.faces.add_triangle(material, triangle, |vertex| Some(corner_of(vertices, vertex)))?;
+        self.found.without_normals += usize::from(is_added && lacks_normals);
+        Ok(is_added)
+    }
+
+    /// Parses a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`. Returns its numbers; none if the position isn't in the file.
     ///
     /// # Errors
     /// A clause that says what isn't a number.
-    fn corner(&mut self, word: &[u8]) -> Result<Option<(usize, InputCorner, Option<VertexNumbers>)>, String> {
+    fn corner(&mut self, word: &[u8]) -> Result<Option<VertexNumbers>, String> {
         let mut parts = word.split(|&byte| byte == b'/');
         let [position, uv, normal] = [0, 1, 2].map(|_| parts.next().filter(|part| !part.is_empty()));
         self.found.long_corners += usize::from(parts.next().is_some());
         let Some(position) = position else {
             return Err(format!("{} isn't a corner, such as 1, 1/2, 1//3 or 1/2/3", shown(word)));
         };
-        let Vertices { positions, uvs, normals, .. } = self.vertices;
-        let Some(number) = index(position, self.above[0], positions.len())? else { return Ok(None) };
+        let counts = self.vertices.counts();
+        let Some(position) = index(position, self.above[0], counts[0])?.and_then(fitting) else { return Ok(None) };
         // A corner needs its position alone.
-        let optional = |word: Option<&[u8]>, above, count, absent: &mut usize| {
-            let found = word.and_then(|word| index(word, above, count).ok().flatten());
-            *absent += usize::from(word.is_some() && found.is_none());
-            found
+        let optional = |word: Option<&[u8]>, kind: usize, absent: &mut usize| {
+            let found = word.and_then(|word| index(word, self.above[kind], counts[kind]).ok().flatten());
+            let number = found.and_then(fitting);
+            *absent += usize::from(word.is_some() && number.is_none());
+            number.unwrap_or(NONE)
         };
-        let uv = optional(uv, self.above[1], uvs.len(), &mut self.found.absent_uvs);
-        let normal = optional(normal, self.above[2], normals.len(), &mut self.found.absent_normals);
-        let vertex = vertex_numbers([Some(number), uv, normal]);
-        let uv = uv.and_then(|uv| uvs.get(uv)).copied().unwrap_or_default();
-        let normal = normal.and_then(|normal| normals.get(normal)).copied();
-        let position = positions.get(number).copied().unwrap_or_default();
-        Ok(Some((number, InputCorner { position, normal, uv }, vertex)))
+        let uv = optional(uv, 1, &mut self.found.absent_uvs);
+        let normal = optional(normal, 2, &mut self.found.absent_normals);
+        Ok(Some([position, uv, normal]))
     }
 }
 
-/// Returns what determines a corner: the numbers of its position, texture coordinates and normal. None if one of them is too
-/// large.
-fn vertex_numbers(numbers: [Option<usize>; 3]) -> Option<VertexNumbers> {
-    // The greatest number stands for none.
-    let fitting = |number| u32::try_from(number).ok().filter(|number| *number != u32::MAX);
-    let numbers = numbers.map(|number| number.map_or(Some(u32::MAX), fitting));
-    let [Some(position), Some(uv), Some(normal)] = numbers else { return None };
-    Some([position, uv, normal])
-}
-
-/// Parses an index into a list of `count` items, and returns it counted from 0; none if the list has no such item. The file counts
-/// from 1, or backwards from the last of the `above` items before the statement, which is -1. Some programs write 1.0 for 1.
-///
-/// # Errors
-/// A clause that says what isn't a number.
-fn index(word: &[u8], above: usize, count: usize) -> Result<Option<usize>, String> {
-    let whole = |number: f64| (number.fract() == 0.0).then_some(number as i128);
-    let float = || whole(std::str::from_utf8(word).ok()?.parse().ok()?);
-    let number = whole_number(word).map(i128::from).or_else(float);
-    let number = number.ok_or_else(|| format!("{} isn't the index of a position", shown(word)))?;
-    let distance = usize::try_from(number.unsigned_abs()).unwrap_or(usize::MAX);
-    Ok(match number {
-        0 => None,
-        1.. => (distance <= count).then(|| distance - 1),
-        _ => above.checked_sub(distance),
-    })
-}
-
-/// Parses a whole number.
-fn whole_number(word: &[u8]) -> Option<i64> {
-    // Nearly all are a few digits, for which the general parser takes several times as long.
-    let is_short = (1..10).contains(&word.len()) && word.iter().all(u8::is_ascii_digit);
-    if is_short {
-        return Some(word.iter().fold(0, |number, digit| 10 * number + i64::from(digit - b'0')));
-    }
-    std::str::from_utf8(word).ok().and_then(|word| word.parse().ok())
+/// Returns the corner with these numbers of its position, texture coordinates and normal, and its colour.
+fn corner_of(vertices: &Vertices, [position, uv, normal]: VertexNumbers) -> (InputCorner, Vec4) {
+    let color = vertices.colors.get(position as usize).map_or(Vec4::ONE, |&color| linear_color(color));
+    let corner = InputCorner {
+        position: vertices.positions.get(position as usize).copied().unwrap_or_default(),
+        normal: vertices.normals.get(normal as usize).copied(),
+        uv: vertices.uvs.get(uv as usize).copied().unwrap_or_default(),
+    };
+    (corner, color)
 }
 
 #[cfg(test)]

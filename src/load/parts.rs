@@ -73,6 +73,11 @@ impl Parts {
         part.is_hidden
     }
 
+    /// Whether the next faces are left out.
+    pub(super) fn is_hidden(&self) -> bool {
+        self.current.is_some_and(|number| self.found[number].is_hidden)
+    }
+
     /// Returns the parts that have triangles, and how often one was entered that is one too many.
     pub(super) fn into_list(mut self) -> (Vec<Part>, usize) {
         self.found.retain(|part| part.triangles > 0);

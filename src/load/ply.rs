@@ -15,6 +15,7 @@ use super::import::Import;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::read_error::{FilePosition, ReadError};
+use super::recent_corners::VertexNumbers;
 use super::text_lines::shown;
 use crate::files::Limits;
 use crate::mesh::mesh_builder::InputCorner;
@@ -176,19 +177,16 @@ impl<'a> Reader<'a> {
             uvs: Vec::with_capacity(room(has_uvs)),
             colors: Vec::with_capacity(room(has_colors)),
         };
+        let row = values.row(element, &slots);
         for i in 0..element.count {
             self.at(values, i)?;
-            values.begin(element, i)?;
             let mut found = [0.0; SLOTS];
             // Alpha, where there is none.
             found[11] = 1.0 / scale;
-            for (property, slot) in element.properties.iter().zip(&slots) {
-                match (property.kind, slot) {
-                    (PropertyKind::One(scalar), Some(slot)) => found[*slot] = values.next(scalar)? as f32,
-                    (kind, _) => values.skip_one(kind)?,
-                }
+            match &row {
+                Some(row) => values.read_row(row, &mut found)?,
+                None => read_values(element, i, values, &slots, &mut found)?,
             }
-            values.end();
             let [x, y, z, nx, ny, nz, u, v, color @ ..] = found;
             vertices.positions.push(Vec3::new(x, y, z));
             if has_normals {
@@ -247,8 +245,15 @@ impl<'a> Reader<'a> {
         }
         let faces = usize::try_from(values.most(element)).unwrap_or_default();
         self.faces.expect(faces, vertices.positions.len().min(faces.saturating_mul(4)));
+        let row = values.face_row(element, list).filter(|_| element.name == b"face");
         for i in 0..element.count {
             self.at(values, i)?;
+            if let Some((triangle, rest)) = row.as_ref().and_then(|row| values.triangle(row))
+                && self.triangle(triangle, vertices)?
+            {
+                values.go_on(rest);
+                continue;
+            }
             values.begin(element, i)?;
             let place = values.place();
             self.wedges.clear();
@@ -299,6 +304,13 @@ impl<'a> Reader<'a> {
             }
         }
         self.faces.add(self.material, &mut self.corners, place)
+    }
+
+    /// Adds a triangle of these vertices. Returns false if the general way must do it.
+    fn triangle(&mut self, triangle: [u32; 3], vertices: &Vertices) -> Result<bool, ReadError> {
+        let corner =
+            |[vertex, ..]: VertexNumbers| vertices.corner(vertex.into()).map(|(_, corner, color)| (corner, color));
+        self.faces.add_triangle(self.material, triangle.map(|vertex| [vertex, 0, 0]), corner)
     }
 
     /// Reads the corners of a face. Returns whether the file has all of its vertices.
@@ -398,6 +410,25 @@ impl<'a> Reader<'a> {
         self.budget.release((12 * read.positions.capacity() + beside) as u64);
         (self.faces, holds, warnings)
     }
+}
+
+/// Reads the values of an element of number `i`, one after another, into the places that `slots` says.
+fn read_values(
+    element: &Element,
+    i: u64,
+    values: &mut Values,
+    slots: &[Option<usize>],
+    found: &mut [f32],
+) -> Result<(), ReadError> {
+    values.begin(element, i)?;
+    for (property, slot) in element.properties.iter().zip(slots) {
+        match (property.kind, slot) {
+            (PropertyKind::One(scalar), Some(slot)) => found[*slot] = values.next(scalar)? as f32,
+            (kind, _) => values.skip_one(kind)?,
+        }
+    }
+    values.end();
+    Ok(())
 }
 
 /// Returns what colours are multiplied by to lie from 0 to 1. Whole numbers go up to the largest of their type.

@@ -17,6 +17,12 @@ pub(super) struct RecentCorners {
 }
 
 impl RecentCorners {
+    /// Returns the corner of a vertex, if it is remembered.
+    pub(super) fn known(&self, vertex: VertexNumbers) -> Option<StoredCorner> {
+        let (same, corner) = (*self.slots.get(vertex[0] as usize % SLOTS)?)?;
+        (same == vertex).then_some(corner)
+    }
+
     /// Returns the corner of a vertex, which `store` stores unless it is remembered.
     pub(super) fn get(&mut self, vertex: VertexNumbers, store: impl FnOnce() -> StoredCorner) -> StoredCorner {
         if self.slots.is_empty() {
@@ -38,6 +44,7 @@ mod tests {
     #[test]
     fn a_corner_is_stored_again_only_if_another_took_its_place() {
         let (mut recent, mut stored) = (RecentCorners::default(), Vec::new());
+        assert_eq!(recent.known([7, 0, 0]), None);
         let far = SLOTS as u32;
         for vertex in [[7, 0, 0], [7, 0, 0], [8, 0, 0], [7, 0, 0], [7, 1, 0], [7, 0, 0], [7 + far, 0, 0], [8, 0, 0]] {
             let id = vertex[0] + vertex[1];
@@ -46,7 +53,9 @@ mod tests {
                 StoredCorner { id, repairs: CornerRepairs(vertex[1] as u8) }
             });
             assert_eq!(corner, StoredCorner { id, repairs: CornerRepairs(vertex[1] as u8) });
+            assert_eq!(recent.known(vertex), Some(corner));
         }
+        assert_eq!([[7, 0, 0], [7, 1, 0], [9, 0, 0]].map(|vertex| recent.known(vertex)), [None; 3]);
         assert_eq!(stored, [[7, 0, 0], [8, 0, 0], [7, 1, 0], [7, 0, 0], [7 + far, 0, 0]]);
     }
 }

@@ -39,6 +39,16 @@ impl<'a> Lines<'a> {
         Self { rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), end, count: 0, is_open: false }
     }
 
+    /// Splits a part of a text, above which there are so many lines.
+    pub(super) fn of_part(rest: &'a [u8], end: u8, above: usize) -> Self {
+        Self { rest, end, count: above, is_open: false }
+    }
+
+    /// Returns the byte that ends a line.
+    pub(super) fn end(&self) -> u8 {
+        self.end
+    }
+
     /// Returns the next line, if there is one.
     ///
     /// # Errors
@@ -113,12 +123,17 @@ pub(super) fn number(word: &[u8]) -> Result<f32, String> {
     number.ok_or_else(|| format!("{} isn't a number", shown(word)))
 }
 
-/// Parses the first N words as numbers, and ignores further words. What isn't a number, or isn't there, is NaN. A comma may stand for
-/// the point, as programs write it that take numbers from the system's language.
+/// Parses the first N words as numbers, and ignores further words. What isn't there is NaN.
 pub(super) fn numbers_or_nan<const N: usize>(text: &[u8]) -> [f32; N] {
     let mut words = words(text);
-    let read = |word: &[u8]| number(word).ok().or_else(|| number(&with_point(word)?).ok());
-    [(); N].map(|()| words.next().and_then(read).unwrap_or(f32::NAN))
+    [(); N].map(|()| words.next().map_or(f32::NAN, number_or_nan))
+}
+
+/// Parses a number; what isn't one is NaN. A comma may stand for the point, as programs write it that take numbers from the system's
+/// language.
+pub(super) fn number_or_nan(word: &[u8]) -> f32 {
+    let own = |word: &[u8]| std::str::from_utf8(word).ok()?.parse().ok();
+    own(word).or_else(|| own(&with_point(word)?)).unwrap_or(f32::NAN)
 }
 
 /// Returns a word with a point instead of its comma, if it has a single comma and no point.

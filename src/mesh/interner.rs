@@ -13,15 +13,19 @@ pub(crate) struct Interner {
 }
 
 impl Interner {
-    /// Makes an empty table with room for `count` items.
-    pub(crate) fn with_capacity(count: usize) -> Self {
-        Self { table: HashTable::with_capacity(count), ..Self::default() }
-    }
-
     /// Returns the number of the item with this key, and whether the item is new, in which case the number is the next
     /// one. `key_of` must return the key of each item that has a number.
     pub(crate) fn number<K: Hash + Eq>(&mut self, key: K, key_of: impl Fn(u32) -> K) -> (u32, bool) {
-        let hash = self.hasher.hash_one(&key);
+        self.number_of(self.hash(&key), key, key_of)
+    }
+
+    /// Returns the hash of a key for [`number_of`](Self::number_of).
+    pub(crate) fn hash(&self, key: impl Hash) -> u64 {
+        self.hasher.hash_one(key)
+    }
+
+    /// Returns the number of the item with this key and this hash, as [`number`](Self::number) does.
+    pub(crate) fn number_of<K: Hash + Eq>(&mut self, hash: u64, key: K, key_of: impl Fn(u32) -> K) -> (u32, bool) {
         if let Some(&id) = self.table.find(hash, |&id| key_of(id) == key) {
             return (id, false);
         }
@@ -71,7 +75,7 @@ mod tests {
 
     #[test]
     fn equal_keys_have_equal_numbers_however_it_grows() {
-        let (mut ids, mut things) = (Interner::with_capacity(3), Vec::new());
+        let (mut ids, mut things) = (Interner::default(), Vec::new());
         for i in 0..10_000_u64 {
             let key = i * i % 4096;
             let (id, is_new) = ids.number(key, |id| things[id as usize]);

@@ -76,6 +76,9 @@ impl Group {
     }
 }
 
+/// How many corners are looked up one right after the other.
+const TOGETHER: usize = 32;
+
 impl MeshBuilder {
     pub fn new() -> Self {
         Self::default()
@@ -179,6 +182,23 @@ impl MeshBuilder {
         let (corner, repairs) = repaired(corner);
         self.offered += 1;
         StoredCorner { id: self.distinct.id(corner, binding), repairs }
+    }
+
+    /// Stores corners with their bindings as [`corner`](Self::corner) does, and appends what is stored to `stored`. Equal ones are looked
+    /// up one right after the other: the processor then waits for memory once for several of them.
+    pub(crate) fn corners(&mut self, corners: &[(InputCorner, u32)], stored: &mut Vec<StoredCorner>) {
+        for some in corners.chunks(TOGETHER) {
+            let none = Corner { position: Vec3::ZERO, normal: Vec3::ZERO, uv: Vec2::ZERO };
+            let mut own = [(none, CornerRepairs::default(), 0, 0); TOGETHER];
+            for (own, &(corner, binding)) in own.iter_mut().zip(some) {
+                let (corner, repairs) = repaired(corner);
+                *own = (corner, repairs, binding, self.distinct.hash(&corner, binding));
+            }
+            for &(corner, repairs, binding, hash) in &own[..some.len()] {
+                stored.push(StoredCorner { id: self.distinct.id_of(hash, corner, binding), repairs });
+            }
+        }
+        self.offered += corners.len();
     }
 
     /// Adds a triangle of stored corners.

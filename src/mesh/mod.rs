@@ -5,6 +5,7 @@ mod alike_corners;
 mod bounding_box_tree;
 pub(crate) mod bounds;
 pub(crate) mod build_limits;
+mod cell_chains;
 pub(crate) mod chunked_vec;
 pub(crate) mod corner_details;
 pub(crate) mod crease_band;

@@ -1,20 +1,17 @@
 //! Finds out which points have another point nearby: only those can change when points are welded within a tolerance.
 
+use std::ops::ControlFlow::{Break, Continue};
+
 use glam::{DVec3, Vec3};
 
+use super::cell_chains::CellChains;
 use crate::cores::in_ranges;
-
-/// The number that ends a chain.
-const NONE: u32 = u32::MAX;
 
 /// How many other points are compared with a point at most. A point in a crowd counts as near to another one without a
 /// search, which keeps the work linear.
 const TRIES: usize = 64;
 
-/// How many comparisons a point may take on average, for a search as far as a distance to be worthwhile.
-const WORTHWHILE: usize = 16;
-
-/// How many points of the mesh are tried to estimate that average.
+/// How many points of the mesh are tried to estimate how many have another one nearby.
 const SAMPLES: usize = 512;
 
 /// For each point, which of some tolerances are so large that another point may lie within them.
@@ -25,14 +22,14 @@ pub(super) struct NearPoints {
 
 impl NearPoints {
     /// Compares `points` with each other; only those with the same number can be near. There are no numbers if all are
-    /// the same. `tolerances` are above 0, in object units, and ascending; no coordinate lies further than 2^30 of the
-    /// first one from `origin`, which is the least in each. Takes linear time.
-    pub(super) fn find(points: &[Vec3], numbers: &[u32], tolerances: &[f64], origin: DVec3) -> Self {
-        let grid = tolerances.iter().rev().map(|&reach| Grid::new(points, reach, origin));
-        let found = (0..tolerances.len() as u8).rev().zip(grid).find(|(_, grid)| grid.comparisons() <= WORTHWHILE);
+    /// the same. `tolerances` are above 0, in object units, and ascending. Within those that most points have another one in,
+    /// no search is made, and all points count as near. Takes linear time.
+    pub(super) fn find(points: &[Vec3], numbers: &[u32], tolerances: &[f64]) -> Self {
+        let grid = tolerances.iter().rev().map(|&reach| Grid::new(points, numbers, reach));
+        let found = (0..tolerances.len() as u8).rev().zip(grid).find(|(_, grid)| grid.leaves_out_most());
         let Some((furthest, grid)) = found else { return Self { first: vec![0; points.len()] } };
         let tolerances = &tolerances[..=usize::from(furthest)];
-        let first = |point: usize| match grid.nearest(point as u32, numbers) {
+        let first = |point: usize| match grid.nearest(point as u32) {
             Nearest::At(distance) => tolerances.partition_point(|tolerance| *tolerance < distance) as u8,
             // No search went further.
             Nearest::Beyond => furthest + 1,
@@ -59,95 +56,65 @@ enum Nearest {
     Unknown,
 }
 
-/// Points in cells of a grid. Cells that have the same hash share a chain, so that no cell must be stored.
+/// Points in cells of a grid.
 struct Grid<'a> {
     points: &'a [Vec3],
-    origin: DVec3,
-    /// How far one can search, in object units. Cells are twice as wide.
+    numbers: &'a [u32],
+    /// How far one can search, in object units.
     reach: f64,
-    /// The last point of each chain.
-    last: Vec<u32>,
-    /// For each point, the one before it in its chain.
-    before: Vec<u32>,
+    chains: CellChains,
 }
 
 impl<'a> Grid<'a> {
-    fn new(points: &'a [Vec3], reach: f64, origin: DVec3) -> Self {
-        let chains = points.len().next_power_of_two();
-        let mut grid =
-            Self { points, origin, reach, last: vec![NONE; chains], before: Vec::with_capacity(points.len()) };
-        for (point, place) in (0..).zip(points) {
-            let [x, y, z] = grid.offset(*place).map(|along| grid.cell(along));
-            let chain = grid.chain(x, y, z);
-            grid.before.push(std::mem::replace(&mut grid.last[chain], point));
+    fn new(points: &'a [Vec3], numbers: &'a [u32], reach: f64) -> Self {
+        // Wider than a search needs, so that most searches look at few cells.
+        let chains = CellChains::with_capacity(4.0 * reach, points.len());
+        let mut grid = Self { points, numbers, reach, chains };
+        for point in 0..points.len() as u32 {
+            let own = grid.point(point);
+            // There is room for all, so no earlier point is asked for.
+            grid.chains.push(own, |_| own);
         }
         grid
     }
 
-    fn offset(&self, place: Vec3) -> [f64; 3] {
-        (place.as_dvec3() - self.origin).to_array()
-    }
-
-    /// Returns the number of the cell at an offset from the origin; 0 below it, where no points are.
-    fn cell(&self, along: f64) -> u32 {
-        (along / (2.0 * self.reach)) as u32
-    }
-
-    fn chain(&self, x: u32, y: u32, z: u32) -> usize {
-        // Large odd numbers without a pattern in their bits. Neighbours along x lie side by side in memory.
-        let hash = x.wrapping_add(y.wrapping_mul(0x9e37_79b1)).wrapping_add(z.wrapping_mul(0x85eb_ca77));
-        hash as usize & (self.last.len() - 1)
-    }
-
-    /// Calls `visit` with the points that may lie within reach of a point, and with it itself; a point may come several
-    /// times. Returns how many there were, or none if there are more than [`TRIES`].
-    fn around(&self, point: u32, mut visit: impl FnMut(u32)) -> Option<usize> {
-        // A little more than the reach, for the rounding of offsets.
-        let reach = self.reach * (1.0 + 1e-6);
-        let [x, y, z] =
-            self.offset(self.points[point as usize]).map(|at| self.cell(at - reach)..=self.cell(at + reach));
-        let mut count = 0;
-        for x in x {
-            for y in y.clone() {
-                for z in z.clone() {
-                    let mut next = self.last[self.chain(x, y, z)];
-                    while next != NONE {
-                        if count == TRIES {
-                            return None;
-                        }
-                        count += 1;
-                        visit(next);
-                        next = self.before[next as usize];
-                    }
-                }
-            }
-        }
-        Some(count)
+    fn point(&self, point: u32) -> (DVec3, u32) {
+        let number = self.numbers.get(point as usize).copied().unwrap_or_default();
+        (self.points[point as usize].as_dvec3(), number)
     }
 
     /// Returns the nearest other point with the same number.
-    fn nearest(&self, point: u32, numbers: &[u32]) -> Nearest {
-        let place = self.points[point as usize].as_dvec3();
-        let number = |point: u32| numbers.get(point as usize);
-        let mut least = f64::INFINITY;
-        let tried = self.around(point, |other| {
-            if other != point && number(other) == number(point) {
-                least = least.min(self.points[other as usize].as_dvec3().distance_squared(place));
+    fn nearest(&self, point: u32) -> Nearest {
+        let (place, number) = self.point(point);
+        let (mut least, mut count) = (f64::INFINITY, 0);
+        // A little more than the reach, for the rounding of distances.
+        let tried = self.chains.near((place, number), self.reach * (1.0 + 1e-6), |other, reach| {
+            if count == TRIES {
+                return Break(());
             }
+            count += 1;
+            let (at, of) = self.point(other);
+            let square = at.distance_squared(place);
+            if other != point && of == number && square < least {
+                least = square;
+                *reach = reach.min(square.sqrt());
+            }
+            Continue(())
         });
         match least.sqrt() {
-            _ if tried.is_none() => Nearest::Unknown,
+            _ if tried.is_break() => Nearest::Unknown,
             distance if distance <= self.reach => Nearest::At(distance),
             _ => Nearest::Beyond,
         }
     }
 
-    /// Estimates how many points a point is compared with.
-    fn comparisons(&self) -> usize {
+    /// Estimates whether most points have no other one within reach. Only then is a search for all worth its time.
+    fn leaves_out_most(&self) -> bool {
         let step = (self.points.len() / SAMPLES).max(1);
-        let tried =
-            (0..self.points.len()).step_by(step).map(|point| self.around(point as u32, |_| ()).unwrap_or(TRIES));
-        tried.sum::<usize>() / self.points.len().div_ceil(step).max(1)
+        let samples = (0..self.points.len() as u32).step_by(step);
+        let (near, beyond): (Vec<_>, Vec<_>) =
+            samples.partition(|&point| !matches!(self.nearest(point), Nearest::Beyond));
+        near.len() <= beyond.len()
     }
 }
 
@@ -171,10 +138,6 @@ mod tests {
         tolerances.iter().map(|&tolerance| near(tolerance).collect()).collect()
     }
 
-    fn origin(points: &[Vec3]) -> DVec3 {
-        points.iter().fold(Vec3::INFINITY, |least, point| least.min(*point)).as_dvec3()
-    }
-
     proptest! {
         #[test]
         fn no_near_point_is_missed_and_far_ones_are_left_out(
@@ -187,7 +150,7 @@ mod tests {
             let points: Vec<Vec3> = places.iter().map(|at| (DVec3::from(at.map(f64::from)) * scale).as_vec3()).collect();
             let numbers: Vec<u32> = if mixed { (0..points.len() as u32).map(|i| i % 3).collect() } else { Vec::new() };
             let tolerances = [1.0, 2.0, 5.0, 9.0].map(|tolerance| tolerance * scale);
-            let found = NearPoints::find(&points, &numbers, &tolerances, origin(&points));
+            let found = NearPoints::find(&points, &numbers, &tolerances);
             let most = usize::from(found.first.iter().copied().max().unwrap_or_default());
             for (k, near) in slow(&points, &numbers, &tolerances).into_iter().enumerate() {
                 let all: Vec<u32> = found.within(k).collect();
@@ -203,7 +166,7 @@ mod tests {
         let sheet = |i: u32| Vec3::new((i % 100) as f32, (i / 100) as f32, 0.0);
         let mut points: Vec<Vec3> = (0..10_000).map(sheet).collect();
         points.push(Vec3::new(17.0, 30.0, 1e-3));
-        let found = NearPoints::find(&points, &[], &[1e-4, 1e-2, 0.5], DVec3::ZERO);
+        let found = NearPoints::find(&points, &[], &[1e-4, 1e-2, 0.5]);
         assert_eq!(found.within(0).count(), 0);
         assert!((1..3).all(|k| found.within(k).eq([3017, 10_000])));
     }
@@ -212,7 +175,7 @@ mod tests {
     fn a_crowd_counts_as_near_and_takes_no_time() {
         let spot = |i: u32| Vec3::new(1.0 + 1e-7 * (i % 1000) as f32, 1.0 + 1e-7 * (i / 1000) as f32, 1.0);
         let points: Vec<Vec3> = (0..300_000).map(spot).collect();
-        let found = NearPoints::find(&points, &[], &[1e-3, 1.0], origin(&points));
+        let found = NearPoints::find(&points, &[], &[1e-3, 1.0]);
         assert_eq!(found.within(0).count(), points.len());
     }
 }

@@ -7,7 +7,6 @@ use glam::Vec3;
 use serde::Serialize;
 
 use super::build_limits::{BuildError, Unlimited};
-use super::interner::Interner;
 use super::union_find::UnionFind;
 use super::weld::weld_alike;
 use super::{Corner, Mesh};
@@ -393,11 +392,11 @@ pub(super) fn is_degenerate([a, b, c]: [u32; 3]) -> bool {
 
 /// Returns the greatest amount of memory that [`weld_corners`] needs temporarily, in bytes.
 fn weld_bytes(corners: usize, tolerance: f32) -> u64 {
-    // Each corner's point, and the points, which are copied when their list shrinks.
-    let exactly = 36;
+    // Each corner's position, its hash and its point; then the points, which are copied when their list shrinks.
+    let exactly = 44;
     // Further lists of the points, and a table of cells; lists and table double as they grow.
     let within = if tolerance > 0.0 { 64 } else { 0 };
-    Interner::bytes_for(corners) + (exactly + within) * corners as u64
+    (exactly + within) * corners as u64
 }
 
 /// Returns the range of each point's sides.

@@ -1,18 +1,17 @@
 //! Finds out which positions are the same point.
 
-use std::collections::HashMap;
-use std::num::NonZero;
+use std::hash::BuildHasher;
+use std::ops::ControlFlow;
 
 use foldhash::fast::RandomState;
-use glam::{DVec3, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 
-use super::interner::Interner;
-use super::spatial_hash::SpatialHash;
+use super::cell_chains::CellChains;
 
 /// Joins equal positions into points. Two positions are equal if all three coordinates have the same value (-0 equals
 /// 0), without any tolerance. Points are in the order of their first appearance, and have +0 for every zero.
 ///
-/// Returns the points, and for each position the index of its point. Takes expected linear time.
+/// Returns the points, and for each position the index of its point. Takes about n log n steps for n positions.
 pub(crate) fn weld(positions: impl IntoIterator<Item = Vec3>) -> (Vec<Vec3>, Vec<u32>) {
     let (points, point_of) = weld_exactly(positions.into_iter().map(|position| (position, 0)));
     (points.into_iter().map(|(point, _)| point).collect(), point_of)
@@ -20,24 +19,49 @@ pub(crate) fn weld(positions: impl IntoIterator<Item = Vec3>) -> (Vec<Vec3>, Vec
 
 /// Joins positions as [`weld`] does; each has a number, which must be equal too.
 fn weld_exactly(positions: impl Iterator<Item = (Vec3, u32)>) -> (Vec<(Vec3, u32)>, Vec<u32>) {
-    let count = positions.size_hint().0;
-    let (mut ids, mut points) = (Interner::with_capacity(count), Vec::with_capacity(count));
+    let mut points: Vec<_> = positions.map(|(position, number)| (plus_zero3(position), number)).collect();
+    let mut point_of = first_equal(&points);
+    let mut count = 0;
+    for i in 0..points.len() {
+        let first = point_of[i] as usize;
+        // The first of equal positions comes before the others, and has its point already.
+        point_of[i] = if first < i { point_of[first] } else { count };
+        if first == i {
+            points[count as usize] = points[i];
+            count += 1;
+        }
+    }
+    points.truncate(count as usize);
+    (points, point_of)
+}
+
+/// Returns for each position the first one that has the same bits and the same number. Hashes are sorted, since a table of them
+/// would be read all over memory.
+fn first_equal(points: &[(Vec3, u32)]) -> Vec<u32> {
     // Two words per key, which foldhash hashes several times faster than an array.
     let key = |(point, number): (Vec3, u32)| {
         let [x, y, z] = point.to_array().map(|coordinate| u64::from(coordinate.to_bits()));
         (x << 32 | y, z << 32 | u64::from(number))
     };
-    let point_of = positions
-        .map(|(position, number)| {
-            let point = (plus_zero3(position), number);
-            let (id, is_new) = ids.number(key(point), |id| key(points[id as usize]));
-            if is_new {
-                points.push(point);
-            }
-            id
-        })
-        .collect();
-    (points, point_of)
+    let hasher = RandomState::default();
+    let hashed = |(i, point): (u64, &(Vec3, u32))| hasher.hash_one(key(*point)) >> 32 << 32 | i;
+    let mut sorted: Vec<u64> = (0..).zip(points).map(hashed).collect();
+    sorted.sort_unstable();
+    let mut first: Vec<u32> = vec![0; points.len()];
+    // The first positions of those with one hash. Nearly always there is only one.
+    let mut firsts: Vec<u32> = Vec::new();
+    for alike in sorted.chunk_by(|a, b| a >> 32 == b >> 32) {
+        firsts.clear();
+        for i in alike.iter().map(|own| *own as u32) {
+            let own = key(points[i as usize]);
+            let same = firsts.iter().copied().find(|first| key(points[*first as usize]) == own);
+            first[i as usize] = same.unwrap_or_else(|| {
+                firsts.push(i);
+                i
+            });
+        }
+    }
+    first
 }
 
 /// Joins positions within a tolerance, in object units, into points. Distinct positions are taken in the order of their
@@ -46,8 +70,8 @@ fn weld_exactly(positions: impl Iterator<Item = (Vec3, u32)>) -> (Vec<(Vec3, u32
 /// long a chain of near positions is, and any two points are more than one tolerance apart.
 ///
 /// A tolerance that isn't above 0 gives the same result as [`weld`]. Returns the points, and for each position the
-/// index of its point. Takes expected linear time, since only a limited number of points that far apart fit into one
-/// cell of the spatial hash.
+/// index of its point. Beside the exact weld it takes expected linear time, since only a limited number of points that far apart fit
+/// into one cell of the grid.
 #[cfg(test)]
 pub(crate) fn weld_within(positions: impl IntoIterator<Item = Vec3>, tolerance: f64) -> (Vec<Vec3>, Vec<u32>) {
     weld_alike(positions.into_iter().map(|position| (position, 0)), tolerance)
@@ -67,47 +91,63 @@ pub(crate) fn weld_alike(positions: impl Iterator<Item = (Vec3, u32)>, tolerance
 
 /// Joins distinct positions as [`weld_alike`] does, within a tolerance above 0.
 pub(super) fn merge_within(distinct: impl Iterator<Item = (Vec3, u32)>, tolerance: f64) -> (Vec<Vec3>, Vec<u32>) {
-    let mut grids: HashMap<u32, SpatialHash, RandomState> = HashMap::default();
-    let mut apart = Apart::default();
+    let mut apart = Apart::new(tolerance);
     let mut merged = Vec::with_capacity(distinct.size_hint().0);
     for (position, number) in distinct {
-        let grid = grids.entry(number).or_insert_with(|| SpatialHash::new(tolerance));
-        merged.push(apart.nearest(grid, position, tolerance).unwrap_or_else(|| apart.push(grid, position)));
+        merged.push(apart.nearest(position, number).unwrap_or_else(|| apart.push(position, number)));
     }
     (apart.points, merged)
 }
 
-/// Points that are more than one tolerance apart. `before` links each point to the one before it in its cell; a list
-/// for each cell would take several times as much memory as the points.
-#[derive(Default)]
+/// Points that are more than one tolerance apart, or have different numbers.
 struct Apart {
+    tolerance: f64,
     points: Vec<Vec3>,
-    before: Vec<Option<NonZero<u32>>>,
+    /// The number of each point; empty while all are 0.
+    numbers: Vec<u32>,
+    chains: CellChains,
 }
 
 impl Apart {
-    fn push(&mut self, grid: &mut SpatialHash, position: Vec3) -> u32 {
-        let point = self.points.len() as u32;
-        self.points.push(position);
-        let before = grid.put(point, |point| self.place(point));
-        // Stores the number plus one, since 0 stands for none.
-        self.before.push(before.and_then(|before| NonZero::new(before + 1)));
-        point
+    fn new(tolerance: f64) -> Self {
+        // Cells that are as narrow as a search allows: in wider ones there are more points to compare.
+        let chains = CellChains::with_capacity(2.0 * tolerance, 0);
+        Self { tolerance, points: Vec::new(), numbers: Vec::new(), chains }
     }
 
-    fn place(&self, point: u32) -> DVec3 {
-        self.points[point as usize].as_dvec3()
+    fn push(&mut self, position: Vec3, number: u32) -> u32 {
+        if number != 0 || !self.numbers.is_empty() {
+            self.numbers.resize(self.points.len(), 0);
+            self.numbers.push(number);
+        }
+        let (points, numbers) = (&self.points, &self.numbers);
+        self.chains.push((position.as_dvec3(), number), |point| {
+            (points[point as usize].as_dvec3(), numbers.get(point as usize).copied().unwrap_or_default())
+        });
+        self.points.push(position);
+        self.points.len() as u32 - 1
     }
 
     /// Returns the nearest point within the tolerance; of several at the same distance, the lowest.
-    fn nearest(&self, grid: &SpatialHash, position: Vec3, tolerance: f64) -> Option<u32> {
+    fn nearest(&self, position: Vec3, number: u32) -> Option<u32> {
         let place = position.as_dvec3();
-        let before = |&point: &u32| self.before[point as usize].map(|next| next.get() - 1);
-        let near = grid.near(place, |point| self.place(point));
-        let near = near.flat_map(|latest| std::iter::successors(Some(latest), before));
-        let distances = near.map(|point| (self.place(point).distance(place), point));
-        let within = distances.filter(|(distance, _)| *distance <= tolerance);
-        within.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).map(|(_, point)| point)
+        let mut nearest: Option<(f64, u32)> = None;
+        // A search that doesn't break comes to its end.
+        let _ = self.chains.near((place, number), self.tolerance, |point, reach| {
+            let square = self.points[point as usize].as_dvec3().distance_squared(place);
+            // Most of what is too far away is so by its square, with room for rounding, and needs no root.
+            let is_far = square > *reach * *reach * (1.0 + 1e-9);
+            if !is_far && self.numbers.get(point as usize).copied().unwrap_or_default() == number {
+                let distance = square.sqrt();
+                let is_nearer = |(least, first)| (distance, point) < (least, first);
+                if distance <= self.tolerance && nearest.is_none_or(is_nearer) {
+                    nearest = Some((distance, point));
+                    *reach = distance;
+                }
+            }
+            ControlFlow::Continue(())
+        });
+        nearest.map(|(_, point)| point)
     }
 }
 
@@ -124,6 +164,8 @@ pub(super) fn plus_zero2(v: Vec2) -> Vec2 {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::HashMap;
+
     use super::*;
     use proptest::prelude::*;
 
@@ -207,7 +249,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_spatial_hash_welds_as_a_slow_search_does(
+        fn the_grid_welds_as_a_slow_search_does(
             grid in prop::collection::vec(prop::array::uniform3(-6_i8..6), 0..60),
             tolerance in 0_u8..7,
         ) {

@@ -64,7 +64,7 @@ pub fn weld_previews(
     };
     // All positions may be the same.
     if distances[0] > 0.0 {
-        let near = NearPoints::find(&exact.topology.points, &exact.numbers, &distances, bounds.min.as_dvec3());
+        let near = NearPoints::find(&exact.topology.points, &exact.numbers, &distances);
         let changed: Vec<usize> = (0..TOLERANCES.len()).filter(|&k| near.within(k).next().is_some()).collect();
         // Two at a time: more would take much memory.
         for (step, pair) in changed.chunks(2).enumerate() {

@@ -1,10 +1,13 @@
 //! Whose normals the mesh has, which of its axes points up, and what its unit is.
 
+use clap::Parser;
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use pnaen::app::App;
+use pnaen::app::{App, Persistence};
+use pnaen::cli::Cli;
+use pnaen::files::Limits;
 use pnaen::load::{Import, LengthUnit, NormalSource, Source};
 use pnaen::mesh::{Shape, UpAxis};
 use pnaen::render::Camera;
@@ -59,6 +62,41 @@ fn normals_are_made_anew_with_a_crease_angle_and_undone_while_the_camera_stays()
     assert_eq!((import(&harness), corners(&harness)), (Import::default(), before));
     press_with(&mut harness, Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
     assert_eq!(import(&harness).normals, NormalSource::Made);
+}
+
+#[test]
+fn the_command_line_says_how_the_first_mesh_is_taken() {
+    let (folder, state) = (TempDir::new().expect("a folder"), TempDir::new().expect("a folder"));
+    let path = folder.path().join("parts.obj");
+    std::fs::write(&path, BENT.replace("f 1 4", "o lid\nf 1 4").replace("f 1 2", "o side\nf 1 2"))
+        .expect("a writable folder");
+    let options =
+        ["--up", "z", "--unit", "cm", "--mesh-normals", "made", "--crease-angle", "20", "--hide-part", "side"];
+    let arguments = ["pnaen".as_ref(), path.as_os_str()].into_iter().chain(options.map(AsRef::as_ref));
+    let opening = Cli::try_parse_from(arguments).expect("options of the window").opening;
+    let (source, kept) = (Source::File(path), state.path().to_owned());
+    let first = source.clone();
+    let mut harness = Harness::builder().with_size([1200.0, 960.0]).wgpu().build_eframe(move |context| {
+        let mut app = App::new(context, Some(first), Limits::default()).expect("these tests need a graphics adapter");
+        app.resume(&context.egui_ctx, Persistence::read(Some(&kept)));
+        app.open_as(&context.egui_ctx, &opening);
+        app
+    });
+    settle(&mut harness);
+    let made = Import {
+        normals: NormalSource::Made,
+        crease_angle: 20.0,
+        up: Some(UpAxis::Z),
+        unit: Some(LengthUnit::Centimetre),
+    };
+    assert_eq!((import(&harness), harness.state().settings().import), (made, made));
+    assert_eq!(harness.state().loaded().expect("a mesh").preparation.hidden, ["side"]);
+    // Without the side, the square of 2 times 3 stands upright.
+    assert_eq!(size(&harness), [0.02, 0.03, 0.0]);
+    drop(harness);
+    let again = resumed(state.path(), [1200.0, 960.0], Some(source));
+    let loaded = again.state().loaded().expect("a mesh");
+    assert_eq!((loaded.preparation.import, loaded.mesh.triangles.len()), (made, 4), "parts are shown again");
 }
 
 #[test]

@@ -8,6 +8,7 @@ use super::leak_job::LeakJob;
 use super::measure_job::MeasureJob;
 use super::silhouette_job::SilhouetteJob;
 use crate::app::App;
+use crate::cli::OpeningOptions;
 use crate::engine::{Loaded, Preparation};
 use crate::load::environment_file::is_environment;
 use crate::load::format::Format;
@@ -23,6 +24,15 @@ impl App {
         let keep_view = preparation.is_some();
         let preparation = preparation.unwrap_or_else(|| self.plain(&source));
         self.jobs.load = Some(Load::start(&self.engine, context, source, preparation, self.settings, keep_view));
+    }
+
+    /// Takes the mesh that is being opened as the command line says, instead of as it was kept.
+    pub(crate) fn open_as(&mut self, context: &egui::Context, opening: &OpeningOptions) {
+        let Some(load) = self.jobs.load.as_ref().filter(|_| !opening.is_empty()) else { return };
+        let (source, mut preparation) = (load.source.clone(), load.preparation.clone());
+        opening.change(&mut preparation);
+        self.settings.import = preparation.import;
+        self.jobs.load = Some(Load::start(&self.engine, context, source, preparation, self.settings, false));
     }
 
     /// Loads the same mesh again after `change` has changed its preparation.

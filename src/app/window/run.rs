@@ -10,6 +10,7 @@ use thiserror::Error;
 use super::device_lost::Next;
 use crate::app::persistence::{LEAST_SIZE, WindowGeometry, folder};
 use crate::app::{App, Persistence};
+use crate::cli::OpeningOptions;
 use crate::files::Limits;
 use crate::gpu::{AdapterChoice, BACKENDS, GpuError, device_descriptor};
 use crate::load::Source;
@@ -31,13 +32,18 @@ pub enum WindowError {
     Gone(String),
 }
 
-/// Opens the window with `source`, or with a cube made in code, on the chosen adapter. Returns when it is closed. Files
-/// beyond `limits` aren't opened.
+/// Opens the window with `source`, or with a cube made in code, on the chosen adapter; `opening` says how the mesh is taken. Returns
+/// when it is closed. Files beyond `limits` aren't opened.
 ///
 /// # Errors
 /// There is no display, no adapter, or the window can't be drawn.
-pub(crate) fn run(source: Option<Source>, limits: Limits, adapter: AdapterChoice) -> Result<(), WindowError> {
-    run_watched(source, limits, adapter, |_, _| {})
+pub(crate) fn run(
+    source: Option<Source>,
+    opening: &OpeningOptions,
+    limits: Limits,
+    adapter: AdapterChoice,
+) -> Result<(), WindowError> {
+    run_opening(source, opening, limits, adapter, |_, _| {})
 }
 
 /// Like [`run`], but calls `watch` before every frame, in all windows that follow each other.
@@ -46,6 +52,16 @@ pub(crate) fn run(source: Option<Source>, limits: Limits, adapter: AdapterChoice
 /// There is no display, no adapter, or the window can't be drawn.
 pub fn run_watched(
     source: Option<Source>,
+    limits: Limits,
+    adapter: AdapterChoice,
+    watch: impl FnMut(&mut App, &egui::Context) + 'static,
+) -> Result<(), WindowError> {
+    run_opening(source, &OpeningOptions::default(), limits, adapter, watch)
+}
+
+fn run_opening(
+    source: Option<Source>,
+    opening: &OpeningOptions,
     limits: Limits,
     adapter: AdapterChoice,
     watch: impl FnMut(&mut App, &egui::Context) + 'static,
@@ -60,6 +76,7 @@ pub fn run_watched(
     let first = |context: &eframe::CreationContext| {
         let mut app = App::new(context, source, limits)?;
         app.resume(&context.egui_ctx, lasting);
+        app.open_as(&context.egui_ctx, opening);
         Ok(app)
     };
     let mut closed = show(place, &adapter, &watch, first)?;

@@ -114,7 +114,7 @@ impl FromArgMatches for ImportOptions {
 }
 
 /// An option of the command line. Help texts have no period at their end.
-fn arg(declaration: &'static Declaration) -> Arg {
+pub(super) fn arg(declaration: &'static Declaration) -> Arg {
     let arg = Arg::new(declaration.name).long(declaration.name).help(help(declaration));
     if matches!(declaration.kind, Kind::Switch) {
         return arg.action(ArgAction::SetTrue);
@@ -156,13 +156,7 @@ fn possible(description: Description) -> PossibleValue {
 /// Puts what was given on the command line into settings.
 fn take(declaration: &Declaration, matches: &ArgMatches, settings: &mut Settings) -> Result<(), Error> {
     let name = declaration.name;
-    let given = || matches.get_many::<Value>(name).into_iter().flatten().cloned();
-    let value = match declaration.kind {
-        Kind::Switch => Some(Value::Switch(matches.get_flag(name))),
-        Kind::Several(_) => Some(Value::Names(given().filter_map(|value| name_of(&value)).collect())),
-        _ => given().next_back(),
-    };
-    match value {
+    match given(declaration, matches) {
         Some(value) if !declaration.set(settings, value.clone()) => {
             // Only a list of overlays is refused as a whole: values that are wrong by themselves never come here.
             let message =
@@ -170,6 +164,17 @@ fn take(declaration: &Declaration, matches: &ArgMatches, settings: &mut Settings
             Err(Error::raw(ErrorKind::ValueValidation, message))
         }
         _ => Ok(()),
+    }
+}
+
+/// Returns the value of an option, if it has one.
+pub(super) fn given(declaration: &Declaration, matches: &ArgMatches) -> Option<Value> {
+    let name = declaration.name;
+    let given = || matches.get_many::<Value>(name).into_iter().flatten().cloned();
+    match declaration.kind {
+        Kind::Switch => Some(Value::Switch(matches.get_flag(name))),
+        Kind::Several(_) => Some(Value::Names(given().filter_map(|value| name_of(&value)).collect())),
+        _ => given().next_back(),
     }
 }
 

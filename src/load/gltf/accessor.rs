@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::collections::HashMap;
+use std::ops::Range;
 
 use ::gltf::accessor::sparse::{IndexType, Sparse};
 use ::gltf::accessor::{Accessor, DataType, Dimensions};
@@ -11,6 +12,7 @@ use super::GltfError;
 use super::decompressed_primitive::DecompressedPrimitive;
 use super::extensions::{Extensions, MeshoptExtension, MeshoptMode};
 use super::meshopt::{Decompressed, decompress};
+use super::notes::Notes;
 use super::reach::Use;
 use super::repair::Faults;
 use crate::load::memory_budget::Budget;
@@ -26,6 +28,8 @@ pub(crate) struct Accessors<'a> {
     buffers: &'a [Vec<u8>],
     /// For each buffer view, its decompressed bytes and their stride, if it is compressed.
     decompressed: Vec<Option<(Decompressed, usize)>>,
+    /// The buffers with copies of data that can't be decompressed, by number.
+    copies: HashMap<usize, Vec<u8>>,
     /// By mesh and primitive, the data that Draco compressed.
     pub unpacked: HashMap<[usize; 2], DecompressedPrimitive>,
     /// What can't be read, because it is broken and only details use it.
@@ -36,10 +40,14 @@ pub(crate) struct Accessors<'a> {
 /// Converts the bytes of an element into its value.
 type Decode<'a, T> = Box<dyn Fn(&[u8]) -> T + 'a>;
 
+/// Appends the values of many elements: a call for all of them takes a fraction of the time of a call for each.
+type DecodeAll<'a, T> = Box<dyn Fn(Elements, &mut Vec<T>) + 'a>;
+
 /// The values of an accessor. Values that lie in a buffer stay there, and are decoded when they are read.
 pub(crate) struct List<'a, T: Clone> {
     elements: Elements<'a>,
     decode: Decode<'a, T>,
+    decode_all: DecodeAll<'a, T>,
     /// Values that were decoded before: those of a sparse accessor, or without a buffer view, or of compressed data.
     decoded: Option<Cow<'a, [T]>>,
     zero: T,
@@ -48,8 +56,25 @@ pub(crate) struct List<'a, T: Clone> {
 impl<'a, T: Copy + 'a> List<'a, T> {
     /// Makes a list of values that were decoded before.
     pub(crate) fn of(values: &'a [T], zero: T) -> Self {
-        let decode: Decode<T> = Box::new(move |_| zero);
-        Self { elements: Elements::default(), decode, decoded: Some(Cow::Borrowed(values)), zero }
+        Self::decoded(Cow::Borrowed(values), zero)
+    }
+
+    fn decoded(values: Cow<'a, [T]>, zero: T) -> Self {
+        let list = Self::in_buffer(Elements::default(), move |_| zero, zero);
+        Self { decoded: Some(values), ..list }
+    }
+
+    fn in_buffer(elements: Elements<'a>, decode: impl Fn(&[u8]) -> T + Copy + 'a, zero: T) -> Self {
+        let all = move |elements: Elements, values: &mut Vec<T>| values.extend(elements.iter().map(decode));
+        Self { elements, decode: Box::new(decode), decode_all: Box::new(all), decoded: None, zero }
+    }
+
+    /// Appends the elements of a range, which lies within the list.
+    pub(crate) fn append(&self, range: Range<usize>, to: &mut Vec<T>) {
+        match &self.decoded {
+            Some(values) => to.extend_from_slice(&values[range]),
+            None => (self.decode_all)(self.elements.part(range), to),
+        }
     }
 
     /// Returns element `i`, or zero beyond the end.
@@ -82,10 +107,16 @@ impl<'a> Elements<'a> {
     fn iter(self) -> impl Iterator<Item = &'a [u8]> {
         (0..self.count).filter_map(move |i| self.get(i))
     }
+
+    fn part(self, range: Range<usize>) -> Self {
+        let bytes = self.bytes.get(range.start * self.stride..).unwrap_or_default();
+        Self { bytes, count: range.len(), ..self }
+    }
 }
 
 impl<'a> Accessors<'a> {
-    /// Decompresses the compressed buffer views. One that can't be and that only details use becomes a fault.
+    /// Decompresses the compressed buffer views. One that can't be is read from its uncompressed copy, if the document has one:
+    /// `read_copy` reads a buffer that is only a copy. Otherwise, if only details use it, it becomes a fault.
     ///
     /// # Errors
     /// [`GltfError::Document`] for a view that can't be decompressed.
@@ -93,10 +124,11 @@ impl<'a> Accessors<'a> {
         document: &'a Document,
         extensions: &Extensions,
         (buffers, faults, views): (&'a [Vec<u8>], Faults, &[Use]),
-        budget: &'a Budget,
+        (budget, notes): (&'a Budget, &mut Notes),
+        read_copy: impl Fn(usize) -> Result<Vec<u8>, String>,
     ) -> Result<Self, GltfError> {
-        let (decompressed, unpacked) = (Vec::new(), HashMap::new());
-        let mut accessors = Self { document, buffers, decompressed, unpacked, faults, budget };
+        let (decompressed, copies, unpacked) = (Vec::new(), HashMap::new(), HashMap::new());
+        let mut accessors = Self { document, buffers, decompressed, copies, unpacked, faults, budget };
         for (view, compressed) in document.views().zip(&extensions.compressed) {
             let made = compressed.as_ref().map(|compressed| accessors.decompress(&view, compressed)).transpose();
             let made = match made {
@@ -104,16 +136,40 @@ impl<'a> Accessors<'a> {
                 Err(reason) => {
                     let i = view.index();
                     let pointer = format!("/bufferViews/{i}/extensions/{}", super::schema::MESHOPT);
-                    if views.get(i) == Some(&Use::Shape) {
-                        return Err(GltfError::Document { pointer, reason });
+                    let has_copy = compressed.as_ref().is_some_and(|own| accessors.has_copy(&view, own, &read_copy));
+                    match views.get(i) {
+                        _ if has_copy => {
+                            notes.push(format!("{pointer} {reason}; its uncompressed copy is read instead."));
+                        }
+                        Some(Use::Shape) => return Err(GltfError::Document { pointer, reason }),
+                        _ => _ = accessors.faults.views.insert(i, format!("can't be used: {pointer} {reason}")),
                     }
-                    accessors.faults.views.insert(i, format!("can't be used: {pointer} {reason}"));
                     None
                 }
             };
             accessors.decompressed.push(made);
         }
         Ok(accessors)
+    }
+
+    /// Returns whether there is an uncompressed copy of a compressed view: its own bytes, in another place than the compressed ones.
+    fn has_copy(
+        &mut self,
+        view: &buffer::View,
+        compressed: &MeshoptExtension,
+        read_copy: impl Fn(usize) -> Result<Vec<u8>, String>,
+    ) -> bool {
+        let (buffer, offset, length) = (view.buffer().index(), view.offset() as u64, view.length() as u64);
+        let is_before = |[start, length]: [u64; 2], next: u64| start.saturating_add(length) <= next;
+        let (own, other) = ([offset, length], [compressed.offset, compressed.length]);
+        if buffer == compressed.buffer && !is_before(own, other[0]) && !is_before(other, own[0]) {
+            return false;
+        }
+        if self.buffers.get(buffer).is_some_and(Vec::is_empty) && !self.copies.contains_key(&buffer) {
+            let Ok(bytes) = read_copy(buffer) else { return false };
+            self.copies.insert(buffer, bytes);
+        }
+        self.range(buffer, offset, length).is_ok()
     }
 
     /// # Errors
@@ -153,7 +209,7 @@ impl<'a> Accessors<'a> {
             .borrow((list.elements.count * size_of::<[f32; N]>()) as u64)
             .map_err(|refused| fail(refused.into()))?;
         let mut values = Vec::with_capacity(list.elements.count);
-        values.extend(list.elements.iter().map(&list.decode));
+        list.append(0..list.elements.count, &mut values);
         Ok(values)
     }
 
@@ -182,11 +238,11 @@ impl<'a> Accessors<'a> {
             }
             numbers
         };
-        let decode: Decode<[f32; N]> = match kind {
-            DataType::F32 => Box::new(floats),
-            _ => Box::new(decode),
+        let list = match kind {
+            DataType::F32 => self.read(accessor, [0.0; N], floats),
+            _ => self.read(accessor, [0.0; N], decode),
         };
-        self.read(accessor, [0.0; N], decode).map_err(fail)
+        list.map_err(fail)
     }
 
     /// Returns a list of single unsigned integers.
@@ -202,7 +258,11 @@ impl<'a> Accessors<'a> {
                 "has {dimensions:?} elements of {kind:?}, but single unsigned integers are needed"
             )));
         }
-        self.read(accessor, 0, Box::new(unsigned_integer)).map_err(fail)
+        let list = match accessor.data_type() {
+            DataType::U32 => self.read(accessor, 0, word),
+            _ => self.read(accessor, 0, unsigned_integer),
+        };
+        list.map_err(fail)
     }
 
     /// Returns the size of all buffers and decompressed data, in bytes.
@@ -210,7 +270,8 @@ impl<'a> Accessors<'a> {
         let decompressed =
             self.decompressed.iter().flatten().map(|(decompressed, _)| decompressed.bytes().len() as u64);
         let unpacked = self.unpacked.values().map(DecompressedPrimitive::bytes);
-        self.buffers.iter().map(|buffer| buffer.len() as u64).chain(decompressed).chain(unpacked).sum()
+        let buffers = self.buffers.iter().chain(self.copies.values()).map(|buffer| buffer.len() as u64);
+        buffers.chain(decompressed).chain(unpacked).sum()
     }
 
     /// Returns the bytes of a buffer view.
@@ -231,8 +292,8 @@ impl<'a> Accessors<'a> {
 
     /// # Errors
     /// A clause if the buffer is too short.
-    fn range(&self, buffer: usize, offset: u64, length: u64) -> Result<&'a [u8], String> {
-        let bytes = self.buffers.get(buffer).map_or(&[][..], Vec::as_slice);
+    fn range(&self, buffer: usize, offset: u64, length: u64) -> Result<&[u8], String> {
+        let bytes = self.copies.get(&buffer).or(self.buffers.get(buffer)).map_or(&[][..], Vec::as_slice);
         let start = usize::try_from(offset).ok();
         let end = start.zip(usize::try_from(length).ok()).and_then(|(start, length)| start.checked_add(length));
         let range = start.zip(end).and_then(|(start, end)| bytes.get(start..end));
@@ -260,7 +321,12 @@ impl<'a> Accessors<'a> {
         self.document.views().nth(index)
     }
 
-    fn read<'b, T: Copy>(&'b self, accessor: &Accessor, zero: T, decode: Decode<'b, T>) -> Result<List<'b, T>, String> {
+    fn read<'b, T: Copy + 'b>(
+        &'b self,
+        accessor: &Accessor,
+        zero: T,
+        decode: impl Fn(&[u8]) -> T + Copy + 'b,
+    ) -> Result<List<'b, T>, String> {
         let (size, count) = (accessor.size(), accessor.count());
         let elements = match accessor.view() {
             Some(view) => Some(self.elements(&view, accessor.offset(), size, count)?),
@@ -270,16 +336,16 @@ impl<'a> Accessors<'a> {
             }
         };
         if let (Some(elements), None) = (elements, accessor.sparse()) {
-            return Ok(List { elements, decode, decoded: None, zero });
+            return Ok(List::in_buffer(elements, decode, zero));
         }
         self.budget.borrow((count as u64).saturating_mul(size_of::<T>() as u64))?;
         let mut values = Vec::with_capacity(count);
-        values.extend(elements.into_iter().flat_map(Elements::iter).map(&decode));
+        values.extend(elements.into_iter().flat_map(Elements::iter).map(decode));
         values.resize(count, zero);
         if let Some(sparse) = accessor.sparse() {
-            self.replace(&mut values, &sparse, size, &decode)?;
+            self.replace(&mut values, &sparse, size, decode)?;
         }
-        Ok(List { elements: Elements::default(), decode, decoded: Some(Cow::Owned(values)), zero })
+        Ok(List::decoded(Cow::Owned(values), zero))
     }
 
     /// Replaces elements by an accessor's sparse values.
@@ -349,6 +415,11 @@ fn floats<const N: usize>(bytes: &[u8]) -> [f32; N] {
         *number = f32::from_le_bytes(*bytes);
     }
     numbers
+}
+
+/// Decodes an integer of four bytes.
+fn word(bytes: &[u8]) -> u32 {
+    bytes.first_chunk().map_or(0, |own| u32::from_le_bytes(*own))
 }
 
 fn unsigned_integer(bytes: &[u8]) -> u32 {

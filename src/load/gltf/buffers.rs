@@ -59,6 +59,16 @@ pub(super) fn load(
     Ok(buffers)
 }
 
+/// Reads a buffer that is only a copy of data which others hold compressed.
+///
+/// # Errors
+/// A clause if it has no data, or too little.
+pub(super) fn read_copy(document: &Document, files: &Files, buffer: usize) -> Result<Vec<u8>, String> {
+    let buffer = document.as_json().buffers.get(buffer).ok_or("there is no such buffer")?;
+    let uri = buffer.uri.as_deref().ok_or("it has no data")?;
+    cut(files.read(uri, true)?, buffer.byte_length.0)
+}
+
 fn cut(mut bytes: Vec<u8>, length: u64) -> Result<Vec<u8>, String> {
     match usize::try_from(length) {
         Ok(length) if length <= bytes.len() => {

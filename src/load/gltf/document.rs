@@ -10,6 +10,7 @@ use super::extensions::Extensions;
 use super::json::objects;
 use super::lights::LightSources;
 use super::material_lists::MaterialLists;
+use super::node_parts::{self, NodeParts};
 use super::notes::Notes;
 use super::reach::{Beside, Reach};
 use super::repair::{self, Faults};
@@ -35,6 +36,7 @@ pub(super) struct Parsed {
     /// The names of the document's material variants.
     pub variants: Vec<String>,
     pub scenes: Scenes,
+    pub parts: NodeParts,
     /// What the scene uses.
     pub reach: Reach,
     pub faults: Faults,
@@ -83,7 +85,12 @@ pub(super) fn parse(
     let lists = MaterialLists::take(root, &mut notes);
     let lights = LightSources::take(root, &mut notes);
     let cameras = CameraSources::take(root, &mut notes);
-    let reach = Reach::of(root, &Beside { animations: &animations, images: &lists.images, requires_draco });
+    let beside = Beside { animations: &animations, images: &lists.images, requires_draco };
+    let mut reach = Reach::of(root, &beside);
+    let parts = node_parts::take(root, &reach, selected.hidden, budget)?;
+    if parts.is_cut {
+        reach = Reach::of(root, &beside);
+    }
     let faults = repair::repair(root, &reach, (lists.materials.len(), requires_draco), budget, &mut notes)?;
     schema_check::check(root, schema::DOCUMENT, &faults.replaced)?;
     let extensions = Extensions::of(root);
@@ -106,6 +113,7 @@ pub(super) fn parse(
         cameras,
         variants,
         scenes,
+        parts,
         reach,
         faults,
         notes,

@@ -5,6 +5,7 @@ use ::gltf::{Document, Node};
 use glam::{DMat4, Mat4};
 
 use super::GltfError;
+use super::notes::Notes;
 use crate::mesh::rig::Placement;
 
 /// The nodes of a document with their places.
@@ -33,16 +34,17 @@ impl Placed {
 }
 
 /// Places all nodes, and lists those of the scene that the document names, or else all nodes; those that hide themselves, and what
-/// is below, are left out. Doesn't recurse, since chains of nodes may be long.
+/// is below, are left out. A node that is named several times as a child has its first place, with a note. Doesn't recurse, since
+/// chains of nodes may be long.
 ///
 /// # Errors
-/// [`GltfError::Document`] for a node with two parents, and for a node that is its own ancestor.
-pub(super) fn place(document: &Document, hiding: &[bool]) -> Result<Placed, GltfError> {
+/// [`GltfError::Document`] for a node that is its own ancestor.
+pub(super) fn place(document: &Document, hiding: &[bool], notes: &mut Notes) -> Result<Placed, GltfError> {
     let nodes: Vec<Node> = document.nodes().collect();
-    let parents = parents(&nodes)?;
+    let parents = parents(&nodes, notes);
     let roots: Vec<usize> = (0..nodes.len()).filter(|&node| parents[node].is_none()).collect();
     let mut global = vec![DMat4::IDENTITY; nodes.len()];
-    let order = walk(&nodes, &roots, &[]);
+    let order = walk(&nodes, &parents, &roots, &[]);
     if order.len() < nodes.len() {
         return Err(circle(&parents, &order));
     }
@@ -51,23 +53,25 @@ pub(super) fn place(document: &Document, hiding: &[bool]) -> Result<Placed, Gltf
         global[node] = below(above, local(&nodes[node]));
     }
     let roots = document.default_scene().map_or(roots, |scene| scene.nodes().map(|node| node.index()).collect());
-    Ok(Placed { global, shown: walk(&nodes, &roots, hiding), parents, order })
+    Ok(Placed { global, shown: walk(&nodes, &parents, &roots, hiding), parents, order })
 }
 
-/// Returns the parent of each node.
-fn parents(nodes: &[Node]) -> Result<Vec<Option<usize>>, GltfError> {
+/// Returns the first parent of each node.
+fn parents(nodes: &[Node], notes: &mut Notes) -> Vec<Option<usize>> {
     let mut parents = vec![None; nodes.len()];
     for node in nodes {
         for (place, child) in node.children().enumerate() {
             let (child, parent) = (child.index(), node.index());
-            if let Some(first) = parents[child].replace(parent) {
-                let pointer = format!("/nodes/{parent}/children/{place}");
-                let reason = format!("is {child}, which is already among /nodes/{first}/children");
-                return Err(GltfError::Document { pointer, reason });
+            match parents[child] {
+                None => parents[child] = Some(parent),
+                Some(first) => notes.push(format!(
+                    "/nodes/{parent}/children/{place} is {child}, which is already among /nodes/{first}/children; it is placed \
+                     only there."
+                )),
             }
         }
     }
-    Ok(parents)
+    parents
 }
 
 /// Returns an error that names a node of a cycle, for nodes that can't be reached from a node without a parent.
@@ -83,7 +87,7 @@ fn circle(parents: &[Option<usize>], reached: &[usize]) -> GltfError {
 }
 
 /// Returns nodes and what is below them, without those that are hidden.
-fn walk(nodes: &[Node], roots: &[usize], hiding: &[bool]) -> Vec<usize> {
+fn walk(nodes: &[Node], parents: &[Option<usize>], roots: &[usize], hiding: &[bool]) -> Vec<usize> {
     let mut seen = vec![false; nodes.len()];
     let mut order = Vec::new();
     let mut open: Vec<usize> = roots.iter().rev().copied().collect();
@@ -91,7 +95,8 @@ fn walk(nodes: &[Node], roots: &[usize], hiding: &[bool]) -> Vec<usize> {
         if !std::mem::replace(&mut seen[node], true) && hiding.get(node) != Some(&true) {
             order.push(node);
             let first = open.len();
-            open.extend(nodes[node].children().map(|child| child.index()));
+            let children = nodes[node].children().map(|child| child.index());
+            open.extend(children.filter(|&child| parents[child] == Some(node)));
             open[first..].reverse();
         }
     }

@@ -66,7 +66,32 @@ impl Indices<'_> {
     fn get(&self, i: usize) -> u32 {
         self.list.as_ref().map_or(i as u32, |list| list.get(i))
     }
+
+    /// Calls `take` with the number of the first index, and some indices, until it has had all. All lists but the last have
+    /// [`BLOCK`] indices.
+    ///
+    /// # Errors
+    /// Those of `take`.
+    fn in_blocks<E>(&self, mut take: impl FnMut(usize, &[u32]) -> Result<(), E>) -> Result<(), E> {
+        let mut block = Vec::with_capacity(BLOCK.min(self.count));
+        for first in (0..self.count).step_by(BLOCK) {
+            let range = first..(first + BLOCK).min(self.count);
+            block.clear();
+            match &self.list {
+                Some(list) => list.append(range, &mut block),
+                None => block.extend(range.map(|i| i as u32)),
+            }
+            take(first, &block)?;
+        }
+        Ok(())
+    }
 }
+
+/// How many vertices are read before their corners are stored.
+const TOGETHER: usize = 256;
+
+/// How many indices are decoded at a time: whole triangles.
+const BLOCK: usize = 3 << 10;
 
 impl PrimitiveReader {
     /// Prepares to read; normals are those that `import` says.
@@ -115,28 +140,44 @@ impl PrimitiveReader {
         budget.borrow(vertices.count as u64 * 5 + vertices.count as u64 / 8).map_err(too_large)?;
         let used = used(&indices, vertices.count).map_err(|reason| source.problem(reason))?;
         let mut kept = KeptVertices::new(vertices.count);
-        for i in 0..vertices.count {
-            let vertex = vertices.read(i)?;
-            let binding = moving.as_mut().map_or(0, |moving| moving.bind(i, &vertices, &vertex.corner));
-            if used[i / 64] & 1 << (i % 64) == 0 {
-                kept.push(StoredCorner::default(), &vertex);
-                continue;
+        let (mut corners, mut stored) = (Vec::with_capacity(TOGETHER), Vec::with_capacity(TOGETHER));
+        for first in (0..vertices.count).step_by(TOGETHER) {
+            let range = first..(first + TOGETHER).min(vertices.count);
+            let is_used = |i: usize| used[i / 64] & 1 << (i % 64) != 0;
+            corners.clear();
+            for i in range.clone() {
+                let vertex = vertices.read(i)?;
+                let binding = moving.as_mut().map_or(0, |moving| moving.bind(i, &vertices, &vertex.corner));
+                kept.mark(&vertex);
+                if is_used(i) {
+                    let binding = match &mut details {
+                        Some(details) => details.number(vertex.detail, binding, budget).map_err(too_large)?,
+                        None => binding,
+                    };
+                    corners.push((vertex.corner, binding));
+                }
             }
-            builder.make_room(1, budget).map_err(too_large)?;
-            let binding = match &mut details {
-                Some(details) => details.number(vertex.detail, binding, budget).map_err(too_large)?,
-                None => binding,
-            };
-            kept.push(builder.corner(vertex.corner, binding), &vertex);
+            builder.make_room(corners.len(), budget).map_err(too_large)?;
+            stored.clear();
+            builder.corners(&corners, &mut stored);
+            let mut stored = stored.iter().copied();
+            range.for_each(|i| kept.push(if is_used(i) { stored.next() } else { None }.unwrap_or_default()));
         }
         self.count(&vertices, mode, count);
         builder.make_room_for_triangles(material.index, most_triangles(mode, count), budget).map_err(too_large)?;
-        for [a, b, c] in triangles(mode, count, |i| indices.get(i)) {
+        let mut add = |[a, b, c]: [u32; 3]| {
             let outward = if kept.has(a, KeptVertices::MIRRORED) { [a, c, b] } else { [a, b, c] };
             self.rescaled += outward.map(|i| u32::from(kept.has(i, KeptVertices::RESCALED))).iter().sum::<u32>();
             builder.stored_triangle(material.index, outward.map(|i| kept.get(i)));
+        };
+        if mode != Mode::Triangles {
+            triangles(mode, count, |i| indices.get(i)).for_each(add);
+            return Ok(());
         }
-        Ok(())
+        indices.in_blocks(|_, block| {
+            block.as_chunks().0.iter().for_each(|triangle| add(*triangle));
+            Ok(())
+        })
     }
 
     fn count(&mut self, vertices: &Vertices, mode: Mode, indices: usize) {
@@ -208,10 +249,16 @@ impl KeptVertices {
         Self { ids: Vec::with_capacity(count), marks: Vec::with_capacity(count) }
     }
 
-    fn push(&mut self, kept: StoredCorner, vertex: &Vertex) {
+    /// Notes how the next vertex was read.
+    fn mark(&mut self, vertex: &Vertex) {
         let mark = |is: bool, bit: u8| if is { bit } else { 0 };
+        self.marks.push(mark(vertex.mirrored, Self::MIRRORED) | mark(vertex.rescaled, Self::RESCALED));
+    }
+
+    /// Adds the corner of the first vertex without one.
+    fn push(&mut self, kept: StoredCorner) {
+        self.marks[self.ids.len()] |= kept.repairs.0;
         self.ids.push(kept.id);
-        self.marks.push(kept.repairs.0 | mark(vertex.mirrored, Self::MIRRORED) | mark(vertex.rescaled, Self::RESCALED));
     }
 
     fn has(&self, i: u32, mark: u8) -> bool {
@@ -233,13 +280,16 @@ fn used(indices: &Indices, count: usize) -> Result<Vec<u64>, String> {
         return Ok(vec![u64::MAX; count.div_ceil(64)]);
     }
     let mut used = vec![0; count.div_ceil(64)];
-    for i in 0..indices.count {
-        let index = indices.get(i) as usize;
-        if index >= count {
-            return Err(format!("uses vertex {index} at index {i}, but has {count} vertices"));
+    indices.in_blocks(|first, block| {
+        for (i, &index) in (first..).zip(block) {
+            let index = index as usize;
+            if index >= count {
+                return Err(format!("uses vertex {index} at index {i}, but has {count} vertices"));
+            }
+            used[index / 64] |= 1 << (index % 64);
         }
-        used[index / 64] |= 1 << (index % 64);
-    }
+        Ok(())
+    })?;
     Ok(used)
 }
 

@@ -59,12 +59,27 @@ impl<'a> PrimitiveData<'a> {
         accessor.map(|accessor| self.list(&accessor, &semantic.to_string(), count)).transpose()
     }
 
-    /// Returns the normals that are used; none if they are made.
+    /// Returns the normals that are used; none if they are made. Those of another number of vertices are left out with a note,
+    /// since it isn't known which vertices they belong to.
     ///
     /// # Errors
     /// [`GltfError::Accessor`].
-    pub(super) fn normals(&self, count: usize) -> Result<Option<List<'a, [f32; 3]>>, GltfError> {
-        if self.makes_normals { Ok(None) } else { self.attribute(Semantic::Normals, count) }
+    pub(super) fn normals(&self, count: usize, notes: &mut Notes) -> Result<Option<List<'a, [f32; 3]>>, GltfError> {
+        let Some(accessor) = self.primitive.get(&Semantic::Normals).filter(|_| !self.makes_normals) else {
+            return Ok(None);
+        };
+        if accessor.count() == count {
+            return self.list(&accessor, &Semantic::Normals.to_string(), count).map(Some);
+        }
+        let (i, has) = (accessor.index(), accessor.count());
+        let said = format!("has {has} elements for {count} vertices; it is left out, and normals are made.");
+        notes.push_once(format!("/accessors/{i} (NORMAL of {}) {said}", self.name));
+        Ok(None)
+    }
+
+    /// Whether the primitive's own normals are used.
+    pub(super) fn has_normals(&self, count: usize) -> bool {
+        !self.makes_normals && self.primitive.get(&Semantic::Normals).is_some_and(|normals| normals.count() == count)
     }
 
     /// Returns an attribute that the primitive can do without. If it can't be read, it is left out with a note.

@@ -134,7 +134,9 @@ impl Reach {
             if self.shown[node] {
                 hung.extend(self.skin_of(root, node));
             }
-            for child in indices(&nodes[node], "children").filter(|child| *child < nodes.len()) {
+            // A node has one place, among the children of its first parent.
+            let children = indices(&nodes[node], "children");
+            for child in children.filter(|child| parents.get(*child) == Some(&Some(node))) {
                 below[child] = true;
                 open.push((child, hidden));
             }
@@ -237,8 +239,15 @@ impl Reach {
             }
         }
         for (view, found) in list(root, "bufferViews").iter().zip(&self.views) {
-            // A compressed view's own buffer is only a fallback.
+            // A compressed view's own buffer is only a fallback, which is read if the compressed data is broken.
             let source = extension(view, MESHOPT).unwrap_or(view);
+            let copy = index(view, "buffer").filter(|_| extension(view, MESHOPT).is_some() && *found != Use::None);
+            let is_copy = |buffer: &usize| {
+                list(root, "buffers").get(*buffer).is_some_and(|buffer| extension(buffer, MESHOPT).is_some())
+            };
+            if let Some(buffer) = copy.filter(is_copy) {
+                raise(&mut self.buffers, buffer, Use::Detail);
+            }
             if let Some(buffer) = index(source, "buffer") {
                 raise(&mut self.buffers, buffer, *found);
             }

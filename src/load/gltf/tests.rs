@@ -8,6 +8,7 @@ mod materials;
 mod mutations;
 mod odd;
 mod packed;
+mod parts;
 mod scenes;
 mod textures;
 mod variants;

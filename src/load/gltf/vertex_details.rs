@@ -42,7 +42,6 @@ impl<'a> VertexDetails<'a> {
     /// Prepares to read the details of `count` vertices. Without normals of the file, its tangents aren't used (specification,
     /// section 3.7.2.1).
     pub(super) fn new(source: PrimitiveData<'a>, count: usize, needs: DetailNeeds, notes: &mut Notes) -> Self {
-        let has_normals = !source.makes_normals && source.primitive.get(&Semantic::Normals).is_some();
         let mut read = Self {
             sets: [0, 1].map(|set| {
                 let list = needs.sets[set].then(|| source.detail(Semantic::TexCoords(set as u32), count, notes));
@@ -52,7 +51,7 @@ impl<'a> VertexDetails<'a> {
             tangents: None,
             repairs: DetailRepairs::default(),
         };
-        if needs.tangents && has_normals {
+        if needs.tangents && source.has_normals(count) {
             read.tangents = source.detail(Semantic::Tangents, count, notes);
         }
         let is_missing = (0..2).any(|set| needs.sets[set] && read.sets[set].is_none());

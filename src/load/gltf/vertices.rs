@@ -173,7 +173,7 @@ impl<'a> Vertices<'a> {
             transform: uvs.transform,
             count,
             positions: source.list(&positions, "POSITION", count)?,
-            normals: source.normals(count)?,
+            normals: source.normals(count, notes)?,
             uvs: source.detail(Semantic::TexCoords(uvs.set), count, notes),
             targets: weighed
                 .map(|(target, weight)| Ok((weight, source.target(&target, count)?)))
@@ -221,7 +221,7 @@ impl<'a> Vertices<'a> {
         let matrix = self.matrix(i);
         let (position, normal) = self.undeformed(i, true);
         // The normal before morphing, which doesn't preserve unit length.
-        let own = self.normals.as_ref().map(|normals| GivenNormal::new(normals.get(i).into()));
+        let own = if self.targets.is_empty() { normal } else { self.undeformed(i, false).1 }.map(GivenNormal::new);
         let position = matrix.transform_point3(position.as_dvec3()).as_vec3();
         if !position.is_finite() {
             return Err(self.source.problem(format!("has a position that isn't finite, at vertex {i}")));

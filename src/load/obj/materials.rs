@@ -1,6 +1,6 @@
 //! The materials of an OBJ file. Files in its folder describe them; each is made when a face first uses it.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use glam::Vec2;
@@ -53,6 +53,10 @@ pub(super) struct Materials<'a> {
     undescribed: usize,
     /// Materials in use that have heights.
     bumped: usize,
+    /// Materials in use whose bump map was taken for a normal map.
+    with_normals_as_bumps: usize,
+    /// The names of such materials.
+    normals_as_bumps: HashSet<Vec<u8>>,
 }
 
 impl<'a> Materials<'a> {
@@ -73,6 +77,8 @@ impl<'a> Materials<'a> {
             libraries_left_out: 0,
             undescribed: 0,
             bumped: 0,
+            with_normals_as_bumps: 0,
+            normals_as_bumps: HashSet::new(),
         }
     }
 
@@ -125,6 +131,25 @@ impl<'a> Materials<'a> {
         self.described.values().any(|material| material.normal_texture.is_some())
     }
 
+    /// Returns the names of the materials that have a bump map and no normal map.
+    pub(super) fn with_bump_maps(&self) -> HashSet<Vec<u8>> {
+        let has_one = |material: &&MtlMaterial| material.bump_texture.is_some() && material.normal_texture.is_none();
+        self.described.values().filter(has_one).map(|material| material.name.clone()).collect()
+    }
+
+    /// Returns the file of a material's bump map.
+    pub(super) fn bump_map(&self, name: &[u8]) -> Option<String> {
+        Some(self.described.get(name)?.bump_texture.as_ref()?.file.clone())
+    }
+
+    /// Makes the bump map of a material its normal map.
+    pub(super) fn take_bumps_for_normals(&mut self, name: &[u8]) {
+        if let Some(material) = self.described.get_mut(name) {
+            material.normal_texture = material.bump_texture.take();
+            self.normals_as_bumps.insert(name.to_vec());
+        }
+    }
+
     /// Reads `usemtl`: the material of the next faces.
     pub(super) fn enter(&mut self, name: &[u8]) {
         if self.name != name {
@@ -160,6 +185,11 @@ impl<'a> Materials<'a> {
         Ok(index)
     }
 
+    /// Whether a material has texture coordinates of the file in other places.
+    pub(super) fn moves(&self, material: usize) -> bool {
+        !self.places.is_empty() && self.places.contains_key(&material)
+    }
+
     /// Returns where on the image of a material a corner with these texture coordinates is. The file's v points upwards, the
     /// mesh's downwards.
     pub(super) fn placed(&self, material: usize, uv: Vec2) -> Vec2 {
@@ -178,8 +208,9 @@ impl<'a> Materials<'a> {
             self.undescribed += 1;
             return (Material::plain(&shown, [1.0; 4]), Vec::new());
         };
-        let MtlMaterial { color: [r, g, b], emissive, alpha, roughness, metallic, is_bumped, .. } = described;
-        self.bumped += usize::from(is_bumped);
+        let MtlMaterial { color: [r, g, b], emissive, alpha, roughness, metallic, .. } = described;
+        self.bumped += usize::from(described.bump_texture.is_some());
+        self.with_normals_as_bumps += usize::from(self.normals_as_bumps.contains(&self.name));
         let strength = described.normal_texture.as_ref().map_or(1.0, |texture| texture.strength);
         // The first one says where all are.
         let uses = [
@@ -249,7 +280,7 @@ impl<'a> Materials<'a> {
     }
 
     /// Gives back what `read` borrows.
-    fn borrowing<T>(&self, read: impl FnOnce() -> T) -> T {
+    pub(super) fn borrowing<T>(&self, read: impl FnOnce() -> T) -> T {
         let borrowed = self.budget.borrowed();
         let result = read();
         self.budget.give_back_to(borrowed);
@@ -267,13 +298,17 @@ impl<'a> Materials<'a> {
                 self.bumped,
                 "materials with a bump map (map_Bump, bump), whose heights aren't drawn; norm names a normal map",
             ),
+            (
+                self.with_normals_as_bumps,
+                "materials with a bump map (map_Bump, bump) that is an image of normals, drawn as a normal map",
+            ),
         ]));
         warnings
     }
 
     /// Reads a file in the OBJ file's folder or below it, under the same rules as a glTF document's URIs. Of an absolute path the
     /// last name is looked for in the folder.
-    fn beside(&self, name: &str) -> Result<Vec<u8>, String> {
+    pub(super) fn beside(&self, name: &str) -> Result<Vec<u8>, String> {
         let name = name.replace('%', "%25").replace('\\', "/");
         let drive =
             name.as_bytes().get(..3).is_some_and(|start| start[0].is_ascii_alphabetic() && &start[1..] == b":/");

@@ -31,8 +31,8 @@ pub(super) struct MtlMaterial {
     pub metallic_texture: Option<MtlTexture>,
     /// norm: normals in tangent space.
     pub normal_texture: Option<MtlTexture>,
-    /// map_Bump or bump: whether it has heights.
-    pub is_bumped: bool,
+    /// map_Bump or bump: heights, or normals in tangent space.
+    pub bump_texture: Option<MtlTexture>,
 }
 
 impl MtlMaterial {
@@ -51,7 +51,7 @@ impl MtlMaterial {
             roughness_texture: None,
             metallic_texture: None,
             normal_texture: None,
-            is_bumped: false,
+            bump_texture: None,
         }
     }
 }
@@ -101,7 +101,7 @@ fn take(material: &mut MtlMaterial, word: &[u8], rest: &[u8]) -> Option<()> {
         b"map_Pr" => material.roughness_texture = Some(texture(rest)),
         b"map_Pm" => material.metallic_texture = Some(texture(rest)),
         b"norm" => material.normal_texture = Some(texture(rest)),
-        b"map_Bump" | b"map_bump" | b"bump" => material.is_bumped = true,
+        b"map_Bump" | b"map_bump" | b"bump" => material.bump_texture = Some(texture(rest)),
         _ => {}
     }
     Some(())
@@ -187,7 +187,7 @@ mod tests {
             opacity_texture: Some(place("d.png")),
             roughness_texture: Some(place("r.png")),
             metallic_texture: Some(place("m.png")),
-            is_bumped: true,
+            bump_texture: Some(place("b.png")),
             ..MtlMaterial::named(b"old wood")
         };
         let plain = MtlMaterial { color: [0.5; 3], ..MtlMaterial::named(b"plain") };

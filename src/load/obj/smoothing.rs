@@ -5,11 +5,14 @@ use std::collections::HashMap;
 use foldhash::fast::RandomState;
 use glam::Vec3;
 
-use super::{MAX_CORNERS, Statement, Vertices, index, too_large};
+use super::faces::index;
+use super::vertices::{Vertices, group};
+use super::{MAX_CORNERS, Statement, too_large};
 use crate::load::face_builder::NumberedCorner;
 use crate::load::memory_budget::Budget;
 use crate::load::read_error::ReadError;
-use crate::load::text_lines::{first_word, words};
+use crate::load::recent_corners::VertexNumbers;
+use crate::load::text_lines::words;
 use crate::mesh::MemoryAccount;
 
 /// Memory for an entry of the table while it grows, in bytes: the old and the new table exist at the same time.
@@ -27,11 +30,6 @@ pub(super) struct Smoothing<'v> {
     held: u64,
     /// The positions of the face that is being read.
     outline: Vec<usize>,
-}
-
-/// Parses the number of a group: 0 for `off`, and for what isn't a number.
-pub(super) fn group(text: &[u8]) -> u32 {
-    std::str::from_utf8(first_word(text).0).ok().and_then(|word| word.parse().ok()).unwrap_or(0)
 }
 
 impl<'v> Smoothing<'v> {
@@ -97,14 +95,14 @@ impl<'v> Smoothing<'v> {
         self.vertices.positions.get(number).copied().unwrap_or(Vec3::NAN)
     }
 
-    /// Gives a face's corners the normals that they lack. `numbers` are those of their positions. Returns false if a group has
+    /// Gives a face's corners the normals that they lack. `numbers` begin with those of their positions. Returns false if a group has
     /// none, because its faces have no area.
-    pub(super) fn complete(&self, numbers: &[usize], corners: &mut [NumberedCorner]) -> bool {
+    pub(super) fn complete(&self, numbers: &[VertexNumbers], corners: &mut [NumberedCorner]) -> bool {
         let positions: Vec<Vec3> = corners.iter().map(|at| at.corner.position).collect();
         let face = face_normal(&positions);
         let mut is_whole = true;
-        for (&number, at) in numbers.iter().zip(corners).filter(|(_, at)| at.corner.normal.is_none()) {
-            let sum = if self.group == 0 { Some(&face) } else { self.sums.get(&(number, self.group)) };
+        for ([number, ..], at) in numbers.iter().zip(corners).filter(|(_, at)| at.corner.normal.is_none()) {
+            let sum = if self.group == 0 { Some(&face) } else { self.sums.get(&(*number as usize, self.group)) };
             at.corner.normal = sum.and_then(|sum| sum.try_normalize());
             // The group determines it too.
             at.vertex = None;

@@ -1,5 +1,7 @@
 //! OBJ files as programs and people write them.
 
+use glam::{Vec2, Vec3};
+
 use super::*;
 use crate::load::face_builder::tests::{POINTS, SIDES, assert_cube};
 
@@ -27,6 +29,58 @@ pub(crate) fn everything() -> String {
     "mtllib nowhere.mtl\nv 0 0 0 1\nv 1 0 0\nv 1 1 0\nv 0.5 0.25 0\nv 0 1 0\nvt 0 0\nvt 1 1 0\nvn 0 0 1\nvn 0 1 0\ng a b\n\
      usemtl red\nf 1/1/1 2/2/2 \\\n 3//1 4 5/-1\ns 1\np 1 2\nl 1/1 2/2\nusemtl blue\nf -5 -4 -3\nf 1 3 5 # the last\n"
         .to_owned()
+}
+
+/// A strip of squares, of which each follows its vertices, in several pieces of the file. `number` writes the number of a vertex:
+/// its own from 0 on, and how many are above.
+fn strip(squares: usize, number: impl Fn(usize, usize) -> String) -> String {
+    let mut text = "v 0 0 0\nv 0 1 0\n".to_owned();
+    for i in 1..=squares {
+        let above = 2 * i + 2;
+        let [a, b, c, d] = [2 * i - 2, 2 * i, 2 * i + 1, 2 * i - 1].map(|vertex| number(vertex, above));
+        let face =
+            if i % 2 == 0 { format!("f {a} {b} \\\n  {c} {d}\n") } else { format!("f {a} {b} {c}\nf {a} {c} {d}\n") };
+        text += &format!("v {i} 0 0\nv {i} 1 {:.3} # {i}\n{face}", (i % 7) as f32 / 9.0);
+    }
+    text
+}
+
+#[test]
+fn a_file_of_many_pieces_is_read_as_one() {
+    const SQUARES: usize = 6_000;
+    let forward = strip(SQUARES, |vertex, _| format!("{}", vertex + 1));
+    let backward = strip(SQUARES, |vertex, above| format!("-{}", above - vertex));
+    let pieces = |text: &str| pieces::Piece::all(text.as_bytes()).len();
+    assert!(pieces(&forward) > 4 && pieces(&backward) > 4);
+    let (forward, backward) = (read(&forward), read(&backward));
+    assert_eq!(forward.triangles.len(), 2 * SQUARES);
+    assert_eq!(forward.corners.len(), 2 * SQUARES + 2);
+    let is_same = |other: &LoadedMesh| other.corners == forward.corners && other.triangles == forward.triangles;
+    assert!(is_same(&backward) && forward.warnings == backward.warnings);
+    // Faces before their vertices refer to the same ones.
+    let (faces, vertices): (Vec<_>, Vec<_>) = strip(SQUARES, |vertex, _| format!("{}", vertex + 1))
+        .split_inclusive('\n')
+        .map(str::to_owned)
+        .partition(|line| !line.starts_with('v'));
+    assert!(is_same(&read(&(faces.concat() + &vertices.concat()))));
+}
+
+#[test]
+fn a_fault_in_a_late_piece_has_its_line() {
+    let text = strip(6_000, |vertex, _| format!("{}", vertex + 1));
+    let lines = text.lines().count();
+    let fault = |end: &str| {
+        let bytes = (text.clone() + end).into_bytes();
+        let selected = Selection::default();
+        let read = super::read(bytes, Path::new(""), "", selected, &Limits::default(), &Progress::new());
+        read.map(|loaded| loaded.warnings).map_err(|fault| fault.to_string())
+    };
+    assert!(fault("f 1 2 x\nf y\n").expect_err("no index").starts_with(&format!("line {}: \"x\"", lines + 1)));
+    let long = "#".repeat(5 << 20);
+    assert!(fault(&long).expect_err("too long").starts_with(&format!("line {}: the line has", lines + 1)));
+    let warnings = fault("f 1 2 99999\n").expect("all but one face");
+    let first = format!("the first at line {}", lines + 1);
+    assert!(warnings.iter().any(|warning| warning.contains(&first)), "{warnings:?}");
 }
 
 const WITHOUT_NORMALS: &str =

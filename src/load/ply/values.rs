@@ -1,6 +1,6 @@
 //! Reads the values after the header of a PLY file, in text and in binary.
 
-use super::header::{Element, Encoding, Header, PropertyKind, Scalar};
+use super::header::{Element, Encoding, Header, Property, PropertyKind, Scalar};
 use crate::load::read_error::{FilePosition, ReadError};
 use crate::load::text_lines::{Line, Lines, number, shown, words};
 
@@ -22,6 +22,21 @@ pub(super) struct Values<'a> {
     pub ends: bool,
     /// Lines of a text file with more numbers than their element has.
     pub long_lines: usize,
+}
+
+/// How elements without lists lie in a binary file.
+pub(super) struct Row {
+    /// The size of one, in bytes.
+    size: usize,
+    /// The values that are read: where each begins in bytes, its type, and its place among the values.
+    values: Vec<(usize, Scalar, usize)>,
+}
+
+/// How faces lie in a binary file: the sizes of what is before and after their list, in bytes, and the type of its length.
+pub(super) struct FaceRow {
+    before: usize,
+    count: Scalar,
+    after: usize,
 }
 
 impl<'a> Values<'a> {
@@ -172,31 +187,87 @@ impl<'a> Values<'a> {
     pub(super) fn next(&mut self, scalar: Scalar) -> Result<f64, ReadError> {
         match self.encoding {
             Encoding::Text => self.word(),
-            Encoding::LittleEndian => Ok(match scalar {
-                Scalar::I8 => i8::from_le_bytes(self.take()?).into(),
-                Scalar::U8 => u8::from_le_bytes(self.take()?).into(),
-                Scalar::I16 => i16::from_le_bytes(self.take()?).into(),
-                Scalar::U16 => u16::from_le_bytes(self.take()?).into(),
-                Scalar::I32 => i32::from_le_bytes(self.take()?).into(),
-                Scalar::U32 => u32::from_le_bytes(self.take()?).into(),
-                Scalar::F32 => f32::from_le_bytes(self.take()?).into(),
-                Scalar::F64 => f64::from_le_bytes(self.take()?),
-                Scalar::I64 => i64::from_le_bytes(self.take()?) as f64,
-                Scalar::U64 => u64::from_le_bytes(self.take()?) as f64,
-            }),
-            Encoding::BigEndian => Ok(match scalar {
-                Scalar::I8 => i8::from_be_bytes(self.take()?).into(),
-                Scalar::U8 => u8::from_be_bytes(self.take()?).into(),
-                Scalar::I16 => i16::from_be_bytes(self.take()?).into(),
-                Scalar::U16 => u16::from_be_bytes(self.take()?).into(),
-                Scalar::I32 => i32::from_be_bytes(self.take()?).into(),
-                Scalar::U32 => u32::from_be_bytes(self.take()?).into(),
-                Scalar::F32 => f32::from_be_bytes(self.take()?).into(),
-                Scalar::F64 => f64::from_be_bytes(self.take()?),
-                Scalar::I64 => i64::from_be_bytes(self.take()?) as f64,
-                Scalar::U64 => u64::from_be_bytes(self.take()?) as f64,
-            }),
+            encoding => match decoded(self.bytes, scalar, encoding) {
+                Some(value) => {
+                    self.bytes = &self.bytes[scalar.size()..];
+                    Ok(value)
+                }
+                None => {
+                    let (size, left) = (scalar.size(), self.bytes.len());
+                    self.ends = true;
+                    Err(self.place().error(format!("a value takes {size} bytes, but {left} are left")))
+                }
+            },
         }
+    }
+
+    /// Returns how elements without lists lie in a binary file, if they do: the places that `slots` says for the values of their
+    /// properties.
+    pub(super) fn row(&self, element: &Element, slots: &[Option<usize>]) -> Option<Row> {
+        let (size, is_fixed) = element.least();
+        if !is_fixed || self.encoding == Encoding::Text {
+            return None;
+        }
+        let mut row = Row { size: usize::try_from(size).ok()?, values: Vec::new() };
+        let mut at = 0;
+        for (property, slot) in element.properties.iter().zip(slots) {
+            let PropertyKind::One(scalar) = property.kind else { return None };
+            row.values.extend(slot.map(|slot| (at, scalar, slot)));
+            at += scalar.size();
+        }
+        Some(row)
+    }
+
+    /// Reads the values of a row into their places.
+    ///
+    /// # Errors
+    /// [`ReadError::Broken`] at the end of the file.
+    pub(super) fn read_row(&mut self, row: &Row, places: &mut [f32]) -> Result<(), ReadError> {
+        let Some((own, rest)) = self.bytes.split_at_checked(row.size) else {
+            let (size, left) = (row.size, self.bytes.len());
+            self.ends = true;
+            return Err(self.place().error(format!("an element takes {size} bytes, but {left} are left")));
+        };
+        for &(at, scalar, place) in &row.values {
+            places[place] = decoded(&own[at..], scalar, self.encoding).unwrap_or_default() as f32;
+        }
+        self.bytes = rest;
+        Ok(())
+    }
+
+    /// Returns how faces lie in a binary file whose only list is that of vertices, property number `list`. The numbers of
+    /// vertices must have 32 bits, as nearly all have.
+    pub(super) fn face_row(&self, element: &Element, list: usize) -> Option<FaceRow> {
+        let size = |properties: &[Property]| -> Option<usize> {
+            let of = |property: &Property| match property.kind {
+                PropertyKind::One(scalar) => Some(scalar.size()),
+                PropertyKind::List { .. } => None,
+            };
+            properties.iter().map(of).sum()
+        };
+        let PropertyKind::List { count, item: Scalar::I32 | Scalar::U32 } = element.properties[list].kind else {
+            return None;
+        };
+        let is_binary = self.encoding != Encoding::Text;
+        let [before, after] = [size(&element.properties[..list])?, size(&element.properties[list + 1..])?];
+        is_binary.then_some(FaceRow { before, count, after })
+    }
+
+    /// Returns the vertices of the next face and the bytes after it, if it is a whole triangle.
+    pub(super) fn triangle(&self, row: &FaceRow) -> Option<([u32; 3], &'a [u8])> {
+        let list = self.bytes.get(row.before..)?;
+        if decoded(list, row.count, self.encoding)? != 3.0 {
+            return None;
+        }
+        let (numbers, rest) = list.get(row.count.size()..)?.split_first_chunk::<12>()?;
+        let numbers: [[u8; 4]; 3] = [0, 4, 8].map(|at| [0, 1, 2, 3].map(|i| numbers[at + i]));
+        let of = if self.encoding == Encoding::BigEndian { u32::from_be_bytes } else { u32::from_le_bytes };
+        Some((numbers.map(of), rest.get(row.after..)?))
+    }
+
+    /// Goes on after an element that was read whole.
+    pub(super) fn go_on(&mut self, rest: &'a [u8]) {
+        self.bytes = rest;
     }
 
     /// Reads the number of values of a list, and checks that the rest of the file or line has as many.
@@ -239,16 +310,6 @@ impl<'a> Values<'a> {
         wide.ok_or_else(|| self.place().error(number(word).err().unwrap_or_default()))
     }
 
-    fn take<const N: usize>(&mut self) -> Result<[u8; N], ReadError> {
-        let Some((value, rest)) = self.bytes.split_first_chunk() else {
-            let left = self.bytes.len();
-            self.ends = true;
-            return Err(self.place().error(format!("a value takes {N} bytes, but {left} are left")));
-        };
-        self.bytes = rest;
-        Ok(*value)
-    }
-
     /// Returns how many bytes follow the last element.
     pub(super) fn left_over(&self) -> usize {
         match self.encoding {
@@ -256,6 +317,30 @@ impl<'a> Values<'a> {
             _ => self.bytes.len(),
         }
     }
+}
+
+/// Decodes the number at the start of some bytes; none if they are too few.
+fn decoded(bytes: &[u8], scalar: Scalar, encoding: Encoding) -> Option<f64> {
+    /// Returns the bytes of a number, the lowest first.
+    fn own<const N: usize>(bytes: &[u8], encoding: Encoding) -> Option<[u8; N]> {
+        let mut own = *bytes.first_chunk()?;
+        if encoding == Encoding::BigEndian {
+            own.reverse();
+        }
+        Some(own)
+    }
+    Some(match scalar {
+        Scalar::I8 => i8::from_le_bytes(own(bytes, encoding)?).into(),
+        Scalar::U8 => u8::from_le_bytes(own(bytes, encoding)?).into(),
+        Scalar::I16 => i16::from_le_bytes(own(bytes, encoding)?).into(),
+        Scalar::U16 => u16::from_le_bytes(own(bytes, encoding)?).into(),
+        Scalar::I32 => i32::from_le_bytes(own(bytes, encoding)?).into(),
+        Scalar::U32 => u32::from_le_bytes(own(bytes, encoding)?).into(),
+        Scalar::F32 => f32::from_le_bytes(own(bytes, encoding)?).into(),
+        Scalar::F64 => f64::from_le_bytes(own(bytes, encoding)?),
+        Scalar::I64 => i64::from_le_bytes(own(bytes, encoding)?) as f64,
+        Scalar::U64 => u64::from_le_bytes(own(bytes, encoding)?) as f64,
+    })
 }
 
 /// Formats a number for a message.

@@ -16,8 +16,18 @@ pub(super) struct DistinctCorners {
 impl DistinctCorners {
     /// Returns the number of a corner. A new corner gets the next number.
     pub(super) fn id(&mut self, corner: Corner, binding: u32) -> u32 {
+        self.id_of(self.hash(&corner, binding), corner, binding)
+    }
+
+    /// Returns the hash of a corner for [`id_of`](Self::id_of).
+    pub(super) fn hash(&self, corner: &Corner, binding: u32) -> u64 {
+        self.ids.hash(key(corner, binding))
+    }
+
+    /// Returns the number of a corner with this hash, as [`id`](Self::id) does.
+    pub(super) fn id_of(&mut self, hash: u64, corner: Corner, binding: u32) -> u32 {
         let (corners, bindings) = (&self.corners, &self.bindings);
-        let (id, is_new) = self.ids.number(key(&corner, binding), |id| key_of(corners, bindings, id));
+        let (id, is_new) = self.ids.number_of(hash, key(&corner, binding), |id| key_of(corners, bindings, id));
         if is_new {
             if binding != 0 || !self.bindings.is_empty() {
                 self.bindings.resize(self.corners.len(), 0);

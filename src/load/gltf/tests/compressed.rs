@@ -86,6 +86,28 @@ fn a_compressed_grid_is_the_plain_one() {
     assert_eq!(glb.corners, mesh.corners);
 }
 
+/// A grid whose compressed positions are broken, and which has a copy of them.
+#[test]
+fn a_broken_stream_is_read_from_its_copy() {
+    let expected = grid().read().expect("a document without a fault");
+    let copy: Vec<u8> = corners().iter().flatten().flat_map(|number| number.to_le_bytes()).collect();
+    let with_copy = |bytes: &[u8]| {
+        let mut draft = grid();
+        draft.bytes[0] = 0;
+        let uri = format!("data:application/octet-stream;base64,{}", BASE64_STANDARD.encode(bytes));
+        let extensions = json!({ MESHOPT: { "fallback": true } });
+        draft.fallback = Some(json!({ "byteLength": copy.len(), "uri": uri, "extensions": extensions }));
+        draft.read()
+    };
+    let mesh = with_copy(&copy).expect("a document with a copy");
+    assert_eq!((&mesh.corners, &mesh.triangles), (&expected.corners, &expected.triangles));
+    let said = "/bufferViews/0/extensions/EXT_meshopt_compression can't be decompressed";
+    let warnings: Vec<_> = mesh.warnings.iter().filter(|warning| warning.contains("copy")).collect();
+    assert!(matches!(warnings[..], [own] if own.starts_with(said)), "{:?}", mesh.warnings);
+    let refused = with_copy(&copy[1..]).map(|_| ()).expect_err("a copy that is too short");
+    assert!(refused.to_string().starts_with(said), "{refused}");
+}
+
 #[test]
 fn sequences_and_exponents_are_read() {
     let mut draft = Draft::new();

@@ -163,3 +163,33 @@ fn materials_shine_are_transparent_and_repeat_their_images_as_the_file_says() {
     assert_eq!((uv(tiles), uv(lamp)), ([0.5, 1.0], [0.0, 1.0]));
     assert!(tiles.texture.is_some() && mesh.warnings.is_empty(), "{:?}", mesh.warnings);
 }
+
+/// A triangle whose material has an image of normals as its bump map, as Blender writes it.
+#[test]
+fn a_bump_map_of_normals_is_a_normal_map() {
+    let folder = folder();
+    let image = |texel: [u8; 4]| {
+        let pixels = image::RgbaImage::from_pixel(8, 8, image::Rgba(texel));
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        pixels.write_to(&mut bytes, image::ImageFormat::Png).expect("memory");
+        bytes.into_inner()
+    };
+    write(&folder, "maps/normal.png", &image([140, 120, 254, 255]));
+    write(&folder, "maps/height.png", &image([90, 90, 90, 255]));
+    let bump = |name: &str, rest: &str| format!("newmtl {name}\nmap_Bump -bm 0.5 maps/{rest}.png\n");
+    let library =
+        bump("normals", "normal") + &bump("heights", "height") + &bump("unused", "normal") + &bump("gone", "nowhere");
+    write(&folder, "a.mtl", library.as_bytes());
+    let mesh = read(&folder, "mtllib a.mtl", &["normals", "heights", "gone"]);
+    let looks: Vec<_> = mesh.materials.iter().map(|material| &material.look).collect();
+    let has_map = |i: usize| looks[i].maps[Slot::Normal as usize].is_some();
+    assert_eq!([0, 1, 2].map(has_map), [true, false, false]);
+    assert_eq!(looks[0].normal_scale, 0.5);
+    assert!(mesh.details.is_some(), "its corners have tangents");
+    assert!(mesh.warnings.iter().any(|warning| warning.ends_with("an image of normals, drawn as a normal map: 1.")));
+    assert!(
+        mesh.warnings.iter().any(|warning| warning.ends_with("norm names a normal map: 2.")),
+        "{:?}",
+        mesh.warnings
+    );
+}

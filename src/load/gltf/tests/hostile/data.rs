@@ -58,6 +58,14 @@ fn refused(name: &'static str, draft: &Draft, expected: &str) -> Case {
     Case::draft(name, draft, Gets::Refused(expected.to_owned()))
 }
 
+/// Normals for two of the three vertices.
+fn fewer_normals() -> Case {
+    let mut draft = triangle();
+    draft.root["accessors"][1]["count"] = json!(2);
+    let said = "/accessors/1 | NORMAL | /meshes/0/primitives/0 | \"thing\" | 2 | 3 | left out";
+    Case::draft("normals for fewer vertices", &draft, Gets::Repaired(said))
+}
+
 pub(super) fn cases() -> Vec<Case> {
     let mode = |mode: u32| changed(|draft| draft.root["meshes"][0]["primitives"][0]["mode"] = json!(mode));
     let mut short_skin = skinned(0, 1.0);
@@ -128,12 +136,7 @@ pub(super) fn cases() -> Vec<Case> {
             json!("VEC2"),
             "Accessor | /accessors/0 | POSITION | /meshes/0/primitives/0 | \"thing\" | Vec2 | 3",
         ),
-        Case::with(
-            "normals for fewer vertices",
-            "/accessors/1/count",
-            json!(2),
-            "Accessor | /accessors/1 | NORMAL | /meshes/0/primitives/0 | \"thing\" | 2 | 3",
-        ),
+        fewer_normals(),
         Case::with("no positions", "/meshes/0/primitives/0/attributes", json!({}), "Empty | 1 primitives | empty"),
         refused(
             "sparse values beyond the list",

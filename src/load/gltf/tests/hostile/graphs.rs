@@ -22,15 +22,31 @@ pub(super) fn cases() -> Vec<Case> {
     let mut wide = vec![json!({ "mesh": 0 }); 20_000];
     wide.push(json!({ "children": (0..20_000).collect::<Vec<usize>>() }));
     vec![
-        Case::refused(
+        Case::new(
             "two parents",
             nodes(vec![json!({ "mesh": 0 }), json!({ "children": [0] }), json!({ "children": [1, 0] })]),
-            "Document | /nodes/2/children/1 | 0 | /nodes/1/children",
+            Gets::Repaired("/nodes/2/children/1 | 0 | /nodes/1/children | placed"),
         ),
-        Case::refused(
+        Case::new(
             "a child twice",
             nodes(vec![json!({ "mesh": 0 }), json!({ "children": [0, 0] })]),
-            "Document | /nodes/1/children/1 | 0 | /nodes/1/children",
+            Gets::Repaired("/nodes/1/children/1 | 0 | /nodes/1/children | placed"),
+        ),
+        Case::refused(
+            "a circle with another parent",
+            nodes(vec![json!({ "mesh": 0, "children": [1] }), json!({ "children": [0] }), json!({ "children": [0] })]),
+            "Empty | no node | mesh",
+        ),
+        Case::new(
+            "a child of 20,000 nodes",
+            nodes(
+                [json!({ "mesh": 0 })]
+                    .into_iter()
+                    .chain(vec![json!({ "children": [0] }); 20_000])
+                    .chain([json!({ "children": (1..=20_000).collect::<Vec<usize>>() })])
+                    .collect(),
+            ),
+            Gets::Repaired("/nodes/2/children/0 | 0 | /nodes/1/children | placed"),
         ),
         Case::refused(
             "its own child",

@@ -56,6 +56,14 @@ fn huge(indices: u64) -> Draft {
     draft
 }
 
+/// Normals for all vertices but one.
+fn fewer_normals() -> Case {
+    let mut draft = grid(Order::Kept);
+    draft.root["accessors"][1]["count"] = json!(80);
+    let said = "/accessors/1 | NORMAL | /meshes/0/primitives/0 | \"thing\" | 80 | 81 | left out";
+    Case::draft("normals that are fewer", &draft, Gets::Repaired(said))
+}
+
 fn documents() -> Vec<Case> {
     let at = |place: &str| format!("{EXTENSION}{place}");
     let member = |place: &str| format!("{PRIMITIVE}{place}");
@@ -102,12 +110,7 @@ fn documents() -> Vec<Case> {
         with("indices of no triangle", "/accessors/3/count", json!(385), &at(" | 128 | 385 | triangles | indices")),
         with("vertices that are more", "/accessors/0/count", json!(82), &at(" | 81 | 128 | 82")),
         with("vertices that are fewer", "/accessors/0/count", json!(5), &at(" | 5 | vertices")),
-        with(
-            "normals that are fewer",
-            "/accessors/1/count",
-            json!(80),
-            "/accessors/1 | NORMAL | /meshes/0/primitives/0 | \"thing\" | 80 | 81",
-        ),
+        fewer_normals(),
         with("floats that are called whole", "/accessors/1/componentType", json!(5120), &at(" | NORMAL | F32 | I8")),
         with(
             "a width that is normalised",

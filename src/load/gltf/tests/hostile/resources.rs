@@ -70,14 +70,23 @@ fn textured(image: &[u8]) -> String {
 }
 
 /// A triangle whose positions are marked as compressed.
-fn compressed(name: &'static str, change: impl FnOnce(&mut Value), expected: &str) -> Case {
+fn compressed(name: &'static str, change: impl FnOnce(&mut Value), gets: Gets) -> Case {
     let mut draft = triangle();
     let mut extension = json!({
         "buffer": 0, "byteOffset": 36, "byteLength": 36, "byteStride": 12, "count": 3, "mode": "ATTRIBUTES",
     });
     change(&mut extension);
     draft.root["bufferViews"][0]["extensions"] = json!({ MESHOPT: extension });
-    Case::draft(name, &draft, Gets::Refused(expected.to_owned()))
+    Case::draft(name, &draft, gets)
+}
+
+/// Compressed data that overlaps the view's own, so that there is no copy.
+fn compressed_alone(name: &'static str, change: impl FnOnce(&mut Value), expected: &str) -> Case {
+    let moved = |view: &mut Value| {
+        view["byteOffset"] = json!(35);
+        change(view);
+    };
+    compressed(name, moved, Gets::Refused(expected.to_owned()))
 }
 
 /// WebP and KTX2 images, and parts of the warning that each gets.
@@ -121,44 +130,54 @@ pub(super) fn cases(folder: &Folder) -> Vec<Case> {
         compressed(
             "compressed data that isn't",
             |_| {},
-            "Document | /bufferViews/0/extensions/EXT_meshopt_compression | 36 | 3",
+            Gets::Repaired("/bufferViews/0/extensions/EXT_meshopt_compression | 36 | 3 | copy"),
         ),
         compressed(
             "compressed data past the end",
             |view| view["byteLength"] = json!(37),
-            "Document | /bufferViews/0/extensions/EXT_meshopt_compression | 37 | 36 | /buffers/0 | 72",
+            Gets::Repaired("/bufferViews/0/extensions/EXT_meshopt_compression | 37 | 36 | /buffers/0 | 72 | copy"),
         ),
         compressed(
             "a count of 2^62, compressed",
             |view| view["count"] = json!(1_u64 << 62),
-            "Document | /bufferViews/0/extensions/EXT_meshopt_compression | 17592186044416 | 256",
+            Gets::Repaired("/bufferViews/0/extensions/EXT_meshopt_compression | 17592186044416 | 256 | copy"),
         ),
         compressed(
             "as much as fits a byte count, compressed",
             |view| view["count"] = json!(1_u64 << 30),
-            "Document | /bufferViews/0/extensions/EXT_meshopt_compression | 12289 | 256",
+            Gets::Repaired("/bufferViews/0/extensions/EXT_meshopt_compression | 12289 | 256 | copy"),
         ),
         compressed(
             "a stride of 6, compressed",
             |view| view["byteStride"] = json!(6),
-            "Document | /bufferViews/0/extensions/EXT_meshopt_compression | byteStride | 6 | Attributes",
+            Gets::Repaired("/bufferViews/0/extensions/EXT_meshopt_compression | byteStride | 6 | Attributes | copy"),
         ),
         compressed(
             "a compression that there isn't",
             |view| view["mode"] = json!("POINTS"),
-            "Document | /bufferViews/0/extensions/EXT_meshopt_compression/mode | ATTRIBUTES | TRIANGLES | INDICES | \"POINTS\"",
+            Gets::Refused("Document | /bufferViews/0/extensions/EXT_meshopt_compression/mode | ATTRIBUTES | TRIANGLES | INDICES | \"POINTS\"".to_owned()),
         ),
         compressed(
             "four corners a triangle",
             |view| {
                 (view["mode"], view["byteStride"], view["count"]) = (json!("TRIANGLES"), json!(4), json!(4));
             },
-            "Document | /bufferViews/0/extensions/EXT_meshopt_compression | count | 4 | 3",
+            Gets::Repaired("/bufferViews/0/extensions/EXT_meshopt_compression | count | 4 | 3 | copy"),
         ),
         compressed(
             "quaternions of 12 bytes",
             |view| view["filter"] = json!("QUATERNION"),
-            "Document | /bufferViews/0/extensions/EXT_meshopt_compression | Quaternion | 12",
+            Gets::Repaired("/bufferViews/0/extensions/EXT_meshopt_compression | Quaternion | 12 | copy"),
+        ),
+        compressed_alone(
+            "compressed data that isn't, without a copy",
+            |_| {},
+            "Document | /bufferViews/0/extensions/EXT_meshopt_compression | 36 | 3",
+        ),
+        compressed_alone(
+            "a count of 2^62, compressed without a copy",
+            |view| view["count"] = json!(1_u64 << 62),
+            "Document | /bufferViews/0/extensions/EXT_meshopt_compression | 17592186044416 | 256",
         ),
         Case::new(
             "an image of 20,000 px",

@@ -1,0 +1,120 @@
+//! How the window takes the mesh that it opens first.
+
+use clap::{ArgMatches, Args, Command, Error, FromArgMatches};
+
+use super::declared::{arg, given};
+use crate::engine::Preparation;
+use crate::load::Import;
+use crate::settings::{Declaration, Settings, Value, options};
+
+/// How the window takes the mesh that it opens first. What isn't given is as the window was left, or as it was chosen for the file.
+#[derive(Clone, Debug, Default, Args)]
+pub(crate) struct OpeningOptions {
+    #[command(flatten)]
+    import: GivenImport,
+    /// Leave out this part of a glTF file, an OBJ file or a text file of STL, by the name of its node, object, group or solid; may be
+    /// given several times. `info` lists the parts
+    #[arg(long, value_name = "NAME", allow_hyphen_values = true, requires = "file")]
+    hide_part: Vec<String>,
+}
+
+/// The options of [`options::IMPORT`] that were given, with their values.
+#[derive(Clone, Default)]
+struct GivenImport(Vec<(&'static Declaration, Value)>);
+
+impl OpeningOptions {
+    /// Whether none was given.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.import.0.is_empty() && self.hide_part.is_empty()
+    }
+
+    /// Changes what the given options are about.
+    pub(crate) fn change(&self, preparation: &mut Preparation) {
+        preparation.import = self.import(preparation.import);
+        preparation.hidden.clone_from(&self.hide_part);
+    }
+
+    /// How the geometry of a file is taken, which is `usual` without options.
+    pub(crate) fn import(&self, usual: Import) -> Import {
+        let mut settings = Settings { import: usual, ..Settings::default() };
+        for (declaration, value) in &self.import.0 {
+            declaration.set(&mut settings, value.clone());
+        }
+        settings.import
+    }
+
+    /// The names of the parts that are left out.
+    pub(crate) fn hidden(&self) -> &[String] {
+        &self.hide_part
+    }
+}
+
+impl Args for GivenImport {
+    fn augment_args(command: Command) -> Command {
+        command.args(options::IMPORT.map(arg))
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for GivenImport {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
+        let mut own = Self::default();
+        own.update_from_arg_matches(matches)?;
+        Ok(own)
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
+        let value = |declaration: &&'static Declaration| Some((*declaration, given(declaration, matches)?));
+        self.0 = options::IMPORT.iter().filter_map(value).collect();
+        Ok(())
+    }
+}
+
+impl std::fmt::Debug for GivenImport {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.debug_map().entries(self.0.iter().map(|(declaration, value)| (declaration.name, value))).finish()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+    use crate::cli::Cli;
+    use crate::load::{LengthUnit, NormalSource};
+    use crate::mesh::UpAxis;
+
+    fn options(arguments: &[&str]) -> OpeningOptions {
+        Cli::try_parse_from(["pnaen"].iter().chain(arguments)).expect("options of the window").opening
+    }
+
+    #[test]
+    fn only_what_is_given_changes_how_a_file_is_taken() {
+        let usual = Import {
+            normals: NormalSource::Made,
+            crease_angle: 30.0,
+            up: Some(UpAxis::X),
+            unit: Some(LengthUnit::Inch),
+        };
+        assert!(options(&["a.obj"]).is_empty());
+        assert_eq!(options(&["a.obj"]).import(usual), usual);
+        let some = options(&["a.obj", "--up", "z", "--crease-angle", "0"]);
+        assert_eq!(some.import(usual), Import { crease_angle: 0.0, up: Some(UpAxis::Z), ..usual });
+        let others = options(&["a.obj", "--mesh-normals=file", "--unit=mm", "--hide-part", "a", "--hide-part=b"]);
+        let mut preparation = Preparation { import: usual, ..Preparation::default() };
+        others.change(&mut preparation);
+        let expected = Import { normals: NormalSource::File, unit: Some(LengthUnit::Millimetre), ..usual };
+        assert_eq!((preparation.import, &preparation.hidden[..]), (expected, &["a".to_owned(), "b".to_owned()][..]));
+    }
+
+    #[test]
+    fn parts_need_a_file_and_commands_have_options_of_their_own() {
+        assert!(Cli::try_parse_from(["pnaen", "--hide-part", "a"]).is_err());
+        assert!(Cli::try_parse_from(["pnaen", "--up", "z", "info", "a.obj"]).is_err());
+        assert!(Cli::try_parse_from(["pnaen", "a.obj", "--unit", "parsec"]).is_err());
+    }
+}

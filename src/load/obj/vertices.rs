@@ -1,0 +1,166 @@
+//! The positions, texture coordinates and normals of an OBJ file, and what else is read before its faces.
+
+use glam::{Vec2, Vec3};
+
+use super::pieces::Piece;
+use super::{Statement, next_statement, too_large};
+use crate::load::memory_budget::Budget;
+use crate::load::read_error::ReadError;
+use crate::load::text_lines::{first_word, has_comma, number_or_nan, words};
+use crate::mesh::MemoryAccount;
+use crate::mesh::chunked_vec::ChunkedVec;
+
+/// The most numbers that a position has, with a weight and a colour.
+const NUMBERS: usize = 7;
+
+/// The positions, texture coordinates and normals that corners refer to.
+#[derive(Default)]
+pub(super) struct Vertices {
+    pub positions: ChunkedVec<Vec3>,
+    pub uvs: ChunkedVec<Vec2>,
+    pub normals: ChunkedVec<Vec3>,
+    /// Colours of positions, encoded as sRGB. Positions that have none are white; those after the last coloured one are missing.
+    pub colors: ChunkedVec<[u8; 4]>,
+    /// Whether any faces are in a smoothing group.
+    pub is_smoothed: bool,
+    /// Statements whose numbers have a comma instead of a point.
+    pub with_commas: usize,
+    /// Positions of two numbers.
+    pub flat: usize,
+}
+
+impl Vertices {
+    /// Returns how many positions, texture coordinates and normals there are.
+    pub(super) fn counts(&self) -> [usize; 3] {
+        [self.positions.len(), self.uvs.len(), self.normals.len()]
+    }
+
+    /// Stores what was read from the next piece of the file.
+    ///
+    /// # Errors
+    /// [`ReadError::TooLarge`], and the error that ended the piece.
+    pub(super) fn add(&mut self, more: &VertexPiece, budget: &Budget) -> Result<(), ReadError> {
+        let before = self.positions.len();
+        extend(&mut self.positions, &more.positions, budget)?;
+        extend(&mut self.uvs, &more.uvs, budget)?;
+        extend(&mut self.normals, &more.normals, budget)?;
+        if !more.colors.is_empty() {
+            let missing = before - self.colors.len();
+            for color in std::iter::repeat_n(&[255; 4], missing).chain(&more.colors) {
+                extend(&mut self.colors, std::slice::from_ref(color), budget)?;
+            }
+        }
+        self.is_smoothed |= more.is_smoothed;
+        self.with_commas += more.with_commas;
+        self.flat += more.flat;
+        Ok(())
+    }
+
+    /// Returns the size in memory, in bytes.
+    pub(super) fn bytes(&self) -> u64 {
+        self.positions.bytes() + self.uvs.bytes() + self.normals.bytes() + self.colors.bytes()
+    }
+}
+
+fn extend<T: Copy>(list: &mut ChunkedVec<T>, items: &[T], budget: &Budget) -> Result<(), ReadError> {
+    items.iter().try_for_each(|item| {
+        budget.hold(list.next_bytes()).map_err(too_large)?;
+        list.push(*item);
+        Ok(())
+    })
+}
+
+/// What a piece of the file has, as [`Vertices`] has it for the whole file.
+#[derive(Default)]
+pub(super) struct VertexPiece {
+    positions: Vec<Vec3>,
+    uvs: Vec<Vec2>,
+    normals: Vec<Vec3>,
+    colors: Vec<[u8; 4]>,
+    is_smoothed: bool,
+    with_commas: usize,
+    flat: usize,
+    /// The names of material files that it asks for, one statement each.
+    pub libraries: Vec<Vec<u8>>,
+    /// Why the piece couldn't be read to its end.
+    pub error: Option<ReadError>,
+}
+
+impl VertexPiece {
+    pub(super) fn parse(piece: &Piece) -> Self {
+        let (mut found, mut lines) = (Self::default(), piece.lines());
+        loop {
+            match next_statement(&mut lines, |statement| found.take(statement)) {
+                Ok(true) => {}
+                Ok(false) => return found,
+                Err(error) => {
+                    found.error = Some(error);
+                    return found;
+                }
+            }
+        }
+    }
+
+    fn take(&mut self, statement: &Statement) {
+        match statement.word {
+            b"v" => {
+                let rest = self.numbers_of(statement);
+                let (numbers, count) = numbers::<NUMBERS>(rest);
+                let [x, y, z, ..] = numbers;
+                self.flat += usize::from(count == 2);
+                self.positions.push(Vec3::new(x, y, if count == 2 { 0.0 } else { z }));
+                // With four numbers the last one is a weight, and with seven the first three are followed by one.
+                if matches!(count, 6 | 7) {
+                    let color = stored_color([0, 1, 2].map(|i| numbers[count - 3 + i]));
+                    self.colors.resize(self.positions.len() - 1, [255; 4]);
+                    self.colors.push(color);
+                }
+            }
+            b"vn" => {
+                let rest = self.numbers_of(statement);
+                self.normals.push(numbers::<3>(rest).0.into());
+            }
+            b"vt" => {
+                let rest = self.numbers_of(statement);
+                let ([u, v], count) = numbers(rest);
+                // The file's v points upwards, the mesh's downwards.
+                self.uvs.push(Vec2::new(u, 1.0 - if count > 1 { v } else { 0.0 }));
+            }
+            b"s" => self.is_smoothed |= group(statement.rest()) != 0,
+            b"mtllib" => self.libraries.push(statement.rest().to_vec()),
+            _ => {}
+        }
+    }
+
+    /// Returns what follows the first word of a statement of numbers, and counts commas.
+    fn numbers_of<'a>(&mut self, statement: &Statement<'a>) -> &'a [u8] {
+        let rest = statement.rest();
+        self.with_commas += usize::from(has_comma(rest));
+        rest
+    }
+}
+
+/// Parses the first N words as numbers. What isn't a number, or isn't there, is NaN. Returns how many words there are, too, up to
+/// one more than N.
+fn numbers<const N: usize>(text: &[u8]) -> ([f32; N], usize) {
+    let (mut numbers, mut count) = ([f32::NAN; N], 0);
+    for word in words(text) {
+        count += 1;
+        let Some(number) = numbers.get_mut(count - 1) else { break };
+        *number = number_or_nan(word);
+    }
+    (numbers, count)
+}
+
+/// Parses the number of a smoothing group: 0 for `off`, and for what isn't a number.
+pub(super) fn group(text: &[u8]) -> u32 {
+    std::str::from_utf8(first_word(text).0).ok().and_then(|word| word.parse().ok()).unwrap_or(0)
+}
+
+/// Returns a colour as bytes. Scanning programs write 0 to 1, and some 0 to 255.
+fn stored_color(color: [f32; 3]) -> [u8; 4] {
+    let scale = if color.iter().any(|channel| *channel > 1.0) { 1.0 } else { 255.0 };
+    // The conversion takes NaN for 0.
+    let [r, g, b] = color.map(|channel| (channel * scale).round() as u8);
+    [r, g, b, 255]
+}
