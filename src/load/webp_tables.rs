@@ -69,8 +69,8 @@ impl Reader<'_, '_> {
                     self.image(colors, 1)?;
                     width = width.div_ceil(match colors {
                         ..=2 => 8,
-                        ..=4 => 4,
-                        ..=16 => 2,
+                        3..=4 => 4,
+                        5..=16 => 2,
                         _ => 1,
                     });
                 }

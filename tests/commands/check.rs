@@ -41,6 +41,11 @@ camera = [30, 20, 1.5]
 field-of-view = 30
 
 [[files]]
+path = "triangles.gltf"
+[files.options]
+factor = 8
+
+[[files]]
 path = "**/odd/*.obj"
 fail-on = ["warnings:1", "t-junctions"]
 "#;

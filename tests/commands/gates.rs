@@ -166,7 +166,7 @@ fn evidence_shows_the_worst_places() {
         assert_eq!(shown.dimensions(), (160, 120));
         assert!(red(&shown) > 40, "{name} has {} red px", red(&shown));
     }
-    let written = std::fs::read(&folder.path("cube.png")).expect("a file");
+    let written = std::fs::read(folder.path("cube.png")).expect("a file");
     let blocked = ["--fail-on", "cracks", "--evidence", &folder.path("cube.png")];
     let said = failure(
         &[&["render", "shape:cube-split", "--surface", "pn", "-o", &folder.path("b.png")], &VIEW[..], &blocked]

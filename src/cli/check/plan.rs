@@ -102,7 +102,8 @@ fn resolved(option: &mut OptionValue, folder: &Path) -> Vec<PathBuf> {
         let is_file = match option.name.as_str() {
             "truth" => !value.starts_with("shape:"),
             "height" => value != "material",
-            _ => true,
+            // Standard input, which is refused later.
+            _ => value != "-",
         };
         if is_file {
             let path = folder.join(&*value);
