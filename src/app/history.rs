@@ -76,9 +76,9 @@ impl History<Undoable> {
         self.steps().for_each(|step| change(&mut step.settings));
     }
 
-    /// Shows all parts in all steps, because another mesh has others.
-    fn forget_parts(&mut self) {
-        self.steps().for_each(|step| step.hidden = Arc::default());
+    /// Hides the same parts in all steps, because another mesh has others.
+    fn hide_in_all(&mut self, hidden: &Arc<Vec<String>>) {
+        self.steps().for_each(|step| step.hidden = hidden.clone());
     }
 
     fn steps(&mut self) -> impl Iterator<Item = &mut Undoable> {
@@ -120,10 +120,11 @@ impl App {
         Undoable { settings: self.settings, hidden: self.hidden.clone() }
     }
 
-    /// Shows all parts, because another mesh was opened. No step hides any.
-    pub(super) fn forget_hidden_parts(&mut self) {
-        self.hidden = Arc::default();
-        self.history.forget_parts();
+    /// Takes over the hidden parts of a mesh that was opened: those of the command line, or none. This isn't a step of undo.
+    pub(super) fn take_hidden_parts(&mut self) {
+        let opened = self.document.as_ref().map(|document| document.loaded.preparation.hidden.clone());
+        self.hidden = Arc::new(opened.unwrap_or_default());
+        self.history.hide_in_all(&self.hidden);
     }
 
     pub(super) fn can_undo(&self) -> bool {

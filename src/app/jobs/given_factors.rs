@@ -162,6 +162,13 @@ impl App {
         self.jobs.factors = Some(FactorsJob { path, job: BackgroundJob::start(context, again) });
     }
 
+    /// The number of what takes the place of LOD: functions of the user's own, or a file; 0 for LOD.
+    pub(in crate::app) fn given_wanted(&self) -> u64 {
+        let shader = self.lod_shader.as_ref().filter(|_| self.uses_lod_shader()).and_then(OpenLodShader::shader);
+        let of_file = self.given.as_ref().map_or(0, |given| given.generation);
+        shader.map_or(of_file, |(_, generation)| generation)
+    }
+
     /// Gives the scenes the factors of the file or the functions of the user's own, or takes them back, while no picture is under way. Returns the number of those
     /// that the picture has; 0 for those of LOD.
     ///
@@ -169,8 +176,7 @@ impl App {
     /// More patches than the adapter binds memory for.
     pub(in crate::app) fn give_factors(&mut self) -> Result<u64, GpuError> {
         let shader = self.lod_shader.as_ref().filter(|_| self.uses_lod_shader()).and_then(OpenLodShader::shader);
-        let of_file = self.given.as_ref().map_or(0, |given| given.generation);
-        let wanted = shader.as_ref().map_or(of_file, |(_, generation)| *generation);
+        let wanted = self.given_wanted();
         let Some(document) = &mut self.document else { return Ok(0) };
         if document.given != wanted && self.viewport.picture.is_free() && self.viewport.left.is_made() {
             let file = self.given.as_ref().map(|given| Given::Factors(given.factors.to_vec()));

@@ -128,7 +128,7 @@ impl App {
                 }
                 if !keep_view {
                     self.take_placement();
-                    self.forget_hidden_parts();
+                    self.take_hidden_parts();
                 }
                 if before.is_some() {
                     self.dialogs.error = None;

@@ -102,6 +102,7 @@ impl App {
         let deviation = self.deviation_shown();
         let moment = self.moment();
         let (given, matcap) = (self.give_factors()?, self.give_matcap());
+        let has_given = given == self.given_wanted();
         let environment = self.give_environment();
         let has_light = environment == self.environment_wanted();
         let settings = self.settings_in(context.theme());
@@ -138,8 +139,7 @@ impl App {
         if let Some(left) = document.scene.half(SplitSide::Left) {
             self.viewport.left.measuring.keep_only(document.generation, left.tessellator.generation());
         }
-        let is_ready =
-            has_light && document.moment == moment && given == self.given.as_ref().map_or(0, |given| given.generation);
+        let is_ready = has_light && document.moment == moment && has_given;
         let shown = is_ready && self.viewport.picture.drawn.as_ref() == Some(&wanted);
         self.viewport.picture.outdated = !shown && self.viewport.picture.cancelled.is_none();
         let still = shown && !self.viewport.playback.is_playing();
