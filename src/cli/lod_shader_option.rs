@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use super::factors_option::{EdgeStats, LISTED, agreement_lines};
+use super::factors_option::{EdgeStats, FactorsOption, LISTED, agreement_lines};
 use super::{CliError, warn};
 use crate::engine::Engine;
 use crate::gpu::{Given, GpuError};
@@ -39,6 +39,17 @@ impl LodShaderOption {
             ));
         }
         Ok(Some(Given::Shader(read_lod_shader(path)?)))
+    }
+
+    /// Checks that no file has factors as well.
+    ///
+    /// # Errors
+    /// One has.
+    pub(crate) fn check_alone(&self, factors: &FactorsOption) -> Result<(), CliError> {
+        match self.lod_shader.is_some() && factors.given.is_some() {
+            true => Err(CliError::Usage("--factors and --lod-shader both take the place of LOD: choose one")),
+            false => Ok(()),
+        }
     }
 
     /// Checks that nothing is to be computed on the CPU.

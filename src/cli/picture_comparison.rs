@@ -36,7 +36,7 @@ pub(crate) struct PictureTolerance {
 
 impl Default for PictureTolerance {
     fn default() -> Self {
-        Self { difference: 0.01, tile: 1.5, step: 4.0, px: 0 }
+        Self { difference: 0.01, tile: 2.0, step: 4.0, px: 0 }
     }
 }
 

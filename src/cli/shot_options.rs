@@ -66,6 +66,7 @@ impl ShotOptions {
         written: &[Option<&Path>],
     ) -> Result<(), CliError> {
         self.surface.check_with(self.picture.0.split_surface)?;
+        self.own_lod.check_alone(&self.given)?;
         if self.matcap_image.is_some() && self.picture.0.overlays.colors != Colors::Matcap {
             return Err(CliError::Usage("--matcap-image needs --overlay matcap, which shows it"));
         }

@@ -100,6 +100,7 @@ impl Args {
         self.surface.check()?;
         self.adapter.check(self.device == Device::Cpu)?;
         self.own_lod.check(self.device == Device::Cpu)?;
+        self.own_lod.check_alone(&self.given)?;
         let draws = self.gates.evidence.is_some() || self.gates.gates.has(GateKind::Leaks);
         if draws && self.device == Device::Cpu {
             return Err(CliError::Usage("--fail-on leaks and --evidence need --device gpu, which draws"));

@@ -89,7 +89,7 @@ pub(super) fn in_pieces<'a, T: Send>(
     while first < pieces.len() {
         progress.set(first as f32 / pieces.len() as f32);
         progress.check()?;
-        let some = &pieces[first..first + group(&pieces[first..])];
+        let some = &pieces[first..first + group(&pieces[first..], budget.left())];
         let borrowed = budget.borrowed();
         let bytes: usize = some.iter().map(|piece| piece.bytes.len().min(LONGEST)).sum();
         budget.borrow(bytes as u64 * PER_BYTE).map_err(too_large)?;
@@ -102,12 +102,14 @@ pub(super) fn in_pieces<'a, T: Send>(
     Ok(())
 }
 
-/// Returns how many pieces are parsed at a time, from the first one on.
-fn group(pieces: &[Piece]) -> usize {
+/// Returns how many pieces are parsed at a time, from the first one on, if so many bytes of memory are left: at least one, and no more
+/// than leave three quarters of the memory to the mesh.
+fn group(pieces: &[Piece], left: u64) -> usize {
+    let most = (AT_A_TIME as u64).min(left / (4 * PER_BYTE));
     let mut bytes = 0;
     let fits = |piece: &&Piece| {
-        bytes += piece.bytes.len();
-        bytes <= AT_A_TIME
+        bytes += piece.bytes.len() as u64;
+        bytes <= most
     };
     pieces.iter().take_while(fits).count().max(1)
 }
