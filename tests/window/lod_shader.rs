@@ -67,7 +67,8 @@ fn a_change_on_disk_is_shown_and_an_asymmetry_is_caught() {
     assert!(harness.get_all_by_label_contains(&format!("{edge:<9}")).next().is_some(), "it is in the list");
     // Factors that follow the view do so without a readback of their own.
     press(&mut harness, egui::Key::Escape);
-    write(&path, "clamp(9.0 - 2.0 * distance(edge.a + edge.b, 2.0 * view.eye) / view.radius * 0.5, 1.0, 64.0)");
+    press(&mut harness, egui::Key::F);
+    write(&path, "clamp(60.0 - 8.0 * distance(edge.a + edge.b, 2.0 * view.eye) / view.radius, 1.0, 64.0)");
     until(&mut harness, "the change isn't seen", |app| {
         app.cracks().is_some_and(|cracks| cracks.different_factors == 0)
     });
