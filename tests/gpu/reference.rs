@@ -148,11 +148,14 @@ fn facing(mesh: &Mesh, camera: &Camera) -> usize {
     all.max_by(|a, b| facing(a.1).total_cmp(&facing(b.1))).expect("a mesh with triangles").0
 }
 
+/// What differs, whether pairs must be judged the same, and the numbers of each pair.
+type Kind = (&'static str, bool, Vec<(String, Comparison)>);
+
 /// What was compared, and what must come of it.
 #[derive(Default)]
 struct Pairs {
-    /// What differs, in the order of the table, with the numbers of each pair.
-    kinds: Vec<(&'static str, bool, Vec<(String, Comparison)>)>,
+    /// In the order of the table.
+    kinds: Vec<Kind>,
 }
 
 impl Pairs {
@@ -181,7 +184,7 @@ impl Pairs {
 
     fn table(&self, passes: bool) -> String {
         let kinds = self.kinds.iter().filter(|(_, own, _)| *own == passes);
-        let row = |(kind, _, pairs): &(&str, bool, Vec<(String, Comparison)>)| {
+        let row = |(kind, _, pairs): &Kind| {
             let range = |of: &dyn Fn(&Comparison) -> f64, decimals: usize| {
                 let values = || pairs.iter().map(|(_, own)| of(own));
                 let (least, most) = (values().fold(f64::MAX, f64::min), values().fold(0.0, f64::max));
