@@ -70,6 +70,7 @@ mod factors_file;
 mod gallery;
 #[cfg(feature = "cli")]
 mod gates;
+#[cfg(feature = "cli")]
 mod lod_shader;
 #[cfg(feature = "cli")]
 mod measure;
