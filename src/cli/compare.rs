@@ -36,7 +36,7 @@ pub(crate) struct Args {
     #[arg(short, long, value_name = "OUT.png", value_parser = options::picture())]
     pub output: Option<PathBuf>,
     /// How far vertices may be from ours and be the same: object units, or ULP of the mesh's largest coordinate, such as 16ulp
-    #[arg(long, value_name = "DISTANCE", default_value = "16ulp", value_parser = within)]
+    #[arg(long, value_name = "DISTANCE", default_value = "16ulp", value_parser = within, allow_negative_numbers = true)]
     pub within: Within,
     /// The columns of a .csv file that are the position, by their name without the component: position for position.x, position.y
     /// and position.z

@@ -121,6 +121,11 @@ pub(crate) struct Displaced {
 }
 
 impl Finding {
+    /// Whether it names points or triangles of patches that have as many points as ours.
+    pub(super) fn is_about_few_points(&self) -> bool {
+        matches!(self, Self::Moved { .. } | Self::OtherTriangles { .. })
+    }
+
     /// What it is, as one word for programs.
     pub(crate) fn kind(&self) -> &'static str {
         match self {

@@ -174,6 +174,12 @@ pub(crate) fn compare(
     }
     found.sides = outcomes.explain(ours, other.as_ref(), &mut found.findings, progress)?;
     outcomes.judge_triangles(ours, alignment.as_ref(), &mut found.findings);
+    found.different = outcomes.different_at_all();
+    let is_known = found.findings.iter().any(|finding| matches!(finding, Finding::Factors { .. }));
+    if is_known && found.findings.iter().any(Finding::is_about_few_points) {
+        let is_convention = gives_their_points(ours, &assignment, exactness, progress)?;
+        found.leave_to_factors(is_convention);
+    }
     let largest = found.farthest.filter(|farthest| farthest.distance > exactness.within);
     if let Some(farthest) = largest.filter(|_| found.findings.iter().all(|finding| finding.is_about_coordinates())) {
         let triangle = ours.topology.patches[farthest.patch as usize].triangle;
@@ -181,9 +187,44 @@ pub(crate) fn compare(
         let convention = other_convention(ours, &assignment, exactness, progress)?;
         found.findings.push(convention.unwrap_or(rounding));
     }
-    found.different = outcomes.different_at_all();
     found.positions = positions;
     Ok(found)
+}
+
+impl Comparison {
+    /// Where another order of factors gives all of their points, it also explains a few points that seem to be moved, and their triangles.
+    fn leave_to_factors(&mut self, is_convention: bool) {
+        if !is_convention {
+            return;
+        }
+        self.findings.retain(|finding| !finding.is_about_few_points());
+        for finding in &mut self.findings {
+            if let Finding::Factors { patches, .. } = finding {
+                *patches = self.different.len() as u64;
+            }
+        }
+    }
+}
+
+/// Whether we emit their points and triangles under another convention.
+fn gives_their_points(
+    ours: &Ours,
+    assignment: &Assignment,
+    exactness: Exactness,
+    progress: &Progress,
+) -> Result<bool, Cancelled> {
+    let own = ours.inputs.tessellation.convention;
+    for theirs in Convention::ALL.into_iter().filter(|other| ours.given.is_none() && *other != own) {
+        let tessellation = Tessellation { convention: theirs, ..ours.inputs.tessellation };
+        let inputs = Inputs { tessellation, ..*ours.inputs };
+        let tessellated = tessellate(ours.mesh, ours.topology, &inputs, None);
+        let turned = Ours { inputs: &inputs, tessellated: &tessellated, ..*ours };
+        let own_mesh = OwnMesh::new(&tessellated);
+        if Outcomes::new(&turned, &own_mesh, assignment, exactness, progress)?.different_at_all().is_empty() {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }
 
 /// Finds the valid convention under which we emit their vertices, where ours gives the same points but for their last bits.

@@ -37,8 +37,8 @@ fn parts_are_listed_and_left_out() {
     assert_eq!((number(&json, "/triangles"), &json["parts"][1]["hidden"]), (1.0, &Value::Bool(true)));
     sentence(&["info", &parts, "--hide-part", "bonnet"], &["bonnet", "left door", "-right"]);
     sentence(&["info", &parts, "--hide-part", "left door", "--hide-part=-right"], &["parts are hidden"]);
-    let plain = folder.path("plain.obj");
-    std::fs::write(&plain, "v 0 0 0\nv 2 0 0\nv 2 3 0\nf 1 2 3\n").expect("a writable folder");
+    let plain = folder.path("plain.off");
+    std::fs::write(&plain, "OFF\n3 1 0\n0 0 0\n2 0 0\n2 3 0\n3 0 1 2\n").expect("a writable folder");
     sentence(&["info", &plain, "--hide-part", "left door"], &["no named parts"]);
     // Named nodes of glTF files are parts.
     sentence(&["info", vase(), "--hide-part", "left door"], &["no part left door", "vase"]);

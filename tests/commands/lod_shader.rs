@@ -105,7 +105,7 @@ fn options_that_exclude_functions_of_ones_own_are_named() {
     assert!(with(&["--lod", "paper"]).contains("cannot be used with"));
     assert!(with(&["--factor", "3"]).contains("cannot be used with"));
     let both = ["render", "shape:cube-split", "-o", "a.png", "--lod-shader", &shader, "--factors", "a.csv"];
-    assert!(failure(&both, 2).contains("cannot be used with"));
+    assert!(failure(&both, 2).contains("choose one"));
     // It isn't overwritten.
     let onto = ["factors", "shape:cube-split", "-o", &shader, "--lod-shader", &shader];
     assert!(failure(&onto, 1).contains("is read by the same command"));
