@@ -90,21 +90,21 @@ fn file() -> Vec<Command> {
         .menu(File, 2)
         .unless(when::factors),
         Command::new(Action::File(FileAction::LodShader), "LOD shader…", LOD_SHADER)
-            .menu(File, 2)
+            .menu(Menu::Edit, 2)
             .unless(when::document),
         Command::new(
             Action::File(FileAction::LodShaderPath),
             "LOD shader path…",
             "Opens an LOD shader by its typed path.",
         )
-        .menu(File, 2)
+        .menu(Menu::Edit, 2)
         .unless(when::document),
         Command::new(
             Action::File(FileAction::CloseLodShader),
             "Close the LOD shader",
             "Closes the LOD shader. LOD computes factors again.",
         )
-        .menu(File, 2)
+        .menu(Menu::Edit, 2)
         .unless(when::lod_shader),
         Command::new(Action::File(FileAction::Environment), "Open environment…", ENVIRONMENT).menu(File, 2),
         Command::new(
