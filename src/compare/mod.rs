@@ -177,26 +177,29 @@ pub(crate) fn compare(
     found.different = outcomes.different_at_all();
     let is_known = found.findings.iter().any(|finding| matches!(finding, Finding::Factors { .. }));
     if is_known && found.findings.iter().any(Finding::is_about_few_points) {
-        let is_convention = gives_their_points(ours, &assignment, exactness, progress)?;
-        found.leave_to_factors(is_convention);
+        let is_same = |turned: &Outcomes| turned.different_at_all().is_empty();
+        if other_convention(ours, &assignment, exactness, progress, |_| true, is_same)?.is_some() {
+            found.leave_to_factors();
+        }
     }
     let largest = found.farthest.filter(|farthest| farthest.distance > exactness.within);
     if let Some(farthest) = largest.filter(|_| found.findings.iter().all(|finding| finding.is_about_coordinates())) {
         let triangle = ours.topology.patches[farthest.patch as usize].triangle;
         let rounding = Finding::Rounding { farthest, ulps: farthest.distance / found.ulp, triangle };
-        let convention = other_convention(ours, &assignment, exactness, progress)?;
-        found.findings.push(convention.unwrap_or(rounding));
+        // A valid convention gives the same points but for their last bits.
+        let own = ours.inputs.tessellation.convention;
+        let is_valid = |other: &Convention| own.is_consistent() && other.is_consistent();
+        let is_near = |turned: &Outcomes| turned.farthest().is_some_and(|far| far.distance <= exactness.within);
+        let theirs = other_convention(ours, &assignment, exactness, progress, is_valid, is_near)?;
+        found.findings.push(theirs.map_or(rounding, |theirs| Finding::Convention { ours: own, theirs }));
     }
     found.positions = positions;
     Ok(found)
 }
 
 impl Comparison {
-    /// Where another order of factors gives all of their points, it also explains a few points that seem to be moved, and their triangles.
-    fn leave_to_factors(&mut self, is_convention: bool) {
-        if !is_convention {
-            return;
-        }
+    /// Another order of factors gives all of their points. So it also explains a few that seem to be moved, and their triangles.
+    fn leave_to_factors(&mut self) {
         self.findings.retain(|finding| !finding.is_about_few_points());
         for finding in &mut self.findings {
             if let Finding::Factors { patches, .. } = finding {
@@ -206,47 +209,29 @@ impl Comparison {
     }
 }
 
-/// Whether we emit their points and triangles under another convention.
-fn gives_their_points(
-    ours: &Ours,
-    assignment: &Assignment,
-    exactness: Exactness,
-    progress: &Progress,
-) -> Result<bool, Cancelled> {
-    let own = ours.inputs.tessellation.convention;
-    for theirs in Convention::ALL.into_iter().filter(|other| ours.given.is_none() && *other != own) {
-        let tessellation = Tessellation { convention: theirs, ..ours.inputs.tessellation };
-        let inputs = Inputs { tessellation, ..*ours.inputs };
-        let tessellated = tessellate(ours.mesh, ours.topology, &inputs, None);
-        let turned = Ours { inputs: &inputs, tessellated: &tessellated, ..*ours };
-        let own_mesh = OwnMesh::new(&tessellated);
-        if Outcomes::new(&turned, &own_mesh, assignment, exactness, progress)?.different_at_all().is_empty() {
-            return Ok(true);
-        }
-    }
-    Ok(false)
-}
-
-/// Finds the valid convention under which we emit their vertices, where ours gives the same points but for their last bits.
+/// Finds the convention among some of the others under which what we emit passes `suits`, which gets our outcomes under it.
+///
+/// # Errors
+/// [`Cancelled`].
 fn other_convention(
     ours: &Ours,
     assignment: &Assignment,
     exactness: Exactness,
     progress: &Progress,
-) -> Result<Option<Finding>, Cancelled> {
+    among: impl Fn(&Convention) -> bool,
+    suits: impl Fn(&Outcomes) -> bool,
+) -> Result<Option<Convention>, Cancelled> {
     let own = ours.inputs.tessellation.convention;
     // Given factors are in the order of our convention.
-    let all =
-        Convention::ALL.into_iter().filter(|other| ours.given.is_none() && other.is_consistent() && *other != own);
-    for theirs in all.filter(|_| own.is_consistent()) {
+    let others = Convention::ALL.into_iter().filter(|other| ours.given.is_none() && *other != own);
+    for theirs in others.filter(among) {
         let tessellation = Tessellation { convention: theirs, ..ours.inputs.tessellation };
         let inputs = Inputs { tessellation, ..*ours.inputs };
         let tessellated = tessellate(ours.mesh, ours.topology, &inputs, None);
         let turned = Ours { inputs: &inputs, tessellated: &tessellated, ..*ours };
         let own_mesh = OwnMesh::new(&tessellated);
-        let farthest = Outcomes::new(&turned, &own_mesh, assignment, exactness, progress)?.farthest();
-        if farthest.is_some_and(|farthest| farthest.distance <= exactness.within) {
-            return Ok(Some(Finding::Convention { ours: own, theirs }));
+        if suits(&Outcomes::new(&turned, &own_mesh, assignment, exactness, progress)?) {
+            return Ok(Some(theirs));
         }
     }
     Ok(None)

@@ -313,10 +313,22 @@ fn put(page: &str, mark: &str, table: &str) -> String {
     format!("{before}{begin}{table}{end}{after}")
 }
 
-/// The first two columns of the page's tables: what differs, and how many pairs there are.
-fn kinds(page: &str) -> Vec<&str> {
-    let first_columns = |line: &str| line.match_indices('|').nth(2).map(|(end, _)| end);
-    page.lines().filter_map(|line| Some(&line[..first_columns(line)?])).collect()
+/// Whether two pages have the same words, and the same numbers but for a hundredth or five in their last digit. The software driver
+/// rounds otherwise on another processor: by at most four in the last digit between the two that were tried.
+fn are_alike(a: &str, b: &str) -> bool {
+    let decimals = |word: &str| word.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    let is_near = |a: &str, b: &str| {
+        let (Ok(x), Ok(y)) = (a.parse::<f64>(), b.parse::<f64>()) else { return false };
+        decimals(a) == decimals(b) && (x - y).abs() <= (5.5 * 0.1_f64.powi(decimals(a) as i32)).max(0.01 * x.max(y))
+    };
+    let (words, others): (Vec<_>, Vec<_>) = (a.split_whitespace().collect(), b.split_whitespace().collect());
+    words.len() == others.len() && words.iter().zip(&others).all(|(a, b)| a == b || is_near(a, b))
+}
+
+#[test]
+fn pages_are_alike_but_for_how_processors_round() {
+    assert!(are_alike("| 0.0421 | 218 to 20001 |", "| 0.0424 | 214 to 20003 |"));
+    assert!(!are_alike("| 0.0421 |", "| 0.0428 |") && !are_alike("| 12 |", "| 19 |") && !are_alike("a | 1", "b | 1"));
 }
 
 #[test]
@@ -339,8 +351,7 @@ fn the_page_of_references_has_what_pairs_of_pictures_measure_and_none_is_judged_
     if std::env::var_os("PNAEN_UPDATE_PAGES").is_some() {
         std::fs::write(&path, &made).expect("a writable page");
     } else {
-        // Another processor rounds otherwise, and measures other numbers. The kinds of pairs must be those of the page.
-        assert_eq!(kinds(&kept), kinds(&made), "PNAEN_UPDATE_PAGES=1 writes {PAGE}");
+        assert!(are_alike(&kept, &made), "{PAGE} has other numbers; PNAEN_UPDATE_PAGES=1 writes them:\n{made}");
     }
 }
 

@@ -52,6 +52,9 @@ fn a_change_on_disk_is_shown_and_an_asymmetry_is_caught() {
     open(&mut harness, &path);
     assert_eq!(harness.state().lod_shader_file(), Some(&*path));
     harness.get_by_label("own.wgsl");
+    let list = harness.get_by_role_and_label(Role::ComboBox, "Surface").rect();
+    let close = harness.get_by_role_and_label(Role::Button, "Close the shader").rect();
+    assert!(close.right() <= list.right(), "the panel shows all of {close:?}, as it does of {list:?}");
     let threes = totals(harness.state());
     // Fractional odd at 3: as many triangles for each of the torus' 256 patches.
     assert!(threes != before && threes.1.is_multiple_of(256), "{threes:?}");

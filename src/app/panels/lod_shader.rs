@@ -26,14 +26,14 @@ impl App {
             ui.add(egui::Label::new(text).wrap());
             ui.end_row();
         }
-        let (mut reads, mut closes) = (false, false);
         ui.label("");
-        ui.horizontal(|ui| {
-            let hover = "Reads the file again. That happens by itself whenever it changes.";
-            reads = ui.button("Read again").on_hover_text(hover).clicked();
-            let hover = "Closes the LOD shader. LOD computes factors again.";
-            closes = ui.button("Close the shader").on_hover_text(hover).clicked();
-        });
+        let hover = "Reads the file again. That happens by itself whenever it changes.";
+        let reads = ui.button("Read again").on_hover_text(hover).clicked();
+        ui.end_row();
+        // The panel is too narrow for both buttons beside each other.
+        ui.label("");
+        let hover = "Closes the LOD shader. LOD computes factors again.";
+        let closes = ui.button("Close the shader").on_hover_text(hover).clicked();
         ui.end_row();
         if reads {
             self.reload_lod_shader(ui.ctx());
