@@ -2,7 +2,8 @@
 //! and processor time are measured.
 //!
 //! With `PNAEN_PYTHON=/path/to/python` it also times how long trimesh and pymeshlab load the same files; both must be installed
-//! for that Python. All take turns, and what is printed are medians of the turns.
+//! for that Python. All take turns, and what is printed are medians of the turns. Arguments after `--` are the only formats that
+//! are measured: `-- ply obj`.
 
 mod files;
 
@@ -78,8 +79,12 @@ fn median(numbers: impl IntoIterator<Item = f64>) -> f64 {
 fn main() {
     let python = std::env::var("PNAEN_PYTHON").ok();
     let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let wanted: Vec<String> = std::env::args().skip(1).filter(|argument| !argument.starts_with("--")).collect();
     let mut rows = [Vec::new(), Vec::new()];
     for (name, write) in files::FORMATS {
+        if !wanted.is_empty() && !wanted.iter().any(|format| name.ends_with(&format!(".{format}"))) {
+            continue;
+        }
         let path = folder.path().join(name);
         write(&path, SIDE).expect("a writable temporary folder");
         // One turn: loading, info, and the others.
