@@ -13,10 +13,11 @@ use super::parts::Parts;
 use super::read_error::{FilePosition, ReadError};
 use super::recent_corners::{RecentCorners, VertexNumbers};
 use super::tangents;
+use super::triangle_block::{self, TriangleBlock};
 use super::warnings::repair_warnings;
 use crate::mesh::build_limits::{MAX_TRIANGLES, MemoryRefused};
 use crate::mesh::detail_table::DetailTable;
-use crate::mesh::mesh_builder::{InputCorner, MeshBuilder, StoredCorner};
+use crate::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use crate::mesh::mipmap::SRGB_TABLE;
 use crate::mesh::polygon::{self, CutQuality, triangulate};
 use crate::mesh::rig::LARGEST_COORDINATE;
@@ -80,6 +81,7 @@ pub(super) struct FaceBuilder<'a> {
     parts: Parts,
     builder: MeshBuilder,
     recent: RecentCorners,
+    block: TriangleBlock,
     /// The colours of corners, if the file has any, or if corners may need tangents.
     colors: Option<DetailTable>,
     materials: usize,
@@ -110,6 +112,7 @@ impl<'a> FaceBuilder<'a> {
             parts: Parts::default(),
             builder: MeshBuilder::new(),
             recent: RecentCorners::default(),
+            block: TriangleBlock::default(),
             colors: None,
             materials: 0,
             triangles: 0,
@@ -248,39 +251,65 @@ impl<'a> FaceBuilder<'a> {
         Ok(())
     }
 
-    /// Adds a triangle of vertices that have numbers in the file, without a list of its corners. `corner_of` returns a vertex's
-    /// corner, and its [colour](Self::number). Returns false if a corner needs a repair, or if the triangle's part is hidden; then
-    /// [`add`](Self::add) must add it.
+    /// Adds triangles of vertices that have numbers in the file, without a list of the corners of each. `corner_of` returns a
+    /// vertex's corner, and its [colour](Self::number). Returns how many were added: the next one has a corner that needs a repair, or
+    /// its part is hidden, and [`add`](Self::add) must add it.
     ///
     /// # Errors
     /// As [`add`](Self::add).
-    pub(super) fn add_triangle(
+    pub(super) fn add_triangles(
         &mut self,
         material: usize,
-        vertices: [VertexNumbers; 3],
+        triangles: &[[VertexNumbers; 3]],
         corner_of: impl Fn(VertexNumbers) -> Option<(InputCorner, Vec4)>,
-    ) -> Result<bool, ReadError> {
-        if self.parts.is_hidden() {
-            return Ok(false);
-        }
-        let mut stored = [StoredCorner::default(); 3];
-        for (stored, vertex) in stored.iter_mut().zip(vertices) {
-            if let Some(known) = self.recent.known(vertex) {
-                *stored = known;
-                continue;
+    ) -> Result<usize, ReadError> {
+        let mut added = 0;
+        if !self.parts.is_hidden() {
+            for some in triangles.chunks(triangle_block::BLOCK) {
+                let mut block = std::mem::take(&mut self.block);
+                let count = self.add_block(&mut block, material, some, &corner_of)?;
+                self.block = block;
+                added += count;
+                if count < some.len() {
+                    break;
+                }
             }
-            let is_sound = |(corner, _): &(InputCorner, Vec4)| is_near(corner) && corner.uv.is_finite();
-            let Some((corner, color)) = corner_of(vertex).filter(is_sound) else { return Ok(false) };
-            let normal = corner.normal.filter(|_| !self.import.makes_normals());
-            let number = self.number(color)?;
-            self.builder.make_room(1, self.memory).map_err(too_large)?;
-            let (recent, builder) = (&mut self.recent, &mut self.builder);
-            *stored = recent.get(vertex, || builder.corner(InputCorner { normal, ..corner }, number));
         }
-        self.parts.leave_out(1);
-        self.make_room(material, 1)?;
-        self.builder.stored_triangle(material, stored);
-        Ok(true)
+        Ok(added)
+    }
+
+    /// Adds some triangles as [`add_triangles`](Self::add_triangles) does.
+    fn add_block(
+        &mut self,
+        block: &mut TriangleBlock,
+        material: usize,
+        triangles: &[[VertexNumbers; 3]],
+        corner_of: impl Fn(VertexNumbers) -> Option<(InputCorner, Vec4)>,
+    ) -> Result<usize, ReadError> {
+        block.clear();
+        let mut recent = std::mem::take(&mut self.recent);
+        let is_sound = |(corner, _): &(InputCorner, Vec4)| is_near(corner) && corner.uv.is_finite();
+        let mut count = 0;
+        for &triangle in triangles {
+            let is_added = block.push(triangle, &mut recent, |vertex| {
+                let Some((corner, color)) = corner_of(vertex).filter(is_sound) else { return Ok(None) };
+                let normal = corner.normal.filter(|_| !self.import.makes_normals());
+                Ok::<_, ReadError>(Some((InputCorner { normal, ..corner }, self.number(color)?)))
+            })?;
+            if !is_added {
+                break;
+            }
+            count += 1;
+        }
+        self.builder.make_room(block.corners().len(), self.memory).map_err(too_large)?;
+        block.store(&mut recent, |corners, stored| self.builder.corners(corners, stored));
+        self.recent = recent;
+        self.parts.leave_out(count);
+        for corners in block.triangles() {
+            self.make_room(material, 1)?;
+            self.builder.stored_triangle(material, corners);
+        }
+        Ok(count)
     }
 
     /// Counts triangles, and makes room for them.
@@ -357,7 +386,7 @@ impl<'a> FaceBuilder<'a> {
         progress: &Progress,
     ) -> Result<(Mesh, Vec<u32>, Vec<String>), ReadError> {
         // No more corners are stored.
-        self.recent = RecentCorners::default();
+        (self.recent, self.block) = Default::default();
         if self.builder.is_empty() {
             let small = match self.too_small {
                 0 => String::new(),

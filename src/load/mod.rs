@@ -43,6 +43,7 @@ mod tangents;
 mod text_lines;
 mod texture_room;
 mod threemf;
+mod triangle_block;
 mod unread_formats;
 mod uri;
 mod warnings;

@@ -31,6 +31,7 @@ use super::read_error::{FilePosition, ReadError};
 use super::recent_corners::VertexNumbers;
 use super::selection::Selection;
 use super::text_lines::{Line, Lines, first_word, of_utf16, shown, words};
+use super::triangle_block::BLOCK;
 use super::uri::Files;
 use crate::files::Limits;
 use crate::mesh::MemoryAccount;
@@ -257,6 +258,13 @@ impl Counts {
     }
 }
 
+/// Returns how many of the first faces are triangles, if the corners of the first begin with this one.
+fn triangles(faces: &[Found], start: usize) -> usize {
+    let ends = (1..).map(|triangles| start + 3 * triangles);
+    let is_triangle = |(face, own): &(&Found, usize)| matches!(face, Found::Face { end, .. } if *end as usize == *own);
+    faces.iter().zip(ends).take_while(is_triangle).count()
+}
+
 /// Reads the faces of a file.
 struct Reader<'v, 'a> {
     vertices: &'v Vertices,
@@ -278,9 +286,17 @@ impl Reader<'_, '_> {
     /// Takes the faces of the next piece of the file, and what else it has.
     fn take_piece(&mut self, piece: &Piece, made: FacePiece) -> Result<(), ReadError> {
         self.found.statements.add(made.counts);
-        let mut start = 0;
-        for found in made.found {
-            match found {
+        let (mut start, mut found) = (0, made.found.as_slice());
+        while let [first, others @ ..] = found {
+            let run = triangles(found, start);
+            if run > 0 {
+                let (faces, others) = found.split_at(run);
+                let end = start + 3 * run;
+                self.take_triangles(faces, made.corners[start..end].as_chunks().0)?;
+                (start, found) = (end, others);
+                continue;
+            }
+            match *first {
                 Found::Face { line, end } => {
                     self.found.faces += 1;
                     self.add_face(&made.corners[start..end as usize], FilePosition::Line(line))?;
@@ -294,8 +310,24 @@ impl Reader<'_, '_> {
                     taken?;
                 }
             }
+            found = others;
         }
         made.error.map_or(Ok(()), Err)
+    }
+
+    /// Takes faces that are triangles, and their corners.
+    fn take_triangles(&mut self, faces: &[Found], triangles: &[[VertexNumbers; 3]]) -> Result<(), ReadError> {
+        self.found.faces += faces.len();
+        self.begin_parts()?;
+        let mut next = 0;
+        while next < faces.len() {
+            next += self.add_triangles(&triangles[next..])?;
+            if let (Some(Found::Face { line, .. }), Some(triangle)) = (faces.get(next), triangles.get(next)) {
+                self.add_face(triangle, FilePosition::Line(*line))?;
+                next += 1;
+            }
+        }
+        Ok(())
     }
 
     /// Takes a statement that isn't a plain face.
@@ -353,11 +385,6 @@ impl Reader<'_, '_> {
     /// Adds a face with these corners.
     fn add_face(&mut self, numbers: &[VertexNumbers], place: FilePosition) -> Result<(), ReadError> {
         self.begin_parts()?;
-        if let Ok(triangle) = <[VertexNumbers; 3]>::try_from(numbers)
-            && self.add_triangle(triangle)?
-        {
-            return Ok(());
-        }
         let mut corners = std::mem::take(&mut self.corners);
         corners.clear();
         for &vertex in numbers {
@@ -380,17 +407,22 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// Adds a triangle whose corners are as the file has them. Returns false if the general way must do it.
-    fn add_triangle(&mut self, triangle: [VertexNumbers; 3]) -> Result<bool, ReadError> {
-        let lacks_normals = triangle.iter().any(|[.., normal]| *normal == NONE);
+    /// Adds triangles whose corners are as the file has them. Returns how many were added; the general way must add the next one,
+    /// unless there are [`BLOCK`].
+    fn add_triangles(&mut self, triangles: &[[VertexNumbers; 3]]) -> Result<usize, ReadError> {
+        let lacks_normals = |triangle: &[VertexNumbers; 3]| triangle.iter().any(|[.., normal]| *normal == NONE);
         let material = self.materials.current(&mut self.faces)?;
-        if self.materials.moves(material) || lacks_normals && self.smoothing.is_some() {
-            return Ok(false);
+        if self.materials.moves(material) {
+            return Ok(0);
+        }
+        let mut plain = &triangles[..triangles.len().min(BLOCK)];
+        if self.smoothing.is_some() {
+            plain = &plain[..plain.iter().position(lacks_normals).unwrap_or(plain.len())];
         }
         let vertices = self.vertices;
-        let is_added = self.faces.add_triangle(material, triangle, |vertex| Some(corner_of(vertices, vertex)))?;
-        self.found.without_normals += usize::from(is_added && lacks_normals);
-        Ok(is_added)
+        let added = self.faces.add_triangles(material, plain, |vertex| Some(corner_of(vertices, vertex)))?;
+        self.found.without_normals += plain[..added].iter().filter(|triangle| lacks_normals(triangle)).count();
+        Ok(added)
     }
 
     /// Parses a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`. Returns its numbers; none if the position isn't in the file.

@@ -6,6 +6,7 @@
 //! Source: Turk 1994, "The PLY Polygon File Format".
 
 mod header;
+mod upcoming;
 mod values;
 
 use glam::{Vec2, Vec3, Vec4};
@@ -23,6 +24,7 @@ use crate::mesh::{Material, MemoryAccount};
 use crate::progress::Progress;
 
 use header::{Element, Header, Property, PropertyKind, Scalar};
+use upcoming::Upcoming;
 use values::Values;
 
 /// The properties of a vertex that are read, and the attribute that each sets. Texture coordinates have three names.
@@ -142,6 +144,14 @@ impl Vertices {
     }
 }
 
+/// Which properties of an element are its lists.
+#[derive(Clone, Copy)]
+struct Lists {
+    vertices: usize,
+    /// The list of texture coordinates, if there is one.
+    wedges: Option<usize>,
+}
+
 struct Reader<'a> {
     faces: FaceBuilder<'a>,
     material: usize,
@@ -245,51 +255,69 @@ impl<'a> Reader<'a> {
         }
         let faces = usize::try_from(values.most(element)).unwrap_or_default();
         self.faces.expect(faces, vertices.positions.len().min(faces.saturating_mul(4)));
+        let lists = Lists { vertices: list, wedges };
         let row = values.face_row(element, list).filter(|_| element.name == b"face");
-        for i in 0..element.count {
-            self.at(values, i)?;
-            if let Some((triangle, rest)) = row.as_ref().and_then(|row| values.triangle(row))
-                && self.triangle(triangle, vertices)?
-            {
-                values.go_on(rest);
-                continue;
-            }
-            values.begin(element, i)?;
-            let place = values.place();
-            self.wedges.clear();
-            let mut is_whole = true;
-            for (k, property) in element.properties.iter().enumerate() {
-                match property.kind {
-                    PropertyKind::List { count, item } if k == list => {
-                        let mut left = values.count(count, item)?;
-                        let next = || {
-                            let Some(less) = left.checked_sub(1) else { return Ok(None) };
-                            left = less;
-                            values.next(item).map(Some)
-                        };
-                        match element.name {
-                            b"face" => is_whole = self.face(next, vertices, place)?,
-                            _ => self.strip(next, vertices, place)?,
-                        }
-                    }
-                    PropertyKind::List { count, item } if Some(k) == wedges => {
-                        let length = values.count(count, item)?;
-                        for i in 0..length {
-                            let value = values.next(item)? as f32;
-                            if i < 2 * MAX_CORNERS {
-                                self.wedges.push(value);
-                            }
-                        }
-                    }
-                    kind => values.skip_one(kind)?,
+        let (mut upcoming, mut i) = (row.map(Upcoming::new), 0);
+        while i < element.count {
+            if let Some(upcoming) = &mut upcoming {
+                let added = self.triangles(upcoming.triangles(values, element.count - i), vertices)?;
+                i += added as u64;
+                if upcoming.take(values, added) {
+                    self.progress(values)?;
+                    continue;
                 }
             }
-            values.end();
-            match element.name {
-                b"face" if is_whole => self.add_face(place)?,
-                b"face" => self.faces.leave_out(place),
-                _ => {}
+            self.at(values, i)?;
+            self.read_list(element, i, lists, values, vertices)?;
+            i += 1;
+        }
+        Ok(())
+    }
+
+    /// Reads element number `i` of faces or of triangle strips.
+    fn read_list(
+        &mut self,
+        element: &Element,
+        i: u64,
+        lists: Lists,
+        values: &mut Values,
+        vertices: &Vertices,
+    ) -> Result<(), ReadError> {
+        values.begin(element, i)?;
+        let place = values.place();
+        self.wedges.clear();
+        let mut is_whole = true;
+        for (k, property) in element.properties.iter().enumerate() {
+            match property.kind {
+                PropertyKind::List { count, item } if k == lists.vertices => {
+                    let mut left = values.count(count, item)?;
+                    let next = || {
+                        let Some(less) = left.checked_sub(1) else { return Ok(None) };
+                        left = less;
+                        values.next(item).map(Some)
+                    };
+                    match element.name {
+                        b"face" => is_whole = self.face(next, vertices, place)?,
+                        _ => self.strip(next, vertices, place)?,
+                    }
+                }
+                PropertyKind::List { count, item } if Some(k) == lists.wedges => {
+                    let length = values.count(count, item)?;
+                    for i in 0..length {
+                        let value = values.next(item)? as f32;
+                        if i < 2 * MAX_CORNERS {
+                            self.wedges.push(value);
+                        }
+                    }
+                }
+                kind => values.skip_one(kind)?,
             }
+        }
+        values.end();
+        match element.name {
+            b"face" if is_whole => self.add_face(place)?,
+            b"face" => self.faces.leave_out(place),
+            _ => {}
         }
         Ok(())
     }
@@ -306,11 +334,11 @@ impl<'a> Reader<'a> {
         self.faces.add(self.material, &mut self.corners, place)
     }
 
-    /// Adds a triangle of these vertices. Returns false if the general way must do it.
-    fn triangle(&mut self, triangle: [u32; 3], vertices: &Vertices) -> Result<bool, ReadError> {
+    /// Adds triangles of these vertices. Returns how many were added; the general way must add the next one.
+    fn triangles(&mut self, triangles: &[[VertexNumbers; 3]], vertices: &Vertices) -> Result<usize, ReadError> {
         let corner =
             |[vertex, ..]: VertexNumbers| vertices.corner(vertex.into()).map(|(_, corner, color)| (corner, color));
-        self.faces.add_triangle(self.material, triangle.map(|vertex| [vertex, 0, 0]), corner)
+        self.faces.add_triangles(self.material, triangles, corner)
     }
 
     /// Reads the corners of a face. Returns whether the file has all of its vertices.
@@ -377,10 +405,12 @@ impl<'a> Reader<'a> {
 
     /// Sets the progress, once every 4,096 elements.
     fn at(&self, values: &Values, i: u64) -> Result<(), ReadError> {
-        if i.is_multiple_of(4096) {
-            self.progress.set(0.5 * values.fraction());
-            self.progress.check()?;
-        }
+        if i.is_multiple_of(4096) { self.progress(values) } else { Ok(()) }
+    }
+
+    fn progress(&self, values: &Values) -> Result<(), ReadError> {
+        self.progress.set(0.5 * values.fraction());
+        self.progress.check()?;
         Ok(())
     }
 

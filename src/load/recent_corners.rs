@@ -34,6 +34,15 @@ impl RecentCorners {
             _ => slot.insert((vertex, store())).1,
         }
     }
+
+    /// Replaces the corner of a vertex, if it is remembered with this one.
+    pub(super) fn replace(&mut self, vertex: VertexNumbers, old: StoredCorner, new: StoredCorner) {
+        if let Some(slot) = self.slots.get_mut(vertex[0] as usize % SLOTS)
+            && *slot == Some((vertex, old))
+        {
+            *slot = Some((vertex, new));
+        }
+    }
 }
 
 #[cfg(test)]

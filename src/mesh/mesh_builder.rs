@@ -114,8 +114,8 @@ impl MeshBuilder {
         let count = self.distinct.corners.len();
         let [offered, distinct] = self.expected;
         let likely = match self.offered {
-            // And a few more: a corner that turns out not to be distinct needs room while it is looked up.
-            _ if count < distinct => distinct + 64,
+            // And a few more: corners that turn out not to be distinct need room while they are looked up.
+            _ if count < distinct => distinct + corners.max(64),
             so_far if so_far < offered => {
                 let all = (count as u128 * offered as u128 / so_far.max(1) as u128) as usize;
                 (all + all / 16).min(offered)

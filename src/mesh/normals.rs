@@ -129,10 +129,11 @@ pub(crate) fn fan_normals(fan: &[Face], crease_angle: f32, normals: &mut Vec<Vec
 fn averages(fan: &[Face], limit: f64) -> impl Iterator<Item = Vec3> {
     // In most fans all faces lie near each other, and have the same mean: the last one, and which faces it is the mean of.
     let mut last: Option<(u64, Vec3)> = None;
+    let are_near = are_near(fan, limit);
     fan.iter().map(move |own| {
         let lone = own.normal == DVec3::ZERO;
-        let is_near = |g: &&Face| lone || own.normal.dot(g.normal) >= limit;
-        let bits = || fan.iter().fold(0, |bits, g| bits << 1 | u64::from(is_near(&g)));
+        let is_near = |g: &&Face| are_near || lone || own.normal.dot(g.normal) >= limit;
+        let bits = || if are_near { 0 } else { fan.iter().fold(0, |bits, g| bits << 1 | u64::from(is_near(&g))) };
         let near = (fan.len() <= u64::BITS as usize).then(bits);
         if let Some((_, normal)) = last.filter(|(same, _)| Some(*same) == near) {
             return normal;
@@ -144,6 +145,15 @@ fn averages(fan: &[Face], limit: f64) -> impl Iterator<Item = Vec3> {
         last = near.filter(|_| mean.is_some()).map(|near| (near, normal));
         normal
     })
+}
+
+/// Whether each face surely lies within the crease angle of each other one: if all lie within half of it of one of them. False says
+/// nothing. `limit` is the cosine of the crease angle.
+fn are_near(fan: &[Face], limit: f64) -> bool {
+    let Some(first) = fan.first() else { return true };
+    // The cosine of half the angle (the half-angle formula), and a little more for rounding.
+    let half = (0.5 + 0.5 * limit).max(0.0).sqrt() + 1e-12;
+    fan.iter().all(|face| first.normal.dot(face.normal) >= half)
 }
 
 /// Groups faces by direction, in a grid with `along` cells for each unit of an axis. Returns each cell as one face
@@ -211,6 +221,30 @@ mod tests {
         for (normal, face) in normals.iter().zip(&fan) {
             assert!(normal.as_dvec3().distance(face.normal) < 1e-6, "{normal}, not {}", face.normal);
         }
+    }
+
+    #[test]
+    fn faces_that_surely_lie_near_each_other_do() {
+        let mut random = fastrand::Rng::with_seed(1);
+        let mut surely = 0;
+        for i in 0..20_000 {
+            let degrees = f64::from(i % 181);
+            let limit = (degrees.to_radians() + ROOM).min(std::f64::consts::PI).cos();
+            let spread = degrees.to_radians() * random.f64();
+            let fan: Vec<Face> = (0..6)
+                .map(|_| {
+                    let around = random.f64() * std::f64::consts::TAU;
+                    let (sin, cos) = (spread * random.f64()).sin_cos();
+                    Face { normal: DVec3::new(sin * around.cos(), sin * around.sin(), cos), angle: 1.0 }
+                })
+                .collect();
+            if are_near(&fan, limit) {
+                surely += 1;
+                let is_near = |(a, b): (&Face, &Face)| a.normal.dot(b.normal) >= limit;
+                assert!(fan.iter().all(|a| fan.iter().all(|b| is_near((a, b)))), "{fan:?} within {degrees} degrees");
+            }
+        }
+        assert!(surely > 2000, "only {surely} fans are");
     }
 
     #[test]

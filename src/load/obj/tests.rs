@@ -236,3 +236,55 @@ fn vertices_may_have_colours() {
     assert!((color(1.0, 0.0) - Vec4::new(0.0, 0.2159, 1.0, 1.0)).abs().max_element() < 1e-3);
     assert!(read(&cube()).details.is_none());
 }
+
+#[test]
+fn triangles_that_are_taken_together_are_those_that_are_taken_one_by_one() {
+    let mut random = fastrand::Rng::with_seed(3);
+    let mut vertices = String::new();
+    for i in 0..3_000 {
+        let bad = |random: &mut fastrand::Rng, number: usize| match random.u32(..400) {
+            0 => "nan".to_owned(),
+            _ => number.to_string(),
+        };
+        let [x, y, u, v] = [i % 40, i / 40, i % 3, i % 4].map(|number| bad(&mut random, number));
+        vertices += &format!("v {x} {y} {}\nvt {u} {v}\nvn 0 {} 1\n", i % 5, i % 2);
+    }
+    // Faces that are continued in the next line need a closer look, and are taken one by one.
+    let [mut together, mut one_by_one] = [vertices.clone(), vertices];
+    for i in 0..12_000 {
+        if random.u32(..300) == 0 {
+            let statement =
+                ["s 1", "s off", "s 2", "usemtl red", "usemtl blue", "g a", "g b", "p 1"][random.usize(..8)];
+            [&mut together, &mut one_by_one].into_iter().for_each(|text| *text += &format!("{statement}\n"));
+        }
+        let corners = if i % 500 == 499 { 4 } else { 3 };
+        let corners: Vec<String> = (0..corners)
+            .map(|_| {
+                let vertex = 1 + (i / 4 + random.usize(..30)) % 3_000;
+                match random.u32(..200) {
+                    0 => format!("{vertex}/{vertex}"),
+                    1 => "4000".to_owned(),
+                    _ => format!("{vertex}/{vertex}/{vertex}"),
+                }
+            })
+            .collect();
+        together += &format!("f {}\n", corners.join(" "));
+        one_by_one += &format!("f {}\n", corners.join(" \\\n"));
+    }
+    let hidden = ["b".to_owned()];
+    for selection in [Selection::default(), Selection { hidden: &hidden, ..Selection::default() }] {
+        let read = |text: &String| {
+            let bytes = text.as_bytes().to_vec();
+            super::read(bytes, Path::new("nowhere"), "", selection, &Limits::default(), &Progress::new()).unwrap()
+        };
+        let [together, one_by_one] = [&together, &one_by_one].map(read);
+        assert_eq!(together.mesh.triangles, one_by_one.mesh.triangles);
+        assert_eq!(together.mesh.corners, one_by_one.mesh.corners);
+        assert_eq!(together.parts, one_by_one.parts);
+        let counts = |loaded: &LoadedMesh| -> Vec<String> {
+            let before = |warning: &String| warning.split(", the first").next().unwrap_or_default().to_owned();
+            loaded.warnings.iter().map(before).collect()
+        };
+        assert_eq!(counts(&together), counts(&one_by_one), "but for the line of the first");
+    }
+}

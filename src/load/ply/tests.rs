@@ -195,3 +195,57 @@ fn vertices_may_have_colours_and_faces_texture_coordinates_of_their_own() {
         assert_eq!(uvs, [Vec2::Y, Vec2::ONE, Vec2::new(0.0, 0.75)]);
     }
 }
+
+/// A file of `triangles` triangles and a few quads, some of whose vertices can't be used as they are: with numbers that the file
+/// doesn't have, without a position, or with the coordinates of others.
+fn flawed(encoding: usize, triangles: usize) -> Vec<u8> {
+    let mut random = fastrand::Rng::with_seed(triangles as u64);
+    let (encoding, format) = ENCODINGS[encoding];
+    let (vertices, faces) = (triangles / 2 + 3, triangles + triangles / 500);
+    let header = format!(
+        "ply\nformat {format} 1.0\nelement vertex {vertices}\nproperty float x\nproperty float y\nproperty float z\n\
+         property float u\nproperty float v\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n\
+         element face {faces}\nproperty uchar flags\nproperty list uchar int vertex_indices\nproperty short mark\n\
+         end_header\n"
+    );
+    let mut writer = Writer { encoding, bytes: header.into_bytes() };
+    for i in 0..vertices {
+        let bad = |random: &mut fastrand::Rng, number: f64| if random.u32(..400) == 0 { f64::NAN } else { number };
+        let [x, y] = [i % 40, i / 40].map(|at| bad(&mut random, at as f64));
+        let z = random.u32(..3).into();
+        let [u, v] = [x, y].map(|at| bad(&mut random, at / 64.0));
+        [x, y, z, u, v].into_iter().for_each(|number| writer.put(Scalar::F32, number));
+        (0..3).for_each(|k| writer.put(Scalar::U8, (i % (7 + k)) as f64));
+        writer.end();
+    }
+    for i in 0..faces {
+        let corners = if i % 500 == 499 { 4 } else { 3 };
+        writer.put(Scalar::U8, 0.0);
+        writer.put(Scalar::U8, f64::from(corners));
+        for _ in 0..corners {
+            let near = (i / 2 + random.usize(..50)) % vertices;
+            let far = if random.u32(..2000) == 0 { vertices } else { near };
+            writer.put(Scalar::I32, far as f64);
+        }
+        writer.put(Scalar::I16, 5.0);
+        writer.end();
+    }
+    writer.bytes
+}
+
+#[test]
+fn triangles_that_are_read_together_are_those_that_are_read_one_by_one() {
+    // Faces of a text are read one by one.
+    for triangles in [1, 511, 4096, 4097, 20_000] {
+        let [one_by_one, little, big] = [0, 1, 2].map(|encoding| read(&flawed(encoding, triangles)));
+        for together in [little, big] {
+            assert_eq!(together.mesh.triangles, one_by_one.mesh.triangles, "{triangles}");
+            assert_eq!(together.mesh.corners, one_by_one.mesh.corners, "{triangles}");
+            let counts = |loaded: &LoadedMesh| -> Vec<String> {
+                let before = |warning: &String| warning.split(", the first").next().unwrap_or_default().to_owned();
+                loaded.warnings.iter().map(before).collect()
+            };
+            assert_eq!(counts(&together), counts(&one_by_one), "but for the place of the first");
+        }
+    }
+}

@@ -253,21 +253,27 @@ impl<'a> Values<'a> {
         is_binary.then_some(FaceRow { before, count, after })
     }
 
-    /// Returns the vertices of the next face and the bytes after it, if it is a whole triangle.
-    pub(super) fn triangle(&self, row: &FaceRow) -> Option<([u32; 3], &'a [u8])> {
-        let list = self.bytes.get(row.before..)?;
-        if decoded(list, row.count, self.encoding)? != 3.0 {
-            return None;
-        }
-        let (numbers, rest) = list.get(row.count.size()..)?.split_first_chunk::<12>()?;
-        let numbers: [[u8; 4]; 3] = [0, 4, 8].map(|at| [0, 1, 2, 3].map(|i| numbers[at + i]));
-        let of = if self.encoding == Encoding::BigEndian { u32::from_be_bytes } else { u32::from_le_bytes };
-        Some((numbers.map(of), rest.get(row.after..)?))
+    /// Returns the vertices of the next faces, up to the first that isn't a whole triangle.
+    pub(super) fn triangles(&self, row: &FaceRow) -> impl Iterator<Item = [u32; 3]> + use<'a> {
+        let &FaceRow { before, count, after } = row;
+        let (encoding, mut rest) = (self.encoding, self.bytes);
+        let of = if encoding == Encoding::BigEndian { u32::from_be_bytes } else { u32::from_le_bytes };
+        std::iter::from_fn(move || {
+            let list = rest.get(before..)?;
+            if decoded(list, count, encoding)? != 3.0 {
+                return None;
+            }
+            let (numbers, others) = list.get(count.size()..)?.split_first_chunk::<12>()?;
+            rest = others.get(after..)?;
+            let numbers: [[u8; 4]; 3] = [0, 4, 8].map(|at| [0, 1, 2, 3].map(|i| numbers[at + i]));
+            Some(numbers.map(of))
+        })
     }
 
-    /// Goes on after an element that was read whole.
-    pub(super) fn go_on(&mut self, rest: &'a [u8]) {
-        self.bytes = rest;
+    /// Goes on after so many faces, which are whole triangles.
+    pub(super) fn skip_triangles(&mut self, row: &FaceRow, faces: usize) {
+        let size = row.before + row.count.size() + 12 + row.after;
+        self.bytes = self.bytes.get(faces * size..).unwrap_or_default();
     }
 
     /// Reads the number of values of a list, and checks that the rest of the file or line has as many.
