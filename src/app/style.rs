@@ -15,13 +15,15 @@ pub(super) fn style(context: &egui::Context) {
         style.spacing.scroll.dormant_handle_opacity = 0.5;
         style.interaction.tooltip_delay = 0.4;
     });
-    // egui's own colour is too dim on black.
+    // egui's own colours are too dim on black, and too glaring for sentences.
     context.style_mut_of(egui::Theme::Dark, |style| {
+        style.visuals.error_fg_color = egui::Color32::from_rgb(255, 110, 95);
         style.visuals.weak_text_color = Some(egui::Color32::from_gray(135));
     });
     // egui's own colours are too pale on white: boxes and tracks get an outline, and warnings are darker.
     context.style_mut_of(egui::Theme::Light, |style| {
         style.visuals.warn_fg_color = egui::Color32::from_rgb(150, 75, 0);
+        style.visuals.error_fg_color = egui::Color32::from_rgb(180, 20, 10);
         style.visuals.widgets.inactive.bg_stroke = egui::Stroke::new(1.0, egui::Color32::from_gray(165));
         style.visuals.weak_text_color = Some(egui::Color32::from_gray(95));
     });

@@ -89,7 +89,9 @@ fn of_parser(text: &str, error: &ParseError) -> Fault {
     // Of a name that is declared twice, one may be ours.
     let label = labels.iter().find(|(span, _)| own(span)).or(labels.first());
     let line = label.map_or(1, |(span, _)| line_of_span(text, *span));
-    let detail = label.map(|(_, detail)| *detail).filter(|detail| !detail.is_empty());
+    // Some say the same as the message.
+    let is_new = |detail: &&str| !detail.is_empty() && !error.message().contains(*detail);
+    let detail = label.map(|(_, detail)| *detail).filter(is_new);
     let said = detail.map_or_else(|| error.message().to_owned(), |detail| format!("{} ({detail})", error.message()));
     Fault { line, kind: FaultKind::Language(said) }
 }

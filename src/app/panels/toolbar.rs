@@ -2,12 +2,18 @@
 
 use super::settings_panel::{ON_TOOLBAR, colors_hover, overlay_hover};
 use crate::app::App;
-use crate::app::widgets::switch_button;
+use crate::app::widgets::{switch_button, text_width};
 use crate::commands::{Action, Availability, CameraAction, Command, FileAction, NO_TEXTURE_COORDINATES, all, with_key};
 use crate::settings::{Choice, Colors, Control};
 
 /// The width of the list of colours, in points: that of its longest entry.
 const COLORS_WIDTH: f32 = 124.0;
+
+/// How much room a line between buttons takes, in points.
+const DIVIDER_WIDTH: f32 = 6.0;
+
+/// The button that writes the picture into a file.
+const SAVE: &str = "Save picture";
 
 impl App {
     pub(in crate::app) fn toolbar(&mut self, ui: &mut egui::Ui) {
@@ -29,7 +35,7 @@ impl App {
                 }
             }
             self.colors_list(ui);
-            ui.separator();
+            divider(ui, "Frame");
             self.command_button(ui, &commands, &now, &Action::Camera(CameraAction::Frame), ["Frame", "Frame all"]);
             let hover = "Keeps LOD and clipping as they are for this camera while you look from elsewhere.";
             let hover = with_key(hover, &Action::FreezeLodCamera);
@@ -40,8 +46,8 @@ impl App {
                 let label = if self.is_playing() { "Pause" } else { "Play" };
                 self.command_button(ui, &commands, &now, &Action::PlayOrPause, [label, "Play or pause"]);
             }
-            ui.separator();
-            self.command_button(ui, &commands, &now, &Action::File(FileAction::SavePicture), ["Save picture"; 2]);
+            divider(ui, SAVE);
+            self.command_button(ui, &commands, &now, &Action::File(FileAction::SavePicture), [SAVE; 2]);
         });
     }
 
@@ -82,6 +88,15 @@ impl App {
         if button.on_disabled_hover_text(why_not.unwrap_or_default()).clicked() {
             self.give(ui.ctx(), command);
         }
+    }
+}
+
+/// A line before a button, unless the button begins the next row.
+fn divider(ui: &mut egui::Ui, button: &str) {
+    let spacing = ui.spacing();
+    let beside = 2.0 * spacing.button_padding.x + 2.0 * spacing.item_spacing.x + DIVIDER_WIDTH;
+    if text_width(ui, button) + beside <= ui.available_size_before_wrap().x {
+        ui.add(egui::Separator::default().spacing(DIVIDER_WIDTH));
     }
 }
 
