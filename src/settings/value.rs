@@ -41,7 +41,12 @@ pub(crate) enum Kind {
     Number(Range),
     /// One of several named values, or a number. Where the window lists the names, `number` is one more entry; with it, the number
     /// has a row of its own, called `row`.
-    NameOrNumber { names: fn() -> Vec<Description>, number: Description, row: &'static str, range: Range },
+    NameOrNumber {
+        names: fn() -> Vec<Description>,
+        number: Description,
+        row: &'static str,
+        range: Range,
+    },
     /// Two numbers, the first one smaller.
     Pair(Range),
     /// On or off.

@@ -104,7 +104,7 @@ fn the_limit_includes_heights() {
 fn images_of_many_materials_are_refused_as_heights() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let bytes = textures(14, 2048);
-    let allowed = 4 * bytes.len() + (256 << 20);
+    let allowed = 4 * bytes.len() + Limits::default().memory as usize;
     let file = temporary("images.glb", &bytes);
     let heights = Preparation { heights: Some(HeightSource::Materials), ..Preparation::default() };
     let memory = Limits::default().memory;

@@ -18,7 +18,7 @@ fn read(name: &str, bytes: &[u8]) -> (Result<Heights, HeightError>, usize) {
     let (mesh, source) = (Shape::CubeSplit.build(), HeightSource::File(file.to_path_buf()));
     let budget = Budget::of_mesh(&mesh, 0, &Limits::default());
     let (result, took) = peak_of(|| source.load(&mesh, &[], &budget, &Progress::new()));
-    let allowed = 4 * bytes.len() + (256 << 20);
+    let allowed = 4 * bytes.len() + Limits::default().memory as usize;
     println!("{name}: {} of {} MiB, read: {}", took >> 20, allowed >> 20, result.is_ok());
     assert!(took <= allowed, "{name}: {took} of {allowed} bytes");
     (result, took)

@@ -1,4 +1,4 @@
-//! Measures how much memory a load takes, with an allocator that counts: at most four times the file's size, plus 256
+//! Measures how much memory a load takes, with an allocator that counts: at most four times the file's size, plus 512
 //! MiB. These tests are a program of their own, so that nothing else is counted.
 //!
 //! `PNAEN_TRIANGLES=3000000 cargo test --release --test memory -- --nocapture` measures larger meshes than the tests
@@ -51,7 +51,7 @@ fn taken(name: &str, bytes: Vec<u8>) -> (Result<LoadedMesh, LoadError>, usize) {
     let (file, size) = (temporary(name, &bytes), bytes.len());
     drop(bytes);
     let (result, took) = peak_of(|| load(&file, &Limits::default(), &Progress::new()));
-    let allowed = 4 * size + (256 << 20);
+    let allowed = 4 * size + Limits::default().memory as usize;
     println!("{name}: {} of {} MiB, loaded: {}", took >> 20, allowed >> 20, result.is_ok());
     assert!(took <= allowed, "{name}: {took} of {allowed} bytes");
     (result, took)

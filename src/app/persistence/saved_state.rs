@@ -218,10 +218,7 @@ impl SavedFile {
         let is_gone = Fields(value).switch("gone", false);
         let bookmarks = value["bookmarks"].as_array().into_iter().flatten().filter_map(SavedCamera::read);
         let bookmarks = bookmarks.take(MOST_BOOKMARKS).collect();
-        let placement = Placement {
-            up: value["up"].as_str().and_then(UpAxis::named),
-            unit: read_unit(&value["unit"]),
-        };
+        let placement = Placement { up: value["up"].as_str().and_then(UpAxis::named), unit: read_unit(&value["unit"]) };
         Some(Self { path, placement, seen: SavedCamera::read(value), bookmarks, is_gone })
     }
 

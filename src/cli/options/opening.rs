@@ -107,7 +107,8 @@ mod tests {
         let others = options(&["a.obj", "--mesh-normals=file", "--unit=mm", "--hide-part", "a", "--hide-part=b"]);
         let mut preparation = Preparation { import: usual, ..Preparation::default() };
         others.change(&mut preparation);
-        let expected = Import { normals: NormalSource::File, unit: Some(FileUnit::Named(LengthUnit::Millimetre)), ..usual };
+        let expected =
+            Import { normals: NormalSource::File, unit: Some(FileUnit::Named(LengthUnit::Millimetre)), ..usual };
         assert_eq!(options(&["a.obj", "--unit=0.0254"]).import(usual).unit, Some(FileUnit::Metres(0.0254)));
         assert_eq!((preparation.import, &preparation.hidden[..]), (expected, &["a".to_owned(), "b".to_owned()][..]));
     }

@@ -100,7 +100,9 @@ fn shapes_get_made_normals_too_and_have_no_other_axis() {
         Source::Shape(Shape::Torus).load_selected(selected, &Limits::default(), &Progress::new())
     };
     assert_flat(&load(Import { crease_angle: 0.0, ..MADE }).expect("a shape").mesh);
-    for import in [Import { up: Some(UpAxis::Z), ..MADE }, Import { unit: Some(FileUnit::Named(LengthUnit::Inch)), ..MADE }] {
+    for import in
+        [Import { up: Some(UpAxis::Z), ..MADE }, Import { unit: Some(FileUnit::Named(LengthUnit::Inch)), ..MADE }]
+    {
         let refused = load(import).map(|_| ()).expect_err("its exact surface doesn't move");
         assert!(matches!(refused, LoadError::Shape { .. }), "{refused}");
     }

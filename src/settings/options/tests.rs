@@ -162,9 +162,7 @@ fn invalid_values_change_nothing() {
     for declaration in all() {
         let mut settings = Settings::default();
         let mut bad = match &declaration.kind {
-            Kind::Number(range) | Kind::NameOrNumber { range, .. } => {
-                nan_and_beyond(range).map(Value::Number).to_vec()
-            }
+            Kind::Number(range) | Kind::NameOrNumber { range, .. } => nan_and_beyond(range).map(Value::Number).to_vec(),
             Kind::Pair(range) => {
                 let mut bad = nan_and_beyond(range).map(|far| Value::Pair([range.least, far])).to_vec();
                 bad.extend([Value::Pair([8.0, 2.0]), Value::Pair([2.0, 2.0])]);
