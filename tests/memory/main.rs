@@ -176,12 +176,14 @@ fn loads_take_no_more_than_their_size_allows() {
     assert!(result.is_err_and(|error| error.to_string().contains("of 7200000 triangles would take")) && took < 20);
     let (result, took) = measured("image", textured(5000));
     assert!(result.is_ok_and(|loaded| loaded.mesh.materials[0].texture.is_some()) && took > 150);
-    // With its mip levels it would take 325 MiB on the graphics card.
-    let (result, took) = measured("larger-image", textured(8000));
-    let size = |loaded: LoadedMesh| loaded.mesh.materials[0].texture.as_ref().map(|texture| texture.size);
-    assert!(result.is_ok_and(|loaded| size(loaded) == Some([4000; 2])) && took < 80, "{took} MiB");
+    // With its mip levels each would take 325 MiB on the graphics card. The first one is decoded row by row.
+    let (result, took) = measured("larger-images", textures(2, 8000));
+    let sizes = |loaded: LoadedMesh| -> Vec<_> {
+        loaded.mesh.materials.iter().map(|material| material.texture.as_ref().map(|texture| texture.size)).collect()
+    };
+    assert!(result.is_ok_and(|loaded| sizes(loaded) == [Some([4000; 2]), Some([8000; 2])]) && took < 460, "{took} MiB");
     // A progressive image keeps twice as much for each pixel until its last scan, whatever the file's size.
-    let (result, took) = measured("progressive-image", with_image(&heights::jpeg(6000, 0xc2)));
+    let (result, took) = measured("progressive-image", with_image(&heights::jpeg(9000, 0xc2)));
     assert!(result.is_ok_and(|loaded| loaded.mesh.materials[0].texture.is_none()) && took < 20);
     // What would unpack to a thousand times its size is refused before it does.
     let spaces = format!("{}{}", package::model("", ""), " ".repeat(200_000_000));

@@ -158,7 +158,7 @@ fn twelve_inches_are_a_foot() {
 #[test]
 fn a_unit_may_be_given_by_its_length() {
     let text = b"v 0.1 0.7 1.3\nv 3.3 17 -2\nv 1e5 0.03 9\nf 1 2 3\n";
-    let corners = |unit| loaded(Format::Obj, text, Import { unit, ..Import::default() }).corners;
+    let corners = |unit| loaded(Format::Obj, text, Import { unit, ..Import::default() }).corners.clone();
     let written = corners(Some(FileUnit::Metres(0.0254)));
     assert_eq!(written, corners(Some(FileUnit::Named(LengthUnit::Inch))));
     assert_ne!(written, corners(None));
