@@ -21,7 +21,7 @@ pub struct Limits {
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { file: 2 << 30, memory: 256 << 20 }
+        Self { file: 2 << 30, memory: 512 << 20 }
     }
 }
 

@@ -16,7 +16,7 @@ pub use crate::gpu::recorder::{DRAWING, PASSES, PassTime, Timing, take_times};
 pub use crate::load::environment_file::{EnvironmentFault, EnvironmentFile};
 pub use crate::load::format::Format;
 pub use crate::load::heights::{HeightError, HeightSource};
-pub use crate::load::import::{Import, LengthUnit, NormalSource};
+pub use crate::load::import::{FileUnit, Import, LengthUnit, NormalSource};
 pub use crate::load::memory_budget::Budget;
 pub use crate::load::mesh_file::read;
 pub use crate::load::parts::Part;

@@ -249,7 +249,7 @@ pub(crate) struct LimitOption {
     pub max_size: u64,
     /// Refuse a mesh that would take more memory to load than this plus four times the size of its files, and scale textures down
     /// to it: a number of bytes, or one with the unit KiB, MiB or GiB
-    #[arg(long, value_name = "SIZE", default_value = "256MiB", value_parser = bytes)]
+    #[arg(long, value_name = "SIZE", default_value = "512MiB", value_parser = bytes)]
     pub max_memory: u64,
 }
 

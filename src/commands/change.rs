@@ -1,6 +1,6 @@
 //! Changes of settings that are commands.
 
-use crate::load::{LengthUnit, NormalSource};
+use crate::load::{FileUnit, LengthUnit, NormalSource};
 use crate::mesh::UpAxis;
 use crate::settings::options::FACTOR_RANGE;
 use crate::settings::{Colors, DeviationUnit, NormalsAt, Overlay, Settings};
@@ -63,7 +63,7 @@ impl Change {
             Self::Overlay(overlay) => settings.overlays.toggle(overlay),
             Self::MeshNormals(normals) => settings.import.normals = normals,
             Self::Up(axis) => settings.import.up = axis,
-            Self::Unit(unit) => settings.import.unit = unit,
+            Self::Unit(unit) => settings.import.unit = unit.map(FileUnit::Named),
         }
     }
 }

@@ -14,7 +14,7 @@ pub enum NormalSource {
     Made,
 }
 
-/// The unit of a file's coordinates.
+/// A unit of length with a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LengthUnit {
     Millimetre,
@@ -38,6 +38,32 @@ impl LengthUnit {
     }
 }
 
+/// The lengths that a unit without a name may have, in metres.
+pub(crate) const UNIT_METRES: std::ops::RangeInclusive<f32> = 1e-9..=1e9;
+
+/// The unit of a file's coordinates, as it was chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FileUnit {
+    Named(LengthUnit),
+    /// Its length in metres, which is in [`UNIT_METRES`].
+    Metres(f32),
+}
+
+impl FileUnit {
+    /// A unit of this length; none if no unit may have it.
+    pub(crate) fn of_metres(metres: f32) -> Option<Self> {
+        UNIT_METRES.contains(&metres).then_some(Self::Metres(metres))
+    }
+
+    /// Its length in metres. A length that was written is taken as its shortest decimal form, so that 0.0254 is exactly an inch.
+    pub(crate) fn metres(self) -> f64 {
+        match self {
+            Self::Named(unit) => unit.metres(),
+            Self::Metres(metres) => metres.to_string().parse().unwrap_or(f64::from(metres)),
+        }
+    }
+}
+
 /// How the geometry of a file is taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Import {
@@ -47,7 +73,7 @@ pub struct Import {
     /// The axis of the file's coordinates that points up; none for that which the file or its format says, or else Y.
     pub up: Option<UpAxis>,
     /// The unit of the file's coordinates; none for that which the file or its format says, or else the metre.
-    pub unit: Option<LengthUnit>,
+    pub unit: Option<FileUnit>,
 }
 
 impl Default for Import {
@@ -84,7 +110,7 @@ impl Import {
 
     /// Turns and scales a mesh as the axis and the unit say that were chosen, so that Y points up and the unit is the metre.
     pub(super) fn place(&self, mesh: &mut Mesh) {
-        reorient(mesh, self.up.unwrap_or_default(), self.unit.map_or(1.0, LengthUnit::metres));
+        reorient(mesh, self.up.unwrap_or_default(), self.unit.map_or(1.0, FileUnit::metres));
     }
 }
 

@@ -76,6 +76,11 @@ impl Budget {
         self.free.saturating_add(self.files.get().saturating_mul(PER_BYTE))
     }
 
+    /// Returns which value of [`Limits::memory`] allows so many bytes.
+    pub(super) fn option_for(&self, bytes: u64) -> u64 {
+        bytes.saturating_sub(self.files.get().saturating_mul(PER_BYTE))
+    }
+
     /// Returns how many more bytes may be taken.
     pub fn left(&self) -> u64 {
         self.allowed().saturating_sub(self.held.get() + self.passing.get())
@@ -149,9 +154,10 @@ mod tests {
         assert!(budget.borrow(free).is_ok() && budget.hold(43 << 20).is_ok());
         let said = budget.hold(1).unwrap_err().to_string();
         assert!(
-            said.contains("would take at least 301 MiB of memory, but files of this size may take only 300 MiB"),
+            said.contains("would take at least 557 MiB of memory, but files of this size may take only 556 MiB"),
             "{said}"
         );
+        assert_eq!(budget.option_for(600 << 20), 556 << 20, "four times eleven MiB of files come to it");
         budget.give_back_to(0);
         assert_eq!(budget.left(), free);
         assert!(budget.hold(u64::MAX).is_err());

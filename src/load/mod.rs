@@ -62,7 +62,7 @@ pub use read_error::{FilePosition, ReadError};
 #[cfg(test)]
 pub(crate) use format::Format;
 pub(crate) use heights::HeightSource;
-pub(crate) use import::{Import, LengthUnit, NormalSource};
+pub(crate) use import::{FileUnit, Import, LengthUnit, NormalSource, UNIT_METRES};
 pub(crate) use memory_budget::Budget;
 pub(crate) use source::Source;
 pub(crate) use warnings::{crease_band_warnings, untextured_warning};

@@ -1,4 +1,4 @@
-//! Reads 3MF: the objects that a file's build places, with their components, base materials and colours. Axes are turned so that Y
+//! Reads 3MF: the objects that a file's build places, with their components, base materials, colours and textures. Axes are turned so that Y
 //! points up, and the file's unit becomes metres, unless another axis or unit was chosen: then its coordinates are taken as they
 //! are.
 //!
@@ -8,8 +8,10 @@
 
 mod archive;
 mod document;
+mod images;
 mod model;
 mod placing;
+mod texture2d;
 mod xml;
 
 use super::import::Import;
@@ -24,6 +26,7 @@ use crate::progress::Progress;
 
 use archive::Archive;
 use document::Document;
+use images::Images;
 
 /// Builds a mesh called `name` from a file's bytes.
 ///
@@ -38,16 +41,18 @@ pub(super) fn read(
 ) -> Result<LoadedMesh, ReadError> {
     let budget = Budget::new(bytes.len(), limits);
     let mut notes = Notes::default();
-    let document = {
+    let (document, images) = {
         let archive = Archive::new(&bytes, &budget)?;
         let document = Document::read(&archive, &budget, &progress.part(0.0, 0.4), &mut notes)?;
+        let images = Images::unpack(&archive, &document, &budget, progress)?;
         notes.extend(archive.warning());
         archive.release(&budget);
-        document
+        (document, images)
     };
     budget.release(bytes.len() as u64);
     drop(bytes);
-    let faces = placing::place(&document, &import, &budget, &progress.part(0.4, 0.5), &mut notes)?;
+    let (mut faces, textured) = placing::place(&document, &import, &budget, &progress.part(0.4, 0.5), &mut notes)?;
+    images.give(&textured, &mut faces, (document.held(), &budget), progress, &mut notes)?;
     let holds = document.holds();
     document.release(&budget);
     drop(document);

@@ -1,7 +1,8 @@
 //! The names of how the geometry of a file is taken.
 
-use super::{Choice, Description};
-use crate::load::{LengthUnit, NormalSource};
+use super::value::Field;
+use super::{Choice, Description, Value};
+use crate::load::{FileUnit, LengthUnit, NormalSource};
 use crate::mesh::UpAxis;
 use crate::names::every;
 
@@ -51,6 +52,23 @@ impl Choice for LengthUnit {
             Self::Metre => Description::new("m", "Metre", "Coordinates are in metres."),
             Self::Inch => Description::new("in", "Inch", "Coordinates are in inches of 2.54 cm."),
             Self::Foot => Description::new("ft", "Foot", "Coordinates are in feet of 30.48 cm."),
+        }
+    }
+}
+
+impl Field for FileUnit {
+    fn value(&self) -> Value {
+        match self {
+            Self::Named(unit) => Value::Name(unit.name()),
+            Self::Metres(metres) => Value::Number(*metres),
+        }
+    }
+
+    fn of(value: Value) -> Option<Self> {
+        match value {
+            Value::Name(name) => LengthUnit::named(name).map(Self::Named),
+            Value::Number(metres) => Self::of_metres(metres),
+            _ => None,
         }
     }
 }

@@ -8,7 +8,7 @@ use super::{
     Access, Colors, Declaration, Description, DeviationUnit, FileLights, Kind, Lighting, Matcap, NormalsAt, Overlay,
     Range, Settings, ToneCurve, Value, descriptions,
 };
-use crate::load::{LengthUnit, NormalSource};
+use crate::load::{LengthUnit, NormalSource, UNIT_METRES};
 use crate::mesh::UpAxis;
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface, Tessellation};
 
@@ -559,8 +559,14 @@ pub(crate) static UNIT: Declaration = Declaration {
     name: "unit",
     label: "Unit",
     placeholder: "UNIT",
-    text: "The unit of the file's coordinates. The mesh is scaled to metres, with everything that belongs to it.",
-    kind: Kind::Choice(descriptions::<LengthUnit>),
+    text: "The unit of the file's coordinates, by its name or as its length in metres. The mesh is scaled to metres, with everything \
+           that belongs to it.",
+    kind: Kind::NameOrNumber {
+        names: descriptions::<LengthUnit>,
+        number: Description::new("METRES", "Another length", "The row below says how many metres a unit is long."),
+        row: "Length of a unit",
+        range: Range::new(*UNIT_METRES.start(), *UNIT_METRES.end(), "m").decimals(9).logarithmic(),
+    },
     unset: Some(Description::new(
         "file",
         "As the file says",

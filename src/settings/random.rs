@@ -24,6 +24,9 @@ fn value(option: &'static Declaration) -> BoxedStrategy<Value> {
         Kind::Choice(all) => select(names(all())).prop_map(Value::Name).boxed(),
         Kind::Several(all) => subsequence(names(all()), 0..6).prop_map(Value::Names).boxed(),
         Kind::Number(range) => number(range).prop_map(Value::Number).boxed(),
+        Kind::NameOrNumber { names: all, range, .. } => {
+            prop_oneof![select(names(all())).prop_map(Value::Name), number(range).prop_map(Value::Number)].boxed()
+        }
         Kind::Pair(range) => {
             [number(range), number(range)].prop_map(|[a, b]| Value::Pair([a.min(b), a.max(b)])).boxed()
         }

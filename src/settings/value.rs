@@ -39,6 +39,14 @@ pub(crate) enum Kind {
     /// Any of several named values together.
     Several(fn() -> Vec<Description>),
     Number(Range),
+    /// One of several named values, or a number. Where the window lists the names, `number` is one more entry; with it, the number
+    /// has a row of its own, called `row`.
+    NameOrNumber {
+        names: fn() -> Vec<Description>,
+        number: Description,
+        row: &'static str,
+        range: Range,
+    },
     /// Two numbers, the first one smaller.
     Pair(Range),
     /// On or off.
@@ -52,7 +60,7 @@ pub(crate) enum Kind {
 pub struct Range {
     pub least: f32,
     pub most: f32,
-    /// After the number: `px`, `EV`, `°`, `r` for bounding radii, or `/r` for 1 / bounding radius; empty for a plain number.
+    /// After the number: `px`, `EV`, `°`, `m`, `r` for bounding radii, or `/r` for 1 / bounding radius; empty for a plain number.
     pub unit: &'static str,
     /// Decimals that a slider shows, at most.
     pub decimals: usize,
@@ -91,7 +99,7 @@ impl Declaration {
     /// The range of its numbers; none if its values aren't numbers.
     pub(crate) fn range(&self) -> Option<&Range> {
         match &self.kind {
-            Kind::Number(range) | Kind::Pair(range) => Some(range),
+            Kind::Number(range) | Kind::Pair(range) | Kind::NameOrNumber { range, .. } => Some(range),
             _ => None,
         }
     }
@@ -121,6 +129,7 @@ impl Range {
             "r" => " bounding radii",
             "EV" => " EV",
             "°" => " degrees",
+            "m" => " metres",
             "/r" => " / bounding radius",
             _ => " px",
         }
@@ -137,7 +146,7 @@ impl Kind {
     /// The values that have names, in the order in which lists show them; empty for other kinds.
     pub(crate) fn descriptions(&self) -> Vec<Description> {
         match self {
-            Self::Choice(all) | Self::Several(all) => all(),
+            Self::Choice(all) | Self::Several(all) | Self::NameOrNumber { names: all, .. } => all(),
             _ => Vec::new(),
         }
     }
@@ -149,9 +158,9 @@ impl Kind {
 
     fn takes(&self, value: &Value) -> bool {
         match (self, value) {
-            (Self::Choice(_), Value::Name(name)) => self.named(name).is_some(),
+            (Self::Choice(_) | Self::NameOrNumber { .. }, Value::Name(name)) => self.named(name).is_some(),
             (Self::Several(_), Value::Names(names)) => names.iter().all(|name| self.named(name).is_some()),
-            (Self::Number(range), Value::Number(number)) => range.contains(*number),
+            (Self::Number(range) | Self::NameOrNumber { range, .. }, Value::Number(number)) => range.contains(*number),
             (Self::Pair(range), Value::Pair([a, b])) => range.contains(*a) && range.contains(*b) && a < b,
             (Self::Switch, Value::Switch(_)) | (Self::Color, Value::Color(_)) => true,
             _ => false,
@@ -168,6 +177,9 @@ impl Kind {
             Self::Choice(_) => self.named(text).map(Value::Name),
             Self::Several(_) => text.split(',').map(|name| self.named(name)).collect::<Option<_>>().map(Value::Names),
             Self::Number(_) => text.parse().ok().map(Value::Number),
+            Self::NameOrNumber { .. } => {
+                self.named(text).map(Value::Name).or_else(|| text.parse().ok().map(Value::Number))
+            }
             Self::Pair(_) => text.split_once(',').and_then(|(a, b)| Some(Value::Pair([number(a)?, number(b)?]))),
             Self::Switch => text.parse().ok().map(Value::Switch),
             Self::Color => color(text).map(Value::Color),
@@ -182,6 +194,10 @@ impl Kind {
                 format!("expected {}", names.join(", "))
             }
             Self::Number(Range { least, most, .. }) => format!("expected a number from {least} to {most}"),
+            Self::NameOrNumber { range, .. } => {
+                let names: Vec<_> = self.descriptions().iter().map(|value| value.name).collect();
+                format!("expected {}, or a number: {range}", names.join(", "))
+            }
             Self::Pair(range) => {
                 let Range { least, most, .. } = range;
                 let unit = range.unit_in_words();

@@ -66,5 +66,10 @@ fn axis_and_unit_are_chosen_and_a_shape_has_its_own() {
     let last = metres.last().expect("corners");
     assert!((last[1] - 0.003).abs() < 1e-9, "{metres:?}");
     sentence(&["info", "shape:torus", "--up", "z"], &["shape:torus", "Y up", "--up"]);
-    failure(&["info", &ground, "--unit", "yd"], 2);
+    assert_eq!(positions(&["--unit", "0.001"]), metres, "a unit may be given by its length");
+    for wrong in ["yd", "0", "nan", "1e300"] {
+        let said = failure(&["info", &ground, "--unit", wrong], 2);
+        assert!(said.contains("expected mm, cm, m, in, ft, or a number: 0.000000001 to 1000000000 metres"), "{said}");
+    }
+    failure(&["info", &ground, "--unit", "-1"], 2);
 }

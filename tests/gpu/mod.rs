@@ -36,6 +36,7 @@ mod reference;
 mod scenes;
 mod silhouette;
 mod stability;
+mod threemf;
 // The bench on hardware has the rest of it.
 #[allow(dead_code, unreachable_pub, unused_imports)]
 #[path = "../vulkan/mod.rs"]

@@ -3,7 +3,7 @@
 use glam::{Mat3, Vec3, vec3};
 use pnaen::engine::{Loaded, Preparation, load};
 use pnaen::gpu::Timing;
-use pnaen::load::{Import, LengthUnit, Source};
+use pnaen::load::{FileUnit, Import, LengthUnit, Source};
 use pnaen::mesh::{Moment, UpAxis};
 use pnaen::progress::Progress;
 use pnaen::settings::{ARENA_BYTES, Settings};
@@ -24,7 +24,7 @@ fn placed(import: Import) -> Loaded {
 #[test]
 fn every_pose_of_an_animated_file_is_turned_and_scaled() {
     let plain = placed(Import::default());
-    let import = Import { up: Some(UpAxis::Z), unit: Some(LengthUnit::Inch), ..Import::default() };
+    let import = Import { up: Some(UpAxis::Z), unit: Some(FileUnit::Named(LengthUnit::Inch)), ..Import::default() };
     let turned = placed(import);
     // Z becomes up, as a matrix whose columns are where the axes go.
     let matrix = Mat3::from_cols(Vec3::X, Vec3::NEG_Z, Vec3::Y);
@@ -59,7 +59,7 @@ fn lights_and_cameras_stay_where_they_are_in_the_scene() {
     let folder = tempfile::tempdir().expect("a writable temporary folder");
     let path = folder.path().join("lit.gltf");
     std::fs::write(&path, document).expect("a writable temporary folder");
-    let import = Import { up: Some(UpAxis::Z), unit: Some(LengthUnit::Centimetre), ..Import::default() };
+    let import = Import { up: Some(UpAxis::Z), unit: Some(FileUnit::Metres(0.01)), ..Import::default() };
     let preparation = Preparation { import, ..Preparation::default() };
     let mesh = load(&Source::File(path), &preparation, &Progress::default()).expect("a triangle").mesh;
     let near = |a: Vec3, b: Vec3| assert!(a.distance(b) < 1e-6, "{a} and not {b}");

@@ -23,20 +23,20 @@ use documents::{material_scenes, three_lamps};
 /// The greatest difference of a channel, in steps of 255: coordinates of an exported texture transform are rounded once more.
 const EXPORT_STEPS: u8 = 1;
 
-fn settings() -> Settings {
+pub(super) fn settings() -> Settings {
     let tessellation = Tessellation { surface: Surface::Flat, factor: 1.0, ..Tessellation::default() };
     Settings { lighting: Lighting::Studio, tone_curve: ToneCurve::None, ..Settings::from(tessellation) }
 }
 
 /// Reads a document without a fault.
-fn read(path: &Path) -> Loaded {
+pub(super) fn read(path: &Path) -> Loaded {
     let loaded = load(&Source::File(path.to_owned()), &Preparation::default(), &Progress::default())
         .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     assert_eq!(loaded.warnings, Vec::<String>::new(), "{}", path.display());
     loaded
 }
 
-fn picture_of(loaded: &Loaded) -> RgbaImage {
+pub(super) fn picture_of(loaded: &Loaded) -> RgbaImage {
     let mut uploaded = engine().scene(loaded, ARENA_BYTES).expect("a small mesh");
     let target = Target::new(&engine().gpu, [160, 120]).expect("a small picture");
     let camera = Camera { azimuth: 10.0, elevation: 8.0, ..Camera::framing(&uploaded.bounds, target.viewport()) };

@@ -1,4 +1,4 @@
-//! Ordinary files of any size load within four times their size, without the additional 256 MiB.
+//! Ordinary files of any size load within four times their size, without the additional 512 MiB.
 
 use std::sync::PoisonError;
 

@@ -8,7 +8,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::{App, Persistence};
 use pnaen::cli::Cli;
 use pnaen::files::Limits;
-use pnaen::load::{Import, LengthUnit, NormalSource, Source};
+use pnaen::load::{FileUnit, Import, LengthUnit, NormalSource, Source};
 use pnaen::mesh::{Shape, UpAxis};
 use pnaen::render::Camera;
 use tempfile::TempDir;
@@ -87,7 +87,7 @@ fn the_command_line_says_how_the_first_mesh_is_taken() {
         normals: NormalSource::Made,
         crease_angle: 20.0,
         up: Some(UpAxis::Z),
-        unit: Some(LengthUnit::Centimetre),
+        unit: Some(FileUnit::Named(LengthUnit::Centimetre)),
     };
     assert_eq!((import(&harness), harness.state().settings().import), (made, made));
     assert_eq!(harness.state().loaded().expect("a mesh").preparation.hidden, ["side"]);
@@ -118,6 +118,15 @@ fn an_axis_and_a_unit_turn_and_scale_the_mesh_and_belong_to_its_file() {
     let line = copied(&mut harness);
     assert!(line.contains("--up z --unit cm"), "{line}");
     press(&mut harness, Key::Escape);
+    // A unit without a name has a row for its length, which begins as a metre.
+    choose(&mut harness, "Unit", "Another length");
+    assert_eq!(size(&harness), [2.0, 3.0, 1.0]);
+    harness.get_by_role_and_label(Role::Slider, "Length of a unit").set_value_accesskit(0.25);
+    settle(&mut harness);
+    assert_eq!(size(&harness), [0.5, 0.75, 0.25]);
+    let line = copied(&mut harness);
+    assert!(line.contains("--up z --unit 0.25"), "{line}");
+    press(&mut harness, Key::Escape);
     // Another file has an axis and a unit of its own; this isn't a step that can be undone.
     let context = harness.ctx.clone();
     harness.state_mut().open(&context, vase());
@@ -125,7 +134,7 @@ fn an_axis_and_a_unit_turn_and_scale_the_mesh_and_belong_to_its_file() {
     assert_eq!(import(&harness), Import::default());
     harness.state_mut().open(&context, source.clone());
     settle(&mut harness);
-    let chosen = Import { up: Some(UpAxis::Z), unit: Some(LengthUnit::Centimetre), ..Import::default() };
+    let chosen = Import { up: Some(UpAxis::Z), unit: Some(FileUnit::Metres(0.25)), ..Import::default() };
     assert_eq!((import(&harness), harness.state().settings().import), (chosen, chosen));
     eframe::App::on_exit(harness.state_mut());
     drop(harness);

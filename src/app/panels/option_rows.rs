@@ -1,7 +1,7 @@
 //! Rows of the settings panel, made from the declarations of options.
 
 use crate::app::widgets::{chooser, fixed};
-use crate::settings::{Declaration, Range, Settings, Value};
+use crate::settings::{Declaration, Kind, Range, Settings, Value};
 
 /// What sliders of light reach, in EV. More can be typed, up to the option's own range, but over all of that a step of the slider
 /// would be too coarse.
@@ -14,10 +14,20 @@ pub(super) fn option_row(ui: &mut egui::Ui, option: &Declaration, settings: &mut
 
 /// The same with another hover text.
 pub(super) fn option_row_with(ui: &mut egui::Ui, option: &Declaration, settings: &mut Settings, hover: &str) {
-    match (option.get(settings), option.range()) {
-        (Value::Number(number), Some(range)) => number_row(ui, option, range, number, settings, hover),
-        (Value::Name(name), _) => choice_row(ui, option, Some(name), settings, hover),
-        (Value::Unset, None) => choice_row(ui, option, None, settings, hover),
+    let value = option.get(settings);
+    match (&option.kind, value) {
+        (Kind::NameOrNumber { number: other, row, range, .. }, Value::Number(number)) => {
+            choice_row(ui, option, Some(other.name), settings, hover);
+            // The list may have changed it.
+            if option.get(settings) == Value::Number(number) {
+                number_row(ui, (option, row), range, number, settings, hover);
+            }
+        }
+        (Kind::Number(range), Value::Number(number)) => {
+            number_row(ui, (option, option.label), range, number, settings, hover);
+        }
+        (_, Value::Name(name)) => choice_row(ui, option, Some(name), settings, hover),
+        (Kind::Choice(_) | Kind::NameOrNumber { .. }, Value::Unset) => choice_row(ui, option, None, settings, hover),
         // Options of other kinds are shown by code of their own.
         _ => {}
     }
@@ -34,16 +44,17 @@ pub(super) fn with_note(text: &str, note: &str) -> String {
     if note.is_empty() { text.to_owned() } else { format!("{} ({note}).", text.trim_end_matches('.')) }
 }
 
+/// A row with a slider for the number of an option. The row's name is given with the option.
 fn number_row(
     ui: &mut egui::Ui,
-    option: &Declaration,
+    (option, name): (&Declaration, &str),
     range: &Range,
     mut number: f32,
     settings: &mut Settings,
     hover: &str,
 ) {
     let unit = if range.unit.is_empty() { String::new() } else { format!(" {}", range.unit) };
-    let label = ui.label(option.label).on_hover_text(hover);
+    let label = ui.label(name).on_hover_text(hover);
     let slid = if range.unit == "EV" { SLID_EV } else { range.least..=range.most };
     let slider = egui::Slider::new(&mut number, slid)
         .clamping(egui::SliderClamping::Never)
@@ -67,7 +78,9 @@ fn choice_row(
     hover: &str,
 ) {
     let unset = option.unset.iter().map(|value| (None, value.label, value.text));
-    let values = option.kind.descriptions();
+    let mut values = option.kind.descriptions();
+    let number = if let Kind::NameOrNumber { number, .. } = &option.kind { Some(*number) } else { None };
+    values.extend(number);
     let all: Vec<_> = unset.chain(values.iter().map(|value| (Some(value.name), value.label, value.text))).collect();
     if let Some(why) = (option.no_effect)(settings) {
         let shown = all.iter().find(|(value, ..)| *value == name).map_or("", |(_, label, _)| label);
@@ -76,6 +89,13 @@ fn choice_row(
     let before = name;
     chooser(ui, option.label, hover, &mut name, &all);
     if name != before {
-        option.set(settings, name.map_or(Value::Unset, Value::Name));
+        let is_number = |name: &str| number.is_some_and(|number| number.name == name);
+        option.set(
+            settings,
+            match name {
+                Some(name) if is_number(name) => Value::Number(1.0),
+                name => name.map_or(Value::Unset, Value::Name),
+            },
+        );
     }
 }

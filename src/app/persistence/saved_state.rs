@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use super::saved_settings::{read_settings, written_settings};
 use crate::app::sections::{OpenSections, Section};
 use crate::commands::MOST_BOOKMARKS;
-use crate::load::LengthUnit;
+use crate::load::{FileUnit, LengthUnit};
 use crate::mesh::UpAxis;
 use crate::render::Camera;
 use crate::settings::{Choice, Settings};
@@ -59,7 +59,8 @@ pub struct WindowGeometry {
 pub(super) struct SavedFile {
     /// The absolute path.
     pub path: String,
-    /// Which of its axes points up and what its unit is, if that was chosen: the names of these options' values.
+    /// Which of its axes points up and what its unit is, if that was chosen: the names of these options' values, or the unit's length in
+    /// metres.
     pub placement: Placement,
     pub seen: Option<SavedCamera>,
     pub bookmarks: Vec<SavedCamera>,
@@ -71,7 +72,7 @@ pub(super) struct SavedFile {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Placement {
     pub up: Option<UpAxis>,
-    pub unit: Option<LengthUnit>,
+    pub unit: Option<FileUnit>,
 }
 
 /// The camera that a mesh was last seen with.
@@ -164,6 +165,14 @@ fn absolute(value: &Value) -> Option<String> {
     value.as_str().filter(|path| Path::new(path).is_absolute()).map(str::to_owned)
 }
 
+/// Reads a unit: its name, or its length in metres.
+fn read_unit(value: &Value) -> Option<FileUnit> {
+    match value {
+        Value::String(name) => LengthUnit::named(name).map(FileUnit::Named),
+        _ => FileUnit::of_metres(value.as_f64()? as f32),
+    }
+}
+
 /// Reads which sections are open, by their titles.
 fn read_open(value: &Value) -> OpenSections {
     let mut open = OpenSections::default();
@@ -209,10 +218,7 @@ impl SavedFile {
         let is_gone = Fields(value).switch("gone", false);
         let bookmarks = value["bookmarks"].as_array().into_iter().flatten().filter_map(SavedCamera::read);
         let bookmarks = bookmarks.take(MOST_BOOKMARKS).collect();
-        let placement = Placement {
-            up: value["up"].as_str().and_then(UpAxis::named),
-            unit: value["unit"].as_str().and_then(LengthUnit::named),
-        };
+        let placement = Placement { up: value["up"].as_str().and_then(UpAxis::named), unit: read_unit(&value["unit"]) };
         Some(Self { path, placement, seen: SavedCamera::read(value), bookmarks, is_gone })
     }
 
@@ -222,9 +228,13 @@ impl SavedFile {
             written["gone"] = true.into();
         }
         let Placement { up, unit } = self.placement;
-        let names = [("up", up.map(Choice::name)), ("unit", unit.map(Choice::name))];
-        for (member, name) in names.into_iter().filter_map(|(member, name)| Some((member, name?))) {
-            written[member] = name.into();
+        if let Some(up) = up {
+            written["up"] = up.name().into();
+        }
+        match unit {
+            Some(FileUnit::Named(unit)) => written["unit"] = unit.name().into(),
+            Some(length @ FileUnit::Metres(_)) => written["unit"] = length.metres().into(),
+            None => {}
         }
         if let Some(seen) = &self.seen {
             seen.write(&mut written);

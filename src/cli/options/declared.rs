@@ -1,5 +1,7 @@
 //! Command line options made from the declarations of settings.
 
+use std::ffi::OsStr;
+
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
@@ -145,7 +147,24 @@ fn parser(declaration: &'static Declaration) -> ValueParser {
             let value = |name: String| declaration.kind.named(&name).map_or(Value::Unset, Value::Name);
             ValueParser::new(PossibleValuesParser::new(all().into_iter().map(possible)).map(value))
         }
+        Kind::NameOrNumber { .. } => ValueParser::new(NameOrNumber(declaration)),
         kind => ValueParser::new(move |text: &str| kind.parse(text)),
+    }
+}
+
+/// Reads a named value or a number. Help texts list the names.
+#[derive(Clone)]
+struct NameOrNumber(&'static Declaration);
+
+impl TypedValueParser for NameOrNumber {
+    type Value = Value;
+
+    fn parse_ref(&self, command: &Command, arg: Option<&Arg>, value: &OsStr) -> Result<Value, Error> {
+        (|text: &str| self.0.kind.parse(text)).parse_ref(command, arg, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        Some(Box::new(self.0.kind.descriptions().into_iter().map(possible)))
     }
 }
 
@@ -248,7 +267,7 @@ mod tests {
             let value = match &option.kind {
                 Kind::Choice(all) => all().last().map_or(Value::Unset, |value| Value::Name(value.name)),
                 Kind::Several(all) => Value::Names(all()[..2].iter().map(|value| value.name).collect()),
-                Kind::Number(range) => Value::Number(range.least),
+                Kind::Number(range) | Kind::NameOrNumber { range, .. } => Value::Number(range.least),
                 Kind::Pair(range) => Value::Pair([range.least, range.most]),
                 Kind::Switch => Value::Switch(true),
                 Kind::Color => Value::Color([1, 2, 3]),

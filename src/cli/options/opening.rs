@@ -85,7 +85,7 @@ mod tests {
 
     use super::*;
     use crate::cli::Cli;
-    use crate::load::{LengthUnit, NormalSource};
+    use crate::load::{FileUnit, LengthUnit, NormalSource};
     use crate::mesh::UpAxis;
 
     fn options(arguments: &[&str]) -> OpeningOptions {
@@ -98,7 +98,7 @@ mod tests {
             normals: NormalSource::Made,
             crease_angle: 30.0,
             up: Some(UpAxis::X),
-            unit: Some(LengthUnit::Inch),
+            unit: Some(FileUnit::Named(LengthUnit::Inch)),
         };
         assert!(options(&["a.obj"]).is_empty());
         assert_eq!(options(&["a.obj"]).import(usual), usual);
@@ -107,7 +107,9 @@ mod tests {
         let others = options(&["a.obj", "--mesh-normals=file", "--unit=mm", "--hide-part", "a", "--hide-part=b"]);
         let mut preparation = Preparation { import: usual, ..Preparation::default() };
         others.change(&mut preparation);
-        let expected = Import { normals: NormalSource::File, unit: Some(LengthUnit::Millimetre), ..usual };
+        let expected =
+            Import { normals: NormalSource::File, unit: Some(FileUnit::Named(LengthUnit::Millimetre)), ..usual };
+        assert_eq!(options(&["a.obj", "--unit=0.0254"]).import(usual).unit, Some(FileUnit::Metres(0.0254)));
         assert_eq!((preparation.import, &preparation.hidden[..]), (expected, &["a".to_owned(), "b".to_owned()][..]));
     }
 
@@ -115,6 +117,8 @@ mod tests {
     fn parts_need_a_file_and_commands_have_options_of_their_own() {
         assert!(Cli::try_parse_from(["pnaen", "--hide-part", "a"]).is_err());
         assert!(Cli::try_parse_from(["pnaen", "--up", "z", "info", "a.obj"]).is_err());
-        assert!(Cli::try_parse_from(["pnaen", "a.obj", "--unit", "parsec"]).is_err());
+        for unit in ["parsec", "0", "-1", "nan", "inf", "1e300", "1e-40", "0.0254 m", ""] {
+            assert!(Cli::try_parse_from(["pnaen", "a.obj", "--unit", unit]).is_err(), "{unit}");
+        }
     }
 }

@@ -166,7 +166,7 @@ mod tests {
         }
         assert_eq!(["1", "2KiB", "3 mib", "2GiB"].map(bytes), [1, 2 << 10, 3 << 20, 2 << 30].map(Ok));
         assert_eq!(bytes("2GiB"), Ok(Limits::default().file), "the default of --max-size");
-        assert_eq!(bytes("256MiB"), Ok(Limits::default().memory), "the default of --max-memory");
+        assert_eq!(bytes("512MiB"), Ok(Limits::default().memory), "the default of --max-memory");
         for bad in ["", "0", "0GiB", "-1", "1.5GiB", "GiB", "1GB", "1e9", "99999999999GiB", "+1"] {
             assert!(bytes(bad).is_err(), "{bad}");
         }

@@ -1,13 +1,14 @@
 //! Decompresses primitives that are compressed with Draco (`KHR_draco_mesh_compression`), with the crate `draco-core`,
 //! before anything else reads them.
 //!
-//! The crate can limit the number of points and faces, but not the memory that it takes meanwhile. So [`Header`] reads
-//! the start of the data to estimate it, and nothing is decoded that the budget has no room for.
+//! The crate can limit the number of faces and the size of the result, but not the memory that it takes meanwhile. So [`Decoding`]
+//! bounds that by what the data says about itself, and nothing is decoded that the budget has no room for.
 //!
 //! Source: Khronos, `KHR_draco_mesh_compression`,
 //! <https://github.com/KhronosGroup/glTF/tree/main/extensions/2.0/Khronos/KHR_draco_mesh_compression>.
 
 mod header;
+mod memory;
 mod tables;
 
 use std::collections::HashMap;
@@ -23,10 +24,12 @@ use super::extensions::DracoExtension;
 use super::nodes::Placed;
 use super::schema::{DRACO, is_detail};
 use super::{Accessors, GltfError};
-use crate::mesh::MemoryAccount;
+use crate::load::memory_budget::Budget;
+use crate::mesh::{MemoryAccount, MemoryRefused};
 use crate::progress::Progress;
 
 use header::Header;
+use memory::Decoding;
 
 /// Why a primitive can't be decompressed, as a clause.
 enum DecodeError {
@@ -93,10 +96,15 @@ impl Stream<'_> {
         // An attribute that isn't read has at most four numbers.
         let passed_over = 16 * (self.packed.ids.len() - attributes.len() + self.packed.others) as u64;
         let most = (kept + passed_over).saturating_mul(vertices);
+        let walked = tables::walk(bytes, &header);
+        let decoding =
+            Decoding { header: &header, walked: &walked, data: bytes.len() as u64, points: vertices, values: most };
+        let own = kept.saturating_mul(vertices).saturating_add(indices.saturating_mul(4));
+        // The decoder frees all but the result before this is copied.
+        let peak = decoding.peak().max(decoding.result().saturating_add(own));
         let (budget, passing) = (self.accessors.budget, self.accessors.budget.borrowed());
-        let room = budget.hold(kept.saturating_mul(vertices).saturating_add(indices.saturating_mul(4)));
-        room.and_then(|()| budget.borrow(header.memory(bytes, most)))
-            .map_err(|refused| DecodeError::TooMuch(refused.into()))?;
+        budget.borrow(peak).map_err(|refused| DecodeError::TooMuch(too_much(refused, budget)))?;
+        let most = decoding.stride().map_or(most, |stride| most.min(stride.saturating_mul(vertices)));
         let limits = DecodeLimits::default().with_max_points(vertices).with_max_faces(indices / 3);
         let mut buffer = DecoderBuffer::new(bytes).with_limits(limits.with_max_decoded_bytes(most));
         let mut mesh = Mesh::new();
@@ -107,6 +115,7 @@ impl Stream<'_> {
         let unpacked = taken(&mesh, &attributes, self.packed, [vertices as usize, indices as usize / 3])?;
         drop(mesh);
         budget.give_back_to(passing);
+        budget.hold(unpacked.bytes()).map_err(|refused| DecodeError::TooMuch(refused.into()))?;
         Ok(unpacked)
     }
 
@@ -134,6 +143,15 @@ impl Stream<'_> {
             None => Ok(found),
         }
     }
+}
+
+/// Says how much memory decompressing takes at most, and which option allows that much, as a clause.
+fn too_much(refused: MemoryRefused, budget: &Budget) -> String {
+    let [needed, option] = [refused.needed, budget.option_for(refused.needed)].map(|bytes| bytes.div_ceil(1 << 20));
+    let allowed = refused.allowed >> 20;
+    format!(
+        "may take {needed} MiB of memory, but files of this size may take only {allowed} MiB (--max-memory {option}MiB allows it)"
+    )
 }
 
 /// Returns how many numbers an element has.

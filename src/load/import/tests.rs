@@ -100,7 +100,9 @@ fn shapes_get_made_normals_too_and_have_no_other_axis() {
         Source::Shape(Shape::Torus).load_selected(selected, &Limits::default(), &Progress::new())
     };
     assert_flat(&load(Import { crease_angle: 0.0, ..MADE }).expect("a shape").mesh);
-    for import in [Import { up: Some(UpAxis::Z), ..MADE }, Import { unit: Some(LengthUnit::Inch), ..MADE }] {
+    for import in
+        [Import { up: Some(UpAxis::Z), ..MADE }, Import { unit: Some(FileUnit::Named(LengthUnit::Inch)), ..MADE }]
+    {
         let refused = load(import).map(|_| ()).expect_err("its exact surface doesn't move");
         assert!(matches!(refused, LoadError::Shape { .. }), "{refused}");
     }
@@ -119,7 +121,7 @@ fn fbx(z_up: bool) -> Vec<u8> {
 fn what_was_chosen_takes_the_place_of_what_an_fbx_file_says() {
     let last = |z_up, import| loaded(Format::Fbx, &fbx(z_up), import).corners[2].position;
     let near = |a: Vec3, b: Vec3| assert!(a.distance(b) < 1e-5 * b.length(), "{a}, not {b}");
-    let import = |up, unit| Import { up, unit, ..Import::default() };
+    let import = |up, unit: Option<LengthUnit>| Import { up, unit: unit.map(FileUnit::Named), ..Import::default() };
     near(last(true, import(None, None)), vec3(0.0, 3.0, -2.0));
     near(last(true, import(Some(UpAxis::Y), None)), vec3(0.0, 2.0, 3.0));
     near(last(false, import(Some(UpAxis::Z), None)), vec3(0.0, 3.0, -2.0));
@@ -135,7 +137,7 @@ fn what_was_chosen_takes_the_place_of_what_a_3mf_file_means() {
         let bounds = loaded(Format::ThreeMf, &bytes, import).bounds();
         (bounds.min, bounds.max)
     };
-    let import = |up, unit| Import { up, unit, ..Import::default() };
+    let import = |up, unit: Option<LengthUnit>| Import { up, unit: unit.map(FileUnit::Named), ..Import::default() };
     let own = bounds(import(None, None));
     let numbers = bounds(import(Some(UpAxis::Y), Some(LengthUnit::Metre)));
     let corners = [numbers.0, numbers.1].map(|corner| UpAxis::Z.turn(corner));
@@ -152,6 +154,19 @@ fn twelve_inches_are_a_foot() {
     assert_eq!(10.0 * LengthUnit::Millimetre.metres(), LengthUnit::Centimetre.metres());
 }
 
+/// An inch that is written as a number moves points to the same bits as one that is named.
+#[test]
+fn a_unit_may_be_given_by_its_length() {
+    let text = b"v 0.1 0.7 1.3\nv 3.3 17 -2\nv 1e5 0.03 9\nf 1 2 3\n";
+    let corners = |unit| loaded(Format::Obj, text, Import { unit, ..Import::default() }).corners.clone();
+    let written = corners(Some(FileUnit::Metres(0.0254)));
+    assert_eq!(written, corners(Some(FileUnit::Named(LengthUnit::Inch))));
+    assert_ne!(written, corners(None));
+    for wrong in [0.0, -1.0, f32::NAN, f32::INFINITY, 1e10, 1e-10] {
+        assert_eq!(FileUnit::of_metres(wrong), None, "{wrong}");
+    }
+}
+
 proptest! {
     #[test]
     fn a_file_in_another_unit_is_that_much_larger(
@@ -162,7 +177,7 @@ proptest! {
         let vertices: String = points.iter().map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect();
         let text = format!("{vertices}f 1 2 3\n");
         let plain = loaded(Format::Obj, text.as_bytes(), Import::default());
-        let placed = loaded(Format::Obj, text.as_bytes(), Import { up: Some(up), unit: Some(unit), ..Import::default() });
+        let placed = loaded(Format::Obj, text.as_bytes(), Import { up: Some(up), unit: Some(FileUnit::Named(unit)), ..Import::default() });
         prop_assert_eq!(plain.corners.len(), placed.corners.len());
         for (own, placed) in plain.corners.iter().zip(&placed.corners) {
             let expected = up.turn(own.position).as_dvec3() * unit.metres();

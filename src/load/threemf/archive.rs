@@ -136,7 +136,10 @@ impl<'a> Archive<'a> {
         }
         if entry.unpacked > ANY_RATIO && entry.unpacked / MAX_RATIO > entry.packed {
             let Entry { packed, unpacked, .. } = entry;
-            return Err(broken(name, format!("its {packed} bytes unpack to {unpacked}, as those of no model do")));
+            return Err(broken(
+                name,
+                format!("its {packed} bytes unpack to {unpacked}, as those of no model or image do"),
+            ));
         }
         self.unpacked.set(total);
         let data = self.data(entry).map_err(|reason| broken(name, reason))?;
@@ -252,6 +255,13 @@ pub(super) struct Unpacked<'a> {
 enum Packed<'a> {
     Stored(&'a [u8]),
     Deflated(Box<DeflateDecoder<&'a [u8]>>),
+}
+
+impl Unpacked<'_> {
+    /// How many bytes are missing, by what the archive says.
+    pub(super) fn left(&self) -> u64 {
+        self.left
+    }
 }
 
 impl Read for Unpacked<'_> {

@@ -91,9 +91,14 @@ impl Document {
         format!("it holds {objects} objects with {triangles} triangles, and its build has {items} items")
     }
 
+    /// How many bytes the budget holds for it.
+    pub(super) fn held(&self) -> u64 {
+        self.geometry.held()
+    }
+
     /// Gives its memory back, which ends once it is dropped.
     pub(super) fn release(&self, budget: &Budget) {
-        budget.release(self.geometry.held());
+        budget.release(self.held());
     }
 }
 

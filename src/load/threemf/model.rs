@@ -6,12 +6,13 @@ use std::rc::Rc;
 
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 
+use super::texture2d::Texture2d;
 use super::xml::{Element, Step};
 use super::{broken, too_large};
 use crate::load::memory_budget::Budget;
 use crate::load::notes::Notes;
 use crate::load::read_error::ReadError;
-use crate::load::text_lines::{number, shown, words};
+use crate::load::text_lines::{number, number_or_nan, shown, words};
 use crate::mesh::MemoryAccount;
 use crate::mesh::chunked_vec::ChunkedVec;
 use crate::names;
@@ -58,6 +59,16 @@ pub(super) struct TriangleLook {
     pub entries: [Option<u32>; 3],
 }
 
+impl TriangleLook {
+    /// The entries of the corners, of which the first is this one. Without all three, it counts for the whole triangle.
+    pub(super) fn of_corners(&self, first: u32) -> [u32; 3] {
+        match self.entries {
+            [Some(_), Some(second), Some(third)] => [first, second, third],
+            _ => [first; 3],
+        }
+    }
+}
+
 impl Geometry {
     fn hold(&mut self, bytes: u64, budget: &Budget) -> Result<(), ReadError> {
         budget.hold(bytes).map_err(too_large)?;
@@ -94,6 +105,7 @@ pub(super) struct Part {
     /// The numbers of its objects, in the file's order.
     pub order: Vec<u32>,
     pub groups: HashMap<u32, Group>,
+    pub textures: HashMap<u32, Texture2d>,
     /// What its build places.
     pub items: Vec<Placed>,
 }
@@ -133,7 +145,12 @@ pub(super) enum Group {
     /// Materials, with their names and colours.
     Materials(Vec<(String, [u8; 4])>),
     Colors(Vec<[u8; 4]>),
-    /// Textures, mixtures and layers, which aren't read.
+    /// Coordinates of a texture, with its number in the part; v counts from the bottom.
+    Texture {
+        texture: u32,
+        coordinates: Vec<[f32; 2]>,
+    },
+    /// Mixtures and layers, which aren't read.
     Other,
 }
 
@@ -159,6 +176,9 @@ enum Kind {
     Material,
     Colors,
     Color,
+    Texture,
+    Coordinates,
+    Coordinate,
     OtherGroup,
     Ignored,
 }
@@ -175,7 +195,10 @@ impl Kind {
             (Self::Materials, b"base") => Self::Material,
             (Self::Resources, b"colorgroup") => Self::Colors,
             (Self::Colors, b"color") => Self::Color,
-            (Self::Resources, b"texture2dgroup" | b"compositematerials" | b"multiproperties") => Self::OtherGroup,
+            (Self::Resources, b"texture2d") => Self::Texture,
+            (Self::Resources, b"texture2dgroup") => Self::Coordinates,
+            (Self::Coordinates, b"tex2coord") => Self::Coordinate,
+            (Self::Resources, b"compositematerials" | b"multiproperties") => Self::OtherGroup,
             (Self::Object, b"mesh") => Self::Mesh,
             (Self::Object, b"components") => Self::Components,
             (Self::Object, b"metadatagroup") => Self::Ignored,
@@ -221,6 +244,7 @@ impl<'a> ModelReader<'a> {
             objects: HashMap::new(),
             order: Vec::new(),
             groups: HashMap::new(),
+            textures: HashMap::new(),
             items: Vec::new(),
         };
         Self {
@@ -250,7 +274,7 @@ impl<'a> ModelReader<'a> {
             Step::Close => {
                 match self.open.pop() {
                     Some(Kind::Object) => self.end_object(),
-                    Some(Kind::Materials | Kind::Colors | Kind::OtherGroup) => self.end_group(),
+                    Some(Kind::Materials | Kind::Colors | Kind::Coordinates | Kind::OtherGroup) => self.end_group(),
                     _ => {}
                 }
                 Ok(())
@@ -277,6 +301,13 @@ impl<'a> ModelReader<'a> {
             Kind::Materials => self.begin_group(element, Group::Materials(Vec::new()))?,
             Kind::Colors => self.begin_group(element, Group::Colors(Vec::new()))?,
             Kind::OtherGroup => self.begin_group(element, Group::Other)?,
+            Kind::Texture => self.texture(element)?,
+            Kind::Coordinates => {
+                // A texture without a number is one that isn't there.
+                let texture = element.number(b"texid").unwrap_or(u32::MAX);
+                self.begin_group(element, Group::Texture { texture, coordinates: Vec::new() })?;
+            }
+            Kind::Coordinate => self.coordinate(element)?,
             Kind::Material | Kind::Color => self.entry(element)?,
             _ => {}
         }
@@ -462,6 +493,24 @@ impl<'a> ModelReader<'a> {
     fn end_group(&mut self) {
         let Some((id, group)) = self.group.take() else { return };
         self.part.groups.entry(id).or_insert(group);
+    }
+
+    fn texture(&mut self, element: &Element) -> Result<(), ReadError> {
+        let (id, texture) = (self.id(element, "texture2d")?, Texture2d::of(element));
+        self.geometry.hold(PER_ENTRY + 2 * texture.path.len() as u64, self.budget)?;
+        self.part.textures.entry(id).or_insert(texture);
+        Ok(())
+    }
+
+    /// Reads a pair of texture coordinates. What isn't a number becomes NaN, which counts as a repair of the corners that use it.
+    fn coordinate(&mut self, element: &Element) -> Result<(), ReadError> {
+        let at = |name: &[u8]| element.attribute(name).map_or(f32::NAN, |value| number_or_nan(value.trim_ascii()));
+        if let Some((_, Group::Texture { coordinates, .. })) = &mut self.group {
+            // A list that grows may take three times its size.
+            self.geometry.hold(3 * size_of::<[f32; 2]>() as u64, self.budget)?;
+            coordinates.push([at(b"u"), at(b"v")]);
+        }
+        Ok(())
     }
 
     /// Reads an entry of a group.

@@ -6,6 +6,7 @@ use glam::{DAffine3, DMat3, DVec3, Vec2, Vec4};
 
 use super::document::{Document, ObjectAt};
 use super::model::{Group, Object, Part, Placed, Triangle, TriangleLook};
+use super::texture2d::Texture2d;
 use super::{broken, too_large};
 use crate::load::face_builder::{FaceBuilder, NumberedCorner, counted, linear_color};
 use crate::load::import::Import;
@@ -24,7 +25,15 @@ const MAX_NESTING: usize = 64;
 /// How many triangles are placed before the job asks whether it was cancelled.
 const TRIANGLES: u64 = 4096;
 
-/// Places everything that the build has, or all objects if it has nothing.
+/// A material that shows an image of the archive.
+pub(super) struct Textured {
+    /// Its index in the [`FaceBuilder`].
+    pub material: usize,
+    /// The image's name in the archive.
+    pub path: String,
+}
+
+/// Places everything that the build has, or all objects if it has nothing. Also returns which materials show images.
 ///
 /// # Errors
 /// [`ReadError`].
@@ -34,7 +43,7 @@ pub(super) fn place<'a>(
     budget: &'a Budget,
     progress: &Progress,
     notes: &mut Notes,
-) -> Result<FaceBuilder<'a>, ReadError> {
+) -> Result<(FaceBuilder<'a>, Vec<Textured>), ReadError> {
     let items = items(document, notes);
     let mut counter = Counter { document, counted: HashMap::new(), missing: 0 };
     let mut total = 0_u64;
@@ -61,6 +70,8 @@ pub(super) fn place<'a>(
         counted: &counter.counted,
         faces,
         materials: HashMap::new(),
+        with_textures: HashMap::new(),
+        textured: Vec::new(),
         plain: None,
         corners: Vec::new(),
         found: Counts::default(),
@@ -74,7 +85,7 @@ pub(super) fn place<'a>(
     notes.extend(counted([(counter.missing, "components and items whose object isn't in the file, left out")]));
     notes.extend(unread(document, counter.counted.keys()));
     notes.extend(placer.found.warnings());
-    Ok(placer.faces)
+    Ok((placer.faces, placer.textured))
 }
 
 /// Turns axes so that Y points up in place of Z, and scales the file's unit to metres, unless another axis or unit was chosen.
@@ -160,30 +171,38 @@ struct Counts {
     other: usize,
     /// Their properties aren't in the file.
     absent: usize,
+    /// They go on where their texture ends.
+    beyond: usize,
 }
 
 impl Counts {
     fn warnings(&self) -> impl Iterator<Item = String> + use<> {
         counted([
-            (self.other, "triangles with textures, mixtures or layers of properties, which aren't read"),
-            (self.absent, "triangles whose material or colour isn't in the file, shown without"),
+            (self.other, "triangles with mixtures or layers of properties, which aren't read"),
+            (self.absent, "triangles whose material, colour or texture coordinates aren't in the file, shown without"),
+            (
+                self.beyond,
+                "triangles that go on where their texture ends (tile style none), which show its border there",
+            ),
         ])
     }
 }
 
-/// The material of a triangle, and the numbers of its corners' colours.
+/// The material of a triangle, the numbers of its corners' colours, and their texture coordinates.
 #[derive(Clone, Copy)]
 struct Resolved {
     material: usize,
     numbers: [u32; 3],
+    uvs: [Vec2; 3],
     fault: Option<Fault>,
 }
 
-/// Why a triangle is shown without its properties.
+/// Why a triangle is shown without its properties, or not as the file means it.
 #[derive(Clone, Copy)]
 enum Fault {
     Other,
     Absent,
+    Beyond,
 }
 
 struct Placer<'d, 'a> {
@@ -192,6 +211,9 @@ struct Placer<'d, 'a> {
     faces: FaceBuilder<'a>,
     /// Materials that are used, by part, group and entry.
     materials: HashMap<(usize, u32, u32), usize>,
+    /// Materials with a texture, by part and texture.
+    with_textures: HashMap<(usize, u32), usize>,
+    textured: Vec<Textured>,
     /// The material of triangles without one.
     plain: Option<usize>,
     corners: Vec<NumberedCorner>,
@@ -232,10 +254,11 @@ impl Placer<'_, '_> {
             match resolved.fault {
                 Some(Fault::Other) => self.found.other += 1,
                 Some(Fault::Absent) => self.found.absent += 1,
+                Some(Fault::Beyond) => self.found.beyond += 1,
                 None => {}
             }
             self.corners.clear();
-            for (corner, number) in corners.into_iter().zip(resolved.numbers) {
+            for ((corner, number), uv) in corners.into_iter().zip(resolved.numbers).zip(resolved.uvs) {
                 let vertex = object.vertices.clone().nth(corner as usize);
                 let position =
                     vertex.and_then(|vertex| self.document.geometry.vertices.get(vertex)).ok_or_else(|| {
@@ -247,7 +270,7 @@ impl Placer<'_, '_> {
                         )
                     })?;
                 let position = transform.transform_point3(position.as_dvec3()).as_vec3();
-                let corner = InputCorner { position, normal: None, uv: Vec2::ZERO };
+                let corner = InputCorner { position, normal: None, uv };
                 self.corners.push(NumberedCorner { corner, number, vertex: None });
             }
             if is_mirrored {
@@ -273,24 +296,26 @@ impl Placer<'_, '_> {
                 Some((name, color)) => {
                     let material = self.material((part, group, first), name, *color)?;
                     let number = self.faces.number(Vec4::ONE)?;
-                    Ok(Resolved { material, numbers: [number; 3], fault: None })
+                    Ok(Resolved { material, numbers: [number; 3], uvs: [Vec2::ZERO; 3], fault: None })
                 }
                 None => self.unpainted(Some(Fault::Absent)),
             },
             Some(Group::Colors(colors)) => {
-                // Without all three, the first counts for the whole triangle.
-                let entries = match own.entries {
-                    [Some(_), Some(second), Some(third)] => [first, second, third],
-                    _ => [first; 3],
-                };
                 let mut numbers = [0; 3];
-                for (number, entry) in numbers.iter_mut().zip(entries) {
+                for (number, entry) in numbers.iter_mut().zip(own.of_corners(first)) {
                     let Some(color) = colors.get(entry as usize) else {
                         return self.unpainted(Some(Fault::Absent));
                     };
                     *number = self.faces.number(linear_color(*color))?;
                 }
-                Ok(Resolved { material: self.plain()?, numbers, fault: None })
+                Ok(Resolved { material: self.plain()?, numbers, uvs: [Vec2::ZERO; 3], fault: None })
+            }
+            Some(Group::Texture { texture, coordinates }) => {
+                let uvs = own.of_corners(first).map(|entry| coordinates.get(entry as usize).copied());
+                match (self.document.parts[part].textures.get(texture), uvs) {
+                    (Some(shown), [Some(a), Some(b), Some(c)]) => self.textured((part, *texture), shown, [a, b, c]),
+                    _ => self.unpainted(Some(Fault::Absent)),
+                }
             }
             Some(Group::Other) => self.unpainted(Some(Fault::Other)),
             None => self.unpainted(Some(Fault::Absent)),
@@ -299,7 +324,25 @@ impl Placer<'_, '_> {
 
     fn unpainted(&mut self, fault: Option<Fault>) -> Result<Resolved, ReadError> {
         let number = self.faces.number(Vec4::ONE)?;
-        Ok(Resolved { material: self.plain()?, numbers: [number; 3], fault })
+        Ok(Resolved { material: self.plain()?, numbers: [number; 3], uvs: [Vec2::ZERO; 3], fault })
+    }
+
+    /// A triangle with these texture coordinates, whose v counts from the bottom.
+    fn textured(&mut self, key: (usize, u32), texture: &Texture2d, uvs: [[f32; 2]; 3]) -> Result<Resolved, ReadError> {
+        let material = match self.with_textures.get(&key) {
+            Some(known) => *known,
+            None => {
+                let name = if texture.name().is_empty() { format!("texture {}", key.1) } else { shown(texture.name()) };
+                let plain = Material::plain(&name, [1.0; 4]);
+                let material = self.faces.material(Material { sampling: texture.sampling, ..plain })?;
+                self.with_textures.insert(key, material);
+                self.textured.push(Textured { material, path: texture.path.clone() });
+                material
+            }
+        };
+        let fault = uvs.iter().any(|uv| texture.leaves(*uv)).then_some(Fault::Beyond);
+        let number = self.faces.number(Vec4::ONE)?;
+        Ok(Resolved { material, numbers: [number; 3], uvs: uvs.map(|[u, v]| Vec2::new(u, 1.0 - v)), fault })
     }
 
     fn plain(&mut self) -> Result<usize, ReadError> {

@@ -8,7 +8,7 @@ use glam::Vec3;
 use super::*;
 use crate::load::face_builder::linear_color;
 use crate::load::face_builder::tests::{POINTS, assert_cube, triangles};
-use crate::mesh::Alpha;
+use crate::mesh::{Alpha, Sampling, Wrap};
 use package::{Entry, MODEL, mesh, model, relationships, zip};
 
 fn read(bytes: &[u8]) -> LoadedMesh {
@@ -43,6 +43,35 @@ fn painted() -> String {
          <object id=\"2\"><components><component objectid=\"1\"/>\
          <component objectid=\"1\" transform=\"-1 0 0 0 1 0 0 0 1 8 0 0\"/></components></object>"
     )
+}
+
+/// A PNG image of two texels side by side, in these colours.
+pub(in crate::load) fn png(colors: [[u8; 4]; 2]) -> Vec<u8> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let image = image::RgbaImage::from_fn(2, 1, |x, _| image::Rgba(colors[x as usize]));
+    image.write_to(&mut bytes, image::ImageFormat::Png).expect("an image in memory");
+    bytes.into_inner()
+}
+
+/// A file with a triangle of a texture, whose element `texture2d` has these attributes, and an image.
+pub(in crate::load) fn textured(attributes: &str, image: Entry) -> Vec<u8> {
+    let triangle = mesh([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[0, 1, 2]]);
+    let triangle = triangle.replace("v3=\"2\"", "v3=\"2\" pid=\"4\" p1=\"0\" p2=\"1\" p3=\"2\"");
+    let resources = format!(
+        "<m:texture2d id=\"3\" {attributes}/><m:texture2dgroup id=\"4\" texid=\"3\"><m:tex2coord u=\"0.25\" v=\"0\"/>\
+         <m:tex2coord u=\"1.5\" v=\"0.25\"/><m:tex2coord u=\"0\" v=\"1\"/></m:texture2dgroup><object id=\"1\">{triangle}</object>"
+    );
+    zip(&[
+        Entry::stored("_rels/.rels", relationships().as_bytes()),
+        Entry::stored(MODEL, model(&resources, "<item objectid=\"1\"/>").as_bytes()),
+        image,
+    ])
+}
+
+/// The same with an opaque image.
+pub(crate) fn with_texture() -> Vec<u8> {
+    let image = png([[255, 0, 0, 255], [0, 0, 255, 255]]);
+    textured("path=\"/3D/Textures/a.png\" contenttype=\"image/png\"", Entry::deflated("3D/Textures/a.png", &image))
 }
 
 /// A file with a part beside the model, materials, colours, components, a mirrored one, and what isn't read.
@@ -141,6 +170,60 @@ fn materials_and_colours_are_those_of_triangles_or_else_of_the_object() {
     let half = linear_color([128, 0, 0, 255]).x;
     assert_eq!(colors(&mesh), [[1.0; 4], [half, 0.0, 0.0, 1.0], [0.0, half, 0.0, 1.0], [0.0, 0.0, half, 1.0]]);
     assert!(mesh.warnings.is_empty(), "{:?}", mesh.warnings);
+}
+
+#[test]
+fn textures_have_coordinates_from_the_bottom_and_are_sampled_as_they_say() {
+    let mesh = read(&with_texture());
+    assert!(mesh.warnings.is_empty(), "{:?}", mesh.warnings);
+    let [material] = &mesh.materials[..] else { panic!("{:?}", mesh.materials) };
+    let texture = material.texture.as_ref().expect("a texture");
+    assert_eq!((texture.size, &texture.rgba[..]), ([2, 1], &[255, 0, 0, 255, 0, 0, 255, 255][..]));
+    assert_eq!((material.name.as_str(), material.base_color, material.look.alpha), ("a.png", [1.0; 4], Alpha::Opaque));
+    assert_eq!(material.sampling, Sampling::default());
+    let mut uvs: Vec<_> = mesh.corners.iter().map(|corner| (corner.position, corner.uv.to_array())).collect();
+    uvs.sort_by(|a, b| a.0.to_array().partial_cmp(&b.0.to_array()).expect("numbers"));
+    // The second vertex of the file is that on the x axis, and the third one lies behind.
+    assert_eq!(uvs.iter().map(|(_, uv)| *uv).collect::<Vec<_>>(), [[0.0, 0.0], [0.25, 1.0], [1.5, 0.75]]);
+    let clear = || Entry::stored("a.png", &png([[255; 4], [9, 9, 9, 128]]));
+    let mesh = read(&textured("path=\"a.png\" tilestyleu=\"mirror\" tilestylev=\"none\" filter=\"nearest\"", clear()));
+    let material = &mesh.materials[0];
+    let wrap = [Wrap::Mirror, Wrap::Clamp];
+    let expected = Sampling { wrap, magnify_linear: false, minify_linear: false, mip_linear: None };
+    assert_eq!((material.sampling, material.look.alpha), (expected, Alpha::Blend));
+    assert!(mesh.warnings.is_empty(), "v stays within the image: {:?}", mesh.warnings);
+    let mesh = read(&textured("path=\"/A.PNG\" tilestyleu=\"none\"", clear()));
+    assert!(mesh.materials[0].texture.is_some(), "names have any case");
+    let expected = "triangles that go on where their texture ends (tile style none), which show its border there: 1.";
+    assert_eq!(mesh.warnings.len(), 1);
+    assert!(mesh.warnings[0].to_lowercase().ends_with(expected), "{:?}", mesh.warnings);
+}
+
+/// Two textures of one image share it, and have the sampling of their own.
+#[test]
+fn an_image_is_decoded_once() {
+    let triangle = |group: u32| {
+        let mesh = mesh([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[0, 1, 2]]);
+        format!("<object id=\"{}\" pid=\"{group}\" pindex=\"0\">{mesh}</object>", group + 10)
+    };
+    let texture = |id: u32, style: &str| {
+        format!(
+            "<m:texture2d id=\"{id}\" path=\"/a.png\" tilestyleu=\"{style}\"/><m:texture2dgroup id=\"{}\" texid=\"{id}\">\
+             <m:tex2coord u=\"0.5\" v=\"0.5\"/></m:texture2dgroup>",
+            id + 2
+        )
+    };
+    let resources = [texture(1, "wrap"), texture(2, "clamp"), triangle(3), triangle(4)].concat();
+    let model = model(&resources, "<item objectid=\"13\"/><item objectid=\"14\"/>");
+    let mesh = read(&zip(&[
+        Entry::stored("_rels/.rels", relationships().as_bytes()),
+        Entry::stored(MODEL, model.as_bytes()),
+        Entry::stored("a.png", &png([[1; 4], [2; 4]])),
+    ]));
+    let [a, b] = &mesh.materials[..] else { panic!("{:?}", mesh.materials) };
+    let [one, other] = [a, b].map(|material| material.texture.clone().expect("a texture"));
+    assert!(std::sync::Arc::ptr_eq(&one, &other));
+    assert_ne!(a.sampling.wrap, b.sampling.wrap);
 }
 
 #[test]

@@ -100,7 +100,7 @@ fn another(declaration: &Declaration) -> Value {
             all().iter().map(|value| Value::Name(value.name)).find(|value| *value != usual).expect("two values")
         }
         Kind::Several(all) => Value::Names(vec![all()[0].name]),
-        Kind::Number(range) => Value::Number(range.most),
+        Kind::Number(range) | Kind::NameOrNumber { range, .. } => Value::Number(range.most),
         Kind::Pair(range) => Value::Pair([range.least, range.most]),
         Kind::Switch => Value::Switch(declaration.default() == Value::Switch(false)),
         Kind::Color => Value::Color([1, 2, 3]),
@@ -162,7 +162,7 @@ fn invalid_values_change_nothing() {
     for declaration in all() {
         let mut settings = Settings::default();
         let mut bad = match &declaration.kind {
-            Kind::Number(range) => nan_and_beyond(range).map(Value::Number).to_vec(),
+            Kind::Number(range) | Kind::NameOrNumber { range, .. } => nan_and_beyond(range).map(Value::Number).to_vec(),
             Kind::Pair(range) => {
                 let mut bad = nan_and_beyond(range).map(|far| Value::Pair([range.least, far])).to_vec();
                 bad.extend([Value::Pair([8.0, 2.0]), Value::Pair([2.0, 2.0])]);
@@ -178,7 +178,10 @@ fn invalid_values_change_nothing() {
             assert!(!declaration.set(&mut settings, value.clone()), "{}: {value:?}", declaration.name);
         }
         assert_eq!(settings, Settings::default());
-        for text in ["", "odd", "nan", "1e9", "1,2,3", "12345", "1234567", "+12345"] {
+        // The length of a unit may be as large as these numbers.
+        let may_be_large = matches!(declaration.kind, Kind::NameOrNumber { .. });
+        let large = if may_be_large { ["1e10", "-1", "0", "1e300"] } else { ["1e9", "12345", "1234567", "+12345"] };
+        for text in ["", "odd", "nan", "1,2,3"].into_iter().chain(large) {
             assert!(declaration.kind.parse(text).is_err(), "{}: {text:?}", declaration.name);
         }
     }

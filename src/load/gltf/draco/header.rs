@@ -1,43 +1,45 @@
-//! Reads the start of Draco data: the size of the mesh, and an estimate of the memory for decoding it.
+//! Reads the start of Draco data: how large the mesh is.
 //!
 //! Source: Google, Draco bitstream specification, sections 4 to 6, <https://google.github.io/draco/spec/>.
 
 use draco_core::{DecoderBuffer, DracoError, GeometryMetadata};
-
-use super::tables::{self, Connectivity};
 
 /// The flag that says that metadata follows.
 const METADATA: u16 = 0x8000;
 /// The version that glTF uses.
 const VERSION: [u8; 2] = [2, 2];
 
-/// Memory for each byte of the header, most of which may be metadata, in bytes.
-const PER_HEADER_BYTE: u64 = 128;
-/// Memory for each byte of the data: an event of the connectivity takes 16 bytes of memory and two of data at least, and an
-/// attribute some 500 bytes of memory and 25 of data.
-const PER_DATA_BYTE: u64 = 24;
-/// Memory for each triangle, in bytes: the neighbours of its edges, its corners' vertices, and the order of the
-/// traversal.
-const PER_TRIANGLE: u64 = 212;
-/// Additional memory for each triangle and attribute with seams, in bytes.
-const PER_SEAMED: u64 = 64;
-/// Additional memory for each triangle of a mesh with seams, for the vertices that they add, in bytes.
-const SEAMS: u64 = 48;
-/// Memory for each byte of the result: the value itself, the same as integers, and the symbols of those.
-const PER_VALUE: u64 = 9;
-/// Memory for the largest tables of a symbol decoder, in bytes.
-const FIXED: u64 = 8 << 20;
-
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Header {
-    triangles: u64,
-    /// None if the number is known only after the triangles are decoded.
-    vertices: Option<u64>,
+    pub triangles: u64,
+    pub connectivity: Connectivity,
+    /// Where the header ends, in bytes.
+    pub end: usize,
+}
+
+/// How the vertices of the triangles are encoded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Connectivity {
+    /// As a list.
+    Sequential {
+        points: u64,
+    },
+    Edgebreaker(Edgebreaker),
+}
+
+/// The numbers of an edgebreaker traversal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Edgebreaker {
+    /// 0 for the standard traversal, 2 for one by valence.
+    pub traversal: u8,
+    /// The number of vertices before seams split them, with those that are joined again: one for each split.
+    pub vertices: u64,
     /// The number of attributes with seams of their own.
-    seamed: u64,
-    connectivity: Connectivity,
-    /// Where the header ends.
-    end: usize,
+    pub seamed: u64,
+    /// The number of symbols, each of which makes a triangle. The triangles that start a component have none.
+    pub symbols: u64,
+    /// The number of events that say where the boundary was split.
+    pub events: u64,
 }
 
 impl Header {
@@ -66,17 +68,19 @@ impl Header {
         if method == 0 {
             let triangles = buffer.decode_varint().map_err(cut)?;
             let points = buffer.decode_varint().map_err(cut)?;
-            let connectivity = Connectivity::Sequential { triangles, points };
-            let end = buffer.position();
-            return Ok(Self { triangles, vertices: Some(points), seamed: 0, connectivity, end });
+            return Ok(Self { triangles, connectivity: Connectivity::Sequential { points }, end: buffer.position() });
         }
         let traversal = buffer.decode_u8().map_err(cut)?;
-        // The number of vertices before seams split them.
-        buffer.decode_varint().map_err(cut)?;
+        // The decoder keeps 32 bits of this number.
+        let encoded = u64::from(buffer.decode_varint().map_err(cut)? as u32);
         let triangles = buffer.decode_varint().map_err(cut)?;
         let seamed = u64::from(buffer.decode_u8().map_err(cut)?);
-        let connectivity = Connectivity::Edgebreaker { traversal, seamed };
-        Ok(Self { triangles, vertices: None, seamed, connectivity, end: buffer.position() })
+        let symbols = buffer.decode_varint().map_err(cut)?;
+        let splits = buffer.decode_varint().map_err(cut)?;
+        let events = buffer.decode_varint().map_err(cut)?;
+        let vertices = encoded.saturating_add(splits);
+        let counts = Edgebreaker { traversal, vertices, seamed, symbols, events };
+        Ok(Self { triangles, connectivity: Connectivity::Edgebreaker(counts), end: buffer.position() })
     }
 
     /// Checks that the size agrees with the accessors.
@@ -88,24 +92,11 @@ impl Header {
         if triangles.checked_mul(3) != Some(indices) {
             return Err(format!("holds {triangles} triangles, but the accessor of its indices has {indices} indices"));
         }
-        match self.vertices.filter(|has| *has != vertices) {
-            Some(has) => Err(format!("holds {has} vertices, but its accessors have {vertices}")),
-            None => Ok(()),
+        match self.connectivity {
+            Connectivity::Sequential { points } if points != vertices => {
+                Err(format!("holds {points} vertices, but its accessors have {vertices}"))
+            }
+            _ => Ok(()),
         }
-    }
-
-    /// Returns where the data of the connectivity begins, and what kind it is.
-    #[cfg(test)]
-    pub(super) fn start(&self) -> (usize, Connectivity) {
-        (self.end, self.connectivity)
-    }
-
-    /// Returns the greatest amount of memory, in bytes, that decoding takes if the result has `values` bytes of values.
-    pub(super) fn memory(&self, bytes: &[u8], values: u64) -> u64 {
-        let tables = tables::memory(bytes, self.end, self.connectivity);
-        let tables = tables + self.end as u64 * PER_HEADER_BYTE + bytes.len() as u64 * PER_DATA_BYTE;
-        let seams = if self.seamed > 0 { SEAMS + self.seamed * PER_SEAMED } else { 0 };
-        let triangles = self.triangles.saturating_mul(PER_TRIANGLE + seams);
-        tables.saturating_add(triangles).saturating_add(values.saturating_mul(PER_VALUE)).saturating_add(FIXED)
     }
 }

@@ -1,4 +1,5 @@
-//! Bounds the memory for tables of probabilities in Draco data, by walking over it without decoding it.
+//! Walks over Draco data without decoding it, to find how much memory the decoder will take: which attributes follow, and how large
+//! the tables of probabilities are.
 //!
 //! The decoder allocates as many symbols as a table says that it has, as long as these are no more than 64 for each byte that
 //! is left. Data that was made to do harm may say so in a few bytes; tables that an encoder writes have a few thousand symbols.
@@ -7,7 +8,9 @@
 //!
 //! Source: Google, Draco bitstream specification, sections 4 to 14, <https://google.github.io/draco/spec/>.
 
-use draco_core::DecoderBuffer;
+use draco_core::{DataType, DecoderBuffer};
+
+use super::header::{Connectivity, Edgebreaker, Header};
 
 /// Memory for each symbol of a table of probabilities, in bytes.
 const PER_SYMBOL: u64 = 8;
@@ -17,44 +20,55 @@ const PER_WHOLE_SYMBOL: u64 = 3 * PER_SYMBOL;
 /// How many symbols the decoder reserves for each remaining byte of the data.
 const SYMBOLS_A_BYTE: u64 = 64;
 
-/// The connectivity of a mesh, as its header has it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Connectivity {
-    Sequential {
-        triangles: u64,
-        points: u64,
-    },
-    /// The traversal is 0 for the standard one, 2 for one by valence.
-    Edgebreaker {
-        traversal: u8,
-        seamed: u64,
-    },
+/// What a walk found.
+#[derive(Debug)]
+pub(super) struct Walked {
+    /// The greatest amount of memory that tables of probabilities take at one time, in bytes.
+    pub tables: u64,
+    /// The attributes; none if the walk didn't come to them.
+    pub decoders: Option<Vec<AttributeDecoder>>,
+    /// The largest number of flags that the prediction of an attribute has; none if the walk didn't come to the end.
+    pub flags: Option<u64>,
 }
 
-/// Returns the greatest amount of memory that tables of probabilities take at one time, in bytes. `start` is where the header
-/// ends.
-pub(super) fn memory(bytes: &[u8], start: usize, connectivity: Connectivity) -> u64 {
-    let mut walk = Walk { buffer: DecoderBuffer::new(bytes), walked: start, symbols: 0 };
-    walk.buffer.set_version(2, 2);
-    if walk.buffer.set_position(start).is_err() || walk.mesh(connectivity).is_none() {
-        let rest = &bytes[walk.walked.min(bytes.len())..];
-        let unknown = rest.len() as u64 * SYMBOLS_A_BYTE * PER_SYMBOL;
-        return unknown.max(symbols(rest) * PER_WHOLE_SYMBOL).max(walk.symbols * PER_WHOLE_SYMBOL);
+/// The attributes that are decoded together.
+#[derive(Debug)]
+pub(super) struct AttributeDecoder {
+    /// Whether they may have seams of their own.
+    pub is_seamed: bool,
+    /// Whether vertices are visited in an order that depends on how many neighbours are known.
+    pub by_degree: bool,
+    pub attributes: Vec<Coded>,
+}
+
+/// An attribute, as its decoder's header has it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Coded {
+    pub components: u64,
+    /// The size of a component, in bytes.
+    pub size: u64,
+    /// 0 for values as they are, 1 for integers, 2 for quantised values, 3 for normals.
+    pub decoder: u8,
+}
+
+/// Walks over data with this header.
+pub(super) fn walk(bytes: &[u8], header: &Header) -> Walked {
+    let mut walk = Walk::new(bytes, header.end);
+    let is_whole = walk.buffer.set_position(header.end).is_ok() && walk.mesh(header).is_some();
+    let known = walk.symbols * PER_WHOLE_SYMBOL;
+    let rest = &bytes[walk.walked.min(bytes.len())..];
+    let unknown = (rest.len() as u64 * SYMBOLS_A_BYTE * PER_SYMBOL).max(symbols(rest) * PER_WHOLE_SYMBOL);
+    Walked {
+        tables: if is_whole { known } else { known.max(unknown) },
+        decoders: walk.decoders,
+        flags: is_whole.then_some(walk.flags),
     }
-    walk.symbols * PER_WHOLE_SYMBOL
 }
 
 /// Returns the greatest number of symbols of a complete table in these bytes. A byte whose two lowest bits are set says
 /// how many further symbols have probability zero; any other byte is a symbol's probability, or a part of it.
 fn symbols(bytes: &[u8]) -> u64 {
     bytes.iter().map(|byte| if byte & 3 == 3 { u64::from(byte >> 2) + 1 } else { 1 }).sum()
-}
-
-/// An attribute, as its decoder's header has it.
-struct Coded {
-    components: u64,
-    /// 0 for values as they are, 1 for integers, 2 for quantised values, 3 for normals.
-    decoder: u8,
 }
 
 /// How many parallelograms a prediction may use, each with a list of flags of its own.
@@ -71,16 +85,28 @@ struct Walk<'a> {
     walked: usize,
     /// The greatest number of symbols of a table.
     symbols: u64,
+    decoders: Option<Vec<AttributeDecoder>>,
+    /// The greatest number of flags of an attribute.
+    flags: u64,
 }
 
-impl Walk<'_> {
-    fn mesh(&mut self, connectivity: Connectivity) -> Option<()> {
-        match connectivity {
-            Connectivity::Sequential { triangles, points } => self.indices(triangles.checked_mul(3)?, points)?,
-            Connectivity::Edgebreaker { traversal, seamed } => self.edgebreaker(traversal, seamed)?,
+impl<'a> Walk<'a> {
+    fn new(bytes: &'a [u8], start: usize) -> Self {
+        let mut buffer = DecoderBuffer::new(bytes);
+        buffer.set_version(2, 2);
+        Self { buffer, walked: start, symbols: 0, decoders: None, flags: 0 }
+    }
+
+    fn mesh(&mut self, header: &Header) -> Option<()> {
+        match header.connectivity {
+            Connectivity::Sequential { points } => self.indices(header.triangles.checked_mul(3)?, points)?,
+            Connectivity::Edgebreaker(counts) => self.edgebreaker(&counts)?,
         }
-        let is_edgebreaker = matches!(connectivity, Connectivity::Edgebreaker { .. });
-        self.attributes(is_edgebreaker)
+        let seamed = match header.connectivity {
+            Connectivity::Sequential { .. } => None,
+            Connectivity::Edgebreaker(Edgebreaker { seamed, .. }) => Some(seamed),
+        };
+        self.attributes(seamed)
     }
 
     fn byte(&mut self) -> Option<u8> {
@@ -116,10 +142,8 @@ impl Walk<'_> {
         Some(())
     }
 
-    fn edgebreaker(&mut self, traversal: u8, seamed: u64) -> Option<()> {
-        // The numbers of symbols, of which one is needed for every few triangles, and of those that split the boundary.
-        let (symbols, _) = (self.varint()?, self.varint()?);
-        let events = self.varint()?;
+    fn edgebreaker(&mut self, counts: &Edgebreaker) -> Option<()> {
+        let &Edgebreaker { traversal, seamed, symbols, events, .. } = counts;
         for _ in 0..events {
             self.varint()?;
             self.varint()?;
@@ -193,14 +217,25 @@ impl Walk<'_> {
         (read == count).then_some(())
     }
 
-    fn attributes(&mut self, is_edgebreaker: bool) -> Option<()> {
-        let decoders = self.byte()?;
-        // The connectivity, the kind and the traversal of each.
-        self.skip(if is_edgebreaker { 3 * u64::from(decoders) } else { 0 })?;
-        let mut all = Vec::new();
-        for _ in 0..decoders {
-            all.push(self.header()?);
+    /// The attributes, of which as many as `seamed` may have seams of their own; none without a traversal.
+    fn attributes(&mut self, seamed: Option<u64>) -> Option<()> {
+        let count = self.byte()?;
+        let mut decoders: Vec<_> = (0..count)
+            .map(|_| AttributeDecoder { is_seamed: false, by_degree: false, attributes: Vec::new() })
+            .collect();
+        if let Some(seamed) = seamed {
+            for decoder in &mut decoders {
+                // The number of the seams, the kind, and the traversal.
+                let [seams, kind, traversal] = [self.byte()?, self.byte()?, self.byte()?];
+                decoder.is_seamed = kind != 0 && u64::from(seams) < seamed;
+                decoder.by_degree = traversal == 1;
+            }
         }
+        for decoder in &mut decoders {
+            decoder.attributes = self.header()?;
+        }
+        let all: Vec<Vec<Coded>> = decoders.iter().map(|decoder| decoder.attributes.clone()).collect();
+        self.decoders = Some(decoders);
         for coded in all {
             for attribute in &coded {
                 self.reached();
@@ -226,13 +261,14 @@ impl Walk<'_> {
         }
         let mut coded = Vec::new();
         for _ in 0..count {
-            // The meaning and the type.
-            self.skip(2)?;
+            // The meaning.
+            self.byte()?;
+            let size = DataType::try_from(self.byte()?).ok()?.byte_length() as u64;
             let components = u64::from(self.byte()?);
             // Whether it is normalised.
             self.byte()?;
             self.varint()?;
-            coded.push(Coded { components, decoder: 0 });
+            coded.push(Coded { components, size, decoder: 0 });
         }
         for attribute in &mut coded {
             attribute.decoder = self.byte()?;
@@ -260,11 +296,15 @@ impl Walk<'_> {
             0 | 1 => self.skip(TRANSFORM),
             // Several parallelograms, of which flags say which are used.
             4 => {
+                let mut flags = 0;
                 for _ in 0..PARALLELOGRAMS {
-                    if self.varint()? as u32 > 0 {
+                    let count = self.varint()? as u32;
+                    if count > 0 {
                         self.bits()?;
                     }
+                    flags += u64::from(count);
                 }
+                self.flags = self.flags.max(flags);
                 self.skip(TRANSFORM)
             }
             // Texture coordinates by positions: the number of orientations, and these.
@@ -290,17 +330,15 @@ mod tests {
         DataType, EncoderBuffer, EncoderOptions, GeometryAttributeType as Kind, Mesh, MeshEncoder, PointAttribute,
     };
 
-    use super::super::header::Header;
     use super::*;
 
     /// Returns how far a walk comes in bytes, or none if it doesn't come to the end; and the memory of the tables in bytes.
     fn walk(bytes: &[u8]) -> (Option<usize>, u64) {
-        let (start, connectivity) = Header::read(bytes).expect("a header").start();
-        let mut walk = Walk { buffer: DecoderBuffer::new(bytes), walked: start, symbols: 0 };
-        walk.buffer.set_version(2, 2);
-        walk.buffer.set_position(start).expect("within the data");
-        let reached = walk.mesh(connectivity).map(|()| walk.buffer.position());
-        (reached, memory(bytes, start, connectivity))
+        let header = Header::read(bytes).expect("a header");
+        let mut walk = Walk::new(bytes, header.end);
+        walk.buffer.set_position(header.end).expect("within the data");
+        let reached = walk.mesh(&header).map(|()| walk.buffer.position());
+        (reached, super::walk(bytes, &header).tables)
     }
 
     /// A wavy sheet of 2 * 60 * 60 triangles. With seams each row has texture coordinates of its own.

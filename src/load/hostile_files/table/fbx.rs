@@ -103,7 +103,7 @@ fn contents() -> Vec<(&'static str, Case)> {
         ("a first entry that ends beyond the file", (Fbx, long.into(), Repaired(2, "meshes without normals"))),
         (
             "an array of 4294967295 numbers in as many bytes",
-            (Fbx, raw(&[&b"d"[..], &[255; 4], &[0; 4], &[255; 4]].concat()).into(), Refused("TooLarge | 256 MiB")),
+            (Fbx, raw(&[&b"d"[..], &[255; 4], &[0; 4], &[255; 4]].concat()).into(), Refused("TooLarge | 512 MiB")),
         ),
         (
             "a compressed array of 4294967295 numbers in 4 bytes",

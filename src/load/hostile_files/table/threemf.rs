@@ -4,6 +4,7 @@ use super::Gets::{Refused, Repaired};
 use super::{Case, Gets};
 use crate::load::Format::ThreeMf;
 use crate::load::threemf::tests::package::{Entry, MODEL, model, package, relationships, zip};
+use crate::load::threemf::tests::{png, textured};
 
 const TRIANGLE: &str = "<mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/>\
      <vertex x=\"0\" y=\"1\" z=\"0\"/></vertices><triangles><triangle v1=\"0\" v2=\"1\" v3=\"2\"/></triangles></mesh>";
@@ -75,7 +76,7 @@ pub(super) fn cases() -> Vec<(&'static str, Case)> {
         case(
             "4 GiB of nothing",
             with_model(Entry { unpacked: u32::MAX - 1, ..own() }),
-            Refused("TooLarge | 4097 MiB | 256"),
+            Refused("TooLarge | 4097 MiB | 512"),
         ),
         case(
             "200 MiB of nothing",
@@ -146,6 +147,7 @@ pub(super) fn cases() -> Vec<(&'static str, Case)> {
         case("100 components within each other", towers(100, 1, TRIANGLE), Refused("Broken | more than 64 deep")),
     ];
     cases.extend(shapes());
+    cases.extend(textures());
     cases
 }
 
@@ -213,9 +215,18 @@ fn shapes() -> Vec<(&'static str, Case)> {
             Repaired(1, "#RRGGBB | white | 1"),
         ),
         case(
-            "a texture",
-            replaced("<object", "<m:texture2dgroup id=\"4\" texid=\"3\"/><object pid=\"4\" pindex=\"0\""),
-            Repaired(1, "textures | 1"),
+            "a texture that isn't there",
+            replaced(
+                "<object",
+                "<m:texture2dgroup id=\"4\" texid=\"3\"><m:tex2coord u=\"0\" v=\"0\"/></m:texture2dgroup>\
+                 <object pid=\"4\" pindex=\"0\"",
+            ),
+            Repaired(1, "texture coordinates | 1"),
+        ),
+        case(
+            "layers of properties",
+            replaced("<object", "<m:multiproperties id=\"4\" pids=\"3\"/><object pid=\"4\" pindex=\"0\""),
+            Repaired(1, "layers | 1"),
         ),
         case("beams", replaced("</mesh>", "<b:beamlattice/></mesh>"), Repaired(1, "beams | 1")),
         case("slices", replaced("<object", "<object slicestackid=\"7\""), Repaired(1, "slices | 1")),
@@ -228,6 +239,69 @@ fn shapes() -> Vec<(&'static str, Case)> {
             "no relationships",
             zip(&[Entry::stored("a.MODEL", model(&format!("<object id=\"1\">{TRIANGLE}</object>"), ITEM).as_bytes())]),
             Repaired(1, "which part is its model | a.MODEL"),
+        ),
+    ]
+}
+
+/// What is wrong with a texture. The model is shown without it.
+fn textures() -> Vec<(&'static str, Case)> {
+    let case = |name, bytes: Vec<u8>, gets: Gets| (name, (ThreeMf, bytes.into(), gets));
+    let image = png([[255; 4], [0, 0, 0, 255]]);
+    let of = |image: Entry| textured("path=\"/a.png\" contenttype=\"image/png\"", image);
+    let whole = || Entry::deflated("a.png", &image);
+    // The header says 16384 x 16384 px, with a wrong checksum.
+    let mut large = image.clone();
+    large[16..24].copy_from_slice(&[0, 0, 0x40, 0, 0, 0, 0x40, 0]);
+    vec![
+        case(
+            "an image that isn't there",
+            of(Entry { name: "b.png", ..whole() }),
+            Repaired(1, "/a.png | isn't in the archive"),
+        ),
+        case("a texture without a path", textured("", whole()), Repaired(1, "texture | isn't in the archive")),
+        case(
+            "an image cut short",
+            of(Entry::stored("a.png", &image[..image.len() / 2])),
+            Repaired(1, "/a.png | decoded"),
+        ),
+        case(
+            "an image whose packed data is cut short",
+            of(Entry { packed: whole().packed[..20].to_vec(), ..whole() }),
+            Repaired(1, "/a.png | left out"),
+        ),
+        case("an image that is a text", of(Entry::stored("a.png", b"a picture")), Repaired(1, "/a.png | decoded")),
+        case(
+            "an image that is a model",
+            textured("path=\"/3D/3dmodel.model\"", whole()),
+            Repaired(1, "3dmodel.model | decoded"),
+        ),
+        case(
+            "an image longer than it says",
+            of(Entry { unpacked: 9, ..whole() }),
+            Repaired(1, "/a.png | unpacks to more"),
+        ),
+        case(
+            "an image of 4 GiB of nothing",
+            of(Entry { unpacked: u32::MAX - 1, ..whole() }),
+            Repaired(1, "/a.png | 4097 MiB | 512"),
+        ),
+        case("an image of 16384 px without data", of(Entry::stored("a.png", &large)), Repaired(1, "/a.png | left out")),
+        case(
+            "texture coordinates that aren't there",
+            replaced(
+                "<object",
+                "<m:texture2d id=\"3\" path=\"/a.png\"/><m:texture2dgroup id=\"4\" texid=\"3\"/><object pid=\"4\" pindex=\"7\"",
+            ),
+            Repaired(1, "texture coordinates | 1"),
+        ),
+        case(
+            "texture coordinates that aren't numbers",
+            replaced(
+                "<object",
+                "<m:texture2d id=\"3\" path=\"/a.png\"/><m:texture2dgroup id=\"4\" texid=\"3\">\
+                 <m:tex2coord u=\"nan\" v=\"one\"/></m:texture2dgroup><object pid=\"4\" pindex=\"0\"",
+            ),
+            Repaired(2, "texture coordinates"),
         ),
     ]
 }

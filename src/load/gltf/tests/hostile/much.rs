@@ -50,14 +50,14 @@ pub(super) fn cases() -> Vec<Case> {
             &zeros((1 << 24) + 1),
             "Accessor | /accessors/2 | POSITION | /meshes/0/primitives/0 | \"thing\" | 16777217 | 16777216",
         ),
-        refused("as many zeros as are read", &zeros(1 << 24), "TooLarge | 5592405 | 1770 | 256"),
-        refused("6000 triangles on 3000 nodes", &instances(6000, 3000), "TooLarge | 18000000 | 415 | 256"),
+        refused("as many zeros as are read", &zeros(1 << 24), "TooLarge | 5592405 | 1770 | 512"),
+        refused("6000 triangles on 5000 nodes", &instances(6000, 5000), "TooLarge | 30000000 | 512"),
         refused(
             "60,000 triangles on 3000 nodes",
             &instances(60_000, 3000),
             "TooLarge | 180000000 | 134217728 | triangles | most",
         ),
-        refused("2000 primitives on 2000 nodes", &twins, "TooLarge | 4000000 | 766 | 256"),
+        refused("2000 primitives on 2000 nodes", &twins, "TooLarge | 4000000 | 766 | 512"),
         refused(
             "1000 morph targets of zeros",
             &targets,
@@ -65,8 +65,8 @@ pub(super) fn cases() -> Vec<Case> {
         ),
         Case::refused(
             "objects beyond memory",
-            format!(r#"{{"asset":{{"version":"2.0"}},"extras":[{}{{}}]}}"#, "{\"\":0},".repeat(500_000)),
-            "Document | JSON | 378 | 269",
+            format!(r#"{{"asset":{{"version":"2.0"}},"extras":[{}{{}}]}}"#, "{\"\":0},".repeat(1_000_000)),
+            "Document | JSON | 755 | 53",
         ),
     ]
 }

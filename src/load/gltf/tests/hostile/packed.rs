@@ -164,12 +164,12 @@ pub(super) fn cases() -> Vec<Case> {
         Case::refused(
             "2^31 triangles",
             huge(3 << 31).document().to_string(),
-            &format!("Draco | {EXTENSION} | 24577 | 256"),
+            &format!("Draco | {EXTENSION} | 512 MiB | --max-memory"),
         ),
         Case::refused(
             "a table of 2^26 symbols",
             table().document().to_string(),
-            &format!("Draco | {EXTENSION} | 1571 | 261"),
+            &format!("Draco | {EXTENSION} | 1571 | 517"),
         ),
     ]);
     cases

@@ -245,7 +245,7 @@ fn instances_and_joints() -> Vec<Case> {
                 instanced(root, json!({ "TRANSLATION": 0, "ROTATION": 2 }));
             },
         ),
-        refused("2^24 instances without data", "TooLarge | 16777216 | 256", |root| {
+        refused("2^24 instances without data", "TooLarge | 16777216 | 512", |root| {
             add(root, "accessors", json!({ "componentType": 5126, "count": 1 << 24, "type": "VEC3" }));
             instanced(root, json!({ "TRANSLATION": 2 }));
         }),

@@ -1,0 +1,128 @@
+//! Unpacks the images of textures, and gives them to the materials that show them.
+
+use std::collections::{BTreeMap, HashMap};
+use std::io::Read;
+use std::sync::Arc;
+
+use super::archive::Archive;
+use super::document::Document;
+use super::model::Group;
+use super::placing::Textured;
+use crate::load::face_builder::FaceBuilder;
+use crate::load::images::{decode_halved, texture_size};
+use crate::load::memory_budget::Budget;
+use crate::load::notes::Notes;
+use crate::load::texture_room::{Scaling, TextureRoom};
+use crate::mesh::mipmap::MipFilter;
+use crate::mesh::{Alpha, MemoryAccount, Texture};
+use crate::names::shown;
+use crate::progress::{Cancelled, Progress};
+
+/// The images of all textures that a group of coordinates names, packed as PNG or JPEG.
+pub(super) struct Images {
+    /// An image's bytes by its name in the archive, or why it isn't there, as a clause.
+    bytes: HashMap<String, Result<Vec<u8>, String>>,
+}
+
+impl Images {
+    /// Unpacks the images. The budget holds their bytes.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(super) fn unpack(
+        archive: &Archive,
+        document: &Document,
+        budget: &Budget,
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
+        let mut bytes = HashMap::new();
+        for part in &document.parts {
+            // The order decides which images still fit.
+            let groups: BTreeMap<_, _> = part.groups.iter().collect();
+            let of_group =
+                |group: &Group| if let Group::Texture { texture, .. } = group { Some(*texture) } else { None };
+            let textures = groups.values().filter_map(|group| part.textures.get(&of_group(group)?));
+            for texture in textures {
+                progress.check()?;
+                let path = &texture.path;
+                if !bytes.contains_key(path) {
+                    bytes.insert(path.clone(), unpacked(archive, path, budget));
+                }
+            }
+        }
+        Ok(Self { bytes })
+    }
+
+    /// Decodes the images that materials show, and scales the largest down until they fit. `freed` is the memory that is freed before
+    /// the mesh is finished, in bytes. What is wrong with an image costs a note.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(super) fn give(
+        self,
+        textured: &[Textured],
+        faces: &mut FaceBuilder,
+        (freed, budget): (u64, &Budget),
+        progress: &Progress,
+        notes: &mut Notes,
+    ) -> Result<(), Cancelled> {
+        let mut users: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+        textured.iter().for_each(|shows| users.entry(&shows.path).or_default().push(shows.material));
+        let of = |path: &str| {
+            self.bytes.get(path).map_or(Err("it isn't in the file"), |bytes| bytes.as_deref().map_err(String::as_str))
+        };
+        let sizes: Vec<_> = users.keys().map(|path| of(path).ok().and_then(texture_size).unwrap_or_default()).collect();
+        let packed = self.held();
+        let room = TextureRoom::of(budget, faces.bytes_to_finish().saturating_sub(freed + packed));
+        for (((path, materials), size), scaling) in users.iter().zip(&sizes).zip(room.scalings(&sizes)) {
+            progress.check()?;
+            let Scaling { halvings, reason } = scaling;
+            let borrowed = budget.borrowed();
+            let decode = |bytes: &[u8]| decode_halved(bytes, halvings, MipFilter::Colors, budget);
+            let texture = of(path).map_err(str::to_owned).and_then(decode).map(Arc::new);
+            budget.give_back_to(borrowed);
+            let said = match &texture {
+                Err(reason) => Some(format!("is left out: {reason}")),
+                Ok(texture) => {
+                    let [[a, b], [c, d]] = [*size, texture.size];
+                    (halvings > 0).then(|| format!("is scaled down from {a} x {b} px to {c} x {d} px: {reason}"))
+                }
+            };
+            notes.extend(said.map(|said| format!("the texture \"{}\" {said}.", shown(path))));
+            if let Ok(texture) = texture {
+                materials.iter().for_each(|&material| show(faces, material, &texture));
+            }
+        }
+        budget.release(packed);
+        Ok(())
+    }
+
+    /// How many bytes the budget holds for the images.
+    fn held(&self) -> u64 {
+        self.bytes.values().flatten().map(|bytes| bytes.len() as u64).sum()
+    }
+}
+
+/// Unpacks a part of the archive.
+fn unpacked(archive: &Archive, path: &str, budget: &Budget) -> Result<Vec<u8>, String> {
+    let part = archive.open(path).map_err(|error| error.to_string())?;
+    let mut part = part.ok_or("it isn't in the archive")?;
+    let size = part.left();
+    budget.hold(size).map_err(|refused| format!("unpacking it {refused}"))?;
+    // A part that is longer or shorter than it says is an error.
+    let mut bytes = Vec::with_capacity(usize::try_from(size).unwrap_or(usize::MAX));
+    let read = part.read_to_end(&mut bytes).map_err(|error| error.to_string());
+    if read.is_err() {
+        budget.release(size);
+    }
+    read.map(|_| bytes)
+}
+
+/// Shows an image on a material, which blends if the image has transparent texels.
+fn show(faces: &mut FaceBuilder, material: usize, texture: &Arc<Texture>) {
+    let material = faces.material_mut(material);
+    if texture.rgba.iter().skip(3).step_by(4).any(|alpha| *alpha < 255) {
+        material.look.alpha = Alpha::Blend;
+    }
+    material.texture = Some(texture.clone());
+}
