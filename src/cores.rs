@@ -10,8 +10,7 @@ use std::thread;
 /// makes of each range, in the order of the ranges. What is made of all of them together must not depend on where one
 /// range ends and the next begins. Returns after the last range is done.
 pub(crate) fn in_ranges<R: Send>(count: usize, least: usize, work: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
-    let cores = thread::available_parallelism().map_or(1, NonZero::get);
-    let ranges = cores.min(count / least.max(1)).max(1);
+    let ranges = cores().min(count / least.max(1)).max(1);
     let range = |number: usize| number * count / ranges..(number + 1) * count / ranges;
     let work = &work;
     thread::scope(|scope| {
@@ -27,9 +26,41 @@ pub(crate) fn in_ranges<R: Send>(count: usize, least: usize, work: impl Fn(Range
     })
 }
 
+/// Returns how many threads run at the same time.
+fn cores() -> usize {
+    #[cfg(test)]
+    if let Some(cores) = tests::CORES.get() {
+        return cores;
+    }
+    thread::available_parallelism().map_or(1, NonZero::get)
+}
+
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
+    use std::cell::Cell;
+
     use super::*;
+
+    thread_local! {
+        /// The number of cores that this thread counts on, instead of the machine's.
+        pub(super) static CORES: Cell<Option<usize>> = const { Cell::new(None) };
+    }
+
+    /// Returns what `work` makes as if the machine had so many cores.
+    pub(crate) fn on_cores<R>(cores: usize, work: impl FnOnce() -> R) -> R {
+        CORES.set(Some(cores));
+        let result = work();
+        CORES.set(None);
+        result
+    }
+
+    #[test]
+    fn work_is_divided_among_as_many_cores_as_there_are() {
+        for cores in [1, 2, 7] {
+            assert_eq!(on_cores(cores, || in_ranges(1000, 1, |range| range.len())).len(), cores);
+        }
+        assert_eq!(CORES.get(), None);
+    }
 
     #[test]
     fn every_number_is_in_one_range_and_ranges_are_in_order() {

@@ -275,10 +275,8 @@ fn animations(rig: &Rig) -> Vec<AnimationInfo> {
 /// Points in use - edges + patches: 2 for a sphere, 0 for a torus.
 fn euler_characteristic(topology: &Topology) -> i64 {
     let mut used = vec![false; topology.points.len()];
-    for edge in &topology.edges {
-        for point in topology.edge_points(edge) {
-            used[point as usize] = true;
-        }
+    for patch in 0..topology.patches.len() as u32 {
+        topology.patch_points(patch).into_iter().for_each(|point| used[point as usize] = true);
     }
     let points = used.iter().filter(|used| **used).count();
     points as i64 - topology.edges.len() as i64 + topology.patches.len() as i64

@@ -26,8 +26,8 @@ impl Bounds {
         }
         let center = min * 0.5 + max * 0.5;
         // In f64, since the squares of very small or large lengths leave f32.
-        let radius = positions.map(|p| p.as_dvec3().distance(center.as_dvec3())).fold(0.0, f64::max) as f32;
-        Self { min, max, radius }
+        let square = positions.map(|p| p.as_dvec3().distance_squared(center.as_dvec3())).fold(0.0, f64::max);
+        Self { min, max, radius: square.sqrt() as f32 }
     }
 
     /// Returns the centre of the box.

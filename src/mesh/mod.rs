@@ -6,6 +6,7 @@ mod bounding_box_tree;
 pub(crate) mod bounds;
 pub(crate) mod build_limits;
 mod cell_chains;
+mod cell_grid;
 pub(crate) mod chunked_vec;
 pub(crate) mod corner_details;
 pub(crate) mod crease_band;

@@ -2,9 +2,10 @@
 
 use std::ops::ControlFlow::{Break, Continue};
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 use super::cell_chains::CellChains;
+use super::cell_grid::{CellGrid, CellHash};
 use crate::cores::in_ranges;
 
 /// How many other points are compared with a point at most. A point in a crowd counts as near to another one without a
@@ -13,6 +14,15 @@ const TRIES: usize = 64;
 
 /// How many points of the mesh are tried to estimate how many have another one nearby.
 const SAMPLES: usize = 512;
+
+/// The width of a cell, in reaches: wider than a search needs, so that most searches look at few cells.
+const WIDTH: f64 = 4.0;
+
+/// How much farther a search goes, for the rounding of distances.
+const ROOM: f64 = 1.0 + 1e-6;
+
+/// The least number of points that are worth a thread.
+const LEAST: usize = 1 << 14;
 
 /// For each point, which of some tolerances are so large that another point may lie within them.
 pub(super) struct NearPoints {
@@ -25,17 +35,23 @@ impl NearPoints {
     /// the same. `tolerances` are above 0, in object units, and ascending. Within those that most points have another one in,
     /// no search is made, and all points count as near. Takes linear time.
     pub(super) fn find(points: &[Vec3], numbers: &[u32], tolerances: &[f64]) -> Self {
-        let grid = tolerances.iter().rev().map(|&reach| Grid::new(points, numbers, reach));
-        let found = (0..tolerances.len() as u8).rev().zip(grid).find(|(_, grid)| grid.leaves_out_most());
-        let Some((furthest, grid)) = found else { return Self { first: vec![0; points.len()] } };
-        let tolerances = &tolerances[..=usize::from(furthest)];
-        let first = |point: usize| match grid.nearest(point as u32) {
+        let points = Points { points, numbers };
+        let searches = tolerances.iter().map(|&reach| NearestPoint::new(points, perhaps_near(points, reach), reach));
+        let Some((furthest, search)) = searches.enumerate().rev().find(|(_, search)| search.leaves_out_most()) else {
+            return Self { first: vec![0; points.len()] };
+        };
+        let tolerances = &tolerances[..=furthest];
+        // No search goes further.
+        let beyond = furthest as u8 + 1;
+        let near = &search.near;
+        let first_of = |point: &u32| match search.nearest(*point) {
             Nearest::At(distance) => tolerances.partition_point(|tolerance| *tolerance < distance) as u8,
-            // No search went further.
-            Nearest::Beyond => furthest + 1,
+            Nearest::Beyond => beyond,
             Nearest::Unknown => 0,
         };
-        let first = in_ranges(points.len(), 1 << 14, |range| range.map(first).collect::<Vec<_>>()).concat();
+        let found = in_ranges(near.len(), LEAST, |range| near[range].iter().map(first_of).collect::<Vec<_>>()).concat();
+        let mut first = vec![beyond; points.len()];
+        near.iter().zip(found).for_each(|(&point, found)| first[point as usize] = found);
         Self { first }
     }
 
@@ -44,58 +60,135 @@ impl NearPoints {
     pub(super) fn within(&self, tolerance: usize) -> impl Iterator<Item = u32> + Clone {
         (0..).zip(&self.first).filter(move |(_, first)| usize::from(**first) <= tolerance).map(|(point, _)| point)
     }
+
+    /// Returns whether another one may be near to every point within a tolerance.
+    pub(super) fn all_within(&self, tolerance: usize) -> bool {
+        self.first.iter().all(|first| usize::from(*first) <= tolerance)
+    }
+}
+
+/// Points and their numbers; there are none if all are 0.
+#[derive(Clone, Copy)]
+struct Points<'a> {
+    points: &'a [Vec3],
+    numbers: &'a [u32],
+}
+
+impl Points<'_> {
+    fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    fn at(&self, point: u32) -> (Vec3, u32) {
+        let number = self.numbers.get(point as usize).copied().unwrap_or_default();
+        (self.points[point as usize], number)
+    }
+}
+
+/// Which cells of a grid have points. Cells with the same hash count as one.
+struct OccupiedCells<'a> {
+    points: Points<'a>,
+    grid: CellGrid,
+    /// The greatest squared distance, in cells, of a cell within reach.
+    most: f64,
+    /// For 64 cells each, a bit for those with at least one point, and one for those with at least two.
+    cells: Vec<[u64; 2]>,
+}
+
+impl<'a> OccupiedCells<'a> {
+    /// Puts some of the points into cells.
+    fn new(points: Points<'a>, some: impl ExactSizeIterator<Item = u32>, reach: f64) -> Self {
+        let grid = CellGrid::new(WIDTH * reach);
+        // 16 cells a point, so that few have the same hash.
+        let words = (some.len() / (CellHash::BLOCK / 16)).next_power_of_two();
+        let mut occupied = Self { points, most: grid.most(reach * ROOM), grid, cells: vec![[0; 2]; words] };
+        for point in some {
+            let (position, number) = points.at(point);
+            let (word, bit) = occupied.bit(occupied.grid.at(position, number));
+            let [once, twice] = &mut occupied.cells[word];
+            *twice |= *once & bit;
+            *once |= bit;
+        }
+        occupied
+    }
+
+    fn bit(&self, cell: CellHash) -> (usize, u64) {
+        let place = cell.place(self.cells.len() * CellHash::BLOCK);
+        (place / CellHash::BLOCK, 1 << (place % CellHash::BLOCK))
+    }
+
+    /// Returns whether another point may be within reach: always if there is one, and seldom otherwise.
+    fn is_perhaps_near(&self, point: u32) -> bool {
+        let (position, number) = self.points.at(point);
+        let [(_, own), others @ ..] = self.grid.near(position, number);
+        let own = self.bit(own);
+        let mut is_near = self.cells[own.0][1] & own.1 != 0;
+        for (away, cell) in others {
+            // Cells out of reach are replaced, which is faster than a branch.
+            let (word, bit) = if away > self.most { own } else { self.bit(cell) };
+            is_near |= (word, bit) != own && self.cells[word][0] & bit != 0;
+        }
+        is_near
+    }
+}
+
+/// Returns the points that another one may be within reach of, in ascending order: all that have one, and few others.
+fn perhaps_near(points: Points, reach: f64) -> Vec<u32> {
+    let all = 0..points.len() as u32;
+    let occupied = OccupiedCells::new(points, all, reach);
+    let mut near = in_ranges(points.len(), LEAST, |range| {
+        (range.start as u32..range.end as u32).filter(|&point| occupied.is_perhaps_near(point)).collect::<Vec<_>>()
+    })
+    .concat();
+    drop(occupied);
+    // Cells of other points are no longer in the way.
+    if near.len() <= points.len() / 2 {
+        let occupied = OccupiedCells::new(points, near.iter().copied(), reach);
+        near.retain(|&point| occupied.is_perhaps_near(point));
+    }
+    near
 }
 
 /// The nearest other point.
 enum Nearest {
-    /// At a distance that is no more than the grid's reach, in object units.
+    /// At a distance that is no more than the reach, in object units.
     At(f64),
-    /// Beyond the grid's reach.
+    /// Beyond the reach.
     Beyond,
     /// It wasn't searched for, since too many points are nearby.
     Unknown,
 }
 
-/// Points in cells of a grid.
-struct Grid<'a> {
-    points: &'a [Vec3],
-    numbers: &'a [u32],
+/// Searches for the nearest other point.
+struct NearestPoint<'a> {
+    points: Points<'a>,
+    /// All that have another one within reach, and some others, in ascending order.
+    near: Vec<u32>,
     /// How far one can search, in object units.
     reach: f64,
     chains: CellChains,
 }
 
-impl<'a> Grid<'a> {
-    fn new(points: &'a [Vec3], numbers: &'a [u32], reach: f64) -> Self {
-        // Wider than a search needs, so that most searches look at few cells.
-        let chains = CellChains::with_capacity(4.0 * reach, points.len());
-        let mut grid = Self { points, numbers, reach, chains };
-        for point in 0..points.len() as u32 {
-            let own = grid.point(point);
-            // There is room for all, so no earlier point is asked for.
-            grid.chains.push(own, |_| own);
+impl<'a> NearestPoint<'a> {
+    fn new(points: Points<'a>, near: Vec<u32>, reach: f64) -> Self {
+        let mut chains = CellChains::with_capacity(WIDTH * reach, near.len());
+        for &point in &near {
+            let (position, number) = points.at(point);
+            chains.push(position, number);
         }
-        grid
-    }
-
-    fn point(&self, point: u32) -> (DVec3, u32) {
-        let number = self.numbers.get(point as usize).copied().unwrap_or_default();
-        (self.points[point as usize].as_dvec3(), number)
+        Self { points, near, reach, chains }
     }
 
     /// Returns the nearest other point with the same number.
     fn nearest(&self, point: u32) -> Nearest {
-        let (place, number) = self.point(point);
+        let (position, number) = self.points.at(point);
         let (mut least, mut count) = (f64::INFINITY, 0);
-        // A little more than the reach, for the rounding of distances.
-        let tried = self.chains.near((place, number), self.reach * (1.0 + 1e-6), |other, reach| {
+        let tried = self.chains.near(position, number, self.reach * ROOM, |item, square, reach| {
             if count == TRIES {
                 return Break(());
             }
             count += 1;
-            let (at, of) = self.point(other);
-            let square = at.distance_squared(place);
-            if other != point && of == number && square < least {
+            if square < least && self.near[item as usize] != point {
                 least = square;
                 *reach = reach.min(square.sqrt());
             }
@@ -108,18 +201,21 @@ impl<'a> Grid<'a> {
         }
     }
 
-    /// Estimates whether most points have no other one within reach. Only then is a search for all worth its time.
+    /// Returns whether most points have no other one within reach, by an estimate. Only then is a search for all worth its time.
     fn leaves_out_most(&self) -> bool {
-        let step = (self.points.len() / SAMPLES).max(1);
-        let samples = (0..self.points.len() as u32).step_by(step);
-        let (near, beyond): (Vec<_>, Vec<_>) =
-            samples.partition(|&point| !matches!(self.nearest(point), Nearest::Beyond));
-        near.len() <= beyond.len()
+        if self.near.len() <= self.points.len() / 2 {
+            return true;
+        }
+        let step = (self.near.len() / SAMPLES).max(1);
+        let samples = self.near.iter().step_by(step);
+        let is_beyond = |point: &&u32| matches!(self.nearest(**point), Nearest::Beyond);
+        2 * samples.clone().filter(is_beyond).count() >= samples.len()
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
     use proptest::prelude::*;
 
     use super::*;

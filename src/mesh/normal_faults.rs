@@ -56,22 +56,23 @@ impl NormalFaults {
     fn add(&mut self, mesh: &Mesh, topology: &Topology, patch: &Patch) {
         let point = |corner: u32| topology.points[topology.corner_points[corner as usize] as usize].as_dvec3();
         let corners = topology.corners(patch);
-        let at = corners.map(point);
-        let face = (at[1] - at[0]).cross(at[2] - at[0]);
+        let [a, b, c] = corners.map(point);
+        let face = (b - a).cross(c - a);
+        // Each side once, with the normals at both ends.
+        let sides = [b - a, c - b, a - c].map(|side| (side, side.length_squared()));
         for (k, corner) in corners.into_iter().enumerate() {
             let normal = mesh.corners[corner as usize].normal.as_dvec3();
-            let parallel = |other: DVec3| is_parallel(other - at[k], normal);
             self.against_face += u32::from(face.dot(normal) < 0.0);
-            self.along_edge += u32::from(parallel(at[(k + 1) % 3]) || parallel(at[(k + 2) % 3]));
+            self.along_edge += u32::from(is_parallel(sides[k], normal) || is_parallel(sides[(k + 2) % 3], normal));
         }
     }
 }
 
-/// Returns whether a vector of any length is parallel to a unit normal.
-fn is_parallel(vector: DVec3, normal: DVec3) -> bool {
+/// Returns whether a vector of any length, which comes with its square, is parallel to a unit normal.
+fn is_parallel((vector, square): (DVec3, f64), normal: DVec3) -> bool {
     let along = vector.dot(normal);
     // For most vectors the squares tell, and no root is needed: here the cosine is below 0.95.
-    let is_clear = along * along < 0.9 * vector.length_squared();
+    let is_clear = along * along < 0.9 * square;
     !is_clear && vector.normalize_or_zero().dot(normal).abs() > PARALLEL
 }
 
@@ -147,9 +148,9 @@ mod tests {
             // Of all lengths that differences of f32 numbers have.
             let vector = (normal + away) * f64::from(i % 250 - 140).exp2();
             let expected = vector.normalize_or_zero().dot(normal).abs() > PARALLEL;
-            assert_eq!(is_parallel(vector, normal), expected, "{vector} and {normal}");
+            assert_eq!(is_parallel((vector, vector.length_squared()), normal), expected, "{vector} and {normal}");
         }
-        assert!(!is_parallel(DVec3::ZERO, DVec3::X));
+        assert!(!is_parallel((DVec3::ZERO, 0.0), DVec3::X));
     }
 
     #[test]

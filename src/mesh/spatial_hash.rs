@@ -7,7 +7,7 @@ use glam::DVec3;
 use hashbrown::HashTable;
 use hashbrown::hash_table::Entry;
 
-use super::cell_chains::floor;
+use super::cell_grid::floor;
 
 /// For each occupied cell of space, the number of the item that was added last. The caller keeps the items' positions
 /// and passes a function that returns them, so that a cell takes only 5 to 12 bytes.

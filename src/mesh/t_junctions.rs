@@ -63,6 +63,10 @@ pub(crate) struct TJunction {
 /// # Errors
 /// [`Cancelled`] when `progress` says so.
 pub(crate) fn t_junctions(topology: &Topology, progress: &Progress) -> Result<Vec<TJunction>, Cancelled> {
+    progress.check()?;
+    if open_edges(topology).next().is_none() {
+        return Ok(Vec::new());
+    }
     let on_edges = PointsOnEdges::new(topology);
     progress.check()?;
     let mut chains = ChainSearch::new(topology);

@@ -13,6 +13,9 @@ use super::{Corner, Mesh};
 use crate::mesh::build_limits::MemoryAccount;
 use crate::progress::{Cancelled, Progress};
 
+/// Around a point with more sides than this, they are sorted in n log n steps.
+const MANY_SIDES: usize = 24;
+
 /// A mesh's patches and the edges between them.
 ///
 /// Points are in the order of their first appearance among the corners, patches in the order of their triangles, edges
@@ -184,14 +187,15 @@ impl Topology {
         take(16 * points.len() + 4 * corner_points.len())?;
         progress.check()?;
         take(mesh.triangles.len() * size_of::<Patch>())?;
-        let patches = patches(mesh, &corner_points);
+        budget.borrow(8 * points.len() as u64)?;
+        let (patches, starts) = patches(mesh, &corner_points, points.len());
         progress.check()?;
         take(3 * patches.len() * size_of::<Side>())?;
-        budget.borrow(8 * points.len() as u64)?;
-        let (sides, starts) = sides(&patches, &mesh.triangles, &corner_points, points.len());
+        let (sides, count) = sides(&patches, &mesh.triangles, &corner_points, &starts);
         progress.check()?;
+        let (point_corners, has_many) = first_corners(&corner_points, points.len());
         let mut topology = Self {
-            point_corners: first_corners(&corner_points, points.len()),
+            point_corners,
             degenerate: (mesh.triangles.len() - patches.len()) as u32,
             material_patches: material_patches(mesh, &patches),
             triangles: mesh.triangles.clone(),
@@ -201,11 +205,10 @@ impl Topology {
             sides,
             edges: Vec::new(),
         };
-        let count = topology.count_edges(&starts);
         take(count * size_of::<Edge>())?;
         // Reserves exactly as much as is needed: a list that grows may take twice as much.
         topology.edges.reserve_exact(count);
-        topology.connect(&starts, &mesh.corners);
+        topology.connect(&starts, &has_many, &mesh.corners);
         budget.give_back_to(borrowed);
         progress.check()?;
         Ok(topology)
@@ -329,16 +332,10 @@ impl Topology {
         if side.reversed() { [b, a] } else { [a, b] }
     }
 
-    /// Counts the edges of sorted sides, whose `edge` still holds the higher point.
-    fn count_edges(&self, starts: &[u32]) -> usize {
-        let is_last = |i: usize, end: usize| i + 1 == end || self.sides[i].edge != self.sides[i + 1].edge;
-        let of = |around: Range<usize>| around.clone().filter(|&i| is_last(i, around.end)).count();
-        runs(starts).map(of).sum()
-    }
-
-    /// Makes an edge of each group of such sides, and connects patches, sides and edges.
-    fn connect(&mut self, starts: &[u32], corners: &[Corner]) {
-        for around in runs(starts) {
+    /// Makes an edge of each group of sorted sides with the same points, and connects patches, sides and edges. The `edge` of
+    /// these sides still holds the higher point. `has_many` says of each point whether it has more than one corner.
+    fn connect(&mut self, starts: &[u32], has_many: &[bool], corners: &[Corner]) {
+        for (around, low) in runs(starts).zip(has_many) {
             let mut start = around.start;
             while start < around.end {
                 let high = self.sides[start].edge;
@@ -347,7 +344,11 @@ impl Topology {
                     side.edge = self.edges.len() as u32;
                     self.patches[side.patch() as usize].sides[side.index()] = index;
                 }
-                let (kind, shares_corners) = self.kind(&self.sides[start..start + run], corners);
+                let (kind, shares_corners) = match run {
+                    // Most edges need no look at their corners.
+                    2 if !low && !has_many[high as usize] => (EdgeKind::Smooth, true),
+                    _ => self.kind(&self.sides[start..start + run], corners),
+                };
                 self.edges.push(Edge { first_side: start as u32, kind, shares_corners });
                 start += run;
             }
@@ -379,7 +380,7 @@ impl Topology {
 /// Welds a mesh's corners within a tolerance, as [`Topology::build_within`] does. Returns the points, and the point of
 /// each corner.
 pub(super) fn weld_corners(mesh: &Mesh, tolerance: f32) -> (Vec<Vec3>, Vec<u32>) {
-    let distance = mesh.bounds().part(tolerance.into());
+    let distance = if tolerance > 0.0 { mesh.bounds().part(tolerance.into()) } else { 0.0 };
     let alike = mesh.rig.as_ref().map_or(&[][..], |rig| &rig.alike);
     let numbers = alike.iter().copied().chain(std::iter::repeat(0));
     weld_alike(mesh.corners.iter().map(|corner| corner.position).zip(numbers), distance)
@@ -404,56 +405,75 @@ fn runs(starts: &[u32]) -> impl Iterator<Item = Range<usize>> {
     starts.windows(2).map(|ends| ends[0] as usize..ends[1] as usize)
 }
 
-/// Returns the triangles with three distinct points as patches, whose sides are set later.
-fn patches(mesh: &Mesh, corner_points: &[u32]) -> Vec<Patch> {
-    let whole = |corners: &[u32; 3]| !is_degenerate(corners.map(|corner| corner_points[corner as usize]));
-    let triangles = (0..).zip(mesh.triangles.iter()).filter(|(_, corners)| whole(corners));
+/// Returns the triangles with three distinct points as patches, whose sides are set later; and for each point p the number
+/// `starts[p]` of their sides whose lower point is before it. The last number is that of all sides.
+fn patches(mesh: &Mesh, corner_points: &[u32], points: usize) -> (Vec<Patch>, Vec<u32>) {
     let mut patches = Vec::with_capacity(mesh.triangles.len());
-    patches.extend(triangles.map(|(triangle, _)| Patch { sides: [0; 3], triangle }));
-    patches
-}
-
-/// Returns the sides of all patches, sorted by the lower point of their edge, then by its higher point, which `edge`
-/// holds for now, then by patch. The sides whose lower point is p are `starts[p]..starts[p + 1]`.
-fn sides(patches: &[Patch], triangles: &[[u32; 3]], corner_points: &[u32], points: usize) -> (Vec<Side>, Vec<u32>) {
-    let ends = |patch: &Patch, k: usize| {
-        let corners = triangles[patch.triangle as usize];
-        [corners[k], corners[(k + 1) % 3]].map(|corner| corner_points[corner as usize])
-    };
     let mut starts = vec![0_u32; points + 1];
-    for patch in patches {
-        for k in 0..3 {
-            let [a, b] = ends(patch, k);
-            starts[a.min(b) as usize + 1] += 1;
+    for (triangle, corners) in (0..).zip(mesh.triangles.iter()) {
+        let [a, b, c] = corners.map(|corner| corner_points[corner as usize]);
+        if !is_degenerate([a, b, c]) {
+            patches.push(Patch { sides: [0; 3], triangle });
+            [(a, b), (b, c), (c, a)].into_iter().for_each(|(a, b)| starts[a.min(b) as usize + 1] += 1);
         }
     }
     for point in 0..points {
         starts[point + 1] += starts[point];
     }
-    let mut next = starts.clone();
+    (patches, starts)
+}
+
+/// Returns the sides of all patches, sorted by the lower point of their edge, then by its higher point, which `edge`
+/// holds for now, then by patch; and the number of edges. The sides whose lower point is p are `starts[p]..starts[p + 1]`.
+fn sides(patches: &[Patch], triangles: &[[u32; 3]], corner_points: &[u32], starts: &[u32]) -> (Vec<Side>, usize) {
+    let mut next = starts.to_vec();
     let mut sides = vec![Side::default(); 3 * patches.len()];
     for (index, patch) in (0..).zip(patches) {
-        for k in 0..3 {
-            let [a, b] = ends(patch, k);
+        let [a, b, c] = triangles[patch.triangle as usize].map(|corner| corner_points[corner as usize]);
+        for (k, a, b) in [(0, a, b), (1, b, c), (2, c, a)] {
             let place = &mut next[a.min(b) as usize];
-            sides[*place as usize] = Side::new(index, k as u8, b < a, a.max(b));
+            sides[*place as usize] = Side::new(index, k, b < a, a.max(b));
             *place += 1;
         }
     }
     drop(next);
-    for around in runs(&starts) {
-        sides[around].sort_unstable_by_key(|side| (side.edge, side.code));
+    let mut edges = 0;
+    for around in runs(starts) {
+        let around = &mut sides[around];
+        sort_by_edge(around);
+        edges += around.chunk_by(|a, b| a.edge == b.edge).count();
     }
-    (sides, starts)
+    (sides, edges)
 }
 
-/// Returns the lowest corner on each point.
-fn first_corners(corner_points: &[u32], points: usize) -> Vec<u32> {
-    let mut first = vec![0; points];
-    for (corner, &point) in corner_points.iter().enumerate().rev() {
-        first[point as usize] = corner as u32;
+/// Sorts sides by their edge, then by patch. They come in the order of their patches.
+fn sort_by_edge(sides: &mut [Side]) {
+    if sides.len() > MANY_SIDES {
+        return sides.sort_unstable_by_key(|side| (side.edge, side.code));
     }
-    first
+    // Insertion, which leaves sides of one edge in their order.
+    for i in 1..sides.len() {
+        let (mut at, side) = (i, sides[i]);
+        while at > 0 && sides[at - 1].edge > side.edge {
+            sides[at] = sides[at - 1];
+            at -= 1;
+        }
+        sides[at] = side;
+    }
+}
+
+/// Returns the lowest corner on each point, and whether the point has more than one.
+fn first_corners(corner_points: &[u32], points: usize) -> (Vec<u32>, Vec<bool>) {
+    let (mut first, mut has_many) = (vec![u32::MAX; points], vec![false; points]);
+    for (corner, &point) in (0..).zip(corner_points) {
+        let first = &mut first[point as usize];
+        if *first == u32::MAX {
+            *first = corner;
+        } else {
+            has_many[point as usize] = true;
+        }
+    }
+    (first, has_many)
 }
 
 /// Returns the range of each material's patches. Patches are in the order of their triangles, so a range of triangles

@@ -7,6 +7,7 @@ use foldhash::fast::RandomState;
 use glam::{Vec2, Vec3};
 
 use super::cell_chains::CellChains;
+use super::cell_grid::CellGrid;
 
 /// Joins equal positions into points. Two positions are equal if all three coordinates have the same value (-0 equals
 /// 0), without any tolerance. Points are in the order of their first appearance, and have +0 for every zero.
@@ -47,10 +48,11 @@ fn first_equal(points: &[(Vec3, u32)]) -> Vec<u32> {
     let hashed = |(i, point): (u64, &(Vec3, u32))| hasher.hash_one(key(*point)) >> 32 << 32 | i;
     let mut sorted: Vec<u64> = (0..).zip(points).map(hashed).collect();
     sorted.sort_unstable();
-    let mut first: Vec<u32> = vec![0; points.len()];
+    let mut first: Vec<u32> = (0..points.len() as u32).collect();
     // The first positions of those with one hash. Nearly always there is only one.
     let mut firsts: Vec<u32> = Vec::new();
-    for alike in sorted.chunk_by(|a, b| a >> 32 == b >> 32) {
+    // Most positions are the only one with their hash, and aren't looked at.
+    for alike in sorted.chunk_by(|a, b| a >> 32 == b >> 32).filter(|alike| alike.len() > 1) {
         firsts.clear();
         for i in alike.iter().map(|own| *own as u32) {
             let own = key(points[i as usize]);
@@ -92,63 +94,61 @@ pub(crate) fn weld_alike(positions: impl Iterator<Item = (Vec3, u32)>, tolerance
 /// Joins distinct positions as [`weld_alike`] does, within a tolerance above 0.
 pub(super) fn merge_within(distinct: impl Iterator<Item = (Vec3, u32)>, tolerance: f64) -> (Vec<Vec3>, Vec<u32>) {
     let mut apart = Apart::new(tolerance);
-    let mut merged = Vec::with_capacity(distinct.size_hint().0);
-    for (position, number) in distinct {
-        merged.push(apart.nearest(position, number).unwrap_or_else(|| apart.push(position, number)));
-    }
-    (apart.points, merged)
+    let merged = distinct.map(|(position, number)| apart.joined(position, number)).collect();
+    (apart.points.into_positions(), merged)
 }
+
+/// Within this part of the tolerance there is no more than one point, with room for rounding: points are more than one tolerance
+/// apart.
+const HALF: f64 = 0.5 - 1e-6;
 
 /// Points that are more than one tolerance apart, or have different numbers.
 struct Apart {
     tolerance: f64,
-    points: Vec<Vec3>,
-    /// The number of each point; empty while all are 0.
-    numbers: Vec<u32>,
-    chains: CellChains,
+    points: CellChains,
+    /// The point that was found last. It is tried first, since most positions lie near the one before.
+    latest: u32,
 }
 
 impl Apart {
     fn new(tolerance: f64) -> Self {
         // Cells that are as narrow as a search allows: in wider ones there are more points to compare.
-        let chains = CellChains::with_capacity(2.0 * tolerance, 0);
-        Self { tolerance, points: Vec::new(), numbers: Vec::new(), chains }
+        let points = CellChains::with_capacity(CellGrid::LEAST_WIDTH * tolerance, 0);
+        Self { tolerance, points, latest: 0 }
     }
 
-    fn push(&mut self, position: Vec3, number: u32) -> u32 {
-        if number != 0 || !self.numbers.is_empty() {
-            self.numbers.resize(self.points.len(), 0);
-            self.numbers.push(number);
-        }
-        let (points, numbers) = (&self.points, &self.numbers);
-        self.chains.push((position.as_dvec3(), number), |point| {
-            (points[point as usize].as_dvec3(), numbers.get(point as usize).copied().unwrap_or_default())
-        });
-        self.points.push(position);
-        self.points.len() as u32 - 1
+    /// Returns the point that a position becomes part of: the nearest one within the tolerance, or else a new one.
+    fn joined(&mut self, position: Vec3, number: u32) -> u32 {
+        self.latest = self.nearest(position, number).unwrap_or_else(|| self.points.push(position, number));
+        self.latest
     }
 
     /// Returns the nearest point within the tolerance; of several at the same distance, the lowest.
     fn nearest(&self, position: Vec3, number: u32) -> Option<u32> {
-        let place = position.as_dvec3();
-        let mut nearest: Option<(f64, u32)> = None;
-        // A search that doesn't break comes to its end.
-        let _ = self.chains.near((place, number), self.tolerance, |point, reach| {
-            let square = self.points[point as usize].as_dvec3().distance_squared(place);
-            // Most of what is too far away is so by its square, with room for rounding, and needs no root.
-            let is_far = square > *reach * *reach * (1.0 + 1e-9);
-            if !is_far && self.numbers.get(point as usize).copied().unwrap_or_default() == number {
-                let distance = square.sqrt();
-                let is_nearer = |(least, first)| (distance, point) < (least, first);
-                if distance <= self.tolerance && nearest.is_none_or(is_nearer) {
-                    nearest = Some((distance, point));
-                    *reach = distance;
-                }
-            }
-            ControlFlow::Continue(())
-        });
-        nearest.map(|(_, point)| point)
+        let (none, half) = ((self.tolerance, u32::MAX), HALF * self.tolerance.min(f64::MAX));
+        let of_latest = self.points.square(self.latest, position.as_dvec3(), number);
+        let mut nearest = of_latest.map_or(none, |square| nearer((square, self.latest), none));
+        if nearest.0 > half {
+            // What a search finds is the same whether it breaks or not.
+            let _ = self.points.near(position, number, nearest.0, |point, square, reach| {
+                nearest = nearer((square, point), nearest);
+                *reach = nearest.0;
+                if nearest.0 > half { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+            });
+        }
+        (nearest != none).then_some(nearest.1)
     }
+}
+
+/// Returns the nearer one of two points, each after its distance, or the lower one of two at the same distance. That of the first is
+/// still squared.
+fn nearer((square, point): (f64, u32), other: (f64, u32)) -> (f64, u32) {
+    // Most of what is too far away is so by its square, with room for rounding, and needs no root.
+    if square > other.0 * other.0 * (1.0 + 1e-9) {
+        return other;
+    }
+    let own = (square.sqrt(), point);
+    if own < other { own } else { other }
 }
 
 /// Replaces -0 by +0, so that equal values have equal bits.
@@ -251,26 +251,29 @@ mod tests {
         #[test]
         fn the_grid_welds_as_a_slow_search_does(
             grid in prop::collection::vec(prop::array::uniform3(-6_i8..6), 0..60),
-            tolerance in 0_u8..7,
+            tolerance in 0_u8..13,
+            numbers in 1_u32..4,
         ) {
-            let positions = grid.iter().map(|p| Vec3::from(p.map(f32::from))).collect::<Vec<_>>();
+            let positions = (0..).zip(&grid).map(|(i, p)| (Vec3::from(p.map(f32::from)), i % numbers)).collect::<Vec<_>>();
             let tolerance = f64::from(tolerance) / 2.0;
-            let (points, of) = weld_within(positions.iter().copied(), tolerance);
-            let mut expected: Vec<Vec3> = Vec::new();
-            let mut known: HashMap<[u32; 3], u32> = HashMap::new();
-            for (position, &point) in positions.iter().zip(&of) {
-                let slow = *known.entry(plus_zero3(*position).to_array().map(f32::to_bits)).or_insert_with(|| {
-                    let apart = |i: &u32| expected[*i as usize].as_dvec3().distance(position.as_dvec3());
+            let (points, of) = weld_alike(positions.iter().copied(), tolerance);
+            let mut expected: Vec<(Vec3, u32)> = Vec::new();
+            let mut known: HashMap<([u32; 3], u32), u32> = HashMap::new();
+            for (&(position, number), &point) in positions.iter().zip(&of) {
+                let key = (plus_zero3(position).to_array().map(f32::to_bits), number);
+                let slow = *known.entry(key).or_insert_with(|| {
+                    let apart = |i: &u32| expected[*i as usize].0.as_dvec3().distance(position.as_dvec3());
                     // `min_by` keeps the first of several least values.
-                    let near = (0..expected.len() as u32).min_by(|a, b| apart(a).total_cmp(&apart(b)));
+                    let alike = (0..expected.len() as u32).filter(|i| expected[*i as usize].1 == number);
+                    let near = alike.min_by(|a, b| apart(a).total_cmp(&apart(b)));
                     near.filter(|i| apart(i) <= tolerance).unwrap_or_else(|| {
-                        expected.push(*position);
+                        expected.push((position, number));
                         expected.len() as u32 - 1
                     })
                 });
                 prop_assert_eq!(point, slow);
             }
-            prop_assert_eq!(points, expected);
+            prop_assert!(points.into_iter().eq(expected.into_iter().map(|(point, _)| point)));
         }
 
         #[test]

@@ -41,6 +41,9 @@ impl fmt::Display for WeldPreview {
 /// a mesh.
 pub(crate) const TOLERANCES: [f32; 6] = [1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
 
+/// How many triangles of the mesh are tried to estimate how long most sides are.
+const SAMPLES: usize = 512;
+
 /// Returns how many edges a weld within each of [`TOLERANCES`] would join, and how many triangles it would collapse, in
 /// their order. `exact` is the mesh's topology without a tolerance, if the caller has it. To save time and memory, only
 /// points that have another one nearby are welded, and no topology is built for the welded meshes: only the edges that
@@ -64,13 +67,14 @@ pub fn weld_previews(
     };
     // All positions may be the same.
     if distances[0] > 0.0 {
-        let near = NearPoints::find(&exact.topology.points, &exact.numbers, &distances);
+        let few = distances.partition_point(|&distance| exact.leaves_most_sides_longer(mesh, distance));
+        let near = NearPoints::find(&exact.topology.points, &exact.numbers, &distances[..few]);
         let changed: Vec<usize> = (0..TOLERANCES.len()).filter(|&k| near.within(k).next().is_some()).collect();
         // Two at a time: more would take much memory.
         for (step, pair) in changed.chunks(2).enumerate() {
             progress.set((2 * step + 1) as f32 / (changed.len() + 1) as f32);
             progress.check()?;
-            let count = |k: usize| exact.welded(mesh, &exact.merged(near.within(k), distances[k]));
+            let count = |k: usize| exact.welded(mesh, &exact.merged(&near, k, distances[k]));
             let counted = in_ranges(pair.len(), 1, |range| pair[range].iter().map(|&k| count(k)).collect::<Vec<_>>());
             for (&k, counted) in pair.iter().zip(counted.into_iter().flatten()) {
                 [previews[k].edges, previews[k].collapsed] = counted;
@@ -110,19 +114,35 @@ impl<'a> Exact<'a> {
         Self { topology, numbers, open, degenerate }
     }
 
-    /// Returns for each point a point that it is joined with by a weld within a tolerance in object units: the same one
-    /// for all that are joined. `near` are the points that may be joined with another, in ascending order.
-    fn merged(&self, near: impl Iterator<Item = u32> + Clone, tolerance: f64) -> Vec<u32> {
+    /// Estimates whether most triangles have no side shorter than a distance in object units. Otherwise most points have another
+    /// one that near, and needn't be searched for.
+    fn leaves_most_sides_longer(&self, mesh: &Mesh, distance: f64) -> bool {
+        let step = (mesh.triangles.len() / SAMPLES).max(1);
+        let is_long = |corners: &[u32; 3]| {
+            let [a, b, c] = corners.map(|corner| self.topology.corner_points[corner as usize]);
+            let at = |point: u32| self.topology.points[point as usize].as_dvec3();
+            [(a, b), (b, c), (c, a)].into_iter().all(|(a, b)| a == b || at(a).distance(at(b)) > distance)
+        };
+        let samples = mesh.triangles.iter().step_by(step);
+        2 * samples.clone().filter(|corners| is_long(corners)).count() >= samples.len()
+    }
+
+    /// Returns for each point a number: the same for all that are joined by a weld within a tolerance, given by its index and in
+    /// object units. Of `near` are the points that may be joined with another.
+    fn merged(&self, near: &NearPoints, k: usize, tolerance: f64) -> Vec<u32> {
         let points = &self.topology.points;
-        let mut joined: Vec<u32> = (0..points.len() as u32).collect();
         let place = |point: u32| {
             let number = self.numbers.get(point as usize).copied().unwrap_or_default();
             (points[point as usize], number)
         };
-        let (_, merged) = merge_within(near.clone().map(place), tolerance);
+        if near.all_within(k) {
+            return merge_within((0..points.len() as u32).map(place), tolerance).1;
+        }
+        let (_, merged) = merge_within(near.within(k).map(place), tolerance);
+        let mut joined: Vec<u32> = (0..points.len() as u32).collect();
         // For each merged point, the first that it was made of.
         let mut first = Vec::new();
-        for (point, merged) in near.zip(merged) {
+        for (point, merged) in near.within(k).zip(merged) {
             if merged as usize == first.len() {
                 first.push(point);
             }
@@ -135,6 +155,10 @@ impl<'a> Exact<'a> {
     fn welded(&self, mesh: &Mesh, joined: &[u32]) -> [u32; 2] {
         let points =
             |triangle: &[u32; 3]| triangle.map(|corner| joined[self.topology.corner_points[corner as usize] as usize]);
+        if self.open.is_empty() {
+            let degenerate = mesh.triangles.iter().filter(|triangle| is_degenerate(points(triangle))).count();
+            return [0, degenerate as u32 - self.degenerate];
+        }
         // For each edge that a boundary edge becomes, given by its points (the lower first), the number of its sides.
         let key = |points: [u32; 3], side: usize| {
             let [a, b] = [points[side], points[(side + 1) % 3]];
@@ -175,6 +199,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::cores::tests::on_cores;
     use crate::mesh::shapes::Shape;
     use crate::mesh::topology::{Edge, weld_corners};
     use crate::mesh::{Corner, Rig};
@@ -210,12 +235,12 @@ mod tests {
     proptest! {
         #[test]
         fn only_near_points_make_a_difference(
-            places in prop::collection::vec((prop::array::uniform3(0_i8..4), prop::array::uniform3(0_u8..7)), 3..40),
+            places in prop::collection::vec((prop::array::uniform3(0_i8..4), prop::array::uniform3(0_u8..8)), 3..40),
             numbers in prop::collection::vec(0_u32..2, 40),
             is_rigged in any::<bool>(),
         ) {
             // Points that are about as far apart as the tolerances, with many that are exactly that far apart.
-            let steps = [0.0, 1e-7, 2e-6, 1e-5, 1e-4, 1e-3, 1e-2];
+            let steps = [0.0, 1e-7, 2e-6, 1e-5, 1e-4, 1e-3, 1e-2, 2e-2];
             let corner = |(at, moved): &([i8; 3], [u8; 3])| Corner {
                 position: Vec3::from(at.map(f32::from)) + Vec3::from(moved.map(|step| steps[usize::from(step)])),
                 normal: Vec3::Z,
@@ -230,6 +255,34 @@ mod tests {
             let exact = Topology::build(&mesh, &Progress::new()).unwrap();
             prop_assert_eq!(weld_previews(&mesh, Some(&exact), &Progress::new()).unwrap(), slow_previews(&mesh));
         }
+    }
+
+    #[test]
+    fn the_number_of_cores_makes_no_difference() {
+        // A wavy sheet of 40,000 points, of which a third has another one nearby, at many distances.
+        let side = 200;
+        let place = |i: u32| {
+            let (x, y) = ((i % side) as f32, (i / side) as f32);
+            Vec3::new(x, y, (0.3 * x).sin() * (0.2 * y).cos())
+        };
+        let near = |i: u32| place(i) + Vec3::Z * 10_f32.powf((i % 97) as f32 / 20.0 - 5.0);
+        let corner = |position: Vec3| Corner { position, normal: Vec3::Z, uv: Vec2::ZERO };
+        let mut corners: Vec<Corner> = (0..side * side).map(place).map(corner).collect();
+        let quads = (0..side - 1).flat_map(|y| (0..side - 1).map(move |x| y * side + x));
+        let mut triangles: Vec<_> =
+            quads.flat_map(|a| [[a, a + 1, a + side], [a + 1, a + side + 1, a + side]]).collect();
+        for i in (0..side * side - side - 1).step_by(3) {
+            triangles.push([0, 1, 2].map(|k| corners.len() as u32 + k));
+            corners.extend([i, i + 1, i + side].map(near).map(corner));
+        }
+        let mesh = Mesh { corners, triangles: triangles.into(), ..Mesh::default() };
+        let previews = |cores| on_cores(cores, || weld_previews(&mesh, None, &Progress::new()).unwrap());
+        let one = previews(1);
+        assert!(
+            one.windows(2).all(|pair| pair[0].edges + pair[0].collapsed < pair[1].edges + pair[1].collapsed),
+            "{one:?}"
+        );
+        [2, 3, 16].into_iter().for_each(|cores| assert_eq!(previews(cores), one, "{cores} cores"));
     }
 
     /// Triangles that share no corners.

@@ -224,7 +224,14 @@ proptest! {
         }
         prop_assert_eq!(uses.len(), topology.edges.len());
         for edge in &topology.edges {
-            prop_assert_eq!(uses[&topology.edge_points(edge)], topology.edge_sides(edge).len() as u32);
+            let sides = topology.edge_sides(edge);
+            prop_assert_eq!(uses[&topology.edge_points(edge)], sides.len() as u32);
+            prop_assert!(sides.windows(2).all(|pair| pair[0].code < pair[1].code));
+            let shares_corners = match sides {
+                [a, b] => topology.side_corners(a) == topology.side_corners(b),
+                _ => false,
+            };
+            prop_assert_eq!(edge.shares_corners, shares_corners);
         }
     }
 }
