@@ -246,7 +246,7 @@ pub(super) fn sample() -> Report {
     let failed = GateResult {
         place: Some(GatePlace { triangles: vec![3, 7], at: Some([0.5, 0.0, 1.0]), px: None }),
         evidence: Some("ZXZpZGVuY2U=".into()),
-        ..gate("cracks", Some(false), "12 edges are cracked, and 0 may be")
+        ..gate("cracks", Some(false), "12 edges are cracked, where 0 are allowed")
     };
     let view =
         |name: &str, gates| View { name: name.into(), gates, picture: Some("cGljdHVyZQ==".into()), ..View::default() };
@@ -270,8 +270,8 @@ mod tests {
 
     #[test]
     fn a_report_as_text_names_what_failed() {
-        let expected = "passed  a b/good.glb (unchanged)\nfailed  torn<&\">.glb\n        cracks (front): 12 edges are cracked, and \
-                        0 may be\n        leaks (front): not judged: the mesh is open\nbroken  broken.obj\n        broken.obj \
+        let expected = "passed  a b/good.glb (unchanged)\nfailed  torn<&\">.glb\n        cracks (front): 12 edges are cracked, where \
+                        0 are allowed\n        leaks (front): not judged: the mesh is open\nbroken  broken.obj\n        broken.obj \
                         can't be read\n3 assets: 1 passed, 1 failed, 1 broken; 1 unchanged and not measured again\n";
         assert_eq!(sample().text(), expected);
         assert!(!sample().passed());

@@ -4,7 +4,7 @@ use glam::Vec3;
 use serde::Serialize;
 
 use super::place::{Place, Spot};
-use super::{Gate, GateKind};
+use super::{Gate, GateKind, allowed};
 use crate::measure::{CrackedEdge, Measured, PatchesAbove};
 use crate::mesh::{TJunction, Topology};
 use crate::names::shown;
@@ -69,7 +69,7 @@ impl Judgement {
     pub(crate) fn sentence(&self) -> String {
         let place = self.place.as_ref().map(|place| format!("; {}", place.text)).unwrap_or_default();
         match self.found {
-            Some(_) => format!("{}, and {} may be{place}", self.text, grouped(self.limit)),
+            Some(_) => format!("{}, {}{place}", self.text, allowed(self.limit)),
             None => self.text.clone(),
         }
     }

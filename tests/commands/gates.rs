@@ -61,9 +61,9 @@ fn every_gate_fails_on_what_it_is_about() {
         (
             "cracks",
             &torn,
-            &["12 edges are cracked, and 0 may be", "the widest gap", "object units", "between triangles"],
+            &["12 edges are cracked, where 0 are allowed", "the widest gap", "object units", "between triangles"],
         ),
-        ("cracks:11", &torn, &["12 edges are cracked, and 11 may be"]),
+        ("cracks:11", &torn, &["12 edges are cracked, where 11 are allowed"]),
         ("leaks", &torn, &["px show the inside of the mesh", "the largest leak", "px of the picture"]),
         ("factors", &[&["shape:torus"], &published[..]].concat(), &["sides with different factors", "differ most"]),
         ("folds", &[&folds], &["folded", "triangle 0"]),
@@ -73,8 +73,8 @@ fn every_gate_fails_on_what_it_is_about() {
             &["shape:torus", "--factor", "1"],
             &["farther than 0.25 px", "the farthest", "of triangle"],
         ),
-        ("triangles:100", &["shape:torus"], &["triangles are emitted, and 100 may be"]),
-        ("bytes:100", &["shape:torus"], &["vertices and indices take", "bytes, and 100 may be"]),
+        ("triangles:100", &["shape:torus"], &["triangles are emitted, where 100 are allowed"]),
+        ("bytes:100", &["shape:torus"], &["vertices and indices take", "bytes, where 100 are allowed"]),
     ];
     for (gate, arguments, words) in cases {
         let (code, said, gates) = drawn(&[arguments, &["--fail-on", gate]].concat());
@@ -206,7 +206,7 @@ fn stability_fails_on_gates_of_the_chosen_methods() {
     let said = failure(&[&base[..], &["--fail-on", "cracks"]].concat(), 1);
     assert_eq!(said.lines().count(), 1, "{said}");
     let words =
-        ["split-normals fails the gate cracks: ", "edge points that differ", " on cpu, and 0 may be", "methods fail"];
+        ["split-normals fails the gate cracks: ", "edge points that differ", " on cpu, where 0 are allowed", "methods fail"];
     for word in words {
         assert!(said.contains(word), "{word:?} is not in {said}");
     }
