@@ -161,12 +161,7 @@ impl Finding {
     /// What it is, in a sentence or two.
     pub(crate) fn text(&self) -> String {
         match self {
-            Self::NotATessellation { far, vertices, distance } => format!(
-                "It isn't a tessellation of this mesh: {} of {} vertices are farther than {} object units from the surface.",
-                grouped(*far),
-                grouped(*vertices),
-                short(*distance)
-            ),
+            Self::NotATessellation { far, vertices, distance } => other_mesh_text(*far, *vertices, *distance),
             Self::Aligned(alignment) => alignment_text(alignment),
             Self::OtherSurface { ours, theirs, vertices, of } => surface_text(ours, theirs, *vertices, *of),
             Self::Displaced(displaced) => displaced_text(displaced),
@@ -187,19 +182,8 @@ impl Finding {
                 grouped(*edges),
                 grouped(*of)
             ),
-            Self::MissingPatches { patches, of, triangles } => format!(
-                "{} of {} patches {} no triangles: {}.",
-                grouped(*patches),
-                grouped(*of),
-                if *patches == 1 { "has" } else { "have" },
-                listed(triangles, *patches)
-            ),
-            Self::AdditionalPatches { patches, triangles } => format!(
-                "{} triangles, though our tessellation leaves {} out: {}.",
-                plural(*patches, "patch has", "patches have"),
-                if *patches == 1 { "it" } else { "them" },
-                listed(triangles, *patches)
-            ),
+            Self::MissingPatches { patches, of, triangles } => missing_text(*patches, *of, triangles),
+            Self::AdditionalPatches { patches, triangles } => additional_text(*patches, triangles),
             Self::MissingTriangles { count, patches } => {
                 format!("{} missing, in {}.", plural(*count, "triangle is", "triangles are"), patches_text(*patches))
             }
@@ -224,16 +208,48 @@ impl Finding {
                 theirs.name(),
                 ours.name()
             ),
-            Self::Rounding { farthest, ulps, triangle } => format!(
-                "Everything agrees but the last digits: vertices differ by up to {} object units ({} ULP), at {} in triangle \
-                 {triangle}. If that is as it should be, allow it with --within {}.",
-                short(farthest.distance),
-                short(*ulps),
-                point(farthest.ours),
-                rounded_up(farthest.distance)
-            ),
+            Self::Rounding { farthest, ulps, triangle } => rounding_text(farthest, *ulps, *triangle),
         }
     }
+}
+
+fn other_mesh_text(far: u64, vertices: u64, distance: f64) -> String {
+    format!(
+        "It isn't a tessellation of this mesh: {} of {} vertices are farther than {} object units from the surface.",
+        grouped(far),
+        grouped(vertices),
+        short(distance)
+    )
+}
+
+fn missing_text(patches: u64, of: u64, triangles: &[u32]) -> String {
+    format!(
+        "{} of {} patches {} no triangles: {}.",
+        grouped(patches),
+        grouped(of),
+        if patches == 1 { "has" } else { "have" },
+        listed(triangles, patches)
+    )
+}
+
+fn additional_text(patches: u64, triangles: &[u32]) -> String {
+    format!(
+        "{} triangles, though our tessellation leaves {} out: {}.",
+        plural(patches, "patch has", "patches have"),
+        if patches == 1 { "it" } else { "them" },
+        listed(triangles, patches)
+    )
+}
+
+fn rounding_text(farthest: &Farthest, ulps: f64, triangle: u32) -> String {
+    format!(
+        "Everything agrees but the last digits: vertices differ by up to {} object units ({} ULP), at {} in triangle {triangle}. \
+         If that is as it should be, allow it with --within {}.",
+        short(farthest.distance),
+        short(ulps),
+        point(farthest.ours),
+        rounded_up(farthest.distance)
+    )
 }
 
 /// A number and its noun.

@@ -85,9 +85,10 @@ mod tests {
         ];
         let gate = |text: &str| text.parse::<Gate>().expect("a gate");
         let found = failures(&[gate("cracks"), gate("leaks:4"), gate("folds"), gate("warnings")], &rows);
-        let sentence = "cube fails the gate cracks: PN has 12 edge points that differ with integer partitioning on cpu, \
+        let sentence =
+            "cube fails the gate cracks: PN has 12 edge points that differ with integer partitioning on cpu, \
                         where 0 are allowed; 2 methods fail there"
-            .to_owned();
+                .to_owned();
         assert_eq!(found, [Failure { kind: GateKind::Cracks, case: "cube".into(), sentence, tried: None }]);
     }
 }

@@ -205,8 +205,12 @@ fn stability_fails_on_gates_of_the_chosen_methods() {
     output(&base);
     let said = failure(&[&base[..], &["--fail-on", "cracks"]].concat(), 1);
     assert_eq!(said.lines().count(), 1, "{said}");
-    let words =
-        ["split-normals fails the gate cracks: ", "edge points that differ", " on cpu, where 0 are allowed", "methods fail"];
+    let words = [
+        "split-normals fails the gate cracks: ",
+        "edge points that differ",
+        " on cpu, where 0 are allowed",
+        "methods fail",
+    ];
     for word in words {
         assert!(said.contains(word), "{word:?} is not in {said}");
     }

@@ -2,6 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -24,6 +25,7 @@ const MOST_PX: u32 = 704;
 
 /// What is found about an asset. An asset that can't be checked has the reason; so has one at which the program panics.
 pub(super) fn measured(job: &Job, engine: &Engine, pictures: bool, cache: Option<&Cache>) -> Asset {
+    let start = SystemTime::now();
     let mut asset = Asset { path: job.name.clone(), ..Asset::default() };
     let ended = catch_unwind(AssertUnwindSafe(|| measure(job, engine, pictures, &mut asset)));
     let files = match ended {
@@ -38,7 +40,7 @@ pub(super) fn measured(job: &Job, engine: &Engine, pictures: bool, cache: Option
         }
     };
     if let Some((cache, files)) = cache.filter(|_| job.is_kept).zip(files)
-        && let Err(error) = cache.put(job.inputs(), &files, &asset)
+        && let Err(error) = cache.put(job.inputs(), &files, start, &asset)
     {
         say_unkept(&error);
     }
