@@ -189,7 +189,10 @@ impl Reader<'_> {
                 section.options = self.options(value, &all)?;
             }
             "cameras" => {
-                for (key, camera) in self.table(value, "named cameras, such as [cameras.front]")? {
+                let mut cameras: Vec<_> = self.table(value, "named cameras, such as [cameras.front]")?.iter().collect();
+                // A table is in the order of its names; views stay in the order in which they were written.
+                cameras.sort_by_key(|(key, _)| key.span().start);
+                for (key, camera) in cameras {
                     let options = self.options(camera, self.known.camera)?;
                     section.cameras.push((key.get_ref().to_string(), options));
                 }
@@ -325,6 +328,9 @@ mod tests {
         assert_eq!(value(&prop, "cull-back-faces"), Some(vec![]));
         assert_eq!(value(&prop, "hide-part"), Some(vec![text("a"), text("b")]));
         assert_eq!((value(&prop, "lod"), &prop.cameras), (Some(vec![text("error")]), &usual.cameras));
+        let views =
+            read("[cameras.b]\ncamera = 1\n[cameras.a]\ncamera = 2\n").expect("a configuration").section("a.glb");
+        assert_eq!(views.cameras.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), ["b", "a"]);
         let unmatched = config.unmatched(&["a.glb".to_owned(), "props/a.obj".to_owned()]);
         assert_eq!(unmatched, ["pnaen.toml, line 9: no asset matches the path props/*.glb"]);
         assert!(config.unmatched(&["a.glb".to_owned(), "props/a.glb".to_owned()]).is_empty());

@@ -21,7 +21,7 @@ mod tests;
 
 use glam::{DVec3, Vec3};
 
-pub(crate) use findings::Finding;
+pub(crate) use findings::{Finding, plural, point};
 pub(crate) use foreign::ForeignMesh;
 pub(crate) use matching::Farthest;
 pub(crate) use outcomes::{SideCut, SideDifference};
@@ -107,13 +107,13 @@ pub(crate) fn compare(
 ) -> Result<Comparison, Cancelled> {
     let empty = Comparison::new(ours, theirs);
     let Some(own) = Locator::of_own(ours) else { return Ok(empty) };
-    let alignment = Alignment::find(theirs, &own, ours.emitted_bounds());
+    let fit = (FIT * empty.diagonal).max(exactness.within).max(2.0 * exactness.resolution);
+    let alignment = Alignment::find(theirs, &own, &ours.emitted_positions(), fit);
     let positions: Vec<DVec3> = theirs.positions.iter().map(|position| position.as_dvec3()).collect();
     let positions = match &alignment {
         Some(alignment) => positions.into_iter().map(|position| alignment.ours(position)).collect(),
         None => positions,
     };
-    let fit = (FIT * empty.diagonal).max(exactness.within).max(2.0 * exactness.resolution);
     let laid = Laid::new(ours, Overlaid::new(theirs, ours.topology, own, &positions, fit, progress)?, progress)?;
     let assignment = Assignment::new(&laid.overlaid, progress)?;
     let own_mesh = OwnMesh::new(ours.tessellated);
@@ -142,9 +142,11 @@ pub(crate) fn compare(
     } else {
         found.findings.push(Finding::Displaced(outcomes.displaced(ours, fit)));
     }
-    found.sides = outcomes.explain(ours, laid.other.as_ref(), &mut found.findings, progress)?;
+    let explained = outcomes.explain(ours, laid.other.as_ref(), &mut found.findings, progress)?;
     outcomes.judge_triangles(ours, alignment.as_ref(), &mut found.findings);
-    found.different = outcomes.different_at_all();
+    if let Some(sides) = explained {
+        (found.sides, found.different) = (sides, outcomes.different_at_all());
+    }
     let conventions = Conventions { ours, assignment: &assignment, exactness, progress };
     found.leave_to_factors(&conventions)?;
     found.judge_distances(&conventions)?;
@@ -208,12 +210,12 @@ impl<'a> Laid<'a> {
 }
 
 impl Ours<'_> {
-    /// The least and the largest coordinates of what is emitted, or else of the mesh.
-    fn emitted_bounds(&self) -> [Vec3; 2] {
-        let emitted = Bounds::of(self.tessellated.vertices.iter().map(|vertex| vertex.position.into()));
-        let is_empty = self.tessellated.vertices.is_empty();
-        let bounds = if is_empty { Bounds::of(self.topology.points.iter().copied()) } else { emitted };
-        [bounds.min, bounds.max]
+    /// The positions that are emitted, or else those of the mesh.
+    fn emitted_positions(&self) -> Vec<Vec3> {
+        match &self.tessellated.vertices[..] {
+            [] => self.topology.points.clone(),
+            emitted => emitted.iter().map(|vertex| vertex.position.into()).collect(),
+        }
     }
 }
 

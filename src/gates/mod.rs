@@ -8,7 +8,7 @@ use std::fmt;
 use std::str::FromStr;
 
 pub(crate) use judgement::{Facts, Judgement, judge};
-pub(crate) use place::{Place, Spot};
+pub(crate) use place::Place;
 
 use crate::names::every;
 use crate::numbers::grouped;

@@ -223,12 +223,35 @@ fn stability_fails_on_gates_of_the_chosen_methods() {
 }
 
 #[test]
+fn stability_draws_the_worst_places() {
+    let folder = Folder::new();
+    let evidence = folder.path("evidence");
+    let junction = write_junction(&folder, "");
+    let base = ["stability", "--device", "gpu", "--cameras", "1", "--evidence", &evidence, "--fail-on"];
+    output(&[&base[..], &["cracks", "--case", "split-normals", "--method", "pn-aen"]].concat());
+    assert!(!Path::new(&evidence).exists(), "nothing failed");
+    failure(&[&base[..], &["cracks,leaks,folds", "--case", "split-normals", "--method", "pn"]].concat(), 1);
+    failure(&[&base[..], &["t-junctions,warnings:1", "--method", "flat", &junction]].concat(), 1);
+    let names = std::fs::read_dir(&evidence).expect("a folder").map(|entry| entry.expect("a file").file_name());
+    let mut names: Vec<_> = names.map(|name| name.into_string().expect("UTF-8")).collect();
+    names.sort();
+    assert_eq!(names, ["junction-t-junctions.png", "split-normals-cracks.png", "split-normals-leaks.png"]);
+    for name in names {
+        let shown = image::open(Path::new(&evidence).join(&name)).expect("a PNG file").to_rgba8();
+        assert_eq!(shown.dimensions(), (960, 720), "three px for one of those that were measured");
+        // Cracks are red and edges with T-junctions yellow, as src/render/layout.rs has them.
+        let marked = shown.pixels().filter(|pixel| pixel.0[0] > 200 && pixel.0[2] < 90).count();
+        assert!(marked > 200, "{name} has {marked} px of lines");
+    }
+}
+
+#[test]
 fn gates_that_cannot_be_judged_are_wrong_usage() {
     let folder = Folder::new();
     let [glb, png] = ["a.glb", "a.png"].map(|name| folder.path(name));
     let render = ["render", "shape:torus", "-o", &png];
     let tessellate = ["tessellate", "shape:torus", "-o", &glb, "--device", "cpu"];
-    let cases: [(&[&str], &[&str], &str); 8] = [
+    let cases: [(&[&str], &[&str], &str); 9] = [
         (&render, &["--fail-on", "crack"], "t-junctions"),
         (&render, &["--fail-on", "triangles"], "triangles:100000"),
         (&render, &["--fail-on", "cracks:-1"], "whole number"),
@@ -237,6 +260,7 @@ fn gates_that_cannot_be_judged_are_wrong_usage() {
         (&tessellate, &["--fail-on", "cracks", "--evidence", "x"], "--device gpu"),
         (&["stability"], &["--fail-on", "triangles:5"], "render or tessellate"),
         (&["stability", "--device", "cpu"], &["--fail-on", "leaks"], "--device gpu"),
+        (&["stability", "--device", "cpu"], &["--fail-on", "cracks", "--evidence", "x"], "--device gpu"),
     ];
     for (command, options, word) in cases {
         let said = failure(&[command, options].concat(), 2);

@@ -15,8 +15,9 @@ use crate::check::{Asset, Cache, GateResult, View};
 use crate::cli::picture_file::png_bytes;
 use crate::cli::shot::Shot;
 use crate::cli::{CliError, file_error, file_of};
-use crate::engine::Engine;
+use crate::engine::{Engine, Loaded, Preparation};
 use crate::gates::Judgement;
+use crate::load::LoadError;
 use crate::names::on_one_line;
 use crate::progress::Progress;
 
@@ -51,7 +52,7 @@ pub(super) fn measured(job: &Job, engine: &Engine, pictures: bool, cache: Option
 fn measure(job: &Job, engine: &Engine, pictures: bool, asset: &mut Asset) -> Result<Vec<PathBuf>, CliError> {
     let progress = Progress::new();
     let Some((_, first)) = job.views.first() else { return Ok(Vec::new()) };
-    let loaded = crate::engine::load(&job.source, &first.surface.preparation(), &progress)?;
+    let loaded = load(job, first.surface.preparation(), &progress)?;
     asset.warnings.clone_from(&loaded.warnings);
     for (index, (name, options)) in job.views.iter().enumerate() {
         let (subject, _) = options.subject_of(loaded.clone())?;
@@ -66,6 +67,17 @@ fn measure(job: &Job, engine: &Engine, pictures: bool, asset: &mut Asset) -> Res
     }
     let own = file_of(&job.source).map(Path::to_owned);
     Ok(own.into_iter().chain(loaded.files).chain(job.read.iter().cloned()).collect())
+}
+
+/// Loads an asset. What the configuration hides may be parts of other assets.
+fn load(job: &Job, mut preparation: Preparation, progress: &Progress) -> Result<Loaded, LoadError> {
+    match crate::engine::load(&job.source, &preparation, progress) {
+        Err(LoadError::NoPart { known, .. }) => {
+            preparation.hidden.retain(|part| known.contains(part));
+            crate::engine::load(&job.source, &preparation, progress)
+        }
+        other => other,
+    }
 }
 
 /// How a gate judged, with a picture of its place if it failed and pictures are wanted.
