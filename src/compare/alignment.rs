@@ -89,9 +89,9 @@ impl Alignment {
             if size.length() <= 1.2 * our_size.length() && sought.share(&Self::NONE, how) >= kept {
                 return None;
             }
-            let scales = if how == How::AtVertices { [plain, measured] } else { [plain; 2] };
+            let scales: &[f64] = if how == How::AtVertices { &[plain, measured] } else { &[plain] };
             let all =
-                scales.into_iter().flat_map(candidates).map(|alignment| (alignment, sought.share(&alignment, how)));
+                scales.iter().copied().flat_map(candidates).map(|alignment| (alignment, sought.share(&alignment, how)));
             let Some((best, _)) = all.reduce(better).filter(|(_, share)| *share >= FOUND) else { continue };
             let best = if best.offset == DVec3::ZERO { best } else { best.settled(theirs, ours) };
             return (best != Self::NONE).then_some(best);

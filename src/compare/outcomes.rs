@@ -143,10 +143,12 @@ impl<'a> Outcomes<'a> {
         self.compared().filter(|(_, outcome)| !outcome.found.has_same_points).map(|(patch, _)| patch).collect()
     }
 
-    /// Patches of which anything differs but distances.
+    /// Patches of which anything differs but distances. Places of displaced vertices are too rough to tell one triangle from the next.
     pub(super) fn different_at_all(&self) -> Vec<u32> {
+        let is_exact = self.assignment.overlaid.fit.is_finite();
         let differs = |found: &Match| {
-            !found.has_same_points || found.missing + found.doubled + found.flipped + found.other + found.slid > 0
+            let counts = found.missing + found.doubled + found.other + found.slid;
+            !found.has_same_points || found.flipped > 0 || is_exact && counts > 0
         };
         let different = self.compared().filter(|(_, outcome)| differs(&outcome.found)).map(|(patch, _)| patch);
         different.chain(self.additional.iter().copied()).collect()
