@@ -59,6 +59,26 @@ pub struct Loaded {
 }
 
 impl Loaded {
+    /// A mesh that no file has.
+    pub(crate) fn of_mesh(mesh: Arc<Mesh>, topology: Arc<Topology>) -> Self {
+        Self {
+            source: Source::default(),
+            preparation: Preparation::default(),
+            crease_band: CreaseBand::default(),
+            read: mesh.clone(),
+            mesh,
+            warnings: Vec::new(),
+            variants: Vec::new(),
+            scenes: Vec::new(),
+            scene: None,
+            parts: Arc::default(),
+            files: Vec::new(),
+            topology,
+            load_ms: 0.0,
+            topology_ms: 0.0,
+        }
+    }
+
     /// Returns this mesh at a moment of one of its clips, deformed on the CPU. Without a moment it is at rest.
     pub fn posed(&self, moment: Option<Moment>) -> Self {
         let (mesh, topology) = (self.mesh.clone(), self.topology.clone());

@@ -2,6 +2,7 @@
 
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use serde::{Deserialize, Serialize};
 
@@ -49,13 +50,15 @@ impl Cache {
         is_unchanged.then_some(Asset { unchanged: true, ..record.asset })
     }
 
-    /// Keeps what was found about an asset. `files` are those that were read for it. What couldn't be checked isn't kept, since the
-    /// reason may lie elsewhere.
+    /// Keeps what was found about an asset. `files` are those that were read for it, from `start` on. What couldn't be checked isn't
+    /// kept, since the reason may lie elsewhere; neither is what was written meanwhile, since it may not be what was measured.
     ///
     /// # Errors
     /// The errors of the file system.
-    pub(crate) fn put(&self, inputs: Inputs, files: &[PathBuf], asset: &Asset) -> io::Result<()> {
-        if asset.error.is_some() {
+    pub(crate) fn put(&self, inputs: Inputs, files: &[PathBuf], start: SystemTime, asset: &Asset) -> io::Result<()> {
+        let modified = |path: &PathBuf| std::fs::metadata(path).and_then(|about| about.modified());
+        let is_newer = |path| modified(path).is_ok_and(|time| time >= start);
+        if asset.error.is_some() || files.iter().any(is_newer) {
             return Ok(());
         }
         let hashed = |path: &PathBuf| Ok((path.clone(), hash_of_file(path)?));
@@ -124,12 +127,15 @@ mod tests {
         let found = Asset { path: "a.gltf".into(), ..Asset::default() };
         let files = [asset.clone(), image.clone()];
         assert_eq!(cache.get(inputs), None);
-        cache.put(inputs, &files, &found).expect("a writable folder");
+        cache.put(inputs, &files, SystemTime::UNIX_EPOCH, &found).expect("nothing is written");
+        assert_eq!(cache.get(inputs), None, "the files were written after the start");
+        let put = || cache.put(inputs, &files, SystemTime::now(), &found).expect("a writable folder");
+        put();
         assert_eq!(cache.get(inputs), Some(Asset { unchanged: true, ..found.clone() }));
         assert_eq!(cache.get(Inputs { configuration: "lod=paper", ..inputs }), None);
         write(&image, "other");
         assert_eq!(cache.get(inputs), None);
-        cache.put(inputs, &files, &found).expect("a writable folder");
+        put();
         assert!(cache.get(inputs).is_some());
         std::fs::remove_file(&image).expect("a file");
         assert_eq!(cache.get(inputs), None);
@@ -145,13 +151,13 @@ mod tests {
         let cache = Cache::new(kept.path());
         let inputs = Inputs { path: &asset, configuration: "" };
         let found = Asset { warnings: vec!["a.png is missing".into()], ..Asset::default() };
-        cache.put(inputs, std::slice::from_ref(&asset), &found).expect("a writable folder");
+        cache.put(inputs, std::slice::from_ref(&asset), SystemTime::now(), &found).expect("a writable folder");
         assert!(cache.get(inputs).is_some());
         std::fs::write(folder.path().join("a.png"), "image").expect("a writable folder");
         assert_eq!(cache.get(inputs), None);
         let broken = Asset { error: Some("no mesh".into()), ..Asset::default() };
         let other = Inputs { configuration: "other", ..inputs };
-        cache.put(other, &[], &broken).expect("nothing is written");
+        cache.put(other, &[], SystemTime::now(), &broken).expect("nothing is written");
         assert_eq!(cache.get(other), None);
     }
 }

@@ -31,7 +31,15 @@ pub(crate) struct Config {
     /// Its path, for messages.
     path: String,
     base: Section,
-    files: Vec<(Pattern, Section)>,
+    files: Vec<Files>,
+}
+
+/// A section for some of the files.
+#[derive(Clone, Debug, PartialEq)]
+struct Files {
+    pattern: Pattern,
+    line: usize,
+    section: Section,
 }
 
 /// What a configuration says about some assets.
@@ -103,11 +111,11 @@ impl Config {
         Ok(config)
     }
 
-    /// What holds for the asset at a path with `/` between its folders: what the sections say whose patterns match it, the last one
-    /// of them first.
+    /// What holds for the asset at a path below the configuration's folder, with `/` between folders: what the sections say whose
+    /// patterns match it, the last one of them first.
     pub(crate) fn section(&self, path: &str) -> Section {
         let mut all = self.base.clone();
-        for (_, own) in self.files.iter().filter(|(pattern, _)| pattern.matches(path)) {
+        for Files { section: own, .. } in self.files.iter().filter(|files| files.pattern.matches(path)) {
             all.gates = own.gates.clone().or(all.gates);
             for option in &own.options {
                 all.options.retain(|other| other.name != option.name);
@@ -118,6 +126,22 @@ impl Config {
             }
         }
         all
+    }
+
+    /// A sentence without its end for each section that holds for none of these paths.
+    pub(crate) fn unmatched(&self, paths: &[String]) -> Vec<String> {
+        let matches = |files: &&Files| paths.iter().any(|path| files.pattern.matches(path));
+        let unmatched = self.files.iter().filter(|files| !matches(files));
+        let said = |Files { pattern, line, .. }: &Files| {
+            format!("{}, line {line}: no asset matches the path {}", self.path, shown(pattern.text()))
+        };
+        unmatched.map(said).collect()
+    }
+
+    /// All options, whichever assets they hold for.
+    pub(crate) fn options(&self) -> impl Iterator<Item = &OptionValue> {
+        let sections = std::iter::once(&self.base).chain(self.files.iter().map(|files| &files.section));
+        sections.flat_map(|own| own.options.iter().chain(own.cameras.iter().flat_map(|(_, camera)| camera)))
     }
 
     /// The error of an option that its command doesn't take.
@@ -165,7 +189,10 @@ impl Reader<'_> {
                 section.options = self.options(value, &all)?;
             }
             "cameras" => {
-                for (key, camera) in self.table(value, "named cameras, such as [cameras.front]")? {
+                let mut cameras: Vec<_> = self.table(value, "named cameras, such as [cameras.front]")?.iter().collect();
+                // A table is in the order of its names; views stay in the order in which they were written.
+                cameras.sort_by_key(|(key, _)| key.span().start);
+                for (key, camera) in cameras {
                     let options = self.options(camera, self.known.camera)?;
                     section.cameras.push((key.get_ref().to_string(), options));
                 }
@@ -175,22 +202,23 @@ impl Reader<'_> {
         Ok(true)
     }
 
-    fn files(&self, value: &Value) -> Result<Vec<(Pattern, Section)>, ConfigError> {
+    fn files(&self, value: &Value) -> Result<Vec<Files>, ConfigError> {
         let expected = "expected sections that begin with [[files]]";
         let Some(sections) = value.get_ref().as_array() else { return Err(self.error(value.span(), expected)) };
         let mut files = Vec::new();
         for section in sections.iter() {
-            let (mut pattern, mut own) = (None, Section::default());
+            let (mut path, mut own) = (None, Section::default());
             for (key, value) in self.table(section, "a section that begins with [[files]]")? {
                 match key.get_ref().as_ref() {
-                    "path" => pattern = Some(self.text(value)?),
+                    "path" => path = Some((self.text(value)?, self.line(key.span()))),
                     name if self.take(name, value, &mut own)? => {}
                     name => return Err(self.unknown(key.span(), name, &["path", "fail-on", "options", "cameras"])),
                 }
             }
             let without =
                 || self.error(section.span(), "a section of [[files]] needs a path, such as path = \"props/*.glb\"");
-            files.push((Pattern::new(&pattern.ok_or_else(without)?), own));
+            let (path, line) = path.ok_or_else(without)?;
+            files.push(Files { pattern: Pattern::new(&path), line, section: own });
         }
         Ok(files)
     }
@@ -300,6 +328,15 @@ mod tests {
         assert_eq!(value(&prop, "cull-back-faces"), Some(vec![]));
         assert_eq!(value(&prop, "hide-part"), Some(vec![text("a"), text("b")]));
         assert_eq!((value(&prop, "lod"), &prop.cameras), (Some(vec![text("error")]), &usual.cameras));
+        let views =
+            read("[cameras.b]\ncamera = 1\n[cameras.a]\ncamera = 2\n").expect("a configuration").section("a.glb");
+        assert_eq!(views.cameras.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), ["b", "a"]);
+        let unmatched = config.unmatched(&["a.glb".to_owned(), "props/a.obj".to_owned()]);
+        assert_eq!(unmatched, ["pnaen.toml, line 9: no asset matches the path props/*.glb"]);
+        assert!(config.unmatched(&["a.glb".to_owned(), "props/a.glb".to_owned()]).is_empty());
+        let all: Vec<&str> = config.options().map(|option| option.name.as_str()).collect();
+        let files = ["cull-back-faces", "hide-part", "tolerance"];
+        assert_eq!((all.len(), all.iter().filter(|name| files.contains(name)).count()), (7, 5));
     }
 
     #[test]

@@ -96,14 +96,14 @@ fn of_view(asset: &Asset, view: &View) -> String {
 }
 
 fn of_gate(gate: &GateResult) -> String {
-    let class = match gate.passed {
-        Some(true) => "passed",
-        Some(false) => "failed",
-        None => "dim",
+    // The words say what the colours say.
+    let (class, how) = match gate.passed {
+        Some(true) => ("passed", ""),
+        Some(false) => ("failed", " failed"),
+        None => ("dim", " is not judged"),
     };
-    let note = if gate.passed.is_none() { "not judged: " } else { "" };
     let (name, words) = (escaped(&gate.name), escaped(&gate.text));
-    format!("<li><span class=\"{class}\">{name}</span>: {note}{words}</li>\n")
+    format!("<li><span class=\"{class}\">{name}{how}</span>: {words}</li>\n")
 }
 
 /// A picture, a PNG file in base64.
@@ -132,6 +132,10 @@ mod tests {
             let opened = text.matches(&format!("<{element}>")).count() + text.matches(&format!("<{element} ")).count();
             assert_eq!(opened, text.matches(&format!("</{element}>")).count(), "{element}");
         }
+        assert!(
+            text.contains(">cracks failed</span>: 12 edges") && text.contains(">leaks is not judged</span>: "),
+            "{text}"
+        );
         let order = ["broken.obj", "torn&lt;", "a b/good.glb"].map(|name| text.find(name).expect("it is on the page"));
         assert!(order.is_sorted(), "what failed comes first");
         assert_eq!(text.matches("alt=\"").count(), 4);

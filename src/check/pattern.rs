@@ -1,20 +1,34 @@
-//! Patterns of paths, as shells and `.gitignore` files have them.
+//! Patterns of paths, as `.gitignore` files have them.
 
-/// A pattern of paths. `*` stands for any characters but `/`, `?` for one of them, and `**/` for any folders, also none. A pattern
-/// without `/` is one of file names, in any folder.
+/// A pattern of paths below the configuration's folder. `*` stands for any characters but `/`, `?` for one of them, and `**/` for any
+/// folders, also none. A pattern with a `/` before its end begins at that folder; any other is one of names, wherever they are. The
+/// pattern of a folder stands for all that is in it.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Pattern(String);
+pub(super) struct Pattern {
+    text: String,
+    /// What stands between `/`. Those of folders, and of files that might be folders, end in what may be in these.
+    parts: Vec<String>,
+}
 
 impl Pattern {
     pub(super) fn new(text: &str) -> Self {
-        let text = text.strip_prefix("./").unwrap_or(text);
-        Self(if text.contains('/') { text.to_owned() } else { format!("**/{text}") })
+        let rooted = text.strip_prefix("./").or_else(|| text.strip_prefix('/'));
+        let own = rooted.unwrap_or(text).trim_end_matches('/');
+        let begins_anywhere = rooted.is_none() && !own.contains('/');
+        let below: &[&str] = if text.ends_with('/') { &["*", "**"] } else { &["**"] };
+        let parts = begins_anywhere.then_some("**").into_iter().chain(own.split('/')).chain(below.iter().copied());
+        Self { parts: parts.map(str::to_owned).collect(), text: text.to_owned() }
     }
 
-    /// Whether it stands for a path with `/` between its folders.
+    /// The pattern as the configuration has it.
+    pub(super) fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Whether it stands for a path below the configuration's folder, with `/` between its folders.
     pub(super) fn matches(&self, path: &str) -> bool {
-        let path = path.strip_prefix("./").unwrap_or(path);
-        let [pattern, path]: [Vec<&str>; 2] = [&self.0, path].map(|text| text.split('/').collect());
+        let pattern: Vec<&str> = self.parts.iter().map(String::as_str).collect();
+        let path: Vec<&str> = path.split('/').collect();
         folders_match(&pattern, &path)
     }
 }
@@ -61,8 +75,18 @@ mod tests {
             ("*.glb", "props/old/a.glb", true),
             ("*.glb", "a.gltf", false),
             ("./props/*.glb", "props/a.glb", true),
-            ("props/*.glb", "./props/a.glb", true),
+            ("/props/*.glb", "props/a.glb", true),
             ("props/*.glb", "props/old/a.glb", false),
+            ("props/*.glb", "old/props/a.glb", false),
+            ("/a.glb", "a.glb", true),
+            ("/a.glb", "props/a.glb", false),
+            ("props", "props/old/a.glb", true),
+            ("props", "old/props/a.glb", true),
+            ("props/", "old/props/a.glb", true),
+            ("old/props", "old/props/a.glb", true),
+            ("old/props/", "old/props/new/a.glb", true),
+            ("props", "old/props.glb", false),
+            ("a.glb/", "props/a.glb", false),
             ("props/**/*.glb", "props/a.glb", true),
             ("props/**/*.glb", "props/very/old/a.glb", true),
             ("props/**", "props/very/old/a.glb", true),

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde::{Deserialize, Serialize};
 
-use crate::gates::{Judgement, Place, Spot};
+use crate::gates::{GateKind, Judgement, Place};
 use crate::numbers::grouped;
 
 /// What a check found.
@@ -105,7 +105,7 @@ impl GateResult {
         let place = |place: &Place| GatePlace {
             triangles: place.triangles.clone(),
             at: place.spot.at().map(|at| at.to_array()),
-            px: if let Spot::Px(px) = place.spot { Some(px.to_array()) } else { None },
+            px: place.spot.px().map(|px| px.to_array()),
         };
         Self {
             name: judgement.gate.to_owned(),
@@ -139,9 +139,10 @@ impl Asset {
     }
 }
 
-/// The name of a gate, with that of its view where there are several.
+/// The name of a gate, with that of its view where there are several and it is about the view.
 pub(super) fn gate_title(view: &str, gate: &str) -> String {
-    if view.is_empty() { gate.to_owned() } else { format!("{gate} ({view})") }
+    let is_of_mesh = GateKind::ALL.iter().any(|kind| kind.name() == gate && kind.is_of_mesh());
+    if view.is_empty() || is_of_mesh { gate.to_owned() } else { format!("{gate} ({view})") }
 }
 
 impl Report {
@@ -246,7 +247,7 @@ pub(super) fn sample() -> Report {
     let failed = GateResult {
         place: Some(GatePlace { triangles: vec![3, 7], at: Some([0.5, 0.0, 1.0]), px: None }),
         evidence: Some("ZXZpZGVuY2U=".into()),
-        ..gate("cracks", Some(false), "12 edges are cracked, and 0 may be")
+        ..gate("cracks", Some(false), "12 edges are cracked, where 0 are allowed")
     };
     let view =
         |name: &str, gates| View { name: name.into(), gates, picture: Some("cGljdHVyZQ==".into()), ..View::default() };
@@ -270,8 +271,8 @@ mod tests {
 
     #[test]
     fn a_report_as_text_names_what_failed() {
-        let expected = "passed  a b/good.glb (unchanged)\nfailed  torn<&\">.glb\n        cracks (front): 12 edges are cracked, and \
-                        0 may be\n        leaks (front): not judged: the mesh is open\nbroken  broken.obj\n        broken.obj \
+        let expected = "passed  a b/good.glb (unchanged)\nfailed  torn<&\">.glb\n        cracks (front): 12 edges are cracked, where \
+                        0 are allowed\n        leaks (front): not judged: the mesh is open\nbroken  broken.obj\n        broken.obj \
                         can't be read\n3 assets: 1 passed, 1 failed, 1 broken; 1 unchanged and not measured again\n";
         assert_eq!(sample().text(), expected);
         assert!(!sample().passed());
@@ -280,6 +281,13 @@ mod tests {
             interrupted.summary(),
             "0 assets: 0 passed, 0 failed, 0 broken; 2 left out because of the interruption"
         );
+    }
+
+    #[test]
+    fn a_gate_of_the_mesh_is_of_no_view() {
+        assert_eq!(gate_title("front", "cracks"), "cracks (front)");
+        assert_eq!(gate_title("", "cracks"), "cracks");
+        assert_eq!(gate_title("front", "t-junctions"), "t-junctions");
     }
 
     #[test]

@@ -33,28 +33,43 @@ pub(crate) fn sarif(report: &Report) -> serde_json::Result<String> {
 }
 
 fn results(asset: &Asset) -> Vec<Value> {
-    let result = |rule: &str, message: String, properties: Value| {
+    let result = |rule: &str, view: &str, message: String, properties: Value| {
+        // GitHub takes no result without a line, though assets have none.
+        let place = json!({ "artifactLocation": { "uri": uri(&asset.path) }, "region": { "startLine": 1 } });
         json!({
             "ruleId": rule,
             "level": "error",
             "message": { "text": message },
-            "locations": [{ "physicalLocation": { "artifactLocation": { "uri": uri(&asset.path) } } }],
+            "locations": [{ "physicalLocation": place }],
+            "partialFingerprints": { "primaryLocationLineHash": fingerprint([&asset.path, rule, view]) },
             "properties": properties,
         })
     };
-    let broken = asset.error.iter().map(|error| result(BROKEN, error.clone(), json!({})));
+    let broken = asset.error.iter().map(|error| result(BROKEN, "", error.clone(), json!({})));
     let failed = asset.gates().filter(|(_, gate)| gate.failed()).map(|(view, gate)| {
         let message = format!("{}: {}", gate_title(view, &gate.name), gate.text);
         let properties = json!({ "view": view, "limit": gate.limit, "found": gate.found, "where": gate.place });
-        result(&gate.name, message, properties)
+        result(&gate.name, view, message, properties)
     });
     broken.chain(failed).collect()
+}
+
+/// What a result keeps from run to run, however much is found: asset, gate and view. Without it, GitHub takes results of a gate in
+/// two views for one.
+fn fingerprint(parts: [&str; 3]) -> String {
+    blake3::hash(parts.join("\n").as_bytes()).to_hex()[..32].to_owned()
 }
 
 /// A path as a URI reference (RFC 3986): relative paths stay relative, and other characters than the unreserved ones are bytes in
 /// hexadecimal digits.
 fn uri(path: &str) -> String {
-    let mut text = String::from(if Path::new(path).is_absolute() { "file://" } else { "" });
+    let start = match (Path::new(path).is_absolute(), path.starts_with(['/', '\\'])) {
+        (true, true) => "file://",
+        // Drives of Windows.
+        (true, false) => "file:///",
+        (false, _) => "",
+    };
+    let mut text = String::from(start);
     for byte in path.strip_prefix("./").unwrap_or(path).bytes() {
         match byte {
             b'\\' if cfg!(windows) => text.push('/'),
@@ -89,5 +104,9 @@ mod tests {
             .collect();
         assert_eq!(places, [Some("torn%3C%26%22%3E.glb"), Some("broken.obj")]);
         assert_eq!(results[0].pointer("/properties/where/at"), Some(&json!([0.5, 0.0, 1.0])));
+        assert_eq!(results[0].pointer("/locations/0/physicalLocation/region/startLine"), Some(&json!(1)));
+        let marks = results.iter().map(|result| &result["partialFingerprints"]["primaryLocationLineHash"]);
+        let marks: Vec<_> = marks.map(|mark| mark.as_str().expect("a text")).collect();
+        assert!(marks[0] != marks[1] && marks.iter().all(|mark| mark.len() == 32), "{marks:?}");
     }
 }

@@ -189,7 +189,6 @@ fn csv(args: &Args, limits: &Limits) -> Result<(ForeignMesh, f64), CliError> {
 
 fn of_file(path: &Path, limits: &Limits) -> Result<ForeignMesh, CliError> {
     let loaded = Source::File(path.to_owned()).load(limits, &Progress::new())?;
-    // What is said about materials and normals has no part in a comparison, but what is said about triangles has.
     warn(&loaded.warnings);
     Ok(ForeignMesh::of_mesh(&loaded.mesh))
 }

@@ -14,8 +14,8 @@ use crate::progress::Progress;
 pub(crate) struct GateOptions {
     #[command(flatten)]
     pub gates: FailOnOption,
-    /// Folder for a picture of the worst place of each gate that failed, named after the output and the gate; made if it isn't
-    /// there
+    /// Folder for a picture of the worst place of each gate that failed, named after the output (of stability: the case) and the
+    /// gate; made if it isn't there
     #[arg(long, value_name = "DIR", requires = "fail_on")]
     pub evidence: Option<PathBuf>,
 }
@@ -42,14 +42,28 @@ impl GateOptions {
     /// # Errors
     /// The folder can't be made, a picture can't be written, or the device was lost.
     pub(super) fn write_evidence(&self, shot: &mut Shot, judged: &[Judgement], stem: &Path) -> Result<(), CliError> {
-        let Some(folder) = &self.evidence else { return Ok(()) };
+        let Some(folder) = self.evidence.as_deref() else { return Ok(()) };
         for judgement in judged.iter().filter(|judgement| judgement.failed()) {
-            let Some(picture) = shot.evidence(judgement, &Progress::new())? else { continue };
-            std::fs::create_dir_all(folder).map_err(|error| file_error(folder, "made", &file_reason(&error)))?;
-            write_picture(&folder.join(evidence_name(stem, judgement.kind)), &picture.into())?;
+            write_evidence_of(shot, judgement, folder, stem)?;
         }
         Ok(())
     }
+}
+
+/// Writes a picture of a failed gate's worst place into a folder, which is made if it isn't there; nothing if it is about no place.
+/// `stem` begins its name.
+///
+/// # Errors
+/// The folder can't be made, the picture can't be written, or the device was lost.
+pub(super) fn write_evidence_of(
+    shot: &mut Shot,
+    judgement: &Judgement,
+    folder: &Path,
+    stem: &Path,
+) -> Result<(), CliError> {
+    let Some(picture) = shot.evidence(judgement, &Progress::new())? else { return Ok(()) };
+    std::fs::create_dir_all(folder).map_err(|error| file_error(folder, "made", &file_reason(&error)))?;
+    write_picture(&folder.join(evidence_name(stem, judgement.kind)), &picture.into())
 }
 
 /// The name of the picture of a gate, beside an output of this name.

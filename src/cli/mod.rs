@@ -222,7 +222,7 @@ pub(crate) enum CliError {
     TooFine { file: String, triangles: u64, most: u64 },
     #[error("{theirs} isn't our tessellation: {count} {} above", if *count == 1 { "difference is" } else { "differences are" })]
     NotTheSame { theirs: String, count: usize },
-    #[error("no picture is drawn: coordinates are too large")]
+    #[error("no picture is drawn, since coordinates are too large: leave -o away, or scale the other program's output")]
     NothingToDraw,
     #[error("{file} can't be a reference surface: it has no triangles; choose another mesh")]
     NoTruth { file: String },

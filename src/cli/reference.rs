@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::options::{steps, threshold};
 use super::picture_comparison::{Comparison, PictureTolerance, compare_by};
 use super::{CliError, file_error, write_picture};
-use crate::files::open_file;
+use crate::files::{file_reason, open_file};
 use crate::names::shown_path;
 
 /// The reference, and how much a picture may differ from it.
@@ -89,9 +89,10 @@ impl Reference {
     /// It can't be read.
     pub(super) fn read(path: &Path, options: &ReferenceOptions) -> Result<Self, CliError> {
         let fail = |reason: &dyn std::fmt::Display| file_error(path, "read", reason);
-        let file = open_file(path).map_err(|error| fail(&error))?;
+        let file = open_file(path).map_err(|error| fail(&file_reason(&error)))?;
         let file = file.ok_or_else(|| fail(&"it is not a file; name a PNG, JPEG or WebP image"))?.0;
-        let reader = ImageReader::new(BufReader::new(file)).with_guessed_format().map_err(|error| fail(&error))?;
+        let reader =
+            ImageReader::new(BufReader::new(file)).with_guessed_format().map_err(|error| fail(&file_reason(&error)))?;
         let reference = reader.decode().map_err(|error| match error {
             ImageError::Unsupported(_) => fail(&"it is no image; name a PNG, JPEG or WebP one"),
             error => fail(&error),

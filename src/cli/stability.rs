@@ -1,21 +1,23 @@
 //! `pnaen stability`: cases that break tessellators, and whether what this program promises holds on them.
 
+mod evidence;
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
-use super::gate_options::FailOnOption;
+use super::gate_options::GateOptions;
 use super::tessellate::Device;
 use super::{AdapterOption, CliError, WeldOption, file_error, to_json, write_text};
 use crate::engine::Engine;
 use crate::files::file_reason;
-use crate::gates::{Facts, GateKind, Judgement, judge};
+use crate::gates::{Facts, GateKind, judge};
 use crate::load::Source;
 use crate::mesh::{Topology, t_junctions};
 use crate::progress::Progress;
 use crate::stability::{
-    CASES, Case, Effort, LEGEND, Method, PAGE, Row, Section, Subject, Verdict, failures, lines, page, picture,
+    CASES, Case, Effort, Failure, LEGEND, Method, PAGE, Row, Section, Subject, Verdict, failures, lines, page, picture,
     run as run_case, table,
 };
 
@@ -46,7 +48,7 @@ pub(crate) struct Args {
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
-    pub gates: FailOnOption,
+    pub gates: GateOptions,
     #[command(flatten)]
     pub adapter: AdapterOption,
 }
@@ -65,18 +67,19 @@ struct Loaded {
 }
 
 impl Args {
-    /// Refuses gates that judge one tessellation.
+    /// Refuses gates that judge one tessellation, and what needs a device that isn't used.
     fn check(&self) -> Result<(), CliError> {
         self.adapter.check(self.device == Some(Device::Cpu))?;
         let single = [GateKind::AboveTolerance, GateKind::Triangles, GateKind::Bytes];
-        if single.into_iter().any(|kind| self.gates.has(kind)) {
+        if single.into_iter().any(|kind| self.gates.gates.has(kind)) {
             return Err(CliError::Usage(
                 "--fail-on above-tolerance, triangles and bytes judge one tessellation, and stability runs many: use render or \
                  tessellate",
             ));
         }
-        if self.gates.has(GateKind::Leaks) && self.device == Some(Device::Cpu) {
-            return Err(CliError::Usage("--fail-on leaks needs --device gpu, which draws"));
+        let draws = self.gates.evidence.is_some() || self.gates.gates.has(GateKind::Leaks);
+        if draws && self.device == Some(Device::Cpu) {
+            return Err(CliError::Usage("--fail-on leaks and --evidence need --device gpu, which draws"));
         }
         Ok(())
     }
@@ -107,13 +110,13 @@ impl Args {
         if !self.methods.is_empty() {
             effort.methods.clone_from(&self.methods);
         }
-        effort.folds = self.gates.has(GateKind::Folds);
+        effort.folds = self.gates.gates.has(GateKind::Folds);
         effort
     }
 
-    /// Judges a mesh by the gates that are about the mesh itself. Returns a sentence for each that fails.
-    fn judge_mesh(&self, Loaded { subject, warnings }: &Loaded) -> Result<Vec<String>, CliError> {
-        let gates: Vec<_> = self.gates.fail_on.iter().copied().filter(|gate| gate.kind.is_of_mesh()).collect();
+    /// Judges a mesh by the gates that are about the mesh itself. Returns those that fail.
+    fn judge_mesh(&self, Loaded { subject, warnings }: &Loaded) -> Result<Vec<Failure>, CliError> {
+        let gates: Vec<_> = self.gates.gates.fail_on.iter().copied().filter(|gate| gate.kind.is_of_mesh()).collect();
         if gates.is_empty() {
             return Ok(Vec::new());
         }
@@ -122,7 +125,25 @@ impl Args {
         let facts = Facts { junctions: Some(&junctions), warnings, ..Facts::of_mesh(&topology) };
         let judged = judge(&gates, &facts);
         let failed = judged.iter().filter(|judgement| judgement.failed());
-        Ok(failed.map(|judgement: &Judgement| judgement.sentence_of(&subject.name)).collect())
+        let failure = failed.map(|judgement| Failure {
+            kind: judgement.kind,
+            case: subject.name.clone(),
+            sentence: judgement.sentence_of(&subject.name),
+            tried: None,
+        });
+        Ok(failure.collect())
+    }
+
+    /// Draws the picture of a subject into the folder of `-o`, if there are one and a device. Returns what the page says.
+    fn section(&self, subject: &Subject, engine: Option<&Engine>, effort: &Effort) -> Result<Section, CliError> {
+        let mut file = None;
+        if let (Some(folder), Some(engine)) = (&self.output, engine) {
+            let drawn = picture(subject, engine, effort.sweep_to)?;
+            let name = file_name(&subject.name);
+            super::write_picture(&folder.join(&name), &drawn.into())?;
+            file = Some(name);
+        }
+        Ok(Section { name: subject.name.clone(), about: subject.about.clone(), picture: file })
     }
 }
 
@@ -135,24 +156,16 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         std::fs::create_dir_all(folder).map_err(|error| file_error(folder, "made", &file_reason(&error)))?;
     }
     let (mut rows, mut sections, mut failed) = (Vec::new(), Vec::new(), Vec::new());
-    for loaded in subjects {
-        failed.extend(args.judge_mesh(&loaded)?);
-        let subject = loaded.subject;
-        let own = run_case(&subject, engine.as_ref(), &effort)?;
+    for loaded in &subjects {
+        failed.extend(args.judge_mesh(loaded)?);
+        let own = run_case(&loaded.subject, engine.as_ref(), &effort)?;
         if !args.json {
             let text = table(&lines(&own));
             // The heading is printed only once.
             let rest = text.split_once('\n').map_or("", |(_, rest)| rest);
             write_text("-".as_ref(), if rows.is_empty() { &text } else { rest })?;
         }
-        let mut file = None;
-        if let (Some(folder), Some(engine)) = (&args.output, &engine) {
-            let drawn = picture(&subject, engine, effort.sweep_to)?;
-            let name = file_name(&subject.name);
-            super::write_picture(&folder.join(&name), &drawn.into())?;
-            file = Some(name);
-        }
-        sections.push(Section { name: subject.name, about: subject.about, picture: file });
+        sections.push(args.section(&loaded.subject, engine.as_ref(), &effort)?);
         rows.extend(own);
     }
     if let Some(folder) = &args.output {
@@ -163,15 +176,13 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     } else {
         write_text("-".as_ref(), &format!("\n{LEGEND}\n"))?;
     }
-    failed.extend(failures(&args.gates.fail_on, &rows));
-    match keep_promises(&rows) {
-        Err(broken) => {
-            failed.push(broken.to_string());
-            Err(CliError::Gates(failed))
-        }
-        Ok(()) if failed.is_empty() => Ok(()),
-        Ok(()) => Err(CliError::Gates(failed)),
+    failed.extend(failures(&args.gates.gates.fail_on, &rows));
+    if let (Some(folder), Some(engine)) = (&args.gates.evidence, &engine) {
+        evidence::write(folder, engine, &subjects, &failed)?;
     }
+    let mut said: Vec<String> = failed.into_iter().map(|failure| failure.sentence).collect();
+    said.extend(keep_promises(&rows).err().map(|broken| broken.to_string()));
+    if said.is_empty() { Ok(()) } else { Err(CliError::Gates(said)) }
 }
 
 /// Returns the title, with a number added if another subject, or its picture, has that name already.

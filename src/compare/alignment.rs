@@ -1,9 +1,12 @@
 //! Finds out whether another program's coordinates are ours, turned, mirrored, scaled or moved as a whole.
 
+use std::collections::HashSet;
+
 use glam::{DMat3, DVec3, Vec3};
 
 use super::foreign::ForeignMesh;
 use super::locator::Locator;
+use crate::mesh::Bounds;
 
 /// How another program's coordinates follow from ours.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,6 +23,10 @@ pub(crate) struct Alignment {
 const USUAL_SCALES: [f64; 6] = [2.54, 0.0254, 25.4, 0.3048, 30.48, 12.0];
 /// How many vertices are tried.
 const SAMPLE: usize = 300;
+/// The same where the nearest place of the surface itself is sought, which takes longer.
+const SURFACE_SAMPLE: usize = 100;
+/// The most vertices of ours that theirs are looked for among, which takes about 50 bytes each.
+const MOST_POSITIONS: usize = 1 << 22;
 /// A vertex is near if it is no farther from the surface than this part of the mesh's diagonal.
 const NEAR: f64 = 0.01;
 /// As they are, coordinates are kept if this share of their vertices is near.
@@ -51,40 +58,45 @@ impl Alignment {
         self.matrix().transpose() * ((theirs - self.offset) / self.scale)
     }
 
-    /// Finds the alignment under which their vertices lie near our surface, whose least and largest coordinates are given; `None` if
-    /// they do as they are, or under none.
-    pub(super) fn find(theirs: &ForeignMesh, ours: &Locator, [least, most]: [Vec3; 2]) -> Option<Self> {
-        let [our_size, our_middle] = [most.as_dvec3() - least.as_dvec3(), (most.as_dvec3() + least.as_dvec3()) / 2.0];
-        let near = NEAR * our_size.length();
-        let share = |alignment: &Self| {
-            let is_near =
-                |&index: &u32| ours.rough_distance(alignment.ours(theirs.positions[index as usize].as_dvec3())) <= near;
-            let sample = theirs.sample(SAMPLE);
-            sample.clone().filter(is_near).count() as f64 / sample.count().max(1) as f64
-        };
+    /// Finds the alignment under which their vertices are ours, lie on our surface, or lie near it; the first of these under which
+    /// nearly all do. `None` if they do as they are, or under none. A vertex lies on the surface within `fit` object units.
+    pub(super) fn find(theirs: &ForeignMesh, ours: &Locator, emitted: &[Vec3], fit: f64) -> Option<Self> {
+        let own = Bounds::of(emitted.iter().copied());
+        let [our_size, our_middle] = [(own.max - own.min).as_dvec3(), own.center().as_dvec3()];
         let bounds = theirs.bounds();
         let (size, middle) = ((bounds.max - bounds.min).as_dvec3(), bounds.center().as_dvec3());
-        // A mesh that is only a part of ours lies near it, too.
-        if size.length() <= 1.2 * our_size.length() && share(&Self::NONE) >= KEPT {
-            return None;
-        }
         // Another surface, or displacement, makes boxes larger or smaller, too.
-        let scale = usual(size.length() / our_size.length())?;
-        let scale = if (0.75..1.33).contains(&scale) { 1.0 } else { scale };
-        let candidates = orders().map(|axes| {
-            let turned = Self { axes, scale, offset: DVec3::ZERO };
-            let offset = middle - turned.matrix() * our_middle * scale;
-            // The middles of boxes differ a little where points differ.
-            let is_moved = offset.length() > 0.02 * size.length();
-            Self { offset: if is_moved { offset } else { DVec3::ZERO }, ..turned }
-        });
-        let fits = candidates.filter(|alignment| {
-            let turned = (alignment.matrix() * our_size).abs() * scale;
-            (turned - size).abs().max_element() <= 0.1 * size.length()
-        });
-        let (best, share) = fits.map(|alignment| (alignment, share(&alignment))).reduce(better)?;
-        let best = if best.offset == DVec3::ZERO { best } else { best.settled(theirs, ours) };
-        (share >= FOUND && best != Self::NONE).then_some(best)
+        let measured = usual(size.length() / our_size.length())?;
+        let plain = if (0.75..1.33).contains(&measured) { 1.0 } else { measured };
+        let candidates = |scale: f64| {
+            let all = orders().map(move |axes| {
+                let turned = Self { axes, scale, offset: DVec3::ZERO };
+                let offset = middle - turned.matrix() * our_middle * scale;
+                // The middles of boxes differ a little where points differ.
+                let is_moved = offset.length() > 0.02 * size.length();
+                Self { offset: if is_moved { offset } else { DVec3::ZERO }, ..turned }
+            });
+            all.filter(move |alignment| {
+                let turned = (alignment.matrix() * our_size).abs() * scale;
+                (turned - size).abs().max_element() <= 0.1 * size.length()
+            })
+        };
+        let near = NEAR * our_size.length();
+        let sought = Sought { theirs, ours, emitted: Cells::new(emitted, fit), fit, near };
+        for how in [How::AtVertices, How::OnSurface, How::NearSurface] {
+            let kept = if how == How::NearSurface { KEPT } else { FOUND };
+            // A mesh that is only a part of ours lies near it, too.
+            if size.length() <= 1.2 * our_size.length() && sought.share(&Self::NONE, how) >= kept {
+                return None;
+            }
+            let scales: &[f64] = if how == How::AtVertices { &[plain, measured] } else { &[plain] };
+            let all =
+                scales.iter().copied().flat_map(candidates).map(|alignment| (alignment, sought.share(&alignment, how)));
+            let Some((best, _)) = all.reduce(better).filter(|(_, share)| *share >= FOUND) else { continue };
+            let best = if best.offset == DVec3::ZERO { best } else { best.settled(theirs, ours) };
+            return (best != Self::NONE).then_some(best);
+        }
+        None
     }
 
     /// Moves the offset until vertices lie on the surface on average: boxes differ a little where points differ.
@@ -107,6 +119,71 @@ impl Alignment {
     }
 }
 
+/// What vertices are asked for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum How {
+    /// To be vertices of ours: only one alignment of a symmetric mesh does that, if its factors differ from patch to patch.
+    AtVertices,
+    OnSurface,
+    NearSurface,
+}
+
+/// What an alignment is sought by.
+struct Sought<'a> {
+    theirs: &'a ForeignMesh,
+    ours: &'a Locator<'a>,
+    emitted: Cells,
+    /// In object units, as [`Alignment::find`] has it, and how near vertices must be to be near the surface.
+    fit: f64,
+    near: f64,
+}
+
+impl Sought<'_> {
+    /// The share of their vertices that are where they are asked for.
+    fn share(&self, alignment: &Alignment, how: How) -> f64 {
+        let is_there = |&index: &u32| {
+            let position = alignment.ours(self.theirs.positions[index as usize].as_dvec3());
+            match how {
+                How::AtVertices => self.emitted.has(position),
+                How::OnSurface => self.ours.place(position).is_some_and(|place| place.distance <= self.fit),
+                How::NearSurface => self.ours.rough_distance(position) <= self.near,
+            }
+        };
+        let sample = self.theirs.sample(if how == How::OnSurface { SURFACE_SAMPLE } else { SAMPLE });
+        sample.clone().filter(is_there).count() as f64 / sample.count().max(1) as f64
+    }
+}
+
+/// Positions in cells of space, to tell whether one is near a place.
+struct Cells {
+    all: HashSet<[i64; 3]>,
+    /// The width of a cell in object units: twice the distance within which positions are the same.
+    width: f64,
+}
+
+impl Cells {
+    /// Sorts positions that are the same within `fit` object units. There are none of more than [`MOST_POSITIONS`].
+    fn new(positions: &[Vec3], fit: f64) -> Self {
+        let width = 2.0 * fit;
+        let positions = if positions.len() > MOST_POSITIONS { &[] } else { positions };
+        let all = positions.iter().map(|position| Self::cell(position.as_dvec3(), width)).collect();
+        Self { all, width }
+    }
+
+    fn cell(position: DVec3, width: f64) -> [i64; 3] {
+        (position / width).floor().to_array().map(|place| place as i64)
+    }
+
+    /// Whether one of the positions is within `fit` of this one along each axis; also some within twice that.
+    fn has(&self, position: DVec3) -> bool {
+        (0..8_u32).any(|corner| {
+            let sign = |axis: u32| if corner >> axis & 1 == 1 { 0.5 } else { -0.5 };
+            let near = position + DVec3::new(sign(0), sign(1), sign(2)) * self.width;
+            self.all.contains(&Self::cell(near, self.width))
+        })
+    }
+}
+
 /// Of two alignments the one that more vertices fit; if they are alike, one that moves nothing, and then the first.
 fn better(a: (Alignment, f64), b: (Alignment, f64)) -> (Alignment, f64) {
     let rank = |(alignment, share): &(Alignment, f64)| {
@@ -115,16 +192,19 @@ fn better(a: (Alignment, f64), b: (Alignment, f64)) -> (Alignment, f64) {
     if rank(&b) > rank(&a) { b } else { a }
 }
 
-/// The 48 ways in which axes can be exchanged and turned, the usual one first.
+/// The 48 ways in which axes can be exchanged and turned. The usual ones come first: none, and another axis that points up, both
+/// ways. They are among the others once more.
 fn orders() -> impl Iterator<Item = [(usize, bool); 3]> {
     const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [2, 1, 0], [1, 2, 0], [2, 0, 1]];
-    ORDERS
+    let up = [[(0, false), (2, true), (1, false)], [(0, false), (2, false), (1, true)]];
+    let all = ORDERS
         .into_iter()
-        .flat_map(|order| (0..8_u32).map(move |signs| [0, 1, 2].map(|axis| (order[axis], signs >> axis & 1 == 1))))
+        .flat_map(|order| (0..8_u32).map(move |signs| [0, 1, 2].map(|axis| (order[axis], signs >> axis & 1 == 1))));
+    [Alignment::NONE.axes].into_iter().chain(up).chain(all)
 }
 
-/// Returns the usual scale that a measured one is within 1% of; or else one of two digits within 0.5%, or the measured one. `None` if
-/// it is no scale.
+/// Returns the usual scale that a measured one is within 1% of; or else one of two digits within 0.5%, one of three within 0.001%, or
+/// the measured one. `None` if it is no scale.
 fn usual(measured: f64) -> Option<f64> {
     if !(measured.is_finite() && measured > 0.0) {
         return None;
@@ -132,9 +212,12 @@ fn usual(measured: f64) -> Option<f64> {
     let is_near = |scale: &f64| (measured / scale - 1.0).abs() < 0.01;
     let powers = (-6..=6).map(|exponent| 10.0_f64.powi(exponent));
     let others = USUAL_SCALES.into_iter().flat_map(|scale| [scale, scale.recip()]);
-    let unit = 10.0_f64.powf(measured.log10().floor() - 1.0);
-    let short = (measured / unit).round() * unit;
-    let plain = if (measured / short - 1.0).abs() < 0.005 { short } else { measured };
+    let digits = |count: i32| {
+        let unit = 10.0_f64.powi(measured.log10().floor() as i32 + 1 - count);
+        (measured / unit).round() * unit
+    };
+    let within = |scale: f64, share: f64| Some(scale).filter(|scale| (measured / scale - 1.0).abs() < share);
+    let plain = within(digits(2), 0.005).or(within(digits(3), 1e-5)).unwrap_or(measured);
     Some(powers.chain(others).find(is_near).unwrap_or(plain))
 }
 

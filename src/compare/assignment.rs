@@ -14,7 +14,7 @@ use crate::progress::{Cancelled, Progress};
 pub(super) struct Overlaid<'a> {
     pub theirs: &'a ForeignMesh,
     pub topology: &'a Topology,
-    pub locator: &'a Locator<'a>,
+    pub locator: Locator<'a>,
     /// Their positions in our coordinates.
     pub positions: &'a [DVec3],
     /// The nearest place of each of their vertices.
@@ -81,7 +81,7 @@ impl<'a> Overlaid<'a> {
     pub(super) fn new(
         theirs: &'a ForeignMesh,
         topology: &'a Topology,
-        locator: &'a Locator<'a>,
+        locator: Locator<'a>,
         positions: &'a [DVec3],
         fit: f64,
         progress: &Progress,
@@ -89,6 +89,14 @@ impl<'a> Overlaid<'a> {
         let place = |index: usize| locator.place(positions[index]).unwrap_or(NOWHERE);
         let places = made_of_all(positions.len(), progress, place)?;
         Ok(Self { theirs, topology, locator, positions, places, fit })
+    }
+
+    /// The same vertices over another surface.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(super) fn over(&self, locator: Locator<'a>, progress: &Progress) -> Result<Self, Cancelled> {
+        Self::new(self.theirs, self.topology, locator, self.positions, self.fit, progress)
     }
 
     /// Their vertices that don't lie on the surface.
@@ -265,7 +273,7 @@ mod tests {
                 let own: Vec<DVec3> = theirs.positions.iter().map(|position| position.as_dvec3()).collect();
                 let progress = Progress::new();
                 let overlaid =
-                    Overlaid::new(&theirs, &topology, &locator, &own, 1e-5, &progress).expect("nobody cancels");
+                    Overlaid::new(&theirs, &topology, locator, &own, 1e-5, &progress).expect("nobody cancels");
                 assert!(overlaid.strays().is_empty(), "{shape} {surface:?}");
                 let assignment = Assignment::new(&overlaid, &progress).expect("nobody cancels");
                 let mut emitted = vec![0; topology.patches.len()];

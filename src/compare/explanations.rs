@@ -125,16 +125,19 @@ impl Explainer<'_> {
             return Ok(Vec::new());
         }
         let uniform = self.uniform(&sample);
+        let same = vec![Explanation { partitioning: own, rule: Rule::Same }];
         if let Some(other) = self.other {
             // LOD of another surface has other factors, which are no mistake.
-            let same = vec![Explanation { partitioning: own, rule: Rule::Same }];
-            let groups = [same].into_iter().chain(self.groups(own, uniform));
+            let groups = [same.clone()].into_iter().chain(self.groups(own, uniform));
             let found = self.first(groups, other, (&sample, different), progress)?;
             if !found.is_empty() {
                 return Ok(found);
             }
         }
-        self.first(self.groups(own, uniform).into_iter(), self.inputs, (&sample, different), progress)
+        // Where vertices are displaced, points of the same factors may seem to be others.
+        let is_rough = !self.assignment.overlaid.fit.is_finite();
+        let groups = is_rough.then_some(same).into_iter().chain(self.groups(own, uniform));
+        self.first(groups, self.inputs, (&sample, different), progress)
     }
 
     /// Returns the explanations of the first group that has one, where LOD has these inputs.

@@ -6,7 +6,7 @@ use super::alignment::Alignment;
 use super::corner_orders::CornerOrder;
 use super::explanations::{Explanation, InsideRule, Rule};
 use super::matching::Farthest;
-use crate::numbers::{grouped, short};
+use crate::numbers::{exact, grouped, short};
 use crate::settings::Choice;
 use crate::tessellate::{Convention, Displacement, Partitioning, Tessellation};
 
@@ -53,6 +53,8 @@ pub(crate) enum Finding {
         inside: u64,
         suits: Vec<Partitioning>,
         ours: Partitioning,
+        /// Whether LOD gives other factors for another view.
+        is_of_view: bool,
     },
     /// Edges whose sides they cut differently.
     Cracked {
@@ -161,12 +163,7 @@ impl Finding {
     /// What it is, in a sentence or two.
     pub(crate) fn text(&self) -> String {
         match self {
-            Self::NotATessellation { far, vertices, distance } => format!(
-                "It isn't a tessellation of this mesh: {} of {} vertices are farther than {} object units from the surface.",
-                grouped(*far),
-                grouped(*vertices),
-                short(*distance)
-            ),
+            Self::NotATessellation { far, vertices, distance } => other_mesh_text(*far, *vertices, *distance),
             Self::Aligned(alignment) => alignment_text(alignment),
             Self::OtherSurface { ours, theirs, vertices, of } => surface_text(ours, theirs, *vertices, *of),
             Self::Displaced(displaced) => displaced_text(displaced),
@@ -179,27 +176,18 @@ impl Finding {
             Self::Factors { ours, convention, explanations, patches, of } => {
                 factors_text(*ours, *convention, explanations, *patches, *of)
             }
-            Self::UnknownFactors { patches, of, sides, inside, suits, ours } => {
-                unknown_text([*patches, *of, *sides, *inside], suits, *ours)
+            Self::UnknownFactors { patches, of, sides, inside, suits, ours, is_of_view } => {
+                let text = unknown_text([*patches, *of, *sides, *inside], suits, *ours);
+                let view = " LOD depends on the view: the camera and --size must be the other program's, too.";
+                text + if *is_of_view { view } else { "" }
             }
             Self::Cracked { edges, of } => format!(
                 "{} of {} edges between patches are cut differently by their sides, so the mesh cracks there.",
                 grouped(*edges),
                 grouped(*of)
             ),
-            Self::MissingPatches { patches, of, triangles } => format!(
-                "{} of {} patches {} no triangles: {}.",
-                grouped(*patches),
-                grouped(*of),
-                if *patches == 1 { "has" } else { "have" },
-                listed(triangles, *patches)
-            ),
-            Self::AdditionalPatches { patches, triangles } => format!(
-                "{} triangles, though our tessellation leaves {} out: {}.",
-                plural(*patches, "patch has", "patches have"),
-                if *patches == 1 { "it" } else { "them" },
-                listed(triangles, *patches)
-            ),
+            Self::MissingPatches { patches, of, triangles } => missing_text(*patches, *of, triangles),
+            Self::AdditionalPatches { patches, triangles } => additional_text(*patches, triangles),
             Self::MissingTriangles { count, patches } => {
                 format!("{} missing, in {}.", plural(*count, "triangle is", "triangles are"), patches_text(*patches))
             }
@@ -224,20 +212,52 @@ impl Finding {
                 theirs.name(),
                 ours.name()
             ),
-            Self::Rounding { farthest, ulps, triangle } => format!(
-                "Everything agrees but the last digits: vertices differ by up to {} object units ({} ULP), at {} in triangle \
-                 {triangle}. If that is as it should be, allow it with --within {}.",
-                short(farthest.distance),
-                short(*ulps),
-                point(farthest.ours),
-                rounded_up(farthest.distance)
-            ),
+            Self::Rounding { farthest, ulps, triangle } => rounding_text(farthest, *ulps, *triangle),
         }
     }
 }
 
+fn other_mesh_text(far: u64, vertices: u64, distance: f64) -> String {
+    format!(
+        "It isn't a tessellation of this mesh: {} of {} vertices are farther than {} object units from the surface.",
+        grouped(far),
+        grouped(vertices),
+        short(distance)
+    )
+}
+
+fn missing_text(patches: u64, of: u64, triangles: &[u32]) -> String {
+    format!(
+        "{} of {} patches {} no triangles: {}.",
+        grouped(patches),
+        grouped(of),
+        if patches == 1 { "has" } else { "have" },
+        listed(triangles, patches)
+    )
+}
+
+fn additional_text(patches: u64, triangles: &[u32]) -> String {
+    format!(
+        "{} triangles, though our tessellation leaves {} out: {}.",
+        plural(patches, "patch has", "patches have"),
+        if patches == 1 { "it" } else { "them" },
+        listed(triangles, patches)
+    )
+}
+
+fn rounding_text(farthest: &Farthest, ulps: f64, triangle: u32) -> String {
+    format!(
+        "Everything agrees but the last digits: vertices differ by up to {} object units ({} ULP), at {} in triangle {triangle}. \
+         If that is as it should be, allow it with --within {}.",
+        short(farthest.distance),
+        short(ulps),
+        point(farthest.ours),
+        rounded_up(farthest.distance)
+    )
+}
+
 /// A number and its noun.
-fn plural(count: u64, one: &str, more: &str) -> String {
+pub(crate) fn plural(count: u64, one: &str, more: &str) -> String {
     format!("{} {}", grouped(count), if count == 1 { one } else { more })
 }
 
@@ -245,9 +265,9 @@ fn patches_text(patches: u64) -> String {
     plural(patches, "patch", "patches")
 }
 
-fn point(place: DVec3) -> String {
-    let [x, y, z] = (place + DVec3::ZERO).to_array().map(|coordinate| coordinate as f32);
-    format!("({x} {y} {z})")
+pub(crate) fn point(place: DVec3) -> String {
+    let [x, y, z] = (place + DVec3::ZERO).to_array().map(|coordinate| exact(coordinate as f32));
+    format!("({x}, {y}, {z})")
 }
 
 /// The least number of two digits that isn't smaller, so that it can be typed.
@@ -279,12 +299,12 @@ fn alignment_text(alignment: &Alignment) -> String {
         parts.push(format!("{doing} (its x, y, z are our {})", axes.iter().map(axis).collect::<Vec<_>>().join(", ")));
     }
     if *scale != 1.0 {
-        parts.push(format!("scaled ({} times ours)", *scale as f32));
+        parts.push(format!("scaled ({} times ours)", exact(*scale as f32)));
     }
     if *offset != DVec3::ZERO {
         parts.push(format!("moved (by {})", point(*offset)));
     }
-    format!("Its coordinates are {}. What follows is said of them in our coordinates.", parts.join(" and "))
+    format!("Its coordinates are {}. All that follows is in our coordinates.", parts.join(" and "))
 }
 
 /// The option that gives a surface.

@@ -19,9 +19,9 @@ mod surfaces;
 #[cfg(test)]
 mod tests;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
-pub(crate) use findings::Finding;
+pub(crate) use findings::{Finding, plural, point};
 pub(crate) use foreign::ForeignMesh;
 pub(crate) use matching::Farthest;
 pub(crate) use outcomes::{SideCut, SideDifference};
@@ -92,6 +92,8 @@ const FIT: f64 = 1e-5;
 const STRAYS: f64 = 0.4;
 /// A vertex is far from the surface beyond this part of the diagonal.
 const FAR: f64 = 0.02;
+/// If a larger share of the vertices is far from the surface, they belong to another mesh.
+const MANY_FAR: f64 = 0.2;
 
 /// Compares another program's tessellation with ours.
 ///
@@ -103,138 +105,200 @@ pub(crate) fn compare(
     exactness: Exactness,
     progress: &Progress,
 ) -> Result<Comparison, Cancelled> {
-    let bounds = Bounds::of(ours.topology.points.iter().copied());
-    let diagonal = f64::from(bounds.diagonal());
-    let fit = (FIT * diagonal).max(exactness.within).max(2.0 * exactness.resolution);
-    let empty = Comparison::new(ours, theirs, diagonal);
+    let empty = Comparison::new(ours, theirs);
     let Some(own) = Locator::of_own(ours) else { return Ok(empty) };
-    let emitted = Bounds::of(ours.tessellated.vertices.iter().map(|vertex| vertex.position.into()));
-    let emitted = if ours.tessellated.vertices.is_empty() { bounds } else { emitted };
-    let alignment = Alignment::find(theirs, &own, [emitted.min, emitted.max]);
+    let fit = (FIT * empty.diagonal).max(exactness.within).max(2.0 * exactness.resolution);
+    let alignment = Alignment::find(theirs, &own, &ours.emitted_positions(), fit);
     let positions: Vec<DVec3> = theirs.positions.iter().map(|position| position.as_dvec3()).collect();
     let positions = match &alignment {
         Some(alignment) => positions.into_iter().map(|position| alignment.ours(position)).collect(),
         None => positions,
     };
-    let on_own = Overlaid::new(theirs, ours.topology, &own, &positions, fit, progress)?;
-    let strays = on_own.strays();
-    let other = match strays.is_empty() {
-        true => None,
-        false => Trial::new(ours.mesh, &on_own, ours.inputs, &strays).other_surface(progress)?,
-    };
-    let off_own = strays.len();
-    let surface = |inputs: &Inputs| Locator::of_surface(ours.mesh, ours.topology, inputs, FINE);
-    let other_locator = other.as_ref().and_then(surface);
-    let overlaid = match &other_locator {
-        Some(locator) => Overlaid::new(theirs, ours.topology, locator, &positions, fit, progress)?,
-        None => on_own,
-    };
-    let strays = overlaid.strays();
-    let is_fitted = strays.len() as f64 <= STRAYS * positions.len() as f64;
-    // Vertices that are on none of our surfaces are displaced from our own, or belong to another mesh.
-    let undisplaced = undisplaced(ours.inputs);
-    let base = if is_fitted { None } else { surface(&undisplaced) };
-    let overlaid = match &base {
-        Some(base) => Overlaid::new(theirs, ours.topology, base, &positions, f64::INFINITY, progress)?,
-        None => overlaid,
-    };
-    let strays = if is_fitted { strays } else { Vec::new() };
-    let assignment = Assignment::new(&overlaid, progress)?;
+    let laid = Laid::new(ours, Overlaid::new(theirs, ours.topology, own, &positions, fit, progress)?, progress)?;
+    let assignment = Assignment::new(&laid.overlaid, progress)?;
     let own_mesh = OwnMesh::new(ours.tessellated);
     let outcomes = Outcomes::new(ours, &own_mesh, &assignment, exactness, progress)?;
+    let strays = if laid.is_fitted { laid.overlaid.strays() } else { Vec::new() };
     let mut found = Comparison {
-        findings: Vec::new(),
-        from_surface: overlaid.places.iter().map(|place| place.distance).fold(0.0, f64::max),
+        from_surface: laid.overlaid.places.iter().map(|place| place.distance).fold(0.0, f64::max),
         farthest: outcomes.farthest(),
         patches: outcomes.patches(),
         missing: outcomes.missing.clone(),
         strays: strays.iter().map(|index| positions[*index as usize]).collect(),
         ..empty
     };
-    let far = overlaid.places.iter().filter(|place| place.distance > FAR * diagonal).count();
     found.findings.extend(alignment.map(Finding::Aligned));
     if theirs.not_finite > 0 {
         found.findings.push(Finding::NotFinite { count: theirs.not_finite });
     }
-    if !is_fitted && far as f64 > 0.2 * positions.len() as f64 && !outcomes.are_mostly_the_same() {
-        let vertices = positions.len() as u64;
-        found.findings.push(Finding::NotATessellation { far: far as u64, vertices, distance: FAR * diagonal });
+    if let Some(other_mesh) = laid.other_mesh(found.diagonal).filter(|_| !outcomes.are_mostly_the_same()) {
+        found.findings.push(other_mesh);
         found.positions = positions;
         return Ok(found);
     }
-    if let Some(theirs) = &other {
-        let (ours, theirs) = (ours.inputs.tessellation, theirs.tessellation);
-        let (vertices, of) = (off_own as u64, positions.len() as u64);
-        found.findings.push(Finding::OtherSurface { ours, theirs, vertices, of });
-    }
-    if !is_fitted {
-        found.findings.push(Finding::Displaced(outcomes.displaced(ours, fit)));
-    } else {
+    found.findings.extend(laid.other_surface(ours));
+    if laid.is_fitted {
         found.findings.extend(outcomes.moved(ours, &strays));
+    } else {
+        found.findings.push(Finding::Displaced(outcomes.displaced(ours, fit)));
     }
-    found.sides = outcomes.explain(ours, other.as_ref(), &mut found.findings, progress)?;
+    let explained = outcomes.explain(ours, laid.other.as_ref(), &mut found.findings, progress)?;
     outcomes.judge_triangles(ours, alignment.as_ref(), &mut found.findings);
-    found.different = outcomes.different_at_all();
-    let is_known = found.findings.iter().any(|finding| matches!(finding, Finding::Factors { .. }));
-    if is_known && found.findings.iter().any(Finding::is_about_few_points) {
-        let is_same = |turned: &Outcomes| turned.different_at_all().is_empty();
-        if other_convention(ours, &assignment, exactness, progress, |_| true, is_same)?.is_some() {
-            found.leave_to_factors();
-        }
+    if let Some(sides) = explained {
+        (found.sides, found.different) = (sides, outcomes.different_at_all());
     }
-    let largest = found.farthest.filter(|farthest| farthest.distance > exactness.within);
-    if let Some(farthest) = largest.filter(|_| found.findings.iter().all(|finding| finding.is_about_coordinates())) {
-        let triangle = ours.topology.patches[farthest.patch as usize].triangle;
-        let rounding = Finding::Rounding { farthest, ulps: farthest.distance / found.ulp, triangle };
-        // A valid convention gives the same points but for their last bits.
-        let own = ours.inputs.tessellation.convention;
-        let is_valid = |other: &Convention| own.is_consistent() && other.is_consistent();
-        let is_near = |turned: &Outcomes| turned.farthest().is_some_and(|far| far.distance <= exactness.within);
-        let theirs = other_convention(ours, &assignment, exactness, progress, is_valid, is_near)?;
-        found.findings.push(theirs.map_or(rounding, |theirs| Finding::Convention { ours: own, theirs }));
-    }
+    let conventions = Conventions { ours, assignment: &assignment, exactness, progress };
+    found.leave_to_factors(&conventions)?;
+    found.judge_distances(&conventions)?;
     found.positions = positions;
     Ok(found)
 }
 
+/// Their vertices over the surface that they lie on, and which one that is.
+struct Laid<'a> {
+    /// Over our own surface, over another one of ours, or over our own without displacement.
+    overlaid: Overlaid<'a>,
+    /// Our inputs with the surface that they lie on, if it isn't our own.
+    other: Option<Inputs>,
+    /// How many of them are off our own surface.
+    off_own: u64,
+    /// Whether most of them lie on the surface. Otherwise they are displaced from it, or belong to another mesh.
+    is_fitted: bool,
+}
+
+impl<'a> Laid<'a> {
+    /// Seeks their surface, from where they lie over ours.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    fn new(ours: &Ours<'a>, on_own: Overlaid<'a>, progress: &Progress) -> Result<Self, Cancelled> {
+        let surface = |inputs: &Inputs| Locator::of_surface(ours.mesh, ours.topology, inputs, FINE);
+        let strays = on_own.strays();
+        let other = match strays.is_empty() {
+            true => None,
+            false => Trial::new(ours.mesh, &on_own, ours.inputs, &strays).other_surface(progress)?,
+        };
+        let overlaid = match other.as_ref().and_then(surface) {
+            Some(locator) => on_own.over(locator, progress)?,
+            None => on_own,
+        };
+        let is_fitted = overlaid.strays().len() as f64 <= STRAYS * overlaid.positions.len() as f64;
+        let base = if is_fitted { None } else { surface(&undisplaced(ours.inputs)) };
+        let overlaid = match base {
+            // Where they are displaced, every vertex counts as near its place.
+            Some(base) => Overlaid { fit: f64::INFINITY, ..overlaid.over(base, progress)? },
+            None => overlaid,
+        };
+        Ok(Self { overlaid, other, off_own: strays.len() as u64, is_fitted })
+    }
+
+    /// Says that they belong to another mesh, if so many are far away that displacement is no explanation.
+    fn other_mesh(&self, diagonal: f64) -> Option<Finding> {
+        let distance = FAR * diagonal;
+        let places = &self.overlaid.places;
+        let far = places.iter().filter(|place| place.distance > distance).count();
+        let is_other = !self.is_fitted && far as f64 > MANY_FAR * places.len() as f64;
+        is_other.then_some(Finding::NotATessellation { far: far as u64, vertices: places.len() as u64, distance })
+    }
+
+    /// Names their surface, if it isn't ours.
+    fn other_surface(&self, ours: &Ours) -> Option<Finding> {
+        let theirs = self.other.as_ref()?.tessellation;
+        let (vertices, of) = (self.off_own, self.overlaid.positions.len() as u64);
+        Some(Finding::OtherSurface { ours: ours.inputs.tessellation, theirs, vertices, of })
+    }
+}
+
+impl Ours<'_> {
+    /// The positions that are emitted, or else those of the mesh.
+    fn emitted_positions(&self) -> Vec<Vec3> {
+        match &self.tessellated.vertices[..] {
+            [] => self.topology.points.clone(),
+            emitted => emitted.iter().map(|vertex| vertex.position.into()).collect(),
+        }
+    }
+}
+
 impl Comparison {
-    /// Another order of factors gives all of their points. So it also explains a few that seem to be moved, and their triangles.
-    fn leave_to_factors(&mut self) {
+    /// Where another convention gives all of their points, it also explains a few that seem to be moved, and their triangles.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    fn leave_to_factors(&mut self, conventions: &Conventions) -> Result<(), Cancelled> {
+        let is_known = self.findings.iter().any(|finding| matches!(finding, Finding::Factors { .. }));
+        if !is_known || !self.findings.iter().any(Finding::is_about_few_points) {
+            return Ok(());
+        }
+        let is_same = |turned: &Outcomes| turned.different_at_all().is_empty();
+        if conventions.other(|_| true, is_same)?.is_none() {
+            return Ok(());
+        }
         self.findings.retain(|finding| !finding.is_about_few_points());
         for finding in &mut self.findings {
             if let Finding::Factors { patches, .. } = finding {
                 *patches = self.different.len() as u64;
             }
         }
+        Ok(())
+    }
+
+    /// Says what distances between the same vertices mean, where nothing else was found but how coordinates are meant.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    fn judge_distances(&mut self, conventions: &Conventions) -> Result<(), Cancelled> {
+        let Conventions { ours, exactness: Exactness { within, .. }, .. } = *conventions;
+        let Some(farthest) = self.farthest.filter(|farthest| farthest.distance > within) else { return Ok(()) };
+        if !self.findings.iter().all(Finding::is_about_coordinates) {
+            return Ok(());
+        }
+        // A valid convention gives the same points but for their last bits.
+        let own = ours.inputs.tessellation.convention;
+        let is_valid = |other: &Convention| own.is_consistent() && other.is_consistent();
+        let is_near = |turned: &Outcomes| turned.farthest().is_some_and(|far| far.distance <= within);
+        let triangle = ours.topology.patches[farthest.patch as usize].triangle;
+        self.findings.push(match conventions.other(is_valid, is_near)? {
+            Some(theirs) => Finding::Convention { ours: own, theirs },
+            None => Finding::Rounding { farthest, ulps: farthest.distance / self.ulp, triangle },
+        });
+        Ok(())
     }
 }
 
-/// Finds the convention among some of the others under which what we emit passes `suits`, which gets our outcomes under it.
-///
-/// # Errors
-/// [`Cancelled`].
-fn other_convention(
-    ours: &Ours,
-    assignment: &Assignment,
+/// What their triangles are held against to find their convention.
+struct Conventions<'a> {
+    ours: &'a Ours<'a>,
+    assignment: &'a Assignment<'a>,
     exactness: Exactness,
-    progress: &Progress,
-    among: impl Fn(&Convention) -> bool,
-    suits: impl Fn(&Outcomes) -> bool,
-) -> Result<Option<Convention>, Cancelled> {
-    let own = ours.inputs.tessellation.convention;
-    // Given factors are in the order of our convention.
-    let others = Convention::ALL.into_iter().filter(|other| ours.given.is_none() && *other != own);
-    for theirs in others.filter(among) {
-        let tessellation = Tessellation { convention: theirs, ..ours.inputs.tessellation };
-        let inputs = Inputs { tessellation, ..*ours.inputs };
-        let tessellated = tessellate(ours.mesh, ours.topology, &inputs, None);
-        let turned = Ours { inputs: &inputs, tessellated: &tessellated, ..*ours };
-        let own_mesh = OwnMesh::new(&tessellated);
-        if suits(&Outcomes::new(&turned, &own_mesh, assignment, exactness, progress)?) {
-            return Ok(Some(theirs));
+    progress: &'a Progress,
+}
+
+impl Conventions<'_> {
+    /// Finds the convention among some of the others under which what we emit passes `suits`, which gets our outcomes under it.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    fn other(
+        &self,
+        among: impl Fn(&Convention) -> bool,
+        suits: impl Fn(&Outcomes) -> bool,
+    ) -> Result<Option<Convention>, Cancelled> {
+        let Self { ours, assignment, exactness, progress } = *self;
+        let own = ours.inputs.tessellation.convention;
+        // Given factors are in the order of our convention.
+        let others = Convention::ALL.into_iter().filter(|other| ours.given.is_none() && *other != own);
+        for theirs in others.filter(among) {
+            let tessellation = Tessellation { convention: theirs, ..ours.inputs.tessellation };
+            let inputs = Inputs { tessellation, ..*ours.inputs };
+            let tessellated = tessellate(ours.mesh, ours.topology, &inputs, None);
+            let turned = Ours { inputs: &inputs, tessellated: &tessellated, ..*ours };
+            let own_mesh = OwnMesh::new(&tessellated);
+            if suits(&Outcomes::new(&turned, &own_mesh, assignment, exactness, progress)?) {
+                return Ok(Some(theirs));
+            }
         }
+        Ok(None)
     }
-    Ok(None)
 }
 
 /// The inputs without displacement.
@@ -255,7 +319,7 @@ impl<'a> Locator<'a> {
 
 impl Comparison {
     /// Without anything that was found.
-    fn new(ours: &Ours, theirs: &ForeignMesh, diagonal: f64) -> Self {
+    fn new(ours: &Ours, theirs: &ForeignMesh) -> Self {
         Self {
             findings: Vec::new(),
             vertices: theirs.positions.len() as u64,
@@ -264,7 +328,7 @@ impl Comparison {
             from_surface: 0.0,
             farthest: None,
             ulp: ulp(ours.topology),
-            diagonal,
+            diagonal: Bounds::of(ours.topology.points.iter().copied()).diagonal().into(),
             sides: Vec::new(),
             different: Vec::new(),
             missing: Vec::new(),

@@ -11,7 +11,7 @@ use super::own_mesh::{OwnMesh, OwnPatch};
 use super::{Exactness, Ours};
 use crate::mesh::EdgeKind;
 use crate::progress::{Cancelled, Progress};
-use crate::tessellate::{FACTOR_VALUE, Inputs, Partitioning, hull_factors, segments};
+use crate::tessellate::{FACTOR_VALUE, Inputs, Lod, Partitioning, Tessellation, hull_factors, segments};
 use crate::view::ulp;
 
 /// How every patch came out.
@@ -143,10 +143,12 @@ impl<'a> Outcomes<'a> {
         self.compared().filter(|(_, outcome)| !outcome.found.has_same_points).map(|(patch, _)| patch).collect()
     }
 
-    /// Patches of which anything differs but distances.
+    /// Patches of which anything differs but distances. Places of displaced vertices are too rough to tell one triangle from the next.
     pub(super) fn different_at_all(&self) -> Vec<u32> {
+        let is_exact = self.assignment.overlaid.fit.is_finite();
         let differs = |found: &Match| {
-            !found.has_same_points || found.missing + found.doubled + found.flipped + found.other + found.slid > 0
+            let counts = found.missing + found.doubled + found.other + found.slid;
+            !found.has_same_points || found.flipped > 0 || is_exact && counts > 0
         };
         let different = self.compared().filter(|(_, outcome)| differs(&outcome.found)).map(|(patch, _)| patch);
         different.chain(self.additional.iter().copied()).collect()
@@ -184,24 +186,23 @@ impl<'a> Outcomes<'a> {
         let distance = |index: &u32| overlaid.places[*index as usize].distance;
         let triangle = |patch: u32| ours.topology.patches[patch as usize].triangle;
         let vertices = strays.len() as u64 + slid;
-        match strays.iter().max_by(|a, b| distance(a).total_cmp(&distance(b))) {
-            Some(worst) => Some(Finding::Moved {
-                vertices,
-                farthest: overlaid.positions[*worst as usize],
-                distance: distance(worst),
-                triangle: triangle(overlaid.places[*worst as usize].patch),
-            }),
-            None => self.farthest().filter(|_| slid > 0).map(|farthest| Finding::Moved {
-                vertices,
-                farthest: farthest.theirs,
-                distance: farthest.distance,
-                triangle: triangle(farthest.patch),
-            }),
+        let worst = strays.iter().max_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let least = worst.map_or(0.0, distance);
+        // A vertex is no nearer to where it belongs than to the surface, unless it isn't known where it belongs.
+        if let Some(farthest) = self.farthest().filter(|farthest| vertices > 0 && farthest.distance >= least) {
+            let Farthest { distance, patch, theirs, .. } = farthest;
+            return Some(Finding::Moved { vertices, farthest: theirs, distance, triangle: triangle(patch) });
         }
+        worst.map(|worst| Finding::Moved {
+            vertices,
+            farthest: overlaid.positions[*worst as usize],
+            distance: least,
+            triangle: triangle(overlaid.places[*worst as usize].patch),
+        })
     }
 
     /// Explains where points differ, and returns the sides that are cut differently. `other` are our inputs with the surface that
-    /// their vertices lie on, if it isn't ours.
+    /// their vertices lie on, if it isn't ours. `None` if no point differs but for that surface or for displacement.
     ///
     /// # Errors
     /// [`Cancelled`].
@@ -211,14 +212,18 @@ impl<'a> Outcomes<'a> {
         other: Option<&Inputs>,
         findings: &mut Vec<Finding>,
         progress: &Progress,
-    ) -> Result<Vec<SideDifference>, Cancelled> {
+    ) -> Result<Option<Vec<SideDifference>>, Cancelled> {
         let different = self.different();
         if different.is_empty() {
-            return Ok(Vec::new());
+            return Ok(Some(Vec::new()));
         }
         let Ours { mesh, inputs, given, .. } = *ours;
         let explainer = Explainer { mesh, assignment: self.assignment, inputs, other, given, reaches: &self.reaches };
         let explanations = explainer.explain(&different, progress)?;
+        let own = Explanation { partitioning: inputs.tessellation.partitioning, rule: Rule::Same };
+        if explanations.first() == Some(&own) {
+            return Ok(None);
+        }
         let (patches, of) = (different.len() as u64, self.compared().count() as u64);
         let mut sides: Vec<SideDifference> = Vec::new();
         let (mut inside, mut suited, mut seen) = (0, [0_usize; 4], 0);
@@ -237,22 +242,20 @@ impl<'a> Outcomes<'a> {
             }
         }
         sides.sort_by(|a, b| b.ratio().total_cmp(&a.ratio()));
-        let own = Explanation { partitioning: inputs.tessellation.partitioning, rule: Rule::Same };
-        if explanations.first() == Some(&own) {
-            return Ok(sides);
-        }
-        let (ours_is, convention) = (inputs.tessellation.partitioning, inputs.tessellation.convention);
+        let Tessellation { partitioning, convention, .. } = inputs.tessellation;
         findings.push(match explanations.is_empty() {
-            false => Finding::Factors { ours: ours_is, convention, explanations, patches, of },
+            false => Finding::Factors { ours: partitioning, convention, explanations, patches, of },
             true => {
                 let suits = suited.into_iter().zip(Partitioning::DIRECT3D);
                 let suits = suits.filter(|(count, _)| *count as f64 >= SUITS * seen as f64);
                 let suits = suits.map(|(_, partitioning)| partitioning).collect();
-                Finding::UnknownFactors { patches, of, sides: sides.len() as u64, inside, suits, ours: ours_is }
+                let is_of_view = given.is_none() && inputs.tessellation.used_lod() != Lod::Uniform;
+                let sides = sides.len() as u64;
+                Finding::UnknownFactors { patches, of, sides, inside, suits, ours: partitioning, is_of_view }
             }
         });
         findings.extend(self.cracks(ours, progress)?);
-        Ok(sides)
+        Ok(Some(sides))
     }
 
     /// How their triangles cut the sides of a patch.

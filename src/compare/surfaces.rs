@@ -98,6 +98,10 @@ impl<'a> Trial<'a> {
             for _ in 0..STEPS {
                 let [lower, upper] =
                     [self.fitting(&at(least), progress)?.mean, self.fitting(&at(most), progress)?.mean];
+                // On a flat mesh all strengths are alike.
+                if lower + upper == 0.0 {
+                    break;
+                }
                 let middle = least + (most - least) * (lower / (lower + upper)) as f32;
                 let reach = (most - least) / 10.0;
                 [least, most] = [middle - reach, middle + reach];

@@ -4,8 +4,8 @@ use glam::Vec3;
 use serde::Serialize;
 
 use super::place::{Place, Spot};
-use super::{Gate, GateKind};
-use crate::measure::{CrackedEdge, Measured, PatchesAbove};
+use super::{Gate, GateKind, allowed};
+use crate::measure::{CrackedEdge, EdgeSide, Measured, PatchesAbove};
 use crate::mesh::{TJunction, Topology};
 use crate::names::shown;
 use crate::numbers::{exact, grouped, hundredths, short};
@@ -69,7 +69,7 @@ impl Judgement {
     pub(crate) fn sentence(&self) -> String {
         let place = self.place.as_ref().map(|place| format!("; {}", place.text)).unwrap_or_default();
         match self.found {
-            Some(_) => format!("{}, and {} may be{place}", self.text, grouped(self.limit)),
+            Some(_) => format!("{}, {}{place}", self.text, allowed(self.limit)),
             None => self.text.clone(),
         }
     }
@@ -216,7 +216,11 @@ fn worst_factors(facts: &Facts) -> Option<Place> {
     let different = measured.cracks.edges.iter().filter(|crack| crack.different_factors).map(range);
     let (edge, least, most) = different.reduce(|a, b| if b.2 - b.1 > a.2 - a.1 { b } else { a })?;
     let factors = format!("{} and {}", exact(least), exact(most));
-    Some(edge_place(facts.topology, edge, None, |there| format!("the factors differ most, {factors}, {there}")))
+    // In the middle of what was emitted, since the middle of a straight line may lie below the surface.
+    let emitted = measured.outlines.edge(facts.topology, edge).into_iter().next();
+    let emitted: Vec<Vec3> = emitted.iter().flat_map(EdgeSide::positions).collect();
+    let at = emitted.get(emitted.len() / 2).copied();
+    Some(edge_place(facts.topology, edge, at, |there| format!("the factors differ most, {factors}, {there}")))
 }
 
 fn worst_leak(facts: &Facts) -> Option<Place> {
@@ -224,7 +228,7 @@ fn worst_leak(facts: &Facts) -> Option<Place> {
     // The largest is the first.
     let Leak { middle, pixels } = *leaks.first()?;
     let text = format!("the largest leak, {pixels} px, is at x {:.0}, y {:.0} px of the picture", middle.x, middle.y);
-    Some(Place { text, triangles: Vec::new(), spot: Spot::Px(middle) })
+    Some(Place { text, triangles: Vec::new(), spot: Spot::Px { middle, pixels } })
 }
 
 fn worst_fold(facts: &Facts) -> Option<Place> {

@@ -8,9 +8,10 @@ use std::fmt;
 use std::str::FromStr;
 
 pub(crate) use judgement::{Facts, Judgement, judge};
-pub(crate) use place::{Place, Spot};
+pub(crate) use place::Place;
 
 use crate::names::every;
+use crate::numbers::grouped;
 
 /// What a gate counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,6 +112,11 @@ impl FromStr for Gate {
         let expected = || format!("expected a whole number after {name}, such as {name}:100000");
         Ok(Self { kind, limit: limit.ok_or_else(expected)? })
     }
+}
+
+/// What a limit says, as the end of a clause.
+pub(crate) fn allowed(limit: u64) -> String {
+    format!("where {} {} allowed", grouped(limit), if limit == 1 { "is" } else { "are" })
 }
 
 /// Writes the gate as the command line takes it.

@@ -7,8 +7,10 @@ use crate::mesh::Bounds;
 use crate::render::Camera;
 use crate::render::camera::FIELDS_OF_VIEW;
 
-/// How many times a px of the judged picture is enlarged where a leak is shown.
+/// How many times a px of the judged picture is enlarged at most where a leak is shown.
 const ENLARGED: f32 = 8.0;
+/// A leak is enlarged less if it would be larger than this part of the picture's height.
+const OF_HEIGHT: f32 = 0.25;
 
 /// The worst place that a gate found.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -29,8 +31,8 @@ pub(crate) enum Spot {
     Edge { ends: [Vec3; 2], facing: Vec3, at: Vec3 },
     /// A patch: the positions of its corners, and the place on it.
     Patch { corners: [Vec3; 3], at: Vec3 },
-    /// A place of the judged picture, in px from its top left.
-    Px(Vec2),
+    /// A place of the judged picture, in px from its top left, and how many px there are.
+    Px { middle: Vec2, pixels: u32 },
 }
 
 impl Spot {
@@ -44,7 +46,10 @@ impl Spot {
                 camera.frame_triangle(corners, bounds);
                 camera.target = at;
             }
-            Self::Px(px) => look_closer(&mut camera, px, viewport),
+            Self::Px { middle, pixels } => {
+                let most = OF_HEIGHT * viewport.y / (pixels as f32).sqrt();
+                look_closer(&mut camera, middle, viewport, ENLARGED.min(most.max(1.0)));
+            }
         }
         camera
     }
@@ -53,8 +58,13 @@ impl Spot {
     pub(crate) fn at(&self) -> Option<Vec3> {
         match *self {
             Self::Edge { at, .. } | Self::Patch { at, .. } => Some(at),
-            Self::Px(_) => None,
+            Self::Px { .. } => None,
         }
+    }
+
+    /// The place of a picture, in px from its top left; none for a position.
+    pub(crate) fn px(&self) -> Option<Vec2> {
+        if let Self::Px { middle, .. } = *self { Some(middle) } else { None }
     }
 }
 
@@ -66,20 +76,19 @@ impl Serialize for Spot {
             at: Option<[f32; 3]>,
             px: Option<[f32; 2]>,
         }
-        let px = if let Self::Px(px) = self { Some(px.to_array()) } else { None };
-        Written { at: self.at().map(|at| at.to_array()), px }.serialize(serializer)
+        Written { at: self.at().map(|at| at.to_array()), px: self.px().map(|px| px.to_array()) }.serialize(serializer)
     }
 }
 
 /// Turns a perspective camera's eye, or moves an orthographic camera, so that a px comes into the middle, and enlarges it. The eye
 /// of a perspective camera stays, since a leak is seen from there alone.
-fn look_closer(camera: &mut Camera, px: Vec2, viewport: Vec2) {
+fn look_closer(camera: &mut Camera, px: Vec2, viewport: Vec2, enlarged: f32) {
     let [right, up, _] = camera.axes();
     let unit = camera.units_per_pixel(viewport.y);
     let aside = (px - viewport * 0.5) * vec2(unit, -unit);
     let (eye, seen) = (camera.eye(), camera.target + right * aside.x + up * aside.y);
     camera.target = seen;
-    let half = (0.5 * camera.field_of_view).to_radians().tan() / ENLARGED;
+    let half = (0.5 * camera.field_of_view).to_radians().tan() / enlarged;
     camera.field_of_view = (2.0 * half.atan().to_degrees()).max(*FIELDS_OF_VIEW.start());
     if !camera.orthographic {
         let back = (eye - seen).normalize_or_zero();
@@ -103,7 +112,7 @@ mod tests {
             let judged = Camera { orthographic, ..Camera::framing(&bounds, viewport) };
             let seen = |camera: &Camera, place| project(camera.clip_from_object(viewport, &bounds), viewport, place);
             let px = seen(&judged, place).expect("in front of the eye");
-            let camera = Spot::Px(px).camera(&judged, viewport, &bounds);
+            let camera = Spot::Px { middle: px, pixels: 4 }.camera(&judged, viewport, &bounds);
             let now = seen(&camera, place).expect("in front of the eye");
             assert!(now.distance(viewport * 0.5) < 0.5, "{now}");
             assert!(orthographic || camera.eye().distance(judged.eye()) < 1e-4, "{camera:?}");
@@ -111,6 +120,9 @@ mod tests {
             let apart = |camera| seen(camera, place).zip(seen(camera, beside)).map_or(0.0, |(a, b)| a.distance(b));
             let enlarged = apart(&camera) / apart(&judged);
             assert!((enlarged - ENLARGED).abs() < 0.5, "{enlarged} times");
+            // All of a leak that is a third as high as the picture is seen.
+            let whole = Spot::Px { middle: px, pixels: 160 * 160 }.camera(&judged, viewport, &bounds);
+            assert!((apart(&whole) / apart(&judged) - 1.0).abs() < 0.05, "{whole:?}");
         }
     }
 
@@ -121,7 +133,7 @@ mod tests {
         let written = serde_json::to_value(place(edge)).expect("JSON");
         let expected = serde_json::json!({ "text": "there", "triangles": [3], "at": [0.5, 0.0, 0.0], "px": null });
         assert_eq!(written, expected);
-        let leak = serde_json::to_value(place(Spot::Px(vec2(3.0, 4.5)))).expect("JSON");
+        let leak = serde_json::to_value(place(Spot::Px { middle: vec2(3.0, 4.5), pixels: 2 })).expect("JSON");
         assert_eq!((&leak["at"], &leak["px"]), (&serde_json::Value::Null, &serde_json::json!([3.0, 4.5])));
     }
 }

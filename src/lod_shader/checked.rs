@@ -31,7 +31,7 @@ pub(super) fn check(text: &str, source: &Source) -> Result<bool, Fault> {
         check_block(text, &function.body, 0, module.functions.get_span(handle))?;
     }
     validate(text, &module)?;
-    check_memory(&module)?;
+    check_memory(text, &module)?;
     Ok(has_inside)
 }
 
@@ -192,17 +192,25 @@ fn check_block(text: &str, block: &Block, depth: usize, around: Span) -> Result<
 }
 
 /// Bounds the memory of all variables, and of every type, since values that are no variables take memory too.
-fn check_memory(module: &Module) -> Result<(), Fault> {
+fn check_memory(text: &str, module: &Module) -> Result<(), Fault> {
     let mut layouter = Layouter::default();
-    let too_large = |bytes| Fault { line: 1, kind: FaultKind::Memory(bytes) };
-    layouter.update(module.to_ctx()).map_err(|_| too_large(u64::from(u32::MAX)))?;
+    let too_large = |bytes, span| Fault { line: line_of_span(text, span), kind: FaultKind::Memory(bytes) };
+    layouter.update(module.to_ctx()).map_err(|_| too_large(u64::from(u32::MAX), Span::UNDEFINED))?;
     let size = |ty| u64::from(layouter[ty].size);
-    let of_types = module.types.iter().map(|(handle, _)| size(handle)).max().unwrap_or(0);
-    let of_function = |function: &Function| function.local_variables.iter().map(|(_, own)| size(own.ty)).sum::<u64>();
-    let of_variables: u64 = module.global_variables.iter().map(|(_, own)| size(own.ty)).sum::<u64>()
-        + module.functions.iter().map(|(_, function)| of_function(function)).sum::<u64>();
-    match of_types.max(of_variables) {
-        bytes if bytes > MOST_MEMORY => Err(too_large(bytes)),
+    let globals = &module.global_variables;
+    let mut variables: Vec<_> = globals.iter().map(|(own, it)| (size(it.ty), globals.get_span(own))).collect();
+    for (_, Function { local_variables: locals, .. }) in module.functions.iter() {
+        variables.extend(locals.iter().map(|(own, it)| (size(it.ty), locals.get_span(own))));
+    }
+    let bytes: u64 = variables.iter().map(|(bytes, _)| bytes).sum();
+    // The largest one is where to begin.
+    let largest = variables.iter().max_by_key(|(bytes, _)| *bytes);
+    if let Some((_, span)) = largest.filter(|_| bytes > MOST_MEMORY) {
+        return Err(too_large(bytes, *span));
+    }
+    let types = module.types.iter().map(|(own, _)| (size(own), module.types.get_span(own)));
+    match types.max_by_key(|(bytes, _)| *bytes) {
+        Some((bytes, span)) if bytes > MOST_MEMORY => Err(too_large(bytes, span)),
         _ => Ok(()),
     }
 }

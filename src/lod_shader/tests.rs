@@ -79,6 +79,9 @@ fn what_touches_more_than_an_invocation_is_refused() {
         let (_, said) = fault(&format!("{text}\n{EDGE}"));
         assert!(said.contains(says), "{text}: {said}");
     }
+    // What takes the most is where to begin.
+    let (line, said) = fault(&format!("\nvar<private> few: f32;\nvar<private> much: array<f32, 5000>;\n{EDGE}"));
+    assert_eq!((line, said.contains("variables take 20004 bytes")), (3, true), "{said}");
 }
 
 #[test]

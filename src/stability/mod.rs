@@ -12,7 +12,7 @@ mod sweep_chart;
 mod views;
 
 pub(crate) use cases::{CASES, Case, CaseView, DEFAULT_VIEW, Probe};
-pub(crate) use gates::failures;
+pub(crate) use gates::{Failure, failures};
 #[cfg(test)]
 pub(crate) use meshes::soup;
 pub(crate) use picture::{PictureError, picture};
@@ -20,10 +20,12 @@ pub(crate) use report::{LEGEND, PAGE, Section, Verdict, lines, page, table};
 pub(crate) use run::{Effort, run};
 #[cfg(test)]
 pub(crate) use views::random as random_camera;
+pub(crate) use views::viewport;
 
 use serde::Serialize;
 
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Moment};
+use crate::render::Camera;
 use crate::settings::Settings;
 use crate::tessellate::{Clip, Displacement, Edges, Lod, Partitioning, Surface, Tessellation};
 
@@ -202,6 +204,25 @@ impl Quantity {
     }
 }
 
+/// One tessellation that was tried, and from where it was seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Tried {
+    pub settings: Settings,
+    /// LOD and clipping are those of this camera, in a picture of the size of [`viewport`]. The mesh is seen from it, too.
+    pub camera: Camera,
+    /// None at rest.
+    pub moment: Option<Moment>,
+}
+
+impl Tried {
+    /// The mesh itself, from where its case's picture is taken.
+    pub(crate) fn of_mesh(subject: &Subject) -> Self {
+        let settings = Method::Flat.settings(Partitioning::Integer, 1.0);
+        let camera = views::camera(&subject.mesh.bounds(), &subject.view, viewport());
+        Self { settings, camera, moment: None }
+    }
+}
+
 /// One measurement: the worst number of a quantity over factors and views.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Row {
@@ -218,4 +239,7 @@ pub(crate) struct Row {
     pub holds: bool,
     #[serde(skip)]
     pub quantity: Quantity,
+    /// The first tessellation with that number; none for what isn't about a single one.
+    #[serde(skip)]
+    pub tried: Option<Tried>,
 }

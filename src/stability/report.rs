@@ -202,7 +202,8 @@ mod tests {
     fn row(method: &'static str, quantity: Quantity, measured: f64, promised: bool) -> Row {
         let (case, device) = ("split".to_owned(), "cpu".to_owned());
         let holds = measured <= quantity.limit();
-        Row { case, method, device, partitioning: "pow2", measured, unit: quantity.unit(), promised, holds, quantity }
+        let (partitioning, unit, tried) = ("pow2", quantity.unit(), None);
+        Row { case, method, device, partitioning, measured, unit, promised, holds, quantity, tried }
     }
 
     #[test]

@@ -9,7 +9,7 @@ use std::thread;
 
 use glam::{DVec2, Vec4};
 
-use super::{Method, Probe, Quantity, Row, Subject, views};
+use super::{Method, Probe, Quantity, Row, Subject, Tried, views};
 use crate::engine::Engine;
 use crate::gpu::{GpuError, Timing};
 use crate::measure::{AskedFactors, Measured, SWEEP_STEP, sweep};
@@ -48,31 +48,33 @@ impl Default for Effort {
 /// The segment length that adaptive LOD is asked for, in px.
 const PIXELS: f32 = 8.0;
 
-/// The worst number of each quantity over a method's factors and views.
+/// The worst number of each quantity over a method's factors and views, and the first tessellation that has it.
 #[derive(Clone, Debug, Default)]
-struct Worst(BTreeMap<Quantity, f64>);
+struct Worst(BTreeMap<Quantity, (f64, Option<Tried>)>);
 
 impl Worst {
-    fn take(&mut self, quantity: Quantity, measured: f64) {
-        let worst = self.0.entry(quantity).or_insert(measured);
-        *worst = worst.max(measured);
+    fn take(&mut self, quantity: Quantity, measured: f64, tried: Option<Tried>) {
+        let worst = self.0.entry(quantity).or_insert((measured, tried));
+        if measured > worst.0 {
+            *worst = (measured, tried);
+        }
     }
 
-    fn take_all(&mut self, measured: &Measured) {
-        self.take(Quantity::Points, measured.cracks.different_bits as f64);
-        self.take(Quantity::Factors, measured.cracks.different_factors as f64);
-        self.take(Quantity::Normals, measured.cracks.different_normals as f64);
-        self.take(Quantity::NotFinite, measured.not_finite as f64);
+    fn take_all(&mut self, measured: &Measured, tried: Tried) {
+        for (quantity, count) in [
+            (Quantity::Points, measured.cracks.different_bits),
+            (Quantity::Factors, measured.cracks.different_factors),
+            (Quantity::Normals, measured.cracks.different_normals),
+            (Quantity::NotFinite, measured.not_finite),
+        ] {
+            self.take(quantity, count as f64, Some(tried));
+        }
     }
 }
 
-/// One tessellation that is tried.
+/// A tessellation that is to be tried.
 struct Trial {
-    /// Only for meshes that move.
-    pose: Option<Arc<Pose>>,
-    settings: Settings,
-    /// LOD and clipping are computed for this camera, and leaks are counted from it.
-    camera: Camera,
+    tried: Tried,
     /// Further cameras that leaks are counted from, if factors and clipping don't depend on the camera.
     also_from: Vec<Camera>,
 }
@@ -155,42 +157,49 @@ impl<'a> Running<'a> {
     fn trials(&self, method: Method, partitioning: Partitioning, effort: &Effort) -> Vec<Trial> {
         let case_camera = views::camera(&self.bounds, &self.case.view, views::viewport());
         let random = |index| views::random(&self.bounds, index);
-        let uniform = effort.factors.iter().enumerate().map(|(turn, &factor)| Trial {
-            pose: None,
-            settings: method.displacing(&self.mesh, method.settings(partitioning, factor)),
-            camera: case_camera,
+        let seen = |settings, camera, also_from| Trial { tried: Tried { settings, camera, moment: None }, also_from };
+        let uniform = effort.factors.iter().enumerate().map(|(turn, &factor)| {
+            let settings = method.displacing(&self.mesh, method.settings(partitioning, factor));
             // Each camera is used with one of the factors.
-            also_from: (turn as u32..effort.cameras).step_by(effort.factors.len()).map(random).collect(),
+            let also_from = (turn as u32..effort.cameras).step_by(effort.factors.len()).map(random).collect();
+            seen(settings, case_camera, also_from)
         });
         let adaptive = method.displacing(&self.mesh, method.adaptive(partitioning, PIXELS));
         let unclipped = adaptive.with(Tessellation { clip: Clip::Off, ..adaptive.tessellation });
         // The paper's clip test drops whole patches, which would hide every other fault. It has cases of its own.
         let everywhere = if method == Method::PnAenAsPublished { unclipped } else { adaptive };
-        let seen = |settings, camera| Trial { pose: None, settings, camera, also_from: Vec::new() };
-        let random = (0..effort.cameras).map(|index| seen(everywhere, random(index)));
-        let views = [seen(unclipped, case_camera), seen(adaptive, case_camera)];
+        let random = (0..effort.cameras).map(|index| seen(everywhere, random(index), Vec::new()));
+        let views = [unclipped, adaptive].map(|settings| seen(settings, case_camera, Vec::new()));
         let views = views.into_iter().filter(|_| self.case.probe == Probe::View);
         let mut trials: Vec<_> = uniform.chain(random).chain(views).collect();
         for (index, trial) in trials.iter_mut().enumerate() {
-            trial.pose = self.pose(index);
+            trial.tried.moment = self.moment(index);
         }
         trials
     }
 
-    /// A pose for a trial of a mesh that moves. Trials use its clips in turn, at times that are spread evenly by the golden
+    /// The moment of a trial of a mesh that moves. Trials use its clips in turn, at times that are spread evenly by the golden
     /// ratio.
-    fn pose(&self, index: usize) -> Option<Arc<Pose>> {
+    fn moment(&self, index: usize) -> Option<Moment> {
         const GOLDEN: f64 = 0.618_033_988_749_895;
         let rig = self.mesh.rig.as_deref()?;
         let clip = index % rig.clips.len().max(1);
         let time = rig.clips.get(clip)?.duration * (GOLDEN * (index + 1) as f64).fract();
-        Some(Arc::new(rig.pose(Moment { clip, time })))
+        Some(Moment { clip, time })
+    }
+
+    /// The pose of the mesh at a moment.
+    fn pose(&self, moment: Option<Moment>) -> Option<Arc<Pose>> {
+        let rig = self.mesh.rig.as_deref()?;
+        Some(Arc::new(rig.pose(moment?)))
     }
 
     fn on_cpu(&self, method: Method, partitioning: Partitioning, effort: &Effort) -> Worst {
         let mut worst = Worst::default();
-        for Trial { pose, settings, camera, .. } in self.trials(method, partitioning, effort) {
+        for Trial { tried, .. } in self.trials(method, partitioning, effort) {
+            let Tried { settings, camera, moment } = tried;
             let view = camera.lod_view(views::viewport(), &self.bounds);
+            let pose = self.pose(moment);
             let (mesh, topology) = PosedMesh::new(self.mesh.clone(), self.topology.clone(), pose).deformed();
             let out = tessellate(&mesh, &topology, &settings.inputs(view), None);
             let asked = AskedFactors::new(
@@ -199,7 +208,7 @@ impl<'a> Running<'a> {
                 out.edge_factors.clone(),
             );
             let measured = Measured::of(&mesh, &topology, asked, &out);
-            self.take(&mut worst, &measured, &settings, &view, effort);
+            self.take(&mut worst, &measured, tried, &view, effort);
         }
         if self.case.probe == Probe::Sweep {
             let view = LodView::new(glam::Mat4::IDENTITY, views::viewport());
@@ -207,51 +216,50 @@ impl<'a> Running<'a> {
             let swept = sweep(&self.mesh, &self.topology, &inputs, 1.0..=effort.sweep_to, SWEEP_STEP);
             let largest = swept.largest().map_or(0.0, |step| step.jump);
             let quantity = if is_fractional(partitioning) { Quantity::Jump } else { Quantity::Pop };
-            worst.take(quantity, largest / f64::from(self.bounds.diagonal()));
+            worst.take(quantity, largest / f64::from(self.bounds.diagonal()), None);
         }
         worst
     }
 
     fn on_device(&mut self, method: Method, partitioning: Partitioning, effort: &Effort) -> Result<Worst, GpuError> {
         let mut worst = Worst::default();
-        for Trial { pose, settings, camera, also_from } in self.trials(method, partitioning, effort) {
+        for Trial { tried, also_from } in self.trials(method, partitioning, effort) {
+            let Tried { settings, camera, moment } = tried;
             let view = camera.lod_view(views::viewport(), &self.bounds);
+            let pose = self.pose(moment);
             let Some((engine, scene, _)) = &mut self.device else { break };
             scene.tessellator.set_pose(pose)?;
             engine.count(scene, &settings.inputs(view), &mut Timing::Off)?;
             let measured = engine.measure(scene)?;
-            for camera in also_from.iter().chain([&camera]) {
-                if let Some(leaks) = engine.leaks(scene, &measured, views::SIZE, camera)? {
-                    worst.take(Quantity::Leaks, leaks as f64);
+            for camera in also_from.into_iter().chain([camera]) {
+                if let Some(leaks) = engine.leaks(scene, &measured, views::SIZE, &camera)? {
+                    worst.take(Quantity::Leaks, leaks as f64, Some(Tried { camera, ..tried }));
                 }
             }
-            self.take(&mut worst, &measured, &settings, &view, effort);
+            self.take(&mut worst, &measured, tried, &view, effort);
             if self.case.probe == Probe::View && settings.tessellation.clip != Clip::Off {
                 let missing = self.missing(&settings, &camera)?;
-                worst.take(Quantity::Missing, missing as f64);
+                worst.take(Quantity::Missing, missing as f64, Some(tried));
             }
         }
         Ok(worst)
     }
 
-    fn take(&self, worst: &mut Worst, measured: &Measured, settings: &Settings, view: &LodView, effort: &Effort) {
-        worst.take_all(measured);
-        if effort.folds {
-            worst.take(Quantity::Folds, measured.folds as f64);
+    fn take(&self, worst: &mut Worst, measured: &Measured, tried: Tried, view: &LodView, effort: &Effort) {
+        worst.take_all(measured, tried);
+        if effort.folds || self.case.probe == Probe::Folds {
+            worst.take(Quantity::Folds, measured.folds as f64, Some(tried));
+        }
+        // Clipped patches have no segments to measure, and a random camera may be anywhere.
+        let Tessellation { clip, .. } = tried.settings.tessellation;
+        let is_adaptive = tried.settings.tessellation.used_lod() != Lod::Uniform;
+        if self.case.probe != Probe::View || !is_adaptive || clip != Clip::Off {
+            return;
         }
         let camera = views::camera(&self.bounds, &self.case.view, views::viewport());
-        let is_case_view = *view == camera.lod_view(views::viewport(), &self.bounds);
-        match self.case.probe {
-            Probe::Folds => worst.take(Quantity::Folds, measured.folds as f64),
-            // Clipped patches have no segments to measure, and a random camera may be anywhere.
-            Probe::View
-                if settings.tessellation.used_lod() != Lod::Uniform
-                    && settings.tessellation.clip == Clip::Off
-                    && is_case_view =>
-            {
-                worst.take(Quantity::Segment, longest_segment(&self.topology, measured, view) / f64::from(PIXELS));
-            }
-            _ => {}
+        if tried.camera == camera {
+            let longest = longest_segment(&self.topology, measured, view) / f64::from(PIXELS);
+            worst.take(Quantity::Segment, longest, Some(tried));
         }
     }
 
@@ -268,8 +276,9 @@ impl<'a> Running<'a> {
     }
 
     fn rows(&self, method: Method, partitioning: Partitioning, device: &str, worst: &Worst) -> Vec<Row> {
-        let row = |(&quantity, &measured): (&Quantity, &f64)| Row {
+        let row = |(&quantity, &(measured, tried)): (&Quantity, &(f64, Option<Tried>))| Row {
             promised: promised(method, quantity),
+            tried,
             ..row(&self.case.name, method.name(), device, partitioning.name(), quantity, measured)
         };
         worst.0.iter().map(row).collect()
@@ -313,6 +322,7 @@ fn row(
         promised: true,
         holds: measured <= quantity.limit(),
         quantity,
+        tried: None,
     }
 }
 

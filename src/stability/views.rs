@@ -10,8 +10,8 @@ use crate::truth::radical_inverse;
 /// The size of the picture that screen measurements refer to: width and height in px.
 pub(super) const SIZE: [u32; 2] = [320, 240];
 
-/// [`SIZE`] as a viewport for cameras.
-pub(super) fn viewport() -> Vec2 {
+/// The same as a viewport for cameras.
+pub(crate) fn viewport() -> Vec2 {
     vec2(SIZE[0] as f32, SIZE[1] as f32)
 }
 

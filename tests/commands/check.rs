@@ -46,7 +46,7 @@ path = "triangles.gltf"
 factor = 8
 
 [[files]]
-path = "**/odd/*.obj"
+path = "assets/odd/"
 fail-on = ["warnings:1", "t-junctions"]
 "#;
 
@@ -198,6 +198,7 @@ fn a_wrong_configuration_is_one_sentence_with_its_line() {
         ("[options]\n\nlod = \"errors\"", &["wrong.toml, line 3: ", "errors", "distance"]),
         ("[options]\ntolerance = \"much\"", &["wrong.toml, line 2: ", "from 0.01 to 100"]),
         ("[options]\nstats = \"-\"", &["wrong.toml, line 2: ", "stats"]),
+        ("[[files]]\npath = \"*.none\"\n[files.options]\nlod = \"errors\"", &["wrong.toml, line 4: ", "errors"]),
         ("[options]\nalpha = 0.5", &["wrong.toml: ", "--surface phong"]),
         ("[options]\nfactors = \"-\"", &["wrong.toml: ", "standard input"]),
         ("[cameras.a]\nfile-camera = 1\nroll = 3", &["wrong.toml: ", "file-camera", "roll"]),
@@ -214,6 +215,57 @@ fn a_wrong_configuration_is_one_sentence_with_its_line() {
     sentence(&["check", "shape:torus", "--config", &config], &["wrong.toml", "utf-8"]);
     sentence(&["check", "shape:torus", "--config", &folder.path("none.toml")], &["none.toml", "no such file"]);
     sentence(&["check", "shape:torus", "--config", &folder.path("")], &["it is no file"]);
+}
+
+#[test]
+fn patterns_are_seen_from_the_folder_of_the_configuration() {
+    let folder = Folder::new();
+    std::fs::create_dir_all(folder.path("assets/props/old")).expect("a writable folder");
+    for name in ["assets/a.glb", "assets/props/b.glb", "assets/props/old/c.glb"] {
+        std::fs::copy(vase(), folder.path(name)).expect("a copy");
+    }
+    // Which assets a pattern stands for: they alone fail its gate.
+    let failing = |pattern: &str| {
+        let config = format!("[[files]]\npath = \"{pattern}\"\nfail-on = [\"triangles:1\"]\n");
+        std::fs::write(folder.path("pnaen.toml"), config).expect("a writable folder");
+        let (_, json, errors) = check(&folder, &["--format", "json"]);
+        let report: Value = serde_json::from_str(&json).expect("JSON");
+        let names = failed(&report).into_iter().filter(|(_, gates)| !gates.is_empty()).map(|(name, _)| name);
+        (names.collect::<Vec<_>>().join(" "), errors)
+    };
+    for (pattern, expected) in [
+        ("*.glb", "a.glb b.glb c.glb"),
+        ("assets/*.glb", "a.glb"),
+        ("assets/props/*.glb", "b.glb"),
+        ("assets/props/**/*.glb", "b.glb c.glb"),
+        ("props/", "b.glb c.glb"),
+        ("assets/props", "b.glb c.glb"),
+        ("/a.glb", ""),
+        ("props/*.glb", ""),
+    ] {
+        let (found, errors) = failing(pattern);
+        assert_eq!(found, expected, "{pattern}");
+        let unmatched = format!("pnaen.toml, line 2: no asset matches the path {pattern}");
+        assert_eq!(errors.contains(&unmatched), expected.is_empty(), "{pattern}: {errors}");
+    }
+}
+
+#[test]
+fn a_section_may_hide_parts_that_only_some_of_its_assets_have() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("assets")).expect("a writable folder");
+    let part = |name: &str| format!("o {name}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n");
+    for (name, parts) in [("both.obj", part("body") + &part("collision")), ("one.obj", part("body"))] {
+        std::fs::write(folder.path(&format!("assets/{name}")), parts).expect("a writable folder");
+    }
+    let config = "[options]\nfactor = 1\npartitioning = \"integer\"\nhide-part = [\"collision\", \"lod1\"]\n";
+    std::fs::write(folder.path("pnaen.toml"), config).expect("a writable folder");
+    let (code, json, errors) = check(&folder, &["--format", "json"]);
+    assert_eq!(code, Some(0), "{errors}");
+    let report: Value = serde_json::from_str(&json).expect("JSON");
+    for index in 0..2 {
+        assert_eq!(report.pointer(&format!("/assets/{index}/views/0/numbers/triangles_in")), Some(&1.into()), "{json}");
+    }
 }
 
 #[test]

@@ -20,7 +20,7 @@ fn failures_are_one_line_and_exit_code_1() {
     );
     sentence(
         &["render", "shape:torus", "-o", &out, "--reference", "nowhere.png"],
-        &["nowhere.png", "could not be read"],
+        &["nowhere.png", "could not be read", "there is no such file or folder"],
     );
     let said = failure(&["tessellate", "shape:torus", "-o", &folder.path("out.stl")], 2);
     assert!(said.contains(".glb or .obj"), "{said}");

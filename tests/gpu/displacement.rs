@@ -4,11 +4,10 @@ use std::f32::consts::TAU;
 use std::sync::Arc;
 
 use pnaen::engine::Measurements;
-use pnaen::engine::{Loaded, Preparation, Runs};
+use pnaen::engine::{Loaded, Runs};
 use pnaen::gpu::Timing;
 use pnaen::load::{Budget, HeightSource, Source};
 use pnaen::measure::Measured;
-use pnaen::mesh::crease_band::CreaseBand;
 use pnaen::mesh::{Corner, HeightMap, Heights, Material, Mesh, Moment, Shape, Texture, Topology};
 use pnaen::progress::Progress;
 use pnaen::render::{Scene, Target};
@@ -58,25 +57,7 @@ fn on_device(shape: Shape, mesh: Mesh) -> (Loaded, Scene) {
     let (mesh, source) = (Arc::new(mesh), Source::Shape(shape));
     let topology = Arc::new(Topology::build(&mesh, &Progress::new()).expect("nobody cancels"));
     let scene = engine().scene_of(mesh.clone(), topology.clone(), ARENA_BYTES).expect("a small mesh");
-    (
-        Loaded {
-            source,
-            read: mesh.clone(),
-            preparation: Preparation::default(),
-            crease_band: CreaseBand::default(),
-            mesh,
-            warnings: Vec::new(),
-            variants: Vec::new(),
-            scenes: Vec::new(),
-            scene: None,
-            parts: Arc::default(),
-            files: Vec::new(),
-            topology,
-            load_ms: 0.0,
-            topology_ms: 0.0,
-        },
-        scene,
-    )
+    (Loaded { source, ..Loaded::of_mesh(mesh, topology) }, scene)
 }
 
 const MODES: [Displacement; 3] = [Displacement::On, Displacement::AsPublished, Displacement::PerPatch];

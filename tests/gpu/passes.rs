@@ -2,11 +2,10 @@
 
 use std::sync::Arc;
 
-use pnaen::engine::{Loaded, Measurements, Preparation, Runs};
+use pnaen::engine::{Loaded, Measurements, Runs};
 use pnaen::gpu::{Timing, take_times};
-use pnaen::load::Source;
 use pnaen::measure::{EmittedChunk, Measured, Sizes, Visitor};
-use pnaen::mesh::{Corner, CreaseBand, EdgeKind, Material, Mesh, Shape, Topology};
+use pnaen::mesh::{Corner, EdgeKind, Material, Mesh, Shape, Topology};
 use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::{Choice, Settings};
@@ -316,24 +315,7 @@ pub(super) fn sheet(columns: u32, rows: u32) -> Loaded {
     material.triangles = 0..triangles.len() as u32;
     let mesh = Mesh { corners, triangles: triangles.into(), materials: vec![material], ..Mesh::default() };
     let topology = Topology::build(&mesh, &Progress::default()).expect("nobody cancels");
-    let (mesh, topology) = (Arc::new(mesh), Arc::new(topology));
-    let (read, crease_band) = (mesh.clone(), CreaseBand::default());
-    Loaded {
-        source: Source::default(),
-        preparation: Preparation::default(),
-        crease_band,
-        read,
-        mesh,
-        warnings: Vec::new(),
-        variants: Vec::new(),
-        scenes: Vec::new(),
-        scene: None,
-        parts: Arc::default(),
-        files: Vec::new(),
-        topology,
-        load_ms: 0.0,
-        topology_ms: 0.0,
-    }
+    Loaded::of_mesh(Arc::new(mesh), Arc::new(topology))
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -14,8 +15,9 @@ use crate::check::{Asset, Cache, GateResult, View};
 use crate::cli::picture_file::png_bytes;
 use crate::cli::shot::Shot;
 use crate::cli::{CliError, file_error, file_of};
-use crate::engine::Engine;
+use crate::engine::{Engine, Loaded, Preparation};
 use crate::gates::Judgement;
+use crate::load::LoadError;
 use crate::names::on_one_line;
 use crate::progress::Progress;
 
@@ -24,6 +26,7 @@ const MOST_PX: u32 = 704;
 
 /// What is found about an asset. An asset that can't be checked has the reason; so has one at which the program panics.
 pub(super) fn measured(job: &Job, engine: &Engine, pictures: bool, cache: Option<&Cache>) -> Asset {
+    let start = SystemTime::now();
     let mut asset = Asset { path: job.name.clone(), ..Asset::default() };
     let ended = catch_unwind(AssertUnwindSafe(|| measure(job, engine, pictures, &mut asset)));
     let files = match ended {
@@ -38,7 +41,7 @@ pub(super) fn measured(job: &Job, engine: &Engine, pictures: bool, cache: Option
         }
     };
     if let Some((cache, files)) = cache.filter(|_| job.is_kept).zip(files)
-        && let Err(error) = cache.put(job.inputs(), &files, &asset)
+        && let Err(error) = cache.put(job.inputs(), &files, start, &asset)
     {
         say_unkept(&error);
     }
@@ -49,7 +52,7 @@ pub(super) fn measured(job: &Job, engine: &Engine, pictures: bool, cache: Option
 fn measure(job: &Job, engine: &Engine, pictures: bool, asset: &mut Asset) -> Result<Vec<PathBuf>, CliError> {
     let progress = Progress::new();
     let Some((_, first)) = job.views.first() else { return Ok(Vec::new()) };
-    let loaded = crate::engine::load(&job.source, &first.surface.preparation(), &progress)?;
+    let loaded = load(job, first.surface.preparation(), &progress)?;
     asset.warnings.clone_from(&loaded.warnings);
     for (index, (name, options)) in job.views.iter().enumerate() {
         let (subject, _) = options.subject_of(loaded.clone())?;
@@ -64,6 +67,17 @@ fn measure(job: &Job, engine: &Engine, pictures: bool, asset: &mut Asset) -> Res
     }
     let own = file_of(&job.source).map(Path::to_owned);
     Ok(own.into_iter().chain(loaded.files).chain(job.read.iter().cloned()).collect())
+}
+
+/// Loads an asset. What the configuration hides may be parts of other assets.
+fn load(job: &Job, mut preparation: Preparation, progress: &Progress) -> Result<Loaded, LoadError> {
+    match crate::engine::load(&job.source, &preparation, progress) {
+        Err(LoadError::NoPart { known, .. }) => {
+            preparation.hidden.retain(|part| known.contains(part));
+            crate::engine::load(&job.source, &preparation, progress)
+        }
+        other => other,
+    }
 }
 
 /// How a gate judged, with a picture of its place if it failed and pictures are wanted.

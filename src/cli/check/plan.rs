@@ -1,6 +1,6 @@
 //! What is to be checked, and how: the assets, each with what the configuration says about it.
 
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser};
@@ -8,7 +8,7 @@ use clap::{CommandFactory, Parser};
 use super::Args;
 use crate::check::{Config, ConfigError, FolderError, Inputs, OptionValue, Section, assets};
 use crate::cli::shot_options::ShotOptions;
-use crate::cli::{CliError, file_error};
+use crate::cli::{CliError, file_error, note};
 use crate::files::file_reason;
 use crate::gates::Gate;
 use crate::load::Source;
@@ -62,19 +62,63 @@ pub(super) fn plan(args: &Args) -> Result<Vec<Job>, CliError> {
     let command = Options::command();
     let names: Vec<String> = command.get_arguments().filter_map(|arg| arg.get_long().map(str::to_owned)).collect();
     let config = path.map(|path| Config::read(path, &names, &CAMERA)).transpose()?.unwrap_or_default();
+    check_options(&config)?;
     let folder = path.and_then(Path::parent).unwrap_or(Path::new(""));
     let unreadable = |FolderError { folder, error }: FolderError| file_error(&folder, "read", &file_reason(&error));
     let found = assets(&args.files).map_err(unreadable)?;
     if found.is_empty() {
         return Err(CliError::NoAssets);
     }
-    found.into_iter().map(|source| job(args, &config, folder, source)).collect()
+    let places: Vec<String> = found.iter().map(|source| place(source, folder)).collect();
+    config.unmatched(&places).iter().for_each(|said| note(said));
+    found.into_iter().zip(&places).map(|(source, place)| job(args, &config, folder, (source, place))).collect()
 }
 
-fn job(args: &Args, config: &Config, folder: &Path, source: Source) -> Result<Job, CliError> {
+/// Checks each value by itself, also those of sections that hold for no asset.
+///
+/// # Errors
+/// A value is none of its option's, with its line.
+fn check_options(config: &Config) -> Result<(), CliError> {
+    for option in config.options() {
+        match Options::try_parse_from(words(option)) {
+            // An option that needs another one has it elsewhere.
+            Err(wrong) if wrong.kind() != ErrorKind::MissingRequiredArgument => {
+                return Err(config.wrong(option, &said(&wrong)).into());
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// Where an asset lies, as patterns see it: its path below the configuration's folder, or all of the path of one that lies
+/// elsewhere, with `/` between folders.
+fn place(source: &Source, folder: &Path) -> String {
+    let Source::File(path) = source else { return source.to_string() };
+    let [own, folder] = [path, folder].map(plain);
+    let below = own.strip_prefix(&folder).unwrap_or(&own).components();
+    let names = below.filter(|part| matches!(part, Component::Normal(_)));
+    names.map(|name| name.as_os_str().to_string_lossy()).collect::<Vec<_>>().join("/")
+}
+
+/// An absolute path without `.` and `..`. Links stay, since people write patterns of the paths that they see.
+fn plain(path: &Path) -> PathBuf {
+    let path = if path.as_os_str().is_empty() { Path::new(".") } else { path };
+    let mut plain = PathBuf::new();
+    for part in std::path::absolute(path).unwrap_or_else(|_| path.to_owned()).components() {
+        match part {
+            Component::CurDir => {}
+            Component::ParentDir => drop(plain.pop()),
+            other => plain.push(other),
+        }
+    }
+    plain
+}
+
+fn job(args: &Args, config: &Config, folder: &Path, (source, place): (Source, &str)) -> Result<Job, CliError> {
     let name = on_one_line(&source.to_string());
     let name = if cfg!(windows) { name.replace('\\', "/") } else { name };
-    let Section { gates, mut options, cameras } = config.section(&name);
+    let Section { gates, mut options, cameras } = config.section(place);
     let gates = if args.gates.fail_on.is_empty() { gates.unwrap_or_default() } else { args.gates.fail_on.clone() };
     let read = options.iter_mut().filter(|option| PATHS.contains(&option.name.as_str()));
     let read: Vec<PathBuf> = read.flat_map(|option| resolved(option, folder)).collect();
@@ -115,31 +159,22 @@ fn resolved(option: &mut OptionValue, folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// Reads options as the command line does.
+/// An option as it stands on the command line.
+fn words(option: &OptionValue) -> Vec<String> {
+    let word = |value: &Option<String>| match value {
+        Some(value) => format!("--{}={value}", option.name),
+        None => format!("--{}", option.name),
+    };
+    option.values.iter().map(word).collect()
+}
+
+/// Reads options, each of which is right by itself, as the command line does.
 ///
 /// # Errors
-/// A value is none of its option's, with its line; or options can't be together.
+/// They can't be together.
 fn parsed(config: &Config, options: &[OptionValue], source: &Source) -> Result<ShotOptions, CliError> {
-    let words = |option: &OptionValue| {
-        let name = option.name.clone();
-        let word = move |value: &Option<String>| match value {
-            Some(value) => format!("--{name}={value}"),
-            None => format!("--{name}"),
-        };
-        option.values.iter().map(word).collect::<Vec<_>>()
-    };
-    let own = match Options::try_parse_from(options.iter().flat_map(words)) {
-        Ok(own) => own.shot,
-        Err(error) => {
-            let alone = |option: &OptionValue| {
-                let wrong = Options::try_parse_from(words(option)).err()?;
-                // An option that needs another one has it in the whole.
-                let is_wrong = wrong.kind() != ErrorKind::MissingRequiredArgument;
-                is_wrong.then(|| config.wrong(option, &said(&wrong)))
-            };
-            return Err(options.iter().find_map(alone).unwrap_or_else(|| config.clash(&said(&error))).into());
-        }
-    };
+    let own =
+        Options::try_parse_from(options.iter().flat_map(words)).map_err(|error| config.clash(&said(&error)))?.shot;
     if own.given.given.as_deref() == Some("-".as_ref()) {
         return Err(config.clash("factors of a check can't come from standard input; name a file").into());
     }

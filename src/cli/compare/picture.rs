@@ -13,6 +13,7 @@ use crate::compare::{Comparison, ForeignMesh, Ours};
 use crate::engine::{Engine, Loaded};
 use crate::mesh::{Mesh, MeshSlices, Topology};
 use crate::progress::Progress;
+use crate::render::layout::WORST_COLOR;
 use crate::render::{Camera, LineSegment};
 use crate::settings::{Colors, Overlays, Settings};
 use crate::tessellate::{Surface, Tessellation, outline_place};
@@ -27,6 +28,11 @@ const MOVED: [u8; 3] = [255, 70, 200];
 
 /// How many lines of each kind are drawn at most.
 const MOST: usize = 200_000;
+/// Up to so many sides or patches are drawn with wide lines, which would hide everything if there were more.
+const FEW: usize = 48;
+/// Half the width of wide and of other lines, in px.
+const WIDE: f32 = 2.0;
+const NARROW: f32 = 0.75;
 
 /// Draws the picture and writes it.
 ///
@@ -62,8 +68,9 @@ pub(super) fn draw(
     let scene = engine.scene(&subject.loaded, subject.arena_bytes)?;
     let view =
         ShotView { camera: *camera, lod_camera: None, size: args.surface.size.0, transparent: false, legend: true };
+    let has_worst = subject.reference_surface.is_some();
     let mut picture = Shot::new(engine, scene, subject, view)?.picture(None, &Progress::new())?;
-    draw_key(&mut picture, "What differs", &lines.names())?;
+    draw_key(&mut picture, "What differs", &lines.names(has_worst))?;
     write_picture(path, &picture.into())
 }
 
@@ -102,14 +109,16 @@ struct Lines {
 impl Lines {
     fn of(ours: &Ours, comparison: &Comparison) -> Self {
         let outlines = Outlines::new(ours);
-        let of_patches = |patches: &[u32], color, half_width| {
+        let half_width = |count: usize| if count > FEW { NARROW } else { WIDE };
+        let of_patches = |patches: &[u32], color| {
+            let half_width = half_width(patches.len());
             let lines = patches.iter().flat_map(|patch| [0, 1, 2].map(|side| (*patch, side)));
             let lines = lines.flat_map(|(patch, side)| outlines.lines(patch, side, color, half_width));
             lines.take(MOST).collect()
         };
         let of_side = |side: &crate::compare::SideDifference| {
             let patch = ours.topology.patch_of(side.triangle)?;
-            Some(outlines.lines(patch, side.side as usize, SIDE, 2.0))
+            Some(outlines.lines(patch, side.side as usize, SIDE, half_width(comparison.sides.len())))
         };
         let dot = |place: &glam::DVec3| {
             let place = place.as_vec3();
@@ -117,8 +126,8 @@ impl Lines {
         };
         Self {
             sides: comparison.sides.iter().filter_map(of_side).flatten().take(MOST).collect(),
-            patches: of_patches(&comparison.different, PATCH, 1.0),
-            missing: of_patches(&comparison.missing, MISSING, 2.0),
+            patches: of_patches(&comparison.different, PATCH),
+            missing: of_patches(&comparison.missing, MISSING),
             moved: comparison.strays.iter().take(MOST).map(dot).collect(),
         }
     }
@@ -128,8 +137,8 @@ impl Lines {
         [&self.patches[..], &self.sides, &self.missing, &self.moved].concat()
     }
 
-    /// The names of those that there are.
-    fn names(&self) -> Vec<Named> {
+    /// The names of those that there are, and of the mark at the largest distance if there is one.
+    fn names(&self, has_worst: bool) -> Vec<Named> {
         let named = [
             (&self.sides, SIDE, "side that is cut differently"),
             (&self.patches, PATCH, "patch that differs"),
@@ -137,7 +146,8 @@ impl Lines {
             (&self.moved, MOVED, "vertex off the surface"),
         ];
         let there = named.into_iter().filter(|(lines, ..)| !lines.is_empty());
-        there.map(|(_, color, name)| (color, name)).collect()
+        let worst = has_worst.then_some((WORST_COLOR, "largest distance from ours"));
+        there.map(|(_, color, name)| (color, name)).chain(worst).collect()
     }
 }
 

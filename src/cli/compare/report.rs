@@ -2,9 +2,10 @@
 
 use std::fmt::Write;
 
+use glam::Vec3;
 use serde::Serialize;
 
-use crate::compare::{Comparison, Exactness, Farthest, Finding, Ours, SideDifference};
+use crate::compare::{Comparison, Exactness, Farthest, Finding, Ours, SideDifference, plural, point};
 use crate::names::shown;
 use crate::numbers::{grouped, short};
 
@@ -35,12 +36,12 @@ impl Report<'_> {
         }
         let _ = writeln!(
             text,
-            "\n{} triangles and {} vertices on {} of {} patches; ours are {} triangles.",
-            grouped(found.triangles),
-            grouped(found.vertices),
+            "\n{} and {} on {} of {} patches; ours are {}.",
+            plural(found.triangles, "triangle", "triangles"),
+            plural(found.vertices, "vertex", "vertices"),
             grouped(found.patches),
             grouped(self.ours.topology.patches.len() as u64),
-            grouped(self.ours.tessellated.triangles.len() as u64)
+            plural(self.ours.tessellated.triangles.len() as u64, "triangle", "triangles")
         );
         let _ = writeln!(text, "Largest distance of a vertex from the surface: {}.", self.distance(found.from_surface));
         if let Some(farthest) = found.farthest {
@@ -79,12 +80,12 @@ impl Report<'_> {
         };
         for side in sides.iter().take(SAID) {
             let SideDifference { triangle, side: k, ends, theirs, ours } = side;
-            let [from, to] = ends.map(|[x, y, z]| format!("({x} {y} {z})"));
+            let [from, to] = ends.map(|end| point(Vec3::from(end).as_dvec3()));
             let _ = writeln!(
                 text,
-                "triangle {triangle}, corners {k} to {}, {from} to {to}: {} segments (factor {}), ours {} (factor {})",
+                "triangle {triangle}, corners {k} to {}, {from} to {to}: {} (factor {}), ours {} (factor {})",
                 (k + 1) % 3,
-                theirs.segments,
+                plural(theirs.segments, "segment", "segments"),
                 short(theirs.factor),
                 ours.segments,
                 short(ours.factor)

@@ -78,10 +78,12 @@ impl Shot {
         progress: &Progress,
     ) -> Result<Option<RgbaImage>, CliError> {
         let Some(place) = &judgement.place else { return Ok(None) };
-        let (camera, settings) = (self.view.camera, self.subject.settings);
+        let (view, settings) = (self.view, self.subject.settings);
         let (results, silhouette) = (std::mem::take(&mut self.results), self.silhouette.take());
         let lines = self.subject.more_lines.clone();
-        self.view.camera = place.spot.camera(&camera, self.target.viewport(), &self.scene.bounds);
+        self.view.camera = place.spot.camera(&view.camera, self.target.viewport(), &self.scene.bounds);
+        // So close, the frustum of the camera of LOD would only hide the place. Factors are computed for it all the same.
+        self.view.lod_camera = None;
         self.subject.settings = Settings { overlays: overlays_of(judgement.kind), split: None, ..settings };
         if let Some(at) = place.spot.at() {
             // The error has a line to where the emitted point should be.
@@ -90,7 +92,7 @@ impl Shot {
             self.subject.more_lines[SplitSide::Right as usize].extend(mark);
         }
         let picture = self.picture(None, progress);
-        (self.view.camera, self.subject.settings) = (camera, settings);
+        (self.view, self.subject.settings) = (view, settings);
         (self.results, self.silhouette) = (results, silhouette);
         self.subject.more_lines = lines;
         picture.map(Some)

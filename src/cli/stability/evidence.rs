@@ -1,0 +1,64 @@
+//! The pictures of `--evidence`: the worst place of each gate that failed, in the tessellation in which it was found.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::{Loaded, file_name};
+use crate::cli::CliError;
+use crate::cli::gate_options::write_evidence_of;
+use crate::cli::shot::{Shot, ShotView, Subject as ShotSubject};
+use crate::engine::{Engine, Loaded as LoadedMesh};
+use crate::gates::Gate;
+use crate::mesh::Topology;
+use crate::progress::Progress;
+use crate::settings::ARENA_BYTES;
+use crate::stability::{Failure, Subject, Tried, viewport};
+
+/// A px of the run is this many px wide here. The middle of its middle px is its own middle, so that what leaked there leaks here.
+const ENLARGED: u32 = 3;
+
+/// Draws the worst place of each gate that failed.
+///
+/// # Errors
+/// A picture can't be written, or the device was lost.
+pub(super) fn write(folder: &Path, engine: &Engine, all: &[Loaded], failed: &[Failure]) -> Result<(), CliError> {
+    for failure in failed {
+        let Some(own) = all.iter().find(|own| own.subject.name == failure.case) else { continue };
+        let tried = failure.tried.unwrap_or_else(|| Tried::of_mesh(&own.subject));
+        let mut shot = shot(engine, own, tried)?;
+        // The sentence has the numbers of the run; here only the place counts, which is the worst for any limit.
+        let gate = Gate { kind: failure.kind, limit: 0 };
+        let tolerance = tried.settings.tessellation.tolerance;
+        for judgement in shot.judge(&[gate], tolerance, &Progress::new())? {
+            write_evidence_of(&mut shot, &judgement, folder, file_name(&own.subject.name).as_ref())?;
+        }
+    }
+    Ok(())
+}
+
+/// What was tried, to be drawn.
+fn shot(engine: &Engine, Loaded { subject, warnings }: &Loaded, tried: Tried) -> Result<Shot, CliError> {
+    let Subject { mesh, weld, .. } = subject;
+    let mesh = Arc::new(mesh.clone());
+    let topology = Arc::new(Topology::build_within(&mesh, *weld, &Progress::new())?);
+    let loaded = LoadedMesh { warnings: warnings.clone(), ..LoadedMesh::of_mesh(mesh, topology) };
+    let Tried { settings, camera, moment } = tried;
+    let shown = ShotSubject {
+        loaded,
+        moment,
+        given: None,
+        matcap: None,
+        environment: None,
+        settings,
+        reference_surface: None,
+        selected: None,
+        more_lines: Default::default(),
+        arena_bytes: ARENA_BYTES,
+    };
+    let mut scene = engine.scene(&shown.loaded, ARENA_BYTES)?;
+    shown.dress(engine, &mut scene)?;
+    let size = viewport().to_array().map(|side| side as u32 * ENLARGED);
+    let lod_camera = Some((camera, viewport()));
+    let view = ShotView { camera, lod_camera, size, transparent: false, legend: false };
+    Ok(Shot::new(engine.clone(), scene, shown, view)?)
+}
