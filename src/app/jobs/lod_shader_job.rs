@@ -11,8 +11,8 @@ use super::background_job::{caught, spawn};
 use crate::app::App;
 use crate::engine::Engine;
 use crate::gpu::LodShader;
-use crate::lod_shader::read_lod_shader;
 use crate::names::shown_path;
+use crate::own_shader::read_own_shader;
 use crate::progress::Progress;
 use crate::settings::Settings;
 use crate::tessellate::{Lod, Partitioning, Tessellation};
@@ -121,7 +121,7 @@ fn watch(
 
 /// Reads the file, and lets the driver compile it.
 fn read(engine: &Engine, path: &Path) -> Result<Arc<LodShader>, String> {
-    let shader = read_lod_shader(path).map_err(|error| error.to_string())?;
+    let shader = read_own_shader(path).map_err(|error| error.to_string())?;
     engine.pipelines.own_lod(&shader).prepare(&engine.gpu).map_err(|error| error.to_string())?;
     Ok(shader)
 }
@@ -218,7 +218,7 @@ impl App {
         let Some(open) = &mut self.lod_shader else { return };
         let is_shown = open.shader.as_ref().is_some_and(|(_, generation)| *generation == shown);
         if is_shown && report.is_some_and(|report| report.stopped > 0) {
-            open.error = Some(crate::gpu::GpuError::OwnLodStopped.to_string());
+            open.error = Some(crate::gpu::GpuError::OwnStopped("LOD shader").to_string());
             open.shader = open.before.take();
             if open.shader.is_none() {
                 self.settings.tessellation.lod = open.lod;

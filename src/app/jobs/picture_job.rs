@@ -148,6 +148,7 @@ impl App {
             loaded: document.loaded.clone(),
             moment: document.moment,
             given: document.scene.tessellator.given().cloned(),
+            surface_shader: document.scene.tessellator.surface_shader().cloned(),
             matcap: self.matcap.as_ref().map(ChosenMatcap::picture),
             // The scene is made from one that has it.
             environment: None,

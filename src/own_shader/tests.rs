@@ -1,7 +1,13 @@
 use super::*;
+use crate::gpu::LodShader;
+use crate::gpu::own_lod::LOD_PURPOSE;
 
 /// What every file must have.
 const EDGE: &str = "fn edge_factor(edge: Edge, triangle: Triangle, view: View) -> f32 { return 2.0; }";
+
+fn compile(text: &str) -> Result<LodShader, Fault> {
+    super::compile(text)
+}
 
 /// The line of the fault in a text, and what is said.
 fn fault(text: &str) -> (usize, String) {
@@ -15,7 +21,7 @@ fn the_examples_can_be_used() {
     let mut count = 0;
     for entry in std::fs::read_dir(folder).expect("the examples' folder") {
         let path = entry.expect("an entry").path();
-        read_lod_shader(&path).unwrap_or_else(|error| panic!("{error}"));
+        read_own_shader::<LodShader>(&path).unwrap_or_else(|error| panic!("{error}"));
         count += 1;
     }
     assert!(count >= 3, "{count} examples");
@@ -54,11 +60,11 @@ fn functions_that_are_missing_or_have_other_parameters_are_named() {
         "fn edge_factor(edge: Edge, triangle: ptr<function, Triangle>, view: View) -> f32 { return 1.0; }",
     ] {
         let (line, said) = fault(&format!("\n{own}"));
-        assert!(line == 2 && said.contains(EDGE_FACTOR), "{own}: line {line}: {said}");
+        assert!(line == 2 && said.contains(LOD_PURPOSE.functions[0].signature), "{own}: line {line}: {said}");
     }
     let inside = "fn inside_factor(triangle: Triangle, factors: vec3<u32>, view: View) -> f32 { return 1.0; }";
     let (line, said) = fault(&format!("{EDGE}\n\n{inside}"));
-    assert!(line == 3 && said.contains(INSIDE_FACTOR), "line {line}: {said}");
+    assert!(line == 3 && said.contains(LOD_PURPOSE.functions[1].signature), "line {line}: {said}");
     let inside = inside.replace("vec3<u32>", "vec3f");
     compile(&format!("{EDGE}\n{inside}")).expect("a vector by its short name");
 }
@@ -177,16 +183,16 @@ fn files_that_are_no_such_texts_are_named() {
     let path = folder.path().join("lod.wgsl");
     let said = |bytes: &[u8]| {
         std::fs::write(&path, bytes).expect("a writable temporary folder");
-        read_lod_shader(&path).expect_err("it can't be used").to_string()
+        read_own_shader::<LodShader>(&path).expect_err("it can't be used").to_string()
     };
     assert!(said(&vec![b' '; 65_537]).contains("lod.wgsl has more than 65536 bytes"));
     assert!(said(b"\xff\xfe// \x00").contains("isn't a text in UTF-8"));
     assert!(said(b"fn 3x()").contains("lod.wgsl, line 1: "));
     let marked = format!("\u{feff}{EDGE}");
     std::fs::write(&path, marked).expect("a writable temporary folder");
-    assert!(read_lod_shader(&path).is_ok(), "a byte order mark is left out");
-    let gone = read_lod_shader(&folder.path().join("no.wgsl")).expect_err("there is none").to_string();
+    assert!(read_own_shader::<LodShader>(&path).is_ok(), "a byte order mark is left out");
+    let gone = read_own_shader::<LodShader>(&folder.path().join("no.wgsl")).expect_err("there is none").to_string();
     assert!(gone.contains("no.wgsl can't be read: there is no such file"), "{gone}");
-    let this = read_lod_shader(folder.path()).expect_err("a folder").to_string();
+    let this = read_own_shader::<LodShader>(folder.path()).expect_err("a folder").to_string();
     assert!(this.contains("file"), "{this}");
 }
