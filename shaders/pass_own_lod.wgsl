@@ -1,5 +1,5 @@
 // Factors that functions of the user's own compute in place of LOD. They are written where those of a file would be. In the
-// module that runs, the names of all files but lod_contract.wgsl begin with pnaen_ (src/gpu/own_lod.rs), so that they are none
+// module that runs, the names of all files but lod_contract.wgsl begin with pnaen_ (src/gpu/own_functions.rs), so that they are none
 // of the user's.
 
 // In storage, not a uniform: some software drivers compile a shader again for every value of a uniform that it branches on.
@@ -10,44 +10,7 @@
 @group(0) @binding(5) var<storage, read> corner_attributes: array<Corner>;
 // For every patch the bits of the factors of its edges, in the order of the convention, and of the one inside.
 @group(0) @binding(8) var<storage, read_write> own_factors: array<u32>;
-@group(0) @binding(9) var<storage, read_write> report: LodReport;
-
-// What is known of a run of all four passes.
-struct LodReport {
-    // The work of all loops, in pieces.
-    work: atomic<u32>,
-    // 1 if there was too much, so that all factors are 1.
-    stopped: atomic<u32>,
-    // Factors that are NaN.
-    not_numbers: atomic<u32>,
-}
-
-// Work is counted in tokens of the user's text that loops go through, and reported in pieces of so many.
-const WORK_PIECE: u32 = 4096u;
-// The most pieces of one invocation, which are four million tokens, and of all invocations together.
-const MOST_WORK: u32 = 1024u;
-const MOST_WORK_OF_ALL: u32 = 0x400000u;
-
-var<private> work_since_report: u32;
-var<private> work_reported: u32;
-var<private> is_stopped: bool;
-
-// Counts the work of a turn of a loop. Returns true if the function must return, because there was too much. Which invocations are
-// stopped then depends on their order, but not whether any is: so own_finish_main replaces the factors of all.
-fn spend(work: u32) -> bool {
-    work_since_report += work;
-    if !is_stopped && work_since_report >= WORK_PIECE {
-        let pieces = work_since_report / WORK_PIECE;
-        work_since_report = work_since_report % WORK_PIECE;
-        work_reported += pieces;
-        let of_all = atomicAdd(&report.work, pieces) + pieces;
-        if work_reported > MOST_WORK || of_all > MOST_WORK_OF_ALL {
-            atomicStore(&report.stopped, 1u);
-        }
-        is_stopped = atomicLoad(&report.stopped) != 0u;
-    }
-    return is_stopped;
-}
+@group(0) @binding(9) var<storage, read_write> report: OwnReport;
 
 fn own_triangle(patch_index: u32) -> Triangle {
     let net = load_net(patch_index);
@@ -78,9 +41,7 @@ fn factor_of_side(side: u32) -> u32 {
 
 @compute @workgroup_size(1)
 fn own_start_main() {
-    atomicStore(&report.work, 0u);
-    atomicStore(&report.stopped, 0u);
-    atomicStore(&report.not_numbers, 0u);
+    clear_report();
 }
 
 // The factor of every side. One invocation for each, so that all sides run the same code: compilers may round differently in
@@ -92,7 +53,7 @@ fn own_edges_main(
     @builtin(local_invocation_index) local: u32,
 ) {
     let index = grid_index(workgroup, workgroups, local);
-    if index >= 3u * params.patch_count || atomicLoad(&report.stopped) != 0u {
+    if index >= 3u * params.patch_count || has_stopped() {
         return;
     }
     let patch_index = index / 3u;
@@ -119,7 +80,7 @@ fn own_insides_main(
     @builtin(local_invocation_index) local: u32,
 ) {
     let index = grid_index(workgroup, workgroups, local);
-    if index >= params.patch_count || atomicLoad(&report.stopped) != 0u {
+    if index >= params.patch_count || has_stopped() {
         return;
     }
     let of_sides = vec3<f32>(
@@ -141,10 +102,10 @@ fn own_finish_main(
     if index >= params.patch_count {
         return;
     }
-    let has_stopped = atomicLoad(&report.stopped) != 0u;
+    let is_void = has_stopped();
     var not_numbers = 0u;
     for (var i = 4u * index; i < 4u * index + 4u; i++) {
-        if has_stopped {
+        if is_void {
             own_factors[i] = bitcast<u32>(1.0);
         }
         not_numbers += u32((own_factors[i] & 0x7fffffffu) > 0x7f800000u);

@@ -9,7 +9,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
+use glam::Vec3;
+
 use crate::files::Limits;
+use crate::gpu::layout::CurveNet;
 use crate::gpu::{
     AdapterChoice, ComputePipelines, Given, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, read_buffers,
     take_times, vertices_of,
@@ -19,8 +22,8 @@ use crate::load::selection::Selection;
 use crate::load::{
     Budget, HeightSource, Import, LoadError, LoadedMesh, Source, crease_band_warnings, untextured_warning,
 };
-use crate::measure::{AskedFactors, EmittedChunk, Visitor};
-use crate::mesh::{BuildError, CreaseBand, Mesh, Moment, Topology, with_crease_band};
+use crate::measure::{AskedFactors, EmittedChunk, PointsAgreement, Visitor};
+use crate::mesh::{BuildError, CreaseBand, Curves, Mesh, Moment, Topology, with_crease_band};
 use crate::progress::{Progress, Stage};
 use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, SilhouetteDrawer, Target};
 use crate::settings::{Settings, SplitSide};
@@ -269,7 +272,7 @@ impl Engine {
     /// Runs the passes that count vertices and triangles, and waits for their results.
     ///
     /// # Errors
-    /// The device was lost, or an LOD shader took too long.
+    /// The device was lost, or a shader of the user's own took too long.
     pub fn count(&self, scene: &mut Scene, inputs: &Inputs, timing: &mut Timing) -> Result<(), GpuError> {
         scene.tessellator.set(inputs)?;
         if scene.tessellator.needs_count() {
@@ -278,9 +281,9 @@ impl Engine {
             recorder.submit();
         }
         scene.tessellator.read_counts()?;
-        match scene.tessellator.own_lod_report() {
-            Some(report) if report.stopped > 0 => Err(GpuError::OwnLodStopped),
-            _ => Ok(()),
+        match scene.tessellator.stopped_shader() {
+            Some(name) => Err(GpuError::OwnStopped(name)),
+            None => Ok(()),
         }
     }
 
@@ -405,6 +408,24 @@ impl Engine {
         let patches = scene.tessellator.topology().patches.len();
         let bytes = read_buffer(&self.gpu, buffer, 0, (patches * size_of::<HullFactors>()) as u64)?;
         Ok(cast(&bytes))
+    }
+
+    /// How the control points that a surface shader gave the sides of every edge agree; none without such a shader. The counts
+    /// must be known.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub(crate) fn own_points_agreement(&self, scene: &Scene) -> Result<Option<PointsAgreement>, GpuError> {
+        let (tessellator, topology) = (&scene.tessellator, scene.tessellator.topology());
+        if tessellator.surface_shader().is_none() {
+            return Ok(None);
+        }
+        let buffers = tessellator.buffers();
+        let bytes = u64::from(buffers.curve_count) * size_of::<CurveNet>() as u64;
+        let nets: Vec<CurveNet> = cast(&read_buffer(&self.gpu, &buffers.curve_nets, 0, bytes)?);
+        let nets: Vec<_> = nets.iter().map(|net| [net.ab, net.ba].map(Vec3::from)).collect();
+        let curves = Curves::build(tessellator.mesh(), topology, buffers.sharing);
+        Ok(Some(PointsAgreement::of(topology, &curves, &nets)))
     }
 
     /// The number of triangles that LOD by error emits at a tolerance of `tolerance_px` px, with all other inputs as they are;

@@ -71,11 +71,11 @@ mod gallery;
 #[cfg(feature = "cli")]
 mod gates;
 #[cfg(feature = "cli")]
-mod lod_shader;
-#[cfg(feature = "cli")]
 mod measure;
 #[cfg(feature = "cli")]
 mod numbers;
+#[cfg(feature = "cli")]
+mod own_shader;
 #[cfg(feature = "cli")]
 mod plot;
 #[cfg(feature = "cli")]

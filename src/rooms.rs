@@ -19,7 +19,7 @@ const ORDER: &[&[&str]] = &[
     &["load", "tessellate"],
     &["adjacency_file", "factors_file", "truth", "view"],
     &["gpu"],
-    &["embed", "lod_shader"],
+    &["embed", "own_shader"],
     &["settings"],
     &["measure"],
     &["compare"],

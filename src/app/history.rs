@@ -1,9 +1,11 @@
-//! Undo and redo: of settings and hidden parts, and separately of views, so that neither is in the way of the other.
+//! Undo and redo: of settings, hidden parts and the user's own shaders, and separately of views, so that neither is in the way of the other.
 
 use std::collections::VecDeque;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::App;
+use crate::gpu::{LodShader, SurfaceShader};
 use crate::render::Camera;
 use crate::settings::Settings;
 use crate::tessellate::Displacement;
@@ -20,6 +22,9 @@ pub(super) struct Undoable {
     pub settings: Settings,
     /// The names of parts of the file that are left out.
     pub hidden: Arc<Vec<String>>,
+    /// The files of functions of the user's own that are open. The settings are those that these take the place of.
+    pub lod_shader: Option<PathBuf>,
+    pub surface_shader: Option<PathBuf>,
 }
 
 /// The states before and after the present one.
@@ -117,7 +122,12 @@ impl App {
     }
 
     fn undoable(&self) -> Undoable {
-        Undoable { settings: self.settings, hidden: self.hidden.clone() }
+        Undoable {
+            settings: self.settings_without_shaders(),
+            hidden: self.hidden.clone(),
+            lod_shader: self.open_shader_file::<LodShader>().map(Path::to_owned),
+            surface_shader: self.open_shader_file::<SurfaceShader>().map(Path::to_owned),
+        }
     }
 
     /// Takes over the hidden parts of a mesh that was opened: those of the command line, or none. This isn't a step of undo.
@@ -155,22 +165,23 @@ impl App {
         self.viewport.camera = after.unwrap_or(self.viewport.camera);
     }
 
-    /// Goes back to the settings and hidden parts before the last change.
-    pub fn undo(&mut self) {
+    /// Goes back to the settings, hidden parts and shaders before the last change.
+    pub fn undo(&mut self, context: &egui::Context) {
         let before = self.history.undo(&self.undoable());
-        self.take_back(before);
+        self.take_back(context, before);
     }
 
     /// Goes forward to those that [`Self::undo`] left.
-    pub fn redo(&mut self) {
+    pub fn redo(&mut self, context: &egui::Context) {
         let after = self.history.redo(&self.undoable());
-        self.take_back(after);
+        self.take_back(context, after);
     }
 
-    fn take_back(&mut self, step: Option<Undoable>) {
-        if let Some(Undoable { settings, hidden }) = step {
-            (self.settings, self.hidden) = (settings, hidden);
-        }
+    fn take_back(&mut self, context: &egui::Context, step: Option<Undoable>) {
+        let Some(Undoable { settings, hidden, lod_shader, surface_shader }) = step else { return };
+        (self.settings, self.hidden) = (settings, hidden);
+        self.take_back_shader::<LodShader>(context, lod_shader);
+        self.take_back_shader::<SurfaceShader>(context, surface_shader);
     }
 }
 

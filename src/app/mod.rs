@@ -21,7 +21,7 @@ use image::RgbaImage;
 
 use crate::engine::{Engine, Loaded};
 use crate::files::Limits;
-use crate::gpu::{Gpu, GpuError};
+use crate::gpu::{Gpu, GpuError, LodShader, SurfaceShader};
 use crate::load::Source;
 use crate::measure::{Cracks, Sizes};
 use crate::render::Camera;
@@ -34,8 +34,8 @@ use jobs::Jobs;
 use jobs::document::Document;
 use jobs::environment_job::OpenEnvironment;
 use jobs::given_factors::GivenFactors;
-use jobs::lod_shader_job::OpenLodShader;
 use jobs::matcap::ChosenMatcap;
+use jobs::own_shader_job::OpenShader;
 use jobs::truth::ChosenTruth;
 use painting::{Painting, panel_frame};
 use panels::Panels;
@@ -62,7 +62,9 @@ pub struct App {
     /// Factors of a file in place of those of LOD, if there are any.
     given: Option<GivenFactors>,
     /// The file with functions of the user's own in place of LOD, if one is open.
-    lod_shader: Option<OpenLodShader>,
+    lod_shader: Option<OpenShader<LodShader>>,
+    /// The file with a function of the user's own in place of the surface, if one is open.
+    surface_shader: Option<OpenShader<SurfaceShader>>,
     /// A picture of a lit sphere in place of those that are made in code, if one was opened.
     matcap: Option<ChosenMatcap>,
     /// The file of light that is open, if one is.
@@ -98,6 +100,7 @@ impl App {
             truth: None,
             given: None,
             lod_shader: None,
+            surface_shader: None,
             matcap: None,
             environment: None,
             panels: Panels::default(),
@@ -209,7 +212,8 @@ impl App {
             || self.jobs.truth_load.is_some()
             || self.jobs.environment.is_some()
             || self.jobs.factors.is_some()
-            || self.lod_shader.as_ref().is_some_and(OpenLodShader::is_opening)
+            || self.lod_shader.as_ref().is_some_and(OpenShader::is_opening)
+            || self.surface_shader.as_ref().is_some_and(OpenShader::is_opening)
             || self.jobs.matcap.is_some();
         let measures = self.jobs.measure.is_busy()
             || self.jobs.leaks.is_busy()
@@ -261,8 +265,10 @@ impl eframe::App for App {
         self.take_loaded(context);
         self.take_truth();
         self.take_factors(context);
-        self.take_lod_shader();
-        self.stop_slow_lod_shader();
+        self.take_shader::<LodShader>();
+        self.stop_slow_shader::<LodShader>();
+        self.take_shader::<SurfaceShader>();
+        self.stop_slow_shader::<SurfaceShader>();
         self.take_matcap();
         self.take_environment();
         self.take_checks();

@@ -32,6 +32,8 @@ pub(crate) struct CopiedCommand<'a> {
     pub factors: Option<&'a Path>,
     /// The file whose functions take the place of LOD.
     pub lod_shader: Option<&'a Path>,
+    /// The file whose function takes the place of the surface.
+    pub surface_shader: Option<&'a Path>,
     /// The picture of a lit sphere that takes the place of that of the settings.
     pub matcap_image: Option<&'a Path>,
     /// The file that the light comes from.
@@ -115,6 +117,7 @@ impl CopiedCommand<'_> {
         };
         let is_replaced = |name: &str| {
             ((self.factors.is_some() || self.lod_shader.is_some()) && INSTEAD_OF_FACTORS.contains(&name))
+                || (self.surface_shader.is_some() && INSTEAD_OF_POINTS.contains(&name))
                 || (self.matcap_image.is_some() && name == options::MATCAP.name)
         };
         let written = |option: &&Declaration| (option.no_effect)(&own).is_none() && !is_replaced(option.name);
@@ -128,13 +131,16 @@ impl CopiedCommand<'_> {
         }
     }
 
-    /// Writes the files of factors, of an LOD shader, of a matcap and of light, the reference surface, the selection, the pose and the camera.
+    /// Writes the files of factors, of shaders, of a matcap and of light, the reference surface, the selection, the pose and the camera.
     fn view(&self, line: &mut Line) {
         if let Some(path) = self.factors {
             line.option("--factors", named(&Source::File(path.to_owned())));
         }
         if let Some(path) = self.lod_shader {
             line.option("--lod-shader", named(&Source::File(path.to_owned())));
+        }
+        if let Some(path) = self.surface_shader {
+            line.option("--surface-shader", named(&Source::File(path.to_owned())));
         }
         if let Some(path) = self.matcap_image.filter(|_| self.settings.overlays.colors == Colors::Matcap) {
             line.option("--matcap-image", named(&Source::File(path.to_owned())));
@@ -175,6 +181,9 @@ impl CopiedCommand<'_> {
 
 /// The options that `--factors` and `--lod-shader` exclude.
 const INSTEAD_OF_FACTORS: [&str; 6] = ["lod", "factor", "pixels", "tolerance", "distances", "max-triangles"];
+
+/// The options that `--surface-shader` excludes.
+const INSTEAD_OF_POINTS: [&str; 2] = ["surface", "alpha"];
 
 /// Width and height in px, as the command line takes them.
 #[derive(PartialEq)]
@@ -283,6 +292,7 @@ mod tests {
             truth: None,
             factors: None,
             lod_shader: None,
+            surface_shader: None,
             matcap_image: None,
             environment: None,
             triangle: None,

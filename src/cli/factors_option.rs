@@ -34,7 +34,7 @@ pub(crate) struct Given {
 }
 
 /// How many edges standard error lists.
-const SAID: usize = 10;
+pub(super) const SAID: usize = 10;
 /// How many edges the stats list.
 pub(super) const LISTED: usize = 10_000;
 
@@ -114,12 +114,16 @@ pub(super) fn agreement_lines(topology: &Topology, agreement: &Agreement) -> Vec
 fn edge_text(topology: &Topology, edge: &Disagreement) -> String {
     let [a, b] = end_points(topology, edge.edge);
     let [(one, least), (other, greatest)] = edge.extremes();
-    let point = |[x, y, z]: [f32; 3]| format!("({x} {y} {z})");
-    format!("{} to {}: {least} in triangle {one}, {greatest} in triangle {other}", point(a), point(b))
+    format!("{} to {}: {least} in triangle {one}, {greatest} in triangle {other}", point_text(a), point_text(b))
+}
+
+/// A point, as the lines of reports have it.
+pub(super) fn point_text([x, y, z]: [f32; 3]) -> String {
+    format!("({x} {y} {z})")
 }
 
 /// The end points of an edge.
-fn end_points(topology: &Topology, edge: u32) -> [[f32; 3]; 2] {
+pub(super) fn end_points(topology: &Topology, edge: u32) -> [[f32; 3]; 2] {
     topology.edge_points(&topology.edges[edge as usize]).map(|point| topology.points[point as usize].to_array())
 }
 

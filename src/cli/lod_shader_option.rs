@@ -9,8 +9,8 @@ use super::factors_option::{EdgeStats, FactorsOption, LISTED, agreement_lines};
 use super::{CliError, warn};
 use crate::engine::Engine;
 use crate::gpu::{Given, GpuError};
-use crate::lod_shader::read_lod_shader;
 use crate::measure::Agreement;
+use crate::own_shader::read_own_shader;
 use crate::render::Scene;
 use crate::tessellate::{Partitioning, Tessellation};
 
@@ -38,7 +38,7 @@ impl LodShaderOption {
                 "--lod-shader can't be combined with --partitioning subtriangulation, which has the same number of segments everywhere",
             ));
         }
-        Ok(Some(Given::Shader(read_lod_shader(path)?)))
+        Ok(Some(Given::Shader(read_own_shader(path)?)))
     }
 
     /// Checks that no file has factors as well.

@@ -33,6 +33,7 @@ mod shot_options;
 mod silhouette;
 mod stability;
 mod stats;
+mod surface_shader_option;
 mod tessellate;
 mod truth;
 mod turntable;
@@ -63,6 +64,7 @@ pub(crate) use picture_file::{Stamp, write_picture, write_stamped};
 #[cfg(test)]
 pub(crate) use render::run_with as render_with;
 pub(crate) use shot::{Shot, ShotView, StatsWanted, Subject};
+pub(crate) use surface_shader_option::{SurfaceShaderOption, straight_sides_said};
 #[cfg(test)]
 pub(crate) use tessellate::run_with as tessellate_with;
 pub(crate) use truth::{ReferenceSurface, TruthOption};
@@ -76,8 +78,8 @@ use crate::files::file_reason;
 use crate::gpu::GpuError;
 use crate::load::environment_file::EnvironmentError;
 use crate::load::{LoadError, MatcapError, Source};
-use crate::lod_shader::LodShaderError;
 use crate::names::{on_one_line, shown, shown_path};
+use crate::own_shader::OwnShaderError;
 use crate::progress::{Cancelled, Progress};
 use crate::settings::Settings;
 use crate::shader_files::ShaderError;
@@ -167,7 +169,7 @@ pub(crate) enum CliError {
     #[error(transparent)]
     Matcap(#[from] MatcapError),
     #[error(transparent)]
-    LodShader(#[from] LodShaderError),
+    OwnShader(#[from] OwnShaderError),
     #[error(transparent)]
     Export(#[from] ExportError),
     #[error("{path}: could not be {doing} ({reason})")]

@@ -100,6 +100,7 @@ pub(crate) fn run_with(
     let written: Vec<_> = written.into_iter().map(Some).collect();
     let read: Vec<_> = views.iter().map(|view| view.reference.as_deref()).chain([args.cameras.file()]).collect();
     args.shot.check(&args.file, &read, &written)?;
+    args.shot.own_surface.check(false, &args.gates.gates.fail_on)?;
     let read = |path: &Path| Reference::read(path, &args.reference);
     let references = views.iter().map(|view| view.reference.as_deref().map(read).transpose());
     let references = references.collect::<Result<Vec<_>, _>>()?;

@@ -18,6 +18,9 @@ pub(crate) struct Args {
     pub output: PathBuf,
     #[command(flatten)]
     pub tessellation: TessellationOptions,
+    /// Is refused: only the rules of --surface can be exported
+    #[arg(long, value_name = "WGSL", hide = true)]
+    pub surface_shader: Option<PathBuf>,
 }
 
 impl Choice for Language {
@@ -44,6 +47,12 @@ impl Choice for Language {
 
 /// Runs the command, which was given as this line.
 pub(super) fn run(args: &Args, line: &str) -> Result<(), CliError> {
+    if args.surface_shader.is_some() {
+        return Err(CliError::Usage(
+            "--surface-shader can't be exported, only the rules of --surface can: write the shaders of one of them, and put your \
+             own rule in its place",
+        ));
+    }
     let files = shader_files(args.language, &args.tessellation.tessellation, line)?;
     std::fs::create_dir_all(&args.output).map_err(|error| file_error(&args.output, "made", &file_reason(&error)))?;
     files.iter().try_for_each(|file| write_text(&args.output.join(file.name), &file.text))

@@ -13,12 +13,13 @@ use super::legend::draw_legend;
 use super::lod_shader_option::{LodShaderStats, report_own_lod};
 use super::silhouette::SilhouetteStats;
 use super::stats::{AnimationStats, LeftStats, Stats};
+use super::surface_shader_option::{SurfaceShaderStats, report_own_surface};
 use super::truth::{AccuracyStats, DeviationStats, ReferenceSurface};
 use super::view_report::ViewStats;
 use super::{CliError, to_json, write_text};
 use crate::engine::{Engine, Loaded, MeasurementResults, Measurements, Runs, SilhouetteView};
 use crate::gates::Judgement;
-use crate::gpu::{Given, GpuError, Recorder, Timing};
+use crate::gpu::{Given, GpuError, Recorder, SurfaceShader, Timing};
 use crate::load::panorama::Panorama;
 use crate::measure::{AccuracyOptions, DeviationField, ScreenError, Silhouette, patch_edges};
 use crate::mesh::{Bounds, Mesh, Moment, Texture, t_junctions};
@@ -38,6 +39,8 @@ pub(crate) struct Subject {
     pub moment: Option<Moment>,
     /// What takes the place of LOD: factors of a file, or a shader.
     pub given: Option<Given>,
+    /// What takes the place of the surface, except left of a split.
+    pub surface_shader: Option<Arc<SurfaceShader>>,
     /// A picture of a lit sphere in place of that of the settings, for the matcap overlay.
     pub matcap: Option<Arc<Texture>>,
     /// The light of a file that is still to be uploaded, if the scene doesn't have it already.
@@ -103,13 +106,14 @@ pub(crate) struct Shot {
 }
 
 impl Subject {
-    /// Gives a scene of the mesh its factors, its matcap and its pose.
+    /// Gives a scene of the mesh its factors, its control points, its matcap and its pose.
     ///
     /// # Errors
     /// The mesh's rig needs larger buffers than the adapter can bind.
     pub(crate) fn dress(&self, engine: &Engine, scene: &mut Scene) -> Result<(), GpuError> {
         scene.matcap = self.matcap.as_ref().map(|picture| engine.renderer.matcap(picture)).transpose()?;
         scene.tessellator.give(self.given.clone())?;
+        scene.tessellator.set_surface_shader(self.surface_shader.clone())?;
         scene.frame_clip(self.moment.map(|moment| moment.clip));
         scene.set_moment(self.moment)
     }
@@ -136,6 +140,7 @@ impl Shot {
             engine.split(&mut scene, subject.arena_bytes)?;
             if let Some(left) = scene.half_mut(SplitSide::Left) {
                 left.tessellator.give(subject.given.clone())?;
+                left.tessellator.set_surface_shader(None)?;
             }
         }
         let (posed, scale) = (subject.loaded.posed(subject.moment), deviation_scale(0.0, scene.ulp()));
@@ -159,11 +164,12 @@ impl Shot {
         Ok(shot)
     }
 
-    /// Reports on standard error where the factors of an LOD shader disagree, if there is one.
+    /// Reports on standard error where what shaders of the user's own gave disagrees, if there are any.
     ///
     /// # Errors
     /// The device was lost.
-    pub(crate) fn report_own_lod(&self) -> Result<(), GpuError> {
+    pub(crate) fn report_own_shaders(&self) -> Result<(), GpuError> {
+        report_own_surface(&self.engine, &self.scene)?;
         report_own_lod(&self.engine, &self.scene)
     }
 
@@ -278,7 +284,11 @@ impl Shot {
             let truth = reference_surface.and_then(ReferenceSurface::truth).filter(|_| stats.is_some());
             let wanted = Measurements {
                 survey: settings.overlays.cracks || self.subject.selected.is_some() || stats.is_some(),
-                screen_error: stats.is_some_and(|stats| stats.error).then_some(inputs),
+                // The CPU doesn't know the surface of a shader.
+                screen_error: stats
+                    .filter(|_| scene.tessellator.surface_shader().is_none())
+                    .is_some_and(|stats| stats.error)
+                    .then_some(inputs),
                 deviation: target.as_ref(),
                 accuracy: truth.map(|(_, truth)| (truth, &inputs.view, AccuracyOptions::default())),
                 sizes: (stats.is_some() && half == SplitSide::Right).then_some(view),
@@ -393,6 +403,7 @@ impl Shot {
         let leaks = engine.leaks(scene, measured, target.size, camera)?;
         let factors_capped = engine.factors_capped(scene, &settings.tessellation)?;
         let lod_shader = LodShaderStats::of(engine, scene)?;
+        let surface_shader = SurfaceShaderStats::of(engine, scene)?;
         let mut stats = Stats::new(engine, &self.posed, scene, measured, settings, view, &passes);
         (stats.triangles_in_view, stats.triangles_below_3_px) =
             results.sizes.map_or((0, 0), |sizes| (sizes.in_view, sizes.small));
@@ -404,7 +415,7 @@ impl Shot {
             let triangles = engine.triangles_by_error(scene, &inputs, tolerance_px)?;
             stats.lod_comparison = triangles.map(|triangles| stats.compared(tolerance_px, triangles));
         }
-        (stats.factors_capped, stats.lod_shader) = (factors_capped, lod_shader);
+        (stats.factors_capped, stats.lod_shader, stats.surface_shader) = (factors_capped, lod_shader, surface_shader);
         stats.accuracy = accuracy;
         stats.deviation = self.deviation(SplitSide::Right);
         let mirrored = self.view.camera.is_mirrored().then_some(self.view.size[0]);

@@ -7,8 +7,8 @@ use super::factors_option::FactorsFile;
 use super::options::{LodCameraOption, PictureOptions};
 use super::shot::{Shot, ShotView, Subject};
 use super::{
-    CliError, FactorsOption, LodShaderOption, SurfaceOptions, TruthOption, file_of, file_of_heights, keep_apart,
-    load_apart, warn,
+    CliError, FactorsOption, LodShaderOption, ReferenceSurface, SurfaceOptions, SurfaceShaderOption, TruthOption,
+    file_of, file_of_heights, keep_apart, load_apart, warn,
 };
 use crate::engine::{Engine, Loaded};
 use crate::gpu::{Given, Timing};
@@ -30,6 +30,8 @@ pub(crate) struct ShotOptions {
     pub given: FactorsOption,
     #[command(flatten)]
     pub own_lod: LodShaderOption,
+    #[command(flatten)]
+    pub own_surface: SurfaceShaderOption,
     #[command(flatten)]
     pub picture: PictureOptions,
     /// Panorama whose light shines in place of the studio's: a Radiance (.hdr) or OpenEXR (.exr) file, longitude across and
@@ -82,9 +84,9 @@ impl ShotOptions {
         let truth = self.truth.truth.as_ref().and_then(file_of);
         let heights = file_of_heights(self.surface.height.as_ref());
         let (factors, matcap) = (self.given.given.as_deref(), self.matcap_image.as_deref());
-        let shader = self.own_lod.lod_shader.as_deref();
-        let own = [file_of(file), truth, heights, factors, shader, matcap, self.environment.as_deref()];
-        keep_apart(own.into_iter().chain(read.iter().copied()), written.iter().copied())
+        let shaders = [self.own_lod.lod_shader.as_deref(), self.own_surface.surface_shader.as_deref()];
+        let own = [file_of(file), truth, heights, factors, matcap, self.environment.as_deref()];
+        keep_apart(own.into_iter().chain(shaders).chain(read.iter().copied()), written.iter().copied())
     }
 
     /// Checks a camera that isn't known before the mesh is.
@@ -119,10 +121,14 @@ impl ShotOptions {
     pub(super) fn subject_of(&self, loaded: Loaded) -> Result<(Subject, Option<FactorsFile>), CliError> {
         let limits = self.surface.weld.limit.limits();
         let own_lod = self.own_lod.read(&self.surface.tessellation())?;
+        let surface_shader = self.own_surface.read()?;
         let matcap = self.matcap_image.as_ref().map(|path| load_matcap(path, &limits)).transpose()?;
         let given = self.given.read(&loaded.mesh, &loaded.topology, &self.surface.tessellation())?;
         let is_shown = self.picture.0.overlays.colors == Colors::Deviation;
         let reference_surface = self.truth.reference_surface(&loaded, &self.surface, is_shown)?;
+        if matches!(reference_surface, Some(ReferenceSurface::Limit)) {
+            self.own_surface.check_deviation()?;
+        }
         let selected = self.select.map(|triangle| selected_patch(&loaded, triangle)).transpose()?;
         let environment = self.environment.as_deref().map(|path| self.environment(path)).transpose()?;
         let (given, factors_file) = given.map(|given| (given.factors, given.stats)).unzip();
@@ -131,6 +137,7 @@ impl ShotOptions {
             settings: self.surface.settings_of(&self.picture.0),
             loaded,
             given: given.map(Given::from).or(own_lod),
+            surface_shader,
             matcap: matcap.map(Arc::new),
             environment,
             reference_surface,
@@ -175,7 +182,7 @@ impl ShotOptions {
         })?;
         subject.settings = subject.settings.with(within.tessellation);
         let shot = Shot::new(engine, scene, subject, view)?;
-        shot.report_own_lod()?;
+        shot.report_own_shaders()?;
         Ok(shot)
     }
 }

@@ -8,6 +8,7 @@ use super::factors_option::FactorsFile;
 use super::lod_shader_option::LodShaderStats;
 use super::reference::ReferenceStats;
 use super::silhouette::SilhouetteStats;
+use super::surface_shader_option::SurfaceShaderStats;
 use super::truth::{AccuracyStats, DeviationStats};
 use super::view_report::ViewStats;
 use crate::engine::{Engine, Loaded};
@@ -72,6 +73,8 @@ pub(super) struct Stats {
     pub factors_file: Option<FactorsFile>,
     /// What was found about the factors of an LOD shader, if they came from one.
     pub lod_shader: Option<LodShaderStats>,
+    /// What was found about the control points of a surface shader, if they came from one.
+    pub surface_shader: Option<SurfaceShaderStats>,
     /// The distance to the reference surface, if there is one.
     pub accuracy: Option<AccuracyStats>,
     /// What the deviation overlay shows, if it is on.
@@ -121,12 +124,13 @@ struct SettingsStats {
 }
 
 impl SettingsStats {
-    fn new(settings: &Settings) -> Self {
+    /// `has_shader`: a surface shader takes the place of the surface.
+    fn new(settings: &Settings, has_shader: bool) -> Self {
         let own = &settings.tessellation;
         let has_effect = |option: &Declaration| (option.no_effect)(settings).is_none();
         let is_displaced = own.displacement != Displacement::Off;
         Self {
-            surface: own.surface.name(),
+            surface: if has_shader { "surface-shader" } else { own.surface.name() },
             alpha: own.surface.is_phong().then_some(own.alpha),
             normals: own.normals.name(),
             edges: own.edges.name(),
@@ -262,7 +266,7 @@ impl Stats {
         Self {
             view: None,
             adapter: engine.gpu.info.name.clone(),
-            settings: SettingsStats::new(settings),
+            settings: SettingsStats::new(settings, scene.tessellator.surface_shader().is_some()),
             triangles_in: mesh.triangles.len() as u64,
             points: topology.points.len() as u64,
             corners: mesh.corners.len() as u64,
@@ -293,6 +297,7 @@ impl Stats {
             factors_capped: 0,
             factors_file: None,
             lod_shader: None,
+            surface_shader: None,
             accuracy: None,
             deviation: None,
             silhouette: None,

@@ -7,9 +7,10 @@ use clap::ValueEnum;
 use super::gate_options::{GateOptions, pass};
 use super::lod_shader_option::report_own_lod;
 use super::shot::{Shot, ShotView, Subject};
+use super::surface_shader_option::report_own_surface;
 use super::{
-    AdapterOption, CliError, FactorsOption, LodShaderOption, SurfaceOptions, file_of, file_of_heights, keep_apart,
-    load_apart, options, warn,
+    AdapterOption, CliError, FactorsOption, LodShaderOption, SurfaceOptions, SurfaceShaderOption, file_of,
+    file_of_heights, keep_apart, load_apart, options, warn,
 };
 use crate::engine::{Engine, Loaded};
 use crate::export::Exported;
@@ -38,6 +39,8 @@ pub(crate) struct Args {
     pub given: FactorsOption,
     #[command(flatten)]
     pub own_lod: LodShaderOption,
+    #[command(flatten)]
+    pub own_surface: SurfaceShaderOption,
     /// Where to tessellate; the CPU needs no graphics driver
     #[arg(long, value_enum, default_value_t = Device::Gpu)]
     pub device: Device,
@@ -65,9 +68,11 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 pub(crate) fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
     args.check()?;
     let heights = file_of_heights(args.surface.height.as_ref());
-    let (factors, shader) = (args.given.given.as_deref(), args.own_lod.lod_shader.as_deref());
-    keep_apart([file_of(&args.file), heights, factors, shader], [Some(&*args.output)])?;
+    let factors = args.given.given.as_deref();
+    let shaders = [args.own_lod.lod_shader.as_deref(), args.own_surface.surface_shader.as_deref()];
+    keep_apart([file_of(&args.file), heights, factors].into_iter().chain(shaders), [Some(&*args.output)])?;
     let own_lod = args.own_lod.read(&args.surface.tessellation())?;
+    let surface_shader = args.own_surface.read()?;
     let loaded = load_apart(&args.file, &args.surface.preparation(), &[Some(&args.output)])?;
     let moment = args.surface.animation.moment(&loaded)?;
     let posed = loaded.posed(moment);
@@ -85,7 +90,8 @@ pub(crate) fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuE
         Device::Gpu => {
             let engine = engine()?;
             let mut scene = engine.scene(&loaded, args.surface.arena_bytes())?;
-            let subject = args.subject(loaded, moment, given.map(Given::from).or(own_lod));
+            let given = given.map(Given::from).or(own_lod);
+            let subject = Subject { surface_shader, ..args.subject(loaded, moment, given) };
             subject.dress(&engine, &mut scene)?;
             let (settings, tessellated) = args.on_gpu(&engine, &mut scene, &posed, view)?;
             warn(&Exported::new(mesh, topology, &tessellated).write(&args.output)?);
@@ -101,6 +107,7 @@ impl Args {
         self.adapter.check(self.device == Device::Cpu)?;
         self.own_lod.check(self.device == Device::Cpu)?;
         self.own_lod.check_alone(&self.given)?;
+        self.own_surface.check(self.device == Device::Cpu, &self.gates.gates.fail_on)?;
         let draws = self.gates.evidence.is_some() || self.gates.gates.has(GateKind::Leaks);
         if draws && self.device == Device::Cpu {
             return Err(CliError::Usage("--fail-on leaks and --evidence need --device gpu, which draws"));
@@ -144,6 +151,7 @@ impl Args {
             Ok(scene.tessellator.totals().1)
         })?;
         engine.count(scene, &settings.inputs(view), &mut Timing::Off)?;
+        report_own_surface(engine, scene)?;
         report_own_lod(engine, scene)?;
         let (vertices, triangles) = scene.tessellator.totals();
         Exported::check(&self.output, &posed.mesh, vertices, triangles)?;
@@ -156,6 +164,7 @@ impl Args {
             loaded,
             moment,
             given,
+            surface_shader: None,
             matcap: None,
             environment: None,
             settings: self.surface.settings(),

@@ -21,6 +21,10 @@ pub struct Availability {
     pub has_factors: bool,
     /// Whether a file with functions of the user's own is open in place of LOD.
     pub has_lod_shader: bool,
+    /// Whether a file with a function of the user's own is open in place of the surface.
+    pub has_surface_shader: bool,
+    /// Whether no such function takes the place of the surface.
+    pub takes_surface: bool,
     /// Whether a file of light is open.
     pub has_environment: bool,
     pub can_undo: bool,
@@ -74,6 +78,8 @@ impl Availability {
             has_truth: true,
             has_factors: true,
             has_lod_shader: true,
+            has_surface_shader: true,
+            takes_surface: true,
             has_environment: true,
             can_undo: true,
             can_redo: true,
@@ -153,6 +159,14 @@ pub(super) fn factors(now: &Availability) -> Option<&'static str> {
 
 pub(super) fn lod_shader(now: &Availability) -> Option<&'static str> {
     unless(now.has_lod_shader, "No LOD shader is open.")
+}
+
+pub(super) fn surface_shader(now: &Availability) -> Option<&'static str> {
+    unless(now.has_surface_shader, "No surface shader is open.")
+}
+
+pub(super) fn surface(now: &Availability) -> Option<&'static str> {
+    unless(now.takes_surface, "The control points come from a surface shader.")
 }
 
 pub(super) fn environment(now: &Availability) -> Option<&'static str> {

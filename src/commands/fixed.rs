@@ -29,6 +29,9 @@ const FACTORS: &str = "Opens the tessellation factors that another engine wrote,
 const LOD_SHADER: &str =
     "Opens a WGSL file with your own function for factors in place of LOD, and follows its changes.";
 
+/// What a function of the user's own for control points is for.
+const SURFACE_SHADER: &str = "Opens a WGSL file with your own function for the control points of edges in place of a surface, and follows its changes.";
+
 /// What a file of light is for.
 pub(crate) const ENVIRONMENT: &str =
     "Opens a panorama (.hdr or .exr) whose light shines on the mesh in place of the studio's.";
@@ -106,6 +109,23 @@ fn file() -> Vec<Command> {
         )
         .menu(Menu::Edit, 2)
         .unless(when::lod_shader),
+        Command::new(Action::File(FileAction::SurfaceShader), "Surface shader…", SURFACE_SHADER)
+            .menu(Menu::Edit, 2)
+            .unless(when::document),
+        Command::new(
+            Action::File(FileAction::SurfaceShaderPath),
+            "Surface shader path…",
+            "Opens a surface shader by its typed path.",
+        )
+        .menu(Menu::Edit, 2)
+        .unless(when::document),
+        Command::new(
+            Action::File(FileAction::CloseSurfaceShader),
+            "Close the surface shader",
+            "Closes the surface shader. The surface that was chosen before is back.",
+        )
+        .menu(Menu::Edit, 2)
+        .unless(when::surface_shader),
         Command::new(Action::File(FileAction::Environment), "Open environment…", ENVIRONMENT).menu(File, 2),
         Command::new(
             Action::File(FileAction::EnvironmentPath),

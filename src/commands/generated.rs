@@ -49,7 +49,7 @@ fn values_or_none<T: Choice>(option: &Declaration, change: impl Fn(Option<T>) ->
 
 fn settings() -> Vec<Command> {
     let always = when::always;
-    let mut all = values::<Surface>(options::SURFACE.label, Change::Surface, always);
+    let mut all = values::<Surface>(options::SURFACE.label, Change::Surface, when::surface);
     let left = "Left of the split";
     all.extend(options::SPLIT_SURFACE.unset.iter().map(|unset| {
         let name = format!("{left}: {}", unset.label);

@@ -113,6 +113,7 @@ impl Engine {
         if scene.tessellator.given() != tessellator.given() {
             tessellator.give(scene.tessellator.given().cloned())?;
         }
+        tessellator.set_surface_shader(scene.tessellator.surface_shader().cloned())?;
         let rest = OutlineOf::ALL.into_iter().zip(inputs(tessellation, view, grid)).collect();
         Ok(SilhouetteDrawing { tessellator, grid, coverage, rest, is_set: false, next_chunk: 0 })
     }

@@ -8,6 +8,8 @@ use super::lazy::get_or_try;
 use super::mesh_buffers::MeshBuffers;
 use super::own_lod::LodShader;
 use super::own_lod_passes::OwnLodPasses;
+use super::own_surface::SurfaceShader;
+use super::own_surface_passes::OwnSurfacePasses;
 use super::relief_buffers::{HeightImages, ReliefBuffers};
 use super::search_passes::SearchPasses;
 
@@ -23,6 +25,7 @@ pub(super) struct MeshPasses {
     factor_levels: OnceLock<BoundPass>,
     point_levels: OnceLock<BoundPass>,
     own_lod: OnceLock<OwnLodPasses>,
+    own_surface: OnceLock<OwnSurfacePasses>,
     pub searches: SearchPasses,
 }
 
@@ -41,6 +44,16 @@ impl MeshPasses {
             (6, &mesh.curve_nets),
         ];
         BoundPass::once(&self.curve_nets, on.gpu, &on.pipelines.curve_nets, &buffers)
+    }
+
+    /// The control points of every curve by a function of the user's own, which is always the same.
+    pub(super) fn own_surface(
+        &self,
+        on: &PassInputs,
+        shader: &Arc<SurfaceShader>,
+        report: &wgpu::Buffer,
+    ) -> Result<&OwnSurfacePasses, GpuError> {
+        get_or_try(&self.own_surface, || OwnSurfacePasses::new(on, shader, report))
     }
 
     /// The control point at the centre of every patch.

@@ -20,9 +20,12 @@ pub(crate) mod layout;
 mod lazy;
 mod mesh_buffers;
 mod mesh_passes;
+pub(crate) mod own_functions;
 mod own_least;
 pub(crate) mod own_lod;
 mod own_lod_passes;
+pub(crate) mod own_surface;
+mod own_surface_passes;
 mod params;
 mod pipelines;
 pub(crate) mod readback;
@@ -49,7 +52,9 @@ pub(crate) use lazy::Lazy;
 pub(crate) use mesh_buffers::MeshBuffers;
 #[cfg(test)]
 pub(crate) use mesh_buffers::SEARCH_COUNTERS;
-pub(crate) use own_lod::{Given, LodReport, LodShader};
+pub(crate) use own_functions::{OwnReport, OwnShader};
+pub(crate) use own_lod::{Given, LodShader};
+pub(crate) use own_surface::SurfaceShader;
 pub(crate) use pipelines::{ComputePipelines, WORKGROUP, bind_group, grid};
 #[cfg(test)]
 pub(crate) use pipelines::{GRID_WIDTH, MOST_WORKGROUPS};
@@ -64,9 +69,10 @@ pub(crate) use wgsl::WgslFile;
 
 /// The files with the entry points of the passes: one shader module each.
 #[cfg(test)]
-pub(crate) static MODULES: [&WgslFile; 14] = [
+pub(crate) static MODULES: [&WgslFile; 15] = [
     &pipelines::PASS_DEFORM,
     &pipelines::PASS_NETS,
+    &own_surface::PASS_OWN_SURFACE,
     &pipelines::PASS_FACTORS,
     &own_lod::PASS_OWN_LOD,
     &pipelines::PASS_ASKED,

@@ -1,12 +1,14 @@
 //! The compute pipelines of all passes, and what binds buffers to them.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use wgpu::util::DeviceExt;
 
 use super::compute_pipeline::{ComputePipeline, ShaderModule};
 use super::lazy::Lazy;
+use super::own_functions::RecentPipelines;
 use super::own_lod::{LodShader, OwnLodPipelines};
+use super::own_surface::{OwnSurfacePipelines, SurfaceShader};
 use super::wgsl::{
     CONNECTIVITY_TABLE, CONTROL_POINTS, CONVENTION, CULL, DISPLACE, DISPLACEMENT_FACTOR, DISPLACEMENT_SHARES, DOMAIN,
     FACTORS, LEAST_FACTORS, LEAST_ROWS, LOAD_NET, LOADS, LOD, NORMAL, OCTAHEDRAL_NORMAL, SEARCH_GROUP, SEARCH_STATE,
@@ -144,12 +146,9 @@ pub struct ComputePipelines {
     pub emit_triangles: [ComputePipeline; 2],
     pub displace: ComputePipeline,
     patterns: Lazy<wgpu::Buffer>,
-    /// Those of the user's own functions that were asked for last.
-    own_lods: Mutex<Vec<(Arc<LodShader>, Arc<OwnLodPipelines>)>>,
+    own_lods: RecentPipelines<LodShader, OwnLodPipelines>,
+    own_surfaces: RecentPipelines<SurfaceShader, OwnSurfacePipelines>,
 }
-
-/// For how many of the user's own functions pipelines are kept: those that are shown, and those that replace them.
-const OWN_LODS: usize = 2;
 
 impl Default for ComputePipelines {
     fn default() -> Self {
@@ -208,23 +207,19 @@ impl ComputePipelines {
                 .map(|rows| ComputePipeline::new(&emit, "emit_triangles_main").with("EMIT_ROWS", rows)),
             displace: ComputePipeline::new(&module(&PASS_DISPLACE), "displace_main"),
             patterns: Lazy::default(),
-            own_lods: Mutex::default(),
+            own_lods: RecentPipelines::default(),
+            own_surfaces: RecentPipelines::default(),
         }
     }
 
-    /// The pipelines of functions of the user's own. Those of the same text are the same.
+    /// The pipelines of functions of the user's own for factors.
     pub(crate) fn own_lod(&self, shader: &Arc<LodShader>) -> Arc<OwnLodPipelines> {
-        // What is behind the lock is whole even if a thread panicked while it held it.
-        let mut kept = self.own_lods.lock().unwrap_or_else(PoisonError::into_inner);
-        let place = kept.iter().position(|(known, _)| known == shader);
-        let found = match place {
-            Some(place) => kept.remove(place),
-            None => (shader.clone(), Arc::new(OwnLodPipelines::new(shader))),
-        };
-        let pipelines = found.1.clone();
-        kept.truncate(OWN_LODS - 1);
-        kept.insert(0, found);
-        pipelines
+        self.own_lods.of(shader, OwnLodPipelines::new)
+    }
+
+    /// The pipelines of a function of the user's own for control points.
+    pub(crate) fn own_surface(&self, shader: &Arc<SurfaceShader>) -> Arc<OwnSurfacePipelines> {
+        self.own_surfaces.of(shader, OwnSurfacePipelines::new)
     }
 
     /// The table in which `emit_triangles` looks up which points triangles join: see `shaders/connectivity_table.wgsl`.

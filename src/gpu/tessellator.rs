@@ -2,6 +2,7 @@
 
 mod given;
 mod output;
+mod own_surface;
 mod passes;
 
 use std::sync::Arc;
@@ -18,11 +19,12 @@ use super::readback::Readback;
 use super::relief_buffers::HeightImages;
 use super::rig::RigBuffers;
 use super::slab::SlabPasses;
-use super::{ComputePipelines, Given, Gpu, GpuError, LodReport, MeshBuffers, hull};
+use super::{ComputePipelines, Given, Gpu, GpuError, MeshBuffers, OwnReport, hull};
 use crate::mesh::{Mesh, Pose, Sharing, Topology};
-use crate::tessellate::{self, Clip, Convention, Displacement, Edges, HullFactors, Inputs, PosedMesh, Solid, sharing};
+use crate::tessellate::{self, Clip, Convention, Displacement, Edges, HullFactors, Inputs, PosedMesh, Solid};
 
 pub(crate) use output::ChunkBuffers;
+use own_surface::OwnSurface;
 
 /// Patches that one scan covers: few enough that no count of vertices or triangles overflows 32 bits at factor 64.
 const SLAB_PATCHES: u32 = 1 << 19;
@@ -46,10 +48,12 @@ pub struct Tessellator {
     convention: Convention,
     given: Option<Given>,
     given_buffer: wgpu::Buffer,
-    /// Where functions of the user's own report, a [`LodReport`], if they give factors.
+    /// Where functions of the user's own report, an [`OwnReport`], if they give factors.
     own_report: Option<wgpu::Buffer>,
     /// What they reported last.
-    own_lod_report: Option<LodReport>,
+    own_lod_report: Option<OwnReport>,
+    /// What takes the place of the surface, if something does.
+    own_surface: Option<OwnSurface>,
     arena: Arena,
     slabs: Vec<SlabPasses>,
     mesh_passes: MeshPasses,
@@ -108,18 +112,19 @@ impl Tessellator {
     }
 
     /// Makes another tessellator of the same mesh, on whatever thread: it shares mesh, topology and height images, and has
-    /// output of its own.
+    /// output of its own. What takes the place of LOD and of the surface is the same.
     pub fn beside(&self, arena_bytes: u64) -> impl FnOnce() -> Result<Self, GpuError> + Send + use<> {
         let (gpu, pipelines, solid) = (self.gpu.clone(), self.pipelines.clone(), self.solid);
         let (mesh, images) =
             ((self.mesh.clone(), self.topology.clone()), self.images.as_ref().map(HeightImages::shared));
-        let given = self.given.clone();
+        let (given, surface_shader) = (self.given.clone(), self.surface_shader().cloned());
         move || {
             let make_arena = |patches| Arena::new(&gpu, patches, arena_bytes);
             let mut other = Self::with(&gpu, pipelines, mesh, solid, images, make_arena)?;
             if given.is_some() {
                 other.give(given)?;
             }
+            other.set_surface_shader(surface_shader)?;
             Ok(other)
         }
     }
@@ -159,6 +164,7 @@ impl Tessellator {
             given_buffer: filled::<HullFactors>(gpu, "given factors", &[])?,
             own_report: None,
             own_lod_report: None,
+            own_surface: None,
             arena,
             slabs,
             mesh_passes: MeshPasses::default(),
@@ -178,7 +184,8 @@ impl Tessellator {
     /// # Errors
     /// The mesh's curves under another surface are larger than the adapter binds.
     pub fn set(&mut self, inputs: &Inputs) -> Result<(), GpuError> {
-        let sharing = sharing(inputs.tessellation.surface, inputs.tessellation.edges);
+        let inputs = &self.with_own_surface(inputs);
+        let sharing = self.sharing(inputs);
         if sharing != self.buffers.sharing {
             self.upload(sharing)?;
         }
@@ -266,9 +273,10 @@ impl Tessellator {
         (!leaves_out || inputs.view.clip_from_object == clip_from_object) && self.hides_backs(&seen)
     }
 
-    /// Given factors may tear any edge, and a pose may turn a part inside out.
+    /// Given factors and control points of the user's own may tear any edge, and a pose may turn a part inside out.
     fn hides_backs(&self, inputs: &Inputs) -> bool {
-        self.given.is_none() && self.posed.pose().is_none() && self.solid.is_some_and(|solid| solid.hides_backs(inputs))
+        let is_ours = self.given.is_none() && self.own_surface.is_none();
+        is_ours && self.posed.pose().is_none() && self.solid.is_some_and(|solid| solid.hides_backs(inputs))
     }
 
     /// The height images, if vertices are displaced by them.

@@ -11,6 +11,7 @@ mod indices;
 mod mapped_normals;
 pub(crate) mod optimum;
 mod outlines;
+mod points_agreement;
 mod screen_error;
 mod seams;
 mod silhouette;
@@ -27,6 +28,7 @@ pub(crate) use deviation_field::{DeviationField, DeviationMeasurement, Deviation
 pub(crate) use folds::FoldedPatch;
 pub(crate) use indices::{IndexDifference, Meaning, index_differences};
 pub(crate) use outlines::{EdgeSide, patch_edges};
+pub(crate) use points_agreement::{PointsAgreement, PointsDisagreement};
 pub(crate) use screen_error::{PatchesAbove, ScreenError, ScreenErrorMeasurement};
 pub(crate) use seams::{SeamTurns, Seams};
 pub(crate) use silhouette::{OutlineDistance, OutlineDistances, OutlineOf, SampleGrid, Silhouette};

@@ -11,6 +11,9 @@ pub enum Sharing {
     AllSides,
     /// Sides with equal normals at both ends share one: PN triangles, which tear where normals differ.
     EqualNormals,
+    /// No sides share one, so that nothing hides where they disagree; but all run as their edge does, and the edge has one
+    /// factor. Each has the corners of its one neighbour beside its own: for control points by a function of the user's own.
+    EachSide,
     /// No sides share one. Each side has a curve in its patch's direction, with control points from its own corners, as
     /// shaders without adjacency compute it.
     None,
@@ -79,8 +82,8 @@ impl Curves {
                     curves.push_shared(topology, edge, sides.clone(), sides);
                 }
                 Sharing::EqualNormals => curves.push_by_normals(mesh, topology, edge),
-                Sharing::None | Sharing::NoneAveraged => {
-                    curves.push_own(topology, edge, sharing == Sharing::NoneAveraged);
+                Sharing::EachSide | Sharing::None | Sharing::NoneAveraged => {
+                    curves.push_own(topology, edge, sharing != Sharing::None);
                 }
             }
             if !per_patch {
@@ -138,17 +141,19 @@ impl Curves {
         }
     }
 
-    /// Adds a curve and a factor for each side, in its patch's direction.
-    fn push_own(&mut self, topology: &Topology, edge: &Edge, averaged: bool) {
+    /// Adds a curve for each side. If nothing is shared it has a factor too, and runs in its patch's direction.
+    fn push_own(&mut self, topology: &Topology, edge: &Edge, with_neighbour: bool) {
         let sides = topology.side_range(edge);
         for side in sides.clone() {
-            let reversed = topology.sides[side as usize].reversed();
+            let reversed = self.per_patch && topology.sides[side as usize].reversed();
             let turned = |[a, b]: [u32; 2]| if reversed { [b, a] } else { [a, b] };
             // The other side, if there is exactly one: the shader in the white paper averages its control points with
             // these.
-            let other = (averaged && sides.len() == 2).then(|| sides.start + sides.start + 1 - side);
+            let other = (with_neighbour && sides.len() == 2).then(|| sides.start + sides.start + 1 - side);
             let asked = std::iter::once(side).chain(other);
-            self.factor_curves.push(self.curves.len() as u32);
+            if self.per_patch {
+                self.factor_curves.push(self.curves.len() as u32);
+            }
             let corners = asked.map(|side| turned(topology.side_corners(&topology.sides[side as usize])));
             self.side_curves[side as usize] = self.push(turned(topology.edge_points(edge)), corners);
         }
@@ -197,13 +202,35 @@ mod tests {
     }
 
     #[test]
+    fn each_side_alone_has_its_own_corners_first_and_then_those_across() {
+        for shape in Shape::ALL {
+            let mesh = shape.build();
+            let topology = Topology::build(&mesh, &Progress::new()).expect("not cancelled");
+            let curves = Curves::build(&mesh, &topology, Sharing::EachSide);
+            assert_eq!(curves.curves.len(), topology.sides.len(), "{shape:?}");
+            for (index, own) in (0..).zip(&topology.sides) {
+                let curve = curves.curves[curves.side_curves[index as usize] as usize];
+                let asked = &curves.sides[curve.first_side as usize..][..curve.side_count as usize];
+                let sides = topology.side_range(&topology.edges[own.edge as usize]);
+                let other = sides.clone().find(|&side| side != index).filter(|_| sides.len() == 2);
+                let corners = |side: u32| topology.side_corners(&topology.sides[side as usize]);
+                assert_eq!(asked[0], corners(index), "{shape:?}");
+                assert_eq!(asked.get(1).copied(), other.map(corners), "{shape:?}");
+            }
+        }
+    }
+
+    #[test]
     fn shared_curves_run_as_their_edge_does() {
         let mesh = Shape::CubeSplit.build();
         let topology = Topology::build(&mesh, &Progress::new()).expect("not cancelled");
-        for (sharing, curves_per_split_edge) in [(Sharing::AllSides, 1), (Sharing::EqualNormals, 2), (Sharing::None, 2)]
+        for (sharing, curves_per_split_edge, curves_per_diagonal) in
+            [(Sharing::AllSides, 1, 1), (Sharing::EqualNormals, 2, 1), (Sharing::EachSide, 2, 2), (Sharing::None, 2, 2)]
         {
             let curves = Curves::build(&mesh, &topology, sharing);
-            let diagonals = if sharing.is_per_patch() { 2 * 6 } else { 6 };
+            let diagonals = 6 * curves_per_diagonal;
+            let factors = if sharing.is_per_patch() { topology.sides.len() } else { topology.edges.len() };
+            assert_eq!(curves.factor_count() as usize, factors, "{sharing:?}");
             assert_eq!(curves.curves.len(), 12 * curves_per_split_edge + diagonals, "{sharing:?}");
             for (index, side) in (0..).zip(&topology.sides) {
                 let [a, b] = curves.curves[curves.side_curves[index as usize] as usize].points;

@@ -101,6 +101,14 @@ impl Inputs {
     }
 }
 
+/// Which sides of an edge share its curve where a function of the user's own gives control points: none.
+pub(crate) fn own_sharing(edges: Edges) -> Sharing {
+    match edges {
+        Edges::PerEdge => Sharing::EachSide,
+        Edges::AsPublished => Sharing::NoneAveraged,
+    }
+}
+
 /// Which sides of an edge share its curve under a surface.
 pub(crate) fn sharing(surface: Surface, edges: Edges) -> Sharing {
     let alone = surface.tears() || surface == Surface::Flat;

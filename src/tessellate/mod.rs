@@ -88,7 +88,7 @@ pub(crate) use factors::{
     triangle_count,
 };
 pub(crate) use hull_factors::{HullFactors, RowChoice};
-pub(crate) use inputs::sharing;
+pub(crate) use inputs::{own_sharing, sharing};
 pub(crate) use limit_surface::LimitSurface;
 pub(crate) use lod::{beyond_near, distance_factor, edge_length_factor, paper_edge_factor};
 pub(crate) use mesh_displacement::{displacement_reach, displacing_heights, height_units};

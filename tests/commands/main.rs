@@ -35,6 +35,7 @@ mod shaders;
 mod shot;
 mod silhouette;
 mod stability;
+mod surface_shader;
 mod techniques;
 mod tessellate;
 mod turntable;

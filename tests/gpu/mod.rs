@@ -27,6 +27,7 @@ pub(crate) mod moving;
 mod orientation;
 mod own_lod;
 mod own_shaders;
+mod own_surface;
 mod passes;
 mod picking;
 mod pictures;

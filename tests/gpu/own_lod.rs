@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use pnaen::engine::Loaded;
 use pnaen::gpu::{Given, GpuError, LodShader, Timing};
-use pnaen::lod_shader::compile;
 use pnaen::measure::{Agreement, Measured};
 use pnaen::mesh::Shape;
+use pnaen::own_shader::compile;
 use pnaen::render::{Camera, Scene};
 use pnaen::settings::Settings;
 use pnaen::tessellate::{
@@ -204,7 +204,7 @@ fn loops_without_end_are_stopped_and_said() {
     ] {
         scene.tessellator.give(Some(Given::Shader(shader(&text)))).expect("small");
         let stopped = engine().count(&mut scene, &inputs, &mut Timing::Off);
-        assert!(matches!(stopped, Err(GpuError::OwnLodStopped)), "{text}: {stopped:?}");
+        assert!(matches!(stopped, Err(GpuError::OwnStopped("LOD shader"))), "{text}: {stopped:?}");
         let own = engine().own_factors(&scene).expect("a readback");
         assert!(own.iter().all(|patch| patch.edges == [1.0; 3] && patch.inside == 1.0), "{text}");
     }

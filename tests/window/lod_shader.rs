@@ -16,7 +16,7 @@ use crate::window_tests::editing::{assert_draws, copied};
 use crate::window_tests::{choose, press, resumed, settle, uniform};
 
 /// Writes a file whose function for edges returns this.
-fn write(path: &Path, returns: &str) {
+pub(super) fn write(path: &Path, returns: &str) {
     let text = format!("fn edge_factor(edge: Edge, triangle: Triangle, view: View) -> f32 {{ return {returns}; }}");
     std::fs::write(path, text).expect("a writable temporary folder");
 }
@@ -28,7 +28,7 @@ fn open(harness: &mut Harness<App>, path: &Path) {
 }
 
 /// Runs frames until the window has seen a change on disk, and then until nothing is under way.
-fn until(harness: &mut Harness<App>, what: &str, holds: impl Fn(&App) -> bool) {
+pub(super) fn until(harness: &mut Harness<App>, what: &str, holds: impl Fn(&App) -> bool) {
     let start = Instant::now();
     while !holds(harness.state()) {
         assert!(start.elapsed() < PATIENCE, "{what}");

@@ -21,6 +21,7 @@ mod saving;
 mod scenes;
 mod silhouette;
 mod spending;
+mod surface_shader;
 mod tasks;
 mod techniques;
 mod typing;

@@ -60,6 +60,7 @@ impl App {
             truth: truth.as_ref(),
             factors: self.factors_file(),
             lod_shader: self.lod_shader_file().filter(|_| self.uses_lod_shader()),
+            surface_shader: self.surface_shader_file(),
             matcap_image: self.matcap_image(),
             environment: self.environment_file(),
             triangle: self.selected_triangle().filter(|_| choices.overlays),

@@ -5,6 +5,7 @@ use egui::{Context, OpenUrl, ViewportCommand, gui_zoom};
 use crate::app::App;
 use crate::app::dialogs::typed_path::Purpose;
 use crate::commands::{Action, Availability, Command, FileAction, Preparing};
+use crate::gpu::{LodShader, SurfaceShader};
 use crate::load::{HeightSource, Import, Source};
 use crate::settings::{Colors, Declaration, Settings, options};
 use crate::tessellate::Tessellation;
@@ -28,6 +29,8 @@ impl App {
             has_truth: self.truth.is_some(),
             has_factors: self.given.is_some(),
             has_lod_shader: self.lod_shader.is_some(),
+            has_surface_shader: self.surface_shader.is_some(),
+            takes_surface: !self.uses_surface_shader(),
             has_environment: self.environment.is_some(),
             can_undo: self.can_undo(),
             can_redo: self.can_redo(),
@@ -68,8 +71,8 @@ impl App {
             Action::Camera(action) => self.move_camera_by(context, *action),
             Action::Setting(change) => change.apply(&mut self.settings),
             Action::Prepare(preparing) => self.prepare_as(context, *preparing),
-            Action::Undo => self.undo(),
-            Action::Redo => self.redo(),
+            Action::Undo => self.undo(context),
+            Action::Redo => self.redo(context),
             Action::CopyAsCommand => self.copy_command(context),
             Action::ResetSettings => self.reset_settings(),
             Action::ForgetEverything => self.dialogs.asks_to_forget = true,
@@ -120,7 +123,10 @@ impl App {
             FileAction::ForgetFactors => self.forget_factors(),
             FileAction::LodShader => self.lod_shader_dialog(context),
             FileAction::LodShaderPath => self.type_path(Purpose::LodShader),
-            FileAction::CloseLodShader => self.forget_lod_shader(),
+            FileAction::CloseLodShader => self.forget_shader::<LodShader>(),
+            FileAction::SurfaceShader => self.surface_shader_dialog(context),
+            FileAction::SurfaceShaderPath => self.type_path(Purpose::SurfaceShader),
+            FileAction::CloseSurfaceShader => self.forget_shader::<SurfaceShader>(),
             FileAction::Matcap => self.matcap_dialog(context),
             FileAction::Environment => self.environment_dialog(context),
             FileAction::EnvironmentPath => self.type_path(Purpose::Environment),
@@ -159,6 +165,8 @@ impl App {
         let usual = Settings::opening();
         let import = Import { up: import.up, unit: import.unit, ..usual.import };
         self.settings = Settings { import, ..usual.with(Tessellation { displacement, ..usual.tessellation }) };
+        self.replace_again::<LodShader>();
+        self.replace_again::<SurfaceShader>();
     }
 
     /// Closes the small windows that a command opened; or if there are none, stops a long drawing; or if there is none,

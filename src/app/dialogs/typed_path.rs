@@ -20,6 +20,7 @@ pub(crate) enum Purpose {
     Truth,
     Factors,
     LodShader,
+    SurfaceShader,
     /// A picture of a lit sphere.
     Matcap,
     Environment,
@@ -74,6 +75,7 @@ impl Purpose {
             Self::Truth => "Reference surface path",
             Self::Factors => "Factors path",
             Self::LodShader => "LOD shader path",
+            Self::SurfaceShader => "Surface shader path",
             Self::Matcap => "Matcap path",
             Self::Environment => "Environment path",
             Self::SaveChart => "Save chart",
@@ -95,6 +97,7 @@ impl Purpose {
                 | Self::Truth
                 | Self::Factors
                 | Self::LodShader
+                | Self::SurfaceShader
                 | Self::Matcap
                 | Self::Environment
         );
@@ -112,6 +115,7 @@ impl Purpose {
             Self::Truth => format!("A {} file, or shape:NAME", known_extensions()),
             Self::Factors => "A .csv file with the factors of every triangle".to_owned(),
             Self::LodShader => "A .wgsl file with the function edge_factor".to_owned(),
+            Self::SurfaceShader => "A .wgsl file with the function edge_points".to_owned(),
             Self::Environment => "A .hdr or .exr panorama".to_owned(),
             Self::SaveChart => "A new .svg, .png or .csv file".to_owned(),
             Self::SavePicture => "A new .png file".to_owned(),
@@ -138,7 +142,8 @@ impl Purpose {
         match (self, open) {
             (Self::Open | Self::Truth, Some(Source::File(path))) => path.display().to_string(),
             (Self::Open | Self::Truth | Self::Heights, _) => String::new(),
-            (Self::Factors | Self::LodShader | Self::Matcap | Self::Environment, _) => String::new(),
+            (Self::Factors | Self::LodShader | Self::SurfaceShader, _) => String::new(),
+            (Self::Matcap | Self::Environment, _) => String::new(),
             (Self::SaveChart, _) => absolute("chart.svg"),
             (Self::SavePicture, _) => absolute(&name_beside(&title, "-view.png")),
             (Self::SaveFolder, _) => absolute(&name_beside(&title, "-turntable")),
@@ -277,7 +282,11 @@ impl App {
             _ if purpose.is_written()
                 || matches!(
                     purpose,
-                    Purpose::Factors | Purpose::LodShader | Purpose::Matcap | Purpose::Environment
+                    Purpose::Factors
+                        | Purpose::LodShader
+                        | Purpose::SurfaceShader
+                        | Purpose::Matcap
+                        | Purpose::Environment
                 ) =>
             {
                 self.take_source(context, purpose, Source::File(path.into()))
@@ -302,6 +311,7 @@ impl App {
             (Purpose::Truth, source) => self.open_truth(context, source),
             (Purpose::Factors, Source::File(path)) => self.open_factors(context, path),
             (Purpose::LodShader, Source::File(path)) => self.open_lod_shader(context, path),
+            (Purpose::SurfaceShader, Source::File(path)) => self.open_surface_shader(context, path),
             (Purpose::Matcap, Source::File(path)) => self.open_matcap(context, path),
             (Purpose::Environment, Source::File(path)) => self.open_environment(context, path),
             (Purpose::SaveChart, Source::File(path)) => self.save_chart_beside(context, path),

@@ -26,6 +26,8 @@ pub(crate) struct Document {
     pub moment: Option<Moment>,
     /// The number of the factors of a file that the scene has; 0 for those of LOD.
     pub given: u64,
+    /// The number of the function that gives the scene's control points; 0 for a surface's own.
+    pub surface_shader: u64,
     /// The number of the picture of a lit sphere that the scene has; 0 for those that are made in code.
     pub matcap: u64,
     /// The number of the file whose light the scene has; 0 for none.
@@ -174,6 +176,7 @@ fn load(
         edges,
         moment: None,
         given: 0,
+        surface_shader: 0,
         matcap: 0,
         environment: 0,
         checks,

@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::background_job::BackgroundJob;
-use super::lod_shader_job::{OpenLodShader, new_generation};
+use super::own_shader_job::{OpenShader, new_generation};
 use crate::app::App;
 use crate::cli::read_factors;
 use crate::engine::Loaded;
-use crate::gpu::{Given, GpuError};
+use crate::gpu::{Given, GpuError, LodShader};
 use crate::measure::Agreement;
 use crate::mesh::Topology;
 use crate::names::shown_path;
@@ -129,7 +129,7 @@ impl App {
     }
 
     fn take_read(&mut self, path: PathBuf, Read { factors, partitioning, compared }: Read) {
-        self.forget_lod_shader();
+        self.forget_shader::<LodShader>();
         let same = self.given.take().filter(|given| Arc::ptr_eq(&given.factors, &factors));
         let lod = same.as_ref().map_or(self.settings.tessellation.lod, |given| given.lod);
         let generation = same.map_or_else(new_generation, |given| given.generation);
@@ -164,7 +164,7 @@ impl App {
 
     /// The number of what takes the place of LOD: functions of the user's own, or a file; 0 for LOD.
     pub(in crate::app) fn given_wanted(&self) -> u64 {
-        let shader = self.lod_shader.as_ref().filter(|_| self.uses_lod_shader()).and_then(OpenLodShader::shader);
+        let shader = self.lod_shader.as_ref().filter(|_| self.uses_lod_shader()).and_then(OpenShader::shader);
         let of_file = self.given.as_ref().map_or(0, |given| given.generation);
         shader.map_or(of_file, |(_, generation)| generation)
     }
@@ -175,7 +175,7 @@ impl App {
     /// # Errors
     /// More patches than the adapter binds memory for.
     pub(in crate::app) fn give_factors(&mut self) -> Result<u64, GpuError> {
-        let shader = self.lod_shader.as_ref().filter(|_| self.uses_lod_shader()).and_then(OpenLodShader::shader);
+        let shader = self.lod_shader.as_ref().filter(|_| self.uses_lod_shader()).and_then(OpenShader::shader);
         let wanted = self.given_wanted();
         let Some(document) = &mut self.document else { return Ok(0) };
         if document.given != wanted && self.viewport.picture.is_free() && self.viewport.left.is_made() {

@@ -148,6 +148,7 @@ impl App {
             loaded: document.loaded.clone(),
             moment: document.moment,
             given: document.scene.tessellator.given().cloned(),
+            surface_shader: document.scene.tessellator.surface_shader().cloned(),
             matcap: self.matcap.as_ref().map(ChosenMatcap::picture),
             // The scene is made from one that has it.
             environment: None,
@@ -175,7 +176,8 @@ impl App {
         let exact = self.source().filter(|_| is_shown).map(ToString::to_string);
         match self.yardstick().1 {
             Some(truth) => Some(ReferenceSurface::Truth(chosen.or(exact)?, truth)),
-            None => is_shown.then_some(ReferenceSurface::Limit),
+            // The CPU doesn't know the limit surface of a shader.
+            None => (is_shown && !self.uses_surface_shader()).then_some(ReferenceSurface::Limit),
         }
     }
 }

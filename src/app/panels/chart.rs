@@ -135,6 +135,10 @@ impl App {
 
     /// The window's settings, if they aren't measured yet.
     fn unknown_current(&self) -> Option<Settings> {
+        // The chart measures surfaces of ours.
+        if self.uses_surface_shader() {
+            return None;
+        }
         let (charted, current) = (self.panels.chart.charted()?, whole(&self.settings));
         let listed = Setting::of(&current).is_some_and(|own| charted.has(&own));
         let known = charted.current.is_some_and(|(known, _)| known == current);

@@ -47,7 +47,7 @@ impl App {
             let mut applied = None;
             if let Some(charted) = self.panels.chart.charted().filter(|charted| !charted.subject.rows.is_empty()) {
                 let is_stale = self.chart_outdated().is_some();
-                let own = Setting::of(&self.settings);
+                let own = Setting::of(&self.settings).filter(|_| !self.uses_surface_shader());
                 let diagram = Diagram { charted, cost: self.panels.chart.cost, is_stale, own };
                 // While it is measured, the legend has what is still to come, so that it doesn't grow.
                 let plan = self.charting().map(|_| &self.panels.chart.plan);

@@ -26,10 +26,18 @@ impl App {
     }
 
     fn deviation_of(&self, half: SplitSide) -> Option<DeviationBasis> {
+        if self.lacks_reference() {
+            return None;
+        }
         let document = self.document.as_ref()?;
         let tessellation = document.scene.half(half)?.tessellator.generation();
         let (document, truth, limit) = (document.generation, self.yardstick().0, self.settings.tessellation.surface);
         Some(DeviationBasis { document, tessellation, truth, limit })
+    }
+
+    /// Whether there is nothing to compare with: the CPU doesn't know the limit surface of a shader.
+    fn lacks_reference(&self) -> bool {
+        self.uses_surface_shader() && self.yardstick().1.is_none()
     }
 
     fn shows_deviation(&self) -> bool {
@@ -147,6 +155,10 @@ impl App {
         if !self.shows_deviation() || !self.panels.open.title(ui, Section::Deviation) {
             return;
         }
+        if self.lacks_reference() {
+            let text = "Nothing is measured: the CPU doesn't know the surface of a shader. Choose a reference surface under File.";
+            return drop(ui.add(egui::Label::new(text).wrap()));
+        }
         let (truth, mut name) = (self.yardstick().1, self.yardstick().2);
         let is_split = self.settings.half(SplitSide::Left).is_some();
         if is_split && truth.is_none() {
@@ -159,12 +171,12 @@ impl App {
             fact(ui, "Reference", &shortened(&name, 20), hover);
             option_row(ui, &options::DEVIATION_IN, &mut self.settings, "");
             for half in SplitSide::BOTH {
-                let Some(settings) = self.settings.half(half) else { continue };
+                let Some(surface) = self.surface_title(half) else { continue };
                 let place = if half == SplitSide::Left { "Left" } else { "Right" };
                 if is_split {
                     let hover = "The surface in this half of the split view.";
                     ui.label(RichText::new(place).strong()).on_hover_text(hover);
-                    number(ui, settings.tessellation.surface.label());
+                    number(ui, &surface);
                     ui.end_row();
                 }
                 if self.deviation_rows(ui, half, if is_split { place } else { "" }) {

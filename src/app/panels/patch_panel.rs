@@ -61,7 +61,7 @@ impl App {
             (None, _) => drop(ui.weak("Click a triangle, or type its number.")),
             (Some(triangle), None) => drop(ui.label(format!("Triangle {triangle} is degenerate: it has no patch."))),
             (Some(triangle), Some(patch)) => {
-                let question = self.emitted_patch(patch);
+                let (question, is_of_shader) = (self.emitted_patch(patch), self.uses_surface_shader());
                 let found = self.jobs.measure.found();
                 let shown = SelectedPatch {
                     mesh,
@@ -84,7 +84,11 @@ impl App {
                     let explain = &mut self.jobs.explain;
                     let explained = question.and_then(|(question, posed)| explain.of(ui.ctx(), &posed, question));
                     let by_error = shown.lod == Lod::Error;
-                    ShownExplanation { topology, explained, by_error, factors: shown.factors }.rows(ui);
+                    if is_of_shader {
+                        ui.add(egui::Label::new(NOT_EXPLAINED).wrap());
+                    } else {
+                        ShownExplanation { topology, explained, by_error, factors: shown.factors }.rows(ui);
+                    }
                     shown.plot(ui);
                     shown.edge_rows(ui, &mut wish);
                     shown.corner_rows(ui);
@@ -115,9 +119,15 @@ impl App {
             inputs: drawn.inputs,
             factors,
         };
-        (!self.is_playing() && !patch_is_culled(factors)).then(|| (emitted, tessellator.posed().clone()))
+        // What explains a patch computes its surface on the CPU, which doesn't know a shader's.
+        let is_known = !self.uses_surface_shader();
+        (is_known && !self.is_playing() && !patch_is_culled(factors)).then(|| (emitted, tessellator.posed().clone()))
     }
 }
+
+/// What is said in place of what a patch's factors are explained by.
+const NOT_EXPLAINED: &str =
+    "How far its triangles are from the surface isn't measured: the CPU doesn't know the surface of a shader.";
 
 /// The number of the selected triangle, which can be dragged and typed, and the buttons beside it.
 fn chosen_triangle(ui: &mut Ui, mesh: &Mesh, topology: &Topology, selected: Option<u32>) -> Option<Wish> {

@@ -51,9 +51,11 @@ impl App {
     fn surface_rows(&mut self, ui: &mut egui::Ui) {
         self.scene_row(ui);
         self.variant_row(ui);
-        let settings = &mut self.settings;
-        option_row(ui, &options::SURFACE, settings, "");
-        shown_option_row(ui, &options::ALPHA, settings);
+        if !self.surface_shader_rows(ui) {
+            let settings = &mut self.settings;
+            option_row(ui, &options::SURFACE, settings, "");
+            shown_option_row(ui, &options::ALPHA, settings);
+        }
         self.normals_rows(ui);
         let settings = &mut self.settings;
         option_row(ui, &options::NORMALS, settings, "");

@@ -13,6 +13,7 @@ use egui::ViewportCommand;
 use crate::app::App;
 use crate::app::jobs::background_job::BackgroundJob;
 use crate::app::sections::OpenSections;
+use crate::gpu::{LodShader, SurfaceShader};
 use crate::load::{Import, Source};
 use crate::render::Camera;
 use crate::settings::Settings;
@@ -113,13 +114,14 @@ impl Persistence {
         context: &egui::Context,
         settings: &Settings,
         open: OpenSections,
-        [environment, lod_shader]: [Option<String>; 2],
+        [environment, lod_shader, surface_shader]: [Option<String>; 3],
         placement: Placement,
         seen: Option<(SavedCamera, Vec<SavedCamera>)>,
     ) {
         self.kept.take_settings(settings);
         self.kept.open = open;
-        (self.kept.environment, self.kept.lod_shader) = (environment, lod_shader);
+        self.kept.environment = environment;
+        (self.kept.lod_shader, self.kept.surface_shader) = (lod_shader, surface_shader);
         self.kept.frame = frame_now(context, &self.kept.frame);
         let open = self.kept.files.iter_mut().find(|file| Some(&file.path) == self.open.as_ref());
         if let Some((file, seen)) = open.zip(seen) {
@@ -214,6 +216,9 @@ impl App {
         if let Some(path) = lasting.kept.lod_shader.clone() {
             self.open_lod_shader(context, path.into());
         }
+        if let Some(path) = lasting.kept.surface_shader.clone() {
+            self.open_surface_shader(context, path.into());
+        }
         self.panels.open = lasting.kept.open;
         self.viewport.last_split = self.settings.split.unwrap_or(self.viewport.last_split);
         context.set_theme(lasting.kept.frame.theme);
@@ -249,14 +254,15 @@ impl App {
             let saved = |&camera: &Camera| SavedCamera { camera, diagonal };
             (saved(&self.viewport.camera), self.viewport.bookmarks.iter().map(saved).collect())
         });
-        let files = [self.environment_file(), self.open_lod_shader_file()];
+        let shaders = (self.open_shader_file::<LodShader>(), self.open_shader_file::<SurfaceShader>());
+        let files = [self.environment_file(), shaders.0, shaders.1];
         let files = files.map(|file| file.and_then(Path::to_str).map(str::to_owned));
         let placement = self.document.as_ref().map(|document| {
             let Import { up, unit, .. } = document.loaded.preparation.import;
             Placement { up, unit }
         });
         let placement = placement.unwrap_or_default();
-        let settings = self.settings_without_lod_shader();
+        let settings = self.settings_without_shaders();
         self.persistence.take(context, &settings, self.panels.open, files, placement, seen);
         let failed = self.persistence.write_on(context);
         self.dialogs.error = self.dialogs.error.take().or(failed);
@@ -296,8 +302,9 @@ impl App {
     /// Goes back to the state of a first start. The mesh stays open, and is framed.
     fn forget_all(&mut self, context: &egui::Context) {
         let frame = WindowGeometry::default();
-        // The LOD before it comes back, and is reset as well.
-        self.forget_lod_shader();
+        // LOD and surface before them come back, and are reset as well.
+        self.forget_shader::<LodShader>();
+        self.forget_shader::<SurfaceShader>();
         self.reset_settings();
         self.close_environment();
         self.history = Default::default();

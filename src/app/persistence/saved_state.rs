@@ -40,6 +40,8 @@ pub(super) struct SavedState {
     pub environment: Option<String>,
     /// The absolute path of the LOD shader that is open.
     pub lod_shader: Option<String>,
+    /// The same of the surface shader.
+    pub surface_shader: Option<String>,
     /// The file that was opened last comes first.
     pub files: Vec<SavedFile>,
 }
@@ -97,6 +99,7 @@ impl Default for SavedState {
             open: OpenSections::default(),
             environment: None,
             lod_shader: None,
+            surface_shader: None,
             files: Vec::new(),
         }
     }
@@ -126,6 +129,7 @@ impl SavedState {
                 open: read_open(&all["sections"]),
                 environment: absolute(&all["environment"]),
                 lod_shader: absolute(&all["lod_shader"]),
+                surface_shader: absolute(&all["surface_shader"]),
                 files,
             }
         })
@@ -143,6 +147,7 @@ impl SavedState {
                 "sections": written_open(&self.open),
                 "environment": self.environment,
                 "lod_shader": self.lod_shader,
+                "surface_shader": self.surface_shader,
                 "files": files,
             })
         )

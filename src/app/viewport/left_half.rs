@@ -7,6 +7,7 @@ use crate::app::jobs::background_job::BackgroundJob;
 use crate::app::jobs::deviation_job::DeviationJob;
 use crate::app::jobs::document::arena_bytes;
 use crate::app::jobs::measure_job::{MeasureJob, Trouble};
+use crate::app::jobs::own_shader_job::OpenShader;
 use crate::engine::Engine;
 use crate::gpu::GpuError;
 use crate::render::Scene;
@@ -78,7 +79,9 @@ impl App {
             return Ok(());
         };
         match making.job.take() {
-            Some(Ok(Ok(left))) => {
+            Some(Ok(Ok(mut left))) => {
+                // It shows a surface of ours.
+                left.tessellator.set_surface_shader(None)?;
                 self.viewport.left.made += 1;
                 scene.set_left(Some(left))?;
             }
@@ -120,11 +123,18 @@ impl App {
 
     /// The title of a half if the split has two surfaces: the surface, and with the deviation overlay its largest deviation.
     pub(in crate::app) fn half_title(&self, half: SplitSide) -> Option<String> {
-        let name = self.settings.half(half)?.tessellation.surface.label();
+        let name = self.surface_title(half)?;
         Some(match self.largest_text(half) {
             Some(largest) => format!("{name}: {largest}"),
-            None => name.to_owned(),
+            None => name,
         })
+    }
+
+    /// What the surface of a half is called: as the list of surfaces has it, or a shader's file.
+    pub(in crate::app) fn surface_title(&self, half: SplitSide) -> Option<String> {
+        let chosen = self.settings.half(half)?.tessellation.surface.label().to_owned();
+        let own = self.surface_shader.as_ref().filter(|open| open.is_used() && half == SplitSide::Right);
+        Some(own.map_or(chosen, OpenShader::name))
     }
 }
 

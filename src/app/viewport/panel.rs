@@ -102,7 +102,8 @@ impl App {
         let deviation = self.deviation_shown();
         let moment = self.moment();
         let (given, matcap) = (self.give_factors()?, self.give_matcap());
-        let has_given = given == self.given_wanted();
+        let surface_shader = self.give_surface_shader()?;
+        let has_given = given == self.given_wanted() && surface_shader == self.surface_shader_wanted();
         let environment = self.give_environment();
         let has_light = environment == self.environment_wanted();
         let settings = self.settings_in(context.theme());
@@ -117,6 +118,7 @@ impl App {
             lines: self.viewport.highlight.map_or(0, |marked| marked.generation),
             deviation,
             given,
+            surface_shader,
             matcap,
             environment,
             camera: self.viewport.camera,

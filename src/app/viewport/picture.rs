@@ -27,6 +27,8 @@ pub(crate) struct Wanted {
     pub deviation: u64,
     /// The number of the factors of a file; 0 for those of LOD.
     pub given: u64,
+    /// The number of the function that gives control points; 0 for the surface's own.
+    pub surface_shader: u64,
     /// The number of the picture of a lit sphere; 0 for those that are made in code.
     pub matcap: u64,
     /// The number of the file whose light it has; 0 for none.

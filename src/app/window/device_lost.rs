@@ -18,7 +18,7 @@ use crate::app::viewport::picture::Picture;
 use crate::app::viewport::preview::Preview;
 use crate::app::viewport::warm_up::WarmUp;
 use crate::engine::Engine;
-use crate::gpu::{Gpu, GpuError};
+use crate::gpu::{Gpu, GpuError, LodShader, SurfaceShader};
 use crate::settings::Lighting;
 
 /// A device that is lost sooner than this after the last one isn't replaced automatically.
@@ -128,7 +128,8 @@ impl App {
         self.viewport.warm_up = WarmUp::default();
         if let Some((document, scene)) = self.document.as_mut().zip(scene) {
             (document.scene, document.moment) = (scene, None);
-            (document.given, document.matcap, document.environment) = (0, 0, 0);
+            (document.given, document.surface_shader) = (0, 0);
+            (document.matcap, document.environment) = (0, 0);
             if document.checks.is_busy() {
                 document.checks = Checks::start(context, &document.loaded);
             }
@@ -164,7 +165,8 @@ impl App {
             self.read_environment(context, path, is_chosen);
         }
         self.jobs.factors = self.jobs.factors.take().map(|job| job.waking(context));
-        self.reload_lod_shader(context);
+        self.reload_shader::<LodShader>(context);
+        self.reload_shader::<SurfaceShader>(context);
         self.jobs.matcap = self.jobs.matcap.take().map(|job| job.waking(context));
         if let Some(writing) = &mut self.jobs.writing {
             writing.wake(context);

@@ -19,7 +19,7 @@ const CONFIG: &str = "pnaen.toml";
 /// The options of a camera: those that a named view may have.
 const CAMERA: [&str; 6] = ["camera", "target", "orthographic", "field-of-view", "roll", "file-camera"];
 /// The options whose values are paths, which are relative to the configuration's folder.
-const PATHS: [&str; 6] = ["height", "environment", "truth", "matcap-image", "factors", "lod-shader"];
+const PATHS: [&str; 7] = ["height", "environment", "truth", "matcap-image", "factors", "lod-shader", "surface-shader"];
 
 /// An asset, and how it is checked.
 pub(super) struct Job {
@@ -131,6 +131,9 @@ fn job(args: &Args, config: &Config, folder: &Path, (source, place): (Source, &s
         let all: Vec<OptionValue> = others.chain(&camera).cloned().collect();
         views.push((name, parsed(config, &all, &source)?));
     }
+    for (_, own) in &views {
+        own.own_surface.check(false, &gates).map_err(|error| clash(config, error))?;
+    }
     // A reference surface that is a file may name other files, which aren't known here.
     let is_kept = matches!(source, Source::File(_))
         && views.iter().all(|(_, options)| !matches!(options.truth.truth, Some(Source::File(_))));
@@ -178,11 +181,16 @@ fn parsed(config: &Config, options: &[OptionValue], source: &Source) -> Result<S
     if own.given.given.as_deref() == Some("-".as_ref()) {
         return Err(config.clash("factors of a check can't come from standard input; name a file").into());
     }
-    own.check(source, &[], &[]).map_err(|error| match error {
+    own.check(source, &[], &[]).map_err(|error| clash(config, error))?;
+    Ok(own)
+}
+
+/// The error of options that can't be together, as one of the configuration.
+fn clash(config: &Config, error: CliError) -> CliError {
+    match error {
         CliError::Usage(reason) => config.clash(reason).into(),
         other => other,
-    })?;
-    Ok(own)
+    }
 }
 
 /// What an error of the command line says, in one line.

@@ -57,6 +57,7 @@ pub(super) fn draw(
         loaded: shown,
         moment: None,
         given: None,
+        surface_shader: None,
         matcap: None,
         environment: None,
         settings: settings(),

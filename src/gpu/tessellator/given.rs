@@ -3,7 +3,7 @@
 use super::Tessellator;
 use crate::gpu::buffer::{empty, filled};
 use crate::gpu::own_lod_passes::OwnLodPasses;
-use crate::gpu::{Given, GpuError, LodReport};
+use crate::gpu::{Given, GpuError, OwnReport};
 use crate::tessellate::HullFactors;
 
 impl Tessellator {
@@ -19,7 +19,7 @@ impl Tessellator {
             None => filled::<HullFactors>(&self.gpu, "given factors", &[])?,
         };
         self.own_report = match &given {
-            Some(Given::Shader(_)) => Some(empty::<LodReport>(&self.gpu, "LOD report", 1)?),
+            Some(Given::Shader(_)) => Some(empty::<OwnReport>(&self.gpu, "LOD report", 1)?),
             _ => None,
         };
         // Counts that are on their way belong to what was given before.
@@ -41,7 +41,7 @@ impl Tessellator {
     }
 
     /// What functions of the user's own reported when the counts were last known, if they give factors.
-    pub fn own_lod_report(&self) -> Option<LodReport> {
+    pub fn own_lod_report(&self) -> Option<OwnReport> {
         self.own_lod_report.filter(|_| self.counts_done)
     }
 

@@ -3,9 +3,8 @@
 use std::ops::Range;
 
 use super::Tessellator;
-use crate::gpu::LodReport;
-use crate::gpu::VERTEX_HALF;
 use crate::gpu::layout::{Chunk, DrawArgs};
+use crate::gpu::{OwnReport, VERTEX_HALF};
 
 /// What a chunk left in the arena, for whoever draws or reads it.
 pub struct ChunkBuffers<'a> {
@@ -35,9 +34,17 @@ impl ChunkBuffers<'_> {
 impl Tessellator {
     /// Takes the chunk tables of all slabs, as the device wrote them, and what it reports of functions of the user's own.
     pub(super) fn take_chunks(&mut self, tables: &[u8]) {
-        let report_bytes = self.own_report.as_ref().map_or(0, |_| size_of::<LodReport>());
-        let (tables, report) = tables.split_at(tables.len() - report_bytes);
-        self.own_lod_report = self.own_report.as_ref().map(|_| bytemuck::pod_read_unaligned(report));
+        let (mut tables, has_lod) = (tables, self.own_report.is_some());
+        let mut report = |is_there: bool| -> Option<OwnReport> {
+            let (rest, report) = tables.split_at(tables.len() - if is_there { size_of::<OwnReport>() } else { 0 });
+            tables = rest;
+            is_there.then(|| bytemuck::pod_read_unaligned(report))
+        };
+        // The last one is taken first.
+        if let Some(own) = &mut self.own_surface {
+            own.last = report(true);
+        }
+        self.own_lod_report = report(has_lod);
         let table: Vec<Chunk> = bytemuck::pod_collect_to_vec(tables);
         self.counts_done = true;
         self.chunks.clear();

@@ -22,7 +22,8 @@ impl Tessellator {
     pub fn count(&mut self, recorder: &mut Recorder) -> Result<(), GpuError> {
         self.record_chunks(recorder)?;
         let tables = self.slabs.iter().map(|slab| (&slab.chunks, 0..slab.chunks.size()));
-        let tables = tables.chain(self.own_report.as_ref().map(|report| (report, 0..report.size())));
+        let reports = self.own_report.iter().chain(self.own_surface.as_ref().map(|own| &own.report));
+        let tables = tables.chain(reports.map(|report| (report, 0..report.size())));
         self.pending = Some(Readback::of_buffers(&self.gpu, recorder.encoder(), tables));
         Ok(())
     }
@@ -66,7 +67,9 @@ impl Tessellator {
     pub fn prepare(&self, tessellation: &Tessellation) -> Result<(), GpuError> {
         let (on, passes) = (self.inputs_of_passes(), &self.mesh_passes);
         let rows = tessellation.partitioning == Partitioning::Rows;
-        passes.curve_nets(&on)?;
+        if self.own_surface_passes()?.is_none() {
+            passes.curve_nets(&on)?;
+        }
         passes.centers(&on)?;
         passes.edge_factors(&on)?;
         self.own_lod()?;
@@ -131,9 +134,15 @@ impl Tessellator {
 
     fn record_nets(&self, recorder: &mut impl RecordPasses) -> Result<(), GpuError> {
         let (on, passes) = (self.inputs_of_passes(), &self.mesh_passes);
-        let (curve_nets, centers) = (passes.curve_nets(&on)?, passes.centers(&on)?);
+        let (own, centers) = (self.own_surface_passes()?, passes.centers(&on)?);
+        let curve_nets = if own.is_none() { Some(passes.curve_nets(&on)?) } else { None };
         recorder.compute("nets", |pass| {
-            curve_nets.dispatch(pass, grid(self.buffers.curve_count));
+            if let Some(curve_nets) = curve_nets {
+                curve_nets.dispatch(pass, grid(self.buffers.curve_count));
+            }
+            if let Some(own) = own {
+                own.dispatch(pass, self.buffers.patch_count, self.buffers.curve_count);
+            }
             centers.dispatch(pass, grid(self.buffers.patch_count));
         });
         if let Some(relief) = &self.buffers.relief {

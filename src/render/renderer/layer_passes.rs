@@ -147,6 +147,10 @@ fn clear_of(pass: LayerPass) -> LayerClear {
 /// An area that holds all pixels which layers cover in a picture of a scene with these settings.
 fn layer_area(scene: &Scene, target: &Target, camera: &Camera, settings: &Settings) -> Area {
     let whole = [0, 0, target.size[0], target.size[1]];
+    // Control points of the user's own may be anywhere.
+    if scene.tessellator.surface_shader().is_some() {
+        return whole;
+    }
     let Some(bounds) = scene.tessellator.posed().see_through_bounds() else { return whole };
     let clip_from_object = camera.clip_from_object(target.viewport(), &scene.bounds);
     let room = settings.reach(scene.tessellator.mesh()) + ROUNDING_ULPS * scene.ulp();

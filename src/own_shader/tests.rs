@@ -1,7 +1,13 @@
 use super::*;
+use crate::gpu::own_lod::LOD_PURPOSE;
+use crate::gpu::{LodShader, SurfaceShader};
 
 /// What every file must have.
 const EDGE: &str = "fn edge_factor(edge: Edge, triangle: Triangle, view: View) -> f32 { return 2.0; }";
+
+fn compile(text: &str) -> Result<LodShader, Fault> {
+    super::compile(text)
+}
 
 /// The line of the fault in a text, and what is said.
 fn fault(text: &str) -> (usize, String) {
@@ -11,14 +17,54 @@ fn fault(text: &str) -> (usize, String) {
 
 #[test]
 fn the_examples_can_be_used() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/lod");
-    let mut count = 0;
-    for entry in std::fs::read_dir(folder).expect("the examples' folder") {
-        let path = entry.expect("an entry").path();
-        read_lod_shader(&path).unwrap_or_else(|error| panic!("{error}"));
-        count += 1;
+    fn use_all<S: OwnShader>(folder: &str) {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+        let mut count = 0;
+        for entry in std::fs::read_dir(folder).expect("the examples' folder") {
+            let path = entry.expect("an entry").path();
+            read_own_shader::<S>(&path).unwrap_or_else(|error| panic!("{error}"));
+            count += 1;
+        }
+        assert!(count >= 3, "{count} examples");
     }
-    assert!(count >= 3, "{count} examples");
+    use_all::<LodShader>("assets/lod");
+    use_all::<SurfaceShader>("assets/surface");
+}
+
+#[test]
+fn a_function_for_control_points_is_held_to_its_contract() {
+    let fault = |text: &str| super::compile::<SurfaceShader>(text).expect_err(text);
+    let own = "fn edge_points(edge: SurfaceEdge, triangle: SurfaceTriangle) -> EdgePoints { return EdgePoints(edge.a, edge.b); }";
+    super::compile::<SurfaceShader>(own).unwrap_or_else(|fault| panic!("{fault}"));
+    // A file for factors is none for control points, and the other way round.
+    let missing = "there is no function edge_points; write: fn edge_points(edge: SurfaceEdge, triangle: SurfaceTriangle) -> EdgePoints";
+    for text in ["", "fn edge_factor() -> f32 { return 1.0; }"] {
+        let Fault { line, kind } = fault(text);
+        assert!(line == 1 && kind.to_string().starts_with(missing), "{text}: {kind}");
+    }
+    assert!(matches!(compile(own), Err(Fault { kind: FaultKind::Language(_), .. })), "its structs aren't those of LOD");
+    for text in [
+        "fn edge_points(edge: SurfaceEdge) -> EdgePoints { return EdgePoints(edge.a, edge.b); }",
+        "fn edge_points(triangle: SurfaceTriangle, edge: SurfaceEdge) -> EdgePoints { return EdgePoints(edge.a, edge.b); }",
+        "fn edge_points(edge: SurfaceEdge, triangle: SurfaceTriangle) -> vec3<f32> { return edge.a; }",
+        "fn edge_points(edge: SurfaceEdge, triangle: SurfaceTriangle) { }",
+    ] {
+        let Fault { line, kind } = fault(&format!("\n{text}"));
+        assert!(line == 2 && matches!(kind, FaultKind::Signature(_)), "{text}: line {line}: {kind}");
+    }
+    for (text, line, says) in [
+        ("\n\nfn f() -> f32 { return nothing; }", 3, "nothing"),
+        ("struct EdgePoints { ab: f32 }", 1, "the name EdgePoints is declared"),
+        ("const pnaen_points = 1;", 1, "the name pnaen_points begins with pnaen_"),
+        ("fn dot(a: f32) -> f32 { return a; }", 1, "the name dot is declared"),
+        ("override size = 3u;", 1, "size can't be used here"),
+    ] {
+        let Fault { line: found, kind } = fault(&format!("{text}\n{own}"));
+        assert!(found == line && kind.to_string().contains(says), "{text}: line {found}: {kind}");
+    }
+    // Names that only our other functions have are free.
+    let free = "fn straight_control_point(a: f32) -> f32 { return a; } var<private> corner_attributes: f32; struct Curve { points: f32 }";
+    super::compile::<SurfaceShader>(&format!("{free}\n{own}")).unwrap_or_else(|fault| panic!("{fault}"));
 }
 
 #[test]
@@ -54,11 +100,11 @@ fn functions_that_are_missing_or_have_other_parameters_are_named() {
         "fn edge_factor(edge: Edge, triangle: ptr<function, Triangle>, view: View) -> f32 { return 1.0; }",
     ] {
         let (line, said) = fault(&format!("\n{own}"));
-        assert!(line == 2 && said.contains(EDGE_FACTOR), "{own}: line {line}: {said}");
+        assert!(line == 2 && said.contains(LOD_PURPOSE.functions[0].signature), "{own}: line {line}: {said}");
     }
     let inside = "fn inside_factor(triangle: Triangle, factors: vec3<u32>, view: View) -> f32 { return 1.0; }";
     let (line, said) = fault(&format!("{EDGE}\n\n{inside}"));
-    assert!(line == 3 && said.contains(INSIDE_FACTOR), "line {line}: {said}");
+    assert!(line == 3 && said.contains(LOD_PURPOSE.functions[1].signature), "line {line}: {said}");
     let inside = inside.replace("vec3<u32>", "vec3f");
     compile(&format!("{EDGE}\n{inside}")).expect("a vector by its short name");
 }
@@ -180,16 +226,16 @@ fn files_that_are_no_such_texts_are_named() {
     let path = folder.path().join("lod.wgsl");
     let said = |bytes: &[u8]| {
         std::fs::write(&path, bytes).expect("a writable temporary folder");
-        read_lod_shader(&path).expect_err("it can't be used").to_string()
+        read_own_shader::<LodShader>(&path).expect_err("it can't be used").to_string()
     };
     assert!(said(&vec![b' '; 65_537]).contains("lod.wgsl has more than 65536 bytes"));
     assert!(said(b"\xff\xfe// \x00").contains("isn't a text in UTF-8"));
     assert!(said(b"fn 3x()").contains("lod.wgsl, line 1: "));
     let marked = format!("\u{feff}{EDGE}");
     std::fs::write(&path, marked).expect("a writable temporary folder");
-    assert!(read_lod_shader(&path).is_ok(), "a byte order mark is left out");
-    let gone = read_lod_shader(&folder.path().join("no.wgsl")).expect_err("there is none").to_string();
+    assert!(read_own_shader::<LodShader>(&path).is_ok(), "a byte order mark is left out");
+    let gone = read_own_shader::<LodShader>(&folder.path().join("no.wgsl")).expect_err("there is none").to_string();
     assert!(gone.contains("no.wgsl can't be read: there is no such file"), "{gone}");
-    let this = read_lod_shader(folder.path()).expect_err("a folder").to_string();
+    let this = read_own_shader::<LodShader>(folder.path()).expect_err("a folder").to_string();
     assert!(this.contains("file"), "{this}");
 }

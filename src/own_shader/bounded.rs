@@ -9,7 +9,7 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 use super::{Fault, FaultKind};
-use crate::gpu::own_lod::{LOD_FUNCTIONS, OWN_PREFIX, needed_names};
+use crate::gpu::own_functions::{OWN_PREFIX, OwnPurpose};
 use crate::gpu::wgsl_tokens::{Token, declared, tokens};
 
 /// The most tokens of a statement: compilers recurse into expressions.
@@ -42,10 +42,10 @@ pub(super) fn line_of(text: &str, at: usize) -> usize {
 }
 
 impl<'a> Source<'a> {
-    pub(super) fn new(text: &'a str) -> Result<Self, Fault> {
+    pub(super) fn new(text: &'a str, purpose: &OwnPurpose) -> Result<Self, Fault> {
         let tokens = tokens(text);
         let closed_by = brackets(text, &tokens)?;
-        check_names(text, &tokens)?;
+        check_names(text, &tokens, purpose)?;
         check_lengths(text, &tokens)?;
         let mut source = Self { text, tokens, closed_by, functions: HashMap::new() };
         let found: Vec<_> = (0..source.tokens.len()).filter_map(|at| source.function(at)).collect();
@@ -105,9 +105,9 @@ impl<'a> Source<'a> {
     ///
     /// # Errors
     /// A call is too much work even if every loop ends after its first turn.
-    pub(super) fn bounded(&self, has_inside: bool) -> Result<String, Fault> {
+    pub(super) fn bounded(&self, purpose: &OwnPurpose) -> Result<String, Fault> {
         let mut known = HashMap::new();
-        for name in LOD_FUNCTIONS.into_iter().take(1 + usize::from(has_inside)) {
+        for name in purpose.functions.iter().map(|function| function.name) {
             let work = self.functions.get(name).map_or(0, |own| self.work(own.body.clone(), &mut known));
             if work > MOST_WORK {
                 return Err(Fault { line: self.line(name), kind: FaultKind::Work { name, work } });
@@ -157,14 +157,14 @@ fn brackets(text: &str, tokens: &[Token]) -> Result<HashMap<usize, usize>, Fault
 }
 
 /// Names that the module's own part declares, or needs from WGSL itself, where a file may declare them anew.
-fn check_names(text: &str, tokens: &[Token]) -> Result<(), Fault> {
+fn check_names(text: &str, tokens: &[Token], purpose: &OwnPurpose) -> Result<(), Fault> {
     let fault = |token: &Token, kind: fn(String) -> FaultKind| {
         Err(Fault { line: line_of(text, token.at), kind: kind(token.text.to_owned()) })
     };
     if let Some(token) = tokens.iter().find(|token| token.text.starts_with(OWN_PREFIX)) {
         return fault(token, FaultKind::Prefix);
     }
-    let needed: HashSet<String> = needed_names();
+    let needed: HashSet<String> = purpose.needed_names();
     match declared(tokens).iter().find(|token| needed.contains(token.text)) {
         Some(token) => fault(token, FaultKind::Taken),
         None => Ok(()),

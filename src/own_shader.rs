@@ -1,4 +1,4 @@
-//! Functions of the user's own that give factors: reads a WGSL file, says at which line it can't be used, and bounds its loops,
+//! Functions of the user's own, for factors or for control points: reads a WGSL file, says at which line it can't be used, and bounds its loops,
 //! since a driver that hangs can't be stopped. `docs/manual/own-shaders.md` says what such a file has.
 
 mod bounded;
@@ -10,7 +10,8 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use crate::files::{FileError, Limits, read_file};
-use crate::gpu::LodShader;
+use crate::gpu::OwnShader;
+use crate::gpu::own_functions::OwnText;
 use crate::names::shown_path;
 use crate::progress::Progress;
 
@@ -19,10 +20,10 @@ const MOST_BYTES: u64 = 1 << 16;
 
 /// Why a file can't be used.
 #[derive(Debug, Error)]
-pub(crate) enum LodShaderError {
+pub(crate) enum OwnShaderError {
     #[error(transparent)]
     File(FileError),
-    #[error("{} has more than {MOST_BYTES} bytes, and functions for factors have a few thousand: leave out what they don't need", shown_path(.0))]
+    #[error("{} has more than {MOST_BYTES} bytes, and such a file has a few thousand: leave out what they don't need", shown_path(.0))]
     TooLarge(PathBuf),
     #[error("{} isn't a text in UTF-8, as WGSL files are: save it in that encoding", shown_path(.0))]
     NotText(PathBuf),
@@ -32,7 +33,7 @@ pub(crate) enum LodShaderError {
     Unchecked { path: PathBuf, reason: String },
 }
 
-impl From<FileError> for LodShaderError {
+impl From<FileError> for OwnShaderError {
     fn from(error: FileError) -> Self {
         match error {
             FileError::TooLarge { path, .. } => Self::TooLarge(path),
@@ -55,8 +56,8 @@ pub(crate) struct Fault {
 pub(crate) enum FaultKind {
     #[error("{0}")]
     Language(String),
-    #[error("there is no function edge_factor; write: {EDGE_FACTOR} {{ ... }}")]
-    NoFunction,
+    #[error("there is no function {name}; write: {signature} {{ ... }}")]
+    NoFunction { name: &'static str, signature: &'static str },
     #[error("the function has other parameters or another result than it must have; write: {0} {{ ... }}")]
     Signature(&'static str),
     #[error("this bracket is never closed")]
@@ -73,7 +74,7 @@ pub(crate) enum FaultKind {
     EntryPoint,
     #[error("{0} can't be used here: write a constant, or a variable in a function or in var<private>")]
     Binding(String),
-    #[error("this statement can't be used in a function for factors: it would touch what other invocations have")]
+    #[error("this statement can't be used here: it would touch what other invocations have")]
     Statement,
     #[error("this statement has more than {MOST_TOKENS} words and signs: divide it", MOST_TOKENS = bounded::MOST_TOKENS)]
     LongStatement,
@@ -85,44 +86,41 @@ pub(crate) enum FaultKind {
     Work { name: &'static str, work: u64 },
 }
 
-/// The functions as they must be declared. The second one may be missing.
-const EDGE_FACTOR: &str = "fn edge_factor(edge: Edge, triangle: Triangle, view: View) -> f32";
-const INSIDE_FACTOR: &str = "fn inside_factor(triangle: Triangle, factors: vec3<f32>, view: View) -> f32";
-
-/// Reads and checks a file.
+/// Reads and checks a file for the purpose of `S`.
 ///
 /// # Errors
 /// It can't be read, or can't be used.
-pub(crate) fn read_lod_shader(path: &Path) -> Result<Arc<LodShader>, LodShaderError> {
+pub(crate) fn read_own_shader<S: OwnShader>(path: &Path) -> Result<Arc<S>, OwnShaderError> {
     let limits = Limits { file: MOST_BYTES, ..Limits::default() };
-    let bytes = read_file(path, &limits, |_| Ok::<_, LodShaderError>(()), &Progress::new())?;
-    let text = String::from_utf8(bytes).map_err(|_| LodShaderError::NotText(path.to_owned()))?;
+    let bytes = read_file(path, &limits, |_| Ok::<_, OwnShaderError>(()), &Progress::new())?;
+    let text = String::from_utf8(bytes).map_err(|_| OwnShaderError::NotText(path.to_owned()))?;
     // A byte order mark is no WGSL.
     let text = text.strip_prefix('\u{feff}').map_or(text.clone(), str::to_owned);
     // The parser recurses, as deep as a text of this size asks for.
-    let parsing = std::thread::Builder::new().stack_size(STACK).spawn(move || compile(&text));
-    let unchecked = |reason: &str| LodShaderError::Unchecked { path: path.to_owned(), reason: reason.to_owned() };
+    let parsing = std::thread::Builder::new().stack_size(STACK).spawn(move || compile::<S>(&text));
+    let unchecked = |reason: &str| OwnShaderError::Unchecked { path: path.to_owned(), reason: reason.to_owned() };
     let parsed = parsing.map_err(|error| unchecked(&error.to_string()))?.join();
     match parsed.map_err(|_| unchecked("the compiler stopped unexpectedly; please report it, with the file"))? {
         Ok(shader) => Ok(Arc::new(shader)),
-        Err(fault) => Err(LodShaderError::Fault { path: path.to_owned(), fault }),
+        Err(fault) => Err(OwnShaderError::Fault { path: path.to_owned(), fault }),
     }
 }
 
 /// Bytes of stack for the parser.
 const STACK: usize = 256 << 20;
 
-/// Checks a text and bounds its loops.
+/// Checks a text for the purpose of `S`, and bounds its loops.
 ///
 /// # Errors
 /// Where and why it can't be used.
-pub(crate) fn compile(text: &str) -> Result<LodShader, Fault> {
-    let source = bounded::Source::new(text)?;
-    let has_inside = checked::check(text, &source)?;
-    let functions = source.bounded(has_inside)?;
-    checked::check_loops(&functions)?;
-    let shader = LodShader::new(functions, has_inside);
-    checked::check_module(text, &shader)?;
+pub(crate) fn compile<S: OwnShader>(text: &str) -> Result<S, Fault> {
+    let purpose = S::purpose();
+    let source = bounded::Source::new(text, purpose)?;
+    let has = checked::check(text, &source, purpose)?;
+    let functions = source.bounded(purpose)?;
+    checked::check_loops(&functions, purpose)?;
+    let shader = S::new(OwnText::new(functions, has));
+    checked::check_module(text, &shader.module_text())?;
     Ok(shader)
 }
 

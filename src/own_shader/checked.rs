@@ -1,4 +1,4 @@
-//! Parses a user's text with the compiler that wgpu has, and checks what that allows and a function for factors may not have.
+//! Parses a user's text with the compiler that wgpu has, and checks what that allows and functions of the user's own may not have.
 
 use std::error::Error;
 
@@ -8,37 +8,40 @@ use naga::valid::{Capabilities, ValidationError, ValidationFlags, Validator};
 use naga::{AddressSpace, Block, Function, Module, Span, Statement, TypeInner, WithSpan};
 
 use super::bounded::{Source, line_of};
-use super::{EDGE_FACTOR, Fault, FaultKind, INSIDE_FACTOR};
-use crate::gpu::LodShader;
-use crate::gpu::own_lod::{LOD_CONTRACT, LOD_FUNCTIONS, OWN_PREFIX};
+use super::{Fault, FaultKind};
+use crate::gpu::own_functions::{OWN_PREFIX, OwnFunction, OwnPurpose};
 
 /// How deep blocks may be nested: compilers recurse into them.
 pub(super) const MOST_DEPTH: usize = 64;
 /// Bytes that all variables of the file may take together, which every invocation has.
 pub(super) const MOST_MEMORY: u64 = 16_384;
 
-/// Checks a user's text. Returns whether it has a function for inside factors.
-pub(super) fn check(text: &str, source: &Source) -> Result<bool, Fault> {
-    let whole = format!("{text}\n{}", LOD_CONTRACT.text);
+/// Checks a user's text. Returns which of the purpose's functions it has.
+pub(super) fn check(text: &str, source: &Source, purpose: &OwnPurpose) -> Result<Vec<bool>, Fault> {
+    let whole = format!("{text}\n{}", purpose.contract.text);
     let module = parse_str(&whole).map_err(|error| of_parser(text, &error))?;
     check_globals(text, &module)?;
-    let [edge, inside] = LOD_FUNCTIONS;
-    check_signature(&module, source, edge, &["Edge", "Triangle", "View"], EDGE_FACTOR)?
-        .then_some(())
-        .ok_or(Fault { line: 1, kind: FaultKind::NoFunction })?;
-    let has_inside = check_signature(&module, source, inside, &["Triangle", "vec3", "View"], INSIDE_FACTOR)?;
+    let mut has = Vec::new();
+    for function in purpose.functions {
+        let is_there = check_signature(&module, source, function)?;
+        if has.is_empty() && !is_there {
+            let OwnFunction { name, signature, .. } = *function;
+            return Err(Fault { line: 1, kind: FaultKind::NoFunction { name, signature } });
+        }
+        has.push(is_there);
+    }
     for (handle, function) in module.functions.iter() {
         check_block(text, &function.body, 0, module.functions.get_span(handle))?;
     }
     validate(text, &module)?;
     check_memory(text, &module)?;
-    Ok(has_inside)
+    Ok(has)
 }
 
 /// Holds bounded functions to it that every loop of theirs is bounded.
-pub(super) fn check_loops(functions: &str) -> Result<(), Fault> {
+pub(super) fn check_loops(functions: &str, purpose: &OwnPurpose) -> Result<(), Fault> {
     let spend = format!("fn {OWN_PREFIX}spend(work: u32) -> bool {{ return false; }}");
-    let whole = format!("{functions}\n{}\n{spend}", LOD_CONTRACT.text);
+    let whole = format!("{functions}\n{}\n{spend}", purpose.contract.text);
     let module = parse_str(&whole).map_err(|error| of_parser(functions, &error))?;
     let spend = module.functions.iter().find(|(_, own)| own.name.as_deref() == Some(&format!("{OWN_PREFIX}spend")));
     let calls_spend = |statement: &Statement| matches!(statement, Statement::Call { function, .. } if Some(*function) == spend.map(|(handle, _)| handle));
@@ -68,8 +71,8 @@ fn has_itself(block: &Block, is_bound: &impl Fn(&Statement) -> bool) -> bool {
 }
 
 /// Parses and validates the whole module, whose first lines are those of the user's text.
-pub(super) fn check_module(text: &str, shader: &LodShader) -> Result<(), Fault> {
-    let module = parse_str(&shader.module_text()).map_err(|error| of_parser(text, &error))?;
+pub(super) fn check_module(text: &str, whole: &str) -> Result<(), Fault> {
+    let module = parse_str(whole).map_err(|error| of_parser(text, &error))?;
     validate(text, &module)
 }
 
@@ -126,31 +129,28 @@ fn check_globals(text: &str, module: &Module) -> Result<(), Fault> {
     }
 }
 
-/// Whether there is a function of this name. Its parameters must have these types, and its result must be a number.
-fn check_signature(
-    module: &Module,
-    source: &Source,
-    name: &str,
-    types: &[&str],
-    signature: &'static str,
-) -> Result<bool, Fault> {
-    let found = module.functions.iter().find(|(_, function)| function.name.as_deref() == Some(name));
+/// Whether there is this function. Its parameters and its result must have their types.
+fn check_signature(module: &Module, source: &Source, wanted: &OwnFunction) -> Result<bool, Fault> {
+    let found = module.functions.iter().find(|(_, function)| function.name.as_deref() == Some(wanted.name));
     let Some((_, function)) = found else { return Ok(false) };
-    let is_float = |scalar: naga::Scalar| scalar == naga::Scalar::F32;
-    let is_own = |argument: &naga::FunctionArgument, wanted: &str| {
-        let own = &module.types[argument.ty];
-        match own.inner {
-            TypeInner::Vector { size, scalar } => wanted == "vec3" && size as u32 == 3 && is_float(scalar),
-            _ => own.name.as_deref() == Some(wanted),
-        }
-    };
-    let takes = function.arguments.len() == types.len()
-        && function.arguments.iter().zip(types).all(|(argument, wanted)| is_own(argument, wanted));
-    let result = function.result.as_ref().map(|result| &module.types[result.ty].inner);
-    let gives = matches!(result, Some(TypeInner::Scalar(scalar)) if is_float(*scalar));
+    let takes = function.arguments.len() == wanted.parameters.len()
+        && function.arguments.iter().zip(wanted.parameters).all(|(own, name)| is_type(module, own.ty, name));
+    let gives = function.result.as_ref().is_some_and(|result| is_type(module, result.ty, wanted.result));
     match takes && gives {
         true => Ok(true),
-        false => Err(Fault { line: source.line(name), kind: FaultKind::Signature(signature) }),
+        false => Err(Fault { line: source.line(wanted.name), kind: FaultKind::Signature(wanted.signature) }),
+    }
+}
+
+/// Whether a type is the one that is called `f32`, `vec3` (one of f32), or as a struct.
+fn is_type(module: &Module, ty: naga::Handle<naga::Type>, name: &str) -> bool {
+    let own = &module.types[ty];
+    match own.inner {
+        TypeInner::Scalar(scalar) => name == "f32" && scalar == naga::Scalar::F32,
+        TypeInner::Vector { size, scalar } => {
+            name == "vec3" && size == naga::VectorSize::Tri && scalar == naga::Scalar::F32
+        }
+        _ => own.name.as_deref() == Some(name),
     }
 }
 

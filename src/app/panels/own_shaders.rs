@@ -1,0 +1,98 @@
+//! The rows for functions of the user's own in place of LOD, and in place of the surface.
+
+use egui::RichText;
+
+use crate::app::App;
+use crate::app::dialogs::typed_path::Purpose;
+use crate::app::jobs::own_shader_job::Replacing;
+use crate::gpu::{LodShader, SurfaceShader};
+
+/// What the rows of a file say.
+struct Texts {
+    label: &'static str,
+    hover: &'static str,
+    /// What is shown while no version of the file can be used.
+    stays: &'static str,
+    read_again: &'static str,
+    close: &'static str,
+    close_hover: &'static str,
+}
+
+const OF_LOD: Texts = Texts {
+    label: "LOD shader",
+    hover: "Functions of this file compute factors in place of LOD.",
+    stays: "LOD stays.",
+    read_again: "Read again",
+    close: "Close the shader",
+    close_hover: "Closes the LOD shader. LOD computes factors again.",
+};
+
+const OF_SURFACE: Texts = Texts {
+    label: "Shader",
+    hover: "A function of this file computes the control points of edges in place of a surface. Left of a split, it doesn't.",
+    stays: "The surface stays.",
+    read_again: "Read surface again",
+    close: "Close the surface",
+    close_hover: "Closes the surface shader. The surface that was chosen before is back.",
+};
+
+impl App {
+    /// Asks for the file with the functions.
+    pub(in crate::app) fn lod_shader_dialog(&mut self, context: &egui::Context) {
+        self.dialog(Purpose::LodShader, context, || {
+            rfd::FileDialog::new().set_title("Choose an LOD shader").add_filter("WGSL", &["wgsl"]).pick_file()
+        });
+    }
+
+    /// Asks for the file with the function for control points.
+    pub(in crate::app) fn surface_shader_dialog(&mut self, context: &egui::Context) {
+        self.dialog(Purpose::SurfaceShader, context, || {
+            rfd::FileDialog::new().set_title("Choose a surface shader").add_filter("WGSL", &["wgsl"]).pick_file()
+        });
+    }
+
+    /// The rows of the LOD shader, if it is open. Returns whether it takes the place of LOD, so that nothing of that can be set.
+    pub(super) fn lod_shader_rows(&mut self, ui: &mut egui::Ui) -> bool {
+        self.shader_rows::<LodShader>(ui, &OF_LOD);
+        self.uses_lod_shader()
+    }
+
+    /// The rows of the surface shader, if it is open. Returns whether it takes the place of the surface.
+    pub(super) fn surface_shader_rows(&mut self, ui: &mut egui::Ui) -> bool {
+        self.shader_rows::<SurfaceShader>(ui, &OF_SURFACE);
+        if let Some(said) = self.straight_sides_said() {
+            ui.label("");
+            ui.add(egui::Label::new(RichText::new(said).color(ui.visuals().warn_fg_color)).wrap());
+            ui.end_row();
+        }
+        self.uses_surface_shader()
+    }
+
+    fn shader_rows<S: Replacing>(&mut self, ui: &mut egui::Ui, texts: &Texts) {
+        let Some(open) = S::open_in(self) else { return };
+        ui.label(texts.label).on_hover_text(texts.hover);
+        ui.add(egui::Label::new(open.name()).truncate()).on_hover_text(open.path.display().to_string());
+        ui.end_row();
+        if let Some(error) = open.error() {
+            let stays = if open.is_used() { "The version before it stays." } else { texts.stays };
+            ui.label("");
+            let text = RichText::new(format!("{error}\n{stays}")).color(ui.visuals().error_fg_color);
+            ui.add(egui::Label::new(text).wrap());
+            ui.end_row();
+        }
+        ui.label("");
+        let hover = "Reads the file again. That happens by itself whenever it changes.";
+        let reads = ui.button(texts.read_again).on_hover_text(hover).clicked();
+        ui.end_row();
+        // The panel is too narrow for both buttons beside each other.
+        ui.label("");
+        let closes = ui.button(texts.close).on_hover_text(texts.close_hover).clicked();
+        ui.end_row();
+        if reads {
+            self.reload_shader::<S>(ui.ctx());
+        }
+        if closes {
+            self.forget_shader::<S>();
+        }
+    }
+}
