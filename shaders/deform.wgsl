@@ -12,11 +12,13 @@ struct Binding {
     weights: vec4<f32>,
 }
 
-// The displacement of a corner by a morph target of weight 1. `weight` is the index of the target's weight.
+// What a morph target of weight 1 adds to a corner. `weight` is the index of the target's weight, and `tangent` that of what the target
+// adds to the corner's tangent; 0 if the tangent turns along with the normal.
 struct Delta {
     position: vec3<f32>,
     weight: u32,
     normal: vec3<f32>,
+    tangent: u32,
 }
 
 // The first three rows of an affine matrix, whose fourth row is (0, 0, 0, 1).

@@ -10,7 +10,8 @@
 // Points, then the control point at every patch's centre.
 @group(0) @binding(6) var<storage, read_write> points: array<vec4<f32>>;
 
-// Each corner's tangent at rest, and the sign of its bitangent; one element, of zeros, for a mesh without tangents.
+// Each corner's tangent at rest, and the sign of its bitangent. Behind them are displacements of tangents by morph targets. A mesh
+// without tangents has one element, of zeros.
 @group(0) @binding(7) var<storage, read> tangents: array<vec4<f32>>;
 @group(0) @binding(8) var<storage, read_write> corner_details: array<CornerDetail>;
 
@@ -35,14 +36,29 @@ fn morphed_normal(bound: Binding) -> vec3<f32> {
     return unit_or(normal, bound.normal);
 }
 
-// Morph targets turn a corner's tangent along with its normal.
+// The unit tangent of a corner that morph targets have displaced.
+fn displaced_tangent(bound: Binding, own: vec3<f32>) -> vec3<f32> {
+    var tangent = own;
+    for (var i = 0u; i < bound.delta_count; i++) {
+        let delta = deltas[bound.first_delta + i];
+        tangent += tangents[delta.tangent].xyz * morph_weights[delta.weight];
+    }
+    return scaled_unit_or(tangent, own);
+}
+
+// Morph targets that don't displace tangents turn a corner's tangent along with its normal.
 fn posed_tangent(corner: u32, normal: vec3<f32>) -> vec4<f32> {
     let bound = bindings[corner];
-    var tangent = tangents[corner];
+    let own = tangents[corner];
+    var tangent = own.xyz;
     if bound.delta_count > 0u {
-        tangent = vec4<f32>(turn_along(tangent.xyz, unit_or(bound.normal, bound.normal), normal), tangent.w);
+        if deltas[bound.first_delta].tangent > 0u {
+            tangent = displaced_tangent(bound, own.xyz);
+        } else {
+            tangent = turn_along(own.xyz, unit_or(bound.normal, bound.normal), normal);
+        }
     }
-    return deform_tangent(posed_matrix(bound), tangent);
+    return deform_tangent(posed_matrix(bound), vec4<f32>(tangent, own.w));
 }
 
 fn posed_matrix(bound: Binding) -> JointMatrix {

@@ -42,6 +42,20 @@ impl BindingSpace {
         let position = if is_there { position } else { self.matrix.transform_point3(position.as_dvec3()).as_vec3() };
         (position.to_array(), finite(turned * scale))
     }
+
+    /// Transforms a tangent, and its displacements by morph targets. The tangent is scaled to unit length, and its displacements
+    /// by the same factor. Returns none if the result has no direction.
+    pub(super) fn take_tangent(&self, tangent: Vec3, displacements: &mut [[f32; 3]]) -> Option<[f32; 3]> {
+        let turned = self.linear * tangent.as_dvec3();
+        let scale = 1.0 / turned.length();
+        if !scale.is_finite() {
+            return None;
+        }
+        for displacement in displacements {
+            *displacement = finite(self.linear * Vec3::from(*displacement).as_dvec3() * scale);
+        }
+        Some(finite(turned * scale))
+    }
 }
 
 /// Transforms a normal by the inverse transpose of a linear map, and normalises it; returns none if the result has no

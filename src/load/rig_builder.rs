@@ -9,7 +9,7 @@ use super::binding_space::{BindingSpace, unturned, untwisted};
 use crate::mesh::mesh_builder::InputCorner;
 use crate::mesh::normals::GivenNormal;
 use crate::mesh::rig::{AnimatedNode, Binding, Clip, Delta, Joint, Morph, Property, Reach, Rig};
-use crate::mesh::{CornerDetails, Mesh};
+use crate::mesh::{CornerDetail, CornerDetails, Mesh};
 
 /// The greatest number of bound vertices, and of their displacements, which limits the memory.
 pub(super) const MAX_BOUND: usize = 1 << 24;
@@ -33,6 +33,8 @@ pub(super) struct RigBuilder {
     /// Numbers for distinct lists of joints, weights and displacements.
     lists: HashMap<Vec<u32>, u32>,
     deltas: Vec<Delta>,
+    /// The displacements of tangents. Until the rig is finished, [`Delta::tangent`] is 1 more than an index into these.
+    tangent_deltas: Vec<[f32; 3]>,
     /// How many elements of morph targets have been read.
     displaced: usize,
     /// Why no rig can be built.
@@ -63,6 +65,8 @@ struct BoundVertex {
     alike: u32,
     /// Whether its normal must be computed from the one that its corner gets.
     without_normal: bool,
+    /// Its tangent, if morph targets displace that.
+    tangent: Option<[f32; 3]>,
 }
 
 impl RigBuilder {
@@ -90,6 +94,7 @@ impl RigBuilder {
             bound_ids: HashMap::new(),
             lists: HashMap::new(),
             deltas: Vec::new(),
+            tangent_deltas: Vec::new(),
             displaced: 0,
             problem: None,
         };
@@ -180,10 +185,16 @@ impl RigBuilder {
             }
         }
         if let Some(details) = mesh.details.as_ref().filter(|details| has_tangents(details)) {
-            let bindings = rig.bindings.iter().zip(details.iter());
-            rig.tangents = bindings.map(|(binding, detail)| unturned(binding, &rig.deltas, &rest, detail)).collect();
+            let bindings = rig.bindings.iter().zip(details.iter()).zip(corners);
+            let tangent = |((binding, detail), &id): ((&Binding, &CornerDetail), &u32)| {
+                let tangent = unturned(binding, &rig.deltas, &rest, detail);
+                let [x, y, z] = self.bound[id as usize].tangent.unwrap_or([tangent[0], tangent[1], tangent[2]]);
+                [x, y, z, tangent[3]]
+            };
+            rig.tangents = bindings.map(tangent).collect();
         }
-        rig.reach = Reach::of(&rig.bindings, &rig.deltas);
+        refer_to_tangents(&mut rig, &self.tangent_deltas);
+        rig.reach = Reach::of(&rig.bindings, &rig.deltas).including(&self.tangent_deltas);
         Ok(rig)
     }
 
@@ -200,8 +211,9 @@ impl RigBuilder {
         *self.lists.entry(list).or_insert(next)
     }
 
-    /// Returns the number of a binding; equal bindings have the same number.
-    fn bind(&mut self, mut bound: BoundVertex, deltas: &[Delta]) -> u32 {
+    /// Returns the number of a binding; equal bindings have the same number. `tangents` has what each of `deltas` adds to the
+    /// tangent if that is displaced.
+    fn bind(&mut self, mut bound: BoundVertex, deltas: &[Delta], tangents: &[[f32; 3]]) -> u32 {
         let bits = |v: [f32; 3]| v.map(|x| (x + 0.0).to_bits());
         let Binding { position, normal, joints, weights, .. } = bound.binding;
         let list = |vector: fn(&Delta) -> [f32; 3]| {
@@ -210,20 +222,41 @@ impl RigBuilder {
         };
         let hung = joints.into_iter().chain(weights.map(f32::to_bits));
         bound.alike = self.list(hung.chain(list(|delta| delta.position)).collect());
-        let turned = self.list(list(|delta| delta.normal).collect());
+        // No weight has the number that the tangents begin with.
+        let displaced = bound.tangent.into_iter().flat_map(|tangent| {
+            let added = deltas.iter().zip(tangents);
+            let added = added.flat_map(|(delta, added)| [delta.weight].into_iter().chain(bits(*added)));
+            [u32::MAX].into_iter().chain(bits(tangent)).chain(added)
+        });
+        let turned = self.list(list(|delta| delta.normal).chain(displaced).collect());
         let ([x, y, z], [a, b, c]) = (bits(position), bits(normal));
         let next = self.bound.len() as u32;
         let id = *self.bound_ids.entry([bound.alike, turned, x, y, z, a, b, c]).or_insert(next);
         if id == next {
             bound.binding.first_delta = self.deltas.len() as u32;
             bound.binding.delta_count = deltas.len() as u32;
-            self.deltas.extend_from_slice(deltas);
+            let first = self.tangent_deltas.len() as u32 + 1;
+            let numbers = (first..first + tangents.len() as u32).chain(std::iter::repeat(0));
+            self.deltas.extend(deltas.iter().zip(numbers).map(|(delta, tangent)| Delta { tangent, ..*delta }));
+            self.tangent_deltas.extend_from_slice(tangents);
             self.bound.push(bound);
         }
         if self.bound.len().max(self.deltas.len()) > MAX_BOUND {
             self.give_up(format!("there are more than {MAX_BOUND} vertices, or displacements of them"));
         }
         id
+    }
+}
+
+/// Puts the displacements of tangents behind the tangents of a rig, and lets its deltas refer to them there. They are left out
+/// if the rig has no tangents.
+fn refer_to_tangents(rig: &mut Rig, displacements: &[[f32; 3]]) {
+    let first = rig.tangents.len() as u32;
+    for delta in &mut rig.deltas {
+        delta.tangent = if first > 0 && delta.tangent > 0 { first + delta.tangent - 1 } else { 0 };
+    }
+    if first > 0 {
+        rig.tangents.extend(displacements.iter().map(|&[x, y, z]| [x, y, z, 0.0]));
     }
 }
 
@@ -248,6 +281,8 @@ pub(super) struct UndeformedVertex<'a> {
     pub influences: Option<&'a [(usize, f64)]>,
     /// Its displacements by morph targets.
     pub deltas: &'a mut [Delta],
+    /// Its tangent, and what each of these displacements adds to it; none if the tangent turns along with the normal.
+    pub tangent: Option<(Vec3, &'a mut [[f32; 3]])>,
 }
 
 /// The joint and the space of a primitive's vertices. Skinned vertices have joints of their own.
@@ -312,7 +347,13 @@ impl NodeBinder<'_> {
         }
         let (position, normal) = frame.space.take(vertex.position, normal, vertex.deltas);
         let binding = Binding { position, normal, joints, weights, ..Binding::default() };
-        self.binder.bind(BoundVertex { binding, alike: 0, without_normal }, vertex.deltas)
+        let mut bound = BoundVertex { binding, alike: 0, without_normal, tangent: None };
+        let Some((tangent, displacements)) = vertex.tangent.filter(|_| !without_normal) else {
+            return self.binder.bind(bound, vertex.deltas, &[]);
+        };
+        bound.tangent = frame.space.take_tangent(tangent, displacements);
+        let displacements: &[_] = if bound.tangent.is_some() { displacements } else { &[] };
+        self.binder.bind(bound, vertex.deltas, displacements)
     }
 
     /// Returns a skinned vertex's joints, each once and in the palette's order, with weights that add up to 1.

@@ -24,8 +24,8 @@ pub struct Rig {
     /// One binding for each of the mesh's corners.
     pub(crate) bindings: Vec<Binding>,
     /// For each binding, the corner's tangent (see [`CornerDetail`](super::CornerDetail)) in the space that its joints' matrices
-    /// start from, and the sign of its bitangent there. Empty without tangents. Morph targets
-    /// turn them along with the normals.
+    /// start from, and the sign of its bitangent there. Behind them are what morph targets of weight 1 add to tangents, to which
+    /// `deltas` refer. Empty without tangents.
     pub(crate) tangents: Vec<[f32; 4]>,
     /// The displacements by morph targets: one part for each binding, with an entry for each target that moves or turns
     /// it.
@@ -54,7 +54,7 @@ pub struct Rig {
 pub(crate) struct Reach {
     /// The largest coordinate of a position.
     position: f64,
-    /// The largest coordinate of a displacement of a position or normal, by a morph target of weight 1.
+    /// The largest coordinate of a displacement of a position, normal or tangent, by a morph target of weight 1.
     delta: f64,
 }
 
@@ -82,7 +82,9 @@ pub(crate) struct Delta {
     /// Index into [`Pose::weights`].
     pub weight: u32,
     pub normal: [f32; 3],
-    pub _pad: f32,
+    /// Index into [`Rig::tangents`] of what the target adds to the tangent. Either all deltas of a corner have one, or all have 0:
+    /// then its tangent turns along with its normal.
+    pub tangent: u32,
 }
 
 /// The first three rows of a matrix whose fourth row is (0, 0, 0, 1). The shaders use this struct too.
@@ -319,6 +321,12 @@ impl Reach {
             position: bindings.iter().map(|binding| &binding.position).fold(0.0, largest),
             delta: deltas.iter().flat_map(|delta| [&delta.position, &delta.normal]).fold(0.0, largest),
         }
+    }
+
+    /// Includes displacements of tangents.
+    pub(crate) fn including(self, tangents: &[[f32; 3]]) -> Self {
+        let coordinates = tangents.iter().flatten().map(|x| f64::from(x.abs()));
+        Self { delta: coordinates.fold(self.delta, f64::max), ..self }
     }
 }
 

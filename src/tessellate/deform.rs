@@ -65,7 +65,7 @@ fn scaled_rows(matrix: &JointMatrix) -> [Vec3; 3] {
 }
 
 /// Returns `vector` at unit length, or `otherwise` if it is zero. No square overflows or underflows.
-fn scaled_unit_or(vector: Vec3, otherwise: Vec3) -> Vec3 {
+pub(super) fn scaled_unit_or(vector: Vec3, otherwise: Vec3) -> Vec3 {
     unit_or(vector * (1.0 / largest_component(vector).max(1e-30)), otherwise)
 }
 

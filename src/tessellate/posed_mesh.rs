@@ -6,10 +6,10 @@ use std::sync::{Arc, OnceLock};
 
 use glam::{Vec3, Vec4};
 
-use super::deform::{blend, deform_normal, deform_position, deform_tangent, turn_along};
+use super::deform::{blend, deform_normal, deform_position, deform_tangent, scaled_unit_or, turn_along};
 use super::normal::unit_or;
 use super::patch_bounds::PatchBounds;
-use crate::mesh::rig::{Binding, JointMatrix};
+use crate::mesh::rig::{Binding, Delta, JointMatrix};
 use crate::mesh::{Bounds, Mesh, Moment, Pose, Rig, Topology};
 
 /// The largest number of positions from which the bounds of an animation clip are taken.
@@ -151,16 +151,32 @@ fn morphed_normal(rig: &Rig, pose: &Pose, bound: &Binding) -> Vec3 {
     unit_or(normal, bound.normal.into())
 }
 
-/// Turns a corner's tangent along with its normal as morph targets turn that, and then applies joints.
+/// Applies morph targets and then joints to a corner's tangent. Targets that don't displace tangents turn it along with the
+/// normal.
 fn posed_tangent(rig: &Rig, pose: &Pose, corner: u32) -> Vec4 {
     let bound = &rig.bindings[corner as usize];
-    let mut tangent = Vec4::from(rig.tangents[corner as usize]);
-    if bound.delta_count > 0 {
-        let normal = Vec3::from(bound.normal);
-        let turned = turn_along(tangent.truncate(), unit_or(normal, normal), morphed_normal(rig, pose, bound));
-        tangent = turned.extend(tangent.w);
+    let rest = Vec4::from(rig.tangents[corner as usize]);
+    let (own, sign) = (rest.truncate(), rest.w);
+    let deltas = &rig.deltas[bound.first_delta as usize..][..bound.delta_count as usize];
+    let tangent = match deltas.first() {
+        None => own,
+        Some(first) if first.tangent > 0 => displaced_tangent(rig, pose, deltas, own),
+        Some(_) => {
+            let normal = Vec3::from(bound.normal);
+            turn_along(own, unit_or(normal, normal), morphed_normal(rig, pose, bound))
+        }
+    };
+    deform_tangent(&posed_matrix(pose, bound), tangent.extend(sign))
+}
+
+/// Returns the unit tangent of a corner that morph targets have displaced.
+fn displaced_tangent(rig: &Rig, pose: &Pose, deltas: &[Delta], own: Vec3) -> Vec3 {
+    let mut tangent = own;
+    for delta in deltas {
+        let displacement = Vec4::from(rig.tangents[delta.tangent as usize]).truncate();
+        tangent += displacement * pose.weights[delta.weight as usize];
     }
-    deform_tangent(&posed_matrix(pose, bound), tangent)
+    scaled_unit_or(tangent, own)
 }
 
 /// Returns the blended matrix of a corner's joints.

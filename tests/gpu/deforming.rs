@@ -82,6 +82,16 @@ fn the_device_deforms_tangents_as_the_cpu_does() {
     let details: Vec<CornerDetail> = mesh.corners.iter().enumerate().map(of).collect();
     let rig = Arc::make_mut(mesh.rig.as_mut().expect("a document with clips"));
     rig.tangents = details.iter().map(|detail| detail.tangent.extend(detail.bitangent_sign).to_array()).collect();
+    // Half of the corners that morph targets move have displacements of their tangents; the others turn them along.
+    let displaced: Vec<_> = rig.bindings.iter().filter(|bound| bound.first_delta % 2 == 0).copied().collect();
+    for bound in displaced.into_iter().filter(|bound| bound.delta_count > 0) {
+        for delta in &mut rig.deltas[bound.first_delta as usize..][..bound.delta_count as usize] {
+            let [x, y, z] = delta.position;
+            delta.tangent = rig.tangents.len() as u32;
+            rig.tangents.push([0.5 - z, x + 0.25, y, 0.0]);
+        }
+    }
+    assert!(rig.deltas.iter().any(|delta| delta.tangent > 0) && rig.deltas.iter().any(|delta| delta.tangent == 0));
     mesh.details = Some(Arc::new(details));
     let loaded = Loaded { mesh: Arc::new(mesh), ..loaded };
     let mut scene = engine().scene(&loaded, ARENA_BYTES).expect("a small mesh");

@@ -104,7 +104,7 @@ impl<'a> Morphs<'a> {
                 vector.filter(|vector| vector.is_finite()).unwrap_or_default().to_array()
             });
             if position != [0.0; 3] || normal != [0.0; 3] {
-                deltas.push(Delta { position, weight: shape, normal, _pad: 0.0 });
+                deltas.push(Delta { position, weight: shape, normal, tangent: 0 });
             }
         }
     }

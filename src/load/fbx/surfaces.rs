@@ -313,7 +313,8 @@ impl<'b> Binder<'b> {
         let memory = deltas.len() as u64 * PER_DELTA;
         budget.hold(memory).map_err(too_large)?;
         let before = self.node.deltas();
-        let vertex = UndeformedVertex { position, normal: normal.unwrap_or_default(), influences, deltas };
+        let normal = normal.unwrap_or_default();
+        let vertex = UndeformedVertex { position, normal, influences, deltas, tangent: None };
         let number = self.node.bind(frame, vertex, corner);
         if self.node.deltas() == before {
             // Another corner has the same.

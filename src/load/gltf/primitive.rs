@@ -122,7 +122,11 @@ impl PrimitiveReader {
             PrimitiveData { primitive, name: &name, accessors, unpacked, makes_normals: self.import.makes_normals() };
         let mut vertices = Vertices::new(source, pose, material.uvs, &mut self.notes)?;
         if details.is_some() {
-            vertices.details = Some(VertexDetails::new(source, vertices.count, material.needs, &mut self.notes));
+            let is_animated = binder.as_ref().is_some_and(|binder| binder.first_weight().is_some());
+            let has_weight = |target: usize| pose.weights.get(target).is_some_and(|weight| *weight != 0.0);
+            let uses_target = |target: usize| is_animated || has_weight(target);
+            let details = VertexDetails::new(source, vertices.count, material.needs, uses_target, &mut self.notes);
+            vertices.details = Some(details);
         }
         let mut moving = binder.map(|binder| AnimatedVertices::new(source, &vertices, pose.instance, binder));
         let list = primitive.indices().map(|accessor| match unpacked {

@@ -89,8 +89,19 @@ impl<'a> PrimitiveData<'a> {
         count: usize,
         notes: &mut Notes,
     ) -> Option<List<'a, [f32; N]>> {
-        match self.attribute(semantic, count) {
-            Ok(list) => list,
+        self.optional(&self.primitive.get(&semantic)?, &semantic.to_string(), count, notes)
+    }
+
+    /// Returns the values of an accessor that the primitive can do without. If they can't be read, they are left out with a note.
+    pub(super) fn optional<const N: usize>(
+        &self,
+        accessor: &Accessor,
+        attribute: &str,
+        count: usize,
+        notes: &mut Notes,
+    ) -> Option<List<'a, [f32; N]>> {
+        match self.list(accessor, attribute, count) {
+            Ok(list) => Some(list),
             Err(GltfError::Accessor { accessor, role, reason }) => {
                 notes.push_once(format!("/accessors/{accessor} ({role}) {reason}; it is left out."));
                 None

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use serde_json::{Map, Value};
 
-use super::schema::{DRACO, INSTANCING, MESHOPT, VISIBILITY, is_attribute, is_detail, is_placement};
+use super::schema::{DRACO, INSTANCING, MESHOPT, VISIBILITY, is_attribute, is_detail, is_displacement, is_placement};
 
 /// How something is used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -212,8 +212,10 @@ impl Reach {
         }
         self.mark(index(primitive, "indices"), Use::Shape, packed.is_none());
         for (i, target) in values(primitive, "targets").iter().enumerate() {
-            let found = self.target(mesh, i);
-            target.as_object().into_iter().flatten().for_each(|(_, accessor)| self.mark(whole(accessor), found, true));
+            let of_target = self.target(mesh, i);
+            for (name, accessor) in target.as_object().into_iter().flatten().filter(|(name, _)| is_displacement(name)) {
+                self.mark(whole(accessor), if is_detail(name) { Use::Detail } else { of_target }, true);
+            }
         }
         if let Some(view) = packed.and_then(|packed| index(packed, "bufferView")) {
             raise(&mut self.views, view, Use::Shape);

@@ -197,8 +197,10 @@ impl Primitives<'_> {
         }
         let targets = primitive.get_mut("targets").and_then(Value::as_array_mut).into_iter().flatten();
         for (t, target) in targets.enumerate() {
-            let (Value::Object(target), Use::Detail) = (target, self.reach.target(self.mesh, t)) else { continue };
-            for name in ["POSITION", "NORMAL"] {
+            let Value::Object(target) = target else { continue };
+            let shapes: &[_] =
+                if self.reach.target(self.mesh, t) == Use::Detail { &["POSITION", "NORMAL"] } else { &[] };
+            for name in shapes.iter().chain(&["TANGENT"]) {
                 self.drop_accessor(target, name, &format!("{place}/targets/{t}"));
             }
         }

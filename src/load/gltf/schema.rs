@@ -184,5 +184,5 @@ pub(super) fn is_placement(name: &str) -> bool {
 
 /// Returns whether an attribute of a morph target is read.
 pub(super) fn is_displacement(name: &str) -> bool {
-    ["POSITION", "NORMAL"].contains(&name)
+    ["POSITION", "NORMAL", "TANGENT"].contains(&name)
 }

@@ -9,7 +9,7 @@ use super::material_source::Uvs;
 use super::notes::Notes;
 use super::primitive_data::{MorphTarget, PrimitiveData};
 use super::uv_transform::UvTransform;
-use super::vertex_details::VertexDetails;
+use super::vertex_details::{TangentMorph, VertexDetails};
 use crate::load::binding_space::turned;
 use crate::mesh::CornerDetail;
 use crate::mesh::mesh_builder::InputCorner;
@@ -243,20 +243,27 @@ impl<'a> Vertices<'a> {
         }
         let rescaled = matches!(own, Some(GivenNormal::Rescaled(_))) && normal != Some(Vec3::ZERO);
         let mirrored = linear.determinant() < 0.0;
-        let turn = self.turned_at_rest(i);
-        let read = |details: &mut VertexDetails| details.read(i, &linear, turn);
+        let morph = self.tangent_morph(i);
+        let read = |details: &mut VertexDetails| details.read(i, &linear, &morph);
         let detail = self.details.as_mut().map_or_else(CornerDetail::default, read);
         Ok(Vertex { corner: InputCorner { position, normal, uv }, detail, mirrored, rescaled })
     }
 
-    /// Returns how the morph targets turn a vertex's normal at rest; none if they don't, or if nothing needs to know.
-    fn turned_at_rest(&self, i: usize) -> Option<DQuat> {
-        if self.targets.is_empty() || self.details.is_none() {
-            return None;
+    /// Returns what the morph targets do to a vertex's tangent at rest.
+    fn tangent_morph(&self, i: usize) -> TangentMorph<'a> {
+        let Some(details) = self.details.as_ref().filter(|_| !self.targets.is_empty()) else {
+            return TangentMorph::Nothing;
+        };
+        if details.displaces_tangents() {
+            return TangentMorph::Displaced(self.pose.weights);
         }
         let unit = |is_morphed| self.undeformed(i, is_morphed).1?.as_dvec3().try_normalize();
-        let (own, morphed) = (unit(false)?, unit(true)?);
-        (own != morphed).then(|| DQuat::from_rotation_arc(own, morphed))
+        match (unit(false), unit(true)) {
+            (Some(own), Some(morphed)) if own != morphed => {
+                TangentMorph::Turned(DQuat::from_rotation_arc(own, morphed))
+            }
+            _ => TangentMorph::Nothing,
+        }
     }
 
     /// Returns the matrix of a vertex: the weighted mean of its joints' matrices, or the node's transform if it isn't

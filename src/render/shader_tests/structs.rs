@@ -44,7 +44,7 @@ macro_rules! same {
 #[test]
 fn shared_structs_have_the_same_layout() {
     same!(Binding { position, first_delta, normal, delta_count, joints, weights });
-    same!(Delta { position, weight, normal });
+    same!(Delta { position, weight, normal, tangent });
     same!(JointMatrix { x, y, z });
     same!(LodView { clip_from_object, half_viewport, reach, eye, radius });
     same!(Params {

@@ -1,6 +1,7 @@
 //! What the scene doesn't use, and what changes nothing of the shape: it may be broken.
 
 use super::*;
+use crate::load::gltf::tests::animations::normal_mapped;
 use crate::load::gltf::tests::files::png_uri;
 
 fn changed(change: impl FnOnce(&mut Value)) -> Draft {
@@ -54,6 +55,15 @@ fn animated(root: &mut Value, input: usize) {
 
 fn instanced(root: &mut Value, attributes: Value) {
     root["nodes"][0]["extensions"] = json!({ "EXT_mesh_gpu_instancing": { "attributes": attributes } });
+}
+
+/// A normal-mapped triangle with a morph target of weight 1/2, which displaces tangents by an accessor.
+fn displaced_tangents(accessor: impl FnOnce(&mut Draft) -> usize) -> Draft {
+    let mut draft = normal_mapped(triangle(), [1.0, 0.0, 0.0, 1.0]);
+    let accessor = accessor(&mut draft);
+    draft.root["meshes"][0]["primitives"][0]["targets"] = json!([{ "POSITION": 0, "TANGENT": accessor }]);
+    draft.root["meshes"][0]["weights"] = json!([0.5]);
+    draft
 }
 
 /// A triangle each of whose vertices eight joints move.
@@ -178,6 +188,27 @@ fn details() -> Vec<Case> {
                 root["meshes"][0]["primitives"][0]["targets"] = json!([{ "POSITION": 9 }]);
                 root["meshes"][0]["weights"] = json!([0.5]);
             },
+        ),
+        repaired("a displacement of tangents that isn't there", "targets/0/TANGENT | 2 accessors | left out", |root| {
+            root["meshes"][0]["primitives"][0]["targets"] = json!([{ "POSITION": 0, "TANGENT": 9 }]);
+            root["meshes"][0]["weights"] = json!([0.5]);
+        }),
+        Case::draft(
+            "displacements of two of three tangents",
+            &displaced_tangents(|draft| draft.vectors(&[[0.0, 1.0, 0.0]; 2])),
+            Gets::Repaired(
+                "TANGENT of a morph target of /meshes/0/primitives/0 | 2 elements for 3 vertices | left out",
+            ),
+        ),
+        Case::draft(
+            "displacements of tangents without a type",
+            &displaced_tangents(|draft| draft.push("accessors", json!({ "componentType": 5126, "count": 3 }))),
+            Gets::Repaired("TANGENT of a morph target of /meshes/0/primitives/0 | type | left out"),
+        ),
+        Case::draft(
+            "displacements of tangents that are no numbers",
+            &displaced_tangents(|draft| draft.vectors(&[[f32::NAN, f32::INFINITY, 0.0]; 3])),
+            Gets::Read,
         ),
         read("a rotation of length 1.0000001", |root| root["nodes"][0]["rotation"] = json!([0, 0, 0, 1.000_000_1])),
         repaired("a rotation of zeros", "/nodes/0/rotation | zeros", |root| {
