@@ -347,7 +347,8 @@ fn a_mesh_that_moves_is_displaced_in_every_pose() {
         let target = Target::new(&engine().gpu, [64, 64]).expect("a small picture");
         let camera = pnaen::render::Camera::framing(&scene.bounds, target.viewport());
         let engine = crate::gpu_tests::coverage::sifting(0.0);
-        let times = engine.time(&mut scene, &target, &camera, &settings, Runs::default()).expect("a draw");
+        let view = camera.lod_view(target.viewport(), &scene.bounds);
+        let times = engine.time(&mut scene, &target, &camera, view, &settings, Runs::default()).expect("a draw");
         passes = times.iter().map(|time| time.pass).collect();
     }
     // Least triangles are computed for an overlay alone.

@@ -453,7 +453,8 @@ fn the_passes_are_timed_one_by_one() {
     let (_, mut scene) = scene(Shape::CubeSplit);
     let target = Target::new(&engine.gpu, [64, 64]).expect("a small picture");
     let camera = Camera::framing(&scene.bounds, target.viewport());
-    let times = engine.time(&mut scene, &target, &camera, &Settings::default(), Runs::default()).expect("a draw");
+    let view = camera.lod_view(target.viewport(), &scene.bounds);
+    let times = engine.time(&mut scene, &target, &camera, view, &Settings::default(), Runs::default()).expect("a draw");
     // Nothing is deformed or displaced here: see `deforming` and `displacement`.
     assert_eq!(times.iter().map(|time| time.pass).collect::<Vec<_>>(), RIGID_PASSES);
     assert!(times.iter().all(|time| time.ms >= 0.0 && time.ms.is_finite()));
