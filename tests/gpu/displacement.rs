@@ -4,12 +4,11 @@ use std::f32::consts::TAU;
 use std::sync::Arc;
 
 use pnaen::engine::Measurements;
-use pnaen::engine::{Loaded, Preparation, Runs};
+use pnaen::engine::{Loaded, Runs};
 use pnaen::gpu::Timing;
 use pnaen::load::{Budget, HeightSource, Source};
 use pnaen::measure::Measured;
-use pnaen::mesh::crease_band::CreaseBand;
-use pnaen::mesh::{Corner, HeightMap, Heights, Material, Mesh, Moment, Shape, Texture, Topology};
+use pnaen::mesh::{Corner, HeightMap, Heights, Material, Mesh, Moment, Shape, Texture};
 use pnaen::progress::Progress;
 use pnaen::render::{Scene, Target};
 use pnaen::settings::{ARENA_BYTES, Settings};
@@ -20,8 +19,8 @@ use pnaen::tessellate::{
 };
 use pnaen::view::ulp;
 
-use crate::gpu_tests::engine;
 use crate::gpu_tests::passes::{inputs, on_gpu};
+use crate::gpu_tests::{engine, loaded_mesh};
 
 /// Waves that repeat with the image; two crests of either length across it.
 pub(super) fn waves(size: u32) -> HeightMap {
@@ -55,28 +54,9 @@ fn under_waves(shape: Shape, mut mesh: Mesh) -> (Loaded, Scene) {
 }
 
 fn on_device(shape: Shape, mesh: Mesh) -> (Loaded, Scene) {
-    let (mesh, source) = (Arc::new(mesh), Source::Shape(shape));
-    let topology = Arc::new(Topology::build(&mesh, &Progress::new()).expect("nobody cancels"));
-    let scene = engine().scene_of(mesh.clone(), topology.clone(), ARENA_BYTES).expect("a small mesh");
-    (
-        Loaded {
-            source,
-            read: mesh.clone(),
-            preparation: Preparation::default(),
-            crease_band: CreaseBand::default(),
-            mesh,
-            warnings: Vec::new(),
-            variants: Vec::new(),
-            scenes: Vec::new(),
-            scene: None,
-            parts: Arc::default(),
-            files: Vec::new(),
-            topology,
-            load_ms: 0.0,
-            topology_ms: 0.0,
-        },
-        scene,
-    )
+    let loaded = loaded_mesh(Source::Shape(shape), mesh);
+    let scene = engine().scene(&loaded, ARENA_BYTES).expect("a small mesh");
+    (loaded, scene)
 }
 
 const MODES: [Displacement; 3] = [Displacement::On, Displacement::AsPublished, Displacement::PerPatch];

@@ -41,12 +41,12 @@ mod stability;
 #[path = "../vulkan/mod.rs"]
 mod vulkan;
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use pnaen::engine::{Engine, Loaded, Preparation, load};
 use pnaen::gpu::Timing;
 use pnaen::load::Source;
-use pnaen::mesh::Shape;
+use pnaen::mesh::{CreaseBand, Mesh, Shape, Topology};
 use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene, Target, crack_lines};
 use pnaen::settings::{ARENA_BYTES, Lighting, Settings};
@@ -65,6 +65,28 @@ pub(crate) fn engine() -> &'static Engine {
 
 pub(crate) fn loaded(shape: Shape) -> Loaded {
     load(&Source::Shape(shape), &Preparation::default(), &Progress::default()).expect("shapes always load")
+}
+
+/// A mesh that no file was read for.
+pub(crate) fn loaded_mesh(source: Source, mesh: Mesh) -> Loaded {
+    let topology = Arc::new(Topology::build(&mesh, &Progress::new()).expect("nobody cancels"));
+    let mesh = Arc::new(mesh);
+    Loaded {
+        source,
+        preparation: Preparation::default(),
+        crease_band: CreaseBand::default(),
+        read: mesh.clone(),
+        mesh,
+        warnings: Vec::new(),
+        variants: Vec::new(),
+        scenes: Vec::new(),
+        scene: None,
+        parts: Arc::default(),
+        files: Vec::new(),
+        topology,
+        load_ms: 0.0,
+        topology_ms: 0.0,
+    }
 }
 
 pub(crate) fn scene(shape: Shape) -> (Loaded, Scene) {

@@ -1,13 +1,10 @@
 //! The passes, held against the CPU's reference and against themselves.
 
-use std::sync::Arc;
-
-use pnaen::engine::{Loaded, Measurements, Preparation, Runs};
+use pnaen::engine::{Loaded, Measurements, Runs};
 use pnaen::gpu::{Timing, take_times};
 use pnaen::load::Source;
 use pnaen::measure::{EmittedChunk, Measured, Sizes, Visitor};
-use pnaen::mesh::{Corner, CreaseBand, EdgeKind, Material, Mesh, Shape, Topology};
-use pnaen::progress::Progress;
+use pnaen::mesh::{Corner, EdgeKind, Material, Mesh, Shape};
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::{Choice, Settings};
 use pnaen::tessellate::{
@@ -17,7 +14,7 @@ use pnaen::tessellate::{
 use pnaen::view::{ScreenView, ulp};
 
 use crate::gpu_tests::coverage::sifting;
-use crate::gpu_tests::{engine, loaded, picture, scene};
+use crate::gpu_tests::{engine, loaded, loaded_mesh, picture, scene};
 
 /// Width and height in px.
 const VIEWPORT: glam::Vec2 = glam::vec2(640.0, 480.0);
@@ -315,25 +312,7 @@ pub(super) fn sheet(columns: u32, rows: u32) -> Loaded {
     let mut material = Material::plain("plain", [1.0; 4]);
     material.triangles = 0..triangles.len() as u32;
     let mesh = Mesh { corners, triangles: triangles.into(), materials: vec![material], ..Mesh::default() };
-    let topology = Topology::build(&mesh, &Progress::default()).expect("nobody cancels");
-    let (mesh, topology) = (Arc::new(mesh), Arc::new(topology));
-    let (read, crease_band) = (mesh.clone(), CreaseBand::default());
-    Loaded {
-        source: Source::default(),
-        preparation: Preparation::default(),
-        crease_band,
-        read,
-        mesh,
-        warnings: Vec::new(),
-        variants: Vec::new(),
-        scenes: Vec::new(),
-        scene: None,
-        parts: Arc::default(),
-        files: Vec::new(),
-        topology,
-        load_ms: 0.0,
-        topology_ms: 0.0,
-    }
+    loaded_mesh(Source::default(), mesh)
 }
 
 #[test]
