@@ -24,6 +24,7 @@ mod masks;
 mod materials;
 #[path = "../documents/moving.rs"]
 pub(crate) mod moving;
+mod moving_lights;
 mod orientation;
 mod own_lod;
 mod own_shaders;
