@@ -28,19 +28,48 @@ static DRAW_MATERIAL: WgslFile =
 static DRAW_NORMAL: WgslFile = wgsl!("draw_normal", FACTORS, LOAD_NET, LOADS, NORMAL, TYPES);
 pub(super) static DRAW_PLAIN: WgslFile =
     wgsl!("draw_plain", DRAW_LIGHT, DRAW_NORMAL, DRAW_TYPES, OCTAHEDRAL_NORMAL, SURFACE, TYPES);
-pub(super) static DRAW_SURFACE: WgslFile = wgsl!(
-    "draw_surface",
-    CONVENTION,
+static DRAW_OVERLAYS: WgslFile = wgsl!(
+    "draw_overlays",
     CURVATURE,
     DRAW_DENSITY,
     DRAW_LIGHT,
     DRAW_LOOKS,
     DRAW_MATERIAL,
     DRAW_NORMAL,
+    DRAW_SURFACE_INPUTS,
     DRAW_TYPES,
-    FACTORS,
     LOAD_NET,
     NORMAL,
+    SURFACE
+);
+pub(super) static DRAW_SURFACE: WgslFile = wgsl!(
+    "draw_surface",
+    DRAW_LIGHT,
+    DRAW_MATERIAL,
+    DRAW_NORMAL,
+    DRAW_SURFACE_COLOR,
+    DRAW_SURFACE_INPUTS,
+    DRAW_SURFACE_VERTICES
+);
+static DRAW_SURFACE_COLOR: WgslFile = wgsl!(
+    "draw_surface_color",
+    DRAW_DENSITY,
+    DRAW_LIGHT,
+    DRAW_LOOKS,
+    DRAW_MATERIAL,
+    DRAW_NORMAL,
+    DRAW_OVERLAYS,
+    DRAW_SURFACE_INPUTS,
+    DRAW_TYPES
+);
+static DRAW_SURFACE_INPUTS: WgslFile = wgsl!("draw_surface_inputs", DRAW_TYPES, TYPES);
+static DRAW_SURFACE_VERTICES: WgslFile = wgsl!(
+    "draw_surface_vertices",
+    CONVENTION,
+    DRAW_NORMAL,
+    DRAW_SURFACE_INPUTS,
+    DRAW_TYPES,
+    FACTORS,
     OCTAHEDRAL_NORMAL,
     SURFACE,
     TYPES
