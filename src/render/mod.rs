@@ -37,7 +37,7 @@ pub(crate) mod prefilter_pass;
 pub(crate) mod punctual;
 #[cfg(test)]
 pub(crate) mod reflectance;
-mod renderer;
+pub(crate) mod renderer;
 mod scale;
 pub(crate) mod scene;
 #[cfg(test)]
