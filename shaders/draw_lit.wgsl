@@ -1,6 +1,6 @@
 // Draws the surface with nothing on it but its materials, in light from all around.
 
-// A uniform, which GPUs read fastest where all invocations read the same. No branch depends on it: see draw_surface.wgsl.
+// A uniform, which GPUs read fastest where all invocations read the same. No branch depends on it: see draw_surface_inputs.wgsl.
 @group(0) @binding(6) var<uniform> lit_frame: Frame;
 
 struct LitVaryings {

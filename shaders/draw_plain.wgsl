@@ -1,7 +1,7 @@
 // Draws the surface with nothing on it but the material, which is what most pictures are of. Little goes from vertex to
 // fragment, since that is what drawing many small triangles costs.
 
-// A uniform, which GPUs read fastest where all invocations read the same. No branch depends on it: see draw_surface.wgsl.
+// A uniform, which GPUs read fastest where all invocations read the same. No branch depends on it: see draw_surface_inputs.wgsl.
 @group(0) @binding(6) var<uniform> plain_frame: Frame;
 @group(1) @binding(0) var<uniform> material: Material;
 @group(1) @binding(1) var base_texture: texture_2d<f32>;

@@ -23,7 +23,7 @@ const DFG_SIZE: u32 = 64u;
 @group(1) @binding(16) var environment_map: texture_cube<f32>;
 @group(1) @binding(17) var environment_sampler: sampler;
 @group(1) @binding(18) var dfg_table: texture_2d<f32>;
-// No branch depends on this uniform, nor on those of materials and lights: see draw_surface.wgsl. Where a material has no coat or no
+// No branch depends on this uniform, nor on those of materials and lights: see draw_surface_inputs.wgsl. Where a material has no coat or no
 // sheen, these count as 0; where no material of the mesh has one, compilers leave them out.
 @group(1) @binding(19) var<uniform> surroundings: Surroundings;
 

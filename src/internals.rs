@@ -31,6 +31,7 @@ pub use crate::mesh::weld_preview::weld_previews;
 pub use crate::numbers::utc;
 pub use crate::plot::{BLUE, FONT, INK, use_font};
 pub use crate::render::camera::Camera;
+pub use crate::render::renderer::Renderer;
 pub use crate::render::scene::Scene;
 pub use crate::render::target::{Target, samples};
 pub use crate::settings::light::Lighting;

@@ -83,7 +83,7 @@ impl Bench<'_> {
         if triangles > self.effort.most_triangles {
             return Ok(None);
         }
-        let passes = engine.time(scene, target, camera, &settings, self.effort.runs)?;
+        let passes = engine.time(scene, target, camera, inputs.view, &settings, self.effort.runs)?;
         let time = Time::of(&passes);
         let mut probe = Probe { triangles, vertices, time, errors: None, max_error_px: None, triangles_by_error: None };
         let wanted = Measurements {

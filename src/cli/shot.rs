@@ -399,7 +399,7 @@ impl Shot {
         let Some(measured) = &results.survey else { return Ok(None) };
         // Only the right half is timed.
         let alone = Settings { split_surface: None, ..*settings };
-        let passes = engine.time_for(scene, target, camera, *lod_view, &alone, Runs::default())?;
+        let passes = engine.time(scene, target, camera, *lod_view, &alone, Runs::default())?;
         let leaks = engine.leaks(scene, measured, target.size, camera)?;
         let factors_capped = engine.factors_capped(scene, &settings.tessellation)?;
         let lod_shader = LodShaderStats::of(engine, scene)?;

@@ -79,7 +79,7 @@ pub(super) fn draw_tile(
     let inputs = affordable(&settings.inputs(view), scene);
     let settings = settings.with(Tessellation { factor: inputs.tessellation.factor, ..settings.tessellation });
     scene.set_lines(&engine.gpu, &[]);
-    let passes = engine.time(scene, target, camera, &settings, Runs::default())?;
+    let passes = engine.time(scene, target, camera, view, &settings, Runs::default())?;
     // Points that patches agree on leave the surface that each patch has by itself, which the error is measured from.
     let is_shared = matches!(settings.tessellation.displacement, Displacement::On | Displacement::AsPublished);
     let wanted =

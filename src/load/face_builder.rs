@@ -15,13 +15,14 @@ use super::recent_corners::{RecentCorners, VertexNumbers};
 use super::tangents;
 use super::triangle_block::{self, TriangleBlock};
 use super::warnings::repair_warnings;
+use crate::files::Limits;
 use crate::mesh::build_limits::{MAX_TRIANGLES, MemoryRefused};
 use crate::mesh::detail_table::DetailTable;
 use crate::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use crate::mesh::mipmap::SRGB_TABLE;
 use crate::mesh::polygon::{self, CutQuality, triangulate};
 use crate::mesh::rig::LARGEST_COORDINATE;
-use crate::mesh::{CornerDetail, Material, Mesh};
+use crate::mesh::{CornerDetail, Material, MemoryAccount, Mesh};
 use crate::progress::Progress;
 
 /// The greatest number of materials. A file with more is refused, since each takes memory and a draw call.
@@ -29,6 +30,28 @@ const MAX_MATERIALS: usize = 1 << 16;
 
 /// The greatest number of corners of a face. A file with a larger face is refused.
 pub(super) const MAX_CORNERS: usize = 1 << 19;
+
+/// What a reader finds in a file: its faces, what it holds in case it has no triangles, and warnings.
+pub(super) type Gathered<'a> = (FaceBuilder<'a>, String, Vec<String>);
+
+/// Builds a mesh called `name` from a file's bytes, whose faces `gather` reads.
+///
+/// # Errors
+/// Those of `gather`, [`ReadError::Empty`] and [`ReadError::Cancelled`].
+pub(super) fn read_faces(
+    bytes: Vec<u8>,
+    name: &str,
+    import: Import,
+    limits: &Limits,
+    progress: &Progress,
+    gather: impl for<'a> FnOnce(&[u8], Import, &'a Budget, &'a Progress) -> Result<Gathered<'a>, ReadError>,
+) -> Result<LoadedMesh, ReadError> {
+    let budget = Budget::new(bytes.len(), limits);
+    let (faces, holds, warnings) = gather(&bytes, import, &budget, progress)?;
+    budget.release(bytes.len() as u64);
+    drop(bytes);
+    faces.finish(name, holds, warnings, &progress.part(0.5, 1.0))
+}
 
 /// A corner of a face.
 pub(super) trait FaceCorner: Copy {

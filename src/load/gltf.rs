@@ -95,47 +95,36 @@ pub(super) fn read(
     progress: &Progress,
 ) -> Result<LoadedMesh, GltfError> {
     let budget = Budget::new(bytes.len(), limits);
-    let document::Parsed {
-        document,
-        blob,
-        extensions,
-        animations,
-        lists,
-        lights,
-        cameras,
-        variants,
-        scenes,
-        parts,
-        reach,
-        faults,
-        mut notes,
-    } = document::parse(bytes, selected, &budget, progress)?;
+    let mut parsed = document::parse(bytes, selected, &budget, progress)?;
+    let (document, notes) = (&parsed.document, &mut parsed.notes);
+    let (extensions, reach, lists) = (&parsed.extensions, &parsed.reach, &parsed.lists);
     progress.check()?;
     let files = Files::new(folder, limits, &budget, progress);
-    let buffers = buffers::load(&document, &files, (&reach.buffers, &extensions.fallback), blob, &mut notes, progress)?;
+    let buffers =
+        buffers::load(document, &files, (&reach.buffers, &extensions.fallback), parsed.blob, notes, progress)?;
     progress.set(0.3);
-    let placed = nodes::place(&document, &reach.hiding, &mut notes)?;
-    let known = (&buffers[..], faults, &reach.views[..]);
-    let read_copy = |buffer| buffers::read_copy(&document, &files, buffer);
-    let mut accessors = Accessors::new(&document, &extensions, known, (&budget, &mut notes), read_copy)?;
-    accessors.unpacked = draco::unpack(&accessors, &document, &placed, &extensions.packed, progress)?;
+    let placed = nodes::place(document, &reach.hiding, notes)?;
+    let known = (&buffers[..], parsed.faults, &reach.views[..]);
+    let read_copy = |buffer| buffers::read_copy(document, &files, buffer);
+    let mut accessors = Accessors::new(document, extensions, known, (&budget, &mut *notes), read_copy)?;
+    accessors.unpacked = draco::unpack(&accessors, document, &placed, &extensions.packed, progress)?;
     let mut warnings = Vec::new();
-    let clips = animations::read(animations, &document, &accessors, &mut warnings);
+    let clips = animations::read(parsed.animations, document, &accessors, &mut warnings);
     progress.check()?;
-    let moves_meshes = rig_nodes::move_meshes(&clips, &document, &placed);
+    let moves_meshes = rig_nodes::move_meshes(&clips, document, &placed);
     let mut binder = match clips.is_empty() {
         true => None,
         false => {
-            let also = lights.nodes().chain(cameras.nodes());
-            RigBuilder::new(clips, &rig_nodes::of(&document, &placed, also), &mut warnings)
+            let also = parsed.lights.nodes().chain(parsed.cameras.nodes());
+            RigBuilder::new(clips, &rig_nodes::of(document, &placed, also), &mut warnings)
         }
     };
     notes.extend(std::mem::take(&mut warnings));
-    let mut materials = Materials::new(&lists, &document, &placed, (&accessors, &files), &budget)?;
-    let is_detailed = needs_details(&document, &placed, &materials);
+    let mut materials = Materials::new(lists, document, &placed, (&accessors, &files), &budget)?;
+    let is_detailed = needs_details(document, &placed, &materials);
     let check = |moves| {
         let beside = PerVertex { moves, is_detailed };
-        scene_size::check(&document, (&placed, &extensions.instances), &accessors, &budget, beside)
+        scene_size::check(document, (&placed, &extensions.instances), &accessors, &budget, beside)
     };
     let needs = match check(binder.is_some()) {
         Err(GltfError::TooLarge { .. }) if binder.is_some() && !moves_meshes => {
@@ -149,7 +138,7 @@ pub(super) fn read(
     };
     materials.read_images(needs.bytes, progress)?;
     let mut scene = Scene {
-        document: &document,
+        document,
         placed: &placed,
         instances: &extensions.instances,
         accessors: &accessors,
@@ -167,17 +156,17 @@ pub(super) fn read(
     let Scene { materials, builder, mut primitives, binder, details, .. } = scene;
     if builder.is_empty() {
         let mut holds = match reach.hidden {
-            0 if parts.is_cut => "its named parts are hidden".to_owned(),
-            0 => primitives.holds(&document),
+            0 if parsed.parts.is_cut => "its named parts are hidden".to_owned(),
+            0 => primitives.holds(document),
             hidden => format!("KHR_node_visibility hides the {hidden} nodes of its scene that have a mesh"),
         };
-        if scenes.names.len() > 1 {
+        if parsed.scenes.names.len() > 1 {
             holds += "; --scene shows another of its scenes";
         }
         return Err(GltfError::Empty { holds });
     }
-    if parts.beyond > 0 {
-        notes.push(format!("named nodes beyond the first 65,536, which can't be hidden: {}.", parts.beyond));
+    if parsed.parts.beyond > 0 {
+        notes.push(format!("named nodes beyond the first 65,536, which can't be hidden: {}.", parsed.parts.beyond));
     }
     notes.append(materials.into_notes());
     notes.append(std::mem::take(&mut primitives.notes));
@@ -187,17 +176,17 @@ pub(super) fn read(
     drop(accessors);
     drop(buffers);
     budget.release(lists.bytes());
-    drop(lists);
+    drop(parsed.lists);
     progress.set(0.8);
     let (mut of_lights, mut of_cameras) = (Notes::default(), Notes::default());
-    let lights = lights.shown(&placed, &mut of_lights);
-    let cameras = cameras.shown(&placed, &mut of_cameras);
+    let lights = parsed.lights.shown(&placed, &mut of_lights);
+    let cameras = parsed.cameras.shown(&placed, &mut of_cameras);
     let mounts = |nodes: Vec<usize>| -> Vec<Joint> {
         let all: Vec<_> = binder.iter().flat_map(|own| nodes.iter().map(|node| own.mount(*node))).collect();
         if all.iter().any(|mount| mount.node.is_some()) { all } else { Vec::new() }
     };
     let mounts = [mounts(nodes_of(&lights)), mounts(nodes_of(&cameras))];
-    let mut mesh = finished(name, (builder, details, binder), &mut notes, (&budget, progress))?;
+    let mut mesh = finished(name, (builder, details, binder), notes, (&budget, progress))?;
     if let Some(rig) = mesh.rig.as_mut().and_then(Arc::get_mut) {
         [rig.lights, rig.cameras] = mounts;
     }
@@ -207,12 +196,12 @@ pub(super) fn read(
     mesh.cameras = cameras.into_iter().map(|(_, camera)| camera).collect();
     notes.append(of_lights);
     notes.append(of_cameras);
-    warnings = notes.into_warnings();
+    warnings = parsed.notes.into_warnings();
     warnings.extend(repair_warnings(&mesh.repairs, &selected.import));
-    let scenes::Scenes { names, shown } = scenes;
+    let scenes::Scenes { names, shown } = parsed.scenes;
     let (files, file_bytes) = (files.named(), budget.files());
-    let parts = parts.list;
-    Ok(LoadedMesh { mesh, warnings, variants, scenes: names, scene: shown, parts, files, file_bytes })
+    let parts = parsed.parts.list;
+    Ok(LoadedMesh { mesh, warnings, variants: parsed.variants, scenes: names, scene: shown, parts, files, file_bytes })
 }
 
 /// The scene that is being read, and the mesh that is being built from it.

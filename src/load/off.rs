@@ -6,7 +6,7 @@
 
 use glam::{Vec2, Vec3, Vec4};
 
-use super::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, counted, linear_color};
+use super::face_builder::{FaceBuilder, Gathered, MAX_CORNERS, NumberedCorner, counted, linear_color, read_faces};
 use super::import::Import;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
@@ -36,11 +36,7 @@ pub(super) fn read(
     limits: &Limits,
     progress: &Progress,
 ) -> Result<LoadedMesh, ReadError> {
-    let budget = Budget::new(bytes.len(), limits);
-    let (faces, holds, warnings) = gather(&bytes, import, &budget, progress)?;
-    budget.release(bytes.len() as u64);
-    drop(bytes);
-    faces.finish(name, holds, warnings, &progress.part(0.5, 1.0))
+    read_faces(bytes, name, import, limits, progress, gather)
 }
 
 /// Returns whether a text begins with the keyword of OFF, with the numbers of vertices and faces behind it, or with that of binary
@@ -58,13 +54,13 @@ pub(super) fn begins(text: &[u8]) -> bool {
     rest == b"BINARY" || counts(rest).is_some()
 }
 
-/// Reads all faces. Also returns what the file holds in case it has no triangles, and warnings.
+/// Reads all faces.
 fn gather<'a>(
     bytes: &[u8],
     import: Import,
     budget: &'a Budget,
     progress: &'a Progress,
-) -> Result<(FaceBuilder<'a>, String, Vec<String>), ReadError> {
+) -> Result<Gathered<'a>, ReadError> {
     let mut rows = Rows::new(bytes, Some(progress));
     let header = Header::read(&mut rows)?;
     let vertices = Vertices::read(&header, &mut rows, budget)?;

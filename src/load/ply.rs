@@ -11,7 +11,7 @@ mod values;
 
 use glam::{Vec2, Vec3, Vec4};
 
-use super::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, counted, linear_color};
+use super::face_builder::{FaceBuilder, Gathered, MAX_CORNERS, NumberedCorner, counted, linear_color, read_faces};
 use super::import::Import;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
@@ -63,20 +63,16 @@ pub(super) fn read(
     limits: &Limits,
     progress: &Progress,
 ) -> Result<LoadedMesh, ReadError> {
-    let budget = Budget::new(bytes.len(), limits);
-    let (faces, holds, warnings) = gather(&bytes, import, &budget, progress)?;
-    budget.release(bytes.len() as u64);
-    drop(bytes);
-    faces.finish(name, holds, warnings, &progress.part(0.5, 1.0))
+    read_faces(bytes, name, import, limits, progress, gather)
 }
 
-/// Reads all faces. Also returns what the file holds in case it has no triangles, and warnings.
+/// Reads all faces.
 fn gather<'a>(
     bytes: &[u8],
     import: Import,
     budget: &'a Budget,
     progress: &'a Progress,
-) -> Result<(FaceBuilder<'a>, String, Vec<String>), ReadError> {
+) -> Result<Gathered<'a>, ReadError> {
     let header = header::read(bytes)?;
     let mut faces = FaceBuilder::new(bytes.len(), budget).importing(import);
     let material = faces.material(Material::plain("default", [1.0; 4]))?;

@@ -10,7 +10,7 @@ use crate::settings::{Colors, DeviationUnit, Settings};
 
 /// The distances from what is emitted to the reference surface.
 pub(super) struct Deviations {
-    /// One buffer for each chunk: see `deviations` in `shaders/draw_surface.wgsl`.
+    /// One buffer for each chunk: see `deviations` in `shaders/draw_surface_inputs.wgsl`.
     pub(super) chunks: Vec<wgpu::Buffer>,
     /// The colour scale, in object units.
     pub(super) scale: Scale,

@@ -127,7 +127,7 @@ pub(crate) fn overlay_bits(overlays: &Overlays) -> u32 {
         | u32::from(overlays.colors == Colors::Silhouette) << 15
 }
 
-/// sRGB colour of an edge kind, for legends; `edge_color` in `shaders/draw_surface.wgsl` has the same in linear light.
+/// sRGB colour of an edge kind, for legends; `edge_color` in `shaders/draw_surface_color.wgsl` has the same in linear light.
 /// People with any colour vision can tell them apart (Okabe and Ito 2008). Smooth edges have an inconspicuous grey.
 pub(crate) fn edge_color(kind: EdgeKind) -> [u8; 3] {
     match kind {
@@ -145,16 +145,16 @@ pub(crate) const CRACK_COLOR: [u8; 3] = [255, 60, 25];
 /// sRGB colour of a T-junction.
 pub(crate) const T_JUNCTION_COLOR: [u8; 3] = [240, 228, 66];
 
-/// sRGB colour of a fold; `FOLD_COLOR` in `shaders/draw_surface.wgsl` has the same in linear light.
+/// sRGB colour of a fold; `FOLD_COLOR` in `shaders/draw_surface_color.wgsl` has the same in linear light.
 pub(crate) const FOLD_COLOR: [u8; 3] = [190, 70, 255];
 
-/// sRGB colour of a face seen from behind, before it is lit; `BACK_FACE_COLOR` in `shaders/draw_surface.wgsl` has the same
+/// sRGB colour of a face seen from behind, before it is lit; `BACK_FACE_COLOR` in `shaders/draw_surface_color.wgsl` has the same
 /// in linear light.
 #[cfg(test)]
 pub(crate) const BACK_FACE_COLOR: [u8; 3] = [225, 30, 110];
 
 /// sRGB colour of waste: triangles that are too small, and patches whose factors are too low. `WASTE_COLOR` in
-/// `shaders/draw_surface.wgsl` has the same in linear light. It is vermilion (Okabe and Ito 2008).
+/// `shaders/draw_overlays.wgsl` has the same in linear light. It is vermilion (Okabe and Ito 2008).
 pub(crate) const WASTE_COLOR: [u8; 3] = [213, 94, 0];
 
 /// sRGB colour of the place that is farthest from the reference surface. It isn't in the scale, and [`OUTLINE_COLOR`] sets it

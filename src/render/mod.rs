@@ -8,6 +8,8 @@ mod covered_area;
 pub(crate) mod cube_map;
 mod deviation;
 pub(crate) mod dfg;
+mod draw_states;
+mod draws;
 mod engine_view;
 pub(crate) mod environment;
 mod file_view;
@@ -35,7 +37,7 @@ pub(crate) mod prefilter_pass;
 pub(crate) mod punctual;
 #[cfg(test)]
 pub(crate) mod reflectance;
-mod renderer;
+pub(crate) mod renderer;
 mod scale;
 pub(crate) mod scene;
 #[cfg(test)]
@@ -44,6 +46,7 @@ pub(crate) mod sheen;
 mod silhouette;
 mod steps;
 pub(crate) mod studio;
+mod surface_draws;
 pub(crate) mod target;
 mod textures;
 pub(crate) mod tone;

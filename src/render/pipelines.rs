@@ -3,18 +3,15 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use super::draws::{Draw, Triangles};
 use super::environment::{Backdrop, ENVIRONMENT};
-use super::look::Look;
 use super::materials::Materials;
-use super::needs::{Cut, Needs};
 use super::prefilter_pass::REFLECTANCE;
-use super::scene::LineSegment;
-use super::target::{COLOR_FORMAT, DEPTH_FORMAT, samples};
+use super::target::samples;
 use crate::gpu::wgsl::{
     CONVENTION, CURVATURE, FACTORS, LOAD_NET, LOADS, NORMAL, OCTAHEDRAL_NORMAL, SURFACE, TYPES, WgslFile, wgsl,
 };
-use crate::gpu::{Gpu, GpuError, Lazy, ShaderModule, VERTEX_HALF};
-use crate::settings::{Choice, NormalsAt};
+use crate::gpu::{Gpu, GpuError, Lazy, ShaderModule};
 
 pub(super) static DRAW_TYPES: WgslFile = wgsl!("draw_types", TYPES);
 pub(super) static DRAW_BACKGROUND: WgslFile = wgsl!("draw_background", DRAW_TYPES, ENVIRONMENT, REFLECTANCE);
@@ -31,19 +28,48 @@ static DRAW_MATERIAL: WgslFile =
 static DRAW_NORMAL: WgslFile = wgsl!("draw_normal", FACTORS, LOAD_NET, LOADS, NORMAL, TYPES);
 pub(super) static DRAW_PLAIN: WgslFile =
     wgsl!("draw_plain", DRAW_LIGHT, DRAW_NORMAL, DRAW_TYPES, OCTAHEDRAL_NORMAL, SURFACE, TYPES);
-pub(super) static DRAW_SURFACE: WgslFile = wgsl!(
-    "draw_surface",
-    CONVENTION,
+static DRAW_OVERLAYS: WgslFile = wgsl!(
+    "draw_overlays",
     CURVATURE,
     DRAW_DENSITY,
     DRAW_LIGHT,
     DRAW_LOOKS,
     DRAW_MATERIAL,
     DRAW_NORMAL,
+    DRAW_SURFACE_INPUTS,
     DRAW_TYPES,
-    FACTORS,
     LOAD_NET,
     NORMAL,
+    SURFACE
+);
+pub(super) static DRAW_SURFACE: WgslFile = wgsl!(
+    "draw_surface",
+    DRAW_LIGHT,
+    DRAW_MATERIAL,
+    DRAW_NORMAL,
+    DRAW_SURFACE_COLOR,
+    DRAW_SURFACE_INPUTS,
+    DRAW_SURFACE_VERTICES
+);
+static DRAW_SURFACE_COLOR: WgslFile = wgsl!(
+    "draw_surface_color",
+    DRAW_DENSITY,
+    DRAW_LIGHT,
+    DRAW_LOOKS,
+    DRAW_MATERIAL,
+    DRAW_NORMAL,
+    DRAW_OVERLAYS,
+    DRAW_SURFACE_INPUTS,
+    DRAW_TYPES
+);
+static DRAW_SURFACE_INPUTS: WgslFile = wgsl!("draw_surface_inputs", DRAW_TYPES, TYPES);
+static DRAW_SURFACE_VERTICES: WgslFile = wgsl!(
+    "draw_surface_vertices",
+    CONVENTION,
+    DRAW_NORMAL,
+    DRAW_SURFACE_INPUTS,
+    DRAW_TYPES,
+    FACTORS,
     OCTAHEDRAL_NORMAL,
     SURFACE,
     TYPES
@@ -57,394 +83,6 @@ static DRAW_SURFACE_LAYERS: WgslFile =
     wgsl!("draw_surface_layers", DRAW_LAYERS, DRAW_MATERIAL, DRAW_NORMAL, DRAW_SURFACE);
 pub(super) static LAYERS_SINGLE: WgslFile = wgsl!("layers_single", DRAW_LIT_LAYERS, DRAW_SURFACE_LAYERS);
 pub(super) static LAYERS_MULTISAMPLED: WgslFile = wgsl!("layers_multisampled", DRAW_LIT_LAYERS, DRAW_SURFACE_LAYERS);
-
-/// What a pipeline draws.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Draw {
-    /// Emitted triangles with the material's colour alone.
-    Plain(Faces),
-    /// Emitted triangles with the material's colour and texture.
-    Textured(Faces),
-    /// The same with normals that are evaluated at pixels.
-    PixelNormals(Faces),
-    /// Emitted triangles with overlays that need no data of whole triangles.
-    Indexed(Faces, NormalsAt),
-    /// Emitted triangles with any overlays. The shader pulls each corner from the vertex buffer, so that it knows the barycentric
-    /// coordinates in the triangle.
-    Pulled(Faces, NormalsAt),
-    /// The input triangles, with any overlays.
-    Source,
-    /// Emitted triangles with materials in light from all around.
-    Lit(Faces, NormalsAt, Needs),
-    /// [`Self::Indexed`] with such materials.
-    LitIndexed(Faces, NormalsAt, Needs),
-    /// [`Self::Pulled`] with such materials.
-    LitPulled(Faces, NormalsAt, Needs),
-    /// [`Self::Source`] with such materials.
-    LitSource(Needs),
-    /// [`Self::Indexed`], [`Self::Pulled`] or [`Self::Source`] of a material that a mask cuts.
-    Cut(Triangles, Faces, NormalsAt, Cut),
-    /// [`Self::Indexed`] in the variant of a look.
-    LookIndexed(Faces, NormalsAt, Look),
-    /// [`Self::Pulled`] in such a variant.
-    LookPulled(Faces, NormalsAt, Look),
-    /// [`Self::Source`] in such a variant.
-    LookSource(Look),
-    /// Triangles with such materials where they show what is behind them.
-    Layer(LayerDraw, Triangles, NormalsAt, Needs),
-    /// Depths of layers where nothing is found.
-    LayerClear(LayerClear),
-    /// The light from all around, behind everything.
-    Background,
-    /// The grid on the ground.
-    Ground,
-    /// Lines over the mesh.
-    Lines(Occluded),
-    /// A line along the normal of every emitted vertex.
-    Normals(Occluded),
-}
-
-/// What a pipeline does with layers. The first three are numbers of LAYER_* in `shaders/draw_layers.wgsl`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum LayerDraw {
-    /// Composites the layer that was found, which covers what is behind.
-    Over,
-    /// Multiplies what is behind that layer by its colours.
-    Filter,
-    /// Adds the light that comes from that layer itself.
-    Add,
-    /// Finds the depths of the next layer away from the eye.
-    Away,
-    /// Finds those of the next layer toward the eye.
-    Toward,
-}
-
-/// Which depths of layers a pipeline sets.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum LayerClear {
-    /// Those before the search begins: the depth of the near plane.
-    Begin,
-    /// Those of a pass away from the eye: the depth at infinity.
-    Away,
-    /// Those of a pass back toward the eye, which has colours too: the depth of the near plane.
-    Back,
-}
-
-/// How a pipeline for layers gets its triangles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Triangles {
-    /// As [`Draw::Lit`] does.
-    Lit,
-    /// As [`Draw::LitIndexed`] does.
-    Indexed,
-    /// As [`Draw::LitPulled`] does.
-    Pulled,
-    /// As [`Draw::LitSource`] does.
-    Source,
-}
-
-/// Which faces are drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Faces {
-    Both,
-    /// Those that face the eye.
-    Fronts,
-}
-
-impl Faces {
-    const BOTH: [Self; 2] = [Self::Both, Self::Fronts];
-}
-
-/// Which part of a line is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Occluded {
-    /// All of it, faintly, even behind surfaces.
-    Through,
-    /// The part that no surface hides.
-    InSight,
-}
-
-impl Draw {
-    /// Every pipeline that there is but those of looks; of those that light materials, the ones with all that materials can need.
-    pub(super) fn all() -> Vec<Self> {
-        let triangles = [Triangles::Lit, Triangles::Indexed, Triangles::Pulled, Triangles::Source];
-        let layers = triangles.into_iter().flat_map(|triangles| {
-            let places: &[_] = match triangles {
-                Triangles::Source => &[NormalsAt::Vertices],
-                _ => &[NormalsAt::Vertices, NormalsAt::Pixels],
-            };
-            let composites = [LayerDraw::Over, LayerDraw::Filter, LayerDraw::Add].into_iter();
-            let composites = composites.flat_map(|draw| places.iter().map(move |&at| (draw, at)));
-            let finds = [LayerDraw::Away, LayerDraw::Toward].map(|draw| (draw, NormalsAt::Vertices));
-            composites.chain(finds).map(move |(draw, at)| Self::Layer(draw, triangles, at, Needs::ALL))
-        });
-        let masked = Needs { masked_samples: true, ..Needs::ALL };
-        let masks = NormalsAt::ALL.iter().flat_map(move |&at| {
-            let kinds = [Self::Lit, Self::LitIndexed, Self::LitPulled];
-            kinds.map(|kind: fn(Faces, NormalsAt, Needs) -> Self| kind(Faces::Both, at, masked))
-        });
-        let cuts = [false, true].into_iter().flat_map(|samples| {
-            let cut = Cut { details: true, samples };
-            let emitted = NormalsAt::ALL.iter().flat_map(move |&at| {
-                [Triangles::Indexed, Triangles::Pulled].map(|triangles| Self::Cut(triangles, Faces::Both, at, cut))
-            });
-            emitted.chain([Self::Cut(Triangles::Source, Faces::Both, NormalsAt::Vertices, cut)])
-        });
-        Self::OTHERS.into_iter().chain(layers).chain(masks).chain([Self::LitSource(masked)]).chain(cuts).collect()
-    }
-
-    /// Those that don't draw layers.
-    const OTHERS: [Self; 37] = [
-        Self::Plain(Faces::Both),
-        Self::Plain(Faces::Fronts),
-        Self::Textured(Faces::Both),
-        Self::Textured(Faces::Fronts),
-        Self::PixelNormals(Faces::Both),
-        Self::PixelNormals(Faces::Fronts),
-        Self::Indexed(Faces::Both, NormalsAt::Vertices),
-        Self::Indexed(Faces::Fronts, NormalsAt::Vertices),
-        Self::Indexed(Faces::Both, NormalsAt::Pixels),
-        Self::Indexed(Faces::Fronts, NormalsAt::Pixels),
-        Self::Pulled(Faces::Both, NormalsAt::Vertices),
-        Self::Pulled(Faces::Fronts, NormalsAt::Vertices),
-        Self::Pulled(Faces::Both, NormalsAt::Pixels),
-        Self::Pulled(Faces::Fronts, NormalsAt::Pixels),
-        Self::Source,
-        Self::Lit(Faces::Both, NormalsAt::Vertices, Needs::ALL),
-        Self::Lit(Faces::Fronts, NormalsAt::Vertices, Needs::ALL),
-        Self::Lit(Faces::Both, NormalsAt::Pixels, Needs::ALL),
-        Self::Lit(Faces::Fronts, NormalsAt::Pixels, Needs::ALL),
-        Self::LitIndexed(Faces::Both, NormalsAt::Vertices, Needs::ALL),
-        Self::LitIndexed(Faces::Fronts, NormalsAt::Vertices, Needs::ALL),
-        Self::LitIndexed(Faces::Both, NormalsAt::Pixels, Needs::ALL),
-        Self::LitIndexed(Faces::Fronts, NormalsAt::Pixels, Needs::ALL),
-        Self::LitPulled(Faces::Both, NormalsAt::Vertices, Needs::ALL),
-        Self::LitPulled(Faces::Fronts, NormalsAt::Vertices, Needs::ALL),
-        Self::LitPulled(Faces::Both, NormalsAt::Pixels, Needs::ALL),
-        Self::LitPulled(Faces::Fronts, NormalsAt::Pixels, Needs::ALL),
-        Self::LitSource(Needs::ALL),
-        Self::LayerClear(LayerClear::Begin),
-        Self::LayerClear(LayerClear::Away),
-        Self::LayerClear(LayerClear::Back),
-        Self::Background,
-        Self::Ground,
-        Self::Lines(Occluded::Through),
-        Self::Lines(Occluded::InSight),
-        Self::Normals(Occluded::Through),
-        Self::Normals(Occluded::InSight),
-    ];
-
-    /// The pipelines of all looks.
-    pub(super) fn of_looks() -> impl Iterator<Item = Self> {
-        let kinds = Faces::BOTH.into_iter().flat_map(|faces| NormalsAt::ALL.iter().map(move |&places| (faces, places)));
-        Look::ALL.into_iter().flat_map(move |look| {
-            let emitted = kinds.clone().flat_map(move |(faces, places)| {
-                [Self::LookIndexed(faces, places, look), Self::LookPulled(faces, places, look)]
-            });
-            emitted.chain([Self::LookSource(look)])
-        })
-    }
-
-    /// The names of the vertex and the fragment shader.
-    fn entry_points(self) -> (&'static str, &'static str) {
-        let line = |part| match part {
-            Occluded::Through => "hidden_line_fragment",
-            Occluded::InSight => "line_fragment",
-        };
-        let surface = |places| match places {
-            NormalsAt::Vertices => "surface_fragment",
-            NormalsAt::Pixels => "pixel_surface_fragment",
-        };
-        let lit = |places, needs: Needs| match (places, needs.masked_samples) {
-            (NormalsAt::Vertices, false) => "lit_fragment",
-            (NormalsAt::Pixels, false) => "pixel_lit_fragment",
-            (NormalsAt::Vertices, true) => "masked_lit_fragment",
-            (NormalsAt::Pixels, true) => "pixel_masked_lit_fragment",
-        };
-        let lit_surface = |places, needs: Needs| match (places, needs.masked_samples) {
-            (NormalsAt::Vertices, false) => "lit_surface_fragment",
-            (NormalsAt::Pixels, false) => "pixel_lit_surface_fragment",
-            (NormalsAt::Vertices, true) => "masked_surface_fragment",
-            (NormalsAt::Pixels, true) => "pixel_masked_surface_fragment",
-        };
-        let layer = |triangles, draw, places| match (triangles, draw, places) {
-            (Triangles::Lit, LayerDraw::Away | LayerDraw::Toward, _) => "lit_depth_fragment",
-            (Triangles::Lit, _, NormalsAt::Vertices) => "lit_layer_fragment",
-            (Triangles::Lit, _, NormalsAt::Pixels) => "pixel_lit_layer_fragment",
-            (_, LayerDraw::Away | LayerDraw::Toward, _) => "surface_depth_fragment",
-            (_, _, NormalsAt::Vertices) => "surface_layer_fragment",
-            (_, _, NormalsAt::Pixels) => "pixel_surface_layer_fragment",
-        };
-        let vertex = |triangles| match triangles {
-            Triangles::Lit => "lit_vertex",
-            Triangles::Indexed => "indexed_vertex",
-            Triangles::Pulled => "pulled_vertex",
-            Triangles::Source => "source_vertex",
-        };
-        let cut = |places, cut: Cut| match (places, cut.samples) {
-            (NormalsAt::Vertices, false) => "cut_surface_fragment",
-            (NormalsAt::Pixels, false) => "pixel_cut_surface_fragment",
-            (NormalsAt::Vertices, true) => "cut_samples_fragment",
-            (NormalsAt::Pixels, true) => "pixel_cut_samples_fragment",
-        };
-        match self {
-            Self::Layer(draw, triangles, places, _) => (vertex(triangles), layer(triangles, draw, places)),
-            Self::Cut(triangles, _, places, own) => (vertex(triangles), cut(places, own)),
-            Self::Plain(_) => ("plain_vertex", "plain_fragment"),
-            Self::Textured(_) => ("textured_vertex", "textured_fragment"),
-            Self::PixelNormals(_) => ("pixel_vertex", "pixel_fragment"),
-            Self::Indexed(_, places) | Self::LookIndexed(_, places, _) => ("indexed_vertex", surface(places)),
-            Self::Pulled(_, places) | Self::LookPulled(_, places, _) => ("pulled_vertex", surface(places)),
-            Self::Source | Self::LookSource(_) => ("source_vertex", "surface_fragment"),
-            Self::Lit(_, places, needs) => ("lit_vertex", lit(places, needs)),
-            Self::LitIndexed(_, places, needs) => ("indexed_vertex", lit_surface(places, needs)),
-            Self::LitPulled(_, places, needs) => ("pulled_vertex", lit_surface(places, needs)),
-            Self::LitSource(needs) => ("source_vertex", lit_surface(NormalsAt::Vertices, needs)),
-            Self::LayerClear(_) => ("clear_vertex", "clear_fragment"),
-            Self::Background => ("background_vertex", "background_fragment"),
-            Self::Ground => ("ground_vertex", "ground_fragment"),
-            Self::Lines(Occluded::Through) => ("hidden_line_vertex", line(Occluded::Through)),
-            Self::Lines(Occluded::InSight) => ("line_vertex", line(Occluded::InSight)),
-            Self::Normals(part) => ("normal_vertex", line(part)),
-        }
-    }
-
-    /// The vertex buffers that it reads.
-    fn vertex_buffers(self) -> Vec<Option<wgpu::VertexBufferLayout<'static>>> {
-        match self {
-            Self::Plain(_) => vertex_halves(wgpu::VertexStepMode::Vertex)[..1].to_vec(),
-            Self::Textured(_)
-            | Self::PixelNormals(_)
-            | Self::Indexed(..)
-            | Self::Lit(..)
-            | Self::LitIndexed(..)
-            | Self::LookIndexed(..)
-            | Self::Cut(Triangles::Lit | Triangles::Indexed, ..)
-            | Self::Layer(_, Triangles::Lit | Triangles::Indexed, ..) => {
-                vertex_halves(wgpu::VertexStepMode::Vertex).to_vec()
-            }
-            Self::Pulled(..) | Self::LitPulled(..) | Self::LookPulled(..) => Vec::new(),
-            Self::Layer(_, Triangles::Pulled | Triangles::Source, ..) => Vec::new(),
-            Self::Cut(Triangles::Pulled | Triangles::Source, ..) => Vec::new(),
-            Self::Source | Self::LitSource(_) | Self::LookSource(_) => Vec::new(),
-            Self::Background | Self::Ground | Self::LayerClear(_) => Vec::new(),
-            Self::Lines(_) => vec![Some(wgpu::VertexBufferLayout {
-                array_stride: size_of::<LineSegment>() as u64,
-                step_mode: wgpu::VertexStepMode::Instance,
-                attributes: &SEGMENT,
-            })],
-            Self::Normals(_) => vertex_halves(wgpu::VertexStepMode::Instance).to_vec(),
-        }
-    }
-
-    /// How depths are tested and written. Depth is reversed, so that nearer surfaces have a greater depth.
-    fn depth_stencil(self) -> wgpu::DepthStencilState {
-        let compare = match self {
-            // A shader compares the depth of what composites a layer.
-            Self::Layer(LayerDraw::Over | LayerDraw::Filter | LayerDraw::Add, ..) => wgpu::CompareFunction::Always,
-            Self::LayerClear(_) => wgpu::CompareFunction::Always,
-            Self::Layer(LayerDraw::Toward, ..) => wgpu::CompareFunction::Less,
-            Self::Lines(Occluded::Through) | Self::Normals(Occluded::Through) => wgpu::CompareFunction::Always,
-            // It is first, and at the far end.
-            Self::Background => wgpu::CompareFunction::Always,
-            _ => wgpu::CompareFunction::Greater,
-        };
-        // The ground, lines and layers are blended over surfaces.
-        let is_blended = matches!(self, Self::Ground | Self::Lines(_) | Self::Normals(_))
-            || matches!(self, Self::Layer(LayerDraw::Over | LayerDraw::Filter | LayerDraw::Add, ..));
-        wgpu::DepthStencilState {
-            format: DEPTH_FORMAT,
-            depth_write_enabled: Some(!is_blended),
-            depth_compare: Some(compare),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState::default(),
-        }
-    }
-
-    /// How colours are written; `None` in passes without colours.
-    fn color_target(self) -> Option<wgpu::ColorTargetState> {
-        let blend = match self {
-            Self::Layer(LayerDraw::Away, ..) | Self::LayerClear(LayerClear::Begin | LayerClear::Away) => return None,
-            Self::Layer(LayerDraw::Toward, ..) | Self::LayerClear(LayerClear::Back) => {
-                let write_mask = wgpu::ColorWrites::empty();
-                return Some(wgpu::ColorTargetState { format: COLOR_FORMAT, blend: None, write_mask });
-            }
-            Self::Layer(LayerDraw::Over, ..) => Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-            Self::Layer(LayerDraw::Filter, ..) => {
-                Some(both(wgpu::BlendFactor::Zero, wgpu::BlendFactor::Src, wgpu::BlendFactor::SrcAlpha))
-            }
-            Self::Layer(LayerDraw::Add, ..) => {
-                Some(both(wgpu::BlendFactor::One, wgpu::BlendFactor::One, wgpu::BlendFactor::One))
-            }
-            Self::Ground | Self::Lines(_) | Self::Normals(_) => Some(wgpu::BlendState::ALPHA_BLENDING),
-            _ => None,
-        };
-        Some(wgpu::ColorTargetState { format: COLOR_FORMAT, blend, write_mask: wgpu::ColorWrites::ALL })
-    }
-
-    fn cull_mode(self) -> Option<wgpu::Face> {
-        let (Self::Plain(faces)
-        | Self::Textured(faces)
-        | Self::PixelNormals(faces)
-        | Self::Indexed(faces, _)
-        | Self::Pulled(faces, _)
-        | Self::Lit(faces, ..)
-        | Self::LitIndexed(faces, ..)
-        | Self::LitPulled(faces, ..)
-        | Self::Cut(_, faces, ..)
-        | Self::LookIndexed(faces, ..)
-        | Self::LookPulled(faces, ..)) = self
-        else {
-            return None;
-        };
-        (faces == Faces::Fronts).then_some(wgpu::Face::Back)
-    }
-
-    /// The values of the shader's constants that aren't the usual ones.
-    fn constants(self) -> Vec<(&'static str, f64)> {
-        match self {
-            Self::Lit(.., needs)
-            | Self::LitIndexed(.., needs)
-            | Self::LitPulled(.., needs)
-            | Self::LitSource(needs) => needs.constants().to_vec(),
-            Self::Layer(draw, .., needs) => {
-                let toward_eye = f64::from(u8::from(draw == LayerDraw::Toward));
-                let of_layer = [("TOWARD_EYE", toward_eye), ("LAYER_DRAW", f64::from(draw as u32))];
-                needs.constants().into_iter().chain(of_layer).collect()
-            }
-            Self::Cut(.., cut) => {
-                vec![("HAS_DETAILS", f64::from(u8::from(cut.details))), ("LIGHT_COUNT", 0.0)]
-            }
-            Self::LayerClear(clear) => {
-                vec![("CLEAR_DEPTH", if clear == LayerClear::Away { 0.0 } else { 1.0 })]
-            }
-            Self::LookIndexed(.., look) | Self::LookPulled(.., look) => vec![("LOOK", f64::from(look as u32))],
-            Self::LookSource(look) => vec![("LOOK", f64::from(look as u32)), ("DRAWS_SOURCE", 1.0)],
-            _ => Vec::new(),
-        }
-    }
-}
-
-/// A sum of what is drawn and what is there, with these factors: of what is drawn, and of the colour and the alpha that are there.
-fn both(drawn: wgpu::BlendFactor, color: wgpu::BlendFactor, alpha: wgpu::BlendFactor) -> wgpu::BlendState {
-    let component =
-        |there| wgpu::BlendComponent { src_factor: drawn, dst_factor: there, operation: wgpu::BlendOperation::Add };
-    wgpu::BlendState { color: component(color), alpha: component(alpha) }
-}
-
-/// The attributes of an emitted vertex's first half: position and normal.
-const PLACE: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32];
-/// The attributes of its second half: key and texture coordinates.
-const DETAIL: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![2 => Uint32x2, 3 => Float32x2];
-/// The attributes of a [`LineSegment`]: start, end, colour, half its width, and how many lie over each other.
-const SEGMENT: [wgpu::VertexAttribute; 5] =
-    wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32, 4 => Float32];
-
-/// The two halves of emitted vertices, as vertex buffers.
-fn vertex_halves(step_mode: wgpu::VertexStepMode) -> [Option<wgpu::VertexBufferLayout<'static>>; 2] {
-    let half = |attributes| wgpu::VertexBufferLayout { array_stride: VERTEX_HALF, step_mode, attributes };
-    [Some(half(&PLACE)), Some(half(&DETAIL))]
-}
 
 /// The pipeline of each [`Draw`], and the layouts of their bind groups.
 pub(super) struct DrawPipelines {
@@ -615,7 +253,7 @@ fn pipeline(
     module: &wgpu::ShaderModule,
     draw: Draw,
 ) -> wgpu::RenderPipeline {
-    let (vertex, fragment) = draw.entry_points();
+    let (vertex, fragment) = (draw.vertex_entry(), draw.fragment_entry());
     let constants = draw.constants();
     let color = draw.color_target().map(Some);
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {

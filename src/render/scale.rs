@@ -135,7 +135,7 @@ impl Scale {
         place.clamp(0.0, 1.0)
     }
 
-    /// The sRGB colour at a place from 0 to 1; `scale_color` in `shaders/draw_surface.wgsl` does the same.
+    /// The sRGB colour at a place from 0 to 1; `scale_color` in `shaders/draw_overlays.wgsl` does the same.
     pub fn color(&self, place: f32) -> [u8; 3] {
         let at = place.clamp(0.0, 1.0) * (Self::STOPS - 1) as f32;
         let below = (at as usize).min(Self::STOPS - 2);

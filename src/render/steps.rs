@@ -8,6 +8,7 @@ use super::needs::has_layers;
 use crate::settings::{Settings, SplitSide};
 
 /// What one render pass of a picture draws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Step {
     /// Only the background, and what is drawn over surfaces.
     Over,

@@ -202,7 +202,9 @@ fn the_pass_is_timed_where_something_is_deformed() {
     scene.set_moment(Some(Moment { clip: 0, time: 0.3 })).expect("a small rig");
     let target = Target::new(&engine().gpu, [64, 64]).expect("a small picture");
     let camera = Camera::framing(&scene.bounds, target.viewport());
-    let times = engine().time(&mut scene, &target, &camera, &Settings::default(), Runs::default()).expect("a draw");
+    let view = camera.lod_view(target.viewport(), &scene.bounds);
+    let times =
+        engine().time(&mut scene, &target, &camera, view, &Settings::default(), Runs::default()).expect("a draw");
     // Triangles that cover nothing are left out where the device is faster for it.
     let passes: Vec<_> = times.iter().map(|time| time.pass).filter(|&pass| pass != "coverage").collect();
     assert_eq!((passes[0], &passes[1..]), ("deform", &crate::gpu_tests::passes::RIGID_PASSES[..]));

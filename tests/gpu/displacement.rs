@@ -8,7 +8,7 @@ use pnaen::engine::{Loaded, Runs};
 use pnaen::gpu::Timing;
 use pnaen::load::{Budget, HeightSource, Source};
 use pnaen::measure::Measured;
-use pnaen::mesh::{Corner, HeightMap, Heights, Material, Mesh, Moment, Shape, Texture, Topology};
+use pnaen::mesh::{Corner, HeightMap, Heights, Material, Mesh, Moment, Shape, Texture};
 use pnaen::progress::Progress;
 use pnaen::render::{Scene, Target};
 use pnaen::settings::{ARENA_BYTES, Settings};
@@ -19,8 +19,8 @@ use pnaen::tessellate::{
 };
 use pnaen::view::ulp;
 
-use crate::gpu_tests::engine;
 use crate::gpu_tests::passes::{inputs, on_gpu};
+use crate::gpu_tests::{engine, loaded_mesh};
 
 /// Waves that repeat with the image; two crests of either length across it.
 pub(super) fn waves(size: u32) -> HeightMap {
@@ -54,10 +54,9 @@ fn under_waves(shape: Shape, mut mesh: Mesh) -> (Loaded, Scene) {
 }
 
 fn on_device(shape: Shape, mesh: Mesh) -> (Loaded, Scene) {
-    let (mesh, source) = (Arc::new(mesh), Source::Shape(shape));
-    let topology = Arc::new(Topology::build(&mesh, &Progress::new()).expect("nobody cancels"));
-    let scene = engine().scene_of(mesh.clone(), topology.clone(), ARENA_BYTES).expect("a small mesh");
-    (Loaded { source, ..Loaded::of_mesh(mesh, topology) }, scene)
+    let loaded = loaded_mesh(Source::Shape(shape), mesh);
+    let scene = engine().scene(&loaded, ARENA_BYTES).expect("a small mesh");
+    (loaded, scene)
 }
 
 const MODES: [Displacement; 3] = [Displacement::On, Displacement::AsPublished, Displacement::PerPatch];
@@ -328,7 +327,8 @@ fn a_mesh_that_moves_is_displaced_in_every_pose() {
         let target = Target::new(&engine().gpu, [64, 64]).expect("a small picture");
         let camera = pnaen::render::Camera::framing(&scene.bounds, target.viewport());
         let engine = crate::gpu_tests::coverage::sifting(0.0);
-        let times = engine.time(&mut scene, &target, &camera, &settings, Runs::default()).expect("a draw");
+        let view = camera.lod_view(target.viewport(), &scene.bounds);
+        let times = engine.time(&mut scene, &target, &camera, view, &settings, Runs::default()).expect("a draw");
         passes = times.iter().map(|time| time.pass).collect();
     }
     // Least triangles are computed for an overlay alone.

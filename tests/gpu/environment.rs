@@ -206,47 +206,72 @@ fn three_lights() -> Vec<Light> {
     ]
 }
 
+/// The engine with a studio that is dark, so that nothing but the lights of a file shines.
+pub(super) fn unlit_engine() -> Engine {
+    let mut engine = engine().clone();
+    let black = Environment::uniform(&engine.gpu, [0.0; 3]).expect("a small environment");
+    engine.renderer = Arc::new(Renderer::lit_by(&engine.gpu, black));
+    engine
+}
+
+/// The width and height of pictures of a square, in px.
+pub(super) const SIDE: u32 = 64;
+
+/// The camera before a square from -1 to 1 that fills a picture of [`SIDE`] px.
+pub(super) fn before_a_square(scene: &Scene, target: &Target, orthographic: bool) -> Camera {
+    let framed = Camera::framing(&scene.bounds, target.viewport());
+    let distance = framed.distance * 2.0 / (SIDE as f32 * framed.units_per_pixel(SIDE as f32));
+    Camera { azimuth: 0.0, elevation: 0.0, orthographic, distance, ..framed }
+}
+
+/// Holds a picture of such a square, which reflects half of the light evenly, against the formula, to two steps of its bytes. Pixels
+/// that lines cover aren't looked at.
+pub(super) fn assert_lit_by(
+    picture: &RgbaImage,
+    lights: &[PunctualLight],
+    is_under_lines: impl Fn([u32; 2]) -> bool,
+    said: &str,
+) {
+    let mut brightest = 0;
+    for [x, y] in (0..SIDE * SIDE).step_by(7).map(|index| [index % SIDE, index / SIDE]) {
+        let at = |pixel: u32| (pixel as f32 + 0.5) * 2.0 / SIDE as f32 - 1.0;
+        let place = vec3(at(x), -at(y), 0.0);
+        let reached = lights.iter().map(|light| direct_light(light, place));
+        let light: Vec3 = reached.map(|light| light.illuminance * light.to_light.z.max(0.0)).sum();
+        let expected = (0.5 / PI * light).to_array().map(srgb);
+        brightest = brightest.max(expected[0].max(expected[2]));
+        let found = picture.get_pixel(x, y).0;
+        let is_near = (0..3).all(|k| found[k].abs_diff(expected[k]) <= 2);
+        assert!(is_near || is_under_lines([x, y]), "[{x}, {y}]: {found:?}, not {expected:?}, with {said}");
+    }
+    assert!(brightest > 100, "{brightest} with {said}");
+}
+
 /// On a matte surface, radiance is base colour / pi times illuminance times the cosine, at every pixel: in both projections, and
 /// with every shader.
 #[test]
 fn lights_of_the_file_shine_on_a_matte_square_as_the_formula_says() {
-    const SIDE: u32 = 64;
-    let mut engine: Engine = engine().clone();
-    let black = Environment::uniform(&engine.gpu, [0.0; 3]).expect("a small environment");
-    engine.renderer = Arc::new(Renderer::lit_by(&engine.gpu, black));
+    let engine = unlit_engine();
     let lights = three_lights();
     let packed: Vec<PunctualLight> = lights.iter().map(PunctualLight::from).collect();
     let mut scene = scene_of(square_under(lights), 0.0);
     let target = Target::new(&engine.gpu, [SIDE; 2]).expect("a small picture");
-    let framed = Camera::framing(&scene.bounds, target.viewport());
     let tessellation = Tessellation { surface: Surface::Flat, factor: 3.0, ..Tessellation::default() };
     let base = Settings { lighting: Lighting::Studio, tone_curve: ToneCurve::None, ..Settings::from(tessellation) };
     for orthographic in [false, true] {
-        let distance = framed.distance * 2.0 / (SIDE as f32 * framed.units_per_pixel(SIDE as f32));
-        let camera = Camera { azimuth: 0.0, elevation: 0.0, orthographic, distance, ..framed };
+        let camera = before_a_square(&scene, &target, orthographic);
         for settings in every_way(base) {
             engine.draw(&mut scene, &target, &camera, &settings, &mut Timing::Off).expect("a draw");
             let picture = target.read(&engine.gpu).expect("a readback");
-            let mut brightest = 0;
-            for [x, y] in (0..SIDE * SIDE).step_by(7).map(|index| [index % SIDE, index / SIDE]) {
-                let at = |pixel: u32| (pixel as f32 + 0.5) * 2.0 / SIDE as f32 - 1.0;
-                let place = vec3(at(x), -at(y), 0.0);
-                let reached = packed.iter().map(|light| direct_light(light, place));
-                let light: Vec3 = reached.map(|light| light.illuminance * light.to_light.z.max(0.0)).sum();
-                let expected = (0.5 / PI * light).to_array().map(srgb);
-                brightest = brightest.max(expected[0].max(expected[2]));
-                let found = picture.get_pixel(x, y).0;
-                let is_near = (0..3).all(|k| found[k].abs_diff(expected[k]) <= 2);
-                // Lines of the adjacency lie over the borders of the two patches.
-                let is_beside_lines =
-                    settings.overlays.adjacency && (x.abs_diff(SIDE - 1 - y) < 4 || x.min(y) < 3 || x.max(y) > 60);
-                assert!(is_near || is_beside_lines, "[{x}, {y}]: {found:?}, not {expected:?}, with {settings:?}");
-            }
-            assert!(brightest > 100, "{brightest}");
+            // Lines of the adjacency lie over the borders of the two patches.
+            let is_under_lines = |[x, y]: [u32; 2]| {
+                settings.overlays.adjacency && (x.abs_diff(SIDE - 1 - y) < 4 || x.min(y) < 3 || x.max(y) > 60)
+            };
+            assert_lit_by(&picture, &packed, is_under_lines, &format!("{settings:?}"));
         }
     }
     let off = Settings { lights: FileLights::Off, ..base };
-    let camera = Camera { azimuth: 0.0, elevation: 0.0, ..framed };
+    let camera = before_a_square(&scene, &target, false);
     engine.draw(&mut scene, &target, &camera, &off, &mut Timing::Off).expect("a draw");
     assert_eq!(target.read(&engine.gpu).expect("a readback").get_pixel(32, 32).0, [0, 0, 0, 255]);
 }

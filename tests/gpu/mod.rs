@@ -24,6 +24,7 @@ mod masks;
 mod materials;
 #[path = "../documents/moving.rs"]
 pub(crate) mod moving;
+mod moving_lights;
 mod orientation;
 mod own_lod;
 mod own_shaders;
@@ -43,12 +44,12 @@ mod threemf;
 #[path = "../vulkan/mod.rs"]
 mod vulkan;
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use pnaen::engine::{Engine, Loaded, Preparation, load};
 use pnaen::gpu::Timing;
 use pnaen::load::Source;
-use pnaen::mesh::Shape;
+use pnaen::mesh::{CreaseBand, Mesh, Shape, Topology};
 use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene, Target, crack_lines};
 use pnaen::settings::{ARENA_BYTES, Lighting, Settings};
@@ -67,6 +68,12 @@ pub(crate) fn engine() -> &'static Engine {
 
 pub(crate) fn loaded(shape: Shape) -> Loaded {
     load(&Source::Shape(shape), &Preparation::default(), &Progress::default()).expect("shapes always load")
+}
+
+/// A mesh that no file was read for.
+pub(crate) fn loaded_mesh(source: Source, mesh: Mesh) -> Loaded {
+    let topology = Arc::new(Topology::build(&mesh, &Progress::new()).expect("nobody cancels"));
+    Loaded { source, ..Loaded::of_mesh(Arc::new(mesh), topology) }
 }
 
 pub(crate) fn scene(shape: Shape) -> (Loaded, Scene) {

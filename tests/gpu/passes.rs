@@ -1,12 +1,10 @@
 //! The passes, held against the CPU's reference and against themselves.
 
-use std::sync::Arc;
-
 use pnaen::engine::{Loaded, Measurements, Runs};
 use pnaen::gpu::{Timing, take_times};
+use pnaen::load::Source;
 use pnaen::measure::{EmittedChunk, Measured, Sizes, Visitor};
-use pnaen::mesh::{Corner, EdgeKind, Material, Mesh, Shape, Topology};
-use pnaen::progress::Progress;
+use pnaen::mesh::{Corner, EdgeKind, Material, Mesh, Shape};
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::{Choice, Settings};
 use pnaen::tessellate::{
@@ -16,7 +14,7 @@ use pnaen::tessellate::{
 use pnaen::view::{ScreenView, ulp};
 
 use crate::gpu_tests::coverage::sifting;
-use crate::gpu_tests::{engine, loaded, picture, scene};
+use crate::gpu_tests::{engine, loaded, loaded_mesh, picture, scene};
 
 /// Width and height in px.
 const VIEWPORT: glam::Vec2 = glam::vec2(640.0, 480.0);
@@ -314,8 +312,7 @@ pub(super) fn sheet(columns: u32, rows: u32) -> Loaded {
     let mut material = Material::plain("plain", [1.0; 4]);
     material.triangles = 0..triangles.len() as u32;
     let mesh = Mesh { corners, triangles: triangles.into(), materials: vec![material], ..Mesh::default() };
-    let topology = Topology::build(&mesh, &Progress::default()).expect("nobody cancels");
-    Loaded::of_mesh(Arc::new(mesh), Arc::new(topology))
+    loaded_mesh(Source::default(), mesh)
 }
 
 #[test]
@@ -435,7 +432,8 @@ fn the_passes_are_timed_one_by_one() {
     let (_, mut scene) = scene(Shape::CubeSplit);
     let target = Target::new(&engine.gpu, [64, 64]).expect("a small picture");
     let camera = Camera::framing(&scene.bounds, target.viewport());
-    let times = engine.time(&mut scene, &target, &camera, &Settings::default(), Runs::default()).expect("a draw");
+    let view = camera.lod_view(target.viewport(), &scene.bounds);
+    let times = engine.time(&mut scene, &target, &camera, view, &Settings::default(), Runs::default()).expect("a draw");
     // Nothing is deformed or displaced here: see `deforming` and `displacement`.
     assert_eq!(times.iter().map(|time| time.pass).collect::<Vec<_>>(), RIGID_PASSES);
     assert!(times.iter().all(|time| time.ms >= 0.0 && time.ms.is_finite()));

@@ -1,13 +1,16 @@
 //! Draws the passes over layers: see [`layers`](crate::render::layers).
 
-use super::{Picture, Renderer, Surfaces, emitted_triangles};
+use super::Renderer;
+use super::picture::Picture;
+use super::surfaces::Surfaces;
 use crate::gpu::{GpuError, Recorder};
 use crate::mesh::{Material, Mesh};
 use crate::render::covered_area::{Area, covered_area, intersection, is_empty, union};
+use crate::render::draws::{Draw, LayerClear, LayerDraw, Triangles};
 use crate::render::layers::LayerPass;
 use crate::render::needs::{Needs, PictureKind, has_layers};
-use crate::render::pipelines::{Draw, LayerClear, LayerDraw, Triangles};
 use crate::render::steps::{LayerPart, LayerStep};
+use crate::render::surface_draws::emitted_triangles;
 use crate::render::target::depth_attachment;
 use crate::render::{Camera, Scene, Target};
 use crate::settings::{NormalsAt, Settings, SplitSide};

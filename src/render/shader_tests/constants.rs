@@ -16,6 +16,7 @@ use crate::render::blur_levels::ENVIRONMENT_LEVELS;
 use crate::render::camera::FIELD_OF_VIEW;
 use crate::render::coverage::TILE;
 use crate::render::dfg::DFG_SIZE;
+use crate::render::draws::LayerDraw;
 use crate::render::layout::{
     AXIS_COLORS, BACK_FACE_COLOR, CHECKER_LIGHT, CHECKER_LINE, CHECKER_U, CHECKER_V, FOLD_COLOR, FOUND_EMITTED,
     LEAST_SEEN, NORMAL_COLOR, TEXELS_WITHOUT_IMAGE, WASTE_COLOR, edge_color, linear, overlay_bits,
@@ -23,7 +24,6 @@ use crate::render::layout::{
 use crate::render::look::Look;
 use crate::render::matcap::MATCAP_REACH;
 use crate::render::mipmap_pass::ALPHAS;
-use crate::render::pipelines::LayerDraw;
 use crate::render::reflectance::{COAT_F0, LEAST_ALPHA};
 use crate::render::scale::Scale;
 use crate::render::sheen::LEAST_SHEEN_ALPHA;

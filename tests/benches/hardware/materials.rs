@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use pnaen::internals::{Engine, Lighting, Preparation, Settings, Source, load_and_prepare};
+use pnaen::internals::{Engine, Lighting, Preparation, Renderer, Settings, Source, load_and_prepare};
 use pnaen::mesh::{Alpha, Mesh, Topology};
 use pnaen::progress::Progress;
 use pnaen::tessellate::Tessellation;
@@ -23,9 +23,12 @@ pub struct Drawn {
     triangles: u64,
     /// With the base colour alone, under the two lights of the camera.
     base_color: Spread,
-    /// With all maps, in the studio. What blends or transmits light is drawn as if it were opaque.
+    /// With all maps, in the studio, each material with a shader of its own. What blends or transmits light is drawn as if it were
+    /// opaque.
     studio: Spread,
-    /// The same with layers; none if no material has them.
+    /// The same with one shader, which has what any of the materials needs.
+    one_shader: Spread,
+    /// With layers, and a shader for each material; none if no material has layers.
     layers: Option<Spread>,
 }
 
@@ -36,20 +39,32 @@ pub struct Drawn {
 pub fn measure(engine: &Engine, scale: &Scale, files: &[String]) -> Result<Vec<Drawn>, BenchError> {
     let sources = files.iter().map(|path| Source::File(PathBuf::from(path)));
     let sources: Vec<_> = if files.is_empty() { vec![Source::Vase] } else { sources.collect() };
+    let (engine, sharing) = (&with_shaders(engine, false), &with_shaders(engine, true));
     let mut rows = Vec::new();
     for source in sources {
         let loaded = load_and_prepare(&source, &Preparation::default(), &Progress::new())?;
         let opaque = without_layers(&loaded.mesh);
         for factor in FACTORS {
-            let time = |mesh: &Arc<Mesh>, lighting| time(engine, scale, mesh, &loaded.topology, factor, lighting);
+            let time_on = |engine, mesh, lighting| time(engine, scale, mesh, &loaded.topology, factor, lighting);
+            let time = |mesh, lighting| time_on(engine, mesh, lighting);
             let (triangles, base_color) = time(&loaded.mesh, Lighting::Camera)?;
             let (_, studio) = time(&opaque, Lighting::Studio)?;
+            let (_, one_shader) = time_on(sharing, &opaque, Lighting::Studio)?;
             let has_layers = !Arc::ptr_eq(&opaque, &loaded.mesh);
             let layers = if has_layers { Some(time(&loaded.mesh, Lighting::Studio)?.1) } else { None };
-            rows.push(Drawn { mesh: source.title().clone(), factor, triangles, base_color, studio, layers });
+            let mesh = source.title().clone();
+            rows.push(Drawn { mesh, factor, triangles, base_color, studio, one_shader, layers });
         }
     }
     Ok(rows)
+}
+
+/// The engine, with one shader for all materials of a mesh or with one for each.
+fn with_shaders(engine: &Engine, shares_shaders: bool) -> Engine {
+    let (mut engine, mut renderer) = (engine.clone(), Renderer::new(&engine.gpu));
+    renderer.shares_shaders = shares_shaders;
+    engine.renderer = Arc::new(renderer);
+    engine
 }
 
 /// The number of triangles, and the time of a picture of what was emitted before.
@@ -91,9 +106,11 @@ pub fn table_of(rows: &[Drawn]) -> String {
             whole(row.triangles),
             row.base_color.to_string(),
             row.studio.to_string(),
+            row.one_shader.to_string(),
             row.layers.map_or_else(|| "none".to_owned(), |layers| layers.to_string()),
         ]
     };
-    let head = "mesh | factor | triangles | base colour, ms | studio with all maps, ms | the same with layers, ms";
+    let head = "mesh | factor | triangles | base colour, ms | studio with all maps, ms | with one shader for all materials, ms | \
+                with layers, ms";
     table(head, &rows.iter().map(row).collect::<Vec<_>>())
 }

@@ -1,6 +1,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// What plain_fragment of shaders/draw_surface.wgsl does.
+// What plain_fragment of shaders/draw_plain.wgsl does.
 
 #include "frame.glsl"
 

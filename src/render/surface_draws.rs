@@ -1,0 +1,68 @@
+//! Decides what draws the surface of each material, by what a picture shows.
+
+use super::draws::{Draw, Faces, Triangles};
+use super::layout::overlay_bits;
+use super::look::Look;
+use super::needs::{Cut, Needs, PictureKind};
+use crate::mesh::{Material, Mesh};
+use crate::settings::{Colors, NormalsAt, Overlays, Settings};
+
+/// The pipeline for emitted triangles of a material, in such pictures.
+pub(super) fn surface_draw(
+    settings: &Settings,
+    mesh: &Mesh,
+    material: &Material,
+    faces: Faces,
+    kind: PictureKind,
+) -> Draw {
+    let places = settings.used_normals_at(mesh);
+    let triangles = emitted_triangles(settings);
+    if let Some(cut) = Cut::of(settings, mesh, material, kind) {
+        let triangles = if triangles == Triangles::Lit { Triangles::Indexed } else { triangles };
+        return Draw::Cut(triangles, faces, places, cut);
+    }
+    match (triangles, Look::of(settings.overlays.colors)) {
+        _ if settings.shows_materials() => {
+            let draw = match triangles {
+                Triangles::Pulled => Draw::LitPulled,
+                Triangles::Indexed => Draw::LitIndexed,
+                _ => Draw::Lit,
+            };
+            draw(faces, places, Needs::of(mesh, material, settings, kind).own(material, kind))
+        }
+        (Triangles::Pulled, Some(look)) => Draw::LookPulled(faces, places, look),
+        (_, Some(look)) => Draw::LookIndexed(faces, places, look),
+        (Triangles::Pulled, None) => Draw::Pulled(faces, places),
+        (Triangles::Indexed, None) => Draw::Indexed(faces, places),
+        _ if places == NormalsAt::Pixels => Draw::PixelNormals(faces),
+        _ if material.texture.is_some() => Draw::Textured(faces),
+        _ => Draw::Plain(faces),
+    }
+}
+
+/// How pipelines get emitted triangles.
+pub(super) fn emitted_triangles(settings: &Settings) -> Triangles {
+    // These overlays need data of whole triangles.
+    let Overlays { wireframe, folds, colors, .. } = settings.overlays;
+    if wireframe || folds || matches!(colors, Colors::TriangleSize | Colors::Deviation) {
+        Triangles::Pulled
+    } else if overlay_bits(&settings.overlays) != 0 {
+        Triangles::Indexed
+    } else {
+        Triangles::Lit
+    }
+}
+
+/// The pipeline for input triangles of a material, in such pictures.
+pub(super) fn source_draw(settings: &Settings, mesh: &Mesh, material: &Material, kind: PictureKind) -> Draw {
+    if let Some(cut) = Cut::of(settings, mesh, material, kind) {
+        return Draw::Cut(Triangles::Source, Faces::Both, NormalsAt::Vertices, cut);
+    }
+    match Look::of(settings.overlays.colors) {
+        _ if settings.shows_materials() => {
+            Draw::LitSource(Needs::of(mesh, material, settings, kind).own(material, kind))
+        }
+        Some(look) => Draw::LookSource(look),
+        None => Draw::Source,
+    }
+}
