@@ -49,7 +49,7 @@ use std::sync::{Arc, OnceLock};
 use pnaen::engine::{Engine, Loaded, Preparation, load};
 use pnaen::gpu::Timing;
 use pnaen::load::Source;
-use pnaen::mesh::{CreaseBand, Mesh, Shape, Topology};
+use pnaen::mesh::{Mesh, Shape, Topology};
 use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene, Target, crack_lines};
 use pnaen::settings::{ARENA_BYTES, Lighting, Settings};

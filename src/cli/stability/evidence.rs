@@ -47,6 +47,7 @@ fn shot(engine: &Engine, Loaded { subject, warnings }: &Loaded, tried: Tried) ->
         loaded,
         moment,
         given: None,
+        surface_shader: None,
         matcap: None,
         environment: None,
         settings,
