@@ -57,7 +57,9 @@ fn gltf() -> (String, Vec<u8>) {
         "meshes": [{ "primitives": [{
             "attributes": { "POSITION": 0, "TEXCOORD_0": 1, "NORMAL": 2 }, "indices": 3, "material": 0,
         }] }],
-        "materials": [{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 }, "metallicFactor": 0 } }],
+        "materials": [{ "pbrMetallicRoughness": {
+            "baseColorTexture": { "index": 0 }, "metallicFactor": 0, "roughnessFactor": 0.5,
+        } }],
         "textures": [{ "source": 0, "sampler": 0 }],
         "samplers": [{ "wrapS": 10497, "wrapT": 33648 }],
         "images": [{ "uri": "a.png" }],
