@@ -65,4 +65,6 @@ pub(crate) use heights::HeightSource;
 pub(crate) use import::{FileUnit, Import, LengthUnit, NormalSource, UNIT_METRES};
 pub(crate) use memory_budget::Budget;
 pub(crate) use source::Source;
+#[cfg(test)]
+pub(crate) use threemf::tests::package;
 pub(crate) use warnings::{crease_band_warnings, untextured_warning};

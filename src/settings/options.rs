@@ -564,7 +564,7 @@ pub(crate) static UNIT: Declaration = Declaration {
     kind: Kind::NameOrNumber {
         names: descriptions::<LengthUnit>,
         number: Description::new("METRES", "Another length", "The row below says how many metres a unit is long."),
-        row: "Length of a unit",
+        row: "Unit length",
         range: Range::new(*UNIT_METRES.start(), *UNIT_METRES.end(), "m").decimals(9).logarithmic(),
     },
     unset: Some(Description::new(

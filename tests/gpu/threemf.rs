@@ -1,8 +1,5 @@
 //! Textures of 3MF files look as those of glTF files, also after they were exported.
 
-#[path = "../documents/package.rs"]
-mod package;
-
 use std::io::Cursor;
 
 use image::{ImageFormat, RgbaImage};
@@ -11,7 +8,7 @@ use pnaen::tessellate::{LodView, tessellate};
 use serde_json::json;
 
 use crate::gpu_tests::scenes::{picture_of, read, settings};
-use package::{Entry, MODEL, model, relationships, zip};
+use crate::load::package::{Entry, MODEL, model, relationships, zip};
 
 /// A square that faces the camera, in the coordinates of glTF.
 const CORNERS: [[f32; 3]; 4] = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
@@ -49,25 +46,30 @@ fn threemf() -> Vec<u8> {
 
 /// The same as glTF, with its data in the file `data.bin`.
 fn gltf() -> (String, Vec<u8>) {
-    let floats = CORNERS.as_flattened().iter().chain(UVS.as_flattened()).flat_map(|x| x.to_le_bytes());
+    let normals = [[0.0, 0.0, 1.0_f32]; 4];
+    let floats = CORNERS.as_flattened().iter().chain(UVS.as_flattened()).chain(normals.as_flattened());
+    let floats = floats.flat_map(|x| x.to_le_bytes());
     let bytes: Vec<u8> = floats.chain(TRIANGLES.as_flattened().iter().flat_map(|i| i.to_le_bytes())).collect();
     let view = |start: usize, length: usize| json!({ "buffer": 0, "byteOffset": start, "byteLength": length });
     let root = json!({
         "asset": { "version": "2.0" },
         "nodes": [{ "mesh": 0 }],
         "meshes": [{ "primitives": [{
-            "attributes": { "POSITION": 0, "TEXCOORD_0": 1 }, "indices": 2, "material": 0,
+            "attributes": { "POSITION": 0, "TEXCOORD_0": 1, "NORMAL": 2 }, "indices": 3, "material": 0,
         }] }],
-        "materials": [{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 }, "metallicFactor": 0 } }],
+        "materials": [{ "pbrMetallicRoughness": {
+            "baseColorTexture": { "index": 0 }, "metallicFactor": 0, "roughnessFactor": 0.5,
+        } }],
         "textures": [{ "source": 0, "sampler": 0 }],
         "samplers": [{ "wrapS": 10497, "wrapT": 33648 }],
         "images": [{ "uri": "a.png" }],
         "accessors": [
             { "bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 4 },
             { "bufferView": 1, "componentType": 5126, "type": "VEC2", "count": 4 },
-            { "bufferView": 2, "componentType": 5123, "type": "SCALAR", "count": 6 },
+            { "bufferView": 2, "componentType": 5126, "type": "VEC3", "count": 4 },
+            { "bufferView": 3, "componentType": 5123, "type": "SCALAR", "count": 6 },
         ],
-        "bufferViews": [view(0, 48), view(48, 32), view(80, 12)],
+        "bufferViews": [view(0, 48), view(48, 32), view(80, 48), view(128, 12)],
         "buffers": [{ "byteLength": bytes.len(), "uri": "data.bin" }],
     });
     (root.to_string(), bytes)

@@ -121,7 +121,7 @@ fn an_axis_and_a_unit_turn_and_scale_the_mesh_and_belong_to_its_file() {
     // A unit without a name has a row for its length, which begins as a metre.
     choose(&mut harness, "Unit", "Another length");
     assert_eq!(size(&harness), [2.0, 3.0, 1.0]);
-    harness.get_by_role_and_label(Role::Slider, "Length of a unit").set_value_accesskit(0.25);
+    harness.get_by_role_and_label(Role::Slider, "Unit length").set_value_accesskit(0.25);
     settle(&mut harness);
     assert_eq!(size(&harness), [0.5, 0.75, 0.25]);
     let line = copied(&mut harness);

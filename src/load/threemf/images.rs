@@ -12,6 +12,7 @@ use crate::load::face_builder::FaceBuilder;
 use crate::load::images::{decode_halved, texture_size};
 use crate::load::memory_budget::Budget;
 use crate::load::notes::Notes;
+use crate::load::read_error::ReadError;
 use crate::load::texture_room::{Scaling, TextureRoom};
 use crate::mesh::mipmap::MipFilter;
 use crate::mesh::{Alpha, MemoryAccount, Texture};
@@ -105,7 +106,10 @@ impl Images {
 
 /// Unpacks a part of the archive.
 fn unpacked(archive: &Archive, path: &str, budget: &Budget) -> Result<Vec<u8>, String> {
-    let part = archive.open(path).map_err(|error| error.to_string())?;
+    let part = archive.open(path).map_err(|error| match error {
+        ReadError::TooLarge { reason } => format!("it {reason}"),
+        other => other.to_string(),
+    })?;
     let mut part = part.ok_or("it isn't in the archive")?;
     let size = part.left();
     budget.hold(size).map_err(|refused| format!("unpacking it {refused}"))?;

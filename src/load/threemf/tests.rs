@@ -1,7 +1,7 @@
 //! 3MF files as slicers and modelling programs write them.
 
 #[path = "../../../tests/documents/package.rs"]
-pub(in crate::load) mod package;
+pub(crate) mod package;
 
 use glam::Vec3;
 

@@ -16,7 +16,7 @@ const PER_HEADER_BYTE: u64 = 128;
 /// Memory for the tables that find symbols of up to 20 bits, in bytes.
 const FIXED: u64 = 5 << 20;
 /// Memory for an attribute besides its values, in bytes. It takes [`ATTRIBUTE_DATA`] bytes of data at least.
-const ATTRIBUTE: u64 = 1024;
+const ATTRIBUTE: u64 = 768;
 const ATTRIBUTE_DATA: u64 = 6;
 /// Memory for each byte of values of unknown attributes: the byte itself, a number and a symbol of 32 bits made of it, and the number
 /// of the value.

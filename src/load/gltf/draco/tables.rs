@@ -4,10 +4,12 @@
 //! The decoder allocates as many symbols as a table says that it has, as long as these are no more than 64 for each byte that
 //! is left. Data that was made to do harm may say so in a few bytes; tables that an encoder writes have a few thousand symbols.
 //! The walk reads what each table says. It ends where the length of the data is known only after decoding: at values that are
-//! coded with tags, or not at all. From there on, 64 symbols a byte are counted.
+//! coded with tags, or not at all. From there on, 64 symbols a byte are counted. Only a few symbols with tags are decoded, as encoders
+//! write them for valences that are rare.
 //!
 //! Source: Google, Draco bitstream specification, sections 4 to 14, <https://google.github.io/draco/spec/>.
 
+use draco_core::symbol_encoding::{SymbolEncodingOptions, decode_symbols};
 use draco_core::{DataType, DecoderBuffer};
 
 use super::header::{Connectivity, Edgebreaker, Header};
@@ -77,6 +79,10 @@ const PARALLELOGRAMS: usize = 4;
 const TRANSFORM: u64 = 8;
 /// How many contexts the symbols of a traversal by valence have.
 const VALENCES: usize = 6;
+/// The greatest number of symbols that the walk decodes.
+const FEW_SYMBOLS: u64 = 4096;
+/// The number of tags: how many bits a number may have, from 0 to 32.
+const TAGS: u64 = 33;
 
 /// Each step returns none where it can't go on.
 struct Walk<'a> {
@@ -166,8 +172,9 @@ impl<'a> Walk<'a> {
                 (0..seamed).try_for_each(|_| self.bits())?;
                 for _ in 0..VALENCES {
                     self.reached();
-                    if self.varint()? > 0 {
-                        self.symbols()?;
+                    let count = self.varint()?;
+                    if count > 0 {
+                        self.context(count)?;
                     }
                 }
             }
@@ -182,6 +189,19 @@ impl<'a> Walk<'a> {
         self.byte()?;
         let length = self.varint()?;
         self.skip(u64::from(length as u32))
+    }
+
+    /// The symbols of a valence, of which there are so many. If these are few and have tags, they are decoded to find their end.
+    fn context(&mut self, count: u64) -> Option<()> {
+        let start = self.buffer.position();
+        let is_tagged = self.byte()? == 0;
+        let are_few = is_tagged && count <= FEW_SYMBOLS && self.varint()? <= TAGS;
+        self.buffer.set_position(start).ok()?;
+        if !are_few {
+            return self.symbols();
+        }
+        let options = SymbolEncodingOptions::default();
+        decode_symbols(count as usize, 1, &options, &mut self.buffer, &mut Vec::new()).ok()
     }
 
     /// Coded symbols.
@@ -400,6 +420,8 @@ mod tests {
         for (name, bytes) in &streams {
             let (reached, memory) = walk(bytes);
             println!("{name}: {reached:?} of {} bytes, {} KiB of tables", bytes.len(), memory >> 10);
+            let header = Header::read(bytes).expect("a header");
+            assert!(super::walk(bytes, &header).decoders.is_some(), "{name}: its attributes aren't found");
             if let Some(reached) = reached {
                 whole += 1;
                 assert_eq!(reached, bytes.len(), "{name}");

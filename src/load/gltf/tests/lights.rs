@@ -161,7 +161,7 @@ fn lights_and_cameras_move_with_their_nodes() {
 #[test]
 fn a_mesh_that_leaves_no_room_for_a_rig_loads_without_the_motion_of_its_lights() {
     let mut draft = moving();
-    let zeros = draft.push("accessors", json!({ "componentType": 5126, "type": "VEC3", "count": 1_200_000 }));
+    let zeros = draft.push("accessors", json!({ "componentType": 5126, "type": "VEC3", "count": 2_400_000 }));
     draft.primitive(json!({ "attributes": { "POSITION": zeros } }));
     let loaded = draft.read().expect("it fits without a rig");
     assert!(loaded.mesh.rig.is_none() && loaded.mesh.lights.len() == 2);

@@ -199,7 +199,7 @@ fn shapes() -> Vec<(&'static str, Case)> {
         case(
             "a material that isn't there",
             replaced("v3=\"2\"", "v3=\"2\" pid=\"4\" p1=\"0\""),
-            Repaired(1, "material or colour | 1"),
+            Repaired(1, "material, colour or texture coordinates | 1"),
         ),
         case(
             "a colour that isn't there",
@@ -207,7 +207,7 @@ fn shapes() -> Vec<(&'static str, Case)> {
                 "<object",
                 "<m:colorgroup id=\"4\"><m:color color=\"#FFFFFF\"/></m:colorgroup><object pid=\"4\" pindex=\"1\"",
             ),
-            Repaired(1, "material or colour | 1"),
+            Repaired(1, "material, colour or texture coordinates | 1"),
         ),
         case(
             "a colour that isn't one",
@@ -301,7 +301,7 @@ fn textures() -> Vec<(&'static str, Case)> {
                 "<m:texture2d id=\"3\" path=\"/a.png\"/><m:texture2dgroup id=\"4\" texid=\"3\">\
                  <m:tex2coord u=\"nan\" v=\"one\"/></m:texture2dgroup><object pid=\"4\" pindex=\"0\"",
             ),
-            Repaired(2, "texture coordinates"),
+            Repaired(1, "uvs that aren't finite | 3"),
         ),
     ]
 }

@@ -66,7 +66,7 @@ pub(super) fn cases() -> Vec<Case> {
         Case::refused(
             "objects beyond memory",
             format!(r#"{{"asset":{{"version":"2.0"}},"extras":[{}{{}}]}}"#, "{\"\":0},".repeat(1_000_000)),
-            "Document | JSON | 755 | 53",
+            "Document | JSON | 755 | 538",
         ),
     ]
 }

@@ -169,7 +169,7 @@ pub(super) fn cases() -> Vec<Case> {
         Case::refused(
             "a table of 2^26 symbols",
             table().document().to_string(),
-            &format!("Draco | {EXTENSION} | 1571 | 517"),
+            &format!("Draco | {EXTENSION} | 517 MiB | --max-memory"),
         ),
     ]);
     cases
