@@ -1,4 +1,5 @@
-//! Undo and redo: of settings, hidden parts and the user's own shaders, and separately of views, so that neither is in the way of the other.
+//! Undo and redo: of settings, hidden parts and the user's own shaders, and separately of views, so that neither is in the way of
+//! the other.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -179,6 +180,10 @@ impl App {
 
     fn take_back(&mut self, context: &egui::Context, step: Option<Undoable>) {
         let Some(Undoable { settings, hidden, lod_shader, surface_shader }) = step else { return };
+        if lod_shader.is_some() {
+            // A file of factors that was opened since has its place.
+            self.forget_factors();
+        }
         (self.settings, self.hidden) = (settings, hidden);
         self.take_back_shader::<LodShader>(context, lod_shader);
         self.take_back_shader::<SurfaceShader>(context, surface_shader);

@@ -117,7 +117,7 @@ impl CopiedCommand<'_> {
         };
         let is_replaced = |name: &str| {
             ((self.factors.is_some() || self.lod_shader.is_some()) && INSTEAD_OF_FACTORS.contains(&name))
-                || (self.surface_shader.is_some() && INSTEAD_OF_POINTS.contains(&name))
+                || (self.surface_shader.is_some() && name == options::SURFACE.name)
                 || (self.matcap_image.is_some() && name == options::MATCAP.name)
         };
         let written = |option: &&Declaration| (option.no_effect)(&own).is_none() && !is_replaced(option.name);
@@ -181,9 +181,6 @@ impl CopiedCommand<'_> {
 
 /// The options that `--factors` and `--lod-shader` exclude.
 const INSTEAD_OF_FACTORS: [&str; 6] = ["lod", "factor", "pixels", "tolerance", "distances", "max-triangles"];
-
-/// The options that `--surface-shader` excludes.
-const INSTEAD_OF_POINTS: [&str; 2] = ["surface", "alpha"];
 
 /// Width and height in px, as the command line takes them.
 #[derive(PartialEq)]

@@ -22,7 +22,7 @@ pub(crate) struct SurfaceShaderOption {
     /// Compute the control points of edges on the GPU by a function of your own in place of a surface's: a WGSL file with the
     /// function edge_points. The manual's page on own shaders says what it gets. Standard error lists edges whose sides got
     /// different control points
-    #[arg(long, value_name = "WGSL", conflicts_with_all = ["surface", "alpha"])]
+    #[arg(long, value_name = "WGSL", conflicts_with = "surface")]
     pub surface_shader: Option<PathBuf>,
 }
 

@@ -153,7 +153,7 @@ fn what_cannot_be_combined_is_named() {
         failure(&[&["render", "shape:cube-split", "-o", &picture, "--surface-shader", PN], more].concat(), 2)
     };
     assert!(render(&["--surface", "pn"]).contains("cannot be used with"));
-    assert!(render(&["--alpha", "0.5"]).contains("cannot be used with"));
+    assert!(render(&["--alpha", "0.5"]).contains("--alpha needs"));
     assert!(render(&["--fail-on", "above-tolerance"]).contains("--fail-on above-tolerance measures on the CPU"));
     assert!(render(&["--overlay", "deviation"]).contains("name another one with --truth"));
     let cpu = ["tessellate", "shape:cube-split", "-o", &mesh, "--surface-shader", PN, "--device", "cpu"];

@@ -52,10 +52,9 @@ impl App {
         self.scene_row(ui);
         self.variant_row(ui);
         if !self.surface_shader_rows(ui) {
-            let settings = &mut self.settings;
-            option_row(ui, &options::SURFACE, settings, "");
-            shown_option_row(ui, &options::ALPHA, settings);
+            option_row(ui, &options::SURFACE, &mut self.settings, "");
         }
+        shown_option_row(ui, &options::ALPHA, &mut self.settings);
         self.normals_rows(ui);
         let settings = &mut self.settings;
         option_row(ui, &options::NORMALS, settings, "");
