@@ -7,8 +7,8 @@ override HAS_COAT: bool = true;
 override HAS_MASK: bool = true;
 override HAS_TRANSMISSION: bool = true;
 override HAS_SHEEN: bool = true;
-// Whether pictures are drafts: the images of the mesh's materials count by their mean, but for that of the base colour, and its
-// normals are those of the surface. A place that shows more than half of what is behind it isn't there, and any other hides it.
+// Whether pictures are drafts. In these only the mean of an image counts, except for the base colour's, and normal maps are left out.
+// A place that shows more than half of what is behind it is left out, and any other place hides what is behind it.
 override IS_DRAFT: bool = false;
 // Lights of the file that shine.
 override LIGHT_COUNT: u32 = MOST_LIGHTS;

@@ -11,17 +11,17 @@ use crate::gpu::{Gpu, GpuError};
 use crate::mesh::mipmap::MipFilter;
 use crate::mesh::{Alpha, Map, MapUv, Material, Sampling, Slot};
 
-/// The first binding of the light in the group of a material that is lit; the same in `shaders/environment.wgsl`.
+/// Where the bindings of the light from all around begin in the group of a lit material; the same in `shaders/environment.wgsl`.
 const LIGHT_BINDING: u32 = 16;
-/// That of the lights of the file; the same in `shaders/draw_material.wgsl`.
+/// The binding of the lights of the file; the same in `shaders/draw_material.wgsl`.
 const FILE_LIGHTS_BINDING: u32 = 20;
 
-/// That of the first image whose binding isn't below the light's; the same in `shaders/draw_material.wgsl`.
+/// Where the bindings of the images go on that have no room below the light's; the same in `shaders/draw_material.wgsl`.
 const LATER_IMAGES_BINDING: u32 = 21;
 
 /// Images of a material: that of the base colour, and the maps.
 const IMAGES: usize = 1 + Slot::COUNT;
-/// So many of them have bindings below the light's.
+/// How many of them have their bindings below the light's.
 const EARLY_IMAGES: usize = 6;
 
 /// What the materials of all scenes share: layouts, samplers and a white texture.

@@ -40,7 +40,8 @@ impl Needs {
         draft: false,
     };
 
-    /// What a material of a mesh needs in such pictures with these settings, or all of the mesh's materials together.
+    /// What a material of a mesh needs of its shader with these settings; or, where materials share a shader, what all of the mesh's
+    /// materials need together.
     pub(super) fn of(mesh: &Mesh, material: &Material, settings: &Settings, kind: PictureKind) -> Self {
         let own = if kind.shares_shaders { &mesh.materials } else { std::slice::from_ref(material) };
         let lights = if settings.lights == FileLights::On { mesh.lights.len().min(MOST_LIGHTS) } else { 0 };
@@ -57,8 +58,8 @@ impl Needs {
         needs
     }
 
-    /// The same for the pipeline of one of the mesh's materials, which hides what is behind it, in such pictures: the border of a
-    /// mask covers a part of a pixel's samples. Layers have each sample's alpha as it is.
+    /// The needs of the pipeline that draws a material where it hides what is behind it. The border of a mask covers only some of a
+    /// pixel's samples, so these are masked one by one. Layers need no such masks, since they are drawn sample by sample.
     pub(super) fn own(self, material: &Material, kind: PictureKind) -> Self {
         let has_border = matches!(material.look.alpha, Alpha::Mask(_)) && !material.shows_behind();
         let masked_samples = has_border && kind.samples > 1 && !kind.is_draft;

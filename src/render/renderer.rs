@@ -39,8 +39,9 @@ pub struct Renderer {
     samples: u32,
     /// From this many triangles per pixel on, those that cover no sample are removed before the others are drawn.
     pub sift_from: f32,
-    /// Whether all materials of a mesh have the shader that any of them needs, or each has one that leaves out what it doesn't need itself.
-    /// On a graphics card that is faster; a software driver takes longer to compile a shader than to draw many pictures with it.
+    /// Whether all materials of a mesh share one shader, which has what any of them needs. Otherwise each has a shader without what it
+    /// doesn't need itself, which graphics cards draw faster. A software driver takes longer to compile another shader than to draw
+    /// many pictures with the shared one.
     pub shares_shaders: bool,
     /// Whether passes over layers go over whole pictures, and not only over the part that layers can cover.
     pub peels_everywhere: bool,
