@@ -15,7 +15,8 @@ const ROOM: f64 = 1e-3;
 /// memory.
 ///
 /// Positions must have f32 coordinates. Then no coordinate overflows, however large positions are compared with the width of a
-/// cell. The hash is another one in every run, so that no file can give all its points the same; what is found must not depend on it.
+/// cell. The hash is another one in every run, so that no file can give all its points the same one; what is found must
+/// not depend on it.
 pub(super) struct CellGrid {
     /// 1 / the width of a cell.
     inverse: f64,

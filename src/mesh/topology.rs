@@ -396,7 +396,7 @@ fn weld_bytes(corners: usize, tolerance: f32) -> u64 {
     // Each corner's position, its hash and its point; then the points, which are copied when their list shrinks.
     let exactly = 44;
     // Further lists of the points, and a table of cells; lists and table double as they grow.
-    let within = if tolerance > 0.0 { 64 } else { 0 };
+    let within = if tolerance > 0.0 { 80 } else { 0 };
     (exactly + within) * corners as u64
 }
 
