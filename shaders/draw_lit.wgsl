@@ -41,20 +41,9 @@ fn lit_color(in: LitVaryings, normal: vec3<f32>, front: bool) -> vec4<f32> {
     return vec4<f32>(color.rgb, 1.0);
 }
 
-// A pixel of a surface with a mask, and which of its samples the mask leaves.
-struct MaskedPixel {
-    @location(0) color: vec4<f32>,
-    @builtin(sample_mask) samples: u32,
-}
-
 fn masked_lit_pixel(in: LitVaryings, normal: vec3<f32>, front: bool) -> MaskedPixel {
     let place = lit_place(in, normal, front);
-    let color = material_color(place).rgb;
-    let samples = mask_samples(place);
-    if samples == 0u {
-        discard;
-    }
-    return MaskedPixel(vec4<f32>(color, 1.0), samples);
+    return masked_pixel(place, material_color(place).rgb);
 }
 
 @fragment

@@ -23,52 +23,36 @@ fn pixel_lit_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) 
     return lit_surface_color(in, pixel_normal(in.patch_index, in.domain.xy), front);
 }
 
-// A pixel of a surface with a mask, and which of its samples the mask leaves.
-struct MaskedSurfacePixel {
-    @location(0) color: vec4<f32>,
-    @builtin(sample_mask) samples: u32,
-}
-
 @fragment
-fn masked_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> MaskedSurfacePixel {
+fn masked_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> MaskedPixel {
     return masked_surface_pixel(in, in.normal, front);
 }
 
 @fragment
-fn pixel_masked_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> MaskedSurfacePixel {
+fn pixel_masked_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> MaskedPixel {
     return masked_surface_pixel(in, pixel_normal(in.patch_index, in.domain.xy), front);
 }
 
-fn masked_surface_pixel(in: Varyings, normal: vec3<f32>, front: bool) -> MaskedSurfacePixel {
+fn masked_surface_pixel(in: Varyings, normal: vec3<f32>, front: bool) -> MaskedPixel {
     let place = lit_surface_place(in, normal, front);
     let own = material_color(place);
-    let color = surface_color(in, normal, front, vec4<f32>(own.rgb, 1.0));
-    let samples = mask_samples(place);
-    if samples == 0u {
-        discard;
-    }
-    return MaskedSurfacePixel(vec4<f32>(color.rgb, 1.0), samples);
+    return masked_pixel(place, surface_color(in, normal, front, vec4<f32>(own.rgb, 1.0)).rgb);
 }
 
 // The same with the lights at the camera.
 @fragment
-fn cut_samples_fragment(in: Varyings, @builtin(front_facing) front: bool) -> MaskedSurfacePixel {
+fn cut_samples_fragment(in: Varyings, @builtin(front_facing) front: bool) -> MaskedPixel {
     return cut_samples_pixel(in, in.normal, front);
 }
 
 @fragment
-fn pixel_cut_samples_fragment(in: Varyings, @builtin(front_facing) front: bool) -> MaskedSurfacePixel {
+fn pixel_cut_samples_fragment(in: Varyings, @builtin(front_facing) front: bool) -> MaskedPixel {
     return cut_samples_pixel(in, pixel_normal(in.patch_index, in.domain.xy), front);
 }
 
-fn cut_samples_pixel(in: Varyings, normal: vec3<f32>, front: bool) -> MaskedSurfacePixel {
+fn cut_samples_pixel(in: Varyings, normal: vec3<f32>, front: bool) -> MaskedPixel {
     let place = lit_surface_place(in, normal, front);
-    let color = surface_color(in, normal, front, vec4<f32>(0.0));
-    let samples = mask_samples(place);
-    if samples == 0u {
-        discard;
-    }
-    return MaskedSurfacePixel(vec4<f32>(color.rgb, 1.0), samples);
+    return masked_pixel(place, surface_color(in, normal, front, vec4<f32>(0.0)).rgb);
 }
 
 @fragment

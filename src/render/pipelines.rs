@@ -20,8 +20,9 @@ static DRAW_DENSITY: WgslFile = wgsl!("draw_density");
 pub(super) static DRAW_GROUND: WgslFile = wgsl!("draw_ground", DRAW_DENSITY, DRAW_TYPES);
 static DRAW_LIGHT: WgslFile = wgsl!("draw_light");
 pub(super) static DRAW_LIT: WgslFile =
-    wgsl!("draw_lit", DRAW_LIGHT, DRAW_MATERIAL, DRAW_NORMAL, DRAW_TYPES, OCTAHEDRAL_NORMAL, SURFACE, TYPES);
+    wgsl!("draw_lit", DRAW_LIGHT, DRAW_MASK, DRAW_MATERIAL, DRAW_NORMAL, DRAW_TYPES, OCTAHEDRAL_NORMAL, SURFACE, TYPES);
 static DRAW_LOOKS: WgslFile = wgsl!("draw_looks", DRAW_DENSITY);
+static DRAW_MASK: WgslFile = wgsl!("draw_mask", DRAW_MATERIAL);
 static PUNCTUAL: WgslFile = wgsl!("punctual");
 static DRAW_MATERIAL: WgslFile =
     wgsl!("draw_material", DRAW_NORMAL, DRAW_TYPES, ENVIRONMENT, PUNCTUAL, REFLECTANCE, TYPES);
@@ -45,6 +46,7 @@ static DRAW_OVERLAYS: WgslFile = wgsl!(
 pub(super) static DRAW_SURFACE: WgslFile = wgsl!(
     "draw_surface",
     DRAW_LIGHT,
+    DRAW_MASK,
     DRAW_MATERIAL,
     DRAW_NORMAL,
     DRAW_SURFACE_COLOR,

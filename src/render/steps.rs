@@ -39,6 +39,15 @@ pub(super) enum LayerPart {
     Chunk(SplitSide, usize),
 }
 
+impl LayerPart {
+    pub(super) fn half(self) -> SplitSide {
+        match self {
+            Self::Source => SplitSide::Left,
+            Self::Chunk(half, _) => half,
+        }
+    }
+}
+
 impl Step {
     pub(super) fn half(&self) -> SplitSide {
         match self {

@@ -36,11 +36,7 @@ impl Renderer {
         if is_empty(all) {
             return Ok(());
         }
-        let half = match part {
-            Some(LayerPart::Chunk(half, _)) => half,
-            Some(LayerPart::Source) => SplitSide::Left,
-            None => SplitSide::Right,
-        };
+        let half = part.map_or(SplitSide::Right, LayerPart::half);
         let Some(frame) = &frames[half as usize] else { return Ok(()) };
         // The mesh without tessellation is drawn with the right half's scene.
         let drawn = scene.half(half).unwrap_or(scene);
@@ -50,14 +46,9 @@ impl Renderer {
         };
         let pipelines = self.layer_pipelines(drawn.tessellator.mesh(), pass, triangles, settings)?;
         let (scene_group, layer_group) = (self.scene_group(drawn, frame), self.layer_group(picture, pass)?);
-        let nothing = pass.nothing().filter(|_| is_first);
-        // A clear of all of a picture is faster than a draw, but takes far longer than a draw of a small part.
-        let (whole, part_clear) = match nothing {
-            Some(depth) if all == [0, 0, target.size[0], target.size[1]] => (Some(depth), None),
-            Some(_) => (None, Some(self.get(Draw::LayerClear(clear_of(pass)))?)),
-            None => (None, None),
-        };
-        let depth = depth_attachment(&target.layer_depths(&self.gpu)?[pass.found()], whole);
+        let is_whole = all == [0, 0, target.size[0], target.size[1]];
+        let (cleared, part_clear) = if is_first { self.layer_clear(pass, is_whole)? } else { (None, None) };
+        let depth = depth_attachment(&target.layer_depths(&self.gpu)?[pass.found()], cleared);
         let has_colors = matches!(pass, LayerPass::Back { .. });
         let color = has_colors.then(|| target.color(wgpu::Color::TRANSPARENT, false, false));
         recorder.render("draw", color, Some(depth), |render_pass| {
@@ -83,6 +74,23 @@ impl Renderer {
             }
         });
         Ok(())
+    }
+
+    /// How a pass begins with the depths where nothing is found: the depth that all of a picture is cleared to, or the pipeline that sets
+    /// it in a part. A clear of all of a picture is faster than a draw, but takes far longer than a draw of a small part.
+    ///
+    /// # Errors
+    /// Out of memory, or a lost device.
+    fn layer_clear(
+        &self,
+        pass: LayerPass,
+        is_whole: bool,
+    ) -> Result<(Option<f32>, Option<wgpu::RenderPipeline>), GpuError> {
+        match pass.nothing() {
+            Some(depth) if is_whole => Ok((Some(depth), None)),
+            Some(_) => Ok((None, Some(self.get(Draw::LayerClear(clear_of(pass)))?))),
+            None => Ok((None, None)),
+        }
     }
 
     /// The pipelines that draw each of the mesh's materials in a pass: none for a material that hides what is behind it.
