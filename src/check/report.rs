@@ -10,7 +10,7 @@ use crate::numbers::grouped;
 /// What a check found.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Report {
-    /// In the order of their paths.
+    /// In the order in which they were named, and those of a folder in the order of their paths.
     pub assets: Vec<Asset>,
     /// How many assets were left out because the check was interrupted.
     pub left_out: usize,

@@ -193,14 +193,15 @@ fn better(a: (Alignment, f64), b: (Alignment, f64)) -> (Alignment, f64) {
 }
 
 /// The 48 ways in which axes can be exchanged and turned. The usual ones come first: none, and another axis that points up, both
-/// ways. They are among the others once more.
+/// ways.
 fn orders() -> impl Iterator<Item = [(usize, bool); 3]> {
     const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [2, 1, 0], [1, 2, 0], [2, 0, 1]];
-    let up = [[(0, false), (2, true), (1, false)], [(0, false), (2, false), (1, true)]];
+    const USUAL: [[(usize, bool); 3]; 3] =
+        [Alignment::NONE.axes, [(0, false), (2, true), (1, false)], [(0, false), (2, false), (1, true)]];
     let all = ORDERS
         .into_iter()
         .flat_map(|order| (0..8_u32).map(move |signs| [0, 1, 2].map(|axis| (order[axis], signs >> axis & 1 == 1))));
-    [Alignment::NONE.axes].into_iter().chain(up).chain(all)
+    USUAL.into_iter().chain(all.filter(|axes| !USUAL.contains(axes)))
 }
 
 /// Returns the usual scale that a measured one is within 1% of; or else one of two digits within 0.5%, one of three within 0.001%, or

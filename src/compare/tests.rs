@@ -332,14 +332,13 @@ fn missing_and_additional_triangles_are_counted() {
     twice.triangles.extend_from_slice(&whole.triangles[500..503]);
     let text = scene.check(&twice.shuffled(), &["doubled_triangles"]);
     assert!(text.contains("3 triangles are there more than once"), "{text}");
-    // Culling leaves patches out that they have.
-    let culled = Scene::new(
-        Shape::Torus,
-        Tessellation { clip: crate::tessellate::Clip::Frustum, ..varied(Partitioning::Integer) },
-    );
-    let left_out = culled.out.patch_factors.iter().filter(|factors| factors.outside[0] == 0).count();
-    assert!(left_out > 0, "the view leaves patches out");
-    culled.check(&culled.theirs(|own| own.clip = crate::tessellate::Clip::Off), &["additional_patches"]);
+    // A factor of 0 leaves a patch out that they have.
+    let mut written = hull_factors(&scene.mesh, &scene.topology, &scene.inputs);
+    written[17].edges = [0.0; 3];
+    let out = tessellate_given(&scene.mesh, &scene.topology, &scene.inputs, &written);
+    let culled = Scene { out, ..scene };
+    let text = culled.check(&whole.shuffled(), &["additional_patches"]);
+    assert!(text.contains("1 patch has triangles, though our tessellation leaves it out: triangle 17."), "{text}");
 }
 
 #[test]
