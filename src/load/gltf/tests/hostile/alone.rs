@@ -49,7 +49,7 @@ pub(super) const ALONE: [(&str, &[&str]); 11] = [
     ),
     (
         "it would take more memory than a file of this size may take (--max-memory allows more)",
-        &["6000 triangles on 3000 nodes", "60,000 triangles on 3000 nodes"],
+        &["6000 triangles on 5000 nodes", "60,000 triangles on 3000 nodes"],
     ),
     (
         "its compression isn't known. The others don't look at the compressed data, and draw what stands in its place",
