@@ -38,7 +38,7 @@ impl PointsAgreement {
         let mut agreement = Self { edges_compared: 0, edges: Vec::new() };
         for (index, edge) in (0..).zip(&topology.edges) {
             let mut others = topology.side_range(edge);
-            let Some(first) = others.next().filter(|_| others.len() > 0) else { continue };
+            let Some(first) = others.next().filter(|_| !others.is_empty()) else { continue };
             agreement.edges_compared += 1;
             let own = along_edge(first);
             let apart = others.filter(|&other| bits(own) != bits(along_edge(other)));

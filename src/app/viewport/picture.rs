@@ -319,7 +319,8 @@ impl Picture {
         let from_here = |drawn: &Wanted| {
             (drawn.document, drawn.moment, drawn.camera) == (wanted.document, wanted.moment, wanted.camera)
         };
-        let shows = wanted.settings.overlays.colors == Colors::Deviation;
+        // Nothing may be measured of a surface shader.
+        let shows = wanted.settings.overlays.colors == Colors::Deviation && wanted.surface_shader == 0;
         let mut halves =
             SplitSide::BOTH.into_iter().filter_map(|half| wanted.settings.half(half).and(scene.half(half)));
         let is_known = halves.all(Scene::knows_deviation);
