@@ -267,7 +267,7 @@ mod tests {
             // Whole numbers times a power of two: many positions lie on the boundaries of cells. Or some are far away.
             let scale = f64::from(scale).exp2();
             let reach = f64::from(reach) * scale;
-            let far = |i: usize| if far && i % 3 == 0 { 1e20_f32 } else { 1.0 };
+            let far = |i: usize| if far && i.is_multiple_of(3) { 1e20_f32 } else { 1.0 };
             let place = |(i, p): (usize, &[i32; 3])| (DVec3::from(p.map(f64::from)) * scale).as_vec3() * far(i);
             let places = places.iter().enumerate().map(place).collect::<Vec<_>>();
             let chains = put(&places, CellGrid::LEAST_WIDTH * f64::from(wider) * reach);
