@@ -75,6 +75,10 @@ fn a_change_on_disk_is_shown_and_where_it_tears() {
     let command = copied(&mut harness);
     assert!(command.contains("--surface-shader ") && !command.contains("--surface "), "{command}");
     assert_draws(&harness, &command, "cube-split-view");
+    // Without a reference surface there is no deviation.
+    press(&mut harness, Key::V);
+    harness.get_by_label_contains("Nothing is measured: the CPU doesn't know the surface of a shader.");
+    press(&mut harness, Key::V);
     harness.get_by_role_and_label(Role::Button, "Close the surface").click();
     settle(&mut harness);
     assert_eq!((harness.state().surface_shader_file(), surface(&harness)), (None, Surface::NagataAen));
