@@ -11,6 +11,9 @@ const FAR: f64 = (1_u64 << 40) as f64;
 /// Room for rounding, in cells: below `FAR`, coordinates in cells are off by up to 2^-12.
 const ROOM: f64 = 1e-3;
 
+/// An odd number: 2^64 / the golden ratio.
+const MIX: u64 = 0x9e37_79b9_7f4a_7c15;
+
 /// Cells as wide as a search needs. The 64 cells of a block of 4 x 4 x 4 have hashes in a row, so that a search reads few places in
 /// memory.
 ///
@@ -38,8 +41,10 @@ impl CellHash {
 
     /// Returns the cell's place in a table; the number of places is a power of two.
     pub(super) fn place(self, places: usize) -> usize {
+        // Sums of products put blocks at equal distances to places at equal distances, which may lie close together.
+        let mixed = (self.block ^ self.block >> 32).wrapping_mul(MIX);
         // Blocks that meet in a table have their cells in different orders.
-        (self.block >> (u64::BITS - places.trailing_zeros()) ^ self.within) as usize
+        (mixed >> (u64::BITS - places.trailing_zeros()) ^ self.within) as usize
     }
 
     /// Returns a number that tells the cell from nearly all others.
