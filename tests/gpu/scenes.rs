@@ -20,8 +20,9 @@ use crate::gpu_tests::pictures::differing;
 use crate::gpu_tests::stability::seen;
 use documents::{material_scenes, three_lamps};
 
-/// The greatest difference of a channel, in steps of 255: coordinates of an exported texture transform are rounded once more.
-const EXPORT_STEPS: u8 = 1;
+/// The greatest difference of a channel, in steps of 255: coordinates of an exported texture transform are rounded once more, and
+/// exported triangles begin with another corner, from which interpolation rounds otherwise.
+pub(super) const EXPORT_STEPS: u8 = 1;
 
 pub(super) fn settings() -> Settings {
     let tessellation = Tessellation { surface: Surface::Flat, factor: 1.0, ..Tessellation::default() };

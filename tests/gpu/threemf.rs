@@ -7,7 +7,7 @@ use pnaen::export::Exported;
 use pnaen::tessellate::{LodView, tessellate};
 use serde_json::json;
 
-use crate::gpu_tests::scenes::{picture_of, read, settings};
+use crate::gpu_tests::scenes::{EXPORT_STEPS, picture_of, read, settings};
 use crate::load::package::{Entry, MODEL, model, relationships, zip};
 
 /// A square that faces the camera, in the coordinates of glTF.
@@ -94,5 +94,8 @@ fn a_textured_3mf_file_looks_as_the_same_gltf_file_and_stays_so_when_exported() 
     let warnings = Exported::new(&own.mesh, &own.topology, &tessellated).write(&path("b.glb"));
     assert_eq!(warnings.expect("a writable folder"), Vec::<String>::new());
     let exported = read(&path("b.glb"));
-    assert!(exported.mesh.materials[0].texture.is_some() && picture == picture_of(&exported), "the texture is kept");
+    assert!(exported.mesh.materials[0].texture.is_some(), "the texture is kept");
+    let exported = picture_of(&exported);
+    let most = picture.iter().zip(exported.iter()).map(|(a, b)| a.abs_diff(*b)).max();
+    assert!(most <= Some(EXPORT_STEPS), "{most:?} steps");
 }
