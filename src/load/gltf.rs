@@ -75,7 +75,7 @@ use instances::Instances;
 use materials::Materials;
 use nodes::Placed;
 use primitive::PrimitiveReader;
-use scene_size::PerVertex;
+use scene_size::{PerVertex, SceneNeeds};
 
 pub use gltf_error::GltfError;
 
@@ -112,30 +112,19 @@ pub(super) fn read(
     let clips = animations::read(parsed.animations, document, &accessors, &mut warnings);
     progress.check()?;
     let moves_meshes = rig_nodes::move_meshes(&clips, document, &placed);
-    let mut binder = match clips.is_empty() {
-        true => None,
-        false => {
-            let also = parsed.lights.nodes().chain(parsed.cameras.nodes());
-            RigBuilder::new(clips, &rig_nodes::of(document, &placed, also), &mut warnings)
-        }
-    };
-    notes.extend(std::mem::take(&mut warnings));
+    let mut binder = None;
+    if !clips.is_empty() {
+        let also = parsed.lights.nodes().chain(parsed.cameras.nodes());
+        binder = RigBuilder::new(clips, &rig_nodes::of(document, &placed, also), &mut warnings);
+    }
+    notes.extend(warnings);
     let mut materials = Materials::new(lists, document, &placed, (&accessors, &files), &budget)?;
     let is_detailed = needs_details(document, &placed, &materials);
     let check = |moves| {
         let beside = PerVertex { moves, is_detailed };
         scene_size::check(document, (&placed, &extensions.instances), &accessors, &budget, beside)
     };
-    let needs = match check(binder.is_some()) {
-        Err(GltfError::TooLarge { .. }) if binder.is_some() && !moves_meshes => {
-            binder = None;
-            let said = "animations are left out: they move only lights and cameras, and for a mesh of this size that takes too \
-                        much memory.";
-            notes.push(said.to_owned());
-            check(false)?
-        }
-        checked => checked?,
-    };
+    let needs = afforded(check, &mut binder, moves_meshes, notes)?;
     materials.read_images(needs.bytes, progress)?;
     let mut scene = Scene {
         document,
@@ -160,9 +149,7 @@ pub(super) fn read(
             0 => primitives.holds(document),
             hidden => format!("KHR_node_visibility hides the {hidden} nodes of its scene that have a mesh"),
         };
-        if parsed.scenes.names.len() > 1 {
-            holds += "; --scene shows another of its scenes";
-        }
+        holds += if parsed.scenes.names.len() > 1 { "; --scene shows another of its scenes" } else { "" };
         return Err(GltfError::Empty { holds });
     }
     if parsed.parts.beyond > 0 {
@@ -181,11 +168,7 @@ pub(super) fn read(
     let (mut of_lights, mut of_cameras) = (Notes::default(), Notes::default());
     let lights = parsed.lights.shown(&placed, &mut of_lights);
     let cameras = parsed.cameras.shown(&placed, &mut of_cameras);
-    let mounts = |nodes: Vec<usize>| -> Vec<Joint> {
-        let all: Vec<_> = binder.iter().flat_map(|own| nodes.iter().map(|node| own.mount(*node))).collect();
-        if all.iter().any(|mount| mount.node.is_some()) { all } else { Vec::new() }
-    };
-    let mounts = [mounts(nodes_of(&lights)), mounts(nodes_of(&cameras))];
+    let mounts = [mounts(binder.as_ref(), &lights), mounts(binder.as_ref(), &cameras)];
     let mut mesh = finished(name, (builder, details, binder), notes, (&budget, progress))?;
     if let Some(rig) = mesh.rig.as_mut().and_then(Arc::get_mut) {
         [rig.lights, rig.cameras] = mounts;
@@ -196,7 +179,7 @@ pub(super) fn read(
     mesh.cameras = cameras.into_iter().map(|(_, camera)| camera).collect();
     notes.append(of_lights);
     notes.append(of_cameras);
-    warnings = parsed.notes.into_warnings();
+    let mut warnings = parsed.notes.into_warnings();
     warnings.extend(repair_warnings(&mesh.repairs, &selected.import));
     let scenes::Scenes { names, shown } = parsed.scenes;
     let (files, file_bytes) = (files.named(), budget.files());
@@ -295,9 +278,33 @@ fn needs_details(document: &Document, placed: &Placed, materials: &Materials) ->
     })
 }
 
-/// The nodes of what was shown.
-fn nodes_of<T>(shown: &[(usize, T)]) -> Vec<usize> {
-    shown.iter().map(|(node, _)| *node).collect()
+/// Returns what a scene needs, if that fits into memory. Animations that move only lights and cameras are left out where it fits
+/// without them alone.
+///
+/// # Errors
+/// Those of `check`.
+fn afforded(
+    check: impl Fn(bool) -> Result<SceneNeeds, GltfError>,
+    binder: &mut Option<RigBuilder>,
+    moves_meshes: bool,
+    notes: &mut Notes,
+) -> Result<SceneNeeds, GltfError> {
+    match check(binder.is_some()) {
+        Err(GltfError::TooLarge { .. }) if binder.is_some() && !moves_meshes => {
+            *binder = None;
+            let said = "animations are left out: they move only lights and cameras, and for a mesh of this size that takes too \
+                        much memory.";
+            notes.push(said.to_owned());
+            check(false)
+        }
+        checked => checked,
+    }
+}
+
+/// What moves each of the lights or cameras that are shown, by their nodes; empty if nothing moves any.
+fn mounts<T>(binder: Option<&RigBuilder>, shown: &[(usize, T)]) -> Vec<Joint> {
+    let all: Vec<_> = binder.iter().flat_map(|own| shown.iter().map(|(node, _)| own.mount(*node))).collect();
+    if all.iter().any(|mount| mount.node.is_some()) { all } else { Vec::new() }
 }
 
 /// Builds the mesh from what was collected, with the details of its corners and its rig.

@@ -99,34 +99,7 @@ impl App {
         self.pose()?;
         self.follow_file_camera();
         self.mark();
-        let deviation = self.deviation_shown();
-        let moment = self.moment();
-        let (given, matcap) = (self.give_factors()?, self.give_matcap());
-        let surface_shader = self.give_surface_shader()?;
-        let has_given = given == self.given_wanted() && surface_shader == self.surface_shader_wanted();
-        let environment = self.give_environment();
-        let has_light = environment == self.environment_wanted();
-        let settings = self.settings_in(context.theme());
-        let Some(document) = &mut self.document else { return Ok(()) };
-        let viewport = vec2(size[0] as f32, size[1] as f32);
-        let seen = self.viewport.camera.lod_view(viewport, &document.scene.bounds);
-        let view = self.viewport.frozen.map_or(seen, |frozen| frozen.view);
-        let inputs = settings.inputs(view);
-        let wanted = Wanted {
-            document: document.generation,
-            moment: document.moment,
-            lines: self.viewport.highlight.map_or(0, |marked| marked.generation),
-            deviation,
-            given,
-            surface_shader,
-            matcap,
-            environment,
-            camera: self.viewport.camera,
-            settings,
-            inputs,
-            clip_from_object: self.viewport.camera.clip_from_object(viewport, &document.scene.bounds),
-            viewport,
-        };
+        let Some((wanted, is_whole)) = self.wanted(context, size)? else { return Ok(()) };
         if self.preview(context, &wanted)? {
             return Ok(());
         }
@@ -141,29 +114,82 @@ impl App {
         if let Some(left) = document.scene.half(SplitSide::Left) {
             self.viewport.left.measuring.keep_only(document.generation, left.tessellator.generation());
         }
-        let is_ready = has_light && document.moment == moment && has_given;
-        let shown = is_ready && self.viewport.picture.drawn.as_ref() == Some(&wanted);
+        let shown = is_whole && self.viewport.picture.drawn.as_ref() == Some(&wanted);
         self.viewport.picture.outdated = !shown && self.viewport.picture.cancelled.is_none();
-        let still = shown && !self.viewport.playback.is_playing();
-        if still && self.viewport.picture.in_flight.is_none() && document.scene.tessellator.is_counted() {
-            let view = ScreenView { clip_from_object: wanted.clip_from_object, viewport };
-            let follows = self.settings.overlays.colors == Colors::TriangleSize;
-            self.jobs.measure.go_on(&self.engine.gpu, &mut document.scene, document.generation, view, follows)?;
-            self.measure_left(view)?;
-            self.count_leaks(context, view)?;
-            let silhouette = SilhouetteView { size, seen, lod: inputs.view };
-            self.compare_outlines(context, &settings.tessellation, &silhouette, view)?;
+        if shown {
+            self.measure_shown(context, &wanted, size)?;
         }
-        self.deviate(&inputs)?;
+        self.deviate(&wanted.inputs)?;
         if let Err(problem) = self.engine.gpu.check() {
-            self.jobs.measure.give_up();
-            self.jobs.leaks.give_up();
-            self.jobs.silhouette.give_up();
-            self.viewport.left.measuring.give_up();
-            self.jobs.deviation.give_up();
-            self.viewport.left.deviating.give_up();
+            self.give_up_measuring();
             return Err(problem.into());
         }
+        self.ask_for_next_frame(context)?;
+        self.warm_up(context, &wanted);
+        Ok(())
+    }
+
+    /// Returns what the picture is to show, and whether all that it needs is there; none without a mesh.
+    fn wanted(&mut self, context: &egui::Context, size: [u32; 2]) -> Result<Option<(Wanted, bool)>, Trouble> {
+        let (deviation, moment) = (self.deviation_shown(), self.moment());
+        let (given, matcap) = (self.give_factors()?, self.give_matcap());
+        let surface_shader = self.give_surface_shader()?;
+        let has_given = given == self.given_wanted() && surface_shader == self.surface_shader_wanted();
+        let environment = self.give_environment();
+        let has_light = environment == self.environment_wanted();
+        let settings = self.settings_in(context.theme());
+        let Some(document) = &self.document else { return Ok(None) };
+        let viewport = vec2(size[0] as f32, size[1] as f32);
+        let camera = self.viewport.camera;
+        let seen = camera.lod_view(viewport, &document.scene.bounds);
+        let view = self.viewport.frozen.map_or(seen, |frozen| frozen.view);
+        let wanted = Wanted {
+            document: document.generation,
+            moment: document.moment,
+            lines: self.viewport.highlight.map_or(0, |marked| marked.generation),
+            deviation,
+            given,
+            surface_shader,
+            matcap,
+            environment,
+            camera,
+            settings,
+            inputs: settings.inputs(view),
+            clip_from_object: camera.clip_from_object(viewport, &document.scene.bounds),
+            viewport,
+        };
+        Ok(Some((wanted, has_light && has_given && document.moment == moment)))
+    }
+
+    /// Measures what is shown, if it is at rest.
+    fn measure_shown(&mut self, context: &egui::Context, wanted: &Wanted, size: [u32; 2]) -> Result<(), Trouble> {
+        let Some(document) = &mut self.document else { return Ok(()) };
+        let is_busy = self.viewport.playback.is_playing() || self.viewport.picture.in_flight.is_some();
+        if is_busy || !document.scene.tessellator.is_counted() {
+            return Ok(());
+        }
+        let view = ScreenView { clip_from_object: wanted.clip_from_object, viewport: wanted.viewport };
+        let seen = wanted.camera.lod_view(wanted.viewport, &document.scene.bounds);
+        let silhouette = SilhouetteView { size, seen, lod: wanted.inputs.view };
+        let follows = self.settings.overlays.colors == Colors::TriangleSize;
+        self.jobs.measure.go_on(&self.engine.gpu, &mut document.scene, document.generation, view, follows)?;
+        self.measure_left(view)?;
+        self.count_leaks(context, view)?;
+        self.compare_outlines(context, &wanted.settings.tessellation, &silhouette, view)?;
+        Ok(())
+    }
+
+    fn give_up_measuring(&mut self) {
+        self.jobs.measure.give_up();
+        self.jobs.leaks.give_up();
+        self.jobs.silhouette.give_up();
+        self.viewport.left.measuring.give_up();
+        self.jobs.deviation.give_up();
+        self.viewport.left.deviating.give_up();
+    }
+
+    /// Asks for the next frame, if anything is under way.
+    fn ask_for_next_frame(&mut self, context: &egui::Context) -> Result<(), Trouble> {
         let measures =
             self.jobs.deviation.is_busy() || self.viewport.left.deviating.is_busy() || !self.viewport.left.is_made();
         let copies = self.jobs.measure.is_busy() || self.viewport.left.measuring.is_busy();
@@ -174,7 +200,6 @@ impl App {
             // Drawing the window more often would only slow the measurement down.
             context.request_repaint_after(std::time::Duration::from_millis(30));
         }
-        self.warm_up(context, &wanted);
         Ok(())
     }
 
