@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::{Folder, failure, number, output, run, sentence};
+use crate::{Folder, both, failure, number, output, sentence};
 
 const EDGE: &str = "fn edge_factor(edge: Edge, triangle: Triangle, view: View) -> f32 { return BODY; }";
 
@@ -11,14 +11,6 @@ fn write(folder: &Folder, name: &str, returns: &str) -> String {
     let path = folder.path(name);
     std::fs::write(&path, EDGE.replace("BODY", returns)).expect("a writable folder");
     path
-}
-
-/// Standard output and standard error of a run that must succeed.
-fn both(arguments: &[&str]) -> (String, String) {
-    let output = run(arguments);
-    let [out, errors] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).expect("text"));
-    assert!(output.status.success(), "{arguments:?}: {errors}");
-    (out, errors)
 }
 
 #[test]

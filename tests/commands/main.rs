@@ -75,10 +75,15 @@ fn run(arguments: &[&str]) -> Output {
 
 /// Standard output of a run that must succeed.
 fn output(arguments: &[&str]) -> String {
+    both(arguments).0
+}
+
+/// Standard output and standard error of a run that must succeed.
+fn both(arguments: &[&str]) -> (String, String) {
     let output = run(arguments);
-    let errors = String::from_utf8_lossy(&output.stderr);
+    let [out, errors] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).expect("text"));
     assert!(output.status.success(), "{arguments:?}: {errors}");
-    String::from_utf8(output.stdout).expect("UTF-8")
+    (out, errors)
 }
 
 /// Standard error of a run that must fail with this exit code.

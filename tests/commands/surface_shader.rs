@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::{Folder, failure, number, run, sentence};
+use crate::{Folder, both, failure, number, run, sentence};
 
 const PN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/surface/pn.wgsl");
 const PN_AEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/surface/pn-aen.wgsl");
@@ -15,14 +15,6 @@ fn write(folder: &Folder, name: &str, ab: &str, ba: &str) -> String {
     );
     std::fs::write(&path, text).expect("a writable folder");
     path
-}
-
-/// Standard output and standard error of a run that must succeed.
-fn both(arguments: &[&str]) -> (String, String) {
-    let output = run(arguments);
-    let [out, errors] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).expect("text"));
-    assert!(output.status.success(), "{arguments:?}: {errors}");
-    (out, errors)
 }
 
 #[test]

@@ -39,6 +39,16 @@ fn document(vertices: usize, triangles: usize, others: &[(String, u8)], from: &[
     glb(&root, from)
 }
 
+/// A mesh as Draco data, with the encoder at a speed of 0 to 10.
+fn compressed(mesh: Mesh, mut options: EncoderOptions, speed: i32) -> Vec<u8> {
+    options.set_global_int("encoding_speed", speed);
+    options.set_global_int("decoding_speed", speed);
+    let (mut encoder, mut bytes) = (MeshEncoder::new(), EncoderBuffer::new());
+    encoder.set_mesh(mesh);
+    encoder.encode(&options, &mut bytes).expect("a mesh that can be compressed");
+    bytes.data().to_vec()
+}
+
 /// A sheet with or without common corners. The more attributes it has, the more neighbours of its edges are in memory
 /// at once.
 fn sheet(grid: Grid, others: &[(String, u8)], apart: bool, speed: i32) -> Vec<u8> {
@@ -69,13 +79,9 @@ fn sheet(grid: Grid, others: &[(String, u8)], apart: bool, speed: i32) -> Vec<u8
         mesh.deduplicate_attribute_values().expect("attributes that can be compared");
         mesh.deduplicate_point_ids();
     }
-    options.set_global_int("encoding_speed", speed);
-    options.set_global_int("decoding_speed", speed);
     let (vertices, count) = (mesh.num_points(), mesh.num_faces());
-    let (mut encoder, mut bytes) = (MeshEncoder::new(), EncoderBuffer::new());
-    encoder.set_mesh(mesh);
-    encoder.encode(&options, &mut bytes).expect("a mesh that can be compressed");
-    document(vertices, count, others, bytes.data())
+    let bytes = compressed(mesh, options, speed);
+    document(vertices, count, others, &bytes)
 }
 
 /// A wavy sheet as a scanner writes it, with normals and texture coordinates, of which another piece begins after so many rows and
@@ -116,13 +122,9 @@ fn scan_of(grid: Grid, piece: Option<usize>, speed: i32, said: Option<usize>) ->
     (0..corners.len() / 3).for_each(|i| mesh.set_face_from_indices(i, [0, 1, 2].map(|k| (3 * i + k) as u32)));
     mesh.deduplicate_attribute_values().expect("attributes that can be compared");
     mesh.deduplicate_point_ids();
-    options.set_global_int("encoding_speed", speed);
-    options.set_global_int("decoding_speed", speed);
     let (vertices, count) = (mesh.num_points(), mesh.num_faces());
-    let (mut encoder, mut bytes) = (MeshEncoder::new(), EncoderBuffer::new());
-    encoder.set_mesh(mesh);
-    encoder.encode(&options, &mut bytes).expect("a mesh that can be compressed");
-    document(said.unwrap_or(vertices), count, &[("NORMAL".to_owned(), 3), ("TEXCOORD_0".to_owned(), 2)], bytes.data())
+    let bytes = compressed(mesh, options, speed);
+    document(said.unwrap_or(vertices), count, &[("NORMAL".to_owned(), 3), ("TEXCOORD_0".to_owned(), 2)], &bytes)
 }
 
 #[test]
