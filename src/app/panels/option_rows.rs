@@ -1,11 +1,14 @@
 //! Rows of the settings panel, made from the declarations of options.
 
-use crate::app::widgets::{chooser, fixed};
+use crate::app::widgets::{chooser, fixed, text_width};
 use crate::settings::{Declaration, Kind, Range, Settings, Value};
 
 /// What sliders of light reach, in EV. More can be typed, up to the option's own range, but over all of that a step of the slider
 /// would be too coarse.
 const SLID_EV: std::ops::RangeInclusive<f32> = -5.0..=5.0;
+
+/// The least width of a slider's track, in points.
+const LEAST_TRACK: f32 = 20.0;
 
 /// A row that changes an option, greyed out where the option has no effect. `key` names the key that changes it too.
 pub(super) fn option_row(ui: &mut egui::Ui, option: &Declaration, settings: &mut Settings, key: &str) {
@@ -44,6 +47,12 @@ pub(super) fn with_note(text: &str, note: &str) -> String {
     if note.is_empty() { text.to_owned() } else { format!("{} ({note}).", text.trim_end_matches('.')) }
 }
 
+/// Returns by how much the button of a number is wider than usual, in points.
+fn beyond(ui: &egui::Ui, number: &str) -> f32 {
+    let spacing = ui.spacing();
+    (text_width(ui, number) + 2.0 * spacing.button_padding.x - spacing.interact_size.x).max(0.0)
+}
+
 /// A row with a slider for the number of an option. The row's name is given with the option.
 fn number_row(
     ui: &mut egui::Ui,
@@ -54,16 +63,22 @@ fn number_row(
     hover: &str,
 ) {
     let unit = if range.unit.is_empty() { String::new() } else { format!(" {}", range.unit) };
+    // Numbers with decimals are shown with as many as there is room for.
+    let shown = format!("{number:.0}{unit}");
     let label = ui.label(name).on_hover_text(hover);
     let slid = if range.unit == "EV" { SLID_EV } else { range.least..=range.most };
     let slider = egui::Slider::new(&mut number, slid)
         .clamping(egui::SliderClamping::Never)
         .max_decimals(range.decimals)
         .logarithmic(range.is_logarithmic)
-        .suffix(unit)
+        .suffix(&unit)
         .update_while_editing(false);
     let idle = (option.no_effect)(settings);
+    // A long number takes its room from the track, so that the row stays as wide as the others.
+    let track = ui.spacing().slider_width;
+    ui.spacing_mut().slider_width = (track - beyond(ui, &shown)).max(LEAST_TRACK);
     let response = ui.add_enabled(idle.is_none(), slider).labelled_by(label.id).on_hover_text(hover);
+    ui.spacing_mut().slider_width = track;
     if response.on_disabled_hover_text(idle.unwrap_or_default()).changed() {
         option.set(settings, Value::Number(number.clamp(range.least, range.most)));
     }
