@@ -29,9 +29,27 @@ pub(super) fn factor(number: f64, decimals: usize) -> String {
     if number.abs() < 1000.0 { format!("{number:.decimals$}") } else { short(number) }
 }
 
+/// Reads a number that was typed, with or without its unit. The decimal separator may be a comma.
+pub(super) fn typed_number(text: &str, unit: &str) -> Option<f64> {
+    let text = text.trim();
+    let text = text.strip_suffix(unit).unwrap_or(text).trim().replace('\u{2212}', "-").replace(',', ".");
+    text.parse().ok().filter(|number: &f64| !number.is_nan())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_are_read_as_they_are_shown_and_as_people_write_them() {
+        for text in ["0.7", "0.7 px", " 0,7px ", "7e-1"] {
+            assert_eq!(typed_number(text, "px"), Some(0.7), "{text}");
+        }
+        assert_eq!(typed_number("\u{2212}3", ""), Some(-3.0));
+        for text in ["nan", "NaN px", "", "px", "1/4", "0.7 mm", "1.000,5"] {
+            assert_eq!(typed_number(text, "px"), None, "{text}");
+        }
+    }
 
     #[test]
     fn shares_factors_and_bytes_are_formatted() {

@@ -344,7 +344,7 @@ mod tests {
         corners.extend(corners.clone().iter().map(|c| Corner { position: c.position + 0.01 * Vec3::Z, ..*c }));
         let triangles = (0..26).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect::<Vec<_>>().into();
         let info = info(&Mesh { corners, triangles, ..Mesh::default() }, 0.0);
-        assert_eq!(info.joins.iter().map(|join| join.edges).collect::<Vec<_>>(), [0, 0, 0, 0, 78, 78]);
+        assert_eq!(info.joins.iter().map(|join| join.edges).collect::<Vec<_>>(), [0, 0, 0, 0, 78, 78].map(Some));
         let text = info.to_string();
         assert!(text.contains("\n  1e-7          joins nothing\n"), "{text}");
         assert!(text.contains("\n  1e-3          joins 78 edges\n"), "{text}");

@@ -328,10 +328,8 @@ impl<'a> FaceBuilder<'a> {
         block.store(&mut recent, |corners, stored| self.builder.corners(corners, stored));
         self.recent = recent;
         self.parts.leave_out(count);
-        for corners in block.triangles() {
-            self.make_room(material, 1)?;
-            self.builder.stored_triangle(material, corners);
-        }
+        self.make_room(material, count)?;
+        block.triangles().for_each(|corners| self.builder.stored_triangle(material, corners));
         Ok(count)
     }
 

@@ -9,8 +9,8 @@
 //!   the first power of two from `8 V / 7` on), and triangles. Each vertex of the glTF primitive that is being read takes
 //!   5 more, and each vertex of an OBJ, PLY, OFF or 3MF file takes its attributes. If the number of corners isn't known beforehand,
 //!   their list grows by half, and the old and the new list exist at the same time: `80 V`.
-//! - while normals are computed, after the file's bytes have been freed: `32 V + 24 T + 4 P`, and 16 for each corner
-//!   that a crease adds.
+//! - while normals are computed, after the file's bytes have been freed: `32 V + 12 T + 57 P`; then, for points at creases,
+//!   `32 V + 24 T + 5 P`, and 16 for each corner that a crease adds.
 //! - at the end `36 V + 12 T`, or `24 T` if triangles were collected in several lists.
 //! - more if materials need details of corners ([`CornerDetail`]), of which `D` are distinct: up to `130 D` and the table's `8 S`
 //!   while they are read, then `52 D + 52 V`, at the end `48 V`; and 1000 for each of about 65,536 triangles at a time whose

@@ -9,6 +9,7 @@ use super::Corner;
 use super::build_limits::BuildError;
 use super::chunked_vec::ChunkedVec;
 use super::normals::{Face, fan_normals};
+use super::smooth_points::give_normals;
 use super::weld::{plus_zero3, weld};
 use crate::cores::in_ranges;
 use crate::mesh::build_limits::MemoryAccount;
@@ -61,6 +62,26 @@ pub(crate) fn generate_normals(
 ) -> Result<(), BuildError> {
     let borrowed = budget.borrowed();
     let points = CornerPoints::of(mesh, budget)?;
+    let needed = budget.borrowed();
+    let done = give_normals(mesh, &points, crease_angle, budget, progress)?;
+    budget.give_back_to(needed);
+    if done.is_empty() || done.contains(&false) {
+        budget.borrow(done.len() as u64)?;
+        with_fans(mesh, (&points, &done), crease_angle, budget, progress)?;
+    }
+    budget.give_back_to(borrowed);
+    Ok(())
+}
+
+/// Does the same for points that aren't done yet, with lists of the faces around them. `done` is empty if that is no point.
+pub(super) fn with_fans(
+    mesh: &mut UnfinishedMesh,
+    (points, done): (&CornerPoints, &[bool]),
+    crease_angle: f32,
+    budget: &dyn MemoryAccount,
+    progress: &Progress,
+) -> Result<(), BuildError> {
+    let points = UndonePoints { points, done };
     let mut around = CornersByPoint::new(mesh, &points, budget)?;
     let mut added = AddedCorners { made: ChunkedVec::default(), first: mesh.corners.len() as u32, budget };
     let (mut fan, mut next) = (Fan::default(), 0);
@@ -79,14 +100,12 @@ pub(crate) fn generate_normals(
         }
     }
     around.hand_out(mesh, &points);
-    drop((around, points));
-    added.append_to(mesh)?;
-    budget.give_back_to(borrowed);
-    Ok(())
+    drop(around);
+    added.append_to(mesh)
 }
 
 /// The point of each corner.
-enum CornerPoints {
+pub(super) enum CornerPoints {
     /// Every corner has a point of its own.
     Corners,
     /// The point of each corner, and the number of points.
@@ -94,7 +113,7 @@ enum CornerPoints {
 }
 
 impl CornerPoints {
-    fn of(mesh: &UnfinishedMesh, budget: &dyn MemoryAccount) -> Result<Self, BuildError> {
+    pub(super) fn of(mesh: &UnfinishedMesh, budget: &dyn MemoryAccount) -> Result<Self, BuildError> {
         // Corners that are nothing but positions differ in their positions.
         let plain = |corner: &Corner| corner.normal.x.is_nan() && corner.uv == glam::Vec2::ZERO;
         if mesh.bindings.is_empty() && mesh.corners.iter().all(plain) {
@@ -105,15 +124,39 @@ impl CornerPoints {
         Ok(Self::Welded(point_of, points.len()))
     }
 
-    fn at(&self, corner: u32) -> usize {
+    pub(super) fn at(&self, corner: u32) -> usize {
         match self {
             Self::Corners => corner as usize,
             Self::Welded(point_of, _) => point_of[corner as usize] as usize,
         }
     }
+
+    /// The number of points.
+    pub(super) fn count(&self, mesh: &UnfinishedMesh) -> usize {
+        match self {
+            Self::Corners => mesh.corners.len(),
+            Self::Welded(_, count) => *count,
+        }
+    }
 }
 
-/// The corners of triangles (3 * triangle + k), sorted by point, then by number.
+/// The points whose corners may still lack normals.
+struct UndonePoints<'a> {
+    points: &'a CornerPoints,
+    /// For each point, whether nothing is left to be done there; empty if that holds for none.
+    done: &'a [bool],
+}
+
+impl UndonePoints<'_> {
+    /// Returns the point of a corner, unless it is done.
+    fn at(&self, corner: u32) -> Option<usize> {
+        let point = self.points.at(corner);
+        let is_done = self.done.get(point).is_some_and(|done| *done);
+        (!is_done).then_some(point)
+    }
+}
+
+/// The corners of triangles (3 * triangle + k) on points that aren't done, sorted by point, then by number.
 struct CornersByPoint {
     /// Where the corners of each point end in `list`; they start where those of the point before end.
     ends: Vec<u32>,
@@ -121,25 +164,24 @@ struct CornersByPoint {
 }
 
 impl CornersByPoint {
-    fn new(mesh: &UnfinishedMesh, points: &CornerPoints, budget: &dyn MemoryAccount) -> Result<Self, BuildError> {
-        let count = match points {
-            CornerPoints::Corners => mesh.corners.len(),
-            CornerPoints::Welded(_, count) => *count,
-        };
+    fn new(mesh: &UnfinishedMesh, points: &UndonePoints, budget: &dyn MemoryAccount) -> Result<Self, BuildError> {
+        let count = points.points.count(mesh);
         let corners = mesh.triangles.as_flattened();
-        let bytes = 4 * (count as u64 + corners.len() as u64);
-        budget.borrow(bytes)?;
+        budget.borrow(4 * count as u64)?;
         let mut ends = vec![0_u32; count];
-        corners.iter().for_each(|&corner| ends[points.at(corner)] += 1);
+        corners.iter().filter_map(|&corner| points.at(corner)).for_each(|point| ends[point] += 1);
         let largest = ends.iter().copied().max().unwrap_or_default();
-        budget.borrow(PER_FACE * u64::from(largest) + PER_BLOCK_CORNER * corners.len().min(BLOCK) as u64)?;
+        let listed = ends.iter().map(|&count| count as usize).sum::<usize>();
+        budget
+            .borrow(4 * listed as u64 + PER_FACE * u64::from(largest) + PER_BLOCK_CORNER * listed.min(BLOCK) as u64)?;
         let mut start = 0;
         for end in &mut ends {
             start += std::mem::replace(end, start);
         }
-        let mut list = vec![0; corners.len()];
+        let mut list = vec![0; listed];
         for (i, &corner) in (0..).zip(corners) {
-            let end = &mut ends[points.at(corner)];
+            let Some(point) = points.at(corner) else { continue };
+            let end = &mut ends[point];
             list[*end as usize] = i;
             *end += 1;
         }
@@ -167,10 +209,11 @@ impl CornersByPoint {
     }
 
     /// Replaces the corners of triangles by those that the list now has in the places of their numbers.
-    fn hand_out(&mut self, mesh: &mut UnfinishedMesh, points: &CornerPoints) {
+    fn hand_out(&mut self, mesh: &mut UnfinishedMesh, points: &UndonePoints) {
         for corner in mesh.triangles.as_flattened_mut().iter_mut().rev() {
+            let Some(point) = points.at(*corner) else { continue };
             // Goes backwards, so that the end of each point's part is where its next corner is.
-            let end = &mut self.ends[points.at(*corner)];
+            let end = &mut self.ends[point];
             *end -= 1;
             *corner = self.list[*end as usize];
         }

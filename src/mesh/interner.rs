@@ -1,6 +1,7 @@
 //! Gives equal keys equal numbers, while the keyed items lie in a list of the caller's.
 
 use std::hash::{BuildHasher, Hash};
+use std::hint::black_box;
 
 use foldhash::fast::RandomState;
 use hashbrown::HashTable;
@@ -22,6 +23,11 @@ impl Interner {
     /// Returns the hash of a key for [`number_of`](Self::number_of).
     pub(crate) fn hash(&self, key: impl Hash) -> u64 {
         self.hasher.hash_one(key)
+    }
+
+    /// Reads the place of this hash, so that the processor has it at hand when the item is looked up soon.
+    pub(crate) fn approach(&self, hash: u64) {
+        black_box(self.table.find(hash, |_| false));
     }
 
     /// Returns the number of the item with this key and this hash, as [`number`](Self::number) does.

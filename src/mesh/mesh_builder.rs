@@ -138,10 +138,14 @@ impl MeshBuilder {
         triangles: usize,
         budget: &dyn MemoryAccount,
     ) -> Result<(), MemoryRefused> {
+        // If there is a single material, its triangles needn't be copied into one list in the end.
+        let is_single = self.groups.len() == 1 && self.is_empty();
+        let all = if is_single { self.expected[0] / 3 } else { 0 };
         let group = &mut self.groups[material];
         if group.room() < triangles {
-            let count = triangles.max(group.next_run());
-            budget.hold(count as u64 * 12)?;
+            let least = triangles.max(group.next_run());
+            let held = [all.max(least), least].into_iter().find(|&count| budget.hold(count as u64 * 12).is_ok());
+            let Some(count) = held else { return budget.hold(least as u64 * 12) };
             group.runs.push(Vec::with_capacity(count));
         }
         Ok(())
@@ -194,6 +198,7 @@ impl MeshBuilder {
                 let (corner, repairs) = repaired(corner);
                 *own = (corner, repairs, binding, self.distinct.hash(&corner, binding));
             }
+            own[..some.len()].iter().for_each(|&(.., hash)| self.distinct.approach(hash));
             for &(corner, repairs, binding, hash) in &own[..some.len()] {
                 stored.push(StoredCorner { id: self.distinct.id_of(hash, corner, binding), repairs });
             }
@@ -306,6 +311,9 @@ impl MeshBuilder {
 /// Puts corners in the order of first use, in place, and removes those that no triangle uses.
 fn renumber(mesh: &mut UnfinishedMesh) {
     let UnfinishedMesh { corners, bindings, triangles } = mesh;
+    if are_in_order(corners.len(), triangles) {
+        return;
+    }
     let mut numbers = vec![u32::MAX; corners.len()];
     let mut next = 0;
     for corner in triangles.as_flattened_mut() {
@@ -333,6 +341,16 @@ fn renumber(mesh: &mut UnfinishedMesh) {
     }
     corners.truncate(used);
     bindings.truncate(used);
+}
+
+/// Whether all corners are used, in the order of their first use.
+fn are_in_order(corners: usize, triangles: &[[u32; 3]]) -> bool {
+    let mut next = 0;
+    let is_next = |&corner: &u32| {
+        next += u32::from(corner == next);
+        corner < next
+    };
+    triangles.as_flattened().iter().all(is_next) && next as usize == corners
 }
 
 /// A corner that a builder stores: its number, and its repairs, which count for every triangle that uses it.

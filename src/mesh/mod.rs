@@ -30,6 +30,7 @@ pub(crate) mod repairs;
 pub(crate) mod rig;
 pub(crate) mod shapes;
 mod slices;
+mod smooth_points;
 mod spatial_hash;
 pub(crate) mod t_junctions;
 pub(crate) mod topology;

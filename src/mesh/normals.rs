@@ -12,7 +12,7 @@ pub(crate) const CREASE_ANGLE: f32 = 60.0;
 const ROOM: f64 = 1.1547e-5;
 
 /// Around a point with more faces than this, faces are first grouped by direction, which keeps the work linear.
-const FAN_LIMIT: usize = 256;
+pub(super) const FAN_LIMIT: usize = 256;
 
 /// Numbers of cells along each axis of the grid of directions that groups such faces. The first cells are about 1.3
 /// degrees wide; the coarser ones are used where faces point in very different directions.
@@ -74,9 +74,9 @@ impl GivenNormal {
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Face {
     /// The unit surface normal; zero for a triangle without area.
-    normal: DVec3,
+    pub(super) normal: DVec3,
     /// The triangle's angle at the point, in radians.
-    angle: f64,
+    pub(super) angle: f64,
 }
 
 impl Face {
@@ -84,11 +84,48 @@ impl Face {
     /// neither overflow nor underflow.
     pub(crate) fn new(triangle: [Vec3; 3], k: usize) -> Self {
         let p = triangle.map(Vec3::as_dvec3);
-        let cross = (p[1] - p[0]).cross(p[2] - p[0]);
-        let (a, b) = (p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
-        let normal = cross.try_normalize().unwrap_or(DVec3::ZERO);
-        Self { normal, angle: cross.length().atan2(a.dot(b)) }
+        let cross = cross(p);
+        Self { normal: facing(cross), angle: angle(p, k, cross.length()) }
     }
+
+    /// Makes a triangle the faces around its corners.
+    pub(super) fn all(triangle: [Vec3; 3]) -> [Self; 3] {
+        let p = triangle.map(Vec3::as_dvec3);
+        let cross = cross(p);
+        let (normal, length) = (facing(cross), cross.length());
+        [0, 1, 2].map(|k| Self { normal, angle: angle(p, k, length) })
+    }
+}
+
+/// The cross product of two sides of a triangle.
+fn cross(p: [DVec3; 3]) -> DVec3 {
+    (p[1] - p[0]).cross(p[2] - p[0])
+}
+
+/// The unit normal of a triangle with this cross product; zero if it has no area.
+fn facing(cross: DVec3) -> DVec3 {
+    cross.try_normalize().unwrap_or(DVec3::ZERO)
+}
+
+/// The angle of a triangle at its corner k, in radians. `length` is that of its cross product.
+fn angle(p: [DVec3; 3], k: usize, length: f64) -> f64 {
+    let (a, b) = (p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
+    length.atan2(a.dot(b))
+}
+
+/// The cosine of a crease angle in degrees.
+pub(super) fn limit_of(crease_angle: f32) -> f64 {
+    (f64::from(crease_angle).to_radians() + ROOM).min(std::f64::consts::PI).cos()
+}
+
+/// The mean normal of faces, of which this is the weighted sum; none if that has no direction.
+pub(super) fn unit_mean(sum: DVec3) -> Option<Vec3> {
+    sum.try_normalize().map(rounded)
+}
+
+/// Rounds a direction to a unit normal; +Z if it has none.
+fn rounded(direction: DVec3) -> Vec3 {
+    direction.try_normalize().unwrap_or(DVec3::Z).as_vec3()
 }
 
 /// Computes a unit normal for each face around a point.
@@ -104,7 +141,7 @@ impl Face {
 /// Wüthrich 1998, "Computing vertex normals from polygonal facets".
 pub(crate) fn fan_normals(fan: &[Face], crease_angle: f32, normals: &mut Vec<Vec3>) {
     normals.clear();
-    let limit = (f64::from(crease_angle).to_radians() + ROOM).min(std::f64::consts::PI).cos();
+    let limit = limit_of(crease_angle);
     if fan.len() <= FAN_LIMIT {
         normals.extend(averages(fan, limit));
         return;
@@ -139,8 +176,8 @@ fn averages(fan: &[Face], limit: f64) -> impl Iterator<Item = Vec3> {
             return normal;
         }
         let sum: DVec3 = fan.iter().filter(is_near).map(|g| g.angle * g.normal).sum();
-        let mean = sum.try_normalize();
-        let normal = mean.unwrap_or(own.normal).try_normalize().unwrap_or(DVec3::Z).as_vec3();
+        let mean = unit_mean(sum);
+        let normal = mean.unwrap_or_else(|| rounded(own.normal));
         // Faces whose sum has no direction keep their own normals.
         last = near.filter(|_| mean.is_some()).map(|near| (near, normal));
         normal

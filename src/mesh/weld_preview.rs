@@ -20,19 +20,21 @@ pub struct WeldPreview {
     /// The tolerance, relative to the bounding diagonal.
     pub tolerance: f32,
     /// Boundary edges of the exact topology that the weld connects to another: afterwards their side belongs to an edge
-    /// with two sides or more. Edges of triangles that collapse don't count.
-    pub edges: u32,
-    /// Triangles that are patches of the exact topology and degenerate after the weld.
-    pub collapsed: u32,
+    /// with two sides or more. Edges of triangles that collapse don't count. None if most triangles have a side that is no longer than
+    /// the tolerance: such a weld destroys the mesh, and isn't tried.
+    pub edges: Option<u32>,
+    /// Triangles that are patches of the exact topology and degenerate after the weld. None as for `edges`.
+    pub collapsed: Option<u32>,
 }
 
 impl fmt::Display for WeldPreview {
     /// Writes the changes as text, without the tolerance.
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match (self.edges, self.collapsed) {
-            (0, 0) => write!(f, "joins nothing"),
-            (edges, 0) => write!(f, "joins {edges} edges"),
-            (edges, collapsed) => write!(f, "joins {edges} edges, collapses {collapsed} triangles"),
+        match self.edges.zip(self.collapsed) {
+            None => write!(f, "not tried, since most triangles have a shorter side"),
+            Some((0, 0)) => write!(f, "joins nothing"),
+            Some((edges, 0)) => write!(f, "joins {edges} edges"),
+            Some((edges, collapsed)) => write!(f, "joins {edges} edges, collapses {collapsed} triangles"),
         }
     }
 }
@@ -58,7 +60,7 @@ pub fn weld_previews(
 ) -> Result<Vec<WeldPreview>, Cancelled> {
     progress.set(0.0);
     progress.check()?;
-    let mut previews = TOLERANCES.map(|tolerance| WeldPreview { tolerance, edges: 0, collapsed: 0 });
+    let mut previews = TOLERANCES.map(|tolerance| WeldPreview { tolerance, edges: Some(0), collapsed: Some(0) });
     let bounds = mesh.bounds();
     let distances = TOLERANCES.map(|tolerance| bounds.part(tolerance.into()));
     let exact = match exact {
@@ -68,8 +70,9 @@ pub fn weld_previews(
     // All positions may be the same.
     if distances[0] > 0.0 {
         let few = distances.partition_point(|&distance| exact.leaves_most_sides_longer(mesh, distance));
+        previews[few..].iter_mut().for_each(|preview| (preview.edges, preview.collapsed) = (None, None));
         let near = NearPoints::find(&exact.topology.points, &exact.numbers, &distances[..few]);
-        let changed: Vec<usize> = (0..TOLERANCES.len()).filter(|&k| near.within(k).next().is_some()).collect();
+        let changed: Vec<usize> = (0..few).filter(|&k| near.within(k).next().is_some()).collect();
         // Two at a time: more would take much memory.
         for (step, pair) in changed.chunks(2).enumerate() {
             progress.set((2 * step + 1) as f32 / (changed.len() + 1) as f32);
@@ -77,7 +80,7 @@ pub fn weld_previews(
             let count = |k: usize| exact.welded(mesh, &exact.merged(&near, k, distances[k]));
             let counted = in_ranges(pair.len(), 1, |range| pair[range].iter().map(|&k| count(k)).collect::<Vec<_>>());
             for (&k, counted) in pair.iter().zip(counted.into_iter().flatten()) {
-                [previews[k].edges, previews[k].collapsed] = counted;
+                [previews[k].edges, previews[k].collapsed] = counted.map(Some);
             }
         }
     }
@@ -114,8 +117,7 @@ impl<'a> Exact<'a> {
         Self { topology, numbers, open, degenerate }
     }
 
-    /// Estimates whether most triangles have no side shorter than a distance in object units. Otherwise most points have another
-    /// one that near, and needn't be searched for.
+    /// Estimates whether most triangles have no side shorter than a distance in object units.
     fn leaves_most_sides_longer(&self, mesh: &Mesh, distance: f64) -> bool {
         let step = (mesh.triangles.len() / SAMPLES).max(1);
         let is_long = |corners: &[u32; 3]| {
@@ -227,9 +229,22 @@ mod tests {
                 !is_degenerate(triangles[triangle]) && sides_at(edge(&triangles[triangle], side)) > 1
             };
             let edges = open.iter().filter(joined).count() as u32;
-            WeldPreview { tolerance, edges, collapsed: (triangles.len() - whole().count()) as u32 - exact.degenerate }
+            let collapsed = (triangles.len() - whole().count()) as u32 - exact.degenerate;
+            let is_tried = !most_have_a_side_within(mesh, tolerance);
+            WeldPreview { tolerance, edges: is_tried.then_some(edges), collapsed: is_tried.then_some(collapsed) }
         };
         TOLERANCES.map(preview).to_vec()
+    }
+
+    fn most_have_a_side_within(mesh: &Mesh, tolerance: f32) -> bool {
+        let distance = mesh.bounds().part(tolerance.into());
+        let at = |corner: u32| mesh.corners[corner as usize].position.as_dvec3();
+        let is_short = |ends: [u32; 2]| {
+            let [a, b] = ends.map(at);
+            a != b && a.distance(b) <= distance
+        };
+        let short = mesh.triangles.iter().filter(|&&[a, b, c]| [[a, b], [b, c], [c, a]].into_iter().any(is_short));
+        2 * short.count() > mesh.triangles.len()
     }
 
     proptest! {
@@ -278,10 +293,9 @@ mod tests {
         let mesh = Mesh { corners, triangles: triangles.into(), ..Mesh::default() };
         let previews = |cores| on_cores(cores, || weld_previews(&mesh, None, &Progress::new()).unwrap());
         let one = previews(1);
-        assert!(
-            one.windows(2).all(|pair| pair[0].edges + pair[0].collapsed < pair[1].edges + pair[1].collapsed),
-            "{one:?}"
-        );
+        // Its triangles have sides of a few thousandths of the diagonal.
+        assert_eq!(one[5].edges, None);
+        assert!(one[..5].windows(2).all(|pair| pair[0].edges < pair[1].edges), "{one:?}");
         [2, 3, 16].into_iter().for_each(|cores| assert_eq!(previews(cores), one, "{cores} cores"));
     }
 
@@ -298,7 +312,7 @@ mod tests {
         assert!(joins.iter().map(|join| join.tolerance).eq(TOLERANCES));
         let exact = Topology::build(mesh, &Progress::new()).unwrap();
         assert_eq!(joins, super::weld_previews(mesh, Some(&exact), &Progress::new()).unwrap());
-        joins.iter().map(|join| [join.edges, join.collapsed]).collect()
+        joins.iter().filter_map(|join| Some([join.edges?, join.collapsed?])).collect()
     }
 
     #[test]
@@ -339,10 +353,23 @@ mod tests {
 
     #[test]
     fn previews_are_written_as_text() {
-        let words = |edges, collapsed| WeldPreview { tolerance: 1e-5, edges, collapsed }.to_string();
+        let words = |edges, collapsed| {
+            WeldPreview { tolerance: 1e-5, edges: Some(edges), collapsed: Some(collapsed) }.to_string()
+        };
         assert_eq!(words(0, 0), "joins nothing");
         assert_eq!(words(12, 0), "joins 12 edges");
         assert_eq!(words(0, 3), "joins 0 edges, collapses 3 triangles");
+    }
+
+    #[test]
+    fn a_tolerance_that_most_triangles_have_a_shorter_side_than_is_not_tried() {
+        // Two slivers 0.01 wide, and a whole triangle. The diagonal is 3.2.
+        let sliver = |x: f32| [[x, 0.0], [x + 0.01, 0.0], [x, 1.0]];
+        let mesh = soup(&[sliver(0.0), sliver(0.5), [[0.0, 2.0], [1.0, 2.0], [0.0, 3.0]]]);
+        assert_eq!(counts(&mesh), [[0, 0]; 5]);
+        let last = weld_previews(&mesh, None, &Progress::new()).unwrap()[5];
+        assert_eq!(last, WeldPreview { tolerance: 1e-2, edges: None, collapsed: None });
+        assert_eq!(last.to_string(), "not tried, since most triangles have a shorter side");
     }
 
     #[test]

@@ -99,6 +99,19 @@ fn space_plays_and_pauses_and_cracks_are_measured_only_when_paused() {
 }
 
 #[test]
+fn another_clip_plays_if_one_does() {
+    let (mut harness, _folder) = moving_window();
+    harness.key_press(Key::Space);
+    harness.run_steps(2);
+    harness.state_mut().choose_clip(Some(2));
+    harness.run_steps(2);
+    assert!(harness.state().is_playing());
+    assert_eq!(harness.state().moment().map(|moment| moment.clip), Some(2));
+    harness.state_mut().choose_clip(None);
+    assert!(!harness.state().is_playing(), "at rest there is nothing to play");
+}
+
+#[test]
 fn speed_multiplies_time() {
     let (mut harness, _folder) = moving_window();
     choose(&mut harness, "Clip", CLIPS[2]);

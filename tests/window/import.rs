@@ -121,6 +121,16 @@ fn an_axis_and_a_unit_turn_and_scale_the_mesh_and_belong_to_its_file() {
     // A unit without a name has a row for its length, which begins as a metre.
     choose(&mut harness, "Unit", "Another length");
     assert_eq!(size(&harness), [2.0, 3.0, 1.0]);
+    // A long number moves nothing.
+    let viewport = harness.get_by_label("Viewport").rect();
+    harness.get_by_role_and_label(Role::Slider, "Unit length").set_value_accesskit(1e9);
+    settle(&mut harness);
+    assert_eq!(size(&harness), [2e9, 3e9, 1e9]);
+    assert_eq!(harness.get_by_label("Viewport").rect(), viewport);
+    let edge = harness.get_by_role_and_label(Role::ComboBox, "Unit").rect().right();
+    let rows = harness.query_all_by_role(Role::SpinButton).map(|number| number.rect());
+    let numbers: Vec<_> = rows.map(|row| row.right()).filter(|right| *right < viewport.center().x).collect();
+    assert!(numbers.len() > 4 && numbers.iter().all(|right| *right <= edge + 0.5), "{numbers:?} beyond {edge}");
     harness.get_by_role_and_label(Role::Slider, "Unit length").set_value_accesskit(0.25);
     settle(&mut harness);
     assert_eq!(size(&harness), [0.5, 0.75, 0.25]);

@@ -42,6 +42,25 @@ fn a_first_start_shows_the_vase_split_with_a_line_of_help_until_something_is_don
 }
 
 #[test]
+fn the_first_file_is_opened_without_the_split_of_a_first_start_and_from_the_usual_side() {
+    let mut harness = first_start([1280.0, 720.0], None);
+    press(&mut harness, egui::Key::Num7);
+    let context = harness.ctx.clone();
+    harness.state_mut().open(&context, Source::Shape(Shape::Torus));
+    settle(&mut harness);
+    assert_eq!(*harness.state().settings(), Settings::opening());
+    let fresh = *first_start([1280.0, 720.0], Some(Source::Shape(Shape::Torus))).state().camera();
+    let camera = harness.state().camera();
+    assert_eq!((camera.azimuth, camera.elevation), (fresh.azimuth, fresh.elevation));
+    // What a person has set stays.
+    choose(&mut harness, "LOD", "Uniform");
+    let settings = *harness.state().settings();
+    harness.state_mut().open(&context, Source::Shape(Shape::CubeSplit));
+    settle(&mut harness);
+    assert_eq!(*harness.state().settings(), settings);
+}
+
+#[test]
 fn a_number_that_grows_moves_nothing() {
     let mut harness = first_start([1200.0, 600.0], Some(Source::Shape(Shape::Torus)));
     choose(&mut harness, "LOD", "Uniform");

@@ -30,6 +30,25 @@ fn pn_triangles_crack_and_the_status_line_counts_it() {
 }
 
 #[test]
+fn a_list_of_other_rows_begins_with_the_first() {
+    let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
+    choose(&mut harness, "Surface", "PN");
+    let row = |harness: &Harness<App>, place: usize| {
+        let edge = harness.state().cracks().expect("measured").edges[place].edge;
+        format!("{edge:<7}split normal")
+    };
+    let (first, last) = (row(&harness, 0), row(&harness, 11));
+    assert!(harness.query_by_label_contains(&last).is_none(), "the list has fewer rows than there are");
+    harness.get_by_label_contains(&first).focus();
+    settle(&mut harness);
+    press(&mut harness, egui::Key::End);
+    harness.get_by_label_contains(&last);
+    assert!(harness.query_by_label_contains(&first).is_none());
+    choose(&mut harness, "Surface", "Phong");
+    harness.get_by_label_contains(&row(&harness, 0));
+}
+
+#[test]
 fn the_worst_edges_are_listed_and_a_click_frames_one() {
     let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
     choose(&mut harness, "Surface", "PN");

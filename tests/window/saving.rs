@@ -272,6 +272,24 @@ fn a_turntable_that_is_cancelled_leaves_nothing() {
 }
 
 #[test]
+fn a_free_name_beside_the_last_file_is_proposed() {
+    let folder = folder();
+    let mut harness = window(Some(Source::Shape(Shape::CubeSplit)));
+    let path = |name: &str| folder.path().join(name);
+    give(&mut harness, "Save adjacency…");
+    write_to(&mut harness, &path("own.json"));
+    for name in ["shape-cube-split-adjacency.json", "shape-cube-split-adjacency-2.json"] {
+        give(&mut harness, "Save adjacency…");
+        wait(&mut harness, |app| app.path_asked_for().is_some());
+        harness.run_steps(2);
+        let proposed = harness.get_by_role(Role::TextInput).accesskit_node().value();
+        assert_eq!(proposed, Some(path(name).display().to_string()));
+        std::fs::write(path(name), "").expect("a writable temporary folder");
+        click(&mut harness, "Cancel");
+    }
+}
+
+#[test]
 fn saved_factors_adjacency_and_stats_are_those_of_the_commands() {
     let folder = folder();
     let mut harness = window(Some(Source::Shape(Shape::Torus)));

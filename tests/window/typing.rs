@@ -6,7 +6,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::App;
 
-use crate::window_tests::{click, settle, window};
+use crate::window_tests::{click, open_list, settle, window};
 
 fn key(key: Key, modifiers: Modifiers) -> Event {
     Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers }
@@ -42,6 +42,46 @@ fn letters_typed_right_after_the_shortcut_go_into_the_field() {
         assert_eq!(harness.state().settings(), &settings, "no letter acts as a shortcut");
         assert_eq!(field(&harness).as_deref(), Some("elephant"));
     }
+}
+
+#[test]
+fn the_shortcut_pressed_again_among_the_letters_does_no_harm() {
+    let open_path = key(Key::L, Modifiers::COMMAND);
+    let mut harness = window(None);
+    let events = [vec![open_path.clone()], typed("elephant"), vec![open_path], typed("s")].concat();
+    // All in one frame, as after a slow one.
+    harness.input_mut().events.extend(events);
+    settle(&mut harness);
+    assert_eq!(field(&harness).as_deref(), Some("elephants"));
+}
+
+#[test]
+fn keys_and_clicks_in_the_picture_only_close_an_open_list() {
+    let mut harness = window(None);
+    let (settings, camera) = (*harness.state().settings(), *harness.state().camera());
+    let place = harness.get_by_role_and_label(Role::Image, "Viewport").rect().center();
+    for press in [Some(Key::W), Some(Key::Num7), None] {
+        open_list(&mut harness, "LOD");
+        match press {
+            Some(key) => harness.key_press(key),
+            None => {
+                harness.hover_at(place);
+                harness.drag_at(place);
+                harness.run_steps(1);
+                harness.drop_at(place);
+            }
+        }
+        settle(&mut harness);
+        assert_eq!((harness.state().settings(), harness.state().camera()), (&settings, &camera), "{press:?}");
+        assert_eq!(harness.state().selected_triangle(), None, "{press:?}");
+        harness.key_press(Key::Escape);
+        settle(&mut harness);
+    }
+    harness.drag_at(place);
+    harness.run_steps(1);
+    harness.drop_at(place);
+    settle(&mut harness);
+    assert!(harness.state().selected_triangle().is_some(), "without a list, a click selects");
 }
 
 #[test]

@@ -21,6 +21,10 @@ impl App {
         for command in always {
             self.press(context, command);
         }
+        // An open list takes the keys that name its entries.
+        if egui::Popup::is_any_open(context) {
+            return;
+        }
         let asks = self.dialogs.typed_path.is_some()
             || self.commands.palette.is_some()
             || self.dialogs.pending.as_ref().is_some_and(|dialog| dialog.is_new(context));
@@ -35,9 +39,9 @@ impl App {
     /// Performs a command as often as its keys were pressed.
     fn press(&mut self, context: &egui::Context, command: &Command) {
         // An open list handles its keys itself, even before one of its entries has the focus.
-        let is_in_list = command.yields_to_focus() || command.action == Action::Cancel;
+        let is_in_list = command.action == Action::Cancel && egui::Popup::is_any_open(context);
         let has_focus = command.yields_to_focus() && context.memory(|memory| memory.focused().is_some());
-        if has_focus || (is_in_list && egui::Popup::is_any_open(context)) {
+        if has_focus || is_in_list {
             return;
         }
         for shortcut in &command.keys {
@@ -53,7 +57,8 @@ impl App {
             for place in take_presses(context, shortcut) {
                 self.give(context, command);
                 if matches!(command.action, Action::File(FileAction::Open | FileAction::OpenPath)) {
-                    self.hold_from(context, place);
+                    // The keys after this one are text.
+                    return self.hold_from(context, place);
                 }
             }
         }

@@ -20,6 +20,8 @@ pub(super) struct Dialogs {
     pub pending: Option<PendingDialog>,
     /// The path that is being typed, while that window is open.
     pub typed_path: Option<TypedPath>,
+    /// The folder of the last path that was typed for a file to write.
+    pub folder: Option<std::path::PathBuf>,
     /// The last error, until its window is closed.
     pub error: Option<String>,
     /// A message about a file that was written, until its window is closed.

@@ -136,24 +136,37 @@ impl Purpose {
         }
     }
 
-    /// The path that the text field starts with.
-    fn proposed(self, open: Option<&Source>) -> String {
+    /// The path that the text field starts with. `folder` is where a file was written last.
+    fn proposed(self, open: Option<&Source>, folder: Option<&Path>) -> String {
+        let written = |name: &str| {
+            unused(folder.map_or_else(|| absolute(name), |folder| folder.join(name).display().to_string()))
+        };
         let title = open.map_or_else(|| "mesh".to_owned(), Source::title);
         match (self, open) {
             (Self::Open | Self::Truth, Some(Source::File(path))) => path.display().to_string(),
             (Self::Open | Self::Truth | Self::Heights, _) => String::new(),
             (Self::Factors | Self::LodShader | Self::SurfaceShader, _) => String::new(),
             (Self::Matcap | Self::Environment, _) => String::new(),
-            (Self::SaveChart, _) => absolute("chart.svg"),
-            (Self::SavePicture, _) => absolute(&name_beside(&title, "-view.png")),
-            (Self::SaveFolder, _) => absolute(&name_beside(&title, "-turntable")),
-            (Self::SaveGif, _) => absolute(&name_beside(&title, "-turntable.gif")),
-            (Self::SaveFactors, _) => absolute(&name_beside(&title, "-factors.csv")),
-            (Self::SaveAdjacency, _) => absolute(&name_beside(&title, "-adjacency.json")),
-            (Self::SaveStats, _) => absolute(&name_beside(&title, "-stats.json")),
-            (Self::ExportMesh, _) => absolute(&name_beside(&title, "-tessellated.glb")),
+            (Self::SaveChart, _) => written("chart.svg"),
+            (Self::SavePicture, _) => written(&name_beside(&title, "-view.png")),
+            (Self::SaveFolder, _) => written(&name_beside(&title, "-turntable")),
+            (Self::SaveGif, _) => written(&name_beside(&title, "-turntable.gif")),
+            (Self::SaveFactors, _) => written(&name_beside(&title, "-factors.csv")),
+            (Self::SaveAdjacency, _) => written(&name_beside(&title, "-adjacency.json")),
+            (Self::SaveStats, _) => written(&name_beside(&title, "-stats.json")),
+            (Self::ExportMesh, _) => written(&name_beside(&title, "-tessellated.glb")),
         }
     }
+}
+
+/// The path itself, or if there is such a file, one whose name ends with the first number from 2 on that is free.
+fn unused(path: String) -> String {
+    let (stem, ending) = match path.rsplit_once('.') {
+        Some((stem, ending)) if !ending.contains(['/', '\\']) => (stem, format!(".{ending}")),
+        _ => (path.as_str(), String::new()),
+    };
+    let numbered = (2..).map(|number| format!("{stem}-{number}{ending}"));
+    std::iter::once(path.clone()).chain(numbered).find(|path| !Path::new(path).exists()).unwrap_or(path.clone())
 }
 
 /// The path of a name in the working folder.
@@ -224,7 +237,7 @@ impl App {
         if self.dialogs.typed_path.as_ref().is_some_and(|typed| typed.purpose == purpose) {
             return;
         }
-        let path = purpose.proposed(self.source());
+        let path = purpose.proposed(self.source(), self.dialogs.folder.as_deref());
         self.dialogs.typed_path = Some(TypedPath { purpose, path, why: None, early: Some(Vec::new()) });
     }
 
@@ -273,7 +286,8 @@ impl App {
 
     fn take_typed(&mut self, context: &egui::Context) {
         let Some(TypedPath { purpose, path, .. }) = &self.dialogs.typed_path else { return };
-        let (purpose, path) = (*purpose, path.trim());
+        let (purpose, path) = (*purpose, path.trim().to_owned());
+        let path = path.as_str();
         let taken = match purpose {
             // This window doesn't ask before it replaces a file, so it never does.
             _ if purpose.is_written() && Path::new(path).exists() => {
@@ -297,6 +311,10 @@ impl App {
             },
         };
         match taken {
+            Ok(()) if purpose.is_written() => {
+                self.dialogs.folder = Path::new(path).parent().map(Path::to_owned);
+                self.dialogs.typed_path = None;
+            }
             Ok(()) => self.dialogs.typed_path = None,
             Err(why) => self.dialogs.error = Some(why),
         }
@@ -356,6 +374,7 @@ fn take_typing(context: &egui::Context, from: usize) -> Vec<Event> {
     let is_typing =
         |event: &Event| matches!(event, Event::Text(_) | Event::Key { .. } | Event::Paste(_) | Event::Ime(_));
     context.input_mut(|input| {
+        let from = from.min(input.events.len());
         let (typing, other): (_, Vec<_>) = input.events.split_off(from).into_iter().partition(is_typing);
         input.events.extend(other);
         typing

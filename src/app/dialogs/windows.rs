@@ -116,8 +116,10 @@ impl App {
             (None, None) => return,
         };
         let mut closed = false;
-        let anchor = (egui::Align2::CENTER_TOP, egui::vec2(0.0, 40.0));
-        let window = egui::Window::new(title).resizable(false).collapsible(false).anchor(anchor.0, anchor.1);
+        // Below the toolbar, so that it stays in reach.
+        let place = self.viewport.rect.center_top() + egui::vec2(0.0, 8.0);
+        let window = egui::Window::new(title).resizable(false).collapsible(false);
+        let window = window.pivot(egui::Align2::CENTER_TOP).fixed_pos(place);
         window.default_width(420.0).show(context, |ui| {
             ui.label(text);
             closed = ui.button("Close").clicked() || ui.input(|input| input.key_pressed(egui::Key::Enter));

@@ -13,6 +13,7 @@ use crate::engine::{Loaded, Preparation};
 use crate::load::environment_file::is_environment;
 use crate::load::format::Format;
 use crate::load::{Import, Source};
+use crate::render::Camera;
 use crate::settings::Settings;
 
 impl App {
@@ -121,6 +122,7 @@ impl App {
                 let before = self.document.replace(document);
                 // Scenes may be at different places, and of different sizes.
                 let is_placed_anew = before.as_ref().is_some_and(|before| place(&before.loaded) != placed);
+                let before_is_some = before.is_some();
                 let is_turned = before.as_ref().is_some_and(|before| place(&before.loaded).1 != placed.1);
                 if keep_view && is_turned {
                     (self.viewport.frozen, self.viewport.ruler) = (None, None);
@@ -130,12 +132,15 @@ impl App {
                     self.take_placement();
                     self.take_hidden_parts();
                 }
-                if before.is_some() {
+                if before_is_some {
                     self.dialogs.error = None;
                 }
                 self.dialogs.error = remark.or(self.dialogs.error.take());
                 self.take_heights(before.and_then(|document| document.loaded.preparation.heights).as_ref());
                 self.keep_playback(keep_view);
+                if !keep_view && before_is_some {
+                    self.face_another();
+                }
                 if !keep_view || is_placed_anew {
                     self.frame();
                 }
@@ -161,6 +166,15 @@ impl App {
             }
             // It was cancelled in the window, so no message is needed.
             Err(None) => {}
+        }
+    }
+
+    /// Looks at another mesh from the usual direction, without what only a first start has.
+    fn face_another(&mut self) {
+        self.viewport.camera = Camera::framing(&Default::default(), glam::Vec2::ONE);
+        let import = self.settings.import;
+        if self.settings == (Settings { import, ..Settings::greeting() }) {
+            self.settings = Settings { import, ..Settings::opening() };
         }
     }
 

@@ -39,7 +39,8 @@ impl App {
             let kind = kind_name(topology.edges[crack.edge as usize].kind);
             (crack.edge, format!("{:<7}{kind:<13}{:>9}", crack.edge, short(crack.gap)))
         };
-        list(ui, "worst edges", cracks.edges.len(), |ui, row| {
+        let first = cracks.edges.first().map_or(0, |crack| crack.edge);
+        list(ui, "worst edges", (cracks.edges.len(), first), |ui, row| {
             let (edge, text) = text(row);
             let crack = &cracks.edges[row];
             let response =
@@ -123,7 +124,7 @@ impl App {
         });
         columns(ui, &format!("{:<9}{:<9}{:>11}", "point", "edge", "at, 0 to 1"), true);
         let mut clicked: Option<TJunction> = None;
-        list(ui, "t-junctions", junctions.len(), |ui, row| {
+        list(ui, "t-junctions", (junctions.len(), junctions[0].point), |ui, row| {
             let TJunction { edge, point, t, .. } = junctions[row];
             let text = RichText::new(format!("{point:<9}{edge:<9}{t:>11.3}")).monospace();
             let response = ui.selectable_label(self.viewport.selected_edge == Some(edge), text);
@@ -221,7 +222,7 @@ fn point_rows(ui: &mut egui::Ui, sides: &[EdgeSide]) {
     let Some((first, others)) = sides.split_first() else { return };
     let count = sides.iter().map(|side| side.points.len()).max().unwrap_or(0);
     columns(ui, &format!("{:<6}{:>23}", "point", "gap, units"), true);
-    list(ui, "points", count, |ui, index| {
+    list(ui, "points", (count, first.triangle), |ui, index| {
         let place = |side: &EdgeSide| side.positions().nth(index);
         let gaps = others.iter().map(|other| Some(f64::from(place(first)?.distance(place(other)?))));
         let gap = gaps

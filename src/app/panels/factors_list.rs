@@ -80,7 +80,8 @@ impl App {
         columns(ui, &format!("{:<9}{:>9}{:>9}", "edge", "least", "greatest"), true)
             .on_hover_text("The least and the greatest factor of a side of the edge.");
         let mut clicked = None;
-        list(ui, "different factors", edges.len(), |ui, row| {
+        let first = edges.first().map_or(0, |edge| edge.edge);
+        list(ui, "different factors", (edges.len(), first), |ui, row| {
             let own = &edges[row];
             let [least, greatest] = own.extremes().map(|(_, factor)| short(factor.into()));
             let text = format!("{:<9}{least:>9}{greatest:>9}", own.edge);

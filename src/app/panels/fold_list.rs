@@ -27,7 +27,7 @@ impl App {
             .on_hover_text("The triangle of the mesh, its folds, and their area in square object units.");
         let patches = &document.loaded.topology.patches;
         let mut clicked = None;
-        list(ui, "folded patches", found.folded.len(), |ui, row| {
+        list(ui, "folded patches", (found.folded.len(), found.folded[0].patch), |ui, row| {
             let folded = &found.folded[row];
             let triangle = patches.get(folded.patch as usize).map_or(0, |patch| patch.triangle);
             let text = format!("{triangle:<10}{:>7}{:>12}", grouped(folded.folds.into()), short(folded.area));

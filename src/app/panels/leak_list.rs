@@ -22,7 +22,8 @@ impl App {
         columns(ui, &format!("{:>6}{:>8}{:>15}", "x, px", "y, px", "px that leak"), true)
             .on_hover_text("The middle of the leak, from the picture's top left, and its size.");
         let mut clicked = None;
-        list(ui, "leaks", leaks.len(), |ui, row| {
+        let first = leaks[0].middle.x as u32;
+        list(ui, "leaks", (leaks.len(), first), |ui, row| {
             let leak = &leaks[row];
             let [x, y] = leak.middle.to_array();
             let text = format!("{x:>6.0}{y:>8.0}{:>15}", grouped(leak.pixels.into()));

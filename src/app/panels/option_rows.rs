@@ -1,5 +1,6 @@
 //! Rows of the settings panel, made from the declarations of options.
 
+use crate::app::text::typed_number;
 use crate::app::widgets::{chooser, fixed, text_width};
 use crate::settings::{Declaration, Kind, Range, Settings, Value};
 
@@ -72,6 +73,7 @@ fn number_row(
         .max_decimals(range.decimals)
         .logarithmic(range.is_logarithmic)
         .suffix(&unit)
+        .custom_parser(|text| typed_number(text, range.unit))
         .update_while_editing(false);
     let idle = (option.no_effect)(settings);
     // A long number takes its room from the track, so that the row stays as wide as the others.

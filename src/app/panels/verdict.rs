@@ -77,8 +77,8 @@ impl App {
     }
 
     fn cracks_line(&self) -> Line {
-        let hover =
-            "Edges whose sides put a point at different positions. A click shows them and goes to the widest gap.";
+        let hover = "Edges whose sides put a point at different positions. A click shows them and goes to the widest gap. LOD \
+                     follows the camera, so that another edge may be the widest from there, unless LOD is frozen.";
         match self.jobs.measure.cracks() {
             None => Line::dim("Cracks \u{2026}", "Cracks are measured while the picture rests.", Destination::Cracks),
             Some(cracks) if cracks.edges.is_empty() => {
@@ -120,7 +120,7 @@ impl App {
 
     fn folds_line(&self) -> Line {
         let hover = "Triangles that face away from the side that their patch faces. A click shows them and goes to the \
-                     largest.";
+                     largest. LOD follows the camera, so that their number may be another one there, unless LOD is frozen.";
         match self.jobs.measure.found().map(|found| found.folds) {
             None => Line::dim("Folds \u{2026}", "Folds are counted while the picture rests.", Destination::Folds),
             Some(0) => Line::dim("No folds", hover, Destination::Folds),

@@ -31,6 +31,8 @@ use warm_up::WarmUp;
 
 /// What the viewport shows, and from where.
 pub(super) struct Viewport {
+    /// Where it was in the last frame, in points.
+    pub rect: egui::Rect,
     pub camera: Camera,
     /// The camera as it was when it last framed the whole mesh.
     pub framed: Option<Camera>,
@@ -61,6 +63,7 @@ pub(super) struct Viewport {
 impl Viewport {
     pub(super) fn new(engine: &Engine) -> Self {
         Self {
+            rect: egui::Rect::NOTHING,
             camera: Camera::framing(&Default::default(), glam::Vec2::ONE),
             framed: None,
             through: None,

@@ -27,6 +27,9 @@ const DEGREES_PER_POINT: f32 = 0.4;
 /// How far beside the divider it can be grabbed, in points.
 const DIVIDER_REACH: f32 = 5.0;
 
+/// The opacity, of 255, of the background's colour over the picture of a mesh that is open no more.
+const VEIL: u8 = 190;
+
 /// The alignment of the halves' titles, which are at the top beside the divider.
 const ALIGN: [egui::Align2; 2] = [egui::Align2::RIGHT_TOP, egui::Align2::LEFT_TOP];
 
@@ -37,6 +40,7 @@ const GREETING: &str =
 impl App {
     pub(in crate::app) fn viewport_panel(&mut self, ui: &mut egui::Ui) {
         let rect = ui.available_rect_before_wrap();
+        self.viewport.rect = rect;
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Viewport"));
         let points = vec2(rect.width(), rect.height());
@@ -55,6 +59,9 @@ impl App {
         }
         // A picture that the device refused may be half drawn.
         let is_whole = self.viewport.picture.drawn.is_some() || self.viewport.picture.cancelled.is_none();
+        let generation = self.document.as_ref().map(|document| document.generation);
+        let is_another = generation.is_some_and(|generation| self.viewport.picture.shows_another(generation));
+        let is_whole = is_whole && !(is_another && self.viewport.picture.cancelled.is_some());
         let previewed = self.viewport.preview.shown(&self.viewport.picture).map(|(_, shape)| shape);
         let picture = match previewed {
             Some(_) => self.viewport.preview.picture(),
@@ -63,6 +70,12 @@ impl App {
         match picture {
             Some(picture) => {
                 ui.painter().add(picture.over(rect));
+                if is_another && previewed.is_none() {
+                    // The mesh before stays as a shade until the first picture of this one.
+                    let [r, g, b] = self.settings_in(ui.ctx().theme()).background_color();
+                    let veil = egui::Color32::from_rgba_unmultiplied(r, g, b, VEIL);
+                    ui.painter().rect_filled(rect, 0.0, veil);
+                }
                 if let Some(outlines) = self.outlines_texture().filter(|_| previewed.is_none()) {
                     let whole = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
                     ui.painter().image(outlines, rect, whole, egui::Color32::WHITE);
@@ -311,12 +324,18 @@ impl App {
             let unit = if spacing == 1.0 { "unit" } else { "units" };
             format!("Grid: {spacing} {unit}")
         });
-        let mut position = rect.left_bottom() + egui::vec2(10.0, -10.0);
         let distance = self.viewport.ruler.map(|ruler| ruler.text());
         let bookmarked = self.viewport.bookmarks.iter().position(|bookmark| *bookmark == self.viewport.camera);
         let bookmark = bookmarked.map(|index| format!("Bookmark {}", index + 1));
-        for text in [previewed, frozen, grid, distance, bookmark].into_iter().flatten() {
-            let galley = note_text(ui, &text, egui::Color32::from_gray(235));
+        let texts = [previewed, frozen, grid, distance, bookmark].into_iter().flatten();
+        let notes: Vec<_> = texts.map(|text| (note_text(ui, &text, egui::Color32::from_gray(235)), text)).collect();
+        let widest = notes.iter().map(|(galley, _)| galley.size().x).fold(0.0, f32::max);
+        // In a narrow picture they are above the progress.
+        let progress = progress_place(rect);
+        let is_beside = !self.shows_progress() || rect.left() + 10.0 + widest + 12.0 < progress.left();
+        let bottom = if is_beside { rect.bottom() } else { progress.top() };
+        let mut position = egui::pos2(rect.left() + 10.0, bottom - 10.0);
+        for (galley, text) in notes {
             let place = egui::Align2::LEFT_BOTTOM.anchor_size(position, galley.size());
             let response = ui.interact(place, ui.scope_id().with(("note", &text)), Sense::empty());
             response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &text));
@@ -338,6 +357,18 @@ impl App {
         let response = ui.interact(place, ui.scope_id().with("greeting"), Sense::empty());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, GREETING));
         paint_note(ui, place, text);
+    }
+
+    /// Whether there is a box with the progress of something, at the lower border of the picture.
+    fn shows_progress(&self) -> bool {
+        let jobs = &self.jobs;
+        let is_long = self.viewport.picture.drawing.is_some() && self.viewport.picture.is_long();
+        jobs.load.is_some()
+            || jobs.truth_load.is_some()
+            || jobs.environment.is_some()
+            || jobs.writing.is_some()
+            || self.viewport.picture.cancelled.is_some()
+            || is_long
     }
 
     /// Notes about what is under way: the progress of loading, writing and drawing.
@@ -418,6 +449,11 @@ fn spoken_percent(ui: &egui::Ui, id: egui::Id, percent: f32) -> Option<f32> {
     asked.map(|percent| percent.clamp(0.0, 100.0) as f32)
 }
 
+/// The place of the progress in a picture: below its middle, so that the picture can be seen.
+fn progress_place(rect: egui::Rect) -> egui::Rect {
+    egui::Align2::CENTER_BOTTOM.align_size_within_rect(egui::vec2(280.0, 84.0), rect.shrink(14.0))
+}
+
 /// Shows the title of something that takes long at the lower border of the picture, the part of it that is done, about how many
 /// seconds are left if that is known, and a button with a hover text. Returns true if the button is pressed.
 fn progress(
@@ -427,8 +463,7 @@ fn progress(
     done: Option<(f32, Option<f64>)>,
     (button, hover): (&str, &str),
 ) -> bool {
-    // Below the middle, so that the picture can be seen.
-    let area = egui::Align2::CENTER_BOTTOM.align_size_within_rect(egui::vec2(280.0, 84.0), rect.shrink(14.0));
+    let area = progress_place(rect);
     let show = |ui: &mut egui::Ui| {
         ui.set_min_width(260.0);
         ui.label(title);
@@ -467,6 +502,6 @@ pub(in crate::app) fn note_text(ui: &egui::Ui, text: &str, color: egui::Color32)
 }
 
 pub(in crate::app) fn paint_note(ui: &egui::Ui, rect: egui::Rect, galley: Arc<egui::Galley>) {
-    ui.painter().rect_filled(rect.expand2(egui::vec2(6.0, 3.0)), 4.0, egui::Color32::from_black_alpha(170));
+    ui.painter().rect_filled(rect.expand2(egui::vec2(6.0, 3.0)), 4.0, egui::Color32::from_black_alpha(215));
     ui.painter().galley(rect.min, galley, egui::Color32::WHITE);
 }

@@ -85,6 +85,8 @@ pub(crate) struct Picture {
     /// The last picture, of another size. It is shown stretched until the first one of the new size is drawn.
     before: Option<ShownPicture>,
     pub drawn: Option<Wanted>,
+    /// The document of the last picture that was drawn, in whatever size.
+    shows: Option<u64>,
     /// The picture that the device is counting for. It is drawn before any newer one, so that a long drag shows pictures.
     counting: Option<Wanted>,
     /// The picture that is being drawn, step by step.
@@ -119,6 +121,7 @@ impl Picture {
             target: None,
             before: None,
             drawn: None,
+            shows: None,
             counting: None,
             drawing: None,
             cancelled: None,
@@ -209,6 +212,7 @@ impl Picture {
                 self.pass_times_hold = drawing.steps == 1;
                 self.whole_ms = self.begun.take().map(|begun| begun.elapsed().as_secs_f64() * 1e3).or(self.whole_ms);
                 self.drawn = Some(drawing.wanted);
+                self.shows = Some(drawing.wanted.document);
                 self.before = None;
                 self.pictures += 1;
             }
@@ -241,6 +245,11 @@ impl Picture {
     pub(crate) fn shown(&self) -> Option<&ShownPicture> {
         let drawn = self.target.as_ref().filter(|_| self.drawn.is_some());
         drawn.map(|(_, shown)| shown).or(self.before.as_ref())
+    }
+
+    /// Whether what is shown is another mesh than that of a document.
+    pub(crate) fn shows_another(&self, document: u64) -> bool {
+        self.shows.is_some_and(|shown| shown != document)
     }
 
     /// Draws what is wanted, if it isn't drawn yet and the device is free. The counts come back first; until then, and

@@ -70,11 +70,13 @@ impl App {
         rig.map_or_else(Vec::new, |rig| (0..rig.clips.len().min(LISTED)).map(|clip| rig.clip_name(clip)).collect())
     }
 
-    /// Shows the start of a clip without playing it, or the mesh at rest.
+    /// Shows the start of a clip, or the mesh at rest. If a clip is playing, the next one plays too.
     pub fn choose_clip(&mut self, clip: Option<usize>) {
         let clip = clip.filter(|&clip| clip < self.clips().len());
         let was_framed = self.is_framed();
-        self.viewport.playback = Playback { clip, speed: self.viewport.playback.speed, ..Playback::default() };
+        let Playback { speed, playing, .. } = self.viewport.playback;
+        let playing = playing.filter(|_| clip.is_some());
+        self.viewport.playback = Playback { clip, speed, playing, ..Playback::default() };
         self.frame_clip();
         // A camera that frames the whole mesh frames the whole clip now; one that shows a detail stays.
         if was_framed {

@@ -19,6 +19,8 @@ pub(crate) struct Selection {
     triangle: Option<u32>,
     /// The emitted triangle that was clicked on, and its tessellation's number.
     hit: Option<(u64, PickedTriangle)>,
+    /// Whether a list or a menu was open when a button of the pointer was pressed last.
+    closes_list: bool,
     /// A click on a picture whose tessellation isn't known yet.
     clicked: Option<(SplitSide, Pixel)>,
     /// The search for the triangle under a click, its tessellation's number (none for the left half's), and where the click was.
@@ -97,9 +99,20 @@ impl App {
         self.viewport.selected_edge = None;
     }
 
+    /// Notes whether the pointer is pressed while a list is open: such a click only closes the list. Must come before the lists are
+    /// shown, since they close themselves.
+    pub(in crate::app) fn note_press(&mut self, context: &egui::Context) {
+        if context.input(|input| input.pointer.any_pressed()) {
+            self.viewport.selection.closes_list = egui::Popup::is_any_open(context);
+        }
+    }
+
     /// Starts to answer a click on the picture.
     pub(in crate::app) fn click(&mut self, response: &Response, pixels_per_point: f32) {
         let Some(pointer) = response.interact_pointer_pos().filter(|_| response.clicked()) else { return };
+        if self.viewport.selection.closes_list {
+            return;
+        }
         let place = (pointer - response.rect.min) * pixels_per_point;
         self.viewport.selection.clicked =
             self.viewport.picture.pixel([place.x.max(0.0) as u32, place.y.max(0.0) as u32]);

@@ -229,7 +229,14 @@ impl<'a> Values<'a> {
             return Err(self.place().error(format!("an element takes {size} bytes, but {left} are left")));
         };
         for &(at, scalar, place) in &row.values {
-            places[place] = decoded(&own[at..], scalar, self.encoding).unwrap_or_default() as f32;
+            let bytes = &own[at..];
+            places[place] = match (scalar, self.encoding) {
+                // What nearly all files have.
+                (Scalar::F32, Encoding::LittleEndian) => {
+                    bytes.first_chunk().map_or(0.0, |own| f32::from_le_bytes(*own))
+                }
+                (_, encoding) => decoded(bytes, scalar, encoding).unwrap_or_default() as f32,
+            };
         }
         self.bytes = rest;
         Ok(())

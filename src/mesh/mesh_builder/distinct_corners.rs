@@ -24,6 +24,11 @@ impl DistinctCorners {
         self.ids.hash(key(corner, binding))
     }
 
+    /// Prepares a call of [`id_of`](Self::id_of) with this hash.
+    pub(super) fn approach(&self, hash: u64) {
+        self.ids.approach(hash);
+    }
+
     /// Returns the number of a corner with this hash, as [`id`](Self::id) does.
     pub(super) fn id_of(&mut self, hash: u64, corner: Corner, binding: u32) -> u32 {
         let (corners, bindings) = (&self.corners, &self.bindings);

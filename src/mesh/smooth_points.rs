@@ -1,0 +1,173 @@
+//! Computes the normals of points whose faces surely all lie within the crease angle of each other, in one pass over the triangles.
+//! Most points of most meshes are such points, and for them nobody needs a list of their faces.
+
+use glam::{DVec3, Vec3};
+
+use super::build_limits::{BuildError, MemoryAccount};
+use super::generate_normals::{CornerPoints, UnfinishedMesh};
+use super::normals::{FAN_LIMIT, Face, limit_of, unit_mean};
+use super::weld::plus_zero3;
+use crate::cores::in_ranges;
+use crate::progress::Progress;
+
+/// How many triangles have their faces computed before these are added to points.
+const BLOCK: usize = 1 << 15;
+
+/// The least number of triangles that are worth a thread.
+const LEAST: usize = 1 << 12;
+
+/// The memory for each point and for each triangle of a block, in bytes.
+const PER_POINT: u64 = size_of::<PointSum>() as u64 + 1;
+const PER_TRIANGLE: u64 = size_of::<[Face; 3]>() as u64;
+
+/// The sum over the faces around a point, and how far their normals lie apart.
+#[derive(Clone, Copy)]
+struct PointSum {
+    /// The sum of the faces' normals, each times the face's angle at the point.
+    sum: DVec3,
+    /// The least box that holds the faces' normals.
+    least: Vec3,
+    most: Vec3,
+    /// The number of faces, or [`APART`](Self::APART).
+    faces: u32,
+}
+
+impl PointSum {
+    /// Instead of the number of faces: one of them has no area, or they are too many.
+    const APART: u32 = u32::MAX;
+
+    const NONE: Self = Self { sum: DVec3::ZERO, least: Vec3::INFINITY, most: Vec3::NEG_INFINITY, faces: 0 };
+
+    /// Adds a face.
+    fn add(&mut self, face: &Face) {
+        let normal = face.normal.as_vec3();
+        (self.least, self.most) = (self.least.min(normal), self.most.max(normal));
+        self.sum += face.angle * face.normal;
+        let fits = face.normal != DVec3::ZERO && self.faces < FAN_LIMIT as u32;
+        self.faces = if fits { self.faces + 1 } else { Self::APART };
+    }
+
+    /// Returns the point's normal, if no two normals are farther apart than the square root of `chord`.
+    fn normal(&self, chord: f32) -> Option<Vec3> {
+        let is_smooth = self.faces != Self::APART && (self.most - self.least).length_squared() <= chord;
+        unit_mean(self.sum).filter(|_| is_smooth).map(plus_zero3)
+    }
+}
+
+/// Gives the corners on points with one normal that normal, with a crease angle in degrees. Returns for each point whether nothing is
+/// left to be done there; the list is empty if that holds for none: if a corner has a normal, or if memory is short.
+///
+/// The normals have the same bits as those that [`fan_normals`](super::normals::fan_normals) returns: faces are added in the same order.
+///
+/// # Errors
+/// [`BuildError::Cancelled`].
+pub(super) fn give_normals(
+    mesh: &mut UnfinishedMesh,
+    points: &CornerPoints,
+    crease_angle: f32,
+    budget: &dyn MemoryAccount,
+    progress: &Progress,
+) -> Result<Vec<bool>, BuildError> {
+    let count = points.count(mesh);
+    let has_normals = mesh.corners.iter().any(|corner| !corner.normal.x.is_nan());
+    let bytes = PER_POINT * count as u64 + PER_TRIANGLE * mesh.triangles.len().min(BLOCK) as u64;
+    if has_normals || budget.borrow(bytes).is_err() {
+        return Ok(Vec::new());
+    }
+    // A little less than the square of the distance between unit normals at that angle, for the rounding to f32.
+    let chord = (2.0 - 2.0 * limit_of(crease_angle)) as f32 - 2e-6;
+    let mut sums = vec![PointSum::NONE; count];
+    for block in mesh.triangles.chunks(BLOCK) {
+        progress.check()?;
+        let faces = in_ranges(block.len(), LEAST, |range| {
+            let corners = block[range].iter().map(|corners| corners.map(|id| mesh.corners[id as usize].position));
+            corners.map(Face::all).collect::<Vec<_>>()
+        });
+        for (corners, faces) in block.iter().zip(faces.iter().flatten()) {
+            for (&corner, face) in corners.iter().zip(faces) {
+                sums[points.at(corner)].add(face);
+            }
+        }
+    }
+    for (id, corner) in (0..).zip(&mut mesh.corners) {
+        corner.normal = sums[points.at(id)].normal(chord).unwrap_or(Vec3::NAN);
+    }
+    Ok(sums.iter().map(|sum| sum.faces == 0 || sum.normal(chord).is_some()).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec2;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::mesh::Corner;
+    use crate::mesh::build_limits::Unlimited;
+    use crate::mesh::generate_normals::{generate_normals, with_fans};
+    use crate::mesh::shapes::Shape;
+
+    fn without_normals(corners: impl Iterator<Item = Corner>, triangles: &[[u32; 3]]) -> UnfinishedMesh {
+        let corners = corners.map(|corner| Corner { normal: Vec3::NAN, ..corner }).collect();
+        UnfinishedMesh { corners, bindings: Vec::new(), triangles: triangles.to_vec() }
+    }
+
+    /// The triangles' corners, with the bits of their numbers, and the triangles. Corners without a triangle are left out later.
+    fn bits(mesh: &UnfinishedMesh) -> (Vec<[u32; 8]>, Vec<[u32; 3]>) {
+        let corner = |&id: &u32| {
+            let corner = &mesh.corners[id as usize];
+            let ([x, y, z], [nx, ny, nz], [u, v]) =
+                (corner.position.to_array(), corner.normal.to_array(), corner.uv.to_array());
+            [x, y, z, nx, ny, nz, u, v].map(f32::to_bits)
+        };
+        (mesh.triangles.as_flattened().iter().map(corner).collect(), mesh.triangles.clone())
+    }
+
+    /// The meshes that both ways make.
+    fn both(mesh: impl Fn() -> UnfinishedMesh, crease_angle: f32) -> [UnfinishedMesh; 2] {
+        let (mut fast, mut slow) = (mesh(), mesh());
+        generate_normals(&mut fast, crease_angle, &Unlimited, &Progress::new()).unwrap();
+        let points = CornerPoints::of(&slow, &Unlimited).unwrap();
+        with_fans(&mut slow, (&points, &[]), crease_angle, &Unlimited, &Progress::new()).unwrap();
+        [fast, slow]
+    }
+
+    proptest! {
+        #[test]
+        fn one_pass_and_lists_of_faces_give_the_same_bits(
+            places in prop::collection::vec((prop::array::uniform2(-4_i8..4), -2_i8..3), 4..40),
+            used in prop::collection::vec(prop::array::uniform3(any::<prop::sample::Index>()), 1..60),
+            bend in 0.0_f32..1.0,
+            crease_angle in prop::sample::select(vec![0.0_f32, 1.0, 30.0, 60.0, 90.0, 180.0]),
+            has_seams in any::<bool>(),
+        ) {
+            let corner = |(i, ([x, y], z)): (usize, &([i8; 2], i8))| Corner {
+                position: Vec3::new(f32::from(*x), f32::from(*y), bend * f32::from(*z)),
+                normal: Vec3::NAN,
+                uv: if has_seams { Vec2::new((i % 2) as f32, 0.0) } else { Vec2::ZERO },
+            };
+            let mut corners: Vec<Corner> = places.iter().enumerate().map(corner).collect();
+            // A builder has merged equal corners.
+            corners.sort_by_key(|corner| (corner.position.to_array().map(f32::to_bits), corner.uv.x.to_bits()));
+            corners.dedup_by_key(|corner| (corner.position, corner.uv));
+            let count = corners.len();
+            let triangles: Vec<_> = used.iter().map(|at| at.map(|at| at.index(count) as u32)).collect();
+            let [fast, slow] = both(|| without_normals(corners.iter().copied(), &triangles), crease_angle);
+            prop_assert_eq!(bits(&fast), bits(&slow));
+        }
+    }
+
+    #[test]
+    fn smooth_shapes_need_no_lists_and_creased_ones_do() {
+        for (shape, is_smooth) in [(Shape::Icosphere, true), (Shape::Torus, true), (Shape::CubeSmooth, false)] {
+            let made = shape.build();
+            let whole =
+                || without_normals(made.corners.iter().map(|c| Corner { uv: Vec2::ZERO, ..*c }), &made.triangles);
+            let mut mesh = whole();
+            let points = CornerPoints::of(&mesh, &Unlimited).unwrap();
+            let done = give_normals(&mut mesh, &points, 60.0, &Unlimited, &Progress::new()).unwrap();
+            assert_eq!(done.iter().all(|done| *done), is_smooth, "{shape:?}");
+            let [fast, slow] = both(whole, 60.0);
+            assert_eq!(bits(&fast), bits(&slow), "{shape:?}");
+        }
+    }
+}
