@@ -26,8 +26,9 @@ pub(super) fn chooser<T: Copy + PartialEq>(
 ) {
     let label = ui.label(name).on_hover_text(hover);
     let shown = choices.iter().find(|(choice, ..)| choice == value).map_or("", |(_, text, _)| text);
-    // High enough for the longest list, which has nine entries.
-    let combo = egui::ComboBox::from_id_salt(name).selected_text(shown).height(260.0).show_ui(ui, |ui| {
+    // High enough for the longest list, where the window is.
+    let height = (0.6 * ui.ctx().content_rect().height()).clamp(260.0, 480.0);
+    let combo = egui::ComboBox::from_id_salt(name).selected_text(shown).height(height).show_ui(ui, |ui| {
         for (choice, text, hover) in choices {
             ui.selectable_value(value, *choice, *text).on_hover_text(*hover);
         }

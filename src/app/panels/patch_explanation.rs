@@ -7,12 +7,14 @@ use crate::app::patch_names::ends_text;
 use crate::app::widgets::{dense, title};
 use crate::mesh::Topology;
 use crate::tessellate::{
-    DecidedBy, ExplainedEdge, ExplainedPatch, PatchFactors, inside_cut, is_enough, triangle_count,
+    Convention, DecidedBy, ExplainedEdge, ExplainedPatch, PatchFactors, domain_side, inside_cut, is_enough,
+    triangle_count,
 };
 
 /// An explanation, and the patch that it is about.
 pub(super) struct ShownExplanation<'a> {
     pub topology: &'a Topology,
+    pub convention: Convention,
     /// None until it is made, and if nothing is emitted. The rows then have ellipses, so that they don't jump.
     pub explained: Option<&'a ExplainedPatch>,
     pub by_error: bool,
@@ -28,8 +30,9 @@ impl ShownExplanation<'_> {
         };
         title(ui, name, hover);
         self.header(ui);
-        for k in 0..3 {
-            self.edge_row(ui, k);
+        // In the order of the factors above.
+        for i in 0..3 {
+            self.edge_row(ui, domain_side(self.convention, i) as usize);
         }
         self.inside_row(ui);
         self.tolerance_row(ui);

@@ -87,7 +87,8 @@ impl App {
                     if is_of_shader {
                         ui.add(egui::Label::new(NOT_EXPLAINED).wrap());
                     } else {
-                        ShownExplanation { topology, explained, by_error, factors: shown.factors }.rows(ui);
+                        let (convention, factors) = (shown.convention, shown.factors);
+                        ShownExplanation { topology, convention, explained, by_error, factors }.rows(ui);
                     }
                     shown.plot(ui);
                     shown.edge_rows(ui, &mut wish);
