@@ -46,16 +46,16 @@ fn height_map(constants: HeightConstants) -> HeightMap {
     return HeightMap(constants.size, constants.levels, 0u, constants.repeats);
 }
 
-// Returns the mip level on an edge that is cut by `factor`, whose dominant side has these texture coordinates at its ends.
+// Returns the mip level on an edge to which LOD gives `factor`, and whose dominant side has these texture coordinates at its ends.
 fn side_level(constants: HeightConstants, factor: f32, start: vec2<f32>, end: vec2<f32>) -> f32 {
     let map = height_map(constants);
-    return segment_level(map, texel_length(map, start, end), clamp(factor, 1.0, 64.0));
+    return segment_level(map, texel_length(map, start, end), clamp(written_factor(factor), 1.0, 64.0));
 }
 
-// Returns the mip level at a point: the finest of its edges. All are cut by the same factor, and the shortest of them is `texels`
-// px of level 0 long.
+// Returns the mip level at a point: the finest of its edges. LOD gives the same factor to all, and the shortest of them is
+// `texels` px of level 0 long.
 fn corner_level(constants: HeightConstants, factor: f32, texels: f32) -> f32 {
-    return segment_level(height_map(constants), texels, clamp(factor, 1.0, 64.0));
+    return segment_level(height_map(constants), texels, clamp(written_factor(factor), 1.0, 64.0));
 }
 
 // Returns the mip level inside a patch that has these texture coordinates, and so many segments inside.
