@@ -1,35 +1,15 @@
-// Displacement: heights that are read from an image at texture coordinates, and the normals of the displaced surface.
-// Twin: src/tessellate/displace.rs.
+// Displacement: heights that are read from an image at texture coordinates, and the normals of the displaced surface. The
+// module that has it also has height_list.wgsl or stage_heights.wgsl, which read single px. Twin:
+// src/tessellate/displace.rs.
 
 const DISPLACEMENT_OFF: u32 = 0u;
 const DISPLACEMENT_ON: u32 = 1u;
 const DISPLACEMENT_AS_PUBLISHED: u32 = 2u;
 const DISPLACEMENT_PER_PATCH: u32 = 3u;
 
-// The heights of all maps are one list, which fills the rows of the texture `heights`, each of this many texels.
-const HEIGHTS_ACROSS: u32 = 4096u;
-
-@group(0) @binding(20) var heights: texture_2d<f32>;
-@group(0) @binding(21) var<uniform> maps: array<HeightMap, MAX_MAPS>;
-
 // Returns the fractional part of a texture coordinate, which repeats the image.
 fn wrapped(x: f32) -> f32 {
     return x - floor(x);
-}
-
-// Returns the index of a mip level's first height in the map's list.
-fn level_start(map: HeightMap, level: u32) -> u32 {
-    var start = 0u;
-    for (var l = 0u; l < level; l++) {
-        start += max(map.size.x >> l, 1u) * max(map.size.y >> l, 1u);
-    }
-    return start;
-}
-
-// Returns the height at an index of the map's list.
-fn fetch_height(map: HeightMap, index: u32) -> f32 {
-    let i = map.start + index;
-    return textureLoad(heights, vec2<u32>(i % HEIGHTS_ACROSS, i / HEIGHTS_ACROSS), 0).r;
 }
 
 // Returns where the texture coordinate `x` lies along a row or column of `size` px: in px from the centre of px 0. In
@@ -52,11 +32,11 @@ fn bilinear_height(map: HeightMap, level: u32, uv: vec2<f32>) -> f32 {
     // Images that don't repeat give weight 0 to a px beyond the last one.
     let right = (left + 1u) % width;
     let lower = (upper + 1u) % height;
-    let start = level_start(map, level);
-    let a = fetch_height(map, start + upper * width + left);
-    let b = fetch_height(map, start + upper * width + right);
-    let c = fetch_height(map, start + lower * width + left);
-    let d = fetch_height(map, start + lower * width + right);
+    let place = level_place(map, level);
+    let a = fetch_height(map, place, vec2<u32>(left, upper));
+    let b = fetch_height(map, place, vec2<u32>(right, upper));
+    let c = fetch_height(map, place, vec2<u32>(left, lower));
+    let d = fetch_height(map, place, vec2<u32>(right, lower));
     let across = x - floor(x);
     let down = y - floor(y);
     let above = a + (b - a) * across;
@@ -95,6 +75,32 @@ fn segment_level(map: HeightMap, texels: f32, segments: f32) -> f32 {
 // Returns the distance between two texture coordinates in px of level 0.
 fn texel_length(map: HeightMap, a: vec2<f32>, b: vec2<f32>) -> f32 {
     return length((b - a) * vec2<f32>(map.size));
+}
+
+// Where a point lies on its patch: at corner `index`, on side `index` with weight t of its far end, or inside.
+struct Spot {
+    kind: u32,
+    index: u32,
+    t: u32,
+}
+
+const AT_CORNER: u32 = 0u;
+const ON_SIDE: u32 = 1u;
+const INSIDE: u32 = 2u;
+
+// Returns where the domain point (u, v) lies on its patch.
+fn spot(u: u32, v: u32) -> Spot {
+    let weights = vec3<u32>(u, v, FIXED_ONE - u - v);
+    for (var k = 0u; k < 3u; k++) {
+        if weights[k] == FIXED_ONE {
+            return Spot(AT_CORNER, k, 0u);
+        }
+    }
+    let at = outline_place(u, v);
+    if at.side < 3u {
+        return Spot(ON_SIDE, at.side, at.t);
+    }
+    return Spot(INSIDE, 0u, 0u);
 }
 
 // Returns the derivatives by u and by v of the unit vector along a u + b v + c w, where a, b and c are `directions` and

@@ -210,7 +210,10 @@ fn row_width(factors: PatchFactors) -> u32 {
 // and their width.
 fn inside_value(factors: PatchFactors) -> u32 {
     let width = factors.inside & FACTOR_VALUE;
-    return select(width, min(width, row_count(factors) << 16u), patch_has_rows(factors));
+    if patch_has_rows(factors) {
+        return min(width, row_count(factors) << 16u);
+    }
+    return width;
 }
 
 // Returns the number of points inside a patch with so many rows of some width. `divisor` is the common_divisor of both.

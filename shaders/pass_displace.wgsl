@@ -21,31 +21,6 @@ struct Lookup {
     level: f32,
 }
 
-// Where a point lies on its patch: at corner `index`, on side `index` with weight t of its far end, or inside.
-struct Spot {
-    kind: u32,
-    index: u32,
-    t: u32,
-}
-
-const AT_CORNER: u32 = 0u;
-const ON_SIDE: u32 = 1u;
-const INSIDE: u32 = 2u;
-
-fn spot(u: u32, v: u32) -> Spot {
-    let weights = vec3<u32>(u, v, FIXED_ONE - u - v);
-    for (var k = 0u; k < 3u; k++) {
-        if weights[k] == FIXED_ONE {
-            return Spot(AT_CORNER, k, 0u);
-        }
-    }
-    let at = outline_place(u, v);
-    if at.side < 3u {
-        return Spot(ON_SIDE, at.side, at.t);
-    }
-    return Spot(INSIDE, 0u, 0u);
-}
-
 fn side_weights(side: u32, t: u32) -> vec2<u32> {
     if side == 0u {
         return vec2<u32>(FIXED_ONE - t, t);

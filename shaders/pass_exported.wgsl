@@ -1,10 +1,14 @@
-// Exported compute passes: tessellates patches of nine indices without any other preparation by the host. It runs hull_main with
-// an invocation a patch, then offsets_main in one workgroup, and then emit_main with a workgroup a patch.
+// Exported compute passes: tessellates patches of nine indices (eighteen if they are displaced) without any other preparation by the
+// host. It runs hull_main with an invocation a patch, then offsets_main in one workgroup, and then emit_main with a workgroup a
+// patch.
+
+// Indices a patch, which src/shader_files puts in place of this.
+const PATCH_INDICES: u32 = 9u;
 
 @group(0) @binding(0) var<uniform> constants: StageConstants;
 // The mesh's corners, 8 numbers each: position (object units), unit normal, texture coordinates.
 @group(0) @binding(1) var<storage, read> corners: array<f32>;
-// Nine indices a patch, which `pnaen adjacency` writes.
+// The indices of the patches, which `pnaen adjacency` writes.
 @group(0) @binding(2) var<storage, read> indices: array<u32>;
 @group(0) @binding(3) var<storage, read_write> hulls: array<Hull>;
 // Where the output of each patch begins: its vertices (x) and its triangles (y). offsets_main makes that of their numbers.
@@ -13,6 +17,10 @@
 @group(0) @binding(5) var<storage, read_write> out_vertices: array<f32>;
 @group(0) @binding(6) var<storage, read_write> out_indices: array<u32>;
 @group(0) @binding(7) var<storage, read_write> status: Status;
+@group(0) @binding(8) var<uniform> height_constants: HeightConstants;
+// What displacement needs of every corner, 10 numbers each: the unit vector along which its point moves, the gradients of both
+// texture coordinates in object space, and the length of the point's shortest edge in px of level 0.
+@group(0) @binding(9) var<storage, read> relief_corners: array<f32>;
 
 // What hull_main computes for a patch.
 struct Hull {
@@ -37,7 +45,7 @@ const EXPORTED_WORKGROUP: u32 = 64u;
 const SCAN_WORKGROUP: u32 = 256u;
 
 fn patch_count() -> u32 {
-    return arrayLength(&indices) / 9u;
+    return arrayLength(&indices) / PATCH_INDICES;
 }
 
 fn exported_position(corner: u32) -> vec3<f32> {
@@ -81,8 +89,8 @@ fn hull_main(
     var net: ControlNet;
     var sides: vec3<f32>;
     for (var k = 0u; k < 3u; k++) {
-        let side = patch_side(9u * index, k);
-        net.corners[k] = exported_position(indices[9u * index + k]);
+        let side = patch_side(PATCH_INDICES * index, k);
+        net.corners[k] = exported_position(indices[PATCH_INDICES * index + k]);
         net.edges[2u * k] = side.near_start;
         net.edges[2u * k + 1u] = side.near_end;
         sides[k] = side.factor;
@@ -136,14 +144,46 @@ fn has_room(counts: vec2<u32>) -> bool {
 }
 
 fn patch_hull(index: u32) -> StagePatch {
-    let a = indices[9u * index];
-    let b = indices[9u * index + 1u];
-    let c = indices[9u * index + 2u];
+    let a = indices[PATCH_INDICES * index];
+    let b = indices[PATCH_INDICES * index + 1u];
+    let c = indices[PATCH_INDICES * index + 2u];
     return StagePatch(
         hulls[index].net,
         array<vec3<f32>, 3>(exported_normal(a), exported_normal(b), exported_normal(c)),
         array<vec2<f32>, 3>(exported_uv(a), exported_uv(b), exported_uv(c)),
     );
+}
+
+// What displacement needs of a corner, whose numbers begin at `first`.
+fn relief_vector(corner: u32, first: u32) -> vec3<f32> {
+    let at = 10u * corner + first;
+    return vec3<f32>(relief_corners[at], relief_corners[at + 1u], relief_corners[at + 2u]);
+}
+
+fn height_place(corner: u32) -> HeightPlace {
+    return HeightPlace(exported_uv(corner), relief_vector(corner, 3u), relief_vector(corner, 6u));
+}
+
+// What displacement needs of a patch.
+fn patch_relief(index: u32, uvs: array<vec2<f32>, 3>) -> StageRelief {
+    let first = PATCH_INDICES * index;
+    let factor = constants.factor;
+    var relief: StageRelief;
+    for (var k = 0u; k < 3u; k++) {
+        let own = indices[first + k];
+        let start = indices[first + 12u + 2u * k];
+        let end = indices[first + 13u + 2u * k];
+        relief.directions[k] = relief_vector(own, 0u);
+        relief.own[k] = height_place(own);
+        relief.dominant[k] = height_place(indices[first + 9u + k]);
+        relief.sides[2u * k] = height_place(start);
+        relief.sides[2u * k + 1u] = height_place(end);
+        relief.corner_levels[k] = corner_level(height_constants, factor, relief_corners[10u * own + 9u]);
+        relief.side_levels[k] = side_level(height_constants, factor, exported_uv(start), exported_uv(end));
+    }
+    let segments = f32(inside_value(hulls[index].factors)) * UNIT;
+    relief.inside_level = level_inside(height_constants, segments, uvs);
+    return relief;
 }
 
 fn put_vertex(index: u32, made: StageVertex) {
@@ -177,8 +217,15 @@ fn emit_main(
     }
     let hull = patch_hull(index);
     let plan = domain_plan(factors);
-    for (var i = local; i < counts.x; i += EXPORTED_WORKGROUP) {
-        put_vertex(start.x + i, stage_vertex(hull, domain_point(plan, i)));
+    if CHOSEN_DISPLACEMENT == DISPLACEMENT_OFF {
+        for (var i = local; i < counts.x; i += EXPORTED_WORKGROUP) {
+            put_vertex(start.x + i, stage_vertex(hull, domain_point(plan, i)));
+        }
+    } else {
+        let relief = patch_relief(index, hull.uvs);
+        for (var i = local; i < counts.x; i += EXPORTED_WORKGROUP) {
+            put_vertex(start.x + i, displaced_vertex(height_constants, hull, relief, domain_point(plan, i)));
+        }
     }
     for (var t = local; t < counts.y; t += EXPORTED_WORKGROUP) {
         let triangle = domain_triangle(plan, t);

@@ -317,7 +317,8 @@ mod tests {
             (96, Hint::Layout(Layout::Twelve)),
             (48, Hint::Layout(Layout::Six)),
             (108, Hint::Degenerate),
-            (144, Hint::None),
+            (144, Hint::Layout(Layout::Eighteen)),
+            (148, Hint::None),
         ] {
             assert_eq!(fault(&vec![0; bytes], Layout::Nine), size(bytes, hint));
         }

@@ -41,3 +41,4 @@ pub use crate::shader_files::{Language, ShaderError, ShaderFile, indices_per_pat
 pub use crate::tessellate::domain::{domain_plan, domain_point, domain_triangle};
 pub use crate::tessellate::factors::{outer_count, point_count, row_base, triangle_count};
 pub use crate::tessellate::hull_factors::HullFactors;
+pub use crate::tessellate::mesh_displacement::{DisplacedCorner, displaced_corners};

@@ -560,29 +560,6 @@ fn center_control_point(corners: array<vec3<f32>, 3>, edges: array<vec3<f32>, 6>
     return e + (e - v) * 0.5;
 }
 
-const CONVENTION_D3D11: u32 = 0u;
-
-// Returns the side (0 to 2) whose factor the hull shader writes as factor `i` (0 to 2).
-fn factor_side(convention: u32, i: u32) -> u32 {
-    return (i + 1u) % 3u;
-}
-
-// Returns the weights of corners 0 and 1 for a domain point that the tessellator gives as U and V. All are 16.16 fixed
-// point; the weight of corner 2 is the rest of 1.
-fn corner_weights(convention: u32, domain: vec2<u32>) -> vec2<u32> {
-    let w = FIXED_ONE - domain.x - domain.y;
-    return domain;
-}
-
-struct LodView {
-    clip_from_object: mat4x4<f32>,
-    half_viewport: vec2<f32>,
-    // The largest distance in object units by which displacement moves a point.
-    reach: f32,
-    eye: vec3<f32>,
-    radius: f32,
-}
-
 // Weighted sums of unit normals that are shorter than this are rounding errors: the normals cancel.
 const CANCELLED: f32 = 1e-6;
 
@@ -607,10 +584,33 @@ fn edge_normal(a: vec3<f32>, b: vec3<f32>, t: u32) -> vec3<f32> {
     return unit_or(a * (f32(FIXED_ONE - t) * UNIT) + b * (f32(t) * UNIT), nearest);
 }
 
+struct LodView {
+    clip_from_object: mat4x4<f32>,
+    half_viewport: vec2<f32>,
+    // The largest distance in object units by which displacement moves a point.
+    reach: f32,
+    eye: vec3<f32>,
+    radius: f32,
+}
+
 // The two inner control points of a curve: the one near its start, and the one near its end.
 struct CurveNet {
     ab: vec3<f32>,
     ba: vec3<f32>,
+}
+
+const CONVENTION_D3D11: u32 = 0u;
+
+// Returns the side (0 to 2) whose factor the hull shader writes as factor `i` (0 to 2).
+fn factor_side(convention: u32, i: u32) -> u32 {
+    return (i + 1u) % 3u;
+}
+
+// Returns the weights of corners 0 and 1 for a domain point that the tessellator gives as U and V. All are 16.16 fixed
+// point; the weight of corner 2 is the rest of 1.
+fn corner_weights(convention: u32, domain: vec2<u32>) -> vec2<u32> {
+    let w = FIXED_ONE - domain.x - domain.y;
+    return domain;
 }
 
 const CHOSEN_SURFACE: u32 = SURFACE_PN_AEN;
@@ -815,12 +815,13 @@ fn stage_vertex(hull: StagePatch, domain: vec2<u32>) -> StageVertex {
     return made;
 }
 
+const PATCH_INDICES: u32 = 9u;
 @group(0) @binding(0) var<uniform> constants: StageConstants;
 
 // The mesh's corners, 8 numbers each: position (object units), unit normal, texture coordinates.
 @group(0) @binding(1) var<storage, read> corners: array<f32>;
 
-// Nine indices a patch, which `pnaen adjacency` writes.
+// The indices of the patches, which `pnaen adjacency` writes.
 @group(0) @binding(2) var<storage, read> indices: array<u32>;
 
 @group(0) @binding(3) var<storage, read_write> hulls: array<Hull>;
@@ -858,7 +859,7 @@ const EXPORTED_WORKGROUP: u32 = 64u;
 const SCAN_WORKGROUP: u32 = 256u;
 
 fn patch_count() -> u32 {
-    return arrayLength(&indices) / 9u;
+    return arrayLength(&indices) / PATCH_INDICES;
 }
 
 fn exported_position(corner: u32) -> vec3<f32> {
@@ -902,8 +903,8 @@ fn hull_main(
     var net: ControlNet;
     var sides: vec3<f32>;
     for (var k = 0u; k < 3u; k++) {
-        let side = patch_side(9u * index, k);
-        net.corners[k] = exported_position(indices[9u * index + k]);
+        let side = patch_side(PATCH_INDICES * index, k);
+        net.corners[k] = exported_position(indices[PATCH_INDICES * index + k]);
         net.edges[2u * k] = side.near_start;
         net.edges[2u * k + 1u] = side.near_end;
         sides[k] = side.factor;
@@ -957,9 +958,9 @@ fn has_room(counts: vec2<u32>) -> bool {
 }
 
 fn patch_hull(index: u32) -> StagePatch {
-    let a = indices[9u * index];
-    let b = indices[9u * index + 1u];
-    let c = indices[9u * index + 2u];
+    let a = indices[PATCH_INDICES * index];
+    let b = indices[PATCH_INDICES * index + 1u];
+    let c = indices[PATCH_INDICES * index + 2u];
     return StagePatch(
         hulls[index].net,
         array<vec3<f32>, 3>(exported_normal(a), exported_normal(b), exported_normal(c)),

@@ -3,14 +3,17 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::{CliError, WeldOption, file_of, keep_apart, load_apart, options, read_bytes, write_bytes};
+use clap::builder::{OsStringValueParser, TypedValueParser};
+
+use super::{CliError, WeldOption, file_of, file_of_heights, keep_apart, load_apart, options, read_bytes, write_bytes};
 use crate::adjacency_file::{Format, read, to_bin, to_json};
-use crate::engine::Loaded;
-use crate::load::Source;
+use crate::engine::{Loaded, Preparation};
+use crate::load::{HeightSource, Source};
 use crate::measure::{IndexDifference, Meaning, index_differences};
 use crate::mesh::adjacency::{Layout, Part};
 use crate::names::{every, shown_path};
 use crate::settings::{Choice, Description};
+use crate::tessellate::displaced_corners;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -33,6 +36,13 @@ pub(crate) struct Args {
     /// as in a .bin file. Standard error lists which patches differ and what that means; the command fails if any differs
     #[arg(long, value_name = "FILE")]
     pub against: Option<PathBuf>,
+    /// Also write what exported shaders that displace need of every corner, 40 bytes each: the unit vector along which its point moves,
+    /// the gradients of both texture coordinates, and the length of the point's shortest edge in px of the height image
+    #[arg(long, value_name = "OUT.bin", requires = "height")]
+    pub corners: Option<PathBuf>,
+    /// The height image of --corners: a PNG, JPEG or WebP image over all materials, or `material`, the materials' base colour image
+    #[arg(long, value_name = "IMAGE|material", requires = "corners", value_parser = OsStringValueParser::new().map(HeightSource::from))]
+    pub height: Option<HeightSource>,
 }
 
 impl Choice for Layout {
@@ -49,6 +59,11 @@ impl Choice for Layout {
             Self::Twelve => {
                 Description::new("12", "12", "The nine, then the dominant corners on the points of corners 0, 1, 2.")
             }
+            Self::Eighteen => Description::new(
+                "18",
+                "18",
+                "The twelve, then the corners of the dominant sides of the edges 0-1, 1-2, 2-0: what exported shaders need to displace.",
+            ),
         }
     }
 }
@@ -74,12 +89,18 @@ impl Choice for Format {
 const SAID: usize = 10;
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
-    if args.output.is_none() && args.against.is_none() {
+    if args.output.is_none() && args.against.is_none() && args.corners.is_none() {
         return Err(CliError::Usage("give -o to write a file, --against to compare one with the mesh, or both"));
     }
-    keep_apart([file_of(&args.file), args.against.as_deref()], [args.output.as_deref()])?;
+    let written = [args.output.as_deref(), args.corners.as_deref()];
+    let read_files = [file_of(&args.file), args.against.as_deref(), file_of_heights(args.height.as_ref())];
+    keep_apart(read_files, written)?;
     let given = args.against.as_deref().map(read_bytes).transpose()?;
-    let loaded = load_apart(&args.file, &args.weld.preparation(), &[args.output.as_deref()])?;
+    let preparation = Preparation { heights: args.height.clone(), ..args.weld.preparation() };
+    let loaded = load_apart(&args.file, &preparation, &written)?;
+    if let Some(path) = &args.corners {
+        write_corners(&loaded, path)?;
+    }
     let computed = args.indices.indices(&loaded.topology);
     if let Some(path) = &args.output {
         let format = args.format.unwrap_or(Format::of_name(path));
@@ -116,6 +137,17 @@ pub(crate) fn write_adjacency(
         }
         Format::Bin => write_bytes(path, &to_bin(indices)),
     }
+}
+
+/// Writes what displacement needs of every corner: 32-bit floating-point numbers, little-endian.
+///
+/// # Errors
+/// The mesh isn't displaced by one image everywhere, or the file can't be written.
+fn write_corners(loaded: &Loaded, path: &Path) -> Result<(), CliError> {
+    let corners = displaced_corners(&loaded.mesh, &loaded.topology);
+    let corners = corners.ok_or_else(|| CliError::NotOneImage { file: loaded.source.to_string() })?;
+    let bytes: Vec<u8> = corners.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
+    write_bytes(path, &bytes)
 }
 
 /// Reports on standard error where a file's indices differ from those of the mesh.
@@ -167,6 +199,7 @@ fn difference_text(loaded: &Loaded, difference: &IndexDifference, given: &[u32],
         Part::Corners => "corners".to_owned(),
         Part::Side(k) => format!("side {k}-{}", (k + 1) % 3),
         Part::Dominant => "dominant corners".to_owned(),
+        Part::DominantSide(k) => format!("dominant side of {k}-{}", (k + 1) % 3),
     };
     let (given, computed) = (corners(given), corners(computed));
     format!("patch {patch}{triangle}, {part}: the file has {given} instead of {computed}: {}", words(*meaning))

@@ -216,6 +216,10 @@ pub(crate) enum CliError {
     Indices { path: String, fault: crate::adjacency_file::IndicesFault },
     #[error("{path}: {different} of {patches} patches {differ}: {meanings}")]
     OtherIndices { path: String, different: usize, patches: usize, differ: &'static str, meanings: String },
+    #[error(
+        "{file}: --corners needs one height image over all triangles, which its materials don't have: name one with --height"
+    )]
+    NotOneImage { file: String },
     #[error("{file} has no triangles to compare; choose another file")]
     NothingToCompare { file: String },
     #[error(

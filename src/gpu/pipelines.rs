@@ -11,8 +11,8 @@ use super::own_lod::{LodShader, OwnLodPipelines};
 use super::own_surface::{OwnSurfacePipelines, SurfaceShader};
 use super::wgsl::{
     CONNECTIVITY_TABLE, CONTROL_POINTS, CONVENTION, CULL, DISPLACE, DISPLACEMENT_FACTOR, DISPLACEMENT_SHARES, DOMAIN,
-    FACTORS, LEAST_FACTORS, LEAST_ROWS, LOAD_NET, LOADS, LOD, NORMAL, OCTAHEDRAL_NORMAL, SEARCH_GROUP, SEARCH_STATE,
-    SLIDES, SURFACE, TYPES, WORKGROUP_SCAN, WgslFile, wgsl,
+    FACTORS, HEIGHT_LIST, LEAST_FACTORS, LEAST_ROWS, LOAD_NET, LOADS, LOD, NORMAL, OCTAHEDRAL_NORMAL, SEARCH_GROUP,
+    SEARCH_STATE, SLIDES, SURFACE, TYPES, WORKGROUP_SCAN, WgslFile, wgsl,
 };
 use super::{Gpu, GpuError};
 use crate::tessellate::{Normals, connectivity_table};
@@ -31,7 +31,7 @@ pub(super) static PASS_UNIFORM: WgslFile =
 pub(super) static PASS_LEAST: WgslFile =
     wgsl!("pass_least", DISPLACEMENT_FACTOR, FACTORS, LEAST_FACTORS, LEAST_ROWS, LOADS, SEARCH_GROUP, SLIDES, TYPES);
 pub(super) static PASS_LEVELS: WgslFile =
-    wgsl!("pass_levels", CONVENTION, DISPLACE, NORMAL, DISPLACEMENT_SHARES, TYPES);
+    wgsl!("pass_levels", CONVENTION, DISPLACE, HEIGHT_LIST, NORMAL, DISPLACEMENT_SHARES, TYPES);
 pub(super) static PASS_COUNTS: WgslFile =
     wgsl!("pass_counts", CONVENTION, CULL, FACTORS, LOAD_NET, LOADS, LOD, SURFACE, TYPES, WORKGROUP_SCAN,);
 pub(super) static PASS_SCAN: WgslFile = wgsl!("pass_scan", TYPES, WORKGROUP_SCAN);
@@ -52,6 +52,7 @@ pub(super) static PASS_DISPLACE: WgslFile = wgsl!(
     "pass_displace",
     DISPLACE,
     FACTORS,
+    HEIGHT_LIST,
     LOAD_NET,
     LOADS,
     NORMAL,

@@ -6,7 +6,7 @@ use super::{Gpu, GpuError};
 use crate::mesh::{Dominance, Heights, MAX_LEVELS, MAX_MAPS, Mesh, Topology};
 use crate::tessellate::{TexelLength, map_number};
 
-/// Width in texels of the texture that holds all height images; `HEIGHTS_ACROSS` in `shaders/displace.wgsl`.
+/// Width in texels of the texture that holds all height images; `HEIGHTS_ACROSS` in `shaders/height_list.wgsl`.
 pub(crate) const HEIGHTS_ACROSS: u32 = 4096;
 
 /// A mesh's height images, all mip levels of all of them one after another in the rows of one texture.

@@ -56,7 +56,9 @@ pub(crate) static SEARCH_STATE: WgslFile = wgsl!("search_state", DISPLACEMENT_FA
 pub(crate) static LEAST_FACTORS: WgslFile =
     wgsl!("least_factors", CONNECTIVITY, DOMAIN, FACTORS, LOD, PIECE_ERROR, SEARCH_GROUP);
 pub(crate) static LEAST_ROWS: WgslFile = wgsl!("least_rows", FACTORS, LEAST_FACTORS, PIECE_ERROR, SEARCH_GROUP);
-pub(crate) static DISPLACE: WgslFile = wgsl!("displace", NORMAL, TYPES);
+pub(crate) static HEIGHT_LIST: WgslFile = wgsl!("height_list", TYPES);
+/// The module that has it also has [`HEIGHT_LIST`], or a file that declares the same functions.
+pub(crate) static DISPLACE: WgslFile = wgsl!("displace", FACTORS, NORMAL, SURFACE, TYPES);
 /// The module that has it declares the buffers that it reads.
 pub(crate) static DISPLACEMENT_SHARES: WgslFile = wgsl!("displacement_shares", TYPES);
 /// The module that has it declares the buffers that it reads, and has [`LOADS`] or functions of the same names.

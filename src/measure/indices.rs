@@ -10,13 +10,13 @@ use crate::mesh::{Mesh, Topology};
 pub(crate) enum Meaning {
     /// The same patch, starting at another corner.
     Turned,
-    /// All patches around a point name another of its corners as the dominant one.
+    /// All patches around a point, or on an edge, name other corners as the dominant ones.
     OtherDominant,
     /// Other corners on the same points with the same normals. The surface is the same.
     SameNormals,
     /// Other corners on the same points with other normals.
     OtherNormals,
-    /// Patches around a point name different corners of it as the dominant one.
+    /// Patches around a point, or on an edge, name different corners as the dominant ones.
     MixedDominant,
     /// The two corners of a side in the other order.
     Exchanged,
@@ -47,7 +47,7 @@ pub(crate) fn index_differences(
     computed: &[u32],
 ) -> Vec<IndexDifference> {
     let count = layout.per_patch();
-    let dominants = if layout == Layout::Twelve { Dominants::of(topology, given) } else { Dominants::default() };
+    let dominants = Dominants::of(topology, layout, given);
     let mut differences = Vec::new();
     for (patch, computed) in computed.chunks(count).enumerate() {
         let first = patch * count;
@@ -67,6 +67,9 @@ pub(crate) fn index_differences(
             let (given, computed) = (&given[range.clone()], &computed[range.clone()]);
             let meaning = match (part, same_corners(mesh, topology, given, computed)) {
                 (Part::Dominant, Meaning::SameNormals | Meaning::OtherNormals) => dominants.meaning(topology, given),
+                (Part::DominantSide(k), Meaning::SameNormals | Meaning::OtherNormals) => {
+                    dominants.side_meaning(topology, topology.patches[patch].sides[k as usize])
+                }
                 (_, meaning) => meaning,
             };
             differences.push(at(part, range, meaning));
@@ -85,7 +88,10 @@ fn is_turned(layout: Layout, given: &[u32], computed: &[u32]) -> bool {
         let mut patch = computed.to_vec();
         patch[..3].rotate_left(by);
         patch[3..9].rotate_left(2 * by);
-        patch[9..].rotate_left(if layout == Layout::Twelve { by } else { 0 });
+        if layout != Layout::Nine {
+            patch[9..12].rotate_left(by);
+            patch[12..].rotate_left(if layout == Layout::Eighteen { 2 * by } else { 0 });
+        }
         patch
     };
     turned(1) == given || turned(2) == given
@@ -105,25 +111,52 @@ fn same_corners(mesh: &Mesh, topology: &Topology, given: &[u32], computed: &[u32
     }
 }
 
-/// For each point, the lowest and the highest of its corners that the given indices name as dominant.
+/// What the given indices name as dominant.
 #[derive(Default)]
-struct Dominants(Vec<[u32; 2]>);
+struct Dominants {
+    /// For each point, the lowest and the highest of its corners that are named.
+    corners: Vec<[u32; 2]>,
+    /// For each edge, the least and the greatest pair of corners that are named, in the direction of the edge.
+    sides: Vec<[[u32; 2]; 2]>,
+}
 
 impl Dominants {
-    fn of(topology: &Topology, given: &[u32]) -> Self {
-        let mut named = vec![[u32::MAX, 0]; topology.points.len()];
-        for &corner in given.chunks(12).flat_map(|patch| &patch[9..]) {
-            let [lowest, highest] = &mut named[topology.corner_points[corner as usize] as usize];
-            *lowest = corner.min(*lowest);
-            *highest = corner.max(*highest);
+    fn of(topology: &Topology, layout: Layout, given: &[u32]) -> Self {
+        let mut named = Self::default();
+        let patches = || topology.patches.iter().zip(given.chunks(layout.per_patch()));
+        if layout.parts().any(|(part, _)| part == Part::Dominant) {
+            named.corners = vec![[u32::MAX, 0]; topology.points.len()];
+            for &corner in patches().flat_map(|(_, indices)| &indices[9..12]) {
+                let [lowest, highest] = &mut named.corners[topology.corner_points[corner as usize] as usize];
+                *lowest = corner.min(*lowest);
+                *highest = corner.max(*highest);
+            }
         }
-        Self(named)
+        if layout == Layout::Eighteen {
+            named.sides = vec![[[u32::MAX; 2], [0; 2]]; topology.edges.len()];
+            for (patch, indices) in patches() {
+                for (&side, pair) in patch.sides.iter().zip(indices[12..].chunks(2)) {
+                    let side = &topology.sides[side as usize];
+                    let pair = if side.reversed() { [pair[1], pair[0]] } else { [pair[0], pair[1]] };
+                    let [least, greatest] = &mut named.sides[side.edge as usize];
+                    *least = pair.min(*least);
+                    *greatest = pair.max(*greatest);
+                }
+            }
+        }
+        named
+    }
+
+    /// The meaning of a difference in the corners of a dominant side that lie on the right points.
+    fn side_meaning(&self, topology: &Topology, side: u32) -> Meaning {
+        let [least, greatest] = self.sides[topology.sides[side as usize].edge as usize];
+        if least == greatest { Meaning::OtherDominant } else { Meaning::MixedDominant }
     }
 
     /// The meaning of a difference in dominant corners that lie on the right points.
     fn meaning(&self, topology: &Topology, given: &[u32]) -> Meaning {
         let is_one = |&corner: &u32| {
-            let [lowest, highest] = self.0[topology.corner_points[corner as usize] as usize];
+            let [lowest, highest] = self.corners[topology.corner_points[corner as usize] as usize];
             lowest == highest
         };
         if given.iter().all(is_one) { Meaning::OtherDominant } else { Meaning::MixedDominant }
@@ -178,11 +211,14 @@ mod tests {
                 let corners = if count == 6 { 0 } else { 3 };
                 patch[..corners].rotate_left(by % 3 * usize::from(corners > 0));
                 patch[corners..corners + 6].rotate_left(2 * by);
-                patch[corners + 6..].rotate_left(if count == 12 { by } else { 0 });
+                if count > 9 {
+                    patch[9..12].rotate_left(by);
+                    patch[12..].rotate_left(if count == 18 { 2 * by } else { 0 });
+                }
             }
         };
         for by in [1, 2] {
-            for (layout, count) in [(Layout::Nine, 9), (Layout::Twelve, 12)] {
+            for (layout, count) in [(Layout::Nine, 9), (Layout::Twelve, 12), (Layout::Eighteen, 18)] {
                 assert_eq!(found(layout, turn(count, by)), [(1, Part::Corners, Meaning::Turned)]);
             }
             let sides = [0, 1, 2].map(|side| (1, Part::Side(side), Meaning::OtherPoints));
@@ -232,5 +268,38 @@ mod tests {
         assert_eq!(one.iter().map(|found| found.2).collect::<Vec<_>>(), [Meaning::MixedDominant]);
         let elsewhere = found(Layout::Twelve, |_, _, given| given.swap(9, 10));
         assert_eq!(elsewhere, [(0, Part::Dominant, Meaning::OtherPoints)]);
+    }
+
+    #[test]
+    fn another_dominant_side_is_harmless_only_if_both_patches_name_it() {
+        // The place of a side, and that of its neighbour, whose corners are others there.
+        let pair = |topology: &Topology, given: &[u32]| {
+            let ends = |edge: &crate::mesh::Edge| {
+                topology.edge_sides(edge).iter().map(|side| (side.patch() as usize, side.index())).collect::<Vec<_>>()
+            };
+            let of = |edge: &crate::mesh::Edge| match ends(edge)[..] {
+                [(a, k), (b, l)] => {
+                    let places = [18 * a + 12 + 2 * k, 18 * b + 12 + 2 * l];
+                    let other = [given[18 * a + 3 + 2 * k], given[18 * a + 4 + 2 * k]];
+                    (other != [given[places[0]], given[places[0] + 1]]).then_some((places, other))
+                }
+                _ => None,
+            };
+            topology.edges.iter().find_map(of).expect("a crease between two patches")
+        };
+        let both = found(Layout::Eighteen, |_, topology, given| {
+            let ([one, other], [a, b]) = pair(topology, given);
+            // Neighbours run against each other.
+            given[one..one + 2].copy_from_slice(&[a, b]);
+            given[other..other + 2].copy_from_slice(&[b, a]);
+        });
+        assert_eq!(both.iter().map(|found| found.2).collect::<Vec<_>>(), [Meaning::OtherDominant; 2]);
+        let one = found(Layout::Eighteen, |_, topology, given| {
+            let ([one, _], own) = pair(topology, given);
+            given[one..one + 2].copy_from_slice(&own);
+        });
+        assert_eq!(one.iter().map(|found| found.2).collect::<Vec<_>>(), [Meaning::MixedDominant]);
+        let exchanged = found(Layout::Eighteen, |_, _, given| given.swap(12, 13));
+        assert_eq!(exchanged, [(0, Part::DominantSide(0), Meaning::Exchanged)]);
     }
 }

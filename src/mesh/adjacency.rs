@@ -3,7 +3,7 @@
 //! The nine-index patch is that of McDonald and Kilgard 2010, "Crack-Free Point-Normal Triangles using Adjacent Edge
 //! Normals". Its first three indices are the mesh's own index buffer; the other six can be kept in a buffer of their own,
 //! beside that one. The twelve-index patch adds the dominant corners of McDonald 2011, "Tessellation on Any Budget", in
-//! the order in which meshoptimizer writes them.
+//! the order in which meshoptimizer writes them. The eighteen-index patch adds the corners of its edges' dominant sides.
 
 use std::ops::Range;
 
@@ -19,6 +19,8 @@ pub enum Layout {
     Nine,
     /// The nine, then the dominant corners on the points of corners 0, 1, 2
     Twelve,
+    /// The twelve, then the corners of the dominant sides of edges 0-1, 1-2, 2-0, in the patch's own direction
+    Eighteen,
 }
 
 /// A part of a patch's indices.
@@ -30,35 +32,38 @@ pub enum Part {
     Side(u32),
     /// The dominant corners.
     Dominant,
+    /// The corners of the dominant side of side k's edge.
+    DominantSide(u32),
 }
 
 impl Layout {
-    pub const ALL: [Self; 3] = every![Layout: Six, Nine, Twelve];
+    pub const ALL: [Self; 4] = every![Layout: Six, Nine, Twelve, Eighteen];
 
     /// The number of indices of each patch.
     pub fn per_patch(self) -> usize {
-        self.of_twelve().len()
+        self.of_eighteen().len()
     }
 
-    /// Returns which of a patch's twelve indices belong to this layout.
-    fn of_twelve(self) -> Range<usize> {
+    /// Returns which of a patch's eighteen indices belong to this layout.
+    fn of_eighteen(self) -> Range<usize> {
         match self {
             Self::Six => 3..9,
             Self::Nine => 0..9,
             Self::Twelve => 0..12,
+            Self::Eighteen => 0..18,
         }
     }
 
     /// Returns the indices of all patches, in the order of the patches.
     pub fn indices(self, topology: &Topology) -> Vec<u32> {
-        let (per_patch, of_twelve) = (self.per_patch(), self.of_twelve());
+        let (per_patch, of_eighteen) = (self.per_patch(), self.of_eighteen());
         let mut indices = Vec::with_capacity(per_patch * topology.patches.len());
         for patch in &topology.patches {
-            indices.extend_from_slice(&alone(topology, patch)[of_twelve.clone()]);
+            indices.extend_from_slice(&alone(topology, patch)[of_eighteen.clone()]);
         }
         // Goes through the edges, not the patches: an edge's sides are neighbours in memory. Looking up each patch's
         // neighbours is several times slower if the triangles are in random order.
-        let place = |side: &Side| per_patch * side.patch() as usize + pair(side.index()).start - of_twelve.start;
+        let place = |side: &Side| per_patch * side.patch() as usize + pair(side.index()).start - of_eighteen.start;
         // Two sides with the same corners have each other's indices already.
         for edge in topology.edges.iter().filter(|edge| !edge.shares_corners) {
             if let [a, b] = topology.edge_sides(edge) {
@@ -74,11 +79,14 @@ impl Layout {
 
     /// Returns the parts of a patch's indices, and where each lies among them.
     pub fn parts(self) -> impl Iterator<Item = (Part, Range<usize>)> {
-        let first = pair(0).start - self.of_twelve().start;
+        let first = pair(0).start - self.of_eighteen().start;
         let corners = (self != Self::Six).then_some((Part::Corners, 0..3));
         let sides = (0..3).map(move |k| (Part::Side(k as u32), first + 2 * k..first + 2 * k + 2));
-        let dominant = (self == Self::Twelve).then_some((Part::Dominant, 9..12));
-        corners.into_iter().chain(sides).chain(dominant)
+        let has_dominant = matches!(self, Self::Twelve | Self::Eighteen);
+        let dominant = has_dominant.then_some((Part::Dominant, 9..12));
+        let dominant_sides = if self == Self::Eighteen { 0..3 } else { 0..0 };
+        let dominant_sides = dominant_sides.map(|k: usize| (Part::DominantSide(k as u32), 12 + 2 * k..14 + 2 * k));
+        corners.into_iter().chain(sides).chain(dominant).chain(dominant_sides)
     }
 }
 
@@ -91,16 +99,18 @@ impl Layout {
 /// If `patch` isn't an index into [`Topology::patches`].
 #[cfg(test)]
 pub(crate) fn nine(topology: &Topology, patch: u32) -> [u32; 9] {
-    let [nine @ .., _, _, _] = twelve(topology, patch);
+    let mut nine = [0; 9];
+    nine.copy_from_slice(&eighteen(topology, patch)[..9]);
     nine
 }
 
-/// Returns the nine indices of `nine`, followed by the dominant corners on the points of corners 0, 1 and 2. A
-/// point's dominant corner is the lowest one on it, so that all patches around the point agree.
+/// Returns the nine indices of `nine`, followed by the dominant corners on the points of corners 0, 1 and 2, and by the
+/// corners of the dominant sides of the edges 0-1, 1-2 and 2-0, in the patch's own direction. A point's dominant corner is
+/// the lowest one on it, and an edge's dominant side the first one, so that all patches around them agree.
 ///
 /// # Panics
 /// If `patch` isn't an index into [`Topology::patches`].
-pub(crate) fn twelve(topology: &Topology, patch: u32) -> [u32; 12] {
+pub(crate) fn eighteen(topology: &Topology, patch: u32) -> [u32; 18] {
     let patch = &topology.patches[patch as usize];
     let mut indices = alone(topology, patch);
     for (k, &own) in patch.sides.iter().enumerate() {
@@ -111,18 +121,23 @@ pub(crate) fn twelve(topology: &Topology, patch: u32) -> [u32; 12] {
     indices
 }
 
-/// Returns the twelve indices that a patch without neighbours would have.
-fn alone(topology: &Topology, patch: &Patch) -> [u32; 12] {
+/// Returns the eighteen indices of a patch, with its own corners in place of its neighbours'.
+fn alone(topology: &Topology, patch: &Patch) -> [u32; 18] {
     let corners = topology.corners(patch);
     let [a, b, c] = corners;
     let [d, e, f] = corners.map(|corner| {
         let point = topology.corner_points[corner as usize];
         topology.point_corners[point as usize]
     });
-    [a, b, c, a, b, b, c, c, a, d, e, f]
+    let [[g, h], [i, j], [k, l]] = patch.sides.map(|own| {
+        let side = &topology.sides[own as usize];
+        let first = topology.edges[side.edge as usize].first_side;
+        across(topology, side, &topology.sides[first as usize])
+    });
+    [a, b, c, a, b, b, c, c, a, d, e, f, g, h, i, j, k, l]
 }
 
-/// Returns the place among the twelve indices of the neighbour's corners along side k.
+/// Returns the place among the indices of the neighbour's corners along side k.
 fn pair(k: usize) -> Range<usize> {
     3 + 2 * k..5 + 2 * k
 }
@@ -158,8 +173,11 @@ mod tests {
 
     fn topology(mesh: &Mesh) -> Topology {
         let topology = Topology::build(mesh, &Progress::new()).unwrap();
-        let one_by_one = (0..topology.patches.len() as u32).flat_map(|patch| twelve(&topology, patch));
-        assert!(Layout::Twelve.indices(&topology).into_iter().eq(one_by_one), "all patches at once are each by itself");
+        let one_by_one = (0..topology.patches.len() as u32).flat_map(|patch| eighteen(&topology, patch));
+        assert!(
+            Layout::Eighteen.indices(&topology).into_iter().eq(one_by_one),
+            "all patches at once are each by itself"
+        );
         topology
     }
 
@@ -177,7 +195,9 @@ mod tests {
         assert_eq!(nine(&topology, 0), [0, 1, 2, 0, 1, 1, 2, 4, 3]);
         assert_eq!(nine(&topology, 1), [3, 4, 5, 0, 2, 4, 5, 5, 3]);
         assert_eq!(Layout::Six.indices(&topology)[6..], [0, 2, 4, 5, 5, 3], "without the corners");
-        assert_eq!(twelve(&topology, 1)[9..], [0, 2, 5]);
+        assert_eq!(eighteen(&topology, 1)[9..12], [0, 2, 5]);
+        assert_eq!(eighteen(&topology, 1)[12..], [0, 2, 4, 5, 5, 3], "the first patch speaks for the edge");
+        assert_eq!(eighteen(&topology, 0)[12..], [0, 1, 1, 2, 2, 0]);
     }
 
     #[test]
@@ -210,13 +230,35 @@ mod tests {
     }
 
     #[test]
-    fn parts_are_all_there_is_and_six_nine_and_twelve_contain_each_other() {
+    fn the_patches_of_an_edge_agree_on_its_dominant_side() {
+        for shape in Shape::ALL {
+            let topology = topology(&shape.build());
+            let indices = Layout::Eighteen.indices(&topology);
+            let mut of_edges = vec![None; topology.edges.len()];
+            for (patch, own) in topology.patches.iter().zip(indices.chunks(18)) {
+                for (k, &side) in patch.sides.iter().enumerate() {
+                    let side = &topology.sides[side as usize];
+                    let mut pair = [own[12 + 2 * k], own[13 + 2 * k]];
+                    let points = pair.map(|corner| topology.corner_points[corner as usize]);
+                    assert_eq!(points, [k, (k + 1) % 3].map(|k| topology.corner_points[own[k] as usize]));
+                    if side.reversed() {
+                        pair.reverse();
+                    }
+                    assert_eq!(*of_edges[side.edge as usize].get_or_insert(pair), pair, "{}", shape.name());
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn parts_are_all_there_is_and_layouts_contain_each_other() {
         let topology = topology(&Shape::Cylinder.build());
         let of = |layout: Layout| layout.indices(&topology).chunks(layout.per_patch()).map(<[u32]>::to_vec).collect();
-        let [six, nine, twelve]: [Vec<Vec<u32>>; 3] = Layout::ALL.map(of);
+        let [six, nine, twelve, eighteen]: [Vec<Vec<u32>>; 4] = Layout::ALL.map(of);
         for (patch, six) in six.iter().enumerate() {
             assert_eq!([&topology.patch_corners(patch as u32)[..], six].concat(), nine[patch]);
             assert_eq!(nine[patch], twelve[patch][..9]);
+            assert_eq!(twelve[patch], eighteen[patch][..12]);
         }
         for layout in Layout::ALL {
             let places: Vec<_> = layout.parts().flat_map(|(_, range)| range).collect();

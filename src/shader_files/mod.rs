@@ -5,7 +5,9 @@
 //! take. What differs between languages, the inputs and outputs of the stages, is in `templates/`.
 
 mod branches;
+mod choices;
 mod declarations;
+mod displaced;
 mod readme;
 mod translation;
 
@@ -13,19 +15,33 @@ use thiserror::Error;
 
 use crate::gpu::WgslFile;
 use crate::gpu::wgsl::{
-    CONNECTIVITY, CONTROL_POINTS, CONVENTION, CULL, DOMAIN, FACTORS, LOD, NORMAL, SURFACE, TYPES, wgsl,
+    CONNECTIVITY, CONTROL_POINTS, CONVENTION, CULL, DISPLACE, DOMAIN, FACTORS, LOD, NORMAL, SURFACE, TYPES, wgsl,
 };
 use crate::names::every;
-use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface, Tessellation};
+use crate::tessellate::{Displacement, Edges, Lod, Partitioning, Surface, Tessellation};
 
 use branches::{Known, without_dead_branches};
+use choices::choices;
 use declarations::{Declaration, declarations, needed};
+use displaced::{chosen_lines, with_fetch, without_fetch};
 use translation::{StageLanguage, TranslationError, translated};
 
 static STAGE_PATCH: WgslFile =
     wgsl!("stage_patch", CONTROL_POINTS, CONVENTION, CULL, FACTORS, LOD, NORMAL, SURFACE, TYPES);
-static PASS_EXPORTED: WgslFile =
-    wgsl!("pass_exported", CONNECTIVITY, CONTROL_POINTS, DOMAIN, FACTORS, SURFACE, STAGE_PATCH);
+static STAGE_HEIGHTS: WgslFile = wgsl!("stage_heights", TYPES);
+static STAGE_DISPLACED: WgslFile =
+    wgsl!("stage_displaced", CONVENTION, DISPLACE, FACTORS, NORMAL, STAGE_HEIGHTS, STAGE_PATCH, SURFACE, TYPES);
+static PASS_EXPORTED: WgslFile = wgsl!(
+    "pass_exported",
+    CONNECTIVITY,
+    CONTROL_POINTS,
+    DISPLACE,
+    DOMAIN,
+    FACTORS,
+    STAGE_DISPLACED,
+    STAGE_PATCH,
+    SURFACE
+);
 
 /// The modules of shaders that are only exported.
 #[cfg(test)]
@@ -84,8 +100,11 @@ pub fn shader_files(
     Ok(files)
 }
 
-/// Returns the number of indices that a patch of these shaders has: 3 or 9.
+/// Returns the number of indices that a patch of these shaders has: 3, 9 or 18.
 pub fn indices_per_patch(language: Language, tessellation: &Tessellation) -> usize {
+    if tessellation.displacement != Displacement::Off {
+        return 18;
+    }
     let looks_across = match tessellation.surface {
         Surface::Flat => false,
         Surface::PnAen | Surface::PnCrease | Surface::PhongAen | Surface::NagataAen => true,
@@ -99,18 +118,18 @@ pub fn indices_per_patch(language: Language, tessellation: &Tessellation) -> usi
 
 fn check(language: Language, tessellation: &Tessellation) -> Result<(), ShaderError> {
     let refuse = |what, why, instead| Err(ShaderError::Unexportable { what, why, instead });
-    if tessellation.displacement != Displacement::Off {
-        return refuse(
-            "displacement",
-            "what its patches share is computed by passes over the whole mesh",
-            "--displacement off, and displace in your own domain shader",
-        );
-    }
     if tessellation.used_lod() == Lod::Error {
         return refuse(
             "LOD by error",
             "it searches over all patches that share an edge",
             "--lod uniform, distance, edge-length or paper",
+        );
+    }
+    if tessellation.displacement != Displacement::Off && tessellation.used_lod() != Lod::Uniform {
+        return refuse(
+            "displacement whose LOD depends on the view",
+            "at a point, heights are read from the level of its finest edge, and a patch doesn't know the factors of all edges there",
+            "--lod uniform, or --displacement off",
         );
     }
     let pattern = match tessellation.partitioning {
@@ -142,27 +161,25 @@ const HULL_ROOTS: [&str; 5] =
     ["StageConstants", "ControlNet", "hull_side", "center_control_point", "tessellation_factors"];
 const DOMAIN_ROOTS: [&str; 3] = ["StageConstants", "stage_vertex", "fixed_location"];
 /// The functions that must give both sides of an edge the same bits.
-const PRECISE_ROOTS: [&str; 2] = ["hull_side", "edge_position"];
+const PRECISE_ROOTS: [&str; 8] = [
+    "hull_side",
+    "edge_position",
+    "side_level",
+    "corner_level",
+    "shared_place",
+    "moving_direction",
+    "height_offset",
+    "moved",
+];
+/// The functions that stages of a displaced surface call besides.
+const DISPLACED_HULL_ROOTS: [&str; 5] =
+    ["HeightConstants", "corner_level", "side_level", "level_inside", "segments_inside"];
+const DISPLACED_DOMAIN_ROOTS: [&str; 2] = ["HeightConstants", "displaced_vertex"];
 
 impl Export<'_> {
-    /// The names of the values of every choice, as the shaders have them.
-    fn choices(&self) -> [(&'static str, &'static str); 8] {
-        let own = self.tessellation;
-        [
-            ("CHOSEN_SURFACE", surface_constant(own.surface)),
-            ("CHOSEN_EDGES", if own.edges == Edges::PerEdge { "EDGES_PER_EDGE" } else { "EDGES_AS_PUBLISHED" }),
-            ("CHOSEN_LOD", lod_constant(own.used_lod())),
-            ("CHOSEN_PARTITIONING", partitioning_constant(own.partitioning)),
-            ("CHOSEN_CLIP", clip_constant(own.clip)),
-            ("CHOSEN_CULLING", if own.cull_back_faces { "CULLING_ON" } else { "CULLING_OFF" }),
-            ("CHOSEN_CONVENTION", convention_constant(own.convention)),
-            ("CHOSEN_NORMALS", normals_constant(own.normals)),
-        ]
-    }
-
     /// All declarations of our shaders with the choices made, and without the branches that they never take.
     fn declarations(&self, module: &'static WgslFile) -> Vec<Declaration> {
-        let choices = self.choices();
+        let choices = choices(self.tessellation);
         let of = |name: &str| choices.iter().find(|(own, _)| *own == name).map_or("", |(_, value)| *value);
         let mut values = choices.to_vec();
         values.extend([
@@ -190,20 +207,37 @@ impl Export<'_> {
         all
     }
 
+    /// The functions of stages, in their language. `displaced` are the roots that stages of a displaced surface have besides.
+    fn functions(
+        &self,
+        language: StageLanguage,
+        roots: &[&str],
+        displaced: &[&str],
+    ) -> Result<String, TranslationError> {
+        let displaced = if self.is_displaced() { displaced } else { &[] };
+        let all = needed(&self.declarations(&STAGE_DISPLACED), &[roots, displaced].concat());
+        Ok(with_fetch(language, &translated(language, &without_fetch(all), &PRECISE_ROOTS)?))
+    }
+
+    fn is_displaced(&self) -> bool {
+        self.tessellation.displacement != Displacement::Off
+    }
+
     fn glsl(&self) -> Result<Vec<ShaderFile>, TranslationError> {
-        let all = self.declarations(&STAGE_PATCH);
-        let functions = |roots: &[&str]| translated(StageLanguage::Glsl, &needed(&all, roots), &PRECISE_ROOTS);
+        let functions = |roots: &[&str], displaced: &[&str]| self.functions(StageLanguage::Glsl, roots, displaced);
         let spacing = match self.tessellation.partitioning {
             Partitioning::FractionalOdd => "fractional_odd_spacing",
             Partitioning::FractionalEven => "fractional_even_spacing",
             _ => "equal_spacing",
         };
         let across = match self.indices() {
-            9 => "SideNormals(vertex_normal[3 + 2 * k], vertex_normal[4 + 2 * k])",
-            _ => "own",
+            3 => "own",
+            _ => "SideNormals(vertex_normal[3 + 2 * k], vertex_normal[4 + 2 * k])",
         };
-        let control = self.filled(include_str!("templates/patch.tesc"), &functions(&HULL_ROOTS)?);
-        let evaluation = self.filled(include_str!("templates/patch.tese"), &functions(&DOMAIN_ROOTS)?);
+        let hull = functions(&HULL_ROOTS, &DISPLACED_HULL_ROOTS)?;
+        let domain = functions(&DOMAIN_ROOTS, &DISPLACED_DOMAIN_ROOTS)?;
+        let control = self.filled(include_str!("templates/patch.tesc"), &hull);
+        let evaluation = self.filled(include_str!("templates/patch.tese"), &domain);
         Ok(vec![
             ShaderFile { name: "patch.vert", text: self.filled(include_str!("templates/patch.vert"), "") },
             ShaderFile { name: "patch.tesc", text: control.replace("@ACROSS@", across) },
@@ -213,8 +247,8 @@ impl Export<'_> {
 
     fn hlsl(&self) -> Result<Vec<ShaderFile>, TranslationError> {
         let roots = [&HULL_ROOTS[..], &DOMAIN_ROOTS].concat();
-        let functions =
-            translated(StageLanguage::Hlsl, &needed(&self.declarations(&STAGE_PATCH), &roots), &PRECISE_ROOTS)?;
+        let displaced = [&DISPLACED_HULL_ROOTS[..], &DISPLACED_DOMAIN_ROOTS].concat();
+        let functions = self.functions(StageLanguage::Hlsl, &roots, &displaced)?;
         let partitioning = match self.tessellation.partitioning {
             Partitioning::FractionalOdd => "fractional_odd",
             Partitioning::FractionalEven => "fractional_even",
@@ -222,8 +256,8 @@ impl Export<'_> {
             _ => "integer",
         };
         let (at_a, at_b) = match self.indices() {
-            9 => ("corners[3 + 2 * k].normal", "corners[4 + 2 * k].normal"),
-            _ => ("own.at_a", "own.at_b"),
+            3 => ("own.at_a", "own.at_b"),
+            _ => ("corners[3 + 2 * k].normal", "corners[4 + 2 * k].normal"),
         };
         let text = self
             .filled(include_str!("templates/patch.hlsl"), &functions)
@@ -248,7 +282,7 @@ impl Export<'_> {
     }
 
     fn filled(&self, template: &str, functions: &str) -> String {
-        template
+        chosen_lines(template, self.is_displaced())
             .replace("@HEADER@", readme::header(self).trim_end())
             .replace("@FUNCTIONS@", functions.trim_end())
             .replace("@INDICES@", &self.indices().to_string())
@@ -256,65 +290,5 @@ impl Export<'_> {
 
     fn indices(&self) -> usize {
         indices_per_patch(self.language, self.tessellation)
-    }
-}
-
-fn surface_constant(surface: Surface) -> &'static str {
-    match surface {
-        Surface::Flat => "SURFACE_FLAT",
-        Surface::Pn => "SURFACE_PN",
-        Surface::PnAen => "SURFACE_PN_AEN",
-        Surface::PnCrease => "SURFACE_PN_CREASE",
-        Surface::Phong => "SURFACE_PHONG",
-        Surface::PhongAen => "SURFACE_PHONG_AEN",
-        Surface::Nagata => "SURFACE_NAGATA",
-        Surface::NagataAen => "SURFACE_NAGATA_AEN",
-    }
-}
-
-fn lod_constant(lod: Lod) -> &'static str {
-    match lod {
-        Lod::Uniform => "LOD_UNIFORM",
-        Lod::Paper => "LOD_PAPER",
-        Lod::EdgeLength => "LOD_EDGE_LENGTH",
-        Lod::Error => "LOD_ERROR",
-        Lod::Distance => "LOD_DISTANCE",
-    }
-}
-
-fn partitioning_constant(partitioning: Partitioning) -> &'static str {
-    match partitioning {
-        Partitioning::Integer => "PARTITIONING_INTEGER",
-        Partitioning::Pow2 => "PARTITIONING_POW2",
-        Partitioning::FractionalOdd => "PARTITIONING_FRACTIONAL_ODD",
-        Partitioning::FractionalEven => "PARTITIONING_FRACTIONAL_EVEN",
-        Partitioning::Subtriangulation => "PARTITIONING_SUBTRIANGULATION",
-        Partitioning::Rows => "PARTITIONING_ROWS",
-    }
-}
-
-fn clip_constant(clip: Clip) -> &'static str {
-    match clip {
-        Clip::Off => "CLIP_OFF",
-        Clip::Paper => "CLIP_PAPER",
-        Clip::Frustum => "CLIP_FRUSTUM",
-    }
-}
-
-fn convention_constant(convention: Convention) -> &'static str {
-    match convention {
-        Convention::D3d11 => "CONVENTION_D3D11",
-        Convention::AmdPn => "CONVENTION_AMD_PN",
-        Convention::EdgeOrder => "CONVENTION_EDGE_ORDER",
-        Convention::Rotated => "CONVENTION_ROTATED",
-        Convention::Mirrored => "CONVENTION_MIRRORED",
-    }
-}
-
-fn normals_constant(normals: Normals) -> &'static str {
-    match normals {
-        Normals::Linear => "NORMALS_LINEAR",
-        Normals::Quadratic => "NORMALS_QUADRATIC",
-        Normals::Surface => "NORMALS_SURFACE",
     }
 }

@@ -149,7 +149,7 @@ fn constant_array(line: &str) -> Option<String> {
 }
 
 /// The structs that lie in a constant buffer, where HLSL needs naga's padding.
-const UNIFORMS: [&str; 2] = ["StageConstants", "LodView"];
+const UNIFORMS: [&str; 3] = ["HeightConstants", "LodView", "StageConstants"];
 
 /// Whether a line of naga's HLSL is a member that only fills a struct up.
 fn is_padding(line: &str) -> bool {
@@ -186,7 +186,7 @@ fn member_comment<'a>(own: &'a Declaration, line: &str) -> impl Iterator<Item = 
 }
 
 /// Types whose computation may be fused.
-const FLOATS: [&str; 8] = ["float", "vec2", "vec3", "vec4", "float2", "float3", "float4", "CurveNet"];
+const FLOATS: [&str; 9] = ["float", "vec2", "vec3", "vec4", "float2", "float3", "float4", "CurveNet", "HeightPlace"];
 
 /// Returns a line that declares a number, or a function that returns one, as `precise`.
 fn precise(line: &str) -> String {

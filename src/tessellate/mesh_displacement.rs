@@ -15,7 +15,7 @@ use super::surface::{UNIT, linear_uv, outline_place, patch_tangents};
 use super::texel_lengths::{Maps, TexelLength, map_number, texel_lengths};
 use super::vertex::Vertex;
 use super::{Convention, FIXED_ONE, HullFactors, PatchFactors, factor_side};
-use crate::mesh::{Dominance, HeightMap, Heights, Mesh, Topology};
+use crate::mesh::{Curves, Dominance, HeightMap, Heights, Mesh, Sharing, Topology};
 
 /// Returns the heights that displace a mesh with these inputs, if any.
 pub(crate) fn displacing_heights<'a>(mesh: &'a Mesh, inputs: &Inputs) -> Option<&'a Heights> {
@@ -360,6 +360,38 @@ fn directions(mesh: &Mesh, dominance: &Dominance) -> Vec<Vec3> {
     dominance.part_starts.windows(2).map(of).collect()
 }
 
+/// What displacement needs of a corner in shaders that see single patches: the unit direction in which its point moves, the gradients
+/// of both texture coordinates in 1 / object unit, and the length of the point's shortest edge in px of the height image's level 0.
+pub type DisplacedCorner = [f32; 10];
+
+/// Returns what displacement needs of every corner of a mesh that one height image displaces everywhere; `None` if there is no image, or
+/// several, or some material has none.
+pub fn displaced_corners(mesh: &Mesh, topology: &Topology) -> Option<Vec<DisplacedCorner>> {
+    let heights = mesh.heights.as_deref()?;
+    let [map] = &heights.maps[..] else { return None };
+    if (0..topology.patches.len() as u32).any(|patch| map_number(heights, topology, patch) == 0) {
+        return None;
+    }
+    let dominance = Dominance::new(topology, &Curves::build(mesh, topology, Sharing::AllSides), &heights.angles);
+    let (directions, frames) = (directions(mesh, &dominance), frames(mesh, topology));
+    let texels = |&factor: &u32| {
+        let (patch, side) = (dominance.sides[factor as usize] / 4, dominance.sides[factor as usize] as usize % 4);
+        let [a, b] = [side, (side + 1) % 3].map(|k| mesh.corners[topology.patch_corners(patch)[k] as usize].uv);
+        texel_length(map, a, b)
+    };
+    let shortest = |ends: &[u32]| {
+        let own = &dominance.factors[ends[0] as usize..ends[1] as usize];
+        own.iter().map(texels).reduce(f32::min).unwrap_or(0.0)
+    };
+    let shortest: Vec<_> = dominance.factor_starts.windows(2).map(shortest).collect();
+    let of = |(&point, [along_u, along_v]): (&u32, &[Vec3; 2])| {
+        let ([x, y, z], [a, b, c], [d, e, f]) =
+            (directions[point as usize].into(), (*along_u).into(), (*along_v).into());
+        [x, y, z, a, b, c, d, e, f, shortest[point as usize]]
+    };
+    Some(topology.corner_points.iter().zip(&frames).map(of).collect())
+}
+
 #[cfg(test)]
 mod tests {
     use std::sync::Arc;
@@ -410,6 +442,24 @@ mod tests {
                 assert_eq!(own[corner as usize], other[copy as usize]);
             }
         }
+    }
+
+    #[test]
+    fn every_corner_has_its_direction_its_gradients_and_its_shortest_edge() {
+        let mesh = square();
+        let corners = displaced_corners(&mesh, &Topology::of(&mesh)).expect("one image everywhere");
+        // Texture coordinates rise by 1/4 for each unit to the right, and fall by 1/4 for each unit up. A side is 32 px long.
+        let expected = [0.0, 0.0, 1.0, 0.25, 0.0, 0.0, 0.0, -0.25, 0.0, 32.0];
+        for own in corners {
+            assert!(own.iter().zip(expected).all(|(x, y)| (x - y).abs() < 1e-5), "{own:?}");
+        }
+        let mut plain = mesh.clone();
+        plain.heights = None;
+        assert_eq!(displaced_corners(&plain, &Topology::of(&plain)), None);
+        let mut partly = mesh;
+        let heights = Heights { of_material: vec![None], ..partly.heights.as_deref().expect("heights").clone() };
+        partly.heights = Some(Arc::new(heights));
+        assert_eq!(displaced_corners(&partly, &Topology::of(&partly)), None);
     }
 
     #[test]

@@ -31,7 +31,7 @@ mod least_factors;
 mod least_rows;
 mod limit_surface;
 mod lod;
-mod mesh_displacement;
+pub(crate) mod mesh_displacement;
 mod mesh_factors;
 mod mesh_tessellation;
 mod normal;
@@ -91,7 +91,7 @@ pub(crate) use hull_factors::{HullFactors, RowChoice};
 pub(crate) use inputs::{own_sharing, sharing};
 pub(crate) use limit_surface::LimitSurface;
 pub(crate) use lod::{beyond_near, distance_factor, edge_length_factor, paper_edge_factor};
-pub(crate) use mesh_displacement::{displacement_reach, displacing_heights, height_units};
+pub(crate) use mesh_displacement::{displaced_corners, displacement_reach, displacing_heights, height_units};
 pub(crate) use mesh_factors::rounds;
 #[cfg(test)]
 pub(crate) use mesh_tessellation::edge_factors;

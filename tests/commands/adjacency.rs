@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use crate::{Folder, command, failure, output, run, sentence, vase, write_triangles};
 
-const COUNTS: [(&str, usize); 3] = [("6", 6), ("9", 9), ("12", 12)];
+const COUNTS: [(&str, usize); 4] = [("6", 6), ("9", 9), ("12", 12), ("18", 18)];
 
 /// A mesh's indices as JSON on standard output.
 fn json(mesh: &str, indices: &str) -> Value {
@@ -39,7 +39,7 @@ fn write_degenerate(folder: &Folder) -> String {
 fn json_and_bare_indices_agree_and_contain_each_other() {
     let folder = Folder::new();
     for mesh in ["shape:cube-split", "shape:moebius", vase()] {
-        let [six, nine, twelve] = COUNTS.map(|(name, count)| {
+        let [six, nine, twelve, eighteen] = COUNTS.map(|(name, count)| {
             let document = json(mesh, name);
             assert_eq!(document["indices_per_patch"], count);
             let patches = patches(&document);
@@ -62,6 +62,7 @@ fn json_and_bare_indices_agree_and_contain_each_other() {
                 "nine are the triangle's own and the six"
             );
             assert_eq!(nine[patch], twelve[..9]);
+            assert_eq!(*twelve, eighteen[patch][..12]);
         }
     }
     let named_otherwise = folder.path("out.bin");
@@ -253,4 +254,28 @@ fn a_file_can_come_from_standard_input() {
         assert!(output.status.success(), "{output:?}");
         assert_eq!(String::from_utf8_lossy(&output.stderr), "pnaen: standard input: 0 of 256 patches differ\n");
     }
+}
+
+#[test]
+fn corners_for_displacement_have_their_directions_and_shortest_edges() {
+    let folder = Folder::new();
+    let (image, out) = (folder.path("heights.png"), folder.path("corners.bin"));
+    image::GrayImage::from_fn(32, 16, |x, _| image::Luma([8 * x as u8])).save(&image).expect("a writable folder");
+    output(&["adjacency", "shape:cube-split", "--corners", &out, "--height", &image]);
+    let bytes = std::fs::read(&out).expect("a file");
+    let numbers: Vec<_> = bytes.chunks(4).map(|own| f32::from_le_bytes(own.try_into().expect("four bytes"))).collect();
+    assert_eq!(numbers.len(), 24 * 10, "a cube has 24 corners");
+    let document = json("shape:cube-split", "9");
+    for (corner, own) in numbers.chunks(10).enumerate() {
+        // Each point of a cube moves away from its middle. A face has the whole image, and 16 px is the length of its shorter sides.
+        let place = |axis: usize| document["positions"][corner][axis].as_f64().expect("a number");
+        for axis in 0..3 {
+            let expected = place(axis).signum() / 3.0f64.sqrt();
+            assert!((f64::from(own[axis]) - expected).abs() < 1e-5, "corner {corner}: {own:?}");
+        }
+        assert_eq!(own[9], 16.0, "corner {corner}");
+    }
+    // The image is needed, and it must be of all triangles.
+    failure(&["adjacency", "shape:cube-split", "--corners", &out], 2);
+    failure(&["adjacency", "shape:cube-split", "--height", &image, "-o", &out], 2);
 }

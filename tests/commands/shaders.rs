@@ -35,12 +35,37 @@ fn what_cant_be_exported_is_refused_before_anything_is_written() {
     let folder = Folder::new();
     let out = folder.path("out");
     for (options, words) in [
-        (["--lod", "error"], "choose --lod uniform"),
-        (["--partitioning", "rows"], "choose --language wgsl"),
-        (["--displacement", "on"], "choose --displacement off"),
+        (&["--lod", "error"][..], "choose --lod uniform"),
+        (&["--partitioning", "rows"], "choose --language wgsl"),
+        (&["--displacement", "on", "--lod", "distance"], "choose --lod uniform, or --displacement off"),
     ] {
-        let said = failure(&["shaders", "--language", "hlsl", options[0], options[1], "-o", &out], 2);
+        let said = failure(&[&["shaders", "--language", "hlsl", "-o", &out], options].concat(), 2);
         assert!(said.contains(words), "{said}");
         assert!(!std::path::Path::new(&out).exists());
+    }
+}
+
+#[test]
+fn shaders_that_displace_say_what_they_take_besides() {
+    let folder = Folder::new();
+    for (language, names) in [
+        ("glsl", &["patch.vert", "patch.tesc", "patch.tese"][..]),
+        ("hlsl", &["patch.hlsl"]),
+        ("wgsl", &["tessellate.wgsl"]),
+    ] {
+        let out = folder.path(language);
+        let options = ["--displacement", "as-published", "--height-scale", "0.125", "--midlevel", "0.25"];
+        output(&[&["shaders", "--language", language, "-o", &out], &options[..]].concat());
+        for name in names.iter().chain(&["README.md"]) {
+            let text = std::fs::read_to_string(format!("{out}/{name}")).expect("a file");
+            for said in
+                ["displacement as-published", "18 a patch", "40 bytes a corner", "here 0.125 times", "here 0.25:"]
+            {
+                // Long lines are wrapped.
+                let words = text.replace("\n//", "").split_whitespace().collect::<Vec<_>>().join(" ");
+                assert!(words.contains(said), "{name} doesn't say {said:?}");
+            }
+            assert!(!text.contains("@D@") && !text.contains("@N@"), "{name} has something left to choose");
+        }
     }
 }

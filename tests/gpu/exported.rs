@@ -8,7 +8,8 @@ use pnaen::mesh::{Mesh, Shape, Topology};
 use pnaen::progress::Progress;
 use pnaen::settings::Choice;
 use pnaen::tessellate::{
-    Clip, Convention, Edges, Lod, Normals, Partitioning, Surface, Tessellation, corner_weights, tessellate,
+    Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface, Tessellation, corner_weights,
+    tessellate,
 };
 
 use crate::gpu_tests::engine;
@@ -23,7 +24,7 @@ mod example;
 
 use example::Passes;
 
-fn vulkan() -> Rc<Vulkan> {
+pub(super) fn vulkan() -> Rc<Vulkan> {
     Vulkan::new(&engine().gpu.info).expect("a driver with tessellation stages")
 }
 
@@ -40,7 +41,7 @@ fn assert_agrees(own: &Agreement, what: &str) {
 }
 
 /// Holds a part of a page, between two comments, to what it should be; `PNAEN_UPDATE_PAGES=1` writes it.
-fn assert_part_of_page(page: &str, name: &str, part: &str) {
+pub(super) fn assert_part_of_page(page: &str, name: &str, part: &str) {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(page);
     let text = std::fs::read_to_string(&path).expect("the page");
     let (begin, end) = (format!("<!-- {name} -->\n"), format!("<!-- end of {name} -->\n"));
@@ -163,6 +164,11 @@ fn what_hardware_has_no_equal_of_is_refused_with_what_can_be_exported() {
     let refused =
         |language, own: Tessellation| shader_files(language, &own, "a test").expect_err("refused").to_string();
     for language in Language::ALL {
+        for lod in [Lod::Distance, Lod::EdgeLength, Lod::Paper] {
+            let own = Tessellation { lod, displacement: Displacement::On, ..Tessellation::default() };
+            let said = refused(language, own);
+            assert!(said.contains("displacement") && said.contains("--lod uniform"), "{said}");
+        }
         let by_error = refused(language, Tessellation { lod: Lod::Error, ..Tessellation::default() });
         assert!(by_error.contains("LOD by error") && by_error.contains("--lod uniform"), "{by_error}");
     }

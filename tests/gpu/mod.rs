@@ -15,6 +15,7 @@ mod embed;
 mod environment;
 mod error;
 mod exported;
+mod exported_displaced;
 mod layers;
 mod light;
 mod limits;

@@ -1,5 +1,6 @@
 //! What the driver's tessellation stages make of our exported shaders, beside what our passes make of the same mesh.
 
+use std::f32::consts::TAU;
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -7,16 +8,16 @@ use pnaen::embed::GpuError;
 use pnaen::glam::Vec2;
 use pnaen::internals::{
     ARENA_BYTES, Camera, Engine, Given, HullFactors, Language, Layout, Scene, Settings, ShaderError, Timing,
-    indices_per_patch, shader_files,
+    displaced_corners, indices_per_patch, shader_files,
 };
-use pnaen::mesh::{Mesh, Topology};
+use pnaen::mesh::{HeightMap, Heights, Mesh, Topology};
 use pnaen::progress::Progress;
-use pnaen::tessellate::{Lod, LodView, Surface, Tessellation, unpack_normal};
+use pnaen::tessellate::{Displacement, Lod, LodView, Surface, Tessellation, unpack_normal};
 use thiserror::Error;
 
 use super::agreement::{Agreement, Ours, Weights, compare};
 use super::device::Vulkan;
-use super::stages::{CapturedCorner, Drawn, Exported, StageError};
+use super::stages::{CapturedCorner, Displaced, Drawn, Exported, StageError};
 
 /// Why there is no comparison.
 #[derive(Debug, Error)]
@@ -124,11 +125,17 @@ impl<'a> Subject<'a> {
             },
         };
         let per_patch = indices_per_patch(language, tessellation);
-        let nine = Layout::Nine.indices(&self.topology);
-        let indices: Vec<_> = nine.chunks(9).flat_map(|patch| &patch[..per_patch]).copied().collect();
+        let all = Layout::Eighteen.indices(&self.topology);
+        let indices: Vec<_> = all.chunks(18).flat_map(|patch| &patch[..per_patch]).copied().collect();
         let (vertices, constants) = (self.vertices(), self.constants(tessellation));
-        let drawn =
-            Drawn { vertices: &vertices, indices: &indices, per_patch: per_patch as u32, constants: &constants, room };
+        let corners = displaced_corners(&self.mesh, &self.topology);
+        let displaced = corners.as_deref().filter(|_| tessellation.displacement != Displacement::Off);
+        let displaced = displaced.and_then(|corners| {
+            let map = self.mesh.heights.as_deref()?.maps().first()?;
+            Some(Displaced { corners, map, constants: self.height_constants(tessellation, map) })
+        });
+        let (vertices, indices, per_patch) = (&vertices[..], &indices[..], per_patch as u32);
+        let drawn = Drawn { vertices, indices, per_patch, constants: &constants, displaced, room };
         Ok(exported.capture(&self.vulkan, &drawn)?)
     }
 
@@ -142,6 +149,18 @@ impl<'a> Subject<'a> {
         corners.map(vertex).collect()
     }
 
+    /// How far white is above black, in object units.
+    fn height_scale(&self, own: &Tessellation) -> f32 {
+        own.height_scale * self.mesh.bounds().radius()
+    }
+
+    /// The constant buffer of displacement, laid out as the exported files say.
+    fn height_constants(&self, own: &Tessellation, map: &HeightMap) -> [u32; 8] {
+        let [width, height] = map.size;
+        let (scale, midlevel) = (self.height_scale(own).to_bits(), own.midlevel.to_bits());
+        [width, height, map.levels, u32::from(map.repeats), scale, midlevel, 0, 0]
+    }
+
     /// The constant buffer, laid out as the exported files say.
     fn constants(&self, own: &Tessellation) -> [f32; 48] {
         let mut constants = [0.0; 48];
@@ -149,6 +168,9 @@ impl<'a> Subject<'a> {
         constants[..16].copy_from_slice(&matrix);
         constants[16..32].copy_from_slice(&matrix);
         constants[32..34].copy_from_slice(&self.view.half_viewport.to_array());
+        let heights = self.mesh.heights.as_deref().filter(|_| own.displacement != Displacement::Off);
+        let reach = heights.map_or(0.0, |heights| heights.reach(own.midlevel));
+        constants[34] = self.height_scale(own).abs() * reach;
         constants[36..39].copy_from_slice(&self.view.eye.to_array());
         constants[39] = self.view.radius;
         constants[40..45].copy_from_slice(&[own.factor, own.pixels, own.near, own.far, own.alpha]);
@@ -166,30 +188,60 @@ impl<'a> Subject<'a> {
 pub struct Row {
     pub surface: Surface,
     pub lod: Lod,
+    pub displacement: Displacement,
     pub language: Language,
     pub agreement: Agreement,
 }
+
+/// The ways to displace that can be exported.
+pub const DISPLACEMENTS: [Displacement; 3] = [Displacement::On, Displacement::AsPublished, Displacement::PerPatch];
 
 /// Compares every surface under every LOD, in both languages.
 ///
 /// # Errors
 /// A shader doesn't compile, or the device was lost.
 pub fn rows(subject: &mut Subject) -> Result<Vec<Row>, ExportedError> {
+    compared(subject, &LODS.map(|lod| (lod, Displacement::Off)))
+}
+
+/// Compares every surface under every kind of displacement, in both languages. The mesh must have heights.
+///
+/// # Errors
+/// A shader doesn't compile, or the device was lost.
+pub fn displaced_rows(subject: &mut Subject) -> Result<Vec<Row>, ExportedError> {
+    compared(subject, &DISPLACEMENTS.map(|displacement| (Lod::Uniform, displacement)))
+}
+
+/// Puts a mesh under waves, whose image repeats if texture coordinates go beyond it.
+pub fn wavy(mut mesh: Mesh) -> Mesh {
+    const SIZE: u32 = 64;
+    let height = |i: u32| {
+        let [x, y] = [i % SIZE, i / SIZE].map(|at| TAU * (at as f32 + 0.5) / SIZE as f32);
+        0.5 + 0.25 * (2.0 * x).sin() * (3.0 * y).cos() + 0.2 * (x + 2.0 * y).cos()
+    };
+    let map = HeightMap::new([SIZE; 2], (0..SIZE * SIZE).map(height).collect());
+    mesh.heights = Some(Arc::new(Heights::everywhere(&mesh, map)));
+    mesh
+}
+
+fn compared(subject: &mut Subject, kinds: &[(Lod, Displacement)]) -> Result<Vec<Row>, ExportedError> {
     let mut rows = Vec::new();
     for surface in Surface::ALL {
-        for lod in LODS {
+        for &(lod, displacement) in kinds {
             let own = Tessellation {
                 surface,
                 lod,
+                displacement,
                 factor: 6.3,
                 pixels: 40.0,
                 near: 2.0,
                 far: 6.0,
+                height_scale: 0.1,
                 ..Tessellation::default()
             };
             for language in LANGUAGES {
                 let agreement = subject.agreement(language, &own, &|weights| weights)?;
-                rows.push(Row { surface, lod, language, agreement });
+                rows.push(Row { surface, lod, displacement, language, agreement });
             }
         }
     }
@@ -211,15 +263,26 @@ fn option_name(variant: &str) -> String {
 /// The rows as a Markdown table. Differences are rounded up, so that the table says what holds, and stays the same on drivers that
 /// round otherwise.
 pub fn table(rows: &[Row]) -> String {
-    let head = "| surface | LOD | language | triangles | other triangles | factors within | positions within | points on \
-                shared edges | of these with other bits |\n| --- | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: |\n";
+    table_by("LOD", |row| format!("{:?}", row.lod), rows)
+}
+
+/// The rows of displaced surfaces as a Markdown table, likewise.
+pub fn displaced_table(rows: &[Row]) -> String {
+    table_by("displacement", |row| format!("{:?}", row.displacement), rows)
+}
+
+fn table_by(column: &str, value: impl Fn(&Row) -> String, rows: &[Row]) -> String {
+    let head = format!(
+        "| surface | {column} | language | triangles | other triangles | factors within | positions within | points on shared edges | \
+         of these with other bits |\n| --- | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: |\n"
+    );
     let row = |row: &Row| {
         let own = &row.agreement;
         let factors = if own.factors <= 1e-6 { "0.000001".to_owned() } else { format!("{:.6}", own.factors) };
         format!(
             "| `{}` | `{}` | {} | {} | {} | {factors} | {} ULP | {} | {} |\n",
             option_name(&format!("{:?}", row.surface)),
-            option_name(&format!("{:?}", row.lod)),
+            option_name(&value(row)),
             format!("{:?}", row.language).to_uppercase(),
             own.triangles,
             own.other_triangles,
@@ -228,5 +291,5 @@ pub fn table(rows: &[Row]) -> String {
             own.torn,
         )
     };
-    head.to_owned() + &rows.iter().map(row).collect::<String>()
+    head + &rows.iter().map(row).collect::<String>()
 }

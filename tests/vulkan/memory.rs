@@ -116,7 +116,22 @@ impl Picture {
     /// No memory.
     pub fn new(
         vulkan: &Rc<Vulkan>,
+        size: [u32; 2],
+        format: vk::Format,
+        samples: vk::SampleCountFlags,
+        usage: vk::ImageUsageFlags,
+    ) -> Result<Self, VulkanError> {
+        Self::with_levels(vulkan, size, 1, format, samples, usage)
+    }
+
+    /// Makes a picture with so many mip levels.
+    ///
+    /// # Errors
+    /// No memory.
+    pub fn with_levels(
+        vulkan: &Rc<Vulkan>,
         [width, height]: [u32; 2],
+        levels: u32,
         format: vk::Format,
         samples: vk::SampleCountFlags,
         usage: vk::ImageUsageFlags,
@@ -127,11 +142,11 @@ impl Picture {
             .image_type(vk::ImageType::TYPE_2D)
             .format(format)
             .extent(vk::Extent3D { width, height, depth: 1 })
-            .mip_levels(1)
+            .mip_levels(levels)
             .array_layers(1)
             .samples(samples)
             .usage(usage);
-        let range = vk::ImageSubresourceRange::default().aspect_mask(aspect).level_count(1).layer_count(1);
+        let range = vk::ImageSubresourceRange::default().aspect_mask(aspect).level_count(levels).layer_count(1);
         unsafe {
             let image = vulkan.device.create_image(&info, None)?;
             let needs = vulkan.device.get_image_memory_requirements(image);

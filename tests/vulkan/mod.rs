@@ -2,8 +2,10 @@
 //! shaders on them.
 
 pub mod agreement;
+pub mod bindings;
 pub mod device;
 pub mod exported;
+pub mod height_image;
 pub mod memory;
 pub mod pass;
 pub mod stages;

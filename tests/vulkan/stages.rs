@@ -7,8 +7,11 @@ use std::rc::Rc;
 
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
+use pnaen::internals::DisplacedCorner;
+use pnaen::mesh::HeightMap;
 use thiserror::Error;
 
+use super::bindings::{Bindings, CAPTURED_BINDING};
 use super::device::{Vulkan, VulkanError};
 use super::memory::{Buffer, Owned};
 use super::pass::Pass;
@@ -33,6 +36,15 @@ pub enum Exported<'a> {
     Hlsl(&'a str),
 }
 
+/// What displaces, laid out as exported files say.
+#[derive(Clone, Copy, Debug)]
+pub struct Displaced<'a> {
+    pub corners: &'a [DisplacedCorner],
+    pub map: &'a HeightMap,
+    /// The contents of the second constant buffer.
+    pub constants: [u32; 8],
+}
+
 /// What is drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct Drawn<'a> {
@@ -42,6 +54,7 @@ pub struct Drawn<'a> {
     pub per_patch: u32,
     /// The contents of the constant buffer.
     pub constants: &'a [f32; 48],
+    pub displaced: Option<Displaced<'a>>,
     /// For so many triangles there is room.
     pub room: usize,
 }
@@ -60,16 +73,16 @@ pub struct CapturedCorner {
 }
 
 /// What comes before the corners in the buffer: how many triangles there were, and for how many there is room.
-const HEAD_BYTES: usize = 16;
+pub const HEAD_BYTES: usize = 16;
 
-/// What is appended to the exported evaluation stage: two outputs more. Texture coordinates hold the patch: see [`marked`].
+/// What is appended to the exported evaluation stage: two outputs more.
 const GLSL_CAPTURE: &str = "
 #undef main
 layout(location = 3) out vec4 captured_place;
 layout(location = 4) out vec4 captured_factors;
 void main() {
     exported_main();
-    captured_place = vec4(gl_TessCoord, round(uv.x));
+    captured_place = vec4(gl_TessCoord, 0.0);
     captured_factors = vec4(gl_TessLevelOuter[0], gl_TessLevelOuter[1], gl_TessLevelOuter[2], gl_TessLevelInner[0]);
 }
 ";
@@ -85,19 +98,24 @@ struct CapturedVertex
 
 [domain(\"tri\")]
 CapturedVertex captured_main(
-    PatchFactors factors,
+    HullOutput factors,
     float3 location : SV_DomainLocation,
-    const OutputPatch<Corner, 3> corners)
+    const OutputPatch<CORNER, 3> corners)
 {
     CapturedVertex captured;
     captured.vertex = ds_main(factors, location, corners);
-    captured.captured_place = float4(location, round(captured.vertex.uv.x));
+    captured.captured_place = float4(location, 0.0);
     captured.captured_factors = float4(factors.edges[0], factors.edges[1], factors.edges[2], factors.inside);
     return captured;
 }
 ";
 
+/// Every patch is a draw of its own, which is told its number. The stages have it, too, but glslang doesn't know it in HLSL's domain
+/// shaders, and Mesa 22.3 counts it from 0 again in every batch of a draw.
 const GEOMETRY: &str = "#version 450
+layout(push_constant) uniform Draw {
+    uint patch_index;
+};
 layout(triangles) in;
 layout(points, max_vertices = 1) out;
 layout(location = 0) in vec3 position[];
@@ -112,7 +130,7 @@ struct Corner {
     vec4 place;
     vec4 factors;
 };
-layout(std430, set = 0, binding = 1) buffer Captured {
+layout(std430, set = 0, binding = CAPTURED_BINDING) buffer Captured {
     uint count;
     uint room;
     uvec2 unused;
@@ -123,7 +141,11 @@ void main() {
     if (at < room) {
         for (int k = 0; k < 3; k++) {
             corners[3u * at + uint(k)] = Corner(
-                vec4(position[k], 1.0), vec4(normal[k], 0.0), vec4(uv[k], 0.0, 0.0), place[k], factors[k]);
+                vec4(position[k], 1.0),
+                vec4(normal[k], 0.0),
+                vec4(uv[k], 0.0, 0.0),
+                vec4(place[k].xyz, float(patch_index)),
+                factors[k]);
         }
     }
 }
@@ -149,7 +171,7 @@ fn compiled(folder: &Path, file: &'static str, text: &str, options: &[&str]) -> 
 
 impl Exported<'_> {
     /// The stages in the order of the pipeline.
-    fn compile(self) -> Result<Vec<Stage>, StageError> {
+    fn compile(self, is_displaced: bool) -> Result<Vec<Stage>, StageError> {
         let folder = tempfile::tempdir()?;
         let at = folder.path();
         let [vertex, control, evaluation] = match self {
@@ -167,19 +189,22 @@ impl Exported<'_> {
                 let of = |file, text: &str, stage, entry| {
                     compiled(at, file, text, &["-D", "-S", stage, "-e", entry, "--source-entrypoint", entry])
                 };
+                let capture = HLSL_CAPTURE.replace("CORNER", if is_displaced { "HullCorner" } else { "Corner" });
                 of("patch.hlsl", text, "tese", "ds_main")?;
                 [
                     of("patch.hlsl", text, "vert", "vs_main")?,
                     of("patch.hlsl", text, "tesc", "hs_main")?,
-                    of("captured.hlsl", &(text.to_owned() + HLSL_CAPTURE), "tese", "captured_main")?,
+                    of("captured.hlsl", &(text.to_owned() + &capture), "tese", "captured_main")?,
                 ]
             }
         };
+        let geometry = GEOMETRY.replace("CAPTURED_BINDING", &CAPTURED_BINDING.to_string());
+        let geometry = compiled(at, "capture.geom", &geometry, &[])?;
         Ok(vec![
             Stage { flag: vk::ShaderStageFlags::VERTEX, code: vertex },
             Stage { flag: vk::ShaderStageFlags::TESSELLATION_CONTROL, code: control },
             Stage { flag: vk::ShaderStageFlags::TESSELLATION_EVALUATION, code: evaluation },
-            Stage { flag: vk::ShaderStageFlags::GEOMETRY, code: compiled(at, "capture.geom", GEOMETRY, &[])? },
+            Stage { flag: vk::ShaderStageFlags::GEOMETRY, code: geometry },
         ])
     }
 
@@ -196,108 +221,31 @@ impl Exported<'_> {
     /// # Errors
     /// A text doesn't compile, or the driver doesn't take it.
     pub fn capture(self, vulkan: &Rc<Vulkan>, drawn: &Drawn) -> Result<Vec<[CapturedCorner; 3]>, StageError> {
-        let stages = self.compile()?;
+        let stages = self.compile(drawn.displaced.is_some())?;
         let nowhere = Pass::nowhere(vulkan)?;
-        let set = Bindings::new(vulkan, drawn)?;
-        let pipeline = pipeline(vulkan, &set, nowhere.handle(), &stages, self.entries(), drawn.per_patch)?;
-        let vertices = Buffer::filled(vulkan, &marked(drawn))?;
-        let indices: Vec<_> = (0..drawn.indices.len() as u32).collect();
-        let indices = Buffer::filled(vulkan, &indices)?;
+        let samples = matches!(self, Exported::Glsl { .. });
+        let set = Bindings::new(vulkan, drawn, samples)?;
+        let pipeline = pipeline(vulkan, &set, nowhere.handle(), &stages, self.entries(), drawn)?;
+        let vertices = Buffer::filled(vulkan, drawn.vertices)?;
+        let relief = drawn.displaced.map(|displaced| Buffer::filled(vulkan, displaced.corners)).transpose()?;
+        let buffers: Vec<_> = [Some(&vertices), relief.as_ref()].into_iter().flatten().map(|own| own.handle).collect();
+        let indices = Buffer::filled(vulkan, drawn.indices)?;
         let device = &vulkan.device;
         vulkan.run(|commands| unsafe {
             nowhere.begin(device, commands);
             let graphics = vk::PipelineBindPoint::GRAPHICS;
             device.cmd_bind_pipeline(commands, graphics, pipeline.handle);
             device.cmd_bind_descriptor_sets(commands, graphics, set.pipeline.handle, 0, &[set.set], &[]);
-            device.cmd_bind_vertex_buffers(commands, 0, &[vertices.handle], &[0]);
+            device.cmd_bind_vertex_buffers(commands, 0, &buffers, &vec![0; buffers.len()]);
             device.cmd_bind_index_buffer(commands, indices.handle, 0, vk::IndexType::UINT32);
-            device.cmd_draw_indexed(commands, drawn.indices.len() as u32, 1, 0, 0, 0);
+            for patch in 0..drawn.indices.len() as u32 / drawn.per_patch {
+                let (stage, number) = (vk::ShaderStageFlags::GEOMETRY, patch.to_ne_bytes());
+                device.cmd_push_constants(commands, set.pipeline.handle, stage, 0, &number);
+                device.cmd_draw_indexed(commands, drawn.per_patch, 1, patch * drawn.per_patch, 0, 0);
+            }
             device.cmd_end_render_pass(commands);
         })?;
         set.triangles(vulkan, drawn.room)
-    }
-}
-
-/// The vertices in the order of the indices, each with its patch as texture coordinate u. The stages have the patch's number, too, but
-/// glslang doesn't know it in HLSL's domain shaders, and Mesa 22.3 counts it from 0 again in every batch of a draw.
-fn marked(drawn: &Drawn) -> Vec<[f32; 8]> {
-    let of_patch = |(at, &index): (usize, &u32)| {
-        let [x, y, z, nx, ny, nz, ..] = drawn.vertices[index as usize];
-        [x, y, z, nx, ny, nz, (at / drawn.per_patch as usize) as f32, 0.0]
-    };
-    drawn.indices.iter().enumerate().map(of_patch).collect()
-}
-
-/// The constants and the captured triangles, bound.
-struct Bindings {
-    _layout: Owned<vk::DescriptorSetLayout>,
-    _pool: Owned<vk::DescriptorPool>,
-    pipeline: Owned<vk::PipelineLayout>,
-    set: vk::DescriptorSet,
-    _constants: Buffer,
-    captured: Buffer,
-}
-
-impl Bindings {
-    fn new(vulkan: &Rc<Vulkan>, drawn: &Drawn) -> Result<Self, VulkanError> {
-        let constants = Buffer::filled(vulkan, drawn.constants)?;
-        let mut head = vec![0u8; HEAD_BYTES + drawn.room * size_of::<[CapturedCorner; 3]>()];
-        head[4..8].copy_from_slice(&(drawn.room as u32).to_le_bytes());
-        let captured = Buffer::filled(vulkan, &head)?;
-        let tessellation = vk::ShaderStageFlags::TESSELLATION_CONTROL | vk::ShaderStageFlags::TESSELLATION_EVALUATION;
-        let kinds = [
-            (vk::DescriptorType::UNIFORM_BUFFER, tessellation, &constants),
-            (vk::DescriptorType::STORAGE_BUFFER, vk::ShaderStageFlags::GEOMETRY, &captured),
-        ];
-        let bindings: Vec<_> = (0..)
-            .zip(kinds)
-            .map(|(binding, (kind, stages, _))| {
-                vk::DescriptorSetLayoutBinding::default()
-                    .binding(binding)
-                    .descriptor_type(kind)
-                    .descriptor_count(1)
-                    .stage_flags(stages)
-            })
-            .collect();
-        let sizes = kinds.map(|(kind, ..)| vk::DescriptorPoolSize::default().ty(kind).descriptor_count(1));
-        let device = &vulkan.device;
-        unsafe {
-            let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
-            let layout = device.create_descriptor_set_layout(&info, None)?;
-            let layout =
-                Owned::new(vulkan, layout, |device, handle| device.destroy_descriptor_set_layout(handle, None));
-            let layouts = [layout.handle];
-            let info = vk::PipelineLayoutCreateInfo::default().set_layouts(&layouts);
-            let pipeline = device.create_pipeline_layout(&info, None)?;
-            let pipeline = Owned::new(vulkan, pipeline, |device, handle| device.destroy_pipeline_layout(handle, None));
-            let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
-            let pool = device.create_descriptor_pool(&info, None)?;
-            let pool = Owned::new(vulkan, pool, |device, handle| device.destroy_descriptor_pool(handle, None));
-            let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool.handle).set_layouts(&layouts);
-            let set = device.allocate_descriptor_sets(&info)?[0];
-            for (binding, (kind, _, buffer)) in (0..).zip(kinds) {
-                let whole = [vk::DescriptorBufferInfo::default().buffer(buffer.handle).range(vk::WHOLE_SIZE)];
-                let write = vk::WriteDescriptorSet::default()
-                    .dst_set(set)
-                    .dst_binding(binding)
-                    .descriptor_type(kind)
-                    .buffer_info(&whole);
-                device.update_descriptor_sets(&[write], &[]);
-            }
-            Ok(Self { _layout: layout, _pool: pool, pipeline, set, _constants: constants, captured })
-        }
-    }
-
-    /// Reads the captured triangles back.
-    fn triangles(&self, vulkan: &Rc<Vulkan>, room: usize) -> Result<Vec<[CapturedCorner; 3]>, StageError> {
-        let staging = Buffer::for_host(vulkan, self.captured.bytes)?;
-        staging.copy_from(&self.captured)?;
-        let read = |bytes: &mut [u8]| {
-            let count: u32 = bytemuck::pod_read_unaligned(&bytes[..4]);
-            let end = HEAD_BYTES + room.min(count as usize) * size_of::<[CapturedCorner; 3]>();
-            bytemuck::pod_collect_to_vec(&bytes[HEAD_BYTES..end])
-        };
-        Ok(staging.with_host(read)?)
     }
 }
 
@@ -308,7 +256,7 @@ fn pipeline(
     pass: vk::RenderPass,
     stages: &[Stage],
     entries: [&std::ffi::CStr; 4],
-    per_patch: u32,
+    drawn: &Drawn,
 ) -> Result<Owned<vk::Pipeline>, VulkanError> {
     let modules = stages.iter().map(|stage| module(vulkan, &stage.code)).collect::<Result<Vec<_>, _>>()?;
     let stages: Vec<_> = stages
@@ -319,20 +267,12 @@ fn pipeline(
             vk::PipelineShaderStageCreateInfo::default().stage(stage.flag).module(module.handle).name(entry)
         })
         .collect();
-    let bindings = [vk::VertexInputBindingDescription::default().stride(32)];
-    let attribute = |location, format, offset| {
-        vk::VertexInputAttributeDescription::default().location(location).format(format).offset(offset)
-    };
-    let attributes = [
-        attribute(0, vk::Format::R32G32B32_SFLOAT, 0),
-        attribute(1, vk::Format::R32G32B32_SFLOAT, 12),
-        attribute(2, vk::Format::R32G32_SFLOAT, 24),
-    ];
+    let (bindings, attributes) = vertex_input(drawn.displaced.is_some());
     let vertices = vk::PipelineVertexInputStateCreateInfo::default()
         .vertex_binding_descriptions(&bindings)
         .vertex_attribute_descriptions(&attributes);
     let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(vk::PrimitiveTopology::PATCH_LIST);
-    let tessellation = vk::PipelineTessellationStateCreateInfo::default().patch_control_points(per_patch);
+    let tessellation = vk::PipelineTessellationStateCreateInfo::default().patch_control_points(drawn.per_patch);
     let raster = vk::PipelineRasterizationStateCreateInfo::default().rasterizer_discard_enable(true).line_width(1.0);
     let info = vk::GraphicsPipelineCreateInfo::default()
         .stages(&stages)
@@ -345,6 +285,31 @@ fn pipeline(
     let made = unsafe { vulkan.device.create_graphics_pipelines(vk::PipelineCache::null(), &[info], None) };
     let handle = made.map_err(|(_, error)| error)?[0];
     Ok(Owned::new(vulkan, handle, |device, handle| unsafe { device.destroy_pipeline(handle, None) }))
+}
+
+/// The vertex buffers, laid out as exported files say.
+fn vertex_input(
+    is_displaced: bool,
+) -> (Vec<vk::VertexInputBindingDescription>, Vec<vk::VertexInputAttributeDescription>) {
+    let buffer = |binding, stride| vk::VertexInputBindingDescription::default().binding(binding).stride(stride);
+    let attribute = |binding, location, format, offset| {
+        let own = vk::VertexInputAttributeDescription::default().binding(binding).location(location);
+        own.format(format).offset(offset)
+    };
+    let three = vk::Format::R32G32B32_SFLOAT;
+    let mut buffers = vec![buffer(0, 32)];
+    let mut attributes =
+        vec![attribute(0, 0, three, 0), attribute(0, 1, three, 12), attribute(0, 2, vk::Format::R32G32_SFLOAT, 24)];
+    if is_displaced {
+        buffers.push(buffer(1, 40));
+        attributes.extend([
+            attribute(1, 3, three, 0),
+            attribute(1, 4, three, 12),
+            attribute(1, 5, three, 24),
+            attribute(1, 6, vk::Format::R32_SFLOAT, 36),
+        ]);
+    }
+    (buffers, attributes)
 }
 
 /// Makes a shader module from SPIR-V.

@@ -301,18 +301,19 @@ impl SelectedPatch<'_> {
     fn index_rows(&self, ui: &mut Ui) {
         let hover = "Indices of corners as `pnaen adjacency` writes them: nine, or twelve with the dominant corners.";
         title(ui, "Adjacency indices", hover);
-        let twelve = adjacency::twelve(self.topology, self.patch);
+        let indices = adjacency::eighteen(self.topology, self.patch);
         let row = |name: &str, indices: &[u32]| {
             format!("{name:<10}{}", indices.iter().map(|index| format!("{index:>8}")).collect::<String>())
         };
-        ui.label(dense(row("corners", &twelve[..3]))).on_hover_text("The triangle's own corners 0, 1, 2.");
+        ui.label(dense(row("corners", &indices[..3]))).on_hover_text("The triangle's own corners 0, 1, 2.");
         for k in 0..3_usize {
-            let pair = &twelve[3 + 2 * k..5 + 2 * k];
+            let pair = &indices[3 + 2 * k..5 + 2 * k];
             let hover = "The neighbour's corners along this edge, in the patch's direction. Without exactly one neighbour \
                          they are the patch's own.";
             ui.label(dense(row(&format!("edge {}", ends_text(k as u32)), pair))).on_hover_text(hover);
         }
-        ui.label(dense(row("dominant", &twelve[9..]))).on_hover_text("The lowest corner on each of the three points.");
+        ui.label(dense(row("dominant", &indices[9..12])))
+            .on_hover_text("The lowest corner on each of the three points.");
     }
 
     /// The domain points of the emitted triangle that was clicked on.

@@ -51,6 +51,8 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
             "CHOSEN_CULLING",
             "CHOSEN_CONVENTION",
             "CHOSEN_NORMALS",
+            "CHOSEN_DISPLACEMENT",
+            "PATCH_INDICES",
             "CULLING_OFF",
             "CULLING_ON",
             "EXPORTED_WORKGROUP",

@@ -8,15 +8,48 @@ cbuffer Tessellation : register(b0)
     StageConstants constants;
 };
 
+@D@cbuffer Heights : register(b1)
+@D@{
+@D@    HeightConstants height_constants;
+@D@};
+@D@
 // A corner of the mesh.
 struct Corner
 {
     float3 position : POSITION;
     float3 normal : NORMAL;
     float2 uv : TEXCOORD0;
+@D@    // The second vertex buffer: the unit vector along which the corner's point moves, the gradients of its texture coordinates,
+@D@    // and the length of the point's shortest edge in px of level 0.
+@D@    float3 direction : DIRECTION;
+@D@    float3 along_u : ALONG_U;
+@D@    float3 along_v : ALONG_V;
+@D@    float texels : TEXELS;
 };
+@D@
+@D@// What the hull shader hands on of corner k and of side k.
+@D@struct HullCorner
+@D@{
+@D@    float3 position : POSITION;
+@D@    float3 normal : NORMAL;
+@D@    float2 uv : TEXCOORD0;
+@D@    float3 direction : DIRECTION;
+@D@    float3 along_u : ALONG_U;
+@D@    float3 along_v : ALONG_V;
+@D@    // The dominant corner on the same point.
+@D@    float2 dominant_uv : DOMINANT_UV;
+@D@    float3 dominant_along_u : DOMINANT_ALONG_U;
+@D@    float3 dominant_along_v : DOMINANT_ALONG_V;
+@D@    // The corners of the dominant side, at the start of side k and at its end.
+@D@    float2 start_uv : START_UV;
+@D@    float3 start_along_u : START_ALONG_U;
+@D@    float3 start_along_v : START_ALONG_V;
+@D@    float2 end_uv : END_UV;
+@D@    float3 end_along_u : END_ALONG_U;
+@D@    float3 end_along_v : END_ALONG_V;
+@D@};
 
-struct PatchFactors
+struct HullOutput
 {
     float edges[3] : SV_TessFactor;
     float inside : SV_InsideTessFactor;
@@ -24,6 +57,10 @@ struct PatchFactors
     precise float3 near_start[3] : NEAR_START;
     precise float3 near_end[3] : NEAR_END;
     float3 middle : MIDDLE;
+@D@    // The mip levels at the corners, on the sides, and inside.
+@D@    precise float3 corner_levels : CORNER_LEVELS;
+@D@    precise float3 side_levels : SIDE_LEVELS;
+@D@    precise float inside_level : INSIDE_LEVEL;
 };
 
 struct Vertex
@@ -41,9 +78,9 @@ Corner vs_main(Corner corner)
 }
 
 // Computes the sides of a patch: side k runs from corner k to corner (k + 1) % 3.
-PatchFactors hs_patch(InputPatch<Corner, @INDICES@> corners)
+HullOutput hs_patch(InputPatch<Corner, @INDICES@> corners)
 {
-    PatchFactors made;
+    HullOutput made;
     ControlNet net;
     precise float3 sides;
     [unroll] for (uint k = 0; k < 3; k++)
@@ -70,6 +107,14 @@ PatchFactors hs_patch(InputPatch<Corner, @INDICES@> corners)
     made.edges[2] = factors.z;
     made.inside = factors.w;
     made.middle = net.center_;
+@D@    [unroll] for (uint i = 0; i < 3; i++)
+@D@    {
+@D@        made.corner_levels[i] = corner_level(height_constants, constants.factor, corners[i].texels);
+@D@        made.side_levels[i] =
+@D@            side_level(height_constants, constants.factor, corners[12 + 2 * i].uv, corners[13 + 2 * i].uv);
+@D@    }
+@D@    float2 uvs[3] = { corners[0].uv, corners[1].uv, corners[2].uv };
+@D@    made.inside_level = level_inside(height_constants, segments_inside(factors), uvs);
     return made;
 }
 
@@ -79,13 +124,60 @@ PatchFactors hs_patch(InputPatch<Corner, @INDICES@> corners)
 [outputcontrolpoints(3)]
 [patchconstantfunc("hs_patch")]
 [maxtessfactor(64.0)]
-Corner hs_main(InputPatch<Corner, @INDICES@> corners, uint k : SV_OutputControlPointID)
-{
-    return corners[k];
-}
+@N@Corner hs_main(InputPatch<Corner, @INDICES@> corners, uint k : SV_OutputControlPointID)
+@N@{
+@N@    return corners[k];
+@N@}
+@D@HullCorner hs_main(InputPatch<Corner, @INDICES@> corners, uint k : SV_OutputControlPointID)
+@D@{
+@D@    HullCorner made;
+@D@    made.position = corners[k].position;
+@D@    made.normal = corners[k].normal;
+@D@    made.uv = corners[k].uv;
+@D@    made.direction = corners[k].direction;
+@D@    made.along_u = corners[k].along_u;
+@D@    made.along_v = corners[k].along_v;
+@D@    made.dominant_uv = corners[9 + k].uv;
+@D@    made.dominant_along_u = corners[9 + k].along_u;
+@D@    made.dominant_along_v = corners[9 + k].along_v;
+@D@    made.start_uv = corners[12 + 2 * k].uv;
+@D@    made.start_along_u = corners[12 + 2 * k].along_u;
+@D@    made.start_along_v = corners[12 + 2 * k].along_v;
+@D@    made.end_uv = corners[13 + 2 * k].uv;
+@D@    made.end_along_u = corners[13 + 2 * k].along_u;
+@D@    made.end_along_v = corners[13 + 2 * k].along_v;
+@D@    return made;
+@D@}
 
+@D@StageRelief patch_relief(HullOutput factors, const OutputPatch<HullCorner, 3> corners)
+@D@{
+@D@    StageRelief relief;
+@D@    [unroll] for (uint k = 0; k < 3; k++)
+@D@    {
+@D@        HullCorner own = corners[k];
+@D@        relief.directions[k] = own.direction;
+@D@        relief.own[k].uv = own.uv;
+@D@        relief.own[k].along_u = own.along_u;
+@D@        relief.own[k].along_v = own.along_v;
+@D@        relief.dominant[k].uv = own.dominant_uv;
+@D@        relief.dominant[k].along_u = own.dominant_along_u;
+@D@        relief.dominant[k].along_v = own.dominant_along_v;
+@D@        relief.sides[2 * k].uv = own.start_uv;
+@D@        relief.sides[2 * k].along_u = own.start_along_u;
+@D@        relief.sides[2 * k].along_v = own.start_along_v;
+@D@        relief.sides[2 * k + 1].uv = own.end_uv;
+@D@        relief.sides[2 * k + 1].along_u = own.end_along_u;
+@D@        relief.sides[2 * k + 1].along_v = own.end_along_v;
+@D@    }
+@D@    relief.corner_levels = factors.corner_levels;
+@D@    relief.side_levels = factors.side_levels;
+@D@    relief.inside_level = factors.inside_level;
+@D@    return relief;
+@D@}
+@D@
 [domain("tri")]
-Vertex ds_main(PatchFactors factors, float3 location : SV_DomainLocation, const OutputPatch<Corner, 3> corners)
+@N@Vertex ds_main(HullOutput factors, float3 location : SV_DomainLocation, const OutputPatch<Corner, 3> corners)
+@D@Vertex ds_main(HullOutput factors, float3 location : SV_DomainLocation, const OutputPatch<HullCorner, 3> corners)
 {
     StagePatch hull;
     hull.net.center_ = factors.middle;
@@ -97,7 +189,9 @@ Vertex ds_main(PatchFactors factors, float3 location : SV_DomainLocation, const 
         hull.normals[k] = corners[k].normal;
         hull.uvs[k] = corners[k].uv;
     }
-    precise StageVertex made = stage_vertex(hull, fixed_location(location));
+@N@    precise StageVertex made = stage_vertex(hull, fixed_location(location));
+@D@    uint2 domain = fixed_location(location);
+@D@    precise StageVertex made = displaced_vertex(height_constants, hull, patch_relief(factors, corners), domain);
     Vertex vertex;
     vertex.position = made.position;
     vertex.normal = made.normal;

@@ -13,12 +13,26 @@ layout(std140, binding = 0) uniform Tessellation {
     StageConstants constants;
 };
 
+@D@#ifdef VULKAN
+@D@layout(std140, set = 0, binding = 1) uniform Heights {
+@D@#else
+@D@layout(std140, binding = 1) uniform Heights {
+@D@#endif
+@D@    HeightConstants height_constants;
+@D@};
+@D@
 layout(vertices = 3) out;
 
 // The vertices of the patch's @INDICES@ indices.
 layout(location = 0) in vec3 vertex_position[];
 layout(location = 1) in vec3 vertex_normal[];
 layout(location = 2) in vec2 vertex_uv[];
+@D@// The unit vector along which a corner's point moves, the gradients of its texture coordinates, and the length of the point's
+@D@// shortest edge in px of level 0.
+@D@layout(location = 3) in vec3 vertex_direction[];
+@D@layout(location = 4) in vec3 vertex_along_u[];
+@D@layout(location = 5) in vec3 vertex_along_v[];
+@D@layout(location = 6) in float vertex_texels[];
 
 layout(location = 0) out vec3 corner_position[];
 layout(location = 1) out vec3 corner_normal[];
@@ -29,6 +43,23 @@ layout(location = 4) precise out vec3 near_end[];
 layout(location = 5) precise out float side_factor[];
 // The control point in the middle of the patch.
 layout(location = 6) patch out vec3 center;
+@D@layout(location = 7) out vec3 corner_direction[];
+@D@layout(location = 8) out vec3 corner_along_u[];
+@D@layout(location = 9) out vec3 corner_along_v[];
+@D@// The dominant corner on the point of corner k.
+@D@layout(location = 10) out vec2 dominant_uv[];
+@D@layout(location = 11) out vec3 dominant_along_u[];
+@D@layout(location = 12) out vec3 dominant_along_v[];
+@D@// The corners of the dominant side of side k, at the start of side k and at its end.
+@D@layout(location = 13) out vec4 side_uvs[];
+@D@layout(location = 14) out vec3 start_along_u[];
+@D@layout(location = 15) out vec3 start_along_v[];
+@D@layout(location = 16) out vec3 end_along_u[];
+@D@layout(location = 17) out vec3 end_along_v[];
+@D@// The mip levels at the corners, on the sides, and inside.
+@D@layout(location = 18) precise patch out vec3 corner_levels;
+@D@layout(location = 19) precise patch out vec3 side_levels;
+@D@layout(location = 20) precise patch out float inside_level;
 
 void main() {
     int k = gl_InvocationID;
@@ -42,6 +73,17 @@ void main() {
     near_start[gl_InvocationID] = side.near_start;
     near_end[gl_InvocationID] = side.near_end;
     side_factor[gl_InvocationID] = side.factor;
+@D@    corner_direction[gl_InvocationID] = vertex_direction[k];
+@D@    corner_along_u[gl_InvocationID] = vertex_along_u[k];
+@D@    corner_along_v[gl_InvocationID] = vertex_along_v[k];
+@D@    dominant_uv[gl_InvocationID] = vertex_uv[9 + k];
+@D@    dominant_along_u[gl_InvocationID] = vertex_along_u[9 + k];
+@D@    dominant_along_v[gl_InvocationID] = vertex_along_v[9 + k];
+@D@    side_uvs[gl_InvocationID] = vec4(vertex_uv[12 + 2 * k], vertex_uv[13 + 2 * k]);
+@D@    start_along_u[gl_InvocationID] = vertex_along_u[12 + 2 * k];
+@D@    start_along_v[gl_InvocationID] = vertex_along_v[12 + 2 * k];
+@D@    end_along_u[gl_InvocationID] = vertex_along_u[13 + 2 * k];
+@D@    end_along_v[gl_InvocationID] = vertex_along_v[13 + 2 * k];
     barrier();
     if (k == 0) {
         vec3 corners[3] = vec3[3](vertex_position[0], vertex_position[1], vertex_position[2]);
@@ -53,5 +95,12 @@ void main() {
         gl_TessLevelOuter[1] = factors.y;
         gl_TessLevelOuter[2] = factors.z;
         gl_TessLevelInner[0] = factors.w;
+@D@        for (int i = 0; i < 3; i++) {
+@D@            corner_levels[i] = corner_level(height_constants, constants.factor, vertex_texels[i]);
+@D@            side_levels[i] =
+@D@                side_level(height_constants, constants.factor, vertex_uv[12 + 2 * i], vertex_uv[13 + 2 * i]);
+@D@        }
+@D@        vec2 uvs[3] = vec2[3](vertex_uv[0], vertex_uv[1], vertex_uv[2]);
+@D@        inside_level = level_inside(height_constants, segments_inside(factors), uvs);
     }
 }

@@ -135,6 +135,8 @@ fn shaders(engine: &Engine) -> Result<(), BenchError> {
     let vulkan = vulkan::Vulkan::new(&engine.gpu.info)?;
     let mut subject = exported::Subject::new(engine, &vulkan, Shape::CubeSplit.build())?;
     println!("# Exported shaders on {}\n\n{}", engine.gpu.info.name, exported::table(&exported::rows(&mut subject)?));
+    let mut displaced = exported::Subject::new(engine, &vulkan, exported::wavy(Shape::CubeSplit.build()))?;
+    println!("\nDisplaced:\n\n{}", exported::displaced_table(&exported::displaced_rows(&mut displaced)?));
     Ok(())
 }
 
