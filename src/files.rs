@@ -61,6 +61,7 @@ pub(crate) fn file_reason(error: &io::Error) -> String {
         ErrorKind::ReadOnlyFilesystem => "nothing can be written there; choose another folder".to_owned(),
         ErrorKind::StorageFull => "there is no room left; delete something or choose another disk".to_owned(),
         ErrorKind::IsADirectory => "it is a folder; name a file".to_owned(),
+        ErrorKind::AlreadyExists => "there is a file of this name; choose another one".to_owned(),
         ErrorKind::NotADirectory => "a part of its path isn't a folder; check its path".to_owned(),
         _ => error.to_string(),
     }

@@ -1,6 +1,6 @@
 //! Projects positions to the screen, and gives the size of a ULP.
 
-use glam::{Mat4, Vec2, Vec3, dvec3, vec2};
+use glam::{Mat4, Vec2, Vec3, dvec3, vec2, vec4};
 
 use crate::mesh::Topology;
 
@@ -10,6 +10,14 @@ pub struct ScreenView {
     pub clip_from_object: Mat4,
     /// Width and height in px.
     pub viewport: Vec2,
+}
+
+impl ScreenView {
+    /// The view as a mirror shows it.
+    pub(crate) fn mirrored(self) -> Self {
+        let mirror = Mat4::from_diagonal(vec4(-1.0, 1.0, 1.0, 1.0));
+        Self { clip_from_object: mirror * self.clip_from_object, ..self }
+    }
 }
 
 /// Projects a position to px from the viewport's top left. Returns `None` for a position behind the eye.

@@ -14,6 +14,9 @@ use crate::names::{shown, shown_path};
 /// The most bytes that a configuration may have.
 const MOST_BYTES: u64 = 1 << 20;
 
+/// The keys that a configuration may have outside of its sections.
+const SECTION_KEYS: [&str; 4] = ["fail-on", "options", "cameras", "files"];
+
 /// What is wrong with a configuration.
 #[derive(Debug, Error)]
 pub(crate) enum ConfigError {
@@ -86,7 +89,7 @@ impl Config {
             return Err(unreadable(format!("it has {} bytes, and at most {MOST_BYTES} are read", about.len())));
         }
         let bytes = std::fs::read(path).map_err(|error| unreadable(file_reason(&error)))?;
-        let text = String::from_utf8(bytes).map_err(|error| unreadable(error.to_string()))?;
+        let text = String::from_utf8(bytes).map_err(|_| unreadable("it isn't text in UTF-8".to_owned()))?;
         Self::parse(&shown, &text, KnownOptions { all: options, camera })
     }
 
@@ -105,7 +108,7 @@ impl Config {
             match key.get_ref().as_ref() {
                 "files" => config.files = reader.files(value)?,
                 name if reader.take(name, value, &mut config.base)? => {}
-                name => return Err(reader.unknown(key.span(), name, &["fail-on", "options", "cameras", "files"])),
+                name => return Err(reader.unknown(key.span(), name, &SECTION_KEYS)),
             }
         }
         Ok(config)
@@ -193,6 +196,9 @@ impl Reader<'_> {
                 // A table is in the order of its names; views stay in the order in which they were written.
                 cameras.sort_by_key(|(key, _)| key.span().start);
                 for (key, camera) in cameras {
+                    if key.get_ref().is_empty() {
+                        return Err(self.error(key.span(), "a camera needs a name, such as [cameras.front]"));
+                    }
                     let options = self.options(camera, self.known.camera)?;
                     section.cameras.push((key.get_ref().to_string(), options));
                 }
@@ -246,6 +252,10 @@ impl Reader<'_> {
         let mut options = Vec::new();
         for (key, value) in self.table(value, "options of `pnaen render`, such as tolerance = 0.5")? {
             let name = key.get_ref().as_ref();
+            if SECTION_KEYS.contains(&name) {
+                let misplaced = format!("{name} isn't an option; write it above the line in brackets before it");
+                return Err(self.error(key.span(), &misplaced));
+            }
             if !known.contains(&name) {
                 return Err(self.unknown(key.span(), name, known));
             }
@@ -346,6 +356,8 @@ mod tests {
             ("[options]\n\ntolerence = 1", 3, "there is no key tolerence; did you mean tolerance?"),
             ("[options]\nxyzzyplugh = 1", 2, "there is no key xyzzyplugh"),
             ("[cameras.front]\nlod = \"error\"", 2, "there is no key lod"),
+            ("[cameras.\"\"]\ncamera = [0, 0]", 1, "a camera needs a name"),
+            ("[options]\nlod = \"error\"\nfail-on = [\"cracks\"]", 3, "fail-on isn't an option; write it above"),
             ("fail-on = \"cracks\"", 1, "expected a list of gates"),
             ("fail-on = [\n\"cracks\",\n\"crack\"]", 3, "crack: expected one of cracks"),
             ("options = 3", 1, "expected options"),

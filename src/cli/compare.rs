@@ -12,8 +12,9 @@ use super::{
 use crate::compare::{Exactness, ForeignMesh, Ours, compare};
 use crate::engine::Loaded;
 use crate::files::Limits;
-use crate::load::Source;
 use crate::load::csv_vertices::{CsvVertices, read_vertices};
+use crate::load::selection::Selection;
+use crate::load::{Import, NormalSource, Source};
 use crate::names::shown_path;
 use crate::progress::Progress;
 use crate::settings::Settings;
@@ -188,7 +189,10 @@ fn csv(args: &Args, limits: &Limits) -> Result<(ForeignMesh, f64), CliError> {
 }
 
 fn of_file(path: &Path, limits: &Limits) -> Result<ForeignMesh, CliError> {
-    let loaded = Source::File(path.to_owned()).load(limits, &Progress::new())?;
+    // Normals aren't compared, so that nothing need be said about those that the file lacks.
+    let import = Import { normals: NormalSource::Made, ..Import::default() };
+    let selected = Selection { import, ..Selection::default() };
+    let loaded = Source::File(path.to_owned()).load_selected(selected, limits, &Progress::new())?;
     warn(&loaded.warnings);
     Ok(ForeignMesh::of_mesh(&loaded.mesh))
 }

@@ -3,19 +3,22 @@
 use std::path::{Path, PathBuf};
 
 use super::lod_shader_option::report_own_lod;
+use super::options::CamerasOption;
 use super::tessellate::Device;
+use super::view_files::{View, ViewFiles};
 use super::{
     AdapterOption, CliError, LodShaderOption, SurfaceOptions, file_of, file_of_heights, keep_apart, load_apart,
     write_text,
 };
-use crate::engine::Engine;
+use crate::engine::{Engine, Loaded};
 use crate::factors_file::to_csv;
-use crate::gpu::{GpuError, Timing};
+use crate::gpu::{Given, GpuError, Timing};
 use crate::load::Source;
+use crate::mesh::Moment;
 use crate::progress::Progress;
 use crate::render::Scene;
 use crate::settings::Settings;
-use crate::tessellate::{self, HullFactors, Inputs, bounds_through};
+use crate::tessellate::{self, HullFactors, Inputs, LodView, bounds_through};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -23,13 +26,15 @@ pub(crate) struct Args {
     /// shape:torus@2 (finer)
     #[arg(value_parser = super::options::source())]
     pub file: Source,
-    /// File to write, CSV (- for standard output)
+    /// File to write, CSV (- for standard output). With --cameras, a folder, or a name with {} where each view's name goes
     #[arg(short, long, value_name = "OUT.csv")]
     pub output: PathBuf,
     #[command(flatten)]
     pub surface: SurfaceOptions,
     #[command(flatten)]
     pub own_lod: LodShaderOption,
+    #[command(flatten)]
+    pub cameras: CamerasOption,
     /// Where to compute; the CPU needs no graphics driver
     #[arg(long, value_enum, default_value_t = Device::Gpu)]
     pub device: Device,
@@ -41,36 +46,75 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     args.surface.check()?;
     args.adapter.check(args.device == Device::Cpu)?;
     args.own_lod.check(args.device == Device::Cpu)?;
+    let files = ViewFiles::new(&args.output, &["csv"], &args.cameras);
+    let several = "--cameras writes several files: name a folder with -o, or put {} where the views' names go";
+    let views = files.views(&args.cameras, &args.surface, several)?;
+    let written = files.checked(&views);
     let heights = file_of_heights(args.surface.height.as_ref());
     let shader = args.own_lod.lod_shader.as_deref();
-    keep_apart([file_of(&args.file), heights, shader], [Some(&*args.output)])?;
+    keep_apart([file_of(&args.file), heights, shader, args.cameras.file()], written.iter().copied())?;
     let own_lod = args.own_lod.read(&args.surface.tessellation())?;
-    let loaded = load_apart(&args.file, &args.surface.preparation(), &[Some(&args.output)])?;
+    let loaded = load_apart(&args.file, &args.surface.preparation(), &written)?;
     let moment = args.surface.animation.moment(&loaded)?;
     let posed = loaded.posed(moment);
     let (mesh, topology) = (&posed.mesh, &posed.topology);
     let bounds = bounds_through(&loaded.mesh, moment.map(|moment| moment.clip));
-    let view = args.surface.camera(mesh, moment, &bounds)?.lod_view(args.surface.viewport(), &bounds);
-    let written = match args.device {
-        Device::Cpu => {
-            let count = |settings: &Settings| Ok(tessellate::totals(mesh, topology, &settings.inputs(view)).1);
-            tessellate::hull_factors(mesh, topology, &args.surface.within_budget(count)?.inputs(view))
-        }
-        Device::Gpu => {
-            let engine = Engine::chosen(&args.adapter.choice())?;
-            let mut scene = engine.scene(&loaded, args.surface.arena_bytes())?;
-            scene.tessellator.give(own_lod)?;
-            scene.set_moment(moment)?;
-            let settings = args.surface.within_budget(|settings| {
-                engine.count(&mut scene, &settings.inputs(view), &mut Timing::Off)?;
-                Ok(scene.tessellator.totals().1)
-            })?;
-            let written = computed(&engine, &mut scene, &settings.inputs(view))?;
-            report_own_lod(&engine, &scene)?;
-            written
-        }
+    let lod_view = |view: &View| {
+        let camera = view.camera(&args.surface, mesh, moment, &bounds)?;
+        Ok(camera.lod_view(args.surface.viewport(), &bounds))
     };
-    write_text(&args.output, &to_csv(topology, &written, args.surface.tessellation().partitioning))
+    let lod_views = views.iter().map(lod_view).collect::<Result<Vec<_>, CliError>>()?;
+    let mut on_gpu = match args.device {
+        Device::Cpu => None,
+        Device::Gpu => Some(args.uploaded(&loaded, moment, own_lod)?),
+    };
+    files.make_folder()?;
+    for (index, (view, lod_view)) in views.iter().zip(lod_views).enumerate() {
+        let factors = match &mut on_gpu {
+            None => {
+                let count = |settings: &Settings| Ok(tessellate::totals(mesh, topology, &settings.inputs(lod_view)).1);
+                tessellate::hull_factors(mesh, topology, &args.surface.within_budget(count)?.inputs(lod_view))
+            }
+            Some((engine, scene)) => args.factors_on_gpu(engine, scene, lod_view, index == 0)?,
+        };
+        write_text(&view.file, &to_csv(topology, &factors, args.surface.tessellation().partitioning))?;
+    }
+    Ok(())
+}
+
+impl Args {
+    /// A mesh on the device, in its pose, and what takes the place of LOD there.
+    fn uploaded(
+        &self,
+        loaded: &Loaded,
+        moment: Option<Moment>,
+        own_lod: Option<Given>,
+    ) -> Result<(Engine, Scene), CliError> {
+        let engine = Engine::chosen(&self.adapter.choice())?;
+        let mut scene = engine.scene(loaded, self.surface.arena_bytes())?;
+        scene.tessellator.give(own_lod)?;
+        scene.set_moment(moment)?;
+        Ok((engine, scene))
+    }
+
+    /// The factors of a view, computed on the device. The first view's are reported on, if a shader of the user's own gives them.
+    fn factors_on_gpu(
+        &self,
+        engine: &Engine,
+        scene: &mut Scene,
+        lod_view: LodView,
+        is_first: bool,
+    ) -> Result<Vec<HullFactors>, CliError> {
+        let settings = self.surface.within_budget(|settings| {
+            engine.count(scene, &settings.inputs(lod_view), &mut Timing::Off)?;
+            Ok(scene.tessellator.totals().1)
+        })?;
+        let factors = computed(engine, scene, &settings.inputs(lod_view))?;
+        if is_first {
+            report_own_lod(engine, scene)?;
+        }
+        Ok(factors)
+    }
 }
 
 /// The factors that a hull shader would hand to the tessellator with these inputs.

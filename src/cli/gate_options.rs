@@ -6,8 +6,6 @@ use super::shot::Shot;
 use super::{CliError, file_error, write_picture};
 use crate::files::file_reason;
 use crate::gates::{Gate, GateKind, Judgement};
-use crate::load::Source;
-use crate::names::shown;
 use crate::progress::Progress;
 
 #[derive(Clone, Debug, Default, clap::Args)]
@@ -69,15 +67,6 @@ pub(super) fn write_evidence_of(
 /// The name of the picture of a gate, beside an output of this name.
 fn evidence_name(output: &Path, gate: GateKind) -> String {
     format!("{}-{}.png", output.file_stem().unwrap_or_default().to_string_lossy(), gate.name())
-}
-
-/// Fails if a gate failed. Standard error tells which gates mean nothing for the mesh.
-///
-/// # Errors
-/// A sentence for each gate that failed.
-pub(super) fn pass(mesh: &Source, judged: &[Judgement]) -> Result<(), CliError> {
-    let sentences = failures(&shown(&mesh.to_string()), judged);
-    if sentences.is_empty() { Ok(()) } else { Err(CliError::Gates(sentences)) }
 }
 
 /// Returns a sentence for each gate that failed on the mesh with this name. Standard error tells which gates mean nothing for it.

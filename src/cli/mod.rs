@@ -37,6 +37,7 @@ mod surface_shader_option;
 mod tessellate;
 mod truth;
 mod turntable;
+mod view_files;
 mod view_report;
 
 use std::io::{Read, Write};
@@ -206,6 +207,8 @@ pub(crate) enum CliError {
     NoTriangle { file: String, last: usize, triangle: u32 },
     #[error("{} has no camera {}; {}", shown(mesh), shown(wanted), said_of_cameras(known))]
     NoCamera { mesh: String, wanted: String, known: Vec<String> },
+    #[error("{view}: {error}")]
+    View { view: String, error: Box<CliError> },
     #[error(transparent)]
     ViewProjection(#[from] crate::render::view_projection::ViewProjectionError),
     #[error("{different} of {all} pictures differ from their references")]
@@ -326,7 +329,7 @@ pub(crate) fn preview(
 
 /// Reads a whole text file, or standard input if the path is `-`.
 fn read_text(path: &Path) -> Result<String, CliError> {
-    String::from_utf8(read_bytes(path)?).map_err(|error| file_error(path, "read", &error))
+    String::from_utf8(read_bytes(path)?).map_err(|_| file_error(path, "read", &"it isn't text in UTF-8"))
 }
 
 /// Reads a whole file, or standard input if the path is `-`. Refuses devices, which may have no end, and more bytes than a

@@ -3,14 +3,14 @@
 
 use std::path::{Path, PathBuf};
 
-use super::CliError;
+use super::{CliError, file_error};
 use crate::load::{HeightSource, Source};
 use crate::names::shown_path;
 
 /// Checks that the files to be written are different from each other and from those to be read.
 ///
 /// # Errors
-/// A file to be written is read or written already, or there is no folder for it.
+/// A file to be written is read or written already, is a folder, or there is no folder for it.
 pub(super) fn keep_apart<'a>(
     read: impl IntoIterator<Item = Option<&'a Path>>,
     written: impl IntoIterator<Item = Option<&'a Path>>,
@@ -20,6 +20,9 @@ pub(super) fn keep_apart<'a>(
     for path in written.into_iter().flatten() {
         if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
             return Err(CliError::NoFolder { path: shown_path(path), folder: shown_path(folder) });
+        }
+        if path.is_dir() {
+            return Err(file_error(path, "written", &"it is a folder; name a file"));
         }
         let Some(place) = place(path) else { continue };
         if let Some((_, by)) = taken.iter().find(|(other, _)| *other == place) {

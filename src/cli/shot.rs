@@ -184,6 +184,11 @@ impl Shot {
         self.count()
     }
 
+    /// The scene and what is drawn, for another shot of them.
+    pub(crate) fn into_parts(self) -> (Scene, Subject) {
+        (self.scene, self.subject)
+    }
+
     /// The picture's camera.
     pub(crate) fn camera(&self) -> &Camera {
         &self.view.camera

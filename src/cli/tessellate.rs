@@ -1,24 +1,27 @@
 //! `pnaen tessellate`: writes the tessellated mesh.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use clap::ValueEnum;
 
-use super::gate_options::{GateOptions, pass};
+use super::gate_options::{GateOptions, failures};
 use super::lod_shader_option::report_own_lod;
+use super::options::CamerasOption;
 use super::shot::{Shot, ShotView, Subject};
 use super::surface_shader_option::report_own_surface;
+use super::view_files::{View, ViewFiles};
 use super::{
     AdapterOption, CliError, FactorsOption, LodShaderOption, SurfaceOptions, SurfaceShaderOption, file_of,
     file_of_heights, keep_apart, load_apart, options, warn,
 };
 use crate::engine::{Engine, Loaded};
 use crate::export::Exported;
-use crate::gates::{Facts, GateKind, judge};
-use crate::gpu::{Given, GpuError, Timing};
+use crate::gates::{Facts, GateKind, Judgement, judge};
+use crate::gpu::{Given, GpuError, SurfaceShader, Timing};
 use crate::load::Source;
 use crate::measure::{AskedFactors, EmittedChunk, Measured, ScreenErrorMeasurement, Visitor};
-use crate::mesh::{Moment, t_junctions};
+use crate::mesh::{Bounds, Moment, t_junctions};
 use crate::progress::Progress;
 use crate::render::{Camera, Scene};
 use crate::settings::Settings;
@@ -30,7 +33,7 @@ pub(crate) struct Args {
     /// shape:torus@2 (finer)
     #[arg(value_parser = super::options::source())]
     pub file: Source,
-    /// Mesh to write, a .glb or .obj file
+    /// Mesh to write, a .glb or .obj file. With --cameras, a name with {} where each view's name goes
     #[arg(short, long, value_name = "OUT.glb|OUT.obj", value_parser = options::model())]
     pub output: PathBuf,
     #[command(flatten)]
@@ -41,6 +44,8 @@ pub(crate) struct Args {
     pub own_lod: LodShaderOption,
     #[command(flatten)]
     pub own_surface: SurfaceShaderOption,
+    #[command(flatten)]
+    pub cameras: CamerasOption,
     /// Where to tessellate; the CPU needs no graphics driver
     #[arg(long, value_enum, default_value_t = Device::Gpu)]
     pub device: Device,
@@ -67,37 +72,29 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 /// Those of the command.
 pub(crate) fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
     args.check()?;
+    let files = ViewFiles::new(&args.output, &["glb", "obj"], &args.cameras);
+    let several = "--cameras writes several meshes: put {} into the name of -o where the views' names go";
+    let views = files.views(&args.cameras, &args.surface, several)?;
+    let written = files.checked(&views);
     let heights = file_of_heights(args.surface.height.as_ref());
     let factors = args.given.given.as_deref();
     let shaders = [args.own_lod.lod_shader.as_deref(), args.own_surface.surface_shader.as_deref()];
-    keep_apart([file_of(&args.file), heights, factors].into_iter().chain(shaders), [Some(&*args.output)])?;
+    let read = [file_of(&args.file), heights, factors, args.cameras.file()].into_iter().chain(shaders);
+    keep_apart(read, written.iter().copied())?;
     let own_lod = args.own_lod.read(&args.surface.tessellation())?;
     let surface_shader = args.own_surface.read()?;
-    let loaded = load_apart(&args.file, &args.surface.preparation(), &[Some(&args.output)])?;
+    let loaded = load_apart(&args.file, &args.surface.preparation(), &written)?;
     let moment = args.surface.animation.moment(&loaded)?;
-    let posed = loaded.posed(moment);
-    let (mesh, topology) = (&posed.mesh, &posed.topology);
-    let given = args.given.read(mesh, topology, &args.surface.tessellation())?.map(|given| given.factors);
     let bounds = bounds_through(&loaded.mesh, moment.map(|moment| moment.clip));
-    let camera = args.surface.camera(mesh, moment, &bounds)?;
-    let view = camera.lod_view(args.surface.viewport(), &bounds);
-    match args.device {
-        Device::Cpu => {
-            let (inputs, tessellated) = args.on_cpu(&posed, given.as_deref(), view)?;
-            warn(&Exported::new(mesh, topology, &tessellated).write(&args.output)?);
-            args.judge_on_cpu([&loaded, &posed], given.as_deref(), &inputs, &tessellated)
-        }
-        Device::Gpu => {
-            let engine = engine()?;
-            let mut scene = engine.scene(&loaded, args.surface.arena_bytes())?;
-            let given = given.map(Given::from).or(own_lod);
-            let subject = Subject { surface_shader, ..args.subject(loaded, moment, given) };
-            subject.dress(&engine, &mut scene)?;
-            let (settings, tessellated) = args.on_gpu(&engine, &mut scene, &posed, view)?;
-            warn(&Exported::new(mesh, topology, &tessellated).write(&args.output)?);
-            args.judge_on_gpu(engine, scene, Subject { settings, ..subject }, camera)
-        }
-    }
+    let ready = Ready { args, posed: loaded.posed(moment), loaded, moment, bounds };
+    let given = args.given.read(&ready.posed.mesh, &ready.posed.topology, &args.surface.tessellation())?;
+    let given = given.map(|given| given.factors);
+    let views = views.iter().map(|view| Ok((view, ready.camera(view)?))).collect::<Result<Vec<_>, CliError>>()?;
+    let failed = match args.device {
+        Device::Cpu => ready.on_cpu(&views, given.as_deref())?,
+        Device::Gpu => ready.on_gpu(&views, engine()?, given.map(Given::from).or(own_lod), surface_shader)?,
+    };
+    if failed.is_empty() { Ok(()) } else { Err(CliError::Gates(failed)) }
 }
 
 impl Args {
@@ -115,22 +112,70 @@ impl Args {
         Exported::check_ending(&self.output)?;
         Ok(())
     }
+}
 
-    /// Tessellates on the CPU, within the budget of triangles. Returns what was tessellated with, too.
-    fn on_cpu(
+/// A mesh that is ready to be tessellated for each view.
+struct Ready<'a> {
+    args: &'a Args,
+    /// At rest, and in the pose that is tessellated.
+    loaded: Loaded,
+    posed: Loaded,
+    moment: Option<Moment>,
+    /// Of the mesh through its clip.
+    bounds: Bounds,
+}
+
+impl Ready<'_> {
+    /// The camera of a view.
+    fn camera(&self, view: &View) -> Result<Camera, CliError> {
+        view.camera(&self.args.surface, &self.posed.mesh, self.moment, &self.bounds)
+    }
+
+    /// What LOD and clipping are computed for.
+    fn lod_view(&self, camera: &Camera) -> LodView {
+        camera.lod_view(self.args.surface.viewport(), &self.bounds)
+    }
+
+    /// Checks that the view's file can hold so many vertices and triangles, before they are there.
+    fn check(&self, view: &View, vertices: u64, triangles: u64) -> Result<(), CliError> {
+        Ok(Exported::check(&view.file, &self.posed.mesh, vertices, triangles)?)
+    }
+
+    /// Writes what was tessellated for a view. Standard error tells what couldn't be written.
+    fn write(&self, view: &View, tessellated: &Tessellated) -> Result<(), CliError> {
+        let exported = Exported::new(&self.posed.mesh, &self.posed.topology, tessellated);
+        warn(&exported.write(&view.file)?);
+        Ok(())
+    }
+
+    /// Tessellates on the CPU. Returns a sentence for each gate that failed.
+    fn on_cpu(&self, views: &[(&View, Camera)], given: Option<&[HullFactors]>) -> Result<Vec<String>, CliError> {
+        let mut failed = Vec::new();
+        for (view, camera) in views {
+            let (inputs, tessellated) = self.tessellated_on_cpu(view, camera, given)?;
+            self.write(view, &tessellated)?;
+            let judged = self.judged_on_cpu(given, &inputs, &tessellated)?;
+            failed.extend(failures(&view.name_of(&self.args.file), &judged));
+        }
+        Ok(failed)
+    }
+
+    /// What the CPU tessellates for a view, within the budget of triangles, and with which inputs.
+    fn tessellated_on_cpu(
         &self,
-        posed: &Loaded,
+        view: &View,
+        camera: &Camera,
         given: Option<&[HullFactors]>,
-        view: LodView,
     ) -> Result<(Inputs, Tessellated), CliError> {
-        let (mesh, topology) = (&posed.mesh, &posed.topology);
-        let count = |settings: &Settings| Ok(tessellate::totals(mesh, topology, &settings.inputs(view)).1);
-        let inputs = self.surface.within_budget(count)?.inputs(view);
+        let (mesh, topology) = (&self.posed.mesh, &self.posed.topology);
+        let lod_view = self.lod_view(camera);
+        let count = |settings: &Settings| Ok(tessellate::totals(mesh, topology, &settings.inputs(lod_view)).1);
+        let inputs = self.args.surface.within_budget(count)?.inputs(lod_view);
         let (vertices, triangles) = match given {
             Some(given) => tessellate::given_totals(given, &inputs),
             None => tessellate::totals(mesh, topology, &inputs),
         };
-        Exported::check(&self.output, mesh, vertices, triangles)?;
+        self.check(view, vertices, triangles)?;
         let tessellated = match given {
             Some(given) => tessellate::tessellate_given(mesh, topology, &inputs, given),
             None => tessellate::tessellate(mesh, topology, &inputs, None),
@@ -138,67 +183,82 @@ impl Args {
         Ok((inputs, tessellated))
     }
 
-    /// The same on the device, where the scene has its pose and its factors. Returns the settings, too.
+    /// The same on the device.
     fn on_gpu(
         &self,
-        engine: &Engine,
-        scene: &mut Scene,
-        posed: &Loaded,
-        view: LodView,
-    ) -> Result<(Settings, Tessellated), CliError> {
-        let settings = self.surface.within_budget(|settings| {
-            engine.count(scene, &settings.inputs(view), &mut Timing::Off)?;
-            Ok(scene.tessellator.totals().1)
-        })?;
-        engine.count(scene, &settings.inputs(view), &mut Timing::Off)?;
-        report_own_surface(engine, scene)?;
-        report_own_lod(engine, scene)?;
-        let (vertices, triangles) = scene.tessellator.totals();
-        Exported::check(&self.output, &posed.mesh, vertices, triangles)?;
-        Ok((settings, engine.read_tessellated(scene)?))
+        views: &[(&View, Camera)],
+        engine: Engine,
+        given: Option<Given>,
+        surface_shader: Option<Arc<SurfaceShader>>,
+    ) -> Result<Vec<String>, CliError> {
+        let mut scene = engine.scene(&self.loaded, self.args.surface.arena_bytes())?;
+        let mut subject = self.subject(given, surface_shader);
+        subject.dress(&engine, &mut scene)?;
+        let mut failed = Vec::new();
+        for (index, (view, camera)) in views.iter().enumerate() {
+            let lod_view = self.lod_view(camera);
+            let settings = self.args.surface.within_budget(|settings| {
+                engine.count(&mut scene, &settings.inputs(lod_view), &mut Timing::Off)?;
+                Ok(scene.tessellator.totals().1)
+            })?;
+            engine.count(&mut scene, &settings.inputs(lod_view), &mut Timing::Off)?;
+            if index == 0 {
+                report_own_surface(&engine, &scene)?;
+                report_own_lod(&engine, &scene)?;
+            }
+            let (vertices, triangles) = scene.tessellator.totals();
+            self.check(view, vertices, triangles)?;
+            self.write(view, &engine.read_tessellated(&mut scene)?)?;
+            if !self.args.gates.gates.fail_on.is_empty() {
+                let mut shot = self.shot(engine.clone(), scene, Subject { settings, ..subject }, *camera)?;
+                failed.extend(self.judged_on_gpu(&mut shot, view)?);
+                (scene, subject) = shot.into_parts();
+            }
+        }
+        Ok(failed)
     }
 
     /// What a picture of the mesh would be drawn from.
-    fn subject(&self, loaded: Loaded, moment: Option<Moment>, given: Option<Given>) -> Subject {
+    fn subject(&self, given: Option<Given>, surface_shader: Option<Arc<SurfaceShader>>) -> Subject {
         Subject {
-            loaded,
-            moment,
+            loaded: self.loaded.clone(),
+            moment: self.moment,
             given,
-            surface_shader: None,
+            surface_shader,
             matcap: None,
             environment: None,
-            settings: self.surface.settings(),
+            settings: self.args.surface.settings(),
             reference_surface: None,
             selected: None,
             more_lines: Default::default(),
-            arena_bytes: self.surface.arena_bytes(),
+            arena_bytes: self.args.surface.arena_bytes(),
         }
     }
 
-    /// Judges what the device emitted by the gates, seen from `camera`, and draws what they found.
-    fn judge_on_gpu(&self, engine: Engine, scene: Scene, subject: Subject, camera: Camera) -> Result<(), CliError> {
-        if self.gates.gates.fail_on.is_empty() {
-            return Ok(());
-        }
-        let size = self.surface.size.0;
+    /// What gates judge, seen from `camera`.
+    fn shot(&self, engine: Engine, scene: Scene, subject: Subject, camera: Camera) -> Result<Shot, CliError> {
+        let size = self.args.surface.size.0;
         let view = ShotView { camera, lod_camera: None, size, transparent: false, legend: false };
-        let mut shot = Shot::new(engine, scene, subject, view)?;
-        let tolerance_px = self.surface.tessellation().tolerance;
-        let judged = shot.judge(&self.gates.gates.fail_on, tolerance_px, &Progress::new())?;
-        self.gates.write_evidence(&mut shot, &judged, &self.output)?;
-        pass(&self.file, &judged)
+        Ok(Shot::new(engine, scene, subject, view)?)
     }
 
-    /// Judges what the CPU emitted by the gates. The mesh is given at rest, and in the pose that was tessellated.
-    fn judge_on_cpu(
+    /// Judges what the device emitted for a view by the gates, and draws what they found. Returns a sentence for each that failed.
+    fn judged_on_gpu(&self, shot: &mut Shot, view: &View) -> Result<Vec<String>, CliError> {
+        let Args { gates, surface, file, .. } = self.args;
+        let judged = shot.judge(&gates.gates.fail_on, surface.tessellation().tolerance, &Progress::new())?;
+        gates.write_evidence(shot, &judged, &view.file)?;
+        Ok(failures(&view.name_of(file), &judged))
+    }
+
+    /// Judges what the CPU emitted by the gates.
+    fn judged_on_cpu(
         &self,
-        [at_rest, posed]: [&Loaded; 2],
         given: Option<&[HullFactors]>,
         inputs: &Inputs,
         out: &Tessellated,
-    ) -> Result<(), CliError> {
-        let gates = &self.gates.gates;
-        let (mesh, topology) = (&posed.mesh, &posed.topology);
+    ) -> Result<Vec<Judgement>, CliError> {
+        let gates = &self.args.gates.gates;
+        let (mesh, topology) = (&self.posed.mesh, &self.posed.topology);
         let Tessellation { edges, convention, .. } = inputs.tessellation;
         let measured = gates.fail_on.iter().any(|gate| gate.kind.needs_survey()).then(|| {
             let of_lod = || AskedFactors::new(edges, convention, out.edge_factors.clone());
@@ -207,22 +267,21 @@ impl Args {
         });
         let above = gates.has(GateKind::AboveTolerance).then(|| {
             let measurement = ScreenErrorMeasurement::new(mesh, topology, inputs, out.triangles.len() as u64);
-            let mut measurement = measurement.counting_above(self.surface.tessellation().tolerance);
+            let mut measurement = measurement.counting_above(self.args.surface.tessellation().tolerance);
             measurement.take(&EmittedChunk::whole(&out.vertices, &out.triangles));
             measurement.above()
         });
-        let junctions = || t_junctions(&at_rest.topology, &Progress::new());
+        let junctions = || t_junctions(&self.loaded.topology, &Progress::new());
         let junctions = gates.has(GateKind::TJunctions).then(junctions).transpose()?;
         let facts = Facts {
-            topology,
-            warnings: &posed.warnings,
+            warnings: &self.posed.warnings,
             vertices: out.vertices.len() as u64,
             triangles: out.triangles.len() as u64,
             measured: measured.as_ref(),
             junctions: junctions.as_deref(),
-            leaks: None,
             above: above.as_ref(),
+            ..Facts::of_mesh(topology)
         };
-        pass(&self.file, &judge(&gates.fail_on, &facts))
+        Ok(judge(&gates.fail_on, &facts))
     }
 }

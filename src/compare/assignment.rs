@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::foreign::ForeignMesh;
 use super::locator::{Locator, Place};
+use super::patch_starts::patch_starts;
 use crate::cores::in_ranges;
 use crate::mesh::Topology;
 use crate::progress::{Cancelled, Progress};
@@ -203,13 +204,7 @@ impl<'a> Assignment<'a> {
     pub(super) fn new(overlaid: &'a Overlaid<'a>, progress: &Progress) -> Result<Self, Cancelled> {
         let triangles = &overlaid.theirs.triangles;
         let patches = made_of_all(triangles.len(), progress, |index| overlaid.patch_of(triangles[index]))?;
-        let mut starts = vec![0_u32; overlaid.topology.patches.len() + 1];
-        for &patch in &patches {
-            starts[patch as usize + 1] += 1;
-        }
-        for patch in 1..starts.len() {
-            starts[patch] += starts[patch - 1];
-        }
+        let starts = patch_starts(patches.iter().copied(), overlaid.topology.patches.len());
         let mut order = vec![0; triangles.len()];
         let mut next = starts.clone();
         for (triangle, &patch) in (0..).zip(&patches) {

@@ -6,7 +6,7 @@ use super::assignment::Part;
 use super::domain_points::{DomainPoints, pattern_points, pattern_triangles};
 use super::matching::Match;
 use super::own_mesh::OwnPatch;
-use crate::tessellate::{Convention, HullFactors, Partitioning, domain_side, weight_corner};
+use crate::tessellate::{Convention, HullFactors, Partitioning, weight_corner};
 
 /// An order of a patch's corners: where the tessellator's weights u, v and w belong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,10 +39,7 @@ impl CornerOrder {
         cut: (Convention, HullFactors, Partitioning),
     ) -> bool {
         let (convention, written, partitioning) = cut;
-        let mut sides = [0.0; 3];
-        for i in 0..3 {
-            sides[domain_side(convention, i) as usize] = written.edges[i as usize];
-        }
+        let sides = written.cutting(convention);
         let turned = [0, 1, 2].map(|k| sides[self.side(k)]);
         let factors = HullFactors::of_sides(Convention::D3d11, turned, written.inside).rounded(partitioning);
         let factors = factors.process(partitioning);

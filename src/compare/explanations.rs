@@ -267,11 +267,7 @@ impl Explainer<'_> {
             return written.rounded(partitioning).process(partitioning);
         }
         let convention = self.inputs.tessellation.convention;
-        let mut sides = [0.0; 3];
-        for i in 0..3 {
-            sides[domain_side(convention, i) as usize] = written.edges[i as usize];
-        }
-        let (sides, inside) = rule.apply(sides, written.inside);
+        let (sides, inside) = rule.apply(written.cutting(convention), written.inside);
         let edges = [0, 1, 2].map(|i| sides[domain_side(convention, i) as usize]);
         HullFactors { edges, inside }.rounded(partitioning).process(partitioning)
     }

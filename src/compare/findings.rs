@@ -167,12 +167,9 @@ impl Finding {
             Self::Aligned(alignment) => alignment_text(alignment),
             Self::OtherSurface { ours, theirs, vertices, of } => surface_text(ours, theirs, *vertices, *of),
             Self::Displaced(displaced) => displaced_text(displaced),
-            Self::Moved { vertices, farthest, distance, triangle } => format!(
-                "{} moved, by up to {} object units: the farthest at {}, in triangle {triangle}.",
-                plural(*vertices, "vertex is", "vertices are"),
-                short(*distance),
-                point(*farthest)
-            ),
+            Self::Moved { vertices, farthest, distance, triangle } => {
+                moved_text(*vertices, *farthest, *distance, *triangle)
+            }
             Self::Factors { ours, convention, explanations, patches, of } => {
                 factors_text(*ours, *convention, explanations, *patches, *of)
             }
@@ -181,11 +178,7 @@ impl Finding {
                 let view = " LOD depends on the view: the camera and --size must be the other program's, too.";
                 text + if *is_of_view { view } else { "" }
             }
-            Self::Cracked { edges, of } => format!(
-                "{} of {} edges between patches are cut differently by their sides, so the mesh cracks there.",
-                grouped(*edges),
-                grouped(*of)
-            ),
+            Self::Cracked { edges, of } => cracked_text(*edges, *of),
             Self::MissingPatches { patches, of, triangles } => missing_text(*patches, *of, triangles),
             Self::AdditionalPatches { patches, triangles } => additional_text(*patches, triangles),
             Self::MissingTriangles { count, patches } => {
@@ -223,6 +216,23 @@ fn other_mesh_text(far: u64, vertices: u64, distance: f64) -> String {
         grouped(far),
         grouped(vertices),
         short(distance)
+    )
+}
+
+fn moved_text(vertices: u64, farthest: DVec3, distance: f64, triangle: u32) -> String {
+    format!(
+        "{} moved, by up to {} object units: the farthest at {}, in triangle {triangle}.",
+        plural(vertices, "vertex is", "vertices are"),
+        short(distance),
+        point(farthest)
+    )
+}
+
+fn cracked_text(edges: u64, of: u64) -> String {
+    format!(
+        "{} of {} edges between patches are cut differently by their sides, so the mesh cracks there.",
+        grouped(edges),
+        grouped(of)
     )
 }
 

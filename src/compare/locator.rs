@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use glam::{DVec3, Vec3};
 
+use super::patch_starts::patch_starts;
 use crate::mesh::{Mesh, Topology};
 use crate::tessellate::{
     Clip, FIXED_ONE, Inputs, LimitSurface, Lod, Partitioning, Tessellated, Tessellation, tessellate,
@@ -68,13 +69,8 @@ impl<'a> Locator<'a> {
     fn new(cut: Cow<'a, Tessellated>, topology: &Topology, limit: Option<LimitSurface<'a>>) -> Option<Self> {
         let at = |index: u32| Vec3::from(cut.vertices[index as usize].position);
         let tree = Triangles::new(cut.triangles.iter().map(|triangle| triangle.map(at)))?;
-        let mut starts = vec![0; topology.patches.len() + 1];
-        for triangle in &cut.triangles {
-            starts[cut.vertices[triangle[0] as usize].patch() as usize + 1] += 1;
-        }
-        for patch in 1..starts.len() {
-            starts[patch] += starts[patch - 1];
-        }
+        let patches = cut.triangles.iter().map(|triangle| cut.vertices[triangle[0] as usize].patch());
+        let starts = patch_starts(patches, topology.patches.len());
         let mut made = Self { starts, tree, limit, cut, sag: 0.0 };
         made.sag = made.largest_sag();
         Some(made)

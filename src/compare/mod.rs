@@ -15,6 +15,7 @@ mod locator;
 mod matching;
 mod outcomes;
 mod own_mesh;
+mod patch_starts;
 mod surfaces;
 #[cfg(test)]
 mod tests;
@@ -25,6 +26,7 @@ pub(crate) use findings::{Finding, plural, point};
 pub(crate) use foreign::ForeignMesh;
 pub(crate) use matching::Farthest;
 pub(crate) use outcomes::{SideCut, SideDifference};
+pub(crate) use patch_starts::patch_starts;
 
 use crate::mesh::{Bounds, Mesh, Topology};
 use crate::progress::{Cancelled, Progress};
@@ -109,49 +111,41 @@ pub(crate) fn compare(
     let Some(own) = Locator::of_own(ours) else { return Ok(empty) };
     let fit = (FIT * empty.diagonal).max(exactness.within).max(2.0 * exactness.resolution);
     let alignment = Alignment::find(theirs, &own, &ours.emitted_positions(), fit);
-    let positions: Vec<DVec3> = theirs.positions.iter().map(|position| position.as_dvec3()).collect();
-    let positions = match &alignment {
-        Some(alignment) => positions.into_iter().map(|position| alignment.ours(position)).collect(),
-        None => positions,
-    };
+    let positions = in_our_coordinates(theirs, alignment.as_ref());
     let laid = Laid::new(ours, Overlaid::new(theirs, ours.topology, own, &positions, fit, progress)?, progress)?;
     let assignment = Assignment::new(&laid.overlaid, progress)?;
     let own_mesh = OwnMesh::new(ours.tessellated);
     let outcomes = Outcomes::new(ours, &own_mesh, &assignment, exactness, progress)?;
-    let strays = if laid.is_fitted { laid.overlaid.strays() } else { Vec::new() };
     let mut found = Comparison {
         from_surface: laid.overlaid.places.iter().map(|place| place.distance).fold(0.0, f64::max),
         farthest: outcomes.farthest(),
         patches: outcomes.patches(),
         missing: outcomes.missing.clone(),
-        strays: strays.iter().map(|index| positions[*index as usize]).collect(),
+        strays: laid.strays().iter().map(|index| positions[*index as usize]).collect(),
         ..empty
     };
     found.findings.extend(alignment.map(Finding::Aligned));
     if theirs.not_finite > 0 {
         found.findings.push(Finding::NotFinite { count: theirs.not_finite });
     }
-    if let Some(other_mesh) = laid.other_mesh(found.diagonal).filter(|_| !outcomes.are_mostly_the_same()) {
-        found.findings.push(other_mesh);
-        found.positions = positions;
-        return Ok(found);
+    match laid.other_mesh(found.diagonal).filter(|_| !outcomes.are_mostly_the_same()) {
+        Some(other_mesh) => found.findings.push(other_mesh),
+        None => {
+            let conventions = Conventions { ours, assignment: &assignment, exactness, progress };
+            found.name_differences(&laid, &outcomes, alignment.as_ref(), &conventions)?;
+        }
     }
-    found.findings.extend(laid.other_surface(ours));
-    if laid.is_fitted {
-        found.findings.extend(outcomes.moved(ours, &strays));
-    } else {
-        found.findings.push(Finding::Displaced(outcomes.displaced(ours, fit)));
-    }
-    let explained = outcomes.explain(ours, laid.other.as_ref(), &mut found.findings, progress)?;
-    outcomes.judge_triangles(ours, alignment.as_ref(), &mut found.findings);
-    if let Some(sides) = explained {
-        (found.sides, found.different) = (sides, outcomes.different_at_all());
-    }
-    let conventions = Conventions { ours, assignment: &assignment, exactness, progress };
-    found.leave_to_factors(&conventions)?;
-    found.judge_distances(&conventions)?;
     found.positions = positions;
     Ok(found)
+}
+
+/// Their vertices in our coordinates, if it is known how these follow from theirs.
+fn in_our_coordinates(theirs: &ForeignMesh, alignment: Option<&Alignment>) -> Vec<DVec3> {
+    let positions = theirs.positions.iter().map(|position| position.as_dvec3());
+    match alignment {
+        Some(alignment) => positions.map(|position| alignment.ours(position)).collect(),
+        None => positions.collect(),
+    }
 }
 
 /// Their vertices over the surface that they lie on, and which one that is.
@@ -164,6 +158,8 @@ struct Laid<'a> {
     off_own: u64,
     /// Whether most of them lie on the surface. Otherwise they are displaced from it, or belong to another mesh.
     is_fitted: bool,
+    /// How far from a surface a vertex lies on it, in object units.
+    fit: f64,
 }
 
 impl<'a> Laid<'a> {
@@ -173,7 +169,7 @@ impl<'a> Laid<'a> {
     /// [`Cancelled`].
     fn new(ours: &Ours<'a>, on_own: Overlaid<'a>, progress: &Progress) -> Result<Self, Cancelled> {
         let surface = |inputs: &Inputs| Locator::of_surface(ours.mesh, ours.topology, inputs, FINE);
-        let strays = on_own.strays();
+        let (fit, strays) = (on_own.fit, on_own.strays());
         let other = match strays.is_empty() {
             true => None,
             false => Trial::new(ours.mesh, &on_own, ours.inputs, &strays).other_surface(progress)?,
@@ -189,7 +185,12 @@ impl<'a> Laid<'a> {
             Some(base) => Overlaid { fit: f64::INFINITY, ..overlaid.over(base, progress)? },
             None => overlaid,
         };
-        Ok(Self { overlaid, other, off_own: strays.len() as u64, is_fitted })
+        Ok(Self { overlaid, other, off_own: strays.len() as u64, is_fitted, fit })
+    }
+
+    /// Vertices off the surface; none where most are, since none is expected on it then.
+    fn strays(&self) -> Vec<u32> {
+        if self.is_fitted { self.overlaid.strays() } else { Vec::new() }
     }
 
     /// Says that they belong to another mesh, if so many are far away that displacement is no explanation.
@@ -220,6 +221,52 @@ impl Ours<'_> {
 }
 
 impl Comparison {
+    /// Without anything that was found.
+    fn new(ours: &Ours, theirs: &ForeignMesh) -> Self {
+        Self {
+            findings: Vec::new(),
+            vertices: theirs.positions.len() as u64,
+            triangles: theirs.triangles.len() as u64,
+            patches: 0,
+            from_surface: 0.0,
+            farthest: None,
+            ulp: ulp(ours.topology),
+            diagonal: Bounds::of(ours.topology.points.iter().copied()).diagonal().into(),
+            sides: Vec::new(),
+            different: Vec::new(),
+            missing: Vec::new(),
+            strays: Vec::new(),
+            positions: Vec::new(),
+        }
+    }
+
+    /// Names what differs, where theirs is a tessellation of our mesh.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    fn name_differences(
+        &mut self,
+        laid: &Laid,
+        outcomes: &Outcomes,
+        alignment: Option<&Alignment>,
+        conventions: &Conventions,
+    ) -> Result<(), Cancelled> {
+        let Conventions { ours, progress, .. } = *conventions;
+        self.findings.extend(laid.other_surface(ours));
+        if laid.is_fitted {
+            self.findings.extend(outcomes.moved(ours, &laid.strays()));
+        } else {
+            self.findings.push(Finding::Displaced(outcomes.displaced(ours, laid.fit)));
+        }
+        let explained = outcomes.explain(ours, laid.other.as_ref(), &mut self.findings, progress)?;
+        outcomes.judge_triangles(ours, alignment, &mut self.findings);
+        if let Some(sides) = explained {
+            (self.sides, self.different) = (sides, outcomes.different_at_all());
+        }
+        self.leave_to_factors(conventions)?;
+        self.judge_distances(conventions)
+    }
+
     /// Where another convention gives all of their points, it also explains a few that seem to be moved, and their triangles.
     ///
     /// # Errors
@@ -313,27 +360,6 @@ impl<'a> Locator<'a> {
         match ours.inputs.tessellation.displacement {
             Displacement::Off => exact(),
             _ => Self::of_emitted(ours.tessellated, ours.topology).or_else(exact),
-        }
-    }
-}
-
-impl Comparison {
-    /// Without anything that was found.
-    fn new(ours: &Ours, theirs: &ForeignMesh) -> Self {
-        Self {
-            findings: Vec::new(),
-            vertices: theirs.positions.len() as u64,
-            triangles: theirs.triangles.len() as u64,
-            patches: 0,
-            from_surface: 0.0,
-            farthest: None,
-            ulp: ulp(ours.topology),
-            diagonal: Bounds::of(ours.topology.points.iter().copied()).diagonal().into(),
-            sides: Vec::new(),
-            different: Vec::new(),
-            missing: Vec::new(),
-            strays: Vec::new(),
-            positions: Vec::new(),
         }
     }
 }

@@ -60,6 +60,16 @@ pub(crate) struct SideDifference {
     pub ours: SideCut,
 }
 
+/// How the sides of patches are cut whose points differ.
+struct OtherCuts {
+    /// Those that are cut differently, and those first that differ the most.
+    sides: Vec<SideDifference>,
+    /// How many patches have no such side, and so differ inside alone.
+    inside: u64,
+    /// The partitionings that cut sides as theirs are cut.
+    suits: Vec<Partitioning>,
+}
+
 /// How a side is cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SideCut {
@@ -224,31 +234,12 @@ impl<'a> Outcomes<'a> {
         if explanations.first() == Some(&own) {
             return Ok(None);
         }
+        let OtherCuts { sides, inside, suits } = self.other_cuts(ours, &different);
         let (patches, of) = (different.len() as u64, self.compared().count() as u64);
-        let mut sides: Vec<SideDifference> = Vec::new();
-        let (mut inside, mut suited, mut seen) = (0, [0_usize; 4], 0);
-        for &patch in &different {
-            let theirs = self.cuts(patch);
-            let own = self.own_mesh.patch(patch);
-            let before = sides.len();
-            sides.extend(self.side_differences(ours, patch, &theirs, &own));
-            inside += u64::from(sides.len() == before);
-            if seen < SIDES {
-                seen += 3;
-                let reach = self.reaches[patch as usize].domain;
-                for (count, partitioning) in suited.iter_mut().zip(Partitioning::DIRECT3D) {
-                    *count += theirs.iter().filter(|cut| cut.suits(partitioning, reach)).count();
-                }
-            }
-        }
-        sides.sort_by(|a, b| b.ratio().total_cmp(&a.ratio()));
         let Tessellation { partitioning, convention, .. } = inputs.tessellation;
         findings.push(match explanations.is_empty() {
             false => Finding::Factors { ours: partitioning, convention, explanations, patches, of },
             true => {
-                let suits = suited.into_iter().zip(Partitioning::DIRECT3D);
-                let suits = suits.filter(|(count, _)| *count as f64 >= SUITS * seen as f64);
-                let suits = suits.map(|(_, partitioning)| partitioning).collect();
                 let is_of_view = given.is_none() && inputs.tessellation.used_lod() != Lod::Uniform;
                 let sides = sides.len() as u64;
                 Finding::UnknownFactors { patches, of, sides, inside, suits, ours: partitioning, is_of_view }
@@ -256,6 +247,29 @@ impl<'a> Outcomes<'a> {
         });
         findings.extend(self.cracks(ours, progress)?);
         Ok(Some(sides))
+    }
+
+    /// How the sides of these patches, whose points differ, are cut.
+    fn other_cuts(&self, ours: &Ours, different: &[u32]) -> OtherCuts {
+        let (mut sides, mut inside): (Vec<SideDifference>, _) = (Vec::new(), 0);
+        let (mut suited, mut seen) = ([0_usize; Partitioning::DIRECT3D.len()], 0);
+        for &patch in different {
+            let theirs = self.cuts(patch);
+            let before = sides.len();
+            sides.extend(self.side_differences(ours, patch, &theirs, &self.own_mesh.patch(patch)));
+            inside += u64::from(sides.len() == before);
+            if seen < SIDES {
+                seen += theirs.len();
+                let reach = self.reaches[patch as usize].domain;
+                for (count, partitioning) in suited.iter_mut().zip(Partitioning::DIRECT3D) {
+                    *count += theirs.iter().filter(|cut| cut.suits(partitioning, reach)).count();
+                }
+            }
+        }
+        sides.sort_by(|a, b| b.ratio().total_cmp(&a.ratio()));
+        let suits = suited.into_iter().zip(Partitioning::DIRECT3D);
+        let suits = suits.filter(|(count, _)| *count as f64 >= SUITS * seen as f64);
+        OtherCuts { sides, inside, suits: suits.map(|(_, partitioning)| partitioning).collect() }
     }
 
     /// How their triangles cut the sides of a patch.

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use serde::Serialize;
 
-use super::place::{Place, Spot};
+use super::place::{EdgeSpot, Place, Spot};
 use super::{Gate, GateKind, allowed};
 use crate::measure::{CrackedEdge, EdgeSide, Measured, PatchesAbove};
 use crate::mesh::{TJunction, Topology};
@@ -11,6 +11,7 @@ use crate::names::shown;
 use crate::numbers::{exact, grouped, hundredths, short};
 use crate::render::{Leak, Leaks};
 use crate::tessellate::Vertex;
+use crate::view::ScreenView;
 
 /// What gates are judged by. What no gate asked for may be none.
 #[derive(Clone, Copy)]
@@ -24,14 +25,16 @@ pub(crate) struct Facts<'a> {
     pub measured: Option<&'a Measured>,
     pub junctions: Option<&'a [TJunction]>,
     pub leaks: Option<&'a Leaks>,
+    /// The view that leaks were counted in.
+    pub view: Option<ScreenView>,
     pub above: Option<&'a PatchesAbove>,
 }
 
 impl<'a> Facts<'a> {
     /// Facts of a mesh that nothing was measured of.
     pub(crate) fn of_mesh(topology: &'a Topology) -> Self {
-        let (measured, junctions, leaks, above) = (None, None, None, None);
-        Self { topology, warnings: &[], vertices: 0, triangles: 0, measured, junctions, leaks, above }
+        let (measured, junctions, leaks, view, above) = (None, None, None, None, None);
+        Self { topology, warnings: &[], vertices: 0, triangles: 0, measured, junctions, leaks, view, above }
     }
 }
 
@@ -129,14 +132,7 @@ fn count(kind: GateKind, facts: &Facts) -> Count {
             let junctions = facts.junctions.map_or(0, |junctions| junctions.len() as u64);
             some(junctions, "the mesh has # T-junction", "the mesh has # T-junctions")
         }
-        GateKind::Warnings => match facts.warnings {
-            [] => Count::Number(0, "loading gave no warning".to_owned()),
-            [only] => Count::Number(1, format!("loading gave a warning ({})", clause(only))),
-            [first, ..] => {
-                let count = facts.warnings.len() as u64;
-                Count::Number(count, format!("loading gave {} warnings (the first: {})", grouped(count), clause(first)))
-            }
-        },
+        GateKind::Warnings => warnings(facts.warnings),
         GateKind::AboveTolerance => {
             let above = facts.above.map_or(0, |above| above.patches);
             let tolerance = facts.above.map_or(0.0, |above| above.tolerance_px);
@@ -149,6 +145,18 @@ fn count(kind: GateKind, facts: &Facts) -> Count {
             some(bytes, "vertices and indices take # byte", "vertices and indices take # bytes")
         }
     }
+}
+
+/// How many warnings loading gave, and the first of them.
+fn warnings(all: &[String]) -> Count {
+    let said = match all {
+        [] => "loading gave no warning".to_owned(),
+        [only] => format!("loading gave a warning ({})", clause(only)),
+        [first, ..] => {
+            format!("loading gave {} warnings (the first: {})", grouped(all.len() as u64), clause(first))
+        }
+    };
+    Count::Number(all.len() as u64, said)
 }
 
 /// A warning within a sentence.
@@ -173,20 +181,38 @@ fn worst(kind: GateKind, facts: &Facts) -> Option<Place> {
     }
 }
 
-/// A place on an edge of the mesh. `text` makes its words of those for the edge's triangles. Without a position, it is the middle.
-fn edge_place(topology: &Topology, index: u32, at: Option<Vec3>, text: impl FnOnce(&str) -> String) -> Place {
-    let edge = &topology.edges[index as usize];
-    let sides = topology.edge_sides(edge).iter();
-    let triangles: Vec<u32> = sides.map(|side| topology.patches[side.patch() as usize].triangle).collect();
-    let ends = topology.edge_points(edge).map(|point| topology.points[point as usize]);
-    let between = match triangles[..] {
-        [only] => format!("of triangle {only}"),
-        [a, b] => format!("between triangles {a} and {b}"),
-        _ => format!("between {} triangles", triangles.len()),
-    };
-    let at = at.unwrap_or(ends[0] * 0.5 + ends[1] * 0.5);
-    let text = text(&format!("{between} at {}", position(at)));
-    Place { text, triangles, spot: Spot::Edge { ends, facing: topology.edge_facing(edge), at } }
+/// A place on an edge of the mesh.
+struct EdgePlace {
+    /// The mesh's triangles that meet there.
+    triangles: Vec<u32>,
+    spot: EdgeSpot,
+}
+
+impl EdgePlace {
+    /// A place on the edge with this index. Without a position, it is the middle.
+    fn new(topology: &Topology, index: u32, at: Option<Vec3>) -> Self {
+        let edge = &topology.edges[index as usize];
+        let sides = topology.edge_sides(edge).iter();
+        let triangles = sides.map(|side| topology.patches[side.patch() as usize].triangle).collect();
+        let ends = topology.edge_points(edge).map(|point| topology.points[point as usize]);
+        let at = at.unwrap_or(ends[0] * 0.5 + ends[1] * 0.5);
+        Self { triangles, spot: EdgeSpot { ends, facing: topology.edge_facing(edge), at } }
+    }
+
+    /// Between which triangles it is, and where.
+    fn words(&self) -> String {
+        let between = match self.triangles[..] {
+            [only] => format!("of triangle {only}"),
+            [a, b] => format!("between triangles {a} and {b}"),
+            _ => format!("between {} triangles", self.triangles.len()),
+        };
+        format!("{between} at {}", position(self.spot.at))
+    }
+
+    /// The place with these words.
+    fn with(self, text: String) -> Place {
+        Place { text, triangles: self.triangles, spot: Spot::Edge(self.spot) }
+    }
 }
 
 /// A position in object units, in words.
@@ -202,7 +228,9 @@ fn worst_crack(facts: &Facts) -> Option<Place> {
     let [a, b] = crack.widest;
     // Sides may differ in their factors alone.
     let at = (crack.gap > 0.0).then_some(a * 0.5 + b * 0.5);
-    Some(edge_place(facts.topology, crack.edge, at, |there| format!("the widest gap, {gap} object units, is {there}")))
+    let place = EdgePlace::new(facts.topology, crack.edge, at);
+    let text = format!("the widest gap, {gap} object units, is {}", place.words());
+    Some(place.with(text))
 }
 
 fn worst_factors(facts: &Facts) -> Option<Place> {
@@ -220,15 +248,31 @@ fn worst_factors(facts: &Facts) -> Option<Place> {
     let emitted = measured.outlines.edge(facts.topology, edge).into_iter().next();
     let emitted: Vec<Vec3> = emitted.iter().flat_map(EdgeSide::positions).collect();
     let at = emitted.get(emitted.len() / 2).copied();
-    Some(edge_place(facts.topology, edge, at, |there| format!("the factors differ most, {factors}, {there}")))
+    let place = EdgePlace::new(facts.topology, edge, at);
+    let text = format!("the factors differ most, {factors}, {}", place.words());
+    Some(place.with(text))
 }
 
 fn worst_leak(facts: &Facts) -> Option<Place> {
     let Some(Leaks::Counted(leaks)) = facts.leaks else { return None };
     // The largest is the first.
-    let Leak { middle, pixels } = *leaks.first()?;
-    let text = format!("the largest leak, {pixels} px, is at x {:.0}, y {:.0} px of the picture", middle.x, middle.y);
-    Some(Place { text, triangles: Vec::new(), spot: Spot::Px { middle, pixels } })
+    let leak = leaks.first()?;
+    let Leak { px, pixels } = *leak;
+    let torn = torn_at(facts, leak);
+    let there = torn.as_ref().map(|torn| format!(", {}", torn.words())).unwrap_or_default();
+    let [x, y] = px.floor().to_array();
+    let text = format!("the largest leak, {} px, is at x {x}, y {y} px of the picture{there}", grouped(pixels.into()));
+    let (triangles, torn) = torn.map(|torn| (torn.triangles, torn.spot)).unzip();
+    Some(Place { text, triangles: triangles.unwrap_or_default(), spot: Spot::Leak { px, pixels, torn } })
+}
+
+/// The edge that is torn where a leak is seen.
+fn torn_at(facts: &Facts, leak: &Leak) -> Option<EdgePlace> {
+    let crack = facts.measured?.crack_seen_at(facts.topology, &facts.view?, leak.px)?;
+    // A px of a leak lies within its crack, or within a hole, of which no px is farther from its border than its area allows; the
+    // rasteriser rounds to px.
+    let most = 2.0 + crack.gap_px + (leak.pixels as f32).sqrt();
+    (crack.px <= most).then(|| EdgePlace::new(facts.topology, crack.edge, Some(crack.at)))
 }
 
 fn worst_fold(facts: &Facts) -> Option<Place> {
@@ -245,8 +289,9 @@ fn worst_junction(facts: &Facts) -> Option<Place> {
     let worst = facts.junctions?.iter().reduce(|a, b| if b.distance > a.distance { b } else { a })?;
     let at = facts.topology.points[worst.point as usize];
     let distance = short(f64::from(worst.distance));
-    let words = |there: &str| format!("the farthest point lies {distance} object units beside the edge {there}");
-    Some(edge_place(facts.topology, worst.edge, Some(at), words))
+    let place = EdgePlace::new(facts.topology, worst.edge, Some(at));
+    let text = format!("the farthest point lies {distance} object units beside the edge {}", place.words());
+    Some(place.with(text))
 }
 
 fn worst_error(facts: &Facts) -> Option<Place> {

@@ -3,12 +3,14 @@
 
 mod judgement;
 mod place;
+mod standpoint;
 
 use std::fmt;
 use std::str::FromStr;
 
 pub(crate) use judgement::{Facts, Judgement, judge};
-pub(crate) use place::Place;
+pub(crate) use place::{Place, Spot};
+pub(crate) use standpoint::Standpoints;
 
 use crate::names::every;
 use crate::numbers::grouped;

@@ -6,6 +6,7 @@ use serde::{Serialize, Serializer};
 use crate::mesh::Bounds;
 use crate::render::Camera;
 use crate::render::camera::FIELDS_OF_VIEW;
+use crate::view::{ScreenView, seen_on_plane};
 
 /// How many times a px of the judged picture is enlarged at most where a leak is shown.
 const ENLARGED: f32 = 8.0;
@@ -19,7 +20,7 @@ pub(crate) struct Place {
     pub text: String,
     /// The mesh's triangles that it lies on.
     pub triangles: Vec<u32>,
-    /// Its position in object units, or for leaks in px of the picture.
+    /// Its position in object units, and for leaks in px of the picture.
     #[serde(flatten)]
     pub spot: Spot,
 }
@@ -27,48 +28,77 @@ pub(crate) struct Place {
 /// What a camera is framed on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Spot {
-    /// An edge: the positions of its ends, the direction that it faces, and the place on it.
-    Edge { ends: [Vec3; 2], facing: Vec3, at: Vec3 },
+    Edge(EdgeSpot),
     /// A patch: the positions of its corners, and the place on it.
-    Patch { corners: [Vec3; 3], at: Vec3 },
-    /// A place of the judged picture, in px from its top left, and how many px there are.
-    Px { middle: Vec2, pixels: u32 },
+    Patch {
+        corners: [Vec3; 3],
+        at: Vec3,
+    },
+    /// A leak of the judged picture: a px of it, from the picture's top left, how many px leak there, and the edge that is torn there
+    /// if it is known.
+    Leak {
+        px: Vec2,
+        pixels: u32,
+        torn: Option<EdgeSpot>,
+    },
+}
+
+/// An edge: the positions of its ends, the direction that it faces, and the place on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct EdgeSpot {
+    pub ends: [Vec3; 2],
+    pub facing: Vec3,
+    pub at: Vec3,
 }
 
 impl Spot {
-    /// A camera that shows the spot. `judged` is the camera of the judged picture, `viewport` that picture's size in px, and
-    /// `bounds` are the mesh's.
-    pub(crate) fn camera(&self, judged: &Camera, viewport: Vec2, bounds: &Bounds) -> Camera {
-        let mut camera = *judged;
+    /// A camera that shows the spot if nothing hides it. `judged` is the camera of the judged picture, `viewport` that picture's
+    /// size in px, and `bounds` are the mesh's.
+    pub(super) fn camera(&self, judged: &Camera, viewport: Vec2, bounds: &Bounds) -> Camera {
         match *self {
-            Self::Edge { ends, facing, .. } => camera.frame_edge(ends, facing, bounds),
+            Self::Edge(edge) => edge.camera(judged, bounds),
             Self::Patch { corners, at } => {
+                let mut camera = moving(judged);
                 camera.frame_triangle(corners, bounds);
-                camera.target = at;
+                Camera { target: at, ..camera }
             }
-            Self::Px { middle, pixels } => {
+            Self::Leak { px, pixels, .. } => {
                 let most = OF_HEIGHT * viewport.y / (pixels as f32).sqrt();
-                look_closer(&mut camera, middle, viewport, ENLARGED.min(most.max(1.0)));
+                look_closer(judged, px, viewport, bounds, ENLARGED.min(most.max(1.0)))
             }
         }
-        camera
     }
 
-    /// The position in object units; none for a place of a picture.
+    /// The position in object units; none for a leak at no known edge.
     pub(crate) fn at(&self) -> Option<Vec3> {
         match *self {
-            Self::Edge { at, .. } | Self::Patch { at, .. } => Some(at),
-            Self::Px { .. } => None,
+            Self::Edge(EdgeSpot { at, .. }) | Self::Patch { at, .. } => Some(at),
+            Self::Leak { torn, .. } => Some(torn?.at),
         }
     }
 
-    /// The place of a picture, in px from its top left; none for a position.
+    /// The px of a leak, from the top left of the judged picture; none for other places.
     pub(crate) fn px(&self) -> Option<Vec2> {
-        if let Self::Px { middle, .. } = *self { Some(middle) } else { None }
+        if let Self::Leak { px, .. } = *self { Some(px) } else { None }
     }
 }
 
-/// Written as `at`, three coordinates in object units, and `px`, two in px of the picture; one of them is null.
+impl EdgeSpot {
+    /// A camera that faces the edge.
+    pub(super) fn camera(&self, judged: &Camera, bounds: &Bounds) -> Camera {
+        let mut camera = moving(judged);
+        camera.frame_edge(self.ends, self.facing, bounds);
+        camera
+    }
+}
+
+/// A camera that can be moved: that of an engine's matrix would stay where it is.
+fn moving(judged: &Camera) -> Camera {
+    Camera { rows: None, ..*judged }
+}
+
+/// Written as `at`, three coordinates in object units, and `px`, two in px of the picture. `px` is null but for leaks, and `at` for leaks
+/// at no known edge.
 impl Serialize for Spot {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         #[derive(Serialize)]
@@ -81,20 +111,28 @@ impl Serialize for Spot {
 }
 
 /// Turns a perspective camera's eye, or moves an orthographic camera, so that a px comes into the middle, and enlarges it. The eye
-/// of a perspective camera stays, since a leak is seen from there alone.
-fn look_closer(camera: &mut Camera, px: Vec2, viewport: Vec2, enlarged: f32) {
-    let [right, up, _] = camera.axes();
-    let unit = camera.units_per_pixel(viewport.y);
-    let aside = (px - viewport * 0.5) * vec2(unit, -unit);
-    let (eye, seen) = (camera.eye(), camera.target + right * aside.x + up * aside.y);
-    camera.target = seen;
-    let half = (0.5 * camera.field_of_view).to_radians().tan() / enlarged;
-    camera.field_of_view = (2.0 * half.atan().to_degrees()).max(*FIELDS_OF_VIEW.start());
-    if !camera.orthographic {
-        let back = (eye - seen).normalize_or_zero();
-        camera.distance = eye.distance(seen);
-        camera.azimuth = back.x.atan2(back.z).to_degrees().rem_euclid(360.0);
-        camera.elevation = back.y.clamp(-1.0, 1.0).asin().to_degrees();
+/// of a perspective camera stays, since a leak is seen from there alone. The picture of a camera that mirrors is mirrored, and its px are
+/// those of the mirrored picture.
+fn look_closer(judged: &Camera, px: Vec2, viewport: Vec2, bounds: &Bounds, enlarged: f32) -> Camera {
+    let px = if judged.is_mirrored() { vec2(viewport.x - px.x, px.y) } else { px };
+    let [right, up, _] = judged.axes();
+    let view = ScreenView { clip_from_object: judged.clip_from_object(viewport, bounds), viewport };
+    let at_target = [Vec3::ZERO, right, up].map(|beside| judged.target + beside * judged.distance);
+    let (eye, seen) = (judged.eye(), seen_on_plane(&view, px, at_target).unwrap_or(judged.target));
+    let half = (0.5 * judged.field_of_view).to_radians().tan() / enlarged;
+    let field_of_view = (2.0 * half.atan().to_degrees()).max(*FIELDS_OF_VIEW.start());
+    let camera = Camera { target: seen, field_of_view, ..moving(judged) };
+    if judged.orthographic { camera } else { towards(&camera, eye - seen) }
+}
+
+/// The camera with its eye so far from its target.
+pub(super) fn towards(camera: &Camera, eye_from_target: Vec3) -> Camera {
+    let back = eye_from_target.normalize_or_zero();
+    Camera {
+        distance: eye_from_target.length(),
+        azimuth: back.x.atan2(back.z).to_degrees().rem_euclid(360.0),
+        elevation: back.y.clamp(-1.0, 1.0).asin().to_degrees(),
+        ..*camera
     }
 }
 
@@ -112,7 +150,8 @@ mod tests {
             let judged = Camera { orthographic, ..Camera::framing(&bounds, viewport) };
             let seen = |camera: &Camera, place| project(camera.clip_from_object(viewport, &bounds), viewport, place);
             let px = seen(&judged, place).expect("in front of the eye");
-            let camera = Spot::Px { middle: px, pixels: 4 }.camera(&judged, viewport, &bounds);
+            let leak = |pixels| Spot::Leak { px, pixels, torn: None };
+            let camera = leak(4).camera(&judged, viewport, &bounds);
             let now = seen(&camera, place).expect("in front of the eye");
             assert!(now.distance(viewport * 0.5) < 0.5, "{now}");
             assert!(orthographic || camera.eye().distance(judged.eye()) < 1e-4, "{camera:?}");
@@ -121,7 +160,7 @@ mod tests {
             let enlarged = apart(&camera) / apart(&judged);
             assert!((enlarged - ENLARGED).abs() < 0.5, "{enlarged} times");
             // All of a leak that is a third as high as the picture is seen.
-            let whole = Spot::Px { middle: px, pixels: 160 * 160 }.camera(&judged, viewport, &bounds);
+            let whole = leak(160 * 160).camera(&judged, viewport, &bounds);
             assert!((apart(&whole) / apart(&judged) - 1.0).abs() < 0.05, "{whole:?}");
         }
     }
@@ -129,11 +168,13 @@ mod tests {
     #[test]
     fn a_place_is_written_with_its_position_or_its_px() {
         let place = |spot| Place { text: "there".into(), triangles: vec![3], spot };
-        let edge = Spot::Edge { ends: [Vec3::ZERO, Vec3::X], facing: Vec3::Z, at: Vec3::X * 0.5 };
-        let written = serde_json::to_value(place(edge)).expect("JSON");
+        let edge = EdgeSpot { ends: [Vec3::ZERO, Vec3::X], facing: Vec3::Z, at: Vec3::X * 0.5 };
+        let written = serde_json::to_value(place(Spot::Edge(edge))).expect("JSON");
         let expected = serde_json::json!({ "text": "there", "triangles": [3], "at": [0.5, 0.0, 0.0], "px": null });
         assert_eq!(written, expected);
-        let leak = serde_json::to_value(place(Spot::Px { middle: vec2(3.0, 4.5), pixels: 2 })).expect("JSON");
-        assert_eq!((&leak["at"], &leak["px"]), (&serde_json::Value::Null, &serde_json::json!([3.0, 4.5])));
+        for (torn, at) in [(None, serde_json::Value::Null), (Some(edge), serde_json::json!([0.5, 0.0, 0.0]))] {
+            let leak = serde_json::to_value(place(Spot::Leak { px: vec2(3.0, 4.5), pixels: 2, torn })).expect("JSON");
+            assert_eq!((&leak["at"], &leak["px"]), (&at, &serde_json::json!([3.0, 4.5])));
+        }
     }
 }

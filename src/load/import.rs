@@ -108,6 +108,12 @@ impl Import {
         format!("smooth within {} degrees", self.crease_angle)
     }
 
+    /// The warning about `count` parts of a file that lack normals, with what these are. Where all normals are made, none is missed.
+    pub(super) fn lacking_normals(&self, count: usize, what: &str) -> (usize, String) {
+        let count = if self.makes_normals() { 0 } else { count };
+        (count, format!("{what}, which got ones that are {}", self.smoothness()))
+    }
+
     /// Turns and scales a mesh as the axis and the unit say that were chosen, so that Y points up and the unit is the metre.
     pub(super) fn place(&self, mesh: &mut Mesh) {
         reorient(mesh, self.up.unwrap_or_default(), self.unit.map_or(1.0, FileUnit::metres));

@@ -223,8 +223,7 @@ struct Counts {
 
 impl Counts {
     fn warnings(&self, import: &Import, vertices: &Vertices) -> impl Iterator<Item = String> {
-        let made =
-            format!("faces without normals, or with some missing, which got ones that are {}", import.smoothness());
+        let lacking = import.lacking_normals(self.without_normals, "faces without normals, or with some missing");
         let StatementCounts { points, lines, surfaces, unknown } = self.statements;
         let others = counted([
             (self.smoothed, "faces without normals, or with some missing, which got those of their smoothing groups"),
@@ -241,7 +240,7 @@ impl Counts {
             (surfaces, "free-form curves and surfaces (curv, curv2, surf), which aren't read"),
             (unknown, "statements that OBJ doesn't have, left out"),
         ]);
-        counted([(self.without_normals, made)]).chain(others)
+        counted([lacking]).chain(others)
     }
 
     fn holds(&self, vertices: &Vertices) -> String {

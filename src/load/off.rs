@@ -293,8 +293,7 @@ struct Counts {
 impl Counts {
     fn warnings(&self, vertices: &Vertices, import: &Import) -> impl Iterator<Item = String> + use<> {
         let without_normals = if vertices.normals.is_empty() { vertices.positions.len() } else { 0 };
-        let made = format!("vertices without normals, which got ones that are {}", import.smoothness());
-        counted([(without_normals, made)]).chain(counted([
+        counted([import.lacking_normals(without_normals, "vertices without normals")]).chain(counted([
             (self.mapped, "faces with a number of a colour map, which isn't read"),
             (self.bad_colors, "faces with a colour that isn't 3 or 4 numbers, left out"),
             (self.after_faces, "lines after the last face, left out"),

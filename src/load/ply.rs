@@ -425,7 +425,7 @@ impl<'a> Reader<'a> {
         let read = self.vertices.unwrap_or_default();
         let without_normals = if read.normals.is_empty() { read.positions.len() } else { 0 };
         let mut warnings = Vec::from_iter(self.cut_short);
-        let made = format!("vertices without normals, which got ones that are {}", import.smoothness());
+        let (without_normals, made) = import.lacking_normals(without_normals, "vertices without normals");
         warnings.extend(counted([
             (header.other_lines, "lines of the header that aren't part of the format, left out"),
             (without_normals, made.as_str()),

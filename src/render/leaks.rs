@@ -166,8 +166,8 @@ fn leaking_pixels(counts: &[u8]) -> impl Iterator<Item = usize> {
 /// Pixels that leak and touch each other, also at their corners.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Leak {
-    /// The middle of these pixels, in px from the picture's top left.
-    pub middle: Vec2,
+    /// The centre of the one of these pixels that is nearest to their middle, in px from the picture's top left.
+    pub px: Vec2,
     /// How many they are.
     pub pixels: u32,
 }
@@ -183,27 +183,49 @@ pub(crate) enum Leaks {
     NearPlane,
 }
 
+impl Leaks {
+    /// The leaks of the mirrored picture, which is `width` px wide.
+    pub(crate) fn mirrored(self, width: f32) -> Self {
+        match self {
+            Self::Counted(leaks) => {
+                let mirrored = |leak: Leak| Leak { px: Vec2::new(width - leak.px.x, leak.px.y), ..leak };
+                Self::Counted(leaks.into_iter().map(mirrored).collect())
+            }
+            other => other,
+        }
+    }
+}
+
 /// The leaks of a picture `width` px wide, the largest first, by the bytes of a [`LeakCount`].
 pub(crate) fn leaks_in(counts: &[u8], width: usize) -> Vec<Leak> {
     let mut left: BTreeSet<usize> = leaking_pixels(counts).collect();
     let mut leaks = Vec::new();
     while let Some(first) = left.pop_first() {
-        let (mut reached, mut pixels, mut sum) = (vec![first], 0, DVec2::ZERO);
-        while let Some(pixel) = reached.pop() {
+        let (mut reached, mut next) = (vec![first], 0);
+        while let Some(&pixel) = reached.get(next) {
+            next += 1;
             let [x, y] = [pixel % width, pixel / width];
-            pixels += 1;
-            sum += dvec2(x as f64, y as f64) + 0.5;
             for beside in (y.saturating_sub(1)..=y + 1).flat_map(|y| (x.saturating_sub(1)..=x + 1).map(move |x| [x, y]))
             {
                 let beside = (beside[0] < width).then_some(beside[1] * width + beside[0]);
                 reached.extend(beside.filter(|beside| left.remove(beside)));
             }
         }
-        leaks.push(Leak { middle: (sum / f64::from(pixels)).as_vec2(), pixels });
+        reached.sort_unstable();
+        leaks.push(leak_of(&reached, width));
     }
     // Stable, so that leaks of one size stay in the order of their first pixels.
     leaks.sort_by_key(|leak| Reverse(leak.pixels));
     leaks
+}
+
+/// The leak that these pixels are, in order.
+fn leak_of(pixels: &[usize], width: usize) -> Leak {
+    let centers = || pixels.iter().map(|pixel| dvec2((pixel % width) as f64, (pixel / width) as f64) + 0.5);
+    let middle = centers().sum::<DVec2>() / pixels.len() as f64;
+    let apart = |center: &DVec2| center.distance_squared(middle);
+    let nearest = centers().min_by(|a, b| apart(a).total_cmp(&apart(b))).unwrap_or(middle);
+    Leak { px: nearest.as_vec2(), pixels: pixels.len() as u32 }
 }
 
 fn pipeline(gpu: &Gpu, module: &wgpu::ShaderModule) -> wgpu::RenderPipeline {
@@ -228,9 +250,16 @@ mod tests {
         let rows = ["#......", "...#...", "..#....", ".#....#", "#......"];
         let counts: Vec<u8> =
             rows.concat().bytes().flat_map(|pixel| if pixel == b'#' { [0, 0x3c] } else { [0, 0x80] }).collect();
-        let leak = |x: f32, y: f32, pixels| Leak { middle: vec2(x, y), pixels };
-        assert_eq!(leaks_in(&counts, 7), [leak(2.0, 3.0, 4), leak(0.5, 0.5, 1), leak(6.5, 3.5, 1)]);
+        let leak = |x: f32, y: f32, pixels| Leak { px: vec2(x, y), pixels };
+        assert_eq!(leaks_in(&counts, 7), [leak(2.5, 2.5, 4), leak(0.5, 0.5, 1), leak(6.5, 3.5, 1)]);
         assert_eq!(leaking_pixels(&counts).count(), 6);
         assert_eq!(leaks_in(&[], 7), []);
+    }
+
+    #[test]
+    fn a_leak_around_a_face_is_at_one_of_its_own_pixels() {
+        let rows = [".###..", ".#.#..", ".###.."].concat();
+        let counts: Vec<u8> = rows.bytes().flat_map(|pixel| [0, if pixel == b'#' { 0x3c } else { 0 }]).collect();
+        assert_eq!(leaks_in(&counts, 6), [Leak { px: vec2(2.5, 0.5), pixels: 8 }]);
     }
 }

@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 
 use super::factors::ROW_BASE_STEP;
-use super::{Convention, Partitioning, PatchFactors, factor_side, patch_is_culled, process, round_pow2};
+use super::{Convention, Partitioning, PatchFactors, domain_side, factor_side, patch_is_culled, process, round_pow2};
 
 /// A patch's tessellation factors before the tessellator clamps and rounds them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -20,6 +20,15 @@ impl HullFactors {
     /// Orders the factors of sides 0, 1 and 2 as a convention writes them.
     pub fn of_sides(convention: Convention, sides: [f32; 3], inside: f32) -> Self {
         Self { edges: [0, 1, 2].map(|i| sides[factor_side(convention, i) as usize]), inside }
+    }
+
+    /// The factors that cut sides 0, 1 and 2 of a patch under a convention.
+    pub(crate) fn cutting(self, convention: Convention) -> [f32; 3] {
+        let mut sides = [0.0; 3];
+        for i in 0..3 {
+            sides[domain_side(convention, i) as usize] = self.edges[i as usize];
+        }
+        sides
     }
 
     /// Returns the factors as a shader compiler passes them to the tessellator: under pow2 they are rounded up to

@@ -204,6 +204,9 @@ fn a_wrong_configuration_is_one_sentence_with_its_line() {
         ("[cameras.a]\nfile-camera = 1\nroll = 3", &["wrong.toml: ", "file-camera", "roll"]),
         ("fail-on = [\"crack\"]", &["wrong.toml, line 1: ", "crack", "t-junctions"]),
         ("include = \"a.toml\"", &["wrong.toml, line 1: ", "no key include"]),
+        ("[options]\nfail-on = [\"cracks\"]", &["wrong.toml, line 2: ", "write it above the line in brackets"]),
+        ("[cameras.\"\"]\ncamera = [0, 0]", &["wrong.toml, line 1: ", "a camera needs a name"]),
+        ("[cameras.a]\ncamera = [nan, 0]", &["wrong.toml, line 2: ", "AZIMUTH,ELEVATION"]),
         ("a = ", &["wrong.toml, line 1: ", "no TOML"]),
     ] {
         std::fs::write(&config, text).expect("a writable folder");
@@ -212,7 +215,7 @@ fn a_wrong_configuration_is_one_sentence_with_its_line() {
     std::fs::write(&config, vec![b'#'; 2 << 20]).expect("a writable folder");
     sentence(&["check", "shape:torus", "--config", &config], &["wrong.toml", "2097152 bytes"]);
     std::fs::write(&config, [0xff, 0xfe]).expect("a writable folder");
-    sentence(&["check", "shape:torus", "--config", &config], &["wrong.toml", "utf-8"]);
+    sentence(&["check", "shape:torus", "--config", &config], &["wrong.toml", "isn't text in UTF-8"]);
     sentence(&["check", "shape:torus", "--config", &folder.path("none.toml")], &["none.toml", "no such file"]);
     sentence(&["check", "shape:torus", "--config", &folder.path("")], &["it is no file"]);
 }
@@ -276,7 +279,8 @@ fn odd_arguments_are_said() {
     std::fs::write(path("file"), "").expect("a writable folder");
     sentence(&["check", &path("empty")], &["nothing to check"]);
     sentence(&["check", "shape:torus", "--page", &path("file/page")], &["file/page", "could not be made"]);
-    sentence(&["check", "shape:torus", "--cache", &path("file")], &["file", "could not be made"]);
+    sentence(&["check", "shape:torus", "--cache", &path("file")], &["file", "there is a file of this name"]);
+    sentence(&["check", "shape:torus", "-o", &path("empty")], &["empty", "it is a folder"]);
     sentence(&["check", "shape:torus", "-o", &path("none/report.json")], &["there is no folder"]);
     failure(&["check"], 2);
     failure(&["check", "shape:torus", "--jobs", "0"], 2);
@@ -292,6 +296,26 @@ fn odd_arguments_are_said() {
     );
     let missing = failure(&["check", &path("missing.glb"), "shape:torus"], 1);
     assert!(missing.contains("2 assets: 1 passed, 0 failed, 1 broken"), "{missing}");
+}
+
+#[test]
+fn assets_of_one_name_in_folders_of_any_name_are_told_apart() {
+    let folder = Folder::new();
+    let names = ["a/x.glb", "b/x.glb", "with blanks/\u{e4} \u{65e5}.glb"];
+    for name in names {
+        std::fs::create_dir_all(Path::new(&folder.path(name)).parent().expect("a folder")).expect("a writable folder");
+        std::fs::copy(vase(), folder.path(name)).expect("a copy");
+    }
+    let (cache, page) = (folder.path("cache"), folder.path("page \u{e4}"));
+    let ran = || {
+        let text = output(&["check", &folder.path(""), "--cache", &cache, "--page", &page, "--fail-on", "cracks"]);
+        names.map(|name| text.lines().filter(|line| line.contains(name)).count())
+    };
+    assert_eq!(ran(), [1; 3]);
+    assert_eq!(std::fs::read_dir(&cache).expect("a folder").count(), 3, "each has a record of its own");
+    assert_eq!(ran(), [1; 3]);
+    let html = std::fs::read_to_string(Path::new(&page).join("index.html")).expect("a page");
+    assert!(names.iter().all(|name| html.contains(name)));
 }
 
 #[cfg(unix)]

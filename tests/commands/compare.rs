@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde_json::Value;
 
-use crate::{Folder, failure, number, output, read_obj, run, sentence};
+use crate::{Folder, both, failure, number, output, read_obj, run, sentence};
 
 /// Torus with factors that differ from edge to edge.
 const VARIED: [&str; 7] = ["--lod", "edge-length", "--pixels", "40", "--size", "640x400", "--partitioning=integer"];
@@ -144,6 +144,44 @@ fn files_that_cannot_be_compared_are_refused_with_a_sentence() {
     let usage = failure(&["compare", &folder.path("a.obj"), "--mesh", "shape:torus", "--within", "-1"], 2);
     assert!(usage.contains("expected a distance"), "{usage}");
     failure(&["compare", &folder.path("a.obj")], 2);
+    let theirs = emitted(&folder, "sound.obj", &[]);
+    std::fs::create_dir(folder.path("folder")).expect("a writable folder");
+    let drawn = ["compare", &theirs, "--mesh", "shape:torus", "-o", &folder.path("folder")];
+    sentence(&drawn, &["folder", "it is a folder; name a file"]);
+}
+
+#[test]
+fn normals_that_theirs_lacks_are_not_worth_a_word_and_other_repairs_are() {
+    let folder = Folder::new();
+    let theirs = emitted(&folder, "a.obj", &[]);
+    let (positions, faces) = read_obj(&theirs);
+    let vertices: Vec<_> = positions.iter().map(|position| position.map(f32::from_bits)).collect();
+    let mut obj = String::new();
+    vertices.iter().for_each(|[x, y, z]| writeln!(obj, "v {x} {y} {z}").expect("a text"));
+    faces.iter().map(|face| face.map(|index| index + 1)).for_each(|[a, b, c]| {
+        writeln!(obj, "f {a} {b} {c}").expect("a text");
+    });
+    let mut ply = format!(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\nelement face {}\n\
+         property list uchar int vertex_indices\nend_header\n",
+        vertices.len(),
+        faces.len()
+    );
+    let mut off = format!("OFF\n{} {} 0\n", vertices.len(), faces.len());
+    for text in [&mut ply, &mut off] {
+        vertices.iter().for_each(|[x, y, z]| writeln!(text, "{x} {y} {z}").expect("a text"));
+        faces.iter().for_each(|[a, b, c]| writeln!(text, "3 {a} {b} {c}").expect("a text"));
+    }
+    for (name, text) in [("bare.obj", &obj), ("bare.ply", &ply), ("bare.off", &off)] {
+        let theirs = folder.path(name);
+        std::fs::write(&theirs, text).expect("a writable folder");
+        let (said, errors) = both(&["compare", &theirs, "--mesh", "shape:torus"]);
+        assert!(said.contains("is the same tessellation") && errors.is_empty(), "{name}: {errors}");
+    }
+    let repaired = folder.path("repaired.obj");
+    std::fs::write(&repaired, obj + "p 1\n").expect("a writable folder");
+    let (_, errors) = both(&["compare", &repaired, "--mesh", "shape:torus"]);
+    assert_eq!(errors, "pnaen: warning: points (p), left out: 1.\n");
 }
 
 #[test]

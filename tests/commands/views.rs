@@ -71,6 +71,92 @@ fn views_of_a_file_have_its_names_and_other_files_are_refused() {
 }
 
 #[test]
+fn meshes_and_factors_of_many_views_are_those_of_each_view_alone() {
+    let folder = Folder::new();
+    let cameras = folder.path("cameras.txt");
+    let views = [("near", "0,0,1.5"), ("far", "90,10,6")];
+    let lines = views.map(|(name, camera)| format!("{name} --camera {camera}\n"));
+    std::fs::write(&cameras, lines.concat()).expect("a writable folder");
+    let lod = ["--size", "80x60", "--lod", "paper", "--pixels", "6"];
+    for device in ["cpu", "gpu"] {
+        let many = |command: &str, place: &str| {
+            output(
+                &[&[command, "shape:torus", "-o", place, "--cameras", &cameras, "--device", device], &lod[..]].concat(),
+            );
+        };
+        many("tessellate", &folder.path(&format!("{device}-{{}}.obj")));
+        many("factors", &folder.path(device));
+        for (command, of_many) in
+            [("tessellate", format!("{device}-VIEW.obj")), ("factors", format!("{device}/VIEW.csv"))]
+        {
+            let read = |name: &str| std::fs::read(folder.path(name)).expect("a file");
+            let both = views.map(|(name, camera)| {
+                let (of_many, alone) =
+                    (of_many.replace("VIEW", name), of_many.replace(&format!("{device}/"), "alone-"));
+                let view = ["-o", &folder.path(&alone), "--camera", camera, "--device", device];
+                output(&[&[command, "shape:torus"], &view[..], &lod].concat());
+                assert!(read(&of_many) == read(&alone), "{command} on {device} from {name}");
+                read(&of_many)
+            });
+            assert_ne!(both[0], both[1], "LOD follows the view");
+        }
+    }
+}
+
+#[test]
+fn gates_judge_the_mesh_of_each_view_and_one_file_is_too_few() {
+    let folder = Folder::new();
+    let evidence = folder.path("evidence");
+    let base = ["tessellate", "shape:cube-split", "--surface", "pn", "--size", "80x60", "--cameras", "2"];
+    let gates = ["--fail-on", "cracks,leaks", "--evidence", &evidence, "-o", &folder.path("m-{}.glb")];
+    let said = failure(&[&base[..], &gates].concat(), 1);
+    for line in
+        ["shape:cube-split from view-0 fails the gate cracks", "shape:cube-split from view-1 fails the gate leaks"]
+    {
+        assert!(said.contains(line), "{said}");
+    }
+    for name in ["m-view-0-cracks.png", "m-view-1-leaks.png"] {
+        assert!(Path::new(&evidence).join(name).exists(), "{name}");
+    }
+    let one = failure(&[&base[..], &["-o", &folder.path("a.glb")]].concat(), 2);
+    assert!(one.contains("--cameras writes several meshes: put {} into the name"), "{one}");
+    for place in ["-", &folder.path("a.csv")] {
+        let one = failure(&["factors", "shape:torus", "--cameras", "2", "-o", place], 2);
+        assert!(one.contains("--cameras writes several files: name a folder"), "{one}");
+    }
+    for (command, place) in [("tessellate", "{}.glb"), ("factors", "csv")] {
+        let both = [command, "shape:torus", "-o", &folder.path(place), "--cameras", "2", "--camera", "1,2"];
+        assert!(failure(&both, 2).contains("--camera <"), "{command}");
+    }
+}
+
+#[test]
+fn what_is_no_file_of_cameras_is_refused_in_a_sentence() {
+    let folder = Folder::new();
+    let (cameras, out) = (folder.path("cameras \u{e4}.txt"), folder.path("out"));
+    let matrix = r#"[{"name": "engine", "view_projection": [0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0]}]"#;
+    for (text, words) in [
+        ("", &["it has 0 cameras; a command takes 1 to 3600"][..]),
+        ("# nothing\n", &["it has 0 cameras"]),
+        ("[]", &["it has 0 cameras"]),
+        ("a --camera nan,0", &["line 1", "AZIMUTH,ELEVATION"]),
+        (r#"[{"name": "a", "camera": [NaN, 0]}]"#, &["it is no JSON", "line 1"]),
+        (matrix, &["engine: w isn't above 0 anywhere"]),
+    ] {
+        std::fs::write(&cameras, text).expect("a writable folder");
+        let named = if text == matrix { "engine" } else { "cameras \u{e4}.txt" };
+        for command in ["render", "factors"] {
+            sentence(&[command, "shape:torus", "-o", &out, "--cameras", &cameras], &[words, &[named]].concat());
+        }
+    }
+    std::fs::write(&cameras, [0xff, 0xfe]).expect("a writable folder");
+    sentence(&["render", "shape:torus", "-o", &out, "--cameras", &cameras], &["isn't text in UTF-8"]);
+    std::fs::write(&out, "").expect("a writable folder");
+    sentence(&["render", "shape:torus", "-o", &out, "--cameras", "2"], &["out", "there is a file of this name"]);
+    assert_eq!(std::fs::read(&out).expect("a file"), b"", "it is left alone");
+}
+
+#[test]
 fn a_matrix_is_a_camera_for_factors_and_pictures_under_every_convention() {
     let folder = Folder::new();
     let stats = folder.path("stats.json");

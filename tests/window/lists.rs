@@ -155,7 +155,9 @@ fn leaks_are_listed_and_lead_to_the_edge_that_leaks() {
     let leaks = app.leaks().expect("counted");
     assert!(leaks.is_sorted_by_key(|leak| std::cmp::Reverse(leak.pixels)), "{leaks:?}");
     let pixels: u32 = leaks.iter().map(|leak| leak.pixels).sum();
-    let row = |leak: &Leak| format!("{:>6.0}{:>8.0}{:>15}", leak.middle.x, leak.middle.y, grouped(leak.pixels.into()));
+    let row = |leak: &Leak| {
+        format!("{:>6.0}{:>8.0}{:>15}", leak.px.x.floor(), leak.px.y.floor(), grouped(leak.pixels.into()))
+    };
     let (second, before) = (row(&leaks[1]), *app.camera());
     click_row(&mut harness, "Leaks", &second);
     let app = harness.state();

@@ -8,8 +8,7 @@ use crate::engine::Engine;
 use crate::gpu::Readback;
 use crate::render::{Leak, LeakCount, Scene, leaks_in};
 use crate::settings::SplitSide;
-use crate::view::{ScreenView, project};
-use glam::{Vec2, Vec3};
+use crate::view::ScreenView;
 
 /// The leaks of what is shown, once counted.
 #[derive(Default)]
@@ -122,22 +121,6 @@ impl App {
     pub(in crate::app) fn edge_of_leak(&self, leak: &Leak) -> Option<u32> {
         let (document, found) = (self.document.as_ref()?, self.measured(SplitSide::Right).found()?);
         let (view, topology) = (self.viewport.picture.seen_from()?, &document.shown().1);
-        let on_screen = |place: Vec3| project(view.clip_from_object, view.viewport, place);
-        let distance = |edge: u32| {
-            let sides = found.outlines.edge(topology, edge);
-            let points = sides.iter().map(|side| side.positions().filter_map(on_screen).collect::<Vec<_>>());
-            points
-                .flat_map(|points| points.windows(2).map(|ends| distance_px(leak.middle, ends)).collect::<Vec<_>>())
-                .fold(f32::INFINITY, f32::min)
-        };
-        let cracked = found.cracks.edges.iter().filter(|crack| crack.gap > 0.0).map(|crack| crack.edge);
-        cracked.map(|edge| (edge, distance(edge))).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(edge, _)| edge)
+        Some(found.crack_seen_at(topology, &view, leak.px)?.edge)
     }
-}
-
-/// The distance of a place from a line between two others, in px.
-fn distance_px(place: Vec2, ends: &[Vec2]) -> f32 {
-    let (start, along) = (ends[0], ends[1] - ends[0]);
-    let at = (place - start).dot(along) / along.length_squared().max(f32::MIN_POSITIVE);
-    place.distance(start + along * at.clamp(0.0, 1.0))
 }

@@ -20,12 +20,12 @@ impl App {
              there.",
         );
         columns(ui, &format!("{:>6}{:>8}{:>15}", "x, px", "y, px", "px that leak"), true)
-            .on_hover_text("The middle of the leak, from the picture's top left, and its size.");
+            .on_hover_text("The pixel in the middle of the leak, from the picture's top left, and the leak's size.");
         let mut clicked = None;
         let first = leaks[0].middle.x as u32;
         list(ui, "leaks", (leaks.len(), first), |ui, row| {
             let leak = &leaks[row];
-            let [x, y] = leak.middle.to_array();
+            let [x, y] = leak.px.floor().to_array();
             let text = format!("{x:>6.0}{y:>8.0}{:>15}", grouped(leak.pixels.into()));
             let response = ui.selectable_label(false, RichText::new(text).monospace());
             let response =

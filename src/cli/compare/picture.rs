@@ -3,20 +3,20 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use super::Args;
 use crate::cli::legend::{Named, draw_key};
 use crate::cli::shot::{Shot, ShotView, Subject};
 use crate::cli::{CliError, ReferenceSurface, write_picture};
-use crate::compare::{Comparison, ForeignMesh, Ours};
+use crate::compare::{Comparison, ForeignMesh, Ours, SideDifference, patch_starts};
 use crate::engine::{Engine, Loaded};
 use crate::mesh::{Mesh, MeshSlices, Topology};
 use crate::progress::Progress;
 use crate::render::layout::WORST_COLOR;
 use crate::render::{Camera, LineSegment};
 use crate::settings::{Colors, Overlays, Settings};
-use crate::tessellate::{Surface, Tessellation, outline_place};
+use crate::tessellate::{FIXED_ONE, Surface, Tessellation, Vertex, outline_place};
 use crate::truth::Truth;
 
 /// sRGB colours of what differs: sides that are cut differently, patches that differ, patches without triangles, and vertices
@@ -117,11 +117,11 @@ impl Lines {
             let lines = lines.flat_map(|(patch, side)| outlines.lines(patch, side, color, half_width));
             lines.take(MOST).collect()
         };
-        let of_side = |side: &crate::compare::SideDifference| {
+        let of_side = |side: &SideDifference| {
             let patch = ours.topology.patch_of(side.triangle)?;
             Some(outlines.lines(patch, side.side as usize, SIDE, half_width(comparison.sides.len())))
         };
-        let dot = |place: &glam::DVec3| {
+        let dot = |place: &DVec3| {
             let place = place.as_vec3();
             LineSegment { half_width: 4.0, ..LineSegment::new(place, place, MOVED) }
         };
@@ -156,22 +156,20 @@ impl Lines {
 struct Outlines<'a> {
     ours: &'a Ours<'a>,
     /// The first vertex of each patch, and the end.
-    starts: Vec<usize>,
+    starts: Vec<u32>,
 }
 
 impl<'a> Outlines<'a> {
     fn new(ours: &'a Ours<'a>) -> Self {
-        let mut starts = vec![0; ours.topology.patches.len() + 1];
-        ours.tessellated.vertices.iter().for_each(|vertex| starts[vertex.patch() as usize + 1] += 1);
-        for patch in 1..starts.len() {
-            starts[patch] += starts[patch - 1];
-        }
+        let patches = ours.tessellated.vertices.iter().map(Vertex::patch);
+        let starts = patch_starts(patches, ours.topology.patches.len());
         Self { ours, starts }
     }
 
     /// Lines through our vertices on a side of a patch; straight if we emit none.
     fn lines(&self, patch: u32, side: usize, color: [u8; 3], half_width: f32) -> Vec<LineSegment> {
-        let own = &self.ours.tessellated.vertices[self.starts[patch as usize]..self.starts[patch as usize + 1]];
+        let [from, to] = [patch, patch + 1].map(|patch| self.starts[patch as usize] as usize);
+        let own = &self.ours.tessellated.vertices[from..to];
         let on_side = own.iter().filter_map(|vertex| {
             let [u, v] = vertex.domain();
             let (own, t) = outline_place(u, v)?;
@@ -180,7 +178,7 @@ impl<'a> Outlines<'a> {
         let corners = self.ours.topology.patch_positions(patch);
         let mut points: Vec<(u32, Vec3)> = on_side.collect();
         points.push((0, corners[side]));
-        points.push((crate::tessellate::FIXED_ONE, corners[(side + 1) % 3]));
+        points.push((FIXED_ONE, corners[(side + 1) % 3]));
         points.sort_by_key(|(t, _)| *t);
         let line = |ends: &[(u32, Vec3)]| LineSegment { half_width, ..LineSegment::new(ends[0].1, ends[1].1, color) };
         points.windows(2).map(line).collect()

@@ -13,11 +13,11 @@ use crate::names::{on_one_line, shown};
 /// The most views.
 const MOST: usize = 3600;
 
-/// Views of one mesh, which are drawn by one command.
+/// Views of one mesh, for each of which a command writes a file.
 #[derive(Clone, Debug, Default, Args)]
 pub(crate) struct CamerasOption {
-    /// Draw many views: N from evenly around the mesh, or those of a file with a name and camera options for each, as JSON or on
-    /// a line
+    /// Write a file for each of many views: N from evenly around the mesh, or those of a file with a name and camera options for
+    /// each, as JSON or on a line
     #[arg(
         long,
         value_name = "N|FILE",
@@ -65,7 +65,7 @@ impl CamerasOption {
         }
     }
 
-    /// The views, each with a name of its own; none if the command draws only one. `view` has the options that stand beside
+    /// The views, each with a name of its own; none if the command works for a single one. `view` has the options that stand beside
     /// `--cameras`.
     ///
     /// # Errors
@@ -106,7 +106,7 @@ fn read(path: &Path) -> Result<Vec<NamedView>, CliError> {
     let is_json = text.trim_start().starts_with(['[', '{']);
     let views = if is_json { of_json(&text) } else { of_lines(&text) }.map_err(fail)?;
     if views.is_empty() || views.len() > MOST {
-        return Err(fail(format!("it has {} cameras; 1 to {MOST} can be drawn", views.len())));
+        return Err(fail(format!("it has {} cameras; a command takes 1 to {MOST}", views.len())));
     }
     for (index, own) in views.iter().enumerate() {
         let name = own.name.to_lowercase();
@@ -162,7 +162,7 @@ fn words(line: &str) -> Result<Vec<String>, String> {
 
 /// Reads an array of objects, whose fields are `name` and camera options with underscores in place of hyphens.
 fn of_json(text: &str) -> Result<Vec<NamedView>, String> {
-    let value: Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
+    let value: Value = serde_json::from_str(text).map_err(|error| format!("it is no JSON: {error}"))?;
     let Value::Array(cameras) = value else { return Err("its JSON is no array of cameras".to_owned()) };
     let read =
         |(index, camera): (usize, &Value)| of_object(camera).map_err(|reason| format!("camera {index}: {reason}"));

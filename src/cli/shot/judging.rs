@@ -5,11 +5,15 @@ use image::RgbaImage;
 use super::{CliError, Shot};
 use crate::check::Numbers;
 use crate::engine::Measurements;
-use crate::gates::{Facts, Gate, GateKind, Judgement, judge};
+use crate::gates::{Facts, Gate, GateKind, Judgement, Spot, Standpoints, judge};
+use crate::gpu::GpuError;
+use crate::measure::Sight;
 use crate::mesh::t_junctions;
 use crate::progress::Progress;
-use crate::render::worst_lines;
+use crate::render::{Camera, Leaks, worst_lines};
 use crate::settings::{Overlay, Overlays, Settings, SplitSide};
+use crate::tessellate::Inputs;
+use crate::view::ScreenView;
 
 impl Shot {
     /// Judges the right half, seen from the picture's camera, by each gate, and measures what they need. `tolerance_px` is what
@@ -25,19 +29,15 @@ impl Shot {
     ) -> Result<Vec<Judgement>, CliError> {
         let has = |kind| gates.iter().any(|gate| gate.kind == kind);
         let inputs = self.subject.settings.inputs(self.lod_view);
-        let Self { engine, scene, view, target, .. } = self;
+        let Self { engine, scene, .. } = self;
         let results = self.results[SplitSide::Right as usize].get_or_insert_default();
         if results.survey.is_none() && gates.iter().any(|gate| gate.kind.needs_survey()) {
             let wanted = Measurements { survey: true, ..Measurements::default() };
             results.survey = engine.measure_watched(scene, &wanted, progress)?.survey;
             progress.check()?;
         }
-        let leaks = match &results.survey {
-            Some(measured) if has(GateKind::Leaks) => {
-                Some(engine.find_leaks(scene, &inputs, measured, target.size, &view.camera)?)
-            }
-            _ => None,
-        };
+        let leaks = if has(GateKind::Leaks) { self.leaks(&inputs)? } else { None };
+        let Self { engine, scene, .. } = self;
         let is_compared = has(GateKind::AboveTolerance);
         let above = is_compared.then(|| engine.patches_above(scene, &inputs, tolerance_px)).transpose()?;
         self.error_place = above.and_then(|above| above.worst);
@@ -51,13 +51,33 @@ impl Shot {
                 warnings: &self.subject.loaded.warnings,
                 vertices,
                 triangles,
-                measured: results.survey.as_ref(),
+                measured: self.results(SplitSide::Right).and_then(|results| results.survey.as_ref()),
                 junctions: junctions.as_deref(),
                 leaks: leaks.as_ref(),
+                view: Some(self.view_of_picture()),
                 above: above.as_ref(),
             },
         );
         Ok(self.judged.clone())
+    }
+
+    /// The leaks of the picture, which a survey must have been made for. The scene must have been counted with `inputs`.
+    ///
+    /// # Errors
+    /// The device was lost.
+    fn leaks(&mut self, inputs: &Inputs) -> Result<Option<Leaks>, GpuError> {
+        let Self { engine, scene, results, target, view, .. } = self;
+        let survey = results[SplitSide::Right as usize].as_ref().and_then(|results| results.survey.as_ref());
+        let Some(measured) = survey else { return Ok(None) };
+        let leaks = engine.find_leaks(scene, inputs, measured, target.size, &view.camera)?;
+        let mirrored = view.camera.is_mirrored();
+        Ok(Some(if mirrored { leaks.mirrored(target.viewport().x) } else { leaks }))
+    }
+
+    /// The view as the picture has it, which is mirrored after it was drawn if its camera mirrors.
+    fn view_of_picture(&self) -> ScreenView {
+        let view = self.view();
+        if self.view.camera.is_mirrored() { view.mirrored() } else { view }
     }
 
     /// How much the mesh has, and how much was emitted.
@@ -78,10 +98,11 @@ impl Shot {
         progress: &Progress,
     ) -> Result<Option<RgbaImage>, CliError> {
         let Some(place) = &judgement.place else { return Ok(None) };
+        let camera = self.standpoint(&place.spot)?;
         let (view, settings) = (self.view, self.subject.settings);
         let (results, silhouette) = (std::mem::take(&mut self.results), self.silhouette.take());
         let lines = self.subject.more_lines.clone();
-        self.view.camera = place.spot.camera(&view.camera, self.target.viewport(), &self.scene.bounds);
+        self.view.camera = camera;
         // So close, the frustum of the camera of LOD would only hide the place. Factors are computed for it all the same.
         self.view.lod_camera = None;
         self.subject.settings = Settings { overlays: overlays_of(judgement.kind), split: None, ..settings };
@@ -96,6 +117,28 @@ impl Shot {
         (self.results, self.silhouette) = (results, silhouette);
         self.subject.more_lines = lines;
         picture.map(Some)
+    }
+}
+
+impl Shot {
+    /// A camera that shows the worst place of a gate, from where nothing hides it.
+    ///
+    /// # Errors
+    /// The device was lost.
+    fn standpoint(&mut self, spot: &Spot) -> Result<Camera, GpuError> {
+        let viewport = self.target.viewport();
+        let standpoints = Standpoints::of(spot, &self.view.camera, viewport, &self.scene.bounds);
+        let Self { engine, scene, .. } = self;
+        let mut clear = |lines| {
+            let mut sight = Sight::new(lines, standpoints.near());
+            engine.visit(scene, &mut [&mut sight])?;
+            Ok::<_, GpuError>(sight.clear().to_vec())
+        };
+        let first = standpoints.first_lines();
+        if first.is_empty() || standpoints.is_seen_first(&clear(first)?) {
+            return Ok(*standpoints.first());
+        }
+        Ok(standpoints.clearest(&clear(standpoints.lines_around())?))
     }
 }
 

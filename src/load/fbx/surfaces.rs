@@ -142,7 +142,7 @@ impl<'s, 'a> Surfaces<'s, 'a> {
     pub(super) fn into_parts(self, notes: &mut Notes) -> (FaceBuilder<'a>, Option<DetailTable>, Option<RigBuilder>) {
         notes.append(self.materials.into_notes());
         let Counts { without_normals, holes, bad_uvs, bad_colors, many_joints } = self.found;
-        let made = format!("meshes without normals, which got ones that are {}", self.import.smoothness());
+        let (without_normals, made) = self.import.lacking_normals(without_normals, "meshes without normals");
         notes.extend(counted([
             (without_normals, made.as_str()),
             (holes, "polygons that are holes, left out"),

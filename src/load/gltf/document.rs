@@ -49,37 +49,18 @@ pub(super) struct Parsed {
 /// # Errors
 /// [`GltfError::NotGltf`], [`GltfError::Extension`], [`GltfError::Document`], and [`GltfError::Cancelled`].
 pub(super) fn parse(
-    mut bytes: Vec<u8>,
+    bytes: Vec<u8>,
     selected: Selection,
     budget: &Budget,
     progress: &Progress,
 ) -> Result<Parsed, GltfError> {
-    let mut blob = None;
-    let mut value = if glb::is_glb(&bytes) {
-        let parts = glb::parts(&bytes)?;
-        let value = json::parse(&bytes[parts.json], budget, progress)?;
-        if let Some(bin) = parts.bin {
-            // In place, since a copy would take the file's size once more.
-            bytes.truncate(bin.end);
-            bytes.drain(..bin.start);
-            blob = Some(bytes);
-        }
-        value
-    } else {
-        let value = json::parse(&bytes, budget, progress)?;
-        drop(bytes);
-        value
-    };
+    let (mut value, blob) = json_and_blob(bytes, budget, progress)?;
     let Value::Object(root) = &mut value else { return Err(not_gltf("its JSON isn't an object")) };
     let mut notes = Notes::default();
     check_version(root, &mut notes)?;
     extension_table::check(root, &mut notes)?;
     let requires_draco = extension_table::requires(root, schema::DRACO);
-    // Read separately, so that an error in an animation doesn't keep the model from loading.
-    let animations = match root.remove("animations") {
-        Some(Value::Array(animations)) => animations,
-        _ => Vec::new(),
-    };
+    let animations = take_animations(root);
     let variants = variants::choose(root, selected.variant, &mut notes);
     let scenes = Scenes::choose(root, selected.scene, &mut notes);
     let lists = MaterialLists::take(root, &mut notes);
@@ -92,11 +73,7 @@ pub(super) fn parse(
         reach = Reach::of(root, &beside);
     }
     let faults = repair::repair(root, &reach, (lists.materials.len(), requires_draco), budget, &mut notes)?;
-    schema_check::check(root, schema::DOCUMENT, &faults.replaced)?;
-    let extensions = Extensions::of(root);
-    add_spares(root, &faults.replaced);
-    complete(root);
-    complete_bare(root, budget)?;
+    let extensions = checked(root, &faults, budget)?;
     let root: Root = serde_json::from_value(value).map_err(not_gltf)?;
     let document = Document::from_json(root).map_err(first_fault)?;
     budget.give_back_to(0);
@@ -118,6 +95,49 @@ pub(super) fn parse(
         faults,
         notes,
     })
+}
+
+/// The JSON of a file, and the binary chunk of a `.glb` file that has one.
+///
+/// # Errors
+/// [`GltfError::NotGltf`], [`GltfError::Document`], and [`GltfError::Cancelled`].
+fn json_and_blob(
+    mut bytes: Vec<u8>,
+    budget: &Budget,
+    progress: &Progress,
+) -> Result<(Value, Option<Vec<u8>>), GltfError> {
+    if !glb::is_glb(&bytes) {
+        return Ok((json::parse(&bytes, budget, progress)?, None));
+    }
+    let parts = glb::parts(&bytes)?;
+    let value = json::parse(&bytes[parts.json], budget, progress)?;
+    let Some(bin) = parts.bin else { return Ok((value, None)) };
+    // In place, since a copy would take the file's size once more.
+    bytes.truncate(bin.end);
+    bytes.drain(..bin.start);
+    Ok((value, Some(bytes)))
+}
+
+/// Takes the animations, which are read separately, so that an error in one doesn't keep the model from loading.
+fn take_animations(root: &mut Map<String, Value>) -> Vec<Value> {
+    match root.remove("animations") {
+        Some(Value::Array(animations)) => animations,
+        _ => Vec::new(),
+    }
+}
+
+/// Checks a document that was repaired against the schema, and adds what the `gltf` crate asks for and files may lack. Returns what it
+/// says about extensions.
+///
+/// # Errors
+/// [`GltfError::Document`].
+fn checked(root: &mut Map<String, Value>, faults: &Faults, budget: &Budget) -> Result<Extensions, GltfError> {
+    schema_check::check(root, schema::DOCUMENT, &faults.replaced)?;
+    let extensions = Extensions::of(root);
+    add_spares(root, &faults.replaced);
+    complete(root);
+    complete_bare(root, budget)?;
+    Ok(extensions)
 }
 
 fn not_gltf(reason: impl ToString) -> GltfError {

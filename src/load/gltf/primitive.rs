@@ -10,6 +10,7 @@ use super::notes::Notes;
 use super::primitive_data::PrimitiveData;
 use super::rig_builder::NodeBinder;
 use super::vertex_details::{DetailRepairs, VertexDetails};
+use crate::load::Budget;
 use crate::load::import::Import;
 use crate::mesh::detail_table::DetailTable;
 use crate::mesh::{MemoryAccount, MemoryRefused};
@@ -62,7 +63,21 @@ struct Indices<'a> {
     count: usize,
 }
 
-impl Indices<'_> {
+impl<'a> Indices<'a> {
+    /// Those of a primitive with so many vertices.
+    ///
+    /// # Errors
+    /// [`GltfError::Accessor`].
+    fn of(source: &PrimitiveData<'a>, vertices: usize) -> Result<Self, GltfError> {
+        let list = source.primitive.indices().map(|accessor| match source.unpacked {
+            Some(unpacked) => Ok(List::of(&unpacked.indices, 0)),
+            None => source.accessors.indices(&accessor, &format!("indices of {}", source.name)),
+        });
+        let list = list.transpose()?;
+        let count = list.as_ref().map_or(vertices, List::len);
+        Ok(Self { list, count })
+    }
+
     fn get(&self, i: usize) -> u32 {
         self.list.as_ref().map_or(i as u32, |list| list.get(i))
     }
@@ -115,7 +130,7 @@ impl PrimitiveReader {
     /// # Errors
     /// [`GltfError::Accessor`], [`GltfError::Primitive`] and [`GltfError::TooLarge`].
     pub(super) fn read(&mut self, job: Job, binder: Option<&mut NodeBinder>) -> Result<(), GltfError> {
-        let Job { mesh, primitive, pose, material, accessors, builder, mut details } = job;
+        let Job { mesh, primitive, pose, material, accessors, builder, details } = job;
         let name = name(mesh, primitive);
         let unpacked = accessors.unpacked.get(&[mesh.index(), primitive.index()]);
         let source =
@@ -128,54 +143,34 @@ impl PrimitiveReader {
             let details = VertexDetails::new(source, vertices.count, material.needs, uses_target, &mut self.notes);
             vertices.details = Some(details);
         }
-        let mut moving = binder.map(|binder| AnimatedVertices::new(source, &vertices, pose.instance, binder));
-        let list = primitive.indices().map(|accessor| match unpacked {
-            Some(unpacked) => Ok(List::of(&unpacked.indices, 0)),
-            None => accessors.indices(&accessor, &format!("indices of {name}")),
-        });
-        let list = list.transpose()?;
-        let count = list.as_ref().map_or(vertices.count, List::len);
-        let (indices, mode) = (Indices { list, count }, primitive.mode());
-        let (budget, too_large) = (accessors.budget, |refused: MemoryRefused| GltfError::TooLarge {
-            what: "the scene".to_owned(),
-            reason: refused.into(),
-        });
+        let moving = binder.map(|binder| AnimatedVertices::new(source, &vertices, pose.instance, binder));
+        let indices = Indices::of(&source, vertices.count)?;
+        let budget = accessors.budget;
         // The number and the marks of each vertex's corner, and a bit that says whether it is used.
         budget.borrow(vertices.count as u64 * 5 + vertices.count as u64 / 8).map_err(too_large)?;
         let used = used(&indices, vertices.count).map_err(|reason| source.problem(reason))?;
-        let mut kept = KeptVertices::new(vertices.count);
-        let (mut corners, mut stored) = (Vec::with_capacity(TOGETHER), Vec::with_capacity(TOGETHER));
-        for first in (0..vertices.count).step_by(TOGETHER) {
-            let range = first..(first + TOGETHER).min(vertices.count);
-            let is_used = |i: usize| used[i / 64] & 1 << (i % 64) != 0;
-            corners.clear();
-            for i in range.clone() {
-                let vertex = vertices.read(i)?;
-                let binding = moving.as_mut().map_or(0, |moving| moving.bind(i, &vertices, &vertex.corner));
-                kept.mark(&vertex);
-                if is_used(i) {
-                    let binding = match &mut details {
-                        Some(details) => details.number(vertex.detail, binding, budget).map_err(too_large)?,
-                        None => binding,
-                    };
-                    corners.push((vertex.corner, binding));
-                }
-            }
-            builder.make_room(corners.len(), budget).map_err(too_large)?;
-            stored.clear();
-            builder.corners(&corners, &mut stored);
-            let mut stored = stored.iter().copied();
-            range.for_each(|i| kept.push(if is_used(i) { stored.next() } else { None }.unwrap_or_default()));
-        }
+        let kept = KeptVertices::of(&mut vertices, &used, (moving, details), builder, budget)?;
+        let (mode, count) = (primitive.mode(), indices.count);
         self.count(&vertices, mode, count);
         builder.make_room_for_triangles(material.index, most_triangles(mode, count), budget).map_err(too_large)?;
+        self.add_triangles(mode, &indices, &kept, (builder, material.index))
+    }
+
+    /// Adds the triangles of stored corners, whose material has this number.
+    fn add_triangles(
+        &mut self,
+        mode: Mode,
+        indices: &Indices,
+        kept: &KeptVertices,
+        (builder, material): (&mut MeshBuilder, usize),
+    ) -> Result<(), GltfError> {
         let mut add = |[a, b, c]: [u32; 3]| {
             let outward = if kept.has(a, KeptVertices::MIRRORED) { [a, c, b] } else { [a, b, c] };
             self.rescaled += outward.map(|i| u32::from(kept.has(i, KeptVertices::RESCALED))).iter().sum::<u32>();
-            builder.stored_triangle(material.index, outward.map(|i| kept.get(i)));
+            builder.stored_triangle(material, outward.map(|i| kept.get(i)));
         };
         if mode != Mode::Triangles {
-            triangles(mode, count, |i| indices.get(i)).for_each(add);
+            triangles(mode, indices.count, |i| indices.get(i)).for_each(add);
             return Ok(());
         }
         indices.in_blocks(|_, block| {
@@ -193,7 +188,7 @@ impl PrimitiveReader {
             self.details.missing_uvs += repairs.missing_uvs;
             self.bad_uvs += repairs.bad_uvs;
         }
-        self.without_normals += usize::from(repairs.no_normals > 0 && !self.import.makes_normals());
+        self.without_normals += usize::from(repairs.no_normals > 0);
         self.bad_uvs += repairs.bad_uvs;
         self.bad_weights += repairs.bad_weights;
         self.cut_weights += repairs.cut_weights;
@@ -205,9 +200,9 @@ impl PrimitiveReader {
 
     /// Returns what was left out or repaired, one sentence each, except for the mesh's own repairs.
     pub(super) fn warnings(&self) -> Vec<String> {
-        let made = format!("primitives without normals, which got ones that are {}", self.import.smoothness());
+        let (without_normals, made) = self.import.lacking_normals(self.without_normals, "primitives without normals");
         let sentences = [
-            (self.without_normals, made.as_str()),
+            (without_normals, made.as_str()),
             (self.bad_uvs, "uvs that aren't finite, replaced by (0, 0)"),
             (self.details.missing_uvs, "primitives without the texture coordinates of a map, which has (0, 0) there"),
             (self.details.bad_colors, "colours of vertices that aren't finite, replaced by white"),
@@ -253,6 +248,44 @@ impl KeptVertices {
         Self { ids: Vec::with_capacity(count), marks: Vec::with_capacity(count) }
     }
 
+    /// Stores the corners of the vertices whose bit in `used` is set, with what moves them and their details.
+    ///
+    /// # Errors
+    /// [`GltfError::Accessor`] and [`GltfError::TooLarge`].
+    fn of(
+        vertices: &mut Vertices,
+        used: &[u64],
+        (mut moving, mut details): (Option<AnimatedVertices>, Option<&mut DetailTable>),
+        builder: &mut MeshBuilder,
+        budget: &Budget,
+    ) -> Result<Self, GltfError> {
+        let is_used = |i: usize| used[i / 64] & 1 << (i % 64) != 0;
+        let mut kept = Self::new(vertices.count);
+        let (mut corners, mut stored) = (Vec::with_capacity(TOGETHER), Vec::with_capacity(TOGETHER));
+        for first in (0..vertices.count).step_by(TOGETHER) {
+            let range = first..(first + TOGETHER).min(vertices.count);
+            corners.clear();
+            for i in range.clone() {
+                let vertex = vertices.read(i)?;
+                let binding = moving.as_mut().map_or(0, |moving| moving.bind(i, vertices, &vertex.corner));
+                kept.mark(&vertex);
+                if is_used(i) {
+                    let binding = match &mut details {
+                        Some(details) => details.number(vertex.detail, binding, budget).map_err(too_large)?,
+                        None => binding,
+                    };
+                    corners.push((vertex.corner, binding));
+                }
+            }
+            builder.make_room(corners.len(), budget).map_err(too_large)?;
+            stored.clear();
+            builder.corners(&corners, &mut stored);
+            let mut stored = stored.iter().copied();
+            range.for_each(|i| kept.push(if is_used(i) { stored.next() } else { None }.unwrap_or_default()));
+        }
+        Ok(kept)
+    }
+
     /// Notes how the next vertex was read.
     fn mark(&mut self, vertex: &Vertex) {
         let mark = |is: bool, bit: u8| if is { bit } else { 0 };
@@ -273,6 +306,11 @@ impl KeptVertices {
         let repairs = CornerRepairs(self.marks[i as usize] & (Self::MIRRORED - 1));
         StoredCorner { id: self.ids[i as usize], repairs }
     }
+}
+
+/// The error of a scene that takes too much memory.
+fn too_large(refused: MemoryRefused) -> GltfError {
+    GltfError::TooLarge { what: "the scene".to_owned(), reason: refused.into() }
 }
 
 /// Returns a bit for each vertex that says whether an index names it.
