@@ -54,9 +54,10 @@ pub(super) fn parse(
     budget: &Budget,
     progress: &Progress,
 ) -> Result<Parsed, GltfError> {
-    let mut blob = None;
+    let (mut blob, mut notes) = (None, Notes::default());
     let mut value = if glb::is_glb(&bytes) {
         let parts = glb::parts(&bytes)?;
+        notes.extend(parts.warning);
         let value = json::parse(&bytes[parts.json], budget, progress)?;
         if let Some(bin) = parts.bin {
             // In place, since a copy would take the file's size once more.
@@ -71,7 +72,6 @@ pub(super) fn parse(
         value
     };
     let Value::Object(root) = &mut value else { return Err(not_gltf("its JSON isn't an object")) };
-    let mut notes = Notes::default();
     check_version(root, &mut notes)?;
     extension_table::check(root, &mut notes)?;
     let requires_draco = extension_table::requires(root, schema::DRACO);

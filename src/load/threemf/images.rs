@@ -87,41 +87,19 @@ impl Images {
     ) -> Result<(), Cancelled> {
         let mut users: BTreeMap<&Shown, Vec<usize>> = BTreeMap::new();
         textured.iter().for_each(|shows| users.entry(&shows.shown).or_default().push(shows.material));
-        let paths = users.keys().flat_map(|shown| match shown {
-            Shown::Image { path, .. } => std::slice::from_ref(path),
-            Shown::Mixture(mixture) => &mixture.images[..],
-        });
-        let paths: Vec<&String> = paths.collect::<BTreeSet<_>>().into_iter().collect();
-        let mixtures: Vec<&Mixture> = users.keys().filter_map(|shown| shown.mixture()).collect();
-        let mut sizes: Vec<[u32; 2]> = paths.iter().map(|path| self.size(path)).collect();
-        let larger = |a: [u32; 2], b: [u32; 2]| [a[0].max(b[0]), a[1].max(b[1])];
-        let of_mixture =
-            |mixture: &Mixture| mixture.seen().map(|image| self.size(&mixture.images[image])).fold([1; 2], larger);
-        sizes.extend(mixtures.iter().map(|mixture| of_mixture(mixture)));
+        let wanted = Wanted::new(users.keys().copied());
         let packed = self.held();
         let room = TextureRoom::of(budget, faces.bytes_to_finish().saturating_sub(freed + packed));
-        let scalings = room.scalings(&sizes);
-        let (of_paths, of_mixtures) = scalings.split_at(paths.len());
-        let mut decoded: BTreeMap<&str, Arc<Texture>> = BTreeMap::new();
-        for ((path, size), scaling) in paths.iter().zip(&sizes).zip(of_paths) {
-            progress.check()?;
-            let (texture, said) = self.decoded(path, *size, scaling, budget);
-            notes.extend(said.map(|said| format!("the texture \"{}\" {said}.", shown(path))));
-            decoded.extend(texture.map(|texture| (path.as_str(), Arc::new(texture))));
-        }
+        let scalings = room.scalings(&wanted.sizes(&self));
+        let (of_images, of_mixtures) = scalings.split_at(wanted.images.len());
+        let decoded = self.decode(&wanted.images, of_images, (budget, progress), notes)?;
+        let least = |mixture: &Mixture| wanted.halvings(mixture, of_images);
         let mut blended: BTreeMap<&Mixture, Arc<Texture>> = BTreeMap::new();
-        for (mixture, scaling) in mixtures.iter().zip(of_mixtures) {
-            let images: Vec<_> = mixture.images.iter().map(|path| decoded.get(path.as_str()).cloned()).collect();
-            let seen = mixture.seen().filter_map(|image| images[image].as_deref());
-            let size = seen.map(|image| image.size).fold([1; 2], larger);
-            let size = level_size(size, scaling.halvings.saturating_sub(halvings_of(mixture, &paths, of_paths)));
-            match budget.hold(decoded_bytes(size)) {
-                Ok(()) => {
-                    blended.insert(mixture, Arc::new(mixture.blend(&images, size, progress)?));
-                }
-                Err(refused) => {
-                    notes.push_once(format!("layers of textures are left out: an image of them {refused}."))
-                }
+        for (mixture, scaling) in wanted.mixtures.iter().zip(of_mixtures) {
+            let more = Scaling { halvings: scaling.halvings.saturating_sub(least(mixture)), ..scaling.clone() };
+            match blend(mixture, &decoded, &more, (budget, progress), notes)? {
+                Ok(texture) => _ = blended.insert(mixture, Arc::new(texture)),
+                Err(reason) => notes.push_once(format!("layers of textures are left out: an image of them {reason}.")),
             }
         }
         for (shown, materials) in &users {
@@ -132,12 +110,36 @@ impl Images {
             let Some(texture) = texture else { continue };
             materials.iter().for_each(|&material| show(faces, material, texture, hides));
         }
-        // Those that only layers needed.
+        // Those that only layers needed end here.
         let is_shown =
             |path: &str| users.keys().any(|shown| matches!(shown, Shown::Image { path: own, .. } if own == path));
         let unneeded = decoded.iter().filter(|(path, _)| !is_shown(path));
         budget.release(packed + unneeded.map(|(_, texture)| decoded_bytes(texture.size)).sum::<u64>());
         Ok(())
+    }
+
+    /// Decodes images, each halved as its scaling says. Those that can't be decoded are left out.
+    fn decode<'p>(
+        &self,
+        paths: &[&'p str],
+        scalings: &[Scaling],
+        (budget, progress): (&Budget, &Progress),
+        notes: &mut Notes,
+    ) -> Result<BTreeMap<&'p str, Arc<Texture>>, Cancelled> {
+        let mut decoded = BTreeMap::new();
+        for (path, Scaling { halvings, reason }) in paths.iter().zip(scalings) {
+            progress.check()?;
+            let borrowed = budget.borrowed();
+            let texture = self.of(path).and_then(|bytes| decode_halved(bytes, *halvings, MipFilter::Colors, budget));
+            budget.give_back_to(borrowed);
+            let said = match &texture {
+                Err(reason) => Some(format!("is left out: {reason}")),
+                Ok(texture) => (*halvings > 0).then(|| scaled_down(self.size(path), texture.size, reason)),
+            };
+            notes.extend(said.map(|said| format!("the texture \"{}\" {said}.", shown(path))));
+            decoded.extend(texture.ok().map(|texture| (*path, Arc::new(texture))));
+        }
+        Ok(decoded)
     }
 
     /// An image's size in px; 0 if it isn't one that is read.
@@ -148,28 +150,6 @@ impl Images {
     fn of(&self, path: &str) -> Result<&[u8], String> {
         let bytes = self.bytes.get(path).ok_or("it isn't in the file")?;
         bytes.as_deref().map_err(Clone::clone)
-    }
-
-    /// Decodes an image, and says what is wrong with it or that it was scaled down.
-    fn decoded(
-        &self,
-        path: &str,
-        size: [u32; 2],
-        Scaling { halvings, reason }: &Scaling,
-        budget: &Budget,
-    ) -> (Option<Texture>, Option<String>) {
-        let borrowed = budget.borrowed();
-        let texture = self.of(path).and_then(|bytes| decode_halved(bytes, *halvings, MipFilter::Colors, budget));
-        budget.give_back_to(borrowed);
-        match texture {
-            Err(reason) => (None, Some(format!("is left out: {reason}"))),
-            Ok(texture) => {
-                let [[a, b], [c, d]] = [size, texture.size];
-                let said =
-                    (*halvings > 0).then(|| format!("is scaled down from {a} x {b} px to {c} x {d} px: {reason}"));
-                (Some(texture), said)
-            }
-        }
     }
 
     /// How many bytes the budget holds for the images.
@@ -211,11 +191,68 @@ fn unpacked(archive: &Archive, path: &str, budget: &Budget) -> Result<Vec<u8>, S
     read.map(|_| bytes)
 }
 
-/// How often the images were halved that a mixture shows: the least of them.
-fn halvings_of(mixture: &Mixture, paths: &[&String], scalings: &[Scaling]) -> u32 {
-    let of = |path: &String| scalings.get(paths.iter().position(|other| *other == path)?);
-    let halvings = mixture.seen().filter_map(|image| of(&mixture.images[image])).map(|scaling| scaling.halvings);
-    halvings.min().unwrap_or(0)
+/// The images that are needed: those of the archive by their names, and those that are blended of layers.
+struct Wanted<'s> {
+    images: Vec<&'s str>,
+    mixtures: Vec<&'s Mixture>,
+}
+
+impl<'s> Wanted<'s> {
+    fn new(shown: impl Iterator<Item = &'s Shown> + Clone) -> Self {
+        let images = shown.clone().flat_map(|shown| match shown {
+            Shown::Image { path, .. } => std::slice::from_ref(path),
+            Shown::Mixture(mixture) => &mixture.images[..],
+        });
+        let images: BTreeSet<_> = images.map(String::as_str).collect();
+        Self { images: images.into_iter().collect(), mixtures: shown.filter_map(Shown::mixture).collect() }
+    }
+
+    /// The sizes of all, in px. A mixture is as large as the largest image that it shows.
+    fn sizes(&self, images: &Images) -> Vec<[u32; 2]> {
+        let of = |path: &&str| images.size(path);
+        let of_mixture =
+            |mixture: &&Mixture| mixture.seen().map(|image| images.size(&mixture.images[image])).fold([1; 2], larger);
+        self.images.iter().map(of).chain(self.mixtures.iter().map(of_mixture)).collect()
+    }
+
+    /// How often the images were halved that a mixture shows: the least of them.
+    fn halvings(&self, mixture: &Mixture, scalings: &[Scaling]) -> u32 {
+        let of = |path: &String| scalings.get(self.images.iter().position(|other| other == path)?);
+        let halvings = mixture.seen().filter_map(|image| of(&mixture.images[image])).map(|scaling| scaling.halvings);
+        halvings.min().unwrap_or(0)
+    }
+}
+
+/// Blends layers into an image, which is halved as often as `more` says beside the images that it shows. The budget holds it. Returns a
+/// clause if it takes too much memory.
+fn blend(
+    mixture: &Mixture,
+    decoded: &BTreeMap<&str, Arc<Texture>>,
+    more: &Scaling,
+    (budget, progress): (&Budget, &Progress),
+    notes: &mut Notes,
+) -> Result<Result<Texture, String>, Cancelled> {
+    let images: Vec<_> = mixture.images.iter().map(|path| decoded.get(path.as_str()).cloned()).collect();
+    let whole = mixture.seen().filter_map(|image| images[image].as_deref()).map(|image| image.size);
+    let whole = whole.fold([1; 2], larger);
+    let size = level_size(whole, more.halvings);
+    if let Err(refused) = budget.hold(decoded_bytes(size)) {
+        return Ok(Err(refused.into()));
+    }
+    if more.halvings > 0 {
+        let name = mixture.images.last().map_or("", String::as_str);
+        let said = scaled_down(whole, size, &more.reason);
+        notes.push_once(format!("an image of layers with the texture \"{}\" {said}.", shown(name)));
+    }
+    Ok(Ok(mixture.blend(&images, size, progress)?))
+}
+
+fn larger(a: [u32; 2], b: [u32; 2]) -> [u32; 2] {
+    [a[0].max(b[0]), a[1].max(b[1])]
+}
+
+fn scaled_down([a, b]: [u32; 2], [c, d]: [u32; 2], reason: &str) -> String {
+    format!("is scaled down from {a} x {b} px to {c} x {d} px: {reason}")
 }
 
 /// Shows an image on a material, which blends if the image has transparent texels and doesn't hide what is behind.

@@ -60,6 +60,14 @@ pub(super) fn cases() -> Vec<(&'static str, Case)> {
             zip(&[Entry::stored("_rels/.rels", relationships().as_bytes())]),
             Refused("Broken | 3D/3dmodel.model | isn't there"),
         ),
+        case(
+            "relationships to a part that isn't there, beside a model",
+            zip(&[
+                Entry::stored("_rels/.rels", relationships().replace("/3D/", "./3D/").as_bytes()),
+                Entry::stored(MODEL, model(&format!("<object id=\"1\">{TRIANGLE}</object>"), ITEM).as_bytes()),
+            ]),
+            Repaired(1, "its model is ./3D/3dmodel.model | 3D/3dmodel.model is shown"),
+        ),
         case("a method of 2006", with_model(Entry { method: 12, ..own() }), Refused("Broken | method 12")),
         case("damaged data", with_model(Entry { packed: vec![0xff; 100], ..own() }), Refused("Broken | damaged")),
         case(
