@@ -78,7 +78,9 @@ fn read(format: Format, bytes: &[u8]) -> Result<LoadedMesh, ReadError> {
             &progress,
         ),
         Format::Stl => stl::read(bytes.to_vec(), "broken", Selection::default(), &Limits::default(), &progress),
-        Format::Ply => ply::read(bytes.to_vec(), "broken", Import::default(), &Limits::default(), &progress),
+        Format::Ply => {
+            ply::read(bytes.to_vec(), Path::new("nowhere"), "broken", Import::default(), &Limits::default(), &progress)
+        }
         Format::Off => off::read(bytes.to_vec(), "broken", Import::default(), &Limits::default(), &progress),
         Format::ThreeMf => threemf::read(bytes.to_vec(), "broken", Import::default(), &Limits::default(), &progress),
         Format::Gltf => panic!("glTF has hostile files of its own, in gltf/tests"),

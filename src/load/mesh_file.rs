@@ -292,7 +292,7 @@ pub fn read(
             obj::read(bytes, folder, &name, selected, limits, progress).map_err(|fault| of_fault(fault, path))
         }
         Format::Stl => stl::read(bytes, &name, selected, limits, progress).map_err(|fault| of_fault(fault, path)),
-        Format::Ply => ply::read(bytes, &name, import, limits, progress).map_err(|fault| of_fault(fault, path)),
+        Format::Ply => ply::read(bytes, folder, &name, import, limits, progress).map_err(|fault| of_fault(fault, path)),
         Format::Off => off::read(bytes, &name, import, limits, progress).map_err(|fault| of_fault(fault, path)),
         Format::ThreeMf => threemf::read(bytes, &name, import, limits, progress).map_err(|fault| of_fault(fault, path)),
     }?;

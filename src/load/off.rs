@@ -44,7 +44,7 @@ pub(super) fn read(
 pub(super) fn begins(text: &[u8]) -> bool {
     let mut rows = Rows::new(text, None);
     let mut next = || rows.next().ok().flatten().map_or(&b""[..], |row| row.text);
-    let (word, mut rest) = first_word(next());
+    let (word, mut rest) = keyword(next());
     if VertexKind::of(word).is_none() {
         return false;
     }
@@ -154,7 +154,7 @@ impl Header {
     fn read(rows: &mut Rows) -> Result<Self, ReadError> {
         let empty = || FilePosition::Everywhere.error("it isn't an OFF file: it has no line besides comments");
         let mut row = rows.next()?.ok_or_else(empty)?;
-        let (word, mut rest) = first_word(row.text);
+        let (word, mut rest) = keyword(row.text);
         // The keyword may be missing.
         let kind = match VertexKind::of(word).or(VertexKind::of(&word.to_ascii_uppercase())) {
             Some(kind) => kind,
@@ -183,6 +183,18 @@ impl Header {
             row.place().error(format!("{} isn't the numbers of vertices, faces and edges", shown(rest)))
         })?;
         Ok(Self { kind, vertices, faces })
+    }
+}
+
+/// Splits a line after its keyword. Some programs write the number of vertices behind it without a space: `OFF8 6 12`.
+fn keyword(text: &[u8]) -> (&[u8], &[u8]) {
+    let (word, rest) = first_word(text);
+    let digits = word.iter().rev().take_while(|byte| byte.is_ascii_digit()).count();
+    match word.split_at(word.len() - digits) {
+        (keyword, number) if !number.is_empty() && VertexKind::of(keyword).is_some() => {
+            (keyword, &text[keyword.len()..])
+        }
+        _ => (word, rest),
     }
 }
 
@@ -362,14 +374,14 @@ impl Reader<'_, '_> {
             let word = words.next().ok_or_else(|| {
                 row.place().error(format!("the face has {i} corners, but it says that it has {count}"))
             })?;
-            let (corner, color) = parsed(word).and_then(|index| self.vertices.corner(index)).ok_or_else(|| {
-                let vertices = self.vertices.positions.len();
-                let reason =
-                    format!("the face uses vertex {}, but the file has {vertices}, counted from 0", shown(word));
-                row.place().error(reason)
-            })?;
-            self.colors.push(color);
-            self.corners.push(NumberedCorner { corner, number: 0, vertex: None });
+            if let Some((corner, color)) = parsed(word).and_then(|index| self.vertices.corner(index)) {
+                self.colors.push(color);
+                self.corners.push(NumberedCorner { corner, number: 0, vertex: None });
+            }
+        }
+        if self.corners.len() < count {
+            self.faces.leave_out(row.place());
+            return Ok(());
         }
         let face_color = if self.vertices.colors.is_empty() { self.face_color(words) } else { None };
         if face_color.is_some() && !self.is_colored {

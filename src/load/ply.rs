@@ -6,8 +6,11 @@
 //! Source: Turk 1994, "The PLY Polygon File Format".
 
 mod header;
+mod textures;
 mod upcoming;
 mod values;
+
+use std::path::Path;
 
 use glam::{Vec2, Vec3, Vec4};
 
@@ -18,12 +21,14 @@ use super::memory_budget::Budget;
 use super::read_error::{FilePosition, ReadError};
 use super::recent_corners::VertexNumbers;
 use super::text_lines::shown;
+use super::uri::Files;
 use crate::files::Limits;
 use crate::mesh::mesh_builder::InputCorner;
 use crate::mesh::{Material, MemoryAccount};
 use crate::progress::Progress;
 
 use header::{Element, Header, Property, PropertyKind, Scalar};
+use textures::Textures;
 use upcoming::Upcoming;
 use values::Values;
 
@@ -51,26 +56,36 @@ const ATTRIBUTES: [(&[u8], usize); 19] = [
 ];
 /// How many attributes there are.
 const SLOTS: usize = 12;
+/// The first attribute of colours.
+const RED: usize = 8;
 
-/// Builds a mesh called `name` from a file's bytes.
+/// Builds a mesh called `name` from a file's bytes. Images are looked for in `folder`.
 ///
 /// # Errors
-/// [`ReadError`].
+/// [`ReadError`]. An image that is missing isn't an error but a warning.
 pub(super) fn read(
     bytes: Vec<u8>,
+    folder: &Path,
     name: &str,
     import: Import,
     limits: &Limits,
     progress: &Progress,
 ) -> Result<LoadedMesh, ReadError> {
-    read_faces(bytes, name, import, limits, progress, gather)
+    let mut named = Vec::new();
+    let loaded = read_faces(bytes, name, import, limits, progress, |bytes, import, budget, progress| {
+        let files = Files::new(folder, limits, budget, progress);
+        let gathered = gather(bytes, import, (&files, budget), progress);
+        named = files.named();
+        gathered
+    })?;
+    Ok(LoadedMesh { files: named, ..loaded })
 }
 
 /// Reads all faces.
 fn gather<'a>(
     bytes: &[u8],
     import: Import,
-    budget: &'a Budget,
+    (files, budget): (&Files, &'a Budget),
     progress: &'a Progress,
 ) -> Result<Gathered<'a>, ReadError> {
     let header = header::read(bytes)?;
@@ -78,7 +93,9 @@ fn gather<'a>(
     let material = faces.material(Material::plain("default", [1.0; 4]))?;
     let mut reader = Reader {
         faces,
+        plain: material,
         material,
+        textures: Textures::new(&header.images),
         vertices: None,
         corners: Vec::new(),
         wedges: Vec::new(),
@@ -114,7 +131,9 @@ fn gather<'a>(
     for (element, mut values) in before_vertices {
         reader.read_lists(element, &mut values)?;
     }
-    Ok(reader.finish(&header, &import, (values.left_over(), values.long_lines)))
+    let freed = bytes.len() as u64 + reader.vertices.as_ref().map_or(0, Vertices::bytes);
+    let problems = reader.textures.give(&mut reader.faces, (files, budget), freed, progress)?;
+    Ok(reader.finish(&header, &import, (values.left_over(), values.long_lines), problems))
 }
 
 /// The attributes of the vertices. Normals, uvs or colours are empty if the file has none.
@@ -138,19 +157,34 @@ impl Vertices {
         let color = self.colors.get(vertex).map_or(Vec4::ONE, |&color| linear_color(color));
         Some((vertex, corner, color))
     }
+
+    /// Returns the size in memory, in bytes.
+    fn bytes(&self) -> u64 {
+        let beside = 12 * self.normals.capacity() + 8 * self.uvs.capacity() + 4 * self.colors.capacity();
+        (12 * self.positions.capacity() + beside) as u64
+    }
 }
 
-/// Which properties of an element are its lists.
+/// Which properties of an element are read.
 #[derive(Clone, Copy)]
-struct Lists {
+struct FaceProperties {
+    /// The list of vertices.
     vertices: usize,
     /// The list of texture coordinates, if there is one.
     wedges: Option<usize>,
+    /// The number of the image, if there are several.
+    image: Option<usize>,
+    /// Red, green and blue, and alpha if there is one, of a face whose vertices have no colours.
+    color: Option<([Option<usize>; 4], f32)>,
 }
 
-struct Reader<'a> {
+struct Reader<'a, 'h> {
     faces: FaceBuilder<'a>,
+    /// The material of faces without an image.
+    plain: usize,
+    /// The material of the next faces.
     material: usize,
+    textures: Textures<'h>,
     vertices: Option<Vertices>,
     /// The corners of the face that is being read.
     corners: Vec<NumberedCorner>,
@@ -162,7 +196,7 @@ struct Reader<'a> {
     progress: &'a Progress,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> Reader<'a, '_> {
     fn read_vertices(&self, element: &Element, values: &mut Values) -> Result<Vertices, ReadError> {
         let slots: Vec<Option<usize>> = element.properties.iter().map(slot).collect();
         let has = |slot: usize| slots.contains(&Some(slot));
@@ -245,14 +279,11 @@ impl<'a> Reader<'a> {
             let reason = format!("the element {} has no list named \"vertex_indices\"", shown(element.name));
             return Err(values.place().error(reason));
         };
-        let wedges = element.properties.iter().position(|property| property.name == b"texcoord");
-        if !vertices.colors.is_empty() {
-            self.faces.color();
-        }
+        let of_face = self.begin_faces(element, list, vertices)?;
         let faces = usize::try_from(values.most(element)).unwrap_or_default();
         self.faces.expect(faces, vertices.positions.len().min(faces.saturating_mul(4)));
-        let lists = Lists { vertices: list, wedges };
-        let row = values.face_row(element, list).filter(|_| element.name == b"face");
+        let is_plain = element.name == b"face" && of_face.image.is_none() && of_face.color.is_none();
+        let row = values.face_row(element, list).filter(|_| is_plain);
         let (mut upcoming, mut i) = (row.map(Upcoming::new), 0);
         while i < element.count {
             if let Some(upcoming) = &mut upcoming {
@@ -264,10 +295,37 @@ impl<'a> Reader<'a> {
                 }
             }
             self.at(values, i)?;
-            self.read_list(element, i, lists, values, vertices)?;
+            self.read_list(element, i, of_face, values, vertices)?;
             i += 1;
         }
         Ok(())
+    }
+
+    /// Finds what an element of faces or of triangle strips has besides its list of vertices, and the material that it begins with.
+    fn begin_faces(
+        &mut self,
+        element: &Element,
+        list: usize,
+        vertices: &Vertices,
+    ) -> Result<FaceProperties, ReadError> {
+        let named = |name: &[u8]| element.properties.iter().position(|property| property.name == name);
+        let wedges = named(b"texcoord");
+        let slots: Vec<_> = element.properties.iter().map(slot).collect();
+        let places = [0, 1, 2, 3].map(|channel| slots.iter().position(|slot| *slot == Some(RED + channel)));
+        let is_colored = vertices.colors.is_empty() && places[..3].iter().all(Option::is_some);
+        let color = (is_colored && element.name == b"face").then(|| (places, color_scale(element, &slots)));
+        let has_uvs = wedges.is_some() || !vertices.uvs.is_empty();
+        let first = if has_uvs { self.textures.material(&mut self.faces, 0)? } else { None };
+        self.material = first.unwrap_or(self.plain);
+        let image = named(b"texnumber").filter(|_| first.is_some() && self.textures.len() > 1);
+        // Where there is an image, colours count for nothing: scans have both.
+        let is_uncolored = first.is_some() && image.is_none();
+        if !is_uncolored && (!vertices.colors.is_empty() || color.is_some()) {
+            self.faces.color();
+            // Corners that were added before have the number 0.
+            self.faces.number(Vec4::ONE)?;
+        }
+        Ok(FaceProperties { vertices: list, wedges, image, color })
     }
 
     /// Reads element number `i` of faces or of triangle strips.
@@ -275,17 +333,18 @@ impl<'a> Reader<'a> {
         &mut self,
         element: &Element,
         i: u64,
-        lists: Lists,
+        of_face: FaceProperties,
         values: &mut Values,
         vertices: &Vertices,
     ) -> Result<(), ReadError> {
         values.begin(element, i)?;
         let place = values.place();
         self.wedges.clear();
-        let mut is_whole = true;
+        let (mut is_whole, mut image) = (true, 0.0);
+        let mut color = of_face.color.map(|(places, scale)| (places, [0.0, 0.0, 0.0, 1.0 / scale]));
         for (k, property) in element.properties.iter().enumerate() {
             match property.kind {
-                PropertyKind::List { count, item } if k == lists.vertices => {
+                PropertyKind::List { count, item } if k == of_face.vertices => {
                     let mut left = values.count(count, item)?;
                     let next = || {
                         let Some(less) = left.checked_sub(1) else { return Ok(None) };
@@ -297,7 +356,7 @@ impl<'a> Reader<'a> {
                         _ => self.strip(next, vertices, place)?,
                     }
                 }
-                PropertyKind::List { count, item } if Some(k) == lists.wedges => {
+                PropertyKind::List { count, item } if Some(k) == of_face.wedges => {
                     let length = values.count(count, item)?;
                     for i in 0..length {
                         let value = values.next(item)? as f32;
@@ -306,20 +365,38 @@ impl<'a> Reader<'a> {
                         }
                     }
                 }
+                PropertyKind::One(scalar) if Some(k) == of_face.image => image = values.next(scalar)?,
+                PropertyKind::One(scalar) if let Some((places, found)) = &mut color => {
+                    let value = values.next(scalar)? as f32;
+                    let channels = found.iter_mut().zip(places.iter()).filter(|(_, place)| **place == Some(k));
+                    channels.for_each(|(channel, _)| *channel = value);
+                }
                 kind => values.skip_one(kind)?,
             }
         }
         values.end();
+        if of_face.image.is_some() {
+            // The conversion takes a negative number for 0, which isn't one of an image either.
+            let image = if image >= 0.0 { image as usize } else { usize::MAX };
+            self.material = self.textures.material(&mut self.faces, image)?.unwrap_or(self.plain);
+        }
+        let scale = of_face.color.map_or(1.0, |(_, scale)| scale);
+        let color = color.map(|(_, color)| linear_color(color.map(|channel| (channel * scale * 255.0).round() as u8)));
+        let color = if of_face.image.is_some() && self.material != self.plain { Some(Vec4::ONE) } else { color };
         match element.name {
-            b"face" if is_whole => self.add_face(place)?,
+            b"face" if is_whole => self.add_face(color, place)?,
             b"face" => self.faces.leave_out(place),
             _ => {}
         }
         Ok(())
     }
 
-    /// Adds the face that was read.
-    fn add_face(&mut self, place: FilePosition) -> Result<(), ReadError> {
+    /// Adds the face that was read, which may have a colour.
+    fn add_face(&mut self, color: Option<Vec4>, place: FilePosition) -> Result<(), ReadError> {
+        if let Some(color) = color {
+            let number = self.faces.number(color)?;
+            self.corners.iter_mut().for_each(|at| (at.number, at.vertex) = (number, None));
+        }
         let wedges = self.wedges.as_chunks::<2>().0;
         if wedges.len() == self.corners.len() {
             for (at, &[u, v]) in self.corners.iter_mut().zip(wedges) {
@@ -415,6 +492,7 @@ impl<'a> Reader<'a> {
         header: &Header,
         import: &Import,
         (left_over, long_lines): (usize, usize),
+        problems: Vec<String>,
     ) -> (FaceBuilder<'a>, String, Vec<String>) {
         let count = |name: &[u8]| {
             header.elements.iter().filter(|element| element.name == name).map(|element| element.count).sum()
@@ -431,9 +509,10 @@ impl<'a> Reader<'a> {
             (without_normals, made.as_str()),
             (long_lines, "lines with more numbers than their element has, left out"),
             (left_over, "bytes after the last element, left out"),
+            (header.images.len() - self.textures.len(), "images beyond the first 256, left out"),
         ]));
-        let beside = 12 * read.normals.capacity() + 8 * read.uvs.capacity() + 4 * read.colors.capacity();
-        self.budget.release((12 * read.positions.capacity() + beside) as u64);
+        warnings.extend(problems);
+        self.budget.release(read.bytes());
         (self.faces, holds, warnings)
     }
 }
@@ -459,7 +538,7 @@ fn read_values(
 
 /// Returns what colours are multiplied by to lie from 0 to 1. Whole numbers go up to the largest of their type.
 fn color_scale(element: &Element, slots: &[Option<usize>]) -> f32 {
-    let of_red = element.properties.iter().zip(slots).find(|(_, slot)| **slot == Some(8));
+    let of_red = element.properties.iter().zip(slots).find(|(_, slot)| **slot == Some(RED));
     match of_red.map(|(property, _)| property.kind) {
         Some(PropertyKind::One(Scalar::F32 | Scalar::F64)) => 1.0,
         Some(PropertyKind::One(Scalar::U16)) => 1.0 / 65535.0,

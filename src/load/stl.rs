@@ -68,14 +68,16 @@ fn is_text(bytes: &[u8]) -> bool {
     begins_as_text(bytes) && !exact
 }
 
-/// Returns whether a file begins as text does. Some have no line with "solid" before their first facet. In binary files control
-/// characters follow.
+/// Returns whether a file begins as text does. Some have no line with "solid" before their first facet, and some have notes before it. In
+/// binary files control characters follow.
 pub(super) fn begins_as_text(bytes: &[u8]) -> bool {
     let start = &bytes[..bytes.len().min(1024)];
     let start = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
-    let word = first_word(start).0;
-    let begins = |with: &[u8]| word.get(..with.len()).is_some_and(|word| word.eq_ignore_ascii_case(with));
-    (begins(b"solid") || begins(b"facet"))
+    let begins = |line: &[u8], with: &[u8]| {
+        first_word(line).0.get(..with.len()).is_some_and(|word| word.eq_ignore_ascii_case(with))
+    };
+    let mut lines = start.split(|byte| matches!(byte, b'\n' | b'\r'));
+    lines.any(|line| begins(line, b"solid") || begins(line, b"facet"))
         && !start.iter().any(|byte| byte.is_ascii_control() && !byte.is_ascii_whitespace())
 }
 

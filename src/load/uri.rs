@@ -58,6 +58,20 @@ impl<'a> Files<'a> {
         read_file(&path, self.limits, |_| Ok(()), self.progress).map_err(|error: FileError| error.to_string())
     }
 
+    /// Reads a file that another one names by a path, which may be one of Windows or of another machine: of an absolute path the last
+    /// name is looked for in the folder. The memory is borrowed.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub(super) fn read_path(&self, path: &str) -> Result<Vec<u8>, String> {
+        let path = path.replace('%', "%25").replace('\\', "/");
+        let drive =
+            path.as_bytes().get(..3).is_some_and(|start| start[0].is_ascii_alphabetic() && &start[1..] == b":/");
+        // The path on somebody else's machine doesn't lead anywhere here.
+        let shortened = if drive || path.starts_with('/') { path.rsplit('/').next() } else { None };
+        self.read(shortened.unwrap_or(&path), false)
+    }
+
     /// Returns the files that were read, sorted by name.
     pub(super) fn named(&self) -> Vec<PathBuf> {
         let mut named: Vec<_> = self.counted.borrow().iter().cloned().collect();

@@ -129,7 +129,7 @@ fn unit(normal: Vec3) -> Vec3 {
 }
 
 /// The bytes that sRGB encodes linear light as. Looked up, so that all devices agree.
-fn encoded(color: Vec3) -> Vec3 {
+pub(crate) fn encoded(color: Vec3) -> Vec3 {
     let byte = |light: f32| {
         let above = SRGB_TABLE[256..].partition_point(|least| *least <= light);
         above.saturating_sub(1) as f32

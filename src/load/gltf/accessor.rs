@@ -135,7 +135,8 @@ impl<'a> Accessors<'a> {
                 Ok(made) => made,
                 Err(reason) => {
                     let i = view.index();
-                    let pointer = format!("/bufferViews/{i}/extensions/{}", super::schema::MESHOPT);
+                    let name = compressed.as_ref().map_or("", |own| own.name);
+                    let pointer = format!("/bufferViews/{i}/extensions/{name}");
                     let has_copy = compressed.as_ref().is_some_and(|own| accessors.has_copy(&view, own, &read_copy));
                     match views.get(i) {
                         _ if has_copy => {

@@ -54,9 +54,9 @@ pub(super) fn parse(
     budget: &Budget,
     progress: &Progress,
 ) -> Result<Parsed, GltfError> {
-    let (mut value, blob) = json_and_blob(bytes, budget, progress)?;
-    let Value::Object(root) = &mut value else { return Err(not_gltf("its JSON isn't an object")) };
     let mut notes = Notes::default();
+    let (mut value, blob) = json_and_blob(bytes, budget, &mut notes, progress)?;
+    let Value::Object(root) = &mut value else { return Err(not_gltf("its JSON isn't an object")) };
     check_version(root, &mut notes)?;
     extension_table::check(root, &mut notes)?;
     let requires_draco = extension_table::requires(root, schema::DRACO);
@@ -104,12 +104,14 @@ pub(super) fn parse(
 fn json_and_blob(
     mut bytes: Vec<u8>,
     budget: &Budget,
+    notes: &mut Notes,
     progress: &Progress,
 ) -> Result<(Value, Option<Vec<u8>>), GltfError> {
     if !glb::is_glb(&bytes) {
         return Ok((json::parse(&bytes, budget, progress)?, None));
     }
     let parts = glb::parts(&bytes)?;
+    notes.extend(parts.warning);
     let value = json::parse(&bytes[parts.json], budget, progress)?;
     let Some(bin) = parts.bin else { return Ok((value, None)) };
     // In place, since a copy would take the file's size once more.

@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 
 use super::GltfError;
 use super::notes::Notes;
-use super::schema::{BASISU, DRACO, INSTANCING, MESHOPT, TRANSFORM, VISIBILITY, WEBP};
+use super::schema::{BASISU, DRACO, INSTANCING, KHR_MESHOPT, MESHOPT, TRANSFORM, VISIBILITY, WEBP};
 use crate::load::uri::shown;
 
 /// How an extension changes a model.
@@ -53,13 +53,7 @@ const KNOWN: [(&str, Effect); 49] = [
     ("KHR_implicit_shapes", Effect::None),
     ("KHR_interactivity", Effect::None),
     ("KHR_mesh_quantization", Effect::None),
-    (
-        "KHR_meshopt_compression",
-        shape(
-            "compresses vertices and indices",
-            "decompress the model first, or compress it with EXT_meshopt_compression, for example with gltfpack",
-        ),
-    ),
+    (KHR_MESHOPT, Effect::None),
     ("KHR_node_hoverability", Effect::None),
     ("KHR_node_selectability", Effect::None),
     (VISIBILITY, Effect::None),
@@ -184,9 +178,12 @@ mod tests {
     fn looks_may_be_required_and_shapes_may_not() {
         let fine = ["KHR_materials_fuzz", "EXT_texture_avif", "KHR_xmp_json_ld", "KHR_animation_pointer", DRACO];
         assert_eq!(checked(&json!({ "extensionsRequired": fine })), Ok(Vec::new()));
-        let said = checked(&json!({ "extensionsRequired": ["VRM", "KHR_meshopt_compression"] })).unwrap_err();
-        assert!(said.contains("/extensionsRequired/1 is KHR_meshopt_compression, which compresses vertices"), "{said}");
-        assert!(said.ends_with("for example with gltfpack"), "{said}");
+        let said = checked(&json!({ "extensionsRequired": ["VRM", "KHR_gaussian_splatting"] })).unwrap_err();
+        assert!(
+            said.contains("/extensionsRequired/1 is KHR_gaussian_splatting, which makes splats of points"),
+            "{said}"
+        );
+        assert!(said.ends_with("convert the splats to triangles"), "{said}");
         let said = checked(&json!({ "extensionsRequired": ["A_b"] })).unwrap_err();
         assert!(
             said.contains("A_b, which isn't known, and may change the shape; export the model without it"),

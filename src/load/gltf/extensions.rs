@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, HashMap};
 
 use serde_json::{Map, Value};
 
-use super::reach::list;
-use super::schema::{DRACO, INSTANCING, MESHOPT, is_attribute};
+use super::reach::{compression, list};
+use super::schema::{DRACO, INSTANCING, is_attribute};
 
 /// The data of a document's extensions.
 #[derive(Debug, Default)]
@@ -28,9 +28,11 @@ pub(crate) struct InstancingExtension {
     pub scale: Option<usize>,
 }
 
-/// `EXT_meshopt_compression` of a buffer view.
+/// `EXT_meshopt_compression` or `KHR_meshopt_compression` of a buffer view.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct MeshoptExtension {
+    /// Which of the two it is.
+    pub name: &'static str,
     pub buffer: usize,
     pub offset: u64,
     pub length: u64,
@@ -64,13 +66,14 @@ pub(crate) enum MeshoptFilter {
     Octahedral,
     Quaternion,
     Exponential,
+    Color,
 }
 
 impl Extensions {
     /// Reads the extensions of a document that has been [repaired](super::repair) and [checked](super::schema_check).
     pub(crate) fn of(root: &Map<String, Value>) -> Self {
         let extension = |value: &'_ Value, name: &str| value.get("extensions")?.get(name).cloned();
-        let fallback = |buffer| extension(buffer, MESHOPT)?.get("fallback")?.as_bool();
+        let fallback = |buffer| compression(buffer)?.1.get("fallback")?.as_bool();
         let packed = |primitive: &Value| DracoExtension::of(&extension(primitive, DRACO)?);
         let primitives = |mesh: &Value| -> Vec<_> {
             mesh.get("primitives").and_then(Value::as_array).into_iter().flatten().map(packed).collect()
@@ -79,7 +82,7 @@ impl Extensions {
         Self {
             compressed: list(root, "bufferViews")
                 .iter()
-                .map(|view| MeshoptExtension::of(&extension(view, MESHOPT)?))
+                .map(|view| compression(view).and_then(|(name, value)| MeshoptExtension::of(name, value)))
                 .collect(),
             fallback: list(root, "buffers").iter().map(|buffer| fallback(buffer).unwrap_or(false)).collect(),
             packed: list(root, "meshes").iter().map(primitives).collect(),
@@ -109,10 +112,11 @@ impl DracoExtension {
 }
 
 impl MeshoptExtension {
-    fn of(value: &Value) -> Option<Self> {
+    fn of(name: &'static str, value: &Value) -> Option<Self> {
         let number = |name: &str| value.get(name)?.as_u64();
         let word = |name: &str| value.get(name)?.as_str();
         Some(Self {
+            name,
             buffer: number("buffer")? as usize,
             offset: number("byteOffset").unwrap_or(0),
             length: number("byteLength")?,
@@ -127,6 +131,7 @@ impl MeshoptExtension {
                 Some("OCTAHEDRAL") => MeshoptFilter::Octahedral,
                 Some("QUATERNION") => MeshoptFilter::Quaternion,
                 Some("EXPONENTIAL") => MeshoptFilter::Exponential,
+                Some("COLOR") => MeshoptFilter::Color,
                 _ => MeshoptFilter::None,
             },
         })

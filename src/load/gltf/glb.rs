@@ -17,6 +17,8 @@ pub(super) struct Parts {
     pub json: Range<usize>,
     /// The first binary chunk.
     pub bin: Option<Range<usize>>,
+    /// What is wrong with the lengths, though the parts are whole.
+    pub warning: Option<String>,
 }
 
 /// Returns whether these bytes start like a `.glb`.
@@ -24,7 +26,8 @@ pub(super) fn is_glb(bytes: &[u8]) -> bool {
     bytes.starts_with(b"glTF")
 }
 
-/// Finds the chunks. Chunks of other kinds are ignored, and so are bytes after the length in the header.
+/// Finds the chunks. Chunks of other kinds are ignored, and so are bytes after the length in the header, unless they belong to a chunk
+/// that begins before: some programs count the file without its padding.
 ///
 /// # Errors
 /// [`GltfError::NotGltf`], with the lengths in the headers and in the file.
@@ -43,18 +46,23 @@ pub(super) fn parts(bytes: &[u8]) -> Result<Parts, GltfError> {
     if length < HEADER || length > bytes.len() {
         return Err(fail(format!("its header says that the file has {length} bytes, but it has {}", bytes.len())));
     }
-    let mut chunks = Chunks { bytes: &bytes[..length], next: HEADER, count: 0 };
+    let mut chunks = Chunks { bytes, length, next: HEADER, count: 0 };
     let Some((b"JSON", mut json)) = chunks.next()? else {
         return Err(fail("its first chunk isn't JSON".to_owned()));
     };
     // The padding should be spaces, but some exporters write zeros.
     json.end -= bytes[json.clone()].iter().rev().take_while(|byte| **byte == 0).count();
+    let mut bin = None;
     while let Some((kind, range)) = chunks.next()? {
         if kind == b"BIN\0" {
-            return Ok(Parts { json, bin: Some(range) });
+            bin = Some(range);
+            break;
         }
     }
-    Ok(Parts { json, bin: None })
+    let is_longer = chunks.next > length;
+    let said =
+        || format!("The file's header says that it has {length} bytes, but its parts go on until {}.", chunks.next);
+    Ok(Parts { json, bin, warning: is_longer.then(said) })
 }
 
 /// A chunk's kind, and the range of its data.
@@ -62,6 +70,8 @@ type Chunk<'a> = (&'a [u8; 4], Range<usize>);
 
 struct Chunks<'a> {
     bytes: &'a [u8],
+    /// The length in the header, in bytes.
+    length: usize,
     next: usize,
     count: usize,
 }
@@ -69,19 +79,19 @@ struct Chunks<'a> {
 impl<'a> Chunks<'a> {
     /// Returns the next chunk; none at the end.
     fn next(&mut self) -> Result<Option<Chunk<'a>>, GltfError> {
-        let left = self.bytes.len() - self.next;
+        let left = self.length.saturating_sub(self.next);
         if left == 0 {
             return Ok(None);
         }
         let fail = |reason| Err(GltfError::NotGltf { reason });
         let (i, at) = (self.count, self.next);
-        let Some(kind) = self.bytes[at..].get(4..CHUNK_HEADER).and_then(<[u8]>::first_chunk) else {
+        let Some(kind) = self.bytes[at..self.length].get(4..CHUNK_HEADER).and_then(<[u8]>::first_chunk) else {
             return fail(format!(
                 "chunk {i} ends within its header, which takes {CHUNK_HEADER} bytes: {left} are left"
             ));
         };
         let length = number(self.bytes, at);
-        let left = left - CHUNK_HEADER;
+        let left = self.bytes.len() - at - CHUNK_HEADER;
         if length > left {
             return fail(format!("chunk {i} says that it has {length} bytes, but {left} are left"));
         }

@@ -1,7 +1,7 @@
 //! Decompresses buffer views with meshoptimizer, whose decoders are made for untrusted input.
 //!
-//! Source: Khronos, `EXT_meshopt_compression`,
-//! <https://github.com/KhronosGroup/glTF/tree/main/extensions/2.0/Vendor/EXT_meshopt_compression>.
+//! Sources: Khronos, `EXT_meshopt_compression` and `KHR_meshopt_compression`, whose attributes have a second version and whose filters
+//! are one more, <https://github.com/KhronosGroup/glTF/tree/main/extensions/2.0/Khronos/KHR_meshopt_compression>.
 
 use meshopt::ffi;
 
@@ -60,6 +60,7 @@ pub(super) fn decompress(view: &MeshoptExtension, bytes: &[u8], budget: &Budget)
             MeshoptFilter::Octahedral => ffi::meshopt_decodeFilterOct(to.cast(), count, view.stride),
             MeshoptFilter::Quaternion => ffi::meshopt_decodeFilterQuat(to.cast(), count, view.stride),
             MeshoptFilter::Exponential => ffi::meshopt_decodeFilterExp(to.cast(), count, view.stride),
+            MeshoptFilter::Color => ffi::meshopt_decodeFilterColor(to.cast(), count, view.stride),
         }
     }
     Ok(Decompressed { words, length })
@@ -81,7 +82,7 @@ fn check(view: &MeshoptExtension) -> Result<(), String> {
     let fits = match view.filter {
         MeshoptFilter::None => true,
         _ if view.mode != MeshoptMode::Attributes => false,
-        MeshoptFilter::Octahedral => stride == 4 || stride == 8,
+        MeshoptFilter::Octahedral | MeshoptFilter::Color => stride == 4 || stride == 8,
         MeshoptFilter::Quaternion => stride == 8,
         MeshoptFilter::Exponential => true,
     };

@@ -4,7 +4,9 @@ use std::collections::HashMap;
 
 use serde_json::{Map, Value};
 
-use super::schema::{DRACO, INSTANCING, MESHOPT, VISIBILITY, is_attribute, is_detail, is_displacement, is_placement};
+use super::schema::{
+    DRACO, INSTANCING, KHR_MESHOPT, MESHOPT, VISIBILITY, is_attribute, is_detail, is_displacement, is_placement,
+};
 
 /// How something is used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -242,11 +244,11 @@ impl Reach {
         }
         for (view, found) in list(root, "bufferViews").iter().zip(&self.views) {
             // A compressed view's own buffer is only a fallback, which is read if the compressed data is broken.
-            let source = extension(view, MESHOPT).unwrap_or(view);
-            let copy = index(view, "buffer").filter(|_| extension(view, MESHOPT).is_some() && *found != Use::None);
-            let is_copy = |buffer: &usize| {
-                list(root, "buffers").get(*buffer).is_some_and(|buffer| extension(buffer, MESHOPT).is_some())
-            };
+            let packed = compression(view).map(|(_, packed)| packed);
+            let source = packed.unwrap_or(view);
+            let copy = index(view, "buffer").filter(|_| packed.is_some() && *found != Use::None);
+            let is_copy =
+                |buffer: &usize| list(root, "buffers").get(*buffer).is_some_and(|buffer| compression(buffer).is_some());
             if let Some(buffer) = copy.filter(is_copy) {
                 raise(&mut self.buffers, buffer, Use::Detail);
             }
@@ -319,6 +321,11 @@ fn values<'a>(object: &'a Value, name: &str) -> &'a [Value] {
 fn members<'a>(object: &'a Value, name: &str) -> impl Iterator<Item = (&'a str, &'a Value)> {
     let members = object.get(name).and_then(Value::as_object).into_iter().flatten();
     members.map(|(name, value)| (name.as_str(), value))
+}
+
+/// The extension that compresses a buffer view, or that is about such views on a buffer, with its name.
+pub(super) fn compression(object: &Value) -> Option<(&'static str, &Value)> {
+    [KHR_MESHOPT, MESHOPT].into_iter().find_map(|name| Some((name, extension(object, name)?)))
 }
 
 fn extension<'a>(object: &'a Value, name: &str) -> Option<&'a Value> {

@@ -62,8 +62,10 @@ const fn may(name: &'static str, kind: MemberKind) -> Field {
 /// A number of bytes or elements.
 const COUNT: MemberKind = Whole { least: 0, most: u64::MAX };
 
-/// The extension that compresses buffer views. On a buffer it marks one that is only a fallback.
+/// The extension that compresses buffer views, by its names; the second one has a filter more. On a buffer it marks one that is only
+/// a fallback.
 pub(super) const MESHOPT: &str = "EXT_meshopt_compression";
+pub(super) const KHR_MESHOPT: &str = "KHR_meshopt_compression";
 /// The extension that compresses primitives.
 pub(super) const DRACO: &str = "KHR_draco_mesh_compression";
 /// The extensions that name another image of a texture.
@@ -143,7 +145,7 @@ pub(super) static VIEW: &[Field] = &[
     may("byteOffset", COUNT),
     needed("byteLength", COUNT),
     may("byteStride", Whole { least: 4, most: 252 }),
-    may("extensions", Object(&[may(MESHOPT, Object(COMPRESSED))])),
+    may("extensions", Object(&[may(MESHOPT, Object(COMPRESSED)), may(KHR_MESHOPT, Object(KHR_COMPRESSED))])),
 ];
 
 static COMPRESSED: &[Field] = &[
@@ -156,10 +158,22 @@ static COMPRESSED: &[Field] = &[
     may("filter", Word(&["NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"])),
 ];
 
+static KHR_COMPRESSED: &[Field] = &[
+    needed("buffer", Index("buffers")),
+    may("byteOffset", COUNT),
+    needed("byteLength", COUNT),
+    needed("byteStride", Whole { least: 1, most: 256 }),
+    needed("count", COUNT),
+    needed("mode", Word(&["ATTRIBUTES", "TRIANGLES", "INDICES"])),
+    may("filter", Word(&["NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL", "COLOR"])),
+];
+
+const FALLBACK: MemberKind = Object(&[may("fallback", Flag)]);
+
 pub(super) static BUFFER: &[Field] = &[
     needed("byteLength", COUNT),
     may("uri", Text),
-    may("extensions", Object(&[may(MESHOPT, Object(&[may("fallback", Flag)]))])),
+    may("extensions", Object(&[may(MESHOPT, FALLBACK), may(KHR_MESHOPT, FALLBACK)])),
 ];
 
 /// Returns whether an attribute of a primitive is read.

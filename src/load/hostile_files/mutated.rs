@@ -26,8 +26,13 @@ pub(super) fn originals() -> Vec<(Format, Vec<u8>)> {
     originals.extend((0..3).map(|encoding| (Ply, ply::tests::cube(encoding, 6, 4))));
     originals.extend([off::tests::cube(), off::tests::everything()].map(|text| (Off, text.into_bytes())));
     originals.extend(
-        [threemf::tests::cube(), threemf::tests::everything(), threemf::tests::with_texture()]
-            .map(|file| (ThreeMf, file)),
+        [
+            threemf::tests::cube(),
+            threemf::tests::everything(),
+            threemf::tests::with_texture(),
+            threemf::tests::layers::many_layers(3),
+        ]
+        .map(|file| (ThreeMf, file)),
     );
     originals
 }

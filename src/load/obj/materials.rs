@@ -208,7 +208,9 @@ impl<'a> Materials<'a> {
             self.undescribed += 1;
             return (Material::plain(&shown, [1.0; 4]), Vec::new());
         };
-        let MtlMaterial { color: [r, g, b], emissive, alpha, roughness, metallic, .. } = described;
+        let MtlMaterial { color: [r, g, b], emissive, alpha, transparency, roughness, metallic, .. } = described;
+        // Programs write both, or one of them.
+        let alpha = if alpha == 1.0 { 1.0 - transparency } else { alpha };
         self.bumped += usize::from(described.bump_texture.is_some());
         self.with_normals_as_bumps += usize::from(self.normals_as_bumps.contains(&self.name));
         let strength = described.normal_texture.as_ref().map_or(1.0, |texture| texture.strength);
@@ -306,15 +308,9 @@ impl<'a> Materials<'a> {
         warnings
     }
 
-    /// Reads a file in the OBJ file's folder or below it, under the same rules as a glTF document's URIs. Of an absolute path the
-    /// last name is looked for in the folder.
+    /// Reads a file in the OBJ file's folder or below it, under the same rules as a glTF document's URIs.
     pub(super) fn beside(&self, name: &str) -> Result<Vec<u8>, String> {
-        let name = name.replace('%', "%25").replace('\\', "/");
-        let drive =
-            name.as_bytes().get(..3).is_some_and(|start| start[0].is_ascii_alphabetic() && &start[1..] == b":/");
-        // The path on somebody else's machine doesn't lead anywhere here.
-        let shortened = if drive || name.starts_with('/') { name.rsplit('/').next() } else { None };
-        self.files.read(shortened.unwrap_or(&name), false)
+        self.files.read_path(name)
     }
 }
 

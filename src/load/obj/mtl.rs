@@ -19,6 +19,8 @@ pub(super) struct MtlMaterial {
     pub emissive_texture: Option<MtlTexture>,
     /// d: how opaque it is, 0 to 1.
     pub alpha: f32,
+    /// Tr: how transparent it is, 0 to 1, in files that don't say how opaque it is.
+    pub transparency: f32,
     /// Pr: perceptual roughness, 0 to 1.
     pub roughness: Option<f32>,
     /// Pm: 0 for dielectrics, 1 for metals.
@@ -45,6 +47,7 @@ impl MtlMaterial {
             emissive: [0.0; 3],
             emissive_texture: None,
             alpha: 1.0,
+            transparency: 0.0,
             roughness: None,
             metallic: None,
             opacity_texture: None,
@@ -92,7 +95,8 @@ fn take(material: &mut MtlMaterial, word: &[u8], rest: &[u8]) -> Option<()> {
     match word {
         b"Kd" => material.color = color(rest)?.map(|x| x.clamp(0.0, 1.0)),
         b"Ke" => material.emissive = color(rest)?.map(|x| x.max(0.0)),
-        b"d" => material.alpha = part(rest)?,
+        b"d" => material.alpha = part(rest.strip_prefix(b"-halo").unwrap_or(rest))?,
+        b"Tr" => material.transparency = part(rest)?,
         b"Pr" => material.roughness = Some(part(rest)?),
         b"Pm" => material.metallic = Some(part(rest)?),
         b"map_Kd" => material.texture = Some(texture(rest)),
@@ -172,7 +176,7 @@ mod tests {
     #[test]
     fn colours_and_textures_are_read_and_the_rest_is_not() {
         let text = "# made by hand\r\nKd 1 0 0\r\nnewmtl old wood\r\nNs x\r\nKd 0.5 .25 2\r\nmap_Kd -s 2 3 1 -clamp on \
-                    a b.png\r\nPr 0.25\r\nPm 7\r\nd 0.5\r\nKe 2\r\nmap_Ke -o 0.5 glow.png\r\nnorm -bm 2.5 n.png\r\nmap_bump b.png\r\nmap_d d.png\r\nmap_Pr r.png\r\nmap_Pm m.png\r\nnewmtl plain\r\n\tKd \
+                    a b.png\r\nPr 0.25\r\nPm 7\r\nd -halo 0.5\r\nTr 0.5\r\nKe 2\r\nmap_Ke -o 0.5 glow.png\r\nnorm -bm 2.5 n.png\r\nmap_bump b.png\r\nmap_d d.png\r\nmap_Pr r.png\r\nmap_Pm m.png\r\nnewmtl plain\r\n\tKd \
                     spectral a.rfl\r\nKd 0.5\r\nd\r\n";
         let place = |file: &str| MtlTexture { file: file.to_owned(), ..texture(b"") };
         let wood = MtlMaterial {
@@ -181,6 +185,7 @@ mod tests {
             emissive: [2.0; 3],
             emissive_texture: Some(MtlTexture { offset: [0.5, 0.0], ..place("glow.png") }),
             alpha: 0.5,
+            transparency: 0.5,
             roughness: Some(0.25),
             metallic: Some(1.0),
             normal_texture: Some(MtlTexture { strength: 2.5, ..place("n.png") }),

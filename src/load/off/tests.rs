@@ -132,6 +132,25 @@ fn a_file_that_was_cut_short_shows_its_whole_faces() {
 }
 
 #[test]
+fn a_face_of_a_vertex_that_is_not_in_the_file_costs_that_face() {
+    let mesh = read("OFF\n3 3 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 9\n3 0 1 2\n4 0 1 2 x 255 0 0\n");
+    assert_eq!(mesh.triangles.len(), 1);
+    let said = "2 faces with the number of a position that isn't in the file, the first at line 6; they are left out.";
+    assert!(mesh.warnings.iter().any(|warning| warning == said), "{:?}", mesh.warnings);
+}
+
+#[test]
+fn the_number_of_vertices_may_follow_the_keyword_without_a_space() {
+    for (space, glued) in [("OFF 8 6 12", "OFF8 6 12"), ("COFF\n8 6 12", "COFF8 6 12")] {
+        let text = cube_of(space, nothing, nothing);
+        let text = text.replacen(space, glued, 1);
+        assert_cube(&read(&text));
+        assert!(begins(text.as_bytes()), "{glued}");
+    }
+    assert!(refused("OFFS8 6 12\n").contains("begins with \"OFFS8\" instead of OFF"));
+}
+
+#[test]
 fn what_is_not_read_is_refused_in_a_sentence() {
     assert!(refused("OFF BINARY\n\0\0\0\x08").contains("it is binary OFF, of which only the text form is read"));
     assert!(refused("nOFF\n5\n8 6 12\n").contains("any number of coordinates"));

@@ -1,7 +1,8 @@
 //! Reads the header of a PLY file: which elements follow, and which properties each has.
 
+use super::textures;
 use crate::load::read_error::{FilePosition, ReadError};
-use crate::load::text_lines::{Line, Lines, shown};
+use crate::load::text_lines::{Line, Lines, first_word, shown};
 
 /// How values are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -94,6 +95,8 @@ pub(super) struct Header<'a> {
     pub lines: Lines<'a>,
     /// How many lines of the header aren't part of the format.
     pub other_lines: usize,
+    /// The names of images.
+    pub images: Vec<&'a [u8]>,
 }
 
 /// Reads a header.
@@ -110,13 +113,14 @@ pub(super) fn read(bytes: &[u8]) -> Result<Header<'_>, ReadError> {
     // A binary file may have any bytes after the header, so the header's first line tells how its lines end.
     let of_old_macs = bytes[3] == b'\r' && bytes.get(4) != Some(&b'\n');
     let mut lines = Lines::ending(bytes, if of_old_macs { b'\r' } else { b'\n' });
-    let (mut encoding, mut elements, mut other_lines) = (None, Vec::new(), 0);
+    let (mut encoding, mut elements, mut other_lines, mut images) = (None, Vec::new(), 0, Vec::new());
     lines.next()?;
     while let Some(line) = lines.next()? {
         let mut words = line.words();
         let fault = |reason: String| line.place().error(reason);
         match words.next() {
-            None | Some(b"comment" | b"obj_info") => {}
+            None | Some(b"obj_info") => {}
+            Some(b"comment") => images.extend(textures::named(first_word(line.text).1)),
             Some(b"format") => encoding = Some(format(words.next()).map_err(fault)?),
             Some(b"element") => elements.push(element(&line).map_err(fault)?),
             Some(b"property") => {
@@ -127,7 +131,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Header<'_>, ReadError> {
             }
             Some(b"end_header") => {
                 let encoding = encoding.ok_or_else(|| fault("the header has no format".to_owned()))?;
-                return Ok(Header { encoding, elements, lines, other_lines });
+                return Ok(Header { encoding, elements, lines, other_lines, images });
             }
             Some(_) => other_lines += 1,
         }

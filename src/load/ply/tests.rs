@@ -6,7 +6,11 @@ use super::*;
 use crate::load::face_builder::tests::{POINTS, SIDES, assert_cube};
 
 fn read(bytes: &[u8]) -> LoadedMesh {
-    super::read(bytes.to_vec(), "cube", Import::default(), &Limits::default(), &Progress::new()).unwrap()
+    read_in(Path::new("nowhere"), bytes)
+}
+
+fn read_in(folder: &Path, bytes: &[u8]) -> LoadedMesh {
+    super::read(bytes.to_vec(), folder, "cube", Import::default(), &Limits::default(), &Progress::new()).unwrap()
 }
 
 /// Writes numbers in one of the encodings.
@@ -172,7 +176,7 @@ fn cancelling_stops_the_work() {
     let progress = Progress::new();
     progress.cancel();
     assert!(matches!(
-        super::read(cube(1, 6, 4), "", Import::default(), &Limits::default(), &progress),
+        super::read(cube(1, 6, 4), Path::new("nowhere"), "", Import::default(), &Limits::default(), &progress),
         Err(ReadError::Cancelled(_))
     ));
 }
@@ -194,6 +198,98 @@ fn vertices_may_have_colours_and_faces_texture_coordinates_of_their_own() {
         let uvs: Vec<_> = mesh.corners.iter().map(|corner| corner.uv).collect();
         assert_eq!(uvs, [Vec2::Y, Vec2::ONE, Vec2::new(0.0, 0.75)]);
     }
+}
+
+/// The colours of a mesh, without repetitions.
+fn colors(mesh: &LoadedMesh) -> Vec<[f32; 4]> {
+    let details = mesh.details.as_ref();
+    let mut found: Vec<_> =
+        details.map_or(Vec::new(), |all| all.iter().map(|detail| detail.color.to_array()).collect());
+    found.sort_unstable_by(|a, b| a.partial_cmp(b).expect("numbers"));
+    found.dedup();
+    found
+}
+
+/// Two triangles of a square, with an element for each row.
+fn square(header: &str, vertices: [&str; 4], faces: [&str; 2]) -> String {
+    let at = ["0 0 0", "1 0 0", "1 1 0", "0 1 0"];
+    let vertices: String = at.iter().zip(vertices).map(|(at, own)| format!("{at} {own}\n")).collect();
+    let faces: String = ["3 0 1 2", "3 0 2 3"].iter().zip(faces).map(|(face, own)| format!("{face} {own}\n")).collect();
+    let (images, properties) = header.split_once('|').unwrap_or(("", header));
+    let (of_vertices, of_faces) = properties.split_once('|').unwrap_or(("", properties));
+    format!(
+        "ply\nformat ascii 1.0\n{images}element vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+         {of_vertices}element face 2\nproperty list uchar int vertex_indices\n{of_faces}end_header\n{vertices}{faces}"
+    )
+}
+
+#[test]
+fn faces_may_have_colours_where_vertices_have_none() {
+    for (kind, [red, green]) in [("uchar", ["255 0 0", "0 255 0"]), ("float", ["1 0 0", "0 1.0 0"])] {
+        let of_faces = format!("property {kind} red\nproperty {kind} green\nproperty {kind} blue\n");
+        let mesh = read(square(&of_faces, [""; 4], [red, green]).as_bytes());
+        assert_eq!((mesh.triangles.len(), mesh.corners.len()), (2, 6));
+        assert_eq!(colors(&mesh), [[0.0, 1.0, 0.0, 1.0], [1.0, 0.0, 0.0, 1.0]], "{kind}");
+        let alpha = format!("{of_faces}property {kind} alpha\n");
+        let mesh = read(square(&alpha, [""; 4], [&format!("{red} 0"), &format!("{green} 0")]).as_bytes());
+        assert_eq!(colors(&mesh), [[0.0, 1.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]], "{kind}");
+        let both = format!("|property {kind} red\nproperty {kind} green\nproperty {kind} blue\n|{of_faces}");
+        let mesh = read(square(&both, [green; 4], [red; 2]).as_bytes());
+        assert_eq!(colors(&mesh), [[0.0, 1.0, 0.0, 1.0]], "those of vertices count");
+    }
+}
+
+/// A PNG image of one colour.
+fn image_of(color: [u8; 3]) -> Vec<u8> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    image::RgbImage::from_pixel(1, 1, image::Rgb(color)).write_to(&mut bytes, image::ImageFormat::Png).expect("a PNG");
+    bytes.into_inner()
+}
+
+#[test]
+fn images_that_comments_name_are_shown() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("red rock.png"), image_of([255, 0, 0])).expect("a file");
+    std::fs::write(folder.path().join("b.png"), image_of([0, 0, 255])).expect("a file");
+    let wedge = "property list uchar float texcoord\n";
+    let uvs = "6 0 0 1 0 1 1";
+    let one = format!("comment TextureFile red rock.png\ncomment red\n||{wedge}");
+    let mesh = read_in(folder.path(), square(&one, [""; 4], [uvs; 2]).as_bytes());
+    let shown: Vec<_> =
+        mesh.materials.iter().map(|own| (own.name.as_str(), own.triangles.len(), own.texture.is_some())).collect();
+    assert_eq!(shown, [("red rock.png", 2, true)]);
+    assert_eq!(mesh.files.len(), 1, "{:?}", mesh.files);
+    // Each face has the number of its image, and colours count only where there is none.
+    let rgb = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+    let two = format!(
+        "comment TextureFile C:\\scans\\red rock.png\ncomment TextureFile b.png\n|{rgb}|{wedge}property int texnumber\n"
+    );
+    let faces = [format!("{uvs} 1"), format!("{uvs} -1")];
+    let mesh = read_in(folder.path(), square(&two, ["255 0 0"; 4], [&faces[0], &faces[1]]).as_bytes());
+    let mut shown: Vec<_> =
+        mesh.materials.iter().map(|own| (own.name.as_str(), own.triangles.len(), own.texture.is_some())).collect();
+    shown.retain(|(_, triangles, _)| *triangles > 0);
+    shown.sort_unstable();
+    assert_eq!(shown, [("b.png", 1, true), ("default", 1, false)]);
+    assert_eq!(colors(&mesh), [[1.0, 0.0, 0.0, 1.0], [1.0; 4]]);
+    // Texture coordinates of vertices show the first one.
+    let of_vertices = "comment TextureFile b.png\n|property float s\nproperty float t\n|";
+    let mesh = read_in(folder.path(), square(of_vertices, ["0 0"; 4], [""; 2]).as_bytes());
+    assert!(mesh.materials.iter().any(|own| own.texture.is_some()), "{:?}", mesh.materials);
+}
+
+#[test]
+fn an_image_that_is_missing_costs_a_warning_and_one_without_coordinates_nothing() {
+    let missing = "comment TextureFile none.png\n||property list uchar float texcoord\n";
+    let mesh = read(square(missing, [""; 4], ["6 0 0 1 0 1 1"; 2]).as_bytes());
+    assert_eq!(mesh.triangles.len(), 2);
+    assert!(
+        mesh.warnings.iter().any(|said| said.starts_with("the texture \"none.png\" is left out: ")),
+        "{:?}",
+        mesh.warnings
+    );
+    let mesh = read(square("comment TextureFile none.png\n||", [""; 4], [""; 2]).as_bytes());
+    assert_eq!(mesh.warnings.len(), 1, "{:?}", mesh.warnings);
 }
 
 /// A file of `triangles` triangles and a few quads, some of whose vertices can't be used as they are: with numbers that the file

@@ -116,6 +116,15 @@ impl<'a> Archive<'a> {
         models.fold(0, |sum, entry| sum.saturating_add(entry.unpacked))
     }
 
+    /// Whether there is a part of this name, as [`open`](Self::open) finds it.
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.entry(name.trim_start_matches('/')).is_some()
+    }
+
+    fn entry(&self, name: &str) -> Option<&Entry> {
+        self.entries.iter().find(|entry| entry.name.eq_ignore_ascii_case(name))
+    }
+
     /// Opens a part by its name, whatever its case, with or without the slash that it begins with. Returns none if there is none of
     /// this name.
     ///
@@ -123,9 +132,7 @@ impl<'a> Archive<'a> {
     /// [`ReadError::Broken`], and [`ReadError::TooLarge`] for one that would unpack to too much.
     pub(super) fn open(&self, name: &str) -> Result<Option<Unpacked<'_>>, ReadError> {
         let name = name.trim_start_matches('/');
-        let Some(entry) = self.entries.iter().find(|entry| entry.name.eq_ignore_ascii_case(name)) else {
-            return Ok(None);
-        };
+        let Some(entry) = self.entry(name) else { return Ok(None) };
         let total = self.unpacked.get().saturating_add(entry.unpacked);
         if total > self.most {
             let (total, most) = (total.div_ceil(1 << 20), self.most >> 20);

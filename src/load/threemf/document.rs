@@ -162,13 +162,20 @@ fn root(archive: &Archive, notes: &mut Notes) -> Result<String, ReadError> {
         });
         notes.extend(read.err().map(|error| error.to_string()));
     }
-    if let Some(target) = target {
+    if let Some(target) = target.take_if(|target| archive.has(target)) {
         return Ok(target);
     }
     let model = archive.names().find(|name| name.to_ascii_lowercase().ends_with(".model"));
     if let Some(name) = model {
-        notes.push(format!("The archive doesn't say which part is its model, so {} is shown.", shown(name)));
+        let said = match &target {
+            Some(target) => format!("says that its model is {}, which isn't there", shown(target)),
+            None => "doesn't say which part is its model".to_owned(),
+        };
+        notes.push(format!("The archive {said}, so {} is shown.", shown(name)));
         return Ok(name.to_owned());
+    }
+    if let Some(target) = target {
+        return Ok(target);
     }
     let known = archive.names().find(|name| Format::of_name(Path::new(name)).is_some());
     let first = known.or(archive.names().find(|name| !name.ends_with('/'))).unwrap_or("none");

@@ -4,8 +4,9 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::rc::Rc;
 
-use glam::{DAffine3, DMat3, DVec3, Vec3};
+use glam::{DAffine3, DMat3, DVec3, Vec3, Vec4};
 
+use super::properties::{Composites, Group, LayerFaults, MultiProperties};
 use super::texture2d::Texture2d;
 use super::xml::{Element, Step};
 use super::{broken, too_large};
@@ -140,20 +141,6 @@ pub(super) struct Placed {
     pub transform: DAffine3,
 }
 
-/// A group of properties.
-pub(super) enum Group {
-    /// Materials, with their names and colours.
-    Materials(Vec<(String, [u8; 4])>),
-    Colors(Vec<[u8; 4]>),
-    /// Coordinates of a texture, with its number in the part; v counts from the bottom.
-    Texture {
-        texture: u32,
-        coordinates: Vec<[f32; 2]>,
-    },
-    /// Mixtures and layers, which aren't read.
-    Other,
-}
-
 /// The elements that mean something, by where they stand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
@@ -179,7 +166,10 @@ enum Kind {
     Texture,
     Coordinates,
     Coordinate,
-    OtherGroup,
+    Composites,
+    Composite,
+    Layers,
+    LayersEntry,
     Ignored,
 }
 
@@ -198,7 +188,10 @@ impl Kind {
             (Self::Resources, b"texture2d") => Self::Texture,
             (Self::Resources, b"texture2dgroup") => Self::Coordinates,
             (Self::Coordinates, b"tex2coord") => Self::Coordinate,
-            (Self::Resources, b"compositematerials" | b"multiproperties") => Self::OtherGroup,
+            (Self::Resources, b"compositematerials") => Self::Composites,
+            (Self::Composites, b"composite") => Self::Composite,
+            (Self::Resources, b"multiproperties") => Self::Layers,
+            (Self::Layers, b"multi") => Self::LayersEntry,
             (Self::Object, b"mesh") => Self::Mesh,
             (Self::Object, b"components") => Self::Components,
             (Self::Object, b"metadatagroup") => Self::Ignored,
@@ -219,6 +212,9 @@ impl Kind {
 struct Counts {
     repeated: usize,
     bad_colors: usize,
+    absent_constituents: usize,
+    bad_shares: usize,
+    layers: LayerFaults,
 }
 
 /// Collects what a part has from its tags.
@@ -274,7 +270,9 @@ impl<'a> ModelReader<'a> {
             Step::Close => {
                 match self.open.pop() {
                     Some(Kind::Object) => self.end_object(),
-                    Some(Kind::Materials | Kind::Colors | Kind::Coordinates | Kind::OtherGroup) => self.end_group(),
+                    Some(Kind::Materials | Kind::Colors | Kind::Coordinates | Kind::Composites | Kind::Layers) => {
+                        self.end_group()
+                    }
                     _ => {}
                 }
                 Ok(())
@@ -300,7 +298,10 @@ impl<'a> ModelReader<'a> {
             Kind::Shape => self.unread(|unread| unread.shape = true),
             Kind::Materials => self.begin_group(element, Group::Materials(Vec::new()))?,
             Kind::Colors => self.begin_group(element, Group::Colors(Vec::new()))?,
-            Kind::OtherGroup => self.begin_group(element, Group::Other)?,
+            Kind::Composites => self.begin_composites(element)?,
+            Kind::Composite => self.composite(element)?,
+            Kind::Layers => self.begin_layers(element)?,
+            Kind::LayersEntry => self.layers_entry(element)?,
             Kind::Texture => self.texture(element)?,
             Kind::Coordinates => {
                 // A texture without a number is one that isn't there.
@@ -536,6 +537,41 @@ impl<'a> ModelReader<'a> {
         Ok(())
     }
 
+    /// Begins mixtures of materials, which stand before them in the file (core specification, chapter 3.4).
+    fn begin_composites(&mut self, element: &Element) -> Result<(), ReadError> {
+        let words = element.attribute(b"matindices").map_or(0, |text| words(&text).count());
+        self.geometry.hold(3 * (words * size_of::<Option<Vec4>>()) as u64, self.budget)?;
+        let materials = element.number(b"matid").and_then(|id| self.part.groups.get(&id));
+        let composites = Composites::of(element, materials);
+        self.found.absent_constituents += composites.absent();
+        self.begin_group(element, Group::Composites(composites))
+    }
+
+    fn composite(&mut self, element: &Element) -> Result<(), ReadError> {
+        if let Some((_, Group::Composites(composites))) = &mut self.group {
+            self.geometry.hold(3 * size_of::<Vec4>() as u64, self.budget)?;
+            let (color, bad) = composites.mixed(&element.text(b"values").unwrap_or_default());
+            composites.colors.push(color);
+            self.found.bad_shares += bad;
+        }
+        Ok(())
+    }
+
+    fn begin_layers(&mut self, element: &Element) -> Result<(), ReadError> {
+        let (layers, LayerFaults { beyond, methods }) = MultiProperties::of(element);
+        self.found.layers.beyond += beyond;
+        self.found.layers.methods += methods;
+        self.begin_group(element, Group::Layers(layers))
+    }
+
+    fn layers_entry(&mut self, element: &Element) -> Result<(), ReadError> {
+        if let Some((_, Group::Layers(layers))) = &mut self.group {
+            self.geometry.hold(3 * (layers.layers.len() * size_of::<u32>()) as u64, self.budget)?;
+            layers.push(&element.text(b"pindices").unwrap_or_default());
+        }
+        Ok(())
+    }
+
     /// Returns the part, and says what was left out.
     ///
     /// # Errors
@@ -544,10 +580,14 @@ impl<'a> ModelReader<'a> {
         if !self.is_model {
             return Err(self.broken("it isn't a 3MF model: its first element isn't called \"model\""));
         }
-        let Counts { repeated, bad_colors } = self.found;
+        let Counts { repeated, bad_colors, absent_constituents, bad_shares, layers } = self.found;
         self.notes.extend(crate::load::face_builder::counted([
             (repeated, "objects with the id of another, left out"),
             (bad_colors, "colours that aren't #RRGGBB or #RRGGBBAA, replaced by white"),
+            (absent_constituents, "materials of mixtures that aren't in the file, left out of them"),
+            (bad_shares, "shares of materials in mixtures that aren't numbers from 0 on, replaced by 0"),
+            (layers.beyond, "layers of properties beyond the first 16, left out"),
+            (layers.methods, "ways to blend layers that are neither mix nor multiply, replaced by mix"),
         ]));
         Ok(self.part)
     }

@@ -2,21 +2,23 @@
 
 use std::collections::HashMap;
 
-use glam::{DAffine3, DMat3, DVec3, Vec2, Vec4};
+use glam::{DAffine3, DMat3, DVec3};
 
 use super::document::{Document, ObjectAt};
-use super::model::{Group, Object, Part, Placed, Triangle, TriangleLook};
-use super::texture2d::Texture2d;
+use super::images::Images;
+use super::looks::{Faults, Looks, Resolved};
+use super::mixtures::Textured;
+use super::model::{Object, Placed, Triangle};
+use super::properties::Group;
 use super::{broken, too_large};
-use crate::load::face_builder::{FaceBuilder, NumberedCorner, counted, linear_color};
+use crate::load::face_builder::{FaceBuilder, NumberedCorner, counted};
 use crate::load::import::Import;
 use crate::load::memory_budget::{Budget, edge_bytes};
 use crate::load::notes::Notes;
 use crate::load::read_error::{FilePosition, ReadError};
+use crate::mesh::MemoryAccount;
 use crate::mesh::build_limits::MAX_TRIANGLES;
 use crate::mesh::mesh_builder::InputCorner;
-use crate::mesh::{Alpha, Material, MemoryAccount};
-use crate::names::shown;
 use crate::progress::Progress;
 
 /// How deep components may be nested.
@@ -25,20 +27,12 @@ const MAX_NESTING: usize = 64;
 /// How many triangles are placed before the job asks whether it was cancelled.
 const TRIANGLES: u64 = 4096;
 
-/// A material that shows an image of the archive.
-pub(super) struct Textured {
-    /// Its index in the [`FaceBuilder`].
-    pub material: usize,
-    /// The image's name in the archive.
-    pub path: String,
-}
-
 /// Places everything that the build has, or all objects if it has nothing. Also returns which materials show images.
 ///
 /// # Errors
 /// [`ReadError`].
 pub(super) fn place<'a>(
-    document: &Document,
+    (document, images): (&Document, &Images),
     import: &Import,
     budget: &'a Budget,
     progress: &Progress,
@@ -59,9 +53,12 @@ pub(super) fn place<'a>(
     budget.release(least);
     let mut faces = FaceBuilder::new(usize::try_from(budget.files()).unwrap_or(usize::MAX), budget).importing(*import);
     faces.expect(usize::try_from(total).unwrap_or(usize::MAX), document.geometry.vertices.len());
-    let has_colors =
-        |part: &Part| part.groups.values().any(|group| matches!(group, Group::Colors(colors) if !colors.is_empty()));
-    if document.parts.iter().any(has_colors) {
+    let colors = |group: &Group| match group {
+        Group::Colors(colors) => !colors.is_empty(),
+        Group::Composites(_) | Group::Layers(_) => true,
+        Group::Materials(_) | Group::Texture { .. } => false,
+    };
+    if document.parts.iter().any(|part| part.groups.values().any(colors)) {
         faces.color();
     }
     let root = of_file(document, import);
@@ -69,12 +66,9 @@ pub(super) fn place<'a>(
         document,
         counted: &counter.counted,
         faces,
-        materials: HashMap::new(),
-        with_textures: HashMap::new(),
-        textured: Vec::new(),
-        plain: None,
+        looks: Looks::new(document, images),
         corners: Vec::new(),
-        found: Counts::default(),
+        found: Faults::default(),
         progress,
         done: 0,
         total,
@@ -85,7 +79,7 @@ pub(super) fn place<'a>(
     notes.extend(counted([(counter.missing, "components and items whose object isn't in the file, left out")]));
     notes.extend(unread(document, counter.counted.keys()));
     notes.extend(placer.found.warnings());
-    Ok((placer.faces, placer.textured))
+    Ok((placer.faces, placer.looks.into_textured()))
 }
 
 /// Turns axes so that Y points up in place of Z, and scales the file's unit to metres, unless another axis or unit was chosen.
@@ -164,60 +158,13 @@ fn unread<'o>(document: &Document, shown: impl Iterator<Item = &'o ObjectAt>) ->
     ])
 }
 
-/// Numbers of triangles that are shown without their properties.
-#[derive(Default)]
-struct Counts {
-    /// Their properties are of a kind that isn't read.
-    other: usize,
-    /// Their properties aren't in the file.
-    absent: usize,
-    /// They go on where their texture ends.
-    beyond: usize,
-}
-
-impl Counts {
-    fn warnings(&self) -> impl Iterator<Item = String> + use<> {
-        counted([
-            (self.other, "triangles with mixtures or layers of properties, which aren't read"),
-            (self.absent, "triangles whose material, colour or texture coordinates aren't in the file, shown without"),
-            (
-                self.beyond,
-                "triangles that go on where their texture ends (tile style none), which show its border there",
-            ),
-        ])
-    }
-}
-
-/// The material of a triangle, the numbers of its corners' colours, and their texture coordinates.
-#[derive(Clone, Copy)]
-struct Resolved {
-    material: usize,
-    numbers: [u32; 3],
-    uvs: [Vec2; 3],
-    fault: Option<Fault>,
-}
-
-/// Why a triangle is shown without its properties, or not as the file means it.
-#[derive(Clone, Copy)]
-enum Fault {
-    Other,
-    Absent,
-    Beyond,
-}
-
 struct Placer<'d, 'a> {
     document: &'d Document,
     counted: &'d HashMap<ObjectAt, Option<u64>>,
     faces: FaceBuilder<'a>,
-    /// Materials that are used, by part, group and entry.
-    materials: HashMap<(usize, u32, u32), usize>,
-    /// Materials with a texture, by part and texture.
-    with_textures: HashMap<(usize, u32), usize>,
-    textured: Vec<Textured>,
-    /// The material of triangles without one.
-    plain: Option<usize>,
+    looks: Looks<'d>,
     corners: Vec<NumberedCorner>,
-    found: Counts,
+    found: Faults,
     progress: &'d Progress,
     done: u64,
     total: u64,
@@ -248,15 +195,10 @@ impl Placer<'_, '_> {
             let Some(&Triangle { corners, look }) = self.document.geometry.triangles.get(i) else { continue };
             let resolved = match last {
                 Some((number, resolved)) if number == look => resolved,
-                _ => self.resolve(at.0, object, look)?,
+                _ => self.looks.resolve(&mut self.faces, at.0, object, look)?,
             };
             last = Some((look, resolved));
-            match resolved.fault {
-                Some(Fault::Other) => self.found.other += 1,
-                Some(Fault::Absent) => self.found.absent += 1,
-                Some(Fault::Beyond) => self.found.beyond += 1,
-                None => {}
-            }
+            self.found.count(resolved.fault);
             self.corners.clear();
             for ((corner, number), uv) in corners.into_iter().zip(resolved.numbers).zip(resolved.uvs) {
                 let vertex = object.vertices.clone().nth(corner as usize);
@@ -279,97 +221,5 @@ impl Placer<'_, '_> {
             self.faces.add(resolved.material, &mut self.corners, FilePosition::Everywhere)?;
         }
         Ok(())
-    }
-
-    /// Finds a triangle's material and colours (core specification, section 4.1.4.1).
-    fn resolve(&mut self, part: usize, object: &Object, look: u32) -> Result<Resolved, ReadError> {
-        let own = (look as usize).checked_sub(1).and_then(|look| self.document.geometry.looks.get(look));
-        let own = own.copied().unwrap_or(TriangleLook { group: None, entries: [None; 3] });
-        // The group counts for nothing without the first entry.
-        let (group, first) = match own.entries[0] {
-            Some(first) => (own.group.or(object.group), Some(first)),
-            None => (object.group, object.entry),
-        };
-        let Some((group, first)) = group.zip(first) else { return self.unpainted(None) };
-        match self.document.parts[part].groups.get(&group) {
-            Some(Group::Materials(materials)) => match materials.get(first as usize) {
-                Some((name, color)) => {
-                    let material = self.material((part, group, first), name, *color)?;
-                    let number = self.faces.number(Vec4::ONE)?;
-                    Ok(Resolved { material, numbers: [number; 3], uvs: [Vec2::ZERO; 3], fault: None })
-                }
-                None => self.unpainted(Some(Fault::Absent)),
-            },
-            Some(Group::Colors(colors)) => {
-                let mut numbers = [0; 3];
-                for (number, entry) in numbers.iter_mut().zip(own.of_corners(first)) {
-                    let Some(color) = colors.get(entry as usize) else {
-                        return self.unpainted(Some(Fault::Absent));
-                    };
-                    *number = self.faces.number(linear_color(*color))?;
-                }
-                Ok(Resolved { material: self.plain()?, numbers, uvs: [Vec2::ZERO; 3], fault: None })
-            }
-            Some(Group::Texture { texture, coordinates }) => {
-                let uvs = own.of_corners(first).map(|entry| coordinates.get(entry as usize).copied());
-                match (self.document.parts[part].textures.get(texture), uvs) {
-                    (Some(shown), [Some(a), Some(b), Some(c)]) => self.textured((part, *texture), shown, [a, b, c]),
-                    _ => self.unpainted(Some(Fault::Absent)),
-                }
-            }
-            Some(Group::Other) => self.unpainted(Some(Fault::Other)),
-            None => self.unpainted(Some(Fault::Absent)),
-        }
-    }
-
-    fn unpainted(&mut self, fault: Option<Fault>) -> Result<Resolved, ReadError> {
-        let number = self.faces.number(Vec4::ONE)?;
-        Ok(Resolved { material: self.plain()?, numbers: [number; 3], uvs: [Vec2::ZERO; 3], fault })
-    }
-
-    /// A triangle with these texture coordinates, whose v counts from the bottom.
-    fn textured(&mut self, key: (usize, u32), texture: &Texture2d, uvs: [[f32; 2]; 3]) -> Result<Resolved, ReadError> {
-        let material = match self.with_textures.get(&key) {
-            Some(known) => *known,
-            None => {
-                let name = if texture.name().is_empty() { format!("texture {}", key.1) } else { shown(texture.name()) };
-                let plain = Material::plain(&name, [1.0; 4]);
-                let material = self.faces.material(Material { sampling: texture.sampling, ..plain })?;
-                self.with_textures.insert(key, material);
-                self.textured.push(Textured { material, path: texture.path.clone() });
-                material
-            }
-        };
-        let fault = uvs.iter().any(|uv| texture.leaves(*uv)).then_some(Fault::Beyond);
-        let number = self.faces.number(Vec4::ONE)?;
-        Ok(Resolved { material, numbers: [number; 3], uvs: uvs.map(|[u, v]| Vec2::new(u, 1.0 - v)), fault })
-    }
-
-    fn plain(&mut self) -> Result<usize, ReadError> {
-        if let Some(plain) = self.plain {
-            return Ok(plain);
-        }
-        let plain = self.faces.material(Material::plain("default", [1.0; 4]))?;
-        self.plain = Some(plain);
-        Ok(plain)
-    }
-
-    fn material(&mut self, key: (usize, u32, u32), name: &str, color: [u8; 4]) -> Result<usize, ReadError> {
-        if let Some(known) = self.materials.get(&key) {
-            return Ok(*known);
-        }
-        let mut color = linear_color(color);
-        // Some programs write 0 for materials that are meant to be seen.
-        if color.w == 0.0 {
-            color.w = 1.0;
-        }
-        let name = if name.is_empty() { format!("material {}", key.2) } else { shown(name) };
-        let mut material = Material::plain(&name, color.to_array());
-        if color.w < 1.0 {
-            material.look.alpha = Alpha::Blend;
-        }
-        let index = self.faces.material(material)?;
-        self.materials.insert(key, index);
-        Ok(index)
     }
 }

@@ -3,6 +3,8 @@
 #[path = "../../../tests/documents/package.rs"]
 pub(crate) mod package;
 
+pub(in crate::load) mod layers;
+
 use glam::Vec3;
 
 use super::*;

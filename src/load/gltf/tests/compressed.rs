@@ -4,7 +4,7 @@
 use ::meshopt as encoder;
 
 use super::*;
-use crate::load::gltf::schema::MESHOPT;
+use crate::load::gltf::schema::{KHR_MESHOPT, MESHOPT};
 
 /// The number of points along a side of the grid.
 const SIDE: u16 = 9;
@@ -84,6 +84,35 @@ fn a_compressed_grid_is_the_plain_one() {
     assert!(mesh.warnings.iter().all(|said| said.contains("length isn't 1")), "{:?}", mesh.warnings);
     let glb = read_bytes(&grid().glb()).unwrap();
     assert_eq!(glb.corners, mesh.corners);
+}
+
+/// The extension of Khronos has a filter of colours, and another version of the stream.
+#[test]
+fn colours_are_read_from_the_newer_extension() {
+    let mut draft = triangle();
+    let colors = [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.5]];
+    let filtered: Vec<[u8; 4]> = encoder::encode_filter_color(&colors, 8);
+    let encoded = encoder::encode_vertex_buffer_level(&filtered, 2, Some(1)).unwrap();
+    assert_eq!(encoded[0], 0xa1, "version 1");
+    let view = add(&mut draft, &encoded, 4, 12, "ATTRIBUTES", "COLOR");
+    let color = accessor(&mut draft, view, 5121, "VEC4", 3, true);
+    draft.root["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(color);
+    finish(&mut draft);
+    let text = |draft: &Draft| draft.document().to_string();
+    let newer = text(&draft).replace(MESHOPT, KHR_MESHOPT);
+    let mesh = read_bytes(newer.as_bytes()).expect("a document without a fault");
+    assert!(mesh.warnings.is_empty(), "{:?}", mesh.warnings);
+    let details = mesh.details.as_ref().expect("colours");
+    let found: Vec<_> = (0..3).map(|i| details[i].color).collect();
+    for color in colors {
+        assert!(found.iter().any(|own| own.distance(color.into()) < 0.01), "{found:?}");
+    }
+    // The other one doesn't have that filter.
+    let refused = read_bytes(text(&draft).as_bytes()).map(|mesh| mesh.warnings.clone());
+    let said = refused.unwrap_or_else(|error| vec![error.to_string()]);
+    assert!(said.iter().any(|said| said.contains("EXT_meshopt_compression/filter")), "{said:?}");
+    let grid = text(&grid()).replace(MESHOPT, KHR_MESHOPT);
+    assert_eq!(read_bytes(grid.as_bytes()).expect("a grid").triangles.len(), triangles().len() / 3);
 }
 
 /// A grid whose compressed positions are broken, and which has a copy of them.

@@ -124,6 +124,17 @@ fn containers() -> Vec<Odd> {
     longer.extend([0; 7]);
     vec![
         of("a .glb with bytes after its end", longer, 1, ""),
+        of(
+            "a .glb whose header leaves out its last four bytes",
+            {
+                let mut short = triangle().glb();
+                let length = (short.len() as u32 - 4).to_le_bytes();
+                short[8..12].copy_from_slice(&length);
+                short
+            },
+            1,
+            "header says that it has 536 bytes | until 540",
+        ),
         of("a .glb whose JSON ends with zero bytes", glb(&[padded(0), vec![0; 4]].concat(), &[bin]), 1, ""),
         of("a .glb whose JSON isn't padded", glb(root.to_string().as_bytes(), &[bin]), 1, ""),
         of(

@@ -37,6 +37,12 @@ pub(super) fn files() -> Vec<Odd> {
 fn texts() -> Vec<Odd> {
     vec![
         of("text in capitals", WHOLE.to_uppercase(), 1, ""),
+        of(
+            "notes before the solid",
+            format!("\n# exported by hand\nunits mm\n{WHOLE}"),
+            1,
+            "aren't part of the format | 2",
+        ),
         with("words in mixed case", "facet normal", "Facet Normal", ""),
         of("text with line ends of Windows", WHOLE.replace('\n', "\r\n"), 1, ""),
         of("text with line ends of old Macs", WHOLE.replace('\n', "\r"), 1, ""),

@@ -14,6 +14,14 @@ fn ply(part: &str, by: &str) -> String {
     text.replacen(part, by, 1)
 }
 
+/// The same with images that comments name, texture coordinates, and the number of its image.
+fn textured(comments: &str, image: &str) -> String {
+    let lists = "property list uchar int vertex_indices\nproperty list uchar float texcoord\nproperty uint texnumber\n";
+    let text = ply("property list uchar int vertex_indices\n", lists)
+        .replace("3 0 1 2\n", &format!("3 0 1 2 6 0 0 1 0 0 1 {image}\n"));
+    text.replacen("element vertex", &format!("{comments}element vertex"), 1)
+}
+
 /// The same in binary, with other counts of vertices and of the face's corners, and then these bytes.
 fn binary(vertices: &str, count: u32, rest: &[u8]) -> Cow<'static, [u8]> {
     let header = format!(
@@ -56,6 +64,17 @@ pub(super) fn cases() -> Vec<Case> {
         case(Ply, ply("list uchar", "list float"), Repaired(1, "vertices without normals")),
         case(Ply, ply("end_header", "endheader"), Refused("Broken | line 13 | header")),
         case(Ply, ply("format", "made by hand\nformat"), Repaired(1, "lines of the header | 1")),
+        case(
+            Ply,
+            ply("end_header", &format!("{}end_header", "comment TextureFile ../a.png\n".repeat(300))),
+            Repaired(1, "images beyond the first 256 | 44"),
+        ),
+        case(Ply, textured("comment TextureFile ../../etc/passwd\n", "0"), Repaired(1, "../../etc/passwd | left out")),
+        case(
+            Ply,
+            textured(&"comment TextureFile a.png\n".repeat(2), "4294967295"),
+            Repaired(1, "vertices without normals"),
+        ),
         case(Ply, ply("float z", "float w"), Refused("Broken | line 9 | x, y and z")),
         case(Ply, ply("vertex_indices", "corners"), Refused("Broken | line 12 | \"face\" | \"vertex_indices\"")),
         case(

@@ -3,6 +3,7 @@
 use super::Gets::{Refused, Repaired};
 use super::{Case, Gets};
 use crate::load::Format::ThreeMf;
+use crate::load::threemf::tests::layers::many_layers;
 use crate::load::threemf::tests::package::{Entry, MODEL, model, package, relationships, zip};
 use crate::load::threemf::tests::{png, textured};
 
@@ -58,6 +59,14 @@ pub(super) fn cases() -> Vec<(&'static str, Case)> {
             "relationships to a part that isn't there",
             zip(&[Entry::stored("_rels/.rels", relationships().as_bytes())]),
             Refused("Broken | 3D/3dmodel.model | isn't there"),
+        ),
+        case(
+            "relationships to a part that isn't there, beside a model",
+            zip(&[
+                Entry::stored("_rels/.rels", relationships().replace("/3D/", "./3D/").as_bytes()),
+                Entry::stored(MODEL, model(&format!("<object id=\"1\">{TRIANGLE}</object>"), ITEM).as_bytes()),
+            ]),
+            Repaired(1, "its model is ./3D/3dmodel.model | 3D/3dmodel.model is shown"),
         ),
         case("a method of 2006", with_model(Entry { method: 12, ..own() }), Refused("Broken | method 12")),
         case("damaged data", with_model(Entry { packed: vec![0xff; 100], ..own() }), Refused("Broken | damaged")),
@@ -148,6 +157,7 @@ pub(super) fn cases() -> Vec<(&'static str, Case)> {
     ];
     cases.extend(shapes());
     cases.extend(textures());
+    cases.extend(layers());
     cases
 }
 
@@ -222,11 +232,6 @@ fn shapes() -> Vec<(&'static str, Case)> {
                  <object pid=\"4\" pindex=\"0\"",
             ),
             Repaired(1, "texture coordinates | 1"),
-        ),
-        case(
-            "layers of properties",
-            replaced("<object", "<m:multiproperties id=\"4\" pids=\"3\"/><object pid=\"4\" pindex=\"0\""),
-            Repaired(1, "layers | 1"),
         ),
         case("beams", replaced("</mesh>", "<b:beamlattice/></mesh>"), Repaired(1, "beams | 1")),
         case("slices", replaced("<object", "<object slicestackid=\"7\""), Repaired(1, "slices | 1")),
@@ -304,4 +309,88 @@ fn textures() -> Vec<(&'static str, Case)> {
             Repaired(1, "uvs that aren't finite | 3"),
         ),
     ]
+}
+
+/// What is wrong with layers and mixtures. What is left of them is shown.
+fn layers() -> Vec<(&'static str, Case)> {
+    let painted = |resources: &str| {
+        let object = "<object pid=\"9\" pindex=\"0\"";
+        replaced(
+            "<object",
+            &format!(
+                "<basematerials id=\"1\"><base name=\"PLA\" displaycolor=\"#FF0000\"/></basematerials>\
+                 <m:colorgroup id=\"2\"><m:color color=\"#00FF0080\"/></m:colorgroup>{resources}{object}"
+            ),
+        )
+    };
+    let of = |attributes: &str| {
+        painted(&format!("<m:multiproperties id=\"9\" {attributes}><m:multi pindices=\"0 0\"/></m:multiproperties>"))
+    };
+    let mixed = |attributes: &str| {
+        painted(&format!(
+            "<m:compositematerials id=\"9\" {attributes}><m:composite values=\"0.5 0.5\"/></m:compositematerials>"
+        ))
+    };
+    let absent = "material, colour or texture coordinates | 1";
+    let rows = [
+        ("layers without an entry", painted("<m:multiproperties id=\"9\" pids=\"1 2\"/>"), absent),
+        ("an entry without layers", of(""), absent),
+        ("a layer that isn't there", of("pids=\"1 7\""), absent),
+        ("a layer that isn't a number", of("pids=\"1 two\""), absent),
+        (
+            "an entry of a layer that isn't there",
+            {
+                let entry = "<m:multi pindices=\"0 5\"/>";
+                painted(&format!("<m:multiproperties id=\"9\" pids=\"1 2\">{entry}</m:multiproperties>"))
+            },
+            absent,
+        ),
+        (
+            "a negative entry of a layer",
+            {
+                let entry = "<m:multi pindices=\"-1 0\"/>";
+                painted(&format!("<m:multiproperties id=\"9\" pids=\"1 2\">{entry}</m:multiproperties>"))
+            },
+            absent,
+        ),
+        ("layers that have themselves as a layer", of("pids=\"9 9\""), "layers themselves | 1"),
+        ("a way to blend that isn't one", of("pids=\"1 2\" blendmethods=\"add\""), "neither mix nor multiply | 1"),
+        ("100,000 layers", of(&format!("pids=\"{}\"", "2 ".repeat(100_000))), "beyond the first 16 | 99984"),
+        ("10,000 colours below a translucent texture", many_layers(10_000), "more than 64 images | 9936"),
+        ("a mixture of a group that isn't there", mixed("matid=\"7\" matindices=\"0 0\""), "materials of mixtures | 2"),
+        ("a mixture of colours", mixed("matid=\"2\" matindices=\"0\""), "materials of mixtures | 1"),
+        (
+            "a mixture of a material that isn't there",
+            mixed("matid=\"1\" matindices=\"0 4\""),
+            "materials of mixtures | 1",
+        ),
+        (
+            "a mixture that isn't there",
+            painted("<m:compositematerials id=\"9\" matid=\"1\" matindices=\"0\"/>"),
+            absent,
+        ),
+        (
+            "shares that aren't numbers",
+            {
+                let composite = "<m:composite values=\"nan -1 1e99\"/>";
+                let attributes = "matid=\"1\" matindices=\"0 0 0\"";
+                painted(&format!("<m:compositematerials id=\"9\" {attributes}>{composite}</m:compositematerials>"))
+            },
+            "shares | 3",
+        ),
+        (
+            "layers of an image that isn't there",
+            {
+                let texture = "<m:texture2d id=\"3\" path=\"/a.png\"/><m:texture2dgroup id=\"4\" texid=\"3\">\
+                 <m:tex2coord u=\"0\" v=\"0\"/></m:texture2dgroup>";
+                let layers = "<m:multiproperties id=\"9\" pids=\"1 4\"><m:multi/></m:multiproperties>";
+                painted(&format!("{texture}{layers}"))
+            },
+            "/a.png | isn't in the archive",
+        ),
+    ];
+    let triangles = |name: &str| if name.starts_with("10,000") { 10_000 } else { 1 };
+    rows.into_iter()
+        .map(|(name, bytes, parts)| (name, (ThreeMf, bytes.into(), Repaired(triangles(name), parts))))
+        .collect()
 }

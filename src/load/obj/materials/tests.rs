@@ -148,13 +148,14 @@ fn materials_shine_are_transparent_and_repeat_their_images_as_the_file_says() {
         &folder,
         "m.mtl",
         b"newmtl glass\nd 0.25\nPr 0.125\nPm 0\nnewmtl lamp\nKe 4 2 1\nnewmtl screen\nmap_Ke -clamp on w.png\nnewmtl tiles\n\
-          map_Kd -s 2 4 -o 0.5 0 w.png\nnewmtl odd\nd 0\n",
+          map_Kd -s 2 4 -o 0.5 0 w.png\nnewmtl odd\nd 0\nnewmtl thin\nd 1\nTr 0.75\nnewmtl full\nTr 1\n",
     );
     write(&folder, "w.png", &png());
-    let mesh = read(&folder, "mtllib m.mtl", &["glass", "lamp", "screen", "tiles", "odd"]);
-    let [glass, lamp, screen, tiles, odd] = &mesh.materials[..] else { panic!("{:?}", mesh.materials) };
+    let mesh = read(&folder, "mtllib m.mtl", &["glass", "lamp", "screen", "tiles", "odd", "thin", "full"]);
+    let [glass, lamp, screen, tiles, odd, thin, full] = &mesh.materials[..] else { panic!("{:?}", mesh.materials) };
     assert_eq!((glass.base_color[3], glass.look.alpha, glass.look.roughness), (0.25, Alpha::Blend, 0.125));
     assert_eq!((lamp.look.emissive, odd.look.alpha, odd.base_color), ([4.0, 2.0, 1.0], Alpha::Opaque, [1.0; 4]));
+    assert_eq!((thin.base_color[3], thin.look.alpha, full.look.alpha), (0.25, Alpha::Blend, Alpha::Opaque));
     let glow = screen.look.maps[Slot::Emissive as usize].as_ref().expect("a texture that shines");
     assert_eq!((screen.look.emissive, glow.sampling.wrap), ([1.0; 3], [Wrap::Clamp; 2]));
     // The file's texture coordinates are (0, 0), and its v points upwards.

@@ -226,8 +226,8 @@ fn details() -> Vec<Case> {
         }),
         refused(
             "an extension of the shape, required",
-            "Extension | /extensionsRequired/0 | KHR_meshopt_compression | isn't read | gltfpack",
-            |root| root["extensionsRequired"] = json!(["KHR_meshopt_compression"]),
+            "Extension | /extensionsRequired/0 | AGI_articulations | isn't read | export",
+            |root| root["extensionsRequired"] = json!(["AGI_articulations"]),
         ),
     ]
 }
