@@ -26,6 +26,20 @@ pub(crate) fn in_ranges<R: Send>(count: usize, least: usize, work: impl Fn(Range
     })
 }
 
+/// Does two works at the same time if there are several cores, and returns what they make.
+pub(crate) fn both<A: Send, B>(first: impl Fn() -> A + Sync, second: impl FnOnce() -> B) -> (A, B) {
+    let first = &first;
+    thread::scope(|scope| {
+        let other = (cores() > 1).then(|| thread::Builder::new().spawn_scoped(scope, first));
+        let made = second();
+        match other {
+            Some(Ok(thread)) => (thread.join().unwrap_or_else(|panic| resume_unwind(panic)), made),
+            // There is one core, or the system has no further thread.
+            _ => (first(), made),
+        }
+    })
+}
+
 /// Returns how many threads run at the same time.
 fn cores() -> usize {
     #[cfg(test)]
@@ -52,6 +66,13 @@ pub(crate) mod tests {
         let result = work();
         CORES.set(None);
         result
+    }
+
+    #[test]
+    fn two_works_are_both_done_on_any_number_of_cores() {
+        for cores in [1, 2, 7] {
+            assert_eq!(on_cores(cores, || both(|| 3, || "b")), (3, "b"), "{cores}");
+        }
     }
 
     #[test]

@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::camera_report::CameraInfo;
 use super::light_report::LightInfo;
 use super::material_report::MaterialInfo;
+use crate::cores::both;
 use crate::load::parts::Part;
 use crate::mesh::crease_band::CreaseBand;
 use crate::mesh::rig::{AnimatedCounts, Clip, Rig};
@@ -124,6 +125,8 @@ impl Info {
         let edges = topology.edge_counts();
         let bounds = mesh.bounds();
         let t_junctions = t_junctions(topology, progress)?;
+        let exact = (weld == 0.0).then_some(topology);
+        let (normal_faults, joins) = both(|| NormalFaults::of(mesh, topology), || weld_previews(mesh, exact, progress));
         Ok(Self {
             name: mesh.name.clone(),
             triangles: mesh.triangles.len() as u32,
@@ -141,11 +144,11 @@ impl Info {
             parts: Vec::new(),
             animations: mesh.rig.as_deref().map_or_else(Vec::new, animations),
             edges,
-            joins: weld_previews(mesh, (weld == 0.0).then_some(topology), progress)?,
+            joins: joins?,
             t_junctions: t_junctions.len() as u32,
             t_junctions_at: t_junctions.iter().map(|junction| t_junction(topology, junction)).collect(),
             repairs: mesh.repairs,
-            normal_faults: NormalFaults::of(mesh, topology),
+            normal_faults,
             bounds: BoundsInfo { min: bounds.min.into(), max: bounds.max.into(), diagonal: bounds.diagonal() },
             euler_characteristic: euler_characteristic(topology),
             closed: edges.total() > 0 && edges.boundary == 0 && edges.non_manifold == 0,

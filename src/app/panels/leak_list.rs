@@ -22,7 +22,7 @@ impl App {
         columns(ui, &format!("{:>6}{:>8}{:>15}", "x, px", "y, px", "px that leak"), true)
             .on_hover_text("The pixel in the middle of the leak, from the picture's top left, and the leak's size.");
         let mut clicked = None;
-        let first = leaks[0].middle.x as u32;
+        let first = leaks[0].px.x as u32;
         list(ui, "leaks", (leaks.len(), first), |ui, row| {
             let leak = &leaks[row];
             let [x, y] = leak.px.floor().to_array();
