@@ -199,7 +199,9 @@ fn table(constants: &[(u32, &'static str, String)]) -> String {
 fn displaced_text(own: &Tessellation) -> String {
     let agreement = match own.displacement {
         Displacement::Off => "",
-        Displacement::On => "Patches agree on the height and on the direction of what they share, and nothing cracks.",
+        Displacement::On => {
+            "Patches agree on the height and on the direction of what they share, so that displacement opens no cracks."
+        }
         Displacement::AsPublished => {
             "Patches agree on the height of what they share, and move along their own normals: split normals crack."
         }

@@ -106,8 +106,8 @@ fn written_files_compare_equal_in_every_format_and_layout() {
         }
     }
     let [file, copy] = ["a.json", "copy.bin"].map(|name| folder.path(name));
-    output(&["adjacency", vase(), "--indices", "12", "--against", &file, "-o", &copy]);
-    output(&["adjacency", vase(), "--indices", "12", "--against", &copy]);
+    output(&["adjacency", vase(), "--indices", "18", "--against", &file, "-o", &copy]);
+    output(&["adjacency", vase(), "--indices", "18", "--against", &copy]);
 }
 
 #[test]
