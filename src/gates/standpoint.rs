@@ -3,19 +3,14 @@
 use glam::{Vec2, Vec3, vec3};
 
 use super::place::{EdgeSpot, Spot, towards};
-use crate::measure::SightLine;
 use crate::mesh::Bounds;
 use crate::render::Camera;
 use crate::render::camera::{FIELD_OF_VIEW, MAX_ELEVATION};
 
 /// How many directions around a hidden place are tried.
-const DIRECTIONS: u32 = 48;
+const DIRECTIONS: u32 = 64;
 /// What is nearer to the place than this part of its edge or patch is at the place, and hides nothing.
 const NEAR: f32 = 0.005;
-/// How far beside the place other lines of sight run, in px: a place that shows through a slit alone is hidden.
-const BESIDE: f32 = 4.0;
-/// How many lines of sight a camera has: through the place, and beside it on four sides.
-const LINES: usize = 5;
 /// How far the eye goes towards what hides the place, when it is seen from between the two.
 const BETWEEN: f32 = 0.9;
 
@@ -23,10 +18,8 @@ const BETWEEN: f32 = 0.9;
 pub(crate) struct Standpoints {
     /// The place, in object units; none if it isn't known, and then there is one camera alone.
     at: Option<Vec3>,
-    /// What is nearer to the place hides nothing, in object units.
-    near: f64,
-    /// Lines of sight are so far from each other, and an orthographic camera's so long, in object units.
-    beside: f32,
+    /// The size of its edge or patch, and a distance at which one is outside of the mesh, in object units.
+    size: f32,
     beyond: f32,
     /// The camera that shows it best if nothing hides it from there.
     first: Camera,
@@ -47,69 +40,45 @@ impl Standpoints {
         };
         let at = spot.at();
         let around = if at.is_some() { around(&facing) } else { Vec::new() };
-        let beside = BESIDE * first.units_per_pixel(viewport.y);
-        let near = f64::from((NEAR * size).max(2.0 * beside));
         let beyond = 4.0 * bounds.radius() + first.target.distance(bounds.center());
-        Self { at, near, beside, beyond, first, around }
+        Self { at, size, beyond, first, around }
     }
 
-    /// The camera that shows the place best if nothing hides it from there.
-    pub(crate) fn first(&self) -> &Camera {
-        &self.first
+    /// Where lines of sight begin, all eyes, and how near to the place nothing hides it, in object units. None if the place isn't
+    /// known.
+    pub(crate) fn lines(&self) -> Option<(Vec3, Vec<Vec3>, f32)> {
+        let at = self.at?;
+        let eye = |camera: &Camera| match camera.orthographic {
+            // An orthographic view has no eye: what is farther away hides the place too.
+            true => at + camera.axes()[2] * self.beyond,
+            false => camera.eye(),
+        };
+        let others = self.around.iter().map(|(camera, _)| camera);
+        Some((at, std::iter::once(&self.first).chain(others).map(eye).collect(), NEAR * self.size))
     }
 
-    /// What is nearer to the place than this hides nothing, in object units.
-    pub(crate) fn near(&self) -> f64 {
-        self.near
-    }
-
-    /// The lines of sight of the first camera; none if the place isn't known.
-    pub(crate) fn first_lines(&self) -> Vec<SightLine> {
-        self.at.map_or(Vec::new(), |at| self.lines(at, &self.first).to_vec())
-    }
-
-    /// Those of the cameras around the place.
-    pub(crate) fn lines_around(&self) -> Vec<SightLine> {
-        let Some(at) = self.at else { return Vec::new() };
-        self.around.iter().flat_map(|(camera, _)| self.lines(at, camera)).collect()
-    }
-
-    fn lines(&self, at: Vec3, camera: &Camera) -> [SightLine; LINES] {
-        let [right, up, back] = camera.axes();
-        // An orthographic view has no eye: what is farther away hides the place too.
-        let to_eye = if camera.orthographic { back * self.beyond } else { camera.eye() - at };
-        [Vec3::ZERO, right, -right, up, -up]
-            .map(|aside| SightLine { from: (at + aside * self.beside).as_dvec3(), to_eye: to_eye.as_dvec3() })
-    }
-
-    /// Whether the first camera shows the place. `clear` has the part of each of its lines that is clear.
-    pub(crate) fn is_seen_first(&self, clear: &[f64]) -> bool {
-        clear_part(clear) >= 1.0
-    }
-
-    /// The camera around the place that shows it best. `clear` has the part of each of their lines that is clear.
+    /// The camera that shows the place. `clear` has the part of each line that is clear, from the place on.
     pub(crate) fn clearest(&self, clear: &[f64]) -> Camera {
-        let parts = clear.chunks_exact(LINES).map(clear_part);
-        let rated =
-            self.around.iter().zip(parts).map(|((camera, fitness), part)| (camera, part, f64::from(*fitness) * part));
+        let (Some(at), Some((first, others))) = (self.at, clear.split_first()) else { return self.first };
+        if *first >= 1.0 {
+            return self.first;
+        }
+        let rated = self
+            .around
+            .iter()
+            .zip(others)
+            .map(|((camera, fitness), clear)| (camera, *clear, f64::from(*fitness) * clear));
         // The first of those that are as good.
         let best = rated.reduce(|a, b| if b.2 > a.2 { b } else { a });
-        match (best, self.at) {
-            (Some((camera, part, _)), Some(at)) if part < 1.0 => {
-                let to_eye = camera.eye() - at;
-                towards(&Camera { target: at, ..*camera }, to_eye * (BETWEEN * part as f32))
+        match best {
+            Some((camera, clear, _)) if clear < 1.0 => {
+                let eye = camera.eye() - at;
+                towards(&Camera { target: at, ..*camera }, eye * (BETWEEN * clear as f32))
             }
-            (Some((camera, ..)), _) => *camera,
-            (None, _) => self.first,
+            Some((camera, ..)) => *camera,
+            None => self.first,
         }
     }
-}
-
-/// The part that is clear of most lines of a camera: a few of them may graze the surface that the place is on.
-fn clear_part(clear: &[f64]) -> f64 {
-    let mut sorted = clear.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(clear.len() / 2).copied().unwrap_or(1.0)
 }
 
 /// Perspective cameras around what `facing` shows, that one first, each with how well it shows it: those that face it more are
@@ -137,7 +106,7 @@ fn around(facing: &Camera) -> Vec<(Camera, f32)> {
 
 #[cfg(test)]
 mod tests {
-    use glam::{DVec3, vec2};
+    use glam::vec2;
 
     use super::*;
 
@@ -149,29 +118,25 @@ mod tests {
     /// An edge in the middle, which faces the front.
     const EDGE: EdgeSpot = EdgeSpot { ends: [Vec3::NEG_X, Vec3::X], facing: Vec3::Z, at: Vec3::ZERO };
 
-    /// What is clear of lines, where `hidden` has that for lines in each unit direction.
-    fn clear(lines: &[SightLine], hidden: impl Fn(DVec3) -> f64) -> Vec<f64> {
-        lines.iter().map(|line| hidden(line.to_eye.normalize())).collect()
-    }
-
     #[test]
     fn a_place_is_seen_from_the_side_that_faces_it_most_and_is_clear() {
         for orthographic in [false, true] {
             let (camera, viewport, bounds) = judged(orthographic);
             let standpoints = Standpoints::of(&Spot::Edge(EDGE), &camera, viewport, &bounds);
-            let direction = |camera: &Camera| camera.eye().normalize();
-            let front = standpoints.first();
-            assert!(front.orthographic == orthographic && direction(front).distance(Vec3::Z) < 1e-3, "{front:?}");
-            assert_eq!((standpoints.first_lines().len(), standpoints.near() < 0.1), (LINES, true));
-            let around = standpoints.lines_around();
+            let (at, eyes, near) = standpoints.lines().expect("a known place");
+            assert!(at == EDGE.at && near < 0.05);
+            let direction = |camera: &Camera| (camera.eye() - at).normalize();
+            let front = standpoints.clearest(&vec![1.0; eyes.len()]);
+            assert!(front.orthographic == orthographic && direction(&front).distance(Vec3::Z) < 1e-3, "{front:?}");
             // A wall right before it hides it from all directions within 60 degrees of its front.
-            let beside = standpoints.clearest(&clear(&around, |to_eye| if to_eye.z > 0.5 { 0.05 } else { 1.0 }));
-            assert!((0.25..=0.5).contains(&direction(&beside).z), "{beside:?}");
+            let wall = |eye: &Vec3| if eye.normalize().z > 0.5 { 0.05 } else { 1.0 };
+            let beside = standpoints.clearest(&eyes.iter().map(wall).collect::<Vec<_>>());
+            assert!((0.3..=0.5).contains(&direction(&beside).z), "{beside:?}");
             // Hidden from everywhere: from before what hides it.
-            let between = standpoints.clearest(&clear(&around, |_| 0.5));
-            assert!(direction(&between).distance(Vec3::Z) < 1e-3 && between.target == EDGE.at, "{between:?}");
+            let between = standpoints.clearest(&vec![0.5; eyes.len()]);
+            assert!(direction(&between).distance(Vec3::Z) < 1e-3 && between.target == at, "{between:?}");
             assert!(!between.orthographic);
-            assert!((f64::from(between.distance) / around[0].to_eye.length() - 0.45).abs() < 1e-3, "{between:?}");
+            assert!((between.distance / eyes[1].length() - 0.45).abs() < 1e-3, "{between:?}");
         }
     }
 
@@ -180,12 +145,12 @@ mod tests {
         let (camera, viewport, bounds) = judged(false);
         let leak = |torn| Spot::Leak { px: 0.5 * viewport, pixels: 9, torn };
         let known = Standpoints::of(&leak(Some(EDGE)), &camera, viewport, &bounds);
-        assert!(known.first().eye().distance(camera.eye()) < 1e-3);
-        assert!(known.is_seen_first(&[1.0, 0.2, 1.0, 0.2, 1.0]), "two lines graze something");
-        assert!(!known.is_seen_first(&[1.0, 0.2, 0.2, 0.2, 1.0]), "it shows through a slit");
-        let other = known.clearest(&clear(&known.lines_around(), |_| 1.0));
-        assert!(other.eye().normalize().distance(Vec3::Z) < 1e-3, "from where the edge faces");
+        let (_, eyes, _) = known.lines().expect("a known place");
+        assert!(eyes[0].distance(camera.eye()) < 1e-3);
+        let clear = |first: f64| [vec![first], vec![1.0; eyes.len() - 1]].concat();
+        assert!(known.clearest(&clear(1.0)).eye().distance(camera.eye()) < 1e-3);
+        assert!(known.clearest(&clear(0.9)).eye().normalize().distance(Vec3::Z) < 1e-3, "from where the edge faces");
         let unknown = Standpoints::of(&leak(None), &camera, viewport, &bounds);
-        assert!(unknown.first_lines().is_empty() && unknown.is_seen_first(&[]));
+        assert!(unknown.lines().is_none() && unknown.clearest(&[]).eye().distance(camera.eye()) < 1e-3);
     }
 }

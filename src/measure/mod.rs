@@ -33,7 +33,7 @@ pub(crate) use outlines::{EdgeSide, patch_edges};
 pub(crate) use points_agreement::{PointsAgreement, PointsDisagreement};
 pub(crate) use screen_error::{PatchesAbove, ScreenError, ScreenErrorMeasurement};
 pub(crate) use seams::{SeamTurns, Seams};
-pub(crate) use sight::{Sight, SightLine};
+pub(crate) use sight::Sight;
 pub(crate) use silhouette::{OutlineDistance, OutlineDistances, OutlineOf, SampleGrid, Silhouette};
 pub(crate) use sizes::{SMALL_PX, Sizes};
 pub(crate) use survey::{Culled, Measured, Survey};

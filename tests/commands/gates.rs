@@ -247,7 +247,7 @@ fn evidence_of_an_engines_frame_comes_closer_too_and_px_are_those_of_its_picture
     let matrix = stats.pointer("/camera/view_projection").and_then(Value::as_array).expect("a matrix");
     let matrix: Vec<f64> = matrix.iter().map(|number| number.as_f64().expect("a number")).collect();
     let with = |mirror: f64| {
-        let entry = |i: usize| (matrix[i] * if i % 4 == 0 { mirror } else { 1.0 }).to_string();
+        let entry = |i: usize| (matrix[i] * if i.is_multiple_of(4) { mirror } else { 1.0 }).to_string();
         let matrix = (0..16).map(entry).collect::<Vec<_>>().join(" ");
         judged(&["--depth", "reversed", "--view-projection", &matrix])
     };

@@ -128,17 +128,10 @@ impl Shot {
     fn standpoint(&mut self, spot: &Spot) -> Result<Camera, GpuError> {
         let viewport = self.target.viewport();
         let standpoints = Standpoints::of(spot, &self.view.camera, viewport, &self.scene.bounds);
-        let Self { engine, scene, .. } = self;
-        let mut clear = |lines| {
-            let mut sight = Sight::new(lines, standpoints.near());
-            engine.visit(scene, &mut [&mut sight])?;
-            Ok::<_, GpuError>(sight.clear().to_vec())
-        };
-        let first = standpoints.first_lines();
-        if first.is_empty() || standpoints.is_seen_first(&clear(first)?) {
-            return Ok(*standpoints.first());
-        }
-        Ok(standpoints.clearest(&clear(standpoints.lines_around())?))
+        let Some((at, eyes, near)) = standpoints.lines() else { return Ok(standpoints.clearest(&[])) };
+        let mut sight = Sight::new(at, eyes, near);
+        self.engine.visit(&mut self.scene, &mut [&mut sight])?;
+        Ok(standpoints.clearest(sight.clear()))
     }
 }
 
