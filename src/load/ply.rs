@@ -174,8 +174,15 @@ struct FaceProperties {
     wedges: Option<usize>,
     /// The number of the image, if there are several.
     image: Option<usize>,
-    /// Red, green and blue, and alpha if there is one, of a face whose vertices have no colours.
+    /// Red, green and blue, and alpha if there is one, of a face whose vertices have no colours; and what makes them lie from 0 to 1.
     color: Option<([Option<usize>; 4], f32)>,
+}
+
+impl FaceProperties {
+    /// Which channel of the colour a property is, if any.
+    fn channel(&self, property: usize) -> Option<usize> {
+        self.color?.0.iter().position(|place| *place == Some(property))
+    }
 }
 
 struct Reader<'a, 'h> {
@@ -313,14 +320,15 @@ impl<'a> Reader<'a, '_> {
         let slots: Vec<_> = element.properties.iter().map(slot).collect();
         let places = [0, 1, 2, 3].map(|channel| slots.iter().position(|slot| *slot == Some(RED + channel)));
         let is_colored = vertices.colors.is_empty() && places[..3].iter().all(Option::is_some);
-        let color = (is_colored && element.name == b"face").then(|| (places, color_scale(element, &slots)));
         let has_uvs = wedges.is_some() || !vertices.uvs.is_empty();
         let first = if has_uvs { self.textures.material(&mut self.faces, 0)? } else { None };
         self.material = first.unwrap_or(self.plain);
         let image = named(b"texnumber").filter(|_| first.is_some() && self.textures.len() > 1);
         // Where there is an image, colours count for nothing: scans have both.
         let is_uncolored = first.is_some() && image.is_none();
-        if !is_uncolored && (!vertices.colors.is_empty() || color.is_some()) {
+        let is_colored = is_colored && !is_uncolored && element.name == b"face";
+        let color = is_colored.then(|| (places, color_scale(element, &slots)));
+        if color.is_some() || !is_uncolored && !vertices.colors.is_empty() {
             self.faces.color();
             // Corners that were added before have the number 0.
             self.faces.number(Vec4::ONE)?;
@@ -340,8 +348,9 @@ impl<'a> Reader<'a, '_> {
         values.begin(element, i)?;
         let place = values.place();
         self.wedges.clear();
-        let (mut is_whole, mut image) = (true, 0.0);
-        let mut color = of_face.color.map(|(places, scale)| (places, [0.0, 0.0, 0.0, 1.0 / scale]));
+        // Alpha, where there is none, is the largest number.
+        let opaque = of_face.color.map_or(1.0, |(_, scale)| 1.0 / scale);
+        let (mut is_whole, mut image, mut color) = (true, 0.0, [0.0, 0.0, 0.0, opaque]);
         for (k, property) in element.properties.iter().enumerate() {
             match property.kind {
                 PropertyKind::List { count, item } if k == of_face.vertices => {
@@ -366,29 +375,36 @@ impl<'a> Reader<'a, '_> {
                     }
                 }
                 PropertyKind::One(scalar) if Some(k) == of_face.image => image = values.next(scalar)?,
-                PropertyKind::One(scalar) if let Some((places, found)) = &mut color => {
-                    let value = values.next(scalar)? as f32;
-                    let channels = found.iter_mut().zip(places.iter()).filter(|(_, place)| **place == Some(k));
-                    channels.for_each(|(channel, _)| *channel = value);
+                PropertyKind::One(scalar) if let Some(channel) = of_face.channel(k) => {
+                    color[channel] = values.next(scalar)? as f32;
                 }
                 kind => values.skip_one(kind)?,
             }
         }
         values.end();
-        if of_face.image.is_some() {
-            // The conversion takes a negative number for 0, which isn't one of an image either.
-            let image = if image >= 0.0 { image as usize } else { usize::MAX };
-            self.material = self.textures.material(&mut self.faces, image)?.unwrap_or(self.plain);
-        }
-        let scale = of_face.color.map_or(1.0, |(_, scale)| scale);
-        let color = color.map(|(_, color)| linear_color(color.map(|channel| (channel * scale * 255.0).round() as u8)));
-        let color = if of_face.image.is_some() && self.material != self.plain { Some(Vec4::ONE) } else { color };
         match element.name {
-            b"face" if is_whole => self.add_face(color, place)?,
+            b"face" if is_whole => {
+                let color = self.look(of_face, image, color)?;
+                self.add_face(color, place)?;
+            }
             b"face" => self.faces.leave_out(place),
             _ => {}
         }
         Ok(())
+    }
+
+    /// Finds the material of a face by the number of its image. Returns the colour that it has in place of those of its vertices.
+    fn look(&mut self, of_face: FaceProperties, image: f64, color: [f32; 4]) -> Result<Option<Vec4>, ReadError> {
+        if of_face.image.is_some() {
+            // The conversion would take a negative number for 0.
+            let image = if image >= 0.0 { image as usize } else { usize::MAX };
+            self.material = self.textures.material(&mut self.faces, image)?.unwrap_or(self.plain);
+            if self.material != self.plain {
+                return Ok(Some(Vec4::ONE));
+            }
+        }
+        let encoded = |scale: f32| color.map(|channel| (channel * scale * 255.0).round() as u8);
+        Ok(of_face.color.map(|(_, scale)| linear_color(encoded(scale))))
     }
 
     /// Adds the face that was read, which may have a colour.
