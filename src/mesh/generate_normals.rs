@@ -10,7 +10,8 @@ use super::build_limits::BuildError;
 use super::chunked_vec::ChunkedVec;
 use super::normals::{Face, fan_normals};
 use super::smooth_points::give_normals;
-use super::weld::{plus_zero3, weld};
+use super::unfinished_mesh::{CornerPoints, UnfinishedMesh};
+use super::weld::plus_zero3;
 use crate::cores::in_ranges;
 use crate::mesh::build_limits::MemoryAccount;
 use crate::progress::Progress;
@@ -31,22 +32,6 @@ const LEAST: usize = 1 << 9;
 /// The greatest number of faces of a fan whose block is divided among threads: larger fans take more memory, which is
 /// counted for one of them.
 const SMALL_FAN: usize = 256;
-
-/// A mesh that is being built. Missing normals are NaN.
-#[derive(Default)]
-pub(crate) struct UnfinishedMesh {
-    pub corners: Vec<Corner>,
-    /// The binding of each corner; empty if all are 0.
-    pub bindings: Vec<u32>,
-    pub triangles: Vec<[u32; 3]>,
-}
-
-impl UnfinishedMesh {
-    /// Returns the corner that a triangle has in one of its places (3 * triangle + k).
-    fn corner(&self, place: u32) -> u32 {
-        self.triangles[place as usize / 3][place as usize % 3]
-    }
-}
 
 /// Gives every corner without a normal one, computed from the faces around its point with a crease angle in degrees. Corners with exactly equal
 /// positions lie on one point. Some corners may be left without a use. Takes time linear in the number of triangles,
@@ -74,7 +59,7 @@ pub(crate) fn generate_normals(
 }
 
 /// Does the same for points that aren't done yet, with lists of the faces around them. `done` is empty if that is no point.
-pub(super) fn with_fans(
+fn with_fans(
     mesh: &mut UnfinishedMesh,
     (points, done): (&CornerPoints, &[bool]),
     crease_angle: f32,
@@ -102,42 +87,6 @@ pub(super) fn with_fans(
     around.hand_out(mesh, &points);
     drop(around);
     added.append_to(mesh)
-}
-
-/// The point of each corner.
-pub(super) enum CornerPoints {
-    /// Every corner has a point of its own.
-    Corners,
-    /// The point of each corner, and the number of points.
-    Welded(Vec<u32>, usize),
-}
-
-impl CornerPoints {
-    pub(super) fn of(mesh: &UnfinishedMesh, budget: &dyn MemoryAccount) -> Result<Self, BuildError> {
-        // Corners that are nothing but positions differ in their positions.
-        let plain = |corner: &Corner| corner.normal.x.is_nan() && corner.uv == glam::Vec2::ZERO;
-        if mesh.bindings.is_empty() && mesh.corners.iter().all(plain) {
-            return Ok(Self::Corners);
-        }
-        budget.borrow(mesh.corners.len() as u64 * 40)?;
-        let (points, point_of) = weld(mesh.corners.iter().map(|corner| corner.position));
-        Ok(Self::Welded(point_of, points.len()))
-    }
-
-    pub(super) fn at(&self, corner: u32) -> usize {
-        match self {
-            Self::Corners => corner as usize,
-            Self::Welded(point_of, _) => point_of[corner as usize] as usize,
-        }
-    }
-
-    /// The number of points.
-    pub(super) fn count(&self, mesh: &UnfinishedMesh) -> usize {
-        match self {
-            Self::Corners => mesh.corners.len(),
-            Self::Welded(_, count) => *count,
-        }
-    }
 }
 
 /// The points whose corners may still lack normals.
@@ -345,5 +294,80 @@ impl Fan {
         }
         corners.copy_from_slice(ids);
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec2;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::mesh::build_limits::Unlimited;
+    use crate::mesh::shapes::Shape;
+
+    fn without_normals(corners: impl Iterator<Item = Corner>, triangles: &[[u32; 3]]) -> UnfinishedMesh {
+        let corners = corners.map(|corner| Corner { normal: Vec3::NAN, ..corner }).collect();
+        UnfinishedMesh { corners, bindings: Vec::new(), triangles: triangles.to_vec() }
+    }
+
+    /// The triangles' corners, with the bits of their numbers, and the triangles. Corners without a triangle are left out later.
+    fn bits(mesh: &UnfinishedMesh) -> (Vec<[u32; 8]>, Vec<[u32; 3]>) {
+        let corner = |&id: &u32| {
+            let corner = &mesh.corners[id as usize];
+            let ([x, y, z], [nx, ny, nz], [u, v]) =
+                (corner.position.to_array(), corner.normal.to_array(), corner.uv.to_array());
+            [x, y, z, nx, ny, nz, u, v].map(f32::to_bits)
+        };
+        (mesh.triangles.as_flattened().iter().map(corner).collect(), mesh.triangles.clone())
+    }
+
+    /// The meshes that both ways make.
+    fn both(mesh: impl Fn() -> UnfinishedMesh, crease_angle: f32) -> [UnfinishedMesh; 2] {
+        let (mut fast, mut slow) = (mesh(), mesh());
+        generate_normals(&mut fast, crease_angle, &Unlimited, &Progress::new()).unwrap();
+        let points = CornerPoints::of(&slow, &Unlimited).unwrap();
+        with_fans(&mut slow, (&points, &[]), crease_angle, &Unlimited, &Progress::new()).unwrap();
+        [fast, slow]
+    }
+
+    proptest! {
+        #[test]
+        fn one_pass_and_lists_of_faces_give_the_same_bits(
+            places in prop::collection::vec((prop::array::uniform2(-4_i8..4), -2_i8..3), 4..40),
+            used in prop::collection::vec(prop::array::uniform3(any::<prop::sample::Index>()), 1..60),
+            bend in 0.0_f32..1.0,
+            crease_angle in prop::sample::select(vec![0.0_f32, 1.0, 30.0, 60.0, 90.0, 180.0]),
+            has_seams in any::<bool>(),
+        ) {
+            let corner = |(i, ([x, y], z)): (usize, &([i8; 2], i8))| Corner {
+                position: Vec3::new(f32::from(*x), f32::from(*y), bend * f32::from(*z)),
+                normal: Vec3::NAN,
+                uv: if has_seams { Vec2::new((i % 2) as f32, 0.0) } else { Vec2::ZERO },
+            };
+            let mut corners: Vec<Corner> = places.iter().enumerate().map(corner).collect();
+            // A builder has merged equal corners.
+            corners.sort_by_key(|corner| (corner.position.to_array().map(f32::to_bits), corner.uv.x.to_bits()));
+            corners.dedup_by_key(|corner| (corner.position, corner.uv));
+            let count = corners.len();
+            let triangles: Vec<_> = used.iter().map(|at| at.map(|at| at.index(count) as u32)).collect();
+            let [fast, slow] = both(|| without_normals(corners.iter().copied(), &triangles), crease_angle);
+            prop_assert_eq!(bits(&fast), bits(&slow));
+        }
+    }
+
+    #[test]
+    fn smooth_shapes_need_no_lists_and_creased_ones_do() {
+        for (shape, is_smooth) in [(Shape::Icosphere, true), (Shape::Torus, true), (Shape::CubeSmooth, false)] {
+            let made = shape.build();
+            let whole =
+                || without_normals(made.corners.iter().map(|c| Corner { uv: Vec2::ZERO, ..*c }), &made.triangles);
+            let mut mesh = whole();
+            let points = CornerPoints::of(&mesh, &Unlimited).unwrap();
+            let done = give_normals(&mut mesh, &points, 60.0, &Unlimited, &Progress::new()).unwrap();
+            assert_eq!(done.iter().all(|done| *done), is_smooth, "{shape:?}");
+            let [fast, slow] = both(whole, 60.0);
+            assert_eq!(bits(&fast), bits(&slow), "{shape:?}");
+        }
     }
 }

@@ -7,8 +7,9 @@ use std::ops::Range;
 use glam::{Vec2, Vec3};
 
 use super::build_limits::{BuildError, MemoryAccount, MemoryRefused, Unlimited};
-use super::generate_normals::{UnfinishedMesh, generate_normals};
+use super::generate_normals::generate_normals;
 use super::normals::{CREASE_ANGLE, GivenNormal};
+use super::unfinished_mesh::UnfinishedMesh;
 use super::weld::{plus_zero2, plus_zero3};
 use super::{Corner, Material, Mesh, Repairs};
 use crate::progress::{Cancelled, Progress};

@@ -34,6 +34,7 @@ mod smooth_points;
 mod spatial_hash;
 pub(crate) mod t_junctions;
 pub(crate) mod topology;
+mod unfinished_mesh;
 pub(crate) mod union_find;
 pub(crate) mod weld;
 pub(crate) mod weld_preview;

@@ -96,25 +96,35 @@ struct OccupiedCells<'a> {
 }
 
 impl<'a> OccupiedCells<'a> {
-    /// Puts some of the points into cells.
-    fn new(points: Points<'a>, some: impl ExactSizeIterator<Item = u32>, reach: f64) -> Self {
+    /// Puts `count` of the points into cells; `some` returns one of them by its index.
+    fn new(points: Points<'a>, count: usize, some: impl Fn(usize) -> u32 + Sync, reach: f64) -> Self {
         let grid = CellGrid::new(WIDTH * reach);
         // 16 cells a point, so that few have the same hash.
-        let words = (some.len() / (CellHash::BLOCK / 16)).next_power_of_two();
-        let mut occupied = Self { points, most: grid.most(reach * ROOM), grid, cells: vec![[0; 2]; words] };
-        for point in some {
-            let (position, number) = points.at(point);
-            let (word, bit) = occupied.bit(occupied.grid.at(position, number));
-            let [once, twice] = &mut occupied.cells[word];
-            *twice |= *once & bit;
-            *once |= bit;
+        let words = (count / (CellHash::BLOCK / 16)).next_power_of_two();
+        // On two cores at most, since each needs all cells.
+        let mut halves = in_ranges(count, (count / 2).max(LEAST), |range| {
+            let mut cells = vec![[0; 2]; words];
+            for (position, number) in range.map(|index| points.at(some(index))) {
+                let (word, bit) = bit_of(words, grid.at(position, number));
+                let [once, twice] = &mut cells[word];
+                *twice |= *once & bit;
+                *once |= bit;
+            }
+            cells
+        })
+        .into_iter();
+        let mut cells = halves.next().unwrap_or_default();
+        for other in halves {
+            for ([once, twice], [other_once, other_twice]) in cells.iter_mut().zip(other) {
+                *twice |= other_twice | (*once & other_once);
+                *once |= other_once;
+            }
         }
-        occupied
+        Self { points, most: grid.most(reach * ROOM), grid, cells }
     }
 
     fn bit(&self, cell: CellHash) -> (usize, u64) {
-        let place = cell.place(self.cells.len() * CellHash::BLOCK);
-        (place / CellHash::BLOCK, 1 << (place % CellHash::BLOCK))
+        bit_of(self.cells.len(), cell)
     }
 
     /// Returns whether another point may be within reach: always if there is one, and seldom otherwise.
@@ -132,10 +142,15 @@ impl<'a> OccupiedCells<'a> {
     }
 }
 
+/// The word and the bit of a cell, of so many words.
+fn bit_of(words: usize, cell: CellHash) -> (usize, u64) {
+    let place = cell.place(words * CellHash::BLOCK);
+    (place / CellHash::BLOCK, 1 << (place % CellHash::BLOCK))
+}
+
 /// Returns the points that another one may be within reach of, in ascending order: all that have one, and few others.
 fn perhaps_near(points: Points, reach: f64) -> Vec<u32> {
-    let all = 0..points.len() as u32;
-    let occupied = OccupiedCells::new(points, all, reach);
+    let occupied = OccupiedCells::new(points, points.len(), |index| index as u32, reach);
     let mut near = in_ranges(points.len(), LEAST, |range| {
         (range.start as u32..range.end as u32).filter(|&point| occupied.is_perhaps_near(point)).collect::<Vec<_>>()
     })
@@ -143,7 +158,7 @@ fn perhaps_near(points: Points, reach: f64) -> Vec<u32> {
     drop(occupied);
     // Cells of other points are no longer in the way.
     if near.len() <= points.len() / 2 {
-        let occupied = OccupiedCells::new(points, near.iter().copied(), reach);
+        let occupied = OccupiedCells::new(points, near.len(), |index| near[index], reach);
         near.retain(|&point| occupied.is_perhaps_near(point));
     }
     near

@@ -4,8 +4,8 @@
 use glam::{DVec3, Vec3};
 
 use super::build_limits::{BuildError, MemoryAccount};
-use super::generate_normals::{CornerPoints, UnfinishedMesh};
 use super::normals::{FAN_LIMIT, Face, limit_of, unit_mean};
+use super::unfinished_mesh::{CornerPoints, UnfinishedMesh};
 use super::weld::plus_zero3;
 use crate::cores::in_ranges;
 use crate::progress::Progress;
@@ -93,81 +93,4 @@ pub(super) fn give_normals(
         corner.normal = sums[points.at(id)].normal(chord).unwrap_or(Vec3::NAN);
     }
     Ok(sums.iter().map(|sum| sum.faces == 0 || sum.normal(chord).is_some()).collect())
-}
-
-#[cfg(test)]
-mod tests {
-    use glam::Vec2;
-    use proptest::prelude::*;
-
-    use super::*;
-    use crate::mesh::Corner;
-    use crate::mesh::build_limits::Unlimited;
-    use crate::mesh::generate_normals::{generate_normals, with_fans};
-    use crate::mesh::shapes::Shape;
-
-    fn without_normals(corners: impl Iterator<Item = Corner>, triangles: &[[u32; 3]]) -> UnfinishedMesh {
-        let corners = corners.map(|corner| Corner { normal: Vec3::NAN, ..corner }).collect();
-        UnfinishedMesh { corners, bindings: Vec::new(), triangles: triangles.to_vec() }
-    }
-
-    /// The triangles' corners, with the bits of their numbers, and the triangles. Corners without a triangle are left out later.
-    fn bits(mesh: &UnfinishedMesh) -> (Vec<[u32; 8]>, Vec<[u32; 3]>) {
-        let corner = |&id: &u32| {
-            let corner = &mesh.corners[id as usize];
-            let ([x, y, z], [nx, ny, nz], [u, v]) =
-                (corner.position.to_array(), corner.normal.to_array(), corner.uv.to_array());
-            [x, y, z, nx, ny, nz, u, v].map(f32::to_bits)
-        };
-        (mesh.triangles.as_flattened().iter().map(corner).collect(), mesh.triangles.clone())
-    }
-
-    /// The meshes that both ways make.
-    fn both(mesh: impl Fn() -> UnfinishedMesh, crease_angle: f32) -> [UnfinishedMesh; 2] {
-        let (mut fast, mut slow) = (mesh(), mesh());
-        generate_normals(&mut fast, crease_angle, &Unlimited, &Progress::new()).unwrap();
-        let points = CornerPoints::of(&slow, &Unlimited).unwrap();
-        with_fans(&mut slow, (&points, &[]), crease_angle, &Unlimited, &Progress::new()).unwrap();
-        [fast, slow]
-    }
-
-    proptest! {
-        #[test]
-        fn one_pass_and_lists_of_faces_give_the_same_bits(
-            places in prop::collection::vec((prop::array::uniform2(-4_i8..4), -2_i8..3), 4..40),
-            used in prop::collection::vec(prop::array::uniform3(any::<prop::sample::Index>()), 1..60),
-            bend in 0.0_f32..1.0,
-            crease_angle in prop::sample::select(vec![0.0_f32, 1.0, 30.0, 60.0, 90.0, 180.0]),
-            has_seams in any::<bool>(),
-        ) {
-            let corner = |(i, ([x, y], z)): (usize, &([i8; 2], i8))| Corner {
-                position: Vec3::new(f32::from(*x), f32::from(*y), bend * f32::from(*z)),
-                normal: Vec3::NAN,
-                uv: if has_seams { Vec2::new((i % 2) as f32, 0.0) } else { Vec2::ZERO },
-            };
-            let mut corners: Vec<Corner> = places.iter().enumerate().map(corner).collect();
-            // A builder has merged equal corners.
-            corners.sort_by_key(|corner| (corner.position.to_array().map(f32::to_bits), corner.uv.x.to_bits()));
-            corners.dedup_by_key(|corner| (corner.position, corner.uv));
-            let count = corners.len();
-            let triangles: Vec<_> = used.iter().map(|at| at.map(|at| at.index(count) as u32)).collect();
-            let [fast, slow] = both(|| without_normals(corners.iter().copied(), &triangles), crease_angle);
-            prop_assert_eq!(bits(&fast), bits(&slow));
-        }
-    }
-
-    #[test]
-    fn smooth_shapes_need_no_lists_and_creased_ones_do() {
-        for (shape, is_smooth) in [(Shape::Icosphere, true), (Shape::Torus, true), (Shape::CubeSmooth, false)] {
-            let made = shape.build();
-            let whole =
-                || without_normals(made.corners.iter().map(|c| Corner { uv: Vec2::ZERO, ..*c }), &made.triangles);
-            let mut mesh = whole();
-            let points = CornerPoints::of(&mesh, &Unlimited).unwrap();
-            let done = give_normals(&mut mesh, &points, 60.0, &Unlimited, &Progress::new()).unwrap();
-            assert_eq!(done.iter().all(|done| *done), is_smooth, "{shape:?}");
-            let [fast, slow] = both(whole, 60.0);
-            assert_eq!(bits(&fast), bits(&slow), "{shape:?}");
-        }
-    }
 }

@@ -10,7 +10,10 @@
 
 use glam::{Vec2, Vec3, vec2};
 
+use super::FIXED_ONE;
+use super::height_list::{fetch_height, level_place};
 use super::normal::unit_or;
+use super::surface::outline_place;
 use crate::mesh::HeightMap;
 
 /// Whether a surface is displaced by height images, and what its patches agree on where they meet.
@@ -34,20 +37,6 @@ fn wrapped(x: f32) -> f32 {
     x - x.floor()
 }
 
-/// Returns the index of a mip level's first height in the map's list.
-fn level_start(map: &HeightMap, level: u32) -> u32 {
-    let mut start = 0;
-    for l in 0..level {
-        start += (map.size[0] >> l).max(1) * (map.size[1] >> l).max(1);
-    }
-    start
-}
-
-/// Returns the height at an index of the map's list.
-fn fetch_height(map: &HeightMap, index: u32) -> f32 {
-    map.heights[index as usize]
-}
-
 /// Returns where the texture coordinate `x` lies along a row or column of `size` px: in px from the centre of px 0. In
 /// images that repeat, `size` is added, so that the result isn't negative.
 fn pixel_coordinate(map: &HeightMap, x: f32, size: u32) -> f32 {
@@ -68,11 +57,11 @@ pub(crate) fn bilinear_height(map: &HeightMap, level: u32, uv: Vec2) -> f32 {
     // Images that don't repeat give weight 0 to a px beyond the last one.
     let right = (left + 1) % width;
     let lower = (upper + 1) % height;
-    let start = level_start(map, level);
-    let a = fetch_height(map, start + upper * width + left);
-    let b = fetch_height(map, start + upper * width + right);
-    let c = fetch_height(map, start + lower * width + left);
-    let d = fetch_height(map, start + lower * width + right);
+    let place = level_place(map, level);
+    let a = fetch_height(map, place, [left, upper]);
+    let b = fetch_height(map, place, [right, upper]);
+    let c = fetch_height(map, place, [left, lower]);
+    let d = fetch_height(map, place, [right, lower]);
     let across = x - x.floor();
     let down = y - y.floor();
     let above = a + (b - a) * across;
@@ -111,6 +100,21 @@ pub(crate) fn segment_level(map: &HeightMap, texels: f32, segments: f32) -> f32 
 /// Returns the distance between two texture coordinates in px of level 0.
 pub(crate) fn texel_length(map: &HeightMap, a: Vec2, b: Vec2) -> f32 {
     ((b - a) * vec2(map.size[0] as f32, map.size[1] as f32)).length()
+}
+
+/// Where a point lies in its patch.
+pub(super) enum Spot {
+    Corner(usize),
+    /// A side, and the weight of its end.
+    Side(usize, u32),
+    Inside,
+}
+
+/// Returns where the domain point (u, v) lies in its patch.
+pub(super) fn spot(u: u32, v: u32) -> Spot {
+    let corner = [u, v, FIXED_ONE - u - v].iter().position(|&weight| weight == FIXED_ONE);
+    let on_outline = || outline_place(u, v).map_or(Spot::Inside, |(side, t)| Spot::Side(side, t));
+    corner.map_or_else(on_outline, Spot::Corner)
 }
 
 /// Returns the derivatives by u and by v of the unit vector along a u + b v + c w, where a, b and c are `directions`

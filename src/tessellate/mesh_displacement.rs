@@ -5,13 +5,14 @@ use glam::{DVec2, DVec3, Vec2, Vec3};
 use super::Inputs;
 use super::control_nets::ControlNets;
 use super::displace::{
-    Displacement, direction_slopes, height_at, height_slopes, raised_normal, segment_level, texel_length, uv_gradients,
+    Displacement, Spot, direction_slopes, height_at, height_slopes, raised_normal, segment_level, spot, texel_length,
+    uv_gradients,
 };
 use super::displacement_factor::{displacement_factor, edge_bounds};
 use super::factors::inside_value;
 use super::normal::{Normals, edge_normal, facing_or, linear_normal, unit_or};
 use super::octahedral_normal::{pack_normal, unpack_normal};
-use super::surface::{UNIT, linear_uv, outline_place, patch_tangents};
+use super::surface::{UNIT, linear_uv, patch_tangents};
 use super::texel_lengths::{Maps, TexelLength, map_number, texel_lengths};
 use super::vertex::Vertex;
 use super::{Convention, FIXED_ONE, HullFactors, PatchFactors, factor_side};
@@ -65,21 +66,6 @@ struct Lookup {
     u: u32,
     v: u32,
     level: f32,
-}
-
-/// Where a point lies in its patch.
-enum Spot {
-    Corner(usize),
-    /// A side, and the weight of its end.
-    Side(usize, u32),
-    Inside,
-}
-
-/// Returns where the domain point (u, v) lies in its patch.
-fn spot(u: u32, v: u32) -> Spot {
-    let corner = [u, v, FIXED_ONE - u - v].iter().position(|&weight| weight == FIXED_ONE);
-    let on_outline = || outline_place(u, v).map_or(Spot::Inside, |(side, t)| Spot::Side(side, t));
-    corner.map_or_else(on_outline, Spot::Corner)
 }
 
 /// Returns the weights of corners 0 and 1 for the point at `t` (16.16 fixed point) along a side.

@@ -25,6 +25,7 @@ mod domain_row;
 mod explained_patch;
 pub(crate) mod factors;
 mod flat_patch;
+mod height_list;
 pub(crate) mod hull_factors;
 mod inputs;
 mod least_factors;

@@ -278,7 +278,7 @@ fn a_free_name_beside_the_last_file_is_proposed() {
     let path = |name: &str| folder.path().join(name);
     give(&mut harness, "Save adjacency…");
     write_to(&mut harness, &path("own.json"));
-    for name in ["shape-cube-split-adjacency.json", "shape-cube-split-adjacency-2.json"] {
+    for name in ["Cube,-split-normals-adjacency.json", "Cube,-split-normals-adjacency-2.json"] {
         give(&mut harness, "Save adjacency…");
         wait(&mut harness, |app| app.path_asked_for().is_some());
         harness.run_steps(2);

@@ -39,7 +39,7 @@ impl App {
             let kind = kind_name(topology.edges[crack.edge as usize].kind);
             (crack.edge, format!("{:<7}{kind:<13}{:>9}", crack.edge, short(crack.gap)))
         };
-        let first = cracks.edges.first().map_or(0, |crack| crack.edge);
+        let first = cracks.edges.first().map_or(0, |crack| crack.edge ^ (crack.gap as f32).to_bits());
         list(ui, "worst edges", (cracks.edges.len(), first), |ui, row| {
             let (edge, text) = text(row);
             let crack = &cracks.edges[row];

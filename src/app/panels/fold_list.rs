@@ -27,18 +27,23 @@ impl App {
             .on_hover_text("The triangle of the mesh, its folds, and their area in square object units.");
         let patches = &document.loaded.topology.patches;
         let mut clicked = None;
-        list(ui, "folded patches", (found.folded.len(), found.folded[0].patch), |ui, row| {
-            let folded = &found.folded[row];
-            let triangle = patches.get(folded.patch as usize).map_or(0, |patch| patch.triangle);
-            let text = format!("{triangle:<10}{:>7}{:>12}", grouped(folded.folds.into()), short(folded.area));
-            let is_selected = self.selected_patch() == Some(folded.patch);
-            let response = ui.selectable_label(is_selected, RichText::new(text).monospace());
-            let response = response.on_hover_text("A click selects the triangle and frames its largest fold.");
-            if response.clicked() {
-                clicked = Some(*folded);
-            }
-            response
-        });
+        list(
+            ui,
+            "folded patches",
+            (found.folded.len(), found.folded[0].patch ^ (found.folded[0].area as f32).to_bits()),
+            |ui, row| {
+                let folded = &found.folded[row];
+                let triangle = patches.get(folded.patch as usize).map_or(0, |patch| patch.triangle);
+                let text = format!("{triangle:<10}{:>7}{:>12}", grouped(folded.folds.into()), short(folded.area));
+                let is_selected = self.selected_patch() == Some(folded.patch);
+                let response = ui.selectable_label(is_selected, RichText::new(text).monospace());
+                let response = response.on_hover_text("A click selects the triangle and frames its largest fold.");
+                if response.clicked() {
+                    clicked = Some(*folded);
+                }
+                response
+            },
+        );
         if let Some(folded) = clicked {
             self.show_fold(&folded);
         }
