@@ -74,9 +74,9 @@ impl GivenNormal {
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Face {
     /// The unit surface normal; zero for a triangle without area.
-    pub(super) normal: DVec3,
+    normal: DVec3,
     /// The triangle's angle at the point, in radians.
-    pub(super) angle: f64,
+    angle: f64,
 }
 
 impl Face {
@@ -87,14 +87,14 @@ impl Face {
         let cross = cross(p);
         Self { normal: facing(cross), angle: angle(p, k, cross.length()) }
     }
+}
 
-    /// Makes a triangle the faces around its corners.
-    pub(super) fn all(triangle: [Vec3; 3]) -> [Self; 3] {
-        let p = triangle.map(Vec3::as_dvec3);
-        let cross = cross(p);
-        let (normal, length) = (facing(cross), cross.length());
-        [0, 1, 2].map(|k| Self { normal, angle: angle(p, k, length) })
-    }
+/// Returns the surface normal of the faces that a triangle is around its corners, and their angles: see [`Face`].
+pub(super) fn faces_of(triangle: [Vec3; 3]) -> (DVec3, [f64; 3]) {
+    let p = triangle.map(Vec3::as_dvec3);
+    let cross = cross(p);
+    let length = cross.length();
+    (facing(cross), [0, 1, 2].map(|k| angle(p, k, length)))
 }
 
 /// The cross product of two sides of a triangle.

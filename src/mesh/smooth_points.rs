@@ -4,21 +4,21 @@
 use glam::{DVec3, Vec3};
 
 use super::build_limits::{BuildError, MemoryAccount};
-use super::normals::{FAN_LIMIT, Face, limit_of, unit_mean};
+use super::normals::{FAN_LIMIT, faces_of, limit_of, unit_mean};
 use super::unfinished_mesh::{CornerPoints, UnfinishedMesh};
 use super::weld::plus_zero3;
 use crate::cores::in_ranges;
 use crate::progress::Progress;
 
 /// How many triangles have their faces computed before these are added to points.
-const BLOCK: usize = 1 << 15;
+const BLOCK: usize = 1 << 14;
 
 /// The least number of triangles that are worth a thread.
 const LEAST: usize = 1 << 12;
 
 /// The memory for each point and for each triangle of a block, in bytes.
 const PER_POINT: u64 = size_of::<PointSum>() as u64 + 1;
-const PER_TRIANGLE: u64 = size_of::<[Face; 3]>() as u64;
+const PER_TRIANGLE: u64 = size_of::<(DVec3, [f64; 3])>() as u64;
 
 /// The sum over the faces around a point, and how far their normals lie apart.
 #[derive(Clone, Copy)]
@@ -38,12 +38,12 @@ impl PointSum {
 
     const NONE: Self = Self { sum: DVec3::ZERO, least: Vec3::INFINITY, most: Vec3::NEG_INFINITY, faces: 0 };
 
-    /// Adds a face.
-    fn add(&mut self, face: &Face) {
-        let normal = face.normal.as_vec3();
-        (self.least, self.most) = (self.least.min(normal), self.most.max(normal));
-        self.sum += face.angle * face.normal;
-        let fits = face.normal != DVec3::ZERO && self.faces < FAN_LIMIT as u32;
+    /// Adds a face with a surface normal and an angle at the point.
+    fn add(&mut self, normal: DVec3, angle: f64) {
+        let rounded = normal.as_vec3();
+        (self.least, self.most) = (self.least.min(rounded), self.most.max(rounded));
+        self.sum += angle * normal;
+        let fits = normal != DVec3::ZERO && self.faces < FAN_LIMIT as u32;
         self.faces = if fits { self.faces + 1 } else { Self::APART };
     }
 
@@ -55,7 +55,8 @@ impl PointSum {
 }
 
 /// Gives the corners on points with one normal that normal, with a crease angle in degrees. Returns for each point whether nothing is
-/// left to be done there; the list is empty if that holds for none: if a corner has a normal, or if memory is short.
+/// left to be done there; the list is empty if that holds for none: if a corner has a normal,
+/// if most triangles share no points, or if memory is short.
 ///
 /// The normals have the same bits as those that [`fan_normals`](super::normals::fan_normals) returns: faces are added in the same order.
 ///
@@ -71,7 +72,8 @@ pub(super) fn give_normals(
     let count = points.count(mesh);
     let has_normals = mesh.corners.iter().any(|corner| !corner.normal.x.is_nan());
     let bytes = PER_POINT * count as u64 + PER_TRIANGLE * mesh.triangles.len().min(BLOCK) as u64;
-    if has_normals || budget.borrow(bytes).is_err() {
+    // Where most triangles share no points, this would take more memory than lists.
+    if has_normals || count > mesh.triangles.len() || budget.borrow(bytes).is_err() {
         return Ok(Vec::new());
     }
     // A little less than the square of the distance between unit normals at that angle, for the rounding to f32.
@@ -81,11 +83,11 @@ pub(super) fn give_normals(
         progress.check()?;
         let faces = in_ranges(block.len(), LEAST, |range| {
             let corners = block[range].iter().map(|corners| corners.map(|id| mesh.corners[id as usize].position));
-            corners.map(Face::all).collect::<Vec<_>>()
+            corners.map(faces_of).collect::<Vec<_>>()
         });
-        for (corners, faces) in block.iter().zip(faces.iter().flatten()) {
-            for (&corner, face) in corners.iter().zip(faces) {
-                sums[points.at(corner)].add(face);
+        for (corners, &(normal, angles)) in block.iter().zip(faces.iter().flatten()) {
+            for (&corner, angle) in corners.iter().zip(angles) {
+                sums[points.at(corner)].add(normal, angle);
             }
         }
     }
