@@ -2,14 +2,14 @@
 
 use crate::{Folder, failure, output};
 
+/// The files of each language.
+const FILES: [(&str, &[&str]); 3] =
+    [("glsl", &["patch.vert", "patch.tesc", "patch.tese"]), ("hlsl", &["patch.hlsl"]), ("wgsl", &["tessellate.wgsl"])];
+
 #[test]
 fn every_language_has_its_files_with_command_licence_and_layout() {
     let folder = Folder::new();
-    for (language, names) in [
-        ("glsl", &["patch.vert", "patch.tesc", "patch.tese"][..]),
-        ("hlsl", &["patch.hlsl"]),
-        ("wgsl", &["tessellate.wgsl"]),
-    ] {
+    for (language, names) in FILES {
         let out = folder.path(language);
         output(&["shaders", "--language", language, "--lod", "edge-length", "--pixels", "12", "-o", &out]);
         let mut there: Vec<_> = std::fs::read_dir(&out)
@@ -48,11 +48,7 @@ fn what_cant_be_exported_is_refused_before_anything_is_written() {
 #[test]
 fn shaders_that_displace_say_what_they_take_besides() {
     let folder = Folder::new();
-    for (language, names) in [
-        ("glsl", &["patch.vert", "patch.tesc", "patch.tese"][..]),
-        ("hlsl", &["patch.hlsl"]),
-        ("wgsl", &["tessellate.wgsl"]),
-    ] {
+    for (language, names) in FILES {
         let out = folder.path(language);
         let options = ["--displacement", "as-published", "--height-scale", "0.125", "--midlevel", "0.25"];
         output(&[&["shaders", "--language", language, "-o", &out], &options[..]].concat());

@@ -97,17 +97,19 @@ fn partitionings_conventions_normals_and_culling_agree_too() {
     }
 }
 
+/// The corners of a mesh as exported shaders read them: position, normal and texture coordinates.
+pub(super) fn exported_corners(mesh: &Mesh, topology: &Topology) -> Vec<[f32; 8]> {
+    let corners = mesh.corners.iter().zip(&topology.corner_points);
+    let numbers = corners.map(|(corner, &point)| {
+        let ([x, y, z], [a, b, c]) = (topology.points[point as usize].into(), corner.normal.into());
+        [x, y, z, a, b, c, corner.uv.x, corner.uv.y]
+    });
+    numbers.collect()
+}
+
 /// Runs exported compute passes as the example does. Returns the vertices and the triangles.
 fn run_passes(text: &str, mesh: &Mesh, topology: &Topology, own: &Tessellation) -> (Vec<[f32; 8]>, Vec<[u32; 3]>) {
-    let corners: Vec<[f32; 8]> = mesh
-        .corners
-        .iter()
-        .zip(&topology.corner_points)
-        .map(|(corner, &point)| {
-            let ([x, y, z], [a, b, c]) = (topology.points[point as usize].into(), corner.normal.into());
-            [x, y, z, a, b, c, corner.uv.x, corner.uv.y]
-        })
-        .collect();
+    let corners = exported_corners(mesh, topology);
     let mut constants = [0.0f32; 48];
     constants[40..45].copy_from_slice(&[own.factor, own.pixels, own.near, own.far, own.alpha]);
     let passes = Passes::new(text, &corners, &Layout::Nine.indices(topology), [20_000, 40_000]).expect("pipelines");

@@ -12,7 +12,7 @@ use pnaen::tessellate::{
 use wgpu::util::DeviceExt;
 
 use crate::gpu_tests::engine;
-use crate::gpu_tests::exported::{assert_part_of_page, vulkan};
+use crate::gpu_tests::exported::{assert_part_of_page, exported_corners, vulkan};
 use crate::gpu_tests::vulkan::agreement::Agreement;
 use crate::gpu_tests::vulkan::exported::{DISPLACEMENTS, LANGUAGES, Subject, displaced_rows, displaced_table, wavy};
 
@@ -105,15 +105,7 @@ impl Passes {
         let scale = height_units(heights, &inputs).to_bits();
         let [width, height] = map.size;
         let height_constants = [width, height, map.levels, u32::from(map.repeats), scale, own.midlevel.to_bits(), 0, 0];
-        let corners: Vec<[f32; 8]> = mesh
-            .corners
-            .iter()
-            .zip(&topology.corner_points)
-            .map(|(corner, &point)| {
-                let ([x, y, z], [a, b, c]) = (topology.points[point as usize].into(), corner.normal.into());
-                [x, y, z, a, b, c, corner.uv.x, corner.uv.y]
-            })
-            .collect();
+        let corners = exported_corners(mesh, topology);
         let relief = displaced_corners(mesh, topology).expect("one image everywhere");
         let indices = Layout::Eighteen.indices(topology);
         let patches = topology.patches.len() as u64;
