@@ -1,4 +1,4 @@
-// Divides a slab into chunks of patches that fit the arena, and writes the indirect arguments of emission and draws.
+// Divides a slab into chunks of patches, and writes the indirect arguments of emission and draws.
 
 @group(0) @binding(0) var<uniform> slab: Slab;
 @group(0) @binding(1) var<storage, read> offsets: array<vec2<u32>>;
@@ -7,22 +7,22 @@
 @group(0) @binding(4) var<storage, read_write> emit_args: array<EmitArgs>;
 @group(0) @binding(5) var<storage, read_write> draw_args: array<DrawArgs>;
 
-fn fits(first: u32, end: u32) -> bool {
+fn fits(first: u32, end: u32, vertices: u32, triangles: u32) -> bool {
     let size = offsets[end] - offsets[first];
-    return size.x <= slab.vertex_capacity && size.y <= slab.triangle_capacity;
+    return size.x <= vertices && size.y <= triangles;
 }
 
-// The end of the longest run of patches from `first` on that fits the arena. Patches are counted from the slab's start.
+// The end of the longest run of patches from `first` on that fits a chunk. Patches are counted from the slab's start.
 fn chunk_end(first: u32) -> u32 {
-    // Usually all of them fit.
-    if fits(first, slab.patch_count) {
+    // Usually all of them fit the arena.
+    if first == 0u && fits(0u, slab.patch_count, slab.vertex_capacity, slab.triangle_capacity) {
         return slab.patch_count;
     }
     var low = first;
     var high = slab.patch_count;
     while low < high {
         let middle = (low + high + 1u) / 2u;
-        if fits(first, middle) {
+        if fits(first, middle, slab.chunk_vertices, slab.chunk_triangles) {
             low = middle;
         } else {
             high = middle - 1u;

@@ -44,6 +44,9 @@ struct Slab {
     patch_count: u32,
     vertex_capacity: u32,
     triangle_capacity: u32,
+    // What a chunk has at most where the slab doesn't fit the arena at once.
+    chunk_vertices: u32,
+    chunk_triangles: u32,
     chunk_capacity: u32,
     material_count: u32,
 }

@@ -280,6 +280,7 @@ impl eframe::App for App {
         self.take_dropped(context);
         self.hold_typing(context);
         self.note_press(context);
+        self.viewport.pace.note(context);
         self.shortcuts(context);
         self.play_on(context);
         self.follow_file_choices(context);

@@ -1,20 +1,71 @@
 //! Memory for the tessellator's output. Its size is fixed, whatever the factors are: output that does not fit is made and used
 //! in chunks, one after another.
+//!
+//! A chunk is as large as the arena on graphics cards. On software adapters it is a part of it, so that each step of a long drawing
+//! is short: a window's own frames wait for such a step. Output that fits the arena is a single chunk on all adapters, since a chunk
+//! that the arena still holds isn't made again.
 
 use bytemuck::Zeroable;
 
 use super::buffer::empty;
 use super::layout::Vertex;
+use super::mesh_buffers::MeshBuffers;
 use super::{Gpu, GpuError};
 use crate::tessellate::{Partitioning, point_count, process, triangle_count};
+
+/// How many chunks an arena is divided into on a software adapter, where output doesn't fit it at once.
+const CHUNKS_IN_SOFTWARE: u32 = 8;
+/// The draws that the tables of all chunks may have so that the arena is divided: 40 bytes each, written whenever factors change.
+const MOST_DRAWS: u64 = 1 << 17;
+
+/// How many chunks fill an arena, if output doesn't fit it at once.
+pub(crate) fn chunks_an_arena(gpu: &Gpu) -> u32 {
+    if gpu.is_software() { CHUNKS_IN_SOFTWARE } else { 1 }
+}
 
 /// Memory for the vertices and triangles of one chunk.
 pub(super) struct Arena {
     /// The first halves of all vertices that there is room for, then the second halves: see `Vertex` in `shaders/types.wgsl`.
     pub vertices: wgpu::Buffer,
     pub indices: wgpu::Buffer,
-    pub vertex_capacity: u32,
-    pub triangle_capacity: u32,
+    pub room: Room,
+    /// What a chunk has at most where a slab doesn't fit the arena at once.
+    pub chunk: Room,
+}
+
+/// A number of vertices and of triangles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Room {
+    pub vertices: u32,
+    pub triangles: u32,
+}
+
+impl Room {
+    /// Room for the largest patch.
+    fn of_patch() -> Self {
+        let factors = process(Partitioning::Integer, [64.0; 3], 64.0);
+        Self { vertices: point_count(factors), triangles: triangle_count(factors) }
+    }
+
+    /// A part of it, but no less than for the largest patch.
+    fn divided(self, parts: u32) -> Self {
+        let patch = Self::of_patch();
+        Self {
+            vertices: (self.vertices / parts).max(patch.vertices),
+            triangles: (self.triangles / parts).max(patch.triangles),
+        }
+    }
+
+    /// A bound on the number of chunks of this size that any tessellation of so many patches takes. It follows from this: every
+    /// chunk but the last has no room left for the vertices, or for the triangles, of one more patch.
+    fn most_chunks(self, patch_count: u32) -> u32 {
+        let patch = Self::of_patch();
+        let full = |capacity: u32, patch: u32| {
+            let needed = u64::from(patch) * u64::from(patch_count);
+            if needed <= u64::from(capacity) { 0 } else { needed.div_ceil(u64::from(capacity - patch + 1)) as u32 }
+        };
+        full(self.vertices, patch.vertices) + full(self.triangles, patch.triangles) + 1
+    }
 }
 
 impl Arena {
@@ -23,16 +74,18 @@ impl Arena {
     ///
     /// # Errors
     /// A buffer would be larger than the adapter binds.
-    pub(super) fn new(gpu: &Gpu, patch_count: u32, arena_bytes: u64) -> Result<Self, GpuError> {
-        let (patch_vertices, patch_triangles) = largest_patch();
+    pub(super) fn new(gpu: &Gpu, mesh: &MeshBuffers, arena_bytes: u64) -> Result<Self, GpuError> {
+        let (patch, patch_count) = (Room::of_patch(), mesh.patch_count);
         let limits = gpu.device.limits();
         let half = (arena_bytes / 2).min(limits.max_storage_buffer_binding_size).min(limits.max_buffer_size);
         let capacity = |item: usize, patch: u32| {
             let needed = u64::from(patch) * u64::from(patch_count.max(1));
             (half / item as u64).clamp(u64::from(patch), needed.max(u64::from(patch))) as u32
         };
-        let vertex_capacity = capacity(size_of::<Vertex>(), patch_vertices);
-        Self::with_room(gpu, vertex_capacity, capacity(size_of::<[u32; 3]>(), patch_triangles))
+        let vertices = capacity(size_of::<Vertex>(), patch.vertices);
+        let arena = Self::with_room(gpu, vertices, capacity(size_of::<[u32; 3]>(), patch.triangles))?;
+        let chunk = chunk_of(arena.room, chunks_an_arena(gpu), mesh);
+        Ok(Self { chunk, ..arena })
     }
 
     /// Takes memory for so many vertices and triangles, and at least for those of the largest patch.
@@ -40,26 +93,26 @@ impl Arena {
     /// # Errors
     /// A buffer would be larger than the adapter binds.
     pub(super) fn with_room(gpu: &Gpu, vertices: u32, triangles: u32) -> Result<Self, GpuError> {
-        let (patch_vertices, patch_triangles) = largest_patch();
-        let (vertex_capacity, triangle_capacity) = (vertices.max(patch_vertices), triangles.max(patch_triangles));
+        let room = Room { vertices, triangles }.divided(1);
         Ok(Self {
-            vertices: empty::<Vertex>(gpu, "arena.vertices", vertex_capacity as usize)?,
-            indices: empty::<[u32; 3]>(gpu, "arena.indices", triangle_capacity as usize)?,
-            vertex_capacity,
-            triangle_capacity,
+            vertices: empty::<Vertex>(gpu, "arena.vertices", room.vertices as usize)?,
+            indices: empty::<[u32; 3]>(gpu, "arena.indices", room.triangles as usize)?,
+            room,
+            chunk: room,
         })
     }
 
-    /// A bound on the number of chunks that any tessellation of so many patches takes. It follows from this: every chunk but the
-    /// last has no room left for the vertices, or for the triangles, of one more patch.
+    /// A bound on the number of chunks that any tessellation of so many patches takes.
     pub(super) fn chunk_capacity(&self, patch_count: u32) -> u32 {
-        let (patch_vertices, patch_triangles) = largest_patch();
-        let full = |capacity: u32, patch: u32| {
-            let needed = u64::from(patch) * u64::from(patch_count);
-            if needed <= u64::from(capacity) { 0 } else { needed.div_ceil(u64::from(capacity - patch + 1)) as u32 }
-        };
-        full(self.vertex_capacity, patch_vertices) + full(self.triangle_capacity, patch_triangles) + 1
+        self.chunk.most_chunks(patch_count)
     }
+}
+
+/// The size of chunks: so small a part of the arena, unless the tables of so many chunks would be large.
+fn chunk_of(room: Room, parts: u32, mesh: &MeshBuffers) -> Room {
+    let halves = std::iter::successors(Some(parts), |parts| Some(parts / 2)).take_while(|&parts| parts > 0);
+    let draws = |chunk: Room| u64::from(chunk.most_chunks(mesh.patch_count)) * u64::from(mesh.material_count);
+    halves.map(|parts| room.divided(parts)).find(|&chunk| draws(chunk) <= MOST_DRAWS).unwrap_or(room)
 }
 
 /// Bytes of half a vertex: its position and normal, or its key and texture coordinates.
@@ -77,10 +130,4 @@ pub(crate) fn vertices_of(halves: &[u8]) -> Vec<Vertex> {
         vertex
     };
     first.chunks_exact(half).zip(second.chunks_exact(half)).map(whole).collect()
-}
-
-/// The number of vertices and of triangles of a patch at the largest factors.
-fn largest_patch() -> (u32, u32) {
-    let factors = process(Partitioning::Integer, [64.0; 3], 64.0);
-    (point_count(factors), triangle_count(factors))
 }

@@ -65,9 +65,10 @@ pub(crate) struct Slab {
     pub patch_count: u32,
     pub vertex_capacity: u32,
     pub triangle_capacity: u32,
+    pub chunk_vertices: u32,
+    pub chunk_triangles: u32,
     pub chunk_capacity: u32,
     pub material_count: u32,
-    pub _pad: [u32; 2],
 }
 
 /// An input triangle. Side k runs from corner k to corner k + 1.

@@ -39,7 +39,7 @@ pub(crate) mod wgsl;
 pub(crate) mod wgsl_tokens;
 
 pub(crate) use adapters::{AdapterChoice, BACKENDS, adapters, best_adapter, kind};
-pub(crate) use arena::{VERTEX_HALF, vertices_of};
+pub(crate) use arena::{VERTEX_HALF, chunks_an_arena, vertices_of};
 pub(crate) use bound_pass::BoundPass;
 pub(crate) use buffer::{empty, uniform_buffer};
 pub(crate) use compute_pipeline::{ComputePipeline, ShaderModule};

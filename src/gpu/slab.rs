@@ -61,11 +61,12 @@ impl SlabPasses {
         let slab = Slab {
             first_patch,
             patch_count,
-            vertex_capacity: arena.vertex_capacity,
-            triangle_capacity: arena.triangle_capacity,
+            vertex_capacity: arena.room.vertices,
+            triangle_capacity: arena.room.triangles,
+            chunk_vertices: arena.chunk.vertices,
+            chunk_triangles: arena.chunk.triangles,
             chunk_capacity,
             material_count: buffers.material_count,
-            _pad: [0; 2],
         };
         let (patches, chunks) = (patch_count as usize, chunk_capacity as usize);
         let mut chunk_numbers = vec![0u8; chunks * UNIFORM_STRIDE as usize];

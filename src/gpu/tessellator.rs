@@ -87,7 +87,7 @@ impl Tessellator {
     ) -> Result<Self, GpuError> {
         let images = mesh.heights.as_deref().map(|heights| HeightImages::new(gpu, heights)).transpose()?;
         let solid = Solid::find(&mesh, &topology);
-        Self::with(gpu, pipelines, (mesh, topology), solid, images, |patches| Arena::new(gpu, patches, arena_bytes))
+        Self::with(gpu, pipelines, (mesh, topology), solid, images, |mesh| Arena::new(gpu, mesh, arena_bytes))
     }
 
     /// Uploads a mesh for a host program that draws without waiting for the GPU: all output has to fit the arena at once, which has
@@ -119,7 +119,7 @@ impl Tessellator {
             ((self.mesh.clone(), self.topology.clone()), self.images.as_ref().map(HeightImages::shared));
         let (given, surface_shader) = (self.given.clone(), self.surface_shader().cloned());
         move || {
-            let make_arena = |patches| Arena::new(&gpu, patches, arena_bytes);
+            let make_arena = |mesh: &MeshBuffers| Arena::new(&gpu, mesh, arena_bytes);
             let mut other = Self::with(&gpu, pipelines, mesh, solid, images, make_arena)?;
             if given.is_some() {
                 other.give(given)?;
@@ -135,10 +135,10 @@ impl Tessellator {
         (mesh, topology): (Arc<Mesh>, Arc<Topology>),
         solid: Option<Solid>,
         images: Option<HeightImages>,
-        make_arena: impl FnOnce(u32) -> Result<Arena, GpuError>,
+        make_arena: impl FnOnce(&MeshBuffers) -> Result<Arena, GpuError>,
     ) -> Result<Self, GpuError> {
         let buffers = MeshBuffers::new(gpu, &mesh, &topology, Sharing::AllSides)?;
-        let arena = make_arena(buffers.patch_count)?;
+        let arena = make_arena(&buffers)?;
         let mut slabs = Vec::new();
         for first_patch in (0..buffers.patch_count.max(1)).step_by(SLAB_PATCHES as usize) {
             let patch_count = (buffers.patch_count - first_patch).min(SLAB_PATCHES);

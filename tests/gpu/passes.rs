@@ -13,6 +13,7 @@ use pnaen::tessellate::{
 };
 use pnaen::view::{ScreenView, ulp};
 
+use crate::gpu::chunks_an_arena;
 use crate::gpu_tests::coverage::sifting;
 use crate::gpu_tests::{engine, loaded, loaded_mesh, picture, scene};
 
@@ -295,6 +296,25 @@ fn a_small_arena_gives_the_same_mesh_in_chunks() {
             "{lod:?} {factor}: pictures"
         );
     }
+}
+
+#[test]
+fn output_that_does_not_fit_the_arena_is_cut_into_small_chunks() {
+    let loaded = loaded(Shape::Torus);
+    // Room for 32,768 vertices.
+    let mut scene = engine().scene(&loaded, 2 << 20).expect("small");
+    let mut chunks = |factor| {
+        let settings = Settings::from(Tessellation { factor, ..Tessellation::default() });
+        engine().count(&mut scene, &inputs(&loaded, &settings), &mut Timing::Off).expect("counts");
+        let of = |index| scene.tessellator.chunk(index).chunk;
+        (0..scene.tessellator.chunk_count()).map(of).collect::<Vec<_>>()
+    };
+    let [whole] = chunks(11.0)[..] else { panic!("what fits is one chunk") };
+    let most = 32_768 / chunks_an_arena(&engine().gpu);
+    assert!(whole.vertex_count > 25_000, "{} in one chunk", whole.vertex_count);
+    let cut = chunks(13.0);
+    assert!(cut.iter().all(|chunk| (1..=most).contains(&chunk.vertex_count)), "{cut:?}");
+    assert!(cut.windows(2).all(|pair| pair[0].patch_end == pair[1].first_patch));
 }
 
 /// A flat sheet of so many quads either way, two triangles each.

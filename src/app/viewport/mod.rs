@@ -6,6 +6,7 @@ mod frozen_camera;
 mod highlight;
 pub(super) mod left_half;
 pub(super) mod legend;
+pub(super) mod pace;
 pub(super) mod panel;
 mod patch_labels;
 pub(super) mod picture;
@@ -22,6 +23,7 @@ use camera::FollowedCamera;
 use frozen_camera::FrozenCamera;
 use highlight::Highlight;
 use left_half::LeftHalf;
+use pace::Pace;
 use picture::Picture;
 use playback::Playback;
 use preview::Preview;
@@ -47,6 +49,7 @@ pub(super) struct Viewport {
     /// Whether a line of help is over the picture: at a first start, until anything is done.
     pub greets: bool,
     pub picture: Picture,
+    pub pace: Pace,
     pub preview: Preview,
     pub warm_up: WarmUp,
     pub playback: Playback,
@@ -72,6 +75,7 @@ impl Viewport {
             last_split: 0.5,
             greets: false,
             picture: Picture::new(engine),
+            pace: Pace::default(),
             preview: Preview::new(engine),
             warm_up: WarmUp::default(),
             playback: Playback::default(),

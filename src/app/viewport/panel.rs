@@ -117,7 +117,7 @@ impl App {
             return Ok(());
         }
         let Some(document) = &mut self.document else { return Ok(()) };
-        let drawn = self.viewport.picture.draw(&self.engine, document, &wanted);
+        let drawn = self.viewport.picture.draw(&self.engine, document, &wanted, self.viewport.pace.ms());
         // The device's own error explains more than the errors that follow from it.
         if let Err(problem) = self.engine.gpu.check().and(drawn) {
             self.viewport.picture.refuse(&mut document.scene, &wanted);

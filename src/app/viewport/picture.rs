@@ -1,15 +1,15 @@
 //! The viewport's picture. It is drawn anew if anything that it depends on has changed, step by step while the window goes on.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 use glam::{Mat4, Vec2, vec2};
 
+use super::pace::next_steps;
 use crate::app::Document;
 use crate::app::painting::{Painting, ShownPicture};
 use crate::engine::Engine;
-use crate::gpu::{GpuError, PassTime, Recorder, Timing, take_times};
+use crate::gpu::{GpuError, PassTime, Recorder, Timing, chunks_an_arena, take_times};
 use crate::measure::{CrackedEdge, Cracks};
 use crate::mesh::Moment;
 use crate::render::{Camera, Pixel, Renderer, Scene, Target};
@@ -61,6 +61,8 @@ pub(crate) struct Drawing {
     /// How many of the `steps` have been submitted.
     pub given: usize,
     pub steps: usize,
+    /// How many steps were submitted together last, and how many ms they took.
+    last: Option<(usize, f64)>,
 }
 
 impl Drawing {
@@ -76,8 +78,8 @@ impl Drawing {
     }
 }
 
-/// Pictures of up to this many steps are finished even if a newer one is wanted.
-pub(crate) const SHORT: usize = 8;
+/// Pictures of output that fills the arena up to so many times are short.
+const SHORT: usize = 8;
 
 /// The picture and what it cost.
 pub(crate) struct Picture {
@@ -105,8 +107,10 @@ pub(crate) struct Picture {
     /// When work on the next picture began, which includes its counts.
     begun: Option<Instant>,
     whole_ms: Option<f64>,
-    /// Set once the device has finished the last submission.
-    pub in_flight: Option<Arc<AtomicBool>>,
+    /// Set once the device has finished the last submission, to how many ms that took.
+    pub in_flight: Option<Arc<OnceLock<f64>>>,
+    /// Pictures of up to this many steps are finished even if a newer one is wanted.
+    pub short: usize,
     pictures: u64,
 }
 
@@ -133,6 +137,7 @@ impl Picture {
             begun: None,
             whole_ms: None,
             in_flight: None,
+            short: SHORT * chunks_an_arena(&engine.gpu) as usize,
             pictures: 0,
         }
     }
@@ -205,8 +210,10 @@ impl Picture {
 
     /// Takes a picture that the device has finished, and the times that have come in.
     pub(crate) fn land(&mut self, engine: &Engine) {
-        if self.in_flight.as_ref().is_some_and(|done| done.load(Ordering::Acquire)) {
-            self.in_flight = None;
+        if let Some(taken) = self.in_flight.take_if(|done| done.get().is_some()) {
+            if let Some((_, ms)) = self.drawing.as_mut().and_then(|drawing| drawing.last.as_mut()) {
+                *ms = taken.get().copied().unwrap_or_default();
+            }
             if let Some(drawing) = self.drawing.take_if(|drawing| drawing.given == drawing.steps) {
                 self.picture_ms = Some(drawing.start.elapsed().as_secs_f64() * 1e3);
                 self.pass_times_hold = drawing.steps == 1;
@@ -252,12 +259,18 @@ impl Picture {
         self.shows.is_some_and(|shown| shown != document)
     }
 
-    /// Draws what is wanted, if it isn't drawn yet and the device is free. The counts come back first; until then, and
-    /// until all steps are drawn, the last picture stays.
-    pub(crate) fn draw(&mut self, engine: &Engine, document: &mut Document, wanted: &Wanted) -> Result<(), GpuError> {
+    /// Draws what is wanted, if it isn't drawn yet and the device is free, in steps that keep the device busy for about so many ms
+    /// at once. The counts come back first; until then, and until all steps are drawn, the last picture stays.
+    pub(crate) fn draw(
+        &mut self,
+        engine: &Engine,
+        document: &mut Document,
+        wanted: &Wanted,
+        ms: f64,
+    ) -> Result<(), GpuError> {
         self.counting = self.counting.filter(|counting| counting.document == document.generation);
         let mut keeps_on = |drawing: &mut Drawing| {
-            drawing.wanted == *wanted || (drawing.steps <= SHORT && drawing.wanted.document == document.generation)
+            drawing.wanted == *wanted || (drawing.steps <= self.short && drawing.wanted.document == document.generation)
         };
         self.drawing = self.drawing.take_if(&mut keeps_on);
         // Selecting something doesn't draw a picture whose drawing was cancelled.
@@ -286,16 +299,19 @@ impl Picture {
             return Ok(());
         }
         let steps = Renderer::step_count(scene, &wanted.settings);
-        let start = || Drawing { wanted, start: Instant::now(), given: 0, steps };
+        let start = || Drawing { wanted, start: Instant::now(), given: 0, steps, last: None };
         let drawing = self.drawing.get_or_insert_with(start);
-        let next = drawing.given..drawing.given + 1;
-        drawing.given = next.end;
+        let at_once = drawing.last.map_or(1, |(steps, taken)| next_steps(steps, taken, ms));
+        let next = drawing.given..steps.min(drawing.given + at_once);
+        (drawing.given, drawing.last) = (next.end, Some((next.len(), 0.0)));
         let mut recorder = Recorder::new(&engine.gpu, &mut self.timing);
         engine.renderer.draw_steps(&mut recorder, scene, target, &wanted.camera, &wanted.settings, next)?;
-        let done = Arc::new(AtomicBool::new(false));
+        let (done, start) = (Arc::new(OnceLock::new()), Instant::now());
         self.in_flight = Some(done.clone());
         recorder.submit();
-        engine.gpu.queue.on_submitted_work_done(move || done.store(true, Ordering::Release));
+        engine.gpu.queue.on_submitted_work_done(move || {
+            let _ = done.set(start.elapsed().as_secs_f64() * 1e3);
+        });
         Ok(())
     }
 
@@ -341,9 +357,9 @@ impl Picture {
         self.drawing.is_none() && self.counting.is_none() && self.in_flight.is_none()
     }
 
-    /// Whether a picture of more than [`SHORT`] steps is under way.
+    /// Whether a picture that isn't short is under way.
     pub(crate) fn is_long(&self) -> bool {
-        self.drawing.as_ref().is_some_and(|drawing| drawing.steps > SHORT)
+        self.drawing.as_ref().is_some_and(|drawing| drawing.steps > self.short)
     }
 
     /// Handles a picture that the device refused: it isn't drawn again by itself, nor shown, as it may be half drawn.

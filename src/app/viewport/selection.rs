@@ -3,7 +3,6 @@
 use egui::Response;
 use glam::Vec3;
 
-use super::picture::SHORT;
 use crate::app::App;
 use crate::gpu::GpuError;
 use crate::measure::patch_edges;
@@ -129,7 +128,8 @@ impl App {
             && let Some(scene) = document.scene.half_mut(half)
         {
             // Picking in a tessellation of many chunks would take as long as drawing it, so its emitted triangles are left out.
-            let split = if scene.tessellator.chunk_count() > SHORT { Some(1.0) } else { pixel.split };
+            let is_short = scene.tessellator.chunk_count() <= self.viewport.picture.short;
+            let split = if is_short { pixel.split } else { Some(1.0) };
             let pixel = Pixel { split, ..pixel };
             let picking = self.engine.picker.start(&self.engine.gpu, scene, &pixel)?;
             let emitted = (half == SplitSide::Right).then(|| scene.tessellator.generation());
