@@ -53,7 +53,7 @@ struct Line {
 
 // With caps, a line reaches beyond its ends by half its width, so that lines join without a notch. A dot always has them.
 fn line(index: u32, own: Line, has_caps: bool) -> LineVaryings {
-    let half_width = own.half_width;
+    let half_width = own.half_width / frame.coarseness;
     let a = frame.clip_from_object * vec4<f32>(own.start, 1.0);
     let b = frame.clip_from_object * vec4<f32>(own.end, 1.0);
     let from_clip = in_front(a, b);

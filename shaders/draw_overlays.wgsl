@@ -30,7 +30,7 @@ fn factor_color(factors: vec4<f32>, to_edges: vec3<f32>, edge_heights: vec3<f32>
     for (var k = 1u; k < 3u; k++) {
         nearest = select(nearest, k, to_edges[k] < to_edges[nearest]);
     }
-    let width = min(0.14 * edge_heights[nearest], max(5.0, 0.05 * edge_heights[nearest]));
+    let width = min(0.14 * edge_heights[nearest], max(5.0 / frame.coarseness, 0.05 * edge_heights[nearest]));
     let on_edge = line_coverage(to_edges[nearest], width);
     return mix(scale_color(factors.w), scale_color(factors[nearest]), on_edge);
 }

@@ -119,11 +119,12 @@ fn surface_color(in: Varyings, own_normal: vec3<f32>, front: bool, lit: vec4<f32
     let to_sides = in.corner * side_heights;
     var color = bare_color(in, own_normal, front, lit, to_edges, edge_heights);
     if (frame.overlays & OVERLAY_WIREFRAME) != 0u {
-        let opacity = 0.75 * sides_opacity(to_sides, side_heights, 0.5);
+        let opacity = 0.75 * sides_opacity(to_sides, side_heights, 0.5 / frame.coarseness);
         color = mix(color, vec4<f32>(0.008, 0.010, 0.014, 1.0), opacity);
     }
     if (frame.overlays & OVERLAY_PATCHES) != 0u {
-        color = mix(color, vec4<f32>(0.93, 0.94, 0.96, 1.0), sides_opacity(to_edges, edge_heights, 0.9));
+        let opacity = sides_opacity(to_edges, edge_heights, 0.9 / frame.coarseness);
+        color = mix(color, vec4<f32>(0.93, 0.94, 0.96, 1.0), opacity);
     }
     if (frame.overlays & OVERLAY_ADJACENCY) != 0u {
         let nearest_edge = least(to_edges);
@@ -138,7 +139,7 @@ fn surface_color(in: Varyings, own_normal: vec3<f32>, front: bool, lit: vec4<f32
         // Smooth edges are the most frequent and the least interesting, so their lines are thin, and fade where they are dense.
         let is_smooth = kind == EDGE_SMOOTH;
         let opacity = select(1.0, left_by_density(least(edge_heights)), is_smooth);
-        let covered = opacity * line_coverage(nearest_edge, select(1.75, 0.75, is_smooth));
+        let covered = opacity * line_coverage(nearest_edge, select(1.75, 0.75, is_smooth) / frame.coarseness);
         color = mix(color, vec4<f32>(edge_color(kind), 1.0), covered);
     }
     return color;

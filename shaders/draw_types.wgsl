@@ -30,6 +30,8 @@ struct Frame {
     scale: array<vec4<f32>, SCALE_STOPS>,
     // The first column of pixels of the half that is drawn, in px.
     left: f32,
+    // Px of the full picture that one px stands for, along each axis: more than 1 in coarse previews.
+    coarseness: f32,
 }
 
 // Images of a material beside that of the base colour.

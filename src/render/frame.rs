@@ -41,7 +41,8 @@ pub(super) fn frame(
         ground: Ground::under(&scene.bounds).packed(),
         scale: scale.colors.map(|[r, g, b]| [r, g, b, 0].map(|byte| f32::from(byte) / 255.0)),
         left: left as f32,
-        _pad: [0.0; 3],
+        coarseness: target.coarseness as f32,
+        _pad: [0.0; 2],
     };
     gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
         label: Some("frame"),

@@ -36,7 +36,9 @@ pub(crate) struct Frame {
     pub scale: [[f32; 4]; Scale::STOPS],
     /// The first column of pixels of the half that is drawn, in px.
     pub left: f32,
-    pub _pad: [f32; 3],
+    /// Px of the full picture that one px stands for, along each axis: more than 1 in coarse previews.
+    pub coarseness: f32,
+    pub _pad: [f32; 2],
 }
 
 /// A material's constants.

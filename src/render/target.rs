@@ -26,6 +26,8 @@ pub struct Target {
     is_transparent: bool,
     /// Whether pictures leave out what takes a software driver longest: see [`Self::draft`].
     is_draft: bool,
+    /// Px of the full picture that one px stands for, along each axis: see [`Self::coarse`].
+    pub(super) coarseness: u32,
 }
 
 /// The format that egui shows and a PNG holds: bytes encoded as sRGB, which sampling doesn't decode.
@@ -65,8 +67,18 @@ impl Target {
             (samples > 1).then(|| view(texture("target.multisampled", COLOR_FORMAT, samples, drawn, &[])));
         let depth = depth_view(gpu, "target.depth", [width, height]);
         let (size, layer_depths) = ([width, height], Lazy::default());
-        let (is_transparent, is_draft) = (false, false);
-        Ok(Self { size, resolved, resolved_srgb, multisampled, depth, layer_depths, is_transparent, is_draft })
+        let (is_transparent, is_draft, coarseness) = (false, false, 1);
+        Ok(Self {
+            size,
+            resolved,
+            resolved_srgb,
+            multisampled,
+            depth,
+            layer_depths,
+            is_transparent,
+            is_draft,
+            coarseness,
+        })
     }
 
     /// The same, for pictures that are transparent where nothing is drawn.
@@ -85,6 +97,11 @@ impl Target {
     /// The same.
     pub(crate) fn draft(gpu: &Gpu, size: [u32; 2]) -> Result<Self, GpuError> {
         Ok(Self { is_draft: true, ..Self::new(gpu, size)? })
+    }
+
+    /// The same, for pictures that are shown so many times as large along each axis. Their lines are as many times thinner.
+    pub(crate) fn coarse(self, coarseness: u32) -> Self {
+        Self { coarseness, ..self }
     }
 
     pub(super) fn is_draft(&self) -> bool {

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 use image::RgbaImage;
 use pnaen::mesh::{Alpha, CornerDetail, Look, MapUv, Material, Slot};
 use pnaen::render::Target;
-use pnaen::settings::Settings;
+use pnaen::settings::{Overlays, Settings};
 
 use crate::gpu_tests::engine;
 use crate::gpu_tests::looks::{facing, square_of};
@@ -83,4 +83,32 @@ fn a_draft_shows_a_surface_wholly_or_not_at_all() {
     let clear = |transmission| material([0.7; 3], Look { transmission, ..Look::default() });
     assert_eq!(shown(clear(0.6)), background, "more than half of the light comes through");
     assert_ne!(shown(clear(0.4)), background, "less than half of the light comes through");
+}
+
+#[test]
+fn lines_of_a_coarse_picture_are_as_wide_as_those_of_the_whole() {
+    let gpu = &engine().gpu;
+    let mesh = square_of(Material::plain("gray", [0.2, 0.2, 0.2, 1.0]), Vec3::Z, Vec2::ONE);
+    // How much lines change the mean brightness of the picture.
+    let change = |target: &Target, overlays: Overlays| {
+        let mut scene = scene_of(mesh.clone(), 0.0);
+        let camera = facing(&scene, target);
+        let mut mean = |overlays| {
+            let picture = seen(&mut scene, target, &Settings { overlays, ..Settings::default() }, &camera);
+            let sum: u64 = picture.pixels().map(|pixel| u64::from(pixel[0])).sum();
+            sum as f64 / f64::from(picture.width() * picture.height())
+        };
+        (mean(overlays) - mean(Overlays::default())).abs()
+    };
+    let lines = [
+        Overlays { wireframe: true, ..Overlays::default() },
+        Overlays { patches: true, ..Overlays::default() },
+        Overlays { adjacency: true, ..Overlays::default() },
+    ];
+    for overlays in lines {
+        let whole = change(&Target::new(gpu, [2 * SIDE; 2]).expect("a small picture"), overlays);
+        let coarse = change(&Target::new(gpu, [SIDE; 2]).expect("a small picture").coarse(2), overlays);
+        // Lines of the same width in px of the coarse picture would be twice as wide. The rest is how px at their borders count.
+        assert!((0.7..1.4).contains(&(coarse / whole)), "{overlays:?}: {coarse} and {whole}");
+    }
 }

@@ -176,7 +176,7 @@ impl Preview {
             return Ok(());
         }
         let make = if engine.gpu.is_software() { Target::draft } else { Target::new };
-        let target = make(&engine.gpu, size(self.coarseness))?;
+        let target = make(&engine.gpu, size(self.coarseness))?.coarse(self.coarseness);
         let shown = painting.shown(&engine.gpu, &target, wgpu::FilterMode::Linear);
         self.target = Some((target, shown));
         // The new target is empty.
