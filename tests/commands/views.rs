@@ -62,6 +62,10 @@ fn views_of_a_file_have_its_names_and_other_files_are_refused() {
     assert_eq!(picture(&single), above);
     std::fs::write(&cameras, "front --camera 0,0\nback --zoom 2\n").expect("a file");
     sentence(&[&base[..], &["-o", &out]].concat(), &["cameras.txt", "line 2", "--zoom"]);
+    for text in ["\u{feff}front --camera 0,0\r\n", "\u{feff}[{\"name\": \"front\", \"camera\": [0, 0]}]\r\n"] {
+        std::fs::write(&cameras, text).expect("a file");
+        output(&[&base[..], &["-o", &out]].concat());
+    }
     std::fs::write(&cameras, "a --camera 0,0\nA --camera 1,0\n").expect("a file");
     sentence(&[&base[..], &["-o", &out]].concat(), &["cameras.txt", "two cameras are called A"]);
     let one = failure(&["render", "shape:cone", "--cameras", "2", "-o", &folder.path("a.png")], 2);

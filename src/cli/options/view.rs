@@ -82,7 +82,7 @@ impl FromStr for MatrixNumbers {
         let words = text.split(is_between).filter(|word| !word.is_empty());
         let numbers = words.enumerate().map(|(index, word)| {
             let number = word.parse().ok().filter(|number: &f64| number.is_finite());
-            number.ok_or_else(|| format!("expected 16 numbers, and the {}. is {word}", index + 1))
+            number.ok_or_else(|| format!("expected 16 numbers, and number {} is {word}", index + 1))
         });
         let numbers = numbers.collect::<Result<Vec<_>, _>>()?;
         let found = numbers.len();
