@@ -196,7 +196,7 @@ fn what_is_no_matrix_is_refused_in_a_sentence() {
     let few = failure(&[&base[..], &["1 2 3 4 5 6 7 8 9 10 11 12 13 14 15"]].concat(), 2);
     assert!(few.contains("expected 16 numbers, found 15"), "{few}");
     let nan = failure(&[&base[..], &["1 0 0 0 0 1 0 0 0 0 nan -1 0 0 1 2"]].concat(), 2);
-    assert!(nan.contains("the 11. is nan"), "{nan}");
+    assert!(nan.contains("number 11 is nan"), "{nan}");
     sentence(&[&base[..], &["1 1 0 0 2 2 0 0 3 3 0 -1 0 0 1 2"]].concat(), &["singular"]);
     sentence(&[&base[..], &["1 0 0 0 0 1 0 0 0 0 0 -1 0 0 1 2"]].concat(), &["--depth"]);
     let turned = [
