@@ -14,9 +14,6 @@ pub(super) fn said(error: &ValidationError) -> Option<String> {
             Some("this `return` gives a value of another type than the function's result".to_owned())
         }
         FunctionError::InvalidIfType(_) => Some("the condition of this `if` is no bool".to_owned()),
-        FunctionError::InvalidStoreTypes { .. } => {
-            Some("this value has another type than the variable that it is assigned to".to_owned())
-        }
         FunctionError::InvalidCall { error, .. } => said_of_call(error),
         FunctionError::Expression { source, .. } => said_of_expression(source),
         _ => None,

@@ -44,7 +44,7 @@ pub(super) fn parts(bytes: &[u8]) -> Result<Parts, GltfError> {
         return Err(fail(format!("its header says that its version is {version}, but only version 2 is read")));
     }
     if length < HEADER {
-        return Err(fail(format!("its header says that the file has {length} bytes, fewer than the header itself")));
+        return Err(fail(format!("its header says that the file has {length} bytes, but it has {}", bytes.len())));
     }
     if length > bytes.len() {
         let has = bytes.len();
