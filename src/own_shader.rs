@@ -3,6 +3,7 @@
 
 mod bounded;
 mod checked;
+mod type_faults;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -58,6 +59,10 @@ pub(crate) enum FaultKind {
     Language(String),
     #[error("there is no function {name}; write: {signature} {{ ... }}")]
     NoFunction { name: &'static str, signature: &'static str },
+    #[error(
+        "the file was opened as {opened}, but {function} is the function of another kind of file, {is}: open it as that"
+    )]
+    OtherPurpose { function: &'static str, is: &'static str, opened: &'static str },
     #[error("the function has other parameters or another result than it must have; write: {0} {{ ... }}")]
     Signature(&'static str),
     #[error("this bracket is never closed")]

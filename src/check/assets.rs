@@ -52,9 +52,12 @@ fn look_through(folder: &Path, folders: &mut Vec<PathBuf>, files: &mut Vec<PathB
         if entry.file_name().as_encoded_bytes().starts_with(b".") {
             continue;
         }
-        if entry.file_type()?.is_dir() {
+        let kind = entry.file_type()?;
+        // A link to a file that is gone is an asset that can't be opened.
+        let is_lost = kind.is_symlink() && !path.exists();
+        if kind.is_dir() {
             folders.push(path);
-        } else if Format::of_name(&path).is_some() && path.is_file() {
+        } else if Format::of_name(&path).is_some() && (path.is_file() || is_lost) {
             files.push(path);
         }
     }
@@ -76,10 +79,13 @@ mod tests {
         }
         #[cfg(unix)]
         std::os::unix::fs::symlink(folder.path(), path("deep/circle")).expect("a link");
+        #[cfg(unix)]
+        std::os::unix::fs::symlink(path("gone.glb"), path("lost.glb")).expect("a link");
         let given =
             [Source::File(path("b.obj")), Source::File(folder.path().into()), Source::File(path("missing.obj"))];
         let found = assets(&given).expect("readable folders");
-        let expected = ["b.obj", "a.GLB", "deep/er/c.stl", "missing.obj"].map(|name| Source::File(path(name)));
-        assert_eq!(found, expected);
+        let expected = ["b.obj", "a.GLB", "deep/er/c.stl", "lost.glb", "missing.obj"];
+        let expected = expected.into_iter().filter(|name| cfg!(unix) || *name != "lost.glb");
+        assert_eq!(found, expected.map(|name| Source::File(path(name))).collect::<Vec<_>>());
     }
 }

@@ -199,6 +199,10 @@ impl Reader<'_> {
                     if key.get_ref().is_empty() {
                         return Err(self.error(key.span(), "a camera needs a name, such as [cameras.front]"));
                     }
+                    self.table(
+                        camera,
+                        "a table of camera options, such as [cameras.front] with camera = [0, 10] below it",
+                    )?;
                     let options = self.options(camera, self.known.camera)?;
                     section.cameras.push((key.get_ref().to_string(), options));
                 }
@@ -253,7 +257,8 @@ impl Reader<'_> {
         for (key, value) in self.table(value, "options of `pnaen render`, such as tolerance = 0.5")? {
             let name = key.get_ref().as_ref();
             if SECTION_KEYS.contains(&name) {
-                let misplaced = format!("{name} isn't an option; write it above the line in brackets before it");
+                let misplaced =
+                    format!("{name} isn't an option; write it above the line in brackets that it stands under");
                 return Err(self.error(key.span(), &misplaced));
             }
             if !known.contains(&name) {
@@ -362,6 +367,7 @@ mod tests {
             ("fail-on = [\n\"cracks\",\n\"crack\"]", 3, "crack: expected one of cracks"),
             ("options = 3", 1, "expected options"),
             ("[options]\ntolerance = 1979-05-27", 2, "expected a number"),
+            ("[cameras]\nfront = [0, 10]", 2, "such as [cameras.front] with camera = [0, 10]"),
             ("[[files]]\nfail-on = []", 1, "needs a path"),
             ("[[files]]\npath = 3", 2, "expected a text"),
             ("files = 3", 1, "[[files]]"),

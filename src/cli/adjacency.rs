@@ -90,7 +90,9 @@ const SAID: usize = 10;
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
     if args.output.is_none() && args.against.is_none() && args.corners.is_none() {
-        return Err(CliError::Usage("give -o to write a file, --against to compare one with the mesh, or both"));
+        return Err(CliError::Usage(
+            "give -o to write a file, --against to compare one with the mesh, or --corners for what displacement needs",
+        ));
     }
     let written = [args.output.as_deref(), args.corners.as_deref()];
     let read_files = [file_of(&args.file), args.against.as_deref(), file_of_heights(args.height.as_ref())];

@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use clap::builder::{OsStringValueParser, TypedValueParser};
 
 use super::interrupt::stop_on_interrupt;
-use super::options::{CameraOption, Size};
+use super::options::{CameraOption, Size, whole_from};
 use super::{
     AdapterOption, CliError, SurfaceOptions, Telling, WeldOption, file_error, file_of, keep_apart, load_apart, options,
     write_text,
@@ -66,7 +66,7 @@ pub(crate) struct Args {
     #[arg(long)]
     pub all: bool,
     /// Leave out settings with more triangles than this; standard error tells how many
-    #[arg(long, value_name = "N", default_value_t = Effort::default().most_triangles, value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = Effort::default().most_triangles, value_parser = whole_from(1_u64))]
     pub max_triangles: u64,
     /// Sample points on the reference surface, besides its vertices and points on its edges; at least as many are taken on the
     /// emitted triangles

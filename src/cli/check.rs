@@ -49,7 +49,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "DIR")]
     pub cache: Option<PathBuf>,
     /// How many assets are loaded and measured at the same time; by default as many as there are cores, and at most 4
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
+    #[arg(long, value_name = "N", value_parser = options::whole(1..=256_u16))]
     pub jobs: Option<u16>,
     #[command(flatten)]
     pub adapter: AdapterOption,
@@ -74,7 +74,7 @@ const PAGE: &str = "index.html";
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let jobs = plan::plan(args)?;
     let read = jobs.iter().map(|job| file_of(&job.source));
-    keep_apart(read.chain([args.config.as_deref()]), [Some(&*args.output)])?;
+    keep_apart(read.chain([plan::config_path(args)]), [Some(&*args.output)])?;
     for folder in [&args.page, &args.cache].into_iter().flatten() {
         std::fs::create_dir_all(folder).map_err(|error| file_error(folder, "made", &file_reason(&error)))?;
     }

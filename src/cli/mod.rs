@@ -327,9 +327,15 @@ pub(crate) fn preview(
     render::run(&args, &line)
 }
 
-/// Reads a whole text file, or standard input if the path is `-`.
+/// Reads a whole text file, or standard input if the path is `-`. Leaves out a byte order mark, which is no part of the text.
 fn read_text(path: &Path) -> Result<String, CliError> {
-    String::from_utf8(read_bytes(path)?).map_err(|_| file_error(path, "read", &"it isn't text in UTF-8"))
+    let text = String::from_utf8(read_bytes(path)?);
+    let mut text = text.map_err(|_| file_error(path, "read", &"it isn't text in UTF-8"))?;
+    const MARK: char = '\u{feff}';
+    if text.starts_with(MARK) {
+        text.drain(..MARK.len_utf8());
+    }
+    Ok(text)
 }
 
 /// Reads a whole file, or standard input if the path is `-`. Refuses devices, which may have no end, and more bytes than a

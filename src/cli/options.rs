@@ -27,7 +27,7 @@ pub(crate) use cameras::{CamerasOption, NamedView};
 pub(crate) use declared::{ImportOptions, PictureOptions, TessellationOptions, choice, number_of};
 pub(crate) use lod_camera::LodCameraOption;
 pub(crate) use opening::OpeningOptions;
-pub(crate) use values::{CameraOption, Position, Size, model, picture, source, steps, threshold};
+pub(crate) use values::{CameraOption, Position, Size, model, picture, source, steps, threshold, whole, whole_from};
 pub(crate) use view::ViewOptions;
 
 use values::{bytes, crease_band, weld};
@@ -38,14 +38,14 @@ pub(crate) struct SurfaceOptions {
     #[command(flatten)]
     pub tessellation: TessellationOptions,
     /// Under LOD by error, raise the tolerance until there are no more triangles than this
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", value_parser = whole_from(1_u64))]
     pub max_triangles: Option<u64>,
     /// Height map that displaces the surface: a PNG, JPEG or WebP image over all materials, its brightness as stored from 0 (black)
     /// to 1 (white); or `material`, the brightness of each material's base colour image
     #[arg(long, value_name = "IMAGE|material", value_parser = OsStringValueParser::new().map(HeightSource::from))]
     pub height: Option<HeightSource>,
     /// Memory for output on the device, in MiB, 1 to 65536; output that doesn't fit is made in chunks
-    #[arg(long, value_name = "MIB", default_value_t = ARENA_BYTES >> 20, value_parser = clap::value_parser!(u64).range(1..=65536))]
+    #[arg(long, value_name = "MIB", default_value_t = ARENA_BYTES >> 20, value_parser = whole(1..=65_536_u64))]
     pub arena: u64,
     #[command(flatten)]
     pub weld: WeldOption,

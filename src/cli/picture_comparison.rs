@@ -65,7 +65,7 @@ impl Comparison {
 
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum CompareError {
-    #[error("the pictures are {0} x {1} px and {2} x {3} px: render at the reference's size (--size {2}x{3})")]
+    #[error("it has {2} x {3} px, and the picture {0} x {1} px: render at the reference's size (--size {2}x{3})")]
     Sizes(u32, u32, u32, u32),
     #[error("the pictures could not be compared: {0}")]
     Failed(String),

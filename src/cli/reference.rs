@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use image::{ImageError, ImageReader, RgbaImage};
 use serde::Serialize;
 
-use super::options::{steps, threshold};
+use super::options::{steps, threshold, whole_from};
 use super::picture_comparison::{Comparison, PictureTolerance, compare_by};
 use super::{CliError, file_error, write_picture};
 use crate::files::{file_reason, open_file};
@@ -27,16 +27,16 @@ pub(crate) struct ReferenceOptions {
 pub(crate) struct ToleranceOptions {
     /// Largest difference of the whole picture that passes: 0 for equal pictures, 1 for nothing in common (1 minus structural
     /// similarity)
-    #[arg(long, value_name = "T", default_value_t = PictureTolerance::default().difference, value_parser = threshold)]
+    #[arg(long, value_name = "T", default_value_t = PictureTolerance::default().difference, value_parser = threshold, requires = "reference")]
     pub threshold: f64,
     /// Largest mean difference of a tile of 8 x 8 px that passes, in steps of 255; px at edges don't count
-    #[arg(long, value_name = "STEPS", default_value_t = PictureTolerance::default().tile as f32, value_parser = steps)]
+    #[arg(long, value_name = "STEPS", default_value_t = PictureTolerance::default().tile as f32, value_parser = steps, requires = "reference")]
     pub tile_threshold: f32,
     /// How many px may differ from all that is beside them in the reference by more than --px-step
-    #[arg(long, value_name = "N", default_value_t = PictureTolerance::default().px)]
+    #[arg(long, value_name = "N", default_value_t = PictureTolerance::default().px, value_parser = whole_from(0_u64), requires = "reference")]
     pub px_threshold: u64,
     /// The difference from which on px are counted, in steps of 255
-    #[arg(long, value_name = "STEPS", default_value_t = PictureTolerance::default().step, value_parser = steps)]
+    #[arg(long, value_name = "STEPS", default_value_t = PictureTolerance::default().step, value_parser = steps, requires = "reference")]
     pub px_step: f32,
 }
 

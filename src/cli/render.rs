@@ -100,26 +100,38 @@ pub(crate) fn run_with(
     let read: Vec<_> = places.iter().map(Option::as_deref).chain([args.cameras.file()]).collect();
     args.shot.check(&args.file, &read, &written)?;
     args.shot.own_surface.check(false, &args.gates.gates.fail_on)?;
-    let read = |path: &Path| Reference::read(path, &args.reference);
-    let references = places.iter().map(|place| place.as_deref().map(read).transpose());
-    let references = references.collect::<Result<Vec<_>, _>>()?;
+    let references = args.references(&places)?;
     let (subject, factors_file) = args.shot.subject(&args.file, &written)?;
     let mut shot = args.shot.shot(engine()?, subject)?;
     let cameras = views.iter().map(|view| args.camera(view, &shot)).collect::<Result<Vec<_>, _>>()?;
     files.make_folder()?;
-    let mut stats = Vec::new();
-    let (mut judgements, mut failed) = (Vec::new(), Vec::new());
-    for ((view, camera), reference) in views.iter().zip(cameras).zip(references) {
+    let mut all = Vec::new();
+    for (((index, view), camera), reference) in views.iter().enumerate().zip(cameras).zip(references) {
         if let Some(camera) = camera {
             shot.look_from(camera)?;
         }
-        let drawn = draw(args, line, &mut shot, view, reference.as_ref())?;
+        if index == 0 {
+            shot.report_own_shaders()?;
+        }
+        let mut drawn = draw(args, line, &mut shot, view, reference.as_ref())?;
+        if let Some(own) = &mut drawn.stats {
+            own.factors_file.clone_from(&factors_file);
+        }
+        all.push(drawn);
+    }
+    conclude(args, all)
+}
+
+/// Writes the stats of all pictures, and says which gates failed and which pictures differ from their references.
+///
+/// # Errors
+/// Stats can't be written, a gate failed, or a picture differs.
+fn conclude(args: &Args, all: Vec<Drawn>) -> Result<(), CliError> {
+    let (mut stats, mut judgements, mut failed) = (Vec::new(), Vec::new(), Vec::new());
+    for drawn in all {
+        stats.extend(drawn.stats);
         judgements.extend(drawn.judgement);
         failed.extend(drawn.failed);
-        if let Some(mut own) = drawn.stats {
-            own.factors_file = factors_file.clone();
-            stats.push(own);
-        }
     }
     if let Some(path) = args.stats.as_deref() {
         let text = match &stats[..] {
@@ -154,6 +166,12 @@ impl Args {
         let camera = view.camera(&self.shot.surface, mesh, moment, bounds)?;
         self.shot.check_camera(&camera)?;
         Ok(Some(camera))
+    }
+
+    /// Reads the reference pictures at these places, each of which may be none.
+    fn references(&self, places: &[Option<PathBuf>]) -> Result<Vec<Option<Reference>>, CliError> {
+        let read = |path: &Path| Reference::read(path, &self.reference);
+        places.iter().map(|place| place.as_deref().map(read).transpose()).collect()
     }
 
     /// The reference picture of a view, if there are references.

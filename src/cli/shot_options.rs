@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::factors_option::FactorsFile;
-use super::options::{LodCameraOption, PictureOptions};
+use super::options::{LodCameraOption, PictureOptions, whole_from};
 use super::shot::{Shot, ShotView, Subject};
 use super::{
     CliError, FactorsOption, LodShaderOption, ReferenceSurface, SurfaceOptions, SurfaceShaderOption, TruthOption,
@@ -42,7 +42,7 @@ pub(crate) struct ShotOptions {
     pub truth: TruthOption,
     /// Outline the patch of this triangle (its number in the mesh, from 0); the edges of factors 0, 1 and 2 are red, green
     /// and blue
-    #[arg(long, value_name = "TRIANGLE")]
+    #[arg(long, value_name = "TRIANGLE", value_parser = whole_from(0_u32))]
     pub select: Option<u32>,
     /// PNG, JPEG or WebP image of a lit sphere for the matcap overlay, in place of that of --matcap
     #[arg(long, value_name = "IMAGE", conflicts_with = "matcap")]
@@ -181,9 +181,7 @@ impl ShotOptions {
             Ok(scene.tessellator.totals().1)
         })?;
         subject.settings = subject.settings.with(within.tessellation);
-        let shot = Shot::new(engine, scene, subject, view)?;
-        shot.report_own_shaders()?;
-        Ok(shot)
+        Ok(Shot::new(engine, scene, subject, view)?)
     }
 }
 

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use super::gate_options::GateOptions;
+use super::options::whole;
 use super::tessellate::Device;
 use super::{AdapterOption, CliError, WeldOption, file_error, to_json, write_text};
 use crate::engine::Engine;
@@ -39,7 +40,7 @@ pub(crate) struct Args {
     #[arg(long, value_enum)]
     pub device: Option<Device>,
     /// Number of views for adaptive LOD and clipping: from all around, near, far and inside
-    #[arg(long, value_name = "N", default_value_t = Effort::default().cameras, value_parser = clap::value_parser!(u32).range(0..=100_000))]
+    #[arg(long, value_name = "N", default_value_t = Effort::default().cameras, value_parser = whole(0..=100_000_u32))]
     pub cameras: u32,
     /// Print every measurement as JSON in place of the table
     #[arg(long)]

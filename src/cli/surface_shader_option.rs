@@ -14,6 +14,7 @@ use crate::gates::{Gate, GateKind};
 use crate::gpu::{GpuError, SurfaceShader};
 use crate::measure::{PointsAgreement, PointsDisagreement};
 use crate::mesh::Topology;
+use crate::numbers::short;
 use crate::own_shader::read_own_shader;
 use crate::render::Scene;
 
@@ -116,7 +117,10 @@ fn lines(topology: &Topology, agreement: &PointsAgreement) -> Vec<String> {
 
 fn edge_text(topology: &Topology, edge: &PointsDisagreement) -> String {
     let ([a, b], [one, other]) = (end_points(topology, edge.edge).map(point_text), edge.triangles);
-    format!("{a} to {b}: {:.3e} between the control points of triangles {one} and {other}", edge.distance)
+    format!(
+        "{a} to {b}: {} object units between the control points of triangles {one} and {other}",
+        short(edge.distance)
+    )
 }
 
 /// The same as JSON.

@@ -6,6 +6,7 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 use image::codecs::gif::{GifEncoder, Repeat};
 use image::{Delay, Frame, RgbaImage};
 
+use super::options::whole;
 use super::picture_file::{Stamp, write_stamped};
 use super::shot::Shot;
 use super::shot_options::ShotOptions;
@@ -27,10 +28,10 @@ pub(crate) struct Args {
     #[arg(short, long, value_name = "DIR|OUT.gif", value_parser = OsStringValueParser::new().try_map(place))]
     pub output: PathBuf,
     /// Number of pictures in one turn, 2 to 3600
-    #[arg(long, value_name = "N", default_value_t = Turn::default().frames, value_parser = clap::value_parser!(u32).range(FRAMES))]
+    #[arg(long, value_name = "N", default_value_t = Turn::default().frames, value_parser = whole(FRAMES))]
     pub frames: u32,
     /// Pictures a second in a GIF, 1 to 50
-    #[arg(long, value_name = "FPS", default_value_t = Turn::default().fps, value_parser = clap::value_parser!(u32).range(FPS))]
+    #[arg(long, value_name = "FPS", default_value_t = Turn::default().fps, value_parser = whole(FPS))]
     pub fps: u32,
     #[command(flatten)]
     pub shot: ShotOptions,
@@ -38,9 +39,9 @@ pub(crate) struct Args {
     pub adapter: AdapterOption,
 }
 
-pub(crate) const FRAMES: std::ops::RangeInclusive<i64> = 2..=3600;
+pub(crate) const FRAMES: std::ops::RangeInclusive<u32> = 2..=3600;
 /// GIF files count in hundredths of a second, and viewers play those of 1 more slowly.
-pub(crate) const FPS: std::ops::RangeInclusive<i64> = 1..=50;
+pub(crate) const FPS: std::ops::RangeInclusive<u32> = 1..=50;
 
 /// One turn of the camera around the vertical axis through the point that it looks at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,6 +67,7 @@ pub(super) fn run(args: &Args, line: &str) -> Result<(), CliError> {
     }
     let (subject, _) = args.shot.subject(&args.file, &written)?;
     let mut shot = args.shot.shot(Engine::chosen(&args.adapter.choice())?, subject)?;
+    shot.report_own_shaders()?;
     let mut telling = Telling::new();
     let mut say = |frame| telling.say(|| format!("picture {} of {}", frame + 1, turn.frames));
     turn.write(&mut shot, |_| line.to_owned(), &args.output, &Progress::new(), &mut say)

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use super::foreign::ForeignMesh;
+use super::foreign::{ForeignMesh, spread};
 use super::locator::{Locator, Place};
 use super::patch_starts::patch_starts;
 use crate::cores::in_ranges;
@@ -22,6 +22,15 @@ pub(super) struct Overlaid<'a> {
     pub places: Vec<Place>,
     /// Vertices that are farther from the surface don't lie on it, in object units.
     pub fit: f64,
+}
+
+/// How most of their triangles are wound.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Winding {
+    /// As the patches that they lie on.
+    Alike,
+    /// The other way.
+    Turned,
 }
 
 /// Their triangles, patch by patch.
@@ -47,6 +56,8 @@ pub(super) struct Part {
 /// The place of a vertex that is on no patch.
 const NOWHERE: Place = Place { patch: 0, weights: [0.0; 2], distance: f64::INFINITY };
 
+/// How many triangles are asked how they are wound.
+const WOUND: usize = 300;
 /// How many vertices or triangles are worth a thread.
 const LEAST: usize = 1 << 10;
 /// How many are done between two checks for cancellation.
@@ -115,12 +126,30 @@ impl<'a> Overlaid<'a> {
         self.locator.place_on(patch, self.positions[vertex as usize]).unwrap_or(NOWHERE)
     }
 
-    /// Returns the patch that a triangle lies on: the one on whose surface most of its corners are, and which it doesn't show
-    /// its back to.
-    fn patch_of(&self, triangle: [u32; 3]) -> u32 {
+    /// The patch that is nearest to the middle of a triangle.
+    fn nearest_patch(&self, triangle: [u32; 3]) -> u32 {
         let middle = triangle.map(|corner| self.positions[corner as usize]).into_iter().sum::<DVec3>() / 3.0;
-        let nearest = self.locator.patch(middle).unwrap_or_default();
-        let fits = |patch: u32| Fit::of(triangle.map(|corner| self.place_on(corner, patch)), self.fit);
+        self.locator.patch(middle).unwrap_or_default()
+    }
+
+    /// How most of their triangles are wound that lie on the nearest patch.
+    fn winding(&self) -> Winding {
+        let triangles = &self.theirs.triangles;
+        let fit = |triangle: [u32; 3]| self.fit_on(self.nearest_patch(triangle), triangle, Winding::Alike);
+        let fits = spread(triangles.len(), WOUND).map(|index| fit(triangles[index])).filter(|fit| fit.corners == 3);
+        let (alike, turned): (Vec<Fit>, Vec<Fit>) = fits.partition(|fit| fit.is_wound_alike);
+        if turned.len() > alike.len() { Winding::Turned } else { Winding::Alike }
+    }
+
+    fn fit_on(&self, patch: u32, triangle: [u32; 3], winding: Winding) -> Fit {
+        Fit::of(triangle.map(|corner| self.place_on(corner, patch)), self.fit, winding)
+    }
+
+    /// Returns the patch that a triangle lies on: the one on whose surface most of its corners are, and on which it is wound as
+    /// most are.
+    fn patch_of(&self, triangle: [u32; 3], winding: Winding) -> u32 {
+        let nearest = self.nearest_patch(triangle);
+        let fits = |patch: u32| self.fit_on(patch, triangle, winding);
         let first = fits(nearest);
         if first.is_good() {
             return nearest;
@@ -162,17 +191,18 @@ impl<'a> Overlaid<'a> {
 struct Fit {
     /// How many of its corners lie on the patch's surface.
     corners: usize,
-    /// Whether it is wound as the patch.
+    /// Whether it is wound as it should be: as the patch, or the other way.
     is_wound_alike: bool,
     /// The sum of its corners' distances from the patch, in object units.
     distance: f64,
 }
 
 impl Fit {
-    fn of(places: [Place; 3], fit: f64) -> Self {
+    fn of(places: [Place; 3], fit: f64, winding: Winding) -> Self {
+        let area = domain_area(places.map(|place| place.weights));
         Self {
             corners: places.iter().filter(|place| place.distance <= fit).count(),
-            is_wound_alike: domain_area(places.map(|place| place.weights)) > 0.0,
+            is_wound_alike: if winding == Winding::Alike { area > 0.0 } else { area < 0.0 },
             distance: places.iter().map(|place| place.distance).sum(),
         }
     }
@@ -203,7 +233,8 @@ impl<'a> Assignment<'a> {
     /// [`Cancelled`].
     pub(super) fn new(overlaid: &'a Overlaid<'a>, progress: &Progress) -> Result<Self, Cancelled> {
         let triangles = &overlaid.theirs.triangles;
-        let patches = made_of_all(triangles.len(), progress, |index| overlaid.patch_of(triangles[index]))?;
+        let winding = overlaid.winding();
+        let patches = made_of_all(triangles.len(), progress, |index| overlaid.patch_of(triangles[index], winding))?;
         let starts = patch_starts(patches.iter().copied(), overlaid.topology.patches.len());
         let mut order = vec![0; triangles.len()];
         let mut next = starts.clone();

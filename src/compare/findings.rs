@@ -98,6 +98,11 @@ pub(crate) enum Finding {
         ours: Convention,
         theirs: Convention,
     },
+    /// Coordinates are rounded to 16-bit floating-point numbers, and so farther from ours than is allowed.
+    HalfFloats {
+        distance: f64,
+        ulps: f64,
+    },
     /// Nothing but distances that are larger than those allowed.
     Rounding {
         farthest: Farthest,
@@ -151,7 +156,7 @@ impl Finding {
             Self::OtherTriangles { .. } => "diagonals",
             Self::NotFinite { .. } => "not_finite",
             Self::Convention { .. } => "convention",
-            Self::Rounding { .. } => "rounding",
+            Self::HalfFloats { .. } | Self::Rounding { .. } => "rounding",
         }
     }
 
@@ -205,6 +210,7 @@ impl Finding {
                 theirs.name(),
                 ours.name()
             ),
+            Self::HalfFloats { distance, ulps } => half_floats_text(*distance, *ulps),
             Self::Rounding { farthest, ulps, triangle } => rounding_text(farthest, *ulps, *triangle),
         }
     }
@@ -252,6 +258,16 @@ fn additional_text(patches: u64, triangles: &[u32]) -> String {
         plural(patches, "patch has", "patches have"),
         if patches == 1 { "it" } else { "them" },
         listed(triangles, patches)
+    )
+}
+
+fn half_floats_text(distance: f64, ulps: f64) -> String {
+    format!(
+        "Its coordinates are rounded to 16-bit floating-point numbers, so that vertices are up to {} object units ({} ULP) away. \
+         If that is as it should be, allow it with --within {}.",
+        short(distance),
+        short(ulps),
+        rounded_up(distance)
     )
 }
 

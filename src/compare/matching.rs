@@ -24,6 +24,8 @@ pub(super) struct Match {
     pub doubled: u64,
     /// How many of their triangles are wound the other way than the patch.
     pub flipped: u64,
+    /// How many of their triangles are so thin that rounded coordinates don't tell how they are wound.
+    pub thin: u64,
     /// How many of their triangles join other points than ours.
     pub other: u64,
 }
@@ -37,10 +39,27 @@ pub(super) struct Reach {
     pub fit: f64,
 }
 
+/// Fixed-point places in the domain and Newton's method are at least this exact.
+pub(super) const LEAST_REACH: f64 = 2e-4;
+
+impl Reach {
+    /// The largest area in the domain of a triangle that rounding alone may turn around.
+    fn thin(&self, [a, b, c]: [[f64; 2]; 3]) -> f64 {
+        let length = |[p, q]: [[f64; 2]; 2]| (p[0] - q[0]).hypot(p[1] - q[1]);
+        let is_rounded = self.fit.is_finite() && self.domain > LEAST_REACH;
+        let longest = [[a, b], [b, c], [c, a]].map(length).into_iter().fold(0.0, f64::max);
+        if is_rounded { self.domain * longest } else { 0.0 }
+    }
+}
+
 impl Match {
     pub(super) fn of(part: &Part, own: &OwnPatch, reach: Reach) -> Self {
-        let flipped = part.triangles.iter().filter(|triangle| domain_area(part.weights(**triangle)) < 0.0).count();
-        let none = Self { flipped: flipped as u64, ..Self::default() };
+        let mut none = Self::default();
+        for weights in part.triangles.iter().map(|triangle| part.weights(*triangle)) {
+            let (area, thin) = (domain_area(weights), reach.thin(weights));
+            none.flipped += u64::from(area < -thin);
+            none.thin += u64::from(thin > 0.0 && area.abs() <= thin);
+        }
         let Some((own_vertices, slid)) = own_vertices(part, own, reach) else { return none };
         let mut is_covered = vec![false; own.positions.len()];
         own_vertices.iter().flatten().for_each(|vertex| is_covered[own.firsts[*vertex as usize] as usize] = true);

@@ -11,6 +11,7 @@ mod domain_points;
 mod explanations;
 mod findings;
 mod foreign;
+mod half_floats;
 mod locator;
 mod matching;
 mod outcomes;
@@ -58,6 +59,14 @@ pub(crate) struct Exactness {
     pub within: f64,
     /// Half a unit of the last decimal that its file has; 0 if it has them all.
     pub resolution: f64,
+}
+
+impl Exactness {
+    /// The same for numbers that are rounded by up to so many object units.
+    fn rounded(self, resolution: Option<f64>) -> Self {
+        let resolution = self.resolution.max(resolution.unwrap_or(0.0));
+        Self { within: self.within.max(2.0 * resolution), resolution }
+    }
 }
 
 /// What differs.
@@ -109,6 +118,9 @@ pub(crate) fn compare(
 ) -> Result<Comparison, Cancelled> {
     let empty = Comparison::new(ours, theirs);
     let Some(own) = Locator::of_own(ours) else { return Ok(empty) };
+    let asked = exactness.within;
+    let halves = half_floats::resolution(theirs, ours);
+    let exactness = exactness.rounded(halves);
     let fit = (FIT * empty.diagonal).max(exactness.within).max(2.0 * exactness.resolution);
     let alignment = Alignment::find(theirs, &own, &ours.emitted_positions(), fit);
     let positions = in_our_coordinates(theirs, alignment.as_ref());
@@ -133,6 +145,7 @@ pub(crate) fn compare(
         None => {
             let conventions = Conventions { ours, assignment: &assignment, exactness, progress };
             found.name_differences(&laid, &outcomes, alignment.as_ref(), &conventions)?;
+            found.findings.extend(halves.and_then(|_| found.rounded_to_halves(&laid, asked)));
         }
     }
     found.positions = positions;
@@ -265,6 +278,15 @@ impl Comparison {
         }
         self.leave_to_factors(conventions)?;
         self.judge_distances(conventions)
+    }
+
+    /// Says that their coordinates, which are numbers of 16 bits, are farther from ours than the distance that was asked for. Where
+    /// they have other points than ours, their distance from the surface tells.
+    fn rounded_to_halves(&self, laid: &Laid, asked: f64) -> Option<Finding> {
+        let from_surface = if laid.is_fitted { self.from_surface } else { 0.0 };
+        let distance = self.farthest.map_or(from_surface, |farthest| farthest.distance);
+        let is_rounding = distance > asked && distance <= laid.fit;
+        is_rounding.then(|| Finding::HalfFloats { distance, ulps: distance / self.ulp })
     }
 
     /// Where another convention gives all of their points, it also explains a few that seem to be moved, and their triangles.

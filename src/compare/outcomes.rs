@@ -6,7 +6,7 @@ use super::corner_orders::CornerOrder;
 use super::cuts::{Cut, cuts_of};
 use super::explanations::{Explainer, Explanation, Rule};
 use super::findings::{Displaced, Finding};
-use super::matching::{Farthest, Match, Reach};
+use super::matching::{Farthest, LEAST_REACH, Match, Reach};
 use super::own_mesh::{OwnMesh, OwnPatch};
 use super::{Exactness, Ours};
 use crate::mesh::EdgeKind;
@@ -92,10 +92,10 @@ impl SideDifference {
     }
 }
 
-/// Fixed-point places in the domain and Newton's method are at least this exact.
-const LEAST_REACH: f64 = 2e-4;
-/// Far less than the distance of points at factor 64.
-const LARGEST_REACH: f64 = 4e-3;
+/// A point is at most this part of a segment away from where it belongs, or points couldn't be told apart.
+const LARGEST_REACH: f64 = 0.25;
+/// The largest number of segments that a side has.
+const MOST_SEGMENTS: f64 = 64.0;
 /// Points of displaced patches are sought within this part of a segment.
 const OF_SEGMENT: f64 = 0.35;
 /// How many triangles a finding names.
@@ -121,8 +121,13 @@ impl<'a> Outcomes<'a> {
         let fit = assignment.overlaid.fit;
         let exact = exactness.within.max(exactness.resolution).max(8.0 * ulp(ours.topology));
         let reach = |patch: u32| {
-            let domain = if fit.is_finite() { exact_reach(ours, patch, exact) } else { rough_reach(own_mesh, patch) };
-            Reach { domain, fit }
+            let segments = segments_of(own_mesh, patch);
+            if !fit.is_finite() {
+                return Reach { domain: OF_SEGMENT / segments, fit };
+            }
+            // A patch that is cut into n segments has about n squared triangles.
+            let most = segments.max(f64::from(assignment.count(patch)).sqrt().min(MOST_SEGMENTS));
+            Reach { domain: exact_reach(ours, patch, exact).clamp(LEAST_REACH, LARGEST_REACH / most), fit }
         };
         let reaches: Vec<Reach> = patches.clone().map(reach).collect();
         let theirs = |patch: &u32| assignment.count(*patch) > 0;
@@ -344,7 +349,9 @@ impl<'a> Outcomes<'a> {
         if doubled.0 > 0 {
             findings.push(Finding::Doubled { count: doubled.0, patches: doubled.1 });
         }
-        let (flipped, of) = (count(|found| found.flipped).0, self.compared_triangles());
+        let [flipped, thin] = [count(|found| found.flipped).0, count(|found| found.thin).0];
+        let of = self.compared_triangles();
+        let flipped = if flipped > 0 && flipped + thin == of { of } else { flipped };
         // What is mirrored shows its other side, unless its winding was turned as well.
         let is_mirrored = alignment.is_some_and(Alignment::mirrors);
         if flipped > 0 && !(is_mirrored && flipped == of) {
@@ -422,19 +429,19 @@ impl Offsets {
     }
 }
 
-/// How near points of a patch are in the domain if they are the same to within `exact` object units.
+/// How far apart points of a patch may be in the domain if they are the same to within `exact` object units.
 fn exact_reach(ours: &Ours, patch: u32, exact: f64) -> f64 {
     let [a, b, c] = ours.topology.patch_positions(patch).map(|corner| corner.as_dvec3());
     let (sides, area) = ([a.distance(b), b.distance(c), c.distance(a)], (b - a).cross(c - a).length());
     // The least height of the triangle: along it, weights change the fastest.
     let height = area / sides.into_iter().fold(0.0, f64::max);
     let reach = 4.0 * exact / height;
-    if reach.is_finite() { reach.clamp(LEAST_REACH, LARGEST_REACH) } else { LARGEST_REACH }
+    if reach.is_finite() { reach } else { f64::MAX }
 }
 
-/// How near points of a displaced patch are in the domain.
-fn rough_reach(own_mesh: &OwnMesh, patch: u32) -> f64 {
+/// The largest number of segments into which we cut a side, or the inside, of a patch.
+fn segments_of(own_mesh: &OwnMesh, patch: u32) -> f64 {
     let factors = own_mesh.factors(patch);
     let outside = factors.outside.into_iter().map(segments).max().unwrap_or(1);
-    OF_SEGMENT / f64::from(outside.max((factors.inside & FACTOR_VALUE).div_ceil(1 << 16)).max(1))
+    f64::from(outside.max((factors.inside & FACTOR_VALUE).div_ceil(1 << 16)).max(1))
 }

@@ -102,6 +102,7 @@ impl FromStr for Gate {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
+        let text = text.trim();
         let (name, limit) = text.split_once(':').map_or((text, None), |(name, limit)| (name, Some(limit)));
         let names = || GateKind::ALL.map(GateKind::name).join(", ");
         let kind = GateKind::ALL.into_iter().find(|kind| kind.name() == name);

@@ -147,6 +147,7 @@ impl FromStr for Source {
         match text.strip_prefix(SHAPE) {
             Some(VASE) => Ok(Self::Vase),
             Some(shape) => match shape.split_once('@') {
+                Some((VASE, _)) => Err(ShapeError::VaseLevel),
                 Some((name, level)) => Self::at_level(name.parse()?, level),
                 None => shape.parse().map(Self::Shape),
             },

@@ -34,7 +34,7 @@ const GZIP: &[u8] = b"\x1f\x8b";
 const ZSTANDARD: &[u8] = b"\x28\xb5\x2f\xfd";
 
 /// The commands are those of the converters' own documentation.
-const UNREAD: [UnreadFormat; 20] = [
+const UNREAD: [UnreadFormat; 22] = [
     UnreadFormat {
         is: "a USD file",
         extensions: &["usd", "usda", "usdc", "usdz"],
@@ -167,6 +167,22 @@ const UNREAD: [UnreadFormat; 20] = [
         begins: |start, _| start.starts_with(b"7z\xbc\xaf\x27\x1c") || start.starts_with(b"Rar!\x1a\x07"),
         advice: "unpack it and open the model that it held",
     },
+    UnreadFormat {
+        is: "a pointer of Git LFS in place of the model",
+        extensions: &[],
+        begins: |start, _| start.starts_with(b"version https://git-lfs.github.com/spec/"),
+        advice: "fetch the model with `git lfs pull`, or check out with LFS",
+    },
+    UnreadFormat {
+        is: "a page in HTML, as a failed download leaves it",
+        extensions: &["html", "htm"],
+        begins: |start, _| {
+            let start = start.trim_ascii_start();
+            let begins = |with: &[u8]| start.get(..with.len()).is_some_and(|own| own.eq_ignore_ascii_case(with));
+            begins(b"<!doctype html") || begins(b"<html")
+        },
+        advice: "fetch the model itself",
+    },
 ];
 
 fn is_xml(start: &[u8]) -> bool {
@@ -200,7 +216,11 @@ mod tests {
     fn advice_names_a_command_or_a_program() {
         for format in &UNREAD {
             assert_eq!(format.advice.matches('`').count() % 2, 0, "{}", format.is);
-            assert!(["convert", "export", "make", "unpack", "open"].iter().any(|verb| format.advice.starts_with(verb)));
+            assert!(
+                ["convert", "export", "make", "unpack", "open", "fetch"]
+                    .iter()
+                    .any(|verb| format.advice.starts_with(verb))
+            );
         }
     }
 
@@ -223,6 +243,10 @@ mod tests {
         assert_eq!(is(b"FOR4\0\0\0\x10Maya", 40), Some("a scene of Maya"));
         assert_eq!(is(b"FORM\0\0\0\x10LWO2", 40), Some("a LightWave file"));
         assert_eq!(is(b"FORM\0\0\0\x10AIFF", 40), None);
+        let pointer = b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a2146\nsize 12345\n";
+        assert_eq!(is(pointer, 130), Some("a pointer of Git LFS in place of the model"));
+        let page = "a page in HTML, as a failed download leaves it";
+        assert_eq!([is(b"\n<!DOCTYPE html><html>", 40), is(b"<HTML><body>", 40)], [Some(page); 2]);
     }
 
     #[test]

@@ -54,10 +54,12 @@ pub(crate) const MAX_LEVEL: u32 = 6;
 /// Why a text doesn't name a shape.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ShapeError {
-    #[error("there is no shape \"{name}\"; choose one of {}", Shape::ALL.map(Shape::name).join(", "))]
+    #[error("there is no shape \"{name}\"; choose one of {}, or vase", Shape::ALL.map(Shape::name).join(", "))]
     Unknown { name: String },
     #[error("\"{text}\" isn't a level of a shape; choose a whole number from 0 to {MAX_LEVEL}, as in shape:torus@2")]
     Level { text: String },
+    #[error("vase has no levels; leave out the @")]
+    VaseLevel,
     #[error(
         "{shape} has no exact surface to be sampled more finely, so it has no levels; leave out the @, or choose one of {}",
         Shape::ALL.into_iter().filter(|shape| shape.has_levels()).map(Shape::name).collect::<Vec<_>>().join(", ")

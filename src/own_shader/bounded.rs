@@ -71,6 +71,11 @@ impl<'a> Source<'a> {
         Some(open + 1..*self.closed_by.get(&open)?)
     }
 
+    /// Whether the text has a function of this name.
+    pub(super) fn has(&self, function: &str) -> bool {
+        self.functions.contains_key(function)
+    }
+
     /// The line of a function's name; the first one without such a function.
     pub(super) fn line(&self, function: &str) -> usize {
         self.functions.get(function).map_or(1, |own| line_of(self.text, self.tokens[own.name].at))

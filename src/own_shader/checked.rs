@@ -8,8 +8,10 @@ use naga::valid::{Capabilities, ValidationError, ValidationFlags, Validator};
 use naga::{AddressSpace, Block, Function, Module, Span, Statement, TypeInner, WithSpan};
 
 use super::bounded::{Source, line_of};
-use super::{Fault, FaultKind};
+use super::{Fault, FaultKind, type_faults};
 use crate::gpu::own_functions::{OWN_PREFIX, OwnFunction, OwnPurpose};
+use crate::gpu::own_lod::LOD_PURPOSE;
+use crate::gpu::own_surface::SURFACE_PURPOSE;
 
 /// How deep blocks may be nested: compilers recurse into them.
 pub(super) const MOST_DEPTH: usize = 64;
@@ -18,6 +20,7 @@ pub(super) const MOST_MEMORY: u64 = 16_384;
 
 /// Checks a user's text. Returns which of the purpose's functions it has.
 pub(super) fn check(text: &str, source: &Source, purpose: &OwnPurpose) -> Result<Vec<bool>, Fault> {
+    check_purpose(source, purpose)?;
     let whole = format!("{text}\n{}", purpose.contract.text);
     let module = parse_str(&whole).map_err(|error| of_parser(text, &error))?;
     check_globals(text, &module)?;
@@ -36,6 +39,19 @@ pub(super) fn check(text: &str, source: &Source, purpose: &OwnPurpose) -> Result
     validate(text, &module)?;
     check_memory(text, &module)?;
     Ok(has)
+}
+
+/// Refuses a file that has the function of another purpose in place of this one's.
+fn check_purpose(source: &Source, purpose: &OwnPurpose) -> Result<(), Fault> {
+    let has = |own: &OwnPurpose| own.functions.first().is_some_and(|function| source.has(function.name));
+    let other = [&LOD_PURPOSE, &SURFACE_PURPOSE].into_iter().find(|other| has(other));
+    match other.and_then(|other| Some((other, other.functions.first()?.name))) {
+        Some((other, function)) if !has(purpose) => {
+            let kind = FaultKind::OtherPurpose { function, is: other.name, opened: purpose.name };
+            Err(Fault { line: source.line(function), kind })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Holds bounded functions to it that every loop of theirs is bounded.
@@ -103,13 +119,16 @@ fn of_validator(text: &str, error: &WithSpan<ValidationError>) -> Fault {
     let spans = error.spans().map(|(span, _)| *span).filter(Span::is_defined);
     // The innermost statement or expression is named last.
     let line = spans.last().map_or(1, |span| line_of_span(text, span));
-    let mut said = Vec::new();
-    let mut cause: Option<&dyn Error> = Some(error.as_inner());
-    while let Some(own) = cause {
-        said.push(own.to_string());
-        cause = own.source();
-    }
-    Fault { line, kind: FaultKind::Language(said.join(": ")) }
+    let said = type_faults::said(error.as_inner()).unwrap_or_else(|| {
+        let mut said = Vec::new();
+        let mut cause: Option<&dyn Error> = Some(error.as_inner());
+        while let Some(own) = cause {
+            said.push(own.to_string());
+            cause = own.source();
+        }
+        said.join(": ")
+    });
+    Fault { line, kind: FaultKind::Language(said) }
 }
 
 fn check_globals(text: &str, module: &Module) -> Result<(), Fault> {

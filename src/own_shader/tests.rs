@@ -32,17 +32,41 @@ fn the_examples_can_be_used() {
 }
 
 #[test]
+fn types_that_do_not_fit_are_named_as_the_language_names_them() {
+    for (body, line, says) in [
+        ("return 3u;", 3, "this `return` gives a value of another type than the function's result"),
+        ("let x = 1.0;", 2, "this function can end without a value: give one with `return`"),
+        ("let n = 3u;\n return length(edge.a * n);", 4, "`*` can't be between vec3<f32> and u32"),
+        ("if edge.side { return 1.0; }\n return 2.0;", 3, "the condition of this `if` is no bool"),
+        ("return half(edge.a);", 3, "argument 1 of this call has another type than the function's parameter"),
+    ] {
+        let text = format!(
+            "fn half(x: f32) -> f32 {{ return 0.5 * x; }}\n\
+             fn edge_factor(edge: Edge, triangle: Triangle, view: View) -> f32 {{\n{body}\n}}\n"
+        );
+        let (at, said) = fault(&text);
+        assert!(at == line && said.starts_with(says), "{body}: line {at}: {said}");
+    }
+}
+
+#[test]
 fn a_function_for_control_points_is_held_to_its_contract() {
     let fault = |text: &str| super::compile::<SurfaceShader>(text).expect_err(text);
     let own = "fn edge_points(edge: SurfaceEdge, triangle: SurfaceTriangle) -> EdgePoints { return EdgePoints(edge.a, edge.b); }";
     super::compile::<SurfaceShader>(own).unwrap_or_else(|fault| panic!("{fault}"));
     // A file for factors is none for control points, and the other way round.
     let missing = "there is no function edge_points; write: fn edge_points(edge: SurfaceEdge, triangle: SurfaceTriangle) -> EdgePoints";
-    for text in ["", "fn edge_factor() -> f32 { return 1.0; }"] {
+    for text in ["", "fn half(x: f32) -> f32 { return 0.5 * x; }"] {
         let Fault { line, kind } = fault(text);
         assert!(line == 1 && kind.to_string().starts_with(missing), "{text}: {kind}");
     }
-    assert!(matches!(compile(own), Err(Fault { kind: FaultKind::Language(_), .. })), "its structs aren't those of LOD");
+    let other =
+        "the file was opened as surface shader, but edge_factor is the function of another kind of file, LOD shader";
+    let Fault { line, kind } = fault(&format!("\n{EDGE}"));
+    assert!(line == 2 && kind.to_string().starts_with(other), "{line}: {kind}");
+    let other =
+        "the file was opened as LOD shader, but edge_points is the function of another kind of file, surface shader";
+    assert!(compile(own).expect_err("another kind").to_string().contains(other));
     for text in [
         "fn edge_points(edge: SurfaceEdge) -> EdgePoints { return EdgePoints(edge.a, edge.b); }",
         "fn edge_points(triangle: SurfaceTriangle, edge: SurfaceEdge) -> EdgePoints { return EdgePoints(edge.a, edge.b); }",

@@ -126,7 +126,7 @@ pub(crate) fn table(lines: &[Line]) -> String {
         }
         let _ = write!(text, "  {}", line.verdict.text());
         let rest = line.rest();
-        let _ = writeln!(text, "{}{rest}", if rest.is_empty() { "" } else { ": " });
+        let _ = writeln!(text, "{}{rest}", if rest.is_empty() { "" } else { "; " });
     }
     text
 }
@@ -219,7 +219,7 @@ mod tests {
         assert_eq!(lines[0].worst, [(Quantity::Points, 7.0), (Quantity::Segment, 2.5)]);
         assert_eq!((lines[0].verdict, lines[1].verdict), (Verdict::Fails, Verdict::Holds));
         let text = table(&lines);
-        assert!(text.contains("fails: 2.50 times the segment asked for"), "{text}");
+        assert!(text.contains("fails; 2.50 times the segment asked for"), "{text}");
         let broken = row("PN-AEN", Quantity::Points, 1.0, true);
         assert_eq!(super::lines(&[broken])[0].verdict, Verdict::BreaksPromise);
     }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::{Folder, failure, output, run, sentence, vase, write_corners};
+use crate::{Folder, command, failure, output, run, sentence, vase, write_corners};
 
 /// The configuration of [`assets`]: each file that fails has a section of its own.
 const CONFIG: &str = r#"
@@ -206,6 +206,11 @@ fn a_wrong_configuration_is_one_sentence_with_its_line() {
         ("include = \"a.toml\"", &["wrong.toml, line 1: ", "no key include"]),
         ("[options]\nfail-on = [\"cracks\"]", &["wrong.toml, line 2: ", "write it above the line in brackets"]),
         ("[cameras.\"\"]\ncamera = [0, 0]", &["wrong.toml, line 1: ", "a camera needs a name"]),
+        ("[cameras]\nfront = [0, 10]", &["wrong.toml, line 2: ", "[cameras.front] with camera = [0, 10]"]),
+        ("[options]\nfactor = true", &["wrong.toml, line 2: ", "factor is no switch", "--factor"]),
+        ("[options]\nfactor = false", &["wrong.toml, line 2: ", "factor is no switch"]),
+        ("[options]\nlegend = \"on\"", &["wrong.toml, line 2: ", "legend is a switch: expected true or false"]),
+        ("[options]\nsize = [640]", &["wrong.toml, line 2: ", "WIDTHxHEIGHT"]),
         ("[cameras.a]\ncamera = [nan, 0]", &["wrong.toml, line 2: ", "AZIMUTH,ELEVATION"]),
         ("a = ", &["wrong.toml, line 1: ", "no TOML"]),
     ] {
@@ -289,7 +294,14 @@ fn odd_arguments_are_said() {
     let before = std::fs::read(path("a.glb")).expect("a file");
     sentence(&["check", &path("a.glb"), "-o", &path("a.glb")], &["a.glb is read by the same command"]);
     assert_eq!(std::fs::read(path("a.glb")).expect("a file"), before);
-    let text = output(&["check", &path("a.glb"), &path("a.glb"), &path("."), "--fail-on", "cracks,leaks"]);
+    // The configuration of the working folder is read, too.
+    std::fs::write(path("pnaen.toml"), "[options]\nsize = [64, 48]\n").expect("a writable folder");
+    let over = command(&["check", "a.glb", "-o", "pnaen.toml"]).current_dir(path("")).output().expect("it starts");
+    let said = String::from_utf8_lossy(&over.stderr).into_owned();
+    assert!(over.status.code() == Some(1) && said.contains("pnaen.toml is read by the same command"), "{said}");
+    let kept = std::fs::read_to_string(path("pnaen.toml")).expect("a text");
+    assert_eq!(kept, "[options]\nsize = [64, 48]\n");
+    let text = output(&["check", &path("a.glb"), &path("a.glb"), &path("."), "--fail-on", "cracks, leaks"]);
     assert!(
         text.ends_with("1 asset: 1 passed, 0 failed, 0 broken\n"),
         "a file that is named three times is checked once: {text}"

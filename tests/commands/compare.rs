@@ -121,6 +121,32 @@ fn a_picture_shows_what_differs() {
 }
 
 #[test]
+fn positions_of_16_bits_are_named_and_may_be_allowed() {
+    let folder = Folder::new();
+    let options = ["--factor", "5", "--partitioning", "integer"];
+    let (positions, faces) = read_obj(&emitted(&folder, "theirs.obj", &options));
+    let rounded = |x: f32| {
+        let unit = x.abs().max(1.0 / 16384.0).log2().floor().exp2() / 1024.0;
+        (x / unit).round() * unit
+    };
+    let mut text = String::new();
+    for position in &positions {
+        let [x, y, z] = position.map(|bits| rounded(f32::from_bits(bits)));
+        writeln!(text, "v {x} {y} {z}").expect("a text");
+    }
+    for [a, b, c] in faces.iter().map(|face| face.map(|index| index + 1)) {
+        writeln!(text, "f {a} {b} {c}").expect("a text");
+    }
+    let half = folder.path("half.obj");
+    std::fs::write(&half, text).expect("a writable folder");
+    let said = compared(&half, &options, 1);
+    assert!(said.starts_with("Its coordinates are rounded to 16-bit floating-point numbers"), "{said}");
+    let (_, allowed) = said.split_once("--within ").expect("what allows it");
+    let (allowed, _) = allowed.split_once(".\n").expect("the sentence's end");
+    compared(&half, &[&options[..], &["--within", allowed]].concat(), 0);
+}
+
+#[test]
 fn files_that_cannot_be_compared_are_refused_with_a_sentence() {
     let folder = Folder::new();
     let write = |name: &str, text: &str| {

@@ -103,3 +103,21 @@ fn options_that_exclude_functions_of_ones_own_are_named() {
     assert!(failure(&onto, 1).contains("is read by the same command"));
     assert_eq!(output(&["factors", "shape:cube-split", "-o", "-", "--lod-shader", &shader]).lines().count(), 13);
 }
+
+#[test]
+fn the_first_of_many_views_is_reported_and_a_check_leaves_that_to_its_gates() {
+    let folder = Folder::new();
+    let shader = write(&folder, "start.wgsl", "2.0 + distance(edge.a, view.eye) / view.radius");
+    let [cameras, one, many, config] = ["cameras.txt", "one.png", "{}.png", "pnaen.toml"].map(|name| folder.path(name));
+    std::fs::write(&cameras, "side --camera 90,0\nfront --camera 0,0\n").expect("a writable folder");
+    let said = |out: &str, more: [&str; 2]| {
+        let base = ["render", "shape:torus", "-o", out, "--size", "32x24", "--lod-shader", &shader];
+        both(&[&base[..], &more].concat()).1
+    };
+    let alone = said(&one, ["--camera", "90,0"]);
+    assert!(alone.starts_with("pnaen: 384 of 384 edges have different factors on their sides\n"), "{alone}");
+    assert_eq!(said(&many, ["--cameras", &cameras]), alone);
+    std::fs::write(&config, "[options]\nsize = \"32x24\"\nlod-shader = \"start.wgsl\"\n").expect("a writable folder");
+    let errors = failure(&["check", "shape:torus", "--config", &config, "--fail-on", "factors"], 1);
+    assert!(!errors.contains("on their sides") && errors.contains("0 passed, 1 failed"), "{errors}");
+}

@@ -80,6 +80,10 @@ fn wrong_usage_exits_with_2() {
         &["tessellate", "shape:torus", "-o", "x.glb", "--lod", "edge_length"],
         &["render", "shape:torus", "-o", "x.png", "--clip", "frustrum"],
         &["tessellate", "shape:torus", "-o", "x.glb", "--clip", "frusta"],
+        &["render", "shape:torus", "-o", "-"],
+        &["render", "shape:torus", "-o", "x.json"],
+        &["render", "shape:torus", "-o", "x.png", "--px-threshold", "3"],
+        &["compare", "shape:torus", "--mesh", "shape:torus", "-o", "theirs.obj"],
         &["frobnicate", "--hard"],
     ] {
         // If a command wrote a file by mistake, it would be in this folder.
@@ -152,7 +156,23 @@ fn two_overlays_that_colour_the_surface_are_wrong_usage() {
         assert!(errors.contains("--overlay can't be"), "{errors}");
         assert!(!Path::new(&picture).exists(), "nothing is drawn");
     }
-    output(&overlays("triangle-size,wireframe,normals,back-faces"));
+    output(&overlays("triangle-size, wireframe, normals ,back-faces"));
+}
+
+#[test]
+fn what_an_option_takes_is_said() {
+    let render = |option: &str, value: &str| failure(&["render", "shape:torus", "-o", "x.png", option, value], 2);
+    for (said, words) in [
+        (render("--select", "x"), "expected a whole number, 0 or more"),
+        (render("--max-triangles", "0"), "expected a whole number, 1 or more"),
+        (render("--arena", "0.5"), "expected a whole number from 1 to 65536"),
+        (render("--view-projection", "1 2 x"), "expected 16 numbers, and number 3 is x"),
+        (failure(&["check", "shape:torus", "--jobs", "0"], 2), "expected a whole number from 1 to 256"),
+        (failure(&["info", "shape:teapot"], 2), "torus, cylinder, cone, saddle, bicubic, moebius, or vase"),
+        (failure(&["info", "shape:vase@1"], 2), "vase has no levels; leave out the @"),
+    ] {
+        assert!(said.contains(words), "{said}");
+    }
 }
 
 #[test]

@@ -62,6 +62,10 @@ fn views_of_a_file_have_its_names_and_other_files_are_refused() {
     assert_eq!(picture(&single), above);
     std::fs::write(&cameras, "front --camera 0,0\nback --zoom 2\n").expect("a file");
     sentence(&[&base[..], &["-o", &out]].concat(), &["cameras.txt", "line 2", "--zoom"]);
+    for text in ["\u{feff}front --camera 0,0\r\n", "\u{feff}[{\"name\": \"front\", \"camera\": [0, 0]}]\r\n"] {
+        std::fs::write(&cameras, text).expect("a file");
+        output(&[&base[..], &["-o", &out]].concat());
+    }
     std::fs::write(&cameras, "a --camera 0,0\nA --camera 1,0\n").expect("a file");
     sentence(&[&base[..], &["-o", &out]].concat(), &["cameras.txt", "two cameras are called A"]);
     let one = failure(&["render", "shape:cone", "--cameras", "2", "-o", &folder.path("a.png")], 2);
@@ -192,7 +196,7 @@ fn what_is_no_matrix_is_refused_in_a_sentence() {
     let few = failure(&[&base[..], &["1 2 3 4 5 6 7 8 9 10 11 12 13 14 15"]].concat(), 2);
     assert!(few.contains("expected 16 numbers, found 15"), "{few}");
     let nan = failure(&[&base[..], &["1 0 0 0 0 1 0 0 0 0 nan -1 0 0 1 2"]].concat(), 2);
-    assert!(nan.contains("the 11. is nan"), "{nan}");
+    assert!(nan.contains("number 11 is nan"), "{nan}");
     sentence(&[&base[..], &["1 1 0 0 2 2 0 0 3 3 0 -1 0 0 1 2"]].concat(), &["singular"]);
     sentence(&[&base[..], &["1 0 0 0 0 1 0 0 0 0 0 -1 0 0 1 2"]].concat(), &["--depth"]);
     let turned = [

@@ -45,7 +45,7 @@ impl App {
 
 /// The rows about the number of pictures, and what they are written as.
 fn turn_rows(ui: &mut Ui, own: &mut TurntableWindow) {
-    let number = |ui: &mut Ui, name: &str, value: &mut u32, range: std::ops::RangeInclusive<i64>, hover: &str| {
+    let number = |ui: &mut Ui, name: &str, value: &mut u32, range: std::ops::RangeInclusive<u32>, hover: &str| {
         let label = ui.label(name).on_hover_text(hover);
         ui.add(DragValue::new(value).range(range)).labelled_by(label.id).on_hover_text(hover);
         ui.end_row();

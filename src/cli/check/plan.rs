@@ -3,7 +3,7 @@
 use std::path::{Component, Path, PathBuf};
 
 use clap::error::ErrorKind;
-use clap::{CommandFactory, Parser};
+use clap::{Arg, ArgAction, Command, CommandFactory, Parser};
 
 use super::Args;
 use crate::check::{Config, ConfigError, FolderError, Inputs, OptionValue, Section, assets};
@@ -52,17 +52,22 @@ struct Options {
     shot: ShotOptions,
 }
 
+/// The configuration that is read, if there is one.
+pub(super) fn config_path(args: &Args) -> Option<&Path> {
+    let usual = Path::new(CONFIG);
+    args.config.as_deref().or_else(|| usual.is_file().then_some(usual))
+}
+
 /// What is to be checked, in the order in which it is reported.
 ///
 /// # Errors
 /// A folder or the configuration can't be read, the configuration is wrong, or there is nothing to check.
 pub(super) fn plan(args: &Args) -> Result<Vec<Job>, CliError> {
-    let usual = Path::new(CONFIG);
-    let path = args.config.as_deref().or_else(|| usual.is_file().then_some(usual));
+    let path = config_path(args);
     let command = Options::command();
     let names: Vec<String> = command.get_arguments().filter_map(|arg| arg.get_long().map(str::to_owned)).collect();
     let config = path.map(|path| Config::read(path, &names, &CAMERA)).transpose()?.unwrap_or_default();
-    check_options(&config)?;
+    check_options(&config, &command)?;
     let folder = path.and_then(Path::parent).unwrap_or(Path::new(""));
     let unreadable = |FolderError { folder, error }: FolderError| file_error(&folder, "read", &file_reason(&error));
     let found = assets(&args.files).map_err(unreadable)?;
@@ -78,8 +83,12 @@ pub(super) fn plan(args: &Args) -> Result<Vec<Job>, CliError> {
 ///
 /// # Errors
 /// A value is none of its option's, with its line.
-fn check_options(config: &Config) -> Result<(), CliError> {
+fn check_options(config: &Config, command: &Command) -> Result<(), CliError> {
     for option in config.options() {
+        let known = command.get_arguments().find(|arg| arg.get_long() == Some(&option.name));
+        if let Some(reason) = known.and_then(|arg| other_type(arg, option)) {
+            return Err(config.wrong(option, &reason).into());
+        }
         match Options::try_parse_from(words(option)) {
             // An option that needs another one has it elsewhere.
             Err(wrong) if wrong.kind() != ErrorKind::MissingRequiredArgument => {
@@ -89,6 +98,19 @@ fn check_options(config: &Config) -> Result<(), CliError> {
         }
     }
     Ok(())
+}
+
+/// What is wrong if a switch has a value that is neither true nor false, or another option one of these.
+fn other_type(arg: &Arg, option: &OptionValue) -> Option<String> {
+    let OptionValue { name, values, .. } = option;
+    let is_switch = !arg.get_action().takes_values();
+    let takes_one = matches!(arg.get_action(), ArgAction::Set);
+    if is_switch && values.iter().any(Option::is_some) {
+        return Some(format!("{name} is a switch: expected true or false"));
+    }
+    let has_none = values.iter().any(Option::is_none) || takes_one && values.is_empty();
+    (!is_switch && has_none)
+        .then(|| format!("{name} is no switch: expected a value as `pnaen render --{name}` takes it"))
 }
 
 /// Where an asset lies, as patterns see it: its path below the configuration's folder, or all of the path of one that lies

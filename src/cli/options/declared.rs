@@ -145,10 +145,26 @@ fn parser(declaration: &'static Declaration) -> ValueParser {
     match &declaration.kind {
         Kind::Choice(all) | Kind::Several(all) => {
             let value = |name: String| declaration.kind.named(&name).map_or(Value::Unset, Value::Name);
-            ValueParser::new(PossibleValuesParser::new(all().into_iter().map(possible)).map(value))
+            ValueParser::new(Trimmed(PossibleValuesParser::new(all().into_iter().map(possible)).map(value)))
         }
         Kind::NameOrNumber { .. } => ValueParser::new(NameOrNumber(declaration)),
         kind => ValueParser::new(move |text: &str| kind.parse(text)),
+    }
+}
+
+/// Reads a value without the blanks around it, which people write after the commas of a list.
+#[derive(Clone)]
+struct Trimmed<P>(P);
+
+impl<P: TypedValueParser> TypedValueParser for Trimmed<P> {
+    type Value = P::Value;
+
+    fn parse_ref(&self, command: &Command, arg: Option<&Arg>, value: &OsStr) -> Result<P::Value, Error> {
+        self.0.parse_ref(command, arg, value.to_str().map_or(value, |text| OsStr::new(text.trim())))
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        self.0.possible_values()
     }
 }
 

@@ -1,5 +1,7 @@
 //! Parsers of the values of options.
 
+use std::fmt::Display;
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -7,21 +9,27 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 use glam::Vec3;
 
 use crate::load::Source;
+use crate::load::format::Format;
 use crate::mesh::crease_band::WIDEST;
 use crate::render::camera::FIELDS_OF_VIEW;
 
-/// Parses the path of a picture. Refuses endings of other formats than PNG.
+/// Parses the path of a picture. Refuses standard output, and endings of files that are no PNG files.
 pub(crate) fn picture() -> impl TypedValueParser<Value = PathBuf> {
-    OsStringValueParser::new().try_map(|path| {
-        let path = PathBuf::from(path);
-        let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
-        match extension.as_deref() {
-            Some(other @ ("jpg" | "jpeg" | "webp" | "bmp" | "gif" | "tif" | "tiff")) => {
-                Err(format!("pictures are PNG files, not .{other}: name it .png"))
-            }
-            _ => Ok(path),
-        }
-    })
+    OsStringValueParser::new().try_map(|path| picture_path(PathBuf::from(path)))
+}
+
+fn picture_path(path: PathBuf) -> Result<PathBuf, String> {
+    if path.as_os_str() == "-" {
+        return Err("pictures aren't written to standard output: name a .png file".to_owned());
+    }
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let is_mesh = Format::of_name(&path).is_some();
+    let is_image = ["jpg", "jpeg", "webp", "bmp", "gif", "tif", "tiff", "svg", "hdr", "exr"].contains(&&*ending);
+    let is_text = ["csv", "tsv", "json", "toml", "txt", "md", "html", "xml", "wgsl"].contains(&&*ending);
+    if is_mesh || is_image || is_text {
+        return Err(format!("pictures are PNG files, not .{ending}: name it .png"));
+    }
+    Ok(path)
 }
 
 /// Parses the path of a mesh to write, whose ending gives its format.
@@ -42,7 +50,8 @@ impl FromStr for Size {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let side = |text: &str| text.parse().ok().filter(|side| (1..=16384).contains(side));
-        let sides = text.split_once(['x', 'X']).and_then(|(w, h)| Some([side(w)?, side(h)?]));
+        // With a comma as a list of numbers in a configuration gives it.
+        let sides = text.split_once(['x', 'X', ',']).and_then(|(w, h)| Some([side(w)?, side(h)?]));
         sides.map(Self).ok_or_else(|| "expected WIDTHxHEIGHT in px, each from 1 to 16384, such as 1280x720".into())
     }
 }
@@ -127,6 +136,28 @@ pub(super) fn bytes(text: &str) -> Result<u64, String> {
     bytes.filter(|bytes| *bytes > 0).ok_or_else(|| expected.into())
 }
 
+/// Parses a whole number of a range.
+pub(crate) fn whole<T>(range: RangeInclusive<T>) -> impl Fn(&str) -> Result<T, String> + Clone
+where
+    T: Copy + FromStr + PartialOrd + Display,
+{
+    move |text: &str| {
+        let number = text.trim().parse().ok().filter(|number| range.contains(number));
+        number.ok_or_else(|| format!("expected a whole number from {} to {}", range.start(), range.end()))
+    }
+}
+
+/// Parses a whole number that is at least this one.
+pub(crate) fn whole_from<T>(least: T) -> impl Fn(&str) -> Result<T, String> + Clone
+where
+    T: Copy + FromStr + PartialOrd + Display,
+{
+    move |text: &str| {
+        let number = text.trim().parse().ok().filter(|number| *number >= least);
+        number.ok_or_else(|| format!("expected a whole number, {least} or more"))
+    }
+}
+
 /// Parses a difference from 0 to 1.
 pub(crate) fn threshold(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number| (0.0..=1.0).contains(number));
@@ -143,7 +174,7 @@ pub(super) fn crease_band(text: &str) -> Result<f32, String> {
     within(text, 0.0..=WIDEST)
 }
 
-fn within(text: &str, range: std::ops::RangeInclusive<f32>) -> Result<f32, String> {
+fn within(text: &str, range: RangeInclusive<f32>) -> Result<f32, String> {
     let number = text.parse().ok().filter(|number| range.contains(number));
     number.ok_or_else(|| format!("expected a number from {} to {}", range.start(), range.end()))
 }
@@ -154,8 +185,26 @@ mod tests {
     use crate::files::Limits;
 
     #[test]
+    fn pictures_have_no_name_of_another_format() {
+        for good in ["a.png", "A.PNG", "picture", "shot.v2", "{}.png", "views", "a.glb.png"] {
+            assert_eq!(picture_path(good.into()), Ok(good.into()));
+        }
+        for bad in ["-", "a.jpg", "theirs.obj", "model.GLB", "numbers.json", "theirs.csv", "pnaen.toml"] {
+            assert!(picture_path(bad.into()).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn whole_numbers_say_what_they_take() {
+        let jobs = whole(1..=256_u16);
+        assert_eq!((jobs("256"), jobs("0")), (Ok(256), Err("expected a whole number from 1 to 256".to_owned())));
+        assert_eq!(whole_from(1_u64)("x"), Err("expected a whole number, 1 or more".to_owned()));
+        assert!(["", "-1", "1.5", "99999999999"].into_iter().all(|bad| whole_from(0_u32)(bad).is_err()));
+    }
+
+    #[test]
     fn sizes_and_cameras_are_read_or_refused() {
-        assert_eq!("640x480".parse(), Ok(Size([640, 480])));
+        assert_eq!(["640x480", "640,480"].map(str::parse), [const { Ok(Size([640, 480])) }; 2]);
         for bad in ["640", "0x10", "640x", "-1x5", "99999x5"] {
             assert!(bad.parse::<Size>().is_err(), "{bad}");
         }

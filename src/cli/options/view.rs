@@ -82,7 +82,7 @@ impl FromStr for MatrixNumbers {
         let words = text.split(is_between).filter(|word| !word.is_empty());
         let numbers = words.enumerate().map(|(index, word)| {
             let number = word.parse().ok().filter(|number: &f64| number.is_finite());
-            number.ok_or_else(|| format!("expected 16 numbers, and the {}. is {word}", index + 1))
+            number.ok_or_else(|| format!("expected 16 numbers, and number {} is {word}", index + 1))
         });
         let numbers = numbers.collect::<Result<Vec<_>, _>>()?;
         let found = numbers.len();
@@ -194,7 +194,7 @@ mod tests {
         }
         let refused = |text: String| text.parse::<MatrixNumbers>().expect_err("no matrix");
         assert_eq!(refused(numbers[1..].join(" ")), "expected 16 numbers, found 15");
-        assert_eq!(refused(numbers.join(" ").replace("16", "NaN")), "expected 16 numbers, and the 16. is NaN");
+        assert_eq!(refused(numbers.join(" ").replace("16", "NaN")), "expected 16 numbers, and number 16 is NaN");
         assert_eq!(refused(numbers.join(" ").replace("2 3", "2 x")), "expected 16 numbers, and the 3. is x");
     }
 }

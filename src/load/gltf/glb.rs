@@ -43,8 +43,14 @@ pub(super) fn parts(bytes: &[u8]) -> Result<Parts, GltfError> {
     if version != 2 {
         return Err(fail(format!("its header says that its version is {version}, but only version 2 is read")));
     }
-    if length < HEADER || length > bytes.len() {
+    if length < HEADER {
         return Err(fail(format!("its header says that the file has {length} bytes, but it has {}", bytes.len())));
+    }
+    if length > bytes.len() {
+        let has = bytes.len();
+        return Err(fail(format!(
+            "the file was cut short: its header says that it has {length} bytes, but it has {has}"
+        )));
     }
     let mut chunks = Chunks { bytes, length, next: HEADER, count: 0 };
     let Some((b"JSON", mut json)) = chunks.next()? else {

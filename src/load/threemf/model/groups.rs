@@ -1,0 +1,107 @@
+//! Reads what triangles look like: textures, and groups of materials, colours, texture coordinates, mixtures and layers.
+
+use glam::Vec4;
+
+use super::{ModelReader, PER_ENTRY};
+use crate::load::read_error::ReadError;
+use crate::load::text_lines::{number_or_nan, words};
+use crate::load::threemf::properties::{Composites, Group, LayerFaults, MultiProperties};
+use crate::load::threemf::texture2d::Texture2d;
+use crate::load::threemf::xml::Element;
+
+impl ModelReader<'_> {
+    pub(super) fn begin_group(&mut self, element: &Element, group: Group) -> Result<(), ReadError> {
+        self.geometry.hold(PER_ENTRY, self.budget)?;
+        self.group = Some((self.id(element, "of properties")?, group));
+        Ok(())
+    }
+
+    pub(super) fn end_group(&mut self) {
+        let Some((id, group)) = self.group.take() else { return };
+        self.part.groups.entry(id).or_insert(group);
+    }
+
+    pub(super) fn texture(&mut self, element: &Element) -> Result<(), ReadError> {
+        let (id, texture) = (self.id(element, "texture2d")?, Texture2d::of(element));
+        self.geometry.hold(PER_ENTRY + 2 * texture.path.len() as u64, self.budget)?;
+        self.part.textures.entry(id).or_insert(texture);
+        Ok(())
+    }
+
+    /// Reads a pair of texture coordinates. What isn't a number becomes NaN, which counts as a repair of the corners that use it.
+    pub(super) fn coordinate(&mut self, element: &Element) -> Result<(), ReadError> {
+        let at = |name: &[u8]| element.attribute(name).map_or(f32::NAN, |value| number_or_nan(value.trim_ascii()));
+        if let Some((_, Group::Texture { coordinates, .. })) = &mut self.group {
+            // A list that grows may take three times its size.
+            self.geometry.hold(3 * size_of::<[f32; 2]>() as u64, self.budget)?;
+            coordinates.push([at(b"u"), at(b"v")]);
+        }
+        Ok(())
+    }
+
+    /// Reads an entry of a group.
+    pub(super) fn entry(&mut self, element: &Element) -> Result<(), ReadError> {
+        let names = [&b"displaycolor"[..], b"color"];
+        let text = names.iter().find_map(|name| element.attribute(name));
+        let color = text.as_deref().and_then(color);
+        // A material may have none.
+        self.found.bad_colors += usize::from(text.is_some() && color.is_none());
+        let color = color.unwrap_or([255; 4]);
+        match &mut self.group {
+            Some((_, Group::Materials(materials))) => {
+                let name = element.text(b"name").unwrap_or_default();
+                self.geometry.hold(3 * (size_of::<(String, [u8; 4])>() + name.len()) as u64, self.budget)?;
+                materials.push((name, color));
+            }
+            Some((_, Group::Colors(colors))) => {
+                self.geometry.hold(3 * size_of::<[u8; 4]>() as u64, self.budget)?;
+                colors.push(color);
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Begins mixtures of materials, which stand before them in the file (core specification, chapter 3.4).
+    pub(super) fn begin_composites(&mut self, element: &Element) -> Result<(), ReadError> {
+        let words = element.attribute(b"matindices").map_or(0, |text| words(&text).count());
+        self.geometry.hold(3 * (words * size_of::<Option<Vec4>>()) as u64, self.budget)?;
+        let materials = element.number(b"matid").and_then(|id| self.part.groups.get(&id));
+        let composites = Composites::of(element, materials);
+        self.found.absent_constituents += composites.absent();
+        self.begin_group(element, Group::Composites(composites))
+    }
+
+    pub(super) fn composite(&mut self, element: &Element) -> Result<(), ReadError> {
+        if let Some((_, Group::Composites(composites))) = &mut self.group {
+            self.geometry.hold(3 * size_of::<Vec4>() as u64, self.budget)?;
+            let (color, bad) = composites.mixed(&element.text(b"values").unwrap_or_default());
+            composites.colors.push(color);
+            self.found.bad_shares += bad;
+        }
+        Ok(())
+    }
+
+    pub(super) fn begin_layers(&mut self, element: &Element) -> Result<(), ReadError> {
+        let (layers, LayerFaults { beyond, methods }) = MultiProperties::of(element);
+        self.found.layers.beyond += beyond;
+        self.found.layers.methods += methods;
+        self.begin_group(element, Group::Layers(layers))
+    }
+
+    pub(super) fn layers_entry(&mut self, element: &Element) -> Result<(), ReadError> {
+        if let Some((_, Group::Layers(layers))) = &mut self.group {
+            self.geometry.hold(3 * (layers.layers.len() * size_of::<u32>()) as u64, self.budget)?;
+            layers.push(&element.text(b"pindices").unwrap_or_default());
+        }
+        Ok(())
+    }
+}
+
+/// Parses a colour: `#RRGGBB` or `#RRGGBBAA`.
+fn color(text: &[u8]) -> Option<[u8; 4]> {
+    let digits = std::str::from_utf8(text.trim_ascii().strip_prefix(b"#")?).ok()?;
+    let is_hexadecimal = matches!(digits.len(), 6 | 8) && digits.bytes().all(|digit| digit.is_ascii_hexdigit());
+    let bits = u32::from_str_radix(digits, 16).ok().filter(|_| is_hexadecimal)?;
+    Some(if digits.len() == 6 { bits << 8 | 0xff } else { bits }.to_be_bytes())
+}
