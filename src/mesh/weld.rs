@@ -56,7 +56,7 @@ fn first_equal(points: &[(Vec3, u32)]) -> Vec<u32> {
         // Hashes are spread evenly, so that there is room enough nearly always.
         let mut own = Vec::with_capacity((points.len() / parts).saturating_mul(17) / 16);
         let hashed = (0_u64..).zip(points).map(|(i, point)| (hash(point), i));
-        own.extend(hashed.filter(|(hash, _)| hash * parts as u64 >> 32 == *part).map(|(hash, i)| hash << 32 | i));
+        own.extend(hashed.filter(|(hash, _)| (hash * parts as u64) >> 32 == *part).map(|(hash, i)| hash << 32 | i));
         own.sort_unstable();
         own
     });
@@ -205,7 +205,7 @@ mod tests {
             let (points, of) = on_cores(cores, || weld(positions.iter().copied()));
             assert!(points.len() == known.len() && of == numbers, "{cores}");
         }
-        let one = on_cores(7, || weld([Vec3::ONE; 100_000]));
+        let one = on_cores(7, || weld(vec![Vec3::ONE; 100_000]));
         assert_eq!(one, (vec![Vec3::ONE], vec![0; 100_000]));
     }
 
