@@ -4,26 +4,47 @@ use std::iter::once;
 use std::num::NonZero;
 use std::ops::Range;
 use std::panic::resume_unwind;
+use std::sync::{Mutex, PoisonError};
 use std::thread;
 
 /// Divides the numbers below `count` into ranges of at least `least` numbers, one for each core, and returns what `work`
 /// makes of each range, in the order of the ranges. What is made of all of them together must not depend on where one
 /// range ends and the next begins. Returns after the last range is done.
 pub(crate) fn in_ranges<R: Send>(count: usize, least: usize, work: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
-    let ranges = cores().min(count / least.max(1)).max(1);
-    let range = |number: usize| number * count / ranges..(number + 1) * count / ranges;
-    let work = &work;
+    let (mut ranges, work) = (ranges(count, least), &work);
     thread::scope(|scope| {
-        let start = |number| (number, thread::Builder::new().spawn_scoped(scope, move || work(range(number))));
-        let others: Vec<_> = (1..ranges).map(start).collect();
-        let first = work(range(0));
-        let others = others.into_iter().map(|(number, thread)| match thread {
+        let first = ranges.next().unwrap_or_default();
+        let start = |range: Range<usize>| {
+            let own = range.clone();
+            (range, thread::Builder::new().spawn_scoped(scope, move || work(own)))
+        };
+        let others: Vec<_> = ranges.map(start).collect();
+        let first = work(first);
+        let others = others.into_iter().map(|(range, thread)| match thread {
             Ok(thread) => thread.join().unwrap_or_else(|panic| resume_unwind(panic)),
             // The system has no further thread.
-            Err(_) => work(range(number)),
+            Err(_) => work(range),
         });
         once(first).chain(others).collect()
     })
+}
+
+/// Divides the numbers below `count` into ranges of at least `least` numbers, one for each core; into one range if there are fewer.
+pub(crate) fn ranges(count: usize, least: usize) -> impl Iterator<Item = Range<usize>> {
+    let ranges = cores().min(count / least.max(1)).max(1);
+    (0..ranges).map(move |number| number * count / ranges..(number + 1) * count / ranges)
+}
+
+/// Returns what `work` makes of each part, in the order of the parts, which the cores share. A part may hold what is changed, such as
+/// a slice of a list.
+pub(crate) fn in_parts<T: Send, R: Send>(parts: Vec<T>, work: impl Fn(&mut T) -> R + Sync) -> Vec<R> {
+    // Each lock is taken once.
+    let parts: Vec<Mutex<T>> = parts.into_iter().map(Mutex::new).collect();
+    let of_part = |part: &Mutex<T>| work(&mut part.lock().unwrap_or_else(PoisonError::into_inner));
+    in_ranges(parts.len(), 1, |range| parts[range].iter().map(of_part).collect::<Vec<_>>())
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 /// Does two works at the same time if there are several cores, and returns what they make.
@@ -93,6 +114,22 @@ pub(crate) mod tests {
                 "{count}, {least}: {ranges:?}"
             );
         }
+    }
+
+    #[test]
+    fn parts_are_changed_on_any_number_of_cores() {
+        for cores in [1, 2, 7] {
+            let mut list = [0; 10];
+            let parts = list.chunks_mut(3).enumerate().collect();
+            let lengths = on_cores(cores, || {
+                in_parts(parts, |(number, part)| {
+                    part.fill(*number);
+                    part.len()
+                })
+            });
+            assert_eq!((lengths, list), (vec![3, 3, 3, 1], [0, 0, 0, 1, 1, 1, 2, 2, 2, 3]), "{cores}");
+        }
+        assert!(in_parts(Vec::new(), |(): &mut ()| ()).is_empty());
     }
 
     #[test]

@@ -122,11 +122,12 @@ impl Info {
         warnings: &[String],
         progress: &Progress,
     ) -> Result<Self, Cancelled> {
-        let edges = topology.edge_counts();
-        let bounds = mesh.bounds();
-        let t_junctions = t_junctions(topology, progress)?;
         let exact = (weld == 0.0).then_some(topology);
-        let (normal_faults, joins) = both(|| NormalFaults::of(mesh, topology), || weld_previews(mesh, exact, progress));
+        let t_junctions = t_junctions(topology, progress)?;
+        // Divided among the cores already.
+        let normal_faults = NormalFaults::of(mesh, topology);
+        let counts = || (topology.edge_counts(), euler_characteristic(topology), mesh.bounds());
+        let ((edges, euler_characteristic, bounds), joins) = both(counts, || weld_previews(mesh, exact, progress));
         Ok(Self {
             name: mesh.name.clone(),
             triangles: mesh.triangles.len() as u32,
@@ -150,7 +151,7 @@ impl Info {
             repairs: mesh.repairs,
             normal_faults,
             bounds: BoundsInfo { min: bounds.min.into(), max: bounds.max.into(), diagonal: bounds.diagonal() },
-            euler_characteristic: euler_characteristic(topology),
+            euler_characteristic,
             closed: edges.total() > 0 && edges.boundary == 0 && edges.non_manifold == 0,
             warnings: warnings.to_vec(),
         })

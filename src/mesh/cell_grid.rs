@@ -72,13 +72,13 @@ impl CellGrid {
     /// Returns the cell of a position. Cells of different numbers are different ones.
     pub(super) fn at(&self, position: Vec3, number: u32) -> CellHash {
         let place = position.as_dvec3() * self.inverse;
-        let [x, y, z] = [cell(place.x).0, cell(place.y).0, cell(place.z).0];
+        let [x, y, z] = [cell(place.x), cell(place.y), cell(place.z)];
         self.start(number).with(z, self.factors[2], 4).with(y, self.factors[1], 2).with(x, self.factors[0], 0)
     }
 
     /// Returns the cells of a number that may have positions within `reach` of a position, each after the square of its distance, in
     /// cells. The cell of the position comes first. Cells are at least `LEAST_WIDTH` reaches wide.
-    #[inline]
+    #[inline(always)] // A call costs more than what the array holds.
     pub(super) fn near(&self, position: Vec3, number: u32) -> [(f64, CellHash); 8] {
         let place = position.as_dvec3() * self.inverse;
         let [x, y, z] = [beside(place.x), beside(place.y), beside(place.z)];
@@ -109,56 +109,52 @@ impl CellGrid {
     }
 }
 
-/// Returns the cell of a coordinate, which is in cells; and where in the cell it is, 0 to 1.
-fn cell(at: f64) -> (u64, f64) {
-    if at.abs() < FAR {
-        let cell = floor(at);
-        (cell as i64 as u64, at - cell)
-    } else {
-        (at.to_bits(), 0.5)
-    }
+/// Returns the cell of a coordinate, which is in cells.
+fn cell(at: f64) -> u64 {
+    let [(_, cell), _] = beside(at);
+    cell
 }
 
 /// Returns the cell of a coordinate, which is in cells, and the nearer one beside it; the other one is out of reach. Each comes after
 /// the square of its distance.
+#[inline]
 fn beside(at: f64) -> [(f64, u64); 2] {
-    let (cell, within) = cell(at);
     if at.abs() >= FAR {
         // Within reach there is no other coordinate.
-        return [(0.0, cell), (f64::INFINITY, cell)];
+        return [(0.0, at.to_bits()), (f64::INFINITY, at.to_bits())];
     }
-    let is_low = within < 0.5;
-    let away = if is_low { within } else { 1.0 - within };
-    let next = if is_low { cell.wrapping_sub(1) } else { cell.wrapping_add(1) };
-    [(0.0, cell), (away * away, next)]
+    // The sum has no room for fractions: its lowest bits are those of the boundary between the two cells, a whole number.
+    let sum = at + NO_FRACTION;
+    let (boundary, above) = (sum - NO_FRACTION, sum.to_bits().wrapping_sub(NO_FRACTION.to_bits()));
+    let is_below = u64::from(at < boundary);
+    let away = at - boundary;
+    [(0.0, above.wrapping_sub(is_below)), (away * away, above.wrapping_sub(1 - is_below))]
 }
 
-/// From here on all f64 numbers are whole.
-const WHOLE: f64 = (1_u64 << 52) as f64;
-
-/// Rounds down, as [`f64::floor`] does, which is a call of a function on processors that may lack the instruction. A zero
-/// may have another sign.
-pub(super) fn floor(x: f64) -> f64 {
-    if x.abs() < WHOLE {
-        let cut = x as i64 as f64;
-        cut - f64::from(u8::from(cut > x))
-    } else {
-        x
-    }
-}
+/// Around this number f64 numbers are 1 apart, for 2^51 to either side.
+const NO_FRACTION: f64 = (3_u64 << 51) as f64;
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_rounded_down() {
-        let numbers =
-            [0.0, 0.5, 1.0, 1.5, 7.999, 4e9, 4_503_599_627_370_495.5, 4_503_599_627_370_496.0, 1e300, f64::MAX];
-        for x in numbers.into_iter().flat_map(|x| [x, -x]).chain([5e-324, -5e-324, f64::INFINITY, f64::NEG_INFINITY]) {
-            assert_eq!(floor(x), x.floor());
+    fn a_coordinate_lies_between_two_cells() {
+        let mut random = fastrand::Rng::with_seed(1);
+        let far = (0..20_000).map(|_| (random.f64() - 0.5) * f64::from(random.i32(-20..42)).exp2());
+        let near = [0.0, -0.0, 0.5, -0.5, 1.0, 1.5, 2.5, -1.0, -2.5, 5e-324, -5e-324, 1.0 - f64::EPSILON, FAR - 0.5];
+        for at in far.chain(near) {
+            let within = at - at.floor();
+            let (to, away) = if within < 0.5 { (-1, within) } else { (1, 1.0 - within) };
+            let [(none, own), (square, next)] = beside(at);
+            assert_eq!((none, own as i64, cell(at)), (0.0, at.floor() as i64, own), "{at}");
+            // In the middle of a cell, one beside it is as good as the other.
+            assert!(next as i64 == own as i64 + to || within == 0.5, "{at}: {next}");
+            assert!((square - away * away).abs() < 1e-15, "{at}: {square}");
         }
-        assert!(floor(f64::NAN).is_nan());
+        for at in [FAR, -FAR, 1e300] {
+            assert_eq!(beside(at), [(0.0, at.to_bits()), (f64::INFINITY, at.to_bits())]);
+        }
     }
 
     #[test]

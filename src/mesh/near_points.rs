@@ -1,6 +1,8 @@
 //! Finds out which points have another point nearby: only those can change when points are welded within a tolerance.
 
+use std::iter::zip;
 use std::ops::ControlFlow::{Break, Continue};
+use std::ops::Range;
 
 use glam::Vec3;
 
@@ -20,6 +22,10 @@ const WIDTH: f64 = 4.0;
 
 /// How much farther a search goes, for the rounding of distances.
 const ROOM: f64 = 1.0 + 1e-6;
+
+/// How many points are looked at together: first their cells are found, then what these have is read, so that the processor fetches
+/// many from memory at once.
+const BATCH: usize = 32;
 
 /// The least number of points that are worth a thread.
 const LEAST: usize = 1 << 14;
@@ -86,8 +92,10 @@ impl Points<'_> {
 }
 
 /// Which cells of a grid have points. Cells with the same hash count as one.
-struct OccupiedCells<'a> {
+struct OccupiedCells<'a, F> {
     points: Points<'a>,
+    /// Returns one of those in the cells by its index.
+    some: F,
     grid: CellGrid,
     /// The greatest squared distance, in cells, of a cell within reach.
     most: f64,
@@ -95,20 +103,27 @@ struct OccupiedCells<'a> {
     cells: Vec<[u64; 2]>,
 }
 
-impl<'a> OccupiedCells<'a> {
+impl<'a, F: Fn(usize) -> u32 + Sync> OccupiedCells<'a, F> {
     /// Puts `count` of the points into cells; `some` returns one of them by its index.
-    fn new(points: Points<'a>, count: usize, some: impl Fn(usize) -> u32 + Sync, reach: f64) -> Self {
+    fn new(points: Points<'a>, count: usize, some: F, reach: f64) -> Self {
         let grid = CellGrid::new(WIDTH * reach);
         // 16 cells a point, so that few have the same hash.
         let words = (count / (CellHash::BLOCK / 16)).next_power_of_two();
         // On two cores at most, since each needs all cells.
         let mut halves = in_ranges(count, (count / 2).max(LEAST), |range| {
-            let mut cells = vec![[0; 2]; words];
-            for (position, number) in range.map(|index| points.at(some(index))) {
-                let (word, bit) = bit_of(words, grid.at(position, number));
-                let [once, twice] = &mut cells[word];
-                *twice |= *once & bit;
-                *once |= bit;
+            let (mut cells, mut batch) = (vec![[0; 2]; words], Vec::new());
+            for indices in batches(range) {
+                batch.clear();
+                batch.extend(indices.map(|index| {
+                    let (position, number) = points.at(some(index));
+                    grid.at(position, number).place(words * CellHash::BLOCK)
+                }));
+                for &place in &batch {
+                    let (word, bit) = bit_of(place);
+                    let [once, twice]: &mut [u64; 2] = &mut cells[word];
+                    *twice |= *once & bit;
+                    *once |= bit;
+                }
             }
             cells
         })
@@ -120,48 +135,74 @@ impl<'a> OccupiedCells<'a> {
                 *once |= other_once;
             }
         }
-        Self { points, most: grid.most(reach * ROOM), grid, cells }
+        Self { points, some, most: grid.most(reach * ROOM), grid, cells }
     }
 
-    fn bit(&self, cell: CellHash) -> (usize, u64) {
-        bit_of(self.cells.len(), cell)
+    /// Returns the points, of those with an index below `count`, that another one may be within reach of, in the order of their
+    /// indices: all that have one, and few others.
+    fn perhaps_near(&self, count: usize) -> Vec<u32> {
+        let of_range = |range: Range<usize>| {
+            let mut near = Vec::new();
+            let (mut places, mut have_other) = ([[0; 8]; BATCH], [false; BATCH]);
+            for indices in batches(range) {
+                let points = indices.map(&self.some);
+                zip(&mut places, points.clone()).for_each(|(places, point)| *places = self.places(point));
+                zip(&mut have_other, &places).for_each(|(has_other, [own, ..])| *has_other = self.has_two(*own));
+                zip(&mut have_other, &places).for_each(|(has_other, places)| *has_other |= self.has_other(places));
+                near.extend(zip(points, have_other).filter(|(_, has_other)| *has_other).map(|(point, _)| point));
+            }
+            near
+        };
+        in_ranges(count, LEAST, of_range).concat()
     }
 
-    /// Returns whether another point may be within reach: always if there is one, and seldom otherwise.
-    fn is_perhaps_near(&self, point: u32) -> bool {
+    /// Returns the places of a point's cell and of those within reach.
+    fn places(&self, point: u32) -> [usize; 8] {
         let (position, number) = self.points.at(point);
-        let [(_, own), others @ ..] = self.grid.near(position, number);
-        let own = self.bit(own);
-        let mut is_near = self.cells[own.0][1] & own.1 != 0;
-        for (away, cell) in others {
+        let near = self.grid.near(position, number);
+        let own = near[0].1.place(self.cells.len() * CellHash::BLOCK);
+        let mut places = [own; 8];
+        for (place, &(away, cell)) in zip(&mut places[1..], &near[1..]) {
+            let other = cell.place(self.cells.len() * CellHash::BLOCK);
             // Cells out of reach are replaced, which is faster than a branch.
-            let (word, bit) = if away > self.most { own } else { self.bit(cell) };
-            is_near |= (word, bit) != own && self.cells[word][0] & bit != 0;
+            *place = if away > self.most { own } else { other };
         }
-        is_near
+        places
+    }
+
+    /// Returns whether the cell at a place has more than one point.
+    fn has_two(&self, place: usize) -> bool {
+        let (word, bit) = bit_of(place);
+        self.cells[word][1] & bit != 0
+    }
+
+    /// Returns whether a cell at one of these places, another than the first, has points.
+    fn has_other(&self, &[own, ref others @ ..]: &[usize; 8]) -> bool {
+        others.iter().fold(false, |has, &place| {
+            let (word, bit) = bit_of(place);
+            has | ((place != own) & (self.cells[word][0] & bit != 0))
+        })
     }
 }
 
-/// The word and the bit of a cell, of so many words.
-fn bit_of(words: usize, cell: CellHash) -> (usize, u64) {
-    let place = cell.place(words * CellHash::BLOCK);
+/// Divides indices into batches.
+fn batches(range: Range<usize>) -> impl Iterator<Item = Range<usize>> {
+    range.clone().step_by(BATCH).map(move |start| start..range.end.min(start + BATCH))
+}
+
+/// The word and the bit of a cell's place.
+fn bit_of(place: usize) -> (usize, u64) {
     (place / CellHash::BLOCK, 1 << (place % CellHash::BLOCK))
 }
 
 /// Returns the points that another one may be within reach of, in ascending order: all that have one, and few others.
 fn perhaps_near(points: Points, reach: f64) -> Vec<u32> {
-    let occupied = OccupiedCells::new(points, points.len(), |index| index as u32, reach);
-    let mut near = in_ranges(points.len(), LEAST, |range| {
-        (range.start as u32..range.end as u32).filter(|&point| occupied.is_perhaps_near(point)).collect::<Vec<_>>()
-    })
-    .concat();
-    drop(occupied);
-    // Cells of other points are no longer in the way.
-    if near.len() <= points.len() / 2 {
-        let occupied = OccupiedCells::new(points, near.len(), |index| near[index], reach);
-        near.retain(|&point| occupied.is_perhaps_near(point));
+    let near = OccupiedCells::new(points, points.len(), |index| index as u32, reach).perhaps_near(points.len());
+    if near.len() > points.len() / 2 {
+        return near;
     }
-    near
+    // Cells of other points are no longer in the way.
+    OccupiedCells::new(points, near.len(), |index| near[index], reach).perhaps_near(near.len())
 }
 
 /// The nearest other point.
@@ -234,6 +275,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::cores::tests::on_cores;
 
     /// The tolerances within which a slow search finds another point.
     fn slow(points: &[Vec3], numbers: &[u32], tolerances: &[f64]) -> Vec<Vec<u32>> {
@@ -280,6 +322,22 @@ mod tests {
         let found = NearPoints::find(&points, &[], &[1e-4, 1e-2, 0.5]);
         assert_eq!(found.within(0).count(), 0);
         assert!((1..3).all(|k| found.within(k).eq([3017, 10_000])));
+    }
+
+    #[test]
+    fn the_number_of_cores_makes_no_difference() {
+        let mut random = fastrand::Rng::with_seed(1);
+        let points: Vec<Vec3> = (0..100_000).map(|_| Vec3::new(random.f32(), random.f32(), random.f32())).collect();
+        let tolerances = [1e-3, 3e-3, 1e-2];
+        let alone = on_cores(1, || NearPoints::find(&points, &[], &tolerances));
+        let counts = [0, 1, 2].map(|k| alone.within(k).count());
+        assert!(
+            counts[0] > 0 && counts[0] < counts[1] && counts[1] < counts[2] && counts[2] < points.len(),
+            "{counts:?}"
+        );
+        for cores in [2, 7] {
+            assert!(on_cores(cores, || NearPoints::find(&points, &[], &tolerances)).first == alone.first, "{cores}");
+        }
     }
 
     #[test]

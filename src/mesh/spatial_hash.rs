@@ -7,8 +7,6 @@ use glam::DVec3;
 use hashbrown::HashTable;
 use hashbrown::hash_table::Entry;
 
-use super::cell_grid::floor;
-
 /// For each occupied cell of space, the number of the item that was added last. The caller keeps the items' positions
 /// and passes a function that returns them, so that a cell takes only 5 to 12 bytes.
 ///
@@ -62,6 +60,20 @@ fn cell_along(reach: f64, x: f64) -> f64 {
     floor(x / (2.0 * reach))
 }
 
+/// From here on all f64 numbers are whole.
+const WHOLE: f64 = (1_u64 << 52) as f64;
+
+/// Rounds down, as [`f64::floor`] does, which is a call of a function on processors that may lack the instruction. A zero
+/// may have another sign.
+fn floor(x: f64) -> f64 {
+    if x.abs() < WHOLE {
+        let cut = x as i64 as f64;
+        cut - f64::from(u8::from(cut > x))
+    } else {
+        x
+    }
+}
+
 /// The bits of a cell's coordinates: three words, which foldhash hashes several times faster than an array.
 type CellKey = (u64, u64, u64);
 
@@ -74,6 +86,16 @@ fn key(cell: [f64; 3]) -> CellKey {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_are_rounded_down() {
+        let numbers =
+            [0.0, 0.5, 1.0, 1.5, 7.999, 4e9, 4_503_599_627_370_495.5, 4_503_599_627_370_496.0, 1e300, f64::MAX];
+        for x in numbers.into_iter().flat_map(|x| [x, -x]).chain([5e-324, -5e-324, f64::INFINITY, f64::NEG_INFINITY]) {
+            assert_eq!(floor(x), x.floor());
+        }
+        assert!(floor(f64::NAN).is_nan());
+    }
 
     #[test]
     fn no_cell_overflows_and_distant_positions_have_others() {

@@ -1,8 +1,11 @@
 //! Builds patches, points, edges and sides from a mesh's triangles: which patches meet, and how.
 
+mod connecting;
+
 use std::ops::Range;
 use std::sync::Arc;
 
+use bytemuck::Zeroable;
 use glam::Vec3;
 use serde::Serialize;
 
@@ -12,9 +15,6 @@ use super::weld::weld_alike;
 use super::{Corner, Mesh};
 use crate::mesh::build_limits::MemoryAccount;
 use crate::progress::{Cancelled, Progress};
-
-/// Around a point with more sides than this, they are sorted in n log n steps.
-const MANY_SIDES: usize = 24;
 
 /// A mesh's patches and the edges between them.
 ///
@@ -48,7 +48,7 @@ pub struct Topology {
 }
 
 /// A triangle of the mesh with three distinct points.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Zeroable)]
 pub struct Patch {
     /// Indices into [`Topology::sides`]; side k runs from corner k to corner (k + 1) % 3.
     pub sides: [u32; 3],
@@ -57,7 +57,7 @@ pub struct Patch {
 }
 
 /// Two points that at least one patch connects.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Zeroable)]
 pub struct Edge {
     /// The first of its sides, an index into [`Topology::sides`].
     pub first_side: u32,
@@ -68,7 +68,7 @@ pub struct Edge {
 }
 
 /// The use of an edge by one patch.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Zeroable)]
 pub struct Side {
     /// Six times the patch, plus twice which of its sides this is, plus 1 if it has the opposite direction to the edge.
     /// Packed, since a mesh has more sides than anything else.
@@ -99,7 +99,7 @@ impl Side {
 }
 
 /// What the sides of an edge have in common.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Zeroable)]
 #[repr(u8)]
 #[serde(rename_all = "snake_case")]
 pub enum EdgeKind {
@@ -188,10 +188,10 @@ impl Topology {
         progress.check()?;
         take(mesh.triangles.len() * size_of::<Patch>())?;
         budget.borrow(8 * points.len() as u64)?;
-        let (patches, starts) = patches(mesh, &corner_points, points.len());
+        let (patches, starts) = connecting::patches(&mesh.triangles, &corner_points, points.len());
         progress.check()?;
         take(3 * patches.len() * size_of::<Side>())?;
-        let (sides, count) = sides(&patches, &mesh.triangles, &corner_points, &starts);
+        let (mut sides, ranges) = connecting::sides(&mesh.triangles, &corner_points, &starts);
         progress.check()?;
         let (point_corners, has_many) = first_corners(&corner_points, points.len());
         let mut topology = Self {
@@ -202,13 +202,13 @@ impl Topology {
             points,
             corner_points,
             patches,
-            sides,
+            sides: Vec::new(),
             edges: Vec::new(),
         };
-        take(count * size_of::<Edge>())?;
-        // Reserves exactly as much as is needed: a list that grows may take twice as much.
-        topology.edges.reserve_exact(count);
-        topology.connect(&starts, &has_many, &mesh.corners);
+        take(ranges.iter().map(|range| range.edges.len()).sum::<usize>() * size_of::<Edge>())?;
+        topology.edges = connecting::edges(&topology, &mut sides, &ranges, &starts, &has_many, &mesh.corners);
+        connecting::connect(&mut topology.patches, &sides);
+        topology.sides = sides;
         budget.give_back_to(borrowed);
         progress.check()?;
         Ok(topology)
@@ -332,29 +332,6 @@ impl Topology {
         if side.reversed() { [b, a] } else { [a, b] }
     }
 
-    /// Makes an edge of each group of sorted sides with the same points, and connects patches, sides and edges. The `edge` of
-    /// these sides still holds the higher point. `has_many` says of each point whether it has more than one corner.
-    fn connect(&mut self, starts: &[u32], has_many: &[bool], corners: &[Corner]) {
-        for (around, low) in runs(starts).zip(has_many) {
-            let mut start = around.start;
-            while start < around.end {
-                let high = self.sides[start].edge;
-                let run = self.sides[start..around.end].iter().take_while(|side| side.edge == high).count();
-                for (index, side) in (start as u32..).zip(&mut self.sides[start..start + run]) {
-                    side.edge = self.edges.len() as u32;
-                    self.patches[side.patch() as usize].sides[side.index()] = index;
-                }
-                let (kind, shares_corners) = match run {
-                    // Most edges need no look at their corners.
-                    2 if !low && !has_many[high as usize] => (EdgeKind::Smooth, true),
-                    _ => self.kind(&self.sides[start..start + run], corners),
-                };
-                self.edges.push(Edge { first_side: start as u32, kind, shares_corners });
-                start += run;
-            }
-        }
-    }
-
     /// Returns the kind of an edge with these sides, and whether it has two sides with the same corners.
     fn kind(&self, sides: &[Side], corners: &[Corner]) -> (EdgeKind, bool) {
         let [a, b] = match sides {
@@ -398,68 +375,6 @@ fn weld_bytes(corners: usize, tolerance: f32) -> u64 {
     // Further lists of the points, and a table of cells; lists and table double as they grow.
     let within = if tolerance > 0.0 { 80 } else { 0 };
     (exactly + within) * corners as u64
-}
-
-/// Returns the range of each point's sides.
-fn runs(starts: &[u32]) -> impl Iterator<Item = Range<usize>> {
-    starts.windows(2).map(|ends| ends[0] as usize..ends[1] as usize)
-}
-
-/// Returns the triangles with three distinct points as patches, whose sides are set later; and for each point p the number
-/// `starts[p]` of their sides whose lower point is before it. The last number is that of all sides.
-fn patches(mesh: &Mesh, corner_points: &[u32], points: usize) -> (Vec<Patch>, Vec<u32>) {
-    let mut patches = Vec::with_capacity(mesh.triangles.len());
-    let mut starts = vec![0_u32; points + 1];
-    for (triangle, corners) in (0..).zip(mesh.triangles.iter()) {
-        let [a, b, c] = corners.map(|corner| corner_points[corner as usize]);
-        if !is_degenerate([a, b, c]) {
-            patches.push(Patch { sides: [0; 3], triangle });
-            [(a, b), (b, c), (c, a)].into_iter().for_each(|(a, b)| starts[a.min(b) as usize + 1] += 1);
-        }
-    }
-    for point in 0..points {
-        starts[point + 1] += starts[point];
-    }
-    (patches, starts)
-}
-
-/// Returns the sides of all patches, sorted by the lower point of their edge, then by its higher point, which `edge`
-/// holds for now, then by patch; and the number of edges. The sides whose lower point is p are `starts[p]..starts[p + 1]`.
-fn sides(patches: &[Patch], triangles: &[[u32; 3]], corner_points: &[u32], starts: &[u32]) -> (Vec<Side>, usize) {
-    let mut next = starts.to_vec();
-    let mut sides = vec![Side::default(); 3 * patches.len()];
-    for (index, patch) in (0..).zip(patches) {
-        let [a, b, c] = triangles[patch.triangle as usize].map(|corner| corner_points[corner as usize]);
-        for (k, a, b) in [(0, a, b), (1, b, c), (2, c, a)] {
-            let place = &mut next[a.min(b) as usize];
-            sides[*place as usize] = Side::new(index, k, b < a, a.max(b));
-            *place += 1;
-        }
-    }
-    drop(next);
-    let mut edges = 0;
-    for around in runs(starts) {
-        let around = &mut sides[around];
-        sort_by_edge(around);
-        edges += around.chunk_by(|a, b| a.edge == b.edge).count();
-    }
-    (sides, edges)
-}
-
-/// Sorts sides by their edge, then by patch. They come in the order of their patches.
-fn sort_by_edge(sides: &mut [Side]) {
-    if sides.len() > MANY_SIDES {
-        return sides.sort_unstable_by_key(|side| (side.edge, side.code));
-    }
-    // Insertion, which leaves sides of one edge in their order.
-    for i in 1..sides.len() {
-        let (mut at, side) = (i, sides[i]);
-        while at > 0 && sides[at - 1].edge > side.edge {
-            sides[at] = sides[at - 1];
-            at -= 1;
-        }
-        sides[at] = side;
-    }
 }
 
 /// Returns the lowest corner on each point, and whether the point has more than one.

@@ -8,6 +8,10 @@ use glam::{Vec2, Vec3};
 
 use super::cell_chains::CellChains;
 use super::cell_grid::CellGrid;
+use crate::cores::{in_parts, ranges};
+
+/// The least number of positions that are worth a thread.
+const LEAST: usize = 1 << 14;
 
 /// Joins equal positions into points. Two positions are equal if all three coordinates have the same value (-0 equals
 /// 0), without any tolerance. Points are in the order of their first appearance, and have +0 for every zero.
@@ -45,14 +49,23 @@ fn first_equal(points: &[(Vec3, u32)]) -> Vec<u32> {
         (x << 32 | y, z << 32 | u64::from(number))
     };
     let hasher = RandomState::default();
-    let hashed = |(i, point): (u64, &(Vec3, u32))| hasher.hash_one(key(*point)) >> 32 << 32 | i;
-    let mut sorted: Vec<u64> = (0..).zip(points).map(hashed).collect();
-    sorted.sort_unstable();
+    let hash = |point: &(Vec3, u32)| hasher.hash_one(key(*point)) >> 32;
+    // Each core takes those whose hash lies in its part of all hashes.
+    let parts = ranges(points.len(), LEAST).count();
+    let sorted = in_parts((0..parts as u64).collect(), |part| {
+        // Hashes are spread evenly, so that there is room enough nearly always.
+        let mut own = Vec::with_capacity((points.len() / parts).saturating_mul(17) / 16);
+        let hashed = (0_u64..).zip(points).map(|(i, point)| (hash(point), i));
+        own.extend(hashed.filter(|(hash, _)| (hash * parts as u64) >> 32 == *part).map(|(hash, i)| hash << 32 | i));
+        own.sort_unstable();
+        own
+    });
     let mut first: Vec<u32> = (0..points.len() as u32).collect();
     // The first positions of those with one hash. Nearly always there is only one.
     let mut firsts: Vec<u32> = Vec::new();
     // Most positions are the only one with their hash, and aren't looked at.
-    for alike in sorted.chunk_by(|a, b| a >> 32 == b >> 32).filter(|alike| alike.len() > 1) {
+    let alike = sorted.iter().flat_map(|own| own.chunk_by(|a, b| a >> 32 == b >> 32));
+    for alike in alike.filter(|alike| alike.len() > 1) {
         firsts.clear();
         for i in alike.iter().map(|own| *own as u32) {
             let own = key(points[i as usize]);
@@ -167,6 +180,7 @@ mod tests {
     use std::collections::HashMap;
 
     use super::*;
+    use crate::cores::tests::on_cores;
     use proptest::prelude::*;
 
     #[test]
@@ -175,6 +189,24 @@ mod tests {
         assert_eq!(of, [0, 0]);
         assert_eq!(points.len(), 1);
         assert_eq!(points[0].x.to_bits(), 0);
+    }
+
+    #[test]
+    fn the_number_of_cores_makes_no_difference() {
+        let place = |i: u32| Vec3::new((i.wrapping_mul(i) % 40_009) as f32, -0.0, (i % 3) as f32);
+        let positions: Vec<Vec3> = (0..100_000).map(place).collect();
+        let mut known = HashMap::new();
+        let mut numbers = Vec::new();
+        for position in &positions {
+            let next = known.len() as u32;
+            numbers.push(*known.entry([position.x, position.z].map(f32::to_bits)).or_insert(next));
+        }
+        for cores in [1, 2, 7] {
+            let (points, of) = on_cores(cores, || weld(positions.iter().copied()));
+            assert!(points.len() == known.len() && of == numbers, "{cores}");
+        }
+        let one = on_cores(7, || weld(vec![Vec3::ONE; 100_000]));
+        assert_eq!(one, (vec![Vec3::ONE], vec![0; 100_000]));
     }
 
     #[test]

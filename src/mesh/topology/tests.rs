@@ -4,6 +4,7 @@ use glam::Vec2;
 use proptest::prelude::*;
 
 use super::*;
+use crate::cores::tests::on_cores;
 use crate::load::Budget;
 use crate::mesh::Material;
 use crate::mesh::shapes::Shape;
@@ -114,6 +115,36 @@ fn degenerate_triangles_are_left_out() {
     assert_eq!((topology.degenerate, topology.patches.len()), (3, 1));
     assert_eq!(topology.patches[0].triangle, 2);
     assert_eq!(topology.material_patches, [0..0, 0..1]);
+}
+
+#[test]
+fn the_number_of_cores_makes_no_difference() {
+    let (mut random, points) = (fastrand::Rng::with_seed(1), 30_000);
+    // Some points have two corners. Most triangles are near others, some are anywhere, many are degenerate, and 5,000 have one point.
+    let corners: Vec<u32> = (0..points).chain((0..points).step_by(3)).collect();
+    let mut triangle = |i: u32| {
+        let near = random.u32(0..points - 5);
+        let mut of = |range: Range<u32>| [0; 3].map(|_| random.u32(range.clone()));
+        match i % 20 {
+            0 => of(0..corners.len() as u32),
+            1 => [7, near, near + 1],
+            _ => of(near..near + 5),
+        }
+    };
+    let triangles: Vec<_> = (0..100_000).map(&mut triangle).collect();
+    let mesh = mesh(&corners, &triangles);
+    let alone = on_cores(1, || build(&mesh));
+    check(&mesh, &alone);
+    let counts = alone.edge_counts();
+    assert!(alone.degenerate > 1000 && counts.smooth > 1000 && counts.boundary > 1000 && counts.non_manifold > 1000);
+    for cores in [2, 3, 7] {
+        let shared = on_cores(cores, || build(&mesh));
+        let same = (alone.points == shared.points && alone.corner_points == shared.corner_points)
+            && (alone.point_corners == shared.point_corners && alone.material_patches == shared.material_patches);
+        assert!(same, "{cores}");
+        assert!(alone.patches == shared.patches && alone.degenerate == shared.degenerate, "{cores}");
+        assert!(alone.sides == shared.sides && alone.edges == shared.edges, "{cores}");
+    }
 }
 
 #[test]
