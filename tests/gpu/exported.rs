@@ -8,8 +8,7 @@ use pnaen::mesh::{Mesh, Shape, Topology};
 use pnaen::progress::Progress;
 use pnaen::settings::Choice;
 use pnaen::tessellate::{
-    Clip, Convention, Edges, Lod, Normals, Partitioning, Surface, Tessellation, corner_weights,
-    tessellate,
+    Clip, Convention, Edges, Lod, Normals, Partitioning, Surface, Tessellation, corner_weights, tessellate,
 };
 
 use crate::gpu_tests::engine;
