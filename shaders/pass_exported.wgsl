@@ -21,6 +21,9 @@ const PATCH_INDICES: u32 = 9u;
 // What displacement needs of every corner, 10 numbers each: the unit vector along which its point moves, the gradients of both
 // texture coordinates in object space, and the length of the point's shortest edge in px of level 0.
 @group(0) @binding(9) var<storage, read> relief_corners: array<f32>;
+// Mip levels as kept_level keeps them: of every patch's three sides, and then of every point, at its dominant corner. The host
+// fills them with zeros before hull_main.
+@group(0) @binding(11) var<storage, read_write> kept_levels: array<atomic<u32>>;
 
 // What hull_main computes for a patch.
 struct Hull {
@@ -75,6 +78,24 @@ fn patch_side(first: u32, k: u32) -> HullSide {
     );
 }
 
+// Where the mip level of the point at corner `k` of a patch is kept. The patch's indices begin at `first`.
+fn point_place(first: u32, k: u32) -> u32 {
+    return 3u * patch_count() + indices[first + 9u + k];
+}
+
+// Keeps the mip levels of a patch's sides, to which LOD gives the factors `sides`, and the finest level of the sides at each point.
+fn keep_levels(index: u32, sides: vec3<f32>) {
+    let first = PATCH_INDICES * index;
+    for (var k = 0u; k < 3u; k++) {
+        let start = exported_uv(indices[first + 12u + 2u * k]);
+        let end = exported_uv(indices[first + 13u + 2u * k]);
+        let level = kept_level(side_level(height_constants, sides[k], start, end));
+        atomicStore(&kept_levels[3u * index + k], level);
+        atomicMax(&kept_levels[point_place(first, k)], level);
+        atomicMax(&kept_levels[point_place(first, (k + 1u) % 3u)], level);
+    }
+}
+
 // Computes a patch's control net and factors, and counts what it will emit.
 @compute @workgroup_size(EXPORTED_WORKGROUP)
 fn hull_main(
@@ -94,6 +115,10 @@ fn hull_main(
         net.edges[2u * k] = side.near_start;
         net.edges[2u * k + 1u] = side.near_end;
         sides[k] = side.factor;
+    }
+    if CHOSEN_DISPLACEMENT != DISPLACEMENT_OFF && CHOSEN_LOD != LOD_UNIFORM {
+        // Also of patches that are left out: levels don't depend on what is in view.
+        keep_levels(index, sides);
     }
     net.center = center_control_point(net.corners, net.edges);
     let written = tessellation_factors(constants, net, sides);
@@ -167,7 +192,6 @@ fn height_place(corner: u32) -> HeightPlace {
 // What displacement needs of a patch.
 fn patch_relief(index: u32, uvs: array<vec2<f32>, 3>) -> StageRelief {
     let first = PATCH_INDICES * index;
-    let factor = constants.factor;
     var relief: StageRelief;
     for (var k = 0u; k < 3u; k++) {
         let own = indices[first + k];
@@ -178,8 +202,14 @@ fn patch_relief(index: u32, uvs: array<vec2<f32>, 3>) -> StageRelief {
         relief.dominant[k] = height_place(indices[first + 9u + k]);
         relief.sides[2u * k] = height_place(start);
         relief.sides[2u * k + 1u] = height_place(end);
-        relief.corner_levels[k] = corner_level(height_constants, factor, relief_corners[10u * own + 9u]);
-        relief.side_levels[k] = side_level(height_constants, factor, exported_uv(start), exported_uv(end));
+        if CHOSEN_LOD == LOD_UNIFORM {
+            let factor = constants.factor;
+            relief.corner_levels[k] = corner_level(height_constants, factor, relief_corners[10u * own + 9u]);
+            relief.side_levels[k] = side_level(height_constants, factor, exported_uv(start), exported_uv(end));
+        } else {
+            relief.corner_levels[k] = level_of(atomicLoad(&kept_levels[point_place(first, k)]));
+            relief.side_levels[k] = level_of(atomicLoad(&kept_levels[3u * index + k]));
+        }
     }
     let segments = f32(inside_value(hulls[index].factors)) * UNIT;
     relief.inside_level = level_inside(height_constants, segments, uvs);

@@ -52,10 +52,22 @@ fn side_level(constants: HeightConstants, factor: f32, start: vec2<f32>, end: ve
     return segment_level(map, texel_length(map, start, end), clamp(written_factor(factor), 1.0, 64.0));
 }
 
-// Returns the mip level at a point: the finest of its edges. LOD gives the same factor to all, and the shortest of them is
-// `texels` px of level 0 long.
+// Returns the mip level at a point under uniform LOD: the finest of its edges. All have the same factor, and the shortest of them
+// is `texels` px of level 0 long.
 fn corner_level(constants: HeightConstants, factor: f32, texels: f32) -> f32 {
     return segment_level(height_map(constants), texels, clamp(written_factor(factor), 1.0, 64.0));
+}
+
+// Returns a mip level as buffers keep it, so that an atomic maximum finds the finest one: bits of numbers that aren't negative are
+// in the order of the numbers, and inverted they are largest at the finest level. A kept level is never 0, with which buffers begin.
+fn kept_level(level: f32) -> u32 {
+    // A zero may have a sign.
+    return ~(bitcast<u32>(level) & 0x7fffffffu);
+}
+
+// Returns the mip level that a buffer keeps like this.
+fn level_of(kept: u32) -> f32 {
+    return bitcast<f32>(~kept);
 }
 
 // Returns the mip level inside a patch that has these texture coordinates, and so many segments inside.

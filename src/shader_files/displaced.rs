@@ -2,15 +2,53 @@
 
 use super::declarations::Declaration;
 use super::translation::StageLanguage;
+use crate::tessellate::{Displacement, Lod, Tessellation};
 
 /// The function that reads a px of the height image. Every language has its own.
 const FETCH: &str = "fetch_height";
 
-/// Returns a template with the lines that a displaced surface needs (`@D@`), or with those of one that isn't displaced (`@N@`).
-pub(super) fn chosen_lines(template: &str, is_displaced: bool) -> String {
-    let [own, other] = if is_displaced { ["@D@", "@N@"] } else { ["@N@", "@D@"] };
-    let lines = template.lines().filter(|line| !line.starts_with(other));
-    lines.flat_map(|line| [line.strip_prefix(own).unwrap_or(line), "\n"]).collect()
+/// How the surface of an export is displaced.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Relief {
+    Off,
+    /// All edges have one factor, so that the level at a point follows from its shortest edge.
+    UniformLod,
+    /// Factors depend on the view: a compute shader finds the level at each point.
+    LodByView,
+}
+
+/// The marks at the start of a template's lines.
+const MARKS: [&str; 4] = ["@N@", "@D@", "@U@", "@V@"];
+
+impl Relief {
+    pub(super) fn of(own: &Tessellation) -> Self {
+        match (own.displacement, own.used_lod()) {
+            (Displacement::Off, _) => Self::Off,
+            (_, Lod::Uniform) => Self::UniformLod,
+            _ => Self::LodByView,
+        }
+    }
+
+    /// The marks of its lines: `@N@` without displacement, `@D@` with it, and then also `@U@` under uniform LOD or `@V@` under
+    /// LOD by the view.
+    fn marks(self) -> &'static [&'static str] {
+        match self {
+            Self::Off => &["@N@"],
+            Self::UniformLod => &["@D@", "@U@"],
+            Self::LodByView => &["@D@", "@V@"],
+        }
+    }
+
+    /// Returns a template with the lines that have no mark, or one of its own.
+    pub(super) fn chosen_lines(self, template: &str) -> String {
+        template.lines().filter_map(|line| self.own_text(line)).flat_map(|line| [line, "\n"]).collect()
+    }
+
+    /// Returns a line without its mark; `None` if that is another's.
+    fn own_text(self, line: &str) -> Option<&str> {
+        let marked = MARKS.iter().find_map(|mark| Some((mark, line.strip_prefix(mark)?)));
+        marked.map_or(Some(line), |(mark, text)| self.marks().contains(mark).then_some(text))
+    }
 }
 
 /// Takes the body out of the function that reads a px, and the texture that it reads: naga writes only what its entry point uses.
@@ -41,9 +79,10 @@ mod tests {
 
     #[test]
     fn a_template_has_the_lines_of_its_choice() {
-        let template = "a\n@D@b\n@N@c\n    d\n";
-        assert_eq!(chosen_lines(template, true), "a\nb\n    d\n");
-        assert_eq!(chosen_lines(template, false), "a\nc\n    d\n");
+        let template = "a\n@D@b\n@N@c\n@U@    d\n@V@e\n    @F@f\n";
+        assert_eq!(Relief::Off.chosen_lines(template), "a\nc\n    @F@f\n");
+        assert_eq!(Relief::UniformLod.chosen_lines(template), "a\nb\n    d\n    @F@f\n");
+        assert_eq!(Relief::LodByView.chosen_lines(template), "a\nb\ne\n    @F@f\n");
     }
 
     #[test]

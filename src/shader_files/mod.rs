@@ -23,7 +23,7 @@ use crate::tessellate::{Displacement, Edges, Lod, Partitioning, Surface, Tessell
 use branches::{Known, without_dead_branches};
 use choices::choices;
 use declarations::{Declaration, declarations, needed};
-use displaced::{chosen_lines, with_fetch, without_fetch};
+use displaced::{Relief, with_fetch, without_fetch};
 use translation::{StageLanguage, TranslationError, translated};
 
 static STAGE_PATCH: WgslFile =
@@ -125,13 +125,6 @@ fn check(language: Language, tessellation: &Tessellation) -> Result<(), ShaderEr
             "--lod uniform, distance, edge-length or paper",
         );
     }
-    if tessellation.displacement != Displacement::Off && tessellation.used_lod() != Lod::Uniform {
-        return refuse(
-            "displacement whose LOD depends on the view",
-            "at a point, heights are read from the level of its finest edge, and a patch doesn't know the factors of all edges there",
-            "--lod uniform, or --displacement off",
-        );
-    }
     let pattern = match tessellation.partitioning {
         Partitioning::Rows => "rows",
         Partitioning::Subtriangulation => "subtriangulation",
@@ -172,9 +165,10 @@ const PRECISE_ROOTS: [&str; 8] = [
     "moved",
 ];
 /// The functions that stages of a displaced surface call besides.
-const DISPLACED_HULL_ROOTS: [&str; 5] =
-    ["HeightConstants", "corner_level", "side_level", "level_inside", "segments_inside"];
+const DISPLACED_HULL_ROOTS: [&str; 4] = ["HeightConstants", "side_level", "level_inside", "segments_inside"];
 const DISPLACED_DOMAIN_ROOTS: [&str; 2] = ["HeightConstants", "displaced_vertex"];
+/// The functions that the compute shader calls which finds the levels at points.
+const LEVELS_ROOTS: [&str; 5] = ["StageConstants", "HeightConstants", "hull_side", "side_level", "kept_level"];
 
 impl Export<'_> {
     /// All declarations of our shaders with the choices made, and without the branches that they never take.
@@ -207,24 +201,35 @@ impl Export<'_> {
         all
     }
 
-    /// The functions of stages, in their language. `displaced` are the roots that stages of a displaced surface have besides.
-    fn functions(
-        &self,
-        language: StageLanguage,
-        roots: &[&str],
-        displaced: &[&str],
-    ) -> Result<String, TranslationError> {
-        let displaced = if self.is_displaced() { displaced } else { &[] };
-        let all = needed(&self.declarations(&STAGE_DISPLACED), &[roots, displaced].concat());
+    /// The functions that a file needs, in its language.
+    fn functions(&self, language: StageLanguage, roots: &[&str]) -> Result<String, TranslationError> {
+        let all = needed(&self.declarations(&STAGE_DISPLACED), roots);
         Ok(with_fetch(language, &translated(language, &without_fetch(all), &PRECISE_ROOTS)?))
     }
 
-    fn is_displaced(&self) -> bool {
-        self.tessellation.displacement != Displacement::Off
+    /// The functions that the hull shader calls.
+    fn hull_roots(&self) -> Vec<&'static str> {
+        // How it gets the level at a point.
+        let of_points: &[&str] = match self.relief() {
+            Relief::Off => return HULL_ROOTS.to_vec(),
+            Relief::UniformLod => &["corner_level"],
+            Relief::LodByView => &["level_of"],
+        };
+        [&HULL_ROOTS[..], &DISPLACED_HULL_ROOTS, of_points].concat()
+    }
+
+    /// The functions that the domain shader calls.
+    fn domain_roots(&self) -> Vec<&'static str> {
+        let displaced = if self.relief() == Relief::Off { &[][..] } else { &DISPLACED_DOMAIN_ROOTS };
+        [&DOMAIN_ROOTS[..], displaced].concat()
+    }
+
+    fn relief(&self) -> Relief {
+        Relief::of(self.tessellation)
     }
 
     fn glsl(&self) -> Result<Vec<ShaderFile>, TranslationError> {
-        let functions = |roots: &[&str], displaced: &[&str]| self.functions(StageLanguage::Glsl, roots, displaced);
+        let functions = |roots: &[&str]| self.functions(StageLanguage::Glsl, roots);
         let spacing = match self.tessellation.partitioning {
             Partitioning::FractionalOdd => "fractional_odd_spacing",
             Partitioning::FractionalEven => "fractional_even_spacing",
@@ -234,21 +239,22 @@ impl Export<'_> {
             3 => "own",
             _ => "SideNormals(vertex_normal[3 + 2 * k], vertex_normal[4 + 2 * k])",
         };
-        let hull = functions(&HULL_ROOTS, &DISPLACED_HULL_ROOTS)?;
-        let domain = functions(&DOMAIN_ROOTS, &DISPLACED_DOMAIN_ROOTS)?;
-        let control = self.filled(include_str!("templates/patch.tesc"), &hull);
-        let evaluation = self.filled(include_str!("templates/patch.tese"), &domain);
-        Ok(vec![
+        let control = self.filled(include_str!("templates/patch.tesc"), &functions(&self.hull_roots())?);
+        let evaluation = self.filled(include_str!("templates/patch.tese"), &functions(&self.domain_roots())?);
+        let mut files = vec![
             ShaderFile { name: "patch.vert", text: self.filled(include_str!("templates/patch.vert"), "") },
             ShaderFile { name: "patch.tesc", text: control.replace("@ACROSS@", across) },
             ShaderFile { name: "patch.tese", text: evaluation.replace("@SPACING@", spacing) },
-        ])
+        ];
+        if self.relief() == Relief::LodByView {
+            let text = self.filled(include_str!("templates/levels.comp"), &functions(&LEVELS_ROOTS)?);
+            files.push(ShaderFile { name: "levels.comp", text });
+        }
+        Ok(files)
     }
 
     fn hlsl(&self) -> Result<Vec<ShaderFile>, TranslationError> {
-        let roots = [&HULL_ROOTS[..], &DOMAIN_ROOTS].concat();
-        let displaced = [&DISPLACED_HULL_ROOTS[..], &DISPLACED_DOMAIN_ROOTS].concat();
-        let functions = self.functions(StageLanguage::Hlsl, &roots, &displaced)?;
+        let functions = |roots: &[&str]| self.functions(StageLanguage::Hlsl, roots);
         let partitioning = match self.tessellation.partitioning {
             Partitioning::FractionalOdd => "fractional_odd",
             Partitioning::FractionalEven => "fractional_even",
@@ -259,12 +265,18 @@ impl Export<'_> {
             3 => ("own.at_a", "own.at_b"),
             _ => ("corners[3 + 2 * k].normal", "corners[4 + 2 * k].normal"),
         };
+        let roots = [self.hull_roots(), self.domain_roots()].concat();
         let text = self
-            .filled(include_str!("templates/patch.hlsl"), &functions)
+            .filled(include_str!("templates/patch.hlsl"), &functions(&roots)?)
             .replace("@PARTITIONING@", partitioning)
             .replace("@ACROSS_A@", at_a)
             .replace("@ACROSS_B@", at_b);
-        Ok(vec![ShaderFile { name: "patch.hlsl", text }])
+        let mut files = vec![ShaderFile { name: "patch.hlsl", text }];
+        if self.relief() == Relief::LodByView {
+            let text = self.filled(include_str!("templates/levels.hlsl"), &functions(&LEVELS_ROOTS)?);
+            files.push(ShaderFile { name: "levels.hlsl", text });
+        }
+        Ok(files)
     }
 
     fn wgsl(&self) -> Vec<ShaderFile> {
@@ -282,7 +294,8 @@ impl Export<'_> {
     }
 
     fn filled(&self, template: &str, functions: &str) -> String {
-        chosen_lines(template, self.is_displaced())
+        self.relief()
+            .chosen_lines(template)
             .replace("@HEADER@", readme::header(self).trim_end())
             .replace("@FUNCTIONS@", functions.trim_end())
             .replace("@INDICES@", &self.indices().to_string())

@@ -1,6 +1,6 @@
 //! What the files of an export say about themselves: the comment at the top of each, and README.md.
 
-use super::displaced::chosen_lines;
+use super::displaced::Relief;
 use super::{Export, Language};
 use crate::settings::Choice;
 use crate::tessellate::{Displacement, Edges, Lod, Tessellation};
@@ -10,7 +10,10 @@ fn constants(own: &Tessellation) -> Vec<(u32, &'static str, String)> {
     let view = "what LOD and culling are computed for; depth is reversed, 1 at the near plane";
     let reach = match own.displacement {
         Displacement::Off => "0",
-        _ => "the largest distance by which displacement moves a point, in object units",
+        _ => {
+            "the largest distance by which displacement moves a point, in object units: the largest of `scale` * (height - \
+             `midlevel`), without its sign"
+        }
     };
     vec![
         (0, "clip_from_object", "4x4 matrix, column after column: what vertices are drawn with".to_owned()),
@@ -51,9 +54,30 @@ fn height_constants(own: &Tessellation) -> Vec<(u32, &'static str, String)> {
 const HEIGHT_CONSTANTS_BYTES: u32 = 32;
 
 /// What displacement needs of every corner.
-const RELIEF_TEXT: &str = "40 bytes a corner: the unit vector along which its point moves (3 numbers), the gradients of both texture \
-                           coordinates in 1 / object unit (3 and 3), and the length of the point's shortest edge in px of the image's \
-                           level 0";
+fn relief_text(relief: Relief) -> String {
+    let last = match relief {
+        Relief::LodByView => "a number that is read under uniform LOD alone",
+        Relief::Off | Relief::UniformLod => "the length of the point's shortest edge in px of the image's level 0",
+    };
+    format!(
+        "40 bytes a corner: the unit vector along which its point moves (3 numbers), the gradients of both texture coordinates in \
+         1 / object unit (3 and 3), and {last}"
+    )
+}
+
+/// What the third vertex buffer holds where a compute shader of its own finds the levels at points, and the name of its file.
+fn levels_text(export: &Export) -> Option<String> {
+    let file = match export.language {
+        _ if export.relief() != Relief::LodByView => return None,
+        Language::Hlsl => "levels.hlsl",
+        Language::Glsl => "levels.comp",
+        // The passes keep levels in a buffer of their own.
+        Language::Wgsl => return None,
+    };
+    Some(format!(
+        "4 bytes a corner, a 32-bit whole number: at the dominant corner of a point the mip level there, which {file} writes"
+    ))
+}
 
 /// The height image.
 const IMAGE_TEXT: &str = "one number a px, 0 to 1, in a texture with all mip levels down to 1 x 1 px; texels are fetched, so it needs no filter";
@@ -109,13 +133,14 @@ pub(super) fn header(export: &Export) -> String {
     lines.push(String::new());
     lines.push("Vertex buffer: 32 bytes a corner: position (3 numbers, object units), unit normal (3), texture coordinates (2).".to_owned());
     lines.extend(wrapped(&format!("Index buffer: 32-bit numbers, {}.", index_text(export).replace('`', ""))));
-    if export.is_displaced() {
-        lines.extend(wrapped(&format!("Second vertex buffer: {RELIEF_TEXT}.")));
+    if export.relief() != Relief::Off {
+        lines.extend(wrapped(&format!("Second vertex buffer: {}.", relief_text(export.relief()))));
+        lines.extend(levels_text(export).iter().flat_map(|text| wrapped(&format!("Third vertex buffer: {text}."))));
         lines.extend(wrapped(&format!("Height image: {IMAGE_TEXT}.")));
     }
     lines.push(format!("Constant buffer: {CONSTANTS_BYTES} bytes, std140. Offsets in bytes:"));
     lines.extend(listed(&constants(own)));
-    if export.is_displaced() {
+    if export.relief() != Relief::Off {
         lines.push(format!("Second constant buffer: {HEIGHT_CONSTANTS_BYTES} bytes, std140. Offsets in bytes:"));
         lines.extend(listed(&height_constants(own)));
     }
@@ -154,10 +179,13 @@ pub(super) fn text(export: &Export) -> String {
         Language::Glsl => ("GLSL for Vulkan and OpenGL", include_str!("templates/glsl.md")),
         Language::Wgsl => ("WGSL for WebGPU", include_str!("templates/wgsl.md")),
     };
-    let relief = if export.is_displaced() { displaced_text(own) } else { String::new() };
+    let relief = if export.relief() == Relief::Off { String::new() } else { displaced_text(export) };
     let lod = match own.used_lod() {
         Lod::Uniform => "LOD is uniform: of the constants it reads `factor`.",
         Lod::Distance => "LOD by distance reads `factor`, `near`, `far`, `view.eye` and `view.radius`.",
+        Lod::EdgeLength if export.relief() != Relief::Off => {
+            "LOD reads `pixels_per_segment`, `view.clip_from_object`, `view.half_viewport` and `view.reach`."
+        }
         _ => "LOD reads `pixels_per_segment`, `view.clip_from_object` and `view.half_viewport`.",
     };
     let edges = match own.edges {
@@ -184,7 +212,7 @@ pub(super) fn text(export: &Export) -> String {
         title(own),
         index_text(export),
         table(&constants(own)),
-        chosen_lines(host, export.is_displaced()).replace("@INDICES@", &export.indices().to_string()),
+        export.relief().chosen_lines(host).replace("@INDICES@", &export.indices().to_string()),
     )
 }
 
@@ -196,7 +224,8 @@ fn table(constants: &[(u32, &'static str, String)]) -> String {
 }
 
 /// What README.md says of displacement.
-fn displaced_text(own: &Tessellation) -> String {
+fn displaced_text(export: &Export) -> String {
+    let own = export.tessellation;
     let agreement = match own.displacement {
         Displacement::Off => "",
         Displacement::On => {
@@ -211,7 +240,7 @@ fn displaced_text(own: &Tessellation) -> String {
         }
     };
     include_str!("templates/displaced.md")
-        .replace("@CORNERS@", RELIEF_TEXT)
+        .replace("@CORNERS@", &relief_text(export.relief()))
         .replace("@IMAGE@", IMAGE_TEXT)
         .replace("@BYTES@", &HEIGHT_CONSTANTS_BYTES.to_string())
         .replace("@CONSTANTS@\n", &table(&height_constants(own)))

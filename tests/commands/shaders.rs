@@ -37,7 +37,7 @@ fn what_cant_be_exported_is_refused_before_anything_is_written() {
     for (options, words) in [
         (&["--lod", "error"][..], "choose --lod uniform"),
         (&["--partitioning", "rows"], "choose --language wgsl"),
-        (&["--displacement", "on", "--lod", "distance"], "choose --lod uniform, or --displacement off"),
+        (&["--displacement", "on", "--lod", "error"], "choose --lod uniform, distance, edge-length or paper"),
     ] {
         let said = failure(&[&["shaders", "--language", "hlsl", "-o", &out], options].concat(), 2);
         assert!(said.contains(words), "{said}");
@@ -62,6 +62,35 @@ fn shaders_that_displace_say_what_they_take_besides() {
                 assert!(words.contains(said), "{name} doesn't say {said:?}");
             }
             assert!(!text.contains("@D@") && !text.contains("@N@"), "{name} has something left to choose");
+        }
+    }
+}
+
+#[test]
+fn shaders_that_displace_by_the_view_say_what_finds_levels_at_points() {
+    let folder = Folder::new();
+    for (language, names, levels) in [
+        ("glsl", FILES[0].1, Some("levels.comp")),
+        ("hlsl", FILES[1].1, Some("levels.hlsl")),
+        // The passes themselves do it.
+        ("wgsl", FILES[2].1, None),
+    ] {
+        let out = folder.path(language);
+        output(&["shaders", "--language", language, "--displacement", "on", "--lod", "distance", "-o", &out]);
+        let mut there: Vec<_> = std::fs::read_dir(&out)
+            .expect("the folder")
+            .map(|entry| entry.expect("an entry").file_name().into_string().expect("UTF-8"))
+            .collect();
+        there.sort();
+        let mut expected: Vec<_> = names.iter().copied().chain(levels).chain(["README.md"]).collect();
+        expected.sort_unstable();
+        assert_eq!(there, expected);
+        let readme = std::fs::read_to_string(format!("{out}/README.md")).expect("a file");
+        let said = levels.unwrap_or("`kept_levels`");
+        assert!(readme.contains(said) && readme.contains("zeros"), "README.md doesn't say {said}");
+        for name in there {
+            let text = std::fs::read_to_string(format!("{out}/{name}")).expect("a file");
+            assert!(["@D@", "@N@", "@U@", "@V@"].iter().all(|mark| !text.contains(mark)), "{name} has a mark left");
         }
     }
 }

@@ -8,8 +8,7 @@ use pnaen::mesh::{Mesh, Shape, Topology};
 use pnaen::progress::Progress;
 use pnaen::settings::Choice;
 use pnaen::tessellate::{
-    Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface, Tessellation, corner_weights,
-    tessellate,
+    Clip, Convention, Edges, Lod, Normals, Partitioning, Surface, Tessellation, corner_weights, tessellate,
 };
 
 use crate::gpu_tests::engine;
@@ -166,11 +165,6 @@ fn what_hardware_has_no_equal_of_is_refused_with_what_can_be_exported() {
     let refused =
         |language, own: Tessellation| shader_files(language, &own, "a test").expect_err("refused").to_string();
     for language in Language::ALL {
-        for lod in [Lod::Distance, Lod::EdgeLength, Lod::Paper] {
-            let own = Tessellation { lod, displacement: Displacement::On, ..Tessellation::default() };
-            let said = refused(language, own);
-            assert!(said.contains("displacement") && said.contains("--lod uniform"), "{said}");
-        }
         let by_error = refused(language, Tessellation { lod: Lod::Error, ..Tessellation::default() });
         assert!(by_error.contains("LOD by error") && by_error.contains("--lod uniform"), "{by_error}");
     }

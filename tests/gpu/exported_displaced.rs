@@ -6,25 +6,27 @@ use pnaen::mesh::{Mesh, Shape, Topology};
 use pnaen::progress::Progress;
 use pnaen::shader_files::{Language, shader_files};
 use pnaen::tessellate::{
-    Clip, Convention, Displacement, Edges, Inputs, LodView, Normals, Partitioning, Tessellation, corner_weights,
-    displaced_corners, height_units, tessellate, unpack_normal,
+    Clip, Convention, Displacement, Edges, Inputs, Lod, LodView, Normals, Partitioning, PatchFactors, Tessellation,
+    Vertex, corner_weights, displaced_corners, displacement_reach, height_units, tessellate, unpack_normal,
 };
 use wgpu::util::DeviceExt;
 
 use crate::gpu_tests::engine;
 use crate::gpu_tests::exported::{assert_part_of_page, exported_corners, vulkan};
 use crate::gpu_tests::vulkan::agreement::Agreement;
-use crate::gpu_tests::vulkan::exported::{DISPLACEMENTS, LANGUAGES, Subject, displaced_rows, displaced_table, wavy};
+use crate::gpu_tests::vulkan::exported::{
+    DISPLACEMENTS, LANGUAGES, Subject, constants, displaced_rows, displaced_table, wavy,
+};
 
 /// A shape under waves. Texture coordinates are shifted by `shift`, so that the image repeats where it isn't 0.
-fn shifted(shape: Shape, shift: f32) -> Mesh {
+pub(super) fn shifted(shape: Shape, shift: f32) -> Mesh {
     let mut mesh = shape.build();
     mesh.corners.iter_mut().for_each(|corner| corner.uv += glam::vec2(shift, 0.5 * shift));
     wavy(mesh)
 }
 
 /// Same factors, same triangles, positions within 4 ULP: as our passes.
-fn assert_displaced_agrees(own: &Agreement, what: &str) {
+pub(super) fn assert_displaced_agrees(own: &Agreement, what: &str) {
     assert!(own.triangles > 0, "{what}: nothing came out");
     assert_eq!(own.other_triangles, 0, "{what}: {own:?}");
     assert!(own.factors <= 1e-5, "{what}: {own:?}");
@@ -86,7 +88,7 @@ fn displaced_partitionings_conventions_and_normals_agree_too() {
 }
 
 /// What exported compute passes read and write, in the order of their bindings.
-struct Passes {
+pub(super) struct Passes {
     buffers: Vec<(u32, wgpu::Buffer, wgpu::BufferBindingType)>,
     heights: wgpu::TextureView,
     patches: u32,
@@ -94,14 +96,20 @@ struct Passes {
 
 /// Room for vertices and triangles.
 const ROOM: [u64; 2] = [20_000, 40_000];
+/// The bindings of what each patch keeps, of the numbers of vertices and triangles, and of the levels that patches find for points.
+const HULLS: u32 = 3;
+const STATUS: u32 = 7;
+const KEPT_LEVELS: u32 = 11;
+/// The size of what each patch keeps, in numbers of 32 bits.
+const HULL_WORDS: usize = 44;
 
 impl Passes {
-    fn new(mesh: &Mesh, topology: &Topology, own: &Tessellation) -> Self {
+    /// Uploads a mesh, as it is seen.
+    pub(super) fn new(mesh: &Mesh, topology: &Topology, own: &Tessellation, view: LodView) -> Self {
         let heights = mesh.heights.as_deref().expect("heights");
         let map = &heights.maps()[0];
-        let inputs = Inputs::new(own, LodView::new(glam::Mat4::IDENTITY, glam::Vec2::ONE));
-        let mut constants = [0.0f32; 48];
-        constants[40] = own.factor;
+        let inputs = Inputs::new(own, view);
+        let view = LodView { reach: displacement_reach(mesh, &inputs), ..view };
         let scale = height_units(heights, &inputs).to_bits();
         let [width, height] = map.size;
         let height_constants = [width, height, map.levels, u32::from(map.repeats), scale, own.midlevel.to_bits(), 0, 0];
@@ -113,42 +121,44 @@ impl Passes {
             wgpu::BufferBindingType::Storage { read_only: true },
             wgpu::BufferBindingType::Storage { read_only: false },
         );
-        let buffers = vec![
-            (0, filled(bytemuck::bytes_of(&constants)), wgpu::BufferBindingType::Uniform),
+        // What other views have left.
+        let kept = vec![u32::MAX; 3 * topology.patches.len() + corners.len()];
+        let mut buffers = vec![
+            (0, filled(bytemuck::bytes_of(&constants(own, &view))), wgpu::BufferBindingType::Uniform),
             (1, filled(bytemuck::cast_slice(&corners)), read),
             (2, filled(bytemuck::cast_slice(&indices)), read),
-            (3, empty(176 * patches), write),
+            (HULLS, empty(4 * HULL_WORDS as u64 * patches), write),
             (4, empty(8 * patches), write),
             (5, empty(32 * ROOM[0]), write),
             (6, empty(12 * ROOM[1]), write),
-            (7, empty(28), write),
+            (STATUS, empty(28), write),
             (8, filled(bytemuck::bytes_of(&height_constants)), wgpu::BufferBindingType::Uniform),
             (9, filled(bytemuck::cast_slice(&relief)), read),
         ];
+        if own.used_lod() != Lod::Uniform {
+            buffers.push((KEPT_LEVELS, filled(bytemuck::cast_slice(&kept)), write));
+        }
         Self { buffers, heights: height_texture(map), patches: patches as u32 }
     }
 
     /// Runs the passes. Returns the vertices and the triangles.
-    fn run(&self, text: &str) -> (Vec<[f32; 8]>, Vec<[u32; 3]>) {
+    pub(super) fn run(&self, text: &str) -> (Vec<[f32; 8]>, Vec<[u32; 3]>) {
         let device = &engine().gpu.device;
-        let layout = self.layout();
-        let image = wgpu::BindingResource::TextureView(&self.heights);
-        let mut entries = vec![wgpu::BindGroupEntry { binding: 10, resource: image }];
-        for (binding, buffer, _) in &self.buffers {
-            entries.push(wgpu::BindGroupEntry { binding: *binding, resource: buffer.as_entire_binding() });
-        }
-        let bound =
-            device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries });
         let source = wgpu::ShaderSource::Wgsl(text.into());
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            bind_group_layouts: &[Some(&layout)],
-            ..Default::default()
-        });
         let mut encoder = device.create_command_encoder(&Default::default());
+        if let Some((_, kept, _)) = self.buffers.iter().find(|(binding, _, _)| *binding == KEPT_LEVELS) {
+            encoder.clear_buffer(kept, 0, None);
+        }
         for (entry, workgroups) in
             [("hull_main", self.patches.div_ceil(64)), ("offsets_main", 1), ("emit_main", self.patches)]
         {
+            let layout = self.layout(self.unused_by(entry));
+            let bound = self.bound(&layout, self.unused_by(entry));
+            let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                bind_group_layouts: &[Some(&layout)],
+                ..Default::default()
+            });
             let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label: Some(entry),
                 layout: Some(&pipeline_layout),
@@ -163,11 +173,34 @@ impl Passes {
             pass.dispatch_workgroups(workgroups, 1, 1);
         }
         engine().gpu.queue.submit([encoder.finish()]);
-        let status: Vec<u32> = self.read(7, 7);
+        let status: Vec<u32> = self.read(STATUS, 7);
         (self.read(5, status[5] as usize), self.read(6, status[6] as usize))
     }
 
-    fn layout(&self) -> wgpu::BindGroupLayout {
+    /// The factors that the tessellator worked with in the last run, in whole 1/65536: of the edges of every patch, and inside.
+    pub(super) fn factors(&self) -> Vec<PatchFactors> {
+        let words: Vec<u32> = self.read(HULLS, HULL_WORDS * self.patches as usize);
+        let of = |words: &[u32]| PatchFactors { outside: [words[40], words[41], words[42]], inside: words[43] };
+        words.chunks_exact(HULL_WORDS).map(of).collect()
+    }
+
+    /// The binding that a pass does without where all would be more storage buffers than WebGPU has by default.
+    fn unused_by(&self, entry: &str) -> Option<u32> {
+        let keeps_levels = self.buffers.iter().any(|(binding, _, _)| *binding == KEPT_LEVELS);
+        keeps_levels.then_some(if entry == "offsets_main" { KEPT_LEVELS } else { STATUS })
+    }
+
+    fn bound(&self, layout: &wgpu::BindGroupLayout, without: Option<u32>) -> wgpu::BindGroup {
+        let image = wgpu::BindingResource::TextureView(&self.heights);
+        let mut entries = vec![wgpu::BindGroupEntry { binding: 10, resource: image }];
+        for (binding, buffer, _) in self.buffers.iter().filter(|(binding, _, _)| Some(*binding) != without) {
+            entries.push(wgpu::BindGroupEntry { binding: *binding, resource: buffer.as_entire_binding() });
+        }
+        let descriptor = wgpu::BindGroupDescriptor { label: None, layout, entries: &entries };
+        engine().gpu.device.create_bind_group(&descriptor)
+    }
+
+    fn layout(&self, without: Option<u32>) -> wgpu::BindGroupLayout {
         let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::COMPUTE,
@@ -177,7 +210,11 @@ impl Passes {
         let of_buffer = |(binding, _, ty): &(u32, wgpu::Buffer, wgpu::BufferBindingType)| {
             entry(*binding, wgpu::BindingType::Buffer { ty: *ty, has_dynamic_offset: false, min_binding_size: None })
         };
-        let mut entries: Vec<_> = self.buffers.iter().map(of_buffer).collect();
+        let used = self.buffers.iter().filter(|(binding, _, _)| Some(*binding) != without);
+        let mut entries: Vec<_> = used.map(of_buffer).collect();
+        // But for the two uniform buffers.
+        let storage = entries.len() as u32 - 2;
+        assert!(storage <= wgpu::Limits::default().max_storage_buffers_per_shader_stage, "{storage} storage buffers");
         let image = wgpu::BindingType::Texture {
             sample_type: wgpu::TextureSampleType::Float { filterable: false },
             view_dimension: wgpu::TextureViewDimension::D2,
@@ -188,15 +225,18 @@ impl Passes {
         device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries })
     }
 
-    fn read<T: bytemuck::AnyBitPattern>(&self, buffer: usize, count: usize) -> Vec<T> {
+    fn read<T: bytemuck::AnyBitPattern>(&self, binding: u32, count: usize) -> Vec<T> {
         let bytes = (count * size_of::<T>()) as u64;
-        let bytes = read_buffer(&engine().gpu, &self.buffers[buffer].1, 0, bytes).expect("a readback");
+        let (_, buffer, _) = self.buffers.iter().find(|(own, _, _)| *own == binding).expect("a binding");
+        let bytes = read_buffer(&engine().gpu, buffer, 0, bytes).expect("a readback");
         bytes.chunks_exact(size_of::<T>()).map(bytemuck::pod_read_unaligned).collect()
     }
 }
 
-const USAGE: wgpu::BufferUsages =
-    wgpu::BufferUsages::STORAGE.union(wgpu::BufferUsages::UNIFORM).union(wgpu::BufferUsages::COPY_SRC);
+const USAGE: wgpu::BufferUsages = wgpu::BufferUsages::STORAGE
+    .union(wgpu::BufferUsages::UNIFORM)
+    .union(wgpu::BufferUsages::COPY_SRC)
+    .union(wgpu::BufferUsages::COPY_DST);
 
 fn filled(contents: &[u8]) -> wgpu::Buffer {
     let descriptor = wgpu::util::BufferInitDescriptor { label: None, contents, usage: USAGE };
@@ -243,18 +283,24 @@ fn exported_compute_passes_displace_as_the_cpu_does() {
                 ..Tessellation::default()
             };
             let files = shader_files(Language::Wgsl, &own, "a test").expect("WGSL of any pattern");
-            let (vertices, triangles) = Passes::new(&mesh, &topology, &own).run(&files[0].text);
-            let inputs = Inputs::new(&own, LodView::new(glam::Mat4::IDENTITY, glam::Vec2::ONE));
+            let view = LodView::new(glam::Mat4::IDENTITY, glam::Vec2::ONE);
+            let (vertices, triangles) = Passes::new(&mesh, &topology, &own, view).run(&files[0].text);
+            let inputs = Inputs::new(&own, view);
             let cpu = tessellate(&mesh, &topology, &inputs, None);
             let what = format!("{shape:?} {own:?}");
             assert!(triangles == cpu.triangles, "{what}: triangles");
-            assert_eq!(vertices.len(), cpu.vertices.len(), "{what}");
-            for (own, other) in vertices.iter().zip(&cpu.vertices) {
-                let [p, n] = [[own[0], own[1], own[2]], [own[3], own[4], own[5]]].map(glam::Vec3::from);
-                // As of our passes: levels are logarithms, good to some 1e-6 of one, and a level is at most the whole height.
-                assert!(p.distance(other.position.into()) <= 1e-5 * size, "{what}: {own:?} {other:?}");
-                assert!(n.distance(unpack_normal(other.normal)) < 2e-3, "{what}: {own:?} {other:?}");
-            }
+            assert_near(&vertices, &cpu.vertices, size, &what);
         }
+    }
+}
+
+/// Holds displaced vertices of compute passes on a mesh of this size to those of the CPU.
+pub(super) fn assert_near(vertices: &[[f32; 8]], cpu: &[Vertex], size: f32, what: &str) {
+    assert_eq!(vertices.len(), cpu.len(), "{what}");
+    for (own, other) in vertices.iter().zip(cpu) {
+        let [p, n] = [[own[0], own[1], own[2]], [own[3], own[4], own[5]]].map(glam::Vec3::from);
+        // As of our passes: levels are logarithms, good to some 1e-6 of one, and a level is at most the whole height.
+        assert!(p.distance(other.position.into()) <= 1e-5 * size, "{what}: {own:?} {other:?}");
+        assert!(n.distance(unpack_normal(other.normal)) < 2e-3, "{what}: {own:?} {other:?}");
     }
 }

@@ -16,6 +16,7 @@ mod environment;
 mod error;
 mod exported;
 mod exported_displaced;
+mod exported_levels;
 mod layers;
 mod light;
 mod limits;

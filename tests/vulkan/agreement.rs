@@ -42,7 +42,8 @@ type Key = (u32, u32, u32);
 /// Makes the weights of corners 0 and 1 of the tessellator's U and V, as a convention says.
 pub type Weights<'a> = &'a dyn Fn([u32; 2]) -> [u32; 2];
 
-/// A point on an edge: the bits of the edge's ends, and the place between them.
+/// A point on an edge: the bits of the edge's ends, and the place between them. At an end, that is the edge's only one: all edges
+/// share it that meet there.
 type EdgePoint = ([u32; 3], [u32; 3], u32);
 
 /// The patches that have a point, and the bits that they give it.
@@ -64,6 +65,12 @@ fn turned(mut triangle: [Key; 3]) -> [Key; 3] {
     let least = (0..3).min_by_key(|&k| triangle[k]).unwrap_or(0);
     triangle.rotate_left(least);
     triangle
+}
+
+/// How far two numbers are apart: infinitely if one isn't a number.
+fn apart(x: f32, y: f32) -> f64 {
+    let own = f64::from((x - y).abs());
+    if own.is_nan() { f64::INFINITY } else { own }
 }
 
 /// Compares. `patch_corners` are the positions of every patch's corners, and `weights` as the domain shader's convention says.
@@ -91,14 +98,14 @@ pub fn compare(
         let written = ours.factors[key.0 as usize];
         seen.insert(key.0);
         for (x, y) in corner.factors.into_iter().zip(written) {
-            made.factors = made.factors.max(f64::from((x - y).abs() / y.abs().max(1.0)));
+            made.factors = made.factors.max(apart(x, y) / f64::from(y.abs().max(1.0)));
         }
         let Some((position, normal)) = at.get(&key) else { continue };
         for (x, y) in corner.position.iter().zip(position) {
-            made.position_ulps = made.position_ulps.max(f64::from((x - y).abs()) / ulp);
+            made.position_ulps = made.position_ulps.max(apart(*x, *y) / ulp);
         }
-        let apart = corner.normal.iter().zip(normal).map(|(x, y)| f64::from(x - y).powi(2)).sum::<f64>();
-        made.normals = made.normals.max(apart.sqrt());
+        let squares = corner.normal.iter().zip(normal).map(|(x, y)| apart(*x, *y).powi(2));
+        made.normals = made.normals.max(squares.sum::<f64>().sqrt());
     }
     // A patch of which nothing came out was left out.
     let drawn = |factors: &[f32; 4]| factors[..3].iter().all(|&factor| factor > 0.0);
@@ -109,7 +116,7 @@ pub fn compare(
 }
 
 /// Counts the points on edges that several sides have, and those of them whose bits differ.
-fn shared_points(
+pub fn shared_points(
     captured: &[[CapturedCorner; 3]],
     patch_corners: &[[[f32; 3]; 3]],
     weights: Weights,
@@ -127,7 +134,12 @@ fn shared_points(
         };
         let corners = patch_corners[patch as usize];
         let (start, end) = (bits(corners[side]), bits(corners[(side + 1) % 3]));
-        let place = if start < end { (start, end, t) } else { (end, start, ONE - t) };
+        let place = match t {
+            0 => (start, start, 0),
+            ONE => (end, end, 0),
+            _ if start < end => (start, end, t),
+            _ => (end, start, ONE - t),
+        };
         let [x, y, z, _] = corner.position;
         let (patches, positions) = points.entry(place).or_default();
         patches.insert(patch);

@@ -12,12 +12,22 @@ use super::stages::{CapturedCorner, Drawn, HEAD_BYTES, StageError};
 /// The binding of the captured triangles, behind those of exported files.
 pub const CAPTURED_BINDING: u32 = 3;
 
-/// What is bound somewhere.
-enum Resource<'a> {
+/// What is bound somewhere. An image may come with a sampler, as GLSL has it.
+pub enum Resource<'a> {
     Uniform(&'a Buffer),
     Storage(&'a Buffer),
-    Image(&'a HeightImage),
+    Image(&'a HeightImage, vk::DescriptorType),
 }
+
+/// Where something is bound.
+pub type Bound<'a> = (u32, Resource<'a>);
+
+/// The stages of a draw that read or write what is bound.
+const DRAWING: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
+    vk::ShaderStageFlags::TESSELLATION_CONTROL.as_raw()
+        | vk::ShaderStageFlags::TESSELLATION_EVALUATION.as_raw()
+        | vk::ShaderStageFlags::GEOMETRY.as_raw(),
+);
 
 /// The constants, the height image and the captured triangles, bound.
 pub struct Bindings {
@@ -45,14 +55,16 @@ impl Bindings {
         head[4..8].copy_from_slice(&(drawn.room as u32).to_le_bytes());
         let captured = Buffer::filled(vulkan, &head)?;
         let mut bound = vec![(0, Resource::Uniform(&constants)), (CAPTURED_BINDING, Resource::Storage(&captured))];
-        if let Some((constants, image)) = &relief {
-            bound.extend([(1, Resource::Uniform(constants)), (2, Resource::Image(image))]);
-        }
         let image =
             if samples { vk::DescriptorType::COMBINED_IMAGE_SAMPLER } else { vk::DescriptorType::SAMPLED_IMAGE };
-        let layout = layout(vulkan, &bound, image)?;
-        let pipeline = pipeline_layout(vulkan, layout.handle)?;
-        let (pool, set) = set(vulkan, layout.handle, &bound, image)?;
+        if let Some((constants, own)) = &relief {
+            bound.extend([(1, Resource::Uniform(constants)), (2, Resource::Image(own, image))]);
+        }
+        let layout = layout(vulkan, &bound, DRAWING)?;
+        // The geometry shader gets the number of the patch as a push constant.
+        let number = [vk::PushConstantRange::default().stage_flags(vk::ShaderStageFlags::GEOMETRY).size(4)];
+        let pipeline = pipeline_layout(vulkan, layout.handle, &number)?;
+        let (pool, set) = set(vulkan, layout.handle, &bound)?;
         Ok(Self { _layout: layout, _pool: pool, pipeline, set, _constants: constants, _relief: relief, captured })
     }
 
@@ -72,26 +84,26 @@ impl Bindings {
     }
 }
 
-/// The kind of a resource; `image` is that of images.
-fn kind(resource: &Resource, image: vk::DescriptorType) -> vk::DescriptorType {
+fn kind(resource: &Resource) -> vk::DescriptorType {
     match resource {
         Resource::Uniform(_) => vk::DescriptorType::UNIFORM_BUFFER,
         Resource::Storage(_) => vk::DescriptorType::STORAGE_BUFFER,
-        Resource::Image(_) => image,
+        Resource::Image(_, kind) => *kind,
     }
 }
 
-fn layout(
+/// Makes the layout of what is bound in these stages.
+///
+/// # Errors
+/// No memory.
+pub fn layout(
     vulkan: &Rc<Vulkan>,
-    bound: &[(u32, Resource)],
-    image: vk::DescriptorType,
+    bound: &[Bound],
+    stages: vk::ShaderStageFlags,
 ) -> Result<Owned<vk::DescriptorSetLayout>, VulkanError> {
-    let stages = vk::ShaderStageFlags::TESSELLATION_CONTROL
-        | vk::ShaderStageFlags::TESSELLATION_EVALUATION
-        | vk::ShaderStageFlags::GEOMETRY;
-    let binding = |(binding, resource): &(u32, Resource)| {
+    let binding = |(binding, resource): &Bound| {
         let own = vk::DescriptorSetLayoutBinding::default().binding(*binding).descriptor_count(1);
-        own.descriptor_type(kind(resource, image)).stage_flags(stages)
+        own.descriptor_type(kind(resource)).stage_flags(stages)
     };
     let bindings: Vec<_> = bound.iter().map(binding).collect();
     let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
@@ -99,25 +111,31 @@ fn layout(
     Ok(Owned::new(vulkan, handle, |device, handle| unsafe { device.destroy_descriptor_set_layout(handle, None) }))
 }
 
-/// The geometry shader gets the number of the patch as a push constant.
-fn pipeline_layout(
+/// Makes the layout of a pipeline with one set and these push constants.
+///
+/// # Errors
+/// No memory.
+pub fn pipeline_layout(
     vulkan: &Rc<Vulkan>,
     layout: vk::DescriptorSetLayout,
+    pushed: &[vk::PushConstantRange],
 ) -> Result<Owned<vk::PipelineLayout>, VulkanError> {
     let layouts = [layout];
-    let number = [vk::PushConstantRange::default().stage_flags(vk::ShaderStageFlags::GEOMETRY).size(4)];
-    let info = vk::PipelineLayoutCreateInfo::default().set_layouts(&layouts).push_constant_ranges(&number);
+    let info = vk::PipelineLayoutCreateInfo::default().set_layouts(&layouts).push_constant_ranges(pushed);
     let handle = unsafe { vulkan.device.create_pipeline_layout(&info, None)? };
     Ok(Owned::new(vulkan, handle, |device, handle| unsafe { device.destroy_pipeline_layout(handle, None) }))
 }
 
-fn set(
+/// Binds. The set is one of the pool's, which must live as long.
+///
+/// # Errors
+/// No memory.
+pub fn set(
     vulkan: &Rc<Vulkan>,
     layout: vk::DescriptorSetLayout,
-    bound: &[(u32, Resource)],
-    image: vk::DescriptorType,
+    bound: &[Bound],
 ) -> Result<(Owned<vk::DescriptorPool>, vk::DescriptorSet), VulkanError> {
-    let size = |(_, own): &(u32, Resource)| vk::DescriptorPoolSize::default().ty(kind(own, image)).descriptor_count(1);
+    let size = |(_, own): &Bound| vk::DescriptorPoolSize::default().ty(kind(own)).descriptor_count(1);
     let sizes: Vec<_> = bound.iter().map(size).collect();
     let device = &vulkan.device;
     let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
@@ -128,14 +146,14 @@ fn set(
     let set = unsafe { device.allocate_descriptor_sets(&info)?[0] };
     for (binding, resource) in bound {
         let write = vk::WriteDescriptorSet::default().dst_set(set).dst_binding(*binding);
-        let write = write.descriptor_type(kind(resource, image));
+        let write = write.descriptor_type(kind(resource));
         let (buffers, images);
         let write = match resource {
             Resource::Uniform(buffer) | Resource::Storage(buffer) => {
                 buffers = [vk::DescriptorBufferInfo::default().buffer(buffer.handle).range(vk::WHOLE_SIZE)];
                 write.buffer_info(&buffers)
             }
-            Resource::Image(own) => {
+            Resource::Image(own, _) => {
                 images = [own.descriptor()];
                 write.image_info(&images)
             }

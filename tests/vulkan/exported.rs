@@ -7,12 +7,12 @@ use std::sync::Arc;
 use pnaen::embed::GpuError;
 use pnaen::glam::Vec2;
 use pnaen::internals::{
-    ARENA_BYTES, Camera, Engine, Given, HullFactors, Language, Layout, Scene, Settings, ShaderError, Timing,
-    displaced_corners, indices_per_patch, shader_files,
+    ARENA_BYTES, Camera, Engine, Given, HullFactors, Language, Layout, Scene, Settings, ShaderError, ShaderFile,
+    Timing, displaced_corners, indices_per_patch, shader_files,
 };
 use pnaen::mesh::{HeightMap, Heights, Mesh, Topology};
 use pnaen::progress::Progress;
-use pnaen::tessellate::{Displacement, Lod, LodView, Surface, Tessellation, unpack_normal};
+use pnaen::tessellate::{Clip, Displacement, Lod, LodView, Surface, Tessellation, unpack_normal};
 use thiserror::Error;
 
 use super::agreement::{Agreement, Ours, Weights, compare};
@@ -31,7 +31,7 @@ pub enum ExportedError {
 }
 
 /// Width and height of the view that LOD is computed for, in px.
-const VIEWPORT: Vec2 = Vec2::new(640.0, 480.0);
+pub const VIEWPORT: Vec2 = Vec2::new(640.0, 480.0);
 
 /// The LODs that can be exported.
 pub const LODS: [Lod; 4] = [Lod::Uniform, Lod::Distance, Lod::EdgeLength, Lod::Paper];
@@ -45,7 +45,8 @@ pub struct Subject<'a> {
     mesh: Arc<Mesh>,
     topology: Arc<Topology>,
     scene: Scene,
-    view: LodView,
+    /// What LOD and clipping are computed for. At first all of the mesh is in view.
+    pub view: LodView,
 }
 
 impl<'a> Subject<'a> {
@@ -74,20 +75,38 @@ impl<'a> Subject<'a> {
         tessellation: &Tessellation,
         weights: Weights,
     ) -> Result<Agreement, ExportedError> {
+        let files = shader_files(language, tessellation, "a test")?;
+        self.agreement_of(&files, language, tessellation, weights)
+    }
+
+    /// The same with other texts of the shaders.
+    ///
+    /// # Errors
+    /// They don't compile, or the device was lost.
+    pub fn agreement_of(
+        &mut self,
+        files: &[ShaderFile],
+        language: Language,
+        tessellation: &Tessellation,
+        weights: Weights,
+    ) -> Result<Agreement, ExportedError> {
         let inputs = Settings::from(*tessellation).inputs(self.view);
         self.scene.tessellator.give(None)?;
         self.engine.count(&mut self.scene, &inputs, &mut Timing::Off)?;
         let written = self.scene.tessellator.hull_factors()?;
         let room = self.scene.tessellator.totals().1 as usize * 2 + 1000;
-        let captured = self.captured(language, tessellation, room)?;
-        // Factors may differ in their last bits, which moves points: ours are computed again with those of the stages.
-        let mut given = written.clone();
-        for corner in captured.iter().flatten() {
-            let [a, b, c, inside] = corner.factors;
-            given[corner.place[3] as usize] = HullFactors { edges: [a, b, c], inside };
+        let captured = self.captured(files, language, tessellation, room)?;
+        // Given factors say nothing of the edges of patches that are left out, on whose levels displacement depends.
+        if tessellation.clip == Clip::Off || tessellation.displacement == Displacement::Off {
+            // Factors may differ in their last bits, which moves points: ours are computed again with those of the stages.
+            let mut given = written.clone();
+            for corner in captured.iter().flatten() {
+                let [a, b, c, inside] = corner.factors;
+                given[corner.place[3] as usize] = HullFactors { edges: [a, b, c], inside };
+            }
+            self.scene.tessellator.give(Some(Given::from(given)))?;
+            self.engine.count(&mut self.scene, &inputs, &mut Timing::Off)?;
         }
-        self.scene.tessellator.give(Some(Given::from(given)))?;
-        self.engine.count(&mut self.scene, &inputs, &mut Timing::Off)?;
         let own = self.engine.read_tessellated(&mut self.scene)?;
         let keys: Vec<_> = own.vertices.iter().map(|vertex| (vertex.patch(), vertex.domain())).collect();
         let keys: Vec<_> = keys.into_iter().map(|(patch, [u, v])| (patch, u, v)).collect();
@@ -110,12 +129,13 @@ impl<'a> Subject<'a> {
 
     fn captured(
         &self,
+        files: &[ShaderFile],
         language: Language,
         tessellation: &Tessellation,
         room: usize,
     ) -> Result<Vec<[CapturedCorner; 3]>, ExportedError> {
-        let files = shader_files(language, tessellation, "a test")?;
-        let text = |name: &str| files.iter().find(|file| file.name == name).map_or("", |file| file.text.as_str());
+        let file = |name: &str| files.iter().find(|file| file.name == name).map(|file| file.text.as_str());
+        let text = |name: &str| file(name).unwrap_or_default();
         let exported = match language {
             Language::Hlsl => Exported::Hlsl(text("patch.hlsl")),
             _ => Exported::Glsl {
@@ -132,7 +152,8 @@ impl<'a> Subject<'a> {
         let displaced = corners.as_deref().filter(|_| tessellation.displacement != Displacement::Off);
         let displaced = displaced.and_then(|corners| {
             let map = self.mesh.heights.as_deref()?.maps().first()?;
-            Some(Displaced { corners, map, constants: self.height_constants(tessellation, map) })
+            let levels = file("levels.comp").or(file("levels.hlsl"));
+            Some(Displaced { corners, map, constants: self.height_constants(tessellation, map), levels })
         });
         let (vertices, indices, per_patch) = (&vertices[..], &indices[..], per_patch as u32);
         let drawn = Drawn { vertices, indices, per_patch, constants: &constants, displaced, room };
@@ -163,18 +184,9 @@ impl<'a> Subject<'a> {
 
     /// The constant buffer, laid out as the exported files say.
     fn constants(&self, own: &Tessellation) -> [f32; 48] {
-        let mut constants = [0.0; 48];
-        let matrix = self.view.clip_from_object.to_cols_array();
-        constants[..16].copy_from_slice(&matrix);
-        constants[16..32].copy_from_slice(&matrix);
-        constants[32..34].copy_from_slice(&self.view.half_viewport.to_array());
         let heights = self.mesh.heights.as_deref().filter(|_| own.displacement != Displacement::Off);
         let reach = heights.map_or(0.0, |heights| heights.reach(own.midlevel));
-        constants[34] = self.height_scale(own).abs() * reach;
-        constants[36..39].copy_from_slice(&self.view.eye.to_array());
-        constants[39] = self.view.radius;
-        constants[40..45].copy_from_slice(&[own.factor, own.pixels, own.near, own.far, own.alpha]);
-        constants
+        constants(own, &LodView { reach: self.height_scale(own).abs() * reach, ..self.view })
     }
 
     fn patch_corners(&self) -> Vec<[[f32; 3]; 3]> {
@@ -182,6 +194,20 @@ impl<'a> Subject<'a> {
             |corner: u32| self.topology.points[self.topology.corner_points[corner as usize] as usize].to_array();
         self.topology.patches.iter().map(|patch| self.topology.corners(patch).map(position)).collect()
     }
+}
+
+/// The constant buffer of a view, laid out as the exported files say.
+pub fn constants(own: &Tessellation, view: &LodView) -> [f32; 48] {
+    let mut constants = [0.0; 48];
+    let matrix = view.clip_from_object.to_cols_array();
+    constants[..16].copy_from_slice(&matrix);
+    constants[16..32].copy_from_slice(&matrix);
+    constants[32..34].copy_from_slice(&view.half_viewport.to_array());
+    constants[34] = view.reach;
+    constants[36..39].copy_from_slice(&view.eye.to_array());
+    constants[39] = view.radius;
+    constants[40..45].copy_from_slice(&[own.factor, own.pixels, own.near, own.far, own.alpha]);
+    constants
 }
 
 /// What was compared, and what came out.
@@ -201,7 +227,7 @@ pub const DISPLACEMENTS: [Displacement; 3] = [Displacement::On, Displacement::As
 /// # Errors
 /// A shader doesn't compile, or the device was lost.
 pub fn rows(subject: &mut Subject) -> Result<Vec<Row>, ExportedError> {
-    compared(subject, &LODS.map(|lod| (lod, Displacement::Off)))
+    compared(subject, &Surface::ALL, &LODS.map(|lod| (lod, Displacement::Off)))
 }
 
 /// Compares every surface under every kind of displacement, in both languages. The mesh must have heights.
@@ -209,7 +235,18 @@ pub fn rows(subject: &mut Subject) -> Result<Vec<Row>, ExportedError> {
 /// # Errors
 /// A shader doesn't compile, or the device was lost.
 pub fn displaced_rows(subject: &mut Subject) -> Result<Vec<Row>, ExportedError> {
-    compared(subject, &DISPLACEMENTS.map(|displacement| (Lod::Uniform, displacement)))
+    compared(subject, &Surface::ALL, &DISPLACEMENTS.map(|displacement| (Lod::Uniform, displacement)))
+}
+
+/// Compares PN-AEN under every kind of displacement and every LOD that depends on the view, in both languages. The mesh must have
+/// heights.
+///
+/// # Errors
+/// A shader doesn't compile, or the device was lost.
+pub fn rows_by_view(subject: &mut Subject) -> Result<Vec<Row>, ExportedError> {
+    let by_view = LODS.into_iter().filter(|lod| *lod != Lod::Uniform);
+    let kinds = by_view.flat_map(|lod| DISPLACEMENTS.map(|displacement| (lod, displacement)));
+    compared(subject, &[Surface::PnAen], &kinds.collect::<Vec<_>>())
 }
 
 /// Puts a mesh under waves, whose image repeats if texture coordinates go beyond it.
@@ -224,9 +261,13 @@ pub fn wavy(mut mesh: Mesh) -> Mesh {
     mesh
 }
 
-fn compared(subject: &mut Subject, kinds: &[(Lod, Displacement)]) -> Result<Vec<Row>, ExportedError> {
+fn compared(
+    subject: &mut Subject,
+    surfaces: &[Surface],
+    kinds: &[(Lod, Displacement)],
+) -> Result<Vec<Row>, ExportedError> {
     let mut rows = Vec::new();
-    for surface in Surface::ALL {
+    for &surface in surfaces {
         for &(lod, displacement) in kinds {
             let own = Tessellation {
                 surface,
@@ -263,26 +304,40 @@ fn option_name(variant: &str) -> String {
 /// The rows as a Markdown table. Differences are rounded up, so that the table says what holds, and stays the same on drivers that
 /// round otherwise.
 pub fn table(rows: &[Row]) -> String {
-    table_by("LOD", |row| format!("{:?}", row.lod), rows)
+    table_by(&["surface", "LOD"], rows)
 }
 
 /// The rows of displaced surfaces as a Markdown table, likewise.
 pub fn displaced_table(rows: &[Row]) -> String {
-    table_by("displacement", |row| format!("{:?}", row.displacement), rows)
+    table_by(&["surface", "displacement"], rows)
 }
 
-fn table_by(column: &str, value: impl Fn(&Row) -> String, rows: &[Row]) -> String {
+/// The rows of one surface under LOD by the view as a Markdown table, likewise.
+pub fn table_by_view(rows: &[Row]) -> String {
+    table_by(&["LOD", "displacement"], rows)
+}
+
+/// A table that begins with two of these columns: `surface`, `LOD`, `displacement`.
+fn table_by(columns: &[&str; 2], rows: &[Row]) -> String {
     let head = format!(
-        "| surface | {column} | language | triangles | other triangles | factors within | positions within | points on shared edges | \
-         of these with other bits |\n| --- | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: |\n"
+        "| {} | {} | language | triangles | other triangles | factors within | positions within | points on shared edges | \
+         of these with other bits |\n| --- | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: |\n",
+        columns[0], columns[1]
     );
+    let value = |row: &Row, column: &str| {
+        option_name(&match column {
+            "surface" => format!("{:?}", row.surface),
+            "LOD" => format!("{:?}", row.lod),
+            _ => format!("{:?}", row.displacement),
+        })
+    };
     let row = |row: &Row| {
         let own = &row.agreement;
         let factors = if own.factors <= 1e-6 { "0.000001".to_owned() } else { format!("{:.6}", own.factors) };
         format!(
             "| `{}` | `{}` | {} | {} | {} | {factors} | {} ULP | {} | {} |\n",
-            option_name(&format!("{:?}", row.surface)),
-            option_name(&value(row)),
+            value(row, columns[0]),
+            value(row, columns[1]),
             format!("{:?}", row.language).to_uppercase(),
             own.triangles,
             own.other_triangles,

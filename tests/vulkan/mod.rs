@@ -6,6 +6,7 @@ pub mod bindings;
 pub mod device;
 pub mod exported;
 pub mod height_image;
+pub mod levels;
 pub mod memory;
 pub mod pass;
 pub mod stages;

@@ -13,6 +13,7 @@ use thiserror::Error;
 
 use super::bindings::{Bindings, CAPTURED_BINDING};
 use super::device::{Vulkan, VulkanError};
+use super::levels::levels;
 use super::memory::{Buffer, Owned};
 use super::pass::Pass;
 
@@ -43,6 +44,8 @@ pub struct Displaced<'a> {
     pub map: &'a HeightMap,
     /// The contents of the second constant buffer.
     pub constants: [u32; 8],
+    /// The text of the compute shader that finds the levels at points, if the export has one.
+    pub levels: Option<&'a str>,
 }
 
 /// What is drawn.
@@ -158,7 +161,10 @@ struct Stage {
 }
 
 /// Compiles one text. `options` say its language, stage and entry point.
-fn compiled(folder: &Path, file: &'static str, text: &str, options: &[&str]) -> Result<Vec<u8>, StageError> {
+///
+/// # Errors
+/// It doesn't compile, or the compiler can't be run.
+pub fn compiled(folder: &Path, file: &'static str, text: &str, options: &[&str]) -> Result<Vec<u8>, StageError> {
     let (source, out) = (folder.join(file), folder.join("out.spv"));
     std::fs::write(&source, text)?;
     let made = Command::new("glslangValidator").arg("-V").args(options).arg(&source).arg("-o").arg(&out).output();
@@ -228,7 +234,9 @@ impl Exported<'_> {
         let pipeline = pipeline(vulkan, &set, nowhere.handle(), &stages, self.entries(), drawn)?;
         let vertices = Buffer::filled(vulkan, drawn.vertices)?;
         let relief = drawn.displaced.map(|displaced| Buffer::filled(vulkan, displaced.corners)).transpose()?;
-        let buffers: Vec<_> = [Some(&vertices), relief.as_ref()].into_iter().flatten().map(|own| own.handle).collect();
+        let levels = levels(vulkan, self, drawn)?;
+        let buffers = [Some(&vertices), relief.as_ref(), levels.as_ref()];
+        let buffers: Vec<_> = buffers.into_iter().flatten().map(|own| own.handle).collect();
         let indices = Buffer::filled(vulkan, drawn.indices)?;
         let device = &vulkan.device;
         vulkan.run(|commands| unsafe {
@@ -267,7 +275,7 @@ fn pipeline(
             vk::PipelineShaderStageCreateInfo::default().stage(stage.flag).module(module.handle).name(entry)
         })
         .collect();
-    let (bindings, attributes) = vertex_input(drawn.displaced.is_some());
+    let (bindings, attributes) = vertex_input(drawn.displaced.as_ref());
     let vertices = vk::PipelineVertexInputStateCreateInfo::default()
         .vertex_binding_descriptions(&bindings)
         .vertex_attribute_descriptions(&attributes);
@@ -289,7 +297,7 @@ fn pipeline(
 
 /// The vertex buffers, laid out as exported files say.
 fn vertex_input(
-    is_displaced: bool,
+    displaced: Option<&Displaced>,
 ) -> (Vec<vk::VertexInputBindingDescription>, Vec<vk::VertexInputAttributeDescription>) {
     let buffer = |binding, stride| vk::VertexInputBindingDescription::default().binding(binding).stride(stride);
     let attribute = |binding, location, format, offset| {
@@ -300,14 +308,15 @@ fn vertex_input(
     let mut buffers = vec![buffer(0, 32)];
     let mut attributes =
         vec![attribute(0, 0, three, 0), attribute(0, 1, three, 12), attribute(0, 2, vk::Format::R32G32_SFLOAT, 24)];
-    if is_displaced {
+    if let Some(displaced) = displaced {
         buffers.push(buffer(1, 40));
-        attributes.extend([
-            attribute(1, 3, three, 0),
-            attribute(1, 4, three, 12),
-            attribute(1, 5, three, 24),
-            attribute(1, 6, vk::Format::R32_SFLOAT, 36),
-        ]);
+        attributes.extend([attribute(1, 3, three, 0), attribute(1, 4, three, 12), attribute(1, 5, three, 24)]);
+        if displaced.levels.is_some() {
+            buffers.push(buffer(2, 4));
+            attributes.push(attribute(2, 6, vk::Format::R32_UINT, 0));
+        } else {
+            attributes.push(attribute(1, 6, vk::Format::R32_SFLOAT, 36));
+        }
     }
     (buffers, attributes)
 }

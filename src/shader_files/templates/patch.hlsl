@@ -19,12 +19,15 @@ struct Corner
     float3 position : POSITION;
     float3 normal : NORMAL;
     float2 uv : TEXCOORD0;
-@D@    // The second vertex buffer: the unit vector along which the corner's point moves, the gradients of its texture coordinates,
-@D@    // and the length of the point's shortest edge in px of level 0.
+@U@    // The second vertex buffer: the unit vector along which the corner's point moves, the gradients of its texture coordinates,
+@U@    // and the length of the point's shortest edge in px of level 0.
+@V@    // The second vertex buffer: the unit vector along which the corner's point moves, and the gradients of its texture coordinates.
 @D@    float3 direction : DIRECTION;
 @D@    float3 along_u : ALONG_U;
 @D@    float3 along_v : ALONG_V;
-@D@    float texels : TEXELS;
+@U@    float texels : TEXELS;
+@V@    // The third vertex buffer: the mip level at a point, which levels.hlsl keeps at the point's dominant corner.
+@V@    uint level : LEVEL;
 };
 @D@
 @D@// What the hull shader hands on of corner k and of side k.
@@ -109,9 +112,9 @@ HullOutput hs_patch(InputPatch<Corner, @INDICES@> corners)
     made.middle = net.center_;
 @D@    [unroll] for (uint i = 0; i < 3; i++)
 @D@    {
-@D@        made.corner_levels[i] = corner_level(height_constants, constants.factor, corners[i].texels);
-@D@        made.side_levels[i] =
-@D@            side_level(height_constants, constants.factor, corners[12 + 2 * i].uv, corners[13 + 2 * i].uv);
+@U@        made.corner_levels[i] = corner_level(height_constants, constants.factor, corners[i].texels);
+@V@        made.corner_levels[i] = level_of(corners[9 + i].level);
+@D@        made.side_levels[i] = side_level(height_constants, sides[i], corners[12 + 2 * i].uv, corners[13 + 2 * i].uv);
 @D@    }
 @D@    float2 uvs[3] = { corners[0].uv, corners[1].uv, corners[2].uv };
 @D@    made.inside_level = level_inside(height_constants, segments_inside(factors), uvs);

@@ -27,12 +27,15 @@ layout(vertices = 3) out;
 layout(location = 0) in vec3 vertex_position[];
 layout(location = 1) in vec3 vertex_normal[];
 layout(location = 2) in vec2 vertex_uv[];
-@D@// The unit vector along which a corner's point moves, the gradients of its texture coordinates, and the length of the point's
-@D@// shortest edge in px of level 0.
+@U@// The unit vector along which a corner's point moves, the gradients of its texture coordinates, and the length of the point's
+@U@// shortest edge in px of level 0.
+@V@// The unit vector along which a corner's point moves, the gradients of its texture coordinates, and at dominant corners the mip
+@V@// level of the point, as levels.comp keeps it.
 @D@layout(location = 3) in vec3 vertex_direction[];
 @D@layout(location = 4) in vec3 vertex_along_u[];
 @D@layout(location = 5) in vec3 vertex_along_v[];
-@D@layout(location = 6) in float vertex_texels[];
+@U@layout(location = 6) in float vertex_texels[];
+@V@layout(location = 6) in uint vertex_level[];
 
 layout(location = 0) out vec3 corner_position[];
 layout(location = 1) out vec3 corner_normal[];
@@ -96,9 +99,9 @@ void main() {
         gl_TessLevelOuter[2] = factors.z;
         gl_TessLevelInner[0] = factors.w;
 @D@        for (int i = 0; i < 3; i++) {
-@D@            corner_levels[i] = corner_level(height_constants, constants.factor, vertex_texels[i]);
-@D@            side_levels[i] =
-@D@                side_level(height_constants, constants.factor, vertex_uv[12 + 2 * i], vertex_uv[13 + 2 * i]);
+@U@            corner_levels[i] = corner_level(height_constants, constants.factor, vertex_texels[i]);
+@V@            corner_levels[i] = level_of(vertex_level[9 + i]);
+@D@            side_levels[i] = side_level(height_constants, sides[i], vertex_uv[12 + 2 * i], vertex_uv[13 + 2 * i]);
 @D@        }
 @D@        vec2 uvs[3] = vec2[3](vertex_uv[0], vertex_uv[1], vertex_uv[2]);
 @D@        inside_level = level_inside(height_constants, segments_inside(factors), uvs);

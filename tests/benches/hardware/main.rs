@@ -137,6 +137,8 @@ fn shaders(engine: &Engine) -> Result<(), BenchError> {
     println!("# Exported shaders on {}\n\n{}", engine.gpu.info.name, exported::table(&exported::rows(&mut subject)?));
     let mut displaced = exported::Subject::new(engine, &vulkan, exported::wavy(Shape::CubeSplit.build()))?;
     println!("\nDisplaced:\n\n{}", exported::displaced_table(&exported::displaced_rows(&mut displaced)?));
+    let by_view = exported::rows_by_view(&mut displaced)?;
+    println!("\nDisplaced, by the view:\n\n{}", exported::table_by_view(&by_view));
     Ok(())
 }
 
