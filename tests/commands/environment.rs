@@ -83,7 +83,7 @@ fn a_file_and_a_light_must_fit_and_odd_files_cost_a_warning() {
     assert!(said.contains("--environment is the light of --lighting environment"), "{said}");
     let said = failure(&[&render[..], &["--lighting", "environment"]].concat(), 2);
     assert!(said.contains("--lighting environment needs --environment"), "{said}");
-    let said = failure(&["render", "shape:torus", "-o", &sky, "--environment", &sky], 1);
+    let said = failure(&[&render[..], &["--stats", &sky, "--environment", &sky]].concat(), 1);
     assert!(said.contains("sky.hdr is read by the same command"), "{said}");
     let ran = run(&[&render[..], &["--environment", &sky, "--size", "16x16"]].concat());
     let said = String::from_utf8_lossy(&ran.stderr).into_owned();

@@ -99,8 +99,8 @@ fn what_cannot_be_written_is_said_and_leaves_nothing() {
         assert!(said.contains(word), "{said}");
     };
     usage(&["-o", &folder.path("turn.mp4")], "not .mp4");
-    usage(&["-o", &folder.path("turn"), "--frames", "1"], "2..=3600");
-    usage(&["-o", &folder.path("turn.gif"), "--fps", "100"], "1..=50");
+    usage(&["-o", &folder.path("turn"), "--frames", "1"], "from 2 to 3600");
+    usage(&["-o", &folder.path("turn.gif"), "--fps", "100"], "from 1 to 50");
     sentence(&["turntable", "shape:torus", "-o", &folder.path("no/turn")], &["there is no folder"]);
     let missing = folder.path("no.csv");
     sentence(&["turntable", "shape:torus", "-o", &folder.path("turn"), "--factors", &missing], &["no.csv"]);

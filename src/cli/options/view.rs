@@ -195,6 +195,6 @@ mod tests {
         let refused = |text: String| text.parse::<MatrixNumbers>().expect_err("no matrix");
         assert_eq!(refused(numbers[1..].join(" ")), "expected 16 numbers, found 15");
         assert_eq!(refused(numbers.join(" ").replace("16", "NaN")), "expected 16 numbers, and number 16 is NaN");
-        assert_eq!(refused(numbers.join(" ").replace("2 3", "2 x")), "expected 16 numbers, and the 3. is x");
+        assert_eq!(refused(numbers.join(" ").replace("2 3", "2 x")), "expected 16 numbers, and number 3 is x");
     }
 }
