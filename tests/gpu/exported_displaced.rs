@@ -70,9 +70,14 @@ fn displaced_partitionings_conventions_and_normals_agree_too() {
     tried.push(Tessellation { edges: Edges::AsPublished, ..usual });
     // Patches that only displacement moves into view stay, and back faces, too.
     tried.push(Tessellation { clip: Clip::Frustum, cull_back_faces: true, ..usual });
+    assert_all_agree(&tried);
+}
+
+/// Holds exported shaders under each of these to our passes, on a closed mesh and on one of a single side.
+pub(super) fn assert_all_agree(tried: &[Tessellation]) {
     for (shape, shift) in [(Shape::Torus, 0.37), (Shape::Moebius, 0.0)] {
         let mut subject = Subject::new(engine(), &vulkan(), shifted(shape, shift)).expect("a small mesh");
-        for own in &tried {
+        for own in tried {
             for language in LANGUAGES {
                 let weights = |domain| corner_weights(own.convention, domain);
                 let agreement = subject.agreement(language, own, &weights).expect("shaders that run");

@@ -7,12 +7,12 @@ use pnaen::render::Camera;
 use pnaen::shader_files::{Language, ShaderFile, shader_files};
 use pnaen::tessellate::{
     Clip, Convention, Displacement, Edges, FACTOR_VALUE, HullFactors, Inputs, Lod, LodView, Normals, Partitioning,
-    PatchFactors, Surface, Tessellated, Tessellation, Vertex, corner_weights, tessellate, tessellate_given,
+    PatchFactors, Surface, Tessellated, Tessellation, Vertex, tessellate, tessellate_given,
 };
 
 use crate::gpu_tests::engine;
 use crate::gpu_tests::exported::{assert_part_of_page, vulkan};
-use crate::gpu_tests::exported_displaced::{Passes, assert_displaced_agrees, assert_near, shifted};
+use crate::gpu_tests::exported_displaced::{Passes, assert_all_agree, assert_displaced_agrees, assert_near, shifted};
 use crate::gpu_tests::vulkan::agreement::{Agreement, shared_points};
 use crate::gpu_tests::vulkan::exported::{
     DISPLACEMENTS, LANGUAGES, Subject, VIEWPORT, rows_by_view, table_by_view, wavy,
@@ -79,19 +79,7 @@ fn partitionings_conventions_normals_and_edges_agree_by_the_view_too() {
         tried.push(Tessellation { normals, ..usual(lod) });
     }
     tried.push(Tessellation { edges: Edges::AsPublished, ..usual(Lod::Distance) });
-    for (shape, shift) in [(Shape::Torus, 0.37), (Shape::Moebius, 0.0)] {
-        let mut subject = Subject::new(engine(), &vulkan(), shifted(shape, shift)).expect("a small mesh");
-        for own in &tried {
-            for language in LANGUAGES {
-                let weights = |domain| corner_weights(own.convention, domain);
-                let agreement = subject.agreement(language, own, &weights).expect("shaders that run");
-                let what = format!("{shape:?} {own:?} {language:?}");
-                assert_displaced_agrees(&agreement, &what);
-                let is_whole = own.edges == Edges::PerEdge && own.convention.is_consistent();
-                assert!(!is_whole || agreement.torn == 0, "{what}: {agreement:?}");
-            }
-        }
-    }
+    assert_all_agree(&tried);
 }
 
 /// The exported GLSL with a piece of a file replaced.
