@@ -36,8 +36,8 @@ fn ground_fragment(in: GroundVaryings) -> @location(0) vec4<f32> {
     let apart = 1.0 / max(sqrt(dx * dx + dy * dy), vec2<f32>(1e-12));
     let to_line = abs(fract(in.cells + 0.5) - 0.5) * apart;
     let near = 1.0 - smoothstep(GROUND_FADES_FROM * GROUND_REACH, GROUND_REACH, length(in.cells));
-    let along_z = left_by_density(apart.x * frame.coarseness) * line_coverage(to_line.x, 0.5 / frame.coarseness);
-    let along_x = left_by_density(apart.y * frame.coarseness) * line_coverage(to_line.y, 0.5 / frame.coarseness);
+    let along_z = left_by_density(apart.x) * line_coverage(to_line.x, 0.5 / frame.coarseness);
+    let along_x = left_by_density(apart.y) * line_coverage(to_line.y, 0.5 / frame.coarseness);
     // The lines under the axes have the axes' colours, and don't fade by density, as each is alone.
     let to_axis = abs(in.cells + frame.ground.xz / frame.ground.w) * apart;
     let under_x = line_coverage(to_axis.y, 0.9 / frame.coarseness);

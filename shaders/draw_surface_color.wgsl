@@ -44,7 +44,7 @@ fn least(numbers: vec3<f32>) -> f32 {
 // How opaque the sides of a triangle are at a pixel, which are `to_sides` px away. All fade together where the triangle is thin,
 // since of a thin triangle only one side would be left.
 fn sides_opacity(to_sides: vec3<f32>, side_heights: vec3<f32>, half_width: f32) -> f32 {
-    return left_by_density(least(side_heights) * frame.coarseness) * line_coverage(least(to_sides), half_width);
+    return left_by_density(least(side_heights)) * line_coverage(least(to_sides), half_width);
 }
 
 // Lit very little, so that colours can be compared with a legend: unchanged where the surface faces the eye.
@@ -138,7 +138,7 @@ fn surface_color(in: Varyings, own_normal: vec3<f32>, front: bool, lit: vec4<f32
         let kind = patches[in.patch_index].factors[side] & 7u;
         // Smooth edges are the most frequent and the least interesting, so their lines are thin, and fade where they are dense.
         let is_smooth = kind == EDGE_SMOOTH;
-        let opacity = select(1.0, left_by_density(least(edge_heights) * frame.coarseness), is_smooth);
+        let opacity = select(1.0, left_by_density(least(edge_heights)), is_smooth);
         let covered = opacity * line_coverage(nearest_edge, select(1.75, 0.75, is_smooth) / frame.coarseness);
         color = mix(color, vec4<f32>(edge_color(kind), 1.0), covered);
     }

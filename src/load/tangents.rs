@@ -127,7 +127,7 @@ struct Around {
 
 impl Around {
     fn of(mesh: &Mesh) -> Self {
-        let (points, point_of) = weld(mesh.corners.iter().map(|corner| corner.position));
+        let (points, point_of) = weld(mesh.corners.len(), |corner| mesh.corners[corner].position);
         let (touched, given) = (vec![false; points.len()], vec![false; point_of.len()]);
         Self { point_of, touched, given, copies: HashMap::new() }
     }

@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use super::build_limits::{BuildError, Unlimited};
 use super::union_find::UnionFind;
-use super::weld::weld_alike;
+use super::weld::{WELD_BYTES, weld_alike};
 use super::{Corner, Mesh};
 use crate::mesh::build_limits::MemoryAccount;
 use crate::progress::{Cancelled, Progress};
@@ -359,8 +359,8 @@ impl Topology {
 pub(super) fn weld_corners(mesh: &Mesh, tolerance: f32) -> (Vec<Vec3>, Vec<u32>) {
     let distance = if tolerance > 0.0 { mesh.bounds().part(tolerance.into()) } else { 0.0 };
     let alike = mesh.rig.as_ref().map_or(&[][..], |rig| &rig.alike);
-    let numbers = alike.iter().copied().chain(std::iter::repeat(0));
-    weld_alike(mesh.corners.iter().map(|corner| corner.position).zip(numbers), distance)
+    let number = |corner: usize| alike.get(corner).copied().unwrap_or_default();
+    weld_alike(mesh.corners.len(), |corner| (mesh.corners[corner].position, number(corner)), distance)
 }
 
 /// Returns whether a triangle with corners on these points is degenerate.
@@ -370,11 +370,9 @@ pub(super) fn is_degenerate([a, b, c]: [u32; 3]) -> bool {
 
 /// Returns the greatest amount of memory that [`weld_corners`] needs temporarily, in bytes.
 fn weld_bytes(corners: usize, tolerance: f32) -> u64 {
-    // Each corner's position, its hash and its point; then the points, which are copied when their list shrinks.
-    let exactly = 44;
     // Further lists of the points, and a table of cells; lists and table double as they grow.
     let within = if tolerance > 0.0 { 80 } else { 0 };
-    (exactly + within) * corners as u64
+    (WELD_BYTES + within) * corners as u64
 }
 
 /// Returns the lowest corner on each point, and whether the point has more than one.

@@ -2,7 +2,7 @@
 
 use super::Corner;
 use super::build_limits::{BuildError, MemoryAccount};
-use super::weld::weld;
+use super::weld::{WELD_BYTES, weld};
 
 /// A mesh that is being built. Missing normals are NaN.
 #[derive(Default)]
@@ -35,8 +35,8 @@ impl CornerPoints {
         if mesh.bindings.is_empty() && mesh.corners.iter().all(plain) {
             return Ok(Self::Corners);
         }
-        budget.borrow(mesh.corners.len() as u64 * 40)?;
-        let (points, point_of) = weld(mesh.corners.iter().map(|corner| corner.position));
+        budget.borrow(mesh.corners.len() as u64 * WELD_BYTES)?;
+        let (points, point_of) = weld(mesh.corners.len(), |corner| mesh.corners[corner].position);
         Ok(Self::Welded(point_of, points.len()))
     }
 

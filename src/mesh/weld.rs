@@ -13,54 +13,58 @@ use crate::cores::{in_parts, ranges};
 /// The least number of positions that are worth a thread.
 const LEAST: usize = 1 << 14;
 
+/// The most memory that an exact weld needs while it runs, in bytes for each position: its hash, in a list that may double, and its point.
+pub(super) const WELD_BYTES: u64 = 28;
+
 /// Joins equal positions into points. Two positions are equal if all three coordinates have the same value (-0 equals
 /// 0), without any tolerance. Points are in the order of their first appearance, and have +0 for every zero.
 ///
-/// Returns the points, and for each position the index of its point. Takes about n log n steps for n positions.
-pub(crate) fn weld(positions: impl IntoIterator<Item = Vec3>) -> (Vec<Vec3>, Vec<u32>) {
-    let (points, point_of) = weld_exactly(positions.into_iter().map(|position| (position, 0)));
-    (points.into_iter().map(|(point, _)| point).collect(), point_of)
+/// Returns the points, and for each of the `count` positions the index of its point. Takes about n log n steps for n positions.
+pub(crate) fn weld(count: usize, position: impl Fn(usize) -> Vec3 + Sync) -> (Vec<Vec3>, Vec<u32>) {
+    weld_alike(count, |i| (position(i), 0), 0.0)
 }
 
-/// Joins positions as [`weld`] does; each has a number, which must be equal too.
-fn weld_exactly(positions: impl Iterator<Item = (Vec3, u32)>) -> (Vec<(Vec3, u32)>, Vec<u32>) {
-    let mut points: Vec<_> = positions.map(|(position, number)| (plus_zero3(position), number)).collect();
-    let mut point_of = first_equal(&points);
-    let mut count = 0;
-    for i in 0..points.len() {
+/// Joins positions as [`weld`] does; each has a number, which must be equal too. Returns the first position of each point in place of
+/// the point.
+fn weld_exactly(count: usize, place: impl Fn(usize) -> (Vec3, u32) + Sync) -> (Vec<u32>, Vec<u32>) {
+    let mut point_of = first_equal(count, place);
+    let points = (0..).zip(&point_of).filter(|(i, first)| i == *first).count();
+    let mut firsts = Vec::with_capacity(points);
+    for i in 0..count {
         let first = point_of[i] as usize;
         // The first of equal positions comes before the others, and has its point already.
-        point_of[i] = if first < i { point_of[first] } else { count };
-        if first == i {
-            points[count as usize] = points[i];
-            count += 1;
-        }
+        point_of[i] = if first < i {
+            point_of[first]
+        } else {
+            firsts.push(i as u32);
+            firsts.len() as u32 - 1
+        };
     }
-    points.truncate(count as usize);
-    (points, point_of)
+    (firsts, point_of)
 }
 
 /// Returns for each position the first one that has the same bits and the same number. Hashes are sorted, since a table of them
 /// would be read all over memory.
-fn first_equal(points: &[(Vec3, u32)]) -> Vec<u32> {
+fn first_equal(count: usize, place: impl Fn(usize) -> (Vec3, u32) + Sync) -> Vec<u32> {
     // Two words per key, which foldhash hashes several times faster than an array.
-    let key = |(point, number): (Vec3, u32)| {
-        let [x, y, z] = point.to_array().map(|coordinate| u64::from(coordinate.to_bits()));
+    let key = |i: usize| {
+        let (position, number) = place(i);
+        let [x, y, z] = position.to_array().map(|coordinate| u64::from(coordinate.to_bits()));
         (x << 32 | y, z << 32 | u64::from(number))
     };
     let hasher = RandomState::default();
-    let hash = |point: &(Vec3, u32)| hasher.hash_one(key(*point)) >> 32;
+    let hash = |i: usize| hasher.hash_one(key(i)) >> 32;
     // Each core takes those whose hash lies in its part of all hashes.
-    let parts = ranges(points.len(), LEAST).count();
+    let parts = ranges(count, LEAST).count();
     let sorted = in_parts((0..parts as u64).collect(), |part| {
         // Hashes are spread evenly, so that there is room enough nearly always.
-        let mut own = Vec::with_capacity((points.len() / parts).saturating_mul(17) / 16);
-        let hashed = (0_u64..).zip(points).map(|(i, point)| (hash(point), i));
+        let mut own = Vec::with_capacity((count / parts).saturating_mul(17) / 16);
+        let hashed = (0..count).map(|i| (hash(i), i as u64));
         own.extend(hashed.filter(|(hash, _)| (hash * parts as u64) >> 32 == *part).map(|(hash, i)| hash << 32 | i));
         own.sort_unstable();
         own
     });
-    let mut first: Vec<u32> = (0..points.len() as u32).collect();
+    let mut first: Vec<u32> = (0..count as u32).collect();
     // The first positions of those with one hash. Nearly always there is only one.
     let mut firsts: Vec<u32> = Vec::new();
     // Most positions are the only one with their hash, and aren't looked at.
@@ -68,8 +72,8 @@ fn first_equal(points: &[(Vec3, u32)]) -> Vec<u32> {
     for alike in alike.filter(|alike| alike.len() > 1) {
         firsts.clear();
         for i in alike.iter().map(|own| *own as u32) {
-            let own = key(points[i as usize]);
-            let same = firsts.iter().copied().find(|first| key(points[*first as usize]) == own);
+            let own = key(i as usize);
+            let same = firsts.iter().copied().find(|first| key(*first as usize) == own);
             first[i as usize] = same.unwrap_or_else(|| {
                 firsts.push(i);
                 i
@@ -84,22 +88,25 @@ fn first_equal(points: &[(Vec3, u32)]) -> Vec<u32> {
 /// two at the same distance), or else a new point. So every position lies within one tolerance of its point, however
 /// long a chain of near positions is, and any two points are more than one tolerance apart.
 ///
-/// A tolerance that isn't above 0 gives the same result as [`weld`]. Returns the points, and for each position the
-/// index of its point. Beside the exact weld it takes expected linear time, since only a limited number of points that far apart fit
-/// into one cell of the grid.
-#[cfg(test)]
-pub(crate) fn weld_within(positions: impl IntoIterator<Item = Vec3>, tolerance: f64) -> (Vec<Vec3>, Vec<u32>) {
-    weld_alike(positions.into_iter().map(|position| (position, 0)), tolerance)
-}
-
-/// Joins positions as `weld_within` does; each has a number, and positions with different numbers aren't joined.
-pub(crate) fn weld_alike(positions: impl Iterator<Item = (Vec3, u32)>, tolerance: f64) -> (Vec<Vec3>, Vec<u32>) {
+/// A tolerance that isn't above 0 gives the same result as [`weld`]. Each position has a number, and positions with different numbers
+/// aren't joined. Returns the points, and for each of the `count` positions the index of its point. Beside the exact weld it takes
+/// expected linear time, since only a limited number of points that far apart fit into one cell of the grid.
+pub(crate) fn weld_alike(
+    count: usize,
+    place: impl Fn(usize) -> (Vec3, u32) + Sync,
+    tolerance: f64,
+) -> (Vec<Vec3>, Vec<u32>) {
+    let place = |i: usize| {
+        let (position, number) = place(i);
+        (plus_zero3(position), number)
+    };
     // Join equal positions first: they must stay together even if a nearer point comes between them.
-    let (distinct, mut point_of) = weld_exactly(positions);
+    let (firsts, mut point_of) = weld_exactly(count, place);
+    let distinct = firsts.iter().map(|first| place(*first as usize));
     if tolerance.is_nan() || tolerance <= 0.0 {
-        return (distinct.into_iter().map(|(point, _)| point).collect(), point_of);
+        return (distinct.map(|(point, _)| point).collect(), point_of);
     }
-    let (points, merged) = merge_within(distinct.into_iter(), tolerance);
+    let (points, merged) = merge_within(distinct, tolerance);
     point_of.iter_mut().for_each(|point| *point = merged[*point as usize]);
     (points, point_of)
 }
@@ -183,9 +190,21 @@ mod tests {
     use crate::cores::tests::on_cores;
     use proptest::prelude::*;
 
+    fn weld(positions: &[Vec3]) -> (Vec<Vec3>, Vec<u32>) {
+        super::weld(positions.len(), |i| positions[i])
+    }
+
+    fn weld_within(positions: &[Vec3], tolerance: f64) -> (Vec<Vec3>, Vec<u32>) {
+        super::weld_alike(positions.len(), |i| (positions[i], 0), tolerance)
+    }
+
+    fn weld_alike(positions: &[(Vec3, u32)], tolerance: f64) -> (Vec<Vec3>, Vec<u32>) {
+        super::weld_alike(positions.len(), |i| positions[i], tolerance)
+    }
+
     #[test]
     fn minus_zero_is_zero() {
-        let (points, of) = weld([Vec3::new(-0.0, 1.0, 2.0), Vec3::new(0.0, 1.0, 2.0)]);
+        let (points, of) = weld(&[Vec3::new(-0.0, 1.0, 2.0), Vec3::new(0.0, 1.0, 2.0)]);
         assert_eq!(of, [0, 0]);
         assert_eq!(points.len(), 1);
         assert_eq!(points[0].x.to_bits(), 0);
@@ -202,45 +221,45 @@ mod tests {
             numbers.push(*known.entry([position.x, position.z].map(f32::to_bits)).or_insert(next));
         }
         for cores in [1, 2, 7] {
-            let (points, of) = on_cores(cores, || weld(positions.iter().copied()));
+            let (points, of) = on_cores(cores, || weld(&positions));
             assert!(points.len() == known.len() && of == numbers, "{cores}");
         }
-        let one = on_cores(7, || weld(vec![Vec3::ONE; 100_000]));
+        let one = on_cores(7, || weld(&[Vec3::ONE; 100_000]));
         assert_eq!(one, (vec![Vec3::ONE], vec![0; 100_000]));
     }
 
     #[test]
     fn the_smallest_difference_keeps_points_apart() {
         let next = f32::from_bits(1.0_f32.to_bits() + 1);
-        let (points, of) = weld([Vec3::ONE, Vec3::new(1.0, 1.0, next), Vec3::ONE]);
+        let (points, of) = weld(&[Vec3::ONE, Vec3::new(1.0, 1.0, next), Vec3::ONE]);
         assert_eq!((points.len(), of), (2, vec![0, 1, 0]));
     }
 
     #[test]
     fn the_nearest_point_wins_and_the_earlier_of_two() {
         let at = |x: &[f32]| x.iter().map(|&x| Vec3::X * x).collect::<Vec<_>>();
-        let (points, of) = weld_within(at(&[0.0, 1.5, 1.0, 0.75, 0.5]), 1.0);
+        let (points, of) = weld_within(&at(&[0.0, 1.5, 1.0, 0.75, 0.5]), 1.0);
         assert_eq!((points, of), (at(&[0.0, 1.5]), vec![0, 1, 1, 0, 0]));
     }
 
     #[test]
     fn chains_of_near_positions_do_not_become_one_point() {
-        let chain = (0..100).map(|i| Vec3::Y * (i as f32 / 4.0));
-        let (points, of) = weld_within(chain, 0.5);
+        let chain: Vec<Vec3> = (0..100).map(|i| Vec3::Y * (i as f32 / 4.0)).collect();
+        let (points, of) = weld_within(&chain, 0.5);
         // 0, 0.25 and 0.5 become one point. 0.75 is too far from 0, and becomes one point with 1.
         assert_eq!((points.len(), &of[..7]), (34, &[0, 0, 0, 1, 1, 1, 2][..]));
     }
 
     #[test]
     fn equal_positions_stay_together_whatever_comes_between() {
-        let (points, of) = weld_within([0.0, 0.9, 1.5, 0.9].map(|x| Vec3::X * x), 1.0);
+        let (points, of) = weld_within(&[0.0, 0.9, 1.5, 0.9].map(|x| Vec3::X * x), 1.0);
         assert_eq!((points.len(), of), (2, vec![0, 0, 1, 0]));
     }
 
     #[test]
     fn the_tolerance_itself_counts_as_within() {
         for (x, points) in [(0.25_f32, 1), (0.25_f32.next_up(), 2)] {
-            assert_eq!(weld_within([Vec3::ZERO, Vec3::X * x], 0.25).0.len(), points);
+            assert_eq!(weld_within(&[Vec3::ZERO, Vec3::X * x], 0.25).0.len(), points);
         }
     }
 
@@ -248,7 +267,7 @@ mod tests {
     fn no_tolerance_is_the_exact_weld() {
         let positions = [1.0, -0.0, 0.0, 1e-45, 1e38, 1.0].map(Vec3::splat);
         for tolerance in [0.0, -1.0, f64::NAN] {
-            assert_eq!(weld_within(positions, tolerance), weld(positions));
+            assert_eq!(weld_within(&positions, tolerance), weld(&positions));
         }
     }
 
@@ -256,26 +275,27 @@ mod tests {
     fn huge_and_tiny_coordinates_weld_alike() {
         for scale in [1e-30_f32, 1e-7, 1.0, 1e7, 1e30] {
             let positions = [0.0, 1.0, 1.0001, 2.0].map(|x| Vec3::ONE * (x * scale));
-            let (points, of) = weld_within(positions, 1e-3 * f64::from(scale));
+            let (points, of) = weld_within(&positions, 1e-3 * f64::from(scale));
             assert_eq!((points.len(), of), (3, vec![0, 1, 1, 2]), "{scale}");
         }
-        let (points, _) = weld_within([1e30, 2e30, 1e-30, 2e-30].map(Vec3::splat), 1e-40);
+        let (points, _) = weld_within(&[1e30, 2e30, 1e-30, 2e-30].map(Vec3::splat), 1e-40);
         assert_eq!(points.len(), 4);
-        assert_eq!(weld_within([-f32::MAX, 0.0, f32::MAX].map(Vec3::splat), f64::INFINITY).1, [0, 0, 0]);
+        assert_eq!(weld_within(&[-f32::MAX, 0.0, f32::MAX].map(Vec3::splat), f64::INFINITY).1, [0, 0, 0]);
     }
 
     #[test]
     fn many_positions_on_one_spot_stay_fast() {
-        let spot = (0..300_000).map(|i| Vec3::new(1.0 + 1e-7 * (i % 1000) as f32, 1.0 + 1e-7 * (i / 1000) as f32, 1.0));
-        let (points, _) = weld_within(spot, 1e-3);
+        let place = |i: u32| Vec3::new(1.0 + 1e-7 * (i % 1000) as f32, 1.0 + 1e-7 * (i / 1000) as f32, 1.0);
+        let spot: Vec<Vec3> = (0..300_000).map(place).collect();
+        let (points, _) = weld_within(&spot, 1e-3);
         assert_eq!(points.len(), 1);
     }
 
     #[test]
     fn positions_that_move_differently_stay_apart() {
         let positions = [(0.0, 7), (0.0, 9), (0.1, 9), (0.1, 7), (0.0, 7)].map(|(x, number)| (Vec3::X * x, number));
-        assert_eq!(weld_alike(positions.into_iter(), 0.0).1, [0, 1, 2, 3, 0]);
-        let (points, of) = weld_alike(positions.into_iter(), 0.5);
+        assert_eq!(weld_alike(&positions, 0.0).1, [0, 1, 2, 3, 0]);
+        let (points, of) = weld_alike(&positions, 0.5);
         assert_eq!((points, of), (vec![Vec3::ZERO; 2], vec![0, 1, 1, 0, 0]));
     }
 
@@ -288,7 +308,7 @@ mod tests {
         ) {
             let positions = (0..).zip(&grid).map(|(i, p)| (Vec3::from(p.map(f32::from)), i % numbers)).collect::<Vec<_>>();
             let tolerance = f64::from(tolerance) / 2.0;
-            let (points, of) = weld_alike(positions.iter().copied(), tolerance);
+            let (points, of) = weld_alike(&positions, tolerance);
             let mut expected: Vec<(Vec3, u32)> = Vec::new();
             let mut known: HashMap<([u32; 3], u32), u32> = HashMap::new();
             for (&(position, number), &point) in positions.iter().zip(&of) {
@@ -311,7 +331,7 @@ mod tests {
         #[test]
         fn points_and_positions_agree(grid in prop::collection::vec((-2i8..2, -2i8..2, -2i8..2), 0..60)) {
             let positions: Vec<Vec3> = grid.iter().map(|&(x, y, z)| Vec3::new(x.into(), y.into(), z.into())).collect();
-            let (points, of) = weld(positions.iter().copied());
+            let (points, of) = weld(&positions);
             for (position, &point) in positions.iter().zip(&of) {
                 prop_assert_eq!(*position, points[point as usize]);
             }

@@ -1,8 +1,8 @@
 //! Measures how many pictures a second the window shows while its camera turns: `cargo bench --bench orbit`. Arguments after `--`
 //! are mesh files that are measured too; `seconds=N` is how long each mesh is turned (5).
 //!
-//! The window is driven as a person does, with a drag of 4 points a frame, and painted into a picture that is read back: that takes
-//! a little longer than showing it. Each mesh is measured with its opening settings, first with full pictures alone, and then with
+//! The window is driven as a person does, with a drag of 4 points a frame. It is painted into a texture that nothing reads back, and each
+//! frame waits until the one before it is painted, as a window does that has two frames in flight. Each mesh is measured with its opening settings, first with full pictures alone, and then with
 //! previews in place of those that would be late. Before the first drag the window rests for two seconds, as it does while somebody
 //! looks at a mesh that was opened. A picture counts once, when the window shows it for the first time. Last, the
 //! window is painted while nothing but the pointer moves: that is the time which no preview can go below. The bench reports its
@@ -16,8 +16,10 @@ use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
 use egui::{Event, Modifiers, PointerButton, Pos2};
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use egui_kittest::wgpu::{create_render_state, default_wgpu_setup};
+use egui_kittest::{Harness, TestRenderer};
+use egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor};
 use pnaen::internals::{App, Limits, Shape, Source};
 
 use driver::settle;
@@ -37,14 +39,95 @@ struct Shown {
     frame_ms: [f64; 2],
 }
 
+/// Paints the window as the program does, without reading its picture back: the renderer of `egui_kittest` takes as long for that as
+/// for the painting.
+struct Painter {
+    state: RenderState,
+    screen: Option<wgpu::Texture>,
+    /// What was submitted for the last frame.
+    last: Option<wgpu::SubmissionIndex>,
+}
+
+impl Painter {
+    fn new() -> Self {
+        // As the program paints: without the slower filtering that makes pictures of tests predictable.
+        let state = create_render_state(default_wgpu_setup(), RendererOptions::default());
+        Self { state, screen: None, last: None }
+    }
+
+    /// Returns the texture that stands for the window, in px.
+    fn screen(&mut self, size: [u32; 2]) -> wgpu::TextureView {
+        let texture = self.screen.get_or_insert_with(|| {
+            self.state.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("window"),
+                size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: self.state.target_format,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+                view_formats: &[],
+            })
+        });
+        texture.create_view(&wgpu::TextureViewDescriptor::default())
+    }
+}
+
+impl TestRenderer for Painter {
+    fn setup_eframe(&self, context: &mut eframe::CreationContext<'_>, frame: &mut eframe::Frame) {
+        context.wgpu_render_state = Some(self.state.clone());
+        frame.wgpu_render_state = Some(self.state.clone());
+    }
+
+    fn handle_delta(&mut self, delta: &mut egui::TexturesDelta) {
+        let mut renderer = self.state.renderer.write();
+        for (id, images) in delta.set.drain() {
+            for image in images {
+                renderer.update_texture(&self.state.device, &self.state.queue, id, &image);
+            }
+        }
+        for id in delta.free.drain() {
+            renderer.free_texture(&id);
+        }
+    }
+
+    /// Paints the window. Returns a picture without meaning.
+    fn render(&mut self, context: &egui::Context, output: &egui::FullOutput) -> Result<image::RgbaImage, String> {
+        let pixels_per_point = context.pixels_per_point();
+        let size = context.content_rect().size() * pixels_per_point;
+        let size_in_pixels = [size.x.round() as u32, size.y.round() as u32];
+        let screen = ScreenDescriptor { pixels_per_point, size_in_pixels };
+        let primitives = context.tessellate(output.shapes.clone(), pixels_per_point);
+        let view = self.screen(size_in_pixels);
+        let RenderState { device, queue, renderer, .. } = &self.state;
+        let mut renderer = renderer.write();
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut commands = renderer.update_buffers(device, queue, &mut encoder, &primitives, &screen);
+        let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &view,
+                resolve_target: None,
+                ops: wgpu::Operations::default(),
+                depth_slice: None,
+            })],
+            ..Default::default()
+        });
+        renderer.render(&mut pass.forget_lifetime(), &primitives, &screen);
+        commands.push(encoder.finish());
+        let submitted = queue.submit(commands);
+        if let Some(submission_index) = self.last.replace(submitted) {
+            let waiting = wgpu::PollType::Wait { submission_index: Some(submission_index), timeout: None };
+            device.poll(waiting).map_err(|error| error.to_string())?;
+        }
+        Ok(image::RgbaImage::new(1, 1))
+    }
+}
+
 fn window(source: &Source) -> Harness<'static, App> {
     let source = Some(source.clone());
-    // As the program paints: without the slower filtering that makes pictures of tests predictable.
-    let options = egui_wgpu::RendererOptions::default();
-    let mut harness =
-        Harness::builder().with_size(SIZE).with_render_options(options).wgpu().build_eframe(move |context| {
-            App::new(context, source, Limits::default()).expect("the bench needs a graphics adapter")
-        });
+    let mut harness = Harness::builder().with_size(SIZE).renderer(Painter::new()).build_eframe(move |context| {
+        App::new(context, source, Limits::default()).expect("the bench needs a graphics adapter")
+    });
     settle(&mut harness);
     harness
 }

@@ -12,6 +12,7 @@ mod patch_labels;
 pub(super) mod picture;
 pub(super) mod playback;
 pub(super) mod preview;
+mod preview_pace;
 mod ruler;
 pub(super) mod selection;
 pub(super) mod warm_up;

@@ -2,10 +2,11 @@
 //! rests. Nothing is measured in a preview.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use super::picture::{Picture, Wanted};
+use super::preview_pace::PreviewPace;
 use crate::app::App;
 use crate::app::jobs::document::Document;
 use crate::app::painting::{Painting, ShownPicture};
@@ -19,10 +20,6 @@ use crate::view::ScreenView;
 /// A full picture that takes longer than this is late: 30 pictures a second leave 33 ms for each, and the window itself takes
 /// some of it.
 const LATE_MS: f64 = 25.0;
-/// A preview that is finished later than this is late. It is noticed once a frame of the window.
-const LATE_PREVIEW_MS: f64 = 34.0;
-/// After so many late previews in a row they get coarser. The first one of a mesh is late because the driver compiles shaders.
-const LATE_IN_A_ROW: u32 = 4;
 /// A camera that hasn't moved for so long rests.
 const REST: Duration = Duration::from_millis(150);
 /// About the number of triangles that a preview has, on a software driver and on graphics cards. A software driver shades blocks
@@ -61,14 +58,11 @@ pub(crate) struct Preview {
     coarseness: u32,
     /// The same for the first preview of a mesh.
     finest: u32,
-    /// How many previews in a row were late.
-    late: u32,
+    pace: PreviewPace,
     /// The preview that was drawn last, until the full picture follows.
     drawn: Option<(Wanted, Shape)>,
     /// The vertices and triangles of the full picture, while previews use its tessellator.
     totals: Option<(u64, u64)>,
-    /// When the last preview was submitted, and after how many microseconds the device had finished it.
-    in_flight: Option<(Arc<AtomicBool>, Arc<AtomicU64>)>,
     drawings: u64,
 }
 
@@ -82,10 +76,9 @@ impl Preview {
             target: None,
             coarseness: finest,
             finest,
-            late: 0,
+            pace: PreviewPace::default(),
             drawn: None,
             totals: None,
-            in_flight: None,
             drawings: 0,
         }
     }
@@ -156,16 +149,15 @@ impl Preview {
     pub(crate) fn forget(&mut self) {
         self.end();
         (self.moved, self.camera) = (None, None);
-        (self.coarseness, self.late) = (self.finest, 0);
+        self.coarseness = self.finest;
+        self.pace.forget();
     }
 
-    /// Notes how long the last preview took, once it is finished. If it and those before it were late, the next ones are coarser.
+    /// Notes which previews are finished. If the last ones were late, the next ones are coarser.
     fn land(&mut self) {
-        let Some((_, time)) = self.in_flight.take_if(|(done, _)| done.load(Ordering::Acquire)) else { return };
-        let is_late = time.load(Ordering::Acquire) as f64 > LATE_PREVIEW_MS * 1e3;
-        self.late = if is_late { self.late + 1 } else { 0 };
-        if self.late == LATE_IN_A_ROW && self.coarseness < COARSEST {
-            (self.coarseness, self.late) = (self.coarseness + 1, 0);
+        self.pace.land(Instant::now());
+        if self.pace.take_is_slow() {
+            self.coarseness = (self.coarseness + 1).min(COARSEST);
         }
     }
 
@@ -184,10 +176,10 @@ impl Preview {
         Ok(())
     }
 
-    /// Draws what is wanted into the preview's target, unless it shows that already or the last preview isn't finished. The
+    /// Draws what is wanted into the preview's target, unless it shows that already or the device has enough to do. The
     /// counts come back first.
     fn draw(&mut self, engine: &Engine, scene: &mut Scene, wanted: &Wanted, shape: Shape) -> Result<(), GpuError> {
-        if !count(engine, scene, wanted)? || self.in_flight.is_some() {
+        if !count(engine, scene, wanted)? || !self.pace.is_free() {
             return Ok(());
         }
         if self.drawn == Some((*wanted, shape)) {
@@ -198,12 +190,9 @@ impl Preview {
         let mut recorder = Recorder::new(&engine.gpu, &mut timing);
         engine.renderer.draw(&mut recorder, scene, target, &wanted.camera, &wanted.settings)?;
         recorder.submit();
-        let (done, time, start) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicU64::new(0)), Instant::now());
-        self.in_flight = Some((done.clone(), time.clone()));
-        engine.gpu.queue.on_submitted_work_done(move || {
-            time.store(start.elapsed().as_micros() as u64, Ordering::Release);
-            done.store(true, Ordering::Release);
-        });
+        let done = Arc::new(AtomicBool::new(false));
+        self.pace.submit(done.clone(), Instant::now());
+        engine.gpu.queue.on_submitted_work_done(move || done.store(true, Ordering::Release));
         self.drawn = Some((*wanted, shape));
         self.drawings += 1;
         Ok(())
@@ -315,7 +304,7 @@ impl App {
         preview.draw(&self.engine, scene, &wanted, shape)?;
         self.engine.gpu.check()?;
         // The frame in which the device has finished says how long it took.
-        if preview.drawn == Some((wanted, shape)) && preview.in_flight.is_none() {
+        if preview.drawn == Some((wanted, shape)) && preview.pace.is_idle() {
             context.request_repaint_after(left);
         } else {
             context.request_repaint();
