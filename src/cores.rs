@@ -47,6 +47,11 @@ pub(crate) fn in_parts<T: Send, R: Send>(parts: Vec<T>, work: impl Fn(&mut T) ->
         .collect()
 }
 
+/// Divides a list into parts of so many items each.
+pub(crate) fn split<T>(mut list: &mut [T], lengths: impl Iterator<Item = usize>) -> Vec<&mut [T]> {
+    lengths.map(|length| list.split_off_mut(..length).unwrap_or_default()).collect()
+}
+
 /// Does two works at the same time if there are several cores, and returns what they make.
 pub(crate) fn both<A: Send, B>(first: impl Fn() -> A + Sync, second: impl FnOnce() -> B) -> (A, B) {
     let first = &first;

@@ -1,5 +1,7 @@
 //! `pnaen info`: prints what a file holds.
 
+use std::mem::take;
+
 use super::mesh_report::{Info, PartInfo};
 use super::options::WeldOption;
 use super::{CliError, to_json, write_text};
@@ -30,13 +32,13 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 /// Gathers the numbers of a mesh, and the warnings of loading it.
 fn info(source: &Source, options: &WeldOption) -> Result<Info, LoadError> {
     let progress = Progress::default();
-    let loaded = engine::load(source, &options.preparation(), &progress)?;
-    let info = Info::of(&loaded.mesh, &loaded.topology, options.weld, &loaded.warnings, &progress)?;
-    let info = Info { variants: loaded.variants, scenes: loaded.scenes, scene: loaded.scene, ..info };
-    let info = Info { parts: loaded.parts.iter().map(PartInfo::of).collect(), ..info };
-    if loaded.crease_band.width == 0.0 {
-        return Ok(info);
+    let mut loaded = engine::load(source, &options.preparation(), &progress)?;
+    let mut info = Info::of(&loaded.mesh, &loaded.topology, options.weld, &loaded.warnings, &progress)?;
+    info.parts = loaded.parts.iter().map(PartInfo::of).collect();
+    (info.variants, info.scenes, info.scene) = (take(&mut loaded.variants), take(&mut loaded.scenes), loaded.scene);
+    if loaded.crease_band.width != 0.0 {
+        // A weld tolerance applies to the mesh as it was read, before it got its crease band.
+        (info.crease_band, info.joins) = (loaded.crease_band, weld_previews(&loaded.read, None, &progress)?);
     }
-    // A weld tolerance applies to the mesh as it was read, before it got its crease band.
-    Ok(Info { crease_band: loaded.crease_band, joins: weld_previews(&loaded.read, None, &progress)?, ..info })
+    Ok(info)
 }

@@ -1,25 +1,32 @@
 //! Finds out which positions are the same point.
 
 use std::hash::BuildHasher;
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
+use std::sync::atomic::{AtomicU32, Ordering};
 
+use bytemuck::zeroed_vec;
 use foldhash::fast::RandomState;
 use glam::{Vec2, Vec3};
 
 use super::cell_chains::CellChains;
 use super::cell_grid::CellGrid;
-use crate::cores::{in_parts, ranges};
+use crate::cores::{in_parts, in_ranges, ranges, split};
 
 /// The least number of positions that are worth a thread.
 const LEAST: usize = 1 << 14;
+/// About the number of positions in a part of them, whose table fits the cache of a core.
+const PART: usize = 1 << 14;
+/// With more parts, the ends of their lists wouldn't fit the cache.
+const MOST_PARTS: usize = 256;
 
-/// The most memory that an exact weld needs while it runs, in bytes for each position: its hash, in a list that may double, and its point.
+/// The most memory that an exact weld needs while it runs, in bytes for each position: its hash and index, in a list that doubles where
+/// many are alike, and its point.
 pub(super) const WELD_BYTES: u64 = 28;
 
 /// Joins equal positions into points. Two positions are equal if all three coordinates have the same value (-0 equals
 /// 0), without any tolerance. Points are in the order of their first appearance, and have +0 for every zero.
 ///
-/// Returns the points, and for each of the `count` positions the index of its point. Takes about n log n steps for n positions.
+/// Returns the points, and for each of the `count` positions the index of its point. Takes expected linear time.
 pub(crate) fn weld(count: usize, position: impl Fn(usize) -> Vec3 + Sync) -> (Vec<Vec3>, Vec<u32>) {
     weld_alike(count, |i| (position(i), 0), 0.0)
 }
@@ -43,8 +50,8 @@ fn weld_exactly(count: usize, place: impl Fn(usize) -> (Vec3, u32) + Sync) -> (V
     (firsts, point_of)
 }
 
-/// Returns for each position the first one that has the same bits and the same number. Hashes are sorted, since a table of them
-/// would be read all over memory.
+/// Returns for each position the first one that has the same bits and the same number. Positions are divided by their hashes into parts
+/// that have a table each: a table of all of them would be read all over memory.
 fn first_equal(count: usize, place: impl Fn(usize) -> (Vec3, u32) + Sync) -> Vec<u32> {
     // Two words per key, which foldhash hashes several times faster than an array.
     let key = |i: usize| {
@@ -53,34 +60,56 @@ fn first_equal(count: usize, place: impl Fn(usize) -> (Vec3, u32) + Sync) -> Vec
         (x << 32 | y, z << 32 | u64::from(number))
     };
     let hasher = RandomState::default();
-    let hash = |i: usize| hasher.hash_one(key(i)) >> 32;
-    // Each core takes those whose hash lies in its part of all hashes.
-    let parts = ranges(count, LEAST).count();
-    let sorted = in_parts((0..parts as u64).collect(), |part| {
+    let parts = (count / PART).next_power_of_two().min(MOST_PARTS);
+    // For each range of positions and each part, the hash and the index of each position, in the order of the positions.
+    let ranges = in_ranges(count, LEAST, |range| {
         // Hashes are spread evenly, so that there is room enough nearly always.
-        let mut own = Vec::with_capacity((count / parts).saturating_mul(17) / 16);
-        let hashed = (0..count).map(|i| (hash(i), i as u64));
-        own.extend(hashed.filter(|(hash, _)| (hash * parts as u64) >> 32 == *part).map(|(hash, i)| hash << 32 | i));
-        own.sort_unstable();
-        own
+        let room = range.len() / parts * 9 / 8;
+        let mut of_parts: Vec<Vec<u64>> = (0..parts).map(|_| Vec::with_capacity(room)).collect();
+        for i in range {
+            let hash = hasher.hash_one(key(i)) >> 32;
+            of_parts[((hash * parts as u64) >> 32) as usize].push(hash << 32 | i as u64);
+        }
+        of_parts
     });
-    let mut first: Vec<u32> = (0..count as u32).collect();
-    // The first positions of those with one hash. Nearly always there is only one.
-    let mut firsts: Vec<u32> = Vec::new();
-    // Most positions are the only one with their hash, and aren't looked at.
-    let alike = sorted.iter().flat_map(|own| own.chunk_by(|a, b| a >> 32 == b >> 32));
-    for alike in alike.filter(|alike| alike.len() > 1) {
-        firsts.clear();
-        for i in alike.iter().map(|own| *own as u32) {
-            let own = key(i as usize);
-            let same = firsts.iter().copied().find(|first| key(*first as usize) == own);
-            first[i as usize] = same.unwrap_or_else(|| {
-                firsts.push(i);
-                i
-            });
+    // Each is written by one core at most.
+    let first: Vec<AtomicU32> = (0..count as u32).map(AtomicU32::new).collect();
+    in_ranges(parts, 1, |own| {
+        let mut table = Vec::new();
+        for part in own {
+            let hashed: Vec<&[u64]> = ranges.iter().map(|of_parts| &of_parts[part][..]).collect();
+            find_equal(&mut table, &hashed, |a, b| key(a as usize) == key(b as usize), &first);
+        }
+    });
+    first.into_iter().map(AtomicU32::into_inner).collect()
+}
+
+/// Writes the first of equal positions for each position of a part, each of which is given as its hash and its index. `table` has room
+/// that is used again.
+fn find_equal(table: &mut Vec<u64>, part: &[&[u64]], is_equal: impl Fn(u32, u32) -> bool, first: &[AtomicU32]) {
+    /// A free place: there are fewer positions.
+    const FREE: u64 = u64::MAX;
+    let positions: usize = part.iter().map(|own| own.len()).sum();
+    let places = (2 * positions).next_power_of_two();
+    table.clear();
+    table.resize(places, FREE);
+    for &own in part.iter().copied().flatten() {
+        // Parts differ in the highest bits of the hash.
+        let mut at = (own >> 32) as usize;
+        loop {
+            at &= places - 1;
+            let other = table[at];
+            if other == FREE {
+                table[at] = own;
+                break;
+            }
+            if other >> 32 == own >> 32 && is_equal(other as u32, own as u32) {
+                first[own as u32 as usize].store(other as u32, Ordering::Relaxed);
+                break;
+            }
+            at += 1;
         }
     }
-    first
 }
 
 /// Joins positions within a tolerance, in object units, into points. Distinct positions are taken in the order of their
@@ -102,13 +131,23 @@ pub(crate) fn weld_alike(
     };
     // Join equal positions first: they must stay together even if a nearer point comes between them.
     let (firsts, mut point_of) = weld_exactly(count, place);
-    let distinct = firsts.iter().map(|first| place(*first as usize));
     if tolerance.is_nan() || tolerance <= 0.0 {
-        return (distinct.map(|(point, _)| point).collect(), point_of);
+        return (points_at(&firsts, |first| place(first).0), point_of);
     }
-    let (points, merged) = merge_within(distinct, tolerance);
+    let (points, merged) = merge_within(firsts.iter().map(|first| place(*first as usize)), tolerance);
     point_of.iter_mut().for_each(|point| *point = merged[*point as usize]);
     (points, point_of)
+}
+
+/// Returns the position at each of these indices.
+fn points_at(firsts: &[u32], position: impl Fn(usize) -> Vec3 + Sync) -> Vec<Vec3> {
+    let mut points: Vec<Vec3> = zeroed_vec(firsts.len());
+    let ranges: Vec<_> = ranges(firsts.len(), LEAST).collect();
+    let parts = split(&mut points, ranges.iter().map(Range::len)).into_iter().zip(ranges).collect();
+    in_parts(parts, |(points, range)| {
+        points.iter_mut().zip(&firsts[range.clone()]).for_each(|(point, first)| *point = position(*first as usize));
+    });
+    points
 }
 
 /// Joins distinct positions as [`weld_alike`] does, within a tolerance above 0.

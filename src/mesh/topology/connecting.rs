@@ -6,7 +6,7 @@ use std::ops::Range;
 use bytemuck::zeroed_vec;
 
 use super::{Edge, EdgeKind, Patch, Side, Topology, is_degenerate};
-use crate::cores::{in_parts, ranges};
+use crate::cores::{in_parts, ranges, split};
 use crate::mesh::Corner;
 
 /// Around a point with more sides than this, they are sorted in n log n steps.
@@ -158,11 +158,6 @@ pub(super) fn connect(patches: &mut [Patch], sides: &[Side]) {
             }
         }
     });
-}
-
-/// Divides a list into parts of so many items each.
-fn split<T>(mut list: &mut [T], lengths: impl Iterator<Item = usize>) -> Vec<&mut [T]> {
-    lengths.map(|length| list.split_off_mut(..length).unwrap_or_default()).collect()
 }
 
 /// Sorts sides by their edge, then by patch. They come in the order of their patches.
