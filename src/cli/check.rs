@@ -107,10 +107,28 @@ fn checked(args: &Args, jobs: &[Job], stop: &AtomicBool) -> Result<Report, CliEr
     let left: Vec<usize> = (0..jobs.len()).filter(|index| !found.contains_key(index)).collect();
     if !left.is_empty() {
         let engine = Engine::chosen(&args.adapter.choice())?;
-        found.append(&mut measured(args, jobs, &left, &engine, cache.as_ref(), stop));
+        let measured = measured(args, jobs, &left, &engine, cache.as_ref(), stop);
+        say_absent_parts(jobs, &measured);
+        found.extend(measured.into_iter().map(|(index, (asset, _))| (index, asset)));
     }
     let left_out = jobs.len() - found.len();
     Ok(Report { assets: found.into_values().collect(), left_out })
+}
+
+/// An asset, and which parts that are to be left out it doesn't have, if that is known.
+type Measured = (Asset, Option<Vec<String>>);
+
+/// Says on standard error which parts are to be left out and belong to none of the assets for which that holds.
+fn say_absent_parts(jobs: &[Job], measured: &BTreeMap<usize, Measured>) {
+    let mut absent_everywhere: BTreeMap<&str, bool> = BTreeMap::new();
+    for (index, job) in jobs.iter().enumerate() {
+        let absent = measured.get(&index).and_then(|(_, absent)| absent.as_ref());
+        for (part, said) in &job.hidden {
+            let is_absent = absent.is_some_and(|absent| absent.contains(part));
+            *absent_everywhere.entry(said).or_insert(true) &= is_absent;
+        }
+    }
+    absent_everywhere.iter().filter(|(_, is_absent)| **is_absent).for_each(|(said, _)| note(said));
 }
 
 /// Loads and measures the assets with these indices, several at a time: while one is loaded or measured on the host, the device works
@@ -122,14 +140,14 @@ fn measured(
     engine: &Engine,
     cache: Option<&Cache>,
     stop: &AtomicBool,
-) -> BTreeMap<usize, Asset> {
+) -> BTreeMap<usize, Measured> {
     let (next, done) = (AtomicUsize::new(0), Mutex::new((BTreeMap::new(), Telling::new())));
     let work = || {
         while !stop.load(Ordering::Relaxed) {
             let Some(&index) = left.get(next.fetch_add(1, Ordering::Relaxed)) else { return };
-            let asset = measuring::measured(&jobs[index], engine, args.page.is_some(), cache);
+            let measured = measuring::measured(&jobs[index], engine, args.page.is_some(), cache);
             let (found, telling) = &mut *done.lock().unwrap_or_else(PoisonError::into_inner);
-            found.insert(index, asset);
+            found.insert(index, measured);
             telling.say(|| format!("{} of {} assets are checked", found.len(), left.len()));
         }
     };

@@ -10,7 +10,7 @@ use crate::names::shown_path;
 /// Checks that the files to be written are different from each other and from those to be read.
 ///
 /// # Errors
-/// A file to be written is read or written already, is a folder, or there is no folder for it.
+/// A file to be written has no name, is read or written already, is a folder, or there is no folder for it.
 pub(super) fn keep_apart<'a>(
     read: impl IntoIterator<Item = Option<&'a Path>>,
     written: impl IntoIterator<Item = Option<&'a Path>>,
@@ -18,6 +18,9 @@ pub(super) fn keep_apart<'a>(
     let mut taken: Vec<(PathBuf, &'static str)> =
         read.into_iter().flatten().filter_map(|path| Some((place(path)?, "read"))).collect();
     for path in written.into_iter().flatten() {
+        if path.as_os_str().is_empty() {
+            return Err(CliError::Usage("an output has no name; name a file"));
+        }
         if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
             return Err(CliError::NoFolder { path: shown_path(path), folder: shown_path(folder) });
         }

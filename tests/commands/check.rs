@@ -212,6 +212,11 @@ fn a_wrong_configuration_is_one_sentence_with_its_line() {
         ("[options]\nlegend = \"on\"", &["wrong.toml, line 2: ", "legend is a switch: expected true or false"]),
         ("[options]\nsize = [640]", &["wrong.toml, line 2: ", "WIDTHxHEIGHT"]),
         ("[cameras.a]\ncamera = [nan, 0]", &["wrong.toml, line 2: ", "AZIMUTH,ELEVATION"]),
+        ("[options]\n\ntruth = \"gone.glb\"", &["wrong.toml, line 3: ", "truth: there is no file", "gone.glb"]),
+        (
+            "[[files]]\npath = \"*.none\"\n[files.options]\nfactors = \"gone.csv\"",
+            &["wrong.toml, line 4: ", "gone.csv"],
+        ),
         ("a = ", &["wrong.toml, line 1: ", "no TOML"]),
     ] {
         std::fs::write(&config, text).expect("a writable folder");
@@ -270,6 +275,10 @@ fn a_section_may_hide_parts_that_only_some_of_its_assets_have() {
     std::fs::write(folder.path("pnaen.toml"), config).expect("a writable folder");
     let (code, json, errors) = check(&folder, &["--format", "json"]);
     assert_eq!(code, Some(0), "{errors}");
+    assert!(
+        errors.contains("pnaen.toml, line 4: no asset has the part lod1") && !errors.contains("collision"),
+        "{errors}"
+    );
     let report: Value = serde_json::from_str(&json).expect("JSON");
     for index in 0..2 {
         assert_eq!(report.pointer(&format!("/assets/{index}/views/0/numbers/triangles_in")), Some(&1.into()), "{json}");
@@ -286,6 +295,7 @@ fn odd_arguments_are_said() {
     sentence(&["check", "shape:torus", "--page", &path("file/page")], &["file/page", "could not be made"]);
     sentence(&["check", "shape:torus", "--cache", &path("file")], &["file", "there is a file of this name"]);
     sentence(&["check", "shape:torus", "-o", &path("empty")], &["empty", "it is a folder"]);
+    failure(&["check", "shape:torus", "-o", ""], 2);
     sentence(&["check", "shape:torus", "-o", &path("none/report.json")], &["there is no folder"]);
     failure(&["check"], 2);
     failure(&["check", "shape:torus", "--jobs", "0"], 2);

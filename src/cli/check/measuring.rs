@@ -24,20 +24,33 @@ use crate::progress::Progress;
 /// The most px along a side of a picture on the page.
 const MOST_PX: u32 = 704;
 
-/// What is found about an asset. An asset that can't be checked has the reason; so has one at which the program panics.
-pub(super) fn measured(job: &Job, engine: &Engine, pictures: bool, cache: Option<&Cache>) -> Asset {
+/// What was read of an asset.
+struct Read {
+    files: Vec<PathBuf>,
+    /// The parts that are to be left out and that it doesn't have.
+    absent: Vec<String>,
+}
+
+/// What is found about an asset, and which parts that are to be left out it doesn't have, if that is known. An asset that can't be checked
+/// has the reason; so has one at which the program panics.
+pub(super) fn measured(
+    job: &Job,
+    engine: &Engine,
+    pictures: bool,
+    cache: Option<&Cache>,
+) -> (Asset, Option<Vec<String>>) {
     let start = SystemTime::now();
     let mut asset = Asset { path: job.name.clone(), ..Asset::default() };
     let ended = catch_unwind(AssertUnwindSafe(|| measure(job, engine, pictures, &mut asset)));
-    let files = match ended {
-        Ok(Ok(files)) => Some(files),
+    let (files, absent) = match ended {
+        Ok(Ok(Read { files, absent })) => (Some(files), Some(absent)),
         Ok(Err(error)) => {
             asset.error = Some(on_one_line(&error.to_string()));
-            None
+            (None, None)
         }
         Err(_) => {
             asset.error = Some(format!("{}: checking it stopped unexpectedly, which is an error of pnaen", job.name));
-            None
+            (None, None)
         }
     };
     if let Some((cache, files)) = cache.filter(|_| job.is_kept).zip(files)
@@ -45,14 +58,14 @@ pub(super) fn measured(job: &Job, engine: &Engine, pictures: bool, cache: Option
     {
         say_unkept(&error);
     }
-    asset
+    (asset, absent)
 }
 
-/// Fills in what is found. Returns the files that were read.
-fn measure(job: &Job, engine: &Engine, pictures: bool, asset: &mut Asset) -> Result<Vec<PathBuf>, CliError> {
+/// Fills in what is found. Returns what was read.
+fn measure(job: &Job, engine: &Engine, pictures: bool, asset: &mut Asset) -> Result<Read, CliError> {
     let progress = Progress::new();
-    let Some((_, first)) = job.views.first() else { return Ok(Vec::new()) };
-    let loaded = load(job, first.surface.preparation(), &progress)?;
+    let Some((_, first)) = job.views.first() else { return Ok(Read { files: Vec::new(), absent: Vec::new() }) };
+    let (loaded, absent) = load(job, first.surface.preparation(), &progress)?;
     asset.warnings.clone_from(&loaded.warnings);
     for (index, (name, options)) in job.views.iter().enumerate() {
         let (subject, _) = options.subject_of(loaded.clone())?;
@@ -66,18 +79,21 @@ fn measure(job: &Job, engine: &Engine, pictures: bool, asset: &mut Asset) -> Res
         asset.views.push(View { name: name.clone(), numbers: shot.numbers(), gates, picture });
     }
     let own = file_of(&job.source).map(Path::to_owned);
-    Ok(own.into_iter().chain(loaded.files).chain(job.read.iter().cloned()).collect())
+    let files = own.into_iter().chain(loaded.files).chain(job.read.iter().cloned()).collect();
+    Ok(Read { files, absent })
 }
 
-/// Loads an asset. What the configuration hides may be parts of other assets.
-fn load(job: &Job, mut preparation: Preparation, progress: &Progress) -> Result<Loaded, LoadError> {
-    match crate::engine::load(&job.source, &preparation, progress) {
+/// Loads an asset. What the configuration hides may be parts of other assets: these are returned too.
+fn load(job: &Job, mut preparation: Preparation, progress: &Progress) -> Result<(Loaded, Vec<String>), LoadError> {
+    let mut absent = Vec::new();
+    let loaded = match crate::engine::load(&job.source, &preparation, progress) {
         Err(LoadError::NoPart { known, .. }) => {
-            preparation.hidden.retain(|part| known.contains(part));
+            absent = preparation.hidden.extract_if(.., |part| !known.contains(part)).collect();
             crate::engine::load(&job.source, &preparation, progress)
         }
         other => other,
-    }
+    };
+    Ok((loaded?, absent))
 }
 
 /// How a gate judged, with a picture of its place if it failed and pictures are wanted.

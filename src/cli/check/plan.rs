@@ -12,7 +12,7 @@ use crate::cli::{CliError, file_error, note};
 use crate::files::file_reason;
 use crate::gates::Gate;
 use crate::load::Source;
-use crate::names::on_one_line;
+use crate::names::{on_one_line, shown, shown_path};
 
 /// The configuration that is read if there is one and none is named.
 const CONFIG: &str = "pnaen.toml";
@@ -31,6 +31,8 @@ pub(super) struct Job {
     pub views: Vec<(String, ShotOptions)>,
     /// Files that the options name.
     pub read: Vec<PathBuf>,
+    /// The parts that are left out, each with a sentence for the case that no asset has it.
+    pub hidden: Vec<(String, String)>,
     /// All of the configuration that holds for it, as text.
     configuration: String,
     /// Whether what is found may be kept.
@@ -67,8 +69,8 @@ pub(super) fn plan(args: &Args) -> Result<Vec<Job>, CliError> {
     let command = Options::command();
     let names: Vec<String> = command.get_arguments().filter_map(|arg| arg.get_long().map(str::to_owned)).collect();
     let config = path.map(|path| Config::read(path, &names, &CAMERA)).transpose()?.unwrap_or_default();
-    check_options(&config, &command)?;
     let folder = path.and_then(Path::parent).unwrap_or(Path::new(""));
+    check_options(&config, &command, folder)?;
     let unreadable = |FolderError { folder, error }: FolderError| file_error(&folder, "read", &file_reason(&error));
     let found = assets(&args.files).map_err(unreadable)?;
     if found.is_empty() {
@@ -82,8 +84,8 @@ pub(super) fn plan(args: &Args) -> Result<Vec<Job>, CliError> {
 /// Checks each value by itself, also those of sections that hold for no asset.
 ///
 /// # Errors
-/// A value is none of its option's, with its line.
-fn check_options(config: &Config, command: &Command) -> Result<(), CliError> {
+/// A value is none of its option's, or the path of a file that isn't there, with its line.
+fn check_options(config: &Config, command: &Command, folder: &Path) -> Result<(), CliError> {
     for option in config.options() {
         let known = command.get_arguments().find(|arg| arg.get_long() == Some(&option.name));
         if let Some(reason) = known.and_then(|arg| other_type(arg, option)) {
@@ -95,6 +97,10 @@ fn check_options(config: &Config, command: &Command) -> Result<(), CliError> {
                 return Err(config.wrong(option, &said(&wrong)).into());
             }
             _ => {}
+        }
+        if let Some(gone) = resolved(&mut option.clone(), folder).into_iter().find(|path| !path.exists()) {
+            let reason = format!("{}: there is no file {}; check its path", option.name, shown_path(&gone));
+            return Err(config.wrong(option, &reason).into());
         }
     }
     Ok(())
@@ -142,8 +148,9 @@ fn job(args: &Args, config: &Config, folder: &Path, (source, place): (Source, &s
     let name = if cfg!(windows) { name.replace('\\', "/") } else { name };
     let Section { gates, mut options, cameras } = config.section(place);
     let gates = if args.gates.fail_on.is_empty() { gates.unwrap_or_default() } else { args.gates.fail_on.clone() };
-    let read = options.iter_mut().filter(|option| PATHS.contains(&option.name.as_str()));
-    let read: Vec<PathBuf> = read.flat_map(|option| resolved(option, folder)).collect();
+    let read: Vec<PathBuf> = options.iter_mut().flat_map(|option| resolved(option, folder)).collect();
+    let hidden = options.iter().filter(|option| option.name == "hide-part").flat_map(|option| hidden(config, option));
+    let hidden = hidden.collect();
     let mut views = Vec::new();
     if cameras.is_empty() {
         views.push((String::new(), parsed(config, &options, &source)?));
@@ -161,12 +168,21 @@ fn job(args: &Args, config: &Config, folder: &Path, (source, place): (Source, &s
         && views.iter().all(|(_, options)| !matches!(options.truth.truth, Some(Source::File(_))));
     let pictures = args.page.is_some();
     let configuration = format!("{gates:?} {views:?} {pictures} {:?}", args.adapter.adapter);
-    Ok(Job { source, name, gates, views, read, configuration, is_kept })
+    Ok(Job { source, name, gates, views, read, hidden, configuration, is_kept })
 }
 
-/// Makes the paths of an option relative to the configuration's folder. Returns the files.
+/// The parts that an option leaves out, each with a sentence for the case that no asset has it.
+fn hidden(config: &Config, option: &OptionValue) -> impl Iterator<Item = (String, String)> {
+    let said = |part: &String| config.wrong(option, &format!("no asset has the part {}", shown(part))).to_string();
+    option.values.iter().flatten().map(move |part| (part.clone(), said(part)))
+}
+
+/// Makes the paths of an option relative to the configuration's folder. Returns the files; none of an option that names no files.
 fn resolved(option: &mut OptionValue, folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
+    if !PATHS.contains(&option.name.as_str()) {
+        return files;
+    }
     for value in option.values.iter_mut().flatten() {
         let is_file = match option.name.as_str() {
             "truth" => !value.starts_with("shape:"),
