@@ -26,7 +26,9 @@ pub(crate) struct FactorsError {
 /// What is wrong with a line.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub(crate) enum LineFault {
-    #[error("expected the header patch,e0,e1,e2,inside, or under rows patch,e0,e1,e2,base,width,flipped")]
+    #[error(
+        "expected the header \"patch,e0,e1,e2,inside\", or with --partitioning rows \"patch,e0,e1,e2,base,width,flipped\""
+    )]
     Header,
     #[error("the columns base, width and flipped are those of rows: add --partitioning rows")]
     RowHeader,
@@ -44,7 +46,7 @@ pub(crate) enum LineFault {
     Beyond { patch: u32, count: usize },
     #[error("patch {patch} occurs twice; its first line is {first}")]
     Again { patch: u32, first: usize },
-    #[error("the file ends without a line for patch {first}{}", and_more(*.others))]
+    #[error("the file ends without a line for patch {first}{}: it may be of another mesh", and_more(*.others))]
     Missing { first: u32, others: usize },
     #[error("{0}")]
     Unreadable(String),
@@ -251,6 +253,9 @@ mod tests {
             assert_eq!(read(text), Err(FactorsError { line, fault: LineFault::Header }), "{text:?}");
         }
         let fault = FactorsError { line: 9, fault: LineFault::Missing { first: 7, others: 2 } };
-        assert_eq!(fault.to_string(), "line 9: the file ends without a line for patch 7 and 2 more");
+        assert_eq!(
+            fault.to_string(),
+            "line 9: the file ends without a line for patch 7 and 2 more: it may be of another mesh"
+        );
     }
 }

@@ -262,6 +262,7 @@ impl eframe::App for App {
         if self.window.fatal_screen.is_some() {
             return self.fatal_screen_keys(context);
         }
+        self.window.fitting.fit(context);
         self.take_loaded(context);
         self.take_truth();
         self.take_factors(context);

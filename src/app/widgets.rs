@@ -175,7 +175,9 @@ pub(super) fn legible(ui: &egui::Ui, color: egui::Color32) -> egui::Color32 {
 /// A small rectangle of a colour.
 pub(super) fn swatch(ui: &mut egui::Ui, color: [u8; 3]) {
     let (rect, _) = ui.allocate_exact_size(SWATCH, egui::Sense::hover());
-    ui.painter().rect_filled(rect, 2.0, rgb(color));
+    // Its outline shows where its colour is that of the background.
+    let outline = ui.visuals().widgets.noninteractive.bg_stroke;
+    ui.painter().rect(rect, 2.0, rgb(color), outline, egui::StrokeKind::Inside);
 }
 
 /// A field of the status line. Its width doesn't depend on its text: what is longer is cut off, and its hover text has all of it.

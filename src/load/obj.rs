@@ -246,8 +246,11 @@ impl Counts {
     fn holds(&self, vertices: &Vertices) -> String {
         let StatementCounts { points, lines, surfaces, unknown } = self.statements;
         if vertices.positions.is_empty() && self.faces + points + lines + surfaces == 0 {
-            let unknown =
-                if unknown > 0 { format!(", and {unknown} statements that OBJ doesn't have") } else { String::new() };
+            let unknown = match unknown {
+                0 => String::new(),
+                1 => ", and a statement that OBJ doesn't have".to_owned(),
+                _ => format!(", and {unknown} statements that OBJ doesn't have"),
+            };
             return format!("it has no vertices{unknown}");
         }
         let others = [(points, "points (p)"), (lines, "lines (l)"), (surfaces, "free-form curves and surfaces")];

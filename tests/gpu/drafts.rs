@@ -5,6 +5,7 @@ use image::RgbaImage;
 use pnaen::mesh::{Alpha, CornerDetail, Look, MapUv, Material, Slot};
 use pnaen::render::Target;
 use pnaen::settings::{Overlays, Settings};
+use pnaen::tessellate::Tessellation;
 
 use crate::gpu_tests::engine;
 use crate::gpu_tests::looks::{facing, square_of};
@@ -89,12 +90,15 @@ fn a_draft_shows_a_surface_wholly_or_not_at_all() {
 fn lines_of_a_coarse_picture_are_as_wide_as_those_of_the_whole() {
     let gpu = &engine().gpu;
     let mesh = square_of(Material::plain("gray", [0.2, 0.2, 0.2, 1.0]), Vec3::Z, Vec2::ONE);
+    // Few lines, since those that are dense fade by px of the coarse picture.
+    let tessellation = Tessellation { factor: 1.0, ..Settings::default().tessellation };
     // How much lines change the mean brightness of the picture, as light: bytes are encoded about like this power.
     let change = |target: &Target, overlays: Overlays| {
         let mut scene = scene_of(mesh.clone(), 0.0);
         let camera = facing(&scene, target);
         let mut mean = |overlays| {
-            let picture = seen(&mut scene, target, &Settings { overlays, ..Settings::default() }, &camera);
+            let picture =
+                seen(&mut scene, target, &Settings { overlays, tessellation, ..Settings::default() }, &camera);
             let sum: f64 = picture.pixels().map(|pixel| (f64::from(pixel[0]) / 255.0).powf(2.2)).sum();
             sum / f64::from(picture.width() * picture.height())
         };

@@ -87,6 +87,7 @@ fn space_plays_and_pauses_and_cracks_are_measured_only_when_paused() {
     assert!(times.iter().all(|time| (0.0..1.0).contains(time)), "the clip loops: {times:?}");
     assert!(harness.state().cracks().is_none(), "nothing is measured while playing");
     harness.get_by_label("cracks: pause to measure");
+    harness.get_by_label_contains("… of ");
     harness.get_by_role_and_label(Role::Button, "Pause").click();
     settle(&mut harness);
     assert!(!harness.state().is_playing());

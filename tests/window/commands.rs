@@ -19,7 +19,7 @@ use pnaen::tessellate::{Edges, Lod, Surface};
 use tempfile::TempDir;
 
 use crate::window_tests::driver::PATIENCE;
-use crate::window_tests::{choose, moving, press, run_command, settle, uniform, window};
+use crate::window_tests::{choose, moving, press, run_command, settle, switch, uniform, window};
 
 fn commands(harness: &Harness<App>) -> Vec<Command> {
     all(&harness.state().availability())
@@ -307,6 +307,7 @@ fn an_exported_mesh_is_the_one_that_the_command_writes() {
         let path = folder.path().join(name);
         write_as(&mut harness, "Export mesh path…", &path);
         assert!(harness.query_by_label_contains(&format!("{name} is written.")).is_some());
+        assert!(harness.query_by_label_contains("aren't in the file").is_none(), "all patches are written");
         press(&mut harness, Key::Escape);
         let written = pnaen::engine::load(&Source::File(path.clone()), &Preparation::default(), &Progress::default())
             .expect("what was written");
@@ -321,6 +322,16 @@ fn an_exported_mesh_is_the_one_that_the_command_writes() {
     }
     write_as(&mut harness, "Export mesh path…", &folder.path().join("torus.ply"));
     assert!(harness.query_by_label_contains("torus.ply: the name must end in").is_some());
+}
+
+#[test]
+fn an_export_says_how_many_patches_are_left_out() {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
+    switch(&mut harness, "Cull back faces");
+    settle(&mut harness);
+    write_as(&mut harness, "Export mesh path…", &folder.path().join("torus.glb"));
+    harness.get_by_label_contains("of 256 patches aren't drawn in this view, and aren't in the file.");
 }
 
 #[test]

@@ -14,7 +14,7 @@ use pnaen::render::Leak;
 use pnaen::tessellate::Surface;
 use tempfile::TempDir;
 
-use crate::window_tests::{PATIENCE, choose, click, open_list, press, settle, uniform};
+use crate::window_tests::{PATIENCE, choose, click, open_list, press, settle, uniform, window};
 
 #[test]
 fn pn_triangles_crack_and_the_status_line_counts_it() {
@@ -81,6 +81,38 @@ fn the_worst_edges_are_listed_and_a_click_frames_one() {
     settle(&mut harness);
     click(&mut harness, "Deselect");
     assert_eq!(harness.state().selected_edge(), None);
+}
+
+#[test]
+fn rows_stay_under_the_pointer_while_clicks_move_the_camera() {
+    let mut harness = window(Some(Source::Shape(Shape::CubeSplit)));
+    choose(&mut harness, "Surface", "PN");
+    let edges = |harness: &Harness<App>| -> Vec<u32> {
+        harness.state().cracks().expect("measured").edges.iter().map(|crack| crack.edge).collect()
+    };
+    let rows = |harness: &Harness<App>| -> Vec<String> {
+        let buttons = harness.query_all_by_role(Role::Button).filter_map(|node| node.accesskit_node().label());
+        buttons.filter(|text| text.contains("split normal")).map(|text| text[..7].to_owned()).collect()
+    };
+    harness.get_by_label("Worst edges").scroll_to_me();
+    settle(&mut harness);
+    let (shown, before) = (rows(&harness), edges(&harness));
+    let mut orders = vec![before];
+    for row in &shown {
+        let label = button(&harness, |label| label.starts_with(row));
+        click(&mut harness, &label);
+        assert_eq!(rows(&harness), shown, "after a click on {row}");
+        assert_eq!(harness.state().selected_edge(), row.trim().parse().ok());
+        orders.push(edges(&harness));
+    }
+    assert!(orders.iter().any(|order| *order != orders[0]), "LOD follows the camera, and with it the gaps");
+    harness.hover_at(egui::pos2(1.0, 1.0));
+    settle(&mut harness);
+    let first = &edges(&harness)[..shown.len()];
+    assert!(
+        rows(&harness).iter().map(|row| row.trim().parse()).eq(first.iter().map(|edge| Ok(*edge))),
+        "in order again"
+    );
 }
 
 #[test]

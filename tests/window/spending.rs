@@ -198,6 +198,7 @@ fn frozen_lod_stays_while_the_camera_moves() {
     press(&mut harness, egui::Key::PageUp);
     press(&mut harness, egui::Key::PageUp);
     assert_eq!(harness.state().totals(), before, "frozen");
+    assert!(harness.state().sizes_shown().is_some(), "the same triangles are measured from here");
     press(&mut harness, egui::Key::Z);
     assert!(harness.state().totals() > before, "nearer, so more triangles");
 }
@@ -220,6 +221,9 @@ fn a_picture_of_many_steps_can_be_cancelled_and_drawn_later() {
     assert_eq!((harness.state().pictures(), harness.state().settings().tessellation.factor), (pictures, 64.0));
     assert!(!harness.state().is_busy());
     harness.get_by_label("cracks not measured");
+    for what in ["Cracks", "Leaks", "Folds", "Triangles below 3 px", "Patches at the maximum factor"] {
+        harness.get_by_label(&format!("{what}: not measured"));
+    }
     // Selecting something doesn't draw the cancelled picture.
     harness.state_mut().select_triangle(Some(3));
     settle(&mut harness);

@@ -324,6 +324,10 @@ fn bookmarks_are_kept_with_the_file() {
     press_with(&mut harness, Modifiers::COMMAND, Key::D);
     press_with(&mut harness, Modifiers::ALT, Key::Num1);
     assert_eq!(*harness.state().camera(), right);
+    press_with(&mut harness, Modifiers::COMMAND, Key::D);
+    open_bookmarks(&mut harness);
+    assert!(harness.query_by_label_contains("Bookmark 3").is_none(), "this view is the first one already");
+    press(&mut harness, Key::Escape);
     press(&mut harness, Key::Num1);
     eframe::App::on_exit(harness.state_mut());
     drop(harness);
@@ -333,6 +337,11 @@ fn bookmarks_are_kept_with_the_file() {
     open_bookmarks(&mut harness);
     harness.get_by_label_contains("Bookmark 2");
     click(&mut harness, "Forget bookmarks");
+    click(&mut harness, "Cancel");
+    open_bookmarks(&mut harness);
+    harness.get_by_label_contains("Bookmark 2");
+    click(&mut harness, "Forget bookmarks");
+    click(&mut harness, "Forget them");
     press_with(&mut harness, Modifiers::ALT, Key::Num1);
     open_bookmarks(&mut harness);
     assert!(harness.query_by_label_contains("Bookmark 2").is_none());

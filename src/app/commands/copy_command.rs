@@ -76,7 +76,8 @@ impl App {
         let Some(command) = &self.commands.copied else { return };
         let mut is_open = true;
         let window = egui::Window::new("Copied").open(&mut is_open).resizable(false).collapsible(false);
-        window.anchor(egui::Align2::CENTER_TOP, egui::vec2(0.0, 40.0)).default_width(520.0).show(context, |ui| {
+        let window = window.pivot(egui::Align2::CENTER_TOP).fixed_pos(self.message_place());
+        window.default_width(520.0).show(context, |ui| {
             ui.label("This command draws it without a window:");
             ui.add(egui::Label::new(egui::RichText::new(command).monospace()).wrap().selectable(true));
         });

@@ -3,6 +3,7 @@
 use egui::{Context, OpenUrl, ViewportCommand, gui_zoom};
 
 use crate::app::App;
+use crate::app::dialogs::Forgetting;
 use crate::app::dialogs::typed_path::Purpose;
 use crate::commands::{Action, Availability, Command, FileAction, Preparing};
 use crate::gpu::{LodShader, SurfaceShader};
@@ -75,7 +76,7 @@ impl App {
             Action::Redo => self.redo(context),
             Action::CopyAsCommand => self.copy_command(context),
             Action::ResetSettings => self.reset_settings(),
-            Action::ForgetEverything => self.dialogs.asks_to_forget = true,
+            Action::ForgetEverything => self.dialogs.asks_to_forget = Some(Forgetting::Everything),
             Action::SplitView => self.toggle_split(),
             Action::HidePanels => self.panels.are_hidden = !self.panels.are_hidden,
             Action::FocusControls => context.memory_mut(|memory| memory.move_focus(egui::FocusDirection::Next)),
@@ -85,8 +86,8 @@ impl App {
             Action::FreezeLodCamera => self.toggle_frozen(),
             Action::Ruler => self.toggle_ruler(),
             Action::Previews => self.switch_previews(),
-            Action::AddBookmark => self.viewport.bookmarks.push(self.viewport.camera),
-            Action::ForgetBookmarks => self.viewport.bookmarks.clear(),
+            Action::AddBookmark => self.add_bookmark(),
+            Action::ForgetBookmarks => self.dialogs.asks_to_forget = Some(Forgetting::Bookmarks),
             Action::Background => self.dialogs.chooses_background = true,
             Action::Chart => self.toggle_chart(),
             Action::MeasureChart => self.measure_chart(context),
@@ -103,6 +104,13 @@ impl App {
             Action::SearchCommands => self.search_commands(),
             Action::Keys => self.commands.shows_keys = true,
             Action::WhitePaper => context.open_url(OpenUrl::new_tab(WHITE_PAPER)),
+        }
+    }
+
+    /// Bookmarks this view, unless it is a bookmark already.
+    fn add_bookmark(&mut self) {
+        if !self.viewport.bookmarks.contains(&self.viewport.camera) {
+            self.viewport.bookmarks.push(self.viewport.camera);
         }
     }
 
@@ -172,7 +180,7 @@ impl App {
     /// Closes the small windows that a command opened; or if there are none, stops a long drawing; or if there is none,
     /// stops all jobs, closes all messages and clears the selection.
     fn cancel(&mut self) {
-        let asked = std::mem::take(&mut self.dialogs.asks_to_forget);
+        let asked = self.dialogs.asks_to_forget.take().is_some();
         let chose = std::mem::take(&mut self.dialogs.chooses_background)
             | std::mem::take(&mut self.dialogs.picture.is_open)
             | std::mem::take(&mut self.dialogs.turntable.is_open);

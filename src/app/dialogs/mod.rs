@@ -13,6 +13,14 @@ use picture_window::PictureWindow;
 use turntable_window::TurntableWindow;
 use typed_path::{PendingDialog, TypedPath};
 
+/// What can be forgotten after a question.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Forgetting {
+    Everything,
+    /// The bookmarks of the file that is open.
+    Bookmarks,
+}
+
 /// Windows and dialogs that are open.
 #[derive(Default)]
 pub(super) struct Dialogs {
@@ -34,6 +42,6 @@ pub(super) struct Dialogs {
     pub turntable: TurntableWindow,
     /// Whether the list of the mesh's warnings is open.
     pub shows_warnings: bool,
-    /// Whether the window that asks before everything is forgotten is open.
-    pub asks_to_forget: bool,
+    /// What is forgotten if the window that asks for it is answered with yes; none if it isn't open.
+    pub asks_to_forget: Option<Forgetting>,
 }

@@ -108,6 +108,11 @@ impl App {
         self.message_window(context);
     }
 
+    /// The upper end of a message: below the toolbar, so that this stays in reach.
+    pub(in crate::app) fn message_place(&self) -> egui::Pos2 {
+        self.viewport.rect.center_top() + egui::vec2(0.0, 8.0)
+    }
+
     /// Shows the last error, or the last file that was written, until it is closed.
     fn message_window(&mut self, context: &egui::Context) {
         let (title, text) = match (&self.dialogs.error, &self.dialogs.notice) {
@@ -116,10 +121,8 @@ impl App {
             (None, None) => return,
         };
         let mut closed = false;
-        // Below the toolbar, so that it stays in reach.
-        let place = self.viewport.rect.center_top() + egui::vec2(0.0, 8.0);
         let window = egui::Window::new(title).resizable(false).collapsible(false);
-        let window = window.pivot(egui::Align2::CENTER_TOP).fixed_pos(place);
+        let window = window.pivot(egui::Align2::CENTER_TOP).fixed_pos(self.message_place());
         window.default_width(420.0).show(context, |ui| {
             ui.label(text);
             closed = ui.button("Close").clicked() || ui.input(|input| input.key_pressed(egui::Key::Enter));

@@ -46,7 +46,8 @@ impl Export {
         if progress.check().is_err() {
             return Ok(Vec::new());
         }
-        exported.write(path).map_err(|error| error.to_string())
+        let said = exported.write(path).map_err(|error| error.to_string())?;
+        Ok(left_out(&tessellated, posed.topology.patches.len()).into_iter().chain(said).collect())
     }
 
     /// Reads back what is emitted, chunk by chunk. Returns none if it was cancelled.
@@ -63,4 +64,18 @@ impl Export {
         }
         Ok(Some(out))
     }
+}
+
+/// A sentence about patches that aren't in the file, if there are any: somebody who didn't set clipping or culling expects all.
+fn left_out(tessellated: &Tessellated, patches: usize) -> Option<String> {
+    let mut is_written = vec![false; patches];
+    tessellated.vertices.iter().for_each(|vertex| is_written[vertex.patch() as usize] = true);
+    let left_out = is_written.iter().filter(|is_written| !**is_written).count();
+    let said = || {
+        format!(
+            "{left_out} of {patches} patches aren't drawn in this view, and aren't in the file. To export all of them, switch off \
+             Clipping and Cull back faces (under Advanced)."
+        )
+    };
+    (left_out > 0).then(said)
 }

@@ -34,18 +34,24 @@ impl App {
         columns(ui, &format!("{:<7}{:<13}{:>9}", "edge", "kind", "gap, units"), true);
         let (topology, ulp) = (&document.loaded.topology, ulp(&document.loaded.topology));
         let mut clicked = None;
-        let text = |row: usize| {
-            let crack = &cracks.edges[row];
-            let kind = kind_name(topology.edges[crack.edge as usize].kind);
-            (crack.edge, format!("{:<7}{kind:<13}{:>9}", crack.edge, short(crack.gap)))
-        };
-        let first = cracks.edges.first().map_or(0, |crack| crack.edge ^ (crack.gap as f32).to_bits());
-        list(ui, "worst edges", (cracks.edges.len(), first), |ui, row| {
-            let (edge, text) = text(row);
-            let crack = &cracks.edges[row];
+        // A click moves the camera, and so LOD and the gaps. Rows stay where they are while the pointer is over them.
+        let own = (document.generation, self.settings.tessellation.surface);
+        let held = self.viewport.held_edges.take().filter(|(of, _)| *of == own);
+        let order = |row: usize| held.as_ref().map_or_else(|| cracks.edges[row].edge, |(_, edges)| edges[row]);
+        let count = held.as_ref().map_or(cracks.edges.len(), |(_, edges)| edges.len());
+        let shown = ui.scope(|ui| list(ui, "worst edges", (count, own.0 as u32 ^ own.1 as u32), |ui, row| {
+            let edge = order(row);
+            let crack = cracks.edges.get(row).filter(|crack| crack.edge == edge).or_else(|| self.crack_of(edge, SplitSide::Right));
+            let kind = kind_name(topology.edges[edge as usize].kind);
+            let gap = crack.map_or_else(|| "none".to_owned(), |crack| short(crack.gap));
+            let text = format!("{edge:<7}{kind:<13}{gap:>9}");
             let response =
                 ui.selectable_label(self.viewport.selected_edge == Some(edge), RichText::new(text).monospace());
             let response = response.on_hover_ui(|ui| {
+                let Some(crack) = crack else {
+                    ui.label("The sides agree in this view. A click frames the edge.");
+                    return;
+                };
                 ui.label(format!(
                     "The gap is {} px on screen, {} ULP. {} points and {} normals differ; the factors {}. A click frames \
                      the edge.",
@@ -60,7 +66,11 @@ impl App {
                 clicked = Some(edge);
             }
             response
-        });
+        }));
+        if ui.rect_contains_pointer(shown.response.rect) {
+            let edges = || (own, cracks.edges.iter().map(|crack| crack.edge).collect());
+            self.viewport.held_edges = Some(held.unwrap_or_else(edges));
+        }
         if let Some(edge) = clicked {
             self.select_edge(edge);
         }

@@ -30,7 +30,8 @@ impl App {
                 |(vertices, triangles)| (grouped(vertices), counted(triangles, "triangle")),
             );
             let patches = document.loaded.topology.patches.len() as u64;
-            let drawn = patches - u64::from(self.jobs.measure.found().map_or(0, |found| found.culled.total()));
+            let drawn = self.jobs.measure.found().map(|found| grouped(patches - u64::from(found.culled.total())));
+            let drawn = drawn.unwrap_or_else(|| "…".to_owned());
             let before = (document.loaded.mesh.triangles.len() as u64, document.loaded.mesh.corners.len() as u64);
             // A field has the width of the largest numbers that this mesh can have.
             let widest = |ui: &egui::Ui, text: String| text_width(ui, &text).max(120.0);
@@ -45,8 +46,8 @@ impl App {
             status(
                 ui,
                 widest(ui, format!("{0} of {0} patches", grouped(patches))),
-                format!("{} of {} patches", grouped(drawn), grouped(patches)),
-                "Patches that are drawn, out of all. The others are out of view or face away.",
+                format!("{drawn} of {} patches", grouped(patches)),
+                "Patches that are drawn, out of all, counted while the picture rests. The others are out of view or face away.",
             );
             let most = grouped(patches * MOST_VERTICES);
             status(

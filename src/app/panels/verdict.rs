@@ -76,11 +76,23 @@ impl App {
         lines.into_iter().flatten().collect()
     }
 
+    /// The line of what isn't measured yet, or can't be, since its picture isn't drawn.
+    fn unknown(&self, what: &str, hover: &'static str, leads: Destination) -> Line {
+        if self.viewport.picture.cancelled.is_some() {
+            return Line::dim(
+                format!("{what}: not measured"),
+                "The picture isn't drawn, so nothing is measured in it.",
+                leads,
+            );
+        }
+        Line::dim(format!("{what} \u{2026}"), hover, leads)
+    }
+
     fn cracks_line(&self) -> Line {
         let hover = "Edges whose sides put a point at different positions. A click shows them and goes to the widest gap. LOD \
                      follows the camera, so that another edge may be the widest from there, unless LOD is frozen.";
         match self.jobs.measure.cracks() {
-            None => Line::dim("Cracks \u{2026}", "Cracks are measured while the picture rests.", Destination::Cracks),
+            None => self.unknown("Cracks", "Cracks are measured while the picture rests.", Destination::Cracks),
             Some(cracks) if cracks.edges.is_empty() => {
                 Line::dim("No cracks", "No edge of what is drawn has sides that differ in a bit.", Destination::Cracks)
             }
@@ -108,7 +120,7 @@ impl App {
             return Line::dim("Leaks aren't counted", why, Destination::Leaks);
         }
         match self.leaks().filter(|_| !waits) {
-            None => Line::dim("Leaks \u{2026}", "Leaks are counted while the picture rests.", Destination::Leaks),
+            None => self.unknown("Leaks", "Leaks are counted while the picture rests.", Destination::Leaks),
             Some([]) => Line::dim("No leaks in this view", hover, Destination::Leaks),
             Some(leaks) => {
                 let pixels: u64 = leaks.iter().map(|leak| u64::from(leak.pixels)).sum();
@@ -122,7 +134,7 @@ impl App {
         let hover = "Triangles that face away from the side that their patch faces. A click shows them and goes to the \
                      largest. LOD follows the camera, so that their number may be another one there, unless LOD is frozen.";
         match self.jobs.measure.found().map(|found| found.folds) {
-            None => Line::dim("Folds \u{2026}", "Folds are counted while the picture rests.", Destination::Folds),
+            None => self.unknown("Folds", "Folds are counted while the picture rests.", Destination::Folds),
             Some(0) => Line::dim("No folds", hover, Destination::Folds),
             Some(folds) => Line::bad(counted(folds, "fold"), rgb(FOLD_COLOR), hover, Destination::Folds),
         }
@@ -155,7 +167,7 @@ impl App {
         let hover = "Triangles in view that are smaller than half of a square with sides of 3 px: a GPU shades up to four times \
                      as many px for them as they cover. A click colours triangles by their size.";
         let Some(sizes) = self.sizes_shown() else {
-            return Line::dim("Triangles below 3 px \u{2026}", hover, Destination::Sizes);
+            return self.unknown("Triangles below 3 px", hover, Destination::Sizes);
         };
         let percent = 100.0 * sizes.small as f64 / sizes.in_view.max(1) as f64;
         let text = format!("{percent:.0} % of triangles below 3 px");
@@ -169,7 +181,7 @@ impl App {
         let hover = "Patches with a factor of 63 or 64, the most there is. LOD by error may miss its tolerance there. A click \
                      colours the surface by factors.";
         match self.jobs.measure.found().map(|found| found.patches_at_limit) {
-            None => Line::dim("Patches at the maximum factor \u{2026}", hover, Destination::Factors),
+            None => self.unknown("Patches at the maximum factor", hover, Destination::Factors),
             Some(0) => Line::dim("No patch at the maximum factor", hover, Destination::Factors),
             Some(patches) => {
                 let text = format!("{} at the maximum factor", counted(patches.into(), "patch"));

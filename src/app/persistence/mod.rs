@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use egui::ViewportCommand;
 
 use crate::app::App;
+use crate::app::dialogs::Forgetting;
 use crate::app::jobs::background_job::BackgroundJob;
 use crate::app::sections::OpenSections;
 use crate::gpu::{LodShader, SurfaceShader};
@@ -273,19 +274,24 @@ impl App {
         self.persistence.finish()
     }
 
-    /// Asks whether everything that is saved should be forgotten.
+    /// Asks whether something that is saved should be forgotten.
     pub(in crate::app) fn forget_window(&mut self, context: &egui::Context) {
-        if !self.dialogs.asks_to_forget {
-            return;
-        }
-        let window = egui::Window::new("Forget all settings").resizable(false).collapsible(false);
+        let Some(forgetting) = self.dialogs.asks_to_forget else { return };
+        let (title, text) = match forgetting {
+            Forgetting::Everything => (
+                "Forget all settings",
+                "This forgets settings, theme, window size, recent files and their cameras, and can't be undone. The mesh stays \
+                 open.",
+            ),
+            Forgetting::Bookmarks => {
+                ("Forget bookmarks", "This forgets all bookmarks of this file, and can't be undone.")
+            }
+        };
+        let window = egui::Window::new(title).resizable(false).collapsible(false);
         let window = window.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO);
         let answer = window.show(context, |ui| {
             ui.set_max_width(320.0);
-            ui.label(
-                "This forgets settings, theme, window size, recent files and their cameras, and can't be undone. The \
-                 mesh stays open.",
-            );
+            ui.label(text);
             ui.horizontal(|ui| {
                 let forgets = ui.button("Forget them").clicked();
                 ui.button("Cancel").clicked().then_some(false).or(forgets.then_some(true))
@@ -293,9 +299,11 @@ impl App {
             .inner
         });
         let Some(forgets) = answer.and_then(|answer| answer.inner).flatten() else { return };
-        self.dialogs.asks_to_forget = false;
-        if forgets {
-            self.forget_all(context);
+        self.dialogs.asks_to_forget = None;
+        match forgetting {
+            _ if !forgets => {}
+            Forgetting::Everything => self.forget_all(context),
+            Forgetting::Bookmarks => self.viewport.bookmarks.clear(),
         }
     }
 

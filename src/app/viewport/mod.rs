@@ -19,6 +19,7 @@ pub(super) mod warm_up;
 
 use crate::engine::Engine;
 use crate::render::Camera;
+use crate::tessellate::Surface;
 
 use camera::FollowedCamera;
 use frozen_camera::FrozenCamera;
@@ -62,6 +63,8 @@ pub(super) struct Viewport {
     pub ruler: Option<Ruler>,
     /// The selected edge: an index into the edges of the topology that is shown.
     pub selected_edge: Option<u32>,
+    /// The edges of the list of the worst ones in their order, while the pointer is over it, and the document and surface that have them.
+    pub held_edges: Option<((u64, Surface), Vec<u32>)>,
 }
 
 impl Viewport {
@@ -85,6 +88,7 @@ impl Viewport {
             selection: Selection::default(),
             ruler: None,
             selected_edge: None,
+            held_edges: None,
         }
     }
 }

@@ -184,7 +184,8 @@ impl App {
         let view = ScreenView { clip_from_object: wanted.clip_from_object, viewport: wanted.viewport };
         let seen = wanted.camera.lod_view(wanted.viewport, &document.scene.bounds);
         let silhouette = SilhouetteView { size, seen, lod: wanted.inputs.view };
-        let follows = self.settings.overlays.colors == Colors::TriangleSize;
+        // With LOD that is frozen, the same triangles are seen from elsewhere.
+        let follows = self.settings.overlays.colors == Colors::TriangleSize || self.viewport.frozen.is_some();
         self.jobs.measure.go_on(&self.engine.gpu, &mut document.scene, document.generation, view, follows)?;
         self.measure_left(view)?;
         self.count_leaks(context, view)?;

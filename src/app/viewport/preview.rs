@@ -278,7 +278,9 @@ impl App {
     /// The device was lost, or has no room for the preview.
     pub(super) fn preview(&mut self, context: &egui::Context, full: &Wanted) -> Result<bool, GpuError> {
         let left = self.viewport.preview.follow(self.viewport.camera);
-        if self.viewport.picture.drawn.as_ref() == Some(full) {
+        // While a clip plays, the picture that is shown is always of an earlier moment.
+        let is_seen = |drawn: &Wanted| drawn == full || (self.is_playing() && drawn.camera == full.camera);
+        if self.viewport.picture.drawn.as_ref().is_some_and(is_seen) {
             self.viewport.preview.end();
         }
         let is_due = self.viewport.preview.is_due(&self.viewport.picture);

@@ -3,11 +3,13 @@
 pub(super) mod device_lost;
 mod event_pacing;
 pub(super) mod fatal_screen;
+mod fitting;
 pub(crate) mod run;
 
 use device_lost::DeviceLosses;
 use event_pacing::PacedEvents;
 use fatal_screen::FatalScreen;
+use fitting::Fitting;
 
 pub(crate) use run::{WindowError, run};
 
@@ -17,6 +19,7 @@ pub(super) struct WindowState {
     /// The losses of the devices that it was drawn with.
     pub losses: DeviceLosses,
     pub events: PacedEvents,
+    pub fitting: Fitting,
     /// Shown in place of everything else if a lost device isn't replaced.
     pub fatal_screen: Option<FatalScreen>,
 }
