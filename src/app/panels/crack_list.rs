@@ -27,53 +27,64 @@ impl App {
         if cracks.edges.is_empty() {
             return;
         }
+        let topology = &document.loaded.topology;
         ui.add_space(4.0);
         ui.label("Worst edges").on_hover_text(
             "Edges whose sides disagree in a position, factor or normal, the widest gap first; a click frames one.",
         );
         columns(ui, &format!("{:<7}{:<13}{:>9}", "edge", "kind", "gap, units"), true);
-        let (topology, ulp) = (&document.loaded.topology, ulp(&document.loaded.topology));
-        let mut clicked = None;
         // A click moves the camera, and so LOD and the gaps. Rows stay where they are while the pointer is over them.
         let own = (document.generation, self.settings.tessellation.surface);
         let held = self.viewport.held_edges.take().filter(|(of, _)| *of == own);
-        let order = |row: usize| held.as_ref().map_or_else(|| cracks.edges[row].edge, |(_, edges)| edges[row]);
+        let edges = || cracks.edges.iter().map(|crack| crack.edge).collect();
         let count = held.as_ref().map_or(cracks.edges.len(), |(_, edges)| edges.len());
-        let shown = ui.scope(|ui| list(ui, "worst edges", (count, own.0 as u32 ^ own.1 as u32), |ui, row| {
-            let edge = order(row);
-            let crack = cracks.edges.get(row).filter(|crack| crack.edge == edge).or_else(|| self.crack_of(edge, SplitSide::Right));
-            let kind = kind_name(topology.edges[edge as usize].kind);
-            let gap = crack.map_or_else(|| "none".to_owned(), |crack| short(crack.gap));
-            let text = format!("{edge:<7}{kind:<13}{gap:>9}");
-            let response =
-                ui.selectable_label(self.viewport.selected_edge == Some(edge), RichText::new(text).monospace());
-            let response = response.on_hover_ui(|ui| {
-                let Some(crack) = crack else {
-                    ui.label("The sides agree in this view. A click frames the edge.");
-                    return;
-                };
-                ui.label(format!(
-                    "The gap is {} px on screen, {} ULP. {} points and {} normals differ; the factors {}. A click frames \
-                     the edge.",
-                    short(self.viewport.picture.gap_of_edge_px(crack)),
-                    short(crack.gap / ulp),
-                    crack.different_bits,
-                    crack.different_normals,
-                    if crack.different_factors { "differ" } else { "agree" },
-                ));
-            });
+        let mut clicked = None;
+        let row = |ui: &mut egui::Ui, row: usize| {
+            let edge = held.as_ref().map_or_else(|| cracks.edges[row].edge, |(_, edges)| edges[row]);
+            let crack = cracks.edges.get(row).filter(|crack| crack.edge == edge);
+            let crack = crack.or_else(|| self.crack_of(edge, SplitSide::Right));
+            let response = self.worst_edge(ui, topology, edge, crack);
             if response.clicked() {
                 clicked = Some(edge);
             }
             response
-        }));
-        if ui.rect_contains_pointer(shown.response.rect) {
-            let edges = || (own, cracks.edges.iter().map(|crack| crack.edge).collect());
-            self.viewport.held_edges = Some(held.unwrap_or_else(edges));
+        };
+        let which = own.0 as u32 ^ own.1 as u32;
+        let shown = ui.scope(|ui| list(ui, "worst edges", (count, which), row)).response;
+        if ui.rect_contains_pointer(shown.rect) {
+            self.viewport.held_edges = Some(held.unwrap_or_else(|| (own, edges())));
         }
         if let Some(edge) = clicked {
             self.select_edge(edge);
         }
+    }
+
+    /// A row of the list of worst edges. There is no crack if the edge's sides agree since the camera has moved.
+    fn worst_edge(
+        &self,
+        ui: &mut egui::Ui,
+        topology: &Topology,
+        edge: u32,
+        crack: Option<&CrackedEdge>,
+    ) -> egui::Response {
+        let kind = kind_name(topology.edges[edge as usize].kind);
+        let gap = crack.map_or_else(|| "none".to_owned(), |crack| short(crack.gap));
+        let text = RichText::new(format!("{edge:<7}{kind:<13}{gap:>9}")).monospace();
+        let response = ui.selectable_label(self.viewport.selected_edge == Some(edge), text);
+        response.on_hover_ui(|ui| {
+            let Some(crack) = crack else {
+                ui.label("The sides agree in this view. A click frames the edge.");
+                return;
+            };
+            ui.label(format!(
+                "The gap is {} px on screen, {} ULP. {} points and {} normals differ; the factors {}. A click frames the edge.",
+                short(self.viewport.picture.gap_of_edge_px(crack)),
+                short(crack.gap / ulp(topology)),
+                crack.different_bits,
+                crack.different_normals,
+                if crack.different_factors { "differ" } else { "agree" },
+            ));
+        })
     }
 
     /// The selected edge: its kind, its gap, and the points of each side.

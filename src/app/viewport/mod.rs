@@ -63,7 +63,8 @@ pub(super) struct Viewport {
     pub ruler: Option<Ruler>,
     /// The selected edge: an index into the edges of the topology that is shown.
     pub selected_edge: Option<u32>,
-    /// The edges of the list of the worst ones in their order, while the pointer is over it, and the document and surface that have them.
+    /// The edges of the list of the worst ones in their order, while the pointer is over it; and the document and surface that have
+    /// them.
     pub held_edges: Option<((u64, Surface), Vec<u32>)>,
 }
 
