@@ -182,8 +182,8 @@ fn errors_in_a_file_are_one_line_with_the_line_number() {
     let lines: Vec<_> = text.lines().collect();
     let with = |at: usize, line: &str| [&lines[..at], &[line], &lines[at + 1..]].concat().join("\n");
     for (text, words) in [
-        (lines[1..].join("\n"), ["wrong.csv, line 1", "header patch,e0,e1,e2,inside"]),
-        (String::new(), ["wrong.csv, line 1", "header patch,e0,e1,e2,inside"]),
+        (lines[1..].join("\n"), ["wrong.csv, line 1", "header \"patch,e0,e1,e2,inside\""]),
+        (String::new(), ["wrong.csv, line 1", "header \"patch,e0,e1,e2,inside\""]),
         (with(3, "2,8,eight,8,8"), ["wrong.csv, line 4", "e1 is \"eight\""]),
         (with(3, "two,8,8,8,8"), ["wrong.csv, line 4", "patch is \"two\""]),
         (with(3, "2,8,8,8"), ["wrong.csv, line 4", "number of values is 4"]),

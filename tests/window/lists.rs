@@ -98,7 +98,8 @@ fn rows_stay_under_the_pointer_while_clicks_move_the_camera() {
     settle(&mut harness);
     let (shown, before) = (rows(&harness), edges(&harness));
     let mut orders = vec![before];
-    for row in &shown {
+    // The last row is seen in part.
+    for row in &shown[..5] {
         let label = button(&harness, |label| label.starts_with(row));
         click(&mut harness, &label);
         assert_eq!(rows(&harness), shown, "after a click on {row}");

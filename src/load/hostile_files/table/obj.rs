@@ -14,7 +14,7 @@ macro_rules! obj {
 pub(super) fn cases() -> Vec<Case> {
     vec![
         case(Obj, "", Refused("Empty | vertices")),
-        (Obj, vec![0xff; 1000].into(), Refused("Empty | vertices | 1 | statements")),
+        (Obj, vec![0xff; 1000].into(), Refused("Empty | vertices | a statement")),
         case(Obj, many_parts(), Repaired(1, "objects and groups | 65,536 | 4464")),
         obj!("p 1 2 3\n", Refused("Empty | 3 positions | 3 points")),
         obj!("l 1 2\nl 2 3\n", Refused("Empty | 3 positions | 2 lines")),
