@@ -12,6 +12,7 @@ mod sections;
 mod style;
 mod text;
 mod viewport;
+mod wheel;
 mod widgets;
 pub(crate) mod window;
 

@@ -1,6 +1,9 @@
 //! Widgets that the panels share.
 
 use egui::RichText;
+use egui::scroll_area::ScrollSource;
+
+use super::wheel;
 
 /// The width of the settings' labels in points: as much as the longest, "Segment length", takes.
 pub(super) const LABEL_WIDTH: f32 = 94.0;
@@ -88,9 +91,12 @@ pub(super) fn list(
     let height = ui.text_style_height(&egui::TextStyle::Monospace).max(ui.spacing().interact_size.y);
     let pitch = height + ui.spacing().item_spacing.y;
     let shown = LIST_ROWS.min(count as f32) * pitch;
-    let area = egui::ScrollArea::vertical().id_salt(name).max_height(shown).auto_shrink([false, true]);
-    // The row that the last frame's key asked for, and how far the list was scrolled then.
     let id = ui.scope_id().with(name);
+    let mouse_wheel = wheel::scrolls(ui, id, ui.data(|data| data.get_temp(id.with("place"))));
+    let source = ScrollSource { mouse_wheel, ..ScrollSource::default() };
+    let area = egui::ScrollArea::vertical().id_salt(name).max_height(shown).auto_shrink([false, true]);
+    let area = area.scroll_source(source);
+    // The row that the last frame's key asked for, and how far the list was scrolled then.
     let asked: Option<(usize, f32)> = ui.data_mut(|data| data.remove_temp(id));
     let before: Option<(usize, u32)> = ui.data(|data| data.get_temp(id.with("rows")));
     ui.data_mut(|data| data.insert_temp(id.with("rows"), (count, first)));
@@ -120,6 +126,7 @@ pub(super) fn list(
             }
         }
     });
+    ui.data_mut(|data| data.insert_temp(id.with("place"), output.inner_rect));
     if let Some(row) = reached {
         // The list scrolls to a row by itself, but the panel around it doesn't.
         ui.scroll_to_rect(row, None);

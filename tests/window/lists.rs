@@ -117,6 +117,43 @@ fn rows_stay_under_the_pointer_while_clicks_move_the_camera() {
 }
 
 #[test]
+fn a_turn_of_the_wheel_that_began_beside_a_list_goes_past_it() {
+    let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
+    choose(&mut harness, "Surface", "PN");
+    harness.get_by_label("Largest gap").scroll_to_me();
+    settle(&mut harness);
+    let edge = harness.state().cracks().expect("measured").edges[0].edge;
+    let first = format!("{edge:<7}split normal");
+    let top = |harness: &Harness<App>| harness.get_by_label("Worst edges").rect().top();
+    // Less than the pause between two turns.
+    let turn = |harness: &mut Harness<App>, points: f32| {
+        harness.event(egui::Event::MouseWheel {
+            unit: egui::MouseWheelUnit::Point,
+            delta: egui::vec2(0.0, -points),
+            phase: egui::TouchPhase::Move,
+            source: egui::MouseWheelSource::Wheel,
+            modifiers: egui::Modifiers::NONE,
+        });
+        harness.step();
+    };
+    let (place, before) = (harness.get_by_label("Largest gap").rect().center(), top(&harness));
+    harness.hover_at(place);
+    (0..12).for_each(|_| turn(&mut harness, 20.0));
+    assert!(before - top(&harness) > 200.0, "the panel scrolls on: from {before} to {}", top(&harness));
+    settle(&mut harness);
+    harness.run_steps(10);
+    harness.get_by_label("Worst edges").scroll_to_me();
+    settle(&mut harness);
+    let place = harness.get_by_label_contains(&first).rect().center();
+    harness.hover_at(place);
+    harness.run_steps(3);
+    let before = top(&harness);
+    (0..4).for_each(|_| turn(&mut harness, 20.0));
+    assert_eq!(top(&harness), before, "a turn that begins on the list scrolls it");
+    assert!(harness.query_by_label_contains(&first).is_none());
+}
+
+#[test]
 fn keys_go_through_a_list_beyond_the_visible_rows() {
     let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
     choose(&mut harness, "Surface", "PN");
