@@ -21,7 +21,7 @@ pub(super) fn scrolls(ui: &Ui, list: Id, place: Option<Rect>) -> bool {
     if !moves {
         return true;
     }
-    let known = Id::new("turn of the wheel");
+    let known = Id::unique("turn of the wheel");
     let last: Option<Turn> = ui.data(|data| data.get_temp(known));
     let last = last.filter(|turn| now - turn.last <= PAUSE);
     let mut turn = last.unwrap_or(Turn { start: now, last: now, list: None });
