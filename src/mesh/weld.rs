@@ -19,9 +19,9 @@ const PART: usize = 1 << 14;
 /// With more parts, the ends of their lists wouldn't fit the cache.
 const MOST_PARTS: usize = 256;
 
-/// The most memory that an exact weld needs while it runs, in bytes for each position: its hash and index, in a list that doubles where
-/// many are alike, and its point.
-pub(super) const WELD_BYTES: u64 = 28;
+/// The most memory that an exact weld needs while it runs, in bytes for each position: 9 for its hash and index, 4 for its point, and 22
+/// in tables that are three eighths full at least. Where many positions are equal, lists double, but tables are small.
+pub(super) const WELD_BYTES: u64 = 36;
 
 /// Joins equal positions into points. Two positions are equal if all three coordinates have the same value (-0 equals
 /// 0), without any tolerance. Points are in the order of their first appearance, and have +0 for every zero.
@@ -84,32 +84,47 @@ fn first_equal(count: usize, place: impl Fn(usize) -> (Vec3, u32) + Sync) -> Vec
     first.into_iter().map(AtomicU32::into_inner).collect()
 }
 
+/// A place of a table without a position: there are fewer positions.
+const FREE: u64 = u64::MAX;
+
 /// Writes the first of equal positions for each position of a part, each of which is given as its hash and its index. `table` has room
 /// that is used again.
 fn find_equal(table: &mut Vec<u64>, part: &[&[u64]], is_equal: impl Fn(u32, u32) -> bool, first: &[AtomicU32]) {
-    /// A free place: there are fewer positions.
-    const FREE: u64 = u64::MAX;
     let positions: usize = part.iter().map(|own| own.len()).sum();
-    let places = (2 * positions).next_power_of_two();
+    // A part with many more positions has many equal ones, which need one place together.
+    let places = (positions.min(2 * PART) * 4 / 3 + 1).next_power_of_two();
     table.clear();
     table.resize(places, FREE);
+    let mut used = 0;
     for &own in part.iter().copied().flatten() {
-        // Parts differ in the highest bits of the hash.
-        let mut at = (own >> 32) as usize;
-        loop {
-            at &= places - 1;
-            let other = table[at];
-            if other == FREE {
-                table[at] = own;
-                break;
+        let is_same = |other: u64| other >> 32 == own >> 32 && is_equal(other as u32, own as u32);
+        let at = place_of(table, own, is_same);
+        if table[at] != FREE {
+            first[own as u32 as usize].store(table[at] as u32, Ordering::Relaxed);
+            continue;
+        }
+        table[at] = own;
+        used += 1;
+        if 4 * used > 3 * table.len() {
+            let mut larger = vec![FREE; 2 * table.len()];
+            for own in table.iter().copied().filter(|own| *own != FREE) {
+                let at = place_of(&larger, own, |_| false);
+                larger[at] = own;
             }
-            if other >> 32 == own >> 32 && is_equal(other as u32, own as u32) {
-                first[own as u32 as usize].store(other as u32, Ordering::Relaxed);
-                break;
-            }
-            at += 1;
+            *table = larger;
         }
     }
+}
+
+/// The place of a position that is given as its hash and its index: that of the one that is the same, or else a free one. A quarter
+/// of the places is free.
+fn place_of(table: &[u64], own: u64, is_same: impl Fn(u64) -> bool) -> usize {
+    // Parts differ in the highest bits of the hash.
+    let mut at = (own >> 32) as usize & (table.len() - 1);
+    while table[at] != FREE && !is_same(table[at]) {
+        at = (at + 1) & (table.len() - 1);
+    }
+    at
 }
 
 /// Joins positions within a tolerance, in object units, into points. Distinct positions are taken in the order of their
@@ -265,6 +280,21 @@ mod tests {
         }
         let one = on_cores(7, || weld(&[Vec3::ONE; 100_000]));
         assert_eq!(one, (vec![Vec3::ONE], vec![0; 100_000]));
+    }
+
+    #[test]
+    fn a_table_has_room_for_the_positions_that_differ() {
+        let (count, distinct) = (200_000, 100_000);
+        let hashed: Vec<u64> = (0..count).map(|i| (i % distinct) << 32 | i).collect();
+        let is_equal = |a: u32, b: u32| a % distinct as u32 == b % distinct as u32;
+        let first: Vec<AtomicU32> = (0..count as u32).map(AtomicU32::new).collect();
+        let mut table = Vec::new();
+        find_equal(&mut table, &[&hashed[..70_000], &hashed[70_000..]], is_equal, &first);
+        assert_eq!(table.len(), 1 << 18, "grown");
+        assert!((0..).zip(&first).all(|(i, first)| first.load(Ordering::Relaxed) == i % distinct as u32));
+        let equal: Vec<u64> = (0..count).map(|i| 7 << 32 | i).collect();
+        find_equal(&mut table, &[&equal], |_, _| true, &first);
+        assert!(table.len() <= 4 * PART && first.iter().all(|first| first.load(Ordering::Relaxed) == 0));
     }
 
     #[test]

@@ -2,11 +2,11 @@
 //! are mesh files that are measured too; `seconds=N` is how long each mesh is turned (5).
 //!
 //! The window is driven as a person does, with a drag of 4 points a frame. It is painted into a texture that nothing reads back, and each
-//! frame waits until the one before it is painted, as a window does that has two frames in flight. Each mesh is measured with its opening settings, first with full pictures alone, and then with
-//! previews in place of those that would be late. Before the first drag the window rests for two seconds, as it does while somebody
-//! looks at a mesh that was opened. A picture counts once, when the window shows it for the first time. Last, the
-//! window is painted while nothing but the pointer moves: that is the time which no preview can go below. The bench reports its
-//! results, and no result makes it fail.
+//! frame waits until the one before it is painted, as a window does that has two frames in flight. Each mesh is measured with its
+//! opening settings, first with previews in place of pictures that would be late, and then with full pictures alone. Before the
+//! first drag the window rests for two seconds, as it does while somebody looks at a mesh that was opened. A picture counts once, when
+//! the window shows it for the first time. Last, the window is painted while nothing but the pointer moves: that is the time which no
+//! preview can go below. The bench reports its results, and no result makes it fail.
 
 #[path = "../window/driver.rs"]
 mod driver;
