@@ -198,7 +198,7 @@ pub(crate) static TOLERANCE: Declaration = Declaration {
     label: "Tolerance",
     placeholder: "PX",
     text: "Largest distance on screen between the triangles and the surface under LOD by error. The overlay of excess \
-           triangles compares with it under any LOD.",
+           triangles and the gate above-tolerance compare with it under any LOD.",
     kind: Kind::Number(TOLERANCE_RANGE),
     unset: None,
     saved_as: &["tolerance"],

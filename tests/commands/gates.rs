@@ -143,6 +143,29 @@ fn a_raised_tolerance_is_judged_by_the_one_that_was_asked_for() {
 }
 
 #[test]
+fn the_tolerance_of_given_factors_is_that_of_the_command() {
+    let folder = Folder::new();
+    let [csv, shader, stats] = ["factors.csv", "lod.wgsl", "stats.json"].map(|name| folder.path(name));
+    output(&["factors", "shape:torus", "--factor", "1", "-o", &csv]);
+    std::fs::write(&shader, "fn edge_factor(edge: Edge, triangle: Triangle, view: View) -> f32 { return 1.0; }")
+        .expect("a writable folder");
+    for given in [["--factors", &csv], ["--lod-shader", &shader]] {
+        let judged = |tolerance: &str| {
+            let options = ["--tolerance", tolerance, "--fail-on", "above-tolerance", "-o", &folder.path("x.png")];
+            let ran = run(&[&["render", "shape:torus", "--stats", &stats], &given[..], &VIEW, &options].concat());
+            let stats: Value = serde_json::from_slice(&std::fs::read(&stats).expect("stats")).expect("JSON");
+            let said = String::from_utf8_lossy(&ran.stderr).into_owned();
+            (ran.status.code(), said, number(&stats, "/settings/tolerance"))
+        };
+        let (code, said, tolerance) = judged("0.125");
+        assert!(code == Some(1) && said.contains("farther than 0.125 px"), "{given:?}: {said}");
+        assert_eq!(tolerance, 0.125);
+        let (code, said, tolerance) = judged("50");
+        assert_eq!((code, tolerance), (Some(0), 50.0), "{given:?}: {said}");
+    }
+}
+
+#[test]
 fn evidence_shows_the_worst_places() {
     let folder = Folder::new();
     let [picture, evidence] = ["cube.png", "evidence"].map(|name| folder.path(name));
