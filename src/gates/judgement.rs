@@ -229,23 +229,32 @@ fn worst_crack(facts: &Facts) -> Option<Place> {
     // Sides may differ in their factors alone.
     let at = (crack.gap > 0.0).then_some(a * 0.5 + b * 0.5);
     let place = EdgePlace::new(facts.topology, crack.edge, at);
-    let text = format!("the widest gap, {gap} object units, is {}", place.words());
+    let left_out = |patch: u32| {
+        let triangle = facts.topology.patches[patch as usize].triangle;
+        format!(", where the factors of triangle {triangle} leave it out")
+    };
+    let left_out = crack.discarded.map(left_out).unwrap_or_default();
+    let text = format!("the widest gap, {gap} object units, is {}{left_out}", place.words());
     Some(place.with(text))
 }
 
 fn worst_factors(facts: &Facts) -> Option<Place> {
     let measured = facts.measured?;
+    let outlines = &measured.outlines;
     let range = |crack: &CrackedEdge| {
-        let sides = measured.outlines.edge(facts.topology, crack.edge);
+        let sides =
+            [outlines.edge(facts.topology, crack.edge), outlines.discarded(facts.topology, crack.edge)].concat();
+        // A factor that is not a number differs the most.
+        let by_size = |a: &f32, b: &f32| a.is_nan().cmp(&b.is_nan()).then(a.total_cmp(b));
         let factors = sides.iter().map(|side| side.factor);
-        let (least, most) = (factors.clone().fold(f32::INFINITY, f32::min), factors.fold(f32::NEG_INFINITY, f32::max));
-        (crack.edge, least, most)
+        Some((crack.edge, factors.clone().min_by(by_size)?, factors.max_by(by_size)?))
     };
-    let different = measured.cracks.edges.iter().filter(|crack| crack.different_factors).map(range);
-    let (edge, least, most) = different.reduce(|a, b| if b.2 - b.1 > a.2 - a.1 { b } else { a })?;
+    let different = measured.cracks.edges.iter().filter(|crack| crack.different_factors).filter_map(range);
+    let apart = |least: f32, most: f32| if most.is_nan() { f32::INFINITY } else { most - least };
+    let (edge, least, most) = different.reduce(|a, b| if apart(b.1, b.2) > apart(a.1, a.2) { b } else { a })?;
     let factors = format!("{} and {}", exact(least), exact(most));
     // In the middle of what was emitted, since the middle of a straight line may lie below the surface.
-    let emitted = measured.outlines.edge(facts.topology, edge).into_iter().next();
+    let emitted = outlines.edge(facts.topology, edge).into_iter().next();
     let emitted: Vec<Vec3> = emitted.iter().flat_map(EdgeSide::positions).collect();
     let at = emitted.get(emitted.len() / 2).copied();
     let place = EdgePlace::new(facts.topology, edge, at);

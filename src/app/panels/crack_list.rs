@@ -117,6 +117,12 @@ impl App {
                     "In units of the last place of the mesh's largest coordinate.",
                 );
                 fact(ui, "", &format!("{} px", short(px)), "The gap on screen.");
+                if let Some(patch) = crack.discarded {
+                    let triangle = topology.patches[patch as usize].triangle;
+                    let hover =
+                        "One of its factors isn't above 0, so that it isn't drawn. The gap is as wide as this hole.";
+                    fact(ui, "Left out", &format!("triangle {triangle}"), hover);
+                }
             }
         });
         side_rows(ui, &sides);
