@@ -161,8 +161,8 @@ impl Engine {
         camera: &Camera,
     ) -> Result<Leaks, GpuError> {
         let (mesh, topology) = scene.tessellator.posed().deformed();
-        if !topology.is_closed_and_oriented() {
-            return Ok(Leaks::Open);
+        if let Some(uncounted) = Leaks::uncounted(&topology) {
+            return Ok(uncounted);
         }
         if measured.culled.facing_away > 0 {
             let tessellation = Tessellation { cull_back_faces: false, ..inputs.tessellation };

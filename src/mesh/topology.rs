@@ -229,13 +229,22 @@ impl Topology {
         counts
     }
 
-    /// Returns whether every edge has exactly two sides with opposite directions, so that the mesh has an inside.
-    pub fn is_closed_and_oriented(&self) -> bool {
-        let opposed = |edge: &Edge| match self.edge_sides(edge) {
+    /// Returns whether every edge has exactly two sides.
+    pub fn is_closed(&self) -> bool {
+        !self.edges.is_empty() && self.edges.iter().all(|edge| self.edge_sides(edge).len() == 2)
+    }
+
+    /// Returns whether the triangles at every edge of two sides are wound the same way.
+    pub fn is_oriented(&self) -> bool {
+        self.edges.iter().all(|edge| match self.edge_sides(edge) {
             [a, b] => a.reversed() != b.reversed(),
-            _ => false,
-        };
-        !self.edges.is_empty() && self.edges.iter().all(opposed)
+            _ => true,
+        })
+    }
+
+    /// Returns whether the mesh has an inside.
+    pub fn is_closed_and_oriented(&self) -> bool {
+        self.is_closed() && self.is_oriented()
     }
 
     /// Returns the volume of each part of the mesh that is connected by edges, in cubic object units. It is negative

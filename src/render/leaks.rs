@@ -10,6 +10,7 @@ use super::Scene;
 use super::adding_pipeline::Adding;
 use crate::gpu::wgsl::wgsl;
 use crate::gpu::{Gpu, GpuError, Lazy, Readback, Recorder, ShaderModule, Timing, WgslFile, bind_group};
+use crate::mesh::Topology;
 
 pub(super) static DRAW_LEAKS: WgslFile = wgsl!("draw_leaks");
 
@@ -179,11 +180,22 @@ pub(crate) enum Leaks {
     Counted(Vec<Leak>),
     /// The mesh is open: one sees its inside past its border.
     Open,
+    /// Triangles that meet are wound opposite ways, so that the mesh has no inside.
+    BothWays,
     /// The near plane of the view cuts the mesh open.
     NearPlane,
 }
 
 impl Leaks {
+    /// Why the leaks of a mesh can be counted in no view; none if they can.
+    pub(crate) fn uncounted(topology: &Topology) -> Option<Self> {
+        match (topology.is_closed(), topology.is_oriented()) {
+            (true, true) => None,
+            (true, false) => Some(Self::BothWays),
+            (false, _) => Some(Self::Open),
+        }
+    }
+
     /// The leaks of the mirrored picture, which is `width` px wide.
     pub(crate) fn mirrored(self, width: f32) -> Self {
         match self {
