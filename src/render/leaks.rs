@@ -77,32 +77,19 @@ impl LeakCounter {
         Ok(LeakCount { texture, pipeline: pipeline.clone(), group, next_chunk: 0 })
     }
 
-    /// The leaks in a picture of `size` (width and height in px). The scene's counts must be known, its mesh must be closed, and
-    /// all of it must lie beyond the near plane.
+    /// The leaks in a picture of `size` (width and height in px), the largest first. The scene's counts must be known, its mesh must
+    /// be closed, and all of it must lie beyond the near plane.
     ///
     /// # Errors
     /// The picture is larger than the adapter draws, or the device was lost.
-    pub(crate) fn count(&self, gpu: &Gpu, scene: &mut Scene, size: [u32; 2], clip: Mat4) -> Result<u64, GpuError> {
-        Ok(leaking_pixels(&self.counts(gpu, scene, size, clip)?).count() as u64)
-    }
-
-    /// The same leaks with their places, the largest first.
-    ///
-    /// # Errors
-    /// The same.
     pub(crate) fn find(&self, gpu: &Gpu, scene: &mut Scene, size: [u32; 2], clip: Mat4) -> Result<Vec<Leak>, GpuError> {
-        Ok(leaks_in(&self.counts(gpu, scene, size, clip)?, size[0].max(1) as usize))
-    }
-
-    /// The counts of all pixels.
-    fn counts(&self, gpu: &Gpu, scene: &mut Scene, size: [u32; 2], clip: Mat4) -> Result<Vec<u8>, GpuError> {
         let mut count = self.start(gpu, size, clip)?;
         let mut counts = loop {
             if let Some(counts) = count.draw_next(gpu, scene)? {
                 break counts;
             }
         };
-        counts.wait(gpu)
+        Ok(leaks_in(&counts.wait(gpu)?, size[0].max(1) as usize))
     }
 }
 
