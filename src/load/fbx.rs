@@ -97,7 +97,6 @@ pub(super) fn read_here(
     let holds = left_out::holds(&scene, &placed);
     let (faces, details, binder) = surfaces.into_parts(&mut notes);
     budget.release(scene.metadata.result_memory_used as u64);
-    budget.give_back_to(0);
     drop(placed);
     drop(scene);
     progress.set(0.8);

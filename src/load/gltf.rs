@@ -66,7 +66,7 @@ use crate::files::Limits;
 use crate::mesh::detail_table::DetailTable;
 use crate::mesh::mesh_builder::MeshBuilder;
 use crate::mesh::rig::Joint;
-use crate::mesh::{MemoryAccount, Mesh};
+use crate::mesh::{Borrowed, MemoryAccount, Mesh};
 use crate::progress::Progress;
 
 use accessor::Accessors;
@@ -159,7 +159,6 @@ pub(super) fn read(
     notes.append(std::mem::take(&mut primitives.notes));
     notes.extend(primitives.warnings());
     budget.release(accessors.buffer_bytes());
-    budget.give_back_to(0);
     drop(accessors);
     drop(buffers);
     budget.release(lists.bytes());
@@ -208,6 +207,7 @@ impl<'a> Scene<'a> {
     fn add(&mut self, node: usize, progress: &Progress) -> Result<(), GltfError> {
         let Some(node) = self.document.nodes().nth(node) else { return Ok(()) };
         let Some(mesh) = node.mesh() else { return Ok(()) };
+        let _scope = Borrowed::from(self.accessors.budget);
         let skin = node.skin().map(|skin| skin::read(&skin, self.accessors)).transpose()?;
         let joints = skin.as_ref().map_or_else(Vec::new, |skin| skin.matrices(&self.placed.global));
         let Some(own) = self.instances.get(&node.index()) else {
@@ -220,12 +220,10 @@ impl<'a> Scene<'a> {
             return self.add_once(&node, &mesh, (skin.as_ref(), &joints), DMat4::IDENTITY, progress);
         }
         let (document, accessors) = (self.document, self.accessors);
-        let borrowed = accessors.budget.borrowed();
         let instances = Instances::read(document, accessors, own, node.index())?;
         for instance in instances.transforms() {
             self.add_once(&node, &mesh, (None, &[]), instance, progress)?;
         }
-        accessors.budget.give_back_to(borrowed);
         Ok(())
     }
 
@@ -241,10 +239,9 @@ impl<'a> Scene<'a> {
         let mut binder = self.binder.as_mut().map(|binder| binder.node(node.index(), skin));
         let global = self.placed.global.get(node.index()).copied().unwrap_or(DMat4::IDENTITY);
         let global = nodes::below(global, instance);
-        let borrowed = self.accessors.budget.borrowed();
         for primitive in mesh.primitives() {
             progress.check()?;
-            self.accessors.budget.give_back_to(borrowed);
+            let _scope = Borrowed::from(self.accessors.budget);
             if self.primitives.skip(&primitive) {
                 continue;
             }
@@ -261,7 +258,6 @@ impl<'a> Scene<'a> {
             };
             self.primitives.read(job, binder.as_mut())?;
         }
-        self.accessors.budget.give_back_to(borrowed);
         Ok(())
     }
 }

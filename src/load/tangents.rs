@@ -11,7 +11,7 @@ use super::notes::Notes;
 use crate::mesh::build_limits::BuildError;
 use crate::mesh::detail_table::DetailTable;
 use crate::mesh::weld::weld;
-use crate::mesh::{Corner, CornerDetail, CornerDetails, MapUv, Material, MemoryAccount, Mesh, Slot};
+use crate::mesh::{Borrowed, Corner, CornerDetail, CornerDetails, MapUv, Material, MemoryAccount, Mesh, Slot};
 use crate::progress::{Cancelled, Progress};
 
 /// How many triangles get their tangents together. The tangents of a corner depend on the triangles around it alone, so that a
@@ -72,7 +72,7 @@ fn complete_by(
     if mapped.is_empty() {
         return Ok(Vec::new());
     }
-    let borrowed = budget.borrowed();
+    let _scope = Borrowed::from(budget);
     let mut warnings = Vec::new();
     let mut warn = |name: &str, reason: String| {
         let name = crate::load::uri::shown(name);
@@ -91,17 +91,15 @@ fn complete_by(
         }
         for batch in faces.chunks(batch) {
             progress.check()?;
-            let before = budget.borrowed();
+            let _scope = Borrowed::from(budget);
             let near = around.near(detailed.mesh, faces, batch);
             if let Err(refused) = budget.borrow(PER_TRIANGLE * near.len() as u64) {
                 warn(name, refused.to_string());
                 break;
             }
             detailed.add(&near, *uv, &mut around);
-            budget.give_back_to(before);
         }
     }
-    budget.give_back_to(borrowed);
     Ok(warnings)
 }
 

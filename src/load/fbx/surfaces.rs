@@ -18,7 +18,7 @@ use crate::load::rig_builder::{NodeBinder, RigBuilder, UndeformedVertex, VertexF
 use crate::load::uri::Files;
 use crate::mesh::detail_table::DetailTable;
 use crate::mesh::rig::Delta;
-use crate::mesh::{CornerDetail, MemoryAccount};
+use crate::mesh::{Borrowed, CornerDetail, MemoryAccount};
 use crate::progress::Progress;
 
 /// How many polygons are read before the job asks whether it was cancelled.
@@ -105,7 +105,7 @@ impl<'s, 'a> Surfaces<'s, 'a> {
     pub(super) fn add(&mut self, index: usize, progress: &Progress) -> Result<(), ReadError> {
         let node = &self.scene.nodes[index];
         let Some(mesh) = node.mesh.as_ref() else { return Ok(()) };
-        self.budget.give_back_to(0);
+        let _scope = Borrowed::from(self.budget);
         let global = &self.placed.global;
         let skin = Skin::new(mesh, global);
         let vertices = Vertices::new((node, mesh), global[index], skin.as_ref(), &self.import, self.budget)?;

@@ -20,7 +20,7 @@ use crate::load::texture_room::{Scaling, TextureRoom, decoded_bytes};
 use crate::load::uri::Files;
 use crate::mesh::mesh_builder::MeshBuilder;
 use crate::mesh::mipmap::MipFilter;
-use crate::mesh::{Look, Map, MapUv, Material, MemoryAccount, MemoryRefused, Sampling, Slot, Texture};
+use crate::mesh::{Borrowed, Look, Map, MapUv, Material, MemoryAccount, MemoryRefused, Sampling, Slot, Texture};
 use crate::progress::Progress;
 
 /// How many materials a sentence names.
@@ -189,19 +189,16 @@ impl<'a> Materials<'a> {
 
     /// The size of an image in px; none if it can't be read.
     fn size(&self, image: usize) -> Option<[u32; 2]> {
-        let borrowed = self.budget.borrowed();
+        let _scope = Borrowed::from(self.budget);
         let bytes = texture_source::image(&self.lists.images, image, self.accessors, self.files);
-        let size = bytes.ok().and_then(|bytes| texture_size(&bytes));
-        self.budget.give_back_to(borrowed);
-        size
+        bytes.ok().and_then(|bytes| texture_size(&bytes))
     }
 
     fn read_image(&mut self, FoundImage { image, filter, size }: FoundImage, scaling: Scaling) {
-        let borrowed = self.budget.borrowed();
+        let _scope = Borrowed::from(self.budget);
         let bytes = texture_source::image(&self.lists.images, image, self.accessors, self.files);
         let texture =
             bytes.and_then(|bytes| decode_halved(&bytes, scaling.halvings, filter, self.budget)).map(Arc::new);
-        self.budget.give_back_to(borrowed);
         let scaled = (scaling.halvings > 0 && texture.is_ok()).then_some((size, scaling.reason));
         self.images.insert(image, ReadImage { texture, scaled });
     }
