@@ -107,9 +107,10 @@ impl Reader<'_> {
         }
         let some = (playing.len() < stack.layers.len()).then(|| {
             let (layer_ids, result_allocator) = (playing.into(), half(self.budget));
-            ufbx::create_anim(self.scene, AnimOpts { layer_ids, result_allocator, ..AnimOpts::default() })
+            let some = ufbx::create_anim(self.scene, AnimOpts { layer_ids, result_allocator, ..AnimOpts::default() });
+            some.map_err(|error| refused(&error, self.budget))
         });
-        let some = some.transpose().map_err(|error| refused(&error, self.budget))?;
+        let some = some.transpose()?;
         let anim = some.as_deref().unwrap_or(&stack.anim);
         let baked = match ufbx::bake_anim(self.scene, anim, options) {
             Ok(baked) => baked,
