@@ -107,7 +107,7 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         let Some(mesh) = node.mesh.as_ref() else { return Ok(()) };
         let _scope = Borrowed::from(self.budget);
         let global = &self.placed.global;
-        let skin = Skin::new(mesh, global);
+        let skin = Skin::new((node, mesh), global);
         let vertices = Vertices::new((node, mesh), global[index], skin.as_ref(), &self.import, self.budget)?;
         self.found.without_normals += usize::from(vertices.is_without_normals());
         let binder = self.binder.as_mut().map(|binder| {
@@ -222,7 +222,7 @@ impl MeshReader<'_, '_, '_> {
         if let Some(skin) = self.vertices.skin {
             self.found.many_joints += usize::from(skin.influences(vertex, &mut self.influences));
         }
-        let mut posed = self.vertices.posed((corner, vertex), &self.influences, &self.deltas)?;
+        let mut posed = self.vertices.posed((corner, vertex), &self.influences, &self.deltas);
         posed.corner.uv = self.own_uv(corner, material);
         let mut number = 0;
         if let Some(binder) = &mut self.binder {

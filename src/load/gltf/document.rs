@@ -67,7 +67,8 @@ pub(super) fn parse(
     let lists = MaterialLists::take(root, &mut notes);
     let lights = LightSources::take(root, &mut notes);
     let cameras = CameraSources::take(root, &mut notes);
-    let beside = Beside { animations: &animations, images: &lists.images, requires_draco };
+    let show_hidden = selected.import.show_hidden;
+    let beside = Beside { animations: &animations, images: &lists.images, requires_draco, show_hidden };
     let mut reach = Reach::of(root, &beside);
     let parts = node_parts::take(root, &reach, selected.hidden, budget)?;
     if parts.is_cut {
