@@ -11,7 +11,7 @@ use super::notes::Notes;
 use crate::mesh::build_limits::BuildError;
 use crate::mesh::detail_table::DetailTable;
 use crate::mesh::weld::weld;
-use crate::mesh::{Borrowed, Corner, CornerDetail, CornerDetails, MapUv, Material, MemoryAccount, Mesh, Slot};
+use crate::mesh::{Borrowed, Corner, CornerDetail, CornerDetails, MapUv, Material, MemoryAccount, Mesh};
 use crate::progress::{Cancelled, Progress};
 
 /// How many triangles get their tangents together. The tangents of a corner depend on the triangles around it alone, so that a
@@ -173,7 +173,7 @@ impl Around {
 
 impl DetailedMesh<'_> {
     fn mapped(&self, material: &Material) -> Option<Mapped> {
-        let normal_map = material.look.maps[Slot::Normal as usize].as_ref()?;
+        let normal_map = material.look.tangent_map()?;
         let has_none = |face: &u32| {
             let corners = self.mesh.triangles[*face as usize];
             corners.iter().any(|&corner| self.details[corner as usize].tangent == Vec3::ZERO)
@@ -278,7 +278,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::mesh::{Map, Sampling, Shape, Texture, Unlimited};
+    use crate::mesh::{Map, Sampling, Shape, Slot, Texture, Unlimited};
 
     fn tangents(corners: Vec<Corner>) -> Vec<(Vec3, f32)> {
         let mut surface = Surface::new(corners);
