@@ -436,8 +436,8 @@ fn look() -> Vec<Command> {
         Command::new(
             Action::Cancel,
             "Cancel",
-            "Stops a drawing that takes long. If there is none, closes messages, cancels loading and writing, and \
-             deselects.",
+            "Closes the windows over the picture. If there are none, stops what is under way: loading, writing a file, or \
+             a long drawing. If nothing is, deselects.",
         )
         .keys([plain(Key::Escape)]),
     ]

@@ -11,7 +11,7 @@ use pnaen::files::Limits;
 use pnaen::load::Source;
 use pnaen::mesh::Shape;
 
-use crate::window_tests::{PATIENCE, click, copy_vase, press, settle, uniform, vase};
+use crate::window_tests::{PATIENCE, STOP, click, copy_vase, press, settle, uniform, vase};
 
 #[derive(Debug)]
 struct Dropped(PathBuf);
@@ -80,7 +80,7 @@ fn before_the_first_picture_the_view_has_its_background_and_everything_its_place
 fn a_mesh_opened_while_another_loads_wins() {
     let mut harness = uniform(Some(vase()));
     open(&mut harness, slow());
-    harness.get_by_label("Cancel");
+    harness.get_by_label(STOP);
     open(&mut harness, Source::Shape(Shape::Torus));
     settle(&mut harness);
     assert_eq!(harness.state().source(), Some(&Source::Shape(Shape::Torus)));
@@ -125,7 +125,7 @@ fn repeated_reloading_ends_with_the_last_version_of_the_file() {
 fn closing_the_window_while_a_mesh_loads_ends_at_once() {
     let mut harness = uniform(None);
     open(&mut harness, slow());
-    harness.get_by_label("Cancel");
+    harness.get_by_label(STOP);
     let start = Instant::now();
     eframe::App::on_exit(harness.state_mut());
     drop(harness);
@@ -242,7 +242,7 @@ fn after_cancelling_the_first_load_another_file_can_be_opened() {
         App::new(context, Some(slow()), Limits::default()).expect("these tests need a graphics adapter")
     });
     harness.run_steps(2);
-    click(&mut harness, "Cancel");
+    click(&mut harness, STOP);
     assert_eq!(harness.state().source(), None);
     open(&mut harness, vase());
     settle(&mut harness);

@@ -91,6 +91,9 @@ fn uniform(source: Option<Source>) -> Harness<'static, App> {
     harness
 }
 
+/// The button that stops what is under way, which names its key.
+const STOP: &str = "Stop (Escape)";
+
 fn press(harness: &mut Harness<App>, key: egui::Key) {
     harness.key_press(key);
     settle(harness);

@@ -16,7 +16,7 @@ use pnaen::mesh::Shape;
 use pnaen::settings::Colors;
 use tempfile::TempDir;
 
-use super::{PATIENCE, choose, click, press, run_command, settle, uniform, window};
+use super::{PATIENCE, STOP, choose, click, press, run_command, settle, uniform, window};
 
 fn folder() -> TempDir {
     tempfile::tempdir().expect("a writable temporary folder")
@@ -191,25 +191,80 @@ fn saving_a_picture_shows_its_progress_and_can_be_cancelled() {
     let folder = folder();
     let mut harness = window(Some(Source::Shape(Shape::Torus)));
     let (context, path) = (harness.ctx.clone(), folder.path().join("large.png"));
-    ctrl_s(&mut harness);
-    type_px(&mut harness, "Width", 3000);
-    type_px(&mut harness, "Height", 3000);
-    press(&mut harness, Key::Escape);
-    harness.state_mut().save_picture(&context, path.clone()).expect("a PNG file");
-    harness.step();
-    assert!(harness.query_by_label_contains("Saving large.png").is_some());
+    save_large(&mut harness, &path);
     let command = pnaen::commands::all(&harness.state().availability())
         .into_iter()
         .find(|command| command.name == "Save picture…")
         .expect("a command");
     assert_eq!(command.why_not(&harness.state().availability()), Some("Another file is being written."));
-    click(&mut harness, "Cancel");
+    click(&mut harness, STOP);
     assert!(!harness.state().is_writing());
     // The second takes as long as the first would have taken.
     harness.state_mut().save_picture(&context, folder.path().join("second.png")).expect("a PNG file");
     wait(&mut harness, |app| !app.is_writing());
     assert!(folder.path().join("second.png").exists() && !path.exists());
     assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1, "nothing else is left");
+}
+
+/// Starts to save a picture that takes a while.
+fn save_large(harness: &mut Harness<App>, path: &Path) {
+    ctrl_s(harness);
+    type_px(harness, "Width", 3000);
+    type_px(harness, "Height", 3000);
+    press(harness, Key::Escape);
+    let context = harness.ctx.clone();
+    harness.state_mut().save_picture(&context, path.to_owned()).expect("a PNG file");
+    harness.step();
+    harness.get_by_label("Saving large.png");
+}
+
+#[test]
+fn escape_stops_what_is_saved_and_says_so_for_a_while() {
+    let folder = folder();
+    let path = folder.path().join("large.png");
+    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    harness.state_mut().select_triangle(Some(3));
+    save_large(&mut harness, &path);
+    harness.key_press(Key::Escape);
+    harness.run_steps(3);
+    assert!(!harness.state().is_writing());
+    harness.get_by_label("Saving large.png was stopped.");
+    assert!(harness.query_by_label(STOP).is_none());
+    assert_eq!(harness.state().selected_triangle(), Some(3), "the key does one thing at a time");
+    // By itself it goes, and the status line has its numbers again.
+    pass(&mut harness, 11.0);
+    assert!(harness.query_by_label_contains("was stopped").is_none());
+    harness.get_by_label_contains("256 to ");
+    assert!(!path.exists());
+}
+
+/// Lets some seconds pass by the window's clock. The window asks for the frame that comes then.
+fn pass(harness: &mut Harness<App>, seconds: f64) {
+    let until = harness.ctx.input(|input| input.time) + seconds;
+    while harness.ctx.input(|input| input.time) < until {
+        harness.step();
+    }
+}
+
+#[test]
+fn what_was_written_is_said_for_a_while_and_not_over_the_next_file() {
+    let folder = folder();
+    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    save(&mut harness, &folder.path().join("torus.png"));
+    assert!(harness.query_by_role_and_label(Role::Window, "Written").is_none(), "nothing lies over the picture");
+    harness.get_by_label_contains("torus.png is written.");
+    pass(&mut harness, 3.0);
+    let next = harness.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay;
+    assert!(!next.is_zero() && next.as_secs() < 10, "nothing is drawn until it is to go: {next:?}");
+    harness.get_by_label_contains("torus.png is written.");
+    pass(&mut harness, 8.0);
+    assert!(harness.query_by_label_contains("is written").is_none());
+    save(&mut harness, &folder.path().join("again.png"));
+    harness.get_by_label_contains("again.png is written.");
+    let context = harness.ctx.clone();
+    harness.state_mut().open(&context, Source::Shape(Shape::Icosphere));
+    harness.run_steps(2);
+    assert!(harness.query_by_label_contains("is written").is_none());
 }
 
 #[test]
@@ -263,7 +318,7 @@ fn a_turntable_that_is_cancelled_leaves_nothing() {
     let begun = || std::fs::read_dir(folder.path()).expect("a folder").count();
     wait(&mut harness, |_| begun() > 0);
     assert!(harness.query_by_label_contains("Saving turn").is_some());
-    click(&mut harness, "Cancel");
+    click(&mut harness, STOP);
     let start = Instant::now();
     while begun() > 0 {
         assert!(start.elapsed() < PATIENCE, "its folder stays");

@@ -12,7 +12,7 @@ use pnaen::settings::{Colors, Matcap};
 use pnaen::tessellate::Convention;
 
 use crate::window_tests::editing::{assert_draws, copied, press_with};
-use crate::window_tests::{PATIENCE, choose, click, open_list, press, run_command, settle, uniform};
+use crate::window_tests::{PATIENCE, STOP, choose, click, open_list, press, run_command, settle, uniform};
 
 #[test]
 fn only_one_colouring_is_shown_and_has_a_legend() {
@@ -217,7 +217,7 @@ fn a_picture_of_many_steps_can_be_cancelled_and_drawn_later() {
         assert!(start.elapsed() < PATIENCE, "nothing is being drawn");
         harness.step();
     }
-    click(&mut harness, "Cancel");
+    click(&mut harness, STOP);
     assert_eq!((harness.state().pictures(), harness.state().settings().tessellation.factor), (pictures, 64.0));
     assert!(!harness.state().is_busy());
     harness.get_by_label("cracks not measured");

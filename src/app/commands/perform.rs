@@ -177,24 +177,28 @@ impl App {
         self.replace_again::<SurfaceShader>();
     }
 
-    /// Closes the small windows that a command opened; or if there are none, stops a long drawing; or if there is none,
-    /// stops all jobs, closes all messages and clears the selection.
+    /// Closes the windows over the picture; or if there are none, stops what is under way; or if nothing is, ends the measuring of
+    /// a distance, or clears the selection.
     fn cancel(&mut self) {
-        let asked = self.dialogs.asks_to_forget.take().is_some();
-        let chose = std::mem::take(&mut self.dialogs.chooses_background)
-            | std::mem::take(&mut self.dialogs.picture.is_open)
-            | std::mem::take(&mut self.dialogs.turntable.is_open);
-        if self.commands.palette.take().is_some() || self.commands.copied.take().is_some() || asked || chose {
+        let (dialogs, commands) = (&mut self.dialogs, &mut self.commands);
+        let notice = dialogs.notice.take();
+        let was_open = notice.is_some_and(|notice| notice.for_window().is_some())
+            | dialogs.error.take().is_some()
+            | dialogs.typed_path.take().is_some()
+            | dialogs.asks_to_forget.take().is_some()
+            | std::mem::take(&mut dialogs.chooses_background)
+            | std::mem::take(&mut dialogs.picture.is_open)
+            | std::mem::take(&mut dialogs.turntable.is_open)
+            | std::mem::take(&mut dialogs.shows_warnings)
+            | std::mem::take(&mut commands.shows_keys)
+            | commands.palette.take().is_some()
+            | commands.copied.take().is_some();
+        if was_open {
             return;
         }
-        if self.jobs.load.is_none() && self.viewport.picture.is_long() {
-            return self.viewport.picture.cancel();
+        if let Some(under_way) = self.under_way() {
+            return self.stop(&under_way);
         }
-        (self.jobs.load, self.jobs.truth_load, self.jobs.writing) = (None, None, None);
-        self.keep_file_choices();
-        self.cancel_environment();
-        (self.dialogs.error, self.dialogs.notice, self.dialogs.typed_path) = (None, None, None);
-        (self.commands.shows_keys, self.dialogs.shows_warnings) = (false, false);
         if self.viewport.ruler.take().is_none() {
             self.deselect();
         }

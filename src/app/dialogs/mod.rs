@@ -2,13 +2,16 @@
 
 mod background;
 mod desktop_dialog;
+mod notice;
 pub(super) mod picture_window;
 mod turntable_window;
 pub(super) mod typed_path;
+mod under_way;
 mod warnings;
 pub(super) mod windows;
 mod writing;
 
+use notice::Notice;
 use picture_window::PictureWindow;
 use turntable_window::TurntableWindow;
 use typed_path::{PendingDialog, TypedPath};
@@ -32,8 +35,8 @@ pub(super) struct Dialogs {
     pub folder: Option<std::path::PathBuf>,
     /// The last error, until its window is closed.
     pub error: Option<String>,
-    /// A message about a file that was written, until its window is closed.
-    pub notice: Option<String>,
+    /// What was written, or was stopped.
+    pub notice: Option<Notice>,
     /// Whether the window for the background colour is open.
     pub chooses_background: bool,
     /// The window that chooses how a picture is saved.

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::desktop_dialog;
+use super::notice::Notice;
 use super::typed_path::{PendingDialog, Purpose, name_beside};
 use crate::app::App;
 use crate::app::jobs::background_job::BackgroundJob;
@@ -113,10 +114,11 @@ impl App {
         self.viewport.rect.center_top() + egui::vec2(0.0, 8.0)
     }
 
-    /// Shows the last error, or the last file that was written, until it is closed.
+    /// Shows the last error, or what is to be read about the last file that was written, until it is closed.
     fn message_window(&mut self, context: &egui::Context) {
-        let (title, text) = match (&self.dialogs.error, &self.dialogs.notice) {
-            (Some(error), _) => ("Problem", error),
+        let notice = self.dialogs.notice.as_ref().and_then(Notice::for_window);
+        let (title, text) = match (&self.dialogs.error, notice) {
+            (Some(error), _) => ("Problem", &**error),
             (None, Some(notice)) => ("Written", notice),
             (None, None) => return,
         };

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::notice::Notice;
 use super::turntable_window::TurntableWindow;
 use crate::adjacency_file::Format;
 use crate::app::App;
@@ -130,7 +131,7 @@ impl App {
         let Some(ended) = self.jobs.writing.as_ref().and_then(WritingJob::take) else { return };
         self.jobs.writing = None;
         match ended {
-            Ok(written) => self.dialogs.notice = Some(written),
+            Ok(written) => self.dialogs.notice = Some(Notice::new(written)),
             Err(why) => self.dialogs.error = Some(why),
         }
     }

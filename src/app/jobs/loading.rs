@@ -24,6 +24,8 @@ impl App {
         let preparation = same.map(|document| document.loaded.preparation.clone());
         let keep_view = preparation.is_some();
         let preparation = preparation.unwrap_or_else(|| self.plain(&source));
+        // It is about the file before.
+        self.dialogs.notice = None;
         self.jobs.load = Some(Load::start(&self.engine, context, source, preparation, self.settings, keep_view));
     }
 

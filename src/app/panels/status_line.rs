@@ -1,4 +1,4 @@
-//! The status line below: patches, triangles, cracks, memory and time.
+//! The status line below: patches, triangles, cracks, memory and time; or for a while what was written or stopped.
 
 use egui::RichText;
 
@@ -16,6 +16,10 @@ impl App {
     pub(in crate::app) fn status_line(&mut self, ui: &mut egui::Ui) {
         ui.horizontal(|ui| {
             ui.set_min_height(22.0);
+            if let Some(said) = self.said(ui.ctx()) {
+                ui.add(egui::Label::new(&said).truncate()).on_hover_text(&said);
+                return;
+            }
             let Some(document) = &self.document else {
                 let text = if self.jobs.load.is_some() { "" } else { "nothing is open" };
                 ui.weak(text);

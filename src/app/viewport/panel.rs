@@ -9,15 +9,13 @@ use super::axis_gizmo::axes_place;
 use super::legend::legend;
 use super::picture::Wanted;
 use crate::app::App;
-use crate::app::jobs::environment_job::file_name;
 use crate::app::jobs::measure_job::Trouble;
 use crate::app::text::counted;
 use crate::app::widgets::rgb;
-use crate::commands::{Action, with_key};
+use crate::commands::{Action, key_name};
 use crate::engine::SilhouetteView;
 use crate::gpu::GpuError;
 use crate::load::Source;
-use crate::progress::Stage;
 use crate::render::{Ground, Scene};
 use crate::settings::{Colors, Settings, SplitSide};
 use crate::view::ScreenView;
@@ -297,7 +295,7 @@ impl App {
     }
 
     /// The number of triangles of the wanted picture, as text.
-    fn triangles(&self) -> String {
+    pub(in crate::app) fn triangles(&self) -> String {
         let of = |scene: &Scene| scene.tessellator.totals().1;
         let triangles = self.document.as_ref().map_or(0, |document| {
             let halves =
@@ -362,14 +360,7 @@ impl App {
 
     /// Whether there is a box with the progress of something, at the lower border of the picture.
     fn shows_progress(&self) -> bool {
-        let jobs = &self.jobs;
-        let is_long = self.viewport.picture.drawing.is_some() && self.viewport.picture.is_long();
-        jobs.load.is_some()
-            || jobs.truth_load.is_some()
-            || jobs.environment.is_some()
-            || jobs.writing.is_some()
-            || self.viewport.picture.cancelled.is_some()
-            || is_long
+        self.under_way().is_some() || self.viewport.picture.cancelled.is_some()
     }
 
     /// Notes about what is under way: the progress of loading, writing and drawing.
@@ -380,38 +371,11 @@ impl App {
         if self.document.is_some() && !is_cancelled && (is_old || self.viewport.left.takes_long()) {
             note(ui, rect.center_top() + egui::vec2(0.0, 40.0), egui::Align2::CENTER_TOP, "Tessellating…");
         }
-        if let Some(load) = &self.jobs.load {
-            let title = match (load.progress.stage(), &load.preparation.heights) {
-                (Stage::Heights, Some(heights)) => format!("Reading heights: {}", heights.title()),
-                (Stage::Device, _) => format!("Preparing to draw {}", load.source.title()),
-                _ => format!("Loading {}", load.source.title()),
-            };
-            let (done, hover) = (Some((load.progress.fraction(), None)), "Stops loading. The mesh that is open stays.");
-            if progress(ui, rect, &title, done, ("Cancel", hover)) {
-                self.jobs.load = None;
-                self.keep_file_choices();
-            }
-            ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
-        } else if let Some(load) = &self.jobs.truth_load {
-            let title = format!("Loading the reference surface {}", load.source.title());
-            let (done, hover) =
-                (Some((load.progress.fraction(), None)), "Stops loading. The reference surface before it stays.");
-            if progress(ui, rect, &title, done, ("Cancel", hover)) {
-                self.jobs.truth_load = None;
-            }
-            ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
-        } else if let Some(load) = &self.jobs.environment {
-            let title = format!("Reading the light of {}", file_name(&load.path));
-            let done = Some((load.progress.fraction(), None));
-            if progress(ui, rect, &title, done, ("Cancel", "Stops reading. The light before it stays.")) {
-                self.cancel_environment();
-            }
-            ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
-        } else if let Some(writing) = &self.jobs.writing {
-            let done = Some((writing.progress.fraction(), None));
-            let hover = with_key("Stops it. Nothing is written.", &Action::Cancel);
-            if progress(ui, rect, &writing.title(), done, ("Cancel", &hover)) {
-                self.jobs.writing = None;
+        if let Some(under_way) = self.under_way() {
+            let stop = format!("Stop ({})", key_name(&Action::Cancel));
+            let done = Some((under_way.done, under_way.seconds_left));
+            if progress(ui, rect, &under_way.title, done, (&stop, under_way.stopping)) {
+                self.stop(&under_way);
             }
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
         } else if self.viewport.picture.cancelled.is_some() {
@@ -419,13 +383,6 @@ impl App {
             if progress(ui, rect, &format!("Not drawn: {}", self.triangles()), None, ("Draw", hover)) {
                 self.viewport.picture.cancelled = None;
                 ui.ctx().request_repaint();
-            }
-        } else if let Some(drawing) = self.viewport.picture.drawing.as_ref().filter(|_| self.viewport.picture.is_long())
-        {
-            let done = Some((drawing.done(), drawing.seconds_left()));
-            let hover = with_key("Stops drawing. The last picture and all settings stay.", &Action::Cancel);
-            if progress(ui, rect, &format!("Drawing {}", self.triangles()), done, ("Cancel", &hover)) {
-                self.viewport.picture.cancel();
             }
         }
     }
