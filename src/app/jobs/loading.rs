@@ -114,6 +114,7 @@ impl App {
                     (self.viewport.frozen, self.viewport.ruler) = (None, None);
                     self.forget_truth();
                 }
+                self.dialogs.typed = None;
                 self.panels.chart.stop();
                 let title = format!("{} - pnaen", document.loaded.source.title());
                 context.send_viewport_cmd(egui::ViewportCommand::Title(title));
