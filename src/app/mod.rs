@@ -55,6 +55,8 @@ pub struct App {
     /// The names of parts of the file that are to be left out.
     hidden: Arc<Vec<String>>,
     history: History<Undoable>,
+    /// The settings of a step of undo, until all of its files are read.
+    taken_back: Option<Settings>,
     view_history: ViewHistory,
     /// The mesh that is open; none before the first one is loaded.
     document: Option<Document>,
@@ -96,6 +98,7 @@ impl App {
             settings: if source.is_some() { Settings::opening() } else { Settings::greeting() },
             hidden: Arc::default(),
             history: History::default(),
+            taken_back: None,
             view_history: ViewHistory::default(),
             document: None,
             truth: None,

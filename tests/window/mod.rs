@@ -25,6 +25,7 @@ mod surface_shader;
 mod tasks;
 mod techniques;
 mod typing;
+mod undoing;
 mod variants;
 mod viewing;
 mod warm_up;

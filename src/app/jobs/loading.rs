@@ -89,7 +89,7 @@ impl App {
             (settings.import.up, settings.import.unit) = (up, unit);
         };
         place(&mut self.settings);
-        self.history.change_all(place);
+        self.history.change_all(|step| place(&mut step.settings));
     }
 
     /// Loads the same mesh again; settings and camera stay.
@@ -129,15 +129,15 @@ impl App {
                     (self.viewport.frozen, self.viewport.ruler) = (None, None);
                     self.follow_truth(context);
                 }
-                if !keep_view {
-                    self.take_placement();
-                    self.take_hidden_parts();
-                }
                 if before_is_some {
                     self.dialogs.error = None;
                 }
                 self.dialogs.error = remark.or(self.dialogs.error.take());
                 self.take_heights(before.and_then(|document| document.loaded.preparation.heights).as_ref());
+                if !keep_view {
+                    self.take_placement();
+                    self.take_preparation();
+                }
                 self.keep_playback(keep_view);
                 if !keep_view && before_is_some {
                     self.face_another();
