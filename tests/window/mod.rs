@@ -44,7 +44,7 @@ use pnaen::files::Limits;
 use pnaen::load::Source;
 use pnaen::mesh::Shape;
 use pnaen::settings::Colors;
-use pnaen::tessellate::{Clip, Edges, Lod, Partitioning, Surface};
+use pnaen::tessellate::{Clip, Edges, Lod, Partitioning, Surface, Tessellation};
 use tempfile::TempDir;
 
 use driver::{PATIENCE, settle};
@@ -205,12 +205,12 @@ fn every_switch_does_what_it_says() {
     choose(&mut harness, "LOD", "Edge length");
     choose(&mut harness, "Clipping", "Frustum");
     assert_eq!(harness.state().settings().tessellation.clip, Clip::Frustum);
+    let before = *harness.state().settings();
     choose(&mut harness, "Shared edges", "By each patch");
-    let settings = *harness.state().settings();
-    assert_eq!(
-        (settings.tessellation.edges, settings.tessellation.lod, settings.tessellation.clip),
-        (Edges::AsPublished, Lod::Paper, Clip::Paper)
-    );
+    let published = Tessellation { edges: Edges::AsPublished, ..before.tessellation };
+    assert_eq!(*harness.state().settings(), before.with(published), "nothing else changes");
+    press(&mut harness, egui::Key::E);
+    assert_eq!(*harness.state().settings(), before);
 }
 
 #[test]
