@@ -135,7 +135,7 @@ impl App {
     /// Sizes of the triangles shown, if they were measured for the present view.
     pub fn sizes_shown(&self) -> Option<&Sizes> {
         let seen_from = self.viewport.picture.seen_from()?;
-        self.jobs.measure.sizes().filter(|sizes| sizes.view == seen_from)
+        self.jobs.measure.last().map(|results| &results.sizes).filter(|sizes| sizes.view == seen_from)
     }
 
     /// The selected edge: an index into the topology's edges.
@@ -229,6 +229,7 @@ impl App {
             || self.jobs.explain.is_busy()
             || self.viewport.picture.is_busy()
             || self.viewport.selection.is_busy()
+            || self.viewport.showing.is_some()
     }
 
     /// Whether the mesh is still being checked. The checks' results don't change the picture by themselves.

@@ -71,9 +71,15 @@ impl Cracks {
         self
     }
 
-    /// Edges whose positions or factors differ. Light may pass through them.
-    pub fn cracked(&self) -> impl Iterator<Item = &CrackedEdge> {
-        self.edges.iter().filter(|edge| edge.different_bits > 0 || edge.different_factors)
+    /// Edges whose positions differ, the widest gap first. Light may pass through them.
+    pub fn cracked(&self) -> &[CrackedEdge] {
+        // Edges whose positions agree are at the end.
+        &self.edges[..self.edges.partition_point(|edge| edge.different_bits > 0)]
+    }
+
+    /// Shading seams: edges whose normals differ although the mesh's normals agree.
+    pub(crate) fn shading_seams(&self) -> impl Iterator<Item = &CrackedEdge> {
+        self.edges.iter().filter(|edge| edge.different_normals > 0)
     }
 
     /// The widest gap, in object units.

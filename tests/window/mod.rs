@@ -8,6 +8,7 @@ mod driver;
 mod editing;
 mod environment;
 mod file_cameras;
+mod findings;
 mod foreign_factors;
 mod import;
 mod lasting;

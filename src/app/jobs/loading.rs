@@ -146,6 +146,7 @@ impl App {
                     self.frame();
                 }
                 self.look_as_before(keep_view);
+                self.viewport.opened = Some(self.viewport.camera);
                 self.jobs.measure = MeasureJob::default();
                 self.jobs.leaks = LeakJob::default();
                 self.jobs.silhouette = SilhouetteJob::default();
@@ -153,6 +154,7 @@ impl App {
                 self.viewport.preview.forget();
                 self.keep_factors(context, keep_view);
                 self.deselect();
+                self.viewport.showing = None;
             }
             Err(Some(NotLoaded { mut why, is_gone })) => {
                 if is_gone && self.persistence.gone(&source) {

@@ -10,16 +10,16 @@ use super::legend::legend;
 use super::picture::Wanted;
 use crate::app::App;
 use crate::app::jobs::environment_job::file_name;
-use crate::app::jobs::measure_job::Trouble;
+use crate::app::jobs::measure_job::{Seen, Trouble};
 use crate::app::text::counted;
 use crate::app::widgets::rgb;
-use crate::commands::{Action, with_key};
+use crate::commands::{Action, CameraAction, with_key};
 use crate::engine::SilhouetteView;
 use crate::gpu::GpuError;
 use crate::load::Source;
 use crate::progress::Stage;
 use crate::render::{Ground, Scene};
-use crate::settings::{Colors, Settings, SplitSide};
+use crate::settings::{Settings, SplitSide};
 use crate::view::ScreenView;
 
 /// Degrees that the camera turns for a point of dragging.
@@ -131,7 +131,9 @@ impl App {
         self.viewport.picture.outdated = !shown && self.viewport.picture.cancelled.is_none();
         if shown {
             self.measure_shown(context, &wanted, size)?;
+            self.frame_unseen();
         }
+        self.go_on_showing(shown)?;
         self.deviate(&wanted.inputs)?;
         if let Err(problem) = self.engine.gpu.check() {
             self.give_up_measuring();
@@ -184,10 +186,9 @@ impl App {
         let view = ScreenView { clip_from_object: wanted.clip_from_object, viewport: wanted.viewport };
         let seen = wanted.camera.lod_view(wanted.viewport, &document.scene.bounds);
         let silhouette = SilhouetteView { size, seen, lod: wanted.inputs.view };
-        // With LOD that is frozen, the same triangles are seen from elsewhere.
-        let follows = self.settings.overlays.colors == Colors::TriangleSize || self.viewport.frozen.is_some();
-        self.jobs.measure.go_on(&self.engine.gpu, &mut document.scene, document.generation, view, follows)?;
-        self.measure_left(view)?;
+        let measured = Seen { camera: wanted.camera, view, inputs: wanted.inputs };
+        self.jobs.measure.go_on(&self.engine.gpu, &mut document.scene, document.generation, &measured)?;
+        self.measure_left(&measured)?;
         self.count_leaks(context, view)?;
         self.compare_outlines(context, &wanted.settings.tessellation, &silhouette, view)?;
         Ok(())
@@ -370,6 +371,7 @@ impl App {
             || jobs.writing.is_some()
             || self.viewport.picture.cancelled.is_some()
             || is_long
+            || self.shows_nothing()
     }
 
     /// Notes about what is under way: the progress of loading, writing and drawing.
@@ -426,6 +428,12 @@ impl App {
             let hover = with_key("Stops drawing. The last picture and all settings stay.", &Action::Cancel);
             if progress(ui, rect, &format!("Drawing {}", self.triangles()), done, ("Cancel", &hover)) {
                 self.viewport.picture.cancel();
+            }
+        } else if self.shows_nothing() {
+            let hover =
+                with_key("Moves the camera so that it sees all of the mesh.", &Action::Camera(CameraAction::Frame));
+            if progress(ui, rect, "Nothing of the mesh is in view.", None, ("Frame the mesh", &hover)) {
+                self.frame_anew();
             }
         }
     }
