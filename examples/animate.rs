@@ -43,7 +43,7 @@ pub fn frames() -> Result<Vec<(RgbaImage, u32)>, Box<dyn Error>> {
 
         let mut encoder = canvas.device.create_command_encoder(&Default::default());
         mesh.record(&mut encoder)?;
-        canvas.draw(&mut encoder, &mesh);
+        canvas.draw(&mut encoder, &mesh)?;
         let (picture, status) = canvas.finish(encoder, &mesh)?;
         frames.push((picture, status.triangles));
     }

@@ -41,7 +41,7 @@ pub fn picture(tolerance: f32, room: Room) -> Result<(RgbaImage, OutputStatus, b
     let mut encoder = canvas.device.create_command_encoder(&Default::default());
     mesh.set(&Tessellation { lod: Lod::Error, tolerance, ..Default::default() }, view)?;
     mesh.record(&mut encoder)?;
-    canvas.draw(&mut encoder, &mesh);
+    canvas.draw(&mut encoder, &mesh)?;
     let (picture, status) = canvas.finish(encoder, &mesh)?;
     Ok((picture, status, mesh.has_overflowed(&status)))
 }

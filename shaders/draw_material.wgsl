@@ -1,7 +1,8 @@
 // Materials as glTF 2.0 describes them (specification, section 3.9), in the light of environment.wgsl.
 
 // What the mesh's materials need. Each part that isn't needed is left out when the pipeline is made.
-override HAS_MAPS: bool = true;
+// Bits of the images beside that of the base colour, by SLOT_*.
+override MAPS: u32 = 0xffffffffu;
 override HAS_DETAILS: bool = true;
 override HAS_COAT: bool = true;
 override HAS_MASK: bool = true;
@@ -32,6 +33,16 @@ override LIGHT_COUNT: u32 = MOST_LIGHTS;
 @group(1) @binding(22) var sheen_color_sampler: sampler;
 @group(1) @binding(23) var sheen_roughness_texture: texture_2d<f32>;
 @group(1) @binding(24) var sheen_roughness_sampler: sampler;
+@group(1) @binding(25) var coat_texture: texture_2d<f32>;
+@group(1) @binding(26) var coat_sampler: sampler;
+@group(1) @binding(27) var coat_roughness_texture: texture_2d<f32>;
+@group(1) @binding(28) var coat_roughness_sampler: sampler;
+@group(1) @binding(29) var coat_normal_texture: texture_2d<f32>;
+@group(1) @binding(30) var coat_normal_sampler: sampler;
+@group(1) @binding(31) var specular_texture: texture_2d<f32>;
+@group(1) @binding(32) var specular_sampler: sampler;
+@group(1) @binding(33) var specular_color_texture: texture_2d<f32>;
+@group(1) @binding(34) var specular_color_sampler: sampler;
 @group(1) @binding(20) var<uniform> lights: array<PunctualLight, MOST_LIGHTS>;
 
 // The order of Material.maps.
@@ -42,6 +53,11 @@ const SLOT_EMISSIVE: u32 = 3u;
 const SLOT_TRANSMISSION: u32 = 4u;
 const SLOT_SHEEN_COLOR: u32 = 5u;
 const SLOT_SHEEN_ROUGHNESS: u32 = 6u;
+const SLOT_COAT: u32 = 7u;
+const SLOT_COAT_ROUGHNESS: u32 = 8u;
+const SLOT_COAT_NORMAL: u32 = 9u;
+const SLOT_SPECULAR: u32 = 10u;
+const SLOT_SPECULAR_COLOR: u32 = 11u;
 
 // Shorter tangents, squared, say nothing about a direction.
 const LEAST_TANGENT: f32 = 1e-12;
@@ -143,6 +159,10 @@ fn place_detail(place: SurfacePlace) -> PlaceDetail {
     return sum;
 }
 
+fn has_map(slot: u32) -> bool {
+    return (MAPS & (1u << slot)) != 0u;
+}
+
 // The place that a map is read at: u and v of one of the texture coordinates, mapped as KHR_texture_transform says.
 fn map_place(place: SurfacePlace, detail: PlaceDetail, slot: u32) -> ImagePlace {
     if !HAS_DETAILS {
@@ -183,8 +203,8 @@ fn mapped_normal(normal: vec3<f32>, tangent: vec3<f32>, bitangent_sign: f32, fro
 }
 
 // What a normal map says, as a direction in tangent space.
-fn map_direction(texel: vec3<f32>) -> vec3<f32> {
-    return (2.0 * texel - 1.0) * vec3<f32>(material.normal_scale, material.normal_scale, 1.0);
+fn map_direction(texel: vec3<f32>, scale: f32) -> vec3<f32> {
+    return (2.0 * texel - 1.0) * vec3<f32>(scale, scale, 1.0);
 }
 
 // What the material is at a place with that base colour and shown normal.
@@ -197,28 +217,52 @@ fn look_at(place: SurfacePlace, detail: PlaceDetail, base: vec3<f32>, normal: ve
     look.specular = material.specular;
     look.ior = material.ior;
     look.occlusion = 1.0;
-    if HAS_MAPS {
+    if has_map(SLOT_METALLIC_ROUGHNESS) {
         let at = map_place(place, detail, SLOT_METALLIC_ROUGHNESS);
         let numbers = map_texel(metallic_roughness_texture, metallic_roughness_sampler, at);
         look.roughness *= numbers.g;
         look.metallic *= numbers.b;
+    }
+    if has_map(SLOT_SPECULAR) {
+        look.specular *= map_texel(specular_texture, specular_sampler, map_place(place, detail, SLOT_SPECULAR)).a;
+    }
+    if has_map(SLOT_SPECULAR_COLOR) {
+        let at = map_place(place, detail, SLOT_SPECULAR_COLOR);
+        look.specular_color *= map_texel(specular_color_texture, specular_color_sampler, at).rgb;
+    }
+    if has_map(SLOT_OCCLUSION) {
         let occlusion = map_texel(occlusion_texture, occlusion_sampler, map_place(place, detail, SLOT_OCCLUSION)).r;
         look.occlusion = 1.0 + material.occlusion_strength * (occlusion - 1.0);
     }
-    // A map of normals doesn't change the coat's (KHR_materials_clearcoat).
-    look.coat_normal = select(-place.normal, place.normal, place.front);
+    // The surface's map of normals doesn't change the coat's, which has one of its own (KHR_materials_clearcoat).
+    var coat_normal = place.normal;
     if HAS_COAT {
         look.coat = material.coat;
         look.coat_roughness = material.coat_roughness;
+        if has_map(SLOT_COAT) {
+            look.coat *= map_texel(coat_texture, coat_sampler, map_place(place, detail, SLOT_COAT)).r;
+        }
+        if has_map(SLOT_COAT_ROUGHNESS) {
+            let at = map_place(place, detail, SLOT_COAT_ROUGHNESS);
+            look.coat_roughness *= map_texel(coat_roughness_texture, coat_roughness_sampler, at).g;
+        }
+        if has_map(SLOT_COAT_NORMAL) && HAS_DETAILS && !IS_DRAFT {
+            let at = map_place(place, detail, SLOT_COAT_NORMAL);
+            let direction = map_direction(texel(coat_normal_texture, coat_normal_sampler, at).rgb, material.coat_normal_scale);
+            coat_normal = mapped_normal(coat_normal, detail.tangent, detail.bitangent_sign, direction);
+        }
     }
+    look.coat_normal = facing_normal(place, coat_normal);
     if HAS_SHEEN {
         look.sheen_color = material.sheen_color;
         look.sheen_roughness = material.sheen_roughness;
-        if HAS_MAPS {
+        if has_map(SLOT_SHEEN_COLOR) {
             let at = map_place(place, detail, SLOT_SHEEN_COLOR);
             look.sheen_color *= map_texel(sheen_color_texture, sheen_color_sampler, at).rgb;
-            let roughness_at = map_place(place, detail, SLOT_SHEEN_ROUGHNESS);
-            look.sheen_roughness *= map_texel(sheen_roughness_texture, sheen_roughness_sampler, roughness_at).a;
+        }
+        if has_map(SLOT_SHEEN_ROUGHNESS) {
+            let at = map_place(place, detail, SLOT_SHEEN_ROUGHNESS);
+            look.sheen_roughness *= map_texel(sheen_roughness_texture, sheen_roughness_sampler, at).a;
         }
         look.sheen_albedo = environment_sheen(clamp(dot(normal, place.to_eye), 0.0, 1.0), look.sheen_roughness);
     }
@@ -244,7 +288,7 @@ fn transmission_at(place: SurfacePlace, detail: PlaceDetail) -> f32 {
         return 0.0;
     }
     var transmission = material.transmission;
-    if HAS_MAPS {
+    if has_map(SLOT_TRANSMISSION) {
         transmission *= map_texel(transmission_texture, transmission_sampler, map_place(place, detail, SLOT_TRANSMISSION)).r;
     }
     return transmission;
@@ -262,15 +306,23 @@ fn shows_behind(place: SurfacePlace) -> bool {
     return is_there && (is_sheer || transmission_at(place, detail) >= LEAST_SEEN);
 }
 
-// The unit normal on the side that is seen.
+// A unit normal of the front as one on the side that is seen. One that faces away from the eye is mirrored: as that of a surface which is
+// seen from the very side, it would reflect all of the light.
+fn facing_normal(place: SurfacePlace, front_normal: vec3<f32>) -> vec3<f32> {
+    // From behind, all of the relief is seen the other way round (section 3.9.5).
+    let normal = select(-front_normal, front_normal, place.front);
+    return normal - 2.0 * min(dot(normal, place.to_eye), 0.0) * place.to_eye;
+}
+
+// The unit shading normal on the side that is seen, which a map may tilt.
 fn shown_normal(place: SurfacePlace, detail: PlaceDetail) -> vec3<f32> {
     var normal = place.normal;
-    if HAS_MAPS && HAS_DETAILS && !IS_DRAFT {
+    if has_map(SLOT_NORMAL) && HAS_DETAILS && !IS_DRAFT {
         let texel_of_normal = texel(normal_texture, normal_sampler, map_place(place, detail, SLOT_NORMAL)).rgb;
-        normal = mapped_normal(normal, detail.tangent, detail.bitangent_sign, map_direction(texel_of_normal));
+        let direction = map_direction(texel_of_normal, material.normal_scale);
+        normal = mapped_normal(normal, detail.tangent, detail.bitangent_sign, direction);
     }
-    // From behind, all of the relief is seen the other way round (section 3.9.5).
-    return select(-normal, normal, place.front);
+    return facing_normal(place, normal);
 }
 
 // The colour that a picture shows of the surface, in linear light.
@@ -282,7 +334,7 @@ fn surface_radiance(
     normal: vec3<f32>,
 ) -> vec3<f32> {
     var emitted = material.emissive;
-    if HAS_MAPS {
+    if has_map(SLOT_EMISSIVE) {
         emitted *= map_texel(emissive_texture, emissive_sampler, map_place(place, detail, SLOT_EMISSIVE)).rgb;
     }
     var radiance = ambient_reflection(look, normal, place.to_eye) + emitted * coat_transmission(look, place.to_eye);

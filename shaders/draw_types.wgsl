@@ -35,7 +35,7 @@ struct Frame {
 }
 
 // Images of a material beside that of the base colour.
-const MAP_COUNT: u32 = 7u;
+const MAP_COUNT: u32 = 12u;
 
 struct Material {
     // Linear RGBA.
@@ -63,6 +63,8 @@ struct Material {
     blends: f32,
     // How much of a dielectric's light goes through it.
     transmission: f32,
+    // 0 without a normal map of the coat.
+    coat_normal_scale: f32,
     // Linear RGB of the sheen; 0 without one.
     sheen_color: vec3<f32>,
     sheen_roughness: f32,

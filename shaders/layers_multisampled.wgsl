@@ -2,7 +2,7 @@
 // functions for the others.
 
 @group(3) @binding(2) var passed_depths: texture_depth_multisampled_2d;
-@group(3) @binding(3) var hiding_depths: texture_depth_multisampled_2d;
+@group(1) @binding(35) var hiding_depths: texture_depth_multisampled_2d;
 
 // The depth of the layer that was found last.
 fn passed_depth(px: vec2<f32>, sample: u32) -> f32 {

@@ -25,7 +25,7 @@
 //! render_pass.set_vertex_buffer(0, places);
 //! render_pass.set_vertex_buffer(1, details);
 //! render_pass.set_index_buffer(mesh.index_buffer(), wgpu::IndexFormat::Uint32);
-//! let (arguments, offset) = mesh.draw_arguments(0);
+//! let (arguments, offset) = mesh.draw_arguments(0)?;
 //! render_pass.draw_indexed_indirect(arguments, offset);
 //! # Ok(())
 //! # }
@@ -259,12 +259,15 @@ impl TessellatedMesh {
     /// The buffer, and the offset in it in bytes, of a material's arguments for `draw_indexed_indirect`. Materials are numbered
     /// as in [`Mesh::materials`].
     ///
-    /// # Panics
-    /// If the mesh has no such material.
-    pub fn draw_arguments(&self, material: u32) -> (&wgpu::Buffer, u64) {
-        assert!((material as usize) < self.mesh().materials.len(), "the mesh has no material {material}");
+    /// # Errors
+    /// [`GpuError::NoSuchMaterial`].
+    pub fn draw_arguments(&self, material: u32) -> Result<(&wgpu::Buffer, u64), GpuError> {
+        let has = self.mesh().materials.len();
+        if material as usize >= has {
+            return Err(GpuError::NoSuchMaterial { material, has });
+        }
         let (arguments, _) = self.tessellator.first_chunk();
-        (arguments, u64::from(material) * size_of::<DrawArgs>() as u64)
+        Ok((arguments, u64::from(material) * size_of::<DrawArgs>() as u64))
     }
 
     /// The buffer that holds an [`OutputStatus`], and the range of its bytes there. The host may copy

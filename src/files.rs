@@ -1,10 +1,13 @@
 //! Reads and writes files: limits on their size, reading a file whole, replacing a file so that a failure loses
 //! nothing, and messages about file system errors that say what to do.
 
+use std::ffi::OsString;
 use std::fs::{File, Metadata};
 use std::io::{self, ErrorKind, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
+
+use tempfile::{Builder, NamedTempFile, TempDir};
 
 use crate::names::shown_path;
 use crate::progress::{Cancelled, Progress};
@@ -53,7 +56,7 @@ pub enum FileError {
 pub(crate) fn file_reason(error: &io::Error) -> String {
     match error.kind() {
         // An error that this program made has a reason already.
-        _ if error.raw_os_error().is_none() => error.to_string(),
+        _ if error.get_ref().is_some() => error.to_string(),
         ErrorKind::NotFound => "there is no such file or folder; check its path".to_owned(),
         ErrorKind::PermissionDenied => {
             "the system doesn't allow it; change its permissions, or choose another file".to_owned()
@@ -181,16 +184,15 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if path.exists() && !path.is_file() {
         return std::fs::OpenOptions::new().write(true).open(path)?.write_all(bytes);
     }
-    let mut part = PartFile::create(path)?;
-    part.file.write_all(bytes)?;
+    let part = PartFile::create(path)?;
+    part.file().write_all(bytes)?;
     part.finish()
 }
 
 /// A file that is written under another name in its folder, and takes its place once it is whole. What was there stays until
 /// then, and if this is dropped before. A symbolic link stays a link, and permissions are kept.
 pub(crate) struct PartFile {
-    pub file: File,
-    beside: PathBuf,
+    file: NamedTempFile,
     place: PathBuf,
     permissions: Option<std::fs::Permissions>,
 }
@@ -204,35 +206,36 @@ impl PartFile {
         if permissions.as_ref().is_some_and(std::fs::Permissions::readonly) {
             return Err(io::Error::new(io::ErrorKind::PermissionDenied, "it is read-only"));
         }
-        let beside = beside(&place);
-        Ok(Self { file: File::create(&beside)?, beside, place, permissions })
+        let (folder, prefix) = beside(&place);
+        // A temporary file of the crate's own could be read by nobody else, and this one stays.
+        let file = Builder::new().prefix(&prefix).suffix(PART).make_in(folder, |path| File::create_new(path))?;
+        Ok(Self { file, place, permissions })
+    }
+
+    /// What its bytes are written to.
+    pub(crate) fn file(&self) -> &File {
+        self.file.as_file()
     }
 
     /// Puts the file in its place.
     ///
     /// # Errors
     /// The errors of the file system.
-    pub(crate) fn finish(mut self) -> io::Result<()> {
+    pub(crate) fn finish(self) -> io::Result<()> {
         // A network drive or a full disk may report its failure only now.
-        self.file.sync_all()?;
-        if let Some(permissions) = self.permissions.take() {
-            std::fs::set_permissions(&self.beside, permissions)?;
+        self.file().sync_all()?;
+        if let Some(permissions) = self.permissions {
+            std::fs::set_permissions(&self.file, permissions)?;
         }
-        std::fs::rename(&self.beside, &self.place)
-    }
-}
-
-impl Drop for PartFile {
-    fn drop(&mut self) {
-        // Once it is in its place, there is nothing here.
-        let _ = std::fs::remove_file(&self.beside);
+        self.file.persist(&self.place)?;
+        Ok(())
     }
 }
 
 /// A folder whose files are written into another folder beside it, and come into it together once they are whole. Dropped
 /// before, it changes nothing.
 pub(crate) struct PartFolder {
-    beside: PathBuf,
+    beside: TempDir,
     place: PathBuf,
     names: Vec<String>,
 }
@@ -241,19 +244,20 @@ impl PartFolder {
     /// # Errors
     /// The errors of the file system.
     pub(crate) fn create(path: &Path) -> io::Result<Self> {
-        // Without a slash at its end, which a name can't be appended to.
-        let place = std::fs::canonicalize(path).unwrap_or_else(|_| path.components().collect());
+        let place = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         if place.exists() && !place.is_dir() {
             return Err(io::Error::new(ErrorKind::NotADirectory, "it is no folder; choose another name"));
         }
-        let beside = beside(&place);
-        std::fs::create_dir(&beside)?;
+        let (folder, prefix) = beside(&place);
+        let made = Builder::new().prefix(&prefix).suffix(PART).tempdir_in(folder);
+        // The crate's own error has the path, which every message begins with.
+        let beside = made.map_err(|error| error.kind())?;
         Ok(Self { beside, place, names: Vec::new() })
     }
 
     /// The path under which the file of this name is written.
     pub(crate) fn path(&mut self, name: String) -> PathBuf {
-        let path = self.beside.join(&name);
+        let path = self.beside.path().join(&name);
         self.names.push(name);
         path
     }
@@ -264,21 +268,18 @@ impl PartFolder {
     /// The errors of the file system.
     pub(crate) fn finish(self) -> io::Result<()> {
         std::fs::create_dir_all(&self.place)?;
-        self.names.iter().try_for_each(|name| std::fs::rename(self.beside.join(name), self.place.join(name)))
+        self.names.iter().try_for_each(|name| std::fs::rename(self.beside.path().join(name), self.place.join(name)))
     }
 }
 
-impl Drop for PartFolder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.beside);
-    }
-}
+/// How the name of something ends that isn't whole yet.
+const PART: &str = ".part";
 
-/// The path under which something is written that isn't whole yet.
-fn beside(place: &Path) -> PathBuf {
-    let mut beside = place.as_os_str().to_owned();
-    beside.push(format!(".{}.part", std::process::id()));
-    beside.into()
+/// The folder in which something is written that isn't whole yet, and how its name begins there.
+fn beside(place: &Path) -> (&Path, OsString) {
+    let mut prefix = place.file_name().unwrap_or_default().to_owned();
+    prefix.push(".");
+    (place.parent().unwrap_or(Path::new("")), prefix)
 }
 
 /// Follows symbolic links to the path of a file that doesn't exist yet.
@@ -350,6 +351,49 @@ mod tests {
             (vec!["out".to_owned()], ["a", "b", "c"].map(str::to_owned).to_vec())
         );
         assert_eq!(["a", "b"].map(|name| std::fs::read_to_string(place.join(name)).unwrap()), ["first", "second"]);
+    }
+
+    #[test]
+    fn files_that_are_written_to_one_path_at_once_are_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.bin");
+        let [first, second] = [PartFile::create(&path).unwrap(), PartFile::create(&path).unwrap()];
+        first.file().write_all(b"the first one").unwrap();
+        second.file().write_all(b"another").unwrap();
+        first.finish().unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), b"the first one");
+        second.finish().unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), b"another");
+        let texts = [b'a', b'b'].map(|letter| vec![letter; 10_000 * usize::from(letter - b'`')]);
+        std::thread::scope(|scope| {
+            for text in &texts {
+                scope.spawn(|| {
+                    for _ in 0..50 {
+                        write_whole(&path, text).unwrap();
+                        assert!(texts.contains(&std::fs::read(&path).unwrap()), "one of both, and whole");
+                    }
+                });
+            }
+        });
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "nothing else stays");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_new_file_has_usual_permissions_and_a_link_in_its_way_is_not_followed() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let [path, usual, other] = ["a.bin", "usual", "other"].map(|name| folder.path().join(name));
+        std::fs::write(&other, "someone's").unwrap();
+        for name in [format!("a.bin.{}.part", std::process::id()), "a.bin.part".to_owned()] {
+            std::os::unix::fs::symlink(&other, folder.path().join(name)).unwrap();
+        }
+        write_whole(&path, b"bytes").unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), b"bytes");
+        assert_eq!(std::fs::read(&other).unwrap(), b"someone's");
+        File::create(&usual).unwrap();
+        let [mode, usual] = [path, usual].map(|path| std::fs::metadata(path).unwrap().permissions().mode());
+        assert_eq!(mode, usual);
     }
 
     #[test]

@@ -97,7 +97,7 @@ impl Canvas {
     }
 
     /// Draws the mesh in a render pass of the host's own.
-    pub fn draw(&self, encoder: &mut wgpu::CommandEncoder, mesh: &TessellatedMesh) {
+    pub fn draw(&self, encoder: &mut wgpu::CommandEncoder, mesh: &TessellatedMesh) -> Result<(), Box<dyn Error>> {
         let color = self.color.create_view(&Default::default());
         let background = wgpu::Color { r: 0.02, g: 0.02, b: 0.03, a: 1.0 };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -120,8 +120,9 @@ impl Canvas {
         pass.set_vertex_buffer(0, places);
         pass.set_vertex_buffer(1, details);
         pass.set_index_buffer(mesh.index_buffer(), wgpu::IndexFormat::Uint32);
-        let (arguments, offset) = mesh.draw_arguments(0);
+        let (arguments, offset) = mesh.draw_arguments(0)?;
         pass.draw_indexed_indirect(arguments, offset);
+        Ok(())
     }
 
     /// Submits the encoder, and waits for the picture and for what the passes say about their output.

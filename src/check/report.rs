@@ -23,6 +23,9 @@ pub(crate) struct Asset {
     /// Whether what was found is that of an earlier run, since nothing has changed.
     #[serde(skip_deserializing)]
     pub unchanged: bool,
+    /// How long this run took to check it, in s: 0 if it is unchanged.
+    #[serde(skip)]
+    pub seconds: f64,
     /// Why it couldn't be checked, in a sentence.
     pub error: Option<String>,
     /// Warnings of loading it.
@@ -56,16 +59,18 @@ pub(crate) struct GateResult {
     pub name: String,
     /// The largest number that passes.
     pub limit: u64,
-    /// None if it can't be counted.
+    /// None if nothing could be counted, and then the gate failed.
     pub found: Option<u64>,
-    /// None if the gate isn't judged.
-    pub passed: Option<bool>,
+    pub passed: bool,
     /// What was found, and where if it failed, in a sentence without its end.
     pub text: String,
     #[serde(rename = "where")]
     pub place: Option<GatePlace>,
     /// A picture of the place, a PNG file in base64.
     pub evidence: Option<String>,
+    /// How long this run took to judge it, in s: 0 if the asset is unchanged.
+    #[serde(skip)]
+    pub seconds: f64,
 }
 
 /// The worst place of a gate that failed.
@@ -100,8 +105,8 @@ impl Status {
 }
 
 impl GateResult {
-    /// What a judgement says, with a picture of its place.
-    pub(crate) fn new(judgement: &Judgement, evidence: Option<String>) -> Self {
+    /// What a judgement says, with a picture of its place, and how long it took in s.
+    pub(crate) fn new(judgement: &Judgement, evidence: Option<String>, seconds: f64) -> Self {
         let place = |place: &Place| GatePlace {
             triangles: place.triangles.clone(),
             at: place.spot.at().map(|at| at.to_array()),
@@ -112,24 +117,20 @@ impl GateResult {
             limit: judgement.limit,
             found: judgement.found,
             passed: judgement.passed,
-            text: if judgement.failed() { judgement.sentence() } else { judgement.text.clone() },
+            text: if judgement.passed { judgement.text.clone() } else { judgement.sentence() },
             place: judgement.place.as_ref().map(place),
             evidence,
+            seconds,
         }
-    }
-
-    pub(crate) fn failed(&self) -> bool {
-        self.passed == Some(false)
     }
 }
 
 impl Asset {
     pub(crate) fn status(&self) -> Status {
-        let failed = self.views.iter().flat_map(|view| &view.gates).any(GateResult::failed);
         match self.error {
             Some(_) => Status::Broken,
-            None if failed => Status::Failed,
-            None => Status::Passed,
+            None if self.gates().all(|(_, gate)| gate.passed) => Status::Passed,
+            None => Status::Failed,
         }
     }
 
@@ -184,13 +185,8 @@ impl Report {
             if let Some(error) = &asset.error {
                 let _ = writeln!(text, "        {error}");
             }
-            for (view, gate) in asset.gates() {
-                let words = match gate.passed {
-                    Some(true) => continue,
-                    Some(false) => &gate.text,
-                    None => &format!("not judged: {}", gate.text),
-                };
-                let _ = writeln!(text, "        {}: {words}", gate_title(view, &gate.name));
+            for (view, gate) in asset.gates().filter(|(_, gate)| !gate.passed) {
+                let _ = writeln!(text, "        {}: {}", gate_title(view, &gate.name), gate.text);
             }
         }
         text + &self.summary() + "\n"
@@ -237,28 +233,28 @@ fn asset_json(asset: &Asset) -> serde_json::Value {
 /// A report with an asset of each kind.
 #[cfg(test)]
 pub(super) fn sample() -> Report {
-    let gate = |name: &str, passed: Option<bool>, text: &str| GateResult {
+    let gate = |name: &str, found: Option<u64>, text: &str| GateResult {
         name: name.into(),
-        found: passed.map(|passed| if passed { 0 } else { 12 }),
-        passed,
+        found,
+        passed: found == Some(0),
         text: text.into(),
         ..GateResult::default()
     };
     let failed = GateResult {
         place: Some(GatePlace { triangles: vec![3, 7], at: Some([0.5, 0.0, 1.0]), px: None }),
         evidence: Some("ZXZpZGVuY2U=".into()),
-        ..gate("cracks", Some(false), "12 edges are cracked, where 0 are allowed")
+        ..gate("cracks", Some(12), "12 edges are cracked, where 0 are allowed")
     };
     let view =
         |name: &str, gates| View { name: name.into(), gates, picture: Some("cGljdHVyZQ==".into()), ..View::default() };
     let asset = |path: &str, views| Asset { path: path.into(), views, ..Asset::default() };
     let good =
-        Asset { unchanged: true, ..asset("a b/good.glb", vec![view("", vec![gate("cracks", Some(true), "none")])]) };
+        Asset { unchanged: true, ..asset("a b/good.glb", vec![view("", vec![gate("cracks", Some(0), "none")])]) };
     let torn = asset(
         "torn<&\">.glb",
         vec![
             view("front", vec![failed, gate("leaks", None, "the mesh is open")]),
-            view("back", vec![gate("cracks", Some(true), "none")]),
+            view("back", vec![gate("cracks", Some(0), "none")]),
         ],
     );
     let broken = Asset { error: Some("broken.obj can't be read".into()), ..asset("broken.obj", Vec::new()) };
@@ -272,7 +268,7 @@ mod tests {
     #[test]
     fn a_report_as_text_names_what_failed() {
         let expected = "passed  a b/good.glb (unchanged)\nfailed  torn<&\">.glb\n        cracks (front): 12 edges are cracked, where \
-                        0 are allowed\n        leaks (front): not judged: the mesh is open\nbroken  broken.obj\n        broken.obj \
+                        0 are allowed\n        leaks (front): the mesh is open\nbroken  broken.obj\n        broken.obj \
                         can't be read\n3 assets: 1 passed, 1 failed, 1 broken; 1 unchanged and not measured again\n";
         assert_eq!(sample().text(), expected);
         assert!(!sample().passed());

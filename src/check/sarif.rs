@@ -46,7 +46,7 @@ fn results(asset: &Asset) -> Vec<Value> {
         })
     };
     let broken = asset.error.iter().map(|error| result(BROKEN, "", error.clone(), json!({})));
-    let failed = asset.gates().filter(|(_, gate)| gate.failed()).map(|(view, gate)| {
+    let failed = asset.gates().filter(|(_, gate)| !gate.passed).map(|(view, gate)| {
         let message = format!("{}: {}", gate_title(view, &gate.name), gate.text);
         let properties = json!({ "view": view, "limit": gate.limit, "found": gate.found, "where": gate.place });
         result(&gate.name, view, message, properties)
@@ -93,7 +93,7 @@ mod tests {
         let ids: Vec<_> =
             run["tool"]["driver"]["rules"].as_array().expect("rules").iter().map(|rule| &rule["id"]).collect();
         let results = run["results"].as_array().expect("results");
-        assert_eq!(results.len(), 2);
+        assert_eq!(results.len(), 3);
         for result in results {
             assert!(ids.contains(&&result["ruleId"]), "{result}");
             assert!(result["message"]["text"].as_str().is_some_and(|text| !text.is_empty()));
@@ -102,11 +102,11 @@ mod tests {
             .iter()
             .map(|result| result.pointer("/locations/0/physicalLocation/artifactLocation/uri").and_then(Value::as_str))
             .collect();
-        assert_eq!(places, [Some("torn%3C%26%22%3E.glb"), Some("broken.obj")]);
+        assert_eq!(places, [Some("torn%3C%26%22%3E.glb"), Some("torn%3C%26%22%3E.glb"), Some("broken.obj")]);
         assert_eq!(results[0].pointer("/properties/where/at"), Some(&json!([0.5, 0.0, 1.0])));
         assert_eq!(results[0].pointer("/locations/0/physicalLocation/region/startLine"), Some(&json!(1)));
         let marks = results.iter().map(|result| &result["partialFingerprints"]["primaryLocationLineHash"]);
         let marks: Vec<_> = marks.map(|mark| mark.as_str().expect("a text")).collect();
-        assert!(marks[0] != marks[1] && marks.iter().all(|mark| mark.len() == 32), "{marks:?}");
+        assert!(marks[0] != marks[1] && marks[1] != marks[2] && marks.iter().all(|mark| mark.len() == 32), "{marks:?}");
     }
 }

@@ -108,7 +108,12 @@ impl CopiedCommand<'_> {
     /// Writes every setting that has an effect and isn't at its default. A transparent picture has no colour behind the mesh.
     fn settings(&self, line: &mut Line) {
         let background = self.settings.background.filter(|_| !self.transparent);
-        let shown = Settings { background, ..*self.settings };
+        // What takes the place of LOD takes none of its options.
+        let Tessellation { lod, factor, .. } = Tessellation::default();
+        let own = self.settings.tessellation;
+        let has_lod = self.factors.is_none() && self.lod_shader.is_none();
+        let tessellation = if has_lod { own } else { Tessellation { lod, factor, ..own } };
+        let shown = Settings { background, ..self.settings.with(tessellation) };
         let displaced = |displacement, of: &Settings| of.with(Tessellation { displacement, ..of.tessellation });
         let (own, usual) = match self.preparation.heights {
             // With --height the surface is displaced unless --displacement says otherwise.
@@ -116,8 +121,7 @@ impl CopiedCommand<'_> {
             None => (displaced(Displacement::Off, &shown), Settings::default()),
         };
         let is_replaced = |name: &str| {
-            ((self.factors.is_some() || self.lod_shader.is_some()) && INSTEAD_OF_FACTORS.contains(&name))
-                || (self.surface_shader.is_some() && name == options::SURFACE.name)
+            (self.surface_shader.is_some() && name == options::SURFACE.name)
                 || (self.matcap_image.is_some() && name == options::MATCAP.name)
         };
         let written = |option: &&Declaration| (option.no_effect)(&own).is_none() && !is_replaced(option.name);
@@ -178,9 +182,6 @@ impl CopiedCommand<'_> {
         line.changed(&format!("--{prefix}roll"), roll, &0.0);
     }
 }
-
-/// The options that `--factors` and `--lod-shader` exclude.
-const INSTEAD_OF_FACTORS: [&str; 6] = ["lod", "factor", "pixels", "tolerance", "distances", "max-triangles"];
 
 /// Width and height in px, as the command line takes them.
 #[derive(PartialEq)]

@@ -13,7 +13,8 @@ use crate::tessellate::{
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// How factors become segments; subtriangulation takes four equal factors
+    /// How factors become segments; subtriangulation takes four equal factors. pow2 gives what integer gives: hull shaders round factors
+    /// to powers of two before the tessellator gets them
     #[arg(long, value_name = "P", value_parser = super::options::choice::<Partitioning>())]
     pub partitioning: Partitioning,
     /// Factors of the edges where u, v and w are 0, and the inside factor; nan, inf, 0 and negative numbers are allowed

@@ -21,7 +21,7 @@ pub(crate) struct FactorsOption {
     #[arg(
         long = "factors",
         value_name = "CSV",
-        conflicts_with_all = ["lod", "factor", "pixels", "tolerance", "distances", "max_triangles"]
+        conflicts_with_all = ["lod", "factor", "pixels", "distances", "max_triangles"]
     )]
     pub given: Option<PathBuf>,
 }

@@ -22,7 +22,7 @@ pub(crate) struct GateOptions {
 pub(crate) struct FailOnOption {
     /// Fail (exit code 1) if one of these is found: cracks, factors (both sides of an edge were given different ones), leaks,
     /// folds, t-junctions, warnings (of loading), above-tolerance (patches whose error on screen is above --tolerance),
-    /// triangles:N or bytes:N (more than N). NAME:N allows up to N of any
+    /// triangles:N or bytes:N (more than N). NAME:N allows up to N of any. A gate that can't be judged fails: leaks of an open mesh
     #[arg(long, value_name = "GATE,..", value_delimiter = ',')]
     pub fail_on: Vec<Gate>,
 }
@@ -41,7 +41,7 @@ impl GateOptions {
     /// The folder can't be made, a picture can't be written, or the device was lost.
     pub(super) fn write_evidence(&self, shot: &mut Shot, judged: &[Judgement], stem: &Path) -> Result<(), CliError> {
         let Some(folder) = self.evidence.as_deref() else { return Ok(()) };
-        for judgement in judged.iter().filter(|judgement| judgement.failed()) {
+        for judgement in judged.iter().filter(|judgement| !judgement.passed) {
             write_evidence_of(shot, judgement, folder, stem)?;
         }
         Ok(())
@@ -69,11 +69,8 @@ fn evidence_name(output: &Path, gate: GateKind) -> String {
     format!("{}-{}.png", output.file_stem().unwrap_or_default().to_string_lossy(), gate.name())
 }
 
-/// Returns a sentence for each gate that failed on the mesh with this name. Standard error tells which gates mean nothing for it.
+/// Returns a sentence for each gate that failed on the mesh with this name.
 pub(super) fn failures(name: &str, judged: &[Judgement]) -> Vec<String> {
-    for judgement in judged.iter().filter(|judgement| judgement.passed.is_none()) {
-        super::note(&format!("{name}: the gate {} is not judged: {}", judgement.gate, judgement.text));
-    }
-    let failed = judged.iter().filter(|judgement| judgement.failed());
+    let failed = judged.iter().filter(|judgement| !judgement.passed);
     failed.map(|judgement| judgement.sentence_of(name)).collect()
 }

@@ -21,7 +21,7 @@ pub(crate) struct LodShaderOption {
     #[arg(
         long,
         value_name = "WGSL",
-        conflicts_with_all = ["lod", "factor", "pixels", "tolerance", "distances", "max_triangles"]
+        conflicts_with_all = ["lod", "factor", "pixels", "distances", "max_triangles"]
     )]
     pub lod_shader: Option<PathBuf>,
 }

@@ -42,7 +42,8 @@ pub(super) struct MaterialInfo {
 /// An image beside that of the base colour.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct MapInfo {
-    /// `metallic-roughness`, `normal`, `occlusion`, `emissive`, `transmission`, `sheen-color` or `sheen-roughness`.
+    /// `metallic-roughness`, `normal`, `occlusion`, `emissive`, `transmission`, `sheen-color`, `sheen-roughness`, `clearcoat`,
+    /// `clearcoat-roughness`, `clearcoat-normal`, `specular` or `specular-color`.
     pub slot: &'static str,
     /// Width and height in px.
     pub size: [u32; 2],
@@ -119,6 +120,11 @@ fn map(slot: Slot, map: &Map, look: &Look) -> MapInfo {
         Slot::Transmission => ("transmission", None),
         Slot::SheenColor => ("sheen-color", None),
         Slot::SheenRoughness => ("sheen-roughness", None),
+        Slot::Clearcoat => ("clearcoat", None),
+        Slot::ClearcoatRoughness => ("clearcoat-roughness", None),
+        Slot::ClearcoatNormal => ("clearcoat-normal", Some(look.clearcoat_normal_scale)),
+        Slot::Specular => ("specular", None),
+        Slot::SpecularColor => ("specular-color", None),
     };
     let uv_set = match map.uv {
         MapUv::Own => None,

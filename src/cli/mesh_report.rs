@@ -60,6 +60,8 @@ pub(super) struct Info {
     pub euler_characteristic: i64,
     /// Every edge has exactly two sides.
     pub closed: bool,
+    /// The triangles at every edge of two sides are wound the same way.
+    pub oriented: bool,
     pub warnings: Vec<String>,
 }
 
@@ -152,7 +154,8 @@ impl Info {
             normal_faults,
             bounds: BoundsInfo { min: bounds.min.into(), max: bounds.max.into(), diagonal: bounds.diagonal() },
             euler_characteristic,
-            closed: edges.total() > 0 && edges.boundary == 0 && edges.non_manifold == 0,
+            closed: topology.is_closed(),
+            oriented: topology.is_oriented(),
             warnings: warnings.to_vec(),
         })
     }
@@ -218,7 +221,8 @@ impl Info {
         writeln!(f, "  boundary      {boundary}")?;
         writeln!(f, "  non-manifold  {non_manifold}")?;
         let closed = if self.closed { "closed" } else { "open" };
-        writeln!(f, "surface       {closed}, Euler characteristic {}", self.euler_characteristic)?;
+        let wound = if self.oriented { "" } else { ", wound both ways" };
+        writeln!(f, "surface       {closed}{wound}, Euler characteristic {}", self.euler_characteristic)?;
         let CreaseBand { width, creases, .. } = self.crease_band;
         if width > 0.0 {
             writeln!(f, "crease band   {width} of the bounding diagonal wide, along {creases} creases")?;
@@ -308,6 +312,19 @@ mod tests {
         assert_eq!((info.materials.len(), info.materials[0].triangles), (1, 256));
         let json = serde_json::to_value(&info).unwrap();
         assert_eq!(json["edges"]["seam"], 24);
+    }
+
+    #[test]
+    fn a_closed_mesh_with_a_triangle_wound_the_other_way_is_closed_and_wound_both_ways() {
+        let mut mesh = Shape::Torus.build();
+        let mut triangles = mesh.triangles.to_vec();
+        triangles[7].swap(0, 1);
+        mesh.triangles = triangles.into();
+        let turned = info(&mesh, 0.0);
+        assert_eq!((turned.closed, turned.oriented), (true, false));
+        assert!(turned.to_string().contains("closed, wound both ways, Euler characteristic 0"), "{turned}");
+        let topology = Topology::of(&mesh);
+        assert!(topology.is_closed() && !topology.is_closed_and_oriented(), "as leaks are judged by");
     }
 
     #[test]

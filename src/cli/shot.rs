@@ -427,7 +427,7 @@ impl Shot {
         stats.silhouette = self.silhouette.as_ref().map(|silhouette| SilhouetteStats::new(silhouette, mirrored));
         stats.camera = Some(ViewStats::new(&self.view.camera, self.view.size, &self.scene.bounds));
         stats.left = self.left_stats();
-        stats.gates = self.judged.clone();
+        stats.judged(self.judged.clone(), settings.tessellation.tolerance);
         stats.animation = moment.zip(self.subject.loaded.mesh.rig.as_ref()).map(|(Moment { clip, time }, rig)| {
             let name = rig.clip_name(clip);
             AnimationStats { name, time }

@@ -17,9 +17,10 @@ use crate::gates::{Facts, GateKind, judge};
 use crate::load::Source;
 use crate::mesh::{Topology, t_junctions};
 use crate::progress::Progress;
+use crate::render::Leaks;
 use crate::stability::{
-    CASES, Case, Effort, Failure, LEGEND, Method, PAGE, Row, Section, Subject, Verdict, failures, lines, page, picture,
-    run as run_case, table,
+    CASES, Case, Effort, Failure, LEGEND, Method, PAGE, Row, Section, Subject, Verdict, are_judged, failures, lines,
+    page, picture, run as run_case, table,
 };
 
 #[derive(Debug, clap::Args)]
@@ -115,17 +116,30 @@ impl Args {
         effort
     }
 
-    /// Judges a mesh by the gates that are about the mesh itself. Returns those that fail.
-    fn judge_mesh(&self, Loaded { subject, warnings }: &Loaded) -> Result<Vec<Failure>, CliError> {
-        let gates: Vec<_> = self.gates.gates.fail_on.iter().copied().filter(|gate| gate.kind.is_of_mesh()).collect();
+    /// Judges a mesh by the gates that its rows don't judge: those that are about the mesh itself, and those that could be judged in no
+    /// view. Returns those that fail.
+    fn judge_mesh(
+        &self,
+        Loaded { subject, warnings }: &Loaded,
+        effort: &Effort,
+        rows: &[Row],
+    ) -> Result<Vec<Failure>, CliError> {
+        let mut gates = self.gates.gates.fail_on.clone();
+        gates.retain(|gate| !are_judged(gate.kind, &effort.methods, rows));
         if gates.is_empty() {
             return Ok(Vec::new());
         }
         let topology = Topology::build_within(&subject.mesh, subject.weld, &Progress::new())?;
         let junctions = t_junctions(&topology, &Progress::new())?;
-        let facts = Facts { junctions: Some(&junctions), warnings, ..Facts::of_mesh(&topology) };
+        let leaks = Leaks::uncounted(&topology).unwrap_or(Leaks::NearPlane);
+        let facts = Facts {
+            junctions: Some(&junctions),
+            warnings: Some(warnings),
+            leaks: Some(&leaks),
+            ..Facts::of_mesh(&topology)
+        };
         let judged = judge(&gates, &facts);
-        let failed = judged.iter().filter(|judgement| judgement.failed());
+        let failed = judged.iter().filter(|judgement| !judgement.passed);
         let failure = failed.map(|judgement| Failure {
             kind: judgement.kind,
             case: subject.name.clone(),
@@ -158,8 +172,8 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     }
     let (mut rows, mut sections, mut failed) = (Vec::new(), Vec::new(), Vec::new());
     for loaded in &subjects {
-        failed.extend(args.judge_mesh(loaded)?);
         let own = run_case(&loaded.subject, engine.as_ref(), &effort)?;
+        failed.extend(args.judge_mesh(loaded, &effort, &own)?);
         if !args.json {
             let text = table(&lines(&own));
             // The heading is printed only once.

@@ -12,7 +12,7 @@ use super::surface_shader_option::SurfaceShaderStats;
 use super::truth::{AccuracyStats, DeviationStats};
 use super::view_report::ViewStats;
 use crate::engine::{Engine, Loaded};
-use crate::gates::Judgement;
+use crate::gates::{GateKind, Judgement};
 use crate::gpu::PassTime;
 use crate::measure::{Measured, SeamTurns, Seams};
 use crate::mesh::{EdgeCounts, Topology};
@@ -90,7 +90,7 @@ pub(super) struct Stats {
     /// How the picture differs from its reference, if it has one.
     pub reference: Option<ReferenceStats>,
     /// How the gates of `--fail-on` judged.
-    pub gates: Vec<Judgement>,
+    gates: Vec<Judgement>,
     ms: BTreeMap<&'static str, f64>,
 }
 
@@ -108,7 +108,7 @@ struct SettingsStats {
     factor: f32,
     /// Px per segment; none where the LOD has no segment length.
     pixels: Option<f32>,
-    /// Px; of LOD by error alone.
+    /// Px; of LOD by error, and of what compares with it under any LOD.
     tolerance: Option<f32>,
     /// Bounding radii; of LOD by distance alone.
     near: Option<f32>,
@@ -323,6 +323,13 @@ pub(super) struct LodComparison {
 }
 
 impl Stats {
+    /// Takes how gates judged, of which one may compare with a tolerance that LOD doesn't use.
+    pub(super) fn judged(&mut self, gates: Vec<Judgement>, tolerance: f32) {
+        let is_compared = gates.iter().any(|gate| gate.kind == GateKind::AboveTolerance);
+        self.settings.tolerance = self.settings.tolerance.or(is_compared.then_some(tolerance));
+        self.gates = gates;
+    }
+
     /// Compares with LOD by error, which emits so many triangles at this tolerance.
     pub(super) fn compared(&self, tolerance_px: f32, triangles: u64) -> LodComparison {
         let times = (triangles > 0).then(|| self.triangles_out as f64 / triangles as f64);

@@ -274,9 +274,8 @@ impl Ready<'_> {
         let junctions = || t_junctions(&self.loaded.topology, &Progress::new());
         let junctions = gates.has(GateKind::TJunctions).then(junctions).transpose()?;
         let facts = Facts {
-            warnings: &self.posed.warnings,
-            vertices: out.vertices.len() as u64,
-            triangles: out.triangles.len() as u64,
+            warnings: Some(&self.posed.warnings),
+            emitted: Some((out.vertices.len() as u64, out.triangles.len() as u64)),
             measured: measured.as_ref(),
             junctions: junctions.as_deref(),
             above: above.as_ref(),

@@ -96,7 +96,7 @@ impl Turn {
         };
         if ending(path) == "gif" {
             let part = PartFile::create(path).map_err(failed)?;
-            let mut gif = GifEncoder::new_with_speed(&part.file, QUANTISING);
+            let mut gif = GifEncoder::new_with_speed(part.file(), QUANTISING);
             gif.set_repeat(Repeat::Infinite).map_err(|error| file_error(path, "encoded", &error))?;
             for frame in 0..self.frames {
                 let picture = opaque_or_clear(draw(shot, frame)?);

@@ -191,8 +191,8 @@ pub(super) fn room_for_bookmarks(now: &Availability) -> Option<&'static str> {
 
 /// Why patches that show their backs can't be left out.
 pub(crate) const BACKS_ARE_SEEN: &str = "Backs of this mesh can be seen, because one of these holds: it is open, a \
-                                         part of it is wound inward, a material is double-sided or has a mask, it is displaced, or \
-                                         it moves.";
+                                         part of it is wound inward, a material is double-sided or has a mask, only some of its \
+                                         materials blend or transmit light, it is displaced, or it moves.";
 
 /// Why a checker can't be drawn.
 pub(crate) const NO_TEXTURE_COORDINATES: &str = "The mesh has no texture coordinates.";

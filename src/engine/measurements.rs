@@ -10,7 +10,7 @@ use crate::measure::{
 };
 use crate::mesh::{Mesh, Topology};
 use crate::progress::Progress;
-use crate::render::{Camera, LeakCount, Leaks, Scene};
+use crate::render::{Camera, Leak, LeakCount, Leaks, Scene};
 use crate::tessellate::{Inputs, LodView, Tessellation, is_beyond_near};
 use crate::truth::Truth;
 use crate::view::ScreenView;
@@ -138,13 +138,25 @@ impl Engine {
         size: [u32; 2],
         camera: &Camera,
     ) -> Result<Option<u64>, GpuError> {
+        let leaks = self.leaks_with_places(scene, measured, size, camera)?;
+        Ok(leaks.map(|leaks| leaks.iter().map(|leak| u64::from(leak.pixels)).sum()))
+    }
+
+    /// The same leaks with their places, the largest first.
+    fn leaks_with_places(
+        &self,
+        scene: &mut Scene,
+        measured: &Measured,
+        size: [u32; 2],
+        camera: &Camera,
+    ) -> Result<Option<Vec<Leak>>, GpuError> {
         let viewport = glam::vec2(size[0] as f32, size[1] as f32);
         let clip_from_object = camera.clip_from_object(viewport, &scene.bounds);
         let (mesh, topology) = scene.tessellator.posed().deformed();
         if !closed_extent(&mesh, &topology, measured).is_some_and(|extent| is_beyond_near(clip_from_object, extent)) {
             return Ok(None);
         }
-        self.leaks.count(&self.gpu, scene, size, clip_from_object).map(Some)
+        self.leaks.find(&self.gpu, scene, size, clip_from_object).map(Some)
     }
 
     /// Finds the leaks in a view, also where patches that face away are left out: these are emitted for it. The scene must have
@@ -160,9 +172,9 @@ impl Engine {
         size: [u32; 2],
         camera: &Camera,
     ) -> Result<Leaks, GpuError> {
-        let (mesh, topology) = scene.tessellator.posed().deformed();
-        if !topology.is_closed_and_oriented() {
-            return Ok(Leaks::Open);
+        let (_, topology) = scene.tessellator.posed().deformed();
+        if let Some(uncounted) = Leaks::uncounted(&topology) {
+            return Ok(uncounted);
         }
         if measured.culled.facing_away > 0 {
             let tessellation = Tessellation { cull_back_faces: false, ..inputs.tessellation };
@@ -173,13 +185,7 @@ impl Engine {
             self.count(scene, inputs, &mut Timing::Off)?;
             return Ok(leaks);
         }
-        let viewport = glam::vec2(size[0] as f32, size[1] as f32);
-        let clip_from_object = camera.clip_from_object(viewport, &scene.bounds);
-        let is_beyond = |extent| is_beyond_near(clip_from_object, extent);
-        if !closed_extent(&mesh, &topology, measured).is_some_and(is_beyond) {
-            return Ok(Leaks::NearPlane);
-        }
-        self.leaks.find(&self.gpu, scene, size, clip_from_object).map(Leaks::Counted)
+        Ok(self.leaks_with_places(scene, measured, size, camera)?.map_or(Leaks::NearPlane, Leaks::Counted))
     }
 
     /// Counts the patches that are farther than a tolerance from the surface that they approximate, on screen. The inputs must be

@@ -2,7 +2,7 @@
 
 use glam::Vec4;
 
-use crate::mesh::{MapUv, Mesh, Slot};
+use crate::mesh::{MapUv, Mesh};
 
 /// The optional attributes of a mesh's vertices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,7 +24,7 @@ impl Attributes {
                 sets[set] = true;
             }
         }
-        let has_normal_map = looks().any(|look| look.maps[Slot::Normal as usize].is_some());
+        let has_normal_map = looks().any(|look| look.tangent_map().is_some());
         Self {
             sets,
             colors: details.iter().any(|detail| detail.color != Vec4::ONE),

@@ -13,15 +13,14 @@ use crate::render::{Leak, Leaks};
 use crate::tessellate::Vertex;
 use crate::view::ScreenView;
 
-/// What gates are judged by. What no gate asked for may be none.
+/// What gates are judged by. What no gate asked for may be none; a gate without what it needs fails.
 #[derive(Clone, Copy)]
 pub(crate) struct Facts<'a> {
     /// The mesh in the pose that was tessellated.
     pub topology: &'a Topology,
-    pub warnings: &'a [String],
+    pub warnings: Option<&'a [String]>,
     /// The numbers of emitted vertices and triangles.
-    pub vertices: u64,
-    pub triangles: u64,
+    pub emitted: Option<(u64, u64)>,
     pub measured: Option<&'a Measured>,
     pub junctions: Option<&'a [TJunction]>,
     pub leaks: Option<&'a Leaks>,
@@ -33,8 +32,8 @@ pub(crate) struct Facts<'a> {
 impl<'a> Facts<'a> {
     /// Facts of a mesh that nothing was measured of.
     pub(crate) fn of_mesh(topology: &'a Topology) -> Self {
-        let (measured, junctions, leaks, view, above) = (None, None, None, None, None);
-        Self { topology, warnings: &[], vertices: 0, triangles: 0, measured, junctions, leaks, view, above }
+        let (warnings, emitted, measured, junctions) = (None, None, None, None);
+        Self { topology, warnings, emitted, measured, junctions, leaks: None, view: None, above: None }
     }
 }
 
@@ -47,10 +46,9 @@ pub(crate) struct Judgement {
     pub kind: GateKind,
     /// The largest number that passes.
     pub limit: u64,
-    /// What was counted; none if it can't be counted.
+    /// What was counted; none if nothing could be, and then the gate failed.
     pub found: Option<u64>,
-    /// None if the gate means nothing for this mesh, so that it neither passed nor failed.
-    pub passed: Option<bool>,
+    pub passed: bool,
     /// What was found, or why nothing could be counted, in a sentence without its end.
     pub text: String,
     /// The worst place of a gate that failed, if it is about a place.
@@ -59,10 +57,6 @@ pub(crate) struct Judgement {
 }
 
 impl Judgement {
-    pub(crate) fn failed(&self) -> bool {
-        self.passed == Some(false)
-    }
-
     /// The sentence of a gate that failed, about the mesh with this name, without its end.
     pub(crate) fn sentence_of(&self, mesh: &str) -> String {
         format!("{mesh} fails the gate {}: {}", self.gate, self.sentence())
@@ -78,14 +72,8 @@ impl Judgement {
     }
 }
 
-/// What was counted for a gate: the number with its words, or why there is none.
-enum Count {
-    Number(u64, String),
-    /// The number means nothing for this mesh.
-    Meaningless(&'static str),
-    /// The number could be had with another view.
-    Unknown(&'static str),
-}
+/// What was counted for a gate: the number with its words; or why there is none, and what to do.
+type Count = Result<(u64, String), &'static str>;
 
 /// Judges by each gate.
 pub(crate) fn judge(gates: &[Gate], facts: &Facts) -> Vec<Judgement> {
@@ -93,62 +81,70 @@ pub(crate) fn judge(gates: &[Gate], facts: &Facts) -> Vec<Judgement> {
 }
 
 fn judged(Gate { kind, limit }: Gate, facts: &Facts) -> Judgement {
-    let (found, passed, text) = match count(kind, facts) {
-        Count::Number(found, text) => (Some(found), Some(found <= limit), text),
-        Count::Meaningless(why) => (None, None, why.to_owned()),
-        Count::Unknown(why) => (None, Some(false), why.to_owned()),
+    let (found, text) = match count(kind, facts) {
+        Ok((found, text)) => (Some(found), text),
+        Err(why) => (None, why.to_owned()),
     };
-    let place = if passed == Some(false) { worst(kind, facts) } else { None };
+    let passed = found.is_some_and(|found| found <= limit);
+    let place = if passed { None } else { worst(kind, facts) };
     Judgement { gate: kind.name(), kind, limit, found, passed, text, place }
 }
 
 fn count(kind: GateKind, facts: &Facts) -> Count {
-    let measured = |number: fn(&Measured) -> u64| facts.measured.map_or(0, number);
     let some = |number: u64, one: &str, several: &str| {
         let words = if number == 1 { one } else { several };
-        Count::Number(number, words.replace('#', &grouped(number)))
+        Ok((number, words.replace('#', &grouped(number))))
     };
     match kind {
         GateKind::Cracks => {
-            let cracked = measured(|measured| measured.cracks.cracked().len() as u64);
+            let cracked = known(facts.measured)?.cracks.cracked().len() as u64;
             some(cracked, "# edge is cracked", "# edges are cracked")
         }
         GateKind::Factors => {
-            let different = measured(|measured| measured.cracks.different_factors);
+            let different = known(facts.measured)?.cracks.different_factors;
             some(different, "# edge has sides with different factors", "# edges have sides with different factors")
         }
-        GateKind::Folds => some(measured(|measured| measured.folds), "# triangle is folded", "# triangles are folded"),
-        GateKind::Leaks => match facts.leaks {
-            Some(Leaks::Counted(leaks)) => {
+        GateKind::Folds => some(known(facts.measured)?.folds, "# triangle is folded", "# triangles are folded"),
+        GateKind::Leaks => match known(facts.leaks)? {
+            Leaks::Counted(leaks) => {
                 let px = leaks.iter().map(|leak| u64::from(leak.pixels)).sum();
                 some(px, "# px shows the inside of the mesh", "# px show the inside of the mesh")
             }
-            Some(Leaks::Open) => Count::Meaningless("leaks are counted in closed meshes, and this one is open"),
-            Some(Leaks::NearPlane) | None => {
-                Count::Unknown("leaks can't be counted where the near plane cuts the mesh: move the camera away")
+            Leaks::Open => {
+                Err("leaks can be counted only in a closed mesh, and this one is open: leave this gate out for it")
             }
+            Leaks::BothWays => {
+                Err("leaks can be counted only where triangles that meet are wound the same way, and some of \
+                                    this mesh aren't: mend it, or leave this gate out for it")
+            }
+            Leaks::NearPlane => Err("leaks can't be counted where the near plane cuts the mesh: move the camera away"),
         },
         GateKind::TJunctions => {
-            let junctions = facts.junctions.map_or(0, |junctions| junctions.len() as u64);
+            let junctions = known(facts.junctions)?.len() as u64;
             some(junctions, "the mesh has # T-junction", "the mesh has # T-junctions")
         }
-        GateKind::Warnings => warnings(facts.warnings),
+        GateKind::Warnings => Ok(warnings(known(facts.warnings)?)),
         GateKind::AboveTolerance => {
-            let above = facts.above.map_or(0, |above| above.patches);
-            let tolerance = facts.above.map_or(0.0, |above| above.tolerance_px);
-            let beyond = |words: &str| format!("{words} farther than {} px from its surface", exact(tolerance));
-            some(above, &beyond("# patch is"), &beyond("# patches are").replace("its surface", "their surface"))
+            let PatchesAbove { patches, tolerance_px, .. } = *known(facts.above)?;
+            let beyond = |words: &str| format!("{words} farther than {} px from its surface", exact(tolerance_px));
+            some(patches, &beyond("# patch is"), &beyond("# patches are").replace("its surface", "their surface"))
         }
-        GateKind::Triangles => some(facts.triangles, "# triangle is emitted", "# triangles are emitted"),
+        GateKind::Triangles => some(known(facts.emitted)?.1, "# triangle is emitted", "# triangles are emitted"),
         GateKind::Bytes => {
-            let bytes = output_bytes(facts.vertices, facts.triangles);
+            let (vertices, triangles) = known(facts.emitted)?;
+            let bytes = output_bytes(vertices, triangles);
             some(bytes, "vertices and indices take # byte", "vertices and indices take # bytes")
         }
     }
 }
 
+/// A fact that a gate needs.
+fn known<T>(fact: Option<T>) -> Result<T, &'static str> {
+    fact.ok_or("what it counts was not measured, which is an error of pnaen")
+}
+
 /// How many warnings loading gave, and the first of them.
-fn warnings(all: &[String]) -> Count {
+fn warnings(all: &[String]) -> (u64, String) {
     let said = match all {
         [] => "loading gave no warning".to_owned(),
         [only] => format!("loading gave a warning ({})", clause(only)),
@@ -156,7 +152,7 @@ fn warnings(all: &[String]) -> Count {
             format!("loading gave {} warnings (the first: {})", grouped(all.len() as u64), clause(first))
         }
     };
-    Count::Number(all.len() as u64, said)
+    (all.len() as u64, said)
 }
 
 /// A warning within a sentence.
@@ -227,23 +223,32 @@ fn worst_crack(facts: &Facts) -> Option<Place> {
     let gap = short(crack.gap);
     let [a, b] = crack.widest;
     let place = EdgePlace::new(facts.topology, crack.edge, Some(a * 0.5 + b * 0.5));
-    let text = format!("the widest gap, {gap} object units, is {}", place.words());
+    let left_out = |patch: u32| {
+        let triangle = facts.topology.patches[patch as usize].triangle;
+        format!(", where the factors of triangle {triangle} leave it out")
+    };
+    let left_out = crack.discarded.map(left_out).unwrap_or_default();
+    let text = format!("the widest gap, {gap} object units, is {}{left_out}", place.words());
     Some(place.with(text))
 }
 
 fn worst_factors(facts: &Facts) -> Option<Place> {
     let measured = facts.measured?;
+    let outlines = &measured.outlines;
     let range = |crack: &CrackedEdge| {
-        let sides = measured.outlines.edge(facts.topology, crack.edge);
+        let sides =
+            [outlines.edge(facts.topology, crack.edge), outlines.discarded(facts.topology, crack.edge)].concat();
+        // A factor that is not a number differs the most.
+        let by_size = |a: &f32, b: &f32| a.is_nan().cmp(&b.is_nan()).then(a.total_cmp(b));
         let factors = sides.iter().map(|side| side.factor);
-        let (least, most) = (factors.clone().fold(f32::INFINITY, f32::min), factors.fold(f32::NEG_INFINITY, f32::max));
-        (crack.edge, least, most)
+        Some((crack.edge, factors.clone().min_by(by_size)?, factors.max_by(by_size)?))
     };
-    let different = measured.cracks.edges.iter().filter(|crack| crack.different_factors).map(range);
-    let (edge, least, most) = different.reduce(|a, b| if b.2 - b.1 > a.2 - a.1 { b } else { a })?;
+    let different = measured.cracks.edges.iter().filter(|crack| crack.different_factors).filter_map(range);
+    let apart = |least: f32, most: f32| if most.is_nan() { f32::INFINITY } else { most - least };
+    let (edge, least, most) = different.reduce(|a, b| if apart(b.1, b.2) > apart(a.1, a.2) { b } else { a })?;
     let factors = format!("{} and {}", exact(least), exact(most));
     // In the middle of what was emitted, since the middle of a straight line may lie below the surface.
-    let emitted = measured.outlines.edge(facts.topology, edge).into_iter().next();
+    let emitted = outlines.edge(facts.topology, edge).into_iter().next();
     let emitted: Vec<Vec3> = emitted.iter().flat_map(EdgeSide::positions).collect();
     let at = emitted.get(emitted.len() / 2).copied();
     let place = EdgePlace::new(facts.topology, edge, at);
@@ -298,4 +303,21 @@ fn worst_error(facts: &Facts) -> Option<Place> {
     let at = worst.emitted.as_vec3();
     let text = format!("the farthest, {} px, is of triangle {triangle} at {}", hundredths(worst.px), position(at));
     Some(Place { text, triangles: vec![triangle], spot: Spot::Patch { corners, at } })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gate_without_the_fact_that_it_needs_fails() {
+        let topology = Topology::default();
+        let gates = GateKind::ALL.map(|kind| Gate { kind, limit: u64::MAX });
+        for judgement in judge(&gates, &Facts::of_mesh(&topology)) {
+            assert_eq!((judgement.found, judgement.passed), (None, false), "{judgement:?}");
+            let sentence = judgement.sentence_of("a.glb");
+            let expected = format!("a.glb fails the gate {}: what it counts was not measured", judgement.gate);
+            assert!(sentence.starts_with(&expected), "{sentence}");
+        }
+    }
 }

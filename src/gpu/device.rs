@@ -1,8 +1,8 @@
 //! An adapter and its device, with or without a window.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use super::GpuError;
 use super::adapters::{AdapterChoice, adapters, best_adapter};
@@ -83,13 +83,22 @@ struct Reported {
     lost: Arc<OnceLock<String>>,
 }
 
+impl Reported {
+    fn problem(&self) -> MutexGuard<'_, Option<GpuError>> {
+        // What is behind the lock is whole even if a thread panicked while it held it.
+        self.problem.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn note(&self, error: GpuError) {
+        self.problem().get_or_insert(error);
+    }
+}
+
 /// Installs handlers that keep what the device reports. wgpu's own handler panics.
 fn watch(device: &wgpu::Device) -> Reported {
     let reported = Reported::default();
-    let problem = reported.problem.clone();
-    device.on_uncaptured_error(Arc::new(move |error| {
-        problem.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(in_words(error));
-    }));
+    let noted = reported.clone();
+    device.on_uncaptured_error(Arc::new(move |error| noted.note(in_words(error))));
     let lost = reported.lost.clone();
     device.set_device_lost_callback(move |reason, message| {
         let destroyed = reason == wgpu::DeviceLostReason::Destroyed;
@@ -186,17 +195,18 @@ impl Gpu {
         if let Some(why) = self.lost() {
             return Err(GpuError::Lost(why.to_owned()));
         }
-        // What is behind the lock is whole even if a thread panicked while it held it.
-        match self.reported.problem.lock().unwrap_or_else(PoisonError::into_inner).take() {
-            Some(problem) => Err(problem),
-            None => Ok(()),
-        }
+        self.reported.problem().take().map_or(Ok(()), Err)
     }
 
     /// Runs the callbacks of what the device has finished. wgpu panics if the driver says right then that the device is lost;
-    /// that panic is caught, since [`Self::lost`] knows of it by then.
+    /// that panic alone is caught, since [`Self::lost`] knows of it by then. [`Self::check`] tells what else fails.
     pub fn poll(&self, how: wgpu::PollType) {
-        let _ = catch_unwind(AssertUnwindSafe(|| self.device.poll(how)));
+        match catch_unwind(AssertUnwindSafe(|| self.device.poll(how))) {
+            Ok(Ok(_)) => {}
+            Ok(Err(error)) => self.reported.note(GpuError::Refused(error.to_string())),
+            Err(_) if self.lost().is_some() => {}
+            Err(panic) => resume_unwind(panic),
+        }
     }
 
     /// Waits until the device has done all that was submitted. If it is lost meanwhile, this returns, and [`Self::check`] says
@@ -248,5 +258,20 @@ impl Gpu {
     /// Whether the GPU's own clock can time passes.
     pub fn has_timestamps(&self) -> bool {
         self.device.features().contains(wgpu::Features::TIMESTAMP_QUERY)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_of_a_callback_isnt_swallowed() {
+        let gpu = Gpu::headless().expect("an adapter");
+        let (usage, mapped_at_creation) = (wgpu::BufferUsages::MAP_READ, false);
+        let descriptor = wgpu::BufferDescriptor { label: None, size: 4, usage, mapped_at_creation };
+        let buffer = gpu.device.create_buffer(&descriptor);
+        buffer.map_async(wgpu::MapMode::Read, .., |_| panic!("this callback fails on purpose"));
+        assert!(catch_unwind(AssertUnwindSafe(|| gpu.wait())).is_err());
     }
 }

@@ -39,6 +39,9 @@ pub enum GpuError {
     /// The pose was made with another rig than the mesh's.
     #[error("the pose has {has} {what}, and the mesh's rig has {needs}: make the pose with that rig (Mesh::rig)")]
     OtherRig { what: &'static str, has: usize, needs: usize },
+    /// The mesh has fewer materials.
+    #[error("the mesh has no material {material}: it has {has}, which are numbered from 0 on (Mesh::materials)")]
+    NoSuchMaterial { material: u32, has: usize },
     /// The device was made with lower limits than the passes need.
     #[error("the device allows {has} of {what}, and the passes need {needs}: request wgpu's default limits")]
     Limits { what: &'static str, has: u64, needs: u64 },

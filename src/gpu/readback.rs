@@ -3,8 +3,12 @@
 use std::ops::Range;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
 
 use super::{Gpu, GpuError};
+
+/// How long [`Readback::wait`] waits for a callback once the device has done its work: others' callbacks may run before it.
+const PATIENCE: Duration = Duration::from_secs(60);
 
 /// Bytes on their way to the host: a copy in a buffer that can be mapped.
 ///
@@ -109,14 +113,22 @@ impl Readback {
     /// # Errors
     /// The device was lost, or it has refused a command that nobody was told of yet.
     pub(crate) fn wait(&mut self, gpu: &Gpu) -> Result<Vec<u8>, GpuError> {
+        self.wait_at_most(gpu, PATIENCE)
+    }
+
+    /// The same, if the bytes come before `patience` has passed once the device has done all that was submitted.
+    fn wait_at_most(&mut self, gpu: &Gpu, patience: Duration) -> Result<Vec<u8>, GpuError> {
         self.request();
         gpu.wait();
         // A command that was refused explains more than the mapping that failed because of it.
         gpu.check()?;
         if let State::Requested(receiver) = &mut self.state {
             // Another thread that polls the device may still be running the callback, so this waits for it.
-            let received = receiver.get_mut().unwrap_or_else(PoisonError::into_inner).recv();
-            self.mapped(received.map_err(failed)?)?;
+            let receiver = receiver.get_mut().unwrap_or_else(PoisonError::into_inner);
+            let received = receiver.recv_timeout(patience).map_err(failed);
+            // The device may have been lost meanwhile.
+            gpu.check()?;
+            self.mapped(received?)?;
         }
         self.bytes()
     }
@@ -181,4 +193,21 @@ fn staging_buffer(gpu: &Gpu, bytes: u64) -> wgpu::Buffer {
 
 fn failed(error: impl std::error::Error) -> GpuError {
     GpuError::Readback(error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_callback_that_never_comes_is_an_error() {
+        let gpu = Gpu::headless().expect("an adapter");
+        let staging = staging_buffer(&gpu, 4);
+        let (sender, receiver) = channel();
+        let state = State::Requested(Mutex::new(receiver));
+        let mut readback = Readback { staging, layout: Layout::Packed(4), state };
+        let read = readback.wait_at_most(&gpu, Duration::from_millis(1));
+        assert!(matches!(read, Err(GpuError::Readback(_))), "{read:?}");
+        drop(sender);
+    }
 }

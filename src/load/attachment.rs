@@ -1,8 +1,8 @@
 //! Finds out which animated node each node of a scene is attached to: the nearest ancestor that a clip moves.
 
-use glam::DMat4;
+use glam::{DMat4, DVec3};
 
-use crate::mesh::rig::{AnimatedNode, Placement};
+use crate::mesh::rig::{AnimatedNode, Clip, Placement, Property};
 
 /// What a rig needs to know of a scene's nodes, whatever the format.
 pub(super) struct SceneNodes {
@@ -15,6 +15,42 @@ pub(super) struct SceneNodes {
     pub carries: Vec<bool>,
     /// The nodes that are shown and have morph targets, with the targets' weights at rest.
     pub morphed: Vec<(usize, Vec<f32>)>,
+    /// The nodes that have [grown](Self::grow), with the placements at rest.
+    pub grown: Vec<(usize, Placement)>,
+}
+
+/// A scale of less than this part of what it becomes in a clip is one that flattens: corners may get the same coordinates.
+const FLAT: f64 = 1e-3;
+
+impl SceneNodes {
+    /// Gives the nodes that are scaled to nothing at rest the largest scale that the clips give them. Corners of a part that appears in
+    /// a clip must lie apart, so that it has polygons, normals and edges.
+    pub(super) fn grow(&mut self, clips: &[Clip]) {
+        for channel in clips.iter().flat_map(|clip| &clip.channels).filter(|own| own.property == Property::Scale) {
+            let node = channel.target as usize;
+            let Some(LocalTransform::Placement(own)) = self.local.get_mut(node) else { continue };
+            let (rest, mut largest) = (*own, DVec3::ZERO);
+            let larger = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
+            for &time in &channel.keys.times {
+                channel.keys.sample(time.into(), |i, scale| largest[i] = larger(largest[i], scale));
+            }
+            let is_flat = rest.scale.abs().cmplt(FLAT * largest.abs());
+            own.scale = DVec3::select(is_flat, largest, rest.scale);
+            if is_flat.any() && self.grown.iter().all(|(known, _)| *known != node) {
+                self.grown.push((node, rest));
+            }
+        }
+    }
+
+    /// Returns the transform from each node's own space to the scene's.
+    pub(super) fn global(&self) -> Vec<DMat4> {
+        let mut global = vec![DMat4::IDENTITY; self.local.len()];
+        for &node in &self.order {
+            let above = self.parents[node].map_or(DMat4::IDENTITY, |parent| global[parent]);
+            global[node] = above * self.local[node].matrix();
+        }
+        global
+    }
 }
 
 /// A node's own transform.

@@ -1,6 +1,6 @@
 //! Transforms vertices into the space that the matrices of their joints start from.
 
-use glam::{DMat3, DMat4, DQuat, DVec3, Vec3};
+use glam::{DMat3, DMat4, DQuat, DVec3, DVec4, Vec3, Vec4};
 
 use crate::mesh::CornerDetail;
 use crate::mesh::normals::GivenNormal;
@@ -81,13 +81,8 @@ fn finite(vector: DVec3) -> [f32; 3] {
 /// Returns the tangent of a binding, and the sign of its bitangent, that become those of `detail` in a pose. Where the blended
 /// matrix has no inverse, the tangent is that of the pose. `deltas` are those of the rig.
 pub(super) fn unturned(binding: &Binding, deltas: &[Delta], pose: &Pose, detail: &CornerDetail) -> [f32; 4] {
-    let mut rows = [DVec3::ZERO; 3];
-    for (&joint, &weight) in binding.joints.iter().zip(&binding.weights) {
-        for (sum, row) in rows.iter_mut().zip(pose.palette[joint as usize].rows()) {
-            *sum += Vec3::from_slice(&row).as_dvec3() * f64::from(weight);
-        }
-    }
-    let linear = DMat3::from_cols(rows[0], rows[1], rows[2]).transpose();
+    let [x, y, z] = blended(binding, pose).map(DVec4::truncate);
+    let linear = DMat3::from_cols(x, y, z).transpose();
     let determinant = linear.determinant();
     let own = (linear.inverse() * detail.tangent.as_dvec3()).try_normalize().map(DVec3::as_vec3);
     let tangent = own.filter(|_| determinant != 0.0).unwrap_or(detail.tangent);
@@ -110,13 +105,30 @@ fn unmorphed(tangent: Vec3, binding: &Binding, deltas: &[Delta], pose: &Pose) ->
     (DQuat::from_rotation_arc(morphed, own) * tangent.as_dvec3()).as_vec3()
 }
 
-/// Returns the normal of a binding that becomes `normal` in a pose: the transpose of its blended matrix times `normal`.
-pub(super) fn untwisted(binding: &Binding, pose: &Pose, normal: Vec3) -> Vec3 {
-    let mut sum = DVec3::ZERO;
+/// Returns the position of a binding in a pose. `deltas` are those of the rig.
+pub(super) fn posed(binding: &Binding, deltas: &[Delta], pose: &Pose) -> Vec3 {
+    let mut position = Vec3::from(binding.position).as_dvec3();
+    for delta in &deltas[binding.first_delta as usize..][..binding.delta_count as usize] {
+        position += Vec3::from(delta.position).as_dvec3() * f64::from(pose.weights[delta.weight as usize]);
+    }
+    let rows = blended(binding, pose);
+    DVec3::from_array(rows.map(|row| row.dot(position.extend(1.0)))).as_vec3()
+}
+
+/// Returns the rows of a binding's blended matrix in a pose.
+fn blended(binding: &Binding, pose: &Pose) -> [DVec4; 3] {
+    let mut rows = [DVec4::ZERO; 3];
     for (&joint, &weight) in binding.joints.iter().zip(&binding.weights) {
-        for (row, x) in pose.palette[joint as usize].rows().iter().zip(normal.as_dvec3().to_array()) {
-            sum += Vec3::from_slice(row).as_dvec3() * (x * f64::from(weight));
+        for (sum, row) in rows.iter_mut().zip(pose.palette[joint as usize].rows()) {
+            *sum += Vec4::from(row).as_dvec4() * f64::from(weight);
         }
     }
+    rows
+}
+
+/// Returns the normal of a binding that becomes `normal` in a pose: the transpose of its blended matrix times `normal`.
+pub(super) fn untwisted(binding: &Binding, pose: &Pose, normal: Vec3) -> Vec3 {
+    let rows = blended(binding, pose).into_iter().zip(normal.to_array());
+    let sum: DVec3 = rows.map(|(row, x)| row.truncate() * f64::from(x)).sum();
     sum.try_normalize().map_or(normal, DVec3::as_vec3)
 }

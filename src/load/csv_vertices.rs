@@ -11,7 +11,7 @@ use thiserror::Error;
 
 use super::memory_budget::Budget;
 use crate::files::{FileError, Limits, Stamp, open_file};
-use crate::mesh::build_limits::{MemoryAccount, MemoryRefused};
+use crate::mesh::build_limits::{Borrowed, MemoryAccount, MemoryRefused};
 use crate::names::{shortened, shown, shown_path};
 use crate::progress::{Cancelled, Progress};
 
@@ -203,12 +203,13 @@ impl Lines {
         let mut vertices = CsvVertices::default();
         let mut decimals = 0;
         let mut record = ByteRecord::new();
+        let list = Borrowed::from(budget);
         loop {
             if vertices.positions.len().is_multiple_of(LINES) {
                 progress.check()?;
                 // A list that grows is copied to one that is twice as long.
                 let room = vertices.positions.capacity() * size_of::<Vec3>() + 2 * LINES * size_of::<Vec3>();
-                budget.give_back_to(0);
+                budget.give_back(&list);
                 if let Err(refused) = budget.borrow(2 * room as u64) {
                     return Ok(Err(refused.into()));
                 }

@@ -433,21 +433,27 @@ impl<'a> FaceBuilder<'a> {
 
     /// Says how many faces have impossible positions, and how many have numbers of positions that aren't there, if any.
     fn flawed(&self) -> impl Iterator<Item = String> + use<> {
-        let unplaced = format!("a position that isn't a number or lies beyond {LARGEST_COORDINATE:e}");
-        let misnumbered = "the number of a position that isn't in the file".to_owned();
-        [(self.unplaced, unplaced), (self.misnumbered, misnumbered)].into_iter().filter_map(|((count, first), what)| {
-            let place = first?.to_string();
-            let first = match place.trim_end_matches(": ") {
-                "" => String::new(),
-                place => format!(", the first at {place}"),
-            };
-            Some(format!("{count} faces with {what}{first}"))
-        })
+        let place = |place: FilePosition| place.to_string().trim_end_matches(": ").to_owned();
+        let unplaced = self.unplaced.1.map(|first| unplaced(self.unplaced.0, &place(first)));
+        let misnumbered = self.misnumbered.1.map(|first| {
+            faces_with(self.misnumbered.0, "the number of a position that isn't in the file", &place(first))
+        });
+        unplaced.into_iter().chain(misnumbered)
     }
 }
 
+/// Says how many faces have a position that can't be drawn; `first` is the place of the first one, if it is known.
+pub(super) fn unplaced(count: usize, first: &str) -> String {
+    faces_with(count, &format!("a position that isn't a number or lies beyond {LARGEST_COORDINATE:e}"), first)
+}
+
+fn faces_with(count: usize, what: &str, first: &str) -> String {
+    let first = if first.is_empty() { String::new() } else { format!(", the first at {first}") };
+    format!("{count} faces with {what}{first}")
+}
+
 /// Whether a position can be drawn. A comparison with NaN is false.
-fn is_near(corner: &InputCorner) -> bool {
+pub(super) fn is_near(corner: &InputCorner) -> bool {
     corner.position.abs().cmple(Vec3::splat(LARGEST_COORDINATE)).all()
 }
 

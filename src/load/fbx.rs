@@ -83,8 +83,9 @@ pub(super) fn read_here(
     drop(bytes);
     let mut notes = Notes::default();
     left_out::warn(&scene, &mut notes);
-    let placed = Placed::new(&scene, &budget, &mut notes)?;
+    let mut placed = Placed::new(&scene, import.show_hidden, &budget, &mut notes)?;
     let clips = clips::read(&scene, &placed, (&budget, &progress.part(0.3, 0.4)), &mut notes)?;
+    placed.grow(&clips);
     let mut warnings = Vec::new();
     let binder = RigBuilder::new(clips, &placed.scene, &mut warnings);
     notes.extend(warnings);
@@ -97,7 +98,6 @@ pub(super) fn read_here(
     let holds = left_out::holds(&scene, &placed);
     let (faces, details, binder) = surfaces.into_parts(&mut notes);
     budget.release(scene.metadata.result_memory_used as u64);
-    budget.give_back_to(0);
     drop(placed);
     drop(scene);
     progress.set(0.8);
@@ -106,7 +106,7 @@ pub(super) fn read_here(
     if let Some(details) = details {
         numbers = tangents::with_details(&mut mesh, details, &numbers, &mut notes, (&budget, progress))?;
     }
-    match binder.map(|binder| binder.finish(&mesh, &numbers)) {
+    match binder.map(|binder| binder.finish(&mut mesh, &numbers)) {
         Some(Ok(rig)) => mesh.rig = Some(Arc::new(rig)),
         Some(Err(warning)) => notes.push(warning),
         None => {}

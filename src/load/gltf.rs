@@ -66,7 +66,7 @@ use crate::files::Limits;
 use crate::mesh::detail_table::DetailTable;
 use crate::mesh::mesh_builder::MeshBuilder;
 use crate::mesh::rig::Joint;
-use crate::mesh::{MemoryAccount, Mesh};
+use crate::mesh::{Borrowed, MemoryAccount, Mesh};
 use crate::progress::Progress;
 
 use accessor::Accessors;
@@ -112,10 +112,13 @@ pub(super) fn read(
     let clips = animations::read(parsed.animations, document, &accessors, &mut warnings);
     progress.check()?;
     let moves_meshes = rig_nodes::move_meshes(&clips, document, &placed);
-    let mut binder = None;
+    let (mut binder, mut grown) = (None, None);
     if !clips.is_empty() {
         let also = parsed.lights.nodes().chain(parsed.cameras.nodes());
-        binder = RigBuilder::new(clips, &rig_nodes::of(document, &placed, also), &mut warnings);
+        let mut nodes = rig_nodes::of(document, &placed, also);
+        nodes.grow(&clips);
+        grown = (!nodes.grown.is_empty()).then(|| nodes.global());
+        binder = RigBuilder::new(clips, &nodes, &mut warnings);
     }
     notes.extend(warnings);
     let mut materials = Materials::new(lists, document, &placed, (&accessors, &files), &budget)?;
@@ -128,7 +131,7 @@ pub(super) fn read(
     materials.read_images(needs.bytes, progress)?;
     let mut scene = Scene {
         document,
-        placed: &placed,
+        global: grown.as_deref().unwrap_or(&placed.global),
         instances: &extensions.instances,
         accessors: &accessors,
         materials,
@@ -147,7 +150,10 @@ pub(super) fn read(
         let mut holds = match reach.hidden {
             0 if parsed.parts.is_cut => "its named parts are hidden".to_owned(),
             0 => primitives.holds(document),
-            hidden => format!("KHR_node_visibility hides the {hidden} nodes of its scene that have a mesh"),
+            hidden => {
+                let said = "nodes of its scene that have a mesh (--show-hidden shows them)";
+                format!("KHR_node_visibility hides the {hidden} {said}")
+            }
         };
         holds += if parsed.scenes.names.len() > 1 { "; --scene shows another of its scenes" } else { "" };
         return Err(GltfError::Empty { holds });
@@ -159,7 +165,6 @@ pub(super) fn read(
     notes.append(std::mem::take(&mut primitives.notes));
     notes.extend(primitives.warnings());
     budget.release(accessors.buffer_bytes());
-    budget.give_back_to(0);
     drop(accessors);
     drop(buffers);
     budget.release(lists.bytes());
@@ -190,7 +195,8 @@ pub(super) fn read(
 /// The scene that is being read, and the mesh that is being built from it.
 struct Scene<'a> {
     document: &'a Document,
-    placed: &'a Placed,
+    /// The transform from each node's own space to the scene's, in which the meshes are built.
+    global: &'a [DMat4],
     /// By node, the instances of its mesh.
     instances: &'a HashMap<usize, InstancingExtension>,
     accessors: &'a Accessors<'a>,
@@ -208,8 +214,9 @@ impl<'a> Scene<'a> {
     fn add(&mut self, node: usize, progress: &Progress) -> Result<(), GltfError> {
         let Some(node) = self.document.nodes().nth(node) else { return Ok(()) };
         let Some(mesh) = node.mesh() else { return Ok(()) };
+        let _scope = Borrowed::from(self.accessors.budget);
         let skin = node.skin().map(|skin| skin::read(&skin, self.accessors)).transpose()?;
-        let joints = skin.as_ref().map_or_else(Vec::new, |skin| skin.matrices(&self.placed.global));
+        let joints = skin.as_ref().map_or_else(Vec::new, |skin| skin.matrices(self.global));
         let Some(own) = self.instances.get(&node.index()) else {
             return self.add_once(&node, &mesh, (skin.as_ref(), &joints), DMat4::IDENTITY, progress);
         };
@@ -220,12 +227,10 @@ impl<'a> Scene<'a> {
             return self.add_once(&node, &mesh, (skin.as_ref(), &joints), DMat4::IDENTITY, progress);
         }
         let (document, accessors) = (self.document, self.accessors);
-        let borrowed = accessors.budget.borrowed();
         let instances = Instances::read(document, accessors, own, node.index())?;
         for instance in instances.transforms() {
             self.add_once(&node, &mesh, (None, &[]), instance, progress)?;
         }
-        accessors.budget.give_back_to(borrowed);
         Ok(())
     }
 
@@ -239,12 +244,11 @@ impl<'a> Scene<'a> {
         progress: &Progress,
     ) -> Result<(), GltfError> {
         let mut binder = self.binder.as_mut().map(|binder| binder.node(node.index(), skin));
-        let global = self.placed.global.get(node.index()).copied().unwrap_or(DMat4::IDENTITY);
+        let global = self.global.get(node.index()).copied().unwrap_or(DMat4::IDENTITY);
         let global = nodes::below(global, instance);
-        let borrowed = self.accessors.budget.borrowed();
         for primitive in mesh.primitives() {
             progress.check()?;
-            self.accessors.budget.give_back_to(borrowed);
+            let _scope = Borrowed::from(self.accessors.budget);
             if self.primitives.skip(&primitive) {
                 continue;
             }
@@ -261,7 +265,6 @@ impl<'a> Scene<'a> {
             };
             self.primitives.read(job, binder.as_mut())?;
         }
-        self.accessors.budget.give_back_to(borrowed);
         Ok(())
     }
 }
@@ -321,7 +324,7 @@ fn finished(
     if let Some(details) = details {
         bindings = tangents::with_details(&mut mesh, details, &bindings, notes, (budget, progress))?;
     }
-    match binder.map(|binder| binder.finish(&mesh, &bindings)) {
+    match binder.map(|binder| binder.finish(&mut mesh, &bindings)) {
         Some(Ok(rig)) => mesh.rig = Some(Arc::new(rig)),
         Some(Err(warning)) => notes.push(warning),
         None => {}

@@ -10,7 +10,7 @@ use super::memory_budget::Budget;
 use super::texture_room::decoded_bytes;
 use super::webp_memory::webp_bytes;
 use crate::mesh::Texture;
-use crate::mesh::build_limits::{MemoryAccount, MemoryRefused};
+use crate::mesh::build_limits::{Borrowed, MemoryAccount, MemoryRefused, borrowing};
 use crate::mesh::mipmap::{MipFilter, RowHalver, halved, level_size};
 
 /// The greatest width and height of a texture that is read, in px.
@@ -62,14 +62,8 @@ pub(super) fn decode_halved(
     filter: MipFilter,
     budget: &Budget,
 ) -> Result<Texture, String> {
-    let borrowed = budget.borrowed();
-    let decoded = if ktx2::is_ktx2(bytes) {
-        decode_ktx2(bytes, halvings, filter, budget)
-    } else {
-        decode_file(bytes, halvings, filter, budget)
-    };
-    budget.give_back_to(borrowed);
-    let texture = decoded?;
+    let decode = if ktx2::is_ktx2(bytes) { decode_ktx2 } else { decode_file };
+    let texture = borrowing(budget, || decode(bytes, halvings, filter, budget))?;
     let refused = |refused| too_large(texture.size, refused);
     budget.hold(decoded_bytes(texture.size)).map_err(refused)?;
     Ok(texture)
@@ -81,7 +75,7 @@ fn decode_file(bytes: &[u8], halvings: u32, filter: MipFilter, budget: &Budget) 
     let of_webp = webp_bytes(&mut Cursor::new(bytes), budget.left()).map_err(|error| error.to_string())?;
     let known = coefficient_bytes(&mut Cursor::new(bytes)).map_err(|error| error.to_string())?;
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| error.to_string())?;
-    let before = budget.borrowed();
+    let whole = Borrowed::from(budget);
     if reader.format() == Some(ImageFormat::Png) {
         reader.limits(metadata_limits(budget));
     }
@@ -95,7 +89,7 @@ fn decode_file(bytes: &[u8], halvings: u32, filter: MipFilter, budget: &Budget) 
     let room = budget.borrow(decoder.total_bytes().saturating_add(working.max(decoded_bytes(size))));
     if has_rows && (halvings > 0 || room.is_err()) {
         drop(decoder);
-        budget.give_back_to(before);
+        drop(whole);
         return decode_rows(bytes, halvings, filter, budget);
     }
     room.map_err(|refused| too_large(size, refused))?;

@@ -74,11 +74,13 @@ pub struct Import {
     pub up: Option<UpAxis>,
     /// The unit of the file's coordinates; none for that which the file or its format says, or else the metre.
     pub unit: Option<FileUnit>,
+    /// Whether what the file hides is loaded too.
+    pub show_hidden: bool,
 }
 
 impl Default for Import {
     fn default() -> Self {
-        Self { normals: NormalSource::File, crease_angle: CREASE_ANGLE, up: None, unit: None }
+        Self { normals: NormalSource::File, crease_angle: CREASE_ANGLE, up: None, unit: None, show_hidden: false }
     }
 }
 

@@ -24,7 +24,7 @@ use std::sync::Arc;
 use crate::files::Limits;
 #[cfg(doc)]
 use crate::mesh::CornerDetail;
-use crate::mesh::build_limits::{MemoryAccount, MemoryRefused};
+use crate::mesh::build_limits::{Borrowed, MemoryAccount, MemoryRefused};
 use crate::mesh::{Material, Mesh};
 
 /// How many bytes of memory each byte of a file allows, in addition to [`Limits::memory`].
@@ -114,8 +114,8 @@ impl MemoryAccount for Budget {
         self.passing.get()
     }
 
-    fn give_back_to(&self, borrowed: u64) {
-        self.passing.set(borrowed);
+    fn give_back(&self, scope: &Borrowed) {
+        self.passing.set(self.passing.get().min(scope.before()));
     }
 }
 
@@ -143,6 +143,7 @@ fn bytes_of(mesh: &Mesh) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::borrowing;
 
     #[test]
     fn files_bring_their_allowance() {
@@ -151,6 +152,7 @@ mod tests {
         assert_eq!(budget.left(), free + (3 << 20));
         budget.allow(10 << 20);
         assert_eq!(budget.left(), free + (43 << 20));
+        let scope = Borrowed::from(&budget);
         assert!(budget.borrow(free).is_ok() && budget.hold(43 << 20).is_ok());
         let said = budget.hold(1).unwrap_err().to_string();
         assert!(
@@ -158,8 +160,20 @@ mod tests {
             "{said}"
         );
         assert_eq!(budget.option_for(600 << 20), 556 << 20, "four times eleven MiB of files come to it");
-        budget.give_back_to(0);
+        drop(scope);
         assert_eq!(budget.left(), free);
         assert!(budget.hold(u64::MAX).is_err());
+    }
+
+    #[test]
+    fn a_scope_returns_what_was_borrowed_in_it_and_nothing_else() {
+        let budget = Budget::unlimited();
+        budget.borrow(5).unwrap();
+        let outer = Borrowed::from(&budget);
+        budget.borrow(10).unwrap();
+        assert_eq!(borrowing(&budget, || budget.borrow(20).map(|()| budget.borrowed())), Ok(35));
+        assert_eq!(budget.borrowed(), 15);
+        drop(outer);
+        assert_eq!(budget.borrowed(), 5);
     }
 }

@@ -7,6 +7,7 @@ use super::format::{Format, extension_of, known_extensions};
 use super::gltf::{self, GltfError, scenes};
 use super::heights::HeightError;
 use super::loaded_mesh::LoadedMesh;
+use super::notes::Notes;
 use super::read_error::ReadError;
 use super::selection::Selection;
 use super::text_lines::of_utf16;
@@ -297,6 +298,9 @@ pub fn read(
         Format::ThreeMf => threemf::read(bytes, &name, import, limits, progress).map_err(|fault| of_fault(fault, path)),
     }?;
     import.place(&mut loaded.mesh);
+    let mut notes = Notes::default();
+    notes.extend(std::mem::take(&mut loaded.warnings));
+    loaded.warnings = notes.into_warnings();
     Ok(loaded)
 }
 

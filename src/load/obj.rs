@@ -224,7 +224,7 @@ struct Counts {
 impl Counts {
     fn warnings(&self, import: &Import, vertices: &Vertices) -> impl Iterator<Item = String> {
         let lacking = import.lacking_normals(self.without_normals, "faces without normals, or with some missing");
-        let StatementCounts { points, lines, surfaces, unknown } = self.statements;
+        let StatementCounts { points, lines, surfaces, calls, unknown } = self.statements;
         let others = counted([
             (self.smoothed, "faces without normals, or with some missing, which got those of their smoothing groups"),
             (vertices.with_commas, "statements with a comma in a number, which was taken for its point"),
@@ -238,13 +238,14 @@ impl Counts {
             (points, "points (p), left out"),
             (lines, "lines (l), left out"),
             (surfaces, "free-form curves and surfaces (curv, curv2, surf), which aren't read"),
+            (calls, "calls of other files and of programs (call, csh), left out"),
             (unknown, "statements that OBJ doesn't have, left out"),
         ]);
         counted([lacking]).chain(others)
     }
 
     fn holds(&self, vertices: &Vertices) -> String {
-        let StatementCounts { points, lines, surfaces, unknown } = self.statements;
+        let StatementCounts { points, lines, surfaces, unknown, .. } = self.statements;
         if vertices.positions.is_empty() && self.faces + points + lines + surfaces == 0 {
             let unknown = match unknown {
                 0 => String::new(),
@@ -253,7 +254,8 @@ impl Counts {
             };
             return format!("it has no vertices{unknown}");
         }
-        let others = [(points, "points (p)"), (lines, "lines (l)"), (surfaces, "free-form curves and surfaces")];
+        let surfaces = (surfaces, "free-form curves and surfaces (export them as polygons)");
+        let others = [(points, "points (p)"), (lines, "lines (l)"), surfaces];
         let others = others.into_iter().filter(|(count, _)| *count > 0);
         let others: String = others.map(|(count, what)| format!(", {count} {what}")).collect();
         format!("it holds {} positions{others}", vertices.positions.len())

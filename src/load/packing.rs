@@ -1,4 +1,5 @@
-//! Joins images that FBX and OBJ keep apart: roughness and metalness, colour and opacity.
+//! Makes images as glTF has them of those that other descriptions of materials have: FBX and OBJ keep roughness and metalness, or
+//! colour and opacity, apart, and glossiness is the reverse of roughness.
 
 use crate::load::memory_budget::Budget;
 use crate::mesh::{MemoryAccount, Texture};
@@ -17,6 +18,17 @@ pub(super) fn metallic_roughness(
     let rough = |green: u8| if is_glossiness { 255 - green } else { green };
     joined(roughness, metalness, budget, |roughness, metalness| {
         [255, roughness.map_or(255, |texel| rough(texel[1])), metalness.map_or(255, |texel| texel[2]), 255]
+    })
+}
+
+/// Returns an image with roughness in green, which is 1 less the glossiness in the alpha of another, times a factor.
+///
+/// # Errors
+/// A clause if it takes too much memory.
+pub(super) fn roughness(glossiness: &Texture, factor: f32, budget: &Budget) -> Result<Texture, String> {
+    joined(Some(glossiness), None, budget, |glossy, _| {
+        let glossiness = factor * f32::from(glossy.map_or(255, |texel| texel[3]));
+        [255, (255.0 - glossiness).round() as u8, 255, 255]
     })
 }
 
@@ -79,6 +91,17 @@ mod tests {
         assert_eq!((both.size, both.rgba), ([2, 2], expected.as_flattened().to_vec()));
         let one = metallic_roughness(Some(&rough), true, None, &budget).expect("memory for 2 texels");
         assert_eq!(one.rgba, [[255, 235, 255, 255], [255, 195, 255, 255]].as_flattened());
+    }
+
+    #[test]
+    fn roughness_is_what_glossiness_leaves() {
+        let budget = Budget::new(0, &Limits::default());
+        let glossy = texture([2, 1], &[[1, 2, 3, 0], [4, 5, 6, 200]]);
+        let rough = roughness(&glossy, 0.5, &budget).expect("memory for 2 texels");
+        assert_eq!(
+            (rough.size, &rough.rgba[..]),
+            ([2, 1], [[255, 255, 255, 255], [255, 155, 255, 255]].as_flattened())
+        );
     }
 
     #[test]

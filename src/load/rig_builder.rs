@@ -5,10 +5,10 @@ use std::collections::HashMap;
 use glam::{DMat4, Vec3};
 
 use super::attachment::{Attachment, SceneNodes, attachments};
-use super::binding_space::{BindingSpace, unturned, untwisted};
+use super::binding_space::{BindingSpace, posed, unturned, untwisted};
 use crate::mesh::mesh_builder::InputCorner;
 use crate::mesh::normals::GivenNormal;
-use crate::mesh::rig::{AnimatedNode, Binding, Clip, Delta, Joint, Morph, Property, Reach, Rig};
+use crate::mesh::rig::{AnimatedNode, Binding, Clip, Delta, Joint, Morph, Placement, Property, Reach, Rig};
 use crate::mesh::{CornerDetail, CornerDetails, Mesh};
 
 /// The greatest number of bound vertices, and of their displacements, which limits the memory.
@@ -23,11 +23,16 @@ pub(super) struct RigBuilder {
     nodes: Vec<AnimatedNode>,
     /// For each node of the scene, the animated node that moves it.
     attachments: Vec<Attachment>,
+    /// The animated nodes that are scaled to nothing at rest, with their placements then. Until the rig is finished, they are as large as
+    /// in a clip.
+    grown: Vec<(u32, Placement)>,
+    /// Which animated nodes are these, or below them.
+    is_grown: Vec<bool>,
     morphs: Vec<Morph>,
     /// For each node whose morph targets a clip weights, its index in `morphs`.
     node_morphs: HashMap<usize, usize>,
     joints: Vec<Joint>,
-    joint_ids: HashMap<(Option<u32>, [u64; 16]), u32>,
+    joint_ids: HashMap<(Option<u32>, [[u64; 16]; 2]), u32>,
     bound: Vec<BoundVertex>,
     bound_ids: HashMap<[u32; 8], u32>,
     /// Numbers for distinct lists of joints, weights and displacements.
@@ -47,15 +52,18 @@ pub(super) struct SkinJoints {
     pub nodes: Vec<usize>,
     /// The transforms from the mesh's bind pose to each joint's own space.
     pub inverse_binds: Vec<DMat4>,
+    /// Where a copy of the mesh is, relative to the mesh that the joints move.
+    pub place: DMat4,
 }
 
 impl SkinJoints {
     /// Returns, for each joint, the matrix that takes a vertex from the mesh's bind pose to the scene: the joint's
-    /// global transform times its inverse bind matrix. The skinned node's own transform isn't used (glTF 2.0
+    /// global transform times its inverse bind matrix, and the copy's place. The skinned node's own transform isn't used (glTF 2.0
     /// specification, section 3.7.3).
     pub(super) fn matrices(&self, global: &[DMat4]) -> Vec<DMat4> {
         let place = |&joint: &usize| global.get(joint).copied().unwrap_or(DMat4::IDENTITY);
-        self.nodes.iter().map(place).zip(&self.inverse_binds).map(|(joint, inverse)| joint * *inverse).collect()
+        let joints = self.nodes.iter().map(place).zip(&self.inverse_binds);
+        joints.map(|(joint, inverse)| self.place * joint * *inverse).collect()
     }
 }
 
@@ -82,10 +90,20 @@ impl RigBuilder {
         }
         moved.iter_mut().zip(&scene.carries).for_each(|(moved, carries)| *moved &= carries);
         let (nodes, attachments) = attachments(scene, &moved);
+        let moved_by =
+            |&(node, rest): &(usize, Placement)| Some((attachments[node].node.filter(|_| moved[node])?, rest));
+        let grown: Vec<(u32, Placement)> = scene.grown.iter().filter_map(moved_by).collect();
+        let mut is_grown = vec![false; nodes.len()];
+        grown.iter().for_each(|(node, _)| is_grown[*node as usize] = true);
+        for (i, node) in nodes.iter().enumerate() {
+            is_grown[i] |= node.parent.is_some_and(|parent| is_grown[parent as usize]);
+        }
         let mut binder = Self {
             clips: Vec::new(),
             nodes,
             attachments,
+            grown,
+            is_grown,
             morphs: Vec::new(),
             node_morphs: HashMap::new(),
             joints: Vec::new(),
@@ -152,7 +170,8 @@ impl RigBuilder {
     /// Returns what moves something that is on a node, in the node's own space.
     pub(super) fn mount(&self, node: usize) -> Joint {
         let attachment = self.attachments.get(node);
-        Joint { node: attachment.and_then(|own| own.node), offset: attachment.map_or(DMat4::IDENTITY, |own| own.below) }
+        let offset = attachment.map_or(DMat4::IDENTITY, |own| own.below);
+        Joint { node: attachment.and_then(|own| own.node), offset, ..Joint::default() }
     }
 
     /// Gives up building a rig. The first reason is reported.
@@ -160,8 +179,9 @@ impl RigBuilder {
         self.problem.get_or_insert(reason);
     }
 
-    /// Builds the rig of a mesh whose corners have these bindings. If that is impossible, returns a warning.
-    pub(super) fn finish(self, mesh: &Mesh, corners: &[u32]) -> Result<Rig, String> {
+    /// Builds the rig of a mesh whose corners have these bindings, and puts corners below nodes that are scaled to nothing at rest where
+    /// they are then. If that is impossible, returns a warning.
+    pub(super) fn finish(self, mesh: &mut Mesh, corners: &[u32]) -> Result<Rig, String> {
         if let Some(problem) = self.problem {
             return Err(format!("animations are left out: {problem}."));
         }
@@ -195,11 +215,20 @@ impl RigBuilder {
         }
         refer_to_tangents(&mut rig, &self.tangent_deltas);
         rig.reach = Reach::of(&rig.bindings, &rig.deltas).including(&self.tangent_deltas);
+        self.grown.iter().for_each(|(node, rest)| rig.nodes[*node as usize].rest = *rest);
+        let rest = rig.rest();
+        for (corner, &id) in mesh.corners.iter_mut().zip(corners) {
+            let binding = &self.bound[id as usize].binding;
+            if is_moved_by(binding, &rig.joints, &self.is_grown) {
+                corner.position = posed(binding, &rig.deltas, &rest);
+            }
+        }
         Ok(rig)
     }
 
     fn joint(&mut self, joint: Joint) -> u32 {
-        let key = (joint.node, joint.offset.to_cols_array().map(|x| (x + 0.0).to_bits()));
+        let bits = |matrix: DMat4| matrix.to_cols_array().map(|x| (x + 0.0).to_bits());
+        let key = (joint.node, [joint.offset, joint.place].map(bits));
         *self.joint_ids.entry(key).or_insert_with(|| {
             self.joints.push(joint);
             self.joints.len() as u32 - 1
@@ -221,6 +250,9 @@ impl RigBuilder {
             deltas.flat_map(move |delta| [delta.weight].into_iter().chain(bits(vector(delta))))
         };
         let hung = joints.into_iter().chain(weights.map(f32::to_bits));
+        // What has one position at rest only because it is scaled to nothing doesn't stay together.
+        let is_grown = is_moved_by(&bound.binding, &self.joints, &self.is_grown);
+        let hung = hung.chain(bits(position).into_iter().filter(|_| is_grown));
         bound.alike = self.list(hung.chain(list(|delta| delta.position)).collect());
         // No weight has the number that the tangents begin with.
         let displaced = bound.tangent.into_iter().flat_map(|tangent| {
@@ -258,6 +290,12 @@ fn refer_to_tangents(rig: &mut Rig, displacements: &[[f32; 3]]) {
     if first > 0 {
         rig.tangents.extend(displacements.iter().map(|&[x, y, z]| [x, y, z, 0.0]));
     }
+}
+
+/// Whether one of these nodes moves a vertex.
+fn is_moved_by(binding: &Binding, joints: &[Joint], nodes: &[bool]) -> bool {
+    let moving = binding.joints.iter().zip(binding.weights).filter(|(_, weight)| *weight > 0.0);
+    moving.filter_map(|(joint, _)| joints[*joint as usize].node).any(|node| nodes[node as usize])
 }
 
 fn has_tangents(details: &CornerDetails) -> bool {
@@ -322,7 +360,7 @@ impl NodeBinder<'_> {
         if is_skinned {
             return VertexFrame { rigid: None, space: BindingSpace::new(DMat4::IDENTITY) };
         }
-        let rigid = self.binder.joint(Joint { node: attachment.node, offset: DMat4::IDENTITY });
+        let rigid = self.binder.joint(Joint { node: attachment.node, ..Joint::default() });
         VertexFrame { rigid: Some(rigid), space: BindingSpace::new(attachment.below * to_node) }
     }
 
@@ -369,7 +407,7 @@ impl NodeBinder<'_> {
         slots.sort_unstable_by_key(|(id, _)| *id);
         if slots.is_empty() {
             // The vertex stays where it is at rest.
-            slots.push((self.binder.joint(Joint { node: None, offset: DMat4::IDENTITY }), 1.0));
+            slots.push((self.binder.joint(Joint::default()), 1.0));
         }
         let (mut joints, mut weights) = ([0; 4], [0.0; 4]);
         for (i, (joint, weight)) in slots.into_iter().enumerate().take(4) {
@@ -386,7 +424,8 @@ impl NodeBinder<'_> {
         let (node, inverse_bind) = of_skin.unwrap_or((usize::MAX, DMat4::IDENTITY));
         let attachment =
             self.binder.attachments.get(node).copied().unwrap_or(Attachment { node: None, below: DMat4::IDENTITY });
-        let id = self.binder.joint(Joint { node: attachment.node, offset: attachment.below * inverse_bind });
+        let place = self.skin.map_or(DMat4::IDENTITY, |skin| skin.place);
+        let id = self.binder.joint(Joint { node: attachment.node, offset: attachment.below * inverse_bind, place });
         if let Some(known) = self.skin_joints.get_mut(joint) {
             *known = Some(id);
         }

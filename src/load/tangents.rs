@@ -11,7 +11,7 @@ use super::notes::Notes;
 use crate::mesh::build_limits::BuildError;
 use crate::mesh::detail_table::DetailTable;
 use crate::mesh::weld::weld;
-use crate::mesh::{Corner, CornerDetail, CornerDetails, MapUv, Material, MemoryAccount, Mesh, Slot};
+use crate::mesh::{Borrowed, Corner, CornerDetail, CornerDetails, MapUv, Material, MemoryAccount, Mesh};
 use crate::progress::{Cancelled, Progress};
 
 /// How many triangles get their tangents together. The tangents of a corner depend on the triangles around it alone, so that a
@@ -72,7 +72,7 @@ fn complete_by(
     if mapped.is_empty() {
         return Ok(Vec::new());
     }
-    let borrowed = budget.borrowed();
+    let _scope = Borrowed::from(budget);
     let mut warnings = Vec::new();
     let mut warn = |name: &str, reason: String| {
         let name = crate::load::uri::shown(name);
@@ -91,17 +91,15 @@ fn complete_by(
         }
         for batch in faces.chunks(batch) {
             progress.check()?;
-            let before = budget.borrowed();
+            let _scope = Borrowed::from(budget);
             let near = around.near(detailed.mesh, faces, batch);
             if let Err(refused) = budget.borrow(PER_TRIANGLE * near.len() as u64) {
                 warn(name, refused.to_string());
                 break;
             }
             detailed.add(&near, *uv, &mut around);
-            budget.give_back_to(before);
         }
     }
-    budget.give_back_to(borrowed);
     Ok(warnings)
 }
 
@@ -175,7 +173,7 @@ impl Around {
 
 impl DetailedMesh<'_> {
     fn mapped(&self, material: &Material) -> Option<Mapped> {
-        let normal_map = material.look.maps[Slot::Normal as usize].as_ref()?;
+        let normal_map = material.look.tangent_map()?;
         let has_none = |face: &u32| {
             let corners = self.mesh.triangles[*face as usize];
             corners.iter().any(|&corner| self.details[corner as usize].tangent == Vec3::ZERO)
@@ -280,7 +278,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::mesh::{Map, Sampling, Shape, Texture, Unlimited};
+    use crate::mesh::{Map, Sampling, Shape, Slot, Texture, Unlimited};
 
     fn tangents(corners: Vec<Corner>) -> Vec<(Vec3, f32)> {
         let mut surface = Surface::new(corners);

@@ -90,7 +90,9 @@ impl<'a> Files<'a> {
         };
         let folder = if self.folder.as_os_str().is_empty() { Path::new(".") } else { self.folder };
         let path = folder.join(relative);
-        let real = path.canonicalize().map_err(|error| missing(&path, error))?;
+        let in_other_case = || in_other_case(&folder.canonicalize().ok()?, relative);
+        let real = path.canonicalize().or_else(|error| in_other_case().ok_or(error));
+        let real = real.map_err(|error| missing(&path, error))?;
         let root = folder.canonicalize().map_err(|error| missing(folder, error))?;
         if !real.starts_with(&root) {
             return Err(format!(
@@ -105,6 +107,28 @@ impl<'a> Files<'a> {
         }
         Ok(real)
     }
+}
+
+/// Returns the path of a file whose name, or one of the folders that lead to it, has letters in another case than the document says. There
+/// is none if several do, nor outside `root`, which is a path without links.
+fn in_other_case(root: &Path, relative: &Path) -> Option<PathBuf> {
+    let mut found = root.to_owned();
+    for part in relative.components() {
+        let exact = found.join(part);
+        found = exact.canonicalize().ok().or_else(|| only_alike(&found, &part.as_os_str().to_str()?.to_lowercase()))?;
+        if !found.starts_with(root) {
+            return None;
+        }
+    }
+    Some(found)
+}
+
+/// Returns the only entry of a folder that has this name in lower case, with links resolved.
+fn only_alike(folder: &Path, name: &str) -> Option<PathBuf> {
+    let entries = folder.read_dir().ok()?.filter_map(Result::ok);
+    let mut alike = entries.filter(|entry| entry.file_name().to_str().is_some_and(|own| own.to_lowercase() == name));
+    let only = alike.next()?.path();
+    if alike.next().is_none() { only.canonicalize().ok() } else { None }
 }
 
 /// Returns the start of a URI for a message; data URIs are long.
@@ -236,6 +260,50 @@ mod tests {
     fn percent_signs() {
         assert_eq!(relative_path("a%20b/c.bin"), Ok("a b/c.bin".into()));
         assert_eq!(percent_decoded("100%_%4"), b"100%_%4");
+    }
+
+    /// Reads a file of a folder with these files, whose content is their path.
+    fn read_among(files: &[&str], uri: &str) -> Result<String, String> {
+        let folder = tempfile::tempdir().expect("a folder");
+        for file in files {
+            let path = folder.path().join(file);
+            std::fs::create_dir_all(path.parent().expect("it has one")).expect("a writable folder");
+            std::fs::write(path, file).expect("a writable folder");
+        }
+        let (limits, budget, progress) = (Limits::default(), Budget::unlimited(), Progress::new());
+        let inner = folder.path().join("model");
+        let bytes = Files::new(&inner, &limits, &budget, &progress).read(uri, false)?;
+        Ok(String::from_utf8(bytes).expect("a path"))
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn names_that_differ_in_case_alone_are_found_if_only_one_does() {
+        let files = ["model/Wood.PNG", "model/Maps/Größe.png", "model/a.png", "model/A.png", "outside.png"];
+        let found = |uri: &str| read_among(&files, uri);
+        assert_eq!(found("wood.png").as_deref(), Ok("model/Wood.PNG"));
+        assert_eq!(found("maps/GRÖßE.png").as_deref(), Ok("model/Maps/Größe.png"));
+        assert_eq!(found("A.png").as_deref(), Ok("model/A.png"), "exactly this name comes first");
+        for missing in ["a.PNG", "wood.jpg", "outside.png", "maps", "wood.png/a.png"] {
+            assert!(found(missing).is_err(), "{missing}");
+        }
+        assert!(found("maps.png").unwrap_err().contains("model/maps.png: there is no such file"));
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn links_in_another_case_lead_nowhere_outside() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let inner = folder.path().join("model");
+        std::fs::create_dir(&inner).expect("a writable folder");
+        std::fs::write(folder.path().join("secret.png"), "secret").expect("a writable folder");
+        std::os::unix::fs::symlink("../secret.png", inner.join("Link.png")).expect("a link");
+        std::os::unix::fs::symlink("..", inner.join("Up")).expect("a link");
+        let (limits, budget, progress) = (Limits::default(), Budget::unlimited(), Progress::new());
+        let files = Files::new(&inner, &limits, &budget, &progress);
+        for uri in ["link.png", "up/secret.png", "up/Secret.png", "Up/Secret.png"] {
+            assert!(files.read(uri, false).is_err(), "{uri}");
+        }
     }
 
     #[test]

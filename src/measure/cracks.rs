@@ -36,10 +36,13 @@ pub struct CrackedEdge {
     pub different_normals: u32,
     pub different_factors: bool,
     /// The largest distance between two sides, in object units. It is measured between their positions of each point, or if
-    /// they have different numbers of points, from each point of one to the line of the other.
+    /// they have different numbers of points, from each point of one to the line of the other. Beside a discarded patch it is the
+    /// distance to the patch's corner across the edge: the hole is as wide.
     pub gap: f64,
     /// The two positions that are farthest apart.
     pub widest: [Vec3; 2],
+    /// A patch that its factors leave out beside one that is drawn, an index in [`Topology::patches`].
+    pub discarded: Option<u32>,
 }
 
 impl Cracks {
@@ -47,16 +50,26 @@ impl Cracks {
     #[cfg(test)]
     fn find(mesh: &Mesh, topology: &Topology, outlines: &Outlines) -> Self {
         let mut cracks = Self::default();
-        outlines.shared_edges(topology).for_each(|(edge, sides)| cracks.take(mesh, topology, edge, &sides));
+        for (edge, sides) in outlines.shared_edges(topology) {
+            cracks.take(mesh, topology, edge, &sides, &outlines.discarded(topology, edge));
+        }
         cracks.sorted()
     }
 
-    /// Compares the sides of an edge, an index in [`Topology::edges`].
-    pub(super) fn take(&mut self, mesh: &Mesh, topology: &Topology, edge: u32, sides: &[EdgeSide]) {
+    /// Compares the sides of an edge, an index in [`Topology::edges`], of which some may be [discarded](Outlines::discarded).
+    pub(super) fn take(
+        &mut self,
+        mesh: &Mesh,
+        topology: &Topology,
+        edge: u32,
+        sides: &[EdgeSide],
+        discarded: &[EdgeSide],
+    ) {
         self.edges_compared += 1;
-        self.edge_points += points_compared(sides);
+        self.edge_points += points_compared(sides, discarded);
         let different_normals = different_normals(mesh, topology, edge, sides);
-        if let Some(crack) = compare(edge, sides, different_normals) {
+        let holes = discarded.iter().map(|side| (side, topology.patch_positions(side.patch)));
+        if let Some(crack) = compare(edge, sides, &holes.collect::<Vec<_>>(), different_normals) {
             self.different_bits += u64::from(crack.different_bits);
             self.different_normals += u64::from(crack.different_normals);
             self.different_factors += u64::from(crack.different_factors);
@@ -74,7 +87,7 @@ impl Cracks {
     /// Edges whose positions differ, the widest gap first. Light may pass through them.
     pub fn cracked(&self) -> &[CrackedEdge] {
         // Edges whose positions agree are at the end.
-        &self.edges[..self.edges.partition_point(|edge| edge.different_bits > 0)]
+        &self.edges[..self.edges.partition_point(|edge| edge.gap > 0.0 || edge.different_bits > 0)]
     }
 
     /// Shading seams: edges whose normals differ although the mesh's normals agree.
@@ -104,26 +117,33 @@ impl CrackedEdge {
 /// Up to this many distinct sides of an edge are compared with each other. Further ones are compared only with the first.
 const PAIRED_SIDES: usize = 64;
 
-fn points_compared(sides: &[EdgeSide]) -> u64 {
+/// A discarded side, and the positions of its patch's corners.
+type Hole<'a> = (&'a EdgeSide, [Vec3; 3]);
+
+fn points_compared(sides: &[EdgeSide], discarded: &[EdgeSide]) -> u64 {
     let Some((first, others)) = sides.split_first() else { return 0 };
-    others.iter().map(|other| first.points.len().max(other.points.len()) as u64).sum()
+    others.iter().chain(discarded).map(|other| first.points.len().max(other.points.len()) as u64).sum()
 }
 
 /// Compares the sides of an edge. Returns the crack, if anything differs.
-fn compare(edge: u32, sides: &[EdgeSide], different_normals: u32) -> Option<CrackedEdge> {
+fn compare(edge: u32, sides: &[EdgeSide], holes: &[Hole], different_normals: u32) -> Option<CrackedEdge> {
     let (first, others) = sides.split_first()?;
-    let different_bits: u32 = others.iter().map(|other| different(first, other, same_position)).sum();
-    let differs = |other: &EdgeSide| other.factor.to_bits() != first.factor.to_bits() || other.word != first.word;
-    let different_factors = others.iter().any(differs);
+    let discarded = holes.iter().map(|(side, _)| *side);
+    let all = || others.iter().chain(discarded.clone());
+    let different_bits: u32 = all().map(|other| different(first, other, same_position)).sum();
+    let same_factor = |other: &EdgeSide| other.factor.to_bits() == first.factor.to_bits();
+    let different_factors = !all().all(same_factor) || others.iter().any(|other| other.word != first.word);
     if different_bits == 0 && different_normals == 0 && !different_factors {
         return None;
     }
-    let (gap, widest) = widest(sides);
-    Some(CrackedEdge { edge, different_bits, different_normals, different_factors, gap, widest })
+    let across = holes.iter().flat_map(|(_, corners)| corners.map(|corner| from_line(first, corner)));
+    let (gap, widest) = across.fold(widest(sides), larger);
+    let discarded = discarded.clone().map(|side| side.patch).next();
+    Some(CrackedEdge { edge, different_bits, different_normals, different_factors, gap, widest, discarded })
 }
 
 /// The largest gap over all pairs of sides, and its two positions.
-fn widest(sides: &[EdgeSide]) -> (f64, [Vec3; 2]) {
+fn widest(sides: &[EdgeSide]) -> Gap {
     let mut distinct: Vec<&EdgeSide> = Vec::new();
     for side in sides {
         if distinct.iter().take(PAIRED_SIDES).all(|known| different(known, side, same_position) > 0) {
@@ -143,19 +163,27 @@ fn widest(sides: &[EdgeSide]) -> (f64, [Vec3; 2]) {
     (gap, at)
 }
 
-fn farthest(a: &EdgeSide, b: &EdgeSide) -> (f64, [Vec3; 2]) {
-    let larger = |x: (f64, [Vec3; 2]), y: (f64, [Vec3; 2])| if y.0 >= x.0 { y } else { x };
+/// A distance in object units, and the positions between which it is.
+type Gap = (f64, [Vec3; 2]);
+
+fn larger(x: Gap, y: Gap) -> Gap {
+    if y.0 >= x.0 { y } else { x }
+}
+
+fn farthest(a: &EdgeSide, b: &EdgeSide) -> Gap {
     let none = (0.0, [Vec3::ZERO; 2]);
     if a.points.len() == b.points.len() {
         return a.positions().zip(b.positions()).map(|(p, q)| (distance(p, q), [p, q])).fold(none, larger);
     }
-    let from_line = |line: &EdgeSide, p: Vec3| {
-        let line: Vec<Vec3> = line.positions().collect();
-        let near = line.windows(2).map(|ends| nearest(ends[0], ends[1], p)).map(|q| (distance(p, q), [p, q]));
-        near.fold((f64::INFINITY, [p, p]), |x, y| if y.0 < x.0 { y } else { x })
-    };
     let both = a.positions().map(|p| from_line(b, p)).chain(b.positions().map(|p| from_line(a, p)));
     both.fold(none, larger)
+}
+
+/// How far a position is from the line of a side's points.
+fn from_line(line: &EdgeSide, p: Vec3) -> Gap {
+    let line: Vec<Vec3> = line.positions().collect();
+    let near = line.windows(2).map(|ends| nearest(ends[0], ends[1], p)).map(|q| (distance(p, q), [p, q]));
+    near.fold((f64::INFINITY, [p, p]), |x, y| if y.0 < x.0 { y } else { x })
 }
 
 /// The distance in object units; infinite if a coordinate is NaN.
@@ -207,10 +235,12 @@ fn different_normals(mesh: &Mesh, topology: &Topology, edge: u32, sides: &[EdgeS
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measure::AskedFactors;
+    use crate::measure::{AskedFactors, Measured};
     use crate::mesh::{Corner, Material, Shape};
     use crate::settings::Settings;
-    use crate::tessellate::{Edges, Lod, LodView, Partitioning, Surface, Tessellation, tessellate};
+    use crate::tessellate::{
+        Convention, Edges, HullFactors, Lod, LodView, Partitioning, Surface, Tessellation, tessellate, tessellate_given,
+    };
 
     /// A view that holds every shape, at an angle at which no two edges look alike.
     fn view() -> LodView {
@@ -310,6 +340,38 @@ mod tests {
         assert_eq!(different_normals(&mesh, &topology, edge as u32, &sides), 2, "those of the second side");
     }
 
+    #[test]
+    fn a_patch_that_its_factors_leave_out_beside_one_that_is_drawn_is_a_crack() {
+        let mesh = Shape::Torus.build();
+        let topology = Topology::of(&mesh);
+        let found = |discarded: &[(u32, [f32; 3])]| {
+            let mut given = vec![HullFactors { edges: [3.0; 3], inside: 3.0 }; topology.patches.len()];
+            discarded.iter().for_each(|(patch, edges)| given[*patch as usize].edges = *edges);
+            let inputs = Settings::default().inputs(view());
+            let out = tessellate_given(&mesh, &topology, &inputs, &given);
+            Measured::of(&mesh, &topology, AskedFactors::given(Convention::D3d11, &given), &out).cracks
+        };
+        assert!(found(&[]).edges.is_empty());
+        let [a, b, c] = topology.patch_positions(5);
+        let height = (b - a).cross(c - a).length() / a.distance(b).min(b.distance(c)).min(c.distance(a));
+        for factor in [f32::NAN, 0.0, -2.0] {
+            let cracks = found(&[(5, [factor, 3.0, 3.0])]);
+            assert_eq!((cracks.cracked().len(), cracks.different_normals), (3, 0), "{factor}");
+            assert_eq!(cracks.different_factors, 1, "{factor}: the others got the same from both sides");
+            // Three segments are four points.
+            assert_eq!(cracks.different_bits, 12, "{factor}");
+            assert!(cracks.edges.iter().all(|crack| crack.discarded == Some(5)));
+            let gap = cracks.max_gap() as f32;
+            // The edge is curved.
+            assert!((0.8 * height..=1.05 * height).contains(&gap), "{gap}, where the triangle is {height} high");
+        }
+        // Between two such patches nothing is drawn.
+        let across = topology.patches[5].sides.map(|side| topology.sides[side as usize].edge);
+        let other = topology.edge_sides(&topology.edges[across[0] as usize]).iter().find(|side| side.patch() != 5);
+        let two = [5, other.expect("a closed mesh").patch()].map(|patch| (patch, [f32::NAN; 3]));
+        assert_eq!(found(&two).cracked().len(), 4);
+    }
+
     fn side(points: &[[f32; 3]]) -> EdgeSide {
         let points: Vec<_> = points.iter().map(|&position| OutlinePoint { position, normal: 0 }).collect();
         EdgeSide { patch: 0, triangle: 0, factor: 2.0, word: 0, points }
@@ -319,17 +381,17 @@ mod tests {
     fn the_largest_gap_is_found_between_any_two_sides() {
         let bent = |x: f32| side(&[[0.0; 3], [x, 0.0, 0.0], [0.0; 3]]);
         let sides = [bent(0.0), bent(-0.25), bent(0.5), bent(0.5)];
-        let crack = compare(7, &sides, 0).expect("they differ");
-        assert_eq!((points_compared(&sides), crack.different_bits, crack.edge, crack.gap), (9, 3, 7, 0.75));
-        assert_eq!(compare(0, &[bent(1.0), bent(1.0)], 0), None);
-        assert_eq!(compare(0, &[bent(1.0), bent(f32::NAN)], 0).map(|crack| crack.gap), Some(f64::INFINITY));
+        let crack = compare(7, &sides, &[], 0).expect("they differ");
+        assert_eq!((points_compared(&sides, &[]), crack.different_bits, crack.edge, crack.gap), (9, 3, 7, 0.75));
+        assert_eq!(compare(0, &[bent(1.0), bent(1.0)], &[], 0), None);
+        assert_eq!(compare(0, &[bent(1.0), bent(f32::NAN)], &[], 0).map(|crack| crack.gap), Some(f64::INFINITY));
     }
 
     #[test]
     fn sides_with_different_numbers_of_points_are_compared_as_lines() {
         let coarse = side(&[[0.0, 0.0, 0.0], [4.0, 0.0, 0.0]]);
         let fine = side(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.5, 0.0], [4.0, 0.0, 0.0]]);
-        let crack = compare(0, &[coarse, fine], 0).expect("they differ");
+        let crack = compare(0, &[coarse, fine], &[], 0).expect("they differ");
         assert_eq!(crack.gap, 0.5);
         assert_eq!(crack.widest.map(|p| p.y).into_iter().fold(0.0, f32::max), 0.5);
     }

@@ -126,6 +126,14 @@ impl Outlines {
         topology.side_range(&topology.edges[edge as usize]).filter_map(|side| self.side(topology, side)).collect()
     }
 
+    /// The sides of an edge whose patches are left out since a factor of theirs isn't greater than zero; they have no points. What is out
+    /// of view or faces away isn't among them, since its place shows no hole.
+    pub fn discarded(&self, topology: &Topology, edge: u32) -> Vec<EdgeSide> {
+        let sides = topology.edge_sides(&topology.edges[edge as usize]).iter();
+        let discarded = sides.filter(|side| self.factors[side.patch() as usize] == PatchFactors::default());
+        discarded.map(|side| self.side_without_points(topology, *side)).collect()
+    }
+
     /// Sides 0, 1 and 2 of a patch (an index into [`Topology::patches`]); `None` if it emits nothing.
     pub fn patch(&self, topology: &Topology, patch: u32) -> Option<[EdgeSide; 3]> {
         let [a, b, c] = topology.patches[patch as usize].sides.map(|side| self.side(topology, side));
@@ -179,16 +187,20 @@ impl Outlines {
 
     fn side(&self, topology: &Topology, index: u32) -> Option<EdgeSide> {
         let side = topology.sides[index as usize];
-        let patch = side.patch();
-        let (factor, range) = self.side_points(side)?;
-        let (outline, words) = (self.outline(patch), self.factors[patch as usize].outside);
+        let (_, range) = self.side_points(side)?;
+        let outline = self.outline(side.patch());
         let mut points: Vec<_> = range.map(|p| outline[p as usize % outline.len()]).collect();
         if side.reversed() {
             points.reverse();
         }
+        Some(EdgeSide { points, ..self.side_without_points(topology, side) })
+    }
+
+    fn side_without_points(&self, topology: &Topology, side: Side) -> EdgeSide {
+        let (patch, factor) = (side.patch(), self.asked.index(side.index()));
         let triangle = topology.patches[patch as usize].triangle;
-        let asked = self.asked.of(topology, patch, factor);
-        Some(EdgeSide { patch, triangle, factor: asked, word: words[factor], points })
+        let word = self.factors[patch as usize].outside[factor];
+        EdgeSide { patch, triangle, factor: self.asked.of(topology, patch, factor), word, points: Vec::new() }
     }
 
     /// A patch's outline, in the tessellator's order.

@@ -20,8 +20,8 @@ pub(crate) struct SeenCrack {
 }
 
 impl Measured {
-    /// The crack that comes closest to a place of a picture, in px from its top left, whatever hides it. Where patches emitted
-    /// nothing, the edges around the hole count as cracks. None if nothing before the eye is torn.
+    /// The crack that comes closest to a place of a picture, in px from its top left, whatever hides it. Where patches are out of
+    /// view, the edges around the hole count as cracks. None if nothing before the eye is torn.
     pub(crate) fn crack_seen_at(&self, topology: &Topology, view: &ScreenView, px: Vec2) -> Option<SeenCrack> {
         let torn = self.cracks.edges.iter().filter(|crack| crack.gap > 0.0);
         let torn = torn.map(|crack| (crack.edge, crack.gap_px(view.clip_from_object, view.viewport) as f32));
@@ -41,7 +41,7 @@ impl Measured {
             emitted > 0 && emitted < topology.edge_sides(&topology.edges[index as usize]).len()
         };
         // Patches that face away are emitted to look for leaks.
-        let has_holes = self.culled.out_of_view + self.culled.by_factors > 0;
+        let has_holes = self.culled.out_of_view > 0;
         shared.map(|(index, _)| index).filter(move |index| has_holes && is_torn(*index))
     }
 

@@ -85,7 +85,7 @@ impl<'a> Survey<'a> {
     pub(crate) fn finish(mut self) -> Measured {
         let (mut cracks, mut seams) = (Cracks::default(), Seams::default());
         for (edge, sides) in self.outlines.shared_edges(self.topology) {
-            cracks.take(self.mesh, self.topology, edge, &sides);
+            cracks.take(self.mesh, self.topology, edge, &sides, &self.outlines.discarded(self.topology, edge));
             seams.take(self.mesh, self.topology, &self.outlines, edge, &sides);
         }
         self.folded.sort_by(|a, b| b.area.total_cmp(&a.area));

@@ -44,7 +44,7 @@ impl From<MemoryRefused> for String {
 }
 
 /// An account of memory, in bytes, that is asked before each allocation and refuses what is too much. Memory that is
-/// *held* stays in use; memory that is *borrowed* is returned soon, all at once.
+/// *held* stays in use; memory that is *borrowed* is returned at the end of a scope (see [`Borrowed`]), all at once.
 pub trait MemoryAccount {
     /// Asks for memory that stays in use until it is [released](Self::release).
     ///
@@ -55,7 +55,7 @@ pub trait MemoryAccount {
     /// Returns memory that was held.
     fn release(&self, bytes: u64);
 
-    /// Asks for memory that [`give_back_to`](Self::give_back_to) returns.
+    /// Asks for memory that is returned at the end of the innermost scope.
     ///
     /// # Errors
     /// [`MemoryRefused`].
@@ -64,8 +64,8 @@ pub trait MemoryAccount {
     /// Returns how many bytes are borrowed now.
     fn borrowed(&self) -> u64;
 
-    /// Returns all borrowed memory but the given number of bytes.
-    fn give_back_to(&self, borrowed: u64);
+    /// Returns what was borrowed in a scope.
+    fn give_back(&self, scope: &Borrowed);
 
     /// Holds `new` bytes in place of `old` ones. Both are in use for a moment.
     ///
@@ -96,5 +96,36 @@ impl MemoryAccount for Unlimited {
         0
     }
 
-    fn give_back_to(&self, _: u64) {}
+    fn give_back(&self, _: &Borrowed) {}
+}
+
+/// A scope of borrowed memory: when it is dropped, all that was borrowed since it began is returned. What was borrowed before, by
+/// whoever called, stays borrowed.
+pub struct Borrowed<'a> {
+    account: &'a dyn MemoryAccount,
+    before: u64,
+}
+
+impl<'a> Borrowed<'a> {
+    /// Begins a scope.
+    pub fn from(account: &'a dyn MemoryAccount) -> Self {
+        Self { account, before: account.borrowed() }
+    }
+
+    /// How many bytes were borrowed when it began.
+    pub fn before(&self) -> u64 {
+        self.before
+    }
+}
+
+impl Drop for Borrowed<'_> {
+    fn drop(&mut self) {
+        self.account.give_back(self);
+    }
+}
+
+/// Returns the result of `work`, and gives back what that borrows.
+pub(crate) fn borrowing<T>(account: &dyn MemoryAccount, work: impl FnOnce() -> T) -> T {
+    let _scope = Borrowed::from(account);
+    work()
 }

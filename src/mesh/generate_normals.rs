@@ -13,7 +13,7 @@ use super::smooth_points::give_normals;
 use super::unfinished_mesh::{CornerPoints, UnfinishedMesh};
 use super::weld::plus_zero3;
 use crate::cores::in_ranges;
-use crate::mesh::build_limits::MemoryAccount;
+use crate::mesh::build_limits::{Borrowed, MemoryAccount, borrowing};
 use crate::progress::Progress;
 
 /// Memory for each face of the largest fan, in bytes.
@@ -45,16 +45,13 @@ pub(crate) fn generate_normals(
     budget: &dyn MemoryAccount,
     progress: &Progress,
 ) -> Result<(), BuildError> {
-    let borrowed = budget.borrowed();
+    let _scope = Borrowed::from(budget);
     let points = CornerPoints::of(mesh, budget)?;
-    let needed = budget.borrowed();
-    let done = give_normals(mesh, &points, crease_angle, budget, progress)?;
-    budget.give_back_to(needed);
+    let done = borrowing(budget, || give_normals(mesh, &points, crease_angle, budget, progress))?;
     if done.is_empty() || done.contains(&false) {
         budget.borrow(done.len() as u64)?;
         with_fans(mesh, (&points, &done), crease_angle, budget, progress)?;
     }
-    budget.give_back_to(borrowed);
     Ok(())
 }
 

@@ -80,6 +80,8 @@ pub struct Look {
     pub clearcoat: f32,
     /// Perceptual roughness of the coat.
     pub clearcoat_roughness: f32,
+    /// Factor of the first two components of the normals that the coat's own map has.
+    pub clearcoat_normal_scale: f32,
     /// How much of a dielectric's light goes through it in place of being scattered, 0 to 1. The surface is thin: it bends no light
     /// (KHR_materials_transmission).
     pub transmission: f32,
@@ -106,6 +108,7 @@ impl Default for Look {
             specular_color: [1.0; 3],
             clearcoat: 0.0,
             clearcoat_roughness: 0.0,
+            clearcoat_normal_scale: 1.0,
             transmission: 0.0,
             sheen_color: [0.0; 3],
             sheen_roughness: 0.0,
@@ -115,6 +118,14 @@ impl Default for Look {
 }
 
 impl Look {
+    /// The maps whose texture coordinates tangents go along: those of the first one that there is.
+    pub(crate) const TANGENT_SLOTS: [Slot; 2] = [Slot::Normal, Slot::ClearcoatNormal];
+
+    /// The map that needs tangents: see [`Self::TANGENT_SLOTS`].
+    pub(crate) fn tangent_map(&self) -> Option<&Map> {
+        Self::TANGENT_SLOTS.iter().find_map(|slot| self.maps[*slot as usize].as_ref())
+    }
+
     /// Whether light goes through it. None does where it is unlit.
     pub(crate) fn transmits(&self) -> bool {
         self.transmission > 0.0 && !self.unlit
@@ -155,11 +166,21 @@ pub enum Slot {
     SheenColor,
     /// Roughness of the sheen in alpha, linear.
     SheenRoughness,
+    /// How much of the surface the clear coat covers in red, linear.
+    Clearcoat,
+    /// Roughness of the coat in green, linear.
+    ClearcoatRoughness,
+    /// Normals of the coat in tangent space, linear.
+    ClearcoatNormal,
+    /// Strength of a dielectric's reflection in alpha, linear.
+    Specular,
+    /// Colour of a dielectric's reflection seen head-on, sRGB.
+    SpecularColor,
 }
 
 impl Slot {
     /// How many there are.
-    pub const COUNT: usize = 7;
+    pub const COUNT: usize = 12;
     /// All of them, in the order of [`Look::maps`].
     pub const ALL: [Self; Self::COUNT] = [
         Self::MetallicRoughness,
@@ -169,6 +190,11 @@ impl Slot {
         Self::Transmission,
         Self::SheenColor,
         Self::SheenRoughness,
+        Self::Clearcoat,
+        Self::ClearcoatRoughness,
+        Self::ClearcoatNormal,
+        Self::Specular,
+        Self::SpecularColor,
     ];
 }
 

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use glam::{Vec2, Vec3};
 
-use super::build_limits::{BuildError, MemoryAccount, MemoryRefused, Unlimited};
+use super::build_limits::{Borrowed, BuildError, MemoryAccount, MemoryRefused, Unlimited, borrowing};
 use super::generate_normals::generate_normals;
 use super::normals::{CREASE_ANGLE, GivenNormal};
 use super::unfinished_mesh::UnfinishedMesh;
@@ -262,13 +262,14 @@ impl MeshBuilder {
         progress: &Progress,
     ) -> Result<(Mesh, Vec<u32>), BuildError> {
         self.distinct.close(budget);
-        let (triangles, materials) = self.gathered(budget)?;
+        let (triangles, materials) = borrowing(budget, || self.gathered(budget))?;
         progress.check()?;
         let DistinctCorners { corners, bindings, .. } = self.distinct;
         let mut mesh = UnfinishedMesh { corners, bindings, triangles };
         if mesh.corners.iter().any(|corner| corner.normal.x.is_nan()) {
             generate_normals(&mut mesh, self.crease_angle, budget, progress)?;
         }
+        let _scope = Borrowed::from(budget);
         budget.borrow(mesh.corners.len() as u64 * 4)?;
         renumber(&mut mesh);
         progress.check()?;
@@ -304,7 +305,6 @@ impl MeshBuilder {
             material.triangles = Range { start: first, end: triangles.len() as u32 };
             materials.push(material);
         }
-        budget.give_back_to(0);
         Ok((triangles, materials))
     }
 }

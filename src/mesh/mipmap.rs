@@ -34,9 +34,10 @@ impl MipFilter {
     /// That of a map.
     pub(crate) fn of_map(slot: Slot) -> Self {
         match slot {
-            Slot::Emissive | Slot::SheenColor => Self::Colors,
-            Slot::Normal => Self::Normals,
+            Slot::Emissive | Slot::SheenColor | Slot::SpecularColor => Self::Colors,
+            Slot::Normal | Slot::ClearcoatNormal => Self::Normals,
             Slot::MetallicRoughness | Slot::Occlusion | Slot::Transmission | Slot::SheenRoughness => Self::Numbers,
+            Slot::Clearcoat | Slot::ClearcoatRoughness | Slot::Specular => Self::Numbers,
         }
     }
 }

@@ -57,7 +57,7 @@ pub use topology::{Edge, EdgeCounts, EdgeKind, Patch, Side, Topology};
 
 #[cfg(test)]
 pub(crate) use build_limits::Unlimited;
-pub(crate) use build_limits::{BuildError, MemoryAccount, MemoryRefused};
+pub(crate) use build_limits::{Borrowed, BuildError, MemoryAccount, MemoryRefused, borrowing};
 pub(crate) use crease_band::{CreaseBand, with_crease_band};
 pub(crate) use curves::{Curve, Curves, Sharing};
 pub(crate) use dominance::Dominance;

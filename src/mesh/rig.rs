@@ -107,12 +107,14 @@ impl JointMatrix {
     }
 }
 
-/// A matrix of the palette: `offset`, followed by the transform of the animated node.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A matrix of the palette: `offset`, followed by the transform of the animated node, and `place`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Joint {
     /// Index into [`Rig::nodes`]; none if no clip moves the joint.
     pub node: Option<u32>,
     pub offset: DMat4,
+    /// Where a copy of a skinned mesh is, relative to the mesh that the joints move.
+    pub place: DMat4,
 }
 
 /// The morph targets of one node.
@@ -249,7 +251,8 @@ impl Rig {
 
     fn posed(&self, placements: &[Placement], weights: Vec<f32>) -> Pose {
         let global = self.global(placements);
-        let matrix = |joint: &Joint| joint.node.map_or(joint.offset, |node| global[node as usize] * joint.offset);
+        let matrix =
+            |joint: &Joint| joint.place * joint.node.map_or(joint.offset, |node| global[node as usize] * joint.offset);
         Pose {
             palette: self.joints.iter().map(|joint| JointMatrix::new(matrix(joint))).collect(),
             weights,

@@ -13,7 +13,7 @@ use super::build_limits::{BuildError, Unlimited};
 use super::union_find::UnionFind;
 use super::weld::{WELD_BYTES, weld_alike};
 use super::{Corner, Mesh};
-use crate::mesh::build_limits::MemoryAccount;
+use crate::mesh::build_limits::{Borrowed, MemoryAccount};
 use crate::progress::{Cancelled, Progress};
 
 /// A mesh's patches and the edges between them.
@@ -178,15 +178,16 @@ impl Topology {
         budget: &dyn MemoryAccount,
         progress: &Progress,
     ) -> Result<Self, BuildError> {
-        let borrowed = budget.borrowed();
         let take = |bytes: usize| budget.hold(bytes as u64);
+        let welding = Borrowed::from(budget);
         budget.borrow(weld_bytes(mesh.corners.len(), tolerance))?;
         let (mut points, corner_points) = weld_corners(mesh, tolerance);
         points.shrink_to_fit();
-        budget.give_back_to(borrowed);
+        drop(welding);
         take(16 * points.len() + 4 * corner_points.len())?;
         progress.check()?;
         take(mesh.triangles.len() * size_of::<Patch>())?;
+        let _connecting = Borrowed::from(budget);
         budget.borrow(8 * points.len() as u64)?;
         let (patches, starts) = connecting::patches(&mesh.triangles, &corner_points, points.len());
         progress.check()?;
@@ -209,7 +210,6 @@ impl Topology {
         topology.edges = connecting::edges(&topology, &mut sides, &ranges, &starts, &has_many, &mesh.corners);
         connecting::connect(&mut topology.patches, &sides);
         topology.sides = sides;
-        budget.give_back_to(borrowed);
         progress.check()?;
         Ok(topology)
     }
@@ -229,13 +229,22 @@ impl Topology {
         counts
     }
 
-    /// Returns whether every edge has exactly two sides with opposite directions, so that the mesh has an inside.
-    pub fn is_closed_and_oriented(&self) -> bool {
-        let opposed = |edge: &Edge| match self.edge_sides(edge) {
+    /// Returns whether every edge has exactly two sides.
+    pub fn is_closed(&self) -> bool {
+        !self.edges.is_empty() && self.edges.iter().all(|edge| self.edge_sides(edge).len() == 2)
+    }
+
+    /// Returns whether the triangles at every edge of two sides are wound the same way.
+    pub fn is_oriented(&self) -> bool {
+        self.edges.iter().all(|edge| match self.edge_sides(edge) {
             [a, b] => a.reversed() != b.reversed(),
-            _ => false,
-        };
-        !self.edges.is_empty() && self.edges.iter().all(opposed)
+            _ => true,
+        })
+    }
+
+    /// Returns whether the mesh has an inside.
+    pub fn is_closed_and_oriented(&self) -> bool {
+        self.is_closed() && self.is_oriented()
     }
 
     /// Returns the volume of each part of the mesh that is connected by edges, in cubic object units. It is negative

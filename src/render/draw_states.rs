@@ -17,7 +17,7 @@ impl Draw {
             Self::Lit(..) => "lit_vertex",
             Self::Indexed(..) | Self::LitIndexed(..) | Self::LookIndexed(..) => "indexed_vertex",
             Self::Pulled(..) | Self::LitPulled(..) | Self::LookPulled(..) => "pulled_vertex",
-            Self::Source | Self::LitSource(_) | Self::LookSource(_) => "source_vertex",
+            Self::Source | Self::LitSource(..) | Self::LookSource(_) => "source_vertex",
             Self::Layer(_, triangles, ..) | Self::Cut(triangles, ..) => match triangles {
                 Triangles::Lit => "lit_vertex",
                 Triangles::Indexed => "indexed_vertex",
@@ -49,15 +49,17 @@ impl Draw {
             }
             Self::Lit(_, places, _) => at(places, ["masked_lit_fragment", "pixel_masked_lit_fragment"]),
             Self::LitIndexed(_, places, needs) | Self::LitPulled(_, places, needs) => lit_surface(places, needs),
-            Self::LitSource(needs) => lit_surface(NormalsAt::Vertices, needs),
+            Self::LitSource(_, needs) => lit_surface(NormalsAt::Vertices, needs),
             Self::Cut(_, _, places, Cut { samples: false, .. }) => {
                 at(places, ["cut_surface_fragment", "pixel_cut_surface_fragment"])
             }
             Self::Cut(_, _, places, _) => at(places, ["cut_samples_fragment", "pixel_cut_samples_fragment"]),
-            Self::Layer(LayerDraw::Away | LayerDraw::Toward, Triangles::Lit, ..) => "lit_depth_fragment",
-            Self::Layer(LayerDraw::Away | LayerDraw::Toward, ..) => "surface_depth_fragment",
-            Self::Layer(_, Triangles::Lit, places, _) => at(places, ["lit_layer_fragment", "pixel_lit_layer_fragment"]),
-            Self::Layer(_, _, places, _) => at(places, ["surface_layer_fragment", "pixel_surface_layer_fragment"]),
+            Self::Layer(draw, Triangles::Lit, ..) if draw.finds() => "lit_depth_fragment",
+            Self::Layer(draw, ..) if draw.finds() => "surface_depth_fragment",
+            Self::Layer(_, Triangles::Lit, _, places, _) => {
+                at(places, ["lit_layer_fragment", "pixel_lit_layer_fragment"])
+            }
+            Self::Layer(_, _, _, places, _) => at(places, ["surface_layer_fragment", "pixel_surface_layer_fragment"]),
             Self::LayerClear(_) => "clear_fragment",
             Self::Background => "background_fragment",
             Self::Ground => "ground_fragment",
@@ -83,7 +85,7 @@ impl Draw {
             Self::Pulled(..) | Self::LitPulled(..) | Self::LookPulled(..) => Vec::new(),
             Self::Layer(_, Triangles::Pulled | Triangles::Source, ..) => Vec::new(),
             Self::Cut(Triangles::Pulled | Triangles::Source, ..) => Vec::new(),
-            Self::Source | Self::LitSource(_) | Self::LookSource(_) => Vec::new(),
+            Self::Source | Self::LitSource(..) | Self::LookSource(_) => Vec::new(),
             Self::Background | Self::Ground | Self::LayerClear(_) => Vec::new(),
             Self::Lines(_) => vec![Some(wgpu::VertexBufferLayout {
                 array_stride: size_of::<LineSegment>() as u64,
@@ -98,7 +100,7 @@ impl Draw {
     pub(super) fn depth_stencil(self) -> wgpu::DepthStencilState {
         let compare = match self {
             // A shader compares the depth of what composites a layer.
-            Self::Layer(LayerDraw::Over | LayerDraw::Filter | LayerDraw::Add, ..) => wgpu::CompareFunction::Always,
+            Self::Layer(draw, ..) if !draw.finds() => wgpu::CompareFunction::Always,
             Self::LayerClear(_) => wgpu::CompareFunction::Always,
             Self::Layer(LayerDraw::Toward, ..) => wgpu::CompareFunction::Less,
             Self::Lines(Occluded::Through) | Self::Normals(Occluded::Through) => wgpu::CompareFunction::Always,
@@ -108,7 +110,7 @@ impl Draw {
         };
         // The ground, lines and layers are blended over surfaces.
         let is_blended = matches!(self, Self::Ground | Self::Lines(_) | Self::Normals(_))
-            || matches!(self, Self::Layer(LayerDraw::Over | LayerDraw::Filter | LayerDraw::Add, ..));
+            || matches!(self, Self::Layer(draw, ..) if !draw.finds());
         wgpu::DepthStencilState {
             format: DEPTH_FORMAT,
             depth_write_enabled: Some(!is_blended),
@@ -148,6 +150,8 @@ impl Draw {
         | Self::Lit(faces, ..)
         | Self::LitIndexed(faces, ..)
         | Self::LitPulled(faces, ..)
+        | Self::LitSource(faces, _)
+        | Self::Layer(_, _, faces, ..)
         | Self::Cut(_, faces, ..)
         | Self::LookIndexed(faces, ..)
         | Self::LookPulled(faces, ..)) = self
@@ -163,7 +167,7 @@ impl Draw {
             Self::Lit(.., needs)
             | Self::LitIndexed(.., needs)
             | Self::LitPulled(.., needs)
-            | Self::LitSource(needs) => needs.constants().to_vec(),
+            | Self::LitSource(_, needs) => needs.constants().to_vec(),
             Self::Layer(draw, .., needs) => {
                 let toward_eye = f64::from(u8::from(draw == LayerDraw::Toward));
                 let of_layer = [("TOWARD_EYE", toward_eye), ("LAYER_DRAW", f64::from(draw as u32))];

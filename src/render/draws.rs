@@ -27,7 +27,7 @@ pub(super) enum Draw {
     /// [`Self::Pulled`] with such materials.
     LitPulled(Faces, NormalsAt, Needs),
     /// [`Self::Source`] with such materials.
-    LitSource(Needs),
+    LitSource(Faces, Needs),
     /// [`Self::Indexed`], [`Self::Pulled`] or [`Self::Source`] of a material that a mask cuts.
     Cut(Triangles, Faces, NormalsAt, Cut),
     /// [`Self::Indexed`] in the variant of a look.
@@ -37,7 +37,7 @@ pub(super) enum Draw {
     /// [`Self::Source`] in such a variant.
     LookSource(Look),
     /// Triangles with such materials where they show what is behind them.
-    Layer(LayerDraw, Triangles, NormalsAt, Needs),
+    Layer(LayerDraw, Triangles, Faces, NormalsAt, Needs),
     /// Depths of layers where nothing is found.
     LayerClear(LayerClear),
     /// The light from all around, behind everything.
@@ -63,6 +63,13 @@ pub(super) enum LayerDraw {
     Away,
     /// Finds those of the next layer toward the eye.
     Toward,
+}
+
+impl LayerDraw {
+    /// Whether it finds depths, and composites nothing.
+    pub(super) fn finds(self) -> bool {
+        matches!(self, Self::Away | Self::Toward)
+    }
 }
 
 /// Which depths of layers a pipeline sets.
@@ -122,7 +129,7 @@ impl Draw {
             let composites = [LayerDraw::Over, LayerDraw::Filter, LayerDraw::Add].into_iter();
             let composites = composites.flat_map(|draw| places.iter().map(move |&at| (draw, at)));
             let finds = [LayerDraw::Away, LayerDraw::Toward].map(|draw| (draw, NormalsAt::Vertices));
-            composites.chain(finds).map(move |(draw, at)| Self::Layer(draw, triangles, at, Needs::ALL))
+            composites.chain(finds).map(move |(draw, at)| Self::Layer(draw, triangles, Faces::Both, at, Needs::ALL))
         });
         let masked = Needs { masked_samples: true, ..Needs::ALL };
         let masks = NormalsAt::ALL.iter().flat_map(move |&at| {
@@ -136,7 +143,13 @@ impl Draw {
             });
             emitted.chain([Self::Cut(Triangles::Source, Faces::Both, NormalsAt::Vertices, cut)])
         });
-        Self::OTHERS.into_iter().chain(layers).chain(masks).chain([Self::LitSource(masked)]).chain(cuts).collect()
+        Self::OTHERS
+            .into_iter()
+            .chain(layers)
+            .chain(masks)
+            .chain([Self::LitSource(Faces::Both, masked)])
+            .chain(cuts)
+            .collect()
     }
 
     /// Those that don't draw layers.
@@ -168,7 +181,7 @@ impl Draw {
         Self::LitPulled(Faces::Fronts, NormalsAt::Vertices, Needs::ALL),
         Self::LitPulled(Faces::Both, NormalsAt::Pixels, Needs::ALL),
         Self::LitPulled(Faces::Fronts, NormalsAt::Pixels, Needs::ALL),
-        Self::LitSource(Needs::ALL),
+        Self::LitSource(Faces::Both, Needs::ALL),
         Self::LayerClear(LayerClear::Begin),
         Self::LayerClear(LayerClear::Away),
         Self::LayerClear(LayerClear::Back),

@@ -70,7 +70,9 @@ pub(crate) struct Material {
     pub blends: f32,
     /// How much of a dielectric's light goes through it.
     pub transmission: f32,
-    pub _pad: [f32; 2],
+    /// 0 without a normal map of the coat.
+    pub coat_normal_scale: f32,
+    pub _pad: f32,
     /// Linear RGB of the sheen; 0 without one.
     pub sheen_color: [f32; 3],
     pub sheen_roughness: f32,

@@ -10,6 +10,7 @@ use super::Scene;
 use super::adding_pipeline::Adding;
 use crate::gpu::wgsl::wgsl;
 use crate::gpu::{Gpu, GpuError, Lazy, Readback, Recorder, ShaderModule, Timing, WgslFile, bind_group};
+use crate::mesh::Topology;
 
 pub(super) static DRAW_LEAKS: WgslFile = wgsl!("draw_leaks");
 
@@ -76,32 +77,19 @@ impl LeakCounter {
         Ok(LeakCount { texture, pipeline: pipeline.clone(), group, next_chunk: 0 })
     }
 
-    /// The leaks in a picture of `size` (width and height in px). The scene's counts must be known, its mesh must be closed, and
-    /// all of it must lie beyond the near plane.
+    /// The leaks in a picture of `size` (width and height in px), the largest first. The scene's counts must be known, its mesh must
+    /// be closed, and all of it must lie beyond the near plane.
     ///
     /// # Errors
     /// The picture is larger than the adapter draws, or the device was lost.
-    pub(crate) fn count(&self, gpu: &Gpu, scene: &mut Scene, size: [u32; 2], clip: Mat4) -> Result<u64, GpuError> {
-        Ok(leaking_pixels(&self.counts(gpu, scene, size, clip)?).count() as u64)
-    }
-
-    /// The same leaks with their places, the largest first.
-    ///
-    /// # Errors
-    /// The same.
     pub(crate) fn find(&self, gpu: &Gpu, scene: &mut Scene, size: [u32; 2], clip: Mat4) -> Result<Vec<Leak>, GpuError> {
-        Ok(leaks_in(&self.counts(gpu, scene, size, clip)?, size[0].max(1) as usize))
-    }
-
-    /// The counts of all pixels.
-    fn counts(&self, gpu: &Gpu, scene: &mut Scene, size: [u32; 2], clip: Mat4) -> Result<Vec<u8>, GpuError> {
         let mut count = self.start(gpu, size, clip)?;
         let mut counts = loop {
             if let Some(counts) = count.draw_next(gpu, scene)? {
                 break counts;
             }
         };
-        counts.wait(gpu)
+        Ok(leaks_in(&counts.wait(gpu)?, size[0].max(1) as usize))
     }
 }
 
@@ -179,11 +167,22 @@ pub(crate) enum Leaks {
     Counted(Vec<Leak>),
     /// The mesh is open: one sees its inside past its border.
     Open,
+    /// Triangles that meet are wound opposite ways, so that the mesh has no inside.
+    BothWays,
     /// The near plane of the view cuts the mesh open.
     NearPlane,
 }
 
 impl Leaks {
+    /// Why the leaks of a mesh can be counted in no view; none if they can.
+    pub(crate) fn uncounted(topology: &Topology) -> Option<Self> {
+        match (topology.is_closed(), topology.is_oriented()) {
+            (true, true) => None,
+            (true, false) => Some(Self::BothWays),
+            (false, _) => Some(Self::Open),
+        }
+    }
+
     /// The leaks of the mirrored picture, which is `width` px wide.
     pub(crate) fn mirrored(self, width: f32) -> Self {
         match self {

@@ -6,6 +6,7 @@ use super::environment::Environment;
 use super::layout::{self, LEAST_SEEN, MapPlace};
 use super::mipmap_pass::Mipmaps;
 use super::punctual::upload_lights;
+use super::target::samples;
 use super::textures::{ImageUse, Samplers, Textures, white};
 use crate::gpu::{Gpu, GpuError};
 use crate::mesh::mipmap::MipFilter;
@@ -19,17 +20,26 @@ const FILE_LIGHTS_BINDING: u32 = 20;
 /// Where the bindings of the images go on that have no room below the light's; the same in `shaders/draw_material.wgsl`.
 const LATER_IMAGES_BINDING: u32 = 21;
 
+/// The binding of the depths of what hides everything behind it, where layers are found; the same in `shaders/layers_single.wgsl` and
+/// `shaders/layers_multisampled.wgsl`.
+const HIDING_DEPTHS_BINDING: u32 = 35;
+
 /// Images of a material: that of the base colour, and the maps.
 const IMAGES: usize = 1 + Slot::COUNT;
 /// How many of them have their bindings below the light's.
 const EARLY_IMAGES: usize = 6;
+/// Those that say where a material shows what is behind it: that of the base colour, and how much light goes through.
+const IMAGES_OF_LAYERS: [usize; 2] = [0, 1 + Slot::Transmission as usize];
 
 /// What the materials of all scenes share: layouts, samplers and a white texture.
 pub struct Materials {
     /// Of the base colour's constants, texture and sampler.
     pub layout: wgpu::BindGroupLayout,
-    /// Of everything, and the light.
+    /// Of everything, and the light. With the depths of the layer that was found last, shaders then have as many images as WebGPU
+    /// allows.
     pub lit_layout: wgpu::BindGroupLayout,
+    /// Of what finds layers, without light.
+    pub found_layout: wgpu::BindGroupLayout,
     /// For what has no image.
     white: wgpu::TextureView,
     /// For a mesh without lights.
@@ -49,11 +59,13 @@ pub struct UploadedMaterial {
 
 impl Materials {
     pub fn new(gpu: &Gpu) -> Self {
-        let own = |images| [vec![uniform_entry(0)], image_entries(images)].concat();
+        let own = |images: &[usize]| [vec![uniform_entry(0)], image_entries(images)].concat();
+        let depths = [depths_entry(gpu, HIDING_DEPTHS_BINDING)];
         let lights = [Environment::layout_entries(LIGHT_BINDING).to_vec(), vec![uniform_entry(FILE_LIGHTS_BINDING)]];
         Self {
-            layout: bind_group_layout(gpu, "material", &own(1)),
-            lit_layout: bind_group_layout(gpu, "lit material", &[own(IMAGES), lights.concat()].concat()),
+            layout: bind_group_layout(gpu, "material", &own(&[0])),
+            lit_layout: bind_group_layout(gpu, "lit material", &[own(&all_images()), lights.concat()].concat()),
+            found_layout: bind_group_layout(gpu, "found material", &[&own(&IMAGES_OF_LAYERS)[..], &depths].concat()),
             white: white(gpu),
             no_lights: upload_lights(gpu, &[]),
             samplers: Samplers::default(),
@@ -93,8 +105,7 @@ impl Materials {
                 images[1 + slot as usize] = (view, sampler(map.sampling));
             }
         }
-        let entries = [vec![entry(0, constants.as_entire_binding())], entries_of(&images[..1])].concat();
-        let group = bind_group(gpu, "material", &self.layout, &entries);
+        let group = bind_group(gpu, "material", &self.layout, &own_entries(&constants, &images, &[0]));
         Ok(UploadedMaterial { group, constants, images })
     }
 
@@ -109,9 +120,23 @@ impl Materials {
         let lights = entry(FILE_LIGHTS_BINDING, lights.unwrap_or(&self.no_lights).as_entire_binding());
         let light = [&environment.entries(LIGHT_BINDING, surroundings)[..], &[lights]].concat();
         let group = |own: &UploadedMaterial| {
-            let constants = vec![entry(0, own.constants.as_entire_binding())];
-            let entries = [constants, entries_of(&own.images), light.clone()].concat();
+            let entries = [own_entries(&own.constants, &own.images, &all_images()), light.clone()].concat();
             bind_group(gpu, "lit material", &self.lit_layout, &entries)
+        };
+        materials.iter().map(group).collect()
+    }
+
+    /// The bind groups of materials for passes that find layers before what hides everything behind it, which has these depths.
+    pub(super) fn found_groups(
+        &self,
+        gpu: &Gpu,
+        materials: &[UploadedMaterial],
+        hiding: &wgpu::TextureView,
+    ) -> Vec<wgpu::BindGroup> {
+        let depths = [entry(HIDING_DEPTHS_BINDING, wgpu::BindingResource::TextureView(hiding))];
+        let group = |own: &UploadedMaterial| {
+            let entries = [&own_entries(&own.constants, &own.images, &IMAGES_OF_LAYERS)[..], &depths].concat();
+            bind_group(gpu, "found material", &self.found_layout, &entries)
         };
         materials.iter().map(group).collect()
     }
@@ -120,7 +145,7 @@ impl Materials {
 /// The constants that shaders read of a material.
 fn constants(material: &Material) -> layout::Material {
     let look = &material.look;
-    let has_normals = look.maps[Slot::Normal as usize].is_some();
+    let scale_of = |slot: Slot, scale: f32| if look.maps[slot as usize].is_some() { scale } else { 0.0 };
     layout::Material {
         base_color: material.base_color,
         emissive: look.emissive,
@@ -131,7 +156,7 @@ fn constants(material: &Material) -> layout::Material {
         specular: look.specular,
         coat: look.clearcoat,
         coat_roughness: look.clearcoat_roughness,
-        normal_scale: if has_normals { look.normal_scale } else { 0.0 },
+        normal_scale: scale_of(Slot::Normal, look.normal_scale),
         occlusion_strength: look.occlusion_strength,
         cutoff: match look.alpha {
             Alpha::Opaque => f32::NEG_INFINITY,
@@ -141,7 +166,8 @@ fn constants(material: &Material) -> layout::Material {
         unlit: f32::from(u8::from(look.unlit)),
         blends: f32::from(u8::from(look.alpha == Alpha::Blend)),
         transmission: if look.transmits() { look.transmission } else { 0.0 },
-        _pad: [0.0; 2],
+        coat_normal_scale: scale_of(Slot::ClearcoatNormal, look.clearcoat_normal_scale),
+        _pad: 0.0,
         sheen_color: if look.has_sheen() { look.sheen_color } else { [0.0; 3] },
         sheen_roughness: look.sheen_roughness,
         maps: look.maps.each_ref().map(|map| map_place(map.as_ref())),
@@ -162,21 +188,36 @@ fn uniform_entry(binding: u32) -> wgpu::BindGroupLayoutEntry {
     layout_entry(binding, wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None })
 }
 
-/// A texture and a sampler for each of so many images.
-fn image_entries(images: usize) -> Vec<wgpu::BindGroupLayoutEntry> {
-    let texture = wgpu::BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Float { filterable: true },
-        view_dimension: wgpu::TextureViewDimension::D2,
-        multisampled: false,
-    };
+/// A texture and a sampler for each of these images.
+fn image_entries(images: &[usize]) -> Vec<wgpu::BindGroupLayoutEntry> {
     let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-    let both = std::iter::repeat_n([texture, sampler], images).flatten();
-    image_bindings().zip(both).map(|(binding, ty)| layout_entry(binding, ty)).collect()
+    let both = |&image: &usize| {
+        let texture = texture_type(wgpu::TextureSampleType::Float { filterable: true }, false);
+        let binding = image_binding(image);
+        [layout_entry(binding, texture), layout_entry(binding + 1, sampler)]
+    };
+    images.iter().flat_map(both).collect()
 }
 
-/// The bindings of textures and samplers.
-fn image_bindings() -> impl Iterator<Item = u32> {
-    (1..=2 * EARLY_IMAGES as u32).chain(LATER_IMAGES_BINDING..)
+/// Depths of layers.
+pub(super) fn depths_entry(gpu: &Gpu, binding: u32) -> wgpu::BindGroupLayoutEntry {
+    layout_entry(binding, texture_type(wgpu::TextureSampleType::Depth, samples(gpu) > 1))
+}
+
+fn texture_type(sample_type: wgpu::TextureSampleType, multisampled: bool) -> wgpu::BindingType {
+    wgpu::BindingType::Texture { sample_type, view_dimension: wgpu::TextureViewDimension::D2, multisampled }
+}
+
+fn all_images() -> [usize; IMAGES] {
+    std::array::from_fn(|image| image)
+}
+
+/// The binding of an image. That of its sampler comes next.
+fn image_binding(image: usize) -> u32 {
+    match image.checked_sub(EARLY_IMAGES) {
+        Some(later) => LATER_IMAGES_BINDING + 2 * later as u32,
+        None => 1 + 2 * image as u32,
+    }
 }
 
 fn layout_entry(binding: u32, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEntry {
@@ -191,12 +232,18 @@ fn entry(binding: u32, resource: wgpu::BindingResource<'_>) -> wgpu::BindGroupEn
     wgpu::BindGroupEntry { binding, resource }
 }
 
-/// The entries of [`image_entries`].
-fn entries_of(images: &[(wgpu::TextureView, wgpu::Sampler)]) -> Vec<wgpu::BindGroupEntry<'_>> {
-    let both = images.iter().flat_map(|(view, sampler)| {
-        [wgpu::BindingResource::TextureView(view), wgpu::BindingResource::Sampler(sampler)]
+/// The constants of a material, and the entries of [`image_entries`].
+fn own_entries<'a>(
+    constants: &'a wgpu::Buffer,
+    images: &'a [(wgpu::TextureView, wgpu::Sampler); IMAGES],
+    bound: &[usize],
+) -> Vec<wgpu::BindGroupEntry<'a>> {
+    let both = bound.iter().flat_map(|&image| {
+        let ((view, sampler), binding) = (&images[image], image_binding(image));
+        let sampler = entry(binding + 1, wgpu::BindingResource::Sampler(sampler));
+        [entry(binding, wgpu::BindingResource::TextureView(view)), sampler]
     });
-    image_bindings().zip(both).map(|(binding, resource)| entry(binding, resource)).collect()
+    std::iter::once(entry(0, constants.as_entire_binding())).chain(both).collect()
 }
 
 fn bind_group(

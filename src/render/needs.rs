@@ -1,13 +1,13 @@
 //! What the shader that lights a mesh's materials must have.
 
-use crate::mesh::{Alpha, MOST_LIGHTS, Material, Mesh};
+use crate::mesh::{Alpha, MOST_LIGHTS, Material, Mesh, Slot};
 use crate::settings::{Colors, FileLights, Settings};
 
 /// What a mesh's materials need of the shader that lights them. What they don't need is left out of it when its pipeline is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Needs {
-    /// Images beside that of the base colour.
-    pub maps: bool,
+    /// Bits of the images beside that of the base colour, by [`Slot`].
+    pub maps: u32,
     /// Details of corners: colours, tangents, or further texture coordinates.
     pub details: bool,
     /// A clear coat.
@@ -29,7 +29,7 @@ pub(super) struct Needs {
 impl Needs {
     /// Everything that any mesh needs.
     pub(super) const ALL: Self = Self {
-        maps: true,
+        maps: (1 << Slot::COUNT) - 1,
         details: true,
         coat: true,
         mask: true,
@@ -46,10 +46,11 @@ impl Needs {
         let own = if kind.shares_shaders { &mesh.materials } else { std::slice::from_ref(material) };
         let lights = if settings.lights == FileLights::On { mesh.lights.len().min(MOST_LIGHTS) } else { 0 };
         let details = mesh.details.is_some();
-        let nothing = Self { maps: false, coat: false, mask: false, transmission: false, sheen: false, ..Self::ALL };
+        let nothing = Self { maps: 0, coat: false, mask: false, transmission: false, sheen: false, ..Self::ALL };
         let mut needs = Self { details, lights, ..nothing };
         for look in own.iter().map(|material| &material.look) {
-            needs.maps |= look.maps.iter().any(Option::is_some);
+            let maps = Slot::ALL.into_iter().filter(|slot| look.maps[*slot as usize].is_some());
+            needs.maps |= maps.map(|slot| 1 << slot as u32).sum::<u32>();
             needs.coat |= look.clearcoat > 0.0;
             needs.mask |= look.alpha != Alpha::Opaque;
             needs.transmission |= look.transmits();
@@ -70,7 +71,7 @@ impl Needs {
     pub(super) fn constants(self) -> [(&'static str, f64); 8] {
         let switch = |is_needed| f64::from(u8::from(is_needed));
         [
-            ("HAS_MAPS", switch(self.maps)),
+            ("MAPS", f64::from(self.maps)),
             ("HAS_DETAILS", switch(self.details)),
             ("HAS_COAT", switch(self.coat)),
             ("HAS_MASK", switch(self.mask)),
@@ -124,7 +125,7 @@ mod tests {
     use crate::mesh::{Light, LightKind, Look, Shape};
 
     const NOTHING: Needs = Needs {
-        maps: false,
+        maps: 0,
         details: false,
         coat: false,
         mask: false,

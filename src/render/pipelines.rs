@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::draws::{Draw, Triangles};
 use super::environment::{Backdrop, ENVIRONMENT};
-use super::materials::Materials;
+use super::materials::{Materials, depths_entry};
 use super::prefilter_pass::REFLECTANCE;
 use super::target::samples;
 use crate::gpu::wgsl::{
@@ -102,8 +102,10 @@ pub(super) struct DrawPipelines {
     /// Group 3: what was measured of a chunk's triangles, their distances to the reference surface, and of patches, their own
     /// least.
     pub measured_layout: wgpu::BindGroupLayout,
-    /// Group 3 where layers are drawn: the same, the depths of the layer that was found last, and those of what hides everything
+    /// Group 1 where layers are found: what says where a material shows what is behind it, and the depths of what hides everything
     /// behind it.
+    found_layout: wgpu::BindGroupLayout,
+    /// Group 3 where layers are drawn: the same, and the depths of the layer that was found last.
     pub layer_layout: wgpu::BindGroupLayout,
     plain: ShaderModule,
     lit: ShaderModule,
@@ -124,10 +126,11 @@ impl DrawPipelines {
             scene_layout: scene_layout(gpu),
             material_layout: materials.layout.clone(),
             lit_layout: materials.lit_layout.clone(),
+            found_layout: materials.found_layout.clone(),
             background_layout: background_layout(gpu),
             chunk_layout: chunk_layout(gpu),
             measured_layout: measured_layout(gpu),
-            layer_layout: layer_layout(gpu, is_multisampled),
+            layer_layout: layer_layout(gpu),
             plain: ShaderModule::new(&DRAW_PLAIN),
             lit: ShaderModule::new(&DRAW_LIT),
             surface: ShaderModule::new(&DRAW_SURFACE),
@@ -149,7 +152,7 @@ impl DrawPipelines {
             Draw::Plain(_) | Draw::Textured(_) | Draw::PixelNormals(_) => &self.plain,
             Draw::Lit(..) => &self.lit,
             Draw::Indexed(..) | Draw::Pulled(..) | Draw::Source => &self.surface,
-            Draw::LitIndexed(..) | Draw::LitPulled(..) | Draw::LitSource(_) => &self.surface,
+            Draw::LitIndexed(..) | Draw::LitPulled(..) | Draw::LitSource(..) => &self.surface,
             Draw::LookIndexed(..) | Draw::LookPulled(..) | Draw::LookSource(_) => &self.surface,
             Draw::Cut(..) => &self.surface,
             Draw::Layer(..) => &self.layers,
@@ -179,9 +182,12 @@ impl DrawPipelines {
             Draw::Cut(..) => vec![scene, material, chunk, deviation],
             Draw::Lit(..) => vec![scene, lit],
             Draw::LitIndexed(..) | Draw::LitPulled(..) => vec![scene, lit, chunk, deviation],
-            Draw::LitSource(_) => vec![scene, lit, None, deviation],
-            Draw::Layer(_, Triangles::Lit | Triangles::Source, ..) => vec![scene, lit, None, layer],
-            Draw::Layer(_, Triangles::Indexed | Triangles::Pulled, ..) => vec![scene, lit, chunk, layer],
+            Draw::LitSource(..) => vec![scene, lit, None, deviation],
+            Draw::Layer(draw, triangles, ..) => {
+                let material = if draw.finds() { Some(&self.found_layout) } else { lit };
+                let has_chunk = matches!(triangles, Triangles::Indexed | Triangles::Pulled);
+                vec![scene, material, chunk.filter(|_| has_chunk), layer]
+            }
             Draw::LayerClear(_) => Vec::new(),
             Draw::Background => vec![scene, Some(&self.background_layout)],
             Draw::Ground | Draw::Lines(_) => vec![scene],
@@ -223,18 +229,8 @@ fn measured_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("measured"), entries: &entries })
 }
 
-fn layer_layout(gpu: &Gpu, multisampled: bool) -> wgpu::BindGroupLayout {
-    let depths = |binding| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::FRAGMENT,
-        ty: wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Depth,
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled,
-        },
-        count: None,
-    };
-    let entries = [&measured_entries()[..], &[depths(2), depths(3)]].concat();
+fn layer_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+    let entries = [&measured_entries()[..], &[depths_entry(gpu, 2)]].concat();
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("layer"), entries: &entries })
 }
 

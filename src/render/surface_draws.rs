@@ -28,6 +28,7 @@ pub(super) fn surface_draw(
                 Triangles::Indexed => Draw::LitIndexed,
                 _ => Draw::Lit,
             };
+            let faces = own_faces(settings, material).unwrap_or(faces);
             draw(faces, places, Needs::of(mesh, material, settings, kind).own(material, kind))
         }
         (Triangles::Pulled, Some(look)) => Draw::LookPulled(faces, places, look),
@@ -38,6 +39,15 @@ pub(super) fn surface_draw(
         _ if material.texture.is_some() => Draw::Textured(faces),
         _ => Draw::Plain(faces),
     }
+}
+
+/// The faces of a material that are drawn whatever hides the backs of others. Backs that show through fronts would count twice, so that
+/// single-sided materials that show what is behind them have none, as glTF 2.0 says (specification, section 3.9.5). Two overlays show
+/// faces from behind.
+pub(super) fn own_faces(settings: &Settings, material: &Material) -> Option<Faces> {
+    let Overlays { folds, back_faces, .. } = settings.overlays;
+    let has_fronts_only = material.shows_behind() && !material.double_sided && !folds && !back_faces;
+    has_fronts_only.then_some(Faces::Fronts)
 }
 
 /// How pipelines get emitted triangles.
@@ -60,7 +70,8 @@ pub(super) fn source_draw(settings: &Settings, mesh: &Mesh, material: &Material,
     }
     match Look::of(settings.overlays.colors) {
         _ if settings.shows_materials() => {
-            Draw::LitSource(Needs::of(mesh, material, settings, kind).own(material, kind))
+            let faces = own_faces(settings, material).unwrap_or(Faces::Both);
+            Draw::LitSource(faces, Needs::of(mesh, material, settings, kind).own(material, kind))
         }
         Some(look) => Draw::LookSource(look),
         None => Draw::Source,

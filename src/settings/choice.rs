@@ -208,7 +208,7 @@ impl Choice for Partitioning {
 }
 
 impl Choice for Lod {
-    const ALL: &'static [Self] = &every![Lod: Uniform, Error, EdgeLength, Distance, Paper];
+    const ALL: &'static [Self] = &Lod::ALL;
 
     fn description(self) -> Description {
         let (name, label, text) = match self {

@@ -250,7 +250,7 @@ mod tests {
     fn subtriangulation_uses_uniform_lod_and_keeps_the_chosen_one() {
         let view = LodView::new(glam::Mat4::IDENTITY, glam::Vec2::ONE);
         for partitioning in Partitioning::ALL {
-            for &lod in Lod::ALL {
+            for lod in Lod::ALL {
                 let tessellation = Tessellation { partitioning, lod, ..Tessellation::default() };
                 let used = if partitioning == Partitioning::Subtriangulation { Lod::Uniform } else { lod };
                 let inputs = Settings::from(tessellation).inputs(view).tessellation;

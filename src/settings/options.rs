@@ -52,7 +52,7 @@ pub(crate) static PICTURE: [&Declaration; 15] = [
 ];
 
 /// The options of commands that read a mesh.
-pub(crate) static IMPORT: [&Declaration; 4] = [&MESH_NORMALS, &CREASE_ANGLE, &UP, &UNIT];
+pub(crate) static IMPORT: [&Declaration; 5] = [&MESH_NORMALS, &CREASE_ANGLE, &UP, &UNIT, &SHOW_HIDDEN];
 
 /// Tessellation factors, as Direct3D 11 has them.
 pub(crate) const FACTOR_RANGE: Range = Range::new(1.0, 64.0, "").decimals(3).logarithmic();
@@ -198,7 +198,7 @@ pub(crate) static TOLERANCE: Declaration = Declaration {
     label: "Tolerance",
     placeholder: "PX",
     text: "Largest distance on screen between the triangles and the surface under LOD by error. The overlay of excess \
-           triangles compares with it under any LOD.",
+           triangles and the gate above-tolerance compare with it under any LOD.",
     kind: Kind::Number(TOLERANCE_RANGE),
     unset: None,
     saved_as: &["tolerance"],
@@ -576,6 +576,18 @@ pub(crate) static UNIT: Declaration = Declaration {
     saved_as: &[],
     no_effect: always_has_effect,
     access: field!(import.unit),
+};
+
+pub(crate) static SHOW_HIDDEN: Declaration = Declaration {
+    name: "show-hidden",
+    label: "Show hidden",
+    placeholder: "",
+    text: "Also load the meshes that an FBX or glTF file hides, on nodes and layers that are switched off.",
+    kind: Kind::Switch,
+    unset: None,
+    saved_as: &["show_hidden"],
+    no_effect: always_has_effect,
+    access: field!(import.show_hidden),
 };
 
 #[cfg(test)]

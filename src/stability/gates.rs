@@ -1,6 +1,6 @@
 //! Holds the rows of a run to gates.
 
-use super::{Quantity, Row, Tried};
+use super::{Method, Quantity, Row, Tried};
 use crate::gates::{Gate, GateKind, allowed};
 use crate::numbers::{grouped, short};
 
@@ -29,6 +29,13 @@ fn quantity(kind: GateKind) -> Option<Quantity> {
         | GateKind::Triangles
         | GateKind::Bytes => None,
     }
+}
+
+/// Whether the rows of a case have what a gate judges, for each of these methods.
+pub(crate) fn are_judged(kind: GateKind, methods: &[Method], rows: &[Row]) -> bool {
+    let has =
+        |method: &Method| rows.iter().any(|row| row.method == method.name() && Some(row.quantity) == quantity(kind));
+    methods.iter().all(has)
 }
 
 /// The gates that rows fail, each with the worst of these rows.
@@ -83,6 +90,9 @@ mod tests {
             row("cube", "Phong", Quantity::Points, 3.0),
             row("cube", "PN", Quantity::Leaks, 4.0),
         ];
+        assert!(are_judged(GateKind::Cracks, &[Method::Pn, Method::Phong], &rows));
+        assert!(!are_judged(GateKind::Leaks, &[Method::Pn, Method::Phong], &rows), "Phong has no such row");
+        assert!(!are_judged(GateKind::Warnings, &[Method::Pn], &rows), "no row has them");
         let gate = |text: &str| text.parse::<Gate>().expect("a gate");
         let found = failures(&[gate("cracks"), gate("leaks:4"), gate("folds"), gate("warnings")], &rows);
         let sentence =

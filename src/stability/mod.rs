@@ -12,7 +12,7 @@ mod sweep_chart;
 mod views;
 
 pub(crate) use cases::{CASES, Case, CaseView, DEFAULT_VIEW, Probe};
-pub(crate) use gates::{Failure, failures};
+pub(crate) use gates::{Failure, are_judged, failures};
 #[cfg(test)]
 pub(crate) use meshes::soup;
 pub(crate) use picture::{PictureError, picture};

@@ -106,8 +106,8 @@ fn number(x: f64) -> String {
 /// What the columns mean.
 pub(crate) const LEGEND: &str = "points: edge points whose positions differ between sides in at least one bit; factors: edges whose \
      sides got different factors; normals: edge points whose normals differ although the mesh's normals agree; not finite: \
-     vertices with infinite or NaN coordinates; leaks: pixels that show the inside of a closed mesh. Each number is the worst \
-     over factors, views, partitionings and devices.";
+     vertices with infinite or NaN coordinates; leaks: pixels that show the inside of a closed mesh (- where they can't be counted). Each \
+     number is the worst over factors, views, partitionings and devices.";
 
 /// Formats lines as a table for a terminal.
 pub(crate) fn table(lines: &[Line]) -> String {

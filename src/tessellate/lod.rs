@@ -3,6 +3,8 @@
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
+use crate::names::every;
+
 /// Where edge factors come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
@@ -20,6 +22,11 @@ pub enum Lod {
     /// The factor up to a near distance from the eye, 1 from a far one on, and linear between; an edge takes the mean of its
     /// ends. What engines commonly do (Unity's `UnityDistanceBasedTess`, say).
     Distance = 4,
+}
+
+impl Lod {
+    /// All values, in the order in which lists show them.
+    pub const ALL: [Self; 5] = every![Lod: Uniform, Error, EdgeLength, Distance, Paper];
 }
 
 /// The view that LOD and clipping are computed for.

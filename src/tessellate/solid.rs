@@ -5,8 +5,8 @@ use glam::{Mat4, Vec3};
 use super::{Displacement, Edges, Inputs, Surface, beyond_near, side_control_points, straight_control_point};
 use crate::mesh::{Alpha, EdgeKind, Material, Mesh, Topology};
 
-/// A closed mesh whose parts are all wound outward and whose materials are single-sided, without places where one sees what is
-/// behind them.
+/// A closed mesh whose parts are all wound outward and whose materials are single-sided, without places where one sees the backs that
+/// are behind them.
 ///
 /// A line of sight that starts outside enters the mesh before it leaves it, so each back face is hidden by a front
 /// face. (If a mesh intersects itself inside out, a back face may come first. Leaving it out then shows what is behind
@@ -25,11 +25,12 @@ pub(crate) struct Solid {
 impl Solid {
     /// Returns the mesh as a solid, or `None` if it isn't one.
     pub(crate) fn find(mesh: &Mesh, topology: &Topology) -> Option<Self> {
-        // Backs can be seen through the holes of a mask, and through what blends or transmits light.
-        let hides = |material: &Material| {
-            !material.double_sided && material.look.alpha == Alpha::Opaque && !material.shows_behind()
-        };
-        let are_hidden = mesh.materials.iter().all(hides);
+        // Backs can be seen through the holes of a mask, and through what blends or transmits light unless all of the mesh does: then
+        // no backs are drawn.
+        let is_whole = |own: &Material| !own.double_sided && !matches!(own.look.alpha, Alpha::Mask(_));
+        let shows_behind = mesh.materials.iter().filter(|own| own.shows_behind()).count();
+        let is_even = shows_behind == 0 || shows_behind == mesh.materials.len();
+        let are_hidden = mesh.materials.iter().all(is_whole) && is_even;
         if !are_hidden || !topology.is_closed_and_oriented() || topology.part_volumes().any(|volume| volume <= 0.0) {
             return None;
         }
@@ -112,9 +113,11 @@ mod tests {
             assert_eq!(solid(&pierced), None, "{shape:?} with holes in its material");
             let mut glass = mesh.clone();
             glass.materials[0].look.alpha = Alpha::Blend;
-            assert_eq!(solid(&glass), None, "{shape:?} that blends");
+            assert_eq!(solid(&glass).is_some(), closed, "{shape:?} that blends, whose backs aren't drawn");
+            glass.materials.extend(mesh.materials.clone());
+            assert_eq!(solid(&glass), None, "{shape:?} whose back is seen through what blends");
             glass.materials[0].look = Look { transmission: 0.5, ..Look::default() };
-            assert_eq!(solid(&glass), None, "{shape:?} that transmits light");
+            assert_eq!(solid(&glass), None, "{shape:?} whose back is seen through what transmits light");
         }
     }
 

@@ -41,9 +41,14 @@ camera = [30, 20, 1.5]
 field-of-view = 30
 
 [[files]]
-path = "triangles.gltf"
+path = "triangles.gltf" # It is open, so that leaks mean nothing.
+fail-on = ["cracks", "factors", "folds", "t-junctions"]
 [files.options]
 factor = 8
+
+[[files]]
+path = "open.obj"
+fail-on = ["leaks"]
 
 [[files]]
 path = "assets/odd/"
@@ -61,6 +66,7 @@ fn assets(folder: &Folder) {
     }
     let junction = "v 0 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nv 0.5 0.5 0\nf 1 2 3\nf 1 4 5\nf 5 4 2\nf 1 2 99\n";
     std::fs::write(folder.path("assets/odd/junction.obj"), junction).expect("a writable folder");
+    std::fs::write(folder.path("assets/open.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("a writable folder");
     std::fs::write(folder.path("assets/broken.glb"), "no mesh").expect("a writable folder");
     std::fs::write(folder.path("assets/notes.txt"), "no asset").expect("a writable folder");
     let positions = [[0.0, 0.0, 0.0], [0.28, 0.0, 0.2], [1.0, 0.0, 0.0]];
@@ -105,9 +111,9 @@ fn each_asset_fails_what_it_is_about_and_the_reports_agree() {
     let page = folder.path("page");
     let (code, json, errors) = check(&folder, &["--format", "json", "--page", &page, "--jobs", "3"]);
     assert_eq!(code, Some(1), "{errors}");
-    assert!(errors.contains("7 assets: 1 passed, 5 failed, 1 broken"), "{errors}");
+    assert!(errors.contains("8 assets: 1 passed, 6 failed, 1 broken"), "{errors}");
     let report: Value = serde_json::from_str(&json).expect("JSON");
-    let expected: [(&str, &[&str]); 7] = [
+    let expected: [(&str, &[&str]); 8] = [
         ("broken.glb", &[]),
         (
             "coarse.glb",
@@ -123,6 +129,7 @@ fn each_asset_fails_what_it_is_about_and_the_reports_agree() {
         ("factors.glb", &["factors"]),
         ("good.glb", &[]),
         ("junction.obj", &["warnings", "t-junctions"]),
+        ("open.obj", &["leaks"]),
         ("torn.glb", &["cracks", "leaks"]),
         ("triangles.gltf", &["folds"]),
     ];
@@ -135,9 +142,9 @@ fn each_asset_fails_what_it_is_about_and_the_reports_agree() {
     assert!(report["assets"][4]["warnings"].as_array().is_some_and(|warnings| warnings.len() == 2), "{report}");
 
     let html = std::fs::read_to_string(Path::new(&page).join("index.html")).expect("a page");
-    assert_eq!(html.matches("<section").count(), 7);
+    assert_eq!(html.matches("<section").count(), 8);
     // A picture for each view, and one for each failed gate that has a place.
-    let (views, evidence) = (7, ["coarse", "coarse", "factors", "junction", "cracks", "leaks", "folds"].len());
+    let (views, evidence) = (8, ["coarse", "coarse", "factors", "junction", "cracks", "leaks", "folds"].len());
     assert_eq!(html.matches("data:image/png;base64,").count(), views + evidence);
     assert!(!html.contains("src=\"h") && html.contains("prefers-color-scheme: dark"));
 
@@ -152,7 +159,20 @@ fn each_asset_fails_what_it_is_about_and_the_reports_agree() {
     let (code, out, _) = check(&folder, &["--format", "junit", "-o", &path]);
     let junit = std::fs::read_to_string(path).expect("a file");
     assert_eq!((code, out.as_str(), junit.matches("<failure ").count()), (Some(1), "", count));
-    assert_eq!(junit.matches("<testsuite ").count(), 7);
+    assert_eq!(junit.matches("<testsuite ").count(), 8);
+    let times: Vec<f64> = junit
+        .split(" time=\"")
+        .skip(1)
+        .map(|rest| rest.split('"').next().expect("an end").parse().expect("s"))
+        .collect();
+    assert_eq!(times.len(), 1 + 8 + junit.matches("<testcase ").count());
+    assert!(times[0] > 0.0 && times.iter().all(|time| *time >= 0.0), "{junit}");
+    let why = "leaks can be counted only in a closed mesh, and this one is open: leave this gate out for it";
+    assert!(junit.contains(&format!("<failure message=\"{why}\">{why}</failure>")), "{junit}");
+    let results = sarif["runs"][0]["results"].as_array().expect("results");
+    assert!(results.iter().any(|result| result["message"]["text"] == format!("leaks: {why}")), "{sarif}");
+    let (_, text, _) = check(&folder, &[]);
+    assert!(text.contains(&format!("        leaks: {why}\n")), "{text}");
 }
 
 #[test]
@@ -173,7 +193,10 @@ fn an_unchanged_asset_is_not_measured_again() {
     let (none, first) = unchanged(&[]);
     assert_eq!(none, Vec::<String>::new());
     let (all, second) = unchanged(&[]);
-    assert_eq!(all, ["coarse.glb", "factors.glb", "good.glb", "junction.obj", "torn.glb", "triangles.gltf"]);
+    assert_eq!(
+        all,
+        ["coarse.glb", "factors.glb", "good.glb", "junction.obj", "open.obj", "torn.glb", "triangles.gltf"]
+    );
     assert_eq!(first, second);
     // The buffer that the document names counts as well.
     let buffer = folder.path("assets/data.bin");
@@ -184,7 +207,7 @@ fn an_unchanged_asset_is_not_measured_again() {
     assert_eq!(unchanged(&["--fail-on", "triangles:1"]).0, Vec::<String>::new(), "other gates");
     let page = folder.path("page");
     assert_eq!(unchanged(&["--page", &page]).0, Vec::<String>::new(), "pictures were not drawn before");
-    assert_eq!(unchanged(&["--page", &page]).0.len(), 6);
+    assert_eq!(unchanged(&["--page", &page]).0.len(), 7);
     let html = std::fs::read_to_string(Path::new(&page).join("index.html")).expect("a page");
     assert!(html.contains("unchanged, not measured again") && html.matches("data:image/png").count() > 10);
 }

@@ -22,6 +22,15 @@ fn both_devices_print_the_same_domain() {
 }
 
 #[test]
+fn pow2_is_integer_to_the_tessellator_and_the_help_says_so() {
+    let domain =
+        |partitioning| output(&["domain", "--partitioning", partitioning, "--factors", "3,5,6.5,7", "--device", "cpu"]);
+    assert_eq!(domain("pow2"), domain("integer"));
+    let help = output(&["domain", "--help"]).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(help.contains("pow2 gives what integer gives"), "{help}");
+}
+
+#[test]
 fn points_and_triangles_are_printed_in_order() {
     let text = output(&["domain", "--partitioning", "integer", "--factors", "1,1,1,2", "--device", "cpu"]);
     let expected = "point,0,0,65536\npoint,1,0,0\npoint,2,65536,0\npoint,3,21845,21845\n\

@@ -199,9 +199,7 @@ fn errors_in_a_file_are_one_line_with_the_line_number() {
         &["tessellate", "shape:torus", "-o", &obj, "--factors", "nowhere.csv"],
         &["nowhere.csv", "could not be read"],
     );
-    for option in
-        [["--lod", "uniform"], ["--factor", "8"], ["--pixels", "8"], ["--tolerance", "1"], ["--distances", "1,2"]]
-    {
+    for option in [["--lod", "uniform"], ["--factor", "8"], ["--pixels", "8"], ["--distances", "1,2"]] {
         let said = failure(&[&["render", "shape:torus", "-o", "x.png", "--factors", &file], &option[..]].concat(), 2);
         assert!(said.contains("cannot be used with") && said.contains(option[0]), "{said}");
     }

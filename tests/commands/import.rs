@@ -45,6 +45,22 @@ fn parts_are_listed_and_left_out() {
 }
 
 #[test]
+fn what_a_file_hides_is_loaded_if_asked() {
+    let folder = Folder::new();
+    let hidden = folder.path("hidden.gltf");
+    let text = "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\
+                \"nodes\":[{\"mesh\":0,\"extensions\":{\"KHR_node_visibility\":{\"visible\":false}}}],\
+                \"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\
+                \"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],\
+                \"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"buffers\":[{\"byteLength\":36,\"uri\":\
+                \"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}]}";
+    std::fs::write(&hidden, text).expect("a writable folder");
+    sentence(&["info", &hidden], &["no triangles to show", "hides the 1 nodes", "--show-hidden"]);
+    assert_eq!(number(&info(&[&hidden, "--show-hidden"]), "/triangles"), 1.0);
+    output(&["render", &hidden, "--show-hidden", "--size", "64x64", "-o", &folder.path("shown.png")]);
+}
+
+#[test]
 fn axis_and_unit_are_chosen_and_a_shape_has_its_own() {
     let folder = Folder::new();
     let ground = folder.path("ground.obj");

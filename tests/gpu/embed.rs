@@ -133,9 +133,22 @@ fn a_mesh_without_triangles_draws_nothing() {
     mesh.set(&uniform(4.0), LodView::default()).expect("a small mesh");
     let (status, _) = emitted(&queue, &device, &mut mesh);
     assert_eq!((status.vertices, status.triangles, mesh.has_overflowed(&status)), (0, 0, false));
-    let (arguments, offset) = mesh.draw_arguments(0);
+    let (arguments, offset) = mesh.draw_arguments(0).expect("its one material");
     let count = read_buffer(&pnaen::gpu::Gpu::borrowed(&device, &queue), arguments, offset, 4).expect("a readback");
     assert_eq!(count, [0_u8; 4], "the number of indices");
+}
+
+#[test]
+fn a_material_that_a_mesh_lacks_is_an_error() {
+    let (device, queue) = host();
+    let context = Context::new(&device, &queue).expect("default limits are enough");
+    let mesh = TessellatedMesh::new(&context, Shape::Torus.build(), ROOM).expect("a small mesh");
+    let materials = mesh.mesh().materials.len() as u32;
+    assert!((0..materials).all(|material| mesh.draw_arguments(material).is_ok()));
+    for material in [materials, u32::MAX] {
+        let said = mesh.draw_arguments(material).expect_err("there is none").to_string();
+        assert!(said.contains(&format!("no material {material}: it has {materials}")), "{said}");
+    }
 }
 
 /// The names of passes, which don't run.

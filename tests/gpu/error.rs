@@ -122,14 +122,19 @@ fn cameras(scene: &Scene) -> [Camera; 4] {
     [far, close, Camera { orthographic: true, ..far }, Camera { elevation: -60.0, azimuth: 200.0, ..close }]
 }
 
+/// The surface that a shape is tried with under the camera of this index, so that all are tried.
+fn surface_of(index: usize, shape: Shape) -> Surface {
+    Surface::ALL[(2 * index + shape as usize) % Surface::ALL.len()]
+}
+
 #[test]
 fn shapes_on_the_device_are_within_the_tolerance_and_not_far_below() {
-    let (mut closest, mut tried) = (0.0f64, 0);
+    let (mut closest, mut tried) = (0.0f64, Vec::new());
     for shape in Shape::ALL {
         let (loaded, mut scene) = scene(shape);
         for (index, camera) in cameras(&scene).into_iter().enumerate() {
-            // All but the flat one, and strict and lax for each.
-            let surface = Surface::ALL[1 + (2 * index + shape as usize) % 7];
+            // Strict and lax for each.
+            let surface = surface_of(index, shape);
             let tolerance = if index % 2 == 0 { 0.5 } else { 2.0 };
             let partitioning = Partitioning::DIRECT3D[(index + shape as usize) % 4];
             let settings =
@@ -142,10 +147,11 @@ fn shapes_on_the_device_are_within_the_tolerance_and_not_far_below() {
             let share = px / (f64::from(tolerance) + rounding_px(&loaded.mesh, &inputs));
             assert!(share <= 1.0, "{shape:?} {surface:?} {partitioning:?}, camera {index}: {px} px of {tolerance}");
             closest = closest.max(share);
-            tried += 1;
+            tried.push(surface);
         }
     }
-    assert!(tried > 25 && closest > 0.6, "{tried} tried, {closest} of the tolerance used at best");
+    assert!(tried.len() > 25 && closest > 0.6, "{} tried, {closest} of the tolerance used at best", tried.len());
+    assert!(Surface::ALL.iter().all(|surface| tried.contains(surface)), "{tried:?}");
 }
 
 /// How much of the tolerance, at most, rounding may make of a bound: its differences, divisions and roots are each good to a
@@ -261,11 +267,11 @@ fn a_mesh_of_many_patches_is_searched_to_its_end() {
 
 #[test]
 fn rows_on_the_device_are_within_the_tolerance_and_fewer_than_rings() {
-    let (mut closest, mut rows, mut rings) = (0.0f64, 0, 0);
+    let (mut closest, mut rows, mut rings, mut tried) = (0.0f64, 0, 0, Vec::new());
     for shape in Shape::ALL {
         let (loaded, mut scene) = scene(shape);
         for (index, camera) in cameras(&scene).into_iter().enumerate() {
-            let surface = Surface::ALL[1 + (2 * index + shape as usize) % 7];
+            let surface = surface_of(index, shape);
             let tolerance = if index % 2 == 0 { 0.5 } else { 2.0 };
             let with = |partitioning| {
                 by_error(Settings::from(Tessellation { surface, partitioning, ..Tessellation::default() }), tolerance)
@@ -289,8 +295,10 @@ fn rows_on_the_device_are_within_the_tolerance_and_fewer_than_rings() {
             closest = closest.max(share);
             rows += out.triangles.len();
             rings += triangles;
+            tried.push(surface);
         }
     }
+    assert!(Surface::ALL.iter().all(|surface| tried.contains(surface)), "{tried:?}");
     assert!(closest > 0.9, "some tolerance is nearly used up: {closest}");
     assert!(rows as f64 <= 0.6 * rings as f64, "{rows} triangles of rows, {rings} of rings");
 }

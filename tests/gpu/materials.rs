@@ -340,6 +340,66 @@ fn maps_of_a_sheen_multiply_its_numbers() {
     }
 }
 
+/// The pictures of a coat and of a reflection whose maps say what their numbers say.
+#[test]
+fn maps_of_a_coat_and_of_a_reflection_multiply_their_numbers() {
+    let base = Look { roughness: 0.9, clearcoat: 1.0, clearcoat_roughness: 1.0, ior: 2.0, ..Look::default() };
+    let texel =
+        |slot, texel: [u8; 4], look: &Look| look_with(slot, map(image([1, 1], &[texel]), MapUv::Own), look.clone());
+    let half = 128.0 / 255.0;
+    let of_coat = texel(Slot::Clearcoat, [128, 9, 9, 9], &Look { clearcoat_roughness: 0.1, ..base.clone() });
+    let of_roughness = texel(Slot::ClearcoatRoughness, [9, 51, 9, 9], &base);
+    let [red, green, blue] = [1.0, 0.5, 0.2].map(srgb);
+    let uncoated = Look { clearcoat: 0.0, roughness: 0.2, ..base.clone() };
+    let of_color = texel(Slot::SpecularColor, [red, green, blue, 7], &uncoated);
+    let of_strength = texel(Slot::Specular, [9, 9, 9, 128], &uncoated);
+    for (mapped, numbers) in [
+        (of_coat, Look { clearcoat: half, clearcoat_roughness: 0.1, ..base.clone() }),
+        (of_roughness, Look { clearcoat_roughness: 0.2, ..base.clone() }),
+        (of_color, Look { specular_color: [1.0, 0.5, 0.2], ..uncoated.clone() }),
+        (of_strength, Look { specular: half, ..uncoated.clone() }),
+    ] {
+        let tilted = vec3(0.6, 0.3, 0.7).normalize();
+        let [mapped, numbers] = [mapped, numbers].map(|look| square(tilted, material([0.1, 0.2, 0.3], look)));
+        assert_same(&mapped, &numbers, &format!("{:?}", mapped.materials[0].look));
+    }
+}
+
+/// Only the coat reflects light here.
+#[test]
+fn the_normals_of_a_coat_are_its_own() {
+    let texel = [190, 70, 225];
+    let own = texel.map(|byte| 2.0 * f32::from(byte) / 255.0 - 1.0);
+    let normals = map(image([1, 1], &[[texel[0], texel[1], texel[2], 255]]), MapUv::Own);
+    for scale in [1.0, 0.5] {
+        let coat = Look {
+            specular: 0.0,
+            clearcoat: 1.0,
+            clearcoat_roughness: 0.2,
+            clearcoat_normal_scale: scale,
+            ..Look::default()
+        };
+        let detail = CornerDetail { tangent: Vec3::Y, ..CornerDetail::default() };
+        let mapped = look_with(Slot::ClearcoatNormal, normals.clone(), coat.clone());
+        let mapped = with_details(square(Vec3::Z, material([0.0; 3], mapped)), |_| detail);
+        let normal = (scale * own[0] * Vec3::Y - scale * own[1] * Vec3::X + own[2] * Vec3::Z).normalize();
+        assert_same(&mapped, &square(normal, material([0.0; 3], coat)), &format!("scale {scale}"));
+    }
+}
+
+/// In a normal map, directions may point below the surface. Their mirror images above it are seen, not what would be reflected where
+/// the surface is seen from the very side, which is all of the light.
+#[test]
+fn a_normal_that_faces_away_is_seen_as_its_mirror_image() {
+    let leaning = |blue| {
+        let normals = map(image([1, 1], &[[235, 128, blue, 255]]), MapUv::Own);
+        let look = Look { roughness: 0.2, ..Look::default() };
+        let detail = CornerDetail { tangent: Vec3::X, ..CornerDetail::default() };
+        with_details(square(Vec3::Z, material([0.2; 3], look_with(Slot::Normal, normals, look))), |_| detail)
+    };
+    assert_same(&leaning(75), &leaning(180), "a normal below the surface");
+}
+
 /// Bumps, as a normal map.
 fn bumps() -> Arc<Texture> {
     const SIZE: u32 = 256;

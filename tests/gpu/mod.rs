@@ -68,6 +68,14 @@ pub(crate) fn engine() -> &'static Engine {
     })
 }
 
+/// Without a desktop session Mesa complains, unless there is a folder to look for a display in: see `.cargo/config.toml`.
+#[cfg(target_os = "linux")]
+#[test]
+fn tests_have_a_folder_for_a_display() {
+    let folder = std::env::var_os("XDG_RUNTIME_DIR").map(std::path::PathBuf::from);
+    assert!(folder.is_some_and(|folder| folder.is_absolute()));
+}
+
 pub(crate) fn loaded(shape: Shape) -> Loaded {
     load(&Source::Shape(shape), &Preparation::default(), &Progress::default()).expect("shapes always load")
 }

@@ -6,7 +6,7 @@ use pnaen::load::Source;
 use pnaen::measure::{EmittedChunk, Measured, Sizes, Visitor};
 use pnaen::mesh::{Corner, EdgeKind, Material, Mesh, Shape};
 use pnaen::render::{Camera, Scene, Target};
-use pnaen::settings::{Choice, Settings};
+use pnaen::settings::Settings;
 use pnaen::tessellate::{
     Clip, Edges, Inputs, Lod, Normals, Partitioning, Surface, Tessellated, Tessellation, beyond_near, patch_is_culled,
     point_count, process, tessellate, totals, triangle_count, unpack_normal,
@@ -123,7 +123,7 @@ fn adaptive_factors_agree_with_the_cpu() {
 #[test]
 fn adaptive_factors_are_those_of_the_formula() {
     let (loaded, mut scene) = scene(Shape::Torus);
-    for &lod in Lod::ALL {
+    for lod in Lod::ALL {
         let own = Tessellation { lod, ..Tessellation::default() };
         let settings = Settings::from(match lod {
             Lod::Paper | Lod::EdgeLength => Tessellation { pixels: 6.0, ..own },

@@ -56,6 +56,21 @@ fn factors_of_a_file_are_shown_with_their_disagreements_and_the_convention_that_
 }
 
 #[test]
+fn a_triangle_that_a_file_leaves_out_is_cracked_all_around() {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let path = folder.path().join("hole.csv");
+    run_command(["factors", "shape:icosahedron", "--factor", "3"], &path);
+    let whole = std::fs::read_to_string(&path).expect("a file");
+    std::fs::write(&path, whole.replace("\n7,3,", "\n7,nan,")).expect("a writable temporary folder");
+    let mut harness = uniform(Some(Source::Shape(Shape::Icosahedron)));
+    open(&mut harness, &path);
+    harness.get_by_label_contains("3 cracked edges").click();
+    settle(&mut harness);
+    assert!(harness.state().selected_edge().is_some());
+    harness.get_by_label_contains("triangle 7");
+}
+
+#[test]
 fn the_lod_before_comes_back_and_a_bad_file_changes_nothing() {
     let folder = tempfile::tempdir().expect("a writable temporary folder");
     let (good, bad) = (folder.path().join("good.csv"), folder.path().join("bad.csv"));

@@ -88,6 +88,7 @@ fn the_command_line_says_how_the_first_mesh_is_taken() {
         crease_angle: 20.0,
         up: Some(UpAxis::Z),
         unit: Some(FileUnit::Named(LengthUnit::Centimetre)),
+        show_hidden: false,
     };
     assert_eq!((import(&harness), harness.state().settings().import), (made, made));
     assert_eq!(harness.state().loaded().expect("a mesh").preparation.hidden, ["side"]);

@@ -3,7 +3,7 @@
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::sync::mpsc::{Receiver, channel};
 use std::thread::JoinHandle;
 
 use thiserror::Error;
@@ -24,41 +24,32 @@ pub(crate) struct BackgroundJob<T>(Receiver<Result<T, Stopped>>);
 impl<T: Send + 'static> BackgroundJob<T> {
     /// Starts a job. The window is repainted when it ends, even if it panics.
     pub(crate) fn start(context: &egui::Context, job: impl FnOnce() -> T + Send + 'static) -> Self {
+        Self::sending(context, || Some(caught(job)))
+    }
+
+    /// Starts a thread that sends a result, if there is one, and repaints the window.
+    fn sending(context: &egui::Context, result: impl FnOnce() -> Option<Result<T, Stopped>> + Send + 'static) -> Self {
         let (sender, done) = channel();
-        let context = context.clone();
-        spawn(move || {
+        let (refused, context) = (sender.clone(), context.clone());
+        let thread = spawn(move || {
             // The receiver is gone if the result is no longer wanted.
-            let _ = sender.send(caught(job));
+            let _ = result().map(|result| sender.send(result));
             context.request_repaint();
         });
+        if thread.is_none() {
+            let _ = refused.send(Err(Stopped("the system can't start another thread".into())));
+        }
         Self(done)
     }
 
-    /// Returns the result once the job has ended. Must not be called again after that.
+    /// Returns the result once the job has ended, and only once.
     pub(crate) fn take(&self) -> Option<Result<T, Stopped>> {
-        match self.0.try_recv() {
-            Ok(result) => Some(result),
-            Err(TryRecvError::Empty) => None,
-            // If no thread could be started, the sender was dropped.
-            Err(TryRecvError::Disconnected) => Some(Err(Stopped("the system can't start another thread".into()))),
-        }
+        self.0.try_recv().ok()
     }
-}
 
-impl<T: Send + 'static> BackgroundJob<T> {
     /// Returns the same job, which repaints another window when it ends.
     pub(crate) fn waking(self, context: &egui::Context) -> Self {
-        let (sender, done) = channel();
-        let context = context.clone();
-        spawn(move || {
-            // There is no result if the job's thread could not be started; then there is none here either.
-            if let Ok(result) = self.0.recv() {
-                let _ = sender.send(result);
-            }
-            drop(sender);
-            context.request_repaint();
-        });
-        Self(done)
+        Self::sending(context, move || self.0.recv().ok())
     }
 }
 
@@ -118,6 +109,22 @@ mod tests {
     fn a_job_returns_its_result_and_repaints_the_window() {
         let (result, repaints) = ended(|| 6 * 7);
         assert_eq!((result.ok(), repaints), (Some(42), 1));
+    }
+
+    #[test]
+    fn a_result_is_taken_once() {
+        let (go, wait) = channel::<()>();
+        let job = BackgroundJob::start(&egui::Context::default(), move || wait.recv().is_ok());
+        assert!(job.take().is_none(), "it is under way");
+        drop(go);
+        let result = loop {
+            match job.take() {
+                Some(result) => break result,
+                None => std::thread::yield_now(),
+            }
+        };
+        assert!(result.is_ok_and(|went| !went));
+        assert!(job.take().is_none(), "nothing more is to come");
     }
 
     #[test]

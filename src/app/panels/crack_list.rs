@@ -103,6 +103,12 @@ impl App {
                 fact(ui, "", &format!("{} px", short(px)), "The gap on screen.");
                 let hover = "Points whose normals differ although the mesh's normals agree.";
                 fact(ui, "Normals differ", &grouped(crack.different_normals.into()), hover);
+                if let Some(patch) = crack.discarded {
+                    let triangle = topology.patches[patch as usize].triangle;
+                    let hover =
+                        "One of its factors isn't above 0, so that it isn't drawn. The gap is as wide as this hole.";
+                    fact(ui, "Left out", &format!("triangle {triangle}"), hover);
+                }
             }
         });
         side_rows(ui, &sides);

@@ -20,7 +20,7 @@ impl App {
         }
     }
 
-    /// Which axis of the file points up, and what its unit is.
+    /// Which axis of the file points up, what its unit is, and whether what it hides is loaded.
     pub(in crate::app) fn import_rows(&mut self, ui: &mut egui::Ui) {
         let is_shape = self.source().is_some_and(|source| source.shape().is_some());
         for option in [&options::UP, &options::UNIT] {
@@ -31,6 +31,9 @@ impl App {
                     option_row_with(ui, option, &mut self.settings, &hover);
                 }
             }
+        }
+        if !is_shape {
+            option_row(ui, &options::SHOW_HIDDEN, &mut self.settings, "");
         }
     }
 }

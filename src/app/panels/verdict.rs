@@ -121,8 +121,8 @@ impl App {
             return Line::dim("No leaks in this view", "No edge is cracked.", Destination::Leaks);
         }
         if !waits && !self.may_leak() {
-            let why = "Leaks are counted in views of a closed mesh that is beyond the near plane and wholly drawn. One can see \
-                       into others anyway.";
+            let why = "Leaks are counted in views of a closed mesh, wound the same way everywhere, that is beyond the near plane \
+                       and wholly drawn. One can see into others anyway.";
             return Line::dim("Leaks aren't counted", why, Destination::Leaks);
         }
         match self.leaks().filter(|_| !waits) {

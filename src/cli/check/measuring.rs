@@ -2,7 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
+use std::time::{Instant, SystemTime};
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -16,7 +16,7 @@ use crate::cli::picture_file::png_bytes;
 use crate::cli::shot::Shot;
 use crate::cli::{CliError, file_error, file_of};
 use crate::engine::{Engine, Loaded, Preparation};
-use crate::gates::Judgement;
+use crate::gates::Gate;
 use crate::load::LoadError;
 use crate::names::on_one_line;
 use crate::progress::Progress;
@@ -39,7 +39,7 @@ pub(super) fn measured(
     pictures: bool,
     cache: Option<&Cache>,
 ) -> (Asset, Option<Vec<String>>) {
-    let start = SystemTime::now();
+    let (start, begun) = (SystemTime::now(), Instant::now());
     let mut asset = Asset { path: job.name.clone(), ..Asset::default() };
     let ended = catch_unwind(AssertUnwindSafe(|| measure(job, engine, pictures, &mut asset)));
     let (files, absent) = match ended {
@@ -53,6 +53,7 @@ pub(super) fn measured(
             (None, None)
         }
     };
+    asset.seconds = begun.elapsed().as_secs_f64();
     if let Some((cache, files)) = cache.filter(|_| job.is_kept).zip(files)
         && let Err(error) = cache.put(job.inputs(), &files, start, &asset)
     {
@@ -73,9 +74,9 @@ fn measure(job: &Job, engine: &Engine, pictures: bool, asset: &mut Asset) -> Res
         let picture = if pictures { Some(encoded(job, shot.picture(None, &progress)?)?) } else { None };
         // What is about the mesh itself is the same in all views.
         let gates: Vec<_> = job.gates.iter().copied().filter(|gate| index == 0 || !gate.kind.is_of_mesh()).collect();
-        let judged = shot.judge(&gates, options.surface.tessellation().tolerance, &progress)?;
-        let result = |judgement: &Judgement| result(job, &mut shot, judgement, pictures);
-        let gates = judged.iter().map(result).collect::<Result<_, CliError>>()?;
+        let tolerance = options.surface.tessellation().tolerance;
+        let judged = |gate| judged(job, &mut shot, gate, tolerance, pictures);
+        let gates = gates.into_iter().map(judged).collect::<Result<Vec<_>, CliError>>()?.concat();
         asset.views.push(View { name: name.clone(), numbers: shot.numbers(), gates, picture });
     }
     let own = file_of(&job.source).map(Path::to_owned);
@@ -96,11 +97,22 @@ fn load(job: &Job, mut preparation: Preparation, progress: &Progress) -> Result<
     Ok((loaded?, absent))
 }
 
-/// How a gate judged, with a picture of its place if it failed and pictures are wanted.
-fn result(job: &Job, shot: &mut Shot, judgement: &Judgement, pictures: bool) -> Result<GateResult, CliError> {
-    let shown = if pictures && judgement.failed() { shot.evidence(judgement, &Progress::new())? } else { None };
-    let evidence = shown.map(|picture| encoded(job, picture)).transpose()?;
-    Ok(GateResult::new(judgement, evidence))
+/// How a gate judges, with a picture of its place if it fails and pictures are wanted.
+fn judged(
+    job: &Job,
+    shot: &mut Shot,
+    gate: Gate,
+    tolerance_px: f32,
+    pictures: bool,
+) -> Result<Vec<GateResult>, CliError> {
+    let start = Instant::now();
+    let mut results = Vec::new();
+    for judgement in &shot.judge(&[gate], tolerance_px, &Progress::new())? {
+        let shown = if pictures && !judgement.passed { shot.evidence(judgement, &Progress::new())? } else { None };
+        let evidence = shown.map(|picture| encoded(job, picture)).transpose()?;
+        results.push(GateResult::new(judgement, evidence, start.elapsed().as_secs_f64()));
+    }
+    Ok(results)
 }
 
 /// A picture as it is on the page: no larger than it is shown there on a dense screen, a PNG file in base64.

@@ -207,7 +207,7 @@ pub(super) fn given(declaration: &Declaration, matches: &ArgMatches) -> Option<V
     let name = declaration.name;
     let given = || matches.get_many::<Value>(name).into_iter().flatten().cloned();
     match declaration.kind {
-        Kind::Switch => Some(Value::Switch(matches.get_flag(name))),
+        Kind::Switch => matches.get_flag(name).then_some(Value::Switch(true)),
         Kind::Several(_) => Some(Value::Names(given().filter_map(|value| name_of(&value)).collect())),
         _ => given().next_back(),
     }

@@ -99,6 +99,7 @@ mod tests {
             crease_angle: 30.0,
             up: Some(UpAxis::X),
             unit: Some(FileUnit::Named(LengthUnit::Inch)),
+            show_hidden: true,
         };
         assert!(options(&["a.obj"]).is_empty());
         assert_eq!(options(&["a.obj"]).import(usual), usual);

@@ -43,14 +43,13 @@ impl Shot {
         self.error_place = above.and_then(|above| above.worst);
         let junctions = has(GateKind::TJunctions);
         let junctions = junctions.then(|| t_junctions(&self.subject.loaded.topology, progress)).transpose()?;
-        let (vertices, triangles) = scene.tessellator.totals();
+        let emitted = Some(scene.tessellator.totals());
         self.judged = judge(
             gates,
             &Facts {
                 topology: &self.posed.topology,
-                warnings: &self.subject.loaded.warnings,
-                vertices,
-                triangles,
+                warnings: Some(&self.subject.loaded.warnings),
+                emitted,
                 measured: self.results(SplitSide::Right).and_then(|results| results.survey.as_ref()),
                 junctions: junctions.as_deref(),
                 leaks: leaks.as_ref(),

@@ -94,7 +94,7 @@ impl Writer {
                 *info = self.map(map, material, sets, images, path)?;
             }
         }
-        let [metallic_roughness, normal, occlusion, emissive, transmission, sheen_color, sheen_roughness] = infos;
+        let mut of = |slot: Slot| infos[slot as usize].take();
         let mut rough = json!({
             "baseColorFactor": material.base_color,
             "metallicFactor": look.metallic,
@@ -104,15 +104,15 @@ impl Writer {
             let index = self.texture(image, material.sampling, images, path)?;
             rough["baseColorTexture"] = json!({ "index": index, "texCoord": sets.number(UvSet::Own) });
         }
-        set(&mut rough, "metallicRoughnessTexture", metallic_roughness);
+        set(&mut rough, "metallicRoughnessTexture", of(Slot::MetallicRoughness));
         let mut written = json!({
             "name": material.name,
             "pbrMetallicRoughness": rough,
             "doubleSided": material.double_sided,
         });
-        set(&mut written, "normalTexture", with(normal, "scale", look.normal_scale));
-        set(&mut written, "occlusionTexture", with(occlusion, "strength", look.occlusion_strength));
-        set(&mut written, "emissiveTexture", emissive);
+        set(&mut written, "normalTexture", with(of(Slot::Normal), "scale", look.normal_scale));
+        set(&mut written, "occlusionTexture", with(of(Slot::Occlusion), "strength", look.occlusion_strength));
+        set(&mut written, "emissiveTexture", of(Slot::Emissive));
         written["alphaMode"] = json!(match look.alpha {
             Alpha::Opaque => "OPAQUE",
             Alpha::Mask(_) => "MASK",
@@ -122,17 +122,17 @@ impl Writer {
             written["alphaCutoff"] = json!(cutoff);
         }
         self.emission(look, &mut written);
-        self.reflection(look, &mut written);
+        self.reflection(look, &mut written, &mut of);
         if look.transmits() {
             let mut members = json!({ "transmissionFactor": look.transmission });
-            set(&mut members, "transmissionTexture", transmission);
+            set(&mut members, "transmissionTexture", of(Slot::Transmission));
             self.extend(&mut written, "KHR_materials_transmission", members);
         }
         if look.has_sheen() {
             let mut members =
                 json!({ "sheenColorFactor": look.sheen_color, "sheenRoughnessFactor": look.sheen_roughness });
-            set(&mut members, "sheenColorTexture", sheen_color);
-            set(&mut members, "sheenRoughnessTexture", sheen_roughness);
+            set(&mut members, "sheenColorTexture", of(Slot::SheenColor));
+            set(&mut members, "sheenRoughnessTexture", of(Slot::SheenRoughness));
             self.extend(&mut written, "KHR_materials_sheen", members);
         }
         Ok(pushed(&mut self.materials, written))
@@ -149,7 +149,7 @@ impl Writer {
     }
 
     /// Adds how a material reflects light, where it is not as glTF has it without extensions.
-    fn reflection(&mut self, look: &Look, written: &mut Value) {
+    fn reflection(&mut self, look: &Look, written: &mut Value, map: &mut impl FnMut(Slot) -> Option<Value>) {
         let usual = Look::default();
         if look.unlit {
             self.extend(written, "KHR_materials_unlit", json!({}));
@@ -157,13 +157,21 @@ impl Writer {
         if look.ior != usual.ior {
             self.extend(written, "KHR_materials_ior", json!({ "ior": look.ior }));
         }
-        if look.specular != usual.specular || look.specular_color != usual.specular_color {
-            let members = json!({ "specularFactor": look.specular, "specularColorFactor": look.specular_color });
+        let (strength, color) = (map(Slot::Specular), map(Slot::SpecularColor));
+        let has_numbers = look.specular != usual.specular || look.specular_color != usual.specular_color;
+        if has_numbers || strength.is_some() || color.is_some() {
+            let mut members = json!({ "specularFactor": look.specular, "specularColorFactor": look.specular_color });
+            set(&mut members, "specularTexture", strength);
+            set(&mut members, "specularColorTexture", color);
             self.extend(written, "KHR_materials_specular", members);
         }
         if look.clearcoat > 0.0 {
-            let members =
+            let mut members =
                 json!({ "clearcoatFactor": look.clearcoat, "clearcoatRoughnessFactor": look.clearcoat_roughness });
+            set(&mut members, "clearcoatTexture", map(Slot::Clearcoat));
+            set(&mut members, "clearcoatRoughnessTexture", map(Slot::ClearcoatRoughness));
+            let normal = with(map(Slot::ClearcoatNormal), "scale", look.clearcoat_normal_scale);
+            set(&mut members, "clearcoatNormalTexture", normal);
             self.extend(written, "KHR_materials_clearcoat", members);
         }
     }

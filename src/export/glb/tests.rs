@@ -60,15 +60,14 @@ fn a_material_comes_back_with_its_numbers_and_maps() {
             normal_scale: 2.0,
             occlusion_strength: 0.5,
             alpha: Alpha::Mask(0.375),
-            maps: [
-                own(&numbers, Sampling::default()),
-                own(&normals, sampling),
-                own(&numbers, Sampling::default()),
-                None,
-                None,
-                None,
-                None,
-            ],
+            clearcoat: 0.5,
+            clearcoat_normal_scale: 0.25,
+            sheen_color: [1.0; 3],
+            maps: Slot::ALL.map(|slot| match slot {
+                Slot::Normal | Slot::ClearcoatNormal => own(&normals, sampling),
+                Slot::Transmission => None,
+                _ => own(&numbers, Sampling::default()),
+            }),
             ..Look::default()
         },
         triangles,
@@ -79,7 +78,8 @@ fn a_material_comes_back_with_its_numbers_and_maps() {
     assert_eq!((&got.name, got.base_color, got.double_sided), (&given.name, given.base_color, true));
     assert_eq!(got.sampling, sampling);
     let numbers_of = |look: &Look| {
-        (look.metallic, look.roughness, look.emissive, look.normal_scale, look.occlusion_strength, look.alpha)
+        let scales = [look.normal_scale, look.clearcoat_normal_scale];
+        (look.metallic, look.roughness, look.emissive, scales, look.occlusion_strength, look.alpha)
     };
     assert_eq!(numbers_of(&got.look), numbers_of(&given.look));
     for slot in Slot::ALL {

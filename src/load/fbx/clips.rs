@@ -3,13 +3,16 @@
 
 use std::collections::HashMap;
 
-use ufbx::{Anim, AnimStack, BakeOpts, BakedAnim, BakedNode, BakedVec3, BlendChannel, ErrorType, Scene};
+use ufbx::{
+    Anim, AnimLayer, AnimOpts, AnimStack, BakeOpts, BakedAnim, BakedNode, BakedVec3, BlendChannel, ElementType,
+    ErrorType, Scene,
+};
 
 use super::beyond::{Beyond, Span, within};
 use super::convert::{placement, quaternion, vec3};
 use super::looks::name;
 use super::morphs::{channels, shape_weights};
-use super::nodes::Placed;
+use super::nodes::{Placed, is_on, is_set};
 use super::parse::{half, refused};
 use super::too_large;
 use crate::load::attachment::LocalTransform;
@@ -98,7 +101,18 @@ impl Reader<'_> {
             key_reduction_rotation: true,
             ..BakeOpts::default()
         };
-        let baked = match ufbx::bake_anim(self.scene, &stack.anim, options) {
+        let playing = playing(stack);
+        if playing.is_empty() {
+            return Ok(Ok(Clip { name: name(&stack.element), duration: 0.0, channels: Vec::new() }));
+        }
+        let some = (playing.len() < stack.layers.len()).then(|| {
+            let (layer_ids, result_allocator) = (playing.into(), half(self.budget));
+            let some = ufbx::create_anim(self.scene, AnimOpts { layer_ids, result_allocator, ..AnimOpts::default() });
+            some.map_err(|error| refused(&error, self.budget))
+        });
+        let some = some.transpose()?;
+        let anim = some.as_deref().unwrap_or(&stack.anim);
+        let baked = match ufbx::bake_anim(self.scene, anim, options) {
             Ok(baked) => baked,
             Err(error) if is_too_large(&error) => {
                 return Ok(Err("its samples take more memory than is left (--max-memory allows more)".to_owned()));
@@ -108,8 +122,8 @@ impl Reader<'_> {
         let bytes = baked.metadata.result_memory_used as u64;
         self.budget.hold(bytes).map_err(too_large)?;
         let span = Span::of(&stack.anim, [baked.key_time_min, baked.key_time_max]);
-        let beyond = Beyond::new(&stack.anim, span, (SAMPLES, self.samples_left));
-        let mut curves = Curves { anim: &stack.anim, span, beyond };
+        let beyond = Beyond::new(anim, span, (SAMPLES, self.samples_left));
+        let mut curves = Curves { anim, span, beyond };
         let channels = self.channels(&baked, &mut curves);
         self.samples_left = curves.beyond.left();
         drop(baked);
@@ -133,7 +147,7 @@ impl Reader<'_> {
             for prop in &element.props {
                 match prop.name.as_ref() {
                     "DeformPercent" => _ = weights.insert(element.element_id, &prop.keys),
-                    "Visibility" => self.hides = true,
+                    "Visibility" => self.hides = self.hides || self.changes_visibility(element.element_id, &prop.keys),
                     _ => {}
                 }
             }
@@ -144,6 +158,13 @@ impl Reader<'_> {
             }
         }
         Ok(channels)
+    }
+
+    /// Whether a clip shows or hides a node that has a mesh, on it or below it, unlike the file without a clip.
+    fn changes_visibility(&self, element: u32, keys: &[BakedVec3]) -> bool {
+        let element = self.scene.elements.get(element as usize).filter(|own| own.type_ == ElementType::Node);
+        let carrying = element.filter(|own| self.placed.carries_mesh[own.typed_id as usize]);
+        carrying.is_some_and(|own| keys.iter().any(|key| (key.value.x != 0.0) != is_on(own, "Visibility")))
     }
 
     /// Adds the channels of a node that change something.
@@ -257,6 +278,14 @@ impl Reader<'_> {
         self.numbers_left = self.left(numbers)?;
         self.budget.hold(numbers as u64 * 4).map_err(|refused| format!("it {}", String::from(refused)))
     }
+}
+
+/// Returns the numbers of a clip's layers that aren't muted; if some are to play alone, of these.
+fn playing(stack: &AnimStack) -> Vec<u32> {
+    let is_on = |layer: &AnimLayer, name| is_set(&layer.element, name) == Some(true);
+    let has_solo = stack.layers.into_iter().any(|layer| is_on(layer, "Solo"));
+    let plays = |layer: &&AnimLayer| !is_on(layer, "Mute") && (!has_solo || is_on(layer, "Solo"));
+    stack.layers.into_iter().filter(plays).map(|layer| layer.element.typed_id).collect()
 }
 
 /// Returns the value at a time between key frames, which are joined by lines. None without key frames.

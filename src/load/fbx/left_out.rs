@@ -8,8 +8,7 @@ use crate::load::notes::Notes;
 
 /// Adds a warning for each kind of thing that is left out.
 pub(super) fn warn(scene: &Scene, notes: &mut Notes) {
-    let curves = scene.nurbs_curves.len() + scene.line_curves.len();
-    let surfaces = scene.nurbs_surfaces.len() + scene.procedural_geometries.len();
+    let [curves, surfaces] = without_polygons(scene);
     let caches = scene.cache_deformers.len() + scene.cache_files.len();
     let meshes = |has: fn(&Mesh) -> bool| scene.meshes.into_iter().filter(|mesh| has(mesh)).count();
     let dual = |method| matches!(method, SkinningMethod::DualQuaternion | SkinningMethod::BlendedDqLinear);
@@ -35,6 +34,12 @@ pub(super) fn warn(scene: &Scene, notes: &mut Notes) {
     }
 }
 
+/// Returns how many curves a file has, and how many surfaces that have no polygons.
+fn without_polygons(scene: &Scene) -> [usize; 2] {
+    let curves = scene.nurbs_curves.len() + scene.line_curves.len();
+    [curves, scene.nurbs_surfaces.len() + scene.procedural_geometries.len()]
+}
+
 /// Returns what the parser did; none if nobody needs to know.
 fn repaired(warning: WarningType) -> Option<&'static str> {
     Some(match warning {
@@ -56,6 +61,16 @@ fn repaired(warning: WarningType) -> Option<&'static str> {
 
 /// Returns what the file holds, for the error that says that there are no triangles.
 pub(super) fn holds(scene: &Scene, placed: &Placed) -> String {
-    let meshes = scene.meshes.len();
-    format!("it holds {meshes} meshes, {} hidden nodes with meshes, and {} nodes", placed.hidden, scene.nodes.len())
+    let [curves, surfaces] = without_polygons(scene);
+    let convert = "(export them as polygons)";
+    let kinds = [
+        (scene.nodes.len(), "nodes", ""),
+        (scene.meshes.len(), "meshes", ""),
+        (placed.hidden, "nodes with meshes that it hides", "(--show-hidden shows them)"),
+        (surfaces, "NURBS and procedural surfaces", convert),
+        (curves, "lines and curves", convert),
+    ];
+    let held = kinds.into_iter().filter(|(count, what, _)| *count > 0 || *what == "meshes");
+    let held: Vec<_> = held.map(|(count, what, help)| format!("{count} {what} {help}").trim_end().to_owned()).collect();
+    format!("it holds {}", held.join(", "))
 }

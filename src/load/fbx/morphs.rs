@@ -99,8 +99,10 @@ impl<'a> Morphs<'a> {
         let [Some(&start), Some(&end)] = [self.starts.get(vertex), self.starts.get(vertex + 1)] else { return };
         for &[shape, offset] in self.entries.get(start as usize..end as usize).unwrap_or_default() {
             let own = self.shapes[shape as usize];
+            // Blender limits a shape by the weights of a vertex group, which it writes as one for each offset.
+            let weight = own.offset_weights.get(offset as usize).copied().unwrap_or(1.0);
             let [position, normal] = [&own.position_offsets, &own.normal_offsets].map(|offsets| {
-                let vector = offsets.get(offset as usize).map(|v| vec3(v).as_vec3());
+                let vector = offsets.get(offset as usize).map(|v| (vec3(v) * weight).as_vec3());
                 vector.filter(|vector| vector.is_finite()).unwrap_or_default().to_array()
             });
             if position != [0.0; 3] || normal != [0.0; 3] {

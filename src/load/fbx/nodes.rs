@@ -1,7 +1,7 @@
 //! Places the nodes of a scene: their global transforms, and which ones the file shows.
 
 use glam::DMat4;
-use ufbx::{Mesh, Node, Scene};
+use ufbx::{Element, Mesh, Node, Scene};
 
 use super::convert::placement;
 use super::morphs;
@@ -9,7 +9,7 @@ use crate::load::attachment::{LocalTransform, SceneNodes};
 use crate::load::memory_budget::Budget;
 use crate::load::notes::Notes;
 use crate::load::read_error::ReadError;
-use crate::mesh::rig::Placement;
+use crate::mesh::rig::{Clip, Placement};
 
 /// How many corners, vertices, joints and shapes all nodes may have, and how many more for each byte of the file.
 const MOST_ITEMS: u64 = 1 << 24;
@@ -18,20 +18,22 @@ const ITEMS_A_BYTE: u64 = 16;
 /// The nodes of a scene with their places. A node's index is its `typed_id`.
 pub(super) struct Placed {
     pub scene: SceneNodes,
-    /// The transform from each node's own space to the scene's.
+    /// The transform from each node's own space to the scene's, in which the meshes are built.
     pub global: Vec<DMat4>,
     /// The nodes with a mesh that the file shows, in its order.
     pub shown: Vec<usize>,
     /// How many nodes with a mesh it hides.
     pub hidden: usize,
+    /// Which nodes have a mesh, shown or not, on them or below them.
+    pub carries_mesh: Vec<bool>,
 }
 
 impl Placed {
-    /// Places all nodes. Adds a warning about meshes that are hidden.
+    /// Places all nodes. Adds a warning about meshes that are hidden, unless they are shown too.
     ///
     /// # Errors
     /// [`ReadError::TooMany`] if so many nodes have large meshes that reading them would take very long.
-    pub(super) fn new(scene: &Scene, budget: &Budget, notes: &mut Notes) -> Result<Self, ReadError> {
+    pub(super) fn new(scene: &Scene, show_hidden: bool, budget: &Budget, notes: &mut Notes) -> Result<Self, ReadError> {
         check_instances(scene, budget)?;
         let nodes = &scene.nodes;
         let parents: Vec<Option<usize>> =
@@ -40,26 +42,30 @@ impl Placed {
         // A stable sort, which keeps siblings in order.
         order.sort_by_key(|&node| nodes[node].node_depth);
         let rest: Vec<Placement> = nodes.into_iter().map(|node| placement(&node.local_transform)).collect();
-        let mut global = vec![DMat4::IDENTITY; rest.len()];
-        for &node in &order {
-            let above = parents[node].map_or(DMat4::IDENTITY, |parent| global[parent]);
-            global[node] = above * rest[node].matrix();
-        }
-        let is_hidden = hidden(scene, &order, &parents, notes);
+        let is_hidden = hidden(scene, show_hidden, (&order, &parents), notes);
         let with_mesh = || (0..nodes.len()).filter(|&node| nodes[node].mesh.is_some());
         let shown: Vec<usize> = with_mesh().filter(|&node| !is_hidden[node]).collect();
         let hidden = with_mesh().count() - shown.len();
         if hidden > 0 {
-            notes.push(format!("meshes that the file hides, left out: {hidden}."));
+            notes.push(format!("meshes that the file hides, left out (--show-hidden shows them): {hidden}."));
         }
         let carries = carries_shown(scene, &shown, &order, &parents);
+        let mut carries_mesh: Vec<bool> = nodes.into_iter().map(|node| node.mesh.is_some()).collect();
+        include_parents(&mut carries_mesh, &order, &parents);
         let morphed = shown.iter().filter_map(|&node| {
             let rest = morphs::rest_weights(nodes[node].mesh.as_ref()?);
             (!rest.is_empty()).then_some((node, rest))
         });
         let morphed = morphed.collect();
         let local = rest.into_iter().map(LocalTransform::Placement).collect();
-        Ok(Self { scene: SceneNodes { parents, order, local, carries, morphed }, global, shown, hidden })
+        let scene = SceneNodes { parents, order, local, carries, morphed, grown: Vec::new() };
+        Ok(Self { global: scene.global(), scene, shown, hidden, carries_mesh })
+    }
+
+    /// Lets nodes [grow](SceneNodes::grow).
+    pub(super) fn grow(&mut self, clips: &[Clip]) {
+        self.scene.grow(clips);
+        self.global = self.scene.global();
     }
 }
 
@@ -90,12 +96,31 @@ pub(super) fn index(node: &Node) -> usize {
     node.element.typed_id as usize
 }
 
-/// Returns which nodes the file hides: those that are switched off, those below them that inherit it, and what is shown only from
-/// far away (levels of detail other than the first).
-fn hidden(scene: &Scene, order: &[usize], parents: &[Option<usize>], notes: &mut Notes) -> Vec<bool> {
-    let inherits = |node: &Node| {
-        ufbx::find_prop(&node.element.props, "Visibility Inheritance").is_none_or(|prop| prop.value_int != 0)
-    };
+/// Whether a switch of an object is on; none if the object doesn't have it. Of a switch that only an animation names, as in files before
+/// version 6000, ufbx knows the value as a real number alone.
+pub(super) fn is_set(element: &Element, name: &str) -> Option<bool> {
+    ufbx::find_prop(&element.props, name).map(|prop| prop.value_int != 0 || prop.value_vec4.x != 0.0)
+}
+
+/// Whether a switch of an object is on, as it is if the object doesn't have it.
+pub(super) fn is_on(element: &Element, name: &str) -> bool {
+    is_set(element, name).unwrap_or(true)
+}
+
+/// Returns which nodes the file hides: those that are switched off, or whose display layer is, those below them that inherit it, and
+/// what is shown only from far away (levels of detail other than the first). Only the latter are if hidden nodes are shown.
+fn hidden(
+    scene: &Scene,
+    show_hidden: bool,
+    (order, parents): (&[usize], &[Option<usize>]),
+    notes: &mut Notes,
+) -> Vec<bool> {
+    let mut is_off: Vec<bool> = scene.nodes.into_iter().map(|node| !is_on(&node.element, "Visibility")).collect();
+    let layers = scene.display_layers.into_iter().filter(|layer| !is_on(&layer.element, "Show"));
+    layers.flat_map(|layer| &layer.nodes).for_each(|node| is_off[index(node)] = true);
+    if show_hidden {
+        is_off.fill(false);
+    }
     let mut hidden = vec![false; order.len()];
     let mut is_far = vec![false; order.len()];
     let groups = scene.lod_groups.into_iter().flat_map(|group| &group.element.instances);
@@ -104,9 +129,10 @@ fn hidden(scene: &Scene, order: &[usize], parents: &[Option<usize>], notes: &mut
         notes.push("of levels of detail only the first is shown.".to_owned());
     }
     for &node in order {
-        let (own, above) = (&scene.nodes[node], parents[node]);
+        let (own, above) = (&scene.nodes[node].element, parents[node]);
+        let inherits = || is_on(own, "Visibility Inheritance");
         is_far[node] |= above.is_some_and(|above| is_far[above]);
-        hidden[node] = !own.visible || is_far[node] || above.is_some_and(|above| hidden[above] && inherits(own));
+        hidden[node] = is_off[node] || is_far[node] || above.is_some_and(|above| hidden[above] && inherits());
     }
     hidden
 }
@@ -121,11 +147,16 @@ fn carries_shown(scene: &Scene, shown: &[usize], order: &[usize], parents: &[Opt
             carries[index(bone)] = true;
         }
     }
+    include_parents(&mut carries, order, parents);
+    carries
+}
+
+/// Includes the nodes above those that are marked.
+fn include_parents(marked: &mut [bool], order: &[usize], parents: &[Option<usize>]) {
     // Children before parents.
     for &node in order.iter().rev() {
-        if let Some(parent) = parents[node].filter(|_| carries[node]) {
-            carries[parent] = true;
+        if let Some(parent) = parents[node].filter(|_| marked[node]) {
+            marked[parent] = true;
         }
     }
-    carries
 }

@@ -1,7 +1,7 @@
 //! Reads skins: joints, and the four that move each vertex most.
 
 use glam::DMat4;
-use ufbx::{Mesh, SkinDeformer};
+use ufbx::{Mesh, Node, SkinDeformer};
 
 use super::convert::matrix;
 use super::nodes;
@@ -22,10 +22,17 @@ pub(super) struct Skin<'a> {
 }
 
 impl<'a> Skin<'a> {
-    /// Reads the skin of a mesh, if it has one. `global` has the places of all nodes.
-    pub(super) fn new(mesh: &'a Mesh, global: &[DMat4]) -> Option<Self> {
+    /// Reads the skin of a node's mesh, if it has one. `global` has the places of all nodes. Joints move the mesh as the first of its
+    /// nodes has it; the others have copies.
+    pub(super) fn new((node, mesh): (&Node, &'a Mesh), global: &[DMat4]) -> Option<Self> {
         let deformer = mesh.skin_deformers.into_iter().next()?;
-        let mut joints = SkinJoints { nodes: Vec::new(), inverse_binds: Vec::new() };
+        let placed = |node: &Node| global[nodes::index(node)] * matrix(&node.geometry_to_node);
+        let place = match mesh.element.instances.first() {
+            Some(first) if nodes::index(first) != nodes::index(node) => placed(node) * placed(first).inverse(),
+            _ => DMat4::IDENTITY,
+        };
+        let place = if place.is_finite() { place } else { DMat4::IDENTITY };
+        let mut joints = SkinJoints { nodes: Vec::new(), inverse_binds: Vec::new(), place };
         let joint_of = deformer.clusters.into_iter().map(|cluster| {
             let bone = cluster.bone_node.as_ref()?;
             joints.nodes.push(nodes::index(bone));

@@ -18,7 +18,7 @@ use crate::load::rig_builder::{NodeBinder, RigBuilder, UndeformedVertex, VertexF
 use crate::load::uri::Files;
 use crate::mesh::detail_table::DetailTable;
 use crate::mesh::rig::Delta;
-use crate::mesh::{CornerDetail, MemoryAccount};
+use crate::mesh::{Borrowed, CornerDetail, MemoryAccount};
 use crate::progress::Progress;
 
 /// How many polygons are read before the job asks whether it was cancelled.
@@ -105,9 +105,9 @@ impl<'s, 'a> Surfaces<'s, 'a> {
     pub(super) fn add(&mut self, index: usize, progress: &Progress) -> Result<(), ReadError> {
         let node = &self.scene.nodes[index];
         let Some(mesh) = node.mesh.as_ref() else { return Ok(()) };
-        self.budget.give_back_to(0);
+        let _scope = Borrowed::from(self.budget);
         let global = &self.placed.global;
-        let skin = Skin::new(mesh, global);
+        let skin = Skin::new((node, mesh), global);
         let vertices = Vertices::new((node, mesh), global[index], skin.as_ref(), &self.import, self.budget)?;
         self.found.without_normals += usize::from(vertices.is_without_normals());
         let binder = self.binder.as_mut().map(|binder| {
@@ -222,7 +222,7 @@ impl MeshReader<'_, '_, '_> {
         if let Some(skin) = self.vertices.skin {
             self.found.many_joints += usize::from(skin.influences(vertex, &mut self.influences));
         }
-        let mut posed = self.vertices.posed((corner, vertex), &self.influences, &self.deltas)?;
+        let mut posed = self.vertices.posed((corner, vertex), &self.influences, &self.deltas);
         posed.corner.uv = self.own_uv(corner, material);
         let mut number = 0;
         if let Some(binder) = &mut self.binder {

@@ -1,6 +1,7 @@
 //! Tests with small files that are made here.
 
 pub(in crate::load) mod documents;
+mod hidden;
 mod moving;
 mod shapes;
 mod spans;

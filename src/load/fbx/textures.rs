@@ -9,7 +9,7 @@ use crate::load::notes::Notes;
 use crate::load::texture_room::{Scaling, TextureRoom};
 use crate::load::uri::Files;
 use crate::mesh::mipmap::MipFilter;
-use crate::mesh::{MemoryAccount, Sampling, Texture, Wrap};
+use crate::mesh::{Sampling, Texture, Wrap, borrowing};
 
 /// Images by texture.
 pub(super) struct Textures<'a> {
@@ -42,9 +42,8 @@ impl<'a> Textures<'a> {
             if !seen.insert(file.file_index) {
                 continue;
             }
-            let borrowed = self.budget.borrowed();
-            let size = self.with_bytes(file, |bytes| Ok(texture_size(bytes))).ok().flatten();
-            self.budget.give_back_to(borrowed);
+            let read = || self.with_bytes(file, |bytes| Ok(texture_size(bytes))).ok().flatten();
+            let size = borrowing(self.budget, read);
             found.extend(size.map(|size| (file.file_index, size, filter)));
         }
         let sizes: Vec<_> = found.iter().map(|(_, size, _)| *size).collect();
@@ -63,11 +62,10 @@ impl<'a> Textures<'a> {
         if let Some(image) = self.images.get(&file.file_index) {
             return image.clone();
         }
-        let borrowed = self.budget.borrowed();
         let planned = self.planned.get(&file.file_index);
         let (halvings, filter) = planned.map_or((0, MipFilter::Colors), |own| (own.scaling.halvings, own.filter));
-        let image = self.with_bytes(file, |bytes| decode_halved(bytes, halvings, filter, self.budget)).map(Arc::new);
-        self.budget.give_back_to(borrowed);
+        let read = || self.with_bytes(file, |bytes| decode_halved(bytes, halvings, filter, self.budget));
+        let image = borrowing(self.budget, read).map(Arc::new);
         if let (Some(Planned { size, scaling, .. }), Ok(image)) = (planned.filter(|_| halvings > 0), &image) {
             let [[a, b], [c, d]] = [*size, image.size];
             notes.push(format!("{what} is scaled down from {a} x {b} px to {c} x {d} px: {}.", scaling.reason));

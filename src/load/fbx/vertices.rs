@@ -13,7 +13,7 @@ use crate::load::import::Import;
 use crate::load::memory_budget::Budget;
 use crate::load::read_error::{FilePosition, ReadError};
 use crate::mesh::mesh_builder::InputCorner;
-use crate::mesh::rig::{Delta, LARGEST_COORDINATE};
+use crate::mesh::rig::Delta;
 
 /// The vertices of a node's mesh.
 pub(super) struct Vertices<'a> {
@@ -81,20 +81,20 @@ impl<'a> Vertices<'a> {
     pub(super) fn vertex(&self, corner: usize) -> Result<usize, ReadError> {
         let vertex = self.mesh.vertex_indices.get(corner).map(|&vertex| vertex as usize);
         let vertex = vertex.filter(|&vertex| vertex < self.mesh.vertices.len());
-        vertex.ok_or_else(|| self.problem("has a polygon with a vertex that doesn't exist".to_owned()))
+        vertex.ok_or_else(|| {
+            let name = looks::name(&self.mesh.element);
+            FilePosition::Everywhere.error(format!("mesh \"{name}\" has a polygon with a vertex that doesn't exist"))
+        })
     }
 
     /// Returns a corner in the scene's space, without texture coordinates. `influences` are the joints of its vertex, and `deltas`
-    /// what its morph targets add.
-    ///
-    /// # Errors
-    /// [`ReadError::Broken`] if its position isn't finite or is too far away.
+    /// what its morph targets add. Its position may be too far away, or not be finite.
     pub(super) fn posed(
         &self,
         (corner, vertex): (usize, usize),
         influences: &[(usize, f64)],
         deltas: &[Delta],
-    ) -> Result<PosedCorner, ReadError> {
+    ) -> PosedCorner {
         let own = self.mesh.vertices.get(vertex).map_or(DVec3::ZERO, vec3);
         let normal = self.normal(corner);
         let (mut position, mut morphed) = (own, normal);
@@ -108,17 +108,11 @@ impl<'a> Vertices<'a> {
             _ => self.rigid,
         };
         let position = matrix.transform_point3(position).as_vec3();
-        if !position.is_finite() {
-            return Err(self.problem(format!("has a position that isn't finite, at vertex {vertex}")));
-        }
-        if position.abs().max_element() > LARGEST_COORDINATE {
-            return Err(self.problem(format!("has a coordinate beyond {LARGEST_COORDINATE:e}, at vertex {vertex}")));
-        }
         let linear = DMat3::from_mat4(matrix);
         // A normal without a direction becomes zero, which the builder replaces and counts.
         let turned = morphed.map(|normal| turned(normal, &linear).unwrap_or(Vec3::ZERO));
         let corner = InputCorner { position, normal: turned, uv: glam::Vec2::ZERO };
-        Ok(PosedCorner { corner, undeformed: (own.as_vec3(), normal), linear })
+        PosedCorner { corner, undeformed: (own.as_vec3(), normal), linear }
     }
 
     fn normal(&self, corner: usize) -> Option<Vec3> {
@@ -142,9 +136,5 @@ impl<'a> Vertices<'a> {
             normal = normal.map(|normal| normal + Vec3::from(delta.normal) * weight);
         }
         (position, normal)
-    }
-
-    fn problem(&self, reason: String) -> ReadError {
-        FilePosition::Everywhere.error(format!("mesh \"{}\" {reason}", looks::name(&self.mesh.element)))
     }
 }

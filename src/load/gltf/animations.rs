@@ -10,8 +10,8 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::{Accessors, GltfError, nodes};
-use crate::mesh::MemoryAccount;
 use crate::mesh::rig::{Channel, Clip, Interpolation, Keys, Property};
+use crate::mesh::{MemoryAccount, borrowing};
 
 /// The greatest number of numbers in all clips together: more than any model has, and little enough for any memory.
 const MAX_NUMBERS: usize = 1 << 26;
@@ -174,9 +174,7 @@ impl Reader<'_> {
         self.numbers_left =
             left.ok_or_else(|| format!("brings the document above the limit of {MAX_NUMBERS} animated numbers"))?;
         let budget = self.accessors.budget;
-        let borrowed = budget.borrowed();
-        let numbers = self.accessors.numbers::<N>(&accessor, role);
-        budget.give_back_to(borrowed);
+        let numbers = borrowing(budget, || self.accessors.numbers::<N>(&accessor, role));
         let numbers = numbers.map_err(|problem| match problem {
             GltfError::Accessor { accessor, reason, .. } => {
                 format!("has {role} in /accessors/{accessor}, which {reason}")

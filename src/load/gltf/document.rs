@@ -19,7 +19,7 @@ use super::schema_check::Replaced;
 use super::{GltfError, extension_table, glb, json, schema, schema_check, variants};
 use crate::load::memory_budget::Budget;
 use crate::load::selection::Selection;
-use crate::mesh::{MemoryAccount, MemoryRefused};
+use crate::mesh::{Borrowed, MemoryAccount, MemoryRefused};
 use crate::progress::Progress;
 
 /// A validated document, the binary chunk of a `.glb`, and what was left out.
@@ -55,6 +55,7 @@ pub(super) fn parse(
     progress: &Progress,
 ) -> Result<Parsed, GltfError> {
     let mut notes = Notes::default();
+    let json = Borrowed::from(budget);
     let (mut value, blob) = json_and_blob(bytes, budget, &mut notes, progress)?;
     let Value::Object(root) = &mut value else { return Err(not_gltf("its JSON isn't an object")) };
     check_version(root, &mut notes)?;
@@ -66,7 +67,8 @@ pub(super) fn parse(
     let lists = MaterialLists::take(root, &mut notes);
     let lights = LightSources::take(root, &mut notes);
     let cameras = CameraSources::take(root, &mut notes);
-    let beside = Beside { animations: &animations, images: &lists.images, requires_draco };
+    let show_hidden = selected.import.show_hidden;
+    let beside = Beside { animations: &animations, images: &lists.images, requires_draco, show_hidden };
     let mut reach = Reach::of(root, &beside);
     let parts = node_parts::take(root, &reach, selected.hidden, budget)?;
     if parts.is_cut {
@@ -76,7 +78,7 @@ pub(super) fn parse(
     let extensions = checked(root, &faults, budget)?;
     let root: Root = serde_json::from_value(value).map_err(not_gltf)?;
     let document = Document::from_json(root).map_err(first_fault)?;
-    budget.give_back_to(0);
+    drop(json);
     let too_large =
         |refused: MemoryRefused| GltfError::Document { pointer: "its JSON".to_owned(), reason: refused.into() };
     budget.hold(lists.bytes() + lights.bytes() + cameras.bytes()).map_err(too_large)?;

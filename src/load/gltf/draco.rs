@@ -25,7 +25,7 @@ use super::nodes::Placed;
 use super::schema::{DRACO, is_detail};
 use super::{Accessors, GltfError};
 use crate::load::memory_budget::Budget;
-use crate::mesh::{MemoryAccount, MemoryRefused};
+use crate::mesh::{Borrowed, MemoryAccount, MemoryRefused};
 use crate::progress::Progress;
 
 use header::Header;
@@ -102,7 +102,8 @@ impl Stream<'_> {
         let own = kept.saturating_mul(vertices).saturating_add(indices.saturating_mul(4));
         // The decoder frees all but the result before this is copied.
         let peak = decoding.peak().max(decoding.result().saturating_add(own));
-        let (budget, passing) = (self.accessors.budget, self.accessors.budget.borrowed());
+        let budget = self.accessors.budget;
+        let decoding_memory = Borrowed::from(budget);
         budget.borrow(peak).map_err(|refused| DecodeError::TooMuch(too_much(refused, budget)))?;
         let most = decoding.stride().map_or(most, |stride| most.min(stride.saturating_mul(vertices)));
         let limits = DecodeLimits::default().with_max_points(vertices).with_max_faces(indices / 3);
@@ -114,7 +115,7 @@ impl Stream<'_> {
         })?;
         let unpacked = taken(&mesh, &attributes, self.packed, [vertices as usize, indices as usize / 3])?;
         drop(mesh);
-        budget.give_back_to(passing);
+        drop(decoding_memory);
         budget.hold(unpacked.bytes()).map_err(|refused| DecodeError::TooMuch(refused.into()))?;
         Ok(unpacked)
     }

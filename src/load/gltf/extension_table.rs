@@ -15,6 +15,8 @@ use crate::load::uri::shown;
 enum Effect {
     /// It is read, or it changes nothing of the shape at rest: looks, light, sound, behaviour, descriptions.
     None,
+    /// It changes how the model looks and isn't read; what it does to the model.
+    Looks(&'static str),
     /// It changes the shape and isn't read.
     Shape {
         /// What it does to the model.
@@ -30,7 +32,7 @@ const NAMED: usize = 5;
 const EXPORT: &str = "export the model without it";
 
 /// The extensions whose effect is known, besides those whose [names](concerns_looks) tell it.
-const KNOWN: [(&str, Effect); 49] = [
+const KNOWN: [(&str, Effect); 51] = [
     ("AGI_articulations", shape("places parts by articulations", EXPORT)),
     ("AGI_stk_metadata", Effect::None),
     ("CESIUM_primitive_outline", Effect::None),
@@ -43,6 +45,8 @@ const KNOWN: [(&str, Effect); 49] = [
     ("EXT_primitive_voxels", shape("makes voxels of its primitives", "export the voxels as triangles")),
     ("EXT_structural_metadata", Effect::None),
     ("FB_geometry_metadata", Effect::None),
+    // It says which triangles are one polygon.
+    ("FB_ngon_encoding", Effect::None),
     ("GODOT_single_root", Effect::None),
     ("GRIFFEL_bim_data", Effect::None),
     ("KHR_animation_pointer", Effect::None),
@@ -58,7 +62,8 @@ const KNOWN: [(&str, Effect); 49] = [
     ("KHR_node_selectability", Effect::None),
     (VISIBILITY, Effect::None),
     ("KHR_physics_rigid_bodies", Effect::None),
-    ("KHR_techniques_webgl", shape("has shaders of its own, which may move vertices", EXPORT)),
+    ("KHR_technique_webgl", SHADERS),
+    ("KHR_techniques_webgl", SHADERS),
     ("KHR_xmp", Effect::None),
     ("KHR_xmp_json_ld", Effect::None),
     ("MAXAR_image_ortho", Effect::None),
@@ -82,6 +87,8 @@ const KNOWN: [(&str, Effect); 49] = [
     ("VRMC_vrm", Effect::None),
     ("VRMC_vrm_animation", Effect::None),
 ];
+
+const SHADERS: Effect = Effect::Looks("draws with shaders of its own");
 
 const fn shape(does: &'static str, remedy: &'static str) -> Effect {
     Effect::Shape { does, remedy }
@@ -110,7 +117,7 @@ fn effect(name: &str) -> Option<Effect> {
 pub(super) fn check(root: &Map<String, Value>, notes: &mut Notes) -> Result<(), GltfError> {
     for (place, name) in names(root, "extensionsRequired") {
         let (reason, remedy) = match effect(name) {
-            Some(Effect::None) => continue,
+            Some(Effect::None | Effect::Looks(_)) => continue,
             Some(Effect::Shape { does, remedy }) => (format!("which {does} and isn't read"), remedy),
             None => ("which isn't known, and may change the shape".to_owned(), EXPORT),
         };
@@ -120,6 +127,7 @@ pub(super) fn check(root: &Map<String, Value>, notes: &mut Notes) -> Result<(), 
     for (_, name) in names(root, "extensionsUsed") {
         match effect(name) {
             Some(Effect::None) => {}
+            Some(Effect::Looks(does)) => notes.push(format!("{name} isn't read: it {does}. Colours may differ.")),
             Some(Effect::Shape { does, .. }) => {
                 notes.push(format!("{name} isn't read: it {does}. What is shown may differ from what the file means."));
             }
@@ -189,6 +197,15 @@ mod tests {
             said.contains("A_b, which isn't known, and may change the shape; export the model without it"),
             "{said}"
         );
+    }
+
+    #[test]
+    fn shaders_and_polygons_may_be_required_and_the_former_are_said() {
+        for name in ["KHR_technique_webgl", "KHR_techniques_webgl", "FB_ngon_encoding"] {
+            let said = checked(&json!({ "extensionsUsed": [name], "extensionsRequired": [name] })).expect("no error");
+            let expected = format!("{name} isn't read: it draws with shaders of its own. Colours may differ.");
+            assert_eq!(said, if name.starts_with("KHR") { vec![expected] } else { Vec::new() });
+        }
     }
 
     #[test]

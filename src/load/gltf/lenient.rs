@@ -38,11 +38,6 @@ impl<'a> Members<'a> {
         self.object.get(name).filter(|value| !value.is_null())
     }
 
-    /// Returns whether a member is an object.
-    pub(super) fn has_object(&self, name: &str) -> bool {
-        self.get(name).is_some_and(Value::is_object)
-    }
-
     pub(super) fn has(&self, name: &str) -> bool {
         self.get(name).is_some()
     }

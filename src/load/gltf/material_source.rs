@@ -20,6 +20,8 @@ pub(super) struct MaterialSource {
     /// Without maps.
     pub look: Look,
     pub maps: [Option<MapSource>; Slot::COUNT],
+    /// Factor of the glossiness that the specular colour's image has in alpha; none if it has none.
+    pub glossiness: Option<f32>,
     /// Names of extensions, and of parts of extensions, that aren't drawn.
     pub undrawn: Vec<String>,
 }
@@ -42,6 +44,15 @@ pub(super) struct Uvs {
 
 const TRANSMISSION: &str = "KHR_materials_transmission";
 
+/// Extensions that aren't drawn, and the number of each that is 0 where it changes nothing.
+const STRENGTHS: [(&str, &str); 5] = [
+    ("KHR_materials_anisotropy", "anisotropyStrength"),
+    ("KHR_materials_diffuse_transmission", "diffuseTransmissionFactor"),
+    ("KHR_materials_dispersion", "dispersion"),
+    ("KHR_materials_iridescence", "iridescenceFactor"),
+    ("KHR_materials_volume", "thicknessFactor"),
+];
+
 /// From 0 to 1.
 const UNIT: [f32; 2] = [0.0, 1.0];
 /// From 0 to what any number of a material may be at most: products of two are finite.
@@ -57,6 +68,7 @@ fn silent() -> MaterialSource {
         double_sided: false,
         look: Look { metallic: 1.0, roughness: 1.0, ..Look::default() },
         maps: Default::default(),
+        glossiness: None,
         undrawn: Vec::new(),
     }
 }
@@ -114,14 +126,15 @@ impl MaterialSource {
         if let Some(specular) = extensions.inside("KHR_materials_specular") {
             look.specular = specular.number("specularFactor", 1.0, UNIT);
             look.specular_color = specular.numbers("specularColorFactor", [1.0; 3], POSITIVE);
+            self.map(Slot::Specular, MapSource::of(&specular, "specularTexture", textures));
+            self.map(Slot::SpecularColor, MapSource::of(&specular, "specularColorTexture", textures));
         }
         if let Some(coat) = extensions.inside("KHR_materials_clearcoat") {
-            look.clearcoat = coat.number("clearcoatFactor", 0.0, UNIT);
-            look.clearcoat_roughness = coat.number("clearcoatRoughnessFactor", 0.0, UNIT);
+            self.coat(&coat, textures);
         }
-        look.unlit = extensions.has("KHR_materials_unlit");
+        self.look.unlit = extensions.has("KHR_materials_unlit");
         if let Some(transmission) = extensions.inside(TRANSMISSION) {
-            look.transmission = transmission.number("transmissionFactor", 0.0, UNIT);
+            self.look.transmission = transmission.number("transmissionFactor", 0.0, UNIT);
             self.map(Slot::Transmission, MapSource::of(&transmission, "transmissionTexture", textures));
         }
         if let Some(sheen) = extensions.inside("KHR_materials_sheen") {
@@ -139,45 +152,57 @@ impl MaterialSource {
         self.note_undrawn(extensions);
     }
 
+    fn coat(&mut self, coat: &Members, textures: usize) {
+        self.look.clearcoat = coat.number("clearcoatFactor", 0.0, UNIT);
+        self.look.clearcoat_roughness = coat.number("clearcoatRoughnessFactor", 0.0, UNIT);
+        // Images of a coat that isn't there needn't be read.
+        if self.look.clearcoat > 0.0 {
+            self.map(Slot::Clearcoat, MapSource::of(coat, "clearcoatTexture", textures));
+            self.map(Slot::ClearcoatRoughness, MapSource::of(coat, "clearcoatRoughnessTexture", textures));
+            if let Some(normal) = coat.inside("clearcoatNormalTexture") {
+                self.look.clearcoat_normal_scale = normal.number("scale", 1.0, ANY);
+                self.map(Slot::ClearcoatNormal, MapSource::inside(&normal, textures));
+            }
+        }
+    }
+
     /// Converts the older description by diffuse and specular colours, which replaces the other: a dielectric whose reflection
     /// seen head-on is the specular colour itself. KHR_materials_ior has the index 0 for this.
     fn glossy(&mut self, glossy: &Members, textures: usize) {
         self.base_color = glossy.numbers("diffuseFactor", [1.0; 4], UNIT);
         self.base_map = MapSource::of(glossy, "diffuseTexture", textures);
         self.map(Slot::MetallicRoughness, None);
+        self.map(Slot::Specular, None);
+        self.map(Slot::SpecularColor, MapSource::of(glossy, "specularGlossinessTexture", textures));
+        let glossiness = glossy.number("glossinessFactor", 1.0, UNIT);
+        self.glossiness = Some(glossiness);
         let look = &mut self.look;
         (look.metallic, look.ior, look.specular) = (0.0, 0.0, 1.0);
-        look.roughness = 1.0 - glossy.number("glossinessFactor", 1.0, UNIT);
+        look.roughness = 1.0 - glossiness;
         look.specular_color = glossy.numbers("specularFactor", [1.0; 3], UNIT);
     }
 
+    /// Notes extensions that aren't drawn, where they would change something.
     fn note_undrawn(&mut self, extensions: &Members) {
         for name in extensions.names() {
-            let textures: &[&str] = match name {
-                "KHR_materials_clearcoat" => {
-                    &["clearcoatTexture", "clearcoatRoughnessTexture", "clearcoatNormalTexture"]
-                }
-                "KHR_materials_specular" => &["specularTexture", "specularColorTexture"],
-                "KHR_materials_pbrSpecularGlossiness" => &["specularGlossinessTexture"],
-                "KHR_materials_emissive_strength" | "KHR_materials_ior" => &[],
-                "KHR_materials_sheen" | "KHR_materials_unlit" => &[],
+            match name {
+                "KHR_materials_clearcoat" | "KHR_materials_specular" | "KHR_materials_pbrSpecularGlossiness" => {}
+                "KHR_materials_emissive_strength" | "KHR_materials_ior" => {}
+                "KHR_materials_sheen" | "KHR_materials_unlit" => {}
                 TRANSMISSION => {
-                    if self.look.transmits() && self.look.roughness > 0.0 {
+                    // Metal lets no light through.
+                    let is_metal = self.look.metallic >= 1.0 && self.maps[Slot::MetallicRoughness as usize].is_none();
+                    if self.look.transmits() && self.look.roughness > 0.0 && !is_metal {
                         self.undrawn.push(format!("blur of what is behind rough surfaces ({TRANSMISSION})"));
                     }
-                    continue;
                 }
                 _ => {
-                    self.undrawn.push(crate::load::uri::shown(name));
-                    continue;
+                    let strength = STRENGTHS.iter().find(|(extension, _)| *extension == name);
+                    let strength = strength.and_then(|(_, number)| Some((number, extensions.inside(name)?)));
+                    if strength.is_none_or(|(number, members)| members.number(number, 0.0, POSITIVE) > 0.0) {
+                        self.undrawn.push(crate::load::uri::shown(name));
+                    }
                 }
-            };
-            if !textures.is_empty()
-                && extensions.has_object(name)
-                && let Some(members) = extensions.inside(name)
-            {
-                let found = textures.iter().filter(|texture| members.has(texture));
-                self.undrawn.extend(found.map(|texture| format!("{texture} of {name}")));
             }
         }
     }
@@ -190,7 +215,7 @@ impl MaterialSource {
     /// Returns whether corners need more than position, normal and texture coordinates.
     pub(super) fn needs_details(&self) -> bool {
         let others = self.maps.iter().flatten().any(|map| map.uvs != self.own_uvs());
-        others || self.maps[Slot::Normal as usize].is_some()
+        others || Look::TANGENT_SLOTS.iter().any(|slot| self.maps[*slot as usize].is_some())
     }
 }
 

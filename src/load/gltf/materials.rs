@@ -16,11 +16,12 @@ use super::uv_transform::UvTransform;
 use super::{Accessors, GltfError};
 use crate::load::images::{decode_halved, texture_size};
 use crate::load::memory_budget::Budget;
+use crate::load::packing::roughness;
 use crate::load::texture_room::{Scaling, TextureRoom, decoded_bytes};
 use crate::load::uri::Files;
 use crate::mesh::mesh_builder::MeshBuilder;
 use crate::mesh::mipmap::MipFilter;
-use crate::mesh::{Look, Map, MapUv, Material, MemoryAccount, MemoryRefused, Sampling, Slot, Texture};
+use crate::mesh::{Borrowed, Look, Map, MapUv, Material, MemoryAccount, MemoryRefused, Sampling, Slot, Texture};
 use crate::progress::Progress;
 
 /// How many materials a sentence names.
@@ -55,6 +56,8 @@ pub(super) struct Materials<'a> {
     textures: HashMap<usize, Option<TextureSource>>,
     /// By the image's index.
     images: HashMap<usize, ReadImage>,
+    /// Maps of roughness that were made of glossiness, by the image and the bits of its factor.
+    rough: HashMap<(*const Texture, u32), Arc<Texture>>,
     /// The memory that the rest of the load takes, in bytes.
     reserved: u64,
     /// For what isn't drawn, the materials that have it.
@@ -107,6 +110,7 @@ impl<'a> Materials<'a> {
             resolved: HashMap::new(),
             textures: HashMap::new(),
             images: HashMap::new(),
+            rough: HashMap::new(),
             reserved: 0,
             undrawn: BTreeMap::new(),
             notes: RefCell::default(),
@@ -189,19 +193,16 @@ impl<'a> Materials<'a> {
 
     /// The size of an image in px; none if it can't be read.
     fn size(&self, image: usize) -> Option<[u32; 2]> {
-        let borrowed = self.budget.borrowed();
+        let _scope = Borrowed::from(self.budget);
         let bytes = texture_source::image(&self.lists.images, image, self.accessors, self.files);
-        let size = bytes.ok().and_then(|bytes| texture_size(&bytes));
-        self.budget.give_back_to(borrowed);
-        size
+        bytes.ok().and_then(|bytes| texture_size(&bytes))
     }
 
     fn read_image(&mut self, FoundImage { image, filter, size }: FoundImage, scaling: Scaling) {
-        let borrowed = self.budget.borrowed();
+        let _scope = Borrowed::from(self.budget);
         let bytes = texture_source::image(&self.lists.images, image, self.accessors, self.files);
         let texture =
             bytes.and_then(|bytes| decode_halved(&bytes, scaling.halvings, filter, self.budget)).map(Arc::new);
-        self.budget.give_back_to(borrowed);
         let scaled = (scaling.halvings > 0 && texture.is_ok()).then_some((size, scaling.reason));
         self.images.insert(image, ReadImage { texture, scaled });
     }
@@ -229,6 +230,9 @@ impl<'a> Materials<'a> {
             let map = source.maps[slot as usize];
             look.maps[slot as usize] = map.and_then(|map| self.map(map, slot, source.own_uvs(), &name));
         }
+        if let Some(factor) = source.glossiness {
+            self.set_roughness(&mut look, factor, &name);
+        }
         let (texture, sampling) =
             base.map_or((None, Sampling::default()), |(texture, sampling)| (Some(texture), sampling));
         let resolved = Resolved::of(0, source.own_uvs(), Some(&look));
@@ -255,6 +259,27 @@ impl<'a> Materials<'a> {
             }
         };
         Some(Map { texture, uv, sampling })
+    }
+
+    /// Gives a material a map of roughness, made of the glossiness in the image of its specular colour, times this factor.
+    fn set_roughness(&mut self, look: &mut Look, factor: f32, material: &str) {
+        let Some(specular) = &look.maps[Slot::SpecularColor as usize] else { return };
+        let key = (Arc::as_ptr(&specular.texture), factor.to_bits());
+        let made = match self.rough.get(&key) {
+            Some(known) => Ok(known.clone()),
+            None => roughness(&specular.texture, factor, self.budget).map(Arc::new),
+        };
+        match made {
+            Ok(texture) => {
+                self.rough.insert(key, texture.clone());
+                look.roughness = 1.0;
+                look.maps[Slot::MetallicRoughness as usize] = Some(Map { texture, ..specular.clone() });
+            }
+            Err(reason) => {
+                let said = format!("the glossiness map of material \"{material}\" is left out: {reason}.");
+                self.notes.get_mut().push(said);
+            }
+        }
     }
 
     fn texture_source(&mut self, texture: usize) -> Option<TextureSource> {
@@ -323,7 +348,7 @@ impl Resolved {
                 needs.sets[set] = true;
             }
         }
-        needs.tangents = look.is_some_and(|look| look.maps[Slot::Normal as usize].is_some());
+        needs.tangents = look.is_some_and(|look| look.tangent_map().is_some());
         Self { index, uvs, needs }
     }
 }
@@ -358,6 +383,11 @@ fn slot_name(slot: Slot) -> &'static str {
         Slot::Transmission => "transmission map",
         Slot::SheenColor => "sheen colour map",
         Slot::SheenRoughness => "sheen roughness map",
+        Slot::Clearcoat => "clear coat map",
+        Slot::ClearcoatRoughness => "clear coat roughness map",
+        Slot::ClearcoatNormal => "clear coat normal map",
+        Slot::Specular => "specular map",
+        Slot::SpecularColor => "specular colour map",
     }
 }
 

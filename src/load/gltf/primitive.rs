@@ -11,6 +11,7 @@ use super::primitive_data::PrimitiveData;
 use super::rig_builder::NodeBinder;
 use super::vertex_details::{DetailRepairs, VertexDetails};
 use crate::load::Budget;
+use crate::load::face_builder::{is_near, unplaced};
 use crate::load::import::Import;
 use crate::mesh::detail_table::DetailTable;
 use crate::mesh::{MemoryAccount, MemoryRefused};
@@ -43,6 +44,8 @@ pub(super) struct PrimitiveReader {
     left_over: usize,
     /// Corners of triangles whose normal wasn't of unit length in the file.
     pub rescaled: u32,
+    /// Triangles with a position that isn't finite or is too far away, and the primitive of the first one.
+    unplaced: (usize, Option<String>),
 }
 
 /// A primitive that is to be read, and where it goes.
@@ -153,30 +156,42 @@ impl PrimitiveReader {
         let (mode, count) = (primitive.mode(), indices.count);
         self.count(&vertices, mode, count);
         builder.make_room_for_triangles(material.index, most_triangles(mode, count), budget).map_err(too_large)?;
-        self.add_triangles(mode, &indices, &kept, (builder, material.index))
+        let unplaced = self.add_triangles(mode, &indices, &kept, (builder, material.index))?;
+        if unplaced > 0 {
+            self.unplaced.0 += unplaced;
+            self.unplaced.1.get_or_insert_with(|| name.clone());
+        }
+        Ok(())
     }
 
-    /// Adds the triangles of stored corners, whose material has this number.
+    /// Adds the triangles of stored corners, whose material has this number. Returns how many are left out, since they have a position
+    /// that can't be drawn.
     fn add_triangles(
         &mut self,
         mode: Mode,
         indices: &Indices,
         kept: &KeptVertices,
         (builder, material): (&mut MeshBuilder, usize),
-    ) -> Result<(), GltfError> {
+    ) -> Result<usize, GltfError> {
+        let mut unplaced = 0;
         let mut add = |[a, b, c]: [u32; 3]| {
+            if [a, b, c].iter().any(|&i| kept.has(i, KeptVertices::UNPLACED)) {
+                unplaced += 1;
+                return;
+            }
             let outward = if kept.has(a, KeptVertices::MIRRORED) { [a, c, b] } else { [a, b, c] };
             self.rescaled += outward.map(|i| u32::from(kept.has(i, KeptVertices::RESCALED))).iter().sum::<u32>();
             builder.stored_triangle(material, outward.map(|i| kept.get(i)));
         };
         if mode != Mode::Triangles {
             triangles(mode, indices.count, |i| indices.get(i)).for_each(add);
-            return Ok(());
+            return Ok(unplaced);
         }
         indices.in_blocks(|_, block| {
             block.as_chunks().0.iter().for_each(|triangle| add(*triangle));
-            Ok(())
-        })
+            Ok::<_, GltfError>(())
+        })?;
+        Ok(unplaced)
     }
 
     fn count(&mut self, vertices: &Vertices, mode: Mode, indices: usize) {
@@ -219,6 +234,7 @@ impl PrimitiveReader {
             let said = "vertices that more than four joints move, of which the four with the largest weights are kept";
             found.push(format!("{said}: {count}. At most {percent:.2} % of a vertex's weights are left out."));
         }
+        found.extend(self.unplaced().map(|unplaced| format!("{unplaced}; they are left out.")));
         found
     }
 
@@ -227,22 +243,30 @@ impl PrimitiveReader {
         match (document.meshes().len(), self.points, self.lines) {
             (0, ..) => "the document has no meshes".to_owned(),
             (_, 0, 0) if self.read == 0 => "no node of its scene has a mesh".to_owned(),
-            (_, 0, 0) => format!("the {} primitives of its scene are empty", self.read),
+            (_, 0, 0) => {
+                self.unplaced().unwrap_or_else(|| format!("the {} primitives of its scene are empty", self.read))
+            }
             (_, points, lines) => format!("its scene holds {points} primitives of points and {lines} of lines"),
         }
+    }
+
+    fn unplaced(&self) -> Option<String> {
+        let (count, first) = &self.unplaced;
+        first.as_ref().map(|first| unplaced(*count, first))
     }
 }
 
 /// The corners of a primitive's vertices in the builder.
 struct KeptVertices {
     ids: Vec<u32>,
-    /// The corner's repairs, and two bits more.
+    /// The corner's repairs, and three bits more.
     marks: Vec<u8>,
 }
 
 impl KeptVertices {
     const MIRRORED: u8 = 1 << CornerRepairs::BITS;
     const RESCALED: u8 = 2 << CornerRepairs::BITS;
+    const UNPLACED: u8 = 4 << CornerRepairs::BITS;
 
     fn new(count: usize) -> Self {
         Self { ids: Vec::with_capacity(count), marks: Vec::with_capacity(count) }
@@ -259,17 +283,18 @@ impl KeptVertices {
         builder: &mut MeshBuilder,
         budget: &Budget,
     ) -> Result<Self, GltfError> {
-        let is_used = |i: usize| used[i / 64] & 1 << (i % 64) != 0;
+        let is_stored =
+            |kept: &Self, i: usize| used[i / 64] & 1 << (i % 64) != 0 && !kept.has(i as u32, Self::UNPLACED);
         let mut kept = Self::new(vertices.count);
         let (mut corners, mut stored) = (Vec::with_capacity(TOGETHER), Vec::with_capacity(TOGETHER));
         for first in (0..vertices.count).step_by(TOGETHER) {
             let range = first..(first + TOGETHER).min(vertices.count);
             corners.clear();
             for i in range.clone() {
-                let vertex = vertices.read(i)?;
+                let vertex = vertices.read(i);
                 let binding = moving.as_mut().map_or(0, |moving| moving.bind(i, vertices, &vertex.corner));
                 kept.mark(&vertex);
-                if is_used(i) {
+                if is_stored(&kept, i) {
                     let binding = match &mut details {
                         Some(details) => details.number(vertex.detail, binding, budget).map_err(too_large)?,
                         None => binding,
@@ -281,7 +306,10 @@ impl KeptVertices {
             stored.clear();
             builder.corners(&corners, &mut stored);
             let mut stored = stored.iter().copied();
-            range.for_each(|i| kept.push(if is_used(i) { stored.next() } else { None }.unwrap_or_default()));
+            range.for_each(|i| {
+                let own = if is_stored(&kept, i) { stored.next() } else { None };
+                kept.push(own.unwrap_or_default());
+            });
         }
         Ok(kept)
     }
@@ -289,7 +317,8 @@ impl KeptVertices {
     /// Notes how the next vertex was read.
     fn mark(&mut self, vertex: &Vertex) {
         let mark = |is: bool, bit: u8| if is { bit } else { 0 };
-        self.marks.push(mark(vertex.mirrored, Self::MIRRORED) | mark(vertex.rescaled, Self::RESCALED));
+        let placed = mark(!is_near(&vertex.corner), Self::UNPLACED);
+        self.marks.push(mark(vertex.mirrored, Self::MIRRORED) | mark(vertex.rescaled, Self::RESCALED) | placed);
     }
 
     /// Adds the corner of the first vertex without one.

@@ -53,6 +53,8 @@ pub(super) struct Beside<'a> {
     pub animations: &'a [Value],
     pub images: &'a [Value],
     pub requires_draco: bool,
+    /// Whether nodes that hide themselves are shown too.
+    pub show_hidden: bool,
 }
 
 impl Reach {
@@ -63,7 +65,7 @@ impl Reach {
         let mut reach = Self {
             nodes: vec![false; count("nodes")],
             shown: vec![false; count("nodes")],
-            hiding: list(root, "nodes").iter().map(hides).collect(),
+            hiding: list(root, "nodes").iter().map(|node| !beside.show_hidden && hides(node)).collect(),
             meshes: vec![false; count("meshes")],
             skins: vec![false; count("skins")],
             accessors: vec![Use::None; count("accessors")],

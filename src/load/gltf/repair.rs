@@ -129,7 +129,8 @@ fn repair_nodes(root: &mut Map<String, Value>, reach: &Reach, notes: &mut Notes)
         }
     }
     if reach.hidden > 0 {
-        notes.push(format!("nodes that KHR_node_visibility hides, with meshes that aren't shown: {}.", reach.hidden));
+        let said = "nodes that KHR_node_visibility hides, with meshes that aren't shown (--show-hidden shows them)";
+        notes.push(format!("{said}: {}.", reach.hidden));
     }
 }
 

@@ -27,6 +27,7 @@ pub(super) fn of(document: &Document, placed: &Placed, also: impl Iterator<Item 
         carries: carries_shown(document, placed, also),
         morphed: morphed.collect(),
         local: all.iter().cloned().map(local).collect(),
+        grown: Vec::new(),
     }
 }
 

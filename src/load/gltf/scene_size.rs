@@ -13,7 +13,7 @@ use crate::load::memory_budget::{Budget, edge_bytes};
 use crate::mesh::build_limits::MAX_TRIANGLES;
 use crate::mesh::detail_table::DetailTable;
 use crate::mesh::interner::Interner;
-use crate::mesh::{MemoryAccount, MemoryRefused};
+use crate::mesh::{MemoryAccount, MemoryRefused, borrowing};
 
 /// The greatest number of vertices, their displacements and indices, each counted as often as it is used.
 const MAX_ELEMENTS: u64 = 1 << 29;
@@ -117,11 +117,9 @@ pub(crate) fn check(
     };
     let beside = moving.saturating_add(all.primitives.saturating_mul(PER_PRIMITIVE));
     let ahead = all.corners * PER_CORNER + all.zeros * PER_ZERO + details + read.max(finished);
-    let borrowed = budget.borrowed();
-    let ahead_of = || budget.borrow(ahead).inspect_err(|_| budget.release(beside));
+    // What is borrowed is only checked: the builder takes the memory as it goes.
+    let ahead_of = || borrowing(budget, || budget.borrow(ahead)).inspect_err(|_| budget.release(beside));
     budget.hold(beside).and_then(|()| ahead_of()).map_err(too_large)?;
-    // This was only a check: the builder takes the memory as it goes.
-    budget.give_back_to(borrowed);
     // By then the file's data has been freed.
     let edges = edge_bytes(all.corners, all.triangles) + if is_detailed { all.corners * PER_DETAIL } else { 0 };
     let bytes = ahead.max(edges.saturating_sub(accessors.buffer_bytes()));

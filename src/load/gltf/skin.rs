@@ -24,5 +24,5 @@ pub(super) fn read(skin: &Skin, accessors: &Accessors) -> Result<SkinJoints, Glt
             matrices.iter().map(|matrix| Mat4::from_cols_array(matrix).as_dmat4()).collect()
         }
     };
-    Ok(SkinJoints { nodes, inverse_binds })
+    Ok(SkinJoints { nodes, inverse_binds, place: DMat4::IDENTITY })
 }

@@ -14,7 +14,6 @@ use crate::load::binding_space::turned;
 use crate::mesh::CornerDetail;
 use crate::mesh::mesh_builder::InputCorner;
 use crate::mesh::normals::GivenNormal;
-use crate::mesh::rig::LARGEST_COORDINATE;
 
 /// The greatest number of joints that move a vertex.
 const MOST_JOINTS: usize = 4;
@@ -136,7 +135,6 @@ fn cut(found: &mut Vec<(usize, f64)>) -> f64 {
 
 /// Reads a primitive's vertices, and puts them into their rest pose.
 pub(super) struct Vertices<'a> {
-    source: PrimitiveData<'a>,
     pose: &'a NodePose<'a>,
     transform: Option<UvTransform>,
     pub count: usize,
@@ -182,7 +180,6 @@ impl<'a> Vertices<'a> {
             joints: None,
             details: None,
             repairs: VertexRepairs::default(),
-            source,
         })
     }
 
@@ -213,22 +210,13 @@ impl<'a> Vertices<'a> {
         (position, normal)
     }
 
-    /// Reads a vertex. Each must be read only once, since repairs are counted.
-    ///
-    /// # Errors
-    /// [`GltfError::Primitive`] if its position isn't finite or is too far away.
-    pub(super) fn read(&mut self, i: usize) -> Result<Vertex, GltfError> {
+    /// Reads a vertex. Each must be read only once, since repairs are counted. Its position may be too far away, or not be finite.
+    pub(super) fn read(&mut self, i: usize) -> Vertex {
         let matrix = self.matrix(i);
         let (position, normal) = self.undeformed(i, true);
         // The normal before morphing, which doesn't preserve unit length.
         let own = if self.targets.is_empty() { normal } else { self.undeformed(i, false).1 }.map(GivenNormal::new);
         let position = matrix.transform_point3(position.as_dvec3()).as_vec3();
-        if !position.is_finite() {
-            return Err(self.source.problem(format!("has a position that isn't finite, at vertex {i}")));
-        }
-        if position.abs().max_element() > LARGEST_COORDINATE {
-            return Err(self.source.problem(format!("has a coordinate beyond {LARGEST_COORDINATE:e}, at vertex {i}")));
-        }
         let linear = DMat3::from_mat4(matrix);
         // A normal without a direction becomes zero, which the builder replaces and counts.
         let normal = normal.map(|normal| turned(normal, &linear).unwrap_or(Vec3::ZERO));
@@ -246,7 +234,7 @@ impl<'a> Vertices<'a> {
         let morph = self.tangent_morph(i);
         let read = |details: &mut VertexDetails| details.read(i, &linear, &morph);
         let detail = self.details.as_mut().map_or_else(CornerDetail::default, read);
-        Ok(Vertex { corner: InputCorner { position, normal, uv }, detail, mirrored, rescaled })
+        Vertex { corner: InputCorner { position, normal, uv }, detail, mirrored, rescaled }
     }
 
     /// Returns what the morph targets do to a vertex's tangent at rest.

@@ -1,13 +1,11 @@
 //! Copies of good files with changed bits, ends and numbers. Each must give a mesh or an error, without a panic and
-//! within the time limit.
+//! without taking for ever.
 //!
 //! `PNAEN_MUTATIONS` and `PNAEN_MUTATE` work as for glTF documents: see `load/gltf/tests/mutations.rs`.
 
-use std::time::Duration;
-
 use fastrand::Rng;
 
-use super::{read, time};
+use super::read;
 use crate::load::Format::{self, Fbx, Obj, Off, Ply, Stl, ThreeMf};
 use crate::load::{fbx, obj, off, ply, stl, threemf};
 
@@ -74,19 +72,16 @@ fn mutated_copies_are_read_or_refused() {
     for (format, bytes) in &originals {
         assert!(read(*format, bytes).is_ok(), "{format:?}");
     }
-    let (mut random, mut refused, mut slowest) = (Rng::with_seed(1), 0, Duration::ZERO);
+    let (mut random, mut refused) = (Rng::with_seed(1), 0);
     for i in 0..copies {
         let (format, mut bytes) = originals[i % originals.len()].clone();
         mutate(&mut bytes, &mut random);
-        let start = time();
-        let result = read(format, &bytes);
-        slowest = slowest.max(time() - start);
-        if let Err(fault) = result {
+        if let Err(fault) = read(format, &bytes) {
             let message = fault.to_string();
             assert!(message.len() < 300 && !message.contains(char::is_control), "{message}");
             refused += 1;
         }
     }
-    println!("{copies} copies of {} files: {refused} refused, the slowest {slowest:?}", originals.len());
+    println!("{copies} copies of {} files: {refused} refused", originals.len());
     assert!(refused > copies / 10 && refused < copies, "{refused} of {copies} were refused");
 }

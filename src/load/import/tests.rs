@@ -18,7 +18,8 @@ use crate::load::source::Source;
 use crate::mesh::shapes::Shape;
 use crate::progress::Progress;
 
-const MADE: Import = Import { normals: NormalSource::Made, crease_angle: 60.0, up: None, unit: None };
+const MADE: Import =
+    Import { normals: NormalSource::Made, crease_angle: 60.0, up: None, unit: None, show_hidden: false };
 
 fn loaded(format: Format, bytes: &[u8], import: Import) -> LoadedMesh {
     let selected = Selection { import, ..Selection::default() };

@@ -10,7 +10,7 @@ use crate::load::memory_budget::Budget;
 use crate::load::read_error::ReadError;
 use crate::load::texture_room::decoded_bytes;
 use crate::mesh::mipmap::MipFilter;
-use crate::mesh::{MemoryAccount, Texture};
+use crate::mesh::{MemoryAccount, Texture, borrowing};
 use crate::progress::Progress;
 
 /// An image is looked at with no more px a side than this.
@@ -78,7 +78,7 @@ fn holds_normals(materials: &Materials, file: &str, budget: &Budget) -> bool {
         budget.release(decoded_bytes(texture.size));
         Ok(are_normals(&texture))
     };
-    materials.borrowing(|| materials.beside(file).and_then(look)).unwrap_or(false)
+    borrowing(budget, || materials.beside(file).and_then(look)).unwrap_or(false)
 }
 
 /// Whether nearly all texels are unit vectors that point away from the surface, and blue is the largest of the three on average.

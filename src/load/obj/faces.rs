@@ -37,6 +37,8 @@ pub(super) struct StatementCounts {
     pub points: usize,
     pub lines: usize,
     pub surfaces: usize,
+    /// Of other files and of programs.
+    pub calls: usize,
     pub unknown: usize,
 }
 
@@ -45,6 +47,7 @@ impl StatementCounts {
         self.points += other.points;
         self.lines += other.lines;
         self.surfaces += other.surfaces;
+        self.calls += other.calls;
         self.unknown += other.unknown;
     }
 }
@@ -111,6 +114,7 @@ impl FacePiece {
             b"p" => self.counts.points += words(statement.rest()).count(),
             b"l" => self.counts.lines += 1,
             b"curv" | b"curv2" | b"surf" => self.counts.surfaces += 1,
+            b"call" | b"csh" => self.counts.calls += 1,
             word => self.counts.unknown += usize::from(!SILENT.contains(&word)),
         }
     }

@@ -15,7 +15,7 @@ use crate::load::text_lines::{shown, words};
 use crate::load::texture_room::{Scaling, TextureRoom};
 use crate::load::uri::Files;
 use crate::mesh::mipmap::MipFilter;
-use crate::mesh::{Alpha, Look, Material, MemoryAccount, Sampling, Wrap};
+use crate::mesh::{Alpha, Look, Material, Sampling, Wrap, borrowing};
 use crate::progress::Progress;
 
 /// The greatest number of material files that are read.
@@ -108,8 +108,7 @@ impl<'a> Materials<'a> {
             self.libraries_left_out += 1;
             return;
         }
-        let borrowed = self.budget.borrowed();
-        match self.beside(&name).and_then(|bytes| mtl::read(&bytes)) {
+        match borrowing(self.budget, || self.beside(&name).and_then(|bytes| mtl::read(&bytes))) {
             Ok((materials, bad)) => {
                 self.bad_statements += bad;
                 // Of several materials with one name the first counts, as in most programs.
@@ -122,7 +121,6 @@ impl<'a> Materials<'a> {
                 self.problems.push(format!("the material file {name} is left out: {reason}."));
             }
         }
-        self.budget.give_back_to(borrowed);
         self.libraries.push(name);
     }
 
@@ -255,7 +253,8 @@ impl<'a> Materials<'a> {
         let textures = std::mem::take(&mut self.textures);
         let mut giving = Giving::default();
         let size = |file: &TextureFile| {
-            self.borrowing(|| self.beside(&file.name).ok().and_then(|bytes| texture_size(&bytes))).unwrap_or_default()
+            let read = || self.beside(&file.name).ok().and_then(|bytes| texture_size(&bytes));
+            borrowing(self.budget, read).unwrap_or_default()
         };
         let sizes: Vec<_> = textures.iter().map(size).collect();
         let room = TextureRoom::of(self.budget, faces.bytes_to_finish().saturating_sub(freed));
@@ -263,7 +262,7 @@ impl<'a> Materials<'a> {
             progress.check()?;
             let filter = file.users.first().map_or(MipFilter::Colors, |(_, kind)| kind.filter());
             let decode = |bytes: Vec<u8>| decode_halved(&bytes, halvings, filter, self.budget);
-            let texture = self.borrowing(|| self.beside(&file.name).and_then(decode)).map(Arc::new);
+            let texture = borrowing(self.budget, || self.beside(&file.name).and_then(decode)).map(Arc::new);
             let said = match &texture {
                 Err(reason) => Some(format!("is left out: {reason}")),
                 Ok(texture) => {
@@ -279,14 +278,6 @@ impl<'a> Materials<'a> {
         }
         self.problems.extend(giving.finish(faces, self.budget));
         Ok(())
-    }
-
-    /// Gives back what `read` borrows.
-    pub(super) fn borrowing<T>(&self, read: impl FnOnce() -> T) -> T {
-        let borrowed = self.budget.borrowed();
-        let result = read();
-        self.budget.give_back_to(borrowed);
-        result
     }
 
     /// Returns what is missing or broken, one sentence each.

@@ -6,7 +6,7 @@ use crate::cores::in_ranges;
 use crate::load::memory_budget::Budget;
 use crate::load::read_error::ReadError;
 use crate::load::text_lines::Lines;
-use crate::mesh::MemoryAccount;
+use crate::mesh::{Borrowed, MemoryAccount};
 use crate::progress::Progress;
 
 /// The least size of a piece but the last, in bytes. One ends at the next line end that ends a statement.
@@ -90,13 +90,12 @@ pub(super) fn in_pieces<'a, T: Send>(
         progress.set(first as f32 / pieces.len() as f32);
         progress.check()?;
         let some = &pieces[first..first + group(&pieces[first..], budget.left())];
-        let borrowed = budget.borrowed();
+        let _scope = Borrowed::from(budget);
         let bytes: usize = some.iter().map(|piece| piece.bytes.len().min(LONGEST)).sum();
         budget.borrow(bytes as u64 * PER_BYTE).map_err(too_large)?;
         let own = |i: usize| parse(first + i, &some[i]);
         let made = in_ranges(some.len(), 1, |range| range.map(own).collect::<Vec<_>>());
         some.iter().zip(made.into_iter().flatten()).try_for_each(|(piece, made)| take(piece, made))?;
-        budget.give_back_to(borrowed);
         first += some.len();
     }
     Ok(())

@@ -179,13 +179,15 @@ fn concave_polygons_are_cut_inside() {
 
 #[test]
 fn small_faces_and_other_elements_are_left_out_and_counted() {
-    let mesh =
-        read("v 0 0 0\nv 1 0 0\nv 0 1 0\np 1 2\np 3\nl 1 2 3\ncurv 0 1 1 2\nsurf 0 1 0 1 1 2 3\nfrob 1\nf 1 2 3\n");
+    let mesh = read(
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\np 1 2\np 3\nl 1 2 3\ncurv 0 1 1 2\nsurf 0 1 0 1 1 2 3\ncall a.obj 1\ncsh ls\nfrob 1\nf 1 2 3\n",
+    );
     let expected = [
         &format!("{WITHOUT_NORMALS}: 1."),
         "points (p), left out: 3.",
         "lines (l), left out: 1.",
         "free-form curves and surfaces (curv, curv2, surf), which aren't read: 2.",
+        "calls of other files and of programs (call, csh), left out: 2.",
         "statements that OBJ doesn't have, left out: 1.",
     ];
     assert_eq!(mesh.warnings, expected);

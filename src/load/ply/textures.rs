@@ -11,7 +11,7 @@ use crate::load::text_lines::{first_word, shown};
 use crate::load::texture_room::{Scaling, TextureRoom};
 use crate::load::uri::Files;
 use crate::mesh::mipmap::MipFilter;
-use crate::mesh::{Material, MemoryAccount};
+use crate::mesh::{Material, borrowing};
 use crate::names;
 use crate::progress::Progress;
 
@@ -68,11 +68,8 @@ impl<'a> Textures<'a> {
     ) -> Result<Vec<String>, ReadError> {
         let used = || self.names.iter().zip(&self.materials).filter_map(|(name, material)| Some((*name, (*material)?)));
         let read = |name: &[u8]| files.read_path(&String::from_utf8_lossy(name));
-        let borrowed = budget.borrowed();
         let size = |name: &[u8]| {
-            let size = read(name).ok().and_then(|bytes| texture_size(&bytes)).unwrap_or_default();
-            budget.give_back_to(borrowed);
-            size
+            borrowing(budget, || read(name).ok().and_then(|bytes| texture_size(&bytes)).unwrap_or_default())
         };
         let sizes: Vec<_> = used().map(|(name, _)| size(name)).collect();
         let room = TextureRoom::of(budget, faces.bytes_to_finish().saturating_sub(freed));
@@ -81,8 +78,7 @@ impl<'a> Textures<'a> {
             progress.check()?;
             let Scaling { halvings, reason } = scaling;
             let decode = |bytes: Vec<u8>| decode_halved(&bytes, halvings, MipFilter::Colors, budget);
-            let texture = read(name).and_then(decode);
-            budget.give_back_to(borrowed);
+            let texture = borrowing(budget, || read(name).and_then(decode));
             match texture {
                 Err(reason) => problems.push(format!("the texture {} is left out: {reason}.", shown(name))),
                 Ok(texture) => {

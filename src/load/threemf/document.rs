@@ -88,7 +88,15 @@ impl Document {
         let objects: usize = self.parts.iter().map(|part| part.objects.len()).sum();
         let items = self.parts.first().map_or(0, |part| part.items.len());
         let triangles = self.geometry.triangles.len();
-        format!("it holds {objects} objects with {triangles} triangles, and its build has {items} items")
+        let all = || self.parts.iter().flat_map(|part| part.objects.values());
+        let others = [
+            (all().filter(|object| object.unread.beams).count(), "beam lattices"),
+            (all().filter(|object| object.unread.slices).count(), "stacks of slices"),
+            (all().filter(|object| object.unread.shape).count(), "other shapes"),
+        ];
+        let others = others.into_iter().filter(|(count, _)| *count > 0);
+        let others: String = others.map(|(count, what)| format!(", {count} {what} (export them as meshes)")).collect();
+        format!("it holds {objects} objects with {triangles} triangles{others}, and its build has {items} items")
     }
 
     /// How many bytes the budget holds for it.

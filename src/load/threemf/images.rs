@@ -129,9 +129,7 @@ impl Images {
         let mut decoded = BTreeMap::new();
         for (path, Scaling { halvings, reason }) in paths.iter().zip(scalings) {
             progress.check()?;
-            let borrowed = budget.borrowed();
             let texture = self.of(path).and_then(|bytes| decode_halved(bytes, *halvings, MipFilter::Colors, budget));
-            budget.give_back_to(borrowed);
             let said = match &texture {
                 Err(reason) => Some(format!("is left out: {reason}")),
                 Ok(texture) => (*halvings > 0).then(|| scaled_down(self.size(path), texture.size, reason)),

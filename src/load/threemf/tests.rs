@@ -273,6 +273,17 @@ fn the_directory_may_be_one_for_large_archives_and_offsets_may_be_off() {
 }
 
 #[test]
+fn a_beam_lattice_alone_is_said_with_what_helps() {
+    let beams = "<beamlattice minlength=\"1\" radius=\"1\"><beams><beam v1=\"0\" v2=\"1\"/></beams></beamlattice>";
+    let vertices = "<vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/></vertices>";
+    let object = format!("<object id=\"1\"><mesh>{vertices}{beams}</mesh></object>");
+    let file = package::package(&model(&object, "<item objectid=\"1\"/>"));
+    let read = super::read(file, "", Import::default(), &Limits::default(), &Progress::new());
+    let said = read.expect_err("it has no triangles").to_string();
+    assert!(said.contains("1 objects with 0 triangles, 1 beam lattices (export them as meshes)"), "{said}");
+}
+
+#[test]
 fn cancelling_stops_the_work() {
     let progress = Progress::new();
     progress.cancel();

@@ -82,8 +82,8 @@ fn rig() -> Rig {
     Rig {
         nodes: vec![node(None, 1.0), node(Some(0), 2.0)],
         joints: vec![
-            Joint { node: Some(1), offset: DMat4::from_translation(DVec3::Z) },
-            Joint { node: None, offset: DMat4::IDENTITY },
+            Joint { node: Some(1), offset: DMat4::from_translation(DVec3::Z), ..Joint::default() },
+            Joint::default(),
         ],
         morphs: vec![Morph { first_weight: 0, rest: vec![0.25, 0.75] }],
         clips: vec![

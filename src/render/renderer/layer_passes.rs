@@ -2,15 +2,15 @@
 
 use super::Renderer;
 use super::picture::Picture;
-use super::surfaces::Surfaces;
+use super::surfaces::{MaterialDraw, Surfaces};
 use crate::gpu::{GpuError, Recorder};
 use crate::mesh::{Material, Mesh};
 use crate::render::covered_area::{Area, covered_area, intersection, is_empty, union};
-use crate::render::draws::{Draw, LayerClear, LayerDraw, Triangles};
+use crate::render::draws::{Draw, Faces, LayerClear, LayerDraw, Triangles};
 use crate::render::layers::LayerPass;
 use crate::render::needs::{Needs, PictureKind, has_layers};
 use crate::render::steps::{LayerPart, LayerStep};
-use crate::render::surface_draws::emitted_triangles;
+use crate::render::surface_draws::{emitted_triangles, own_faces};
 use crate::render::target::depth_attachment;
 use crate::render::{Camera, Scene, Target};
 use crate::settings::{NormalsAt, Settings, SplitSide};
@@ -31,7 +31,7 @@ impl Renderer {
         picture: &Picture,
         LayerStep { pass, part, is_first }: LayerStep,
     ) -> Result<(), GpuError> {
-        let Picture { target, settings, layer_areas, frames, materials, .. } = picture;
+        let Picture { target, settings, layer_areas, frames, .. } = picture;
         let all = union(layer_areas[0], layer_areas[1]);
         if is_empty(all) {
             return Ok(());
@@ -44,7 +44,12 @@ impl Renderer {
             Some(LayerPart::Source) => Triangles::Source,
             _ => emitted_triangles(settings),
         };
-        let pipelines = self.layer_pipelines(drawn.tessellator.mesh(), pass, triangles, settings)?;
+        let surfaces = Surfaces {
+            materials: self.layer_pipelines(drawn.tessellator.mesh(), picture, pass, triangles)?,
+            pulled: triangles == Triangles::Pulled,
+            fronts: false,
+            sifted: false,
+        };
         let (scene_group, layer_group) = (self.scene_group(drawn, frame), self.layer_group(picture, pass)?);
         let is_whole = all == [0, 0, target.size[0], target.size[1]];
         let (cleared, part_clear) = if is_first { self.layer_clear(pass, is_whole)? } else { (None, None) };
@@ -63,13 +68,11 @@ impl Renderer {
             match part {
                 None => {}
                 Some(LayerPart::Source) => {
-                    self.draw_source(render_pass, &pipelines, drawn, materials, layer_areas[half as usize]);
+                    self.draw_source(render_pass, &surfaces.materials, drawn, layer_areas[half as usize]);
                 }
                 Some(LayerPart::Chunk(_, chunk)) => {
-                    let pulled = triangles == Triangles::Pulled;
-                    let surfaces = Surfaces { materials: pipelines, pulled, fronts: false, sifted: false };
                     let chunk = drawn.tessellator.chunk(chunk);
-                    self.draw_chunk(render_pass, drawn, materials, layer_areas[half as usize], &surfaces, &chunk);
+                    self.draw_chunk(render_pass, drawn, layer_areas[half as usize], &surfaces, &chunk);
                 }
             }
         });
@@ -93,17 +96,26 @@ impl Renderer {
         }
     }
 
-    /// The pipelines that draw each of the mesh's materials in a pass: none for a material that hides what is behind it.
+    /// What draws each of the mesh's materials in a pass: nothing for a material that hides what is behind it.
     fn layer_pipelines(
         &self,
         mesh: &Mesh,
+        picture: &Picture,
         pass: LayerPass,
         triangles: Triangles,
-        settings: &Settings,
-    ) -> Result<Vec<Vec<wgpu::RenderPipeline>>, GpuError> {
+    ) -> Result<Vec<Vec<MaterialDraw>>, GpuError> {
         let kind = self.kind(false);
-        let draws = mesh.materials.iter().map(|material| draws(mesh, material, pass, triangles, settings, kind));
-        draws.map(|draws| draws.into_iter().map(|draw| self.get(draw)).collect()).collect()
+        let groups = picture.materials.iter().zip(&picture.found_materials);
+        let of_material = |(material, (lit, found)): (&Material, (&wgpu::BindGroup, &wgpu::BindGroup))| {
+            draws(mesh, material, pass, triangles, picture.settings, kind)
+                .into_iter()
+                .map(|(step, draw)| {
+                    let group = if step.finds() { found } else { lit };
+                    Ok((self.get(draw)?, group.clone()))
+                })
+                .collect()
+        };
+        mesh.materials.iter().zip(groups).map(of_material).collect()
     }
 
     /// The parts of both halves, which lie in `rects`, that layers can cover: nothing in a picture without layers, or in a draft.
@@ -134,8 +146,7 @@ impl Renderer {
         let passed = &picture.target.layer_depths(&self.gpu)?[pass.passed()];
         // Colours that show measurements hide everything behind them.
         let unknown = || self.unknown.as_entire_binding();
-        let view = wgpu::BindingResource::TextureView;
-        let bound = [unknown(), unknown(), view(passed), view(picture.target.depths())];
+        let bound = [unknown(), unknown(), wgpu::BindingResource::TextureView(passed)];
         let entries: Vec<_> =
             (0..).zip(bound).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
         Ok(self.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -172,7 +183,7 @@ fn layer_area(scene: &Scene, target: &Target, camera: &Camera, settings: &Settin
     areas.fold([0; 4], union)
 }
 
-/// The draws of a material in a pass, in order.
+/// The draws of a material in a pass, in order, and what they do with layers.
 fn draws(
     mesh: &Mesh,
     material: &Material,
@@ -180,7 +191,7 @@ fn draws(
     triangles: Triangles,
     settings: &Settings,
     kind: PictureKind,
-) -> Vec<Draw> {
+) -> Vec<(LayerDraw, Draw)> {
     let own: &[_] = match pass {
         _ if !material.shows_behind() => &[],
         LayerPass::Begin => &[],
@@ -195,13 +206,14 @@ fn draws(
             if finds { all } else { &all[..all.len() - 1] }
         }
     };
-    let places = |draw| match draw {
-        LayerDraw::Away | LayerDraw::Toward => NormalsAt::Vertices,
+    let places = |draw: LayerDraw| match draw {
+        _ if draw.finds() => NormalsAt::Vertices,
         _ if triangles == Triangles::Source => NormalsAt::Vertices,
         _ => settings.used_normals_at(mesh),
     };
     let needs = Needs::of(mesh, material, settings, kind);
-    own.iter().map(|&draw| Draw::Layer(draw, triangles, places(draw), needs)).collect()
+    let faces = own_faces(settings, material).unwrap_or(Faces::Both);
+    own.iter().map(|&draw| (draw, Draw::Layer(draw, triangles, faces, places(draw), needs))).collect()
 }
 
 /// All draws of a mesh's layers with these settings.
@@ -213,7 +225,8 @@ pub(super) fn layer_draws(settings: &Settings, mesh: &Mesh, kind: PictureKind) -
     let triangles = std::iter::once(emitted_triangles(settings)).chain(source.then_some(Triangles::Source));
     let of = |triangles| {
         let passes = mesh.materials.iter().flat_map(|material| LayerPass::all().map(move |pass| (material, pass)));
-        passes.flat_map(move |(material, pass)| draws(mesh, material, pass, triangles, settings, kind))
+        let draws = move |(material, pass)| draws(mesh, material, pass, triangles, settings, kind);
+        passes.flat_map(draws).map(|(_, draw)| draw)
     };
     let clears = [LayerClear::Begin, LayerClear::Away, LayerClear::Back].map(Draw::LayerClear);
     triangles.flat_map(of).chain(clears).collect()

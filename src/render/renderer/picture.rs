@@ -1,7 +1,7 @@
 //! Draws a picture, step by step: see [`steps`](crate::render::steps).
 
 use super::Renderer;
-use super::surfaces::Surfaces;
+use super::surfaces::{MaterialDraw, Surfaces};
 use crate::gpu::{GpuError, Recorder};
 use crate::render::covered_area::{Area, is_empty};
 use crate::render::draws::{Draw, Occluded};
@@ -24,8 +24,10 @@ pub(super) struct Picture<'a> {
     pub frames: [Option<wgpu::Buffer>; 2],
     /// The bind groups of the scene's materials.
     pub materials: Vec<wgpu::BindGroup>,
+    /// The same for passes that find layers; none in a picture without layers.
+    pub found_materials: Vec<wgpu::BindGroup>,
     pub steps: Vec<Step>,
-    camera: &'a Camera,
+    pub camera: &'a Camera,
     /// What draws the light behind everything, if it is shown.
     background: Option<(wgpu::RenderPipeline, wgpu::BindGroup)>,
     /// The index of the step with the ground.
@@ -37,7 +39,7 @@ pub(super) struct Picture<'a> {
 /// What is drawn in a step beside the surfaces of its chunk, before or after them.
 struct Beside {
     /// The input triangles in the left half, for each of the mesh's materials.
-    source: Option<Vec<Vec<wgpu::RenderPipeline>>>,
+    source: Option<Vec<Vec<MaterialDraw>>>,
     /// Normals at the vertices of the step's chunk.
     normals: Option<[wgpu::RenderPipeline; 2]>,
     ground: Option<wgpu::RenderPipeline>,
@@ -66,9 +68,17 @@ impl Renderer {
         };
         let steps = steps(scene, settings);
         let shown_light = light.as_ref().filter(|_| settings.shows_environment() && !target.is_transparent());
+        let layer_areas = self.layer_areas(scene, target, camera, settings, rects);
+        let has_layers = !layer_areas.into_iter().all(is_empty);
+        let found_materials = if has_layers {
+            self.materials.found_groups(&self.gpu, &scene.materials, target.depths())
+        } else {
+            Vec::new()
+        };
         Ok(Picture {
             rects,
-            layer_areas: self.layer_areas(scene, target, camera, settings, rects),
+            layer_areas,
+            found_materials,
             frames: SplitSide::BOTH.map(half_frame),
             materials: self.material_groups(scene, settings, light.as_ref())?,
             background: shown_light.map(|light| self.background(light)).transpose()?,
@@ -107,7 +117,7 @@ impl Renderer {
         if let Step::Layer(layer) = step {
             return self.draw_layer(recorder, scene, picture, layer);
         }
-        let mut surfaces = self.surfaces(drawn, target, camera, settings)?;
+        let mut surfaces = self.surfaces(drawn, picture)?;
         if let Step::Surface(_, chunk) = step {
             surfaces.sifted = self.sift(recorder, drawn, target, camera, chunk, &surfaces)?;
         }
@@ -126,7 +136,7 @@ impl Renderer {
         surfaces: &Surfaces,
         beside: &Beside,
     ) {
-        let Picture { target, rects, frames, materials, .. } = picture;
+        let Picture { target, rects, frames, .. } = picture;
         let (step, is_first, is_last) = (picture.steps[index], index == 0, index + 1 == picture.steps.len());
         let half = step.half();
         let (Some(drawn), Some(frame)) = (scene.half(half), &frames[half as usize]) else { return };
@@ -141,12 +151,12 @@ impl Renderer {
             }
             if let Some(source) = &beside.source {
                 pass.set_bind_group(3, &self.measured_group(scene, None), &[]);
-                self.draw_source(pass, source, scene, materials, rects[SplitSide::Left as usize]);
+                self.draw_source(pass, source, scene, rects[SplitSide::Left as usize]);
             }
             match step {
                 Step::Surface(_, chunk) => {
                     pass.set_bind_group(3, &self.measured_group(drawn, Some(chunk)), &[]);
-                    self.draw_chunk(pass, drawn, materials, rect, surfaces, &drawn.tessellator.chunk(chunk));
+                    self.draw_chunk(pass, drawn, rect, surfaces, &drawn.tessellator.chunk(chunk));
                 }
                 Step::Normals(_, chunk) => {
                     let pipelines = beside.normals.iter().flatten();
@@ -174,9 +184,9 @@ impl Renderer {
     /// # Errors
     /// Out of memory, or a lost device.
     fn beside(&self, scene: &Scene, picture: &Picture, index: usize) -> Result<Beside, GpuError> {
-        let &Picture { target, settings, rects, ref steps, .. } = picture;
+        let &Picture { settings, rects, ref steps, .. } = picture;
         let has_source = index == 0 && !picture.has_left && rects[SplitSide::Left as usize][2] > 0;
-        let source = || self.source_pipelines(scene.tessellator.mesh(), target, settings);
+        let source = || self.source_pipelines(scene.tessellator.mesh(), picture);
         let has_lines = scene.lines.is_some() || scene.half(SplitSide::Left).is_some_and(|left| left.lines.is_some());
         let has_lines = has_lines && index + 1 == steps.len();
         let has_ground = index == picture.ground_step && settings.overlays.grid;

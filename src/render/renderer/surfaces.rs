@@ -1,24 +1,28 @@
 //! Records the draws of surfaces: emitted triangles, input triangles, and normals at vertices.
 
 use super::Renderer;
+use super::picture::Picture;
 use crate::gpu::layout::DrawArgs;
 use crate::gpu::{ChunkBuffers, GpuError, Recorder};
-use crate::mesh::Mesh;
+use crate::mesh::{Material, Mesh};
 use crate::render::coverage::Coverage;
 use crate::render::covered_area::Area;
-use crate::render::draws::{Faces, Triangles};
+use crate::render::draws::{Draw, Faces, Triangles};
 use crate::render::surface_draws::{emitted_triangles, source_draw, surface_draw};
 use crate::render::{Camera, Scene, Target};
-use crate::settings::{Overlays, Settings};
+use crate::settings::Overlays;
 use crate::tessellate::CoverageView;
 
 /// The offset in [`DrawArgs`] of the arguments for draws that pull their vertices.
 const PULL_ARGS: u64 = std::mem::offset_of!(DrawArgs, pull_vertex_count) as u64;
 
+/// A pipeline that draws a material, and the bind group of that material.
+pub(super) type MaterialDraw = (wgpu::RenderPipeline, wgpu::BindGroup);
+
 /// How emitted triangles are drawn.
 pub(super) struct Surfaces {
-    /// For each of the mesh's materials the pipelines that draw it, one after another.
-    pub materials: Vec<Vec<wgpu::RenderPipeline>>,
+    /// For each of the mesh's materials what draws it, one after another.
+    pub materials: Vec<Vec<MaterialDraw>>,
     /// Whether shaders pull the corners of triangles.
     pub pulled: bool,
     /// Whether faces that are seen from behind are left out.
@@ -29,34 +33,33 @@ pub(super) struct Surfaces {
 
 impl Renderer {
     /// Decides how the emitted triangles are drawn.
-    pub(super) fn surfaces(
-        &self,
-        scene: &Scene,
-        target: &Target,
-        camera: &Camera,
-        settings: &Settings,
-    ) -> Result<Surfaces, GpuError> {
+    pub(super) fn surfaces(&self, scene: &Scene, picture: &Picture) -> Result<Surfaces, GpuError> {
+        let &Picture { target, camera, settings, ref materials, .. } = picture;
         let Overlays { folds, back_faces, .. } = settings.overlays;
         let clip_from_object = camera.clip_from_object(target.viewport(), &scene.bounds);
         // These two overlays show faces from behind.
         let fronts = !folds && !back_faces && scene.tessellator.shows_fronts_only(clip_from_object);
         let (mesh, faces) = (scene.tessellator.mesh(), if fronts { Faces::Fronts } else { Faces::Both });
-        let draws =
-            mesh.materials.iter().map(|own| surface_draw(settings, mesh, own, faces, self.kind(target.is_draft())));
-        let materials = draws.map(|draw| Ok(vec![self.get(draw)?])).collect::<Result<_, GpuError>>()?;
+        let draw = |own: &Material| surface_draw(settings, mesh, own, faces, self.kind(target.is_draft()));
+        let materials = self.material_draws(mesh, materials, draw)?;
         let pulled = emitted_triangles(settings) == Triangles::Pulled;
         Ok(Surfaces { materials, pulled, fronts, sifted: false })
     }
 
-    /// The pipelines that draw input triangles, for each of the mesh's materials.
-    pub(super) fn source_pipelines(
+    /// What draws input triangles, for each of the mesh's materials.
+    pub(super) fn source_pipelines(&self, mesh: &Mesh, picture: &Picture) -> Result<Vec<Vec<MaterialDraw>>, GpuError> {
+        let kind = self.kind(picture.target.is_draft());
+        self.material_draws(mesh, &picture.materials, |own| source_draw(picture.settings, mesh, own, kind))
+    }
+
+    fn material_draws(
         &self,
         mesh: &Mesh,
-        target: &Target,
-        settings: &Settings,
-    ) -> Result<Vec<Vec<wgpu::RenderPipeline>>, GpuError> {
-        let draws = mesh.materials.iter().map(|own| source_draw(settings, mesh, own, self.kind(target.is_draft())));
-        draws.map(|draw| Ok(vec![self.get(draw)?])).collect()
+        groups: &[wgpu::BindGroup],
+        draw: impl Fn(&Material) -> Draw,
+    ) -> Result<Vec<Vec<MaterialDraw>>, GpuError> {
+        let of_material = |(own, group): (_, &wgpu::BindGroup)| Ok(vec![(self.get(draw(own))?, group.clone())]);
+        mesh.materials.iter().zip(groups).map(of_material).collect()
     }
 
     /// Removes triangles that cover no sample from an emitted chunk, if that saves time. Returns false if all of the chunk has to
@@ -90,9 +93,8 @@ impl Renderer {
     pub(super) fn draw_source(
         &self,
         pass: &mut wgpu::RenderPass,
-        pipelines: &[Vec<wgpu::RenderPipeline>],
+        materials: &[Vec<MaterialDraw>],
         scene: &Scene,
-        materials: &[wgpu::BindGroup],
         [x, y, width, height]: Area,
     ) {
         if width == 0 || height == 0 {
@@ -100,10 +102,10 @@ impl Renderer {
         }
         pass.set_scissor_rect(x, y, width, height);
         let patches = &scene.tessellator.topology().material_patches;
-        for ((material, patches), pipelines) in materials.iter().zip(patches).zip(pipelines) {
-            for pipeline in pipelines {
+        for (draws, patches) in materials.iter().zip(patches) {
+            for (pipeline, group) in draws {
                 pass.set_pipeline(pipeline);
-                pass.set_bind_group(1, material, &[]);
+                pass.set_bind_group(1, group, &[]);
                 pass.draw(3 * patches.start..3 * patches.end, 0..1);
             }
         }
@@ -113,7 +115,6 @@ impl Renderer {
         &self,
         pass: &mut wgpu::RenderPass,
         scene: &Scene,
-        materials: &[wgpu::BindGroup],
         [x, y, width, height]: Area,
         surfaces: &Surfaces,
         chunk: &ChunkBuffers,
@@ -132,10 +133,10 @@ impl Renderer {
             set_vertices(pass, chunk);
             pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
         }
-        for (material, pipelines) in materials.iter().zip(&surfaces.materials) {
-            for pipeline in pipelines {
+        for draws in &surfaces.materials {
+            for (pipeline, group) in draws {
                 pass.set_pipeline(pipeline);
-                pass.set_bind_group(1, material, &[]);
+                pass.set_bind_group(1, group, &[]);
                 if surfaces.pulled {
                     pass.draw_indirect(draw_args, args + PULL_ARGS);
                 } else {

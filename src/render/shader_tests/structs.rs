@@ -158,6 +158,7 @@ fn shared_structs_have_the_same_layout() {
         unlit,
         blends,
         transmission,
+        coat_normal_scale,
         sheen_color,
         sheen_roughness,
         maps,

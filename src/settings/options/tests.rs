@@ -27,7 +27,7 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         background,
         import,
     } = settings;
-    let Import { normals: mesh_normals, crease_angle, up, unit } = import;
+    let Import { normals: mesh_normals, crease_angle, up, unit, show_hidden } = import;
     let Tessellation {
         surface,
         alpha,
@@ -84,6 +84,7 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         ("crease_angle", format!("{crease_angle:?}")),
         ("up", format!("{up:?}")),
         ("unit", format!("{unit:?}")),
+        ("show_hidden", format!("{show_hidden:?}")),
     ]
 }
 

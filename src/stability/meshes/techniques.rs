@@ -97,7 +97,7 @@ pub(crate) fn moving() -> Mesh {
     }
     let node = |parent| AnimatedNode { parent, between: DMat4::IDENTITY, rest: Placement::default(), is_joint: true };
     rig.nodes = vec![node(None), node(Some(0))];
-    rig.joints = [0, 1].map(|node| Joint { node: Some(node), offset: DMat4::IDENTITY }).to_vec();
+    rig.joints = [0, 1].map(|node| Joint { node: Some(node), ..Joint::default() }).to_vec();
     rig.morphs = vec![Morph { first_weight: 0, rest: vec![0.0] }];
     let keys = |values: &[f32], width| Keys {
         times: vec![0.0, 1.0, 2.0],

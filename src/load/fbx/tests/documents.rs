@@ -29,7 +29,7 @@ pub(in crate::load) fn document(z_up: bool, unit: f64, objects: Vec<Entry>, conn
 pub(in crate::load) struct Link(pub i64, pub i64, pub &'static str);
 
 impl Link {
-    fn entry(&self) -> Entry {
+    pub(super) fn entry(&self) -> Entry {
         let Self(from, to, property) = *self;
         let mut values: Vec<Value> = vec![if property.is_empty() { "OO" } else { "OP" }.into(), from.into(), to.into()];
         values.extend((!property.is_empty()).then(|| property.into()));
@@ -131,7 +131,7 @@ fn first(keys: &[(f64, f64)]) -> &[f64] {
 }
 
 /// The number of the layer of all curves.
-const LAYER: i64 = 901;
+pub(super) const LAYER: i64 = 901;
 
 /// A stack with one layer, from 0 to a time in s.
 pub(in crate::load) fn stack(name: &str, end: f64) -> (Vec<Entry>, Vec<Link>) {

@@ -2,8 +2,9 @@
 
 use glam::Vec3;
 
-use super::documents::{Link, curves, document, geometry, model, morphed_square, skinned_strip, stack};
+use super::documents::{LAYER, Link, curves, document, geometry, model, morphed_square, skinned_strip, stack};
 use super::loaded;
+use super::tree::{Entry, object, one, properties};
 use crate::load::loaded_mesh::LoadedMesh;
 use crate::mesh::{Moment, Topology};
 use crate::progress::Progress;
@@ -120,4 +121,137 @@ fn steps_stay_steps() {
             assert_near(posed, rest + x * Vec3::X, &format!("{time} s"));
         }
     }
+}
+
+#[test]
+fn a_part_that_is_scaled_to_nothing_at_rest_grows_in_its_clip() {
+    let square = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0];
+    let scaling: &[(&str, &str, &[f64])] = &[("Lcl Scaling", "Lcl Scaling", &[0.0; 3])];
+    let mut objects = vec![geometry(10, &square, &[&[0, 1, 2, 3]], Vec::new()), model(20, "part", "Mesh", scaling)];
+    let mut links = vec![Link(20, 0, ""), Link(10, 20, "")];
+    let keys: &[(f64, f64)] = &[(0.0, 0.0), (2.0, 6.0)];
+    for (more, joined) in
+        [stack("grow", 2.0), curves(50, (20, "Lcl Scaling"), &[("d|X", keys), ("d|Y", keys), ("d|Z", keys)], 4)]
+    {
+        objects.extend(more);
+        links.extend(joined);
+    }
+    let loaded = loaded(&document(false, 100.0, objects, &links));
+    let topology = Topology::build(&loaded.mesh, &Progress::new()).expect("nobody cancels");
+    assert_eq!((topology.patches.len(), topology.edge_counts().smooth), (2, 1));
+    for (time, size) in [(0.0, 0.0), (1.0, 3.0), (2.0, 6.0)] {
+        let mut found: Vec<_> = at(&loaded, time).into_iter().map(|(_, posed)| posed).collect();
+        found.sort_by(|a, b| a.to_array().partial_cmp(&b.to_array()).expect("numbers"));
+        for (own, [x, y]) in found.into_iter().zip([[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]]) {
+            assert_near(own, size * Vec3::new(x, y, 0.0), &format!("{time} s"));
+        }
+    }
+    assert!(loaded.corners.iter().all(|corner| corner.position == Vec3::ZERO && corner.normal == Vec3::Z));
+}
+
+#[test]
+fn each_node_of_a_skinned_mesh_has_a_copy_at_its_own_place() {
+    let mut entries = skinned_strip();
+    let placed: &[(&str, &str, &[f64])] = &[
+        ("Lcl Translation", "Lcl Translation", &[0.0, 0.0, 5.0]),
+        ("Lcl Rotation", "Lcl Rotation", &[0.0, 90.0, 0.0]),
+    ];
+    let child = |entries: &mut Vec<Entry>, name: &str, own: Vec<Entry>| {
+        let list = entries.iter_mut().find(|entry| entry.name == name).expect("every file has it");
+        list.children.extend(own);
+    };
+    child(&mut entries, "Objects", vec![model(21, "copy", "Mesh", placed)]);
+    child(&mut entries, "Connections", [Link(21, 0, ""), Link(10, 21, "")].iter().map(Link::entry).collect());
+    let loaded = loaded(&entries);
+    for time in [0.0, 0.5, 1.0] {
+        let all = at(&loaded, time);
+        let (first, copy) = all.split_at(all.len() / 2);
+        assert_eq!((first.len(), copy.len()), (10, 10));
+        for (first, copy) in first.iter().zip(copy) {
+            for (first, copy) in [(first.0, copy.0), (first.1, copy.1)] {
+                let expected = Vec3::new(first.z, first.y, 5.0 - first.x);
+                assert_near(copy, expected, &format!("the copy of {first} at {time} s"));
+            }
+        }
+    }
+}
+
+#[test]
+fn shapes_of_blender_are_limited_by_the_weights_of_their_vertex_group() {
+    let shape = vec![
+        one("Version", 100),
+        one("Indexes", vec![1, 2, 3]),
+        one("Vertices", [[0.0, 0.0, 1.0]; 3].concat()),
+        one("Normals", vec![0.0; 9]),
+    ];
+    // One weight for each of the shape's vertices, where other programs write one for each shape.
+    let channel = vec![one("Version", 100), one("DeformPercent", 50.0), one("FullWeights", vec![100.0, 25.0, 0.0])];
+    let square = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0];
+    let mut objects = vec![
+        geometry(10, &square, &[&[0, 1, 2, 3]], Vec::new()),
+        model(20, "square", "Mesh", &[]),
+        object("Deformer", 40, "Deformer::shapes", "BlendShape", vec![one("Version", 100)]),
+        object("Deformer", 41, "SubDeformer::rise", "BlendShapeChannel", channel),
+        object("Geometry", 42, "Geometry::shape", "Shape", shape),
+    ];
+    let mut links = vec![Link(20, 0, ""), Link(10, 20, ""), Link(40, 10, ""), Link(41, 40, ""), Link(42, 41, "")];
+    let keys: &[(f64, f64)] = &[(0.0, 0.0), (1.0, 100.0)];
+    for (more, joined) in [stack("rise", 1.0), curves(50, (41, "DeformPercent"), &[("d|DeformPercent", keys)], 4)] {
+        objects.extend(more);
+        links.extend(joined);
+    }
+    let mut entries = document(false, 100.0, objects, &links);
+    entries[0].children.push(one("Creator", "Blender (stable FBX IO) - 2.90.0 - 4.21.3"));
+    let loaded = loaded(&entries);
+    let weight = |place: Vec3| match (place.x, place.y) {
+        (1.0, 0.0) => 1.0,
+        (1.0, 1.0) => 0.25,
+        _ => 0.0,
+    };
+    for (rest, posed) in at(&loaded, 1.0) {
+        assert_near(Vec3::Z * rest.z, Vec3::Z * 0.5 * weight(rest), &format!("{rest} at rest"));
+        assert_near(posed, Vec3::new(rest.x, rest.y, weight(rest)), &format!("{rest} in the clip"));
+    }
+}
+
+#[test]
+fn layers_that_are_muted_or_beside_one_that_plays_alone_move_nothing() {
+    let moved = |switches: [(&str, &str); 2]| {
+        let mut objects = vec![
+            geometry(10, &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0], &[&[0, 1, 2]], Vec::new()),
+            model(20, "flag", "Mesh", &[]),
+            model(21, "other", "Mesh", &[]),
+        ];
+        let mut links = vec![Link(20, 0, ""), Link(21, 0, ""), Link(10, 20, ""), Link(10, 21, "")];
+        let keys: &[(f64, f64)] = &[(0.0, 0.0), (1.0, 5.0)];
+        for (more, joined) in [
+            stack("two layers", 1.0),
+            curves(50, (20, "Lcl Translation"), &[("d|X", keys)], 4),
+            curves(60, (21, "Lcl Translation"), &[("d|Y", keys)], 4),
+        ] {
+            objects.extend(more);
+            links.extend(joined);
+        }
+        // The second curve is in another layer.
+        objects.push(object("AnimationLayer", LAYER + 1, "AnimLayer::second", "", vec![one("Version", 100)]));
+        links.push(Link(LAYER + 1, 900, ""));
+        links.iter_mut().filter(|link| (link.0, link.1) == (60, LAYER)).for_each(|link| link.1 = LAYER + 1);
+        for (name, value) in switches.into_iter().filter(|(name, _)| !name.is_empty()) {
+            let layer =
+                objects.iter_mut().find(|own| own.values.get(1).is_some_and(|own| format!("{own:?}").contains(value)));
+            layer.expect("a layer").children.push(properties(&[(name, "bool", &[1.0])]));
+        }
+        let loaded = loaded(&document(false, 100.0, objects, &links));
+        let clip = loaded.rig.as_ref().map(|_| at(&loaded, 1.0));
+        clip.map_or([0.0; 2], |all| {
+            let [first, other] = [all[0], all[all.len() / 2]];
+            [first.1.x - first.0.x, other.1.y - other.0.y]
+        })
+    };
+    let none = ("", "");
+    assert_eq!(moved([none, none]), [5.0, 5.0]);
+    assert_eq!(moved([("Mute", "second"), none]), [5.0, 0.0]);
+    assert_eq!(moved([("Mute", "base"), none]), [0.0, 5.0]);
+    assert_eq!(moved([("Solo", "second"), none]), [0.0, 5.0]);
+    assert_eq!(moved([("Mute", "base"), ("Mute", "second")]), [0.0, 0.0]);
 }

@@ -129,7 +129,10 @@ fn pivots_geometric_transforms_and_mirrors_place_instances() {
     let loaded = loaded(&document(false, 100.0, objects, &links));
     assert_eq!(loaded.triangles.len(), 3 * 2);
     assert!(
-        loaded.warnings.iter().any(|warning| warning == "meshes that the file hides, left out: 1."),
+        loaded
+            .warnings
+            .iter()
+            .any(|warning| warning == "meshes that the file hides, left out (--show-hidden shows them): 1."),
         "{:?}",
         loaded.warnings
     );
@@ -279,5 +282,8 @@ fn files_without_triangles_say_what_they_hold() {
     let objects = vec![prism(Vec::new()), model(20, "prism", "Mesh", &[("Visibility", "Visibility", &[0.0])])];
     let bytes = text(&document(true, 1.0, objects, &[Link(20, 0, ""), Link(10, 20, "")]));
     let said = read(&bytes).map(|_| ()).expect_err("all is hidden").to_string();
-    assert!(said.contains("it holds 1 meshes, 1 hidden nodes with meshes, and 2 nodes"), "{said}");
+    assert!(
+        said.contains("it holds 2 nodes, 1 meshes, 1 nodes with meshes that it hides (--show-hidden shows them)"),
+        "{said}"
+    );
 }

@@ -41,7 +41,9 @@ pub(super) fn everything() -> Draft {
         "extensions": {
             "KHR_materials_emissive_strength": { "emissiveStrength": 8 }, "KHR_materials_ior": { "ior": 1.25 },
             "KHR_materials_specular": { "specularFactor": 0.5, "specularColorFactor": [1, 2, 3] },
-            "KHR_materials_clearcoat": { "clearcoatFactor": 0.5, "clearcoatTexture": { "index": 0 } },
+            "KHR_materials_clearcoat": {
+                "clearcoatFactor": 0.5, "clearcoatTexture": { "index": 0 }, "clearcoatNormalTexture": { "index": 2 },
+            },
             "KHR_materials_sheen": {},
         },
     }));
@@ -116,6 +118,65 @@ fn a_sheen_has_a_colour_a_roughness_and_maps() {
     let none = json!({ "sheenRoughnessFactor": 0.75, "sheenColorTexture": { "index": 0 } });
     let read = material(json!({ "extensions": { "KHR_materials_sheen": none } })).look;
     assert!(!read.has_sheen() && slots.iter().all(|&slot| read.maps[slot as usize].is_none()));
+}
+
+#[test]
+fn a_coat_and_a_reflection_have_maps() {
+    let coat = json!({
+        "clearcoatFactor": 0.5, "clearcoatRoughnessFactor": 0.25, "clearcoatTexture": { "index": 0 },
+        "clearcoatRoughnessTexture": { "index": 1 }, "clearcoatNormalTexture": { "index": 2, "scale": 3, "texCoord": 1 },
+    });
+    let specular = json!({ "specularTexture": { "index": 0, "texCoord": 1 }, "specularColorTexture": { "index": 2 } });
+    let both = json!({ "KHR_materials_clearcoat": coat, "KHR_materials_specular": specular });
+    let loaded = square(json!({ "extensions": both })).read().unwrap();
+    assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
+    let read = &loaded.materials[0].look;
+    let uv = |slot: Slot| read.maps[slot as usize].as_ref().map(|map| map.uv);
+    let second = Some(MapUv::Set(1, [1.0, 0.0, 0.0, 0.0, 1.0, 0.0]));
+    assert_eq!([uv(Slot::Clearcoat), uv(Slot::ClearcoatRoughness), uv(Slot::SpecularColor)], [Some(MapUv::Own); 3]);
+    assert_eq!([uv(Slot::ClearcoatNormal), uv(Slot::Specular)], [second; 2]);
+    assert_eq!((read.clearcoat, read.clearcoat_roughness, read.clearcoat_normal_scale), (0.5, 0.25, 3.0));
+    // A coat of no part of the surface needs no images. One alone needs no tangents that a map of normals would.
+    let none = json!({ "clearcoatTexture": { "index": 0 }, "clearcoatNormalTexture": { "index": 2 } });
+    let read = material(json!({ "extensions": { "KHR_materials_clearcoat": none } })).look;
+    assert!(read.maps.iter().all(Option::is_none));
+    // Normals of a coat need tangents as those of the surface do.
+    let alone = json!({ "clearcoatFactor": 1, "clearcoatNormalTexture": { "index": 0 } });
+    let mesh = square(json!({ "extensions": { "KHR_materials_clearcoat": alone } })).read().unwrap();
+    assert!(details(&mesh).iter().all(|detail| detail.tangent.distance(Vec3::X) < 1e-6));
+}
+
+#[test]
+fn extensions_without_an_effect_are_not_named() {
+    let clear = json!({ "transmissionFactor": 1 });
+    for extensions in [
+        json!({ "KHR_materials_volume": { "attenuationDistance": 2 } }),
+        json!({ "KHR_materials_volume": { "thicknessFactor": 0 }, "KHR_materials_ior": {} }),
+        json!({ "KHR_materials_anisotropy": {}, "KHR_materials_iridescence": {}, "KHR_materials_dispersion": {} }),
+        json!({ "KHR_materials_diffuse_transmission": { "diffuseTransmissionFactor": 0 } }),
+        // The material is rough metal, since nothing else is said: no light comes through.
+        json!({ "KHR_materials_transmission": clear }),
+    ] {
+        material(json!({ "extensions": extensions }));
+    }
+}
+
+#[test]
+fn the_glossiness_of_an_image_becomes_a_roughness() {
+    let glossy = |factor: f32| {
+        let map = json!({ "specularGlossinessTexture": { "index": 1 }, "glossinessFactor": factor });
+        material(json!({ "extensions": { "KHR_materials_pbrSpecularGlossiness": map } })).look
+    };
+    // Alpha of the image is 255 on the left and 128 on the right.
+    for (factor, green) in [(1.0, [0, 127]), (0.5, [128, 191]), (0.0, [255, 255])] {
+        let look = glossy(factor);
+        let [specular, rough] =
+            [Slot::SpecularColor, Slot::MetallicRoughness].map(|slot| look.maps[slot as usize].clone().expect("a map"));
+        assert_eq!((specular.texture.rgba[..4].to_vec(), look.specular_color), (vec![255, 0, 0, 255], [1.0; 3]));
+        let greens: Vec<u8> = rough.texture.rgba.iter().skip(1).step_by(4).copied().collect();
+        assert_eq!((greens, look.roughness, look.metallic), (green.to_vec(), 1.0, 0.0), "{factor}");
+        assert_eq!((rough.uv, rough.sampling), (specular.uv, specular.sampling));
+    }
 }
 
 #[test]
@@ -346,7 +407,8 @@ fn broken_materials_are_repaired_and_told() {
             "transmissionFactor is \"all\", not a number; 0 is used",
         ),
         (
-            json!({ "name": "frosted", "extensions": { "KHR_materials_transmission": { "transmissionFactor": 1 } } }),
+            json!({ "name": "frosted", "pbrMetallicRoughness": { "metallicFactor": 0 },
+                "extensions": { "KHR_materials_transmission": { "transmissionFactor": 1 } } }),
             "blur of what is behind rough surfaces (KHR_materials_transmission) isn't drawn; material \"frosted\" has it.",
         ),
         (
@@ -354,16 +416,12 @@ fn broken_materials_are_repaired_and_told() {
             "KHR_materials_volume isn't drawn; material \"jar\" has it.",
         ),
         (
-            json!({ "name": "hair", "extensions": { "KHR_materials_anisotropy": {} } }),
+            json!({ "name": "hair", "extensions": { "KHR_materials_anisotropy": { "anisotropyStrength": 0.5 } } }),
             "KHR_materials_anisotropy isn't drawn; material \"hair\" has it.",
         ),
         (
             json!({ "extensions": { "KHR_materials_sheen": { "sheenColorFactor": [2, 0, 0] } } }),
             "/materials/0/extensions/KHR_materials_sheen/sheenColorFactor/0 is 2, but must be at most 1.0; 1 is used",
-        ),
-        (
-            json!({ "extensions": { "KHR_materials_clearcoat": { "clearcoatNormalTexture": { "index": 0 } } } }),
-            "clearcoatNormalTexture of KHR_materials_clearcoat isn't drawn; material \"material 0\" has it.",
         ),
     ];
     for (of, expected) in cases {
@@ -448,13 +506,14 @@ fn a_material_that_is_not_there_is_the_default() {
 
 #[test]
 fn many_materials_with_the_same_extension_are_one_sentence() {
-    let mut draft = square(json!({ "name": "a", "extensions": { "KHR_materials_anisotropy": {} } }));
+    let strong = json!({ "KHR_materials_anisotropy": { "anisotropyStrength": 1 } });
+    let mut draft = square(json!({ "name": "a", "extensions": strong }));
     let one = draft.root["meshes"][0]["primitives"][0].clone();
     for i in 1..5 {
         let mut next = one.clone();
         next["material"] = json!(i);
         draft.primitive(next);
-        draft.push("materials", json!({ "name": format!("m{i}"), "extensions": { "KHR_materials_anisotropy": {} } }));
+        draft.push("materials", json!({ "name": format!("m{i}"), "extensions": strong }));
     }
     let warnings = draft.read().unwrap().warnings;
     let expected = "KHR_materials_anisotropy isn't drawn; materials \"a\", \"m1\", \"m2\" and 2 more have it.";

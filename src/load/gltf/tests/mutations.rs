@@ -4,15 +4,14 @@
 //! `PNAEN_MUTATIONS=10000` tries that many copies; `PNAEN_MUTATE=a.glb:b.gltf` also tries these files, each in its own
 //! folder.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::panic::catch_unwind;
 use std::path::PathBuf;
-use std::time::Duration;
 
 use fastrand::Rng;
 
 use super::*;
 use crate::load::Format;
-use crate::load::hostile_files::{named_files, time};
+use crate::load::hostile_files::{named_files, unhung};
 use crate::load::ktx2::tests::{ETC1S_ALPHA, UASTC_ZSTD};
 
 /// The number of copies in every run of the tests.
@@ -171,7 +170,7 @@ fn mutations_become_a_mesh_or_a_sentence() {
     let copies = std::env::var("PNAEN_MUTATIONS").ok().and_then(|count| count.parse().ok()).unwrap_or(COPIES);
     let subjects = subjects();
     // Nearly all changed copies of documents with Draco data are refused, so they are counted separately.
-    let (mut meshes, mut packed, mut others, mut slowest) = (0, 0, 0, Duration::ZERO);
+    let (mut meshes, mut packed, mut others) = (0, 0, 0);
     for copy in 0..copies {
         let subject = &subjects[copy % subjects.len()];
         let is_packed = subject.name.starts_with("a packed");
@@ -179,20 +178,12 @@ fn mutations_become_a_mesh_or_a_sentence() {
         let mut random = Rng::with_seed(copy as u64);
         let mut bytes = subject.bytes.clone();
         mutate(&mut bytes, &mut random);
-        let start = time();
-        let reading = || {
-            read(bytes.clone(), &subject.folder, "mutated", Selection::default(), &Limits::default(), &Progress::new())
-        };
-        let result = catch_unwind(AssertUnwindSafe(reading));
-        let took = time() - start;
-        slowest = slowest.max(took);
+        let folder = subject.folder.clone();
+        let reading =
+            move || read(bytes, &folder, "mutated", Selection::default(), &Limits::default(), &Progress::new());
+        let result = catch_unwind(|| unhung(reading));
         let about = || format!("copy {copy}, of {}", subject.name);
         let result = result.unwrap_or_else(|_| panic!("{} panics", about()));
-        assert!(
-            took < Duration::from_secs(1) || cfg!(debug_assertions) && bytes.len() > 1 << 20,
-            "{}: {took:?}",
-            about()
-        );
         match result {
             Ok(mesh) => {
                 *(if is_packed { &mut packed } else { &mut meshes }) += 1;
@@ -203,10 +194,7 @@ fn mutations_become_a_mesh_or_a_sentence() {
             Err(problem) => assert!(!problem.to_string().contains('\n'), "{}: {problem}", about()),
         }
     }
-    println!(
-        "{copies} copies of {} documents: {meshes} meshes and {packed} packed ones, the slowest {slowest:?}",
-        subjects.len()
-    );
+    println!("{copies} copies of {} documents: {meshes} meshes and {packed} packed ones", subjects.len());
     assert!(meshes > others / 20 && meshes < others, "{meshes} of {others}");
     assert!(packed < copies - others, "{packed} of {}", copies - others);
 }

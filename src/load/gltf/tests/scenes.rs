@@ -1,7 +1,7 @@
 //! What is shown of a document: its scene, without hidden nodes, with instances, and with vertices of more than four joints.
 
 use super::*;
-use crate::load::{LoadError, Source};
+use crate::load::{Import, LoadError, Source};
 use crate::mesh::Moment;
 use crate::tessellate::deform;
 
@@ -130,9 +130,18 @@ fn hidden_nodes_are_not_shown_and_still_move_others() {
     draft.root["nodes"][2]["extensions"] = json!({ "KHR_node_visibility": { "visible": false } });
     let loaded = draft.read().expect("one triangle");
     assert_eq!((loaded.triangles.len(), loaded.bounds().max.z), (1, 1.0));
-    assert_eq!(loaded.warnings, ["nodes that KHR_node_visibility hides, with meshes that aren't shown: 1."]);
+    assert_eq!(
+        loaded.warnings,
+        ["nodes that KHR_node_visibility hides, with meshes that aren't shown (--show-hidden shows them): 1."]
+    );
     draft.root["nodes"][2]["extensions"]["KHR_node_visibility"]["visible"] = json!(true);
     assert_eq!(draft.read().expect("two triangles").triangles.len(), 2);
+    draft.root["nodes"][2]["extensions"]["KHR_node_visibility"]["visible"] = json!(false);
+    let selected = Selection { import: Import { show_hidden: true, ..Import::default() }, ..Selection::default() };
+    let bytes = draft.document().to_string().into_bytes();
+    let all = read(bytes, Path::new("nowhere"), "draft", selected, &Limits::default(), &Progress::new());
+    let all = all.expect("two triangles");
+    assert_eq!((all.triangles.len(), all.warnings.len()), (2, 0), "{:?}", all.warnings);
     // A node that is shown, below one that is hidden.
     draft.root["nodes"][2]["children"] = json!([0]);
     draft.root["nodes"][2]["extensions"]["KHR_node_visibility"]["visible"] = json!(false);

@@ -31,10 +31,7 @@ pub(super) const ALONE: [(&str, &[&str]); 11] = [
             "sparse places that are no integers",
         ],
     ),
-    (
-        "a position isn't finite, or is so large that no surface can be computed from it",
-        &["positions that are no numbers", "positions without end", "positions that sums can't hold"],
-    ),
+    ("its only face has a position that isn't finite", &["positions that are no numbers"]),
     (
         "a triangle has a vertex that isn't in the file, and the others draw another one or end",
         &["an index beyond the vertices", "an index that starts anew"],

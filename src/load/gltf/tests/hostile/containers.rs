@@ -25,7 +25,7 @@ pub(super) fn cases() -> Vec<Case> {
         glb
     };
     let deep = |open: &str, close: &str| {
-        format!(r#"{{"asset":{{"version":"2.0"}},"extras":{}0{}}}"#, open.repeat(100_000), close.repeat(100_000))
+        format!(r#"{{"asset":{{"version":"2.0"}},"extras":{}0{}}}"#, open.repeat(1_000_000), close.repeat(1_000_000))
     };
     vec![
         no_gltf("nothing at all", "", "JSON | 1 | 0"),
@@ -42,9 +42,9 @@ pub(super) fn cases() -> Vec<Case> {
         no_gltf("JSON not in UTF-8", &b"{\"asset\":{\"version\":\"2.0\"},\"extras\":\"\xff\"}"[..], "JSON | 1 | 38"),
         no_gltf("half a surrogate pair", r#"{"asset":{"version":"\ud800"}}"#, "JSON | 1 | 28"),
         no_gltf("a number beyond f64", r#"{"asset":{"version":"2.0"},"extras":1e999}"#, "JSON | 1 | 41"),
-        no_gltf("lists nested 100,000 deep", deep("[", "]"), "JSON | 100001 | 100"),
-        no_gltf("objects nested 100,000 deep", deep("{\"a\":", "}"), "JSON | 100001 | 100"),
-        no_gltf("brackets without end", "[".repeat(100_000), "JSON | 100000 | 100"),
+        no_gltf("lists nested 1,000,000 deep", deep("[", "]"), "JSON | 1000001 | 100"),
+        no_gltf("objects nested 1,000,000 deep", deep("{\"a\":", "}"), "JSON | 1000001 | 100"),
+        no_gltf("brackets without end", "[".repeat(1_000_000), "JSON | 1000000 | 100"),
         no_gltf("another format", "solid cube", "JSON | 1"),
         no_gltf("no version", "{}", "/asset/version"),
         no_gltf("a version that is true", r#"{"asset":{"version":true}}"#, "/asset/version"),

@@ -30,6 +30,13 @@ fn position(x: f32) -> Draft {
     draft
 }
 
+/// Adds a whole triangle to a document.
+fn beside(mut draft: Draft) -> Draft {
+    let at = draft.vectors(&TRIANGLE);
+    draft.primitive(json!({ "attributes": { "POSITION": at } }));
+    draft
+}
+
 fn attribute(name: &str, kind: &str, values: &[f32]) -> Draft {
     let mut draft = triangle();
     let accessor = draft.floats(kind, values);
@@ -151,17 +158,17 @@ pub(super) fn cases() -> Vec<Case> {
         refused(
             "positions that are no numbers",
             &position(f32::NAN),
-            "Primitive | /meshes/0/primitives/0 | \"thing\" | finite | vertex 1",
+            "Empty | 1 faces | 1e37 | /meshes/0/primitives/0 | \"thing\"",
         ),
-        refused(
-            "positions without end",
-            &position(f32::NEG_INFINITY),
-            "Primitive | /meshes/0/primitives/0 | \"thing\" | finite | vertex 1",
+        Case::draft(
+            "positions without end, beside others",
+            &beside(position(f32::NEG_INFINITY)),
+            Gets::Repaired("1 faces | 1e37 | /meshes/0/primitives/0 | \"thing\" | left out"),
         ),
-        refused(
-            "positions that sums can't hold",
-            &position(1.1e37),
-            "Primitive | /meshes/0/primitives/0 | \"thing\" | 1e37 | vertex 1",
+        Case::draft(
+            "positions that sums can't hold, beside others",
+            &beside(position(1.1e37)),
+            Gets::Repaired("1 faces | 1e37 | /meshes/0/primitives/0 | \"thing\" | left out"),
         ),
         refused(
             "an index beyond the vertices",

@@ -17,10 +17,10 @@ fn chain(count: usize) -> Vec<Value> {
 }
 
 pub(super) fn cases() -> Vec<Case> {
-    let mut circle = chain(200_000);
-    circle[0]["children"] = json!([199_999]);
-    let mut wide = vec![json!({ "mesh": 0 }); 20_000];
-    wide.push(json!({ "children": (0..20_000).collect::<Vec<usize>>() }));
+    let mut circle = chain(300_000);
+    circle[0]["children"] = json!([299_999]);
+    let mut wide = vec![json!({ "mesh": 0 }); 300_000];
+    wide.push(json!({ "children": (0..300_000).collect::<Vec<usize>>() }));
     vec![
         Case::new(
             "two parents",
@@ -38,12 +38,12 @@ pub(super) fn cases() -> Vec<Case> {
             "Empty | no node | mesh",
         ),
         Case::new(
-            "a child of 20,000 nodes",
+            "a child of 300,000 nodes",
             nodes(
                 [json!({ "mesh": 0 })]
                     .into_iter()
-                    .chain(vec![json!({ "children": [0] }); 20_000])
-                    .chain([json!({ "children": (1..=20_000).collect::<Vec<usize>>() })])
+                    .chain(vec![json!({ "children": [0] }); 300_000])
+                    .chain([json!({ "children": (1..=300_000).collect::<Vec<usize>>() })])
                     .collect(),
             ),
             Gets::Repaired("/nodes/2/children/0 | 0 | /nodes/1/children | placed"),
@@ -64,8 +64,8 @@ pub(super) fn cases() -> Vec<Case> {
                 .replace("\"scenes\"", "\"others\""),
             "Document | /nodes/0/children | 0 | ancestor",
         ),
-        Case::refused("a circle of 200,000", nodes(circle), "Document | /nodes/0/children | 0 | ancestor"),
-        Case::new("200,000 nodes nested", nodes(chain(200_000)), Gets::Read),
-        Case::new("20,000 nodes side by side", nodes(wide), Gets::Read),
+        Case::refused("a circle of 300,000", nodes(circle), "Document | /nodes/0/children | 0 | ancestor"),
+        Case::new("300,000 nodes nested", nodes(chain(300_000)), Gets::Read),
+        Case::new("300,000 nodes side by side", nodes(wide), Gets::Read),
     ]
 }
