@@ -105,7 +105,7 @@ impl EdgeSpot {
         let across = gap.normalize_or_zero();
         let facing = (self.facing - across * self.facing.dot(across)).normalize_or(self.facing);
         let part = AROUND_GAP * gap.length() / length;
-        if !(part < 1.0) {
+        if part.is_nan() || part >= 1.0 {
             return Self { facing, at, ..self };
         }
         let half = along * (0.5 * part.max(LEAST_PART));

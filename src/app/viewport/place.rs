@@ -44,7 +44,10 @@ impl App {
         let scene = self.document.as_mut().and_then(|document| document.scene.half_mut(showing.half));
         // What is never drawn hides nothing.
         let waits = self.viewport.picture.cancelled.is_none() && !self.viewport.playback.is_playing();
-        let (true, Some(scene)) = (waits, scene) else { return Ok(self.look(&[])) };
+        let (true, Some(scene)) = (waits, scene) else {
+            self.look(&[]);
+            return Ok(());
+        };
         if !is_drawn || !scene.tessellator.is_counted() {
             return Ok(());
         }
@@ -52,7 +55,8 @@ impl App {
         let Some((_, walk)) = showing.walk.as_mut().filter(|(of, _)| *of == emitted) else {
             let (split, half, size) = (self.settings.split, showing.half, self.viewport.picture.size());
             let Some((at, eyes, near)) = showing.standpoints.lines(|camera| beside(camera, split, half, size)) else {
-                return Ok(self.look(&[]));
+                self.look(&[]);
+                return Ok(());
             };
             let mut sight = Sight::new(at, eyes, near).through(showing.patch);
             let visit = move |parts: &Parts| parts.visit(&mut [&mut sight]).map(|()| sight);
