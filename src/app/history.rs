@@ -1,15 +1,17 @@
-//! Undo and redo: of settings, hidden parts and the user's own shaders, and separately of views, so that neither is in the way of
-//! the other.
+//! Undo and redo: of settings, of how the mesh is prepared and of files that are open beside it, and separately of views, so that
+//! neither is in the way of the other.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::App;
+use super::jobs::own_shader_job::OpenShader;
+use crate::engine::Preparation;
 use crate::gpu::{LodShader, SurfaceShader};
+use crate::load::{Import, Source};
 use crate::render::Camera;
 use crate::settings::Settings;
-use crate::tessellate::Displacement;
 
 /// The greatest number of steps that can be undone.
 const MOST: usize = 200;
@@ -20,12 +22,23 @@ const ONE_MOVEMENT: f64 = 0.5;
 /// What undo brings back.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Undoable {
+    /// Those that files with factors or functions of the user's own take the place of are as before.
     pub settings: Settings,
-    /// The names of parts of the file that are left out.
-    pub hidden: Arc<Vec<String>>,
-    /// The files of functions of the user's own that are open. The settings are those that these take the place of.
-    pub lod_shader: Option<PathBuf>,
-    pub surface_shader: Option<PathBuf>,
+    /// How the mesh is prepared, but for the import, which is in the settings.
+    pub preparation: Preparation,
+    pub files: OpenFiles,
+}
+
+/// The files that are open beside the mesh.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct OpenFiles {
+    /// The reference surface.
+    truth: Option<Source>,
+    factors: Option<PathBuf>,
+    lod_shader: Option<PathBuf>,
+    surface_shader: Option<PathBuf>,
+    matcap: Option<PathBuf>,
+    environment: Option<PathBuf>,
 }
 
 /// The states before and after the present one.
@@ -72,23 +85,9 @@ impl<T: Clone + PartialEq> History<T> {
 }
 
 impl History<Undoable> {
-    /// Sets displacement in all steps, because it follows from the mesh and can't be undone.
-    pub(super) fn displace(&mut self, displacement: Displacement) {
-        self.change_all(|settings| settings.tessellation.displacement = displacement);
-    }
-
-    /// Changes the settings of all steps, by what no step can undo.
-    pub(super) fn change_all(&mut self, change: impl Fn(&mut Settings)) {
-        self.steps().for_each(|step| change(&mut step.settings));
-    }
-
-    /// Hides the same parts in all steps, because another mesh has others.
-    fn hide_in_all(&mut self, hidden: &Arc<Vec<String>>) {
-        self.steps().for_each(|step| step.hidden = hidden.clone());
-    }
-
-    fn steps(&mut self) -> impl Iterator<Item = &mut Undoable> {
-        self.now.iter_mut().chain(&mut self.past).chain(&mut self.future)
+    /// Changes all steps by what no step can undo.
+    pub(super) fn change_all(&mut self, change: impl Fn(&mut Undoable)) {
+        self.now.iter_mut().chain(&mut self.past).chain(&mut self.future).for_each(change);
     }
 }
 
@@ -114,32 +113,69 @@ impl ViewHistory {
 }
 
 impl App {
-    /// Records settings and view at the end of a frame.
+    /// Records settings and view at the end of a frame. A file that is being read becomes a step with all that follows from it.
     pub(super) fn note_state(&mut self, context: &egui::Context) {
-        if !context.egui_is_using_pointer() {
-            self.history.note(&self.undoable());
-            self.view_history.note(&self.viewport.camera, context.input(|input| input.time));
+        if context.egui_is_using_pointer() {
+            return;
         }
+        if !self.is_opening() {
+            if let Some(settings) = self.taken_back.take() {
+                // Files that were opened again have changed settings.
+                self.settings = settings;
+                self.replace_again::<LodShader>();
+                self.replace_again::<SurfaceShader>();
+                self.replace_by_factors();
+                // A file of light may be gone.
+                self.cancel_environment();
+            }
+            self.history.note(&self.undoable());
+        }
+        self.view_history.note(&self.viewport.camera, context.input(|input| input.time));
     }
 
     fn undoable(&self) -> Undoable {
+        let prepared = self.document.as_ref().map(|document| document.loaded.preparation.clone());
+        let path = |path: Option<&Path>| path.map(Path::to_owned);
         Undoable {
-            settings: self.settings_without_shaders(),
-            hidden: self.hidden.clone(),
-            lod_shader: self.open_shader_file::<LodShader>().map(Path::to_owned),
-            surface_shader: self.open_shader_file::<SurfaceShader>().map(Path::to_owned),
+            settings: self.settings_without_files(),
+            preparation: Preparation { import: Import::default(), ..prepared.unwrap_or_default() },
+            files: OpenFiles {
+                truth: self.truth().cloned(),
+                factors: path(self.factors_file()),
+                lod_shader: path(self.open_shader_file::<LodShader>()),
+                surface_shader: path(self.open_shader_file::<SurfaceShader>()),
+                matcap: path(self.matcap_image()),
+                environment: path(self.environment_file()),
+            },
         }
     }
 
-    /// Takes over the hidden parts of a mesh that was opened: those of the command line, or none. This isn't a step of undo.
-    pub(super) fn take_hidden_parts(&mut self) {
-        let opened = self.document.as_ref().map(|document| document.loaded.preparation.hidden.clone());
-        self.hidden = Arc::new(opened.unwrap_or_default());
-        self.history.hide_in_all(&self.hidden);
+    /// Whether the mesh, or a file beside it, is being read anew, so that settings may follow from it.
+    fn is_opening(&self) -> bool {
+        let jobs = &self.jobs;
+        jobs.load.as_ref().is_some_and(|load| load.keep_view)
+            || jobs.truth_load.is_some()
+            || jobs.environment.is_some()
+            || jobs.factors.is_some()
+            || jobs.matcap.is_some()
+            || self.lod_shader.as_ref().is_some_and(OpenShader::is_opening)
+            || self.surface_shader.as_ref().is_some_and(OpenShader::is_opening)
+    }
+
+    /// Takes over the hidden parts of a mesh that was opened: those of the command line, or none. This isn't a step of undo: all steps
+    /// have this mesh's preparation from now on, and no files that were about another one.
+    pub(super) fn take_preparation(&mut self) {
+        let Undoable { preparation, settings, .. } = self.undoable();
+        self.hidden = Arc::new(preparation.hidden.clone());
+        self.history.change_all(|step| {
+            step.preparation = preparation.clone();
+            step.settings.tessellation.displacement = settings.tessellation.displacement;
+            (step.files.truth, step.files.factors) = (None, None);
+        });
     }
 
     pub(super) fn can_undo(&self) -> bool {
-        !self.history.past.is_empty()
+        !self.history.past.is_empty() || self.is_opening()
     }
 
     pub(super) fn can_redo(&self) -> bool {
@@ -166,27 +202,64 @@ impl App {
         self.viewport.camera = after.unwrap_or(self.viewport.camera);
     }
 
-    /// Goes back to the settings, hidden parts and shaders before the last change.
+    /// Goes back to what there was before the last change.
     pub fn undo(&mut self, context: &egui::Context) {
-        let before = self.history.undo(&self.undoable());
+        let state = self.state_to_leave();
+        // A file that is still being read is no step yet: reading it is what is taken back.
+        let only_opens = self.is_opening() && self.taken_back.is_none() && self.history.now.as_ref() == Some(&state);
+        let before = if only_opens { Some(state) } else { self.history.undo(&state) };
         self.take_back(context, before);
     }
 
-    /// Goes forward to those that [`Self::undo`] left.
+    /// Goes forward to what [`Self::undo`] left.
     pub fn redo(&mut self, context: &egui::Context) {
-        let after = self.history.redo(&self.undoable());
+        let after = self.history.redo(&self.state_to_leave());
         self.take_back(context, after);
     }
 
+    /// The present state; or while a step is still being taken back, that step.
+    fn state_to_leave(&self) -> Undoable {
+        let step = self.history.now.as_ref().filter(|_| self.taken_back.is_some());
+        step.cloned().unwrap_or_else(|| self.undoable())
+    }
+
     fn take_back(&mut self, context: &egui::Context, step: Option<Undoable>) {
-        let Some(Undoable { settings, hidden, lod_shader, surface_shader }) = step else { return };
-        if lod_shader.is_some() {
-            // A file of factors that was opened since has its place.
-            self.forget_factors();
+        let Some(Undoable { settings, preparation, files }) = step else { return };
+        let jobs = &mut self.jobs;
+        (jobs.truth_load, jobs.matcap, jobs.environment) = (None, None, None);
+        jobs.factors.take_if(|_| self.given.is_none());
+        jobs.load.take_if(|load| load.keep_view);
+        self.take_back_files(context, files);
+        self.settings = settings;
+        self.hidden = Arc::new(preparation.hidden.clone());
+        let preparation = Preparation { import: settings.import, ..preparation };
+        if self.preparation() != preparation {
+            self.prepare(context, |own| *own = preparation);
         }
-        (self.settings, self.hidden) = (settings, hidden);
+        self.taken_back = Some(settings);
+    }
+
+    /// Opens the files that were open at a step of undo, and closes others.
+    fn take_back_files(&mut self, context: &egui::Context, files: OpenFiles) {
+        let OpenFiles { truth, factors, lod_shader, surface_shader, matcap, environment } = files;
+        if self.truth() != truth.as_ref() {
+            self.forget_truth();
+            truth.into_iter().for_each(|source| self.open_truth(context, source));
+        }
+        if self.factors_file() != factors.as_deref() {
+            self.forget_factors();
+            factors.into_iter().for_each(|path| self.open_factors(context, path));
+        }
         self.take_back_shader::<LodShader>(context, lod_shader);
         self.take_back_shader::<SurfaceShader>(context, surface_shader);
+        if self.matcap_image() != matcap.as_deref() {
+            self.forget_matcap();
+            matcap.into_iter().for_each(|path| self.open_matcap(context, path));
+        }
+        if self.environment_file() != environment.as_deref() {
+            self.close_environment();
+            environment.into_iter().for_each(|path| self.read_environment(context, path, false));
+        }
     }
 }
 

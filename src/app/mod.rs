@@ -55,6 +55,8 @@ pub struct App {
     /// The names of parts of the file that are to be left out.
     hidden: Arc<Vec<String>>,
     history: History<Undoable>,
+    /// The settings of a step of undo, until all of its files are read.
+    taken_back: Option<Settings>,
     view_history: ViewHistory,
     /// The mesh that is open; none before the first one is loaded.
     document: Option<Document>,
@@ -96,6 +98,7 @@ impl App {
             settings: if source.is_some() { Settings::opening() } else { Settings::greeting() },
             hidden: Arc::default(),
             history: History::default(),
+            taken_back: None,
             view_history: ViewHistory::default(),
             document: None,
             truth: None,
@@ -132,7 +135,7 @@ impl App {
     /// Sizes of the triangles shown, if they were measured for the present view.
     pub fn sizes_shown(&self) -> Option<&Sizes> {
         let seen_from = self.viewport.picture.seen_from()?;
-        self.jobs.measure.sizes().filter(|sizes| sizes.view == seen_from)
+        self.jobs.measure.last().map(|results| &results.sizes).filter(|sizes| sizes.view == seen_from)
     }
 
     /// The selected edge: an index into the topology's edges.
@@ -226,6 +229,7 @@ impl App {
             || self.jobs.explain.is_busy()
             || self.viewport.picture.is_busy()
             || self.viewport.selection.is_busy()
+            || self.viewport.showing.is_some()
     }
 
     /// Whether the mesh is still being checked. The checks' results don't change the picture by themselves.

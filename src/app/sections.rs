@@ -130,7 +130,7 @@ fn title_row(ui: &mut egui::Ui, title: &str, is_open: bool) -> egui::Response {
     ui.painter().galley(place, title, text);
     ui.painter().hline(rect.x_range(), rect.bottom() + 1.0, line);
     ui.add_space(2.0);
-    response.on_hover_text(if is_open { "Folds this section." } else { "Opens this section." })
+    response
 }
 
 fn triangle(place: Rect, is_open: bool, color: Color32) -> Shape {

@@ -197,7 +197,7 @@ impl CrackStats {
             max_gap: cracks.max_gap(),
             max_gap_ulp: cracks.max_gap() / ulp(topology),
             max_gap_px: cracks.max_gap_px(view.clip_from_object, view.viewport),
-            edges: cracks.edges.len() as u64,
+            edges: cracks.cracked().len() as u64,
         }
     }
 }

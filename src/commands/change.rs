@@ -43,17 +43,19 @@ impl Change {
             Self::FactorUp => settings.tessellation.factor = factor(settings.tessellation.factor + 1.0),
             Self::FactorDown => settings.tessellation.factor = factor(settings.tessellation.factor - 1.0),
             Self::AdaptiveLod => settings.tessellation.lod = switched_lod(settings),
-            Self::ToggleEdges => settings.set_edges(match settings.tessellation.edges {
-                Edges::AsPublished => Edges::PerEdge,
-                Edges::PerEdge => Edges::AsPublished,
-            }),
+            Self::ToggleEdges => {
+                settings.tessellation.edges = match settings.tessellation.edges {
+                    Edges::AsPublished => Edges::PerEdge,
+                    Edges::PerEdge => Edges::AsPublished,
+                }
+            }
             Self::CullBackFaces => settings.tessellation.cull_back_faces = !settings.tessellation.cull_back_faces,
             Self::Surface(surface) => settings.tessellation.surface = surface,
             Self::LeftSurface(surface) => settings.split_surface = surface,
             Self::Shading(normals) => settings.tessellation.normals = normals,
             Self::NormalsAt(places) => settings.normals_at = places,
             Self::Partitioning(partitioning) => settings.tessellation.partitioning = partitioning,
-            Self::Edges(edges) => settings.set_edges(edges),
+            Self::Edges(edges) => settings.tessellation.edges = edges,
             Self::Lod(lod) => settings.tessellation.lod = lod,
             Self::Clipping(clip) => settings.tessellation.clip = clip,
             Self::Convention(convention) => settings.tessellation.convention = convention,

@@ -234,11 +234,11 @@ fn writing() -> [Command; 9] {
 fn edit() -> Vec<Command> {
     use Menu::Edit;
     vec![
-        Command::new(Action::Undo, "Undo", "Goes back to the settings before the last change.")
+        Command::new(Action::Undo, "Undo", "Takes back the last change of settings, or of the files beside the mesh.")
             .keys([ctrl(Key::Z)])
             .menu(Edit, 0)
             .unless(when::undo),
-        Command::new(Action::Redo, "Redo", "Goes forward to the settings that were undone.")
+        Command::new(Action::Redo, "Redo", "Does again what was undone.")
             .keys([ctrl_shift(Key::Z)])
             .menu(Edit, 0)
             .unless(when::redo),

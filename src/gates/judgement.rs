@@ -97,7 +97,7 @@ fn count(kind: GateKind, facts: &Facts) -> Count {
     };
     match kind {
         GateKind::Cracks => {
-            let cracked = known(facts.measured)?.cracks.cracked().count() as u64;
+            let cracked = known(facts.measured)?.cracks.cracked().len() as u64;
             some(cracked, "# edge is cracked", "# edges are cracked")
         }
         GateKind::Factors => {
@@ -219,12 +219,10 @@ fn position(place: Vec3) -> String {
 
 fn worst_crack(facts: &Facts) -> Option<Place> {
     // The widest gap is the first.
-    let crack = facts.measured?.cracks.cracked().next()?;
+    let crack = facts.measured?.cracks.cracked().first()?;
     let gap = short(crack.gap);
     let [a, b] = crack.widest;
-    // Sides may differ in their factors alone.
-    let at = (crack.gap > 0.0).then_some(a * 0.5 + b * 0.5);
-    let place = EdgePlace::new(facts.topology, crack.edge, at);
+    let place = EdgePlace::new(facts.topology, crack.edge, Some(a * 0.5 + b * 0.5));
     let left_out = |patch: u32| {
         let triangle = facts.topology.patches[patch as usize].triangle;
         format!(", where the factors of triangle {triangle} leave it out")
@@ -283,11 +281,10 @@ fn torn_at(facts: &Facts, leak: &Leak) -> Option<EdgePlace> {
 fn worst_fold(facts: &Facts) -> Option<Place> {
     // The largest area is the first.
     let fold = facts.measured?.folded.first()?;
-    let corners = facts.topology.patch_positions(fold.patch);
     let triangle = facts.topology.patches[fold.patch as usize].triangle;
-    let (folds, place) = (grouped(u64::from(fold.folds)), position(fold.place));
+    let (folds, place) = (grouped(u64::from(fold.folds)), position(fold.place()));
     let text = format!("the largest are {folds} of triangle {triangle} at {place}");
-    Some(Place { text, triangles: vec![triangle], spot: Spot::Patch { corners, at: fold.place } })
+    Some(Place { text, triangles: vec![triangle], spot: Spot::fold(fold) })
 }
 
 fn worst_junction(facts: &Facts) -> Option<Place> {

@@ -9,7 +9,7 @@ use std::fmt;
 use std::str::FromStr;
 
 pub(crate) use judgement::{Facts, Judgement, judge};
-pub(crate) use place::{Place, Spot};
+pub(crate) use place::{EdgeSpot, Place, Spot};
 pub(crate) use standpoint::Standpoints;
 
 use crate::names::every;
@@ -18,7 +18,7 @@ use crate::numbers::grouped;
 /// What a gate counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum GateKind {
-    /// Edges whose sides have points at different positions, or other factors.
+    /// Edges whose sides have points at different positions.
     Cracks,
     /// Edges whose sides were given different factors.
     Factors,

@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3, vec2};
 use serde::{Serialize, Serializer};
 
+use crate::measure::FoldedPatch;
 use crate::mesh::Bounds;
 use crate::render::Camera;
 use crate::render::camera::FIELDS_OF_VIEW;
@@ -12,6 +13,12 @@ use crate::view::{ScreenView, seen_on_plane};
 const ENLARGED: f32 = 8.0;
 /// A leak is enlarged less if it would be larger than this part of the picture's height.
 const OF_HEIGHT: f32 = 0.25;
+
+/// How many times as long as its gap the part of a cracked edge is that is shown, and which part of the edge that is at least.
+const AROUND_GAP: f32 = 16.0;
+const LEAST_PART: f32 = 1.0 / 64.0;
+/// How many times as large as a fold the part of the surface is that is shown with it.
+const AROUND_FOLD: f32 = 4.0;
 
 /// The worst place that a gate found.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -29,7 +36,7 @@ pub(crate) struct Place {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Spot {
     Edge(EdgeSpot),
-    /// A patch: the positions of its corners, and the place on it.
+    /// A patch, or a part of it: the positions of its corners, and the place on it.
     Patch {
         corners: [Vec3; 3],
         at: Vec3,
@@ -52,6 +59,12 @@ pub(crate) struct EdgeSpot {
 }
 
 impl Spot {
+    /// The largest fold of a patch, with what is around it.
+    pub(crate) fn fold(folded: &FoldedPatch) -> Self {
+        let at = folded.place();
+        Self::Patch { corners: folded.largest.map(|corner| at + (corner - at) * AROUND_FOLD), at }
+    }
+
     /// A camera that shows the spot if nothing hides it. `judged` is the camera of the judged picture, `viewport` that picture's
     /// size in px, and `bounds` are the mesh's.
     pub(super) fn camera(&self, judged: &Camera, viewport: Vec2, bounds: &Bounds) -> Camera {
@@ -84,6 +97,21 @@ impl Spot {
 }
 
 impl EdgeSpot {
+    /// The part of the edge around a gap between these two positions, so large that one sees how wide the gap is, and from where it is
+    /// widest.
+    pub(crate) fn at_gap(self, [a, b]: [Vec3; 2]) -> Self {
+        let (at, along) = (a * 0.5 + b * 0.5, self.ends[1] - self.ends[0]);
+        let (gap, length) = (b - a, along.length());
+        let across = gap.normalize_or_zero();
+        let facing = (self.facing - across * self.facing.dot(across)).normalize_or(self.facing);
+        let part = AROUND_GAP * gap.length() / length;
+        if part.is_nan() || part >= 1.0 {
+            return Self { facing, at, ..self };
+        }
+        let half = along * (0.5 * part.max(LEAST_PART));
+        Self { ends: [at - half, at + half], facing, at }
+    }
+
     /// A camera that faces the edge.
     pub(super) fn camera(&self, judged: &Camera, bounds: &Bounds) -> Camera {
         let mut camera = moving(judged);

@@ -11,6 +11,8 @@ use crate::render::camera::{FIELD_OF_VIEW, MAX_ELEVATION};
 const DIRECTIONS: u32 = 64;
 /// What is nearer to the place than this part of its edge or patch is at the place, and hides nothing.
 const NEAR: f32 = 0.005;
+/// How well the back of a place shows it, where its front does so by 1.
+const OF_BACK: f32 = 0.25;
 /// How far the eye goes towards what hides the place, when it is seen from between the two.
 const BETWEEN: f32 = 0.9;
 
@@ -45,13 +47,13 @@ impl Standpoints {
     }
 
     /// Where lines of sight begin, all eyes, and how near to the place nothing hides it, in object units. None if the place isn't
-    /// known.
-    pub(crate) fn lines(&self) -> Option<(Vec3, Vec<Vec3>, f32)> {
+    /// known. `beside` moves a camera so that the place is elsewhere in its picture.
+    pub(crate) fn lines(&self, beside: impl Fn(Camera) -> Camera) -> Option<(Vec3, Vec<Vec3>, f32)> {
         let at = self.at?;
         let eye = |camera: &Camera| match camera.orthographic {
             // An orthographic view has no eye: what is farther away hides the place too.
             true => at + camera.axes()[2] * self.beyond,
-            false => camera.eye(),
+            false => beside(*camera).eye(),
         };
         let others = self.around.iter().map(|(camera, _)| camera);
         Some((at, std::iter::once(&self.first).chain(others).map(eye).collect(), NEAR * self.size))
@@ -82,7 +84,7 @@ impl Standpoints {
 }
 
 /// Perspective cameras around what `facing` shows, that one first, each with how well it shows it: those that face it more are
-/// better. The directions are those of the spherical Fibonacci point set (Keinert et al. 2015, "Spherical Fibonacci Mapping").
+/// better, its back is worse, and from its edge it isn't seen at all. The directions are those of the spherical Fibonacci point set (Keinert et al. 2015, "Spherical Fibonacci Mapping").
 fn around(facing: &Camera) -> Vec<(Camera, f32)> {
     const GOLDEN_ANGLE: f32 = 2.399_963_2;
     let field_of_view = if facing.orthographic { FIELD_OF_VIEW } else { facing.field_of_view };
@@ -99,7 +101,8 @@ fn around(facing: &Camera) -> Vec<(Camera, f32)> {
     let from = |back: Vec3| {
         let mut camera = towards(&facing, back * distance);
         camera.elevation = camera.elevation.clamp(-MAX_ELEVATION, MAX_ELEVATION);
-        (camera, 0.5 + 0.5 * back.dot(front))
+        let faces = back.dot(front);
+        (camera, faces.max(-OF_BACK * faces))
     };
     std::iter::once((facing, 1.0)).chain((0..DIRECTIONS).map(direction).map(from)).collect()
 }
@@ -123,7 +126,7 @@ mod tests {
         for orthographic in [false, true] {
             let (camera, viewport, bounds) = judged(orthographic);
             let standpoints = Standpoints::of(&Spot::Edge(EDGE), &camera, viewport, &bounds);
-            let (at, eyes, near) = standpoints.lines().expect("a known place");
+            let (at, eyes, near) = standpoints.lines(|camera| camera).expect("a known place");
             assert!(at == EDGE.at && near < 0.05);
             let direction = |camera: &Camera| (camera.eye() - at).normalize();
             let front = standpoints.clearest(&vec![1.0; eyes.len()]);
@@ -145,12 +148,12 @@ mod tests {
         let (camera, viewport, bounds) = judged(false);
         let leak = |torn| Spot::Leak { px: 0.5 * viewport, pixels: 9, torn };
         let known = Standpoints::of(&leak(Some(EDGE)), &camera, viewport, &bounds);
-        let (_, eyes, _) = known.lines().expect("a known place");
+        let (_, eyes, _) = known.lines(|camera| camera).expect("a known place");
         assert!(eyes[0].distance(camera.eye()) < 1e-3);
         let clear = |first: f64| [vec![first], vec![1.0; eyes.len() - 1]].concat();
         assert!(known.clearest(&clear(1.0)).eye().distance(camera.eye()) < 1e-3);
         assert!(known.clearest(&clear(0.9)).eye().normalize().distance(Vec3::Z) < 1e-3, "from where the edge faces");
         let unknown = Standpoints::of(&leak(None), &camera, viewport, &bounds);
-        assert!(unknown.lines().is_none() && unknown.clearest(&[]).eye().distance(camera.eye()) < 1e-3);
+        assert!(unknown.lines(|camera| camera).is_none() && unknown.clearest(&[]).eye().distance(camera.eye()) < 1e-3);
     }
 }

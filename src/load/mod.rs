@@ -58,6 +58,7 @@ pub use loaded_mesh::LoadedMesh;
 pub use matcap_image::{MatcapError, load_matcap};
 pub use mesh_file::{LoadError, load};
 pub use read_error::{FilePosition, ReadError};
+pub(crate) use uri::percent_decoded;
 
 #[cfg(test)]
 pub(crate) use format::Format;

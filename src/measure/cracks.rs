@@ -84,9 +84,15 @@ impl Cracks {
         self
     }
 
-    /// Edges whose positions or factors differ. Light may pass through them.
-    pub fn cracked(&self) -> impl Iterator<Item = &CrackedEdge> {
-        self.edges.iter().filter(|edge| edge.different_bits > 0 || edge.different_factors)
+    /// Edges whose positions differ, the widest gap first. Light may pass through them.
+    pub fn cracked(&self) -> &[CrackedEdge] {
+        // Edges whose positions agree are at the end.
+        &self.edges[..self.edges.partition_point(|edge| edge.gap > 0.0 || edge.different_bits > 0)]
+    }
+
+    /// Shading seams: edges whose normals differ although the mesh's normals agree.
+    pub(crate) fn shading_seams(&self) -> impl Iterator<Item = &CrackedEdge> {
+        self.edges.iter().filter(|edge| edge.different_normals > 0)
     }
 
     /// The widest gap, in object units.
@@ -350,7 +356,7 @@ mod tests {
         let height = (b - a).cross(c - a).length() / a.distance(b).min(b.distance(c)).min(c.distance(a));
         for factor in [f32::NAN, 0.0, -2.0] {
             let cracks = found(&[(5, [factor, 3.0, 3.0])]);
-            assert_eq!((cracks.cracked().count(), cracks.different_normals), (3, 0), "{factor}");
+            assert_eq!((cracks.cracked().len(), cracks.different_normals), (3, 0), "{factor}");
             assert_eq!(cracks.different_factors, 1, "{factor}: the others got the same from both sides");
             // Three segments are four points.
             assert_eq!(cracks.different_bits, 12, "{factor}");
@@ -363,7 +369,7 @@ mod tests {
         let across = topology.patches[5].sides.map(|side| topology.sides[side as usize].edge);
         let other = topology.edge_sides(&topology.edges[across[0] as usize]).iter().find(|side| side.patch() != 5);
         let two = [5, other.expect("a closed mesh").patch()].map(|patch| (patch, [f32::NAN; 3]));
-        assert_eq!(found(&two).cracked().count(), 4);
+        assert_eq!(found(&two).cracked().len(), 4);
     }
 
     fn side(points: &[[f32; 3]]) -> EdgeSide {

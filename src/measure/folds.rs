@@ -39,25 +39,31 @@ pub struct FoldedPatch {
     pub folds: u32,
     /// The area of these triangles together, in square object units.
     pub area: f64,
-    /// The middle of the largest of them.
-    pub place: Vec3,
+    /// The corners of the largest of them, in the order in which it faces the side that the patch faces.
+    pub largest: [Vec3; 3],
     /// Its area, by which the largest is found.
-    largest: f64,
+    largest_area: f64,
 }
 
 impl FoldedPatch {
     fn new(patch: u32) -> Self {
-        Self { patch, folds: 0, area: 0.0, place: Vec3::ZERO, largest: 0.0 }
+        Self { patch, folds: 0, area: 0.0, largest: [Vec3::ZERO; 3], largest_area: 0.0 }
     }
 
     fn add(&mut self, triangle: [DVec3; 3]) {
         let area = 0.5 * facing(triangle).length();
         self.folds += 1;
         self.area += area;
-        if area > self.largest {
-            self.largest = area;
-            self.place = (triangle.into_iter().sum::<DVec3>() / 3.0).as_vec3();
+        if area > self.largest_area {
+            self.largest_area = area;
+            let [a, b, c] = triangle.map(|corner| corner.as_vec3());
+            self.largest = [a, c, b];
         }
+    }
+
+    /// The middle of the largest.
+    pub(crate) fn place(&self) -> Vec3 {
+        self.largest.iter().map(|corner| corner / 3.0).sum()
     }
 }
 
@@ -169,6 +175,8 @@ mod tests {
         assert_eq!((folded.patch, folded.folds), (1, 2));
         let [a, b, c] = corners(&topology, 1);
         assert!((folded.area - (b - a).cross(c - a).length()).abs() < 1e-6, "twice the patch: {}", folded.area);
-        assert!(folded.place.distance(((a + b + c) / 3.0).as_vec3()) < 1e-6, "{}", folded.place);
+        assert!(folded.place().distance(((a + b + c) / 3.0).as_vec3()) < 1e-6, "{:?}", folded.largest);
+        let front = facing(folded.largest.map(Vec3::as_dvec3));
+        assert!(front.dot((b - a).cross(c - a)) > 0.0, "it faces the side of its patch: {:?}", folded.largest);
     }
 }

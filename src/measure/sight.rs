@@ -17,6 +17,8 @@ pub(crate) struct Sight {
     to_eyes: Vec<DVec3>,
     /// What is nearer to the place than this hides nothing, in object units: what is to be seen is no point.
     near: f64,
+    /// A patch that hides nothing.
+    through: Option<u32>,
     clear: Vec<f64>,
 }
 
@@ -26,7 +28,12 @@ impl Sight {
         let from = from.as_dvec3();
         let to_eyes: Vec<DVec3> = eyes.into_iter().map(|eye| eye.as_dvec3() - from).collect();
         let clear = vec![1.0; to_eyes.len()];
-        Self { from, to_eyes, near: near.into(), clear }
+        Self { from, to_eyes, near: near.into(), through: None, clear }
+    }
+
+    /// The same lines, of which this patch hides nothing.
+    pub(crate) fn through(self, patch: Option<u32>) -> Self {
+        Self { through: patch, ..self }
     }
 
     /// The part of each line that is clear from the place on, up to the first triangle: 1 if it is clear as far as the eye.
@@ -37,10 +44,13 @@ impl Sight {
 
 impl Visitor for Sight {
     fn take(&mut self, chunk: &EmittedChunk) {
-        let Self { from, to_eyes, near, .. } = &*self;
+        let Self { from, to_eyes, near, through, .. } = &*self;
         let found = in_ranges(chunk.triangles.len(), LEAST, |range| {
             let mut clear = vec![1.0_f64; to_eyes.len()];
             for triangle in &chunk.triangles[range] {
+                if *through == Some(chunk.vertices[triangle[0] as usize].patch()) {
+                    continue;
+                }
                 let corners =
                     triangle.map(|corner| Vec3::from(chunk.vertices[corner as usize].position).as_dvec3() - from);
                 for (clear, to_eye) in clear.iter_mut().zip(to_eyes) {

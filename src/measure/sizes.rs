@@ -22,12 +22,22 @@ pub struct Sizes {
     pub in_view: u64,
     /// The number of these that are smaller than [`SMALL_PX`].
     pub small: u64,
+    /// The number of triangles that the near plane cuts.
+    cut: u64,
+    /// The least and the greatest x and y of those in view, in px.
+    extent: [Vec2; 2],
 }
 
 impl Sizes {
     /// Nothing counted yet.
     pub fn new(view: ScreenView) -> Self {
-        Self { view, in_view: 0, small: 0 }
+        Self { view, in_view: 0, small: 0, cut: 0, extent: [Vec2::INFINITY, Vec2::NEG_INFINITY] }
+    }
+
+    /// Whether nothing is in view, or what is there is smaller than a px.
+    pub(crate) fn show_nothing(&self) -> bool {
+        let [least, most] = self.extent;
+        self.cut == 0 && (self.in_view == 0 || (most - least).max_element() < 1.0)
     }
 }
 
@@ -41,9 +51,15 @@ impl Visitor for Sizes {
             if corners.into_iter().fold(!0, |shared, corner| shared & planes_outside(corner)) != 0 {
                 continue;
             }
-            if let Some(size) = size_px(corners, viewport) {
-                self.in_view += 1;
-                self.small += u64::from(size < SMALL_PX);
+            let Some(size) = size_px(corners, viewport) else {
+                self.cut += 1;
+                continue;
+            };
+            self.in_view += 1;
+            self.small += u64::from(size < SMALL_PX);
+            for corner in corners {
+                let px = corner.truncate().truncate() / corner.w * 0.5 * viewport;
+                self.extent = [self.extent[0].min(px), self.extent[1].max(px)];
             }
         }
     }

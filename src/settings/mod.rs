@@ -19,7 +19,7 @@ use crate::load::Import;
 use crate::mesh::Mesh;
 use crate::names::every;
 use crate::tessellate::{
-    Clip, Displacement, Edges, Inputs, Lod, LodView, Partitioning, Surface, Tessellation, displacement_reach,
+    Clip, Displacement, Inputs, Lod, LodView, Partitioning, Surface, Tessellation, displacement_reach,
 };
 
 pub(crate) use choice::{Choice, Description, descriptions};
@@ -204,27 +204,6 @@ impl Settings {
         Self { tessellation, ..*self }
     }
 
-    /// Changes how shared edges are computed. As published, LOD by edge length and clipping switch to the white paper's
-    /// forms, and otherwise to those that also hold near the eye.
-    pub fn set_edges(&mut self, edges: Edges) {
-        let own = &mut self.tessellation;
-        if edges == own.edges {
-            return;
-        }
-        own.edges = edges;
-        let published = edges == Edges::AsPublished;
-        own.lod = match own.lod {
-            Lod::EdgeLength if published => Lod::Paper,
-            Lod::Paper if !published => Lod::EdgeLength,
-            other => other,
-        };
-        own.clip = match own.clip {
-            Clip::Frustum if published => Clip::Paper,
-            Clip::Paper if !published => Clip::Frustum,
-            other => other,
-        };
-    }
-
     /// Where a mesh's shading normals are evaluated. Those of a displaced surface follow its triangles, so they are at vertices.
     pub fn used_normals_at(&self, mesh: &Mesh) -> NormalsAt {
         let is_displaced = mesh.heights.is_some() && self.tessellation.displacement != Displacement::Off;
@@ -277,21 +256,6 @@ mod tests {
                 let inputs = Settings::from(tessellation).inputs(view).tessellation;
                 assert_eq!((tessellation.used_lod(), inputs.lod), (used, used), "{partitioning:?} {lod:?}");
             }
-        }
-    }
-
-    #[test]
-    fn edges_as_published_switch_lod_and_clipping() {
-        let adaptive = Tessellation { lod: Lod::EdgeLength, clip: Clip::Frustum, ..Tessellation::default() };
-        let mut settings = Settings::from(adaptive);
-        settings.set_edges(Edges::AsPublished);
-        assert_eq!((settings.tessellation.lod, settings.tessellation.clip), (Lod::Paper, Clip::Paper));
-        settings.set_edges(Edges::PerEdge);
-        assert_eq!(settings, Settings::from(adaptive));
-        for lod in [Lod::Uniform, Lod::Error, Lod::Distance] {
-            let mut other = Settings::from(Tessellation { lod, ..Tessellation::default() });
-            other.set_edges(Edges::AsPublished);
-            assert_eq!((other.tessellation.lod, other.tessellation.clip), (lod, Clip::Off));
         }
     }
 }

@@ -31,7 +31,7 @@ pub(crate) struct ExplainedPatch {
     pub is_flat: bool,
     /// How far the triangles are from the surface at the factors that are used; `None` if nothing is emitted.
     pub errors: Option<PatternErrors>,
-    /// The fewest triangles with which the patch alone would keep the tolerance.
+    /// The fewest triangles that are known to keep the tolerance, if nothing is asked of the patch by others.
     pub own_least: OwnLeast,
 }
 
@@ -98,7 +98,6 @@ pub(crate) struct PatternErrors {
 
 impl PatternErrors {
     /// Returns the largest of them.
-    #[cfg(test)]
     pub(crate) fn largest(&self) -> f32 {
         self.rows.into_iter().flatten().fold(self.inside, f32::max)
     }
@@ -170,8 +169,19 @@ pub(crate) fn explain_patch(
     if !is_flat {
         (measured.off_plane, measured.off_line) = (3.4e38, 3.4e38);
     }
+    let tolerance = surface_tolerance(inputs, displacement);
+    let errors = pattern_errors(&measured, inputs.tessellation.convention, used);
+    let mut own_least = own_least(searched.tessellation.partitioning, own);
+    // The search doesn't try all factors. What is drawn may have fewer triangles than it found, because neighbours asked for more
+    // along the edges. Other LODs don't see to it that heights have enough.
+    let drawn = triangle_count(used);
+    let is_within = errors.is_some_and(|errors| errors.largest() <= tolerance) && (by_error || !is_displaced);
+    if is_within && drawn < own_least.triangles {
+        let sides = [0, 1, 2].map(|k| used_factor(inputs.tessellation.convention, used, k));
+        own_least = OwnLeast { sides, inside: inside_cut(used) as f32, triangles: drawn };
+    }
     ExplainedPatch {
-        tolerance: surface_tolerance(inputs, displacement),
+        tolerance,
         edges: by_error.then(|| {
             [0, 1, 2].map(|k| {
                 nets.explain_edge(
@@ -184,8 +194,8 @@ pub(crate) fn explain_patch(
             })
         }),
         is_flat,
-        errors: pattern_errors(&measured, inputs.tessellation.convention, used),
-        own_least: own_least(searched.tessellation.partitioning, own),
+        errors,
+        own_least,
     }
 }
 

@@ -204,7 +204,7 @@ fn what_is_not_symmetric_tears_where_it_says() {
     let text = points("return EdgePoints(mix(edge.a, edge.b, 0.4), mix(edge.b, edge.a, 1.0 / 3.0));");
     emitted(&mut scene, Some(&text), &inputs);
     let cracks = measured(&mut scene).cracks;
-    assert_eq!(cracks.cracked().count() as u64, cracks.edges_compared, "every edge");
+    assert_eq!(cracks.cracked().len() as u64, cracks.edges_compared, "every edge");
     assert_eq!(engine().own_points_agreement(&scene).expect("a readback").expect("a shader").edges.len(), 384);
     assert!(cracks.different_factors == 0 && cracks.max_gap() > 1e-3, "{}", cracks.max_gap());
     // One side of one triangle alone, by a known distance.

@@ -175,7 +175,7 @@ fn commands_are_found_by_a_part_of_their_name() {
 }
 
 #[test]
-fn displacement_follows_the_height_map_and_is_not_undone() {
+fn displacement_follows_the_height_map_and_is_undone_with_it() {
     let mut harness = window(None);
     let drawn = |harness: &Harness<App>| harness.state().totals();
     let (settings, before) = (*harness.state().settings(), drawn(&harness));
@@ -188,16 +188,18 @@ fn displacement_follows_the_height_map_and_is_not_undone() {
     harness.state_mut().displace(&context, Some(waves));
     settle(&mut harness);
     assert_eq!(harness.state().settings().tessellation.displacement, Displacement::On);
-    // Displacement came with the heights and isn't a step, so the change before it is undone.
+    let displaced = drawn(&harness);
+    // Displacement came with the heights, and both are one step.
     press_with(&mut harness, Modifiers::COMMAND, Key::Z);
-    assert_eq!(
-        *harness.state().settings(),
-        settings.with(Tessellation { displacement: Displacement::On, ..settings.tessellation })
-    );
+    assert_eq!((*harness.state().settings(), drawn(&harness)), (with_wires, before));
     press_with(&mut harness, Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
+    let with_heights = Tessellation { displacement: Displacement::On, ..with_wires.tessellation };
+    assert_eq!((*harness.state().settings(), drawn(&harness)), (with_wires.with(with_heights), displaced));
     harness.state_mut().displace(&context, None);
     settle(&mut harness);
     assert_eq!((*harness.state().settings(), drawn(&harness)), (with_wires, before));
-    press_with(&mut harness, Modifiers::COMMAND, Key::Z);
+    for _ in 0..3 {
+        press_with(&mut harness, Modifiers::COMMAND, Key::Z);
+    }
     assert_eq!(*harness.state().settings(), settings);
 }

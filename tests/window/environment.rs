@@ -19,7 +19,7 @@ use crate::window_tests::loading::drop_files;
 use crate::window_tests::{choose, click, copy_vase, press, resumed, settle, switch, uniform};
 
 /// A panorama with red light above and blue light below.
-fn panorama(folder: &TempDir, name: &str) -> PathBuf {
+pub(super) fn panorama(folder: &TempDir, name: &str) -> PathBuf {
     let size = [64, 32];
     let pixels: Vec<[f32; 3]> =
         (0..64 * 32).map(|index| if index < 64 * 16 { [1.5, 0.1, 0.1] } else { [0.1, 0.1, 1.5] }).collect();
@@ -93,12 +93,17 @@ fn a_file_lights_the_mesh_until_it_is_closed() {
     settle(&mut harness);
     assert_eq!((harness.state().environment_file(), lighting(&harness)), (None, Lighting::Studio));
     assert_eq!(shown(&harness), studio);
-    // No step of undo goes back to a light that is gone.
+    // Undo goes back to the file with its light.
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
+    settle(&mut harness);
+    assert_eq!((harness.state().environment_file(), lighting(&harness)), (Some(&*path), Lighting::Environment));
+    assert_eq!(shown(&harness), sky);
     for _ in 0..6 {
         harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
         settle(&mut harness);
-        assert_ne!(lighting(&harness), Lighting::Environment);
+        assert!(lighting(&harness) != Lighting::Environment || harness.state().environment_file().is_some());
     }
+    assert_eq!((harness.state().environment_file(), lighting(&harness)), (None, Lighting::Studio));
 }
 
 #[test]

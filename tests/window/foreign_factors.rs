@@ -34,9 +34,9 @@ fn factors_of_a_file_are_shown_with_their_disagreements_and_the_convention_that_
     let edge = harness.state().selected_edge().expect("the edge with the largest difference");
     assert!(harness.get_all_by_label_contains(&format!("{edge:<9}")).next().is_some(), "it is in the list");
     let app = harness.state();
-    let topology = &app.loaded().expect("a mesh").topology;
-    let [a, b] = topology.edge_points(&topology.edges[edge as usize]).map(|point| topology.points[point as usize]);
-    assert!(app.camera().target.distance((a + b) / 2.0) < 1e-6, "the edge is in the middle");
+    let crack = app.cracks().expect("measured").edges.iter().find(|crack| crack.edge == edge).expect("it is cracked");
+    let [a, b] = crack.widest;
+    assert!(app.camera().target.distance((a + b) / 2.0) < 0.1, "the edge is in the middle");
     harness.get_by_label_contains(", all sides agree.");
     // The picked edge has no option.
     press(&mut harness, egui::Key::Escape);

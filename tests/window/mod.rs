@@ -8,6 +8,7 @@ mod driver;
 mod editing;
 mod environment;
 mod file_cameras;
+mod findings;
 mod foreign_factors;
 mod import;
 mod lasting;
@@ -25,6 +26,7 @@ mod surface_shader;
 mod tasks;
 mod techniques;
 mod typing;
+mod undoing;
 mod variants;
 mod viewing;
 mod warm_up;
@@ -43,7 +45,7 @@ use pnaen::files::Limits;
 use pnaen::load::Source;
 use pnaen::mesh::Shape;
 use pnaen::settings::Colors;
-use pnaen::tessellate::{Clip, Edges, Lod, Partitioning, Surface};
+use pnaen::tessellate::{Clip, Edges, Lod, Partitioning, Surface, Tessellation};
 use tempfile::TempDir;
 
 use driver::{PATIENCE, settle};
@@ -207,12 +209,12 @@ fn every_switch_does_what_it_says() {
     choose(&mut harness, "LOD", "Edge length");
     choose(&mut harness, "Clipping", "Frustum");
     assert_eq!(harness.state().settings().tessellation.clip, Clip::Frustum);
+    let before = *harness.state().settings();
     choose(&mut harness, "Shared edges", "By each patch");
-    let settings = *harness.state().settings();
-    assert_eq!(
-        (settings.tessellation.edges, settings.tessellation.lod, settings.tessellation.clip),
-        (Edges::AsPublished, Lod::Paper, Clip::Paper)
-    );
+    let published = Tessellation { edges: Edges::AsPublished, ..before.tessellation };
+    assert_eq!(*harness.state().settings(), before.with(published), "nothing else changes");
+    press(&mut harness, egui::Key::E);
+    assert_eq!(*harness.state().settings(), before);
 }
 
 #[test]

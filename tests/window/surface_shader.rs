@@ -34,7 +34,7 @@ fn surface(harness: &Harness<App>) -> Surface {
 
 /// The number of edges that crack, once that is measured.
 fn cracked(app: &App) -> Option<usize> {
-    app.cracks().map(|cracks| cracks.cracked().count())
+    app.cracks().map(|cracks| cracks.cracked().len())
 }
 
 #[test]

@@ -6,7 +6,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::App;
 
-use crate::window_tests::{click, open_list, settle, window};
+use crate::window_tests::{click, copy_vase, open_list, settle, window};
 
 fn key(key: Key, modifiers: Modifiers) -> Event {
     Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers }
@@ -114,4 +114,74 @@ fn the_reference_surfaces_path_can_be_typed_and_tab_reaches_the_buttons() {
     harness.key_press(Key::Enter);
     settle(&mut harness);
     assert!(harness.query_by_role(Role::TextInput).is_none());
+}
+
+/// Opens the window for a path and types this in place of what is proposed.
+fn type_path(harness: &mut Harness<App>, text: &str) {
+    harness.input_mut().events.extend([key(Key::L, Modifiers::COMMAND), Event::Text(text.into())]);
+    settle(harness);
+}
+
+#[test]
+fn tab_completes_a_path_and_quotes_and_uris_are_understood() {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let path = copy_vase(&folder, "my vase.glb").display().to_string();
+    let mut harness = window(None);
+    type_path(&mut harness, &folder.path().join("my").display().to_string());
+    harness.key_press(Key::Tab);
+    settle(&mut harness);
+    assert_eq!(field(&harness), Some(path.clone()));
+    harness.key_press(Key::Escape);
+    settle(&mut harness);
+    for typed in [format!("\"{path}\""), format!("file://{}", path.replace(' ', "%20"))] {
+        type_path(&mut harness, "shape:torus");
+        harness.key_press(Key::Enter);
+        settle(&mut harness);
+        type_path(&mut harness, &typed);
+        harness.key_press(Key::Enter);
+        settle(&mut harness);
+        assert_eq!(harness.state().source().map(ToString::to_string), Some(path.clone()), "{typed}");
+    }
+}
+
+#[test]
+fn what_was_typed_stays_until_it_can_be_opened() {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let mut harness = window(None);
+    let missing = folder.path().join("vsae.glb").display().to_string();
+    type_path(&mut harness, &missing);
+    harness.key_press(Key::Enter);
+    settle(&mut harness);
+    harness.get_by_label_contains("vsae.glb can't be read: there is no such file");
+    assert_eq!(field(&harness), Some(missing.clone()), "it can be mended");
+    harness.key_press(Key::Escape);
+    settle(&mut harness);
+    // A file that is there, but no mesh.
+    std::fs::write(&missing, "no mesh").expect("a writable temporary folder");
+    type_path(&mut harness, &missing);
+    harness.key_press(Key::Enter);
+    settle(&mut harness);
+    assert!(harness.query_by_role(Role::TextInput).is_none());
+    harness.event(key(Key::L, Modifiers::COMMAND));
+    settle(&mut harness);
+    assert_eq!(field(&harness), Some(missing));
+}
+
+#[test]
+fn keys_do_not_act_behind_a_window_that_asks() {
+    let mut harness = window(None);
+    let before = *harness.state().settings();
+    click(&mut harness, "File");
+    harness.get_by_label_contains("Save picture…").click();
+    settle(&mut harness);
+    for letter in [Key::W, Key::C, Key::D] {
+        harness.key_press(letter);
+    }
+    settle(&mut harness);
+    assert_eq!(*harness.state().settings(), before);
+    harness.key_press(Key::Escape);
+    settle(&mut harness);
+    harness.key_press(Key::W);
+    settle(&mut harness);
+    assert!(harness.state().settings().overlays.wireframe, "without the window it acts");
 }

@@ -25,7 +25,7 @@ impl App {
         if egui::Popup::is_any_open(context) {
             return;
         }
-        let asks = self.dialogs.typed_path.is_some()
+        let asks = self.dialogs.ask()
             || self.commands.palette.is_some()
             || self.dialogs.pending.as_ref().is_some_and(|dialog| dialog.is_new(context));
         if asks || context.egui_wants_keyboard_input() {

@@ -6,6 +6,7 @@ mod notice;
 pub(super) mod picture_window;
 mod turntable_window;
 pub(super) mod typed_path;
+mod typed_text;
 mod under_way;
 mod warnings;
 pub(super) mod windows;
@@ -31,6 +32,8 @@ pub(super) struct Dialogs {
     pub pending: Option<PendingDialog>,
     /// The path that is being typed, while that window is open.
     pub typed_path: Option<TypedPath>,
+    /// What was typed last as the path of a file to read, until a mesh is opened: it may have a mistake.
+    pub typed: Option<(typed_path::Purpose, String)>,
     /// The folder of the last path that was typed for a file to write.
     pub folder: Option<std::path::PathBuf>,
     /// The last error, until its window is closed.
@@ -47,4 +50,15 @@ pub(super) struct Dialogs {
     pub shows_warnings: bool,
     /// What is forgotten if the window that asks for it is answered with yes; none if it isn't open.
     pub asks_to_forget: Option<Forgetting>,
+}
+
+impl Dialogs {
+    /// Whether a window is open that takes an answer: keys don't act behind it.
+    pub(super) fn ask(&self) -> bool {
+        self.typed_path.is_some()
+            || self.picture.is_open
+            || self.turntable.is_open
+            || self.chooses_background
+            || self.asks_to_forget.is_some()
+    }
 }

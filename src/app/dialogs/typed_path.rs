@@ -6,10 +6,11 @@ use egui::text::{CCursor, CCursorRange};
 use egui::{Event, Id, Key, TextEdit};
 
 use super::desktop_dialog::Asked;
+use super::typed_text::{completed, path_of};
 use crate::app::App;
 use crate::app::jobs::background_job::BackgroundJob;
-use crate::load::Source;
 use crate::load::format::known_extensions;
+use crate::load::{FileError, Source};
 use crate::names::shown_path;
 
 /// What a path is for.
@@ -39,6 +40,8 @@ pub(crate) enum Purpose {
 pub(crate) struct TypedPath {
     purpose: Purpose,
     path: String,
+    /// The path that the completion is about, and the completed path if there is more of it.
+    completion: (String, Option<String>),
     /// Why the path must be typed, if a dialog was asked for.
     why: Option<&'static str>,
     /// Events of keys that were pressed before the field had the focus; none once it has had the focus.
@@ -199,18 +202,16 @@ impl TypedPath {
             ui.label(why);
         }
         let label = ui.label(self.purpose.takes());
+        self.complete(ui);
         let edit = TextEdit::singleline(&mut self.path).id(field()).desired_width(420.0);
-        let response = ui.add(edit).labelled_by(label.id);
+        let response = ui.add(edit.lock_focus(self.completion.1.is_some())).labelled_by(label.id);
         let is_nowhere = ui.memory(|memory| memory.focused().is_none()) && !response.lost_focus();
         if self.early.is_some() || is_nowhere {
             response.request_focus();
         }
         if self.early.is_some() {
             // Everything is selected, so that typing replaces it.
-            let all = CCursorRange::two(CCursor::new(0), CCursor::new(self.path.chars().count()));
-            let mut state = TextEdit::load_state(ui.ctx(), response.id).unwrap_or_default();
-            state.cursor.set_char_range(Some(all));
-            state.store(ui.ctx(), response.id);
+            self.select_from(ui, 0);
         }
         // Taken, so that it doesn't close the message about this path as well.
         let takes_enter = |input: &mut egui::InputState| input.consume_key(egui::Modifiers::NONE, Key::Enter);
@@ -223,6 +224,27 @@ impl TypedPath {
             accepted.then_some(Answer::Accept).or(cancelled.then_some(Answer::Cancel))
         })
         .inner
+    }
+
+    /// Lets Tab complete the path, where there is more of it.
+    fn complete(&mut self, ui: &egui::Ui) {
+        if self.completion.0 != self.path {
+            self.completion = (self.path.clone(), completed(&self.path));
+        }
+        let Some(completed) = self.completion.1.clone() else { return };
+        let is_here = ui.memory(|memory| memory.has_focus(field()));
+        if is_here && ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, Key::Tab)) {
+            self.path = completed;
+            self.select_from(ui, self.path.chars().count());
+        }
+    }
+
+    /// Selects the path from a character on, in whose place the cursor is.
+    fn select_from(&self, ui: &egui::Ui, first: usize) {
+        let range = CCursorRange::two(CCursor::new(first), CCursor::new(self.path.chars().count()));
+        let mut state = TextEdit::load_state(ui.ctx(), field()).unwrap_or_default();
+        state.cursor.set_char_range(Some(range));
+        state.store(ui.ctx(), field());
     }
 }
 
@@ -237,8 +259,10 @@ impl App {
         if self.dialogs.typed_path.as_ref().is_some_and(|typed| typed.purpose == purpose) {
             return;
         }
-        let path = purpose.proposed(self.source(), self.dialogs.folder.as_deref());
-        self.dialogs.typed_path = Some(TypedPath { purpose, path, why: None, early: Some(Vec::new()) });
+        let typed = self.dialogs.typed.as_ref().filter(|(of, _)| *of == purpose).map(|(_, path)| path.clone());
+        let path = typed.unwrap_or_else(|| purpose.proposed(self.source(), self.dialogs.folder.as_deref()));
+        let (completion, early) = Default::default();
+        self.dialogs.typed_path = Some(TypedPath { purpose, path, completion, why: None, early: Some(early) });
     }
 
     /// The same, if the desktop has no dialog.
@@ -286,7 +310,7 @@ impl App {
 
     fn take_typed(&mut self, context: &egui::Context) {
         let Some(TypedPath { purpose, path, .. }) = &self.dialogs.typed_path else { return };
-        let (purpose, path) = (*purpose, path.trim().to_owned());
+        let (purpose, typed, path) = (*purpose, path.clone(), path_of(path));
         let path = path.as_str();
         let taken = match purpose {
             // This window doesn't ask before it replaces a file, so it never does.
@@ -303,10 +327,12 @@ impl App {
                         | Purpose::Environment
                 ) =>
             {
-                self.take_source(context, purpose, Source::File(path.into()))
+                let source = Source::File(path.into());
+                let is_there = if purpose.is_written() { Ok(()) } else { exists(&source) };
+                is_there.and_then(|()| self.take_source(context, purpose, source))
             }
-            _ => match path.parse() {
-                Ok(source) => self.take_source(context, purpose, source),
+            _ => match path.parse::<Source>() {
+                Ok(source) => exists(&source).and_then(|()| self.take_source(context, purpose, source)),
                 Err(error) => Err(error.to_string()),
             },
         };
@@ -315,7 +341,10 @@ impl App {
                 self.dialogs.folder = Path::new(path).parent().map(Path::to_owned);
                 self.dialogs.typed_path = None;
             }
-            Ok(()) => self.dialogs.typed_path = None,
+            Ok(()) => {
+                self.dialogs.typed = Some((purpose, typed));
+                self.dialogs.typed_path = None;
+            }
             Err(why) => self.dialogs.error = Some(why),
         }
     }
@@ -362,6 +391,16 @@ impl App {
             }
         }
     }
+}
+
+/// Whether a file that was typed is there. If not, the window stays open, so that the path can be mended.
+///
+/// # Errors
+/// Why it can't be read, in a sentence.
+fn exists(source: &Source) -> Result<(), String> {
+    let Source::File(path) = source else { return Ok(()) };
+    let refused = |source| FileError::Io { path: path.clone(), source }.to_string();
+    std::fs::metadata(path).map(|_| ()).map_err(refused)
 }
 
 /// The id of the text field.

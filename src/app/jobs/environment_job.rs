@@ -91,9 +91,8 @@ impl App {
     /// Stops reading a file. The light before it stays.
     pub(in crate::app) fn cancel_environment(&mut self) {
         self.jobs.environment = None;
-        if self.environment.is_none() {
-            self.settings.lighting = without_file(self.settings.lighting);
-            self.history.change_all(|settings| settings.lighting = without_file(settings.lighting));
+        if self.environment.is_none() && self.settings.lighting == Lighting::Environment {
+            self.settings.lighting = Lighting::Studio;
         }
     }
 
@@ -134,9 +133,4 @@ impl App {
         let is_used = self.settings.lighting == Lighting::Environment;
         self.environment.as_ref().filter(|_| is_used).map_or(0, |open| open.generation)
     }
-}
-
-/// The light that takes the place of this one if there is no file.
-fn without_file(lighting: Lighting) -> Lighting {
-    if lighting == Lighting::Environment { Lighting::Studio } else { lighting }
 }

@@ -25,7 +25,7 @@ pub(crate) struct GivenFactors {
     /// None while they are compared under another convention than before.
     compared: Option<ComparedFactors>,
     /// The LOD before.
-    lod: Lod,
+    pub lod: Lod,
 }
 
 /// Where factors of a file disagree under a convention.
@@ -96,6 +96,13 @@ impl App {
     /// The file that factors were read from, if one was.
     pub fn factors_file(&self) -> Option<&Path> {
         self.given.as_ref().map(|given| &*given.path)
+    }
+
+    /// Puts the file's factors in the place of an LOD that was set while they are used.
+    pub(in crate::app) fn replace_by_factors(&mut self) {
+        if let Some(given) = &mut self.given {
+            given.lod = std::mem::replace(&mut self.settings.tessellation.lod, Lod::Uniform);
+        }
     }
 
     /// Goes back to the factors of LOD.

@@ -7,7 +7,6 @@ use crate::app::App;
 use crate::engine::Engine;
 use crate::gpu::Readback;
 use crate::render::{Leak, LeakCount, Scene, leaks_in};
-use crate::settings::SplitSide;
 use crate::view::ScreenView;
 
 /// The leaks of what is shown, once counted.
@@ -27,8 +26,8 @@ enum Counting {
 
 impl LeakJob {
     /// The leaks in a view, the largest first, once they are counted.
-    fn found(&self, view: Option<ScreenView>) -> Option<&[Leak]> {
-        let is_same = self.of.map(|(.., counted)| counted) == view;
+    fn found(&self, view: ScreenView) -> Option<&[Leak]> {
+        let is_same = self.of.is_some_and(|(.., counted)| counted == view);
         self.found.as_deref().filter(|_| is_same)
     }
 
@@ -90,9 +89,10 @@ fn grouping(context: &egui::Context, counts: Readback, view: ScreenView) -> Coun
 }
 
 impl App {
-    /// Whether leaks of what is shown can be counted: the mesh is closed and beyond the near plane, and nothing was left out.
+    /// Whether leaks can be counted in the view that was measured last: the mesh is closed and beyond the near plane, and nothing was
+    /// left out.
     pub(in crate::app) fn may_leak(&self) -> bool {
-        self.jobs.measure.is_closed_in(self.viewport.picture.seen_from())
+        self.results().is_some_and(|results| self.jobs.measure.is_closed_in(results.seen.view))
     }
 
     /// Goes on counting leaks once everything else of what is shown was measured.
@@ -100,7 +100,7 @@ impl App {
         if self.jobs.measure.is_busy() {
             return Ok(());
         }
-        let may_leak = self.may_leak() && self.jobs.measure.found().is_some();
+        let may_leak = self.jobs.measure.is_closed_in(view) && self.jobs.measure.found().is_some();
         match self.document.as_mut().filter(|_| may_leak) {
             Some(document) => {
                 self.jobs.leaks.go_on(context, &self.engine, &mut document.scene, document.generation, view)
@@ -112,15 +112,14 @@ impl App {
         }
     }
 
-    /// The leaks of what is shown, the largest first, once they are counted.
+    /// The leaks in the view that was measured last, the largest first, once they are counted.
     pub(crate) fn leaks(&self) -> Option<&[Leak]> {
-        self.jobs.leaks.found(self.viewport.picture.seen_from())
+        self.jobs.leaks.found(self.results()?.seen.view)
     }
 
     /// The cracked edge that comes closest to a leak on screen.
     pub(in crate::app) fn edge_of_leak(&self, leak: &Leak) -> Option<u32> {
-        let (document, found) = (self.document.as_ref()?, self.measured(SplitSide::Right).found()?);
-        let (view, topology) = (self.viewport.picture.seen_from()?, &document.shown().1);
-        Some(found.crack_seen_at(topology, &view, leak.px)?.edge)
+        let (document, results) = (self.document.as_ref()?, self.results()?);
+        Some(results.found.crack_seen_at(&document.shown().1, &results.seen.view, leak.px)?.edge)
     }
 }

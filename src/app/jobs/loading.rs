@@ -91,7 +91,7 @@ impl App {
             (settings.import.up, settings.import.unit) = (up, unit);
         };
         place(&mut self.settings);
-        self.history.change_all(place);
+        self.history.change_all(|step| place(&mut step.settings));
     }
 
     /// Loads the same mesh again; settings and camera stay.
@@ -116,6 +116,7 @@ impl App {
                     (self.viewport.frozen, self.viewport.ruler) = (None, None);
                     self.forget_truth();
                 }
+                self.dialogs.typed = None;
                 self.panels.chart.stop();
                 let title = format!("{} - pnaen", document.loaded.source.title());
                 context.send_viewport_cmd(egui::ViewportCommand::Title(title));
@@ -130,15 +131,15 @@ impl App {
                     (self.viewport.frozen, self.viewport.ruler) = (None, None);
                     self.follow_truth(context);
                 }
-                if !keep_view {
-                    self.take_placement();
-                    self.take_hidden_parts();
-                }
                 if before_is_some {
                     self.dialogs.error = None;
                 }
                 self.dialogs.error = remark.or(self.dialogs.error.take());
                 self.take_heights(before.and_then(|document| document.loaded.preparation.heights).as_ref());
+                if !keep_view {
+                    self.take_placement();
+                    self.take_preparation();
+                }
                 self.keep_playback(keep_view);
                 if !keep_view && before_is_some {
                     self.face_another();
@@ -147,6 +148,7 @@ impl App {
                     self.frame();
                 }
                 self.look_as_before(keep_view);
+                self.viewport.opened = Some(self.viewport.camera);
                 self.jobs.measure = MeasureJob::default();
                 self.jobs.leaks = LeakJob::default();
                 self.jobs.silhouette = SilhouetteJob::default();
@@ -154,6 +156,7 @@ impl App {
                 self.viewport.preview.forget();
                 self.keep_factors(context, keep_view);
                 self.deselect();
+                self.viewport.showing = None;
             }
             Err(Some(NotLoaded { mut why, is_gone })) => {
                 if is_gone && self.persistence.gone(&source) {

@@ -18,6 +18,7 @@ pub(super) mod picture_job;
 pub(super) mod silhouette_job;
 pub(super) mod stand_in;
 pub(super) mod truth;
+pub(super) mod walk;
 pub(super) mod writing_job;
 
 use crate::files::Limits;

@@ -268,9 +268,10 @@ impl App {
         S::open_in(self).map(|open| &*open.path)
     }
 
-    /// The settings with those that are there again when the files are closed.
-    pub(in crate::app) fn settings_without_shaders(&self) -> Settings {
+    /// The settings with those that are there again when files of factors and shaders are closed.
+    pub(in crate::app) fn settings_without_files(&self) -> Settings {
         let mut own = self.settings.tessellation;
+        own.lod = self.given.as_ref().map_or(own.lod, |given| given.lod);
         self.put_back::<LodShader>(&mut own);
         self.put_back::<SurfaceShader>(&mut own);
         self.settings.with(own)
@@ -300,14 +301,11 @@ impl App {
         *S::slot(self) = None;
     }
 
-    /// Lets the file that was open at a step of undo be open again, after that step's settings were taken.
+    /// Lets the file that was open at a step of undo be open again.
     pub(in crate::app) fn take_back_shader<S: Replacing>(&mut self, context: &egui::Context, path: Option<PathBuf>) {
-        if self.open_shader_file::<S>() == path.as_deref() {
-            return self.replace_again::<S>();
-        }
-        *S::slot(self) = None;
-        if let Some(path) = path {
-            self.open_shader::<S>(context, path);
+        if self.open_shader_file::<S>() != path.as_deref() {
+            *S::slot(self) = None;
+            path.into_iter().for_each(|path| self.open_shader::<S>(context, path));
         }
     }
 

@@ -7,7 +7,8 @@ use crate::app::App;
 use crate::app::text::{grouped, short};
 use crate::app::widgets::{columns, fact, list, number, swatch};
 use crate::commands::{Action, with_key};
-use crate::measure::{CrackedEdge, EdgeSide};
+use crate::gates::{EdgeSpot, Spot};
+use crate::measure::{CrackedEdge, EdgeSide, Measured};
 use crate::mesh::{EdgeKind, TJunction, Topology};
 use crate::render::LineSegment;
 use crate::render::layout::{CRACK_COLOR, OUTLINE_COLOR, SIDE_COLORS, T_JUNCTION_COLOR};
@@ -15,67 +16,49 @@ use crate::settings::SplitSide;
 use crate::view::ulp;
 use glam::Vec3;
 
-/// Half the widths of the selected edge's outline, of its first side, of the others, and of the dots at its widest gap, in px.
-const ALONE: [f32; 4] = [2.5, 1.75, 0.75, 3.0];
+/// Half the widths of the selected edge's outline, of its first side, and of the others, in px.
+const ALONE: [f32; 3] = [2.5, 1.75, 0.75];
 /// The same for an edge of the selected patch, whose outline lies over it: what is seen is a halo.
-const HALO: [f32; 4] = [6.25, 5.5, 4.0, 6.5];
+const HALO: [f32; 3] = [6.25, 5.5, 4.0];
+/// The same for a cracked edge, whose gap is to be seen between its sides; and of the dots at the gap's ends.
+const CRACKED: [f32; 3] = [0.0, 0.75, 0.75];
+const GAP_DOT: f32 = 1.5;
 
 impl App {
-    /// The list of edges whose sides disagree, the widest gap first. A click frames one.
+    /// The list of cracked edges, the widest gap first. A click frames one.
     pub(in crate::app) fn worst_edges(&mut self, ui: &mut egui::Ui) {
-        let (Some(document), Some(cracks)) = (&self.document, self.jobs.measure.cracks()) else { return };
-        if cracks.edges.is_empty() {
+        let (Some(document), Some(results)) = (&self.document, self.results()) else { return };
+        let cracked = results.found.cracks.cracked();
+        if cracked.is_empty() {
             return;
         }
         let topology = &document.loaded.topology;
         ui.add_space(4.0);
         ui.label("Worst edges").on_hover_text(
-            "Edges whose sides disagree in a position, factor or normal, the widest gap first; a click frames one.",
+            "Edges whose sides put a point at different positions, the widest gap first; a click frames one.",
         );
         columns(ui, &format!("{:<7}{:<13}{:>9}", "edge", "kind", "gap, units"), true);
-        // A click moves the camera, and so LOD and the gaps. Rows stay where they are while the pointer is over them.
-        let own = (document.generation, self.settings.tessellation.surface);
-        let held = self.viewport.held_edges.take().filter(|(of, _)| *of == own);
-        let edges = || cracks.edges.iter().map(|crack| crack.edge).collect();
-        let count = held.as_ref().map_or(cracks.edges.len(), |(_, edges)| edges.len());
         let mut clicked = None;
-        let row = |ui: &mut egui::Ui, row: usize| {
-            let edge = held.as_ref().map_or_else(|| cracks.edges[row].edge, |(_, edges)| edges[row]);
-            let crack = cracks.edges.get(row).filter(|crack| crack.edge == edge);
-            let crack = crack.or_else(|| self.crack_of(edge, SplitSide::Right));
-            let response = self.worst_edge(ui, topology, edge, crack);
+        let which = document.generation as u32 ^ results.seen.inputs.tessellation.surface as u32;
+        list(ui, "worst edges", (cracked.len(), which), |ui, row| {
+            let response = self.worst_edge(ui, topology, &cracked[row]);
             if response.clicked() {
-                clicked = Some(edge);
+                clicked = Some(cracked[row].edge);
             }
             response
-        };
-        let which = own.0 as u32 ^ own.1 as u32;
-        let shown = ui.scope(|ui| list(ui, "worst edges", (count, which), row)).response;
-        if ui.rect_contains_pointer(shown.rect) {
-            self.viewport.held_edges = Some(held.unwrap_or_else(|| (own, edges())));
-        }
+        });
         if let Some(edge) = clicked {
             self.select_edge(edge);
         }
     }
 
-    /// A row of the list of worst edges. There is no crack if the edge's sides agree since the camera has moved.
-    fn worst_edge(
-        &self,
-        ui: &mut egui::Ui,
-        topology: &Topology,
-        edge: u32,
-        crack: Option<&CrackedEdge>,
-    ) -> egui::Response {
+    /// A row of the list of worst edges.
+    fn worst_edge(&self, ui: &mut egui::Ui, topology: &Topology, crack: &CrackedEdge) -> egui::Response {
+        let edge = crack.edge;
         let kind = kind_name(topology.edges[edge as usize].kind);
-        let gap = crack.map_or_else(|| "none".to_owned(), |crack| short(crack.gap));
-        let text = RichText::new(format!("{edge:<7}{kind:<13}{gap:>9}")).monospace();
+        let text = RichText::new(format!("{edge:<7}{kind:<13}{:>9}", short(crack.gap))).monospace();
         let response = ui.selectable_label(self.viewport.selected_edge == Some(edge), text);
         response.on_hover_ui(|ui| {
-            let Some(crack) = crack else {
-                ui.label("The sides agree in this view. A click frames the edge.");
-                return;
-            };
             ui.label(format!(
                 "The gap is {} px on screen, {} ULP. {} points and {} normals differ; the factors {}. A click frames the edge.",
                 short(self.viewport.picture.gap_of_edge_px(crack)),
@@ -104,10 +87,11 @@ impl App {
             });
         });
         ui.separator();
-        let sides = self.jobs.measure.found().map(|found| found.outlines.edge(topology, edge)).unwrap_or_default();
+        let found = self.results().map(|results| &results.found);
+        let sides = found.map(|found| found.outlines.edge(topology, edge)).unwrap_or_default();
         egui::Grid::new("edge").num_columns(2).min_col_width(104.0).show(ui, |ui| {
             fact(ui, "Kind", kind, "How the normals and uvs of the edge's sides agree.");
-            if let Some(crack) = self.crack_of(edge, SplitSide::Right) {
+            if let Some(crack) = found.and_then(|found| crack_in(found, edge)) {
                 let (px, ulps) = (self.viewport.picture.gap_of_edge_px(crack), crack.gap / ulp(topology));
                 fact(ui, "Gap", &format!("{} units", short(crack.gap)), "Largest distance between two sides.");
                 fact(
@@ -117,6 +101,8 @@ impl App {
                     "In units of the last place of the mesh's largest coordinate.",
                 );
                 fact(ui, "", &format!("{} px", short(px)), "The gap on screen.");
+                let hover = "Points whose normals differ although the mesh's normals agree.";
+                fact(ui, "Normals differ", &grouped(crack.different_normals.into()), hover);
                 if let Some(patch) = crack.discarded {
                     let triangle = topology.patches[patch as usize].triangle;
                     let hover =
@@ -163,26 +149,52 @@ impl App {
             response
         });
         if let Some(junction) = clicked {
-            self.settings.overlays.t_junctions = true;
-            self.select_edge(junction.edge);
+            self.show_junction(&junction);
         }
     }
 
-    /// Selects an edge and turns the camera so that it is in the middle, seen from the side that its triangles face.
-    pub fn select_edge(&mut self, edge: u32) {
+    pub(super) fn show_junction(&mut self, junction: &TJunction) {
+        self.settings.overlays.t_junctions = true;
         let Some(document) = &self.document else { return };
-        let topology = &document.shown().1;
-        let Some(chosen) = topology.edges.get(edge as usize) else { return };
-        let ends = topology.edge_points(chosen).map(|point| topology.points[point as usize]);
-        self.viewport.camera.frame_edge(ends, topology.edge_facing(chosen), &document.scene.bounds);
-        self.clear_middle();
-        self.viewport.selected_edge = Some(edge);
-        self.keep_triangle_of(edge);
+        let at = document.shown().1.points[junction.point as usize];
+        self.select_edge_at(junction.edge, Some(at));
     }
 
-    /// The crack along an edge in a half, if there is one.
-    fn crack_of(&self, edge: u32, half: SplitSide) -> Option<&CrackedEdge> {
-        self.measured(half).cracks()?.edges.iter().find(|crack| crack.edge == edge)
+    /// Selects an edge and shows it: where its sides are the farthest apart, or else its middle.
+    pub fn select_edge(&mut self, edge: u32) {
+        self.select_edge_at(edge, None);
+    }
+
+    fn select_edge_at(&mut self, edge: u32, at: Option<Vec3>) {
+        let Some(document) = &self.document else { return };
+        let topology = &document.shown().1;
+        if edge as usize >= topology.edges.len() {
+            return;
+        }
+        let spot = self.edge_spot(topology, edge, at);
+        self.viewport.selected_edge = Some(edge);
+        self.keep_triangle_of(edge);
+        self.show_place(SplitSide::Right, &Spot::Edge(spot), None);
+    }
+
+    fn edge_spot(&self, topology: &Topology, edge: u32, at: Option<Vec3>) -> EdgeSpot {
+        let own = &topology.edges[edge as usize];
+        let ends = topology.edge_points(own).map(|point| topology.points[point as usize]);
+        let whole = EdgeSpot { ends, facing: topology.edge_facing(own), at: ends[0] * 0.5 + ends[1] * 0.5 };
+        let found = self.results().map(|results| &results.found);
+        if let Some(crack) = found.and_then(|found| crack_in(found, edge)).filter(|crack| crack.gap > 0.0) {
+            return whole.at_gap(crack.widest);
+        }
+        // What was emitted may bulge above the middle of the straight line, and hide it.
+        let sides = found.map(|found| found.outlines.edge(topology, edge)).unwrap_or_default();
+        let middle = sides.first().and_then(|side| side.positions().nth(side.points.len() / 2));
+        EdgeSpot { at: at.or(middle).unwrap_or(whole.at), ..whole }
+    }
+
+    /// The selected edge's crack in a half, if there is a gap.
+    pub(in crate::app) fn selected_gap(&self, half: SplitSide) -> Option<&CrackedEdge> {
+        let found = self.measured(half).found()?;
+        crack_in(found, self.viewport.selected_edge?).filter(|crack| crack.gap > 0.0)
     }
 
     /// The lines that mark the selected edge: each side in a colour of its own, the later ones thinner so that sides that
@@ -204,16 +216,25 @@ impl App {
             let ends = points.windows(2).map(move |ends| [ends[0], ends[1]]);
             ends.map(|[a, b]| LineSegment { half_width, ..LineSegment::new(a, b, color) }).collect::<Vec<_>>()
         };
-        let [around, first, later, dot] = if self.patch_has(edge) { HALO } else { ALONE };
+        let gap = self.selected_gap(half);
+        let [around, first, later] = match gap {
+            Some(_) => CRACKED,
+            None if self.patch_has(edge) => HALO,
+            None => ALONE,
+        };
         let outline = polylines.iter().flat_map(|points| strip(points, OUTLINE_COLOR, around));
         let colored = polylines.iter().enumerate().flat_map(|(k, points)| {
             strip(points, SIDE_COLORS[k % SIDE_COLORS.len()], if k == 0 { first } else { later })
         });
-        let gap = self.crack_of(edge, half).filter(|crack| crack.gap > 0.0).map(|crack| crack.widest);
-        let dots = gap.into_iter().flatten();
-        let dots = dots.map(|place| LineSegment { half_width: dot, ..LineSegment::new(place, place, CRACK_COLOR) });
+        let dots = gap.into_iter().flat_map(|crack| crack.widest);
+        let dots = dots.map(|place| LineSegment { half_width: GAP_DOT, ..LineSegment::new(place, place, CRACK_COLOR) });
         outline.chain(colored).chain(dots).collect()
     }
+}
+
+/// The differences between an edge's sides, if there are any.
+fn crack_in(found: &Measured, edge: u32) -> Option<&CrackedEdge> {
+    found.cracks.edges.iter().find(|crack| crack.edge == edge)
 }
 
 /// A row for each side: its triangle with the colour that the side has over the mesh, its factor and its segments.

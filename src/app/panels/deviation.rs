@@ -1,7 +1,6 @@
 //! The deviation of what is shown: its measurement, its section in the panel, its marks and its colour scale.
 
 use egui::RichText;
-use glam::{Vec2, Vec3};
 
 use crate::app::App;
 use crate::app::jobs::deviation_job::{DeviationBasis, DeviationJob, DeviationResult};
@@ -10,11 +9,12 @@ use crate::app::panels::option_rows::option_row;
 use crate::app::sections::Section;
 use crate::app::text::{grouped, short, shortened};
 use crate::app::widgets::{fact, number, swatch};
+use crate::gates::Spot;
 use crate::measure::{DeviationTarget, MOST_TRIANGLES};
 use crate::render::layout::WORST_COLOR;
 use crate::render::{DEVIATION_PX_SCALE, Distances, LineSegment, Scale, deviation_scale, worst_lines};
-use crate::settings::{Choice, Colors, DeviationUnit, Settings, SplitSide, options};
-use crate::tessellate::{Clip, Inputs, Lod};
+use crate::settings::{Choice, Colors, DeviationUnit, SplitSide, options};
+use crate::tessellate::Inputs;
 use crate::view::project;
 
 impl App {
@@ -233,31 +233,11 @@ impl App {
         Some(f64::from(at(worst.emitted)?.distance(at(worst.truth)?)))
     }
 
-    /// Turns the camera so that a half's worst point is in the middle of that half, seen from where its patch faces.
+    /// Shows a half's worst point.
     fn frame_worst(&mut self, half: SplitSide) {
         let Some(worst) = self.known_deviation(half).and_then(|found| found.worst) else { return };
         let Some(document) = &self.document else { return };
-        let (mesh, topology) = document.shown();
-        let Some(patch) = topology.patches.get(worst.patch as usize) else { return };
-        let corners: [Vec3; 3] = topology.corners(patch).map(|corner| mesh.corners[corner as usize].position);
-        let bounds = document.scene.bounds;
-        // A tessellation for the new view would have another worst point.
-        if self.viewport.frozen.is_none() && follows_view(&self.settings) {
-            self.freeze();
-        }
-        self.viewport.camera.frame_triangle(corners, &bounds);
-        self.viewport.camera.target = worst.emitted.as_vec3();
-        if let Some(split) = self.settings.split {
-            let middle = if half == SplitSide::Left { split / 2.0 } else { (1.0 + split) / 2.0 };
-            let size = self.viewport.picture.size();
-            self.viewport.camera.pan(Vec2::new((middle - 0.5) * size.x, 0.0), size);
-        }
+        let corners = document.shown().1.patch_positions(worst.patch);
+        self.show_place(half, &Spot::Patch { corners, at: worst.emitted.as_vec3() }, None);
     }
-}
-
-/// Whether the tessellation depends on the camera.
-fn follows_view(settings: &Settings) -> bool {
-    settings.tessellation.used_lod() != Lod::Uniform
-        || settings.tessellation.clip != Clip::Off
-        || settings.tessellation.cull_back_faces
 }

@@ -50,8 +50,6 @@ impl App {
             (true, Some(_)) => return,
             (false, _) => Displacement::Off,
         };
-        // This isn't a step of undo, because it follows from the mesh.
-        self.history.displace(self.settings.tessellation.displacement);
     }
 
     pub(in crate::app) fn has_heights(&self) -> bool {

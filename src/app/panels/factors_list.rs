@@ -44,7 +44,7 @@ impl App {
     /// How the sides of edges agree whose factors come from a file or a shader, once they are compared.
     pub(super) fn agreement(&self) -> Option<&Agreement> {
         match self.uses_lod_shader() {
-            true => self.jobs.measure.agreement(),
+            true => self.results()?.agreement.as_ref(),
             false => Some(&self.given.as_ref()?.compared()?.agreement),
         }
     }

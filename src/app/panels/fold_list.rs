@@ -5,13 +5,17 @@ use egui::RichText;
 use crate::app::App;
 use crate::app::text::{grouped, short};
 use crate::app::widgets::{columns, list, swatch};
+use crate::gates::Spot;
 use crate::measure::FoldedPatch;
 use crate::render::layout::FOLD_COLOR;
+use crate::settings::SplitSide;
 
 impl App {
     /// The list of patches with folds, the largest area first. A click frames one.
     pub(in crate::app) fn fold_list(&mut self, ui: &mut egui::Ui) {
-        let (Some(document), Some(found)) = (&self.document, self.jobs.measure.found()) else { return };
+        let (Some(document), Some(found)) = (&self.document, self.results().map(|results| &results.found)) else {
+            return;
+        };
         if found.folded.is_empty() {
             return;
         }
@@ -56,8 +60,6 @@ impl App {
         let triangle = patch.triangle;
         self.settings.overlays.folds = true;
         self.select_triangle(Some(triangle));
-        self.frame_patch();
-        self.viewport.camera.target = folded.place;
-        self.clear_middle();
+        self.show_place(SplitSide::Right, &Spot::fold(folded), None);
     }
 }

@@ -62,13 +62,16 @@ impl App {
             (Some(triangle), None) => drop(ui.label(format!("Triangle {triangle} is degenerate: it has no patch."))),
             (Some(triangle), Some(patch)) => {
                 let (question, is_of_shader) = (self.emitted_patch(patch), self.uses_surface_shader());
-                let found = self.jobs.measure.found();
+                let results = self.results();
+                let found = results.map(|results| &results.found);
+                let convention =
+                    results.map_or(self.convention(), |results| results.seen.inputs.tessellation.convention);
                 let shown = SelectedPatch {
                     mesh,
                     topology,
                     triangle,
                     patch,
-                    convention: self.convention(),
+                    convention,
                     lod: self.settings.tessellation.used_lod(),
                     selected_edge: self.viewport.selected_edge,
                     factors: found.map(|found| found.outlines.factors(patch)),
@@ -110,19 +113,14 @@ impl App {
     /// What the selected patch's explanation is about: how the patch was emitted, and the mesh in its pose. None until that is
     /// measured, and if nothing was emitted.
     fn emitted_patch(&self, patch: u32) -> Option<(EmittedPatch, PosedMesh)> {
-        let (document, drawn) = (self.document.as_ref()?, self.viewport.picture.drawn.as_ref()?);
-        let factors = self.jobs.measure.found()?.outlines.factors(patch);
+        let (document, results) = (self.document.as_ref()?, self.results()?);
+        let factors = results.found.outlines.factors(patch);
         let tessellator = &document.scene.tessellator;
-        let emitted = EmittedPatch {
-            document: document.generation,
-            tessellation: tessellator.generation(),
-            patch,
-            inputs: drawn.inputs,
-            factors,
-        };
+        let (document, tessellation) = results.of;
+        let emitted = EmittedPatch { document, tessellation, patch, inputs: results.seen.inputs, factors };
         // What explains a patch computes its surface on the CPU, which doesn't know a shader's.
         let is_known = !self.uses_surface_shader();
-        (is_known && !self.is_playing() && !patch_is_culled(factors)).then(|| (emitted, tessellator.posed().clone()))
+        (is_known && !patch_is_culled(factors)).then(|| (emitted, tessellator.posed().clone()))
     }
 }
 

@@ -64,9 +64,7 @@ impl App {
     /// What specialists set.
     fn advanced_rows(&mut self, ui: &mut egui::Ui) {
         let settings = &mut self.settings;
-        let mut chosen = *settings;
-        option_row(ui, &options::EDGES, &mut chosen, key_name(&Action::Setting(Change::ToggleEdges)));
-        settings.set_edges(chosen.tessellation.edges);
+        option_row(ui, &options::EDGES, settings, key_name(&Action::Setting(Change::ToggleEdges)));
         option_row(ui, &options::CONVENTION, settings, "");
         option_row(ui, &options::CLIP, settings, "");
         shown_option_row(ui, &options::NORMALS_AT, settings);

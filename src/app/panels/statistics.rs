@@ -1,6 +1,7 @@
 //! The panel on the right: statistics of the tessellation and the mesh.
 
 use crate::app::App;
+use crate::app::jobs::measure_job::Results;
 use crate::app::sections::{Section, scrolling_column};
 use crate::app::text::{grouped, part, short};
 use crate::app::widgets::{fact, number, swatch};
@@ -33,6 +34,7 @@ impl App {
             ui.push_id("given", |ui| self.given_section(ui));
             ui.push_id("LOD shader", |ui| self.lod_shader_section(ui));
             self.deviation_section(ui);
+            self.edge_details(ui);
             if self.panels.open.title(ui, Section::Cracks) {
                 self.crack_facts(ui);
                 self.worst_edges(ui);
@@ -40,7 +42,6 @@ impl App {
                 self.fold_list(ui);
                 self.t_junction_list(ui);
             }
-            self.edge_details(ui);
             if self.panels.open.title(ui, Section::Patches) {
                 self.patch_facts(ui);
             }
@@ -74,7 +75,7 @@ impl App {
 
     /// How far shading normals turn at seams. Until that is measured, the rows show ellipses.
     fn seam_facts(&self, ui: &mut egui::Ui) {
-        let seams = self.jobs.measure.found().map(|found| found.seams.shading);
+        let seams = self.results().map(|results| results.found.seams.shading);
         let angle = |of: fn(&SeamTurns) -> f64| {
             seams.map_or_else(|| "…".into(), |seams| if seams.edges > 0 { degrees(of(&seams)) } else { "-".into() })
         };
@@ -93,7 +94,8 @@ impl App {
     fn crack_facts(&self, ui: &mut egui::Ui) {
         let Some(document) = &self.document else { return };
         // Until they are measured, the rows show ellipses.
-        let cracks = self.jobs.measure.cracks();
+        let results = self.results();
+        let cracks = results.map(|results| &results.found.cracks);
         let count = |number: fn(&Cracks) -> u64| cracks.map_or_else(|| "…".into(), |cracks| grouped(number(cracks)));
         let gap = |size: &dyn Fn(&Cracks) -> f64, unit: &str| {
             cracks.map_or_else(|| format!("… {unit}"), |cracks| format!("{} {unit}", short(size(cracks))))
@@ -111,20 +113,22 @@ impl App {
             ui.horizontal(|ui| {
                 swatch(ui, CRACK_COLOR);
                 ui.label("Cracked edges")
-                    .on_hover_text("Edges with a point or factor that differs. The overlay Cracks shows them.");
+                    .on_hover_text("Edges with a point that differs. The overlay Cracks shows them.");
             });
-            number(ui, &count(|cracks| cracks.cracked().count() as u64));
+            number(ui, &count(|cracks| cracks.cracked().len() as u64));
             ui.end_row();
             let hover = "The largest distance between two sides' positions of one point, in object units.";
             fact(ui, "Largest gap", &gap(&Cracks::max_gap, "units"), hover);
             let hover = "The same in ULP of the mesh's largest coordinate.";
             fact(ui, "", &gap(&|cracks| cracks.max_gap() / ulp, "ULP"), hover);
-            fact(ui, "", &gap(&|cracks| self.viewport.picture.gap_px(cracks), "px"), "The largest gap on screen.");
+            let px = results.and_then(Results::widest_crack).map_or(0.0, |(_, px)| px);
+            let hover = "The gap that is the widest as the camera of LOD sees it.";
+            fact(ui, "", &gap(&|_| px, "px"), hover);
             ui.horizontal(|ui| {
                 swatch(ui, FOLD_COLOR);
                 ui.label("Folds").on_hover_text("Triangles that face away from the side that their patch faces.");
             });
-            number(ui, &self.jobs.measure.found().map_or_else(|| "…".into(), |found| grouped(found.folds)));
+            number(ui, &results.map_or_else(|| "…".into(), |results| grouped(results.found.folds)));
             ui.end_row();
         });
     }
@@ -132,7 +136,8 @@ impl App {
     fn patch_facts(&self, ui: &mut egui::Ui) {
         let Some(document) = &self.document else { return };
         let all = document.loaded.topology.patches.len() as u64;
-        let culled = self.jobs.measure.found().map(|found| found.culled);
+        let found = self.results().map(|results| &results.found);
+        let culled = found.map(|found| found.culled);
         let count =
             |number: &dyn Fn(Culled) -> u64| culled.map_or_else(|| "…".into(), |culled| grouped(number(culled)));
         egui::Grid::new("patches").num_columns(2).min_col_width(104.0).show(ui, |ui| {
@@ -142,8 +147,7 @@ impl App {
             fact(ui, "Out of view", &count(&|culled| culled.out_of_view.into()), hover);
             let hover = "Patches that are left out because the LOD camera sees only their backs.";
             fact(ui, "Facing away", &count(&|culled| culled.facing_away.into()), hover);
-            let limit =
-                self.jobs.measure.found().map_or_else(|| "…".into(), |found| grouped(found.patches_at_limit.into()));
+            let limit = found.map_or_else(|| "…".into(), |found| grouped(found.patches_at_limit.into()));
             let hover = "Patches with a factor at the tessellator's maximum, 63 or 64. They may need more segments, so LOD by \
                          error may miss its tolerance there.";
             fact(ui, "At maximum factor", &limit, hover);
@@ -155,12 +159,12 @@ impl App {
         let Some(document) = &self.document else { return };
         let patches = document.loaded.topology.patches.len() as u64;
         let unknown = || if self.jobs.measure.is_busy() { "…".to_owned() } else { "-".to_owned() };
-        let small = self.sizes_shown().map_or_else(unknown, |sizes| part(sizes.small, sizes.in_view));
-        let low = self.jobs.measure.found().map_or_else(unknown, |found| part(found.patches_low.into(), patches));
+        let results = self.results();
+        let small = results.map_or_else(unknown, |results| part(results.sizes.small, results.sizes.in_view));
+        let low = results.map_or_else(unknown, |results| part(results.found.patches_low.into(), patches));
         egui::Grid::new("waste").num_columns(2).min_col_width(104.0).show(ui, |ui| {
             let hover = "Triangles in view that are smaller than half of a square with sides of 3 px, and their share of all \
-                         triangles in view. After the camera alone has moved, they are counted anew only while triangle \
-                         sizes are shown.";
+                         triangles in view.";
             marked(ui, "Below 3 px", &small, hover);
             let hover = "Patches whose factors are all below 2, and their share of all patches. They could be drawn without \
                          tessellation.";

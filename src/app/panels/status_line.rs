@@ -5,6 +5,7 @@ use egui::RichText;
 use crate::app::App;
 use crate::app::text::{counted, grouped, mebibytes, short};
 use crate::app::widgets::{legible, rgb, status, text_width};
+use crate::commands::{Action, key_name};
 use crate::gpu::DRAWING;
 use crate::render::layout::CRACK_COLOR;
 
@@ -26,15 +27,16 @@ impl App {
                 return;
             };
             let scene = &document.scene;
-            // While a clip plays or the camera moves, the numbers of the last picture are shown, so that they don't flicker.
+            // All numbers are of one picture: the last one that was measured, or else the present one.
+            let results = self.results();
             let is_known = scene.tessellator.is_counted() || self.is_playing() || self.shows_preview();
-            let totals = self.totals().filter(|_| is_known);
+            let totals = results.map(|results| results.totals).or(self.totals().filter(|_| is_known));
             let (vertices, triangles) = totals.map_or_else(
                 || ("…".to_owned(), "… triangles".to_owned()),
                 |(vertices, triangles)| (grouped(vertices), counted(triangles, "triangle")),
             );
             let patches = document.loaded.topology.patches.len() as u64;
-            let drawn = self.jobs.measure.found().map(|found| grouped(patches - u64::from(found.culled.total())));
+            let drawn = results.map(|results| grouped(patches - u64::from(results.found.culled.total())));
             let drawn = drawn.unwrap_or_else(|| "…".to_owned());
             let before = (document.loaded.mesh.triangles.len() as u64, document.loaded.mesh.corners.len() as u64);
             // A field has the width of the largest numbers that this mesh can have.
@@ -68,6 +70,7 @@ impl App {
             );
             let (ms, hover) = self.times();
             status(ui, 112.0, ms, &hover);
+            self.thaw_button(ui);
             let adapter = &self.engine.gpu.info.name;
             // A few letters of its name would say nothing.
             if ui.available_width() > 0.5 * text_width(ui, adapter) {
@@ -75,6 +78,18 @@ impl App {
                     .on_hover_text(format!("Graphics adapter: {adapter}."));
             }
         });
+    }
+
+    /// Says that LOD is frozen, and thaws it.
+    fn thaw_button(&mut self, ui: &mut egui::Ui) {
+        if self.viewport.frozen.is_some() {
+            let text = format!("LOD is frozen: thaw it ({})", key_name(&Action::FreezeLodCamera));
+            let hover = "LOD and clipping stay as they are for the camera that froze them, and so do all numbers. Thawed, they \
+                         follow the camera again.";
+            if ui.small_button(text).on_hover_text(hover).clicked() {
+                self.viewport.frozen = None;
+            }
+        }
     }
 
     /// The times of tessellation and drawing by the GPU's clock, or of the last whole picture, and their hover text.
@@ -97,8 +112,9 @@ impl App {
 
     fn status_of_cracks(&self, ui: &mut egui::Ui) {
         const WIDTH: f32 = 150.0;
-        let hover = "The number of edges whose sides differ, and the largest gap on screen.";
-        match self.jobs.measure.cracks() {
+        let hover =
+            "The number of edges whose sides differ in a position, and the widest gap as the camera of LOD sees it.";
+        match self.results().map(|results| (results.found.cracks.cracked().len(), results.widest_crack())) {
             None => {
                 let chunks = self.document.as_ref().map_or(0, |document| document.scene.tessellator.chunk_count());
                 let text = match self.jobs.measure.fraction(chunks) {
@@ -109,10 +125,9 @@ impl App {
                 };
                 status(ui, WIDTH, text, hover);
             }
-            Some(cracks) if cracks.edges.is_empty() => status(ui, WIDTH, "cracks 0", hover),
-            Some(cracks) => {
-                let (count, px) = (grouped(cracks.edges.len() as u64), short(self.viewport.picture.gap_px(cracks)));
-                let text = RichText::new(format!("cracks {count}, {px} px"));
+            Some((_, None)) => status(ui, WIDTH, "cracks 0", hover),
+            Some((count, Some((_, px)))) => {
+                let text = RichText::new(format!("cracks {}, {} px", grouped(count as u64), short(px)));
                 status(ui, WIDTH, text.color(legible(ui, rgb(CRACK_COLOR))).strong(), hover);
             }
         }

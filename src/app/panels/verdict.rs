@@ -4,6 +4,7 @@
 use egui::{Color32, RichText};
 
 use crate::app::App;
+use crate::app::jobs::measure_job::Results;
 use crate::app::sections::Section;
 use crate::app::text::{counted, grouped, short};
 use crate::app::widgets::{legible, rgb};
@@ -20,6 +21,8 @@ enum Destination {
     /// The overlay of folds, and the patch whose folds have the largest area.
     Folds,
     TJunctions,
+    /// The edge with the most points whose normals differ.
+    ShadingSeams,
     /// The edge whose sides were given the most different factors.
     GivenFactors,
     Sizes,
@@ -68,6 +71,7 @@ impl App {
             Some(self.leaks_line()),
             Some(self.folds_line()),
             Some(self.junctions_line()),
+            self.seams_line(visuals.warn_fg_color),
             self.given_line(visuals.warn_fg_color),
             Some(self.sizes_line(visuals.text_color())),
             Some(self.limit_line(visuals.warn_fg_color)),
@@ -89,27 +93,29 @@ impl App {
     }
 
     fn cracks_line(&self) -> Line {
-        let hover = "Edges whose sides put a point at different positions. A click shows them and goes to the widest gap. LOD \
-                     follows the camera, so that another edge may be the widest from there, unless LOD is frozen.";
-        match self.jobs.measure.cracks() {
-            None => self.unknown("Cracks", "Cracks are measured while the picture rests.", Destination::Cracks),
-            Some(cracks) if cracks.edges.is_empty() => {
-                Line::dim("No cracks", "No edge of what is drawn has sides that differ in a bit.", Destination::Cracks)
-            }
-            Some(cracks) => {
-                let px = short(self.viewport.picture.gap_px(cracks));
-                let edges = counted(cracks.edges.len() as u64, "cracked edge");
-                Line::bad(format!("{edges}, widest {px} px"), rgb(CRACK_COLOR), hover, Destination::Cracks)
-            }
-        }
+        let hover = "Edges whose sides put a point at different positions, and the widest gap in px as the camera of LOD sees it. A \
+                     click shows it and freezes LOD.";
+        let Some(results) = self.results() else {
+            return self.unknown("Cracks", "Cracks are measured while the picture rests.", Destination::Cracks);
+        };
+        let Some((_, px)) = results.widest_crack() else {
+            return Line::dim(
+                "No cracks",
+                "Every shared edge of what is drawn matches bit for bit.",
+                Destination::Cracks,
+            );
+        };
+        let edges = counted(results.found.cracks.cracked().len() as u64, "cracked edge");
+        let text = format!("{edges}, widest {} px", short(px));
+        Line::bad(text, rgb(CRACK_COLOR), hover, Destination::Cracks)
     }
 
     fn leaks_line(&self) -> Line {
         let hover = "Pixels of this view through which one can see into the closed mesh. A click goes to the cracked edge at the \
                      largest group of them.";
-        let waits = self.jobs.measure.found().is_none();
+        let waits = self.results().is_none();
         let junctions = self.document.as_ref().and_then(|document| document.checks.t_junctions());
-        let has_cracks = self.jobs.measure.cracks().is_none_or(|cracks| !cracks.edges.is_empty());
+        let has_cracks = self.results().is_none_or(|results| results.widest_crack().is_some());
         let is_whole = !has_cracks && junctions.is_some_and(|junctions| junctions.is_empty());
         if !waits && !self.may_leak() && is_whole {
             return Line::dim("No leaks in this view", "No edge is cracked.", Destination::Leaks);
@@ -131,9 +137,9 @@ impl App {
     }
 
     fn folds_line(&self) -> Line {
-        let hover = "Triangles that face away from the side that their patch faces. A click shows them and goes to the \
-                     largest. LOD follows the camera, so that their number may be another one there, unless LOD is frozen.";
-        match self.jobs.measure.found().map(|found| found.folds) {
+        let hover =
+            "Triangles that face away from the side that their patch faces. A click shows the largest and freezes LOD.";
+        match self.results().map(|results| results.found.folds) {
             None => self.unknown("Folds", "Folds are counted while the picture rests.", Destination::Folds),
             Some(0) => Line::dim("No folds", hover, Destination::Folds),
             Some(folds) => Line::bad(counted(folds, "fold"), rgb(FOLD_COLOR), hover, Destination::Folds),
@@ -154,6 +160,13 @@ impl App {
         }
     }
 
+    fn seams_line(&self, color: Color32) -> Option<Line> {
+        let seams = self.results()?.found.cracks.shading_seams().count() as u64;
+        let hover = "Edges across which shading normals differ, although positions agree and so do the mesh's normals: light breaks \
+                     there, but nothing is open. A click goes to the one with the most such points.";
+        (seams > 0).then(|| Line::bad(counted(seams, "shading seam"), color, hover, Destination::ShadingSeams))
+    }
+
     fn given_line(&self, color: Color32) -> Option<Line> {
         let agreement = self.agreement()?;
         let hover = "Edges whose sides have different factors in the file or from the shader that is open. A click goes to the one where they \
@@ -166,7 +179,7 @@ impl App {
     fn sizes_line(&self, color: Color32) -> Line {
         let hover = "Triangles in view that are smaller than half of a square with sides of 3 px: a GPU shades up to four times \
                      as many px for them as they cover. A click colours triangles by their size.";
-        let Some(sizes) = self.sizes_shown() else {
+        let Some(sizes) = self.results().map(|results| &results.sizes) else {
             return self.unknown("Triangles below 3 px", hover, Destination::Sizes);
         };
         let percent = 100.0 * sizes.small as f64 / sizes.in_view.max(1) as f64;
@@ -180,7 +193,7 @@ impl App {
     fn limit_line(&self, color: Color32) -> Line {
         let hover = "Patches with a factor of 63 or 64, the most there is. LOD by error may miss its tolerance there. A click \
                      colours the surface by factors.";
-        match self.jobs.measure.found().map(|found| found.patches_at_limit) {
+        match self.results().map(|results| results.found.patches_at_limit) {
             None => self.unknown("Patches at the maximum factor", hover, Destination::Factors),
             Some(0) => Line::dim("No patch at the maximum factor", hover, Destination::Factors),
             Some(patches) => {
@@ -204,7 +217,7 @@ impl App {
     pub(in crate::app) fn go_to_widest_crack(&mut self) {
         self.settings.overlays.cracks = true;
         self.panels.open.set(Section::Cracks, true);
-        let widest = self.jobs.measure.cracks().and_then(|cracks| cracks.edges.first()).map(|crack| crack.edge);
+        let widest = self.results().and_then(Results::widest_crack).map(|(crack, _)| crack.edge);
         widest.into_iter().for_each(|edge| self.select_edge(edge));
     }
 
@@ -220,15 +233,21 @@ impl App {
             Destination::Folds => {
                 overlays.folds = true;
                 self.panels.open.set(Section::Cracks, true);
-                let worst = self.jobs.measure.found().and_then(|found| found.folded.first()).copied();
+                let worst = self.results().and_then(|results| results.found.folded.first()).copied();
                 worst.into_iter().for_each(|folded| self.show_fold(&folded));
             }
             Destination::TJunctions => {
                 overlays.t_junctions = true;
                 self.panels.open.set(Section::Cracks, true);
                 let junctions = self.document.as_ref().and_then(|document| document.checks.t_junctions());
-                let first = junctions.and_then(|junctions| junctions.first()).map(|junction| junction.edge);
-                first.into_iter().for_each(|edge| self.select_edge(edge));
+                let first = junctions.and_then(|junctions| junctions.first()).copied();
+                first.into_iter().for_each(|junction| self.show_junction(&junction));
+            }
+            Destination::ShadingSeams => {
+                let seams = self.results().map(|results| results.found.cracks.shading_seams());
+                let worst =
+                    seams.and_then(|seams| seams.max_by_key(|seam| seam.different_normals)).map(|seam| seam.edge);
+                worst.into_iter().for_each(|edge| self.select_edge(edge));
             }
             Destination::GivenFactors => {
                 let section = if self.uses_lod_shader() { Section::LodShader } else { Section::Factors };

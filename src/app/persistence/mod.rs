@@ -263,7 +263,7 @@ impl App {
             Placement { up, unit }
         });
         let placement = placement.unwrap_or_default();
-        let settings = self.settings_without_shaders();
+        let settings = self.settings_without_files();
         self.persistence.take(context, &settings, self.panels.open, files, placement, seen);
         let failed = self.persistence.write_on(context);
         self.dialogs.error = self.dialogs.error.take().or(failed);

@@ -13,8 +13,6 @@ const DEGREES_PER_KEY: f32 = 7.5;
 const POINTS_PER_KEY: f32 = 40.0;
 /// The factor by which a press of a key changes the distance to the mesh.
 const CLOSER: f32 = 0.8;
-/// Where the divider goes if it would cover the middle of the view, as a part of the view's width.
-const ASIDE: f32 = 0.2;
 
 /// A camera of the file that is looked through.
 #[derive(Clone, Copy, Debug)]
@@ -91,9 +89,26 @@ impl App {
         }
     }
 
-    /// Moves the divider of a split to the left, so that the middle of the view shows the tessellation.
-    pub(in crate::app) fn clear_middle(&mut self) {
-        self.settings.split = self.settings.split.map(|split| split.min(ASIDE));
+    /// Whether nothing of the mesh is to be seen in the picture, as far as that is measured.
+    pub(in crate::app) fn shows_nothing(&self) -> bool {
+        let sizes = self.results().filter(|_| self.jobs.measure.found().is_some()).map(|results| &results.sizes);
+        sizes.is_some_and(|sizes| Some(sizes.view) == self.viewport.picture.seen_from() && sizes.show_nothing())
+    }
+
+    /// Frames the mesh for a view of its own, also if LOD was frozen where it emits nothing.
+    pub(in crate::app) fn frame_anew(&mut self) {
+        self.viewport.frozen = None;
+        self.frame();
+    }
+
+    /// Frames a mesh that was opened, or loaded again, with a camera that sees nothing of it.
+    pub(in crate::app) fn frame_unseen(&mut self) {
+        if self.viewport.opened == Some(self.viewport.camera) && self.shows_nothing() {
+            self.frame_anew();
+        }
+        if self.jobs.measure.found().is_some() {
+            self.viewport.opened = None;
+        }
     }
 
     /// Whether the camera has its target and distance of the last [`Self::frame`]. It may have turned.

@@ -3,9 +3,11 @@
 use glam::Vec2;
 
 use crate::app::App;
+use crate::app::jobs::measure_job::Seen;
 use crate::mesh::Bounds;
 use crate::render::{Camera, LineSegment, lod_camera_lines};
-use crate::tessellate::LodView;
+use crate::settings::Settings;
+use crate::tessellate::{Clip, Lod, LodView};
 
 /// A camera as it was when LOD was frozen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,13 +29,32 @@ impl App {
     }
 
     /// Freezes LOD and clipping as they are for the camera of the picture that is shown.
-    pub(in crate::app) fn freeze(&mut self) {
+    fn freeze(&mut self) {
         let Some((document, (camera, viewport))) = self.document.as_ref().zip(self.viewport.picture.shown_camera())
         else {
             return;
         };
         let view = camera.lod_view(viewport, &document.scene.bounds);
         self.viewport.frozen = Some(FrozenCamera { camera, viewport, view });
+    }
+
+    /// Freezes LOD and clipping, if they follow the camera, as they were where what the panels show was measured: the numbers stay
+    /// true wherever the camera goes.
+    pub(in crate::app) fn keep_measured(&mut self) {
+        let Settings { tessellation, .. } = &self.settings;
+        let follows = self.uses_lod_shader()
+            || tessellation.used_lod() != Lod::Uniform
+            || tessellation.clip != Clip::Off
+            || tessellation.cull_back_faces;
+        if self.viewport.frozen.is_some() || !follows {
+            return;
+        }
+        match self.results().map(|results| results.seen) {
+            Some(Seen { camera, view, inputs }) => {
+                self.viewport.frozen = Some(FrozenCamera { camera, viewport: view.viewport, view: inputs.view });
+            }
+            None => self.freeze(),
+        }
     }
 
     /// Moves the camera to where the frozen one is.

@@ -6,13 +6,12 @@ use crate::app::App;
 use crate::app::jobs::background_job::BackgroundJob;
 use crate::app::jobs::deviation_job::DeviationJob;
 use crate::app::jobs::document::arena_bytes;
-use crate::app::jobs::measure_job::{MeasureJob, Trouble};
+use crate::app::jobs::measure_job::{MeasureJob, Results, Seen, Trouble};
 use crate::app::jobs::own_shader_job::OpenShader;
 use crate::engine::Engine;
 use crate::gpu::GpuError;
 use crate::render::Scene;
 use crate::settings::{Choice, SplitSide};
-use crate::view::ScreenView;
 
 /// Making a scene for longer than this is shown in the window.
 const NOTICED: Duration = Duration::from_millis(300);
@@ -98,7 +97,7 @@ impl App {
     }
 
     /// Measures the left half's cracks and the points of its edges while they are shown.
-    pub(in crate::app) fn measure_left(&mut self, view: ScreenView) -> Result<(), Trouble> {
+    pub(in crate::app) fn measure_left(&mut self, seen: &Seen) -> Result<(), Trouble> {
         let is_selected = self.viewport.selected_edge.is_some() || self.selected_triangle().is_some();
         let is_wanted = self.settings.half(SplitSide::Left).is_some() && (self.settings.overlays.cracks || is_selected);
         let Some(document) = self.document.as_mut() else { return Ok(()) };
@@ -109,8 +108,15 @@ impl App {
             }
             return Ok(());
         };
-        self.viewport.left.measuring.go_on(&self.engine.gpu, scene, document.generation, view, false)?;
+        self.viewport.left.measuring.go_on(&self.engine.gpu, scene, document.generation, seen)?;
         Ok(())
+    }
+
+    /// What was measured last. The panels show all of it together: while another picture is measured, that of the picture before. None
+    /// while a clip plays, and if the picture isn't drawn: these aren't measured.
+    pub(in crate::app) fn results(&self) -> Option<&Results> {
+        let is_measured = !self.is_playing() && self.viewport.picture.cancelled.is_none();
+        self.jobs.measure.last().filter(|_| is_measured)
     }
 
     /// The measurements of a half.

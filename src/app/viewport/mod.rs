@@ -10,6 +10,7 @@ pub(super) mod pace;
 pub(super) mod panel;
 mod patch_labels;
 pub(super) mod picture;
+mod place;
 pub(super) mod playback;
 pub(super) mod preview;
 mod preview_pace;
@@ -19,7 +20,6 @@ pub(super) mod warm_up;
 
 use crate::engine::Engine;
 use crate::render::Camera;
-use crate::tessellate::Surface;
 
 use camera::FollowedCamera;
 use frozen_camera::FrozenCamera;
@@ -27,6 +27,7 @@ use highlight::Highlight;
 use left_half::LeftHalf;
 use pace::Pace;
 use picture::Picture;
+use place::Showing;
 use playback::Playback;
 use preview::Preview;
 use ruler::Ruler;
@@ -40,6 +41,8 @@ pub(super) struct Viewport {
     pub camera: Camera,
     /// The camera as it was when it last framed the whole mesh.
     pub framed: Option<Camera>,
+    /// The camera with which a mesh was opened, until its first picture is measured.
+    pub opened: Option<Camera>,
     /// The camera of the file that is looked through, until the camera is moved otherwise.
     pub through: Option<FollowedCamera>,
     /// Views that are kept with the file.
@@ -59,13 +62,12 @@ pub(super) struct Viewport {
     /// What the lines over the mesh were last made from.
     pub highlight: Option<Highlight>,
     pub selection: Selection,
+    /// The place that is about to be shown.
+    pub showing: Option<Showing>,
     /// Measures distances between places that are clicked on, while it is in use.
     pub ruler: Option<Ruler>,
     /// The selected edge: an index into the edges of the topology that is shown.
     pub selected_edge: Option<u32>,
-    /// The edges of the list of the worst ones in their order, while the pointer is over it; and the document and surface that have
-    /// them.
-    pub held_edges: Option<((u64, Surface), Vec<u32>)>,
 }
 
 impl Viewport {
@@ -74,6 +76,7 @@ impl Viewport {
             rect: egui::Rect::NOTHING,
             camera: Camera::framing(&Default::default(), glam::Vec2::ONE),
             framed: None,
+            opened: None,
             through: None,
             bookmarks: Vec::new(),
             frozen: None,
@@ -87,9 +90,9 @@ impl Viewport {
             left: LeftHalf::default(),
             highlight: None,
             selection: Selection::default(),
+            showing: None,
             ruler: None,
             selected_edge: None,
-            held_edges: None,
         }
     }
 }

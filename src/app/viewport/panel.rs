@@ -9,15 +9,15 @@ use super::axis_gizmo::axes_place;
 use super::legend::legend;
 use super::picture::Wanted;
 use crate::app::App;
-use crate::app::jobs::measure_job::Trouble;
+use crate::app::jobs::measure_job::{Seen, Trouble};
 use crate::app::text::counted;
 use crate::app::widgets::rgb;
-use crate::commands::{Action, key_name};
+use crate::commands::{Action, CameraAction, key_name, with_key};
 use crate::engine::SilhouetteView;
 use crate::gpu::GpuError;
 use crate::load::Source;
 use crate::render::{Ground, Scene};
-use crate::settings::{Colors, Settings, SplitSide};
+use crate::settings::{Settings, SplitSide};
 use crate::view::ScreenView;
 
 /// Degrees that the camera turns for a point of dragging.
@@ -129,7 +129,9 @@ impl App {
         self.viewport.picture.outdated = !shown && self.viewport.picture.cancelled.is_none();
         if shown {
             self.measure_shown(context, &wanted, size)?;
+            self.frame_unseen();
         }
+        self.go_on_showing(shown)?;
         self.deviate(&wanted.inputs)?;
         if let Err(problem) = self.engine.gpu.check() {
             self.give_up_measuring();
@@ -182,10 +184,9 @@ impl App {
         let view = ScreenView { clip_from_object: wanted.clip_from_object, viewport: wanted.viewport };
         let seen = wanted.camera.lod_view(wanted.viewport, &document.scene.bounds);
         let silhouette = SilhouetteView { size, seen, lod: wanted.inputs.view };
-        // With LOD that is frozen, the same triangles are seen from elsewhere.
-        let follows = self.settings.overlays.colors == Colors::TriangleSize || self.viewport.frozen.is_some();
-        self.jobs.measure.go_on(&self.engine.gpu, &mut document.scene, document.generation, view, follows)?;
-        self.measure_left(view)?;
+        let measured = Seen { camera: wanted.camera, view, inputs: wanted.inputs };
+        self.jobs.measure.go_on(&self.engine.gpu, &mut document.scene, document.generation, &measured)?;
+        self.measure_left(&measured)?;
         self.count_leaks(context, view)?;
         self.compare_outlines(context, &wanted.settings.tessellation, &silhouette, view)?;
         Ok(())
@@ -360,7 +361,7 @@ impl App {
 
     /// Whether there is a box with the progress of something, at the lower border of the picture.
     fn shows_progress(&self) -> bool {
-        self.under_way().is_some() || self.viewport.picture.cancelled.is_some()
+        self.under_way().is_some() || self.viewport.picture.cancelled.is_some() || self.shows_nothing()
     }
 
     /// Notes about what is under way: the progress of loading, writing and drawing.
@@ -383,6 +384,12 @@ impl App {
             if progress(ui, rect, &format!("Not drawn: {}", self.triangles()), None, ("Draw", hover)) {
                 self.viewport.picture.cancelled = None;
                 ui.ctx().request_repaint();
+            }
+        } else if self.shows_nothing() {
+            let hover =
+                with_key("Moves the camera so that it sees all of the mesh.", &Action::Camera(CameraAction::Frame));
+            if progress(ui, rect, "Nothing of the mesh is in view.", None, ("Frame the mesh", &hover)) {
+                self.frame_anew();
             }
         }
     }

@@ -10,7 +10,7 @@ use crate::app::Document;
 use crate::app::painting::{Painting, ShownPicture};
 use crate::engine::Engine;
 use crate::gpu::{GpuError, PassTime, Recorder, Timing, chunks_an_arena, take_times};
-use crate::measure::{CrackedEdge, Cracks};
+use crate::measure::CrackedEdge;
 use crate::mesh::Moment;
 use crate::render::{Camera, Pixel, Renderer, Scene, Target};
 use crate::settings::{Colors, Settings, SplitSide};
@@ -174,12 +174,7 @@ impl Picture {
         self.drawn.as_ref().map(|drawn| (drawn.camera, drawn.viewport))
     }
 
-    /// The largest gap of these cracks in px, in the view of the last picture.
-    pub(crate) fn gap_px(&self, cracks: &Cracks) -> f64 {
-        self.drawn.as_ref().map_or(0.0, |drawn| cracks.max_gap_px(drawn.clip_from_object, drawn.viewport))
-    }
-
-    /// The gap of one edge in px, in the view of the last picture.
+    /// The gap of an edge in px, in the view of the last picture.
     pub(crate) fn gap_of_edge_px(&self, edge: &CrackedEdge) -> f64 {
         self.drawn.as_ref().map_or(0.0, |drawn| edge.gap_px(drawn.clip_from_object, drawn.viewport))
     }

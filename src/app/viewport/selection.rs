@@ -4,12 +4,13 @@ use egui::Response;
 use glam::Vec3;
 
 use crate::app::App;
+use crate::gates::Spot;
 use crate::gpu::GpuError;
 use crate::measure::patch_edges;
 use crate::mesh::Topology;
 use crate::render::{LineSegment, Picked, PickedTriangle, Picking, Pixel, patch_lines};
 use crate::settings::SplitSide;
-use crate::tessellate::Convention;
+use crate::tessellate::{Convention, domain_side};
 
 /// The selected triangle, and a click that is still being answered. The selected edge is [`App::selected_edge`].
 #[derive(Default)]
@@ -157,10 +158,12 @@ impl App {
         self.viewport.selection = Selection { triangle: Some(patch.triangle), hit, ..Selection::default() };
     }
 
-    /// Turns the camera so that the selected patch is in the middle, seen from the side that it faces.
+    /// Shows the selected patch.
     pub(in crate::app) fn frame_patch(&mut self) {
         let (Some(patch), Some(document)) = (self.selected_patch(), &self.document) else { return };
-        self.viewport.camera.frame_triangle(document.shown().1.patch_positions(patch), &document.scene.bounds);
+        let corners = document.shown().1.patch_positions(patch);
+        let at = corners.iter().map(|corner| corner / 3.0).sum();
+        self.show_place(SplitSide::Right, &Spot::Patch { corners, at }, Some(patch));
     }
 
     pub(in crate::app) fn outlined(&self) -> Outlined {
@@ -177,7 +180,14 @@ impl App {
     pub(in crate::app) fn patch_outline(&self, topology: &Topology, half: SplitSide) -> Vec<LineSegment> {
         let Some(patch) = self.selected_patch() else { return Vec::new() };
         let mut lines = if half == SplitSide::Right { self.hit_lines() } else { Vec::new() };
-        lines.extend(patch_lines(&self.patch_edges(topology, patch, half)));
+        let mut edges = self.patch_edges(topology, patch, half);
+        // Lines along a crack would cover it.
+        let cracked = self.selected_gap(half).map(|crack| crack.edge);
+        let sides = topology.patches[patch as usize].sides.map(|side| topology.sides[side as usize].edge);
+        (0..3)
+            .filter(|&i| Some(sides[domain_side(self.convention(), i) as usize]) == cracked)
+            .for_each(|i| edges[i as usize].clear());
+        lines.extend(patch_lines(&edges));
         lines
     }
 

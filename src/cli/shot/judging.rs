@@ -127,7 +127,7 @@ impl Shot {
     fn standpoint(&mut self, spot: &Spot) -> Result<Camera, GpuError> {
         let viewport = self.target.viewport();
         let standpoints = Standpoints::of(spot, &self.view.camera, viewport, &self.scene.bounds);
-        let Some((at, eyes, near)) = standpoints.lines() else { return Ok(standpoints.clearest(&[])) };
+        let Some((at, eyes, near)) = standpoints.lines(|camera| camera) else { return Ok(standpoints.clearest(&[])) };
         let mut sight = Sight::new(at, eyes, near);
         self.engine.visit(&mut self.scene, &mut [&mut sight])?;
         Ok(standpoints.clearest(sight.clear()))

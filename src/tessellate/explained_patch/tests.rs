@@ -170,3 +170,28 @@ fn heights_take_part() {
         }
     }
 }
+
+#[test]
+fn what_is_drawn_within_the_tolerance_is_never_fewer_than_the_least() {
+    let mut found_more = 0;
+    for partitioning in [Partitioning::Integer, Partitioning::FractionalOdd, Partitioning::Rows] {
+        for (kind, tolerance) in [(Shape::Torus, 0.2), (Shape::CubeSmooth, 0.2)] {
+            let (mesh, topology, inputs) = shape(kind, Tessellation { partitioning, ..Tessellation::default() });
+            let inputs = Inputs { tessellation: Tessellation { tolerance, ..inputs.tessellation }, ..inputs };
+            let searched = own_least_triangles(&mesh, &topology, &inputs);
+            let out = tessellate(&mesh, &topology, &inputs, None);
+            for patch in (0..topology.patches.len() as u32).step_by(5) {
+                let used = out.patch_factors[patch as usize];
+                let explained = explain_patch(&mesh, &topology, &inputs, patch, used);
+                if explained.errors.is_none_or(|errors| errors.largest() > explained.tolerance) {
+                    continue;
+                }
+                let (least, drawn) = (explained.own_least.triangles, triangle_count(used));
+                assert!(least <= drawn, "{kind:?} {partitioning:?}, patch {patch}: {explained:?}, {drawn} are drawn");
+                assert!(least <= searched[patch as usize]);
+                found_more += usize::from(searched[patch as usize] > drawn);
+            }
+        }
+    }
+    assert!(found_more > 0, "the search alone should find more somewhere");
+}

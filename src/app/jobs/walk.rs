@@ -1,0 +1,182 @@
+//! A walk over what a scene emits while the window goes on: chunk after chunk is copied back without waiting, and a thread of its own
+//! visits them.
+
+use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, TrySendError, channel, sync_channel};
+
+use super::background_job::{Stopped, caught, spawn};
+use crate::gpu::{Gpu, GpuError, Readback, Recorder, Timing, vertices_of};
+use crate::measure::{EmittedChunk, Visitor};
+use crate::progress::Progress;
+use crate::render::Scene;
+use crate::tessellate::Vertex;
+
+/// How many parts may wait for the thread: each is as large as the arena.
+const WAITING: usize = 1;
+
+/// A walk that is under way, to a result.
+pub(crate) struct Walk<T> {
+    ended: Receiver<Result<T, Stopped>>,
+    /// None once everything is copied.
+    copying: Option<Copying>,
+    wanted: Progress,
+}
+
+/// How a walk ended: with its result, without one as the device was lost or nobody wanted it, or with a panic.
+type Ended<T> = Result<Option<T>, Stopped>;
+
+/// A readback under way. It goes to the thread in its turn.
+struct Copying {
+    part: Part,
+    next_chunk: usize,
+    parts: SyncSender<Part>,
+}
+
+/// What is copied back.
+enum Part {
+    /// What a walk needs besides what is emitted.
+    First(Readback),
+    /// The output of patches from `first_patch` on: `vertex_bytes` bytes of vertices, then indices.
+    Chunk { first_patch: u32, vertex_bytes: usize, readback: Readback },
+}
+
+/// What the thread receives, in order.
+pub(in crate::app) struct Parts<'a> {
+    received: Receiver<Part>,
+    /// How many chunks there are.
+    chunks: usize,
+    pub wanted: &'a Progress,
+}
+
+impl<T> Drop for Walk<T> {
+    fn drop(&mut self) {
+        // Before the channel closes, which would tell the thread that it has everything.
+        self.wanted.cancel();
+    }
+}
+
+impl<T: Send + 'static> Walk<T> {
+    /// Starts to walk over a scene, whose counts must be known. `visit` runs on the thread; it returns `None` if the parts end too soon.
+    /// It gets `first`, if there is such a readback, before all chunks.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub(in crate::app) fn start(
+        gpu: &Gpu,
+        scene: &mut Scene,
+        first: Option<Readback>,
+        visit: impl FnOnce(&Parts) -> Option<T> + Send + 'static,
+    ) -> Result<Self, GpuError> {
+        let (parts, received) = sync_channel(WAITING);
+        let (sender, ended) = channel();
+        let wanted = Progress::default();
+        let copying = match first {
+            Some(readback) => Some(Copying { part: Part::First(readback), next_chunk: 0, parts }),
+            None => copy_chunk(gpu, scene, 0, parts)?,
+        };
+        let (chunks, still_wanted) = (scene.tessellator.chunk_count(), wanted.clone());
+        spawn(move || {
+            let walk = || visit(&Parts { received, chunks, wanted: &still_wanted });
+            if let Some(result) = caught(walk).transpose() {
+                let _ = sender.send(result);
+            }
+        });
+        Ok(Self { ended, copying, wanted })
+    }
+
+    /// Goes on copying. Returns how the walk ended, once it has.
+    ///
+    /// # Errors
+    /// The device was lost. The walk then ends without a result.
+    pub(in crate::app) fn go_on(&mut self, gpu: &Gpu, scene: &mut Scene) -> Result<Option<Ended<T>>, GpuError> {
+        if let Some(copying) = self.copying.take() {
+            self.copying = copying.go_on(gpu, scene)?;
+        }
+        Ok(match self.ended.try_recv() {
+            Ok(result) => Some(result.map(Some)),
+            Err(TryRecvError::Disconnected) => Some(Ok(None)),
+            Err(TryRecvError::Empty) => None,
+        })
+    }
+}
+
+impl<T> Walk<T> {
+    /// The part of all chunks that has been copied, 0 to 1; none if none are being copied.
+    pub(in crate::app) fn copied(&self, chunks: usize) -> Option<f32> {
+        self.copying.as_ref().map(|copying| copying.next_chunk as f32 / chunks.max(1) as f32)
+    }
+
+    /// The part of its work that the thread says it has done, 0 to 1.
+    pub(in crate::app) fn fraction(&self) -> f32 {
+        self.wanted.fraction()
+    }
+
+    /// Stops copying, so that the walk ends without a result.
+    pub(in crate::app) fn stop_copying(&mut self) {
+        self.copying = None;
+    }
+}
+
+impl Copying {
+    /// Sends the part to the thread once it has been copied, and starts to copy the next chunk.
+    fn go_on(mut self, gpu: &Gpu, scene: &mut Scene) -> Result<Option<Self>, GpuError> {
+        let (Part::First(readback) | Part::Chunk { readback, .. }) = &mut self.part;
+        if !readback.poll()? {
+            return Ok(Some(self));
+        }
+        let Self { part, next_chunk, parts } = self;
+        match parts.try_send(part) {
+            Err(TrySendError::Full(part)) => Ok(Some(Self { part, next_chunk, parts })),
+            // The thread ends early only if nobody wants its result. Dropping the sender tells it the end.
+            _ => copy_chunk(gpu, scene, next_chunk, parts),
+        }
+    }
+}
+
+/// Starts to copy a chunk; none if there are no more.
+fn copy_chunk(
+    gpu: &Gpu,
+    scene: &mut Scene,
+    index: usize,
+    parts: SyncSender<Part>,
+) -> Result<Option<Copying>, GpuError> {
+    if index >= scene.tessellator.chunk_count() {
+        return Ok(None);
+    }
+    let mut timing = Timing::Off;
+    let mut recorder = Recorder::new(gpu, &mut timing);
+    scene.tessellator.emit(&mut recorder, index)?;
+    recorder.submit();
+    let chunk = scene.tessellator.chunk(index);
+    let vertex_bytes = u64::from(chunk.chunk.vertex_count) * size_of::<Vertex>() as u64;
+    let index_bytes = u64::from(chunk.chunk.triangle_count) * size_of::<[u32; 3]>() as u64;
+    let [first, second] = chunk.vertices();
+    let readback = Readback::start(gpu, [first, second, (chunk.indices, 0..index_bytes)]);
+    let first_patch = chunk.chunk.first_patch;
+    let part = Part::Chunk { first_patch, vertex_bytes: vertex_bytes as usize, readback };
+    Ok(Some(Copying { part, next_chunk: index + 1, parts }))
+}
+
+impl Parts<'_> {
+    /// The bytes of the walk's first readback. None if nobody wants the walk any more, or the device was lost.
+    pub(in crate::app) fn first(&self) -> Option<Vec<u8>> {
+        let Ok(Part::First(readback)) = self.received.recv() else { return None };
+        readback.bytes().ok()
+    }
+
+    /// Gives all chunks to every visitor, as they come. Returns none if nobody wants the walk any more, or the device was lost.
+    pub(in crate::app) fn visit(&self, visitors: &mut [&mut dyn Visitor]) -> Option<()> {
+        let mut count = 0;
+        for part in &self.received {
+            self.wanted.check().ok()?;
+            let Part::Chunk { first_patch, vertex_bytes, readback } = part else { continue };
+            let bytes = readback.bytes().ok()?;
+            let (vertices, indices) = bytes.split_at(vertex_bytes);
+            let (vertices, triangles) = (vertices_of(vertices), bytemuck::pod_collect_to_vec::<u8, [u32; 3]>(indices));
+            let chunk = EmittedChunk { first_patch, vertices: &vertices, triangles: &triangles };
+            visitors.iter_mut().for_each(|visitor| visitor.take(&chunk));
+            count += 1;
+        }
+        self.wanted.check().ok()?;
+        (count == self.chunks).then_some(())
+    }
+}

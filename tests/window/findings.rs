@@ -1,0 +1,231 @@
+//! The findings of the panel on the right: what they count, and the places that they lead to.
+
+use egui::Key;
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use glam::{Vec2, vec2};
+use pnaen::app::App;
+use pnaen::load::Source;
+use pnaen::mesh::Shape;
+use pnaen::render::layout::{CRACK_COLOR, FOLD_COLOR, OUTLINE_COLOR, SIDE_COLORS};
+use pnaen::view::project;
+use tempfile::TempDir;
+
+use crate::window_tests::{choose, click, press, resumed, settle, window};
+
+/// The text of the first button that looks like this.
+pub(super) fn button(harness: &Harness<App>, looks: impl Fn(&str) -> bool) -> String {
+    let mut texts = harness.query_all_by_role(Role::Button).filter_map(|node| node.accesskit_node().label());
+    texts.find(|text| looks(text)).expect("a button")
+}
+
+fn opened(folder: &TempDir, text: &str) -> Harness<'static, App> {
+    let path = folder.path().join("mesh.obj");
+    std::fs::write(&path, text).expect("a writable temporary folder");
+    window(Some(Source::File(path)))
+}
+
+/// A triangle that folds, under a roof that is much larger.
+fn roofed() -> String {
+    let leaning = "v 0 0 0\nv 0.28 0 0.2\nv 1 0 0\nvn 0 1 0\nvn -0.77 0.32 -0.56\nvn 0.84 0.28 0.45\n";
+    let roof = "v -3 0.6 -3\nv -3 0.6 3\nv 4 0.6 3\nv 4 0.6 -3\nvn 0 1 0\n";
+    format!("{leaning}{roof}f 1//1 2//2 3//3\nf 4//4 5//4 6//4\nf 4//4 6//4 7//4\n")
+}
+
+/// How many px of the picture have this colour.
+fn px_of(harness: &Harness<App>, color: [u8; 3]) -> usize {
+    let picture = harness.state().read_picture().expect("a device").expect("a picture");
+    picture.pixels().filter(|pixel| (0..3).all(|c| pixel.0[c].abs_diff(color[c]) < 12)).count()
+}
+
+#[test]
+fn a_click_on_the_folds_shows_one_and_their_number_stays() {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let mut harness = opened(&folder, &roofed());
+    let (finding, totals) = (button(&harness, |text| text.ends_with(" folds")), harness.state().totals());
+    click(&mut harness, &finding);
+    assert!(px_of(&harness, FOLD_COLOR) > 500, "{} px are of a fold", px_of(&harness, FOLD_COLOR));
+    assert_eq!((button(&harness, |text| text.ends_with(" folds")), harness.state().totals()), (finding, totals));
+    harness.get_by_label("LOD camera frozen");
+    let thaw = button(&harness, |text| text.starts_with("LOD is frozen"));
+    click(&mut harness, &thaw);
+    assert!(harness.query_by_label("LOD camera frozen").is_none());
+}
+
+#[test]
+fn a_framed_patch_is_what_is_seen_in_the_middle() {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let mut harness = opened(&folder, &roofed());
+    harness.state_mut().select_triangle(Some(0));
+    settle(&mut harness);
+    let totals = harness.state().totals();
+    click(&mut harness, "Frame");
+    assert_eq!(harness.state().totals(), totals, "LOD is frozen");
+    let place = harness.get_by_role_and_label(Role::Image, "Viewport").rect().center();
+    harness.hover_at(place);
+    harness.drag_at(place);
+    harness.run_steps(1);
+    harness.drop_at(place);
+    settle(&mut harness);
+    assert_eq!(harness.state().selected_triangle(), Some(0), "the roof hides it from its front");
+}
+
+/// Two pairs of triangles with a split edge, which PN tears open. The second is larger and farther away from the front.
+fn torn() -> String {
+    let pair = |x: f32, z: f32, size: f32| {
+        let at = |[a, b, c]: [f32; 3]| format!("v {} {} {}\n", x + size * a, size * b, z + size * c);
+        [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.5, -0.6], [1.0, 0.5, -0.6]].map(at).concat()
+    };
+    let normals = "vn -0.5 -0.3 0.8\nvn 0.5 0.3 0.8\nvn -0.5 0.3 0.8\nvn 0.5 -0.3 0.8\n";
+    let faces = "f 1//1 2//3 3//3\nf 2//2 1//4 4//4\nf 5//1 6//3 7//3\nf 6//2 5//4 8//4\n";
+    pair(-1.5, 6.0, 1.0) + &pair(1.5, -6.0, 1.3) + normals + faces
+}
+
+#[test]
+fn the_worst_crack_is_that_of_the_headline_and_its_gap_is_seen() {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let mut harness = opened(&folder, &torn());
+    choose(&mut harness, "Surface", "PN");
+    press(&mut harness, Key::Num1);
+    let app = harness.state();
+    let bounds = app.loaded().expect("a mesh").mesh.bounds();
+    let size = |harness: &Harness<App>| -> Vec2 {
+        let picture = harness.state().read_picture().expect("a device").expect("a picture");
+        vec2(picture.width() as f32, picture.height() as f32)
+    };
+    let viewport = size(&harness);
+    let clip_from_object = app.camera().clip_from_object(viewport, &bounds);
+    let cracks = app.cracks().expect("measured").cracked().to_vec();
+    let px: Vec<f64> = cracks.iter().map(|crack| crack.gap_px(clip_from_object, viewport)).collect();
+    assert!(cracks.len() == 2 && cracks[0].gap > cracks[1].gap && px[1] > px[0], "{cracks:?} {px:?}");
+    let finding = button(&harness, |text| text.contains("cracked edges, widest"));
+    click(&mut harness, &finding);
+    assert_eq!(harness.state().selected_edge(), Some(cracks[1].edge), "the widest in px");
+    assert_eq!(button(&harness, |text| text.contains("cracked edges, widest")), finding);
+    // The lines of the selection leave the gap free.
+    let picture = harness.state().read_picture().expect("a device").expect("a picture");
+    let clip_from_object = harness.state().camera().clip_from_object(viewport, &bounds);
+    let [a, b] = cracks[1].widest;
+    let middle = project(clip_from_object, viewport, 0.5 * (a + b)).expect("in front of the eye");
+    let gap = cracks[1].gap_px(clip_from_object, viewport);
+    assert!(gap > 15.0 && middle.distance(0.5 * viewport) < 0.25 * viewport.min_element(), "{gap} px wide at {middle}");
+    let pixel = picture.get_pixel(middle.x as u32, middle.y as u32).0;
+    for color in SIDE_COLORS.into_iter().chain([CRACK_COLOR, OUTLINE_COLOR]) {
+        assert!((0..3).any(|c| pixel[c].abs_diff(color[c]) > 12), "{pixel:?} in the gap");
+    }
+}
+
+#[test]
+fn shading_seams_are_no_cracks() {
+    let mut harness = window(Some(Source::Shape(Shape::CubeSmooth)));
+    choose(&mut harness, "Shading", "Surface normals");
+    let cracks = harness.state().cracks().expect("measured");
+    let seams = cracks.edges.iter().filter(|edge| edge.different_normals > 0).count();
+    assert!(seams > 3 && cracks.different_bits == 0, "{seams}");
+    harness.get_by_label("No cracks");
+    harness.get_by_label("cracks 0");
+    let worst = cracks.edges.iter().map(|edge| edge.different_normals).max();
+    let finding = button(&harness, |text| text == format!("{seams} shading seams"));
+    click(&mut harness, &finding);
+    let selected = harness.state().selected_edge();
+    let cracks = harness.state().cracks().expect("measured");
+    let shown = cracks.edges.iter().find(|edge| Some(edge.edge) == selected);
+    assert_eq!(shown.map(|edge| edge.different_normals), worst);
+    assert!(harness.query_by_label("Worst edges").is_none(), "none of them is cracked");
+}
+
+/// The numbers that the status line, the findings and the list of the worst edges show.
+fn numbers(harness: &Harness<App>) -> Vec<String> {
+    let texts = |role| {
+        harness.query_all_by_role(role).filter_map(|node| {
+            let node = node.accesskit_node();
+            node.label().or(node.value())
+        })
+    };
+    let counts =
+        [" triangles", "cracks ", " patches", " vertices", "cracked edge", "split normal", "Folds", "Cracks", "olds"];
+    let all = texts(Role::Label).chain(texts(Role::Button));
+    all.filter(|text| counts.iter().any(|count| text.contains(count))).collect()
+}
+
+#[test]
+fn all_numbers_change_together_once_another_view_is_measured() {
+    let mut harness = window(Some(Source::Shape(Shape::CubeSplit)));
+    choose(&mut harness, "Surface", "PN");
+    harness.get_by_label("Worst edges").scroll_to_me();
+    settle(&mut harness);
+    let before = numbers(&harness);
+    assert!(before.iter().filter(|text| text.contains("split normal")).count() >= 5, "{before:?}");
+    harness.key_press(Key::Num3);
+    let start = std::time::Instant::now();
+    let mut all = vec![before];
+    let mut was_busy = false;
+    loop {
+        harness.step();
+        let now = numbers(&harness);
+        assert!(!now.iter().any(|text| text.contains('…')), "{now:?}");
+        if *all.last().expect("one") != now {
+            all.push(now);
+        }
+        if was_busy && !harness.state().is_busy() {
+            break;
+        }
+        was_busy |= harness.state().is_busy();
+        assert!(start.elapsed() < crate::window_tests::PATIENCE, "the window is still busy");
+    }
+    assert_eq!(all.len(), 2, "those before and those after: {all:#?}");
+}
+
+/// A tetrahedron whose first corner is at this x.
+fn tetrahedron(x: f32, size: f32) -> String {
+    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let line = |[a, b, c]: [f32; 3]| format!("v {} {} {}\n", x + size * a, size * b, size * c);
+    corners.map(line).concat() + "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+}
+
+const NOTHING: &str = "Nothing of the mesh is in view.";
+
+#[test]
+fn a_picture_of_nothing_says_so_and_offers_to_frame_the_mesh() {
+    let mut harness = window(Some(Source::Shape(Shape::CubeSplit)));
+    assert!(harness.query_by_label(NOTHING).is_none());
+    for _ in 0..60 {
+        harness.key_press_modifiers(egui::Modifiers::SHIFT, Key::ArrowRight);
+        harness.step();
+    }
+    settle(&mut harness);
+    harness.get_by_label(NOTHING);
+    click(&mut harness, "Frame the mesh");
+    assert!(harness.query_by_label(NOTHING).is_none());
+    assert!(harness.state().totals().is_some_and(|(_, triangles)| triangles > 0));
+}
+
+#[test]
+fn a_camera_that_sees_nothing_of_a_file_frames_it() {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let path = folder.path().join("moved.obj");
+    let write = |x: f32, size: f32| std::fs::write(&path, tetrahedron(x, size)).expect("a writable temporary folder");
+    let open = || resumed(&folder.path().join("kept"), [1200.0, 800.0], Some(Source::File(path.clone())));
+    let target = |harness: &Harness<App>| harness.state().camera().target.x;
+    write(0.0, 1.0);
+    let mut harness = open();
+    assert!((0.0..1.0).contains(&target(&harness)));
+    // Loaded again, far away, and so small that it is less than a px.
+    for (x, size) in [(100.0, 1.0), (0.0, 1.0), (0.0, 1e-4)] {
+        write(x, size);
+        press(&mut harness, Key::R);
+        assert!((x..x + size).contains(&target(&harness)), "{x}: {}", target(&harness));
+        assert!(harness.query_by_label(NOTHING).is_none());
+    }
+    write(0.0, 1.0);
+    press(&mut harness, Key::F);
+    press(&mut harness, Key::R);
+    press(&mut harness, Key::F);
+    eframe::App::on_exit(harness.state_mut());
+    drop(harness);
+    // Opened anew with the camera of the last time.
+    write(100.0, 1.0);
+    let harness = open();
+    assert!((100.0..101.0).contains(&target(&harness)), "{}", target(&harness));
+}
