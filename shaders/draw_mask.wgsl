@@ -25,7 +25,8 @@ fn mask_samples(place: SurfacePlace) -> u32 {
     var samples = 0u;
     for (var i = 0u; i < 4u; i++) {
         let sampled = alpha + dot(change, SAMPLE_PLACES[i]);
-        samples |= select(0u, 1u << i, sampled >= material.cutoff);
+        // Beyond 0 and 1 there is no alpha: a cutoff of 0 leaves everything.
+        samples |= select(0u, 1u << i, clamp(sampled, 0.0, 1.0) >= material.cutoff);
     }
     return samples;
 }

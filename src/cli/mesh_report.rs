@@ -254,7 +254,7 @@ impl Info {
             writeln!(f, "  and {} more", self.t_junctions_at.len() - SHOWN)?;
         }
         writeln!(f, "repairs       (triangles' corners)")?;
-        writeln!(f, "  made          {normals_made} (had no normal)")?;
+        writeln!(f, "  made          {normals_made} (had no normal: smooth up to the crease angle)")?;
         writeln!(f, "  replaced      {normals_replaced} (normal zero or not finite)")?;
         writeln!(f, "  rescaled      {normals_rescaled} (normal not of length 1)")?;
         writeln!(f, "  denormal      {denormals} (coordinates so small that they are 0 now)")?;

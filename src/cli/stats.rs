@@ -34,6 +34,8 @@ pub(super) struct Stats {
     corners: u64,
     edges: EdgeCounts,
     degenerate: u32,
+    /// Triangles' corners without a normal in the file, which are smooth up to the crease angle.
+    normals_made: u32,
     patches: u64,
     /// Patches that are left out for any reason.
     patches_culled: u32,
@@ -272,6 +274,7 @@ impl Stats {
             corners: mesh.corners.len() as u64,
             edges: topology.edge_counts(),
             degenerate: topology.degenerate,
+            normals_made: loaded.read.repairs.normals_made,
             patches: topology.patches.len() as u64,
             patches_culled: measured.culled.total(),
             patches_out_of_view: measured.culled.out_of_view,

@@ -148,7 +148,8 @@ fn from_materials(
         map_of_px(texture.size, ColorType::Rgba8, &texture.rgba, &progress)
     };
     let maps = known.iter().enumerate().map(of).collect::<Result<_, _>>()?;
-    Ok(Heights::new(mesh, maps, of_material, &progress.part(0.7, 1.0))?)
+    let heights = Heights::new(mesh, maps, of_material, &progress.part(0.7, 1.0))?;
+    Ok(Heights { are_of_colors: true, ..heights })
 }
 
 #[cfg(test)]

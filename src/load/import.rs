@@ -110,10 +110,15 @@ impl Import {
         format!("smooth within {} degrees", self.crease_angle)
     }
 
-    /// The warning about `count` parts of a file that lack normals, with what these are. Where all normals are made, none is missed.
+    /// The warning about `count` parts of a file that lack normals, with what these are and what becomes of them. Where all normals are
+    /// made, none is missed.
     pub(super) fn lacking_normals(&self, count: usize, what: &str) -> (usize, String) {
         let count = if self.makes_normals() { 0 } else { count };
-        (count, format!("{what}, which got ones that are {}", self.smoothness()))
+        let shown = match self.crease_angle {
+            0.0 => "flat".to_owned(),
+            angle => format!("smoothed below {angle} degrees"),
+        };
+        (count, format!("{what}, which are {shown}"))
     }
 
     /// Turns and scales a mesh as the axis and the unit say that were chosen, so that Y points up and the unit is the metre.

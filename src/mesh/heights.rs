@@ -40,6 +40,8 @@ pub struct Heights {
     pub(crate) maps: Vec<HeightMap>,
     /// For each of the mesh's materials, its map; none if the material isn't displaced.
     pub(crate) of_material: Vec<Option<u32>>,
+    /// Whether each map is the brightness of its material's base colour.
+    pub(crate) are_of_colors: bool,
     /// The least and the greatest height in all maps.
     pub(crate) range: [f32; 2],
     /// The mesh's bounding radius at rest, in object units. The scale of displacement is a multiple of it.
@@ -101,7 +103,15 @@ impl Heights {
         let part = |index: usize| index as f32 / maps.len() as f32;
         let lost = |(index, map): (usize, &HeightMap)| map.detail(&progress.part(part(index), part(index + 1)));
         let detail = maps.iter().enumerate().map(lost).collect::<Result<_, _>>()?;
-        Ok(Self { maps, of_material, range, radius: mesh.bounds().radius(), angles: angles(mesh), detail })
+        Ok(Self {
+            maps,
+            of_material,
+            are_of_colors: false,
+            range,
+            radius: mesh.bounds().radius(),
+            angles: angles(mesh),
+            detail,
+        })
     }
 
     /// Returns the images.

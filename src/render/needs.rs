@@ -56,6 +56,9 @@ impl Needs {
             needs.transmission |= look.transmits();
             needs.sheen |= look.has_sheen();
         }
+        if !settings.draws_normal_map(mesh, material) {
+            needs.maps &= !(1 << Slot::Normal as u32);
+        }
         needs
     }
 

@@ -6,6 +6,7 @@ use super::look::Look;
 use super::needs::{Cut, Needs, PictureKind};
 use crate::mesh::{Material, Mesh};
 use crate::settings::{Colors, NormalsAt, Overlays, Settings};
+use crate::tessellate::{Displacement, Tessellation};
 
 /// The pipeline for emitted triangles of a material, in such pictures.
 pub(super) fn surface_draw(
@@ -50,6 +51,11 @@ pub(super) fn own_faces(settings: &Settings, material: &Material) -> Option<Face
     has_fronts_only.then_some(Faces::Fronts)
 }
 
+/// The settings of the mesh without tessellation.
+pub(super) fn undisplaced(settings: &Settings) -> Settings {
+    settings.with(Tessellation { displacement: Displacement::Off, ..settings.tessellation })
+}
+
 /// How pipelines get emitted triangles.
 pub(super) fn emitted_triangles(settings: &Settings) -> Triangles {
     // These overlays need data of whole triangles.
@@ -71,7 +77,7 @@ pub(super) fn source_draw(settings: &Settings, mesh: &Mesh, material: &Material,
     match Look::of(settings.overlays.colors) {
         _ if settings.shows_materials() => {
             let faces = own_faces(settings, material).unwrap_or(Faces::Both);
-            Draw::LitSource(faces, Needs::of(mesh, material, settings, kind).own(material, kind))
+            Draw::LitSource(faces, Needs::of(mesh, material, &undisplaced(settings), kind).own(material, kind))
         }
         Some(look) => Draw::LookSource(look),
         None => Draw::Source,

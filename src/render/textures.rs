@@ -96,6 +96,16 @@ impl Samplers {
 /// smaller than its pixels, and the filter for that wouldn't be used (Vulkan specification, VkSamplerCreateInfo).
 const LEVEL_0_ALONE: f32 = 0.25;
 
+/// How many times as long as wide the area of an image may be that a pixel shows without being blurred: floors seen from the side need it.
+const ANISOTROPY: u16 = 16;
+
+/// The anisotropy of a sampler. WebGPU has it only where all texels are blended. Mesa's software driver blurs images that are seen from the
+/// front, too, and shows wrong texels along the sides of triangles.
+fn anisotropy(sampling: Sampling, is_software: bool) -> u16 {
+    let is_linear = sampling.magnify_linear && sampling.minify_linear && sampling.mip_linear == Some(true);
+    if is_linear && !is_software { ANISOTROPY } else { 1 }
+}
+
 fn sampler(gpu: &Gpu, sampling: Sampling) -> wgpu::Sampler {
     let wrap = sampling.wrap.map(|wrap| match wrap {
         Wrap::Repeat => wgpu::AddressMode::Repeat,
@@ -112,6 +122,7 @@ fn sampler(gpu: &Gpu, sampling: Sampling) -> wgpu::Sampler {
         min_filter: filter(sampling.minify_linear),
         mipmap_filter: if blends_levels { wgpu::MipmapFilterMode::Linear } else { wgpu::MipmapFilterMode::Nearest },
         lod_max_clamp: if sampling.mip_linear.is_some() { 32.0 } else { LEVEL_0_ALONE },
+        anisotropy_clamp: anisotropy(sampling, gpu.is_software()),
         ..Default::default()
     })
 }
@@ -179,4 +190,22 @@ pub(super) fn first_level(gpu: &Gpu, texture: &Texture, usage: wgpu::TextureUsag
     let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * width), rows_per_image: None };
     gpu.queue.write_texture(on_device.as_image_copy(), &texture.rgba, layout, size);
     on_device
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn images_that_are_blended_in_all_ways_are_filtered_anisotropically() {
+        let linear = Sampling::default();
+        assert_eq!((anisotropy(linear, false), anisotropy(linear, true)), (ANISOTROPY, 1));
+        let others = [
+            Sampling { magnify_linear: false, ..linear },
+            Sampling { minify_linear: false, ..linear },
+            Sampling { mip_linear: Some(false), ..linear },
+            Sampling { mip_linear: None, ..linear },
+        ];
+        assert!(others.into_iter().all(|sampling| anisotropy(sampling, false) == 1));
+    }
 }

@@ -65,6 +65,37 @@ impl Choice for FileLights {
     }
 }
 
+/// Whether normal maps tilt the normals of a surface that heights displace, which has the slopes of its relief already.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum NormalMaps {
+    /// Unless the heights come from the same material.
+    #[default]
+    Auto,
+    On,
+    Off,
+}
+
+impl Choice for NormalMaps {
+    const ALL: &'static [Self] = &every![NormalMaps: Auto, On, Off];
+
+    fn description(self) -> Description {
+        match self {
+            Self::Auto => Description::new(
+                "auto",
+                "As heights say",
+                "Left out where the heights come from the material's own image, which mostly has the relief of its normal map; \
+                 drawn where they come from a height image.",
+            ),
+            Self::On => Description::new(
+                "on",
+                "On",
+                "Drawn over the displaced surface: for finer relief than the heights have.",
+            ),
+            Self::Off => Description::new("off", "Off", "Left out while the surface is displaced."),
+        }
+    }
+}
+
 /// How light that is brighter than a picture can show becomes colours of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ToneCurve {

@@ -16,14 +16,14 @@ mod value;
 use glam::{Mat4, Vec2};
 
 use crate::load::Import;
-use crate::mesh::Mesh;
+use crate::mesh::{Heights, Material, Mesh};
 use crate::names::every;
 use crate::tessellate::{
     Clip, Displacement, Inputs, Lod, LodView, Partitioning, Surface, Tessellation, displacement_reach,
 };
 
 pub(crate) use choice::{Choice, Description, descriptions};
-pub(crate) use light::{FileLights, Lighting, ToneCurve};
+pub(crate) use light::{FileLights, Lighting, NormalMaps, ToneCurve};
 pub(crate) use matcap::Matcap;
 pub(crate) use overlays::{Colors, Control, Overlay, Overlays};
 pub(crate) use value::{Access, Declaration, Kind, Range, Value};
@@ -42,6 +42,8 @@ pub struct Settings {
     pub tessellation: Tessellation,
     /// Where shading normals are evaluated; a displaced surface has them at vertices. See [`Self::used_normals_at`].
     pub normals_at: NormalsAt,
+    /// Whether normal maps tilt the normals of a displaced surface. See [`Self::draws_normal_map`].
+    pub normal_maps: NormalMaps,
     pub overlays: Overlays,
     /// The light that the mesh's own materials are seen in.
     pub lighting: Lighting,
@@ -78,6 +80,7 @@ impl Default for Settings {
         Self {
             tessellation: Tessellation::default(),
             normals_at: NormalsAt::Vertices,
+            normal_maps: NormalMaps::default(),
             overlays: Overlays::default(),
             lighting: Lighting::default(),
             lights: FileLights::default(),
@@ -206,8 +209,22 @@ impl Settings {
 
     /// Where a mesh's shading normals are evaluated. Those of a displaced surface follow its triangles, so they are at vertices.
     pub fn used_normals_at(&self, mesh: &Mesh) -> NormalsAt {
-        let is_displaced = mesh.heights.is_some() && self.tessellation.displacement != Displacement::Off;
-        if is_displaced { NormalsAt::Vertices } else { self.normals_at }
+        if self.displacing(mesh).is_some() { NormalsAt::Vertices } else { self.normals_at }
+    }
+
+    /// Whether the normal map of one of a mesh's materials is drawn. Where the surface is displaced by the same relief, its slopes would
+    /// count twice.
+    pub(crate) fn draws_normal_map(&self, mesh: &Mesh, material: &Material) -> bool {
+        self.displacing(mesh).is_none_or(|heights| match self.normal_maps {
+            NormalMaps::Auto => !heights.are_of_colors || material.texture.is_none(),
+            NormalMaps::On => true,
+            NormalMaps::Off => false,
+        })
+    }
+
+    /// The heights that displace a mesh.
+    fn displacing<'a>(&self, mesh: &'a Mesh) -> Option<&'a Heights> {
+        mesh.heights.as_deref().filter(|_| self.tessellation.displacement != Displacement::Off)
     }
 
     /// Whether materials are drawn as glTF describes them, in light from all around.

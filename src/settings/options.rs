@@ -5,8 +5,8 @@
 
 use super::value::Field;
 use super::{
-    Access, Colors, Declaration, Description, DeviationUnit, FileLights, Kind, Lighting, Matcap, NormalsAt, Overlay,
-    Range, Settings, ToneCurve, Value, descriptions,
+    Access, Colors, Declaration, Description, DeviationUnit, FileLights, Kind, Lighting, Matcap, NormalMaps, NormalsAt,
+    Overlay, Range, Settings, ToneCurve, Value, descriptions,
 };
 use crate::load::{LengthUnit, NormalSource, UNIT_METRES};
 use crate::mesh::UpAxis;
@@ -33,8 +33,9 @@ pub(crate) static TESSELLATION: [&Declaration; 16] = [
 ];
 
 /// The options of commands that draw a picture.
-pub(crate) static PICTURE: [&Declaration; 15] = [
+pub(crate) static PICTURE: [&Declaration; 16] = [
     &NORMALS_AT,
+    &NORMAL_MAPS,
     &OVERLAY,
     &LIGHTING,
     &LIGHTS,
@@ -322,6 +323,18 @@ pub(crate) static NORMALS_AT: Declaration = Declaration {
     saved_as: &["normals_at"],
     no_effect: |settings| (settings.tessellation.displacement != Displacement::Off).then_some(NORMALS_FOLLOW_TRIANGLES),
     access: field!(normals_at),
+};
+
+pub(crate) static NORMAL_MAPS: Declaration = Declaration {
+    name: "normal-maps",
+    label: "Normal maps",
+    placeholder: "SWITCH",
+    text: "Whether normal maps are drawn while the surface is displaced. Displacement alone shades the relief of the heights.",
+    kind: Kind::Choice(descriptions::<NormalMaps>),
+    unset: None,
+    saved_as: &["normal_maps"],
+    no_effect: |settings| not_displaced(settings).or(not_in_studio(settings)),
+    access: field!(normal_maps),
 };
 
 pub(crate) static OVERLAY: Declaration = Declaration {

@@ -18,7 +18,7 @@ type Feature = fn(&mut Document);
 
 /// All of them.
 pub(crate) fn material_scenes() -> Vec<MaterialScene> {
-    let all: [(&str, Feature); 12] = [
+    let all: [(&str, Feature); 15] = [
         ("alpha-modes", alpha_modes),
         ("mirrored-normals", mirrored_normals),
         ("two-uv-sets", two_uv_sets),
@@ -31,6 +31,9 @@ pub(crate) fn material_scenes() -> Vec<MaterialScene> {
         ("unlit", unlit),
         ("specular-ior", specular_and_ior),
         ("metal-and-roughness", metal_and_roughness),
+        ("specular-glossiness", specular_and_glossiness),
+        ("coat-and-specular-maps", coat_and_specular_maps),
+        ("floor", floor),
     ];
     let made = all.into_iter().map(|(name, fill)| {
         let mut document = Document::default();
@@ -472,5 +475,79 @@ fn metal_and_roughness(document: &mut Document) {
             let material = document.material(plain([1.0, 0.77, 0.34, 1.0], metallic, roughness));
             document.shape(&ball([2.2 * column as f32, -2.2 * row as f32, 0.0]), material, &[]);
         }
+    }
+}
+
+/// Balls by specular and glossiness: of numbers alone; and with an image whose colour is the specular one, around the ball, and whose alpha
+/// is the glossiness, from the top down; and with half of that glossiness.
+fn specular_and_glossiness(document: &mut Document) {
+    let both = document.texture([64, 64], |x, y| {
+        let [r, g, b] = [[240, 190, 90], [60, 60, 60], [200, 60, 60], [150, 170, 220]][x as usize / 16];
+        [r, g, b, (4 * (63 - y)) as u8]
+    });
+    for (place, glossy) in [
+        json!({ "specularFactor": [0.6, 0.5, 0.2], "glossinessFactor": 0.6 }),
+        json!({ "specularGlossinessTexture": { "index": both } }),
+        json!({ "specularGlossinessTexture": { "index": both }, "glossinessFactor": 0.5 }),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let mut glossy = glossy;
+        glossy["diffuseFactor"] = json!([0.1, 0.2, 0.3, 1.0]);
+        let glossy = extended(json!({}), "KHR_materials_pbrSpecularGlossiness", glossy);
+        let glossy = document.material(glossy);
+        document.shape(&ball([2.2 * place as f32, 0.0, 0.0]), glossy, &[]);
+    }
+}
+
+/// Balls with maps: a coat in stripes, a coat whose roughness grows from the top down, a coat with waves of its own, a specular strength in
+/// stripes, and a specular colour around the ball.
+fn coat_and_specular_maps(document: &mut Document) {
+    let stripes = document.texture([32, 4], |x, _| if x / 2 % 2 == 0 { [255; 4] } else { [0, 0, 0, 0] });
+    let rough = document.texture([4, 64], |_, y| [9, (4 * y) as u8, 9, 255]);
+    let waves = document.texture([256, 4], |x, _| {
+        let slope = 0.5 * (TAU * x as f32 / 16.0).cos();
+        let length = (1.0 + slope * slope).sqrt();
+        [(127.5 + 127.5 * slope / length).round() as u8, 128, (127.5 + 127.5 / length).round() as u8, 255]
+    });
+    let colors =
+        document.texture([4, 4], |x, _| [[255, 60, 60, 9], [255; 4], [60, 255, 60, 9], [60, 60, 255, 9]][x as usize]);
+    let info = |texture: usize| json!({ "index": texture });
+    let coats = [
+        json!({ "clearcoatFactor": 1.0, "clearcoatTexture": info(stripes) }),
+        json!({ "clearcoatFactor": 1.0, "clearcoatRoughnessFactor": 1.0, "clearcoatRoughnessTexture": info(rough) }),
+        json!({ "clearcoatFactor": 1.0, "clearcoatRoughnessFactor": 0.1, "clearcoatNormalTexture": info(waves) }),
+    ];
+    let coats = coats.map(|coat| extended(plain([0.3, 0.03, 0.02, 1.0], 0.0, 0.9), "KHR_materials_clearcoat", coat));
+    let smooth = || extended(plain([0.05, 0.05, 0.08, 1.0], 0.0, 0.15), "KHR_materials_ior", json!({ "ior": 2.4 }));
+    let speculars = [json!({ "specularTexture": info(stripes) }), json!({ "specularColorTexture": info(colors) })];
+    let speculars = speculars.map(|members| extended(smooth(), "KHR_materials_specular", members));
+    for (place, material) in coats.into_iter().chain(speculars).enumerate() {
+        let material = document.material(material);
+        document.shape(&ball([2.2 * place as f32, 0.0, 0.0]), material, &[]);
+    }
+}
+
+/// A checkered floor of which the far end is seen nearly from the side: on the left with an image of 64 x 64 px, on the right one of 63 x 63,
+/// both repeated by a transform.
+fn floor(document: &mut Document) {
+    for (place, size) in [64, 63].into_iter().enumerate() {
+        let checker = document.texture([size; 2], |x, y| match (8 * x / size + 8 * y / size) % 2 {
+            0 => [230, 230, 230, 255],
+            _ => [30, 60, 140, 255],
+        });
+        let mut material = textured(checker);
+        let info = &mut material["pbrMetallicRoughness"]["baseColorTexture"];
+        *info = extended(info.take(), "KHR_texture_transform", json!({ "scale": [1.0, 12.0] }));
+        let material = document.material(material);
+        let left = 1.05 * place as f32;
+        let mut sheet = sheet([left, 0.0, left + 1.0, 12.0], 0.0);
+        for corner in &mut sheet.positions {
+            *corner = [corner[0], 0.25 * corner[1] / 12.0, -corner[1]];
+        }
+        let length = 12.0_f32.hypot(0.25);
+        sheet.normals = vec![[0.0, 12.0 / length, 0.25 / length]; 4];
+        document.shape(&sheet, material, &[]);
     }
 }

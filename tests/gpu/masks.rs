@@ -85,6 +85,21 @@ fn the_mean_coverage_is_what_the_cutoff_says() {
     }
 }
 
+/// Alpha isn't below 0 anywhere, though what is linear in a pixel may be.
+#[test]
+fn a_cutoff_of_0_leaves_all_of_the_surface() {
+    let mut mesh = ramp(0.0);
+    let texels: Vec<_> = (0..TEXELS).map(|i| [255, 255, 255, if i % 2 == 0 { 0 } else { 255 }]).collect();
+    mesh.materials[0].texture = Some(image([TEXELS, 1], &texels));
+    for lighting in [Lighting::Studio, Lighting::Camera] {
+        for settings in every_way(Settings { lighting, ..studio() }) {
+            let picture = drawn_by(engine(), &mesh, &settings, true);
+            let least = picture.pixels().map(|pixel| pixel.0[3]).min();
+            assert_eq!(least, Some(255), "{settings:?}");
+        }
+    }
+}
+
 #[test]
 fn a_transparent_picture_is_opaque_where_a_mask_is_whole() {
     let picture = drawn_by(engine(), &ramp(0.5), &studio(), true);

@@ -6,14 +6,18 @@ use glam::{Vec2, Vec3, Vec4, vec2, vec3};
 use image::RgbaImage;
 use pnaen::engine::Engine;
 use pnaen::gpu::Timing;
+use pnaen::load::HeightSource;
+use pnaen::load::memory_budget::Budget;
 use pnaen::mesh::mesh_builder::{InputCorner, MeshBuilder};
-use pnaen::mesh::{Alpha, CornerDetail, Look, Map, MapUv, Material, Mesh, Sampling, Shape, Slot, Texture};
+use pnaen::mesh::{
+    Alpha, CornerDetail, HeightMap, Heights, Look, Map, MapUv, Material, Mesh, Sampling, Shape, Slot, Texture,
+};
 use pnaen::progress::Progress;
 use pnaen::render::environment::Environment;
 use pnaen::render::layout::{linear, srgb};
 use pnaen::render::{Camera, Renderer, Target};
-use pnaen::settings::{Lighting, NormalsAt, Overlays, Settings, ToneCurve};
-use pnaen::tessellate::{Surface, Tessellation};
+use pnaen::settings::{Lighting, NormalMaps, NormalsAt, Overlays, Settings, ToneCurve};
+use pnaen::tessellate::{Displacement, Surface, Tessellation};
 
 use crate::gpu_tests::engine;
 use crate::gpu_tests::looks::{square_of, square_picture};
@@ -398,6 +402,45 @@ fn a_normal_that_faces_away_is_seen_as_its_mirror_image() {
         with_details(square(Vec3::Z, material([0.2; 3], look_with(Slot::Normal, normals, look))), |_| detail)
     };
     assert_same(&leaning(75), &leaning(180), "a normal below the surface");
+}
+
+/// The relief of a normal map is that of the heights, if these come from the base colour's image: here a plain.
+#[test]
+fn a_normal_map_is_left_out_where_its_own_image_displaces_the_surface() {
+    let leaning = map(image([1, 1], &[[200, 90, 220, 255]]), MapUv::Own);
+    let gray = image([2, 2], &[[128, 128, 128, 255]; 4]);
+    type Made<'a> = &'a dyn Fn(&Mesh) -> Heights;
+    let of_colors: Made =
+        &|mesh| HeightSource::Materials.load(mesh, &[], &Budget::unlimited(), &Progress::default()).expect("an image");
+    let of_file: Made = &|mesh| Heights::everywhere(mesh, HeightMap::new([2, 2], vec![0.5; 4]));
+    let square_with = |look: Look, heights: Made| {
+        let own = Material { texture: Some(gray.clone()), ..material([0.8; 3], look) };
+        let detail = CornerDetail { tangent: Vec3::X, ..CornerDetail::default() };
+        let mut mesh = with_details(square(Vec3::Z, own), |_| detail);
+        mesh.heights = Some(Arc::new(heights(&mesh)));
+        mesh
+    };
+    let mapped = look_with(Slot::Normal, leaning, glossy());
+    let tessellation = Tessellation { displacement: Displacement::On, ..studio().tessellation };
+    for settings in every_way(studio().with(tessellation)) {
+        let seen = |look: &Look, heights: Made, normal_maps| {
+            let settings = Settings { normal_maps, ..settings };
+            at(&picture(&square_with(look.clone(), heights), &settings, 0.0), PLACES[0])
+        };
+        let plain = seen(&glossy(), of_file, NormalMaps::On);
+        for (heights, normal_maps, is_drawn) in [
+            (of_colors, NormalMaps::Auto, false),
+            (of_colors, NormalMaps::On, true),
+            (of_file, NormalMaps::Auto, true),
+            (of_file, NormalMaps::Off, false),
+        ] {
+            let found = seen(&mapped, heights, normal_maps);
+            // The mesh without tessellation isn't displaced.
+            let is_drawn = is_drawn || settings.split.is_some();
+            let differs = found.iter().zip(plain).any(|(a, b)| a.abs_diff(b) > 2);
+            assert_eq!(differs, is_drawn, "{found:?} and {plain:?}: {normal_maps:?} {settings:?}");
+        }
+    }
 }
 
 /// Bumps, as a normal map.

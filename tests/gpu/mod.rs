@@ -39,6 +39,7 @@ mod readbacks;
 mod reference;
 mod scenes;
 mod silhouette;
+mod specification;
 mod stability;
 mod threemf;
 // The bench on hardware has the rest of it.

@@ -39,6 +39,21 @@ fn size(harness: &Harness<App>) -> [f32; 3] {
 }
 
 #[test]
+fn missing_normals_are_told_and_a_click_makes_them_flat() {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let mut harness = uniform(Some(bent(&folder)));
+    harness.get_by_label("Missing normals: smoothed below 60\u{b0}").click();
+    settle(&mut harness);
+    assert_eq!((import(&harness).normals, import(&harness).crease_angle), (NormalSource::File, 0.0));
+    harness.get_by_label("Missing normals: flat");
+    press_with(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(import(&harness).crease_angle, 60.0);
+    harness.get_by_label("Missing normals: smoothed below 60\u{b0}");
+    choose(&mut harness, "Normals", "Made anew");
+    assert!(harness.query_by_label_contains("Missing normals").is_none(), "none is missed where all are made");
+}
+
+#[test]
 fn normals_are_made_anew_with_a_crease_angle_and_undone_while_the_camera_stays() {
     let mut harness = uniform(Some(vase()));
     press(&mut harness, Key::Num3);

@@ -113,5 +113,6 @@ impl App {
         let hover = format!("{} Here it is {units} object units.", option_hover(&options::HEIGHT_SCALE, ""));
         option_row_with(ui, &options::HEIGHT_SCALE, settings, &hover);
         option_row(ui, &options::MIDLEVEL, settings, "");
+        option_row(ui, &options::NORMAL_MAPS, settings, "");
     }
 }

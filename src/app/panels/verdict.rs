@@ -8,6 +8,7 @@ use crate::app::jobs::measure_job::Results;
 use crate::app::sections::Section;
 use crate::app::text::{counted, grouped, short};
 use crate::app::widgets::{legible, rgb};
+use crate::load::{Import, NormalSource};
 use crate::render::layout::{CRACK_COLOR, FOLD_COLOR, T_JUNCTION_COLOR};
 use crate::settings::{Colors, Overlay};
 
@@ -27,6 +28,8 @@ enum Destination {
     GivenFactors,
     Sizes,
     Factors,
+    /// Flat triangles where the file has no normals.
+    FlatNormals,
     Warnings,
 }
 
@@ -62,7 +65,10 @@ impl App {
     /// The colour of the first line that says what is wrong, rather than what could be better.
     pub(in crate::app) fn worst(&self, ui: &egui::Ui) -> Option<Color32> {
         let lines = self.verdict_lines(ui.visuals());
-        lines.into_iter().filter(|line| !matches!(line.leads, Destination::Sizes)).find_map(|line| line.color)
+        lines
+            .into_iter()
+            .filter(|line| !matches!(line.leads, Destination::Sizes | Destination::FlatNormals))
+            .find_map(|line| line.color)
     }
 
     fn verdict_lines(&self, visuals: &egui::Visuals) -> Vec<Line> {
@@ -75,6 +81,7 @@ impl App {
             self.given_line(visuals.warn_fg_color),
             Some(self.sizes_line(visuals.text_color())),
             Some(self.limit_line(visuals.warn_fg_color)),
+            self.normals_line(visuals.text_color()),
             Some(self.warnings_line(visuals.warn_fg_color)),
         ];
         lines.into_iter().flatten().collect()
@@ -203,6 +210,22 @@ impl App {
         }
     }
 
+    /// There only where the file lacks normals.
+    fn normals_line(&self, color: Color32) -> Option<Line> {
+        let loaded = &self.document.as_ref()?.loaded;
+        let Import { normals, crease_angle, .. } = loaded.preparation.import;
+        let hover = "Corners without a normal in the file got one of the triangles around them, so that these can curve. glTF has them \
+                     flat. A click makes them flat: it sets the crease angle to 0\u{b0}, and the mesh is loaded again.";
+        let are_missed = normals == NormalSource::File && loaded.read.repairs.normals_made > 0;
+        are_missed.then(|| match crease_angle {
+            0.0 => Line::dim("Missing normals: flat", hover, Destination::FlatNormals),
+            angle => {
+                let text = format!("Missing normals: smoothed below {angle}\u{b0}");
+                Line::bad(text, color, hover, Destination::FlatNormals)
+            }
+        })
+    }
+
     fn warnings_line(&self, color: Color32) -> Line {
         let warnings = self.warnings().count() as u64;
         let hover = "What was repaired or left out when the file was read. A click lists it.";
@@ -258,6 +281,7 @@ impl App {
             Destination::Sizes if overlays.colors != Colors::TriangleSize => overlays.toggle(Overlay::TriangleSize),
             Destination::Factors if overlays.colors != Colors::Factors => overlays.toggle(Overlay::Factors),
             Destination::Sizes | Destination::Factors => {}
+            Destination::FlatNormals => self.settings.import.crease_angle = 0.0,
             Destination::Warnings => self.dialogs.shows_warnings = true,
         }
     }

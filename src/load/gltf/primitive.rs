@@ -216,6 +216,8 @@ impl PrimitiveReader {
     /// Returns what was left out or repaired, one sentence each, except for the mesh's own repairs.
     pub(super) fn warnings(&self) -> Vec<String> {
         let (without_normals, made) = self.import.lacking_normals(self.without_normals, "primitives without normals");
+        let is_flat = self.import.crease_angle == 0.0;
+        let made = if is_flat { made } else { format!("{made}, where glTF has them flat (crease angle 0)") };
         let sentences = [
             (without_normals, made.as_str()),
             (self.bad_uvs, "uvs that aren't finite, replaced by (0, 0)"),

@@ -75,7 +75,7 @@ fn the_crease_angle_holds_where_normals_are_missing_and_warnings_name_it() {
     let mesh = loaded(Format::Obj, missing.as_bytes(), import);
     let diagonal = |corner: &crate::mesh::Corner| corner.normal.distance(corner.position.normalize()) < 1e-6;
     assert!(mesh.corners.iter().all(diagonal), "the three sides of a corner are smooth");
-    assert!(mesh.warnings[0].contains("smooth within 95 degrees"), "{:?}", mesh.warnings);
+    assert!(mesh.warnings[0].contains("smoothed below 95 degrees"), "{:?}", mesh.warnings);
     assert_cube(&loaded(Format::Obj, missing.as_bytes(), Import { crease_angle: 89.0, ..Import::default() }));
 }
 

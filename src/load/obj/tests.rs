@@ -83,8 +83,7 @@ fn a_fault_in_a_late_piece_has_its_line() {
     assert!(warnings.iter().any(|warning| warning.contains(&first)), "{warnings:?}");
 }
 
-const WITHOUT_NORMALS: &str =
-    "faces without normals, or with some missing, which got ones that are smooth within 60 degrees";
+const WITHOUT_NORMALS: &str = "faces without normals, or with some missing, which are smoothed below 60 degrees";
 
 #[test]
 fn a_cube_of_quadrilaterals_is_a_cube() {

@@ -46,11 +46,7 @@ fn the_numbers_may_stand_in_the_first_line_or_without_a_keyword() {
     for header in ["OFF\n8 6 12", "OFF 8 6 12", "8 6 12", "OFF\n# made by hand\n 8\t6", "off\r\n8 6 12\r"] {
         let mesh = read(&cube_of(header, nothing, nothing));
         assert_cube(&mesh);
-        assert_eq!(
-            mesh.warnings,
-            ["vertices without normals, which got ones that are smooth within 60 degrees: 8."],
-            "{header}"
-        );
+        assert_eq!(mesh.warnings, ["vertices without normals, which are smoothed below 60 degrees: 8."], "{header}");
     }
 }
 

@@ -100,7 +100,7 @@ fn every_encoding_and_every_type_is_the_same_cube() {
         for (position, index) in [(0, 0), (2, 1), (4, 2), (6, 3), (7, 4), (6, 5), (8, 9), (0, 8)] {
             let mesh = read(&cube(encoding, position, index));
             assert_cube(&mesh);
-            let expected = "vertices without normals, which got ones that are smooth within 60 degrees: 8.";
+            let expected = "vertices without normals, which are smoothed below 60 degrees: 8.";
             assert_eq!(mesh.warnings, [expected]);
         }
     }

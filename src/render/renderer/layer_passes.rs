@@ -10,7 +10,7 @@ use crate::render::draws::{Draw, Faces, LayerClear, LayerDraw, Triangles};
 use crate::render::layers::LayerPass;
 use crate::render::needs::{Needs, PictureKind, has_layers};
 use crate::render::steps::{LayerPart, LayerStep};
-use crate::render::surface_draws::{emitted_triangles, own_faces};
+use crate::render::surface_draws::{emitted_triangles, own_faces, undisplaced};
 use crate::render::target::depth_attachment;
 use crate::render::{Camera, Scene, Target};
 use crate::settings::{NormalsAt, Settings, SplitSide};
@@ -211,7 +211,8 @@ fn draws(
         _ if triangles == Triangles::Source => NormalsAt::Vertices,
         _ => settings.used_normals_at(mesh),
     };
-    let needs = Needs::of(mesh, material, settings, kind);
+    let shown = if triangles == Triangles::Source { undisplaced(settings) } else { *settings };
+    let needs = Needs::of(mesh, material, &shown, kind);
     let faces = own_faces(settings, material).unwrap_or(Faces::Both);
     own.iter().map(|&draw| (draw, Draw::Layer(draw, triangles, faces, places(draw), needs))).collect()
 }

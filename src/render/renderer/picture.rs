@@ -117,7 +117,7 @@ impl Renderer {
         if let Step::Layer(layer) = step {
             return self.draw_layer(recorder, scene, picture, layer);
         }
-        let mut surfaces = self.surfaces(drawn, picture)?;
+        let mut surfaces = self.surfaces(drawn, &picture.materials, target, camera, settings)?;
         if let Step::Surface(_, chunk) = step {
             surfaces.sifted = self.sift(recorder, drawn, target, camera, chunk, &surfaces)?;
         }
@@ -184,9 +184,9 @@ impl Renderer {
     /// # Errors
     /// Out of memory, or a lost device.
     fn beside(&self, scene: &Scene, picture: &Picture, index: usize) -> Result<Beside, GpuError> {
-        let &Picture { settings, rects, ref steps, .. } = picture;
+        let &Picture { target, settings, rects, ref steps, ref materials, .. } = picture;
         let has_source = index == 0 && !picture.has_left && rects[SplitSide::Left as usize][2] > 0;
-        let source = || self.source_pipelines(scene.tessellator.mesh(), picture);
+        let source = || self.source_pipelines(scene.tessellator.mesh(), materials, target, settings);
         let has_lines = scene.lines.is_some() || scene.half(SplitSide::Left).is_some_and(|left| left.lines.is_some());
         let has_lines = has_lines && index + 1 == steps.len();
         let has_ground = index == picture.ground_step && settings.overlays.grid;

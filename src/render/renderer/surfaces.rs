@@ -1,7 +1,6 @@
 //! Records the draws of surfaces: emitted triangles, input triangles, and normals at vertices.
 
 use super::Renderer;
-use super::picture::Picture;
 use crate::gpu::layout::DrawArgs;
 use crate::gpu::{ChunkBuffers, GpuError, Recorder};
 use crate::mesh::{Material, Mesh};
@@ -10,7 +9,7 @@ use crate::render::covered_area::Area;
 use crate::render::draws::{Draw, Faces, Triangles};
 use crate::render::surface_draws::{emitted_triangles, source_draw, surface_draw};
 use crate::render::{Camera, Scene, Target};
-use crate::settings::Overlays;
+use crate::settings::{Overlays, Settings};
 use crate::tessellate::CoverageView;
 
 /// The offset in [`DrawArgs`] of the arguments for draws that pull their vertices.
@@ -33,8 +32,14 @@ pub(super) struct Surfaces {
 
 impl Renderer {
     /// Decides how the emitted triangles are drawn.
-    pub(super) fn surfaces(&self, scene: &Scene, picture: &Picture) -> Result<Surfaces, GpuError> {
-        let &Picture { target, camera, settings, ref materials, .. } = picture;
+    pub(super) fn surfaces(
+        &self,
+        scene: &Scene,
+        materials: &[wgpu::BindGroup],
+        target: &Target,
+        camera: &Camera,
+        settings: &Settings,
+    ) -> Result<Surfaces, GpuError> {
         let Overlays { folds, back_faces, .. } = settings.overlays;
         let clip_from_object = camera.clip_from_object(target.viewport(), &scene.bounds);
         // These two overlays show faces from behind.
@@ -47,9 +52,15 @@ impl Renderer {
     }
 
     /// What draws input triangles, for each of the mesh's materials.
-    pub(super) fn source_pipelines(&self, mesh: &Mesh, picture: &Picture) -> Result<Vec<Vec<MaterialDraw>>, GpuError> {
-        let kind = self.kind(picture.target.is_draft());
-        self.material_draws(mesh, &picture.materials, |own| source_draw(picture.settings, mesh, own, kind))
+    pub(super) fn source_pipelines(
+        &self,
+        mesh: &Mesh,
+        materials: &[wgpu::BindGroup],
+        target: &Target,
+        settings: &Settings,
+    ) -> Result<Vec<Vec<MaterialDraw>>, GpuError> {
+        let kind = self.kind(target.is_draft());
+        self.material_draws(mesh, materials, |own| source_draw(settings, mesh, own, kind))
     }
 
     fn material_draws(

@@ -11,6 +11,7 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
     let Settings {
         tessellation,
         normals_at,
+        normal_maps,
         overlays,
         lighting,
         lights,
@@ -66,6 +67,7 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         ("height_scale", format!("{height_scale:?}")),
         ("midlevel", format!("{midlevel:?}")),
         ("normals_at", format!("{normals_at:?}")),
+        ("normal_maps", format!("{normal_maps:?}")),
         ("overlays", format!("{overlays:?}")),
         ("lighting", format!("{lighting:?}")),
         ("lights", format!("{lights:?}")),
@@ -199,6 +201,7 @@ fn unused_options_have_no_effect() {
     let elsewhere = [
         "height-scale",
         "midlevel",
+        "normal-maps",
         "lights",
         "environment-brightness",
         "environment-background",
@@ -219,7 +222,7 @@ fn unused_options_have_no_effect() {
     let mut excess = lod(Lod::Paper);
     excess.overlays.colors = Colors::Excess;
     let mut expected = with(&["alpha", "factor", "distances"]);
-    expected.insert(5, "lighting");
+    expected.insert(6, "lighting");
     assert_eq!(idle(&excess), expected);
     let mut phong_left = lod(Lod::Uniform);
     phong_left.tessellation.displacement = Displacement::On;
@@ -239,14 +242,17 @@ fn unused_options_have_no_effect() {
     assert_eq!(
         idle(&phong_left),
         with_light(
-            &["alpha", "lod", "pixels", "tolerance", "distances", "normals-at"],
+            &["alpha", "lod", "pixels", "tolerance", "distances", "normals-at", "normal-maps"],
             &["curvature-scale", "matcap", "split-surface"]
         )
     );
     phong_left.split = Some(0.5);
     assert_eq!(
         idle(&phong_left),
-        with_light(&["lod", "pixels", "tolerance", "distances", "normals-at"], &["curvature-scale", "matcap"])
+        with_light(
+            &["lod", "pixels", "tolerance", "distances", "normals-at", "normal-maps"],
+            &["curvature-scale", "matcap"]
+        )
     );
     phong_left.overlays.colors = Colors::Material;
     for lighting in [Lighting::Studio, Lighting::Environment] {
