@@ -94,7 +94,7 @@ pub struct Preparation {
 /// Reads a mesh, prepares it, and builds its topology. Needs no device.
 ///
 /// # Errors
-/// The mesh or the height image can't be read, the mesh is too large, or `progress` was cancelled.
+/// The mesh or the height image can't be read, the mesh is too large or has nothing to show, or `progress` was cancelled.
 pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> Result<Loaded, LoadError> {
     let start = Instant::now();
     // Large images take longer than most meshes.
@@ -112,6 +112,11 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
     let too_large = |what| move |error| unfinished(source, what, error);
     let mut topology =
         Topology::build_afforded(&read, preparation.weld, &budget, progress).map_err(too_large("its edges"))?;
+    if topology.patches.is_empty() {
+        let welded = if preparation.weld > 0.0 { ", within the tolerance of --weld" } else { "" };
+        let holds = format!("each of its {} triangles has two corners on one point{welded}", read.triangles.len());
+        return Err(LoadError::Empty { path: source.to_string().into(), holds });
+    }
     let (mut cut, mut crease_band) = (None, CreaseBand::default());
     if preparation.crease_band > 0.0 {
         let made = with_crease_band(&read, &topology, preparation.crease_band, &budget, progress)
@@ -129,9 +134,6 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
         let heights = heights.load(mesh, &warnings, &budget, &progress.part(0.4, 1.0))?;
         warnings.extend(untextured_warning(&heights, mesh));
         mesh.heights = Some(Arc::new(heights));
-    }
-    if topology.patches.is_empty() {
-        warnings.push("there is nothing to show: every triangle has two corners on one point.".to_owned());
     }
     let read = Arc::new(read);
     Ok(Loaded {

@@ -183,13 +183,16 @@ fn pictures_must_be_png_files() {
 }
 
 #[test]
-fn a_mesh_of_degenerate_triangles_is_drawn_with_a_warning() {
+fn a_mesh_of_degenerate_triangles_alone_has_nothing_to_show() {
     let folder = Folder::new();
     let path = folder.path("line.obj");
     std::fs::write(&path, "v 0 0 0\nv 1 0 0\nf 1 2 2\n").expect("a writable temporary folder");
-    let run = run(&["render", &path, "-o", &folder.path("out.png")]);
-    let said = String::from_utf8_lossy(&run.stderr);
-    assert!(run.status.success() && said.contains("there is nothing to show"), "{said}");
+    let words = ["no triangles to show", "each of its 1 triangles has two corners on one point"];
+    sentence(&["render", &path, "-o", &folder.path("out.png")], &words);
+    sentence(&["info", &path], &words);
+    std::fs::write(&path, "v 0 0 0\nv 1 0 0\nv 1 1e-4 0\nf 1 2 3\n").expect("a writable temporary folder");
+    sentence(&["info", &path, "--weld", "0.01"], &["two corners on one point, within the tolerance of --weld"]);
+    output(&["info", &path]);
 }
 
 #[test]
