@@ -29,22 +29,19 @@ pub(super) fn metadata_limits(budget: &Budget) -> Limits {
     limits
 }
 
-/// Returns the width and height of a PNG, JPEG, WebP or KTX2 image in px, without decoding it; none if it isn't one that is read.
+/// Returns the width and height of a PNG, JPEG, WebP, TGA, BMP or KTX2 image in px, without decoding it; none if it isn't one that is read.
 pub(super) fn texture_size(bytes: &[u8]) -> Option<[u32; 2]> {
     if ktx2::is_ktx2(bytes) {
         return Ktx2::read(bytes).ok().map(|file| file.size).filter(|size| check_size(*size).is_ok());
     }
     let size = match png_header(bytes) {
         Some((size, _)) => size,
-        None => {
-            let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().ok()?;
-            reader.into_dimensions().ok()?.into()
-        }
+        None => reader(bytes).ok()?.into_dimensions().ok()?.into(),
     };
     check_size(size).is_ok().then_some(size)
 }
 
-/// Decodes a PNG, JPEG, WebP or KTX2 image (its first bytes tell which) to RGBA, unless its header says that it is too large.
+/// Decodes a PNG, JPEG, WebP, TGA, BMP or KTX2 image (its first bytes tell which) to RGBA, unless its header says that it is too large.
 ///
 /// # Errors
 /// A clause that says what is wrong.
@@ -69,12 +66,29 @@ pub(super) fn decode_halved(
     Ok(texture)
 }
 
-/// Decodes a PNG, JPEG or WebP image. All memory is borrowed.
+/// Prepares to decode an image of the format that its first bytes show.
+fn reader(bytes: &[u8]) -> std::io::Result<ImageReader<Cursor<&[u8]>>> {
+    let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
+    if reader.format().is_none() && may_be_tga(bytes) {
+        reader.set_format(ImageFormat::Tga);
+    }
+    Ok(reader)
+}
+
+/// Whether a header can be that of a TGA image, which has no signature: what it says of its colour map, of its kind, and of the bits of a
+/// pixel (Truevision, TGA File Format Specification 2.0).
+fn may_be_tga(bytes: &[u8]) -> bool {
+    bytes.first_chunk::<18>().is_some_and(|header| {
+        header[1] <= 1 && matches!(header[2], 1..=3 | 9..=11) && matches!(header[16], 8 | 15 | 16 | 24 | 32)
+    })
+}
+
+/// Decodes a PNG, JPEG, WebP, TGA or BMP image. All memory is borrowed.
 fn decode_file(bytes: &[u8], halvings: u32, filter: MipFilter, budget: &Budget) -> Result<Texture, String> {
     let undecoded = |error: ImageError| format!("its image can't be decoded: {error}");
     let of_webp = webp_bytes(&mut Cursor::new(bytes), budget.left()).map_err(|error| error.to_string())?;
     let known = coefficient_bytes(&mut Cursor::new(bytes)).map_err(|error| error.to_string())?;
-    let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| error.to_string())?;
+    let mut reader = reader(bytes).map_err(|error| error.to_string())?;
     let whole = Borrowed::from(budget);
     if reader.format() == Some(ImageFormat::Png) {
         reader.limits(metadata_limits(budget));
@@ -83,7 +97,7 @@ fn decode_file(bytes: &[u8], halvings: u32, filter: MipFilter, budget: &Budget) 
     let mut decoder = reader.into_decoder().map_err(undecoded)?;
     let size = decoder.dimensions().into();
     check_size(size)?;
-    // The decoder frees its own memory before the pixels are converted to RGBA.
+    // The decoder frees its own memory before the pixels are converted to RGBA. That of TGA and BMP needs no more than these take.
     let working = if is_jpeg { known.unwrap_or_else(|| most_coefficient_bytes(size)) } else { of_webp };
     let has_rows = png_header(bytes).is_some_and(|(_, is_interlaced)| !is_interlaced);
     let room = budget.borrow(decoder.total_bytes().saturating_add(working.max(decoded_bytes(size))));

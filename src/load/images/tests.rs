@@ -51,6 +51,33 @@ fn images_are_halved_as_levels_are_made() {
 }
 
 #[test]
+fn tga_and_bmp_images_are_read_within_limits() {
+    let source = noise([37, 22]);
+    for format in [ImageFormat::Tga, ImageFormat::Bmp] {
+        let bytes = encoded(&of(&source), format);
+        assert_eq!(texture_size(&bytes), Some([37, 22]), "{format:?}");
+        let made = decode_texture(&bytes, &Budget::unlimited()).expect("an image");
+        assert_eq!((made.size, &made.rgba), (source.size, &source.rgba), "{format:?}");
+        for length in [0, 5, 18, 54, bytes.len() / 2] {
+            assert!(decode_texture(&bytes[..length], &Budget::unlimited()).is_err(), "{format:?} {length}");
+        }
+    }
+    // A grey image whose rows begin at the bottom, in runs of three and of one px.
+    let mut header = [0; 18];
+    (header[2], header[12], header[14], header[16]) = (11, 2, 2, 8);
+    let runs = [&header[..], &[0x82, 7, 0x00, 9]].concat();
+    let rows = [[7, 9], [7, 7]].as_flattened().iter().flat_map(|&grey| [grey, grey, grey, 255]).collect::<Vec<u8>>();
+    assert_eq!(decode_texture(&runs, &Budget::unlimited()).map(|own| own.rgba), Ok(rows));
+    // A small file that says that it is large.
+    (header[13], header[15]) = (0x3f, 0x3f);
+    let large = [&header[..], &[0xff; 100]].concat();
+    let limits = crate::files::Limits { memory: 64 << 20, ..Default::default() };
+    let said = decode_texture(&large, &Budget::new(large.len(), &limits)).expect_err("it would take 1 GiB");
+    assert!(said.contains("16130 x 16130 px would take"), "{said}");
+    assert!(decode_texture(&[0x40; 200], &Budget::unlimited()).is_err(), "no format");
+}
+
+#[test]
 fn a_png_is_read_in_rows_where_the_whole_image_does_not_fit() {
     let image: DynamicImage = image::RgbImage::from_pixel(2000, 1000, Rgb([9, 8, 7])).into();
     let limits = crate::files::Limits { memory: 10 << 20, ..Default::default() };
