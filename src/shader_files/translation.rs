@@ -118,7 +118,9 @@ fn temporary(line: &str) -> Option<(&str, &str)> {
         let number = word.strip_prefix("_e").unwrap_or_default();
         !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit())
     };
-    let temporary = words(declared).map(|(word, _)| word).find(is_temporary)?;
+    // A type and a name: what is assigned to may have a temporary as its index.
+    let names: Vec<&str> = words(declared.split('[').next()?).map(|(word, _)| word).collect();
+    let temporary = names.last().copied().filter(|name| names.len() > 1 && is_temporary(name))?;
     let made_of = value.split(['(', '[']).find(|part| words(part).next().is_some())?;
     let is_name = |word: &&str| !word.starts_with(|c: char| c.is_ascii_digit());
     let base = words(made_of).map(|(word, _)| word).filter(is_name).last().unwrap_or("number");
@@ -251,9 +253,9 @@ mod tests {
     #[test]
     fn temporaries_are_named_after_what_they_are_made_of() {
         let text = "float f(float x)\n{\n    const float _e1 = g(x);\n    float _e22 = g(_e1);\n    vec3 _e3 = net.corners[0];\n    \
-                    return h(_e1, _e22) + _e3;\n}\nfloat g(float _e1x)\n{\n    const float _e1 = h(_e1x);\n    return _e1;\n}\n";
+                    net.corners[_e1] = _e22;\n    return h(_e1, _e22) + _e3;\n}\nfloat g(float _e1x)\n{\n    const float _e1 = h(_e1x);\n    return _e1;\n}\n";
         let named = "float f(float x)\n{\n    const float g_value = g(x);\n    float g_value2 = g(g_value);\n    vec3 corners_value = \
-                     net.corners[0];\n    return h(g_value, g_value2) + corners_value;\n}\nfloat g(float _e1x)\n{\n    const float \
+                     net.corners[0];\n    net.corners[g_value] = g_value2;\n    return h(g_value, g_value2) + corners_value;\n}\nfloat g(float _e1x)\n{\n    const float \
                      h_value = h(_e1x);\n    return h_value;\n}\n";
         assert_eq!(without_temporaries(text), named);
     }
