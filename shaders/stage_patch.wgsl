@@ -134,7 +134,11 @@ fn edge_curve_factor(constants: StageConstants, a: vec3<f32>, curve: CurveNet, b
     if CHOSEN_LOD == LOD_PAPER {
         return paper_edge_factor(constants.view, constants.pixels_per_segment, a, curve.ab, curve.ba, b);
     }
-    return edge_length_factor(constants.view, constants.pixels_per_segment, a, curve.ab, curve.ba, b);
+    if CHOSEN_LOD == LOD_EDGE_LENGTH {
+        return edge_length_factor(constants.view, constants.pixels_per_segment, a, curve.ab, curve.ba, b);
+    }
+    // No other LOD can be exported. A factor of 0 leaves patches out, which is seen at once.
+    return 0.0;
 }
 
 // Returns the factor of a patch's side. Where a surface tears, the sides of an edge have curves of different lengths; both take
@@ -184,11 +188,29 @@ fn hull_side(
     return HullSide(select(curve.ab, curve.ba, reversed), select(curve.ba, curve.ab, reversed), factor);
 }
 
+// Returns whether a patch is left out, because it is out of view or shows only its back.
+fn patch_is_left_out(view: LodView, net: ControlNet) -> bool {
+    if CHOSEN_CLIP == CLIP_PAPER {
+        if patch_is_clipped(view, net) {
+            return true;
+        }
+    }
+    if CHOSEN_CLIP == CLIP_FRUSTUM {
+        if patch_is_outside(view, net) {
+            return true;
+        }
+    }
+    if CHOSEN_CULLING == CULLING_ON {
+        return faces_away(view, net);
+    }
+    return false;
+}
+
 // Returns what the hull shader hands to the tessellator: the factors of the edges in the order of the convention, and the one
 // inside. `sides` are the factors of the sides 0-1, 1-2 and 2-0. A patch that is left out gets zeros.
 fn tessellation_factors(constants: StageConstants, net: ControlNet, sides: vec3<f32>) -> vec4<f32> {
     if CHOSEN_CLIP != CLIP_OFF || CHOSEN_CULLING != CULLING_OFF {
-        if cull_reason(CHOSEN_CLIP, CHOSEN_CULLING == CULLING_ON, constants.view, net) != NOT_CULLED {
+        if patch_is_left_out(constants.view, net) {
             return vec4<f32>(0.0);
         }
     }

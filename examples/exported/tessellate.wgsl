@@ -16,7 +16,8 @@
 //   128 view.half_viewport: half the width and half the height of the view, in px
 //   136 view.reach: 0
 //   144 view.eye: 3 numbers: where the camera is, in object units
-//   156 view.radius: half the diagonal of the mesh's bounding box, in object units
+//   156 view.radius: the bounding radius in object units: the greatest distance of a corner from the middle of the
+//     bounding box
 //   160 factor: here 8: the factor of uniform LOD, and the largest of LOD by distance, 1 to 64
 //   164 pixels_per_segment: here 8: the length of a segment on screen, in px
 //   168 near: here 2: the distance up to which edges get factor, in bounding radii

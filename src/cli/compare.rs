@@ -120,6 +120,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         topology: &posed.topology,
         inputs: &inputs,
         given: given.as_deref(),
+        matrix: args.surface.view.matrix().map(|matrix| matrix.clip_from_object),
         tessellated: &tessellated,
     };
     let exactness = Exactness { within, resolution };

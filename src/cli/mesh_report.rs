@@ -17,6 +17,7 @@ use crate::mesh::{
 use crate::names::{on_one_line, shown};
 use crate::numbers::exact;
 use crate::progress::{Cancelled, Progress};
+use crate::view::ulp_at;
 
 /// How many T-junctions the text lists.
 const SHOWN: usize = 10;
@@ -30,8 +31,10 @@ pub(super) struct Info {
     pub weld: f32,
     /// The crease band; all other numbers are of the mesh that has it.
     pub crease_band: CreaseBand,
-    /// Triangles left out because two corners lie on one point.
+    /// Triangles without area: those left out because two corners lie on one point, and those of `collinear`.
     pub degenerate: u32,
+    /// Triangles whose three corners lie in line, to within rounding. They are patches, since their edges join others'.
+    pub collinear: u32,
     pub corners: u32,
     pub points: u32,
     pub materials: Vec<MaterialInfo>,
@@ -130,12 +133,14 @@ impl Info {
         let normal_faults = NormalFaults::of(mesh, topology);
         let counts = || (topology.edge_counts(), euler_characteristic(topology), mesh.bounds());
         let ((edges, euler_characteristic, bounds), joins) = both(counts, || weld_previews(mesh, exact, progress));
+        let collinear = collinear(topology);
         Ok(Self {
             name: mesh.name.clone(),
             triangles: mesh.triangles.len() as u32,
             weld,
             crease_band: CreaseBand::default(),
-            degenerate: topology.degenerate,
+            degenerate: topology.degenerate + collinear,
+            collinear,
             corners: mesh.corners.len() as u32,
             points: topology.points.len() as u32,
             materials: mesh.materials.iter().map(MaterialInfo::of).collect(),
@@ -211,7 +216,13 @@ impl Info {
             _ => "where exactly equal".to_owned(),
         };
         writeln!(f, "{}", shown(&self.name))?;
-        writeln!(f, "triangles     {} ({} degenerate, left out)", self.triangles, self.degenerate)?;
+        let (degenerate, collinear) = (self.degenerate, self.collinear);
+        write!(f, "triangles     {} ({} degenerate, left out", self.triangles, degenerate - collinear)?;
+        writeln!(
+            f,
+            "{})",
+            if collinear > 0 { format!("; {collinear} degenerate, with their corners in line") } else { String::new() }
+        )?;
         writeln!(f, "points        {} (welded {welded})", self.points)?;
         writeln!(f, "corners       {}", self.corners)?;
         writeln!(f, "edges         {}", self.edges.total())?;
@@ -280,6 +291,18 @@ fn animations(rig: &Rig) -> Vec<AnimationInfo> {
     rig.clips.iter().map(animation).collect()
 }
 
+/// The number of patches whose three corners lie in line, to within a unit in the last place of their largest coordinate.
+fn collinear(topology: &Topology) -> u32 {
+    let is_in_line = |patch: &u32| {
+        let corners = topology.patch_positions(*patch);
+        let unit = ulp_at(corners.iter().map(|corner| corner.abs().max_element()).fold(0.0, f32::max));
+        let [a, b, c] = corners.map(|corner| corner.as_dvec3());
+        let longest = [a.distance(b), b.distance(c), c.distance(a)].into_iter().fold(0.0, f64::max);
+        (b - a).cross(c - a).length() <= unit * longest
+    };
+    (0..topology.patches.len() as u32).filter(is_in_line).count() as u32
+}
+
 /// Points in use - edges + patches: 2 for a sphere, 0 for a torus.
 fn euler_characteristic(topology: &Topology) -> i64 {
     let mut used = vec![false; topology.points.len()];
@@ -308,6 +331,7 @@ mod tests {
     fn info_of_a_torus() {
         let mesh = Shape::Torus.build();
         let info = info(&mesh, 0.0);
+        assert_eq!((info.degenerate, info.collinear), (0, 0));
         assert_eq!((info.triangles, info.points, info.euler_characteristic, info.closed), (256, 128, 0, true));
         assert_eq!((info.materials.len(), info.materials[0].triangles), (1, 256));
         let json = serde_json::to_value(&info).unwrap();
@@ -331,6 +355,28 @@ mod tests {
     fn info_of_an_empty_mesh() {
         let info = info(&Mesh::default(), 0.0);
         assert_eq!((info.triangles, info.euler_characteristic, info.closed), (0, 0, false));
+    }
+
+    #[test]
+    fn triangles_in_line_are_degenerate_and_said_to_be() {
+        let mut all = comb();
+        // A third, a tenth and a sum of them are rounded; the second is bent by a thousandth.
+        let at = |x: f32, y: f32| Corner { position: Vec3::new(x, y, 0.1 * x), normal: Vec3::Z, uv: Vec2::ZERO };
+        let first = all.corners.len() as u32;
+        all.corners.extend([
+            at(0.0, 0.0),
+            at(1.0 / 3.0, 0.1),
+            at(1.0, 0.3),
+            at(0.0, 0.0),
+            at(1.0, 0.301),
+            at(2.0, 0.6),
+        ]);
+        let added = [first, first + 3].map(|a| [a, a + 1, a + 2]);
+        all.triangles = all.triangles.iter().copied().chain(added).chain([[0, 0, 1]]).collect::<Vec<_>>().into();
+        let info = info(&all, 0.0);
+        assert_eq!((info.triangles, info.degenerate, info.collinear), (16, 2, 1));
+        let text = info.to_string();
+        assert!(text.contains("16 (1 degenerate, left out; 1 degenerate, with their corners in line)"), "{text}");
     }
 
     /// A triangle over the edge from 0 to 16 along x, and twelve with their tips on it.

@@ -1,11 +1,13 @@
 //! Finds out whether another program's coordinates are ours, turned, mirrored, scaled or moved as a whole.
 
-use std::collections::HashSet;
+use std::collections::HashMap;
 
 use glam::{DMat3, DVec3, Vec3};
 
+use super::Ours;
 use super::foreign::ForeignMesh;
 use super::locator::Locator;
+use super::spaces::Space;
 use crate::mesh::Bounds;
 
 /// How another program's coordinates follow from ours.
@@ -17,6 +19,33 @@ pub(crate) struct Alignment {
     pub scale: f64,
     /// What is then added, in their units.
     pub offset: DVec3,
+}
+
+/// How their coordinates follow from ours.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Frame {
+    /// Axes are exchanged or turned, and everything is scaled and moved.
+    Axes(Alignment),
+    /// They are in another space.
+    Space(Space),
+}
+
+impl Frame {
+    /// Whether it mirrors, so that triangles are wound the other way.
+    pub(crate) fn mirrors(&self) -> bool {
+        match self {
+            Self::Axes(alignment) => alignment.mirrors(),
+            Self::Space(space) => space.mirrors(),
+        }
+    }
+
+    /// Returns the place in our coordinates of a position in theirs.
+    pub(super) fn ours(&self, theirs: DVec3) -> DVec3 {
+        match self {
+            Self::Axes(alignment) => alignment.ours(theirs),
+            Self::Space(space) => space.ours(theirs),
+        }
+    }
 }
 
 /// The scales that files have for a reason: powers of ten, and inches and feet in cm and in m.
@@ -60,9 +89,13 @@ impl Alignment {
 
     /// Finds the alignment under which their vertices are ours, lie on our surface, or lie near it; the first of these under which
     /// nearly all do. `None` if they do as they are, or under none. A vertex lies on the surface within `fit` object units.
-    pub(super) fn find(theirs: &ForeignMesh, ours: &Locator, emitted: &[Vec3], fit: f64) -> Option<Self> {
-        let own = Bounds::of(emitted.iter().copied());
-        let [our_size, our_middle] = [(own.max - own.min).as_dvec3(), own.center().as_dvec3()];
+    ///
+    /// Other spaces are tried after all ways to exchange and turn axes, and before places that are only near.
+    pub(super) fn find(theirs: &ForeignMesh, own: &Locator, ours: &Ours, fit: f64) -> Option<Frame> {
+        let emitted = &ours.emitted_positions()[..];
+        let bounds_of_own = Bounds::of(emitted.iter().copied());
+        let our_size = (bounds_of_own.max - bounds_of_own.min).as_dvec3();
+        let our_middle = bounds_of_own.center().as_dvec3();
         let bounds = theirs.bounds();
         let (size, middle) = ((bounds.max - bounds.min).as_dvec3(), bounds.center().as_dvec3());
         // Another surface, or displacement, makes boxes larger or smaller, too.
@@ -82,19 +115,37 @@ impl Alignment {
             })
         };
         let near = NEAR * our_size.length();
-        let sought = Sought { theirs, ours, emitted: Cells::new(emitted, fit), fit, near };
+        let sought = Sought { theirs, ours: own, emitted: Cells::new(emitted, fit), fit, near };
+        let of_camera = Space::of_camera(&ours.inputs.view, ours.matrix);
         for how in [How::AtVertices, How::OnSurface, How::NearSurface] {
             let kept = if how == How::NearSurface { KEPT } else { FOUND };
             // A mesh that is only a part of ours lies near it, too.
-            if size.length() <= 1.2 * our_size.length() && sought.share(&Self::NONE, how) >= kept {
+            if size.length() <= 1.2 * our_size.length() && sought.share(|position| position, how) >= kept {
                 return None;
             }
             let scales: &[f64] = if how == How::AtVertices { &[plain, measured] } else { &[plain] };
-            let all =
-                scales.iter().copied().flat_map(candidates).map(|alignment| (alignment, sought.share(&alignment, how)));
-            let Some((best, _)) = all.reduce(better).filter(|(_, share)| *share >= FOUND) else { continue };
-            let best = if best.offset == DVec3::ZERO { best } else { best.settled(theirs, ours) };
-            return (best != Self::NONE).then_some(best);
+            let all = scales
+                .iter()
+                .copied()
+                .flat_map(candidates)
+                .map(|alignment| (alignment, sought.share(|position| alignment.ours(position), how)));
+            if let Some((best, _)) = all.reduce(better).filter(|(_, share)| *share >= FOUND) {
+                let best = if best.offset == DVec3::ZERO { best } else { best.settled(theirs, own) };
+                return (best != Self::NONE).then_some(Frame::Axes(best));
+            }
+            if how == How::NearSurface {
+                continue;
+            }
+            let is_found = |space: &Space| sought.share(|position| space.ours(position), how) >= FOUND;
+            if let Some(found) = of_camera.iter().copied().find(is_found) {
+                return Some(Frame::Space(found));
+            }
+            if how == How::AtVertices {
+                let found = Space::of_triangles(theirs, emitted, &ours.tessellated.triangles).find(is_found);
+                if let Some(found) = found {
+                    return Some(Frame::Space(found.settled(&sought.pairs(&found, emitted))));
+                }
+            }
         }
         None
     }
@@ -140,11 +191,11 @@ struct Sought<'a> {
 
 impl Sought<'_> {
     /// The share of their vertices that are where they are asked for.
-    fn share(&self, alignment: &Alignment, how: How) -> f64 {
+    fn share(&self, in_ours: impl Fn(DVec3) -> DVec3, how: How) -> f64 {
         let is_there = |&index: &u32| {
-            let position = alignment.ours(self.theirs.positions[index as usize].as_dvec3());
+            let position = in_ours(self.theirs.positions[index as usize].as_dvec3());
             match how {
-                How::AtVertices => self.emitted.has(position),
+                How::AtVertices => self.emitted.at(position).is_some(),
                 How::OnSurface => self.ours.place(position).is_some_and(|place| place.distance <= self.fit),
                 How::NearSurface => self.ours.rough_distance(position) <= self.near,
             }
@@ -154,9 +205,21 @@ impl Sought<'_> {
     }
 }
 
+impl Sought<'_> {
+    /// Positions of ours, each with that of one of their vertices at the same place in another space.
+    fn pairs(&self, space: &Space, emitted: &[Vec3]) -> Vec<[DVec3; 2]> {
+        let pair = |index: u32| {
+            let theirs = self.theirs.positions[index as usize].as_dvec3();
+            Some([emitted[self.emitted.at(space.ours(theirs))? as usize].as_dvec3(), theirs])
+        };
+        self.theirs.sample(SAMPLE).filter_map(pair).collect()
+    }
+}
+
 /// Positions in cells of space, to tell whether one is near a place.
 struct Cells {
-    all: HashSet<[i64; 3]>,
+    /// A position of each cell that has one, as its number.
+    all: HashMap<[i64; 3], u32>,
     /// The width of a cell in object units: twice the distance within which positions are the same.
     width: f64,
 }
@@ -166,7 +229,8 @@ impl Cells {
     fn new(positions: &[Vec3], fit: f64) -> Self {
         let width = 2.0 * fit;
         let positions = if positions.len() > MOST_POSITIONS { &[] } else { positions };
-        let all = positions.iter().map(|position| Self::cell(position.as_dvec3(), width)).collect();
+        let numbered = positions.iter().zip(0..);
+        let all = numbered.map(|(position, number)| (Self::cell(position.as_dvec3(), width), number)).collect();
         Self { all, width }
     }
 
@@ -174,12 +238,12 @@ impl Cells {
         (position / width).floor().to_array().map(|place| place as i64)
     }
 
-    /// Whether one of the positions is within `fit` of this one along each axis; also some within twice that.
-    fn has(&self, position: DVec3) -> bool {
-        (0..8_u32).any(|corner| {
+    /// One of the positions that is within `fit` of this one along each axis; it may be within twice that.
+    fn at(&self, position: DVec3) -> Option<u32> {
+        (0..8_u32).find_map(|corner| {
             let sign = |axis: u32| if corner >> axis & 1 == 1 { 0.5 } else { -0.5 };
             let near = position + DVec3::new(sign(0), sign(1), sign(2)) * self.width;
-            self.all.contains(&Self::cell(near, self.width))
+            self.all.get(&Self::cell(near, self.width)).copied()
         })
     }
 }

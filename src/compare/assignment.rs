@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::foreign::{ForeignMesh, spread};
 use super::locator::{Locator, Place};
 use super::patch_starts::patch_starts;
+use super::twins::Twins;
 use crate::cores::in_ranges;
 use crate::mesh::Topology;
 use crate::progress::{Cancelled, Progress};
@@ -15,9 +16,12 @@ use crate::progress::{Cancelled, Progress};
 pub(super) struct Overlaid<'a> {
     pub theirs: &'a ForeignMesh,
     pub topology: &'a Topology,
-    pub locator: Locator<'a>,
+    /// Finds places; there is none where all of their triangles are ours.
+    pub locator: Option<Locator<'a>>,
     /// Their positions in our coordinates.
     pub positions: &'a [DVec3],
+    /// Which of their triangles are ours.
+    pub twins: Twins<'a>,
     /// The nearest place of each of their vertices.
     pub places: Vec<Place>,
     /// Vertices that are farther from the surface don't lie on it, in object units.
@@ -45,7 +49,7 @@ pub(super) struct Assignment<'a> {
 /// Their triangles on one patch.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Part {
-    /// Their vertices, each once: indices into [`ForeignMesh::positions`].
+    /// Their vertices, each once for each vertex of ours that it is: indices into [`ForeignMesh::positions`].
     pub vertices: Vec<u32>,
     /// Where each lies on this patch.
     pub places: Vec<Place>,
@@ -86,29 +90,36 @@ pub(super) fn made_of_all<R: Send>(
 }
 
 impl<'a> Overlaid<'a> {
-    /// Finds the nearest place of each of their vertices.
+    /// Finds the place of each of their vertices: that of our vertex that it is, or the nearest.
     ///
     /// # Errors
     /// [`Cancelled`].
     pub(super) fn new(
         theirs: &'a ForeignMesh,
         topology: &'a Topology,
-        locator: Locator<'a>,
+        (locator, twins): (Option<Locator<'a>>, Twins<'a>),
         positions: &'a [DVec3],
         fit: f64,
         progress: &Progress,
     ) -> Result<Self, Cancelled> {
-        let place = |index: usize| locator.place(positions[index]).unwrap_or(NOWHERE);
+        let nearest = |index: usize| locator.as_ref().and_then(|locator| locator.place(positions[index]));
+        // Without a locator, triangles that aren't ours are too thin to be anywhere.
+        let nowhere = if locator.is_some() { NOWHERE } else { Place { distance: 0.0, ..NOWHERE } };
+        let place = |index: usize| twins.place_of(index).or_else(|| nearest(index)).unwrap_or(nowhere);
         let places = made_of_all(positions.len(), progress, place)?;
-        Ok(Self { theirs, topology, locator, positions, places, fit })
+        Ok(Self { theirs, topology, locator, positions, twins, places, fit })
     }
 
     /// The same vertices over another surface.
     ///
     /// # Errors
     /// [`Cancelled`].
-    pub(super) fn over(&self, locator: Locator<'a>, progress: &Progress) -> Result<Self, Cancelled> {
-        Self::new(self.theirs, self.topology, locator, self.positions, self.fit, progress)
+    pub(super) fn over(
+        &self,
+        surface: (Option<Locator<'a>>, Twins<'a>),
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
+        Self::new(self.theirs, self.topology, surface, self.positions, self.fit, progress)
     }
 
     /// Their vertices that don't lie on the surface.
@@ -123,13 +134,14 @@ impl<'a> Overlaid<'a> {
         if own.patch == patch {
             return own;
         }
-        self.locator.place_on(patch, self.positions[vertex as usize]).unwrap_or(NOWHERE)
+        let position = self.positions[vertex as usize];
+        self.locator.as_ref().and_then(|locator| locator.place_on(patch, position)).unwrap_or(NOWHERE)
     }
 
     /// The patch that is nearest to the middle of a triangle.
     fn nearest_patch(&self, triangle: [u32; 3]) -> u32 {
         let middle = triangle.map(|corner| self.positions[corner as usize]).into_iter().sum::<DVec3>() / 3.0;
-        self.locator.patch(middle).unwrap_or_default()
+        self.locator.as_ref().and_then(|locator| locator.patch(middle)).unwrap_or_default()
     }
 
     /// How most of their triangles are wound that lie on the nearest patch.
@@ -227,18 +239,24 @@ pub(super) fn domain_area([a, b, c]: [[f64; 2]; 3]) -> f64 {
 }
 
 impl<'a> Assignment<'a> {
-    /// Assigns all triangles.
+    /// Assigns all triangles whose corners can be told apart: the twins of ours to the patches that emit these, and others to those that
+    /// they lie on.
     ///
     /// # Errors
     /// [`Cancelled`].
     pub(super) fn new(overlaid: &'a Overlaid<'a>, progress: &Progress) -> Result<Self, Cancelled> {
-        let triangles = &overlaid.theirs.triangles;
-        let winding = overlaid.winding();
-        let patches = made_of_all(triangles.len(), progress, |index| overlaid.patch_of(triangles[index], winding))?;
-        let starts = patch_starts(patches.iter().copied(), overlaid.topology.patches.len());
-        let mut order = vec![0; triangles.len()];
+        let (triangles, twins) = (&overlaid.theirs.triangles, &overlaid.twins);
+        let winding = if twins.are_all() { Winding::Alike } else { overlaid.winding() };
+        let patches = made_of_all(triangles.len(), progress, |index| match twins.corners(index as u32) {
+            Some([vertex, ..]) => twins.place(vertex).patch,
+            None if twins.is_thin(index as u32) => 0,
+            None => overlaid.patch_of(triangles[index], winding),
+        })?;
+        let seen = || (0..).zip(&patches).filter(|(triangle, _)| !twins.is_thin(*triangle));
+        let starts = patch_starts(seen().map(|(_, patch)| *patch), overlaid.topology.patches.len());
+        let mut order = vec![0; seen().count()];
         let mut next = starts.clone();
-        for (triangle, &patch) in (0..).zip(&patches) {
+        for (triangle, &patch) in seen() {
             order[next[patch as usize] as usize] = triangle;
             next[patch as usize] += 1;
         }
@@ -253,19 +271,34 @@ impl<'a> Assignment<'a> {
     /// Their triangles on a patch.
     pub(super) fn part(&self, patch: u32) -> Part {
         let own = &self.order[self.starts[patch as usize] as usize..self.starts[patch as usize + 1] as usize];
-        let mut part = Part::default();
-        let mut numbers = HashMap::new();
-        for &triangle in own {
-            let corners = self.overlaid.theirs.triangles[triangle as usize].map(|vertex| {
-                *numbers.entry(vertex).or_insert_with(|| {
+        let (mut part, mut numbers, mut known) = (Part::default(), HashMap::new(), HashMap::new());
+        // Twins first: what they say of a vertex holds for other triangles, too.
+        let twins = &self.overlaid.twins;
+        let (of_ours, others): (Vec<u32>, Vec<u32>) =
+            own.iter().copied().partition(|triangle| twins.corners(*triangle).is_some());
+        for triangle in of_ours.into_iter().chain(others) {
+            let twins = twins.corners(triangle);
+            let vertices = self.overlaid.theirs.triangles[triangle as usize];
+            let corners = [0, 1, 2].map(|k| {
+                let vertex = vertices[k];
+                let twin = match twins {
+                    Some(twins) => Some(*known.entry(vertex).insert_entry(twins[k]).get()),
+                    None => known.get(&vertex).copied(),
+                };
+                *numbers.entry((vertex, twin)).or_insert_with(|| {
                     part.vertices.push(vertex);
-                    part.places.push(self.overlaid.place_on(vertex, patch));
+                    part.places.push(self.place_on(vertex, twin, patch));
                     part.vertices.len() as u32 - 1
                 })
             });
             part.triangles.push(corners);
         }
         part
+    }
+
+    /// The place of a vertex on one patch: that of the vertex of ours that it is, if it is one.
+    fn place_on(&self, vertex: u32, twin: Option<u32>, patch: u32) -> Place {
+        twin.map_or_else(|| self.overlaid.place_on(vertex, patch), |twin| self.overlaid.twins.place(twin))
     }
 }
 
@@ -295,11 +328,12 @@ mod tests {
                 let out = tessellate(&mesh, &topology, &inputs, None);
                 let positions: Vec<Vec3> = out.vertices.iter().map(|vertex| Vec3::from(vertex.position)).collect();
                 let theirs = ForeignMesh::new(&positions, out.triangles.iter().rev().copied());
-                let locator = Locator::of_surface(&mesh, &topology, &inputs, FINE).expect("it has patches");
+                let locator = Locator::of_surface(&mesh, &topology, &inputs.into(), FINE);
                 let own: Vec<DVec3> = theirs.positions.iter().map(|position| position.as_dvec3()).collect();
                 let progress = Progress::new();
-                let overlaid =
-                    Overlaid::new(&theirs, &topology, locator, &own, 1e-5, &progress).expect("nobody cancels");
+                // As if none of them were ours.
+                let over = (locator, Twins::none(&theirs));
+                let overlaid = Overlaid::new(&theirs, &topology, over, &own, 1e-5, &progress).expect("nobody cancels");
                 assert!(overlaid.strays().is_empty(), "{shape} {surface:?}");
                 let assignment = Assignment::new(&overlaid, &progress).expect("nobody cancels");
                 let mut emitted = vec![0; topology.patches.len()];

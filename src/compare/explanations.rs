@@ -8,7 +8,8 @@ use super::matching::Reach;
 use crate::mesh::Mesh;
 use crate::progress::{Cancelled, Progress};
 use crate::tessellate::{
-    Convention, HullFactors, Inputs, Partitioning, PatchFactors, Tessellation, domain_side, factor_side, hull_factors,
+    Convention, HullFactors, Inputs, Lod, Partitioning, PatchFactors, Tessellation, domain_side, factor_side,
+    hull_factors,
 };
 
 /// A change of what the hull shader writes.
@@ -51,6 +52,10 @@ pub(crate) struct Explanation {
 /// Side k may have the factor of another side in these ways.
 const SIDES: [[usize; 3]; 5] = [[2, 0, 1], [1, 2, 0], [0, 2, 1], [1, 0, 2], [2, 1, 0]];
 
+/// The share of a length on screen, or of a distance, that no one can tell from rounding; and that of an error on screen, which is a small
+/// difference of large numbers.
+const HAIR: f32 = 1e-4;
+const HAIR_OF_ERRORS: f32 = 2e-3;
 /// How many patches are looked at first.
 const SAMPLE: usize = 64;
 /// Factors explain points if at least this share of the patches has them.
@@ -167,6 +172,28 @@ impl Explainer<'_> {
             }
         }
         Ok(Vec::new())
+    }
+
+    /// Whether the last bits of LOD's factors decide between their points and ours: factors for a hair more or less detail give theirs.
+    pub(super) fn are_last_bits(&self, different: &[u32]) -> bool {
+        let own = self.inputs.tessellation;
+        if self.given.is_some() || own.used_lod() == Lod::Uniform {
+            return false;
+        }
+        let hair = if own.used_lod() == Lod::Error { HAIR_OF_ERRORS } else { HAIR };
+        let written = [1.0 - hair, 1.0 + hair].map(|by| {
+            let (pixels, tolerance, near, far) = (own.pixels * by, own.tolerance * by, own.near * by, own.far * by);
+            let tessellation = Tessellation { pixels, tolerance, near, far, ..own };
+            self.written(&Inputs { tessellation, ..*self.inputs }, own.partitioning)
+        });
+        let same = Explanation { partitioning: own.partitioning, rule: Rule::Same };
+        different.iter().all(|&patch| {
+            let (part, reach) = (self.assignment.part(patch), self.reaches[patch as usize]);
+            let gives = |written: &Vec<HullFactors>| {
+                has_points(&part, self.factors(same, written[patch as usize]), own.convention, reach)
+            };
+            is_whole(&part) && written.iter().any(gives)
+        })
     }
 
     /// Groups of explanations, the simplest first. `uniform` is the one factor that all their edges seem to have.

@@ -2,10 +2,12 @@
 
 use glam::DVec3;
 
-use super::alignment::Alignment;
+use super::alignment::{Alignment, Frame};
 use super::corner_orders::CornerOrder;
 use super::explanations::{Explanation, InsideRule, Rule};
 use super::matching::Farthest;
+use super::net_mistakes::NetMistake;
+use super::spaces::{Space, SpaceKind};
 use crate::numbers::{exact, grouped, short};
 use crate::settings::Choice;
 use crate::tessellate::{Convention, Displacement, Partitioning, Tessellation};
@@ -19,12 +21,18 @@ pub(crate) enum Finding {
         vertices: u64,
         distance: f64,
     },
-    /// All coordinates are turned, mirrored, scaled or moved.
-    Aligned(Alignment),
+    /// All coordinates are turned, mirrored, scaled or moved, or in another space.
+    Aligned(Frame),
     /// Vertices lie on another of our surfaces.
     OtherSurface {
         ours: Tessellation,
         theirs: Tessellation,
+        vertices: u64,
+        of: u64,
+    },
+    /// Vertices lie where a mistake in control points puts them.
+    OtherNets {
+        mistake: NetMistake,
         vertices: u64,
         of: u64,
     },
@@ -139,6 +147,7 @@ impl Finding {
             Self::NotATessellation { .. } => "not_a_tessellation",
             Self::Aligned(_) => "coordinates",
             Self::OtherSurface { .. } => "surface",
+            Self::OtherNets { .. } => "control_points",
             Self::Displaced(_) => "displaced",
             Self::Moved { .. } => "moved_vertices",
             Self::Factors { ours, explanations, .. } => match explanations.first() {
@@ -169,8 +178,10 @@ impl Finding {
     pub(crate) fn text(&self) -> String {
         match self {
             Self::NotATessellation { far, vertices, distance } => other_mesh_text(*far, *vertices, *distance),
-            Self::Aligned(alignment) => alignment_text(alignment),
+            Self::Aligned(Frame::Axes(alignment)) => alignment_text(alignment),
+            Self::Aligned(Frame::Space(space)) => space_text(space),
             Self::OtherSurface { ours, theirs, vertices, of } => surface_text(ours, theirs, *vertices, *of),
+            Self::OtherNets { mistake, vertices, of } => nets_text(*mistake, *vertices, *of),
             Self::Displaced(displaced) => displaced_text(displaced),
             Self::Moved { vertices, farthest, distance, triangle } => {
                 moved_text(*vertices, *farthest, *distance, *triangle)
@@ -330,7 +341,70 @@ fn alignment_text(alignment: &Alignment) -> String {
     if *offset != DVec3::ZERO {
         parts.push(format!("moved (by {})", point(*offset)));
     }
-    format!("Its coordinates are {}. All that follows is in our coordinates.", parts.join(" and "))
+    let look = axes_hint(alignment).map_or(String::new(), |hint| format!(" {hint}"));
+    format!("Its coordinates are {}.{look} All that follows is in our coordinates.", parts.join(" and "))
+}
+
+/// What usually turns or mirrors axes like this, in a sentence.
+fn axes_hint(alignment: &Alignment) -> Option<&'static str> {
+    let order = alignment.axes.map(|(axis, _)| axis);
+    match (order, alignment.mirrors()) {
+        _ if !alignment.turns() => None,
+        ([0, 2, 1], false) => Some("Look at the axis that points up: one of the two has Y up, and the other Z up."),
+        ([0, 2, 1], true) => Some("Look at the axis that points up and at the handedness: both differ."),
+        ([0, 1, 2], true) => {
+            Some("Look at the handedness: one of the two has left-handed coordinates, and the other right-handed ones.")
+        }
+        _ => Some("Look at the convention of axes with which the mesh is imported."),
+    }
+}
+
+fn space_text(space: &Space) -> String {
+    const WRITTEN: &str = "before they are written";
+    let by_camera = "in clip space, by this camera's matrix";
+    let (what, look) = match space.kind {
+        SpaceKind::View => ("in view space, seen from this camera".to_owned(), "the view matrix is applied"),
+        SpaceKind::Clip => (by_camera.to_owned(), "the view-projection matrix is applied"),
+        SpaceKind::DividedClip => {
+            (format!("{by_camera}, and divided by w"), "the view-projection matrix and the division by w are applied")
+        }
+        SpaceKind::Turned { axis, degrees, scale, offset, is_mirrored } => {
+            (turned_text(axis, degrees, is_mirrored) + &moved_part(scale, offset), "a model matrix is applied")
+        }
+    };
+    format!("Its coordinates are {what}. Look whether {look} {WRITTEN}. All that follows is in our coordinates.")
+}
+
+fn turned_text(axis: DVec3, degrees: f64, is_mirrored: bool) -> String {
+    let [x, y, z] = axis.to_array().map(plain);
+    let mirrored = if is_mirrored { "mirrored at the origin and " } else { "" };
+    format!("{mirrored}turned by {} degrees about ({x}, {y}, {z})", short(degrees))
+}
+
+/// A number without what rounding leaves of 0.
+fn plain(number: f64) -> String {
+    short((number * 1e6).round() / 1e6)
+}
+
+fn moved_part(scale: f64, offset: DVec3) -> String {
+    let mut text = String::new();
+    if scale != 1.0 {
+        text += &format!(", scaled ({} times ours)", short(scale));
+    }
+    if offset.length() > 1e-6 {
+        let [x, y, z] = offset.to_array().map(plain);
+        text += &format!(", moved by ({x}, {y}, {z})");
+    }
+    text
+}
+
+fn nets_text(mistake: NetMistake, vertices: u64, of: u64) -> String {
+    let [what, look] = mistake.text();
+    format!(
+        "Its control points are others: {} of {} vertices are off our surface, and lie on one {what}. {look}",
+        grouped(vertices),
+        grouped(of)
+    )
 }
 
 /// The option that gives a surface.

@@ -4,10 +4,11 @@ use std::borrow::Cow;
 
 use glam::{DVec3, Vec3};
 
+use super::net_mistakes::NetMistake;
 use super::patch_starts::patch_starts;
 use crate::mesh::{Mesh, Topology};
 use crate::tessellate::{
-    Clip, FIXED_ONE, Inputs, LimitSurface, Lod, Partitioning, Tessellated, Tessellation, tessellate,
+    Clip, ControlNet, FIXED_ONE, Inputs, LimitSurface, Lod, Partitioning, Tessellated, Tessellation, Vertex, tessellate,
 };
 use crate::truth::{Triangles, closest_on_triangle};
 
@@ -19,8 +20,40 @@ pub(super) struct Locator<'a> {
     tree: Triangles,
     /// The surface that the triangles approximate; `None` if they are the surface themselves.
     limit: Option<LimitSurface<'a>>,
+    /// What is wrong with that surface's control points.
+    mistake: Option<NetMistake>,
     /// How far the surface is from the triangles, in object units.
     sag: f64,
+}
+
+/// A surface of ours, or what a mistake makes of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct OwnSurface {
+    pub inputs: Inputs,
+    pub mistake: Option<NetMistake>,
+}
+
+impl OwnSurface {
+    /// Where vertices of ours would be on it.
+    pub(super) fn positions(&self, mesh: &Mesh, topology: &Topology, vertices: &[Vertex]) -> Vec<Vec3> {
+        let limit = LimitSurface::new(mesh, topology, &self.inputs);
+        let position = |vertex: &Vertex| {
+            let [u, v] = vertex.domain().map(|weight| f64::from(weight) / f64::from(FIXED_ONE));
+            let net = with_mistake(limit.net(vertex.patch()), self.mistake);
+            limit.position(vertex.patch(), &net, u, v).as_vec3()
+        };
+        vertices.iter().map(position).collect()
+    }
+}
+
+impl From<Inputs> for OwnSurface {
+    fn from(inputs: Inputs) -> Self {
+        Self { inputs, mistake: None }
+    }
+}
+
+fn with_mistake(net: ControlNet, mistake: Option<NetMistake>) -> ControlNet {
+    mistake.map_or(net, |mistake| mistake.apply(net))
 }
 
 /// Where a position lies on the surface.
@@ -44,9 +77,10 @@ impl<'a> Locator<'a> {
     pub(super) fn of_surface(
         mesh: &'a Mesh,
         topology: &'a Topology,
-        inputs: &Inputs,
+        surface: &OwnSurface,
         triangles: usize,
     ) -> Option<Self> {
+        let OwnSurface { inputs, mistake } = surface;
         let segments = ((triangles / topology.patches.len().max(1)) as f32).sqrt().floor().clamp(1.0, 16.0);
         let tessellation = Tessellation {
             partitioning: Partitioning::Subtriangulation,
@@ -56,24 +90,37 @@ impl<'a> Locator<'a> {
             cull_back_faces: false,
             ..inputs.tessellation
         };
-        let cut = tessellate(mesh, topology, &Inputs { tessellation, ..*inputs }, None);
+        let mut cut = tessellate(mesh, topology, &Inputs { tessellation, ..*inputs }, None);
+        if mistake.is_some() {
+            let positions = surface.positions(mesh, topology, &cut.vertices);
+            cut.vertices.iter_mut().zip(positions).for_each(|(vertex, position)| vertex.position = position.to_array());
+        }
         let limit = LimitSurface::new(mesh, topology, inputs);
-        Self::new(Cow::Owned(cut), topology, Some(limit))
+        Self::new(Cow::Owned(cut), topology, Some(limit), *mistake)
     }
 
     /// Prepares the triangles that were emitted, which are the surface themselves. Returns `None` if there are none.
     pub(super) fn of_emitted(emitted: &'a Tessellated, topology: &Topology) -> Option<Self> {
-        Self::new(Cow::Borrowed(emitted), topology, None)
+        Self::new(Cow::Borrowed(emitted), topology, None, None)
     }
 
-    fn new(cut: Cow<'a, Tessellated>, topology: &Topology, limit: Option<LimitSurface<'a>>) -> Option<Self> {
+    fn new(
+        cut: Cow<'a, Tessellated>,
+        topology: &Topology,
+        limit: Option<LimitSurface<'a>>,
+        mistake: Option<NetMistake>,
+    ) -> Option<Self> {
         let at = |index: u32| Vec3::from(cut.vertices[index as usize].position);
         let tree = Triangles::new(cut.triangles.iter().map(|triangle| triangle.map(at)))?;
         let patches = cut.triangles.iter().map(|triangle| cut.vertices[triangle[0] as usize].patch());
         let starts = patch_starts(patches, topology.patches.len());
-        let mut made = Self { starts, tree, limit, cut, sag: 0.0 };
+        let mut made = Self { starts, tree, limit, mistake, cut, sag: 0.0 };
         made.sag = made.largest_sag();
         Some(made)
+    }
+
+    fn net(&self, limit: &LimitSurface, patch: u32) -> ControlNet {
+        with_mistake(limit.net(patch), self.mistake)
     }
 
     /// The largest distance between the middles of triangles and the surface there.
@@ -86,7 +133,7 @@ impl<'a> Locator<'a> {
                 corners.iter().map(|vertex| f64::from(vertex.domain()[k])).sum::<f64>() / (3.0 * f64::from(FIXED_ONE))
             });
             let patch = corners[0].patch();
-            limit.position(patch, &limit.net(patch), u, v).distance(middle)
+            limit.position(patch, &self.net(limit, patch), u, v).distance(middle)
         };
         self.cut.triangles.iter().map(sag).fold(0.0, f64::max)
     }
@@ -135,7 +182,7 @@ impl<'a> Locator<'a> {
     pub(super) fn point(&self, position: DVec3) -> Option<DVec3> {
         let Some(limit) = &self.limit else { return Some(self.tree.closest(position, f64::INFINITY)?.point) };
         let Place { patch, weights: [u, v], .. } = self.place(position)?;
-        Some(limit.position(patch, &limit.net(patch), u, v))
+        Some(limit.position(patch, &self.net(limit, patch), u, v))
     }
 
     /// The nearest point of one patch; `None` if it has no triangles.
@@ -161,7 +208,7 @@ impl<'a> Locator<'a> {
         match &self.limit {
             None => Place { patch, weights: start, distance },
             Some(limit) => {
-                let (weights, distance) = limit.nearest_in_space(patch, &limit.net(patch), start, position);
+                let (weights, distance) = limit.nearest_in_space(patch, &self.net(limit, patch), start, position);
                 Place { patch, weights, distance }
             }
         }
@@ -172,7 +219,7 @@ impl<'a> Locator<'a> {
 mod tests {
     use super::*;
     use crate::mesh::Shape;
-    use crate::tessellate::{LodView, Surface, Vertex};
+    use crate::tessellate::{LodView, Surface};
 
     /// Checks that a locator finds emitted vertices at their own places.
     fn check(locator: &Locator, vertices: &[Vertex]) {
@@ -198,7 +245,7 @@ mod tests {
         for surface in Surface::ALL {
             let inputs = Inputs::new(&Tessellation { surface, ..Tessellation::default() }, LodView::default());
             let out = tessellate(&mesh, &topology, &inputs, None);
-            check(&Locator::of_surface(&mesh, &topology, &inputs, FINE).expect("it has patches"), &out.vertices);
+            check(&Locator::of_surface(&mesh, &topology, &inputs.into(), FINE).expect("it has patches"), &out.vertices);
             check(&Locator::of_emitted(&out, &topology).expect("it has triangles"), &out.vertices);
         }
     }

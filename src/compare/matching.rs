@@ -7,7 +7,8 @@ use glam::DVec3;
 use super::assignment::{Part, domain_area};
 use super::domain_points::DomainPoints;
 use super::locator::Place;
-use super::own_mesh::OwnPatch;
+use super::own_mesh::{OwnPatch, is_thin};
+use crate::tessellate::FIXED_ONE;
 
 /// How a patch of theirs differs from ours.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -43,12 +44,13 @@ pub(super) struct Reach {
 pub(super) const LEAST_REACH: f64 = 2e-4;
 
 impl Reach {
-    /// The largest area in the domain of a triangle that rounding alone may turn around.
+    /// The largest area in the domain of a triangle that rounding alone may turn around: that of coordinates, or of the tessellator's
+    /// fixed-point places.
     fn thin(&self, [a, b, c]: [[f64; 2]; 3]) -> f64 {
         let length = |[p, q]: [[f64; 2]; 2]| (p[0] - q[0]).hypot(p[1] - q[1]);
         let is_rounded = self.fit.is_finite() && self.domain > LEAST_REACH;
         let longest = [[a, b], [b, c], [c, a]].map(length).into_iter().fold(0.0, f64::max);
-        if is_rounded { self.domain * longest } else { 0.0 }
+        if is_rounded { self.domain * longest } else { 2.0 * longest / f64::from(FIXED_ONE) }
     }
 }
 
@@ -58,7 +60,7 @@ impl Match {
         for weights in part.triangles.iter().map(|triangle| part.weights(*triangle)) {
             let (area, thin) = (domain_area(weights), reach.thin(weights));
             none.flipped += u64::from(area < -thin);
-            none.thin += u64::from(thin > 0.0 && area.abs() <= thin);
+            none.thin += u64::from(area.abs() <= thin);
         }
         let Some((own_vertices, slid)) = own_vertices(part, own, reach) else { return none };
         let mut is_covered = vec![false; own.positions.len()];
@@ -88,6 +90,7 @@ impl Match {
 /// we have no point than a few vertices that were moved.
 fn own_vertices(part: &Part, own: &OwnPatch, reach: Reach) -> Option<(Vec<Option<u32>>, u64)> {
     let points = DomainPoints::new(own.weights.iter().copied());
+    let own_weights = |vertex: u32| own.weights[vertex as usize];
     let on_surface = |place: &Place| place.distance <= reach.fit;
     let nearest = |place: &Place| points.nearest(place.weights, reach.domain).filter(|_| on_surface(place));
     let mut found: Vec<Option<u32>> = part.places.iter().map(nearest).collect();
@@ -102,14 +105,25 @@ fn own_vertices(part: &Part, own: &OwnPatch, reach: Reach) -> Option<(Vec<Option
     }
     for (place, found) in part.places.iter().zip(&mut found).filter(|(_, found)| found.is_none()) {
         let distance = |vertex: u32| {
-            let [u, v] = own.weights[vertex as usize];
+            let [u, v] = own_weights(vertex);
             (u - place.weights[0]).hypot(v - place.weights[1])
         };
         let left = (0..own.weights.len() as u32).filter(|vertex| is_left[*vertex as usize]);
-        *found = left.min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
-        found.iter().for_each(|vertex| is_left[*vertex as usize] = false);
+        let vertex = left.min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
+        // A vertex that is moved along the surface stays on its side. On another side it is one of other factors.
+        let sides = |weights: [f64; 2]| sides_at(weights, reach.domain);
+        if on_surface(place) && vertex.is_some_and(|own| sides(own_weights(own)) != sides(place.weights)) {
+            return None;
+        }
+        vertex.iter().for_each(|vertex| is_left[*vertex as usize] = false);
+        *found = vertex;
     }
     Some((found, slid as u64))
+}
+
+/// On which sides of the patch a place is: those whose opposite corner has no weight there.
+fn sides_at([u, v]: [f64; 2], reach: f64) -> [bool; 3] {
+    [u, v, 1.0 - u - v].map(|weight| weight.abs() <= reach)
 }
 
 /// The area that their triangles cover, as a part of the patch's. Triangles that occur twice count once.
@@ -131,11 +145,14 @@ impl Triangles {
     fn of(part: &Part, own: &OwnPatch, own_vertices: &[Option<u32>], reach: f64) -> Self {
         // Points that are nearer to each other than can be told apart are one.
         let points = DomainPoints::new(own.weights.iter().copied());
-        let first = |vertex: u32| points.first(own.weights[vertex as usize], reach).unwrap_or(vertex);
+        let first = |vertex: u32| {
+            let vertex = own.firsts[vertex as usize];
+            points.first(own.weights[vertex as usize], reach).unwrap_or(vertex)
+        };
         let firsts: Vec<u32> = (0..own.weights.len() as u32).map(first).collect();
         let mut counts: HashMap<[u32; 3], [u64; 2]> = HashMap::new();
         for [a, b, c] in own.triangles.iter().map(|triangle| triangle.map(|vertex| firsts[vertex as usize])) {
-            if a != b && b != c && c != a {
+            if !is_thin([a, b, c]) {
                 counts.entry(sorted([a, b, c])).or_default()[0] += 1;
             }
         }
@@ -143,7 +160,7 @@ impl Triangles {
         for triangle in &part.triangles {
             let ours = triangle.map(|corner| own_vertices[corner as usize].map(|vertex| firsts[vertex as usize]));
             match ours {
-                [Some(a), Some(b), Some(c)] if a != b && b != c && c != a => {
+                [Some(a), Some(b), Some(c)] if !is_thin([a, b, c]) => {
                     counts.entry(sorted([a, b, c])).or_default()[1] += 1;
                 }
                 // A triangle between two vertices that can't be told apart has no area.
@@ -227,9 +244,13 @@ mod tests {
     #[test]
     fn a_vertex_that_was_moved_along_the_surface_is_no_other_factor() {
         let mut moved = part(&own().triangles, 0);
-        moved.places[3].weights = [0.45, 0.45];
+        moved.places[3].weights = [0.45, 0.55];
         let found = Match::of(&moved, &own(), Reach { domain: 0.01, fit: 1e-6 });
         assert_eq!((found.has_same_points, found.slid, found.own_vertices[3]), (true, 1, Some(3)));
+        // It lies on another side than the point that is left.
+        let mut elsewhere = moved.clone();
+        elsewhere.places[3].weights = [0.25, 0.0];
+        assert!(!Match::of(&elsewhere, &own(), Reach { domain: 0.01, fit: 1e-6 }).has_same_points);
         // The side has a point more than ours.
         moved.places.push(Place { patch: 0, weights: [0.75, 0.25], distance: 0.0 });
         moved.vertices.push(6);

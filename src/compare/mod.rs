@@ -14,14 +14,17 @@ mod foreign;
 mod half_floats;
 mod locator;
 mod matching;
+mod net_mistakes;
 mod outcomes;
 mod own_mesh;
 mod patch_starts;
+mod spaces;
 mod surfaces;
 #[cfg(test)]
 mod tests;
+mod twins;
 
-use glam::{DVec3, Vec3};
+use glam::{DMat4, DVec3, Vec3};
 
 pub(crate) use findings::{Finding, plural, point};
 pub(crate) use foreign::ForeignMesh;
@@ -32,14 +35,16 @@ pub(crate) use patch_starts::patch_starts;
 use crate::mesh::{Bounds, Mesh, Topology};
 use crate::progress::{Cancelled, Progress};
 use crate::tessellate::{Convention, Displacement, HullFactors, Inputs, Tessellated, Tessellation, tessellate};
-use crate::view::ulp;
+use crate::view::{ulp, ulp_at};
 
-use alignment::Alignment;
+use alignment::{Alignment, Frame};
 use assignment::{Assignment, Overlaid};
-use locator::{FINE, Locator};
+use locator::{FINE, Locator, OwnSurface};
 use outcomes::Outcomes;
 use own_mesh::OwnMesh;
+use spaces::Space;
 use surfaces::Trial;
+use twins::Twins;
 
 /// Our tessellation of a mesh, which has patches.
 #[derive(Clone, Copy)]
@@ -49,6 +54,8 @@ pub(crate) struct Ours<'a> {
     pub inputs: &'a Inputs,
     /// Factors that were given in place of LOD's, one for each patch.
     pub given: Option<&'a [HullFactors]>,
+    /// The other program's matrix from object units to clip space, if it was given.
+    pub matrix: Option<DMat4>,
     pub tessellated: &'a Tessellated,
 }
 
@@ -117,16 +124,28 @@ pub(crate) fn compare(
     progress: &Progress,
 ) -> Result<Comparison, Cancelled> {
     let empty = Comparison::new(ours, theirs);
-    let Some(own) = Locator::of_own(ours) else { return Ok(empty) };
+    if ours.topology.patches.is_empty() {
+        return Ok(empty);
+    }
     let asked = exactness.within;
     let halves = half_floats::resolution(theirs, ours);
-    let exactness = exactness.rounded(halves);
+    let mut exactness = exactness.rounded(halves);
     let fit = (FIT * empty.diagonal).max(exactness.within).max(2.0 * exactness.resolution);
-    let alignment = Alignment::find(theirs, &own, &ours.emitted_positions(), fit);
-    let positions = in_our_coordinates(theirs, alignment.as_ref());
-    let laid = Laid::new(ours, Overlaid::new(theirs, ours.topology, own, &positions, fit, progress)?, progress)?;
+    let apart = apart(asked, empty.ulp);
+    let own_mesh = OwnMesh::new(ours.tessellated, apart);
+    let twins = |own: &[Vec3], positions: &[DVec3]| Twins::find(&own_mesh, own, theirs, positions, apart);
+    let as_they_are = in_our_coordinates(theirs, None);
+    let is_ours = twins(&ours.vertices(), &as_they_are).are_all();
+    let own = if is_ours { None } else { Locator::of_own(ours) };
+    let frame = own.as_ref().and_then(|own| Alignment::find(theirs, own, ours, fit));
+    let positions = in_our_coordinates(theirs, frame.as_ref());
+    if let Some(Frame::Space(space)) = &frame {
+        exactness.within = exactness.within.max(rounding_in(space, theirs));
+    }
+    let twins = |own: &[Vec3]| twins(own, &positions);
+    let on_own = Overlaid::new(theirs, ours.topology, (own, twins(&ours.vertices())), &positions, fit, progress)?;
+    let laid = Laid::new(ours, on_own, twins, progress)?;
     let assignment = Assignment::new(&laid.overlaid, progress)?;
-    let own_mesh = OwnMesh::new(ours.tessellated);
     let outcomes = Outcomes::new(ours, &own_mesh, &assignment, exactness, progress)?;
     let mut found = Comparison {
         from_surface: laid.overlaid.places.iter().map(|place| place.distance).fold(0.0, f64::max),
@@ -136,7 +155,7 @@ pub(crate) fn compare(
         strays: laid.strays().iter().map(|index| positions[*index as usize]).collect(),
         ..empty
     };
-    found.findings.extend(alignment.map(Finding::Aligned));
+    found.findings.extend(frame.map(Finding::Aligned));
     if theirs.not_finite > 0 {
         found.findings.push(Finding::NotFinite { count: theirs.not_finite });
     }
@@ -144,7 +163,7 @@ pub(crate) fn compare(
         Some(other_mesh) => found.findings.push(other_mesh),
         None => {
             let conventions = Conventions { ours, assignment: &assignment, exactness, progress };
-            found.name_differences(&laid, &outcomes, alignment.as_ref(), &conventions)?;
+            found.name_differences(&laid, &outcomes, frame.as_ref(), &conventions)?;
             found.findings.extend(halves.and_then(|_| found.rounded_to_halves(&laid, asked)));
         }
     }
@@ -152,11 +171,25 @@ pub(crate) fn compare(
     Ok(found)
 }
 
+/// How far apart positions of ours are at most that can't be told apart, in object units: twice what theirs may be away from ours, if
+/// that is no more than rounding.
+fn apart(within: f64, ulp: f64) -> f64 {
+    const ROUNDING: f64 = 16.0;
+    2.0 * within.min(ROUNDING * ulp)
+}
+
+/// How far the rounding of coordinates in another space moves places in ours, in object units.
+fn rounding_in(space: &Space, theirs: &ForeignMesh) -> f64 {
+    const UNITS: f64 = 4.0;
+    let moved = |position: &Vec3| ulp_at(position.abs().max_element()) * space.stretch(position.as_dvec3());
+    UNITS * theirs.positions.iter().map(moved).fold(0.0, f64::max)
+}
+
 /// Their vertices in our coordinates, if it is known how these follow from theirs.
-fn in_our_coordinates(theirs: &ForeignMesh, alignment: Option<&Alignment>) -> Vec<DVec3> {
+fn in_our_coordinates(theirs: &ForeignMesh, frame: Option<&Frame>) -> Vec<DVec3> {
     let positions = theirs.positions.iter().map(|position| position.as_dvec3());
-    match alignment {
-        Some(alignment) => positions.map(|position| alignment.ours(position)).collect(),
+    match frame {
+        Some(frame) => positions.map(|position| frame.ours(position)).collect(),
         None => positions.collect(),
     }
 }
@@ -165,8 +198,8 @@ fn in_our_coordinates(theirs: &ForeignMesh, alignment: Option<&Alignment>) -> Ve
 struct Laid<'a> {
     /// Over our own surface, over another one of ours, or over our own without displacement.
     overlaid: Overlaid<'a>,
-    /// Our inputs with the surface that they lie on, if it isn't our own.
-    other: Option<Inputs>,
+    /// The surface that they lie on, if it isn't our own.
+    other: Option<OwnSurface>,
     /// How many of them are off our own surface.
     off_own: u64,
     /// Whether most of them lie on the surface. Otherwise they are displaced from it, or belong to another mesh.
@@ -180,23 +213,32 @@ impl<'a> Laid<'a> {
     ///
     /// # Errors
     /// [`Cancelled`].
-    fn new(ours: &Ours<'a>, on_own: Overlaid<'a>, progress: &Progress) -> Result<Self, Cancelled> {
-        let surface = |inputs: &Inputs| Locator::of_surface(ours.mesh, ours.topology, inputs, FINE);
+    fn new(
+        ours: &Ours<'a>,
+        on_own: Overlaid<'a>,
+        twins: impl Fn(&[Vec3]) -> Twins<'a>,
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
+        let Ours { mesh, topology, tessellated, .. } = *ours;
+        let surface = |own: &OwnSurface| Locator::of_surface(mesh, topology, own, FINE);
         let (fit, strays) = (on_own.fit, on_own.strays());
         let other = match strays.is_empty() {
             true => None,
             false => Trial::new(ours.mesh, &on_own, ours.inputs, &strays).other_surface(progress)?,
         };
-        let overlaid = match other.as_ref().and_then(surface) {
-            Some(locator) => on_own.over(locator, progress)?,
+        let overlaid = match &other {
+            Some(other) => {
+                let own = other.positions(mesh, topology, &tessellated.vertices);
+                on_own.over((surface(other), twins(&own)), progress)?
+            }
             None => on_own,
         };
         let is_fitted = overlaid.strays().len() as f64 <= STRAYS * overlaid.positions.len() as f64;
-        let base = if is_fitted { None } else { surface(&undisplaced(ours.inputs)) };
-        let overlaid = match base {
+        let base = || (surface(&undisplaced(ours.inputs).into()), Twins::none(overlaid.theirs));
+        let overlaid = match is_fitted {
+            true => overlaid,
             // Where they are displaced, every vertex counts as near its place.
-            Some(base) => Overlaid { fit: f64::INFINITY, ..overlaid.over(base, progress)? },
-            None => overlaid,
+            false => Overlaid { fit: f64::INFINITY, ..overlaid.over(base(), progress)? },
         };
         Ok(Self { overlaid, other, off_own: strays.len() as u64, is_fitted, fit })
     }
@@ -217,19 +259,24 @@ impl<'a> Laid<'a> {
 
     /// Names their surface, if it isn't ours.
     fn other_surface(&self, ours: &Ours) -> Option<Finding> {
-        let theirs = self.other.as_ref()?.tessellation;
+        let OwnSurface { inputs: Inputs { tessellation: theirs, .. }, mistake } = self.other?;
         let (vertices, of) = (self.off_own, self.overlaid.positions.len() as u64);
-        Some(Finding::OtherSurface { ours: ours.inputs.tessellation, theirs, vertices, of })
+        Some(match mistake {
+            Some(mistake) => Finding::OtherNets { mistake, vertices, of },
+            None => Finding::OtherSurface { ours: ours.inputs.tessellation, theirs, vertices, of },
+        })
     }
 }
 
 impl Ours<'_> {
     /// The positions that are emitted, or else those of the mesh.
     fn emitted_positions(&self) -> Vec<Vec3> {
-        match &self.tessellated.vertices[..] {
-            [] => self.topology.points.clone(),
-            emitted => emitted.iter().map(|vertex| vertex.position.into()).collect(),
-        }
+        if self.tessellated.vertices.is_empty() { self.topology.points.clone() } else { self.vertices() }
+    }
+
+    /// The positions of the vertices that are emitted.
+    fn vertices(&self) -> Vec<Vec3> {
+        self.tessellated.vertices.iter().map(|vertex| vertex.position.into()).collect()
     }
 }
 
@@ -261,7 +308,7 @@ impl Comparison {
         &mut self,
         laid: &Laid,
         outcomes: &Outcomes,
-        alignment: Option<&Alignment>,
+        frame: Option<&Frame>,
         conventions: &Conventions,
     ) -> Result<(), Cancelled> {
         let Conventions { ours, progress, .. } = *conventions;
@@ -272,12 +319,12 @@ impl Comparison {
             self.findings.push(Finding::Displaced(outcomes.displaced(ours, laid.fit)));
         }
         let explained = outcomes.explain(ours, laid.other.as_ref(), &mut self.findings, progress)?;
-        outcomes.judge_triangles(ours, alignment, &mut self.findings);
+        outcomes.judge_triangles(ours, frame.is_some_and(Frame::mirrors), &mut self.findings);
         if let Some(sides) = explained {
             (self.sides, self.different) = (sides, outcomes.different_at_all());
         }
         self.leave_to_factors(conventions)?;
-        self.judge_distances(conventions)
+        self.judge_distances(outcomes, conventions)
     }
 
     /// Says that their coordinates, which are numbers of 16 bits, are farther from ours than the distance that was asked for. Where
@@ -315,7 +362,7 @@ impl Comparison {
     ///
     /// # Errors
     /// [`Cancelled`].
-    fn judge_distances(&mut self, conventions: &Conventions) -> Result<(), Cancelled> {
+    fn judge_distances(&mut self, outcomes: &Outcomes, conventions: &Conventions) -> Result<(), Cancelled> {
         let Conventions { ours, exactness: Exactness { within, .. }, .. } = *conventions;
         let Some(farthest) = self.farthest.filter(|farthest| farthest.distance > within) else { return Ok(()) };
         if !self.findings.iter().all(Finding::is_about_coordinates) {
@@ -328,6 +375,7 @@ impl Comparison {
         let triangle = ours.topology.patches[farthest.patch as usize].triangle;
         self.findings.push(match conventions.other(is_valid, is_near)? {
             Some(theirs) => Finding::Convention { ours: own, theirs },
+            None if outcomes.are_within(within) => return Ok(()),
             None => Finding::Rounding { farthest, ulps: farthest.distance / self.ulp, triangle },
         });
         Ok(())
@@ -361,7 +409,7 @@ impl Conventions<'_> {
             let inputs = Inputs { tessellation, ..*ours.inputs };
             let tessellated = tessellate(ours.mesh, ours.topology, &inputs, None);
             let turned = Ours { inputs: &inputs, tessellated: &tessellated, ..*ours };
-            let own_mesh = OwnMesh::new(&tessellated);
+            let own_mesh = OwnMesh::new(&tessellated, apart(exactness.within, ulp(ours.topology)));
             if suits(&Outcomes::new(&turned, &own_mesh, assignment, exactness, progress)?) {
                 return Ok(Some(theirs));
             }
@@ -378,7 +426,7 @@ fn undisplaced(inputs: &Inputs) -> Inputs {
 impl<'a> Locator<'a> {
     /// Our own surface. If it is displaced that is what was emitted, since heights are read from levels that depend on factors.
     fn of_own(ours: &Ours<'a>) -> Option<Self> {
-        let exact = || Self::of_surface(ours.mesh, ours.topology, &undisplaced(ours.inputs), FINE);
+        let exact = || Self::of_surface(ours.mesh, ours.topology, &undisplaced(ours.inputs).into(), FINE);
         match ours.inputs.tessellation.displacement {
             Displacement::Off => exact(),
             _ => Self::of_emitted(ours.tessellated, ours.topology).or_else(exact),

@@ -1,11 +1,11 @@
 //! What came out for every patch, and what follows from all of them together.
 
-use super::alignment::Alignment;
 use super::assignment::{Assignment, made_of_all};
 use super::corner_orders::CornerOrder;
 use super::cuts::{Cut, cuts_of};
 use super::explanations::{Explainer, Explanation, Rule};
 use super::findings::{Displaced, Finding};
+use super::locator::OwnSurface;
 use super::matching::{Farthest, LEAST_REACH, Match, Reach};
 use super::own_mesh::{OwnMesh, OwnPatch};
 use super::{Exactness, Ours};
@@ -34,6 +34,8 @@ struct Outcome {
     /// Without the list of vertices.
     found: Match,
     farthest: Option<Farthest>,
+    /// How far the last bits of LOD's factors may move its points, in object units.
+    slack: f64,
     offsets: Offsets,
 }
 
@@ -98,6 +100,8 @@ const LARGEST_REACH: f64 = 0.25;
 const MOST_SEGMENTS: f64 = 64.0;
 /// Points of displaced patches are sought within this part of a segment.
 const OF_SEGMENT: f64 = 0.35;
+/// How far the last bits of LOD's factors, which devices compute differently, move points in the domain: by a few units of fixed point.
+const LAST_BITS: f64 = 4.0 / 65536.0;
 /// How many triangles a finding names.
 const NAMED: usize = 10;
 /// How many sides are looked at for the partitionings that they suit.
@@ -130,14 +134,17 @@ impl<'a> Outcomes<'a> {
             Reach { domain: exact_reach(ours, patch, exact).clamp(LEAST_REACH, LARGEST_REACH / most), fit }
         };
         let reaches: Vec<Reach> = patches.clone().map(reach).collect();
+        let has_lod = ours.given.is_none() && ours.inputs.tessellation.used_lod() != Lod::Uniform;
         let theirs = |patch: &u32| assignment.count(*patch) > 0;
-        let emitted = |patch: &u32| own_mesh.count(*patch) > 0;
+        let emitted = |patch: &u32| own_mesh.emits(*patch);
         let all = made_of_all(patches.len(), progress, |patch| {
             let patch = patch as u32;
             if !(theirs(&patch) && emitted(&patch)) {
                 return Outcome::default();
             }
-            Outcome::of(assignment, &own_mesh.patch(patch), patch, reaches[patch as usize])
+            let own = own_mesh.patch(patch);
+            let slack = if has_lod { LAST_BITS * own.stretch() } else { 0.0 };
+            Outcome { slack, ..Outcome::of(assignment, &own, patch, reaches[patch as usize]) }
         })?;
         let missing = patches.clone().filter(|patch| emitted(patch) && !theirs(patch)).collect();
         let additional = patches.filter(|patch| theirs(patch) && !emitted(patch)).collect();
@@ -178,6 +185,12 @@ impl<'a> Outcomes<'a> {
         self.all.iter().filter_map(|outcome| outcome.farthest).reduce(Farthest::farther)
     }
 
+    /// Whether vertices are no farther from ours than `within` object units, and than the last bits of LOD's factors move points.
+    pub(super) fn are_within(&self, within: f64) -> bool {
+        let is_within = |outcome: &Outcome| outcome.farthest.is_none_or(|far| far.distance <= within + outcome.slack);
+        self.all.iter().all(is_within)
+    }
+
     /// Says how vertices are displaced, of which none is expected on the surface. What is nearer than `fit` isn't displaced.
     pub(super) fn displaced(&self, ours: &Ours, fit: f64) -> Displaced {
         let overlaid = self.assignment.overlaid;
@@ -216,15 +229,15 @@ impl<'a> Outcomes<'a> {
         })
     }
 
-    /// Explains where points differ, and returns the sides that are cut differently. `other` are our inputs with the surface that
-    /// their vertices lie on, if it isn't ours. `None` if no point differs but for that surface or for displacement.
+    /// Explains where points differ, and returns the sides that are cut differently. `other` is the surface that their vertices lie on, if
+    /// it isn't ours. `None` if no point differs but for that surface or for displacement.
     ///
     /// # Errors
     /// [`Cancelled`].
     pub(super) fn explain(
         &self,
         ours: &Ours,
-        other: Option<&Inputs>,
+        other: Option<&OwnSurface>,
         findings: &mut Vec<Finding>,
         progress: &Progress,
     ) -> Result<Option<Vec<SideDifference>>, Cancelled> {
@@ -233,10 +246,23 @@ impl<'a> Outcomes<'a> {
             return Ok(Some(Vec::new()));
         }
         let Ours { mesh, inputs, given, .. } = *ours;
-        let explainer = Explainer { mesh, assignment: self.assignment, inputs, other, given, reaches: &self.reaches };
+        let reaches = &self.reaches;
+        let explainer = Explainer {
+            mesh,
+            assignment: self.assignment,
+            inputs,
+            other: other.map(|other| &other.inputs),
+            given,
+            reaches,
+        };
         let explanations = explainer.explain(&different, progress)?;
         let own = Explanation { partitioning: inputs.tessellation.partitioning, rule: Rule::Same };
-        if explanations.first() == Some(&own) {
+        if explanations.first() == Some(&own) || explainer.are_last_bits(&different) {
+            return Ok(None);
+        }
+        // LOD measures control points, so that others have other factors, which are no mistake beside that.
+        let measures = given.is_none() && !matches!(inputs.tessellation.used_lod(), Lod::Uniform | Lod::Distance);
+        if measures && explanations.is_empty() && other.is_some_and(|other| other.mistake.is_some()) {
             return Ok(None);
         }
         let OtherCuts { sides, inside, suits } = self.other_cuts(ours, &different);
@@ -320,8 +346,9 @@ impl<'a> Outcomes<'a> {
     }
 
     /// Says what is wrong with triangles: those that are missing, doubled, wound the other way, or join other points.
-    pub(super) fn judge_triangles(&self, ours: &Ours, alignment: Option<&Alignment>, findings: &mut Vec<Finding>) {
-        let emitted = (0..self.all.len() as u32).filter(|patch| self.own_mesh.count(*patch) > 0).count() as u64;
+    /// `is_mirrored` says that their coordinates are.
+    pub(super) fn judge_triangles(&self, ours: &Ours, is_mirrored: bool, findings: &mut Vec<Finding>) {
+        let emitted = (0..self.all.len() as u32).filter(|patch| self.own_mesh.emits(*patch)).count() as u64;
         let names = |patches: &[u32]| -> Vec<u32> {
             patches.iter().take(NAMED).map(|patch| ours.topology.patches[*patch as usize].triangle).collect()
         };
@@ -353,7 +380,6 @@ impl<'a> Outcomes<'a> {
         let of = self.compared_triangles();
         let flipped = if flipped > 0 && flipped + thin == of { of } else { flipped };
         // What is mirrored shows its other side, unless its winding was turned as well.
-        let is_mirrored = alignment.is_some_and(Alignment::mirrors);
         if flipped > 0 && !(is_mirrored && flipped == of) {
             findings.push(Finding::Flipped { count: flipped, of });
         }
@@ -403,7 +429,7 @@ impl Outcome {
             farthest = Some(farthest.map_or(apart, |farthest| farthest.farther(apart)));
             offsets.add(theirs - ours, own.normals[own_vertex as usize]);
         }
-        Self { is_compared: true, found: Match { own_vertices: Vec::new(), ..found }, farthest, offsets }
+        Self { is_compared: true, found: Match { own_vertices: Vec::new(), ..found }, farthest, slack: 0.0, offsets }
     }
 }
 

@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use super::assignment::{Overlaid, made_of_all};
 use super::foreign::spread;
-use super::locator::{COARSE, Locator};
+use super::locator::{COARSE, Locator, OwnSurface};
+use super::net_mistakes::{NetMistake, THIRD};
 use crate::mesh::Mesh;
 use crate::progress::{Cancelled, Progress};
 use crate::tessellate::{Displacement, Inputs, Surface, Tessellation};
@@ -50,32 +51,52 @@ impl<'a> Trial<'a> {
         Self { mesh, overlaid, inputs: *inputs, sample: [others, strays].concat(), own }
     }
 
-    /// Returns our inputs with the surface that the vertices lie on; `None` if they lie on none of ours better than on our own.
+    /// Returns the surface of ours that the vertices lie on, or what a usual mistake makes of our own; `None` if they lie on none of these
+    /// better than on our own.
     ///
     /// # Errors
     /// [`Cancelled`].
-    pub(super) fn other_surface(&self, progress: &Progress) -> Result<Option<Inputs>, Cancelled> {
-        let own = self.inputs.tessellation;
-        let mut best: Option<(Tessellation, Fitting)> = None;
-        for tessellation in self.candidates() {
-            let fitting = self.fitting(&tessellation, progress)?;
-            let is_better = best.is_none_or(|(_, other)| fitting.share > other.share + 0.005);
-            if is_better {
-                best = Some((tessellation, fitting));
+    pub(super) fn other_surface(&self, progress: &Progress) -> Result<Option<OwnSurface>, Cancelled> {
+        let found = match self.best(self.candidates(), progress)? {
+            Some(found) => Some(found),
+            None => match self.other_strength(progress)? {
+                Some(found) => Some(found),
+                None => self.mistake(progress)?,
+            },
+        };
+        let own = OwnSurface::from(self.inputs);
+        Ok(found
+            .filter(|(surface, fitting)| *surface != own && fitting.share > self.own + 0.01)
+            .map(|(surface, _)| surface))
+    }
+
+    /// The first of the surfaces that the most vertices lie on, if nearly all do.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    fn best(&self, among: Vec<OwnSurface>, progress: &Progress) -> Result<Option<(OwnSurface, Fitting)>, Cancelled> {
+        let mut best: Option<(OwnSurface, Fitting)> = None;
+        for surface in among {
+            let fitting = self.fitting(&surface, progress)?;
+            if best.is_none_or(|(_, other)| fitting.share > other.share + 0.005) {
+                best = Some((surface, fitting));
             }
         }
-        let found = best.filter(|(_, fitting)| fitting.share >= FOUND);
-        let found = match found {
-            Some(found) => Some(found),
-            None => self.other_strength(progress)?,
-        };
-        let found = found.filter(|(tessellation, fitting)| *tessellation != own && fitting.share > self.own + 0.01);
-        Ok(found.map(|(tessellation, _)| Inputs { tessellation, ..self.inputs }))
+        Ok(best.filter(|(_, fitting)| fitting.share >= FOUND))
+    }
+
+    /// Our inputs without displacement.
+    fn undisplaced(&self) -> Tessellation {
+        Tessellation { displacement: Displacement::Off, ..self.inputs.tessellation }
+    }
+
+    fn surface(&self, tessellation: Tessellation, mistake: Option<NetMistake>) -> OwnSurface {
+        OwnSurface { inputs: Inputs { tessellation, ..self.inputs }, mistake }
     }
 
     /// The surfaces that are tried, without displacement. Our own comes first, if ours is displaced or has a strength.
-    fn candidates(&self) -> Vec<Tessellation> {
-        let own = Tessellation { displacement: Displacement::Off, ..self.inputs.tessellation };
+    fn candidates(&self) -> Vec<OwnSurface> {
+        let own = self.undisplaced();
         let others = Surface::ALL.into_iter().flat_map(|surface| {
             let strengths = if surface.is_phong() { &STRENGTHS[..] } else { &STRENGTHS[..1] };
             strengths.iter().map(move |&alpha| {
@@ -84,41 +105,71 @@ impl<'a> Trial<'a> {
             })
         });
         let others = others.filter(|other| *other != own);
-        std::iter::once(own).filter(|own| *own != self.inputs.tessellation).chain(others).collect()
+        let all = std::iter::once(own).filter(|own| *own != self.inputs.tessellation).chain(others);
+        all.map(|tessellation| self.surface(tessellation, None)).collect()
     }
 
-    /// Seeks the strength of Phong tessellation at which the vertices are nearest to it. Their distance from it is proportional to the
-    /// difference of strengths, about, so that it is sought where two distances say that it is 0.
-    fn other_strength(&self, progress: &Progress) -> Result<Option<(Tessellation, Fitting)>, Cancelled> {
-        const STEPS: usize = 4;
-        let own = Tessellation { displacement: Displacement::Off, ..self.inputs.tessellation };
+    /// Seeks the strength of Phong tessellation at which the vertices are nearest to it.
+    fn other_strength(&self, progress: &Progress) -> Result<Option<(OwnSurface, Fitting)>, Cancelled> {
+        let own = self.undisplaced();
         for surface in [Surface::PhongAen, Surface::Phong] {
-            let at = |alpha: f32| Tessellation { surface, alpha: alpha.clamp(0.0, 1.0), ..own };
-            let [mut least, mut most] = [0.0_f32, 1.0];
-            for _ in 0..STEPS {
-                let [lower, upper] =
-                    [self.fitting(&at(least), progress)?.mean, self.fitting(&at(most), progress)?.mean];
-                // On a flat mesh all strengths are alike.
-                if lower + upper == 0.0 {
-                    break;
-                }
-                let middle = least + (most - least) * (lower / (lower + upper)) as f32;
-                let reach = (most - least) / 10.0;
-                [least, most] = [middle - reach, middle + reach];
-            }
+            let at = |alpha: f32| self.surface(Tessellation { surface, alpha: alpha.clamp(0.0, 1.0), ..own }, None);
             // Nobody means a strength of so many digits.
-            let found = at(((least + most) * 500.0).round() / 1000.0);
-            let fitting = self.fitting(&found, progress)?;
-            if fitting.share >= FOUND {
-                return Ok(Some((found, fitting)));
+            let plain = |alpha: f32| (alpha * 1000.0).round() / 1000.0;
+            if let Some(found) = self.fitted([0.0, 1.0], at, plain, progress)? {
+                return Ok(Some(found));
             }
         }
         Ok(None)
     }
 
-    fn fitting(&self, tessellation: &Tessellation, progress: &Progress) -> Result<Fitting, Cancelled> {
-        let inputs = Inputs { tessellation: *tessellation, ..self.inputs };
-        let Some(locator) = Locator::of_surface(self.mesh, self.overlaid.topology, &inputs, COARSE) else {
+    /// Seeks the usual mistake in the control points of our own surface that gives theirs.
+    fn mistake(&self, progress: &Progress) -> Result<Option<(OwnSurface, Fitting)>, Cancelled> {
+        let own = self.undisplaced();
+        if own.surface == Surface::Flat {
+            return Ok(None);
+        }
+        let with = |mistake: NetMistake| self.surface(own, Some(mistake));
+        if let Some(found) = self.best(NetMistake::usual().map(with).collect(), progress)? {
+            return Ok(Some(found));
+        }
+        let plain = |x: f32| (x * 1000.0).round() / 1000.0;
+        let center = |x: f32| with(NetMistake::Center(x));
+        if let Some(found) = self.fitted([-1.5, 2.0], center, plain, progress)? {
+            return Ok(Some(found));
+        }
+        // Control points lie as far beside an edge as the square of a normal's length says.
+        let edges = |bend: f32| with(NetMistake::Edges { share: THIRD, bend });
+        self.fitted([0.0, 4.0], edges, |bend| plain(bend.max(0.0).sqrt()).powi(2), progress)
+    }
+
+    /// Seeks the number at which the vertices are nearest to the surface `at` it. Their distance from it is proportional to the difference
+    /// of numbers, about, so that it is sought where two distances say that it is 0.
+    fn fitted(
+        &self,
+        [mut least, mut most]: [f32; 2],
+        at: impl Fn(f32) -> OwnSurface,
+        plain: impl Fn(f32) -> f32,
+        progress: &Progress,
+    ) -> Result<Option<(OwnSurface, Fitting)>, Cancelled> {
+        const STEPS: usize = 4;
+        for _ in 0..STEPS {
+            let [lower, upper] = [self.fitting(&at(least), progress)?.mean, self.fitting(&at(most), progress)?.mean];
+            // On a flat mesh all are alike.
+            if lower + upper == 0.0 {
+                break;
+            }
+            let middle = least + (most - least) * (lower / (lower + upper)) as f32;
+            let reach = (most - least) / 10.0;
+            [least, most] = [middle - reach, middle + reach];
+        }
+        let found = at(plain(0.5 * (least + most)));
+        let fitting = self.fitting(&found, progress)?;
+        Ok((fitting.share >= FOUND).then_some((found, fitting)))
+    }
+
+    fn fitting(&self, surface: &OwnSurface, progress: &Progress) -> Result<Fitting, Cancelled> {
+        let Some(locator) = Locator::of_surface(self.mesh, self.overlaid.topology, surface, COARSE) else {
             return Ok(Fitting { share: 0.0, mean: f64::INFINITY });
         };
         let distance = |index: usize| locator.place(self.sample[index]).map_or(f64::INFINITY, |place| place.distance);

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::{Mat4, Vec2, Vec3, vec3};
 
+use super::net_mistakes::{NetMistake, THIRD};
 use super::*;
 use crate::mesh::{HeightMap, Heights, Shape};
 use crate::settings::Choice;
@@ -80,6 +81,7 @@ impl Scene {
             topology: &self.topology,
             inputs: &self.inputs,
             given: None,
+            matrix: None,
             tessellated: &self.out,
         };
         let within = (16.0 * ulp(&self.topology)).max(2.0 * resolution);
@@ -292,6 +294,72 @@ fn every_other_surface_is_named() {
     assert!(text.contains("--alpha 1") && text.contains("pow2"), "{text}");
 }
 
+/// What we emit if control points have a mistake.
+fn with_mistake(scene: &Scene, mistake: NetMistake) -> Theirs {
+    let surface = OwnSurface { inputs: scene.inputs, mistake: Some(mistake) };
+    Theirs { positions: surface.positions(&scene.mesh, &scene.topology, &scene.out.vertices), ..Theirs::of(&scene.out) }
+}
+
+#[test]
+fn mistakes_in_control_points_are_named() {
+    let edges = |share, bend| NetMistake::Edges { share, bend };
+    let own = Tessellation { partitioning: Partitioning::Integer, factor: 5.0, ..Tessellation::default() };
+    for shape in [Shape::CubeSplit, Shape::Torus] {
+        let scene = Scene::new(shape, own);
+        for (mistake, said) in [
+            (NetMistake::Center(0.0), "is E alone"),
+            (NetMistake::Center(-1.0), "is V, the mean of the corners"),
+            (NetMistake::Center(0.8), "E + 0.8 (E - V)"),
+            (edges(0.5, 1.5), "at 1/2 of the edge, and not at 1/3"),
+            (edges(2.0 * THIRD, 1.0), "at 2/3 of the edge"),
+            (edges(THIRD, -1.0), "on the other side of the edge"),
+            (edges(THIRD, 1.44), "as with normals of length 1.200"),
+            (edges(THIRD, 0.5625), "as with normals of length 0.750"),
+            (NetMistake::Times(1.5), "are 1.5 times ours"),
+            (NetMistake::Swapped, "near the start and near the end of every side are exchanged"),
+            (NetMistake::Exchanged(1), "b120 and b021 are exchanged"),
+            (NetMistake::Exchanged(2), "b021 and b012 are exchanged"),
+        ] {
+            let text = scene.check(&with_mistake(&scene, mistake).shuffled(), &["control_points"]);
+            assert!(text.contains(said) && text.contains("Look "), "{shape}, {mistake:?}: {text}");
+        }
+    }
+}
+
+#[test]
+fn other_spaces_are_named() {
+    let scene = Scene::new(Shape::Bicubic, Tessellation { factor: 3.0, ..Tessellation::default() });
+    let whole = Theirs::of(&scene.out).shuffled();
+    let turn = Mat4::from_axis_angle(vec3(1.0, 2.0, 2.0) / 3.0, 0.5) * Mat4::from_translation(vec3(0.3, -0.2, 0.1));
+    let text = scene.check(&whole.clone().moved(|p| turn.transform_point3(p)), &["coordinates"]);
+    assert!(
+        text.contains("turned by 28.6 degrees about (0.333, 0.667, 0.667), moved by (") && text.contains("Look "),
+        "{text}"
+    );
+    let mirrored = whole.clone().moved(|p| turn.transform_point3(p * vec3(1.0, 1.0, -1.0)));
+    assert!(scene.check(&mirrored, &["coordinates"]).contains("mirrored at the origin and turned by "));
+    let clip = scene.inputs.view.clip_from_object;
+    let divided = whole.clone().moved(|p| clip.project_point3(p));
+    let text = scene.check(&divided, &["coordinates"]);
+    assert!(text.contains("in clip space, by this camera's matrix, and divided by w"), "{text}");
+    let text = scene.check(&whole.moved(|p| (clip * p.extend(1.0)).truncate()), &["coordinates"]);
+    assert!(text.contains("in clip space, by this camera's matrix."), "{text}");
+}
+
+#[test]
+fn another_view_is_told_from_moved_vertices() {
+    // A few of the vertices lie where ours do.
+    for partitioning in [Partitioning::Integer, Partitioning::FractionalOdd] {
+        let own = Tessellation { pixels: 30.0, ..varied(partitioning) };
+        let scene = Scene::new(Shape::Icosphere, own);
+        let view = LodView { half_viewport: scene.inputs.view.half_viewport * 1.3, ..scene.inputs.view };
+        let theirs = tessellate(&scene.mesh, &scene.topology, &Inputs { view, ..scene.inputs }, None);
+        let found = scene.compare(&Theirs::of(&theirs).shuffled());
+        let kinds: Vec<_> = found.findings.iter().map(Finding::kind).collect();
+        assert!(kinds.contains(&"factors") && !kinds.contains(&"moved_vertices"), "{partitioning:?}: {kinds:?}");
+    }
+}
+
 #[test]
 fn displacement_along_normals_is_told_from_other_moves() {
     let scene =
@@ -499,7 +567,11 @@ fn examples() -> Vec<Finding> {
     use super::corner_orders::CornerOrder;
     use super::explanations::{Explanation, InsideRule, Rule};
     use super::findings::Displaced;
-    let turned = Alignment { axes: [(0, false), (2, true), (1, false)], scale: 100.0, offset: DVec3::ZERO };
+    use super::spaces::SpaceKind;
+    let axes = |axes, scale| Finding::Aligned(Frame::Axes(Alignment { axes, scale, offset: DVec3::ZERO }));
+    let space = |kind| Finding::Aligned(Frame::Space(Space::of_kind(kind)));
+    let net = |mistake| Finding::OtherNets { mistake, vertices: 120, of: 300 };
+    let edges = |share, bend| net(NetMistake::Edges { share, bend });
     let surface = |surface, alpha| Tessellation { surface, alpha, ..Tessellation::default() };
     let [pn_aen, pn] = [Surface::PnAen, Surface::Pn].map(|own| surface(own, 0.75));
     let raised = Tessellation { displacement: Displacement::On, ..pn_aen };
@@ -521,7 +593,24 @@ fn examples() -> Vec<Finding> {
     };
     vec![
         Finding::NotATessellation { far: 1203, vertices: 4000, distance: 0.05 },
-        Finding::Aligned(turned),
+        axes([(0, false), (2, true), (1, false)], 100.0),
+        axes([(0, false), (1, false), (2, true)], 1.0),
+        space(SpaceKind::View),
+        space(SpaceKind::Clip),
+        space(SpaceKind::DividedClip),
+        space(SpaceKind::Turned { axis: DVec3::Y, degrees: 30.0, scale: 1.0, offset: DVec3::X, is_mirrored: false }),
+        net(NetMistake::Center(0.0)),
+        net(NetMistake::Center(-1.0)),
+        net(NetMistake::Center(1.0)),
+        edges(0.5, 1.5),
+        edges(2.0 * THIRD, 1.0),
+        edges(THIRD, -1.0),
+        edges(THIRD, 0.0),
+        edges(THIRD, 3.0),
+        edges(THIRD, 1.44),
+        net(NetMistake::Times(1.5)),
+        net(NetMistake::Swapped),
+        net(NetMistake::Exchanged(1)),
         other(pn_aen, pn),
         other(surface(Surface::Phong, 0.75), surface(Surface::Phong, 1.0)),
         other(raised, pn_aen),

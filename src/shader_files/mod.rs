@@ -9,6 +9,8 @@ mod choices;
 mod declarations;
 mod displaced;
 mod readme;
+#[cfg(test)]
+mod tests;
 mod translation;
 
 use thiserror::Error;

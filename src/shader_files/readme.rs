@@ -21,7 +21,7 @@ fn constants(own: &Tessellation) -> Vec<(u32, &'static str, String)> {
         (128, "view.half_viewport", "half the width and half the height of the view, in px".to_owned()),
         (136, "view.reach", reach.to_owned()),
         (144, "view.eye", "3 numbers: where the camera is, in object units".to_owned()),
-        (156, "view.radius", "half the diagonal of the mesh's bounding box, in object units".to_owned()),
+        (156, "view.radius", format!("the bounding radius in object units: {BOUNDING_RADIUS}")),
         (
             160,
             "factor",
@@ -33,6 +33,9 @@ fn constants(own: &Tessellation) -> Vec<(u32, &'static str, String)> {
         (176, "alpha", format!("here {}: the strength of Phong tessellation, 0 to 1", own.alpha)),
     ]
 }
+
+/// What a bounding radius is.
+const BOUNDING_RADIUS: &str = "the greatest distance of a corner from the middle of the bounding box";
 
 /// The size of the constant buffer in bytes.
 const CONSTANTS_BYTES: u32 = 192;
@@ -186,7 +189,10 @@ pub(super) fn text(export: &Export) -> String {
         Lod::EdgeLength if export.relief() != Relief::Off => {
             "LOD reads `pixels_per_segment`, `view.clip_from_object`, `view.half_viewport` and `view.reach`."
         }
-        _ => "LOD reads `pixels_per_segment`, `view.clip_from_object` and `view.half_viewport`.",
+        Lod::EdgeLength | Lod::Paper => {
+            "LOD reads `pixels_per_segment`, `view.clip_from_object` and `view.half_viewport`."
+        }
+        Lod::Error => "LOD by error can't be exported.",
     };
     let edges = match own.edges {
         Edges::AsPublished => {
@@ -280,6 +286,18 @@ mod tests {
         assert!(said.iter().map(|(offset, name, _)| (*offset, (*name).to_owned())).eq(expected));
         // A uniform buffer's size is a multiple of 16.
         assert_eq!(size.next_multiple_of(16), HEIGHT_CONSTANTS_BYTES);
+    }
+
+    #[test]
+    fn the_bounding_radius_is_that_of_the_glossary() {
+        let page = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/manual/glossary.md");
+        let glossary = std::fs::read_to_string(page).expect("a page").to_lowercase();
+        let said = constants(&Tessellation::default()).into_iter().find(|(_, name, _)| *name == "view.radius");
+        let said = said.expect("the constant").2;
+        assert!(
+            said.contains(BOUNDING_RADIUS) && glossary.contains(&format!("| bounding radius | {BOUNDING_RADIUS}")),
+            "{said}"
+        );
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! WGSL functions in GLSL and HLSL, by naga, with the comments of the originals.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 use naga::back::{glsl, hlsl};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -42,6 +42,7 @@ pub(super) fn translated(
         StageLanguage::Glsl => glsl_text(&module, &info).map_err(|error| fault(&error))?,
         StageLanguage::Hlsl => hlsl_text(&module, &info).map_err(|error| fault(&error))?,
     };
+    let text = without_temporaries(&text);
     let precise = needed(all, precise_roots).into_iter().filter(|own| own.is_function).map(|own| own.name).collect();
     Ok(Annotation { all, precise }.of(declared_part(&text)))
 }
@@ -80,6 +81,50 @@ fn declared_part(text: &str) -> &str {
     let first = ["struct ", "const ", "static const "].iter().filter_map(|start| text.find(start)).min().unwrap_or(0);
     let entry = ["void main()", "[numthreads("].iter().filter_map(|start| text.find(start)).min().unwrap_or(text.len());
     text[first..entry].trim_end()
+}
+
+/// Names naga's temporaries, such as `_e68`, after the function whose result or the variable whose value each is.
+fn without_temporaries(text: &str) -> String {
+    let (mut names, mut counts) = (HashMap::<String, String>::new(), HashMap::<String, u32>::new());
+    let mut named = String::new();
+    for line in text.lines() {
+        if line.starts_with('}') {
+            names.clear();
+            counts.clear();
+        }
+        if let Some((temporary, base)) = temporary(line) {
+            let count = counts.entry(base.to_owned()).or_default();
+            *count += 1;
+            let number = if *count == 1 { String::new() } else { count.to_string() };
+            names.insert(temporary.to_owned(), format!("{base}_value{number}"));
+        }
+        let mut rest = line;
+        for (word, _) in words(line) {
+            let (before, after) = rest.split_once(word).unwrap_or((rest, ""));
+            named += before;
+            named += names.get(word).map_or(word, String::as_str);
+            rest = after;
+        }
+        named += rest;
+        named.push('\n');
+    }
+    named
+}
+
+/// The temporary of naga's that a line declares, and the name of what it is made of.
+fn temporary(line: &str) -> Option<(&str, &str)> {
+    let (declared, value) = line.split_once(" = ")?;
+    let is_temporary = |word: &&str| {
+        let number = word.strip_prefix("_e").unwrap_or_default();
+        !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit())
+    };
+    // A type and a name: what is assigned to may have a temporary as its index.
+    let names: Vec<&str> = words(declared.split('[').next()?).map(|(word, _)| word).collect();
+    let temporary = names.last().copied().filter(|name| names.len() > 1 && is_temporary(name))?;
+    let made_of = value.split(['(', '[']).find(|part| words(part).next().is_some())?;
+    let is_name = |word: &&str| !word.starts_with(|c: char| c.is_ascii_digit());
+    let base = words(made_of).map(|(word, _)| word).filter(is_name).last().unwrap_or("number");
+    Some((temporary, base.trim_end_matches('_')))
 }
 
 /// What is added to naga's text.
@@ -199,4 +244,19 @@ fn precise(line: &str) -> String {
     }
     let indent = &line[..line.len() - code.len()];
     format!("{indent}precise {}{declared}", if is_const { "const " } else { "" })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn temporaries_are_named_after_what_they_are_made_of() {
+        let text = "float f(float x)\n{\n    const float _e1 = g(x);\n    float _e22 = g(_e1);\n    vec3 _e3 = net.corners[0];\n    \
+                    net.corners[_e1] = _e22;\n    return h(_e1, _e22) + _e3;\n}\nfloat g(float _e1x)\n{\n    const float _e1 = h(_e1x);\n    return _e1;\n}\n";
+        let named = "float f(float x)\n{\n    const float g_value = g(x);\n    float g_value2 = g(g_value);\n    vec3 corners_value = \
+                     net.corners[0];\n    net.corners[g_value] = g_value2;\n    return h(g_value, g_value2) + corners_value;\n}\nfloat g(float _e1x)\n{\n    const float \
+                     h_value = h(_e1x);\n    return h_value;\n}\n";
+        assert_eq!(without_temporaries(text), named);
+    }
 }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde_json::Value;
 
-use crate::{Folder, both, failure, number, output, read_obj, run, sentence};
+use crate::{Folder, both, failure, number, output, read_obj, run, sentence, write_corners};
 
 /// Torus with factors that differ from edge to edge.
 const VARIED: [&str; 7] = ["--lod", "edge-length", "--pixels", "40", "--size", "640x400", "--partitioning=integer"];
@@ -54,6 +54,61 @@ fn our_own_exports_are_the_same_in_every_format() {
         compared(&csv, &VARIED, 0);
     }
     compared(&csv, &[&VARIED[..], &["--position-column", "outPosition"]].concat(), 0);
+}
+
+#[test]
+fn what_the_graphics_card_tessellates_is_the_same_too() {
+    let folder = Folder::new();
+    let theirs = folder.path("gpu.glb");
+    // Its factors have other last bits than ours, which moves points under fractional partitioning.
+    let options = [&VARIED[..6], &["--partitioning=fractional-odd"]].concat();
+    output(&[&["tessellate", "shape:torus", "--device", "gpu", "-o", &theirs], &options[..]].concat());
+    assert!(compared(&theirs, &options, 0).contains("is the same tessellation of shape:torus as ours."));
+}
+
+#[test]
+fn triangles_whose_corners_lie_in_line_are_no_difference() {
+    let folder = Folder::new();
+    let (a, b, c, d) = ([0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.2, 1.0], [0.0, 0.0, 1.0]);
+    let middle = [0.5, 0.0, 0.0];
+    let [n, m] = [[-0.6, 0.8, 0.0], [0.6, 0.8, 0.0]];
+    let corners = [(a, n), (c, m), (b, m), (a, n), (d, n), (c, m), (a, n), (b, m), (middle, [0.0, 1.0, 0.0])];
+    let mesh = write_corners(&folder, &corners);
+    let said = output(&["info", &mesh]);
+    assert!(said.contains("3 (0 degenerate, left out; 1 degenerate, with their corners in line)"), "{said}");
+    let theirs = folder.path("theirs.glb");
+    let options = ["--lod", "paper", "--pixels", "12", "--partitioning", "integer", "--size", "640x400"];
+    output(&[&["tessellate", &mesh, "--device", "cpu", "-o", &theirs], &options[..]].concat());
+    let said = output(&[&["compare", &theirs, "--mesh", &mesh], &options[..]].concat());
+    assert!(said.contains("is the same tessellation"), "{said}");
+}
+
+#[test]
+fn coordinates_in_clip_space_are_named_by_the_matrix_that_is_given() {
+    let folder = Folder::new();
+    let (positions, faces) = read_obj(&emitted(&folder, "a.obj", &["--factor", "3"]));
+    // Looks along -z from 4 units away, 90 degrees wide, from 1 to 10 units.
+    let clip = |[x, y, z]: [f32; 3]| {
+        let w = 4.0 - z;
+        [x / w, y / w, (10.0 * w - 10.0) / 9.0 / w]
+    };
+    let mut text = String::new();
+    for [x, y, z] in positions.iter().map(|position| clip(position.map(f32::from_bits))) {
+        writeln!(text, "v {x} {y} {z}").expect("a text");
+    }
+    for [a, b, c] in faces.iter().map(|face| face.map(|index| index + 1)) {
+        writeln!(text, "f {a} {b} {c}").expect("a text");
+    }
+    let theirs = folder.path("clip.obj");
+    std::fs::write(&theirs, text).expect("a writable folder");
+    let depth = (10.0 * 4.0 - 10.0) / 9.0;
+    let matrix = format!("1 0 0 0 0 1 0 0 0 0 {} -1 0 0 {depth} 4", -10.0 / 9.0);
+    let said = compared(&theirs, &["--factor", "3", "--view-projection", &matrix], 1);
+    assert!(
+        said.starts_with("Its coordinates are in clip space, by this camera's matrix, and divided by w."),
+        "{said}"
+    );
+    assert_eq!(said.lines().take_while(|line| !line.is_empty()).count(), 1, "{said}");
 }
 
 #[test]

@@ -37,6 +37,7 @@ mod pictures;
 mod pixel_normals;
 mod readbacks;
 mod reference;
+mod round_trips;
 mod scenes;
 mod silhouette;
 mod specification;

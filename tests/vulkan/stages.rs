@@ -103,7 +103,7 @@ struct CapturedVertex
 CapturedVertex captured_main(
     HullOutput factors,
     float3 location : SV_DomainLocation,
-    const OutputPatch<CORNER, 3> corners)
+    const OutputPatch<HullCorner, 3> corners)
 {
     CapturedVertex captured;
     captured.vertex = ds_main(factors, location, corners);
@@ -175,9 +175,18 @@ pub fn compiled(folder: &Path, file: &'static str, text: &str, options: &[&str])
     Ok(std::fs::read(out)?)
 }
 
+/// The text with a patch constant function that computes the sides itself. It gets them of the control points' function, which glslang 12
+/// calls again with corners that nothing was written to.
+fn with_sides(text: &str) -> String {
+    let handed = ", OutputPatch<HullCorner, 3> hull)\n{\n";
+    assert!(text.contains(handed), "the patch constant function isn't handed the sides");
+    let sides = [0, 1, 2].map(|k| format!("    hull[{k}] = hull_corner(corners, {k});\n")).concat();
+    text.replace(handed, &format!(")\n{{\n    HullCorner hull[3];\n{sides}"))
+}
+
 impl Exported<'_> {
     /// The stages in the order of the pipeline.
-    fn compile(self, is_displaced: bool) -> Result<Vec<Stage>, StageError> {
+    fn compile(self) -> Result<Vec<Stage>, StageError> {
         let folder = tempfile::tempdir()?;
         let at = folder.path();
         let [vertex, control, evaluation] = match self {
@@ -195,12 +204,12 @@ impl Exported<'_> {
                 let of = |file, text: &str, stage, entry| {
                     compiled(at, file, text, &["-D", "-S", stage, "-e", entry, "--source-entrypoint", entry])
                 };
-                let capture = HLSL_CAPTURE.replace("CORNER", if is_displaced { "HullCorner" } else { "Corner" });
                 of("patch.hlsl", text, "tese", "ds_main")?;
+                of("patch.hlsl", text, "tesc", "hs_main")?;
                 [
                     of("patch.hlsl", text, "vert", "vs_main")?,
-                    of("patch.hlsl", text, "tesc", "hs_main")?,
-                    of("captured.hlsl", &(text.to_owned() + &capture), "tese", "captured_main")?,
+                    of("patch.hlsl", &with_sides(text), "tesc", "hs_main")?,
+                    of("captured.hlsl", &(text.to_owned() + HLSL_CAPTURE), "tese", "captured_main")?,
                 ]
             }
         };
@@ -227,7 +236,7 @@ impl Exported<'_> {
     /// # Errors
     /// A text doesn't compile, or the driver doesn't take it.
     pub fn capture(self, vulkan: &Rc<Vulkan>, drawn: &Drawn) -> Result<Vec<[CapturedCorner; 3]>, StageError> {
-        let stages = self.compile(drawn.displaced.is_some())?;
+        let stages = self.compile()?;
         let nowhere = Pass::nowhere(vulkan)?;
         let samples = matches!(self, Exported::Glsl { .. });
         let set = Bindings::new(vulkan, drawn, samples)?;

@@ -171,7 +171,7 @@ impl ViewOptions {
     }
 
     /// The matrix of an engine's frame, if there is one.
-    fn matrix(&self) -> Option<ViewProjection> {
+    pub(in crate::cli) fn matrix(&self) -> Option<ViewProjection> {
         let listed = DMat4::from_cols_array(&self.view_projection?.0);
         let clip_from_object = match self.matrix_order {
             MatrixOrder::ColumnMajor => listed,

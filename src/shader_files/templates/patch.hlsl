@@ -29,13 +29,17 @@ struct Corner
 @V@    // The third vertex buffer: the mip level at a point, which levels.hlsl keeps at the point's dominant corner.
 @V@    uint level : LEVEL;
 };
-@D@
-@D@// What the hull shader hands on of corner k and of side k.
-@D@struct HullCorner
-@D@{
-@D@    float3 position : POSITION;
-@D@    float3 normal : NORMAL;
-@D@    float2 uv : TEXCOORD0;
+
+// What the hull shader hands on of corner k and of side k, which runs from corner k to corner (k + 1) % 3.
+struct HullCorner
+{
+    float3 position : POSITION;
+    float3 normal : NORMAL;
+    float2 uv : TEXCOORD0;
+    // The control points of the side near its start and near its end, and the factor of its edge.
+    precise float3 near_start : NEAR_START;
+    precise float3 near_end : NEAR_END;
+    precise float factor : SIDE_FACTOR;
 @D@    float3 direction : DIRECTION;
 @D@    float3 along_u : ALONG_U;
 @D@    float3 along_v : ALONG_V;
@@ -50,15 +54,13 @@ struct Corner
 @D@    float2 end_uv : END_UV;
 @D@    float3 end_along_u : END_ALONG_U;
 @D@    float3 end_along_v : END_ALONG_V;
-@D@};
+};
 
 struct HullOutput
 {
     float edges[3] : SV_TessFactor;
     float inside : SV_InsideTessFactor;
-    // The control points of side k near its start and near its end, and the one in the middle of the patch.
-    precise float3 near_start[3] : NEAR_START;
-    precise float3 near_end[3] : NEAR_END;
+    // The control point in the middle of the patch.
     float3 middle : MIDDLE;
 @D@    // The mip levels at the corners, on the sides, and inside.
 @D@    precise float3 corner_levels : CORNER_LEVELS;
@@ -80,28 +82,51 @@ Corner vs_main(Corner corner)
     return corner;
 }
 
-// Computes the sides of a patch: side k runs from corner k to corner (k + 1) % 3.
-HullOutput hs_patch(InputPatch<Corner, @INDICES@> corners)
+// Computes side k of a patch.
+HullCorner hull_corner(InputPatch<Corner, @INDICES@> corners, uint k)
+{
+    uint next = (k + 1) % 3;
+    SideNormals own;
+    own.at_a = corners[k].normal;
+    own.at_b = corners[next].normal;
+    SideNormals across;
+    across.at_a = @ACROSS_A@;
+    across.at_b = @ACROSS_B@;
+    precise HullSide side = hull_side(constants, corners[k].position, corners[next].position, own, across);
+    HullCorner made;
+    made.position = corners[k].position;
+    made.normal = corners[k].normal;
+    made.uv = corners[k].uv;
+    made.near_start = side.near_start;
+    made.near_end = side.near_end;
+    made.factor = side.factor;
+@D@    made.direction = corners[k].direction;
+@D@    made.along_u = corners[k].along_u;
+@D@    made.along_v = corners[k].along_v;
+@D@    made.dominant_uv = corners[9 + k].uv;
+@D@    made.dominant_along_u = corners[9 + k].along_u;
+@D@    made.dominant_along_v = corners[9 + k].along_v;
+@D@    made.start_uv = corners[12 + 2 * k].uv;
+@D@    made.start_along_u = corners[12 + 2 * k].along_u;
+@D@    made.start_along_v = corners[12 + 2 * k].along_v;
+@D@    made.end_uv = corners[13 + 2 * k].uv;
+@D@    made.end_along_u = corners[13 + 2 * k].along_u;
+@D@    made.end_along_v = corners[13 + 2 * k].along_v;
+    return made;
+}
+
+// Computes what a patch has once, of the sides that hs_main has computed.
+HullOutput hs_patch(InputPatch<Corner, @INDICES@> corners, OutputPatch<HullCorner, 3> hull)
 {
     HullOutput made;
     ControlNet net;
     precise float3 sides;
     [unroll] for (uint k = 0; k < 3; k++)
     {
-        uint next = (k + 1) % 3;
-        SideNormals own;
-        own.at_a = corners[k].normal;
-        own.at_b = corners[next].normal;
-        SideNormals across;
-        across.at_a = @ACROSS_A@;
-        across.at_b = @ACROSS_B@;
-        precise HullSide side = hull_side(constants, corners[k].position, corners[next].position, own, across);
-        made.near_start[k] = side.near_start;
-        made.near_end[k] = side.near_end;
-        sides[k] = side.factor;
-        net.corners[k] = corners[k].position;
-        net.edges[2 * k] = side.near_start;
-        net.edges[2 * k + 1] = side.near_end;
+        net.corners[k] = hull[k].position;
+        net.edges[2 * k] = hull[k].near_start;
+        net.edges[2 * k + 1] = hull[k].near_end;
+        sides[k] = hull[k].factor;
     }
     net.center_ = center_control_point(net.corners, net.edges);
     float4 factors = tessellation_factors(constants, net, sides);
@@ -127,30 +152,10 @@ HullOutput hs_patch(InputPatch<Corner, @INDICES@> corners)
 [outputcontrolpoints(3)]
 [patchconstantfunc("hs_patch")]
 [maxtessfactor(64.0)]
-@N@Corner hs_main(InputPatch<Corner, @INDICES@> corners, uint k : SV_OutputControlPointID)
-@N@{
-@N@    return corners[k];
-@N@}
-@D@HullCorner hs_main(InputPatch<Corner, @INDICES@> corners, uint k : SV_OutputControlPointID)
-@D@{
-@D@    HullCorner made;
-@D@    made.position = corners[k].position;
-@D@    made.normal = corners[k].normal;
-@D@    made.uv = corners[k].uv;
-@D@    made.direction = corners[k].direction;
-@D@    made.along_u = corners[k].along_u;
-@D@    made.along_v = corners[k].along_v;
-@D@    made.dominant_uv = corners[9 + k].uv;
-@D@    made.dominant_along_u = corners[9 + k].along_u;
-@D@    made.dominant_along_v = corners[9 + k].along_v;
-@D@    made.start_uv = corners[12 + 2 * k].uv;
-@D@    made.start_along_u = corners[12 + 2 * k].along_u;
-@D@    made.start_along_v = corners[12 + 2 * k].along_v;
-@D@    made.end_uv = corners[13 + 2 * k].uv;
-@D@    made.end_along_u = corners[13 + 2 * k].along_u;
-@D@    made.end_along_v = corners[13 + 2 * k].along_v;
-@D@    return made;
-@D@}
+HullCorner hs_main(InputPatch<Corner, @INDICES@> corners, uint k : SV_OutputControlPointID)
+{
+    return hull_corner(corners, k);
+}
 
 @D@StageRelief patch_relief(HullOutput factors, const OutputPatch<HullCorner, 3> corners)
 @D@{
@@ -179,16 +184,15 @@ HullOutput hs_patch(InputPatch<Corner, @INDICES@> corners)
 @D@}
 @D@
 [domain("tri")]
-@N@Vertex ds_main(HullOutput factors, float3 location : SV_DomainLocation, const OutputPatch<Corner, 3> corners)
-@D@Vertex ds_main(HullOutput factors, float3 location : SV_DomainLocation, const OutputPatch<HullCorner, 3> corners)
+Vertex ds_main(HullOutput factors, float3 location : SV_DomainLocation, const OutputPatch<HullCorner, 3> corners)
 {
     StagePatch hull;
     hull.net.center_ = factors.middle;
     [unroll] for (uint k = 0; k < 3; k++)
     {
         hull.net.corners[k] = corners[k].position;
-        hull.net.edges[2 * k] = factors.near_start[k];
-        hull.net.edges[2 * k + 1] = factors.near_end[k];
+        hull.net.edges[2 * k] = corners[k].near_start;
+        hull.net.edges[2 * k + 1] = corners[k].near_end;
         hull.normals[k] = corners[k].normal;
         hull.uvs[k] = corners[k].uv;
     }
