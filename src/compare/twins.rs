@@ -138,6 +138,9 @@ impl<'a> Twins<'a> {
     }
 }
 
+/// How many of our triangles between the same points are tried for each of theirs, so that a million of them take no longer a triangle.
+const TRIED: usize = 64;
+
 /// Gives each of their triangles one of ours between the same points: the nearest that is wound alike, if there is one that no other has;
 /// or else the nearest that no other has; or else the first. Both are indices, and `apart` says how far two triangles are apart.
 fn pairs(theirs: &[Triangle], own: &[Triangle], apart: impl Fn(u32, u32) -> f64) -> Vec<(u32, u32)> {
@@ -146,10 +149,11 @@ fn pairs(theirs: &[Triangle], own: &[Triangle], apart: impl Fn(u32, u32) -> f64)
     let mut rest: Vec<Triangle> = theirs.to_vec();
     for is_alike in [true, false] {
         rest.retain(|their| {
-            let alike = (0..left.len()).filter(|place| !is_alike || left[*place].is_turned == their.is_turned);
+            let alike =
+                (0..left.len().min(TRIED)).filter(|place| !is_alike || left[*place].is_turned == their.is_turned);
             let distance = |place: &usize| apart(their.index, left[*place].index);
             let place = alike.min_by(|a, b| distance(a).total_cmp(&distance(b)));
-            found.extend(place.map(|place| (their.index, left.remove(place).index)));
+            found.extend(place.map(|place| (their.index, left.swap_remove(place).index)));
             place.is_none()
         });
     }
@@ -181,5 +185,13 @@ mod tests {
         assert_eq!(found(&[turned, turned], &[alike, turned]), [(0, 1), (1, 0)]);
         assert_eq!(found(&[alike, alike], &[alike]), [(0, 0), (1, 0)]);
         assert!(list(&[[1, 1, 2]]).is_empty());
+    }
+
+    #[test]
+    fn of_very_many_between_the_same_points_each_gets_one() {
+        let many = Triangle::sorted((0..200_000).map(|_| [1, 2, 3]));
+        let mut own: Vec<u32> = pairs(&many, &many, |_, _| 0.0).into_iter().map(|(_, own)| own).collect();
+        own.sort_unstable();
+        assert!(own.into_iter().eq(0..200_000));
     }
 }
