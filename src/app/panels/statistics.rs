@@ -34,7 +34,6 @@ impl App {
             ui.push_id("given", |ui| self.given_section(ui));
             ui.push_id("LOD shader", |ui| self.lod_shader_section(ui));
             self.deviation_section(ui);
-            self.edge_details(ui);
             if self.panels.open.title(ui, Section::Cracks) {
                 self.crack_facts(ui);
                 self.worst_edges(ui);
@@ -42,6 +41,7 @@ impl App {
                 self.fold_list(ui);
                 self.t_junction_list(ui);
             }
+            self.edge_details(ui);
             if self.panels.open.title(ui, Section::Patches) {
                 self.patch_facts(ui);
             }
