@@ -1,7 +1,6 @@
 //! What texts of exported shaders have, and what they leave out.
 
 use super::*;
-use crate::settings::Choice;
 use crate::tessellate::{Clip, Lod, Surface};
 
 /// All texts of the files that run on tessellation stages.
