@@ -304,9 +304,10 @@ fn with_mistake(scene: &Scene, mistake: NetMistake) -> Theirs {
 fn mistakes_in_control_points_are_named() {
     let edges = |share, bend| NetMistake::Edges { share, bend };
     let own = Tessellation { partitioning: Partitioning::Integer, factor: 5.0, ..Tessellation::default() };
-    for shape in [Shape::CubeSplit, Shape::Torus] {
+    // Every fourth on the torus, whose patches have seams between them.
+    for (shape, tried) in [(Shape::CubeSplit, 1), (Shape::Torus, 4)] {
         let scene = Scene::new(shape, own);
-        for (mistake, said) in [
+        let all = [
             (NetMistake::Center(0.0), "is E alone"),
             (NetMistake::Center(-1.0), "is V, the mean of the corners"),
             (NetMistake::Center(0.8), "E + 0.8 (E - V)"),
@@ -319,7 +320,8 @@ fn mistakes_in_control_points_are_named() {
             (NetMistake::Swapped, "near the start and near the end of every side are exchanged"),
             (NetMistake::Exchanged(1), "b120 and b021 are exchanged"),
             (NetMistake::Exchanged(2), "b021 and b012 are exchanged"),
-        ] {
+        ];
+        for (mistake, said) in all.into_iter().step_by(tried) {
             let text = scene.check(&with_mistake(&scene, mistake).shuffled(), &["control_points"]);
             assert!(text.contains(said) && text.contains("Look "), "{shape}, {mistake:?}: {text}");
         }
