@@ -3,7 +3,6 @@
 
 pub use crate::app::window::run::run_watched;
 pub use crate::app::{App, persistence::Persistence};
-pub use crate::cli::picture_comparison::{CompareError, compare};
 pub use crate::engine::measurements::Measurements;
 pub use crate::engine::{Engine, Loaded, Preparation, load as load_and_prepare};
 pub use crate::files::Limits;

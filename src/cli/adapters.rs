@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use super::CliError;
-use crate::gpu::{AdapterChoice, GpuError, adapters, best_adapter, kind};
+use crate::gpu::{AdapterChoice, GpuError, adapters, best_adapter, driver, kind};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {}
@@ -20,7 +20,6 @@ pub(super) fn run(_: &Args) -> Result<(), CliError> {
         let info = adapter.get_info();
         let limits = adapter.limits();
         let is_best = best.as_ref() == Some(&info);
-        let driver = [info.driver, info.driver_info].join(" ");
         let timestamps = adapter.features().contains(wgpu::Features::TIMESTAMP_QUERY);
         let timestamps = timestamps && info.device_type != wgpu::DeviceType::Cpu;
         writeln!(
@@ -30,7 +29,7 @@ pub(super) fn run(_: &Args) -> Result<(), CliError> {
             info.name,
             kind(info.device_type),
             info.backend,
-            driver.trim(),
+            driver(&info),
             limits.max_storage_buffer_binding_size.min(limits.max_buffer_size) >> 20,
             limits.max_texture_dimension_2d,
             if timestamps { "; timestamps" } else { "" },

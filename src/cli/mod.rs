@@ -22,9 +22,8 @@ mod material_report;
 mod mesh_report;
 mod options;
 mod output_guard;
-pub(crate) mod picture_comparison;
+mod picture_comparison;
 mod picture_file;
-mod pixel_differences;
 mod reference;
 mod render;
 mod shaders;
@@ -60,8 +59,12 @@ pub(crate) use factors::write_factors;
 pub(crate) use options::{LimitOption, OpeningOptions, SurfaceOptions, WeldOption};
 pub(crate) use picture_comparison::CompareError;
 #[cfg(test)]
-pub(crate) use picture_comparison::{PictureTolerance, compare};
-pub(crate) use picture_file::{Stamp, write_picture, write_stamped};
+pub(crate) use picture_comparison::{Comparison, compare};
+#[cfg(test)]
+pub(crate) use picture_file::write_drawn;
+pub(crate) use picture_file::{write_picture, write_stamped};
+#[cfg(test)]
+pub(crate) use reference::{BETWEEN_DRIVERS, Reference};
 #[cfg(test)]
 pub(crate) use render::run_with as render_with;
 pub(crate) use shot::{Shot, ShotView, StatsWanted, Subject};
@@ -181,7 +184,7 @@ pub(crate) enum CliError {
     Taken { path: String, by: &'static str },
     #[error("{reference}: {reason}")]
     Reference { reference: String, reason: CompareError },
-    #[error("{picture} differs from {reference} {how}{see}")]
+    #[error("{picture} differs from {reference}: {how}{see}; if this is meant, draw the reference again")]
     Different { picture: String, reference: String, how: String, see: String },
     #[error("{path}, line {line}: {reason}")]
     Line { path: String, line: usize, reason: String },

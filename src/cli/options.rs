@@ -27,7 +27,7 @@ pub(crate) use cameras::{CamerasOption, NamedView};
 pub(crate) use declared::{ImportOptions, PictureOptions, TessellationOptions, choice, number_of};
 pub(crate) use lod_camera::LodCameraOption;
 pub(crate) use opening::OpeningOptions;
-pub(crate) use values::{CameraOption, Position, Size, model, picture, source, steps, threshold, whole, whole_from};
+pub(crate) use values::{CameraOption, Position, Size, model, picture, source, steps, whole, whole_from};
 pub(crate) use view::ViewOptions;
 
 use values::{bytes, crease_band, weld};

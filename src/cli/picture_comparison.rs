@@ -1,142 +1,133 @@
 //! How much one picture differs from another.
 
-use image::{RgbImage, RgbaImage};
+use image::{GrayImage, Luma, RgbaImage};
 use thiserror::Error;
 
-use super::pixel_differences::PixelDifferences;
+/// The side of the squares over which differences are averaged, in px.
+const SQUARE: usize = 8;
 
-/// Two pictures compared.
-#[derive(Clone, Debug)]
-pub struct Comparison {
-    /// 0 for the same picture, 1 for nothing in common: one minus the mean of structural similarity (luma) and colour
-    /// difference (chroma) over all px.
-    pub difference: f64,
-    /// The largest mean of the differences of a tile of 8 x 8 px, in steps of 255; signs cancel, and px at edges count as equal.
-    pub largest_tile: f64,
-    /// How many px differ by more than the step from everything beside them in the other picture; at edges by more than two of
-    /// four samples make, too.
-    pub px_beyond: u64,
-    /// A picture of the differences, black where there are none. Px beyond the step are white.
-    pub map: RgbImage,
-}
-
-/// How much pictures of the same scene may differ. The defaults are chosen by the pairs of pictures in `tests/gpu/reference.rs`,
-/// which the manual lists.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct PictureTolerance {
-    /// The largest [`Comparison::difference`].
-    pub difference: f64,
-    /// The largest [`Comparison::largest_tile`], in steps of 255.
-    pub tile: f64,
-    /// The step beyond which px are counted, of 255.
-    pub step: f32,
-    /// The most [`Comparison::px_beyond`].
+/// Two pictures compared, in steps of 255 of the channel that differs most. Transparency is a channel.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Comparison {
+    /// How many px differ.
     pub px: u64,
+    /// The largest difference of a px.
+    pub largest: u8,
+    /// The largest mean of the differences in a square of 8 x 8 px. Signs cancel, so noise hardly counts.
+    pub worst_square: f64,
 }
 
-impl Default for PictureTolerance {
-    fn default() -> Self {
-        Self { difference: 0.01, tile: 2.0, step: 4.0, px: 0 }
-    }
-}
-
-impl Comparison {
-    /// Whether both pictures show the same: the one place that decides it.
-    pub(crate) fn is_same(&self, tolerance: &PictureTolerance) -> bool {
-        self.excesses(tolerance).is_empty()
-    }
-
-    /// What is more than the tolerance allows, as clauses for a message.
-    pub(super) fn excesses(&self, tolerance: &PictureTolerance) -> Vec<String> {
-        let PictureTolerance { difference, tile, step, px } = *tolerance;
-        let mut excesses = Vec::new();
-        if self.difference > difference {
-            excesses.push(format!("by {:.4}, more than {difference}", self.difference));
-        }
-        if self.largest_tile > tile {
-            excesses.push(format!("by {:.2} steps in a tile of 8 x 8 px, more than {tile}", self.largest_tile));
-        }
-        if self.px_beyond > px {
-            excesses.push(format!("by more than {step} steps in {} px, more than {px}", self.px_beyond));
-        }
-        excesses
-    }
-}
-
+/// The pictures have these sizes.
 #[derive(Clone, Debug, Error, PartialEq)]
-pub enum CompareError {
-    #[error("it has {2} x {3} px, and the picture {0} x {1} px: render at the reference's size (--size {2}x{3})")]
-    Sizes(u32, u32, u32, u32),
-    #[error("the pictures could not be compared: {0}")]
-    Failed(String),
-}
+#[error("it has {2} x {3} px, and the picture {0} x {1} px: render at the reference's size (--size {2}x{3})")]
+pub(crate) struct CompareError(u32, u32, u32, u32);
 
-/// The difference of a px's channels, of 255, that is ignored. Drivers round the last bits of shading differently; in smooth
-/// shades, structural similarity would count that as another structure, though nobody sees it.
-const ROUNDING: u8 = 1;
-
-/// Compares two pictures by colour, with the usual step: see [`compare_by`].
+/// Compares two pictures px by px.
 ///
 /// # Errors
 /// The sizes differ.
-pub fn compare(picture: &RgbaImage, reference: &RgbaImage) -> Result<Comparison, CompareError> {
-    compare_by(picture, reference, PictureTolerance::default().step)
-}
-
-/// Compares two pictures by colour; they have no transparency. Px whose channels all differ by at most 1 of 255 are equal for
-/// structural similarity; px that differ by more than `step` of 255 are counted.
-///
-/// # Errors
-/// The sizes differ.
-pub(crate) fn compare_by(picture: &RgbaImage, reference: &RgbaImage, step: f32) -> Result<Comparison, CompareError> {
+pub(crate) fn compare(picture: &RgbaImage, reference: &RgbaImage) -> Result<Comparison, CompareError> {
     let ((w, h), (rw, rh)) = (picture.dimensions(), reference.dimensions());
     if (w, h) != (rw, rh) {
-        return Err(CompareError::Sizes(w, h, rw, rh));
+        return Err(CompareError(w, h, rw, rh));
     }
-    let [own, reference] =
-        [picture, reference].map(|picture| image::DynamicImage::ImageRgba8(picture.clone()).to_rgb8());
-    let PixelDifferences { largest_tile, is_beyond } = PixelDifferences::new(&own, &reference, step);
-    let px_beyond = is_beyond.iter().filter(|is_beyond| **is_beyond).count() as u64;
-    let rounded = RgbImage::from_fn(w, h, |x, y| {
-        let (own, other) = (own.get_pixel(x, y), reference.get_pixel(x, y));
-        let is_same = (0..3).all(|channel| own[channel].abs_diff(other[channel]) <= ROUNDING);
-        if is_same { *other } else { *own }
-    });
-    if rounded == reference {
-        // Rounding gives equal pictures a similarity that isn't quite 1.
-        return Ok(Comparison { difference: 0.0, largest_tile, px_beyond, map: RgbImage::new(w, h) });
+    let differences = || picture.pixels().zip(reference.pixels()).map(|(own, other)| largest_step(own.0, other.0));
+    let means = (0..4).map(|channel| largest_mean(picture, reference, channel));
+    Ok(Comparison {
+        px: differences().filter(|&step| step > 0).count() as u64,
+        largest: differences().max().unwrap_or(0),
+        worst_square: means.fold(0.0, f64::max),
+    })
+}
+
+/// A picture of the differences between pictures of one size: px that differ by more than so many steps are grey to white,
+/// and all others black.
+pub(super) fn difference_picture(picture: &RgbaImage, reference: &RgbaImage, steps: f32) -> GrayImage {
+    GrayImage::from_fn(picture.width(), picture.height(), |x, y| {
+        let step = largest_step(picture.get_pixel(x, y).0, reference.get_pixel(x, y).0);
+        Luma([if f32::from(step) > steps { step.saturating_add(64) } else { 0 }])
+    })
+}
+
+fn largest_step(own: [u8; 4], other: [u8; 4]) -> u8 {
+    (0..4).map(|channel| own[channel].abs_diff(other[channel])).fold(0, u8::max)
+}
+
+/// The largest mean of a channel's differences in a square. One that is higher or wider than the picture is cut.
+fn largest_mean(picture: &RgbaImage, reference: &RgbaImage, channel: usize) -> f64 {
+    let (width, height) = (picture.width() as usize, picture.height() as usize);
+    let (across, down) = (SQUARE.min(width).max(1), SQUARE.min(height).max(1));
+    let difference = |x: usize, y: usize| {
+        let at = 4 * (y * width + x) + channel;
+        i32::from(picture.as_raw()[at]) - i32::from(reference.as_raw()[at])
+    };
+    // Sums of the last rows.
+    let mut columns = vec![0; width];
+    let mut largest = 0;
+    for y in 0..height {
+        for (x, sum) in columns.iter_mut().enumerate() {
+            *sum += difference(x, y) - if y >= down { difference(x, y - down) } else { 0 };
+        }
+        if y + 1 >= down {
+            let sums = columns.windows(across).map(|columns| columns.iter().sum::<i32>().abs());
+            largest = sums.fold(largest, i32::max);
+        }
     }
-    let result = image_compare::rgb_hybrid_compare(&rounded, &reference)
-        .map_err(|error| CompareError::Failed(error.to_string()))?;
-    let mut map = result.image.to_color_map().to_rgb8();
-    map.pixels_mut().zip(&is_beyond).filter(|(_, is_beyond)| **is_beyond).for_each(|(pixel, _)| pixel.0 = [255; 3]);
-    Ok(Comparison { difference: (1.0 - result.score).max(0.0), largest_tile, px_beyond, map })
+    f64::from(largest) / (across * down) as f64
 }
 
 #[cfg(test)]
 mod tests {
+    use image::Rgba;
+
     use super::*;
 
-    #[test]
-    fn a_difference_of_one_level_is_ignored_and_of_two_is_not() {
-        let shades =
-            |up: u8| RgbaImage::from_fn(64, 48, |x, y| image::Rgba([x as u8 + up * (y as u8 & 1), 80, 90, 255]));
-        let difference = |up| compare(&shades(up), &shades(0)).expect("one size").difference;
-        assert!(difference(1) < 1e-9 && difference(2) > 0.01, "{} {}", difference(1), difference(2));
+    fn shades() -> RgbaImage {
+        RgbaImage::from_fn(64, 48, |x, y| Rgba([x as u8 * 3, y as u8 * 5, 90, 255]))
+    }
+
+    fn changed(change: impl Fn(u32, u32, &mut Rgba<u8>)) -> Comparison {
+        let mut picture = shades();
+        picture.enumerate_pixels_mut().for_each(|(x, y, pixel)| change(x, y, pixel));
+        compare(&picture, &shades()).expect("one size")
     }
 
     #[test]
-    fn only_equal_pictures_have_no_difference() {
-        let picture = RgbaImage::from_fn(64, 48, |x, y| image::Rgba([x as u8 * 3, y as u8 * 5, 90, 255]));
-        let same = compare(&picture, &picture).expect("one size");
-        assert_eq!((same.difference, same.largest_tile, same.px_beyond), (0.0, 0.0, 0));
-        assert!(same.is_same(&PictureTolerance { difference: 0.0, tile: 0.0, step: 0.0, px: 0 }));
-        let mut changed = picture.clone();
-        for x in 20..40 {
-            changed.put_pixel(x, 24, image::Rgba([255, 255, 255, 255]));
+    fn every_px_counts_and_the_worst_square_is_a_mean() {
+        assert_eq!(changed(|_, _, _| ()), Comparison { px: 0, largest: 0, worst_square: 0.0 });
+        let one = changed(|x, y, pixel| pixel[2] += 64 * u8::from((x, y) == (63, 47)));
+        assert_eq!(one, Comparison { px: 1, largest: 64, worst_square: 1.0 });
+        let row = changed(|x, y, pixel| pixel[2] -= 16 * u8::from(y == 0 && x < 12));
+        assert_eq!(row, Comparison { px: 12, largest: 16, worst_square: 2.0 });
+        let clear = changed(|_, _, pixel| pixel[3] = 252);
+        assert_eq!(clear, Comparison { px: 64 * 48, largest: 3, worst_square: 3.0 });
+    }
+
+    #[test]
+    fn noise_cancels_and_what_all_px_have_in_common_does_not() {
+        let noise = changed(|x, y, pixel| pixel[2] = 89 + 2 * ((x + y) % 2) as u8);
+        assert_eq!((noise.px, noise.largest, noise.worst_square), (64 * 48, 1, 0.0));
+        assert_eq!(changed(|_, _, pixel| pixel[2] += 2).worst_square, 2.0);
+    }
+
+    #[test]
+    fn pictures_of_any_size_are_compared_and_of_two_sizes_are_not() {
+        for (width, height) in [(1, 1), (3, 2), (8, 8), (9, 31), (40, 1)] {
+            let [own, other] = [10, 200].map(|level| RgbaImage::from_pixel(width, height, Rgba([level; 4])));
+            assert_eq!(compare(&own, &other).expect("one size").worst_square, 190.0, "{width} x {height}");
         }
-        assert!(compare(&changed, &picture).expect("one size").difference > 0.01);
-        let small = RgbaImage::new(10, 10);
-        assert_eq!(compare(&small, &picture).err(), Some(CompareError::Sizes(10, 10, 64, 48)));
+        assert_eq!(compare(&RgbaImage::new(10, 10), &shades()), Err(CompareError(10, 10, 64, 48)));
+    }
+
+    #[test]
+    fn the_picture_of_the_differences_is_bright_where_px_differ_by_more_than_the_steps() {
+        let mut picture = shades();
+        picture.get_pixel_mut(3, 5)[2] += 1;
+        picture.get_pixel_mut(9, 5)[2] -= 90;
+        let bright = |steps| {
+            let map = difference_picture(&picture, &shades(), steps);
+            (map.get_pixel(3, 5)[0], map.get_pixel(9, 5)[0], map.pixels().filter(|pixel| pixel[0] > 0).count())
+        };
+        assert_eq!((bright(0.0), bright(1.4)), ((65, 154, 2), (0, 154, 1)));
     }
 }

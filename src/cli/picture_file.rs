@@ -1,23 +1,19 @@
 //! PNG files, and the texts in them that say what was drawn.
 
+use std::io::{BufRead, Seek};
 use std::path::Path;
 
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{DynamicImage, RgbaImage};
 
-use super::{CliError, file_error};
+use super::{CliError, Shot, file_error};
 use crate::files::{file_reason, write_whole};
+use crate::gpu::identity;
 use crate::settings::{Settings, Value, options};
-
-/// What the texts in a PNG file say.
-pub(crate) struct Stamp<'a> {
-    /// The command that draws the picture.
-    pub command: &'a str,
-    pub settings: &'a Settings,
-}
 
 /// Keywords of the texts. The first is one of the PNG specification's own.
 const SOFTWARE: &str = "Software";
+const ADAPTER: &str = "pnaen adapter";
 const COMMAND: &str = "pnaen command";
 const SETTINGS: &str = "pnaen settings";
 
@@ -34,10 +30,34 @@ pub(super) fn png_bytes(picture: &DynamicImage) -> image::ImageResult<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Writes a PNG file with texts that say how to draw it again.
-pub(crate) fn write_stamped(path: &Path, picture: &RgbaImage, stamp: &Stamp) -> Result<(), CliError> {
-    let bytes = stamped(picture, stamp).map_err(|error| file_error(path, "encoded", &error))?;
-    write(path, &bytes)
+/// Writes a PNG file with texts that say what drew it, and how to draw it again.
+pub(crate) fn write_stamped(path: &Path, picture: &RgbaImage, command: &str, shot: &Shot) -> Result<(), CliError> {
+    let settings = settings_text(shot.settings());
+    write_drawn(path, picture, shot.adapter(), &[(COMMAND, command), (SETTINGS, &settings)])
+}
+
+/// Writes a PNG file with texts that say what drew it, and these.
+pub(crate) fn write_drawn(
+    path: &Path,
+    picture: &RgbaImage,
+    adapter: &wgpu::AdapterInfo,
+    texts: &[(&str, &str)],
+) -> Result<(), CliError> {
+    let identity = identity(adapter);
+    let adapter = identity.as_deref().map(|identity| (ADAPTER, identity));
+    let software = (SOFTWARE, concat!("pnaen ", env!("CARGO_PKG_VERSION")));
+    let all: Vec<_> = [software].into_iter().chain(adapter).chain(texts.iter().copied()).collect();
+    write(path, &with_texts(picture, &all).map_err(|error| file_error(path, "encoded", &error))?)
+}
+
+/// What drew the picture in a PNG file, if that is known.
+pub(super) fn adapter_of(file: impl BufRead + Seek) -> Option<String> {
+    let reader = png::Decoder::new(file).read_info().ok()?;
+    let info = reader.info();
+    let latin_1 =
+        info.uncompressed_latin1_text.iter().find(|text| text.keyword == ADAPTER).map(|text| text.text.clone());
+    let utf_8 = || info.utf8_text.iter().find(|text| text.keyword == ADAPTER)?.get_text().ok();
+    latin_1.or_else(utf_8)
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
@@ -45,22 +65,16 @@ fn write(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
 }
 
 /// A PNG file with texts; [`image`] writes none.
-fn stamped(picture: &RgbaImage, stamp: &Stamp) -> Result<Vec<u8>, png::EncodingError> {
+fn with_texts(picture: &RgbaImage, texts: &[(&str, &str)]) -> Result<Vec<u8>, png::EncodingError> {
     let (width, height) = picture.dimensions();
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgba);
     encoder.set_compression(png::Compression::High);
     encoder.set_filter(png::Filter::Adaptive);
-    let settings = settings_text(stamp.settings);
-    for (keyword, text) in
-        [(SOFTWARE, concat!("pnaen ", env!("CARGO_PKG_VERSION"))), (COMMAND, stamp.command), (SETTINGS, &settings)]
-    {
-        let (keyword, text) = (keyword.to_owned(), text.to_owned());
-        match is_latin_1(&text) {
-            true => encoder.add_text_chunk(keyword, text)?,
-            false => encoder.add_itxt_chunk(keyword, text)?,
-        }
+    for (keyword, text) in texts {
+        let add = if is_latin_1(text) { png::Encoder::add_text_chunk } else { png::Encoder::add_itxt_chunk };
+        add(&mut encoder, (*keyword).to_owned(), (*text).to_owned())?;
     }
     let mut writer = encoder.write_header()?;
     writer.write_image_data(picture.as_raw())?;

@@ -1,78 +1,100 @@
 //! The option `--reference`: compares the picture with a reference picture.
 
-use std::io::{BufReader, Write};
+use std::io::{BufReader, Seek, Write};
 use std::path::{Path, PathBuf};
 
-use image::{ImageError, ImageReader, RgbaImage};
+use image::{GrayImage, ImageError, ImageReader, RgbaImage};
 use serde::Serialize;
 
-use super::options::{steps, threshold, whole_from};
-use super::picture_comparison::{Comparison, PictureTolerance, compare_by};
+use super::options::steps;
+use super::picture_comparison::{CompareError, Comparison, compare, difference_picture};
+use super::picture_file::adapter_of;
 use super::{CliError, file_error, write_picture};
 use crate::files::{file_reason, open_file};
+use crate::gpu::identity;
 use crate::names::shown_path;
+
+/// The largest mean difference of a square of 8 x 8 px that pictures of two drivers may have, in steps of 255. Chosen by what
+/// an NVIDIA H200 draws otherwise than the software driver, which the manual lists, and by the pairs in `tests/gpu/reference.rs`.
+pub(crate) const BETWEEN_DRIVERS: f32 = 1.4;
 
 /// The reference, and how much a picture may differ from it.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub(crate) struct ReferenceOptions {
-    /// Fail if the picture differs from this one by more than the three thresholds allow, and write a picture of the difference
-    /// beside it. With --cameras, a folder, or a name with {} where each view's name goes
+    /// Fail if the picture isn't the same as this one, and write a picture of the difference beside it. If the same adapter,
+    /// driver and processor drew both, all px must be equal. With --cameras, a folder, or a name with {} where each view's
+    /// name goes
     #[arg(long, value_name = "PNG")]
     pub reference: Option<PathBuf>,
-    #[command(flatten)]
-    pub tolerance: ToleranceOptions,
-}
-
-#[derive(Clone, Copy, Debug, clap::Args)]
-pub(crate) struct ToleranceOptions {
-    /// Largest difference of the whole picture that passes: 0 for equal pictures, 1 for nothing in common (1 minus structural
-    /// similarity)
-    #[arg(long, value_name = "T", default_value_t = PictureTolerance::default().difference, value_parser = threshold, requires = "reference")]
-    pub threshold: f64,
-    /// Largest mean difference of a tile of 8 x 8 px that passes, in steps of 255; px at edges don't count
-    #[arg(long, value_name = "STEPS", default_value_t = PictureTolerance::default().tile as f32, value_parser = steps, requires = "reference")]
-    pub tile_threshold: f32,
-    /// How many px may differ from all that is beside them in the reference by more than --px-step
-    #[arg(long, value_name = "N", default_value_t = PictureTolerance::default().px, value_parser = whole_from(0_u64), requires = "reference")]
-    pub px_threshold: u64,
-    /// The difference from which on px are counted, in steps of 255
-    #[arg(long, value_name = "STEPS", default_value_t = PictureTolerance::default().step, value_parser = steps, requires = "reference")]
-    pub px_step: f32,
-}
-
-impl Default for ToleranceOptions {
-    fn default() -> Self {
-        let PictureTolerance { difference, tile, step, px } = PictureTolerance::default();
-        Self { threshold: difference, tile_threshold: tile as f32, px_threshold: px, px_step: step }
-    }
-}
-
-impl ToleranceOptions {
-    fn tolerance(&self) -> PictureTolerance {
-        let Self { threshold, tile_threshold, px_threshold, px_step } = *self;
-        PictureTolerance { difference: threshold, tile: f64::from(tile_threshold), step: px_step, px: px_threshold }
-    }
+    /// Largest mean difference of a square of 8 x 8 px that passes, in steps of 255, whatever drew the reference; without it,
+    /// 1.4 if something else drew it
+    #[arg(long, value_name = "STEPS", value_parser = steps, requires = "reference")]
+    pub threshold: Option<f32>,
 }
 
 /// The part of stats about the reference.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct ReferenceStats {
-    /// Whether no threshold is exceeded.
     is_same: bool,
-    /// 0 for equal pictures, 1 for nothing in common.
-    difference: f64,
-    /// The largest mean difference of a tile, in steps of 255.
-    largest_tile: f64,
-    /// How many px differ by more than the step.
-    px_beyond: u64,
-    px_step: f32,
+    comparison: &'static str,
+    /// How many px differ.
+    px_different: u64,
+    /// By how much at most, in steps of 255.
+    largest_step: u8,
+    /// The largest mean difference of a square of 8 x 8 px, in steps of 255.
+    worst_square: f64,
+    /// What that may be; none where all px must be equal.
+    threshold: Option<f32>,
 }
 
 /// A reference picture that was read.
-pub(super) struct Reference {
+pub(crate) struct Reference {
     path: PathBuf,
     picture: RgbaImage,
-    tolerance: PictureTolerance,
+    /// What drew it, if it says so.
+    adapter: Option<String>,
+    /// What was given with `--threshold`.
+    threshold: Option<f32>,
+}
+
+/// How a picture and its reference differ, and how much they may.
+#[derive(Debug)]
+pub(crate) struct Verdict {
+    comparison: Comparison,
+    /// The largest mean difference of a square that is allowed; none where all px must be equal.
+    threshold: Option<f32>,
+    /// Why it is that much, as a clause of a sentence.
+    why: &'static str,
+}
+
+impl Verdict {
+    /// Whether both are the same: the one place that decides it.
+    pub(crate) fn is_same(&self) -> bool {
+        match self.threshold {
+            None => self.comparison.px == 0,
+            Some(threshold) => self.comparison.worst_square <= f64::from(threshold),
+        }
+    }
+
+    fn stats(&self) -> ReferenceStats {
+        let Comparison { px, largest, worst_square } = self.comparison;
+        let comparison = if self.threshold.is_none() { "exact" } else { "tolerant" };
+        let (is_same, threshold) = (self.is_same(), self.threshold);
+        ReferenceStats { is_same, comparison, px_different: px, largest_step: largest, worst_square, threshold }
+    }
+
+    /// How much they differ and how much they may, as clauses of a sentence.
+    fn in_words(&self) -> String {
+        let Comparison { px, largest, worst_square } = self.comparison;
+        let (px, why) = (format!("{px} px differ, by up to {largest} steps of 255"), self.why);
+        match self.threshold {
+            None if self.comparison.px == 0 => format!("all px are equal, as they must be since {why}"),
+            None => format!("{px}, and none may since {why}"),
+            Some(threshold) => format!(
+                "{px}, and the mean of the worst 8 x 8 px by {worst_square:.2}, of which {threshold} are allowed since {why}"
+            ),
+        }
+    }
 }
 
 /// How a picture compares with its reference.
@@ -87,51 +109,67 @@ impl Reference {
     ///
     /// # Errors
     /// It can't be read.
-    pub(super) fn read(path: &Path, options: &ReferenceOptions) -> Result<Self, CliError> {
+    pub(crate) fn read(path: &Path, threshold: Option<f32>) -> Result<Self, CliError> {
         let fail = |reason: &dyn std::fmt::Display| file_error(path, "read", reason);
         let file = open_file(path).map_err(|error| fail(&file_reason(&error)))?;
         let file = file.ok_or_else(|| fail(&"it is not a file; name a PNG, JPEG or WebP image"))?.0;
+        let adapter = adapter_of(BufReader::new(&file));
+        (&file).rewind().map_err(|error| fail(&file_reason(&error)))?;
         let reader =
             ImageReader::new(BufReader::new(file)).with_guessed_format().map_err(|error| fail(&file_reason(&error)))?;
         let reference = reader.decode().map_err(|error| match error {
             ImageError::Unsupported(_) => fail(&"it is no image; name a PNG, JPEG or WebP one"),
             error => fail(&error),
         })?;
-        let tolerance = options.tolerance.tolerance();
-        Ok(Self { path: path.to_owned(), picture: reference.to_rgba8(), tolerance })
+        Ok(Self { path: path.to_owned(), picture: reference.to_rgba8(), adapter, threshold })
     }
 
-    /// Compares the picture at `output` with it. If they differ, it writes the difference beside the picture.
+    /// Compares a picture that this adapter has drawn with it.
+    ///
+    /// # Errors
+    /// The picture is of another size.
+    pub(crate) fn compare(&self, picture: &RgbaImage, adapter: &wgpu::AdapterInfo) -> Result<Verdict, CompareError> {
+        let (threshold, why) = match (self.threshold, self.adapter.as_deref(), identity(adapter)) {
+            (Some(_), ..) => (self.threshold, "--threshold says so"),
+            (None, None, _) => (Some(BETWEEN_DRIVERS), "the reference doesn't say what drew it"),
+            (None, Some(own), Some(other)) if own == other => {
+                (None, "the same adapter, driver and processor drew both")
+            }
+            (None, Some(_), Some(_)) => {
+                (Some(BETWEEN_DRIVERS), "another adapter, driver or processor drew the reference")
+            }
+            (None, Some(_), None) => (Some(BETWEEN_DRIVERS), "the adapter's driver or processor isn't known"),
+        };
+        Ok(Verdict { comparison: compare(picture, &self.picture)?, threshold, why })
+    }
+
+    /// Compares the picture at `output`, which this adapter has drawn, with it. If they differ, it writes the difference beside
+    /// the picture.
     ///
     /// # Errors
     /// The picture is of another size, or the difference can't be written.
-    pub(super) fn judge(&self, output: &Path, picture: &RgbaImage) -> Result<Judged, CliError> {
-        let Self { path, picture: reference, tolerance } = self;
-        let comparison = compare_by(picture, reference, tolerance.step)
-            .map_err(|reason| CliError::Reference { reference: shown_path(path), reason })?;
-        let Comparison { difference, largest_tile, px_beyond, .. } = comparison;
-        let is_same = comparison.is_same(tolerance);
-        let stats = ReferenceStats { is_same, difference, largest_tile, px_beyond, px_step: tolerance.step };
-        let said = if is_same {
-            Ok(format!(
-                "{} is the same as {}: the difference is {difference:.4}, {largest_tile:.2} steps in the worst tile, and {} px \
-                 are beyond {} steps",
-                shown_path(output),
-                shown_path(path),
-                px_beyond,
-                tolerance.step
-            ))
+    pub(super) fn judge(
+        &self,
+        output: &Path,
+        picture: &RgbaImage,
+        adapter: &wgpu::AdapterInfo,
+    ) -> Result<Judged, CliError> {
+        let own = shown_path(&self.path);
+        let verdict =
+            self.compare(picture, adapter).map_err(|reason| CliError::Reference { reference: own.clone(), reason })?;
+        let said = if verdict.is_same() {
+            Ok(format!("{} is the same as {own}: {}", shown_path(output), verdict.in_words()))
         } else {
-            let see = write_difference(output, comparison.map.clone())?;
-            let how = comparison.excesses(tolerance).join(", and ");
-            Err(CliError::Different { picture: shown_path(output), reference: shown_path(path), how, see })
+            let map = difference_picture(picture, &self.picture, verdict.threshold.unwrap_or(0.0));
+            let see = write_difference(output, map)?;
+            Err(CliError::Different { picture: shown_path(output), reference: own, how: verdict.in_words(), see })
         };
-        Ok(Judged { stats, said })
+        Ok(Judged { stats: verdict.stats(), said })
     }
 }
 
 /// Writes the picture of the differences beside a picture, and returns the end of a sentence that says where.
-fn write_difference(output: &Path, map: image::RgbImage) -> Result<String, CliError> {
+fn write_difference(output: &Path, map: GrayImage) -> Result<String, CliError> {
     // A device or a pipe has no folder for the picture of the difference.
     if !output.is_file() {
         return Ok(String::new());
@@ -140,7 +178,7 @@ fn write_difference(output: &Path, map: image::RgbImage) -> Result<String, CliEr
     name.push("-diff.png");
     let diff = output.with_file_name(name);
     write_picture(&diff, &map.into())?;
-    Ok(format!(": see {}, where the differences are bright", shown_path(&diff)))
+    Ok(format!("; {} shows where", shown_path(&diff)))
 }
 
 /// Tells on standard error how pictures compare with their references.

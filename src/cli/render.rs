@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::gate_options::{GateOptions, failures};
 use super::options::{CamerasOption, PictureOptions, TessellationOptions};
-use super::picture_file::{Stamp, write_stamped};
+use super::picture_file::write_stamped;
 use super::reference::{self, Reference, ReferenceOptions};
 use super::shot::{Shot, StatsWanted};
 use super::shot_options::ShotOptions;
@@ -170,7 +170,7 @@ impl Args {
 
     /// Reads the reference pictures at these places, each of which may be none.
     fn references(&self, places: &[Option<PathBuf>]) -> Result<Vec<Option<Reference>>, CliError> {
-        let read = |path: &Path| Reference::read(path, &self.reference);
+        let read = |path: &Path| Reference::read(path, self.reference.threshold);
         places.iter().map(|place| place.as_deref().map(read).transpose()).collect()
     }
 
@@ -192,11 +192,11 @@ fn draw(
 ) -> Result<Drawn, CliError> {
     let wanted = args.stats.as_ref().map(|_| StatsWanted { error: args.measure_error });
     let drawn = shot.picture(wanted, &Progress::new())?;
-    write_stamped(&view.file, &drawn, &Stamp { command: line, settings: shot.settings() })?;
+    write_stamped(&view.file, &drawn, line, shot)?;
     let tolerance_px = args.shot.surface.tessellation().tolerance;
     let gates = shot.judge(&args.gates.gates.fail_on, tolerance_px, &Progress::new())?;
     let mut stats = wanted.is_some().then(|| shot.stats()).transpose()?.flatten();
-    let judged = reference.map(|reference| reference.judge(&view.file, &drawn)).transpose()?;
+    let judged = reference.map(|reference| reference.judge(&view.file, &drawn, shot.adapter())).transpose()?;
     let (compared, judgement) = judged.map(|judged| (judged.stats, judged.said)).unzip();
     if let Some(stats) = &mut stats {
         stats.view = view.named.as_ref().map(|named| named.name.clone());

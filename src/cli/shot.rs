@@ -204,6 +204,10 @@ impl Shot {
         &self.subject.settings
     }
 
+    pub(super) fn adapter(&self) -> &wgpu::AdapterInfo {
+        &self.engine.gpu.info
+    }
+
     /// Counts what each half will emit.
     fn count(&mut self) -> Result<(), GpuError> {
         for half in SplitSide::BOTH {

@@ -133,9 +133,69 @@ pub(crate) fn kind(device_type: wgpu::DeviceType) -> &'static str {
     }
 }
 
+/// The name and the version of an adapter's driver, as far as it tells them.
+pub(crate) fn driver(info: &wgpu::AdapterInfo) -> String {
+    [info.driver.as_str(), info.driver_info.as_str()].join(" ").trim().to_owned()
+}
+
+/// All that a picture's px depend on besides the program and the command: the adapter's name, which for Mesa's software driver
+/// has the vector width, its driver and, if it runs on the CPU, the processor. Processors approximate reciprocal square roots
+/// in different ways, and software drivers turn light into colours with these. None if part of it is unknown, such as the
+/// driver on Metal.
+pub(crate) fn identity(info: &wgpu::AdapterInfo) -> Option<String> {
+    let (name, driver) = (&info.name, driver(info));
+    match info.device_type {
+        _ if driver.is_empty() => None,
+        wgpu::DeviceType::Cpu => Some(format!("{name}, {driver}, on {}", processor()?)),
+        _ => Some(format!("{name}, {driver}")),
+    }
+}
+
+#[cfg(target_os = "linux")]
+fn processor() -> Option<String> {
+    processor_in(&std::fs::read_to_string("/proc/cpuinfo").ok()?)
+}
+
+/// The first processor in the system's list.
+#[cfg(target_os = "linux")]
+fn processor_in(list: &str) -> Option<String> {
+    let value = |key: &str| {
+        let mut pairs = list.lines().filter_map(|line| line.split_once(':'));
+        pairs.find(|(own, _)| own.trim() == key).map(|(_, value)| value.trim())
+    };
+    Some(format!("{} (family {}, model {})", value("model name")?, value("cpu family")?, value("model")?))
+}
+
+#[cfg(not(target_os = "linux"))]
+fn processor() -> Option<String> {
+    // Windows has it.
+    std::env::var("PROCESSOR_IDENTIFIER").ok()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_drew_a_picture_is_known_by_adapter_driver_and_processor() {
+        let of = |name: &str, device_type, driver: &str, driver_info: &str| {
+            let (driver, driver_info) = (driver.to_owned(), driver_info.to_owned());
+            identity(&wgpu::AdapterInfo { driver, driver_info, ..info(name, device_type) })
+        };
+        let card = of("NVIDIA H200", wgpu::DeviceType::DiscreteGpu, "NVIDIA", "580.159.04");
+        assert_eq!(card.as_deref(), Some("NVIDIA H200, NVIDIA 580.159.04"));
+        assert_eq!(of("Apple M1", wgpu::DeviceType::IntegratedGpu, "", ""), None, "Metal names no driver");
+        #[cfg(target_os = "linux")]
+        {
+            let list = "processor\t: 0\ncpu family\t: 25\nmodel\t\t: 17\nmodel name\t: AMD EPYC\n\nmodel\t\t: 1\n";
+            assert_eq!(processor_in(list).as_deref(), Some("AMD EPYC (family 25, model 17)"));
+            assert_eq!(processor_in("processor\t: 0\nFeatures\t: fp asimd\n"), None);
+            let name = "llvmpipe (LLVM 15.0.6, 256 bits)";
+            let software = of(name, wgpu::DeviceType::Cpu, "llvmpipe", "Mesa 22.3.6");
+            let expected = processor().map(|processor| format!("{name}, llvmpipe Mesa 22.3.6, on {processor}"));
+            assert_eq!(software, expected);
+        }
+    }
 
     fn info(name: &str, device_type: wgpu::DeviceType) -> wgpu::AdapterInfo {
         wgpu::AdapterInfo { name: name.to_owned(), ..wgpu::AdapterInfo::new(device_type, wgpu::Backend::Vulkan) }

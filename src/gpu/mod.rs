@@ -38,7 +38,7 @@ mod tessellator;
 pub(crate) mod wgsl;
 pub(crate) mod wgsl_tokens;
 
-pub(crate) use adapters::{AdapterChoice, BACKENDS, adapters, best_adapter, kind};
+pub(crate) use adapters::{AdapterChoice, BACKENDS, adapters, best_adapter, driver, identity, kind};
 pub(crate) use arena::{VERTEX_HALF, chunks_an_arena, vertices_of};
 pub(crate) use bound_pass::BoundPass;
 pub(crate) use buffer::{empty, uniform_buffer};

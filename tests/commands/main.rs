@@ -28,6 +28,7 @@ mod opened;
 #[path = "../documents/package.rs"]
 mod package;
 mod picture_file;
+mod reference;
 mod render;
 mod scenes;
 mod shaders;

@@ -82,7 +82,7 @@ fn wrong_usage_exits_with_2() {
         &["tessellate", "shape:torus", "-o", "x.glb", "--clip", "frusta"],
         &["render", "shape:torus", "-o", "-"],
         &["render", "shape:torus", "-o", "x.json"],
-        &["render", "shape:torus", "-o", "x.png", "--px-threshold", "3"],
+        &["render", "shape:torus", "-o", "x.png", "--threshold", "3"],
         &["compare", "shape:torus", "--mesh", "shape:torus", "-o", "theirs.obj"],
         &["frobnicate", "--hard"],
     ] {

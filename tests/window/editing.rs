@@ -7,7 +7,7 @@ use egui::{Key, Modifiers, OutputCommand};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use pnaen::app::App;
-use pnaen::cli::compare;
+use pnaen::cli::{BETWEEN_DRIVERS, compare};
 use pnaen::load::{HeightSource, Source};
 use pnaen::mesh::Shape;
 use pnaen::tessellate::{Displacement, Lod, Surface, Tessellation};
@@ -118,9 +118,9 @@ pub(super) fn assert_draws(harness: &Harness<App>, command: &str, name: &str) {
     run_command(words, &picture);
     let drawn = image::open(&picture).expect("a picture").to_rgba8();
     let shown = harness.state().read_picture().expect("a device").expect("a picture");
-    let difference = compare(&drawn, &shown).expect("one size").difference;
+    let comparison = compare(&drawn, &shown).expect("one size");
     // The command has the camera's distance in bounding radii, which rounds its last bit.
-    assert!(difference < 1e-3, "{command}: {difference}");
+    assert!(comparison.worst_square <= f64::from(BETWEEN_DRIVERS), "{command}: {comparison:?}");
 }
 
 #[test]

@@ -6,7 +6,7 @@ use super::document::arena_bytes;
 use super::matcap::ChosenMatcap;
 use crate::app::App;
 use crate::cli::{
-    CliError, ReferenceSurface, Shot, ShotView, Stamp, StatsWanted, Subject, Turn, write_factors, write_stamped,
+    CliError, ReferenceSurface, Shot, ShotView, StatsWanted, Subject, Turn, write_factors, write_stamped,
 };
 use crate::engine::Engine;
 use crate::gpu::{Gpu, GpuError};
@@ -48,7 +48,7 @@ impl ShotParts {
         self.with_shot(|shot| {
             let picture = shot.picture(None, progress)?;
             progress.check()?;
-            write_stamped(path, &picture, &Stamp { command, settings: shot.settings() })
+            write_stamped(path, &picture, command, shot)
         })
     }
 

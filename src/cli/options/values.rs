@@ -158,12 +158,6 @@ where
     }
 }
 
-/// Parses a difference from 0 to 1.
-pub(crate) fn threshold(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok().filter(|number| (0.0..=1.0).contains(number));
-    number.ok_or_else(|| "expected a number from 0 to 1".into())
-}
-
 /// Parses a weld tolerance, relative to the bounding diagonal, from 0 to 0.1.
 pub(super) fn weld(text: &str) -> Result<f32, String> {
     within(text, 0.0..=0.1)

@@ -15,7 +15,7 @@ use super::vulkan::VulkanError;
 /// The part by which the peer's number of triangles may differ from ours without a warning.
 const SAME_TRIANGLES: f64 = 0.001;
 /// The difference between pictures that causes no warning: see [`super::versus::PeerTimes::difference`].
-const SAME_PICTURE: f64 = 0.01;
+const SAME_PICTURE: f64 = 0.005;
 
 /// Prints section by section, and keeps the numbers that are compared with goals at the end.
 #[derive(Default)]

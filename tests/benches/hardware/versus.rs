@@ -1,7 +1,8 @@
 //! Measures one subject with our passes and with the peer.
 
+use image::RgbaImage;
 use pnaen::embed::GpuError;
-use pnaen::internals::{CompareError, Engine, Timing, compare};
+use pnaen::internals::{Engine, Timing};
 use pnaen::load::LoadError;
 use pnaen::tessellate::Partitioning;
 use thiserror::Error;
@@ -20,8 +21,6 @@ pub enum BenchError {
     #[error(transparent)]
     Vulkan(#[from] VulkanError),
     #[error(transparent)]
-    Compare(#[from] CompareError),
-    #[error(transparent)]
     Exported(#[from] super::vulkan::exported::ExportedError),
     #[error(transparent)]
     Load(#[from] LoadError),
@@ -37,7 +36,7 @@ pub struct PeerTimes {
     /// The medians of both ways, in the order of [`Nets::ALL`]: tessellation, and the whole picture.
     pub ways: [[f64; 2]; 2],
     pub counted: Option<Counted>,
-    /// The difference between its picture and ours: 0 if they are equal, 1 if they have nothing in common.
+    /// The mean difference between the px of its picture and ours, 0 to 1.
     pub difference: f64,
 }
 
@@ -116,7 +115,12 @@ fn time_peer(engine: &Engine, peer: &Peer, subject: &mut Subject, effort: Effort
         times.counted = peer.count(&whole, &patches, &frame)?;
         engine.draw(&mut subject.scene, &subject.target, &subject.camera, &subject.settings, &mut Timing::Off)?;
         let own = subject.target.read(&engine.gpu)?;
-        times.difference = times.difference.max(compare(&peer.picture()?, &own)?.difference);
+        times.difference = times.difference.max(mean_difference(&peer.picture()?, &own));
     }
     Ok(times)
+}
+
+fn mean_difference(picture: &RgbaImage, other: &RgbaImage) -> f64 {
+    let steps = picture.iter().zip(other.iter()).map(|(own, other)| f64::from(own.abs_diff(*other)));
+    steps.sum::<f64>() / (255.0 * picture.len().max(1) as f64)
 }

@@ -9,11 +9,9 @@ use std::path::{Path, PathBuf};
 use image::RgbImage;
 
 use super::{Page, root, user_pages};
+use crate::picture_file::{ADAPTER, texts};
 use crate::{Folder, command};
 
-/// How much a picture may differ from the committed one, which another driver or processor may have drawn. The same as in
-/// `tests/gpu/pictures.rs`.
-const THRESHOLD: &str = "0.001";
 /// How long a frame of a moving picture is shown, and the last frame, in ms.
 const FRAME_MS: u16 = 350;
 const LAST_FRAME_MS: u16 = 1800;
@@ -60,9 +58,7 @@ impl Picture {
         let own = self.arguments.iter().map(|word| word.replace("{}", value));
         let mut arguments: Vec<_> = own.chain(["-o", output].map(str::to_owned)).collect();
         match reference {
-            Some(reference) => {
-                arguments.extend(["--reference", reference, "--threshold", THRESHOLD].map(str::to_owned))
-            }
+            Some(reference) => arguments.extend(["--reference", reference].map(str::to_owned)),
             None => arguments.extend(["--adapter", "software"].map(str::to_owned)),
         }
         let words: Vec<_> = arguments.iter().map(String::as_str).collect();
@@ -75,11 +71,11 @@ impl Picture {
         if self.frames.is_empty() {
             return self.draw("", &folder.path("picture.png"), self.image.to_str());
         }
-        let committed = read_frames(&self.image);
+        let (committed, adapter) = (read_frames(&self.image), adapter_of(&self.image));
         assert_eq!(committed.len(), self.frames.len(), "frames of {}", self.image.display());
         for (value, frame) in self.frames.iter().zip(committed) {
             let reference = folder.path("reference.png");
-            frame.save(&reference).expect("a writable folder");
+            write_frames(Path::new(&reference), &[frame], adapter.as_deref());
             self.draw(value, &folder.path("frame.png"), Some(&reference))?;
         }
         Ok(())
@@ -91,12 +87,13 @@ impl Picture {
             let image = self.image.strip_prefix(root()).unwrap_or(&self.image);
             return self.draw("", image.to_str().expect("a path in UTF-8"), None);
         }
+        let path = folder.path("frame.png");
         let drawn = self.frames.iter().map(|value| {
-            let path = folder.path("frame.png");
             self.draw(value, &path, None)?;
             Ok(image::open(&path).expect("a picture").to_rgb8())
         });
-        write_frames(&self.image, &drawn.collect::<Result<Vec<_>, String>>()?);
+        let drawn = drawn.collect::<Result<Vec<_>, String>>()?;
+        write_frames(&self.image, &drawn, adapter_of(Path::new(&path)).as_deref());
         Ok(())
     }
 
@@ -109,8 +106,14 @@ impl Picture {
     }
 }
 
-/// Writes a moving picture that repeats for ever: an APNG file.
-fn write_frames(path: &Path, frames: &[RgbImage]) {
+/// What drew a picture, if its file says so.
+fn adapter_of(path: &Path) -> Option<String> {
+    let all = texts(path.to_str().expect("a path in UTF-8"));
+    all.into_iter().find(|(keyword, ..)| keyword == ADAPTER).map(|(_, text, _)| text)
+}
+
+/// Writes a moving picture that repeats for ever: an APNG file, which says what drew it.
+fn write_frames(path: &Path, frames: &[RgbImage], adapter: Option<&str>) {
     let (width, height) = frames[0].dimensions();
     let file = BufWriter::new(File::create(path).expect("a writable folder"));
     let mut encoder = png::Encoder::new(file, width, height);
@@ -118,6 +121,9 @@ fn write_frames(path: &Path, frames: &[RgbImage]) {
     encoder.set_compression(png::Compression::High);
     encoder.set_animated(frames.len() as u32, 0).expect("more than no frames");
     encoder.set_frame_delay(FRAME_MS, 1000).expect("a moving picture");
+    if let Some(adapter) = adapter {
+        encoder.add_text_chunk(ADAPTER.to_owned(), adapter.to_owned()).expect("before the header");
+    }
     let mut writer = encoder.write_header().expect("a header");
     for (i, frame) in frames.iter().enumerate() {
         if i + 1 == frames.len() {
