@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use serde_json::Value;
 
-use crate::{Folder, output, read_obj, sentence, stats, vase};
+use crate::{Folder, output, read_obj, sentence, vase};
 
 #[test]
 fn a_tessellated_mesh_is_closed_to_the_last_bit() {
