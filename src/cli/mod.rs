@@ -62,7 +62,7 @@ pub(crate) use picture_comparison::CompareError;
 pub(crate) use picture_comparison::{Comparison, compare};
 #[cfg(test)]
 pub(crate) use picture_file::write_drawn;
-pub(crate) use picture_file::{write_picture, write_stamped};
+pub(crate) use picture_file::write_picture;
 #[cfg(test)]
 pub(crate) use reference::{BETWEEN_DRIVERS, Reference};
 #[cfg(test)]

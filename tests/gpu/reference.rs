@@ -235,8 +235,8 @@ fn open_a_seam(mesh: &mut Mesh, triangle: usize) {
     let corners = mesh.triangles[triangle];
     let [a, b, c] = corners.map(|corner| mesh.corners[corner as usize].position);
     let by = (c - a.midpoint(b)).normalize() * 2e-3;
-    for k in 0..2 {
-        let mut corner = mesh.corners[corners[k] as usize];
+    for (k, corner) in corners.into_iter().take(2).enumerate() {
+        let mut corner = mesh.corners[corner as usize];
         corner.position += by;
         mesh.corners.push(corner);
         Arc::make_mut(&mut mesh.triangles)[triangle][k] = mesh.corners.len() as u32 - 1;

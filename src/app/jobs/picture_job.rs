@@ -5,9 +5,7 @@ use std::path::Path;
 use super::document::arena_bytes;
 use super::matcap::ChosenMatcap;
 use crate::app::App;
-use crate::cli::{
-    CliError, ReferenceSurface, Shot, ShotView, StatsWanted, Subject, Turn, write_factors, write_stamped,
-};
+use crate::cli::{CliError, ReferenceSurface, Shot, ShotView, StatsWanted, Subject, Turn, write_factors};
 use crate::engine::Engine;
 use crate::gpu::{Gpu, GpuError};
 use crate::progress::Progress;
@@ -48,7 +46,7 @@ impl ShotParts {
         self.with_shot(|shot| {
             let picture = shot.picture(None, progress)?;
             progress.check()?;
-            write_stamped(path, &picture, command, shot)
+            shot.write(path, &picture, command)
         })
     }
 
