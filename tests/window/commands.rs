@@ -90,8 +90,9 @@ fn every_key_of_the_table_gives_its_command() {
                 assert!(harness.state().is_playing());
                 harness.state_mut().choose_clip(None);
             }
-            // Without the panels the picture has another size, and is drawn anew.
-            if [Action::File(FileAction::Reload), Action::HidePanels].contains(&command.action) {
+            // Without the panels the picture has another size, and is drawn anew. Undo loads the mesh anew, which Escape would stop.
+            let loads = [Action::File(FileAction::Reload), Action::HidePanels, Action::Undo, Action::Redo];
+            if loads.contains(&command.action) {
                 settle(&mut harness);
             }
         }
