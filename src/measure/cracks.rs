@@ -56,7 +56,7 @@ impl Cracks {
         cracks.sorted()
     }
 
-    /// Compares the sides of an edge, an index in [`Topology::edges`], of which some may be [discarded](Outlines::discarded).
+    /// Compares the sides of an edge, an index in [`Topology::edges`], of which some may be discarded by factors.
     pub(super) fn take(
         &mut self,
         mesh: &Mesh,
