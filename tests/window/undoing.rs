@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use egui_kittest::Harness;
 use pnaen::app::App;
-use pnaen::commands::{Action, all};
+use pnaen::commands::{Action, Change, all};
 use pnaen::engine::Preparation;
 use pnaen::load::{HeightSource, Source};
 use pnaen::mesh::Shape;
@@ -29,22 +29,31 @@ fn state(app: &App) -> (Settings, Preparation, Option<Source>, [Option<PathBuf>;
     (*app.settings(), preparation, app.truth().cloned(), files.map(|file| file.map(Path::to_owned)))
 }
 
-/// Makes a change, undoes it and redoes it.
-fn change(harness: &mut Harness<App>, what: &str, change: impl FnOnce(&mut App, &egui::Context)) {
+/// Makes a change, undoes it and redoes it, and lets the window take each.
+fn change_with(
+    harness: &mut Harness<App>,
+    what: &str,
+    take: fn(&mut Harness<App>),
+    change: impl FnOnce(&mut App, &egui::Context),
+) {
     let before = state(harness.state());
     let context = harness.ctx.clone();
     change(harness.state_mut(), &context);
-    settle(harness);
+    take(harness);
     let after = state(harness.state());
     if after == before {
         return;
     }
     harness.state_mut().undo(&context);
-    settle(harness);
+    take(harness);
     assert_eq!(state(harness.state()), before, "{what} is undone");
     harness.state_mut().redo(&context);
-    settle(harness);
+    take(harness);
     assert_eq!(state(harness.state()), after, "{what} is redone");
+}
+
+fn change(harness: &mut Harness<App>, what: &str, change: impl FnOnce(&mut App, &egui::Context)) {
+    change_with(harness, what, settle, change);
 }
 
 #[test]
@@ -54,7 +63,10 @@ fn every_command_for_a_setting_is_undone_and_redone() {
         |action: &Action| matches!(action, Action::Setting(_) | Action::Prepare(_) | Action::ResetSettings);
     let mut count = 0;
     for command in all(&harness.state().availability()).into_iter().filter(|command| is_setting(&command.action)) {
-        change(&mut harness, &command.name, |app, context| app.give(context, &command));
+        // Settings are there at once; only what loads the mesh again takes a while.
+        let loads = matches!(command.action, Action::Prepare(_) | Action::Setting(Change::MeshNormals(_)));
+        let take: fn(&mut Harness<App>) = if loads { settle } else { |harness| harness.run_steps(3) };
+        change_with(&mut harness, &command.name, take, |app, context| app.give(context, &command));
         count += 1;
     }
     assert!(count > 60, "only {count} commands");
