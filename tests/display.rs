@@ -8,8 +8,15 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use pnaen::internals::{AdapterChoice, App, Camera, Gpu, Settings, Shape, Source, run_watched};
-use pnaen::load::Limits;
+use geometry::mesh::shapes::Shape;
+use gpu::adapters::AdapterChoice;
+use gpu::device::Gpu;
+use inspect::render::camera::Camera;
+use inspect::settings::Settings;
+use load::Limits;
+use load::source::Source;
+use pnaen::app::App;
+use pnaen::app::window::run::run_watched;
 
 /// More time than each test needs on two slow cores.
 const PATIENCE: Duration = Duration::from_secs(180);

@@ -7,11 +7,11 @@ use std::sync::Arc;
 
 use super::App;
 use super::jobs::own_shader_job::OpenShader;
-use crate::engine::Preparation;
-use crate::gpu::{LodShader, SurfaceShader};
-use crate::load::{Import, Source};
-use crate::render::Camera;
-use crate::settings::Settings;
+use gpu::{LodShader, SurfaceShader};
+use inspect::engine::Preparation;
+use inspect::render::Camera;
+use inspect::settings::Settings;
+use load::{Import, Source};
 
 /// The greatest number of steps that can be undone.
 const MOST: usize = 200;
@@ -266,7 +266,7 @@ impl App {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tessellate::Tessellation;
+    use geometry::tessellate::Tessellation;
 
     fn of(factor: f32) -> Settings {
         Settings::from(Tessellation { factor, ..Tessellation::default() })

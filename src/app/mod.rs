@@ -20,13 +20,13 @@ use std::sync::Arc;
 
 use image::RgbaImage;
 
-use crate::engine::{Engine, Loaded};
-use crate::files::Limits;
-use crate::gpu::{Gpu, GpuError, LodShader, SurfaceShader};
-use crate::load::Source;
-use crate::measure::{Cracks, Sizes};
-use crate::render::Camera;
-use crate::settings::Settings;
+use gpu::{Gpu, GpuError, LodShader, SurfaceShader};
+use inspect::engine::{Engine, Loaded};
+use inspect::measure::{Cracks, Sizes};
+use inspect::render::Camera;
+use inspect::settings::Settings;
+use load::Source;
+use load::files::Limits;
 
 use commands::Commands;
 use dialogs::Dialogs;

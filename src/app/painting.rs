@@ -3,8 +3,8 @@
 use egui::{Color32, PaintCallbackInfo, Rect, Shape};
 use egui_wgpu::{Callback, CallbackResources, CallbackTrait};
 
-use crate::gpu::{Gpu, GpuError};
-use crate::render::{Target, WindowPipelines};
+use gpu::{Gpu, GpuError};
+use inspect::render::{Target, WindowPipelines};
 
 /// What paints into the textures of one window.
 pub(super) struct Painting(WindowPipelines);

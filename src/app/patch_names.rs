@@ -1,6 +1,6 @@
 //! The names of a patch's corners, weights, edges and factors under a convention.
 
-use crate::tessellate::{Convention, domain_side, factor_side, weight_corner};
+use geometry::tessellate::{Convention, domain_side, factor_side, weight_corner};
 
 /// Names of the weights.
 pub(super) const LETTERS: [char; 3] = ['u', 'v', 'w'];

@@ -27,7 +27,7 @@ pub(in crate::app) enum Section {
 }
 
 impl Section {
-    pub(in crate::app) const ALL: [Self; 19] = crate::names::every![Section:
+    pub(in crate::app) const ALL: [Self; 19] = geometry::names::every![Section:
         Surface, Import, Parts, LevelOfDetail, Displacement, Animation, Overlays, View, Advanced, Patch, Factors, LodShader, Deviation, Cracks, Patches, Waste,
         Edges, Mesh, Passes,
     ];

@@ -1,7 +1,7 @@
 //! Formats numbers and names for the window.
 
-pub(super) use crate::names::shortened;
-pub(super) use crate::numbers::{grouped, short};
+pub(super) use geometry::names::shortened;
+pub(super) use geometry::numbers::{grouped, short};
 
 /// Formats a number and its share of all, in percent.
 pub(super) fn part(number: u64, all: u64) -> String {

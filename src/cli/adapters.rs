@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use super::CliError;
-use crate::gpu::{AdapterChoice, GpuError, adapters, best_adapter, driver, kind};
+use gpu::{AdapterChoice, GpuError, adapters, best_adapter, driver, kind};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {}

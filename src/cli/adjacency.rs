@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 use clap::builder::{OsStringValueParser, TypedValueParser};
 
 use super::{CliError, WeldOption, file_of, file_of_heights, keep_apart, load_apart, options, read_bytes, write_bytes};
-use crate::adjacency_file::{Format, read, to_bin, to_json};
-use crate::engine::{Loaded, Preparation};
-use crate::load::{HeightSource, Source};
-use crate::measure::{IndexDifference, Meaning, index_differences};
-use crate::mesh::adjacency::{Layout, Part};
-use crate::names::{every, shown_path};
-use crate::settings::{Choice, Description};
-use crate::tessellate::displaced_corners;
+use geometry::mesh::adjacency::{Layout, Part};
+use geometry::names::shown_path;
+use geometry::tessellate::displaced_corners;
+use inspect::adjacency_file::{Format, read, to_bin, to_json};
+use inspect::engine::{Loaded, Preparation};
+use inspect::measure::{IndexDifference, Meaning, index_differences};
+use inspect::settings::Choice;
+use load::{HeightSource, Source};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -43,46 +43,6 @@ pub(crate) struct Args {
     /// The height image of --corners: a PNG, JPEG or WebP image over all materials, or `material`, the materials' base colour image
     #[arg(long, value_name = "IMAGE|material", requires = "corners", value_parser = OsStringValueParser::new().map(HeightSource::from))]
     pub height: Option<HeightSource>,
-}
-
-impl Choice for Layout {
-    const ALL: &'static [Self] = &Layout::ALL;
-
-    fn description(self) -> Description {
-        match self {
-            Self::Six => Description::new(
-                "6",
-                "6",
-                "What PN-AEN adds to the mesh's own index buffer: the neighbours' corners along the sides 0-1, 1-2, 2-0.",
-            ),
-            Self::Nine => Description::new("9", "9", "The triangle's corners 0, 1, 2, then the six."),
-            Self::Twelve => {
-                Description::new("12", "12", "The nine, then the dominant corners on the points of corners 0, 1, 2.")
-            }
-            Self::Eighteen => Description::new(
-                "18",
-                "18",
-                "The twelve, then the corners of the dominant sides of the edges 0-1, 1-2, 2-0: what exported shaders need to displace.",
-            ),
-        }
-    }
-}
-
-impl Choice for Format {
-    const ALL: &'static [Self] = &every![Format: Json, Bin];
-
-    fn description(self) -> Description {
-        match self {
-            Self::Json => Description::new(
-                "json",
-                "JSON",
-                "The indices, the corners that they refer to, and the triangle of each patch.",
-            ),
-            Self::Bin => {
-                Description::new("bin", "Binary", "Only the indices: 32-bit unsigned integers, little-endian.")
-            }
-        }
-    }
 }
 
 /// How many differences standard error lists.

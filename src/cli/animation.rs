@@ -5,8 +5,8 @@ use std::io::Write;
 use clap::Args;
 
 use super::CliError;
-use crate::engine::Loaded;
-use crate::mesh::Moment;
+use geometry::mesh::Moment;
+use inspect::engine::Loaded;
 
 /// The options that choose a pose.
 #[derive(Clone, Debug, Default, Args)]

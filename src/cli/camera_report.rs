@@ -4,9 +4,9 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::mesh::{FileCamera, Projection};
-use crate::names::shown;
-use crate::numbers::exact;
+use geometry::mesh::{FileCamera, Projection};
+use geometry::names::shown;
+use geometry::numbers::exact;
 
 /// A camera in numbers.
 #[derive(Clone, Debug, Serialize)]

@@ -16,18 +16,18 @@ use super::{
     AdapterOption, CliError, SurfaceOptions, Telling, WeldOption, file_error, file_of, keep_apart, load_apart, options,
     write_text,
 };
-use crate::chart::report::{LeftOut, Part, TABLE};
-use crate::chart::{Bench, COLUMNS, Effort, LodKind, Plan, Setting, Subject, bitmap, has_converged, svg};
-use crate::engine::{Engine, Loaded};
-use crate::files::file_reason;
-use crate::load::Source;
-use crate::measure::AccuracyOptions;
-use crate::progress::Progress;
-use crate::render::Target;
-use crate::settings::options::{FACTOR, PIXELS, TOLERANCE};
-use crate::settings::{ARENA_BYTES, Settings};
-use crate::tessellate::{Normals, Partitioning, Surface, Tessellation};
-use crate::truth::Truth;
+use geometry::progress::Progress;
+use geometry::tessellate::{Normals, Partitioning, Surface, Tessellation};
+use inspect::engine::{Engine, Loaded};
+use inspect::measure::AccuracyOptions;
+use inspect::render::Target;
+use inspect::settings::options::{FACTOR, PIXELS, TOLERANCE};
+use inspect::settings::{ARENA_BYTES, Settings};
+use inspect::truth::Truth;
+use lab::chart::report::{LeftOut, Part, TABLE};
+use lab::chart::{Bench, COLUMNS, Effort, LodKind, Plan, Setting, Subject, bitmap, has_converged, svg};
+use load::Source;
+use load::files::file_reason;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {

@@ -15,11 +15,11 @@ use clap::ValueEnum;
 use super::gate_options::FailOnOption;
 use super::interrupt::stop_on_interrupt;
 use super::{AdapterOption, CliError, Telling, file_error, file_of, keep_apart, note, options, write_text};
-use crate::check::{Asset, Cache, Report, junit, page, sarif};
-use crate::cores::in_ranges;
-use crate::engine::Engine;
-use crate::files::file_reason;
-use crate::load::Source;
+use geometry::cores::in_ranges;
+use inspect::engine::Engine;
+use lab::check::{Asset, Cache, Report, junit, page, sarif};
+use load::Source;
+use load::files::file_reason;
 
 use plan::Job;
 

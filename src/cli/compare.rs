@@ -9,17 +9,17 @@ use super::{
     AdapterOption, CliError, FactorsOption, SurfaceOptions, file_of, file_of_heights, keep_apart, load_apart, options,
     to_json, warn, write_text,
 };
-use crate::compare::{Exactness, ForeignMesh, Ours, compare};
-use crate::engine::Loaded;
-use crate::files::Limits;
-use crate::load::csv_vertices::{CsvVertices, read_vertices};
-use crate::load::selection::Selection;
-use crate::load::{Import, NormalSource, Source};
-use crate::names::shown_path;
-use crate::progress::Progress;
-use crate::settings::Settings;
-use crate::tessellate::{self, HullFactors, Inputs, Tessellated, bounds_through};
-use crate::view::ulp;
+use geometry::names::shown_path;
+use geometry::progress::Progress;
+use geometry::tessellate::{self, HullFactors, Inputs, Tessellated, bounds_through};
+use geometry::view::ulp;
+use inspect::engine::Loaded;
+use inspect::settings::Settings;
+use lab::compare::{Exactness, ForeignMesh, Ours, compare};
+use load::csv_vertices::{CsvVertices, read_vertices};
+use load::files::Limits;
+use load::selection::Selection;
+use load::{Import, NormalSource, Source};
 
 use report::Report;
 

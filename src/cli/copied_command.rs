@@ -6,12 +6,12 @@ use std::fmt::{Display, Write};
 use std::path::Path;
 
 use super::turntable::Turn;
-use crate::engine::Preparation;
-use crate::files::Limits;
-use crate::load::{HeightSource, Source};
-use crate::render::Camera;
-use crate::settings::{Colors, Declaration, Lighting, Settings, Value, options};
-use crate::tessellate::{Displacement, Tessellation};
+use geometry::tessellate::{Displacement, Tessellation};
+use inspect::engine::Preparation;
+use inspect::render::Camera;
+use inspect::settings::{Colors, Declaration, Lighting, Settings, Value, options};
+use load::files::Limits;
+use load::{HeightSource, Source};
 
 /// What a window shows, and from where.
 pub(crate) struct CopiedCommand<'a> {
@@ -252,9 +252,9 @@ mod tests {
     use super::*;
     use crate::cli::options::PictureOptions;
     use crate::cli::{Cli, CliError, Command, render};
-    use crate::load::Import;
-    use crate::mesh::Bounds;
-    use crate::settings::{Matcap, Overlays, random};
+    use geometry::mesh::Bounds;
+    use inspect::settings::{Matcap, Overlays, random};
+    use load::Import;
 
     /// Splits a line into words as a shell does.
     fn words(line: &str) -> Vec<String> {

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use super::tessellate::Device;
 use super::{AdapterOption, CliError, read_text};
-use crate::gpu::{DomainPass, DomainPattern, Gpu};
-use crate::names::shown_path;
-use crate::tessellate::{
+use geometry::names::shown_path;
+use geometry::tessellate::{
     HullFactors, Partitioning, domain_plan, domain_point, domain_triangle, point_count, process, triangle_count,
 };
+use gpu::{DomainPass, DomainPattern, Gpu};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {

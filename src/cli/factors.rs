@@ -10,15 +10,15 @@ use super::{
     AdapterOption, CliError, LodShaderOption, SurfaceOptions, file_of, file_of_heights, keep_apart, load_apart,
     write_text,
 };
-use crate::engine::{Engine, Loaded};
-use crate::factors_file::to_csv;
-use crate::gpu::{Given, GpuError, Timing};
-use crate::load::Source;
-use crate::mesh::Moment;
-use crate::progress::Progress;
-use crate::render::Scene;
-use crate::settings::Settings;
-use crate::tessellate::{self, HullFactors, Inputs, LodView, bounds_through};
+use geometry::mesh::Moment;
+use geometry::progress::Progress;
+use geometry::tessellate::{self, HullFactors, Inputs, LodView, bounds_through};
+use gpu::{Given, GpuError, Timing};
+use inspect::engine::{Engine, Loaded};
+use inspect::render::Scene;
+use inspect::settings::Settings;
+use load::Source;
+use load::factors_file::to_csv;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {

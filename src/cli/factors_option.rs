@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::{CliError, read_text};
-use crate::factors_file::from_csv;
-use crate::measure::{Agreement, Disagreement, Order};
-use crate::mesh::{Mesh, Topology};
-use crate::names::shown_path;
-use crate::settings::Choice;
-use crate::tessellate::{Convention, HullFactors, Partitioning, Tessellation};
+use geometry::mesh::{Mesh, Topology};
+use geometry::names::shown_path;
+use geometry::tessellate::{Convention, HullFactors, Partitioning, Tessellation};
+use inspect::measure::{Agreement, Disagreement, Order};
+use inspect::settings::Choice;
+use load::factors_file::from_csv;
 
 #[derive(Clone, Debug, Default, clap::Args)]
 pub(crate) struct FactorsOption {

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use clap::builder::{OsStringValueParser, TypedValueParser};
 
 use super::{AdapterOption, CliError, Telling, WeldOption, file_error, options, warn, write_picture, write_text};
-use crate::engine::{Engine, Preparation};
-use crate::files::file_reason;
-use crate::gallery::{Exhibit, Gallery, GalleryOptions, PAGE, exhibits, page};
-use crate::load::{HeightSource, Source};
-use crate::settings::options::{FACTOR, HEIGHT_SCALE, MIDLEVEL};
+use inspect::engine::{Engine, Preparation};
+use inspect::settings::options::{FACTOR, HEIGHT_SCALE, MIDLEVEL};
+use lab::gallery::{Exhibit, Gallery, GalleryOptions, PAGE, exhibits, page};
+use load::files::file_reason;
+use load::{HeightSource, Source};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {

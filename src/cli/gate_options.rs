@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use super::shot::Shot;
 use super::{CliError, file_error, write_picture};
-use crate::files::file_reason;
-use crate::gates::{Gate, GateKind, Judgement};
-use crate::progress::Progress;
+use geometry::progress::Progress;
+use inspect::gates::{Gate, GateKind, Judgement};
+use load::files::file_reason;
 
 #[derive(Clone, Debug, Default, clap::Args)]
 pub(crate) struct GateOptions {

@@ -5,10 +5,10 @@ use std::mem::take;
 use super::mesh_report::{Info, PartInfo};
 use super::options::WeldOption;
 use super::{CliError, to_json, write_text};
-use crate::engine;
-use crate::load::{LoadError, Source};
-use crate::mesh::weld_previews;
-use crate::progress::Progress;
+use geometry::mesh::weld_previews;
+use geometry::progress::Progress;
+use inspect::engine;
+use load::{LoadError, Source};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {

@@ -6,10 +6,10 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use crate::plot::{self, ChartError, DENSITY};
-use crate::render::layout::{WASTE_COLOR, srgb};
-use crate::render::{BARYCENTRIC_TITLE, COLUMNS, Distances, Scale, Shown, legend_of, tick_text};
-use crate::settings::{Colors, Settings};
+use inspect::plot::{self, ChartError, DENSITY};
+use inspect::render::layout::{WASTE_COLOR, srgb};
+use inspect::render::{BARYCENTRIC_TITLE, COLUMNS, Distances, Scale, Shown, legend_of, tick_text};
+use inspect::settings::{Colors, Settings};
 
 /// Sizes in points: the bar of the scale, the block of one colour before it, the margin, and the text.
 const BAR: [f64; 2] = [196.0, 12.0];

@@ -4,8 +4,8 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::mesh::{Light, LightKind};
-use crate::numbers::exact;
+use geometry::mesh::{Light, LightKind};
+use geometry::numbers::exact;
 
 /// A light in numbers.
 #[derive(Clone, Debug, Serialize)]

@@ -7,12 +7,12 @@ use serde::Serialize;
 
 use super::factors_option::{EdgeStats, FactorsOption, LISTED, agreement_lines};
 use super::{CliError, warn};
-use crate::engine::Engine;
-use crate::gpu::{Given, GpuError};
-use crate::measure::Agreement;
-use crate::own_shader::read_own_shader;
-use crate::render::Scene;
-use crate::tessellate::{Partitioning, Tessellation};
+use geometry::tessellate::{Partitioning, Tessellation};
+use gpu::{Given, GpuError};
+use inspect::engine::Engine;
+use inspect::measure::Agreement;
+use inspect::own_shader::read_own_shader;
+use inspect::render::Scene;
 
 #[derive(Clone, Debug, Default, clap::Args)]
 pub(crate) struct LodShaderOption {

@@ -4,8 +4,8 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::mesh::{Alpha, Look, Map, MapUv, Material, Slot};
-use crate::names::shown;
+use geometry::mesh::{Alpha, Look, Map, MapUv, Material, Slot};
+use geometry::names::shown;
 
 /// A material in numbers.
 #[derive(Clone, Debug, Serialize)]
@@ -159,7 +159,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::mesh::{Sampling, Texture};
+    use geometry::mesh::{Sampling, Texture};
 
     #[test]
     fn a_plain_material_has_two_lines() {

@@ -7,17 +7,17 @@ use serde::Serialize;
 use super::camera_report::CameraInfo;
 use super::light_report::LightInfo;
 use super::material_report::MaterialInfo;
-use crate::cores::both;
-use crate::load::parts::Part;
-use crate::mesh::crease_band::CreaseBand;
-use crate::mesh::rig::{AnimatedCounts, Clip, Rig};
-use crate::mesh::{
+use geometry::cores::both;
+use geometry::mesh::crease_band::CreaseBand;
+use geometry::mesh::rig::{AnimatedCounts, Clip, Rig};
+use geometry::mesh::{
     EdgeCounts, Mesh, NormalFaults, Repairs, TJunction, Topology, WeldPreview, t_junctions, weld_previews,
 };
-use crate::names::{on_one_line, shown};
-use crate::numbers::exact;
-use crate::progress::{Cancelled, Progress};
-use crate::view::ulp_at;
+use geometry::names::{on_one_line, shown};
+use geometry::numbers::exact;
+use geometry::progress::{Cancelled, Progress};
+use geometry::view::ulp_at;
+use load::parts::Part;
 
 /// How many T-junctions the text lists.
 const SHOWN: usize = 10;
@@ -318,8 +318,8 @@ mod tests {
     use glam::{Vec2, Vec3};
 
     use super::*;
-    use crate::mesh::Corner;
-    use crate::mesh::shapes::Shape;
+    use geometry::mesh::Corner;
+    use geometry::mesh::shapes::Shape;
 
     fn info(mesh: &Mesh, weld: f32) -> Info {
         let progress = Progress::new();

@@ -74,19 +74,19 @@ pub(crate) use tessellate::run_with as tessellate_with;
 pub(crate) use truth::{ReferenceSurface, TruthOption};
 pub(crate) use turntable::{FPS, FRAMES, Turn, frame_name};
 
-use crate::check::ConfigError;
-use crate::engine::{Loaded, Preparation};
-use crate::export::ExportError;
-use crate::files::Limits;
-use crate::files::file_reason;
-use crate::gpu::GpuError;
-use crate::load::environment_file::EnvironmentError;
-use crate::load::{LoadError, MatcapError, Source};
-use crate::names::{on_one_line, shown, shown_path};
-use crate::own_shader::OwnShaderError;
-use crate::progress::{Cancelled, Progress};
-use crate::settings::Settings;
-use crate::shader_files::ShaderError;
+use geometry::names::{on_one_line, shown, shown_path};
+use geometry::progress::{Cancelled, Progress};
+use gpu::GpuError;
+use inspect::engine::{Loaded, Preparation};
+use inspect::export::ExportError;
+use inspect::own_shader::OwnShaderError;
+use inspect::settings::Settings;
+use inspect::shader_files::ShaderError;
+use lab::check::ConfigError;
+use load::environment_file::EnvironmentError;
+use load::files::Limits;
+use load::files::file_reason;
+use load::{LoadError, MatcapError, Source};
 
 /// Shows what tessellation does to a mesh in a window; commands write pictures, meshes and numbers instead
 #[derive(Debug, Parser)]
@@ -167,7 +167,7 @@ pub(crate) enum CliError {
     #[error(transparent)]
     Gpu(#[from] GpuError),
     #[error(transparent)]
-    Csv(#[from] crate::load::csv_vertices::CsvError),
+    Csv(#[from] load::csv_vertices::CsvError),
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     #[error(transparent)]
@@ -194,9 +194,9 @@ pub(crate) enum CliError {
     )]
     Uneven { path: String, triangle: u32 },
     #[error(transparent)]
-    Picture(#[from] crate::stability::PictureError),
+    Picture(#[from] lab::stability::PictureError),
     #[error(transparent)]
-    Gallery(#[from] crate::gallery::GalleryError),
+    Gallery(#[from] lab::gallery::GalleryError),
     #[error("{count} of the table's lines break a promise; the first is {method} on {case}")]
     Promise { count: usize, case: String, method: &'static str },
     #[error("{0}")]
@@ -213,13 +213,13 @@ pub(crate) enum CliError {
     #[error("{view}: {error}")]
     View { view: String, error: Box<CliError> },
     #[error(transparent)]
-    ViewProjection(#[from] crate::render::view_projection::ViewProjectionError),
+    ViewProjection(#[from] inspect::render::view_projection::ViewProjectionError),
     #[error("{different} of {all} pictures differ from their references")]
     ManyDifferent { different: usize, all: usize },
     #[error("triangle {triangle} of {file} is degenerate: it has no patch")]
     NoPatch { file: String, triangle: u32 },
     #[error("{path}: {fault}")]
-    Indices { path: String, fault: crate::adjacency_file::IndicesFault },
+    Indices { path: String, fault: inspect::adjacency_file::IndicesFault },
     #[error("{path}: {different} of {patches} patches {differ}: {meanings}")]
     OtherIndices { path: String, different: usize, patches: usize, differ: &'static str, meanings: String },
     #[error(
@@ -245,7 +245,7 @@ pub(crate) enum CliError {
     #[error(transparent)]
     Shaders(#[from] ShaderError),
     #[error(transparent)]
-    Chart(#[from] crate::plot::ChartError),
+    Chart(#[from] inspect::plot::ChartError),
     #[error("{}", .0.join("; "))]
     Gates(Vec<String>),
     #[error("{0}")]
@@ -386,7 +386,7 @@ fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
         let mut out = std::io::stdout().lock();
         return out.write_all(bytes).and_then(|()| out.flush()).map_err(CliError::Output);
     }
-    crate::files::write_whole(path, bytes).map_err(|error| file_error(path, "written", &file_reason(&error)))
+    load::files::write_whole(path, bytes).map_err(|error| file_error(path, "written", &file_reason(&error)))
 }
 
 /// Serialises a value on several lines, with a line end.
@@ -401,7 +401,7 @@ fn file_error(path: &Path, doing: &'static str, reason: &dyn std::fmt::Display) 
 
 /// Loads a mesh for a command. Standard error tells what was left out or repaired.
 fn load(source: &Source, preparation: &Preparation) -> Result<Loaded, CliError> {
-    let loaded = crate::engine::load(source, preparation, &Progress::default())?;
+    let loaded = inspect::engine::load(source, preparation, &Progress::default())?;
     warn(&loaded.warnings);
     Ok(loaded)
 }

@@ -14,14 +14,14 @@ use clap::{Args, Parser};
 use glam::Vec2;
 
 use super::{AnimationOption, CliError};
-use crate::engine::Preparation;
-use crate::files::Limits;
-use crate::load::HeightSource;
-use crate::mesh::{Bounds, FileCamera, Mesh, Moment};
-use crate::render::Camera;
-use crate::settings::options::TOLERANCE_RANGE;
-use crate::settings::{ARENA_BYTES, Settings};
-use crate::tessellate::{Displacement, Lod, Partitioning, Surface, Tessellation, tolerance_within_budget};
+use geometry::mesh::{Bounds, FileCamera, Mesh, Moment};
+use geometry::tessellate::{Displacement, Lod, Partitioning, Surface, Tessellation, tolerance_within_budget};
+use inspect::engine::Preparation;
+use inspect::render::Camera;
+use inspect::settings::options::TOLERANCE_RANGE;
+use inspect::settings::{ARENA_BYTES, Settings};
+use load::HeightSource;
+use load::files::Limits;
 
 pub(crate) use cameras::{CamerasOption, NamedView};
 pub(crate) use declared::{ImportOptions, PictureOptions, TessellationOptions, choice, number_of};

@@ -4,8 +4,8 @@
 use std::path::{Path, PathBuf};
 
 use super::{CliError, file_error};
-use crate::load::{HeightSource, Source};
-use crate::names::shown_path;
+use geometry::names::shown_path;
+use load::{HeightSource, Source};
 
 /// Checks that the files to be written are different from each other and from those to be read.
 ///

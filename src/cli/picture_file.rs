@@ -7,9 +7,9 @@ use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{DynamicImage, RgbaImage};
 
 use super::{CliError, file_error};
-use crate::files::{file_reason, write_whole};
-use crate::gpu::identity;
-use crate::settings::{Settings, Value, options};
+use gpu::identity;
+use inspect::settings::{Settings, Value, options};
+use load::files::{file_reason, write_whole};
 
 /// Keywords of the texts. The first is one of the PNG specification's own.
 const SOFTWARE: &str = "Software";

@@ -10,9 +10,9 @@ use super::options::steps;
 use super::picture_comparison::{CompareError, Comparison, compare, difference_picture};
 use super::picture_file::adapter_of;
 use super::{CliError, file_error, write_picture};
-use crate::files::{file_reason, open_file};
-use crate::gpu::identity;
-use crate::names::shown_path;
+use geometry::names::shown_path;
+use gpu::identity;
+use load::files::{file_reason, open_file};
 
 /// The largest mean difference of a square of 8 x 8 px that pictures of two drivers may have, in steps of 255. Chosen by what
 /// an NVIDIA H200 draws otherwise than the software driver, which the manual lists, and by the pairs in `tests/gpu/reference.rs`.

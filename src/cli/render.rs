@@ -10,12 +10,12 @@ use super::shot_options::ShotOptions;
 use super::stats::Stats;
 use super::view_files::{View, ViewFiles};
 use super::{AdapterOption, CliError, LimitOption, SurfaceOptions, WeldOption, options, to_json, write_text};
-use crate::engine::Engine;
-use crate::gpu::GpuError;
-use crate::load::Source;
-use crate::progress::Progress;
-use crate::render::Camera;
-use crate::settings::Settings;
+use geometry::progress::Progress;
+use gpu::GpuError;
+use inspect::engine::Engine;
+use inspect::render::Camera;
+use inspect::settings::Settings;
+use load::Source;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {

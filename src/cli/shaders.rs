@@ -4,9 +4,8 @@ use std::path::PathBuf;
 
 use super::options::TessellationOptions;
 use super::{CliError, file_error, options, write_text};
-use crate::files::file_reason;
-use crate::settings::{Choice, Description};
-use crate::shader_files::{Language, shader_files};
+use inspect::shader_files::{Language, shader_files};
+use load::files::file_reason;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -21,28 +20,6 @@ pub(crate) struct Args {
     /// Is refused: only the rules of --surface can be exported
     #[arg(long, value_name = "WGSL", hide = true)]
     pub surface_shader: Option<PathBuf>,
-}
-
-impl Choice for Language {
-    const ALL: &'static [Self] = &Language::ALL;
-
-    fn description(self) -> Description {
-        match self {
-            Self::Hlsl => {
-                Description::new("hlsl", "HLSL", "Vertex, hull and domain shader for Direct3D 11 and 12: patch.hlsl.")
-            }
-            Self::Glsl => Description::new(
-                "glsl",
-                "GLSL",
-                "The same stages for Vulkan and OpenGL: patch.vert, patch.tesc and patch.tese.",
-            ),
-            Self::Wgsl => Description::new(
-                "wgsl",
-                "WGSL",
-                "Compute passes for WebGPU, which has no tessellation stages: tessellate.wgsl.",
-            ),
-        }
-    }
 }
 
 /// Runs the command, which was given as this line.

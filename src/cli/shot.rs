@@ -18,20 +18,20 @@ use super::surface_shader_option::{SurfaceShaderStats, report_own_surface};
 use super::truth::{AccuracyStats, DeviationStats, ReferenceSurface};
 use super::view_report::ViewStats;
 use super::{CliError, to_json, write_text};
-use crate::engine::{Engine, Loaded, MeasurementResults, Measurements, Runs, SilhouetteView};
-use crate::gates::Judgement;
-use crate::gpu::{Given, GpuError, Recorder, SurfaceShader, Timing};
-use crate::load::panorama::Panorama;
-use crate::measure::{AccuracyOptions, DeviationField, ScreenError, Silhouette, patch_edges};
-use crate::mesh::{Bounds, Mesh, Moment, Texture, t_junctions};
-use crate::progress::Progress;
-use crate::render::{
+use geometry::mesh::{Bounds, Mesh, Moment, Texture, t_junctions};
+use geometry::progress::Progress;
+use geometry::tessellate::{Inputs, LodView};
+use geometry::view::ScreenView;
+use gpu::{Given, GpuError, Recorder, SurfaceShader, Timing};
+use inspect::engine::{Engine, Loaded, MeasurementResults, Measurements, Runs, SilhouetteView};
+use inspect::gates::Judgement;
+use inspect::measure::{AccuracyOptions, DeviationField, ScreenError, Silhouette, patch_edges};
+use inspect::render::{
     Camera, DEVIATION_PX_SCALE, Distances, LineSegment, Renderer, Scale, Scene, Target, axis_lines, crack_lines,
     deviation_scale, lay_over, lod_camera_lines, outlines_picture, patch_lines, t_junction_lines, worst_lines,
 };
-use crate::settings::{Colors, DeviationUnit, Settings, SplitSide};
-use crate::tessellate::{Inputs, LodView};
-use crate::view::ScreenView;
+use inspect::settings::{Colors, DeviationUnit, Settings, SplitSide};
+use load::panorama::Panorama;
 
 /// What is drawn.
 pub(crate) struct Subject {

@@ -10,15 +10,15 @@ use super::{
     CliError, FactorsOption, LodShaderOption, ReferenceSurface, SurfaceOptions, SurfaceShaderOption, TruthOption,
     file_of, file_of_heights, keep_apart, load_apart, warn,
 };
-use crate::engine::{Engine, Loaded};
-use crate::gpu::{Given, Timing};
-use crate::load::environment_file::EnvironmentFile;
-use crate::load::panorama::Panorama;
-use crate::load::{Source, load_matcap};
-use crate::progress::Progress;
-use crate::render::Camera;
-use crate::render::environment::Environment;
-use crate::settings::{Colors, Lighting, Settings};
+use geometry::progress::Progress;
+use gpu::{Given, Timing};
+use inspect::engine::{Engine, Loaded};
+use inspect::render::Camera;
+use inspect::render::environment::Environment;
+use inspect::settings::{Colors, Lighting, Settings};
+use load::environment_file::EnvironmentFile;
+use load::panorama::Panorama;
+use load::{Source, load_matcap};
 
 #[derive(Clone, Debug, Default, clap::Args)]
 pub(crate) struct ShotOptions {

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::measure::{OutlineDistance, Silhouette};
+use inspect::measure::{OutlineDistance, Silhouette};
 
 /// The largest distances of the triangles' outline from others, in px; none where the picture doesn't show both outlines. Places
 /// are in px from the picture's top left.

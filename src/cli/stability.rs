@@ -11,17 +11,17 @@ use super::gate_options::GateOptions;
 use super::options::whole;
 use super::tessellate::Device;
 use super::{AdapterOption, CliError, WeldOption, file_error, to_json, write_text};
-use crate::engine::Engine;
-use crate::files::file_reason;
-use crate::gates::{Facts, GateKind, judge};
-use crate::load::Source;
-use crate::mesh::{Topology, t_junctions};
-use crate::progress::Progress;
-use crate::render::Leaks;
-use crate::stability::{
+use geometry::mesh::{Topology, t_junctions};
+use geometry::progress::Progress;
+use inspect::engine::Engine;
+use inspect::gates::{Facts, GateKind, judge};
+use inspect::render::Leaks;
+use lab::stability::{
     CASES, Case, Effort, Failure, LEGEND, Method, PAGE, Row, Section, Subject, Verdict, are_judged, failures, lines,
     page, picture, run as run_case, table,
 };
+use load::Source;
+use load::files::file_reason;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -229,7 +229,7 @@ fn keep_promises(rows: &[Row]) -> Result<(), CliError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::Mesh;
+    use geometry::mesh::Mesh;
 
     #[test]
     fn names_and_pictures_are_unique() {

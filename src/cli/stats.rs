@@ -11,15 +11,15 @@ use super::silhouette::SilhouetteStats;
 use super::surface_shader_option::SurfaceShaderStats;
 use super::truth::{AccuracyStats, DeviationStats};
 use super::view_report::ViewStats;
-use crate::engine::{Engine, Loaded};
-use crate::gates::{GateKind, Judgement};
-use crate::gpu::PassTime;
-use crate::measure::{Measured, SeamTurns, Seams};
-use crate::mesh::{EdgeCounts, Topology};
-use crate::render::Scene;
-use crate::settings::{Choice, Declaration, Settings, options};
-use crate::tessellate::Displacement;
-use crate::view::{ScreenView, ulp};
+use geometry::mesh::{EdgeCounts, Topology};
+use geometry::tessellate::Displacement;
+use geometry::view::{ScreenView, ulp};
+use gpu::PassTime;
+use inspect::engine::{Engine, Loaded};
+use inspect::gates::{GateKind, Judgement};
+use inspect::measure::{Measured, SeamTurns, Seams};
+use inspect::render::Scene;
+use inspect::settings::{Choice, Declaration, Settings, options};
 
 /// What was done and what it cost. Times are medians in ms.
 #[derive(Debug, Serialize)]

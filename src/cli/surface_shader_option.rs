@@ -9,14 +9,14 @@ use serde::Serialize;
 
 use super::factors_option::{LISTED, SAID, end_points, point_text};
 use super::{CliError, warn};
-use crate::engine::Engine;
-use crate::gates::{Gate, GateKind};
-use crate::gpu::{GpuError, SurfaceShader};
-use crate::measure::{PointsAgreement, PointsDisagreement};
-use crate::mesh::Topology;
-use crate::numbers::short;
-use crate::own_shader::read_own_shader;
-use crate::render::Scene;
+use geometry::mesh::Topology;
+use geometry::numbers::short;
+use gpu::{GpuError, SurfaceShader};
+use inspect::engine::Engine;
+use inspect::gates::{Gate, GateKind};
+use inspect::measure::{PointsAgreement, PointsDisagreement};
+use inspect::own_shader::read_own_shader;
+use inspect::render::Scene;
 
 #[derive(Clone, Debug, Default, clap::Args)]
 pub(crate) struct SurfaceShaderOption {

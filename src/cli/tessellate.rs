@@ -15,17 +15,17 @@ use super::{
     AdapterOption, CliError, FactorsOption, LodShaderOption, SurfaceOptions, SurfaceShaderOption, file_of,
     file_of_heights, keep_apart, load_apart, options, warn,
 };
-use crate::engine::{Engine, Loaded};
-use crate::export::Exported;
-use crate::gates::{Facts, GateKind, Judgement, judge};
-use crate::gpu::{Given, GpuError, SurfaceShader, Timing};
-use crate::load::Source;
-use crate::measure::{AskedFactors, EmittedChunk, Measured, ScreenErrorMeasurement, Visitor};
-use crate::mesh::{Bounds, Moment, t_junctions};
-use crate::progress::Progress;
-use crate::render::{Camera, Scene};
-use crate::settings::Settings;
-use crate::tessellate::{self, HullFactors, Inputs, LodView, Tessellated, Tessellation, bounds_through};
+use geometry::mesh::{Bounds, Moment, t_junctions};
+use geometry::progress::Progress;
+use geometry::tessellate::{self, HullFactors, Inputs, LodView, Tessellated, Tessellation, bounds_through};
+use gpu::{Given, GpuError, SurfaceShader, Timing};
+use inspect::engine::{Engine, Loaded};
+use inspect::export::Exported;
+use inspect::gates::{Facts, GateKind, Judgement, judge};
+use inspect::measure::{AskedFactors, EmittedChunk, Measured, ScreenErrorMeasurement, Visitor};
+use inspect::render::{Camera, Scene};
+use inspect::settings::Settings;
+use load::Source;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {

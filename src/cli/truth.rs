@@ -7,13 +7,13 @@ use glam::DVec3;
 use serde::Serialize;
 
 use super::{CliError, SurfaceOptions, options};
-use crate::engine::Loaded;
-use crate::load::Source;
-use crate::measure::{Accuracy, Angles, DeviationField, DeviationTarget, Distances, Sampling};
-use crate::progress::Progress;
-use crate::render::Scale;
-use crate::tessellate::{Displacement, Inputs};
-use crate::truth::Truth;
+use geometry::progress::Progress;
+use geometry::tessellate::{Displacement, Inputs};
+use inspect::engine::Loaded;
+use inspect::measure::{Accuracy, Angles, DeviationField, DeviationTarget, Distances, Sampling};
+use inspect::render::Scale;
+use inspect::truth::Truth;
+use load::Source;
 
 #[derive(Clone, Debug, Default, Args)]
 pub(crate) struct TruthOption {

@@ -10,12 +10,12 @@ use super::options::whole;
 use super::shot::Shot;
 use super::shot_options::ShotOptions;
 use super::{AdapterOption, CliError, Telling, file_error};
-use crate::engine::Engine;
-use crate::export::ending;
-use crate::files::{PartFile, PartFolder, file_reason};
-use crate::load::Source;
-use crate::progress::Progress;
-use crate::render::Camera;
+use geometry::progress::Progress;
+use inspect::engine::Engine;
+use inspect::export::ending;
+use inspect::render::Camera;
+use load::Source;
+use load::files::{PartFile, PartFolder, file_reason};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {

@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use super::options::{CamerasOption, NamedView, SurfaceOptions};
 use super::{CliError, file_error};
-use crate::export::ending;
-use crate::files::file_reason;
-use crate::load::Source;
-use crate::mesh::{Bounds, Mesh, Moment};
-use crate::names::shown;
-use crate::render::Camera;
+use geometry::mesh::{Bounds, Mesh, Moment};
+use geometry::names::shown;
+use inspect::export::ending;
+use inspect::render::Camera;
+use load::Source;
+use load::files::file_reason;
 
 /// What stands for a view's name in names of files.
 const NAME: &str = "{}";

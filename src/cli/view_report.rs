@@ -3,8 +3,8 @@
 use glam::Vec4;
 use serde::Serialize;
 
-use crate::mesh::Bounds;
-use crate::render::Camera;
+use geometry::mesh::Bounds;
+use inspect::render::Camera;
 
 /// A camera in numbers.
 #[derive(Clone, Debug, Serialize)]

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::settings::options::{LOD_IS_FIXED, NORMALS_FOLLOW_TRIANGLES};
+use inspect::settings::options::{LOD_IS_FIXED, NORMALS_FOLLOW_TRIANGLES};
 
 /// The greatest number of bookmarks of a file: one for each key from 1 to 9.
 pub(crate) const MOST_BOOKMARKS: usize = 9;

@@ -1,10 +1,10 @@
 //! Changes of settings that are commands.
 
-use crate::load::{FileUnit, LengthUnit, NormalSource};
-use crate::mesh::UpAxis;
-use crate::settings::options::FACTOR_RANGE;
-use crate::settings::{Colors, DeviationUnit, NormalsAt, Overlay, Settings};
-use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
+use geometry::mesh::UpAxis;
+use geometry::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
+use inspect::settings::options::FACTOR_RANGE;
+use inspect::settings::{Colors, DeviationUnit, NormalsAt, Overlay, Settings};
+use load::{FileUnit, LengthUnit, NormalSource};
 
 /// A change of settings. Its result depends on the settings alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,7 +82,7 @@ fn switched_lod(settings: &Settings) -> Lod {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tessellate::Tessellation;
+    use geometry::tessellate::Tessellation;
 
     fn changed(settings: Settings, change: Change) -> Settings {
         let mut settings = settings;

@@ -6,8 +6,8 @@ use super::availability as when;
 use super::{
     Action, CameraAction, Change, Command, Direction, FileAction, Menu, QUIT, Submenu, ctrl, ctrl_shift, plain, shift,
 };
-use crate::mesh::Shape;
-use crate::render::Standpoint;
+use geometry::mesh::Shape;
+use inspect::render::Standpoint;
 
 /// What displacing by a height image does.
 pub(crate) const HEIGHT_IMAGE: &str =

@@ -6,12 +6,12 @@ use egui::{Key, KeyboardShortcut};
 
 use super::availability as when;
 use super::{Action, Availability, CameraAction, Change, Command, FileAction, Preparing, Submenu, alt, plain, shift};
-use crate::load::{LengthUnit, NormalSource};
-use crate::mesh::UpAxis;
-use crate::mesh::weld_preview::TOLERANCES;
-use crate::names::shortened;
-use crate::settings::{Choice, Colors, Control, Declaration, DeviationUnit, NormalsAt, Overlay, Overlays, options};
-use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
+use geometry::mesh::UpAxis;
+use geometry::mesh::weld_preview::TOLERANCES;
+use geometry::names::shortened;
+use geometry::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
+use inspect::settings::{Choice, Colors, Control, Declaration, DeviationUnit, NormalsAt, Overlay, Overlays, options};
+use load::{LengthUnit, NormalSource};
 
 /// The greatest number of clips that are listed.
 const CLIPS: usize = 1000;

@@ -14,8 +14,8 @@ use std::sync::LazyLock;
 
 use egui::{Key, KeyboardShortcut, Modifiers};
 
-use crate::mesh::Shape;
-use crate::render::Standpoint;
+use geometry::mesh::Shape;
+use inspect::render::Standpoint;
 
 pub(crate) use availability::{Availability, BACKS_ARE_SEEN, MADE_IN_CODE, MOST_BOOKMARKS, NO_TEXTURE_COORDINATES};
 pub(crate) use change::Change;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{Availability, Command, GESTURES, Place, all, key_names};
-use crate::markdown::{plain, table};
+use load::markdown::{plain, table};
 
 /// The page: what the pointer does, the commands with keys, and those without.
 fn page() -> String {

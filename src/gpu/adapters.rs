@@ -5,7 +5,7 @@ use std::str::FromStr;
 use thiserror::Error;
 
 use super::GpuError;
-use crate::names::shown;
+use geometry::names::shown;
 
 /// What is asked for.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -90,7 +90,7 @@ impl AdapterChoice {
 }
 
 /// What adapters are looked for by. OpenGL shows no texture in another format than it has, which pictures need.
-pub(crate) const BACKENDS: wgpu::Backends = wgpu::Backends::PRIMARY;
+pub const BACKENDS: wgpu::Backends = wgpu::Backends::PRIMARY;
 
 fn instance() -> wgpu::Instance {
     let descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
@@ -101,7 +101,7 @@ fn instance() -> wgpu::Instance {
 ///
 /// # Errors
 /// There is none.
-pub(crate) fn best_adapter() -> Result<wgpu::Adapter, GpuError> {
+pub fn best_adapter() -> Result<wgpu::Adapter, GpuError> {
     let instance = instance();
     let options =
         wgpu::RequestAdapterOptions { power_preference: wgpu::PowerPreference::HighPerformance, ..Default::default() };
@@ -109,7 +109,7 @@ pub(crate) fn best_adapter() -> Result<wgpu::Adapter, GpuError> {
 }
 
 /// All adapters that there are, graphics cards first and software last.
-pub(crate) fn adapters() -> Vec<wgpu::Adapter> {
+pub fn adapters() -> Vec<wgpu::Adapter> {
     let instance = instance();
     let mut all = pollster::block_on(instance.enumerate_adapters(BACKENDS));
     all.sort_by_key(|adapter| match adapter.get_info().device_type {
@@ -123,7 +123,7 @@ pub(crate) fn adapters() -> Vec<wgpu::Adapter> {
 }
 
 /// What an adapter is, in words.
-pub(crate) fn kind(device_type: wgpu::DeviceType) -> &'static str {
+pub fn kind(device_type: wgpu::DeviceType) -> &'static str {
     match device_type {
         wgpu::DeviceType::DiscreteGpu => "graphics card",
         wgpu::DeviceType::IntegratedGpu => "integrated",
@@ -134,7 +134,7 @@ pub(crate) fn kind(device_type: wgpu::DeviceType) -> &'static str {
 }
 
 /// The name and the version of an adapter's driver, as far as it tells them.
-pub(crate) fn driver(info: &wgpu::AdapterInfo) -> String {
+pub fn driver(info: &wgpu::AdapterInfo) -> String {
     [info.driver.as_str(), info.driver_info.as_str()].join(" ").trim().to_owned()
 }
 
@@ -142,7 +142,7 @@ pub(crate) fn driver(info: &wgpu::AdapterInfo) -> String {
 /// has the vector width, its driver and, if it runs on the CPU, the processor. Processors approximate reciprocal square roots
 /// in different ways, and software drivers turn light into colours with these. None if part of it is unknown, such as the
 /// driver on Metal.
-pub(crate) fn identity(info: &wgpu::AdapterInfo) -> Option<String> {
+pub fn identity(info: &wgpu::AdapterInfo) -> Option<String> {
     let (name, driver) = (&info.name, driver(info));
     match info.device_type {
         _ if driver.is_empty() => None,

@@ -11,7 +11,7 @@ use super::buffer::empty;
 use super::layout::Vertex;
 use super::mesh_buffers::MeshBuffers;
 use super::{Gpu, GpuError};
-use crate::tessellate::{Partitioning, point_count, process, triangle_count};
+use geometry::tessellate::{Partitioning, point_count, process, triangle_count};
 
 /// How many chunks an arena is divided into on a software adapter, where output doesn't fit it at once.
 const CHUNKS_IN_SOFTWARE: u32 = 8;
@@ -19,7 +19,7 @@ const CHUNKS_IN_SOFTWARE: u32 = 8;
 const MOST_DRAWS: u64 = 1 << 17;
 
 /// How many chunks fill an arena, if output doesn't fit it at once.
-pub(crate) fn chunks_an_arena(gpu: &Gpu) -> u32 {
+pub fn chunks_an_arena(gpu: &Gpu) -> u32 {
     if gpu.is_software() { CHUNKS_IN_SOFTWARE } else { 1 }
 }
 
@@ -116,10 +116,10 @@ fn chunk_of(room: Room, parts: u32, mesh: &MeshBuffers) -> Room {
 }
 
 /// Bytes of half a vertex: its position and normal, or its key and texture coordinates.
-pub(crate) const VERTEX_HALF: u64 = 16;
+pub const VERTEX_HALF: u64 = 16;
 
 /// Puts vertices together: `halves` holds the first halves of all of them, then the second halves.
-pub(crate) fn vertices_of(halves: &[u8]) -> Vec<Vertex> {
+pub fn vertices_of(halves: &[u8]) -> Vec<Vertex> {
     let (first, second) = halves.split_at(halves.len() / 2);
     let half = VERTEX_HALF as usize;
     let whole = |(a, b): (&[u8], &[u8])| {

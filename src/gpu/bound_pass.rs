@@ -22,7 +22,7 @@ pub(super) struct PassInputs<'a> {
 }
 
 /// A compute pipeline, and its bind group 0.
-pub(crate) struct BoundPass {
+pub struct BoundPass {
     pub pipeline: wgpu::ComputePipeline,
     pub group: wgpu::BindGroup,
 }
@@ -32,11 +32,7 @@ impl BoundPass {
     ///
     /// # Errors
     /// The pipeline can't be made: out of memory, or a lost device.
-    pub(crate) fn new(
-        gpu: &Gpu,
-        pipeline: &ComputePipeline,
-        buffers: &[(u32, &wgpu::Buffer)],
-    ) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, pipeline: &ComputePipeline, buffers: &[(u32, &wgpu::Buffer)]) -> Result<Self, GpuError> {
         let (label, pipeline) = (pipeline.entry_point(), pipeline.get(gpu)?.clone());
         let group = bind_group(gpu, label, &pipeline.get_bind_group_layout(0), buffers);
         Ok(Self { pipeline, group })
@@ -46,7 +42,7 @@ impl BoundPass {
     ///
     /// # Errors
     /// The pipeline can't be made: out of memory, or a lost device.
-    pub(crate) fn once<'a>(
+    pub fn once<'a>(
         cell: &'a OnceLock<Self>,
         gpu: &Gpu,
         pipeline: &ComputePipeline,
@@ -56,7 +52,7 @@ impl BoundPass {
     }
 
     /// Runs it over a grid of workgroups.
-    pub(crate) fn dispatch(&self, pass: &mut wgpu::ComputePass, [x, y, z]: [u32; 3]) {
+    pub fn dispatch(&self, pass: &mut wgpu::ComputePass, [x, y, z]: [u32; 3]) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.group, &[]);
         pass.dispatch_workgroups(x, y, z);

@@ -25,7 +25,7 @@ pub(super) fn filled<T: Pod>(gpu: &Gpu, what: &'static str, items: &[T]) -> Resu
 ///
 /// # Errors
 /// It would be larger than the adapter binds.
-pub(crate) fn empty<T>(gpu: &Gpu, what: &'static str, count: usize) -> Result<wgpu::Buffer, GpuError> {
+pub fn empty<T>(gpu: &Gpu, what: &'static str, count: usize) -> Result<wgpu::Buffer, GpuError> {
     check_size::<T>(gpu, what, count)?;
     Ok(gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(what),
@@ -40,7 +40,7 @@ pub(crate) fn empty<T>(gpu: &Gpu, what: &'static str, count: usize) -> Result<wg
 }
 
 /// A buffer that shaders bind as a uniform or as storage, and that the host may write again.
-pub(crate) fn uniform_buffer(gpu: &Gpu, label: &str, contents: &[u8]) -> wgpu::Buffer {
+pub fn uniform_buffer(gpu: &Gpu, label: &str, contents: &[u8]) -> wgpu::Buffer {
     gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
         label: Some(label),
         contents,

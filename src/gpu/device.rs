@@ -26,7 +26,7 @@ pub struct Gpu {
 
 /// What a device is asked for: WebGPU's default limits, but buffers and textures as large as the adapter has them, and
 /// timestamps if the adapter has them. The timestamps of software drivers are wrong for compute passes, so they aren't used.
-pub(crate) fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
+pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
     let has = adapter.limits();
     let mut limits = wgpu::Limits::default();
     limits.max_buffer_size = limits.max_buffer_size.max(has.max_buffer_size.min(1 << 32));

@@ -10,28 +10,28 @@ use super::buffer::empty;
 use super::compute_pipeline::{ComputePipeline, ShaderModule};
 use super::pipelines::WORKGROUP;
 use super::readback::read_buffers;
-use super::wgsl::{CONNECTIVITY, DOMAIN, FACTORS, WgslFile, wgsl};
+use super::wgsl::{CONNECTIVITY, DOMAIN, FACTORS, WgslFile};
 use super::{Gpu, GpuError};
-use crate::tessellate::Partitioning;
+use geometry::tessellate::Partitioning;
 
 /// Twin of `DomainParams` in `shaders/pass_domain.wgsl`.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct DomainParams {
+pub struct DomainParams {
     pub partitioning: u32,
     pub set_count: u32,
 }
 
-pub(super) static PASS_DOMAIN: WgslFile = wgsl!("pass_domain", CONNECTIVITY, DOMAIN, FACTORS);
+pub(super) static PASS_DOMAIN: WgslFile = WgslFile::new("pass_domain", &[&CONNECTIVITY, &DOMAIN, &FACTORS]);
 
 /// The most points that a set of factors gives, at factor 64; `DOMAIN_POINTS` in the shader.
-pub(crate) const DOMAIN_POINTS: usize = 3169;
+pub const DOMAIN_POINTS: usize = 3169;
 /// The most triangles likewise; `DOMAIN_TRIANGLES` in the shader.
-pub(crate) const DOMAIN_TRIANGLES: usize = 6144;
+pub const DOMAIN_TRIANGLES: usize = 6144;
 
 /// What the tessellator makes of one set of factors.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(crate) struct DomainPattern {
+pub struct DomainPattern {
     /// U and V in 16.16 fixed point.
     pub points: Vec<[u32; 2]>,
     /// Indices into `points`.
@@ -39,7 +39,7 @@ pub(crate) struct DomainPattern {
 }
 
 /// The pass that runs the tessellator. Its pipeline is made when it first runs.
-pub(crate) struct DomainPass {
+pub struct DomainPass {
     pipeline: ComputePipeline,
 }
 
@@ -50,7 +50,7 @@ impl Default for DomainPass {
 }
 
 impl DomainPass {
-    pub(crate) fn new() -> Self {
+    pub fn new() -> Self {
         Self { pipeline: ComputePipeline::new(&Arc::new(ShaderModule::new(&PASS_DOMAIN)), "domain_main") }
     }
 
@@ -58,7 +58,7 @@ impl DomainPass {
     ///
     /// # Errors
     /// More sets than the adapter binds memory for, or a lost device.
-    pub(crate) fn run(
+    pub fn run(
         &self,
         gpu: &Gpu,
         partitioning: Partitioning,

@@ -5,7 +5,7 @@ use super::bound_pass::{BoundPass, PassInputs};
 use super::buffer::empty;
 use super::pipelines::grid;
 use super::readback::read_buffer;
-use crate::tessellate::HullFactors;
+use geometry::tessellate::HullFactors;
 
 /// What a hull shader would write for each patch, from what the counts pass last ran with.
 ///

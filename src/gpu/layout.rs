@@ -4,13 +4,13 @@
 use bytemuck::{Pod, Zeroable};
 
 #[cfg(test)]
-pub(crate) use crate::mesh::rig::{Binding, Delta, JointMatrix};
-pub(crate) use crate::tessellate::{PatchFactors, Vertex};
+pub use geometry::mesh::rig::{Binding, Delta, JointMatrix};
+pub use geometry::tessellate::{PatchFactors, Vertex};
 
 /// The view that factors are computed for.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct LodView {
+pub struct LodView {
     pub clip_from_object: [[f32; 4]; 4],
     pub half_viewport: [f32; 2],
     /// How far what is emitted may be from the surface, in object units: it is displaced.
@@ -20,13 +20,13 @@ pub(crate) struct LodView {
     pub radius: f32,
 }
 
-/// A value of [`Params::lod`] that no [`crate::tessellate::Lod`] has: the factors of every patch were given.
-pub(crate) const LOD_GIVEN: u32 = u32::MAX;
+/// A value of [`Params::lod`] that no [`geometry::tessellate::Lod`] has: the factors of every patch were given.
+pub const LOD_GIVEN: u32 = u32::MAX;
 
 /// Settings and view of one tessellation.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct Params {
+pub struct Params {
     pub view: LodView,
     pub factor: f32,
     pub pixels_per_segment: f32,
@@ -60,7 +60,7 @@ pub(crate) struct Params {
 /// The run of patches that one scan covers, and how much fits the arena.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct Slab {
+pub struct Slab {
     pub first_patch: u32,
     pub patch_count: u32,
     pub vertex_capacity: u32,
@@ -86,17 +86,17 @@ pub struct Patch {
 /// A corner's shading attributes.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct Corner {
+pub struct Corner {
     pub normal: [f32; 3],
     pub _pad: f32,
     pub uv: [f32; 2],
     pub _pad2: [f32; 2],
 }
 
-/// What a corner has beside its shading attributes, for materials that need more: see [`crate::mesh::CornerDetail`].
+/// What a corner has beside its shading attributes, for materials that need more: see [`geometry::mesh::CornerDetail`].
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct CornerDetail {
+pub struct CornerDetail {
     /// The texture coordinates TEXCOORD_0 and TEXCOORD_1 of the file.
     pub uvs: [[f32; 2]; 2],
     pub color: [f32; 4],
@@ -105,7 +105,7 @@ pub(crate) struct CornerDetail {
 }
 
 impl CornerDetail {
-    pub(crate) fn of(detail: &crate::mesh::CornerDetail) -> Self {
+    pub fn of(detail: &geometry::mesh::CornerDetail) -> Self {
         Self {
             uvs: detail.uvs.map(|uv| uv.to_array()),
             color: detail.color.to_array(),
@@ -117,7 +117,7 @@ impl CornerDetail {
 /// A curve, which some or all sides of an edge share: its end points in the edge's direction, and its run of sides.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct Curve {
+pub struct Curve {
     pub points: [u32; 2],
     pub first_side: u32,
     pub side_count: u32,
@@ -140,7 +140,7 @@ pub struct CurveNet {
 /// - further height images of edges' sides, which `next` leads to.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct Share {
+pub struct Share {
     pub direction: [f32; 3],
     pub level: f32,
     /// 4 times a patch, plus which of its corners or sides.
@@ -157,7 +157,7 @@ pub(crate) struct Share {
 /// those of all images.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct HeightMap {
+pub struct HeightMap {
     pub size: [u32; 2],
     pub levels: u32,
     pub start: u32,
@@ -181,7 +181,7 @@ pub struct Chunk {
 /// Indirect arguments of the two dispatches that emit a chunk, and of the one that displaces it.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct EmitArgs {
+pub struct EmitArgs {
     pub vertices: [u32; 3],
     pub triangles: [u32; 3],
     pub displaced: [u32; 3],
@@ -191,7 +191,7 @@ pub(crate) struct EmitArgs {
 /// whose shader fetches (pulls) each corner's vertex itself.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct DrawArgs {
+pub struct DrawArgs {
     pub index_count: u32,
     pub instance_count: u32,
     pub first_index: u32,

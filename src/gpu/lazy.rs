@@ -7,7 +7,7 @@ use super::{Gpu, GpuError};
 /// Something that is made on a device when it is first needed, once, and then kept: a pipeline, say, whose shaders the driver
 /// takes a while to compile.
 #[derive(Debug)]
-pub(crate) struct Lazy<T> {
+pub struct Lazy<T> {
     made: OnceLock<T>,
     /// Held by the thread that makes it.
     making: Mutex<()>,
@@ -27,7 +27,7 @@ impl<T> Lazy<T> {
     ///
     /// # Errors
     /// Out of memory, a refused command, or a lost device.
-    pub(crate) fn get_or_make(&self, gpu: &Gpu, make: impl FnOnce() -> T) -> Result<&T, GpuError> {
+    pub fn get_or_make(&self, gpu: &Gpu, make: impl FnOnce() -> T) -> Result<&T, GpuError> {
         if let Some(made) = self.made.get() {
             return Ok(made);
         }
@@ -45,16 +45,14 @@ impl<T> Lazy<T> {
     ///
     /// # Errors
     /// Those of `make`. Nothing is kept then, so the next call tries again.
-    #[cfg(feature = "cli")]
-    pub(crate) fn get_or_try_make(&self, make: impl FnOnce() -> Result<T, GpuError>) -> Result<&T, GpuError> {
+    pub fn get_or_try_make(&self, make: impl FnOnce() -> Result<T, GpuError>) -> Result<&T, GpuError> {
         // There is nothing that a thread could have left half done when it panicked.
         let _making = self.making.lock().unwrap_or_else(PoisonError::into_inner);
         get_or_try(&self.made, make)
     }
 
     /// Whether it was made.
-    #[cfg(any(test, feature = "cli"))]
-    pub(crate) fn is_made(&self) -> bool {
+    pub fn is_made(&self) -> bool {
         self.made.get().is_some()
     }
 }

@@ -4,8 +4,8 @@ use super::buffer::{empty, filled};
 use super::layout::{Corner, CornerDetail, Curve, CurveNet, Patch};
 use super::relief_buffers::{ReliefBuffers, details, patch_maps, shares};
 use super::{Gpu, GpuError};
-use crate::mesh::{Curves, Dominance, Mesh, Sharing, Topology};
-use crate::tessellate::texel_lengths;
+use geometry::mesh::{Curves, Dominance, Mesh, Sharing, Topology};
+use geometry::tessellate::texel_lengths;
 
 /// `SEARCH_COUNTERS` in `shaders/types.wgsl`: how many counters the searches of LOD by error have.
 pub(crate) const SEARCH_COUNTERS: u32 = 11;
@@ -115,7 +115,7 @@ impl MeshBuffers {
 }
 
 fn corners(mesh: &Mesh) -> Vec<Corner> {
-    let corner = |c: &crate::mesh::Corner| Corner {
+    let corner = |c: &geometry::mesh::Corner| Corner {
         normal: c.normal.to_array(),
         _pad: 0.0,
         uv: c.uv.to_array(),
@@ -127,7 +127,7 @@ fn corners(mesh: &Mesh) -> Vec<Corner> {
 fn corner_details(mesh: &Mesh) -> Vec<CornerDetail> {
     match &mesh.details {
         Some(details) => details.iter().map(CornerDetail::of).collect(),
-        None => vec![CornerDetail::of(&crate::mesh::CornerDetail::default())],
+        None => vec![CornerDetail::of(&geometry::mesh::CornerDetail::default())],
     }
 }
 
@@ -142,7 +142,7 @@ fn textured(mesh: &Mesh, topology: &Topology) -> Vec<u32> {
     bits
 }
 
-fn curve(curve: &crate::mesh::Curve) -> Curve {
+fn curve(curve: &geometry::mesh::Curve) -> Curve {
     Curve { points: curve.points, first_side: curve.first_side, side_count: curve.side_count }
 }
 

@@ -6,17 +6,17 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use bytemuck::{Pod, Zeroable};
 
-use super::wgsl::{WgslFile, joined, wgsl};
+use super::wgsl::{WgslFile, joined};
 use super::wgsl_tokens::{declared, tokens};
 
 /// Bounds the work of loops. The module that has it declares the buffer `report`.
-pub(super) static OWN_WORK: WgslFile = wgsl!("own_work");
+pub(super) static OWN_WORK: WgslFile = WgslFile::new("own_work", &[]);
 
 /// What stands before every name of this program in a module that has functions of the user's own.
-pub(crate) const OWN_PREFIX: &str = "pnaen_";
+pub const OWN_PREFIX: &str = "pnaen_";
 
 /// A function that a user's file has, or may have.
-pub(crate) struct OwnFunction {
+pub struct OwnFunction {
     pub name: &'static str,
     /// The names of its parameters' types; `vec3` is one of f32.
     pub parameters: &'static [&'static str],
@@ -29,7 +29,7 @@ pub(crate) struct OwnFunction {
 }
 
 /// What a user's file is for.
-pub(crate) struct OwnPurpose {
+pub struct OwnPurpose {
     /// What such a file is called: "LOD shader".
     pub name: &'static str,
     /// The structs that its functions get and give.
@@ -40,9 +40,9 @@ pub(crate) struct OwnPurpose {
     pub pass: &'static WgslFile,
 }
 
-/// The text of a user's file, checked and bounded, as `crate::own_shader` makes it.
+/// The text of a user's file, checked and bounded, as `inspect::own_shader` makes it.
 #[derive(Debug, PartialEq, Eq)]
-pub(crate) struct OwnText {
+pub struct OwnText {
     /// Every loop calls `pnaen_spend`.
     text: String,
     /// Which of the purpose's functions it has.
@@ -50,7 +50,7 @@ pub(crate) struct OwnText {
 }
 
 /// A user's file for one purpose.
-pub(crate) trait OwnShader: PartialEq + Send + Sync + Sized + 'static {
+pub trait OwnShader: PartialEq + Send + Sync + Sized + 'static {
     /// Its purpose, which is always the same.
     fn purpose() -> &'static OwnPurpose;
 
@@ -65,8 +65,7 @@ pub(crate) trait OwnShader: PartialEq + Send + Sync + Sized + 'static {
 }
 
 impl OwnText {
-    #[cfg(any(test, feature = "cli"))]
-    pub(crate) fn new(text: String, has: Vec<bool>) -> Self {
+    pub fn new(text: String, has: Vec<bool>) -> Self {
         Self { text, has }
     }
 }
@@ -101,8 +100,7 @@ impl OwnPurpose {
 
     /// The names that a user's file mustn't declare: the structs of the contract, and functions and types of WGSL that the rest
     /// of the module needs. WGSL lets a file declare those anew.
-    #[cfg(any(test, feature = "cli"))]
-    pub(crate) fn needed_names(&self) -> HashSet<String> {
+    pub fn needed_names(&self) -> HashSet<String> {
         // The function that a file must have is never replaced.
         let text = self.module_text(&OwnText::new(String::new(), vec![true]));
         let all = tokens(&text);

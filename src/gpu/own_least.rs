@@ -11,7 +11,7 @@ use super::pipelines::{ComputePipelines, MOST_WORKGROUPS, grid};
 use super::recorder::RecordPasses;
 use super::search_passes::asked_buffers;
 use super::{Gpu, GpuError};
-use crate::tessellate::Partitioning;
+use geometry::tessellate::Partitioning;
 
 /// The passes, bound to one set of mesh buffers: when those are replaced, so must this be.
 pub(super) struct OwnLeast {

@@ -4,25 +4,19 @@ use std::sync::Arc;
 
 use super::compute_pipeline::{ComputePipeline, ShaderModule};
 use super::own_functions::{OWN_WORK, OwnFunction, OwnPurpose, OwnShader, OwnText};
-use super::wgsl::{CONVENTION, FACTORS, LOAD_NET, LOADS, TYPES, WgslFile, wgsl};
-use crate::tessellate::HullFactors;
+use super::wgsl::{CONVENTION, FACTORS, LOAD_NET, LOADS, TYPES, WgslFile};
+use geometry::tessellate::HullFactors;
 
-static LOD_CONTRACT: WgslFile = wgsl!("lod_contract");
-static OWN_EDGE_FACTOR: WgslFile = wgsl!("own_edge_factor", LOD_CONTRACT);
-static OWN_INSIDE_FACTOR: WgslFile = wgsl!("own_inside_factor", CONVENTION, FACTORS, LOD_CONTRACT, TYPES);
-pub(super) static PASS_OWN_LOD: WgslFile = wgsl!(
+static LOD_CONTRACT: WgslFile = WgslFile::new("lod_contract", &[]);
+static OWN_EDGE_FACTOR: WgslFile = WgslFile::new("own_edge_factor", &[&LOD_CONTRACT]);
+static OWN_INSIDE_FACTOR: WgslFile =
+    WgslFile::new("own_inside_factor", &[&CONVENTION, &FACTORS, &LOD_CONTRACT, &TYPES]);
+pub(super) static PASS_OWN_LOD: WgslFile = WgslFile::new(
     "pass_own_lod",
-    CONVENTION,
-    LOAD_NET,
-    LOADS,
-    LOD_CONTRACT,
-    OWN_EDGE_FACTOR,
-    OWN_INSIDE_FACTOR,
-    OWN_WORK,
-    TYPES
+    &[&CONVENTION, &LOAD_NET, &LOADS, &LOD_CONTRACT, &OWN_EDGE_FACTOR, &OWN_INSIDE_FACTOR, &OWN_WORK, &TYPES],
 );
 
-pub(crate) static LOD_PURPOSE: OwnPurpose = OwnPurpose {
+pub static LOD_PURPOSE: OwnPurpose = OwnPurpose {
     name: "LOD shader",
     contract: &LOD_CONTRACT,
     functions: &[
@@ -78,7 +72,7 @@ impl From<Vec<HullFactors>> for Given {
 }
 
 /// The pipelines of one user's functions.
-pub(crate) struct OwnLodPipelines {
+pub struct OwnLodPipelines {
     pub(super) start: ComputePipeline,
     pub(super) edges: ComputePipeline,
     pub(super) insides: ComputePipeline,
@@ -101,8 +95,7 @@ impl OwnLodPipelines {
     ///
     /// # Errors
     /// The driver refuses them, out of memory, or a lost device.
-    #[cfg(any(test, feature = "cli"))]
-    pub(crate) fn prepare(&self, gpu: &super::Gpu) -> Result<(), super::GpuError> {
+    pub fn prepare(&self, gpu: &super::Gpu) -> Result<(), super::GpuError> {
         [&self.start, &self.edges, &self.insides, &self.finish].iter().try_for_each(|one| one.get(gpu).map(|_| ()))
     }
 }

@@ -5,14 +5,14 @@ use std::sync::Arc;
 
 use super::compute_pipeline::{ComputePipeline, ShaderModule};
 use super::own_functions::{OWN_WORK, OwnFunction, OwnPurpose, OwnShader, OwnText};
-use super::wgsl::{CONTROL_POINTS, TYPES, WgslFile, wgsl};
+use super::wgsl::{CONTROL_POINTS, TYPES, WgslFile};
 
-static SURFACE_CONTRACT: WgslFile = wgsl!("surface_contract");
-static OWN_EDGE_POINTS: WgslFile = wgsl!("own_edge_points", SURFACE_CONTRACT);
+static SURFACE_CONTRACT: WgslFile = WgslFile::new("surface_contract", &[]);
+static OWN_EDGE_POINTS: WgslFile = WgslFile::new("own_edge_points", &[&SURFACE_CONTRACT]);
 pub(super) static PASS_OWN_SURFACE: WgslFile =
-    wgsl!("pass_own_surface", CONTROL_POINTS, OWN_EDGE_POINTS, OWN_WORK, SURFACE_CONTRACT, TYPES);
+    WgslFile::new("pass_own_surface", &[&CONTROL_POINTS, &OWN_EDGE_POINTS, &OWN_WORK, &SURFACE_CONTRACT, &TYPES]);
 
-pub(crate) static SURFACE_PURPOSE: OwnPurpose = OwnPurpose {
+pub static SURFACE_PURPOSE: OwnPurpose = OwnPurpose {
     name: "surface shader",
     contract: &SURFACE_CONTRACT,
     functions: &[OwnFunction {
@@ -44,7 +44,7 @@ impl OwnShader for SurfaceShader {
 }
 
 /// The pipelines of one user's function.
-pub(crate) struct OwnSurfacePipelines {
+pub struct OwnSurfacePipelines {
     pub(super) start: ComputePipeline,
     pub(super) points: ComputePipeline,
     pub(super) finish: ComputePipeline,
@@ -65,8 +65,7 @@ impl OwnSurfacePipelines {
     ///
     /// # Errors
     /// The driver refuses them, out of memory, or a lost device.
-    #[cfg(any(test, feature = "cli"))]
-    pub(crate) fn prepare(&self, gpu: &super::Gpu) -> Result<(), super::GpuError> {
+    pub fn prepare(&self, gpu: &super::Gpu) -> Result<(), super::GpuError> {
         [&self.start, &self.points, &self.finish].iter().try_for_each(|one| one.get(gpu).map(|_| ()))
     }
 }

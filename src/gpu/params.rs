@@ -3,8 +3,8 @@
 use super::MeshBuffers;
 use super::layout::{LOD_GIVEN, LodView, Params};
 use super::own_lod::Given;
-use crate::mesh::Mesh;
-use crate::tessellate::{self, Clip, Inputs, Lod};
+use geometry::mesh::Mesh;
+use geometry::tessellate::{self, Clip, Inputs, Lod};
 
 /// The parameters for these inputs. A parameter that has no effect under them is 0, so that a change of it recomputes nothing.
 /// `given` is what takes the place of LOD. `culls_back`: patches that face away are left out.

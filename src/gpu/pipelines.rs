@@ -12,54 +12,55 @@ use super::own_surface::{OwnSurfacePipelines, SurfaceShader};
 use super::wgsl::{
     CONNECTIVITY_TABLE, CONTROL_POINTS, CONVENTION, CULL, DISPLACE, DISPLACEMENT_FACTOR, DISPLACEMENT_SHARES, DOMAIN,
     FACTORS, HEIGHT_LIST, LEAST_FACTORS, LEAST_ROWS, LOAD_NET, LOADS, LOD, NORMAL, OCTAHEDRAL_NORMAL, SEARCH_GROUP,
-    SEARCH_STATE, SLIDES, SURFACE, TYPES, WORKGROUP_SCAN, WgslFile, wgsl,
+    SEARCH_STATE, SLIDES, SURFACE, TYPES, WORKGROUP_SCAN, WgslFile,
 };
 use super::{Gpu, GpuError};
-use crate::tessellate::{Normals, connectivity_table};
+use geometry::tessellate::{Normals, connectivity_table};
 
-static DEFORM: WgslFile = wgsl!("deform", NORMAL);
+static DEFORM: WgslFile = WgslFile::new("deform", &[&NORMAL]);
 
 // A module for each of these, in the order in which the passes run.
-pub(super) static PASS_DEFORM: WgslFile = wgsl!("pass_deform", DEFORM, NORMAL, TYPES);
-pub(super) static PASS_NETS: WgslFile = wgsl!("pass_nets", CONTROL_POINTS, LOAD_NET, LOADS, SURFACE, TYPES);
+pub(super) static PASS_DEFORM: WgslFile = WgslFile::new("pass_deform", &[&DEFORM, &NORMAL, &TYPES]);
+pub(super) static PASS_NETS: WgslFile =
+    WgslFile::new("pass_nets", &[&CONTROL_POINTS, &LOAD_NET, &LOADS, &SURFACE, &TYPES]);
 pub(super) static PASS_FACTORS: WgslFile =
-    wgsl!("pass_factors", DISPLACEMENT_FACTOR, FACTORS, LEAST_FACTORS, LOD, SURFACE, TYPES);
+    WgslFile::new("pass_factors", &[&DISPLACEMENT_FACTOR, &FACTORS, &LEAST_FACTORS, &LOD, &SURFACE, &TYPES]);
 pub(super) static PASS_ASKED: WgslFile =
-    wgsl!("pass_asked", LEAST_FACTORS, LEAST_ROWS, LOADS, SEARCH_GROUP, SEARCH_STATE, SLIDES, TYPES);
-pub(super) static PASS_UNIFORM: WgslFile =
-    wgsl!("pass_uniform", FACTORS, LEAST_FACTORS, LOADS, SEARCH_GROUP, SEARCH_STATE, SLIDES, TYPES, WORKGROUP_SCAN);
-pub(super) static PASS_LEAST: WgslFile =
-    wgsl!("pass_least", DISPLACEMENT_FACTOR, FACTORS, LEAST_FACTORS, LEAST_ROWS, LOADS, SEARCH_GROUP, SLIDES, TYPES);
-pub(super) static PASS_LEVELS: WgslFile =
-    wgsl!("pass_levels", CONVENTION, DISPLACE, HEIGHT_LIST, NORMAL, DISPLACEMENT_SHARES, TYPES);
-pub(super) static PASS_COUNTS: WgslFile =
-    wgsl!("pass_counts", CONVENTION, CULL, FACTORS, LOAD_NET, LOADS, LOD, SURFACE, TYPES, WORKGROUP_SCAN,);
-pub(super) static PASS_SCAN: WgslFile = wgsl!("pass_scan", TYPES, WORKGROUP_SCAN);
-pub(super) static PASS_CHUNKS: WgslFile = wgsl!("pass_chunks", TYPES);
-pub(super) static PASS_EMIT: WgslFile = wgsl!(
-    "pass_emit",
-    CONVENTION,
-    DOMAIN,
-    FACTORS,
-    LOAD_NET,
-    NORMAL,
-    OCTAHEDRAL_NORMAL,
-    CONNECTIVITY_TABLE,
-    SURFACE,
-    TYPES
+    WgslFile::new("pass_asked", &[&LEAST_FACTORS, &LEAST_ROWS, &LOADS, &SEARCH_GROUP, &SEARCH_STATE, &SLIDES, &TYPES]);
+pub(super) static PASS_UNIFORM: WgslFile = WgslFile::new(
+    "pass_uniform",
+    &[&FACTORS, &LEAST_FACTORS, &LOADS, &SEARCH_GROUP, &SEARCH_STATE, &SLIDES, &TYPES, &WORKGROUP_SCAN],
 );
-pub(super) static PASS_DISPLACE: WgslFile = wgsl!(
+pub(super) static PASS_LEAST: WgslFile = WgslFile::new(
+    "pass_least",
+    &[&DISPLACEMENT_FACTOR, &FACTORS, &LEAST_FACTORS, &LEAST_ROWS, &LOADS, &SEARCH_GROUP, &SLIDES, &TYPES],
+);
+pub(super) static PASS_LEVELS: WgslFile =
+    WgslFile::new("pass_levels", &[&CONVENTION, &DISPLACE, &HEIGHT_LIST, &NORMAL, &DISPLACEMENT_SHARES, &TYPES]);
+pub(super) static PASS_COUNTS: WgslFile = WgslFile::new(
+    "pass_counts",
+    &[&CONVENTION, &CULL, &FACTORS, &LOAD_NET, &LOADS, &LOD, &SURFACE, &TYPES, &WORKGROUP_SCAN],
+);
+pub(super) static PASS_SCAN: WgslFile = WgslFile::new("pass_scan", &[&TYPES, &WORKGROUP_SCAN]);
+pub(super) static PASS_CHUNKS: WgslFile = WgslFile::new("pass_chunks", &[&TYPES]);
+pub(super) static PASS_EMIT: WgslFile = WgslFile::new(
+    "pass_emit",
+    &[&CONVENTION, &DOMAIN, &FACTORS, &LOAD_NET, &NORMAL, &OCTAHEDRAL_NORMAL, &CONNECTIVITY_TABLE, &SURFACE, &TYPES],
+);
+pub(super) static PASS_DISPLACE: WgslFile = WgslFile::new(
     "pass_displace",
-    DISPLACE,
-    FACTORS,
-    HEIGHT_LIST,
-    LOAD_NET,
-    LOADS,
-    NORMAL,
-    OCTAHEDRAL_NORMAL,
-    DISPLACEMENT_SHARES,
-    SURFACE,
-    TYPES
+    &[
+        &DISPLACE,
+        &FACTORS,
+        &HEIGHT_LIST,
+        &LOAD_NET,
+        &LOADS,
+        &NORMAL,
+        &OCTAHEDRAL_NORMAL,
+        &DISPLACEMENT_SHARES,
+        &SURFACE,
+        &TYPES,
+    ],
 );
 
 /// The pipelines of an entry point that searches factors (see `shaders/search_group.wgsl`), which have workgroups of different
@@ -164,7 +165,7 @@ impl ComputePipelines {
     }
 
     /// The same with workgroups of these sizes for searches: see [`SearchPipelines`].
-    pub(crate) fn in_groups(groups: [u32; 3]) -> Self {
+    pub fn in_groups(groups: [u32; 3]) -> Self {
         let module = |file| Arc::new(ShaderModule::new(file));
         let (deform, nets, levels) = (module(&PASS_DEFORM), module(&PASS_NETS), module(&PASS_LEVELS));
         let (asked, uniform, least) = (module(&PASS_ASKED), module(&PASS_UNIFORM), module(&PASS_LEAST));
@@ -214,12 +215,12 @@ impl ComputePipelines {
     }
 
     /// The pipelines of functions of the user's own for factors.
-    pub(crate) fn own_lod(&self, shader: &Arc<LodShader>) -> Arc<OwnLodPipelines> {
+    pub fn own_lod(&self, shader: &Arc<LodShader>) -> Arc<OwnLodPipelines> {
         self.own_lods.of(shader, OwnLodPipelines::new)
     }
 
     /// The pipelines of a function of the user's own for control points.
-    pub(crate) fn own_surface(&self, shader: &Arc<SurfaceShader>) -> Arc<OwnSurfacePipelines> {
+    pub fn own_surface(&self, shader: &Arc<SurfaceShader>) -> Arc<OwnSurfacePipelines> {
         self.own_surfaces.of(shader, OwnSurfacePipelines::new)
     }
 
@@ -239,7 +240,7 @@ impl ComputePipelines {
 }
 
 /// A bind group of whole buffers, each at its binding number.
-pub(crate) fn bind_group(
+pub fn bind_group(
     gpu: &Gpu,
     label: &str,
     layout: &wgpu::BindGroupLayout,
@@ -253,13 +254,13 @@ pub(crate) fn bind_group(
 }
 
 /// `WORKGROUP` in `shaders/types.wgsl`: invocations of a workgroup of most passes.
-pub(crate) const WORKGROUP: u32 = 256;
+pub const WORKGROUP: u32 = 256;
 
 /// `MOST_WORKGROUPS` in `shaders/types.wgsl`: the most workgroups along one dimension that WebGPU allows.
 pub(crate) const MOST_WORKGROUPS: u32 = 65_535;
 
 /// Twin of `grid` in `shaders/types.wgsl`: the workgroups in each dimension for so many invocations.
-pub(crate) fn grid(items: u32) -> [u32; 3] {
+pub fn grid(items: u32) -> [u32; 3] {
     let workgroups = items.div_ceil(WORKGROUP);
     [workgroups.min(GRID_WIDTH), workgroups.div_ceil(GRID_WIDTH), 1]
 }

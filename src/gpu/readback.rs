@@ -15,7 +15,7 @@ const PATIENCE: Duration = Duration::from_secs(60);
 /// 1. [`Self::of_buffers`] or [`Self::of_texture`] records the copy.
 /// 2. Once the encoder was submitted, [`Self::request`] asks for the bytes.
 /// 3. [`Self::poll`] tells whether they are here, without waiting; then [`Self::bytes`] gives them. Or [`Self::wait`] waits.
-pub(crate) struct Readback {
+pub struct Readback {
     staging: wgpu::Buffer,
     layout: Layout,
     state: State,
@@ -38,7 +38,7 @@ enum State {
 
 impl Readback {
     /// Records copies of ranges of bytes of buffers, which will come one after another. Their bounds are multiples of 4.
-    pub(crate) fn of_buffers<'a>(
+    pub fn of_buffers<'a>(
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
         parts: impl IntoIterator<Item = (&'a wgpu::Buffer, Range<u64>)>,
@@ -57,7 +57,7 @@ impl Readback {
 
     /// Records a copy of a texture's texels, which will come row by row without gaps. The texture has one layer, one mip level
     /// and a format that isn't compressed.
-    pub(crate) fn of_texture(gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, texture: &wgpu::Texture) -> Self {
+    pub fn of_texture(gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, texture: &wgpu::Texture) -> Self {
         let size = texture.size();
         let used = size.width * texture.format().block_copy_size(None).unwrap_or(0);
         let stride = used.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
@@ -70,7 +70,7 @@ impl Readback {
     }
 
     /// Copies ranges of bytes of buffers in a submission of its own, and asks for them.
-    pub(crate) fn start<'a>(gpu: &Gpu, parts: impl IntoIterator<Item = (&'a wgpu::Buffer, Range<u64>)>) -> Self {
+    pub fn start<'a>(gpu: &Gpu, parts: impl IntoIterator<Item = (&'a wgpu::Buffer, Range<u64>)>) -> Self {
         Self::submitted(gpu, |encoder| Self::of_buffers(gpu, encoder, parts))
     }
 
@@ -84,7 +84,7 @@ impl Readback {
     }
 
     /// Asks for the bytes, once the encoder that the copy was recorded into was submitted. Asking again does nothing.
-    pub(crate) fn request(&mut self) {
+    pub fn request(&mut self) {
         if matches!(self.state, State::Recorded) {
             let (sender, receiver) = channel();
             self.staging.map_async(wgpu::MapMode::Read, .., move |result| {
@@ -99,7 +99,7 @@ impl Readback {
     ///
     /// # Errors
     /// The device was lost.
-    pub(crate) fn poll(&mut self) -> Result<bool, GpuError> {
+    pub fn poll(&mut self) -> Result<bool, GpuError> {
         let State::Requested(receiver) = &mut self.state else { return Ok(matches!(self.state, State::Mapped)) };
         match receiver.get_mut().unwrap_or_else(PoisonError::into_inner).try_recv() {
             Err(TryRecvError::Empty) => Ok(false),
@@ -112,7 +112,7 @@ impl Readback {
     ///
     /// # Errors
     /// The device was lost, or it has refused a command that nobody was told of yet.
-    pub(crate) fn wait(&mut self, gpu: &Gpu) -> Result<Vec<u8>, GpuError> {
+    pub fn wait(&mut self, gpu: &Gpu) -> Result<Vec<u8>, GpuError> {
         self.wait_at_most(gpu, PATIENCE)
     }
 
@@ -143,7 +143,7 @@ impl Readback {
     ///
     /// # Errors
     /// The bytes aren't here, or the device was lost.
-    pub(crate) fn bytes(&self) -> Result<Vec<u8>, GpuError> {
+    pub fn bytes(&self) -> Result<Vec<u8>, GpuError> {
         let view = self.staging.get_mapped_range(..).map_err(failed)?;
         Ok(match self.layout {
             Layout::Packed(bytes) => view[..bytes].to_vec(),
@@ -165,7 +165,7 @@ pub fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer, offset: u64, bytes: u64) ->
 ///
 /// # Errors
 /// The device was lost.
-pub(crate) fn read_buffers<'a>(
+pub fn read_buffers<'a>(
     gpu: &Gpu,
     parts: impl IntoIterator<Item = (&'a wgpu::Buffer, Range<u64>)>,
 ) -> Result<Vec<u8>, GpuError> {
@@ -177,7 +177,7 @@ pub(crate) fn read_buffers<'a>(
 ///
 /// # Errors
 /// The device was lost.
-pub(crate) fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, GpuError> {
+pub fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, GpuError> {
     Readback::submitted(gpu, |encoder| Readback::of_texture(gpu, encoder, texture)).wait(gpu)
 }
 

@@ -3,11 +3,11 @@
 use super::buffer::{filled, uniform_buffer};
 use super::layout::{HeightMap, Share};
 use super::{Gpu, GpuError};
-use crate::mesh::{Dominance, Heights, MAX_LEVELS, MAX_MAPS, Mesh, Topology};
-use crate::tessellate::{TexelLength, map_number};
+use geometry::mesh::{Dominance, Heights, MAX_LEVELS, MAX_MAPS, Mesh, Topology};
+use geometry::tessellate::{TexelLength, map_number};
 
 /// Width in texels of the texture that holds all height images; `HEIGHTS_ACROSS` in `shaders/height_list.wgsl`.
-pub(crate) const HEIGHTS_ACROSS: u32 = 4096;
+pub const HEIGHTS_ACROSS: u32 = 4096;
 
 /// A mesh's height images, all mip levels of all of them one after another in the rows of one texture.
 pub(crate) struct HeightImages {
@@ -72,7 +72,7 @@ fn upload(gpu: &Gpu, heights: &[f32], rows: u32) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-/// Which corners, edges and patches meet where, for a mesh whose sides are grouped into curves by a [`Sharing`](crate::mesh::Sharing).
+/// Which corners, edges and patches meet where, for a mesh whose sides are grouped into curves by a [`Sharing`](geometry::mesh::Sharing).
 /// Lists of varying length lie one after another in one buffer; `starts` holds where each begins, and then where the last
 /// ends.
 pub struct ReliefBuffers {
@@ -118,7 +118,7 @@ impl ReliefBuffers {
 /// - one for each factor,
 /// - two for each corner,
 /// - further texel lengths of factors.
-pub(crate) fn shares(mesh: &Mesh, dominance: &Dominance, texel_lengths: &[TexelLength]) -> Vec<Share> {
+pub fn shares(mesh: &Mesh, dominance: &Dominance, texel_lengths: &[TexelLength]) -> Vec<Share> {
     let (point_count, factor_count) = (dominance.corners.len(), dominance.sides.len());
     let behind = (point_count + 2 * mesh.corners.len()) as u32;
     let share = |dominant, length: TexelLength| {
@@ -134,7 +134,7 @@ pub(crate) fn shares(mesh: &Mesh, dominance: &Dominance, texel_lengths: &[TexelL
 }
 
 /// How far each mip level of each height image is from its level 0, padded to 16 levels; zeros without heights.
-pub(crate) fn details(gpu: &Gpu, heights: Option<&Heights>) -> wgpu::Buffer {
+pub fn details(gpu: &Gpu, heights: Option<&Heights>) -> wgpu::Buffer {
     let mut table = [[0.0_f32; 16]; MAX_MAPS];
     for (entry, detail) in table.iter_mut().zip(heights.iter().flat_map(|heights| &heights.detail)) {
         entry[..MAX_LEVELS].copy_from_slice(detail);

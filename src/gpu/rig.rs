@@ -4,7 +4,7 @@ use super::bound_pass::{BoundPass, PassInputs};
 use super::buffer::filled;
 use super::pipelines::grid;
 use super::{Gpu, GpuError};
-use crate::mesh::{Pose, Rig, Topology};
+use geometry::mesh::{Pose, Rig, Topology};
 
 /// A rig, and one pose of it.
 pub(super) struct RigBuffers {

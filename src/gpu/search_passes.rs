@@ -7,7 +7,7 @@ use super::bound_pass::{BoundPass, PassInputs};
 use super::compute_pipeline::ComputePipeline;
 use super::mesh_buffers::MeshBuffers;
 use super::pipelines::{SearchPipelines, WORKGROUP};
-use crate::tessellate::rounds;
+use geometry::tessellate::rounds;
 
 /// These belong to one set of mesh buffers: when those are replaced, so must this be.
 #[derive(Default)]

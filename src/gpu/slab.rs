@@ -12,7 +12,7 @@ use super::mesh_buffers::MeshBuffers;
 use super::pipelines::WORKGROUP;
 use super::relief_buffers::HeightImages;
 use super::{Gpu, GpuError};
-use crate::tessellate::Normals;
+use geometry::tessellate::Normals;
 
 /// Patches whose counts a workgroup adds up: as many as it has invocations.
 pub(super) const SCAN_BLOCK: u32 = WORKGROUP;

@@ -20,10 +20,10 @@ use super::relief_buffers::HeightImages;
 use super::rig::RigBuffers;
 use super::slab::SlabPasses;
 use super::{ComputePipelines, Given, Gpu, GpuError, MeshBuffers, OwnReport, hull};
-use crate::mesh::{Mesh, Pose, Sharing, Topology};
-use crate::tessellate::{self, Clip, Convention, Displacement, Edges, HullFactors, Inputs, PosedMesh, Solid};
+use geometry::mesh::{Mesh, Pose, Sharing, Topology};
+use geometry::tessellate::{self, Clip, Convention, Displacement, Edges, HullFactors, Inputs, PosedMesh, Solid};
 
-pub(crate) use output::ChunkBuffers;
+pub use output::ChunkBuffers;
 use own_surface::OwnSurface;
 
 /// Patches that one scan covers: few enough that no count of vertices or triangles overflows 32 bits at factor 64.

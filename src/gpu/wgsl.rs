@@ -12,61 +12,55 @@ pub struct WgslFile {
     pub needs: &'static [&'static WgslFile],
 }
 
-/// A [`WgslFile`] by its name, with the statics of the files that it needs.
-macro_rules! wgsl {
-    ($name:literal $(, $needed:path)* $(,)?) => {
-        $crate::gpu::WgslFile {
-            name: $name,
-            text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $name, ".wgsl")),
-            needs: &[$(&$needed),*],
-        }
-    };
-}
-pub(crate) use wgsl;
-
 // Files that several passes share. A file that only one pass has is declared where that pass is.
-pub(crate) static QUOTIENTS: WgslFile = wgsl!("quotients");
-pub(crate) static FACTORS: WgslFile = wgsl!("factors", QUOTIENTS);
-pub(crate) static DOMAIN_ROW: WgslFile = wgsl!("domain_row", FACTORS);
-pub(crate) static RINGS: WgslFile = wgsl!("rings");
+pub(crate) static QUOTIENTS: WgslFile = WgslFile::new("quotients", &[]);
+pub static FACTORS: WgslFile = WgslFile::new("factors", &[&QUOTIENTS]);
+pub(crate) static DOMAIN_ROW: WgslFile = WgslFile::new("domain_row", &[&FACTORS]);
+pub static RINGS: WgslFile = WgslFile::new("rings", &[]);
 /// A module has it beside [`DOMAIN`].
-pub(crate) static ROWS: WgslFile = wgsl!("rows", DOMAIN_ROW, FACTORS, QUOTIENTS);
-pub(crate) static SUBTRIANGULATION: WgslFile = wgsl!("subtriangulation", FACTORS);
+pub static ROWS: WgslFile = WgslFile::new("rows", &[&DOMAIN_ROW, &FACTORS, &QUOTIENTS]);
+pub(crate) static SUBTRIANGULATION: WgslFile = WgslFile::new("subtriangulation", &[&FACTORS]);
 /// Beside it a module has [`CONNECTIVITY`] or [`CONNECTIVITY_TABLE`], which declare the same functions.
-pub(crate) static DOMAIN: WgslFile = wgsl!("domain", DOMAIN_ROW, FACTORS, RINGS, ROWS, SUBTRIANGULATION);
-pub(crate) static CONNECTIVITY: WgslFile = wgsl!("connectivity", DOMAIN, RINGS);
-pub(crate) static CONNECTIVITY_TABLE: WgslFile = wgsl!("connectivity_table", DOMAIN, RINGS);
-pub(crate) static CONVENTION: WgslFile = wgsl!("convention", FACTORS);
-pub(crate) static SURFACE: WgslFile = wgsl!("surface", FACTORS);
-pub(crate) static CONTROL_POINTS: WgslFile = wgsl!("control_points", SURFACE);
-pub(crate) static CULL: WgslFile = wgsl!("cull", LOD, SURFACE);
-pub(crate) static OCTAHEDRAL_NORMAL: WgslFile = wgsl!("octahedral_normal");
-pub(crate) static NORMAL: WgslFile = wgsl!("normal", FACTORS, SURFACE);
-pub(crate) static CURVATURE: WgslFile = wgsl!("curvature", FACTORS, SURFACE);
-pub(crate) static LOD: WgslFile = wgsl!("lod");
-pub(crate) static TYPES: WgslFile = wgsl!("types", LOD);
-pub(crate) static DISPLACEMENT_FACTOR: WgslFile = wgsl!("displacement_factor", LOD, TYPES);
-pub(crate) static PIECE_ERROR: WgslFile = wgsl!("piece_error", LOD, SURFACE);
-pub(crate) static FLAT_PATCH: WgslFile = wgsl!("flat_patch", LOD, PIECE_ERROR, SURFACE);
+pub static DOMAIN: WgslFile = WgslFile::new("domain", &[&DOMAIN_ROW, &FACTORS, &RINGS, &ROWS, &SUBTRIANGULATION]);
+pub static CONNECTIVITY: WgslFile = WgslFile::new("connectivity", &[&DOMAIN, &RINGS]);
+pub static CONNECTIVITY_TABLE: WgslFile = WgslFile::new("connectivity_table", &[&DOMAIN, &RINGS]);
+pub static CONVENTION: WgslFile = WgslFile::new("convention", &[&FACTORS]);
+pub static SURFACE: WgslFile = WgslFile::new("surface", &[&FACTORS]);
+pub static CONTROL_POINTS: WgslFile = WgslFile::new("control_points", &[&SURFACE]);
+pub static CULL: WgslFile = WgslFile::new("cull", &[&LOD, &SURFACE]);
+pub static OCTAHEDRAL_NORMAL: WgslFile = WgslFile::new("octahedral_normal", &[]);
+pub static NORMAL: WgslFile = WgslFile::new("normal", &[&FACTORS, &SURFACE]);
+pub static CURVATURE: WgslFile = WgslFile::new("curvature", &[&FACTORS, &SURFACE]);
+pub static LOD: WgslFile = WgslFile::new("lod", &[]);
+pub static TYPES: WgslFile = WgslFile::new("types", &[&LOD]);
+pub(crate) static DISPLACEMENT_FACTOR: WgslFile = WgslFile::new("displacement_factor", &[&LOD, &TYPES]);
+pub(crate) static PIECE_ERROR: WgslFile = WgslFile::new("piece_error", &[&LOD, &SURFACE]);
+pub(crate) static FLAT_PATCH: WgslFile = WgslFile::new("flat_patch", &[&LOD, &PIECE_ERROR, &SURFACE]);
 /// The module that has it declares the buffers that it reads.
-pub(crate) static SLIDES: WgslFile = wgsl!("slides", FLAT_PATCH, LEAST_FACTORS, LOAD_NET, PIECE_ERROR);
-pub(crate) static SEARCH_GROUP: WgslFile = wgsl!("search_group");
+pub(crate) static SLIDES: WgslFile = WgslFile::new("slides", &[&FLAT_PATCH, &LEAST_FACTORS, &LOAD_NET, &PIECE_ERROR]);
+pub(crate) static SEARCH_GROUP: WgslFile = WgslFile::new("search_group", &[]);
 /// The module that has it declares the buffers that it reads.
-pub(crate) static SEARCH_STATE: WgslFile = wgsl!("search_state", DISPLACEMENT_FACTOR);
+pub(crate) static SEARCH_STATE: WgslFile = WgslFile::new("search_state", &[&DISPLACEMENT_FACTOR]);
 pub(crate) static LEAST_FACTORS: WgslFile =
-    wgsl!("least_factors", CONNECTIVITY, DOMAIN, FACTORS, LOD, PIECE_ERROR, SEARCH_GROUP);
-pub(crate) static LEAST_ROWS: WgslFile = wgsl!("least_rows", FACTORS, LEAST_FACTORS, PIECE_ERROR, SEARCH_GROUP);
-pub(crate) static HEIGHT_LIST: WgslFile = wgsl!("height_list", TYPES);
+    WgslFile::new("least_factors", &[&CONNECTIVITY, &DOMAIN, &FACTORS, &LOD, &PIECE_ERROR, &SEARCH_GROUP]);
+pub(crate) static LEAST_ROWS: WgslFile =
+    WgslFile::new("least_rows", &[&FACTORS, &LEAST_FACTORS, &PIECE_ERROR, &SEARCH_GROUP]);
+pub(crate) static HEIGHT_LIST: WgslFile = WgslFile::new("height_list", &[&TYPES]);
 /// The module that has it also has [`HEIGHT_LIST`], or a file that declares the same functions.
-pub(crate) static DISPLACE: WgslFile = wgsl!("displace", FACTORS, NORMAL, SURFACE, TYPES);
+pub static DISPLACE: WgslFile = WgslFile::new("displace", &[&FACTORS, &NORMAL, &SURFACE, &TYPES]);
 /// The module that has it declares the buffers that it reads.
-pub(crate) static DISPLACEMENT_SHARES: WgslFile = wgsl!("displacement_shares", TYPES);
+pub(crate) static DISPLACEMENT_SHARES: WgslFile = WgslFile::new("displacement_shares", &[&TYPES]);
 /// The module that has it declares the buffers that it reads, and has [`LOADS`] or functions of the same names.
-pub(crate) static LOAD_NET: WgslFile = wgsl!("load_net", SURFACE, TYPES);
-pub(crate) static LOADS: WgslFile = wgsl!("loads", TYPES);
-pub(crate) static WORKGROUP_SCAN: WgslFile = wgsl!("workgroup_scan", TYPES);
+pub static LOAD_NET: WgslFile = WgslFile::new("load_net", &[&SURFACE, &TYPES]);
+pub static LOADS: WgslFile = WgslFile::new("loads", &[&TYPES]);
+pub static WORKGROUP_SCAN: WgslFile = WgslFile::new("workgroup_scan", &[&TYPES]);
 
 impl WgslFile {
+    /// The file of this name in `shaders/`, whose declarations use those of other files.
+    pub const fn new(name: &'static str, needs: &'static [&'static Self]) -> Self {
+        Self { name, text: shaders::text(name), needs }
+    }
+
     /// The files of the module whose entry points are in this file: this one, and whatever it needs directly or through others.
     /// Each is there once, after those that it needs.
     pub fn module_files(&'static self) -> Vec<&'static Self> {
@@ -89,6 +83,6 @@ impl WgslFile {
 }
 
 /// One text of these files.
-pub(crate) fn joined(files: &[&WgslFile]) -> String {
+pub fn joined(files: &[&WgslFile]) -> String {
     files.iter().map(|file| file.text).collect::<Vec<_>>().join("\n")
 }

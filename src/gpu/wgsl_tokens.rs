@@ -2,7 +2,7 @@
 
 /// A word, a number, or one character of punctuation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Token<'a> {
+pub struct Token<'a> {
     pub text: &'a str,
     /// Where it starts, in bytes.
     pub at: usize,
@@ -10,7 +10,7 @@ pub(crate) struct Token<'a> {
 
 impl Token<'_> {
     /// Whether it is a keyword or a name.
-    pub(crate) fn is_word(&self) -> bool {
+    pub fn is_word(&self) -> bool {
         self.text.starts_with(|c: char| c.is_alphabetic() || c == '_')
     }
 }
@@ -51,7 +51,7 @@ fn comment(text: &str) -> Option<usize> {
 }
 
 /// Returns the tokens of a text, without comments.
-pub(crate) fn tokens(text: &str) -> Vec<Token<'_>> {
+pub fn tokens(text: &str) -> Vec<Token<'_>> {
     let mut tokens = Vec::new();
     let mut at = 0;
     while let Some(first) = text[at..].chars().next() {
@@ -76,7 +76,7 @@ pub(crate) fn tokens(text: &str) -> Vec<Token<'_>> {
 }
 
 /// Returns the names that a text declares outside of functions, structs and templates.
-pub(crate) fn declared<'a>(tokens: &[Token<'a>]) -> Vec<Token<'a>> {
+pub fn declared<'a>(tokens: &[Token<'a>]) -> Vec<Token<'a>> {
     let (mut names, mut depth) = (Vec::new(), 0_usize);
     for (index, token) in tokens.iter().enumerate() {
         match token.text {

@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DVec3};
 
-use crate::mesh::rig::{AnimatedNode, Clip, Placement, Property};
+use geometry::mesh::rig::{AnimatedNode, Clip, Placement, Property};
 
 /// What a rig needs to know of a scene's nodes, whatever the format.
 pub(super) struct SceneNodes {

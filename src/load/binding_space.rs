@@ -2,9 +2,9 @@
 
 use glam::{DMat3, DMat4, DQuat, DVec3, DVec4, Vec3, Vec4};
 
-use crate::mesh::CornerDetail;
-use crate::mesh::normals::GivenNormal;
-use crate::mesh::rig::{Binding, Delta, Pose};
+use geometry::mesh::CornerDetail;
+use geometry::mesh::normals::GivenNormal;
+use geometry::mesh::rig::{Binding, Delta, Pose};
 
 /// The transform from a mesh's own space to that of the animated node that it is attached to.
 pub(super) struct BindingSpace {

@@ -11,13 +11,13 @@ use thiserror::Error;
 
 use super::memory_budget::Budget;
 use crate::files::{FileError, Limits, Stamp, open_file};
-use crate::mesh::build_limits::{Borrowed, MemoryAccount, MemoryRefused};
-use crate::names::{shortened, shown, shown_path};
-use crate::progress::{Cancelled, Progress};
+use geometry::mesh::build_limits::{Borrowed, MemoryAccount, MemoryRefused};
+use geometry::names::{shortened, shown, shown_path};
+use geometry::progress::{Cancelled, Progress};
 
 /// The vertices of triangles, three for each.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct CsvVertices {
+pub struct CsvVertices {
     /// In the file's units; a coordinate that the file says it doesn't have is NaN.
     pub positions: Vec<Vec3>,
     /// Half a unit of the last decimal of the number that has the most.
@@ -28,7 +28,7 @@ pub(crate) struct CsvVertices {
 
 /// Why a CSV file gives no positions.
 #[derive(Debug, Error)]
-pub(crate) enum CsvError {
+pub enum CsvError {
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     #[error(transparent)]
@@ -39,7 +39,7 @@ pub(crate) enum CsvError {
 
 /// What is wrong with a CSV file.
 #[derive(Debug, PartialEq, Error)]
-pub(crate) enum CsvFault {
+pub enum CsvFault {
     #[error("it has no lines; export the vertices again")]
     Empty,
     #[error("it is a text in UTF-16; save it as UTF-8")]
@@ -67,7 +67,7 @@ pub(crate) enum CsvFault {
 
 /// What is wrong with a line.
 #[derive(Debug, PartialEq, Error)]
-pub(crate) enum LineFault {
+pub enum LineFault {
     #[error("{column} is {text:?}; expected a number, such as 0.25")]
     Number { column: String, text: String },
     #[error("it has {has} values, but {column} is value {needs}; export the vertices again")]
@@ -112,7 +112,7 @@ const NOTHING: [&[u8]; 3] = [b"", b"-", b"---"];
 ///
 /// # Errors
 /// [`CsvError`], whose message says what is wrong, where, and what to do.
-pub(crate) fn read_vertices(
+pub fn read_vertices(
     path: &Path,
     column: Option<&str>,
     limits: &Limits,

@@ -14,12 +14,12 @@ use image::{ImageDecoder, ImageError, ImageResult};
 use super::memory_budget::Budget;
 use super::panorama::{Panorama, Repaired};
 use crate::files::{FileError, Limits, read_file};
-use crate::mesh::{MemoryAccount, MemoryRefused};
-use crate::names::{shown, shown_path};
-use crate::progress::{Cancelled, Progress};
+use geometry::mesh::{MemoryAccount, MemoryRefused};
+use geometry::names::{shown, shown_path};
+use geometry::progress::{Cancelled, Progress};
 
 /// The endings of files that can be read, in lower case.
-pub(crate) const ENVIRONMENT_EXTENSIONS: [&str; 2] = ["hdr", "exr"];
+pub const ENVIRONMENT_EXTENSIONS: [&str; 2] = ["hdr", "exr"];
 
 /// The greatest width and height that are read, in px.
 const MOST_SIDE: u32 = 16384;
@@ -36,14 +36,14 @@ const OPEN_EXR: &[u8] = b"\x76\x2f\x31\x01";
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnvironmentFile {
     /// At most 4096 x 2048 px.
-    pub(crate) panorama: Panorama,
+    pub panorama: Panorama,
     /// In sentences, after the file's name if it has one.
     pub warnings: Vec<String>,
 }
 
 /// Why the light of a file could not be read.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum EnvironmentError {
+pub enum EnvironmentError {
     /// Reading was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -94,7 +94,7 @@ impl From<FileError> for EnvironmentError {
 }
 
 /// Whether a path has the ending of a file of light.
-pub(crate) fn is_environment(path: &Path) -> bool {
+pub fn is_environment(path: &Path) -> bool {
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
     extension.is_some_and(|extension| ENVIRONMENT_EXTENSIONS.contains(&&*extension))
 }
@@ -114,7 +114,7 @@ impl EnvironmentFile {
     ///
     /// # Errors
     /// [`EnvironmentError`], whose message says what is wrong and what to do.
-    pub(crate) fn load(path: &Path, limits: &Limits, progress: &Progress) -> Result<Self, EnvironmentError> {
+    pub fn load(path: &Path, limits: &Limits, progress: &Progress) -> Result<Self, EnvironmentError> {
         progress.set(0.0);
         let broken = |fault| match fault {
             EnvironmentFault::Cancelled(cancelled) => EnvironmentError::Cancelled(cancelled),
@@ -292,4 +292,4 @@ impl Seek for WatchedBytes<'_> {
 }
 
 #[cfg(test)]
-pub(crate) mod tests;
+pub mod tests;

@@ -16,14 +16,14 @@ use super::tangents;
 use super::triangle_block::{self, TriangleBlock};
 use super::warnings::repair_warnings;
 use crate::files::Limits;
-use crate::mesh::build_limits::{MAX_TRIANGLES, MemoryRefused};
-use crate::mesh::detail_table::DetailTable;
-use crate::mesh::mesh_builder::{InputCorner, MeshBuilder};
-use crate::mesh::mipmap::SRGB_TABLE;
-use crate::mesh::polygon::{self, CutQuality, triangulate};
-use crate::mesh::rig::LARGEST_COORDINATE;
-use crate::mesh::{CornerDetail, Material, MemoryAccount, Mesh};
-use crate::progress::Progress;
+use geometry::mesh::build_limits::{MAX_TRIANGLES, MemoryRefused};
+use geometry::mesh::detail_table::DetailTable;
+use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
+use geometry::mesh::mipmap::SRGB_TABLE;
+use geometry::mesh::polygon::{self, CutQuality, triangulate};
+use geometry::mesh::rig::LARGEST_COORDINATE;
+use geometry::mesh::{CornerDetail, Material, MemoryAccount, Mesh};
+use geometry::progress::Progress;
 
 /// The greatest number of materials. A file with more is refused, since each takes memory and a draw call.
 const MAX_MATERIALS: usize = 1 << 16;

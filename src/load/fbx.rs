@@ -33,8 +33,8 @@ use super::rig_builder::RigBuilder;
 use super::tangents;
 use super::uri::Files;
 use crate::files::Limits;
-use crate::mesh::{MemoryAccount, MemoryRefused};
-use crate::progress::Progress;
+use geometry::mesh::{MemoryAccount, MemoryRefused};
+use geometry::progress::Progress;
 
 use nodes::Placed;
 use surfaces::Surfaces;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 /// The extensions of files that can be read, in lower case, each with its format.
-pub(crate) const EXTENSIONS: [(&str, Format); 9] = [
+pub const EXTENSIONS: [(&str, Format); 9] = [
     ("gltf", Format::Gltf),
     ("glb", Format::Gltf),
     ("vrm", Format::Gltf),
@@ -16,7 +16,7 @@ pub(crate) const EXTENSIONS: [(&str, Format); 9] = [
 ];
 
 /// The extensions of files that can be read, for messages: ".gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf".
-pub(crate) fn known_extensions() -> String {
+pub fn known_extensions() -> String {
     let [others @ .., last] = EXTENSIONS.map(|(extension, _)| format!(".{extension}"));
     format!("{} or {last}", others.join(", "))
 }
@@ -50,7 +50,7 @@ impl Format {
     }
 
     /// The format's name in sentences.
-    pub(crate) fn title(self) -> &'static str {
+    pub fn title(self) -> &'static str {
         match self {
             Self::Gltf => "glTF",
             Self::Fbx => "FBX",

@@ -63,11 +63,11 @@ use super::uri::Files;
 use super::warnings::repair_warnings;
 use super::{notes, rig_builder};
 use crate::files::Limits;
-use crate::mesh::detail_table::DetailTable;
-use crate::mesh::mesh_builder::MeshBuilder;
-use crate::mesh::rig::Joint;
-use crate::mesh::{Borrowed, MemoryAccount, Mesh};
-use crate::progress::Progress;
+use geometry::mesh::detail_table::DetailTable;
+use geometry::mesh::mesh_builder::MeshBuilder;
+use geometry::mesh::rig::Joint;
+use geometry::mesh::{Borrowed, MemoryAccount, Mesh};
+use geometry::progress::Progress;
 
 use accessor::Accessors;
 use extensions::InstancingExtension;

@@ -8,11 +8,11 @@ use std::path::{Path, PathBuf};
 use image::ColorType;
 
 use super::memory_budget::Budget;
-use crate::mesh::build_limits::{MemoryAccount, MemoryRefused};
-use crate::mesh::heights::{HeightMap, Heights, MAX_KEPT, MAX_MAPS, angle_bytes};
-use crate::mesh::{Mesh, Texture};
-use crate::names::shown_path;
-use crate::progress::{Cancelled, Progress};
+use geometry::mesh::build_limits::{MemoryAccount, MemoryRefused};
+use geometry::mesh::heights::{HeightMap, Heights, MAX_KEPT, MAX_MAPS, angle_bytes};
+use geometry::mesh::{Mesh, Texture};
+use geometry::names::shown_path;
+use geometry::progress::{Cancelled, Progress};
 
 use reading::{map_of_px, read_map};
 
@@ -155,7 +155,7 @@ fn from_materials(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::Shape;
+    use geometry::mesh::Shape;
 
     #[test]
     fn materials_that_share_an_image_share_a_map() {
@@ -165,7 +165,7 @@ mod tests {
             Err(HeightError::NoImage { .. })
         ));
         let texture = std::sync::Arc::new(Texture { size: [1, 1], rgba: vec![255; 4] });
-        let textured = crate::mesh::Material { texture: Some(texture), ..mesh.materials[0].clone() };
+        let textured = geometry::mesh::Material { texture: Some(texture), ..mesh.materials[0].clone() };
         mesh.materials = vec![textured.clone(), mesh.materials[0].clone(), textured];
         let heights = from_materials(&mesh, &[], &Budget::unlimited(), &Progress::new()).expect("an image");
         assert_eq!((heights.maps.len(), heights.of_material), (1, vec![Some(0), None, Some(0)]));

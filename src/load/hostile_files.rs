@@ -1,8 +1,8 @@
 //! Tests with FBX, OBJ, STL, PLY, OFF and 3MF files that are broken or hostile: what the loader answers, and that it always does.
 
 mod mutated;
-pub(in crate::load) mod odd;
-pub(in crate::load) mod page;
+pub(crate) mod odd;
+pub(crate) mod page;
 mod seeds;
 mod table;
 
@@ -13,9 +13,9 @@ use std::time::Duration;
 
 use super::{Format, ReadError, fbx, obj, off, ply, stl, threemf};
 use crate::files::Limits;
-use crate::load::selection::Selection;
-use crate::load::{Import, LoadedMesh};
-use crate::progress::Progress;
+use crate::selection::Selection;
+use crate::{Import, LoadedMesh};
+use geometry::progress::Progress;
 
 /// How long reading a file is waited for.
 const PATIENCE: Duration = Duration::from_secs(100);
@@ -25,7 +25,7 @@ const PATIENCE: Duration = Duration::from_secs(100);
 ///
 /// # Panics
 /// If `read` panics, or doesn't come to an end.
-pub(in crate::load) fn unhung<T: Send + 'static>(read: impl FnOnce() -> T + Send + 'static) -> T {
+pub(crate) fn unhung<T: Send + 'static>(read: impl FnOnce() -> T + Send + 'static) -> T {
     let (sender, receiver) = channel();
     let reading = std::thread::spawn(move || sender.send(read()));
     match receiver.recv_timeout(PATIENCE) {
@@ -40,7 +40,7 @@ pub(in crate::load) fn unhung<T: Send + 'static>(read: impl FnOnce() -> T + Send
 
 /// Whether an error is the expected one: its variant, followed by parts of its message (the place and the numbers), all separated
 /// by ` | `. The pages in `docs/hostile` hold the whole sentences.
-pub(in crate::load) fn is_expected(error: &(impl Debug + Display), expected: &str) -> bool {
+pub(crate) fn is_expected(error: &(impl Debug + Display), expected: &str) -> bool {
     let (variant, parts) = expected.split_once(" | ").unwrap_or((expected, ""));
     let debug = format!("{error:?}");
     let own = debug.split(|letter: char| !letter.is_alphanumeric()).next();
@@ -48,7 +48,7 @@ pub(in crate::load) fn is_expected(error: &(impl Debug + Display), expected: &st
 }
 
 /// Whether a message has all these parts, which are separated by ` | `, as whole words and numbers.
-pub(in crate::load) fn mentions(message: &str, parts: &str) -> bool {
+pub(crate) fn mentions(message: &str, parts: &str) -> bool {
     let in_word = |letter: Option<char>| letter.is_some_and(char::is_alphanumeric);
     let is_whole = |start: usize, part: &str| {
         let (before, after) = (&message[..start], &message[start + part.len()..]);

@@ -9,9 +9,9 @@ use super::ktx2::{self, Ktx2};
 use super::memory_budget::Budget;
 use super::texture_room::decoded_bytes;
 use super::webp_memory::webp_bytes;
-use crate::mesh::Texture;
-use crate::mesh::build_limits::{Borrowed, MemoryAccount, MemoryRefused, borrowing};
-use crate::mesh::mipmap::{MipFilter, RowHalver, halved, level_size};
+use geometry::mesh::Texture;
+use geometry::mesh::build_limits::{Borrowed, MemoryAccount, MemoryRefused, borrowing};
+use geometry::mesh::mipmap::{MipFilter, RowHalver, halved, level_size};
 
 /// The greatest width and height of a texture that is read, in px.
 const MAX_SIZE: u32 = 16384;

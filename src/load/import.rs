@@ -1,8 +1,8 @@
 //! How the geometry of a file is taken: whose normals, which axis points up, and how long its unit is.
 
-use crate::mesh::normals::CREASE_ANGLE;
-use crate::mesh::orientation::reorient;
-use crate::mesh::{Mesh, UpAxis};
+use geometry::mesh::normals::CREASE_ANGLE;
+use geometry::mesh::orientation::reorient;
+use geometry::mesh::{Mesh, UpAxis};
 
 /// Whose normals the corners of a mesh have.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -27,7 +27,7 @@ pub enum LengthUnit {
 impl LengthUnit {
     /// Its length in metres. Inch and foot are the international ones (National Bureau of Standards 1959, "Refinement of values for
     /// the yard and the pound").
-    pub(crate) fn metres(self) -> f64 {
+    pub fn metres(self) -> f64 {
         match self {
             Self::Millimetre => 0.001,
             Self::Centimetre => 0.01,
@@ -39,7 +39,7 @@ impl LengthUnit {
 }
 
 /// The lengths that a unit without a name may have, in metres.
-pub(crate) const UNIT_METRES: std::ops::RangeInclusive<f32> = 1e-9..=1e9;
+pub const UNIT_METRES: std::ops::RangeInclusive<f32> = 1e-9..=1e9;
 
 /// The unit of a file's coordinates, as it was chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,12 +51,12 @@ pub enum FileUnit {
 
 impl FileUnit {
     /// A unit of this length; none if no unit may have it.
-    pub(crate) fn of_metres(metres: f32) -> Option<Self> {
+    pub fn of_metres(metres: f32) -> Option<Self> {
         UNIT_METRES.contains(&metres).then_some(Self::Metres(metres))
     }
 
     /// Its length in metres. A length that was written is taken as its shortest decimal form, so that 0.0254 is exactly an inch.
-    pub(crate) fn metres(self) -> f64 {
+    pub fn metres(self) -> f64 {
         match self {
             Self::Named(unit) => unit.metres(),
             Self::Metres(metres) => metres.to_string().parse().unwrap_or(f64::from(metres)),
@@ -91,17 +91,17 @@ impl Import {
     }
 
     /// Whether the mesh has another place than the file says.
-    pub(crate) fn moves(&self) -> bool {
+    pub fn moves(&self) -> bool {
         self.up.is_some() || self.unit.is_some()
     }
 
     /// The same without axis and unit, which are those of one file.
-    pub(crate) fn without_placement(self) -> Self {
+    pub fn without_placement(self) -> Self {
         Self { up: None, unit: None, ..self }
     }
 
     /// Axis and unit alone, as another file of the same scene takes them.
-    pub(crate) fn placement(self) -> Self {
+    pub fn placement(self) -> Self {
         Self { up: self.up, unit: self.unit, ..Self::default() }
     }
 

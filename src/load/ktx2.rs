@@ -13,8 +13,8 @@ mod uastc;
 use std::borrow::Cow;
 
 use super::zstd;
-use crate::mesh::mipmap::level_size;
 use etc1s::Codebooks;
+use geometry::mesh::mipmap::level_size;
 
 /// The first bytes of every file.
 const START: [u8; 12] = *b"\xabKTX 20\xbb\r\n\x1a\n";

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::parts::Part;
-use crate::mesh::Mesh;
+use geometry::mesh::Mesh;
 
 /// A mesh as its file describes it.
 #[derive(Clone, Debug, Default)]

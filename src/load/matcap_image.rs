@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use super::images::decode_texture;
 use super::memory_budget::Budget;
 use crate::files::{FileError, Limits, read_file};
-use crate::mesh::Texture;
-use crate::names::shown_path;
-use crate::progress::Progress;
+use geometry::mesh::Texture;
+use geometry::names::shown_path;
+use geometry::progress::Progress;
 
 /// Why a picture of a lit sphere could not be loaded.
 #[derive(Debug, thiserror::Error)]

@@ -23,9 +23,9 @@ use std::sync::Arc;
 
 use crate::files::Limits;
 #[cfg(doc)]
-use crate::mesh::CornerDetail;
-use crate::mesh::build_limits::{Borrowed, MemoryAccount, MemoryRefused};
-use crate::mesh::{Material, Mesh};
+use geometry::mesh::CornerDetail;
+use geometry::mesh::build_limits::{Borrowed, MemoryAccount, MemoryRefused};
+use geometry::mesh::{Material, Mesh};
 
 /// How many bytes of memory each byte of a file allows, in addition to [`Limits::memory`].
 pub(crate) const PER_BYTE: u64 = 4;
@@ -143,7 +143,7 @@ fn bytes_of(mesh: &Mesh) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::borrowing;
+    use geometry::mesh::borrowing;
 
     #[test]
     fn files_bring_their_allowance() {

@@ -14,8 +14,8 @@ use super::text_lines::of_utf16;
 use super::unread_formats::{self, UnreadFormat};
 use super::{fbx, obj, off, ply, stl, threemf};
 use crate::files::{FileError, Limits, Stamp, read_file};
-use crate::names::{shown, shown_path};
-use crate::progress::{Cancelled, Progress};
+use geometry::names::{shown, shown_path};
+use geometry::progress::{Cancelled, Progress};
 
 /// Why a file could not be loaded as a mesh.
 #[derive(Debug, thiserror::Error)]
@@ -138,7 +138,7 @@ pub fn load(path: &Path, limits: &Limits, progress: &Progress) -> Result<LoadedM
 ///
 /// # Errors
 /// The same, [`LoadError::NoVariant`] and [`LoadError::NoScene`].
-pub(crate) fn load_selected(
+pub fn load_selected(
     path: &Path,
     selected: Selection,
     limits: &Limits,

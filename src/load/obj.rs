@@ -34,10 +34,10 @@ use super::text_lines::{Line, Lines, first_word, of_utf16, shown, words};
 use super::triangle_block::BLOCK;
 use super::uri::Files;
 use crate::files::Limits;
-use crate::mesh::MemoryAccount;
-use crate::mesh::build_limits::MemoryRefused;
-use crate::mesh::mesh_builder::InputCorner;
-use crate::progress::Progress;
+use geometry::mesh::MemoryAccount;
+use geometry::mesh::build_limits::MemoryRefused;
+use geometry::mesh::mesh_builder::InputCorner;
+use geometry::progress::Progress;
 
 use faces::{FacePiece, Found, NONE, StatementCounts, fitting, index};
 use materials::Materials;

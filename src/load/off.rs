@@ -13,11 +13,11 @@ use super::memory_budget::Budget;
 use super::read_error::{FilePosition, ReadError};
 use super::text_lines::{Line, Lines, first_word, number, shown, words};
 use crate::files::Limits;
-use crate::mesh::build_limits::MemoryRefused;
-use crate::mesh::chunked_vec::ChunkedVec;
-use crate::mesh::mesh_builder::InputCorner;
-use crate::mesh::{Material, MemoryAccount};
-use crate::progress::Progress;
+use geometry::mesh::build_limits::MemoryRefused;
+use geometry::mesh::chunked_vec::ChunkedVec;
+use geometry::mesh::mesh_builder::InputCorner;
+use geometry::mesh::{Material, MemoryAccount};
+use geometry::progress::Progress;
 
 /// The most numbers of a vertex that are read: a homogeneous position, a normal, a colour and texture coordinates.
 const MAX_NUMBERS: usize = 4 + 3 + 4 + 2;

@@ -1,8 +1,8 @@
 //! Makes images as glTF has them of those that other descriptions of materials have: FBX and OBJ keep roughness and metalness, or
 //! colour and opacity, apart, and glossiness is the reverse of roughness.
 
-use crate::load::memory_budget::Budget;
-use crate::mesh::{MemoryAccount, Texture};
+use crate::memory_budget::Budget;
+use geometry::mesh::{MemoryAccount, Texture};
 
 /// Returns an image with roughness in green and metalness in blue, as glTF has them. Both are read from those channels: images of
 /// one number are grey, and those that hold both have them there. Without an image the number is 1.

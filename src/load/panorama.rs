@@ -9,7 +9,7 @@ const MOST_LIGHT: f32 = 65504.0;
 
 /// A panorama in linear RGB.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Panorama {
+pub struct Panorama {
     width: usize,
     height: usize,
     /// Row by row from the top. None is negative or infinite.
@@ -18,7 +18,7 @@ pub(crate) struct Panorama {
 
 /// How many numbers of a panorama were replaced, because no light can be so.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Repaired {
+pub struct Repaired {
     /// Replaced by 0.
     pub not_numbers: usize,
     /// Replaced by 0.
@@ -30,7 +30,7 @@ pub(crate) struct Repaired {
 impl Panorama {
     /// Takes `size` (width and height) pixels, row by row from the top. What can't be light is replaced and counted; pixels that
     /// are missing are black.
-    pub(crate) fn new(size: [u32; 2], mut pixels: Vec<[f32; 3]>) -> (Self, Repaired) {
+    pub fn new(size: [u32; 2], mut pixels: Vec<[f32; 3]>) -> (Self, Repaired) {
         let [width, height] = size.map(|length| length.max(1) as usize);
         let mut repaired = Repaired::default();
         pixels.resize(width * height, [0.0; 3]);
@@ -39,7 +39,7 @@ impl Panorama {
     }
 
     /// The panorama of so many pixels that shows this radiance from each direction.
-    pub(crate) fn of(size: [u32; 2], radiance: impl Fn(Vec3) -> Vec3) -> Self {
+    pub fn of(size: [u32; 2], radiance: impl Fn(Vec3) -> Vec3) -> Self {
         let [width, height] = size.map(|length| length.max(1) as usize);
         let light = |x: usize, y: usize| {
             let longitude = ((x as f32 + 0.5) / width as f32 - 0.5) * TAU;
@@ -52,17 +52,17 @@ impl Panorama {
     }
 
     /// Width and height in pixels.
-    pub(crate) fn size(&self) -> [u32; 2] {
+    pub fn size(&self) -> [u32; 2] {
         [self.width as u32, self.height as u32]
     }
 
     /// Row by row from the top, in linear RGB.
-    pub(crate) fn pixels(&self) -> &[Vec3] {
+    pub fn pixels(&self) -> &[Vec3] {
         &self.pixels
     }
 
     /// The same, halved until it has at most `most_rows` rows and twice as many columns.
-    pub(crate) fn reduced(mut self, most_rows: usize) -> Self {
+    pub fn reduced(mut self, most_rows: usize) -> Self {
         while (self.height > most_rows || self.width > 2 * most_rows) && (self.width > 1 || self.height > 1) {
             self = self.halved();
         }
@@ -87,7 +87,7 @@ impl Panorama {
     }
 
     /// The light from a unit direction. The panorama's middle is at -Z, +X is to the right of it, and +Y is at the top.
-    pub(crate) fn light_from(&self, direction: Vec3) -> Vec3 {
+    pub fn light_from(&self, direction: Vec3) -> Vec3 {
         let across = (0.5 + direction.x.atan2(-direction.z) / TAU) * self.width as f32 - 0.5;
         let down = direction.y.clamp(-1.0, 1.0).acos() / PI * self.height as f32 - 0.5;
         let (left, top) = (across.floor(), down.floor());

@@ -23,9 +23,9 @@ use super::recent_corners::VertexNumbers;
 use super::text_lines::shown;
 use super::uri::Files;
 use crate::files::Limits;
-use crate::mesh::mesh_builder::InputCorner;
-use crate::mesh::{Material, MemoryAccount};
-use crate::progress::Progress;
+use geometry::mesh::mesh_builder::InputCorner;
+use geometry::mesh::{Material, MemoryAccount};
+use geometry::progress::Progress;
 
 use header::{Element, Header, Property, PropertyKind, Scalar};
 use textures::Textures;

@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use crate::mesh::build_limits::BuildError;
-use crate::progress::Cancelled;
+use geometry::mesh::build_limits::BuildError;
+use geometry::progress::Cancelled;
 
 /// Why an FBX, OBJ, STL, PLY, OFF or 3MF file could not be loaded. The message doesn't contain the file's path.
 #[derive(Debug, thiserror::Error)]

@@ -1,6 +1,6 @@
 //! Remembers the corners of vertices that faces used lately: the next faces mostly use them again.
 
-use crate::mesh::mesh_builder::StoredCorner;
+use geometry::mesh::mesh_builder::StoredCorner;
 
 /// How many vertices are remembered. A power of two that keeps the table within a core's own cache.
 const SLOTS: usize = 1 << 13;
@@ -48,7 +48,7 @@ impl RecentCorners {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::mesh_builder::CornerRepairs;
+    use geometry::mesh::mesh_builder::CornerRepairs;
 
     #[test]
     fn a_corner_is_stored_again_only_if_another_took_its_place() {

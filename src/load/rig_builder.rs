@@ -6,10 +6,10 @@ use glam::{DMat4, Vec3};
 
 use super::attachment::{Attachment, SceneNodes, attachments};
 use super::binding_space::{BindingSpace, posed, unturned, untwisted};
-use crate::mesh::mesh_builder::InputCorner;
-use crate::mesh::normals::GivenNormal;
-use crate::mesh::rig::{AnimatedNode, Binding, Clip, Delta, Joint, Morph, Placement, Property, Reach, Rig};
-use crate::mesh::{CornerDetail, CornerDetails, Mesh};
+use geometry::mesh::mesh_builder::InputCorner;
+use geometry::mesh::normals::GivenNormal;
+use geometry::mesh::rig::{AnimatedNode, Binding, Clip, Delta, Joint, Morph, Placement, Property, Reach, Rig};
+use geometry::mesh::{CornerDetail, CornerDetails, Mesh};
 
 /// The greatest number of bound vertices, and of their displacements, which limits the memory.
 pub(super) const MAX_BOUND: usize = 1 << 24;

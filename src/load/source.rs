@@ -11,10 +11,10 @@ use super::loaded_mesh::LoadedMesh;
 use super::mesh_file::{LoadError, check_selected, load_selected, read};
 use super::selection::Selection;
 use crate::files::Limits;
-use crate::mesh::Mesh;
-use crate::mesh::mesh_builder::{InputCorner, MeshBuilder};
-use crate::mesh::shapes::{MAX_LEVEL, Shape, ShapeError};
-use crate::progress::{Cancelled, Progress};
+use geometry::mesh::Mesh;
+use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
+use geometry::mesh::shapes::{MAX_LEVEL, Shape, ShapeError};
+use geometry::progress::{Cancelled, Progress};
 
 /// The prefix of a shape's name.
 const SHAPE: &str = "shape:";
@@ -48,7 +48,7 @@ impl Source {
     /// # Errors
     /// The same as [`load_selected`]'s; a shape has only [`LoadError::NoVariant`], [`LoadError::NoScene`], [`LoadError::Shape`] and
     /// [`LoadError::Cancelled`].
-    pub(crate) fn load_selected(
+    pub fn load_selected(
         &self,
         selected: Selection,
         limits: &Limits,

@@ -19,9 +19,9 @@ use super::read_error::{FilePosition, ReadError};
 use super::selection::Selection;
 use super::text_lines::{Line, Lines, first_word, has_comma, numbers_or_nan, shown};
 use crate::files::Limits;
-use crate::mesh::mesh_builder::InputCorner;
-use crate::mesh::{Material, MemoryAccount};
-use crate::progress::Progress;
+use geometry::mesh::mesh_builder::InputCorner;
+use geometry::mesh::{Material, MemoryAccount};
+use geometry::progress::Progress;
 
 use colors::Colors;
 

@@ -8,11 +8,11 @@ use bevy_mikktspace::{Geometry, TangentSpace, generate_tangents};
 use glam::{Vec2, Vec3};
 
 use super::notes::Notes;
-use crate::mesh::build_limits::BuildError;
-use crate::mesh::detail_table::DetailTable;
-use crate::mesh::weld::weld;
-use crate::mesh::{Borrowed, Corner, CornerDetail, CornerDetails, MapUv, Material, MemoryAccount, Mesh};
-use crate::progress::{Cancelled, Progress};
+use geometry::mesh::build_limits::BuildError;
+use geometry::mesh::detail_table::DetailTable;
+use geometry::mesh::weld::weld;
+use geometry::mesh::{Borrowed, Corner, CornerDetail, CornerDetails, MapUv, Material, MemoryAccount, Mesh};
+use geometry::progress::{Cancelled, Progress};
 
 /// How many triangles get their tangents together. The tangents of a corner depend on the triangles around it alone, so that a
 /// large mesh needn't be in the crate's lists at once.
@@ -75,7 +75,7 @@ fn complete_by(
     let _scope = Borrowed::from(budget);
     let mut warnings = Vec::new();
     let mut warn = |name: &str, reason: String| {
-        let name = crate::load::uri::shown(name);
+        let name = crate::uri::shown(name);
         let why = "since its mesh has no tangents, and computing them";
         warnings.push(format!("the normal map of material \"{name}\" isn't drawn, {why} {reason}."));
     };
@@ -278,7 +278,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::mesh::{Map, Sampling, Shape, Slot, Texture, Unlimited};
+    use geometry::mesh::{Map, Sampling, Shape, Slot, Texture, Unlimited};
 
     fn tangents(corners: Vec<Corner>) -> Vec<(Vec3, f32)> {
         let mut surface = Surface::new(corners);

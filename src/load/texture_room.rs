@@ -3,8 +3,8 @@
 use std::collections::BinaryHeap;
 
 use super::memory_budget::Budget;
-use crate::mesh::MemoryRefused;
-use crate::mesh::mipmap::{level_count, level_size};
+use geometry::mesh::MemoryRefused;
+use geometry::mesh::mipmap::{level_count, level_size};
 
 /// The greatest width and height of a texture that is shown, in px: every adapter has textures of that size (WebGPU, default limits).
 pub(super) const MOST_SIDE: u32 = 8192;

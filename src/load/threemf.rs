@@ -24,9 +24,9 @@ use super::memory_budget::Budget;
 use super::notes::Notes;
 use super::read_error::{FilePosition, ReadError};
 use crate::files::Limits;
-use crate::mesh::{MemoryAccount, MemoryRefused};
-use crate::names::shown;
-use crate::progress::Progress;
+use geometry::mesh::{MemoryAccount, MemoryRefused};
+use geometry::names::shown;
+use geometry::progress::Progress;
 
 use archive::Archive;
 use document::Document;

@@ -1,7 +1,7 @@
 //! Looks up the corners of many triangles together: the processor then waits for memory once for several of them.
 
 use super::recent_corners::{RecentCorners, VertexNumbers};
-use crate::mesh::mesh_builder::{CornerRepairs, InputCorner, StoredCorner};
+use geometry::mesh::mesh_builder::{CornerRepairs, InputCorner, StoredCorner};
 
 /// How many triangles are looked up together. All that is kept for them fits beside the vertices that are remembered.
 pub(super) const BLOCK: usize = 512;

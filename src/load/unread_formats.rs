@@ -208,7 +208,7 @@ mod tests {
         all.dedup();
         assert_eq!(all.len(), count);
         assert!(all.iter().all(|extension| extension.to_lowercase() == **extension));
-        let read = crate::load::format::EXTENSIONS;
+        let read = crate::format::EXTENSIONS;
         assert!(read.iter().all(|(extension, _)| of_extension(extension).is_none()));
     }
 

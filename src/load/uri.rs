@@ -11,9 +11,9 @@ use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 
 use super::memory_budget::Budget;
 use crate::files::{FileError, Limits, read_file};
-use crate::mesh::MemoryAccount;
-use crate::names::{on_one_line, shown_path};
-use crate::progress::Progress;
+use geometry::mesh::MemoryAccount;
+use geometry::names::{on_one_line, shown_path};
+use geometry::progress::Progress;
 
 /// The greatest size of a data URI, in bytes of decoded data.
 const MAX_DATA: usize = 512 << 20;
@@ -191,7 +191,7 @@ fn relative_path(uri: &str) -> Result<PathBuf, String> {
 }
 
 /// Decodes %XX. A % that isn't followed by two hexadecimal digits stays.
-pub(crate) fn percent_decoded(text: &str) -> Vec<u8> {
+pub fn percent_decoded(text: &str) -> Vec<u8> {
     let digit = |byte: &u8| char::from(*byte).to_digit(16);
     let mut decoded = Vec::with_capacity(text.len());
     let mut rest = text.as_bytes();

@@ -1,8 +1,8 @@
 //! Warnings about a mesh that was loaded or changed, as sentences.
 
 use super::import::Import;
-use crate::mesh::crease_band::CreaseBand;
-use crate::mesh::{Heights, Mesh, Repairs};
+use geometry::mesh::crease_band::CreaseBand;
+use geometry::mesh::{Heights, Mesh, Repairs};
 
 /// Returns warnings about corners that were repaired. Normals that were missing don't cause one here, since files may
 /// leave them out on purpose.
@@ -18,7 +18,7 @@ pub(super) fn repair_warnings(repairs: &Repairs, import: &Import) -> Vec<String>
 }
 
 /// Returns warnings about a crease band: that the mesh has no crease, or that the band is narrower than requested in places.
-pub(crate) fn crease_band_warnings(band: &CreaseBand) -> Vec<String> {
+pub fn crease_band_warnings(band: &CreaseBand) -> Vec<String> {
     let mut warnings = Vec::new();
     if band.creases == 0 {
         warnings.push("no edge has split normals, so no crease band was made.".to_owned());
@@ -34,7 +34,7 @@ pub(crate) fn crease_band_warnings(band: &CreaseBand) -> Vec<String> {
 
 /// Returns a warning about triangles whose corners all have the same texture coordinates: displacement moves such a
 /// triangle as a whole.
-pub(crate) fn untextured_warning(heights: &Heights, mesh: &Mesh) -> Option<String> {
+pub fn untextured_warning(heights: &Heights, mesh: &Mesh) -> Option<String> {
     let mut count = 0;
     for (material, _) in mesh.materials.iter().zip(&heights.of_material).filter(|(_, map)| map.is_some()) {
         let triangles = &mesh.triangles[material.triangles.start as usize..material.triangles.end as usize];
@@ -50,7 +50,7 @@ pub(crate) fn untextured_warning(heights: &Heights, mesh: &Mesh) -> Option<Strin
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{HeightMap, Shape};
+    use geometry::mesh::{HeightMap, Shape};
 
     #[test]
     fn repairs_are_counted_in_sentences_but_normals_that_were_made_are_not() {

@@ -4,10 +4,10 @@ use std::hint::black_box;
 use std::sync::Arc;
 use std::time::Instant;
 
+use geometry::mesh::adjacency::Layout;
+use geometry::mesh::{Corner, Mesh, Topology};
+use geometry::progress::Progress;
 use glam::{Vec2, Vec3};
-use pnaen::internals::Layout;
-use pnaen::mesh::{Corner, Mesh, Topology};
-use pnaen::progress::Progress;
 
 /// The number of runs of each, in turn.
 const RUNS: usize = 9;

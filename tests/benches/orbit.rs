@@ -20,7 +20,10 @@ use egui_kittest::kittest::Queryable;
 use egui_kittest::wgpu::{create_render_state, default_wgpu_setup};
 use egui_kittest::{Harness, TestRenderer};
 use egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor};
-use pnaen::internals::{App, Limits, Shape, Source};
+use geometry::mesh::shapes::Shape;
+use load::files::Limits;
+use load::source::Source;
+use pnaen::app::App;
 
 use driver::settle;
 

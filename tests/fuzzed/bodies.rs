@@ -4,14 +4,21 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use pnaen::internals::{
-    EnvironmentFile, Format, HullFactors, Selection, domain_plan, domain_point, domain_triangle, outer_count,
-    point_count, read, triangle_count,
-};
-use pnaen::load::Limits;
-use pnaen::mesh::{Mesh, Topology};
-use pnaen::progress::Progress;
-use pnaen::tessellate::{Partitioning, PatchFactors};
+use geometry::mesh::{Mesh, Topology};
+use geometry::progress::Progress;
+use geometry::tessellate::domain::domain_plan;
+use geometry::tessellate::domain::domain_point;
+use geometry::tessellate::domain::domain_triangle;
+use geometry::tessellate::factors::outer_count;
+use geometry::tessellate::factors::point_count;
+use geometry::tessellate::factors::triangle_count;
+use geometry::tessellate::hull_factors::HullFactors;
+use geometry::tessellate::{Partitioning, PatchFactors};
+use load::Limits;
+use load::environment_file::EnvironmentFile;
+use load::format::Format;
+use load::mesh_file::read;
+use load::selection::Selection;
 
 /// The greatest number of triangles for which a topology is built; larger meshes take too long for a fuzzer.
 const MOST_TRIANGLES: usize = 1 << 14;

@@ -1,13 +1,13 @@
 //! Conventions of factors and weights: those that agree with themselves give one mesh, mistakes crack. And factors that are
 //! given in place of LOD's.
 
-use pnaen::engine::Loaded;
-use pnaen::gpu::Timing;
-use pnaen::measure::{AskedFactors, EdgeSide, Measured};
-use pnaen::mesh::Shape;
-use pnaen::render::{Camera, Scene};
-use pnaen::settings::Settings;
-use pnaen::tessellate::{
+use inspect::engine::Loaded;
+use gpu::Timing;
+use inspect::measure::{AskedFactors, EdgeSide, Measured};
+use geometry::mesh::Shape;
+use inspect::render::{Camera, Scene};
+use inspect::settings::Settings;
+use geometry::tessellate::{
     Clip, Convention, Edges, HullFactors, Inputs, Lod, Partitioning, Surface, Tessellated, Tessellation, hull_factors,
     patch_is_culled, segments, tessellate, tessellate_given,
 };

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use pnaen::engine::Engine;
-use pnaen::gpu::Timing;
-use pnaen::mesh::Shape;
-use pnaen::render::{Camera, Renderer, Scene, Target};
-use pnaen::settings::{Colors, Overlays, Settings};
-use pnaen::stability::random_camera;
-use pnaen::tessellate::{CoverageView, Lod, Surface, Tessellation, covers_nothing, screen_corner};
+use inspect::engine::Engine;
+use gpu::Timing;
+use geometry::mesh::Shape;
+use inspect::render::{Camera, Renderer, Scene, Target};
+use inspect::settings::{Colors, Overlays, Settings};
+use lab::stability::random_camera;
+use geometry::tessellate::{CoverageView, Lod, Surface, Tessellation, covers_nothing, screen_corner};
 
 use crate::gpu_tests::{engine, scene};
 
@@ -76,7 +76,7 @@ fn as_many_triangles_are_kept_as_the_reference_keeps() {
         seen(&engine, &mut scene, &target, &camera, &settings);
         let clip_from_object = camera.clip_from_object(target.viewport(), &scene.bounds);
         let fronts_only = scene.tessellator.shows_fronts_only(clip_from_object);
-        let (samples, bits) = (pnaen::render::samples(&engine.gpu), engine.gpu.subpixel_bits);
+        let (samples, bits) = (inspect::render::samples(&engine.gpu), engine.gpu.subpixel_bits);
         let view = CoverageView::new(clip_from_object, target.viewport(), samples, fronts_only, bits);
         let output = engine.read_tessellated(&mut scene).expect("a readback");
         let corner = |index: u32| screen_corner(&view, output.vertices[index as usize].position.into());

@@ -1,14 +1,14 @@
 //! Crease bands, under PN triangles: nothing is left to tear.
 
-use pnaen::engine::{Preparation, load};
-use pnaen::load::Source;
-use pnaen::measure::Measured;
-use pnaen::mesh::{Shape, Topology, Unlimited, with_crease_band};
-use pnaen::progress::Progress;
-use pnaen::render::{Camera, Scene};
-use pnaen::settings::{ARENA_BYTES, Settings};
-use pnaen::stability::{CASES, soup};
-use pnaen::tessellate::{Edges, Partitioning, Surface, Tessellation};
+use inspect::engine::{Preparation, load};
+use load::Source;
+use inspect::measure::Measured;
+use geometry::mesh::{Shape, Topology, Unlimited, with_crease_band};
+use geometry::progress::Progress;
+use inspect::render::{Camera, Scene};
+use inspect::settings::{ARENA_BYTES, Settings};
+use lab::stability::{CASES, soup};
+use geometry::tessellate::{Edges, Partitioning, Surface, Tessellation};
 
 use crate::gpu_tests::engine;
 use crate::gpu_tests::stability::{measured, scene_of};

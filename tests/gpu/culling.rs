@@ -1,13 +1,13 @@
 //! Culling: what is left out is never missed.
 
 use glam::{Mat4, Vec2, Vec3};
-use pnaen::gpu::Timing;
-use pnaen::measure::Culled;
-use pnaen::mesh::Shape;
-use pnaen::render::{Camera, Scene, Target};
-use pnaen::settings::{Overlays, Settings};
-use pnaen::stability::random_camera;
-use pnaen::tessellate::{Clip, Edges, Inputs, Lod, LodView, Surface, Tessellation, tessellate};
+use gpu::Timing;
+use inspect::measure::Culled;
+use geometry::mesh::Shape;
+use inspect::render::{Camera, Scene, Target};
+use inspect::settings::{Overlays, Settings};
+use lab::stability::random_camera;
+use geometry::tessellate::{Clip, Edges, Inputs, Lod, LodView, Surface, Tessellation, tessellate};
 
 use crate::gpu_tests::{engine, scene};
 

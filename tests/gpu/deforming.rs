@@ -2,15 +2,15 @@
 
 use std::sync::Arc;
 
-use pnaen::engine::{Loaded, Preparation, Runs, load};
-use pnaen::gpu::{Timing, read_buffer, take_times};
-use pnaen::load::Source;
-use pnaen::mesh::{CornerDetail, Mesh, Moment, Rig};
-use pnaen::progress::Progress;
-use pnaen::render::{Camera, Scene, Target};
-use pnaen::settings::{ARENA_BYTES, Settings};
-use pnaen::tessellate::{Edges, Lod, Partitioning, Surface, Tessellation, tessellate};
-use pnaen::view::ulp;
+use inspect::engine::{Loaded, Preparation, Runs, load};
+use gpu::{Timing, read_buffer, take_times};
+use load::Source;
+use geometry::mesh::{CornerDetail, Mesh, Moment, Rig};
+use geometry::progress::Progress;
+use inspect::render::{Camera, Scene, Target};
+use inspect::settings::{ARENA_BYTES, Settings};
+use geometry::tessellate::{Edges, Lod, Partitioning, Surface, Tessellation, tessellate};
+use geometry::view::ulp;
 
 use crate::gpu_tests::engine;
 use crate::gpu_tests::moving::{CLIPS, moving};
@@ -73,7 +73,7 @@ fn the_device_deforms_as_the_cpu_does() {
 fn the_device_deforms_tangents_as_the_cpu_does() {
     let (loaded, _) = scene();
     let mut mesh = Mesh::clone(&loaded.mesh);
-    let of = |(i, corner): (usize, &pnaen::mesh::Corner)| CornerDetail {
+    let of = |(i, corner): (usize, &geometry::mesh::Corner)| CornerDetail {
         tangent: corner.normal.any_orthonormal_vector(),
         bitangent_sign: if i % 2 == 0 { 1.0 } else { -1.0 },
         uvs: [corner.uv, glam::Vec2::splat(i as f32)],
@@ -250,7 +250,7 @@ fn a_clip_is_framed_all_through() {
 
 #[test]
 fn a_mesh_that_cannot_move_takes_no_pose() {
-    let (loaded, mut scene) = crate::gpu_tests::scene(pnaen::mesh::Shape::Torus);
+    let (loaded, mut scene) = crate::gpu_tests::scene(geometry::mesh::Shape::Torus);
     let inputs = inputs(&loaded, &Settings::default());
     let before = on_gpu(&mut scene, &inputs);
     scene.set_moment(Some(Moment { clip: 0, time: 1.0 })).expect("nothing to upload");

@@ -4,15 +4,15 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 use image::RgbaImage;
-use pnaen::engine::Measurements;
-use pnaen::gpu::Timing;
-use pnaen::measure::{DeviationField, DeviationTarget};
-use pnaen::mesh::Shape;
-use pnaen::render::{Camera, DEVIATION_PX_SCALE, Scale, Scene, Target, deviation_scale, worst_lines};
-use pnaen::settings::{ARENA_BYTES, Colors, DeviationUnit, Overlays, Settings, SplitSide};
-use pnaen::tessellate::{Lod, Surface, Tessellation};
-use pnaen::truth::Truth;
-use pnaen::view::project;
+use inspect::engine::Measurements;
+use gpu::Timing;
+use inspect::measure::{DeviationField, DeviationTarget};
+use geometry::mesh::Shape;
+use inspect::render::{Camera, DEVIATION_PX_SCALE, Scale, Scene, Target, deviation_scale, worst_lines};
+use inspect::settings::{ARENA_BYTES, Colors, DeviationUnit, Overlays, Settings, SplitSide};
+use geometry::tessellate::{Lod, Surface, Tessellation};
+use inspect::truth::Truth;
+use geometry::view::project;
 
 use crate::gpu_tests::engine;
 use crate::gpu_tests::pictures::{SIZE, differing};

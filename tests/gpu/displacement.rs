@@ -3,21 +3,21 @@
 use std::f32::consts::TAU;
 use std::sync::Arc;
 
-use pnaen::engine::Measurements;
-use pnaen::engine::{Loaded, Runs};
-use pnaen::gpu::Timing;
-use pnaen::load::{Budget, HeightSource, Source};
-use pnaen::measure::Measured;
-use pnaen::mesh::{Corner, HeightMap, Heights, Material, Mesh, Moment, Shape, Texture};
-use pnaen::progress::Progress;
-use pnaen::render::{Scene, Target};
-use pnaen::settings::{ARENA_BYTES, Settings};
-use pnaen::stability::CASES;
-use pnaen::tessellate::{
+use inspect::engine::Measurements;
+use inspect::engine::{Loaded, Runs};
+use gpu::Timing;
+use load::{Budget, HeightSource, Source};
+use inspect::measure::Measured;
+use geometry::mesh::{Corner, HeightMap, Heights, Material, Mesh, Moment, Shape, Texture};
+use geometry::progress::Progress;
+use inspect::render::{Scene, Target};
+use inspect::settings::{ARENA_BYTES, Settings};
+use lab::stability::CASES;
+use geometry::tessellate::{
     Clip, Displacement, Edges, HullFactors, Lod, Normals, Partitioning, PatchFactors, Surface, Tessellation, Vertex,
     deform, tessellate, tessellate_given, triangle_count, unpack_normal,
 };
-use pnaen::view::ulp;
+use geometry::view::ulp;
 
 use crate::gpu_tests::passes::{inputs, on_gpu};
 use crate::gpu_tests::{engine, loaded_mesh};
@@ -207,7 +207,7 @@ fn factors_that_are_no_numbers_leave_no_hole_in_the_neighbours() {
     scene.tessellator.give(Some(given.clone().into())).expect("few patches");
     let settings = Settings::from(Tessellation { displacement: Displacement::On, ..Tessellation::default() });
     let viewport = glam::vec2(64.0, 64.0);
-    let view = pnaen::render::Camera::framing(&scene.bounds, viewport).lod_view(viewport, &scene.bounds);
+    let view = inspect::render::Camera::framing(&scene.bounds, viewport).lod_view(viewport, &scene.bounds);
     engine().count(&mut scene, &settings.inputs(view), &mut Timing::Off).expect("counts");
     let measured = engine().measure(&mut scene).expect("a readback");
     assert!(scene.tessellator.totals().1 > 0 && measured.not_finite == 0, "{} not finite", measured.not_finite);
@@ -248,7 +248,7 @@ fn culling_takes_the_amplitude_into_account() {
         let (_, mut scene) = wavy(shape);
         let target = Target::new(&engine().gpu, size).expect("a small picture");
         for index in 0..24 {
-            let camera = pnaen::stability::random_camera(&scene.bounds, index);
+            let camera = lab::stability::random_camera(&scene.bounds, index);
             let whole = Settings::from(Tessellation {
                 displacement: Displacement::On,
                 height_scale: 0.5,
@@ -325,14 +325,14 @@ fn a_mesh_that_moves_is_displaced_in_every_pose() {
         let cracks = engine().measure(&mut scene).expect("a readback").cracks;
         assert_eq!((cracks.different_bits, cracks.different_normals), (0, 0), "{time} s");
         let target = Target::new(&engine().gpu, [64, 64]).expect("a small picture");
-        let camera = pnaen::render::Camera::framing(&scene.bounds, target.viewport());
+        let camera = inspect::render::Camera::framing(&scene.bounds, target.viewport());
         let engine = crate::gpu_tests::coverage::sifting(0.0);
         let view = camera.lod_view(target.viewport(), &scene.bounds);
         let times = engine.time(&mut scene, &target, &camera, view, &settings, Runs::default()).expect("a draw");
         passes = times.iter().map(|time| time.pass).collect();
     }
     // Least triangles are computed for an overlay alone.
-    let wanted: Vec<_> = pnaen::gpu::PASSES.into_iter().filter(|&pass| pass != "least").collect();
+    let wanted: Vec<_> = gpu::PASSES.into_iter().filter(|&pass| pass != "least").collect();
     assert_eq!(passes, wanted, "every other pass has something to do");
 }
 

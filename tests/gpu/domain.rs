@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use bytemuck::{Pod, Zeroable};
-use pnaen::tessellate::domain::{domain_plan, domain_point, domain_triangle};
-use pnaen::tessellate::factors::{Partitioning, PatchFactors, point_count, process, round_pow2, triangle_count};
+use geometry::tessellate::domain::{domain_plan, domain_point, domain_triangle};
+use geometry::tessellate::factors::{Partitioning, PatchFactors, point_count, process, round_pow2, triangle_count};
 use wgpu::util::DeviceExt;
 
 /// One workgroup a patch; its invocations take turns with the points and triangles.

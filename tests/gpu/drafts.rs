@@ -2,10 +2,10 @@
 
 use glam::{Vec2, Vec3};
 use image::RgbaImage;
-use pnaen::mesh::{Alpha, CornerDetail, Look, MapUv, Material, Slot};
-use pnaen::render::Target;
-use pnaen::settings::{Overlays, Settings};
-use pnaen::tessellate::Tessellation;
+use geometry::mesh::{Alpha, CornerDetail, Look, MapUv, Material, Slot};
+use inspect::render::Target;
+use inspect::settings::{Overlays, Settings};
+use geometry::tessellate::Tessellation;
 
 use crate::gpu_tests::engine;
 use crate::gpu_tests::looks::{facing, square_of};

@@ -4,11 +4,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::{Mat4, Vec2, Vec3};
-use pnaen::embed::{Context, GpuError, OutputStatus, Room, TessellatedMesh};
-use pnaen::engine::Engine;
-use pnaen::gpu::{RecordPasses, Tessellator, read_buffer, vertices_of};
-use pnaen::mesh::{Corner, Mesh, MeshSlices, Moment, Pose, Shape, Topology};
-use pnaen::tessellate::{Clip, Edges, Inputs, LodView, Surface, Tessellated, Tessellation, tessellate};
+use gpu::embed::{Context, GpuError, OutputStatus, Room, TessellatedMesh};
+use inspect::engine::Engine;
+use gpu::{RecordPasses, Tessellator, read_buffer, vertices_of};
+use geometry::mesh::{Corner, Mesh, MeshSlices, Moment, Pose, Shape, Topology};
+use geometry::tessellate::{Clip, Edges, Inputs, LodView, Surface, Tessellated, Tessellation, tessellate};
 
 use crate::gpu_tests::engine;
 use crate::gpu_tests::pictures::differing;
@@ -45,7 +45,7 @@ fn emitted(queue: &wgpu::Queue, device: &wgpu::Device, mesh: &mut TessellatedMes
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     mesh.record(&mut encoder).expect("passes");
     queue.submit([encoder.finish()]);
-    let gpu = pnaen::gpu::Gpu::borrowed(device, queue);
+    let gpu = gpu::Gpu::borrowed(device, queue);
     let (buffer, range) = mesh.status_buffer();
     let status: OutputStatus =
         bytemuck::pod_read_unaligned(&read_buffer(&gpu, buffer, range.start, range.end - range.start).expect("status"));
@@ -134,7 +134,7 @@ fn a_mesh_without_triangles_draws_nothing() {
     let (status, _) = emitted(&queue, &device, &mut mesh);
     assert_eq!((status.vertices, status.triangles, mesh.has_overflowed(&status)), (0, 0, false));
     let (arguments, offset) = mesh.draw_arguments(0).expect("its one material");
-    let count = read_buffer(&pnaen::gpu::Gpu::borrowed(&device, &queue), arguments, offset, 4).expect("a readback");
+    let count = read_buffer(&gpu::Gpu::borrowed(&device, &queue), arguments, offset, 4).expect("a readback");
     assert_eq!(count, [0_u8; 4], "the number of indices");
 }
 
@@ -187,7 +187,7 @@ fn only_what_changed_is_recorded() {
 /// A mesh with a skin, and without morph targets.
 fn tube() -> Mesh {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/tube.gltf");
-    let tube = pnaen::load::load(&path, &pnaen::load::Limits::default(), &pnaen::progress::Progress::new());
+    let tube = load::load(&path, &load::Limits::default(), &geometry::progress::Progress::new());
     tube.expect("a small file").mesh
 }
 

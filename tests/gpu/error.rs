@@ -3,15 +3,15 @@
 use std::sync::Arc;
 
 use glam::Vec2;
-use pnaen::engine::{Loaded, Preparation, load};
-use pnaen::gpu::{ComputePipelines, Timing, take_times};
-use pnaen::load::Source;
-use pnaen::measure::{EmittedChunk, ScreenErrorMeasurement, Visitor};
-use pnaen::mesh::{Mesh, Shape, Topology};
-use pnaen::progress::Progress;
-use pnaen::render::{Camera, Scene, Target};
-use pnaen::settings::{ARENA_BYTES, Colors, Overlays, Settings};
-use pnaen::tessellate::{
+use inspect::engine::{Loaded, Preparation, load};
+use gpu::{ComputePipelines, Timing, take_times};
+use load::Source;
+use inspect::measure::{EmittedChunk, ScreenErrorMeasurement, Visitor};
+use geometry::mesh::{Mesh, Shape, Topology};
+use geometry::progress::Progress;
+use inspect::render::{Camera, Scene, Target};
+use inspect::settings::{ARENA_BYTES, Colors, Overlays, Settings};
+use geometry::tessellate::{
     self, Convention, Displacement, Edges, HullFactors, Inputs, Lod, Partitioning, Surface, Tessellated, Tessellation,
     hull_factors, own_least_triangles, tessellate,
 };

@@ -2,12 +2,13 @@
 
 use std::rc::Rc;
 
-use pnaen::internals::{Language, shader_files};
-use pnaen::mesh::adjacency::Layout;
-use pnaen::mesh::{Mesh, Shape, Topology};
-use pnaen::progress::Progress;
-use pnaen::settings::Choice;
-use pnaen::tessellate::{
+use inspect::shader_files::Language;
+use inspect::shader_files::shader_files;
+use geometry::mesh::adjacency::Layout;
+use geometry::mesh::{Mesh, Shape, Topology};
+use geometry::progress::Progress;
+use inspect::settings::Choice;
+use geometry::tessellate::{
     Clip, Convention, Edges, Lod, Normals, Partitioning, Surface, Tessellation, corner_weights, tessellate,
 };
 
@@ -125,12 +126,12 @@ fn exported_compute_passes_make_our_triangles() {
             let own = Tessellation { surface, partitioning, factor: 5.3, ..Tessellation::default() };
             let files = shader_files(Language::Wgsl, &own, "a test").expect("WGSL of any pattern");
             let (vertices, triangles) = run_passes(&files[0].text, &mesh, &topology, &own);
-            let view = pnaen::tessellate::LodView::new(glam::Mat4::IDENTITY, glam::Vec2::ONE);
-            let cpu = tessellate(&mesh, &topology, &pnaen::tessellate::Inputs::new(&own, view), None);
+            let view = geometry::tessellate::LodView::new(glam::Mat4::IDENTITY, glam::Vec2::ONE);
+            let cpu = tessellate(&mesh, &topology, &geometry::tessellate::Inputs::new(&own, view), None);
             let what = format!("{shape:?} {partitioning:?}");
             assert!(triangles == cpu.triangles, "{what}: triangles");
             assert_eq!(vertices.len(), cpu.vertices.len(), "{what}");
-            let bound = 4.0 * pnaen::view::ulp(&topology);
+            let bound = 4.0 * geometry::view::ulp(&topology);
             for (own, other) in vertices.iter().zip(&cpu.vertices) {
                 for (x, y) in own.iter().zip(other.position) {
                     assert!(f64::from((x - y).abs()) <= bound, "{what}: {own:?} {other:?}");

@@ -1,11 +1,11 @@
 //! Exported shaders that displace: those of tessellation stages on the driver's own, and compute passes on the engine's device.
 
-use pnaen::gpu::read_buffer;
-use pnaen::mesh::adjacency::Layout;
-use pnaen::mesh::{Mesh, Shape, Topology};
-use pnaen::progress::Progress;
-use pnaen::shader_files::{Language, shader_files};
-use pnaen::tessellate::{
+use gpu::read_buffer;
+use geometry::mesh::adjacency::Layout;
+use geometry::mesh::{Mesh, Shape, Topology};
+use geometry::progress::Progress;
+use inspect::shader_files::{Language, shader_files};
+use geometry::tessellate::{
     Clip, Convention, Displacement, Edges, Inputs, Lod, LodView, Normals, Partitioning, PatchFactors, Tessellation,
     Vertex, corner_weights, displaced_corners, displacement_reach, height_units, tessellate, unpack_normal,
 };
@@ -254,7 +254,7 @@ fn empty(size: u64) -> wgpu::Buffer {
 }
 
 /// One channel with all mip levels, which lie in the map as a texture takes them.
-fn height_texture(map: &pnaen::mesh::HeightMap) -> wgpu::TextureView {
+fn height_texture(map: &geometry::mesh::HeightMap) -> wgpu::TextureView {
     let [width, height] = map.size;
     let descriptor = wgpu::TextureDescriptor {
         label: None,

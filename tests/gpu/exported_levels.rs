@@ -1,11 +1,11 @@
 //! Exported shaders that displace under LOD by the view: a shader of its own, or the first pass, finds the mip level at each point.
 
 use glam::Vec2;
-use pnaen::mesh::{Mesh, Shape, Topology};
-use pnaen::progress::Progress;
-use pnaen::render::Camera;
-use pnaen::shader_files::{Language, ShaderFile, shader_files};
-use pnaen::tessellate::{
+use geometry::mesh::{Mesh, Shape, Topology};
+use geometry::progress::Progress;
+use inspect::render::Camera;
+use inspect::shader_files::{Language, ShaderFile, shader_files};
+use geometry::tessellate::{
     Clip, Convention, Displacement, Edges, FACTOR_VALUE, HullFactors, Inputs, Lod, LodView, Normals, Partitioning,
     PatchFactors, Surface, Tessellated, Tessellation, Vertex, tessellate, tessellate_given,
 };

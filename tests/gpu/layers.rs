@@ -5,16 +5,16 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3, Vec4, vec2, vec3};
 use image::RgbaImage;
-use pnaen::engine::Engine;
-use pnaen::gpu::Timing;
-use pnaen::mesh::mesh_builder::{InputCorner, MeshBuilder};
-use pnaen::mesh::{Alpha, CornerDetail, Heights, Look, MapUv, Material, Mesh, Moment, Slot, Topology};
-use pnaen::progress::Progress;
-use pnaen::render::environment::Environment;
-use pnaen::render::layout::{linear, srgb};
-use pnaen::render::{Camera, Pixel, Renderer, Target};
-use pnaen::settings::{Overlays, Settings, SplitSide, ToneCurve};
-use pnaen::tessellate::{Displacement, Surface, Tessellation};
+use inspect::engine::Engine;
+use gpu::Timing;
+use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
+use geometry::mesh::{Alpha, CornerDetail, Heights, Look, MapUv, Material, Mesh, Moment, Slot, Topology};
+use geometry::progress::Progress;
+use inspect::render::environment::Environment;
+use inspect::render::layout::{linear, srgb};
+use inspect::render::{Camera, Pixel, Renderer, Target};
+use inspect::settings::{Overlays, Settings, SplitSide, ToneCurve};
+use geometry::tessellate::{Displacement, Surface, Tessellation};
 
 use crate::gpu_tests::displacement::waves;
 use crate::gpu_tests::materials::{
@@ -131,7 +131,7 @@ fn composited(sheets: &[Sheet], x: f32, under: Vec4, layers: usize) -> Vec4 {
     seen
 }
 
-pub(super) fn camera_of(engine: &Engine, mesh: &Mesh, target: &Target) -> (pnaen::render::Scene, Camera) {
+pub(super) fn camera_of(engine: &Engine, mesh: &Mesh, target: &Target) -> (inspect::render::Scene, Camera) {
     let topology = Topology::build_within(mesh, 0.0, &Progress::default()).expect("nobody cancels");
     let scene = engine.scene_of(Arc::new(mesh.clone()), Arc::new(topology), 8 << 20).expect("a small mesh");
     let framed = Camera::framing(&scene.bounds, target.viewport());
@@ -184,7 +184,7 @@ fn sheets_are_composited_by_depth_whatever_their_order_is() {
     let (sheets, single) = (overlapping(), single_sampled());
     for settings in every_way(studio()).map(|settings| Settings { background: Some(BACKGROUND), ..settings }) {
         for engine in [engine(), &single] {
-            let samples = pnaen::render::samples(&engine.gpu);
+            let samples = inspect::render::samples(&engine.gpu);
             let draw = |mesh: &Mesh| drawn_by(engine, mesh, &settings, false);
             let picture = draw(&sheets_mesh(&sheets, false));
             let what = format!("{samples} samples, {settings:?}");
@@ -378,7 +378,7 @@ fn blended_ball() -> Material {
     Material { look, ..Material::plain("ball", [0.2, 0.4, 0.9, 0.3]) }
 }
 
-fn ball_picture(scene: &mut pnaen::render::Scene, settings: &Settings) -> RgbaImage {
+fn ball_picture(scene: &mut inspect::render::Scene, settings: &Settings) -> RgbaImage {
     let target = Target::new(&engine().gpu, [160, 120]).expect("a small picture");
     let camera = Camera { azimuth: 20.0, elevation: 15.0, ..Camera::framing(&scene.bounds, target.viewport()) };
     seen(scene, &target, settings, &camera)
@@ -426,7 +426,7 @@ fn peeling_everywhere() -> Engine {
 }
 
 /// Cameras that see all of a scene, a part of it, nothing, and its middle from within.
-fn cameras(scene: &pnaen::render::Scene, target: &Target) -> [Camera; 6] {
+fn cameras(scene: &inspect::render::Scene, target: &Target) -> [Camera; 6] {
     let framed = Camera { azimuth: 20.0, elevation: 15.0, ..Camera::framing(&scene.bounds, target.viewport()) };
     let beside = |by: f32| framed.target + framed.axes()[0] * (by * scene.bounds.radius());
     [
@@ -440,7 +440,7 @@ fn cameras(scene: &pnaen::render::Scene, target: &Target) -> [Camera; 6] {
 }
 
 /// Checks that pictures are the same whether or not passes go over all of them.
-fn assert_same_everywhere(scene: &mut pnaen::render::Scene, everywhere: &Engine, settings: &Settings, what: &str) {
+fn assert_same_everywhere(scene: &mut inspect::render::Scene, everywhere: &Engine, settings: &Settings, what: &str) {
     let target = Target::new(&engine().gpu, [120, 90]).expect("a small picture");
     for camera in cameras(scene, &target) {
         let [part, whole] = [engine(), everywhere].map(|engine| {

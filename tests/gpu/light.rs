@@ -4,19 +4,19 @@ use std::sync::OnceLock;
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Vec2, Vec3, Vec4, vec3};
-use pnaen::gpu::read_buffer;
-use pnaen::load::panorama::Panorama;
-use pnaen::render::blur_levels::{ENVIRONMENT_LEVELS, level_of_roughness, prefiltered, roughness_of_level};
-use pnaen::render::cube_map::CubeMap;
-use pnaen::render::dfg::{environment_dfg, environment_sheen};
-use pnaen::render::environment::{ENVIRONMENT, Environment, LightView};
-use pnaen::render::irradiance::{irradiance, irradiance_of};
-use pnaen::render::reflectance::{
+use gpu::read_buffer;
+use load::panorama::Panorama;
+use inspect::render::blur_levels::{ENVIRONMENT_LEVELS, level_of_roughness, prefiltered, roughness_of_level};
+use inspect::render::cube_map::CubeMap;
+use inspect::render::dfg::{environment_dfg, environment_sheen};
+use inspect::render::environment::{ENVIRONMENT, Environment, LightView};
+use inspect::render::irradiance::{irradiance, irradiance_of};
+use inspect::render::reflectance::{
     AmbientLight, LookAt, coat_albedo, direct_reflection, dominant_direction, reflect_ambient, sheen_direction,
     transmitted,
 };
-use pnaen::render::studio::studio_light;
-use pnaen::render::tone::{TONE_CURVE_NEUTRAL, TONE_CURVE_NONE, tone_mapped};
+use inspect::render::studio::studio_light;
+use inspect::render::tone::{TONE_CURVE_NEUTRAL, TONE_CURVE_NONE, tone_mapped};
 use wgpu::util::DeviceExt;
 
 use crate::gpu_tests::engine;

@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use pnaen::engine::Engine;
-use pnaen::gpu::{Gpu, GpuError, Timing, best_adapter};
-use pnaen::load::{Budget, HeightSource};
-use pnaen::mesh::{Alpha, Shape};
-use pnaen::progress::Progress;
-use pnaen::render::{Camera, Scene, Target};
-use pnaen::settings::{ARENA_BYTES, Colors, NormalsAt, Overlays, Settings};
-use pnaen::tessellate::{Clip, Displacement, Lod, Normals, Surface, Tessellation};
+use inspect::engine::Engine;
+use gpu::{Gpu, GpuError, Timing, best_adapter};
+use load::{Budget, HeightSource};
+use geometry::mesh::{Alpha, Shape};
+use geometry::progress::Progress;
+use inspect::render::{Camera, Scene, Target};
+use inspect::settings::{ARENA_BYTES, Colors, NormalsAt, Overlays, Settings};
+use geometry::tessellate::{Clip, Displacement, Lod, Normals, Surface, Tessellation};
 
 use crate::gpu_tests::{engine, loaded};
 
@@ -85,7 +85,7 @@ fn heights_need_no_more_either() {
     let small = small(None);
     let mut mesh = loaded(Shape::Torus);
     let image = image::RgbaImage::from_fn(64, 64, |x, y| image::Rgba([(x * y % 251) as u8; 4]));
-    let texture = pnaen::mesh::Texture { size: [64, 64], rgba: image.into_raw() };
+    let texture = geometry::mesh::Texture { size: [64, 64], rgba: image.into_raw() };
     let own = Arc::make_mut(&mut mesh.mesh);
     own.materials.iter_mut().for_each(|material| material.texture = Some(Arc::new(texture.clone())));
     let heights = HeightSource::Materials.load(own, &[], &Budget::unlimited(), &Progress::new()).expect("images");

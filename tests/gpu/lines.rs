@@ -3,13 +3,13 @@
 use glam::Vec3;
 use image::RgbaImage;
 use pnaen::cli::compare;
-use pnaen::gpu::Timing;
-use pnaen::mesh::{Shape, TJunction};
-use pnaen::render::layout::{CRACK_COLOR, T_JUNCTION_COLOR, linear};
-use pnaen::render::{Camera, Scene, Target, crack_lines, lod_camera_lines, t_junction_lines};
-use pnaen::settings::{Overlay, Overlays, Settings};
-use pnaen::tessellate::{Edges, Partitioning, Surface, Tessellation};
-use pnaen::view::project;
+use gpu::Timing;
+use geometry::mesh::{Shape, TJunction};
+use inspect::render::layout::{CRACK_COLOR, T_JUNCTION_COLOR, linear};
+use inspect::render::{Camera, Scene, Target, crack_lines, lod_camera_lines, t_junction_lines};
+use inspect::settings::{Overlay, Overlays, Settings};
+use geometry::tessellate::{Edges, Partitioning, Surface, Tessellation};
+use geometry::view::project;
 
 use crate::gpu_tests::pictures::{SIZE, differing};
 use crate::gpu_tests::stability::seen;

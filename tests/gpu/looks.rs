@@ -5,18 +5,18 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3, vec2, vec3};
 use image::RgbaImage;
-use pnaen::mesh::mesh_builder::{InputCorner, MeshBuilder};
-use pnaen::mesh::{Material, Mesh, Shape, Texture};
-use pnaen::progress::Progress;
-use pnaen::render::layout::{linear, srgb};
-use pnaen::render::matcap::{MATCAP_REACH, picture};
-use pnaen::render::{Camera, DENSITY_SCALE, Scene, Target, curvature_scale};
-use pnaen::settings::{Colors, Matcap, NormalsAt, Overlays, Settings};
-use pnaen::tessellate::{
+use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
+use geometry::mesh::{Material, Mesh, Shape, Texture};
+use geometry::progress::Progress;
+use inspect::render::layout::{linear, srgb};
+use inspect::render::matcap::{MATCAP_REACH, picture};
+use inspect::render::{Camera, DENSITY_SCALE, Scene, Target, curvature_scale};
+use inspect::settings::{Colors, Matcap, NormalsAt, Overlays, Settings};
+use geometry::tessellate::{
     LimitSurface, Normals, Partitioning, Surface, Tessellation, linear_normal, mean_curvature, patch_position,
     patch_second_derivatives, patch_tangents,
 };
-use pnaen::view::project;
+use geometry::view::project;
 
 use crate::gpu_tests::stability::{scene_of, seen};
 use crate::gpu_tests::{engine, scene};

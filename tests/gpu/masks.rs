@@ -2,11 +2,11 @@
 
 use glam::{Vec3, vec2, vec3};
 use image::RgbaImage;
-use pnaen::mesh::mesh_builder::{InputCorner, MeshBuilder};
-use pnaen::mesh::{Alpha, Look, Material, Mesh};
-use pnaen::progress::Progress;
-use pnaen::render::layout::linear;
-use pnaen::settings::{Lighting, Settings};
+use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
+use geometry::mesh::{Alpha, Look, Material, Mesh};
+use geometry::progress::Progress;
+use inspect::render::layout::linear;
+use inspect::settings::{Lighting, Settings};
 
 use crate::gpu_tests::engine;
 use crate::gpu_tests::layers::{drawn_by, single_sampled};

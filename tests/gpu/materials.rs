@@ -4,20 +4,20 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3, Vec4, vec2, vec3};
 use image::RgbaImage;
-use pnaen::engine::Engine;
-use pnaen::gpu::Timing;
-use pnaen::load::HeightSource;
-use pnaen::load::memory_budget::Budget;
-use pnaen::mesh::mesh_builder::{InputCorner, MeshBuilder};
-use pnaen::mesh::{
+use inspect::engine::Engine;
+use gpu::Timing;
+use load::HeightSource;
+use load::memory_budget::Budget;
+use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
+use geometry::mesh::{
     Alpha, CornerDetail, HeightMap, Heights, Look, Map, MapUv, Material, Mesh, Sampling, Shape, Slot, Texture,
 };
-use pnaen::progress::Progress;
-use pnaen::render::environment::Environment;
-use pnaen::render::layout::{linear, srgb};
-use pnaen::render::{Camera, Renderer, Target};
-use pnaen::settings::{Lighting, NormalMaps, NormalsAt, Overlays, Settings, ToneCurve};
-use pnaen::tessellate::{Displacement, Surface, Tessellation};
+use geometry::progress::Progress;
+use inspect::render::environment::Environment;
+use inspect::render::layout::{linear, srgb};
+use inspect::render::{Camera, Renderer, Target};
+use inspect::settings::{Lighting, NormalMaps, NormalsAt, Overlays, Settings, ToneCurve};
+use geometry::tessellate::{Displacement, Surface, Tessellation};
 
 use crate::gpu_tests::engine;
 use crate::gpu_tests::looks::{square_of, square_picture};

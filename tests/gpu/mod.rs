@@ -50,13 +50,13 @@ mod vulkan;
 
 use std::sync::{Arc, OnceLock};
 
-use pnaen::engine::{Engine, Loaded, Preparation, load};
-use pnaen::gpu::Timing;
-use pnaen::load::Source;
-use pnaen::mesh::{Mesh, Shape, Topology};
-use pnaen::progress::Progress;
-use pnaen::render::{Camera, Scene, Target, crack_lines};
-use pnaen::settings::{ARENA_BYTES, Lighting, Settings};
+use inspect::engine::{Engine, Loaded, Preparation, load};
+use gpu::Timing;
+use load::Source;
+use geometry::mesh::{Mesh, Shape, Topology};
+use geometry::progress::Progress;
+use inspect::render::{Camera, Scene, Target, crack_lines};
+use inspect::settings::{ARENA_BYTES, Lighting, Settings};
 
 /// One engine for all tests: compiling its pipelines is what takes long.
 pub(crate) fn engine() -> &'static Engine {

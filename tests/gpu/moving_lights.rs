@@ -4,15 +4,15 @@ use std::f64::consts::FRAC_PI_6;
 
 use base64::prelude::{BASE64_STANDARD, Engine as _};
 use glam::{DQuat, Vec3, vec3};
-use pnaen::engine::{Loaded, Preparation, load};
-use pnaen::gpu::Timing;
-use pnaen::load::Source;
-use pnaen::mesh::{Light, LightKind, Moment};
-use pnaen::progress::Progress;
-use pnaen::render::Target;
-use pnaen::render::punctual::PunctualLight;
-use pnaen::settings::{ARENA_BYTES, Lighting, Settings, ToneCurve};
-use pnaen::tessellate::{Surface, Tessellation};
+use inspect::engine::{Loaded, Preparation, load};
+use gpu::Timing;
+use load::Source;
+use geometry::mesh::{Light, LightKind, Moment};
+use geometry::progress::Progress;
+use inspect::render::Target;
+use inspect::render::punctual::PunctualLight;
+use inspect::settings::{ARENA_BYTES, Lighting, Settings, ToneCurve};
+use geometry::tessellate::{Surface, Tessellation};
 use serde_json::{Value, json};
 
 use crate::gpu_tests::environment::{SIDE, assert_lit_by, before_a_square, unlit_engine};

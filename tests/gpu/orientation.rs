@@ -1,12 +1,12 @@
 //! Meshes of files that were turned and scaled: what moves them, and what belongs to them, follows.
 
 use glam::{Mat3, Vec3, vec3};
-use pnaen::engine::{Loaded, Preparation, load};
-use pnaen::gpu::Timing;
-use pnaen::load::{FileUnit, Import, LengthUnit, Source};
-use pnaen::mesh::{Moment, UpAxis};
-use pnaen::progress::Progress;
-use pnaen::settings::{ARENA_BYTES, Settings};
+use inspect::engine::{Loaded, Preparation, load};
+use gpu::Timing;
+use load::{FileUnit, Import, LengthUnit, Source};
+use geometry::mesh::{Moment, UpAxis};
+use geometry::progress::Progress;
+use inspect::settings::{ARENA_BYTES, Settings};
 
 use crate::gpu_tests::engine;
 use crate::gpu_tests::moving::{CLIPS, moving};
@@ -66,8 +66,8 @@ fn lights_and_cameras_stay_where_they_are_in_the_scene() {
     near(mesh.lights[0].place, vec3(0.01, 0.03, -0.02));
     // A camera looks along -Z of its node, which points down now.
     near(mesh.lights[0].direction, Vec3::NEG_Y);
-    assert_eq!(mesh.lights[0].kind, pnaen::mesh::LightKind::Point { range: Some(0.1) });
+    assert_eq!(mesh.lights[0].kind, geometry::mesh::LightKind::Point { range: Some(0.1) });
     near(mesh.cameras[0].eye, vec3(0.01, 0.03, -0.02));
     assert_eq!(mesh.cameras[0].axes, [Vec3::X, Vec3::NEG_Z, Vec3::Y]);
-    assert_eq!(mesh.cameras[0].projection, pnaen::mesh::Projection::Orthographic(0.04));
+    assert_eq!(mesh.cameras[0].projection, geometry::mesh::Projection::Orthographic(0.04));
 }

@@ -2,17 +2,17 @@
 
 use std::sync::Arc;
 
-use pnaen::engine::Engine;
-use pnaen::gpu::Timing;
-use pnaen::mesh::{Alpha, Look, Material, Shape};
-use pnaen::render::{Camera, Renderer, Target};
+use inspect::engine::Engine;
+use gpu::Timing;
+use geometry::mesh::{Alpha, Look, Material, Shape};
+use inspect::render::{Camera, Renderer, Target};
 
 use crate::gpu_tests::engine;
 use crate::gpu_tests::materials::{every_way, studio};
 use crate::gpu_tests::stability::scene_of;
 
 /// A ball whose materials need different parts of the shader, each in a part of its triangles.
-fn ball() -> pnaen::mesh::Mesh {
+fn ball() -> geometry::mesh::Mesh {
     let mut ball = Shape::Icosphere.build();
     let looks = [
         Look { roughness: 0.4, ..Look::default() },

@@ -3,15 +3,15 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use pnaen::engine::Loaded;
-use pnaen::gpu::layout::CurveNet;
-use pnaen::gpu::{Given, GpuError, LodShader, SurfaceShader, Timing, read_buffer};
-use pnaen::measure::Measured;
-use pnaen::mesh::{Curves, Shape};
-use pnaen::own_shader::compile;
-use pnaen::render::{Camera, Scene};
-use pnaen::settings::Settings;
-use pnaen::tessellate::{Edges, Inputs, Lod, Partitioning, Surface, Tessellated, Tessellation};
+use inspect::engine::Loaded;
+use gpu::layout::CurveNet;
+use gpu::{Given, GpuError, LodShader, SurfaceShader, Timing, read_buffer};
+use inspect::measure::Measured;
+use geometry::mesh::{Curves, Shape};
+use inspect::own_shader::compile;
+use inspect::render::{Camera, Scene};
+use inspect::settings::Settings;
+use geometry::tessellate::{Edges, Inputs, Lod, Partitioning, Surface, Tessellated, Tessellation};
 
 use super::{engine, scene};
 
@@ -111,7 +111,7 @@ fn examples_crack_exactly_where_their_surfaces_do() {
             }
             emitted(&mut scene, None, &inputs);
             let ours = measured(&mut scene).cracks;
-            let edges = |cracks: &pnaen::measure::Cracks| {
+            let edges = |cracks: &inspect::measure::Cracks| {
                 let mut edges: Vec<_> = cracks.edges.iter().map(|crack| crack.edge).collect();
                 edges.sort_unstable();
                 edges

@@ -1,17 +1,17 @@
 //! The passes, held against the CPU's reference and against themselves.
 
-use pnaen::engine::{Loaded, Measurements, Runs};
-use pnaen::gpu::{Timing, take_times};
-use pnaen::load::Source;
-use pnaen::measure::{EmittedChunk, Measured, Sizes, Visitor};
-use pnaen::mesh::{Corner, EdgeKind, Material, Mesh, Shape};
-use pnaen::render::{Camera, Scene, Target};
-use pnaen::settings::Settings;
-use pnaen::tessellate::{
+use inspect::engine::{Loaded, Measurements, Runs};
+use gpu::{Timing, take_times};
+use load::Source;
+use inspect::measure::{EmittedChunk, Measured, Sizes, Visitor};
+use geometry::mesh::{Corner, EdgeKind, Material, Mesh, Shape};
+use inspect::render::{Camera, Scene, Target};
+use inspect::settings::Settings;
+use geometry::tessellate::{
     Clip, Edges, Inputs, Lod, Normals, Partitioning, Surface, Tessellated, Tessellation, beyond_near, patch_is_culled,
     point_count, process, tessellate, totals, triangle_count, unpack_normal,
 };
-use pnaen::view::{ScreenView, ulp};
+use geometry::view::{ScreenView, ulp};
 
 use crate::gpu::chunks_an_arena;
 use crate::gpu_tests::coverage::sifting;
@@ -135,7 +135,7 @@ fn adaptive_factors_are_those_of_the_formula() {
         });
         let inputs = inputs(&loaded, &settings);
         on_gpu(&mut scene, &inputs);
-        let own = pnaen::tessellate::edge_factors(&loaded.mesh, &loaded.topology, &inputs);
+        let own = geometry::tessellate::edge_factors(&loaded.mesh, &loaded.topology, &inputs);
         assert!(
             own.iter().any(|&factor| factor > own[0] + 1.0 || factor < own[0] - 1.0),
             "{:?}",
@@ -169,7 +169,7 @@ fn factors_by_edge_length_are_those_of_the_formula_behind_the_eye_too() {
             Settings::from(Tessellation { lod: Lod::EdgeLength, edges, pixels: 6.0, ..Tessellation::default() });
         let inputs = settings.inputs(view);
         on_gpu(&mut scene, &inputs);
-        let own = pnaen::tessellate::edge_factors(&loaded.mesh, &loaded.topology, &inputs);
+        let own = geometry::tessellate::edge_factors(&loaded.mesh, &loaded.topology, &inputs);
         let device = edge_factors(&scene);
         assert_eq!(device.len(), own.len(), "{edges:?}");
         for (gpu, cpu) in device.into_iter().zip(own) {

@@ -1,13 +1,13 @@
 //! What is picked at a pixel, held against a ray cast in f64 on the CPU's tessellation.
 
 use glam::{DMat4, DVec2, DVec4, Vec3, dvec2, vec3};
-use pnaen::engine::Loaded;
-use pnaen::gpu::Timing;
-use pnaen::mesh::Shape;
-use pnaen::render::{Camera, Picked, Pixel, Scene};
-use pnaen::settings::Settings;
-use pnaen::tessellate::{Edges, Partitioning, Surface, Tessellated, Tessellation, tessellate};
-use pnaen::view::project;
+use inspect::engine::Loaded;
+use gpu::Timing;
+use geometry::mesh::Shape;
+use inspect::render::{Camera, Picked, Pixel, Scene};
+use inspect::settings::Settings;
+use geometry::tessellate::{Edges, Partitioning, Surface, Tessellated, Tessellation, tessellate};
+use geometry::view::project;
 
 use crate::gpu_tests::{engine, loaded, scene};
 

@@ -5,18 +5,18 @@ use std::path::{Path, PathBuf};
 
 use image::RgbaImage;
 use pnaen::cli::{BETWEEN_DRIVERS, Reference, compare, write_drawn};
-use pnaen::engine::{Preparation, load};
-use pnaen::load::Source;
-use pnaen::mesh::{EdgeKind, Shape, t_junctions};
-use pnaen::progress::Progress;
-use pnaen::render::layout::{CRACK_COLOR, FOLD_COLOR, NORMAL_COLOR, T_JUNCTION_COLOR, WASTE_COLOR, edge_color};
-use pnaen::render::{Camera, EXCESS_SCALE, FACTOR_SCALE, Scene, Target, t_junction_lines};
-use pnaen::settings::{ARENA_BYTES, Choice, Colors, Matcap, NormalsAt, Overlay, Overlays, Settings};
-use pnaen::tessellate::{
+use inspect::engine::{Preparation, load};
+use load::Source;
+use geometry::mesh::{EdgeKind, Shape, t_junctions};
+use geometry::progress::Progress;
+use inspect::render::layout::{CRACK_COLOR, FOLD_COLOR, NORMAL_COLOR, T_JUNCTION_COLOR, WASTE_COLOR, edge_color};
+use inspect::render::{Camera, EXCESS_SCALE, FACTOR_SCALE, Scene, Target, t_junction_lines};
+use inspect::settings::{ARENA_BYTES, Choice, Colors, Matcap, NormalsAt, Overlay, Overlays, Settings};
+use geometry::tessellate::{
     Convention, Displacement, FACTOR_ODD, FIXED_ONE, Lod, Normals, Partitioning, Surface, Tessellation, domain_side,
     triangle_count,
 };
-use pnaen::view::project;
+use geometry::view::project;
 
 use crate::gpu_tests::displacement::wavy;
 use crate::gpu_tests::passes::sheet;
@@ -246,11 +246,11 @@ fn barycentric_colours_are_red_green_and_blue_at_the_corners() {
     // One patch of a cube's front face, seen from the front: (u, v, w) is 1 at corners 0, 1 and 2.
     let (loaded, mut scene) = scene(Shape::CubeSmooth);
     let engine = engine();
-    let target = pnaen::render::Target::new(&engine.gpu, [400, 400]).expect("a small picture");
-    let camera = pnaen::render::Camera {
+    let target = inspect::render::Target::new(&engine.gpu, [400, 400]).expect("a small picture");
+    let camera = inspect::render::Camera {
         azimuth: 0.0,
         elevation: 0.0,
-        ..pnaen::render::Camera::framing(&scene.bounds, target.viewport())
+        ..inspect::render::Camera::framing(&scene.bounds, target.viewport())
     };
     let overlays = Overlays { colors: Colors::Barycentric, ..Overlays::default() };
     let settings = Settings {
@@ -258,7 +258,7 @@ fn barycentric_colours_are_red_green_and_blue_at_the_corners() {
         overlays,
         ..Settings::default()
     };
-    let mut timing = pnaen::gpu::Timing::Off;
+    let mut timing = gpu::Timing::Off;
     engine.draw(&mut scene, &target, &camera, &settings, &mut timing).expect("a draw");
     let picture = target.read(&engine.gpu).expect("a readback");
     let clip = camera.clip_from_object(target.viewport(), &scene.bounds);
@@ -270,7 +270,7 @@ fn barycentric_colours_are_red_green_and_blue_at_the_corners() {
         let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
         for (channel, corner) in corners.into_iter().enumerate() {
             let near = corner.lerp(middle, 0.1);
-            let at = pnaen::view::project(clip, target.viewport(), near).expect("in front of the eye");
+            let at = geometry::view::project(clip, target.viewport(), near).expect("in front of the eye");
             let colour = picture.get_pixel(at.x as u32, at.y as u32).0;
             let brightest = (0..3).max_by_key(|&c| colour[c]).expect("three channels");
             assert_eq!(brightest, channel, "{colour:?} at {at}");

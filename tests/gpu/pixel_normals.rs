@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 
 use image::RgbaImage;
-use pnaen::engine::{Preparation, load};
-use pnaen::gpu::{Timing, take_times};
-use pnaen::load::Source;
-use pnaen::mesh::{Moment, Shape};
-use pnaen::progress::Progress;
-use pnaen::render::{Camera, Scene, Target};
-use pnaen::settings::{ARENA_BYTES, Choice, NormalsAt, Overlays, Settings};
-use pnaen::tessellate::{Displacement, Edges, Normals, Surface, Tessellation};
+use inspect::engine::{Preparation, load};
+use gpu::{Timing, take_times};
+use load::Source;
+use geometry::mesh::{Moment, Shape};
+use geometry::progress::Progress;
+use inspect::render::{Camera, Scene, Target};
+use inspect::settings::{ARENA_BYTES, Choice, NormalsAt, Overlays, Settings};
+use geometry::tessellate::{Displacement, Edges, Normals, Surface, Tessellation};
 
 use crate::gpu_tests::displacement::wavy;
 use crate::gpu_tests::pictures::SIZE;

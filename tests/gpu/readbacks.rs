@@ -4,7 +4,7 @@ use std::path::Path;
 
 use clap::Parser;
 use pnaen::cli::{Cli, Command, render_with, tessellate_with};
-use pnaen::engine::Engine;
+use inspect::engine::Engine;
 
 use crate::gpu_tests::engine;
 

@@ -12,16 +12,16 @@ use std::sync::Arc;
 use glam::{DMat4, Quat, Vec3, dvec4};
 use image::{Rgba, RgbaImage};
 use pnaen::cli::{BETWEEN_DRIVERS, Comparison, compare};
-use pnaen::engine::{Preparation, load};
-use pnaen::gpu::Timing;
-use pnaen::load::Source;
-use pnaen::markdown::table;
-use pnaen::mesh::{Mesh, Shape, Topology};
-use pnaen::progress::Progress;
-use pnaen::render::view_projection::{ClipY, DepthRange, ViewProjection};
-use pnaen::render::{Camera, Target};
-use pnaen::settings::{ARENA_BYTES, Overlays, Settings};
-use pnaen::tessellate::{Convention, Displacement, Edges, Lod, Partitioning, Surface, Tessellation};
+use inspect::engine::{Preparation, load};
+use gpu::Timing;
+use load::Source;
+use load::markdown::table;
+use geometry::mesh::{Mesh, Shape, Topology};
+use geometry::progress::Progress;
+use inspect::render::view_projection::{ClipY, DepthRange, ViewProjection};
+use inspect::render::{Camera, Target};
+use inspect::settings::{ARENA_BYTES, Overlays, Settings};
+use geometry::tessellate::{Convention, Displacement, Edges, Lod, Partitioning, Surface, Tessellation};
 
 use crate::gpu_tests::displacement::wavy;
 use crate::gpu_tests::engine;
@@ -64,7 +64,7 @@ impl Look {
     }
 
     fn camera(&self, size: [u32; 2]) -> Camera {
-        let bounds = pnaen::mesh::Bounds::of(self.mesh.corners.iter().map(|corner| corner.position));
+        let bounds = geometry::mesh::Bounds::of(self.mesh.corners.iter().map(|corner| corner.position));
         let camera = Camera::framing(&bounds, size.map(|side| side as f32).into());
         Camera { azimuth: camera.azimuth + self.turn, ..camera }
     }
@@ -81,7 +81,7 @@ impl Look {
 }
 
 /// The camera whose picture is moved by so many px, to the right and upwards.
-fn moved(camera: &Camera, by: [f64; 2], target: &Target, bounds: &pnaen::mesh::Bounds) -> Camera {
+fn moved(camera: &Camera, by: [f64; 2], target: &Target, bounds: &geometry::mesh::Bounds) -> Camera {
     if by == [0.0; 2] {
         return *camera;
     }

@@ -3,16 +3,16 @@
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3, vec3};
-use pnaen::compare::{Comparison, Exactness, ForeignMesh, Ours, compare};
-use pnaen::gpu::Timing;
-use pnaen::mesh::mesh_builder::{InputCorner, MeshBuilder};
-use pnaen::mesh::{Material, Mesh, Shape, Topology};
-use pnaen::progress::Progress;
-use pnaen::render::Camera;
-use pnaen::settings::{ARENA_BYTES, Settings};
-use pnaen::stability::CASES;
-use pnaen::tessellate::{Clip, Convention, Inputs, Lod, Partitioning, Surface, Tessellated, Tessellation, tessellate};
-use pnaen::view::ulp;
+use lab::compare::{Comparison, Exactness, ForeignMesh, Ours, compare};
+use gpu::Timing;
+use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
+use geometry::mesh::{Material, Mesh, Shape, Topology};
+use geometry::progress::Progress;
+use inspect::render::Camera;
+use inspect::settings::{ARENA_BYTES, Settings};
+use lab::stability::CASES;
+use geometry::tessellate::{Clip, Convention, Inputs, Lod, Partitioning, Surface, Tessellated, Tessellation, tessellate};
+use geometry::view::ulp;
 
 use crate::gpu_tests::engine;
 

@@ -7,13 +7,13 @@ mod documents;
 use std::path::{Path, PathBuf};
 
 use image::RgbaImage;
-use pnaen::engine::{Loaded, Preparation, load};
-use pnaen::export::Exported;
-use pnaen::load::Source;
-use pnaen::progress::Progress;
-use pnaen::render::{Camera, Target};
-use pnaen::settings::{ARENA_BYTES, Lighting, Settings, ToneCurve};
-use pnaen::tessellate::{LodView, Surface, Tessellation, tessellate};
+use inspect::engine::{Loaded, Preparation, load};
+use inspect::export::Exported;
+use load::Source;
+use geometry::progress::Progress;
+use inspect::render::{Camera, Target};
+use inspect::settings::{ARENA_BYTES, Lighting, Settings, ToneCurve};
+use geometry::tessellate::{LodView, Surface, Tessellation, tessellate};
 
 use crate::gpu_tests::engine;
 use crate::gpu_tests::pictures::differing;

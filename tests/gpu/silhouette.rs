@@ -3,17 +3,17 @@
 use std::f32::consts::TAU;
 
 use glam::{Vec2, Vec3, vec2, vec3};
-use pnaen::engine::SilhouetteView;
-use pnaen::engine::silhouette::beside;
-use pnaen::gpu::Timing;
-use pnaen::measure::{OutlineDistance, OutlineDistances, Silhouette};
-use pnaen::mesh::mesh_builder::{InputCorner, MeshBuilder};
-use pnaen::mesh::{Material, Mesh, Shape};
-use pnaen::progress::Progress;
-use pnaen::render::{Camera, Scene, lay_over, outlines_picture};
-use pnaen::settings::{Colors, Overlays, Settings};
-use pnaen::tessellate::{Clip, Lod, Partitioning, Surface, Tessellation};
-use pnaen::view::project;
+use inspect::engine::SilhouetteView;
+use inspect::engine::silhouette::beside;
+use gpu::Timing;
+use inspect::measure::{OutlineDistance, OutlineDistances, Silhouette};
+use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
+use geometry::mesh::{Material, Mesh, Shape};
+use geometry::progress::Progress;
+use inspect::render::{Camera, Scene, lay_over, outlines_picture};
+use inspect::settings::{Colors, Overlays, Settings};
+use geometry::tessellate::{Clip, Lod, Partitioning, Surface, Tessellation};
+use geometry::view::project;
 
 use crate::gpu_tests::looks::square_of;
 use crate::gpu_tests::pictures::differing;
@@ -125,7 +125,7 @@ fn comparing_leaves_the_scene_as_it_is_and_a_kept_tessellator_finds_the_same() {
     let camera = Camera::framing(&scene.bounds, vec2(400.0, 300.0));
     let seen = camera.lod_view(vec2(400.0, 300.0), &scene.bounds);
     let tessellation = uniform(3.0);
-    let inputs = pnaen::tessellate::Inputs::new(&tessellation, seen);
+    let inputs = geometry::tessellate::Inputs::new(&tessellation, seen);
     engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
     let before = (scene.tessellator.generation(), scene.tessellator.totals());
     let first = compared(&mut scene, &tessellation, &camera);

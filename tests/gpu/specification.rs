@@ -6,12 +6,12 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use glam::{DVec3, Vec2, dvec3, vec3};
-use pnaen::engine::Engine;
-use pnaen::gpu::Timing;
-use pnaen::mesh::{Look, MapUv, Slot};
-use pnaen::render::environment::Environment;
-use pnaen::render::layout::{linear, srgb};
-use pnaen::render::{Renderer, Target};
+use inspect::engine::Engine;
+use gpu::Timing;
+use geometry::mesh::{Look, MapUv, Slot};
+use inspect::render::environment::Environment;
+use inspect::render::layout::{linear, srgb};
+use inspect::render::{Renderer, Target};
 
 use crate::gpu_tests::engine;
 use crate::gpu_tests::layers::camera_of;

@@ -4,15 +4,15 @@
 use std::sync::{Arc, OnceLock};
 
 use glam::{Vec2, Vec3};
-use pnaen::gpu::Timing;
-use pnaen::measure::{AskedFactors, Measured};
-use pnaen::mesh::mesh_builder::{InputCorner, MeshBuilder};
-use pnaen::mesh::{Material, Mesh, Shape, Topology};
-use pnaen::progress::Progress;
-use pnaen::render::{Camera, Scene, Target};
-use pnaen::settings::Settings;
-use pnaen::stability::{CASES, CaseView, Effort, Method, Quantity, Row, Verdict, lines, run};
-use pnaen::tessellate::{Clip, Edges, Lod, Normals, Partitioning, Surface, Tessellation, tessellate};
+use gpu::Timing;
+use inspect::measure::{AskedFactors, Measured};
+use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
+use geometry::mesh::{Material, Mesh, Shape, Topology};
+use geometry::progress::Progress;
+use inspect::render::{Camera, Scene, Target};
+use inspect::settings::Settings;
+use lab::stability::{CASES, CaseView, Effort, Method, Quantity, Row, Verdict, lines, run};
+use geometry::tessellate::{Clip, Edges, Lod, Normals, Partitioning, Surface, Tessellation, tessellate};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
@@ -62,7 +62,7 @@ fn rows() -> &'static [Row] {
         let all = |cpu: bool| {
             let effort = Effort { factors: vec![2.4], cameras: 1, cpu, sweep_to: 2.1, ..Effort::default() };
             let engine = (!cpu).then(engine);
-            let of = |case: &pnaen::stability::Case| run(&case.subject(), engine, &effort).expect("small meshes");
+            let of = |case: &lab::stability::Case| run(&case.subject(), engine, &effort).expect("small meshes");
             CASES.iter().flat_map(of).collect::<Vec<_>>()
         };
         std::thread::scope(|scope| {

@@ -3,8 +3,8 @@
 use std::io::Cursor;
 
 use image::{ImageFormat, RgbaImage};
-use pnaen::export::Exported;
-use pnaen::tessellate::{LodView, tessellate};
+use inspect::export::Exported;
+use geometry::tessellate::{LodView, tessellate};
 use serde_json::json;
 
 use crate::gpu_tests::scenes::{EXPORT_STEPS, picture_of, read, settings};

@@ -3,8 +3,12 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use inspect::plot::BLUE;
+use inspect::plot::FONT;
+use inspect::plot::INK;
+use inspect::plot::use_font;
 use plotters::prelude::*;
-use pnaen::internals::{App, BLUE, FONT, INK, use_font};
+use pnaen::app::App;
 
 use crate::counting::taken;
 

@@ -16,9 +16,12 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{AccessKitNode, By, NodeT, Queryable};
 use fastrand::Rng;
+use geometry::mesh::shapes::Shape;
 use image::RgbaImage;
-use pnaen::internals::{App, Persistence, Shape, Source};
-use pnaen::load::Limits;
+use load::Limits;
+use load::source::Source;
+use pnaen::app::App;
+use pnaen::app::persistence::Persistence;
 
 use driver::settle;
 use figures::Part;

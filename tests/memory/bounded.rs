@@ -4,10 +4,14 @@
 use std::path::Path;
 use std::sync::PoisonError;
 
-use pnaen::internals::{HeightSource, Loaded, Preparation, Source, load_and_prepare as load};
-use pnaen::load::Limits;
-use pnaen::load::LoadError;
-use pnaen::progress::Progress;
+use geometry::progress::Progress;
+use inspect::engine::Loaded;
+use inspect::engine::Preparation;
+use inspect::engine::load;
+use load::Limits;
+use load::LoadError;
+use load::heights::HeightSource;
+use load::source::Source;
 
 use super::counting::peak_of;
 use super::glb::{blocks, indexed, loose};

@@ -2,9 +2,9 @@
 
 use std::sync::PoisonError;
 
-use pnaen::internals::Preparation;
-use pnaen::load::Limits;
-use pnaen::progress::Progress;
+use geometry::progress::Progress;
+use inspect::engine::Preparation;
+use load::Limits;
 
 use super::bounded::assert_bounded;
 use super::counting::peak_of;

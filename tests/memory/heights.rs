@@ -3,11 +3,14 @@
 use std::io::Cursor;
 use std::sync::PoisonError;
 
+use geometry::mesh::Heights;
+use geometry::mesh::shapes::Shape;
+use geometry::progress::Progress;
 use image::{DynamicImage, ImageFormat, RgbImage};
-use pnaen::internals::{Budget, HeightError, HeightSource, Shape};
-use pnaen::load::Limits;
-use pnaen::mesh::Heights;
-use pnaen::progress::Progress;
+use load::Limits;
+use load::heights::HeightError;
+use load::heights::HeightSource;
+use load::memory_budget::Budget;
 
 use super::counting::peak_of;
 use super::{ALONE, temporary};

@@ -2,9 +2,9 @@
 
 use std::sync::PoisonError;
 
-use pnaen::internals::weld_previews;
-use pnaen::mesh::Topology;
-use pnaen::progress::Progress;
+use geometry::mesh::Topology;
+use geometry::mesh::weld_preview::weld_previews;
+use geometry::progress::Progress;
 
 use super::counting::peak_of;
 use super::glb::{blocks, indexed, loose};

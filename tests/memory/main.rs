@@ -22,9 +22,9 @@ mod webp;
 use std::io::Write;
 use std::sync::{Mutex, PoisonError};
 
-use pnaen::load::Limits;
-use pnaen::load::{LoadError, LoadedMesh, load};
-use pnaen::progress::Progress;
+use geometry::progress::Progress;
+use load::Limits;
+use load::{LoadError, LoadedMesh, load};
 use serde_json::{Value, json};
 use tempfile::TempPath;
 

@@ -5,8 +5,8 @@ use std::sync::PoisonError;
 use draco_core::{
     DataType, EncoderBuffer, EncoderOptions, GeometryAttributeType as Kind, Mesh, MeshEncoder, PointAttribute,
 };
-use pnaen::internals::Preparation;
-use pnaen::load::Limits;
+use inspect::engine::Preparation;
+use load::Limits;
 use serde_json::json;
 
 use super::bounded::loaded;

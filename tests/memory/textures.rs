@@ -4,7 +4,7 @@ use std::io::Cursor;
 use std::sync::PoisonError;
 
 use image::{GrayImage, ImageFormat, Luma};
-use pnaen::internals::Preparation;
+use inspect::engine::Preparation;
 
 use super::bounded::loaded;
 use super::webp::of_groups;
@@ -21,7 +21,7 @@ fn sizes(name: &str, bytes: &[u8], memory: usize) -> (Vec<Option<[u32; 2]>>, Vec
     println!("{name}: {took} of {allowed} bytes");
     assert!(took <= allowed, "{name}: {took} of {allowed} bytes");
     let loaded = result.expect("a model whatever its textures are");
-    let texture = |material: &pnaen::mesh::Material| material.texture.as_ref().map(|texture| texture.size);
+    let texture = |material: &geometry::mesh::Material| material.texture.as_ref().map(|texture| texture.size);
     let of_textures = |warning: &String| warning.starts_with("the texture of ");
     let warnings = loaded.warnings.iter().filter(|warning| of_textures(warning)).cloned().collect();
     (loaded.read.materials.iter().map(texture).collect(), warnings)

@@ -4,15 +4,26 @@ use std::f32::consts::TAU;
 use std::rc::Rc;
 use std::sync::Arc;
 
-use pnaen::embed::GpuError;
+use geometry::mesh::adjacency::Layout;
+use geometry::mesh::{HeightMap, Heights, Mesh, Topology};
+use geometry::progress::Progress;
+use geometry::tessellate::hull_factors::HullFactors;
+use geometry::tessellate::mesh_displacement::displaced_corners;
+use geometry::tessellate::{Clip, Displacement, Lod, LodView, Surface, Tessellation, unpack_normal};
+use gpu::embed::GpuError;
+use gpu::own_lod::Given;
+use gpu::recorder::Timing;
+use inspect::engine::Engine;
+use inspect::render::camera::Camera;
+use inspect::render::scene::Scene;
+use inspect::settings::ARENA_BYTES;
+use inspect::settings::Settings;
+use inspect::shader_files::Language;
+use inspect::shader_files::ShaderError;
+use inspect::shader_files::ShaderFile;
+use inspect::shader_files::indices_per_patch;
+use inspect::shader_files::shader_files;
 use pnaen::glam::Vec2;
-use pnaen::internals::{
-    ARENA_BYTES, Camera, Engine, Given, HullFactors, Language, Layout, Scene, Settings, ShaderError, ShaderFile,
-    Timing, displaced_corners, indices_per_patch, shader_files,
-};
-use pnaen::mesh::{HeightMap, Heights, Mesh, Topology};
-use pnaen::progress::Progress;
-use pnaen::tessellate::{Clip, Displacement, Lod, LodView, Surface, Tessellation, unpack_normal};
 use thiserror::Error;
 
 use super::agreement::{Agreement, Ours, Weights, compare};
@@ -166,7 +177,7 @@ impl<'a> Subject<'a> {
     /// The vertex buffer, laid out as the exported files say.
     fn vertices(&self) -> Vec<[f32; 8]> {
         let corners = self.mesh.corners.iter().zip(&self.topology.corner_points);
-        let vertex = |(corner, &point): (&pnaen::mesh::Corner, &u32)| {
+        let vertex = |(corner, &point): (&geometry::mesh::Corner, &u32)| {
             let ([x, y, z], [nx, ny, nz]) = (self.topology.points[point as usize].into(), corner.normal.into());
             [x, y, z, nx, ny, nz, corner.uv.x, corner.uv.y]
         };

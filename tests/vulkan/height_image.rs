@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use ash::vk;
-use pnaen::mesh::HeightMap;
+use geometry::mesh::HeightMap;
 
 use super::device::{Vulkan, VulkanError};
 use super::memory::{Buffer, Owned, Picture};

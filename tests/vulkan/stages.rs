@@ -7,8 +7,8 @@ use std::rc::Rc;
 
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
-use pnaen::internals::DisplacedCorner;
-use pnaen::mesh::HeightMap;
+use geometry::mesh::HeightMap;
+use geometry::tessellate::mesh_displacement::DisplacedCorner;
 use thiserror::Error;
 
 use super::bindings::{Bindings, CAPTURED_BINDING};

@@ -5,8 +5,8 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use pnaen::app::App;
-use pnaen::load::Source;
-use pnaen::mesh::{Moment, Shape};
+use load::Source;
+use geometry::mesh::{Moment, Shape};
 use tempfile::TempDir;
 
 use crate::window_tests::moving::{CLIPS, moving};

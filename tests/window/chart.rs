@@ -6,13 +6,13 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use pnaen::app::App;
-use pnaen::chart::{Effort, LodKind, Plan, Row, Setting};
-use pnaen::engine::Runs;
-use pnaen::load::Source;
-use pnaen::measure::AccuracyOptions;
-use pnaen::mesh::Shape;
-use pnaen::settings::Choice;
-use pnaen::tessellate::{Clip, Surface};
+use lab::chart::{Effort, LodKind, Plan, Row, Setting};
+use inspect::engine::Runs;
+use load::Source;
+use inspect::measure::AccuracyOptions;
+use geometry::mesh::Shape;
+use inspect::settings::Choice;
+use geometry::tessellate::{Clip, Surface};
 
 use crate::window_tests::{PATIENCE, choose, click, press, settle, window};
 

@@ -9,13 +9,13 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::App;
 use pnaen::commands::{Action, Change, Command, FileAction, GESTURES, Menu, Place, all};
-use pnaen::engine::Preparation;
-use pnaen::files::Limits;
-use pnaen::load::{HeightSource, Source};
-use pnaen::mesh::Shape;
-use pnaen::progress::Progress;
-use pnaen::settings::Settings;
-use pnaen::tessellate::{Edges, Lod, Surface};
+use inspect::engine::Preparation;
+use load::files::Limits;
+use load::{HeightSource, Source};
+use geometry::mesh::Shape;
+use geometry::progress::Progress;
+use inspect::settings::Settings;
+use geometry::tessellate::{Edges, Lod, Surface};
 use tempfile::TempDir;
 
 use crate::window_tests::driver::PATIENCE;
@@ -310,7 +310,7 @@ fn an_exported_mesh_is_the_one_that_the_command_writes() {
         assert!(harness.query_by_label_contains(&format!("{name} is written.")).is_some());
         assert!(harness.query_by_label_contains("aren't in the file").is_none(), "all patches are written");
         press(&mut harness, Key::Escape);
-        let written = pnaen::engine::load(&Source::File(path.clone()), &Preparation::default(), &Progress::default())
+        let written = inspect::engine::load(&Source::File(path.clone()), &Preparation::default(), &Progress::default())
             .expect("what was written");
         assert_eq!(written.mesh.triangles.len() as u64, triangles, "{name}");
         let command = folder.path().join(format!("command-{name}"));

@@ -5,11 +5,11 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::Vec3;
 use pnaen::app::App;
-use pnaen::load::Source;
-use pnaen::mesh::Shape;
-use pnaen::render::layout::CRACK_COLOR;
-use pnaen::settings::{Colors, DeviationUnit, SplitSide};
-use pnaen::tessellate::Surface;
+use load::Source;
+use geometry::mesh::Shape;
+use inspect::render::layout::CRACK_COLOR;
+use inspect::settings::{Colors, DeviationUnit, SplitSide};
+use geometry::tessellate::Surface;
 
 use crate::window_tests::{choose, click, open_list, press, settle, uniform, window};
 

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use egui_kittest::Harness;
-use pnaen::internals::App;
+use pnaen::app::App;
 
 /// How long the tests wait at most: longer than anything here takes on two slow cores beside other work.
 pub(super) const PATIENCE: Duration = Duration::from_secs(240);

@@ -8,9 +8,9 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use pnaen::app::App;
 use pnaen::cli::{BETWEEN_DRIVERS, compare};
-use pnaen::load::{HeightSource, Source};
-use pnaen::mesh::Shape;
-use pnaen::tessellate::{Displacement, Lod, Surface, Tessellation};
+use load::{HeightSource, Source};
+use geometry::mesh::Shape;
+use geometry::tessellate::{Displacement, Lod, Surface, Tessellation};
 
 use crate::window_tests::{choose, click, press, run_command, settle, uniform, vase, window};
 

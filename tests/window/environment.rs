@@ -8,10 +8,10 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use image::RgbaImage;
 use pnaen::app::App;
 use pnaen::commands::{Action, FileAction, all};
-use pnaen::load::Source;
-use pnaen::load::environment_file::tests::{open_exr_file, radiance_file};
-use pnaen::mesh::Shape;
-use pnaen::settings::Lighting;
+use load::Source;
+use load::environment_file::tests::{open_exr_file, radiance_file};
+use geometry::mesh::Shape;
+use inspect::settings::Lighting;
 use tempfile::TempDir;
 
 use crate::window_tests::editing::{assert_draws, copied};

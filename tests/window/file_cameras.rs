@@ -7,8 +7,8 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use pnaen::app::App;
 use pnaen::commands::all;
-use pnaen::load::Source;
-use pnaen::mesh::Shape;
+use load::Source;
+use geometry::mesh::Shape;
 use serde_json::{Value, json};
 
 #[path = "../documents/shot.rs"]

@@ -6,10 +6,10 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::{Vec2, vec2};
 use pnaen::app::App;
-use pnaen::load::Source;
-use pnaen::mesh::Shape;
-use pnaen::render::layout::{CRACK_COLOR, FOLD_COLOR, OUTLINE_COLOR, SIDE_COLORS};
-use pnaen::view::project;
+use load::Source;
+use geometry::mesh::Shape;
+use inspect::render::layout::{CRACK_COLOR, FOLD_COLOR, OUTLINE_COLOR, SIDE_COLORS};
+use geometry::view::project;
 use tempfile::TempDir;
 
 use crate::window_tests::{choose, click, press, resumed, settle, window};

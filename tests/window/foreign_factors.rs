@@ -4,9 +4,9 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use pnaen::app::App;
-use pnaen::load::Source;
-use pnaen::mesh::Shape;
-use pnaen::tessellate::{Convention, Lod};
+use load::Source;
+use geometry::mesh::Shape;
+use geometry::tessellate::{Convention, Lod};
 
 use crate::window_tests::editing::{assert_draws, copied};
 use crate::window_tests::{choose, click, press, run_command, settle, uniform};

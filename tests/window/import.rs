@@ -7,10 +7,10 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::{App, Persistence};
 use pnaen::cli::Cli;
-use pnaen::files::Limits;
-use pnaen::load::{FileUnit, Import, LengthUnit, NormalSource, Source};
-use pnaen::mesh::{Shape, UpAxis};
-use pnaen::render::Camera;
+use load::files::Limits;
+use load::{FileUnit, Import, LengthUnit, NormalSource, Source};
+use geometry::mesh::{Shape, UpAxis};
+use inspect::render::Camera;
 use tempfile::TempDir;
 
 use crate::window_tests::editing::{assert_draws, copied, press_with};

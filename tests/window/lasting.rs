@@ -6,10 +6,10 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::{App, Persistence};
-use pnaen::load::Source;
-use pnaen::mesh::Shape;
-use pnaen::settings::Settings;
-use pnaen::tessellate::{Displacement, Surface};
+use load::Source;
+use geometry::mesh::Shape;
+use inspect::settings::Settings;
+use geometry::tessellate::{Displacement, Surface};
 use tempfile::TempDir;
 
 use crate::window_tests::{choose, click, copy_vase, press, resumed, settle, vase};

@@ -5,12 +5,12 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::{Vec2, vec2};
 use pnaen::app::App;
-use pnaen::files::Limits;
-use pnaen::load::Source;
-use pnaen::measure::CrackedEdge;
-use pnaen::mesh::Shape;
-use pnaen::settings::{Colors, Settings};
-use pnaen::view::project;
+use load::files::Limits;
+use load::Source;
+use inspect::measure::CrackedEdge;
+use geometry::mesh::Shape;
+use inspect::settings::{Colors, Settings};
+use geometry::view::project;
 use tempfile::TempDir;
 
 use crate::gpu_tests::moving::{CLIPS, moving};

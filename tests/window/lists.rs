@@ -7,11 +7,11 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::App;
-use pnaen::load::Source;
-use pnaen::mesh::Shape;
-use pnaen::numbers::grouped;
-use pnaen::render::Leak;
-use pnaen::tessellate::Surface;
+use load::Source;
+use geometry::mesh::Shape;
+use geometry::numbers::grouped;
+use inspect::render::Leak;
+use geometry::tessellate::Surface;
 use tempfile::TempDir;
 
 use crate::window_tests::{PATIENCE, choose, click, open_list, press, settle, uniform, window};

@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use pnaen::app::App;
-use pnaen::files::Limits;
-use pnaen::load::Source;
-use pnaen::mesh::Shape;
+use load::files::Limits;
+use load::Source;
+use geometry::mesh::Shape;
 
 use crate::window_tests::{PATIENCE, STOP, click, copy_vase, press, settle, uniform, vase};
 

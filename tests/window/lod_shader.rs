@@ -7,9 +7,9 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use pnaen::app::App;
-use pnaen::load::Source;
-use pnaen::mesh::Shape;
-use pnaen::tessellate::Lod;
+use load::Source;
+use geometry::mesh::Shape;
+use geometry::tessellate::Lod;
 
 use crate::window_tests::driver::PATIENCE;
 use crate::window_tests::editing::{assert_draws, copied};

@@ -7,12 +7,12 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use pnaen::app::App;
-use pnaen::engine::Loaded;
-use pnaen::files::Limits;
-use pnaen::load::{Source, load};
-use pnaen::mesh::Shape;
-use pnaen::progress::Progress;
-use pnaen::settings::SplitSide;
+use inspect::engine::Loaded;
+use load::files::Limits;
+use load::{Source, load};
+use geometry::mesh::Shape;
+use geometry::progress::Progress;
+use inspect::settings::SplitSide;
 
 use crate::window_tests::{choose, click, press, settle, uniform, window};
 

@@ -41,11 +41,11 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::{App, Persistence};
 use pnaen::cli::Cli;
 use pnaen::commands::{Action, all};
-use pnaen::files::Limits;
-use pnaen::load::Source;
-use pnaen::mesh::Shape;
-use pnaen::settings::Colors;
-use pnaen::tessellate::{Clip, Edges, Lod, Partitioning, Surface, Tessellation};
+use load::files::Limits;
+use load::Source;
+use geometry::mesh::Shape;
+use inspect::settings::Colors;
+use geometry::tessellate::{Clip, Edges, Lod, Partitioning, Surface, Tessellation};
 use tempfile::TempDir;
 
 use driver::{PATIENCE, settle};

@@ -4,10 +4,10 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::App;
-use pnaen::load::Source;
-use pnaen::mesh::{EdgeKind, Shape};
-use pnaen::render::layout::{FACTOR_COLORS, SIDE_COLORS};
-use pnaen::tessellate::Surface;
+use load::Source;
+use geometry::mesh::{EdgeKind, Shape};
+use inspect::render::layout::{FACTOR_COLORS, SIDE_COLORS};
+use geometry::tessellate::Surface;
 
 use crate::window_tests::{choose, click, press, settle, uniform, window};
 

@@ -11,9 +11,9 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use image::RgbaImage;
 use pnaen::app::App;
-use pnaen::load::Source;
-use pnaen::mesh::Shape;
-use pnaen::settings::Colors;
+use load::Source;
+use geometry::mesh::Shape;
+use inspect::settings::Colors;
 use tempfile::TempDir;
 
 use super::{PATIENCE, STOP, choose, click, press, run_command, settle, uniform, window};

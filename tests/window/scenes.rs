@@ -4,8 +4,8 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use pnaen::app::App;
-use pnaen::load::Source;
-use pnaen::mesh::Shape;
+use load::Source;
+use geometry::mesh::Shape;
 
 use super::variants::lamp::LAMP;
 use crate::window_tests::{choose, press, uniform, window};

@@ -5,9 +5,9 @@ use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::App;
-use pnaen::load::Source;
-use pnaen::mesh::Shape;
-use pnaen::settings::Colors;
+use load::Source;
+use geometry::mesh::Shape;
+use inspect::settings::Colors;
 
 use crate::window_tests::driver::settle;
 use crate::window_tests::editing::{assert_draws, copied, press_with};

@@ -6,10 +6,10 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::App;
-use pnaen::load::Source;
-use pnaen::mesh::Shape;
-use pnaen::settings::{Colors, Matcap};
-use pnaen::tessellate::Convention;
+use load::Source;
+use geometry::mesh::Shape;
+use inspect::settings::{Colors, Matcap};
+use geometry::tessellate::Convention;
 
 use crate::window_tests::editing::{assert_draws, copied, press_with};
 use crate::window_tests::{PATIENCE, STOP, choose, click, open_list, press, run_command, settle, uniform};

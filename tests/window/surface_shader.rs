@@ -7,9 +7,9 @@ use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use pnaen::app::App;
-use pnaen::load::Source;
-use pnaen::mesh::Shape;
-use pnaen::tessellate::{Lod, Surface};
+use load::Source;
+use geometry::mesh::Shape;
+use geometry::tessellate::{Lod, Surface};
 
 use crate::window_tests::editing::{assert_draws, copied, press_with};
 use crate::window_tests::lod_shader::{until, write as write_lod};

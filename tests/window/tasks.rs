@@ -7,10 +7,10 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{AccessKitNode, By, Queryable};
 use pnaen::app::App;
-use pnaen::load::Source;
-use pnaen::markdown::table;
-use pnaen::settings::Colors;
-use pnaen::tessellate::{Lod, Partitioning, Surface};
+use load::Source;
+use load::markdown::table;
+use inspect::settings::Colors;
+use geometry::tessellate::{Lod, Partitioning, Surface};
 
 use super::layout::first_start;
 use super::saving::wait;

@@ -3,9 +3,9 @@
 use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT, Queryable};
-use pnaen::load::{HeightSource, Source};
-use pnaen::mesh::Shape;
-use pnaen::tessellate::{Displacement, Normals, Surface};
+use load::{HeightSource, Source};
+use geometry::mesh::Shape;
+use geometry::tessellate::{Displacement, Normals, Surface};
 
 use crate::window_tests::{choose, press, settle, uniform};
 

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use egui_kittest::Harness;
 use pnaen::app::App;
 use pnaen::commands::{Action, Change, all};
-use pnaen::engine::Preparation;
-use pnaen::load::{HeightSource, Source};
-use pnaen::mesh::Shape;
-use pnaen::settings::Settings;
+use inspect::engine::Preparation;
+use load::{HeightSource, Source};
+use geometry::mesh::Shape;
+use inspect::settings::Settings;
 use tempfile::TempDir;
 
 use super::variants::lamp::LAMP;

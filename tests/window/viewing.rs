@@ -5,12 +5,12 @@ use egui::{Key, Modifiers, Theme};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::App;
-use pnaen::files::Limits;
-use pnaen::load::Source;
-use pnaen::mesh::Shape;
-use pnaen::render::layout::{AXIS_COLORS, CRACK_COLOR, LOD_CAMERA_COLOR};
-use pnaen::render::{Camera, Standpoint};
-use pnaen::view::project;
+use load::files::Limits;
+use load::Source;
+use geometry::mesh::Shape;
+use inspect::render::layout::{AXIS_COLORS, CRACK_COLOR, LOD_CAMERA_COLOR};
+use inspect::render::{Camera, Standpoint};
+use geometry::view::project;
 
 use crate::window_tests::editing::{assert_draws, copied, press_with};
 use crate::window_tests::{

@@ -4,9 +4,9 @@ use std::time::{Duration, Instant};
 
 use egui_kittest::Harness;
 use pnaen::app::App;
-use pnaen::load::Source;
-use pnaen::mesh::Shape;
-use pnaen::settings::Colors;
+use load::Source;
+use geometry::mesh::Shape;
+use inspect::settings::Colors;
 
 use crate::window_tests::layout::first_start;
 use crate::window_tests::{PATIENCE, choose, settle, vase};

@@ -5,8 +5,8 @@ use std::path::Path;
 use crate::app::App;
 use crate::app::jobs::picture_job::PictureChoices;
 use crate::cli::{CopiedCommand, Turn};
-use crate::load::{HeightSource, Source};
-use crate::render::Camera;
+use inspect::render::Camera;
+use load::{HeightSource, Source};
 
 impl App {
     /// Copies the command that draws what is shown, and shows that command in a window.

@@ -6,10 +6,10 @@ use crate::app::App;
 use crate::app::dialogs::Forgetting;
 use crate::app::dialogs::typed_path::Purpose;
 use crate::commands::{Action, Availability, Command, FileAction, Preparing};
-use crate::gpu::{LodShader, SurfaceShader};
-use crate::load::{HeightSource, Import, Source};
-use crate::settings::{Colors, Declaration, Settings, options};
-use crate::tessellate::Tessellation;
+use geometry::tessellate::Tessellation;
+use gpu::{LodShader, SurfaceShader};
+use inspect::settings::{Colors, Declaration, Settings, options};
+use load::{HeightSource, Import, Source};
 
 const WHITE_PAPER: &str = "https://developer.download.nvidia.com/whitepapers/2010/PN-AEN-Triangles-Whitepaper.pdf";
 

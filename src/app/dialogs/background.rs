@@ -4,7 +4,7 @@ use egui::Theme;
 
 use crate::app::App;
 use crate::app::widgets::swatch;
-use crate::settings::{LIGHT_BACKGROUND, Settings, options};
+use inspect::settings::{LIGHT_BACKGROUND, Settings, options};
 
 impl App {
     /// The settings with the colour that is behind the mesh: the chosen one, or the theme's.

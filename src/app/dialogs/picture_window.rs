@@ -4,7 +4,7 @@ use egui::{DragValue, Grid, Ui};
 
 use crate::app::App;
 use crate::app::jobs::picture_job::PictureChoices;
-use crate::render::has_legend;
+use inspect::render::has_legend;
 
 /// The sides of pictures, in px: those that the option `--size` takes.
 const SIDES: std::ops::RangeInclusive<u32> = 1..=16384;

@@ -9,9 +9,9 @@ use super::desktop_dialog::Asked;
 use super::typed_text::{completed, path_of};
 use crate::app::App;
 use crate::app::jobs::background_job::BackgroundJob;
-use crate::load::format::known_extensions;
-use crate::load::{FileError, Source};
-use crate::names::shown_path;
+use geometry::names::shown_path;
+use load::format::known_extensions;
+use load::{FileError, Source};
 
 /// What a path is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use std::path::{MAIN_SEPARATOR, Path, is_separator};
 
-use crate::load::percent_decoded;
+use load::percent_decoded;
 
 /// The path that a text stands for.
 pub(super) fn path_of(text: &str) -> String {

@@ -3,7 +3,7 @@
 use super::notice::Notice;
 use crate::app::App;
 use crate::app::jobs::environment_job::file_name;
-use crate::progress::Stage;
+use geometry::progress::Stage;
 
 /// Something that can be stopped.
 #[derive(Clone, Copy, PartialEq)]

@@ -7,8 +7,8 @@ use super::notice::Notice;
 use super::typed_path::{PendingDialog, Purpose, name_beside};
 use crate::app::App;
 use crate::app::jobs::background_job::BackgroundJob;
-use crate::load::environment_file::ENVIRONMENT_EXTENSIONS;
-use crate::load::format::EXTENSIONS;
+use load::environment_file::ENVIRONMENT_EXTENSIONS;
+use load::format::EXTENSIONS;
 
 impl App {
     pub(in crate::app) fn open_dialog(&mut self, context: &egui::Context) {

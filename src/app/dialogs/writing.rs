@@ -4,17 +4,17 @@ use std::path::{Path, PathBuf};
 
 use super::notice::Notice;
 use super::turntable_window::TurntableWindow;
-use crate::adjacency_file::Format;
 use crate::app::App;
 use crate::app::jobs::document::arena_bytes;
 use crate::app::jobs::export_job::Export;
 use crate::app::jobs::picture_job::PictureChoices;
 use crate::app::jobs::writing_job::WritingJob;
 use crate::cli::{CliError, frame_name, write_adjacency};
-use crate::export::{Exported, ending};
-use crate::mesh::adjacency::Layout;
-use crate::names::shown_path;
-use crate::progress::Progress;
+use geometry::mesh::adjacency::Layout;
+use geometry::names::shown_path;
+use geometry::progress::Progress;
+use inspect::adjacency_file::Format;
+use inspect::export::{Exported, ending};
 
 impl App {
     /// Whether a file is being written, other than the chart's.

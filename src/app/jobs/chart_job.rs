@@ -8,14 +8,14 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use super::background_job::{caught, spawn};
-use crate::chart::{Bench, Effort, Probe, Row, Setting, Subject};
-use crate::engine::{Engine, Loaded};
-use crate::gpu::{Gpu, GpuError};
-use crate::mesh::Moment;
-use crate::progress::Progress;
-use crate::render::{Camera, Target};
-use crate::settings::{ARENA_BYTES, Settings};
-use crate::truth::Truth;
+use geometry::mesh::Moment;
+use geometry::progress::Progress;
+use gpu::{Gpu, GpuError};
+use inspect::engine::{Engine, Loaded};
+use inspect::render::{Camera, Target};
+use inspect::settings::{ARENA_BYTES, Settings};
+use inspect::truth::Truth;
+use lab::chart::{Bench, Effort, Probe, Row, Setting, Subject};
 
 /// What all points of a chart have in common: mesh, pose, reference surface, view and settings that aren't tried.
 #[derive(Clone, Copy, Debug, PartialEq)]

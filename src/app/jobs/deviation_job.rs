@@ -2,10 +2,10 @@
 
 use super::measure_job::Trouble;
 use super::walk::{Parts, Walk};
-use crate::gpu::{Gpu, GpuError};
-use crate::measure::{DeviationField, DeviationMeasurement, DeviationTarget, WorstPoint};
-use crate::render::{DEVIATION_PX_SCALE, Scene, deviation_scale};
-use crate::tessellate::{PosedMesh, Surface};
+use geometry::tessellate::{PosedMesh, Surface};
+use gpu::{Gpu, GpuError};
+use inspect::measure::{DeviationField, DeviationMeasurement, DeviationTarget, WorstPoint};
+use inspect::render::{DEVIATION_PX_SCALE, Scene, deviation_scale};
 
 /// The measurement of the distance to the reference surface, and its last result.
 #[derive(Default)]

@@ -6,16 +6,16 @@ use std::sync::Arc;
 use super::background_job::BackgroundJob;
 use super::mesh_checks::Checks;
 use super::stand_in::StandIn;
-use crate::engine::{self, Engine, Loaded, Preparation};
-use crate::files::FileError;
-use crate::gpu::GpuError;
-use crate::load::{LoadError, Source};
-use crate::mesh::{EdgeCounts, Moment};
-use crate::progress::{Progress, Stage};
-use crate::render::Scene;
-use crate::settings::{ARENA_BYTES, Settings, SplitSide};
-use crate::tessellate::Deformed;
-use crate::truth::Truth;
+use geometry::mesh::{EdgeCounts, Moment};
+use geometry::progress::{Progress, Stage};
+use geometry::tessellate::Deformed;
+use gpu::GpuError;
+use inspect::engine::{self, Engine, Loaded, Preparation};
+use inspect::render::Scene;
+use inspect::settings::{ARENA_BYTES, Settings, SplitSide};
+use inspect::truth::Truth;
+use load::files::FileError;
+use load::{LoadError, Source};
 
 /// The mesh that is open.
 pub(crate) struct Document {
@@ -37,7 +37,7 @@ pub(crate) struct Document {
     pub stand_in: StandIn,
     /// The bounding diagonal at rest, in object units.
     pub diagonal: f32,
-    /// See [`Mesh::has_texture_coordinates`](crate::mesh::Mesh::has_texture_coordinates).
+    /// See [`Mesh::has_texture_coordinates`](geometry::mesh::Mesh::has_texture_coordinates).
     pub has_texture_coordinates: bool,
     /// The exact surface, if the mesh is a shape that has one.
     pub exact: Option<Arc<Truth>>,

@@ -6,11 +6,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::background_job::BackgroundJob;
 use crate::app::App;
-use crate::load::environment_file::{EnvironmentError, EnvironmentFile};
-use crate::names::shown_path;
-use crate::progress::Progress;
-use crate::render::environment::Environment;
-use crate::settings::Lighting;
+use geometry::names::shown_path;
+use geometry::progress::Progress;
+use inspect::render::environment::Environment;
+use inspect::settings::Lighting;
+use load::environment_file::{EnvironmentError, EnvironmentFile};
 
 /// A file of light that is open.
 pub(crate) struct OpenEnvironment {

@@ -1,7 +1,7 @@
 //! Explains the selected patch while the window goes on.
 
 use super::background_job::{BackgroundJob, Stopped};
-use crate::tessellate::{ExplainedPatch, Inputs, PatchFactors, PosedMesh, explain_patch};
+use geometry::tessellate::{ExplainedPatch, Inputs, PatchFactors, PosedMesh, explain_patch};
 
 /// A patch as it was emitted.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use crate::engine::{Engine, Loaded};
-use crate::export::Exported;
-use crate::gpu::{GpuError, Timing};
-use crate::measure::EmittedChunk;
-use crate::mesh::Moment;
-use crate::progress::Progress;
-use crate::render::Scene;
-use crate::tessellate::{Inputs, Tessellated};
+use geometry::mesh::Moment;
+use geometry::progress::Progress;
+use geometry::tessellate::{Inputs, Tessellated};
+use gpu::{GpuError, Timing};
+use inspect::engine::{Engine, Loaded};
+use inspect::export::Exported;
+use inspect::measure::EmittedChunk;
+use inspect::render::Scene;
 
 /// How much of the progress is for reading the mesh back from the device; the rest is for writing the file.
 const READING: f32 = 0.8;

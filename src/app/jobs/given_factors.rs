@@ -7,13 +7,13 @@ use super::background_job::BackgroundJob;
 use super::own_shader_job::{OpenShader, new_generation};
 use crate::app::App;
 use crate::cli::read_factors;
-use crate::engine::Loaded;
-use crate::gpu::{Given, GpuError, LodShader};
-use crate::measure::Agreement;
-use crate::mesh::Topology;
-use crate::names::shown_path;
-use crate::settings::SplitSide;
-use crate::tessellate::{Convention, HullFactors, Lod, Partitioning};
+use geometry::mesh::Topology;
+use geometry::names::shown_path;
+use geometry::tessellate::{Convention, HullFactors, Lod, Partitioning};
+use gpu::{Given, GpuError, LodShader};
+use inspect::engine::Loaded;
+use inspect::measure::Agreement;
+use inspect::settings::SplitSide;
 
 /// Factors that a file has for each patch of the mesh that is open.
 pub(crate) struct GivenFactors {

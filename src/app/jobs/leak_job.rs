@@ -4,10 +4,10 @@
 use super::background_job::BackgroundJob;
 use super::measure_job::Trouble;
 use crate::app::App;
-use crate::engine::Engine;
-use crate::gpu::Readback;
-use crate::render::{Leak, LeakCount, Scene, leaks_in};
-use crate::view::ScreenView;
+use geometry::view::ScreenView;
+use gpu::Readback;
+use inspect::engine::Engine;
+use inspect::render::{Leak, LeakCount, Scene, leaks_in};
 
 /// The leaks of what is shown, once counted.
 #[derive(Default)]

@@ -9,12 +9,12 @@ use super::measure_job::MeasureJob;
 use super::silhouette_job::SilhouetteJob;
 use crate::app::App;
 use crate::cli::OpeningOptions;
-use crate::engine::{Loaded, Preparation};
-use crate::load::environment_file::is_environment;
-use crate::load::format::Format;
-use crate::load::{Import, Source};
-use crate::render::Camera;
-use crate::settings::Settings;
+use inspect::engine::{Loaded, Preparation};
+use inspect::render::Camera;
+use inspect::settings::Settings;
+use load::environment_file::is_environment;
+use load::format::Format;
+use load::{Import, Source};
 
 impl App {
     /// Starts to load a mesh on a thread of its own; a load that is under way is cancelled. If it is the mesh that is open,

@@ -6,10 +6,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::background_job::BackgroundJob;
 use crate::app::App;
-use crate::load::load_matcap;
-use crate::mesh::Texture;
-use crate::names::shown_path;
-use crate::settings::Colors;
+use geometry::mesh::Texture;
+use geometry::names::shown_path;
+use inspect::settings::Colors;
+use load::load_matcap;
 
 /// A picture of a lit sphere that was opened.
 pub(crate) struct ChosenMatcap {

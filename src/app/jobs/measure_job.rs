@@ -5,12 +5,12 @@ use thiserror::Error;
 
 use super::background_job::Stopped;
 use super::walk::{Parts, Walk};
-use crate::engine::measurements::closed_extent;
-use crate::gpu::{Given, Gpu, GpuError, Readback};
-use crate::measure::{Agreement, AskedFactors, CrackedEdge, Cracks, Measured, Sizes, Survey};
-use crate::render::{Camera, Scene};
-use crate::tessellate::{Convention, Edges, HullFactors, Inputs, PatchFactors, PosedMesh, is_beyond_near};
-use crate::view::ScreenView;
+use geometry::tessellate::{Convention, Edges, HullFactors, Inputs, PatchFactors, PosedMesh, is_beyond_near};
+use geometry::view::ScreenView;
+use gpu::{Given, Gpu, GpuError, Readback};
+use inspect::engine::measurements::closed_extent;
+use inspect::measure::{Agreement, AskedFactors, CrackedEdge, Cracks, Measured, Sizes, Survey};
+use inspect::render::{Camera, Scene};
 
 /// Why a measurement ended without a result.
 #[derive(Debug, Error)]

@@ -3,9 +3,9 @@
 use std::sync::{Arc, OnceLock};
 
 use super::background_job::{BackgroundJob, Stopped};
-use crate::engine::Loaded;
-use crate::mesh::{NormalFaults, TJunction, WeldPreview, t_junctions, weld_previews};
-use crate::progress::Progress;
+use geometry::mesh::{NormalFaults, TJunction, WeldPreview, t_junctions, weld_previews};
+use geometry::progress::Progress;
+use inspect::engine::Loaded;
 
 /// The checks of a mesh and their results. Dropping them stops them.
 #[derive(Default)]

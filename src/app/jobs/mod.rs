@@ -21,7 +21,7 @@ pub(super) mod truth;
 pub(super) mod walk;
 pub(super) mod writing_job;
 
-use crate::files::Limits;
+use load::files::Limits;
 
 use deviation_job::DeviationJob;
 use document::Load;

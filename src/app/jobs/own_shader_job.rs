@@ -10,13 +10,13 @@ use std::time::{Duration, SystemTime};
 use super::background_job::{caught, spawn};
 use super::document::Document;
 use crate::app::App;
-use crate::engine::Engine;
-use crate::gpu::{GpuError, LodShader, OwnReport, OwnShader, SurfaceShader, Tessellator};
-use crate::names::shown_path;
-use crate::own_shader::read_own_shader;
-use crate::progress::Progress;
-use crate::settings::Settings;
-use crate::tessellate::{Lod, Partitioning, Surface, Tessellation};
+use geometry::names::shown_path;
+use geometry::progress::Progress;
+use geometry::tessellate::{Lod, Partitioning, Surface, Tessellation};
+use gpu::{GpuError, LodShader, OwnReport, OwnShader, SurfaceShader, Tessellator};
+use inspect::engine::Engine;
+use inspect::own_shader::read_own_shader;
+use inspect::settings::Settings;
 
 /// A file whose functions take the place of a setting.
 pub(crate) trait Replacing: OwnShader {

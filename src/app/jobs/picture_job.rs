@@ -6,11 +6,11 @@ use super::document::arena_bytes;
 use super::matcap::ChosenMatcap;
 use crate::app::App;
 use crate::cli::{CliError, ReferenceSurface, Shot, ShotView, StatsWanted, Subject, Turn, write_factors};
-use crate::engine::Engine;
-use crate::gpu::{Gpu, GpuError};
-use crate::progress::Progress;
-use crate::render::Scene;
-use crate::settings::{ARENA_BYTES, Colors, Overlays, Settings, SplitSide};
+use geometry::progress::Progress;
+use gpu::{Gpu, GpuError};
+use inspect::engine::Engine;
+use inspect::render::Scene;
+use inspect::settings::{ARENA_BYTES, Colors, Overlays, Settings, SplitSide};
 
 /// How a picture is saved.
 #[derive(Clone, Copy, Debug, PartialEq)]

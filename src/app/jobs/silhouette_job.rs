@@ -7,14 +7,14 @@ use image::RgbaImage;
 use super::background_job::BackgroundJob;
 use super::measure_job::Trouble;
 use crate::app::App;
-use crate::engine::silhouette::beside;
-use crate::engine::{Engine, SilhouetteDrawing, SilhouetteView};
-use crate::gpu::{GpuError, Readback, Tessellator};
-use crate::measure::{SampleGrid, Silhouette};
-use crate::render::{Scene, lay_over, outlines_picture};
-use crate::settings::Colors;
-use crate::tessellate::Tessellation;
-use crate::view::ScreenView;
+use geometry::tessellate::Tessellation;
+use geometry::view::ScreenView;
+use gpu::{GpuError, Readback, Tessellator};
+use inspect::engine::silhouette::beside;
+use inspect::engine::{Engine, SilhouetteDrawing, SilhouetteView};
+use inspect::measure::{SampleGrid, Silhouette};
+use inspect::render::{Scene, lay_over, outlines_picture};
+use inspect::settings::Colors;
 
 /// The comparison of outlines, and its last result.
 #[derive(Default)]

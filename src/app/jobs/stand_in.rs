@@ -4,10 +4,10 @@
 use std::sync::Arc;
 
 use super::background_job::BackgroundJob;
-use crate::engine::{Engine, Loaded};
-use crate::gpu::GpuError;
-use crate::mesh::{Material, Mesh, Topology};
-use crate::render::Scene;
+use geometry::mesh::{Material, Mesh, Topology};
+use gpu::GpuError;
+use inspect::engine::{Engine, Loaded};
+use inspect::render::Scene;
 
 /// Memory for its output, in bytes for each triangle: three indices, and vertices of which each triangle has its own at worst.
 const BYTES_A_TRIANGLE: u64 = 12 + 3 * 32;
@@ -103,7 +103,7 @@ fn simplified(mesh: &Mesh, topology: &Topology, triangles: usize) -> Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{Corner, CornerDetail, Shape};
+    use geometry::mesh::{Corner, CornerDetail, Shape};
 
     /// A torus of many quads.
     fn large() -> Mesh {

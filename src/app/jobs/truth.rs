@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use super::background_job::BackgroundJob;
 use crate::app::App;
-use crate::files::Limits;
-use crate::load::{Import, LoadError, Source};
-use crate::progress::Progress;
-use crate::settings::Colors;
-use crate::tessellate::Displacement;
-use crate::truth::Truth;
+use geometry::progress::Progress;
+use geometry::tessellate::Displacement;
+use inspect::settings::Colors;
+use inspect::truth::Truth;
+use load::files::Limits;
+use load::{Import, LoadError, Source};
 
 /// A reference surface that was chosen for the mesh.
 pub(crate) struct ChosenTruth {

@@ -4,11 +4,11 @@
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, TrySendError, channel, sync_channel};
 
 use super::background_job::{Stopped, caught, spawn};
-use crate::gpu::{Gpu, GpuError, Readback, Recorder, Timing, vertices_of};
-use crate::measure::{EmittedChunk, Visitor};
-use crate::progress::Progress;
-use crate::render::Scene;
-use crate::tessellate::Vertex;
+use geometry::progress::Progress;
+use geometry::tessellate::Vertex;
+use gpu::{Gpu, GpuError, Readback, Recorder, Timing, vertices_of};
+use inspect::measure::{EmittedChunk, Visitor};
+use inspect::render::Scene;
 
 /// How many parts may wait for the thread: each is as large as the arena.
 const WAITING: usize = 1;

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use super::background_job::{BackgroundJob, Stopped};
-use crate::names::shown_path;
-use crate::progress::Progress;
+use geometry::names::shown_path;
+use geometry::progress::Progress;
 
 /// A file under way; dropping this cancels it, and then nothing is written.
 pub(crate) struct WritingJob {

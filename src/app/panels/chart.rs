@@ -6,9 +6,9 @@ use crate::app::App;
 use crate::app::dialogs::typed_path::Purpose;
 use crate::app::jobs::background_job::BackgroundJob;
 use crate::app::jobs::chart_job::{ChartBasis, ChartJob, Charted, Job};
-use crate::chart::{Cost, Effort, Plan, Probe, Row, SaveError, Setting, coarse_first, save, whole};
-use crate::settings::Settings;
-use crate::tessellate::Tessellation;
+use geometry::tessellate::Tessellation;
+use inspect::settings::Settings;
+use lab::chart::{Cost, Effort, Plan, Probe, Row, SaveError, Setting, coarse_first, save, whole};
 
 /// The state of the chart panel.
 #[derive(Default)]

@@ -4,10 +4,8 @@ use egui::{Color32, Pos2, Stroke, vec2};
 use egui_plot::{GridInput, GridMark, Plot, PlotPoint, PlotTransform};
 
 use crate::app::jobs::chart_job::Charted;
-use crate::chart::{
-    Axis, Cost, Fill, Method, MethodStyle, RADIUS, Row, Setting, Shape, Tick, method_styles, tick_text,
-};
-use crate::plot::INK;
+use inspect::plot::INK;
+use lab::chart::{Axis, Cost, Fill, Method, MethodStyle, RADIUS, Row, Setting, Shape, Tick, method_styles, tick_text};
 
 /// What is drawn.
 pub(super) struct Diagram<'a> {

@@ -8,9 +8,9 @@ use crate::app::jobs::chart_job::Charted;
 use crate::app::painting::panel_frame;
 use crate::app::text::{grouped, short};
 use crate::app::widgets::{dense, list, switch_button, text_width, unclicked};
-use crate::chart::{Cost, LodKind, MethodStyle, Plan, Probe, Row, Setting, dash, method_styles};
-use crate::settings::Choice;
-use crate::tessellate::Surface;
+use geometry::tessellate::Surface;
+use inspect::settings::Choice;
+use lab::chart::{Cost, LodKind, MethodStyle, Plan, Probe, Row, Setting, dash, method_styles};
 
 /// Heights of the panel, and the width of the list in it, in points.
 const HEIGHT: f32 = 320.0;

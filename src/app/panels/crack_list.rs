@@ -7,14 +7,14 @@ use crate::app::App;
 use crate::app::text::{grouped, short};
 use crate::app::widgets::{columns, fact, list, number, swatch};
 use crate::commands::{Action, with_key};
-use crate::gates::{EdgeSpot, Spot};
-use crate::measure::{CrackedEdge, EdgeSide, Measured};
-use crate::mesh::{EdgeKind, TJunction, Topology};
-use crate::render::LineSegment;
-use crate::render::layout::{CRACK_COLOR, OUTLINE_COLOR, SIDE_COLORS, T_JUNCTION_COLOR};
-use crate::settings::SplitSide;
-use crate::view::ulp;
+use geometry::mesh::{EdgeKind, TJunction, Topology};
+use geometry::view::ulp;
 use glam::Vec3;
+use inspect::gates::{EdgeSpot, Spot};
+use inspect::measure::{CrackedEdge, EdgeSide, Measured};
+use inspect::render::LineSegment;
+use inspect::render::layout::{CRACK_COLOR, OUTLINE_COLOR, SIDE_COLORS, T_JUNCTION_COLOR};
+use inspect::settings::SplitSide;
 
 /// Half the widths of the selected edge's outline, of its first side, and of the others, in px.
 const ALONE: [f32; 3] = [2.5, 1.75, 0.75];

@@ -2,7 +2,7 @@
 
 use crate::app::App;
 use crate::app::text::short;
-use crate::mesh::crease_band::WIDEST;
+use geometry::mesh::crease_band::WIDEST;
 
 impl App {
     /// Shows the width in percent of the bounding diagonal. A new width loads the mesh again once it is no longer dragged.

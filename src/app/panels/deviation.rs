@@ -9,13 +9,13 @@ use crate::app::panels::option_rows::option_row;
 use crate::app::sections::Section;
 use crate::app::text::{grouped, short, shortened};
 use crate::app::widgets::{fact, number, swatch};
-use crate::gates::Spot;
-use crate::measure::{DeviationTarget, MOST_TRIANGLES};
-use crate::render::layout::WORST_COLOR;
-use crate::render::{DEVIATION_PX_SCALE, Distances, LineSegment, Scale, deviation_scale, worst_lines};
-use crate::settings::{Choice, Colors, DeviationUnit, SplitSide, options};
-use crate::tessellate::Inputs;
-use crate::view::project;
+use geometry::tessellate::Inputs;
+use geometry::view::project;
+use inspect::gates::Spot;
+use inspect::measure::{DeviationTarget, MOST_TRIANGLES};
+use inspect::render::layout::WORST_COLOR;
+use inspect::render::{DEVIATION_PX_SCALE, Distances, LineSegment, Scale, deviation_scale, worst_lines};
+use inspect::settings::{Choice, Colors, DeviationUnit, SplitSide, options};
 
 impl App {
     fn deviating(&self, half: SplitSide) -> &DeviationJob {

@@ -7,10 +7,10 @@ use crate::app::App;
 use crate::app::dialogs::typed_path::Purpose;
 use crate::app::text::short;
 use crate::commands::{Action, HEIGHT_IMAGE, key_name};
-use crate::load::environment_file::is_environment;
-use crate::load::{HeightSource, Source};
-use crate::settings::options;
-use crate::tessellate::Displacement;
+use geometry::tessellate::Displacement;
+use inspect::settings::options;
+use load::environment_file::is_environment;
+use load::{HeightSource, Source};
 
 /// Whether a path names an image rather than a mesh.
 fn is_image(path: &Path) -> bool {

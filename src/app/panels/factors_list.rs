@@ -7,8 +7,8 @@ use crate::app::App;
 use crate::app::sections::Section;
 use crate::app::text::{counted, grouped, short};
 use crate::app::widgets::{columns, fact, list};
-use crate::measure::{Agreement, Disagreement};
-use crate::settings::Choice;
+use inspect::measure::{Agreement, Disagreement};
+use inspect::settings::Choice;
 
 impl App {
     /// The section about a file of factors, if one is open.

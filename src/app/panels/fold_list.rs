@@ -5,10 +5,10 @@ use egui::RichText;
 use crate::app::App;
 use crate::app::text::{grouped, short};
 use crate::app::widgets::{columns, list, swatch};
-use crate::gates::Spot;
-use crate::measure::FoldedPatch;
-use crate::render::layout::FOLD_COLOR;
-use crate::settings::SplitSide;
+use inspect::gates::Spot;
+use inspect::measure::FoldedPatch;
+use inspect::render::layout::FOLD_COLOR;
+use inspect::settings::SplitSide;
 
 impl App {
     /// The list of patches with folds, the largest area first. A click frames one.

@@ -4,8 +4,8 @@ use super::option_rows::{option_hover, option_row, option_row_with};
 use crate::app::App;
 use crate::app::widgets::fixed;
 use crate::commands::MADE_IN_CODE;
-use crate::load::NormalSource;
-use crate::settings::options;
+use inspect::settings::options;
+use load::NormalSource;
 
 impl App {
     /// The normals of the mesh, and the crease angle if any are made.

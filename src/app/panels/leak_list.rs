@@ -5,7 +5,7 @@ use egui::RichText;
 use crate::app::App;
 use crate::app::text::grouped;
 use crate::app::widgets::{columns, list};
-use crate::render::Leak;
+use inspect::render::Leak;
 
 impl App {
     /// The list of places where one can see into a closed mesh, the largest first. A click frames the cracked edge there.

@@ -4,7 +4,7 @@ use super::option_rows::{option_hover, option_row};
 use crate::app::App;
 use crate::app::jobs::environment_job::file_name;
 use crate::commands::ENVIRONMENT;
-use crate::settings::{Lighting, options};
+use inspect::settings::{Lighting, options};
 
 impl App {
     /// Rows are there only where their options have an effect.

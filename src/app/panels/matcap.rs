@@ -5,7 +5,7 @@ use crate::app::App;
 use crate::app::dialogs::typed_path::Purpose;
 use crate::app::jobs::matcap::ChosenMatcap;
 use crate::commands::MATCAP_IMAGE;
-use crate::settings::{Choice, Matcap, options};
+use inspect::settings::{Choice, Matcap, options};
 
 impl App {
     /// Asks for a picture of a lit sphere.

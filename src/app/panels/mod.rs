@@ -27,7 +27,7 @@ mod status_line;
 mod toolbar;
 mod verdict;
 
-use crate::tessellate::Displacement;
+use geometry::tessellate::Displacement;
 
 use crate::app::sections::OpenSections;
 use chart::Chart;

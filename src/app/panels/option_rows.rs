@@ -2,7 +2,7 @@
 
 use crate::app::text::typed_number;
 use crate::app::widgets::{chooser, fixed, text_width};
-use crate::settings::{Declaration, Kind, Range, Settings, Value};
+use inspect::settings::{Declaration, Kind, Range, Settings, Value};
 
 /// What sliders of light reach, in EV. More can be typed, up to the option's own range, but over all of that a step of the slider
 /// would be too coarse.

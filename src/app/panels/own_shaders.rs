@@ -5,7 +5,7 @@ use egui::RichText;
 use crate::app::App;
 use crate::app::dialogs::typed_path::Purpose;
 use crate::app::jobs::own_shader_job::Replacing;
-use crate::gpu::{LodShader, SurfaceShader};
+use gpu::{LodShader, SurfaceShader};
 
 /// What the rows of a file say.
 struct Texts {

@@ -6,7 +6,7 @@ use crate::app::App;
 use crate::app::sections::Section;
 use crate::app::text::counted;
 use crate::app::widgets::list;
-use crate::names::{shortened, shown};
+use geometry::names::{shortened, shown};
 
 /// The greatest length of a name in the list, in characters.
 const LONGEST: usize = 40;

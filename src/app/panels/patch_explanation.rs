@@ -5,8 +5,8 @@ use egui::Ui;
 
 use crate::app::patch_names::ends_text;
 use crate::app::widgets::{dense, title};
-use crate::mesh::Topology;
-use crate::tessellate::{
+use geometry::mesh::Topology;
+use geometry::tessellate::{
     Convention, DecidedBy, ExplainedEdge, ExplainedPatch, PatchFactors, domain_side, inside_cut, is_enough,
     triangle_count,
 };

@@ -13,15 +13,15 @@ use crate::app::patch_names::{LETTERS, ends_text, letter, mistake};
 use crate::app::text::{factor, short};
 use crate::app::widgets::{SWATCH, dense, swatch, title};
 use crate::commands::{Action, with_key};
-use crate::measure::EdgeSide;
-use crate::mesh::{Mesh, Topology, adjacency};
-use crate::render::PickedTriangle;
-use crate::render::layout::FACTOR_COLORS;
-use crate::tessellate::factors::{patch_has_rows, patch_is_culled, row_base, row_count, row_flip};
-use crate::tessellate::{
+use geometry::mesh::{Mesh, Topology, adjacency};
+use geometry::tessellate::factors::{patch_has_rows, patch_is_culled, row_base, row_count, row_flip};
+use geometry::tessellate::{
     Convention, FACING_AWAY, FACTOR_VALUE, FIXED_ONE, Lod, OUT_OF_VIEW, PatchFactors, PosedMesh, Vertex, domain_plan,
     domain_side, domain_triangle, factor_side, inside_cut, point_count, segments, triangle_count, weight_corner,
 };
+use inspect::measure::EdgeSide;
+use inspect::render::PickedTriangle;
+use inspect::render::layout::FACTOR_COLORS;
 
 /// What was clicked in the section.
 enum Wish {

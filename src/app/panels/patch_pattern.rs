@@ -3,10 +3,10 @@
 use egui::{Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, vec2};
 
 use crate::app::widgets::rgb;
-use crate::render::layout::FACTOR_COLORS;
-use crate::tessellate::{
+use geometry::tessellate::{
     FIXED_ONE, PatchFactors, domain_plan, domain_point, domain_triangle, point_count, triangle_count,
 };
+use inspect::render::layout::FACTOR_COLORS;
 
 /// Width and height of the plot, in points.
 const SIZE: Vec2 = vec2(250.0, 244.0);

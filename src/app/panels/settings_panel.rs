@@ -6,8 +6,8 @@ use crate::app::sections::{Section, scrolling_column};
 use crate::app::text::short;
 use crate::app::widgets::{LABEL_WIDTH, chooser, fixed};
 use crate::commands::{Action, BACKS_ARE_SEEN, Change, key_name, with_key};
-use crate::settings::{Choice, Colors, Control, Declaration, Kind, Overlay, Overlays, Range, Settings, options};
-use crate::tessellate::{Displacement, Lod, Tessellation};
+use geometry::tessellate::{Displacement, Lod, Tessellation};
+use inspect::settings::{Choice, Colors, Control, Declaration, Kind, Overlay, Overlays, Range, Settings, options};
 
 /// The overlays that have a button in the toolbar, and so no row here.
 pub(super) const ON_TOOLBAR: [Overlay; 2] = [Overlay::Wireframe, Overlay::Cracks];

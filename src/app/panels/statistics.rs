@@ -5,10 +5,10 @@ use crate::app::jobs::measure_job::Results;
 use crate::app::sections::{Section, scrolling_column};
 use crate::app::text::{grouped, part, short};
 use crate::app::widgets::{fact, number, swatch};
-use crate::measure::{Cracks, Culled, SeamTurns};
-use crate::mesh::EdgeKind;
-use crate::render::layout::{CRACK_COLOR, FOLD_COLOR, WASTE_COLOR, edge_color};
-use crate::view::ulp;
+use geometry::mesh::EdgeKind;
+use geometry::view::ulp;
+use inspect::measure::{Cracks, Culled, SeamTurns};
+use inspect::render::layout::{CRACK_COLOR, FOLD_COLOR, WASTE_COLOR, edge_color};
 
 /// Name and explanation of each kind of edge.
 pub(in crate::app) const EDGE_KINDS: [(EdgeKind, &str, &str); 5] = [

@@ -6,8 +6,8 @@ use crate::app::App;
 use crate::app::text::{counted, grouped, mebibytes, short};
 use crate::app::widgets::{legible, rgb, status, text_width};
 use crate::commands::{Action, key_name};
-use crate::gpu::DRAWING;
-use crate::render::layout::CRACK_COLOR;
+use gpu::DRAWING;
+use inspect::render::layout::CRACK_COLOR;
 
 /// The triangles and vertices that a patch has at most: rings whose factors are all 64.
 const MOST_TRIANGLES: u64 = 6_144;

@@ -4,7 +4,7 @@ use super::settings_panel::{ON_TOOLBAR, colors_hover, overlay_hover};
 use crate::app::App;
 use crate::app::widgets::{switch_button, text_width};
 use crate::commands::{Action, Availability, CameraAction, Command, FileAction, NO_TEXTURE_COORDINATES, all, with_key};
-use crate::settings::{Choice, Colors, Control};
+use inspect::settings::{Choice, Colors, Control};
 
 /// The width of the list of colours, in points: that of its longest entry.
 const COLORS_WIDTH: f32 = 124.0;

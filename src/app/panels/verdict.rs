@@ -8,9 +8,9 @@ use crate::app::jobs::measure_job::Results;
 use crate::app::sections::Section;
 use crate::app::text::{counted, grouped, short};
 use crate::app::widgets::{legible, rgb};
-use crate::load::{Import, NormalSource};
-use crate::render::layout::{CRACK_COLOR, FOLD_COLOR, T_JUNCTION_COLOR};
-use crate::settings::{Colors, Overlay};
+use inspect::render::layout::{CRACK_COLOR, FOLD_COLOR, T_JUNCTION_COLOR};
+use inspect::settings::{Colors, Overlay};
+use load::{Import, NormalSource};
 
 /// Where a click on a line leads.
 #[derive(Clone, Copy)]

@@ -14,10 +14,10 @@ use crate::app::App;
 use crate::app::dialogs::Forgetting;
 use crate::app::jobs::background_job::BackgroundJob;
 use crate::app::sections::OpenSections;
-use crate::gpu::{LodShader, SurfaceShader};
-use crate::load::{Import, Source};
-use crate::render::Camera;
-use crate::settings::Settings;
+use gpu::{LodShader, SurfaceShader};
+use inspect::render::Camera;
+use inspect::settings::Settings;
+use load::{Import, Source};
 
 use saved_state::{MAX_FILES, Placement, SavedCamera, SavedFile, SavedState};
 

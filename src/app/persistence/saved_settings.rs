@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value as Json, json};
 
-use crate::settings::{Declaration, Kind, Settings, Value, options};
+use inspect::settings::{Declaration, Kind, Settings, Value, options};
 
 /// Returns all settings as a JSON object.
 pub(super) fn written_settings(settings: &Settings) -> Json {

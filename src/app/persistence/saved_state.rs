@@ -11,11 +11,11 @@ use serde_json::{Value, json};
 use super::saved_settings::{read_settings, written_settings};
 use crate::app::sections::{OpenSections, Section};
 use crate::commands::MOST_BOOKMARKS;
-use crate::load::{FileUnit, LengthUnit};
-use crate::mesh::UpAxis;
-use crate::render::Camera;
-use crate::settings::{Choice, Settings};
-use crate::tessellate::{Displacement, Tessellation};
+use geometry::mesh::UpAxis;
+use geometry::tessellate::{Displacement, Tessellation};
+use inspect::render::Camera;
+use inspect::settings::{Choice, Settings};
+use load::{FileUnit, LengthUnit};
 
 /// The greatest number of files that are saved with their cameras.
 pub(super) const MAX_FILES: usize = 50;

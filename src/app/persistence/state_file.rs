@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use etcetera::BaseStrategy;
 
 use super::saved_state::SavedState;
-use crate::files::{FileError, Limits, read_file, write_whole};
-use crate::progress::Progress;
+use geometry::progress::Progress;
+use load::files::{FileError, Limits, read_file, write_whole};
 
 /// The environment variable that names another folder. If it is empty, nothing is saved.
 const FOLDER: &str = "PNAEN_CONFIG";

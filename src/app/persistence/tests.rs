@@ -9,11 +9,11 @@ use tempfile::TempDir;
 
 use super::saved_state::{MAX_FILES, Placement, SavedCamera, SavedFile, SavedState, WindowGeometry};
 use super::{Persistence, state_file};
-use crate::load::{Import, Source};
-use crate::render::Camera;
-use crate::settings::random::settings;
-use crate::settings::{Overlays, Settings};
-use crate::tessellate::{Surface, Tessellation};
+use geometry::tessellate::{Surface, Tessellation};
+use inspect::render::Camera;
+use inspect::settings::random::settings;
+use inspect::settings::{Overlays, Settings};
+use load::{Import, Source};
 
 /// The file that the state is saved in.
 fn file(folder: &TempDir) -> PathBuf {

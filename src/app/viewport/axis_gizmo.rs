@@ -6,8 +6,8 @@ use glam::Vec3;
 use crate::app::App;
 use crate::app::widgets::rgb;
 use crate::commands::{Action, CameraAction, with_key};
-use crate::render::Standpoint;
-use crate::render::layout::AXIS_COLORS;
+use inspect::render::Standpoint;
+use inspect::render::layout::AXIS_COLORS;
 
 /// Sizes in points: the space that the axes take, the distance of their ends from the middle, and the radii of positive and
 /// negative ends.
@@ -110,8 +110,8 @@ mod tests {
     use glam::Vec2 as Size;
 
     use super::*;
-    use crate::mesh::Bounds;
-    use crate::render::Camera;
+    use geometry::mesh::Bounds;
+    use inspect::render::Camera;
 
     #[test]
     fn ends_lie_where_the_camera_sees_their_axes() {

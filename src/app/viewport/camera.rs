@@ -4,8 +4,8 @@ use glam::{Vec2, vec2};
 
 use crate::app::App;
 use crate::commands::{CameraAction, Direction};
-use crate::mesh::Moment;
-use crate::render::Camera;
+use geometry::mesh::Moment;
+use inspect::render::Camera;
 
 /// Degrees that the camera turns at a press of an arrow key.
 const DEGREES_PER_KEY: f32 = 7.5;

@@ -4,10 +4,10 @@ use glam::Vec2;
 
 use crate::app::App;
 use crate::app::jobs::measure_job::Seen;
-use crate::mesh::Bounds;
-use crate::render::{Camera, LineSegment, lod_camera_lines};
-use crate::settings::Settings;
-use crate::tessellate::{Clip, Lod, LodView};
+use geometry::mesh::Bounds;
+use geometry::tessellate::{Clip, Lod, LodView};
+use inspect::render::{Camera, LineSegment, lod_camera_lines};
+use inspect::settings::Settings;
 
 /// A camera as it was when LOD was frozen.
 #[derive(Clone, Copy, Debug, PartialEq)]

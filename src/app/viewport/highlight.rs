@@ -5,9 +5,9 @@ use super::ruler::Ruler;
 use super::selection::Outlined;
 use crate::app::App;
 use crate::app::jobs::document::Document;
-use crate::mesh::{Bounds, Moment, Topology};
-use crate::render::{LineSegment, axis_lines, crack_lines, t_junction_lines};
-use crate::settings::SplitSide;
+use geometry::mesh::{Bounds, Moment, Topology};
+use inspect::render::{LineSegment, axis_lines, crack_lines, t_junction_lines};
+use inspect::settings::SplitSide;
 
 /// Everything that the lines over the mesh depend on.
 #[derive(Clone, Copy, PartialEq)]

@@ -8,10 +8,10 @@ use crate::app::jobs::deviation_job::DeviationJob;
 use crate::app::jobs::document::arena_bytes;
 use crate::app::jobs::measure_job::{MeasureJob, Results, Seen, Trouble};
 use crate::app::jobs::own_shader_job::OpenShader;
-use crate::engine::Engine;
-use crate::gpu::GpuError;
-use crate::render::Scene;
-use crate::settings::{Choice, SplitSide};
+use gpu::GpuError;
+use inspect::engine::Engine;
+use inspect::render::Scene;
+use inspect::settings::{Choice, SplitSide};
 
 /// Making a scene for longer than this is shown in the window.
 const NOTICED: Duration = Duration::from_millis(300);

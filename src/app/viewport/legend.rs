@@ -5,9 +5,9 @@ mod barycentric;
 use egui::{Align2, Color32, Pos2, Rect, Sense, pos2, vec2};
 
 use crate::app::widgets::{rgb, text_width_in};
-use crate::render::layout::WASTE_COLOR;
-use crate::render::{BARYCENTRIC_TITLE, COLUMNS, Distances, Scale, Shown, legend_of, tick_text};
-use crate::settings::{Colors, Settings};
+use inspect::render::layout::WASTE_COLOR;
+use inspect::render::{BARYCENTRIC_TITLE, COLUMNS, Distances, Scale, Shown, legend_of, tick_text};
+use inspect::settings::{Colors, Settings};
 
 /// Sizes in points: the bar of the scale at its widest, the block of one colour before it, the margin, and the text.
 const BAR: egui::Vec2 = vec2(196.0, 12.0);

@@ -18,8 +18,8 @@ mod ruler;
 pub(super) mod selection;
 pub(super) mod warm_up;
 
-use crate::engine::Engine;
-use crate::render::Camera;
+use inspect::engine::Engine;
+use inspect::render::Camera;
 
 use camera::FollowedCamera;
 use frozen_camera::FrozenCamera;

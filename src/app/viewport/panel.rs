@@ -13,12 +13,12 @@ use crate::app::jobs::measure_job::{Seen, Trouble};
 use crate::app::text::counted;
 use crate::app::widgets::rgb;
 use crate::commands::{Action, CameraAction, key_name, with_key};
-use crate::engine::SilhouetteView;
-use crate::gpu::GpuError;
-use crate::load::Source;
-use crate::render::{Ground, Scene};
-use crate::settings::{Settings, SplitSide};
-use crate::view::ScreenView;
+use geometry::view::ScreenView;
+use gpu::GpuError;
+use inspect::engine::SilhouetteView;
+use inspect::render::{Ground, Scene};
+use inspect::settings::{Settings, SplitSide};
+use load::Source;
 
 /// Degrees that the camera turns for a point of dragging.
 const DEGREES_PER_POINT: f32 = 0.4;

@@ -7,10 +7,10 @@ use crate::app::App;
 use crate::app::patch_names::letter;
 use crate::app::text::factor;
 use crate::app::widgets::rgb;
-use crate::render::layout::{FACTOR_COLORS, OUTLINE_COLOR};
-use crate::settings::SplitSide;
-use crate::tessellate::{domain_side, factor_side, segments};
-use crate::view::{ScreenView, project};
+use geometry::tessellate::{domain_side, factor_side, segments};
+use geometry::view::{ScreenView, project};
+use inspect::render::layout::{FACTOR_COLORS, OUTLINE_COLOR};
+use inspect::settings::SplitSide;
 
 /// The smallest extent of a patch on screen, in points, that is labelled.
 const LEAST_EXTENT: f32 = 60.0;

@@ -8,14 +8,14 @@ use glam::{Mat4, Vec2, vec2};
 use super::pace::next_steps;
 use crate::app::Document;
 use crate::app::painting::{Painting, ShownPicture};
-use crate::engine::Engine;
-use crate::gpu::{GpuError, PassTime, Recorder, Timing, chunks_an_arena, take_times};
-use crate::measure::CrackedEdge;
-use crate::mesh::Moment;
-use crate::render::{Camera, Pixel, Renderer, Scene, Target};
-use crate::settings::{Colors, Settings, SplitSide};
-use crate::tessellate::{Inputs, Tessellation};
-use crate::view::ScreenView;
+use geometry::mesh::Moment;
+use geometry::tessellate::{Inputs, Tessellation};
+use geometry::view::ScreenView;
+use gpu::{GpuError, PassTime, Recorder, Timing, chunks_an_arena, take_times};
+use inspect::engine::Engine;
+use inspect::measure::CrackedEdge;
+use inspect::render::{Camera, Pixel, Renderer, Scene, Target};
+use inspect::settings::{Colors, Settings, SplitSide};
 
 /// Everything that the picture depends on.
 #[derive(Clone, Copy, PartialEq)]

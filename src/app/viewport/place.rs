@@ -5,11 +5,11 @@ use glam::vec2;
 use crate::app::App;
 use crate::app::jobs::measure_job::Trouble;
 use crate::app::jobs::walk::{Parts, Walk};
-use crate::gates::{Spot, Standpoints};
-use crate::measure::Sight;
-use crate::render::Camera;
-use crate::settings::SplitSide;
-use crate::tessellate::factors::patch_is_culled;
+use geometry::tessellate::factors::patch_is_culled;
+use inspect::gates::{Spot, Standpoints};
+use inspect::measure::Sight;
+use inspect::render::Camera;
+use inspect::settings::SplitSide;
 
 /// A place that is about to be shown: what hides it is being found out.
 pub(crate) struct Showing {

@@ -5,8 +5,8 @@ use crate::app::sections::Section;
 use crate::app::text::shortened;
 use crate::app::widgets::{LABEL_WIDTH, chooser};
 use crate::commands::{Action, with_key};
-use crate::mesh::Moment;
-use crate::mesh::rig::Clip;
+use geometry::mesh::Moment;
+use geometry::mesh::rig::Clip;
 
 /// The range of speeds at which a clip plays; 1 is its own speed.
 const SPEED_RANGE: std::ops::RangeInclusive<f64> = 0.1..=4.0;

@@ -10,12 +10,12 @@ use super::preview_pace::PreviewPace;
 use crate::app::App;
 use crate::app::jobs::document::Document;
 use crate::app::painting::{Painting, ShownPicture};
-use crate::engine::Engine;
-use crate::gpu::{GpuError, Recorder, Timing};
-use crate::render::{Camera, Scene, Target};
-use crate::settings::{Colors, Settings, SplitSide};
-use crate::tessellate::{Clip, Inputs, Lod, Tessellation};
-use crate::view::ScreenView;
+use geometry::tessellate::{Clip, Inputs, Lod, Tessellation};
+use geometry::view::ScreenView;
+use gpu::{GpuError, Recorder, Timing};
+use inspect::engine::Engine;
+use inspect::render::{Camera, Scene, Target};
+use inspect::settings::{Colors, Settings, SplitSide};
 
 /// A full picture that takes longer than this is late: 30 pictures a second leave 33 ms for each, and the window itself takes
 /// some of it.

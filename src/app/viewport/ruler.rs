@@ -4,9 +4,9 @@ use glam::Vec3;
 
 use crate::app::App;
 use crate::app::text::short;
-use crate::render::layout::OUTLINE_COLOR;
-use crate::render::{LineSegment, Picked, Pixel};
-use crate::view::{ScreenView, seen_on_plane};
+use geometry::view::{ScreenView, seen_on_plane};
+use inspect::render::layout::OUTLINE_COLOR;
+use inspect::render::{LineSegment, Picked, Pixel};
 
 /// The ruler while it is in use.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

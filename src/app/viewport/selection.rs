@@ -4,13 +4,13 @@ use egui::Response;
 use glam::Vec3;
 
 use crate::app::App;
-use crate::gates::Spot;
-use crate::gpu::GpuError;
-use crate::measure::patch_edges;
-use crate::mesh::Topology;
-use crate::render::{LineSegment, Picked, PickedTriangle, Picking, Pixel, patch_lines};
-use crate::settings::SplitSide;
-use crate::tessellate::{Convention, domain_side};
+use geometry::mesh::Topology;
+use geometry::tessellate::{Convention, domain_side};
+use gpu::GpuError;
+use inspect::gates::Spot;
+use inspect::measure::patch_edges;
+use inspect::render::{LineSegment, Picked, PickedTriangle, Picking, Pixel, patch_lines};
+use inspect::settings::SplitSide;
 
 /// The selected triangle, and a click that is still being answered. The selected edge is [`App::selected_edge`].
 #[derive(Default)]

@@ -10,10 +10,10 @@ use super::preview::{Shape, count};
 use crate::app::App;
 use crate::app::jobs::background_job::BackgroundJob;
 use crate::app::jobs::document::arena_bytes;
-use crate::engine::Engine;
-use crate::gpu::{GpuError, Recorder, Timing};
-use crate::render::{DraftPipelines, Scene, Target};
-use crate::settings::{Settings, SplitSide};
+use gpu::{GpuError, Recorder, Timing};
+use inspect::engine::Engine;
+use inspect::render::{DraftPipelines, Scene, Target};
+use inspect::settings::{Settings, SplitSide};
 
 /// The window must have had nothing to do for so long.
 const IDLE: Duration = Duration::from_millis(300);

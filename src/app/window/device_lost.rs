@@ -17,9 +17,9 @@ use crate::app::style::style;
 use crate::app::viewport::picture::Picture;
 use crate::app::viewport::preview::Preview;
 use crate::app::viewport::warm_up::WarmUp;
-use crate::engine::Engine;
-use crate::gpu::{Gpu, GpuError, LodShader, SurfaceShader};
-use crate::settings::Lighting;
+use gpu::{Gpu, GpuError, LodShader, SurfaceShader};
+use inspect::engine::Engine;
+use inspect::settings::Lighting;
 
 /// A device that is lost sooner than this after the last one isn't replaced automatically.
 const LASTS: Duration = Duration::from_secs(60);
@@ -196,9 +196,9 @@ mod tests {
     use egui_kittest::kittest::Queryable;
 
     use super::*;
-    use crate::files::Limits;
-    use crate::load::Source;
-    use crate::mesh::Shape;
+    use geometry::mesh::Shape;
+    use load::Source;
+    use load::files::Limits;
 
     /// Runs frames until nothing is under way.
     fn settle(harness: &mut Harness<App>) {

@@ -6,11 +6,11 @@ use crate::app::App;
 use crate::app::dialogs::typed_path::{absolute, name_beside};
 use crate::app::jobs::background_job::BackgroundJob;
 use crate::commands::{Action, FileAction, QUIT, with_key};
-use crate::engine::Loaded;
-use crate::export::Exported;
-use crate::gpu::Gpu;
-use crate::mesh::Moment;
-use crate::tessellate::{Inputs, tessellate, totals};
+use geometry::mesh::Moment;
+use geometry::tessellate::{Inputs, tessellate, totals};
+use gpu::Gpu;
+use inspect::engine::Loaded;
+use inspect::export::Exported;
 
 /// The state of the screen.
 pub(crate) struct FatalScreen {

@@ -11,9 +11,9 @@ use super::device_lost::Next;
 use crate::app::persistence::{LEAST_SIZE, WindowGeometry, folder};
 use crate::app::{App, Persistence};
 use crate::cli::OpeningOptions;
-use crate::files::Limits;
-use crate::gpu::{AdapterChoice, BACKENDS, GpuError, device_descriptor};
-use crate::load::Source;
+use gpu::{AdapterChoice, BACKENDS, GpuError, device_descriptor};
+use load::Source;
+use load::files::Limits;
 
 #[derive(Debug, Error)]
 pub enum WindowError {

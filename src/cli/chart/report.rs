@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use super::super::{CliError, file_error, write_text};
-use crate::chart::report::{Occasion, PAGE, Part, page};
-use crate::chart::svg;
-use crate::files::file_reason;
-use crate::gpu::Gpu;
-use crate::load::Source;
-use crate::mesh::Shape;
-use crate::numbers::utc;
+use geometry::mesh::Shape;
+use geometry::numbers::utc;
+use gpu::Gpu;
+use lab::chart::report::{Occasion, PAGE, Part, page};
+use lab::chart::svg;
+use load::Source;
+use load::files::file_reason;
 
 /// Shapes with an exact surface each, round ones first.
 const SHAPES: [Shape; 7] =

@@ -11,15 +11,15 @@ use image::{DynamicImage, RgbaImage};
 
 use super::plan::Job;
 use super::say_unkept;
-use crate::check::{Asset, Cache, GateResult, View};
 use crate::cli::picture_file::png_bytes;
 use crate::cli::shot::Shot;
 use crate::cli::{CliError, file_error, file_of};
-use crate::engine::{Engine, Loaded, Preparation};
-use crate::gates::Gate;
-use crate::load::LoadError;
-use crate::names::on_one_line;
-use crate::progress::Progress;
+use geometry::names::on_one_line;
+use geometry::progress::Progress;
+use inspect::engine::{Engine, Loaded, Preparation};
+use inspect::gates::Gate;
+use lab::check::{Asset, Cache, GateResult, View};
+use load::LoadError;
 
 /// The most px along a side of a picture on the page.
 const MOST_PX: u32 = 704;
@@ -87,10 +87,10 @@ fn measure(job: &Job, engine: &Engine, pictures: bool, asset: &mut Asset) -> Res
 /// Loads an asset. What the configuration hides may be parts of other assets: these are returned too.
 fn load(job: &Job, mut preparation: Preparation, progress: &Progress) -> Result<(Loaded, Vec<String>), LoadError> {
     let mut absent = Vec::new();
-    let loaded = match crate::engine::load(&job.source, &preparation, progress) {
+    let loaded = match inspect::engine::load(&job.source, &preparation, progress) {
         Err(LoadError::NoPart { known, .. }) => {
             absent = preparation.hidden.extract_if(.., |part| !known.contains(part)).collect();
-            crate::engine::load(&job.source, &preparation, progress)
+            inspect::engine::load(&job.source, &preparation, progress)
         }
         other => other,
     };

@@ -6,13 +6,13 @@ use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, Command, CommandFactory, Parser};
 
 use super::Args;
-use crate::check::{Config, ConfigError, FolderError, Inputs, OptionValue, Section, assets};
 use crate::cli::shot_options::ShotOptions;
 use crate::cli::{CliError, file_error, note};
-use crate::files::file_reason;
-use crate::gates::Gate;
-use crate::load::Source;
-use crate::names::{on_one_line, shown, shown_path};
+use geometry::names::{on_one_line, shown, shown_path};
+use inspect::gates::Gate;
+use lab::check::{Config, ConfigError, FolderError, Inputs, OptionValue, Section, assets};
+use load::Source;
+use load::files::file_reason;
 
 /// The configuration that is read if there is one and none is named.
 const CONFIG: &str = "pnaen.toml";

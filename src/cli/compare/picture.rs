@@ -9,15 +9,15 @@ use super::Args;
 use crate::cli::legend::{Named, draw_key};
 use crate::cli::shot::{Shot, ShotView, Subject};
 use crate::cli::{CliError, ReferenceSurface, write_picture};
-use crate::compare::{Comparison, ForeignMesh, Ours, SideDifference, patch_starts};
-use crate::engine::{Engine, Loaded};
-use crate::mesh::{Mesh, MeshSlices, Topology};
-use crate::progress::Progress;
-use crate::render::layout::WORST_COLOR;
-use crate::render::{Camera, LineSegment};
-use crate::settings::{Colors, Overlays, Settings};
-use crate::tessellate::{FIXED_ONE, Surface, Tessellation, Vertex, outline_place};
-use crate::truth::Truth;
+use geometry::mesh::{Mesh, MeshSlices, Topology};
+use geometry::progress::Progress;
+use geometry::tessellate::{FIXED_ONE, Surface, Tessellation, Vertex, outline_place};
+use inspect::engine::{Engine, Loaded};
+use inspect::render::layout::WORST_COLOR;
+use inspect::render::{Camera, LineSegment};
+use inspect::settings::{Colors, Overlays, Settings};
+use inspect::truth::Truth;
+use lab::compare::{Comparison, ForeignMesh, Ours, SideDifference, patch_starts};
 
 /// sRGB colours of what differs: sides that are cut differently, patches that differ, patches without triangles, and vertices
 /// off the surface.

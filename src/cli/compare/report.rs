@@ -5,9 +5,9 @@ use std::fmt::Write;
 use glam::Vec3;
 use serde::Serialize;
 
-use crate::compare::{Comparison, Exactness, Farthest, Finding, Ours, SideDifference, plural, point};
-use crate::names::shown;
-use crate::numbers::{grouped, short};
+use geometry::names::shown;
+use geometry::numbers::{grouped, short};
+use lab::compare::{Comparison, Exactness, Farthest, Finding, Ours, SideDifference, plural, point};
 
 /// How many sides are printed, and how many JSON has.
 const SAID: usize = 10;
@@ -190,7 +190,7 @@ struct JsonCut {
 
 impl JsonSide {
     fn of(side: &SideDifference) -> Self {
-        let cut = |cut: crate::compare::SideCut| JsonCut { segments: cut.segments, factor: cut.factor };
+        let cut = |cut: lab::compare::SideCut| JsonCut { segments: cut.segments, factor: cut.factor };
         let SideDifference { triangle, side, ends, theirs, ours } = *side;
         Self { triangle, side, points: ends, theirs: cut(theirs), ours: cut(ours) }
     }

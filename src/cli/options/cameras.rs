@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::{CameraOption, ViewOptions};
 use crate::cli::{CliError, file_error, read_text};
-use crate::names::{on_one_line, shown};
+use geometry::names::{on_one_line, shown};
 
 /// The most views.
 const MOST: usize = 3600;

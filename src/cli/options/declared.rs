@@ -7,9 +7,9 @@ use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command, Error, FromArgMatches};
 
-use crate::load::Import;
-use crate::settings::{Choice, Declaration, Description, Kind, Lighting, Settings, Value, descriptions, options};
-use crate::tessellate::{Displacement, Tessellation};
+use geometry::tessellate::{Displacement, Tessellation};
+use inspect::settings::{Choice, Declaration, Description, Kind, Lighting, Settings, Value, descriptions, options};
+use load::Import;
 
 /// How a mesh is tessellated.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -6,9 +6,9 @@ use glam::Vec2;
 use super::values::{angle, field_of_view};
 use super::{CameraOption, Position, Size, SurfaceOptions, ViewOptions};
 use crate::cli::CliError;
-use crate::mesh::{Bounds, Mesh};
-use crate::render::Camera;
-use crate::render::camera::FIELD_OF_VIEW;
+use geometry::mesh::{Bounds, Mesh};
+use inspect::render::Camera;
+use inspect::render::camera::FIELD_OF_VIEW;
 
 /// A camera that LOD, clipping and culling are computed for, in place of the picture's.
 #[derive(Clone, Copy, Debug, Args)]

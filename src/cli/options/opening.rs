@@ -3,9 +3,9 @@
 use clap::{ArgMatches, Args, Command, Error, FromArgMatches};
 
 use super::declared::{arg, given};
-use crate::engine::Preparation;
-use crate::load::Import;
-use crate::settings::{Declaration, Settings, Value, options};
+use inspect::engine::Preparation;
+use inspect::settings::{Declaration, Settings, Value, options};
+use load::Import;
 
 /// How the window takes the mesh that it opens first. What isn't given is as the window was left, or as it was chosen for the file.
 #[derive(Clone, Debug, Default, Args)]
@@ -85,8 +85,8 @@ mod tests {
 
     use super::*;
     use crate::cli::Cli;
-    use crate::load::{FileUnit, LengthUnit, NormalSource};
-    use crate::mesh::UpAxis;
+    use geometry::mesh::UpAxis;
+    use load::{FileUnit, LengthUnit, NormalSource};
 
     fn options(arguments: &[&str]) -> OpeningOptions {
         Cli::try_parse_from(["pnaen"].iter().chain(arguments)).expect("options of the window").opening

@@ -8,10 +8,10 @@ use std::str::FromStr;
 use clap::builder::{OsStringValueParser, TypedValueParser};
 use glam::Vec3;
 
-use crate::load::Source;
-use crate::load::format::Format;
-use crate::mesh::crease_band::WIDEST;
-use crate::render::camera::FIELDS_OF_VIEW;
+use geometry::mesh::crease_band::WIDEST;
+use inspect::render::camera::FIELDS_OF_VIEW;
+use load::Source;
+use load::format::Format;
 
 /// Parses the path of a picture. Refuses standard output, and endings of files that are no PNG files.
 pub(crate) fn picture() -> impl TypedValueParser<Value = PathBuf> {
@@ -36,7 +36,7 @@ fn picture_path(path: PathBuf) -> Result<PathBuf, String> {
 pub(crate) fn model() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(|path| {
         let path = PathBuf::from(path);
-        let known = matches!(crate::export::ending(&path).as_str(), "glb" | "obj");
+        let known = matches!(inspect::export::ending(&path).as_str(), "glb" | "obj");
         if known { Ok(path) } else { Err("meshes are written as .glb or .obj files: name it one of these") }
     })
 }
@@ -176,7 +176,7 @@ fn within(text: &str, range: RangeInclusive<f32>) -> Result<f32, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::files::Limits;
+    use load::files::Limits;
 
     #[test]
     fn pictures_have_no_name_of_another_format() {

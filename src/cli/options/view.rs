@@ -8,10 +8,10 @@ use glam::DMat4;
 use super::values::{angle, field_of_view};
 use super::{CameraOption, Position, SurfaceOptions, file_camera};
 use crate::cli::CliError;
-use crate::mesh::{Bounds, Mesh, Moment};
-use crate::render::Camera;
-use crate::render::camera::FIELD_OF_VIEW;
-use crate::render::view_projection::{ClipY, DepthRange, ViewProjection};
+use geometry::mesh::{Bounds, Mesh, Moment};
+use inspect::render::Camera;
+use inspect::render::camera::FIELD_OF_VIEW;
+use inspect::render::view_projection::{ClipY, DepthRange, ViewProjection};
 
 /// Where the mesh is seen from.
 #[derive(Clone, Debug, PartialEq, Args)]

@@ -3,17 +3,17 @@
 use image::RgbaImage;
 
 use super::{CliError, Shot};
-use crate::check::Numbers;
-use crate::engine::Measurements;
-use crate::gates::{Facts, Gate, GateKind, Judgement, Spot, Standpoints, judge};
-use crate::gpu::GpuError;
-use crate::measure::Sight;
-use crate::mesh::t_junctions;
-use crate::progress::Progress;
-use crate::render::{Camera, Leaks, worst_lines};
-use crate::settings::{Overlay, Overlays, Settings, SplitSide};
-use crate::tessellate::Inputs;
-use crate::view::ScreenView;
+use geometry::mesh::t_junctions;
+use geometry::progress::Progress;
+use geometry::tessellate::Inputs;
+use geometry::view::ScreenView;
+use gpu::GpuError;
+use inspect::engine::Measurements;
+use inspect::gates::{Facts, Gate, GateKind, Judgement, Spot, Standpoints, judge};
+use inspect::measure::Sight;
+use inspect::render::{Camera, Leaks, worst_lines};
+use inspect::settings::{Overlay, Overlays, Settings, SplitSide};
+use lab::check::Numbers;
 
 impl Shot {
     /// Judges the right half, seen from the picture's camera, by each gate, and measures what they need. `tolerance_px` is what

@@ -7,12 +7,12 @@ use super::{Loaded, file_name};
 use crate::cli::CliError;
 use crate::cli::gate_options::write_evidence_of;
 use crate::cli::shot::{Shot, ShotView, Subject as ShotSubject};
-use crate::engine::{Engine, Loaded as LoadedMesh};
-use crate::gates::Gate;
-use crate::mesh::Topology;
-use crate::progress::Progress;
-use crate::settings::ARENA_BYTES;
-use crate::stability::{Failure, Subject, Tried, viewport};
+use geometry::mesh::Topology;
+use geometry::progress::Progress;
+use inspect::engine::{Engine, Loaded as LoadedMesh};
+use inspect::gates::Gate;
+use inspect::settings::ARENA_BYTES;
+use lab::stability::{Failure, Subject, Tried, viewport};
 
 /// A px of the run is this many px wide here. The middle of its middle px is its own middle, so that what leaked there leaks here.
 const ENLARGED: u32 = 3;

@@ -1,10 +1,10 @@
 //! What takes the place of LOD's factors.
 
 use super::Tessellator;
-use crate::gpu::buffer::{empty, filled};
-use crate::gpu::own_lod_passes::OwnLodPasses;
-use crate::gpu::{Given, GpuError, OwnReport};
-use crate::tessellate::HullFactors;
+use crate::buffer::{empty, filled};
+use crate::own_lod_passes::OwnLodPasses;
+use crate::{Given, GpuError, OwnReport};
+use geometry::tessellate::HullFactors;
 
 impl Tessellator {
     /// Takes factors, or what computes them, in place of LOD; none for LOD's. Takes effect with the next [`Self::set`].

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use super::Tessellator;
-use crate::gpu::layout::{Chunk, DrawArgs};
-use crate::gpu::{OwnReport, VERTEX_HALF};
+use crate::layout::{Chunk, DrawArgs};
+use crate::{OwnReport, VERTEX_HALF};
 
 /// What a chunk left in the arena, for whoever draws or reads it.
 pub struct ChunkBuffers<'a> {
@@ -18,13 +18,13 @@ pub struct ChunkBuffers<'a> {
     /// The factors of the slab's patches, the first of which is `first_patch`.
     pub patch_factors: &'a wgpu::Buffer,
     pub first_patch: u32,
-    /// The slab itself: a [`crate::gpu::layout::Slab`].
+    /// The slab itself: a [`crate::layout::Slab`].
     pub slab: &'a wgpu::Buffer,
 }
 
 impl ChunkBuffers<'_> {
     /// The vertices: the first half of all of them, and the second of all of them, in which bytes of which buffer.
-    /// [`crate::gpu::vertices_of`] puts them together.
+    /// [`crate::vertices_of`] puts them together.
     pub fn vertices(&self) -> [(&wgpu::Buffer, Range<u64>); 2] {
         let (bytes, half) = (u64::from(self.chunk.vertex_count) * VERTEX_HALF, self.vertices.size() / 2);
         [0, half].map(|start| (self.vertices, start..start + bytes))

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use super::Tessellator;
-use crate::gpu::buffer::empty;
-use crate::gpu::own_surface_passes::OwnSurfacePasses;
-use crate::gpu::{GpuError, LodShader, OwnReport, OwnShader, SurfaceShader};
-use crate::mesh::Sharing;
-use crate::tessellate::{Inputs, Surface, Tessellation, own_sharing, sharing};
+use crate::buffer::empty;
+use crate::own_surface_passes::OwnSurfacePasses;
+use crate::{GpuError, LodShader, OwnReport, OwnShader, SurfaceShader};
+use geometry::mesh::Sharing;
+use geometry::tessellate::{Inputs, Surface, Tessellation, own_sharing, sharing};
 
 /// A function that gives control points.
 pub(super) struct OwnSurface {

@@ -1,17 +1,17 @@
 //! The passes, in the order in which they run.
 
 use super::Tessellator;
-use crate::gpu::GpuError;
-use crate::gpu::bound_pass::{BoundPass, PassInputs};
-use crate::gpu::layout::EmitArgs;
-use crate::gpu::own_least::{self, OwnLeast};
-use crate::gpu::params::params_of;
-use crate::gpu::pipelines::grid;
-use crate::gpu::readback::Readback;
-use crate::gpu::recorder::{RecordPasses, Recorder};
-use crate::gpu::search_passes::Each;
-use crate::gpu::slab::{SCAN_BLOCK, SlabPasses};
-use crate::tessellate::{Displacement, Lod, Partitioning, Tessellation, own_least_inputs};
+use crate::GpuError;
+use crate::bound_pass::{BoundPass, PassInputs};
+use crate::layout::EmitArgs;
+use crate::own_least::{self, OwnLeast};
+use crate::params::params_of;
+use crate::pipelines::grid;
+use crate::readback::Readback;
+use crate::recorder::{RecordPasses, Recorder};
+use crate::search_passes::Each;
+use crate::slab::{SCAN_BLOCK, SlabPasses};
+use geometry::tessellate::{Displacement, Lod, Partitioning, Tessellation, own_least_inputs};
 
 impl Tessellator {
     /// Records the passes that decide what will be emitted: deform and nets (where they are out of date), factors, counts,

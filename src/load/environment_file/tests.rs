@@ -9,10 +9,10 @@ use image::codecs::openexr::OpenExrEncoder;
 use image::{ExtendedColorType, ImageEncoder, Rgb};
 
 use super::*;
-use crate::load::hostile_files::{is_expected, mentions, page, unhung};
+use crate::hostile_files::{is_expected, mentions, page, unhung};
 
 /// The bytes of a Radiance file with these pixels.
-pub(crate) fn radiance_file(size: [u32; 2], pixels: &[[f32; 3]]) -> Vec<u8> {
+pub fn radiance_file(size: [u32; 2], pixels: &[[f32; 3]]) -> Vec<u8> {
     let pixels: Vec<Rgb<f32>> = pixels.iter().map(|&pixel| Rgb(pixel)).collect();
     let mut bytes = Vec::new();
     HdrEncoder::new(&mut bytes).encode(&pixels, size[0] as usize, size[1] as usize).expect("in memory");
@@ -20,7 +20,7 @@ pub(crate) fn radiance_file(size: [u32; 2], pixels: &[[f32; 3]]) -> Vec<u8> {
 }
 
 /// The bytes of an OpenEXR file with these pixels.
-pub(crate) fn open_exr_file(size: [u32; 2], pixels: &[[f32; 3]]) -> Vec<u8> {
+pub fn open_exr_file(size: [u32; 2], pixels: &[[f32; 3]]) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
     let encoder = OpenExrEncoder::new(&mut bytes);
     encoder.write_image(bytemuck::cast_slice(pixels), size[0], size[1], ExtendedColorType::Rgb32F).expect("in memory");
@@ -28,7 +28,7 @@ pub(crate) fn open_exr_file(size: [u32; 2], pixels: &[[f32; 3]]) -> Vec<u8> {
 }
 
 /// Small files of both formats, for a fuzzer.
-pub(in crate::load) fn seeds() -> Vec<(&'static str, String, Vec<u8>)> {
+pub(crate) fn seeds() -> Vec<(&'static str, String, Vec<u8>)> {
     let seed = |name: &str, bytes| ("panorama", name.to_owned(), bytes);
     let flat = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\n\n-Y 2 +X 4\n".to_vec();
     vec![

@@ -15,13 +15,13 @@ use super::morphs::{channels, shape_weights};
 use super::nodes::{Placed, is_on, is_set};
 use super::parse::{half, refused};
 use super::too_large;
-use crate::load::attachment::LocalTransform;
-use crate::load::memory_budget::Budget;
-use crate::load::notes::Notes;
-use crate::load::read_error::ReadError;
-use crate::mesh::MemoryAccount;
-use crate::mesh::rig::{Channel, Clip, Interpolation, Keys, Placement, Property};
-use crate::progress::Progress;
+use crate::attachment::LocalTransform;
+use crate::memory_budget::Budget;
+use crate::notes::Notes;
+use crate::read_error::ReadError;
+use geometry::mesh::MemoryAccount;
+use geometry::mesh::rig::{Channel, Clip, Interpolation, Keys, Placement, Property};
+use geometry::progress::Progress;
 
 /// The greatest number of numbers in all clips together.
 const MAX_NUMBERS: usize = 1 << 26;

@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DQuat, DVec2, DVec3, DVec4};
 
-use crate::mesh::rig::Placement;
+use geometry::mesh::rig::Placement;
 
 pub(super) fn vec2(v: &ufbx::Vec2) -> DVec2 {
     DVec2::new(v.x, v.y)

@@ -3,8 +3,8 @@
 use ufbx::{Mesh, Scene, SkinningMethod, SubdivisionDisplayMode, WarningType};
 
 use super::nodes::Placed;
-use crate::load::face_builder::counted;
-use crate::load::notes::Notes;
+use crate::face_builder::counted;
+use crate::notes::Notes;
 
 /// Adds a warning for each kind of thing that is left out.
 pub(super) fn warn(scene: &Scene, notes: &mut Notes) {

@@ -5,8 +5,8 @@ use glam::{DVec3, Vec3};
 use ufbx::{MaterialMap, Mesh, ShaderType, Texture};
 
 use super::convert::{matrix, vec4};
-use crate::mesh::mipmap::MipFilter;
-use crate::mesh::{Alpha, Look};
+use geometry::mesh::mipmap::MipFilter;
+use geometry::mesh::{Alpha, Look};
 
 /// The brightest emission.
 const MOST_LIGHT: f32 = 65504.0;
@@ -23,7 +23,7 @@ pub(super) struct MapSource<'a> {
 pub(super) struct MapUvs {
     /// The index of the mesh's set.
     pub set: usize,
-    /// The affine map to texture coordinates that count from the top (see [`MapUv::Set`](crate::mesh::MapUv::Set)).
+    /// The affine map to texture coordinates that count from the top (see [`MapUv::Set`](geometry::mesh::MapUv::Set)).
     pub transform: [f32; 6],
 }
 
@@ -134,7 +134,7 @@ impl<'a> LookSource<'a> {
 
 /// Returns an element's name on one line.
 pub(super) fn name(element: &ufbx::Element) -> String {
-    crate::names::shown(element.name.as_ref())
+    geometry::names::shown(element.name.as_ref())
 }
 
 /// Whether a material is of the kinds that FBX itself describes, or of none.

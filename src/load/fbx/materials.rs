@@ -8,13 +8,13 @@ use ufbx::{Mesh, Node, RefList};
 use super::looks::{LookSource, MapSource, MapUvs};
 use super::textures::{Textures, of_file, sampling};
 use super::too_large;
-use crate::load::face_builder::FaceBuilder;
-use crate::load::memory_budget::Budget;
-use crate::load::notes::Notes;
-use crate::load::packing;
-use crate::load::read_error::ReadError;
-use crate::load::uri::Files;
-use crate::mesh::{Alpha, Map, MapUv, Material, MemoryAccount, Sampling, Slot, Texture};
+use crate::face_builder::FaceBuilder;
+use crate::memory_budget::Budget;
+use crate::notes::Notes;
+use crate::packing;
+use crate::read_error::ReadError;
+use crate::uri::Files;
+use geometry::mesh::{Alpha, Map, MapUv, Material, MemoryAccount, Sampling, Slot, Texture};
 
 /// The materials of all polygons.
 pub(super) struct Materials<'a> {

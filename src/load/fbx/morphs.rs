@@ -4,10 +4,10 @@ use ufbx::{BlendChannel, BlendShape, Mesh};
 
 use super::convert::vec3;
 use super::too_large;
-use crate::load::memory_budget::Budget;
-use crate::load::read_error::ReadError;
-use crate::mesh::MemoryAccount;
-use crate::mesh::rig::Delta;
+use crate::memory_budget::Budget;
+use crate::read_error::ReadError;
+use geometry::mesh::MemoryAccount;
+use geometry::mesh::rig::Delta;
 
 /// Returns the channels of a mesh, in the order of its targets.
 pub(super) fn channels(mesh: &Mesh) -> impl Iterator<Item = &BlendChannel> {

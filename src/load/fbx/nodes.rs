@@ -5,11 +5,11 @@ use ufbx::{Element, Mesh, Node, Scene};
 
 use super::convert::placement;
 use super::morphs;
-use crate::load::attachment::{LocalTransform, SceneNodes};
-use crate::load::memory_budget::Budget;
-use crate::load::notes::Notes;
-use crate::load::read_error::ReadError;
-use crate::mesh::rig::{Clip, Placement};
+use crate::attachment::{LocalTransform, SceneNodes};
+use crate::memory_budget::Budget;
+use crate::notes::Notes;
+use crate::read_error::ReadError;
+use geometry::mesh::rig::{Clip, Placement};
 
 /// How many corners, vertices, joints and shapes all nodes may have, and how many more for each byte of the file.
 const MOST_ITEMS: u64 = 1 << 24;

@@ -6,11 +6,11 @@ use ufbx::{
 use ufbx::{ProgressCb, ProgressResult, SceneRoot};
 
 use super::too_large;
-use crate::load::import::Import;
-use crate::load::memory_budget::Budget;
-use crate::load::read_error::{FilePosition, ReadError};
-use crate::mesh::MemoryAccount;
-use crate::progress::{Cancelled, Progress};
+use crate::import::Import;
+use crate::memory_budget::Budget;
+use crate::read_error::{FilePosition, ReadError};
+use geometry::mesh::MemoryAccount;
+use geometry::progress::{Cancelled, Progress};
 
 /// How deep nodes may be nested.
 const MAX_DEPTH: u32 = 1 << 12;

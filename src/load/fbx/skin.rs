@@ -5,7 +5,7 @@ use ufbx::{Mesh, Node, SkinDeformer};
 
 use super::convert::matrix;
 use super::nodes;
-use crate::load::rig_builder::SkinJoints;
+use crate::rig_builder::SkinJoints;
 
 /// The greatest number of joints of a vertex.
 const MOST: usize = 4;

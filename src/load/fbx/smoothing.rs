@@ -8,10 +8,10 @@ use ufbx::Mesh;
 
 use super::convert::vec3;
 use super::too_large;
-use crate::load::memory_budget::Budget;
-use crate::load::read_error::ReadError;
-use crate::mesh::MemoryAccount;
-use crate::mesh::union_find::UnionFind;
+use crate::memory_budget::Budget;
+use crate::read_error::ReadError;
+use geometry::mesh::MemoryAccount;
+use geometry::mesh::union_find::UnionFind;
 
 /// Memory for each corner, in bytes: its side in the table, whose room is up to twice as large, its set, and two normals.
 const PER_CORNER: u64 = 96;

@@ -9,17 +9,17 @@ use super::nodes::Placed;
 use super::skin::Skin;
 use super::too_large;
 use super::vertices::Vertices;
-use crate::load::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, counted};
-use crate::load::import::Import;
-use crate::load::memory_budget::{Budget, edge_bytes};
-use crate::load::notes::Notes;
-use crate::load::read_error::{FilePosition, ReadError};
-use crate::load::rig_builder::{NodeBinder, RigBuilder, UndeformedVertex, VertexFrame};
-use crate::load::uri::Files;
-use crate::mesh::detail_table::DetailTable;
-use crate::mesh::rig::Delta;
-use crate::mesh::{Borrowed, CornerDetail, MemoryAccount};
-use crate::progress::Progress;
+use crate::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, counted};
+use crate::import::Import;
+use crate::memory_budget::{Budget, edge_bytes};
+use crate::notes::Notes;
+use crate::read_error::{FilePosition, ReadError};
+use crate::rig_builder::{NodeBinder, RigBuilder, UndeformedVertex, VertexFrame};
+use crate::uri::Files;
+use geometry::mesh::detail_table::DetailTable;
+use geometry::mesh::rig::Delta;
+use geometry::mesh::{Borrowed, CornerDetail, MemoryAccount};
+use geometry::progress::Progress;
 
 /// How many polygons are read before the job asks whether it was cancelled.
 const POLYGONS: usize = 4096;
@@ -297,7 +297,7 @@ impl<'b> Binder<'b> {
     /// Returns the number of a corner's binding.
     fn bind(
         &mut self,
-        ((position, normal), corner): ((Vec3, Option<Vec3>), &crate::mesh::mesh_builder::InputCorner),
+        ((position, normal), corner): ((Vec3, Option<Vec3>), &geometry::mesh::mesh_builder::InputCorner),
         influences: &[(usize, f64)],
         deltas: &mut Vec<Delta>,
         budget: &Budget,

@@ -1,21 +1,21 @@
 //! Tests with small files that are made here.
 
-pub(in crate::load) mod documents;
+pub(crate) mod documents;
 mod hidden;
 mod moving;
 mod shapes;
 mod spans;
 mod surfaces;
-pub(in crate::load) mod tree;
+pub(crate) mod tree;
 
 use std::path::Path;
 
 use super::read_here;
 use crate::files::Limits;
-use crate::load::import::Import;
-use crate::load::loaded_mesh::LoadedMesh;
-use crate::load::read_error::ReadError;
-use crate::progress::Progress;
+use crate::import::Import;
+use crate::loaded_mesh::LoadedMesh;
+use crate::read_error::ReadError;
+use geometry::progress::Progress;
 
 use tree::{Arrays, Entry, binary, text};
 
@@ -41,7 +41,7 @@ fn near(a: impl AsRef<[f32]>, b: impl AsRef<[f32]>) -> bool {
 }
 
 /// Small files of every kind: text, and binary with plain and with compressed arrays.
-pub(in crate::load) fn files() -> Vec<Vec<u8>> {
+pub(crate) fn files() -> Vec<Vec<u8>> {
     let documents = [
         documents::smoothed_prism(),
         documents::skinned_strip(),

@@ -3,13 +3,13 @@
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
-use crate::load::images::{decode_halved, texture_size};
-use crate::load::memory_budget::Budget;
-use crate::load::notes::Notes;
-use crate::load::texture_room::{Scaling, TextureRoom};
-use crate::load::uri::Files;
-use crate::mesh::mipmap::MipFilter;
-use crate::mesh::{Sampling, Texture, Wrap, borrowing};
+use crate::images::{decode_halved, texture_size};
+use crate::memory_budget::Budget;
+use crate::notes::Notes;
+use crate::texture_room::{Scaling, TextureRoom};
+use crate::uri::Files;
+use geometry::mesh::mipmap::MipFilter;
+use geometry::mesh::{Sampling, Texture, Wrap, borrowing};
 
 /// Images by texture.
 pub(super) struct Textures<'a> {

@@ -8,12 +8,12 @@ use super::looks;
 use super::morphs::{Morphs, rest_weights};
 use super::skin::Skin;
 use super::smoothing;
-use crate::load::binding_space::turned;
-use crate::load::import::Import;
-use crate::load::memory_budget::Budget;
-use crate::load::read_error::{FilePosition, ReadError};
-use crate::mesh::mesh_builder::InputCorner;
-use crate::mesh::rig::Delta;
+use crate::binding_space::turned;
+use crate::import::Import;
+use crate::memory_budget::Budget;
+use crate::read_error::{FilePosition, ReadError};
+use geometry::mesh::mesh_builder::InputCorner;
+use geometry::mesh::rig::Delta;
 
 /// The vertices of a node's mesh.
 pub(super) struct Vertices<'a> {

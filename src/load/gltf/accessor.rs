@@ -15,8 +15,8 @@ use super::meshopt::{Decompressed, decompress};
 use super::notes::Notes;
 use super::reach::Use;
 use super::repair::Faults;
-use crate::load::memory_budget::Budget;
-use crate::mesh::MemoryAccount;
+use crate::memory_budget::Budget;
+use geometry::mesh::MemoryAccount;
 
 /// The greatest number of elements of an accessor without a buffer view (zeros except for sparse values), since no
 /// file's size limits those.

@@ -7,9 +7,9 @@ use super::primitive_data::{MorphTarget, PrimitiveData};
 use super::rig_builder::{MAX_BOUND, NodeBinder, UndeformedVertex, VertexFrame};
 use super::vertex_details::VertexDetails;
 use super::vertices::Vertices;
-use crate::mesh::MemoryAccount;
-use crate::mesh::mesh_builder::InputCorner;
-use crate::mesh::rig::Delta;
+use geometry::mesh::MemoryAccount;
+use geometry::mesh::mesh_builder::InputCorner;
+use geometry::mesh::rig::Delta;
 
 /// Memory for a displacement of a bound vertex, and for finding equal ones, in bytes.
 const PER_DELTA: u64 = 250;

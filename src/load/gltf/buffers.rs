@@ -5,8 +5,8 @@ use ::gltf::Document;
 use super::GltfError;
 use super::notes::Notes;
 use super::reach::Use;
-use crate::load::uri::{self, Files};
-use crate::progress::Progress;
+use crate::uri::{self, Files};
+use geometry::progress::Progress;
 
 /// Reads the buffers that are used, and cuts each to the length in the document. `blob` is the binary chunk of a `.glb`. A buffer
 /// that is marked in `fallback` stays empty, since its data is decompressed from another buffer. So does one that only details

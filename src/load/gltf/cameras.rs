@@ -11,7 +11,7 @@ use super::lenient::Members;
 use super::nodes::Placed;
 use super::notes::Notes;
 use super::schema_check::shown;
-use crate::mesh::{FileCamera, Projection};
+use geometry::mesh::{FileCamera, Projection};
 
 /// The greatest number of cameras that are listed.
 const MOST_CAMERAS: usize = 256;

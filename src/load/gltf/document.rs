@@ -17,10 +17,10 @@ use super::repair::{self, Faults};
 use super::scenes::Scenes;
 use super::schema_check::Replaced;
 use super::{GltfError, extension_table, glb, json, schema, schema_check, variants};
-use crate::load::memory_budget::Budget;
-use crate::load::selection::Selection;
-use crate::mesh::{Borrowed, MemoryAccount, MemoryRefused};
-use crate::progress::Progress;
+use crate::memory_budget::Budget;
+use crate::selection::Selection;
+use geometry::mesh::{Borrowed, MemoryAccount, MemoryRefused};
+use geometry::progress::Progress;
 
 /// A validated document, the binary chunk of a `.glb`, and what was left out.
 pub(super) struct Parsed {
@@ -176,7 +176,7 @@ fn check_version(root: &mut Map<String, Value>, notes: &mut Notes) -> Result<(),
         }
         (None, None) => return Err(not_gltf("it has no /asset/version")),
     };
-    let said = |own: &str| format!("{:?}", crate::load::uri::shown(own));
+    let said = |own: &str| format!("{:?}", crate::uri::shown(own));
     if !own.starts_with("2.") {
         return Err(not_gltf(format!("its /asset/version is {}", said(&own))));
     }

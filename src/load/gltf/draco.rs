@@ -24,9 +24,9 @@ use super::extensions::DracoExtension;
 use super::nodes::Placed;
 use super::schema::{DRACO, is_detail};
 use super::{Accessors, GltfError};
-use crate::load::memory_budget::Budget;
-use crate::mesh::{Borrowed, MemoryAccount, MemoryRefused};
-use crate::progress::Progress;
+use crate::memory_budget::Budget;
+use geometry::mesh::{Borrowed, MemoryAccount, MemoryRefused};
+use geometry::progress::Progress;
 
 use header::Header;
 use memory::Decoding;

@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 use super::GltfError;
 use super::notes::Notes;
 use super::schema::{BASISU, DRACO, INSTANCING, KHR_MESHOPT, MESHOPT, TRANSFORM, VISIBILITY, WEBP};
-use crate::load::uri::shown;
+use crate::uri::shown;
 
 /// How an extension changes a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! Errors in glTF documents.
 
-use crate::mesh::build_limits::BuildError;
-use crate::progress::Cancelled;
+use geometry::mesh::build_limits::BuildError;
+use geometry::progress::Cancelled;
 
 /// Why a glTF document could not be loaded. The message doesn't contain the file's path. Places in the document are
 /// JSON pointers (RFC 6901).

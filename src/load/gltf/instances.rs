@@ -10,7 +10,7 @@ use glam::{DMat4, Quat, Vec3};
 use super::accessor::List;
 use super::extensions::InstancingExtension;
 use super::{Accessors, GltfError};
-use crate::mesh::rig::Placement;
+use geometry::mesh::rig::Placement;
 
 /// The transforms of a node's instances. They stay in their buffers until they are read.
 pub(super) struct Instances<'a> {

@@ -4,9 +4,9 @@ use serde_json::error::Category;
 use serde_json::{Map, Value};
 
 use super::GltfError;
-use crate::load::memory_budget::Budget;
-use crate::mesh::{MemoryAccount, MemoryRefused};
-use crate::progress::{Cancelled, Progress};
+use crate::memory_budget::Budget;
+use geometry::mesh::{MemoryAccount, MemoryRefused};
+use geometry::progress::{Cancelled, Progress};
 
 /// How deep lists and objects may be nested. The specification itself needs 8 levels; `extras` may need more.
 const MAX_DEPTH: usize = 100;

@@ -12,7 +12,7 @@ use super::json::objects;
 use super::lenient::Members;
 use super::nodes::Placed;
 use super::notes::Notes;
-use crate::mesh::{Light, LightKind, MOST_LIGHTS};
+use geometry::mesh::{Light, LightKind, MOST_LIGHTS};
 
 const EXTENSION: &str = "KHR_lights_punctual";
 

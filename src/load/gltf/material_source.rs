@@ -7,7 +7,7 @@
 use super::lenient::Members;
 use super::schema::TRANSFORM;
 use super::uv_transform::UvTransform;
-use crate::mesh::{Alpha, Look, Slot};
+use geometry::mesh::{Alpha, Look, Slot};
 
 /// A material of a document. Its images are still to be read.
 #[derive(Clone, Debug)]
@@ -200,7 +200,7 @@ impl MaterialSource {
                     let strength = STRENGTHS.iter().find(|(extension, _)| *extension == name);
                     let strength = strength.and_then(|(_, number)| Some((number, extensions.inside(name)?)));
                     if strength.is_none_or(|(number, members)| members.number(number, 0.0, POSITIVE) > 0.0) {
-                        self.undrawn.push(crate::load::uri::shown(name));
+                        self.undrawn.push(crate::uri::shown(name));
                     }
                 }
             }

@@ -14,15 +14,15 @@ use super::notes::Notes;
 use super::texture_source::{self, TextureSource};
 use super::uv_transform::UvTransform;
 use super::{Accessors, GltfError};
-use crate::load::images::{decode_halved, texture_size};
-use crate::load::memory_budget::Budget;
-use crate::load::packing::roughness;
-use crate::load::texture_room::{Scaling, TextureRoom, decoded_bytes};
-use crate::load::uri::Files;
-use crate::mesh::mesh_builder::MeshBuilder;
-use crate::mesh::mipmap::MipFilter;
-use crate::mesh::{Borrowed, Look, Map, MapUv, Material, MemoryAccount, MemoryRefused, Sampling, Slot, Texture};
-use crate::progress::Progress;
+use crate::images::{decode_halved, texture_size};
+use crate::memory_budget::Budget;
+use crate::packing::roughness;
+use crate::texture_room::{Scaling, TextureRoom, decoded_bytes};
+use crate::uri::Files;
+use geometry::mesh::mesh_builder::MeshBuilder;
+use geometry::mesh::mipmap::MipFilter;
+use geometry::mesh::{Borrowed, Look, Map, MapUv, Material, MemoryAccount, MemoryRefused, Sampling, Slot, Texture};
+use geometry::progress::Progress;
 
 /// How many materials a sentence names.
 const NAMED: usize = 3;
@@ -357,7 +357,7 @@ impl NamedMaterials {
     fn add(&mut self, name: &str) {
         self.count += 1;
         if self.named.len() < NAMED {
-            self.named.push(crate::load::uri::shown(name));
+            self.named.push(crate::uri::shown(name));
         }
     }
 }

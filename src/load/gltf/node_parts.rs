@@ -5,9 +5,9 @@ use serde_json::{Map, Value};
 use super::GltfError;
 use super::reach::{Reach, list};
 use super::schema::INSTANCING;
-use crate::load::memory_budget::Budget;
-use crate::load::parts::{Part, Parts};
-use crate::mesh::MemoryRefused;
+use crate::memory_budget::Budget;
+use crate::parts::{Part, Parts};
+use geometry::mesh::MemoryRefused;
 
 /// The parts of a scene.
 #[derive(Debug, Default)]

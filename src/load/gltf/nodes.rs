@@ -6,7 +6,7 @@ use glam::{DMat4, Mat4};
 
 use super::GltfError;
 use super::notes::Notes;
-use crate::mesh::rig::Placement;
+use geometry::mesh::rig::Placement;
 
 /// The nodes of a document with their places.
 pub(crate) struct Placed {

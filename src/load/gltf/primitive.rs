@@ -10,16 +10,16 @@ use super::notes::Notes;
 use super::primitive_data::PrimitiveData;
 use super::rig_builder::NodeBinder;
 use super::vertex_details::{DetailRepairs, VertexDetails};
-use crate::load::Budget;
-use crate::load::face_builder::{is_near, unplaced};
-use crate::load::import::Import;
-use crate::mesh::detail_table::DetailTable;
-use crate::mesh::{MemoryAccount, MemoryRefused};
+use crate::Budget;
+use crate::face_builder::{is_near, unplaced};
+use crate::import::Import;
+use geometry::mesh::detail_table::DetailTable;
+use geometry::mesh::{MemoryAccount, MemoryRefused};
 
 pub(super) use super::vertices::NodePose;
 use super::vertices::{Vertex, Vertices};
 use super::{Accessors, GltfError};
-use crate::mesh::mesh_builder::{CornerRepairs, MeshBuilder, StoredCorner};
+use geometry::mesh::mesh_builder::{CornerRepairs, MeshBuilder, StoredCorner};
 
 /// Reads primitives, and counts what was repaired or left out.
 #[derive(Debug, Default)]
@@ -368,7 +368,7 @@ fn used(indices: &Indices, count: usize) -> Result<Vec<u64>, String> {
 
 /// Returns a primitive's place in the document, for messages.
 pub(super) fn name(mesh: &Mesh, primitive: &Primitive) -> String {
-    let mesh_name = mesh.name().map_or(String::new(), |name| format!(" ({:?})", crate::load::uri::shown(name)));
+    let mesh_name = mesh.name().map_or(String::new(), |name| format!(" ({:?})", crate::uri::shown(name)));
     format!("/meshes/{}/primitives/{}{mesh_name}", mesh.index(), primitive.index())
 }
 

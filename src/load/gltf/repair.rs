@@ -11,8 +11,8 @@ use super::notes::Notes;
 use super::reach::{Reach, Use, is_drawn, is_influence, list, packed};
 use super::schema::{self, INSTANCING, is_detail};
 use super::schema_check::{Checker, Replaced};
-use crate::load::memory_budget::Budget;
-use crate::mesh::{MemoryAccount, MemoryRefused};
+use crate::memory_budget::Budget;
+use geometry::mesh::{MemoryAccount, MemoryRefused};
 
 /// How far a rotation's length may be from 1 without a warning: quaternions in files are rounded.
 const ROUNDING: f64 = 1e-3;

@@ -3,8 +3,8 @@
 use ::gltf::Document;
 
 use super::nodes::{self, Placed};
-use crate::load::attachment::{LocalTransform, SceneNodes};
-use crate::mesh::rig::{Clip, Property};
+use crate::attachment::{LocalTransform, SceneNodes};
+use geometry::mesh::rig::{Clip, Property};
 
 /// Describes the nodes of a document, with the morph targets of those that are shown. `also` are nodes that carry something beside
 /// meshes, if they are shown.

@@ -9,16 +9,16 @@ use ::gltf::{Document, Mesh, Semantic};
 use super::extensions::InstancingExtension;
 use super::nodes::Placed;
 use super::{Accessors, GltfError, instances, primitive};
-use crate::load::memory_budget::{Budget, edge_bytes};
-use crate::mesh::build_limits::MAX_TRIANGLES;
-use crate::mesh::detail_table::DetailTable;
-use crate::mesh::interner::Interner;
-use crate::mesh::{MemoryAccount, MemoryRefused, borrowing};
+use crate::memory_budget::{Budget, edge_bytes};
+use geometry::mesh::build_limits::MAX_TRIANGLES;
+use geometry::mesh::detail_table::DetailTable;
+use geometry::mesh::interner::Interner;
+use geometry::mesh::{MemoryAccount, MemoryRefused, borrowing};
 
 /// The greatest number of vertices, their displacements and indices, each counted as often as it is used.
 const MAX_ELEMENTS: u64 = 1 << 29;
 
-/// Memory for a corner while the mesh is built, in bytes (see [`crate::load::memory_budget`]).
+/// Memory for a corner while the mesh is built, in bytes (see [`crate::memory_budget`]).
 const PER_CORNER: u64 = 32;
 /// Memory for a triangle while the mesh is built, in bytes.
 const PER_TRIANGLE: u64 = 12;

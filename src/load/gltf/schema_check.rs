@@ -252,7 +252,7 @@ pub(super) fn shown(value: &Value) -> String {
     match value {
         Value::Array(values) => format!("a list of {}", values.len()),
         Value::Object(_) => "an object".to_owned(),
-        Value::String(text) => format!("{:?}", crate::load::uri::shown(text)),
+        Value::String(text) => format!("{:?}", crate::uri::shown(text)),
         other => other.to_string(),
     }
 }

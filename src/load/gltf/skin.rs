@@ -4,7 +4,7 @@ use ::gltf::Skin;
 use glam::{DMat4, Mat4};
 
 use super::{Accessors, GltfError};
-use crate::load::rig_builder::SkinJoints;
+use crate::rig_builder::SkinJoints;
 
 /// Reads the joints of a skin, which are nodes of the document.
 ///

@@ -12,16 +12,16 @@ mod parts;
 mod scenes;
 mod textures;
 mod variants;
-pub(crate) use mutations::seeds;
-pub(in crate::load) use odd::odd;
+pub use mutations::seeds;
+pub(crate) use odd::odd;
 
 use base64::prelude::{BASE64_STANDARD, Engine};
 use glam::{Vec2, Vec3};
 use serde_json::{Value, json};
 
 use super::*;
-use crate::mesh::topology::Topology;
-use crate::mesh::{Mesh, Repairs};
+use geometry::mesh::topology::Topology;
+use geometry::mesh::{Mesh, Repairs};
 
 /// A document that is being built: one buffer, with a view and an accessor for each list.
 struct Draft {

@@ -11,8 +11,8 @@ use super::Accessors;
 use super::lenient::Members;
 use super::notes::Notes;
 use super::schema::{BASISU, WEBP};
-use crate::load::uri::{self, Files};
-use crate::mesh::{Sampling, Wrap};
+use crate::uri::{self, Files};
+use geometry::mesh::{Sampling, Wrap};
 
 /// A texture of a document.
 #[derive(Clone)]

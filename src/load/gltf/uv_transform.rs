@@ -35,7 +35,7 @@ impl UvTransform {
         Vec2::new(x * cos + y * sin, y * cos - x * sin) + self.offset
     }
 
-    /// Returns the same as six numbers (see [`MapUv`](crate::mesh::MapUv)).
+    /// Returns the same as six numbers (see [`MapUv`](geometry::mesh::MapUv)).
     pub(super) fn affine(transform: Option<Self>) -> [f32; 6] {
         let Self { offset, rotation, scale } = transform.unwrap_or(Self::IDENTITY);
         let (sin, cos) = rotation.sin_cos();

@@ -10,10 +10,10 @@ use super::notes::Notes;
 use super::primitive_data::{MorphTarget, PrimitiveData};
 use super::uv_transform::UvTransform;
 use super::vertex_details::{TangentMorph, VertexDetails};
-use crate::load::binding_space::turned;
-use crate::mesh::CornerDetail;
-use crate::mesh::mesh_builder::InputCorner;
-use crate::mesh::normals::GivenNormal;
+use crate::binding_space::turned;
+use geometry::mesh::CornerDetail;
+use geometry::mesh::mesh_builder::InputCorner;
+use geometry::mesh::normals::GivenNormal;
 
 /// The greatest number of joints that move a vertex.
 const MOST_JOINTS: usize = 4;

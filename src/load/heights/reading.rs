@@ -9,13 +9,13 @@ use png::{BitDepth, DecodingError};
 
 use super::{HeightError, MAX_SIZE};
 use crate::files::{file_reason, open_file};
-use crate::load::images::metadata_limits;
-use crate::load::jpeg_memory::{coefficient_bytes, most_coefficient_bytes};
-use crate::load::memory_budget::Budget;
-use crate::load::webp_memory::webp_bytes;
-use crate::mesh::build_limits::{Borrowed, MemoryAccount, MemoryRefused, borrowing};
-use crate::mesh::heights::{HeightMap, angle_bytes};
-use crate::progress::{Cancelled, Progress};
+use crate::images::metadata_limits;
+use crate::jpeg_memory::{coefficient_bytes, most_coefficient_bytes};
+use crate::memory_budget::Budget;
+use crate::webp_memory::webp_bytes;
+use geometry::mesh::build_limits::{Borrowed, MemoryAccount, MemoryRefused, borrowing};
+use geometry::mesh::heights::{HeightMap, angle_bytes};
+use geometry::progress::{Cancelled, Progress};
 
 /// The bytes before a PNG image's width and height, which have 4 bytes each.
 const PNG_START: &[u8; 16] = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR";

@@ -6,8 +6,8 @@
 use fastrand::Rng;
 
 use super::read;
-use crate::load::Format::{self, Fbx, Obj, Off, Ply, Stl, ThreeMf};
-use crate::load::{fbx, obj, off, ply, stl, threemf};
+use crate::Format::{self, Fbx, Obj, Off, Ply, Stl, ThreeMf};
+use crate::{fbx, obj, off, ply, stl, threemf};
 
 /// The texts that replace a number.
 const NUMBERS: [&str; 5] = ["0", "-1", "4611686018427387904", "1e308", "nan"];
@@ -37,7 +37,7 @@ pub(super) fn originals() -> Vec<(Format, Vec<u8>)> {
 
 /// Returns the files that `PNAEN_MUTATE` names, without those of glTF, whose own tests take them.
 fn files() -> impl Iterator<Item = (Format, Vec<u8>)> {
-    crate::load::hostile_files::named_files().into_iter().filter_map(|path| {
+    crate::hostile_files::named_files().into_iter().filter_map(|path| {
         let format = Format::of_name(&path).filter(|format| *format != Format::Gltf)?;
         Some((format, std::fs::read(path).expect("a file that can be read")))
     })

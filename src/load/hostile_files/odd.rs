@@ -9,16 +9,16 @@ mod stl;
 use std::path::Path;
 
 use super::{mentions, page, unhung};
+use crate::Format;
+use crate::fbx::tests::documents::image;
 use crate::files::Limits;
-use crate::load::Format;
-use crate::load::fbx::tests::documents::image;
-use crate::load::gltf;
-use crate::load::mesh_file::read;
-use crate::load::selection::Selection;
-use crate::progress::Progress;
+use crate::gltf;
+use crate::mesh_file::read;
+use crate::selection::Selection;
+use geometry::progress::Progress;
 
 /// A file that opens.
-pub(in crate::load) struct Odd {
+pub(crate) struct Odd {
     pub name: &'static str,
     pub format: Format,
     pub bytes: Vec<u8>,

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::mutated;
-use crate::load::Format::{Fbx, Gltf, Obj, Off, Ply, Stl, ThreeMf};
-use crate::load::{environment_file, gltf};
+use crate::Format::{Fbx, Gltf, Obj, Off, Ply, Stl, ThreeMf};
+use crate::{environment_file, gltf};
 
 fn made() -> Vec<(&'static str, String, Vec<u8>)> {
     let mut made = Vec::new();

@@ -10,7 +10,7 @@ mod threemf;
 use std::borrow::Cow;
 
 use super::{is_expected, mentions, page, read};
-use crate::load::Format;
+use crate::Format;
 
 enum Gets {
     /// An error (see [`is_expected`]).

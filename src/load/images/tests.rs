@@ -1,7 +1,7 @@
 use image::{DynamicImage, ImageBuffer, Luma, LumaA, Rgb, Rgba};
 
 use super::*;
-use crate::mesh::mipmap::tests::noise;
+use geometry::mesh::mipmap::tests::noise;
 
 fn encoded(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());

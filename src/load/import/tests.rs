@@ -6,17 +6,17 @@ use glam::{Vec3, vec3};
 use proptest::prelude::*;
 
 use super::*;
+use crate::Format;
+use crate::face_builder::tests::{POINTS, SIDES, assert_cube};
+use crate::fbx::tests::documents::{Link, document, geometry, model, smoothed_prism};
+use crate::fbx::tests::tree::text;
 use crate::files::Limits;
-use crate::load::Format;
-use crate::load::face_builder::tests::{POINTS, SIDES, assert_cube};
-use crate::load::fbx::tests::documents::{Link, document, geometry, model, smoothed_prism};
-use crate::load::fbx::tests::tree::text;
-use crate::load::loaded_mesh::LoadedMesh;
-use crate::load::mesh_file::{LoadError, read};
-use crate::load::selection::Selection;
-use crate::load::source::Source;
-use crate::mesh::shapes::Shape;
-use crate::progress::Progress;
+use crate::loaded_mesh::LoadedMesh;
+use crate::mesh_file::{LoadError, read};
+use crate::selection::Selection;
+use crate::source::Source;
+use geometry::mesh::shapes::Shape;
+use geometry::progress::Progress;
 
 const MADE: Import =
     Import { normals: NormalSource::Made, crease_angle: 60.0, up: None, unit: None, show_hidden: false };
@@ -73,7 +73,7 @@ fn the_crease_angle_holds_where_normals_are_missing_and_warnings_name_it() {
     let missing = smooth_cube().replace("//1", "").replace("s 1\n", "");
     let import = Import { crease_angle: 95.0, ..Import::default() };
     let mesh = loaded(Format::Obj, missing.as_bytes(), import);
-    let diagonal = |corner: &crate::mesh::Corner| corner.normal.distance(corner.position.normalize()) < 1e-6;
+    let diagonal = |corner: &geometry::mesh::Corner| corner.normal.distance(corner.position.normalize()) < 1e-6;
     assert!(mesh.corners.iter().all(diagonal), "the three sides of a corner are smooth");
     assert!(mesh.warnings[0].contains("smoothed below 95 degrees"), "{:?}", mesh.warnings);
     assert_cube(&loaded(Format::Obj, missing.as_bytes(), Import { crease_angle: 89.0, ..Import::default() }));
@@ -133,7 +133,7 @@ fn what_was_chosen_takes_the_place_of_what_an_fbx_file_says() {
 /// In 3MF files Z points up. The unit of this one is the metre.
 #[test]
 fn what_was_chosen_takes_the_place_of_what_a_3mf_file_means() {
-    let bytes = crate::load::threemf::tests::cube();
+    let bytes = crate::threemf::tests::cube();
     let bounds = |import| {
         let bounds = loaded(Format::ThreeMf, &bytes, import).bounds();
         (bounds.min, bounds.max)

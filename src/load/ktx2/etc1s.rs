@@ -4,8 +4,8 @@
 //! Source: KTX 2.0 specification, appendices "BasisLZ" and "ETC1S".
 
 use super::huffman::read_code;
-use crate::load::bits::Bits;
-use crate::load::prefix_code::PrefixCode;
+use crate::bits::Bits;
+use crate::prefix_code::PrefixCode;
 
 /// What is added to the base colour for each of the four shades, by intensity.
 const SHADES: [[i32; 4]; 8] = [

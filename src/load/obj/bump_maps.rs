@@ -5,13 +5,13 @@ use std::collections::{HashMap, HashSet};
 use super::materials::Materials;
 use super::next_statement;
 use super::pieces::{Piece, in_pieces};
-use crate::load::images::{decode_halved, texture_size};
-use crate::load::memory_budget::Budget;
-use crate::load::read_error::ReadError;
-use crate::load::texture_room::decoded_bytes;
-use crate::mesh::mipmap::MipFilter;
-use crate::mesh::{MemoryAccount, Texture, borrowing};
-use crate::progress::Progress;
+use crate::images::{decode_halved, texture_size};
+use crate::memory_budget::Budget;
+use crate::read_error::ReadError;
+use crate::texture_room::decoded_bytes;
+use geometry::mesh::mipmap::MipFilter;
+use geometry::mesh::{MemoryAccount, Texture, borrowing};
+use geometry::progress::Progress;
 
 /// An image is looked at with no more px a side than this.
 const SIDE: u32 = 256;

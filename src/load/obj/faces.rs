@@ -2,10 +2,10 @@
 
 use super::pieces::Piece;
 use super::{Statement, next_statement};
-use crate::load::face_builder::MAX_CORNERS;
-use crate::load::read_error::ReadError;
-use crate::load::recent_corners::VertexNumbers;
-use crate::load::text_lines::{shown, words};
+use crate::face_builder::MAX_CORNERS;
+use crate::read_error::ReadError;
+use crate::recent_corners::VertexNumbers;
+use crate::text_lines::{shown, words};
 
 /// The number of what a corner doesn't have.
 pub(super) const NONE: u32 = u32::MAX;

@@ -7,16 +7,16 @@ use glam::Vec2;
 
 use super::mtl::{self, MtlMaterial, MtlTexture};
 use super::textures::{Giving, TextureUse};
-use crate::load::face_builder::{FaceBuilder, counted};
-use crate::load::images::{decode_halved, texture_size};
-use crate::load::memory_budget::Budget;
-use crate::load::read_error::ReadError;
-use crate::load::text_lines::{shown, words};
-use crate::load::texture_room::{Scaling, TextureRoom};
-use crate::load::uri::Files;
-use crate::mesh::mipmap::MipFilter;
-use crate::mesh::{Alpha, Look, Material, Sampling, Wrap, borrowing};
-use crate::progress::Progress;
+use crate::face_builder::{FaceBuilder, counted};
+use crate::images::{decode_halved, texture_size};
+use crate::memory_budget::Budget;
+use crate::read_error::ReadError;
+use crate::text_lines::{shown, words};
+use crate::texture_room::{Scaling, TextureRoom};
+use crate::uri::Files;
+use geometry::mesh::mipmap::MipFilter;
+use geometry::mesh::{Alpha, Look, Material, Sampling, Wrap, borrowing};
+use geometry::progress::Progress;
 
 /// The greatest number of material files that are read.
 const MAX_LIBRARIES: usize = 64;

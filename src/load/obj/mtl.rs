@@ -3,7 +3,7 @@
 //! The crate `tobj` isn't used. It drops a whole file because of one statement that it can't read, and takes the
 //! options of `map_Kd` for a part of the file name.
 
-use crate::load::text_lines::{Lines, first_word, number, numbers_or_nan, words};
+use crate::text_lines::{Lines, first_word, number, numbers_or_nan, words};
 
 /// A material in a material file.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,12 +2,12 @@
 //! that of a reader which goes from line to line.
 
 use super::too_large;
-use crate::cores::in_ranges;
-use crate::load::memory_budget::Budget;
-use crate::load::read_error::ReadError;
-use crate::load::text_lines::Lines;
-use crate::mesh::{Borrowed, MemoryAccount};
-use crate::progress::Progress;
+use crate::memory_budget::Budget;
+use crate::read_error::ReadError;
+use crate::text_lines::Lines;
+use geometry::cores::in_ranges;
+use geometry::mesh::{Borrowed, MemoryAccount};
+use geometry::progress::Progress;
 
 /// The least size of a piece but the last, in bytes. One ends at the next line end that ends a statement.
 const LEAST: usize = 1 << 15;

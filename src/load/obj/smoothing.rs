@@ -8,12 +8,12 @@ use glam::Vec3;
 use super::faces::index;
 use super::vertices::{Vertices, group};
 use super::{MAX_CORNERS, Statement, too_large};
-use crate::load::face_builder::NumberedCorner;
-use crate::load::memory_budget::Budget;
-use crate::load::read_error::ReadError;
-use crate::load::recent_corners::VertexNumbers;
-use crate::load::text_lines::words;
-use crate::mesh::MemoryAccount;
+use crate::face_builder::NumberedCorner;
+use crate::memory_budget::Budget;
+use crate::read_error::ReadError;
+use crate::recent_corners::VertexNumbers;
+use crate::text_lines::words;
+use geometry::mesh::MemoryAccount;
 
 /// Memory for an entry of the table while it grows, in bytes: the old and the new table exist at the same time.
 const PER_ENTRY: u64 = 3 * (size_of::<((usize, u32), Vec3)>() as u64 + 1);

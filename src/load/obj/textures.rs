@@ -3,11 +3,11 @@
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
-use crate::load::face_builder::FaceBuilder;
-use crate::load::memory_budget::Budget;
-use crate::load::packing::{metallic_roughness, with_opacity};
-use crate::mesh::mipmap::MipFilter;
-use crate::mesh::{Alpha, Map, MapUv, Material, Slot, Texture};
+use crate::face_builder::FaceBuilder;
+use crate::memory_budget::Budget;
+use crate::packing::{metallic_roughness, with_opacity};
+use geometry::mesh::mipmap::MipFilter;
+use geometry::mesh::{Alpha, Map, MapUv, Material, Slot, Texture};
 
 /// What an image is for.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,11 +4,11 @@ use glam::{Vec2, Vec3};
 
 use super::pieces::Piece;
 use super::{Statement, next_statement, too_large};
-use crate::load::memory_budget::Budget;
-use crate::load::read_error::ReadError;
-use crate::load::text_lines::{first_word, has_comma, number_or_nan, words};
-use crate::mesh::MemoryAccount;
-use crate::mesh::chunked_vec::ChunkedVec;
+use crate::memory_budget::Budget;
+use crate::read_error::ReadError;
+use crate::text_lines::{first_word, has_comma, number_or_nan, words};
+use geometry::mesh::MemoryAccount;
+use geometry::mesh::chunked_vec::ChunkedVec;
 
 /// The most numbers that a position has, with a weight and a colour.
 const NUMBERS: usize = 7;

@@ -1,7 +1,7 @@
 //! OFF files as programs write them: keywords, colours, and where the numbers stand.
 
 use super::*;
-use crate::load::face_builder::tests::{POINTS, SIDES, assert_cube};
+use crate::face_builder::tests::{POINTS, SIDES, assert_cube};
 
 fn read(text: &str) -> LoadedMesh {
     super::read(text.as_bytes().to_vec(), "cube", Import::default(), &Limits::default(), &Progress::new()).unwrap()
@@ -26,12 +26,12 @@ fn nothing(_: usize) -> String {
     String::new()
 }
 
-pub(crate) fn cube() -> String {
+pub fn cube() -> String {
     cube_of("OFF # a cube\n\n8 6 12", nothing, nothing)
 }
 
 /// A cube with everything that a vertex may have, and colours of faces, which count for nothing beside those of vertices.
-pub(crate) fn everything() -> String {
+pub fn everything() -> String {
     cube_of("STCN4OFF\n8 6 0", |i| format!("1 0 0 1 {} 0 0 255 0.5 0.25", 30 * i), |i| format!("0.5 0.5 0.{i}"))
 }
 

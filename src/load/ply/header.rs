@@ -1,8 +1,8 @@
 //! Reads the header of a PLY file: which elements follow, and which properties each has.
 
 use super::textures;
-use crate::load::read_error::{FilePosition, ReadError};
-use crate::load::text_lines::{Line, Lines, first_word, shown};
+use crate::read_error::{FilePosition, ReadError};
+use crate::text_lines::{Line, Lines, first_word, shown};
 
 /// How values are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,17 +3,17 @@
 
 use std::sync::Arc;
 
-use crate::load::face_builder::FaceBuilder;
-use crate::load::images::{decode_halved, texture_size};
-use crate::load::memory_budget::Budget;
-use crate::load::read_error::ReadError;
-use crate::load::text_lines::{first_word, shown};
-use crate::load::texture_room::{Scaling, TextureRoom};
-use crate::load::uri::Files;
-use crate::mesh::mipmap::MipFilter;
-use crate::mesh::{Material, borrowing};
-use crate::names;
-use crate::progress::Progress;
+use crate::face_builder::FaceBuilder;
+use crate::images::{decode_halved, texture_size};
+use crate::memory_budget::Budget;
+use crate::read_error::ReadError;
+use crate::text_lines::{first_word, shown};
+use crate::texture_room::{Scaling, TextureRoom};
+use crate::uri::Files;
+use geometry::mesh::mipmap::MipFilter;
+use geometry::mesh::{Material, borrowing};
+use geometry::names;
+use geometry::progress::Progress;
 
 /// How many images are read. Each is a material of its own.
 const MAX_IMAGES: usize = 256;

@@ -1,7 +1,7 @@
 //! The next faces of a binary file, as far as they are triangles: decoded together.
 
 use super::values::{FaceRow, Values};
-use crate::load::recent_corners::VertexNumbers;
+use crate::recent_corners::VertexNumbers;
 
 /// How many triangles are decoded together.
 const BLOCK: u64 = 1 << 12;

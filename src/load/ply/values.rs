@@ -1,8 +1,8 @@
 //! Reads the values after the header of a PLY file, in text and in binary.
 
 use super::header::{Element, Encoding, Header, Property, PropertyKind, Scalar};
-use crate::load::read_error::{FilePosition, ReadError};
-use crate::load::text_lines::{Line, Lines, number, shown, words};
+use crate::read_error::{FilePosition, ReadError};
+use crate::text_lines::{Line, Lines, number, shown, words};
 
 /// The position of the next value.
 #[derive(Clone)]
@@ -311,7 +311,7 @@ impl<'a> Values<'a> {
     }
 
     fn word(&mut self) -> Result<f64, ReadError> {
-        let (word, rest) = crate::load::text_lines::first_word(self.left);
+        let (word, rest) = crate::text_lines::first_word(self.left);
         if word.is_empty() {
             self.ends = self.is_last();
             let count = words(self.line.text).count();

@@ -10,7 +10,7 @@
 
 use glam::Vec4;
 
-use crate::load::face_builder::linear_color;
+use crate::face_builder::linear_color;
 
 /// How the bits after each triangle are read.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,14 +1,14 @@
 //! STL files as programs write them, and how text is told from binary.
 
 use super::*;
-use crate::load::face_builder::tests::{POINTS, assert_cube, triangles};
+use crate::face_builder::tests::{POINTS, assert_cube, triangles};
 
 fn read(bytes: &[u8]) -> LoadedMesh {
     super::read(bytes.to_vec(), "cube", Selection::default(), &Limits::default(), &Progress::new()).unwrap()
 }
 
 /// A cube with wrong normals.
-pub(crate) fn text() -> String {
+pub fn text() -> String {
     let vertex = |point: usize| format!("vertex {} {} {}\n", POINTS[point][0], POINTS[point][1], POINTS[point][2]);
     let facet = |t: &[usize; 3]| {
         let vertices: String = t.iter().map(|&point| vertex(point)).collect();
@@ -18,7 +18,7 @@ pub(crate) fn text() -> String {
     format!("solid one\n{}endsolid one\nsolid two\n{}endsolid two\n", facets[..5].concat(), facets[5..].concat())
 }
 
-pub(crate) fn binary(header: &[u8]) -> Vec<u8> {
+pub fn binary(header: &[u8]) -> Vec<u8> {
     let mut bytes = header.to_vec();
     bytes.resize(80, b' ');
     bytes.extend(12_u32.to_le_bytes());

@@ -6,13 +6,13 @@ use std::path::Path;
 use super::archive::{Archive, Unpacked};
 use super::model::{Geometry, ModelReader, Part, Placed};
 use super::{broken, xml};
-use crate::load::format::Format;
-use crate::load::memory_budget::Budget;
-use crate::load::notes::Notes;
-use crate::load::read_error::ReadError;
-use crate::mesh::MemoryAccount;
-use crate::names::shown;
-use crate::progress::Progress;
+use crate::format::Format;
+use crate::memory_budget::Budget;
+use crate::notes::Notes;
+use crate::read_error::ReadError;
+use geometry::mesh::MemoryAccount;
+use geometry::names::shown;
+use geometry::progress::Progress;
 
 /// The type of the relationship to the model (core specification, appendix C.2).
 const MODEL: &str = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";

@@ -9,16 +9,16 @@ use super::document::Document;
 use super::mixtures::{Mixture, Shown, Textured};
 use super::model::Part;
 use super::properties::Group;
-use crate::load::face_builder::FaceBuilder;
-use crate::load::images::{decode_halved, decode_texture, texture_size};
-use crate::load::memory_budget::Budget;
-use crate::load::notes::Notes;
-use crate::load::read_error::ReadError;
-use crate::load::texture_room::{Scaling, TextureRoom, decoded_bytes};
-use crate::mesh::mipmap::{MipFilter, level_size};
-use crate::mesh::{Alpha, MemoryAccount, Texture};
-use crate::names::shown;
-use crate::progress::{Cancelled, Progress};
+use crate::face_builder::FaceBuilder;
+use crate::images::{decode_halved, decode_texture, texture_size};
+use crate::memory_budget::Budget;
+use crate::notes::Notes;
+use crate::read_error::ReadError;
+use crate::texture_room::{Scaling, TextureRoom, decoded_bytes};
+use geometry::mesh::mipmap::{MipFilter, level_size};
+use geometry::mesh::{Alpha, MemoryAccount, Texture};
+use geometry::names::shown;
+use geometry::progress::{Cancelled, Progress};
 
 /// The images of all textures that a group of coordinates names, packed as PNG or JPEG.
 pub(super) struct Images {

@@ -14,10 +14,10 @@ use super::mixtures::{Mixture, Shown, Source, Textured};
 use super::model::{Object, TriangleLook};
 use super::properties::{Group, MultiProperties, material_color};
 use super::texture2d::Texture2d;
-use crate::load::face_builder::{FaceBuilder, counted, linear_color};
-use crate::load::read_error::ReadError;
-use crate::mesh::{Alpha, Material};
-use crate::names::shown;
+use crate::face_builder::{FaceBuilder, counted, linear_color};
+use crate::read_error::ReadError;
+use geometry::mesh::{Alpha, Material};
+use geometry::names::shown;
 
 /// How many different images of layers are made. Each takes as much memory as its largest texture.
 const MAX_MIXTURES: usize = 64;

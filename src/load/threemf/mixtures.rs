@@ -5,10 +5,10 @@ use std::sync::Arc;
 use glam::{Vec3, Vec4};
 
 use super::layers::{Method, blended};
-use crate::load::face_builder::linear_color;
-use crate::mesh::Texture;
-use crate::mesh::mipmap::encoded;
-use crate::progress::{Cancelled, Progress};
+use crate::face_builder::linear_color;
+use geometry::mesh::Texture;
+use geometry::mesh::mipmap::encoded;
+use geometry::progress::{Cancelled, Progress};
 
 /// A material that shows an image.
 pub(super) struct Textured {

@@ -12,13 +12,13 @@ use super::properties::{Group, LayerFaults};
 use super::texture2d::Texture2d;
 use super::xml::{Element, Step};
 use super::{broken, too_large};
-use crate::load::memory_budget::Budget;
-use crate::load::notes::Notes;
-use crate::load::read_error::ReadError;
-use crate::load::text_lines::{number, shown, words};
-use crate::mesh::MemoryAccount;
-use crate::mesh::chunked_vec::ChunkedVec;
-use crate::names;
+use crate::memory_budget::Budget;
+use crate::notes::Notes;
+use crate::read_error::ReadError;
+use crate::text_lines::{number, shown, words};
+use geometry::mesh::MemoryAccount;
+use geometry::mesh::chunked_vec::ChunkedVec;
+use geometry::names;
 
 /// Memory for an object or for a group besides what it holds, in bytes; maps grow to twice what they need.
 const PER_ENTRY: u64 = 400;
@@ -496,7 +496,7 @@ impl<'a> ModelReader<'a> {
             return Err(self.broken("it isn't a 3MF model: its first element isn't called \"model\""));
         }
         let Counts { repeated, bad_colors, absent_constituents, bad_shares, layers } = self.found;
-        self.notes.extend(crate::load::face_builder::counted([
+        self.notes.extend(crate::face_builder::counted([
             (repeated, "objects with the id of another, left out"),
             (bad_colors, "colours that aren't #RRGGBB or #RRGGBBAA, replaced by white"),
             (absent_constituents, "materials of mixtures that aren't in the file, left out of them"),

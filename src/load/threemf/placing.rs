@@ -11,15 +11,15 @@ use super::mixtures::Textured;
 use super::model::{Object, Placed, Triangle};
 use super::properties::Group;
 use super::{broken, too_large};
-use crate::load::face_builder::{FaceBuilder, NumberedCorner, counted};
-use crate::load::import::Import;
-use crate::load::memory_budget::{Budget, edge_bytes};
-use crate::load::notes::Notes;
-use crate::load::read_error::{FilePosition, ReadError};
-use crate::mesh::MemoryAccount;
-use crate::mesh::build_limits::MAX_TRIANGLES;
-use crate::mesh::mesh_builder::InputCorner;
-use crate::progress::Progress;
+use crate::face_builder::{FaceBuilder, NumberedCorner, counted};
+use crate::import::Import;
+use crate::memory_budget::{Budget, edge_bytes};
+use crate::notes::Notes;
+use crate::read_error::{FilePosition, ReadError};
+use geometry::mesh::MemoryAccount;
+use geometry::mesh::build_limits::MAX_TRIANGLES;
+use geometry::mesh::mesh_builder::InputCorner;
+use geometry::progress::Progress;
 
 /// How deep components may be nested.
 const MAX_NESTING: usize = 64;

@@ -6,7 +6,7 @@ use glam::Vec4;
 
 use super::layers::Method;
 use super::xml::Element;
-use crate::load::face_builder::linear_color;
+use crate::face_builder::linear_color;
 
 /// How many layers are read. The specification allows one of materials and one of colours, and any number of textures.
 const MAX_LAYERS: usize = 16;

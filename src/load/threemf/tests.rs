@@ -1,16 +1,16 @@
 //! 3MF files as slicers and modelling programs write them.
 
 #[path = "../../../tests/documents/package.rs"]
-pub(crate) mod package;
+pub mod package;
 
-pub(in crate::load) mod layers;
+pub(crate) mod layers;
 
 use glam::Vec3;
 
 use super::*;
-use crate::load::face_builder::linear_color;
-use crate::load::face_builder::tests::{POINTS, assert_cube, triangles};
-use crate::mesh::{Alpha, Sampling, Wrap};
+use crate::face_builder::linear_color;
+use crate::face_builder::tests::{POINTS, assert_cube, triangles};
+use geometry::mesh::{Alpha, Sampling, Wrap};
 use package::{Entry, MODEL, mesh, model, relationships, zip};
 
 fn read(bytes: &[u8]) -> LoadedMesh {
@@ -27,7 +27,7 @@ fn of_object(object: &str, build: &str) -> Vec<u8> {
     package::package(&model(&format!("<object id=\"1\" {object}</object>"), build))
 }
 
-pub(crate) fn cube() -> Vec<u8> {
+pub fn cube() -> Vec<u8> {
     of_object(&format!("type=\"model\">{}", cube_mesh()), "<item objectid=\"1\"/>")
 }
 
@@ -48,7 +48,7 @@ fn painted() -> String {
 }
 
 /// A PNG image of two texels side by side, in these colours.
-pub(in crate::load) fn png(colors: [[u8; 4]; 2]) -> Vec<u8> {
+pub(crate) fn png(colors: [[u8; 4]; 2]) -> Vec<u8> {
     let mut bytes = std::io::Cursor::new(Vec::new());
     let image = image::RgbaImage::from_fn(2, 1, |x, _| image::Rgba(colors[x as usize]));
     image.write_to(&mut bytes, image::ImageFormat::Png).expect("an image in memory");
@@ -56,7 +56,7 @@ pub(in crate::load) fn png(colors: [[u8; 4]; 2]) -> Vec<u8> {
 }
 
 /// A file with a triangle of a texture, whose element `texture2d` has these attributes, and an image.
-pub(in crate::load) fn textured(attributes: &str, image: Entry) -> Vec<u8> {
+pub(crate) fn textured(attributes: &str, image: Entry) -> Vec<u8> {
     let triangle = mesh([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[0, 1, 2]]);
     let triangle = triangle.replace("v3=\"2\"", "v3=\"2\" pid=\"4\" p1=\"0\" p2=\"1\" p3=\"2\"");
     let resources = format!(
@@ -77,7 +77,7 @@ pub(crate) fn with_texture() -> Vec<u8> {
 }
 
 /// A file with a part beside the model, materials, colours, components, a mirrored one, and what isn't read.
-pub(crate) fn everything() -> Vec<u8> {
+pub fn everything() -> Vec<u8> {
     let beside = model(&painted(), "");
     let own =
         "<object id=\"7\"><components><component p:path=\"/3D/Objects/a.model\" objectid=\"2\"/></components></object>";

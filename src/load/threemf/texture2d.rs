@@ -3,7 +3,7 @@
 //! Source: 3MF Materials and Properties Extension 1.2.1, sections 5 and 6.
 
 use super::xml::Element;
-use crate::mesh::{Sampling, Wrap};
+use geometry::mesh::{Sampling, Wrap};
 
 /// An image in the archive, and how it is sampled.
 #[derive(Clone, Debug)]

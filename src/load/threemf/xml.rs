@@ -9,7 +9,7 @@ use quick_xml::events::{BytesStart, Event};
 use quick_xml::reader::Reader;
 
 use super::broken;
-use crate::load::read_error::ReadError;
+use crate::read_error::ReadError;
 
 /// How deep elements may be nested.
 const MAX_DEPTH: usize = 256;

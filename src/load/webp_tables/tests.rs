@@ -5,7 +5,7 @@ use image::ImageFormat;
 use super::*;
 
 #[path = "../../../tests/documents/webp.rs"]
-pub(crate) mod webp;
+pub mod webp;
 
 use webp::{BitWriter, of_groups};
 

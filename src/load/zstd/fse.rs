@@ -4,7 +4,7 @@
 
 use super::backward_bits::BackwardBits;
 use super::{BROKEN, Fault, Reader};
-use crate::load::bits::Bits;
+use crate::bits::Bits;
 
 /// A table of states.
 #[derive(Clone)]

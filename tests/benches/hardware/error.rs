@@ -1,8 +1,12 @@
 //! Equal error on screen: our LOD by error with culling, compared with the peer with the white paper's LOD and clipping.
 
-use pnaen::embed::GpuError;
-use pnaen::internals::{Engine, Measurements, Settings, TOLERANCE_RANGE, Timing};
-use pnaen::tessellate::{Clip, Lod, Partitioning, Tessellation};
+use geometry::tessellate::{Clip, Lod, Partitioning, Tessellation};
+use gpu::embed::GpuError;
+use gpu::recorder::Timing;
+use inspect::engine::Engine;
+use inspect::engine::measurements::Measurements;
+use inspect::settings::Settings;
+use inspect::settings::options::TOLERANCE_RANGE;
 
 use super::Scale;
 use super::numbers::{ms, or_none, ratio, table, whole};

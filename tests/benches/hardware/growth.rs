@@ -1,7 +1,7 @@
 //! How cost grows with twice the patches, twice the factors, or twice the output.
 
-use pnaen::internals::Engine;
-use pnaen::tessellate::Partitioning::FractionalOdd;
+use geometry::tessellate::Partitioning::FractionalOdd;
+use inspect::engine::Engine;
 
 use super::ours::Subject;
 use super::peer::Peer;

@@ -26,8 +26,10 @@ mod vulkan;
 
 use std::process::ExitCode;
 
-use pnaen::internals::{ARENA_BYTES, Engine, Shape};
-use pnaen::tessellate::Partitioning::{FractionalOdd, Integer};
+use geometry::mesh::shapes::Shape;
+use geometry::tessellate::Partitioning::{FractionalOdd, Integer};
+use inspect::engine::Engine;
+use inspect::settings::ARENA_BYTES;
 
 use copy::Copies;
 use ours::Effort;

@@ -3,10 +3,16 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use pnaen::internals::{Engine, Lighting, Preparation, Renderer, Settings, Source, load_and_prepare};
-use pnaen::mesh::{Alpha, Mesh, Topology};
-use pnaen::progress::Progress;
-use pnaen::tessellate::Tessellation;
+use geometry::mesh::{Alpha, Mesh, Topology};
+use geometry::progress::Progress;
+use geometry::tessellate::Tessellation;
+use inspect::engine::Engine;
+use inspect::engine::Preparation;
+use inspect::engine::load as load_and_prepare;
+use inspect::render::renderer::Renderer;
+use inspect::settings::Settings;
+use inspect::settings::light::Lighting;
+use load::source::Source;
 
 use super::Scale;
 use super::numbers::{Spread, table, whole};

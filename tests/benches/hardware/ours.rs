@@ -2,14 +2,22 @@
 
 use std::time::{Duration, Instant};
 
+use geometry::tessellate::Vertex;
+use geometry::tessellate::{Clip, Tessellation};
 use glam::Vec3;
-use pnaen::embed::GpuError;
-use pnaen::internals::{
-    Camera, CurveNet, DRAWING, Engine, PassTime, PatchLayout as Patch, Scene, Settings, Target, Timing, read_buffer,
-    take_times,
-};
-use pnaen::tessellate::Vertex;
-use pnaen::tessellate::{Clip, Tessellation};
+use gpu::embed::GpuError;
+use gpu::layout::CurveNet;
+use gpu::layout::Patch;
+use gpu::readback::read_buffer;
+use gpu::recorder::DRAWING;
+use gpu::recorder::PassTime;
+use gpu::recorder::Timing;
+use gpu::recorder::take_times;
+use inspect::engine::Engine;
+use inspect::render::camera::Camera;
+use inspect::render::scene::Scene;
+use inspect::render::target::Target;
+use inspect::settings::Settings;
 
 use super::numbers::Spread;
 use super::peer::{NetCorner, PeerFrame};
@@ -102,7 +110,7 @@ impl Subject {
         // on the view, so the tessellation is forgotten.
         let nudge = if run.is_multiple_of(2) { 0.0 } else { 1e-3 };
         if self.scene.tessellator.given().is_some()
-            || self.settings.tessellation.used_lod() == pnaen::tessellate::Lod::Uniform
+            || self.settings.tessellation.used_lod() == geometry::tessellate::Lod::Uniform
         {
             self.scene.tessellator.forget();
         }
@@ -131,7 +139,7 @@ impl Subject {
         })?;
         engine.gpu.check()?;
         let spread = |passes: &[&str]| Spread::of(runs.iter().map(|run| run.sum(passes)));
-        let passes = pnaen::internals::PASSES.map(|pass| PassTime { pass, ms: spread(&[pass]).median });
+        let passes = gpu::recorder::PASSES.map(|pass| PassTime { pass, ms: spread(&[pass]).median });
         let frame = [&TESSELLATING[..], &DRAWING].concat();
         Ok(OurTimes {
             tessellation: spread(&TESSELLATING),
@@ -181,7 +189,7 @@ impl Subject {
         let b = self.scene.tessellator.buffers();
         let read = [&b.points, &b.corners, &b.patches, &b.curves, &b.factor_curves, &b.curve_nets, &b.edge_factors];
         let read: u64 = read.iter().map(|buffer| buffer.size()).sum();
-        let handed = size_of::<pnaen::tessellate::PatchFactors>() + size_of::<[u32; 2]>();
+        let handed = size_of::<geometry::tessellate::PatchFactors>() + size_of::<[u32; 2]>();
         vertices * size_of::<Vertex>() as u64
             + triangles * size_of::<[u32; 3]>() as u64
             + read

@@ -1,7 +1,7 @@
 //! The emission of rows beside that of rings, which Direct3D's integer partitioning has.
 
-use pnaen::internals::Engine;
-use pnaen::tessellate::Partitioning::{Integer, Rows};
+use geometry::tessellate::Partitioning::{Integer, Rows};
+use inspect::engine::Engine;
 
 use super::Scale;
 use super::numbers::{ratio, table, whole};

@@ -4,8 +4,9 @@ use std::rc::Rc;
 
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
+use geometry::tessellate::hull_factors::HullFactors;
+use gpu::device::Gpu;
 use image::RgbaImage;
-use pnaen::internals::{Gpu, HullFactors};
 
 use super::memory::{Buffer, Owned};
 use super::pipelines::{Bound, FRAME_STAGES, Kind, Layout, tessellating};
@@ -70,7 +71,7 @@ impl Peer {
             | vk::ShaderStageFlags::TESSELLATION_EVALUATION;
         Ok(Self {
             layout: Layout::new(&vulkan, stages)?,
-            target: Target::new(&vulkan, size, pnaen::internals::samples(gpu))?,
+            target: Target::new(&vulkan, size, inspect::render::target::samples(gpu))?,
             nowhere: Pass::nowhere(&vulkan)?,
             vulkan,
         })

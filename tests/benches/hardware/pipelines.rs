@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use ash::vk;
-use pnaen::tessellate::Partitioning;
+use geometry::tessellate::Partitioning;
 
 use super::memory::{Buffer, Owned};
 use super::peer::PeerFrame;

@@ -1,6 +1,6 @@
 //! Prints the report in Markdown.
 
-use pnaen::internals::Engine;
+use inspect::engine::Engine;
 
 use super::Scale;
 use super::copy::Copies;
@@ -36,11 +36,11 @@ impl Report {
             "the host's clock for whole submissions, since this adapter has no reliable timestamps"
         };
         let [width, height] = scale.size;
-        let (samples, runs) = (pnaen::internals::samples(&engine.gpu), scale.effort.runs);
+        let (samples, runs) = (inspect::render::target::samples(&engine.gpu), scale.effort.runs);
         println!("# Tessellation in compute passes against the driver's tessellation stages\n");
         println!("- adapter: {} ({:?}, {:?})", info.name, info.device_type, info.backend);
         println!("- driver: {} {}", info.driver, info.driver_info);
-        println!("- date: {}", pnaen::internals::utc(std::time::SystemTime::now()));
+        println!("- date: {}", geometry::numbers::utc(std::time::SystemTime::now()));
         println!("- pictures: {width} x {height} px, {samples} samples per px, cleared and resolved by both");
         println!("- times: ms, medians of {runs} runs after warm-up (least..most), by {clock}");
         println!("{METHOD}");

@@ -3,12 +3,17 @@
 use std::f32::consts::TAU;
 use std::sync::Arc;
 
+use geometry::mesh::mesh_builder::MeshBuilder;
+use geometry::mesh::{Corner, Material, Mesh, Topology};
+use geometry::progress::Progress;
+use geometry::tessellate::hull_factors::HullFactors;
+use geometry::tessellate::{Lod, Partitioning, Tessellation};
 use glam::{Vec2, Vec3};
-use pnaen::embed::GpuError;
-use pnaen::internals::{Camera, Engine, HullFactors, MeshBuilder, Settings, Target};
-use pnaen::mesh::{Corner, Material, Mesh, Topology};
-use pnaen::progress::Progress;
-use pnaen::tessellate::{Lod, Partitioning, Tessellation};
+use gpu::embed::GpuError;
+use inspect::engine::Engine;
+use inspect::render::camera::Camera;
+use inspect::render::target::Target;
+use inspect::settings::Settings;
 
 use super::ours::Subject;
 
@@ -150,7 +155,7 @@ fn hashed(topology: &Topology, greatest: f32) -> Vec<HullFactors> {
         let part = (mixed >> 8) as f32 / (1 << 24) as f32;
         (greatest * (0.25 + 0.75 * part)).max(1.0)
     };
-    let patch = |patch: &pnaen::mesh::Patch| {
+    let patch = |patch: &geometry::mesh::Patch| {
         let sides = patch.sides.map(|side| factor(topology.sides[side as usize].edge));
         HullFactors::of_sides(Default::default(), sides, sides[0].max(sides[1]).max(sides[2]))
     };

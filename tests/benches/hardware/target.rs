@@ -102,7 +102,7 @@ fn drawing(
     }
     let subpasses = [subpass];
     let info = vk::RenderPassCreateInfo::default().attachments(&attachments[..views.len()]).subpasses(&subpasses);
-    let background = pnaen::internals::Settings::default().background_color().map(linear);
+    let background = inspect::settings::Settings::default().background_color().map(linear);
     let [red, green, blue] = background;
     let color = vk::ClearValue { color: vk::ClearColorValue { float32: [red, green, blue, 1.0] } };
     // Depth is reversed.

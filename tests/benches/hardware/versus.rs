@@ -1,10 +1,11 @@
 //! Measures one subject with our passes and with the peer.
 
+use geometry::tessellate::Partitioning;
+use gpu::embed::GpuError;
+use gpu::recorder::Timing;
 use image::RgbaImage;
-use pnaen::embed::GpuError;
-use pnaen::internals::{Engine, Timing};
-use pnaen::load::LoadError;
-use pnaen::tessellate::Partitioning;
+use inspect::engine::Engine;
+use load::LoadError;
 use thiserror::Error;
 
 use super::numbers::Spread;

@@ -12,8 +12,8 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-use pnaen::load::{Limits, load};
-use pnaen::progress::Progress;
+use geometry::progress::Progress;
+use load::{Limits, load};
 
 /// How many quads the mesh has along each direction.
 const SIDE: u32 = 1000;

@@ -12,12 +12,19 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
+use geometry::mesh::{Mesh, Topology};
+use geometry::tessellate::hull_factors::HullFactors;
+use geometry::tessellate::{Inputs, Lod, Partitioning, Tessellation};
 use glam::{Vec2, Vec3};
-use pnaen::internals::{
-    ARENA_BYTES, Camera, Compared, Engine, HullFactors, Measurements, Optimum, Scene, Timing, compare_with_optimum,
-};
-use pnaen::mesh::{Mesh, Topology};
-use pnaen::tessellate::{Inputs, Lod, Partitioning, Tessellation};
+use gpu::recorder::Timing;
+use inspect::engine::Engine;
+use inspect::engine::measurements::Measurements;
+use inspect::measure::optimum::Compared;
+use inspect::measure::optimum::Optimum;
+use inspect::measure::optimum::compare_with_optimum;
+use inspect::render::camera::Camera;
+use inspect::render::scene::Scene;
+use inspect::settings::ARENA_BYTES;
 
 const VIEWPORT: Vec2 = Vec2::new(1280.0, 720.0);
 /// In px.

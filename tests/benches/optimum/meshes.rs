@@ -4,10 +4,13 @@ use std::f32::consts::TAU;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use geometry::mesh::mesh_builder::MeshBuilder;
+use geometry::mesh::shapes::Shape;
+use geometry::mesh::{Corner, Material, Mesh};
+use geometry::progress::Progress;
 use glam::{Vec2, Vec3, vec3};
-use pnaen::internals::{Limits, MeshBuilder, Shape, Source};
-use pnaen::mesh::{Corner, Material, Mesh};
-use pnaen::progress::Progress;
+use load::files::Limits;
+use load::source::Source;
 
 /// All shapes, the meshes of this file, and those of mesh files. A file that can't be read is named on stderr and left out.
 pub fn with_files(files: &[PathBuf]) -> Vec<(String, Arc<Mesh>)> {

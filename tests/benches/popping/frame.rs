@@ -1,9 +1,11 @@
 //! What is emitted in one frame.
 
+use geometry::mesh::{Mesh, Topology};
+use geometry::tessellate::factors::point_count;
+use geometry::tessellate::factors::triangle_count;
+use geometry::tessellate::{Inputs, PatchFactors, Tessellated, Tessellation, Vertex, tessellate, unpack_normal};
 use glam::{DVec3, Vec3};
-use pnaen::internals::{Camera, point_count, triangle_count};
-use pnaen::mesh::{Mesh, Topology};
-use pnaen::tessellate::{Inputs, PatchFactors, Tessellated, Tessellation, Vertex, tessellate, unpack_normal};
+use inspect::render::camera::Camera;
 
 use crate::VIEWPORT;
 use crate::places::{PER_PATCH, places_within};

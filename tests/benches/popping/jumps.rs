@@ -1,6 +1,7 @@
 //! What changes between two successive frames because factors do.
 
-use pnaen::internals::{row_base, triangle_count};
+use geometry::tessellate::factors::row_base;
+use geometry::tessellate::factors::triangle_count;
 
 use crate::frame::{Emitted, Frame};
 use crate::histogram::Histogram;

@@ -37,8 +37,8 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
+use geometry::mesh::{Mesh, Topology};
 use glam::Vec2;
-use pnaen::mesh::{Mesh, Topology};
 
 use frame::Frame;
 use jumps::Jumps;

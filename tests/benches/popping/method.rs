@@ -1,8 +1,8 @@
 //! What is compared: partitionings, and where their factors come from.
 
-use pnaen::internals::Camera;
-use pnaen::mesh::{Mesh, Topology};
-use pnaen::tessellate::{Inputs, Lod, Partitioning, Tessellation, tessellate};
+use geometry::mesh::{Mesh, Topology};
+use geometry::tessellate::{Inputs, Lod, Partitioning, Tessellation, tessellate};
+use inspect::render::camera::Camera;
 
 use crate::VIEWPORT;
 

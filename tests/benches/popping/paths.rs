@@ -1,8 +1,8 @@
 //! Paths along which cameras move.
 
+use geometry::mesh::Bounds;
 use glam::Vec2;
-use pnaen::internals::Camera;
-use pnaen::mesh::Bounds;
+use inspect::render::camera::Camera;
 
 use crate::VIEWPORT;
 

@@ -3,9 +3,9 @@
 
 use std::ops::RangeInclusive;
 
+use geometry::mesh::{Mesh, Topology};
+use geometry::tessellate::{Inputs, LodView, Normals, Partitioning, Tessellation, tessellate, unpack_normal};
 use glam::{DVec3, Vec3};
-use pnaen::mesh::{Mesh, Topology};
-use pnaen::tessellate::{Inputs, LodView, Normals, Partitioning, Tessellation, tessellate, unpack_normal};
 
 const STEPS: u32 = 16;
 /// The distance between places in the domain, in 16.16 fixed point.

@@ -1,6 +1,6 @@
 //! Prints what was measured as Markdown tables.
 
-use pnaen::tessellate::Partitioning;
+use geometry::tessellate::Partitioning;
 
 use crate::VIEWPORT;
 use crate::jumps::Jumps;

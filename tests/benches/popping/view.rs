@@ -1,8 +1,8 @@
 //! Where a camera sees places, and from which side.
 
+use geometry::mesh::Mesh;
 use glam::{DMat4, DVec2, DVec3, DVec4};
-use pnaen::internals::Camera;
-use pnaen::mesh::Mesh;
+use inspect::render::camera::Camera;
 
 use crate::VIEWPORT;
 use crate::places::Place;

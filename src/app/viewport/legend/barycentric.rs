@@ -3,7 +3,7 @@
 use egui::{Align2, Color32, Mesh, Pos2, Rect, Rgba, Shape, Vec2, pos2, vec2};
 
 use super::text;
-use crate::render::BARYCENTRIC_TITLE;
+use inspect::render::BARYCENTRIC_TITLE;
 
 /// The size inside the legend's margins, in points.
 pub(super) const SIZE: Vec2 = vec2(164.0, 78.0);

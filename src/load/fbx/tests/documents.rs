@@ -6,7 +6,7 @@ use super::tree::{Entry, Value, entry, list, object, one, properties};
 const SECOND: i64 = 46_186_158_000;
 
 /// A file with these objects and connections. `z_up` says whether Z points up; the unit is in centimetres.
-pub(in crate::load) fn document(z_up: bool, unit: f64, objects: Vec<Entry>, connections: &[Link]) -> Vec<Entry> {
+pub(crate) fn document(z_up: bool, unit: f64, objects: Vec<Entry>, connections: &[Link]) -> Vec<Entry> {
     let axes: [f64; 6] = if z_up { [2.0, 1.0, 1.0, -1.0, 0.0, 1.0] } else { [1.0, 1.0, 2.0, 1.0, 0.0, 1.0] };
     let settings = properties(&[
         ("UpAxis", "int", &axes[0..1]),
@@ -26,7 +26,7 @@ pub(in crate::load) fn document(z_up: bool, unit: f64, objects: Vec<Entry>, conn
 }
 
 /// A connection: what to what, by numbers, and to which of its properties.
-pub(in crate::load) struct Link(pub i64, pub i64, pub &'static str);
+pub(crate) struct Link(pub i64, pub i64, pub &'static str);
 
 impl Link {
     pub(super) fn entry(&self) -> Entry {
@@ -38,12 +38,12 @@ impl Link {
 }
 
 /// A node with properties.
-pub(in crate::load) fn model(id: i64, name: &str, kind: &str, all: &[(&str, &str, &[f64])]) -> Entry {
+pub(crate) fn model(id: i64, name: &str, kind: &str, all: &[(&str, &str, &[f64])]) -> Entry {
     object("Model", id, &format!("Model::{name}"), kind, vec![one("Version", 232), properties(all)])
 }
 
 /// A mesh of vertices and polygons, with more entries.
-pub(in crate::load) fn geometry(id: i64, vertices: &[f64], polygons: &[&[i32]], more: Vec<Entry>) -> Entry {
+pub(crate) fn geometry(id: i64, vertices: &[f64], polygons: &[&[i32]], more: Vec<Entry>) -> Entry {
     let indices = polygons.iter().flat_map(|polygon| {
         let last = polygon.len() - 1;
         polygon.iter().enumerate().map(move |(i, &vertex)| if i == last { -1 - vertex } else { vertex })
@@ -58,7 +58,7 @@ pub(in crate::load) fn geometry(id: i64, vertices: &[f64], polygons: &[&[i32]], 
 }
 
 /// A layer of a mesh, such as its normals: how it maps to corners, and its lists.
-pub(in crate::load) fn layer(name: &str, mapping: &str, lists: Vec<Entry>) -> Entry {
+pub(crate) fn layer(name: &str, mapping: &str, lists: Vec<Entry>) -> Entry {
     let is_indexed = lists.len() > 1 || name.ends_with("Material");
     let reference = if is_indexed { "IndexToDirect" } else { "Direct" };
     let mut children = vec![
@@ -72,7 +72,7 @@ pub(in crate::load) fn layer(name: &str, mapping: &str, lists: Vec<Entry>) -> En
 }
 
 /// A prism with hexagonal caps of radius 100 around Z, from z = 0 to z = 50: two hexagons and six squares.
-pub(in crate::load) fn prism(more: Vec<Entry>) -> Entry {
+pub(crate) fn prism(more: Vec<Entry>) -> Entry {
     let ring = |z: f64| {
         (0..6).flat_map(move |i| {
             let (sin, cos) = (f64::from(i) * std::f64::consts::FRAC_PI_3).sin_cos();
@@ -87,7 +87,7 @@ pub(in crate::load) fn prism(more: Vec<Entry>) -> Entry {
 }
 
 /// The prism in centimetres with Z up, whose sides are smooth and whose caps are flat.
-pub(in crate::load) fn smoothed_prism() -> Vec<Entry> {
+pub(crate) fn smoothed_prism() -> Vec<Entry> {
     let smoothing = layer("LayerElementSmoothing", "ByPolygon", vec![one("Smoothing", vec![0, 0, 1, 1, 1, 1, 1, 1])]);
     let objects =
         vec![prism(vec![smoothing]), model(20, "prism", "Mesh", &[("Lcl Translation", "Lcl Translation", &[0.0; 3])])];
@@ -96,7 +96,7 @@ pub(in crate::load) fn smoothed_prism() -> Vec<Entry> {
 
 /// Curves of one property of an object: the curve node with its number, and for each component its key frames as time in s and
 /// value. `interpolation` is 2 for steps and 4 for lines.
-pub(in crate::load) fn curves(
+pub(crate) fn curves(
     id: i64,
     (target, property): (i64, &'static str),
     components: &[(&'static str, &[(f64, f64)])],
@@ -134,12 +134,12 @@ fn first(keys: &[(f64, f64)]) -> &[f64] {
 pub(super) const LAYER: i64 = 901;
 
 /// A stack with one layer, from 0 to a time in s.
-pub(in crate::load) fn stack(name: &str, end: f64) -> (Vec<Entry>, Vec<Link>) {
+pub(crate) fn stack(name: &str, end: f64) -> (Vec<Entry>, Vec<Link>) {
     span(name, [0.0, end])
 }
 
 /// A stack with one layer, between two times in s.
-pub(in crate::load) fn span(name: &str, [start, stop]: [f64; 2]) -> (Vec<Entry>, Vec<Link>) {
+pub(crate) fn span(name: &str, [start, stop]: [f64; 2]) -> (Vec<Entry>, Vec<Link>) {
     let time = |name: &str, seconds: f64| {
         let ticks = (seconds * SECOND as f64) as i64;
         entry("P", vec![name.into(), "KTime".into(), "Time".into(), "".into(), ticks.into()])
@@ -160,7 +160,7 @@ fn moved([x, y, z]: [f64; 3]) -> Vec<f64> {
 /// A strip in metres with Y up, from (0, 0, 0) to (4, 1, 0) with a vertex pair at every metre. The bone `root` at the origin moves
 /// its left half, and `tip` at (2, 0, 0) its right half; both have half of the middle. Within a second `tip` turns by 90 degrees
 /// about Z.
-pub(in crate::load) fn skinned_strip() -> Vec<Entry> {
+pub(crate) fn skinned_strip() -> Vec<Entry> {
     let vertices: Vec<f64> = (0..=4).flat_map(|x| [[x, 0, 0], [x, 1, 0]]).flatten().map(f64::from).collect();
     let polygons: Vec<Vec<i32>> = (0..4).map(|i| vec![2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1]).collect();
     let polygons: Vec<&[i32]> = polygons.iter().map(|polygon| &polygon[..]).collect();
@@ -206,7 +206,7 @@ pub(in crate::load) fn skinned_strip() -> Vec<Entry> {
 
 /// A square in metres whose corner 2 rises along Z: by 1 at half of the weight, and by 4 at all of it. The weight grows from 0 to
 /// 100 % within two seconds.
-pub(in crate::load) fn morphed_square() -> Vec<Entry> {
+pub(crate) fn morphed_square() -> Vec<Entry> {
     let shape = |id, height: f64| {
         let children = vec![
             one("Version", 100),
@@ -238,7 +238,7 @@ pub(in crate::load) fn morphed_square() -> Vec<Entry> {
 
 /// A square in metres with texture coordinates, colours of corners, and a Phong material. Its texture's image is embedded, or
 /// named by a path.
-pub(in crate::load) fn textured_square(image: Result<&[u8], &str>) -> Vec<Entry> {
+pub(crate) fn textured_square(image: Result<&[u8], &str>) -> Vec<Entry> {
     let uvs = layer(
         "LayerElementUV",
         "ByPolygonVertex",
@@ -276,7 +276,7 @@ pub(in crate::load) fn textured_square(image: Result<&[u8], &str>) -> Vec<Entry>
 }
 
 /// A PNG image of two texels: red above blue.
-pub(in crate::load) fn image() -> Vec<u8> {
+pub(crate) fn image() -> Vec<u8> {
     let pixels = image::RgbImage::from_raw(1, 2, vec![255, 0, 0, 0, 0, 255]).expect("two texels");
     let mut png = std::io::Cursor::new(Vec::new());
     pixels.write_to(&mut png, image::ImageFormat::Png).expect("an image in memory");

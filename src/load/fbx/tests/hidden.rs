@@ -5,11 +5,11 @@ use std::path::Path;
 use super::documents::{Link, curves, document, geometry, model, stack};
 use super::tree::{Entry, object, one, properties, text};
 use super::{loaded, read};
+use crate::fbx::read_here;
 use crate::files::Limits;
-use crate::load::fbx::read_here;
-use crate::load::import::Import;
-use crate::load::loaded_mesh::LoadedMesh;
-use crate::progress::Progress;
+use crate::import::Import;
+use crate::loaded_mesh::LoadedMesh;
+use geometry::progress::Progress;
 
 const TRIANGLE: [f64; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
 

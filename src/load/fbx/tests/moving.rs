@@ -5,10 +5,10 @@ use glam::Vec3;
 use super::documents::{LAYER, Link, curves, document, geometry, model, morphed_square, skinned_strip, stack};
 use super::loaded;
 use super::tree::{Entry, object, one, properties};
-use crate::load::loaded_mesh::LoadedMesh;
-use crate::mesh::{Moment, Topology};
-use crate::progress::Progress;
-use crate::tessellate::deform;
+use crate::loaded_mesh::LoadedMesh;
+use geometry::mesh::{Moment, Topology};
+use geometry::progress::Progress;
+use geometry::tessellate::deform;
 
 /// The corners' positions at rest, and at a time of the first clip.
 pub(super) fn at(loaded: &LoadedMesh, time: f64) -> Vec<(Vec3, Vec3)> {

@@ -4,9 +4,9 @@ use super::super::{morphs, parse};
 use super::documents::morphed_square;
 use super::tree::text;
 use crate::files::Limits;
-use crate::load::import::Import;
-use crate::load::memory_budget::Budget;
-use crate::progress::Progress;
+use crate::import::Import;
+use crate::memory_budget::Budget;
+use geometry::progress::Progress;
 
 #[test]
 fn weights_are_linear_between_shapes_and_beyond_the_last() {

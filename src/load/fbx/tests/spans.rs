@@ -6,7 +6,7 @@ use super::documents::{Link, curves, document, geometry, model, span};
 use super::loaded;
 use super::moving::{assert_near, at};
 use super::tree::{Entry, list, one};
-use crate::load::loaded_mesh::LoadedMesh;
+use crate::loaded_mesh::LoadedMesh;
 
 /// Key frames: times in s, and values.
 type Keys<'a> = &'a [(f64, f64)];

@@ -5,12 +5,12 @@ use glam::Vec3;
 use super::documents::{Link, document, geometry, image, layer, model, prism, smoothed_prism, textured_square};
 use super::tree::{one, text};
 use super::{loaded, near, read};
+use crate::fbx::{read as read_on_a_thread, read_here};
 use crate::files::Limits;
-use crate::load::fbx::{read as read_on_a_thread, read_here};
-use crate::load::import::Import;
-use crate::load::read_error::ReadError;
-use crate::mesh::{Alpha, Wrap};
-use crate::progress::Progress;
+use crate::import::Import;
+use crate::read_error::ReadError;
+use geometry::mesh::{Alpha, Wrap};
+use geometry::progress::Progress;
 
 #[test]
 fn polygons_are_cut_and_centimetres_with_z_up_become_metres_with_y_up() {

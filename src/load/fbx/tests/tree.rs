@@ -10,7 +10,7 @@ const VERSION: u32 = 7400;
 
 /// An entry of a file.
 #[derive(Clone, Debug)]
-pub(in crate::load) struct Entry {
+pub(crate) struct Entry {
     pub name: String,
     pub values: Vec<Value>,
     pub children: Vec<Entry>,
@@ -18,7 +18,7 @@ pub(in crate::load) struct Entry {
 
 /// A value of an entry.
 #[derive(Clone, Debug)]
-pub(in crate::load) enum Value {
+pub(crate) enum Value {
     Int(i64),
     Real(f64),
     /// Names of objects are `Class::Name`, as in text files.
@@ -33,7 +33,7 @@ pub(in crate::load) enum Value {
 
 /// How the arrays of a binary file are stored.
 #[derive(Clone, Copy, PartialEq)]
-pub(in crate::load) enum Arrays {
+pub(crate) enum Arrays {
     Plain,
     /// In a zlib stream, whose blocks aren't compressed.
     Zlib,
@@ -76,27 +76,27 @@ impl From<Vec<f64>> for Value {
 }
 
 /// An entry with values.
-pub(in crate::load) fn entry(name: &str, values: Vec<Value>) -> Entry {
+pub(crate) fn entry(name: &str, values: Vec<Value>) -> Entry {
     Entry { name: name.to_owned(), values, children: Vec::new() }
 }
 
 /// An entry with one value.
-pub(in crate::load) fn one(name: &str, value: impl Into<Value>) -> Entry {
+pub(crate) fn one(name: &str, value: impl Into<Value>) -> Entry {
     entry(name, vec![value.into()])
 }
 
 /// An entry with children.
-pub(in crate::load) fn list(name: &str, children: Vec<Entry>) -> Entry {
+pub(crate) fn list(name: &str, children: Vec<Entry>) -> Entry {
     Entry { name: name.to_owned(), values: Vec::new(), children }
 }
 
 /// An object: its class in the file, its number, its name with the class of names, and its kind.
-pub(in crate::load) fn object(class: &str, id: i64, name: &str, kind: &str, children: Vec<Entry>) -> Entry {
+pub(crate) fn object(class: &str, id: i64, name: &str, kind: &str, children: Vec<Entry>) -> Entry {
     Entry { name: class.to_owned(), values: vec![id.into(), name.into(), kind.into()], children }
 }
 
 /// Properties of an object: name, type and values.
-pub(in crate::load) fn properties(all: &[(&str, &str, &[f64])]) -> Entry {
+pub(crate) fn properties(all: &[(&str, &str, &[f64])]) -> Entry {
     let each = |&(name, kind, values): &(&str, &str, &[f64])| {
         let mut all: Vec<Value> = vec![name.into(), kind.into(), "".into(), "A".into()];
         all.extend(values.iter().map(|&value| match kind {
@@ -109,7 +109,7 @@ pub(in crate::load) fn properties(all: &[(&str, &str, &[f64])]) -> Entry {
 }
 
 /// A file as text.
-pub(in crate::load) fn text(entries: &[Entry]) -> Vec<u8> {
+pub(crate) fn text(entries: &[Entry]) -> Vec<u8> {
     let mut text = format!("; FBX {}.{}.0 project file\n", VERSION / 1000, VERSION / 100 % 10);
     entries.iter().for_each(|entry| write_text(entry, 0, &mut text));
     text.into_bytes()
@@ -140,7 +140,7 @@ fn write_text(entry: &Entry, depth: usize, text: &mut String) {
 }
 
 /// A file as binary.
-pub(in crate::load) fn binary(entries: &[Entry], arrays: Arrays) -> Vec<u8> {
+pub(crate) fn binary(entries: &[Entry], arrays: Arrays) -> Vec<u8> {
     let mut bytes = b"Kaydara FBX Binary  \0\x1a\0".to_vec();
     bytes.extend(VERSION.to_le_bytes());
     entries.iter().for_each(|entry| write_binary(entry, arrays, &mut bytes));
@@ -219,7 +219,7 @@ fn zlib_stored(content: &[u8]) -> Vec<u8> {
 }
 
 /// A zlib stream of so many bytes 0 (RFC 1951, section 3.2.6): about 158 times smaller.
-pub(in crate::load) fn zlib_zeros(count: usize) -> Vec<u8> {
+pub(crate) fn zlib_zeros(count: usize) -> Vec<u8> {
     let (mut stream, mut bits, mut held) = (vec![0x78, 0x01], 0_u64, 0);
     let mut put = |value: u64, width: u32, stream: &mut Vec<u8>| {
         bits |= value << held;

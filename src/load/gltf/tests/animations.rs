@@ -3,9 +3,9 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::mesh::rig::AnimatedCounts;
-use crate::mesh::{Moment, Rig};
-use crate::tessellate::deform;
+use geometry::mesh::rig::AnimatedCounts;
+use geometry::mesh::{Moment, Rig};
+use geometry::tessellate::deform;
 
 impl Draft {
     /// Adds an animation with one channel, linear between key frames.

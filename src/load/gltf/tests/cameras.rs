@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::*;
-use crate::mesh::{FileCamera, Projection};
+use geometry::mesh::{FileCamera, Projection};
 
 /// A triangle, and nodes with these cameras: the first is shown, turned by half a turn and a half, and scaled; the second isn't.
 pub(super) fn with_cameras(cameras: &Value, nodes: &Value) -> Draft {

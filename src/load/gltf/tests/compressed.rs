@@ -4,7 +4,7 @@
 use ::meshopt as encoder;
 
 use super::*;
-use crate::load::gltf::schema::{KHR_MESHOPT, MESHOPT};
+use crate::gltf::schema::{KHR_MESHOPT, MESHOPT};
 
 /// The number of points along a side of the grid.
 const SIDE: u16 = 9;

@@ -3,8 +3,8 @@
 use base64::prelude::{BASE64_STANDARD, Engine};
 
 use super::*;
-use crate::load::{LoadError, load};
-use crate::progress::Cancelled;
+use crate::{LoadError, load};
+use geometry::progress::Cancelled;
 
 /// A triangle whose material has an image.
 pub(super) fn textured(image: Value) -> Draft {

@@ -17,7 +17,7 @@ use std::path::PathBuf;
 
 use super::packed as draco;
 use super::*;
-use crate::load::hostile_files::{is_expected, mentions, page, unhung};
+use crate::hostile_files::{is_expected, mentions, page, unhung};
 use crate::markdown::plain;
 
 /// The expected answer to a document.

@@ -1,7 +1,7 @@
 //! Lights of documents: where they are, how they shine, and what is wrong with some.
 
 use super::*;
-use crate::mesh::{Light, LightKind, Moment};
+use geometry::mesh::{Light, LightKind, Moment};
 
 /// A triangle with these lights, each on a node of its own.
 pub(super) fn lit(lights: Value, nodes: &[Value]) -> Draft {

@@ -3,7 +3,7 @@
 use glam::Vec4;
 
 use super::*;
-use crate::mesh::{Alpha, CornerDetail, Look, MapUv, Material, Sampling, Slot, Wrap};
+use geometry::mesh::{Alpha, CornerDetail, Look, MapUv, Material, Sampling, Slot, Wrap};
 
 /// The square of 1 in the xy plane that faces +Z, of two triangles.
 const SQUARE: [[f32; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];

@@ -10,9 +10,9 @@ use std::path::PathBuf;
 use fastrand::Rng;
 
 use super::*;
-use crate::load::Format;
-use crate::load::hostile_files::{named_files, unhung};
-use crate::load::ktx2::tests::{ETC1S_ALPHA, UASTC_ZSTD};
+use crate::Format;
+use crate::hostile_files::{named_files, unhung};
+use crate::ktx2::tests::{ETC1S_ALPHA, UASTC_ZSTD};
 
 /// The number of copies in every run of the tests.
 const COPIES: usize = 300;
@@ -64,7 +64,7 @@ fn subjects() -> Vec<Subject> {
 }
 
 /// Returns small documents for fuzzers to start from: the target, a name, and the bytes.
-pub(crate) fn seeds() -> Vec<(&'static str, String, Vec<u8>)> {
+pub fn seeds() -> Vec<(&'static str, String, Vec<u8>)> {
     let drafts = [
         ("triangle", triangle()),
         ("rich", rich()),

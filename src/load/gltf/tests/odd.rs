@@ -1,8 +1,8 @@
 //! Odd documents that open (see `load/hostile_files/odd.rs`).
 
 use super::*;
-use crate::load::Format;
-use crate::load::hostile_files::odd::Odd;
+use crate::Format;
+use crate::hostile_files::odd::Odd;
 
 fn of(name: &'static str, bytes: impl Into<Vec<u8>>, triangles: usize, warning: &'static str) -> Odd {
     Odd { name, format: Format::Gltf, bytes: bytes.into(), triangles, warning }
@@ -26,7 +26,7 @@ fn glb(json: &[u8], chunks: &[(&[u8; 4], &[u8])]) -> Vec<u8> {
     [&b"glTF"[..], &2_u32.to_le_bytes(), &(12 + body.len() as u32).to_le_bytes(), &body].concat()
 }
 
-pub(in crate::load) fn odd() -> Vec<Odd> {
+pub(crate) fn odd() -> Vec<Odd> {
     [texts(), addresses(), containers(), accessors(), primitives()].into_iter().flatten().collect()
 }
 

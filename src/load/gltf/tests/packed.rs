@@ -7,7 +7,7 @@ use draco_core::{
 };
 
 use super::*;
-use crate::load::gltf::schema::DRACO;
+use crate::gltf::schema::DRACO;
 
 /// The number of squares along a side of the grid.
 const SIDE: u16 = 8;
@@ -154,7 +154,7 @@ fn seams_cut_what_is_packed() {
     assert_eq!(mesh.corners.len(), 6);
     assert_eq!(Topology::build(&mesh, &Progress::new()).unwrap().points.len(), 4);
     for (at, uv) in at.iter().zip(uvs.as_chunks::<2>().0) {
-        let close = |corner: &crate::mesh::Corner| {
+        let close = |corner: &geometry::mesh::Corner| {
             corner.position.distance((*at).into()) < 1e-3 && corner.uv.distance((*uv).into()) < 1e-3
         };
         assert!(mesh.corners.iter().any(close), "{at:?} {uv:?}: {:?}", mesh.corners);

@@ -1,7 +1,7 @@
 //! Named nodes as parts that can be left out.
 
 use super::*;
-use crate::load::parts::Part;
+use crate::parts::Part;
 
 /// Reads what is selected of a document.
 fn read_selected(draft: &Draft, selected: Selection) -> Result<LoadedMesh, GltfError> {

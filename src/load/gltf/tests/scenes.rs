@@ -1,9 +1,9 @@
 //! What is shown of a document: its scene, without hidden nodes, with instances, and with vertices of more than four joints.
 
 use super::*;
-use crate::load::{Import, LoadError, Source};
-use crate::mesh::Moment;
-use crate::tessellate::deform;
+use crate::{Import, LoadError, Source};
+use geometry::mesh::Moment;
+use geometry::tessellate::deform;
 
 fn selected(draft: &Draft, scene: Option<&str>) -> LoadedMesh {
     let bytes = draft.document().to_string().into_bytes();

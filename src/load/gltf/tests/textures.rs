@@ -4,7 +4,7 @@ use base64::prelude::{BASE64_STANDARD, Engine};
 
 use super::files::textured;
 use super::*;
-use crate::load::ktx2::tests::{ETC1S, UASTC_ZSTD};
+use crate::ktx2::tests::{ETC1S, UASTC_ZSTD};
 
 /// The name of a texture's extension, and an image that it may have.
 const BASISU: &str = "KHR_texture_basisu";
@@ -84,7 +84,7 @@ fn other_images_take_the_place_of_broken_ones() {
 #[test]
 fn images_that_do_not_fit_are_left_out_before_they_are_decoded() {
     // A plain image of 16384 x 16384 px compressed by Zstandard, of which nothing is there.
-    let mut large = crate::load::ktx2::tests::plain(37, [16384, 16384], &[0; 40]);
+    let mut large = crate::ktx2::tests::plain(37, [16384, 16384], &[0; 40]);
     large[44] = 2;
     large[96..104].copy_from_slice(&(1_u64 << 30).to_le_bytes());
     let (size, warnings) = read(&extended(None, &[(BASISU, &large)]));

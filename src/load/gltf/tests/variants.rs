@@ -1,7 +1,7 @@
 //! Material variants.
 
 use super::*;
-use crate::load::{LoadError, Source};
+use crate::{LoadError, Source};
 
 /// Two triangles of the material `own`. The first one has others for the variants `day` and `night`, and the third variant has no
 /// name.

@@ -1,9 +1,9 @@
 //! FBX.
 
 use super::Odd;
-use crate::load::Format::Fbx;
-use crate::load::fbx::tests::documents::{Link, document, geometry, layer, model, prism};
-use crate::load::fbx::tests::tree::{Arrays, Entry, binary, entry, list, one, text};
+use crate::Format::Fbx;
+use crate::fbx::tests::documents::{Link, document, geometry, layer, model, prism};
+use crate::fbx::tests::tree::{Arrays, Entry, binary, entry, list, one, text};
 
 const SQUARE: [f64; 12] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0];
 

@@ -1,7 +1,7 @@
 //! OBJ.
 
 use super::Odd;
-use crate::load::Format::Obj;
+use crate::Format::Obj;
 
 const VERTICES: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 const WHOLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";

@@ -1,7 +1,7 @@
 //! PLY.
 
 use super::Odd;
-use crate::load::Format::Ply;
+use crate::Format::Ply;
 
 const WHOLE: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n\
                      property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";

@@ -1,7 +1,7 @@
 //! STL.
 
 use super::Odd;
-use crate::load::Format::Stl;
+use crate::Format::Stl;
 
 const WHOLE: &str = "solid a\n  facet normal 0 0 1\n    outer loop\n      vertex 0 0 0\n      vertex 1 0 0\n      vertex 0 1 0\n    \
                      endloop\n  endfacet\nendsolid a\n";

@@ -2,11 +2,11 @@
 
 use super::Gets::{Refused, Repaired};
 use super::{Case, Gets};
-use crate::load::Format::Fbx;
-use crate::load::fbx::tests::documents::{
+use crate::Format::Fbx;
+use crate::fbx::tests::documents::{
     Link, curves, document, geometry, image, layer, model, morphed_square, skinned_strip, stack, textured_square,
 };
-use crate::load::fbx::tests::tree::{Arrays, Entry, Value, binary, list, object, one, text, zlib_zeros};
+use crate::fbx::tests::tree::{Arrays, Entry, Value, binary, list, object, one, text, zlib_zeros};
 
 const SQUARE: [f64; 12] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0];
 

@@ -2,7 +2,7 @@
 
 use super::Gets::{Alone, Refused, Repaired};
 use super::{ABSENT, Case, case};
-use crate::load::Format::Obj;
+use crate::Format::Obj;
 
 /// A triangle's vertices, then whatever is to be tried.
 macro_rules! obj {

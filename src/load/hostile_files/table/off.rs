@@ -2,7 +2,7 @@
 
 use super::Gets::{Refused, Repaired};
 use super::{Case, case};
-use crate::load::Format::Off;
+use crate::Format::Off;
 
 /// A triangle, with the numbers of vertices and faces that it says.
 fn off(counts: &str, face: &str) -> String {

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::Gets::{Alone, Refused, Repaired};
 use super::{ABSENT, Case, case};
-use crate::load::Format::Ply;
+use crate::Format::Ply;
 
 /// A triangle in text, with a part of it replaced.
 fn ply(part: &str, by: &str) -> String {

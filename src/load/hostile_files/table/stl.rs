@@ -2,7 +2,7 @@
 
 use super::Gets::{Refused, Repaired};
 use super::{Case, case};
-use crate::load::Format::Stl;
+use crate::Format::Stl;
 
 /// A binary file with this header, which ends after its first triangle and these bits.
 fn colored(header: &[u8], bits: u16) -> Vec<u8> {

@@ -2,10 +2,10 @@
 
 use super::Gets::{Refused, Repaired};
 use super::{Case, Gets};
-use crate::load::Format::ThreeMf;
-use crate::load::threemf::tests::layers::many_layers;
-use crate::load::threemf::tests::package::{Entry, MODEL, model, package, relationships, zip};
-use crate::load::threemf::tests::{png, textured};
+use crate::Format::ThreeMf;
+use crate::threemf::tests::layers::many_layers;
+use crate::threemf::tests::package::{Entry, MODEL, model, package, relationships, zip};
+use crate::threemf::tests::{png, textured};
 
 const TRIANGLE: &str = "<mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/>\
      <vertex x=\"0\" y=\"1\" z=\"0\"/></vertices><triangles><triangle v1=\"0\" v2=\"1\" v3=\"2\"/></triangles></mesh>";

@@ -3,9 +3,9 @@
 use tempfile::TempDir;
 
 use crate::files::Limits;
-use crate::load::{LoadedMesh, load};
-use crate::mesh::{Alpha, Material, Slot, Wrap};
-use crate::progress::Progress;
+use crate::{LoadedMesh, load};
+use geometry::mesh::{Alpha, Material, Slot, Wrap};
+use geometry::progress::Progress;
 
 /// A folder with a folder of textures in it.
 fn folder() -> TempDir {

@@ -3,11 +3,11 @@
 use glam::Vec4;
 
 use super::{ModelReader, PER_ENTRY};
-use crate::load::read_error::ReadError;
-use crate::load::text_lines::{number_or_nan, words};
-use crate::load::threemf::properties::{Composites, Group, LayerFaults, MultiProperties};
-use crate::load::threemf::texture2d::Texture2d;
-use crate::load::threemf::xml::Element;
+use crate::read_error::ReadError;
+use crate::text_lines::{number_or_nan, words};
+use crate::threemf::properties::{Composites, Group, LayerFaults, MultiProperties};
+use crate::threemf::texture2d::Texture2d;
+use crate::threemf::xml::Element;
 
 impl ModelReader<'_> {
     pub(super) fn begin_group(&mut self, element: &Element, group: Group) -> Result<(), ReadError> {

@@ -1,7 +1,7 @@
 //! Layers and mixtures of properties.
 
 use super::*;
-use crate::mesh::mipmap::encoded;
+use geometry::mesh::mipmap::encoded;
 use glam::{Vec2, Vec4, vec4};
 
 /// Materials, colours, and two textures of two texels: `/a.png`, and `/b.png` with the same coordinates and others.
@@ -163,7 +163,7 @@ fn mixtures_have_the_mean_of_their_materials() {
 }
 
 /// Each triangle has another colour below the texture.
-pub(in crate::load) fn many_layers(count: usize) -> Vec<u8> {
+pub(crate) fn many_layers(count: usize) -> Vec<u8> {
     let colors: String = (0..count).map(|i| format!("<m:color color=\"#{i:06X}\"/>")).collect();
     let entries: String = (0..count).map(|i| format!("<m:multi pindices=\"{i} 0\"/>")).collect();
     let triangles: String =

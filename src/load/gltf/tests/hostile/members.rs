@@ -1,7 +1,7 @@
 //! Members that are missing or have a wrong value.
 
 use super::*;
-use crate::load::gltf::tests::files::png_uri;
+use crate::gltf::tests::files::png_uri;
 
 /// 2 to the power of 62.
 const HUGE: u64 = 1 << 62;

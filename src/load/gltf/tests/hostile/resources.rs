@@ -1,16 +1,16 @@
 //! Files that a document names, and data in its URIs.
 
 use super::*;
-use crate::load::gltf::schema::MESHOPT;
-use crate::load::ktx2::tests::{ETC1S, plain, with};
-use crate::load::uri;
+use crate::gltf::schema::MESHOPT;
+use crate::ktx2::tests::{ETC1S, plain, with};
+use crate::uri;
 use base64::prelude::{BASE64_STANDARD, Engine};
 use tempfile::TempDir;
 
-use crate::load::webp_tables::tests::webp::of_groups;
+use crate::webp_tables::tests::webp::of_groups;
 
 /// A folder that contains a document's folder, and files around it that the document mustn't read.
-pub(crate) struct Folder(TempDir);
+pub struct Folder(TempDir);
 
 impl Folder {
     pub(super) fn new() -> Self {

@@ -1,8 +1,8 @@
 //! Cameras and lights, which never keep a mesh from loading.
 
 use super::*;
-use crate::load::gltf::tests::cameras::with_cameras;
-use crate::load::gltf::tests::lights::lit;
+use crate::gltf::tests::cameras::with_cameras;
+use crate::gltf::tests::lights::lit;
 
 /// So many nodes have a camera, or a light.
 const MANY: usize = 150_000;

@@ -1,8 +1,8 @@
 //! What the scene doesn't use, and what changes nothing of the shape: it may be broken.
 
 use super::*;
-use crate::load::gltf::tests::animations::normal_mapped;
-use crate::load::gltf::tests::files::png_uri;
+use crate::gltf::tests::animations::normal_mapped;
+use crate::gltf::tests::files::png_uri;
 
 fn changed(change: impl FnOnce(&mut Value)) -> Draft {
     let mut draft = triangle();

@@ -1,0 +1,9 @@
+//! Meshes, and their tessellation on the CPU: the reference that the passes of the GPU follow.
+
+pub mod cores;
+pub mod mesh;
+pub mod names;
+pub mod numbers;
+pub mod progress;
+pub mod tessellate;
+pub mod view;

@@ -1,0 +1,112 @@
+//! Numbers for the details of corners, while a mesh is being built.
+
+use super::CornerDetail;
+use super::build_limits::{MemoryAccount, MemoryRefused};
+use super::corner_details::CornerDetails;
+use super::interner::Interner;
+
+/// Memory for one entry, in bytes, besides the table that finds equal ones.
+const PER_ENTRY: usize = size_of::<CornerDetail>() + size_of::<u32>();
+
+/// Distinct pairs of a corner's details and its binding (a number of the caller's, for animation). Corners with equal
+/// numbers of pairs may be merged: [`MeshBuilder`](super::mesh_builder::MeshBuilder) takes that number as a binding.
+#[derive(Default)]
+pub struct DetailTable {
+    details: Vec<CornerDetail>,
+    bindings: Vec<u32>,
+    ids: Interner,
+}
+
+impl DetailTable {
+    /// The greatest memory that a table of `count` entries takes while it grows, in bytes.
+    pub fn bytes_for(count: usize) -> u64 {
+        3 * (count * PER_ENTRY) as u64 / 2 + Interner::bytes_for(count + count / 2)
+    }
+
+    /// Returns the number of a pair.
+    ///
+    /// # Errors
+    /// [`MemoryRefused`].
+    pub fn number(
+        &mut self,
+        detail: CornerDetail,
+        binding: u32,
+        budget: &dyn MemoryAccount,
+    ) -> Result<u32, MemoryRefused> {
+        if self.ids.room() == 0 || self.details.len() == self.details.capacity() {
+            self.grow(budget)?;
+        }
+        let (details, bindings) = (&self.details, &self.bindings);
+        let (id, is_new) = self.ids.number(key(&detail, binding), |id| key_of(details, bindings, id));
+        if is_new {
+            self.details.push(detail);
+            self.bindings.push(binding);
+        }
+        Ok(id)
+    }
+
+    fn grow(&mut self, budget: &dyn MemoryAccount) -> Result<(), MemoryRefused> {
+        let (count, capacity) = (self.details.len(), self.details.capacity());
+        let more = (count / 2).max(64);
+        budget.exchange((capacity * PER_ENTRY) as u64, ((count + more) * PER_ENTRY) as u64)?;
+        self.details.reserve_exact(more);
+        self.bindings.reserve_exact(more);
+        budget.exchange(self.ids.bytes(), Interner::bytes_for(count + more))?;
+        let (details, bindings) = (&self.details, &self.bindings);
+        self.ids.reserve(more, |id| key_of(details, bindings, id));
+        Ok(())
+    }
+
+    /// Returns the details and bindings of corners with these numbers. The budget holds the memory of the details.
+    ///
+    /// # Errors
+    /// [`MemoryRefused`].
+    pub fn into_lists(
+        self,
+        numbers: &[u32],
+        budget: &dyn MemoryAccount,
+    ) -> Result<(CornerDetails, Vec<u32>), MemoryRefused> {
+        budget.release(self.ids.bytes());
+        budget.hold((numbers.len() * PER_ENTRY) as u64)?;
+        let details = numbers.iter().map(|&id| self.details.get(id as usize).copied().unwrap_or_default()).collect();
+        let bindings = numbers.iter().map(|&id| self.bindings.get(id as usize).copied().unwrap_or_default()).collect();
+        budget.release((self.details.capacity() * PER_ENTRY) as u64);
+        Ok((details, bindings))
+    }
+}
+
+type Key = ([u32; 12], u32);
+
+fn key_of(details: &[CornerDetail], bindings: &[u32], id: u32) -> Key {
+    key(&details[id as usize], bindings[id as usize])
+}
+
+/// Returns all bits of a corner's details, and its binding (-0 counts as 0).
+fn key(detail: &CornerDetail, binding: u32) -> Key {
+    let CornerDetail { uvs: [a, b], color, tangent, bitangent_sign } = *detail;
+    let numbers =
+        [a.x, a.y, b.x, b.y, color.x, color.y, color.z, color.w, tangent.x, tangent.y, tangent.z, bitangent_sign];
+    (numbers.map(|number| (number + 0.0).to_bits()), binding)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec2;
+
+    use super::*;
+    use crate::mesh::Unlimited;
+
+    #[test]
+    fn equal_pairs_have_equal_numbers() {
+        let detail = |i: u32| CornerDetail { uvs: [Vec2::splat(i as f32), Vec2::ZERO], ..CornerDetail::default() };
+        let mut table = DetailTable::default();
+        let numbers: Vec<u32> =
+            (0..1000).map(|i| table.number(detail(i % 100), i % 7, &Unlimited).expect("memory is unlimited")).collect();
+        assert_eq!(numbers[0], table.number(detail(0), 0, &Unlimited).expect("memory is unlimited"));
+        assert_eq!((table.details.len(), numbers[700], numbers[999]), (700, 0, numbers[299]));
+        let (details, bindings) = table.into_lists(&numbers, &Unlimited).expect("memory is unlimited");
+        for i in 0..1000 {
+            assert_eq!((details[i as usize], bindings[i as usize]), (detail(i % 100), i % 7));
+        }
+    }
+}

@@ -1,0 +1,250 @@
+//! What surfaces are made of, as glTF 2.0 describes it (specification, section 3.9 and appendix B).
+
+use std::ops::Range;
+use std::sync::Arc;
+
+/// The look of some of a mesh's patches.
+#[derive(Clone, Debug)]
+pub struct Material {
+    /// The name in the file.
+    pub name: String,
+    /// Linear RGBA, 0 to 1.
+    pub base_color: [f32; 4],
+    /// The image that multiplies the base colour, at the corners' own texture coordinates. Materials that use the same image
+    /// share it.
+    pub texture: Option<Arc<Texture>>,
+    /// How the base colour's image is sampled.
+    pub sampling: Sampling,
+    /// Whether its triangles are also meant to be seen from behind.
+    pub double_sided: bool,
+    /// How it reflects light.
+    pub look: Look,
+    /// The mesh's triangles of this material.
+    pub triangles: Range<u32>,
+}
+
+impl Material {
+    /// Returns a material of one colour (linear RGBA), neither metal nor glossy, without triangles.
+    pub fn plain(name: &str, base_color: [f32; 4]) -> Self {
+        Self {
+            name: name.to_owned(),
+            base_color,
+            texture: None,
+            sampling: Sampling::default(),
+            double_sided: false,
+            look: Look::default(),
+            triangles: 0..0,
+        }
+    }
+
+    /// Whether one may see what is behind its triangles: it blends, or it transmits light.
+    pub fn shows_behind(&self) -> bool {
+        self.look.alpha == Alpha::Blend || self.look.transmits()
+    }
+}
+
+/// An 8-bit image with straight alpha, stored row by row from the top. Colours are sRGB; the numbers of normal maps and of the
+/// other maps that aren't colours are linear.
+#[derive(Clone, Debug)]
+pub struct Texture {
+    /// Width and height in px.
+    pub size: [u32; 2],
+    /// Red, green, blue and alpha: 4 bytes a pixel.
+    pub rgba: Vec<u8>,
+}
+
+/// How a material reflects and emits light.
+#[derive(Clone, Debug)]
+pub struct Look {
+    /// 0 for dielectrics, 1 for metals.
+    pub metallic: f32,
+    /// Perceptual roughness, 0 (a mirror) to 1.
+    pub roughness: f32,
+    /// Linear RGB that the surface emits, its strength included.
+    pub emissive: [f32; 3],
+    /// Factor of the first two components of the normal map's normals.
+    pub normal_scale: f32,
+    /// How much of the occlusion map counts, 0 to 1.
+    pub occlusion_strength: f32,
+    /// What the base colour's alpha does.
+    pub alpha: Alpha,
+    /// Whether the base colour is shown as it is, without light (KHR_materials_unlit).
+    pub unlit: bool,
+    /// Index of refraction of a dielectric (KHR_materials_ior).
+    pub ior: f32,
+    /// Strength of a dielectric's reflection, 0 to 1 (KHR_materials_specular).
+    pub specular: f32,
+    /// Linear RGB of a dielectric's reflection seen head-on (KHR_materials_specular).
+    pub specular_color: [f32; 3],
+    /// How much of the surface a clear coat covers, 0 to 1 (KHR_materials_clearcoat).
+    pub clearcoat: f32,
+    /// Perceptual roughness of the coat.
+    pub clearcoat_roughness: f32,
+    /// Factor of the first two components of the normals that the coat's own map has.
+    pub clearcoat_normal_scale: f32,
+    /// How much of a dielectric's light goes through it in place of being scattered, 0 to 1. The surface is thin: it bends no light
+    /// (KHR_materials_transmission).
+    pub transmission: f32,
+    /// Linear RGB of the light that fibres over the surface reflect, as those of cloth do; 0 without them (KHR_materials_sheen).
+    pub sheen_color: [f32; 3],
+    /// Perceptual roughness of the fibres, 0 (they stand upright) to 1.
+    pub sheen_roughness: f32,
+    /// The images beside that of the base colour, by [`Slot`].
+    pub maps: [Option<Map>; Slot::COUNT],
+}
+
+impl Default for Look {
+    fn default() -> Self {
+        Self {
+            metallic: 0.0,
+            roughness: 0.5,
+            emissive: [0.0; 3],
+            normal_scale: 1.0,
+            occlusion_strength: 1.0,
+            alpha: Alpha::Opaque,
+            unlit: false,
+            ior: 1.5,
+            specular: 1.0,
+            specular_color: [1.0; 3],
+            clearcoat: 0.0,
+            clearcoat_roughness: 0.0,
+            clearcoat_normal_scale: 1.0,
+            transmission: 0.0,
+            sheen_color: [0.0; 3],
+            sheen_roughness: 0.0,
+            maps: Default::default(),
+        }
+    }
+}
+
+impl Look {
+    /// The maps whose texture coordinates tangents go along: those of the first one that there is.
+    pub const TANGENT_SLOTS: [Slot; 2] = [Slot::Normal, Slot::ClearcoatNormal];
+
+    /// The map that needs tangents: see [`Self::TANGENT_SLOTS`].
+    pub fn tangent_map(&self) -> Option<&Map> {
+        Self::TANGENT_SLOTS.iter().find_map(|slot| self.maps[*slot as usize].as_ref())
+    }
+
+    /// Whether light goes through it. None does where it is unlit.
+    pub fn transmits(&self) -> bool {
+        self.transmission > 0.0 && !self.unlit
+    }
+
+    /// Whether fibres over the surface reflect light. None do where it is unlit.
+    pub fn has_sheen(&self) -> bool {
+        self.sheen_color.iter().any(|channel| *channel > 0.0) && !self.unlit
+    }
+}
+
+/// What the base colour's alpha does.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Alpha {
+    /// Nothing.
+    #[default]
+    Opaque,
+    /// Below this number there is no surface.
+    Mask(f32),
+    /// How opaque the surface is.
+    Blend,
+}
+
+/// What an image of a material says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Slot {
+    /// Roughness in green and metalness in blue, linear.
+    MetallicRoughness,
+    /// Normals in tangent space, linear.
+    Normal,
+    /// Occlusion of light from all around in red, linear.
+    Occlusion,
+    /// Emitted colour, sRGB.
+    Emissive,
+    /// How much light goes through in red, linear.
+    Transmission,
+    /// Colour of the sheen, sRGB.
+    SheenColor,
+    /// Roughness of the sheen in alpha, linear.
+    SheenRoughness,
+    /// How much of the surface the clear coat covers in red, linear.
+    Clearcoat,
+    /// Roughness of the coat in green, linear.
+    ClearcoatRoughness,
+    /// Normals of the coat in tangent space, linear.
+    ClearcoatNormal,
+    /// Strength of a dielectric's reflection in alpha, linear.
+    Specular,
+    /// Colour of a dielectric's reflection seen head-on, sRGB.
+    SpecularColor,
+}
+
+impl Slot {
+    /// How many there are.
+    pub const COUNT: usize = 12;
+    /// All of them, in the order of [`Look::maps`].
+    pub const ALL: [Self; Self::COUNT] = [
+        Self::MetallicRoughness,
+        Self::Normal,
+        Self::Occlusion,
+        Self::Emissive,
+        Self::Transmission,
+        Self::SheenColor,
+        Self::SheenRoughness,
+        Self::Clearcoat,
+        Self::ClearcoatRoughness,
+        Self::ClearcoatNormal,
+        Self::Specular,
+        Self::SpecularColor,
+    ];
+}
+
+/// An image on a surface.
+#[derive(Clone, Debug)]
+pub struct Map {
+    /// The image.
+    pub texture: Arc<Texture>,
+    /// Where on the image a corner is.
+    pub uv: MapUv,
+    /// How the image is sampled.
+    pub sampling: Sampling,
+}
+
+/// Texture coordinates of a map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MapUv {
+    /// Those of the base colour, which corners have themselves.
+    Own,
+    /// One of the sets that [`CornerDetails`](super::CornerDetails) has as they are in the file, 0 or 1, then an affine map:
+    /// u' = a u + b v + c and v' = d u + e v + f, as `[a, b, c, d, e, f]` (KHR_texture_transform).
+    Set(usize, [f32; 6]),
+}
+
+/// How an image is sampled, in the words of WebGPU.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Sampling {
+    /// Beyond the image, along u and v.
+    pub wrap: [Wrap; 2],
+    /// Whether texels are blended where they are larger than pixels.
+    pub magnify_linear: bool,
+    /// The same where they are smaller.
+    pub minify_linear: bool,
+    /// Whether mip levels are used, and blended (`Some(true)`).
+    pub mip_linear: Option<bool>,
+}
+
+impl Default for Sampling {
+    fn default() -> Self {
+        Self { wrap: [Wrap::Repeat; 2], magnify_linear: true, minify_linear: true, mip_linear: Some(true) }
+    }
+}
+
+/// What is beyond an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Wrap {
+    /// The image again.
+    Repeat,
+    /// The image again, mirrored every other time.
+    Mirror,
+    /// Its border.
+    Clamp,
+}

@@ -1,0 +1,149 @@
+//! Building meshes: corners are merged, repaired and put in order.
+
+use std::cell::Cell;
+
+use super::*;
+use load::Budget;
+
+fn corner(x: f32, y: f32) -> InputCorner {
+    InputCorner { position: Vec3::new(x, y, 0.0), normal: Some(Vec3::Z), uv: Vec2::ZERO }
+}
+
+#[test]
+fn triangles_are_grouped_and_corners_shared() {
+    let mut builder = MeshBuilder::new();
+    let red = builder.material(Material::plain("red", [1.0, 0.0, 0.0, 1.0]));
+    let unused = builder.material(Material::plain("unused", [1.0; 4]));
+    let blue = builder.material(Material::plain("blue", [0.0, 0.0, 1.0, 1.0]));
+    assert_eq!([red, unused, blue], [0, 1, 2]);
+    builder.triangle(blue, [corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0)]);
+    builder.triangle(red, [corner(-0.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)]);
+    builder.triangle(blue, [corner(1.0, 0.0), corner(2.0, 0.0), corner(1.0, 1.0)]);
+    let mesh = builder.finish("two".to_owned(), &Progress::new()).unwrap();
+    assert_eq!(**mesh.triangles, [[0, 1, 2], [0, 3, 1], [3, 4, 1]]);
+    assert_eq!(mesh.corners.len(), 5);
+    let ranges: Vec<_> = mesh.materials.iter().map(|m| (m.name.as_str(), m.triangles.clone())).collect();
+    assert_eq!(ranges, [("red", 0..1), ("blue", 1..3)]);
+}
+
+#[test]
+fn only_missing_normals_are_made() {
+    let mut builder = MeshBuilder::new();
+    let material = builder.material(Material::plain("plain", [1.0; 4]));
+    let mut corners = [corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0)];
+    corners[0].normal = Some(Vec3::X);
+    corners[1].normal = None;
+    builder.triangle(material, corners);
+    let mesh = builder.finish(String::new(), &Progress::new()).unwrap();
+    let normals: Vec<_> = mesh.corners.iter().map(|c| c.normal).collect();
+    assert_eq!(normals, [Vec3::X, Vec3::Z, Vec3::Z]);
+    assert_eq!(mesh.repairs, Repairs { normals_made: 1, ..Repairs::default() });
+}
+
+fn one(corners: [InputCorner; 3]) -> Mesh {
+    let mut builder = MeshBuilder::new();
+    let material = builder.material(Material::plain("plain", [1.0; 4]));
+    builder.triangle(material, corners);
+    builder.finish(String::new(), &Progress::new()).unwrap()
+}
+
+#[test]
+fn bad_normals_are_mended_and_counted() {
+    let mut corners = [corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0)];
+    let bad = [[0.0, -1e-30, 0.0], [f32::NAN, 0.0, 0.0], [0.0, 0.0, 0.0]];
+    for (corner, normal) in corners.iter_mut().zip(bad) {
+        corner.normal = Some(normal.into());
+    }
+    let mesh = one(corners);
+    assert_eq!(mesh.corners.iter().map(|c| c.normal).collect::<Vec<_>>(), [Vec3::NEG_Y, Vec3::Z, Vec3::Z]);
+    assert_eq!(mesh.repairs, Repairs { normals_replaced: 2, normals_rescaled: 1, ..Repairs::default() });
+}
+
+#[test]
+fn coordinates_that_devices_drop_are_dropped_here_too() {
+    let least = f32::MIN_POSITIVE;
+    let mesh = one([corner(least.next_down(), -1e-45), corner(least, 1.0), corner(-least, 0.0)]);
+    let positions: Vec<_> = mesh.corners.iter().map(|c| [c.position.x, c.position.y].map(f32::to_bits)).collect();
+    assert_eq!(positions, [[0.0, 0.0], [least, 1.0], [-least, 0.0]].map(|xy| xy.map(f32::to_bits)));
+    assert_eq!(mesh.repairs, Repairs { denormals: 1, ..Repairs::default() });
+}
+
+#[test]
+fn room_for_corners_grows_by_half_where_nothing_is_known() {
+    let (mut builder, budget) = (MeshBuilder::new(), Budget::unlimited());
+    for x in 0..1000_u16 {
+        builder.corner(corner(x.into(), 0.0), 0);
+    }
+    let more = builder.distinct.room() + 1;
+    assert!(more <= 500);
+    builder.make_room(more, &budget).unwrap();
+    assert_eq!(builder.distinct.corners.capacity(), 1500);
+}
+
+/// Adds a strip of 98 triangles over 100 corners.
+fn add_strip(builder: &mut MeshBuilder) {
+    let material = builder.material(Material::plain("plain", [1.0; 4]));
+    for i in 0..98_u16 {
+        builder.triangle(material, [i, i + 1, i + 2].map(|k| corner(k.into(), (k % 2).into())));
+    }
+}
+
+#[test]
+fn lists_of_triangles_are_full_before_the_next_is_twice_as_long() {
+    let mut builder = MeshBuilder::new();
+    add_strip(&mut builder);
+    let lists: Vec<_> = builder.groups[0].runs.iter().map(|run| (run.len(), run.capacity())).collect();
+    assert_eq!(lists, [(4, 4), (8, 8), (16, 16), (32, 32), (38, 64)]);
+}
+
+/// An account that refuses nothing, and the sum of what was borrowed.
+struct Lender(Budget, Cell<u64>);
+
+impl MemoryAccount for Lender {
+    fn hold(&self, bytes: u64) -> Result<(), MemoryRefused> {
+        self.0.hold(bytes)
+    }
+
+    fn release(&self, bytes: u64) {
+        self.0.release(bytes);
+    }
+
+    fn borrow(&self, bytes: u64) -> Result<(), MemoryRefused> {
+        self.0.borrow(bytes)?;
+        self.1.set(self.1.get() + bytes);
+        Ok(())
+    }
+
+    fn borrowed(&self) -> u64 {
+        self.0.borrowed()
+    }
+
+    fn give_back(&self, scope: &Borrowed) {
+        self.0.give_back(scope);
+    }
+}
+
+#[test]
+fn what_a_caller_has_borrowed_stays_borrowed_until_it_gives_it_back() {
+    let budget = Budget::unlimited();
+    budget.borrow(7).unwrap();
+    let mut builder = MeshBuilder::new();
+    add_strip(&mut builder);
+    builder.finish_bound(String::new(), &budget, &Progress::new()).unwrap();
+    assert_eq!(budget.borrowed(), 7);
+}
+
+#[test]
+fn room_that_was_not_needed_is_returned_and_the_copy_is_accounted_for() {
+    let built = |room: usize| {
+        let (mut builder, lender) = (MeshBuilder::new(), Lender(Budget::unlimited(), Cell::new(0)));
+        builder.make_room(room, &lender).unwrap();
+        add_strip(&mut builder);
+        let (mesh, _) = builder.finish_bound(String::new(), &lender, &Progress::new()).unwrap();
+        assert_eq!(mesh.corners.len(), 100);
+        (mesh.corners.capacity(), lender.1.get())
+    };
+    let (exact, spare) = (built(100), built(500));
+    assert_eq!((exact.0, spare.0), (100, 100));
+    assert_eq!(spare.1 - exact.1, 100 * size_of::<Corner>() as u64);
+}

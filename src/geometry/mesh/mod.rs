@@ -1,0 +1,140 @@
+//! Geometry: triangles with corners ([`Mesh`]); and the points, edges and sides that they meet in ([`Topology`]).
+
+pub mod adjacency;
+mod alike_corners;
+mod bounding_box_tree;
+pub mod bounds;
+pub mod build_limits;
+mod cell_chains;
+mod cell_grid;
+pub mod chunked_vec;
+pub mod corner_details;
+pub mod crease_band;
+pub mod curves;
+pub mod detail_table;
+mod dominance;
+mod file_camera;
+pub(crate) mod generate_normals;
+pub mod heights;
+pub mod interner;
+mod light;
+pub mod material;
+pub mod mesh_builder;
+pub mod mipmap;
+mod near_points;
+pub mod normal_faults;
+pub mod normals;
+pub mod orientation;
+pub mod polygon;
+pub mod repairs;
+pub mod rig;
+pub mod shapes;
+mod slices;
+mod smooth_points;
+mod spatial_hash;
+pub mod t_junctions;
+pub mod topology;
+mod unfinished_mesh;
+pub mod union_find;
+pub mod weld;
+pub mod weld_preview;
+
+use std::sync::Arc;
+
+use glam::{Vec2, Vec3};
+
+pub use bounds::Bounds;
+pub use corner_details::{CornerDetail, CornerDetails};
+pub use file_camera::{FileCamera, Projection};
+pub use heights::{HeightMap, Heights};
+pub use light::{Light, LightKind, MOST_LIGHTS};
+pub use material::{Alpha, Look, Map, MapUv, Material, Sampling, Slot, Texture, Wrap};
+pub use repairs::Repairs;
+pub use rig::clip::Clip;
+pub use rig::{Moment, Pose, Rig};
+pub use slices::{MeshSlices, SliceError};
+pub use topology::{Edge, EdgeCounts, EdgeKind, Patch, Side, Topology};
+
+#[cfg(test)]
+pub use build_limits::Unlimited;
+pub use build_limits::{Borrowed, BuildError, MemoryAccount, MemoryRefused, borrowing};
+pub use crease_band::{CreaseBand, with_crease_band};
+pub use curves::{Curve, Curves, Sharing};
+pub use dominance::Dominance;
+pub use heights::{MAX_LEVELS, MAX_MAPS};
+pub use normal_faults::NormalFaults;
+pub use orientation::UpAxis;
+pub use shapes::Shape;
+pub use t_junctions::{TJunction, t_junctions};
+pub use weld_preview::{WeldPreview, weld_previews};
+
+/// A triangle's vertex: a position in object units, a unit normal and a texture coordinate (uv, in texture widths and
+/// heights, v downwards as in glTF).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Corner {
+    /// In object units.
+    pub position: Vec3,
+    /// Of unit length.
+    pub normal: Vec3,
+    /// In texture widths and heights, from the upper left corner.
+    pub uv: Vec2,
+}
+
+/// Triangles ready for topology: every corner once, triangles grouped by material.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    /// The name of the file or shape, for display.
+    pub name: String,
+    /// Distinct corners: no two have the same bits in all three attributes (-0 counts as 0), unless an animation moves
+    /// them differently, or their details differ.
+    pub corners: Vec<Corner>,
+    /// Indices into `corners`, counter-clockwise seen from outside.
+    pub triangles: Arc<Vec<[u32; 3]>>,
+    /// The ranges of `triangles` of these materials follow one another and cover all triangles.
+    pub materials: Vec<Material>,
+    /// The height images that displacement can move the surface by.
+    pub heights: Option<Arc<Heights>>,
+    /// More about each corner, for meshes whose materials need it.
+    pub details: Option<Arc<CornerDetails>>,
+    /// How many corners had to be repaired.
+    pub repairs: Repairs,
+    /// The joints, morph targets and clips of an animated mesh.
+    pub rig: Option<Arc<rig::Rig>>,
+    /// The lights of the file, at most [`MOST_LIGHTS`].
+    pub lights: Vec<Light>,
+    /// The cameras of the file.
+    pub cameras: Vec<FileCamera>,
+}
+
+impl Mesh {
+    /// Returns the lights of the file in a pose. One without a finite place there stays where it is at rest.
+    pub fn lights_in(&self, pose: &Pose) -> Vec<Light> {
+        let mut lights = self.lights.clone();
+        for (light, global) in lights.iter_mut().zip(&pose.lights) {
+            *light = light.at(global).unwrap_or(*light);
+        }
+        lights
+    }
+
+    /// Returns the cameras of the file in a pose. One without a finite place and direction there stays where it is at rest.
+    pub fn cameras_in(&self, pose: &Pose) -> Vec<FileCamera> {
+        let mut cameras = self.cameras.clone();
+        for (camera, global) in cameras.iter_mut().zip(&pose.cameras) {
+            if let Some((eye, axes)) = FileCamera::view_axes(global) {
+                (camera.eye, camera.axes) = (eye, axes);
+            }
+        }
+        cameras
+    }
+
+    /// Returns the cameras of the file at a moment of one of its clips; without one, where they are at rest.
+    pub fn cameras_at(&self, moment: Option<Moment>) -> Vec<FileCamera> {
+        let pose = moment.zip(self.rig.as_ref()).map(|(moment, rig)| rig.pose(moment));
+        pose.map_or_else(|| self.cameras.clone(), |pose| self.cameras_in(&pose))
+    }
+
+    /// Whether texture coordinates differ anywhere. Without any in the file, those of all corners are 0.
+    pub fn has_texture_coordinates(&self) -> bool {
+        self.corners.windows(2).any(|pair| pair[0].uv != pair[1].uv)
+    }
+}

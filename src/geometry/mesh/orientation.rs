@@ -1,0 +1,123 @@
+//! Turns and scales a mesh, with everything that hangs on it, so that +Y points up and its unit is another.
+
+use std::sync::Arc;
+
+use glam::{DMat3, DMat4, Vec3};
+
+use super::{LightKind, Mesh, Projection, Rig};
+
+/// An axis of a file's coordinates, which points up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum UpAxis {
+    X,
+    #[default]
+    Y,
+    Z,
+    NegX,
+    NegY,
+    NegZ,
+}
+
+impl UpAxis {
+    /// Turns a vector so that this axis becomes +Y: about the x axis, or about the z axis if this axis is along x. A quarter or a half
+    /// turn is exact.
+    pub fn turn(self, v: Vec3) -> Vec3 {
+        let Vec3 { x, y, z } = v;
+        let turned = match self {
+            Self::X => [-y, x, z],
+            Self::Y => return v,
+            Self::Z => [x, z, -y],
+            Self::NegX => [y, -x, z],
+            Self::NegY => [x, -y, -z],
+            Self::NegZ => [x, -z, y],
+        };
+        // The sum makes 0 of -0.
+        Vec3::from(turned) + Vec3::ZERO
+    }
+
+    /// The same turn as a matrix.
+    fn matrix(self) -> DMat3 {
+        let [x, y, z] = Vec3::AXES.map(|axis| self.turn(axis).as_dvec3());
+        DMat3::from_cols(x, y, z)
+    }
+}
+
+/// Turns a mesh so that `up` becomes +Y, and multiplies all lengths by `scale`. Coordinates that become smaller than f32's least
+/// normal number become 0, as those of files do. `scale` is above 0 and at most 1, so that no coordinate leaves f32.
+pub fn reorient(mesh: &mut Mesh, up: UpAxis, scale: f64) {
+    if up == UpAxis::Y && scale == 1.0 {
+        return;
+    }
+    let length = |length: f32| {
+        let scaled = (f64::from(length) * scale) as f32;
+        if scaled.is_subnormal() { 0.0 } else { scaled }
+    };
+    let place = |v: Vec3| Vec3::from(up.turn(v).to_array().map(length)) + Vec3::ZERO;
+    for corner in &mut mesh.corners {
+        corner.position = place(corner.position);
+        corner.normal = up.turn(corner.normal);
+    }
+    if let Some(details) = &mut mesh.details {
+        Arc::make_mut(details).iter_mut().for_each(|detail| detail.tangent = up.turn(detail.tangent));
+    }
+    if let Some(rig) = &mut mesh.rig {
+        reorient_rig(Arc::make_mut(rig), DMat4::from_mat3(up.matrix() * scale));
+    }
+    for light in &mut mesh.lights {
+        (light.place, light.direction) = (place(light.place), up.turn(light.direction));
+        if let LightKind::Point { range } | LightKind::Spot { range, .. } = &mut light.kind {
+            *range = range.map(length);
+        }
+    }
+    for camera in &mut mesh.cameras {
+        camera.eye = place(camera.eye);
+        camera.axes = camera.axes.map(|axis| up.turn(axis));
+        if let Projection::Orthographic(half_height) = &mut camera.projection {
+            *half_height = length(*half_height);
+        }
+    }
+}
+
+/// Puts a transform over all joints. Bindings are in the spaces of their joints, so they stay, and so do clips.
+fn reorient_rig(rig: &mut Rig, transform: DMat4) {
+    for node in rig.nodes.iter_mut().filter(|node| node.parent.is_none()) {
+        node.between = transform * node.between;
+    }
+    for joint in rig.joints.iter_mut().filter(|joint| joint.node.is_none()) {
+        joint.offset = transform * joint.offset;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const ALL: [UpAxis; 6] = [UpAxis::X, UpAxis::Y, UpAxis::Z, UpAxis::NegX, UpAxis::NegY, UpAxis::NegZ];
+
+    #[test]
+    fn each_axis_becomes_up_by_a_rotation() {
+        let axes = [Vec3::X, Vec3::Y, Vec3::Z, Vec3::NEG_X, Vec3::NEG_Y, Vec3::NEG_Z];
+        for (up, axis) in ALL.into_iter().zip(axes) {
+            assert_eq!(up.turn(axis), Vec3::Y, "{up:?}");
+            assert_eq!(up.matrix().determinant(), 1.0, "{up:?} mirrors nothing");
+        }
+        // Z up to Y up, as modelling programs export it.
+        assert_eq!(UpAxis::Z.turn(Vec3::new(1.0, 2.0, 3.0)), Vec3::new(1.0, 3.0, -2.0));
+    }
+
+    proptest! {
+        #[test]
+        fn the_turn_and_its_matrix_are_the_same_and_keep_lengths(v in prop::array::uniform3(-1e6_f32..1e6), up in 0..6_usize) {
+            let (v, up) = (Vec3::from(v), ALL[up]);
+            prop_assert_eq!((up.matrix() * v.as_dvec3()).as_vec3(), up.turn(v));
+            let sorted = |v: Vec3| {
+                let mut all = v.abs().to_array();
+                all.sort_by(f32::total_cmp);
+                all
+            };
+            prop_assert_eq!(sorted(up.turn(v)), sorted(v), "the numbers are the same to the bit");
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! What a tessellation depends on, besides the mesh.
+
+use super::{Clip, Convention, Displacement, Lod, LodView, Normals, Partitioning, Surface};
+use crate::mesh::Sharing;
+
+/// Where the values come from that all sides of an edge must agree on: control points, the factor, and positions and
+/// normals along the edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u32)]
+pub enum Edges {
+    /// The edge computes them once, in its own direction. All sides get the same bits, so that nothing cracks.
+    PerEdge = 0,
+    /// Every patch computes them for itself, in its own direction, as the white paper's shaders do (McDonald and Kilgard
+    /// 2010). The sides differ by rounding, so that edges crack in their last bits.
+    AsPublished = 1,
+}
+
+/// How a mesh is tessellated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tessellation {
+    /// The surface that replaces each triangle.
+    pub surface: Surface,
+    /// Strength of Phong tessellation, 0 (flat) to 1.
+    pub alpha: f32,
+    /// The normals of emitted vertices.
+    pub normals: Normals,
+    /// Where sides get what they share from.
+    pub edges: Edges,
+    /// Tessellation factor under uniform LOD, and the largest under LOD by distance, 1 to 64.
+    pub factor: f32,
+    /// How factors become segments.
+    pub partitioning: Partitioning,
+    /// The LOD that is chosen; [`Self::used_lod`] is the one that is used.
+    pub lod: Lod,
+    /// Under LOD by edge length: length of a segment on screen, in px.
+    pub pixels: f32,
+    /// Under LOD by error: largest distance on screen between the emitted triangles and the surface, in px.
+    pub tolerance: f32,
+    /// Under LOD by distance: distance to the eye up to which the factor is `factor`, in bounding radii.
+    pub near: f32,
+    /// Under LOD by distance: distance to the eye from which on the factor is 1, in bounding radii; larger than `near`.
+    pub far: f32,
+    /// Whether patches outside the view are left out.
+    pub clip: Clip,
+    /// Whether patches that show only their backs are left out, if the mesh is closed.
+    pub cull_back_faces: bool,
+    /// The order of factors and weights.
+    pub convention: Convention,
+    /// Whether height images move the surface.
+    pub displacement: Displacement,
+    /// Distance between a height of 0 and a height of 1, in bounding radii of the mesh at rest.
+    pub height_scale: f32,
+    /// The height that isn't moved, 0 to 1.
+    pub midlevel: f32,
+}
+
+impl Default for Tessellation {
+    fn default() -> Self {
+        Self {
+            surface: Surface::PnAen,
+            alpha: 0.75,
+            normals: Normals::Linear,
+            edges: Edges::PerEdge,
+            factor: 8.0,
+            partitioning: Partitioning::FractionalOdd,
+            lod: Lod::Uniform,
+            pixels: 8.0,
+            tolerance: 0.25,
+            near: 2.0,
+            far: 10.0,
+            clip: Clip::Off,
+            cull_back_faces: false,
+            convention: Convention::D3d11,
+            displacement: Displacement::Off,
+            height_scale: 0.05,
+            midlevel: 0.5,
+        }
+    }
+}
+
+impl Tessellation {
+    /// Subtriangulation has one number of segments everywhere, so that its LOD is uniform whichever is chosen.
+    pub fn used_lod(&self) -> Lod {
+        if self.partitioning == Partitioning::Subtriangulation { Lod::Uniform } else { self.lod }
+    }
+}
+
+/// What a tessellation depends on, besides the mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inputs {
+    /// Its LOD is the one that is used.
+    pub tessellation: Tessellation,
+    /// What LOD and clipping are computed for.
+    pub view: LodView,
+}
+
+impl Inputs {
+    /// A tessellation with the LOD that it uses, seen from `view`.
+    pub fn new(tessellation: &Tessellation, view: LodView) -> Self {
+        Self { tessellation: Tessellation { lod: tessellation.used_lod(), ..*tessellation }, view }
+    }
+}
+
+/// Which sides of an edge share its curve where a function of the user's own gives control points: none.
+pub fn own_sharing(edges: Edges) -> Sharing {
+    match edges {
+        Edges::PerEdge => Sharing::EachSide,
+        Edges::AsPublished => Sharing::NoneAveraged,
+    }
+}
+
+/// Which sides of an edge share its curve under a surface.
+pub fn sharing(surface: Surface, edges: Edges) -> Sharing {
+    let alone = surface.tears() || surface == Surface::Flat;
+    match edges {
+        Edges::PerEdge if surface.tears() => Sharing::EqualNormals,
+        Edges::PerEdge => Sharing::AllSides,
+        Edges::AsPublished if alone => Sharing::None,
+        Edges::AsPublished => Sharing::NoneAveraged,
+    }
+}

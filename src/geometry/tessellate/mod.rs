@@ -1,0 +1,138 @@
+//! Tessellation on the CPU: the reference implementation that the shaders are compared with.
+//!
+//! `shaders/X.wgsl` is the twin of `X.rs`: it has the same functions in the same order, with the same formulas.
+//! `control_nets.rs`, `mesh_factors.rs`, `mesh_displacement.rs` and `mesh_tessellation.rs` do for a whole mesh what the
+//! passes in `shaders/pass_*.wgsl` do.
+
+mod connectivity;
+pub mod connectivity_table;
+mod control_nets;
+mod control_points;
+mod convention;
+#[cfg_attr(
+    not(test),
+    allow(dead_code, reason = "the passes need the view alone; tests need the rest, which they follow")
+)]
+mod coverage;
+mod cull;
+#[cfg(test)]
+mod curvature;
+mod deform;
+mod displace;
+mod displacement_factor;
+pub mod domain;
+mod domain_row;
+mod explained_patch;
+pub mod factors;
+mod flat_patch;
+mod height_list;
+pub mod hull_factors;
+mod inputs;
+mod least_factors;
+mod least_rows;
+mod limit_surface;
+mod lod;
+pub mod mesh_displacement;
+mod mesh_factors;
+mod mesh_tessellation;
+mod normal;
+mod octahedral_normal;
+mod patch_bounds;
+mod piece_error;
+mod posed_mesh;
+mod quotients;
+mod rings;
+mod rows;
+mod solid;
+mod subtriangulation;
+mod surface;
+mod texel_lengths;
+mod triangle_budget;
+mod vertex;
+
+pub use convention::Convention;
+pub use cull::Clip;
+pub use displace::Displacement;
+pub use factors::{Partitioning, PatchFactors};
+pub use inputs::{Edges, Inputs, Tessellation};
+pub use lod::{Lod, LodView};
+pub use mesh_tessellation::{Tessellated, tessellate};
+pub use normal::Normals;
+pub use octahedral_normal::unpack_normal;
+pub use surface::Surface;
+pub use vertex::Vertex;
+
+#[cfg(test)]
+pub(crate) use control_points::edge_control_point;
+pub(crate) use control_points::{DistinctNormals, add_normal, crease_control_point, side_control_points};
+pub use control_points::{center_control_point, straight_control_point};
+pub use convention::{corner_weights, domain_side, factor_side, weight_corner};
+pub use coverage::CoverageView;
+#[cfg(test)]
+pub use coverage::{covers_nothing, screen_corner};
+pub use cull::{FACING_AWAY, NOT_CULLED, OUT_OF_VIEW, cull_reason, planes_outside};
+#[cfg(test)]
+pub use curvature::{mean_curvature, patch_second_derivatives};
+pub use displacement_factor::SURFACE_SHARE;
+pub use domain::{domain_plan, domain_point, domain_triangle};
+#[cfg(test)]
+pub use explained_patch::own_least_triangles;
+pub use explained_patch::{
+    DecidedBy, ExplainedEdge, ExplainedPatch, explain_patch, inside_cut, is_enough, own_least_inputs,
+};
+#[cfg(test)]
+pub use factors::FACTOR_ODD;
+pub use factors::{
+    FACTOR_VALUE, FIXED_ONE, outer_count, patch_is_culled, patch_is_low, point_count, process, round_pow2, segments,
+    triangle_count,
+};
+pub use hull_factors::{HullFactors, RowChoice};
+pub use inputs::{own_sharing, sharing};
+pub use limit_surface::LimitSurface;
+pub use lod::beyond_near;
+pub(crate) use lod::{distance_factor, edge_length_factor, paper_edge_factor};
+pub use mesh_displacement::{displaced_corners, displacement_reach, displacing_heights, height_units};
+pub use mesh_factors::rounds;
+#[cfg(test)]
+pub use mesh_tessellation::edge_factors;
+pub use mesh_tessellation::{given_totals, hull_factors, tessellate_given, totals};
+pub use normal::{edge_normal, linear_normal};
+pub(crate) use normal::{quadratic_edge_normal, quadratic_normal, surface_normal};
+pub use octahedral_normal::pack_normal;
+pub use piece_error::{SeenPatch, piece_error};
+#[cfg(test)]
+pub use posed_mesh::deform;
+pub use posed_mesh::{Deformed, PosedMesh, bounds_through};
+pub use solid::{Solid, is_beyond_near};
+#[cfg(test)]
+pub use surface::patch_tangents;
+pub use surface::{ControlNet, edge_position, edge_uv, linear_uv, outline_place, patch_position};
+pub use texel_lengths::{TexelLength, map_number, texel_lengths};
+pub use triangle_budget::tolerance_within_budget;
+#[cfg(test)]
+pub use vertex::pack_key;
+
+/// The constants of the mathematics that the shaders have too, for the test that compares them.
+#[cfg(test)]
+pub mod shared_constants {
+    pub use super::connectivity_table::{PATTERN_HALVES, PATTERN_STEPS};
+    pub use super::control_points::PARALLEL;
+    pub use super::coverage::ROW_SAMPLES;
+    pub use super::cull::{
+        FACING_AWAY, FACING_MARGIN, FACING_ROUNDING, NOT_CULLED, OUT_OF_VIEW, POLAR_INDICES, POLAR_WEIGHTS,
+    };
+    pub use super::curvature::FLAT_ANGLE;
+    pub use super::displacement_factor::{DETAIL_SHARE, SURFACE_SHARE, TURN_SHARE};
+    pub use super::domain::FIXED_TWO_THIRDS;
+    pub use super::factors::{
+        BITS_63, BITS_64, BITS_896, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP, BITS_ONE_AND_STEP, BITS_TWO,
+        FACTOR_ODD, FACTOR_VALUE, FIXED_HALF, FIXED_ONE, ROW_BASE_SHIFT, ROW_BASE_STEP, ROW_FLIP_SHIFT, ROWS,
+        SUBTRIANGULATED,
+    };
+    pub use super::flat_patch::{AGREEING, TWO_POINTS};
+    pub use super::least_factors::{BEYOND_LAST, BOUND_SHARE, ROW_REACH, SPREAD, TOGETHER};
+    pub use super::least_rows::{ASKED_SEGMENT, LESSENINGS};
+    pub use super::normal::CANCELLED;
+    pub use super::piece_error::{FINEST_GRID, PARTIAL_STEPS};
+    pub use super::surface::UNIT;
+}

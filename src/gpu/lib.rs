@@ -1,0 +1,89 @@
+//! The mathematics of [`geometry::tessellate`] as compute passes.
+//!
+//! 1. When the pose changes: deform.
+//! 2. When the mesh, its pose or the kind of surface changes: nets (and directions, if it has heights).
+//! 3. When settings or the view change: factors (and levels, if displaced), counts, scan, chunks.
+//! 4. For every chunk of patches that fits the arena: emit (and displace), and then whatever uses the chunk: a draw, a readback.
+//!
+//! Pipelines are made when they are first needed, so recording a pass may fail.
+
+pub mod adapters;
+mod arena;
+mod bound_pass;
+mod buffer;
+mod compute_pipeline;
+pub mod device;
+pub mod domain;
+pub mod embed;
+mod error;
+mod hull;
+pub mod layout;
+mod lazy;
+mod mesh_buffers;
+mod mesh_passes;
+pub mod own_functions;
+mod own_least;
+pub mod own_lod;
+mod own_lod_passes;
+pub mod own_surface;
+mod own_surface_passes;
+mod params;
+mod pipelines;
+pub mod readback;
+pub mod recorder;
+pub mod relief_buffers;
+mod rig;
+mod search_passes;
+mod slab;
+mod tessellator;
+pub mod wgsl;
+pub mod wgsl_tokens;
+
+pub use adapters::{AdapterChoice, BACKENDS, adapters, best_adapter, driver, identity, kind};
+pub use arena::{VERTEX_HALF, chunks_an_arena, vertices_of};
+pub use bound_pass::BoundPass;
+pub use buffer::{empty, uniform_buffer};
+pub use compute_pipeline::{ComputePipeline, ShaderModule};
+pub use device::{Gpu, device_descriptor};
+#[cfg(test)]
+pub use domain::DomainParams;
+pub use domain::{DomainPass, DomainPattern};
+pub use error::GpuError;
+pub use lazy::Lazy;
+pub(crate) use mesh_buffers::MeshBuffers;
+#[cfg(test)]
+pub use mesh_buffers::SEARCH_COUNTERS;
+pub use own_functions::{OwnReport, OwnShader};
+pub use own_lod::{Given, LodShader};
+pub use own_surface::SurfaceShader;
+pub use pipelines::{ComputePipelines, WORKGROUP, bind_group, grid};
+#[cfg(test)]
+pub use pipelines::{GRID_WIDTH, MOST_WORKGROUPS};
+pub use readback::{Readback, read_buffer, read_buffers, read_texture};
+#[cfg(test)]
+pub use recorder::PASSES;
+pub use recorder::{DRAWING, PassTime, RecordPasses, Recorder, Timing, take_times};
+#[cfg(test)]
+pub use search_passes::{NEXT_EDGES, NEXT_PATCHES, SEARCH_AGAIN, SEARCH_ASKED, SEARCH_INSIDE};
+pub use tessellator::{ChunkBuffers, Tessellator};
+pub use wgsl::WgslFile;
+
+/// The files with the entry points of the passes: one shader module each.
+#[cfg(test)]
+pub static MODULES: [&WgslFile; 15] = [
+    &pipelines::PASS_DEFORM,
+    &pipelines::PASS_NETS,
+    &own_surface::PASS_OWN_SURFACE,
+    &pipelines::PASS_FACTORS,
+    &own_lod::PASS_OWN_LOD,
+    &pipelines::PASS_ASKED,
+    &pipelines::PASS_UNIFORM,
+    &pipelines::PASS_LEAST,
+    &pipelines::PASS_LEVELS,
+    &pipelines::PASS_COUNTS,
+    &pipelines::PASS_SCAN,
+    &pipelines::PASS_CHUNKS,
+    &pipelines::PASS_EMIT,
+    &pipelines::PASS_DISPLACE,
+    &domain::PASS_DOMAIN,
+];

@@ -1,0 +1,155 @@
+//! The engine that the window and the commands share: a device with its pipelines, and what can be done with a scene
+//! without a window: upload it, tessellate it, draw it, read it back and time it.
+
+mod loading;
+pub mod measurements;
+mod readbacks;
+pub mod silhouette;
+mod timing;
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicU64;
+
+use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, SilhouetteDrawer, Target};
+use crate::settings::{Settings, SplitSide};
+use geometry::mesh::{Mesh, Topology};
+use geometry::tessellate::{Inputs, LodView};
+use gpu::{AdapterChoice, ComputePipelines, Gpu, GpuError, Recorder, Timing};
+
+pub use loading::{Loaded, Preparation, load};
+pub use measurements::{MeasurementResults, Measurements};
+pub use silhouette::{SilhouetteDrawing, SilhouetteView};
+pub use timing::Runs;
+
+/// A device and the pipelines on it, each of which is made when it is first needed. Cheap to clone; clones share everything.
+#[derive(Clone)]
+pub struct Engine {
+    pub gpu: Gpu,
+    pub pipelines: Arc<ComputePipelines>,
+    pub renderer: Arc<Renderer>,
+    pub picker: Arc<Picker>,
+    leaks: Arc<LeakCounter>,
+    silhouettes: Arc<SilhouetteDrawer>,
+    /// See [`Self::chunks_read`].
+    chunks_read: Arc<AtomicU64>,
+}
+
+impl Engine {
+    pub fn new(gpu: Gpu) -> Self {
+        let pipelines = Arc::new(ComputePipelines::new());
+        let renderer = Arc::new(Renderer::new(&gpu));
+        let (picker, leaks) = (Arc::new(Picker::new()), Arc::new(LeakCounter::new()));
+        let silhouettes = Arc::new(SilhouetteDrawer::new());
+        Self { gpu, pipelines, renderer, picker, leaks, silhouettes, chunks_read: Arc::default() }
+    }
+
+    /// Makes an engine on the machine's best adapter, without a window.
+    ///
+    /// # Errors
+    /// There is no adapter, or it gives no device.
+    pub fn headless() -> Result<Self, GpuError> {
+        Gpu::headless().map(Self::new)
+    }
+
+    /// Makes an engine on the adapter that `choice` names, without a window.
+    ///
+    /// # Errors
+    /// There is no such adapter, or it gives no device.
+    pub fn chosen(choice: &AdapterChoice) -> Result<Self, GpuError> {
+        Gpu::chosen(choice).map(Self::new)
+    }
+
+    /// Uploads a mesh; its output gets an arena of `arena_bytes`. Any thread may call this.
+    ///
+    /// # Errors
+    /// The mesh needs a larger buffer than the adapter can bind.
+    pub fn scene(&self, loaded: &Loaded, arena_bytes: u64) -> Result<Scene, GpuError> {
+        self.scene_of(loaded.mesh.clone(), loaded.topology.clone(), arena_bytes)
+    }
+
+    /// As [`Self::scene`], for a mesh that was not loaded.
+    ///
+    /// # Errors
+    /// The mesh needs a larger buffer than the adapter can bind.
+    pub fn scene_of(&self, mesh: Arc<Mesh>, topology: Arc<Topology>, arena_bytes: u64) -> Result<Scene, GpuError> {
+        Scene::new(&self.gpu, self.renderer.materials(), self.pipelines.clone(), mesh, topology, arena_bytes)
+    }
+
+    /// Makes the pipelines that a picture of the scene with these settings needs, as far as they are known before the scene is
+    /// counted. The window's loading thread calls this, so that the window doesn't wait for the driver's compiler. Commands
+    /// needn't call it.
+    ///
+    /// # Errors
+    /// Out of memory, or a lost device.
+    pub fn prepare(&self, scene: &Scene, settings: &Settings) -> Result<(), GpuError> {
+        scene.tessellator.prepare(&settings.tessellation)?;
+        self.renderer.prepare(scene, settings)
+    }
+
+    /// Adds the left half of a split view to a scene: a second tessellation, with an arena of `arena_bytes`.
+    ///
+    /// # Errors
+    /// The mesh needs a larger buffer than the adapter can bind.
+    pub fn split(&self, scene: &mut Scene, arena_bytes: u64) -> Result<(), GpuError> {
+        let left = scene.beside(arena_bytes)()?;
+        scene.set_left(Some(left))
+    }
+
+    /// Runs the passes that count vertices and triangles, and waits for their results.
+    ///
+    /// # Errors
+    /// The device was lost, or a shader of the user's own took too long.
+    pub fn count(&self, scene: &mut Scene, inputs: &Inputs, timing: &mut Timing) -> Result<(), GpuError> {
+        scene.tessellator.set(inputs)?;
+        if scene.tessellator.needs_count() {
+            let mut recorder = Recorder::new(&self.gpu, timing);
+            scene.tessellator.count(&mut recorder)?;
+            recorder.submit();
+        }
+        scene.tessellator.read_counts()?;
+        match scene.tessellator.stopped_shader() {
+            Some(name) => Err(GpuError::OwnStopped(name)),
+            None => Ok(()),
+        }
+    }
+
+    /// Tessellates for the camera's view and draws it. Waits for the counts, but not for the picture.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn draw(
+        &self,
+        scene: &mut Scene,
+        target: &Target,
+        camera: &Camera,
+        settings: &Settings,
+        timing: &mut Timing,
+    ) -> Result<(), GpuError> {
+        let view = camera.lod_view(target.viewport(), &scene.bounds);
+        self.draw_seen(scene, target, camera, view, settings, timing)
+    }
+
+    /// The same, tessellated for a view that may be another camera's.
+    ///
+    /// # Errors
+    /// The device was lost.
+    fn draw_seen(
+        &self,
+        scene: &mut Scene,
+        target: &Target,
+        camera: &Camera,
+        view: LodView,
+        settings: &Settings,
+        timing: &mut Timing,
+    ) -> Result<(), GpuError> {
+        for half in SplitSide::BOTH {
+            if let Some((scene, settings)) = scene.half_mut(half).zip(settings.half(half)) {
+                self.count(scene, &settings.inputs(view), timing)?;
+            }
+        }
+        let mut recorder = Recorder::new(&self.gpu, timing);
+        self.renderer.draw(&mut recorder, scene, target, camera, settings)?;
+        recorder.submit();
+        Ok(())
+    }
+}

@@ -1,0 +1,161 @@
+//! Reads a mesh and prepares it for the engine. Needs no device.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Instant;
+
+use geometry::mesh::{BuildError, CreaseBand, Mesh, Moment, Topology, with_crease_band};
+use geometry::progress::{Progress, Stage};
+use geometry::tessellate::PosedMesh;
+use load::files::Limits;
+use load::parts::Part;
+use load::selection::Selection;
+use load::{Budget, HeightSource, Import, LoadError, LoadedMesh, Source, crease_band_warnings, untextured_warning};
+
+/// A mesh with its topology, and how long both took.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    pub source: Source,
+    /// The preparation that was asked for. The crease band may have become narrower than that.
+    pub preparation: Preparation,
+    pub crease_band: CreaseBand,
+    /// The mesh as it was read: the same as `mesh` unless that has a crease band.
+    pub read: Arc<Mesh>,
+    pub mesh: Arc<Mesh>,
+    /// Sentences about what was left out or repaired.
+    pub warnings: Vec<String>,
+    /// The names of the material variants that the file has.
+    pub variants: Vec<String>,
+    /// The names of the scenes that the file has.
+    pub scenes: Vec<String>,
+    /// Which of them this is.
+    pub scene: Option<usize>,
+    /// The parts of the file, also those that are left out.
+    pub parts: Arc<Vec<Part>>,
+    /// Files that the mesh's own file names and that were read, with links resolved.
+    pub files: Vec<PathBuf>,
+    pub topology: Arc<Topology>,
+    pub load_ms: f64,
+    pub topology_ms: f64,
+}
+
+impl Loaded {
+    /// A mesh that no file has.
+    pub fn of_mesh(mesh: Arc<Mesh>, topology: Arc<Topology>) -> Self {
+        Self {
+            source: Source::default(),
+            preparation: Preparation::default(),
+            crease_band: CreaseBand::default(),
+            read: mesh.clone(),
+            mesh,
+            warnings: Vec::new(),
+            variants: Vec::new(),
+            scenes: Vec::new(),
+            scene: None,
+            parts: Arc::default(),
+            files: Vec::new(),
+            topology,
+            load_ms: 0.0,
+            topology_ms: 0.0,
+        }
+    }
+
+    /// Returns this mesh at a moment of one of its clips, deformed on the CPU. Without a moment it is at rest.
+    pub fn posed(&self, moment: Option<Moment>) -> Self {
+        let (mesh, topology) = (self.mesh.clone(), self.topology.clone());
+        let pose = moment.zip(mesh.rig.as_ref()).map(|(moment, rig)| Arc::new(rig.pose(moment)));
+        let (mesh, topology) = PosedMesh::new(mesh, topology, pose).deformed();
+        Self { mesh, topology, ..self.clone() }
+    }
+}
+
+/// How a mesh is read and prepared.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Preparation {
+    /// The tolerance for welding points, relative to the bounding diagonal.
+    pub weld: f32,
+    /// The width of the crease band, relative to the bounding diagonal; 0 for none.
+    pub crease_band: f32,
+    /// The height images for displacement.
+    pub heights: Option<HeightSource>,
+    /// The material variant of the file, by name; none for each primitive's own material.
+    pub variant: Option<String>,
+    /// The scene of the file, by name or by number from 0; none for its default scene.
+    pub scene: Option<String>,
+    /// The names of parts of the file that are left out.
+    pub hidden: Vec<String>,
+    /// How the geometry of the file is taken.
+    pub import: Import,
+    pub limits: Limits,
+}
+
+/// Reads a mesh, prepares it, and builds its topology. Needs no device.
+///
+/// # Errors
+/// The mesh or the height image can't be read, the mesh is too large or has nothing to show, or `progress` was cancelled.
+pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> Result<Loaded, LoadError> {
+    let start = Instant::now();
+    // Large images take longer than most meshes.
+    let of_mesh = if preparation.heights.is_some() { progress.part(0.0, 0.4) } else { progress.clone() };
+    let selected = Selection {
+        variant: preparation.variant.as_deref(),
+        scene: preparation.scene.as_deref(),
+        hidden: &preparation.hidden,
+        import: preparation.import,
+    };
+    let LoadedMesh { mesh: mut read, mut warnings, variants, scenes, scene, parts, files, file_bytes } =
+        source.load_selected(selected, &preparation.limits, &of_mesh)?;
+    let loaded = Instant::now();
+    let budget = Budget::of_mesh(&read, file_bytes, &preparation.limits);
+    let too_large = |what| move |error| unfinished(source, what, error);
+    let mut topology =
+        Topology::build_afforded(&read, preparation.weld, &budget, progress).map_err(too_large("its edges"))?;
+    if topology.patches.is_empty() {
+        let welded = if preparation.weld > 0.0 { ", within the tolerance of --weld" } else { "" };
+        let holds = format!("each of its {} triangles has two corners on one point{welded}", read.triangles.len());
+        return Err(LoadError::Empty { path: source.to_string().into(), holds });
+    }
+    let (mut cut, mut crease_band) = (None, CreaseBand::default());
+    if preparation.crease_band > 0.0 {
+        let made = with_crease_band(&read, &topology, preparation.crease_band, &budget, progress)
+            .map_err(too_large("its crease band"))?;
+        cut = Some(made.0);
+        (topology, crease_band) = (made.1, made.2);
+        warnings.extend(crease_band_warnings(&crease_band));
+        if read.rig.is_some() {
+            warnings.push("its animations are left out, since a mesh with a crease band can't be animated.".to_owned());
+        }
+    }
+    let mesh = cut.as_mut().unwrap_or(&mut read);
+    if let Some(heights) = &preparation.heights {
+        progress.enter(Stage::Heights);
+        let heights = heights.load(mesh, &warnings, &budget, &progress.part(0.4, 1.0))?;
+        warnings.extend(untextured_warning(&heights, mesh));
+        mesh.heights = Some(Arc::new(heights));
+    }
+    let read = Arc::new(read);
+    Ok(Loaded {
+        source: source.clone(),
+        preparation: preparation.clone(),
+        crease_band,
+        mesh: cut.map_or_else(|| read.clone(), Arc::new),
+        read,
+        warnings,
+        variants,
+        scenes,
+        scene,
+        parts: Arc::new(parts),
+        files,
+        topology: Arc::new(topology),
+        load_ms: (loaded - start).as_secs_f64() * 1e3,
+        topology_ms: loaded.elapsed().as_secs_f64() * 1e3,
+    })
+}
+
+/// Converts the error of a step after reading; `what` names what that step makes.
+fn unfinished(source: &Source, what: &'static str, error: BuildError) -> LoadError {
+    match error {
+        BuildError::Cancelled(cancelled) => cancelled.into(),
+        other => LoadError::TooMuch { path: source.to_string().into(), what, reason: other.to_string() },
+    }
+}

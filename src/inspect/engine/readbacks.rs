@@ -1,0 +1,197 @@
+//! What the passes computed and emitted, read back.
+
+use std::sync::atomic::Ordering;
+
+use glam::Vec3;
+
+use super::Engine;
+use crate::measure::{AskedFactors, EmittedChunk, PointsAgreement, Visitor};
+use crate::render::Scene;
+use geometry::mesh::Curves;
+use geometry::tessellate::{HullFactors, Inputs, Lod, Partitioning, PatchFactors, Tessellated, Tessellation};
+use gpu::layout::CurveNet;
+use gpu::{Given, GpuError, Recorder, Timing, read_buffer, read_buffers, vertices_of};
+
+impl Engine {
+    /// Walks once over everything that is emitted: each chunk is emitted, read back once, and given to every visitor. Reads
+    /// nothing without visitors. The counts must be known.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn visit(&self, scene: &mut Scene, visitors: &mut [&mut dyn Visitor]) -> Result<(), GpuError> {
+        if visitors.is_empty() {
+            return Ok(());
+        }
+        for index in 0..scene.tessellator.chunk_count() {
+            self.visit_chunk(scene, index, visitors)?;
+        }
+        Ok(())
+    }
+
+    /// Gives one chunk of everything that is emitted to every visitor.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn visit_chunk(
+        &self,
+        scene: &mut Scene,
+        index: usize,
+        visitors: &mut [&mut dyn Visitor],
+    ) -> Result<(), GpuError> {
+        let mut timing = Timing::Off;
+        let mut recorder = Recorder::new(&self.gpu, &mut timing);
+        scene.tessellator.emit(&mut recorder, index)?;
+        recorder.submit();
+        let buffers = scene.tessellator.chunk(index);
+        let [first, second] = buffers.vertices();
+        let triangle_bytes = u64::from(buffers.chunk.triangle_count) * size_of::<[u32; 3]>() as u64;
+        let bytes = read_buffers(&self.gpu, [first, second, (buffers.indices, 0..triangle_bytes)])?;
+        self.chunks_read.fetch_add(1, Ordering::Relaxed);
+        let (halves, indices) = bytes.split_at(bytes.len() - triangle_bytes as usize);
+        let (first_patch, vertices, triangles) = (buffers.chunk.first_patch, vertices_of(halves), cast(indices));
+        let chunk = EmittedChunk { first_patch, vertices: &vertices, triangles: &triangles };
+        visitors.iter_mut().for_each(|visitor| visitor.take(&chunk));
+        Ok(())
+    }
+
+    /// How many chunks of output this engine and its clones have read back so far.
+    pub fn chunks_read(&self) -> u64 {
+        self.chunks_read.load(Ordering::Relaxed)
+    }
+
+    /// The factors that every patch was emitted with.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn patch_factors(&self, scene: &Scene) -> Result<Vec<PatchFactors>, GpuError> {
+        let item = size_of::<PatchFactors>() as u64;
+        let parts = scene.tessellator.patch_factors().map(|(buffer, count)| (buffer, 0..u64::from(count) * item));
+        Ok(cast(&read_buffers(&self.gpu, parts)?))
+    }
+
+    /// The factors that LOD, a file or an LOD shader gave, before the tessellator clamps and rounds them.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn asked_factors(&self, scene: &Scene) -> Result<AskedFactors, GpuError> {
+        let convention = scene.tessellator.convention();
+        match scene.tessellator.given() {
+            Some(Given::Factors(given)) => return Ok(AskedFactors::given(convention, given)),
+            Some(Given::Shader(_)) => return Ok(AskedFactors::given(convention, &self.own_factors(scene)?)),
+            None => {}
+        }
+        let (buffer, edges) = scene.tessellator.edge_factors();
+        let bytes = u64::from(scene.tessellator.buffers().factor_count) * size_of::<f32>() as u64;
+        Ok(AskedFactors::new(edges, convention, cast::<f32>(&read_buffer(&self.gpu, buffer, 0, bytes)?)))
+    }
+
+    /// The factors that an LOD shader gave every patch, as it gave them; none without such a shader. The counts must be known.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn own_factors(&self, scene: &Scene) -> Result<Vec<HullFactors>, GpuError> {
+        let Some(buffer) = scene.tessellator.own_factors() else { return Ok(Vec::new()) };
+        let patches = scene.tessellator.topology().patches.len();
+        let bytes = read_buffer(&self.gpu, buffer, 0, (patches * size_of::<HullFactors>()) as u64)?;
+        Ok(cast(&bytes))
+    }
+
+    /// How the control points that a surface shader gave the sides of every edge agree; none without such a shader. The counts
+    /// must be known.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn own_points_agreement(&self, scene: &Scene) -> Result<Option<PointsAgreement>, GpuError> {
+        let (tessellator, topology) = (&scene.tessellator, scene.tessellator.topology());
+        if tessellator.surface_shader().is_none() {
+            return Ok(None);
+        }
+        let buffers = tessellator.buffers();
+        let bytes = u64::from(buffers.curve_count) * size_of::<CurveNet>() as u64;
+        let nets: Vec<CurveNet> = cast(&read_buffer(&self.gpu, &buffers.curve_nets, 0, bytes)?);
+        let nets: Vec<_> = nets.iter().map(|net| [net.ab, net.ba].map(Vec3::from)).collect();
+        let curves = Curves::build(tessellator.mesh(), topology, buffers.sharing);
+        Ok(Some(PointsAgreement::of(topology, &curves, &nets)))
+    }
+
+    /// The number of triangles that LOD by error emits at a tolerance of `tolerance_px` px, with all other inputs as they are;
+    /// none if the tessellator hasn't enough segments for it. Subtriangulation has one number of segments everywhere, so
+    /// that integer partitioning stands in for it. The scene is counted with `inputs` again when this returns.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn triangles_by_error(
+        &self,
+        scene: &mut Scene,
+        inputs: &Inputs,
+        tolerance_px: f32,
+    ) -> Result<Option<u64>, GpuError> {
+        let own = inputs.tessellation;
+        let partitioning = match own.partitioning {
+            Partitioning::Subtriangulation => Partitioning::Integer,
+            other => other,
+        };
+        let by_error = Tessellation { lod: Lod::Error, tolerance: tolerance_px, partitioning, ..own };
+        let given = scene.tessellator.given().cloned();
+        if given.is_some() {
+            scene.tessellator.give(None)?;
+        }
+        self.count(scene, &Inputs { tessellation: by_error, ..*inputs }, &mut Timing::Off)?;
+        let (_, triangles) = scene.tessellator.totals();
+        let is_enough = self.factors_capped(scene, &by_error)? == 0;
+        if given.is_some() {
+            scene.tessellator.give(given)?;
+        }
+        self.count(scene, inputs, &mut Timing::Off)?;
+        Ok(is_enough.then_some(triangles))
+    }
+
+    /// The number of factors that ask for more segments than the partitioning has: of edges (sides, if factors are as
+    /// published or given), and under LOD by error of insides. The counts must be known.
+    ///
+    /// # Errors
+    /// More patches than the adapter binds memory for, or a lost device.
+    pub fn factors_capped(&self, scene: &Scene, tessellation: &Tessellation) -> Result<u64, GpuError> {
+        let edges = self.asked_factors(scene)?.beyond(tessellation.partitioning);
+        if tessellation.used_lod() != Lod::Error {
+            return Ok(edges);
+        }
+        let written = scene.tessellator.hull_factors()?;
+        Ok(edges + written.iter().filter(|factors| factors.inside_is_capped()).count() as u64)
+    }
+
+    /// The own least of every patch: the fewest triangles with which it alone would keep the tolerance of LOD by error,
+    /// whichever LOD is used. The counts must be known.
+    ///
+    /// # Errors
+    /// More patches than the adapter binds memory for, or a lost device.
+    #[cfg(test)]
+    pub fn own_least(&self, scene: &mut Scene) -> Result<Vec<u32>, GpuError> {
+        let mut timing = Timing::Off;
+        let mut recorder = Recorder::new(&self.gpu, &mut timing);
+        scene.tessellator.record_own_least(&mut recorder)?;
+        recorder.submit();
+        let Some(buffer) = scene.tessellator.own_least() else { return Ok(Vec::new()) };
+        let bytes = u64::from(scene.tessellator.buffers().patch_count) * size_of::<u32>() as u64;
+        Ok(cast(&read_buffer(&self.gpu, buffer, 0, bytes)?))
+    }
+
+    /// The whole tessellated mesh, read back. The counts must be known.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn read_tessellated(&self, scene: &mut Scene) -> Result<Tessellated, GpuError> {
+        let mut out = Tessellated {
+            patch_factors: self.patch_factors(scene)?,
+            edge_factors: self.asked_factors(scene)?.into_factors(),
+            ..Tessellated::default()
+        };
+        self.visit(scene, &mut [&mut |chunk: &EmittedChunk| out.append(chunk.vertices, chunk.triangles)])?;
+        Ok(out)
+    }
+}
+
+/// Copies bytes that were read back into values, since the bytes may not be aligned.
+fn cast<T: bytemuck::AnyBitPattern + bytemuck::NoUninit>(bytes: &[u8]) -> Vec<T> {
+    bytemuck::pod_collect_to_vec(bytes)
+}

@@ -1,0 +1,224 @@
+//! Writes binary glTF 2.0: the attributes of vertices, the materials with their images, and the lights. What other programs draw
+//! of it is what this one draws, as far as they know the extensions.
+
+mod lights;
+mod materials;
+
+use std::borrow::Cow;
+use std::collections::BTreeSet;
+
+use glam::{Vec3, Vec4};
+use serde_json::{Map, Value, json};
+
+use super::attributes::Attributes;
+use super::{ExportError, Exported};
+use geometry::mesh::CornerDetail;
+
+use materials::{Images, UvSet, UvSets};
+
+/// The most bytes of binary data. The length of a GLB file has 32 bits, and its JSON needs room as well.
+pub(super) const MAX_BYTES: u64 = u32::MAX as u64 - (1 << 24);
+
+const FLOAT: u32 = 5126;
+const UNSIGNED_INT: u32 = 5125;
+const ARRAY_BUFFER: u32 = 34962;
+const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+const TRIANGLES: u32 = 4;
+
+/// Returns the size of a mesh's attributes and indices in bytes.
+pub(super) fn bytes(attributes: Attributes, vertices: u64, triangles: u64) -> u64 {
+    vertices * attributes.bytes() + triangles * 12
+}
+
+/// Returns the bytes of a file, and sentences about what is drawn but has no place in it; `path` is for messages.
+///
+/// # Errors
+/// The file would be larger than 4 GiB, or a texture can't be encoded.
+pub(super) fn encode(mesh: &Exported, path: &str) -> Result<(Vec<u8>, Vec<String>), ExportError> {
+    let triangles: usize = mesh.triangles.iter().map(Vec::len).sum();
+    let used = Attributes::of(mesh.mesh);
+    let bytes = bytes(used, mesh.positions.len() as u64, triangles as u64);
+    if bytes > MAX_BYTES {
+        return Err(ExportError::TooLarge { path: path.to_owned(), triangles: triangles as u64 });
+    }
+    let mut writer = Writer { bin: Vec::with_capacity(bytes as usize), ..Writer::default() };
+    let accessors = writer.vertices(mesh, used);
+    let mut primitives = Vec::new();
+    let mut images = Images::default();
+    for (material, triangles) in mesh.mesh.materials.iter().zip(&mesh.triangles) {
+        if triangles.is_empty() {
+            continue;
+        }
+        let sets = UvSets::of(material);
+        let index = writer.material(material, &sets, &mut images, path)?;
+        primitives.push(writer.primitive(accessors.attributes(&sets), triangles, index));
+    }
+    writer.finish(mesh, primitives).map_err(|reason| ExportError::Texture { path: path.to_owned(), reason })
+}
+
+/// A document that is being written, and its binary data.
+#[derive(Default)]
+struct Writer {
+    bin: Vec<u8>,
+    views: Vec<Value>,
+    accessors: Vec<Value>,
+    images: Vec<Value>,
+    samplers: Vec<Value>,
+    textures: Vec<Value>,
+    materials: Vec<Value>,
+    extensions: BTreeSet<&'static str>,
+    warnings: Vec<String>,
+}
+
+/// Indices of the accessors of all vertices.
+struct VertexAccessors {
+    position: usize,
+    normal: usize,
+    /// The texture coordinates of the base colour.
+    uv: usize,
+    sets: [Option<usize>; 2],
+    color: Option<usize>,
+    tangent: Option<usize>,
+}
+
+impl VertexAccessors {
+    /// Returns the attributes of a primitive with these texture coordinates.
+    fn attributes(&self, sets: &UvSets) -> Value {
+        let mut attributes = json!({ "POSITION": self.position, "NORMAL": self.normal });
+        for (n, set) in sets.written().enumerate() {
+            let accessor = match set {
+                UvSet::Own => Some(self.uv),
+                UvSet::File(set) => self.sets[set],
+            };
+            // Without details, maps are drawn at the texture coordinates of the base colour.
+            attributes[format!("TEXCOORD_{n}")] = json!(accessor.unwrap_or(self.uv));
+        }
+        for (name, accessor) in [("COLOR_0", self.color), ("TANGENT", self.tangent)] {
+            if let Some(accessor) = accessor {
+                attributes[name] = json!(accessor);
+            }
+        }
+        attributes
+    }
+}
+
+impl Writer {
+    /// Appends bytes as a new buffer view, which starts at a multiple of 4.
+    fn view(&mut self, bytes: &[u8], target: Option<u32>) -> usize {
+        let offset = self.bin.len();
+        self.bin.extend_from_slice(bytes);
+        self.bin.resize(self.bin.len().next_multiple_of(4), 0);
+        let mut view = json!({ "buffer": 0, "byteOffset": offset, "byteLength": bytes.len() });
+        if let Some(target) = target {
+            view["target"] = json!(target);
+        }
+        pushed(&mut self.views, view)
+    }
+
+    /// Appends vectors of floats, one for each vertex.
+    fn floats<const N: usize>(&mut self, values: &[[f32; N]]) -> usize {
+        let view = self.view(bytemuck::cast_slice(values.as_flattened()), Some(ARRAY_BUFFER));
+        let (kind, count) = (format!("VEC{N}"), values.len());
+        pushed(&mut self.accessors, json!({ "bufferView": view, "componentType": FLOAT, "count": count, "type": kind }))
+    }
+
+    fn vertices(&mut self, mesh: &Exported, used: Attributes) -> VertexAccessors {
+        let zero = mesh.positions.first().copied().unwrap_or_default();
+        let [min, max] = mesh.positions.iter().fold([zero; 2], |[min, max], p| [min.min(*p), max.max(*p)]);
+        let position = self.floats::<3>(bytemuck::cast_slice(&mesh.positions));
+        self.accessors[position]["min"] = json!(min.to_array());
+        self.accessors[position]["max"] = json!(max.to_array());
+        let normal = self.floats::<3>(bytemuck::cast_slice(&mesh.normals));
+        let uv = self.floats::<2>(bytemuck::cast_slice(&mesh.uvs));
+        let mut accessors = VertexAccessors { position, normal, uv, sets: [None; 2], color: None, tangent: None };
+        let details = &mesh.details;
+        for set in (0..2).filter(|&set| used.sets[set]) {
+            let uvs: Vec<_> = details.iter().map(|detail| detail.uvs[set].to_array()).collect();
+            accessors.sets[set] = Some(self.floats(&uvs));
+        }
+        if used.colors {
+            let colors: Vec<_> = details.iter().map(|detail| detail.color.to_array()).collect();
+            accessors.color = Some(self.floats(&colors));
+        }
+        if used.tangents {
+            let tangents = details.iter().zip(&mesh.normals).map(|(detail, normal)| tangent(detail, *normal));
+            accessors.tangent = Some(self.floats(&tangents.collect::<Vec<_>>()));
+        }
+        accessors
+    }
+
+    fn primitive(&mut self, attributes: Value, triangles: &[[u32; 3]], material: usize) -> Value {
+        let view = self.view(bytemuck::cast_slice(triangles), Some(ELEMENT_ARRAY_BUFFER));
+        let count = triangles.len() * 3;
+        let indices = pushed(
+            &mut self.accessors,
+            json!({ "bufferView": view, "componentType": UNSIGNED_INT, "count": count, "type": "SCALAR" }),
+        );
+        json!({ "attributes": attributes, "indices": indices, "material": material, "mode": TRIANGLES })
+    }
+
+    /// Adds an extension to an object, and names it in the document.
+    fn extend(&mut self, object: &mut Value, name: &'static str, members: Value) {
+        object["extensions"][name] = members;
+        self.extensions.insert(name);
+    }
+
+    fn finish(mut self, mesh: &Exported, primitives: Vec<Value>) -> Result<(Vec<u8>, Vec<String>), String> {
+        let mut nodes = Vec::new();
+        let mut root = json!({
+            "asset": { "version": "2.0", "generator": concat!("pnaen ", env!("CARGO_PKG_VERSION")) },
+        });
+        // A mesh without primitives is not valid glTF; an empty scene is.
+        if !primitives.is_empty() {
+            root["meshes"] = json!([{ "name": mesh.mesh.name, "primitives": primitives }]);
+            nodes.push(json!({ "mesh": 0 }));
+        }
+        self.lights(&mesh.mesh.lights, &mut root, &mut nodes);
+        let mut scene = Map::new();
+        if !nodes.is_empty() {
+            scene.insert("nodes".to_owned(), (0..nodes.len()).collect());
+        }
+        root["scene"] = json!(0);
+        root["scenes"] = json!([scene]);
+        if !self.bin.is_empty() {
+            root["buffers"] = json!([{ "byteLength": self.bin.len() }]);
+        }
+        let lists = [
+            ("nodes", nodes),
+            ("bufferViews", self.views),
+            ("accessors", self.accessors),
+            ("images", self.images),
+            ("samplers", self.samplers),
+            ("textures", self.textures),
+            ("materials", self.materials),
+            ("extensionsUsed", self.extensions.into_iter().map(Value::from).collect()),
+        ];
+        // Empty lists are not valid glTF.
+        for (name, list) in lists.into_iter().filter(|(_, list)| !list.is_empty()) {
+            root[name] = Value::Array(list);
+        }
+        let json = serde_json::to_vec(&root).map_err(|error| error.to_string())?;
+        let glb = gltf::binary::Glb {
+            header: gltf::binary::Header { magic: *b"glTF", version: 2, length: 0 },
+            json: Cow::Owned(json),
+            bin: (!self.bin.is_empty()).then_some(Cow::Owned(self.bin)),
+        };
+        Ok((glb.to_vec().map_err(|error| error.to_string())?, self.warnings))
+    }
+}
+
+/// Appends to a list, and returns the index.
+fn pushed(list: &mut Vec<Value>, value: Value) -> usize {
+    list.push(value);
+    list.len() - 1
+}
+
+/// Returns the tangent of a vertex as glTF has it: of unit length, also where none is known.
+fn tangent(detail: &CornerDetail, normal: Vec3) -> [f32; 4] {
+    let known = detail.tangent.try_normalize();
+    let tangent = known.unwrap_or_else(|| normal.try_normalize().unwrap_or(Vec3::Z).any_orthonormal_vector());
+    Vec4::from((tangent, detail.bitangent_sign)).to_array()
+}
+
+#[cfg(test)]
+mod tests;

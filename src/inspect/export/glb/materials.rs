@@ -1,0 +1,332 @@
+//! Writes materials with their images, and all of their numbers.
+//!
+//! Sources: glTF 2.0 specification, section 3.9; Khronos' extensions KHR_materials_clearcoat, KHR_materials_emissive_strength,
+//! KHR_materials_ior, KHR_materials_sheen, KHR_materials_specular, KHR_materials_transmission, KHR_materials_unlit and
+//! KHR_texture_transform.
+
+use std::io::Cursor;
+use std::sync::Arc;
+
+use serde_json::{Value, json};
+
+use super::{Writer, pushed};
+use crate::export::ExportError;
+use geometry::mesh::{Alpha, Look, Map, MapUv, Material, Sampling, Slot, Texture, Wrap};
+use geometry::names;
+
+const TRANSFORM: &str = "KHR_texture_transform";
+
+/// How far, relative to its largest number, an affine map may be from a scale and a rotation.
+const LEAST_SHEAR: f32 = 1e-4;
+
+/// The images, samplers and textures that were written so far. Materials share them.
+#[derive(Default)]
+pub(super) struct Images {
+    images: Vec<(*const Texture, usize)>,
+    samplers: Vec<(Sampling, usize)>,
+    textures: Vec<([usize; 2], usize)>,
+}
+
+/// Texture coordinates of vertices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum UvSet {
+    /// Those of the base colour.
+    Own,
+    /// One of the file's sets, as it was there.
+    File(usize),
+}
+
+/// The texture coordinates that a material's primitive gets. Readers may know two sets only (specification, section 3.7.2.1), so
+/// that sets without use are left out.
+pub(super) struct UvSets {
+    /// In the order of TEXCOORD_n.
+    sets: Vec<UvSet>,
+    /// Whether those of the base colour are those of the file's first set.
+    own_is_first: bool,
+}
+
+impl UvSets {
+    pub(super) fn of(material: &Material) -> Self {
+        // Without an image of the base colour, corners have the first set themselves.
+        let own_is_first = material.texture.is_none();
+        let uses = |set: usize| {
+            let mut maps = material.look.maps.iter().flatten();
+            !(own_is_first && set == 0) && maps.any(|map| matches!(map.uv, MapUv::Set(own, _) if own == set))
+        };
+        let sets = match [uses(0), uses(1)] {
+            [false, false] => vec![UvSet::Own],
+            [true, false] => vec![UvSet::Own, UvSet::File(0)],
+            [false, true] => vec![UvSet::Own, UvSet::File(1)],
+            // This program reads any set for the base colour, and the first two for other maps.
+            [true, true] => vec![UvSet::File(0), UvSet::File(1), UvSet::Own],
+        };
+        Self { sets, own_is_first }
+    }
+
+    /// Those that are written, in the order of TEXCOORD_n.
+    pub(super) fn written(&self) -> impl Iterator<Item = UvSet> {
+        self.sets.iter().copied()
+    }
+
+    /// The n of TEXCOORD_n.
+    fn number(&self, set: UvSet) -> usize {
+        let set = if self.own_is_first && set == UvSet::File(0) { UvSet::Own } else { set };
+        self.sets.iter().position(|written| *written == set).unwrap_or(0)
+    }
+}
+
+impl Writer {
+    /// Returns the index of a material.
+    ///
+    /// # Errors
+    /// An image can't be encoded.
+    pub(super) fn material(
+        &mut self,
+        material: &Material,
+        sets: &UvSets,
+        images: &mut Images,
+        path: &str,
+    ) -> Result<usize, ExportError> {
+        let look = &material.look;
+        let mut infos: [Option<Value>; Slot::COUNT] = Default::default();
+        for (map, info) in look.maps.iter().zip(&mut infos) {
+            if let Some(map) = map {
+                *info = self.map(map, material, sets, images, path)?;
+            }
+        }
+        let mut of = |slot: Slot| infos[slot as usize].take();
+        let mut rough = json!({
+            "baseColorFactor": material.base_color,
+            "metallicFactor": look.metallic,
+            "roughnessFactor": look.roughness,
+        });
+        if let Some(image) = &material.texture {
+            let index = self.texture(image, material.sampling, images, path)?;
+            rough["baseColorTexture"] = json!({ "index": index, "texCoord": sets.number(UvSet::Own) });
+        }
+        set(&mut rough, "metallicRoughnessTexture", of(Slot::MetallicRoughness));
+        let mut written = json!({
+            "name": material.name,
+            "pbrMetallicRoughness": rough,
+            "doubleSided": material.double_sided,
+        });
+        set(&mut written, "normalTexture", with(of(Slot::Normal), "scale", look.normal_scale));
+        set(&mut written, "occlusionTexture", with(of(Slot::Occlusion), "strength", look.occlusion_strength));
+        set(&mut written, "emissiveTexture", of(Slot::Emissive));
+        written["alphaMode"] = json!(match look.alpha {
+            Alpha::Opaque => "OPAQUE",
+            Alpha::Mask(_) => "MASK",
+            Alpha::Blend => "BLEND",
+        });
+        if let Alpha::Mask(cutoff) = look.alpha {
+            written["alphaCutoff"] = json!(cutoff);
+        }
+        self.emission(look, &mut written);
+        self.reflection(look, &mut written, &mut of);
+        if look.transmits() {
+            let mut members = json!({ "transmissionFactor": look.transmission });
+            set(&mut members, "transmissionTexture", of(Slot::Transmission));
+            self.extend(&mut written, "KHR_materials_transmission", members);
+        }
+        if look.has_sheen() {
+            let mut members =
+                json!({ "sheenColorFactor": look.sheen_color, "sheenRoughnessFactor": look.sheen_roughness });
+            set(&mut members, "sheenColorTexture", of(Slot::SheenColor));
+            set(&mut members, "sheenRoughnessTexture", of(Slot::SheenRoughness));
+            self.extend(&mut written, "KHR_materials_sheen", members);
+        }
+        Ok(pushed(&mut self.materials, written))
+    }
+
+    /// Adds what a material emits. A factor is 1 at most; what is beyond needs an extension.
+    fn emission(&mut self, look: &Look, written: &mut Value) {
+        let brightest = look.emissive.into_iter().fold(1.0_f32, f32::max);
+        written["emissiveFactor"] = json!(look.emissive.map(|channel| (channel / brightest).clamp(0.0, 1.0)));
+        if brightest > 1.0 {
+            let members = json!({ "emissiveStrength": brightest });
+            self.extend(written, "KHR_materials_emissive_strength", members);
+        }
+    }
+
+    /// Adds how a material reflects light, where it is not as glTF has it without extensions.
+    fn reflection(&mut self, look: &Look, written: &mut Value, map: &mut impl FnMut(Slot) -> Option<Value>) {
+        let usual = Look::default();
+        if look.unlit {
+            self.extend(written, "KHR_materials_unlit", json!({}));
+        }
+        if look.ior != usual.ior {
+            self.extend(written, "KHR_materials_ior", json!({ "ior": look.ior }));
+        }
+        let (strength, color) = (map(Slot::Specular), map(Slot::SpecularColor));
+        let has_numbers = look.specular != usual.specular || look.specular_color != usual.specular_color;
+        if has_numbers || strength.is_some() || color.is_some() {
+            let mut members = json!({ "specularFactor": look.specular, "specularColorFactor": look.specular_color });
+            set(&mut members, "specularTexture", strength);
+            set(&mut members, "specularColorTexture", color);
+            self.extend(written, "KHR_materials_specular", members);
+        }
+        if look.clearcoat > 0.0 {
+            let mut members =
+                json!({ "clearcoatFactor": look.clearcoat, "clearcoatRoughnessFactor": look.clearcoat_roughness });
+            set(&mut members, "clearcoatTexture", map(Slot::Clearcoat));
+            set(&mut members, "clearcoatRoughnessTexture", map(Slot::ClearcoatRoughness));
+            let normal = with(map(Slot::ClearcoatNormal), "scale", look.clearcoat_normal_scale);
+            set(&mut members, "clearcoatNormalTexture", normal);
+            self.extend(written, "KHR_materials_clearcoat", members);
+        }
+    }
+
+    /// Returns where a map is and how it is placed; none, with a warning, for one that glTF can't place so.
+    fn map(
+        &mut self,
+        map: &Map,
+        material: &Material,
+        sets: &UvSets,
+        images: &mut Images,
+        path: &str,
+    ) -> Result<Option<Value>, ExportError> {
+        let (set, affine) = match map.uv {
+            MapUv::Own => (UvSet::Own, [1.0, 0.0, 0.0, 0.0, 1.0, 0.0]),
+            MapUv::Set(set, affine) => (UvSet::File(set), affine),
+        };
+        let Some(transform) = transform(affine) else {
+            let name = names::shown(&material.name);
+            self.warnings.push(format!(
+                "{path}: a map of material \"{name}\" is left out, because glTF can't shear texture coordinates."
+            ));
+            return Ok(None);
+        };
+        let index = self.texture(&map.texture, map.sampling, images, path)?;
+        let mut info = json!({ "index": index, "texCoord": sets.number(set) });
+        if let Some(transform) = transform {
+            self.extend(&mut info, TRANSFORM, transform);
+        }
+        Ok(Some(info))
+    }
+
+    /// Returns the texture for an image that is sampled in a way.
+    fn texture(
+        &mut self,
+        image: &Arc<Texture>,
+        sampling: Sampling,
+        known: &mut Images,
+        path: &str,
+    ) -> Result<usize, ExportError> {
+        let source = match find(&known.images, &Arc::as_ptr(image)) {
+            Some(index) => index,
+            None => {
+                let index = self.image(image, path)?;
+                known.images.push((Arc::as_ptr(image), index));
+                index
+            }
+        };
+        let sampler = find(&known.samplers, &sampling).unwrap_or_else(|| {
+            let index = pushed(&mut self.samplers, sampler(sampling));
+            known.samplers.push((sampling, index));
+            index
+        });
+        Ok(find(&known.textures, &[source, sampler]).unwrap_or_else(|| {
+            let index = pushed(&mut self.textures, json!({ "source": source, "sampler": sampler }));
+            known.textures.push(([source, sampler], index));
+            index
+        }))
+    }
+
+    /// Writes an image as PNG.
+    fn image(&mut self, texture: &Texture, path: &str) -> Result<usize, ExportError> {
+        let ([width, height], mut png) = (texture.size, Cursor::new(Vec::new()));
+        let (color, format) = (image::ExtendedColorType::Rgba8, image::ImageFormat::Png);
+        image::write_buffer_with_format(&mut png, &texture.rgba, width, height, color, format)
+            .map_err(|reason| ExportError::Texture { path: path.to_owned(), reason: reason.to_string() })?;
+        let view = self.view(png.get_ref(), None);
+        Ok(pushed(&mut self.images, json!({ "bufferView": view, "mimeType": "image/png" })))
+    }
+}
+
+/// Sets a member that there is.
+fn set(object: &mut Value, name: &str, value: Option<Value>) {
+    if let Some(value) = value {
+        object[name] = value;
+    }
+}
+
+/// The same info with one more number.
+fn with(info: Option<Value>, name: &str, number: f32) -> Option<Value> {
+    let mut info = info?;
+    info[name] = json!(number);
+    Some(info)
+}
+
+fn find<K: PartialEq>(known: &[(K, usize)], key: &K) -> Option<usize> {
+    known.iter().find(|(own, _)| own == key).map(|(_, index)| *index)
+}
+
+/// Returns the members of KHR_texture_transform for an affine map of texture coordinates (see [`MapUv`]), which scales, turns and
+/// then moves: none if it changes nothing, and `None` if there are no such members because it shears.
+fn transform([a, b, c, d, e, f]: [f32; 6]) -> Option<Option<Value>> {
+    if [a, b, c, d, e, f] == [1.0, 0.0, 0.0, 0.0, 1.0, 0.0] {
+        return Some(None);
+    }
+    // The columns are (cos, -sin) times the first scale, and (sin, cos) times the second one.
+    let (first, second) = (a.hypot(d), b.hypot(e));
+    let [cos, sin] = match (first > 0.0, second > 0.0) {
+        (true, _) => [a / first, -d / first],
+        (false, true) => [e / second, b / second],
+        (false, false) => [1.0, 0.0],
+    };
+    let scale = [first, b * sin + e * cos];
+    let shear = (b * cos - e * sin).abs();
+    if shear > LEAST_SHEAR * second {
+        return None;
+    }
+    Some(Some(json!({ "offset": [c, f], "rotation": sin.atan2(cos), "scale": scale })))
+}
+
+fn sampler(sampling: Sampling) -> Value {
+    let wrap = sampling.wrap.map(|wrap| match wrap {
+        Wrap::Repeat => 10497,
+        Wrap::Mirror => 33648,
+        Wrap::Clamp => 33071,
+    });
+    let minify = match (sampling.minify_linear, sampling.mip_linear) {
+        (false, None) => 9728,
+        (true, None) => 9729,
+        (false, Some(false)) => 9984,
+        (true, Some(false)) => 9985,
+        (false, Some(true)) => 9986,
+        (true, Some(true)) => 9987,
+    };
+    let magnify = if sampling.magnify_linear { 9729 } else { 9728 };
+    json!({ "magFilter": magnify, "minFilter": minify, "wrapS": wrap[0], "wrapT": wrap[1] })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What the members say, as six numbers: the formula of KHR_texture_transform.
+    fn affine(members: &Value) -> [f32; 6] {
+        let number = |value: &Value| value.as_f64().expect("a number") as f32;
+        let [x, y] = [0, 1].map(|i| number(&members["scale"][i]));
+        let (sin, cos) = number(&members["rotation"]).sin_cos();
+        let [c, f] = [0, 1].map(|i| number(&members["offset"][i]));
+        [cos * x, sin * y, c, -sin * x, cos * y, f]
+    }
+
+    #[test]
+    fn an_affine_map_becomes_a_transform_and_back() {
+        assert_eq!(transform([1.0, 0.0, 0.0, 0.0, 1.0, 0.0]), Some(None));
+        for rotation in [0.0_f32, 0.3, 2.0, -1.5, std::f32::consts::PI] {
+            for [x, y] in [[1.0, 1.0], [2.0, 0.5], [-2.0, 3.0], [0.0, 2.0], [2.0, 0.0], [-1.0, -1.0]] {
+                let (sin, cos) = rotation.sin_cos();
+                let given = [cos * x, sin * y, 0.25, -sin * x, cos * y, -7.0];
+                let members = transform(given).expect("it doesn't shear");
+                let Some(members) = members else { continue };
+                let got = affine(&members);
+                let is_same = given.iter().zip(got).all(|(given, got)| (given - got).abs() < 1e-5);
+                assert!(is_same, "{given:?} became {got:?}");
+            }
+        }
+        assert_eq!(transform([1.0, 0.5, 0.0, 0.0, 1.0, 0.0]), None);
+    }
+}

@@ -1,0 +1,47 @@
+//! Writes Wavefront OBJ: text, with enough digits that every number reads back exactly.
+
+use std::fmt::Write;
+
+use glam::Vec4;
+
+use super::Exported;
+use geometry::mesh::{Material, Mesh};
+
+/// Returns the text of a file.
+pub(super) fn encode(mesh: &Exported) -> Vec<u8> {
+    let mut text = format!("# {} tessellated by pnaen\n", mesh.mesh.name.replace(char::is_control, " "));
+    // Writing into a String can't fail. Rust prints the shortest decimal that parses to the same f32.
+    for p in &mesh.positions {
+        let _ = writeln!(text, "v {} {} {}", p.x, p.y, p.z);
+    }
+    for uv in &mesh.uvs {
+        let _ = writeln!(text, "vt {} {}", uv.x, 1.0 - uv.y);
+    }
+    for n in &mesh.normals {
+        let _ = writeln!(text, "vn {} {} {}", n.x, n.y, n.z);
+    }
+    for (material, triangles) in mesh.mesh.materials.iter().zip(&mesh.triangles) {
+        let _ = writeln!(text, "g {}", material.name.replace(char::is_whitespace, "_"));
+        for [a, b, c] in triangles.iter().map(|t| t.map(|i| i + 1)) {
+            let _ = writeln!(text, "f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}");
+        }
+    }
+    text.into_bytes()
+}
+
+/// Returns a sentence about what is drawn of a mesh but isn't written, if there is something.
+pub(super) fn left_out(mesh: &Mesh, path: &str) -> Option<String> {
+    let materials = &mesh.materials;
+    let is_plain = |own: &Material| own.texture.is_none() && own.look.maps.iter().all(Option::is_none);
+    let has_materials = materials.len() > 1 || !materials.iter().all(is_plain);
+    let has_colors = mesh.details.iter().any(|details| details.iter().any(|detail| detail.color != Vec4::ONE));
+    let parts = [
+        (has_materials, "its materials"),
+        (has_colors, "the colours of its vertices"),
+        (!mesh.lights.is_empty(), "its lights"),
+    ];
+    let parts: Vec<&str> = parts.into_iter().filter(|(has, _)| *has).map(|(_, part)| part).collect();
+    let (last, others) = parts.split_last()?;
+    let all = if others.is_empty() { (*last).to_owned() } else { format!("{} and {last}", others.join(", ")) };
+    Some(format!("{path}: the mesh is written without {all}; a .glb file holds them."))
+}

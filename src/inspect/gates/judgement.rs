@@ -1,0 +1,323 @@
+//! Compares what was measured with the limits of gates, and finds the worst place of each that fails.
+
+use glam::Vec3;
+use serde::Serialize;
+
+use super::place::{EdgeSpot, Place, Spot};
+use super::{Gate, GateKind, allowed};
+use crate::measure::{CrackedEdge, EdgeSide, Measured, PatchesAbove};
+use crate::render::{Leak, Leaks};
+use geometry::mesh::{TJunction, Topology};
+use geometry::names::shown;
+use geometry::numbers::{exact, grouped, hundredths, short};
+use geometry::tessellate::Vertex;
+use geometry::view::ScreenView;
+
+/// What gates are judged by. What no gate asked for may be none; a gate without what it needs fails.
+#[derive(Clone, Copy)]
+pub struct Facts<'a> {
+    /// The mesh in the pose that was tessellated.
+    pub topology: &'a Topology,
+    pub warnings: Option<&'a [String]>,
+    /// The numbers of emitted vertices and triangles.
+    pub emitted: Option<(u64, u64)>,
+    pub measured: Option<&'a Measured>,
+    pub junctions: Option<&'a [TJunction]>,
+    pub leaks: Option<&'a Leaks>,
+    /// The view that leaks were counted in.
+    pub view: Option<ScreenView>,
+    pub above: Option<&'a PatchesAbove>,
+}
+
+impl<'a> Facts<'a> {
+    /// Facts of a mesh that nothing was measured of.
+    pub fn of_mesh(topology: &'a Topology) -> Self {
+        let (warnings, emitted, measured, junctions) = (None, None, None, None);
+        Self { topology, warnings, emitted, measured, junctions, leaks: None, view: None, above: None }
+    }
+}
+
+/// How a gate judged.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Judgement {
+    #[serde(rename = "name")]
+    pub gate: &'static str,
+    #[serde(skip)]
+    pub kind: GateKind,
+    /// The largest number that passes.
+    pub limit: u64,
+    /// What was counted; none if nothing could be, and then the gate failed.
+    pub found: Option<u64>,
+    pub passed: bool,
+    /// What was found, or why nothing could be counted, in a sentence without its end.
+    pub text: String,
+    /// The worst place of a gate that failed, if it is about a place.
+    #[serde(rename = "where")]
+    pub place: Option<Place>,
+}
+
+impl Judgement {
+    /// The sentence of a gate that failed, about the mesh with this name, without its end.
+    pub fn sentence_of(&self, mesh: &str) -> String {
+        format!("{mesh} fails the gate {}: {}", self.gate, self.sentence())
+    }
+
+    /// What failed, how much of it there is, and where, in one sentence without its end. Meant for gates that failed.
+    pub fn sentence(&self) -> String {
+        let place = self.place.as_ref().map(|place| format!("; {}", place.text)).unwrap_or_default();
+        match self.found {
+            Some(_) => format!("{}, {}{place}", self.text, allowed(self.limit)),
+            None => self.text.clone(),
+        }
+    }
+}
+
+/// What was counted for a gate: the number with its words; or why there is none, and what to do.
+type Count = Result<(u64, String), &'static str>;
+
+/// Judges by each gate.
+pub fn judge(gates: &[Gate], facts: &Facts) -> Vec<Judgement> {
+    gates.iter().map(|gate| judged(*gate, facts)).collect()
+}
+
+fn judged(Gate { kind, limit }: Gate, facts: &Facts) -> Judgement {
+    let (found, text) = match count(kind, facts) {
+        Ok((found, text)) => (Some(found), text),
+        Err(why) => (None, why.to_owned()),
+    };
+    let passed = found.is_some_and(|found| found <= limit);
+    let place = if passed { None } else { worst(kind, facts) };
+    Judgement { gate: kind.name(), kind, limit, found, passed, text, place }
+}
+
+fn count(kind: GateKind, facts: &Facts) -> Count {
+    let some = |number: u64, one: &str, several: &str| {
+        let words = if number == 1 { one } else { several };
+        Ok((number, words.replace('#', &grouped(number))))
+    };
+    match kind {
+        GateKind::Cracks => {
+            let cracked = known(facts.measured)?.cracks.cracked().len() as u64;
+            some(cracked, "# edge is cracked", "# edges are cracked")
+        }
+        GateKind::Factors => {
+            let different = known(facts.measured)?.cracks.different_factors;
+            some(different, "# edge has sides with different factors", "# edges have sides with different factors")
+        }
+        GateKind::Folds => some(known(facts.measured)?.folds, "# triangle is folded", "# triangles are folded"),
+        GateKind::Leaks => match known(facts.leaks)? {
+            Leaks::Counted(leaks) => {
+                let px = leaks.iter().map(|leak| u64::from(leak.pixels)).sum();
+                some(px, "# px shows the inside of the mesh", "# px show the inside of the mesh")
+            }
+            Leaks::Open => {
+                Err("leaks can be counted only in a closed mesh, and this one is open: leave this gate out for it")
+            }
+            Leaks::BothWays => {
+                Err("leaks can be counted only where triangles that meet are wound the same way, and some of \
+                                    this mesh aren't: mend it, or leave this gate out for it")
+            }
+            Leaks::NearPlane => Err("leaks can't be counted where the near plane cuts the mesh: move the camera away"),
+        },
+        GateKind::TJunctions => {
+            let junctions = known(facts.junctions)?.len() as u64;
+            some(junctions, "the mesh has # T-junction", "the mesh has # T-junctions")
+        }
+        GateKind::Warnings => Ok(warnings(known(facts.warnings)?)),
+        GateKind::AboveTolerance => {
+            let PatchesAbove { patches, tolerance_px, .. } = *known(facts.above)?;
+            let beyond = |words: &str| format!("{words} farther than {} px from its surface", exact(tolerance_px));
+            some(patches, &beyond("# patch is"), &beyond("# patches are").replace("its surface", "their surface"))
+        }
+        GateKind::Triangles => some(known(facts.emitted)?.1, "# triangle is emitted", "# triangles are emitted"),
+        GateKind::Bytes => {
+            let (vertices, triangles) = known(facts.emitted)?;
+            let bytes = output_bytes(vertices, triangles);
+            some(bytes, "vertices and indices take # byte", "vertices and indices take # bytes")
+        }
+    }
+}
+
+/// A fact that a gate needs.
+fn known<T>(fact: Option<T>) -> Result<T, &'static str> {
+    fact.ok_or("what it counts was not measured, which is an error of pnaen")
+}
+
+/// How many warnings loading gave, and the first of them.
+fn warnings(all: &[String]) -> (u64, String) {
+    let said = match all {
+        [] => "loading gave no warning".to_owned(),
+        [only] => format!("loading gave a warning ({})", clause(only)),
+        [first, ..] => {
+            format!("loading gave {} warnings (the first: {})", grouped(all.len() as u64), clause(first))
+        }
+    };
+    (all.len() as u64, said)
+}
+
+/// A warning within a sentence.
+fn clause(warning: &str) -> String {
+    shown(warning).trim_end_matches('.').to_owned()
+}
+
+/// The memory of emitted vertices and indices, in bytes.
+fn output_bytes(vertices: u64, triangles: u64) -> u64 {
+    vertices * size_of::<Vertex>() as u64 + triangles * size_of::<[u32; 3]>() as u64
+}
+
+fn worst(kind: GateKind, facts: &Facts) -> Option<Place> {
+    match kind {
+        GateKind::Cracks => worst_crack(facts),
+        GateKind::Factors => worst_factors(facts),
+        GateKind::Leaks => worst_leak(facts),
+        GateKind::Folds => worst_fold(facts),
+        GateKind::TJunctions => worst_junction(facts),
+        GateKind::AboveTolerance => worst_error(facts),
+        GateKind::Warnings | GateKind::Triangles | GateKind::Bytes => None,
+    }
+}
+
+/// A place on an edge of the mesh.
+struct EdgePlace {
+    /// The mesh's triangles that meet there.
+    triangles: Vec<u32>,
+    spot: EdgeSpot,
+}
+
+impl EdgePlace {
+    /// A place on the edge with this index. Without a position, it is the middle.
+    fn new(topology: &Topology, index: u32, at: Option<Vec3>) -> Self {
+        let edge = &topology.edges[index as usize];
+        let sides = topology.edge_sides(edge).iter();
+        let triangles = sides.map(|side| topology.patches[side.patch() as usize].triangle).collect();
+        let ends = topology.edge_points(edge).map(|point| topology.points[point as usize]);
+        let at = at.unwrap_or(ends[0] * 0.5 + ends[1] * 0.5);
+        Self { triangles, spot: EdgeSpot { ends, facing: topology.edge_facing(edge), at } }
+    }
+
+    /// Between which triangles it is, and where.
+    fn words(&self) -> String {
+        let between = match self.triangles[..] {
+            [only] => format!("of triangle {only}"),
+            [a, b] => format!("between triangles {a} and {b}"),
+            _ => format!("between {} triangles", self.triangles.len()),
+        };
+        format!("{between} at {}", position(self.spot.at))
+    }
+
+    /// The place with these words.
+    fn with(self, text: String) -> Place {
+        Place { text, triangles: self.triangles, spot: Spot::Edge(self.spot) }
+    }
+}
+
+/// A position in object units, in words.
+fn position(place: Vec3) -> String {
+    let [x, y, z] = place.to_array().map(|coordinate| short(f64::from(coordinate)));
+    format!("({x}, {y}, {z})")
+}
+
+fn worst_crack(facts: &Facts) -> Option<Place> {
+    // The widest gap is the first.
+    let crack = facts.measured?.cracks.cracked().first()?;
+    let gap = short(crack.gap);
+    let [a, b] = crack.widest;
+    let place = EdgePlace::new(facts.topology, crack.edge, Some(a * 0.5 + b * 0.5));
+    let left_out = |patch: u32| {
+        let triangle = facts.topology.patches[patch as usize].triangle;
+        format!(", where the factors of triangle {triangle} leave it out")
+    };
+    let left_out = crack.discarded.map(left_out).unwrap_or_default();
+    let text = format!("the widest gap, {gap} object units, is {}{left_out}", place.words());
+    Some(place.with(text))
+}
+
+fn worst_factors(facts: &Facts) -> Option<Place> {
+    let measured = facts.measured?;
+    let outlines = &measured.outlines;
+    let range = |crack: &CrackedEdge| {
+        let sides =
+            [outlines.edge(facts.topology, crack.edge), outlines.discarded(facts.topology, crack.edge)].concat();
+        // A factor that is not a number differs the most.
+        let by_size = |a: &f32, b: &f32| a.is_nan().cmp(&b.is_nan()).then(a.total_cmp(b));
+        let factors = sides.iter().map(|side| side.factor);
+        Some((crack.edge, factors.clone().min_by(by_size)?, factors.max_by(by_size)?))
+    };
+    let different = measured.cracks.edges.iter().filter(|crack| crack.different_factors).filter_map(range);
+    let apart = |least: f32, most: f32| if most.is_nan() { f32::INFINITY } else { most - least };
+    let (edge, least, most) = different.reduce(|a, b| if apart(b.1, b.2) > apart(a.1, a.2) { b } else { a })?;
+    let factors = format!("{} and {}", exact(least), exact(most));
+    // In the middle of what was emitted, since the middle of a straight line may lie below the surface.
+    let emitted = outlines.edge(facts.topology, edge).into_iter().next();
+    let emitted: Vec<Vec3> = emitted.iter().flat_map(EdgeSide::positions).collect();
+    let at = emitted.get(emitted.len() / 2).copied();
+    let place = EdgePlace::new(facts.topology, edge, at);
+    let text = format!("the factors differ most, {factors}, {}", place.words());
+    Some(place.with(text))
+}
+
+fn worst_leak(facts: &Facts) -> Option<Place> {
+    let Some(Leaks::Counted(leaks)) = facts.leaks else { return None };
+    // The largest is the first.
+    let leak = leaks.first()?;
+    let Leak { px, pixels } = *leak;
+    let torn = torn_at(facts, leak);
+    let there = torn.as_ref().map(|torn| format!(", {}", torn.words())).unwrap_or_default();
+    let [x, y] = px.floor().to_array();
+    let text = format!("the largest leak, {} px, is at x {x}, y {y} px of the picture{there}", grouped(pixels.into()));
+    let (triangles, torn) = torn.map(|torn| (torn.triangles, torn.spot)).unzip();
+    Some(Place { text, triangles: triangles.unwrap_or_default(), spot: Spot::Leak { px, pixels, torn } })
+}
+
+/// The edge that is torn where a leak is seen.
+fn torn_at(facts: &Facts, leak: &Leak) -> Option<EdgePlace> {
+    let crack = facts.measured?.crack_seen_at(facts.topology, &facts.view?, leak.px)?;
+    // A px of a leak lies within its crack, or within a hole, of which no px is farther from its border than its area allows; the
+    // rasteriser rounds to px.
+    let most = 2.0 + crack.gap_px + (leak.pixels as f32).sqrt();
+    (crack.px <= most).then(|| EdgePlace::new(facts.topology, crack.edge, Some(crack.at)))
+}
+
+fn worst_fold(facts: &Facts) -> Option<Place> {
+    // The largest area is the first.
+    let fold = facts.measured?.folded.first()?;
+    let triangle = facts.topology.patches[fold.patch as usize].triangle;
+    let (folds, place) = (grouped(u64::from(fold.folds)), position(fold.place()));
+    let text = format!("the largest are {folds} of triangle {triangle} at {place}");
+    Some(Place { text, triangles: vec![triangle], spot: Spot::fold(fold) })
+}
+
+fn worst_junction(facts: &Facts) -> Option<Place> {
+    let worst = facts.junctions?.iter().reduce(|a, b| if b.distance > a.distance { b } else { a })?;
+    let at = facts.topology.points[worst.point as usize];
+    let distance = short(f64::from(worst.distance));
+    let place = EdgePlace::new(facts.topology, worst.edge, Some(at));
+    let text = format!("the farthest point lies {distance} object units beside the edge {}", place.words());
+    Some(place.with(text))
+}
+
+fn worst_error(facts: &Facts) -> Option<Place> {
+    let worst = facts.above?.worst?;
+    let corners = facts.topology.patch_positions(worst.patch);
+    let triangle = facts.topology.patches[worst.patch as usize].triangle;
+    let at = worst.emitted.as_vec3();
+    let text = format!("the farthest, {} px, is of triangle {triangle} at {}", hundredths(worst.px), position(at));
+    Some(Place { text, triangles: vec![triangle], spot: Spot::Patch { corners, at } })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gate_without_the_fact_that_it_needs_fails() {
+        let topology = Topology::default();
+        let gates = GateKind::ALL.map(|kind| Gate { kind, limit: u64::MAX });
+        for judgement in judge(&gates, &Facts::of_mesh(&topology)) {
+            assert_eq!((judgement.found, judgement.passed), (None, false), "{judgement:?}");
+            let sentence = judgement.sentence_of("a.glb");
+            let expected = format!("a.glb fails the gate {}: what it counts was not measured", judgement.gate);
+            assert!(sentence.starts_with(&expected), "{sentence}");
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! From where the worst place of a gate is shown: where nothing hides it.
+
+use glam::{Vec2, Vec3, vec3};
+
+use super::place::{EdgeSpot, Spot, towards};
+use crate::render::Camera;
+use crate::render::camera::{FIELD_OF_VIEW, MAX_ELEVATION};
+use geometry::mesh::Bounds;
+
+/// How many directions around a hidden place are tried.
+const DIRECTIONS: u32 = 64;
+/// What is nearer to the place than this part of its edge or patch is at the place, and hides nothing.
+const NEAR: f32 = 0.005;
+/// How well the back of a place shows it, where its front does so by 1.
+const OF_BACK: f32 = 0.25;
+/// How far the eye goes towards what hides the place, when it is seen from between the two.
+const BETWEEN: f32 = 0.9;
+
+/// Cameras from which a place may be seen.
+pub struct Standpoints {
+    /// The place, in object units; none if it isn't known, and then there is one camera alone.
+    at: Option<Vec3>,
+    /// The size of its edge or patch, and a distance at which one is outside of the mesh, in object units.
+    size: f32,
+    beyond: f32,
+    /// The camera that shows it best if nothing hides it from there.
+    first: Camera,
+    /// Cameras around it, and for each how well it shows the place, 0 to 1.
+    around: Vec<(Camera, f32)>,
+}
+
+impl Standpoints {
+    /// Those of a spot. `judged` is the camera of the judged picture, `viewport` that picture's size in px, and `bounds` are the
+    /// mesh's.
+    pub fn of(spot: &Spot, judged: &Camera, viewport: Vec2, bounds: &Bounds) -> Self {
+        let first = spot.camera(judged, viewport, bounds);
+        let (size, facing) = match *spot {
+            Spot::Edge(EdgeSpot { ends: [a, b], .. }) => (a.distance(b), first),
+            Spot::Patch { corners: [a, b, c], .. } => (a.distance(b).max(b.distance(c)).max(c.distance(a)), first),
+            Spot::Leak { torn: Some(torn), .. } => (torn.ends[0].distance(torn.ends[1]), torn.camera(judged, bounds)),
+            Spot::Leak { torn: None, .. } => (0.0, first),
+        };
+        let at = spot.at();
+        let around = if at.is_some() { around(&facing) } else { Vec::new() };
+        let beyond = 4.0 * bounds.radius() + first.target.distance(bounds.center());
+        Self { at, size, beyond, first, around }
+    }
+
+    /// Where lines of sight begin, all eyes, and how near to the place nothing hides it, in object units. None if the place isn't
+    /// known. `beside` moves a camera so that the place is elsewhere in its picture.
+    pub fn lines(&self, beside: impl Fn(Camera) -> Camera) -> Option<(Vec3, Vec<Vec3>, f32)> {
+        let at = self.at?;
+        let eye = |camera: &Camera| match camera.orthographic {
+            // An orthographic view has no eye: what is farther away hides the place too.
+            true => at + camera.axes()[2] * self.beyond,
+            false => beside(*camera).eye(),
+        };
+        let others = self.around.iter().map(|(camera, _)| camera);
+        Some((at, std::iter::once(&self.first).chain(others).map(eye).collect(), NEAR * self.size))
+    }
+
+    /// The camera that shows the place. `clear` has the part of each line that is clear, from the place on.
+    pub fn clearest(&self, clear: &[f64]) -> Camera {
+        let (Some(at), Some((first, others))) = (self.at, clear.split_first()) else { return self.first };
+        if *first >= 1.0 {
+            return self.first;
+        }
+        let rated = self
+            .around
+            .iter()
+            .zip(others)
+            .map(|((camera, fitness), clear)| (camera, *clear, f64::from(*fitness) * clear));
+        // The first of those that are as good.
+        let best = rated.reduce(|a, b| if b.2 > a.2 { b } else { a });
+        match best {
+            Some((camera, clear, _)) if clear < 1.0 => {
+                let eye = camera.eye() - at;
+                towards(&Camera { target: at, ..*camera }, eye * (BETWEEN * clear as f32))
+            }
+            Some((camera, ..)) => *camera,
+            None => self.first,
+        }
+    }
+}
+
+/// Perspective cameras around what `facing` shows, that one first, each with how well it shows it: those that face it more are
+/// better, its back is worse, and from its edge it isn't seen at all. The directions are those of the spherical Fibonacci point set (Keinert et al. 2015, "Spherical Fibonacci Mapping").
+fn around(facing: &Camera) -> Vec<(Camera, f32)> {
+    const GOLDEN_ANGLE: f32 = 2.399_963_2;
+    let field_of_view = if facing.orthographic { FIELD_OF_VIEW } else { facing.field_of_view };
+    let narrower = |angle: f32| (0.5 * angle).to_radians().tan();
+    let distance = facing.distance * narrower(facing.field_of_view) / narrower(field_of_view);
+    let facing = Camera { orthographic: false, field_of_view, distance, ..*facing };
+    let front = facing.axes()[2];
+    let direction = |index: u32| {
+        let height = 1.0 - (2.0 * index as f32 + 1.0) / DIRECTIONS as f32;
+        let (sine, cosine) = (index as f32 * GOLDEN_ANGLE).sin_cos();
+        let level = (1.0 - height * height).sqrt();
+        vec3(sine * level, height, cosine * level)
+    };
+    let from = |back: Vec3| {
+        let mut camera = towards(&facing, back * distance);
+        camera.elevation = camera.elevation.clamp(-MAX_ELEVATION, MAX_ELEVATION);
+        let faces = back.dot(front);
+        (camera, faces.max(-OF_BACK * faces))
+    };
+    std::iter::once((facing, 1.0)).chain((0..DIRECTIONS).map(direction).map(from)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::vec2;
+
+    use super::*;
+
+    fn judged(orthographic: bool) -> (Camera, Vec2, Bounds) {
+        let (viewport, bounds) = (vec2(640.0, 480.0), Bounds::of([Vec3::NEG_ONE, Vec3::ONE].into_iter()));
+        (Camera { orthographic, ..Camera::framing(&bounds, viewport) }, viewport, bounds)
+    }
+
+    /// An edge in the middle, which faces the front.
+    const EDGE: EdgeSpot = EdgeSpot { ends: [Vec3::NEG_X, Vec3::X], facing: Vec3::Z, at: Vec3::ZERO };
+
+    #[test]
+    fn a_place_is_seen_from_the_side_that_faces_it_most_and_is_clear() {
+        for orthographic in [false, true] {
+            let (camera, viewport, bounds) = judged(orthographic);
+            let standpoints = Standpoints::of(&Spot::Edge(EDGE), &camera, viewport, &bounds);
+            let (at, eyes, near) = standpoints.lines(|camera| camera).expect("a known place");
+            assert!(at == EDGE.at && near < 0.05);
+            let direction = |camera: &Camera| (camera.eye() - at).normalize();
+            let front = standpoints.clearest(&vec![1.0; eyes.len()]);
+            assert!(front.orthographic == orthographic && direction(&front).distance(Vec3::Z) < 1e-3, "{front:?}");
+            // A wall right before it hides it from all directions within 60 degrees of its front.
+            let wall = |eye: &Vec3| if eye.normalize().z > 0.5 { 0.05 } else { 1.0 };
+            let beside = standpoints.clearest(&eyes.iter().map(wall).collect::<Vec<_>>());
+            assert!((0.3..=0.5).contains(&direction(&beside).z), "{beside:?}");
+            // Hidden from everywhere: from before what hides it.
+            let between = standpoints.clearest(&vec![0.5; eyes.len()]);
+            assert!(direction(&between).distance(Vec3::Z) < 1e-3 && between.target == at, "{between:?}");
+            assert!(!between.orthographic);
+            assert!((between.distance / eyes[1].length() - 0.45).abs() < 1e-3, "{between:?}");
+        }
+    }
+
+    #[test]
+    fn a_leak_is_seen_from_the_judged_eye_unless_it_is_hidden_there() {
+        let (camera, viewport, bounds) = judged(false);
+        let leak = |torn| Spot::Leak { px: 0.5 * viewport, pixels: 9, torn };
+        let known = Standpoints::of(&leak(Some(EDGE)), &camera, viewport, &bounds);
+        let (_, eyes, _) = known.lines(|camera| camera).expect("a known place");
+        assert!(eyes[0].distance(camera.eye()) < 1e-3);
+        let clear = |first: f64| [vec![first], vec![1.0; eyes.len() - 1]].concat();
+        assert!(known.clearest(&clear(1.0)).eye().distance(camera.eye()) < 1e-3);
+        assert!(known.clearest(&clear(0.9)).eye().normalize().distance(Vec3::Z) < 1e-3, "from where the edge faces");
+        let unknown = Standpoints::of(&leak(None), &camera, viewport, &bounds);
+        assert!(unknown.lines(|camera| camera).is_none() && unknown.clearest(&[]).eye().distance(camera.eye()) < 1e-3);
+    }
+}

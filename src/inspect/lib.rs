@@ -1,0 +1,13 @@
+//! One scene: its settings, its picture, its measurements, what is judged by them, and the files that are made of it.
+
+pub mod adjacency_file;
+pub mod engine;
+pub mod export;
+pub mod gates;
+pub mod measure;
+pub mod own_shader;
+pub mod plot;
+pub mod render;
+pub mod settings;
+pub mod shader_files;
+pub mod truth;

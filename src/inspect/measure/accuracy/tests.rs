@@ -1,0 +1,361 @@
+use glam::{Mat4, Vec2, vec3};
+
+use super::*;
+use crate::settings::Settings;
+use geometry::mesh::{Mesh, Shape, Topology};
+use geometry::progress::Progress;
+use geometry::tessellate::{Partitioning, Surface, Tessellated, Tessellation, pack_key, pack_normal, tessellate};
+
+fn options(samples: usize) -> AccuracyOptions {
+    AccuracyOptions { samples, threads: 2 }
+}
+
+/// A mesh tessellated on the CPU with a uniform factor.
+fn emitted(mesh: &Mesh, surface: Surface, factor: f32) -> Tessellated {
+    let topology = Topology::build(mesh, &Progress::new()).unwrap();
+    let settings = Settings::from(Tessellation {
+        surface,
+        factor,
+        partitioning: Partitioning::Integer,
+        ..Tessellation::default()
+    });
+    tessellate(mesh, &topology, &settings.inputs(LodView::new(Mat4::IDENTITY, Vec2::ONE)), None)
+}
+
+fn measured(truth: &Truth, out: &Tessellated, samples: usize) -> Accuracy {
+    let mut measurement = AccuracyMeasurement::new(truth, None, options(samples));
+    measurement.take(&EmittedChunk::whole(&out.vertices, &out.triangles));
+    measurement.finish().unwrap()
+}
+
+/// A mesh without tessellation: each triangle is a patch.
+fn as_it_is(mesh: &Mesh) -> Tessellated {
+    emitted(mesh, Surface::Flat, 1.0)
+}
+
+fn near(value: f64, expected: f64, tolerance: f64) {
+    assert!((value - expected).abs() < tolerance, "{value} for {expected}");
+}
+
+/// A square of two triangles at a height, facing up.
+fn square(half: f32, y: f32) -> (Vec<Vertex>, Vec<[u32; 3]>) {
+    let vertex = |x: f32, z: f32| Vertex {
+        position: [x * half, y, z * half],
+        key: pack_key(7, [0, 0]),
+        normal: pack_normal(Vec3::Y),
+        uv: [0.0; 2],
+    };
+    (vec![vertex(-1.0, -1.0), vertex(-1.0, 1.0), vertex(1.0, 1.0), vertex(1.0, -1.0)], vec![[0, 1, 2], [0, 2, 3]])
+}
+
+fn square_truth(half: f32) -> Truth {
+    let (vertices, triangles) = square(half, 0.0);
+    let corner = |i: u32| geometry::mesh::Corner {
+        position: vertices[i as usize].position.into(),
+        normal: Vec3::Y,
+        uv: Vec2::ZERO,
+    };
+    let mesh = Mesh { corners: (0..4).map(corner).collect(), triangles: triangles.into(), ..Mesh::default() };
+    Truth::of_mesh(&mesh).unwrap()
+}
+
+#[test]
+fn the_icosahedron_is_a_fifth_of_the_radius_off_the_sphere() {
+    let truth = Truth::of_shape(Shape::Icosahedron).unwrap();
+    let accuracy = measured(&truth, &as_it_is(&Shape::Icosahedron.build()), 20_000);
+    let inradius = ((5.0 + 2.0 * 5.0_f64.sqrt()) / 15.0).sqrt();
+    // Corners are f32 numbers, and no sample lies exactly opposite a face's middle.
+    near(accuracy.to_truth.largest, 1.0 - inradius, 1e-7);
+    near(accuracy.from_truth.largest, 1.0 - inradius, 1e-4);
+    near(accuracy.relative(accuracy.to_truth).largest, (1.0 - inradius) / 12.0_f64.sqrt(), 1e-7);
+    // The farthest place is the middle of a face.
+    let face = accuracy.worst_to_truth;
+    near(face.emitted.length(), inradius, 1e-7);
+    near(face.truth.length(), 1.0, 1e-12);
+    assert!(face.patch < 20);
+    near(accuracy.to_truth.rms, rms_of_a_face(inradius), 2e-4);
+    assert!(accuracy.normals.rms < accuracy.normals.largest && accuracy.normals.largest < 3.0, "{accuracy:?}");
+}
+
+/// The root mean square of the distance between a face of a polyhedron of radius 1 and the sphere, by sampling.
+fn rms_of_a_face(inradius: f64) -> f64 {
+    let circumradius = (1.0 - inradius * inradius).sqrt();
+    let corners = [0.0_f64, 120.0, 240.0].map(|turn| DVec3::new(turn.to_radians().cos(), turn.to_radians().sin(), 0.0));
+    let n = 600;
+    let cells = (0..n).flat_map(|i| (0..n - i).map(move |j| [i, j].map(|x| (f64::from(x) + 1.0 / 3.0) / f64::from(n))));
+    let at = |[u, v]: [f64; 2]| corners[0] * (1.0 - u - v) + corners[1] * u + corners[2] * v;
+    let short = cells.map(|cell| 1.0 - (at(cell) * circumradius).length().hypot(inradius));
+    let (sum, count) = short.fold((0.0, 0), |(sum, count), short| (sum + short * short, count + 1));
+    (sum / f64::from(count)).sqrt()
+}
+
+#[test]
+fn parallel_squares_are_equally_far_in_both_directions() {
+    let (truth, (vertices, triangles)) = (square_truth(1.0), square(1.0, 0.25));
+    let mut measurement = AccuracyMeasurement::new(&truth, None, options(1000));
+    measurement.take(&EmittedChunk::whole(&vertices, &triangles));
+    let accuracy = measurement.finish().unwrap();
+    for distances in [accuracy.to_truth, accuracy.from_truth, accuracy.both_ways()] {
+        near(distances.largest, 0.25, 1e-12);
+        near(distances.rms, 0.25, 1e-12);
+    }
+    assert!(accuracy.normals.largest < 0.01 && accuracy.worst_px.is_none(), "{accuracy:?}");
+    near(accuracy.relative(accuracy.to_truth).rms, 0.25 / 8.0_f64.sqrt(), 1e-9);
+    assert_eq!(accuracy.worst_from_truth.patch, 7);
+}
+
+#[test]
+fn missing_parts_count_from_the_reference_surface() {
+    let (truth, (vertices, triangles)) = (square_truth(1.0), square(0.5, 0.0));
+    let mut measurement = AccuracyMeasurement::new(&truth, None, options(50_000));
+    measurement.take(&EmittedChunk::whole(&vertices, &triangles));
+    let accuracy = measurement.finish().unwrap();
+    assert!(accuracy.to_truth.largest < 1e-12, "{accuracy:?}");
+    near(accuracy.from_truth.largest, 0.5_f64.sqrt(), 0.01);
+    // The distance is 0 inside, t along the sides, and the hypotenuse of two such distances in the corners.
+    let squares = 4.0 * (0.125 / 3.0) + 4.0 * (0.25 * 0.5 / 3.0);
+    near(accuracy.from_truth.rms, (squares / 4.0_f64).sqrt(), 2e-3);
+    near(accuracy.both_ways().rms, accuracy.from_truth.rms / 2.0_f64.sqrt(), 1e-12);
+}
+
+#[test]
+fn a_shifted_sphere_is_off_by_the_shift() {
+    let truth = Truth::of_shape(Shape::Icosphere).unwrap();
+    let mut out = as_it_is(&Shape::Icosphere.build_at(4));
+    out.vertices.iter_mut().for_each(|vertex| vertex.position[0] += 0.01);
+    let accuracy = measured(&truth, &out, 5000);
+    // The distance is the shift times the cosine between it and the normal, whose mean square over the sphere is a third.
+    near(accuracy.to_truth.largest, 0.01, 7e-4);
+    near(accuracy.from_truth.largest, 0.01, 7e-4);
+    near(accuracy.both_ways().rms, 0.01 / 3.0_f64.sqrt(), 2e-4);
+    near(accuracy.normals.largest, 0.573, 0.01);
+}
+
+#[test]
+fn normals_that_lean_are_measured_in_degrees() {
+    let (truth, (mut vertices, triangles)) = (square_truth(1.0), square(1.0, 0.0));
+    let lean = 10.0_f32.to_radians();
+    vertices.iter_mut().for_each(|vertex| vertex.normal = pack_normal(vec3(lean.sin(), lean.cos(), 0.0)));
+    let mut measurement = AccuracyMeasurement::new(&truth, None, options(100));
+    measurement.take(&EmittedChunk::whole(&vertices, &triangles));
+    let accuracy = measurement.finish().unwrap();
+    near(accuracy.normals.rms, 10.0, 0.01);
+    near(accuracy.normals.largest, 10.0, 0.01);
+}
+
+#[test]
+fn distances_on_screen_are_in_px_of_what_is_in_view() {
+    let (truth, (vertices, triangles)) = (square_truth(1.0), square(1.0, 0.25));
+    let px = |clip_from_object| {
+        let view = LodView::new(clip_from_object, Vec2::new(400.0, 300.0));
+        let mut measurement = AccuracyMeasurement::new(&truth, Some(&view), options(100));
+        measurement.take(&EmittedChunk::whole(&vertices, &triangles));
+        measurement.finish().unwrap().worst_px.map(|place| place.value)
+    };
+    // Seen from the side, y upwards: half the viewport's height is one unit.
+    near(px(Mat4::from_scale(Vec3::new(1.0, 1.0, 0.1))).unwrap(), 75.0, 1e-9);
+    assert_eq!(px(Mat4::from_translation(Vec3::X * 10.0)), None);
+}
+
+#[test]
+fn nothing_emitted_gives_no_result_and_nan_is_left_out() {
+    let (truth, (mut vertices, triangles)) = (square_truth(1.0), square(1.0, 0.25));
+    assert_eq!(AccuracyMeasurement::new(&truth, None, options(10)).finish(), None);
+    let mut flat = AccuracyMeasurement::new(&truth, None, options(10));
+    flat.take(&EmittedChunk::whole(&vertices, &[[0, 0, 1]]));
+    assert_eq!(flat.finish(), None);
+    vertices[3].position[1] = f32::NAN;
+    let mut measurement = AccuracyMeasurement::new(&truth, None, options(1000));
+    measurement.take(&EmittedChunk::whole(&vertices, &triangles));
+    let accuracy = measurement.finish().unwrap();
+    assert_eq!(accuracy.not_finite, 1);
+    near(accuracy.to_truth.rms, 0.25, 1e-12);
+    assert!(accuracy.from_truth.largest.is_finite() && accuracy.from_truth.largest > 1.0);
+}
+
+#[test]
+fn results_depend_neither_on_threads_nor_on_chunks() {
+    let truth = Truth::of_shape(Shape::Bicubic).unwrap();
+    let out = emitted(&Shape::Bicubic.build(), Surface::PnAen, 4.0);
+    let measure = |threads, chunks: usize| {
+        let mut measurement = AccuracyMeasurement::new(&truth, None, AccuracyOptions { samples: 3000, threads });
+        let size = out.triangles.len().div_ceil(chunks);
+        out.triangles
+            .chunks(size)
+            .for_each(|triangles| measurement.take(&EmittedChunk::whole(&out.vertices, triangles)));
+        measurement.finish().unwrap()
+    };
+    let once = measure(1, 1);
+    assert_eq!(once, measure(5, 1));
+    let chunked = measure(2, 3);
+    assert_eq!(once.to_truth.largest, chunked.to_truth.largest);
+    assert_eq!(once.from_truth, chunked.from_truth);
+    near(chunked.to_truth.rms, once.to_truth.rms, 1e-12);
+    near(chunked.normals.rms, once.normals.rms, 1e-9);
+}
+
+/// With half as long segments, the distance is divided by 2 to the power of the order.
+#[test]
+fn distances_fall_with_the_level() {
+    for (surface, orders) in [(Surface::Flat, 1.7..2.3), (Surface::PnAen, 2.7..4.6)] {
+        for shape in [Shape::Icosphere, Shape::Ellipsoid, Shape::Torus] {
+            let truth = Truth::of_shape(shape).unwrap();
+            let rms = [1, 2].map(|level| {
+                let factor = if surface == Surface::Flat { 1.0 } else { 8.0 };
+                let accuracy = measured(&truth, &emitted(&shape.build_at(level), surface, factor), 4000);
+                accuracy.to_truth.rms
+            });
+            let order = (rms[0] / rms[1]).log2();
+            assert!(orders.contains(&order), "{shape}, {surface:?}: order {order}, {rms:?}");
+        }
+    }
+}
+
+/// A mesh of these triangles, with normals upwards.
+fn mesh_of(triangles: &[[[f32; 3]; 3]]) -> Mesh {
+    let corner =
+        |position: &[f32; 3]| geometry::mesh::Corner { position: (*position).into(), normal: Vec3::Y, uv: Vec2::ZERO };
+    let indices: Vec<[u32; 3]> = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    Mesh {
+        corners: triangles.as_flattened().iter().map(corner).collect(),
+        triangles: indices.into(),
+        ..Mesh::default()
+    }
+}
+
+/// Triangles as they would be emitted, each by a patch of its own.
+fn emitted_triangles(triangles: &[[[f32; 3]; 3]]) -> (Vec<Vertex>, Vec<[u32; 3]>) {
+    let vertex = |(i, position): (usize, &[f32; 3])| Vertex {
+        position: *position,
+        key: pack_key(i as u32 / 3, [0, 0]),
+        normal: pack_normal(Vec3::Y),
+        uv: [0.0; 2],
+    };
+    let vertices = triangles.as_flattened().iter().enumerate().map(vertex).collect();
+    (vertices, (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect())
+}
+
+fn compared(truth: &[[[f32; 3]; 3]], emitted: &[[[f32; 3]; 3]], samples: usize) -> Accuracy {
+    let truth = Truth::of_mesh(&mesh_of(truth)).unwrap();
+    let (vertices, triangles) = emitted_triangles(emitted);
+    // Seen from above, 150 px are a unit.
+    let from_above = Mat4::from_rotation_x(std::f32::consts::FRAC_PI_2);
+    let view = LodView::new(from_above, Vec2::splat(150.0));
+    let mut measurement = AccuracyMeasurement::new(&truth, Some(&view), options(samples));
+    measurement.take(&EmittedChunk::whole(&vertices, &triangles));
+    measurement.finish().unwrap()
+}
+
+#[test]
+fn the_tip_of_a_spike_counts_though_samples_miss_it() {
+    let ground = [
+        [[-1.0, 0.0, -1.0], [-1.0, 0.0, 1.0], [1.0, 0.0, 1.0]],
+        [[-1.0, 0.0, -1.0], [1.0, 0.0, 1.0], [1.0, 0.0, -1.0]],
+    ];
+    // A needle of a millionth of the ground's area.
+    let spike = [[0.1, 0.0, 0.2], [0.100_01, 0.0, 0.2], [0.1, 0.5, 0.2]];
+    let with_spike = [ground[0], ground[1], spike];
+    let missing = compared(&with_spike, &ground, 5000);
+    near(missing.from_truth.largest, 0.5, 1e-9);
+    assert_eq!(missing.worst_from_truth.truth, vec3(0.1, 0.5, 0.2).as_dvec3());
+    near(missing.worst_from_truth.emitted.y, 0.0, 1e-9);
+    let surplus = compared(&ground, &with_spike, 5000);
+    near(surplus.to_truth.largest, 0.5, 1e-9);
+}
+
+#[test]
+fn a_place_on_an_edge_counts_wherever_it_lies() {
+    let [a, b, tip] = [[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]];
+    // A gap that is widest on the triangle's longest edge and ends at its tip: around the middle, and somewhere else.
+    for [left, right] in [[-0.5, 0.5], [-0.5, 0.3]] {
+        let whole = [[a, b, tip]];
+        let with_gap = [[a, [left, 0.0, 0.0], tip], [[right, 0.0, 0.0], b, tip]];
+        // The farthest point is as far from the line between left and tip as from that between right and tip.
+        let slant = |x: f32| f64::from(x).hypot(1.0);
+        let expected = (f64::from(right) - f64::from(left)) / (slant(left) + slant(right));
+        let at = f64::from(left) + expected * slant(left);
+        for samples in [100, 3000] {
+            let missing = compared(&whole, &with_gap, samples);
+            near(missing.from_truth.largest, expected, 1e-4);
+            near(missing.worst_from_truth.truth.distance(DVec3::X * at), 0.0, 1e-3);
+            let surplus = compared(&with_gap, &whole, samples);
+            near(surplus.to_truth.largest, expected, 1e-4);
+            near(surplus.worst_to_truth.emitted.distance(DVec3::X * at), 0.0, 1e-3);
+            near(surplus.worst_px.unwrap().value, 150.0 * expected, 150.0 * 1e-4);
+        }
+    }
+}
+
+#[test]
+fn a_low_poly_mesh_is_as_far_from_a_scan_as_the_farthest_vertex_of_the_scan() {
+    let scan = Shape::Torus.build_at(3);
+    let (truth, out) = (Truth::of_mesh(&scan).unwrap(), as_it_is(&Shape::Torus.build()));
+    let corners = |triangle: &[u32; 3]| triangle.map(|i| Vec3::from(out.vertices[i as usize].position));
+    let tree = crate::truth::Triangles::new(out.triangles.iter().map(corners)).unwrap();
+    let distance = |corner: &geometry::mesh::Corner| {
+        tree.closest(corner.position.as_dvec3(), f64::INFINITY).map_or(0.0, |closest| closest.distance)
+    };
+    let of_vertices = scan.corners.iter().map(distance).fold(0.0, f64::max);
+    for samples in [1000, 20_000] {
+        let largest = measured(&truth, &out, samples).from_truth.largest;
+        assert!(largest >= of_vertices && largest < 1.001 * of_vertices, "{largest} for {of_vertices}");
+    }
+}
+
+#[test]
+fn sampling_says_how_many_points_there_are_and_how_far_apart() {
+    let (truth, (vertices, triangles)) = (square_truth(1.0), square(1.0, 0.25));
+    let mut measurement = AccuracyMeasurement::new(&truth, None, options(100));
+    measurement.take(&EmittedChunk::whole(&vertices, &triangles));
+    let accuracy = measurement.finish().unwrap();
+    // Spread by area, each of 100 points has 0.2 by 0.2 units. Sides of 2 units get 9 points between their ends, and the
+    // diagonal of 2.83 units gets 15.
+    let Sampling { samples, spacing } = accuracy.from_truth_sampling;
+    assert_eq!(samples, 100 + 4 + 4 * 9 + 15);
+    near(spacing, 0.2, 1e-6);
+    // Each of two triangles is cut into 64.
+    let Sampling { samples, spacing } = accuracy.to_truth_sampling;
+    assert_eq!(samples, 2 * 64 + 4 + 4 * 9 + 15);
+    near(spacing, 0.2, 1e-6);
+    // A sliver has little area, and its edges are cut into few segments.
+    let sliver = [[[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1e-3]]];
+    let other = [[[-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [0.0, 0.0, 1.0]]];
+    near(compared(&other, &sliver, 1000).to_truth_sampling.spacing, 0.5, 1e-9);
+}
+
+#[test]
+fn triangles_that_are_not_kept_are_measured_by_samples_alone() {
+    let (truth, out) = (Truth::of_shape(Shape::Torus).unwrap(), emitted(&Shape::Torus.build(), Surface::Flat, 2.0));
+    let measure = |most_kept, chunks: usize| {
+        let mut measurement =
+            AccuracyMeasurement { most_kept, ..AccuracyMeasurement::new(&truth, None, options(3000)) };
+        let size = out.triangles.len().div_ceil(chunks);
+        let take = |part| measurement.take(&EmittedChunk::whole(&out.vertices, part));
+        out.triangles.chunks(size).for_each(take);
+        measurement.finish().unwrap()
+    };
+    let kept = measure(usize::MAX, 3);
+    for (most_kept, chunks) in [(0, 1), (0, 3), (out.triangles.len() / 2, 3)] {
+        let sampled = measure(most_kept, chunks);
+        near(sampled.from_truth.rms, kept.from_truth.rms, 1e-12);
+        assert_eq!(sampled.from_truth_sampling, kept.from_truth_sampling);
+        for [sampled, kept] in [[sampled.to_truth, kept.to_truth], [sampled.from_truth, kept.from_truth]] {
+            assert!(sampled.largest <= kept.largest && sampled.largest > 0.99 * kept.largest, "{sampled:?} {kept:?}");
+        }
+    }
+}
+
+#[test]
+fn the_border_of_an_exact_surface_counts() {
+    // The border of the saddle is farthest from flat triangles that end inside of it.
+    let truth = Truth::of_shape(Shape::Saddle).unwrap();
+    let mut out = as_it_is(&Shape::Saddle.build_at(5));
+    let half = f64::from(geometry::mesh::shapes::sheets::SADDLE_HALF);
+    out.vertices.iter_mut().for_each(|vertex| {
+        let [x, _, z] = vertex.position.map(|x| 0.5 * x);
+        vertex.position = [x, (x * x - z * z) / 2.0, z];
+    });
+    let accuracy = measured(&truth, &out, 2000);
+    // From a corner of the saddle, where its height is 0, to that of the smaller square.
+    near(accuracy.from_truth.largest, half / 2.0_f64.sqrt(), 1e-6);
+}

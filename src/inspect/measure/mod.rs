@@ -1,0 +1,45 @@
+//! Measurements on what a tessellation emitted. They return edges, points and numbers, and draw nothing.
+
+mod accuracy;
+mod agreement;
+mod asked_factors;
+mod cracks;
+mod deviation_field;
+mod distance_transform;
+mod folds;
+mod indices;
+mod mapped_normals;
+pub mod optimum;
+mod outlines;
+mod points_agreement;
+mod screen_error;
+mod seams;
+mod seen_crack;
+mod sight;
+mod silhouette;
+mod sizes;
+mod survey;
+mod sweep;
+mod visitor;
+
+pub(crate) use accuracy::AccuracyMeasurement;
+pub use accuracy::{Accuracy, AccuracyOptions, Angles, Distances, Sampling, WorstPoint};
+pub use agreement::{Agreement, Disagreement, Order};
+pub use asked_factors::AskedFactors;
+pub use cracks::{CrackedEdge, Cracks};
+pub use deviation_field::{DeviationField, DeviationMeasurement, DeviationTarget, MOST_TRIANGLES};
+pub use folds::FoldedPatch;
+pub use indices::{IndexDifference, Meaning, index_differences};
+pub use outlines::{EdgeSide, patch_edges};
+pub use points_agreement::{PointsAgreement, PointsDisagreement};
+pub(crate) use screen_error::PatchesAbove;
+pub use screen_error::{ScreenError, ScreenErrorMeasurement};
+pub use seams::{SeamTurns, Seams};
+pub use sight::Sight;
+pub(crate) use silhouette::OutlineOf;
+pub use silhouette::{OutlineDistance, OutlineDistances, SampleGrid, Silhouette};
+pub(crate) use sizes::SMALL_PX;
+pub use sizes::Sizes;
+pub use survey::{Culled, Measured, Survey};
+pub use sweep::{SWEEP_STEP, Sweep, SweepStep, sweep};
+pub use visitor::{EmittedChunk, Visitor};

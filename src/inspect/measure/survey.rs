@@ -1,0 +1,157 @@
+//! The survey: cracks, folds and counts, gathered chunk by chunk from what was emitted on the CPU or the device.
+
+use glam::Vec3;
+
+use super::asked_factors::AskedFactors;
+use super::cracks::Cracks;
+use super::folds::{self, FoldedPatch};
+use super::outlines::Outlines;
+use super::seams::Seams;
+use super::visitor::{EmittedChunk, Visitor};
+use geometry::mesh::{Mesh, Topology};
+use geometry::tessellate::{FACING_AWAY, OUT_OF_VIEW, PatchFactors, Tessellated, patch_is_culled};
+use geometry::view::ulp;
+
+/// The measurements so far.
+pub struct Survey<'a> {
+    mesh: &'a Mesh,
+    topology: &'a Topology,
+    ulp: f64,
+    culled: Culled,
+    outlines: Outlines,
+    folded: Vec<FoldedPatch>,
+    not_finite: u64,
+    extent: [Vec3; 2],
+}
+
+/// The numbers of patches that emitted nothing, for each reason.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Culled {
+    pub out_of_view: u32,
+    pub facing_away: u32,
+    /// A factor wasn't greater than zero.
+    pub by_factors: u32,
+}
+
+impl Culled {
+    fn of(factors: &[PatchFactors]) -> Self {
+        let mut culled = Self::default();
+        for patch in factors.iter().filter(|patch| patch_is_culled(**patch)) {
+            *match patch.inside {
+                OUT_OF_VIEW => &mut culled.out_of_view,
+                FACING_AWAY => &mut culled.facing_away,
+                _ => &mut culled.by_factors,
+            } += 1;
+        }
+        culled
+    }
+
+    pub fn total(&self) -> u32 {
+        self.out_of_view + self.facing_away + self.by_factors
+    }
+}
+
+/// The measurements of a survey.
+#[derive(Clone, Debug, Default)]
+pub struct Measured {
+    pub culled: Culled,
+    /// Emitted patches whose factors are all below 2.
+    pub patches_low: u32,
+    /// Emitted patches with a factor of 63 or more: see [`Outlines::at_limit`].
+    pub patches_at_limit: u32,
+    pub cracks: Cracks,
+    pub seams: Seams,
+    /// Triangles that face away from the side that their patch faces.
+    pub folds: u64,
+    /// The patches with such triangles, those with the largest area first.
+    pub folded: Vec<FoldedPatch>,
+    /// Vertices with an infinite or NaN position or uv.
+    pub not_finite: u64,
+    /// Least and greatest coordinates of what was emitted, in object units.
+    pub extent: [Vec3; 2],
+    pub outlines: Outlines,
+}
+
+impl<'a> Survey<'a> {
+    /// A survey of patches with these factors.
+    pub fn new(mesh: &'a Mesh, topology: &'a Topology, factors: Vec<PatchFactors>, asked: AskedFactors) -> Self {
+        let extent = [Vec3::INFINITY, Vec3::NEG_INFINITY];
+        let culled = Culled::of(&factors);
+        let outlines = Outlines::new(factors, asked);
+        Self { mesh, topology, ulp: ulp(topology), culled, outlines, folded: Vec::new(), not_finite: 0, extent }
+    }
+
+    /// Compares the sides of every edge, after all chunks are taken.
+    pub fn finish(mut self) -> Measured {
+        let (mut cracks, mut seams) = (Cracks::default(), Seams::default());
+        for (edge, sides) in self.outlines.shared_edges(self.topology) {
+            cracks.take(self.mesh, self.topology, edge, &sides, &self.outlines.discarded(self.topology, edge));
+            seams.take(self.mesh, self.topology, &self.outlines, edge, &sides);
+        }
+        self.folded.sort_by(|a, b| b.area.total_cmp(&a.area));
+        Measured {
+            culled: self.culled,
+            patches_low: self.outlines.low(),
+            patches_at_limit: self.outlines.at_limit(),
+            cracks: cracks.sorted(),
+            seams,
+            folds: self.folded.iter().map(|patch| u64::from(patch.folds)).sum(),
+            folded: self.folded,
+            not_finite: self.not_finite,
+            extent: self.extent,
+            outlines: self.outlines,
+        }
+    }
+}
+
+impl Visitor for Survey<'_> {
+    fn take(&mut self, chunk: &EmittedChunk) {
+        let EmittedChunk { first_patch, vertices, triangles } = *chunk;
+        self.outlines.take(first_patch, vertices);
+        folds::find(self.topology, self.ulp, vertices, triangles, &mut self.folded);
+        for vertex in vertices {
+            let position = Vec3::from(vertex.position);
+            if !(position.is_finite() && vertex.uv.iter().all(|x| x.is_finite())) {
+                self.not_finite += 1;
+                continue;
+            }
+            self.extent = [self.extent[0].min(position), self.extent[1].max(position)];
+        }
+    }
+}
+
+impl Measured {
+    /// Measures what the CPU emitted.
+    pub fn of(mesh: &Mesh, topology: &Topology, asked: AskedFactors, out: &Tessellated) -> Self {
+        let mut survey = Survey::new(mesh, topology, out.patch_factors.clone(), asked);
+        survey.take(&EmittedChunk::whole(&out.vertices, &out.triangles));
+        survey.finish()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geometry::mesh::Shape;
+    use geometry::progress::Progress;
+    use geometry::tessellate::{Inputs, LodView, Partitioning, Tessellation, tessellate};
+    use glam::{Mat4, Vec2};
+
+    #[test]
+    fn a_torus_is_measured_from_end_to_end() {
+        let mesh = Shape::Torus.build();
+        let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
+        for (factor, low, at_limit) in [(1.0, 256, 0), (4.0, 0, 0), (64.0, 0, 256)] {
+            let tessellation = Tessellation { factor, partitioning: Partitioning::Integer, ..Tessellation::default() };
+            let inputs = Inputs::new(&tessellation, LodView::new(Mat4::IDENTITY, Vec2::ONE));
+            let mut out = tessellate(&mesh, &topology, &inputs, None);
+            out.vertices[0].uv = [f32::NAN, 0.0];
+            let asked = AskedFactors::new(tessellation.edges, tessellation.convention, out.edge_factors.clone());
+            let own = Measured::of(&mesh, &topology, asked, &out);
+            assert_eq!((own.patches_low, own.patches_at_limit, own.culled.total()), (low, at_limit, 0), "{factor}");
+            assert_eq!((own.cracks.edges_compared, own.folds, own.not_finite), (384, 0, 1), "{factor}");
+            let positions = out.vertices[1..].iter().map(|vertex| Vec3::from(vertex.position));
+            assert_eq!(own.extent[1], positions.reduce(Vec3::max).expect("vertices"), "{factor}");
+        }
+    }
+}

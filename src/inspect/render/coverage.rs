@@ -1,0 +1,139 @@
+//! Removes from a chunk, before it is drawn, the triangles that cover no sample of the picture. Where triangles are smaller than
+//! pixels, most triangles cover none, and each takes the rasteriser as long as one that is seen. The picture stays the same.
+
+use std::sync::Arc;
+
+use bytemuck::{Pod, Zeroable};
+
+use geometry::tessellate::CoverageView;
+use gpu::layout::DrawArgs;
+use gpu::wgsl::{TYPES, WORKGROUP_SCAN, WgslFile};
+use gpu::{
+    BoundPass, ChunkBuffers, ComputePipeline, Gpu, GpuError, RecordPasses, Recorder, ShaderModule, WORKGROUP, empty,
+    grid, read_buffer, uniform_buffer,
+};
+
+static COVERAGE: WgslFile = WgslFile::new("coverage", &[]);
+pub(super) static PASS_COVERAGE: WgslFile = WgslFile::new("pass_coverage", &[&COVERAGE, &TYPES, &WORKGROUP_SCAN]);
+
+/// How many triangles each workgroup tests; `TILE` in `shaders/pass_coverage.wgsl`.
+pub(super) const TILE: u32 = 2048;
+
+/// What the passes over one chunk read as `sieve`.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct Sieve {
+    pub view: CoverageView,
+    pub triangle_count: u32,
+    pub material_count: u32,
+    /// Index of the chunk's first draw arguments among those of its slab.
+    pub first_draw: u32,
+    pub _pad: u32,
+}
+
+/// The pipelines of these passes, each made when it is first needed.
+pub(super) struct CoveragePipelines {
+    marks: ComputePipeline,
+    starts: ComputePipeline,
+    keep: ComputePipeline,
+}
+
+impl CoveragePipelines {
+    /// Compiles nothing yet.
+    pub(super) fn new() -> Self {
+        let module = Arc::new(ShaderModule::new(&PASS_COVERAGE));
+        Self {
+            marks: ComputePipeline::new(&module, "coverage_marks_main"),
+            starts: ComputePipeline::new(&module, "coverage_starts_main"),
+            keep: ComputePipeline::new(&module, "coverage_keep_main"),
+        }
+    }
+}
+
+/// Buffers for the triangles that are kept of a chunk.
+pub(super) struct Coverage {
+    marks: wgpu::Buffer,
+    tile_starts: wgpu::Buffer,
+    /// Three for each kept triangle, in the order in which the triangles were emitted.
+    pub indices: wgpu::Buffer,
+    /// A [`DrawArgs`] for each material.
+    pub draw_args: wgpu::Buffer,
+    capacity: u32,
+}
+
+impl Coverage {
+    /// Buffers for as many triangles as this chunk has, or for up to twice as many if later chunks may have more.
+    ///
+    /// # Errors
+    /// The buffers are larger than the adapter can bind.
+    pub(super) fn new(gpu: &Gpu, chunk: &ChunkBuffers, material_count: u32) -> Result<Self, GpuError> {
+        let most = (chunk.indices.size() / size_of::<[u32; 3]>() as u64) as u32;
+        let capacity = chunk.chunk.triangle_count.next_power_of_two().min(most);
+        let tiles = capacity.div_ceil(TILE) as usize;
+        Ok(Self {
+            marks: empty::<[u32; TILE as usize / 32]>(gpu, "coverage marks", tiles)?,
+            tile_starts: empty::<u32>(gpu, "coverage tiles", tiles + 1)?,
+            indices: empty::<[u32; 3]>(gpu, "covering triangles", capacity as usize)?,
+            draw_args: empty::<DrawArgs>(gpu, "covering draws", material_count as usize)?,
+            capacity,
+        })
+    }
+
+    /// Whether the buffers are large enough for a chunk.
+    pub(super) fn has_room(&self, chunk: &ChunkBuffers) -> bool {
+        chunk.chunk.triangle_count <= self.capacity
+    }
+
+    /// The size of all buffers.
+    pub(super) fn bytes(&self) -> u64 {
+        [&self.marks, &self.tile_starts, &self.indices, &self.draw_args].iter().map(|buffer| buffer.size()).sum()
+    }
+
+    /// How many triangles were kept last time. Waits for the device.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub(super) fn kept(&self, gpu: &Gpu) -> Result<u64, GpuError> {
+        let bytes = read_buffer(gpu, &self.draw_args, 0, self.draw_args.size())?;
+        let draws: Vec<DrawArgs> = bytemuck::pod_collect_to_vec(&bytes);
+        Ok(draws.iter().map(|draw| u64::from(draw.index_count) / 3).sum())
+    }
+
+    /// Records the passes that keep the triangles of a chunk that may be seen. The chunk must fit: see [`Self::has_room`].
+    ///
+    /// # Errors
+    /// A pipeline can't be made: out of memory, or a lost device.
+    pub(super) fn keep(
+        &self,
+        recorder: &mut Recorder,
+        pipelines: &CoveragePipelines,
+        gpu: &Gpu,
+        chunk: &ChunkBuffers,
+        view: CoverageView,
+    ) -> Result<(), GpuError> {
+        let row = size_of::<DrawArgs>() as u64;
+        let sieve = Sieve {
+            view,
+            triangle_count: chunk.chunk.triangle_count,
+            material_count: (self.draw_args.size() / row) as u32,
+            first_draw: (chunk.draw_args_offset / row) as u32,
+            _pad: 0,
+        };
+        let sieve = uniform_buffer(gpu, "coverage", bytemuck::bytes_of(&sieve));
+        let [(vertices, _), _] = chunk.vertices();
+        let shared = [(0, &sieve), (3, &self.marks), (4, &self.tile_starts)];
+        let taken = [(1, vertices), (2, chunk.indices)];
+        let draws = [(5, chunk.draw_args), (6, &self.draw_args)];
+        let kept = [shared[1], shared[2], taken[1], (7, &self.indices)];
+        let marks = BoundPass::new(gpu, &pipelines.marks, &[&shared[..], &taken].concat())?;
+        let starts = BoundPass::new(gpu, &pipelines.starts, &[&shared[..], &draws].concat())?;
+        let keep = BoundPass::new(gpu, &pipelines.keep, &[&shared[..1], &kept].concat())?;
+        let tiles = grid(chunk.chunk.triangle_count.div_ceil(TILE) * WORKGROUP);
+        recorder.compute("coverage", |pass| {
+            marks.dispatch(pass, tiles);
+            starts.dispatch(pass, [1, 1, 1]);
+            keep.dispatch(pass, tiles);
+        });
+        Ok(())
+    }
+}

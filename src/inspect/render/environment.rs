@@ -1,0 +1,294 @@
+//! Light from all around: what `shaders/environment.wgsl` reads.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{Mat3, Vec3};
+use half::f16;
+use wgpu::util::DeviceExt;
+
+use super::blur_levels::ENVIRONMENT_LEVELS;
+use super::cube_map::CubeMap;
+use super::dfg::{DFG_SIZE, dfg_table};
+use super::irradiance::{Irradiance, irradiance};
+use super::prefilter_pass::{REFLECTANCE, cube_view, prefilter};
+use super::studio::studio_light;
+use super::tone::TONE_CURVE_NEUTRAL;
+use gpu::wgsl::WgslFile;
+use gpu::{Gpu, GpuError, Lazy, uniform_buffer};
+use load::panorama::Panorama;
+
+static TONE: WgslFile = WgslFile::new("tone", &[]);
+/// A shader module that has it binds [`Environment::entries`] in group 1 from binding 16 on.
+pub static ENVIRONMENT: WgslFile = WgslFile::new("environment", &[&REFLECTANCE, &TONE]);
+
+/// The binding of the `Surroundings` in `shaders/environment.wgsl`.
+const SURROUNDINGS_BINDING: u32 = 19;
+
+/// Width of a face of the cube map's first level, in texels.
+const ENVIRONMENT_SIZE: u32 = 128;
+
+/// Width and height of the studio's panorama, in px. Its soft boxes have edges that are five px wide.
+const STUDIO_SIZE: [u32; 2] = [512, 256];
+
+/// Twin of `Surroundings` in `shaders/environment.wgsl`.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Surroundings {
+    /// The coefficients that `irradiance` makes; the fourth component is unused.
+    pub irradiance: [[f32; 4]; 9],
+    /// Turns a direction in object space into the light's own. The fourth component is unused.
+    pub light_from_object: [[f32; 4]; 3],
+    /// Factor of all light.
+    pub brightness: f32,
+    /// Factor of what the camera sees.
+    pub exposure: f32,
+    /// `TONE_CURVE_*` in `shaders/tone.wgsl`.
+    pub tone_curve: u32,
+    pub _pad: u32,
+}
+
+/// How an environment is turned and shown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightView {
+    /// In EV: each doubles the light from all around.
+    pub brightness: f32,
+    /// By how many degrees the light is turned about +Y, from +Z towards +X.
+    pub rotation: f32,
+    /// In EV: each doubles what is seen.
+    pub exposure: f32,
+    /// `TONE_CURVE_*` in `shaders/tone.wgsl`.
+    pub tone_curve: u32,
+}
+
+impl Default for LightView {
+    fn default() -> Self {
+        Self { brightness: 0.0, rotation: 0.0, exposure: 0.0, tone_curve: TONE_CURVE_NEUTRAL }
+    }
+}
+
+/// Light from all around on the device: a cube map, blurred by GGX from level to level; irradiance as spherical harmonics; and
+/// the table of directional albedos.
+pub struct Environment {
+    /// [`ENVIRONMENT_LEVELS`] levels in half floats; the first is a mirror's.
+    cube: wgpu::TextureView,
+    sampler: wgpu::Sampler,
+    dfg: wgpu::TextureView,
+    irradiance: Irradiance,
+    /// That of a file comes with it; the studio's is made when it is first seen.
+    backdrop: Lazy<Backdrop>,
+}
+
+/// A panorama on the device, which is seen behind the mesh.
+#[derive(Debug)]
+pub(crate) struct Backdrop {
+    panorama: wgpu::TextureView,
+    sampler: wgpu::Sampler,
+}
+
+impl Environment {
+    /// A photographer's studio, made in code.
+    ///
+    /// # Errors
+    /// Out of memory, or a lost device.
+    pub fn studio(gpu: &Gpu) -> Result<Self, GpuError> {
+        Self::of(gpu, &CubeMap::of(ENVIRONMENT_SIZE, studio_light))
+    }
+
+    /// The same light (linear RGB) from all sides, under which a white surface that absorbs nothing can't be seen.
+    ///
+    /// # Errors
+    /// Out of memory, or a lost device.
+    #[cfg(test)]
+    pub fn uniform(gpu: &Gpu, light: [f32; 3]) -> Result<Self, GpuError> {
+        Self::of(gpu, &CubeMap::of(ENVIRONMENT_SIZE, |_| light.into()))
+    }
+
+    /// The light of a panorama.
+    ///
+    /// # Errors
+    /// Out of memory, or a lost device.
+    pub fn of_panorama(gpu: &Gpu, panorama: Panorama) -> Result<Self, GpuError> {
+        let backdrop = Lazy::default();
+        backdrop.get_or_make(gpu, || Backdrop::new(gpu, &panorama))?;
+        // A quarter of a turn has at least as many pixels as a face has texels, and at most twice as many.
+        let panorama = panorama.reduced(4 * ENVIRONMENT_SIZE as usize);
+        let own = Self::of(gpu, &CubeMap::of(ENVIRONMENT_SIZE, |direction| panorama.light_from(direction)))?;
+        Ok(Self { backdrop, ..own })
+    }
+
+    fn of(gpu: &Gpu, light: &CubeMap) -> Result<Self, GpuError> {
+        let irradiance = irradiance(light);
+        let (source, cube, dfg, sampler) =
+            gpu.attempt(|| (upload(gpu, light), empty_cube(gpu, light.size), upload_dfg(gpu), linear_sampler(gpu)))?;
+        prefilter(gpu, &source, &cube, &sampler)?;
+        Ok(Self { cube: cube_view(&cube), sampler, dfg, irradiance, backdrop: Lazy::default() })
+    }
+
+    /// What is seen behind the mesh.
+    ///
+    /// # Errors
+    /// Out of memory, or a lost device.
+    pub(crate) fn backdrop(&self, gpu: &Gpu) -> Result<&Backdrop, GpuError> {
+        self.backdrop.get_or_make(gpu, || Backdrop::new(gpu, &Panorama::of(STUDIO_SIZE, studio_light)))
+    }
+
+    /// The `Surroundings` of a picture for which the light is turned and shown like this. Each picture has its own, so that one
+    /// that is recorded on another thread doesn't change them.
+    pub fn surroundings(&self, gpu: &Gpu, view: &LightView) -> wgpu::Buffer {
+        uniform_buffer(gpu, "surroundings", bytemuck::bytes_of(&surroundings(&self.irradiance, view)))
+    }
+
+    /// Layout entries of the cube map, its sampler, the table and the `Surroundings`, which fragment shaders read, at this
+    /// binding and the next three.
+    pub(crate) fn layout_entries(first: u32) -> [wgpu::BindGroupLayoutEntry; 4] {
+        let texture = |view_dimension| wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: true },
+            view_dimension,
+            multisampled: false,
+        };
+        let uniform = wgpu::BufferBindingType::Uniform;
+        let types = [
+            texture(wgpu::TextureViewDimension::Cube),
+            wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+            texture(wgpu::TextureViewDimension::D2),
+            wgpu::BindingType::Buffer { ty: uniform, has_dynamic_offset: false, min_binding_size: None },
+        ];
+        let mut binding = first;
+        types.map(|ty| {
+            let entry =
+                wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None };
+            binding += 1;
+            entry
+        })
+    }
+
+    /// What is bound there, with what [`Self::surroundings`] returns.
+    pub fn entries<'a>(&'a self, first: u32, surroundings: &'a wgpu::Buffer) -> [wgpu::BindGroupEntry<'a>; 4] {
+        let view = wgpu::BindingResource::TextureView;
+        [
+            wgpu::BindGroupEntry { binding: first, resource: view(&self.cube) },
+            wgpu::BindGroupEntry { binding: first + 1, resource: wgpu::BindingResource::Sampler(&self.sampler) },
+            wgpu::BindGroupEntry { binding: first + 2, resource: view(&self.dfg) },
+            wgpu::BindGroupEntry { binding: first + 3, resource: surroundings.as_entire_binding() },
+        ]
+    }
+}
+
+impl Backdrop {
+    fn new(gpu: &Gpu, panorama: &Panorama) -> Self {
+        let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("panorama"),
+            address_mode_u: wgpu::AddressMode::Repeat,
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            ..Default::default()
+        });
+        Self { panorama: upload_panorama(gpu, panorama), sampler }
+    }
+
+    /// Layout entries of the panorama, its sampler and the `Surroundings`.
+    pub(super) fn layout_entries() -> [wgpu::BindGroupLayoutEntry; 3] {
+        let [.., panorama, surroundings] = Environment::layout_entries(SURROUNDINGS_BINDING - 3);
+        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+        [
+            wgpu::BindGroupLayoutEntry { binding: 0, ..panorama },
+            wgpu::BindGroupLayoutEntry { binding: 1, ty: sampler, ..panorama },
+            surroundings,
+        ]
+    }
+
+    /// What is bound there, with what [`Environment::surroundings`] returns.
+    pub(super) fn entries<'a>(&'a self, surroundings: &'a wgpu::Buffer) -> [wgpu::BindGroupEntry<'a>; 3] {
+        [
+            wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&self.panorama) },
+            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&self.sampler) },
+            wgpu::BindGroupEntry { binding: SURROUNDINGS_BINDING, resource: surroundings.as_entire_binding() },
+        ]
+    }
+}
+
+fn surroundings(irradiance: &Irradiance, view: &LightView) -> Surroundings {
+    let light_from_object = Mat3::from_rotation_y(-view.rotation.to_radians());
+    let padded = |vector: Vec3| vector.extend(0.0).to_array();
+    Surroundings {
+        irradiance: irradiance.map(padded),
+        light_from_object: [light_from_object.x_axis, light_from_object.y_axis, light_from_object.z_axis].map(padded),
+        brightness: view.brightness.exp2(),
+        exposure: view.exposure.exp2(),
+        tone_curve: view.tone_curve,
+        _pad: 0,
+    }
+}
+
+fn linear_sampler(gpu: &Gpu) -> wgpu::Sampler {
+    gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("environment"),
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        mipmap_filter: wgpu::MipmapFilterMode::Linear,
+        ..Default::default()
+    })
+}
+
+/// A cube map of half floats whose levels the prefilter will fill.
+fn empty_cube(gpu: &Gpu, size: u32) -> wgpu::Texture {
+    gpu.device.create_texture(&cube_descriptor(size, ENVIRONMENT_LEVELS, wgpu::TextureUsages::STORAGE_BINDING))
+}
+
+fn cube_descriptor(size: u32, levels: u32, usage: wgpu::TextureUsages) -> wgpu::TextureDescriptor<'static> {
+    wgpu::TextureDescriptor {
+        label: Some("environment"),
+        size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 6 },
+        mip_level_count: levels,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba16Float,
+        usage: usage | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    }
+}
+
+/// The bytes of a pixel in half floats, whose largest number is 65,504.
+fn half_floats(light: Vec3) -> [u8; 8] {
+    bytemuck::cast(light.min(Vec3::splat(65504.0)).extend(1.0).to_array().map(|value| f16::from_f32(value).to_bits()))
+}
+
+fn upload_panorama(gpu: &Gpu, panorama: &Panorama) -> wgpu::TextureView {
+    let bytes: Vec<u8> = panorama.pixels().iter().flat_map(|&light| half_floats(light)).collect();
+    upload_flat(gpu, "panorama", panorama.size(), &bytes)
+}
+
+/// Uploads an image of one level, four half floats a pixel.
+fn upload_flat(gpu: &Gpu, label: &str, [width, height]: [u32; 2], bytes: &[u8]) -> wgpu::TextureView {
+    let descriptor = wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba16Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    };
+    let order = wgpu::util::TextureDataOrder::LayerMajor;
+    let texture = gpu.device.create_texture_with_data(&gpu.queue, &descriptor, order, bytes);
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+/// Uploads all levels.
+fn upload(gpu: &Gpu, light: &CubeMap) -> wgpu::Texture {
+    let mut bytes: Vec<u8> = Vec::new();
+    for face in 0..6 {
+        for level in &light.levels {
+            let of_face = level.len() / 6;
+            let pixels = level[face * of_face..(face + 1) * of_face].iter();
+            bytes.extend(pixels.flat_map(|&light| half_floats(light)));
+        }
+    }
+    let descriptor = cube_descriptor(light.size, light.levels.len() as u32, wgpu::TextureUsages::empty());
+    gpu.device.create_texture_with_data(&gpu.queue, &descriptor, wgpu::util::TextureDataOrder::LayerMajor, &bytes)
+}
+
+fn upload_dfg(gpu: &Gpu) -> wgpu::TextureView {
+    let bytes: Vec<u8> = dfg_table().iter().flatten().flat_map(|&part| f16::from_f32(part).to_ne_bytes()).collect();
+    upload_flat(gpu, "directional albedo", [DFG_SIZE; 2], &bytes)
+}

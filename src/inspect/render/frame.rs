@@ -1,0 +1,52 @@
+//! The constants that all draws of a picture read.
+
+use wgpu::util::DeviceExt;
+
+use super::deviation::scale_of;
+use super::ground::Ground;
+use super::layout::{Frame, overlay_bits};
+use super::{Camera, Scene, Target};
+use crate::settings::{DeviationUnit, Settings};
+use gpu::Gpu;
+
+/// Uploads the constants of a picture of a scene, or of a half of it that begins at the column `left`.
+pub(super) fn frame(
+    gpu: &Gpu,
+    scene: &Scene,
+    target: &Target,
+    camera: &Camera,
+    settings: &Settings,
+    left: u32,
+) -> wgpu::Buffer {
+    let viewport = target.viewport();
+    let [right, up, back] = camera.axes();
+    let eye = if camera.orthographic { back.extend(0.0) } else { camera.eye().extend(1.0) };
+    let scale = scale_of(settings, scene.known_deviation(), scene.bounds.radius());
+    // In clip space, w is 1 everywhere in an orthographic view, and the distance from the eye in a perspective view.
+    let px_where_w_is_1 =
+        (if camera.orthographic { 1.0 } else { camera.distance }) / camera.units_per_pixel(viewport.y);
+    let in_px = settings.deviation_in == DeviationUnit::Px;
+    let frame = Frame {
+        clip_from_object: camera.clip_from_object(viewport, &scene.bounds).to_cols_array_2d(),
+        key_light: (up * 0.7 + back - right * 0.5).normalize().extend(0.0).to_array(),
+        fill_light: (up * 0.8 + back * 0.4 + right * 0.5).normalize().extend(0.0).to_array(),
+        eye: eye.to_array(),
+        viewport: viewport.to_array(),
+        overlays: overlay_bits(&settings.overlays),
+        ulp: scene.ulp,
+        convention: settings.tessellation.convention as u32,
+        scale_least: scale.least,
+        scale_most: scale.most,
+        px_per_unit: if in_px { px_where_w_is_1 } else { 0.0 },
+        ground: Ground::under(&scene.bounds).packed(),
+        scale: scale.colors.map(|[r, g, b]| [r, g, b, 0].map(|byte| f32::from(byte) / 255.0)),
+        left: left as f32,
+        coarseness: target.coarseness as f32,
+        _pad: [0.0; 2],
+    };
+    gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: Some("frame"),
+        contents: bytemuck::bytes_of(&frame),
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::UNIFORM,
+    })
+}

@@ -1,0 +1,263 @@
+//! Leaks: pixels at which a crack shows the inside of a closed mesh.
+
+use std::cmp::Reverse;
+use std::collections::BTreeSet;
+
+use glam::{DVec2, Mat4, Vec2, dvec2};
+use wgpu::util::DeviceExt;
+
+use super::Scene;
+use super::adding_pipeline::Adding;
+use geometry::mesh::Topology;
+use gpu::{Gpu, GpuError, Lazy, Readback, Recorder, ShaderModule, Timing, WgslFile, bind_group};
+
+pub(super) static DRAW_LEAKS: WgslFile = WgslFile::new("draw_leaks", &[]);
+
+/// The count of each pixel, which may be negative. This format holds every whole number up to 2048, and every adapter can blend
+/// it.
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R16Float;
+
+/// Counts leaks.
+///
+/// A closed surface covers every pixel with as many front faces as back faces, since a line of sight that enters it also leaves
+/// it. Where a front and a back face meet at a silhouette, the rasteriser gives each pixel to both or to neither, by the same
+/// rule. So all triangles are drawn without a depth test; front faces add 1 and back faces subtract 1. A pixel that isn't 0 at
+/// the end sees the inside through a crack, or the outside from within. (If a line of sight passes through one crack in front
+/// and another behind, the two cancel; the pixels around it still count.)
+pub(crate) struct LeakCounter {
+    module: ShaderModule,
+    pipeline: Lazy<wgpu::RenderPipeline>,
+}
+
+impl Default for LeakCounter {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl LeakCounter {
+    /// Compiles nothing yet.
+    pub(crate) fn new() -> Self {
+        Self { module: ShaderModule::new(&DRAW_LEAKS), pipeline: Lazy::default() }
+    }
+
+    fn pipeline(&self, gpu: &Gpu) -> Result<&wgpu::RenderPipeline, GpuError> {
+        let module = self.module.get(gpu)?;
+        self.pipeline.get_or_make(gpu, || pipeline(gpu, module))
+    }
+
+    /// Starts to count the leaks of a picture of `size` (width and height in px).
+    ///
+    /// # Errors
+    /// The picture is larger than the adapter draws, or the device was lost.
+    pub(crate) fn start(&self, gpu: &Gpu, size: [u32; 2], clip: Mat4) -> Result<LeakCount, GpuError> {
+        let limit = gpu.device.limits().max_texture_dimension_2d;
+        let [width, height] = size.map(|side| side.max(1));
+        if width > limit || height > limit {
+            return Err(GpuError::PictureTooLarge { width, height, limit });
+        }
+        let pipeline = self.pipeline(gpu)?;
+        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("leaks"),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: FORMAT,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let uniform = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("leaks"),
+            contents: bytemuck::bytes_of(&clip.to_cols_array_2d()),
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
+        let group = bind_group(gpu, "leaks", &pipeline.get_bind_group_layout(0), &[(0, &uniform)]);
+        Ok(LeakCount { texture, pipeline: pipeline.clone(), group, next_chunk: 0 })
+    }
+
+    /// The leaks in a picture of `size` (width and height in px), the largest first. The scene's counts must be known, its mesh must
+    /// be closed, and all of it must lie beyond the near plane.
+    ///
+    /// # Errors
+    /// The picture is larger than the adapter draws, or the device was lost.
+    pub(crate) fn find(&self, gpu: &Gpu, scene: &mut Scene, size: [u32; 2], clip: Mat4) -> Result<Vec<Leak>, GpuError> {
+        let mut count = self.start(gpu, size, clip)?;
+        let mut counts = loop {
+            if let Some(counts) = count.draw_next(gpu, scene)? {
+                break counts;
+            }
+        };
+        Ok(leaks_in(&counts.wait(gpu)?, size[0].max(1) as usize))
+    }
+}
+
+/// A count under way.
+pub struct LeakCount {
+    texture: wgpu::Texture,
+    pipeline: wgpu::RenderPipeline,
+    group: wgpu::BindGroup,
+    next_chunk: usize,
+}
+
+impl LeakCount {
+    /// Emits and draws the next chunk. After the last one it returns the counts of all pixels, which are on their way to the
+    /// host: see [`leaking_pixels`].
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn draw_next(&mut self, gpu: &Gpu, scene: &mut Scene) -> Result<Option<Readback>, GpuError> {
+        let view = self.texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let mut timing = Timing::Off;
+        let mut recorder = Recorder::new(gpu, &mut timing);
+        let (index, chunks) = (self.next_chunk, scene.tessellator.chunk_count());
+        self.next_chunk += 1;
+        if index < chunks {
+            scene.tessellator.emit(&mut recorder, index)?;
+        }
+        let load = if index == 0 { wgpu::LoadOp::Clear(wgpu::Color::BLACK) } else { wgpu::LoadOp::Load };
+        let mut pass = recorder.encoder().begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("leaks"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
+            })],
+            ..Default::default()
+        });
+        if index < chunks {
+            let chunk = scene.tessellator.chunk(index);
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, &self.group, &[]);
+            let [(places, bytes), _] = chunk.vertices();
+            pass.set_vertex_buffer(0, places.slice(bytes));
+            pass.set_index_buffer(chunk.indices.slice(..), wgpu::IndexFormat::Uint32);
+            pass.draw_indexed(0..3 * chunk.chunk.triangle_count, 0, 0..1);
+        }
+        drop(pass);
+        let is_last = index + 1 >= chunks;
+        let mut counts = is_last.then(|| Readback::of_texture(gpu, recorder.encoder(), &self.texture));
+        recorder.submit();
+        counts.iter_mut().for_each(Readback::request);
+        Ok(counts)
+    }
+}
+
+/// Indices of the pixels that leak, row by row from the top left, by the bytes of a [`LeakCount`].
+fn leaking_pixels(counts: &[u8]) -> impl Iterator<Item = usize> {
+    // Two bytes a pixel. Both zeros, +0 and -0, are 0.
+    counts.chunks_exact(2).enumerate().filter(|(_, half)| half[0] != 0 || half[1] & 0x7f != 0).map(|(pixel, _)| pixel)
+}
+
+/// Pixels that leak and touch each other, also at their corners.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Leak {
+    /// The centre of the one of these pixels that is nearest to their middle, in px from the picture's top left.
+    pub px: Vec2,
+    /// How many they are.
+    pub pixels: u32,
+}
+
+/// The leaks of a mesh in a view, or why none can be counted.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Leaks {
+    /// The largest first.
+    Counted(Vec<Leak>),
+    /// The mesh is open: one sees its inside past its border.
+    Open,
+    /// Triangles that meet are wound opposite ways, so that the mesh has no inside.
+    BothWays,
+    /// The near plane of the view cuts the mesh open.
+    NearPlane,
+}
+
+impl Leaks {
+    /// Why the leaks of a mesh can be counted in no view; none if they can.
+    pub fn uncounted(topology: &Topology) -> Option<Self> {
+        match (topology.is_closed(), topology.is_oriented()) {
+            (true, true) => None,
+            (true, false) => Some(Self::BothWays),
+            (false, _) => Some(Self::Open),
+        }
+    }
+
+    /// The leaks of the mirrored picture, which is `width` px wide.
+    pub fn mirrored(self, width: f32) -> Self {
+        match self {
+            Self::Counted(leaks) => {
+                let mirrored = |leak: Leak| Leak { px: Vec2::new(width - leak.px.x, leak.px.y), ..leak };
+                Self::Counted(leaks.into_iter().map(mirrored).collect())
+            }
+            other => other,
+        }
+    }
+}
+
+/// The leaks of a picture `width` px wide, the largest first, by the bytes of a [`LeakCount`].
+pub fn leaks_in(counts: &[u8], width: usize) -> Vec<Leak> {
+    let mut left: BTreeSet<usize> = leaking_pixels(counts).collect();
+    let mut leaks = Vec::new();
+    while let Some(first) = left.pop_first() {
+        let (mut reached, mut next) = (vec![first], 0);
+        while let Some(&pixel) = reached.get(next) {
+            next += 1;
+            let [x, y] = [pixel % width, pixel / width];
+            for beside in (y.saturating_sub(1)..=y + 1).flat_map(|y| (x.saturating_sub(1)..=x + 1).map(move |x| [x, y]))
+            {
+                let beside = (beside[0] < width).then_some(beside[1] * width + beside[0]);
+                reached.extend(beside.filter(|beside| left.remove(beside)));
+            }
+        }
+        reached.sort_unstable();
+        leaks.push(leak_of(&reached, width));
+    }
+    // Stable, so that leaks of one size stay in the order of their first pixels.
+    leaks.sort_by_key(|leak| Reverse(leak.pixels));
+    leaks
+}
+
+/// The leak that these pixels are, in order.
+fn leak_of(pixels: &[usize], width: usize) -> Leak {
+    let centers = || pixels.iter().map(|pixel| dvec2((pixel % width) as f64, (pixel / width) as f64) + 0.5);
+    let middle = centers().sum::<DVec2>() / pixels.len() as f64;
+    let apart = |center: &DVec2| center.distance_squared(middle);
+    let nearest = centers().min_by(|a, b| apart(a).total_cmp(&apart(b))).unwrap_or(middle);
+    Leak { px: nearest.as_vec2(), pixels: pixels.len() as u32 }
+}
+
+fn pipeline(gpu: &Gpu, module: &wgpu::ShaderModule) -> wgpu::RenderPipeline {
+    let adding = Adding {
+        label: "leaks",
+        entry_points: ["leak_vertex", "leak_fragment"],
+        format: FORMAT,
+        factor: wgpu::BlendFactor::One,
+        channels: wgpu::ColorWrites::RED,
+    };
+    adding.pipeline(gpu, module)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::vec2;
+
+    #[test]
+    fn pixels_that_touch_are_one_leak_and_the_largest_is_first() {
+        // A pixel by itself, three along a diagonal, and two at the ends of rows, which don't touch each other.
+        let rows = ["#......", "...#...", "..#....", ".#....#", "#......"];
+        let counts: Vec<u8> =
+            rows.concat().bytes().flat_map(|pixel| if pixel == b'#' { [0, 0x3c] } else { [0, 0x80] }).collect();
+        let leak = |x: f32, y: f32, pixels| Leak { px: vec2(x, y), pixels };
+        assert_eq!(leaks_in(&counts, 7), [leak(2.5, 2.5, 4), leak(0.5, 0.5, 1), leak(6.5, 3.5, 1)]);
+        assert_eq!(leaking_pixels(&counts).count(), 6);
+        assert_eq!(leaks_in(&[], 7), []);
+    }
+
+    #[test]
+    fn a_leak_around_a_face_is_at_one_of_its_own_pixels() {
+        let rows = [".###..", ".#.#..", ".###.."].concat();
+        let counts: Vec<u8> = rows.bytes().flat_map(|pixel| [0, if pixel == b'#' { 0x3c } else { 0 }]).collect();
+        assert_eq!(leaks_in(&counts, 6), [Leak { px: vec2(2.5, 0.5), pixels: 8 }]);
+    }
+}

@@ -1,0 +1,90 @@
+//! Lines that mark cracks, T-junctions, the largest deviation, the selected patch, and the LOD camera.
+
+use glam::{Vec2, Vec3};
+
+use super::LineSegment;
+use super::camera::Camera;
+use super::layout::{CRACK_COLOR, FACTOR_COLORS, LOD_CAMERA_COLOR, OUTLINE_COLOR, T_JUNCTION_COLOR, WORST_COLOR};
+use crate::measure::{CrackedEdge, Measured};
+use geometry::mesh::{Bounds, TJunction, Topology};
+
+/// Half the width of the lines of cracked edges, in px. Between two sides that are 3 px apart one still sees the gap.
+const CRACK_HALF_WIDTH: f32 = 0.75;
+
+/// The lines of every side of every cracked edge.
+pub fn crack_lines(measured: &Measured, topology: &Topology) -> Vec<LineSegment> {
+    crack_lines_in(measured, topology, |_| CRACK_COLOR)
+}
+
+/// The lines of every side of every cracked edge. `color` returns the sRGB colour of each edge.
+pub fn crack_lines_in(
+    measured: &Measured,
+    topology: &Topology,
+    color: impl Fn(&CrackedEdge) -> [u8; 3],
+) -> Vec<LineSegment> {
+    let mut lines = Vec::new();
+    for edge in measured.cracks.cracked() {
+        let color = color(edge);
+        let sides = measured.outlines.edge(topology, edge.edge);
+        // In most cracks the sides differ by far less than a line's width.
+        let times = sides.len() as f32;
+        for side in &sides {
+            let points: Vec<_> = side.positions().collect();
+            let line = |ends: &[Vec3]| LineSegment {
+                times,
+                half_width: CRACK_HALF_WIDTH,
+                ..LineSegment::new(ends[0], ends[1], color)
+            };
+            lines.extend(points.windows(2).map(line));
+        }
+    }
+    lines
+}
+
+/// Lines along the open edges that T-junctions lie on, and a dot on each junction's point.
+pub fn t_junction_lines(topology: &Topology, junctions: &[TJunction]) -> Vec<LineSegment> {
+    let at = |point: u32| topology.points[point as usize];
+    let dot = |place: Vec3| LineSegment { half_width: 4.0, ..LineSegment::new(place, place, T_JUNCTION_COLOR) };
+    let edge = |edge: u32| {
+        let [a, b] = topology.edge_points(&topology.edges[edge as usize]).map(at);
+        LineSegment::new(a, b, T_JUNCTION_COLOR)
+    };
+    // They are listed in the order of the edges, of which each gets one line.
+    let of_edges = junctions.chunk_by(|a, b| a.edge == b.edge);
+    let marks = of_edges.flat_map(|on_one| {
+        std::iter::once(edge(on_one[0].edge)).chain(on_one.iter().map(|junction| dot(at(junction.point))))
+    });
+    marks.collect()
+}
+
+/// The place with the largest deviation: a dot on it, and a line to the nearest point of the reference surface.
+pub fn worst_lines(emitted: Vec3, truth: Vec3) -> Vec<LineSegment> {
+    let line = |start, end, color, half_width| LineSegment { half_width, ..LineSegment::new(start, end, color) };
+    let mark =
+        |color, wider: f32| [line(emitted, truth, color, 1.25 + wider), line(emitted, emitted, color, 4.5 + wider)];
+    [mark(OUTLINE_COLOR, 1.5), mark(WORST_COLOR, 0.0)].concat()
+}
+
+/// The outline of a selected patch: lines through the points of the edges that factors 0, 1 and 2 cut.
+pub fn patch_lines(edges: &[Vec<Vec3>; 3]) -> Vec<LineSegment> {
+    let edge = |points: &[Vec3], color, half_width| {
+        let ends = points.windows(2).map(move |ends| LineSegment::new(ends[0], ends[1], color));
+        ends.map(|line| LineSegment { half_width, ..line }).collect::<Vec<_>>()
+    };
+    let outline = edges.iter().flat_map(|points| edge(points, OUTLINE_COLOR, 2.75));
+    let colored = edges.iter().zip(FACTOR_COLORS).flat_map(|(points, color)| edge(points, color, 1.75));
+    outline.chain(colored).collect()
+}
+
+/// The view of the camera that LOD is computed for: its near plane, its frustum as far as the mesh reaches, and a dot on the eye.
+/// `viewport` is that view's size in px.
+pub fn lod_camera_lines(camera: &Camera, viewport: Vec2, bounds: &Bounds) -> Vec<LineSegment> {
+    let line = |start, end| LineSegment { half_width: 1.0, ..LineSegment::new(start, end, LOD_CAMERA_COLOR) };
+    let [near, far] = camera.frustum(viewport, bounds);
+    let around = |plane: [Vec3; 4]| [0, 1, 2, 3].map(|k| line(plane[k], plane[(k + 1) % 4]));
+    let mut lines = [around(near), around(far), [0, 1, 2, 3].map(|k| line(near[k], far[k]))].concat();
+    if !camera.orthographic {
+        lines.push(LineSegment { half_width: 4.0, ..line(camera.eye(), camera.eye()) });
+    }
+    lines
+}

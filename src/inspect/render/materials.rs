@@ -1,0 +1,256 @@
+//! Materials on the device: their constants, images and samplers.
+
+use wgpu::util::DeviceExt;
+
+use super::environment::Environment;
+use super::layout::{self, LEAST_SEEN, MapPlace};
+use super::mipmap_pass::Mipmaps;
+use super::punctual::upload_lights;
+use super::target::samples;
+use super::textures::{ImageUse, Samplers, Textures, white};
+use geometry::mesh::mipmap::MipFilter;
+use geometry::mesh::{Alpha, Map, MapUv, Material, Sampling, Slot};
+use gpu::{Gpu, GpuError};
+
+/// Where the bindings of the light from all around begin in the group of a lit material; the same in `shaders/environment.wgsl`.
+const LIGHT_BINDING: u32 = 16;
+/// The binding of the lights of the file; the same in `shaders/draw_material.wgsl`.
+const FILE_LIGHTS_BINDING: u32 = 20;
+
+/// Where the bindings of the images go on that have no room below the light's; the same in `shaders/draw_material.wgsl`.
+const LATER_IMAGES_BINDING: u32 = 21;
+
+/// The binding of the depths of what hides everything behind it, where layers are found; the same in `shaders/layers_single.wgsl` and
+/// `shaders/layers_multisampled.wgsl`.
+const HIDING_DEPTHS_BINDING: u32 = 35;
+
+/// Images of a material: that of the base colour, and the maps.
+const IMAGES: usize = 1 + Slot::COUNT;
+/// How many of them have their bindings below the light's.
+const EARLY_IMAGES: usize = 6;
+/// Those that say where a material shows what is behind it: that of the base colour, and how much light goes through.
+const IMAGES_OF_LAYERS: [usize; 2] = [0, 1 + Slot::Transmission as usize];
+
+/// What the materials of all scenes share: layouts, samplers and a white texture.
+pub struct Materials {
+    /// Of the base colour's constants, texture and sampler.
+    pub layout: wgpu::BindGroupLayout,
+    /// Of everything, and the light. With the depths of the layer that was found last, shaders then have as many images as WebGPU
+    /// allows.
+    pub lit_layout: wgpu::BindGroupLayout,
+    /// Of what finds layers, without light.
+    pub found_layout: wgpu::BindGroupLayout,
+    /// For what has no image.
+    white: wgpu::TextureView,
+    /// For a mesh without lights.
+    no_lights: wgpu::Buffer,
+    samplers: Samplers,
+    pub(super) mipmaps: Mipmaps,
+}
+
+/// A material on the device.
+#[derive(Clone)]
+pub struct UploadedMaterial {
+    /// Its base colour.
+    pub group: wgpu::BindGroup,
+    constants: wgpu::Buffer,
+    images: [(wgpu::TextureView, wgpu::Sampler); IMAGES],
+}
+
+impl Materials {
+    pub fn new(gpu: &Gpu) -> Self {
+        let own = |images: &[usize]| [vec![uniform_entry(0)], image_entries(images)].concat();
+        let depths = [depths_entry(gpu, HIDING_DEPTHS_BINDING)];
+        let lights = [Environment::layout_entries(LIGHT_BINDING).to_vec(), vec![uniform_entry(FILE_LIGHTS_BINDING)]];
+        Self {
+            layout: bind_group_layout(gpu, "material", &own(&[0])),
+            lit_layout: bind_group_layout(gpu, "lit material", &[own(&all_images()), lights.concat()].concat()),
+            found_layout: bind_group_layout(gpu, "found material", &[&own(&IMAGES_OF_LAYERS)[..], &depths].concat()),
+            white: white(gpu),
+            no_lights: upload_lights(gpu, &[]),
+            samplers: Samplers::default(),
+            mipmaps: Mipmaps::new(),
+        }
+    }
+
+    /// Uploads materials. An image that several of them use in the same way is uploaded once.
+    ///
+    /// # Errors
+    /// Out of memory, or a lost device.
+    pub fn upload(&self, gpu: &Gpu, materials: &[Material]) -> Result<Vec<UploadedMaterial>, GpuError> {
+        let mut textures = Textures::default();
+        materials.iter().map(|material| self.upload_one(gpu, material, &mut textures)).collect()
+    }
+
+    fn upload_one(
+        &self,
+        gpu: &Gpu,
+        material: &Material,
+        textures: &mut Textures,
+    ) -> Result<UploadedMaterial, GpuError> {
+        let constants = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("material"),
+            contents: bytemuck::bytes_of(&constants(material)),
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
+        let sampler = |sampling| self.samplers.get(gpu, sampling);
+        let mut images = std::array::from_fn(|_| (self.white.clone(), sampler(Sampling::default())));
+        if let Some(texture) = &material.texture {
+            let view = textures.view(gpu, &self.mipmaps, texture, ImageUse::base_color(material))?;
+            images[0] = (view, sampler(material.sampling));
+        }
+        for slot in Slot::ALL {
+            if let Some(map) = &material.look.maps[slot as usize] {
+                let view = textures.view(gpu, &self.mipmaps, &map.texture, ImageUse::of(MipFilter::of_map(slot)))?;
+                images[1 + slot as usize] = (view, sampler(map.sampling));
+            }
+        }
+        let group = bind_group(gpu, "material", &self.layout, &own_entries(&constants, &images, &[0]));
+        Ok(UploadedMaterial { group, constants, images })
+    }
+
+    /// The bind groups of materials that a light shines on, and the lights of a file, if there are any.
+    pub(super) fn lit_groups(
+        &self,
+        gpu: &Gpu,
+        materials: &[UploadedMaterial],
+        (environment, surroundings): (&Environment, &wgpu::Buffer),
+        lights: Option<&wgpu::Buffer>,
+    ) -> Vec<wgpu::BindGroup> {
+        let lights = entry(FILE_LIGHTS_BINDING, lights.unwrap_or(&self.no_lights).as_entire_binding());
+        let light = [&environment.entries(LIGHT_BINDING, surroundings)[..], &[lights]].concat();
+        let group = |own: &UploadedMaterial| {
+            let entries = [own_entries(&own.constants, &own.images, &all_images()), light.clone()].concat();
+            bind_group(gpu, "lit material", &self.lit_layout, &entries)
+        };
+        materials.iter().map(group).collect()
+    }
+
+    /// The bind groups of materials for passes that find layers before what hides everything behind it, which has these depths.
+    pub(super) fn found_groups(
+        &self,
+        gpu: &Gpu,
+        materials: &[UploadedMaterial],
+        hiding: &wgpu::TextureView,
+    ) -> Vec<wgpu::BindGroup> {
+        let depths = [entry(HIDING_DEPTHS_BINDING, wgpu::BindingResource::TextureView(hiding))];
+        let group = |own: &UploadedMaterial| {
+            let entries = [&own_entries(&own.constants, &own.images, &IMAGES_OF_LAYERS)[..], &depths].concat();
+            bind_group(gpu, "found material", &self.found_layout, &entries)
+        };
+        materials.iter().map(group).collect()
+    }
+}
+
+/// The constants that shaders read of a material.
+fn constants(material: &Material) -> layout::Material {
+    let look = &material.look;
+    let scale_of = |slot: Slot, scale: f32| if look.maps[slot as usize].is_some() { scale } else { 0.0 };
+    layout::Material {
+        base_color: material.base_color,
+        emissive: look.emissive,
+        metallic: look.metallic,
+        specular_color: look.specular_color,
+        roughness: look.roughness,
+        ior: look.ior,
+        specular: look.specular,
+        coat: look.clearcoat,
+        coat_roughness: look.clearcoat_roughness,
+        normal_scale: scale_of(Slot::Normal, look.normal_scale),
+        occlusion_strength: look.occlusion_strength,
+        cutoff: match look.alpha {
+            Alpha::Opaque => f32::NEG_INFINITY,
+            Alpha::Mask(cutoff) => cutoff,
+            Alpha::Blend => 1.0 - LEAST_SEEN,
+        },
+        unlit: f32::from(u8::from(look.unlit)),
+        blends: f32::from(u8::from(look.alpha == Alpha::Blend)),
+        transmission: if look.transmits() { look.transmission } else { 0.0 },
+        coat_normal_scale: scale_of(Slot::ClearcoatNormal, look.clearcoat_normal_scale),
+        _pad: 0.0,
+        sheen_color: if look.has_sheen() { look.sheen_color } else { [0.0; 3] },
+        sheen_roughness: look.sheen_roughness,
+        maps: look.maps.each_ref().map(|map| map_place(map.as_ref())),
+    }
+}
+
+fn map_place(map: Option<&Map>) -> MapPlace {
+    match map.map(|map| map.uv) {
+        None | Some(MapUv::Own) => MapPlace { u: [1.0, 0.0, 0.0, 0.0], v: [0.0, 1.0, 0.0, 0.0] },
+        Some(MapUv::Set(set, [a, b, c, d, e, f])) => {
+            MapPlace { u: [a, b, c, if set == 0 { 1.0 } else { 2.0 }], v: [d, e, f, 0.0] }
+        }
+    }
+}
+
+fn uniform_entry(binding: u32) -> wgpu::BindGroupLayoutEntry {
+    let ty = wgpu::BufferBindingType::Uniform;
+    layout_entry(binding, wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None })
+}
+
+/// A texture and a sampler for each of these images.
+fn image_entries(images: &[usize]) -> Vec<wgpu::BindGroupLayoutEntry> {
+    let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+    let both = |&image: &usize| {
+        let texture = texture_type(wgpu::TextureSampleType::Float { filterable: true }, false);
+        let binding = image_binding(image);
+        [layout_entry(binding, texture), layout_entry(binding + 1, sampler)]
+    };
+    images.iter().flat_map(both).collect()
+}
+
+/// Depths of layers.
+pub(super) fn depths_entry(gpu: &Gpu, binding: u32) -> wgpu::BindGroupLayoutEntry {
+    layout_entry(binding, texture_type(wgpu::TextureSampleType::Depth, samples(gpu) > 1))
+}
+
+fn texture_type(sample_type: wgpu::TextureSampleType, multisampled: bool) -> wgpu::BindingType {
+    wgpu::BindingType::Texture { sample_type, view_dimension: wgpu::TextureViewDimension::D2, multisampled }
+}
+
+fn all_images() -> [usize; IMAGES] {
+    std::array::from_fn(|image| image)
+}
+
+/// The binding of an image. That of its sampler comes next.
+fn image_binding(image: usize) -> u32 {
+    match image.checked_sub(EARLY_IMAGES) {
+        Some(later) => LATER_IMAGES_BINDING + 2 * later as u32,
+        None => 1 + 2 * image as u32,
+    }
+}
+
+fn layout_entry(binding: u32, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None }
+}
+
+fn bind_group_layout(gpu: &Gpu, label: &str, entries: &[wgpu::BindGroupLayoutEntry]) -> wgpu::BindGroupLayout {
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
+}
+
+fn entry(binding: u32, resource: wgpu::BindingResource<'_>) -> wgpu::BindGroupEntry<'_> {
+    wgpu::BindGroupEntry { binding, resource }
+}
+
+/// The constants of a material, and the entries of [`image_entries`].
+fn own_entries<'a>(
+    constants: &'a wgpu::Buffer,
+    images: &'a [(wgpu::TextureView, wgpu::Sampler); IMAGES],
+    bound: &[usize],
+) -> Vec<wgpu::BindGroupEntry<'a>> {
+    let both = bound.iter().flat_map(|&image| {
+        let ((view, sampler), binding) = (&images[image], image_binding(image));
+        let sampler = entry(binding + 1, wgpu::BindingResource::Sampler(sampler));
+        [entry(binding, wgpu::BindingResource::TextureView(view)), sampler]
+    });
+    std::iter::once(entry(0, constants.as_entire_binding())).chain(both).collect()
+}
+
+fn bind_group(
+    gpu: &Gpu,
+    label: &str,
+    layout: &wgpu::BindGroupLayout,
+    entries: &[wgpu::BindGroupEntry],
+) -> wgpu::BindGroup {
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries })
+}

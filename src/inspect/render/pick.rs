@@ -1,0 +1,304 @@
+//! Picking: finds what a picture shows at a pixel.
+
+use std::sync::Arc;
+
+use glam::{DMat4, DVec4, Mat4, dvec2};
+use wgpu::util::DeviceExt;
+
+use super::Scene;
+use super::layout::{FOUND_EMITTED, Pick};
+use super::pipelines::DRAW_TYPES;
+use super::steps::halves;
+use super::target::DEPTH_FORMAT;
+use gpu::layout::Vertex;
+use gpu::wgsl::{FACTORS, SURFACE, TYPES, WgslFile};
+use gpu::{ComputePipeline, Gpu, GpuError, Lazy, Readback, RecordPasses, Recorder, ShaderModule, Timing};
+
+pub(super) static DRAW_PICK: WgslFile = WgslFile::new("draw_pick", &[&DRAW_TYPES, &FACTORS, &SURFACE, &TYPES]);
+
+/// `pick_fragment` draws two numbers. Every adapter can draw into this format, which has four.
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
+
+/// A pixel of a picture, and the picture's view of the mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pixel {
+    pub clip_from_object: Mat4,
+    /// Width and height of the picture, in px.
+    pub size: [u32; 2],
+    /// The pixel's position in px from the left and from the top.
+    pub at: [u32; 2],
+    /// Where the picture is split, as in [`crate::settings::Settings`]. With 1, input triangles are picked everywhere.
+    pub split: Option<f32>,
+}
+
+impl Pixel {
+    /// Whether the pixel is left of the split.
+    pub fn is_left(&self) -> bool {
+        let [[.., width, _], _] = halves(self.size, self.split);
+        self.at[0] < width
+    }
+}
+
+/// What is in front at a pixel's centre.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Picked {
+    /// Index into [`geometry::mesh::Topology::patches`].
+    pub patch: u32,
+    /// The weight (0 u, 1 v, 2 w) of the nearest edge on screen.
+    pub weight: u32,
+    /// `None` left of the split, where input triangles are drawn.
+    pub triangle: Option<PickedTriangle>,
+}
+
+/// An emitted triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PickedTriangle {
+    /// Its index in its patch: see [`geometry::tessellate::domain_triangle`].
+    pub number: u32,
+    pub vertices: [Vertex; 3],
+}
+
+/// Finds what is drawn at a pixel.
+///
+/// Everything is drawn into a target of one pixel, with numbers in place of colours. The triangles of a chunk are looked up
+/// while the arena holds them, so the result has the vertices as they were emitted.
+pub struct Picker {
+    emitted: Search,
+    source: Search,
+}
+
+/// A draw into the pixel, and the pass that takes its result. Their pipelines are made when they are first needed.
+struct Search {
+    module: Arc<ShaderModule>,
+    vertex: &'static str,
+    draw: Lazy<wgpu::RenderPipeline>,
+    draw_bindings: &'static [u32],
+    take: ComputePipeline,
+    take_bindings: &'static [u32],
+}
+
+/// A result on its way to the host.
+pub struct Picking(Readback);
+
+impl Default for Picker {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Picker {
+    /// Compiles nothing yet.
+    pub fn new() -> Self {
+        let module = Arc::new(ShaderModule::new(&DRAW_PICK));
+        Self {
+            emitted: Search {
+                module: module.clone(),
+                vertex: "pick_emitted_vertex",
+                draw: Lazy::default(),
+                draw_bindings: &[0, 3, 4],
+                take: ComputePipeline::new(&module, "pick_emitted_main"),
+                take_bindings: &[3, 4, 5, 6],
+            },
+            source: Search {
+                vertex: "pick_source_vertex",
+                draw: Lazy::default(),
+                draw_bindings: &[0, 1, 2],
+                take: ComputePipeline::new(&module, "pick_source_main"),
+                take_bindings: &[5, 6],
+                module,
+            },
+        }
+    }
+
+    /// Starts to look for what is drawn at a pixel of a picture of the scene. The scene must be counted.
+    ///
+    /// # Errors
+    /// A pipeline can't be made: out of memory, or a lost device.
+    pub fn start(&self, gpu: &Gpu, scene: &mut Scene, pixel: &Pixel) -> Result<Picking, GpuError> {
+        let run = Run::new(gpu, pixel);
+        let mut timing = Timing::Off;
+        let mut recorder = Recorder::new(gpu, &mut timing);
+        if pixel.is_left() {
+            run.record(&mut recorder, scene, &self.source, 3 * scene.tessellator.buffers().patch_count, true)?;
+        } else {
+            for index in 0..scene.tessellator.chunk_count() {
+                scene.tessellator.emit(&mut recorder, index)?;
+                let triangles = scene.tessellator.chunk(index).chunk.triangle_count;
+                run.record(&mut recorder, scene, &self.emitted, 3 * triangles, index == 0)?;
+            }
+        }
+        let mut readback = Readback::of_buffers(gpu, recorder.encoder(), [(&run.pick, 0..run.pick.size())]);
+        recorder.submit();
+        readback.request();
+        Ok(Picking(readback))
+    }
+}
+
+impl Picking {
+    /// The result, once it has arrived; `Some(None)` if nothing is drawn at the pixel.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn poll(&mut self) -> Result<Option<Option<Picked>>, GpuError> {
+        if self.0.poll()? { Ok(Some(found(&self.0.bytes()?))) } else { Ok(None) }
+    }
+
+    /// Waits for the result; `None` if nothing is drawn at the pixel.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn wait(&mut self, gpu: &Gpu) -> Result<Option<Picked>, GpuError> {
+        self.0.wait(gpu).map(|bytes| found(&bytes))
+    }
+}
+
+/// Decodes the bytes of a [`Pick`].
+fn found(bytes: &[u8]) -> Option<Picked> {
+    let Pick { vertices, found, patch_index: patch, triangle: number, weight, .. } =
+        bytemuck::pod_read_unaligned(bytes);
+    let triangle = (found == FOUND_EMITTED).then_some(PickedTriangle { number, vertices });
+    (found != 0).then_some(Picked { patch, weight, triangle })
+}
+
+/// The resources of one search on the device.
+struct Run<'a> {
+    gpu: &'a Gpu,
+    pixel_from_object: wgpu::Buffer,
+    drawn: wgpu::TextureView,
+    depth: wgpu::TextureView,
+    pick: wgpu::Buffer,
+}
+
+impl<'a> Run<'a> {
+    fn new(gpu: &'a Gpu, pixel: &Pixel) -> Self {
+        let texture = |format, usage| {
+            let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("pick"),
+                size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | usage,
+                view_formats: &[],
+            });
+            texture.create_view(&wgpu::TextureViewDescriptor::default())
+        };
+        let buffer = |contents: &[u8], usage| {
+            gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some("pick"), contents, usage })
+        };
+        let matrix = pixel_from_object(pixel).to_cols_array_2d();
+        let pick: Pick = bytemuck::Zeroable::zeroed();
+        Self {
+            gpu,
+            pixel_from_object: buffer(bytemuck::bytes_of(&matrix), wgpu::BufferUsages::UNIFORM),
+            drawn: texture(FORMAT, wgpu::TextureUsages::TEXTURE_BINDING),
+            depth: texture(DEPTH_FORMAT, wgpu::TextureUsages::empty()),
+            pick: buffer(bytemuck::bytes_of(&pick), wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC),
+        }
+    }
+
+    /// Draws a number of corners, and takes the result if it is in front of everything that was drawn before.
+    fn record(
+        &self,
+        recorder: &mut Recorder,
+        scene: &Scene,
+        search: &Search,
+        corners: u32,
+        first: bool,
+    ) -> Result<(), GpuError> {
+        let module = search.module.get(self.gpu)?;
+        let draw = search.draw.get_or_make(self.gpu, || pipeline(self.gpu, module, search.vertex))?;
+        let take = search.take.get(self.gpu)?;
+        let depth = if first { wgpu::LoadOp::Clear(0.0) } else { wgpu::LoadOp::Load };
+        let color = wgpu::RenderPassColorAttachment {
+            view: &self.drawn,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store },
+        };
+        let depth = wgpu::RenderPassDepthStencilAttachment {
+            view: &self.depth,
+            depth_ops: Some(wgpu::Operations { load: depth, store: wgpu::StoreOp::Store }),
+            stencil_ops: None,
+        };
+        let group = self.group(scene, &draw.get_bind_group_layout(0), search.draw_bindings);
+        recorder.render("pick", Some(color), Some(depth), |pass| {
+            pass.set_pipeline(draw);
+            pass.set_bind_group(0, &group, &[]);
+            pass.draw(0..corners, 0..1);
+        });
+        let group = self.group(scene, &take.get_bind_group_layout(0), search.take_bindings);
+        recorder.compute("pick", |pass| {
+            pass.set_pipeline(take);
+            pass.set_bind_group(0, &group, &[]);
+            pass.dispatch_workgroups(1, 1, 1);
+        });
+        Ok(())
+    }
+
+    fn group(&self, scene: &Scene, layout: &wgpu::BindGroupLayout, bindings: &[u32]) -> wgpu::BindGroup {
+        let buffers = scene.tessellator.buffers();
+        let (vertices, indices) = scene.tessellator.arena();
+        // In the order of their binding numbers in the shader.
+        let all = [
+            self.pixel_from_object.as_entire_binding(),
+            buffers.points.as_entire_binding(),
+            buffers.patches.as_entire_binding(),
+            vertices.as_entire_binding(),
+            indices.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&self.drawn),
+            self.pick.as_entire_binding(),
+        ];
+        let entries = (0..).zip(all).filter(|(binding, _)| bindings.contains(binding));
+        let entries: Vec<_> = entries.map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
+        let descriptor = wgpu::BindGroupDescriptor { label: Some("pick"), layout, entries: &entries };
+        self.gpu.device.create_bind_group(&descriptor)
+    }
+}
+
+/// The matrix from object space to a clip space that holds only this pixel. It is computed in f64, since the pixel is only
+/// about a thousandth of the picture's width.
+fn pixel_from_object(pixel: &Pixel) -> Mat4 {
+    let size = dvec2(pixel.size[0].into(), pixel.size[1].into());
+    let at = dvec2(pixel.at[0].into(), pixel.at[1].into());
+    // The pixel's middle, from -1 to 1, with y upwards.
+    let middle = ((at + 0.5) / size * 2.0 - 1.0) * dvec2(1.0, -1.0);
+    let narrow =
+        DMat4::from_cols(DVec4::X * size.x, DVec4::Y * size.y, DVec4::Z, (-middle * size).extend(0.0).extend(1.0));
+    (narrow * pixel.clip_from_object.as_dmat4()).as_mat4()
+}
+
+fn pipeline(gpu: &Gpu, module: &wgpu::ShaderModule, vertex: &str) -> wgpu::RenderPipeline {
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(vertex),
+        layout: None,
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some(vertex),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: DEPTH_FORMAT,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Greater),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some("pick_fragment"),
+            compilation_options: Default::default(),
+            targets: &[Some(wgpu::ColorTargetState {
+                format: FORMAT,
+                blend: None,
+                write_mask: wgpu::ColorWrites::ALL,
+            })],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}

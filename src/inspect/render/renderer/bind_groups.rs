@@ -1,0 +1,100 @@
+//! The bind groups of a picture, and the light in them.
+
+use std::sync::Arc;
+
+use super::Renderer;
+use crate::render::Scene;
+use crate::render::draws::Draw;
+use crate::render::environment::{Environment, LightView};
+use crate::render::tone::{TONE_CURVE_NEUTRAL, TONE_CURVE_NONE};
+use crate::settings::{Colors, Lighting, Settings, ToneCurve};
+use gpu::{ChunkBuffers, GpuError, bind_group};
+
+/// The light from all around in a picture.
+pub(super) struct PictureLight {
+    environment: Arc<Environment>,
+    /// Says how it is turned and shown.
+    surroundings: wgpu::Buffer,
+}
+
+impl Renderer {
+    /// The light of a studio, which is made at the first call.
+    pub(super) fn studio(&self) -> Result<&Arc<Environment>, GpuError> {
+        self.studio.get_or_try_make(|| Environment::studio(&self.gpu).map(Arc::new))
+    }
+
+    /// The light from all around of a picture with these settings; none if no material needs it.
+    pub(super) fn light(&self, scene: &Scene, settings: &Settings) -> Result<Option<PictureLight>, GpuError> {
+        if !settings.shows_materials() {
+            return Ok(None);
+        }
+        let environment = match &scene.environment {
+            Some(environment) if settings.lighting == Lighting::Environment => environment.clone(),
+            _ => self.studio()?.clone(),
+        };
+        let surroundings = environment.surroundings(&self.gpu, &light_view(settings));
+        Ok(Some(PictureLight { environment, surroundings }))
+    }
+
+    /// The bind groups of a scene's materials for a picture with these settings, in this light.
+    pub(super) fn material_groups(
+        &self,
+        scene: &Scene,
+        settings: &Settings,
+        light: Option<&PictureLight>,
+    ) -> Result<Vec<wgpu::BindGroup>, GpuError> {
+        if settings.overlays.colors == Colors::Matcap {
+            let own = scene.matcap.as_ref().map(|picture| &picture.0);
+            let group = own.map_or_else(|| self.matcaps.group(&self.gpu, &self.materials, settings.matcap), Ok)?;
+            return Ok(vec![group.clone(); scene.materials.len()]);
+        }
+        let Some(PictureLight { environment, surroundings }) = light else {
+            return Ok(scene.materials.iter().map(|own| own.group.clone()).collect());
+        };
+        let lights = scene.lights.as_ref();
+        Ok(self.materials.lit_groups(&self.gpu, &scene.materials, (environment, surroundings), lights))
+    }
+
+    /// The pipeline and the bind group that draw this light behind everything.
+    pub(super) fn background(&self, light: &PictureLight) -> Result<(wgpu::RenderPipeline, wgpu::BindGroup), GpuError> {
+        let entries = light.environment.backdrop(&self.gpu)?.entries(&light.surroundings);
+        let layout = &self.pipelines.background_layout;
+        let descriptor = wgpu::BindGroupDescriptor { label: Some("background"), layout, entries: &entries };
+        Ok((self.get(Draw::Background)?, self.gpu.device.create_bind_group(&descriptor)))
+    }
+
+    pub(super) fn scene_group(&self, scene: &Scene, frame: &wgpu::Buffer) -> wgpu::BindGroup {
+        let buffers = scene.tessellator.buffers();
+        let (vertices, indices) = scene.tessellator.arena();
+        let (nets, params) = (&buffers.curve_nets, scene.tessellator.params());
+        let of_mesh = [&buffers.points, &buffers.corners, &buffers.patches];
+        let bound =
+            [&[frame][..], &of_mesh, &[vertices, indices, frame, nets, params, &buffers.corner_details]].concat();
+        let bound: Vec<_> = (0..).zip(bound).collect();
+        bind_group(&self.gpu, "scene", &self.pipelines.scene_layout, &bound)
+    }
+
+    pub(super) fn measured_group(&self, scene: &Scene, chunk: Option<usize>) -> wgpu::BindGroup {
+        let known = scene.known_deviation().zip(chunk).and_then(|(deviation, chunk)| deviation.chunks.get(chunk));
+        let least = scene.tessellator.own_least();
+        let bound = [(0, known.unwrap_or(&self.unknown)), (1, least.unwrap_or(&self.unknown))];
+        bind_group(&self.gpu, "measured", &self.pipelines.measured_layout, &bound)
+    }
+
+    pub(super) fn chunk_group(&self, chunk: &ChunkBuffers) -> wgpu::BindGroup {
+        bind_group(&self.gpu, "chunk", &self.pipelines.chunk_layout, &[(0, chunk.slab), (1, chunk.patch_factors)])
+    }
+}
+
+/// How settings turn and show the light.
+fn light_view(settings: &Settings) -> LightView {
+    LightView {
+        brightness: settings.environment_brightness,
+        rotation: settings.light_rotation,
+        exposure: settings.exposure,
+        tone_curve: match settings.tone_curve {
+            ToneCurve::Neutral => TONE_CURVE_NEUTRAL,
+            ToneCurve::None => TONE_CURVE_NONE,
+        },
+    }
+}

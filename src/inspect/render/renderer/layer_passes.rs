@@ -1,0 +1,234 @@
+//! Draws the passes over layers: see [`layers`](crate::render::layers).
+
+use super::Renderer;
+use super::picture::Picture;
+use super::surfaces::{MaterialDraw, Surfaces};
+use crate::render::covered_area::{Area, covered_area, intersection, is_empty, union};
+use crate::render::draws::{Draw, Faces, LayerClear, LayerDraw, Triangles};
+use crate::render::layers::LayerPass;
+use crate::render::needs::{Needs, PictureKind, has_layers};
+use crate::render::steps::{LayerPart, LayerStep};
+use crate::render::surface_draws::{emitted_triangles, own_faces, undisplaced};
+use crate::render::target::depth_attachment;
+use crate::render::{Camera, Scene, Target};
+use crate::settings::{NormalsAt, Settings, SplitSide};
+use geometry::mesh::{Material, Mesh};
+use geometry::tessellate::{Surface, Tessellation};
+use gpu::{GpuError, Recorder};
+
+/// How far rounding moves a vertex at most, in units in the last place of the mesh's largest coordinate.
+const ROUNDING_ULPS: f32 = 64.0;
+
+impl Renderer {
+    /// Records one step of a pass over layers. The arena holds the step's chunk.
+    ///
+    /// # Errors
+    /// A pipeline or a texture can't be made: out of memory, or a lost device.
+    pub(super) fn draw_layer(
+        &self,
+        recorder: &mut Recorder,
+        scene: &Scene,
+        picture: &Picture,
+        LayerStep { pass, part, is_first }: LayerStep,
+    ) -> Result<(), GpuError> {
+        let Picture { target, settings, layer_areas, frames, .. } = picture;
+        let all = union(layer_areas[0], layer_areas[1]);
+        if is_empty(all) {
+            return Ok(());
+        }
+        let half = part.map_or(SplitSide::Right, LayerPart::half);
+        let Some(frame) = &frames[half as usize] else { return Ok(()) };
+        // The mesh without tessellation is drawn with the right half's scene.
+        let drawn = scene.half(half).unwrap_or(scene);
+        let triangles = match part {
+            Some(LayerPart::Source) => Triangles::Source,
+            _ => emitted_triangles(settings),
+        };
+        let surfaces = Surfaces {
+            materials: self.layer_pipelines(drawn.tessellator.mesh(), picture, pass, triangles)?,
+            pulled: triangles == Triangles::Pulled,
+            fronts: false,
+            sifted: false,
+        };
+        let (scene_group, layer_group) = (self.scene_group(drawn, frame), self.layer_group(picture, pass)?);
+        let is_whole = all == [0, 0, target.size[0], target.size[1]];
+        let (cleared, part_clear) = if is_first { self.layer_clear(pass, is_whole)? } else { (None, None) };
+        let depth = depth_attachment(&target.layer_depths(&self.gpu)?[pass.found()], cleared);
+        let has_colors = matches!(pass, LayerPass::Back { .. });
+        let color = has_colors.then(|| target.color(wgpu::Color::TRANSPARENT, false, false));
+        recorder.render("draw", color, Some(depth), |render_pass| {
+            if let Some(pipeline) = &part_clear {
+                let [x, y, width, height] = all;
+                render_pass.set_scissor_rect(x, y, width, height);
+                render_pass.set_pipeline(pipeline);
+                render_pass.draw(0..3, 0..1);
+            }
+            render_pass.set_bind_group(0, &scene_group, &[]);
+            render_pass.set_bind_group(3, &layer_group, &[]);
+            match part {
+                None => {}
+                Some(LayerPart::Source) => {
+                    self.draw_source(render_pass, &surfaces.materials, drawn, layer_areas[half as usize]);
+                }
+                Some(LayerPart::Chunk(_, chunk)) => {
+                    let chunk = drawn.tessellator.chunk(chunk);
+                    self.draw_chunk(render_pass, drawn, layer_areas[half as usize], &surfaces, &chunk);
+                }
+            }
+        });
+        Ok(())
+    }
+
+    /// How a pass begins with the depths where nothing is found: the depth that all of a picture is cleared to, or the pipeline that sets
+    /// it in a part. A clear of all of a picture is faster than a draw, but takes far longer than a draw of a small part.
+    ///
+    /// # Errors
+    /// Out of memory, or a lost device.
+    fn layer_clear(
+        &self,
+        pass: LayerPass,
+        is_whole: bool,
+    ) -> Result<(Option<f32>, Option<wgpu::RenderPipeline>), GpuError> {
+        match pass.nothing() {
+            Some(depth) if is_whole => Ok((Some(depth), None)),
+            Some(_) => Ok((None, Some(self.get(Draw::LayerClear(clear_of(pass)))?))),
+            None => Ok((None, None)),
+        }
+    }
+
+    /// What draws each of the mesh's materials in a pass: nothing for a material that hides what is behind it.
+    fn layer_pipelines(
+        &self,
+        mesh: &Mesh,
+        picture: &Picture,
+        pass: LayerPass,
+        triangles: Triangles,
+    ) -> Result<Vec<Vec<MaterialDraw>>, GpuError> {
+        let kind = self.kind(false);
+        let groups = picture.materials.iter().zip(&picture.found_materials);
+        let of_material = |(material, (lit, found)): (&Material, (&wgpu::BindGroup, &wgpu::BindGroup))| {
+            draws(mesh, material, pass, triangles, picture.settings, kind)
+                .into_iter()
+                .map(|(step, draw)| {
+                    let group = if step.finds() { found } else { lit };
+                    Ok((self.get(draw)?, group.clone()))
+                })
+                .collect()
+        };
+        mesh.materials.iter().zip(groups).map(of_material).collect()
+    }
+
+    /// The parts of both halves, which lie in `rects`, that layers can cover: nothing in a picture without layers, or in a draft.
+    pub(super) fn layer_areas(
+        &self,
+        scene: &Scene,
+        target: &Target,
+        camera: &Camera,
+        settings: &Settings,
+        rects: [Area; 2],
+    ) -> [Area; 2] {
+        if target.is_draft() || !settings.shows_materials() || !has_layers(scene.tessellator.mesh()) {
+            return [[0; 4]; 2];
+        }
+        if self.peels_everywhere {
+            return rects;
+        }
+        SplitSide::BOTH.map(|half| {
+            let drawn = settings.half(half).zip(scene.half(half));
+            // Without a scene of its own, the left half shows the mesh without tessellation.
+            let flat = || settings.with(Tessellation { surface: Surface::Flat, ..settings.tessellation });
+            let (settings, scene) = drawn.unwrap_or_else(|| (flat(), scene));
+            intersection(layer_area(scene, target, camera, &settings), rects[half as usize])
+        })
+    }
+
+    fn layer_group(&self, picture: &Picture, pass: LayerPass) -> Result<wgpu::BindGroup, GpuError> {
+        let passed = &picture.target.layer_depths(&self.gpu)?[pass.passed()];
+        // Colours that show measurements hide everything behind them.
+        let unknown = || self.unknown.as_entire_binding();
+        let bound = [unknown(), unknown(), wgpu::BindingResource::TextureView(passed)];
+        let entries: Vec<_> =
+            (0..).zip(bound).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
+        Ok(self.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("layer"),
+            layout: &self.pipelines.layer_layout,
+            entries: &entries,
+        }))
+    }
+}
+
+/// How a pass sets depths where nothing is found.
+fn clear_of(pass: LayerPass) -> LayerClear {
+    match pass {
+        LayerPass::Begin => LayerClear::Begin,
+        LayerPass::Away { .. } => LayerClear::Away,
+        LayerPass::Back { .. } => LayerClear::Back,
+    }
+}
+
+/// An area that holds all pixels which layers cover in a picture of a scene with these settings.
+fn layer_area(scene: &Scene, target: &Target, camera: &Camera, settings: &Settings) -> Area {
+    let whole = [0, 0, target.size[0], target.size[1]];
+    // Control points of the user's own may be anywhere.
+    if scene.tessellator.surface_shader().is_some() {
+        return whole;
+    }
+    let Some(bounds) = scene.tessellator.posed().see_through_bounds() else { return whole };
+    let clip_from_object = camera.clip_from_object(target.viewport(), &scene.bounds);
+    let room = settings.reach(scene.tessellator.mesh()) + ROUNDING_ULPS * scene.ulp();
+    let areas = bounds.iter().map(|own| match own.of_surface(settings.tessellation.surface) {
+        Some(bounds) => covered_area(&bounds.grown(room), clip_from_object, target.size),
+        None => whole,
+    });
+    areas.fold([0; 4], union)
+}
+
+/// The draws of a material in a pass, in order, and what they do with layers.
+fn draws(
+    mesh: &Mesh,
+    material: &Material,
+    pass: LayerPass,
+    triangles: Triangles,
+    settings: &Settings,
+    kind: PictureKind,
+) -> Vec<(LayerDraw, Draw)> {
+    let own: &[_] = match pass {
+        _ if !material.shows_behind() => &[],
+        LayerPass::Begin => &[],
+        LayerPass::Away { .. } => &[LayerDraw::Away],
+        LayerPass::Back { composites: false, .. } => &[LayerDraw::Toward],
+        LayerPass::Back { finds, .. } => {
+            let all: &[_] = if material.look.transmits() {
+                &[LayerDraw::Filter, LayerDraw::Add, LayerDraw::Toward]
+            } else {
+                &[LayerDraw::Over, LayerDraw::Toward]
+            };
+            if finds { all } else { &all[..all.len() - 1] }
+        }
+    };
+    let places = |draw: LayerDraw| match draw {
+        _ if draw.finds() => NormalsAt::Vertices,
+        _ if triangles == Triangles::Source => NormalsAt::Vertices,
+        _ => settings.used_normals_at(mesh),
+    };
+    let shown = if triangles == Triangles::Source { undisplaced(settings) } else { *settings };
+    let needs = Needs::of(mesh, material, &shown, kind);
+    let faces = own_faces(settings, material).unwrap_or(Faces::Both);
+    own.iter().map(|&draw| (draw, Draw::Layer(draw, triangles, faces, places(draw), needs))).collect()
+}
+
+/// All draws of a mesh's layers with these settings.
+pub(super) fn layer_draws(settings: &Settings, mesh: &Mesh, kind: PictureKind) -> Vec<Draw> {
+    if !settings.shows_materials() || !has_layers(mesh) {
+        return Vec::new();
+    }
+    let source = settings.split.is_some() && settings.half(SplitSide::Left).is_none();
+    let triangles = std::iter::once(emitted_triangles(settings)).chain(source.then_some(Triangles::Source));
+    let of = |triangles| {
+        let passes = mesh.materials.iter().flat_map(|material| LayerPass::all().map(move |pass| (material, pass)));
+        let draws = move |(material, pass)| draws(mesh, material, pass, triangles, settings, kind);
+        passes.flat_map(draws).map(|(_, draw)| draw)
+    };
+    let clears = [LayerClear::Begin, LayerClear::Away, LayerClear::Back].map(Draw::LayerClear);
+    triangles.flat_map(of).chain(clears).collect()
+}

@@ -1,0 +1,240 @@
+//! Draws a picture, step by step: see [`steps`](crate::render::steps).
+
+use super::Renderer;
+use super::surfaces::{MaterialDraw, Surfaces};
+use crate::render::covered_area::{Area, is_empty};
+use crate::render::draws::{Draw, Occluded};
+use crate::render::frame::frame;
+use crate::render::ground::Ground;
+use crate::render::layout::linear;
+use crate::render::steps::{Step, halves, steps};
+use crate::render::{Camera, Scene, Target};
+use crate::settings::{Colors, Settings, SplitSide};
+use gpu::{GpuError, Recorder};
+
+/// What all steps of a picture share.
+pub(super) struct Picture<'a> {
+    pub target: &'a Target,
+    pub settings: &'a Settings,
+    /// Of both halves: x, y, width and height in px.
+    pub rects: [Area; 2],
+    /// The parts of both halves that layers can cover.
+    pub layer_areas: [Area; 2],
+    /// The constants of both halves.
+    pub frames: [Option<wgpu::Buffer>; 2],
+    /// The bind groups of the scene's materials.
+    pub materials: Vec<wgpu::BindGroup>,
+    /// The same for passes that find layers; none in a picture without layers.
+    pub found_materials: Vec<wgpu::BindGroup>,
+    pub steps: Vec<Step>,
+    pub camera: &'a Camera,
+    /// What draws the light behind everything, if it is shown.
+    background: Option<(wgpu::RenderPipeline, wgpu::BindGroup)>,
+    /// The index of the step with the ground.
+    ground_step: usize,
+    /// Whether the left half is tessellated.
+    has_left: bool,
+}
+
+/// What is drawn in a step beside the surfaces of its chunk, before or after them.
+struct Beside {
+    /// The input triangles in the left half, for each of the mesh's materials.
+    source: Option<Vec<Vec<MaterialDraw>>>,
+    /// Normals at the vertices of the step's chunk.
+    normals: Option<[wgpu::RenderPipeline; 2]>,
+    ground: Option<wgpu::RenderPipeline>,
+    lines: Option<[wgpu::RenderPipeline; 2]>,
+}
+
+impl Renderer {
+    /// Makes what the steps of a picture share.
+    ///
+    /// # Errors
+    /// A pipeline can't be made: out of memory, or a lost device.
+    pub(super) fn picture<'a>(
+        &self,
+        scene: &Scene,
+        target: &'a Target,
+        camera: &'a Camera,
+        settings: &'a Settings,
+    ) -> Result<Picture<'a>, GpuError> {
+        let light = self.light(scene, settings)?;
+        let rects = halves(target.size, settings.split);
+        let half_frame = |half| {
+            let [left, _, width, _] = rects[half as usize];
+            // The mesh without tessellation is drawn with the right half's scene.
+            let drawn = scene.half(half).or((width > 0).then_some(scene))?;
+            Some(frame(&self.gpu, drawn, target, camera, settings, left))
+        };
+        let steps = steps(scene, settings);
+        let shown_light = light.as_ref().filter(|_| settings.shows_environment() && !target.is_transparent());
+        let layer_areas = self.layer_areas(scene, target, camera, settings, rects);
+        let has_layers = !layer_areas.into_iter().all(is_empty);
+        let found_materials = if has_layers {
+            self.materials.found_groups(&self.gpu, &scene.materials, target.depths())
+        } else {
+            Vec::new()
+        };
+        Ok(Picture {
+            rects,
+            layer_areas,
+            found_materials,
+            frames: SplitSide::BOTH.map(half_frame),
+            materials: self.material_groups(scene, settings, light.as_ref())?,
+            background: shown_light.map(|light| self.background(light)).transpose()?,
+            ground_step: ground_step(&steps, scene, camera),
+            has_left: settings.half(SplitSide::Left).and(scene.half(SplitSide::Left)).is_some(),
+            steps,
+            target,
+            camera,
+            settings,
+        })
+    }
+
+    /// Records the step with this index.
+    ///
+    /// # Errors
+    /// A pipeline can't be made: out of memory, or a lost device.
+    pub(super) fn draw_step(
+        &self,
+        recorder: &mut Recorder,
+        scene: &mut Scene,
+        picture: &Picture,
+        index: usize,
+    ) -> Result<(), GpuError> {
+        let &Picture { target, settings, camera, .. } = picture;
+        let step = picture.steps[index];
+        if matches!(step, Step::Layer(_)) && picture.layer_areas.into_iter().all(is_empty) {
+            return Ok(());
+        }
+        let Some(drawn) = scene.half_mut(step.half()) else { return Ok(()) };
+        if let Some(chunk) = step.chunk() {
+            drawn.tessellator.emit(recorder, chunk)?;
+            if settings.overlays.colors == Colors::Excess {
+                drawn.tessellator.record_own_least(recorder)?;
+            }
+        }
+        if let Step::Layer(layer) = step {
+            return self.draw_layer(recorder, scene, picture, layer);
+        }
+        let mut surfaces = self.surfaces(drawn, &picture.materials, target, camera, settings)?;
+        if let Step::Surface(_, chunk) = step {
+            surfaces.sifted = self.sift(recorder, drawn, target, camera, chunk, &surfaces)?;
+        }
+        let beside = self.beside(scene, picture, index)?;
+        self.record_step(recorder, scene, picture, index, &surfaces, &beside);
+        Ok(())
+    }
+
+    /// Records the draws of a step that draws no layers.
+    fn record_step(
+        &self,
+        recorder: &mut Recorder,
+        scene: &Scene,
+        picture: &Picture,
+        index: usize,
+        surfaces: &Surfaces,
+        beside: &Beside,
+    ) {
+        let Picture { target, rects, frames, .. } = picture;
+        let (step, is_first, is_last) = (picture.steps[index], index == 0, index + 1 == picture.steps.len());
+        let half = step.half();
+        let (Some(drawn), Some(frame)) = (scene.half(half), &frames[half as usize]) else { return };
+        let (group, rect) = (self.scene_group(drawn, frame), rects[half as usize]);
+        let color = target.color(linear_color(picture.settings.background_color()), is_first, is_last);
+        recorder.render("draw", Some(color), Some(target.depth(is_first)), |pass| {
+            pass.set_bind_group(0, &group, &[]);
+            if let Some((pipeline, group)) = picture.background.as_ref().filter(|_| is_first) {
+                pass.set_pipeline(pipeline);
+                pass.set_bind_group(1, group, &[]);
+                pass.draw(0..3, 0..1);
+            }
+            if let Some(source) = &beside.source {
+                pass.set_bind_group(3, &self.measured_group(scene, None), &[]);
+                self.draw_source(pass, source, scene, rects[SplitSide::Left as usize]);
+            }
+            match step {
+                Step::Surface(_, chunk) => {
+                    pass.set_bind_group(3, &self.measured_group(drawn, Some(chunk)), &[]);
+                    self.draw_chunk(pass, drawn, rect, surfaces, &drawn.tessellator.chunk(chunk));
+                }
+                Step::Normals(_, chunk) => {
+                    let pipelines = beside.normals.iter().flatten();
+                    self.draw_normals(pass, pipelines, rect, &drawn.tessellator.chunk(chunk));
+                }
+                Step::Over | Step::Layer(_) => {}
+            }
+            if let Some(ground) = &beside.ground {
+                // Both halves have the same ground.
+                pass.set_scissor_rect(0, 0, target.size[0], target.size[1]);
+                pass.set_pipeline(ground);
+                pass.draw(0..6, 0..1);
+            }
+            if let Some(lines) = &beside.lines {
+                draw_lines(pass, lines, scene, rects[SplitSide::Right as usize]);
+                if let Some(left) = scene.half(SplitSide::Left).filter(|_| picture.has_left) {
+                    draw_lines(pass, lines, left, rects[SplitSide::Left as usize]);
+                }
+            }
+        });
+    }
+
+    /// Makes the pipelines for what is drawn beside the surfaces of a step.
+    ///
+    /// # Errors
+    /// Out of memory, or a lost device.
+    fn beside(&self, scene: &Scene, picture: &Picture, index: usize) -> Result<Beside, GpuError> {
+        let &Picture { target, settings, rects, ref steps, ref materials, .. } = picture;
+        let has_source = index == 0 && !picture.has_left && rects[SplitSide::Left as usize][2] > 0;
+        let source = || self.source_pipelines(scene.tessellator.mesh(), materials, target, settings);
+        let has_lines = scene.lines.is_some() || scene.half(SplitSide::Left).is_some_and(|left| left.lines.is_some());
+        let has_lines = has_lines && index + 1 == steps.len();
+        let has_ground = index == picture.ground_step && settings.overlays.grid;
+        let has_normals = matches!(steps[index], Step::Normals(..));
+        Ok(Beside {
+            source: has_source.then(source).transpose()?,
+            normals: has_normals.then(|| self.line_pipelines(Draw::Normals)).transpose()?,
+            ground: has_ground.then(|| self.get(Draw::Ground)).transpose()?,
+            lines: has_lines.then(|| self.line_pipelines(Draw::Lines)).transpose()?,
+        })
+    }
+
+    /// The pipelines for lines: first for all of them, faintly, then for the parts in sight.
+    fn line_pipelines(&self, draw: fn(Occluded) -> Draw) -> Result<[wgpu::RenderPipeline; 2], GpuError> {
+        Ok([self.get(draw(Occluded::Through))?, self.get(draw(Occluded::InSight))?])
+    }
+}
+
+/// The index of the step after whose surfaces the ground is drawn: the last one. But where layers are in front of the ground, it
+/// is drawn before them. The whole mesh lies above the ground, so that it is in front of all of it or behind all of it.
+fn ground_step(steps: &[Step], scene: &Scene, camera: &Camera) -> usize {
+    let has_layers = steps.iter().any(|step| matches!(step, Step::Layer(_)));
+    let last_surface = steps.iter().rposition(|step| matches!(step, Step::Surface(..)));
+    let before_layers = last_surface.filter(|_| has_layers && Ground::under(&scene.bounds).is_seen_from_above(camera));
+    before_layers.unwrap_or(steps.len() - 1)
+}
+
+fn draw_lines(
+    pass: &mut wgpu::RenderPass,
+    pipelines: &[wgpu::RenderPipeline; 2],
+    scene: &Scene,
+    [x, y, width, height]: Area,
+) {
+    if let Some((buffer, count)) = &scene.lines
+        && width > 0
+        && height > 0
+    {
+        pass.set_scissor_rect(x, y, width, height);
+        pass.set_vertex_buffer(0, buffer.slice(..));
+        for pipeline in pipelines {
+            pass.set_pipeline(pipeline);
+            pass.draw(0..6, 0..*count);
+        }
+    }
+}
+
+/// An sRGB colour as the linear one that a clear takes.
+fn linear_color(srgb: [u8; 3]) -> wgpu::Color {
+    let [r, g, b] = linear(srgb).map(f64::from);
+    wgpu::Color { r, g, b, a: 1.0 }
+}

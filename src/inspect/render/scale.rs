@@ -1,0 +1,195 @@
+//! Colour scales: the colours of numbers over the surface, for shaders and legends.
+
+use crate::measure::SMALL_PX;
+use crate::settings::Colors;
+
+/// A colour scale. Its colours are evenly spaced: on a logarithmic scale, or on an even one if that has numbers below 0. Numbers
+/// beyond an end have the colour of that end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    pub least: f32,
+    pub most: f32,
+    /// sRGB, from the least to the most.
+    pub colors: [[u8; 3]; Scale::STOPS],
+}
+
+/// The scale for tessellation factors, with a colour for each power of two. It is the upper six eighths of viridis (Smith and
+/// van der Walt 2015, CC0): its lightness grows evenly for any colour vision, and the dark end is left out, since dark lines
+/// would vanish on it.
+pub const FACTOR_SCALE: Scale = Scale {
+    least: 1.0,
+    most: 64.0,
+    colors: [
+        [0x3b, 0x52, 0x8b],
+        [0x2c, 0x72, 0x8e],
+        [0x21, 0x91, 0x8c],
+        [0x28, 0xae, 0x80],
+        [0x5e, 0xc9, 0x62],
+        [0xad, 0xdc, 0x30],
+        [0xfd, 0xe7, 0x25],
+    ],
+};
+
+/// The scale for sizes of triangles in px. It is blue, darker for larger triangles, and can't be confused with
+/// [`super::layout::WASTE_COLOR`].
+pub(crate) const SIZE_SCALE: Scale = Scale {
+    least: SMALL_PX as f32,
+    most: 64.0,
+    colors: [
+        [0xe4, 0xee, 0xf6],
+        [0xcb, 0xde, 0xee],
+        [0xae, 0xcb, 0xe3],
+        [0x8f, 0xb5, 0xd6],
+        [0x70, 0x9d, 0xc6],
+        [0x55, 0x84, 0xb2],
+        [0x3d, 0x6a, 0x9b],
+    ],
+};
+
+/// The scale for how many times as many triangles a patch has as its own least. It runs from cream to a dark red (ColorBrewer's
+/// OrRd, its dark end lightened, so that lines stay visible on it).
+pub const EXCESS_SCALE: Scale = Scale {
+    least: 1.0,
+    most: 16.0,
+    colors: [
+        [0xfe, 0xf0, 0xd9],
+        [0xfd, 0xd4, 0x9e],
+        [0xfd, 0xbb, 0x84],
+        [0xfc, 0x8d, 0x59],
+        [0xef, 0x65, 0x48],
+        [0xd7, 0x30, 0x1f],
+        [0xb0, 0x00, 0x10],
+    ],
+};
+
+/// The scale for texels of an image beside one px of the picture: orange where there are fewer than one, purple where there are more,
+/// and light grey at one (ColorBrewer's PuOr, which people with any colour vision can tell apart).
+pub const DENSITY_SCALE: Scale = Scale {
+    least: 0.125,
+    most: 8.0,
+    colors: [
+        [0xb3, 0x58, 0x06],
+        [0xf1, 0xa3, 0x40],
+        [0xfe, 0xe0, 0xb6],
+        [0xf7, 0xf7, 0xf7],
+        [0xd8, 0xda, 0xeb],
+        [0x99, 0x8e, 0xc3],
+        [0x54, 0x27, 0x88],
+    ],
+};
+
+/// The colours of the scale of curvature: blue where it is below 0, red where it is above, and light grey at 0 (ColorBrewer's
+/// RdBu, which people with any colour vision can tell apart).
+const CURVATURE_COLORS: [[u8; 3]; Scale::STOPS] = [
+    [0x21, 0x66, 0xac],
+    [0x67, 0xa9, 0xcf],
+    [0xd1, 0xe5, 0xf0],
+    [0xf7, 0xf7, 0xf7],
+    [0xfd, 0xdb, 0xc7],
+    [0xef, 0x8a, 0x62],
+    [0xb2, 0x18, 0x2b],
+];
+
+/// The scale of mean curvatures in 1 / object unit, for a mesh with this bounding radius in object units. `ends` is the curvature
+/// at its ends in 1 / bounding radius. The result has two digits.
+pub fn curvature_scale(ends: f32, radius: f32) -> Scale {
+    // Not so large or small that a shader's division of two curvatures leaves f32.
+    let most = (f64::from(ends) / f64::from(radius)).clamp(1e-30, 1e30);
+    let digit = 10.0_f64.powf(most.log10().floor() - 1.0);
+    let most = ((most / digit).round() * digit) as f32;
+    Scale { least: -most, most, colors: CURVATURE_COLORS }
+}
+
+impl Scale {
+    pub const STOPS: usize = 7;
+
+    /// The scale of colours that stand for numbers, if it is always the same one.
+    pub fn of(colors: Colors) -> Option<&'static Self> {
+        match colors {
+            Colors::Factors => Some(&FACTOR_SCALE),
+            Colors::TriangleSize => Some(&SIZE_SCALE),
+            Colors::Excess => Some(&EXCESS_SCALE),
+            Colors::TexelDensity => Some(&DENSITY_SCALE),
+            Colors::Material
+            | Colors::Clay
+            | Colors::Matcap
+            | Colors::Zebra
+            | Colors::ShadingNormals
+            | Colors::SurfaceNormals
+            | Colors::Curvature
+            | Colors::UvChecker
+            | Colors::Barycentric
+            | Colors::LowFactors
+            | Colors::Deviation
+            | Colors::Silhouette => None,
+        }
+    }
+
+    /// The place of a number on the scale, from 0 for the least to 1 for the most.
+    pub fn place(&self, number: f32) -> f32 {
+        let place = if self.least < 0.0 {
+            (number - self.least) / (self.most - self.least)
+        } else {
+            (number / self.least).ln() / (self.most / self.least).ln()
+        };
+        place.clamp(0.0, 1.0)
+    }
+
+    /// The sRGB colour at a place from 0 to 1; `scale_color` in `shaders/draw_overlays.wgsl` does the same.
+    pub fn color(&self, place: f32) -> [u8; 3] {
+        let at = place.clamp(0.0, 1.0) * (Self::STOPS - 1) as f32;
+        let below = (at as usize).min(Self::STOPS - 2);
+        let share = at - below as f32;
+        [0, 1, 2].map(|c| {
+            let [low, high] = [below, below + 1].map(|stop| f32::from(self.colors[stop][c]));
+            (low + (high - low) * share).round() as u8
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::DEVIATION_PX_SCALE;
+    use super::super::layout::linear;
+    use super::*;
+
+    #[test]
+    fn powers_of_two_have_the_colours_of_the_stops() {
+        for (stop, factor) in [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0].into_iter().enumerate() {
+            assert_eq!(FACTOR_SCALE.color(FACTOR_SCALE.place(factor)), FACTOR_SCALE.colors[stop], "{factor}");
+        }
+        assert_eq!(SIZE_SCALE.color(SIZE_SCALE.place(0.5)), SIZE_SCALE.colors[0], "below the least");
+        assert_eq!(SIZE_SCALE.color(SIZE_SCALE.place(1000.0)), SIZE_SCALE.colors[6], "beyond the most");
+    }
+
+    #[test]
+    fn curvature_has_an_even_scale_around_0_whose_ends_have_two_digits() {
+        let scale = curvature_scale(4.0, 1.7);
+        assert_eq!((scale.least, scale.most), (-2.4, 2.4));
+        assert_eq!([-9.0, -2.4, 0.0, 1.2, 2.4].map(|number| scale.place(number)), [0.0, 0.0, 0.5, 0.75, 1.0]);
+        assert_eq!(scale.color(scale.place(0.0)), [0xf7; 3]);
+        assert_eq!(curvature_scale(4.0, 3e-7).most, 1.3e7);
+        for radius in [0.0, f32::MIN_POSITIVE, f32::MAX] {
+            let Scale { least, most, .. } = curvature_scale(1.0, radius);
+            assert!(most > 0.0 && most.is_finite() && least == -most, "{radius}: {most}");
+        }
+    }
+
+    #[test]
+    fn scales_are_ordered_by_lightness() {
+        let luminance = |rgb: [u8; 3]| {
+            let [r, g, b] = linear(rgb);
+            0.2126 * r + 0.7152 * g + 0.0722 * b
+        };
+        let steps = |scale: &Scale| scale.colors.map(luminance);
+        assert!(steps(&FACTOR_SCALE).windows(2).all(|pair| pair[0] * 1.15 < pair[1]), "{:?}", steps(&FACTOR_SCALE));
+        let rising = steps(&DEVIATION_PX_SCALE);
+        assert!(rising.windows(2).all(|pair| pair[0] * 1.15 < pair[1]), "{rising:?}");
+        let both_ways = steps(&curvature_scale(1.0, 1.0));
+        assert!(both_ways[..4].windows(2).all(|pair| pair[0] * 1.15 < pair[1]), "{both_ways:?}");
+        assert!(both_ways[3..].windows(2).all(|pair| pair[0] > pair[1] * 1.15), "{both_ways:?}");
+        for falling in [&SIZE_SCALE, &EXCESS_SCALE] {
+            assert!(steps(falling).windows(2).all(|pair| pair[0] > pair[1] * 1.15), "{:?}", steps(falling));
+        }
+    }
+}

@@ -1,0 +1,237 @@
+//! A mesh that is ready to be tessellated and drawn, with all its resources on the device.
+
+use std::sync::Arc;
+
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+use wgpu::util::DeviceExt;
+
+use super::Scale;
+use super::coverage::Coverage;
+use super::deviation::Deviations;
+use super::environment::Environment;
+use super::layout::linear;
+use super::matcap::MatcapPicture;
+use super::materials::{Materials, UploadedMaterial};
+use super::punctual::upload_lights;
+use crate::measure::DeviationField;
+use crate::settings::{Settings, SplitSide};
+use geometry::mesh::{Bounds, Mesh, Moment, Topology};
+use geometry::tessellate::bounds_through;
+use geometry::view::{ulp, ulp_at};
+use gpu::{ComputePipelines, Gpu, GpuError, Tessellator};
+
+/// A mesh on the device, its materials, and the lines that are drawn over it.
+pub struct Scene {
+    pub tessellator: Tessellator,
+    /// The mesh's bounds at rest, or all through the clip that was framed: see [`Self::frame_clip`].
+    pub bounds: Bounds,
+    /// See [`ulp`].
+    pub(super) ulp: f32,
+    pub(super) materials: Vec<UploadedMaterial>,
+    /// The lights of the file, if it has some.
+    pub(super) lights: Option<wgpu::Buffer>,
+    /// The light of a file, if one is open.
+    pub(super) environment: Option<Arc<Environment>>,
+    pub(super) lines: Option<(wgpu::Buffer, u32)>,
+    /// Made when a picture first has enough triangles.
+    pub(super) coverage: Option<Coverage>,
+    /// The distances from what was emitted to the reference surface, once they are known.
+    deviation: Option<Deviations>,
+    /// The lit sphere of the matcap overlay, in place of that of the settings.
+    pub matcap: Option<MatcapPicture>,
+    /// The same mesh, tessellated with another surface for the left half of a split view.
+    left: Option<Box<Scene>>,
+}
+
+/// A line over the mesh, which is faintly visible through surfaces. If it starts and ends at the same place, it is a dot.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct LineSegment {
+    /// Both ends, in object units.
+    pub start: [f32; 3],
+    pub end: [f32; 3],
+    /// Linear RGB.
+    pub color: [f32; 3],
+    /// Half of the line's width in px.
+    pub half_width: f32,
+    /// How many lines lie over each other here, about. Behind surfaces, each is so much fainter that together they are as
+    /// faint as one.
+    pub times: f32,
+}
+
+impl LineSegment {
+    /// A line of the usual width in an sRGB colour.
+    pub fn new(start: Vec3, end: Vec3, color: [u8; 3]) -> Self {
+        Self { start: start.to_array(), end: end.to_array(), color: linear(color), half_width: 2.0, times: 1.0 }
+    }
+}
+
+impl Scene {
+    /// Uploads a mesh. It needs no window, and may run on any thread.
+    ///
+    /// # Errors
+    /// The mesh needs larger buffers than the adapter can bind, or its textures more memory than there is.
+    pub fn new(
+        gpu: &Gpu,
+        materials: &Materials,
+        pipelines: Arc<ComputePipelines>,
+        mesh: Arc<Mesh>,
+        topology: Arc<Topology>,
+        arena_bytes: u64,
+    ) -> Result<Self, GpuError> {
+        let tessellator = Tessellator::new(gpu, pipelines, mesh.clone(), topology, arena_bytes)?;
+        let materials = materials.upload(gpu, &mesh.materials)?;
+        let ulp = ulp(tessellator.topology()) as f32;
+        let lights = (!mesh.lights.is_empty()).then(|| upload_lights(gpu, &mesh.lights));
+        Ok(Self { lights, ..Self::at_rest(tessellator, mesh.bounds(), ulp, materials) })
+    }
+
+    /// Makes a scene of the same mesh for [`Self::set_left`], on any thread. It shares the mesh, topology and images.
+    pub fn beside(&self, arena_bytes: u64) -> impl FnOnce() -> Result<Self, GpuError> + Send + use<> {
+        let tessellator = self.tessellator.beside(arena_bytes);
+        let (bounds, ulp, materials) = (self.bounds, self.ulp, self.materials.clone());
+        let (lights, environment) = (self.lights.clone(), self.environment.clone());
+        move || Ok(Self { lights, environment, ..Self::at_rest(tessellator()?, bounds, ulp, materials) })
+    }
+
+    fn at_rest(tessellator: Tessellator, bounds: Bounds, ulp: f32, materials: Vec<UploadedMaterial>) -> Self {
+        Self {
+            tessellator,
+            bounds,
+            ulp,
+            materials,
+            lights: None,
+            environment: None,
+            lines: None,
+            coverage: None,
+            deviation: None,
+            matcap: None,
+            left: None,
+        }
+    }
+
+    /// Sets what is drawn left of the split: another scene of the mesh, which takes the current pose, or `None` for the mesh
+    /// without tessellation.
+    ///
+    /// # Errors
+    /// The mesh's rig needs larger buffers than the adapter can bind.
+    pub fn set_left(&mut self, left: Option<Self>) -> Result<(), GpuError> {
+        self.left = left.map(Box::new);
+        self.follow()
+    }
+
+    /// Gives the left half the bounds and pose of the right one.
+    fn follow(&mut self) -> Result<(), GpuError> {
+        let Some(left) = &mut self.left else { return Ok(()) };
+        (left.bounds, left.ulp) = (self.bounds, self.ulp);
+        left.lights = self.lights.clone();
+        left.tessellator.pose_as(self.tessellator.posed())
+    }
+
+    /// The size of the buffers that the passes work with: see [`Tessellator::work_bytes`].
+    pub fn work_bytes(&self) -> u64 {
+        self.tessellator.work_bytes() + self.coverage.as_ref().map_or(0, Coverage::bytes)
+    }
+
+    /// How many triangles of the last chunk were drawn, if those that cover no sample were removed; else `None`.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn covering_triangles(&self) -> Result<Option<u64>, GpuError> {
+        self.coverage.as_ref().map(|coverage| coverage.kept(self.tessellator.gpu())).transpose()
+    }
+
+    /// The scene in a half of the picture; `None` on the left if that shows the mesh without tessellation.
+    pub fn half(&self, half: SplitSide) -> Option<&Self> {
+        match half {
+            SplitSide::Left => self.left.as_deref(),
+            SplitSide::Right => Some(self),
+        }
+    }
+
+    /// See [`Self::half`].
+    pub fn half_mut(&mut self, half: SplitSide) -> Option<&mut Self> {
+        match half {
+            SplitSide::Left => self.left.as_deref_mut(),
+            SplitSide::Right => Some(self),
+        }
+    }
+
+    /// Sets the bounds to those all through a clip, so that nothing that depends on them changes while it plays; without a
+    /// clip, to those at rest.
+    pub fn frame_clip(&mut self, clip: Option<usize>) {
+        self.bounds = bounds_through(self.tessellator.mesh(), clip);
+        let largest = self.bounds.min.abs().max(self.bounds.max.abs()).max_element();
+        self.ulp = if clip.is_some() { ulp_at(largest) } else { ulp(self.tessellator.topology()) } as f32;
+        if let Some(left) = &mut self.left {
+            (left.bounds, left.ulp) = (self.bounds, self.ulp);
+        }
+    }
+
+    /// The bounds with room for displacement under these settings. A picture of everything must hold them.
+    pub fn drawn_bounds(&self, settings: &Settings) -> Bounds {
+        self.bounds.grown(settings.reach(self.tessellator.mesh()))
+    }
+
+    /// Poses the mesh as at a moment of one of its clips, or at rest. It takes effect with the next tessellation.
+    ///
+    /// # Errors
+    /// The mesh's rig needs larger buffers than the adapter can bind.
+    pub fn set_moment(&mut self, moment: Option<Moment>) -> Result<(), GpuError> {
+        let mesh = self.tessellator.mesh().clone();
+        let pose = moment.zip(mesh.rig.as_ref()).map(|(moment, rig)| Arc::new(rig.pose(moment)));
+        if mesh.rig.as_ref().is_some_and(|rig| !rig.lights.is_empty()) {
+            let lights = pose.as_ref().map_or_else(|| mesh.lights.clone(), |pose| mesh.lights_in(pose));
+            // Another buffer, since scenes beside this one may be in another pose.
+            self.lights = Some(upload_lights(self.tessellator.gpu(), &lights));
+        }
+        self.tessellator.set_pose(pose)?;
+        self.follow()
+    }
+
+    /// Sets the distances from what is emitted now to the reference surface, and their scale in object units; `None` forgets
+    /// them.
+    pub fn set_deviation(&mut self, gpu: &Gpu, field: Option<(&DeviationField, Scale)>) {
+        let of = self.tessellator.generation();
+        self.deviation = field.map(|(field, scale)| Deviations::new(gpu, field, scale, of));
+    }
+
+    /// Replaces the scale of the distances.
+    pub fn scale_deviation(&mut self, scale: Scale) {
+        if let Some(deviation) = &mut self.deviation {
+            deviation.scale = scale;
+        }
+    }
+
+    /// Whether the distances from what is emitted now to the reference surface are known.
+    pub fn knows_deviation(&self) -> bool {
+        self.known_deviation().is_some()
+    }
+
+    pub(super) fn known_deviation(&self) -> Option<&Deviations> {
+        self.deviation.as_ref().filter(|known| known.of == self.tessellator.generation())
+    }
+
+    /// One unit in the last place of the mesh's largest coordinate, in object units.
+    pub fn ulp(&self) -> f32 {
+        self.ulp
+    }
+
+    /// Sets the light of a file, which pictures with [`Lighting::Environment`](crate::settings::Lighting) have; none for the studio's.
+    pub fn set_environment(&mut self, environment: Option<Arc<Environment>>) {
+        self.environment = environment;
+    }
+
+    /// Replaces the lines that are drawn over the mesh.
+    pub fn set_lines(&mut self, gpu: &Gpu, segments: &[LineSegment]) {
+        self.lines = (!segments.is_empty()).then(|| {
+            let buffer = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("lines"),
+                contents: bytemuck::cast_slice(segments),
+                usage: wgpu::BufferUsages::VERTEX,
+            });
+            (buffer, segments.len() as u32)
+        });
+    }
+}

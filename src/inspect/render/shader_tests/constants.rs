@@ -1,0 +1,381 @@
+//! Tests that every constant in both Rust and WGSL has the same value in both.
+
+use std::collections::BTreeMap;
+
+use super::modules;
+use crate::render::blur_levels::ENVIRONMENT_LEVELS;
+use crate::render::camera::FIELD_OF_VIEW;
+use crate::render::coverage::TILE;
+use crate::render::dfg::DFG_SIZE;
+use crate::render::draws::LayerDraw;
+use crate::render::layout::{
+    AXIS_COLORS, BACK_FACE_COLOR, CHECKER_LIGHT, CHECKER_LINE, CHECKER_U, CHECKER_V, FOLD_COLOR, FOUND_EMITTED,
+    LEAST_SEEN, NORMAL_COLOR, TEXELS_WITHOUT_IMAGE, WASTE_COLOR, edge_color, linear, overlay_bits,
+};
+use crate::render::look::Look;
+use crate::render::matcap::MATCAP_REACH;
+use crate::render::mipmap_pass::ALPHAS;
+use crate::render::reflectance::{COAT_F0, LEAST_ALPHA};
+use crate::render::scale::Scale;
+use crate::render::sheen::LEAST_SHEEN_ALPHA;
+use crate::render::tone::{COMPRESSION_START, DESATURATION, TONE_CURVE_NEUTRAL, TONE_CURVE_NONE};
+use crate::settings::{Colors, Overlays};
+use geometry::mesh::mipmap::MipFilter;
+use geometry::mesh::{EdgeKind, MAX_LEVELS, MAX_MAPS, MOST_LIGHTS, Slot};
+use geometry::tessellate::shared_constants::{
+    AGREEING, ASKED_SEGMENT, BEYOND_LAST, BITS_63, BITS_64, BITS_896, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP,
+    BITS_ONE_AND_STEP, BITS_TWO, BOUND_SHARE, CANCELLED, DETAIL_SHARE, FACING_AWAY, FACING_MARGIN, FACING_ROUNDING,
+    FACTOR_ODD, FACTOR_VALUE, FINEST_GRID, FIXED_HALF, FIXED_ONE, FIXED_TWO_THIRDS, FLAT_ANGLE, LESSENINGS, NOT_CULLED,
+    OUT_OF_VIEW, PARALLEL, PARTIAL_STEPS, PATTERN_HALVES, PATTERN_STEPS, POLAR_INDICES, POLAR_WEIGHTS, ROW_BASE_SHIFT,
+    ROW_BASE_STEP, ROW_FLIP_SHIFT, ROW_REACH, ROW_SAMPLES, ROWS, SPREAD, SUBTRIANGULATED, SURFACE_SHARE, TOGETHER,
+    TURN_SHARE, TWO_POINTS, UNIT,
+};
+use geometry::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
+use gpu::domain::{DOMAIN_POINTS, DOMAIN_TRIANGLES};
+use gpu::layout::LOD_GIVEN;
+use gpu::relief_buffers::HEIGHTS_ACROSS;
+use gpu::{
+    GRID_WIDTH, MOST_WORKGROUPS, NEXT_EDGES, NEXT_PATCHES, SEARCH_AGAIN, SEARCH_ASKED, SEARCH_COUNTERS, SEARCH_INSIDE,
+    WORKGROUP,
+};
+
+/// Constants that only WGSL has, with the reason.
+const WGSL_ALONE: &[(&[&str], &str)] = &[
+    (
+        &[
+            "CHOSEN_SURFACE",
+            "CHOSEN_EDGES",
+            "CHOSEN_LOD",
+            "CHOSEN_PARTITIONING",
+            "CHOSEN_CLIP",
+            "CHOSEN_CULLING",
+            "CHOSEN_CONVENTION",
+            "CHOSEN_NORMALS",
+            "CHOSEN_DISPLACEMENT",
+            "PATCH_INDICES",
+            "CULLING_OFF",
+            "CULLING_ON",
+            "EXPORTED_WORKGROUP",
+            "SCAN_WORKGROUP",
+        ],
+        "only exported shaders have them",
+    ),
+    (
+        &["PATTERN_RINGS", "PATTERN_MINIMAL", "PATTERN_SUBTRIANGULATED", "PATTERN_ROWS"],
+        "in Rust, an enum without numbers",
+    ),
+    (&["AT_CORNER", "ON_SIDE", "INSIDE"], "in Rust, an enum without numbers"),
+    (&["FOUND_SOURCE"], "in Rust, any number other than 0 and FOUND_EMITTED means the same"),
+    (
+        &["ALL_MAPS", "NO_PATCH", "NO_MORE", "NONE_ENOUGH"],
+        "markers within one pass, or within one word that no other pass reads",
+    ),
+    (
+        &["VERTEX_WORKGROUP", "TRIANGLE_WORKGROUP", "LANES"],
+        "how one pass divides its work; it is dispatched indirectly",
+    ),
+    (
+        &["WORK_PIECE", "MOST_WORK", "MOST_WORK_OF_ALL"],
+        "how much work functions of the user's own may be, which only the device counts",
+    ),
+    (&["LARGE"], "how one pass divides its work; no result depends on it"),
+    (&["SMALL", "ROUNDS_OVER", "TRIANGLES", "NOT_TAKEN"], "counters of passes"),
+    (&["TILE_WORDS", "ROUNDS"], "follow from TILE"),
+    (
+        &["NEARER", "HIDDEN", "NORMAL_LENGTH", "NORMAL_HALF_WIDTH", "NORMAL_SPACING", "DENSE", "SPARSE"],
+        "how lines look",
+    ),
+    (
+        &[
+            "CLAY_COLOR",
+            "CLAY_UNDER_OUTLINES",
+            "ZEBRA_STRIPES",
+            "ZEBRA_AXIS",
+            "ZEBRA_DARK",
+            "ZEBRA_LIGHT",
+            "CHECKER_SQUARES",
+            "CHECKER_DARK",
+        ],
+        "how the surface looks",
+    ),
+    (&["LEAST_TANGENT"], "only draws read normal maps"),
+    (&["SAMPLE_PLACES"], "only draws have samples"),
+    (&["GROUND_REACH", "GROUND_FADES_FROM", "GROUND_COLOR", "GROUND_OPACITY"], "how the ground looks"),
+];
+
+/// The components of a constant, and by how much each may differ.
+struct Expected(Vec<f64>, f64);
+
+/// A single number, without tolerance.
+fn number(value: impl Into<f64>) -> Expected {
+    Expected(vec![value.into()], 0.0)
+}
+
+fn numbers<T: Into<f64>>(values: impl IntoIterator<Item = T>) -> Expected {
+    Expected(values.into_iter().map(Into::into).collect(), 0.0)
+}
+
+/// An sRGB colour. WGSL has it in linear light with three decimals.
+fn color(srgb: [u8; 3]) -> Expected {
+    Expected(linear(srgb).map(f64::from).to_vec(), 0.0006)
+}
+
+fn overlay(overlays: Overlays) -> Expected {
+    number(overlay_bits(&overlays))
+}
+
+fn colors(colors: Colors) -> Expected {
+    overlay(Overlays { colors, ..Overlays::default() })
+}
+
+/// Every constant of both languages, with its name in WGSL and its value in Rust.
+fn table() -> Vec<(&'static str, Expected)> {
+    let none = Overlays::default();
+    let mut table = of_the_mathematics();
+    table.extend(of_enums());
+    table.extend([
+        ("LOD_GIVEN", number(LOD_GIVEN)),
+        ("MAX_LEVELS", number(MAX_LEVELS as u32)),
+        ("MAX_MAPS", number(MAX_MAPS as u32)),
+        ("WORKGROUP", number(WORKGROUP)),
+        ("GRID_WIDTH", number(GRID_WIDTH)),
+        ("HEIGHTS_ACROSS", number(HEIGHTS_ACROSS)),
+        ("DOMAIN_POINTS", number(DOMAIN_POINTS as u32)),
+        ("DOMAIN_TRIANGLES", number(DOMAIN_TRIANGLES as u32)),
+        ("TILE", number(TILE)),
+        ("PI", number(std::f32::consts::PI)),
+        ("ENVIRONMENT_LEVELS", number(ENVIRONMENT_LEVELS)),
+        ("DFG_SIZE", number(DFG_SIZE)),
+        ("MOST_LIGHTS", number(MOST_LIGHTS as u32)),
+        ("HALF_VIEW", Expected(vec![f64::from(0.5 * FIELD_OF_VIEW).to_radians().tan()], 1e-7)),
+        ("TONE_CURVE_NEUTRAL", number(TONE_CURVE_NEUTRAL)),
+        ("TONE_CURVE_NONE", number(TONE_CURVE_NONE)),
+        ("COMPRESSION_START", number(COMPRESSION_START)),
+        ("DESATURATION", number(DESATURATION)),
+        ("COAT_F0", number(COAT_F0)),
+        ("LEAST_ALPHA", number(LEAST_ALPHA)),
+        ("LEAST_SHEEN_ALPHA", number(LEAST_SHEEN_ALPHA)),
+        ("LEAST_SEEN", number(LEAST_SEEN)),
+        ("ALPHAS", number(ALPHAS)),
+        ("MIP_COLORS", number(MipFilter::Colors as u32)),
+        ("MIP_ALPHA_WEIGHTED", number(MipFilter::AlphaWeighted as u32)),
+        ("MIP_NUMBERS", number(MipFilter::Numbers as u32)),
+        ("MIP_NORMALS", number(MipFilter::Normals as u32)),
+        ("SCALE_STOPS", number(Scale::STOPS as u32)),
+        ("FOUND_EMITTED", number(FOUND_EMITTED)),
+        ("OVERLAY_WIREFRAME", overlay(Overlays { wireframe: true, ..none })),
+        ("OVERLAY_PATCHES", overlay(Overlays { patches: true, ..none })),
+        ("OVERLAY_ADJACENCY", overlay(Overlays { adjacency: true, ..none })),
+        ("OVERLAY_FOLDS", overlay(Overlays { folds: true, ..none })),
+        ("OVERLAY_BACK_FACES", overlay(Overlays { back_faces: true, ..none })),
+        ("OVERLAY_BARYCENTRIC", colors(Colors::Barycentric)),
+        ("OVERLAY_FACTORS", colors(Colors::Factors)),
+        ("OVERLAY_TRIANGLE_SIZE", colors(Colors::TriangleSize)),
+        ("OVERLAY_LOW_FACTORS", colors(Colors::LowFactors)),
+        ("OVERLAY_EXCESS", colors(Colors::Excess)),
+        ("OVERLAY_CLAY", colors(Colors::Clay)),
+        ("OVERLAY_SILHOUETTE", colors(Colors::Silhouette)),
+        ("OVERLAY_ZEBRA", colors(Colors::Zebra)),
+        ("OVERLAY_SHADING_NORMALS", colors(Colors::ShadingNormals)),
+        ("OVERLAY_UV_CHECKER", colors(Colors::UvChecker)),
+        ("OVERLAY_DEVIATION", colors(Colors::Deviation)),
+        ("LOOK_SURFACE_NORMALS", number(Look::SurfaceNormals as u32)),
+        ("LOOK_CURVATURE", number(Look::Curvature as u32)),
+        ("LOOK_MATCAP", number(Look::Matcap as u32)),
+        ("LOOK_TEXEL_DENSITY", number(Look::TexelDensity as u32)),
+        ("TEXELS_WITHOUT_IMAGE", number(TEXELS_WITHOUT_IMAGE)),
+        ("MATCAP_REACH", number(MATCAP_REACH)),
+        ("FOLD_COLOR", color(FOLD_COLOR)),
+        ("BACK_FACE_COLOR", color(BACK_FACE_COLOR)),
+        ("WASTE_COLOR", color(WASTE_COLOR)),
+        ("NORMAL_COLOR", color(NORMAL_COLOR)),
+        ("CHECKER_LIGHT", number(CHECKER_LIGHT)),
+        ("CHECKER_U", numbers(CHECKER_U)),
+        ("CHECKER_V", numbers(CHECKER_V)),
+        ("CHECKER_LINE", color(CHECKER_LINE)),
+        ("X_AXIS_COLOR", color(AXIS_COLORS[0])),
+        ("Z_AXIS_COLOR", color(AXIS_COLORS[2])),
+        // WGSL has this grey with two decimals.
+        ("SMOOTH_EDGE_COLOR", Expected(color(edge_color(EdgeKind::Smooth)).0, 0.005)),
+        ("SPLIT_EDGE_COLOR", color(edge_color(EdgeKind::Split))),
+        ("SEAM_EDGE_COLOR", color(edge_color(EdgeKind::Seam))),
+        ("BOUNDARY_EDGE_COLOR", color(edge_color(EdgeKind::Boundary))),
+        ("NON_MANIFOLD_EDGE_COLOR", color(edge_color(EdgeKind::NonManifold))),
+    ]);
+    table
+}
+
+fn of_the_mathematics() -> Vec<(&'static str, Expected)> {
+    vec![
+        ("PARALLEL", number(PARALLEL)),
+        ("UNIT", number(UNIT)),
+        ("CANCELLED", number(CANCELLED)),
+        ("FLAT_ANGLE", number(FLAT_ANGLE)),
+        ("ROW_SAMPLES", numbers(ROW_SAMPLES)),
+        ("FACING_MARGIN", number(FACING_MARGIN)),
+        ("FACING_ROUNDING", number(FACING_ROUNDING)),
+        ("POLAR_INDICES", numbers(POLAR_INDICES.map(|index| index as u32))),
+        ("POLAR_WEIGHTS", numbers(POLAR_WEIGHTS)),
+        ("NOT_CULLED", number(NOT_CULLED)),
+        ("OUT_OF_VIEW", number(OUT_OF_VIEW)),
+        ("FACING_AWAY", number(FACING_AWAY)),
+        ("AGREEING", number(AGREEING)),
+        ("TWO_POINTS", number(TWO_POINTS)),
+        ("BEYOND_LAST", number(BEYOND_LAST)),
+        ("BOUND_SHARE", number(BOUND_SHARE)),
+        ("ROW_REACH", number(ROW_REACH)),
+        ("FINEST_GRID", number(FINEST_GRID)),
+        ("PARTIAL_STEPS", number(PARTIAL_STEPS)),
+        ("MOST_WORKGROUPS", number(MOST_WORKGROUPS)),
+        ("SEARCH_COUNTERS", number(SEARCH_COUNTERS)),
+        ("SEARCH_ASKED", number(SEARCH_ASKED)),
+        ("SEARCH_INSIDE", number(SEARCH_INSIDE)),
+        ("SEARCH_AGAIN", number(SEARCH_AGAIN)),
+        ("NEXT_PATCHES", number(NEXT_PATCHES)),
+        ("NEXT_EDGES", number(NEXT_EDGES)),
+        ("SPREAD", number(SPREAD)),
+        ("ASKED_SEGMENT", number(ASKED_SEGMENT)),
+        ("LESSENINGS", number(LESSENINGS)),
+        ("TOGETHER", number(TOGETHER)),
+        ("SURFACE_SHARE", number(SURFACE_SHARE)),
+        ("DETAIL_SHARE", number(DETAIL_SHARE)),
+        ("TURN_SHARE", number(TURN_SHARE)),
+        ("FIXED_ONE", number(FIXED_ONE)),
+        ("FIXED_HALF", number(FIXED_HALF)),
+        ("FIXED_TWO_THIRDS", number(FIXED_TWO_THIRDS)),
+        ("FACTOR_ODD", number(FACTOR_ODD)),
+        ("FACTOR_VALUE", number(FACTOR_VALUE)),
+        ("SUBTRIANGULATED", number(SUBTRIANGULATED)),
+        ("ROWS", number(ROWS)),
+        ("ROW_BASE_SHIFT", number(ROW_BASE_SHIFT)),
+        ("ROW_BASE_STEP", number(ROW_BASE_STEP)),
+        ("ROW_FLIP_SHIFT", number(ROW_FLIP_SHIFT)),
+        ("BITS_896", number(BITS_896)),
+        ("BITS_ONE", number(BITS_ONE)),
+        ("BITS_TWO", number(BITS_TWO)),
+        ("BITS_63", number(BITS_63)),
+        ("BITS_64", number(BITS_64)),
+        ("BITS_INFINITY", number(BITS_INFINITY)),
+        ("BITS_ONE_AND_HALF_STEP", number(BITS_ONE_AND_HALF_STEP)),
+        ("BITS_ONE_AND_STEP", number(BITS_ONE_AND_STEP)),
+        ("PATTERN_HALVES", number(PATTERN_HALVES)),
+        ("PATTERN_STEPS", number(PATTERN_STEPS)),
+    ]
+}
+
+fn of_enums() -> Vec<(&'static str, Expected)> {
+    vec![
+        ("CONVENTION_D3D11", number(Convention::D3d11 as u32)),
+        ("CONVENTION_AMD_PN", number(Convention::AmdPn as u32)),
+        ("CONVENTION_EDGE_ORDER", number(Convention::EdgeOrder as u32)),
+        ("CONVENTION_ROTATED", number(Convention::Rotated as u32)),
+        ("CONVENTION_MIRRORED", number(Convention::Mirrored as u32)),
+        ("CLIP_OFF", number(Clip::Off as u32)),
+        ("CLIP_PAPER", number(Clip::Paper as u32)),
+        ("CLIP_FRUSTUM", number(Clip::Frustum as u32)),
+        ("DISPLACEMENT_OFF", number(Displacement::Off as u32)),
+        ("DISPLACEMENT_ON", number(Displacement::On as u32)),
+        ("DISPLACEMENT_AS_PUBLISHED", number(Displacement::AsPublished as u32)),
+        ("DISPLACEMENT_PER_PATCH", number(Displacement::PerPatch as u32)),
+        ("EDGES_PER_EDGE", number(Edges::PerEdge as u32)),
+        ("EDGES_AS_PUBLISHED", number(Edges::AsPublished as u32)),
+        ("EDGE_SMOOTH", number(EdgeKind::Smooth as u32)),
+        ("EDGE_SPLIT", number(EdgeKind::Split as u32)),
+        ("EDGE_SEAM", number(EdgeKind::Seam as u32)),
+        ("EDGE_BOUNDARY", number(EdgeKind::Boundary as u32)),
+        ("EDGE_NON_MANIFOLD", number(EdgeKind::NonManifold as u32)),
+        ("LOD_UNIFORM", number(Lod::Uniform as u32)),
+        ("LOD_PAPER", number(Lod::Paper as u32)),
+        ("LOD_EDGE_LENGTH", number(Lod::EdgeLength as u32)),
+        ("LOD_ERROR", number(Lod::Error as u32)),
+        ("LOD_DISTANCE", number(Lod::Distance as u32)),
+        ("NORMALS_LINEAR", number(Normals::Linear as u32)),
+        ("NORMALS_QUADRATIC", number(Normals::Quadratic as u32)),
+        ("NORMALS_SURFACE", number(Normals::Surface as u32)),
+        ("PARTITIONING_INTEGER", number(Partitioning::Integer as u32)),
+        ("PARTITIONING_POW2", number(Partitioning::Pow2 as u32)),
+        ("PARTITIONING_FRACTIONAL_ODD", number(Partitioning::FractionalOdd as u32)),
+        ("PARTITIONING_FRACTIONAL_EVEN", number(Partitioning::FractionalEven as u32)),
+        ("PARTITIONING_SUBTRIANGULATION", number(Partitioning::Subtriangulation as u32)),
+        ("PARTITIONING_ROWS", number(Partitioning::Rows as u32)),
+        ("SURFACE_FLAT", number(Surface::Flat as u32)),
+        ("SURFACE_PN", number(Surface::Pn as u32)),
+        ("SURFACE_PN_AEN", number(Surface::PnAen as u32)),
+        ("SURFACE_PN_CREASE", number(Surface::PnCrease as u32)),
+        ("SURFACE_PHONG", number(Surface::Phong as u32)),
+        ("SURFACE_PHONG_AEN", number(Surface::PhongAen as u32)),
+        ("SURFACE_NAGATA", number(Surface::Nagata as u32)),
+        ("SURFACE_NAGATA_AEN", number(Surface::NagataAen as u32)),
+        ("SLOT_METALLIC_ROUGHNESS", number(Slot::MetallicRoughness as u32)),
+        ("SLOT_NORMAL", number(Slot::Normal as u32)),
+        ("SLOT_OCCLUSION", number(Slot::Occlusion as u32)),
+        ("SLOT_EMISSIVE", number(Slot::Emissive as u32)),
+        ("SLOT_TRANSMISSION", number(Slot::Transmission as u32)),
+        ("SLOT_SHEEN_COLOR", number(Slot::SheenColor as u32)),
+        ("SLOT_SHEEN_ROUGHNESS", number(Slot::SheenRoughness as u32)),
+        ("SLOT_COAT", number(Slot::Clearcoat as u32)),
+        ("SLOT_COAT_ROUGHNESS", number(Slot::ClearcoatRoughness as u32)),
+        ("SLOT_COAT_NORMAL", number(Slot::ClearcoatNormal as u32)),
+        ("SLOT_SPECULAR", number(Slot::Specular as u32)),
+        ("SLOT_SPECULAR_COLOR", number(Slot::SpecularColor as u32)),
+        ("LAYER_OVER", number(LayerDraw::Over as u32)),
+        ("LAYER_FILTER", number(LayerDraw::Filter as u32)),
+        ("LAYER_ADD", number(LayerDraw::Add as u32)),
+        ("MAP_COUNT", number(Slot::COUNT as u32)),
+    ]
+}
+
+/// Collects the components of a constant expression that naga has evaluated.
+fn components(module: &naga::Module, value: naga::Handle<naga::Expression>, out: &mut Vec<f64>) {
+    match &module.global_expressions[value] {
+        naga::Expression::Literal(naga::Literal::F32(value)) => out.push((*value).into()),
+        naga::Expression::Literal(naga::Literal::U32(value)) => out.push((*value).into()),
+        naga::Expression::Literal(naga::Literal::I32(value)) => out.push((*value).into()),
+        naga::Expression::Compose { components: parts, .. } => {
+            parts.iter().for_each(|part| components(module, *part, out));
+        }
+        naga::Expression::Constant(constant) => components(module, module.constants[*constant].init, out),
+        other => panic!("a constant of a kind that this test doesn't know: {other:?}"),
+    }
+}
+
+/// The constants of all shaders, by name.
+fn wgsl_constants() -> BTreeMap<String, Vec<f64>> {
+    let mut all = BTreeMap::new();
+    for (file, module) in modules() {
+        for (_, constant) in module.constants.iter() {
+            let Some(name) = constant.name.clone() else { continue };
+            let mut values = Vec::new();
+            components(module, constant.init, &mut values);
+            let known = all.entry(name.clone()).or_insert_with(|| values.clone());
+            assert_eq!(*known, values, "{name} in {}", file.name);
+        }
+    }
+    all
+}
+
+#[test]
+fn constants_of_both_languages_are_equal() {
+    let wgsl = wgsl_constants();
+    for (name, Expected(rust, tolerance)) in table() {
+        let Some(found) = wgsl.get(name) else { panic!("no shader has {name}") };
+        assert_eq!(found.len(), rust.len(), "components of {name}");
+        let is_near = |(a, b): (&f64, &f64)| (a - b).abs() <= tolerance;
+        assert!(found.iter().zip(&rust).all(is_near), "{name} is {found:?} in WGSL and {rust:?} in Rust");
+    }
+}
+
+#[test]
+fn every_constant_of_the_shaders_is_compared_or_listed() {
+    let (wgsl, table) = (wgsl_constants(), table());
+    let alone: Vec<_> = WGSL_ALONE.iter().flat_map(|(names, _)| names.iter().copied()).collect();
+    for name in wgsl.keys() {
+        let compared = table.iter().filter(|(known, _)| known == name).count();
+        let listed = alone.iter().filter(|known| *known == name).count();
+        assert_eq!(compared + listed, 1, "{name} must be either in the table or in WGSL_ALONE, once");
+    }
+    for name in alone {
+        assert!(wgsl.contains_key(name), "no shader has {name}");
+    }
+    assert!(WGSL_ALONE.iter().all(|(_, why)| !why.is_empty()));
+}

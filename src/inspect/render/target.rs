@@ -1,0 +1,238 @@
+//! The texture that a picture is drawn into.
+
+use super::layout::{linear, srgb};
+use gpu::{Gpu, GpuError, Lazy, read_texture};
+
+/// The format in which pictures are drawn and resolved: 8-bit RGBA, encoded as sRGB.
+pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// The number of samples per pixel in pictures: 4 if the adapter supports them, else 1.
+pub fn samples(gpu: &Gpu) -> u32 {
+    gpu.samples(&[COLOR_FORMAT, DEPTH_FORMAT])
+}
+
+/// Colour and depth textures of one size. They are drawn through an sRGB view, and shown and read back through a plain one, so
+/// that the bytes are those of a PNG.
+pub struct Target {
+    pub size: [u32; 2],
+    resolved: wgpu::Texture,
+    resolved_srgb: wgpu::TextureView,
+    multisampled: Option<wgpu::TextureView>,
+    depth: wgpu::TextureView,
+    /// Made when a picture first has layers: see [`super::layers`].
+    layer_depths: Lazy<[wgpu::TextureView; 2]>,
+    /// Whether pictures have no background: where nothing is drawn they are transparent.
+    is_transparent: bool,
+    /// Whether pictures leave out what takes a software driver longest: see [`Self::draft`].
+    is_draft: bool,
+    /// Px of the full picture that one px stands for, along each axis: see [`Self::coarse`].
+    pub(super) coarseness: u32,
+}
+
+/// The format that egui shows and a PNG holds: bytes encoded as sRGB, which sampling doesn't decode.
+const SHOWN_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+impl Target {
+    /// Makes the textures, with this width and height in px.
+    ///
+    /// # Errors
+    /// The adapter has no textures of that size.
+    pub fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, GpuError> {
+        let limit = gpu.device.limits().max_texture_dimension_2d;
+        let [width, height] = size.map(|side| side.max(1));
+        if width > limit || height > limit {
+            return Err(GpuError::PictureTooLarge { width, height, limit });
+        }
+        let texture = |label, format, samples, usage, view_formats: &[wgpu::TextureFormat]| {
+            gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: samples,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage,
+                view_formats,
+            })
+        };
+        let drawn = wgpu::TextureUsages::RENDER_ATTACHMENT;
+        let shown = drawn | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
+        let resolved = texture("target", SHOWN_FORMAT, 1, shown, &[COLOR_FORMAT]);
+        let resolved_srgb =
+            resolved.create_view(&wgpu::TextureViewDescriptor { format: Some(COLOR_FORMAT), ..Default::default() });
+        let view = |texture: wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let samples = samples(gpu);
+        let multisampled =
+            (samples > 1).then(|| view(texture("target.multisampled", COLOR_FORMAT, samples, drawn, &[])));
+        let depth = depth_view(gpu, "target.depth", [width, height]);
+        let (size, layer_depths) = ([width, height], Lazy::default());
+        let (is_transparent, is_draft, coarseness) = (false, false, 1);
+        Ok(Self {
+            size,
+            resolved,
+            resolved_srgb,
+            multisampled,
+            depth,
+            layer_depths,
+            is_transparent,
+            is_draft,
+            coarseness,
+        })
+    }
+
+    /// The same, for pictures that are transparent where nothing is drawn.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn transparent(gpu: &Gpu, size: [u32; 2]) -> Result<Self, GpuError> {
+        Ok(Self { is_transparent: true, ..Self::new(gpu, size)? })
+    }
+
+    /// The same, for drafts of pictures. The images of a material count by their mean, but for that of the base colour, and its
+    /// normals are those of the surface. A place that shows more than half of what is behind it isn't drawn, and any other hides
+    /// what is behind.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn draft(gpu: &Gpu, size: [u32; 2]) -> Result<Self, GpuError> {
+        Ok(Self { is_draft: true, ..Self::new(gpu, size)? })
+    }
+
+    /// The same, for pictures that are shown so many times as large along each axis. Their lines are as many times thinner.
+    pub fn coarse(self, coarseness: u32) -> Self {
+        Self { coarseness, ..self }
+    }
+
+    pub(super) fn is_draft(&self) -> bool {
+        self.is_draft
+    }
+
+    /// Whether nothing is behind what is drawn.
+    pub(super) fn is_transparent(&self) -> bool {
+        self.is_transparent
+    }
+
+    /// The view for showing the picture. Its values are encoded as sRGB, or are linear light for a texture that encodes them.
+    pub(super) fn shown_view(&self, is_linear: bool) -> wgpu::TextureView {
+        if is_linear {
+            return self.resolved_srgb.clone();
+        }
+        self.resolved.create_view(&wgpu::TextureViewDescriptor::default())
+    }
+
+    /// Width and height in px.
+    pub fn viewport(&self) -> glam::Vec2 {
+        glam::vec2(self.size[0] as f32, self.size[1] as f32)
+    }
+
+    /// The colour attachment for one of several passes. The first clears to `background` (linear light), or to nothing in a
+    /// transparent picture, and the last resolves.
+    pub fn color(&self, background: wgpu::Color, first: bool, last: bool) -> wgpu::RenderPassColorAttachment<'_> {
+        let (view, resolve_target) = match &self.multisampled {
+            Some(view) => (view, last.then_some(&self.resolved_srgb)),
+            None => (&self.resolved_srgb, None),
+        };
+        let background = if self.is_transparent { wgpu::Color::TRANSPARENT } else { background };
+        let load = if first { wgpu::LoadOp::Clear(background) } else { wgpu::LoadOp::Load };
+        wgpu::RenderPassColorAttachment {
+            view,
+            depth_slice: None,
+            resolve_target,
+            ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
+        }
+    }
+
+    /// The depth attachment for one of several passes. Depth is reversed, so the first clears it to 0, the far end.
+    pub fn depth(&self, first: bool) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+        depth_attachment(&self.depth, first.then_some(0.0))
+    }
+
+    /// The depths that [`Self::depth`] attaches, for shaders that read them.
+    pub(super) fn depths(&self) -> &wgpu::TextureView {
+        &self.depth
+    }
+
+    /// Two more textures of depths, for layers. They are made at the first call.
+    ///
+    /// # Errors
+    /// Out of memory, or a lost device.
+    pub(super) fn layer_depths(&self, gpu: &Gpu) -> Result<&[wgpu::TextureView; 2], GpuError> {
+        self.layer_depths.get_or_make(gpu, || [0, 1].map(|_| depth_view(gpu, "target.layer depth", self.size)))
+    }
+
+    /// The size of all its textures in bytes.
+    pub fn bytes(&self) -> u64 {
+        let pixels = u64::from(self.size[0]) * u64::from(self.size[1]);
+        let samples = if self.multisampled.is_some() { 4 } else { 1 };
+        let layers = if self.layer_depths.is_made() { 2 * samples } else { 0 };
+        pixels * 4 * (1 + samples + if samples > 1 { samples } else { 0 } + layers)
+    }
+
+    /// Reads the picture back, with straight alpha as PNG files have it. Waits for the device.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn read(&self, gpu: &Gpu) -> Result<image::RgbaImage, GpuError> {
+        let [width, height] = self.size;
+        let pixels = read_texture(gpu, &self.resolved)?;
+        let mut picture = image::RgbaImage::from_raw(width, height, pixels)
+            .ok_or_else(|| GpuError::Readback("the picture came back short".into()))?;
+        if self.is_transparent {
+            picture.pixels_mut().for_each(|pixel| pixel.0 = straight(pixel.0));
+        }
+        Ok(picture)
+    }
+}
+
+/// A texture of depths that can be attached, and read by shaders.
+fn depth_view(gpu: &Gpu, label: &str, [width, height]: [u32; 2]) -> wgpu::TextureView {
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: samples(gpu),
+        dimension: wgpu::TextureDimension::D2,
+        format: DEPTH_FORMAT,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+/// A depth attachment that is first cleared to a depth, or keeps what it has.
+pub(super) fn depth_attachment(
+    view: &wgpu::TextureView,
+    clear: Option<f32>,
+) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    let load = clear.map_or(wgpu::LoadOp::Load, wgpu::LoadOp::Clear);
+    wgpu::RenderPassDepthStencilAttachment {
+        view,
+        depth_ops: Some(wgpu::Operations { load, store: wgpu::StoreOp::Store }),
+        stencil_ops: None,
+    }
+}
+
+/// A pixel with straight alpha, from one whose linear colour is multiplied by alpha, which is what blending over nothing makes.
+fn straight([r, g, b, alpha]: [u8; 4]) -> [u8; 4] {
+    if [0, 255].contains(&alpha) {
+        return [r, g, b, alpha];
+    }
+    let [r, g, b] = linear([r, g, b]).map(|channel| srgb(channel * 255.0 / f32::from(alpha)));
+    [r, g, b, alpha]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_half_covered_pixel_gets_the_colour_that_covers_it() {
+        let own = [200, 90, 20];
+        let [r, g, b] = linear(own).map(|channel| srgb(channel * 128.0 / 255.0));
+        let [red, green, blue, alpha] = straight([r, g, b, 128]);
+        let largest = [red, green, blue].iter().zip(own).map(|(a, b)| a.abs_diff(b)).max();
+        assert!(largest <= Some(1) && alpha == 128, "{red} {green} {blue}");
+        assert_eq!([straight([0; 4]), straight([1, 2, 3, 255])], [[0; 4], [1, 2, 3, 255]]);
+    }
+}

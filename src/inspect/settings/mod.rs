@@ -1,0 +1,278 @@
+//! What a picture depends on besides the mesh and the camera. The window edits it, and commands parse into it.
+//!
+//! [`options`] declares each option once. The command line, saved settings, "Copy as command", random settings in tests and
+//! the window's rows are made from these declarations.
+
+mod choice;
+mod import;
+pub mod light;
+mod matcap;
+pub mod options;
+mod overlays;
+#[cfg(test)]
+pub mod random;
+mod value;
+
+use glam::{Mat4, Vec2};
+
+use geometry::mesh::{Heights, Material, Mesh};
+use geometry::names::every;
+use geometry::tessellate::{
+    Clip, Displacement, Inputs, Lod, LodView, Partitioning, Surface, Tessellation, displacement_reach,
+};
+use load::Import;
+
+pub use choice::{Choice, Description, descriptions};
+pub use light::{FileLights, Lighting, NormalMaps, ToneCurve};
+pub use matcap::Matcap;
+pub use overlays::{Colors, Control, Overlay, Overlays};
+pub use value::{Access, Declaration, Kind, Range, Value};
+
+/// Memory for a tessellation's output, in bytes.
+pub const ARENA_BYTES: u64 = 256 << 20;
+
+/// sRGB colours behind the mesh in a dark and in a light theme. Both are neutral, and the usual grey of a mesh stands out from
+/// both.
+const DARK_BACKGROUND: [u8; 3] = [0x2b, 0x2e, 0x33];
+pub const LIGHT_BACKGROUND: [u8; 3] = [0xe4, 0xe6, 0xe9];
+
+/// What is shown and how, apart from mesh and camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    pub tessellation: Tessellation,
+    /// Where shading normals are evaluated; a displaced surface has them at vertices. See [`Self::used_normals_at`].
+    pub normals_at: NormalsAt,
+    /// Whether normal maps tilt the normals of a displaced surface. See [`Self::draws_normal_map`].
+    pub normal_maps: NormalMaps,
+    pub overlays: Overlays,
+    /// The light that the mesh's own materials are seen in.
+    pub lighting: Lighting,
+    /// Whether the lights of the file shine, if it has some. Not under [`Lighting::Camera`], as what follows.
+    pub lights: FileLights,
+    /// How bright the light from all around is beside emission and the lights of the file, in EV: each step doubles it.
+    pub environment_brightness: f32,
+    /// Whether the light from all around is seen behind the mesh.
+    pub environment_background: bool,
+    /// How bright the picture is, in EV: each step doubles the light.
+    pub exposure: f32,
+    /// How light becomes colours of the picture.
+    pub tone_curve: ToneCurve,
+    /// How far the light is turned about the vertical axis, in degrees.
+    pub light_rotation: f32,
+    /// The unit of the distances that the deviation overlay colours.
+    pub deviation_in: DeviationUnit,
+    /// The mean curvature at the ends of the curvature overlay's scale, in 1 / bounding radius.
+    pub curvature_scale: f32,
+    /// The lit sphere that the matcap overlay shows.
+    pub matcap: Matcap,
+    /// Where the picture is split, as a fraction of its width from the left; none if it isn't.
+    pub split: Option<f32>,
+    /// The surface left of the split, with all other settings the same; none for the untessellated mesh.
+    pub split_surface: Option<Surface>,
+    /// sRGB colour behind the mesh; none for that of the window's theme, and in commands [`DARK_BACKGROUND`].
+    pub background: Option<[u8; 3]>,
+    /// How the geometry of the mesh's file is taken. The mesh is read again when it changes.
+    pub import: Import,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            tessellation: Tessellation::default(),
+            normals_at: NormalsAt::Vertices,
+            normal_maps: NormalMaps::default(),
+            overlays: Overlays::default(),
+            lighting: Lighting::default(),
+            lights: FileLights::default(),
+            environment_brightness: 0.0,
+            environment_background: false,
+            exposure: 0.0,
+            tone_curve: ToneCurve::default(),
+            light_rotation: 0.0,
+            deviation_in: DeviationUnit::Units,
+            curvature_scale: 4.0,
+            matcap: Matcap::default(),
+            split: None,
+            split_surface: None,
+            background: None,
+            import: Import::default(),
+        }
+    }
+}
+
+/// The settings of what measures or compares tessellations: lit by the camera's lights, so that pictures depend on nothing but
+/// the surface and its base colours.
+impl From<Tessellation> for Settings {
+    fn from(tessellation: Tessellation) -> Self {
+        Self { tessellation, lighting: Lighting::Camera, ..Self::default() }
+    }
+}
+
+/// A half of a split picture. A picture that isn't split is all right half.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SplitSide {
+    Left,
+    Right,
+}
+
+impl SplitSide {
+    pub const BOTH: [Self; 2] = [Self::Left, Self::Right];
+}
+
+/// Where the normals that a surface is shaded with are evaluated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum NormalsAt {
+    /// At emitted vertices; triangles interpolate them.
+    #[default]
+    Vertices,
+    /// At every pixel, at its place in the patch.
+    Pixels,
+}
+
+impl Choice for NormalsAt {
+    const ALL: &'static [Self] = &every![NormalsAt: Vertices, Pixels];
+
+    fn description(self) -> Description {
+        let (name, label, text) = match self {
+            Self::Vertices => (
+                "vertices",
+                "Vertices",
+                "Normals are evaluated at vertices and interpolated in every triangle, so that shading depends on the \
+                 triangles.",
+            ),
+            Self::Pixels => (
+                "pixels",
+                "Pixels",
+                "The pixel shader evaluates the patch's normal at every pixel, so that shading stays the same however \
+                 few triangles a patch has.",
+            ),
+        };
+        Description::new(name, label, text)
+    }
+}
+
+/// The unit of distances on the surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DeviationUnit {
+    /// Object units, which don't depend on the view.
+    #[default]
+    Units,
+    /// Px that the distance takes across the view, at its depth.
+    Px,
+}
+
+impl Choice for DeviationUnit {
+    const ALL: &'static [Self] = &every![DeviationUnit: Units, Px];
+
+    fn description(self) -> Description {
+        match self {
+            Self::Units => Description::new("units", "Object units", "Object units, which don't depend on the view."),
+            Self::Px => {
+                Description::new("px", "Px", "The length of the distance on screen, in px, if it lay across the view.")
+            }
+        }
+    }
+}
+
+impl Settings {
+    /// The settings of a first start: LOD by error with the fewest triangles, which rows have, with patches that can't be seen left
+    /// out, and the wireframe.
+    pub fn opening() -> Self {
+        Self {
+            tessellation: Tessellation {
+                lod: Lod::Error,
+                partitioning: Partitioning::Rows,
+                clip: Clip::Frustum,
+                cull_back_faces: true,
+                ..Tessellation::default()
+            },
+            ..Self::default()
+        }
+    }
+
+    /// Returns the settings of the window's first start, which show at once what tessellation does: the mesh as it came beside
+    /// the tessellated one, both with the borders of the mesh's own triangles.
+    pub fn greeting() -> Self {
+        let overlays = Overlays { patches: true, ..Overlays::default() };
+        Self { split: Some(0.5), overlays, ..Self::opening() }
+    }
+
+    /// The sRGB colour behind the mesh.
+    pub fn background_color(&self) -> [u8; 3] {
+        self.background.unwrap_or(DARK_BACKGROUND)
+    }
+
+    /// These settings with another tessellation.
+    pub fn with(&self, tessellation: Tessellation) -> Self {
+        Self { tessellation, ..*self }
+    }
+
+    /// Where a mesh's shading normals are evaluated. Those of a displaced surface follow its triangles, so they are at vertices.
+    pub fn used_normals_at(&self, mesh: &Mesh) -> NormalsAt {
+        if self.displacing(mesh).is_some() { NormalsAt::Vertices } else { self.normals_at }
+    }
+
+    /// Whether the normal map of one of a mesh's materials is drawn. Where the surface is displaced by the same relief, its slopes would
+    /// count twice.
+    pub(crate) fn draws_normal_map(&self, mesh: &Mesh, material: &Material) -> bool {
+        self.displacing(mesh).is_none_or(|heights| match self.normal_maps {
+            NormalMaps::Auto => !heights.are_of_colors || material.texture.is_none(),
+            NormalMaps::On => true,
+            NormalMaps::Off => false,
+        })
+    }
+
+    /// The heights that displace a mesh.
+    fn displacing<'a>(&self, mesh: &'a Mesh) -> Option<&'a Heights> {
+        mesh.heights.as_deref().filter(|_| self.tessellation.displacement != Displacement::Off)
+    }
+
+    /// Whether materials are drawn as glTF describes them, in light from all around.
+    pub fn shows_materials(&self) -> bool {
+        self.lighting != Lighting::Camera && self.overlays.colors == Colors::Material
+    }
+
+    /// Whether the light from all around is drawn behind the mesh.
+    pub fn shows_environment(&self) -> bool {
+        self.environment_background && self.shows_materials()
+    }
+
+    /// The settings of one half of the picture; none where that half doesn't exist or shows the untessellated mesh.
+    pub fn half(&self, half: SplitSide) -> Option<Self> {
+        match half {
+            SplitSide::Left => {
+                let surface = self.split_surface.filter(|_| self.split.is_some())?;
+                Some(self.with(Tessellation { surface, ..self.tessellation }))
+            }
+            SplitSide::Right => Some(*self),
+        }
+    }
+
+    /// How far heights move any point of a mesh at most, in object units.
+    pub fn reach(&self, mesh: &Mesh) -> f32 {
+        displacement_reach(mesh, &self.inputs(LodView::new(Mat4::IDENTITY, Vec2::ONE)))
+    }
+
+    /// What the tessellation depends on, seen from `view`.
+    pub fn inputs(&self, view: LodView) -> Inputs {
+        Inputs::new(&self.tessellation, view)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn subtriangulation_uses_uniform_lod_and_keeps_the_chosen_one() {
+        let view = LodView::new(glam::Mat4::IDENTITY, glam::Vec2::ONE);
+        for partitioning in Partitioning::ALL {
+            for lod in Lod::ALL {
+                let tessellation = Tessellation { partitioning, lod, ..Tessellation::default() };
+                let used = if partitioning == Partitioning::Subtriangulation { Lod::Uniform } else { lod };
+                let inputs = Settings::from(tessellation).inputs(view).tessellation;
+                assert_eq!((tessellation.used_lod(), inputs.lod), (used, used), "{partitioning:?} {lod:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,328 @@
+//! Our shaders as files for other programs: vertex, hull and domain shaders in HLSL, their equals in GLSL, and compute passes in
+//! WGSL.
+//!
+//! They are made from the files in `shaders/`: the functions that the options need, without the branches that the options never
+//! take. What differs between languages, the inputs and outputs of the stages, is in `templates/`.
+
+mod branches;
+mod choices;
+mod declarations;
+mod displaced;
+mod readme;
+#[cfg(test)]
+mod tests;
+mod translation;
+
+use thiserror::Error;
+
+use geometry::names::every;
+use geometry::tessellate::{Displacement, Edges, Lod, Partitioning, Surface, Tessellation};
+use gpu::WgslFile;
+use gpu::wgsl::{
+    CONNECTIVITY, CONTROL_POINTS, CONVENTION, CULL, DISPLACE, DOMAIN, FACTORS, LOD, NORMAL, SURFACE, TYPES,
+};
+
+use crate::settings::{Choice, Description};
+use branches::{Known, without_dead_branches};
+use choices::choices;
+use declarations::{Declaration, declarations, needed};
+use displaced::{Relief, with_fetch, without_fetch};
+
+use translation::{StageLanguage, TranslationError, translated};
+
+static STAGE_PATCH: WgslFile =
+    WgslFile::new("stage_patch", &[&CONTROL_POINTS, &CONVENTION, &CULL, &FACTORS, &LOD, &NORMAL, &SURFACE, &TYPES]);
+static STAGE_HEIGHTS: WgslFile = WgslFile::new("stage_heights", &[&TYPES]);
+static STAGE_DISPLACED: WgslFile = WgslFile::new(
+    "stage_displaced",
+    &[&CONVENTION, &DISPLACE, &FACTORS, &NORMAL, &STAGE_HEIGHTS, &STAGE_PATCH, &SURFACE, &TYPES],
+);
+static PASS_EXPORTED: WgslFile = WgslFile::new(
+    "pass_exported",
+    &[&CONNECTIVITY, &CONTROL_POINTS, &DISPLACE, &DOMAIN, &FACTORS, &STAGE_DISPLACED, &STAGE_PATCH, &SURFACE],
+);
+
+/// The modules of shaders that are only exported.
+#[cfg(test)]
+pub static MODULES: [&WgslFile; 1] = [&PASS_EXPORTED];
+
+/// A shading language.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Language {
+    /// Vertex, hull and domain shader for Direct3D 11 and 12
+    Hlsl,
+    /// Vertex, tessellation control and tessellation evaluation shader for Vulkan and OpenGL
+    Glsl,
+    /// Compute passes for WebGPU
+    Wgsl,
+}
+
+impl Language {
+    pub const ALL: [Self; 3] = every![Language: Hlsl, Glsl, Wgsl];
+}
+
+impl Choice for Language {
+    const ALL: &'static [Self] = &Language::ALL;
+
+    fn description(self) -> Description {
+        match self {
+            Self::Hlsl => {
+                Description::new("hlsl", "HLSL", "Vertex, hull and domain shader for Direct3D 11 and 12: patch.hlsl.")
+            }
+            Self::Glsl => Description::new(
+                "glsl",
+                "GLSL",
+                "The same stages for Vulkan and OpenGL: patch.vert, patch.tesc and patch.tese.",
+            ),
+            Self::Wgsl => Description::new(
+                "wgsl",
+                "WGSL",
+                "Compute passes for WebGPU, which has no tessellation stages: tessellate.wgsl.",
+            ),
+        }
+    }
+}
+
+/// A file of an export.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ShaderFile {
+    pub name: &'static str,
+    pub text: String,
+}
+
+/// Why a tessellation can't be exported.
+#[derive(Debug, Error)]
+pub enum ShaderError {
+    /// The tessellator that the shaders run on can't do it.
+    #[error("{what} can't be exported: {why}; choose {instead}")]
+    Unexportable { what: &'static str, why: &'static str, instead: &'static str },
+    /// An error in our own shaders.
+    #[error(transparent)]
+    Translation(#[from] TranslationError),
+}
+
+/// Returns the files of a tessellation's shaders in a language. `command` is the line that asks for them, which the files name.
+///
+/// # Errors
+/// The language, or the hardware that it runs on, has no equal of the tessellation.
+pub fn shader_files(
+    language: Language,
+    tessellation: &Tessellation,
+    command: &str,
+) -> Result<Vec<ShaderFile>, ShaderError> {
+    check(language, tessellation)?;
+    let export = Export { language, tessellation, command };
+    let mut files = match language {
+        Language::Glsl => export.glsl()?,
+        Language::Hlsl => export.hlsl()?,
+        Language::Wgsl => export.wgsl(),
+    };
+    files.push(ShaderFile { name: "README.md", text: readme::text(&export) });
+    Ok(files)
+}
+
+/// Returns the number of indices that a patch of these shaders has: 3, 9 or 18.
+pub fn indices_per_patch(language: Language, tessellation: &Tessellation) -> usize {
+    if tessellation.displacement != Displacement::Off {
+        return 18;
+    }
+    let looks_across = match tessellation.surface {
+        Surface::Flat => false,
+        Surface::PnAen | Surface::PnCrease | Surface::PhongAen | Surface::NagataAen => true,
+        // The sides of an edge have curves of different lengths, of which both take the longer one's factor.
+        Surface::Pn | Surface::Phong | Surface::Nagata => {
+            tessellation.edges == Edges::PerEdge && matches!(tessellation.lod, Lod::Paper | Lod::EdgeLength)
+        }
+    };
+    if looks_across || language == Language::Wgsl { 9 } else { 3 }
+}
+
+fn check(language: Language, tessellation: &Tessellation) -> Result<(), ShaderError> {
+    let refuse = |what, why, instead| Err(ShaderError::Unexportable { what, why, instead });
+    if tessellation.used_lod() == Lod::Error {
+        return refuse(
+            "LOD by error",
+            "it searches over all patches that share an edge",
+            "--lod uniform, distance, edge-length or paper",
+        );
+    }
+    let pattern = match tessellation.partitioning {
+        Partitioning::Rows => "rows",
+        Partitioning::Subtriangulation => "subtriangulation",
+        Partitioning::Integer | Partitioning::Pow2 | Partitioning::FractionalOdd | Partitioning::FractionalEven => {
+            return Ok(());
+        }
+    };
+    if language == Language::Wgsl {
+        return Ok(());
+    }
+    refuse(
+        pattern,
+        "hardware tessellators don't have the pattern",
+        "--language wgsl, or --partitioning integer, pow2, fractional-odd or fractional-even",
+    )
+}
+
+/// What is exported.
+struct Export<'a> {
+    language: Language,
+    tessellation: &'a Tessellation,
+    command: &'a str,
+}
+
+/// The functions that a GLSL or HLSL stage calls.
+const HULL_ROOTS: [&str; 5] =
+    ["StageConstants", "ControlNet", "hull_side", "center_control_point", "tessellation_factors"];
+const DOMAIN_ROOTS: [&str; 3] = ["StageConstants", "stage_vertex", "fixed_location"];
+/// The functions that must give both sides of an edge the same bits.
+const PRECISE_ROOTS: [&str; 8] = [
+    "hull_side",
+    "edge_position",
+    "side_level",
+    "corner_level",
+    "shared_place",
+    "moving_direction",
+    "height_offset",
+    "moved",
+];
+/// The functions that stages of a displaced surface call besides.
+const DISPLACED_HULL_ROOTS: [&str; 4] = ["HeightConstants", "side_level", "level_inside", "segments_inside"];
+const DISPLACED_DOMAIN_ROOTS: [&str; 2] = ["HeightConstants", "displaced_vertex"];
+/// The functions that the compute shader calls which finds the levels at points.
+const LEVELS_ROOTS: [&str; 5] = ["StageConstants", "HeightConstants", "hull_side", "side_level", "kept_level"];
+
+impl Export<'_> {
+    /// All declarations of our shaders with the choices made, and without the branches that they never take.
+    fn declarations(&self, module: &'static WgslFile) -> Vec<Declaration> {
+        let choices = choices(self.tessellation);
+        let of = |name: &str| choices.iter().find(|(own, _)| *own == name).map_or("", |(_, value)| *value);
+        let mut values = choices.to_vec();
+        values.extend([
+            ("surface", of("CHOSEN_SURFACE")),
+            ("partitioning", of("CHOSEN_PARTITIONING")),
+            ("convention", of("CHOSEN_CONVENTION")),
+        ]);
+        let mut false_conditions = Vec::new();
+        if self.tessellation.partitioning != Partitioning::Rows {
+            false_conditions.extend(["patch_has_rows(factors)", "plan.kind == PATTERN_ROWS"]);
+        }
+        if self.tessellation.partitioning != Partitioning::Subtriangulation {
+            false_conditions.extend(["patch_is_subtriangulated(factors)", "plan.kind == PATTERN_SUBTRIANGULATED"]);
+        }
+        let known = Known { values: &values, false_conditions: &false_conditions };
+        let mut all = declarations(&module.module_text());
+        for own in &mut all {
+            if own.is_function {
+                own.lines = without_dead_branches(&own.lines, &known);
+            } else if let Some((name, value)) = choices.iter().find(|(name, _)| own.name == *name) {
+                own.lines = vec![format!("const {name}: u32 = {value};")];
+                own.comment.clear();
+            }
+        }
+        all
+    }
+
+    /// The functions that a file needs, in its language.
+    fn functions(&self, language: StageLanguage, roots: &[&str]) -> Result<String, TranslationError> {
+        let all = needed(&self.declarations(&STAGE_DISPLACED), roots);
+        Ok(with_fetch(language, &translated(language, &without_fetch(all), &PRECISE_ROOTS)?))
+    }
+
+    /// The functions that the hull shader calls.
+    fn hull_roots(&self) -> Vec<&'static str> {
+        // How it gets the level at a point.
+        let of_points: &[&str] = match self.relief() {
+            Relief::Off => return HULL_ROOTS.to_vec(),
+            Relief::UniformLod => &["corner_level"],
+            Relief::LodByView => &["level_of"],
+        };
+        [&HULL_ROOTS[..], &DISPLACED_HULL_ROOTS, of_points].concat()
+    }
+
+    /// The functions that the domain shader calls.
+    fn domain_roots(&self) -> Vec<&'static str> {
+        let displaced = if self.relief() == Relief::Off { &[][..] } else { &DISPLACED_DOMAIN_ROOTS };
+        [&DOMAIN_ROOTS[..], displaced].concat()
+    }
+
+    fn relief(&self) -> Relief {
+        Relief::of(self.tessellation)
+    }
+
+    fn glsl(&self) -> Result<Vec<ShaderFile>, TranslationError> {
+        let functions = |roots: &[&str]| self.functions(StageLanguage::Glsl, roots);
+        let spacing = match self.tessellation.partitioning {
+            Partitioning::FractionalOdd => "fractional_odd_spacing",
+            Partitioning::FractionalEven => "fractional_even_spacing",
+            _ => "equal_spacing",
+        };
+        let across = match self.indices() {
+            3 => "own",
+            _ => "SideNormals(vertex_normal[3 + 2 * k], vertex_normal[4 + 2 * k])",
+        };
+        let control = self.filled(include_str!("templates/patch.tesc"), &functions(&self.hull_roots())?);
+        let evaluation = self.filled(include_str!("templates/patch.tese"), &functions(&self.domain_roots())?);
+        let mut files = vec![
+            ShaderFile { name: "patch.vert", text: self.filled(include_str!("templates/patch.vert"), "") },
+            ShaderFile { name: "patch.tesc", text: control.replace("@ACROSS@", across) },
+            ShaderFile { name: "patch.tese", text: evaluation.replace("@SPACING@", spacing) },
+        ];
+        if self.relief() == Relief::LodByView {
+            let text = self.filled(include_str!("templates/levels.comp"), &functions(&LEVELS_ROOTS)?);
+            files.push(ShaderFile { name: "levels.comp", text });
+        }
+        Ok(files)
+    }
+
+    fn hlsl(&self) -> Result<Vec<ShaderFile>, TranslationError> {
+        let functions = |roots: &[&str]| self.functions(StageLanguage::Hlsl, roots);
+        let partitioning = match self.tessellation.partitioning {
+            Partitioning::FractionalOdd => "fractional_odd",
+            Partitioning::FractionalEven => "fractional_even",
+            // `written_factor` has rounded those of pow2 already.
+            _ => "integer",
+        };
+        let (at_a, at_b) = match self.indices() {
+            3 => ("own.at_a", "own.at_b"),
+            _ => ("corners[3 + 2 * k].normal", "corners[4 + 2 * k].normal"),
+        };
+        let roots = [self.hull_roots(), self.domain_roots()].concat();
+        let text = self
+            .filled(include_str!("templates/patch.hlsl"), &functions(&roots)?)
+            .replace("@PARTITIONING@", partitioning)
+            .replace("@ACROSS_A@", at_a)
+            .replace("@ACROSS_B@", at_b);
+        let mut files = vec![ShaderFile { name: "patch.hlsl", text }];
+        if self.relief() == Relief::LodByView {
+            let text = self.filled(include_str!("templates/levels.hlsl"), &functions(&LEVELS_ROOTS)?);
+            files.push(ShaderFile { name: "levels.hlsl", text });
+        }
+        Ok(files)
+    }
+
+    fn wgsl(&self) -> Vec<ShaderFile> {
+        let texts = needed(&self.declarations(&PASS_EXPORTED), &["hull_main", "offsets_main", "emit_main"]);
+        let mut text = readme::header(self);
+        let mut before: Option<&Declaration> = None;
+        for own in &texts {
+            // Constants without comments stand together.
+            let is_list = before.is_some_and(|before| [before, own].iter().all(|own| own.text().lines().count() == 1));
+            text += if is_list { "" } else { "\n" };
+            text += &own.text();
+            before = Some(own);
+        }
+        vec![ShaderFile { name: "tessellate.wgsl", text }]
+    }
+
+    fn filled(&self, template: &str, functions: &str) -> String {
+        self.relief()
+            .chosen_lines(template)
+            .replace("@HEADER@", readme::header(self).trim_end())
+            .replace("@FUNCTIONS@", functions.trim_end())
+            .replace("@INDICES@", &self.indices().to_string())
+    }
+
+    fn indices(&self) -> usize {
+        indices_per_patch(self.language, self.tessellation)
+    }
+}

@@ -1,0 +1,100 @@
+//! Exact surfaces, and which shape has which.
+
+use glam::{DVec2, DVec3};
+
+use super::bicubic::Patches;
+use super::ellipsoid::Ellipsoid;
+use super::revolved::{Profile, Torus};
+use super::saddle::Saddle;
+use super::spread::{Spread, radical_inverse};
+use super::surface::Surface;
+use super::{EdgePoints, Nearest, Sample, segments};
+use geometry::mesh::Shape;
+use geometry::mesh::shapes::polyhedra::ELLIPSOID;
+use geometry::mesh::shapes::revolved::{HALF_HEIGHT, MAJOR, MINOR, RADIUS};
+use geometry::mesh::shapes::sheets::SADDLE_HALF;
+
+/// The number of segments that approximate a border to find its length.
+const LENGTH_SEGMENTS: usize = 64;
+
+/// A surface whose nearest points are computed to about 1e-12 of its size.
+pub struct Exact {
+    surface: Box<dyn Surface>,
+    spread: Spread,
+}
+
+/// Returns the surface that a shape's corners are samples of, for shapes that have [levels](Shape::has_levels).
+pub fn of_shape(shape: Shape) -> Option<Exact> {
+    let [radius, half] = [RADIUS, HALF_HEIGHT].map(f64::from);
+    let (bottom, top) = (DVec2::new(0.0, -half), DVec2::new(0.0, half));
+    let out = DVec2::new(radius, 0.0);
+    let surface: Box<dyn Surface> = match shape {
+        Shape::CubeSplit | Shape::CubeSmooth | Shape::Moebius => return None,
+        Shape::Icosahedron | Shape::Icosphere => Box::new(Ellipsoid { radii: DVec3::ONE }),
+        Shape::Ellipsoid => Box::new(Ellipsoid { radii: ELLIPSOID.as_dvec3() }),
+        Shape::Torus => Box::new(Torus { major: MAJOR.into(), minor: MINOR.into() }),
+        Shape::Cylinder => Box::new(Profile::new(&[bottom, out + bottom, out + top, top])),
+        Shape::Cone => Box::new(Profile::new(&[bottom, out + bottom, top])),
+        Shape::Saddle => Box::new(Saddle { half: SADDLE_HALF.into() }),
+        Shape::Bicubic => Box::new(Patches::new(geometry::mesh::shapes::bicubic::patches())),
+    };
+    Some(Exact::new(surface))
+}
+
+impl Exact {
+    fn new(surface: Box<dyn Surface>) -> Self {
+        Self { spread: Spread::new(surface.charts(), |chart, s, t| surface.at(chart, s, t).1), surface }
+    }
+
+    /// Returns the nearest point of the surface.
+    pub fn closest(&self, p: DVec3) -> Nearest {
+        self.closest_facing(p, DVec3::ZERO)
+    }
+
+    pub(super) fn closest_facing(&self, p: DVec3, facing: DVec3) -> Nearest {
+        self.surface.closest(p, facing)
+    }
+
+    /// Returns the least and the greatest coordinates.
+    pub fn extent(&self) -> [DVec3; 2] {
+        self.surface.extent()
+    }
+
+    /// Returns the area in square object units, to about 1e-3.
+    pub fn area(&self) -> f64 {
+        self.spread.area()
+    }
+
+    /// Returns `count` points, spread evenly by area: a Hammersley set.
+    pub fn samples(&self, count: usize) -> Vec<Sample> {
+        let sample = |i: usize| {
+            let (chart, s, t) = self.spread.place((i as f64 + 0.5) / count as f64, radical_inverse(2, i));
+            self.surface.at(chart, s, t).0
+        };
+        (0..count).map(sample).collect()
+    }
+
+    /// Returns points along the borders of all charts. All borders and creases of the surface are among these.
+    pub(super) fn edge_points(&self, spacing: f64) -> EdgePoints {
+        let mut edges = EdgePoints { points: Vec::new(), spacing: 0.0 };
+        for chart in 0..self.surface.charts() {
+            for side in [0.0, 1.0] {
+                edges.add(spacing, |t| self.surface.at(chart, side, t).0.point);
+                edges.add(spacing, |s| self.surface.at(chart, s, side).0.point);
+            }
+        }
+        edges
+    }
+}
+
+impl EdgePoints {
+    /// Adds points of a curve, whose parameter runs from 0 to 1.
+    fn add(&mut self, spacing: f64, at: impl Fn(f64) -> DVec3) {
+        let cut = |count: usize| -> Vec<DVec3> { (0..=count).map(|i| at(i as f64 / count as f64)).collect() };
+        let length: f64 = cut(LENGTH_SEGMENTS).windows(2).map(|ends| ends[0].distance(ends[1])).sum();
+        let points = cut(segments(length, spacing));
+        let widest = points.windows(2).map(|ends| ends[0].distance(ends[1])).fold(0.0, f64::max);
+        self.spacing = self.spacing.max(widest);
+        self.points.extend(points);
+    }
+}

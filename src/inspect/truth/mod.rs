@@ -1,0 +1,170 @@
+//! Reference surfaces, which a tessellation is compared with: the exact surfaces that shapes are sampled from, and
+//! reference meshes. They are the surfaces of the option `--truth`.
+//!
+//! All numbers are f64, in object units. [`crate::measure::Accuracy`] does the comparison.
+
+mod bicubic;
+mod ellipsoid;
+mod exact;
+mod reference;
+mod revolved;
+mod root;
+mod saddle;
+mod spread;
+mod surface;
+mod triangles;
+
+use glam::DVec3;
+
+pub use exact::{Exact, of_shape};
+pub use reference::Reference;
+pub use spread::radical_inverse;
+pub use triangles::{Closest, Triangles, closest_on_triangle};
+
+use geometry::mesh::{Mesh, Shape};
+use geometry::progress::Progress;
+use load::files::Limits;
+use load::selection::Selection;
+use load::{Import, LoadError, Source};
+
+/// The point of a surface that is nearest to some place. If several are equally near, it is one of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest {
+    pub point: DVec3,
+    /// The surface's unit normal there.
+    pub normal: DVec3,
+    /// The distance from the place to the point.
+    pub distance: f64,
+}
+
+/// A point of a surface, and the unit normal there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    pub point: DVec3,
+    pub normal: DVec3,
+}
+
+/// Places on a surface that points spread by area miss.
+pub struct EdgePoints {
+    pub points: Vec<DVec3>,
+    /// The largest distance between neighbouring points of an edge, in object units.
+    pub spacing: f64,
+}
+
+/// A reference surface: the surface that a tessellation should be.
+pub enum Truth {
+    Exact(Exact),
+    Mesh(Reference),
+}
+
+impl Truth {
+    /// Returns the surface that a shape's corners are samples of, or `None` if the shape has none.
+    pub fn of_shape(shape: Shape) -> Option<Self> {
+        of_shape(shape).map(Self::Exact)
+    }
+
+    /// Returns the reference surface of a source: the exact surface of a shape, or the mesh of a file, turned and scaled as
+    /// `import` says of the mesh that is compared with it. `None` if that has no triangle.
+    ///
+    /// # Errors
+    /// The file can't be read as a mesh, or `progress` was cancelled.
+    pub fn load(
+        source: &Source,
+        import: Import,
+        limits: &Limits,
+        progress: &Progress,
+    ) -> Result<Option<Self>, LoadError> {
+        let shape = source.shape();
+        if let Some(exact) = shape.and_then(Self::of_shape) {
+            return Ok(Some(exact));
+        }
+        let import = if shape.is_some() { Import::default() } else { import.placement() };
+        let selected = Selection { import, ..Selection::default() };
+        Ok(Self::of_mesh(&source.load_selected(selected, limits, progress)?.mesh))
+    }
+
+    /// Returns a mesh as reference surface, with its interpolated normals, or `None` if it has no triangle. It needn't
+    /// be closed or manifold.
+    pub fn of_mesh(mesh: &Mesh) -> Option<Self> {
+        Reference::new(mesh).map(Self::Mesh)
+    }
+
+    /// Returns the nearest point of the surface.
+    pub fn closest(&self, p: DVec3) -> Nearest {
+        self.closest_facing(p, DVec3::ZERO)
+    }
+
+    /// Returns the nearest point of the surface. If it lies on a crease, where the surface has several normals, it has
+    /// the one that is nearest to `facing`.
+    pub fn closest_facing(&self, p: DVec3, facing: DVec3) -> Nearest {
+        match self {
+            Self::Exact(exact) => exact.closest_facing(p, facing),
+            Self::Mesh(mesh) => mesh.closest_facing(p, facing),
+        }
+    }
+
+    /// Returns the nearest point of the surface, and its distance. For a mesh this is faster than [`Self::closest`].
+    pub(crate) fn closest_point(&self, p: DVec3) -> (DVec3, f64) {
+        match self {
+            Self::Exact(exact) => {
+                let nearest = exact.closest(p);
+                (nearest.point, nearest.distance)
+            }
+            Self::Mesh(mesh) => mesh.closest_point(p),
+        }
+    }
+
+    /// Returns a mesh's vertices, and points along its edges; or points along the borders and creases of an exact
+    /// surface. Neighbouring points of an edge are about as far apart as the neighbours among `count` points that are
+    /// spread by area, or farther if edges are so long that these would be more than about `count` points.
+    pub fn edge_points(&self, count: usize) -> EdgePoints {
+        match self {
+            Self::Exact(exact) => exact.edge_points(self.spacing(count)),
+            Self::Mesh(mesh) => mesh.edge_points(self.spacing(count), count),
+        }
+    }
+
+    /// Returns the spacing of `count` points that are spread by area, in object units: the side of the square that each stands
+    /// for.
+    pub fn spacing(&self, count: usize) -> f64 {
+        (self.area() / count.max(1) as f64).sqrt()
+    }
+
+    /// Returns `count` points, spread evenly by area. They are the same every time.
+    pub fn samples(&self, count: usize) -> Vec<Sample> {
+        match self {
+            Self::Exact(exact) => exact.samples(count),
+            Self::Mesh(mesh) => mesh.samples(count),
+        }
+    }
+
+    /// Returns the area in square object units. That of exact surfaces is accurate to about 1e-3.
+    pub fn area(&self) -> f64 {
+        match self {
+            Self::Exact(exact) => exact.area(),
+            Self::Mesh(mesh) => mesh.area(),
+        }
+    }
+
+    /// Returns the length of the bounding box's diagonal in object units.
+    pub fn diagonal(&self) -> f64 {
+        let [min, max] = match self {
+            Self::Exact(exact) => exact.extent(),
+            Self::Mesh(mesh) => mesh.extent(),
+        };
+        min.distance(max)
+    }
+}
+
+/// Returns the number of segments, an even one, that cut an edge into pieces of at most `spacing`. Its middle is then one
+/// of the points between them. An edge that is no longer than `spacing` is one segment.
+fn segments(length: f64, spacing: f64) -> usize {
+    if length <= spacing { 1 } else { 2 * (length / (2.0 * spacing)).ceil() as usize }
+}
+
+/// The distance from a crease, relative to the surface's size, within which all normals of the crease count: a few
+/// rounding errors of f32 positions.
+const ON_CREASE: f64 = 1e-6;
+
+#[cfg(test)]
+mod tests;

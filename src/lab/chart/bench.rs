@@ -1,0 +1,131 @@
+//! Times and measures one setting after another.
+
+use std::time::Duration;
+
+use super::{Errors, Row, Setting, Time};
+use geometry::tessellate::{Clip, Tessellation};
+use gpu::{GpuError, Timing};
+use inspect::engine::{Engine, MeasurementResults, Measurements, Runs};
+use inspect::measure::AccuracyOptions;
+use inspect::render::{Camera, Scene, Target};
+use inspect::settings::Settings;
+use inspect::truth::Truth;
+
+/// How much time is spent on a setting.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    pub runs: Runs,
+    pub accuracy: AccuracyOptions,
+    /// Settings with more triangles are left out.
+    pub most_triangles: u64,
+}
+
+impl Default for Effort {
+    fn default() -> Self {
+        let runs = Runs { least: 3, most: 100, within: Duration::from_millis(200) };
+        Self { runs, accuracy: AccuracyOptions::default(), most_triangles: 500_000 }
+    }
+}
+
+/// A mesh on the device with one camera, and the reference surface that it is compared with.
+pub struct Bench<'a> {
+    pub engine: &'a Engine,
+    /// The mesh's name in rows.
+    pub mesh: String,
+    pub scene: Scene,
+    pub target: &'a Target,
+    pub camera: Camera,
+    pub truth: Option<&'a Truth>,
+    /// The settings that all methods have in common.
+    pub base: Settings,
+    pub effort: Effort,
+}
+
+/// The cost and the errors of some settings: see [`Row`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Probe {
+    pub triangles: u64,
+    pub vertices: u64,
+    pub time: Time,
+    pub errors: Option<Errors>,
+    pub max_error_px: Option<f64>,
+    pub triangles_by_error: Option<u64>,
+}
+
+impl Bench<'_> {
+    /// Measures a setting. Returns `None` if it has more triangles than the effort allows.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn measure(&mut self, setting: &Setting) -> Result<Option<Row>, GpuError> {
+        let probe = self.probe(&setting.applied(&self.base))?;
+        Ok(probe.map(|probe| self.row(setting, probe)))
+    }
+
+    /// The row for a setting and its measurements.
+    pub fn row(&self, setting: &Setting, probe: Probe) -> Row {
+        let Probe { triangles, vertices, time, errors, max_error_px, triangles_by_error } = probe;
+        let (mesh, adapter) = (self.mesh.clone(), self.engine.gpu.info.name.clone());
+        Row { mesh, adapter, setting: *setting, triangles, vertices, time, errors, max_error_px, triangles_by_error }
+    }
+
+    /// Measures any settings, without their clipping and culling: a comparison with a reference surface needs all of the mesh.
+    /// Returns `None` if that has more triangles than the effort allows.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn probe(&mut self, settings: &Settings) -> Result<Option<Probe>, GpuError> {
+        let Self { engine, scene, target, camera, .. } = self;
+        let settings = whole(settings);
+        let inputs = settings.inputs(camera.lod_view(target.viewport(), &scene.bounds));
+        engine.count(scene, &inputs, &mut Timing::Off)?;
+        let (vertices, triangles) = scene.tessellator.totals();
+        if triangles > self.effort.most_triangles {
+            return Ok(None);
+        }
+        let passes = engine.time(scene, target, camera, inputs.view, &settings, self.effort.runs)?;
+        let time = Time::of(&passes);
+        let mut probe = Probe { triangles, vertices, time, errors: None, max_error_px: None, triangles_by_error: None };
+        let wanted = Measurements {
+            accuracy: self.truth.map(|truth| (truth, &inputs.view, self.effort.accuracy)),
+            screen_error: Some(&inputs),
+            ..Measurements::default()
+        };
+        let MeasurementResults { accuracy, screen_error, .. } = engine.measure_all(scene, &wanted)?;
+        let own_px = screen_error.map(|worst| worst.px);
+        if let Some(px) = own_px.map(|px| px as f32).filter(|px| *px > 0.0) {
+            probe.triangles_by_error = engine.triangles_by_error(scene, &inputs, px)?;
+        }
+        let from_truth = accuracy.and_then(|accuracy| accuracy.worst_px).map(|worst| worst.value);
+        probe.max_error_px = match self.truth {
+            Some(_) => from_truth,
+            None => own_px,
+        };
+        probe.errors = accuracy.map(|accuracy| {
+            let distances = accuracy.relative(accuracy.both_ways());
+            let normal_degrees = accuracy.normals.largest;
+            Errors { largest: distances.largest, rms: distances.rms, normal_degrees }
+        });
+        Ok(Some(probe))
+    }
+}
+
+/// The settings that are measured in place of these: without clipping, culling, overlays and split, so that all of the
+/// surface is drawn, and nothing else, in the light of the camera.
+pub fn whole(settings: &Settings) -> Settings {
+    let plain = Settings::from(Tessellation::default());
+    let Settings { overlays, lighting, exposure, tone_curve, light_rotation, deviation_in, split, background, .. } =
+        plain;
+    Settings {
+        tessellation: Tessellation { clip: Clip::Off, cull_back_faces: false, ..settings.tessellation },
+        overlays,
+        lighting,
+        exposure,
+        tone_curve,
+        light_rotation,
+        deviation_in,
+        split,
+        background,
+        ..*settings
+    }
+}

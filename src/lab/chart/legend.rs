@@ -1,0 +1,111 @@
+//! Assigns a style to every method, and draws the legend that explains the styles.
+
+use plotters::prelude::*;
+
+use super::method_style::{Fill, MethodStyle, Shape, dash};
+use super::pen::{Drawn, FRONT, LEFT, Pen};
+use super::{LodKind, Method, Subject};
+use inspect::plot::INK;
+use inspect::settings::Choice;
+
+/// An entry of the legend: a sample and its name.
+pub(super) struct Entry {
+    sample: Sample,
+    name: String,
+}
+
+enum Sample {
+    Marker(MethodStyle),
+    Line(Option<[f64; 2]>),
+    Front,
+}
+
+/// The number of entries in a line of partitionings and normals.
+const IN_A_LINE: usize = 3;
+
+/// Every method of a subject, with its style.
+pub fn method_styles(subject: &Subject) -> Vec<(Method, MethodStyle)> {
+    let methods = subject.methods();
+    let variants = variants(&methods);
+    let variant = |method: &Method| variants.iter().position(|other| same(other, method)).unwrap_or(0);
+    methods.iter().map(|method| (*method, MethodStyle::of(*method, variant(method)))).collect()
+}
+
+/// One method for each pair of partitioning and normals; empty if every LOD has only one such pair, so that the pairs needn't
+/// be told apart.
+fn variants(methods: &[Method]) -> Vec<Method> {
+    let mut all: Vec<Method> = Vec::new();
+    for method in methods {
+        if !all.iter().any(|other| same(other, method)) {
+            all.push(*method);
+        }
+    }
+    let one_each = |lod: LodKind| all.iter().filter(|method| method.lod == lod).count() <= 1;
+    if LodKind::ALL.into_iter().all(one_each) { Vec::new() } else { all }
+}
+
+fn same(a: &Method, b: &Method) -> bool {
+    a.partitioning == b.partitioning && a.normals == b.normals
+}
+
+/// The lines of the legend: one for surfaces, one for LODs, and more for partitionings and normals if there are several.
+pub(super) fn legend(subjects: &[Subject]) -> Vec<Vec<Entry>> {
+    let Some(subject) = subjects.iter().max_by_key(|subject| subject.methods().len()) else { return Vec::new() };
+    let variants = variants(&subject.methods());
+    let (mut surfaces, mut lods) = (Vec::new(), Vec::new());
+    for (method, style) in method_styles(subject) {
+        add(&mut surfaces, Sample::Marker(MethodStyle { fill: Fill::Full, ..style }), method.surface.name().to_owned());
+        let mut name = match method.lod {
+            LodKind::Uniform => "uniform factor".to_owned(),
+            LodKind::Paper => "white paper's LOD, px a segment".to_owned(),
+            LodKind::Error => "LOD by error, px".to_owned(),
+            LodKind::ErrorRows => "LOD by error under rows, px".to_owned(),
+        };
+        if variants.is_empty() {
+            name += &format!(" ({})", method.partitioning.name());
+        }
+        add(&mut lods, Sample::Line(dash(method.lod)), name);
+    }
+    add(&mut surfaces, Sample::Front, "nothing has less error at less cost".to_owned());
+    let mut lines = vec![surfaces, lods];
+    for (index, method) in variants.iter().enumerate() {
+        if index % IN_A_LINE == 0 {
+            lines.push(Vec::new());
+        }
+        let style = MethodStyle { color: INK, shape: Shape::Disc, ..MethodStyle::of(*method, index) };
+        let name = format!("{}, {} normals", method.partitioning.name(), method.normals.name());
+        lines.last_mut().into_iter().for_each(|line| add(line, Sample::Marker(style), name.clone()));
+    }
+    lines
+}
+
+/// Adds an entry, unless there is one with this name.
+fn add(entries: &mut Vec<Entry>, sample: Sample, name: String) {
+    if !entries.iter().any(|entry| entry.name == name) {
+        entries.push(Entry { sample, name });
+    }
+}
+
+/// Draws a line of entries from `at` on. `size` is the height of their text in px.
+pub(super) fn draw_legend<DB: DrawingBackend>(pen: &Pen<DB>, entries: &[Entry], at: [f64; 2], size: i32) -> Drawn<DB> {
+    let [mut x, y] = at;
+    for Entry { sample, name } in entries {
+        let long = match sample {
+            Sample::Marker(style) => {
+                pen.marker([x + 6.0, y], style)?;
+                16.0
+            }
+            Sample::Line(dash) => {
+                pen.line(&[[x, y], [x + 32.0, y]], INK, 1.4, *dash)?;
+                38.0
+            }
+            Sample::Front => {
+                pen.line(&[[x, y], [x + 32.0, y]], FRONT, 9.0, None)?;
+                38.0
+            }
+        };
+        pen.text(name, [x + long, y], size, LEFT)?;
+        x += long + pen.text_width(name, size) * 1.08 + 22.0;
+    }
+    Ok(())
+}

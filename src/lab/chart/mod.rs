@@ -1,0 +1,174 @@
+//! Speed against accuracy: every method is timed at many settings and compared with a reference surface. The results are rows,
+//! a picture and a report.
+
+mod axis;
+mod bench;
+mod cost;
+mod labels;
+mod legend;
+mod method_style;
+mod pen;
+mod picture;
+mod race;
+pub mod report;
+mod save;
+mod setting;
+mod words;
+
+pub use axis::{Axis, Tick, tick_text};
+pub use bench::{Bench, Effort, Probe, whole};
+pub use cost::Cost;
+pub use legend::method_styles;
+pub use method_style::{Fill, MethodStyle, Shape, dash};
+pub use pen::RADIUS;
+pub use picture::{bitmap, svg};
+#[cfg(test)]
+pub use race::front;
+pub use race::has_converged;
+pub(crate) use race::{Race, Win};
+pub use save::{SaveError, save};
+pub use setting::{LodKind, Method, Plan, Setting, coarse_first};
+
+use geometry::tessellate::Vertex;
+use gpu::{DRAWING, PassTime};
+use inspect::settings::Choice;
+
+/// The columns of a row written as CSV.
+pub const COLUMNS: [&str; 18] = [
+    "mesh",
+    "adapter",
+    "surface",
+    "normals",
+    "partitioning",
+    "lod",
+    "setting",
+    "triangles",
+    "vertices",
+    "bytes",
+    "ms_tessellate",
+    "ms_draw",
+    "ms_total",
+    "max_error",
+    "rms_error",
+    "max_error_px",
+    "normal_error_deg",
+    "triangles_by_error",
+];
+
+/// The measurements of one setting.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// The mesh's name, as the user gave it.
+    pub mesh: String,
+    pub adapter: String,
+    pub setting: Setting,
+    pub triangles: u64,
+    pub vertices: u64,
+    pub time: Time,
+    /// Compared with the reference surface; `None` without one, or if nothing with an area was emitted.
+    pub errors: Option<Errors>,
+    /// The largest distance on screen, in px, from what was emitted to the reference surface, or without one to the limit of
+    /// the method's own surface; `None` if nothing is in view.
+    pub max_error_px: Option<f64>,
+    /// The triangles with which LOD by error comes as close to the limit of the method's own surface as this row does, on
+    /// screen and under the same partitioning; `None` if nothing is in view, or the tessellator hasn't enough segments.
+    pub triangles_by_error: Option<u64>,
+}
+
+/// Median times in ms.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Time {
+    /// All passes that run again when the view changes, from factors to displacement. Control nets are made once, and don't
+    /// count.
+    pub tessellate: f64,
+    pub draw: f64,
+}
+
+/// Distances in both directions, as parts of the reference surface's bounding diagonal, and the largest angle between normals.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Errors {
+    pub largest: f64,
+    pub rms: f64,
+    pub normal_degrees: f64,
+}
+
+/// The passes that run again when the view changes.
+const TESSELLATE: [&str; 7] = ["factors", "levels", "counts", "scan", "chunks", "emit", "displace"];
+
+impl Time {
+    pub fn of(passes: &[PassTime]) -> Self {
+        let sum = |which: &dyn Fn(&str) -> bool| {
+            passes.iter().filter(|time| which(time.pass)).map(|time| time.ms).sum::<f64>()
+        };
+        Self { tessellate: sum(&|pass| TESSELLATE.contains(&pass)), draw: sum(&|pass| DRAWING.contains(&pass)) }
+    }
+
+    pub fn total(&self) -> f64 {
+        self.tessellate + self.draw
+    }
+}
+
+impl Row {
+    /// The size of the emitted vertices and indices.
+    pub fn bytes(&self) -> u64 {
+        self.vertices * size_of::<Vertex>() as u64 + self.triangles * 12
+    }
+
+    /// The fields of [`COLUMNS`]. Numbers read back exactly, and unknown values are empty.
+    pub fn record(&self) -> [String; 18] {
+        let Method { surface, normals, partitioning, lod } = self.setting.method;
+        let known = |number: Option<f64>| number.map_or_else(String::new, |number| number.to_string());
+        [
+            self.mesh.clone(),
+            self.adapter.clone(),
+            surface.name().to_owned(),
+            normals.name().to_owned(),
+            partitioning.name().to_owned(),
+            lod.name().to_owned(),
+            self.setting.to_string(),
+            self.triangles.to_string(),
+            self.vertices.to_string(),
+            self.bytes().to_string(),
+            self.time.tessellate.to_string(),
+            self.time.draw.to_string(),
+            self.time.total().to_string(),
+            known(self.errors.map(|errors| errors.largest)),
+            known(self.errors.map(|errors| errors.rms)),
+            known(self.max_error_px),
+            known(self.errors.map(|errors| errors.normal_degrees)),
+            self.triangles_by_error.map_or_else(String::new, |triangles| triangles.to_string()),
+        ]
+    }
+}
+
+/// A mesh with its measurements.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Subject {
+    /// The mesh's name in pictures and reports.
+    pub title: String,
+    /// The reference surface that it was compared with, in words; `None` if each surface was compared with its own limit.
+    pub truth: Option<String>,
+    pub adapter: String,
+    /// The width and height of the view, in px.
+    pub size: [u32; 2],
+    pub rows: Vec<Row>,
+}
+
+impl Subject {
+    /// The largest error of a row: a part of the reference surface's diagonal, or px without a reference surface.
+    pub fn error(&self, row: &Row) -> Option<f64> {
+        self.error_of(row.errors, row.max_error_px)
+    }
+
+    /// The largest error of any measurements: see [`Self::error`].
+    pub fn error_of(&self, errors: Option<Errors>, max_error_px: Option<f64>) -> Option<f64> {
+        let error = match self.truth {
+            Some(_) => errors.map(|errors| errors.largest),
+            None => max_error_px,
+        };
+        error.filter(|error| error.is_finite())
+    }
+}
+
+#[cfg(test)]
+mod tests;

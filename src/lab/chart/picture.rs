@@ -1,0 +1,236 @@
+//! The picture of a chart: for each mesh, the error over time and over triangles, side by side.
+
+use image::RgbImage;
+use plotters::coord::Shift;
+use plotters::prelude::*;
+
+use super::axis::{Axis, Tick, tick_text};
+use super::labels::{Rect, Wanted, place};
+use super::legend::{Entry, draw_legend, legend, method_styles};
+use super::pen::{Drawn, FRONT, LEFT, MIDDLE, Pen, RIGHT};
+use super::{Cost, Method, Row, Subject};
+use inspect::plot::{self, ChartError, DENSITY, INK};
+
+/// The picture's width in px: that of pictures in a README.
+const WIDTH: u32 = 960;
+/// The space to the left and right of the panels and between them, and the height of panels, in px.
+const LEFT_MARGIN: f64 = 70.0;
+const RIGHT_MARGIN: f64 = 16.0;
+const BETWEEN: f64 = 34.0;
+const PANEL_HEIGHT: f64 = 380.0;
+/// The heights of what is above and below the panels of a mesh, and of a line of text, in px.
+const HEAD: f64 = 48.0;
+const FOOT: f64 = 50.0;
+const LINE: f64 = 19.0;
+/// Sizes of text, in px.
+const TITLE: i32 = 18;
+const TEXT: i32 = 14;
+const SMALL: i32 = 12;
+
+const GRID: RGBColor = RGBColor(236, 236, 236);
+
+/// Draws charts as a bitmap.
+///
+/// # Errors
+/// The font can't be used.
+pub fn bitmap(subjects: &[Subject]) -> Result<RgbImage, ChartError> {
+    let layout = Layout::of(subjects);
+    plot::bitmap([WIDTH, layout.height()], |area| layout.draw(area))
+}
+
+/// Draws charts as an SVG file. Its labels are text.
+///
+/// # Errors
+/// The font can't be used.
+pub fn svg(subjects: &[Subject]) -> Result<String, ChartError> {
+    plot::use_font()?;
+    let layout = Layout::of(subjects);
+    let (size, drawn) = ([WIDTH, layout.height()], [WIDTH, layout.height()].map(|side| side * DENSITY));
+    let mut text = String::new();
+    {
+        let area = SVGBackend::with_string(&mut text, drawn.into()).into_drawing_area();
+        layout.draw(&area).map_err(|error| ChartError::failed(&error))?;
+        area.present().map_err(|error| ChartError::failed(&error))?;
+    }
+    // The library draws in whole px, so the file is drawn larger than it is shown.
+    let sides = |[width, height]: [u32; 2]| format!("width=\"{width}\" height=\"{height}\"");
+    Ok(text.replacen(&sides(drawn), &sides(size), 1))
+}
+
+/// The layout of all charts: their subjects with the lines of text below them, and the legend.
+struct Layout<'a> {
+    subjects: Vec<(&'a Subject, Vec<String>)>,
+    legend: Vec<Vec<Entry>>,
+}
+
+/// The most letters in a line of text. Longer sentences are broken.
+const LETTERS: usize = 145;
+
+impl<'a> Layout<'a> {
+    fn of(subjects: &'a [Subject]) -> Self {
+        let lines = |subject: &Subject| subject.sentences().iter().flat_map(|text| broken(text, LETTERS)).collect();
+        Self { subjects: subjects.iter().map(|subject| (subject, lines(subject))).collect(), legend: legend(subjects) }
+    }
+
+    fn height(&self) -> u32 {
+        let parts = self.subjects.iter().map(|(_, lines)| part_height(lines));
+        (parts.sum::<f64>() + LINE * self.legend.len() as f64 + 22.0) as u32
+    }
+
+    fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> Drawn<DB> {
+        area.fill(&WHITE)?;
+        let pen = Pen(area);
+        let mut top = 0.0;
+        for (subject, lines) in &self.subjects {
+            draw_subject(&pen, subject, lines, top)?;
+            top += part_height(lines);
+        }
+        for (entries, line) in self.legend.iter().zip(0..) {
+            draw_legend(&pen, entries, [LEFT_MARGIN, top + 10.0 + LINE * f64::from(line)], TEXT)?;
+        }
+        Ok(())
+    }
+}
+
+fn part_height(lines: &[String]) -> f64 {
+    HEAD + PANEL_HEIGHT + FOOT + LINE * lines.len() as f64 + 14.0
+}
+
+fn draw_subject<DB: DrawingBackend>(pen: &Pen<DB>, subject: &Subject, lines: &[String], top: f64) -> Drawn<DB> {
+    let facts = subject.facts();
+    pen.text(&subject.title, [LEFT_MARGIN, top + 20.0], TITLE, LEFT)?;
+    let after = LEFT_MARGIN + pen.text_width(&subject.title, TITLE) * 1.08 + 12.0;
+    pen.text(&facts, [after, top + 21.0], TEXT, LEFT)?;
+    let across = (f64::from(WIDTH) - LEFT_MARGIN - RIGHT_MARGIN - BETWEEN) / 2.0;
+    for (cost, column) in [(Cost::Ms, 0.0), (Cost::Triangles, 1.0)] {
+        let min = [LEFT_MARGIN + column * (across + BETWEEN), top + HEAD];
+        let frame = Rect { min, max: [min[0] + across, min[1] + PANEL_HEIGHT] };
+        Panel::new(subject, cost, frame).draw(pen, column == 0.0)?;
+    }
+    let mut y = top + HEAD + PANEL_HEIGHT + FOOT + LINE / 2.0;
+    for line in lines {
+        pen.text(line, [LEFT_MARGIN, y], TEXT, LEFT)?;
+        y += LINE;
+    }
+    Ok(())
+}
+
+/// One diagram: the error over one cost.
+struct Panel<'a> {
+    subject: &'a Subject,
+    cost: Cost,
+    frame: Rect,
+    x: Axis,
+    y: Axis,
+}
+
+impl<'a> Panel<'a> {
+    fn new(subject: &'a Subject, cost: Cost, frame: Rect) -> Self {
+        let known = || subject.rows.iter().filter(|row| subject.error(row).is_some());
+        let x = Axis::around(known().map(|row| cost.of(row)), 0.0, [frame.min[0], frame.max[0]]);
+        let errors = subject.rows.iter().filter_map(|row| subject.error(row));
+        let shown = errors.map(|error| error * subject.unit());
+        let y = Axis::around(shown, subject.floor() * subject.unit(), [frame.max[1], frame.min[1]]);
+        Self { subject, cost, frame, x, y }
+    }
+
+    fn point(&self, row: &Row, error: f64) -> [f64; 2] {
+        [self.x.place(self.cost.of(row)), self.y.place(error * self.subject.unit())]
+    }
+
+    fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>, is_first: bool) -> Drawn<DB> {
+        self.draw_axes(pen, is_first)?;
+        let races = self.subject.races();
+        let fronts: Vec<_> = races.iter().map(|race| race.front(|row| self.cost.of(row))).collect();
+        for front in &fronts {
+            let points: Vec<_> = front.iter().map(|(row, error)| self.point(row, *error)).collect();
+            pen.line(&points, FRONT, 9.0, None)?;
+            // A front of one point is no line, so each point gets a square.
+            points.iter().try_for_each(|[x, y]| pen.rect([x - 4.5, y - 4.5], [x + 4.5, y + 4.5], FRONT.filled()))?;
+        }
+        let methods = method_styles(self.subject);
+        let rows = |method: Method| {
+            let own = self.subject.rows.iter().filter(move |row| row.setting.method == method);
+            own.filter_map(|row| Some((row, self.subject.error(row)?)))
+        };
+        let mut all: Vec<(&Row, [f64; 2])> = Vec::new();
+        let mut lines = Vec::new();
+        for (method, style) in &methods {
+            let points: Vec<_> = rows(*method).map(|(row, error)| (row, self.point(row, error))).collect();
+            let path: Vec<_> = points.iter().map(|(_, point)| *point).collect();
+            pen.line(&path, style.color, 1.4, style.dash)?;
+            lines.extend(path.windows(2).map(|ends| [ends[0], ends[1]]));
+            all.extend(points);
+        }
+        for (method, style) in &methods {
+            rows(*method).try_for_each(|(row, error)| pen.marker(self.point(row, error), style))?;
+        }
+        // Points on the front get their labels first.
+        let is_front = |row: &Row| fronts.iter().flatten().any(|(other, _)| std::ptr::eq(*other, row));
+        all.sort_by_key(|(row, _)| !is_front(row));
+        self.draw_labels(pen, &all, &lines)
+    }
+
+    fn draw_labels<DB: DrawingBackend>(
+        &self,
+        pen: &Pen<DB>,
+        all: &[(&Row, [f64; 2])],
+        lines: &[[[f64; 2]; 2]],
+    ) -> Drawn<DB> {
+        let texts: Vec<String> = all.iter().map(|(row, _)| row.setting.label()).collect();
+        let points: Vec<_> = all.iter().map(|(_, point)| *point).collect();
+        let size = |text: &str| [pen.text_width(text, SMALL) * 1.08, f64::from(SMALL)];
+        let wanted: Vec<_> = points.iter().zip(&texts).map(|(&at, text)| Wanted { at, size: size(text) }).collect();
+        for (text, rect) in texts.iter().zip(place(&wanted, &points, lines, self.frame)) {
+            if let Some(Rect { min, max }) = rect {
+                pen.text(text, [(min[0] + max[0]) / 2.0, (min[1] + max[1]) / 2.0], SMALL, MIDDLE)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn draw_axes<DB: DrawingBackend>(&self, pen: &Pen<DB>, is_first: bool) -> Drawn<DB> {
+        let Rect { min: [left, top], max: [right, bottom] } = self.frame;
+        for Tick { value, named } in self.x.ticks() {
+            let x = self.x.place(value);
+            if named {
+                pen.line(&[[x, top], [x, bottom]], GRID, 1.0, None)?;
+                pen.text(&tick_text(value), [x, bottom + 14.0], TEXT, MIDDLE)?;
+            }
+            pen.line(&[[x, bottom], [x, bottom + if named { 5.0 } else { 3.0 }]], INK, 1.0, None)?;
+        }
+        let zero = (self.y.zero_px > 0.0).then_some(Tick { value: 0.0, named: true });
+        for Tick { value, named } in self.y.ticks().into_iter().chain(zero) {
+            let y = self.y.place(value);
+            if named {
+                pen.line(&[[left, y], [right, y]], GRID, 1.0, None)?;
+            }
+            if named && is_first {
+                let text = if value > 0.0 { tick_text(value) } else { "0".to_owned() };
+                pen.text(&text, [left - 9.0, y], TEXT, RIGHT)?;
+            }
+            pen.line(&[[left - if named { 5.0 } else { 3.0 }, y], [left, y]], INK, 1.0, None)?;
+        }
+        pen.line(&[[left, top], [left, bottom], [right, bottom]], INK, 1.0, None)?;
+        pen.text(self.cost.name(), [(left + right) / 2.0, bottom + 34.0], TEXT, MIDDLE)?;
+        if !is_first {
+            return Ok(());
+        }
+        pen.text_upwards(self.subject.error_name(), [left - 52.0, (top + bottom) / 2.0], TEXT)
+    }
+}
+
+/// Breaks text between words into lines of at most `letters` letters.
+fn broken(text: &str, letters: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= letters => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}

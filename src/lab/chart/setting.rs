@@ -1,0 +1,226 @@
+//! The methods and settings that a chart tries.
+
+use std::fmt;
+
+use geometry::names::every;
+use geometry::tessellate::{Lod, Normals, Partitioning, Surface, Tessellation};
+use inspect::settings::{Choice, Description, Settings};
+
+/// The kinds of LOD that a chart tries, and the number that says how fine each is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum LodKind {
+    /// One factor for all edges.
+    Uniform,
+    /// The white paper's LOD, in px per segment.
+    Paper,
+    /// LOD by error, in px on screen.
+    Error,
+    /// LOD by error with patches that are cut into rows, in px on screen.
+    ErrorRows,
+}
+
+impl LodKind {
+    pub const ALL: [Self; 4] = every![LodKind: Uniform, Paper, Error, ErrorRows];
+
+    /// The kind of an LOD with a partitioning; `None` for one that isn't tried.
+    fn of(lod: Lod, partitioning: Partitioning) -> Option<Self> {
+        let has_rows = partitioning == Partitioning::Rows && lod == Lod::Error;
+        Self::ALL.into_iter().find(|kind| kind.lod() == lod && (*kind == Self::ErrorRows) == has_rows)
+    }
+
+    fn lod(self) -> Lod {
+        match self {
+            Self::Uniform => Lod::Uniform,
+            Self::Paper => Lod::Paper,
+            Self::Error | Self::ErrorRows => Lod::Error,
+        }
+    }
+
+    /// The partitioning that it is commonly used with. LOD by error uses numbers of segments that nest, which are whole.
+    fn partitioning(self) -> Partitioning {
+        match self {
+            Self::Uniform | Self::Paper => Partitioning::FractionalOdd,
+            Self::Error => Partitioning::Integer,
+            Self::ErrorRows => Partitioning::Rows,
+        }
+    }
+}
+
+impl Choice for LodKind {
+    const ALL: &'static [Self] = &LodKind::ALL;
+
+    fn description(self) -> Description {
+        match self {
+            Self::Uniform => Description::new("uniform", "Uniform", "All edges have the same factor."),
+            Self::Paper => Description::new(
+                "paper",
+                "White paper",
+                "The white paper's length of an edge on screen, divided by the length of a segment in px.",
+            ),
+            Self::Error => Description::new("error", "Error", "The error on screen, in px."),
+            Self::ErrorRows => Description::new(
+                "error-rows",
+                "Error under rows",
+                "The error on screen, in px, with patches that are cut into rows.",
+            ),
+        }
+    }
+}
+
+/// A way to tessellate, except for how fine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Method {
+    pub surface: Surface,
+    pub normals: Normals,
+    pub partitioning: Partitioning,
+    pub lod: LodKind,
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} by {} LOD", self.surface.name(), self.lod.name())
+    }
+}
+
+/// A method, and a number that says how fine it is: a factor, or px.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setting {
+    pub method: Method,
+    pub value: f32,
+}
+
+impl Setting {
+    /// The setting that some settings amount to; `None` under an LOD that isn't tried.
+    pub fn of(settings: &Settings) -> Option<Self> {
+        let Tessellation { surface, normals, partitioning, factor, pixels, tolerance, .. } = settings.tessellation;
+        let lod = LodKind::of(settings.tessellation.used_lod(), partitioning)?;
+        let value = match lod {
+            LodKind::Uniform => factor,
+            LodKind::Paper => pixels,
+            LodKind::Error | LodKind::ErrorRows => tolerance,
+        };
+        Some(Self { method: Method { surface, normals, partitioning, lod }, value })
+    }
+
+    /// Some settings with this one applied.
+    pub fn applied(&self, settings: &Settings) -> Settings {
+        let Method { surface, normals, partitioning, lod } = self.method;
+        let plain = Tessellation { surface, normals, partitioning, lod: lod.lod(), ..settings.tessellation };
+        settings.with(match lod {
+            LodKind::Uniform => Tessellation { factor: self.value, ..plain },
+            LodKind::Paper => Tessellation { pixels: self.value, ..plain },
+            LodKind::Error | LodKind::ErrorRows => Tessellation { tolerance: self.value, ..plain },
+        })
+    }
+
+    /// Whether this is a finer setting of the same method.
+    pub fn is_finer(&self, than: &Self) -> bool {
+        let finer = match self.method.lod {
+            LodKind::Uniform => self.value > than.value,
+            LodKind::Paper | LodKind::Error | LodKind::ErrorRows => self.value < than.value,
+        };
+        finer && self.method == than.method
+    }
+
+    /// The number that says how fine it is, as short text.
+    pub fn label(&self) -> String {
+        match self.method.lod {
+            LodKind::Uniform => self.value.to_string(),
+            LodKind::Paper | LodKind::Error | LodKind::ErrorRows => format!("{} px", self.value),
+        }
+    }
+}
+
+impl fmt::Display for Setting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let what = match self.method.lod {
+            LodKind::Uniform => "factor",
+            LodKind::Paper => "paper",
+            LodKind::Error => "error",
+            LodKind::ErrorRows => "error, rows",
+        };
+        write!(f, "{what} {}", self.label())
+    }
+}
+
+/// All methods and settings that a chart tries.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    pub surfaces: Vec<Surface>,
+    pub normals: Vec<Normals>,
+    /// Each is tried with every LOD. If empty, each LOD has the partitioning that it is commonly used with.
+    pub partitionings: Vec<Partitioning>,
+    pub lods: Vec<LodKind>,
+    /// The factors of uniform LOD.
+    pub factors: Vec<f32>,
+    /// The px per segment of the white paper's LOD.
+    pub pixels: Vec<f32>,
+    /// The tolerances of LOD by error, in px.
+    pub tolerances: Vec<f32>,
+}
+
+impl Default for Plan {
+    fn default() -> Self {
+        Self {
+            surfaces: vec![Surface::Flat, Surface::PnAen, Surface::PhongAen, Surface::NagataAen],
+            normals: vec![Normals::Linear],
+            partitionings: Vec::new(),
+            lods: LodKind::ALL.to_vec(),
+            factors: vec![1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0, 48.0, 64.0],
+            pixels: vec![32.0, 16.0, 8.0, 4.0, 2.0, 1.0],
+            tolerances: vec![8.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.125],
+        }
+    }
+}
+
+/// Reorders settings: the coarsest of every method first, then the next finer ones, so that all lines of a chart grow together.
+pub fn coarse_first(settings: Vec<Setting>) -> Vec<Setting> {
+    let place =
+        |index: usize| settings[..index].iter().filter(|earlier| earlier.method == settings[index].method).count();
+    let mut placed: Vec<_> = (0..settings.len()).map(|index| (place(index), settings[index])).collect();
+    placed.sort_by_key(|(place, _)| *place);
+    placed.into_iter().map(|(_, setting)| setting).collect()
+}
+
+impl Plan {
+    /// All settings, method by method, each from coarse to fine as listed. Subtriangulation is only tried with uniform LOD.
+    pub fn settings(&self) -> Vec<Setting> {
+        let mut all: Vec<Setting> = Vec::new();
+        for method in self.methods() {
+            let values = match method.lod {
+                LodKind::Uniform => &self.factors,
+                LodKind::Paper => &self.pixels,
+                LodKind::Error | LodKind::ErrorRows => &self.tolerances,
+            };
+            let settings = values.iter().map(|&value| Setting { method, value });
+            // A setting that was named twice is tried once.
+            settings.for_each(|setting| {
+                if !all.contains(&setting) {
+                    all.push(setting);
+                }
+            });
+        }
+        all
+    }
+
+    fn methods(&self) -> Vec<Method> {
+        let mut all = Vec::new();
+        for (&surface, &normals) in self.surfaces.iter().flat_map(|a| self.normals.iter().map(move |b| (a, b))) {
+            for &lod in &self.lods {
+                let common = [lod.partitioning()];
+                let has_common = self.partitionings.is_empty() || lod == LodKind::ErrorRows;
+                let listed = if has_common { &common[..] } else { &self.partitionings };
+                let possible = |partitioning: &&Partitioning| {
+                    lod == LodKind::Uniform || **partitioning != Partitioning::Subtriangulation
+                };
+                let method = |&partitioning: &Partitioning| {
+                    let under_rows = lod == LodKind::Error && partitioning == Partitioning::Rows;
+                    let lod = if under_rows { LodKind::ErrorRows } else { lod };
+                    Method { surface, normals, partitioning, lod }
+                };
+                all.extend(listed.iter().filter(possible).map(method));
+            }
+        }
+        all
+    }
+}

@@ -1,0 +1,91 @@
+//! Finds the assets to check: files, shapes, and all meshes in folders.
+
+use std::collections::HashSet;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use load::Source;
+use load::format::Format;
+
+/// A folder that can't be looked through.
+#[derive(Debug)]
+pub struct FolderError {
+    pub folder: PathBuf,
+    pub error: io::Error,
+}
+
+/// Returns the files and shapes as they are given, and in place of each folder the files in and below it whose names say that they
+/// are meshes, in the order of their paths. Hidden files and folders are left out, and links to folders in folders, which could
+/// lead in a circle. A file that is named several times comes once.
+///
+/// # Errors
+/// A folder can't be looked through.
+pub fn assets(given: &[Source]) -> Result<Vec<Source>, FolderError> {
+    let (mut all, mut known) = (Vec::new(), HashSet::new());
+    for source in given {
+        let found = match source {
+            Source::File(path) if path.is_dir() => meshes_in(path)?.into_iter().map(Source::File).collect(),
+            other => vec![other.clone()],
+        };
+        let place = |source: &Source| match source {
+            Source::File(path) => path.canonicalize().unwrap_or_else(|_| path.clone()),
+            shape => PathBuf::from(shape.to_string()),
+        };
+        all.extend(found.into_iter().filter(|source| known.insert(place(source))));
+    }
+    Ok(all)
+}
+
+fn meshes_in(folder: &Path) -> Result<Vec<PathBuf>, FolderError> {
+    let (mut folders, mut files) = (vec![folder.to_owned()], Vec::new());
+    while let Some(folder) = folders.pop() {
+        look_through(&folder, &mut folders, &mut files).map_err(|error| FolderError { folder, error })?;
+    }
+    files.sort();
+    Ok(files)
+}
+
+fn look_through(folder: &Path, folders: &mut Vec<PathBuf>, files: &mut Vec<PathBuf>) -> io::Result<()> {
+    for entry in std::fs::read_dir(folder)? {
+        let entry = entry?;
+        let path = entry.path();
+        if entry.file_name().as_encoded_bytes().starts_with(b".") {
+            continue;
+        }
+        let kind = entry.file_type()?;
+        // A link to a file that is gone is an asset that can't be opened.
+        let is_lost = kind.is_symlink() && !path.exists();
+        if kind.is_dir() {
+            folders.push(path);
+        } else if Format::of_name(&path).is_some() && (path.is_file() || is_lost) {
+            files.push(path);
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn folders_are_looked_through_and_files_come_once() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = |name: &str| folder.path().join(name);
+        std::fs::create_dir_all(path("deep/er")).expect("a writable folder");
+        std::fs::create_dir(path(".hidden")).expect("a writable folder");
+        for name in ["b.obj", "a.GLB", "deep/er/c.stl", "notes.txt", ".d.obj", ".hidden/e.obj"] {
+            std::fs::write(path(name), "").expect("a writable folder");
+        }
+        #[cfg(unix)]
+        std::os::unix::fs::symlink(folder.path(), path("deep/circle")).expect("a link");
+        #[cfg(unix)]
+        std::os::unix::fs::symlink(path("gone.glb"), path("lost.glb")).expect("a link");
+        let given =
+            [Source::File(path("b.obj")), Source::File(folder.path().into()), Source::File(path("missing.obj"))];
+        let found = assets(&given).expect("readable folders");
+        let expected = ["b.obj", "a.GLB", "deep/er/c.stl", "lost.glb", "missing.obj"];
+        let expected = expected.into_iter().filter(|name| cfg!(unix) || *name != "lost.glb");
+        assert_eq!(found, expected.map(|name| Source::File(path(name))).collect::<Vec<_>>());
+    }
+}

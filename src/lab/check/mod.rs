@@ -1,0 +1,19 @@
+//! Checks a folder of assets: its configuration, what was found, and reports of that for people and for build servers. Loading
+//! and measuring is the command's.
+
+mod assets;
+mod cache;
+mod config;
+mod junit;
+mod page;
+mod pattern;
+mod report;
+mod sarif;
+
+pub use assets::{FolderError, assets};
+pub use cache::{Cache, Inputs};
+pub use config::{Config, ConfigError, OptionValue, Section};
+pub use junit::junit;
+pub use page::page;
+pub use report::{Asset, GateResult, Numbers, Report, View};
+pub use sarif::sarif;

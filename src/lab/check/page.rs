@@ -1,0 +1,139 @@
+//! The report as a page with pictures: one HTML file that needs no other.
+
+use std::fmt::Write;
+
+use super::report::{Asset, GateResult, Report, Status, View, gate_title};
+use geometry::names::on_one_line;
+use geometry::numbers::grouped;
+
+/// Colours of both themes and the layout. Texts have a contrast of at least 4.5 to 1 against what is behind them.
+const STYLE: &str = "
+:root { color-scheme: light dark; --ink: #24272c; --dim: #5a616b; --back: #f7f7f5; --card: #ffffff; --line: #dcdcd7;
+  --good: #1f6f43; --bad: #b3261e; }
+@media (prefers-color-scheme: dark) { :root { --ink: #e4e4e0; --dim: #a3a9b2; --back: #1d1f23; --card: #26292e;
+  --line: #3a3e45; --good: #7fce9f; --bad: #ff9f94; } }
+body { margin: 2rem auto; max-width: 72rem; padding: 0 1rem; background: var(--back); color: var(--ink);
+  font: 16px/1.5 system-ui, sans-serif; }
+h1 { font-size: 1.5rem; } h2 { font-size: 1.1rem; margin: 0; overflow-wrap: anywhere; }
+.asset { background: var(--card); border: 1px solid var(--line); border-radius: 6px; margin: 1rem 0; padding: 1rem; }
+.view { display: flex; flex-wrap: wrap; gap: 1rem; margin-top: 0.75rem; }
+.view > div { flex: 1 1 18rem; }
+figure { margin: 0; } figcaption { color: var(--dim); font-size: 0.9rem; }
+img { display: block; max-width: 100%; width: 22rem; height: auto; border-radius: 4px; }
+table { border-collapse: collapse; } td, th { padding: 0.1rem 1rem 0.1rem 0; text-align: left; vertical-align: top;
+  font-weight: normal; } th { color: var(--dim); } td.number { text-align: right; }
+ul { margin: 0.5rem 0; padding-left: 1.2rem; } .dim { color: var(--dim); }
+.passed { color: var(--good); } .failed, .broken { color: var(--bad); } .status { font-weight: 600; }
+";
+
+/// Writes the page. What failed comes first.
+pub fn page(report: &Report) -> String {
+    let mut text = String::from("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
+    text += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>pnaen check</title>\n";
+    let _ = write!(text, "<style>{STYLE}</style>\n</head>\n<body>\n<h1>pnaen check</h1>\n");
+    let _ = writeln!(text, "<p>{}.</p>", escaped(&report.summary()));
+    for status in [Status::Broken, Status::Failed, Status::Passed] {
+        report.assets.iter().filter(|asset| asset.status() == status).for_each(|asset| text += &section(asset));
+    }
+    text + "</body>\n</html>\n"
+}
+
+/// A text as HTML.
+fn escaped(text: &str) -> String {
+    let plain = on_one_line(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+    plain.replace('"', "&quot;").replace('\'', "&#39;")
+}
+
+fn section(asset: &Asset) -> String {
+    let status = asset.status().name();
+    let mut text = format!("<section class=\"asset\">\n<h2>{}</h2>\n", escaped(&asset.path));
+    let unchanged = if asset.unchanged { " <span class=\"dim\">unchanged, not measured again</span>" } else { "" };
+    let _ = writeln!(text, "<div class=\"status {status}\">{status}{unchanged}</div>");
+    if let Some(error) = &asset.error {
+        let _ = writeln!(text, "<p>{}</p>", escaped(error));
+    }
+    asset.views.iter().for_each(|view| text += &of_view(asset, view));
+    if !asset.warnings.is_empty() {
+        let _ = writeln!(text, "<details><summary>{} of loading</summary>\n<ul>", warnings(asset.warnings.len()));
+        for warning in &asset.warnings {
+            let _ = writeln!(text, "<li>{}</li>", escaped(warning));
+        }
+        text += "</ul></details>\n";
+    }
+    text + "</section>\n"
+}
+
+fn warnings(count: usize) -> String {
+    if count == 1 { "1 warning".to_owned() } else { format!("{count} warnings") }
+}
+
+fn of_view(asset: &Asset, view: &View) -> String {
+    let mut text = String::from("<div class=\"view\">\n");
+    let name = if view.name.is_empty() { &asset.path } else { &view.name };
+    if let Some(picture) = &view.picture {
+        let caption = if view.name.is_empty() { "" } else { &view.name };
+        text += &figure(picture, &format!("Picture of {name}"), caption);
+    }
+    text += "<div>\n<table>\n";
+    let numbers = view.numbers;
+    for (label, number) in [
+        ("triangles of the mesh", numbers.triangles_in),
+        ("patches", numbers.patches),
+        ("emitted triangles", numbers.triangles_out),
+        ("emitted vertices", numbers.vertices_out),
+    ] {
+        let _ = writeln!(text, "<tr><th>{label}</th><td class=\"number\">{}</td></tr>", grouped(number));
+    }
+    text += "</table>\n<ul>\n";
+    view.gates.iter().for_each(|gate| text += &of_gate(gate));
+    text += "</ul>\n</div>\n";
+    for gate in &view.gates {
+        let caption = gate_title(&view.name, &gate.name);
+        let of = |evidence: &String| figure(evidence, &format!("The worst place of {name} for {caption}"), &caption);
+        text.extend(gate.evidence.as_ref().map(of));
+    }
+    text + "</div>\n"
+}
+
+fn of_gate(gate: &GateResult) -> String {
+    // The words say what the colours say.
+    let (class, how) = if gate.passed { ("passed", "") } else { ("failed", " failed") };
+    let (name, words) = (escaped(&gate.name), escaped(&gate.text));
+    format!("<li><span class=\"{class}\">{name}{how}</span>: {words}</li>\n")
+}
+
+/// A picture, a PNG file in base64.
+fn figure(picture: &str, alternative: &str, caption: &str) -> String {
+    let caption =
+        if caption.is_empty() { String::new() } else { format!("<figcaption>{}</figcaption>", escaped(caption)) };
+    let alternative = escaped(alternative);
+    format!("<figure><img src=\"data:image/png;base64,{picture}\" alt=\"{alternative}\">{caption}</figure>\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check::report::sample;
+
+    #[test]
+    fn the_page_needs_no_other_file_and_closes_what_it_opens() {
+        let text = page(&sample());
+        assert_eq!(text.matches("<section").count(), 3);
+        assert_eq!(text.matches("data:image/png;base64,").count(), 4, "three views and one piece of evidence");
+        assert!(!text.contains("http") && !text.contains("src=\"/"), "{text}");
+        assert!(text.contains("torn&lt;&amp;&quot;&gt;.glb") && !text.contains("torn<"), "{text}");
+        for element in
+            ["html", "head", "body", "style", "section", "div", "table", "ul", "figure", "tr", "td", "th", "li"]
+        {
+            let opened = text.matches(&format!("<{element}>")).count() + text.matches(&format!("<{element} ")).count();
+            assert_eq!(opened, text.matches(&format!("</{element}>")).count(), "{element}");
+        }
+        assert!(
+            text.contains(">cracks failed</span>: 12 edges") && text.contains(">leaks failed</span>: the mesh is open"),
+            "{text}"
+        );
+        let order = ["broken.obj", "torn&lt;", "a b/good.glb"].map(|name| text.find(name).expect("it is on the page"));
+        assert!(order.is_sorted(), "what failed comes first");
+        assert_eq!(text.matches("alt=\"").count(), 4);
+    }
+}

@@ -1,0 +1,351 @@
+//! Gives every triangle of another program to the patch that it lies on.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+
+use super::foreign::{ForeignMesh, spread};
+use super::locator::{Locator, Place};
+use super::patch_starts::patch_starts;
+use super::twins::Twins;
+use geometry::cores::in_ranges;
+use geometry::mesh::Topology;
+use geometry::progress::{Cancelled, Progress};
+
+/// Another program's mesh over our surface.
+pub(super) struct Overlaid<'a> {
+    pub theirs: &'a ForeignMesh,
+    pub topology: &'a Topology,
+    /// Finds places; there is none where all of their triangles are ours.
+    pub locator: Option<Locator<'a>>,
+    /// Their positions in our coordinates.
+    pub positions: &'a [DVec3],
+    /// Which of their triangles are ours.
+    pub twins: Twins<'a>,
+    /// The nearest place of each of their vertices.
+    pub places: Vec<Place>,
+    /// Vertices that are farther from the surface don't lie on it, in object units.
+    pub fit: f64,
+}
+
+/// How most of their triangles are wound.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Winding {
+    /// As the patches that they lie on.
+    Alike,
+    /// The other way.
+    Turned,
+}
+
+/// Their triangles, patch by patch.
+pub(super) struct Assignment<'a> {
+    pub overlaid: &'a Overlaid<'a>,
+    /// Their triangles in the order of the patches.
+    order: Vec<u32>,
+    /// Where each patch's begin in `order`, and the end.
+    starts: Vec<u32>,
+}
+
+/// Their triangles on one patch.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Part {
+    /// Their vertices, each once for each vertex of ours that it is: indices into [`ForeignMesh::positions`].
+    pub vertices: Vec<u32>,
+    /// Where each lies on this patch.
+    pub places: Vec<Place>,
+    /// Indices into `vertices`.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// The place of a vertex that is on no patch.
+const NOWHERE: Place = Place { patch: 0, weights: [0.0; 2], distance: f64::INFINITY };
+
+/// How many triangles are asked how they are wound.
+const WOUND: usize = 300;
+/// How many vertices or triangles are worth a thread.
+const LEAST: usize = 1 << 10;
+/// How many are done between two checks for cancellation.
+const STEP: usize = 1 << 12;
+
+/// Returns what `make` makes of the numbers below `count`, on all cores.
+///
+/// # Errors
+/// [`Cancelled`].
+pub(super) fn made_of_all<R: Send>(
+    count: usize,
+    progress: &Progress,
+    make: impl Fn(usize) -> R + Sync,
+) -> Result<Vec<R>, Cancelled> {
+    let parts = in_ranges(count, LEAST, |range| {
+        let mut made = Vec::with_capacity(range.len());
+        for index in range {
+            if made.len().is_multiple_of(STEP) {
+                progress.check()?;
+            }
+            made.push(make(index));
+        }
+        Ok(made)
+    });
+    Ok(parts.into_iter().collect::<Result<Vec<_>, Cancelled>>()?.into_iter().flatten().collect())
+}
+
+impl<'a> Overlaid<'a> {
+    /// Finds the place of each of their vertices: that of our vertex that it is, or the nearest.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(super) fn new(
+        theirs: &'a ForeignMesh,
+        topology: &'a Topology,
+        (locator, twins): (Option<Locator<'a>>, Twins<'a>),
+        positions: &'a [DVec3],
+        fit: f64,
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
+        let nearest = |index: usize| locator.as_ref().and_then(|locator| locator.place(positions[index]));
+        // Without a locator, triangles that aren't ours are too thin to be anywhere.
+        let nowhere = if locator.is_some() { NOWHERE } else { Place { distance: 0.0, ..NOWHERE } };
+        let place = |index: usize| twins.place_of(index).or_else(|| nearest(index)).unwrap_or(nowhere);
+        let places = made_of_all(positions.len(), progress, place)?;
+        Ok(Self { theirs, topology, locator, positions, twins, places, fit })
+    }
+
+    /// The same vertices over another surface.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(super) fn over(
+        &self,
+        surface: (Option<Locator<'a>>, Twins<'a>),
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
+        Self::new(self.theirs, self.topology, surface, self.positions, self.fit, progress)
+    }
+
+    /// Their vertices that don't lie on the surface.
+    pub(super) fn strays(&self) -> Vec<u32> {
+        let is_stray = |index: &u32| self.places[*index as usize].distance > self.fit;
+        (0..self.places.len() as u32).filter(is_stray).collect()
+    }
+
+    /// The place of a vertex on one patch.
+    fn place_on(&self, vertex: u32, patch: u32) -> Place {
+        let own = self.places[vertex as usize];
+        if own.patch == patch {
+            return own;
+        }
+        let position = self.positions[vertex as usize];
+        self.locator.as_ref().and_then(|locator| locator.place_on(patch, position)).unwrap_or(NOWHERE)
+    }
+
+    /// The patch that is nearest to the middle of a triangle.
+    fn nearest_patch(&self, triangle: [u32; 3]) -> u32 {
+        let middle = triangle.map(|corner| self.positions[corner as usize]).into_iter().sum::<DVec3>() / 3.0;
+        self.locator.as_ref().and_then(|locator| locator.patch(middle)).unwrap_or_default()
+    }
+
+    /// How most of their triangles are wound that lie on the nearest patch.
+    fn winding(&self) -> Winding {
+        let triangles = &self.theirs.triangles;
+        let fit = |triangle: [u32; 3]| self.fit_on(self.nearest_patch(triangle), triangle, Winding::Alike);
+        let fits = spread(triangles.len(), WOUND).map(|index| fit(triangles[index])).filter(|fit| fit.corners == 3);
+        let (alike, turned): (Vec<Fit>, Vec<Fit>) = fits.partition(|fit| fit.is_wound_alike);
+        if turned.len() > alike.len() { Winding::Turned } else { Winding::Alike }
+    }
+
+    fn fit_on(&self, patch: u32, triangle: [u32; 3], winding: Winding) -> Fit {
+        Fit::of(triangle.map(|corner| self.place_on(corner, patch)), self.fit, winding)
+    }
+
+    /// Returns the patch that a triangle lies on: the one on whose surface most of its corners are, and on which it is wound as
+    /// most are.
+    fn patch_of(&self, triangle: [u32; 3], winding: Winding) -> u32 {
+        let nearest = self.nearest_patch(triangle);
+        let fits = |patch: u32| self.fit_on(patch, triangle, winding);
+        let first = fits(nearest);
+        if first.is_good() {
+            return nearest;
+        }
+        let own = triangle.map(|corner| self.places[corner as usize].patch);
+        let mut tried = vec![nearest];
+        let mut best = (first, nearest);
+        let mut tries = |patches: &[u32], best: &mut (Fit, u32)| {
+            for &patch in patches {
+                if !tried.contains(&patch) {
+                    tried.push(patch);
+                    let fit = fits(patch);
+                    if fit.beats(&best.0) {
+                        *best = (fit, patch);
+                    }
+                }
+            }
+        };
+        tries(&own, &mut best);
+        for patch in [nearest, own[0], own[1], own[2]] {
+            if best.0.is_good() {
+                break;
+            }
+            tries(&self.neighbours(patch), &mut best);
+        }
+        best.1
+    }
+
+    /// The patches that share an edge with a patch.
+    fn neighbours(&self, patch: u32) -> Vec<u32> {
+        let sides = self.topology.patches[patch as usize].sides;
+        let edges = sides.map(|side| &self.topology.edges[self.topology.sides[side as usize].edge as usize]);
+        edges.into_iter().flat_map(|edge| self.topology.edge_sides(edge)).map(|side| side.patch()).collect()
+    }
+}
+
+/// How well a triangle fits a patch.
+#[derive(Clone, Copy, Debug)]
+struct Fit {
+    /// How many of its corners lie on the patch's surface.
+    corners: usize,
+    /// Whether it is wound as it should be: as the patch, or the other way.
+    is_wound_alike: bool,
+    /// The sum of its corners' distances from the patch, in object units.
+    distance: f64,
+}
+
+impl Fit {
+    fn of(places: [Place; 3], fit: f64, winding: Winding) -> Self {
+        let area = domain_area(places.map(|place| place.weights));
+        Self {
+            corners: places.iter().filter(|place| place.distance <= fit).count(),
+            is_wound_alike: if winding == Winding::Alike { area > 0.0 } else { area < 0.0 },
+            distance: places.iter().map(|place| place.distance).sum(),
+        }
+    }
+
+    fn is_good(&self) -> bool {
+        self.corners == 3 && self.is_wound_alike
+    }
+
+    fn beats(&self, other: &Self) -> bool {
+        let rank = |fit: &Self| (fit.corners, fit.corners == 3 && fit.is_wound_alike);
+        match rank(self).cmp(&rank(other)) {
+            std::cmp::Ordering::Equal => self.corners < 3 && self.distance < other.distance,
+            order => order.is_gt(),
+        }
+    }
+}
+
+/// The area of a triangle in the domain, whose own area is 1: negative if it is wound the other way than the patch. Its corners
+/// are weights of the patch's corners 0 and 1.
+pub(super) fn domain_area([a, b, c]: [[f64; 2]; 3]) -> f64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+impl<'a> Assignment<'a> {
+    /// Assigns all triangles whose corners can be told apart: the twins of ours to the patches that emit these, and others to those that
+    /// they lie on.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(super) fn new(overlaid: &'a Overlaid<'a>, progress: &Progress) -> Result<Self, Cancelled> {
+        let (triangles, twins) = (&overlaid.theirs.triangles, &overlaid.twins);
+        let winding = if twins.are_all() { Winding::Alike } else { overlaid.winding() };
+        let patches = made_of_all(triangles.len(), progress, |index| match twins.corners(index as u32) {
+            Some([vertex, ..]) => twins.place(vertex).patch,
+            None if twins.is_thin(index as u32) => 0,
+            None => overlaid.patch_of(triangles[index], winding),
+        })?;
+        let seen = || (0..).zip(&patches).filter(|(triangle, _)| !twins.is_thin(*triangle));
+        let starts = patch_starts(seen().map(|(_, patch)| *patch), overlaid.topology.patches.len());
+        let mut order = vec![0; seen().count()];
+        let mut next = starts.clone();
+        for (triangle, &patch) in seen() {
+            order[next[patch as usize] as usize] = triangle;
+            next[patch as usize] += 1;
+        }
+        Ok(Self { overlaid, order, starts })
+    }
+
+    /// The number of their triangles on a patch.
+    pub(super) fn count(&self, patch: u32) -> u32 {
+        self.starts[patch as usize + 1] - self.starts[patch as usize]
+    }
+
+    /// Their triangles on a patch.
+    pub(super) fn part(&self, patch: u32) -> Part {
+        let own = &self.order[self.starts[patch as usize] as usize..self.starts[patch as usize + 1] as usize];
+        let (mut part, mut numbers, mut known) = (Part::default(), HashMap::new(), HashMap::new());
+        // Twins first: what they say of a vertex holds for other triangles, too.
+        let twins = &self.overlaid.twins;
+        let (of_ours, others): (Vec<u32>, Vec<u32>) =
+            own.iter().copied().partition(|triangle| twins.corners(*triangle).is_some());
+        for triangle in of_ours.into_iter().chain(others) {
+            let twins = twins.corners(triangle);
+            let vertices = self.overlaid.theirs.triangles[triangle as usize];
+            let corners = [0, 1, 2].map(|k| {
+                let vertex = vertices[k];
+                let twin = match twins {
+                    Some(twins) => Some(*known.entry(vertex).insert_entry(twins[k]).get()),
+                    None => known.get(&vertex).copied(),
+                };
+                *numbers.entry((vertex, twin)).or_insert_with(|| {
+                    part.vertices.push(vertex);
+                    part.places.push(self.place_on(vertex, twin, patch));
+                    part.vertices.len() as u32 - 1
+                })
+            });
+            part.triangles.push(corners);
+        }
+        part
+    }
+
+    /// The place of a vertex on one patch: that of the vertex of ours that it is, if it is one.
+    fn place_on(&self, vertex: u32, twin: Option<u32>, patch: u32) -> Place {
+        twin.map_or_else(|| self.overlaid.place_on(vertex, patch), |twin| self.overlaid.twins.place(twin))
+    }
+}
+
+impl Part {
+    /// The weights of corners 0 and 1 at a triangle's corners.
+    pub(super) fn weights(&self, triangle: [u32; 3]) -> [[f64; 2]; 3] {
+        triangle.map(|corner| self.places[corner as usize].weights)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compare::locator::FINE;
+    use geometry::mesh::Shape;
+    use geometry::tessellate::{Inputs, LodView, Surface, Tessellation, tessellate};
+    use glam::Vec3;
+
+    #[test]
+    fn triangles_are_given_to_the_patches_that_emitted_them() {
+        for surface in [Surface::Pn, Surface::PnAen, Surface::Flat] {
+            for shape in [Shape::CubeSplit, Shape::Moebius, Shape::Torus, Shape::Cone] {
+                let mesh = shape.build();
+                let topology = Topology::of(&mesh);
+                let tessellation = Tessellation { surface, ..Tessellation::default() };
+                let inputs = Inputs::new(&tessellation, LodView::default());
+                let out = tessellate(&mesh, &topology, &inputs, None);
+                let positions: Vec<Vec3> = out.vertices.iter().map(|vertex| Vec3::from(vertex.position)).collect();
+                let theirs = ForeignMesh::new(&positions, out.triangles.iter().rev().copied());
+                let locator = Locator::of_surface(&mesh, &topology, &inputs.into(), FINE);
+                let own: Vec<DVec3> = theirs.positions.iter().map(|position| position.as_dvec3()).collect();
+                let progress = Progress::new();
+                // As if none of them were ours.
+                let over = (locator, Twins::none(&theirs));
+                let overlaid = Overlaid::new(&theirs, &topology, over, &own, 1e-5, &progress).expect("nobody cancels");
+                assert!(overlaid.strays().is_empty(), "{shape} {surface:?}");
+                let assignment = Assignment::new(&overlaid, &progress).expect("nobody cancels");
+                let mut emitted = vec![0; topology.patches.len()];
+                for triangle in &out.triangles {
+                    emitted[out.vertices[triangle[0] as usize].patch() as usize] += 1;
+                }
+                // Slivers between vertices that round to one position are left out.
+                assert_eq!(theirs.degenerate, 0);
+                for patch in 0..topology.patches.len() as u32 {
+                    assert_eq!(assignment.count(patch), emitted[patch as usize], "{shape} {surface:?}, patch {patch}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,342 @@
+//! Which one change of our factors gives the points that another program has.
+
+use super::assignment::{Assignment, Part, domain_area};
+use super::cuts::cuts_of;
+use super::domain_points::{DomainPoints, pattern_points};
+use super::foreign::spread;
+use super::matching::Reach;
+use geometry::mesh::Mesh;
+use geometry::progress::{Cancelled, Progress};
+use geometry::tessellate::{
+    Convention, HullFactors, Inputs, Lod, Partitioning, PatchFactors, Tessellation, domain_side, factor_side,
+    hull_factors,
+};
+
+/// A change of what the hull shader writes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Rule {
+    /// None: the factors are ours.
+    Same,
+    /// Side k has the factor of this side.
+    Sides([usize; 3]),
+    /// Factors are rounded down to whole numbers.
+    Down,
+    /// Factors are rounded to the nearest whole number.
+    Nearest,
+    /// The inside factor is another function of the factors of the edges.
+    Inside(InsideRule),
+    /// All factors are ours times this.
+    Times(f32),
+    /// Factors are at most this.
+    AtMost(f32),
+    /// All factors are this.
+    All(f32),
+}
+
+/// How an inside factor follows from those of the edges.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InsideRule {
+    Least,
+    Mean,
+    Largest,
+    One,
+}
+
+/// Factors that give their points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Explanation {
+    pub partitioning: Partitioning,
+    pub rule: Rule,
+}
+
+/// Side k may have the factor of another side in these ways.
+const SIDES: [[usize; 3]; 5] = [[2, 0, 1], [1, 2, 0], [0, 2, 1], [1, 0, 2], [2, 1, 0]];
+
+/// The share of a length on screen, or of a distance, that no one can tell from rounding; and that of an error on screen, which is a small
+/// difference of large numbers.
+const HAIR: f32 = 1e-4;
+const HAIR_OF_ERRORS: f32 = 2e-3;
+/// How many patches are looked at first.
+const SAMPLE: usize = 64;
+/// Factors explain points if at least this share of the patches has them.
+const EXPLAINED: f64 = 0.97;
+
+impl Rule {
+    /// The convention under which sides have each other's factors like this, if it is a known one.
+    pub fn convention(self) -> Option<Convention> {
+        let Self::Sides(sides) = self else { return None };
+        Convention::ALL.into_iter().find(|&convention| {
+            (0..3).all(|i| sides[domain_side(convention, i) as usize] == factor_side(convention, i) as usize)
+        })
+    }
+
+    /// Changes the factors of sides 0, 1 and 2, and that of the inside.
+    fn apply(self, sides: [f32; 3], inside: f32) -> ([f32; 3], f32) {
+        let each = |change: &dyn Fn(f32) -> f32| (sides.map(change), change(inside));
+        match self {
+            Self::Same => (sides, inside),
+            Self::Sides(order) => (order.map(|side| sides[side]), inside),
+            Self::Down => each(&|factor| factor.floor().max(1.0)),
+            Self::Nearest => each(&|factor| factor.round().max(1.0)),
+            Self::Inside(rule) => (sides, rule.apply(sides)),
+            Self::Times(times) => each(&|factor| factor * times),
+            Self::AtMost(most) => each(&|factor| factor.min(most)),
+            Self::All(all) => ([all; 3], all),
+        }
+    }
+}
+
+impl InsideRule {
+    const ALL: [Self; 4] = [Self::Least, Self::Mean, Self::Largest, Self::One];
+
+    fn apply(self, sides: [f32; 3]) -> f32 {
+        match self {
+            Self::Least => sides.into_iter().fold(f32::INFINITY, f32::min),
+            Self::Mean => sides.into_iter().sum::<f32>() / 3.0,
+            Self::Largest => sides.into_iter().fold(0.0, f32::max),
+            Self::One => 1.0,
+        }
+    }
+}
+
+/// Seeks explanations.
+pub(super) struct Explainer<'a> {
+    pub mesh: &'a Mesh,
+    pub assignment: &'a Assignment<'a>,
+    pub inputs: &'a Inputs,
+    /// Our inputs with the surface that their vertices lie on, if it isn't ours.
+    pub other: Option<&'a Inputs>,
+    /// Factors that were given in place of LOD's.
+    pub given: Option<&'a [HullFactors]>,
+    /// How near points of each patch must be.
+    pub reaches: &'a [Reach],
+}
+
+/// A patch of theirs that is looked at first.
+struct Sampled {
+    patch: u32,
+    part: Part,
+}
+
+impl Explainer<'_> {
+    /// Returns the simplest explanations, which all give their points. `different` are the patches whose points differ from ours.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(super) fn explain(&self, different: &[u32], progress: &Progress) -> Result<Vec<Explanation>, Cancelled> {
+        let sample = self.sample(different);
+        let own = self.inputs.tessellation.partitioning;
+        if sample.is_empty() {
+            return Ok(Vec::new());
+        }
+        let uniform = self.uniform(&sample);
+        let same = vec![Explanation { partitioning: own, rule: Rule::Same }];
+        if let Some(other) = self.other {
+            // LOD of another surface has other factors, which are no mistake.
+            let groups = [same.clone()].into_iter().chain(self.groups(own, uniform));
+            let found = self.first(groups, other, (&sample, different), progress)?;
+            if !found.is_empty() {
+                return Ok(found);
+            }
+        }
+        // Where vertices are displaced, points of the same factors may seem to be others.
+        let is_rough = !self.assignment.overlaid.fit.is_finite();
+        let groups = is_rough.then_some(same).into_iter().chain(self.groups(own, uniform));
+        self.first(groups, self.inputs, (&sample, different), progress)
+    }
+
+    /// Returns the explanations of the first group that has one, where LOD has these inputs.
+    fn first(
+        &self,
+        groups: impl Iterator<Item = Vec<Explanation>>,
+        inputs: &Inputs,
+        (sample, different): (&[Sampled], &[u32]),
+        progress: &Progress,
+    ) -> Result<Vec<Explanation>, Cancelled> {
+        let mut written: Vec<(Partitioning, Vec<HullFactors>)> = Vec::new();
+        for group in groups {
+            let mut found = Vec::new();
+            for explanation in group {
+                progress.check()?;
+                if !written.iter().any(|(partitioning, _)| *partitioning == explanation.partitioning) {
+                    written.push((explanation.partitioning, self.written(inputs, explanation.partitioning)));
+                }
+                let factors = written.iter().find(|(partitioning, _)| *partitioning == explanation.partitioning);
+                let Some((_, factors)) = factors else { continue };
+                if self.explains(explanation, factors, sample, different) {
+                    found.push(explanation);
+                }
+            }
+            if !found.is_empty() {
+                return Ok(found);
+            }
+        }
+        Ok(Vec::new())
+    }
+
+    /// Whether the last bits of LOD's factors decide between their points and ours: factors for a hair more or less detail give theirs.
+    pub(super) fn are_last_bits(&self, different: &[u32]) -> bool {
+        let own = self.inputs.tessellation;
+        if self.given.is_some() || own.used_lod() == Lod::Uniform {
+            return false;
+        }
+        let hair = if own.used_lod() == Lod::Error { HAIR_OF_ERRORS } else { HAIR };
+        let written = [1.0 - hair, 1.0 + hair].map(|by| {
+            let (pixels, tolerance, near, far) = (own.pixels * by, own.tolerance * by, own.near * by, own.far * by);
+            let tessellation = Tessellation { pixels, tolerance, near, far, ..own };
+            self.written(&Inputs { tessellation, ..*self.inputs }, own.partitioning)
+        });
+        let same = Explanation { partitioning: own.partitioning, rule: Rule::Same };
+        different.iter().all(|&patch| {
+            let (part, reach) = (self.assignment.part(patch), self.reaches[patch as usize]);
+            let gives = |written: &Vec<HullFactors>| {
+                has_points(&part, self.factors(same, written[patch as usize]), own.convention, reach)
+            };
+            is_whole(&part) && written.iter().any(gives)
+        })
+    }
+
+    /// Groups of explanations, the simplest first. `uniform` is the one factor that all their edges seem to have.
+    fn groups(&self, own: Partitioning, uniform: Option<f32>) -> [Vec<Explanation>; 3] {
+        let with = |partitioning| move |rule| Explanation { partitioning, rule };
+        let others = || Partitioning::ALL.into_iter().filter(move |other| *other != own);
+        let mut changed: Vec<Rule> = vec![Rule::Down, Rule::Nearest];
+        changed.extend(InsideRule::ALL.map(Rule::Inside));
+        changed.extend([0.5, 2.0].map(Rule::Times));
+        changed.extend([8.0, 15.0, 16.0, 31.0, 32.0].map(Rule::AtMost));
+        // Under rows the inside factor names an edge, whose factor would be another one.
+        let orders = SIDES.map(Rule::Sides).into_iter().filter(|_| own != Partitioning::Rows);
+        let one = uniform.map(Rule::All);
+        let first = others().map(|other| with(other)(Rule::Same)).chain(orders.map(with(own)));
+        let second =
+            |other| SIDES.map(Rule::Sides).into_iter().chain(one).chain(changed.iter().copied()).map(with(other));
+        [
+            one.map(with(own)).into_iter().chain(first).collect(),
+            changed.iter().copied().map(with(own)).collect(),
+            others().flat_map(second).collect(),
+        ]
+    }
+
+    /// What a hull shader would write with these inputs, but this partitioning.
+    fn written(&self, inputs: &Inputs, partitioning: Partitioning) -> Vec<HullFactors> {
+        match self.given {
+            Some(given) => given.to_vec(),
+            None => {
+                let tessellation = Tessellation { partitioning, ..inputs.tessellation };
+                let inputs = Inputs::new(&tessellation, inputs.view);
+                hull_factors(self.mesh, self.assignment.overlaid.topology, &inputs)
+            }
+        }
+    }
+
+    /// Patches of theirs without gaps: of those that differ, and a few others.
+    fn sample(&self, different: &[u32]) -> Vec<Sampled> {
+        let all = 0..self.assignment.overlaid.topology.patches.len() as u32;
+        let same: Vec<u32> = all.filter(|patch| different.binary_search(patch).is_err()).collect();
+        let chosen =
+            |list: &[u32], most: usize| -> Vec<u32> { spread(list.len(), most).map(|place| list[place]).collect() };
+        let patches = [chosen(different, SAMPLE), chosen(&same, SAMPLE / 4)].concat();
+        let sampled = patches.into_iter().filter(|patch| self.assignment.count(*patch) > 0);
+        let sampled = sampled.map(|patch| Sampled { patch, part: self.assignment.part(patch) });
+        sampled.filter(|sampled| is_whole(&sampled.part)).collect()
+    }
+
+    /// The one factor that all edges of these patches seem to have.
+    fn uniform(&self, sample: &[Sampled]) -> Option<f32> {
+        let mut factors = Vec::new();
+        for Sampled { patch, part } in sample {
+            let Reach { domain, fit } = self.reaches[*patch as usize];
+            factors.extend(cuts_of(part, [domain, fit]).map(|cut| cut.factor()));
+        }
+        factors.sort_by(f64::total_cmp);
+        let middle = *factors.get(factors.len() / 2)?;
+        let alike = factors.iter().filter(|factor| (*factor / middle - 1.0).abs() < 0.01).count();
+        let plain = |unit: f64| Some((middle * unit).round() / unit).filter(|plain| (plain - middle).abs() < 0.003);
+        let rounded = plain(1.0).or(plain(100.0)).unwrap_or((middle * 1e3).round() / 1e3);
+        (alike as f64 >= EXPLAINED * factors.len() as f64).then_some(rounded as f32)
+    }
+
+    /// Whether factors explain their points: first on the sample, then on all patches, and on those that differ.
+    fn explains(
+        &self,
+        explanation: Explanation,
+        written: &[HullFactors],
+        sample: &[Sampled],
+        different: &[u32],
+    ) -> bool {
+        let fits = |patch: u32, part: &Part| {
+            let factors = self.factors(explanation, written[patch as usize]);
+            has_points(part, factors, self.inputs.tessellation.convention, self.reaches[patch as usize])
+        };
+        let on_sample = sample.iter().filter(|sampled| fits(sampled.patch, &sampled.part)).count();
+        if (on_sample as f64) < EXPLAINED * sample.len() as f64 {
+            return false;
+        }
+        let explained = |patches: &mut dyn Iterator<Item = u32>| {
+            let (mut whole, mut fitting) = (0_u64, 0_u64);
+            for patch in patches.filter(|patch| self.assignment.count(*patch) > 0) {
+                let part = self.assignment.part(patch);
+                if is_whole(&part) {
+                    whole += 1;
+                    fitting += u64::from(fits(patch, &part));
+                }
+            }
+            fitting as f64 >= EXPLAINED * whole as f64
+        };
+        // If few patches differ, our own factors explain nearly all of them, and nothing of what differs.
+        explained(&mut different.iter().copied())
+            && explained(&mut (0..self.assignment.overlaid.topology.patches.len() as u32))
+    }
+
+    /// The factors of a patch under an explanation.
+    fn factors(&self, Explanation { partitioning, rule }: Explanation, written: HullFactors) -> PatchFactors {
+        if rule == Rule::Same || written.culls() {
+            return written.rounded(partitioning).process(partitioning);
+        }
+        let convention = self.inputs.tessellation.convention;
+        let (sides, inside) = rule.apply(written.cutting(convention), written.inside);
+        let edges = [0, 1, 2].map(|i| sides[domain_side(convention, i) as usize]);
+        HullFactors { edges, inside }.rounded(partitioning).process(partitioning)
+    }
+}
+
+/// Whether triangles cover a patch without gaps.
+fn is_whole(part: &Part) -> bool {
+    let area: f64 = part.triangles.iter().map(|triangle| domain_area(part.weights(*triangle)).abs()).sum();
+    area >= 0.999
+}
+
+/// Whether a patch of theirs has the points that these factors give. A vertex off the surface may be any of them.
+fn has_points(part: &Part, factors: PatchFactors, convention: Convention, reach: Reach) -> bool {
+    let expected = pattern_points(factors, convention);
+    let pattern = DomainPoints::new(expected.iter().copied());
+    let on_surface = || part.places.iter().filter(|place| place.distance <= reach.fit);
+    if !on_surface().all(|place| pattern.nearest(place.weights, reach.domain).is_some()) {
+        return false;
+    }
+    let strays = part.places.len() - on_surface().count();
+    let theirs = DomainPoints::new(on_surface().map(|place| place.weights));
+    expected.iter().filter(|point| theirs.nearest(**point, reach.domain).is_none()).count() <= strays
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_two_mistakes_are_conventions_and_other_orders_are_none() {
+        let named = SIDES.map(|sides| Rule::Sides(sides).convention());
+        assert_eq!(named, [Some(Convention::Rotated), None, Some(Convention::Mirrored), None, None]);
+    }
+
+    #[test]
+    fn rules_change_factors_as_they_say() {
+        let (sides, inside) = ([2.5, 3.4, 9.0], 9.0);
+        assert_eq!(Rule::Down.apply(sides, inside), ([2.0, 3.0, 9.0], 9.0));
+        assert_eq!(Rule::Nearest.apply(sides, inside), ([3.0, 3.0, 9.0], 9.0));
+        assert_eq!(Rule::Sides([2, 0, 1]).apply(sides, inside), ([9.0, 2.5, 3.4], 9.0));
+        assert_eq!(Rule::Inside(InsideRule::Least).apply(sides, inside), (sides, 2.5));
+        assert_eq!(Rule::AtMost(3.0).apply(sides, inside), ([2.5, 3.0, 3.0], 3.0));
+        assert_eq!(Rule::All(7.0).apply(sides, inside), ([7.0; 3], 7.0));
+    }
+}

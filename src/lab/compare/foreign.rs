@@ -1,0 +1,105 @@
+//! A tessellated mesh that another program emitted: positions and triangles alone.
+
+use glam::Vec3;
+
+use geometry::mesh::interner::Interner;
+use geometry::mesh::{Bounds, Mesh};
+
+/// The triangles of another program, without regard to the order and the sharing of their vertices: vertices at equal positions
+/// are one.
+#[derive(Clone, Debug, Default)]
+pub struct ForeignMesh {
+    /// In object units, all finite and each once.
+    pub positions: Vec<Vec3>,
+    /// Indices into `positions`, three different ones each.
+    pub triangles: Vec<[u32; 3]>,
+    /// How many triangles were left out because two of their corners have the same position.
+    pub degenerate: u64,
+    /// How many triangles were left out because a coordinate isn't finite.
+    pub not_finite: u64,
+}
+
+impl ForeignMesh {
+    /// Collects triangles with these corners, which are indices into `positions`. Indices must be below their number.
+    pub fn new(positions: &[Vec3], triangles: impl IntoIterator<Item = [u32; 3]>) -> Self {
+        let mut made = Self::default();
+        let mut interner = Interner::default();
+        // A vertex that no triangle uses says nothing about a tessellation.
+        let mut numbers = vec![u32::MAX; positions.len()];
+        for corners in triangles {
+            if !corners.iter().all(|&corner| positions[corner as usize].is_finite()) {
+                made.not_finite += 1;
+                continue;
+            }
+            let own = corners.map(|corner| {
+                let number = &mut numbers[corner as usize];
+                if *number == u32::MAX {
+                    *number = made.number(&mut interner, positions[corner as usize]);
+                }
+                *number
+            });
+            let [a, b, c] = own;
+            if a == b || b == c || c == a {
+                made.degenerate += 1;
+            } else {
+                made.triangles.push(own);
+            }
+        }
+        made
+    }
+
+    /// Collects the triangles of a mesh that was read from a file.
+    pub fn of_mesh(mesh: &Mesh) -> Self {
+        let positions: Vec<Vec3> = mesh.corners.iter().map(|corner| corner.position).collect();
+        Self::new(&positions, mesh.triangles.iter().copied())
+    }
+
+    /// The number of a position, which is added if it is new.
+    fn number(&mut self, interner: &mut Interner, position: Vec3) -> u32 {
+        // -0 and 0 are the same place.
+        let key = |position: Vec3| (position + Vec3::ZERO).to_array().map(f32::to_bits);
+        let (number, is_new) = interner.number(key(position), |id| key(self.positions[id as usize]));
+        if is_new {
+            self.positions.push(position);
+        }
+        number
+    }
+
+    pub fn bounds(&self) -> Bounds {
+        Bounds::of(self.positions.iter().copied())
+    }
+
+    /// Up to `most` of its vertices, spread evenly over the list.
+    pub(super) fn sample(&self, most: usize) -> impl Iterator<Item = u32> + Clone + use<> {
+        spread(self.positions.len(), most).map(|index| index as u32)
+    }
+}
+
+/// Up to `most` of the numbers below `count`, spread evenly.
+pub(super) fn spread(count: usize, most: usize) -> impl Iterator<Item = usize> + Clone {
+    let taken = count.min(most);
+    (0..taken).map(move |index| index * count / taken)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::vec3;
+
+    #[test]
+    fn vertices_at_one_place_are_one_and_useless_triangles_are_counted() {
+        let positions =
+            [Vec3::ZERO, Vec3::X, Vec3::Y, vec3(-0.0, 0.0, 0.0), vec3(f32::NAN, 0.0, 0.0), vec3(9.0, 9.0, 9.0)];
+        let mesh = ForeignMesh::new(&positions, [[0, 1, 2], [3, 2, 1], [0, 3, 1], [0, 1, 4]]);
+        assert_eq!(mesh.positions, positions[..3]);
+        assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 1]]);
+        assert_eq!((mesh.degenerate, mesh.not_finite), (1, 1));
+    }
+
+    #[test]
+    fn a_sample_is_spread_over_all() {
+        assert_eq!(spread(10, 5).collect::<Vec<_>>(), [0, 2, 4, 6, 8]);
+        assert_eq!(spread(3, 5).collect::<Vec<_>>(), [0, 1, 2]);
+        assert_eq!(spread(0, 5).count(), 0);
+    }
+}

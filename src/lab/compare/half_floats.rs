@@ -1,0 +1,54 @@
+//! Tells coordinates that were rounded to 16-bit floating-point numbers, as vertex buffers of engines often are.
+
+use super::Ours;
+use super::foreign::ForeignMesh;
+use geometry::mesh::Bounds;
+
+/// The largest finite number of 16 bits (IEEE 754-2019, binary16).
+const LARGEST: f32 = 65504.0;
+/// The least of them that has all its bits.
+const LEAST_NORMAL: f32 = 1.0 / 16384.0;
+/// How many bits fewer than one of 32 bits it has behind the first.
+const FEWER_BITS: u32 = 13;
+/// One unit of the numbers that are below the least normal one.
+const LEAST: f32 = 1.0 / 16_777_216.0;
+
+/// Half a unit in the last place of their largest coordinate as a number of 16 bits, in our object units. `None` if some of their
+/// coordinates have more bits, or if all of ours have as few.
+pub(super) fn resolution(theirs: &ForeignMesh, ours: &Ours) -> Option<f64> {
+    let is_rounded = |position: &glam::Vec3| position.to_array().into_iter().all(has_16_bits);
+    let emitted = ours.emitted_positions();
+    if !theirs.positions.iter().all(is_rounded) || emitted.iter().all(is_rounded) {
+        return None;
+    }
+    let [own, bounds] = [Bounds::of(emitted.into_iter()), theirs.bounds()];
+    let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
+    let unit = f64::from(largest.max(LEAST_NORMAL)).log2().floor().exp2() / 1024.0;
+    // Their units may be others than ours.
+    let scale = f64::from(own.diagonal()) / f64::from(bounds.diagonal());
+    Some(0.5 * unit * scale).filter(|resolution| resolution.is_finite())
+}
+
+/// Whether a number is one of 16 bits.
+fn has_16_bits(number: f32) -> bool {
+    match number.abs() {
+        size if size < LEAST_NORMAL => (size / LEAST).fract() == 0.0,
+        size if size <= LARGEST => size.to_bits().trailing_zeros() >= FEWER_BITS,
+        _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_16_bits_are_told_from_others() {
+        for number in [0.0, -0.0, 1.0, 0.333_251_95, -65504.0, 6.1035156e-5, 5.9604645e-8, 1.7881393e-7, 2049.0 - 1.0] {
+            assert!(has_16_bits(number), "{number}");
+        }
+        for number in [0.333_333_34, 65505.0, 1e6, 5.9e-8, 9e-8, 2049.0, f32::INFINITY, f32::NAN] {
+            assert!(!has_16_bits(number), "{number}");
+        }
+    }
+}

@@ -1,0 +1,435 @@
+//! Holds a tessellated mesh that another program emitted against ours: finds the patch and the domain place of everything in it,
+//! and says what is different.
+//!
+//! Nothing but positions and triangles is looked at. Their order, and whether vertices are shared, don't matter.
+
+mod alignment;
+mod assignment;
+mod corner_orders;
+mod cuts;
+mod domain_points;
+mod explanations;
+mod findings;
+mod foreign;
+mod half_floats;
+mod locator;
+mod matching;
+mod net_mistakes;
+mod outcomes;
+mod own_mesh;
+mod patch_starts;
+mod spaces;
+mod surfaces;
+#[cfg(test)]
+mod tests;
+mod twins;
+
+use glam::{DMat4, DVec3, Vec3};
+
+pub use findings::{Finding, plural, point};
+pub use foreign::ForeignMesh;
+pub use matching::Farthest;
+pub use outcomes::{SideCut, SideDifference};
+pub use patch_starts::patch_starts;
+
+use geometry::mesh::{Bounds, Mesh, Topology};
+use geometry::progress::{Cancelled, Progress};
+use geometry::tessellate::{Convention, Displacement, HullFactors, Inputs, Tessellated, Tessellation, tessellate};
+use geometry::view::{ulp, ulp_at};
+
+use alignment::{Alignment, Frame};
+use assignment::{Assignment, Overlaid};
+use locator::{FINE, Locator, OwnSurface};
+use outcomes::Outcomes;
+use own_mesh::OwnMesh;
+use spaces::Space;
+use surfaces::Trial;
+use twins::Twins;
+
+/// Our tessellation of a mesh, which has patches.
+#[derive(Clone, Copy)]
+pub struct Ours<'a> {
+    pub mesh: &'a Mesh,
+    pub topology: &'a Topology,
+    pub inputs: &'a Inputs,
+    /// Factors that were given in place of LOD's, one for each patch.
+    pub given: Option<&'a [HullFactors]>,
+    /// The other program's matrix from object units to clip space, if it was given.
+    pub matrix: Option<DMat4>,
+    pub tessellated: &'a Tessellated,
+}
+
+/// How exact the other program's numbers are, in object units of our mesh.
+#[derive(Clone, Copy, Debug)]
+pub struct Exactness {
+    /// How far vertices may be from ours and be the same.
+    pub within: f64,
+    /// Half a unit of the last decimal that its file has; 0 if it has them all.
+    pub resolution: f64,
+}
+
+impl Exactness {
+    /// The same for numbers that are rounded by up to so many object units.
+    fn rounded(self, resolution: Option<f64>) -> Self {
+        let resolution = self.resolution.max(resolution.unwrap_or(0.0));
+        Self { within: self.within.max(2.0 * resolution), resolution }
+    }
+}
+
+/// What differs.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// The most important first; empty if the two are the same.
+    pub findings: Vec<Finding>,
+    /// Numbers of what was compared.
+    pub vertices: u64,
+    pub triangles: u64,
+    /// How many patches have triangles of theirs.
+    pub patches: u64,
+    /// The largest distance of their vertices from the surface that they lie on, in object units.
+    pub from_surface: f64,
+    /// The largest distance between vertices at the same domain points; `None` if no patch has the same points.
+    pub farthest: Option<Farthest>,
+    /// One unit in the last place of our mesh's largest coordinate, and the diagonal of its bounding box, in object units.
+    pub ulp: f64,
+    pub diagonal: f64,
+    /// Sides of patches that are cut differently, those that differ the most first.
+    pub sides: Vec<SideDifference>,
+    /// Patches whose points or triangles differ, and patches that have none.
+    pub different: Vec<u32>,
+    pub missing: Vec<u32>,
+    /// Vertices off the surface, in our coordinates; empty if all are.
+    pub strays: Vec<DVec3>,
+    /// Their vertices in our coordinates.
+    pub positions: Vec<DVec3>,
+}
+
+/// A vertex lies on a surface if it is no farther away than this part of the diagonal.
+const FIT: f64 = 1e-5;
+/// If a larger share of the vertices is off a surface, it isn't theirs.
+const STRAYS: f64 = 0.4;
+/// A vertex is far from the surface beyond this part of the diagonal.
+const FAR: f64 = 0.02;
+/// If a larger share of the vertices is far from the surface, they belong to another mesh.
+const MANY_FAR: f64 = 0.2;
+
+/// Compares another program's tessellation with ours.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn compare(
+    ours: &Ours,
+    theirs: &ForeignMesh,
+    exactness: Exactness,
+    progress: &Progress,
+) -> Result<Comparison, Cancelled> {
+    let empty = Comparison::new(ours, theirs);
+    if ours.topology.patches.is_empty() {
+        return Ok(empty);
+    }
+    let asked = exactness.within;
+    let halves = half_floats::resolution(theirs, ours);
+    let mut exactness = exactness.rounded(halves);
+    let fit = (FIT * empty.diagonal).max(exactness.within).max(2.0 * exactness.resolution);
+    let apart = apart(asked, empty.ulp);
+    let own_mesh = OwnMesh::new(ours.tessellated, apart);
+    let twins = |own: &[Vec3], positions: &[DVec3]| Twins::find(&own_mesh, own, theirs, positions, apart);
+    let as_they_are = in_our_coordinates(theirs, None);
+    let is_ours = twins(&ours.vertices(), &as_they_are).are_all();
+    let own = if is_ours { None } else { Locator::of_own(ours) };
+    let frame = own.as_ref().and_then(|own| Alignment::find(theirs, own, ours, fit));
+    let positions = in_our_coordinates(theirs, frame.as_ref());
+    if let Some(Frame::Space(space)) = &frame {
+        exactness.within = exactness.within.max(rounding_in(space, theirs));
+    }
+    let twins = |own: &[Vec3]| twins(own, &positions);
+    let on_own = Overlaid::new(theirs, ours.topology, (own, twins(&ours.vertices())), &positions, fit, progress)?;
+    let laid = Laid::new(ours, on_own, twins, progress)?;
+    let assignment = Assignment::new(&laid.overlaid, progress)?;
+    let outcomes = Outcomes::new(ours, &own_mesh, &assignment, exactness, progress)?;
+    let mut found = Comparison {
+        from_surface: laid.overlaid.places.iter().map(|place| place.distance).fold(0.0, f64::max),
+        farthest: outcomes.farthest(),
+        patches: outcomes.patches(),
+        missing: outcomes.missing.clone(),
+        strays: laid.strays().iter().map(|index| positions[*index as usize]).collect(),
+        ..empty
+    };
+    found.findings.extend(frame.map(Finding::Aligned));
+    if theirs.not_finite > 0 {
+        found.findings.push(Finding::NotFinite { count: theirs.not_finite });
+    }
+    match laid.other_mesh(found.diagonal).filter(|_| !outcomes.are_mostly_the_same()) {
+        Some(other_mesh) => found.findings.push(other_mesh),
+        None => {
+            let conventions = Conventions { ours, assignment: &assignment, exactness, progress };
+            found.name_differences(&laid, &outcomes, frame.as_ref(), &conventions)?;
+            found.findings.extend(halves.and_then(|_| found.rounded_to_halves(&laid, asked)));
+        }
+    }
+    found.positions = positions;
+    Ok(found)
+}
+
+/// How far apart positions of ours are at most that can't be told apart, in object units: twice what theirs may be away from ours, if
+/// that is no more than rounding.
+fn apart(within: f64, ulp: f64) -> f64 {
+    const ROUNDING: f64 = 16.0;
+    2.0 * within.min(ROUNDING * ulp)
+}
+
+/// How far the rounding of coordinates in another space moves places in ours, in object units.
+fn rounding_in(space: &Space, theirs: &ForeignMesh) -> f64 {
+    const UNITS: f64 = 4.0;
+    let moved = |position: &Vec3| ulp_at(position.abs().max_element()) * space.stretch(position.as_dvec3());
+    UNITS * theirs.positions.iter().map(moved).fold(0.0, f64::max)
+}
+
+/// Their vertices in our coordinates, if it is known how these follow from theirs.
+fn in_our_coordinates(theirs: &ForeignMesh, frame: Option<&Frame>) -> Vec<DVec3> {
+    let positions = theirs.positions.iter().map(|position| position.as_dvec3());
+    match frame {
+        Some(frame) => positions.map(|position| frame.ours(position)).collect(),
+        None => positions.collect(),
+    }
+}
+
+/// Their vertices over the surface that they lie on, and which one that is.
+struct Laid<'a> {
+    /// Over our own surface, over another one of ours, or over our own without displacement.
+    overlaid: Overlaid<'a>,
+    /// The surface that they lie on, if it isn't our own.
+    other: Option<OwnSurface>,
+    /// How many of them are off our own surface.
+    off_own: u64,
+    /// Whether most of them lie on the surface. Otherwise they are displaced from it, or belong to another mesh.
+    is_fitted: bool,
+    /// How far from a surface a vertex lies on it, in object units.
+    fit: f64,
+}
+
+impl<'a> Laid<'a> {
+    /// Seeks their surface, from where they lie over ours.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    fn new(
+        ours: &Ours<'a>,
+        on_own: Overlaid<'a>,
+        twins: impl Fn(&[Vec3]) -> Twins<'a>,
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
+        let Ours { mesh, topology, tessellated, .. } = *ours;
+        let surface = |own: &OwnSurface| Locator::of_surface(mesh, topology, own, FINE);
+        let (fit, strays) = (on_own.fit, on_own.strays());
+        let other = match strays.is_empty() {
+            true => None,
+            false => Trial::new(ours.mesh, &on_own, ours.inputs, &strays).other_surface(progress)?,
+        };
+        let overlaid = match &other {
+            Some(other) => {
+                let own = other.positions(mesh, topology, &tessellated.vertices);
+                on_own.over((surface(other), twins(&own)), progress)?
+            }
+            None => on_own,
+        };
+        let is_fitted = overlaid.strays().len() as f64 <= STRAYS * overlaid.positions.len() as f64;
+        let base = || (surface(&undisplaced(ours.inputs).into()), Twins::none(overlaid.theirs));
+        let overlaid = match is_fitted {
+            true => overlaid,
+            // Where they are displaced, every vertex counts as near its place.
+            false => Overlaid { fit: f64::INFINITY, ..overlaid.over(base(), progress)? },
+        };
+        Ok(Self { overlaid, other, off_own: strays.len() as u64, is_fitted, fit })
+    }
+
+    /// Vertices off the surface; none where most are, since none is expected on it then.
+    fn strays(&self) -> Vec<u32> {
+        if self.is_fitted { self.overlaid.strays() } else { Vec::new() }
+    }
+
+    /// Says that they belong to another mesh, if so many are far away that displacement is no explanation.
+    fn other_mesh(&self, diagonal: f64) -> Option<Finding> {
+        let distance = FAR * diagonal;
+        let places = &self.overlaid.places;
+        let far = places.iter().filter(|place| place.distance > distance).count();
+        let is_other = !self.is_fitted && far as f64 > MANY_FAR * places.len() as f64;
+        is_other.then_some(Finding::NotATessellation { far: far as u64, vertices: places.len() as u64, distance })
+    }
+
+    /// Names their surface, if it isn't ours.
+    fn other_surface(&self, ours: &Ours) -> Option<Finding> {
+        let OwnSurface { inputs: Inputs { tessellation: theirs, .. }, mistake } = self.other?;
+        let (vertices, of) = (self.off_own, self.overlaid.positions.len() as u64);
+        Some(match mistake {
+            Some(mistake) => Finding::OtherNets { mistake, vertices, of },
+            None => Finding::OtherSurface { ours: ours.inputs.tessellation, theirs, vertices, of },
+        })
+    }
+}
+
+impl Ours<'_> {
+    /// The positions that are emitted, or else those of the mesh.
+    fn emitted_positions(&self) -> Vec<Vec3> {
+        if self.tessellated.vertices.is_empty() { self.topology.points.clone() } else { self.vertices() }
+    }
+
+    /// The positions of the vertices that are emitted.
+    fn vertices(&self) -> Vec<Vec3> {
+        self.tessellated.vertices.iter().map(|vertex| vertex.position.into()).collect()
+    }
+}
+
+impl Comparison {
+    /// Without anything that was found.
+    fn new(ours: &Ours, theirs: &ForeignMesh) -> Self {
+        Self {
+            findings: Vec::new(),
+            vertices: theirs.positions.len() as u64,
+            triangles: theirs.triangles.len() as u64,
+            patches: 0,
+            from_surface: 0.0,
+            farthest: None,
+            ulp: ulp(ours.topology),
+            diagonal: Bounds::of(ours.topology.points.iter().copied()).diagonal().into(),
+            sides: Vec::new(),
+            different: Vec::new(),
+            missing: Vec::new(),
+            strays: Vec::new(),
+            positions: Vec::new(),
+        }
+    }
+
+    /// Names what differs, where theirs is a tessellation of our mesh.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    fn name_differences(
+        &mut self,
+        laid: &Laid,
+        outcomes: &Outcomes,
+        frame: Option<&Frame>,
+        conventions: &Conventions,
+    ) -> Result<(), Cancelled> {
+        let Conventions { ours, progress, .. } = *conventions;
+        self.findings.extend(laid.other_surface(ours));
+        if laid.is_fitted {
+            self.findings.extend(outcomes.moved(ours, &laid.strays()));
+        } else {
+            self.findings.push(Finding::Displaced(outcomes.displaced(ours, laid.fit)));
+        }
+        let explained = outcomes.explain(ours, laid.other.as_ref(), &mut self.findings, progress)?;
+        outcomes.judge_triangles(ours, frame.is_some_and(Frame::mirrors), &mut self.findings);
+        if let Some(sides) = explained {
+            (self.sides, self.different) = (sides, outcomes.different_at_all());
+        }
+        self.leave_to_factors(conventions)?;
+        self.judge_distances(outcomes, conventions)
+    }
+
+    /// Says that their coordinates, which are numbers of 16 bits, are farther from ours than the distance that was asked for. Where
+    /// they have other points than ours, their distance from the surface tells.
+    fn rounded_to_halves(&self, laid: &Laid, asked: f64) -> Option<Finding> {
+        let from_surface = if laid.is_fitted { self.from_surface } else { 0.0 };
+        let distance = self.farthest.map_or(from_surface, |farthest| farthest.distance);
+        let is_rounding = distance > asked && distance <= laid.fit;
+        is_rounding.then(|| Finding::HalfFloats { distance, ulps: distance / self.ulp })
+    }
+
+    /// Where another convention gives all of their points, it also explains a few that seem to be moved, and their triangles.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    fn leave_to_factors(&mut self, conventions: &Conventions) -> Result<(), Cancelled> {
+        let is_known = self.findings.iter().any(|finding| matches!(finding, Finding::Factors { .. }));
+        if !is_known || !self.findings.iter().any(Finding::is_about_few_points) {
+            return Ok(());
+        }
+        let is_same = |turned: &Outcomes| turned.different_at_all().is_empty();
+        if conventions.other(|_| true, is_same)?.is_none() {
+            return Ok(());
+        }
+        self.findings.retain(|finding| !finding.is_about_few_points());
+        for finding in &mut self.findings {
+            if let Finding::Factors { patches, .. } = finding {
+                *patches = self.different.len() as u64;
+            }
+        }
+        Ok(())
+    }
+
+    /// Says what distances between the same vertices mean, where nothing else was found but how coordinates are meant.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    fn judge_distances(&mut self, outcomes: &Outcomes, conventions: &Conventions) -> Result<(), Cancelled> {
+        let Conventions { ours, exactness: Exactness { within, .. }, .. } = *conventions;
+        let Some(farthest) = self.farthest.filter(|farthest| farthest.distance > within) else { return Ok(()) };
+        if !self.findings.iter().all(Finding::is_about_coordinates) {
+            return Ok(());
+        }
+        // A valid convention gives the same points but for their last bits.
+        let own = ours.inputs.tessellation.convention;
+        let is_valid = |other: &Convention| own.is_consistent() && other.is_consistent();
+        let is_near = |turned: &Outcomes| turned.farthest().is_some_and(|far| far.distance <= within);
+        let triangle = ours.topology.patches[farthest.patch as usize].triangle;
+        self.findings.push(match conventions.other(is_valid, is_near)? {
+            Some(theirs) => Finding::Convention { ours: own, theirs },
+            None if outcomes.are_within(within) => return Ok(()),
+            None => Finding::Rounding { farthest, ulps: farthest.distance / self.ulp, triangle },
+        });
+        Ok(())
+    }
+}
+
+/// What their triangles are held against to find their convention.
+struct Conventions<'a> {
+    ours: &'a Ours<'a>,
+    assignment: &'a Assignment<'a>,
+    exactness: Exactness,
+    progress: &'a Progress,
+}
+
+impl Conventions<'_> {
+    /// Finds the convention among some of the others under which what we emit passes `suits`, which gets our outcomes under it.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    fn other(
+        &self,
+        among: impl Fn(&Convention) -> bool,
+        suits: impl Fn(&Outcomes) -> bool,
+    ) -> Result<Option<Convention>, Cancelled> {
+        let Self { ours, assignment, exactness, progress } = *self;
+        let own = ours.inputs.tessellation.convention;
+        // Given factors are in the order of our convention.
+        let others = Convention::ALL.into_iter().filter(|other| ours.given.is_none() && *other != own);
+        for theirs in others.filter(among) {
+            let tessellation = Tessellation { convention: theirs, ..ours.inputs.tessellation };
+            let inputs = Inputs { tessellation, ..*ours.inputs };
+            let tessellated = tessellate(ours.mesh, ours.topology, &inputs, None);
+            let turned = Ours { inputs: &inputs, tessellated: &tessellated, ..*ours };
+            let own_mesh = OwnMesh::new(&tessellated, apart(exactness.within, ulp(ours.topology)));
+            if suits(&Outcomes::new(&turned, &own_mesh, assignment, exactness, progress)?) {
+                return Ok(Some(theirs));
+            }
+        }
+        Ok(None)
+    }
+}
+
+/// The inputs without displacement.
+fn undisplaced(inputs: &Inputs) -> Inputs {
+    Inputs { tessellation: Tessellation { displacement: Displacement::Off, ..inputs.tessellation }, ..*inputs }
+}
+
+impl<'a> Locator<'a> {
+    /// Our own surface. If it is displaced that is what was emitted, since heights are read from levels that depend on factors.
+    fn of_own(ours: &Ours<'a>) -> Option<Self> {
+        let exact = || Self::of_surface(ours.mesh, ours.topology, &undisplaced(ours.inputs).into(), FINE);
+        match ours.inputs.tessellation.displacement {
+            Displacement::Off => exact(),
+            _ => Self::of_emitted(ours.tessellated, ours.topology).or_else(exact),
+        }
+    }
+}

@@ -1,0 +1,473 @@
+//! What came out for every patch, and what follows from all of them together.
+
+use super::assignment::{Assignment, made_of_all};
+use super::corner_orders::CornerOrder;
+use super::cuts::{Cut, cuts_of};
+use super::explanations::{Explainer, Explanation, Rule};
+use super::findings::{Displaced, Finding};
+use super::locator::OwnSurface;
+use super::matching::{Farthest, LEAST_REACH, Match, Reach};
+use super::own_mesh::{OwnMesh, OwnPatch};
+use super::{Exactness, Ours};
+use geometry::mesh::EdgeKind;
+use geometry::progress::{Cancelled, Progress};
+use geometry::tessellate::{FACTOR_VALUE, Inputs, Lod, Partitioning, Tessellation, hull_factors, segments};
+use geometry::view::ulp;
+
+/// How every patch came out.
+pub(super) struct Outcomes<'a> {
+    own_mesh: &'a OwnMesh<'a>,
+    assignment: &'a Assignment<'a>,
+    reaches: Vec<Reach>,
+    all: Vec<Outcome>,
+    /// Patches that we emit and they don't.
+    pub missing: Vec<u32>,
+    /// Patches that they emit and we don't.
+    additional: Vec<u32>,
+}
+
+/// How one patch came out.
+#[derive(Clone, Debug, Default)]
+struct Outcome {
+    /// Whether both emit triangles for it.
+    is_compared: bool,
+    /// Without the list of vertices.
+    found: Match,
+    farthest: Option<Farthest>,
+    /// How far the last bits of LOD's factors may move its points, in object units.
+    slack: f64,
+    offsets: Offsets,
+}
+
+/// How vertices lie beside ours at the same domain points.
+#[derive(Clone, Copy, Debug, Default)]
+struct Offsets {
+    /// How many there are, and how many of them lie in the direction of our normals or against it.
+    vertices: u64,
+    along_normals: u64,
+    /// The largest distances in both directions, in object units.
+    outward: f64,
+    inward: f64,
+}
+
+/// A side of a patch that is cut differently.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SideDifference {
+    /// The patch's triangle of the mesh, and which of its sides it is (from corner k to corner k + 1).
+    pub triangle: u32,
+    pub side: u32,
+    /// Both ends, in object units.
+    pub ends: [[f32; 3]; 2],
+    pub theirs: SideCut,
+    pub ours: SideCut,
+}
+
+/// How the sides of patches are cut whose points differ.
+struct OtherCuts {
+    /// Those that are cut differently, and those first that differ the most.
+    sides: Vec<SideDifference>,
+    /// How many patches have no such side, and so differ inside alone.
+    inside: u64,
+    /// The partitionings that cut sides as theirs are cut.
+    suits: Vec<Partitioning>,
+}
+
+/// How a side is cut.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SideCut {
+    pub segments: u64,
+    /// The tessellation factor that gives it.
+    pub factor: f64,
+}
+
+impl SideCut {
+    fn of(cut: &Cut) -> Self {
+        Self { segments: cut.segments() as u64, factor: cut.factor() }
+    }
+}
+
+impl SideDifference {
+    /// By how much the factors differ, as a ratio that is at least 1.
+    fn ratio(&self) -> f64 {
+        let ratio = self.theirs.factor / self.ours.factor;
+        if ratio.is_finite() && ratio > 0.0 { ratio.max(ratio.recip()) } else { f64::INFINITY }
+    }
+}
+
+/// A point is at most this part of a segment away from where it belongs, or points couldn't be told apart.
+const LARGEST_REACH: f64 = 0.25;
+/// The largest number of segments that a side has.
+const MOST_SEGMENTS: f64 = 64.0;
+/// Points of displaced patches are sought within this part of a segment.
+const OF_SEGMENT: f64 = 0.35;
+/// How far the last bits of LOD's factors, which devices compute differently, move points in the domain: by a few units of fixed point.
+const LAST_BITS: f64 = 4.0 / 65536.0;
+/// How many triangles a finding names.
+const NAMED: usize = 10;
+/// How many sides are looked at for the partitionings that they suit.
+const SIDES: usize = 3000;
+/// A partitioning suits if this share of the sides is cut as it cuts them.
+const SUITS: f64 = 0.97;
+
+impl<'a> Outcomes<'a> {
+    /// Compares all patches.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(super) fn new(
+        ours: &Ours,
+        own_mesh: &'a OwnMesh<'a>,
+        assignment: &'a Assignment<'a>,
+        exactness: Exactness,
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
+        let patches = 0..ours.topology.patches.len() as u32;
+        let fit = assignment.overlaid.fit;
+        let exact = exactness.within.max(exactness.resolution).max(8.0 * ulp(ours.topology));
+        let reach = |patch: u32| {
+            let segments = segments_of(own_mesh, patch);
+            if !fit.is_finite() {
+                return Reach { domain: OF_SEGMENT / segments, fit };
+            }
+            // A patch that is cut into n segments has about n squared triangles.
+            let most = segments.max(f64::from(assignment.count(patch)).sqrt().min(MOST_SEGMENTS));
+            Reach { domain: exact_reach(ours, patch, exact).clamp(LEAST_REACH, LARGEST_REACH / most), fit }
+        };
+        let reaches: Vec<Reach> = patches.clone().map(reach).collect();
+        let has_lod = ours.given.is_none() && ours.inputs.tessellation.used_lod() != Lod::Uniform;
+        let theirs = |patch: &u32| assignment.count(*patch) > 0;
+        let emitted = |patch: &u32| own_mesh.emits(*patch);
+        let all = made_of_all(patches.len(), progress, |patch| {
+            let patch = patch as u32;
+            if !(theirs(&patch) && emitted(&patch)) {
+                return Outcome::default();
+            }
+            let own = own_mesh.patch(patch);
+            let slack = if has_lod { LAST_BITS * own.stretch() } else { 0.0 };
+            Outcome { slack, ..Outcome::of(assignment, &own, patch, reaches[patch as usize]) }
+        })?;
+        let missing = patches.clone().filter(|patch| emitted(patch) && !theirs(patch)).collect();
+        let additional = patches.filter(|patch| theirs(patch) && !emitted(patch)).collect();
+        Ok(Self { own_mesh, assignment, reaches, all, missing, additional })
+    }
+
+    /// The number of patches that have triangles of theirs.
+    pub(super) fn patches(&self) -> u64 {
+        self.compared().count() as u64 + self.additional.len() as u64
+    }
+
+    fn compared(&self) -> impl Iterator<Item = (u32, &Outcome)> {
+        (0..).zip(&self.all).filter(|(_, outcome)| outcome.is_compared)
+    }
+
+    /// Patches whose points differ.
+    fn different(&self) -> Vec<u32> {
+        self.compared().filter(|(_, outcome)| !outcome.found.has_same_points).map(|(patch, _)| patch).collect()
+    }
+
+    /// Patches of which anything differs but distances. Places of displaced vertices are too rough to tell one triangle from the next.
+    pub(super) fn different_at_all(&self) -> Vec<u32> {
+        let is_exact = self.assignment.overlaid.fit.is_finite();
+        let differs = |found: &Match| {
+            let counts = found.missing + found.doubled + found.other + found.slid;
+            !found.has_same_points || found.flipped > 0 || is_exact && counts > 0
+        };
+        let different = self.compared().filter(|(_, outcome)| differs(&outcome.found)).map(|(patch, _)| patch);
+        different.chain(self.additional.iter().copied()).collect()
+    }
+
+    /// Whether most patches have the same points.
+    pub(super) fn are_mostly_the_same(&self) -> bool {
+        2 * self.different().len() < self.compared().count()
+    }
+
+    pub(super) fn farthest(&self) -> Option<Farthest> {
+        self.all.iter().filter_map(|outcome| outcome.farthest).reduce(Farthest::farther)
+    }
+
+    /// Whether vertices are no farther from ours than `within` object units, and than the last bits of LOD's factors move points.
+    pub(super) fn are_within(&self, within: f64) -> bool {
+        let is_within = |outcome: &Outcome| outcome.farthest.is_none_or(|far| far.distance <= within + outcome.slack);
+        self.all.iter().all(is_within)
+    }
+
+    /// Says how vertices are displaced, of which none is expected on the surface. What is nearer than `fit` isn't displaced.
+    pub(super) fn displaced(&self, ours: &Ours, fit: f64) -> Displaced {
+        let overlaid = self.assignment.overlaid;
+        let distances = || overlaid.places.iter().map(|place| place.distance);
+        let sum = self.all.iter().fold(Offsets::default(), |sum, outcome| sum.with(outcome.offsets));
+        Displaced {
+            vertices: distances().filter(|distance| *distance > fit).count() as u64,
+            of: overlaid.places.len() as u64,
+            largest: distances().fold(0.0, f64::max),
+            outward: sum.outward,
+            inward: sum.inward,
+            is_along_normals: sum.vertices > 0 && sum.along_normals as f64 >= 0.9 * sum.vertices as f64,
+            ours: ours.inputs.tessellation.displacement,
+        }
+    }
+
+    /// Says which vertices were moved: those off the surface, and those that were moved along it.
+    pub(super) fn moved(&self, ours: &Ours, strays: &[u32]) -> Option<Finding> {
+        let overlaid = self.assignment.overlaid;
+        let slid: u64 = self.all.iter().map(|outcome| outcome.found.slid).sum();
+        let distance = |index: &u32| overlaid.places[*index as usize].distance;
+        let triangle = |patch: u32| ours.topology.patches[patch as usize].triangle;
+        let vertices = strays.len() as u64 + slid;
+        let worst = strays.iter().max_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let least = worst.map_or(0.0, distance);
+        // A vertex is no nearer to where it belongs than to the surface, unless it isn't known where it belongs.
+        if let Some(farthest) = self.farthest().filter(|farthest| vertices > 0 && farthest.distance >= least) {
+            let Farthest { distance, patch, theirs, .. } = farthest;
+            return Some(Finding::Moved { vertices, farthest: theirs, distance, triangle: triangle(patch) });
+        }
+        worst.map(|worst| Finding::Moved {
+            vertices,
+            farthest: overlaid.positions[*worst as usize],
+            distance: least,
+            triangle: triangle(overlaid.places[*worst as usize].patch),
+        })
+    }
+
+    /// Explains where points differ, and returns the sides that are cut differently. `other` is the surface that their vertices lie on, if
+    /// it isn't ours. `None` if no point differs but for that surface or for displacement.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(super) fn explain(
+        &self,
+        ours: &Ours,
+        other: Option<&OwnSurface>,
+        findings: &mut Vec<Finding>,
+        progress: &Progress,
+    ) -> Result<Option<Vec<SideDifference>>, Cancelled> {
+        let different = self.different();
+        if different.is_empty() {
+            return Ok(Some(Vec::new()));
+        }
+        let Ours { mesh, inputs, given, .. } = *ours;
+        let reaches = &self.reaches;
+        let explainer = Explainer {
+            mesh,
+            assignment: self.assignment,
+            inputs,
+            other: other.map(|other| &other.inputs),
+            given,
+            reaches,
+        };
+        let explanations = explainer.explain(&different, progress)?;
+        let own = Explanation { partitioning: inputs.tessellation.partitioning, rule: Rule::Same };
+        if explanations.first() == Some(&own) || explainer.are_last_bits(&different) {
+            return Ok(None);
+        }
+        // LOD measures control points, so that others have other factors, which are no mistake beside that.
+        let measures = given.is_none() && !matches!(inputs.tessellation.used_lod(), Lod::Uniform | Lod::Distance);
+        if measures && explanations.is_empty() && other.is_some_and(|other| other.mistake.is_some()) {
+            return Ok(None);
+        }
+        let OtherCuts { sides, inside, suits } = self.other_cuts(ours, &different);
+        let (patches, of) = (different.len() as u64, self.compared().count() as u64);
+        let Tessellation { partitioning, convention, .. } = inputs.tessellation;
+        findings.push(match explanations.is_empty() {
+            false => Finding::Factors { ours: partitioning, convention, explanations, patches, of },
+            true => {
+                let is_of_view = given.is_none() && inputs.tessellation.used_lod() != Lod::Uniform;
+                let sides = sides.len() as u64;
+                Finding::UnknownFactors { patches, of, sides, inside, suits, ours: partitioning, is_of_view }
+            }
+        });
+        findings.extend(self.cracks(ours, progress)?);
+        Ok(Some(sides))
+    }
+
+    /// How the sides of these patches, whose points differ, are cut.
+    fn other_cuts(&self, ours: &Ours, different: &[u32]) -> OtherCuts {
+        let (mut sides, mut inside): (Vec<SideDifference>, _) = (Vec::new(), 0);
+        let (mut suited, mut seen) = ([0_usize; Partitioning::DIRECT3D.len()], 0);
+        for &patch in different {
+            let theirs = self.cuts(patch);
+            let before = sides.len();
+            sides.extend(self.side_differences(ours, patch, &theirs, &self.own_mesh.patch(patch)));
+            inside += u64::from(sides.len() == before);
+            if seen < SIDES {
+                seen += theirs.len();
+                let reach = self.reaches[patch as usize].domain;
+                for (count, partitioning) in suited.iter_mut().zip(Partitioning::DIRECT3D) {
+                    *count += theirs.iter().filter(|cut| cut.suits(partitioning, reach)).count();
+                }
+            }
+        }
+        sides.sort_by(|a, b| b.ratio().total_cmp(&a.ratio()));
+        let suits = suited.into_iter().zip(Partitioning::DIRECT3D);
+        let suits = suits.filter(|(count, _)| *count as f64 >= SUITS * seen as f64);
+        OtherCuts { sides, inside, suits: suits.map(|(_, partitioning)| partitioning).collect() }
+    }
+
+    /// How their triangles cut the sides of a patch.
+    fn cuts(&self, patch: u32) -> [Cut; 3] {
+        let Reach { domain, fit } = self.reaches[patch as usize];
+        cuts_of(&self.assignment.part(patch), [domain, fit])
+    }
+
+    /// The sides of a patch that are cut differently.
+    fn side_differences(&self, ours: &Ours, patch: u32, theirs: &[Cut; 3], own: &OwnPatch) -> Vec<SideDifference> {
+        let reach = self.reaches[patch as usize].domain;
+        let positions = ours.topology.patch_positions(patch);
+        let difference = |side: usize| {
+            let own = Cut::new(side, own.weights.iter().copied(), reach);
+            (!theirs[side].is_like(&own, reach)).then(|| SideDifference {
+                triangle: ours.topology.patches[patch as usize].triangle,
+                side: side as u32,
+                ends: [positions[side], positions[(side + 1) % 3]].map(|end| end.to_array()),
+                theirs: SideCut::of(&theirs[side]),
+                ours: SideCut::of(&own),
+            })
+        };
+        (0..3).filter_map(difference).collect()
+    }
+
+    /// Counts the edges between two patches that their sides cut differently, if there are any.
+    fn cracks(&self, ours: &Ours, progress: &Progress) -> Result<Option<Finding>, Cancelled> {
+        let topology = ours.topology;
+        let cuts = made_of_all(self.all.len(), progress, |patch| {
+            (self.assignment.count(patch as u32) > 0).then(|| self.cuts(patch as u32).map(|cut| cut.factor() as f32))
+        })?;
+        let (mut edges, mut of) = (0, 0);
+        for edge in topology.edges.iter().filter(|edge| !matches!(edge.kind, EdgeKind::Boundary)) {
+            let cut = |side: &geometry::mesh::Side| cuts[side.patch() as usize].map(|cuts| cuts[side.index()]);
+            let own: Vec<_> = topology.edge_sides(edge).iter().filter_map(cut).collect();
+            if own.len() > 1 {
+                of += 1;
+                let differs = own.iter().any(|factor| (factor / own[0] - 1.0).abs() > 0.01);
+                edges += u64::from(differs);
+            }
+        }
+        Ok((edges > 0).then_some(Finding::Cracked { edges, of }))
+    }
+
+    /// Says what is wrong with triangles: those that are missing, doubled, wound the other way, or join other points.
+    /// `is_mirrored` says that their coordinates are.
+    pub(super) fn judge_triangles(&self, ours: &Ours, is_mirrored: bool, findings: &mut Vec<Finding>) {
+        let emitted = (0..self.all.len() as u32).filter(|patch| self.own_mesh.emits(*patch)).count() as u64;
+        let names = |patches: &[u32]| -> Vec<u32> {
+            patches.iter().take(NAMED).map(|patch| ours.topology.patches[*patch as usize].triangle).collect()
+        };
+        if !self.missing.is_empty() {
+            let (patches, triangles) = (self.missing.len() as u64, names(&self.missing));
+            findings.push(Finding::MissingPatches { patches, of: emitted, triangles });
+        }
+        if !self.additional.is_empty() {
+            let (patches, triangles) = (self.additional.len() as u64, names(&self.additional));
+            findings.push(Finding::AdditionalPatches { patches, triangles });
+        }
+        let count = |of: fn(&Match) -> u64| {
+            let counts = || self.compared().map(|(_, outcome)| of(&outcome.found));
+            (counts().sum::<u64>(), counts().filter(|count| *count > 0).count() as u64)
+        };
+        let none = (0, 0);
+        // Places of displaced vertices are too rough to tell one triangle from the next.
+        let is_exact = self.assignment.overlaid.fit.is_finite();
+        let exact = |of: fn(&Match) -> u64| if is_exact { count(of) } else { none };
+        let (missing, doubled) = (exact(|found| found.missing), exact(|found| found.doubled));
+        let other = exact(|found| found.other);
+        if missing.0 > 0 {
+            findings.push(Finding::MissingTriangles { count: missing.0, patches: missing.1 });
+        }
+        if doubled.0 > 0 {
+            findings.push(Finding::Doubled { count: doubled.0, patches: doubled.1 });
+        }
+        let [flipped, thin] = [count(|found| found.flipped).0, count(|found| found.thin).0];
+        let of = self.compared_triangles();
+        let flipped = if flipped > 0 && flipped + thin == of { of } else { flipped };
+        // What is mirrored shows its other side, unless its winding was turned as well.
+        if flipped > 0 && !(is_mirrored && flipped == of) {
+            findings.push(Finding::Flipped { count: flipped, of });
+        }
+        if other.0 > 0 {
+            findings.push(Finding::OtherTriangles { count: other.0, patches: other.1, order: self.corner_order(ours) });
+        }
+    }
+
+    fn compared_triangles(&self) -> u64 {
+        self.compared().map(|(patch, _)| u64::from(self.assignment.count(patch))).sum()
+    }
+
+    /// The order of corners that explains all triangles that join other points.
+    fn corner_order(&self, ours: &Ours) -> Option<CornerOrder> {
+        let Inputs { tessellation, .. } = *ours.inputs;
+        if tessellation.partitioning == Partitioning::Rows {
+            return None;
+        }
+        let written = match ours.given {
+            Some(given) => given.to_vec(),
+            None => hull_factors(ours.mesh, ours.topology, ours.inputs),
+        };
+        let turned: Vec<u32> =
+            self.compared().filter(|(_, outcome)| outcome.found.other > 0).map(|(patch, _)| patch).collect();
+        let explains = |order: &CornerOrder| {
+            turned.iter().all(|&patch| {
+                let (part, own) = (self.assignment.part(patch), self.own_mesh.patch(patch));
+                let found = Match::of(&part, &own, self.reaches[patch as usize]);
+                let cut = (tessellation.convention, written[patch as usize], tessellation.partitioning);
+                order.explains(&part, &own, &found, cut)
+            })
+        };
+        CornerOrder::ALL.into_iter().find(explains)
+    }
+}
+
+impl Outcome {
+    fn of(assignment: &Assignment, own: &OwnPatch, patch: u32, reach: Reach) -> Self {
+        let part = assignment.part(patch);
+        let found = Match::of(&part, own, reach);
+        let (mut farthest, mut offsets): (Option<Farthest>, _) = (None, Offsets::default());
+        for (&vertex, own_vertex) in part.vertices.iter().zip(&found.own_vertices) {
+            let Some(own_vertex) = *own_vertex else { continue };
+            let theirs = assignment.overlaid.positions[vertex as usize];
+            let ours = own.positions[own_vertex as usize];
+            let apart = Farthest { distance: theirs.distance(ours), patch, theirs, ours };
+            farthest = Some(farthest.map_or(apart, |farthest| farthest.farther(apart)));
+            offsets.add(theirs - ours, own.normals[own_vertex as usize]);
+        }
+        Self { is_compared: true, found: Match { own_vertices: Vec::new(), ..found }, farthest, slack: 0.0, offsets }
+    }
+}
+
+impl Offsets {
+    fn add(&mut self, offset: glam::DVec3, normal: glam::DVec3) {
+        /// The largest sine of the angle between an offset along a normal and that normal. Where a surface bends, the nearest
+        /// place isn't the one that was displaced.
+        const ASIDE: f64 = 0.3;
+        let along = offset.dot(normal);
+        self.vertices += 1;
+        self.along_normals += u64::from((offset - normal * along).length() <= ASIDE * offset.length());
+        self.outward = self.outward.max(along);
+        self.inward = self.inward.max(-along);
+    }
+
+    fn with(self, other: Self) -> Self {
+        Self {
+            vertices: self.vertices + other.vertices,
+            along_normals: self.along_normals + other.along_normals,
+            outward: self.outward.max(other.outward),
+            inward: self.inward.max(other.inward),
+        }
+    }
+}
+
+/// How far apart points of a patch may be in the domain if they are the same to within `exact` object units.
+fn exact_reach(ours: &Ours, patch: u32, exact: f64) -> f64 {
+    let [a, b, c] = ours.topology.patch_positions(patch).map(|corner| corner.as_dvec3());
+    let (sides, area) = ([a.distance(b), b.distance(c), c.distance(a)], (b - a).cross(c - a).length());
+    // The least height of the triangle: along it, weights change the fastest.
+    let height = area / sides.into_iter().fold(0.0, f64::max);
+    let reach = 4.0 * exact / height;
+    if reach.is_finite() { reach } else { f64::MAX }
+}
+
+/// The largest number of segments into which we cut a side, or the inside, of a patch.
+fn segments_of(own_mesh: &OwnMesh, patch: u32) -> f64 {
+    let factors = own_mesh.factors(patch);
+    let outside = factors.outside.into_iter().map(segments).max().unwrap_or(1);
+    f64::from(outside.max((factors.inside & FACTOR_VALUE).div_ceil(1 << 16)).max(1))
+}

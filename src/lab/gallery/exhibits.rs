@@ -1,0 +1,148 @@
+//! The gallery's exhibits: which techniques it shows, and on which meshes.
+
+use geometry::mesh::{HeightMap, Heights, Mesh, Shape};
+use geometry::tessellate::{Displacement, Normals, Partitioning, Surface, Tessellation};
+use inspect::settings::{Choice, Description, Overlays, Settings};
+
+/// One aspect of tessellation, with a tile for each technique.
+#[derive(Clone, Debug)]
+pub struct Exhibit {
+    /// The name of its picture's file, without the ending.
+    pub name: &'static str,
+    pub title: &'static str,
+    pub about: &'static str,
+    /// The shape that it is shown on if no mesh is named.
+    pub shape: Shape,
+    pub overlays: Overlays,
+    pub tiles: Vec<Tile>,
+}
+
+/// One technique of an exhibit.
+#[derive(Clone, Debug)]
+pub struct Tile {
+    /// The name on the command line.
+    pub name: String,
+    /// A sentence that says what the technique is, and where it was published.
+    pub about: String,
+    pub settings: Settings,
+    /// The tessellation factor, if it is another than [`super::GalleryOptions::factor`].
+    pub factor: Option<f32>,
+    /// The width of the crease band, as a part of the bounding diagonal; 0 for none.
+    pub crease_band: f32,
+}
+
+impl Tile {
+    /// A technique that is one value of an option. Its name and explanation are those of the value.
+    fn of(value: impl Choice, tessellation: Tessellation) -> Self {
+        let Description { name, text, .. } = value.description();
+        Self {
+            name: name.to_owned(),
+            about: text.to_owned(),
+            settings: tessellation.into(),
+            factor: None,
+            crease_band: 0.0,
+        }
+    }
+
+    fn named(self, name: &str, about: &str) -> Self {
+        Self { name: name.to_owned(), about: about.to_owned(), ..self }
+    }
+}
+
+/// All exhibits, in the order of the steps in which a patch is made: surface, creases, normals, pattern, heights.
+pub fn exhibits() -> [Exhibit; 5] {
+    [surfaces(), creases(), normals(), patterns(), heights()]
+}
+
+fn usual() -> Tessellation {
+    Tessellation { partitioning: Partitioning::Integer, ..Tessellation::default() }
+}
+
+fn surfaces() -> Exhibit {
+    let of = |surface| Tile::of(surface, Tessellation { surface, ..usual() });
+    Exhibit {
+        name: "surfaces",
+        title: "Surfaces",
+        about: "The patch that each technique makes of a triangle, from the positions and normals of its corners alone. Where \
+                normals are split, surfaces that follow each side's own normals tear (red). Surfaces whose sides share the \
+                control points of an edge don't.",
+        shape: Shape::CubeSplit,
+        overlays: Overlays { cracks: true, ..Overlays::default() },
+        tiles: Surface::ALL.map(of).to_vec(),
+    }
+}
+
+fn creases() -> Exhibit {
+    let of = |surface| Tile::of(surface, Tessellation { surface, ..usual() });
+    let band = Tile { crease_band: 0.02, ..of(Surface::Pn) };
+    Exhibit {
+        name: "creases",
+        title: "Creases",
+        about: "Four ways to treat an edge whose sides have different normals: leave it as it is, so that it tears; first make a \
+                band of small triangles along the crease, which gives all sides one normal; follow the line that both tangent \
+                planes share; or take the mean of both sides' control points.",
+        shape: Shape::Cylinder,
+        overlays: Overlays { cracks: true, ..Overlays::default() },
+        tiles: vec![
+            of(Surface::Pn),
+            band.named("pn --crease-band 0.02", "A crease band, for PN triangles (Vlachos et al. 2001)."),
+            of(Surface::PnCrease),
+            of(Surface::PnAen),
+        ],
+    }
+}
+
+fn normals() -> Exhibit {
+    let of = |normals| Tile::of(normals, Tessellation { normals, ..usual() });
+    Exhibit {
+        name: "normals",
+        title: "Shading normals",
+        about: "The same surface shaded with different normals. Linear normals keep what the author's normals say. Quadratic \
+                normals follow edges that bend back, and bulge where the author's normals don't mean a curve. The surface's \
+                own normals have a step wherever patches meet at an angle, which they do almost everywhere.",
+        shape: Shape::CubeSmooth,
+        overlays: Overlays::default(),
+        tiles: Normals::ALL.iter().map(|&normals| of(normals)).collect(),
+    }
+}
+
+fn patterns() -> Exhibit {
+    let of = |partitioning| {
+        let tile = Tile::of(partitioning, Tessellation { partitioning, ..usual() });
+        Tile { factor: Some(5.4), ..tile }
+    };
+    Exhibit {
+        name: "patterns",
+        title: "Patterns",
+        about: "The triangles that each partitioning makes of one factor between two whole numbers.",
+        shape: Shape::Icosahedron,
+        overlays: Overlays { wireframe: true, patches: true, ..Overlays::default() },
+        tiles: Partitioning::ALL.map(of).to_vec(),
+    }
+}
+
+fn heights() -> Exhibit {
+    let of = |displacement| {
+        let tile = Tile::of(displacement, Tessellation { displacement, ..usual() });
+        Tile { factor: Some(24.0), ..tile }
+    };
+    Exhibit {
+        name: "displacement",
+        title: "Displacement",
+        about: "One height image over patches whose texture coordinates and normals differ where they meet. Dominant edges and \
+                corners close seams, and moving each point along one direction closes the rest.",
+        shape: Shape::CubeSplit,
+        overlays: Overlays { cracks: true, ..Overlays::default() },
+        tiles: Displacement::ALL.iter().map(|&displacement| of(displacement)).collect(),
+    }
+}
+
+/// A height image of waves for shapes made in code. It can be repeated without a seam.
+pub(super) fn waves(mesh: &Mesh) -> Heights {
+    const SIZE: u32 = 128;
+    let height = |i: u32| {
+        let [x, y] = [i % SIZE, i / SIZE].map(|x| std::f32::consts::TAU * (x as f32 + 0.5) / SIZE as f32);
+        0.5 + 0.25 * (3.0 * x).sin() * (2.0 * y).cos() + 0.2 * (x + 2.0 * y).cos()
+    };
+    Heights::everywhere(mesh, HeightMap::new([SIZE, SIZE], (0..SIZE * SIZE).map(height).collect()))
+}

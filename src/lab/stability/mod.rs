@@ -1,0 +1,246 @@
+//! Cases that break tessellators: every method is run on them and measured, and the results are compared with what this
+//! program promises. Like the window and the command line, it uses [`inspect::engine`], since a case is tessellated and drawn
+//! like any mesh.
+
+pub mod cases;
+mod gates;
+mod meshes;
+mod picture;
+mod report;
+mod run;
+mod sweep_chart;
+mod views;
+
+pub(crate) use cases::DEFAULT_VIEW;
+pub use cases::{CASES, Case, CaseView, Probe};
+pub use gates::{Failure, are_judged, failures};
+#[cfg(test)]
+pub use meshes::soup;
+pub use picture::{PictureError, picture};
+pub use report::{LEGEND, PAGE, Section, Verdict, lines, page, table};
+pub use run::{Effort, run};
+#[cfg(test)]
+pub use views::random as random_camera;
+pub use views::viewport;
+
+use serde::Serialize;
+
+use geometry::mesh::{Mesh, Moment};
+use geometry::tessellate::{Clip, Displacement, Edges, Lod, Partitioning, Surface, Tessellation};
+use inspect::render::Camera;
+use inspect::settings::Settings;
+
+/// A mesh that the methods are run on: a case's, or any other.
+#[derive(Clone, Debug)]
+pub struct Subject {
+    pub name: String,
+    /// See [`Case::about`]; empty for other meshes.
+    pub about: String,
+    pub mesh: Mesh,
+    /// The weld tolerance, as a part of the bounding diagonal.
+    pub weld: f32,
+    pub probe: Probe,
+    pub view: CaseView,
+}
+
+impl Subject {
+    /// A mesh that is no case: only the agreement of edges is measured.
+    pub fn new(name: String, mesh: Mesh, weld: f32) -> Self {
+        Self { name, about: String::new(), mesh, weld, probe: Probe::Edges, view: DEFAULT_VIEW }
+    }
+}
+
+/// A way to tessellate that is run on every case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Method {
+    Flat,
+    Pn,
+    PnAenAsPublished,
+    PnAen,
+    PnCrease,
+    Phong,
+    PhongAen,
+    Nagata,
+    NagataAen,
+}
+
+impl Method {
+    pub const ALL: [Self; 9] = [
+        Self::Flat,
+        Self::Pn,
+        Self::PnAenAsPublished,
+        Self::PnAen,
+        Self::PnCrease,
+        Self::Phong,
+        Self::PhongAen,
+        Self::Nagata,
+        Self::NagataAen,
+    ];
+
+    /// The name in tables and files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Flat => "flat",
+            Self::Pn => "PN",
+            Self::PnAenAsPublished => "PN-AEN as published",
+            Self::PnAen => "PN-AEN",
+            Self::PnCrease => "PN crease",
+            Self::Phong => "Phong",
+            Self::PhongAen => "Phong AEN",
+            Self::Nagata => "Nagata",
+            Self::NagataAen => "Nagata AEN",
+        }
+    }
+
+    /// The name on the command line.
+    pub fn option(self) -> String {
+        self.name().to_lowercase().replace(' ', "-")
+    }
+
+    /// The surface of this method.
+    pub const fn surface(self) -> Surface {
+        match self {
+            Self::Flat => Surface::Flat,
+            Self::Pn => Surface::Pn,
+            Self::PnAenAsPublished | Self::PnAen => Surface::PnAen,
+            Self::PnCrease => Surface::PnCrease,
+            Self::Phong => Surface::Phong,
+            Self::PhongAen => Surface::PhongAen,
+            Self::Nagata => Surface::Nagata,
+            Self::NagataAen => Surface::NagataAen,
+        }
+    }
+
+    /// The settings for this method with a uniform factor.
+    pub fn settings(self, partitioning: Partitioning, factor: f32) -> Settings {
+        let edges = if self == Self::PnAenAsPublished { Edges::AsPublished } else { Edges::PerEdge };
+        Settings::from(Tessellation { surface: self.surface(), edges, partitioning, factor, ..Tessellation::default() })
+    }
+
+    /// The same settings with displacement, if the mesh has a height image: without cracks, or as published with dominance
+    /// alone.
+    pub fn displacing(self, mesh: &Mesh, settings: Settings) -> Settings {
+        let displacement = match self {
+            _ if mesh.heights.is_none() => Displacement::Off,
+            Self::PnAenAsPublished => Displacement::AsPublished,
+            _ => Displacement::On,
+        };
+        settings.with(Tessellation { displacement, height_scale: 0.15, ..settings.tessellation })
+    }
+
+    /// The settings for this method with clipping and adaptive LOD, of about `pixels` px a segment. The method as published
+    /// uses the white paper's own. Subtriangulation, which is always uniform, has clipping at one factor.
+    pub fn adaptive(self, partitioning: Partitioning, pixels: f32) -> Settings {
+        let (lod, clip) = match self {
+            Self::PnAenAsPublished => (Lod::Paper, Clip::Paper),
+            _ => (Lod::EdgeLength, Clip::Frustum),
+        };
+        self.settings(partitioning, 5.0).with(Tessellation {
+            lod,
+            clip,
+            pixels,
+            ..self.settings(partitioning, 5.0).tessellation
+        })
+    }
+}
+
+/// What is measured. Each number is 0 if nothing is wrong, except for [`Self::Segment`], [`Self::Jump`] and [`Self::Pop`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Quantity {
+    /// Points of edges whose positions differ between sides in at least one bit.
+    Points,
+    /// Edges for which LOD gave the sides different factors.
+    Factors,
+    /// Points of edges whose normals differ between sides although the mesh's normals agree.
+    Normals,
+    /// Vertices with a coordinate that is infinite or NaN.
+    NotFinite,
+    /// Pixels that show the inside of a closed mesh.
+    Leaks,
+    /// Triangles that face away from the side that their patch faces.
+    Folds,
+    /// Pixels that clipping changes.
+    Missing,
+    /// The length of the longest visible segment, divided by the length asked for, on edges that could be cut finer.
+    Segment,
+    /// The difference between the number of T-junctions in the mesh and the number found.
+    TJunctions,
+    /// Open edges of a mesh that should be closed.
+    OpenEdges,
+    /// The largest distance that any surface point moves as the factor grows by 1/64, as a part of the mesh's diagonal,
+    /// under fractional partitioning.
+    Jump,
+    /// The same under the other partitionings: integer, pow2, subtriangulation and rows.
+    Pop,
+}
+
+impl Quantity {
+    /// The text that follows a number of it.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Points => "edge points that differ",
+            Self::Factors => "edges whose factors differ",
+            Self::Normals => "edge normals that differ",
+            Self::NotFinite => "vertices not finite",
+            Self::Leaks => "px leaking",
+            Self::Folds => "folded triangles",
+            Self::Missing => "px clipped away",
+            Self::Segment => "times the segment asked for",
+            Self::TJunctions => "T-junctions missed",
+            Self::OpenEdges => "open edges left",
+            Self::Jump => "of the diagonal (the largest jump in a fractional step)",
+            Self::Pop => "of the diagonal (the largest pop)",
+        }
+    }
+
+    /// The largest number that still counts as holding.
+    pub const fn limit(self) -> f64 {
+        match self {
+            // Segments are equally long along the curve, but perspective makes the near ones longer on screen.
+            Self::Segment => 4.0,
+            // Several times what was measured under fractional partitioning, and far below the others.
+            Self::Jump | Self::Pop => 0.004,
+            _ => 0.0,
+        }
+    }
+}
+
+/// One tessellation that was tried, and from where it was seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tried {
+    pub settings: Settings,
+    /// LOD and clipping are those of this camera, in a picture of the size of [`viewport`]. The mesh is seen from it, too.
+    pub camera: Camera,
+    /// None at rest.
+    pub moment: Option<Moment>,
+}
+
+impl Tried {
+    /// The mesh itself, from where its case's picture is taken.
+    pub fn of_mesh(subject: &Subject) -> Self {
+        let settings = Method::Flat.settings(Partitioning::Integer, 1.0);
+        let camera = views::camera(&subject.mesh.bounds(), &subject.view, viewport());
+        Self { settings, camera, moment: None }
+    }
+}
+
+/// One measurement: the worst number of a quantity over factors and views.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    pub case: String,
+    pub method: &'static str,
+    /// The adapter's name, or `cpu`.
+    pub device: String,
+    pub partitioning: &'static str,
+    pub measured: f64,
+    pub unit: &'static str,
+    /// Whether this program promises that `holds` is true.
+    pub promised: bool,
+    /// Whether `measured` is at most [`Quantity::limit`].
+    pub holds: bool,
+    #[serde(skip)]
+    pub quantity: Quantity,
+    /// The first tessellation with that number; none for what isn't about a single one.
+    #[serde(skip)]
+    pub tried: Option<Tried>,
+}

@@ -1,0 +1,243 @@
+//! The results as text: a table for the terminal, and a page that explains each case.
+
+use std::fmt::Write;
+
+use super::{Quantity, Row};
+
+/// The results of one method on one case: for each quantity, the worst number over devices and partitionings.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    pub case: String,
+    pub method: &'static str,
+    pub worst: Vec<(Quantity, f64)>,
+    pub verdict: Verdict,
+}
+
+/// The verdict on one method and case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Verdict {
+    /// Everything measured holds.
+    Holds,
+    /// Something doesn't hold, but this program doesn't promise it: a published method fails there.
+    Fails,
+    /// Something doesn't hold that this program promises.
+    BreaksPromise,
+}
+
+impl Verdict {
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::Fails => "fails",
+            Self::BreaksPromise => "BREAKS A PROMISE",
+        }
+    }
+
+    fn of(row: &Row) -> Self {
+        match (row.holds, row.promised) {
+            (true, _) => Self::Holds,
+            (false, false) => Self::Fails,
+            (false, true) => Self::BreaksPromise,
+        }
+    }
+}
+
+/// Returns one line for each case and method, in the order of the rows.
+pub fn lines(rows: &[Row]) -> Vec<Line> {
+    let mut lines: Vec<Line> = Vec::new();
+    for row in rows {
+        let known = lines.iter().position(|line| line.case == row.case && line.method == row.method);
+        let index = known.unwrap_or_else(|| {
+            let verdict = Verdict::Holds;
+            lines.push(Line { case: row.case.clone(), method: row.method, worst: Vec::new(), verdict });
+            lines.len() - 1
+        });
+        let line = &mut lines[index];
+        line.verdict = line.verdict.max(Verdict::of(row));
+        match line.worst.iter_mut().find(|(quantity, _)| *quantity == row.quantity) {
+            Some((_, worst)) => *worst = worst.max(row.measured),
+            None => line.worst.push((row.quantity, row.measured)),
+        }
+    }
+    lines
+}
+
+/// The quantities that are measured on every case, with the headings of their columns.
+const COLUMNS: [(Quantity, &str); 5] = [
+    (Quantity::Points, "points"),
+    (Quantity::Factors, "factors"),
+    (Quantity::Normals, "normals"),
+    (Quantity::NotFinite, "not finite"),
+    (Quantity::Leaks, "leaks px"),
+];
+
+impl Line {
+    fn cell(&self, quantity: Quantity) -> String {
+        let found = self.worst.iter().find(|(known, _)| *known == quantity);
+        found.map_or_else(|| "-".to_owned(), |(_, worst)| number(*worst))
+    }
+
+    /// The quantities that have no column, with their numbers.
+    fn rest(&self) -> String {
+        let rest = self.worst.iter().filter(|(quantity, _)| COLUMNS.iter().all(|(column, _)| column != quantity));
+        rest.map(|(quantity, worst)| phrase(*quantity, *worst)).collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// A quantity with its number, in words.
+fn phrase(quantity: Quantity, measured: f64) -> String {
+    match quantity {
+        Quantity::Segment if measured == 0.0 => "all that is in view is cut as finely as possible".to_owned(),
+        _ => format!("{} {}", number(measured), quantity.unit()),
+    }
+}
+
+/// A number as short text: whole numbers without decimals, others with two decimals or three digits.
+fn number(x: f64) -> String {
+    if x.fract() == 0.0 && x.abs() < 1e15 {
+        format!("{x}")
+    } else if x >= 0.1 {
+        format!("{x:.2}")
+    } else {
+        format!("{x:.2e}")
+    }
+}
+
+/// What the columns mean.
+pub const LEGEND: &str = "points: edge points whose positions differ between sides in at least one bit; factors: edges whose \
+     sides got different factors; normals: edge points whose normals differ although the mesh's normals agree; not finite: \
+     vertices with infinite or NaN coordinates; leaks: pixels that show the inside of a closed mesh (- where they can't be counted). Each \
+     number is the worst over factors, views, partitionings and devices.";
+
+/// Formats lines as a table for a terminal.
+pub fn table(lines: &[Line]) -> String {
+    let mut text = format!("{:<20} {:<20}", "case", "method");
+    for (_, column) in COLUMNS {
+        let _ = write!(text, " {column:>11}");
+    }
+    text += "  verdict\n";
+    let mut last = "";
+    for line in lines {
+        let case = if line.case == last { "" } else { &line.case };
+        last = &line.case;
+        let _ = write!(text, "{case:<20} {:<20}", line.method);
+        for (quantity, _) in COLUMNS {
+            let _ = write!(text, " {:>11}", line.cell(quantity));
+        }
+        let _ = write!(text, "  {}", line.verdict.text());
+        let rest = line.rest();
+        let _ = writeln!(text, "{}{rest}", if rest.is_empty() { "" } else { "; " });
+    }
+    text
+}
+
+/// The page's file name.
+pub const PAGE: &str = "stability.md";
+
+/// What a page says about one subject, besides its numbers.
+#[derive(Clone, Debug)]
+pub struct Section {
+    pub name: String,
+    /// A paragraph; may be empty.
+    pub about: String,
+    /// The picture's file name, in the page's folder.
+    pub picture: Option<String>,
+}
+
+/// Returns the page in Markdown. It has a section for each subject: the text about it, its picture, and a table of its rows.
+pub fn page(sections: &[Section], rows: &[Row]) -> String {
+    let mut text = String::from("# Where tessellation breaks\n\n");
+    let mut devices: Vec<_> = rows.iter().map(|row| row.device.as_str()).collect();
+    devices.sort_unstable();
+    devices.dedup();
+    let _ = writeln!(
+        text,
+        "Written by `pnaen stability -o DIR`, run on: {}. Each picture shows, row by row: {}. Cracks are red, folded triangles \
+         violet, T-junctions yellow.\n\n{}\n",
+        devices.join(", "),
+        super::Method::ALL.map(super::Method::name).join(", "),
+        capitalised(LEGEND)
+    );
+    let lines = lines(rows);
+    for Section { name, about, picture } in sections {
+        let _ = writeln!(text, "## {name}\n");
+        if !about.is_empty() {
+            let _ = writeln!(text, "{about}\n");
+        }
+        if let Some(picture) = picture {
+            let _ = writeln!(text, "![{name}]({picture})\n");
+        }
+        let header: Vec<_> = COLUMNS.iter().map(|(_, column)| *column).collect();
+        let _ = writeln!(
+            text,
+            "| method | {} | further | verdict |\n| --- |{} --- | --- |",
+            header.join(" | "),
+            " ---: |".repeat(header.len())
+        );
+        for line in lines.iter().filter(|line| line.case == *name) {
+            let cells: Vec<_> = COLUMNS.iter().map(|(quantity, _)| line.cell(*quantity)).collect();
+            let _ = writeln!(
+                text,
+                "| {} | {} | {} | {} |",
+                line.method,
+                cells.join(" | "),
+                line.rest(),
+                line.verdict.text()
+            );
+        }
+        text.push('\n');
+    }
+    text
+}
+
+fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(method: &'static str, quantity: Quantity, measured: f64, promised: bool) -> Row {
+        let (case, device) = ("split".to_owned(), "cpu".to_owned());
+        let holds = measured <= quantity.limit();
+        let (partitioning, unit, tried) = ("pow2", quantity.unit(), None);
+        Row { case, method, device, partitioning, measured, unit, promised, holds, quantity, tried }
+    }
+
+    #[test]
+    fn a_line_has_the_worst_number_of_each_quantity() {
+        let rows = [
+            row("PN", Quantity::Points, 0.0, false),
+            row("PN", Quantity::Points, 7.0, false),
+            row("PN-AEN", Quantity::Points, 0.0, true),
+            row("PN", Quantity::Segment, 2.5, true),
+        ];
+        let lines = lines(&rows);
+        assert_eq!(lines.len(), 2);
+        assert_eq!(lines[0].worst, [(Quantity::Points, 7.0), (Quantity::Segment, 2.5)]);
+        assert_eq!((lines[0].verdict, lines[1].verdict), (Verdict::Fails, Verdict::Holds));
+        let text = table(&lines);
+        assert!(text.contains("fails; 2.50 times the segment asked for"), "{text}");
+        let broken = row("PN-AEN", Quantity::Points, 1.0, true);
+        assert_eq!(super::lines(&[broken])[0].verdict, Verdict::BreaksPromise);
+    }
+
+    #[test]
+    fn a_page_without_a_picture_or_text_leaves_them_out() {
+        let section = |picture: Option<&str>| {
+            [Section { name: "split".to_owned(), about: String::new(), picture: picture.map(str::to_owned) }]
+        };
+        let rows = [row("PN", Quantity::Points, 7.0, false)];
+        let text = page(&section(None), &rows);
+        assert!(text.contains("run on: cpu.") && !text.contains("!["), "{text}");
+        assert!(text.contains("\n## split\n\n| method |") && text.contains("\n| PN | 7 |"), "{text}");
+        assert!(page(&section(Some("a.png")), &rows).contains("\n![split](a.png)\n"));
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        assert_eq!([0.0, 12.0, 0.2567, 0.000123].map(number), ["0", "12", "0.26", "1.23e-4"]);
+    }
+}

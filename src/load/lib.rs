@@ -1,0 +1,71 @@
+//! Loads meshes from glTF, FBX, OBJ, STL, PLY, OFF and 3MF files, height images and textures, within limits of file size and memory.
+//! Everything in a file is checked before it is used.
+
+mod attachment;
+mod binding_space;
+mod bits;
+mod content;
+pub mod csv_vertices;
+pub mod environment_file;
+mod face_builder;
+pub mod factors_file;
+mod fbx;
+pub mod files;
+pub mod format;
+mod gltf;
+pub mod heights;
+#[cfg(test)]
+mod hostile_files;
+mod images;
+pub mod import;
+mod jpeg_memory;
+mod ktx2;
+mod loaded_mesh;
+pub mod markdown;
+mod matcap_image;
+pub mod memory_budget;
+pub mod mesh_file;
+mod notes;
+mod obj;
+mod off;
+mod packing;
+pub mod panorama;
+pub mod parts;
+mod ply;
+mod prefix_code;
+mod read_error;
+mod recent_corners;
+mod rig_builder;
+pub mod selection;
+pub mod source;
+mod stl;
+mod tangents;
+mod text_lines;
+mod texture_room;
+mod threemf;
+mod triangle_block;
+mod unread_formats;
+mod uri;
+mod warnings;
+mod webp_memory;
+mod webp_tables;
+mod zstd;
+
+pub use crate::files::{FileError, Limits};
+pub use gltf::GltfError;
+pub use heights::HeightError;
+pub use loaded_mesh::LoadedMesh;
+pub use matcap_image::{MatcapError, load_matcap};
+pub use mesh_file::{LoadError, load};
+pub use read_error::{FilePosition, ReadError};
+pub use uri::percent_decoded;
+
+#[cfg(test)]
+pub use format::Format;
+pub use heights::HeightSource;
+pub use import::{FileUnit, Import, LengthUnit, NormalSource, UNIT_METRES};
+pub use memory_budget::Budget;
+pub use source::Source;
+#[cfg(test)]
+pub use threemf::tests::package;
+pub use warnings::{crease_band_warnings, untextured_warning};
