@@ -34,13 +34,14 @@ impl Notes {
     }
 
     fn add(&mut self, added: Kept) {
+        let has_room = self.kept.len() < MAX_WARNINGS;
         match self.kept.iter_mut().find(|kept| is_same_cause(&kept.sentence, &added.sentence)) {
             Some(kept) if kept.sentence == added.sentence => {
                 kept.times += added.times;
                 kept.others += added.others;
             }
             Some(kept) => kept.others += added.times + added.others,
-            None if self.kept.len() < MAX_WARNINGS => self.kept.push(added),
+            None if has_room => self.kept.push(added),
             None => self.more += added.times + added.others,
         }
     }
