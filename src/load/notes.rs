@@ -3,32 +3,45 @@
 /// The greatest number of warnings about a document.
 pub(super) const MAX_WARNINGS: usize = 100;
 
-/// Sentences, of which only so many are kept: a small document can be wrong in very many places. Equal ones are one sentence.
+/// Sentences, of which only so many are kept: a small document can be wrong in very many places. Those that differ only in the
+/// names of materials and files have one cause, and are one sentence with their number.
 #[derive(Debug, Default)]
 pub(super) struct Notes {
-    /// With how often each was pushed.
-    kept: Vec<(String, usize)>,
+    kept: Vec<Kept>,
     /// How many more there were.
     more: usize,
+}
+
+#[derive(Debug)]
+struct Kept {
+    sentence: String,
+    /// How often it was pushed.
+    times: usize,
+    /// How many sentences of the same cause have other names.
+    others: usize,
 }
 
 impl Notes {
     /// Adds a sentence about a mesh, unless it is there: a mesh may be shown several times.
     pub(super) fn push_once(&mut self, sentence: String) {
-        if self.kept.iter().all(|(kept, _)| *kept != sentence) {
+        if self.kept.iter().all(|kept| kept.sentence != sentence) {
             self.push(sentence);
         }
     }
 
     pub(super) fn push(&mut self, sentence: String) {
-        self.add(sentence, 1);
+        self.add(Kept { sentence, times: 1, others: 0 });
     }
 
-    fn add(&mut self, sentence: String, times: usize) {
-        match self.kept.iter().position(|(kept, _)| *kept == sentence) {
-            Some(known) => self.kept[known].1 += times,
-            None if self.kept.len() < MAX_WARNINGS => self.kept.push((sentence, times)),
-            None => self.more += times,
+    fn add(&mut self, added: Kept) {
+        match self.kept.iter_mut().find(|kept| is_same_cause(&kept.sentence, &added.sentence)) {
+            Some(kept) if kept.sentence == added.sentence => {
+                kept.times += added.times;
+                kept.others += added.others;
+            }
+            Some(kept) => kept.others += added.times + added.others,
+            None if self.kept.len() < MAX_WARNINGS => self.kept.push(added),
+            None => self.more += added.times + added.others,
         }
     }
 
@@ -38,16 +51,16 @@ impl Notes {
 
     /// Adds those of others.
     pub(super) fn append(&mut self, others: Self) {
-        others.kept.into_iter().for_each(|(sentence, times)| self.add(sentence, times));
+        others.kept.into_iter().for_each(|kept| self.add(kept));
         self.more += others.more;
     }
 
-    /// Returns the sentences that were kept, with how often each was pushed if it wasn't once, and one about the others if there are
-    /// any.
+    /// Returns the sentences that were kept, with their number where it isn't one, and one about those that weren't.
     pub(super) fn into_warnings(self) -> Vec<String> {
-        let counted = |(sentence, times): (String, usize)| match times {
-            1 => sentence,
-            _ => format!("{} ({times} times).", sentence.trim_end_matches('.')),
+        let counted = |Kept { sentence, times, others }: Kept| match (sentence.trim_end_matches('.'), times, others) {
+            (_, 1, 0) => sentence,
+            (said, _, 0) => format!("{said} ({times} times)."),
+            (said, _, _) => format!("{said} (and {} more like it).", times - 1 + others),
         };
         let mut warnings: Vec<_> = self.kept.into_iter().map(counted).collect();
         if self.more > 0 {
@@ -55,6 +68,16 @@ impl Notes {
         }
         warnings
     }
+}
+
+/// Whether two sentences differ in nothing but quoted names, paths of files, and places in a document with the name there:
+/// `/images/3 (wood.png)`.
+fn is_same_cause(a: &str, b: &str) -> bool {
+    let words = |sentence| {
+        let unquoted = str::split(sentence, '"').step_by(2);
+        unquoted.flat_map(str::split_whitespace).filter(|word| !word.contains(['/', '(']))
+    };
+    words(a).eq(words(b))
 }
 
 #[cfg(test)]
@@ -70,6 +93,16 @@ mod tests {
         others.extend(["A is wrong.".to_owned(), "C.".to_owned()]);
         notes.append(others);
         assert_eq!(notes.into_warnings(), ["A is wrong (3 times).", "B is odd.", "C."]);
+    }
+
+    #[test]
+    fn sentences_that_differ_in_names_are_one_with_their_number() {
+        let missing = |name| format!("the map of \"{name}\" is left out: /images/{name}/a: there is no such file.");
+        let mut notes = Notes::default();
+        notes.extend(["Hose", "Left lens", "Hose", "Wood"].map(missing));
+        notes.push("the map of \"Hose\" is left out: /images/1: it is broken.".to_owned());
+        let first = "the map of \"Hose\" is left out: /images/Hose/a: there is no such file (and 3 more like it).";
+        assert_eq!(notes.into_warnings(), [first, "the map of \"Hose\" is left out: /images/1: it is broken."]);
     }
 
     #[test]

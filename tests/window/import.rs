@@ -127,6 +127,10 @@ fn an_axis_and_a_unit_turn_and_scale_the_mesh_and_belong_to_its_file() {
     let distance = harness.state().camera().distance;
     choose(&mut harness, "Up axis", "Z");
     assert_eq!(size(&harness), [2.0, 3.0, 1.0]);
+    let turned = *harness.state().camera();
+    assert!((turned.target - harness.state().loaded().expect("a mesh").mesh.bounds().center()).length() < 1e-6);
+    press(&mut harness, Key::F);
+    assert_eq!(*harness.state().camera(), turned, "the turned mesh is framed already");
     choose(&mut harness, "Unit", "Centimetre");
     let [x, y, z] = size(&harness);
     assert!((x - 0.02).abs() < 1e-6 && (y - 0.03).abs() < 1e-6 && (z - 0.01).abs() < 1e-6);
