@@ -1,7 +1,7 @@
 // Materials as glTF 2.0 describes them (specification, section 3.9), in the light of environment.wgsl.
 
-// What the mesh's materials need. Each part that isn't needed is left out when the pipeline is made.
-// Bits of the images beside that of the base colour, by SLOT_*.
+// What the mesh's materials need. Each part that isn't needed is left out when the pipeline is made. MAPS has a bit for each image
+// beside that of the base colour, by SLOT_*.
 override MAPS: u32 = 0xffffffffu;
 override HAS_DETAILS: bool = true;
 override HAS_COAT: bool = true;
@@ -306,8 +306,8 @@ fn shows_behind(place: SurfacePlace) -> bool {
     return is_there && (is_sheer || transmission_at(place, detail) >= LEAST_SEEN);
 }
 
-// A unit normal of the front as one on the side that is seen. One that faces away from the eye is mirrored: as that of a surface which is
-// seen from the very side, it would reflect all of the light.
+// A unit normal of the front as one on the side that is seen. A map may tilt it until it faces away from the eye. It is mirrored then:
+// a surface that is seen from the very side would reflect all of the light.
 fn facing_normal(place: SurfacePlace, front_normal: vec3<f32>) -> vec3<f32> {
     // From behind, all of the relief is seen the other way round (section 3.9.5).
     let normal = select(-front_normal, front_normal, place.front);

@@ -120,8 +120,8 @@ impl App {
         }
         if !self.is_opening() {
             if let Some(settings) = self.taken_back.take() {
-                // Files that were opened again have changed settings.
-                self.settings = settings;
+                // Files that were opened again have changed settings. If the mesh wasn't read anew, its import is the one that is there.
+                self.settings = Settings { import: self.settings.import, ..settings };
                 self.replace_again::<LodShader>();
                 self.replace_again::<SurfaceShader>();
                 self.replace_by_factors();

@@ -29,7 +29,8 @@ pub(super) fn metadata_limits(budget: &Budget) -> Limits {
     limits
 }
 
-/// Returns the width and height of a PNG, JPEG, WebP, TGA, BMP or KTX2 image in px, without decoding it; none if it isn't one that is read.
+/// Returns the width and height of a PNG, JPEG, WebP, TGA, BMP or KTX2 image in px, without decoding it; none if it isn't one that
+/// is read.
 pub(super) fn texture_size(bytes: &[u8]) -> Option<[u32; 2]> {
     if ktx2::is_ktx2(bytes) {
         return Ktx2::read(bytes).ok().map(|file| file.size).filter(|size| check_size(*size).is_ok());
@@ -41,7 +42,8 @@ pub(super) fn texture_size(bytes: &[u8]) -> Option<[u32; 2]> {
     check_size(size).is_ok().then_some(size)
 }
 
-/// Decodes a PNG, JPEG, WebP, TGA, BMP or KTX2 image (its first bytes tell which) to RGBA, unless its header says that it is too large.
+/// Decodes a PNG, JPEG, WebP, TGA, BMP or KTX2 image (its first bytes tell which) to RGBA, unless its header says that it is too
+/// large.
 ///
 /// # Errors
 /// A clause that says what is wrong.

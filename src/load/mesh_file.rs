@@ -298,9 +298,12 @@ pub fn read(
         Format::ThreeMf => threemf::read(bytes, &name, import, limits, progress).map_err(|fault| of_fault(fault, path)),
     }?;
     import.place(&mut loaded.mesh);
-    let mut notes = Notes::default();
-    notes.extend(std::mem::take(&mut loaded.warnings));
-    loaded.warnings = notes.into_warnings();
+    // The other readers' lists are short already, and end with how many sentences are left out.
+    if matches!(format, Format::Obj | Format::Stl | Format::Ply | Format::Off) {
+        let mut notes = Notes::default();
+        notes.extend(std::mem::take(&mut loaded.warnings));
+        loaded.warnings = notes.into_warnings();
+    }
     Ok(loaded)
 }
 

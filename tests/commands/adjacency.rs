@@ -5,7 +5,7 @@ use std::process::Stdio;
 
 use serde_json::Value;
 
-use crate::{Folder, command, failure, output, run, sentence, vase, write_triangles};
+use crate::{Folder, assert_says, command, failure, output, run, sentence, vase, write_triangles};
 
 const COUNTS: [(&str, usize); 4] = [("6", 6), ("9", 9), ("12", 12), ("18", 18)];
 
@@ -142,9 +142,7 @@ fn differences_are_listed_with_patch_side_indices_and_meaning() {
     changed.swap(45, 46);
     write_indices(&path, &changed);
     let said = compare();
-    for part in ["patch 0, corners: ", "patch 2, side 0-1: ", "patch 4, side 1-2: ", "patch 5, corners: "] {
-        assert!(said.contains(part), "{part} is not in {said}");
-    }
+    assert_says(&said, &["patch 0, corners: ", "patch 2, side 0-1: ", "patch 4, side 1-2: ", "patch 5, corners: "]);
     assert!(said.contains("patch 5, side 2-0: ") && !said.contains("first"), "{said}");
     let summary = format!(
         "pnaen: {path}: 4 of 12 patches differ: 1 (the same patch, starting at another corner), 1 (other corners, same \
@@ -176,13 +174,14 @@ fn json_and_bare_indices_are_compared_alike() {
         said.replace(path.as_str(), "FILE")
     });
     assert_eq!(text, bare);
-    for part in [
-        "patch 1 (triangle 2), side 0-1: ",
-        " 0, 3 instead of 1, 3 (",
-        "FILE: 1 of 2 patches differs: 1 (other points)",
-    ] {
-        assert!(text.contains(part), "{part:?} is not in {text}");
-    }
+    assert_says(
+        &text,
+        &[
+            "patch 1 (triangle 2), side 0-1: ",
+            " 0, 3 instead of 1, 3 (",
+            "FILE: 1 of 2 patches differs: 1 (other points)",
+        ],
+    );
 }
 
 #[test]

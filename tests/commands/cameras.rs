@@ -8,8 +8,7 @@ use crate::{Folder, failure, output, sentence};
 #[test]
 fn cameras_of_a_file_are_listed_and_looked_through_and_others_are_refused() {
     let folder = Folder::new();
-    let shot = folder.path("shot.gltf");
-    std::fs::write(&shot, SHOT).expect("a writable folder");
+    let shot = folder.write("shot.gltf", SHOT);
     let info: Value = serde_json::from_str(&output(&["info", &shot, "--json"])).expect("JSON");
     let named = |key: &str| info["cameras"].as_array().expect("a list").iter().map(|own| own[key].clone()).collect();
     let names: Vec<Value> = named("name");

@@ -99,8 +99,7 @@ fn coordinates_in_clip_space_are_named_by_the_matrix_that_is_given() {
     for [a, b, c] in faces.iter().map(|face| face.map(|index| index + 1)) {
         writeln!(text, "f {a} {b} {c}").expect("a text");
     }
-    let theirs = folder.path("clip.obj");
-    std::fs::write(&theirs, text).expect("a writable folder");
+    let theirs = folder.write("clip.obj", text);
     let depth = (10.0 * 4.0 - 10.0) / 9.0;
     let matrix = format!("1 0 0 0 0 1 0 0 0 0 {} -1 0 0 {depth} 4", -10.0 / 9.0);
     let said = compared(&theirs, &["--factor", "3", "--view-projection", &matrix], 1);
@@ -154,8 +153,7 @@ fn distances_may_be_larger_if_one_says_so() {
     for [a, b, c] in faces.iter().map(|face| face.map(|index| index + 1)) {
         writeln!(text, "f {a} {b} {c}").expect("a text");
     }
-    let theirs = folder.path("rounded.obj");
-    std::fs::write(&theirs, text).expect("a writable folder");
+    let theirs = folder.write("rounded.obj", text);
     let said = compared(&theirs, &[], 1);
     let within = said.split("--within ").nth(1).and_then(|rest| rest.split_once(".\n")).expect("an option").0;
     compared(&theirs, &["--within", within], 0);
@@ -192,8 +190,7 @@ fn positions_of_16_bits_are_named_and_may_be_allowed() {
     for [a, b, c] in faces.iter().map(|face| face.map(|index| index + 1)) {
         writeln!(text, "f {a} {b} {c}").expect("a text");
     }
-    let half = folder.path("half.obj");
-    std::fs::write(&half, text).expect("a writable folder");
+    let half = folder.write("half.obj", text);
     let said = compared(&half, &options, 1);
     assert!(said.starts_with("Its coordinates are rounded to 16-bit floating-point numbers"), "{said}");
     let (_, allowed) = said.split_once("--within ").expect("what allows it");
@@ -259,8 +256,7 @@ fn normals_that_theirs_lacks_are_not_worth_a_word_and_other_repairs_are() {
         let (said, errors) = both(&["compare", &theirs, "--mesh", "shape:torus"]);
         assert!(said.contains("is the same tessellation") && errors.is_empty(), "{name}: {errors}");
     }
-    let repaired = folder.path("repaired.obj");
-    std::fs::write(&repaired, obj + "p 1\n").expect("a writable folder");
+    let repaired = folder.write("repaired.obj", obj + "p 1\n");
     let (_, errors) = both(&["compare", &repaired, "--mesh", "shape:torus"]);
     assert_eq!(errors, "pnaen: warning: points (p), left out: 1.\n");
 }

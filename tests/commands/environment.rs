@@ -61,15 +61,13 @@ fn files_that_are_no_panoramas_are_refused_with_a_sentence() {
         sentence(&arguments.each_ref().map(String::as_str), words);
     };
     refused(&folder.path("none.hdr"), &["none.hdr can't be read: there is no such file"]);
-    let other = folder.path("mesh.exr");
-    std::fs::write(&other, "v 0 0 0\n").expect("a writable folder");
+    let other = folder.write("mesh.exr", "v 0 0 0\n");
     refused(&other, &["mesh.exr: it begins neither like a Radiance file"]);
     let whole = panorama(&folder, "cut.hdr", [64, 32]);
     let bytes = std::fs::read(&whole).expect("a file");
     std::fs::write(&whole, &bytes[..bytes.len() / 2]).expect("a writable folder");
     refused(&whole, &["cut.hdr: it ends too early"]);
-    let large = folder.path("large.hdr");
-    std::fs::write(&large, "#?RADIANCE\n\n-Y 8192 +X 16384\n").expect("a writable folder");
+    let large = folder.write("large.hdr", "#?RADIANCE\n\n-Y 8192 +X 16384\n");
     refused(&large, &["large.hdr: it has 16384 x 8192 px", "--max-memory"]);
     assert!(!std::path::Path::new(&folder.path("out.png")).exists());
 }

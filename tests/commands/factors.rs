@@ -143,8 +143,7 @@ fn one_edge_that_disagrees_is_named_with_its_triangles() {
         .collect();
     // Lines in another order, with Windows line ends.
     let (header, rows) = changed.split_last().expect("lines");
-    let one = folder.path("one.csv");
-    std::fs::write(&one, format!("\u{feff}{header}\r\n\r\n{}\r\n", rows.join("\r\n"))).expect("a writable folder");
+    let one = folder.write("one.csv", format!("\u{feff}{header}\r\n\r\n{}\r\n", rows.join("\r\n")));
     let (stats, said) = drawn(&folder, &one, "d3d11");
     assert!(said.starts_with("pnaen: 1 of 384 edges have different factors on their sides\n"), "{said}");
     assert!(said.contains(", inf in triangle 7\n"), "{said}");

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::{Folder, output, package, read_obj, sentence};
+use crate::{Folder, assert_says, output, package, read_obj, sentence};
 
 fn info(path: &str) -> Value {
     serde_json::from_str(&output(&["info", path, "--json"])).expect("JSON")
@@ -167,12 +167,13 @@ fn materials_of_an_obj_file_are_read_and_missing_ones_reported() {
     std::fs::write(folder.path("a.obj"), text).expect("a writable folder");
     std::fs::write(folder.path("colours.mtl"), "newmtl red\nKd 1 0 0\nmap_Kd lost.png\n").expect("a writable folder");
     let said = output(&["info", &folder.path("a.obj")]);
-    for line in [
-        "material      red: 1 triangles\n",
-        "material      lost: 1 triangles\n",
-        "\"lost.png\" of material \"red\" is left out: ",
-        "materials that no material file describes",
-    ] {
-        assert!(said.contains(line), "{line:?} is not in {said}");
-    }
+    assert_says(
+        &said,
+        &[
+            "material      red: 1 triangles\n",
+            "material      lost: 1 triangles\n",
+            "\"lost.png\" of material \"red\" is left out: ",
+            "materials that no material file describes",
+        ],
+    );
 }

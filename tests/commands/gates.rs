@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::{Folder, failure, number, output, run, write_corners};
+use crate::{Folder, assert_says, failure, number, output, run, write_corners};
 
 const VIEW: [&str; 2] = ["--size", "160x120"];
 
@@ -154,10 +154,8 @@ fn a_gate_that_cannot_be_judged_fails_and_says_why() {
 #[test]
 fn leaks_of_a_mesh_that_is_closed_and_wound_both_ways_are_not_those_of_an_open_one() {
     let folder = Folder::new();
-    let path = folder.path("both.obj");
     // A tetrahedron whose last face is wound the other way.
-    std::fs::write(&path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 4 3\n")
-        .expect("a writable folder");
+    let path = folder.write("both.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 4 3\n");
     assert!(output(&["info", &path]).contains("surface       closed, wound both ways"));
     let (code, said, _) = drawn(&[&path, "--fail-on", "leaks"]);
     assert_eq!(code, Some(1), "{said}");
@@ -169,8 +167,7 @@ fn a_patch_that_its_factors_leave_out_beside_one_that_is_drawn_is_a_crack() {
     let folder = Folder::new();
     let factors = folder.path("factors.csv");
     // A square of two triangles, with the diagonal as the edge of factor 0 of the first.
-    let square = folder.path("square.obj");
-    std::fs::write(&square, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n").expect("a writable folder");
+    let square = folder.write("square.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n");
     let judged = |second: &str, gates: &str| {
         std::fs::write(&factors, format!("patch,e0,e1,e2,inside\n0,3,3,3,3\n1,{second},3\n"))
             .expect("a writable folder");
@@ -390,9 +387,7 @@ fn stability_fails_on_gates_of_the_chosen_methods() {
         " on cpu, where 0 are allowed",
         "methods fail",
     ];
-    for word in words {
-        assert!(said.contains(word), "{word:?} is not in {said}");
-    }
+    assert_says(&said, &words);
     let table = output(&[&base[..], &["--fail-on", "cracks,folds", "--method", "pn-aen", "--method", "flat"]].concat());
     assert!(table.contains("PN-AEN") && !table.contains("Nagata"), "{table}");
     let folder = Folder::new();

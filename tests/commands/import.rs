@@ -37,8 +37,7 @@ fn parts_are_listed_and_left_out() {
     assert_eq!((number(&json, "/triangles"), &json["parts"][1]["hidden"]), (1.0, &Value::Bool(true)));
     sentence(&["info", &parts, "--hide-part", "bonnet"], &["bonnet", "left door", "-right"]);
     sentence(&["info", &parts, "--hide-part", "left door", "--hide-part=-right"], &["parts are hidden"]);
-    let plain = folder.path("plain.off");
-    std::fs::write(&plain, "OFF\n3 1 0\n0 0 0\n2 0 0\n2 3 0\n3 0 1 2\n").expect("a writable folder");
+    let plain = folder.write("plain.off", "OFF\n3 1 0\n0 0 0\n2 0 0\n2 3 0\n3 0 1 2\n");
     sentence(&["info", &plain, "--hide-part", "left door"], &["no named parts"]);
     // Named nodes of glTF files are parts.
     sentence(&["info", vase(), "--hide-part", "left door"], &["no part left door", "vase"]);
@@ -63,8 +62,7 @@ fn what_a_file_hides_is_loaded_if_asked() {
 #[test]
 fn axis_and_unit_are_chosen_and_a_shape_has_its_own() {
     let folder = Folder::new();
-    let ground = folder.path("ground.obj");
-    std::fs::write(&ground, GROUND).expect("a writable folder");
+    let ground = folder.write("ground.obj", GROUND);
     let out = folder.path("turned.obj");
     let positions = |options: &[&str]| {
         output(&[&["tessellate", &ground, "-o", &out, "--factor", "1"], options].concat());

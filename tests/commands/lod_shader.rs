@@ -70,11 +70,9 @@ fn files_that_cannot_be_used_are_refused_with_their_line() {
     refused(&bad, &["bad.wgsl, line 3: ", "nothing"]);
     refused(&write(&folder, "spins.wgsl", "spin()"), &["spins.wgsl, line 1: ", "spin"]);
     refused(&folder.path("none.wgsl"), &["none.wgsl can't be read", "check its path"]);
-    let binary = folder.path("binary.wgsl");
-    std::fs::write(&binary, b"\x00\xff\xfe").expect("a writable folder");
+    let binary = folder.write("binary.wgsl", b"\x00\xff\xfe");
     refused(&binary, &["binary.wgsl isn't a text in UTF-8"]);
-    let large = folder.path("large.wgsl");
-    std::fs::write(&large, " ".repeat(3_000_000)).expect("a writable folder");
+    let large = folder.write("large.wgsl", " ".repeat(3_000_000));
     refused(&large, &["large.wgsl has more than 65536 bytes"]);
     let endless = folder.path("endless.wgsl");
     let spin = "fn spin() -> f32 { var n = 1.0; while n > 0.0 { n += 1.0; if n > 9.0 { n = 1.0; } } return n; }";

@@ -62,6 +62,13 @@ impl Folder {
     fn path(&self, name: &str) -> String {
         self.0.path().join(name).to_str().expect("a path in UTF-8").to_owned()
     }
+
+    /// Writes a file of this name, and returns its path.
+    fn write(&self, name: &str, content: impl AsRef<[u8]>) -> String {
+        let path = self.path(name);
+        std::fs::write(&path, content).expect("a writable folder");
+        path
+    }
 }
 
 fn command(arguments: &[&str]) -> Command {
@@ -101,8 +108,14 @@ fn sentence(arguments: &[&str], words: &[&str]) {
     let errors = failure(arguments, 1);
     assert_eq!(errors.lines().count(), 1, "{errors}");
     assert!(errors.starts_with("pnaen: "), "{errors}");
-    for word in words {
-        assert!(errors.contains(word), "{word:?} is not in {errors}");
+    assert_says(&errors, words);
+}
+
+/// Checks that a text has all of these parts.
+#[track_caller]
+fn assert_says(text: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(text.contains(part), "{part:?} is not in {text}");
     }
 }
 
@@ -159,8 +172,7 @@ fn write_corners(folder: &Folder, corners: &[([f32; 3], [f32; 3])]) -> String {
         "buffers": [{ "byteLength": bytes.len(), "uri": "data.bin" }],
     });
     std::fs::write(folder.path("data.bin"), bytes).expect("a writable folder");
-    let path = folder.path("triangles.gltf");
-    std::fs::write(&path, document.to_string()).expect("a writable folder");
+    let path = folder.write("triangles.gltf", document.to_string());
     path
 }
 

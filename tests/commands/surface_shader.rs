@@ -127,8 +127,7 @@ fn files_that_cannot_be_used_are_refused_with_their_line() {
     refused(&folder.path("none.wgsl"), &["none.wgsl can't be read", "check its path"]);
     let of_lod = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/lod/distance.wgsl");
     refused(of_lod, &["distance.wgsl, line "]);
-    let none = folder.path("empty.wgsl");
-    std::fs::write(&none, "// nothing").expect("a writable folder");
+    let none = folder.write("empty.wgsl", "// nothing");
     refused(&none, &["empty.wgsl, line 1: there is no function edge_points"]);
     let endless = folder.path("endless.wgsl");
     let spin = "fn edge_points(edge: SurfaceEdge, triangle: SurfaceTriangle) -> EdgePoints {\n\

@@ -89,8 +89,7 @@ fn both_devices_write_the_same_displaced_mesh() {
 fn bad_height_images_are_named_and_wrong_options_are_usage_errors() {
     let folder = Folder::new();
     let out = folder.path("out.png");
-    let text = folder.path("notes.txt");
-    std::fs::write(&text, "no image").expect("a writable folder");
+    let text = folder.write("notes.txt", "no image");
     let render = |options: &[&'static str]| [&["render", "shape:torus", "-o", "unused.png"][..], options].concat();
     sentence(&["render", "shape:torus", "-o", &out, "--height", "nowhere.png"], &["nowhere.png", "height image"]);
     sentence(&["render", "shape:torus", "-o", &out, "--height", &text], &["notes.txt", "height image"]);

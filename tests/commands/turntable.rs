@@ -104,8 +104,7 @@ fn what_cannot_be_written_is_said_and_leaves_nothing() {
     sentence(&["turntable", "shape:torus", "-o", &folder.path("no/turn")], &["there is no folder"]);
     let missing = folder.path("no.csv");
     sentence(&["turntable", "shape:torus", "-o", &folder.path("turn"), "--factors", &missing], &["no.csv"]);
-    let taken = folder.path("taken");
-    std::fs::write(&taken, "a file").expect("a writable folder");
+    let taken = folder.write("taken", "a file");
     sentence(&["turntable", "shape:torus", "--frames", "2", "-o", &taken, "--size", "8x8"], &["taken", "written"]);
     assert_eq!(names(&folder.path("")), ["taken"]);
 }

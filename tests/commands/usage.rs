@@ -261,7 +261,6 @@ fn devices_are_refused_and_not_read() {
         &["/dev/zero", "it is not a file"],
     );
     sentence(&["info", "/dev/zero"], &["/dev/zero is not a file"]);
-    let text = folder.path("text.png");
-    std::fs::write(&text, "no image").expect("a writable folder");
+    let text = folder.write("text.png", "no image");
     sentence(&["render", "shape:torus", "-o", &picture, "--reference", &text], &["text.png", "it is no image"]);
 }

@@ -8,8 +8,7 @@ use crate::{Folder, output, sentence};
 #[test]
 fn a_variant_is_listed_chosen_and_exported_and_another_name_is_refused() {
     let folder = Folder::new();
-    let lamp = folder.path("lamp.gltf");
-    std::fs::write(&lamp, LAMP).expect("a writable folder");
+    let lamp = folder.write("lamp.gltf", LAMP);
     let json: Value = serde_json::from_str(&output(&["info", &lamp, "--json"])).expect("JSON");
     assert_eq!(json["variants"], serde_json::json!(["Night"]));
     for (variant, material) in [(&[][..], "red"), (&["--variant", "Night"], "blue")] {

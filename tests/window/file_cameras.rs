@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 mod shot;
 
 use crate::window_tests::editing::{assert_draws, copied};
-use crate::window_tests::{press, settle, uniform, window};
+use crate::window_tests::{press, settle, uniform_of, window};
 use shot::SHOT;
 
 /// Performs the command of this name.
@@ -29,10 +29,7 @@ fn give(harness: &mut Harness<App>, name: &str) {
 
 #[test]
 fn a_camera_of_the_file_is_looked_through_undone_copied_and_left() {
-    let folder = tempfile::tempdir().expect("a writable temporary folder");
-    let path = folder.path().join("shot.gltf");
-    std::fs::write(&path, SHOT).expect("a writable temporary folder");
-    let mut harness = uniform(Some(Source::File(path)));
+    let (_folder, mut harness) = uniform_of("shot.gltf", SHOT);
     let before = *harness.state().camera();
     give(&mut harness, "Camera: Close");
     let close = *harness.state().camera();
@@ -75,10 +72,7 @@ fn moving_shot() -> String {
 
 #[test]
 fn the_view_follows_a_camera_of_the_file_through_its_clip_until_it_is_moved() {
-    let folder = tempfile::tempdir().expect("a writable temporary folder");
-    let path = folder.path().join("moving-shot.gltf");
-    std::fs::write(&path, moving_shot()).expect("a writable temporary folder");
-    let mut harness = uniform(Some(Source::File(path)));
+    let (_folder, mut harness) = uniform_of("moving-shot.gltf", moving_shot());
     let eye = |harness: &Harness<App>| harness.state().camera().eye();
     let set_time = |harness: &mut Harness<App>, time: f64| {
         harness.get_by_role_and_label(Role::Slider, "Time").scroll_to_me();

@@ -12,7 +12,7 @@ use inspect::render::layout::{CRACK_COLOR, FOLD_COLOR, OUTLINE_COLOR, SIDE_COLOR
 use geometry::view::project;
 use tempfile::TempDir;
 
-use crate::window_tests::{choose, click, press, resumed, settle, window};
+use crate::window_tests::{choose, click, press, resumed, scroll_to, settle, window};
 
 /// The text of the first button that looks like this.
 pub(super) fn button(harness: &Harness<App>, looks: impl Fn(&str) -> bool) -> String {
@@ -153,8 +153,7 @@ fn numbers(harness: &Harness<App>) -> Vec<String> {
 fn all_numbers_change_together_once_another_view_is_measured() {
     let mut harness = window(Some(Source::Shape(Shape::CubeSplit)));
     choose(&mut harness, "Surface", "PN");
-    harness.get_by_label("Worst edges").scroll_to_me();
-    settle(&mut harness);
+    scroll_to(&mut harness, "Worst edges");
     let before = numbers(&harness);
     assert!(before.iter().filter(|text| text.contains("split normal")).count() >= 5, "{before:?}");
     harness.key_press(Key::Num3);

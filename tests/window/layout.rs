@@ -15,7 +15,7 @@ use tempfile::TempDir;
 
 use crate::gpu_tests::moving::{CLIPS, moving};
 use crate::window_tests::editing::press_with;
-use crate::window_tests::{choose, click, press, resumed, settle, switch, uniform, window};
+use crate::window_tests::{choose, click, press, resumed, scroll_to, settle, switch, uniform_of, window};
 
 /// A window of this size that was never open before, with all sections as they are then.
 pub(super) fn first_start(size: [f32; 2], source: Option<Source>) -> Harness<'static, App> {
@@ -159,10 +159,7 @@ fn the_toolbar_switches_what_is_used_every_day() {
 
 #[test]
 fn the_play_buttons_start_the_first_clip_from_rest() {
-    let folder = tempfile::tempdir().expect("a writable temporary folder");
-    let path = folder.path().join("moving.glb");
-    std::fs::write(&path, moving()).expect("a writable temporary folder");
-    let mut harness = uniform(Some(Source::File(path)));
+    let (_folder, mut harness) = uniform_of("moving.glb", moving());
     for name in ["Play", "Play or pause"] {
         harness.get_by_role_and_label(Role::Button, name).click();
         harness.run_steps(3);
@@ -286,8 +283,7 @@ fn sections_fold_and_the_next_window_remembers_it() {
     let opened = || resumed(folder.path(), [1280.0, 720.0], Some(Source::Shape(Shape::Torus)));
     let mut harness = opened();
     assert!(harness.query_by_role_and_label(Role::ComboBox, "Convention").is_none(), "specialists open it");
-    harness.get_by_label("Advanced").scroll_to_me();
-    settle(&mut harness);
+    scroll_to(&mut harness, "Advanced");
     click(&mut harness, "Advanced");
     harness.get_by_role_and_label(Role::ComboBox, "Convention");
     harness.get_by_role_and_label(Role::DisclosureTriangle, "Surface").scroll_to_me();

@@ -14,7 +14,8 @@ use inspect::render::Leak;
 use geometry::tessellate::Surface;
 use tempfile::TempDir;
 
-use crate::window_tests::{PATIENCE, choose, click, open_list, press, settle, uniform, window};
+use crate::window_tests::findings::button;
+use crate::window_tests::{PATIENCE, choose, click, open_list, press, scroll_to, settle, uniform, uniform_of, window};
 
 #[test]
 fn pn_triangles_crack_and_the_status_line_counts_it() {
@@ -77,8 +78,7 @@ fn the_worst_edges_are_listed_and_a_click_frames_one() {
     assert_eq!(harness.get_all_by_label("9").count(), 2, "both sides' segments");
     assert_eq!(harness.get_all_by_label_contains("gap, units").count(), 2, "of the worst edges, and of their points");
     // The panel was scrolled to the list.
-    harness.get_by_label("Deselect").scroll_to_me();
-    settle(&mut harness);
+    scroll_to(&mut harness, "Deselect");
     click(&mut harness, "Deselect");
     assert_eq!(harness.state().selected_edge(), None);
 }
@@ -94,8 +94,7 @@ fn rows_stay_where_they_are_while_clicks_move_the_camera() {
         let buttons = harness.query_all_by_role(Role::Button).filter_map(|node| node.accesskit_node().label());
         buttons.filter(|text| text.contains("split normal")).map(|text| text[..7].to_owned()).collect()
     };
-    harness.get_by_label("Worst edges").scroll_to_me();
-    settle(&mut harness);
+    scroll_to(&mut harness, "Worst edges");
     let (shown, before) = (rows(&harness), edges(&harness));
     // The last row is seen in part.
     for row in &shown[..5] {
@@ -112,8 +111,7 @@ fn rows_stay_where_they_are_while_clicks_move_the_camera() {
 fn a_turn_of_the_wheel_that_began_beside_a_list_goes_past_it() {
     let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
     choose(&mut harness, "Surface", "PN");
-    harness.get_by_label("Largest gap").scroll_to_me();
-    settle(&mut harness);
+    scroll_to(&mut harness, "Largest gap");
     let edge = harness.state().cracks().expect("measured").edges[0].edge;
     let first = format!("{edge:<7}split normal");
     let top = |harness: &Harness<App>| harness.get_by_label("Worst edges").rect().top();
@@ -134,8 +132,7 @@ fn a_turn_of_the_wheel_that_began_beside_a_list_goes_past_it() {
     assert!(before - top(&harness) > 200.0, "the panel scrolls on: from {before} to {}", top(&harness));
     settle(&mut harness);
     harness.run_steps(10);
-    harness.get_by_label("Worst edges").scroll_to_me();
-    settle(&mut harness);
+    scroll_to(&mut harness, "Worst edges");
     let place = harness.get_by_label_contains(&first).rect().center();
     harness.hover_at(place);
     harness.run_steps(3);
@@ -166,24 +163,15 @@ fn keys_go_through_a_list_beyond_the_visible_rows() {
     assert_eq!(harness.state().selected_edge(), Some(edges[0]));
 }
 
-/// The text of the first button that looks like this.
-fn button(harness: &Harness<App>, looks: impl Fn(&str) -> bool) -> String {
-    let mut texts = harness.query_all_by_role(Role::Button).filter_map(|node| node.accesskit_node().label());
-    texts.find(|text| looks(text)).expect("a button")
-}
-
 /// Clicks the row of a list that begins like this. The panel is scrolled to the list first.
 fn click_row(harness: &mut Harness<App>, list: &str, text: &str) {
-    harness.get_by_label(list).scroll_to_me();
-    settle(harness);
+    scroll_to(harness, list);
     let row = button(harness, |label| label.starts_with(text));
     click(harness, &row);
 }
 
 #[test]
 fn folds_are_listed_and_the_verdict_goes_to_the_largest() {
-    let folder = tempfile::tempdir().expect("a writable temporary folder");
-    let path = folder.path().join("leaning.obj");
     // Two triangles apart, whose normals are like those at a notch and a point of a star; the second is twice as large.
     let triangle = |x: f32, size: f32| {
         let corners = [[0.0, 0.0], [0.28, 0.2], [1.0, 0.0]];
@@ -191,8 +179,7 @@ fn folds_are_listed_and_the_verdict_goes_to_the_largest() {
         lines.concat() + "vn 0 1 0\nvn -0.77 0.32 -0.56\nvn 0.84 0.28 0.45\n"
     };
     let faces = "f 1//1 2//2 3//3\nf 4//4 5//5 6//6\n";
-    std::fs::write(&path, triangle(0.0, 1.0) + &triangle(5.0, 2.0) + faces).expect("a writable temporary folder");
-    let mut harness = uniform(Some(Source::File(path)));
+    let (_folder, mut harness) = uniform_of("leaning.obj", triangle(0.0, 1.0) + &triangle(5.0, 2.0) + faces);
     let before = *harness.state().camera();
     let line = button(&harness, |text| text.ends_with(" folds"));
     click(&mut harness, &line);

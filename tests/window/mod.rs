@@ -93,6 +93,14 @@ fn uniform(source: Option<Source>) -> Harness<'static, App> {
     harness
 }
 
+/// The same, which opens a file of this name and content; and the folder of the file, which must be kept for as long as the window.
+fn uniform_of(name: &str, content: impl AsRef<[u8]>) -> (TempDir, Harness<'static, App>) {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let path = folder.path().join(name);
+    std::fs::write(&path, content).expect("a writable temporary folder");
+    (folder, uniform(Some(Source::File(path))))
+}
+
 /// The button that stops what is under way, which names its key.
 const STOP: &str = "Stop (Escape)";
 
@@ -103,6 +111,12 @@ fn press(harness: &mut Harness<App>, key: egui::Key) {
 
 fn click(harness: &mut Harness<App>, label: &str) {
     harness.get_by_label(label).click();
+    settle(harness);
+}
+
+/// Scrolls a panel to what has this label.
+fn scroll_to(harness: &mut Harness<App>, label: &str) {
+    harness.get_by_label(label).scroll_to_me();
     settle(harness);
 }
 

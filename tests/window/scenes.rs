@@ -8,7 +8,7 @@ use load::Source;
 use geometry::mesh::Shape;
 
 use super::variants::lamp::LAMP;
-use crate::window_tests::{choose, press, uniform, window};
+use crate::window_tests::{choose, press, uniform_of, window};
 
 fn farthest(harness: &Harness<App>) -> f32 {
     harness.state().loaded().expect("a mesh").mesh.bounds().max.x
@@ -16,13 +16,10 @@ fn farthest(harness: &Harness<App>) -> f32 {
 
 #[test]
 fn a_scene_is_chosen_framed_and_kept() {
-    let folder = tempfile::tempdir().expect("a writable temporary folder");
-    let path = folder.path().join("scenes.gltf");
     let far = r#""nodes": [{ "mesh": 0 }, { "mesh": 0, "translation": [100, 0, 0] }]"#;
     let scenes = r#""scenes": [{ "nodes": [0], "name": "Near" }, { "nodes": [1], "name": "Far" }]"#;
     let text = LAMP.replace(r#""nodes": [{ "mesh": 0 }]"#, far).replace(r#""scenes": [{ "nodes": [0] }]"#, scenes);
-    std::fs::write(&path, text).expect("a writable temporary folder");
-    let mut harness = uniform(Some(Source::File(path)));
+    let (_folder, mut harness) = uniform_of("scenes.gltf", text);
     assert_eq!(farthest(&harness), 1.0);
     choose(&mut harness, "Scene", "Far");
     assert_eq!(farthest(&harness), 101.0);

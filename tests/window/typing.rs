@@ -6,7 +6,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::App;
 
-use crate::window_tests::{click, copy_vase, open_list, settle, window};
+use crate::window_tests::{click, copy_vase, open_list, press, settle, window};
 
 fn key(key: Key, modifiers: Modifiers) -> Event {
     Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers }
@@ -103,23 +103,19 @@ fn the_reference_surfaces_path_can_be_typed_and_tab_reaches_the_buttons() {
     typed("elephant").into_iter().for_each(|event| harness.event(event));
     settle(&mut harness);
     assert_eq!((field(&harness).as_deref(), harness.state().settings()), (Some("elephant"), &settings));
-    for _ in 0..2 {
-        harness.key_press(Key::Tab);
-        settle(&mut harness);
-    }
+    (0..2).for_each(|_| press(&mut harness, Key::Tab));
     assert!(harness.get_by_role_and_label(Role::Button, "Cancel").accesskit_node().is_focused());
-    harness.key_press(Key::W);
-    settle(&mut harness);
+    press(&mut harness, Key::W);
     assert_eq!(harness.state().settings(), &settings, "keys go to the window with the path");
-    harness.key_press(Key::Enter);
-    settle(&mut harness);
+    press(&mut harness, Key::Enter);
     assert!(harness.query_by_role(Role::TextInput).is_none());
 }
 
-/// Opens the window for a path and types this in place of what is proposed.
-fn type_path(harness: &mut Harness<App>, text: &str) {
+/// Opens the window for a path, types this in place of what is proposed, and presses a key.
+fn type_path(harness: &mut Harness<App>, text: &str, last: Key) {
     harness.input_mut().events.extend([key(Key::L, Modifiers::COMMAND), Event::Text(text.into())]);
     settle(harness);
+    press(harness, last);
 }
 
 #[test]
@@ -127,19 +123,12 @@ fn tab_completes_a_path_and_quotes_and_uris_are_understood() {
     let folder = tempfile::tempdir().expect("a writable temporary folder");
     let path = copy_vase(&folder, "my vase.glb").display().to_string();
     let mut harness = window(None);
-    type_path(&mut harness, &folder.path().join("my").display().to_string());
-    harness.key_press(Key::Tab);
-    settle(&mut harness);
+    type_path(&mut harness, &folder.path().join("my").display().to_string(), Key::Tab);
     assert_eq!(field(&harness), Some(path.clone()));
-    harness.key_press(Key::Escape);
-    settle(&mut harness);
+    press(&mut harness, Key::Escape);
     for typed in [format!("\"{path}\""), format!("file://{}", path.replace(' ', "%20"))] {
-        type_path(&mut harness, "shape:torus");
-        harness.key_press(Key::Enter);
-        settle(&mut harness);
-        type_path(&mut harness, &typed);
-        harness.key_press(Key::Enter);
-        settle(&mut harness);
+        type_path(&mut harness, "shape:torus", Key::Enter);
+        type_path(&mut harness, &typed, Key::Enter);
         assert_eq!(harness.state().source().map(ToString::to_string), Some(path.clone()), "{typed}");
     }
 }
@@ -149,18 +138,13 @@ fn what_was_typed_stays_until_it_can_be_opened() {
     let folder = tempfile::tempdir().expect("a writable temporary folder");
     let mut harness = window(None);
     let missing = folder.path().join("vsae.glb").display().to_string();
-    type_path(&mut harness, &missing);
-    harness.key_press(Key::Enter);
-    settle(&mut harness);
+    type_path(&mut harness, &missing, Key::Enter);
     harness.get_by_label_contains("vsae.glb can't be read: there is no such file");
     assert_eq!(field(&harness), Some(missing.clone()), "it can be mended");
-    harness.key_press(Key::Escape);
-    settle(&mut harness);
+    press(&mut harness, Key::Escape);
     // A file that is there, but no mesh.
     std::fs::write(&missing, "no mesh").expect("a writable temporary folder");
-    type_path(&mut harness, &missing);
-    harness.key_press(Key::Enter);
-    settle(&mut harness);
+    type_path(&mut harness, &missing, Key::Enter);
     assert!(harness.query_by_role(Role::TextInput).is_none());
     harness.event(key(Key::L, Modifiers::COMMAND));
     settle(&mut harness);
@@ -179,9 +163,7 @@ fn keys_do_not_act_behind_a_window_that_asks() {
     }
     settle(&mut harness);
     assert_eq!(*harness.state().settings(), before);
-    harness.key_press(Key::Escape);
-    settle(&mut harness);
-    harness.key_press(Key::W);
-    settle(&mut harness);
+    press(&mut harness, Key::Escape);
+    press(&mut harness, Key::W);
     assert!(harness.state().settings().overlays.wireframe, "without the window it acts");
 }

@@ -14,7 +14,7 @@ use tempfile::TempDir;
 use super::variants::lamp::LAMP;
 use crate::window_tests::environment::panorama;
 use crate::window_tests::lod_shader::write as write_lod;
-use crate::window_tests::{run_command, settle, uniform, vase};
+use crate::window_tests::{run_command, settle, uniform, uniform_of, vase};
 
 /// All that undo brings back.
 fn state(app: &App) -> (Settings, Preparation, Option<Source>, [Option<PathBuf>; 5]) {
@@ -115,10 +115,7 @@ fn every_file_beside_the_mesh_is_undone_and_redone() {
 
 #[test]
 fn every_way_to_prepare_the_mesh_is_undone_and_redone() {
-    let folder = tempfile::tempdir().expect("a writable temporary folder");
-    let path = folder.path().join("lamp.gltf");
-    std::fs::write(&path, LAMP).expect("a writable temporary folder");
-    let mut harness = uniform(Some(Source::File(path)));
+    let (folder, mut harness) = uniform_of("lamp.gltf", LAMP);
     change(&mut harness, "weld", |app, context| app.prepare(context, |own| own.weld = 1e-3));
     change(&mut harness, "the crease band", |app, context| app.prepare(context, |own| own.crease_band = 0.02));
     change(&mut harness, "the variant", |app, context| app.prepare(context, |own| own.variant = Some("Night".into())));

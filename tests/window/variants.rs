@@ -10,7 +10,7 @@ use geometry::mesh::Shape;
 #[path = "../documents/lamp.rs"]
 pub(super) mod lamp;
 
-use crate::window_tests::{choose, press, uniform, window};
+use crate::window_tests::{choose, press, uniform_of, window};
 use lamp::LAMP;
 
 fn material(harness: &Harness<App>) -> String {
@@ -19,10 +19,7 @@ fn material(harness: &Harness<App>) -> String {
 
 #[test]
 fn a_variant_is_chosen_and_the_view_stays() {
-    let folder = tempfile::tempdir().expect("a writable temporary folder");
-    let path = folder.path().join("lamp.gltf");
-    std::fs::write(&path, LAMP).expect("a writable temporary folder");
-    let mut harness = uniform(Some(Source::File(path)));
+    let (_folder, mut harness) = uniform_of("lamp.gltf", LAMP);
     assert_eq!(material(&harness), "red");
     press(&mut harness, egui::Key::Num3);
     let camera = *harness.state().camera();

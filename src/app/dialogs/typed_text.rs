@@ -30,10 +30,13 @@ pub(super) fn completed(text: &str) -> Option<String> {
     let (folder, begun) = path.split_at(start);
     let entries = std::fs::read_dir(if folder.is_empty() { Path::new(".") } else { Path::new(folder) }).ok()?;
     let names = entries.flatten().filter_map(|entry| {
-        let name = entry.file_name().into_string().ok()?;
-        let end = if entry.path().is_dir() { String::from(MAIN_SEPARATOR) } else { String::new() };
+        let mut name = entry.file_name().into_string().ok()?;
         // Hidden files are meant only by those who begin with their dot.
-        (name.starts_with(begun) && (!begun.is_empty() || !name.starts_with('.'))).then(|| name + &end)
+        if !name.starts_with(begun) || (begun.is_empty() && name.starts_with('.')) {
+            return None;
+        }
+        name.extend(entry.path().is_dir().then_some(MAIN_SEPARATOR));
+        Some(name)
     });
     let shared = names.reduce(|a, b| a.chars().zip(b.chars()).take_while(|(a, b)| a == b).map(|(a, _)| a).collect())?;
     (shared.len() > begun.len()).then(|| format!("{folder}{shared}"))

@@ -122,7 +122,7 @@ impl App {
                      largest group of them.";
         let waits = self.results().is_none();
         let junctions = self.document.as_ref().and_then(|document| document.checks.t_junctions());
-        let has_cracks = self.results().is_none_or(|results| results.widest_crack().is_some());
+        let has_cracks = self.results().is_none_or(|results| !results.found.cracks.cracked().is_empty());
         let is_whole = !has_cracks && junctions.is_some_and(|junctions| junctions.is_empty());
         if !waits && !self.may_leak() && is_whole {
             return Line::dim("No leaks in this view", "No edge is cracked.", Destination::Leaks);

@@ -14,10 +14,11 @@ const ENLARGED: f32 = 8.0;
 /// A leak is enlarged less if it would be larger than this part of the picture's height.
 const OF_HEIGHT: f32 = 0.25;
 
-/// How many times as long as its gap the part of a cracked edge is that is shown, and which part of the edge that is at least.
+/// Of a cracked edge a part is shown that is this many times as long as the gap.
 const AROUND_GAP: f32 = 16.0;
+/// The least part of the edge that is shown.
 const LEAST_PART: f32 = 1.0 / 64.0;
-/// How many times as large as a fold the part of the surface is that is shown with it.
+/// A fold is shown with a part of the surface that is this many times as wide.
 const AROUND_FOLD: f32 = 4.0;
 
 /// The worst place that a gate found.

@@ -83,8 +83,9 @@ impl Standpoints {
     }
 }
 
-/// Perspective cameras around what `facing` shows, that one first, each with how well it shows it: those that face it more are
-/// better, its back is worse, and from its edge it isn't seen at all. The directions are those of the spherical Fibonacci point set (Keinert et al. 2015, "Spherical Fibonacci Mapping").
+/// Perspective cameras around what `facing` shows, that one first, each with how well it shows it: the more a camera faces it the
+/// better, its back shows it worse, and from the very side it isn't seen at all. The directions are those of the spherical
+/// Fibonacci point set (Keinert et al. 2015, "Spherical Fibonacci Mapping").
 fn around(facing: &Camera) -> Vec<(Camera, f32)> {
     const GOLDEN_ANGLE: f32 = 2.399_963_2;
     let field_of_view = if facing.orthographic { FIELD_OF_VIEW } else { facing.field_of_view };

@@ -138,7 +138,7 @@ fn compare(edge: u32, sides: &[EdgeSide], holes: &[Hole], different_normals: u32
     }
     let across = holes.iter().flat_map(|(_, corners)| corners.map(|corner| from_line(first, corner)));
     let (gap, widest) = across.fold(widest(sides), larger);
-    let discarded = discarded.clone().map(|side| side.patch).next();
+    let discarded = holes.first().map(|(side, _)| side.patch);
     Some(CrackedEdge { edge, different_bits, different_normals, different_factors, gap, widest, discarded })
 }
 

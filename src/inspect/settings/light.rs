@@ -79,20 +79,17 @@ impl Choice for NormalMaps {
     const ALL: &'static [Self] = &every![NormalMaps: Auto, On, Off];
 
     fn description(self) -> Description {
-        match self {
-            Self::Auto => Description::new(
+        let (name, label, text) = match self {
+            Self::Auto => (
                 "auto",
                 "As heights say",
                 "Left out where the heights come from the material's own image, which mostly has the relief of its normal map; \
                  drawn where they come from a height image.",
             ),
-            Self::On => Description::new(
-                "on",
-                "On",
-                "Drawn over the displaced surface: for finer relief than the heights have.",
-            ),
-            Self::Off => Description::new("off", "Off", "Left out while the surface is displaced."),
-        }
+            Self::On => ("on", "On", "Drawn over the displaced surface: for finer relief than the heights have."),
+            Self::Off => ("off", "Off", "Left out while the surface is displaced."),
+        };
+        Description::new(name, label, text)
     }
 }
 

@@ -203,9 +203,7 @@ impl Sought<'_> {
         let sample = self.theirs.sample(if how == How::OnSurface { SURFACE_SAMPLE } else { SAMPLE });
         sample.clone().filter(is_there).count() as f64 / sample.count().max(1) as f64
     }
-}
 
-impl Sought<'_> {
     /// Positions of ours, each with that of one of their vertices at the same place in another space.
     fn pairs(&self, space: &Space, emitted: &[Vec3]) -> Vec<[DVec3; 2]> {
         let pair = |index: u32| {

@@ -52,9 +52,9 @@ pub struct Explanation {
 /// Side k may have the factor of another side in these ways.
 const SIDES: [[usize; 3]; 5] = [[2, 0, 1], [1, 2, 0], [0, 2, 1], [1, 0, 2], [2, 1, 0]];
 
-/// The share of a length on screen, or of a distance, that no one can tell from rounding; and that of an error on screen, which is a small
-/// difference of large numbers.
+/// Lengths on screen, and distances, are the same to within rounding if they differ by no more than this share.
 const HAIR: f32 = 1e-4;
+/// The same for errors on screen, which are small differences of large numbers.
 const HAIR_OF_ERRORS: f32 = 2e-3;
 /// How many patches are looked at first.
 const SAMPLE: usize = 64;

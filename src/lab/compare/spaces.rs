@@ -105,11 +105,9 @@ impl Space {
             })
             .flatten()
     }
-}
 
-impl Space {
-    /// The same turn, scale and offset as they fit many vertices best (the orthogonal Procrustes problem, Schönemann 1966, by a polar
-    /// decomposition). Each pair is a position of ours and the same in their coordinates.
+    /// The same space with the turn and the offset that fit many vertices best; the scale stays (the orthogonal Procrustes problem,
+    /// Schönemann 1966, by a polar decomposition). Each pair is a position of ours and the same in their coordinates.
     pub(super) fn settled(self, pairs: &[[DVec3; 2]]) -> Self {
         let SpaceKind::Turned { scale, .. } = self.kind else { return self };
         let middle = |k: usize| pairs.iter().map(|pair| pair[k]).sum::<DVec3>() / pairs.len().max(1) as f64;

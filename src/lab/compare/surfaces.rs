@@ -85,7 +85,7 @@ impl<'a> Trial<'a> {
         Ok(best.filter(|(_, fitting)| fitting.share >= FOUND))
     }
 
-    /// Our inputs without displacement.
+    /// Our own tessellation without displacement.
     fn undisplaced(&self) -> Tessellation {
         Tessellation { displacement: Displacement::Off, ..self.inputs.tessellation }
     }

@@ -319,8 +319,8 @@ impl KeptVertices {
     /// Notes how the next vertex was read.
     fn mark(&mut self, vertex: &Vertex) {
         let mark = |is: bool, bit: u8| if is { bit } else { 0 };
-        let placed = mark(!is_near(&vertex.corner), Self::UNPLACED);
-        self.marks.push(mark(vertex.mirrored, Self::MIRRORED) | mark(vertex.rescaled, Self::RESCALED) | placed);
+        let unplaced = mark(!is_near(&vertex.corner), Self::UNPLACED);
+        self.marks.push(mark(vertex.mirrored, Self::MIRRORED) | mark(vertex.rescaled, Self::RESCALED) | unplaced);
     }
 
     /// Adds the corner of the first vertex without one.

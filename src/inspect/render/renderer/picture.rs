@@ -27,7 +27,7 @@ pub(super) struct Picture<'a> {
     /// The same for passes that find layers; none in a picture without layers.
     pub found_materials: Vec<wgpu::BindGroup>,
     pub steps: Vec<Step>,
-    pub camera: &'a Camera,
+    camera: &'a Camera,
     /// What draws the light behind everything, if it is shown.
     background: Option<(wgpu::RenderPipeline, wgpu::BindGroup)>,
     /// The index of the step with the ground.

@@ -133,6 +133,17 @@ fn first(keys: &[(f64, f64)]) -> &[f64] {
 /// The number of the layer of all curves.
 pub(super) const LAYER: i64 = 901;
 
+/// Adds parts of a document, such as a clip and its curves.
+pub(super) fn add<const N: usize>(
+    (objects, links): (&mut Vec<Entry>, &mut Vec<Link>),
+    parts: [(Vec<Entry>, Vec<Link>); N],
+) {
+    for (more, joined) in parts {
+        objects.extend(more);
+        links.extend(joined);
+    }
+}
+
 /// A stack with one layer, from 0 to a time in s.
 pub(crate) fn stack(name: &str, end: f64) -> (Vec<Entry>, Vec<Link>) {
     span(name, [0.0, end])
@@ -197,10 +208,7 @@ pub(crate) fn skinned_strip() -> Vec<Entry> {
     let turn: &[(f64, f64)] = &[(0.0, 0.0), (1.0, 90.0)];
     let still: &[(f64, f64)] = &[(0.0, 0.0)];
     let components = [("d|X", still), ("d|Y", still), ("d|Z", turn)];
-    for (more, joined) in [stack("wave", 1.0), curves(50, (31, "Lcl Rotation"), &components, 4)] {
-        objects.extend(more);
-        links.extend(joined);
-    }
+    add((&mut objects, &mut links), [stack("wave", 1.0), curves(50, (31, "Lcl Rotation"), &components, 4)]);
     document(false, 100.0, objects, &links)
 }
 
@@ -229,10 +237,7 @@ pub(crate) fn morphed_square() -> Vec<Entry> {
         vec![Link(20, 0, ""), Link(10, 20, ""), Link(40, 10, ""), Link(41, 40, ""), Link(42, 41, ""), Link(43, 41, "")];
     let keys: &[(f64, f64)] = &[(0.0, 0.0), (2.0, 100.0)];
     let components = [("d|DeformPercent", keys)];
-    for (more, joined) in [stack("rise", 2.0), curves(50, (41, "DeformPercent"), &components, 4)] {
-        objects.extend(more);
-        links.extend(joined);
-    }
+    add((&mut objects, &mut links), [stack("rise", 2.0), curves(50, (41, "DeformPercent"), &components, 4)]);
     document(false, 100.0, objects, &links)
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::documents::{Link, curves, document, geometry, model, stack};
+use super::documents::{Link, add, curves, document, geometry, model, stack};
 use super::tree::{Entry, object, one, properties, text};
 use super::{loaded, read};
 use crate::fbx::read_here;
@@ -103,14 +103,14 @@ fn blinking(keys: &[(f64, f64)]) -> LoadedMesh {
     ];
     let mut links = vec![Link(20, 0, ""), Link(21, 20, ""), Link(10, 21, ""), Link(22, 0, "")];
     let hides: &[(f64, f64)] = &[(0.0, 0.0), (1.0, 1.0)];
-    for (more, joined) in [
-        stack("blink", 2.0),
-        curves(50, (20, "Visibility"), &[("d|Visibility", keys)], 2),
-        curves(60, (22, "Visibility"), &[("d|Visibility", hides)], 2),
-    ] {
-        objects.extend(more);
-        links.extend(joined);
-    }
+    add(
+        (&mut objects, &mut links),
+        [
+            stack("blink", 2.0),
+            curves(50, (20, "Visibility"), &[("d|Visibility", keys)], 2),
+            curves(60, (22, "Visibility"), &[("d|Visibility", hides)], 2),
+        ],
+    );
     loaded(&document(false, 100.0, objects, &links))
 }
 

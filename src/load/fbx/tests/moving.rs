@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::documents::{LAYER, Link, curves, document, geometry, model, morphed_square, skinned_strip, stack};
+use super::documents::{LAYER, Link, add, curves, document, geometry, model, morphed_square, skinned_strip, stack};
 use super::loaded;
 use super::tree::{Entry, object, one, properties};
 use crate::loaded_mesh::LoadedMesh;
@@ -78,14 +78,14 @@ fn a_node_moves_what_hangs_below_it_within_the_units_of_the_file() {
     let still: &[(f64, f64)] = &[(0.0, 0.0), (4.0, 0.0)];
     let rise: &[(f64, f64)] = &[(0.0, 0.0), (4.0, 300.0)];
     let turn: &[(f64, f64)] = &[(0.0, 0.0), (4.0, 360.0)];
-    for (more, joined) in [
-        stack("lift", 4.0),
-        curves(50, (20, "Lcl Translation"), &[("d|X", still), ("d|Y", still), ("d|Z", rise)], 4),
-        curves(60, (21, "Lcl Rotation"), &[("d|X", still), ("d|Y", still), ("d|Z", turn)], 4),
-    ] {
-        objects.extend(more);
-        links.extend(joined);
-    }
+    add(
+        (&mut objects, &mut links),
+        [
+            stack("lift", 4.0),
+            curves(50, (20, "Lcl Translation"), &[("d|X", still), ("d|Y", still), ("d|Z", rise)], 4),
+            curves(60, (21, "Lcl Rotation"), &[("d|X", still), ("d|Y", still), ("d|Z", turn)], 4),
+        ],
+    );
     let loaded = loaded(&document(true, 1.0, objects, &links));
     for time in [0.0, 1.0, 2.5, 4.0_f64] {
         let (sin, cos) = (time / 4.0 * std::f64::consts::TAU).sin_cos();
@@ -109,12 +109,10 @@ fn steps_stay_steps() {
     let mut links = vec![Link(20, 0, ""), Link(10, 20, "")];
     let keys: &[(f64, f64)] = &[(0.0, 0.0), (1.0, 5.0), (2.0, 7.0)];
     let still: &[(f64, f64)] = &[(0.0, 0.0)];
-    for (more, joined) in
-        [stack("steps", 2.0), curves(50, (20, "Lcl Translation"), &[("d|X", keys), ("d|Y", still), ("d|Z", still)], 2)]
-    {
-        objects.extend(more);
-        links.extend(joined);
-    }
+    add(
+        (&mut objects, &mut links),
+        [stack("steps", 2.0), curves(50, (20, "Lcl Translation"), &[("d|X", keys), ("d|Y", still), ("d|Z", still)], 2)],
+    );
     let loaded = loaded(&document(false, 100.0, objects, &links));
     for (time, x) in [(0.0, 0.0), (0.9, 0.0), (1.01, 5.0), (1.9, 5.0), (2.1, 7.0)] {
         for (rest, posed) in at(&loaded, time) {
@@ -130,12 +128,10 @@ fn a_part_that_is_scaled_to_nothing_at_rest_grows_in_its_clip() {
     let mut objects = vec![geometry(10, &square, &[&[0, 1, 2, 3]], Vec::new()), model(20, "part", "Mesh", scaling)];
     let mut links = vec![Link(20, 0, ""), Link(10, 20, "")];
     let keys: &[(f64, f64)] = &[(0.0, 0.0), (2.0, 6.0)];
-    for (more, joined) in
-        [stack("grow", 2.0), curves(50, (20, "Lcl Scaling"), &[("d|X", keys), ("d|Y", keys), ("d|Z", keys)], 4)]
-    {
-        objects.extend(more);
-        links.extend(joined);
-    }
+    add(
+        (&mut objects, &mut links),
+        [stack("grow", 2.0), curves(50, (20, "Lcl Scaling"), &[("d|X", keys), ("d|Y", keys), ("d|Z", keys)], 4)],
+    );
     let loaded = loaded(&document(false, 100.0, objects, &links));
     let topology = Topology::build(&loaded.mesh, &Progress::new()).expect("nobody cancels");
     assert_eq!((topology.patches.len(), topology.edge_counts().smooth), (2, 1));
@@ -196,10 +192,10 @@ fn shapes_of_blender_are_limited_by_the_weights_of_their_vertex_group() {
     ];
     let mut links = vec![Link(20, 0, ""), Link(10, 20, ""), Link(40, 10, ""), Link(41, 40, ""), Link(42, 41, "")];
     let keys: &[(f64, f64)] = &[(0.0, 0.0), (1.0, 100.0)];
-    for (more, joined) in [stack("rise", 1.0), curves(50, (41, "DeformPercent"), &[("d|DeformPercent", keys)], 4)] {
-        objects.extend(more);
-        links.extend(joined);
-    }
+    add(
+        (&mut objects, &mut links),
+        [stack("rise", 1.0), curves(50, (41, "DeformPercent"), &[("d|DeformPercent", keys)], 4)],
+    );
     let mut entries = document(false, 100.0, objects, &links);
     entries[0].children.push(one("Creator", "Blender (stable FBX IO) - 2.90.0 - 4.21.3"));
     let loaded = loaded(&entries);
@@ -224,14 +220,14 @@ fn layers_that_are_muted_or_beside_one_that_plays_alone_move_nothing() {
         ];
         let mut links = vec![Link(20, 0, ""), Link(21, 0, ""), Link(10, 20, ""), Link(10, 21, "")];
         let keys: &[(f64, f64)] = &[(0.0, 0.0), (1.0, 5.0)];
-        for (more, joined) in [
-            stack("two layers", 1.0),
-            curves(50, (20, "Lcl Translation"), &[("d|X", keys)], 4),
-            curves(60, (21, "Lcl Translation"), &[("d|Y", keys)], 4),
-        ] {
-            objects.extend(more);
-            links.extend(joined);
-        }
+        add(
+            (&mut objects, &mut links),
+            [
+                stack("two layers", 1.0),
+                curves(50, (20, "Lcl Translation"), &[("d|X", keys)], 4),
+                curves(60, (21, "Lcl Translation"), &[("d|Y", keys)], 4),
+            ],
+        );
         // The second curve is in another layer.
         objects.push(object("AnimationLayer", LAYER + 1, "AnimLayer::second", "", vec![one("Version", 100)]));
         links.push(Link(LAYER + 1, 900, ""));

@@ -2,7 +2,7 @@
 
 use glam::{EulerRot, Quat, Vec3};
 
-use super::documents::{Link, curves, document, geometry, model, span};
+use super::documents::{Link, add, curves, document, geometry, model, span};
 use super::loaded;
 use super::moving::{assert_near, at};
 use super::tree::{Entry, list, one};
@@ -20,10 +20,7 @@ fn moving(times: [f64; 2], property: &'static str, keys: [Keys; 3], goes_on: Opt
     ];
     let mut links = vec![Link(20, 0, ""), Link(10, 20, "")];
     let components = [("d|X", keys[0]), ("d|Y", keys[1]), ("d|Z", keys[2])];
-    for (more, joined) in [span("clip", times), curves(50, (20, property), &components, 4)] {
-        objects.extend(more);
-        links.extend(joined);
-    }
+    add((&mut objects, &mut links), [span("clip", times), curves(50, (20, property), &components, 4)]);
     for curve in objects.iter_mut().filter(|object| object.name == "AnimationCurve") {
         let sides = goes_on
             .into_iter()
