@@ -7,14 +7,14 @@ mod jobs;
 mod painting;
 mod panels;
 mod patch_names;
-pub(crate) mod persistence;
+pub mod persistence;
 mod sections;
 mod style;
 mod text;
 mod viewport;
 mod wheel;
 mod widgets;
-pub(crate) mod window;
+pub mod window;
 
 use std::sync::Arc;
 
@@ -43,8 +43,8 @@ use panels::Panels;
 use viewport::Viewport;
 use window::WindowState;
 
-pub(crate) use persistence::Persistence;
-pub(crate) use window::{WindowError, run};
+pub use persistence::Persistence;
+pub use window::{WindowError, run};
 
 /// The window's state, grouped as this module's submodules are.
 pub struct App {

@@ -6,7 +6,7 @@ use super::CliError;
 use gpu::{AdapterChoice, GpuError, adapters, best_adapter, driver, kind};
 
 #[derive(Debug, clap::Args)]
-pub(crate) struct Args {}
+pub struct Args {}
 
 /// Prints a line for each adapter.
 pub(super) fn run(_: &Args) -> Result<(), CliError> {
@@ -41,7 +41,7 @@ pub(super) fn run(_: &Args) -> Result<(), CliError> {
 
 /// The option `--adapter`.
 #[derive(Clone, Debug, Default, clap::Args)]
-pub(crate) struct AdapterOption {
+pub struct AdapterOption {
     /// Graphics adapter: part of its name as `pnaen adapters` lists it, or `software`; by default the fastest
     #[arg(long, value_name = "NAME|software")]
     pub adapter: Option<AdapterChoice>,
@@ -52,7 +52,7 @@ impl AdapterOption {
     ///
     /// # Errors
     /// An adapter was named, and `is_cpu` is set.
-    pub(crate) fn check(&self, is_cpu: bool) -> Result<(), CliError> {
+    pub fn check(&self, is_cpu: bool) -> Result<(), CliError> {
         match is_cpu && self.adapter.is_some() {
             true => Err(CliError::Usage(
                 "--adapter chooses a graphics adapter, but --device cpu uses none: leave one of them out",
@@ -61,7 +61,7 @@ impl AdapterOption {
         }
     }
 
-    pub(crate) fn choice(&self) -> AdapterChoice {
+    pub fn choice(&self) -> AdapterChoice {
         self.adapter.clone().unwrap_or_default()
     }
 }

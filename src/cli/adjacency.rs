@@ -16,7 +16,7 @@ use inspect::settings::Choice;
 use load::{HeightSource, Source};
 
 #[derive(Debug, clap::Args)]
-pub(crate) struct Args {
+pub struct Args {
     /// A .gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf file, or a shape made in code such as shape:cube-split, or
     /// shape:torus@2 (finer)
     #[arg(value_parser = super::options::source())]

@@ -10,7 +10,7 @@ use inspect::engine::Loaded;
 
 /// The options that choose a pose.
 #[derive(Clone, Debug, Default, Args)]
-pub(crate) struct AnimationOption {
+pub struct AnimationOption {
     /// Show the mesh in a pose of this animation; `pnaen info` lists the animations
     #[arg(long, value_name = "NAME")]
     pub animation: Option<String>,
@@ -24,7 +24,7 @@ impl AnimationOption {
     ///
     /// # Errors
     /// There is no animation of that name.
-    pub(crate) fn moment(&self, loaded: &Loaded) -> Result<Option<Moment>, CliError> {
+    pub fn moment(&self, loaded: &Loaded) -> Result<Option<Moment>, CliError> {
         let Some(name) = &self.animation else { return Ok(None) };
         let rig = loaded.mesh.rig.as_deref();
         let found = rig.and_then(|rig| rig.clip(name).map(|clip| (clip, rig.clips[clip].duration)));

@@ -30,7 +30,7 @@ use load::Source;
 use load::files::file_reason;
 
 #[derive(Debug, clap::Args)]
-pub(crate) struct Args {
+pub struct Args {
     /// .gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf files, or shapes made in code such as shape:torus, or
     /// shape:torus@2 (finer); with --report, by default seven shapes, and assets/vase.glb where there is one
     #[arg(value_parser = options::source(), required_unless_present = "report")]

@@ -24,7 +24,7 @@ use load::files::file_reason;
 use plan::Job;
 
 #[derive(Debug, clap::Args)]
-pub(crate) struct Args {
+pub struct Args {
     /// Meshes, shapes made in code, and folders, in and below which all meshes are checked
     #[arg(required = true, value_parser = options::source())]
     pub files: Vec<Source>,
@@ -57,7 +57,7 @@ pub(crate) struct Args {
 
 /// How the report is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Format {
+pub enum Format {
     /// Lines for people
     Text,
     /// Every number, limit and place

@@ -24,7 +24,7 @@ use load::{Import, NormalSource, Source};
 use report::Report;
 
 #[derive(Debug, clap::Args)]
-pub(crate) struct Args {
+pub struct Args {
     /// The tessellated mesh of the other program: a mesh file, or a .csv file of vertices as a frame debugger exports them, three
     /// lines a triangle
     #[arg(value_name = "THEIRS")]
@@ -56,7 +56,7 @@ pub(crate) struct Args {
 
 /// A distance of the command line.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Within {
+pub enum Within {
     /// Units in the last place of the mesh's largest coordinate.
     Ulp(f64),
     /// Object units.

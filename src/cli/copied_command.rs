@@ -52,7 +52,7 @@ pub(crate) struct CopiedCommand<'a> {
 
 impl CopiedCommand<'_> {
     /// The command on one line, quoted for a shell. The picture is named after the mesh.
-    pub(crate) fn line(&self) -> String {
+    pub fn line(&self) -> String {
         let name = if self.turn.is_some() { "turntable" } else { "render" };
         let [file, output] = [self.source, &self.output()].map(|source| word(&named(source)));
         let mut line = Line(format!("pnaen {name} {file} -o {output}"));

@@ -12,7 +12,7 @@ use geometry::tessellate::{
 use gpu::{DomainPass, DomainPattern, Gpu};
 
 #[derive(Debug, clap::Args)]
-pub(crate) struct Args {
+pub struct Args {
     /// How factors become segments; subtriangulation takes four equal factors. pow2 gives what integer gives: hull shaders round factors
     /// to powers of two before the tessellator gets them
     #[arg(long, value_name = "P", value_parser = super::options::choice::<Partitioning>())]

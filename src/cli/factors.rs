@@ -21,7 +21,7 @@ use load::Source;
 use load::factors_file::to_csv;
 
 #[derive(Debug, clap::Args)]
-pub(crate) struct Args {
+pub struct Args {
     /// A .gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf file, or a shape made in code such as shape:cube-split, or
     /// shape:torus@2 (finer)
     #[arg(value_parser = super::options::source())]
@@ -127,7 +127,7 @@ fn computed(engine: &Engine, scene: &mut Scene, inputs: &Inputs) -> Result<Vec<H
 ///
 /// # Errors
 /// The device was lost, or the file can't be written.
-pub(crate) fn write_factors(
+pub fn write_factors(
     engine: &Engine,
     scene: &mut Scene,
     inputs: &Inputs,

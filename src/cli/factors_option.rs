@@ -14,7 +14,7 @@ use inspect::settings::Choice;
 use load::factors_file::from_csv;
 
 #[derive(Clone, Debug, Default, clap::Args)]
-pub(crate) struct FactorsOption {
+pub struct FactorsOption {
     /// Tessellate with the factors of a file in place of those that LOD computes (- for standard input): CSV with the header
     /// patch,e0,e1,e2,inside (under rows patch,e0,e1,e2,base,width,flipped) and a line for each triangle, as the factors
     /// command or another engine writes it. Standard error lists edges whose two sides have different factors, and names the convention under which all sides agree
@@ -27,7 +27,7 @@ pub(crate) struct FactorsOption {
 }
 
 /// Factors from a file, checked against the mesh.
-pub(crate) struct Given {
+pub struct Given {
     /// One for each patch.
     pub factors: Vec<HullFactors>,
     pub stats: FactorsFile,
@@ -43,7 +43,7 @@ impl FactorsOption {
     ///
     /// # Errors
     /// The file can't be read, isn't for this mesh, or has factors that the partitioning doesn't take.
-    pub(crate) fn read(
+    pub fn read(
         &self,
         mesh: &Mesh,
         topology: &Topology,
@@ -163,7 +163,7 @@ fn order_text(agreement: &Agreement, convention: Convention) -> Option<String> {
 
 /// The report as JSON.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct FactorsFile {
+pub struct FactorsFile {
     path: String,
     convention: &'static str,
     edges_compared: u64,

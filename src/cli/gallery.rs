@@ -12,7 +12,7 @@ use load::files::file_reason;
 use load::{HeightSource, Source};
 
 #[derive(Debug, clap::Args)]
-pub(crate) struct Args {
+pub struct Args {
     /// A .gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf file, or a shape made in code; without one, each exhibit has
     /// the shape that suits it
     #[arg(value_parser = super::options::source())]

@@ -9,7 +9,7 @@ use inspect::gates::{Gate, GateKind, Judgement};
 use load::files::file_reason;
 
 #[derive(Clone, Debug, Default, clap::Args)]
-pub(crate) struct GateOptions {
+pub struct GateOptions {
     #[command(flatten)]
     pub gates: FailOnOption,
     /// Folder for a picture of the worst place of each gate that failed, named after the output (of stability: the case) and the
@@ -19,7 +19,7 @@ pub(crate) struct GateOptions {
 }
 
 #[derive(Clone, Debug, Default, clap::Args)]
-pub(crate) struct FailOnOption {
+pub struct FailOnOption {
     /// Fail (exit code 1) if one of these is found: cracks, factors (both sides of an edge were given different ones), leaks,
     /// folds, t-junctions, warnings (of loading), above-tolerance (patches whose error on screen is above --tolerance),
     /// triangles:N or bytes:N (more than N). NAME:N allows up to N of any. A gate that can't be judged fails: leaks of an open mesh

@@ -15,7 +15,7 @@ use inspect::own_shader::read_own_shader;
 use inspect::render::Scene;
 
 #[derive(Clone, Debug, Default, clap::Args)]
-pub(crate) struct LodShaderOption {
+pub struct LodShaderOption {
     /// Compute factors on the GPU by functions of your own in place of LOD's: a WGSL file with the function edge_factor, and perhaps
     /// inside_factor. The manual's page on own shaders says what they get. Standard error lists edges whose two sides got different factors
     #[arg(
@@ -31,7 +31,7 @@ impl LodShaderOption {
     ///
     /// # Errors
     /// It can't be read or used, or the partitioning has the same number of segments everywhere.
-    pub(crate) fn read(&self, tessellation: &Tessellation) -> Result<Option<Given>, CliError> {
+    pub fn read(&self, tessellation: &Tessellation) -> Result<Option<Given>, CliError> {
         let Some(path) = &self.lod_shader else { return Ok(None) };
         if tessellation.partitioning == Partitioning::Subtriangulation {
             return Err(CliError::Usage(
@@ -56,7 +56,7 @@ impl LodShaderOption {
     ///
     /// # Errors
     /// It is.
-    pub(crate) fn check(&self, is_on_cpu: bool) -> Result<(), CliError> {
+    pub fn check(&self, is_on_cpu: bool) -> Result<(), CliError> {
         match self.lod_shader.is_some() && is_on_cpu {
             true => Err(CliError::Usage("--lod-shader runs on the graphics adapter: leave --device cpu away")),
             false => Ok(()),

@@ -7,7 +7,6 @@ use serde::Serialize;
 use super::camera_report::CameraInfo;
 use super::light_report::LightInfo;
 use super::material_report::MaterialInfo;
-use geometry::cores::both;
 use geometry::mesh::crease_band::CreaseBand;
 use geometry::mesh::rig::{AnimatedCounts, Clip, Rig};
 use geometry::mesh::{
@@ -132,7 +131,8 @@ impl Info {
         // Divided among the cores already.
         let normal_faults = NormalFaults::of(mesh, topology);
         let counts = || (topology.edge_counts(), euler_characteristic(topology), mesh.bounds());
-        let ((edges, euler_characteristic, bounds), joins) = both(counts, || weld_previews(mesh, exact, progress));
+        let ((edges, euler_characteristic, bounds), joins) =
+            rayon::join(counts, || weld_previews(mesh, exact, progress));
         let collinear = collinear(topology);
         Ok(Self {
             name: mesh.name.clone(),

@@ -6,7 +6,7 @@ mod animation;
 mod camera_report;
 mod chart;
 mod check;
-mod compare;
+pub mod compare;
 mod copied_command;
 mod domain;
 mod factors;
@@ -55,24 +55,21 @@ use output_guard::{file_of, file_of_heights, keep_apart};
 
 pub(crate) use adjacency::write_adjacency;
 pub(crate) use copied_command::CopiedCommand;
-pub(crate) use factors::write_factors;
+pub use factors::write_factors;
 pub(crate) use options::{LimitOption, OpeningOptions, SurfaceOptions, WeldOption};
 pub(crate) use picture_comparison::CompareError;
-#[cfg(test)]
-pub(crate) use picture_comparison::{Comparison, compare};
-#[cfg(test)]
-pub(crate) use picture_file::write_drawn;
+pub use picture_comparison::{Comparison, compare};
+pub use picture_file::write_drawn;
 pub(crate) use picture_file::write_picture;
-#[cfg(test)]
-pub(crate) use reference::{BETWEEN_DRIVERS, Reference};
-#[cfg(test)]
-pub(crate) use render::run_with as render_with;
-pub(crate) use shot::{Shot, ShotView, StatsWanted, Subject};
+pub use reference::{BETWEEN_DRIVERS, Reference};
+pub use render::run_with as render_with;
+pub use shot::Subject;
+pub(crate) use shot::{Shot, ShotView, StatsWanted};
 pub(crate) use surface_shader_option::{SurfaceShaderOption, straight_sides_said};
-#[cfg(test)]
-pub(crate) use tessellate::run_with as tessellate_with;
+pub use tessellate::run_with as tessellate_with;
 pub(crate) use truth::{ReferenceSurface, TruthOption};
-pub(crate) use turntable::{FPS, FRAMES, Turn, frame_name};
+pub use turntable::Turn;
+pub(crate) use turntable::{FPS, FRAMES, frame_name};
 
 use geometry::names::{on_one_line, shown, shown_path};
 use geometry::progress::{Cancelled, Progress};
@@ -91,7 +88,7 @@ use load::{LoadError, MatcapError, Source};
 /// Shows what tessellation does to a mesh in a window; commands write pictures, meshes and numbers instead
 #[derive(Debug, Parser)]
 #[command(version, args_conflicts_with_subcommands = true)]
-pub(crate) struct Cli {
+pub struct Cli {
     #[command(subcommand)]
     pub command: Option<Command>,
     /// Mesh that the window opens: a .gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf file, or a shape made in code such
@@ -107,7 +104,7 @@ pub(crate) struct Cli {
 }
 
 #[derive(Debug, Subcommand)]
-pub(crate) enum Command {
+pub enum Command {
     /// Draw the picture that the window shows, into a PNG file
     Render(render::Args),
     /// Draw pictures from all around, as numbered PNG files or an animated GIF
@@ -159,7 +156,7 @@ pub(crate) enum Command {
 
 /// Why a command failed, in one sentence.
 #[derive(Debug, Error)]
-pub(crate) enum CliError {
+pub enum CliError {
     #[error(transparent)]
     Load(#[from] LoadError),
     #[error(transparent)]
@@ -270,7 +267,7 @@ fn said_of_cameras(known: &[String]) -> String {
 }
 
 /// Runs a command. A closed pipe is no failure: the reader wants no more.
-pub(crate) fn run(command: Command) -> ExitCode {
+pub fn run(command: Command) -> ExitCode {
     let line = copied_command::given(std::env::args_os());
     let result = match command {
         Command::Render(args) => render::run(&args, &line),
@@ -308,14 +305,14 @@ pub(crate) fn run(command: Command) -> ExitCode {
 }
 
 /// Prints an error on standard error, and returns the exit code of a failure.
-pub(crate) fn fail(error: &dyn std::fmt::Display) -> ExitCode {
+pub fn fail(error: &dyn std::fmt::Display) -> ExitCode {
     // Standard error may be closed too; then nobody reads it.
     let _ = writeln!(std::io::stderr(), "pnaen: {}", on_one_line(&error.to_string()));
     ExitCode::FAILURE
 }
 
 /// Writes the picture that the window would have shown, for machines without a display.
-pub(crate) fn preview(
+pub fn preview(
     source: Option<Source>,
     opening: &OpeningOptions,
     (limit, adapter): (LimitOption, AdapterOption),

@@ -24,17 +24,19 @@ use load::HeightSource;
 use load::files::Limits;
 
 pub(crate) use cameras::{CamerasOption, NamedView};
-pub(crate) use declared::{ImportOptions, PictureOptions, TessellationOptions, choice, number_of};
+pub use declared::choice;
+pub(crate) use declared::{ImportOptions, PictureOptions, TessellationOptions, number_of};
 pub(crate) use lod_camera::LodCameraOption;
 pub(crate) use opening::OpeningOptions;
-pub(crate) use values::{CameraOption, Position, Size, model, picture, source, steps, whole, whole_from};
+pub(crate) use values::{CameraOption, whole_from};
+pub use values::{Position, Size, model, picture, source, steps, whole};
 pub(crate) use view::ViewOptions;
 
 use values::{bytes, crease_band, weld};
 
 /// How a mesh is tessellated, and where it is seen from.
 #[derive(Clone, Debug, Args)]
-pub(crate) struct SurfaceOptions {
+pub struct SurfaceOptions {
     #[command(flatten)]
     pub tessellation: TessellationOptions,
     /// Under LOD by error, raise the tolerance until there are no more triangles than this
@@ -75,7 +77,7 @@ impl SurfaceOptions {
     ///
     /// # Errors
     /// Names the options that can't be together, or the one that is missing.
-    pub(crate) fn check(&self) -> Result<(), CliError> {
+    pub fn check(&self) -> Result<(), CliError> {
         self.check_with(None)
     }
 
@@ -112,13 +114,13 @@ impl SurfaceOptions {
     }
 
     /// What is done to the mesh after it was read. Displacement without an image uses the materials' images.
-    pub(crate) fn preparation(&self) -> Preparation {
+    pub fn preparation(&self) -> Preparation {
         let wanted = (self.tessellation().displacement != Displacement::Off).then_some(HeightSource::Materials);
         Preparation { heights: self.height.clone().or(wanted), ..self.weld.preparation() }
     }
 
     /// How the mesh is tessellated.
-    pub(crate) fn tessellation(&self) -> Tessellation {
+    pub fn tessellation(&self) -> Tessellation {
         let TessellationOptions { tessellation, displacement } = self.tessellation;
         let usual = if self.height.is_some() { Displacement::On } else { Displacement::Off };
         Tessellation {
@@ -130,7 +132,7 @@ impl SurfaceOptions {
     }
 
     /// Settings with these options and no overlays.
-    pub(crate) fn settings(&self) -> Settings {
+    pub fn settings(&self) -> Settings {
         Settings { import: self.weld.import.0, ..self.tessellation().into() }
     }
 
@@ -168,7 +170,7 @@ impl SurfaceOptions {
     }
 
     /// Memory for output on the device, in bytes.
-    pub(crate) fn arena_bytes(&self) -> u64 {
+    pub fn arena_bytes(&self) -> u64 {
         self.arena << 20
     }
 
@@ -177,12 +179,12 @@ impl SurfaceOptions {
     ///
     /// # Errors
     /// The mesh has no camera of the name that was asked for, or the matrix isn't that of a view.
-    pub(crate) fn camera(&self, mesh: &Mesh, moment: Option<Moment>, bounds: &Bounds) -> Result<Camera, CliError> {
+    pub fn camera(&self, mesh: &Mesh, moment: Option<Moment>, bounds: &Bounds) -> Result<Camera, CliError> {
         self.view.camera(self, mesh, moment, bounds)
     }
 
     /// Width and height in px.
-    pub(crate) fn viewport(&self) -> Vec2 {
+    pub fn viewport(&self) -> Vec2 {
         Vec2::new(self.size.0[0] as f32, self.size.0[1] as f32)
     }
 }
@@ -199,7 +201,7 @@ fn file_camera<'a>(mesh: &str, cameras: &'a [FileCamera], wanted: &str) -> Resul
 
 /// How a mesh is read, and what is done to it before it is tessellated: points are welded, and creases get a crease band.
 #[derive(Clone, Debug, Default, Args)]
-pub(crate) struct WeldOption {
+pub struct WeldOption {
     /// Weld points within this distance, relative to the bounding diagonal; 0 joins only exactly equal positions
     #[arg(long, value_name = "TOLERANCE", default_value_t = 0.0, value_parser = weld)]
     pub weld: f32,
@@ -226,7 +228,7 @@ pub(crate) struct WeldOption {
 }
 
 impl WeldOption {
-    pub(crate) fn preparation(&self) -> Preparation {
+    pub fn preparation(&self) -> Preparation {
         Preparation {
             weld: self.weld,
             crease_band: self.crease_band,
@@ -242,7 +244,7 @@ impl WeldOption {
 
 /// How large files may be, and how much memory they may take.
 #[derive(Clone, Copy, Debug, Args)]
-pub(crate) struct LimitOption {
+pub struct LimitOption {
     /// Refuse a file larger than this, and larger buffers and images that it refers to: a number of bytes, or one with the
     /// unit KiB, MiB or GiB
     #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = bytes)]
@@ -261,7 +263,7 @@ impl Default for LimitOption {
 }
 
 impl LimitOption {
-    pub(crate) fn limits(&self) -> Limits {
+    pub fn limits(&self) -> Limits {
         Limits { file: self.max_size, memory: self.max_memory }
     }
 }

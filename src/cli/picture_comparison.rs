@@ -8,7 +8,7 @@ const SQUARE: usize = 8;
 
 /// Two pictures compared, in steps of 255 of the channel that differs most. Transparency is a channel.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Comparison {
+pub struct Comparison {
     /// How many px differ.
     pub px: u64,
     /// The largest difference of a px.
@@ -20,13 +20,13 @@ pub(crate) struct Comparison {
 /// The pictures have these sizes.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("it has {2} x {3} px, and the picture {0} x {1} px: render at the reference's size (--size {2}x{3})")]
-pub(crate) struct CompareError(u32, u32, u32, u32);
+pub struct CompareError(u32, u32, u32, u32);
 
 /// Compares two pictures px by px.
 ///
 /// # Errors
 /// The sizes differ.
-pub(crate) fn compare(picture: &RgbaImage, reference: &RgbaImage) -> Result<Comparison, CompareError> {
+pub fn compare(picture: &RgbaImage, reference: &RgbaImage) -> Result<Comparison, CompareError> {
     let ((w, h), (rw, rh)) = (picture.dimensions(), reference.dimensions());
     if (w, h) != (rw, rh) {
         return Err(CompareError(w, h, rw, rh));

@@ -43,7 +43,7 @@ pub(super) fn write_stamped(
 }
 
 /// Writes a PNG file with texts that say what drew it, and these.
-pub(crate) fn write_drawn(
+pub fn write_drawn(
     path: &Path,
     picture: &RgbaImage,
     adapter: &wgpu::AdapterInfo,

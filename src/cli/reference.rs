@@ -16,11 +16,11 @@ use load::files::{file_reason, open_file};
 
 /// The largest mean difference of a square of 8 x 8 px that pictures of two drivers may have, in steps of 255. Chosen by what
 /// an NVIDIA H200 draws otherwise than the software driver, which the manual lists, and by the pairs in `tests/gpu/reference.rs`.
-pub(crate) const BETWEEN_DRIVERS: f32 = 1.5;
+pub const BETWEEN_DRIVERS: f32 = 1.5;
 
 /// The reference, and how much a picture may differ from it.
 #[derive(Clone, Debug, Default, clap::Args)]
-pub(crate) struct ReferenceOptions {
+pub struct ReferenceOptions {
     /// Fail if the picture isn't the same as this one, and write a picture of the difference beside it. If the same adapter,
     /// driver and processor drew both, all px must be equal. With --cameras, a folder, or a name with {} where each view's
     /// name goes
@@ -48,7 +48,7 @@ pub(super) struct ReferenceStats {
 }
 
 /// A reference picture that was read.
-pub(crate) struct Reference {
+pub struct Reference {
     path: PathBuf,
     picture: RgbaImage,
     /// What drew it, if it says so.
@@ -59,7 +59,7 @@ pub(crate) struct Reference {
 
 /// How a picture and its reference differ, and how much they may.
 #[derive(Debug)]
-pub(crate) struct Verdict {
+pub struct Verdict {
     comparison: Comparison,
     /// The largest mean difference of a square that is allowed; none where all px must be equal.
     threshold: Option<f32>,
@@ -69,7 +69,7 @@ pub(crate) struct Verdict {
 
 impl Verdict {
     /// Whether both are the same: the one place that decides it.
-    pub(crate) fn is_same(&self) -> bool {
+    pub fn is_same(&self) -> bool {
         match self.threshold {
             None => self.comparison.px == 0,
             Some(threshold) => self.comparison.worst_square <= f64::from(threshold),
@@ -109,7 +109,7 @@ impl Reference {
     ///
     /// # Errors
     /// It can't be read.
-    pub(crate) fn read(path: &Path, threshold: Option<f32>) -> Result<Self, CliError> {
+    pub fn read(path: &Path, threshold: Option<f32>) -> Result<Self, CliError> {
         let fail = |reason: &dyn std::fmt::Display| file_error(path, "read", reason);
         let file = open_file(path).map_err(|error| fail(&file_reason(&error)))?;
         let file = file.ok_or_else(|| fail(&"it is not a file; name a PNG, JPEG or WebP image"))?.0;
@@ -128,7 +128,7 @@ impl Reference {
     ///
     /// # Errors
     /// The picture is of another size.
-    pub(crate) fn compare(&self, picture: &RgbaImage, adapter: &wgpu::AdapterInfo) -> Result<Verdict, CompareError> {
+    pub fn compare(&self, picture: &RgbaImage, adapter: &wgpu::AdapterInfo) -> Result<Verdict, CompareError> {
         let (threshold, why) = match (self.threshold, self.adapter.as_deref(), identity(adapter)) {
             (Some(_), ..) => (self.threshold, "--threshold says so"),
             (None, None, _) => (Some(BETWEEN_DRIVERS), "the reference doesn't say what drew it"),

@@ -18,7 +18,7 @@ use inspect::settings::Settings;
 use load::Source;
 
 #[derive(Debug, clap::Args)]
-pub(crate) struct Args {
+pub struct Args {
     /// A .gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf file, or a shape made in code such as shape:cube-split, or
     /// shape:torus@2 (finer)
     #[arg(value_parser = super::options::source())]
@@ -49,7 +49,7 @@ const ENDINGS: &[&str] = &["png"];
 
 impl Args {
     /// The arguments that draw what the window shows when it opens with these settings.
-    pub(crate) fn preview(
+    pub fn preview(
         file: Source,
         settings: Settings,
         limit: LimitOption,
@@ -82,11 +82,7 @@ pub(super) fn run(args: &Args, line: &str) -> Result<(), CliError> {
 ///
 /// # Errors
 /// Those of the command.
-pub(crate) fn run_with(
-    args: &Args,
-    line: &str,
-    engine: impl FnOnce() -> Result<Engine, GpuError>,
-) -> Result<(), CliError> {
+pub fn run_with(args: &Args, line: &str, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
     let files = ViewFiles::new(&args.output, ENDINGS, &args.cameras);
     let views = files.views(
         &args.cameras,

@@ -8,7 +8,7 @@ use inspect::shader_files::{Language, shader_files};
 use load::files::file_reason;
 
 #[derive(Debug, clap::Args)]
-pub(crate) struct Args {
+pub struct Args {
     /// Language of the shaders
     #[arg(long, value_parser = options::choice::<Language>())]
     pub language: Language,

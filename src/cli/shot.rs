@@ -34,7 +34,7 @@ use inspect::settings::{Colors, DeviationUnit, Settings, SplitSide};
 use load::panorama::Panorama;
 
 /// What is drawn.
-pub(crate) struct Subject {
+pub struct Subject {
     /// The mesh at rest.
     pub loaded: Loaded,
     pub moment: Option<Moment>,
@@ -58,7 +58,7 @@ pub(crate) struct Subject {
 
 /// From where it is seen, and how large and on what it is drawn.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct ShotView {
+pub struct ShotView {
     pub camera: Camera,
     /// The camera that LOD and clipping are computed for and its view's size in px, if it isn't the picture's.
     pub lod_camera: Option<(Camera, Vec2)>,
@@ -72,7 +72,7 @@ pub(crate) struct ShotView {
 
 /// Which numbers are measured for stats.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct StatsWanted {
+pub struct StatsWanted {
     /// Whether they include the largest error on screen.
     pub error: bool,
 }
@@ -84,7 +84,7 @@ const MEASURING: f32 = 0.5;
 type ByHalf<T> = [Option<T>; 2];
 
 /// Everything that one picture is drawn and measured from.
-pub(crate) struct Shot {
+pub struct Shot {
     subject: Subject,
     /// The mesh in the pose that is drawn.
     posed: Loaded,
@@ -122,7 +122,7 @@ impl Subject {
 
 impl ShotView {
     /// What LOD and clipping are computed for.
-    pub(crate) fn lod_view(&self, scene: &Scene) -> LodView {
+    pub fn lod_view(&self, scene: &Scene) -> LodView {
         let own = (self.camera, Vec2::from(self.size.map(|side| side as f32)));
         let (camera, viewport) = self.lod_camera.unwrap_or(own);
         camera.lod_view(viewport, &scene.bounds)
@@ -134,7 +134,7 @@ impl Shot {
     ///
     /// # Errors
     /// The adapter has no textures of that size, the left half needs larger buffers than it can bind, or the device was lost.
-    pub(crate) fn new(engine: Engine, mut scene: Scene, subject: Subject, view: ShotView) -> Result<Self, GpuError> {
+    pub fn new(engine: Engine, mut scene: Scene, subject: Subject, view: ShotView) -> Result<Self, GpuError> {
         let make = if view.transparent { Target::transparent } else { Target::new };
         let target = make(&engine.gpu, view.size)?;
         if subject.settings.half(SplitSide::Left).is_some() {
@@ -191,17 +191,17 @@ impl Shot {
     }
 
     /// The picture's camera.
-    pub(crate) fn camera(&self) -> &Camera {
+    pub fn camera(&self) -> &Camera {
         &self.view.camera
     }
 
     /// Where it is seen from: the mesh in its pose, its moment, and the bounds that cameras are made for.
-    pub(crate) fn place(&self) -> (&Mesh, Option<Moment>, &Bounds) {
+    pub fn place(&self) -> (&Mesh, Option<Moment>, &Bounds) {
         (&self.subject.loaded.mesh, self.subject.moment, &self.scene.bounds)
     }
 
     /// What it is drawn with.
-    pub(crate) fn settings(&self) -> &Settings {
+    pub fn settings(&self) -> &Settings {
         &self.subject.settings
     }
 
@@ -213,7 +213,7 @@ impl Shot {
     ///
     /// # Errors
     /// The file can't be written.
-    pub(crate) fn write(&self, path: &Path, picture: &RgbaImage, command: &str) -> Result<(), CliError> {
+    pub fn write(&self, path: &Path, picture: &RgbaImage, command: &str) -> Result<(), CliError> {
         write_stamped(path, picture, self.adapter(), command, self.settings())
     }
 
@@ -232,7 +232,7 @@ impl Shot {
     ///
     /// # Errors
     /// The device was lost, or `progress` was cancelled.
-    pub(crate) fn picture(&mut self, stats: Option<StatsWanted>, progress: &Progress) -> Result<RgbaImage, CliError> {
+    pub fn picture(&mut self, stats: Option<StatsWanted>, progress: &Progress) -> Result<RgbaImage, CliError> {
         self.measure(stats, &progress.part(0.0, MEASURING))?;
         self.mark(progress)?;
         self.draw(&progress.part(MEASURING, 1.0))?;

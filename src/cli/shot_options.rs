@@ -21,7 +21,7 @@ use load::panorama::Panorama;
 use load::{Source, load_matcap};
 
 #[derive(Clone, Debug, Default, clap::Args)]
-pub(crate) struct ShotOptions {
+pub struct ShotOptions {
     #[command(flatten)]
     pub surface: SurfaceOptions,
     #[command(flatten)]

@@ -24,7 +24,7 @@ use load::Source;
 use load::files::file_reason;
 
 #[derive(Debug, clap::Args)]
-pub(crate) struct Args {
+pub struct Args {
     /// Meshes to run as well, after the cases chosen with --case; without --case, only these
     #[arg(value_parser = super::options::source())]
     pub files: Vec<Source>,

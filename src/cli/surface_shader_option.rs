@@ -19,7 +19,7 @@ use inspect::own_shader::read_own_shader;
 use inspect::render::Scene;
 
 #[derive(Clone, Debug, Default, clap::Args)]
-pub(crate) struct SurfaceShaderOption {
+pub struct SurfaceShaderOption {
     /// Compute the control points of edges on the GPU by a function of your own in place of a surface's: a WGSL file with the
     /// function edge_points. The manual's page on own shaders says what it gets. Standard error lists edges whose sides got
     /// different control points
@@ -32,7 +32,7 @@ impl SurfaceShaderOption {
     ///
     /// # Errors
     /// It can't be read or used.
-    pub(crate) fn read(&self) -> Result<Option<Arc<SurfaceShader>>, CliError> {
+    pub fn read(&self) -> Result<Option<Arc<SurfaceShader>>, CliError> {
         Ok(self.surface_shader.as_deref().map(read_own_shader).transpose()?)
     }
 
@@ -40,7 +40,7 @@ impl SurfaceShaderOption {
     ///
     /// # Errors
     /// Something is, or a gate does.
-    pub(crate) fn check(&self, is_on_cpu: bool, gates: &[Gate]) -> Result<(), CliError> {
+    pub fn check(&self, is_on_cpu: bool, gates: &[Gate]) -> Result<(), CliError> {
         if self.surface_shader.is_none() {
             return Ok(());
         }

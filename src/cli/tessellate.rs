@@ -28,7 +28,7 @@ use inspect::settings::Settings;
 use load::Source;
 
 #[derive(Debug, clap::Args)]
-pub(crate) struct Args {
+pub struct Args {
     /// A .gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf file, or a shape made in code such as shape:cube-split, or
     /// shape:torus@2 (finer)
     #[arg(value_parser = super::options::source())]
@@ -57,7 +57,7 @@ pub(crate) struct Args {
 
 /// Where the tessellation is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Device {
+pub enum Device {
     Gpu,
     Cpu,
 }
@@ -70,7 +70,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 ///
 /// # Errors
 /// Those of the command.
-pub(crate) fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
+pub fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
     args.check()?;
     let files = ViewFiles::new(&args.output, &["glb", "obj"], &args.cameras);
     let several = "--cameras writes several meshes: put {} into the name of -o where the views' names go";

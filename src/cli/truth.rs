@@ -16,7 +16,7 @@ use inspect::truth::Truth;
 use load::Source;
 
 #[derive(Clone, Debug, Default, Args)]
-pub(crate) struct TruthOption {
+pub struct TruthOption {
     /// Reference surface for the deviation overlay and the stats: a .gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf
     /// file, such as the high-poly original, or a shape. By default the exact surface of a shape; for other meshes the overlay
     /// takes the surface that the tessellation converges to
@@ -25,7 +25,7 @@ pub(crate) struct TruthOption {
 }
 
 /// The surface that a picture is compared with.
-pub(crate) enum ReferenceSurface {
+pub enum ReferenceSurface {
     /// A given or exact surface, with its name.
     Truth(String, Arc<Truth>),
     /// The limit surface of the tessellation.
@@ -67,7 +67,7 @@ impl TruthOption {
 
 impl ReferenceSurface {
     /// The surface to compare with what was emitted with these inputs.
-    pub(crate) fn target(&self, inputs: &Inputs) -> DeviationTarget {
+    pub fn target(&self, inputs: &Inputs) -> DeviationTarget {
         match self {
             Self::Truth(_, truth) => DeviationTarget::Truth(truth.clone()),
             Self::Limit => DeviationTarget::Limit(Box::new(*inputs)),
@@ -75,7 +75,7 @@ impl ReferenceSurface {
     }
 
     /// The given or exact surface and its name; none for the limit surface.
-    pub(crate) fn truth(&self) -> Option<(&str, &Truth)> {
+    pub fn truth(&self) -> Option<(&str, &Truth)> {
         match self {
             Self::Truth(name, truth) => Some((name, truth)),
             Self::Limit => None,

@@ -18,7 +18,7 @@ use load::Source;
 use load::files::{PartFile, PartFolder, file_reason};
 
 #[derive(Debug, clap::Args)]
-pub(crate) struct Args {
+pub struct Args {
     /// A .gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf file, or a shape made in code such as shape:cube-split, or
     /// shape:torus@2 (finer)
     #[arg(value_parser = super::options::source())]
@@ -44,7 +44,7 @@ pub(crate) const FPS: std::ops::RangeInclusive<u32> = 1..=50;
 
 /// One turn of the camera around the vertical axis through the point that it looks at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Turn {
+pub struct Turn {
     pub frames: u32,
     /// Pictures a second in a GIF.
     pub fps: u32,
@@ -78,7 +78,7 @@ impl Turn {
     ///
     /// # Errors
     /// The device was lost, a file can't be written, or `progress` was cancelled.
-    pub(crate) fn write(
+    pub fn write(
         &self,
         shot: &mut Shot,
         command: impl Fn(u32) -> String,
@@ -121,7 +121,7 @@ impl Turn {
     }
 
     /// The camera of a picture.
-    pub(crate) fn camera(&self, start: &Camera, frame: u32) -> Camera {
+    pub fn camera(&self, start: &Camera, frame: u32) -> Camera {
         Camera { azimuth: start.azimuth + 360.0 * self.part(frame), ..*start }
     }
 

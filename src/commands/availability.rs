@@ -69,7 +69,6 @@ pub struct Availability {
 
 impl Availability {
     /// A state in which every command is possible.
-    #[cfg(test)]
     pub fn everything() -> Self {
         Self {
             has_document: true,

@@ -33,7 +33,7 @@ const LOD_SHADER: &str =
 const SURFACE_SHADER: &str = "Opens a WGSL file with your own function for the control points of edges in place of a surface, and follows its changes.";
 
 /// What a file of light is for.
-pub(crate) const ENVIRONMENT: &str =
+pub const ENVIRONMENT: &str =
     "Opens a panorama (.hdr or .exr) whose light shines on the mesh in place of the studio's.";
 
 const TRUTH: &str = "Opens the mesh that deviation and charts compare with, such as the high-poly original.";

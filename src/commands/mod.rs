@@ -18,8 +18,9 @@ use geometry::mesh::Shape;
 use inspect::render::Standpoint;
 
 pub(crate) use availability::{Availability, BACKS_ARE_SEEN, MADE_IN_CODE, MOST_BOOKMARKS, NO_TEXTURE_COORDINATES};
-pub(crate) use change::Change;
-pub(crate) use fixed::{ENVIRONMENT, HEIGHT_IMAGE, MATCAP_IMAGE};
+pub use change::Change;
+pub use fixed::ENVIRONMENT;
+pub(crate) use fixed::{HEIGHT_IMAGE, MATCAP_IMAGE};
 
 /// What the window does when a command is given.
 #[derive(Clone, Debug, PartialEq)]
@@ -308,7 +309,7 @@ fn with_symbols(name: String) -> String {
 }
 
 /// Every command that there is now.
-pub(crate) fn all(now: &Availability) -> Vec<Command> {
+pub fn all(now: &Availability) -> Vec<Command> {
     let mut all = fixed::commands();
     all.extend(generated::commands(now));
     all
@@ -318,7 +319,7 @@ pub(crate) fn all(now: &Availability) -> Vec<Command> {
 pub(crate) const QUIT: KeyboardShortcut = ctrl(Key::Q);
 
 /// What the pointer does in the picture. These aren't commands, but they are listed with the keys.
-pub(crate) const GESTURES: [(&str, &str); 4] = [
+pub const GESTURES: [(&str, &str); 4] = [
     ("Click", "Selects the triangle, its patch and its nearest edge."),
     ("Left drag", "Orbits."),
     ("Middle drag, Shift+left drag", "Pans."),

@@ -3,7 +3,6 @@
 
 use bytemuck::{Pod, Zeroable};
 
-#[cfg(test)]
 pub use geometry::mesh::rig::{Binding, Delta, JointMatrix};
 pub use geometry::tessellate::{PatchFactors, Vertex};
 

@@ -45,31 +45,25 @@ pub use bound_pass::BoundPass;
 pub use buffer::{empty, uniform_buffer};
 pub use compute_pipeline::{ComputePipeline, ShaderModule};
 pub use device::{Gpu, device_descriptor};
-#[cfg(test)]
 pub use domain::DomainParams;
 pub use domain::{DomainPass, DomainPattern};
 pub use error::GpuError;
 pub use lazy::Lazy;
 pub(crate) use mesh_buffers::MeshBuffers;
-#[cfg(test)]
 pub use mesh_buffers::SEARCH_COUNTERS;
 pub use own_functions::{OwnReport, OwnShader};
 pub use own_lod::{Given, LodShader};
 pub use own_surface::SurfaceShader;
 pub use pipelines::{ComputePipelines, WORKGROUP, bind_group, grid};
-#[cfg(test)]
 pub use pipelines::{GRID_WIDTH, MOST_WORKGROUPS};
 pub use readback::{Readback, read_buffer, read_buffers, read_texture};
-#[cfg(test)]
 pub use recorder::PASSES;
 pub use recorder::{DRAWING, PassTime, RecordPasses, Recorder, Timing, take_times};
-#[cfg(test)]
 pub use search_passes::{NEXT_EDGES, NEXT_PATCHES, SEARCH_AGAIN, SEARCH_ASKED, SEARCH_INSIDE};
 pub use tessellator::{ChunkBuffers, Tessellator};
 pub use wgsl::WgslFile;
 
 /// The files with the entry points of the passes: one shader module each.
-#[cfg(test)]
 pub static MODULES: [&WgslFile; 15] = [
     &pipelines::PASS_DEFORM,
     &pipelines::PASS_NETS,

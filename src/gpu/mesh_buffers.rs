@@ -8,7 +8,7 @@ use geometry::mesh::{Curves, Dominance, Mesh, Sharing, Topology};
 use geometry::tessellate::texel_lengths;
 
 /// `SEARCH_COUNTERS` in `shaders/types.wgsl`: how many counters the searches of LOD by error have.
-pub(crate) const SEARCH_COUNTERS: u32 = 11;
+pub const SEARCH_COUNTERS: u32 = 11;
 
 /// A mesh and its topology on the device, with room for the control nets and factors that passes compute.
 pub struct MeshBuffers {

@@ -257,7 +257,7 @@ pub fn bind_group(
 pub const WORKGROUP: u32 = 256;
 
 /// `MOST_WORKGROUPS` in `shaders/types.wgsl`: the most workgroups along one dimension that WebGPU allows.
-pub(crate) const MOST_WORKGROUPS: u32 = 65_535;
+pub const MOST_WORKGROUPS: u32 = 65_535;
 
 /// Twin of `grid` in `shaders/types.wgsl`: the workgroups in each dimension for so many invocations.
 pub fn grid(items: u32) -> [u32; 3] {
@@ -266,4 +266,4 @@ pub fn grid(items: u32) -> [u32; 3] {
 }
 
 /// `GRID_WIDTH` in `shaders/types.wgsl`: workgroups along a grid's first dimension. WebGPU allows 65,535.
-pub(crate) const GRID_WIDTH: u32 = 32768;
+pub const GRID_WIDTH: u32 = 32768;

@@ -56,11 +56,11 @@ const SEARCH_WORKGROUPS: u32 = 8192;
 const UNIFORM_WORKGROUPS: [[u32; 2]; 2] = [[1024, 2048], [32, 128]];
 
 /// The places of `search_workgroups`, as in `shaders/pass_asked.wgsl` and `shaders/search_state.wgsl`.
-pub(crate) const SEARCH_ASKED: u32 = 0;
-pub(crate) const SEARCH_INSIDE: u32 = 1;
-pub(crate) const SEARCH_AGAIN: u32 = 2;
-pub(crate) const NEXT_PATCHES: u32 = 3;
-pub(crate) const NEXT_EDGES: u32 = 4;
+pub const SEARCH_ASKED: u32 = 0;
+pub const SEARCH_INSIDE: u32 = 1;
+pub const SEARCH_AGAIN: u32 = 2;
+pub const NEXT_PATCHES: u32 = 3;
+pub const NEXT_EDGES: u32 = 4;
 
 impl SearchPasses {
     /// All passes in their order, for rows or for the patterns of Direct3D.

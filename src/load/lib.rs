@@ -60,12 +60,9 @@ pub use mesh_file::{LoadError, load};
 pub use read_error::{FilePosition, ReadError};
 pub use uri::percent_decoded;
 
-#[cfg(test)]
 pub use format::Format;
 pub use heights::HeightSource;
 pub use import::{FileUnit, Import, LengthUnit, NormalSource, UNIT_METRES};
 pub use memory_budget::Budget;
 pub use source::Source;
-#[cfg(test)]
-pub use threemf::tests::package;
 pub use warnings::{crease_band_warnings, untextured_warning};

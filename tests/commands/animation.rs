@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
-use crate::moving::moving;
 use crate::{Folder, failure, output, run};
+use documents::moving::moving;
 
 fn file(folder: &Folder) -> String {
     let path = folder.path("moving.glb");

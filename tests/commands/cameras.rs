@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
-use crate::shot::SHOT;
 use crate::{Folder, failure, output, sentence};
+use documents::shot::SHOT;
 
 #[test]
 fn cameras_of_a_file_are_listed_and_looked_through_and_others_are_refused() {

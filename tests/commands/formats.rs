@@ -1,8 +1,9 @@
 //! OBJ, STL, PLY, OFF and 3MF files: they open like glTF files, and broken ones are refused; so are files of formats that aren't read.
 
+use documents::package;
 use serde_json::Value;
 
-use crate::{Folder, assert_says, output, package, read_obj, sentence};
+use crate::{Folder, assert_says, output, read_obj, sentence};
 
 fn info(path: &str) -> Value {
     serde_json::from_str(&output(&["info", path, "--json"])).expect("JSON")

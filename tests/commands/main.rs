@@ -16,24 +16,16 @@ mod gallery;
 mod gates;
 mod import;
 mod info;
-#[path = "../documents/lamp.rs"]
-mod lamp;
 mod lod;
 mod lod_shader;
 mod manual;
-#[path = "../documents/moving.rs"]
-mod moving;
 #[cfg(target_os = "linux")]
 mod opened;
-#[path = "../documents/package.rs"]
-mod package;
 mod picture_file;
 mod reference;
 mod render;
 mod scenes;
 mod shaders;
-#[path = "../documents/shot.rs"]
-mod shot;
 mod silhouette;
 mod stability;
 mod surface_shader;

@@ -2,8 +2,8 @@
 
 use serde_json::Value;
 
-use crate::lamp::LAMP;
 use crate::{Folder, output, sentence};
+use documents::lamp::LAMP;
 
 #[test]
 fn a_variant_is_listed_chosen_and_exported_and_another_name_is_refused() {

@@ -1,7 +1,7 @@
 //! A small glTF document with a material variant, which tests write and then read.
 
 /// A triangle that is red, and blue in the variant `Night`.
-pub(crate) const LAMP: &str = r#"{
+pub const LAMP: &str = r#"{
     "asset": { "version": "2.0" },
     "extensions": { "KHR_materials_variants": { "variants": [{ "name": "Night" }] } },
     "nodes": [{ "mesh": 0 }],

@@ -4,8 +4,7 @@
 use serde_json::{Value, json};
 
 /// The names of the clips.
-#[allow(dead_code, reason = "not every test names them all")]
-pub(crate) const CLIPS: [&str; 4] = ["Bend", "Swell", "Fly", "All"];
+pub const CLIPS: [&str; 4] = ["Bend", "Swell", "Fly", "All"];
 
 #[derive(Default)]
 struct Writer {
@@ -37,7 +36,7 @@ impl Writer {
 }
 
 /// The whole document as a .glb file.
-pub(crate) fn moving() -> Vec<u8> {
+pub fn moving() -> Vec<u8> {
     let mut writer = Writer::default();
     let meshes = json!([{ "primitives": [beam(&mut writer)] }, { "primitives": [octahedron(&mut writer)] }]);
     let animations = animations(&mut writer);

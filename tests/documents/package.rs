@@ -1,5 +1,4 @@
 //! Zip archives, and 3MF packages with a model.
-#![allow(dead_code, reason = "not every test needs all of them")]
 
 use std::io::Write;
 
@@ -7,15 +6,15 @@ use flate2::write::DeflateEncoder;
 use flate2::{Compression, Crc};
 
 /// The namespaces that a model declares.
-pub(crate) const NAMESPACES: &str = "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" \
+pub const NAMESPACES: &str = "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" \
      xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\" \
      xmlns:p=\"http://schemas.microsoft.com/3dmanufacturing/production/2015/06\"";
 
 /// Where the model is.
-pub(crate) const MODEL: &str = "3D/3dmodel.model";
+pub const MODEL: &str = "3D/3dmodel.model";
 
 /// A file in an archive.
-pub(crate) struct Entry<'a> {
+pub struct Entry<'a> {
     pub name: &'a str,
     pub method: u16,
     /// Its bytes in the archive.
@@ -26,13 +25,13 @@ pub(crate) struct Entry<'a> {
 }
 
 impl<'a> Entry<'a> {
-    pub(crate) fn stored(name: &'a str, bytes: &[u8]) -> Self {
+    pub fn stored(name: &'a str, bytes: &[u8]) -> Self {
         let mut crc = Crc::new();
         crc.update(bytes);
         Self { name, method: 0, packed: bytes.to_vec(), crc: crc.sum(), unpacked: bytes.len() as u32 }
     }
 
-    pub(crate) fn deflated(name: &'a str, bytes: &[u8]) -> Self {
+    pub fn deflated(name: &'a str, bytes: &[u8]) -> Self {
         let mut encoder = DeflateEncoder::new(Vec::new(), Compression::default());
         encoder.write_all(bytes).expect("memory takes what is written");
         Self { method: 8, packed: encoder.finish().expect("memory takes what is written"), ..Self::stored(name, bytes) }
@@ -40,7 +39,7 @@ impl<'a> Entry<'a> {
 }
 
 /// Writes an archive: each file behind its header, then the directory.
-pub(crate) fn zip(entries: &[Entry]) -> Vec<u8> {
+pub fn zip(entries: &[Entry]) -> Vec<u8> {
     let (mut bytes, mut directory) = (Vec::new(), Vec::new());
     for entry in entries {
         let sizes = [entry.crc, entry.packed.len() as u32, entry.unpacked].map(u32::to_le_bytes).concat();
@@ -60,7 +59,7 @@ pub(crate) fn zip(entries: &[Entry]) -> Vec<u8> {
 }
 
 /// The part that says which part is the model.
-pub(crate) fn relationships() -> String {
+pub fn relationships() -> String {
     format!(
         "<?xml version=\"1.0\"?>\n<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">\
          <Relationship Id=\"r\" Target=\"/{MODEL}\" Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/>\
@@ -69,12 +68,12 @@ pub(crate) fn relationships() -> String {
 }
 
 /// A package whose model is this text.
-pub(crate) fn package(model: &str) -> Vec<u8> {
+pub fn package(model: &str) -> Vec<u8> {
     zip(&[Entry::stored("_rels/.rels", relationships().as_bytes()), Entry::stored(MODEL, model.as_bytes())])
 }
 
 /// A model with these resources and this build. The unit is the metre.
-pub(crate) fn model(resources: &str, build: &str) -> String {
+pub fn model(resources: &str, build: &str) -> String {
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"meter\" {NAMESPACES}><resources>{resources}</resources>\
          <build>{build}</build></model>"
@@ -82,10 +81,7 @@ pub(crate) fn model(resources: &str, build: &str) -> String {
 }
 
 /// An element with a mesh of vertices and triangles.
-pub(crate) fn mesh(
-    vertices: impl IntoIterator<Item = [f32; 3]>,
-    triangles: impl IntoIterator<Item = [usize; 3]>,
-) -> String {
+pub fn mesh(vertices: impl IntoIterator<Item = [f32; 3]>, triangles: impl IntoIterator<Item = [usize; 3]>) -> String {
     let vertices: String =
         vertices.into_iter().map(|[x, y, z]| format!("<vertex x=\"{x}\" y=\"{y}\" z=\"{z}\"/>")).collect();
     let triangles: String =

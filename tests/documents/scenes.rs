@@ -7,7 +7,7 @@ use image::{ImageFormat, Rgba, RgbaImage};
 use serde_json::{Value, json};
 
 /// A document as a .glb file.
-pub(crate) struct MaterialScene {
+pub struct MaterialScene {
     /// What it is about.
     pub name: &'static str,
     pub glb: Vec<u8>,
@@ -17,7 +17,7 @@ pub(crate) struct MaterialScene {
 type Feature = fn(&mut Document);
 
 /// All of them.
-pub(crate) fn material_scenes() -> Vec<MaterialScene> {
+pub fn material_scenes() -> Vec<MaterialScene> {
     let all: [(&str, Feature); 15] = [
         ("alpha-modes", alpha_modes),
         ("mirrored-normals", mirrored_normals),
@@ -44,7 +44,7 @@ pub(crate) fn material_scenes() -> Vec<MaterialScene> {
 }
 
 /// A panorama as a Radiance file: three lamps in grey surroundings of radiance 0.5.
-pub(crate) fn three_lamps() -> Vec<u8> {
+pub fn three_lamps() -> Vec<u8> {
     const SIZE: [u32; 2] = [256, 128];
     /// Columns and rows of a lamp, and the mantissa and the exponent of its radiance: 8, 4 and 6.
     const LAMPS: [([u32; 4], [u8; 2]); 3] =

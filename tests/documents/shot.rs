@@ -2,7 +2,7 @@
 
 /// A triangle, and two cameras in front of it: `Close`, which sees it in perspective and turned by a quarter, and one without a
 /// name, which is orthographic.
-pub(crate) const SHOT: &str = r#"{
+pub const SHOT: &str = r#"{
     "asset": { "version": "2.0" },
     "nodes": [
         { "mesh": 0 },

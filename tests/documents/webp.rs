@@ -2,17 +2,17 @@
 
 /// Writes numbers, the lowest bit first, and codes, the highest bit first.
 #[derive(Default)]
-pub(crate) struct BitWriter {
+pub struct BitWriter {
     bytes: Vec<u8>,
     count: usize,
 }
 
 impl BitWriter {
-    pub(crate) fn number(&mut self, width: usize, number: u32) {
+    pub fn number(&mut self, width: usize, number: u32) {
         (0..width).for_each(|bit| self.bit(number >> bit & 1));
     }
 
-    pub(crate) fn code(&mut self, width: usize, code: u32) {
+    pub fn code(&mut self, width: usize, code: u32) {
         (0..width).rev().for_each(|bit| self.bit(code >> bit & 1));
     }
 
@@ -25,14 +25,14 @@ impl BitWriter {
     }
 
     /// A prefix code of one symbol.
-    pub(crate) fn single(&mut self, symbol: u32) {
+    pub fn single(&mut self, symbol: u32) {
         // Short, one symbol, which has 8 bits.
         self.number(3, 0b101);
         self.number(8, symbol);
     }
 
     /// The file of an image of this width and height in px. What was written is what comes behind its header.
-    pub(crate) fn file(self, [width, height]: [u32; 2]) -> Vec<u8> {
+    pub fn file(self, [width, height]: [u32; 2]) -> Vec<u8> {
         let sizes = (width - 1) | (height - 1) << 14;
         let data = [&[0x2f], &sizes.to_le_bytes()[..], &self.bytes].concat();
         let size = data.len() as u32;
@@ -44,7 +44,7 @@ impl BitWriter {
 
 /// An image of 4 x 4 px with so many groups of prefix codes, up to 65,536. Each of a group's five codes has a table of 4 KiB, and takes
 /// 12 bytes of the file.
-pub(crate) fn of_groups(groups: u32) -> Vec<u8> {
+pub fn of_groups(groups: u32) -> Vec<u8> {
     let mut bits = BitWriter::default();
     // No transform, no cache of colours, and a px with the number of its group for each block of 4 x 4.
     bits.number(3, 0b100);

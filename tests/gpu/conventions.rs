@@ -1,19 +1,19 @@
 //! Conventions of factors and weights: those that agree with themselves give one mesh, mistakes crack. And factors that are
 //! given in place of LOD's.
 
-use inspect::engine::Loaded;
-use gpu::Timing;
-use inspect::measure::{AskedFactors, EdgeSide, Measured};
 use geometry::mesh::Shape;
-use inspect::render::{Camera, Scene};
-use inspect::settings::Settings;
 use geometry::tessellate::{
     Clip, Convention, Edges, HullFactors, Inputs, Lod, Partitioning, Surface, Tessellated, Tessellation, hull_factors,
     patch_is_culled, segments, tessellate, tessellate_given,
 };
+use gpu::Timing;
+use inspect::engine::Loaded;
+use inspect::measure::{AskedFactors, EdgeSide, Measured};
+use inspect::render::{Camera, Scene};
+use inspect::settings::Settings;
 
-use crate::gpu_tests::passes::{assert_agree, edge_factors, inputs, on_gpu};
-use crate::gpu_tests::{engine, loaded, scene};
+use crate::passes::{assert_agree, edge_factors, inputs, on_gpu};
+use crate::{engine, loaded, scene};
 
 const CONSISTENT: [Convention; 3] = [Convention::D3d11, Convention::AmdPn, Convention::EdgeOrder];
 const MISTAKES: [Convention; 2] = [Convention::Rotated, Convention::Mirrored];

@@ -2,15 +2,15 @@
 
 use std::sync::Arc;
 
-use inspect::engine::Engine;
-use gpu::Timing;
 use geometry::mesh::Shape;
+use geometry::tessellate::{CoverageView, Lod, Surface, Tessellation, covers_nothing, screen_corner};
+use gpu::Timing;
+use inspect::engine::Engine;
 use inspect::render::{Camera, Renderer, Scene, Target};
 use inspect::settings::{Colors, Overlays, Settings};
 use lab::stability::random_camera;
-use geometry::tessellate::{CoverageView, Lod, Surface, Tessellation, covers_nothing, screen_corner};
 
-use crate::gpu_tests::{engine, scene};
+use crate::{engine, scene};
 
 /// An engine that leaves out what covers nothing, from so many triangles a px on.
 pub(super) fn sifting(from: f32) -> Engine {

@@ -1,17 +1,17 @@
 //! Crease bands, under PN triangles: nothing is left to tear.
 
-use inspect::engine::{Preparation, load};
-use load::Source;
-use inspect::measure::Measured;
 use geometry::mesh::{Shape, Topology, Unlimited, with_crease_band};
 use geometry::progress::Progress;
+use geometry::tessellate::{Edges, Partitioning, Surface, Tessellation};
+use inspect::engine::{Preparation, load};
+use inspect::measure::Measured;
 use inspect::render::{Camera, Scene};
 use inspect::settings::{ARENA_BYTES, Settings};
 use lab::stability::{CASES, soup};
-use geometry::tessellate::{Edges, Partitioning, Surface, Tessellation};
+use load::Source;
 
-use crate::gpu_tests::engine;
-use crate::gpu_tests::stability::{measured, scene_of};
+use crate::engine;
+use crate::stability::{measured, scene_of};
 
 const SIZE: [u32; 2] = [320, 240];
 

@@ -1,15 +1,15 @@
 //! Culling: what is left out is never missed.
 
+use geometry::mesh::Shape;
+use geometry::tessellate::{Clip, Edges, Inputs, Lod, LodView, Surface, Tessellation, tessellate};
 use glam::{Mat4, Vec2, Vec3};
 use gpu::Timing;
 use inspect::measure::Culled;
-use geometry::mesh::Shape;
 use inspect::render::{Camera, Scene, Target};
 use inspect::settings::{Overlays, Settings};
 use lab::stability::random_camera;
-use geometry::tessellate::{Clip, Edges, Inputs, Lod, LodView, Surface, Tessellation, tessellate};
 
-use crate::gpu_tests::{engine, scene};
+use crate::{engine, scene};
 
 const CAMERAS: u32 = 500;
 

@@ -2,19 +2,19 @@
 
 use std::sync::Arc;
 
-use inspect::engine::{Loaded, Preparation, Runs, load};
-use gpu::{Timing, read_buffer, take_times};
-use load::Source;
 use geometry::mesh::{CornerDetail, Mesh, Moment, Rig};
 use geometry::progress::Progress;
-use inspect::render::{Camera, Scene, Target};
-use inspect::settings::{ARENA_BYTES, Settings};
 use geometry::tessellate::{Edges, Lod, Partitioning, Surface, Tessellation, tessellate};
 use geometry::view::ulp;
+use gpu::{Timing, read_buffer, take_times};
+use inspect::engine::{Loaded, Preparation, Runs, load};
+use inspect::render::{Camera, Scene, Target};
+use inspect::settings::{ARENA_BYTES, Settings};
+use load::Source;
 
-use crate::gpu_tests::engine;
-use crate::gpu_tests::moving::{CLIPS, moving};
-use crate::gpu_tests::passes::{assert_agree, inputs, on_gpu};
+use crate::engine;
+use crate::passes::{assert_agree, inputs, on_gpu};
+use documents::moving::{CLIPS, moving};
 
 pub(super) fn scene() -> (Loaded, Scene) {
     let folder = tempfile::tempdir().expect("a writable temporary folder");
@@ -207,7 +207,7 @@ fn the_pass_is_timed_where_something_is_deformed() {
         engine().time(&mut scene, &target, &camera, view, &Settings::default(), Runs::default()).expect("a draw");
     // Triangles that cover nothing are left out where the device is faster for it.
     let passes: Vec<_> = times.iter().map(|time| time.pass).filter(|&pass| pass != "coverage").collect();
-    assert_eq!((passes[0], &passes[1..]), ("deform", &crate::gpu_tests::passes::RIGID_PASSES[..]));
+    assert_eq!((passes[0], &passes[1..]), ("deform", &crate::passes::RIGID_PASSES[..]));
 }
 
 #[test]
@@ -250,7 +250,7 @@ fn a_clip_is_framed_all_through() {
 
 #[test]
 fn a_mesh_that_cannot_move_takes_no_pose() {
-    let (loaded, mut scene) = crate::gpu_tests::scene(geometry::mesh::Shape::Torus);
+    let (loaded, mut scene) = crate::scene(geometry::mesh::Shape::Torus);
     let inputs = inputs(&loaded, &Settings::default());
     let before = on_gpu(&mut scene, &inputs);
     scene.set_moment(Some(Moment { clip: 0, time: 1.0 })).expect("nothing to upload");

@@ -2,20 +2,20 @@
 
 use std::sync::Arc;
 
+use geometry::mesh::Shape;
+use geometry::tessellate::{Lod, Surface, Tessellation};
+use geometry::view::project;
 use glam::{Vec2, Vec3};
+use gpu::Timing;
 use image::RgbaImage;
 use inspect::engine::Measurements;
-use gpu::Timing;
 use inspect::measure::{DeviationField, DeviationTarget};
-use geometry::mesh::Shape;
 use inspect::render::{Camera, DEVIATION_PX_SCALE, Scale, Scene, Target, deviation_scale, worst_lines};
 use inspect::settings::{ARENA_BYTES, Colors, DeviationUnit, Overlays, Settings, SplitSide};
-use geometry::tessellate::{Lod, Surface, Tessellation};
 use inspect::truth::Truth;
-use geometry::view::project;
 
-use crate::gpu_tests::engine;
-use crate::gpu_tests::pictures::{SIZE, differing};
+use crate::engine;
+use crate::pictures::{SIZE, differing};
 
 fn settings(surface: Surface, factor: f32) -> Settings {
     let overlays = Overlays { colors: Colors::Deviation, ..Overlays::default() };
@@ -69,7 +69,7 @@ fn place_of(picture: &RgbaImage, camera: &Camera, scene: &Scene, at: Vec3, scale
 
 /// A flat icosahedron, seen along the normal of its first face.
 fn face(target: &Target) -> (Scene, Camera, [Vec3; 3]) {
-    let (loaded, scene) = crate::gpu_tests::scene(Shape::Icosahedron);
+    let (loaded, scene) = crate::scene(Shape::Icosahedron);
     let corners = loaded.topology.patch_corners(0).map(|corner| loaded.mesh.corners[corner as usize].position);
     let mut camera = Camera::framing(&scene.bounds, target.viewport());
     camera.frame_triangle(corners, &scene.bounds);
@@ -125,7 +125,7 @@ fn px_are_counted_at_the_depth_of_the_surface() {
 
 #[test]
 fn chunks_have_their_own_distances() {
-    let loaded = crate::gpu_tests::loaded(Shape::Torus);
+    let loaded = crate::loaded(Shape::Torus);
     let target = Target::new(&engine().gpu, SIZE).expect("a small picture");
     let [whole, pieces] = [ARENA_BYTES, 4 << 20].map(|arena| {
         let mut scene = engine().scene(&loaded, arena).expect("shapes are small");
@@ -142,7 +142,7 @@ fn chunks_have_their_own_distances() {
 
 #[test]
 fn the_limit_surface_is_what_a_fine_tessellation_comes_to() {
-    let (_, mut scene) = crate::gpu_tests::scene(Shape::CubeSmooth);
+    let (_, mut scene) = crate::scene(Shape::CubeSmooth);
     let target = Target::new(&engine().gpu, SIZE).expect("a small picture");
     let camera = Camera::framing(&scene.bounds, target.viewport());
     let mut worst = |surface, factor| {
@@ -159,7 +159,7 @@ fn the_limit_surface_is_what_a_fine_tessellation_comes_to() {
 
 #[test]
 fn two_surfaces_beside_each_other_look_as_they_do_alone() {
-    let (_, mut scene) = crate::gpu_tests::scene(Shape::Icosahedron);
+    let (_, mut scene) = crate::scene(Shape::Icosahedron);
     engine().split(&mut scene, ARENA_BYTES).expect("shapes are small");
     let target = Target::new(&engine().gpu, SIZE).expect("a small picture");
     let camera = Camera::framing(&scene.bounds, target.viewport());
@@ -204,7 +204,7 @@ fn two_surfaces_beside_each_other_look_as_they_do_alone() {
 
 #[test]
 fn each_half_of_a_split_has_its_own_factors() {
-    let (_, mut scene) = crate::gpu_tests::scene(Shape::Icosahedron);
+    let (_, mut scene) = crate::scene(Shape::Icosahedron);
     engine().split(&mut scene, ARENA_BYTES).expect("shapes are small");
     let target = Target::new(&engine().gpu, SIZE).expect("a small picture");
     let camera = Camera::framing(&scene.bounds, target.viewport());
@@ -229,7 +229,7 @@ fn each_half_of_a_split_has_its_own_factors() {
 
 #[test]
 fn deviation_looks_as_it_did() {
-    let (_, mut scene) = crate::gpu_tests::scene(Shape::Icosahedron);
+    let (_, mut scene) = crate::scene(Shape::Icosahedron);
     let target = Target::new(&engine().gpu, SIZE).expect("a small picture");
     let camera = Camera::framing(&scene.bounds, target.viewport());
     let pictures = [("flat", Surface::Flat, 1.0), ("pn", Surface::Pn, 8.0)].map(|(name, surface, factor)| {

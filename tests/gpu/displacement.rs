@@ -3,24 +3,24 @@
 use std::f32::consts::TAU;
 use std::sync::Arc;
 
-use inspect::engine::Measurements;
-use inspect::engine::{Loaded, Runs};
-use gpu::Timing;
-use load::{Budget, HeightSource, Source};
-use inspect::measure::Measured;
 use geometry::mesh::{Corner, HeightMap, Heights, Material, Mesh, Moment, Shape, Texture};
 use geometry::progress::Progress;
-use inspect::render::{Scene, Target};
-use inspect::settings::{ARENA_BYTES, Settings};
-use lab::stability::CASES;
 use geometry::tessellate::{
     Clip, Displacement, Edges, HullFactors, Lod, Normals, Partitioning, PatchFactors, Surface, Tessellation, Vertex,
     deform, tessellate, tessellate_given, triangle_count, unpack_normal,
 };
 use geometry::view::ulp;
+use gpu::Timing;
+use inspect::engine::Measurements;
+use inspect::engine::{Loaded, Runs};
+use inspect::measure::Measured;
+use inspect::render::{Scene, Target};
+use inspect::settings::{ARENA_BYTES, Settings};
+use lab::stability::CASES;
+use load::{Budget, HeightSource, Source};
 
-use crate::gpu_tests::passes::{inputs, on_gpu};
-use crate::gpu_tests::{engine, loaded_mesh};
+use crate::passes::{inputs, on_gpu};
+use crate::{engine, loaded_mesh};
 
 /// Waves that repeat with the image; two crests of either length across it.
 pub(super) fn waves(size: u32) -> HeightMap {
@@ -291,7 +291,7 @@ fn lod_by_error_holds_with_gentle_heights() {
         let worst = results.screen_error.expect("it is in view");
         assert!(worst.px <= 1.0, "{shape:?}: {} px", worst.px);
         let without = settings.with(Tessellation { displacement: Displacement::Off, ..settings.tessellation });
-        let plain = on_gpu(&mut scene, &crate::gpu_tests::passes::inputs(&loaded, &without)).triangles.len() as u64;
+        let plain = on_gpu(&mut scene, &crate::passes::inputs(&loaded, &without)).triangles.len() as u64;
         engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
         assert!(scene.tessellator.totals().1 > plain, "{shape:?}: heights cost triangles");
     }
@@ -326,7 +326,7 @@ fn a_mesh_that_moves_is_displaced_in_every_pose() {
         assert_eq!((cracks.different_bits, cracks.different_normals), (0, 0), "{time} s");
         let target = Target::new(&engine().gpu, [64, 64]).expect("a small picture");
         let camera = inspect::render::Camera::framing(&scene.bounds, target.viewport());
-        let engine = crate::gpu_tests::coverage::sifting(0.0);
+        let engine = crate::coverage::sifting(0.0);
         let view = camera.lod_view(target.viewport(), &scene.bounds);
         let times = engine.time(&mut scene, &target, &camera, view, &settings, Runs::default()).expect("a draw");
         passes = times.iter().map(|time| time.pass).collect();

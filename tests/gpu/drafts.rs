@@ -1,18 +1,18 @@
 //! Drafts of pictures: what they leave out, and what they must not.
 
+use geometry::mesh::{Alpha, CornerDetail, Look, MapUv, Material, Slot};
+use geometry::tessellate::Tessellation;
 use glam::{Vec2, Vec3};
 use image::RgbaImage;
-use geometry::mesh::{Alpha, CornerDetail, Look, MapUv, Material, Slot};
 use inspect::render::Target;
 use inspect::settings::{Overlays, Settings};
-use geometry::tessellate::Tessellation;
 
-use crate::gpu_tests::engine;
-use crate::gpu_tests::looks::{facing, square_of};
-use crate::gpu_tests::materials::{
+use crate::engine;
+use crate::looks::{facing, square_of};
+use crate::materials::{
     PLACES, SIDE, assert_near, at, every_way, image, look_with, map, material, studio, with_details,
 };
-use crate::gpu_tests::stability::{scene_of, seen};
+use crate::stability::{scene_of, seen};
 
 /// A draft and the whole picture of a square that fills the view.
 fn both(material: Material, settings: &Settings) -> [RgbaImage; 2] {

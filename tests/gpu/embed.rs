@@ -3,15 +3,15 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use glam::{Mat4, Vec2, Vec3};
-use gpu::embed::{Context, GpuError, OutputStatus, Room, TessellatedMesh};
-use inspect::engine::Engine;
-use gpu::{RecordPasses, Tessellator, read_buffer, vertices_of};
 use geometry::mesh::{Corner, Mesh, MeshSlices, Moment, Pose, Shape, Topology};
 use geometry::tessellate::{Clip, Edges, Inputs, LodView, Surface, Tessellated, Tessellation, tessellate};
+use glam::{Mat4, Vec2, Vec3};
+use gpu::embed::{Context, GpuError, OutputStatus, Room, TessellatedMesh};
+use gpu::{RecordPasses, Tessellator, read_buffer, vertices_of};
+use inspect::engine::Engine;
 
-use crate::gpu_tests::engine;
-use crate::gpu_tests::pictures::differing;
+use crate::engine;
+use crate::pictures::differing;
 
 // Each example is a crate of its own, and both have the same canvas.
 #[allow(unreachable_pub, clippy::duplicate_mod)]

@@ -3,16 +3,14 @@
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-use glam::{Vec2, Vec3, vec3};
-use image::RgbaImage;
-use inspect::engine::Engine;
-use load::files::Limits;
-use gpu::Timing;
-use load::environment_file::EnvironmentFile;
-use load::environment_file::tests::{open_exr_file, radiance_file};
-use load::panorama::Panorama;
+use documents::panoramas::{open_exr_file, radiance_file};
 use geometry::mesh::{Light, LightKind, Look, Material, Mesh, Shape};
 use geometry::progress::Progress;
+use geometry::tessellate::{Surface, Tessellation};
+use glam::{Vec2, Vec3, vec3};
+use gpu::Timing;
+use image::RgbaImage;
+use inspect::engine::Engine;
 use inspect::render::environment::Environment;
 use inspect::render::layout::{linear, srgb};
 use inspect::render::punctual::{PunctualLight, direct_light};
@@ -20,13 +18,15 @@ use inspect::render::studio::studio_light;
 use inspect::render::tone::{TONE_CURVE_NEUTRAL, tone_mapped};
 use inspect::render::{Camera, Renderer, Scene, Target};
 use inspect::settings::{Colors, FileLights, Lighting, NormalsAt, Overlays, Settings, ToneCurve};
-use geometry::tessellate::{Surface, Tessellation};
+use load::environment_file::EnvironmentFile;
+use load::files::Limits;
+use load::panorama::Panorama;
 
-use crate::gpu_tests::engine;
-use crate::gpu_tests::looks::square_of;
-use crate::gpu_tests::materials::{every_way, white_balls};
-use crate::gpu_tests::pictures::differing;
-use crate::gpu_tests::stability::{scene_of, seen};
+use crate::engine;
+use crate::looks::square_of;
+use crate::materials::{every_way, white_balls};
+use crate::pictures::differing;
+use crate::stability::{scene_of, seen};
 
 fn lit_by_file() -> Settings {
     let tessellation = Tessellation { surface: Surface::PnAen, factor: 6.0, ..Tessellation::default() };
@@ -307,12 +307,12 @@ fn outdoors(direction: Vec3) -> Vec3 {
 fn environments_look_as_they_did() {
     let target = Target::new(&engine().gpu, [320, 160]).expect("a small picture");
     let neutral = Settings { tone_curve: ToneCurve::Neutral, ..lit_by_file() };
-    let mut balls = scene_in(crate::gpu_tests::materials::metal_and_matte_balls(), Panorama::of([1024, 512], outdoors));
+    let mut balls = scene_in(crate::materials::metal_and_matte_balls(), Panorama::of([1024, 512], outdoors));
     let camera = Camera { azimuth: 10.0, elevation: 10.0, ..Camera::framing(&balls.bounds, target.viewport()) };
     let file = seen(&mut balls, &target, &Settings { environment_background: true, ..neutral }, &camera);
     let studio = Settings { lighting: Lighting::Studio, environment_background: true, ..neutral };
     let studio = seen(&mut balls, &target, &studio, &camera);
-    let mut lit = crate::gpu_tests::materials::metal_and_matte_balls();
+    let mut lit = crate::materials::metal_and_matte_balls();
     let place = |kind, intensity, x: f32| {
         let place = vec3(x, 1.5, 2.5);
         Light { kind, intensity, place, direction: (vec3(x, -1.0, 0.0) - place).normalize() }

@@ -2,25 +2,25 @@
 
 use std::sync::Arc;
 
-use glam::Vec2;
-use inspect::engine::{Loaded, Preparation, load};
-use gpu::{ComputePipelines, Timing, take_times};
-use load::Source;
-use inspect::measure::{EmittedChunk, ScreenErrorMeasurement, Visitor};
 use geometry::mesh::{Mesh, Shape, Topology};
 use geometry::progress::Progress;
-use inspect::render::{Camera, Scene, Target};
-use inspect::settings::{ARENA_BYTES, Colors, Overlays, Settings};
 use geometry::tessellate::{
     self, Convention, Displacement, Edges, HullFactors, Inputs, Lod, Partitioning, Surface, Tessellated, Tessellation,
     hull_factors, own_least_triangles, tessellate,
 };
+use glam::Vec2;
+use gpu::{ComputePipelines, Timing, take_times};
+use inspect::engine::{Loaded, Preparation, load};
+use inspect::measure::{EmittedChunk, ScreenErrorMeasurement, Visitor};
+use inspect::render::{Camera, Scene, Target};
+use inspect::settings::{ARENA_BYTES, Colors, Overlays, Settings};
+use load::Source;
 use proptest::prelude::*;
 
-use crate::gpu_tests::displacement::wavy;
-use crate::gpu_tests::passes::edge_factors;
-use crate::gpu_tests::stability::{Trial, any_trial, soups};
-use crate::gpu_tests::{engine, loaded, scene};
+use crate::displacement::wavy;
+use crate::passes::edge_factors;
+use crate::stability::{Trial, any_trial, soups};
+use crate::{engine, loaded, scene};
 
 const VIEWPORT: Vec2 = glam::vec2(320.0, 240.0);
 

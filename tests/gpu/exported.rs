@@ -2,20 +2,20 @@
 
 use std::rc::Rc;
 
-use inspect::shader_files::Language;
-use inspect::shader_files::shader_files;
 use geometry::mesh::adjacency::Layout;
 use geometry::mesh::{Mesh, Shape, Topology};
 use geometry::progress::Progress;
-use inspect::settings::Choice;
 use geometry::tessellate::{
     Clip, Convention, Edges, Lod, Normals, Partitioning, Surface, Tessellation, corner_weights, tessellate,
 };
+use inspect::settings::Choice;
+use inspect::shader_files::Language;
+use inspect::shader_files::shader_files;
 
-use crate::gpu_tests::engine;
-use crate::gpu_tests::vulkan::Vulkan;
-use crate::gpu_tests::vulkan::agreement::Agreement;
-use crate::gpu_tests::vulkan::exported::{LANGUAGES, Subject, rows, table};
+use crate::engine;
+use crate::vulkan::Vulkan;
+use crate::vulkan::agreement::Agreement;
+use crate::vulkan::exported::{LANGUAGES, Subject, rows, table};
 
 // The example is a crate of its own.
 #[allow(unreachable_pub)]

@@ -1,22 +1,20 @@
 //! Exported shaders that displace: those of tessellation stages on the driver's own, and compute passes on the engine's device.
 
-use gpu::read_buffer;
 use geometry::mesh::adjacency::Layout;
 use geometry::mesh::{Mesh, Shape, Topology};
 use geometry::progress::Progress;
-use inspect::shader_files::{Language, shader_files};
 use geometry::tessellate::{
     Clip, Convention, Displacement, Edges, Inputs, Lod, LodView, Normals, Partitioning, PatchFactors, Tessellation,
     Vertex, corner_weights, displaced_corners, displacement_reach, height_units, tessellate, unpack_normal,
 };
+use gpu::read_buffer;
+use inspect::shader_files::{Language, shader_files};
 use wgpu::util::DeviceExt;
 
-use crate::gpu_tests::engine;
-use crate::gpu_tests::exported::{assert_part_of_page, exported_corners, vulkan};
-use crate::gpu_tests::vulkan::agreement::Agreement;
-use crate::gpu_tests::vulkan::exported::{
-    DISPLACEMENTS, LANGUAGES, Subject, constants, displaced_rows, displaced_table, wavy,
-};
+use crate::engine;
+use crate::exported::{assert_part_of_page, exported_corners, vulkan};
+use crate::vulkan::agreement::Agreement;
+use crate::vulkan::exported::{DISPLACEMENTS, LANGUAGES, Subject, constants, displaced_rows, displaced_table, wavy};
 
 /// A shape under waves. Texture coordinates are shifted by `shift`, so that the image repeats where it isn't 0.
 pub(super) fn shifted(shape: Shape, shift: f32) -> Mesh {

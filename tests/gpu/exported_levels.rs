@@ -1,23 +1,21 @@
 //! Exported shaders that displace under LOD by the view: a shader of its own, or the first pass, finds the mip level at each point.
 
-use glam::Vec2;
 use geometry::mesh::{Mesh, Shape, Topology};
 use geometry::progress::Progress;
-use inspect::render::Camera;
-use inspect::shader_files::{Language, ShaderFile, shader_files};
 use geometry::tessellate::{
     Clip, Convention, Displacement, Edges, FACTOR_VALUE, HullFactors, Inputs, Lod, LodView, Normals, Partitioning,
     PatchFactors, Surface, Tessellated, Tessellation, Vertex, tessellate, tessellate_given,
 };
+use glam::Vec2;
+use inspect::render::Camera;
+use inspect::shader_files::{Language, ShaderFile, shader_files};
 
-use crate::gpu_tests::engine;
-use crate::gpu_tests::exported::{assert_part_of_page, vulkan};
-use crate::gpu_tests::exported_displaced::{Passes, assert_all_agree, assert_displaced_agrees, assert_near, shifted};
-use crate::gpu_tests::vulkan::agreement::{Agreement, shared_points};
-use crate::gpu_tests::vulkan::exported::{
-    DISPLACEMENTS, LANGUAGES, Subject, VIEWPORT, rows_by_view, table_by_view, wavy,
-};
-use crate::gpu_tests::vulkan::stages::CapturedCorner;
+use crate::engine;
+use crate::exported::{assert_part_of_page, vulkan};
+use crate::exported_displaced::{Passes, assert_all_agree, assert_displaced_agrees, assert_near, shifted};
+use crate::vulkan::agreement::{Agreement, shared_points};
+use crate::vulkan::exported::{DISPLACEMENTS, LANGUAGES, Subject, VIEWPORT, rows_by_view, table_by_view, wavy};
+use crate::vulkan::stages::CapturedCorner;
 
 /// The LODs that depend on the view.
 const BY_VIEW: [Lod; 3] = [Lod::Distance, Lod::EdgeLength, Lod::Paper];

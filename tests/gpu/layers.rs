@@ -3,26 +3,26 @@
 
 use std::sync::Arc;
 
-use glam::{Vec2, Vec3, Vec4, vec2, vec3};
-use image::RgbaImage;
-use inspect::engine::Engine;
-use gpu::Timing;
 use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use geometry::mesh::{Alpha, CornerDetail, Heights, Look, MapUv, Material, Mesh, Moment, Slot, Topology};
 use geometry::progress::Progress;
+use geometry::tessellate::{Displacement, Surface, Tessellation};
+use glam::{Vec2, Vec3, Vec4, vec2, vec3};
+use gpu::Timing;
+use image::RgbaImage;
+use inspect::engine::Engine;
 use inspect::render::environment::Environment;
 use inspect::render::layout::{linear, srgb};
 use inspect::render::{Camera, Pixel, Renderer, Target};
 use inspect::settings::{Overlays, Settings, SplitSide, ToneCurve};
-use geometry::tessellate::{Displacement, Surface, Tessellation};
 
-use crate::gpu_tests::displacement::waves;
-use crate::gpu_tests::materials::{
+use crate::displacement::waves;
+use crate::materials::{
     PLACES, SIDE, assert_near, at, balls, every_way, image, look_with, map, material, of_picture, studio,
 };
-use crate::gpu_tests::pictures::differing;
-use crate::gpu_tests::stability::{scene_of, seen};
-use crate::gpu_tests::{deforming, engine};
+use crate::pictures::differing;
+use crate::stability::{scene_of, seen};
+use crate::{deforming, engine};
 
 /// Layers are rounded to bytes one after another.
 const ROUNDING: u8 = 2;

@@ -5,7 +5,6 @@ use std::sync::OnceLock;
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Vec2, Vec3, Vec4, vec3};
 use gpu::read_buffer;
-use load::panorama::Panorama;
 use inspect::render::blur_levels::{ENVIRONMENT_LEVELS, level_of_roughness, prefiltered, roughness_of_level};
 use inspect::render::cube_map::CubeMap;
 use inspect::render::dfg::{environment_dfg, environment_sheen};
@@ -17,9 +16,10 @@ use inspect::render::reflectance::{
 };
 use inspect::render::studio::studio_light;
 use inspect::render::tone::{TONE_CURVE_NEUTRAL, TONE_CURVE_NONE, tone_mapped};
+use load::panorama::Panorama;
 use wgpu::util::DeviceExt;
 
-use crate::gpu_tests::engine;
+use crate::engine;
 
 /// One invocation a case.
 const ENTRY: &str = "

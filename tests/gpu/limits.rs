@@ -2,16 +2,16 @@
 
 use std::sync::Arc;
 
-use inspect::engine::Engine;
-use gpu::{Gpu, GpuError, Timing, best_adapter};
-use load::{Budget, HeightSource};
 use geometry::mesh::{Alpha, Shape};
 use geometry::progress::Progress;
+use geometry::tessellate::{Clip, Displacement, Lod, Normals, Surface, Tessellation};
+use gpu::{Gpu, GpuError, Timing, best_adapter};
+use inspect::engine::Engine;
 use inspect::render::{Camera, Scene, Target};
 use inspect::settings::{ARENA_BYTES, Colors, NormalsAt, Overlays, Settings};
-use geometry::tessellate::{Clip, Displacement, Lod, Normals, Surface, Tessellation};
+use load::{Budget, HeightSource};
 
-use crate::gpu_tests::{engine, loaded};
+use crate::{engine, loaded};
 
 /// A device with what WebGPU has by default and nothing else: 128 MiB a binding, 256 MiB a buffer, 8 storage buffers a
 /// stage, no features; and one sample a px if `samples` says so.

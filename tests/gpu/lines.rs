@@ -1,19 +1,19 @@
 //! Lines over the surface: how they fade where they are dense, and where something hides them.
 
-use glam::Vec3;
-use image::RgbaImage;
-use pnaen::cli::compare;
-use gpu::Timing;
 use geometry::mesh::{Shape, TJunction};
+use geometry::tessellate::{Edges, Partitioning, Surface, Tessellation};
+use geometry::view::project;
+use glam::Vec3;
+use gpu::Timing;
+use image::RgbaImage;
 use inspect::render::layout::{CRACK_COLOR, T_JUNCTION_COLOR, linear};
 use inspect::render::{Camera, Scene, Target, crack_lines, lod_camera_lines, t_junction_lines};
 use inspect::settings::{Overlay, Overlays, Settings};
-use geometry::tessellate::{Edges, Partitioning, Surface, Tessellation};
-use geometry::view::project;
+use pnaen::cli::compare;
 
-use crate::gpu_tests::pictures::{SIZE, differing};
-use crate::gpu_tests::stability::seen;
-use crate::gpu_tests::{engine, scene};
+use crate::pictures::{SIZE, differing};
+use crate::stability::seen;
+use crate::{engine, scene};
 
 /// A flat cube, its edges cut into `factor` segments, with one overlay.
 fn flat(factor: f32, overlay: Option<Overlay>) -> Settings {

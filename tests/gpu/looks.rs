@@ -3,23 +3,23 @@
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-use glam::{Vec2, Vec3, vec2, vec3};
-use image::RgbaImage;
 use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use geometry::mesh::{Material, Mesh, Shape, Texture};
 use geometry::progress::Progress;
-use inspect::render::layout::{linear, srgb};
-use inspect::render::matcap::{MATCAP_REACH, picture};
-use inspect::render::{Camera, DENSITY_SCALE, Scene, Target, curvature_scale};
-use inspect::settings::{Colors, Matcap, NormalsAt, Overlays, Settings};
 use geometry::tessellate::{
     LimitSurface, Normals, Partitioning, Surface, Tessellation, linear_normal, mean_curvature, patch_position,
     patch_second_derivatives, patch_tangents,
 };
 use geometry::view::project;
+use glam::{Vec2, Vec3, vec2, vec3};
+use image::RgbaImage;
+use inspect::render::layout::{linear, srgb};
+use inspect::render::matcap::{MATCAP_REACH, picture};
+use inspect::render::{Camera, DENSITY_SCALE, Scene, Target, curvature_scale};
+use inspect::settings::{Colors, Matcap, NormalsAt, Overlays, Settings};
 
-use crate::gpu_tests::stability::{scene_of, seen};
-use crate::gpu_tests::{engine, scene};
+use crate::stability::{scene_of, seen};
+use crate::{engine, scene};
 
 /// The sides of pictures in px.
 const SIDE: u32 = 400;

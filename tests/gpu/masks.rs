@@ -1,16 +1,16 @@
 //! The borders of masks: how much of a pixel is covered where alpha crosses the cutoff.
 
-use glam::{Vec3, vec2, vec3};
-use image::RgbaImage;
 use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use geometry::mesh::{Alpha, Look, Material, Mesh};
 use geometry::progress::Progress;
+use glam::{Vec3, vec2, vec3};
+use image::RgbaImage;
 use inspect::render::layout::linear;
 use inspect::settings::{Lighting, Settings};
 
-use crate::gpu_tests::engine;
-use crate::gpu_tests::layers::{drawn_by, single_sampled};
-use crate::gpu_tests::materials::{SIDE, every_way, image, studio};
+use crate::engine;
+use crate::layers::{drawn_by, single_sampled};
+use crate::materials::{SIDE, every_way, image, studio};
 
 /// How u changes along x, and along y, from the middle of the view to its border.
 const SLOPE: f32 = 0.28;

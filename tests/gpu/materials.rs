@@ -2,27 +2,27 @@
 
 use std::sync::Arc;
 
-use glam::{Vec2, Vec3, Vec4, vec2, vec3};
-use image::RgbaImage;
-use inspect::engine::Engine;
-use gpu::Timing;
-use load::HeightSource;
-use load::memory_budget::Budget;
 use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use geometry::mesh::{
     Alpha, CornerDetail, HeightMap, Heights, Look, Map, MapUv, Material, Mesh, Sampling, Shape, Slot, Texture,
 };
 use geometry::progress::Progress;
+use geometry::tessellate::{Displacement, Surface, Tessellation};
+use glam::{Vec2, Vec3, Vec4, vec2, vec3};
+use gpu::Timing;
+use image::RgbaImage;
+use inspect::engine::Engine;
 use inspect::render::environment::Environment;
 use inspect::render::layout::{linear, srgb};
 use inspect::render::{Camera, Renderer, Target};
 use inspect::settings::{Lighting, NormalMaps, NormalsAt, Overlays, Settings, ToneCurve};
-use geometry::tessellate::{Displacement, Surface, Tessellation};
+use load::HeightSource;
+use load::memory_budget::Budget;
 
-use crate::gpu_tests::engine;
-use crate::gpu_tests::looks::{square_of, square_picture};
-use crate::gpu_tests::pictures::differing;
-use crate::gpu_tests::stability::{scene_of, seen};
+use crate::engine;
+use crate::looks::{square_of, square_picture};
+use crate::pictures::differing;
+use crate::stability::{scene_of, seen};
 
 /// The sides of pictures of a square in px.
 pub(super) const SIDE: u32 = 64;

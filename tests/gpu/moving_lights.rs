@@ -3,19 +3,19 @@
 use std::f64::consts::FRAC_PI_6;
 
 use base64::prelude::{BASE64_STANDARD, Engine as _};
-use glam::{DQuat, Vec3, vec3};
-use inspect::engine::{Loaded, Preparation, load};
-use gpu::Timing;
-use load::Source;
 use geometry::mesh::{Light, LightKind, Moment};
 use geometry::progress::Progress;
+use geometry::tessellate::{Surface, Tessellation};
+use glam::{DQuat, Vec3, vec3};
+use gpu::Timing;
+use inspect::engine::{Loaded, Preparation, load};
 use inspect::render::Target;
 use inspect::render::punctual::PunctualLight;
 use inspect::settings::{ARENA_BYTES, Lighting, Settings, ToneCurve};
-use geometry::tessellate::{Surface, Tessellation};
+use load::Source;
 use serde_json::{Value, json};
 
-use crate::gpu_tests::environment::{SIDE, assert_lit_by, before_a_square, unlit_engine};
+use crate::environment::{SIDE, assert_lit_by, before_a_square, unlit_engine};
 
 /// Where the node that the point light hangs on is at 0 and at 1 s, and where the light is on it.
 const PATH: [Vec3; 2] = [vec3(-0.5, 0.25, 0.0), vec3(0.5, -0.25, 0.25)];

@@ -1,16 +1,16 @@
 //! Meshes of files that were turned and scaled: what moves them, and what belongs to them, follows.
 
-use glam::{Mat3, Vec3, vec3};
-use inspect::engine::{Loaded, Preparation, load};
-use gpu::Timing;
-use load::{FileUnit, Import, LengthUnit, Source};
 use geometry::mesh::{Moment, UpAxis};
 use geometry::progress::Progress;
+use glam::{Mat3, Vec3, vec3};
+use gpu::Timing;
+use inspect::engine::{Loaded, Preparation, load};
 use inspect::settings::{ARENA_BYTES, Settings};
+use load::{FileUnit, Import, LengthUnit, Source};
 
-use crate::gpu_tests::engine;
-use crate::gpu_tests::moving::{CLIPS, moving};
-use crate::gpu_tests::passes::inputs;
+use crate::engine;
+use crate::passes::inputs;
+use documents::moving::{CLIPS, moving};
 
 fn placed(import: Import) -> Loaded {
     let folder = tempfile::tempdir().expect("a writable temporary folder");

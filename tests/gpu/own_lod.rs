@@ -2,16 +2,16 @@
 
 use std::sync::Arc;
 
-use inspect::engine::Loaded;
-use gpu::{Given, GpuError, LodShader, Timing};
-use inspect::measure::{Agreement, Measured};
 use geometry::mesh::Shape;
-use inspect::own_shader::compile;
-use inspect::render::{Camera, Scene};
-use inspect::settings::Settings;
 use geometry::tessellate::{
     Convention, Edges, HullFactors, Inputs, Lod, Partitioning, Surface, Tessellation, hull_factors,
 };
+use gpu::{Given, GpuError, LodShader, Timing};
+use inspect::engine::Loaded;
+use inspect::measure::{Agreement, Measured};
+use inspect::own_shader::compile;
+use inspect::render::{Camera, Scene};
+use inspect::settings::Settings;
 
 use super::{engine, scene};
 
@@ -170,8 +170,10 @@ fn factors_follow_the_view_and_are_the_same_bits_again() {
     let text = include_str!("../../assets/lod/screen-length.wgsl");
     let far = inputs(&scene, Tessellation::default());
     let first = given(&mut scene, text, &far);
-    let near =
-        Inputs { view: geometry::tessellate::LodView { half_viewport: far.view.half_viewport * 2.0, ..far.view }, ..far };
+    let near = Inputs {
+        view: geometry::tessellate::LodView { half_viewport: far.view.half_viewport * 2.0, ..far.view },
+        ..far
+    };
     engine().count(&mut scene, &near, &mut Timing::Off).expect("counts");
     let second = engine().own_factors(&scene).expect("a readback");
     assert!(difference(&first, &second) > 0.4, "the picture is twice as large");

@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use inspect::engine::Engine;
-use gpu::Timing;
 use geometry::mesh::{Alpha, Look, Material, Shape};
+use gpu::Timing;
+use inspect::engine::Engine;
 use inspect::render::{Camera, Renderer, Target};
 
-use crate::gpu_tests::engine;
-use crate::gpu_tests::materials::{every_way, studio};
-use crate::gpu_tests::stability::scene_of;
+use crate::engine;
+use crate::materials::{every_way, studio};
+use crate::stability::scene_of;
 
 /// A ball whose materials need different parts of the shader, each in a part of its triangles.
 fn ball() -> geometry::mesh::Mesh {

@@ -2,16 +2,16 @@
 
 use std::sync::Arc;
 
+use geometry::mesh::{Curves, Shape};
+use geometry::tessellate::{Edges, Inputs, Lod, Partitioning, Surface, Tessellated, Tessellation};
 use glam::Vec3;
-use inspect::engine::Loaded;
 use gpu::layout::CurveNet;
 use gpu::{Given, GpuError, LodShader, SurfaceShader, Timing, read_buffer};
+use inspect::engine::Loaded;
 use inspect::measure::Measured;
-use geometry::mesh::{Curves, Shape};
 use inspect::own_shader::compile;
 use inspect::render::{Camera, Scene};
 use inspect::settings::Settings;
-use geometry::tessellate::{Edges, Inputs, Lod, Partitioning, Surface, Tessellated, Tessellation};
 
 use super::{engine, scene};
 

@@ -1,21 +1,21 @@
 //! The passes, held against the CPU's reference and against themselves.
 
-use inspect::engine::{Loaded, Measurements, Runs};
-use gpu::{Timing, take_times};
-use load::Source;
-use inspect::measure::{EmittedChunk, Measured, Sizes, Visitor};
 use geometry::mesh::{Corner, EdgeKind, Material, Mesh, Shape};
-use inspect::render::{Camera, Scene, Target};
-use inspect::settings::Settings;
 use geometry::tessellate::{
     Clip, Edges, Inputs, Lod, Normals, Partitioning, Surface, Tessellated, Tessellation, beyond_near, patch_is_culled,
     point_count, process, tessellate, totals, triangle_count, unpack_normal,
 };
 use geometry::view::{ScreenView, ulp};
+use gpu::{Timing, take_times};
+use inspect::engine::{Loaded, Measurements, Runs};
+use inspect::measure::{EmittedChunk, Measured, Sizes, Visitor};
+use inspect::render::{Camera, Scene, Target};
+use inspect::settings::Settings;
+use load::Source;
 
-use crate::gpu::chunks_an_arena;
-use crate::gpu_tests::coverage::sifting;
-use crate::gpu_tests::{engine, loaded, loaded_mesh, picture, scene};
+use crate::coverage::sifting;
+use crate::{engine, loaded, loaded_mesh, picture, scene};
+use gpu::chunks_an_arena;
 
 /// Width and height in px.
 const VIEWPORT: glam::Vec2 = glam::vec2(640.0, 480.0);

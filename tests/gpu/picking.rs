@@ -1,15 +1,15 @@
 //! What is picked at a pixel, held against a ray cast in f64 on the CPU's tessellation.
 
-use glam::{DMat4, DVec2, DVec4, Vec3, dvec2, vec3};
-use inspect::engine::Loaded;
-use gpu::Timing;
 use geometry::mesh::Shape;
-use inspect::render::{Camera, Picked, Pixel, Scene};
-use inspect::settings::Settings;
 use geometry::tessellate::{Edges, Partitioning, Surface, Tessellated, Tessellation, tessellate};
 use geometry::view::project;
+use glam::{DMat4, DVec2, DVec4, Vec3, dvec2, vec3};
+use gpu::Timing;
+use inspect::engine::Loaded;
+use inspect::render::{Camera, Picked, Pixel, Scene};
+use inspect::settings::Settings;
 
-use crate::gpu_tests::{engine, loaded, scene};
+use crate::{engine, loaded, scene};
 
 /// Width and height in px.
 const SIZE: [u32; 2] = [640, 480];

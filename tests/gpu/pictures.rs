@@ -3,25 +3,25 @@
 
 use std::path::{Path, PathBuf};
 
-use image::RgbaImage;
-use pnaen::cli::{BETWEEN_DRIVERS, Reference, compare, write_drawn};
-use inspect::engine::{Preparation, load};
-use load::Source;
 use geometry::mesh::{EdgeKind, Shape, t_junctions};
 use geometry::progress::Progress;
-use inspect::render::layout::{CRACK_COLOR, FOLD_COLOR, NORMAL_COLOR, T_JUNCTION_COLOR, WASTE_COLOR, edge_color};
-use inspect::render::{Camera, EXCESS_SCALE, FACTOR_SCALE, Scene, Target, t_junction_lines};
-use inspect::settings::{ARENA_BYTES, Choice, Colors, Matcap, NormalsAt, Overlay, Overlays, Settings};
 use geometry::tessellate::{
     Convention, Displacement, FACTOR_ODD, FIXED_ONE, Lod, Normals, Partitioning, Surface, Tessellation, domain_side,
     triangle_count,
 };
 use geometry::view::project;
+use image::RgbaImage;
+use inspect::engine::{Preparation, load};
+use inspect::render::layout::{CRACK_COLOR, FOLD_COLOR, NORMAL_COLOR, T_JUNCTION_COLOR, WASTE_COLOR, edge_color};
+use inspect::render::{Camera, EXCESS_SCALE, FACTOR_SCALE, Scene, Target, t_junction_lines};
+use inspect::settings::{ARENA_BYTES, Choice, Colors, Matcap, NormalsAt, Overlay, Overlays, Settings};
+use load::Source;
+use pnaen::cli::{BETWEEN_DRIVERS, Reference, compare, write_drawn};
 
-use crate::gpu_tests::displacement::wavy;
-use crate::gpu_tests::passes::sheet;
-use crate::gpu_tests::stability::{case, seen};
-use crate::gpu_tests::{engine, picture, scene};
+use crate::displacement::wavy;
+use crate::passes::sheet;
+use crate::stability::{case, seen};
+use crate::{engine, picture, scene};
 
 pub(super) const SIZE: [u32; 2] = [200, 160];
 fn reference(name: &str) -> PathBuf {
@@ -470,7 +470,7 @@ fn small_triangles_and_low_factors_are_marked_and_others_are_not() {
 
 #[test]
 fn normals_are_drawn_chunk_by_chunk_and_not_hidden_by_later_chunks() {
-    let loaded = crate::gpu_tests::loaded(Shape::Torus);
+    let loaded = crate::loaded(Shape::Torus);
     let settings = Settings {
         tessellation: Tessellation { factor: 63.0, ..Tessellation::default() },
         overlays: Overlays { normals: true, ..Overlays::default() },

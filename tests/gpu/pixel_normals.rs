@@ -2,19 +2,19 @@
 
 use std::path::PathBuf;
 
-use image::RgbaImage;
-use inspect::engine::{Preparation, load};
-use gpu::{Timing, take_times};
-use load::Source;
 use geometry::mesh::{Moment, Shape};
 use geometry::progress::Progress;
+use geometry::tessellate::{Displacement, Edges, Normals, Surface, Tessellation};
+use gpu::{Timing, take_times};
+use image::RgbaImage;
+use inspect::engine::{Preparation, load};
 use inspect::render::{Camera, Scene, Target};
 use inspect::settings::{ARENA_BYTES, Choice, NormalsAt, Overlays, Settings};
-use geometry::tessellate::{Displacement, Edges, Normals, Surface, Tessellation};
+use load::Source;
 
-use crate::gpu_tests::displacement::wavy;
-use crate::gpu_tests::pictures::SIZE;
-use crate::gpu_tests::{deforming, engine, picture, scene};
+use crate::displacement::wavy;
+use crate::pictures::SIZE;
+use crate::{deforming, engine, picture, scene};
 
 /// The mean difference, in levels of 255, that counts as none. Vertices have their normals packed in 32 bits, and pictures have
 /// 8 bits a channel, so that one px in a hundred is a level off. At outlines, the middle of some px lies outside the triangle

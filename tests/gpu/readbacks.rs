@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use clap::Parser;
-use pnaen::cli::{Cli, Command, render_with, tessellate_with};
 use inspect::engine::Engine;
+use pnaen::cli::{Cli, Command, render_with, tessellate_with};
 
-use crate::gpu_tests::engine;
+use crate::engine;
 
 /// Chunks that a command reads back, on an engine that nothing else uses.
 fn chunks_read(engine: &Engine, arguments: &[&str], output: &Path) -> u64 {

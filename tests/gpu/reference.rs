@@ -9,22 +9,22 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use glam::{DMat4, Quat, Vec3, dvec4};
-use image::{Rgba, RgbaImage};
-use pnaen::cli::{BETWEEN_DRIVERS, Comparison, compare};
-use inspect::engine::{Preparation, load};
-use gpu::Timing;
-use load::Source;
-use load::markdown::table;
 use geometry::mesh::{Mesh, Shape, Topology};
 use geometry::progress::Progress;
+use geometry::tessellate::{Convention, Displacement, Edges, Lod, Partitioning, Surface, Tessellation};
+use glam::{DMat4, Quat, Vec3, dvec4};
+use gpu::Timing;
+use image::{Rgba, RgbaImage};
+use inspect::engine::{Preparation, load};
 use inspect::render::view_projection::{ClipY, DepthRange, ViewProjection};
 use inspect::render::{Camera, Target};
 use inspect::settings::{ARENA_BYTES, Overlays, Settings};
-use geometry::tessellate::{Convention, Displacement, Edges, Lod, Partitioning, Surface, Tessellation};
+use load::Source;
+use load::markdown::table;
+use pnaen::cli::{BETWEEN_DRIVERS, Comparison, compare};
 
-use crate::gpu_tests::displacement::wavy;
-use crate::gpu_tests::engine;
+use crate::displacement::wavy;
+use crate::engine;
 
 const SIZES: [[u32; 2]; 2] = [[160, 120], [320, 240]];
 

@@ -2,19 +2,21 @@
 
 use std::sync::Arc;
 
-use glam::{Vec2, Vec3, vec3};
-use lab::compare::{Comparison, Exactness, ForeignMesh, Ours, compare};
-use gpu::Timing;
 use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use geometry::mesh::{Material, Mesh, Shape, Topology};
 use geometry::progress::Progress;
+use geometry::tessellate::{
+    Clip, Convention, Inputs, Lod, Partitioning, Surface, Tessellated, Tessellation, tessellate,
+};
+use geometry::view::ulp;
+use glam::{Vec2, Vec3, vec3};
+use gpu::Timing;
 use inspect::render::Camera;
 use inspect::settings::{ARENA_BYTES, Settings};
+use lab::compare::{Comparison, Exactness, ForeignMesh, Ours, compare};
 use lab::stability::CASES;
-use geometry::tessellate::{Clip, Convention, Inputs, Lod, Partitioning, Surface, Tessellated, Tessellation, tessellate};
-use geometry::view::ulp;
 
-use crate::gpu_tests::engine;
+use crate::engine;
 
 const VIEWPORT: Vec2 = glam::vec2(640.0, 400.0);
 

@@ -1,24 +1,21 @@
 //! Documents about one part of materials each, read from files as a user's are, and drawn in studio light. With PNAEN_SCENES the
 //! test leaves them in that folder, for other viewers: see `docs/manual/compared.md`.
 
-#[path = "../documents/scenes.rs"]
-mod documents;
-
 use std::path::{Path, PathBuf};
 
+use geometry::progress::Progress;
+use geometry::tessellate::{LodView, Surface, Tessellation, tessellate};
 use image::RgbaImage;
 use inspect::engine::{Loaded, Preparation, load};
 use inspect::export::Exported;
-use load::Source;
-use geometry::progress::Progress;
 use inspect::render::{Camera, Target};
 use inspect::settings::{ARENA_BYTES, Lighting, Settings, ToneCurve};
-use geometry::tessellate::{LodView, Surface, Tessellation, tessellate};
+use load::Source;
 
-use crate::gpu_tests::engine;
-use crate::gpu_tests::pictures::differing;
-use crate::gpu_tests::stability::seen;
-use documents::{material_scenes, three_lamps};
+use crate::engine;
+use crate::pictures::differing;
+use crate::stability::seen;
+use documents::scenes::{material_scenes, three_lamps};
 
 /// The greatest difference of a channel, in steps of 255: coordinates of an exported texture transform are rounded once more, and
 /// exported triangles begin with another corner, from which interpolation rounds otherwise.

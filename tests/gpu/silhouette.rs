@@ -2,23 +2,23 @@
 
 use std::f32::consts::TAU;
 
-use glam::{Vec2, Vec3, vec2, vec3};
-use inspect::engine::SilhouetteView;
-use inspect::engine::silhouette::beside;
-use gpu::Timing;
-use inspect::measure::{OutlineDistance, OutlineDistances, Silhouette};
 use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use geometry::mesh::{Material, Mesh, Shape};
 use geometry::progress::Progress;
-use inspect::render::{Camera, Scene, lay_over, outlines_picture};
-use inspect::settings::{Colors, Overlays, Settings};
 use geometry::tessellate::{Clip, Lod, Partitioning, Surface, Tessellation};
 use geometry::view::project;
+use glam::{Vec2, Vec3, vec2, vec3};
+use gpu::Timing;
+use inspect::engine::SilhouetteView;
+use inspect::engine::silhouette::beside;
+use inspect::measure::{OutlineDistance, OutlineDistances, Silhouette};
+use inspect::render::{Camera, Scene, lay_over, outlines_picture};
+use inspect::settings::{Colors, Overlays, Settings};
 
-use crate::gpu_tests::looks::square_of;
-use crate::gpu_tests::pictures::differing;
-use crate::gpu_tests::stability::scene_of;
-use crate::gpu_tests::{engine, picture, scene};
+use crate::looks::square_of;
+use crate::pictures::differing;
+use crate::stability::scene_of;
+use crate::{engine, picture, scene};
 
 /// Width and height of views in px.
 const SIZE: [u32; 2] = [400, 300];

@@ -5,18 +5,18 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use glam::{DVec3, Vec2, dvec3, vec3};
-use inspect::engine::Engine;
-use gpu::Timing;
 use geometry::mesh::{Look, MapUv, Slot};
+use glam::{DVec3, Vec2, dvec3, vec3};
+use gpu::Timing;
+use inspect::engine::Engine;
 use inspect::render::environment::Environment;
 use inspect::render::layout::{linear, srgb};
 use inspect::render::{Renderer, Target};
 
-use crate::gpu_tests::engine;
-use crate::gpu_tests::layers::camera_of;
-use crate::gpu_tests::looks::square_of;
-use crate::gpu_tests::materials::{SIDE, assert_near, at, image, look_with, map, material, studio};
+use crate::engine;
+use crate::layers::camera_of;
+use crate::looks::square_of;
+use crate::materials::{SIDE, assert_near, at, image, look_with, map, material, studio};
 
 /// How bright the light is on all sides.
 const LIGHT: f32 = 0.5;

@@ -3,21 +3,21 @@
 
 use std::sync::{Arc, OnceLock};
 
-use glam::{Vec2, Vec3};
-use gpu::Timing;
-use inspect::measure::{AskedFactors, Measured};
 use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use geometry::mesh::{Material, Mesh, Shape, Topology};
 use geometry::progress::Progress;
+use geometry::tessellate::{Clip, Edges, Lod, Normals, Partitioning, Surface, Tessellation, tessellate};
+use glam::{Vec2, Vec3};
+use gpu::Timing;
+use inspect::measure::{AskedFactors, Measured};
 use inspect::render::{Camera, Scene, Target};
 use inspect::settings::Settings;
 use lab::stability::{CASES, CaseView, Effort, Method, Quantity, Row, Verdict, lines, run};
-use geometry::tessellate::{Clip, Edges, Lod, Normals, Partitioning, Surface, Tessellation, tessellate};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 
-use crate::gpu_tests::{engine, scene};
+use crate::{engine, scene};
 
 /// Width and height in px.
 const SIZE: [u32; 2] = [160, 120];

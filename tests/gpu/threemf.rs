@@ -2,13 +2,13 @@
 
 use std::io::Cursor;
 
+use geometry::tessellate::{LodView, tessellate};
 use image::{ImageFormat, RgbaImage};
 use inspect::export::Exported;
-use geometry::tessellate::{LodView, tessellate};
 use serde_json::json;
 
-use crate::gpu_tests::scenes::{EXPORT_STEPS, picture_of, read, settings};
-use crate::load::package::{Entry, MODEL, model, relationships, zip};
+use crate::scenes::{EXPORT_STEPS, picture_of, read, settings};
+use documents::package::{Entry, MODEL, model, relationships, zip};
 
 /// A square that faces the camera, in the coordinates of glTF.
 const CORNERS: [[f32; 3]; 4] = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 1.0, 0.0], [0.0, 1.0, 0.0]];

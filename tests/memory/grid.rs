@@ -1,8 +1,7 @@
 //! Meshes of any size, as files of every format.
 
+use documents::package;
 use std::fmt::Write;
-
-use super::package;
 
 /// A wavy sheet of squares, each cut into two triangles.
 #[derive(Clone, Copy)]

@@ -12,13 +12,10 @@ mod glb;
 mod grid;
 mod heights;
 mod honest;
-#[path = "../documents/package.rs"]
-mod package;
 mod packed;
 mod textures;
-#[path = "../documents/webp.rs"]
-mod webp;
 
+use documents::package;
 use std::io::Write;
 use std::sync::{Mutex, PoisonError};
 

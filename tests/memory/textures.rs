@@ -1,5 +1,6 @@
 //! Textures: those that are too large are scaled down to the memory that they may take, and the model is shown.
 
+use documents::package;
 use std::io::Cursor;
 use std::sync::PoisonError;
 
@@ -7,8 +8,8 @@ use image::{GrayImage, ImageFormat, Luma};
 use inspect::engine::Preparation;
 
 use super::bounded::loaded;
-use super::webp::of_groups;
-use super::{ALONE, package, temporary, textures, with_image};
+use super::{ALONE, temporary, textures, with_image};
+use documents::webp::of_groups;
 
 const MIB: usize = 1 << 20;
 

@@ -4,13 +4,13 @@ use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use pnaen::app::App;
-use load::Source;
 use geometry::mesh::{Moment, Shape};
+use load::Source;
+use pnaen::app::App;
 use tempfile::TempDir;
 
-use crate::window_tests::moving::{CLIPS, moving};
-use crate::window_tests::{choose, click, press, settle, uniform, window};
+use crate::{choose, click, press, settle, uniform, window};
+use documents::moving::{CLIPS, moving};
 
 /// A window with an animated mesh, and the folder of its file, which must be kept for as long as the window.
 fn moving_window() -> (Harness<'static, App>, TempDir) {
@@ -79,7 +79,7 @@ fn space_plays_and_pauses_and_cracks_are_measured_only_when_paused() {
     let mut times = Vec::new();
     let start = std::time::Instant::now();
     while harness.state().pictures() < pictures + 4 {
-        assert!(start.elapsed() < crate::window_tests::PATIENCE, "no pictures while playing");
+        assert!(start.elapsed() < crate::PATIENCE, "no pictures while playing");
         harness.step();
         times.push(time(&harness));
     }

@@ -5,16 +5,16 @@ use std::time::{Duration, Instant};
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use pnaen::app::App;
-use lab::chart::{Effort, LodKind, Plan, Row, Setting};
-use inspect::engine::Runs;
-use load::Source;
-use inspect::measure::AccuracyOptions;
 use geometry::mesh::Shape;
-use inspect::settings::Choice;
 use geometry::tessellate::{Clip, Surface};
+use inspect::engine::Runs;
+use inspect::measure::AccuracyOptions;
+use inspect::settings::Choice;
+use lab::chart::{Effort, LodKind, Plan, Row, Setting};
+use load::Source;
+use pnaen::app::App;
 
-use crate::window_tests::{PATIENCE, choose, click, press, settle, window};
+use crate::{PATIENCE, choose, click, press, settle, window};
 
 /// Ten settings with few triangles. The window's own setting isn't among them.
 fn plan() -> Plan {

@@ -1,5 +1,6 @@
 //! The table of commands: its keys, menus and search, and what the commands do.
 
+use documents::moving;
 use std::path::Path;
 use std::time::Instant;
 
@@ -7,19 +8,19 @@ use egui::accesskit::Role;
 use egui::{Key, KeyboardShortcut, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use pnaen::app::App;
-use pnaen::commands::{Action, Change, Command, FileAction, GESTURES, Menu, Place, all};
-use inspect::engine::Preparation;
-use load::files::Limits;
-use load::{HeightSource, Source};
 use geometry::mesh::Shape;
 use geometry::progress::Progress;
-use inspect::settings::Settings;
 use geometry::tessellate::{Edges, Lod, Surface};
+use inspect::engine::Preparation;
+use inspect::settings::Settings;
+use load::files::Limits;
+use load::{HeightSource, Source};
+use pnaen::app::App;
+use pnaen::commands::{Action, Change, Command, FileAction, GESTURES, Menu, Place, all};
 use tempfile::TempDir;
 
-use crate::window_tests::driver::PATIENCE;
-use crate::window_tests::{choose, moving, press, run_command, settle, switch, uniform, window};
+use crate::driver::PATIENCE;
+use crate::{choose, press, run_command, settle, switch, uniform, window};
 
 fn commands(harness: &Harness<App>) -> Vec<Command> {
     all(&harness.state().availability())

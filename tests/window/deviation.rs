@@ -3,15 +3,15 @@
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use glam::Vec3;
-use pnaen::app::App;
-use load::Source;
 use geometry::mesh::Shape;
+use geometry::tessellate::Surface;
+use glam::Vec3;
 use inspect::render::layout::CRACK_COLOR;
 use inspect::settings::{Colors, DeviationUnit, SplitSide};
-use geometry::tessellate::Surface;
+use load::Source;
+use pnaen::app::App;
 
-use crate::window_tests::{choose, click, open_list, press, settle, uniform, window};
+use crate::{choose, click, open_list, press, settle, uniform, window};
 
 #[test]
 fn deviation_has_numbers_and_a_legend_and_a_click_frames_the_worst_point() {

@@ -6,13 +6,13 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers, OutputCommand};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use pnaen::app::App;
-use pnaen::cli::{BETWEEN_DRIVERS, compare};
-use load::{HeightSource, Source};
 use geometry::mesh::Shape;
 use geometry::tessellate::{Displacement, Lod, Surface, Tessellation};
+use load::{HeightSource, Source};
+use pnaen::app::App;
+use pnaen::cli::{BETWEEN_DRIVERS, compare};
 
-use crate::window_tests::{choose, click, press, run_command, settle, uniform, vase, window};
+use crate::{choose, click, press, run_command, settle, uniform, vase, window};
 
 pub(super) fn press_with(harness: &mut Harness<App>, modifiers: Modifiers, key: Key) {
     harness.key_press_modifiers(modifiers, key);

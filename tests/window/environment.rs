@@ -2,21 +2,21 @@
 
 use std::path::{Path, PathBuf};
 
+use documents::panoramas::{open_exr_file, radiance_file};
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
+use geometry::mesh::Shape;
 use image::RgbaImage;
+use inspect::settings::Lighting;
+use load::Source;
 use pnaen::app::App;
 use pnaen::commands::{Action, FileAction, all};
-use load::Source;
-use load::environment_file::tests::{open_exr_file, radiance_file};
-use geometry::mesh::Shape;
-use inspect::settings::Lighting;
 use tempfile::TempDir;
 
-use crate::window_tests::editing::{assert_draws, copied};
-use crate::window_tests::loading::drop_files;
-use crate::window_tests::{choose, click, copy_vase, press, resumed, settle, switch, uniform};
+use crate::editing::{assert_draws, copied};
+use crate::loading::drop_files;
+use crate::{choose, click, copy_vase, press, resumed, settle, switch, uniform};
 
 /// A panorama with red light above and blue light below.
 pub(super) fn panorama(folder: &TempDir, name: &str) -> PathBuf {

@@ -5,18 +5,15 @@ use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use geometry::mesh::Shape;
+use load::Source;
 use pnaen::app::App;
 use pnaen::commands::all;
-use load::Source;
-use geometry::mesh::Shape;
 use serde_json::{Value, json};
 
-#[path = "../documents/shot.rs"]
-mod shot;
-
-use crate::window_tests::editing::{assert_draws, copied};
-use crate::window_tests::{press, settle, uniform_of, window};
-use shot::SHOT;
+use crate::editing::{assert_draws, copied};
+use crate::{press, settle, uniform_of, window};
+use documents::shot::SHOT;
 
 /// Performs the command of this name.
 fn give(harness: &mut Harness<App>, name: &str) {

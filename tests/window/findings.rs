@@ -4,15 +4,15 @@ use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use glam::{Vec2, vec2};
-use pnaen::app::App;
-use load::Source;
 use geometry::mesh::Shape;
-use inspect::render::layout::{CRACK_COLOR, FOLD_COLOR, OUTLINE_COLOR, SIDE_COLORS};
 use geometry::view::project;
+use glam::{Vec2, vec2};
+use inspect::render::layout::{CRACK_COLOR, FOLD_COLOR, OUTLINE_COLOR, SIDE_COLORS};
+use load::Source;
+use pnaen::app::App;
 use tempfile::TempDir;
 
-use crate::window_tests::{choose, click, press, resumed, scroll_to, settle, window};
+use crate::{choose, click, press, resumed, scroll_to, settle, window};
 
 /// The text of the first button that looks like this.
 pub(super) fn button(harness: &Harness<App>, looks: impl Fn(&str) -> bool) -> String {
@@ -171,7 +171,7 @@ fn all_numbers_change_together_once_another_view_is_measured() {
             break;
         }
         was_busy |= harness.state().is_busy();
-        assert!(start.elapsed() < crate::window_tests::PATIENCE, "the window is still busy");
+        assert!(start.elapsed() < crate::PATIENCE, "the window is still busy");
     }
     assert_eq!(all.len(), 2, "those before and those after: {all:#?}");
 }

@@ -3,13 +3,13 @@
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use pnaen::app::App;
-use load::Source;
 use geometry::mesh::Shape;
 use geometry::tessellate::{Convention, Lod};
+use load::Source;
+use pnaen::app::App;
 
-use crate::window_tests::editing::{assert_draws, copied};
-use crate::window_tests::{choose, click, press, run_command, settle, uniform};
+use crate::editing::{assert_draws, copied};
+use crate::{choose, click, press, run_command, settle, uniform};
 
 fn open(harness: &mut Harness<App>, path: &std::path::Path) {
     let context = harness.ctx.clone();

@@ -5,16 +5,16 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use pnaen::app::{App, Persistence};
-use pnaen::cli::Cli;
-use load::files::Limits;
-use load::{FileUnit, Import, LengthUnit, NormalSource, Source};
 use geometry::mesh::{Shape, UpAxis};
 use inspect::render::Camera;
+use load::files::Limits;
+use load::{FileUnit, Import, LengthUnit, NormalSource, Source};
+use pnaen::app::{App, Persistence};
+use pnaen::cli::Cli;
 use tempfile::TempDir;
 
-use crate::window_tests::editing::{assert_draws, copied, press_with};
-use crate::window_tests::{choose, press, resumed, settle, uniform, vase, window};
+use crate::editing::{assert_draws, copied, press_with};
+use crate::{choose, press, resumed, settle, uniform, vase, window};
 
 /// Two squares that meet in an edge at a right angle, 1 high, 2 wide and 3 deep, without normals.
 const BENT: &str = "v 0 0 0\nv 2 0 0\nv 2 0 3\nv 0 0 3\nv 0 1 0\nv 2 1 0\nf 1 4 3 2\nf 1 2 6 5\n";

@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use pnaen::app::{App, Persistence};
-use load::Source;
 use geometry::mesh::Shape;
-use inspect::settings::Settings;
 use geometry::tessellate::{Displacement, Surface};
+use inspect::settings::Settings;
+use load::Source;
+use pnaen::app::{App, Persistence};
 use tempfile::TempDir;
 
-use crate::window_tests::{choose, click, copy_vase, press, resumed, settle, vase};
+use crate::{choose, click, copy_vase, press, resumed, settle, vase};
 
 /// The file that settings are saved in.
 fn settings_file(folder: &TempDir) -> PathBuf {
@@ -96,7 +96,7 @@ fn changes_are_written_after_a_while_without_drawing_again() {
     let (pictures, start) = (harness.state().pictures(), std::time::Instant::now());
     let written = || Persistence::read(settings_file(&folder).parent()).settings().tessellation.surface;
     while written() != Surface::Nagata {
-        assert!(start.elapsed() < crate::window_tests::PATIENCE, "it isn't written");
+        assert!(start.elapsed() < crate::PATIENCE, "it isn't written");
         harness.step();
         std::thread::sleep(std::time::Duration::from_millis(2));
     }

@@ -3,19 +3,19 @@
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use glam::{Vec2, vec2};
-use pnaen::app::App;
-use load::files::Limits;
-use load::Source;
-use inspect::measure::CrackedEdge;
 use geometry::mesh::Shape;
-use inspect::settings::{Colors, Settings};
 use geometry::view::project;
+use glam::{Vec2, vec2};
+use inspect::measure::CrackedEdge;
+use inspect::settings::{Colors, Settings};
+use load::Source;
+use load::files::Limits;
+use pnaen::app::App;
 use tempfile::TempDir;
 
-use crate::gpu_tests::moving::{CLIPS, moving};
-use crate::window_tests::editing::press_with;
-use crate::window_tests::{choose, click, press, resumed, scroll_to, settle, switch, uniform_of, window};
+use crate::editing::press_with;
+use crate::{choose, click, press, resumed, scroll_to, settle, switch, uniform_of, window};
+use documents::moving::{CLIPS, moving};
 
 /// A window of this size that was never open before, with all sections as they are then.
 pub(super) fn first_start(size: [f32; 2], source: Option<Source>) -> Harness<'static, App> {
@@ -212,7 +212,7 @@ fn a_section_that_opens_moves_nothing_sideways() {
     };
     let before = sides(&harness);
     assert!((before.1 - before.0[0].1).abs() < 1.0, "lists end where the titles' lines do: {before:?}");
-    crate::window_tests::open_all_sections(&mut harness);
+    crate::open_all_sections(&mut harness);
     settle(&mut harness);
     assert_eq!(sides(&harness), before);
 }
@@ -416,7 +416,7 @@ fn no_row_of_the_panels_is_cut_or_covered_at_any_size_of_the_text() {
     let size = [1024.0, 640.0];
     for zoom in [0.75, 1.0, 1.25, 1.5, 2.0] {
         let mut harness = first_start(size, Some(Source::Shape(Shape::CubeSplit)));
-        crate::window_tests::open_all_sections(&mut harness);
+        crate::open_all_sections(&mut harness);
         harness.ctx.set_zoom_factor(zoom);
         harness.set_size(egui::Vec2::from(size) / zoom);
         choose(&mut harness, "Surface", "PN");

@@ -6,16 +6,16 @@ use std::time::Instant;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use pnaen::app::App;
-use load::Source;
 use geometry::mesh::Shape;
 use geometry::numbers::grouped;
-use inspect::render::Leak;
 use geometry::tessellate::Surface;
+use inspect::render::Leak;
+use load::Source;
+use pnaen::app::App;
 use tempfile::TempDir;
 
-use crate::window_tests::findings::button;
-use crate::window_tests::{PATIENCE, choose, click, open_list, press, scroll_to, settle, uniform, uniform_of, window};
+use crate::findings::button;
+use crate::{PATIENCE, choose, click, open_list, press, scroll_to, settle, uniform, uniform_of, window};
 
 #[test]
 fn pn_triangles_crack_and_the_status_line_counts_it() {

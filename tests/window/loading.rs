@@ -6,12 +6,12 @@ use std::time::{Duration, Instant};
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use pnaen::app::App;
-use load::files::Limits;
-use load::Source;
 use geometry::mesh::Shape;
+use load::Source;
+use load::files::Limits;
+use pnaen::app::App;
 
-use crate::window_tests::{PATIENCE, STOP, click, copy_vase, press, settle, uniform, vase};
+use crate::{PATIENCE, STOP, click, copy_vase, press, settle, uniform, vase};
 
 #[derive(Debug)]
 struct Dropped(PathBuf);

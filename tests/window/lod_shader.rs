@@ -6,14 +6,14 @@ use std::time::{Duration, Instant};
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use pnaen::app::App;
-use load::Source;
 use geometry::mesh::Shape;
 use geometry::tessellate::Lod;
+use load::Source;
+use pnaen::app::App;
 
-use crate::window_tests::driver::PATIENCE;
-use crate::window_tests::editing::{assert_draws, copied};
-use crate::window_tests::{choose, press, resumed, settle, switch, uniform};
+use crate::driver::PATIENCE;
+use crate::editing::{assert_draws, copied};
+use crate::{choose, press, resumed, settle, switch, uniform};
 
 /// Writes a file whose function for edges returns this.
 pub(super) fn write(path: &Path, returns: &str) {

@@ -6,15 +6,15 @@ use std::sync::Arc;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use pnaen::app::App;
-use inspect::engine::Loaded;
-use load::files::Limits;
-use load::{Source, load};
 use geometry::mesh::Shape;
 use geometry::progress::Progress;
+use inspect::engine::Loaded;
 use inspect::settings::SplitSide;
+use load::files::Limits;
+use load::{Source, load};
+use pnaen::app::App;
 
-use crate::window_tests::{choose, click, press, settle, uniform, window};
+use crate::{choose, click, press, settle, uniform, window};
 
 /// The start of the message if the window goes on, and of no other.
 const SENTENCE: &str = "The graphics device was lost (it was destroyed). The window goes on with a new one";
@@ -24,7 +24,7 @@ fn lose(harness: &mut Harness<App>) {
     harness.state().gpu().device.destroy();
     let start = std::time::Instant::now();
     while !harness.state().is_lost() {
-        assert!(start.elapsed() < crate::window_tests::PATIENCE, "the window hasn't noticed the loss");
+        assert!(start.elapsed() < crate::PATIENCE, "the window hasn't noticed the loss");
         let _ = harness.state().gpu().device.poll(wgpu::PollType::wait_indefinitely());
         harness.step();
     }
@@ -120,7 +120,7 @@ fn jobs_that_were_under_way_go_on_without_further_messages() {
 fn the_pose_stays() {
     let folder = tempfile::tempdir().expect("a writable temporary folder");
     let path = folder.path().join("moving.glb");
-    std::fs::write(&path, crate::window_tests::moving::moving()).expect("a writable folder");
+    std::fs::write(&path, documents::moving::moving()).expect("a writable folder");
     let mut harness = window(Some(Source::File(path)));
     harness.state_mut().choose_clip(Some(0));
     settle(&mut harness);
@@ -180,7 +180,7 @@ fn save_as(harness: &mut Harness<App>, path: &Path) {
 fn said(harness: &mut Harness<App>, text: &str) {
     let start = std::time::Instant::now();
     while harness.query_by_label_contains(text).is_none() {
-        assert!(start.elapsed() < crate::window_tests::PATIENCE, "{text}");
+        assert!(start.elapsed() < crate::PATIENCE, "{text}");
         std::thread::sleep(std::time::Duration::from_millis(2));
         harness.step();
     }

@@ -3,13 +3,13 @@
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use pnaen::app::App;
-use load::Source;
 use geometry::mesh::{EdgeKind, Shape};
-use inspect::render::layout::{FACTOR_COLORS, SIDE_COLORS};
 use geometry::tessellate::Surface;
+use inspect::render::layout::{FACTOR_COLORS, SIDE_COLORS};
+use load::Source;
+use pnaen::app::App;
 
-use crate::window_tests::{choose, click, press, settle, uniform, window};
+use crate::{choose, click, press, settle, uniform, window};
 
 fn cube() -> Harness<'static, App> {
     uniform(Some(Source::Shape(Shape::CubeSplit)))

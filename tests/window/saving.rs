@@ -9,11 +9,11 @@ use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use image::RgbaImage;
-use pnaen::app::App;
-use load::Source;
 use geometry::mesh::Shape;
+use image::RgbaImage;
 use inspect::settings::Colors;
+use load::Source;
+use pnaen::app::App;
 use tempfile::TempDir;
 
 use super::{PATIENCE, STOP, choose, click, press, run_command, settle, uniform, window};

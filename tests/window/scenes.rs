@@ -3,12 +3,12 @@
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use pnaen::app::App;
-use load::Source;
 use geometry::mesh::Shape;
+use load::Source;
+use pnaen::app::App;
 
-use super::variants::lamp::LAMP;
-use crate::window_tests::{choose, press, uniform_of, window};
+use crate::{choose, press, uniform_of, window};
+use documents::lamp::LAMP;
 
 fn farthest(harness: &Harness<App>) -> f32 {
     harness.state().loaded().expect("a mesh").mesh.bounds().max.x

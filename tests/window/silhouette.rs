@@ -4,14 +4,14 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use pnaen::app::App;
-use load::Source;
 use geometry::mesh::Shape;
 use inspect::settings::Colors;
+use load::Source;
+use pnaen::app::App;
 
-use crate::window_tests::driver::settle;
-use crate::window_tests::editing::{assert_draws, copied, press_with};
-use crate::window_tests::{press, uniform};
+use crate::driver::settle;
+use crate::editing::{assert_draws, copied, press_with};
+use crate::{press, uniform};
 
 /// What the legend says of the outlines' distances, in px: from the source mesh and from the surface.
 fn distances(harness: &Harness<App>) -> [f64; 2] {

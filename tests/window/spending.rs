@@ -5,14 +5,14 @@ use std::time::Instant;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use pnaen::app::App;
-use load::Source;
 use geometry::mesh::Shape;
-use inspect::settings::{Colors, Matcap};
 use geometry::tessellate::Convention;
+use inspect::settings::{Colors, Matcap};
+use load::Source;
+use pnaen::app::App;
 
-use crate::window_tests::editing::{assert_draws, copied, press_with};
-use crate::window_tests::{PATIENCE, STOP, choose, click, open_list, press, run_command, settle, uniform};
+use crate::editing::{assert_draws, copied, press_with};
+use crate::{PATIENCE, STOP, choose, click, open_list, press, run_command, settle, uniform};
 
 #[test]
 fn only_one_colouring_is_shown_and_has_a_legend() {

@@ -6,14 +6,14 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use pnaen::app::App;
-use load::Source;
 use geometry::mesh::Shape;
 use geometry::tessellate::{Lod, Surface};
+use load::Source;
+use pnaen::app::App;
 
-use crate::window_tests::editing::{assert_draws, copied, press_with};
-use crate::window_tests::lod_shader::{until, write as write_lod};
-use crate::window_tests::{choose, press, resumed, settle, uniform};
+use crate::editing::{assert_draws, copied, press_with};
+use crate::lod_shader::{until, write as write_lod};
+use crate::{choose, press, resumed, settle, uniform};
 
 const PN: &str = include_str!("../../assets/surface/pn.wgsl");
 const PN_AEN: &str = include_str!("../../assets/surface/pn-aen.wgsl");

@@ -6,16 +6,16 @@ use std::path::Path;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{AccessKitNode, By, Queryable};
-use pnaen::app::App;
+use geometry::tessellate::{Lod, Partitioning, Surface};
+use inspect::settings::Colors;
 use load::Source;
 use load::markdown::table;
-use inspect::settings::Colors;
-use geometry::tessellate::{Lod, Partitioning, Surface};
+use pnaen::app::App;
 
 use super::layout::first_start;
 use super::saving::wait;
 use super::{copy_vase, run_command, settle};
-use crate::gpu_tests::moving::moving;
+use documents::moving::moving;
 
 /// One thing that a hand does. All but typing and keys counts as a click.
 #[derive(Clone, Copy)]

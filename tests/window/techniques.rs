@@ -3,11 +3,11 @@
 use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT, Queryable};
-use load::{HeightSource, Source};
 use geometry::mesh::Shape;
 use geometry::tessellate::{Displacement, Normals, Surface};
+use load::{HeightSource, Source};
 
-use crate::window_tests::{choose, press, settle, uniform};
+use crate::{choose, press, settle, uniform};
 
 #[test]
 fn every_surface_can_be_chosen_and_only_those_that_tear_have_cracks() {

@@ -6,7 +6,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::App;
 
-use crate::window_tests::{click, copy_vase, open_list, press, settle, window};
+use crate::{click, copy_vase, open_list, press, settle, window};
 
 fn key(key: Key, modifiers: Modifiers) -> Event {
     Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers }

@@ -3,18 +3,18 @@
 use std::path::{Path, PathBuf};
 
 use egui_kittest::Harness;
+use geometry::mesh::Shape;
+use inspect::engine::Preparation;
+use inspect::settings::Settings;
+use load::{HeightSource, Source};
 use pnaen::app::App;
 use pnaen::commands::{Action, Change, all};
-use inspect::engine::Preparation;
-use load::{HeightSource, Source};
-use geometry::mesh::Shape;
-use inspect::settings::Settings;
 use tempfile::TempDir;
 
-use super::variants::lamp::LAMP;
-use crate::window_tests::environment::panorama;
-use crate::window_tests::lod_shader::write as write_lod;
-use crate::window_tests::{run_command, settle, uniform, uniform_of, vase};
+use crate::environment::panorama;
+use crate::lod_shader::write as write_lod;
+use crate::{run_command, settle, uniform, uniform_of, vase};
+use documents::lamp::LAMP;
 
 /// All that undo brings back.
 fn state(app: &App) -> (Settings, Preparation, Option<Source>, [Option<PathBuf>; 5]) {

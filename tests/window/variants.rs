@@ -3,15 +3,12 @@
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use pnaen::app::App;
-use load::Source;
 use geometry::mesh::Shape;
+use load::Source;
+use pnaen::app::App;
 
-#[path = "../documents/lamp.rs"]
-pub(super) mod lamp;
-
-use crate::window_tests::{choose, press, uniform_of, window};
-use lamp::LAMP;
+use crate::{choose, press, uniform_of, window};
+use documents::lamp::LAMP;
 
 fn material(harness: &Harness<App>) -> String {
     harness.state().loaded().expect("a mesh").mesh.materials[0].name.clone()

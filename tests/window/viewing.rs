@@ -4,18 +4,16 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers, Theme};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use pnaen::app::App;
-use load::files::Limits;
-use load::Source;
 use geometry::mesh::Shape;
+use geometry::view::project;
 use inspect::render::layout::{AXIS_COLORS, CRACK_COLOR, LOD_CAMERA_COLOR};
 use inspect::render::{Camera, Standpoint};
-use geometry::view::project;
+use load::Source;
+use load::files::Limits;
+use pnaen::app::App;
 
-use crate::window_tests::editing::{assert_draws, copied, press_with};
-use crate::window_tests::{
-    PATIENCE, choose, click, copy_vase, open_all_sections, press, resumed, settle, switch, uniform, window,
-};
+use crate::editing::{assert_draws, copied, press_with};
+use crate::{PATIENCE, choose, click, copy_vase, open_all_sections, press, resumed, settle, switch, uniform, window};
 
 /// How many px of the picture have about this sRGB colour.
 fn pixels_of(harness: &Harness<App>, color: [u8; 3]) -> usize {

@@ -3,13 +3,13 @@
 use std::time::{Duration, Instant};
 
 use egui_kittest::Harness;
-use pnaen::app::App;
-use load::Source;
 use geometry::mesh::Shape;
 use inspect::settings::Colors;
+use load::Source;
+use pnaen::app::App;
 
-use crate::window_tests::layout::first_start;
-use crate::window_tests::{PATIENCE, choose, settle, vase};
+use crate::layout::first_start;
+use crate::{PATIENCE, choose, settle, vase};
 
 /// Runs frames for so long while nothing is done.
 fn wait(harness: &mut Harness<App>, time: Duration) {

@@ -23,7 +23,7 @@ pub(crate) struct BackgroundJob<T>(Receiver<Result<T, Stopped>>);
 
 impl<T: Send + 'static> BackgroundJob<T> {
     /// Starts a job. The window is repainted when it ends, even if it panics.
-    pub(crate) fn start(context: &egui::Context, job: impl FnOnce() -> T + Send + 'static) -> Self {
+    pub fn start(context: &egui::Context, job: impl FnOnce() -> T + Send + 'static) -> Self {
         Self::sending(context, || Some(caught(job)))
     }
 
@@ -43,7 +43,7 @@ impl<T: Send + 'static> BackgroundJob<T> {
     }
 
     /// Returns the result once the job has ended, and only once.
-    pub(crate) fn take(&self) -> Option<Result<T, Stopped>> {
+    pub fn take(&self) -> Option<Result<T, Stopped>> {
         self.0.try_recv().ok()
     }
 
@@ -55,13 +55,13 @@ impl<T: Send + 'static> BackgroundJob<T> {
 
 impl<T> BackgroundJob<T> {
     /// Waits for it to end.
-    pub(crate) fn wait(self) {
+    pub fn wait(self) {
         let _ = self.0.recv();
     }
 }
 
 /// Starts a thread. Returns none if the system refuses.
-pub(crate) fn spawn(job: impl FnOnce() + Send + 'static) -> Option<JoinHandle<()>> {
+pub fn spawn(job: impl FnOnce() + Send + 'static) -> Option<JoinHandle<()>> {
     std::thread::Builder::new().spawn(job).ok()
 }
 

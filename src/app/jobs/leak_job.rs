@@ -31,7 +31,7 @@ impl LeakJob {
         self.found.as_deref().filter(|_| is_same)
     }
 
-    pub(crate) fn is_busy(&self) -> bool {
+    pub fn is_busy(&self) -> bool {
         self.counting.is_some()
     }
 
@@ -113,7 +113,7 @@ impl App {
     }
 
     /// The leaks in the view that was measured last, the largest first, once they are counted.
-    pub(crate) fn leaks(&self) -> Option<&[Leak]> {
+    pub fn leaks(&self) -> Option<&[Leak]> {
         self.jobs.leaks.found(self.results()?.seen.view)
     }
 

@@ -30,7 +30,7 @@ impl App {
     }
 
     /// Takes the mesh that is being opened as the command line says, instead of as it was kept.
-    pub(crate) fn open_as(&mut self, context: &egui::Context, opening: &OpeningOptions) {
+    pub fn open_as(&mut self, context: &egui::Context, opening: &OpeningOptions) {
         let Some(load) = self.jobs.load.as_ref().filter(|_| !opening.is_empty()) else { return };
         let (source, mut preparation) = (load.source.clone(), load.preparation.clone());
         opening.change(&mut preparation);

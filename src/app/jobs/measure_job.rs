@@ -43,7 +43,7 @@ pub(crate) struct MeasureJob {
 }
 
 /// What was measured of a picture.
-pub(crate) struct Results {
+pub struct Results {
     /// The document and tessellation.
     pub of: (u64, u64),
     pub found: Measured,
@@ -57,7 +57,7 @@ pub(crate) struct Results {
 
 impl Results {
     /// An edge's gap in px, in the view that LOD was computed for: the tessellation is meant for it.
-    pub(crate) fn gap_px(&self, edge: &CrackedEdge) -> f64 {
+    pub fn gap_px(&self, edge: &CrackedEdge) -> f64 {
         let view = &self.seen.inputs.view;
         edge.gap_px(view.clip_from_object, 2.0 * view.half_viewport)
     }
@@ -72,7 +72,7 @@ impl Results {
 
 /// From where a measured picture is seen, and what it was tessellated with.
 #[derive(Clone, Copy)]
-pub(crate) struct Seen {
+pub struct Seen {
     pub camera: Camera,
     pub view: ScreenView,
     pub inputs: Inputs,
@@ -106,18 +106,18 @@ enum Asked {
 
 impl MeasureJob {
     /// The results for what is shown, once measured.
-    pub(crate) fn found(&self) -> Option<&Measured> {
+    pub fn found(&self) -> Option<&Measured> {
         let results = self.results.as_ref().filter(|results| self.of.is_some_and(|(of, _)| of == results.of));
         results.map(|results| &results.found)
     }
 
     /// The last results of the document. While what is shown is being measured, they are those of the picture before.
-    pub(crate) fn last(&self) -> Option<&Results> {
+    pub fn last(&self) -> Option<&Results> {
         self.results.as_ref()
     }
 
     /// The cracks of what is shown, once measured.
-    pub(crate) fn cracks(&self) -> Option<&Cracks> {
+    pub fn cracks(&self) -> Option<&Cracks> {
         self.found().map(|found| &found.cracks)
     }
 
@@ -126,7 +126,7 @@ impl MeasureJob {
         self.closed.is_some_and(|extent| is_beyond_near(view.clip_from_object, extent))
     }
 
-    pub(crate) fn is_busy(&self) -> bool {
+    pub fn is_busy(&self) -> bool {
         self.walk.is_some()
     }
 
@@ -144,7 +144,7 @@ impl MeasureJob {
     }
 
     /// Stops the measurement and forgets all results.
-    pub(crate) fn forget(&mut self) {
+    pub fn forget(&mut self) {
         *self = Self { generation: self.generation + 1, ..Self::default() };
     }
 

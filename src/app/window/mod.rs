@@ -4,14 +4,14 @@ pub(super) mod device_lost;
 mod event_pacing;
 pub(super) mod fatal_screen;
 mod fitting;
-pub(crate) mod run;
+pub mod run;
 
 use device_lost::DeviceLosses;
 use event_pacing::PacedEvents;
 use fatal_screen::FatalScreen;
 use fitting::Fitting;
 
-pub(crate) use run::{WindowError, run};
+pub use run::{WindowError, run};
 
 /// The state of the window itself.
 #[derive(Default)]

@@ -37,7 +37,7 @@ pub enum WindowError {
 ///
 /// # Errors
 /// There is no display, no adapter, or the window can't be drawn.
-pub(crate) fn run(
+pub fn run(
     source: Option<Source>,
     opening: &OpeningOptions,
     limits: Limits,

@@ -15,7 +15,7 @@ const MOST: usize = 3600;
 
 /// Views of one mesh, for each of which a command writes a file.
 #[derive(Clone, Debug, Default, Args)]
-pub(crate) struct CamerasOption {
+pub struct CamerasOption {
     /// Write a file for each of many views: N from evenly around the mesh, or those of a file with a name and camera options for
     /// each, as JSON or on a line
     #[arg(
@@ -28,7 +28,7 @@ pub(crate) struct CamerasOption {
 
 /// Where the views come from.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Cameras {
+pub enum Cameras {
     /// So many, evenly around the mesh.
     Around(u32),
     File(PathBuf),
@@ -49,7 +49,7 @@ impl FromStr for Cameras {
 /// A view with its name, which its files have.
 #[derive(Clone, Debug, Parser)]
 #[command(no_binary_name = true, disable_help_flag = true)]
-pub(crate) struct NamedView {
+pub struct NamedView {
     /// What files of this view are called
     pub name: String,
     #[command(flatten)]
@@ -58,7 +58,7 @@ pub(crate) struct NamedView {
 
 impl CamerasOption {
     /// The file that the views are read from.
-    pub(crate) fn file(&self) -> Option<&Path> {
+    pub fn file(&self) -> Option<&Path> {
         match self.cameras.as_ref()? {
             Cameras::File(path) => Some(path),
             Cameras::Around(_) => None,
@@ -70,7 +70,7 @@ impl CamerasOption {
     ///
     /// # Errors
     /// The file can't be read, or isn't one of cameras.
-    pub(crate) fn views(&self, view: &ViewOptions) -> Result<Option<Vec<NamedView>>, CliError> {
+    pub fn views(&self, view: &ViewOptions) -> Result<Option<Vec<NamedView>>, CliError> {
         let Some(cameras) = &self.cameras else { return Ok(None) };
         match cameras {
             Cameras::Around(count) => Ok(Some((0..*count).map(|index| around(index, *count, view)).collect())),

@@ -13,7 +13,7 @@ use load::Import;
 
 /// How a mesh is tessellated.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct TessellationOptions {
+pub struct TessellationOptions {
     pub tessellation: Tessellation,
     /// Given on the command line; without it, displacement depends on whether there are heights.
     pub displacement: Option<Displacement>,
@@ -21,11 +21,11 @@ pub(crate) struct TessellationOptions {
 
 /// How a picture is drawn: settings with the usual tessellation.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct PictureOptions(pub Settings);
+pub struct PictureOptions(pub Settings);
 
 /// How the geometry of a file is taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct ImportOptions(pub Import);
+pub struct ImportOptions(pub Import);
 
 const WITHOUT_DISPLACEMENT: &str =
     "By default on with --height, else off. Without --height, the materials' images are the height map";
@@ -218,7 +218,7 @@ fn name_of(value: &Value) -> Option<&'static str> {
 }
 
 /// Reads one of several named values.
-pub(crate) fn choice<T: Choice + Send + Sync>() -> impl TypedValueParser<Value = T> {
+pub fn choice<T: Choice + Send + Sync>() -> impl TypedValueParser<Value = T> {
     let unknown = "no such value";
     PossibleValuesParser::new(descriptions::<T>().into_iter().map(possible))
         .try_map(move |name| T::named(&name).ok_or(unknown))

@@ -12,7 +12,7 @@ use inspect::render::camera::FIELD_OF_VIEW;
 
 /// A camera that LOD, clipping and culling are computed for, in place of the picture's.
 #[derive(Clone, Copy, Debug, Args)]
-pub(crate) struct LodCameraOption {
+pub struct LodCameraOption {
     /// Compute LOD, clipping and culling for this camera in place of the picture's, and draw its frustum as lines; the numbers are
     /// those of --camera
     #[arg(long, value_name = "AZIMUTH,ELEVATION[,DISTANCE]", allow_hyphen_values = true)]
@@ -52,7 +52,7 @@ impl LodCameraOption {
     ///
     /// # Errors
     /// None of its own: those of [`SurfaceOptions::camera`].
-    pub(crate) fn camera(
+    pub fn camera(
         &self,
         own: &SurfaceOptions,
         mesh: &Mesh,

@@ -9,7 +9,7 @@ use load::Import;
 
 /// How the window takes the mesh that it opens first. What isn't given is as the window was left, or as it was chosen for the file.
 #[derive(Clone, Debug, Default, Args)]
-pub(crate) struct OpeningOptions {
+pub struct OpeningOptions {
     #[command(flatten)]
     import: GivenImport,
     /// Leave out this part of a glTF file, an OBJ file or a text file of STL, by the name of its node, object, group or solid; may be
@@ -24,18 +24,18 @@ struct GivenImport(Vec<(&'static Declaration, Value)>);
 
 impl OpeningOptions {
     /// Whether none was given.
-    pub(crate) fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.import.0.is_empty() && self.hide_part.is_empty()
     }
 
     /// Changes what the given options are about.
-    pub(crate) fn change(&self, preparation: &mut Preparation) {
+    pub fn change(&self, preparation: &mut Preparation) {
         preparation.import = self.import(preparation.import);
         preparation.hidden.clone_from(&self.hide_part);
     }
 
     /// How the geometry of a file is taken, which is `usual` without options.
-    pub(crate) fn import(&self, usual: Import) -> Import {
+    pub fn import(&self, usual: Import) -> Import {
         let mut settings = Settings { import: usual, ..Settings::default() };
         for (declaration, value) in &self.import.0 {
             declaration.set(&mut settings, value.clone());
@@ -44,7 +44,7 @@ impl OpeningOptions {
     }
 
     /// The names of the parts that are left out.
-    pub(crate) fn hidden(&self) -> &[String] {
+    pub fn hidden(&self) -> &[String] {
         &self.hide_part
     }
 }

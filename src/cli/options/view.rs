@@ -15,7 +15,7 @@ use inspect::render::view_projection::{ClipY, DepthRange, ViewProjection};
 
 /// Where the mesh is seen from.
 #[derive(Clone, Debug, PartialEq, Args)]
-pub(crate) struct ViewOptions {
+pub struct ViewOptions {
     /// Where the camera is: degrees from the front to the right, degrees upwards, and the distance from the centre in
     /// bounding radii (by default far enough to show everything)
     #[arg(long, value_name = "AZIMUTH,ELEVATION[,DISTANCE]", default_value = "30,20", allow_hyphen_values = true)]
@@ -71,7 +71,7 @@ impl Default for ViewOptions {
 
 /// The numbers of a matrix, in the order in which they are given.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct MatrixNumbers(pub [f64; 16]);
+pub struct MatrixNumbers(pub [f64; 16]);
 
 impl FromStr for MatrixNumbers {
     type Err = String;
@@ -92,7 +92,7 @@ impl FromStr for MatrixNumbers {
 
 /// How the 16 numbers of a matrix that multiplies column vectors are listed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum MatrixOrder {
+pub enum MatrixOrder {
     /// Row after row: M * v as it is written on paper (Unity, Blender, NumPy)
     RowMajor,
     /// Column after column: OpenGL, glTF, glm, three.js, Bevy and Godot; also row after row of a matrix for row vectors, v * M
@@ -102,7 +102,7 @@ pub(crate) enum MatrixOrder {
 
 /// Depth after the division by w.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Depth {
+pub enum Depth {
     /// 0 on the near plane, 1 far away (Direct3D, Vulkan, Metal, WebGPU)
     ZeroToOne,
     /// 1 on the near plane, 0 far away (the same with depth reversed)
@@ -123,7 +123,7 @@ impl From<Depth> for DepthRange {
 
 /// Where +y of clip space is on the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Upwards {
+pub enum Upwards {
     /// Direct3D, Metal, WebGPU, OpenGL
     Up,
     /// Vulkan
@@ -145,7 +145,7 @@ impl ViewOptions {
     ///
     /// # Errors
     /// The mesh has no camera of the name that was asked for, or the matrix isn't that of a view.
-    pub(crate) fn camera(
+    pub fn camera(
         &self,
         surface: &SurfaceOptions,
         mesh: &Mesh,

@@ -21,7 +21,7 @@ impl Shot {
     ///
     /// # Errors
     /// The device was lost, or `progress` was cancelled.
-    pub(crate) fn judge(
+    pub fn judge(
         &mut self,
         gates: &[Gate],
         tolerance_px: f32,
@@ -80,7 +80,7 @@ impl Shot {
     }
 
     /// How much the mesh has, and how much was emitted.
-    pub(crate) fn numbers(&self) -> Numbers {
+    pub fn numbers(&self) -> Numbers {
         let (vertices_out, triangles_out) = self.scene.tessellator.totals();
         let triangles_in = self.posed.mesh.triangles.len() as u64;
         Numbers { triangles_in, patches: self.posed.topology.patches.len() as u64, triangles_out, vertices_out }
@@ -91,11 +91,7 @@ impl Shot {
     ///
     /// # Errors
     /// The device was lost, or `progress` was cancelled.
-    pub(crate) fn evidence(
-        &mut self,
-        judgement: &Judgement,
-        progress: &Progress,
-    ) -> Result<Option<RgbaImage>, CliError> {
+    pub fn evidence(&mut self, judgement: &Judgement, progress: &Progress) -> Result<Option<RgbaImage>, CliError> {
         let Some(place) = &judgement.place else { return Ok(None) };
         let camera = self.standpoint(&place.spot)?;
         let (view, settings) = (self.view, self.subject.settings);

@@ -97,7 +97,6 @@ impl Layout {
 ///
 /// # Panics
 /// If `patch` isn't an index into [`Topology::patches`].
-#[cfg(test)]
 pub fn nine(topology: &Topology, patch: u32) -> [u32; 9] {
     let mut nine = [0; 9];
     nine.copy_from_slice(&eighteen(topology, patch)[..9]);

@@ -104,7 +104,7 @@ mod tests {
     use glam::Vec2;
 
     use super::*;
-    use crate::cores::tests::on_cores;
+    use crate::cores::on_threads;
     use crate::mesh::Corner;
 
     #[test]
@@ -143,7 +143,7 @@ mod tests {
             let bits = |bounds: Bounds| [bounds.min, bounds.max].map(|v| v.to_array().map(f32::to_bits));
             let alone = Bounds::of(mesh.corners.iter().map(|corner| corner.position));
             for cores in [1, 2, 3] {
-                let bounds = on_cores(cores, || mesh.bounds());
+                let bounds = on_threads(cores, || mesh.bounds()).expect("threads");
                 assert!(bounds == alone && bits(bounds) == bits(alone), "{bounds:?} on {cores} cores, {alone:?}");
             }
         }

@@ -129,3 +129,60 @@ pub fn borrowing<T>(account: &dyn MemoryAccount, work: impl FnOnce() -> T) -> T 
     let _scope = Borrowed::from(account);
     work()
 }
+
+#[cfg(test)]
+pub mod tests {
+    use std::cell::Cell;
+
+    use super::*;
+
+    /// An account that keeps count.
+    #[derive(Debug)]
+    pub struct Counted {
+        pub allowed: u64,
+        pub held: Cell<u64>,
+        pub borrowed: Cell<u64>,
+        /// The sum of all that was borrowed.
+        pub lent: Cell<u64>,
+    }
+
+    impl Default for Counted {
+        fn default() -> Self {
+            Self { allowed: u64::MAX, held: Cell::default(), borrowed: Cell::default(), lent: Cell::default() }
+        }
+    }
+
+    impl Counted {
+        fn ask(&self, bytes: u64) -> Result<(), MemoryRefused> {
+            let needed = self.held.get() + self.borrowed.get() + bytes;
+            if needed > self.allowed { Err(MemoryRefused { needed, allowed: self.allowed }) } else { Ok(()) }
+        }
+    }
+
+    impl MemoryAccount for Counted {
+        fn hold(&self, bytes: u64) -> Result<(), MemoryRefused> {
+            self.ask(bytes)?;
+            self.held.update(|held| held + bytes);
+            Ok(())
+        }
+
+        fn release(&self, bytes: u64) {
+            self.held.update(|held| held - bytes);
+        }
+
+        fn borrow(&self, bytes: u64) -> Result<(), MemoryRefused> {
+            self.ask(bytes)?;
+            self.borrowed.update(|borrowed| borrowed + bytes);
+            self.lent.update(|lent| lent + bytes);
+            Ok(())
+        }
+
+        fn borrowed(&self) -> u64 {
+            self.borrowed.get()
+        }
+
+        fn give_back(&self, scope: &Borrowed) {
+            self.borrowed.set(scope.before());
+        }
+    }
+}

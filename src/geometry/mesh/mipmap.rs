@@ -225,7 +225,6 @@ pub fn wanted_texels(covered: u64, size: [u32; 2], level: u32) -> u32 {
 
 /// The alpha from which on the number of texels is nearest to `wanted`, and of these the one nearest to `least`. `counts` has the
 /// number of texels of each alpha.
-#[cfg(test)]
 fn covering_alpha(counts: &[u32; 256], wanted: u32, least: u32) -> u32 {
     let (mut best, mut best_error, mut count) = (256_u32, wanted, 0_u32);
     for alpha in (1..256_u32).rev() {
@@ -239,14 +238,12 @@ fn covering_alpha(counts: &[u32; 256], wanted: u32, least: u32) -> u32 {
 }
 
 /// An alpha that reaches `least` only if it was at least `from`.
-#[cfg(test)]
 fn scaled_alpha(alpha: u32, from: u32, least: u32) -> u32 {
     (alpha * least / from).min(255)
 }
 
 /// All levels of an image but the first. If `least` is the least alpha that passes the test of a mask, alpha is scaled on each
 /// level so that as large a part of it passes as of the image (Castaño 2010, "Computing Alpha Mipmaps").
-#[cfg(test)]
 pub fn mip_levels(texture: &Texture, filter: MipFilter, least: Option<u32>) -> Vec<Texture> {
     let mut levels: Vec<Texture> = Vec::new();
     for _ in 1..level_count(texture.size) {
@@ -266,4 +263,4 @@ pub fn mip_levels(texture: &Texture, filter: MipFilter, least: Option<u32>) -> V
 }
 
 #[cfg(test)]
-pub mod tests;
+mod tests;

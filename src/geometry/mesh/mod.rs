@@ -55,7 +55,6 @@ pub use rig::{Moment, Pose, Rig};
 pub use slices::{MeshSlices, SliceError};
 pub use topology::{Edge, EdgeCounts, EdgeKind, Patch, Side, Topology};
 
-#[cfg(test)]
 pub use build_limits::Unlimited;
 pub use build_limits::{Borrowed, BuildError, MemoryAccount, MemoryRefused, borrowing};
 pub use crease_band::{CreaseBand, with_crease_band};

@@ -275,7 +275,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::cores::tests::on_cores;
+    use crate::cores::on_threads;
 
     /// The tolerances within which a slow search finds another point.
     fn slow(points: &[Vec3], numbers: &[u32], tolerances: &[f64]) -> Vec<Vec<u32>> {
@@ -329,14 +329,18 @@ mod tests {
         let mut random = fastrand::Rng::with_seed(1);
         let points: Vec<Vec3> = (0..100_000).map(|_| Vec3::new(random.f32(), random.f32(), random.f32())).collect();
         let tolerances = [1e-3, 3e-3, 1e-2];
-        let alone = on_cores(1, || NearPoints::find(&points, &[], &tolerances));
+        let alone = on_threads(1, || NearPoints::find(&points, &[], &tolerances)).expect("threads");
         let counts = [0, 1, 2].map(|k| alone.within(k).count());
         assert!(
             counts[0] > 0 && counts[0] < counts[1] && counts[1] < counts[2] && counts[2] < points.len(),
             "{counts:?}"
         );
         for cores in [2, 7] {
-            assert!(on_cores(cores, || NearPoints::find(&points, &[], &tolerances)).first == alone.first, "{cores}");
+            assert!(
+                on_threads(cores, || NearPoints::find(&points, &[], &tolerances)).expect("threads").first
+                    == alone.first,
+                "{cores}"
+            );
         }
     }
 

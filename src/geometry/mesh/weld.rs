@@ -7,10 +7,11 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use bytemuck::zeroed_vec;
 use foldhash::fast::RandomState;
 use glam::{Vec2, Vec3};
+use rayon::prelude::*;
 
 use super::cell_chains::CellChains;
 use super::cell_grid::CellGrid;
-use crate::cores::{in_parts, in_ranges, ranges, split};
+use crate::cores::{in_ranges, ranges, split};
 
 /// The least number of positions that are worth a thread.
 const LEAST: usize = 1 << 14;
@@ -154,9 +155,8 @@ pub fn weld_alike(count: usize, place: impl Fn(usize) -> (Vec3, u32) + Sync, tol
 fn points_at(firsts: &[u32], position: impl Fn(usize) -> Vec3 + Sync) -> Vec<Vec3> {
     let mut points: Vec<Vec3> = zeroed_vec(firsts.len());
     let ranges: Vec<_> = ranges(firsts.len(), LEAST).collect();
-    let parts = split(&mut points, ranges.iter().map(Range::len)).into_iter().zip(ranges).collect();
-    in_parts(parts, |(points, range)| {
-        points.iter_mut().zip(&firsts[range.clone()]).for_each(|(point, first)| *point = position(*first as usize));
+    split(&mut points, ranges.iter().map(Range::len)).into_par_iter().zip(ranges).for_each(|(points, range)| {
+        points.iter_mut().zip(&firsts[range]).for_each(|(point, first)| *point = position(*first as usize));
     });
     points
 }
@@ -237,7 +237,7 @@ mod tests {
     use std::collections::HashMap;
 
     use super::*;
-    use crate::cores::tests::on_cores;
+    use crate::cores::on_threads;
     use proptest::prelude::*;
 
     fn weld(positions: &[Vec3]) -> (Vec<Vec3>, Vec<u32>) {
@@ -271,10 +271,10 @@ mod tests {
             numbers.push(*known.entry([position.x, position.z].map(f32::to_bits)).or_insert(next));
         }
         for cores in [1, 2, 7] {
-            let (points, of) = on_cores(cores, || weld(&positions));
+            let (points, of) = on_threads(cores, || weld(&positions)).expect("threads");
             assert!(points.len() == known.len() && of == numbers, "{cores}");
         }
-        let one = on_cores(7, || weld(&[Vec3::ONE; 100_000]));
+        let one = on_threads(7, || weld(&[Vec3::ONE; 100_000])).expect("threads");
         assert_eq!(one, (vec![Vec3::ONE], vec![0; 100_000]));
     }
 

@@ -201,7 +201,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::cores::tests::on_cores;
+    use crate::cores::on_threads;
     use crate::mesh::shapes::Shape;
     use crate::mesh::topology::{Edge, weld_corners};
     use crate::mesh::{Corner, Rig};
@@ -291,7 +291,8 @@ mod tests {
             corners.extend([i, i + 1, i + side].map(near).map(corner));
         }
         let mesh = Mesh { corners, triangles: triangles.into(), ..Mesh::default() };
-        let previews = |cores| on_cores(cores, || weld_previews(&mesh, None, &Progress::new()).unwrap());
+        let previews =
+            |cores| on_threads(cores, || weld_previews(&mesh, None, &Progress::new()).unwrap()).expect("threads");
         let one = previews(1);
         // Its triangles have sides of a few thousandths of the diagonal.
         assert_eq!(one[5].edges, None);

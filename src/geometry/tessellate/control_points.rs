@@ -12,7 +12,7 @@ use super::Surface;
 
 /// Two unit normals count as parallel or opposite if the squared length of their cross product is at most this: the
 /// squared sine of 0.1 degrees. Below it, rounding would decide in which line their tangent planes intersect.
-pub(crate) const PARALLEL: f32 = 3.046e-6;
+pub const PARALLEL: f32 = 3.046e-6;
 
 /// Returns the control point near `a` of a PN triangle's edge: the point one third of the way from `a` to `b`,
 /// projected into the tangent plane at `a` (Vlachos et al. 2001, section 3.1: b210 = (2 P1 + P2 - w12 N1) / 3).

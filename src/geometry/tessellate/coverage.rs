@@ -45,7 +45,7 @@ impl CoverageView {
 
 /// A triangle's corner on screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct ScreenCorner {
+pub struct ScreenCorner {
     /// The position in px from the picture's upper left corner.
     pub at: Vec2,
     /// The largest distance in px between `at` and the rasterised corner, along x and along y. Negative if the corner
@@ -56,10 +56,10 @@ pub(crate) struct ScreenCorner {
 /// The x coordinates of samples within their pixel, in px. A pixel has as many rows of samples as samples (1 or 4),
 /// with one sample in each row, half a row's height below the row's upper edge. These are the standard positions of
 /// Vulkan, Metal and Direct3D.
-pub(crate) const ROW_SAMPLES: [f32; 4] = [0.375, 0.875, 0.125, 0.625];
+pub const ROW_SAMPLES: [f32; 4] = [0.375, 0.875, 0.125, 0.625];
 
 /// Projects a position in object units to the screen, and bounds the error of the projection.
-pub(crate) fn screen_corner(view: &CoverageView, position: Vec3) -> ScreenCorner {
+pub fn screen_corner(view: &CoverageView, position: Vec3) -> ScreenCorner {
     let clip = view.clip_from_object * position.extend(1.0);
     let off = view.slack * position.abs().extend(1.0);
     let least_w = clip.w - off.w;
@@ -116,7 +116,7 @@ fn row_sample(view: &CoverageView, row: f32) -> f32 {
 
 /// Returns whether no part of a triangle can be seen. Of triangles larger than 2 px in x or y it only tests whether
 /// they lie outside the picture or are back faces.
-pub(crate) fn covers_nothing(view: &CoverageView, a: ScreenCorner, b: ScreenCorner, c: ScreenCorner) -> bool {
+pub fn covers_nothing(view: &CoverageView, a: ScreenCorner, b: ScreenCorner, c: ScreenCorner) -> bool {
     if a.reach.min(b.reach).min(c.reach) < 0.0 {
         return false;
     }

@@ -99,15 +99,15 @@ pub(super) fn polar_points(net: &ControlNet, i: usize) -> [Vec3; 6] {
 
 /// How far a surface must be from being seen edge-on, about as a sine. The margin is larger than rounding errors, and
 /// large enough that a rasteriser which snaps vertices to 1/256 px sees a back face too.
-pub(crate) const FACING_MARGIN: f32 = 1e-3;
+pub const FACING_MARGIN: f32 = 1e-3;
 
 /// The rounding error of a sum, relative to the sum of the absolute values of its terms.
-pub(crate) const FACING_ROUNDING: f32 = 1e-6;
+pub const FACING_ROUNDING: f32 = 1e-6;
 
 /// The second and third index of each of the [`polar_points`], as two digits to base 5, and its binomial weight. In a
 /// product of two quadratic polynomials indices add up, so that digits go up to 4.
-pub(crate) const POLAR_INDICES: [usize; 6] = [0, 5, 10, 6, 2, 1];
-pub(crate) const POLAR_WEIGHTS: [f32; 6] = [1.0, 2.0, 1.0, 2.0, 1.0, 2.0];
+pub const POLAR_INDICES: [usize; 6] = [0, 5, 10, 6, 2, 1];
+pub const POLAR_WEIGHTS: [f32; 6] = [1.0, 2.0, 1.0, 2.0, 1.0, 2.0];
 
 /// Returns whether a patch shows its back everywhere. The patch must lie beyond the near plane.
 ///

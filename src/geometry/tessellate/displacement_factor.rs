@@ -63,8 +63,8 @@ pub(super) fn screen_radius(view: &LodView, bounds: ScreenBounds, radius: f32) -
 /// The shares of the tolerance where a surface is displaced: for the surface without displacement, for the detail of
 /// the heights that is lost between segments, and for the turning of the direction of displacement.
 pub const SURFACE_SHARE: f32 = 0.5;
-pub(crate) const DETAIL_SHARE: f32 = 0.3;
-pub(crate) const TURN_SHARE: f32 = 0.2;
+pub const DETAIL_SHARE: f32 = 0.3;
+pub const TURN_SHARE: f32 = 0.2;
 
 /// Returns the least factor (not rounded, 1 or more) that shows the heights of one image along an edge, which is
 /// `texels` px of level 0 long.

@@ -200,7 +200,6 @@ pub fn explain_patch(
 }
 
 /// Returns the own least of every patch.
-#[cfg(test)]
 pub fn own_least_triangles(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<u32> {
     let searched = &own_least_inputs(&seen_with_reach(mesh, inputs));
     let nets = ControlNets::new(mesh, topology, searched);

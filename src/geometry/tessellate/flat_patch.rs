@@ -21,7 +21,7 @@ use super::piece_error::near_depth;
 use super::surface::ControlNet;
 
 /// The least cosine of the angle between two corners' unit normals (1 degree) at which sliding changes no shading.
-pub(crate) const AGREEING: f32 = 0.99985;
+pub const AGREEING: f32 = 0.99985;
 
 /// Returns whether a patch looks the same wherever its points slide, as far as its corners' unit normals go.
 pub(super) fn normals_agree([a, b, c]: [Vec3; 3]) -> bool {
@@ -54,7 +54,7 @@ fn seen_within(view: &LodView, corners: [Vec3; 3]) -> [f32; 2] {
 
 /// No point of a patch is farther off than this share of what its control points are, if its corners aren't off; twice
 /// that, for two points on different sides.
-pub(crate) const TWO_POINTS: f32 = 16.0 / 9.0;
+pub const TWO_POINTS: f32 = 16.0 / 9.0;
 
 /// Returns a bound on the distance in px, across the plane of a patch's triangle, between points of the patch that have the
 /// same place in that plane. Large if the patch has no area.

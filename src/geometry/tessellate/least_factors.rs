@@ -20,10 +20,10 @@ use super::lod::LodView;
 use super::piece_error::{SeenPatch, clip_point, deeper, depth_scale, may_slide, near_depth, piece_error};
 
 /// The part of the tolerance that bounds may use up. The rest is for rounding.
-pub(crate) const BOUND_SHARE: f32 = 0.999;
+pub const BOUND_SHARE: f32 = 0.999;
 
 /// A factor that is asked for if none is enough.
-pub(crate) const BEYOND_LAST: f32 = 64.5;
+pub const BEYOND_LAST: f32 = 64.5;
 
 /// Returns the least number of segments, `least` or more, that a partitioning has without fractions: any whole number,
 /// a power of two, or an odd or even number.
@@ -130,10 +130,10 @@ pub(super) fn single_suffices(
 }
 
 /// How many triangles are looked at together, before those with one that isn't within the tolerance end the search.
-pub(crate) const TOGETHER: u32 = 8;
+pub const TOGETHER: u32 = 8;
 
 /// A prime beyond the number of turns in which a pattern's triangles are looked at: its multiples are spread over them.
-pub(crate) const SPREAD: u32 = 1009;
+pub const SPREAD: u32 = 1009;
 
 /// Returns the numbers of triangles of a pattern's parts, which follow each other: the rows along its edges U == 0, V == 0 and
 /// W == 0, and its inner triangles, which lie along no edge. Of rows all are counted as inner ones.
@@ -173,7 +173,7 @@ pub(super) fn part_errors(patch: &SeenPatch, tolerance: f32, factors: PatchFacto
 
 /// How much larger a factor of an edge is tried than the least one and the inside factor: with more, triangles are long
 /// where the points of edge and ring don't match.
-pub(crate) const ROW_REACH: f32 = 6.0;
+pub const ROW_REACH: f32 = 6.0;
 
 /// Returns the factor of an edge that is tried after `factor`, whose row has this error beside `inside` segments;
 /// [`BEYOND_LAST`] if none is enough up to the larger of `least` and `inside`, and [`ROW_REACH`]. Where points may slide, there

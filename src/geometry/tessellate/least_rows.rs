@@ -178,7 +178,7 @@ fn grown_rows(sought: &Sought, tried: Tried, expected: &Expected, error: f32, to
 }
 
 /// How many kinds of lessening there are.
-pub(crate) const LESSENINGS: u32 = 8;
+pub const LESSENINGS: u32 = 8;
 
 /// Returns rows with less than others: 1 row less; rows narrower by 1 segment (2) or by 2 (4), and the base with them if it has as
 /// many; the same without the base (3 and 5); or 1 segment less of the base (6), of the first edge (7) or of the second one (8).
@@ -306,7 +306,7 @@ fn fewest_rows(patch: &SeenPatch, tolerance: f32, sought: &Sought) -> Chosen {
 
 /// As how many triangles a segment of an edge counts where a patch asks for it. It is a triangle's side in this patch and in its
 /// neighbour; but the neighbour often asks for it, too.
-pub(crate) const ASKED_SEGMENT: f32 = 1.75;
+pub const ASKED_SEGMENT: f32 = 1.75;
 
 /// Returns the factors that a patch asks its edges for, and the rows that it would take beside these. `least` are the least
 /// factors that the edges may get, and `inside` is the least number of rows and of segments of a row.

@@ -150,14 +150,13 @@ mod tests {
     use crate::progress::Progress;
     use crate::tessellate::{LodView, Tessellation};
     use glam::{Mat4, Vec2};
-    use inspect::settings::Settings;
 
     /// Returns the x coordinate of the surface at the weights 1/2, 1/3 and 1/6, if the control points have these.
     fn at_a_half_and_a_third(surface: Surface, corners: [f32; 3], edges: [f32; 6], center: f32) -> f64 {
         let mesh = Shape::Icosahedron.build();
         let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
-        let settings = Settings::from(Tessellation { surface, ..Tessellation::default() });
-        let inputs = settings.inputs(LodView::new(Mat4::IDENTITY, Vec2::ONE));
+        let tessellation = Tessellation { surface, ..Tessellation::default() };
+        let inputs = Inputs::new(&tessellation, LodView::new(Mat4::IDENTITY, Vec2::ONE));
         let at = |x: f32| Vec3::X * x;
         let net = ControlNet { corners: corners.map(at), edges: edges.map(at), center: at(center) };
         LimitSurface::new(&mesh, &topology, &inputs).position(0, &net, 1.0 / 2.0, 1.0 / 3.0).x
@@ -181,7 +180,7 @@ mod tests {
     fn the_nearest_point_is_found_within_and_on_the_border() {
         let mesh = Shape::Icosahedron.build();
         let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
-        let inputs = Settings::default().inputs(LodView::new(Mat4::IDENTITY, Vec2::ONE));
+        let inputs = Inputs::new(&Tessellation::default(), LodView::new(Mat4::IDENTITY, Vec2::ONE));
         let limit = LimitSurface::new(&mesh, &topology, &inputs);
         // Flat, with one edge bent outwards.
         let at = |x: f32, y: f32| Vec3::new(x, y, 0.5);

@@ -123,7 +123,6 @@ fn sums(patches: impl Iterator<Item = PatchFactors>) -> (u64, u64) {
 }
 
 /// Returns the factors that LOD gives: one for each edge, or with edges as published one for each curve.
-#[cfg(test)]
 pub fn edge_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<f32> {
     let inputs = &seen_with_reach(mesh, inputs);
     let nets = ControlNets::new(mesh, topology, inputs);

@@ -19,7 +19,7 @@ pub enum Normals {
 }
 
 /// Weighted sums of unit normals that are shorter than this are rounding errors: the normals cancel.
-pub(crate) const CANCELLED: f32 = 1e-6;
+pub const CANCELLED: f32 = 1e-6;
 
 /// Returns a weighted sum of normals at unit length, or `nearest` (the normal with the greatest weight) if they cancel.
 pub(super) fn unit_or(sum: Vec3, nearest: Vec3) -> Vec3 {

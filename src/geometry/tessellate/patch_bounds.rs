@@ -53,8 +53,7 @@ mod tests {
     use crate::mesh::mesh_builder::{InputCorner, MeshBuilder};
     use crate::mesh::{Material, Mesh, Topology};
     use crate::progress::Progress;
-    use crate::tessellate::{FIXED_ONE, LimitSurface, LodView, PosedMesh, Tessellation, patch_position};
-    use inspect::settings::Settings;
+    use crate::tessellate::{FIXED_ONE, Inputs, LimitSurface, LodView, PosedMesh, Tessellation, patch_position};
     use proptest::prelude::*;
 
     /// Two triangles that share an edge, with normals of their own.
@@ -82,8 +81,8 @@ mod tests {
             let topology = Topology::build(&mesh, &Progress::default()).expect("nobody cancels");
             let posed = PosedMesh::new(Arc::new(mesh.clone()), Arc::new(topology.clone()), None);
             for surface in Surface::ALL {
-                let settings = Settings::from(Tessellation { surface, alpha: 1.0, ..Tessellation::default() });
-                let inputs = settings.inputs(LodView::new(glam::Mat4::IDENTITY, glam::Vec2::ONE));
+                let tessellation = Tessellation { surface, alpha: 1.0, ..Tessellation::default() };
+                let inputs = Inputs::new(&tessellation, LodView::new(glam::Mat4::IDENTITY, glam::Vec2::ONE));
                 let limit = LimitSurface::new(&mesh, &topology, &inputs);
                 let bounds = posed.bounds_of(0..topology.patches.len() as u32);
                 let Some(bounds) = bounds.and_then(|bounds| bounds.of_surface(surface)) else { continue };

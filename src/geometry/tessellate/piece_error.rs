@@ -21,10 +21,10 @@ use super::lod::{LodView, clip_row};
 use super::surface::ControlNet;
 
 /// The steps of the finest grid. The margin is then at most 1/64 of the bound without a grid.
-pub(crate) const FINEST_GRID: u32 = 8;
+pub const FINEST_GRID: u32 = 8;
 
 /// The steps of the grid of a triangle that is only partly in view.
-pub(crate) const PARTIAL_STEPS: u32 = 8;
+pub const PARTIAL_STEPS: u32 = 8;
 
 /// A patch in clip space: x and y in px times depth, and the depth (w). All are divided by the largest depth of its control
 /// points, which changes nothing on screen, so that squares don't leave the range of f32.

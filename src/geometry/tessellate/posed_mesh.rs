@@ -90,7 +90,7 @@ impl PosedMesh {
 
 /// Returns a mesh and its topology in a pose, or copies of both if the mesh doesn't move. Connections and the kinds of
 /// edges stay as they are, even if points come to lie on each other. The returned mesh has no rig.
-pub(crate) fn deform(mesh: &Mesh, topology: &Topology, pose: &Pose) -> (Mesh, Topology) {
+pub fn deform(mesh: &Mesh, topology: &Topology, pose: &Pose) -> (Mesh, Topology) {
     let (mut mesh, mut topology) = (mesh.clone(), topology.clone());
     let Some(rig) = mesh.rig.take() else { return (mesh, topology) };
     (mesh.lights, mesh.cameras) = (mesh.lights_in(pose), mesh.cameras_in(pose));

@@ -90,7 +90,6 @@ mod tests {
     use crate::mesh::{Look, Shape};
     use crate::progress::Progress;
     use crate::tessellate::{LimitSurface, LodView, Tessellation};
-    use inspect::settings::Settings;
 
     fn solid(mesh: &Mesh) -> Option<Solid> {
         Solid::find(mesh, &Topology::build(mesh, &Progress::default()).expect("nobody cancels"))
@@ -142,8 +141,8 @@ mod tests {
             let Some(solid) = Solid::find(&mesh, &topology) else { continue };
             for surface in Surface::ALL {
                 let [min, max] = solid.extent_of(surface);
-                let settings = Settings::from(Tessellation { surface, alpha: 1.0, ..Tessellation::default() });
-                let inputs = settings.inputs(LodView::new(Mat4::IDENTITY, glam::Vec2::ONE));
+                let tessellation = Tessellation { surface, alpha: 1.0, ..Tessellation::default() };
+                let inputs = Inputs::new(&tessellation, LodView::new(Mat4::IDENTITY, glam::Vec2::ONE));
                 let limit = LimitSurface::new(&mesh, &topology, &inputs);
                 for patch in 0..topology.patches.len() as u32 {
                     let net = limit.net(patch);

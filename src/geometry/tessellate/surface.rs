@@ -10,7 +10,7 @@ use super::factors::FIXED_ONE;
 use crate::names::every;
 
 /// The smallest step of 16.16 fixed point as a float. It is a power of two, so products with it are exact.
-pub(crate) const UNIT: f32 = 1.0 / FIXED_ONE as f32;
+pub const UNIT: f32 = 1.0 / FIXED_ONE as f32;
 
 /// Which surface a patch becomes. Those that end on AEN are the same with adjacent edge normals, as in PN-AEN: an edge's
 /// control points are the mean of what its sides propose.
@@ -98,7 +98,7 @@ pub fn patch_position(surface: Surface, net: &ControlNet, u: u32, v: u32) -> Vec
 
 /// Returns the derivatives of a patch's position by u and by v (w = 1 - u - v) at weights `u` and `v`: its tangents, in
 /// object units.
-pub(crate) fn patch_tangents(surface: Surface, net: &ControlNet, u: u32, v: u32) -> [Vec3; 2] {
+pub fn patch_tangents(surface: Surface, net: &ControlNet, u: u32, v: u32) -> [Vec3; 2] {
     let (x, y, z) = (u as f32 * UNIT, v as f32 * UNIT, (FIXED_ONE - u - v) as f32 * UNIT);
     let [b300, b030, b003] = net.corners;
     if surface == Surface::Flat {

@@ -40,7 +40,7 @@ impl Vertex {
 }
 
 /// Packs a patch (30 bits) and a domain point (17 bits for each of U and V).
-pub(crate) fn pack_key(patch: u32, [u, v]: [u32; 2]) -> [u32; 2] {
+pub fn pack_key(patch: u32, [u, v]: [u32; 2]) -> [u32; 2] {
     [u | (v << 17), (v >> 15) | (patch << 2)]
 }
 

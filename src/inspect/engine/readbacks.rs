@@ -165,7 +165,6 @@ impl Engine {
     ///
     /// # Errors
     /// More patches than the adapter binds memory for, or a lost device.
-    #[cfg(test)]
     pub fn own_least(&self, scene: &mut Scene) -> Result<Vec<u32>, GpuError> {
         let mut timing = Timing::Off;
         let mut recorder = Recorder::new(&self.gpu, &mut timing);

@@ -210,7 +210,6 @@ impl Outlines {
     }
 
     /// A patch's outline, for tests that change it.
-    #[cfg(test)]
     pub fn outline_mut(&mut self, patch: u32) -> &mut [OutlinePoint] {
         let patch = patch as usize;
         &mut self.points[self.starts[patch] as usize..self.starts[patch + 1] as usize]

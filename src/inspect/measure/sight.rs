@@ -89,7 +89,7 @@ mod tests {
     use glam::vec3;
 
     use super::*;
-    use geometry::cores::tests::on_cores;
+    use geometry::cores::on_threads;
     use geometry::tessellate::Vertex;
 
     #[test]
@@ -103,7 +103,7 @@ mod tests {
         let eyes = [Vec3::Z * 8.0, Vec3::Z * 1.5, Vec3::NEG_Z, Vec3::X * 50.0, vec3(2.0, 2.0, 4.0)];
         for cores in [1, 3] {
             let mut sight = Sight::new(Vec3::ZERO, eyes, 0.01);
-            on_cores(cores, || sight.take(&EmittedChunk::whole(&vertices, &triangles)));
+            on_threads(cores, || sight.take(&EmittedChunk::whole(&vertices, &triangles))).expect("threads");
             assert_eq!(sight.clear(), [0.25, 1.0, 1.0, 1.0, 0.5]);
         }
     }

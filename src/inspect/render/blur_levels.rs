@@ -1,11 +1,8 @@
 //! The levels of an environment's cube map, each blurred as a surface of one roughness reflects it.
 
-#[cfg(test)]
 use glam::{Vec3, Vec4, vec2};
 
-#[cfg(test)]
 use super::cube_map::{CubeMap, face_place, texels};
-#[cfg(test)]
 use super::prefilter::{cube_direction, directions_across, hammersley, light_and_density, sample_level};
 
 /// Levels of an environment's cube map; `ENVIRONMENT_LEVELS` in `shaders/environment.wgsl`.
@@ -20,13 +17,11 @@ pub fn roughness_of_level(level: u32) -> f32 {
 }
 
 /// Twin of `level_of_roughness` in `shaders/environment.wgsl`.
-#[cfg(test)]
 pub fn level_of_roughness(roughness: f32) -> f32 {
     (ENVIRONMENT_LEVELS - 1) as f32 * roughness.powf(2.0 / 3.0)
 }
 
 /// Twin of `blurred` in `shaders/pass_prefilter.wgsl`: what a level of that roughness has in a direction.
-#[cfg(test)]
 pub fn blurred(source: &CubeMap, normal: Vec3, roughness: f32) -> Vec3 {
     if roughness == 0.0 {
         return source.sample(normal, 0.0);
@@ -45,7 +40,6 @@ pub fn blurred(source: &CubeMap, normal: Vec3, roughness: f32) -> Vec3 {
 }
 
 /// All levels as the pass makes them from a source of the same size.
-#[cfg(test)]
 pub fn prefiltered(source: &CubeMap) -> CubeMap {
     let levels = (0..ENVIRONMENT_LEVELS).map(|level| {
         let size = source.size >> level;

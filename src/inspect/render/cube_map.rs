@@ -64,7 +64,6 @@ fn halved(level: &[Vec3], width: usize) -> Vec<Vec3> {
     texels(half as u32).map(mean).collect()
 }
 
-#[cfg(test)]
 impl CubeMap {
     /// What a sampler gives that blends texels and levels, also across the borders of faces.
     pub fn sample(&self, direction: Vec3, level: f32) -> Vec3 {
@@ -95,7 +94,6 @@ impl CubeMap {
 }
 
 /// The face that a direction meets, and the place on it, the inverse of [`cube_direction`].
-#[cfg(test)]
 fn face_of(direction: Vec3) -> (u32, Vec2) {
     let Vec3 { x, y, z } = direction;
     let size = direction.abs();

@@ -112,19 +112,16 @@ fn seen_facet(to_eye: Vec3, alpha: f32, [first, second]: [f32; 2]) -> Vec3 {
 }
 
 /// Twin of `environment_dfg` in `shaders/environment.wgsl`.
-#[cfg(test)]
 pub fn environment_dfg(facing: f32, roughness: f32) -> [f32; 2] {
     let [first, second, ..] = dfg_texel(facing, roughness);
     [first, second]
 }
 
 /// Twin of `environment_sheen`.
-#[cfg(test)]
 pub fn environment_sheen(facing: f32, roughness: f32) -> f32 {
     dfg_texel(facing, roughness)[2]
 }
 
-#[cfg(test)]
 fn dfg_texel(facing: f32, roughness: f32) -> [f32; 4] {
     let table = dfg_table();
     let last = DFG_SIZE as usize - 1;

@@ -97,7 +97,6 @@ impl Environment {
     ///
     /// # Errors
     /// Out of memory, or a lost device.
-    #[cfg(test)]
     pub fn uniform(gpu: &Gpu, light: [f32; 3]) -> Result<Self, GpuError> {
         Self::of(gpu, &CubeMap::of(ENVIRONMENT_SIZE, |_| light.into()))
     }

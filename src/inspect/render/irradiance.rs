@@ -34,7 +34,6 @@ fn terms(Vec3 { x, y, z }: Vec3) -> [f32; 9] {
 }
 
 /// Twin of `environment_irradiance` in `shaders/environment.wgsl`, of a light that isn't turned.
-#[cfg(test)]
 pub fn irradiance_of(coefficients: &Irradiance, normal: Vec3) -> Vec3 {
     let sum: Vec3 = coefficients.iter().zip(terms(normal)).map(|(&color, term)| color * term).sum();
     sum.max(Vec3::ZERO)

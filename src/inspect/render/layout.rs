@@ -152,9 +152,9 @@ pub const T_JUNCTION_COLOR: [u8; 3] = [240, 228, 66];
 /// sRGB colour of a fold; `FOLD_COLOR` in `shaders/draw_surface_color.wgsl` has the same in linear light.
 pub const FOLD_COLOR: [u8; 3] = [190, 70, 255];
 
+#[cfg(test)]
 /// sRGB colour of a face seen from behind, before it is lit; `BACK_FACE_COLOR` in `shaders/draw_surface_color.wgsl` has the same
 /// in linear light.
-#[cfg(test)]
 pub(crate) const BACK_FACE_COLOR: [u8; 3] = [225, 30, 110];
 
 /// sRGB colour of waste: triangles that are too small, and patches whose factors are too low. `WASTE_COLOR` in
@@ -166,7 +166,6 @@ pub const WASTE_COLOR: [u8; 3] = [213, 94, 0];
 pub const WORST_COLOR: [u8; 3] = [120, 255, 245];
 
 /// sRGB colour of a normal; `NORMAL_COLOR` in `shaders/draw_lines.wgsl` has the same in linear light.
-#[cfg(test)]
 pub const NORMAL_COLOR: [u8; 3] = [60, 215, 255];
 
 /// sRGB colour of the frustum of the camera that LOD is computed for, where the picture is seen from another one.

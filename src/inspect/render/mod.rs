@@ -35,7 +35,6 @@ mod pipelines;
 pub mod prefilter;
 pub(crate) mod prefilter_pass;
 pub mod punctual;
-#[cfg(test)]
 pub mod reflectance;
 pub mod renderer;
 mod scale;
@@ -68,12 +67,11 @@ pub use scale::{DENSITY_SCALE, EXCESS_SCALE, FACTOR_SCALE, Scale, curvature_scal
 pub use scene::{LineSegment, Scene};
 pub(crate) use silhouette::{SilhouetteCoverage, SilhouetteDrawer, padded_clip};
 pub use target::Target;
-#[cfg(test)]
 pub use target::samples;
 pub use window::WindowPipelines;
 
-/// The shader files with entry points for drawing and picking, and the light that draws read. Each makes one shader module.
 #[cfg(test)]
+/// The shader files with entry points for drawing and picking, and the light that draws read. Each makes one shader module.
 static MODULES: [&gpu::WgslFile; 17] = [
     &coverage::PASS_COVERAGE,
     &environment::ENVIRONMENT,

@@ -1,10 +1,8 @@
 //! Blurs an environment as rough surfaces do: twin of `shaders/prefilter.wgsl`.
 
-#[cfg(test)]
 use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3, vec2, vec3};
-#[cfg(test)]
 use glam::{Vec4, vec4};
 
 /// A direction on a face of a cube map; `at` is -1 to 1 along the face's axes (WebGPU, section on cube maps).
@@ -25,7 +23,6 @@ pub(crate) fn hammersley(index: u32, count: u32) -> Vec2 {
 }
 
 /// Two directions that are orthogonal to a unit vector and to each other (Duff et al. 2017, listing 3).
-#[cfg(test)]
 pub(crate) fn directions_across(normal: Vec3) -> [Vec3; 2] {
     let side = if normal.z >= 0.0 { 1.0 } else { -1.0 };
     let a = -1.0 / (side + normal.z);
@@ -38,7 +35,6 @@ pub(crate) fn directions_across(normal: Vec3) -> [Vec3; 2] {
 
 /// A light's direction seen along the normal (z) of a GGX surface, by way of its microfacets (Walter et al. 2007, equations 35
 /// and 36), and the square root of its density times 4 (w).
-#[cfg(test)]
 pub(crate) fn light_and_density(point: Vec2, alpha: f32) -> Vec4 {
     let square = alpha * alpha;
     let cosine_squared = (1.0 - point.x) / (1.0 + (square - 1.0) * point.x);
@@ -51,7 +47,6 @@ pub(crate) fn light_and_density(point: Vec2, alpha: f32) -> Vec4 {
 
 /// The level of the source whose texels are as large as a sample of that density, times 2 (Krivanek and Colbert 2008, section
 /// 3). `size` is the size of a face, in texels.
-#[cfg(test)]
 pub(crate) fn sample_level(root_density: f32, count: u32, size: f32) -> f32 {
     let texels = (24.0 / PI).sqrt() * size / (root_density * (count as f32).sqrt());
     texels.log2().max(0.0)

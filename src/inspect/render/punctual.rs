@@ -1,7 +1,6 @@
 //! Lights of a file on the device: twin of `shaders/punctual.wgsl`, which explains them.
 
 use bytemuck::{Pod, Zeroable};
-#[cfg(test)]
 use glam::Vec4Swizzles;
 use glam::{Vec3, Vec4};
 use wgpu::util::DeviceExt;
@@ -23,14 +22,12 @@ pub struct PunctualLight {
 }
 
 /// What reaches a place from a light.
-#[cfg(test)]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct DirectLight {
+pub struct DirectLight {
     pub to_light: Vec3,
     pub illuminance: Vec3,
 }
 
-#[cfg(test)]
 pub fn direct_light(light: &PunctualLight, place: Vec3) -> DirectLight {
     let toward = light.origin.xyz() - light.origin.w * place;
     let square = toward.dot(toward).max(1e-12);

@@ -72,7 +72,6 @@ impl Renderer {
     }
 
     /// The same, with another light in place of the studio's.
-    #[cfg(test)]
     pub fn lit_by(gpu: &Gpu, environment: Environment) -> Self {
         let renderer = Self::new(gpu);
         // There is none yet, so that nothing fails.

@@ -1,6 +1,5 @@
 //! Linear light to what a screen can show: twin of `shaders/tone.wgsl`.
 
-#[cfg(test)]
 use glam::Vec3;
 
 /// Numbers of the curves.
@@ -8,15 +7,12 @@ pub const TONE_CURVE_NEUTRAL: u32 = 0;
 pub const TONE_CURVE_NONE: u32 = 1;
 
 /// Below this, colours are shown as they are, and above they are compressed.
-#[cfg(test)]
 pub(crate) const COMPRESSION_START: f32 = 0.76;
 
 /// How fast compressed colours become white.
-#[cfg(test)]
 pub(crate) const DESATURATION: f32 = 0.15;
 
 /// The Khronos PBR Neutral tone mapper (Khronos 2024, specification 1.0). Takes and returns linear RGB, which isn't negative.
-#[cfg(test)]
 pub(crate) fn neutral_tone(color: Vec3) -> Vec3 {
     let least = color.min_element();
     let offset = if least < 0.08 { least - 6.25 * least * least } else { 0.04 };
@@ -32,7 +28,6 @@ pub(crate) fn neutral_tone(color: Vec3) -> Vec3 {
 }
 
 /// Linear RGB to show, by the curve of that number; 0 to 1 under the neutral one.
-#[cfg(test)]
 pub fn tone_mapped(color: Vec3, curve: u32) -> Vec3 {
     let light = color.max(Vec3::ZERO);
     if curve == TONE_CURVE_NEUTRAL { neutral_tone(light) } else { light }

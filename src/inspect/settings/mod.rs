@@ -9,7 +9,7 @@ pub mod light;
 mod matcap;
 pub mod options;
 mod overlays;
-#[cfg(test)]
+#[cfg(any(test, feature = "random"))]
 pub mod random;
 mod value;
 

@@ -43,7 +43,6 @@ static PASS_EXPORTED: WgslFile = WgslFile::new(
 );
 
 /// The modules of shaders that are only exported.
-#[cfg(test)]
 pub static MODULES: [&WgslFile; 1] = [&PASS_EXPORTED];
 
 /// A shading language.

@@ -22,7 +22,6 @@ pub use legend::method_styles;
 pub use method_style::{Fill, MethodStyle, Shape, dash};
 pub use pen::RADIUS;
 pub use picture::{bitmap, svg};
-#[cfg(test)]
 pub use race::front;
 pub use race::has_converged;
 pub(crate) use race::{Race, Win};

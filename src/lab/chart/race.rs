@@ -23,7 +23,7 @@ pub(crate) struct Win<'a> {
 
 /// Returns the front of points with a cost and an error: the indices of the points that no other one beats, by growing cost.
 /// Each has less error than all points that cost as much or less. Of equal points the front has the first.
-pub(crate) fn front(points: &[(f64, f64)]) -> Vec<usize> {
+pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by(|&a, &b| {
         let ((cost_a, error_a), (cost_b, error_b)) = (points[a], points[b]);

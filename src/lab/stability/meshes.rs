@@ -239,7 +239,7 @@ pub(super) fn ground() -> Mesh {
 
 /// Random triangles over a few points, so that edges have many sides of either winding, some triangles are duplicates, and
 /// some are degenerate. The normals are random, some of them zero, NaN or long. Each `seed` gives another soup.
-pub(crate) fn soup(seed: u32) -> Mesh {
+pub fn soup(seed: u32) -> Mesh {
     let mut random = Random(seed.wrapping_mul(0x9e37_79b9) ^ 0x5bd1_e995);
     let points: Vec<Vec3> = (0..14).map(|_| random.vector()).collect();
     let triangles: Vec<_> =

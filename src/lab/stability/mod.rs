@@ -14,12 +14,10 @@ mod views;
 pub(crate) use cases::DEFAULT_VIEW;
 pub use cases::{CASES, Case, CaseView, Probe};
 pub use gates::{Failure, are_judged, failures};
-#[cfg(test)]
 pub use meshes::soup;
 pub use picture::{PictureError, picture};
 pub use report::{LEGEND, PAGE, Section, Verdict, lines, page, table};
 pub use run::{Effort, run};
-#[cfg(test)]
 pub use views::random as random_camera;
 pub use views::viewport;
 

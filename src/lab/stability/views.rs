@@ -17,7 +17,7 @@ pub fn viewport() -> Vec2 {
 
 /// Camera `index` of a fixed sequence of cameras all around the mesh, near and far, and inside it. Every eighth one is
 /// orthographic. It uses Halton's low-discrepancy sequence, so that even the first few cameras differ much.
-pub(crate) fn random(bounds: &Bounds, index: u32) -> Camera {
+pub fn random(bounds: &Bounds, index: u32) -> Camera {
     let [turn, height, depth, x, y] = [2, 3, 5, 7, 11].map(|base| radical_inverse(base, index as usize + 1) as f32);
     let radius = bounds.radius();
     Camera {

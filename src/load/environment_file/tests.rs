@@ -1,34 +1,16 @@
 //! Panoramas that are written in code read back, and broken ones get a sentence; `docs/hostile/environments.md` lists them.
 
+use documents::panoramas::{open_exr_file, radiance_file};
 use std::path::Path;
 
 use fastrand::Rng;
 use glam::Vec3;
-use image::codecs::hdr::HdrEncoder;
-use image::codecs::openexr::OpenExrEncoder;
-use image::{ExtendedColorType, ImageEncoder, Rgb};
 
 use super::*;
 use crate::hostile_files::{is_expected, mentions, page, unhung};
 
-/// The bytes of a Radiance file with these pixels.
-pub fn radiance_file(size: [u32; 2], pixels: &[[f32; 3]]) -> Vec<u8> {
-    let pixels: Vec<Rgb<f32>> = pixels.iter().map(|&pixel| Rgb(pixel)).collect();
-    let mut bytes = Vec::new();
-    HdrEncoder::new(&mut bytes).encode(&pixels, size[0] as usize, size[1] as usize).expect("in memory");
-    bytes
-}
-
-/// The bytes of an OpenEXR file with these pixels.
-pub fn open_exr_file(size: [u32; 2], pixels: &[[f32; 3]]) -> Vec<u8> {
-    let mut bytes = Cursor::new(Vec::new());
-    let encoder = OpenExrEncoder::new(&mut bytes);
-    encoder.write_image(bytemuck::cast_slice(pixels), size[0], size[1], ExtendedColorType::Rgb32F).expect("in memory");
-    bytes.into_inner()
-}
-
 /// Small files of both formats, for a fuzzer.
-pub(crate) fn seeds() -> Vec<(&'static str, String, Vec<u8>)> {
+pub fn seeds() -> Vec<(&'static str, String, Vec<u8>)> {
     let seed = |name: &str, bytes| ("panorama", name.to_owned(), bytes);
     let flat = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\n\n-Y 2 +X 4\n".to_vec();
     vec![

@@ -10,10 +10,11 @@ pub(crate) const POINTS: [[i8; 3]; 8] =
     [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]];
 
 /// The sides of the cube, counter-clockwise seen from outside.
-pub const SIDES: [[usize; 4]; 6] = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [2, 3, 7, 6], [1, 2, 6, 5], [0, 4, 7, 3]];
+pub(crate) const SIDES: [[usize; 4]; 6] =
+    [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [2, 3, 7, 6], [1, 2, 6, 5], [0, 4, 7, 3]];
 
 /// Returns the triangles of the cube.
-pub fn triangles() -> Vec<[usize; 3]> {
+pub(crate) fn triangles() -> Vec<[usize; 3]> {
     SIDES.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect()
 }
 

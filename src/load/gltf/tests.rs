@@ -12,7 +12,7 @@ mod parts;
 mod scenes;
 mod textures;
 mod variants;
-pub use mutations::seeds;
+pub(crate) use mutations::seeds;
 pub(crate) use odd::odd;
 
 use base64::prelude::{BASE64_STANDARD, Engine};

@@ -9,7 +9,7 @@ const START: usize = 32;
 const END: usize = 48;
 
 /// Compares a page with the stored one. Each row has a file, in Markdown, and the answer that it gets.
-pub fn hold(name: &str, title: &str, rows: &[(String, String)]) {
+pub(crate) fn hold(name: &str, title: &str, rows: &[(String, String)]) {
     hold_with(name, title, rows, &[]);
 }
 
@@ -39,7 +39,7 @@ pub(crate) fn hold_with(name: &str, title: &str, rows: &[(String, String)], alon
 }
 
 /// Writes a table's file into the folder that `PNAEN_HOSTILE` names, if it does, for a comparison with other programs.
-pub fn keep(name: &str, bytes: &[u8]) {
+pub(crate) fn keep(name: &str, bytes: &[u8]) {
     if let Some(folder) = std::env::var_os("PNAEN_HOSTILE") {
         std::fs::create_dir_all(&folder).expect("a folder that can be made");
         std::fs::write(Path::new(&folder).join(name), bytes).expect("a file that can be written");
@@ -47,7 +47,7 @@ pub fn keep(name: &str, bytes: &[u8]) {
 }
 
 /// Formats a file on one line, in Markdown: all of it, or its start and end.
-pub fn shown(bytes: &[u8]) -> String {
+pub(crate) fn shown(bytes: &[u8]) -> String {
     let line = |bytes: &[u8]| bytes.escape_ascii().to_string().replace('|', "\\|");
     match bytes.len() {
         0 => "nothing".to_owned(),

@@ -1,7 +1,6 @@
 use image::{DynamicImage, ImageBuffer, Luma, LumaA, Rgb, Rgba};
 
 use super::*;
-use geometry::mesh::mipmap::tests::noise;
 
 fn encoded(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
@@ -12,6 +11,12 @@ fn encoded(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
 fn of(texture: &Texture) -> DynamicImage {
     let [width, height] = texture.size;
     image::RgbaImage::from_raw(width, height, texture.rgba.clone()).expect("4 bytes a px").into()
+}
+
+/// An image of noise, always the same.
+fn noise(size: [u32; 2]) -> Texture {
+    let mut random = fastrand::Rng::with_seed(u64::from(size[0]) << 32 | u64::from(size[1]));
+    Texture { size, rgba: (0..4 * size[0] * size[1]).map(|_| random.u8(..)).collect() }
 }
 
 #[test]

@@ -13,7 +13,7 @@ const UASTC: &[u8] = include_bytes!("tests/ramp-uastc.ktx2");
 pub(crate) const UASTC_ZSTD: &[u8] = include_bytes!("tests/alpha-uastc-z.ktx2");
 
 /// A file of a plain format, with one level.
-pub fn plain(format: u32, size: [u32; 2], data: &[u8]) -> Vec<u8> {
+pub(crate) fn plain(format: u32, size: [u32; 2], data: &[u8]) -> Vec<u8> {
     let words = [format, 1, size[0], size[1], 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0];
     let start = [&START[..], words.map(u32::to_le_bytes).as_flattened()].concat();
     let level = [104, data.len() as u64, data.len() as u64].map(u64::to_le_bytes);
@@ -21,7 +21,7 @@ pub fn plain(format: u32, size: [u32; 2], data: &[u8]) -> Vec<u8> {
 }
 
 /// Puts a number at a place.
-pub fn with(file: &[u8], at: usize, number: u32) -> Vec<u8> {
+pub(crate) fn with(file: &[u8], at: usize, number: u32) -> Vec<u8> {
     let mut changed = file.to_vec();
     changed[at..at + 4].copy_from_slice(&number.to_le_bytes());
     changed

@@ -26,12 +26,12 @@ fn nothing(_: usize) -> String {
     String::new()
 }
 
-pub fn cube() -> String {
+pub(crate) fn cube() -> String {
     cube_of("OFF # a cube\n\n8 6 12", nothing, nothing)
 }
 
 /// A cube with everything that a vertex may have, and colours of faces, which count for nothing beside those of vertices.
-pub fn everything() -> String {
+pub(crate) fn everything() -> String {
     cube_of("STCN4OFF\n8 6 0", |i| format!("1 0 0 1 {} 0 0 255 0.5 0.25", 30 * i), |i| format!("0.5 0.5 0.{i}"))
 }
 

@@ -67,7 +67,7 @@ const SCALARS: [(Scalar, &str); 10] = [
 ];
 
 /// A cube of quads, with other elements and properties that a file may have.
-pub fn cube(encoding: usize, position: usize, index: usize) -> Vec<u8> {
+pub(crate) fn cube(encoding: usize, position: usize, index: usize) -> Vec<u8> {
     let ((encoding, format), (position, of_position), (index, of_index)) =
         (ENCODINGS[encoding], SCALARS[position], SCALARS[index]);
     let header = format!(
@@ -148,7 +148,7 @@ fn faces_may_come_before_their_vertices() {
 }
 
 /// Six vertices in two rows, and triangle strips of them.
-pub fn strip(indices: &str) -> String {
+pub(crate) fn strip(indices: &str) -> String {
     let count = indices.split(' ').count();
     format!(
         "ply\nformat ascii 1.0\nelement vertex 6\nproperty int x\nproperty int y\nproperty int z\nelement tristrips 1\n\

@@ -8,7 +8,7 @@ fn read(bytes: &[u8]) -> LoadedMesh {
 }
 
 /// A cube with wrong normals.
-pub fn text() -> String {
+pub(crate) fn text() -> String {
     let vertex = |point: usize| format!("vertex {} {} {}\n", POINTS[point][0], POINTS[point][1], POINTS[point][2]);
     let facet = |t: &[usize; 3]| {
         let vertices: String = t.iter().map(|&point| vertex(point)).collect();
@@ -18,7 +18,7 @@ pub fn text() -> String {
     format!("solid one\n{}endsolid one\nsolid two\n{}endsolid two\n", facets[..5].concat(), facets[5..].concat())
 }
 
-pub fn binary(header: &[u8]) -> Vec<u8> {
+pub(crate) fn binary(header: &[u8]) -> Vec<u8> {
     let mut bytes = header.to_vec();
     bytes.resize(80, b' ');
     bytes.extend(12_u32.to_le_bytes());

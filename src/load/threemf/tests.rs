@@ -1,8 +1,5 @@
 //! 3MF files as slicers and modelling programs write them.
 
-#[path = "../../../tests/documents/package.rs"]
-pub mod package;
-
 pub(crate) mod layers;
 
 use glam::Vec3;
@@ -10,8 +7,8 @@ use glam::Vec3;
 use super::*;
 use crate::face_builder::linear_color;
 use crate::face_builder::tests::{POINTS, assert_cube, triangles};
+use documents::package::{self, Entry, MODEL, mesh, model, relationships, zip};
 use geometry::mesh::{Alpha, Sampling, Wrap};
-use package::{Entry, MODEL, mesh, model, relationships, zip};
 
 fn read(bytes: &[u8]) -> LoadedMesh {
     super::read(bytes.to_vec(), "cube", Import::default(), &Limits::default(), &Progress::new()).unwrap()
@@ -27,7 +24,7 @@ fn of_object(object: &str, build: &str) -> Vec<u8> {
     package::package(&model(&format!("<object id=\"1\" {object}</object>"), build))
 }
 
-pub fn cube() -> Vec<u8> {
+pub(crate) fn cube() -> Vec<u8> {
     of_object(&format!("type=\"model\">{}", cube_mesh()), "<item objectid=\"1\"/>")
 }
 
@@ -77,7 +74,7 @@ pub(crate) fn with_texture() -> Vec<u8> {
 }
 
 /// A file with a part beside the model, materials, colours, components, a mirrored one, and what isn't read.
-pub fn everything() -> Vec<u8> {
+pub(crate) fn everything() -> Vec<u8> {
     let beside = model(&painted(), "");
     let own =
         "<object id=\"7\"><components><component p:path=\"/3D/Objects/a.model\" objectid=\"2\"/></components></object>";

@@ -4,10 +4,7 @@ use image::ImageFormat;
 
 use super::*;
 
-#[path = "../../../tests/documents/webp.rs"]
-pub mod webp;
-
-use webp::{BitWriter, of_groups};
+use documents::webp::{BitWriter, of_groups};
 
 /// The bytes of the header, and of the chunk before it.
 const HEADER: usize = 12 + 8 + 5;

@@ -4,10 +4,8 @@ use glam::{DVec3, Vec2, Vec3};
 use proptest::prelude::*;
 
 use super::*;
-use crate::mesh::{CornerDetail, EdgeCounts, EdgeKind, Material, MemoryRefused, Shape, Side, Unlimited, weld};
-use lab::stability::{CASES, soup};
-use load::Budget;
-use load::files::Limits;
+use crate::mesh::build_limits::tests::Counted;
+use crate::mesh::{CornerDetail, EdgeCounts, Material, MemoryRefused, Shape, Side, Unlimited, weld};
 
 fn topology(mesh: &Mesh) -> Topology {
     Topology::build(mesh, &Progress::new()).unwrap()
@@ -60,15 +58,6 @@ fn areas(mesh: &Mesh) -> f64 {
 /// Six times the volume of a closed mesh, seen from `at`.
 fn volume(mesh: &Mesh, at: DVec3) -> f64 {
     triangles(mesh).map(places).map(|[a, b, c]| (a - at).dot((b - at).cross(c - at))).sum()
-}
-
-fn boundary_length(topology: &Topology) -> f64 {
-    let open = topology.edges.iter().filter(|edge| edge.kind == EdgeKind::Boundary);
-    open.map(|edge| {
-        let [a, b] = topology.edge_points(edge).map(|point| topology.points[point as usize].as_dvec3());
-        a.distance(b)
-    })
-    .sum()
 }
 
 fn euler(topology: &Topology) -> i64 {
@@ -270,39 +259,6 @@ fn materials_keep_their_triangles_together() {
     assert_eq!(mesh.name, "cube");
 }
 
-#[test]
-fn what_was_welded_within_a_tolerance_stays_welded() {
-    let case = CASES.iter().find(|case| case.name == "near-seam").unwrap();
-    let before = (case.mesh)();
-    let (_, exact, _) = banded(&before, 0.01);
-    let (_, welded, _) = banded_within(&before, case.weld, 0.01);
-    assert!(!exact.is_closed_and_oriented() && welded.is_closed_and_oriented());
-    let (mesh, narrow, _) = banded_within(&before, 0.01, 1e-3);
-    assert!(narrow.edge_counts().split == 0 && !mesh.triangles.is_empty());
-}
-
-#[test]
-fn no_split_normals_are_left_and_meshes_stay_whole() {
-    for case in &CASES {
-        let before = (case.mesh)();
-        let progress = Progress::new();
-        let old = Topology::build_within(&before, case.weld, &progress).unwrap();
-        for width in [1e-4, 0.02] {
-            let (mesh, new, band) = banded_within(&before, case.weld, width);
-            let name = format!("{} {width}", case.name);
-            assert_eq!(new.edge_counts().split, 0, "{name}");
-            assert_eq!(new.is_closed_and_oriented(), old.is_closed_and_oriented(), "{name}");
-            assert!((boundary_length(&new) - boundary_length(&old)).abs() <= 1e-5 * boundary_length(&old), "{name}");
-            assert!(
-                band.creases > 0 || (old.edge_counts().split == 0 && mesh.triangles.len() == before.triangles.len())
-            );
-            if old.is_closed_and_oriented() {
-                assert_eq!(euler(&new), euler(&old), "{name}");
-            }
-        }
-    }
-}
-
 /// A closed shape whose corners all have normals of their own, a few of them equal.
 fn ragged(shape: Shape, picks: &[u8]) -> Mesh {
     let directions = [Vec3::X, Vec3::NEG_X, Vec3::new(0.6, 0.8, 0.0), Vec3::new(0.0, -0.6, 0.8)];
@@ -317,18 +273,6 @@ fn ragged(shape: Shape, picks: &[u8]) -> Mesh {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
-
-    #[test]
-    fn triangle_soups_lose_all_split_normals(seed in 0_u32..100_000, width in 1e-5_f32..0.1) {
-        let before = soup(seed);
-        let old = topology(&before);
-        let (mesh, new, _) = banded(&before, width);
-        prop_assert_eq!(new.edge_counts().split, 0);
-        let open = |topology: &Topology| topology.edge_counts().boundary;
-        prop_assert!(open(&new) <= 3 * open(&old), "{} of {}", open(&new), open(&old));
-        prop_assert!((boundary_length(&new) - boundary_length(&old)).abs() <= 1e-5 * boundary_length(&old));
-        prop_assert!((areas(&mesh) / areas(&before) - 1.0).abs() < 1e-5);
-    }
 
     #[test]
     fn closed_meshes_stay_closed_whatever_their_normals(
@@ -368,7 +312,7 @@ fn cancelling_stops_the_work() {
 #[test]
 fn the_account_is_asked_for_every_patch_and_every_edge() {
     let mesh = Shape::CubeSplit.build();
-    let (before, none) = (topology(&mesh), Budget::new(0, &Limits { memory: 0, ..Limits::default() }));
+    let (before, none) = (topology(&mesh), Counted { allowed: 0, ..Counted::default() });
     let refused = with_crease_band(&mesh, &before, 0.01, &none, &Progress::new()).err();
     let needed = (PER_PATCH * 12 + size_of::<EdgeCuts>() * 18) as u64;
     assert_eq!(refused, Some(BuildError::Memory(MemoryRefused { needed, allowed: 0 })));

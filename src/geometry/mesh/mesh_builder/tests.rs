@@ -1,9 +1,7 @@
 //! Building meshes: corners are merged, repaired and put in order.
 
-use std::cell::Cell;
-
 use super::*;
-use load::Budget;
+use crate::mesh::build_limits::tests::Counted;
 
 fn corner(x: f32, y: f32) -> InputCorner {
     InputCorner { position: Vec3::new(x, y, 0.0), normal: Some(Vec3::Z), uv: Vec2::ZERO }
@@ -70,7 +68,7 @@ fn coordinates_that_devices_drop_are_dropped_here_too() {
 
 #[test]
 fn room_for_corners_grows_by_half_where_nothing_is_known() {
-    let (mut builder, budget) = (MeshBuilder::new(), Budget::unlimited());
+    let (mut builder, budget) = (MeshBuilder::new(), Counted::default());
     for x in 0..1000_u16 {
         builder.corner(corner(x.into(), 0.0), 0);
     }
@@ -96,36 +94,9 @@ fn lists_of_triangles_are_full_before_the_next_is_twice_as_long() {
     assert_eq!(lists, [(4, 4), (8, 8), (16, 16), (32, 32), (38, 64)]);
 }
 
-/// An account that refuses nothing, and the sum of what was borrowed.
-struct Lender(Budget, Cell<u64>);
-
-impl MemoryAccount for Lender {
-    fn hold(&self, bytes: u64) -> Result<(), MemoryRefused> {
-        self.0.hold(bytes)
-    }
-
-    fn release(&self, bytes: u64) {
-        self.0.release(bytes);
-    }
-
-    fn borrow(&self, bytes: u64) -> Result<(), MemoryRefused> {
-        self.0.borrow(bytes)?;
-        self.1.set(self.1.get() + bytes);
-        Ok(())
-    }
-
-    fn borrowed(&self) -> u64 {
-        self.0.borrowed()
-    }
-
-    fn give_back(&self, scope: &Borrowed) {
-        self.0.give_back(scope);
-    }
-}
-
 #[test]
 fn what_a_caller_has_borrowed_stays_borrowed_until_it_gives_it_back() {
-    let budget = Budget::unlimited();
+    let budget = Counted::default();
     budget.borrow(7).unwrap();
     let mut builder = MeshBuilder::new();
     add_strip(&mut builder);
@@ -136,12 +107,12 @@ fn what_a_caller_has_borrowed_stays_borrowed_until_it_gives_it_back() {
 #[test]
 fn room_that_was_not_needed_is_returned_and_the_copy_is_accounted_for() {
     let built = |room: usize| {
-        let (mut builder, lender) = (MeshBuilder::new(), Lender(Budget::unlimited(), Cell::new(0)));
+        let (mut builder, lender) = (MeshBuilder::new(), Counted::default());
         builder.make_room(room, &lender).unwrap();
         add_strip(&mut builder);
         let (mesh, _) = builder.finish_bound(String::new(), &lender, &Progress::new()).unwrap();
         assert_eq!(mesh.corners.len(), 100);
-        (mesh.corners.capacity(), lender.1.get())
+        (mesh.corners.capacity(), lender.lent.get())
     };
     let (exact, spare) = (built(100), built(500));
     assert_eq!((exact.0, spare.0), (100, 100));

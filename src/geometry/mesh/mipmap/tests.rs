@@ -1,7 +1,7 @@
 use super::*;
 
 /// An image of noise, always the same. Its alpha is that of leaves: mostly 0 or 255.
-pub fn noise(size: [u32; 2]) -> Texture {
+pub(crate) fn noise(size: [u32; 2]) -> Texture {
     let mut random = fastrand::Rng::with_seed(u64::from(size[0]) << 32 | u64::from(size[1]));
     let alpha = |random: &mut fastrand::Rng| match random.u8(..4) {
         0 => 255,

@@ -4,9 +4,10 @@ use std::iter::zip;
 use std::ops::Range;
 
 use bytemuck::zeroed_vec;
+use rayon::prelude::*;
 
 use super::{Edge, EdgeKind, Patch, Side, Topology, is_degenerate};
-use crate::cores::{in_parts, ranges, split};
+use crate::cores::{ranges, split};
 use crate::mesh::Corner;
 
 /// Around a point with more sides than this, they are sorted in n log n steps.
@@ -30,8 +31,8 @@ pub(super) fn patches(triangles: &[[u32; 3]], corner_points: &[u32], points: usi
     let mut patches: Vec<Patch> = zeroed_vec(triangles.len());
     // On two cores at most, since each counts the sides of all points.
     let ranges: Vec<_> = ranges(triangles.len(), (triangles.len() / 2).max(LEAST)).collect();
-    let parts = zip(ranges.iter().cloned(), split(&mut patches, ranges.iter().map(Range::len))).collect();
-    let counts = in_parts(parts, |(range, patches)| {
+    let parts = split(&mut patches, ranges.iter().map(Range::len)).into_par_iter().zip(&ranges);
+    let counts = parts.map(|(patches, range)| {
         let (mut kept, mut starts) = (0, vec![0_u32; points + 1]);
         for triangle in range.clone() {
             let [a, b, c] = triangles[triangle].map(|corner| corner_points[corner as usize]);
@@ -43,6 +44,7 @@ pub(super) fn patches(triangles: &[[u32; 3]], corner_points: &[u32], points: usi
         }
         (kept, starts)
     });
+    let counts: Vec<(usize, Vec<u32>)> = counts.collect();
     let (mut count, mut starts) = (0, Vec::new());
     for (range, (kept, own)) in zip(ranges, counts) {
         patches.copy_within(range.start..range.start + kept, count);
@@ -66,8 +68,8 @@ pub(super) fn patches(triangles: &[[u32; 3]], corner_points: &[u32], points: usi
 pub(super) fn sides(triangles: &[[u32; 3]], corner_points: &[u32], starts: &[u32]) -> (Vec<Side>, Vec<PointRange>) {
     let mut sides: Vec<Side> = zeroed_vec(starts.last().map_or(0, |count| *count as usize));
     let mut ranges = point_ranges(starts);
-    let parts = zip(&ranges, split(&mut sides, ranges.iter().map(|range| range.sides.len()))).collect();
-    let edges = in_parts(parts, |(PointRange { points, sides: range, .. }, sides)| {
+    let parts = split(&mut sides, ranges.iter().map(|range| range.sides.len())).into_par_iter().zip(&ranges);
+    let edges = parts.map(|(sides, PointRange { points, sides: range, .. })| {
         let runs =
             points.clone().map(|point| starts[point] as usize - range.start..starts[point + 1] as usize - range.start);
         let mut next: Vec<u32> = runs.clone().map(|run| run.start as u32).collect();
@@ -88,6 +90,7 @@ pub(super) fn sides(triangles: &[[u32; 3]], corner_points: &[u32], starts: &[u32
         }
         edges
     });
+    let edges: Vec<usize> = edges.collect();
     let mut first = 0;
     for (range, edges) in zip(&mut ranges, edges) {
         range.edges = first..first + edges;
@@ -123,7 +126,7 @@ pub(super) fn edges(
     let mut edges: Vec<Edge> = zeroed_vec(ranges.last().map_or(0, |range| range.edges.end));
     let of_sides = split(sides, ranges.iter().map(|range| range.sides.len()));
     let of_edges = split(&mut edges, ranges.iter().map(|range| range.edges.len()));
-    in_parts(zip(ranges, zip(of_sides, of_edges)).collect(), |(range, (sides, edges))| {
+    ranges.par_iter().zip(of_sides).zip(of_edges).for_each(|((range, sides), edges)| {
         let mut numbered = zip(range.edges.start as u32.., edges.iter_mut());
         for point in range.points.clone() {
             let (start, end) = (starts[point] as usize, starts[point + 1] as usize);
@@ -149,11 +152,10 @@ pub(super) fn edges(
 /// Connects patches with their sides.
 pub(super) fn connect(patches: &mut [Patch], sides: &[Side]) {
     let ranges: Vec<_> = ranges(patches.len(), LEAST).collect();
-    let parts = zip(ranges.iter().map(|range| range.start), split(patches, ranges.iter().map(Range::len))).collect();
     // Each core looks at all sides.
-    in_parts(parts, |(first, patches)| {
+    split(patches, ranges.iter().map(Range::len)).into_par_iter().zip(ranges).for_each(|(patches, range)| {
         for (index, side) in (0..).zip(sides) {
-            if let Some(patch) = patches.get_mut((side.patch() as usize).wrapping_sub(*first)) {
+            if let Some(patch) = patches.get_mut((side.patch() as usize).wrapping_sub(range.start)) {
                 patch.sides[side.index()] = index;
             }
         }

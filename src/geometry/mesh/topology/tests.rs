@@ -4,10 +4,10 @@ use glam::Vec2;
 use proptest::prelude::*;
 
 use super::*;
-use crate::cores::tests::on_cores;
+use crate::cores::on_threads;
 use crate::mesh::Material;
+use crate::mesh::build_limits::tests::Counted;
 use crate::mesh::shapes::Shape;
-use load::Budget;
 
 /// A mesh whose point i lies at (i, i * i, 0). `corners` holds the point of each corner.
 fn mesh(corners: &[u32], triangles: &[[u32; 3]]) -> Mesh {
@@ -133,12 +133,12 @@ fn the_number_of_cores_makes_no_difference() {
     };
     let triangles: Vec<_> = (0..100_000).map(&mut triangle).collect();
     let mesh = mesh(&corners, &triangles);
-    let alone = on_cores(1, || build(&mesh));
+    let alone = on_threads(1, || build(&mesh)).expect("threads");
     check(&mesh, &alone);
     let counts = alone.edge_counts();
     assert!(alone.degenerate > 1000 && counts.smooth > 1000 && counts.boundary > 1000 && counts.non_manifold > 1000);
     for cores in [2, 3, 7] {
-        let shared = on_cores(cores, || build(&mesh));
+        let shared = on_threads(cores, || build(&mesh)).expect("threads");
         let same = (alone.points == shared.points && alone.corner_points == shared.corner_points)
             && (alone.point_corners == shared.point_corners && alone.material_patches == shared.material_patches);
         assert!(same, "{cores}");
@@ -277,12 +277,12 @@ fn a_triangle_knows_its_patch_unless_it_is_degenerate() {
 
 #[test]
 fn the_account_holds_what_a_topology_takes() {
-    let (mesh, budget) = (Shape::Torus.build(), Budget::unlimited());
+    let (mesh, budget) = (Shape::Torus.build(), Counted::default());
     let own = Topology::build_afforded(&mesh, 0.0, &budget, &Progress::new()).unwrap();
     let by_point = size_of_val(&own.points[..]) + size_of_val(&own.point_corners[..]);
     let by_corner = size_of_val(&own.corner_points[..]);
     let by_patch = size_of_val(&own.patches[..]) + size_of_val(&own.sides[..]) + size_of_val(&own.edges[..]);
-    assert_eq!(u64::MAX - budget.left(), (by_point + by_corner + by_patch) as u64);
+    assert_eq!(budget.held.get(), (by_point + by_corner + by_patch) as u64);
 }
 
 #[test]

@@ -1,10 +1,27 @@
 use super::*;
-use crate::gpu_tests::engine;
+use crate::engine::Engine;
 use crate::render::textures::first_level;
 use geometry::mesh::Texture;
-use geometry::mesh::mipmap::tests::noise;
 use geometry::mesh::mipmap::{covered, mip_levels};
 use gpu::read_texture;
+
+fn engine() -> &'static Engine {
+    static ENGINE: std::sync::LazyLock<Engine> =
+        std::sync::LazyLock::new(|| Engine::headless().expect("these tests need a graphics adapter: run ./setup.sh"));
+    &ENGINE
+}
+
+/// An image of noise, always the same. Its alpha is that of leaves: mostly 0 or 255.
+fn noise(size: [u32; 2]) -> Texture {
+    let mut random = fastrand::Rng::with_seed(u64::from(size[0]) << 32 | u64::from(size[1]));
+    let alpha = |random: &mut fastrand::Rng| match random.u8(..4) {
+        0 => 255,
+        1 => random.u8(..),
+        _ => 0,
+    };
+    let texel = |_| [random.u8(..), random.u8(..), random.u8(..), alpha(&mut random)];
+    Texture { size, rgba: (0..size[0] * size[1]).flat_map(texel).collect() }
+}
 
 /// The levels of an image that the passes make, but the first.
 fn made(source: &Texture, filter: MipFilter, least: Option<u32>) -> Vec<Texture> {

@@ -64,7 +64,7 @@ fn subjects() -> Vec<Subject> {
 }
 
 /// Returns small documents for fuzzers to start from: the target, a name, and the bytes.
-pub fn seeds() -> Vec<(&'static str, String, Vec<u8>)> {
+pub(crate) fn seeds() -> Vec<(&'static str, String, Vec<u8>)> {
     let drafts = [
         ("triangle", triangle()),
         ("rich", rich()),

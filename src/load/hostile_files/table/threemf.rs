@@ -4,8 +4,8 @@ use super::Gets::{Refused, Repaired};
 use super::{Case, Gets};
 use crate::Format::ThreeMf;
 use crate::threemf::tests::layers::many_layers;
-use crate::threemf::tests::package::{Entry, MODEL, model, package, relationships, zip};
 use crate::threemf::tests::{png, textured};
+use documents::package::{Entry, MODEL, model, package, relationships, zip};
 
 const TRIANGLE: &str = "<mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/>\
      <vertex x=\"0\" y=\"1\" z=\"0\"/></vertices><triangles><triangle v1=\"0\" v2=\"1\" v3=\"2\"/></triangles></mesh>";

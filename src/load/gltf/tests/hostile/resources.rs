@@ -7,10 +7,10 @@ use crate::uri;
 use base64::prelude::{BASE64_STANDARD, Engine};
 use tempfile::TempDir;
 
-use crate::webp_tables::tests::webp::of_groups;
+use documents::webp::of_groups;
 
 /// A folder that contains a document's folder, and files around it that the document mustn't read.
-pub struct Folder(TempDir);
+pub(crate) struct Folder(TempDir);
 
 impl Folder {
     pub(super) fn new() -> Self {

@@ -33,19 +33,18 @@ mod warm_up;
 
 use std::path::{Path, PathBuf};
 
-use crate::gpu_tests::moving;
 use clap::Parser;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
+use geometry::mesh::Shape;
+use geometry::tessellate::{Clip, Edges, Lod, Partitioning, Surface, Tessellation};
+use inspect::settings::Colors;
+use load::Source;
+use load::files::Limits;
 use pnaen::app::{App, Persistence};
 use pnaen::cli::Cli;
 use pnaen::commands::{Action, all};
-use load::files::Limits;
-use load::Source;
-use geometry::mesh::Shape;
-use inspect::settings::Colors;
-use geometry::tessellate::{Clip, Edges, Lod, Partitioning, Surface, Tessellation};
 use tempfile::TempDir;
 
 use driver::{PATIENCE, settle};

@@ -24,8 +24,6 @@ mod lines;
 mod looks;
 mod masks;
 mod materials;
-#[path = "../documents/moving.rs"]
-pub(crate) mod moving;
 mod moving_lights;
 mod orientation;
 mod own_lod;
@@ -50,13 +48,13 @@ mod vulkan;
 
 use std::sync::{Arc, OnceLock};
 
-use inspect::engine::{Engine, Loaded, Preparation, load};
-use gpu::Timing;
-use load::Source;
 use geometry::mesh::{Mesh, Shape, Topology};
 use geometry::progress::Progress;
+use gpu::Timing;
+use inspect::engine::{Engine, Loaded, Preparation, load};
 use inspect::render::{Camera, Scene, Target, crack_lines};
 use inspect::settings::{ARENA_BYTES, Lighting, Settings};
+use load::Source;
 
 /// One engine for all tests: compiling its pipelines is what takes long.
 pub(crate) fn engine() -> &'static Engine {
