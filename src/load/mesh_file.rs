@@ -339,7 +339,7 @@ mod tests {
         let expected = "can't be read: its content shows no format, and it has the extension .toml; choose a .gltf, .glb, .vrm, \
                         .fbx, .obj, .stl, .ply, .off or .3mf file";
         assert_eq!(message(manifest), format!("{manifest} {expected}"));
-        assert!(message(concat!(env!("CARGO_MANIFEST_DIR"), "/LICENSE")).contains("it has no extension;"));
+        assert!(message(documents::in_repository("LICENSE").to_str().unwrap()).contains("it has no extension;"));
     }
 
     #[test]
@@ -349,7 +349,7 @@ mod tests {
 
     #[test]
     fn large_files_are_refused_with_both_numbers() {
-        let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/vase.glb"));
+        let path = &assets::path("vase.glb");
         let bytes = std::fs::metadata(path).unwrap().len();
         let load = |file| load(path, &Limits { file, ..Limits::default() }, &Progress::new());
         assert!(load(bytes).is_ok());
@@ -368,7 +368,7 @@ mod tests {
 
     #[test]
     fn the_content_decides_whatever_the_name_says() {
-        let vase = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/vase.glb")).unwrap();
+        let vase = assets::VASE.to_vec();
         let originals = [
             (Format::Gltf, vase),
             (Format::Obj, obj::tests::cube().into_bytes()),
@@ -395,7 +395,7 @@ mod tests {
     #[test]
     fn texts_in_utf_16_are_read() {
         let document =
-            std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fuzzed/seeds/gltf/triangle.gltf"));
+            std::fs::read_to_string(documents::in_repository("tests/fuzzed/seeds/gltf/triangle.gltf"));
         let texts = [
             ("a.gltf", document.unwrap()),
             ("a.obj", obj::tests::cube()),

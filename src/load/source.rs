@@ -58,7 +58,7 @@ impl Source {
             Self::Shape(shape) => self.made(shape.build(), selected.import, progress),
             Self::FineShape(shape, level) => self.made(shape.build_at(*level), selected.import, progress),
             Self::Vase => {
-                let bytes = include_bytes!("../../assets/vase.glb").to_vec();
+                let bytes = assets::VASE.to_vec();
                 let selected = Selection { import: selected.import, ..Selection::default() };
                 read(Format::Gltf, bytes, Path::new("vase.glb"), selected, limits, progress)
             }

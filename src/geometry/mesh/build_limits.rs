@@ -167,7 +167,7 @@ pub mod tests {
         }
 
         fn release(&self, bytes: u64) {
-            self.held.update(|held| held - bytes);
+            self.held.update(|held| held.saturating_sub(bytes));
         }
 
         fn borrow(&self, bytes: u64) -> Result<(), MemoryRefused> {

@@ -18,7 +18,7 @@ fn fault(text: &str) -> (usize, String) {
 #[test]
 fn the_examples_can_be_used() {
     fn use_all<S: OwnShader>(folder: &str) {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+        let folder = assets::path(folder);
         let mut count = 0;
         for entry in std::fs::read_dir(folder).expect("the examples' folder") {
             let path = entry.expect("an entry").path();
@@ -27,8 +27,8 @@ fn the_examples_can_be_used() {
         }
         assert!(count >= 3, "{count} examples");
     }
-    use_all::<LodShader>("assets/lod");
-    use_all::<SurfaceShader>("assets/surface");
+    use_all::<LodShader>("lod");
+    use_all::<SurfaceShader>("surface");
 }
 
 #[test]

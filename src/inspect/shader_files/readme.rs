@@ -290,7 +290,7 @@ mod tests {
 
     #[test]
     fn the_bounding_radius_is_that_of_the_glossary() {
-        let page = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/manual/glossary.md");
+        let page = documents::in_repository("docs/manual/glossary.md");
         let glossary = std::fs::read_to_string(page).expect("a page").to_lowercase();
         let said = constants(&Tessellation::default()).into_iter().find(|(_, name, _)| *name == "view.radius");
         let said = said.expect("the constant").2;

@@ -346,7 +346,7 @@ mod tests {
     use super::*;
 
     fn text(path: &str) -> String {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
+        let path = documents::in_repository(path);
         std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
     }
 
@@ -369,12 +369,11 @@ mod tests {
 
     #[test]
     fn every_case_has_a_picture_and_every_picture_a_case() {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         // A package made by `cargo package` has the original manifest beside its own, and lacks these pictures.
-        if root.join("Cargo.toml.orig").exists() {
+        if Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml.orig").exists() {
             return;
         }
-        let files = std::fs::read_dir(root.join("docs/stability")).expect("a folder");
+        let files = std::fs::read_dir(documents::in_repository("docs/stability")).expect("a folder");
         let files = files.map(|entry| entry.expect("an entry").file_name());
         let pictures: BTreeSet<_> = CASES.iter().map(|case| format!("{}.png", case.name).into()).collect();
         assert_eq!(files.filter(|name| *name != PAGE).collect::<BTreeSet<_>>(), pictures);

@@ -28,7 +28,7 @@ pub(crate) fn hold_with(name: &str, title: &str, rows: &[(String, String)], alon
                  FBX files, which none of them reads, OFF and 3MF files, files above 30 MB, and files beside a document were not tried.\n\n";
         text += &table(&["file", "why it is refused"], &[0, 1], &rows);
     }
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/hostile").join(name);
+    let path = documents::in_repository("docs/hostile").join(name);
     if std::env::var_os("PNAEN_UPDATE_PAGES").is_some() {
         std::fs::write(&path, &text).unwrap();
     }

@@ -1,6 +1,5 @@
 //! The seeds of the fuzz targets: small files of every format. `PNAEN_UPDATE_SEEDS=1` writes them.
 
-use std::path::Path;
 
 use super::mutated;
 use crate::Format::{Fbx, Gltf, Obj, Off, Ply, Stl, ThreeMf};
@@ -43,7 +42,7 @@ fn made() -> Vec<(&'static str, String, Vec<u8>)> {
 
 #[test]
 fn seeds_are_what_the_tests_make() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzzed/seeds");
+    let folder = documents::in_repository("tests/fuzzed/seeds");
     for (target, name, bytes) in made() {
         let path = folder.join(target).join(name);
         if std::env::var_os("PNAEN_UPDATE_SEEDS").is_some() {

@@ -81,9 +81,8 @@ fn the_crease_angle_holds_where_normals_are_missing_and_warnings_name_it() {
 
 #[test]
 fn gltf_and_fbx_files_get_normals_that_are_made() {
-    let vase = include_bytes!("../../../assets/vase.glb");
     let prism = text(&smoothed_prism());
-    for (format, bytes) in [(Format::Gltf, &vase[..]), (Format::Fbx, &prism)] {
+    for (format, bytes) in [(Format::Gltf, assets::VASE), (Format::Fbx, &prism)] {
         let own = loaded(format, bytes, Import::default());
         let flat = loaded(format, bytes, Import { crease_angle: 0.0, ..MADE });
         assert_flat(&flat);

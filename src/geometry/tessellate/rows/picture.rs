@@ -1,7 +1,6 @@
 //! The manual's picture of rows, `docs/manual/rows.svg`. `PNAEN_UPDATE_PAGES=1` writes it again.
 
 use std::fmt::Write;
-use std::path::Path;
 
 use super::*;
 use crate::tessellate::factors::{Partitioning, process, triangle_count};
@@ -70,7 +69,7 @@ fn the_manuals_picture_shows_the_patterns() {
         DRAWN.len().div_ceil(BESIDE) as f64 * down,
         patterns.collect::<String>()
     );
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/manual/rows.svg");
+    let path = documents::in_repository("docs/manual/rows.svg");
     if std::env::var_os("PNAEN_UPDATE_PAGES").is_some() {
         std::fs::write(&path, &picture).expect("a writable file");
     }

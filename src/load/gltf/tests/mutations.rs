@@ -42,7 +42,7 @@ impl Subject {
 }
 
 fn subjects() -> Vec<Subject> {
-    let vase = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/vase.glb"));
+    let vase = assets::path("vase.glb");
     let mut subjects = vec![
         Subject::own("a triangle", triangle().document().to_string().into_bytes()),
         Subject::own("something of everything", rich().glb()),
