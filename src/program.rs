@@ -9,6 +9,8 @@ use clap::Parser;
 #[cfg(feature = "app")]
 use crate::app::{self, WindowError};
 use crate::cli::{self, Cli};
+#[cfg(feature = "app")]
+use inspect::engine::Preparation;
 
 /// The picture's file when no window can be opened.
 const PREVIEW: &str = "pnaen-preview.png";
@@ -38,6 +40,8 @@ pub fn run() -> ExitCode {
 /// exit code with which the program ends otherwise.
 #[cfg(feature = "app")]
 fn open_window(Cli { file, opening, limit, adapter, .. }: &Cli) -> Result<String, ExitCode> {
+    let change = |preparation: &mut Preparation| opening.change(preparation);
+    let opening = (!opening.is_empty()).then_some(&change as &dyn Fn(&mut Preparation));
     match app::run(file.clone(), opening, limit.limits(), adapter.choice()) {
         Ok(()) => Err(ExitCode::SUCCESS),
         Err(WindowError::NoDisplay(reason)) => Ok(format!("There is no display to open a window on ({reason})")),

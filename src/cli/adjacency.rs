@@ -9,10 +9,11 @@ use super::{CliError, WeldOption, file_of, file_of_heights, keep_apart, load_apa
 use geometry::mesh::adjacency::{Layout, Part};
 use geometry::names::shown_path;
 use geometry::tessellate::displaced_corners;
-use inspect::adjacency_file::{Format, read, to_bin, to_json};
+use inspect::adjacency_file::{Format, read};
 use inspect::engine::{Loaded, Preparation};
 use inspect::measure::{IndexDifference, Meaning, index_differences};
 use inspect::settings::Choice;
+use inspect::shot::files::write_adjacency;
 use load::{HeightSource, Source};
 
 #[derive(Debug, clap::Args)]
@@ -78,26 +79,6 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     match args.against.as_deref().zip(given) {
         Some((path, bytes)) => compare_with(args.indices, path, &bytes, &loaded, &computed),
         None => Ok(()),
-    }
-}
-
-/// Writes a mesh's index buffer of this layout.
-///
-/// # Errors
-/// The file can't be written.
-pub(crate) fn write_adjacency(
-    loaded: &Loaded,
-    layout: Layout,
-    indices: &[u32],
-    format: Format,
-    path: &Path,
-) -> Result<(), CliError> {
-    match format {
-        Format::Json => {
-            let text = to_json(&loaded.mesh, &loaded.topology, layout, indices);
-            write_bytes(path, text.map_err(|error| CliError::Output(error.into()))?.as_bytes())
-        }
-        Format::Bin => write_bytes(path, &to_bin(indices)),
     }
 }
 

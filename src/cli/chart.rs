@@ -284,7 +284,7 @@ impl Session {
 fn publish(args: &Args, subjects: &[Subject]) -> Result<(), CliError> {
     match &args.output {
         Some(path) if is_svg(path) => write_text(path, &svg(subjects)?)?,
-        Some(path) => super::write_picture(path, &bitmap(subjects)?.into())?,
+        Some(path) => inspect::shot::write_picture(path, &bitmap(subjects)?.into())?,
         None => {}
     }
     if args.csv.as_deref() == Some(Path::new("-")) {

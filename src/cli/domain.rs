@@ -10,6 +10,7 @@ use geometry::tessellate::{
     HullFactors, Partitioning, domain_plan, domain_point, domain_triangle, point_count, process, triangle_count,
 };
 use gpu::{DomainPass, DomainPattern, Gpu};
+use inspect::shot::ShotError;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -111,10 +112,10 @@ fn read_sets(path: &Path, partitioning: Partitioning) -> Result<Vec<FactorSet>, 
     let text = read_text(path)?;
     let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let set = |(index, line): (usize, &str)| {
-        let at_line = |reason: &str| CliError::Line { path: shown_path(path), line: index + 1, reason: reason.into() };
+        let at_line = |reason: &str| ShotError::Line { path: shown_path(path), line: index + 1, reason: reason.into() };
         let set = factor_set(line.split_whitespace())
             .ok_or_else(|| at_line("expected four numbers separated by spaces, such as 3 2.5 inf 4"))?;
         if is_taken(partitioning, set) { Ok(set) } else { Err(at_line(NOT_EQUAL)) }
     };
-    lines.map(set).collect()
+    Ok(lines.map(set).collect::<Result<_, _>>()?)
 }

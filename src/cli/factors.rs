@@ -1,8 +1,7 @@
 //! `pnaen factors`: writes the hull shader's factors of every patch.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use super::lod_shader_option::report_own_lod;
 use super::options::CamerasOption;
 use super::tessellate::Device;
 use super::view_files::{View, ViewFiles};
@@ -11,12 +10,13 @@ use super::{
     write_text,
 };
 use geometry::mesh::Moment;
-use geometry::progress::Progress;
-use geometry::tessellate::{self, HullFactors, Inputs, LodView, bounds_through};
-use gpu::{Given, GpuError, Timing};
+use geometry::tessellate::{self, HullFactors, LodView, bounds_through};
+use gpu::{Given, Timing};
 use inspect::engine::{Engine, Loaded};
 use inspect::render::Scene;
 use inspect::settings::Settings;
+use inspect::shot::files::computed;
+use inspect::shot::report_own_lod;
 use load::Source;
 use load::factors_file::to_csv;
 
@@ -115,26 +115,4 @@ impl Args {
         }
         Ok(factors)
     }
-}
-
-/// The factors that a hull shader would hand to the tessellator with these inputs.
-fn computed(engine: &Engine, scene: &mut Scene, inputs: &Inputs) -> Result<Vec<HullFactors>, GpuError> {
-    engine.count(scene, inputs, &mut Timing::Off)?;
-    scene.tessellator.hull_factors()
-}
-
-/// Writes the factors of a scene with these inputs as CSV.
-///
-/// # Errors
-/// The device was lost, or the file can't be written.
-pub fn write_factors(
-    engine: &Engine,
-    scene: &mut Scene,
-    inputs: &Inputs,
-    path: &Path,
-    progress: &Progress,
-) -> Result<(), CliError> {
-    let factors = computed(engine, scene, inputs)?;
-    progress.check()?;
-    write_text(path, &to_csv(scene.tessellator.topology(), &factors, inputs.tessellation.partitioning))
 }

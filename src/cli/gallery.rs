@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
 
-use super::{AdapterOption, CliError, Telling, WeldOption, file_error, options, warn, write_picture, write_text};
+use super::{AdapterOption, CliError, Telling, WeldOption, file_error, options, warn, write_text};
 use inspect::engine::{Engine, Preparation};
 use inspect::settings::options::{FACTOR, HEIGHT_SCALE, MIDLEVEL};
+use inspect::shot::write_picture;
 use lab::gallery::{Exhibit, Gallery, GalleryOptions, PAGE, exhibits, page};
 use load::files::file_reason;
 use load::{HeightSource, Source};

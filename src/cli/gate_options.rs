@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use super::shot::Shot;
-use super::{CliError, file_error, write_picture};
+use super::{CliError, file_error};
 use geometry::progress::Progress;
 use inspect::gates::{Gate, GateKind, Judgement};
+use inspect::shot::{Shot, write_picture};
 use load::files::file_reason;
 
 #[derive(Clone, Debug, Default, clap::Args)]
@@ -61,7 +61,7 @@ pub(super) fn write_evidence_of(
 ) -> Result<(), CliError> {
     let Some(picture) = shot.evidence(judgement, &Progress::new())? else { return Ok(()) };
     std::fs::create_dir_all(folder).map_err(|error| file_error(folder, "made", &file_reason(&error)))?;
-    write_picture(&folder.join(evidence_name(stem, judgement.kind)), &picture.into())
+    Ok(write_picture(&folder.join(evidence_name(stem, judgement.kind)), &picture.into())?)
 }
 
 /// The name of the picture of a gate, beside an output of this name.

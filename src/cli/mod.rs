@@ -7,7 +7,8 @@ mod camera_report;
 mod chart;
 mod check;
 pub mod compare;
-mod copied_command;
+#[cfg(test)]
+mod copied_command_tests;
 mod domain;
 mod factors;
 mod factors_option;
@@ -15,31 +16,24 @@ mod gallery;
 mod gate_options;
 mod info;
 mod interrupt;
-mod legend;
 mod light_report;
 mod lod_shader_option;
 mod material_report;
 mod mesh_report;
 mod options;
 mod output_guard;
-mod picture_comparison;
-mod picture_file;
 mod reference;
 mod render;
 mod shaders;
-mod shot;
 mod shot_options;
-mod silhouette;
 mod stability;
-mod stats;
 mod surface_shader_option;
 mod tessellate;
 mod truth;
 mod turntable;
 mod view_files;
-mod view_report;
 
-use std::io::{Read, Write};
+use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -49,29 +43,17 @@ use thiserror::Error;
 
 pub(crate) use adapters::AdapterOption;
 pub(crate) use animation::AnimationOption;
-pub(crate) use factors_option::{FactorsOption, read_factors};
-pub(crate) use lod_shader_option::{LodShaderOption, not_numbers_said};
+pub(crate) use factors_option::FactorsOption;
+pub(crate) use lod_shader_option::LodShaderOption;
 use output_guard::{file_of, file_of_heights, keep_apart};
 
-pub(crate) use adjacency::write_adjacency;
-pub(crate) use copied_command::CopiedCommand;
-pub use factors::write_factors;
 pub(crate) use options::{LimitOption, OpeningOptions, SurfaceOptions, WeldOption};
-pub(crate) use picture_comparison::CompareError;
-pub use picture_comparison::{Comparison, compare};
-pub use picture_file::write_drawn;
-pub(crate) use picture_file::write_picture;
-pub use reference::{BETWEEN_DRIVERS, Reference};
 pub use render::run_with as render_with;
-pub use shot::Subject;
-pub(crate) use shot::{Shot, ShotView, StatsWanted};
-pub(crate) use surface_shader_option::{SurfaceShaderOption, straight_sides_said};
+pub(crate) use surface_shader_option::SurfaceShaderOption;
 pub use tessellate::run_with as tessellate_with;
-pub(crate) use truth::{ReferenceSurface, TruthOption};
-pub use turntable::Turn;
-pub(crate) use turntable::{FPS, FRAMES, frame_name};
+pub(crate) use truth::TruthOption;
 
-use geometry::names::{on_one_line, shown, shown_path};
+use geometry::names::{on_one_line, shown};
 use geometry::progress::{Cancelled, Progress};
 use gpu::GpuError;
 use inspect::engine::{Loaded, Preparation};
@@ -79,10 +61,9 @@ use inspect::export::ExportError;
 use inspect::own_shader::OwnShaderError;
 use inspect::settings::Settings;
 use inspect::shader_files::ShaderError;
+use inspect::shot::{ShotError, files, given};
 use lab::check::ConfigError;
 use load::environment_file::EnvironmentError;
-use load::files::Limits;
-use load::files::file_reason;
 use load::{LoadError, MatcapError, Source};
 
 /// Shows what tessellation does to a mesh in a window; commands write pictures, meshes and numbers instead
@@ -160,6 +141,8 @@ pub enum CliError {
     #[error(transparent)]
     Load(#[from] LoadError),
     #[error(transparent)]
+    Shot(#[from] ShotError),
+    #[error(transparent)]
     Environment(#[from] EnvironmentError),
     #[error(transparent)]
     Gpu(#[from] GpuError),
@@ -173,23 +156,10 @@ pub enum CliError {
     OwnShader(#[from] OwnShaderError),
     #[error(transparent)]
     Export(#[from] ExportError),
-    #[error("{path}: could not be {doing} ({reason})")]
-    File { path: String, doing: &'static str, reason: String },
     #[error("{path}: there is no folder {folder} to write it in; make it first")]
     NoFolder { path: String, folder: String },
     #[error("{path} is {by} by the same command, so it isn't overwritten; choose another name")]
     Taken { path: String, by: &'static str },
-    #[error("{reference}: {reason}")]
-    Reference { reference: String, reason: CompareError },
-    #[error("{picture} differs from {reference}: {how}{see}; if this is meant, draw the reference again")]
-    Different { picture: String, reference: String, how: String, see: String },
-    #[error("{path}, line {line}: {reason}")]
-    Line { path: String, line: usize, reason: String },
-    #[error(
-        "{path}: the factors of patch {triangle} are not all equal, as subtriangulation needs them: choose another \
-         --partitioning"
-    )]
-    Uneven { path: String, triangle: u32 },
     #[error(transparent)]
     Picture(#[from] lab::stability::PictureError),
     #[error(transparent)]
@@ -268,7 +238,7 @@ fn said_of_cameras(known: &[String]) -> String {
 
 /// Runs a command. A closed pipe is no failure: the reader wants no more.
 pub fn run(command: Command) -> ExitCode {
-    let line = copied_command::given(std::env::args_os());
+    let line = given(std::env::args_os());
     let result = match command {
         Command::Render(args) => render::run(&args, &line),
         Command::Turntable(args) => turntable::run(&args, &line),
@@ -287,7 +257,11 @@ pub fn run(command: Command) -> ExitCode {
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
-        Err(CliError::Output(error)) if error.kind() == std::io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
+        Err(CliError::Output(error) | CliError::Shot(ShotError::Output(error)))
+            if error.kind() == std::io::ErrorKind::BrokenPipe =>
+        {
+            ExitCode::SUCCESS
+        }
         Err(error @ (CliError::Usage(_) | CliError::Shaders(ShaderError::Unexportable { .. }))) => {
             fail(&error);
             ExitCode::from(2)
@@ -319,7 +293,7 @@ pub fn preview(
     path: &Path,
 ) -> Result<(), CliError> {
     let settings = if source.is_some() { Settings::opening() } else { Settings::greeting() };
-    let line = copied_command::given(std::env::args_os());
+    let line = given(std::env::args_os());
     let mut args = render::Args::preview(source.unwrap_or_default(), settings, limit, adapter, path);
     let weld = &mut args.shot.surface.weld;
     weld.import.0 = opening.import(weld.import.0);
@@ -327,73 +301,28 @@ pub fn preview(
     render::run(&args, &line)
 }
 
-/// Reads a whole text file, or standard input if the path is `-`. Leaves out a byte order mark, which is no part of the text.
 fn read_text(path: &Path) -> Result<String, CliError> {
-    let text = String::from_utf8(read_bytes(path)?);
-    let mut text = text.map_err(|_| file_error(path, "read", &"it isn't text in UTF-8"))?;
-    const MARK: char = '\u{feff}';
-    if text.starts_with(MARK) {
-        text.drain(..MARK.len_utf8());
-    }
-    Ok(text)
+    Ok(files::read_text(path)?)
 }
 
-/// Reads a whole file, or standard input if the path is `-`. Refuses devices, which may have no end, and more bytes than a
-/// mesh's file may have by default.
 fn read_bytes(path: &Path) -> Result<Vec<u8>, CliError> {
-    let most = Limits::default().file;
-    let mut bytes = Vec::new();
-    let read = match path.as_os_str() == "-" {
-        true => std::io::stdin().take(most + 1).read_to_end(&mut bytes),
-        false => open_input(path).and_then(|file| file.take(most + 1).read_to_end(&mut bytes)),
-    };
-    read.map_err(|error| file_error(path, "read", &file_reason(&error)))?;
-    if bytes.len() as u64 > most {
-        return Err(file_error(path, "read", &format!("it has more than {most} bytes")));
-    }
-    Ok(bytes)
+    Ok(files::read_bytes(path)?)
 }
 
-fn open_input(path: &Path) -> std::io::Result<std::fs::File> {
-    if is_device(&std::fs::metadata(path)?) {
-        return Err(std::io::Error::other("it is a device; name a file, a pipe, or - for standard input"));
-    }
-    std::fs::File::open(path)
-}
-
-#[cfg(unix)]
-fn is_device(about: &std::fs::Metadata) -> bool {
-    use std::os::unix::fs::FileTypeExt;
-    about.file_type().is_char_device() || about.file_type().is_block_device()
-}
-
-#[cfg(not(unix))]
-fn is_device(_: &std::fs::Metadata) -> bool {
-    false
-}
-
-/// Writes a whole text, to standard output if the path is `-`.
 fn write_text(path: &Path, text: &str) -> Result<(), CliError> {
-    write_bytes(path, text.as_bytes())
+    Ok(files::write_text(path, text)?)
 }
 
-/// Writes a whole file, to standard output if the path is `-`.
 fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
-    if path.as_os_str() == "-" {
-        let mut out = std::io::stdout().lock();
-        return out.write_all(bytes).and_then(|()| out.flush()).map_err(CliError::Output);
-    }
-    load::files::write_whole(path, bytes).map_err(|error| file_error(path, "written", &file_reason(&error)))
+    Ok(files::write_bytes(path, bytes)?)
 }
 
-/// Serialises a value on several lines, with a line end.
 fn to_json(value: &impl serde::Serialize) -> Result<String, CliError> {
-    let text = serde_json::to_string_pretty(value).map_err(|error| CliError::Output(error.into()))?;
-    Ok(text + "\n")
+    Ok(files::to_json(value)?)
 }
 
 fn file_error(path: &Path, doing: &'static str, reason: &dyn std::fmt::Display) -> CliError {
-    CliError::File { path: shown_path(path), doing, reason: reason.to_string() }
+    files::file_error(path, doing, reason).into()
 }
 
 /// Loads a mesh for a command. Standard error tells what was left out or repaired.

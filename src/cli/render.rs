@@ -4,10 +4,8 @@ use std::path::{Path, PathBuf};
 
 use super::gate_options::{GateOptions, failures};
 use super::options::{CamerasOption, PictureOptions, TessellationOptions};
-use super::reference::{self, Reference, ReferenceOptions};
-use super::shot::{Shot, StatsWanted};
+use super::reference::{self, ReferenceOptions};
 use super::shot_options::ShotOptions;
-use super::stats::Stats;
 use super::view_files::{View, ViewFiles};
 use super::{AdapterOption, CliError, LimitOption, SurfaceOptions, WeldOption, options, to_json, write_text};
 use geometry::progress::Progress;
@@ -15,6 +13,7 @@ use gpu::GpuError;
 use inspect::engine::Engine;
 use inspect::render::Camera;
 use inspect::settings::Settings;
+use inspect::shot::{Reference, Shot, ShotError, Stats, StatsWanted};
 use load::Source;
 
 #[derive(Debug, clap::Args)]
@@ -146,7 +145,7 @@ fn conclude(args: &Args, all: Vec<Drawn>) -> Result<(), CliError> {
 /// What came of a picture.
 struct Drawn {
     stats: Option<Stats>,
-    judgement: Option<Result<String, CliError>>,
+    judgement: Option<Result<String, ShotError>>,
     /// A sentence for each gate that failed.
     failed: Vec<String>,
 }
@@ -166,7 +165,7 @@ impl Args {
     /// Reads the reference pictures at these places, each of which may be none.
     fn references(&self, places: &[Option<PathBuf>]) -> Result<Vec<Option<Reference>>, CliError> {
         let read = |path: &Path| Reference::read(path, self.reference.threshold);
-        places.iter().map(|place| place.as_deref().map(read).transpose()).collect()
+        Ok(places.iter().map(|place| place.as_deref().map(read).transpose()).collect::<Result<_, _>>()?)
     }
 
     /// The reference picture of a view, if there are references.

@@ -3,12 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::factors_option::FactorsFile;
 use super::options::{LodCameraOption, PictureOptions, whole_from};
-use super::shot::{Shot, ShotView, Subject};
 use super::{
-    CliError, FactorsOption, LodShaderOption, ReferenceSurface, SurfaceOptions, SurfaceShaderOption, TruthOption,
-    file_of, file_of_heights, keep_apart, load_apart, warn,
+    CliError, FactorsOption, LodShaderOption, SurfaceOptions, SurfaceShaderOption, TruthOption, file_of,
+    file_of_heights, keep_apart, load_apart, warn,
 };
 use geometry::progress::Progress;
 use gpu::{Given, Timing};
@@ -16,6 +14,7 @@ use inspect::engine::{Engine, Loaded};
 use inspect::render::Camera;
 use inspect::render::environment::Environment;
 use inspect::settings::{Colors, Lighting, Settings};
+use inspect::shot::{FactorsFile, ReferenceSurface, Shot, ShotView, Subject};
 use load::environment_file::EnvironmentFile;
 use load::panorama::Panorama;
 use load::{Source, load_matcap};

@@ -155,7 +155,7 @@ impl Args {
         if let (Some(folder), Some(engine)) = (&self.output, engine) {
             let drawn = picture(subject, engine, effort.sweep_to)?;
             let name = file_name(&subject.name);
-            super::write_picture(&folder.join(&name), &drawn.into())?;
+            inspect::shot::write_picture(&folder.join(&name), &drawn.into())?;
             file = Some(name);
         }
         Ok(Section { name: subject.name.clone(), about: subject.about.clone(), picture: file })

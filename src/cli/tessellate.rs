@@ -6,10 +6,7 @@ use std::sync::Arc;
 use clap::ValueEnum;
 
 use super::gate_options::{GateOptions, failures};
-use super::lod_shader_option::report_own_lod;
 use super::options::CamerasOption;
-use super::shot::{Shot, ShotView, Subject};
-use super::surface_shader_option::report_own_surface;
 use super::view_files::{View, ViewFiles};
 use super::{
     AdapterOption, CliError, FactorsOption, LodShaderOption, SurfaceOptions, SurfaceShaderOption, file_of,
@@ -25,6 +22,7 @@ use inspect::gates::{Facts, GateKind, Judgement, judge};
 use inspect::measure::{AskedFactors, EmittedChunk, Measured, ScreenErrorMeasurement, Visitor};
 use inspect::render::{Camera, Scene};
 use inspect::settings::Settings;
+use inspect::shot::{Shot, ShotView, Subject, report_own_lod, report_own_surface};
 use load::Source;
 
 #[derive(Debug, clap::Args)]

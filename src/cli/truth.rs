@@ -3,15 +3,12 @@
 use std::sync::Arc;
 
 use clap::Args;
-use glam::DVec3;
-use serde::Serialize;
 
 use super::{CliError, SurfaceOptions, options};
 use geometry::progress::Progress;
-use geometry::tessellate::{Displacement, Inputs};
+use geometry::tessellate::Displacement;
 use inspect::engine::Loaded;
-use inspect::measure::{Accuracy, Angles, DeviationField, DeviationTarget, Distances, Sampling};
-use inspect::render::Scale;
+use inspect::shot::ReferenceSurface;
 use inspect::truth::Truth;
 use load::Source;
 
@@ -22,14 +19,6 @@ pub struct TruthOption {
     /// takes the surface that the tessellation converges to
     #[arg(long, value_name = "FILE", value_parser = options::source())]
     pub truth: Option<Source>,
-}
-
-/// The surface that a picture is compared with.
-pub enum ReferenceSurface {
-    /// A given or exact surface, with its name.
-    Truth(String, Arc<Truth>),
-    /// The limit surface of the tessellation.
-    Limit,
 }
 
 impl TruthOption {
@@ -62,110 +51,5 @@ impl TruthOption {
         let exact = loaded.source.shape().filter(|_| is_plain).and_then(Truth::of_shape);
         let found = exact.map(|truth| ReferenceSurface::Truth(loaded.source.to_string(), Arc::new(truth)));
         Ok(Some(found.unwrap_or(ReferenceSurface::Limit)))
-    }
-}
-
-impl ReferenceSurface {
-    /// The surface to compare with what was emitted with these inputs.
-    pub fn target(&self, inputs: &Inputs) -> DeviationTarget {
-        match self {
-            Self::Truth(_, truth) => DeviationTarget::Truth(truth.clone()),
-            Self::Limit => DeviationTarget::Limit(Box::new(*inputs)),
-        }
-    }
-
-    /// The given or exact surface and its name; none for the limit surface.
-    pub fn truth(&self) -> Option<(&str, &Truth)> {
-        match self {
-            Self::Truth(name, truth) => Some((name, truth)),
-            Self::Limit => None,
-        }
-    }
-}
-
-/// The sampled distance of everything that was emitted from the reference surface.
-#[derive(Debug, Serialize)]
-pub(super) struct AccuracyStats {
-    truth: String,
-    /// The diagonal of the reference surface's bounding box, in object units.
-    diagonal: f64,
-    /// From what was emitted to the nearest points of the reference surface.
-    to_truth: DistanceStats,
-    /// From the reference surface to the nearest points of what was emitted; none if patches were left out.
-    from_truth: Option<DistanceStats>,
-    /// The largest distance on screen, in px; none if nothing is in view.
-    max_px: Option<f64>,
-    /// Between shading normals and those of the reference surface, in degrees.
-    normals: AngleStats,
-}
-
-/// In object units, and as parts of the reference surface's diagonal.
-#[derive(Debug, Serialize)]
-struct DistanceStats {
-    max: f64,
-    rms: f64,
-    max_of_diagonal: f64,
-    rms_of_diagonal: f64,
-    /// The number of points that were measured.
-    samples: u64,
-    /// The largest spacing of these points.
-    spacing: f64,
-}
-
-#[derive(Debug, Serialize)]
-struct AngleStats {
-    max: f64,
-    rms: f64,
-}
-
-impl AccuracyStats {
-    /// `is_whole` says that no patch was left out.
-    pub(super) fn new(truth: &str, accuracy: &Accuracy, is_whole: bool) -> Self {
-        let distances = |distances: Distances, Sampling { samples, spacing }| {
-            let (Distances { largest: max, rms }, relative) = (distances, accuracy.relative(distances));
-            let (max_of_diagonal, rms_of_diagonal) = (relative.largest, relative.rms);
-            DistanceStats { max, rms, max_of_diagonal, rms_of_diagonal, samples, spacing }
-        };
-        let Angles { largest, rms } = accuracy.normals;
-        Self {
-            truth: truth.to_owned(),
-            diagonal: accuracy.diagonal,
-            to_truth: distances(accuracy.to_truth, accuracy.to_truth_sampling),
-            from_truth: is_whole.then(|| distances(accuracy.from_truth, accuracy.from_truth_sampling)),
-            max_px: accuracy.worst_px.map(|worst| worst.value),
-            normals: AngleStats { max: largest, rms },
-        }
-    }
-}
-
-/// What the deviation overlay shows, in object units.
-#[derive(Debug, Serialize)]
-pub(super) struct DeviationStats {
-    max: f64,
-    rms: f64,
-    /// The distances of the first and the last colour, if distances are in object units; the scale is logarithmic.
-    scale: [f32; 2],
-    /// None if nothing was emitted.
-    worst: Option<WorstStats>,
-    /// Triangles without a colour, because there were too many.
-    triangles_left_out: u64,
-}
-
-/// Where the distance is largest.
-#[derive(Debug, Serialize)]
-struct WorstStats {
-    patch: u32,
-    emitted: [f64; 3],
-    truth: [f64; 3],
-}
-
-impl DeviationStats {
-    pub(super) fn new(field: &DeviationField, scale: Scale) -> Self {
-        let max = field.worst().map_or(0.0, |worst| worst.value);
-        let worst = field.worst().map(|worst| {
-            let [emitted, truth] = [worst.emitted, worst.truth].map(|place: DVec3| place.to_array());
-            WorstStats { patch: worst.patch, emitted, truth }
-        });
-        Self { max, rms: field.rms(), scale: [scale.least, scale.most], worst, triangles_left_out: field.left_out }
     }
 }

@@ -1,21 +1,17 @@
 //! `pnaen turntable`: pictures from all around, as numbered PNG files or as one animated GIF.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
-use image::codecs::gif::{GifEncoder, Repeat};
-use image::{Delay, Frame, RgbaImage};
 
 use super::options::whole;
-use super::shot::Shot;
 use super::shot_options::ShotOptions;
-use super::{AdapterOption, CliError, Telling, file_error};
+use super::{AdapterOption, CliError, Telling};
 use geometry::progress::Progress;
 use inspect::engine::Engine;
 use inspect::export::ending;
-use inspect::render::Camera;
+use inspect::shot::{FPS, FRAMES, Turn};
 use load::Source;
-use load::files::{PartFile, PartFolder, file_reason};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -38,24 +34,6 @@ pub struct Args {
     pub adapter: AdapterOption,
 }
 
-pub(crate) const FRAMES: std::ops::RangeInclusive<u32> = 2..=3600;
-/// GIF files count in hundredths of a second, and viewers play those of 1 more slowly.
-pub(crate) const FPS: std::ops::RangeInclusive<u32> = 1..=50;
-
-/// One turn of the camera around the vertical axis through the point that it looks at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Turn {
-    pub frames: u32,
-    /// Pictures a second in a GIF.
-    pub fps: u32,
-}
-
-impl Default for Turn {
-    fn default() -> Self {
-        Self { frames: 36, fps: 12 }
-    }
-}
-
 pub(super) fn run(args: &Args, line: &str) -> Result<(), CliError> {
     let turn = Turn { frames: args.frames, fps: args.fps };
     let written = turn.files(&args.output);
@@ -69,83 +47,7 @@ pub(super) fn run(args: &Args, line: &str) -> Result<(), CliError> {
     shot.report_own_shaders()?;
     let mut telling = Telling::new();
     let mut say = |frame| telling.say(|| format!("picture {} of {}", frame + 1, turn.frames));
-    turn.write(&mut shot, |_| line.to_owned(), &args.output, &Progress::new(), &mut say)
-}
-
-impl Turn {
-    /// Draws the pictures and writes them. `command` returns the command that the PNG file of a number holds, and `say` gets
-    /// each number before its picture is drawn. If something fails or `progress` is cancelled, nothing is written.
-    ///
-    /// # Errors
-    /// The device was lost, a file can't be written, or `progress` was cancelled.
-    pub fn write(
-        &self,
-        shot: &mut Shot,
-        command: impl Fn(u32) -> String,
-        path: &Path,
-        progress: &Progress,
-        say: &mut dyn FnMut(u32),
-    ) -> Result<(), CliError> {
-        let start = *shot.camera();
-        let failed = |error: std::io::Error| file_error(path, "written", &file_reason(&error));
-        let mut draw = |shot: &mut Shot, frame: u32| {
-            say(frame);
-            shot.look_from(self.camera(&start, frame))?;
-            shot.picture(None, &progress.part(self.part(frame), self.part(frame + 1)))
-        };
-        if ending(path) == "gif" {
-            let part = PartFile::create(path).map_err(failed)?;
-            let mut gif = GifEncoder::new_with_speed(part.file(), QUANTISING);
-            gif.set_repeat(Repeat::Infinite).map_err(|error| file_error(path, "encoded", &error))?;
-            for frame in 0..self.frames {
-                let picture = opaque_or_clear(draw(shot, frame)?);
-                let frame = Frame::from_parts(picture, 0, 0, Delay::from_numer_denom_ms(1000, self.fps));
-                gif.encode_frame(frame).map_err(|error| file_error(path, "encoded", &error))?;
-            }
-            // It writes the end of the file.
-            drop(gif);
-            progress.check()?;
-            return part.finish().map_err(failed);
-        }
-        let mut folder = PartFolder::create(path).map_err(failed)?;
-        for frame in 0..self.frames {
-            let picture = draw(shot, frame)?;
-            shot.write(&folder.path(frame_name(frame)), &picture, &command(frame))?;
-        }
-        progress.check()?;
-        folder.finish().map_err(failed)
-    }
-
-    fn part(&self, frame: u32) -> f32 {
-        frame as f32 / self.frames as f32
-    }
-
-    /// The camera of a picture.
-    pub fn camera(&self, start: &Camera, frame: u32) -> Camera {
-        Camera { azimuth: start.azimuth + 360.0 * self.part(frame), ..*start }
-    }
-
-    /// The files that are written, as far as they can be there already.
-    fn files(&self, output: &Path) -> Vec<PathBuf> {
-        match output.is_dir() {
-            true => (0..self.frames).map(|frame| output.join(frame_name(frame))).collect(),
-            false => vec![output.to_owned()],
-        }
-    }
-}
-
-/// The name of a picture's file.
-pub(crate) fn frame_name(frame: u32) -> String {
-    format!("frame-{frame:04}.png")
-}
-
-/// How fast the 256 colours of a GIF are chosen, 1 to 30; faster ones fit less well.
-const QUANTISING: i32 = 10;
-
-/// A picture whose px are opaque or clear: GIF files have nothing between.
-fn opaque_or_clear(mut picture: RgbaImage) -> RgbaImage {
-    picture.pixels_mut().for_each(|pixel| pixel.0[3] = if pixel.0[3] < 128 { 0 } else { 255 });
-    picture
+    Ok(turn.write(&mut shot, |_| line.to_owned(), &args.output, &Progress::new(), &mut say)?)
 }
 
 /// Parses the path of a folder or a GIF file.
@@ -156,19 +58,5 @@ fn place(path: std::ffi::OsString) -> Result<PathBuf, String> {
             Err(format!("a turntable is a .gif file or a folder of PNG files, not .{other}"))
         }
         _ => Ok(path),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn pictures_are_evenly_around_and_the_last_is_before_the_first() {
-        let turn = Turn { frames: 8, fps: 10 };
-        let start = Camera { azimuth: 30.0, ..Camera::framing(&Default::default(), glam::Vec2::ONE) };
-        let azimuths: Vec<f32> = (0..8).map(|frame| turn.camera(&start, frame).azimuth).collect();
-        assert_eq!(azimuths, [30.0, 75.0, 120.0, 165.0, 210.0, 255.0, 300.0, 345.0]);
-        assert_eq!(Camera { azimuth: 30.0, ..turn.camera(&start, 5) }, start, "nothing else moves");
     }
 }

@@ -10,4 +10,5 @@ pub mod plot;
 pub mod render;
 pub mod settings;
 pub mod shader_files;
+pub mod shot;
 pub mod truth;

@@ -9,7 +9,7 @@ use image::RgbaImage;
 use inspect::render::layout::{CRACK_COLOR, T_JUNCTION_COLOR, linear};
 use inspect::render::{Camera, Scene, Target, crack_lines, lod_camera_lines, t_junction_lines};
 use inspect::settings::{Overlay, Overlays, Settings};
-use pnaen::cli::compare;
+use inspect::shot::compare;
 
 use crate::pictures::{SIZE, differing};
 use crate::stability::seen;

@@ -15,8 +15,8 @@ use inspect::engine::{Preparation, load};
 use inspect::render::layout::{CRACK_COLOR, FOLD_COLOR, NORMAL_COLOR, T_JUNCTION_COLOR, WASTE_COLOR, edge_color};
 use inspect::render::{Camera, EXCESS_SCALE, FACTOR_SCALE, Scene, Target, t_junction_lines};
 use inspect::settings::{ARENA_BYTES, Choice, Colors, Matcap, NormalsAt, Overlay, Overlays, Settings};
+use inspect::shot::{BETWEEN_DRIVERS, Reference, compare, write_drawn};
 use load::Source;
-use pnaen::cli::{BETWEEN_DRIVERS, Reference, compare, write_drawn};
 
 use crate::displacement::wavy;
 use crate::passes::sheet;

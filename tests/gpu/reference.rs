@@ -19,9 +19,9 @@ use inspect::engine::{Preparation, load};
 use inspect::render::view_projection::{ClipY, DepthRange, ViewProjection};
 use inspect::render::{Camera, Target};
 use inspect::settings::{ARENA_BYTES, Overlays, Settings};
+use inspect::shot::{BETWEEN_DRIVERS, Comparison, compare};
 use load::Source;
 use load::markdown::table;
-use pnaen::cli::{BETWEEN_DRIVERS, Comparison, compare};
 
 use crate::displacement::wavy;
 use crate::engine;

@@ -8,9 +8,9 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use geometry::mesh::Shape;
 use geometry::tessellate::{Displacement, Lod, Surface, Tessellation};
+use inspect::shot::{BETWEEN_DRIVERS, compare};
 use load::{HeightSource, Source};
 use pnaen::app::App;
-use pnaen::cli::{BETWEEN_DRIVERS, compare};
 
 use crate::{choose, click, press, run_command, settle, uniform, vase, window};
 

@@ -94,7 +94,7 @@ fn the_command_line_says_how_the_first_mesh_is_taken() {
     let mut harness = Harness::builder().with_size([1200.0, 960.0]).wgpu().build_eframe(move |context| {
         let mut app = App::new(context, Some(first), Limits::default()).expect("these tests need a graphics adapter");
         app.resume(&context.egui_ctx, Persistence::read(Some(&kept)));
-        app.open_as(&context.egui_ctx, &opening);
+        app.open_as(&context.egui_ctx, |preparation| opening.change(preparation));
         app
     });
     settle(&mut harness);

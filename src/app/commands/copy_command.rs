@@ -4,8 +4,8 @@ use std::path::Path;
 
 use crate::app::App;
 use crate::app::jobs::picture_job::PictureChoices;
-use crate::cli::{CopiedCommand, Turn};
 use inspect::render::Camera;
+use inspect::shot::{CopiedCommand, Turn};
 use load::{HeightSource, Source};
 
 impl App {

@@ -5,7 +5,7 @@ use egui::{DragValue, Grid, Ui};
 use super::picture_window::LABELS;
 use crate::app::App;
 use crate::app::jobs::picture_job::PictureChoices;
-use crate::cli::{FPS, FRAMES, Turn};
+use inspect::shot::{FPS, FRAMES, Turn};
 
 /// The choices, which last as long as the program runs, and whether the window is open.
 #[derive(Clone, Copy, Default)]

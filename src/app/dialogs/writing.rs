@@ -9,12 +9,13 @@ use crate::app::jobs::document::arena_bytes;
 use crate::app::jobs::export_job::Export;
 use crate::app::jobs::picture_job::PictureChoices;
 use crate::app::jobs::writing_job::WritingJob;
-use crate::cli::{CliError, frame_name, write_adjacency};
 use geometry::mesh::adjacency::Layout;
 use geometry::names::shown_path;
 use geometry::progress::Progress;
 use inspect::adjacency_file::Format;
 use inspect::export::{Exported, ending};
+use inspect::shot::files::write_adjacency;
+use inspect::shot::{ShotError, frame_name};
 
 impl App {
     /// Whether a file is being written, other than the chart's.
@@ -80,7 +81,7 @@ impl App {
             let indices = Layout::Nine.indices(&loaded.topology);
             let written = progress
                 .check()
-                .map_err(CliError::from)
+                .map_err(ShotError::from)
                 .and_then(|()| write_adjacency(&loaded, Layout::Nine, &indices, Format::of_name(path), path));
             written.map_err(|error| error.to_string())
         });

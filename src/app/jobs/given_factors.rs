@@ -6,7 +6,6 @@ use std::sync::Arc;
 use super::background_job::BackgroundJob;
 use super::own_shader_job::{OpenShader, new_generation};
 use crate::app::App;
-use crate::cli::read_factors;
 use geometry::mesh::Topology;
 use geometry::names::shown_path;
 use geometry::tessellate::{Convention, HullFactors, Lod, Partitioning};
@@ -14,6 +13,7 @@ use gpu::{Given, GpuError, LodShader};
 use inspect::engine::Loaded;
 use inspect::measure::Agreement;
 use inspect::settings::SplitSide;
+use inspect::shot::read_factors;
 
 /// Factors that a file has for each patch of the mesh that is open.
 pub(crate) struct GivenFactors {

@@ -8,7 +8,6 @@ use super::leak_job::LeakJob;
 use super::measure_job::MeasureJob;
 use super::silhouette_job::SilhouetteJob;
 use crate::app::App;
-use crate::cli::OpeningOptions;
 use inspect::engine::{Loaded, Preparation};
 use inspect::render::Camera;
 use inspect::settings::Settings;
@@ -30,10 +29,10 @@ impl App {
     }
 
     /// Takes the mesh that is being opened as the command line says, instead of as it was kept.
-    pub fn open_as(&mut self, context: &egui::Context, opening: &OpeningOptions) {
-        let Some(load) = self.jobs.load.as_ref().filter(|_| !opening.is_empty()) else { return };
+    pub fn open_as(&mut self, context: &egui::Context, change: impl FnOnce(&mut Preparation)) {
+        let Some(load) = self.jobs.load.as_ref() else { return };
         let (source, mut preparation) = (load.source.clone(), load.preparation.clone());
-        opening.change(&mut preparation);
+        change(&mut preparation);
         self.settings.import = preparation.import;
         self.jobs.load = Some(Load::start(&self.engine, context, source, preparation, self.settings, false));
     }

@@ -376,13 +376,13 @@ impl App {
     /// What is said about factors of the functions that aren't numbers, if there are any in the picture.
     pub(in crate::app) fn not_numbers_said(&self) -> Option<String> {
         let report = self.document.as_ref()?.scene.tessellator.own_lod_report()?;
-        crate::cli::not_numbers_said(report.not_numbers)
+        inspect::shot::not_numbers_said(report.not_numbers)
     }
 
     /// What is said about sides whose control points aren't numbers, if there are any in the picture.
     pub(in crate::app) fn straight_sides_said(&self) -> Option<String> {
         let report = self.document.as_ref()?.scene.tessellator.own_surface_report()?;
-        crate::cli::straight_sides_said(report.not_numbers)
+        inspect::shot::straight_sides_said(report.not_numbers)
     }
 
     /// The number of the function that is to give control points; 0 for the surface's own.

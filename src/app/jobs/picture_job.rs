@@ -5,12 +5,13 @@ use std::path::Path;
 use super::document::arena_bytes;
 use super::matcap::ChosenMatcap;
 use crate::app::App;
-use crate::cli::{CliError, ReferenceSurface, Shot, ShotView, StatsWanted, Subject, Turn, write_factors};
 use geometry::progress::Progress;
 use gpu::{Gpu, GpuError};
 use inspect::engine::Engine;
 use inspect::render::Scene;
 use inspect::settings::{ARENA_BYTES, Colors, Overlays, Settings, SplitSide};
+use inspect::shot::files::write_factors;
+use inspect::shot::{ReferenceSurface, Shot, ShotError, ShotView, StatsWanted, Subject, Turn};
 
 /// How a picture is saved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,7 +104,7 @@ impl ShotParts {
     ///
     /// # Errors
     /// The device fails, or `draw` does; as a sentence.
-    pub(crate) fn with_shot(self, draw: impl FnOnce(&mut Shot) -> Result<(), CliError>) -> Result<(), String> {
+    pub(crate) fn with_shot(self, draw: impl FnOnce(&mut Shot) -> Result<(), ShotError>) -> Result<(), String> {
         let Self { engine, make, subject, view, .. } = self;
         let own = engine.clone();
         // What the device refuses, such as a picture that is too large for its memory, is this file's error.
@@ -117,7 +118,7 @@ impl ShotParts {
 }
 
 /// What went wrong, as a sentence.
-fn said(attempted: Result<Result<(), CliError>, GpuError>) -> Result<(), String> {
+fn said(attempted: Result<Result<(), ShotError>, GpuError>) -> Result<(), String> {
     attempted.map_err(|error| error.to_string())?.map_err(|error| error.to_string())
 }
 

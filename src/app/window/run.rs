@@ -10,8 +10,8 @@ use thiserror::Error;
 use super::device_lost::Next;
 use crate::app::persistence::{LEAST_SIZE, WindowGeometry, folder};
 use crate::app::{App, Persistence};
-use crate::cli::OpeningOptions;
 use gpu::{AdapterChoice, BACKENDS, GpuError, device_descriptor};
+use inspect::engine::Preparation;
 use load::Source;
 use load::files::Limits;
 
@@ -32,6 +32,9 @@ pub enum WindowError {
     Gone(String),
 }
 
+/// What the command line changes in how the mesh is taken.
+pub type Opening<'a> = Option<&'a dyn Fn(&mut Preparation)>;
+
 /// Opens the window with `source`, or with a cube made in code, on the chosen adapter; `opening` says how the mesh is taken. Returns
 /// when it is closed. Files beyond `limits` aren't opened.
 ///
@@ -39,7 +42,7 @@ pub enum WindowError {
 /// There is no display, no adapter, or the window can't be drawn.
 pub fn run(
     source: Option<Source>,
-    opening: &OpeningOptions,
+    opening: Opening,
     limits: Limits,
     adapter: AdapterChoice,
 ) -> Result<(), WindowError> {
@@ -56,12 +59,12 @@ pub fn run_watched(
     adapter: AdapterChoice,
     watch: impl FnMut(&mut App, &egui::Context) + 'static,
 ) -> Result<(), WindowError> {
-    run_opening(source, &OpeningOptions::default(), limits, adapter, watch)
+    run_opening(source, None, limits, adapter, watch)
 }
 
 fn run_opening(
     source: Option<Source>,
-    opening: &OpeningOptions,
+    opening: Opening,
     limits: Limits,
     adapter: AdapterChoice,
     watch: impl FnMut(&mut App, &egui::Context) + 'static,
@@ -76,7 +79,9 @@ fn run_opening(
     let first = |context: &eframe::CreationContext| {
         let mut app = App::new(context, source, limits)?;
         app.resume(&context.egui_ctx, lasting);
-        app.open_as(&context.egui_ctx, opening);
+        if let Some(change) = opening {
+            app.open_as(&context.egui_ctx, change);
+        }
         Ok(app)
     };
     let mut closed = show(place, &adapter, &watch, first)?;

@@ -11,13 +11,12 @@ use image::{DynamicImage, RgbaImage};
 
 use super::plan::Job;
 use super::say_unkept;
-use crate::cli::picture_file::png_bytes;
-use crate::cli::shot::Shot;
 use crate::cli::{CliError, file_error, file_of};
 use geometry::names::on_one_line;
 use geometry::progress::Progress;
 use inspect::engine::{Engine, Loaded, Preparation};
 use inspect::gates::Gate;
+use inspect::shot::{Shot, png_bytes};
 use lab::check::{Asset, Cache, GateResult, View};
 use load::LoadError;
 

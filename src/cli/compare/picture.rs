@@ -6,9 +6,7 @@ use std::sync::Arc;
 use glam::{DVec3, Vec3};
 
 use super::Args;
-use crate::cli::legend::{Named, draw_key};
-use crate::cli::shot::{Shot, ShotView, Subject};
-use crate::cli::{CliError, ReferenceSurface, write_picture};
+use crate::cli::CliError;
 use geometry::mesh::{Mesh, MeshSlices, Topology};
 use geometry::progress::Progress;
 use geometry::tessellate::{FIXED_ONE, Surface, Tessellation, Vertex, outline_place};
@@ -16,6 +14,8 @@ use inspect::engine::{Engine, Loaded};
 use inspect::render::layout::WORST_COLOR;
 use inspect::render::{Camera, LineSegment};
 use inspect::settings::{Colors, Overlays, Settings};
+use inspect::shot::legend::{Named, draw_key};
+use inspect::shot::{ReferenceSurface, Shot, ShotView, Subject, write_picture};
 use inspect::truth::Truth;
 use lab::compare::{Comparison, ForeignMesh, Ours, SideDifference, patch_starts};
 
@@ -72,7 +72,7 @@ pub(super) fn draw(
     let has_worst = subject.reference_surface.is_some();
     let mut picture = Shot::new(engine, scene, subject, view)?.picture(None, &Progress::new())?;
     draw_key(&mut picture, "What differs", &lines.names(has_worst))?;
-    write_picture(path, &picture.into())
+    Ok(write_picture(path, &picture.into())?)
 }
 
 /// Their triangles as they are, in the colours of their distance from ours.

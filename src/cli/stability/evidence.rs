@@ -6,12 +6,12 @@ use std::sync::Arc;
 use super::{Loaded, file_name};
 use crate::cli::CliError;
 use crate::cli::gate_options::write_evidence_of;
-use crate::cli::shot::{Shot, ShotView, Subject as ShotSubject};
 use geometry::mesh::Topology;
 use geometry::progress::Progress;
 use inspect::engine::{Engine, Loaded as LoadedMesh};
 use inspect::gates::Gate;
 use inspect::settings::ARENA_BYTES;
+use inspect::shot::{Shot, ShotView, Subject as ShotSubject};
 use lab::stability::{Failure, Subject, Tried, viewport};
 
 /// A px of the run is this many px wide here. The middle of its middle px is its own middle, so that what leaked there leaks here.

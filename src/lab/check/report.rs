@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use geometry::numbers::grouped;
 use inspect::gates::{GateKind, Judgement, Place};
+use inspect::shot::Numbers;
 
 /// What a check found.
 #[derive(Clone, Debug, Default)]
@@ -42,15 +43,6 @@ pub struct View {
     pub gates: Vec<GateResult>,
     /// A PNG file in base64, if pictures were asked for.
     pub picture: Option<String>,
-}
-
-/// How much there is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Numbers {
-    pub triangles_in: u64,
-    pub patches: u64,
-    pub triangles_out: u64,
-    pub vertices_out: u64,
 }
 
 /// How a gate judged.

@@ -1,6 +1,5 @@
 //! The seeds of the fuzz targets: small files of every format. `PNAEN_UPDATE_SEEDS=1` writes them.
 
-
 use super::mutated;
 use crate::Format::{Fbx, Gltf, Obj, Off, Ply, Stl, ThreeMf};
 use crate::{environment_file, gltf};

@@ -6,10 +6,10 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use inspect::plot::{self, ChartError, DENSITY};
-use inspect::render::layout::{WASTE_COLOR, srgb};
-use inspect::render::{BARYCENTRIC_TITLE, COLUMNS, Distances, Scale, Shown, legend_of, tick_text};
-use inspect::settings::{Colors, Settings};
+use crate::plot::{self, ChartError, DENSITY};
+use crate::render::layout::{WASTE_COLOR, srgb};
+use crate::render::{BARYCENTRIC_TITLE, COLUMNS, Distances, Scale, Shown, legend_of, tick_text};
+use crate::settings::{Colors, Settings};
 
 /// Sizes in points: the bar of the scale, the block of one colour before it, the margin, and the text.
 const BAR: [f64; 2] = [196.0, 12.0];
@@ -34,7 +34,7 @@ const LEFT: Pos = Pos { h_pos: HPos::Left, v_pos: VPos::Center };
 ///
 /// # Errors
 /// The font can't be used.
-pub(super) fn draw_legend(
+pub(crate) fn draw_legend(
     picture: &mut RgbaImage,
     settings: &Settings,
     radius: f32,
@@ -65,13 +65,13 @@ pub(super) fn draw_legend(
 }
 
 /// A colour and what it stands for.
-pub(super) type Named = ([u8; 3], &'static str);
+pub type Named = ([u8; 3], &'static str);
 
 /// Draws colours with their names into the lower left corner, unless there are none.
 ///
 /// # Errors
 /// The font can't be used.
-pub(super) fn draw_key(picture: &mut RgbaImage, title: &str, rows: &[Named]) -> Result<(), ChartError> {
+pub fn draw_key(picture: &mut RgbaImage, title: &str, rows: &[Named]) -> Result<(), ChartError> {
     if rows.is_empty() {
         return Ok(());
     }

@@ -6,9 +6,10 @@ use std::path::Path;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{DynamicImage, RgbaImage};
 
-use super::{CliError, file_error};
+use super::ShotError;
+use super::files::file_error;
+use crate::settings::{Settings, Value, options};
 use gpu::identity;
-use inspect::settings::{Settings, Value, options};
 use load::files::{file_reason, write_whole};
 
 /// Keywords of the texts. The first is one of the PNG specification's own.
@@ -18,12 +19,12 @@ const COMMAND: &str = "pnaen command";
 const SETTINGS: &str = "pnaen settings";
 
 /// Writes a PNG file, whatever its name ends in.
-pub(crate) fn write_picture(path: &Path, picture: &DynamicImage) -> Result<(), CliError> {
+pub fn write_picture(path: &Path, picture: &DynamicImage) -> Result<(), ShotError> {
     write(path, &png_bytes(picture).map_err(|error| file_error(path, "encoded", &error))?)
 }
 
 /// A picture as a PNG file.
-pub(super) fn png_bytes(picture: &DynamicImage) -> image::ImageResult<Vec<u8>> {
+pub fn png_bytes(picture: &DynamicImage) -> image::ImageResult<Vec<u8>> {
     let mut bytes = Vec::new();
     let encoder = PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, FilterType::Adaptive);
     picture.write_with_encoder(encoder)?;
@@ -31,13 +32,13 @@ pub(super) fn png_bytes(picture: &DynamicImage) -> image::ImageResult<Vec<u8>> {
 }
 
 /// Writes a PNG file with texts that say what drew it, and how to draw it again.
-pub(super) fn write_stamped(
+pub(crate) fn write_stamped(
     path: &Path,
     picture: &RgbaImage,
     adapter: &wgpu::AdapterInfo,
     command: &str,
     settings: &Settings,
-) -> Result<(), CliError> {
+) -> Result<(), ShotError> {
     let settings = settings_text(settings);
     write_drawn(path, picture, adapter, &[(COMMAND, command), (SETTINGS, &settings)])
 }
@@ -48,7 +49,7 @@ pub fn write_drawn(
     picture: &RgbaImage,
     adapter: &wgpu::AdapterInfo,
     texts: &[(&str, &str)],
-) -> Result<(), CliError> {
+) -> Result<(), ShotError> {
     let identity = identity(adapter);
     let adapter = identity.as_deref().map(|identity| (ADAPTER, identity));
     let software = (SOFTWARE, concat!("pnaen ", env!("CARGO_PKG_VERSION")));
@@ -57,7 +58,7 @@ pub fn write_drawn(
 }
 
 /// What drew the picture in a PNG file, if that is known.
-pub(super) fn adapter_of(file: impl BufRead + Seek) -> Option<String> {
+pub(crate) fn adapter_of(file: impl BufRead + Seek) -> Option<String> {
     let reader = png::Decoder::new(file).read_info().ok()?;
     let info = reader.info();
     let latin_1 =
@@ -66,7 +67,7 @@ pub(super) fn adapter_of(file: impl BufRead + Seek) -> Option<String> {
     latin_1.or_else(utf_8)
 }
 
-fn write(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
+fn write(path: &Path, bytes: &[u8]) -> Result<(), ShotError> {
     write_whole(path, bytes).map_err(|error| file_error(path, "written", &file_reason(&error)))
 }
 

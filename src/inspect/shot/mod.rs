@@ -1,6 +1,21 @@
 //! One picture, and all that is measured for it: what `render` and `turntable` draw, and what the window saves.
 
+mod camera_stats;
+mod copied_command;
+mod error;
+mod factors_report;
+pub mod files;
 mod judging;
+pub mod legend;
+mod lod_shader_report;
+mod outline_stats;
+mod picture_comparison;
+mod picture_file;
+mod reference;
+mod reference_surface;
+mod stats;
+mod surface_shader_report;
+mod turn;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -8,29 +23,45 @@ use std::sync::Arc;
 use glam::Vec2;
 use image::RgbaImage;
 
-use super::factors_option::FactorsFile;
-use super::legend::draw_legend;
-use super::lod_shader_option::{LodShaderStats, report_own_lod};
-use super::picture_file::write_stamped;
-use super::silhouette::SilhouetteStats;
-use super::stats::{AnimationStats, LeftStats, Stats};
-use super::surface_shader_option::{SurfaceShaderStats, report_own_surface};
-use super::truth::{AccuracyStats, DeviationStats, ReferenceSurface};
-use super::view_report::ViewStats;
-use super::{CliError, to_json, write_text};
+pub use copied_command::{CopiedCommand, given};
+pub use error::ShotError;
+pub use factors_report::{FactorsFile, said};
+pub use factors_report::{agreement_lines, read_factors};
+pub use judging::Numbers;
+pub use lod_shader_report::{not_numbers_said, report_own_lod};
+pub use picture_comparison::{CompareError, Comparison, compare};
+pub use picture_file::{png_bytes, write_drawn, write_picture};
+pub use reference::BETWEEN_DRIVERS;
+pub use reference::{Judged, Reference};
+pub use reference_surface::ReferenceSurface;
+pub use stats::Stats;
+pub use surface_shader_report::{report_own_surface, straight_sides_said};
+pub use turn::Turn;
+pub use turn::{FPS, FRAMES, frame_name};
+
+use camera_stats::ViewStats;
+use files::{to_json, write_text};
+use legend::draw_legend;
+use lod_shader_report::LodShaderStats;
+use outline_stats::SilhouetteStats;
+use picture_file::write_stamped;
+use reference_surface::{AccuracyStats, DeviationStats};
+use stats::{AnimationStats, LeftStats};
+use surface_shader_report::SurfaceShaderStats;
+
+use crate::engine::{Engine, Loaded, MeasurementResults, Measurements, Runs, SilhouetteView};
+use crate::gates::Judgement;
+use crate::measure::{AccuracyOptions, DeviationField, ScreenError, Silhouette, patch_edges};
+use crate::render::{
+    Camera, DEVIATION_PX_SCALE, Distances, LineSegment, Renderer, Scale, Scene, Target, axis_lines, crack_lines,
+    deviation_scale, lay_over, lod_camera_lines, outlines_picture, patch_lines, t_junction_lines, worst_lines,
+};
+use crate::settings::{Colors, DeviationUnit, Settings, SplitSide};
 use geometry::mesh::{Bounds, Mesh, Moment, Texture, t_junctions};
 use geometry::progress::Progress;
 use geometry::tessellate::{Inputs, LodView};
 use geometry::view::ScreenView;
 use gpu::{Given, GpuError, Recorder, SurfaceShader, Timing};
-use inspect::engine::{Engine, Loaded, MeasurementResults, Measurements, Runs, SilhouetteView};
-use inspect::gates::Judgement;
-use inspect::measure::{AccuracyOptions, DeviationField, ScreenError, Silhouette, patch_edges};
-use inspect::render::{
-    Camera, DEVIATION_PX_SCALE, Distances, LineSegment, Renderer, Scale, Scene, Target, axis_lines, crack_lines,
-    deviation_scale, lay_over, lod_camera_lines, outlines_picture, patch_lines, t_junction_lines, worst_lines,
-};
-use inspect::settings::{Colors, DeviationUnit, Settings, SplitSide};
 use load::panorama::Panorama;
 
 /// What is drawn.
@@ -111,7 +142,7 @@ impl Subject {
     ///
     /// # Errors
     /// The mesh's rig needs larger buffers than the adapter can bind.
-    pub(crate) fn dress(&self, engine: &Engine, scene: &mut Scene) -> Result<(), GpuError> {
+    pub fn dress(&self, engine: &Engine, scene: &mut Scene) -> Result<(), GpuError> {
         scene.matcap = self.matcap.as_ref().map(|picture| engine.renderer.matcap(picture)).transpose()?;
         scene.tessellator.give(self.given.clone())?;
         scene.tessellator.set_surface_shader(self.surface_shader.clone())?;
@@ -169,7 +200,7 @@ impl Shot {
     ///
     /// # Errors
     /// The device was lost.
-    pub(crate) fn report_own_shaders(&self) -> Result<(), GpuError> {
+    pub fn report_own_shaders(&self) -> Result<(), GpuError> {
         report_own_surface(&self.engine, &self.scene)?;
         report_own_lod(&self.engine, &self.scene)
     }
@@ -178,7 +209,7 @@ impl Shot {
     ///
     /// # Errors
     /// The device was lost.
-    pub(crate) fn look_from(&mut self, camera: Camera) -> Result<(), GpuError> {
+    pub fn look_from(&mut self, camera: Camera) -> Result<(), GpuError> {
         self.view.camera = camera;
         self.lod_view = self.view.lod_view(&self.scene);
         (self.results, self.judged, self.error_place) = Default::default();
@@ -186,7 +217,7 @@ impl Shot {
     }
 
     /// The scene and what is drawn, for another shot of them.
-    pub(crate) fn into_parts(self) -> (Scene, Subject) {
+    pub fn into_parts(self) -> (Scene, Subject) {
         (self.scene, self.subject)
     }
 
@@ -205,7 +236,7 @@ impl Shot {
         &self.subject.settings
     }
 
-    pub(super) fn adapter(&self) -> &wgpu::AdapterInfo {
+    pub fn adapter(&self) -> &wgpu::AdapterInfo {
         &self.engine.gpu.info
     }
 
@@ -213,7 +244,7 @@ impl Shot {
     ///
     /// # Errors
     /// The file can't be written.
-    pub fn write(&self, path: &Path, picture: &RgbaImage, command: &str) -> Result<(), CliError> {
+    pub fn write(&self, path: &Path, picture: &RgbaImage, command: &str) -> Result<(), ShotError> {
         write_stamped(path, picture, self.adapter(), command, self.settings())
     }
 
@@ -232,7 +263,7 @@ impl Shot {
     ///
     /// # Errors
     /// The device was lost, or `progress` was cancelled.
-    pub fn picture(&mut self, stats: Option<StatsWanted>, progress: &Progress) -> Result<RgbaImage, CliError> {
+    pub fn picture(&mut self, stats: Option<StatsWanted>, progress: &Progress) -> Result<RgbaImage, ShotError> {
         self.measure(stats, &progress.part(0.0, MEASURING))?;
         self.mark(progress)?;
         self.draw(&progress.part(MEASURING, 1.0))?;
@@ -250,7 +281,7 @@ impl Shot {
     }
 
     /// Draws step by step, so that a long drawing can be cancelled, and a device that is shared has time for others.
-    fn draw(&mut self, progress: &Progress) -> Result<(), CliError> {
+    fn draw(&mut self, progress: &Progress) -> Result<(), ShotError> {
         let Self { subject: Subject { settings, .. }, engine, scene, target, view, .. } = self;
         let steps = Renderer::step_count(scene, settings);
         for step in 0..steps {
@@ -289,7 +320,7 @@ impl Shot {
     }
 
     /// Measures each half with one walk over its output: what the overlays show, and what the stats say.
-    fn measure(&mut self, stats: Option<StatsWanted>, progress: &Progress) -> Result<(), CliError> {
+    fn measure(&mut self, stats: Option<StatsWanted>, progress: &Progress) -> Result<(), ShotError> {
         let (view, settings) = (self.view(), self.subject.settings);
         let reference_surface = self.subject.reference_surface.as_ref();
         let is_shown = settings.overlays.colors == Colors::Deviation;
@@ -319,7 +350,7 @@ impl Shot {
     }
 
     /// Compares outlines, if they are shown: those of the right half, in all of the picture.
-    fn compare_outlines(&mut self, progress: &Progress) -> Result<(), CliError> {
+    fn compare_outlines(&mut self, progress: &Progress) -> Result<(), ShotError> {
         if self.subject.settings.overlays.colors == Colors::Silhouette {
             let seen = self.view.camera.lod_view(self.target.viewport(), &self.scene.bounds);
             let view = SilhouetteView { size: self.target.size, seen, lod: self.lod_view };
@@ -351,7 +382,7 @@ impl Shot {
     }
 
     /// Puts lines over each half: the overlays that are lines, and the outline of the selected patch.
-    fn mark(&mut self, progress: &Progress) -> Result<(), CliError> {
+    fn mark(&mut self, progress: &Progress) -> Result<(), ShotError> {
         for half in SplitSide::BOTH {
             let lines = self.lines(half, progress)?;
             if let Some(scene) = self.scene.half_mut(half) {
@@ -361,7 +392,7 @@ impl Shot {
         Ok(())
     }
 
-    fn lines(&self, half: SplitSide, progress: &Progress) -> Result<Vec<LineSegment>, CliError> {
+    fn lines(&self, half: SplitSide, progress: &Progress) -> Result<Vec<LineSegment>, ShotError> {
         let (topology, settings) = (&self.posed.topology, &self.subject.settings);
         let results = self.results(half);
         let measured = results.and_then(|results| results.survey.as_ref());
@@ -409,7 +440,7 @@ impl Shot {
     ///
     /// # Errors
     /// The device was lost.
-    pub(super) fn stats(&mut self) -> Result<Option<Stats>, CliError> {
+    pub fn stats(&mut self) -> Result<Option<Stats>, ShotError> {
         let (view, accuracy) = (self.view(), self.accuracy(SplitSide::Right));
         let Self { engine, scene, target, lod_view, results, .. } = self;
         let (settings, camera, moment) = (&self.subject.settings, &self.view.camera, self.subject.moment);
@@ -452,7 +483,7 @@ impl Shot {
     ///
     /// # Errors
     /// The device was lost, or the file can't be written.
-    pub(crate) fn write_stats(&mut self, factors_file: Option<FactorsFile>, path: &Path) -> Result<(), CliError> {
+    pub fn write_stats(&mut self, factors_file: Option<FactorsFile>, path: &Path) -> Result<(), ShotError> {
         let Some(mut stats) = self.stats()? else { return Ok(()) };
         stats.factors_file = factors_file;
         write_text(path, &to_json(&stats)?)

@@ -3,12 +3,12 @@
 use glam::Vec4;
 use serde::Serialize;
 
+use crate::render::Camera;
 use geometry::mesh::Bounds;
-use inspect::render::Camera;
 
 /// A camera in numbers.
 #[derive(Clone, Debug, Serialize)]
-pub(super) struct ViewStats {
+pub struct ViewStats {
     /// `perspective` or `orthographic`.
     kind: &'static str,
     /// In object units; none in an orthographic view.
@@ -26,7 +26,7 @@ pub(super) struct ViewStats {
 
 impl ViewStats {
     /// The camera that draws a picture of a mesh with these bounds.
-    pub(super) fn new(camera: &Camera, viewport: [u32; 2], bounds: &Bounds) -> Self {
+    pub fn new(camera: &Camera, viewport: [u32; 2], bounds: &Bounds) -> Self {
         let mut matrix = camera.clip_from_object(viewport.map(|side| side as f32).into(), bounds);
         if camera.is_mirrored() {
             // What was drawn was mirrored afterwards.

@@ -2,12 +2,12 @@
 
 use serde::Serialize;
 
-use inspect::measure::{OutlineDistance, Silhouette};
+use crate::measure::{OutlineDistance, Silhouette};
 
 /// The largest distances of the triangles' outline from others, in px; none where the picture doesn't show both outlines. Places
 /// are in px from the picture's top left.
 #[derive(Debug, Serialize)]
-pub(super) struct SilhouetteStats {
+pub struct SilhouetteStats {
     from_source_px: Option<f64>,
     from_source_at: Option<[f64; 2]>,
     from_surface_px: Option<f64>,
@@ -18,7 +18,7 @@ pub(super) struct SilhouetteStats {
 
 impl SilhouetteStats {
     /// `mirrored` is the width of the picture in px if it was mirrored after the outlines were found.
-    pub(super) fn new(silhouette: &Silhouette, mirrored: Option<u32>) -> Self {
+    pub fn new(silhouette: &Silhouette, mirrored: Option<u32>) -> Self {
         let shown = |[x, y]: [f64; 2]| [mirrored.map_or(x, |width| f64::from(width) - x), y];
         let place = |distance: Option<OutlineDistance>| distance.map(|distance| shown(distance.at.to_array()));
         let distances = &silhouette.distances;

@@ -4,26 +4,26 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::factors_option::FactorsFile;
-use super::lod_shader_option::LodShaderStats;
+use super::camera_stats::ViewStats;
+use super::factors_report::FactorsFile;
+use super::lod_shader_report::LodShaderStats;
+use super::outline_stats::SilhouetteStats;
 use super::reference::ReferenceStats;
-use super::silhouette::SilhouetteStats;
-use super::surface_shader_option::SurfaceShaderStats;
-use super::truth::{AccuracyStats, DeviationStats};
-use super::view_report::ViewStats;
+use super::reference_surface::{AccuracyStats, DeviationStats};
+use super::surface_shader_report::SurfaceShaderStats;
+use crate::engine::{Engine, Loaded};
+use crate::gates::{GateKind, Judgement};
+use crate::measure::{Measured, SeamTurns, Seams};
+use crate::render::Scene;
+use crate::settings::{Choice, Declaration, Settings, options};
 use geometry::mesh::{EdgeCounts, Topology};
 use geometry::tessellate::Displacement;
 use geometry::view::{ScreenView, ulp};
 use gpu::PassTime;
-use inspect::engine::{Engine, Loaded};
-use inspect::gates::{GateKind, Judgement};
-use inspect::measure::{Measured, SeamTurns, Seams};
-use inspect::render::Scene;
-use inspect::settings::{Choice, Declaration, Settings, options};
 
 /// What was done and what it cost. Times are medians in ms.
 #[derive(Debug, Serialize)]
-pub(super) struct Stats {
+pub struct Stats {
     /// The name of the view, if there are several.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub view: Option<String>,
@@ -154,7 +154,7 @@ impl SettingsStats {
 }
 
 #[derive(Debug, Serialize)]
-pub(super) struct AnimationStats {
+pub struct AnimationStats {
     pub name: String,
     /// s.
     pub time: f64,
@@ -172,7 +172,7 @@ struct Bytes {
 }
 
 #[derive(Debug, Serialize)]
-pub(super) struct CrackStats {
+pub(crate) struct CrackStats {
     edge_points: u64,
     edges_compared: u64,
     different_bits: u64,
@@ -188,7 +188,7 @@ pub(super) struct CrackStats {
 
 impl CrackStats {
     /// As seen from `view`.
-    pub(super) fn new(measured: &Measured, topology: &Topology, view: ScreenView) -> Self {
+    pub(crate) fn new(measured: &Measured, topology: &Topology, view: ScreenView) -> Self {
         let cracks = &measured.cracks;
         Self {
             edge_points: cracks.edge_points,
@@ -252,7 +252,7 @@ impl SeamTurnStats {
 
 impl Stats {
     /// The stats that every picture has, seen from `view`. The others are left empty.
-    pub(super) fn new(
+    pub fn new(
         engine: &Engine,
         loaded: &Loaded,
         scene: &Scene,
@@ -316,7 +316,7 @@ impl Stats {
 
 /// What was emitted beside what LOD by error would have emitted for the same largest error.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub(super) struct LodComparison {
+pub struct LodComparison {
     /// The measured error, taken as LOD by error's tolerance, in px.
     tolerance_px: f32,
     /// What LOD by error emits.
@@ -327,14 +327,14 @@ pub(super) struct LodComparison {
 
 impl Stats {
     /// Takes how gates judged, of which one may compare with a tolerance that LOD doesn't use.
-    pub(super) fn judged(&mut self, gates: Vec<Judgement>, tolerance: f32) {
+    pub fn judged(&mut self, gates: Vec<Judgement>, tolerance: f32) {
         let is_compared = gates.iter().any(|gate| gate.kind == GateKind::AboveTolerance);
         self.settings.tolerance = self.settings.tolerance.or(is_compared.then_some(tolerance));
         self.gates = gates;
     }
 
     /// Compares with LOD by error, which emits so many triangles at this tolerance.
-    pub(super) fn compared(&self, tolerance_px: f32, triangles: u64) -> LodComparison {
+    pub fn compared(&self, tolerance_px: f32, triangles: u64) -> LodComparison {
         let times = (triangles > 0).then(|| self.triangles_out as f64 / triangles as f64);
         LodComparison { tolerance_px, triangles, times }
     }
@@ -342,7 +342,7 @@ impl Stats {
 
 /// The stats of another surface left of the split.
 #[derive(Debug, Serialize)]
-pub(super) struct LeftStats {
+pub struct LeftStats {
     surface: &'static str,
     triangles_out: u64,
     vertices_out: u64,
@@ -356,7 +356,7 @@ pub(super) struct LeftStats {
 
 impl LeftStats {
     /// The stats of a scene that is tessellated with these settings and seen from `view`.
-    pub(super) fn new(scene: &Scene, measured: &Measured, settings: &Settings, view: ScreenView) -> Self {
+    pub fn new(scene: &Scene, measured: &Measured, settings: &Settings, view: ScreenView) -> Self {
         let (vertices_out, triangles_out) = scene.tessellator.totals();
         Self {
             surface: settings.tessellation.surface.name(),

@@ -1,19 +1,28 @@
 //! Holds what a shot emitted to gates, and draws the worst place that one found.
 
 use image::RgbaImage;
+use serde::{Deserialize, Serialize};
 
-use super::{CliError, Shot};
+use super::{Shot, ShotError};
+use crate::engine::Measurements;
+use crate::gates::{Facts, Gate, GateKind, Judgement, Spot, Standpoints, judge};
+use crate::measure::Sight;
+use crate::render::{Camera, Leaks, worst_lines};
+use crate::settings::{Overlay, Overlays, Settings, SplitSide};
 use geometry::mesh::t_junctions;
 use geometry::progress::Progress;
 use geometry::tessellate::Inputs;
 use geometry::view::ScreenView;
 use gpu::GpuError;
-use inspect::engine::Measurements;
-use inspect::gates::{Facts, Gate, GateKind, Judgement, Spot, Standpoints, judge};
-use inspect::measure::Sight;
-use inspect::render::{Camera, Leaks, worst_lines};
-use inspect::settings::{Overlay, Overlays, Settings, SplitSide};
-use lab::check::Numbers;
+
+/// How much there is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Numbers {
+    pub triangles_in: u64,
+    pub patches: u64,
+    pub triangles_out: u64,
+    pub vertices_out: u64,
+}
 
 impl Shot {
     /// Judges the right half, seen from the picture's camera, by each gate, and measures what they need. `tolerance_px` is what
@@ -26,7 +35,7 @@ impl Shot {
         gates: &[Gate],
         tolerance_px: f32,
         progress: &Progress,
-    ) -> Result<Vec<Judgement>, CliError> {
+    ) -> Result<Vec<Judgement>, ShotError> {
         let has = |kind| gates.iter().any(|gate| gate.kind == kind);
         let inputs = self.subject.settings.inputs(self.lod_view);
         let Self { engine, scene, .. } = self;
@@ -91,7 +100,7 @@ impl Shot {
     ///
     /// # Errors
     /// The device was lost, or `progress` was cancelled.
-    pub fn evidence(&mut self, judgement: &Judgement, progress: &Progress) -> Result<Option<RgbaImage>, CliError> {
+    pub fn evidence(&mut self, judgement: &Judgement, progress: &Progress) -> Result<Option<RgbaImage>, ShotError> {
         let Some(place) = &judgement.place else { return Ok(None) };
         let camera = self.standpoint(&place.spot)?;
         let (view, settings) = (self.view, self.subject.settings);

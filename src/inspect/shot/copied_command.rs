@@ -1,0 +1,244 @@
+//! The command that draws what a window shows: "Copy as command". Options that have their default values, or no effect, are
+//! left out.
+
+use std::ffi::OsString;
+use std::fmt::{Display, Write};
+use std::path::Path;
+
+use super::turn::Turn;
+use crate::engine::Preparation;
+use crate::render::Camera;
+use crate::settings::{Colors, Declaration, Lighting, Settings, Value, options};
+use geometry::tessellate::{Displacement, Tessellation};
+use load::files::Limits;
+use load::{HeightSource, Source};
+
+/// What a window shows, and from where.
+pub struct CopiedCommand<'a> {
+    pub source: &'a Source,
+    pub preparation: &'a Preparation,
+    pub settings: &'a Settings,
+    pub camera: &'a Camera,
+    /// The camera that LOD and clipping are frozen for and its view's width and height in px, if they are.
+    pub lod_camera: Option<(&'a Camera, [u32; 2])>,
+    /// The bounding radius of what is drawn, in object units. The command has the camera's distance in bounding radii.
+    pub radius: f32,
+    /// The view's width and height, in px.
+    pub size: [u32; 2],
+    /// A clip's name, and the time in it in s.
+    pub animation: Option<(&'a str, f64)>,
+    pub truth: Option<&'a Source>,
+    /// The file whose factors take the place of those of LOD.
+    pub factors: Option<&'a Path>,
+    /// The file whose functions take the place of LOD.
+    pub lod_shader: Option<&'a Path>,
+    /// The file whose function takes the place of the surface.
+    pub surface_shader: Option<&'a Path>,
+    /// The picture of a lit sphere that takes the place of that of the settings.
+    pub matcap_image: Option<&'a Path>,
+    /// The file that the light comes from.
+    pub environment: Option<&'a Path>,
+    /// The selected triangle's number in the mesh, from 0.
+    pub triangle: Option<u32>,
+    /// Whether nothing is behind the mesh, rather than the background's colour.
+    pub transparent: bool,
+    /// Whether the legend is drawn into the picture.
+    pub legend: bool,
+    /// The file to write; without one, it is named after the mesh.
+    pub output: Option<&'a Path>,
+    /// The turn of a turntable, and whether it is a GIF; none for one picture.
+    pub turn: Option<(Turn, bool)>,
+}
+
+impl CopiedCommand<'_> {
+    /// The command on one line, quoted for a shell. The picture is named after the mesh.
+    pub fn line(&self) -> String {
+        let name = if self.turn.is_some() { "turntable" } else { "render" };
+        let [file, output] = [self.source, &self.output()].map(|source| word(&named(source)));
+        let mut line = Line(format!("pnaen {name} {file} -o {output}"));
+        if let Some((turn, is_gif)) = self.turn {
+            let usual = Turn::default();
+            line.changed("--frames", &turn.frames, &usual.frames);
+            line.changed("--fps", if is_gif { &turn.fps } else { &usual.fps }, &usual.fps);
+        }
+        self.mesh(&mut line);
+        self.settings(&mut line);
+        self.view(&mut line);
+        line.0
+    }
+
+    /// The file to write.
+    fn output(&self) -> Source {
+        if let Some(path) = self.output {
+            return Source::File(path.to_owned());
+        }
+        let name = match self.source {
+            Source::File(path) => path.file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy().into_owned()),
+            Source::Shape(shape) | Source::FineShape(shape, _) => shape.to_string(),
+            Source::Vase => "vase".to_owned(),
+        };
+        // A texture beside the mesh may have the mesh's name.
+        let ending = match self.turn {
+            None => "-view.png",
+            Some((_, true)) => "-turntable.gif",
+            Some((_, false)) => "-turntable",
+        };
+        Source::File(format!("{name}{ending}").into())
+    }
+
+    /// Writes the options for loading and preparing the mesh.
+    fn mesh(&self, line: &mut Line) {
+        // How the geometry is taken is among the settings.
+        let Preparation { weld, crease_band, heights, variant, scene, hidden, import: _, limits } = self.preparation;
+        let Limits { file, memory } = Limits::default();
+        line.changed("--weld", weld, &0.0);
+        line.changed("--crease-band", crease_band, &0.0);
+        variant.iter().for_each(|name| line.option("--variant", name));
+        scene.iter().for_each(|name| line.option("--scene", name));
+        hidden.iter().for_each(|name| line.option("--hide-part", name));
+        line.changed("--max-size", &limits.file, &file);
+        line.changed("--max-memory", &limits.memory, &memory);
+        let Some(heights) = heights else { return };
+        match heights {
+            HeightSource::Materials => line.option("--height", "material"),
+            HeightSource::File(path) => line.option("--height", named(&Source::File(path.clone()))),
+        }
+    }
+
+    /// Writes every setting that has an effect and isn't at its default. A transparent picture has no colour behind the mesh.
+    fn settings(&self, line: &mut Line) {
+        let background = self.settings.background.filter(|_| !self.transparent);
+        // What takes the place of LOD takes none of its options.
+        let Tessellation { lod, factor, .. } = Tessellation::default();
+        let own = self.settings.tessellation;
+        let has_lod = self.factors.is_none() && self.lod_shader.is_none();
+        let tessellation = if has_lod { own } else { Tessellation { lod, factor, ..own } };
+        let shown = Settings { background, ..self.settings.with(tessellation) };
+        let displaced = |displacement, of: &Settings| of.with(Tessellation { displacement, ..of.tessellation });
+        let (own, usual) = match self.preparation.heights {
+            // With --height the surface is displaced unless --displacement says otherwise.
+            Some(_) => (shown, displaced(Displacement::On, &Settings::default())),
+            None => (displaced(Displacement::Off, &shown), Settings::default()),
+        };
+        let is_replaced = |name: &str| {
+            (self.surface_shader.is_some() && name == options::SURFACE.name)
+                || (self.matcap_image.is_some() && name == options::MATCAP.name)
+        };
+        let written = |option: &&Declaration| (option.no_effect)(&own).is_none() && !is_replaced(option.name);
+        for option in options::all().filter(written) {
+            let (name, value) = (format!("--{}", option.name), option.get(&own));
+            match value {
+                _ if value == option.get(&usual) => {}
+                Value::Switch(is_on) => line.switch(&name, is_on),
+                value => line.option(&name, value),
+            }
+        }
+    }
+
+    /// Writes the files of factors, of shaders, of a matcap and of light, the reference surface, the selection, the pose and the camera.
+    fn view(&self, line: &mut Line) {
+        if let Some(path) = self.factors {
+            line.option("--factors", named(&Source::File(path.to_owned())));
+        }
+        if let Some(path) = self.lod_shader {
+            line.option("--lod-shader", named(&Source::File(path.to_owned())));
+        }
+        if let Some(path) = self.surface_shader {
+            line.option("--surface-shader", named(&Source::File(path.to_owned())));
+        }
+        if let Some(path) = self.matcap_image.filter(|_| self.settings.overlays.colors == Colors::Matcap) {
+            line.option("--matcap-image", named(&Source::File(path.to_owned())));
+        }
+        let uses_file = self.settings.lighting == Lighting::Environment && self.settings.shows_materials();
+        if let Some(path) = self.environment.filter(|_| uses_file) {
+            line.option("--environment", named(&Source::File(path.to_owned())));
+        }
+        if let (Some(truth), None) = (self.truth, self.animation) {
+            line.option("--truth", named(truth));
+        }
+        self.triangle.into_iter().for_each(|triangle| line.option("--select", triangle));
+        if let Some((name, time)) = self.animation {
+            line.option("--animation", name);
+            line.changed("--time", &time, &0.0);
+        }
+        line.switch("--transparent", self.transparent);
+        line.switch("--legend", self.legend);
+        line.option("--size", Px(self.size));
+        self.camera(line, "", self.camera);
+        if let Some((camera, size)) = self.lod_camera.filter(|own| *own != (self.camera, self.size)) {
+            self.camera(line, "lod-", camera);
+            line.changed("--lod-size", &Px(size), &Px(self.size));
+        }
+    }
+
+    /// Writes the options of a camera, whose names begin with `prefix`.
+    fn camera(&self, line: &mut Line, prefix: &str, camera: &Camera) {
+        // The window has no cameras of matrices.
+        let Camera { target, azimuth, elevation, distance, orthographic, field_of_view, roll, rows: _ } = camera;
+        line.option(&format!("--{prefix}camera"), format!("{azimuth},{elevation},{}", distance / self.radius));
+        line.option(&format!("--{prefix}target"), format!("{},{},{}", target.x, target.y, target.z));
+        line.switch(&format!("--{prefix}orthographic"), *orthographic);
+        line.changed(&format!("--{prefix}field-of-view"), field_of_view, &Camera::default().field_of_view);
+        line.changed(&format!("--{prefix}roll"), roll, &0.0);
+    }
+}
+
+/// Width and height in px, as the command line takes them.
+#[derive(PartialEq)]
+struct Px([u32; 2]);
+
+impl Display for Px {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}x{}", self.0[0], self.0[1])
+    }
+}
+
+/// A command line that options are appended to.
+struct Line(String);
+
+impl Line {
+    fn option(&mut self, name: &str, value: impl Display) {
+        let value = value.to_string();
+        // A value that begins with a dash would be taken for an option.
+        let _ = match value.starts_with('-') {
+            true => write!(self.0, " {}", word(&format!("{name}={value}"))),
+            false => write!(self.0, " {name} {}", word(&value)),
+        };
+    }
+
+    fn switch(&mut self, name: &str, is_on: bool) {
+        if is_on {
+            let _ = write!(self.0, " {name}");
+        }
+    }
+
+    fn changed<T: Display + PartialEq + ?Sized>(&mut self, name: &str, own: &T, usual: &T) {
+        if own != usual {
+            self.option(name, own);
+        }
+    }
+}
+
+/// The command that this process was started with, on one line, quoted for a shell.
+pub fn given(arguments: impl IntoIterator<Item = OsString>) -> String {
+    let words = arguments.into_iter().skip(1).map(|argument| word(&argument.to_string_lossy()));
+    ["pnaen".to_owned()].into_iter().chain(words).collect::<Vec<_>>().join(" ")
+}
+
+/// Formats a source as an argument. A file that would be taken for an option, a shape or `material` gets `./` in front.
+fn named(source: &Source) -> String {
+    let text = source.to_string();
+    let is_misread = text.starts_with('-') || text == "material" || text.starts_with("shape:");
+    if is_misread && matches!(source, Source::File(_)) { format!("./{text}") } else { text }
+}
+
+/// Quotes a text as one word for the shell: cmd.exe on Windows, elsewhere POSIX (Shell Command Language, section 2.2.2).
+fn word(text: &(impl Display + ?Sized)) -> String {
+    let text = text.to_string();
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_=+,.:/@%".contains(c) || (cfg!(windows) && c == '\\');
+    match text.chars().all(plain) && !text.is_empty() {
+        true => text,
+        false if cfg!(windows) => format!("\"{text}\""),
+        false => format!("'{}'", text.replace('\'', r"'\''")),
+    }
+}
