@@ -1,5 +1,5 @@
 // Control points of cubic patches, computed from the positions and normals at the ends of their edges. Twin:
-// src/tessellate/control_points.rs, which gives the formulas' derivations.
+// src/geometry/tessellate/control_points.rs, which gives the formulas' derivations.
 
 // Two unit normals count as parallel or opposite if the squared length of their cross product is at most this: the
 // squared sine of 0.1 degrees. Below it, rounding would decide in which line their tangent planes intersect.

@@ -1,5 +1,5 @@
 // Conventions between hull and domain shader: which edge each tessellation factor is for, and which corner each
-// barycentric weight belongs to. Twin: src/tessellate/convention.rs. Side k of a patch runs from corner k to corner k +
+// barycentric weight belongs to. Twin: src/geometry/tessellate/convention.rs. Side k of a patch runs from corner k to corner k +
 // 1.
 
 const CONVENTION_D3D11: u32 = 0u;

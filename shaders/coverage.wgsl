@@ -1,5 +1,5 @@
 // A conservative test for triangles that cover no sample of the picture, however the rasteriser rounds their corners.
-// Twin: src/tessellate/coverage.rs.
+// Twin: src/geometry/tessellate/coverage.rs.
 
 // The picture that triangles are drawn into.
 struct CoverageView {

@@ -1,4 +1,4 @@
-// Culling and clipping of whole patches. Twin: src/tessellate/cull.rs.
+// Culling and clipping of whole patches. Twin: src/geometry/tessellate/cull.rs.
 
 const CLIP_OFF: u32 = 0u;
 const CLIP_PAPER: u32 = 1u;

@@ -1,4 +1,4 @@
-// How a patch's surface curves, without displacement. Twin: src/tessellate/curvature.rs.
+// How a patch's surface curves, without displacement. Twin: src/geometry/tessellate/curvature.rs.
 
 // Returns the second derivatives of a patch's position at weights `u` and `v` (16.16 fixed point; w = 1 - u - v), in
 // object units: twice by u, by u and v, and twice by v. They are linear Bézier triangles of second differences of

@@ -1,5 +1,5 @@
 // Linear blend skinning: a corner's position, normal and tangent are transformed by the weighted mean of its joints' matrices.
-// Twin: src/tessellate/deform.rs.
+// Twin: src/geometry/tessellate/deform.rs.
 
 // A corner at rest: what morph targets and joints are applied to.
 struct Binding {

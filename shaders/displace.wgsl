@@ -1,6 +1,6 @@
 // Displacement: heights that are read from an image at texture coordinates, and the normals of the displaced surface. The
 // module that has it also has height_list.wgsl or stage_heights.wgsl, which read single px. Twin:
-// src/tessellate/displace.rs.
+// src/geometry/tessellate/displace.rs.
 
 const DISPLACEMENT_OFF: u32 = 0u;
 const DISPLACEMENT_ON: u32 = 1u;

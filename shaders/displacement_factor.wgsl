@@ -1,5 +1,5 @@
 // LOD by error where a surface is displaced: how many segments show the heights along an edge. Twin:
-// src/tessellate/displacement_factor.rs, which explains the bounds.
+// src/geometry/tessellate/displacement_factor.rs, which explains the bounds.
 
 // Bounds on the depth and the screen position of a set of control points, from which the size of differences on screen
 // is bounded.

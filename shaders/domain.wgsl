@@ -1,4 +1,4 @@
-// Domain points and triangles of a patch, each computed from its number alone. Twin: src/tessellate/domain.rs, which
+// Domain points and triangles of a patch, each computed from its number alone. Twin: src/geometry/tessellate/domain.rs, which
 // describes the pattern. Needs connectivity.wgsl or connectivity_table.wgsl.
 
 // Two thirds in 16.16 fixed point, rounded down as in the specification.

@@ -1,5 +1,5 @@
 // Rows of points: where the points of an edge, or of a side of a ring, lie between its ends. Twin:
-// src/tessellate/domain_row.rs.
+// src/geometry/tessellate/domain_row.rs.
 
 // A row of points, prepared for `row_location`.
 struct DomainRow {

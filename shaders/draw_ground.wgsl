@@ -9,7 +9,7 @@ const GROUND_FADES_FROM: f32 = 0.3;
 
 const GROUND_COLOR: vec3<f32> = vec3<f32>(0.23, 0.24, 0.26);
 const GROUND_OPACITY: f32 = 0.75;
-// Of the axes x, y and z, in linear light. src/render/layout.rs has them in sRGB.
+// Of the axes x, y and z, in linear light. src/inspect/render/layout.rs has them in sRGB.
 const X_AXIS_COLOR: vec3<f32> = vec3<f32>(0.807, 0.084, 0.107);
 const Z_AXIS_COLOR: vec3<f32> = vec3<f32>(0.089, 0.262, 0.871);
 

@@ -1,5 +1,5 @@
 // Layers of surfaces that show what is behind them, found one after another at every sample (depth peeling: Everitt 2001). Depth
-// is reversed, so that nearer surfaces have a greater depth. See src/render/layers.rs.
+// is reversed, so that nearer surfaces have a greater depth. See src/inspect/render/layers.rs.
 
 // Whether the draw looks for the layer in front of the one that was found last, and not for the one behind it.
 override TOWARD_EYE: bool = false;

@@ -15,7 +15,7 @@ const NEARER: f32 = 1.003;
 // Opacity of lines that are behind something.
 const HIDDEN: f32 = 0.3;
 
-// As NORMAL_COLOR in src/render/layout.rs, in linear light.
+// As NORMAL_COLOR in src/inspect/render/layout.rs, in linear light.
 const NORMAL_COLOR: vec3<f32> = vec3<f32>(0.045, 0.680, 1.0);
 
 // Of drawn normals, in px: their length if seen from the side, half their width, and their average distance where vertices

@@ -1,13 +1,13 @@
 // The colours that overlays give a surface in place of its material's.
 
-// A legend shows it too, in linear light. src/render/layout.rs has it in sRGB.
+// A legend shows it too, in linear light. src/inspect/render/layout.rs has it in sRGB.
 const WASTE_COLOR: vec3<f32> = vec3<f32>(0.665, 0.112, 0.0);
 
 fn from_srgb(color: vec3<f32>) -> vec3<f32> {
     return select(pow((color + 0.055) / 1.055, vec3<f32>(2.4)), color / 12.92, color <= vec3<f32>(0.04045));
 }
 
-// As in src/render/scale.rs, in linear light.
+// As in src/inspect/render/scale.rs, in linear light.
 fn scale_color(number: f32) -> vec3<f32> {
     return color_at_place(log(number / frame.scale_least) / log(frame.scale_most / frame.scale_least));
 }

@@ -1,6 +1,6 @@
 // The colour of a surface with overlays: its own or that of an overlay, with marks and lines over it.
 
-// Colours that legends show too, in linear light. src/render/layout.rs has them in sRGB.
+// Colours that legends show too, in linear light. src/inspect/render/layout.rs has them in sRGB.
 const FOLD_COLOR: vec3<f32> = vec3<f32>(0.515, 0.061, 1.0);
 const BACK_FACE_COLOR: vec3<f32> = vec3<f32>(0.753, 0.013, 0.156);
 const SMOOTH_EDGE_COLOR: vec3<f32> = vec3<f32>(0.40, 0.43, 0.47);

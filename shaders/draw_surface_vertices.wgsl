@@ -24,7 +24,7 @@ fn facing(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> vec3<f32> {
     return cross(b - a, c - a);
 }
 
-// As in src/measure/folds.rs, in f32.
+// As in src/inspect/measure/folds.rs, in f32.
 fn is_folded(patch_index: u32, a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> bool {
     let at = patches[patch_index].points;
     let patch_facing = facing(points[at[0]].xyz, points[at[1]].xyz, points[at[2]].xyz);
@@ -76,7 +76,7 @@ fn with_factors(varyings: Varyings, patch_index: u32) -> Varyings {
     return out;
 }
 
-// As in src/measure/sizes.rs, in f32. The largest size if the triangle crosses the near plane.
+// As in src/inspect/measure/sizes.rs, in f32. The largest size if the triangle crosses the near plane.
 fn size_px(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> f32 {
     let corners = array<vec3<f32>, 3>(a, b, c);
     var places: array<vec2<f32>, 3>;

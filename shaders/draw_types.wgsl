@@ -1,4 +1,4 @@
-// Structs and constants that draws share. src/render/layout.rs has the same; tests compare them.
+// Structs and constants that draws share. src/inspect/render/layout.rs has the same; tests compare them.
 
 // Colours that a scale runs through.
 const SCALE_STOPS: u32 = 7u;

@@ -1,4 +1,4 @@
-// The light from all around, which src/render/environment.rs makes: a cube map that is blurred by roughness from level to level, a
+// The light from all around, which src/inspect/render/environment.rs makes: a cube map that is blurred by roughness from level to level, a
 // table of directional albedos, and irradiance as spherical harmonics. Directions are in object space.
 
 struct Surroundings {

@@ -1,5 +1,5 @@
 // Tessellation factors: from the numbers that a hull shader writes to the fixed-point words that the fixed-function
-// tessellator works with, and the numbers of points and triangles that they give. Twin: src/tessellate/factors.rs.
+// tessellator works with, and the numbers of points and triangles that they give. Twin: src/geometry/tessellate/factors.rs.
 //
 // Everything here is integer arithmetic. WGSL lets a compiler assume that no f32 is NaN or infinite, and flush
 // denormals, so comparisons of f32 numbers couldn't tell a culled patch from one that is drawn.

@@ -1,5 +1,5 @@
 // Flat patches: those whose surface lies in a plane, though its parametrisation may not be linear. Twin:
-// src/tessellate/flat_patch.rs, which explains the bound.
+// src/geometry/tessellate/flat_patch.rs, which explains the bound.
 
 // The least cosine of the angle between two corners' unit normals (1 degree) at which sliding changes no shading.
 const AGREEING: f32 = 0.99985;

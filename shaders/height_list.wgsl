@@ -1,4 +1,4 @@
-// Reads the heights of all maps from one texture, as the passes have them. Twin: src/tessellate/height_list.rs.
+// Reads the heights of all maps from one texture, as the passes have them. Twin: src/geometry/tessellate/height_list.rs.
 
 // The heights of all maps are one list, which fills the rows of the texture `heights`, each of this many texels.
 const HEIGHTS_ACROSS: u32 = 4096u;

@@ -1,5 +1,5 @@
 // LOD by error under rows: how many rows of which width keep a patch within a tolerance, with the fewest triangles. Twin:
-// src/tessellate/least_rows.rs, which explains the search. Teams search as search_group.wgsl says.
+// src/geometry/tessellate/least_rows.rs, which explains the search. Teams search as search_group.wgsl says.
 
 // Whether the searches of a pass are for rows. The compiler leaves out the other one.
 override SEARCHES_ROWS: u32 = 0u;

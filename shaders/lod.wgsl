@@ -1,5 +1,5 @@
 // Level of detail: the tessellation factor of an edge, by its length on screen or its distance from the eye. Twin:
-// src/tessellate/lod.rs. LOD by error is in least_factors.wgsl.
+// src/geometry/tessellate/lod.rs. LOD by error is in least_factors.wgsl.
 
 const LOD_UNIFORM: u32 = 0u;
 const LOD_PAPER: u32 = 1u;

@@ -1,4 +1,4 @@
-// Averages texels for smaller levels of images. src/mesh/mipmap.rs has the same functions, and says where they come from.
+// Averages texels for smaller levels of images. src/geometry/mesh/mipmap.rs has the same functions, and says where they come from.
 
 // How the texels of an image are averaged: MipFilter.
 const MIP_COLORS: u32 = 0u;

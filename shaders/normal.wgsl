@@ -1,4 +1,4 @@
-// Shading normals of emitted vertices. Weights are 16.16 fixed point. Twin: src/tessellate/normal.rs.
+// Shading normals of emitted vertices. Weights are 16.16 fixed point. Twin: src/geometry/tessellate/normal.rs.
 
 const NORMALS_LINEAR: u32 = 0u;
 const NORMALS_QUADRATIC: u32 = 1u;

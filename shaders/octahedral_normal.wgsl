@@ -1,4 +1,4 @@
-// Unit normals in 32 bits. Twin: src/tessellate/octahedral_normal.rs.
+// Unit normals in 32 bits. Twin: src/geometry/tessellate/octahedral_normal.rs.
 
 // Packs a unit normal into 32 bits: octahedral, two signed normalised 16-bit numbers (Cigolle et al. 2014, section 3).
 // The error is less than 0.004 degrees.

@@ -2,7 +2,7 @@
 // host. It runs hull_main with an invocation a patch, then offsets_main in one workgroup, and then emit_main with a workgroup a
 // patch.
 
-// Indices a patch, which src/shader_files puts in place of this.
+// Indices a patch, which src/inspect/shader_files puts in place of this.
 const PATCH_INDICES: u32 = 9u;
 
 @group(0) @binding(0) var<uniform> constants: StageConstants;

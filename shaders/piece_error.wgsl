@@ -1,5 +1,5 @@
 // The error of one flat triangle of a patch's pattern (a piece): how far on screen, in px, its points are from the points of
-// the surface at the same places of the domain. Twin: src/tessellate/piece_error.rs, which explains the bounds.
+// the surface at the same places of the domain. Twin: src/geometry/tessellate/piece_error.rs, which explains the bounds.
 
 // The steps of the finest grid.
 const FINEST_GRID: u32 = 8u;

@@ -1,5 +1,5 @@
 // Whole quotients and common divisors without divisions of integers, which take a GPU many instructions. Twin:
-// src/tessellate/quotients.rs.
+// src/geometry/tessellate/quotients.rs.
 
 // Returns `number / by`, rounded down, as the integer part of an f32 quotient. `number` is at most 65,535.
 fn quotient(number: u32, by: u32) -> u32 {

@@ -1,5 +1,5 @@
 // The rings inside a patch: how their points are numbered, and how a triangle between two rings is described. Twin:
-// src/tessellate/rings.rs.
+// src/geometry/tessellate/rings.rs.
 
 // Returns the number of complete rings before a point or a triangle: the largest `s` up to `m / 2` with `s * (m - s) <=
 // area`. `m` is at most 64, and `area` is at most `m * m / 4`.

@@ -1,5 +1,5 @@
 // Rows: a pattern in which a patch is cut into strips beside one of its edges. Each point and each triangle is computed from
-// its number alone. Twin: src/tessellate/rows.rs, which describes the pattern.
+// its number alone. Twin: src/geometry/tessellate/rows.rs, which describes the pattern.
 
 // A patch's rows, prepared for `row_triangle_places`.
 struct RowPlan {

@@ -1,5 +1,5 @@
 // The sheen of cloth: light that is reflected by fibres which stand up from the surface (KHR_materials_sheen; Conty and Kulla 2017,
-// "Production Friendly Microfacet Sheen BRDF"). `alpha` is the square of the perceptual roughness. src/render/sheen.rs has the same
+// "Production Friendly Microfacet Sheen BRDF"). `alpha` is the square of the perceptual roughness. src/inspect/render/sheen.rs has the same
 // functions.
 
 // The least alpha. Smoother fibres would reflect light only along the surface.

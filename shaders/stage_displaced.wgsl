@@ -3,7 +3,7 @@
 // and for each of its sides the two corners of the edge's dominant side (McDonald 2011). pass_levels.wgsl and
 // pass_displace.wgsl do the same for a whole mesh.
 
-// What patches agree on where they meet, which src/shader_files puts in place of this.
+// What patches agree on where they meet, which src/inspect/shader_files puts in place of this.
 const CHOSEN_DISPLACEMENT: u32 = DISPLACEMENT_ON;
 
 // The height image, and how it displaces.

@@ -2,7 +2,7 @@
 // A patch has its own three corners and, for each of its sides, the two corners that its neighbour has there: the white
 // paper's nine indices (McDonald and Kilgard 2010).
 
-// The choices of an export, which src/shader_files puts in place of these.
+// The choices of an export, which src/inspect/shader_files puts in place of these.
 const CHOSEN_SURFACE: u32 = SURFACE_PN_AEN;
 const CHOSEN_EDGES: u32 = EDGES_PER_EDGE;
 const CHOSEN_LOD: u32 = LOD_UNIFORM;

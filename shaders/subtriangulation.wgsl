@@ -1,5 +1,5 @@
 // Uniform subtriangulation: a patch of n segments on each side becomes n * n equal triangles. Each point and each
-// triangle is computed from its number alone. Twin: src/tessellate/subtriangulation.rs, which describes the pattern.
+// triangle is computed from its number alone. Twin: src/geometry/tessellate/subtriangulation.rs, which describes the pattern.
 // Needs factors.wgsl.
 
 // Returns the number of complete rings before a point or a triangle: the largest `r` up to `m / 6` with `3 r (m - 3 r)

@@ -1,4 +1,4 @@
-// Control nets, and the evaluation of the surfaces that they define. Twin: src/tessellate/surface.rs.
+// Control nets, and the evaluation of the surfaces that they define. Twin: src/geometry/tessellate/surface.rs.
 //
 // Weights follow the PN-AEN white paper: u belongs to corner 0, v to corner 1, w to corner 2. Domain coordinates are
 // 16.16 fixed point, FIXED_ONE = 65536.
