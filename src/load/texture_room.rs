@@ -27,6 +27,15 @@ pub(super) struct Scaling {
     pub reason: String,
 }
 
+impl Scaling {
+    /// What is said of a texture that is scaled from one size to another, in px, after its name and without the end of the sentence.
+    /// None if it isn't scaled.
+    pub(super) fn said(&self, [a, b]: [u32; 2], [c, d]: [u32; 2]) -> Option<String> {
+        let Self { halvings, reason } = self;
+        (*halvings > 0).then(|| format!("is scaled down from {a} x {b} px to {c} x {d} px: {reason}"))
+    }
+}
+
 impl TextureRoom {
     /// The room in a budget of which `reserved` bytes are left for the rest of the load. On the graphics card, textures may take as
     /// much as the whole load.
