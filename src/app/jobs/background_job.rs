@@ -29,17 +29,8 @@ impl<T: Send + 'static> BackgroundJob<T> {
 
     /// Starts a thread that sends a result, if there is one, and repaints the window.
     fn sending(context: &egui::Context, result: impl FnOnce() -> Option<Result<T, Stopped>> + Send + 'static) -> Self {
-        let (sender, done) = channel();
-        let (refused, context) = (sender.clone(), context.clone());
-        let thread = spawn(move || {
-            // The receiver is gone if the result is no longer wanted.
-            let _ = result().map(|result| sender.send(result));
-            context.request_repaint();
-        });
-        if thread.is_none() {
-            let _ = refused.send(Err(Stopped("the system can't start another thread".into())));
-        }
-        Self(done)
+        let context = context.clone();
+        Self(sent(result, move || context.request_repaint()))
     }
 
     /// Returns the result once the job has ended, and only once.
@@ -58,6 +49,24 @@ impl<T> BackgroundJob<T> {
     pub(crate) fn wait(self) {
         let _ = self.0.recv();
     }
+}
+
+/// Starts a thread that sends a result, if there is one, and then does something else. If the system refuses, that is the result.
+pub(super) fn sent<T: Send + 'static>(
+    result: impl FnOnce() -> Option<Result<T, Stopped>> + Send + 'static,
+    then: impl FnOnce() + Send + 'static,
+) -> Receiver<Result<T, Stopped>> {
+    let (sender, done) = channel();
+    let refused = sender.clone();
+    let thread = spawn(move || {
+        // The receiver is gone if the result is no longer wanted.
+        let _ = result().map(|result| sender.send(result));
+        then();
+    });
+    if thread.is_none() {
+        let _ = refused.send(Err(Stopped("the system can't start another thread".into())));
+    }
+    done
 }
 
 /// Starts a thread. Returns none if the system refuses.
