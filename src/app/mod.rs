@@ -245,9 +245,7 @@ impl App {
         self.take_truth();
         self.take_factors(context);
         self.take_shader::<LodShader>();
-        self.stop_slow_shader::<LodShader>();
         self.take_shader::<SurfaceShader>();
-        self.stop_slow_shader::<SurfaceShader>();
         self.take_matcap();
         self.take_environment();
         if self.takes_back {

@@ -59,16 +59,6 @@ pub(crate) struct EdgeSpot {
     pub at: Vec3,
 }
 
-impl EdgeSpot {
-    /// A place on the edge with this index. Without a position, it is the middle.
-    pub(crate) fn new(topology: &Topology, index: u32, at: Option<Vec3>) -> Self {
-        let edge = &topology.edges[index as usize];
-        let ends = topology.edge_points(edge).map(|point| topology.points[point as usize]);
-        let at = at.unwrap_or(ends[0] * 0.5 + ends[1] * 0.5);
-        Self { ends, facing: topology.edge_facing(edge), at }
-    }
-}
-
 impl Spot {
     /// The largest fold of a patch, with what is around it.
     pub(crate) fn fold(folded: &FoldedPatch) -> Self {
@@ -108,6 +98,14 @@ impl Spot {
 }
 
 impl EdgeSpot {
+    /// A place on the edge with this index. Without a position, it is the middle.
+    pub(crate) fn new(topology: &Topology, index: u32, at: Option<Vec3>) -> Self {
+        let edge = &topology.edges[index as usize];
+        let ends = topology.edge_points(edge).map(|point| topology.points[point as usize]);
+        let at = at.unwrap_or(ends[0] * 0.5 + ends[1] * 0.5);
+        Self { ends, facing: topology.edge_facing(edge), at }
+    }
+
     /// The part of the edge around a gap between these two positions, so large that one sees how wide the gap is, and from where it is
     /// widest.
     pub(crate) fn at_gap(self, [a, b]: [Vec3; 2]) -> Self {

@@ -16,9 +16,6 @@ pub(super) const MAX_BOUND: usize = 1 << 24;
 /// The greatest number of elements of morph targets that are read.
 const MAX_DISPLACED: usize = 1 << 28;
 
-/// The number of no binding.
-const UNBOUND: u32 = u32::MAX;
-
 /// Collects bindings, node by node, and builds a [`Rig`] of them.
 pub(super) struct RigBuilder {
     /// The targets of their channels are `nodes` and `morphs`.
@@ -392,9 +389,9 @@ impl NodeBinder<'_> {
         let binding = Binding { position, normal, joints, weights, ..Binding::default() };
         let mut bound = BoundVertex { binding, alike: 0, without_normal, tangent: None };
         if self.binder.problem.is_some() {
-            // Without a rig, only what has grown is bound, to be put back.
+            // Without a rig, only what has grown is bound, to be put back. Others have the number of no binding.
             let is_grown = is_moved_by(&bound.binding, &self.binder.joints, &self.binder.is_grown);
-            return if is_grown { self.binder.bind(bound, &[], &[]) } else { UNBOUND };
+            return if is_grown { self.binder.bind(bound, &[], &[]) } else { u32::MAX };
         }
         let Some((tangent, displacements)) = vertex.tangent.filter(|_| !without_normal) else {
             return self.binder.bind(bound, vertex.deltas, &[]);

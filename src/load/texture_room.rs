@@ -28,11 +28,16 @@ pub(super) struct Scaling {
 }
 
 impl Scaling {
-    /// What is said of a texture that is scaled from one size to another, in px, after its name and without the end of the sentence.
-    /// None if it isn't scaled.
-    pub(super) fn said(&self, [a, b]: [u32; 2], [c, d]: [u32; 2]) -> Option<String> {
+    /// What is said of a texture of a size in px after its name: that it is left out, if it can't be read, or to which size it is scaled
+    /// down. None if it isn't.
+    pub(super) fn said(&self, [a, b]: [u32; 2], read: Result<[u32; 2], &String>) -> Option<String> {
         let Self { halvings, reason } = self;
-        (*halvings > 0).then(|| format!("is scaled down from {a} x {b} px to {c} x {d} px: {reason}"))
+        match read {
+            Err(reason) => Some(format!("is left out: {reason}.")),
+            Ok([c, d]) => {
+                (*halvings > 0).then(|| format!("is scaled down from {a} x {b} px to {c} x {d} px: {reason}."))
+            }
+        }
     }
 }
 

@@ -24,13 +24,7 @@ pub(crate) struct BackgroundJob<T>(Receiver<Result<T, Stopped>>);
 impl<T: Send + 'static> BackgroundJob<T> {
     /// Starts a job. The window is repainted when it ends, even if it panics.
     pub(crate) fn start(context: &egui::Context, job: impl FnOnce() -> T + Send + 'static) -> Self {
-        Self::sending(context, || Some(caught(job)))
-    }
-
-    /// Starts a thread that sends a result, if there is one, and repaints the window.
-    fn sending(context: &egui::Context, result: impl FnOnce() -> Option<Result<T, Stopped>> + Send + 'static) -> Self {
-        let context = context.clone();
-        Self(sent(result, move || context.request_repaint()))
+        Self(sent(Some(context), || Some(caught(job))))
     }
 
     /// Returns the result once the job has ended, and only once.
@@ -40,7 +34,7 @@ impl<T: Send + 'static> BackgroundJob<T> {
 
     /// Returns the same job, which repaints another window when it ends.
     pub(crate) fn waking(self, context: &egui::Context) -> Self {
-        Self::sending(context, move || self.0.recv().ok())
+        Self(sent(Some(context), move || self.0.recv().ok()))
     }
 }
 
@@ -51,17 +45,17 @@ impl<T> BackgroundJob<T> {
     }
 }
 
-/// Starts a thread that sends a result, if there is one, and then does something else. If the system refuses, that is the result.
+/// Starts a thread that sends a result, if there is one, and repaints a window. If the system refuses, that is the result.
 pub(super) fn sent<T: Send + 'static>(
+    context: Option<&egui::Context>,
     result: impl FnOnce() -> Option<Result<T, Stopped>> + Send + 'static,
-    then: impl FnOnce() + Send + 'static,
 ) -> Receiver<Result<T, Stopped>> {
     let (sender, done) = channel();
-    let refused = sender.clone();
+    let (refused, context) = (sender.clone(), context.cloned());
     let thread = spawn(move || {
         // The receiver is gone if the result is no longer wanted.
         let _ = result().map(|result| sender.send(result));
-        then();
+        context.iter().for_each(egui::Context::request_repaint);
     });
     if thread.is_none() {
         let _ = refused.send(Err(Stopped("the system can't start another thread".into())));

@@ -76,7 +76,7 @@ impl<T: Send + 'static> Walk<T> {
         };
         let (chunks, still_wanted) = (scene.tessellator.chunk_count(), wanted.clone());
         let walk = move || visit(&Parts { received, chunks, wanted: &still_wanted });
-        let ended = sent(|| caught(walk).transpose(), || ());
+        let ended = sent(None, || caught(walk).transpose());
         Ok(Self { ended, copying, chunks, wanted })
     }
 

@@ -4,7 +4,6 @@ use egui::RichText;
 
 use super::statistics::EDGE_KINDS;
 use crate::app::App;
-use crate::app::jobs::measure_job::Results;
 use crate::app::text::{grouped, short};
 use crate::app::widgets::{columns, fact, list, number, swatch};
 use crate::commands::{Action, with_key};
@@ -42,39 +41,28 @@ impl App {
         let mut clicked = None;
         let which = document.generation as u32 ^ results.seen.inputs.tessellation.surface as u32;
         list(ui, "worst edges", (cracked.len(), which), |ui, row| {
-            let response = self.worst_edge(ui, topology, results, &cracked[row]);
+            let crack = &cracked[row];
+            let kind = kind_name(topology.edges[crack.edge as usize].kind);
+            let text = RichText::new(format!("{:<7}{kind:<13}{:>9}", crack.edge, short(crack.gap))).monospace();
+            let response = ui.selectable_label(self.viewport.selected_edge == Some(crack.edge), text);
             if response.clicked() {
-                clicked = Some(cracked[row].edge);
+                clicked = Some(crack.edge);
             }
-            response
+            response.on_hover_ui(|ui| {
+                ui.label(format!(
+                    "The gap is {} px wide as the camera of LOD sees it, {} ULP. {} points and {} normals differ; the factors {}. A click \
+                     frames the edge.",
+                    short(results.gap_px(crack)),
+                    short(crack.gap / ulp(topology)),
+                    crack.different_bits,
+                    crack.different_normals,
+                    if crack.different_factors { "differ" } else { "agree" },
+                ));
+            })
         });
         if let Some(edge) = clicked {
             self.select_edge(edge);
         }
-    }
-
-    /// A row of the list of worst edges.
-    fn worst_edge(
-        &self,
-        ui: &mut egui::Ui,
-        topology: &Topology,
-        results: &Results,
-        crack: &CrackedEdge,
-    ) -> egui::Response {
-        let edge = crack.edge;
-        let kind = kind_name(topology.edges[edge as usize].kind);
-        let text = RichText::new(format!("{edge:<7}{kind:<13}{:>9}", short(crack.gap))).monospace();
-        let response = ui.selectable_label(self.viewport.selected_edge == Some(edge), text);
-        response.on_hover_ui(|ui| {
-            ui.label(format!(
-                "The gap is {} px wide as the camera of LOD sees it, {} ULP. {} points and {} normals differ; the factors {}. A click frames the edge.",
-                short(results.gap_px(crack)),
-                short(crack.gap / ulp(topology)),
-                crack.different_bits,
-                crack.different_normals,
-                if crack.different_factors { "differ" } else { "agree" },
-            ));
-        })
     }
 
     /// The selected edge: its kind, its gap, and the points of each side.

@@ -203,7 +203,7 @@ impl<'a> Materials<'a> {
         let bytes = texture_source::image(&self.lists.images, image, self.accessors, self.files);
         let texture =
             bytes.and_then(|bytes| decode_halved(&bytes, scaling.halvings, filter, self.budget)).map(Arc::new);
-        let scaled = texture.as_ref().ok().and_then(|texture| scaling.said(size, texture.size));
+        let scaled = texture.as_ref().ok().and_then(|texture| scaling.said(size, Ok(texture.size)));
         self.images.insert(image, ReadImage { texture, scaled });
     }
 
@@ -315,7 +315,7 @@ impl<'a> Materials<'a> {
         let ReadImage { texture, scaled } = self.images.get_mut(&image)?;
         match texture {
             Ok(texture) => {
-                self.notes.get_mut().extend(scaled.take().map(|said| format!("{name} {said}.")));
+                self.notes.get_mut().extend(scaled.take().map(|said| format!("{name} {said}")));
                 Some(texture.clone())
             }
             Err(reason) => {

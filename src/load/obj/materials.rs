@@ -263,12 +263,9 @@ impl<'a> Materials<'a> {
             let filter = file.users.first().map_or(MipFilter::Colors, |(_, kind)| kind.filter());
             let decode = |bytes: Vec<u8>| decode_halved(&bytes, scaling.halvings, filter, self.budget);
             let texture = borrowing(self.budget, || self.beside(&file.name).and_then(decode)).map(Arc::new);
-            let said = match &texture {
-                Err(reason) => Some(format!("is left out: {reason}")),
-                Ok(texture) => scaling.said(*size, texture.size),
-            };
+            let said = scaling.said(*size, texture.as_ref().map(|texture| texture.size));
             let (image, first) = (shown(file.name.as_bytes()), &file.first);
-            self.problems.extend(said.map(|said| format!("the texture {image} of material \"{first}\" {said}.")));
+            self.problems.extend(said.map(|said| format!("the texture {image} of material \"{first}\" {said}")));
             if let Ok(texture) = texture {
                 file.users.iter().for_each(|&(material, kind)| giving.give(faces, material, kind, &texture));
             }

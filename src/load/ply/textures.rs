@@ -78,13 +78,10 @@ impl<'a> Textures<'a> {
             progress.check()?;
             let decode = |bytes: Vec<u8>| decode_halved(&bytes, scaling.halvings, MipFilter::Colors, budget);
             let texture = borrowing(budget, || read(name).and_then(decode));
-            match texture {
-                Err(reason) => problems.push(format!("the texture {} is left out: {reason}.", shown(name))),
-                Ok(texture) => {
-                    let said = scaling.said(*size, texture.size);
-                    problems.extend(said.map(|said| format!("the texture {} {said}.", shown(name))));
-                    faces.material_mut(material).texture = Some(Arc::new(texture));
-                }
+            let said = scaling.said(*size, texture.as_ref().map(|texture| texture.size));
+            problems.extend(said.map(|said| format!("the texture {} {said}", shown(name))));
+            if let Ok(texture) = texture {
+                faces.material_mut(material).texture = Some(Arc::new(texture));
             }
         }
         Ok(problems)

@@ -131,11 +131,8 @@ impl Images {
             progress.check()?;
             let texture =
                 self.of(path).and_then(|bytes| decode_halved(bytes, scaling.halvings, MipFilter::Colors, budget));
-            let said = match &texture {
-                Err(reason) => Some(format!("is left out: {reason}")),
-                Ok(texture) => scaling.said(self.size(path), texture.size),
-            };
-            notes.extend(said.map(|said| format!("the texture \"{}\" {said}.", shown(path))));
+            let said = scaling.said(self.size(path), texture.as_ref().map(|texture| texture.size));
+            notes.extend(said.map(|said| format!("the texture \"{}\" {said}", shown(path))));
             decoded.extend(texture.ok().map(|texture| (*path, Arc::new(texture))));
         }
         Ok(decoded)
@@ -238,9 +235,9 @@ fn blend(
     if let Err(refused) = budget.hold(decoded_bytes(size)) {
         return Ok(Err(refused.into()));
     }
-    if let Some(said) = more.said(whole, size) {
+    if let Some(said) = more.said(whole, Ok(size)) {
         let name = mixture.images.last().map_or("", String::as_str);
-        notes.push_once(format!("an image of layers with the texture \"{}\" {said}.", shown(name)));
+        notes.push_once(format!("an image of layers with the texture \"{}\" {said}", shown(name)));
     }
     Ok(Ok(mixture.blend(&images, size, progress)?))
 }
