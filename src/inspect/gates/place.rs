@@ -6,7 +6,7 @@ use serde::{Serialize, Serializer};
 use crate::measure::FoldedPatch;
 use crate::render::Camera;
 use crate::render::camera::FIELDS_OF_VIEW;
-use geometry::mesh::Bounds;
+use geometry::mesh::{Bounds, Topology};
 use geometry::view::{ScreenView, seen_on_plane};
 
 /// How many times a px of the judged picture is enlarged at most where a leak is shown.
@@ -98,6 +98,14 @@ impl Spot {
 }
 
 impl EdgeSpot {
+    /// A place on the edge with this index. Without a position, it is the middle.
+    pub fn new(topology: &Topology, index: u32, at: Option<Vec3>) -> Self {
+        let edge = &topology.edges[index as usize];
+        let ends = topology.edge_points(edge).map(|point| topology.points[point as usize]);
+        let at = at.unwrap_or(ends[0] * 0.5 + ends[1] * 0.5);
+        Self { ends, facing: topology.edge_facing(edge), at }
+    }
+
     /// The part of the edge around a gap between these two positions, so large that one sees how wide the gap is, and from where it is
     /// widest.
     pub fn at_gap(self, [a, b]: [Vec3; 2]) -> Self {
