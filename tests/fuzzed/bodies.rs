@@ -6,12 +6,8 @@ use std::path::Path;
 
 use geometry::mesh::{Mesh, Topology};
 use geometry::progress::Progress;
-use geometry::tessellate::domain::domain_plan;
-use geometry::tessellate::domain::domain_point;
-use geometry::tessellate::domain::domain_triangle;
-use geometry::tessellate::factors::outer_count;
-use geometry::tessellate::factors::point_count;
-use geometry::tessellate::factors::triangle_count;
+use geometry::tessellate::domain::{domain_plan, domain_point, domain_triangle};
+use geometry::tessellate::factors::{outer_count, point_count, triangle_count};
 use geometry::tessellate::hull_factors::HullFactors;
 use geometry::tessellate::{Partitioning, PatchFactors};
 use load::Limits;

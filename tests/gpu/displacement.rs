@@ -11,8 +11,7 @@ use geometry::tessellate::{
 };
 use geometry::view::ulp;
 use gpu::Timing;
-use inspect::engine::Measurements;
-use inspect::engine::{Loaded, Runs};
+use inspect::engine::{Loaded, Measurements, Runs};
 use inspect::measure::Measured;
 use inspect::render::{Scene, Target};
 use inspect::settings::{ARENA_BYTES, Settings};

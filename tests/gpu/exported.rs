@@ -9,8 +9,7 @@ use geometry::tessellate::{
     Clip, Convention, Edges, Lod, Normals, Partitioning, Surface, Tessellation, corner_weights, tessellate,
 };
 use inspect::settings::Choice;
-use inspect::shader_files::Language;
-use inspect::shader_files::shader_files;
+use inspect::shader_files::{Language, shader_files};
 
 use crate::engine;
 use crate::vulkan::Vulkan;

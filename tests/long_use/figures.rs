@@ -3,10 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use inspect::plot::BLUE;
-use inspect::plot::FONT;
-use inspect::plot::INK;
-use inspect::plot::use_font;
+use inspect::plot::{BLUE, FONT, INK, use_font};
 use plotters::prelude::*;
 use pnaen::app::App;
 

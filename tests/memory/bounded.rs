@@ -5,13 +5,10 @@ use std::path::Path;
 use std::sync::PoisonError;
 
 use geometry::progress::Progress;
-use inspect::engine::Loaded;
-use inspect::engine::Preparation;
-use inspect::engine::load;
-use load::Limits;
-use load::LoadError;
+use inspect::engine::{Loaded, Preparation, load};
 use load::heights::HeightSource;
 use load::source::Source;
+use load::{Limits, LoadError};
 
 use super::counting::peak_of;
 use super::glb::{blocks, indexed, loose};

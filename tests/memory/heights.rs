@@ -8,8 +8,7 @@ use geometry::mesh::shapes::Shape;
 use geometry::progress::Progress;
 use image::{DynamicImage, ImageFormat, RgbImage};
 use load::Limits;
-use load::heights::HeightError;
-use load::heights::HeightSource;
+use load::heights::{HeightError, HeightSource};
 use load::memory_budget::Budget;
 
 use super::counting::peak_of;

@@ -20,8 +20,7 @@ use std::io::Write;
 use std::sync::{Mutex, PoisonError};
 
 use geometry::progress::Progress;
-use load::Limits;
-use load::{LoadError, LoadedMesh, load};
+use load::{Limits, LoadError, LoadedMesh, load};
 use serde_json::{Value, json};
 use tempfile::TempPath;
 

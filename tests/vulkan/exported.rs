@@ -16,13 +16,8 @@ use gpu::recorder::Timing;
 use inspect::engine::Engine;
 use inspect::render::camera::Camera;
 use inspect::render::scene::Scene;
-use inspect::settings::ARENA_BYTES;
-use inspect::settings::Settings;
-use inspect::shader_files::Language;
-use inspect::shader_files::ShaderError;
-use inspect::shader_files::ShaderFile;
-use inspect::shader_files::indices_per_patch;
-use inspect::shader_files::shader_files;
+use inspect::settings::{ARENA_BYTES, Settings};
+use inspect::shader_files::{Language, ShaderError, ShaderFile, indices_per_patch, shader_files};
 use pnaen::glam::Vec2;
 use thiserror::Error;
 

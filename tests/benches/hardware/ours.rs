@@ -2,17 +2,12 @@
 
 use std::time::{Duration, Instant};
 
-use geometry::tessellate::Vertex;
-use geometry::tessellate::{Clip, Tessellation};
+use geometry::tessellate::{Clip, Tessellation, Vertex};
 use glam::Vec3;
 use gpu::embed::GpuError;
-use gpu::layout::CurveNet;
-use gpu::layout::Patch;
+use gpu::layout::{CurveNet, Patch};
 use gpu::readback::read_buffer;
-use gpu::recorder::DRAWING;
-use gpu::recorder::PassTime;
-use gpu::recorder::Timing;
-use gpu::recorder::take_times;
+use gpu::recorder::{DRAWING, PassTime, Timing, take_times};
 use inspect::engine::Engine;
 use inspect::render::camera::Camera;
 use inspect::render::scene::Scene;

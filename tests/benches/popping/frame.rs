@@ -1,8 +1,7 @@
 //! What is emitted in one frame.
 
 use geometry::mesh::{Mesh, Topology};
-use geometry::tessellate::factors::point_count;
-use geometry::tessellate::factors::triangle_count;
+use geometry::tessellate::factors::{point_count, triangle_count};
 use geometry::tessellate::{Inputs, PatchFactors, Tessellated, Tessellation, Vertex, tessellate, unpack_normal};
 use glam::{DVec3, Vec3};
 use inspect::render::camera::Camera;

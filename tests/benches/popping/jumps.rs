@@ -1,7 +1,6 @@
 //! What changes between two successive frames because factors do.
 
-use geometry::tessellate::factors::row_base;
-use geometry::tessellate::factors::triangle_count;
+use geometry::tessellate::factors::{row_base, triangle_count};
 
 use crate::frame::{Emitted, Frame};
 use crate::histogram::Histogram;
