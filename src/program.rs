@@ -56,6 +56,7 @@ fn open_window(_: &Cli) -> Result<String, ExitCode> {
 
 /// Turns Mesa's device selection off where there is no desktop session: it would look for a Wayland display and complain
 /// on standard error. Commands need no display and choose their adapter themselves.
+#[allow(unsafe_code, reason = "the driver reads the environment, and has no other way to be told")]
 fn quiet_driver() {
     if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
         // SAFETY: no other thread runs yet that could read the environment at the same time.

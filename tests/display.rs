@@ -1,5 +1,6 @@
 //! Tests the real window on a virtual display (Xvfb, on Linux only), for example how it goes on after its device is lost. It is a
 //! program of its own, since windows need the main thread.
+#![allow(unsafe_code, reason = "windows read the environment, which only this process has before its first thread")]
 
 use std::cell::{Cell, RefCell};
 use std::io::{BufRead, BufReader};

@@ -29,7 +29,7 @@ const SHADER: &str = "
 ";
 
 /// A device without a window, and what the host draws with.
-pub struct Canvas {
+pub(crate) struct Canvas {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
     /// Width and height of the picture, in px.
@@ -46,7 +46,7 @@ pub struct Canvas {
 
 impl Canvas {
     /// Makes a canvas for pictures of this width (a multiple of 64) and height, in px.
-    pub fn new(size: [u32; 2]) -> Result<Self, Box<dyn Error>> {
+    pub(crate) fn new(size: [u32; 2]) -> Result<Self, Box<dyn Error>> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
         let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))?;
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))?;
@@ -88,7 +88,7 @@ impl Canvas {
     }
 
     /// Looks from `eye` at `target`, both in object units; `radius` is the mesh's bounding radius.
-    pub fn look(&self, eye: Vec3, target: Vec3, radius: f32) -> LodView {
+    pub(crate) fn look(&self, eye: Vec3, target: Vec3, radius: f32) -> LodView {
         let [width, height] = self.size.map(|side| side as f32);
         let clip_from_view = perspective_infinite_reverse(0.7, width / height, 0.1);
         let clip_from_object = clip_from_view * look_at_mat4(eye, target, Vec3::Y);
@@ -97,7 +97,7 @@ impl Canvas {
     }
 
     /// Draws the mesh in a render pass of the host's own.
-    pub fn draw(&self, encoder: &mut wgpu::CommandEncoder, mesh: &TessellatedMesh) -> Result<(), Box<dyn Error>> {
+    pub(crate) fn draw(&self, encoder: &mut wgpu::CommandEncoder, mesh: &TessellatedMesh) -> Result<(), Box<dyn Error>> {
         let color = self.color.create_view(&Default::default());
         let background = wgpu::Color { r: 0.02, g: 0.02, b: 0.03, a: 1.0 };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -126,7 +126,7 @@ impl Canvas {
     }
 
     /// Submits the encoder, and waits for the picture and for what the passes say about their output.
-    pub fn finish(
+    pub(crate) fn finish(
         &self,
         mut encoder: wgpu::CommandEncoder,
         mesh: &TessellatedMesh,

@@ -2,8 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::CliError;
-use super::FactorsOption;
+use super::{CliError, FactorsOption};
 use geometry::tessellate::{Partitioning, Tessellation};
 use gpu::Given;
 use inspect::own_shader::read_own_shader;

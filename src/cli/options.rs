@@ -24,12 +24,12 @@ use load::HeightSource;
 use load::files::Limits;
 
 pub(crate) use cameras::{CamerasOption, NamedView};
-pub use declared::choice;
+pub(crate) use declared::choice;
 pub(crate) use declared::{ImportOptions, PictureOptions, TessellationOptions, number_of};
 pub(crate) use lod_camera::LodCameraOption;
 pub(crate) use opening::OpeningOptions;
 pub(crate) use values::{CameraOption, whole_from};
-pub use values::{Position, Size, model, picture, source, steps, whole};
+pub(crate) use values::{Position, Size, model, picture, source, steps, whole};
 pub(crate) use view::ViewOptions;
 
 use values::{bytes, crease_band, weld};

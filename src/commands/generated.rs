@@ -4,8 +4,10 @@ use std::path::PathBuf;
 
 use egui::{Key, KeyboardShortcut};
 
-use super::availability as when;
-use super::{Action, Availability, CameraAction, Change, Command, FileAction, Preparing, Submenu, alt, plain, shift};
+use super::{
+    Action, Availability, CameraAction, Change, Command, FileAction, Preparing, Submenu, alt, availability as when,
+    plain, shift,
+};
 use geometry::mesh::UpAxis;
 use geometry::mesh::weld_preview::TOLERANCES;
 use geometry::names::shortened;

@@ -59,6 +59,7 @@ fn subpixel_bits(adapter: &wgpu::Adapter) -> u32 {
 }
 
 #[cfg(any(windows, target_os = "linux"))]
+#[allow(unsafe_code, reason = "wgpu offers this limit nowhere else")]
 fn vulkan_subpixel_bits(adapter: &wgpu::Adapter) -> Option<u32> {
     // SAFETY: wgpu offers this limit nowhere else. Nothing is made or destroyed: this reads a property of the physical device,
     // which lives as long as the instance, and the borrowed adapter keeps that alive.

@@ -4,6 +4,8 @@
 //! records the passes into its own command encoder, and draws what they emit in its own render pass.
 //!
 //! ```no_run
+//! # mod pnaen { pub use geometry::{mesh, tessellate}; pub use pnaen_gpu::embed; }
+//! # fn main() {}
 //! use pnaen::embed::{Context, Room, TessellatedMesh};
 //! use pnaen::mesh::{Mesh, MeshSlices};
 //! use pnaen::tessellate::{LodView, Tessellation};

@@ -1,4 +1,5 @@
 //! An allocator that counts the memory of a whole program.
+#![allow(unsafe_code, reason = "an allocator is unsafe by its nature")]
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -29,13 +30,13 @@ unsafe impl GlobalAlloc for Counting {
 
 /// The number of bytes that are taken now.
 #[allow(dead_code, reason = "not every test asks for it")]
-pub fn taken() -> usize {
+pub(crate) fn taken() -> usize {
     TAKEN.load(Relaxed)
 }
 
 /// Runs `job`. Returns its result, and the most bytes that were taken meanwhile, beyond those taken before.
 #[allow(dead_code, reason = "not every test asks for it")]
-pub fn peak_of<T>(job: impl FnOnce() -> T) -> (T, usize) {
+pub(crate) fn peak_of<T>(job: impl FnOnce() -> T) -> (T, usize) {
     let before = taken();
     PEAK.store(before, Relaxed);
     let result = job();

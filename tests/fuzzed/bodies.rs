@@ -22,38 +22,38 @@ const MOST_TRIANGLES: usize = 1 << 14;
 /// The number 1 in the tessellator's fixed-point coordinates.
 const ONE: i64 = 1 << 16;
 
-pub fn gltf(data: &[u8]) {
+pub(crate) fn gltf(data: &[u8]) {
     mesh(Format::Gltf, data);
 }
 
 /// Reads bytes as a `.glb`, whatever they start with.
-pub fn glb(data: &[u8]) {
+pub(crate) fn glb(data: &[u8]) {
     let mut data = data.to_vec();
     data.iter_mut().zip(b"glTF").for_each(|(byte, own)| *byte = *own);
     mesh(Format::Gltf, &data);
 }
 
-pub fn fbx(data: &[u8]) {
+pub(crate) fn fbx(data: &[u8]) {
     mesh(Format::Fbx, data);
 }
 
-pub fn obj(data: &[u8]) {
+pub(crate) fn obj(data: &[u8]) {
     mesh(Format::Obj, data);
 }
 
-pub fn stl(data: &[u8]) {
+pub(crate) fn stl(data: &[u8]) {
     mesh(Format::Stl, data);
 }
 
-pub fn ply(data: &[u8]) {
+pub(crate) fn ply(data: &[u8]) {
     mesh(Format::Ply, data);
 }
 
-pub fn off(data: &[u8]) {
+pub(crate) fn off(data: &[u8]) {
     mesh(Format::Off, data);
 }
 
-pub fn threemf(data: &[u8]) {
+pub(crate) fn threemf(data: &[u8]) {
     mesh(Format::ThreeMf, data);
 }
 
@@ -88,7 +88,7 @@ fn assert_sound(mesh: &Mesh, progress: &Progress) {
 }
 
 /// Reads bytes as a panorama, which must give light or an error: its pixels are finite and not negative.
-pub fn panorama(data: &[u8]) {
+pub(crate) fn panorama(data: &[u8]) {
     match EnvironmentFile::read(data, &Limits::default(), &Progress::new()) {
         Ok(file) => {
             let [width, height] = file.size();
@@ -105,7 +105,7 @@ pub fn panorama(data: &[u8]) {
 
 /// Tessellates with four factors of any bits, in every partitioning, before and after the rounding of a shader
 /// compiler.
-pub fn factors(data: &[u8]) {
+pub(crate) fn factors(data: &[u8]) {
     let Some((bits, _)) = data.split_first_chunk::<16>() else { return };
     let [a, b, c, inside] = [0, 4, 8, 12].map(|i| f32::from_le_bytes([bits[i], bits[i + 1], bits[i + 2], bits[i + 3]]));
     for partitioning in Partitioning::ALL {

@@ -19,10 +19,10 @@ const KINDS: [(&str, f64); 3] = [("heap", 0.02), ("graphics device", 0.1), ("pro
 const MANY: usize = 100;
 
 /// The MiB of each of [`KINDS`]; `None` if the system doesn't report it.
-pub type Taken = [Option<f64>; KINDS.len()];
+pub(crate) type Taken = [Option<f64>; KINDS.len()];
 
 /// The memory that is taken now, in MiB.
-pub fn now(app: &App) -> Taken {
+pub(crate) fn now(app: &App) -> Taken {
     let report = app.engine().gpu.device.generate_allocator_report();
     let device = report.map(|report| report.total_allocated_bytes as f64 / MIB);
     [Some(taken() as f64 / MIB), device, resident()]
@@ -36,7 +36,7 @@ fn resident() -> Option<f64> {
 }
 
 /// One part of the test: what was done, and the memory after each step.
-pub struct Part {
+pub(crate) struct Part {
     pub what: &'static str,
     pub taken: Vec<Taken>,
 }
@@ -46,7 +46,7 @@ impl Part {
     ///
     /// # Panics
     /// The last quarter of the steps takes more than the second.
-    pub fn levels_off(&self) {
+    pub(crate) fn levels_off(&self) {
         let quarter = self.taken.len() / 4;
         for (kind, (name, noise)) in KINDS.into_iter().enumerate() {
             let mean = |rows: &[Taken]| {
@@ -68,7 +68,7 @@ impl Part {
 }
 
 /// Writes `long-use.csv` and `long-use.svg` into a folder.
-pub fn write(folder: &Path, parts: &[Part]) {
+pub(crate) fn write(folder: &Path, parts: &[Part]) {
     let mut table = "part,step".to_owned();
     for (name, _) in KINDS {
         let _ = write!(table, ",{}_mib", name.replace(' ', "_"));

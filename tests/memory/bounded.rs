@@ -22,7 +22,7 @@ const FIXED: usize = 1 << 20;
 const PARTS: [f64; 7] = [0.15, 0.3, 0.5, 0.65, 0.8, 0.9, 0.97];
 
 /// Runs a whole load with this much memory (in bytes) beyond four times the files' size, and returns how much it took.
-pub fn loaded(file: &Path, preparation: &Preparation, memory: u64) -> (Result<Loaded, LoadError>, usize) {
+pub(crate) fn loaded(file: &Path, preparation: &Preparation, memory: u64) -> (Result<Loaded, LoadError>, usize) {
     let preparation = Preparation { limits: Limits { memory, ..Limits::default() }, ..preparation.clone() };
     let source = Source::File(file.to_path_buf());
     peak_of(|| load(&source, &preparation, &Progress::new()))
@@ -30,7 +30,7 @@ pub fn loaded(file: &Path, preparation: &Preparation, memory: u64) -> (Result<Lo
 
 /// Loads a file with more and more memory. A load may ask for `most` times the memory that it takes; `image` is the
 /// size of the height image file.
-pub fn assert_bounded(name: &str, bytes: &[u8], image: usize, preparation: &Preparation, most: f64) {
+pub(crate) fn assert_bounded(name: &str, bytes: &[u8], image: usize, preparation: &Preparation, most: f64) {
     let file = temporary(name, bytes);
     let (result, needed) = loaded(&file, preparation, u64::MAX);
     let triangles = result.expect("a file without a fault").read.triangles.len();

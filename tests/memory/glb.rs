@@ -67,7 +67,7 @@ impl Draft {
 }
 
 /// A sheet as one primitive, with indices of 32 bits.
-pub fn indexed(grid: Grid, quantised: bool) -> Vec<u8> {
+pub(crate) fn indexed(grid: Grid, quantised: bool) -> Vec<u8> {
     let mut draft = Draft::default();
     let attributes = draft.vertices(grid, 0..grid.side * grid.side, quantised);
     let indices = grid.triangles().flatten().flat_map(|i| (i as u32).to_le_bytes());
@@ -77,7 +77,7 @@ pub fn indexed(grid: Grid, quantised: bool) -> Vec<u8> {
 }
 
 /// A sheet as quantised primitives of rows of squares, with indices of 16 bits.
-pub fn blocks(grid: Grid) -> Vec<u8> {
+pub(crate) fn blocks(grid: Grid) -> Vec<u8> {
     let mut draft = Draft::default();
     let rows = 60_000 / grid.side;
     for first in (0..grid.side - 1).step_by(rows) {
@@ -92,7 +92,7 @@ pub fn blocks(grid: Grid) -> Vec<u8> {
 }
 
 /// A sheet as one primitive without indices.
-pub fn loose(grid: Grid, quantised: bool) -> Vec<u8> {
+pub(crate) fn loose(grid: Grid, quantised: bool) -> Vec<u8> {
     let mut draft = Draft::default();
     let numbers: Vec<usize> = grid.triangles().flatten().collect();
     let attributes = draft.vertices(grid, numbers.into_iter(), quantised);

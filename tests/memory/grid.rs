@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 /// A wavy sheet of squares, each cut into two triangles.
 #[derive(Clone, Copy)]
-pub struct Grid {
+pub(crate) struct Grid {
     /// The number of vertices along x and along y.
     pub side: usize,
     pub rows: usize,
@@ -15,26 +15,26 @@ pub struct Grid {
 
 impl Grid {
     /// Makes a sheet with this number of triangles, or a few less.
-    pub fn of(triangles: usize, spikes: f32) -> Self {
+    pub(crate) fn of(triangles: usize, spikes: f32) -> Self {
         let side = (triangles / 2).isqrt() + 1;
         Self { side, rows: side, spikes }
     }
 
-    pub fn triangle_count(self) -> usize {
+    pub(crate) fn triangle_count(self) -> usize {
         2 * (self.side - 1) * (self.rows - 1)
     }
 
-    pub fn positions(self) -> impl Iterator<Item = [f32; 3]> {
+    pub(crate) fn positions(self) -> impl Iterator<Item = [f32; 3]> {
         (0..self.side * self.rows).map(move |i| self.position(i))
     }
 
-    pub fn position(self, i: usize) -> [f32; 3] {
+    pub(crate) fn position(self, i: usize) -> [f32; 3] {
         let [x, y] = [(i % self.side) as f32, (i / self.side) as f32];
         [x, y, (x * 0.01).sin() * (y * 0.01).cos() + self.spikes * (i * i % 1009) as f32 / 1009.0]
     }
 
     /// Returns the corners of the squares, counter-clockwise.
-    pub fn quads(self) -> impl Iterator<Item = [usize; 4]> {
+    pub(crate) fn quads(self) -> impl Iterator<Item = [usize; 4]> {
         let (side, rows) = (self.side, self.rows);
         (0..(side - 1) * (rows - 1)).map(move |i| {
             let a = i / (side - 1) * side + i % (side - 1);
@@ -42,12 +42,12 @@ impl Grid {
         })
     }
 
-    pub fn triangles(self) -> impl Iterator<Item = [usize; 3]> {
+    pub(crate) fn triangles(self) -> impl Iterator<Item = [usize; 3]> {
         self.quads().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]])
     }
 
     /// Writes binary STL. `apart` is the distance between neighbouring triangles.
-    pub fn stl(self, apart: f32) -> Vec<u8> {
+    pub(crate) fn stl(self, apart: f32) -> Vec<u8> {
         let mut bytes = vec![0; 80];
         bytes.reserve_exact(50 * self.triangle_count() + 4);
         bytes.extend((self.triangle_count() as u32).to_le_bytes());
@@ -62,7 +62,7 @@ impl Grid {
     }
 
     /// Writes binary PLY with triangles or squares.
-    pub fn ply(self, squares: bool) -> Vec<u8> {
+    pub(crate) fn ply(self, squares: bool) -> Vec<u8> {
         let faces = self.triangle_count() / if squares { 2 } else { 1 };
         let mut bytes = format!(
             "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float \
@@ -83,7 +83,7 @@ impl Grid {
     }
 
     /// Writes OFF.
-    pub fn off(self) -> Vec<u8> {
+    pub(crate) fn off(self) -> Vec<u8> {
         let mut text = format!("OFF\n{} {} 0\n", self.side * self.rows, self.triangle_count());
         for [x, y, z] in self.positions() {
             let _ = writeln!(text, "{x} {y} {z:.3}");
@@ -95,7 +95,7 @@ impl Grid {
     }
 
     /// Writes 3MF, whose model is compressed.
-    pub fn threemf(self) -> Vec<u8> {
+    pub(crate) fn threemf(self) -> Vec<u8> {
         let object = format!("<object id=\"1\">{}</object>", package::mesh(self.positions(), self.triangles()));
         let model = package::model(&object, "<item objectid=\"1\"/>");
         let relationships = package::relationships();
@@ -106,7 +106,7 @@ impl Grid {
     }
 
     /// Writes OBJ with or without texture coordinates and normals.
-    pub fn obj(self, attributes: bool) -> Vec<u8> {
+    pub(crate) fn obj(self, attributes: bool) -> Vec<u8> {
         let mut text = String::new();
         for [x, y, z] in self.positions() {
             let _ = writeln!(text, "v {x} {y} {z:.3}");

@@ -57,7 +57,7 @@ fn a_large_png_takes_little_more_than_its_map() {
 }
 
 /// A JPEG image whose frame header has this size, in px a side, and this marker for its coding.
-pub fn jpeg(side: u16, marker: u8) -> Vec<u8> {
+pub(crate) fn jpeg(side: u16, marker: u8) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
     let image = DynamicImage::from(RgbImage::from_fn(600, 600, |x, y| image::Rgb([x as u8, y as u8, 90])));
     image.write_to(&mut bytes, ImageFormat::Jpeg).expect("in memory");

@@ -6,7 +6,7 @@ use super::stages::CapturedCorner;
 
 /// What our passes made of the same patches.
 #[derive(Clone, Copy, Debug)]
-pub struct Ours<'a> {
+pub(crate) struct Ours<'a> {
     /// For every vertex its patch, and the weights of corners 0 and 1 in 16.16 fixed point.
     pub keys: &'a [(u32, u32, u32)],
     pub positions: &'a [[f32; 3]],
@@ -19,7 +19,7 @@ pub struct Ours<'a> {
 
 /// What differs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Agreement {
+pub(crate) struct Agreement {
     /// The number of triangles that the stages made.
     pub triangles: usize,
     /// The largest difference of a factor, as a part of ours.
@@ -40,7 +40,7 @@ pub struct Agreement {
 type Key = (u32, u32, u32);
 
 /// Makes the weights of corners 0 and 1 of the tessellator's U and V, as a convention says.
-pub type Weights<'a> = &'a dyn Fn([u32; 2]) -> [u32; 2];
+pub(crate) type Weights<'a> = &'a dyn Fn([u32; 2]) -> [u32; 2];
 
 /// A point on an edge: the bits of the edge's ends, and the place between them. At an end, that is the edge's only one: all edges
 /// share it that meet there.
@@ -74,7 +74,7 @@ fn apart(x: f32, y: f32) -> f64 {
 }
 
 /// Compares. `patch_corners` are the positions of every patch's corners, and `weights` as the domain shader's convention says.
-pub fn compare(
+pub(crate) fn compare(
     captured: &[[CapturedCorner; 3]],
     ours: &Ours,
     patch_corners: &[[[f32; 3]; 3]],
@@ -116,7 +116,7 @@ pub fn compare(
 }
 
 /// Counts the points on edges that several sides have, and those of them whose bits differ.
-pub fn shared_points(
+pub(crate) fn shared_points(
     captured: &[[CapturedCorner; 3]],
     patch_corners: &[[[f32; 3]; 3]],
     weights: Weights,

@@ -10,17 +10,17 @@ use super::memory::{Buffer, Owned};
 use super::stages::{CapturedCorner, Drawn, HEAD_BYTES, StageError};
 
 /// The binding of the captured triangles, behind those of exported files.
-pub const CAPTURED_BINDING: u32 = 3;
+pub(crate) const CAPTURED_BINDING: u32 = 3;
 
 /// What is bound somewhere. An image may come with a sampler, as GLSL has it.
-pub enum Resource<'a> {
+pub(crate) enum Resource<'a> {
     Uniform(&'a Buffer),
     Storage(&'a Buffer),
     Image(&'a HeightImage, vk::DescriptorType),
 }
 
 /// Where something is bound.
-pub type Bound<'a> = (u32, Resource<'a>);
+pub(crate) type Bound<'a> = (u32, Resource<'a>);
 
 /// The stages of a draw that read or write what is bound.
 const DRAWING: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
@@ -30,7 +30,7 @@ const DRAWING: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
 );
 
 /// The constants, the height image and the captured triangles, bound.
-pub struct Bindings {
+pub(crate) struct Bindings {
     _layout: Owned<vk::DescriptorSetLayout>,
     _pool: Owned<vk::DescriptorPool>,
     pub pipeline: Owned<vk::PipelineLayout>,
@@ -45,7 +45,7 @@ impl Bindings {
     ///
     /// # Errors
     /// No memory, or a lost device.
-    pub fn new(vulkan: &Rc<Vulkan>, drawn: &Drawn, samples: bool) -> Result<Self, VulkanError> {
+    pub(crate) fn new(vulkan: &Rc<Vulkan>, drawn: &Drawn, samples: bool) -> Result<Self, VulkanError> {
         let constants = Buffer::filled(vulkan, drawn.constants)?;
         let relief = match drawn.displaced {
             Some(own) => Some((Buffer::filled(vulkan, &own.constants)?, HeightImage::new(vulkan, own.map)?)),
@@ -72,7 +72,7 @@ impl Bindings {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn triangles(&self, vulkan: &Rc<Vulkan>, room: usize) -> Result<Vec<[CapturedCorner; 3]>, StageError> {
+    pub(crate) fn triangles(&self, vulkan: &Rc<Vulkan>, room: usize) -> Result<Vec<[CapturedCorner; 3]>, StageError> {
         let staging = Buffer::for_host(vulkan, self.captured.bytes)?;
         staging.copy_from(&self.captured)?;
         let read = |bytes: &mut [u8]| {
@@ -96,7 +96,7 @@ fn kind(resource: &Resource) -> vk::DescriptorType {
 ///
 /// # Errors
 /// No memory.
-pub fn layout(
+pub(crate) fn layout(
     vulkan: &Rc<Vulkan>,
     bound: &[Bound],
     stages: vk::ShaderStageFlags,
@@ -115,7 +115,7 @@ pub fn layout(
 ///
 /// # Errors
 /// No memory.
-pub fn pipeline_layout(
+pub(crate) fn pipeline_layout(
     vulkan: &Rc<Vulkan>,
     layout: vk::DescriptorSetLayout,
     pushed: &[vk::PushConstantRange],
@@ -130,7 +130,7 @@ pub fn pipeline_layout(
 ///
 /// # Errors
 /// No memory.
-pub fn set(
+pub(crate) fn set(
     vulkan: &Rc<Vulkan>,
     layout: vk::DescriptorSetLayout,
     bound: &[Bound],

@@ -13,7 +13,7 @@ use thiserror::Error;
 
 /// Why there is no peer here.
 #[derive(Debug, Error)]
-pub enum VulkanError {
+pub(crate) enum VulkanError {
     #[error("Vulkan can't be loaded here ({0})")]
     Loader(#[from] ash::LoadingError),
     #[error("{0} is not among Vulkan's devices")]
@@ -31,20 +31,20 @@ pub enum VulkanError {
 /// The time of one submission in ms: by the GPU's clock if that is reliable (else the same as `wall`), and by the host's clock
 /// from recording to completion.
 #[derive(Clone, Copy, Debug)]
-pub struct Took {
+pub(crate) struct Took {
     pub gpu: f64,
     pub wall: f64,
 }
 
 /// What the pipeline counted: invocations of the domain shader, and triangles that left the tessellation stages.
 #[derive(Clone, Copy, Debug)]
-pub struct Counted {
+pub(crate) struct Counted {
     pub evaluations: u64,
     pub triangles: u64,
 }
 
 /// A device with tessellation stages.
-pub struct Vulkan {
+pub(crate) struct Vulkan {
     /// Keeps the loader's library open.
     _entry: ash::Entry,
     instance: ash::Instance,
@@ -67,7 +67,7 @@ impl Vulkan {
     ///
     /// # Errors
     /// There is no Vulkan, no such device, or it has no tessellation stages.
-    pub fn new(adapter: &wgpu::AdapterInfo) -> Result<Rc<Self>, VulkanError> {
+    pub(crate) fn new(adapter: &wgpu::AdapterInfo) -> Result<Rc<Self>, VulkanError> {
         unsafe {
             let entry = ash::Entry::load()?;
             let application = vk::ApplicationInfo::default().api_version(vk::API_VERSION_1_1);
@@ -141,7 +141,7 @@ impl Vulkan {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn run(&self, record: impl FnOnce(vk::CommandBuffer)) -> Result<Took, VulkanError> {
+    pub(crate) fn run(&self, record: impl FnOnce(vk::CommandBuffer)) -> Result<Took, VulkanError> {
         let start = Instant::now();
         let commands = self.command_buffer;
         unsafe {
@@ -169,7 +169,7 @@ impl Vulkan {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn count(&self, record: impl FnOnce(vk::CommandBuffer)) -> Result<Option<Counted>, VulkanError> {
+    pub(crate) fn count(&self, record: impl FnOnce(vk::CommandBuffer)) -> Result<Option<Counted>, VulkanError> {
         let Some(pool) = self.statistics else { return Ok(None) };
         let device = &self.device;
         self.run(|commands| unsafe {
@@ -195,7 +195,7 @@ impl Vulkan {
     ///
     /// # Errors
     /// The device has no such memory, or not enough.
-    pub fn allocate(
+    pub(crate) fn allocate(
         &self,
         needs: vk::MemoryRequirements,
         flags: vk::MemoryPropertyFlags,

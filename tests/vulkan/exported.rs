@@ -27,7 +27,7 @@ use super::stages::{CapturedCorner, Displaced, Drawn, Exported, StageError};
 
 /// Why there is no comparison.
 #[derive(Debug, Error)]
-pub enum ExportedError {
+pub(crate) enum ExportedError {
     #[error(transparent)]
     Gpu(#[from] GpuError),
     #[error(transparent)]
@@ -37,7 +37,7 @@ pub enum ExportedError {
 }
 
 /// Width and height of the view that LOD is computed for, in px.
-pub const VIEWPORT: Vec2 = Vec2::new(640.0, 480.0);
+pub(crate) const VIEWPORT: Vec2 = Vec2::new(640.0, 480.0);
 
 /// The LODs that can be exported: all but that by error, which searches.
 fn lods() -> impl Iterator<Item = Lod> {
@@ -45,10 +45,10 @@ fn lods() -> impl Iterator<Item = Lod> {
 }
 
 /// The languages that run on tessellation stages.
-pub const LANGUAGES: [Language; 2] = [Language::Glsl, Language::Hlsl];
+pub(crate) const LANGUAGES: [Language; 2] = [Language::Glsl, Language::Hlsl];
 
 /// A mesh that both tessellate.
-pub struct Subject<'a> {
+pub(crate) struct Subject<'a> {
     engine: &'a Engine,
     vulkan: Rc<Vulkan>,
     mesh: Arc<Mesh>,
@@ -63,7 +63,7 @@ impl<'a> Subject<'a> {
     ///
     /// # Errors
     /// No memory.
-    pub fn new(engine: &'a Engine, vulkan: &Rc<Vulkan>, mesh: Mesh) -> Result<Self, ExportedError> {
+    pub(crate) fn new(engine: &'a Engine, vulkan: &Rc<Vulkan>, mesh: Mesh) -> Result<Self, ExportedError> {
         let mesh = Arc::new(mesh);
         // Nobody else holds this handle, so nobody can cancel.
         let topology = Arc::new(Topology::build(&mesh, &Progress::new()).unwrap_or_default());
@@ -78,7 +78,7 @@ impl<'a> Subject<'a> {
     ///
     /// # Errors
     /// It can't be exported, or the device was lost.
-    pub fn agreement(
+    pub(crate) fn agreement(
         &mut self,
         language: Language,
         tessellation: &Tessellation,
@@ -92,7 +92,7 @@ impl<'a> Subject<'a> {
     ///
     /// # Errors
     /// They don't compile, or the device was lost.
-    pub fn agreement_of(
+    pub(crate) fn agreement_of(
         &mut self,
         files: &[ShaderFile],
         language: Language,
@@ -206,7 +206,7 @@ impl<'a> Subject<'a> {
 }
 
 /// The constant buffer of a view, laid out as the exported files say.
-pub fn constants(own: &Tessellation, view: &LodView) -> [f32; 48] {
+pub(crate) fn constants(own: &Tessellation, view: &LodView) -> [f32; 48] {
     let mut constants = [0.0; 48];
     let matrix = view.clip_from_object.to_cols_array();
     constants[..16].copy_from_slice(&matrix);
@@ -220,7 +220,7 @@ pub fn constants(own: &Tessellation, view: &LodView) -> [f32; 48] {
 }
 
 /// What was compared, and what came out.
-pub struct Row {
+pub(crate) struct Row {
     pub surface: Surface,
     pub lod: Lod,
     pub displacement: Displacement,
@@ -229,13 +229,13 @@ pub struct Row {
 }
 
 /// The ways to displace that can be exported.
-pub const DISPLACEMENTS: [Displacement; 3] = [Displacement::On, Displacement::AsPublished, Displacement::PerPatch];
+pub(crate) const DISPLACEMENTS: [Displacement; 3] = [Displacement::On, Displacement::AsPublished, Displacement::PerPatch];
 
 /// Compares every surface under every LOD, in both languages.
 ///
 /// # Errors
 /// A shader doesn't compile, or the device was lost.
-pub fn rows(subject: &mut Subject) -> Result<Vec<Row>, ExportedError> {
+pub(crate) fn rows(subject: &mut Subject) -> Result<Vec<Row>, ExportedError> {
     compared(subject, &Surface::ALL, &lods().map(|lod| (lod, Displacement::Off)).collect::<Vec<_>>())
 }
 
@@ -243,7 +243,7 @@ pub fn rows(subject: &mut Subject) -> Result<Vec<Row>, ExportedError> {
 ///
 /// # Errors
 /// A shader doesn't compile, or the device was lost.
-pub fn displaced_rows(subject: &mut Subject) -> Result<Vec<Row>, ExportedError> {
+pub(crate) fn displaced_rows(subject: &mut Subject) -> Result<Vec<Row>, ExportedError> {
     compared(subject, &Surface::ALL, &DISPLACEMENTS.map(|displacement| (Lod::Uniform, displacement)))
 }
 
@@ -252,14 +252,14 @@ pub fn displaced_rows(subject: &mut Subject) -> Result<Vec<Row>, ExportedError> 
 ///
 /// # Errors
 /// A shader doesn't compile, or the device was lost.
-pub fn rows_by_view(subject: &mut Subject) -> Result<Vec<Row>, ExportedError> {
+pub(crate) fn rows_by_view(subject: &mut Subject) -> Result<Vec<Row>, ExportedError> {
     let by_view = lods().filter(|lod| *lod != Lod::Uniform);
     let kinds = by_view.flat_map(|lod| DISPLACEMENTS.map(|displacement| (lod, displacement)));
     compared(subject, &[Surface::PnAen], &kinds.collect::<Vec<_>>())
 }
 
 /// Puts a mesh under waves, whose image repeats if texture coordinates go beyond it.
-pub fn wavy(mut mesh: Mesh) -> Mesh {
+pub(crate) fn wavy(mut mesh: Mesh) -> Mesh {
     const SIZE: u32 = 64;
     let height = |i: u32| {
         let [x, y] = [i % SIZE, i / SIZE].map(|at| TAU * (at as f32 + 0.5) / SIZE as f32);
@@ -312,17 +312,17 @@ fn option_name(variant: &str) -> String {
 
 /// The rows as a Markdown table. Differences are rounded up, so that the table says what holds, and stays the same on drivers that
 /// round otherwise.
-pub fn table(rows: &[Row]) -> String {
+pub(crate) fn table(rows: &[Row]) -> String {
     table_by(&["surface", "LOD"], rows)
 }
 
 /// The rows of displaced surfaces as a Markdown table, likewise.
-pub fn displaced_table(rows: &[Row]) -> String {
+pub(crate) fn displaced_table(rows: &[Row]) -> String {
     table_by(&["surface", "displacement"], rows)
 }
 
 /// The rows of one surface under LOD by the view as a Markdown table, likewise.
-pub fn table_by_view(rows: &[Row]) -> String {
+pub(crate) fn table_by_view(rows: &[Row]) -> String {
     table_by(&["LOD", "displacement"], rows)
 }
 

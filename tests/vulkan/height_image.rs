@@ -9,7 +9,7 @@ use super::device::{Vulkan, VulkanError};
 use super::memory::{Buffer, Owned, Picture};
 
 /// The picture, and a sampler that filters nothing.
-pub struct HeightImage {
+pub(crate) struct HeightImage {
     picture: Picture,
     sampler: Owned<vk::Sampler>,
 }
@@ -19,7 +19,7 @@ impl HeightImage {
     ///
     /// # Errors
     /// No memory, or a lost device.
-    pub fn new(vulkan: &Rc<Vulkan>, map: &HeightMap) -> Result<Self, VulkanError> {
+    pub(crate) fn new(vulkan: &Rc<Vulkan>, map: &HeightMap) -> Result<Self, VulkanError> {
         let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
         let format = vk::Format::R32_SFLOAT;
         let picture = Picture::with_levels(vulkan, map.size, map.levels, format, vk::SampleCountFlags::TYPE_1, usage)?;
@@ -30,7 +30,7 @@ impl HeightImage {
         Ok(Self { picture, sampler: Owned::new(vulkan, sampler, destroy) })
     }
 
-    pub fn descriptor(&self) -> vk::DescriptorImageInfo {
+    pub(crate) fn descriptor(&self) -> vk::DescriptorImageInfo {
         let own = vk::DescriptorImageInfo::default().image_view(self.picture.view).sampler(self.sampler.handle);
         own.image_layout(vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL)
     }

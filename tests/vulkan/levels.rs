@@ -14,7 +14,7 @@ use super::stages::{Drawn, Exported, StageError, compiled, module};
 ///
 /// # Errors
 /// The text doesn't compile, or the driver doesn't take it.
-pub fn levels(vulkan: &Rc<Vulkan>, exported: Exported, drawn: &Drawn) -> Result<Option<Buffer>, StageError> {
+pub(crate) fn levels(vulkan: &Rc<Vulkan>, exported: Exported, drawn: &Drawn) -> Result<Option<Buffer>, StageError> {
     let Some(displaced) = drawn.displaced else { return Ok(None) };
     let Some(text) = displaced.levels else { return Ok(None) };
     let (code, entry) = code(exported, text)?;

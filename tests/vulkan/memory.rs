@@ -7,7 +7,7 @@ use ash::vk;
 use super::device::{Vulkan, VulkanError};
 
 /// A buffer with memory of its own.
-pub struct Buffer {
+pub(crate) struct Buffer {
     vulkan: Rc<Vulkan>,
     pub handle: vk::Buffer,
     memory: vk::DeviceMemory,
@@ -19,7 +19,7 @@ impl Buffer {
     ///
     /// # Errors
     /// No memory.
-    pub fn on_device(vulkan: &Rc<Vulkan>, bytes: u64) -> Result<Self, VulkanError> {
+    pub(crate) fn on_device(vulkan: &Rc<Vulkan>, bytes: u64) -> Result<Self, VulkanError> {
         Self::new(vulkan, bytes, vk::MemoryPropertyFlags::DEVICE_LOCAL, "a buffer")
     }
 
@@ -27,7 +27,7 @@ impl Buffer {
     ///
     /// # Errors
     /// No memory, or a lost device.
-    pub fn filled<T: bytemuck::NoUninit>(vulkan: &Rc<Vulkan>, items: &[T]) -> Result<Self, VulkanError> {
+    pub(crate) fn filled<T: bytemuck::NoUninit>(vulkan: &Rc<Vulkan>, items: &[T]) -> Result<Self, VulkanError> {
         let contents: &[u8] = bytemuck::cast_slice(items);
         let staging = Self::for_host(vulkan, contents.len() as u64)?;
         staging.with_host(|to| to.copy_from_slice(contents))?;
@@ -40,7 +40,7 @@ impl Buffer {
     ///
     /// # Errors
     /// No memory.
-    pub fn for_host(vulkan: &Rc<Vulkan>, bytes: u64) -> Result<Self, VulkanError> {
+    pub(crate) fn for_host(vulkan: &Rc<Vulkan>, bytes: u64) -> Result<Self, VulkanError> {
         let flags = vk::MemoryPropertyFlags::HOST_VISIBLE | vk::MemoryPropertyFlags::HOST_COHERENT;
         Self::new(vulkan, bytes, flags, "reading back")
     }
@@ -70,7 +70,7 @@ impl Buffer {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn copy_from(&self, from: &Self) -> Result<super::device::Took, VulkanError> {
+    pub(crate) fn copy_from(&self, from: &Self) -> Result<super::device::Took, VulkanError> {
         let region = [vk::BufferCopy::default().size(self.bytes)];
         self.vulkan.run(|commands| unsafe {
             self.vulkan.device.cmd_copy_buffer(commands, from.handle, self.handle, &region);
@@ -81,7 +81,7 @@ impl Buffer {
     ///
     /// # Errors
     /// The host can't access the buffer.
-    pub fn with_host<R>(&self, look: impl FnOnce(&mut [u8]) -> R) -> Result<R, VulkanError> {
+    pub(crate) fn with_host<R>(&self, look: impl FnOnce(&mut [u8]) -> R) -> Result<R, VulkanError> {
         unsafe {
             let device = &self.vulkan.device;
             let at = device.map_memory(self.memory, 0, vk::WHOLE_SIZE, vk::MemoryMapFlags::empty())?;
@@ -102,7 +102,7 @@ impl Drop for Buffer {
 }
 
 /// A picture to draw into, with its own memory and view.
-pub struct Picture {
+pub(crate) struct Picture {
     vulkan: Rc<Vulkan>,
     pub image: vk::Image,
     pub view: vk::ImageView,
@@ -114,7 +114,7 @@ impl Picture {
     ///
     /// # Errors
     /// No memory.
-    pub fn new(
+    pub(crate) fn new(
         vulkan: &Rc<Vulkan>,
         size: [u32; 2],
         format: vk::Format,
@@ -128,7 +128,7 @@ impl Picture {
     ///
     /// # Errors
     /// No memory.
-    pub fn with_levels(
+    pub(crate) fn with_levels(
         vulkan: &Rc<Vulkan>,
         [width, height]: [u32; 2],
         levels: u32,
@@ -174,14 +174,14 @@ impl Drop for Picture {
 }
 
 /// Any other handle of the device, with the function that destroys it.
-pub struct Owned<T: Copy> {
+pub(crate) struct Owned<T: Copy> {
     vulkan: Rc<Vulkan>,
     pub handle: T,
     destroy: unsafe fn(&ash::Device, T),
 }
 
 impl<T: Copy> Owned<T> {
-    pub fn new(vulkan: &Rc<Vulkan>, handle: T, destroy: unsafe fn(&ash::Device, T)) -> Self {
+    pub(crate) fn new(vulkan: &Rc<Vulkan>, handle: T, destroy: unsafe fn(&ash::Device, T)) -> Self {
         Self { vulkan: vulkan.clone(), handle, destroy }
     }
 }

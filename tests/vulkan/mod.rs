@@ -1,14 +1,15 @@
 //! Vulkan as it is, for what wgpu has none of: tessellation stages. The bench draws our patches with them, and tests run exported
 //! shaders on them.
+#![allow(unsafe_code, clippy::undocumented_unsafe_blocks, reason = "every call of Vulkan is; handles live as long as their owner")]
 
-pub mod agreement;
-pub mod bindings;
-pub mod device;
-pub mod exported;
-pub mod height_image;
-pub mod levels;
-pub mod memory;
-pub mod pass;
-pub mod stages;
+pub(crate) mod agreement;
+pub(crate) mod bindings;
+pub(crate) mod device;
+pub(crate) mod exported;
+pub(crate) mod height_image;
+pub(crate) mod levels;
+pub(crate) mod memory;
+pub(crate) mod pass;
+pub(crate) mod stages;
 
-pub use device::{Counted, Took, Vulkan, VulkanError};
+pub(crate) use device::{Counted, Took, Vulkan, VulkanError};

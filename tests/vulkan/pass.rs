@@ -8,7 +8,7 @@ use super::device::{Vulkan, VulkanError};
 use super::memory::Owned;
 
 /// A render pass with its framebuffer.
-pub struct Pass {
+pub(crate) struct Pass {
     pass: Owned<vk::RenderPass>,
     framebuffer: Owned<vk::Framebuffer>,
     size: [u32; 2],
@@ -20,7 +20,7 @@ impl Pass {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn nowhere(vulkan: &Rc<Vulkan>) -> Result<Self, VulkanError> {
+    pub(crate) fn nowhere(vulkan: &Rc<Vulkan>) -> Result<Self, VulkanError> {
         let subpasses = [vk::SubpassDescription::default().pipeline_bind_point(vk::PipelineBindPoint::GRAPHICS)];
         Self::new(vulkan, &vk::RenderPassCreateInfo::default().subpasses(&subpasses), &[], [1, 1], Vec::new())
     }
@@ -29,7 +29,7 @@ impl Pass {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn new(
+    pub(crate) fn new(
         vulkan: &Rc<Vulkan>,
         info: &vk::RenderPassCreateInfo,
         views: &[vk::ImageView],
@@ -52,7 +52,7 @@ impl Pass {
         }
     }
 
-    pub fn handle(&self) -> vk::RenderPass {
+    pub(crate) fn handle(&self) -> vk::RenderPass {
         self.pass.handle
     }
 
@@ -60,7 +60,7 @@ impl Pass {
     ///
     /// # Safety
     /// `commands` is being recorded, on this pass's device.
-    pub unsafe fn begin(&self, device: &ash::Device, commands: vk::CommandBuffer) {
+    pub(crate) unsafe fn begin(&self, device: &ash::Device, commands: vk::CommandBuffer) {
         let [width, height] = self.size;
         let info = vk::RenderPassBeginInfo::default()
             .render_pass(self.pass.handle)

@@ -19,7 +19,7 @@ use super::pass::Pass;
 
 /// Why exported shaders didn't run.
 #[derive(Debug, Error)]
-pub enum StageError {
+pub(crate) enum StageError {
     #[error(transparent)]
     Vulkan(#[from] VulkanError),
     #[error("glslangValidator can't be run ({0}): install glslang-tools, as ./setup.sh does")]
@@ -32,14 +32,14 @@ pub enum StageError {
 
 /// The texts of exported shaders.
 #[derive(Clone, Copy, Debug)]
-pub enum Exported<'a> {
+pub(crate) enum Exported<'a> {
     Glsl { vertex: &'a str, control: &'a str, evaluation: &'a str },
     Hlsl(&'a str),
 }
 
 /// What displaces, laid out as exported files say.
 #[derive(Clone, Copy, Debug)]
-pub struct Displaced<'a> {
+pub(crate) struct Displaced<'a> {
     pub corners: &'a [DisplacedCorner],
     pub map: &'a HeightMap,
     /// The contents of the second constant buffer.
@@ -50,7 +50,7 @@ pub struct Displaced<'a> {
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug)]
-pub struct Drawn<'a> {
+pub(crate) struct Drawn<'a> {
     /// Position, normal and texture coordinates of every corner.
     pub vertices: &'a [[f32; 8]],
     pub indices: &'a [u32],
@@ -65,7 +65,7 @@ pub struct Drawn<'a> {
 /// What came out of the domain shader at a corner of a triangle.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-pub struct CapturedCorner {
+pub(crate) struct CapturedCorner {
     pub position: [f32; 4],
     pub normal: [f32; 4],
     pub uv: [f32; 4],
@@ -76,7 +76,7 @@ pub struct CapturedCorner {
 }
 
 /// What comes before the corners in the buffer: how many triangles there were, and for how many there is room.
-pub const HEAD_BYTES: usize = 16;
+pub(crate) const HEAD_BYTES: usize = 16;
 
 /// What is appended to the exported evaluation stage: two outputs more.
 const GLSL_CAPTURE: &str = "
@@ -164,7 +164,7 @@ struct Stage {
 ///
 /// # Errors
 /// It doesn't compile, or the compiler can't be run.
-pub fn compiled(folder: &Path, file: &'static str, text: &str, options: &[&str]) -> Result<Vec<u8>, StageError> {
+pub(crate) fn compiled(folder: &Path, file: &'static str, text: &str, options: &[&str]) -> Result<Vec<u8>, StageError> {
     let (source, out) = (folder.join(file), folder.join("out.spv"));
     std::fs::write(&source, text)?;
     let made = Command::new("glslangValidator").arg("-V").args(options).arg(&source).arg("-o").arg(&out).output();
@@ -235,7 +235,7 @@ impl Exported<'_> {
     ///
     /// # Errors
     /// A text doesn't compile, or the driver doesn't take it.
-    pub fn capture(self, vulkan: &Rc<Vulkan>, drawn: &Drawn) -> Result<Vec<[CapturedCorner; 3]>, StageError> {
+    pub(crate) fn capture(self, vulkan: &Rc<Vulkan>, drawn: &Drawn) -> Result<Vec<[CapturedCorner; 3]>, StageError> {
         let stages = self.compile()?;
         let nowhere = Pass::nowhere(vulkan)?;
         let samples = matches!(self, Exported::Glsl { .. });
@@ -334,7 +334,7 @@ fn vertex_input(
 ///
 /// # Errors
 /// It isn't SPIR-V, or the driver doesn't take it.
-pub fn module(vulkan: &Rc<Vulkan>, code: &[u8]) -> Result<Owned<vk::ShaderModule>, VulkanError> {
+pub(crate) fn module(vulkan: &Rc<Vulkan>, code: &[u8]) -> Result<Owned<vk::ShaderModule>, VulkanError> {
     let words = ash::util::read_spv(&mut std::io::Cursor::new(code))?;
     let info = vk::ShaderModuleCreateInfo::default().code(&words);
     let handle = unsafe { vulkan.device.create_shader_module(&info, None)? };

@@ -8,7 +8,7 @@ use log::{Level, LevelFilter, Log, Metadata, Record};
 
 /// The outcome of a dialog.
 #[derive(Debug, PartialEq, Eq)]
-pub enum Asked {
+pub(crate) enum Asked {
     Chosen(PathBuf),
     Cancelled,
     /// No dialog could be shown: no portal answers on the session's bus, and zenity isn't installed.

@@ -173,7 +173,7 @@ fn unused(path: String) -> String {
 }
 
 /// The path of a name in the working folder.
-pub fn absolute(name: &str) -> String {
+pub(crate) fn absolute(name: &str) -> String {
     std::path::absolute(name).map_or_else(|_| name.to_owned(), |path| path.display().to_string())
 }
 

@@ -28,7 +28,7 @@ impl<T: Send + 'static> BackgroundJob<T> {
     }
 
     /// Returns the result once the job has ended, and only once.
-    pub fn take(&self) -> Option<Result<T, Stopped>> {
+    pub(crate) fn take(&self) -> Option<Result<T, Stopped>> {
         self.0.try_recv().ok()
     }
 
@@ -40,7 +40,7 @@ impl<T: Send + 'static> BackgroundJob<T> {
 
 impl<T> BackgroundJob<T> {
     /// Waits for it to end.
-    pub fn wait(self) {
+    pub(crate) fn wait(self) {
         let _ = self.0.recv();
     }
 }
@@ -64,7 +64,7 @@ pub(super) fn sent<T: Send + 'static>(
 }
 
 /// Starts a thread. Returns none if the system refuses.
-pub fn spawn(job: impl FnOnce() + Send + 'static) -> Option<JoinHandle<()>> {
+pub(crate) fn spawn(job: impl FnOnce() + Send + 'static) -> Option<JoinHandle<()>> {
     std::thread::Builder::new().spawn(job).ok()
 }
 

@@ -56,7 +56,7 @@ pub(crate) struct Charted {
 }
 
 impl Charted {
-    pub fn new(of: ChartBasis, title: String, truth: Option<(&Truth, String)>, adapter: String) -> Self {
+    pub(crate) fn new(of: ChartBasis, title: String, truth: Option<(&Truth, String)>, adapter: String) -> Self {
         let (diagonal, truth) = truth.map(|(truth, words)| (truth.diagonal(), words)).unzip();
         let subject = Subject { title, truth, adapter, size: of.size, rows: Vec::new() };
         Self { of, subject, left_out: Vec::new(), diagonal, current: None }
@@ -70,11 +70,11 @@ impl Charted {
     }
 
     /// Whether this setting was measured or left out.
-    pub fn has(&self, setting: &Setting) -> bool {
+    pub(crate) fn has(&self, setting: &Setting) -> bool {
         self.left_out.contains(setting) || self.row(setting).is_some()
     }
 
-    pub fn row(&self, setting: &Setting) -> Option<&Row> {
+    pub(crate) fn row(&self, setting: &Setting) -> Option<&Row> {
         self.subject.rows.iter().find(|row| row.setting == *setting)
     }
 }
@@ -117,12 +117,12 @@ enum ChartMessage {
 
 impl ChartJob {
     /// How many settings are done, and how many there are; none if no run is under way.
-    pub fn progress(&self) -> Option<(usize, usize)> {
+    pub(crate) fn progress(&self) -> Option<(usize, usize)> {
         self.running.as_ref().map(|running| (running.done, running.all))
     }
 
     /// Starts a run, whose results are added to those so far.
-    pub fn start(&mut self, context: &egui::Context, job: Job) {
+    pub(crate) fn start(&mut self, context: &egui::Context, job: Job) {
         self.stop();
         let (sender, found) = channel();
         let (wanted, held) = (Progress::new(), Arc::new(AtomicBool::new(false)));
@@ -145,18 +145,18 @@ impl ChartJob {
     }
 
     /// Stops the run; its results so far stay.
-    pub fn stop(&mut self) {
+    pub(crate) fn stop(&mut self) {
         self.running = None;
     }
 
     /// Frees the device.
-    pub fn close(&mut self) {
+    pub(crate) fn close(&mut self) {
         self.stop();
         self.engine = None;
     }
 
     /// Makes the run wait before its next setting, or lets it go on.
-    pub fn hold(&self, hold: bool) {
+    pub(crate) fn hold(&self, hold: bool) {
         if let Some(running) = &self.running {
             running.held.store(hold, Ordering::Relaxed);
         }
@@ -166,7 +166,7 @@ impl ChartJob {
     ///
     /// # Errors
     /// Why the run has failed.
-    pub fn take(&mut self) -> Result<(), String> {
+    pub(crate) fn take(&mut self) -> Result<(), String> {
         let Some(running) = &mut self.running else { return Ok(()) };
         let Some(charted) = &mut self.charted else { return Ok(()) };
         loop {

@@ -43,14 +43,14 @@ pub(crate) struct DeviationResult {
 
 impl DeviationResult {
     /// Object units; 0 if nothing was emitted.
-    pub fn largest(&self) -> f64 {
+    pub(crate) fn largest(&self) -> f64 {
         self.worst.map_or(0.0, |worst| worst.value)
     }
 }
 
 impl DeviationJob {
     /// The last result. While a new measurement is under way, it belongs to the previous inputs.
-    pub fn found(&self) -> Option<&DeviationResult> {
+    pub(crate) fn found(&self) -> Option<&DeviationResult> {
         self.found.as_ref()
     }
 
@@ -59,7 +59,7 @@ impl DeviationJob {
         self.found.as_ref().filter(|found| found.of == of)
     }
 
-    pub fn is_busy(&self) -> bool {
+    pub(crate) fn is_busy(&self) -> bool {
         self.walk.is_some()
     }
 
@@ -69,7 +69,7 @@ impl DeviationJob {
     }
 
     /// Stops the measurement. The last result stays.
-    pub fn stop(&mut self) {
+    pub(crate) fn stop(&mut self) {
         if self.walk.take().is_some() {
             self.of = None;
         }
@@ -81,7 +81,7 @@ impl DeviationJob {
     }
 
     /// Stops the measurement and forgets the last result.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         *self = Self { generation: self.generation + 1, ..Self::default() };
     }
 

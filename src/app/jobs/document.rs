@@ -18,7 +18,7 @@ use load::files::FileError;
 use load::{LoadError, Source};
 
 /// The mesh that is open.
-pub struct Document {
+pub(crate) struct Document {
     pub loaded: Loaded,
     pub scene: Scene,
     pub edges: EdgeCounts,
@@ -47,17 +47,17 @@ pub struct Document {
 
 impl Document {
     /// The mesh and its topology in the pose that is shown; at rest as long as that pose isn't known on the CPU.
-    pub fn shown(&self) -> Deformed {
+    pub(crate) fn shown(&self) -> Deformed {
         self.posed().unwrap_or_else(|| (self.loaded.mesh.clone(), self.loaded.topology.clone()))
     }
 
     /// The mesh and its topology in the pose that is shown; none as long as that pose isn't known on the CPU.
-    pub fn posed(&self) -> Option<Deformed> {
+    pub(crate) fn posed(&self) -> Option<Deformed> {
         self.scene.tessellator.posed().deformed_if_quick()
     }
 
     /// Bytes on the device: topology and output, of both halves if the split has two surfaces.
-    pub fn bytes(&self) -> u64 {
+    pub(crate) fn bytes(&self) -> u64 {
         let of = |scene: &Scene| {
             let tessellator = &scene.tessellator;
             tessellator.buffers().bytes() + scene.work_bytes() + tessellator.arena_bytes()
@@ -67,7 +67,7 @@ impl Document {
 }
 
 /// Memory for a tessellation's output, in bytes. A software adapter gets less, so that each step of a picture is short.
-pub fn arena_bytes(engine: &Engine) -> u64 {
+pub(crate) fn arena_bytes(engine: &Engine) -> u64 {
     if engine.gpu.is_software() { ARENA_BYTES / 8 } else { ARENA_BYTES }
 }
 
@@ -75,12 +75,12 @@ pub fn arena_bytes(engine: &Engine) -> u64 {
 ///
 /// # Errors
 /// The mesh needs a larger buffer than the adapter can bind, the device is out of memory, or it was lost.
-pub fn scene_of(engine: &Engine, loaded: &Loaded) -> Result<Scene, GpuError> {
+pub(crate) fn scene_of(engine: &Engine, loaded: &Loaded) -> Result<Scene, GpuError> {
     engine.gpu.attempt(|| engine.scene(loaded, arena_bytes(engine)))?
 }
 
 /// A load under way; dropping it cancels it.
-pub struct Load {
+pub(crate) struct Load {
     pub source: Source,
     /// How the mesh is being prepared.
     pub preparation: Preparation,
@@ -108,7 +108,7 @@ impl NotLoaded {
 
 impl Load {
     /// Starts a thread that loads the mesh and makes the pipelines that a picture with these settings needs.
-    pub fn start(
+    pub(crate) fn start(
         engine: &Engine,
         context: &egui::Context,
         source: Source,
@@ -126,7 +126,7 @@ impl Load {
     }
 
     /// Returns the result once there is one: a document, why there is none, or no reason if loading was cancelled.
-    pub fn take(&mut self) -> Option<Result<Document, Option<NotLoaded>>> {
+    pub(crate) fn take(&mut self) -> Option<Result<Document, Option<NotLoaded>>> {
         let stopped = |stopped| format!("{}: loading it {stopped}; the file may be damaged", self.source.title());
         Some(self.job.take()?.unwrap_or_else(|error| Err(Some(NotLoaded::because(stopped(error))))))
     }

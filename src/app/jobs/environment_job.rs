@@ -42,7 +42,7 @@ impl Drop for EnvironmentLoad {
 }
 
 /// The file's name without its folder.
-pub fn file_name(path: &Path) -> String {
+pub(crate) fn file_name(path: &Path) -> String {
     shown_path(Path::new(path.file_name().unwrap_or(path.as_os_str())))
 }
 

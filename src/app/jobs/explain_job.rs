@@ -25,7 +25,7 @@ pub(crate) struct ExplainJob {
 
 impl ExplainJob {
     /// Returns the explanation of a patch once it is there, and starts to make it if nobody has.
-    pub fn of(&mut self, context: &egui::Context, posed: &PosedMesh, wanted: EmittedPatch) -> Option<&ExplainedPatch> {
+    pub(crate) fn of(&mut self, context: &egui::Context, posed: &PosedMesh, wanted: EmittedPatch) -> Option<&ExplainedPatch> {
         if self.of != Some(wanted) && self.under_way.is_none() {
             let posed = posed.clone();
             let explain = move || {
@@ -38,7 +38,7 @@ impl ExplainJob {
         self.found.as_ref().filter(|_| self.of == Some(wanted))
     }
 
-    pub fn is_busy(&self) -> bool {
+    pub(crate) fn is_busy(&self) -> bool {
         self.under_way.is_some()
     }
 
@@ -46,7 +46,7 @@ impl ExplainJob {
     ///
     /// # Errors
     /// Making it panicked. It isn't tried again for the same patch.
-    pub fn take(&mut self) -> Result<(), Stopped> {
+    pub(crate) fn take(&mut self) -> Result<(), Stopped> {
         if let Some(result) = self.under_way.as_ref().and_then(BackgroundJob::take) {
             self.under_way = None;
             self.found = Some(result?);

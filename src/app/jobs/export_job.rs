@@ -15,7 +15,7 @@ use inspect::render::Scene;
 const READING: f32 = 0.8;
 
 /// What is exported: the mesh in a pose, tessellated with these inputs.
-pub struct Export {
+pub(crate) struct Export {
     pub engine: Engine,
     pub loaded: Loaded,
     pub moment: Option<Moment>,
@@ -28,7 +28,7 @@ impl Export {
     ///
     /// # Errors
     /// The device fails, or the file can't be written; as a sentence.
-    pub fn run(
+    pub(crate) fn run(
         &self,
         make: impl FnOnce() -> Result<Scene, GpuError>,
         path: &Path,

@@ -49,11 +49,11 @@ struct Read {
 
 impl GivenFactors {
     /// The file's name.
-    pub fn name(&self) -> String {
+    pub(crate) fn name(&self) -> String {
         shown_path(Path::new(self.path.file_name().unwrap_or_default()))
     }
 
-    pub fn compared(&self) -> Option<&ComparedFactors> {
+    pub(crate) fn compared(&self) -> Option<&ComparedFactors> {
         self.compared.as_ref()
     }
 }

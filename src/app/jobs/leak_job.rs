@@ -31,7 +31,7 @@ impl LeakJob {
         self.found.as_deref().filter(|_| is_same)
     }
 
-    pub fn is_busy(&self) -> bool {
+    pub(crate) fn is_busy(&self) -> bool {
         self.counting.is_some()
     }
 

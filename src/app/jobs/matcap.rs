@@ -27,11 +27,11 @@ pub(crate) struct MatcapJob {
 
 impl ChosenMatcap {
     /// The file's name.
-    pub fn name(&self) -> String {
+    pub(crate) fn name(&self) -> String {
         shown_path(Path::new(self.path.file_name().unwrap_or_default()))
     }
 
-    pub fn picture(&self) -> Arc<Texture> {
+    pub(crate) fn picture(&self) -> Arc<Texture> {
         self.picture.clone()
     }
 }

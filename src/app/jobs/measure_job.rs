@@ -43,7 +43,7 @@ pub(crate) struct MeasureJob {
 }
 
 /// What was measured of a picture.
-pub struct Results {
+pub(crate) struct Results {
     /// The document and tessellation.
     pub of: (u64, u64),
     pub found: Measured,
@@ -60,7 +60,7 @@ pub struct Results {
 
 impl Results {
     /// An edge's gap in px, in the view that LOD was computed for: the tessellation is meant for it.
-    pub fn gap_px(&self, edge: &CrackedEdge) -> f64 {
+    pub(crate) fn gap_px(&self, edge: &CrackedEdge) -> f64 {
         let view = &self.seen.inputs.view;
         edge.gap_px(view.clip_from_object, 2.0 * view.half_viewport)
     }
@@ -76,7 +76,7 @@ impl Results {
 
 /// From where a measured picture is seen, and what it was tessellated with.
 #[derive(Clone, Copy)]
-pub struct Seen {
+pub(crate) struct Seen {
     pub camera: Camera,
     pub view: ScreenView,
     pub inputs: Inputs,
@@ -110,18 +110,18 @@ enum Asked {
 
 impl MeasureJob {
     /// The results for what is shown, once measured.
-    pub fn found(&self) -> Option<&Measured> {
+    pub(crate) fn found(&self) -> Option<&Measured> {
         let results = self.results.as_ref().filter(|results| self.of.is_some_and(|(of, _)| of == results.of));
         results.map(|results| &results.found)
     }
 
     /// The last results of the document. While what is shown is being measured, they are those of the picture before.
-    pub fn last(&self) -> Option<&Results> {
+    pub(crate) fn last(&self) -> Option<&Results> {
         self.results.as_ref()
     }
 
     /// The cracks of what is shown, once measured.
-    pub fn cracks(&self) -> Option<&Cracks> {
+    pub(crate) fn cracks(&self) -> Option<&Cracks> {
         self.found().map(|found| &found.cracks)
     }
 
@@ -130,7 +130,7 @@ impl MeasureJob {
         self.closed.is_some_and(|extent| is_beyond_near(view.clip_from_object, extent))
     }
 
-    pub fn is_busy(&self) -> bool {
+    pub(crate) fn is_busy(&self) -> bool {
         self.walk.is_some()
     }
 
@@ -148,7 +148,7 @@ impl MeasureJob {
     }
 
     /// Stops the measurement and forgets all results.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         *self = Self { generation: self.generation + 1, ..Self::default() };
     }
 

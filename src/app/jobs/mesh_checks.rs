@@ -9,7 +9,7 @@ use inspect::engine::Loaded;
 
 /// The checks of a mesh and their results. Dropping them stops them.
 #[derive(Default)]
-pub struct Checks {
+pub(crate) struct Checks {
     found: Arc<CheckResults>,
     wanted: Progress,
     /// None once it has ended.
@@ -25,7 +25,7 @@ struct CheckResults {
 
 impl Checks {
     /// Starts the checks on a thread of their own. Each result repaints the window.
-    pub fn start(context: &egui::Context, loaded: &Loaded) -> Self {
+    pub(crate) fn start(context: &egui::Context, loaded: &Loaded) -> Self {
         let mut checks = Self::default();
         let (read, mesh, topology) = (loaded.read.clone(), loaded.mesh.clone(), loaded.topology.clone());
         let weld = loaded.preparation.weld;
@@ -45,21 +45,21 @@ impl Checks {
     }
 
     /// Normals that are legal but suspicious, once counted.
-    pub fn normal_faults(&self) -> Option<&NormalFaults> {
+    pub(crate) fn normal_faults(&self) -> Option<&NormalFaults> {
         self.found.normal_faults.get()
     }
 
     /// All T-junctions, once found.
-    pub fn t_junctions(&self) -> Option<&[TJunction]> {
+    pub(crate) fn t_junctions(&self) -> Option<&[TJunction]> {
         self.found.t_junctions.get().map(Vec::as_slice)
     }
 
     /// What each weld tolerance would join, once known.
-    pub fn joins(&self) -> Option<&[WeldPreview]> {
+    pub(crate) fn joins(&self) -> Option<&[WeldPreview]> {
         self.found.joins.get().map(Vec::as_slice)
     }
 
-    pub fn is_busy(&self) -> bool {
+    pub(crate) fn is_busy(&self) -> bool {
         self.job.is_some()
     }
 

@@ -19,7 +19,7 @@ use inspect::own_shader::read_own_shader;
 use inspect::settings::Settings;
 
 /// A file whose functions take the place of a setting.
-pub trait Replacing: OwnShader {
+pub(crate) trait Replacing: OwnShader {
     type Setting: Copy;
 
     /// The setting while functions take its place. Nothing depends on it then.
@@ -123,12 +123,12 @@ pub(crate) struct OpenShader<S: Replacing> {
 
 impl<S: Replacing> OpenShader<S> {
     /// The file's name.
-    pub fn name(&self) -> String {
+    pub(crate) fn name(&self) -> String {
         shown_path(Path::new(self.path.file_name().unwrap_or_default()))
     }
 
     /// Why the newest version of the file can't be used, in a sentence.
-    pub fn error(&self) -> Option<&str> {
+    pub(crate) fn error(&self) -> Option<&str> {
         self.error.as_deref()
     }
 
@@ -143,7 +143,7 @@ impl<S: Replacing> OpenShader<S> {
     }
 
     /// What is used, and its number.
-    pub fn shader(&self) -> Option<Version<S>> {
+    pub(crate) fn shader(&self) -> Option<Version<S>> {
         self.shader.clone()
     }
 }

@@ -43,7 +43,7 @@ impl ShotParts {
     ///
     /// # Errors
     /// The device fails, or the file can't be written; as a sentence.
-    pub fn save(self, command: &str, path: &Path, progress: &Progress) -> Result<(), String> {
+    pub(crate) fn save(self, command: &str, path: &Path, progress: &Progress) -> Result<(), String> {
         self.with_shot(|shot| {
             let picture = shot.picture(None, progress)?;
             progress.check()?;

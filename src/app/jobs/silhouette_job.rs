@@ -42,7 +42,7 @@ struct Found {
 }
 
 impl SilhouetteJob {
-    pub fn is_busy(&self) -> bool {
+    pub(crate) fn is_busy(&self) -> bool {
         self.under_way.is_some()
     }
 

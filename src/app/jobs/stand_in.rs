@@ -22,7 +22,7 @@ pub(crate) struct StandIn {
 }
 
 impl StandIn {
-    pub fn scene(&mut self) -> Option<&mut Scene> {
+    pub(crate) fn scene(&mut self) -> Option<&mut Scene> {
         self.scene.as_deref_mut()
     }
 

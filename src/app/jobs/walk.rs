@@ -14,7 +14,7 @@ use inspect::render::Scene;
 const WAITING: usize = 1;
 
 /// A walk that is under way, to a result.
-pub struct Walk<T> {
+pub(crate) struct Walk<T> {
     ended: Receiver<Result<T, Stopped>>,
     /// None once everything is copied.
     copying: Option<Copying>,

@@ -19,7 +19,7 @@ pub(crate) struct WritingJob {
 impl WritingJob {
     /// Starts to write a file. `write` returns sentences about what couldn't be written, or fails with one, and ends early if it is
     /// cancelled.
-    pub fn start(
+    pub(crate) fn start(
         context: &egui::Context,
         doing: &'static str,
         path: PathBuf,
@@ -32,12 +32,12 @@ impl WritingJob {
     }
 
     /// What is under way, such as "Saving torus.png".
-    pub fn title(&self) -> String {
+    pub(crate) fn title(&self) -> String {
         format!("{} {}", self.doing, shown_path(Path::new(self.path.file_name().unwrap_or_default())))
     }
 
     /// Returns sentences once the file is written, or as an error why nothing was.
-    pub fn take(&self) -> Option<Result<String, String>> {
+    pub(crate) fn take(&self) -> Option<Result<String, String>> {
         let stopped = |stopped: Stopped| Err(format!("{}: writing it {stopped}", shown_path(&self.path)));
         let ended = self.job.as_ref()?.take()?.unwrap_or_else(stopped);
         let said = |warnings| [vec![format!("{} is written.", shown_path(&self.path))], warnings].concat().join("\n");

@@ -12,7 +12,7 @@ use lab::chart::{Cost, Effort, Plan, Probe, Row, SaveError, Setting, coarse_firs
 
 /// The state of the chart panel.
 #[derive(Default)]
-pub struct Chart {
+pub(crate) struct Chart {
     pub is_open: bool,
     pub(in crate::app) cost: Cost,
     /// The surfaces and LODs that are tried. Normals are those of the window.
@@ -29,7 +29,7 @@ const STILL: f64 = 0.4;
 
 impl Chart {
     /// Stops measuring; the results so far stay.
-    pub fn stop(&mut self) {
+    pub(crate) fn stop(&mut self) {
         self.charting.stop();
     }
 

@@ -18,7 +18,7 @@ const SET_ASIDE: &str = "window.damaged.json";
 const MAX_BYTES: u64 = 16 << 20;
 
 /// The user's folder for the file; none if there is no such folder, or nothing is to be saved.
-pub fn folder() -> Option<PathBuf> {
+pub(crate) fn folder() -> Option<PathBuf> {
     match std::env::var_os(FOLDER) {
         Some(folder) => Some(PathBuf::from(folder)).filter(|folder| !folder.as_os_str().is_empty()),
         None => Some(etcetera::choose_base_strategy().ok()?.config_dir().join("pnaen")),

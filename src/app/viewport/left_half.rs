@@ -34,7 +34,7 @@ struct Making {
 }
 
 impl LeftHalf {
-    pub fn is_busy(&self) -> bool {
+    pub(crate) fn is_busy(&self) -> bool {
         self.making.is_some() || self.measuring.is_busy() || self.deviating.is_busy()
     }
 
@@ -48,7 +48,7 @@ impl LeftHalf {
     }
 
     /// Forgets the measurements of a scene that no longer exists.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.making = None;
         self.measuring.forget();
         self.deviating.forget();

@@ -20,7 +20,7 @@ const ROW: f32 = 17.0;
 const PIECES: u16 = 98;
 
 /// The legend of the colours over a picture, if they have one. `radius` is the mesh's bounding radius in object units.
-pub fn legend(ui: &mut egui::Ui, picture: Rect, settings: &Settings, radius: f32, distances: &Distances) {
+pub(crate) fn legend(ui: &mut egui::Ui, picture: Rect, settings: &Settings, radius: f32, distances: &Distances) {
     if settings.overlays.colors == Colors::Barycentric {
         let inner = plate(ui, picture, barycentric::SIZE, BARYCENTRIC_TITLE, barycentric::MEANING);
         return barycentric::paint(ui, inner);

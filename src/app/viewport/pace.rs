@@ -25,7 +25,7 @@ impl Pace {
     }
 
     /// How long the device may be busy at once, in ms.
-    pub fn ms(&self) -> f64 {
+    pub(crate) fn ms(&self) -> f64 {
         if self.input.is_some_and(|input| input.elapsed() < USED) { MS_IN_USE } else { MS_AT_REST }
     }
 }

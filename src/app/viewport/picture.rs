@@ -54,7 +54,7 @@ impl Wanted {
 }
 
 /// A picture that is being drawn. Each step is a submission of its own, so that the window can be drawn in between.
-pub struct Drawing {
+pub(crate) struct Drawing {
     wanted: Wanted,
     start: Instant,
     /// How many of the `steps` have been submitted.
@@ -66,7 +66,7 @@ pub struct Drawing {
 
 impl Drawing {
     /// The part that is submitted, 0 to 1.
-    pub fn done(&self) -> f32 {
+    pub(crate) fn done(&self) -> f32 {
         self.given as f32 / self.steps.max(1) as f32
     }
 
@@ -81,7 +81,7 @@ impl Drawing {
 const SHORT: usize = 8;
 
 /// The picture and what it cost.
-pub struct Picture {
+pub(crate) struct Picture {
     pub target: Option<(Target, ShownPicture)>,
     /// The last picture, of another size. It is shown stretched until the first one of the new size is drawn.
     before: Option<ShownPicture>,
@@ -114,7 +114,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    pub fn new(engine: &Engine) -> Self {
+    pub(crate) fn new(engine: &Engine) -> Self {
         // Waiting for every pass would stall the window; without timestamps, whole pictures are timed.
         let timing = match Timing::on(&engine.gpu) {
             Timing::Submissions(_) => Timing::Off,
@@ -141,7 +141,7 @@ impl Picture {
         }
     }
 
-    pub fn pictures(&self) -> u64 {
+    pub(crate) fn pictures(&self) -> u64 {
         self.pictures
     }
 
@@ -159,12 +159,12 @@ impl Picture {
     }
 
     /// Whether the picture shown is not the one wanted, or not complete.
-    pub fn is_busy(&self) -> bool {
+    pub(crate) fn is_busy(&self) -> bool {
         self.outdated || self.in_flight.is_some() || self.counting.is_some()
     }
 
     /// Width and height of the viewport, in px.
-    pub fn size(&self) -> Vec2 {
+    pub(crate) fn size(&self) -> Vec2 {
         self.target.as_ref().map_or(vec2(800.0, 600.0), |(target, _)| target.viewport())
     }
 
@@ -175,7 +175,7 @@ impl Picture {
 
     /// A pixel of the last picture, counted from the left and the top, and the half whose scene is there. Where the left
     /// half shows the untessellated mesh, that is the right half's scene.
-    pub fn pixel(&self, at: [u32; 2]) -> Option<(SplitSide, Pixel)> {
+    pub(crate) fn pixel(&self, at: [u32; 2]) -> Option<(SplitSide, Pixel)> {
         let Wanted { clip_from_object, settings, .. } = self.drawn?;
         let size = self.target.as_ref()?.0.size;
         let pixel = Pixel { clip_from_object, size, at, split: settings.split };
@@ -187,18 +187,18 @@ impl Picture {
     }
 
     /// The view of the picture that is shown.
-    pub fn seen_from(&self) -> Option<ScreenView> {
+    pub(crate) fn seen_from(&self) -> Option<ScreenView> {
         let Wanted { clip_from_object, viewport, .. } = self.drawn?;
         Some(ScreenView { clip_from_object, viewport })
     }
 
     /// Bytes of the textures that are drawn into.
-    pub fn bytes(&self) -> u64 {
+    pub(crate) fn bytes(&self) -> u64 {
         self.target.as_ref().map_or(0, |(target, _)| target.bytes())
     }
 
     /// Takes a picture that the device has finished, and the times that have come in.
-    pub fn land(&mut self, engine: &Engine) {
+    pub(crate) fn land(&mut self, engine: &Engine) {
         if let Some(taken) = self.in_flight.take_if(|done| done.get().is_some()) {
             if let Some((_, ms)) = self.drawing.as_mut().and_then(|drawing| drawing.last.as_mut()) {
                 *ms = taken.get().copied().unwrap_or_default();
@@ -222,7 +222,7 @@ impl Picture {
     }
 
     /// Makes a target of this size, if there is none yet.
-    pub fn fit(&mut self, painting: &Painting, engine: &Engine, size: [u32; 2]) -> Result<(), GpuError> {
+    pub(crate) fn fit(&mut self, painting: &Painting, engine: &Engine, size: [u32; 2]) -> Result<(), GpuError> {
         if self.target.as_ref().is_some_and(|(target, _)| target.size == size) {
             return Ok(());
         }
@@ -238,7 +238,7 @@ impl Picture {
 
     /// What is shown: the picture, or until it is drawn for the first time in this size the one before it. None before the first
     /// picture.
-    pub fn shown(&self) -> Option<&ShownPicture> {
+    pub(crate) fn shown(&self) -> Option<&ShownPicture> {
         let drawn = self.target.as_ref().filter(|_| self.drawn.is_some());
         drawn.map(|(_, shown)| shown).or(self.before.as_ref())
     }
@@ -250,7 +250,7 @@ impl Picture {
 
     /// Draws what is wanted, if it isn't drawn yet and the device is free, in steps that keep the device busy for about so many ms
     /// at once. The counts come back first; until then, and until all steps are drawn, the last picture stays.
-    pub fn draw(&mut self, engine: &Engine, document: &mut Document, wanted: &Wanted, ms: f64) -> Result<(), GpuError> {
+    pub(crate) fn draw(&mut self, engine: &Engine, document: &mut Document, wanted: &Wanted, ms: f64) -> Result<(), GpuError> {
         self.counting = self.counting.filter(|counting| counting.document == document.generation);
         let mut keeps_on = |drawing: &mut Drawing| {
             drawing.wanted == *wanted || (drawing.steps <= self.short && drawing.wanted.document == document.generation)
@@ -357,7 +357,7 @@ impl Picture {
     }
 
     /// Stops drawing. The last picture stays until another one is wanted.
-    pub fn cancel(&mut self) {
+    pub(crate) fn cancel(&mut self) {
         self.cancelled = self.drawing.take().map(|drawing| drawing.wanted);
     }
 }

@@ -32,11 +32,11 @@ impl Default for Playback {
 }
 
 impl Playback {
-    pub fn moment(&self) -> Option<Moment> {
+    pub(crate) fn moment(&self) -> Option<Moment> {
         self.clip.map(|clip| Moment { clip, time: self.time })
     }
 
-    pub fn is_playing(&self) -> bool {
+    pub(crate) fn is_playing(&self) -> bool {
         self.playing.is_some()
     }
 

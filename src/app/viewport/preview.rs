@@ -38,7 +38,7 @@ const COARSEST: u32 = 4;
 
 /// What a preview draws in place of the full picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Shape {
+pub(crate) enum Shape {
     /// The same triangles, since they don't depend on the camera.
     Same,
     /// One factor for all edges, and nothing left out.
@@ -48,7 +48,7 @@ pub enum Shape {
 }
 
 /// What is known of the preview, and its target.
-pub struct Preview {
+pub(crate) struct Preview {
     /// Whether there are previews at all. Somebody who judges LOD in motion switches them off.
     pub is_on: bool,
     camera: Option<Camera>,
@@ -67,7 +67,7 @@ pub struct Preview {
 }
 
 impl Preview {
-    pub fn new(engine: &Engine) -> Self {
+    pub(crate) fn new(engine: &Engine) -> Self {
         let finest = if engine.gpu.is_software() { 2 } else { 1 };
         Self {
             is_on: true,
@@ -84,7 +84,7 @@ impl Preview {
     }
 
     /// The same, switched on or off.
-    pub fn with(self, is_on: bool) -> Self {
+    pub(crate) fn with(self, is_on: bool) -> Self {
         Self { is_on, ..self }
     }
 
@@ -111,18 +111,18 @@ impl Preview {
     }
 
     /// What the preview was drawn for and its shape, if it is shown: the full picture is of an earlier camera.
-    pub fn shown(&self, picture: &Picture) -> Option<(&Wanted, Shape)> {
+    pub(crate) fn shown(&self, picture: &Picture) -> Option<(&Wanted, Shape)> {
         let full = picture.drawn.as_ref().map(|drawn| drawn.camera);
         self.drawn.as_ref().filter(|(drawn, _)| Some(drawn.camera) != full).map(|(drawn, shape)| (drawn, *shape))
     }
 
     /// The preview that was drawn last.
-    pub fn picture(&self) -> Option<&ShownPicture> {
+    pub(crate) fn picture(&self) -> Option<&ShownPicture> {
         self.target.as_ref().map(|(_, shown)| shown)
     }
 
     /// The mark over a preview, which says what it shows.
-    pub fn mark(&self, shape: Shape) -> String {
+    pub(crate) fn mark(&self, shape: Shape) -> String {
         let shape = match shape {
             Shape::Same => "the same triangles".to_owned(),
             Shape::Factor(factor) if factor <= 1.0 => "the mesh as it came".to_owned(),
@@ -136,7 +136,7 @@ impl Preview {
     }
 
     /// Shows the full picture from now on.
-    pub fn end(&mut self) {
+    pub(crate) fn end(&mut self) {
         (self.drawn, self.totals) = (None, None);
     }
 
@@ -146,7 +146,7 @@ impl Preview {
     }
 
     /// Forgets the preview of a mesh that is open no more.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.end();
         (self.moved, self.camera) = (None, None);
         self.coarseness = self.finest;

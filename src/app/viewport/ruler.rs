@@ -25,7 +25,7 @@ impl Ruler {
     }
 
     /// What to do next, or the distance.
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         match self.ends {
             [Some(a), Some(b)] => {
                 let [x, y, z] = (b - a).abs().to_array().map(|length| short(length.into()));

@@ -14,7 +14,7 @@ use inspect::settings::SplitSide;
 
 /// The selected triangle, and a click that is still being answered. The selected edge is [`App::selected_edge`].
 #[derive(Default)]
-pub struct Selection {
+pub(crate) struct Selection {
     /// Index into the mesh's triangles.
     triangle: Option<u32>,
     /// The emitted triangle that was clicked on, and its tessellation's number.
@@ -42,7 +42,7 @@ impl Selection {
     }
 
     /// Whether a click is still being answered.
-    pub fn is_busy(&self) -> bool {
+    pub(crate) fn is_busy(&self) -> bool {
         self.clicked.is_some() || self.picking.is_some()
     }
 }

@@ -48,7 +48,7 @@ impl WarmUp {
         self.drawings
     }
 
-    pub fn is_busy(&self) -> bool {
+    pub(crate) fn is_busy(&self) -> bool {
         self.step.is_some()
     }
 

@@ -25,11 +25,11 @@ pub(crate) struct FatalScreen {
 }
 
 impl FatalScreen {
-    pub fn new(gpu: Gpu, why: String) -> Self {
+    pub(crate) fn new(gpu: Gpu, why: String) -> Self {
         Self { gpu, why, path: None, saving: None, said: None, tries_again: false }
     }
 
-    pub fn why(&self) -> &str {
+    pub(crate) fn why(&self) -> &str {
         &self.why
     }
 

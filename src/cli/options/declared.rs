@@ -218,7 +218,7 @@ fn name_of(value: &Value) -> Option<&'static str> {
 }
 
 /// Reads one of several named values.
-pub fn choice<T: Choice + Send + Sync>() -> impl TypedValueParser<Value = T> {
+pub(crate) fn choice<T: Choice + Send + Sync>() -> impl TypedValueParser<Value = T> {
     let unknown = "no such value";
     PossibleValuesParser::new(descriptions::<T>().into_iter().map(possible))
         .try_map(move |name| T::named(&name).ok_or(unknown))
@@ -237,8 +237,7 @@ mod tests {
     use clap::{CommandFactory, Parser};
 
     use super::*;
-    use crate::cli::Cli;
-    use crate::cli::Command as Run;
+    use crate::cli::{Cli, Command as Run};
 
     #[test]
     fn the_help_of_render_has_every_option_with_its_text_values_range_and_default() {

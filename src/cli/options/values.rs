@@ -14,7 +14,7 @@ use load::Source;
 use load::format::Format;
 
 /// Parses the path of a picture. Refuses standard output, and endings of files that are no PNG files.
-pub fn picture() -> impl TypedValueParser<Value = PathBuf> {
+pub(crate) fn picture() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(|path| picture_path(PathBuf::from(path)))
 }
 
@@ -33,7 +33,7 @@ fn picture_path(path: PathBuf) -> Result<PathBuf, String> {
 }
 
 /// Parses the path of a mesh to write, whose ending gives its format.
-pub fn model() -> impl TypedValueParser<Value = PathBuf> {
+pub(crate) fn model() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(|path| {
         let path = PathBuf::from(path);
         let known = matches!(inspect::export::ending(&path).as_str(), "glb" | "obj");
@@ -83,20 +83,20 @@ impl FromStr for CameraOption {
 }
 
 /// Parses a difference of colours in steps of 255.
-pub fn steps(text: &str) -> Result<f32, String> {
+pub(crate) fn steps(text: &str) -> Result<f32, String> {
     let steps = text.trim().parse().ok().filter(|steps| (0.0..=255.0).contains(steps));
     steps.ok_or_else(|| "expected a number from 0 to 255".to_owned())
 }
 
 /// Parses a vertical field of view in degrees.
-pub fn field_of_view(text: &str) -> Result<f32, String> {
+pub(crate) fn field_of_view(text: &str) -> Result<f32, String> {
     let angle = text.trim().parse().ok().filter(|angle| FIELDS_OF_VIEW.contains(angle));
     let [least, most] = [FIELDS_OF_VIEW.start(), FIELDS_OF_VIEW.end()];
     angle.ok_or_else(|| format!("expected degrees from {least} to {most}"))
 }
 
 /// Parses an angle in degrees.
-pub fn angle(text: &str) -> Result<f32, String> {
+pub(crate) fn angle(text: &str) -> Result<f32, String> {
     let angle = text.trim().parse().ok().filter(|angle: &f32| angle.is_finite());
     angle.ok_or_else(|| "expected a number of degrees".to_owned())
 }
@@ -117,7 +117,7 @@ impl FromStr for Position {
 }
 
 /// Parses a mesh's source, whose path may be in any encoding.
-pub fn source() -> impl TypedValueParser<Value = Source> {
+pub(crate) fn source() -> impl TypedValueParser<Value = Source> {
     OsStringValueParser::new().try_map(Source::try_from)
 }
 
@@ -137,7 +137,7 @@ pub(super) fn bytes(text: &str) -> Result<u64, String> {
 }
 
 /// Parses a whole number of a range.
-pub fn whole<T>(range: RangeInclusive<T>) -> impl Fn(&str) -> Result<T, String> + Clone
+pub(crate) fn whole<T>(range: RangeInclusive<T>) -> impl Fn(&str) -> Result<T, String> + Clone
 where
     T: Copy + FromStr + PartialOrd + Display,
 {

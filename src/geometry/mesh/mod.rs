@@ -55,8 +55,7 @@ pub use rig::{Moment, Pose, Rig};
 pub use slices::{MeshSlices, SliceError};
 pub use topology::{Edge, EdgeCounts, EdgeKind, Patch, Side, Topology};
 
-pub use build_limits::Unlimited;
-pub use build_limits::{Borrowed, BuildError, MemoryAccount, MemoryRefused, borrowing};
+pub use build_limits::{Borrowed, BuildError, MemoryAccount, MemoryRefused, Unlimited, borrowing};
 pub use crease_band::{CreaseBand, with_crease_band};
 pub use curves::{Curve, Curves, Sharing};
 pub use dominance::Dominance;

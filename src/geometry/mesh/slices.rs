@@ -91,7 +91,7 @@ impl Mesh {
     /// out, and [`Mesh::repairs`] counts what was repaired. Takes time linear in the number of triangles.
     ///
     /// ```
-    /// use pnaen::mesh::{Mesh, MeshSlices};
+    /// use pnaen_geometry::mesh::{Mesh, MeshSlices};
     ///
     /// let quad = Mesh::from_slices(&MeshSlices {
     ///     positions: &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]],
@@ -100,7 +100,7 @@ impl Mesh {
     /// })?;
     /// assert_eq!((quad.corners.len(), quad.triangles.len()), (4, 2));
     /// assert_eq!(quad.corners[0].normal.to_array(), [0.0, 0.0, 1.0]);
-    /// # Ok::<(), pnaen::mesh::SliceError>(())
+    /// # Ok::<(), pnaen_geometry::mesh::SliceError>(())
     /// ```
     ///
     /// # Errors

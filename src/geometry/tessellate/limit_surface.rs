@@ -2,11 +2,10 @@
 
 use glam::{DMat2, DVec2, DVec3, Vec3};
 
-use super::Inputs;
 use super::control_nets::ControlNets;
 use super::mesh_displacement::MeshDisplacement;
 use super::piece_error::{SeenPatch, may_slide};
-use super::{ControlNet, Lod, Surface};
+use super::{ControlNet, Inputs, Lod, Surface};
 use crate::mesh::{Mesh, Topology};
 
 /// The surface that a tessellation approximates, evaluated in f64 at any point.

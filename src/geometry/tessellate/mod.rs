@@ -62,8 +62,7 @@ pub(crate) use control_points::edge_control_point;
 pub(crate) use control_points::{DistinctNormals, add_normal, crease_control_point, side_control_points};
 pub use control_points::{center_control_point, straight_control_point};
 pub use convention::{corner_weights, domain_side, factor_side, weight_corner};
-pub use coverage::CoverageView;
-pub use coverage::{covers_nothing, screen_corner};
+pub use coverage::{CoverageView, covers_nothing, screen_corner};
 pub use cull::{FACING_AWAY, NOT_CULLED, OUT_OF_VIEW, cull_reason, planes_outside};
 pub use curvature::{mean_curvature, patch_second_derivatives};
 pub use displacement_factor::SURFACE_SHARE;
@@ -84,17 +83,14 @@ pub use lod::beyond_near;
 pub(crate) use lod::{distance_factor, edge_length_factor, paper_edge_factor};
 pub use mesh_displacement::{displaced_corners, displacement_reach, displacing_heights, height_units};
 pub use mesh_factors::rounds;
-pub use mesh_tessellation::edge_factors;
-pub use mesh_tessellation::{given_totals, hull_factors, tessellate_given, totals};
+pub use mesh_tessellation::{edge_factors, given_totals, hull_factors, tessellate_given, totals};
 pub use normal::{edge_normal, linear_normal};
 pub(crate) use normal::{quadratic_edge_normal, quadratic_normal, surface_normal};
 pub use octahedral_normal::pack_normal;
 pub use piece_error::{SeenPatch, piece_error};
-pub use posed_mesh::deform;
-pub use posed_mesh::{Deformed, PosedMesh, bounds_through};
+pub use posed_mesh::{Deformed, PosedMesh, bounds_through, deform};
 pub use solid::{Solid, is_beyond_near};
-pub use surface::patch_tangents;
-pub use surface::{ControlNet, edge_position, edge_uv, linear_uv, outline_place, patch_position};
+pub use surface::{ControlNet, edge_position, edge_uv, linear_uv, outline_place, patch_position, patch_tangents};
 pub use texel_lengths::{TexelLength, map_number, texel_lengths};
 pub use triangle_budget::tolerance_within_budget;
 pub use vertex::pack_key;
@@ -104,11 +100,11 @@ pub mod shared_constants {
     pub use super::connectivity_table::{PATTERN_HALVES, PATTERN_STEPS};
     pub use super::control_points::PARALLEL;
     pub use super::coverage::ROW_SAMPLES;
-    pub use super::cull::{FACING_AWAY, NOT_CULLED, OUT_OF_VIEW};
-    pub use super::cull::{FACING_MARGIN, FACING_ROUNDING, POLAR_INDICES, POLAR_WEIGHTS};
+    pub use super::cull::{
+        FACING_AWAY, FACING_MARGIN, FACING_ROUNDING, NOT_CULLED, OUT_OF_VIEW, POLAR_INDICES, POLAR_WEIGHTS,
+    };
     pub use super::curvature::FLAT_ANGLE;
-    pub use super::displacement_factor::SURFACE_SHARE;
-    pub use super::displacement_factor::{DETAIL_SHARE, TURN_SHARE};
+    pub use super::displacement_factor::{DETAIL_SHARE, SURFACE_SHARE, TURN_SHARE};
     pub use super::domain::FIXED_TWO_THIRDS;
     pub use super::factors::{
         BITS_63, BITS_64, BITS_896, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP, BITS_ONE_AND_STEP, BITS_TWO,

@@ -66,8 +66,7 @@ pub(crate) use scale::SIZE_SCALE;
 pub use scale::{DENSITY_SCALE, EXCESS_SCALE, FACTOR_SCALE, Scale, curvature_scale};
 pub use scene::{LineSegment, Scene};
 pub(crate) use silhouette::{SilhouetteCoverage, SilhouetteDrawer, padded_clip};
-pub use target::Target;
-pub use target::samples;
+pub use target::{Target, samples};
 pub use window::WindowPipelines;
 
 #[cfg(test)]

@@ -2,8 +2,7 @@
 
 use std::f32::consts::PI;
 
-use glam::{Vec2, Vec3, vec2, vec3};
-use glam::{Vec4, vec4};
+use glam::{Vec2, Vec3, Vec4, vec2, vec3, vec4};
 
 /// A direction on a face of a cube map; `at` is -1 to 1 along the face's axes (WebGPU, section on cube maps).
 pub(crate) fn cube_direction(face: u32, at: Vec2) -> Vec3 {

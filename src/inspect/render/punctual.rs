@@ -1,8 +1,7 @@
 //! Lights of a file on the device: twin of `shaders/punctual.wgsl`, which explains them.
 
 use bytemuck::{Pod, Zeroable};
-use glam::Vec4Swizzles;
-use glam::{Vec3, Vec4};
+use glam::{Vec3, Vec4, Vec4Swizzles};
 use wgpu::util::DeviceExt;
 
 use geometry::mesh::{Light, LightKind, MOST_LIGHTS};

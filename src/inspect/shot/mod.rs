@@ -25,19 +25,16 @@ use image::RgbaImage;
 
 pub use copied_command::{CopiedCommand, given};
 pub use error::ShotError;
-pub use factors_report::{FactorsFile, said};
-pub use factors_report::{agreement_lines, read_factors};
+pub use factors_report::{FactorsFile, agreement_lines, read_factors, said};
 pub use judging::Numbers;
 pub use lod_shader_report::{not_numbers_said, report_own_lod};
 pub use picture_comparison::{CompareError, Comparison, compare};
 pub use picture_file::{png_bytes, write_drawn, write_picture};
-pub use reference::BETWEEN_DRIVERS;
-pub use reference::{Judged, Reference};
+pub use reference::{BETWEEN_DRIVERS, Judged, Reference};
 pub use reference_surface::ReferenceSurface;
 pub use stats::Stats;
 pub use surface_shader_report::{report_own_surface, straight_sides_said};
-pub use turn::Turn;
-pub use turn::{FPS, FRAMES, frame_name};
+pub use turn::{FPS, FRAMES, Turn, frame_name};
 
 use camera_stats::ViewStats;
 use files::{to_json, write_text};

@@ -22,9 +22,8 @@ pub use legend::method_styles;
 pub use method_style::{Fill, MethodStyle, Shape, dash};
 pub use pen::RADIUS;
 pub use picture::{bitmap, svg};
-pub use race::front;
-pub use race::has_converged;
 pub(crate) use race::{Race, Win};
+pub use race::{front, has_converged};
 pub use save::{SaveError, save};
 pub use setting::{LodKind, Method, Plan, Setting, coarse_first};
 

@@ -18,8 +18,7 @@ pub use meshes::soup;
 pub use picture::{PictureError, picture};
 pub use report::{LEGEND, PAGE, Section, Verdict, lines, page, table};
 pub use run::{Effort, run};
-pub use views::random as random_camera;
-pub use views::viewport;
+pub use views::{random as random_camera, viewport};
 
 use serde::Serialize;
 

@@ -4,10 +4,9 @@ use glam::{DMat3, DMat4, DVec3, Vec3};
 use ufbx::{Mesh, Node};
 
 use super::convert::{matrix, vec3};
-use super::looks;
 use super::morphs::{Morphs, rest_weights};
 use super::skin::Skin;
-use super::smoothing;
+use super::{looks, smoothing};
 use crate::binding_space::turned;
 use crate::import::Import;
 use crate::memory_budget::Budget;

@@ -9,12 +9,11 @@ mod stl;
 use std::path::Path;
 
 use super::{mentions, page, unhung};
-use crate::Format;
 use crate::fbx::tests::documents::image;
 use crate::files::Limits;
-use crate::gltf;
 use crate::mesh_file::read;
 use crate::selection::Selection;
+use crate::{Format, gltf};
 use geometry::progress::Progress;
 
 /// A file that opens.

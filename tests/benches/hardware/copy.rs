@@ -12,7 +12,7 @@ use super::vulkan::stages::module;
 use super::vulkan::{Took, Vulkan, VulkanError};
 
 /// The bandwidth of copying one large buffer into another, in bytes per second, read and written.
-pub struct Copies {
+pub(crate) struct Copies {
     pub bytes: u64,
     /// With the copy command.
     pub command: f64,
@@ -25,7 +25,7 @@ impl Copies {
     ///
     /// # Errors
     /// No memory, or a lost device.
-    pub fn measure(vulkan: &Rc<Vulkan>, bytes: u64, effort: Effort) -> Result<Self, VulkanError> {
+    pub(crate) fn measure(vulkan: &Rc<Vulkan>, bytes: u64, effort: Effort) -> Result<Self, VulkanError> {
         let (from, to) = (Buffer::on_device(vulkan, bytes)?, Buffer::on_device(vulkan, bytes)?);
         let rate = |took: Vec<Took>| {
             let ms = Spread::of(took.iter().map(|took| took.gpu)).median;
@@ -48,7 +48,7 @@ impl Copies {
     }
 
     /// The larger of the two.
-    pub fn best(&self) -> f64 {
+    pub(crate) fn best(&self) -> f64 {
         self.command.max(self.shader)
     }
 }

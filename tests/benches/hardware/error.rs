@@ -16,12 +16,12 @@ use super::subjects::{subject, tori};
 use super::versus::{BenchError, PeerTimes, Versus};
 
 /// The px per segment that the white paper's LOD is asked for: coarse, fine enough that no edges are visible, and micropolygons.
-pub const PAPER_PIXELS: [f32; 3] = [8.0, 2.0, 1.0];
+pub(crate) const PAPER_PIXELS: [f32; 3] = [8.0, 2.0, 1.0];
 /// How often the range of tolerances is halved, on a logarithmic scale.
 const TRIES: u32 = 12;
 
 /// The measurements of one scene.
-pub struct EqualError {
+pub(crate) struct EqualError {
     pub scene: String,
     /// The px per segment of the white paper's LOD.
     pub paper_pixels: f32,
@@ -47,7 +47,7 @@ impl EqualError {
     }
 
     /// Their time divided by ours, by the GPU's clock and by the host's.
-    pub fn faster(&self) -> Option<[f64; 2]> {
+    pub(crate) fn faster(&self) -> Option<[f64; 2]> {
         let ratios =
             |peer: &PeerTimes| [peer.frame.median / self.ours.frame.median, peer.wall.median / self.ours.wall.median];
         self.peer.as_ref().map(ratios)
@@ -55,7 +55,7 @@ impl EqualError {
 }
 
 /// Returns the table of all scenes.
-pub fn table_of(scenes: &[EqualError]) -> String {
+pub(crate) fn table_of(scenes: &[EqualError]) -> String {
     let row = |scene: &EqualError| {
         let (ours, theirs) = (&scene.ours, scene.peer.as_ref());
         vec![
@@ -87,7 +87,7 @@ pub fn table_of(scenes: &[EqualError]) -> String {
 ///
 /// # Errors
 /// A device was lost, or has no memory.
-pub fn measure(engine: &Engine, peer: Option<&Peer>, scale: &Scale) -> Result<Vec<EqualError>, BenchError> {
+pub(crate) fn measure(engine: &Engine, peer: Option<&Peer>, scale: &Scale) -> Result<Vec<EqualError>, BenchError> {
     let mut all = Vec::new();
     let field = scale.field;
     for (name, columns, side, nearer) in

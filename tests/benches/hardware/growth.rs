@@ -14,7 +14,7 @@ use super::{Scale, TRIANGLES_A_PATCH};
 ///
 /// # Errors
 /// A device was lost, or has no memory.
-pub fn measure(engine: &Engine, peer: Option<&Peer>, scale: &Scale) -> Result<Vec<Named>, BenchError> {
+pub(crate) fn measure(engine: &Engine, peer: Option<&Peer>, scale: &Scale) -> Result<Vec<Named>, BenchError> {
     let triangles = scale.triangles[1];
     let columns = subjects::columns(triangles / TRIANGLES_A_PATCH);
     // Patches are the square of the columns.

@@ -21,7 +21,7 @@ use super::versus::BenchError;
 const FACTORS: [f32; 2] = [1.0, 4.0];
 
 /// The times of one mesh at one factor.
-pub struct Drawn {
+pub(crate) struct Drawn {
     mesh: String,
     factor: f32,
     triangles: u64,
@@ -40,7 +40,7 @@ pub struct Drawn {
 ///
 /// # Errors
 /// A file can't be read, or a device was lost or has no memory.
-pub fn measure(engine: &Engine, scale: &Scale, files: &[String]) -> Result<Vec<Drawn>, BenchError> {
+pub(crate) fn measure(engine: &Engine, scale: &Scale, files: &[String]) -> Result<Vec<Drawn>, BenchError> {
     let sources = files.iter().map(|path| Source::File(PathBuf::from(path)));
     let sources: Vec<_> = if files.is_empty() { vec![Source::Vase] } else { sources.collect() };
     let (engine, sharing) = (&with_shaders(engine, false), &with_shaders(engine, true));
@@ -102,7 +102,7 @@ fn without_layers(mesh: &Arc<Mesh>) -> Arc<Mesh> {
 }
 
 /// Returns the table of all rows.
-pub fn table_of(rows: &[Drawn]) -> String {
+pub(crate) fn table_of(rows: &[Drawn]) -> String {
     let row = |row: &Drawn| {
         vec![
             row.mesh.clone(),

@@ -4,14 +4,14 @@ use std::fmt;
 
 /// A median, with the least and the greatest number.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Spread {
+pub(crate) struct Spread {
     pub median: f64,
     pub least: f64,
     pub most: f64,
 }
 
 impl Spread {
-    pub fn of(numbers: impl Iterator<Item = f64>) -> Self {
+    pub(crate) fn of(numbers: impl Iterator<Item = f64>) -> Self {
         let mut sorted: Vec<f64> = numbers.collect();
         sorted.sort_by(f64::total_cmp);
         let (Some(&least), Some(&most)) = (sorted.first(), sorted.last()) else { return Self::default() };
@@ -26,7 +26,7 @@ impl fmt::Display for Spread {
 }
 
 /// Formats ms with three or four digits.
-pub fn ms(number: f64) -> String {
+pub(crate) fn ms(number: f64) -> String {
     let digits = if number < 1.0 {
         4
     } else if number < 10.0 {
@@ -40,7 +40,7 @@ pub fn ms(number: f64) -> String {
 }
 
 /// Formats a whole number in groups of three digits.
-pub fn whole(number: u64) -> String {
+pub(crate) fn whole(number: u64) -> String {
     let digits = number.to_string();
     let head = digits.len() % 3;
     let (first, rest) = digits.split_at(head);
@@ -51,14 +51,14 @@ pub fn whole(number: u64) -> String {
 }
 
 /// Formats `whole` divided by `part`.
-pub fn ratio(whole: f64, part: f64) -> String {
+pub(crate) fn ratio(whole: f64, part: f64) -> String {
     let ratio = whole / part;
     if ratio < 10.0 { format!("{ratio:.2}") } else { format!("{ratio:.1}") }
 }
 
 /// Returns a table in Markdown. `head` has the names of the columns, separated by ` | `. The first column is text, and the
 /// others are numbers.
-pub fn table(head: &str, rows: &[Vec<String>]) -> String {
+pub(crate) fn table(head: &str, rows: &[Vec<String>]) -> String {
     let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
     let columns = head.split(" | ").count();
     let rule: Vec<String> = (0..columns).map(|i| if i == 0 { "---" } else { "---:" }.to_owned()).collect();
@@ -66,6 +66,6 @@ pub fn table(head: &str, rows: &[Vec<String>]) -> String {
 }
 
 /// Returns `none` in place of a missing text.
-pub fn or_none(text: Option<String>) -> String {
+pub(crate) fn or_none(text: Option<String>) -> String {
     text.unwrap_or_else(|| "none".to_owned())
 }

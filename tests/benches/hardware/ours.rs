@@ -68,7 +68,7 @@ impl Run {
 }
 
 /// The times of our passes in ms.
-pub struct OurTimes {
+pub(crate) struct OurTimes {
     /// All passes between the nets and drawing.
     pub tessellation: Spread,
     pub draw: Spread,
@@ -81,7 +81,7 @@ pub struct OurTimes {
 }
 
 /// A scene with a target, a camera, and the settings of its tessellation.
-pub struct Subject {
+pub(crate) struct Subject {
     pub scene: Scene,
     pub target: Target,
     pub camera: Camera,
@@ -93,7 +93,7 @@ impl Subject {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn count(&mut self, engine: &Engine) -> Result<(u64, u64), GpuError> {
+    pub(crate) fn count(&mut self, engine: &Engine) -> Result<(u64, u64), GpuError> {
         let view = self.camera.lod_view(self.target.viewport(), &self.scene.bounds);
         engine.count(&mut self.scene, &self.settings.inputs(view), &mut Timing::Off)?;
         Ok(self.scene.tessellator.totals())
@@ -119,7 +119,7 @@ impl Subject {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn time(&mut self, engine: &Engine, effort: Effort) -> Result<OurTimes, GpuError> {
+    pub(crate) fn time(&mut self, engine: &Engine, effort: Effort) -> Result<OurTimes, GpuError> {
         let mut timing = Timing::on(&engine.gpu);
         let runs = effort.repeat(|run| {
             self.again(engine, run, &mut timing)?;
@@ -149,7 +149,7 @@ impl Subject {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn time_nothing(&mut self, engine: &Engine, effort: Effort) -> Result<Spread, GpuError> {
+    pub(crate) fn time_nothing(&mut self, engine: &Engine, effort: Effort) -> Result<Spread, GpuError> {
         let mut timing = Timing::on(&engine.gpu);
         let beside = self.camera.target + Vec3::splat(1e3 * self.scene.bounds.radius());
         let camera = Camera { target: beside, ..self.camera };
@@ -166,7 +166,7 @@ impl Subject {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn time_drawing(&mut self, engine: &Engine, effort: Effort) -> Result<Spread, GpuError> {
+    pub(crate) fn time_drawing(&mut self, engine: &Engine, effort: Effort) -> Result<Spread, GpuError> {
         let mut timing = Timing::on(&engine.gpu);
         let runs = effort.repeat(|_| {
             engine.draw(&mut self.scene, &self.target, &self.camera, &self.settings, &mut timing)?;
@@ -179,7 +179,7 @@ impl Subject {
     /// The least number of bytes that our tessellation passes must move: their output; all data of the mesh that they read, once;
     /// and the factors and offsets of patches and factors of edges, which pass from one to the next, written once and read once.
     /// Repeated reads, and the data by which an invocation finds its patch, don't count.
-    pub fn compulsory_bytes(&self) -> u64 {
+    pub(crate) fn compulsory_bytes(&self) -> u64 {
         let (vertices, triangles) = self.scene.tessellator.totals();
         let b = self.scene.tessellator.buffers();
         let read = [&b.points, &b.corners, &b.patches, &b.curves, &b.factor_curves, &b.curve_nets, &b.edge_factors];
@@ -196,7 +196,7 @@ impl Subject {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn nets(&self, engine: &Engine) -> Result<Vec<NetCorner>, GpuError> {
+    pub(crate) fn nets(&self, engine: &Engine) -> Result<Vec<NetCorner>, GpuError> {
         let b = self.scene.tessellator.buffers();
         let read = |buffer: &wgpu::Buffer| read_buffer(&engine.gpu, buffer, 0, buffer.size());
         let points: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&read(&b.points)?);
@@ -222,7 +222,7 @@ impl Subject {
     }
 
     /// The picture's constants, as in src/render/frame.rs.
-    pub fn frame(&self) -> PeerFrame {
+    pub(crate) fn frame(&self) -> PeerFrame {
         let [right, up, back] = self.camera.axes();
         let base_color = self.scene.tessellator.mesh().materials.first().map_or([1.0; 4], |first| first.base_color);
         PeerFrame {
@@ -235,7 +235,7 @@ impl Subject {
     }
 
     /// Whether our draw leaves out triangles that face away.
-    pub fn fronts_only(&self) -> bool {
+    pub(crate) fn fronts_only(&self) -> bool {
         self.scene.tessellator.shows_fronts_only(self.clip_from_object())
     }
 

@@ -12,7 +12,7 @@ use super::versus::{BenchError, Versus};
 const FACTORS: [f32; 3] = [8.0, 16.0, 64.0];
 
 /// The same mesh and factor under both patterns.
-pub struct Pair {
+pub(crate) struct Pair {
     name: String,
     rings: Versus,
     rows: Versus,
@@ -22,7 +22,7 @@ pub struct Pair {
 ///
 /// # Errors
 /// A device was lost, or has no memory.
-pub fn measure(engine: &Engine, scale: &Scale) -> Result<Vec<Pair>, BenchError> {
+pub(crate) fn measure(engine: &Engine, scale: &Scale) -> Result<Vec<Pair>, BenchError> {
     let pair = |factor: f32| {
         // A patch has about as many triangles as the square of its factor.
         let patches = (scale.triangles[1] as f64 / f64::from(factor * factor)) as u64;
@@ -44,7 +44,7 @@ fn emission(versus: &Versus) -> (f64, f64) {
 }
 
 /// Returns the table of all pairs.
-pub fn table_of(pairs: &[Pair]) -> String {
+pub(crate) fn table_of(pairs: &[Pair]) -> String {
     let row = |pair: &Pair| {
         let ((rings_ms, rings_ps), (rows_ms, rows_ps)) = (emission(&pair.rings), emission(&pair.rows));
         vec![

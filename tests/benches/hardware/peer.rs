@@ -17,7 +17,7 @@ use super::vulkan::{Counted, Took, Vulkan, VulkanError};
 /// A corner of a patch's control net. Twin of NetCorner in shaders/net.glsl.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-pub struct NetCorner {
+pub(crate) struct NetCorner {
     pub position_u: [f32; 4],
     pub normal_v: [f32; 4],
     pub near_center: [f32; 4],
@@ -27,7 +27,7 @@ pub struct NetCorner {
 /// The constants of a picture: its view and material. Twin of Frame in shaders/frame.glsl.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-pub struct PeerFrame {
+pub(crate) struct PeerFrame {
     pub clip_from_object: [[f32; 4]; 4],
     pub key_light: [f32; 4],
     pub fill_light: [f32; 4],
@@ -37,7 +37,7 @@ pub struct PeerFrame {
 }
 
 /// What the peer draws with.
-pub struct Peer {
+pub(crate) struct Peer {
     pub vulkan: Rc<Vulkan>,
     layout: Layout,
     target: Target,
@@ -46,7 +46,7 @@ pub struct Peer {
 }
 
 /// Patches on the peer's device.
-pub struct Patches {
+pub(crate) struct Patches {
     _nets: Buffer,
     _factors: Buffer,
     bound: Bound,
@@ -54,7 +54,7 @@ pub struct Patches {
 }
 
 /// A pipeline, and its kind.
-pub struct Pipeline {
+pub(crate) struct Pipeline {
     kind: Kind,
     handle: Owned<vk::Pipeline>,
 }
@@ -64,7 +64,7 @@ impl Peer {
     ///
     /// # Errors
     /// There is no Vulkan here, or the device has no tessellation stages.
-    pub fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, VulkanError> {
+    pub(crate) fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, VulkanError> {
         let vulkan = Vulkan::new(&gpu.info)?;
         let stages = vk::ShaderStageFlags::VERTEX
             | vk::ShaderStageFlags::TESSELLATION_CONTROL
@@ -81,7 +81,7 @@ impl Peer {
     ///
     /// # Errors
     /// No memory.
-    pub fn patches(&self, nets: &[NetCorner], factors: &[HullFactors]) -> Result<Patches, VulkanError> {
+    pub(crate) fn patches(&self, nets: &[NetCorner], factors: &[HullFactors]) -> Result<Patches, VulkanError> {
         let nets = Buffer::filled(&self.vulkan, nets)?;
         let uploaded = Buffer::filled(&self.vulkan, factors)?;
         let bound = self.layout.bind(&self.vulkan, [&nets, &uploaded])?;
@@ -92,7 +92,7 @@ impl Peer {
     ///
     /// # Errors
     /// The driver can't make it.
-    pub fn pipeline(&self, kind: Kind) -> Result<Pipeline, VulkanError> {
+    pub(crate) fn pipeline(&self, kind: Kind) -> Result<Pipeline, VulkanError> {
         let pass = if kind.rasterises { &self.target.pass } else { &self.nowhere };
         let handle = tessellating(&self.vulkan, &self.layout, pass.handle(), self.target.samples, kind)?;
         Ok(Pipeline { kind, handle })
@@ -102,7 +102,7 @@ impl Peer {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn draw(&self, pipeline: &Pipeline, patches: &Patches, frame: &PeerFrame) -> Result<Took, VulkanError> {
+    pub(crate) fn draw(&self, pipeline: &Pipeline, patches: &Patches, frame: &PeerFrame) -> Result<Took, VulkanError> {
         self.vulkan.run(|commands| self.record(commands, pipeline, patches, frame))
     }
 
@@ -110,7 +110,7 @@ impl Peer {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn count(
+    pub(crate) fn count(
         &self,
         pipeline: &Pipeline,
         patches: &Patches,
@@ -123,7 +123,7 @@ impl Peer {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn picture(&self) -> Result<RgbaImage, VulkanError> {
+    pub(crate) fn picture(&self) -> Result<RgbaImage, VulkanError> {
         self.target.read(&self.vulkan)
     }
 

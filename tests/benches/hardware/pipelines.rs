@@ -12,7 +12,7 @@ use super::vulkan::{Vulkan, VulkanError};
 
 /// How the domain shader gets a patch's control net.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Nets {
+pub(crate) enum Nets {
     /// As the attributes of three control points, which the vertex and hull shader pass on.
     Handed,
     /// From memory. The patch is one point without attributes.
@@ -20,10 +20,10 @@ pub enum Nets {
 }
 
 impl Nets {
-    pub const ALL: [Self; 2] = [Self::Handed, Self::InMemory];
+    pub(crate) const ALL: [Self; 2] = [Self::Handed, Self::InMemory];
 
     /// The number of points that are drawn for a patch.
-    pub fn points(self) -> u32 {
+    pub(crate) fn points(self) -> u32 {
         match self {
             Self::Handed => 3,
             Self::InMemory => 1,
@@ -33,7 +33,7 @@ impl Nets {
 
 /// The kind of a pipeline of the peer.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Kind {
+pub(crate) struct Kind {
     pub nets: Nets,
     /// Fractional-odd or integer.
     pub partitioning: Partitioning,
@@ -50,16 +50,16 @@ macro_rules! spirv {
     };
 }
 
-pub const COPY: &[u8] = spirv!("copy.comp");
+pub(crate) const COPY: &[u8] = spirv!("copy.comp");
 
 /// The layout of two storage buffers and, except for compute, a picture's constants.
-pub struct Layout {
+pub(crate) struct Layout {
     pub set: Owned<vk::DescriptorSetLayout>,
     pub pipeline: Owned<vk::PipelineLayout>,
 }
 
 /// The stages that read [`PeerFrame`].
-pub const FRAME_STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
+pub(crate) const FRAME_STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
     vk::ShaderStageFlags::TESSELLATION_EVALUATION.as_raw() | vk::ShaderStageFlags::FRAGMENT.as_raw(),
 );
 
@@ -68,7 +68,7 @@ impl Layout {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn new(vulkan: &Rc<Vulkan>, stages: vk::ShaderStageFlags) -> Result<Self, VulkanError> {
+    pub(crate) fn new(vulkan: &Rc<Vulkan>, stages: vk::ShaderStageFlags) -> Result<Self, VulkanError> {
         let binding = |index| {
             vk::DescriptorSetLayoutBinding::default()
                 .binding(index)
@@ -95,7 +95,7 @@ impl Layout {
     ///
     /// # Errors
     /// No memory.
-    pub fn bind(&self, vulkan: &Rc<Vulkan>, buffers: [&Buffer; 2]) -> Result<Bound, VulkanError> {
+    pub(crate) fn bind(&self, vulkan: &Rc<Vulkan>, buffers: [&Buffer; 2]) -> Result<Bound, VulkanError> {
         let kind = vk::DescriptorType::STORAGE_BUFFER;
         unsafe {
             let sizes = [vk::DescriptorPoolSize::default().ty(kind).descriptor_count(2)];
@@ -120,7 +120,7 @@ impl Layout {
 }
 
 /// Buffers bound to a layout.
-pub struct Bound {
+pub(crate) struct Bound {
     _pool: Owned<vk::DescriptorPool>,
     pub set: vk::DescriptorSet,
 }
@@ -129,7 +129,7 @@ pub struct Bound {
 ///
 /// # Errors
 /// The driver can't make it.
-pub fn tessellating(
+pub(crate) fn tessellating(
     vulkan: &Rc<Vulkan>,
     layout: &Layout,
     pass: vk::RenderPass,

@@ -19,7 +19,7 @@ const SAME_PICTURE: f64 = 0.005;
 
 /// Prints section by section, and keeps the numbers that are compared with goals at the end.
 #[derive(Default)]
-pub struct Report {
+pub(crate) struct Report {
     copies: Option<Copies>,
     rows: Vec<Named>,
     /// The px per segment, and their time divided by ours, by the GPU's clock and by the host's.
@@ -28,7 +28,7 @@ pub struct Report {
 
 impl Report {
     /// Prints the adapter, what is measured, and if there is no peer, why.
-    pub fn begin(engine: &Engine, scale: &Scale, missing: Option<&VulkanError>) -> Self {
+    pub(crate) fn begin(engine: &Engine, scale: &Scale, missing: Option<&VulkanError>) -> Self {
         let info = &engine.gpu.info;
         let clock = if engine.gpu.has_timestamps() {
             "the GPU's timestamps"
@@ -51,7 +51,7 @@ impl Report {
     }
 
     /// Prints the bandwidth of memory.
-    pub fn copies(&mut self, copies: Copies) {
+    pub(crate) fn copies(&mut self, copies: Copies) {
         let row = |name: &str, rate: f64| vec![name.to_owned(), format!("{:.1}", rate * 1e-9)];
         let rows = [row("copy command", copies.command), row("compute shader, 16 bytes per invocation", copies.shader)];
         let head = format!("copying {} bytes | GB/s, read and written", whole(copies.bytes));
@@ -60,13 +60,13 @@ impl Report {
     }
 
     /// Takes one comparison. All are printed at the end.
-    pub fn versus(&mut self, name: &str, versus: Versus) {
+    pub(crate) fn versus(&mut self, name: &str, versus: Versus) {
         eprintln!("measured: {name}, {} triangles", whole(versus.triangles));
         self.rows.push((name.to_owned(), versus));
     }
 
     /// Prints all comparisons. `nothing` is the time of an empty picture.
-    pub fn end_versus(&self, nothing: &Spread) {
+    pub(crate) fn end_versus(&self, nothing: &Spread) {
         println!("## Tessellation alone\n\n{}", rows::tessellation(&self.rows, self.copies.as_ref()));
         println!("{BYTES}\n");
         println!("## Whole frames\n\n{}", rows::frames(&self.rows));
@@ -78,25 +78,25 @@ impl Report {
     }
 
     /// Prints the emission of rows beside that of rings.
-    pub fn patterns(&self, pairs: &[Pair]) {
+    pub(crate) fn patterns(&self, pairs: &[Pair]) {
         println!("## Emission of rows and of rings\n\n{}", patterns::table_of(pairs));
         println!("One factor for all edges of a torus; rings are those of integer partitioning.\n");
     }
 
     /// Prints what materials cost.
-    pub fn materials(&self, rows: &[Drawn]) {
+    pub(crate) fn materials(&self, rows: &[Drawn]) {
         println!("## Materials\n\n{}", materials::table_of(rows));
         println!("Drawing alone: what is drawn was emitted before.");
     }
 
     /// Prints how cost grows.
-    pub fn growth(&self, steps: &[Named]) {
+    pub(crate) fn growth(&self, steps: &[Named]) {
         println!("## Growth\n\n{}", rows::growth(steps));
         steps.iter().for_each(warn);
     }
 
     /// Prints the comparisons at equal error.
-    pub fn equal_error(&mut self, scenes: &[EqualError]) {
+    pub(crate) fn equal_error(&mut self, scenes: &[EqualError]) {
         println!("## Equal error on screen\n");
         println!("Theirs: the white paper's LOD.{EQUAL}\n");
         println!("{}", error::table_of(scenes));
@@ -104,7 +104,7 @@ impl Report {
     }
 
     /// Prints which goals were reached.
-    pub fn goals(&self) {
+    pub(crate) fn goals(&self) {
         println!("## Goals\n");
         let fractional = || self.rows.iter().filter(|(name, _)| name.starts_with("fractional")).map(|(_, row)| row);
         let speed = fractional()

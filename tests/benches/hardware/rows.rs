@@ -5,14 +5,14 @@ use super::numbers::{ms, or_none, ratio, table, whole};
 use super::versus::Versus;
 
 /// The name of a comparison, and its measurements.
-pub type Named = (String, Versus);
+pub(crate) type Named = (String, Versus);
 
 /// The rate of our tessellation, in bytes per second.
-pub fn rate_of(row: &Versus) -> f64 {
+pub(crate) fn rate_of(row: &Versus) -> f64 {
     row.bytes as f64 / (row.ours.tessellation.median * 1e-3)
 }
 
-pub fn tessellation(rows: &[Named], copies: Option<&Copies>) -> String {
+pub(crate) fn tessellation(rows: &[Named], copies: Option<&Copies>) -> String {
     let row = |(name, row): &Named| {
         let (ours, theirs) = (&row.ours.tessellation, row.peer.as_ref().map(|peer| peer.tessellation));
         let throughput = |ms: f64| format!("{:.0}", row.triangles as f64 / ms * 1e-3);
@@ -34,7 +34,7 @@ pub fn tessellation(rows: &[Named], copies: Option<&Copies>) -> String {
     table(head, &rows.iter().map(row).collect::<Vec<_>>())
 }
 
-pub fn frames(rows: &[Named]) -> String {
+pub(crate) fn frames(rows: &[Named]) -> String {
     let row = |(name, row): &Named| {
         let (ours, theirs) = (&row.ours, row.peer.as_ref());
         vec![
@@ -55,7 +55,7 @@ pub fn frames(rows: &[Named]) -> String {
 }
 
 /// What was drawn, and the times of both ways in which the peer reads nets.
-pub fn drawn(rows: &[Named]) -> String {
+pub(crate) fn drawn(rows: &[Named]) -> String {
     let row = |(name, row): &Named| {
         let peer = row.peer.as_ref();
         let counted = peer.and_then(|peer| peer.counted);
@@ -79,7 +79,7 @@ pub fn drawn(rows: &[Named]) -> String {
     table(head, &rows.iter().map(row).collect::<Vec<_>>())
 }
 
-pub fn passes(rows: &[Named]) -> String {
+pub(crate) fn passes(rows: &[Named]) -> String {
     const PASSES: [&str; 8] = ["nets", "factors", "counts", "scan", "chunks", "emit", "coverage", "draw"];
     let row = |(name, row): &Named| {
         let time = |pass: &str| {
@@ -92,7 +92,7 @@ pub fn passes(rows: &[Named]) -> String {
 }
 
 /// Compares each row with the first.
-pub fn growth(steps: &[Named]) -> String {
+pub(crate) fn growth(steps: &[Named]) -> String {
     let Some((_, base)) = steps.first() else { return String::new() };
     let row = |(name, step): &Named| {
         let theirs = |of: &Versus| of.peer.as_ref().map(|peer| peer.tessellation.median);

@@ -18,7 +18,7 @@ use inspect::settings::Settings;
 use super::ours::Subject;
 
 /// A cube of `side` by `side` by `side` tori, each of `columns` by `columns / 2` quads.
-pub fn tori(columns: usize, side: usize) -> Mesh {
+pub(crate) fn tori(columns: usize, side: usize) -> Mesh {
     let mut builder = MeshBuilder::new();
     let material = builder.material(Material::plain("grey", [0.6, 0.6, 0.6, 1.0]));
     let rows = columns / 2;
@@ -47,7 +47,7 @@ pub fn tori(columns: usize, side: usize) -> Mesh {
 }
 
 /// The number of columns for a torus of about this many patches.
-pub fn columns(patches: u64) -> usize {
+pub(crate) fn columns(patches: u64) -> usize {
     ((patches as f64).sqrt().round() as usize).next_multiple_of(2).max(6)
 }
 
@@ -55,7 +55,7 @@ pub fn columns(patches: u64) -> usize {
 ///
 /// # Errors
 /// The mesh needs larger buffers than the adapter can bind.
-pub fn subject(engine: &Engine, mesh: Mesh, size: [u32; 2], arena_bytes: u64) -> Result<Subject, GpuError> {
+pub(crate) fn subject(engine: &Engine, mesh: Mesh, size: [u32; 2], arena_bytes: u64) -> Result<Subject, GpuError> {
     let mesh = Arc::new(mesh);
     let topology = Arc::new(Topology::build(&mesh, &Progress::new()).unwrap_or_default());
     subject_of(engine, mesh, topology, size, arena_bytes)
@@ -65,7 +65,7 @@ pub fn subject(engine: &Engine, mesh: Mesh, size: [u32; 2], arena_bytes: u64) ->
 ///
 /// # Errors
 /// The same.
-pub fn subject_of(
+pub(crate) fn subject_of(
     engine: &Engine,
     mesh: Arc<Mesh>,
     topology: Arc<Topology>,
@@ -80,7 +80,7 @@ pub fn subject_of(
 
 /// Where factors come from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Factors {
+pub(crate) enum Factors {
     /// From the distance to the eye. The nearest patches have about four times the factors of the farthest.
     ByDistance(Partitioning),
     /// From a hash of each edge, between a quarter of the greatest factor and the factor itself.
@@ -90,7 +90,7 @@ pub enum Factors {
 }
 
 impl Factors {
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::ByDistance(Partitioning::FractionalOdd) => "fractional, by distance",
             Self::Hashed(Partitioning::FractionalOdd) => "fractional, hashed",
@@ -100,7 +100,7 @@ impl Factors {
         }
     }
 
-    pub fn partitioning(self) -> Partitioning {
+    pub(crate) fn partitioning(self) -> Partitioning {
         match self {
             Self::ByDistance(partitioning) | Self::Hashed(partitioning) | Self::Uniform(partitioning) => partitioning,
         }
@@ -110,7 +110,7 @@ impl Factors {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn take(self, engine: &Engine, subject: &mut Subject, greatest: f32) -> Result<u64, GpuError> {
+    pub(crate) fn take(self, engine: &Engine, subject: &mut Subject, greatest: f32) -> Result<u64, GpuError> {
         let radius = subject.scene.bounds.radius();
         let middle = subject.camera.distance / radius;
         let lod = if matches!(self, Self::ByDistance(_)) { Lod::Distance } else { Lod::Uniform };
@@ -133,7 +133,7 @@ impl Factors {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn take_for(self, engine: &Engine, subject: &mut Subject, triangles: u64) -> Result<u64, GpuError> {
+    pub(crate) fn take_for(self, engine: &Engine, subject: &mut Subject, triangles: u64) -> Result<u64, GpuError> {
         let (mut low, mut high) = (1.0f32, 64.0f32);
         for _ in 0..16 {
             let middle = (low * high).sqrt();

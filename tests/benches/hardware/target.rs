@@ -14,7 +14,7 @@ const COLOR: vk::Format = vk::Format::R8G8B8A8_SRGB;
 const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 
 /// The pictures for colour, depth, and resolved colour.
-pub struct Target {
+pub(crate) struct Target {
     pub size: [u32; 2],
     pub samples: vk::SampleCountFlags,
     pub pass: Pass,
@@ -27,7 +27,7 @@ impl Target {
     ///
     /// # Errors
     /// No memory.
-    pub fn new(vulkan: &Rc<Vulkan>, size: [u32; 2], samples: u32) -> Result<Self, VulkanError> {
+    pub(crate) fn new(vulkan: &Rc<Vulkan>, size: [u32; 2], samples: u32) -> Result<Self, VulkanError> {
         let samples = vk::SampleCountFlags::from_raw(samples);
         let one = vk::SampleCountFlags::TYPE_1;
         let shown = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC;
@@ -48,7 +48,7 @@ impl Target {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn read(&self, vulkan: &Rc<Vulkan>) -> Result<RgbaImage, VulkanError> {
+    pub(crate) fn read(&self, vulkan: &Rc<Vulkan>) -> Result<RgbaImage, VulkanError> {
         let [width, height] = self.size;
         let staging = Buffer::for_host(vulkan, u64::from(width) * u64::from(height) * 4)?;
         let color = vk::ImageSubresourceLayers::default().aspect_mask(vk::ImageAspectFlags::COLOR).layer_count(1);

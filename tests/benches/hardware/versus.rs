@@ -16,7 +16,7 @@ use super::vulkan::{Counted, Took, VulkanError};
 
 /// Why a bench ended.
 #[derive(Debug, Error)]
-pub enum BenchError {
+pub(crate) enum BenchError {
     #[error(transparent)]
     Gpu(#[from] GpuError),
     #[error(transparent)]
@@ -28,7 +28,7 @@ pub enum BenchError {
 }
 
 /// The peer's times for a subject in ms. For each, the faster of its two ways to read control nets counts.
-pub struct PeerTimes {
+pub(crate) struct PeerTimes {
     /// The stages before the rasteriser.
     pub tessellation: Spread,
     /// The whole picture.
@@ -42,7 +42,7 @@ pub struct PeerTimes {
 }
 
 /// The measurements of one subject, ours and the peer's.
-pub struct Versus {
+pub(crate) struct Versus {
     pub patches: u32,
     pub vertices: u64,
     pub triangles: u64,
@@ -61,7 +61,7 @@ impl Versus {
     ///
     /// # Errors
     /// A device was lost, or has no memory.
-    pub fn measure(
+    pub(crate) fn measure(
         engine: &Engine,
         peer: Option<&Peer>,
         subject: &mut Subject,

@@ -13,7 +13,7 @@ use load::files::Limits;
 use load::source::Source;
 
 /// All shapes, the meshes of this file, and those of mesh files. A file that can't be read is named on stderr and left out.
-pub fn with_files(files: &[PathBuf]) -> Vec<(String, Arc<Mesh>)> {
+pub(crate) fn with_files(files: &[PathBuf]) -> Vec<(String, Arc<Mesh>)> {
     let shapes = Shape::ALL.into_iter().map(|shape| (shape.name().to_owned(), shape.build()));
     let mut all: Vec<_> = shapes.chain(made()).collect();
     for file in files {

@@ -15,7 +15,7 @@ const FACTOR_VALUE: u32 = 0x7f_ffff;
 const LARGEST: u32 = 63;
 
 /// What is emitted in one frame.
-pub struct Frame {
+pub(crate) struct Frame {
     emitted: Tessellated,
     /// The first vertex and the first triangle of each patch.
     starts: Vec<[usize; 2]>,
@@ -23,13 +23,13 @@ pub struct Frame {
 
 /// What is emitted at a place: the position in object units, and the interpolated unit normal.
 #[derive(Clone, Copy)]
-pub struct Emitted {
+pub(crate) struct Emitted {
     pub position: DVec3,
     pub normal: DVec3,
 }
 
 impl Frame {
-    pub fn new(mesh: &Mesh, topology: &Topology, tessellation: &Tessellation, camera: &Camera) -> Self {
+    pub(crate) fn new(mesh: &Mesh, topology: &Topology, tessellation: &Tessellation, camera: &Camera) -> Self {
         let inputs = Inputs::new(tessellation, camera.lod_view(VIEWPORT, &mesh.bounds()));
         let emitted = tessellate(mesh, topology, &inputs, None);
         let start = |at: &mut [usize; 2], &factors: &PatchFactors| {
@@ -42,20 +42,20 @@ impl Frame {
     }
 
     /// The number of triangles of all patches.
-    pub fn triangles(&self) -> usize {
+    pub(crate) fn triangles(&self) -> usize {
         self.emitted.triangles.len()
     }
 
-    pub fn patches(&self) -> usize {
+    pub(crate) fn patches(&self) -> usize {
         self.starts.len()
     }
 
-    pub fn factors(&self, patch: usize) -> PatchFactors {
+    pub(crate) fn factors(&self, patch: usize) -> PatchFactors {
         self.emitted.patch_factors[patch]
     }
 
     /// Whether a factor of a patch is the largest that there is. LOD by error may then not keep the tolerance.
-    pub fn is_capped(&self, patch: usize) -> bool {
+    pub(crate) fn is_capped(&self, patch: usize) -> bool {
         let PatchFactors { outside: [u, v, w], inside } = self.factors(patch);
         [u, v, w, inside].iter().any(|word| (word & FACTOR_VALUE) >> 16 >= LARGEST)
     }
@@ -80,13 +80,13 @@ impl Frame {
     }
 
     /// Whether a patch has the same triangles in another frame.
-    pub fn has_same_pattern(&self, other: &Self, patch: usize) -> bool {
+    pub(crate) fn has_same_pattern(&self, other: &Self, patch: usize) -> bool {
         let (own, others) = (self.factors(patch), other.factors(patch));
         own == others || triangle_count(own) == triangle_count(others) && self.pattern(patch) == other.pattern(patch)
     }
 
     /// What is emitted at all places of a patch.
-    pub fn at_places(&self, patch: usize) -> [Option<Emitted>; PER_PATCH] {
+    pub(crate) fn at_places(&self, patch: usize) -> [Option<Emitted>; PER_PATCH] {
         let mut all = [None; PER_PATCH];
         for triangle in self.triangles_of(patch) {
             places_within(triangle.map(|vertex| vertex.domain()), |place, weights| {

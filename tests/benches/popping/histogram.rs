@@ -9,7 +9,7 @@ const BINS: usize = 700;
 
 /// How many numbers lie in each of many bins, and the largest number.
 #[derive(Clone)]
-pub struct Histogram {
+pub(crate) struct Histogram {
     counts: Vec<u64>,
     pub largest: f64,
 }
@@ -21,13 +21,13 @@ impl Default for Histogram {
 }
 
 impl Histogram {
-    pub fn add(&mut self, number: f64) {
+    pub(crate) fn add(&mut self, number: f64) {
         let bin = ((number / LEAST).max(1.0).ln() / RATIO.ln()) as usize;
         self.counts[bin.min(BINS - 1)] += 1;
         self.largest = self.largest.max(number);
     }
 
-    pub fn merge(&mut self, other: &Self) {
+    pub(crate) fn merge(&mut self, other: &Self) {
         for (own, others) in self.counts.iter_mut().zip(&other.counts) {
             *own += others;
         }
@@ -35,7 +35,7 @@ impl Histogram {
     }
 
     /// The number that 99 % of all don't exceed, up to 2 % too large.
-    pub fn percentile_99(&self) -> f64 {
+    pub(crate) fn percentile_99(&self) -> f64 {
         let beyond: u64 = self.counts.iter().sum::<u64>() / 100;
         let mut above = 0;
         for (bin, count) in self.counts.iter().enumerate().rev() {

@@ -12,7 +12,7 @@ const EDGE_ON: f64 = 0.1;
 
 /// What changed between successive frames, added up.
 #[derive(Clone, Default)]
-pub struct Jumps {
+pub(crate) struct Jumps {
     /// The number of frames that were compared with the frame before, and their triangles.
     pub frames: u64,
     pub triangles: u64,
@@ -44,7 +44,7 @@ pub struct Jumps {
 }
 
 impl Jumps {
-    pub fn merge(&mut self, other: &Self) {
+    pub(crate) fn merge(&mut self, other: &Self) {
         self.frames += other.frames;
         self.triangles += other.triangles;
         self.silhouette = self.silhouette.max(other.silhouette);
@@ -62,7 +62,7 @@ impl Jumps {
     }
 
     /// Compares a frame with the frame before it, as the camera of the former sees both.
-    pub fn compare(&mut self, [before, now]: [&Frame; 2], places: &Places, [view_before, view]: [&View; 2]) {
+    pub(crate) fn compare(&mut self, [before, now]: [&Frame; 2], places: &Places, [view_before, view]: [&View; 2]) {
         self.frames += 1;
         self.triangles += now.triangles() as u64;
         for patch in (0..now.patches()).filter(|&patch| !places.is_flat(patch)) {

@@ -7,21 +7,21 @@ use inspect::render::camera::Camera;
 use crate::VIEWPORT;
 
 #[derive(Clone, Copy, PartialEq)]
-pub struct Method {
+pub(crate) struct Method {
     pub partitioning: Partitioning,
     lod: Lod,
 }
 
 impl Method {
     /// The last one moves continuously. It stands for as little popping as there can be.
-    pub const ALL: [Self; 4] = [
+    pub(crate) const ALL: [Self; 4] = [
         Self { partitioning: Partitioning::Rows, lod: Lod::Error },
         Self { partitioning: Partitioning::Integer, lod: Lod::Error },
         Self { partitioning: Partitioning::FractionalOdd, lod: Lod::Error },
         Self { partitioning: Partitioning::FractionalOdd, lod: Lod::EdgeLength },
     ];
 
-    pub fn name(self) -> String {
+    pub(crate) fn name(self) -> String {
         let partitioning = match self.partitioning {
             Partitioning::Rows => "rows",
             Partitioning::Integer => "integer",
@@ -31,12 +31,12 @@ impl Method {
     }
 
     /// Whether LOD keeps a tolerance.
-    pub fn keeps_tolerance(self) -> bool {
+    pub(crate) fn keeps_tolerance(self) -> bool {
         self.lod == Lod::Error
     }
 
     /// Settings for a path that begins with this camera. LOD by edge length gets about as many triangles as rows have there.
-    pub fn tessellation(self, mesh: &Mesh, topology: &Topology, camera: &Camera, tolerance: f32) -> Tessellation {
+    pub(crate) fn tessellation(self, mesh: &Mesh, topology: &Topology, camera: &Camera, tolerance: f32) -> Tessellation {
         let Self { partitioning, lod } = self;
         let own = Tessellation { lod, tolerance, partitioning, ..Tessellation::default() };
         if self.keeps_tolerance() {

@@ -7,16 +7,16 @@ use inspect::render::camera::Camera;
 use crate::VIEWPORT;
 
 #[derive(Clone, Copy, PartialEq)]
-pub enum Motion {
+pub(crate) enum Motion {
     Orbit,
     Dolly,
     Pan,
 }
 
 impl Motion {
-    pub const ALL: [Self; 3] = [Self::Orbit, Self::Dolly, Self::Pan];
+    pub(crate) const ALL: [Self; 3] = [Self::Orbit, Self::Dolly, Self::Pan];
 
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Orbit => "orbits",
             Self::Dolly => "dollies",
@@ -37,7 +37,7 @@ impl Motion {
 }
 
 /// One camera for each frame.
-pub struct Path {
+pub(crate) struct Path {
     /// Which mesh it shows.
     pub mesh: usize,
     pub motion: Motion,
@@ -45,7 +45,7 @@ pub struct Path {
 }
 
 /// Makes `count` paths of `frames` frames, shared out evenly among meshes with these bounds.
-pub fn random(bounds: &[Bounds], count: usize, frames: usize) -> Vec<Path> {
+pub(crate) fn random(bounds: &[Bounds], count: usize, frames: usize) -> Vec<Path> {
     let mut random = fastrand::Rng::with_seed(1);
     let path = |number: usize| {
         let mesh = number % bounds.len();

@@ -11,25 +11,25 @@ const STEPS: u32 = 16;
 /// The distance between places in the domain, in 16.16 fixed point.
 const SPACING: u32 = 65536 / STEPS;
 /// The number of places of a patch.
-pub const PER_PATCH: usize = (STEPS as usize + 1) * (STEPS as usize + 2) / 2;
+pub(crate) const PER_PATCH: usize = (STEPS as usize + 1) * (STEPS as usize + 2) / 2;
 /// The least cosine of the angle between normals that count as equal: 1 degree, as for LOD by error.
 const AGREEING: f32 = 0.99985;
 
 /// The limit surface at a place: its position in object units, and its unit normal.
 #[derive(Clone, Copy, Default)]
-pub struct Place {
+pub(crate) struct Place {
     pub position: DVec3,
     pub normal: DVec3,
 }
 
 /// The places of all patches of a mesh.
-pub struct Places {
+pub(crate) struct Places {
     places: Vec<Place>,
     is_flat: Vec<bool>,
 }
 
 impl Places {
-    pub fn new(mesh: &Mesh, topology: &Topology) -> Self {
+    pub(crate) fn new(mesh: &Mesh, topology: &Topology) -> Self {
         // A tessellation whose vertices are the places, with the normals of the limit surface.
         let tessellation = Tessellation {
             partitioning: Partitioning::Subtriangulation,
@@ -51,12 +51,12 @@ impl Places {
     }
 
     /// The places of a patch.
-    pub fn of_patch(&self, patch: usize) -> &[Place] {
+    pub(crate) fn of_patch(&self, patch: usize) -> &[Place] {
         &self.places[patch * PER_PATCH..][..PER_PATCH]
     }
 
     /// Whether a patch looks the same wherever its points slide.
-    pub fn is_flat(&self, patch: usize) -> bool {
+    pub(crate) fn is_flat(&self, patch: usize) -> bool {
         self.is_flat[patch]
     }
 }
@@ -75,7 +75,7 @@ fn is_flat(mesh: &Mesh, topology: &Topology, patch: u32) -> bool {
 
 /// Calls `found` with every place within a triangle of a pattern, and the place's weights of the triangle's corners. The corners
 /// are domain points in 16.16 fixed point. A triangle without area has no places.
-pub fn places_within(corners: [[u32; 2]; 3], mut found: impl FnMut(usize, [f64; 3])) {
+pub(crate) fn places_within(corners: [[u32; 2]; 3], mut found: impl FnMut(usize, [f64; 3])) {
     let [a, b, c] = corners.map(|corner| corner.map(i64::from));
     // Exact: twice a triangle's area is at most 2^32.
     let cross = |p: [i64; 2], q: [i64; 2], r: [i64; 2]| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);

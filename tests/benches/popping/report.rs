@@ -8,7 +8,7 @@ use crate::method::Method;
 use crate::paths::Motion;
 
 /// What was measured along one path.
-pub struct Measured {
+pub(crate) struct Measured {
     pub mesh: usize,
     pub motion: Motion,
     pub method: Method,
@@ -25,7 +25,7 @@ fn sum<'a>(measured: impl Iterator<Item = &'a Measured>) -> (usize, Jumps) {
 }
 
 /// Prints the tables of one tolerance, with a row for each mesh if `each_mesh` is set.
-pub fn print(meshes: &[&str], tolerance: f32, measured: &[&Measured], each_mesh: bool) {
+pub(crate) fn print(meshes: &[&str], tolerance: f32, measured: &[&Measured], each_mesh: bool) {
     println!("\nTolerance {tolerance} px, {}x{} px\n", VIEWPORT.x, VIEWPORT.y);
     println!(
         "| paths of | partitioning | paths | frames | triangles, mean | silhouette, largest px | surface, largest px | surface, 99th percentile px | normals, largest degrees | normals, 99th percentile degrees | patches with another pattern, a frame |"
