@@ -1,5 +1,5 @@
 //! Measures how much memory a load takes, with an allocator that counts: at most four times the file's size, plus 512
-//! MiB. These tests are a program of their own, so that nothing else is counted.
+//! MiB; and less than twice as much for data that was made to make a decoder take more. These tests are a program of their own, so that nothing else is counted.
 //!
 //! `PNAEN_TRIANGLES=3000000 cargo test --release --test memory -- --nocapture` measures larger meshes than the tests
 //! have time for.
