@@ -4,11 +4,10 @@ use std::io::Cursor;
 
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 
-use super::jpeg_memory::{coefficient_bytes, most_coefficient_bytes};
 use super::ktx2::{self, Ktx2};
 use super::memory_budget::Budget;
 use super::texture_room::decoded_bytes;
-use super::webp_memory::webp_bytes;
+use super::webp;
 use geometry::mesh::Texture;
 use geometry::mesh::build_limits::{Borrowed, MemoryAccount, MemoryRefused, borrowing};
 use geometry::mesh::mipmap::{MipFilter, RowHalver, halved, level_size};
@@ -68,6 +67,12 @@ pub(super) fn decode_halved(
     Ok(texture)
 }
 
+/// Returns how much memory it takes to decode an image and to convert it to RGBA, in bytes. Some decoders take up to 8 bytes a pixel beside
+/// the decoded image, for the coefficients of a progressive JPEG image say, but less than twice as much as this in all.
+pub(super) fn decoding_bytes(decoder: &impl ImageDecoder) -> u64 {
+    decoder.total_bytes().saturating_add(decoded_bytes(decoder.dimensions().into()))
+}
+
 /// Prepares to decode an image of the format that its first bytes show.
 fn reader(bytes: &[u8]) -> std::io::Result<ImageReader<Cursor<&[u8]>>> {
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
@@ -88,21 +93,17 @@ fn may_be_tga(bytes: &[u8]) -> bool {
 /// Decodes a PNG, JPEG, WebP, TGA or BMP image. All memory is borrowed.
 fn decode_file(bytes: &[u8], halvings: u32, filter: MipFilter, budget: &Budget) -> Result<Texture, String> {
     let undecoded = |error: ImageError| format!("its image can't be decoded: {error}");
-    let of_webp = webp_bytes(&mut Cursor::new(bytes), budget.left()).map_err(|error| error.to_string())?;
-    let known = coefficient_bytes(&mut Cursor::new(bytes)).map_err(|error| error.to_string())?;
+    webp::check(&mut Cursor::new(bytes), budget.allowed()).map_err(|error| error.to_string())?;
     let mut reader = reader(bytes).map_err(|error| error.to_string())?;
     let whole = Borrowed::from(budget);
     if reader.format() == Some(ImageFormat::Png) {
         reader.limits(metadata_limits(budget));
     }
-    let is_jpeg = reader.format() == Some(ImageFormat::Jpeg);
     let mut decoder = reader.into_decoder().map_err(undecoded)?;
     let size = decoder.dimensions().into();
     check_size(size)?;
-    // The decoder frees its own memory before the pixels are converted to RGBA. That of TGA and BMP needs no more than these take.
-    let working = if is_jpeg { known.unwrap_or_else(|| most_coefficient_bytes(size)) } else { of_webp };
     let has_rows = png_header(bytes).is_some_and(|(_, is_interlaced)| !is_interlaced);
-    let room = budget.borrow(decoder.total_bytes().saturating_add(working.max(decoded_bytes(size))));
+    let room = budget.borrow(decoding_bytes(&decoder));
     if has_rows && (halvings > 0 || room.is_err()) {
         drop(decoder);
         drop(whole);

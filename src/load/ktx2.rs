@@ -4,16 +4,13 @@
 //! Sources: KTX 2.0 specification, <https://registry.khronos.org/KTX/specs/2.0/ktxspec.v2.html>, sections 3 and 4; Khronos,
 //! `KHR_texture_basisu`, <https://github.com/KhronosGroup/glTF/tree/main/extensions/2.0/Khronos/KHR_texture_basisu>.
 
-mod etc1s;
-mod huffman;
+mod basis;
 #[cfg(test)]
 pub(super) mod tests;
-mod uastc;
+mod zstandard;
 
 use std::borrow::Cow;
 
-use super::zstd;
-use etc1s::Codebooks;
 use geometry::mesh::mipmap::level_size;
 
 /// The first bytes of every file.
@@ -132,7 +129,7 @@ impl<'a> Ktx2<'a> {
         let blocks = sides.map(|side| side.div_ceil(4));
         match self.codec {
             Codec::Etc1s(_) => None,
-            Codec::Uastc => Some((blocks[0] * blocks[1]).saturating_mul(uastc::BLOCK as u64)),
+            Codec::Uastc => Some((blocks[0] * blocks[1]).saturating_mul(basis::UASTC_BLOCK as u64)),
             Codec::Plain(width) => Some((sides[0] * sides[1]).saturating_mul(width as u64)),
         }
     }
@@ -147,7 +144,7 @@ impl<'a> Ktx2<'a> {
         match self.codec {
             // The codebooks' entries have at most 8 bytes, and there are at most 65,535 of each; the rest is a few rows.
             Codec::Etc1s(_) => (1 << 20) + 16 * u64::from(self.size[0]),
-            _ if self.is_zstd => self.levels[level as usize].length + zstd::WORKING_BYTES,
+            _ if self.is_zstd => self.levels[level as usize].length + zstandard::WORKING_BYTES,
             _ => 0,
         }
     }
@@ -161,44 +158,20 @@ impl<'a> Ktx2<'a> {
         let index = index as usize;
         let level = &self.levels[index];
         let data = if self.is_zstd {
-            let unpacked = zstd::decompress(level.bytes, level.length as usize);
+            let unpacked = zstandard::decompress(level.bytes, level.length as usize);
             unpacked.map(Cow::Owned).map_err(|reason| format!("its Zstandard data {reason}"))?
         } else {
             Cow::Borrowed(level.bytes)
         };
         match self.codec {
             Codec::Plain(width) => Ok(rgba(&data, width)),
-            Codec::Uastc => self.uastc(&data, index),
-            Codec::Etc1s(has_alpha) => self.etc1s(&data, index, has_alpha),
+            Codec::Uastc => basis::uastc(&data, self.level_size(index)),
+            Codec::Etc1s(has_alpha) => {
+                let global = part(self.bytes, self.global, "its KTX2 codebooks")?;
+                let shared = basis::Shared { global, images: self.levels.len(), has_alpha };
+                shared.etc1s(&data, index, self.level_size(index))
+            }
         }
-    }
-
-    fn uastc(&self, data: &[u8], level: usize) -> Result<Vec<u8>, String> {
-        let mut image = Image::new(self.level_size(level));
-        let across = image.blocks()[0];
-        for (index, block) in data.as_chunks().0.iter().enumerate() {
-            let texels = uastc::texels(block).ok_or_else(|| format!("its UASTC block {index} has no mode"))?;
-            image.put([index % across, index / across], |to, texel| to.copy_from_slice(&texels[texel]));
-        }
-        Ok(image.rgba)
-    }
-
-    fn etc1s(&self, data: &[u8], level: usize, has_alpha: bool) -> Result<Vec<u8>, String> {
-        let global = part(self.bytes, self.global, "its KTX2 codebooks")?;
-        let wrong = || "its ETC1S data is broken".to_owned();
-        let books = Codebooks::read(global, self.levels.len()).ok_or_else(wrong)?;
-        let slices = etc1s::slices(global, level).ok_or_else(wrong)?;
-        let mut image = Image::new(self.level_size(level));
-        let blocks = image.blocks();
-        let color = part(data, slices.color.map(u64::from), "its ETC1S colours")?;
-        let put = |at, texels: [[u8; 3]; 16]| image.put(at, |to, texel| to[..3].copy_from_slice(&texels[texel]));
-        books.decode(color, blocks, put).ok_or_else(wrong)?;
-        if has_alpha {
-            let alpha = part(data, slices.alpha.map(u64::from), "its ETC1S alpha")?;
-            let put = |at, texels: [[u8; 3]; 16]| image.put(at, |to, texel| to[3] = texels[texel][1]);
-            books.decode(alpha, blocks, put).ok_or_else(wrong)?;
-        }
-        Ok(image.rgba)
     }
 }
 
@@ -252,35 +225,5 @@ fn rgba(data: &[u8], width: usize) -> Vec<u8> {
     match width {
         3 => data.as_chunks().0.iter().flat_map(|&[r, g, b]| [r, g, b, 255]).collect(),
         _ => data.to_vec(),
-    }
-}
-
-/// An image that is put together from blocks of 4 x 4 px, of which those at the right and at the bottom may reach beyond it.
-struct Image {
-    size: [usize; 2],
-    rgba: Vec<u8>,
-}
-
-impl Image {
-    /// Makes an opaque black image.
-    fn new(size: [u32; 2]) -> Self {
-        let size = size.map(|side| side as usize);
-        Self { size, rgba: [0, 0, 0, 255].repeat(size[0] * size[1]) }
-    }
-
-    fn blocks(&self) -> [usize; 2] {
-        self.size.map(|side| side.div_ceil(4))
-    }
-
-    /// Calls `set` with each pixel of a block, and the index of its texel.
-    fn put(&mut self, [x, y]: [usize; 2], set: impl Fn(&mut [u8], usize)) {
-        let [width, height] = self.size;
-        for row in 0..4.min(height - 4 * y) {
-            let start = 4 * ((4 * y + row) * width + 4 * x);
-            let columns = 4.min(width - 4 * x);
-            for (column, px) in self.rgba[start..start + 4 * columns].chunks_exact_mut(4).enumerate() {
-                set(px, 4 * row + column);
-            }
-        }
     }
 }

@@ -3,7 +3,6 @@
 
 mod attachment;
 mod binding_space;
-mod bits;
 mod content;
 pub mod csv_vertices;
 pub mod environment_file;
@@ -18,7 +17,6 @@ pub mod heights;
 mod hostile_files;
 mod images;
 pub mod import;
-mod jpeg_memory;
 mod ktx2;
 mod loaded_mesh;
 pub mod markdown;
@@ -32,7 +30,6 @@ mod packing;
 pub mod panorama;
 pub mod parts;
 mod ply;
-mod prefix_code;
 mod read_error;
 mod recent_corners;
 mod rig_builder;
@@ -47,9 +44,7 @@ mod triangle_block;
 mod unread_formats;
 mod uri;
 mod warnings;
-mod webp_memory;
-mod webp_tables;
-mod zstd;
+mod webp;
 
 pub use crate::files::{FileError, Limits};
 pub use gltf::GltfError;

@@ -8,7 +8,7 @@ use image::{GrayImage, ImageFormat, Luma};
 use inspect::engine::Preparation;
 
 use super::bounded::loaded;
-use super::{ALONE, temporary, textures, with_image};
+use super::{ALONE, bomb, heights, temporary, textures, with_image};
 use documents::webp::of_groups;
 
 const MIB: usize = 1 << 20;
@@ -79,11 +79,40 @@ fn tables_of_a_lossless_webp_image_are_counted_before_they_are_made() {
     let (found, warnings) = sizes("tables.glb", &bytes, 8 * MIB);
     assert_eq!(found, [None]);
     assert!(
-        warnings.len() == 1 && warnings[0].contains("is left out: its image of 4 x 4 px would take"),
+        warnings.len() == 1 && warnings[0].contains("is left out: its prefix codes may take more memory"),
         "{warnings:?}"
     );
-    let (found, warnings) = sizes("tables-that-fit.glb", &bytes, 24 * MIB);
+    let (found, warnings) = sizes("tables-that-fit.glb", &bytes, 32 * MIB);
     assert_eq!((found, warnings.len()), (vec![Some([4; 2])], 0), "{warnings:?}");
+}
+
+/// A KTX2 image of 1024 x 1024 px, 4 MiB, whose Zstandard data decompresses to so many times 128 KiB.
+fn zstandard(blocks: usize) -> Vec<u8> {
+    let mut data = vec![0x28, 0xb5, 0x2f, 0xfd, 0, 0x58];
+    for block in 1..=blocks {
+        // A block that repeats the byte 7; the lowest bit says that it is the last.
+        data.extend(&((128_u32 << 13) | 2 | u32::from(block == blocks)).to_le_bytes()[..3]);
+        data.push(7);
+    }
+    let words = [37, 1, 1024, 1024, 0, 0, 1, 1, 2, 0, 0, 0, 0, 0, 0, 0, 0_u32];
+    let level = [104, data.len() as u64, 4 << 20].map(u64::to_le_bytes);
+    [&b"\xabKTX 20\xbb\r\n\x1a\n"[..], words.map(u32::to_le_bytes).as_flattened(), level.as_flattened(), &data].concat()
+}
+
+#[test]
+fn images_that_decompress_to_more_than_they_say_are_bounded() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let (found, warnings) = sizes("zstandard.glb", &with_image(&zstandard(32)), 16 * MIB);
+    assert_eq!((found, warnings.len()), (vec![Some([1024; 2])], 0), "{warnings:?}");
+    // A gibibyte in 32 KB.
+    let (found, warnings) = sizes("zstandard-bomb.glb", &with_image(&zstandard(8192)), 16 * MIB);
+    assert_eq!(found, [None]);
+    assert!(warnings.len() == 1 && warnings[0].contains("its Zstandard data can't be decompressed"), "{warnings:?}");
+    // Coefficients of a progressive JPEG image, which aren't counted; and all the prefix codes that pass.
+    let (loaded, took) = bomb("progressive.glb", with_image(&heights::jpeg(8500, 0xc2)));
+    assert!(loaded.is_ok() && took > 400 << 20, "{took}");
+    let (loaded, took) = bomb("prefix-codes.glb", with_image(&of_groups(17_000)));
+    assert!(loaded.is_ok() && took > 300 << 20, "{took}");
 }
 
 /// The checksum of a chunk of a PNG file (PNG specification, annex D).

@@ -1,7 +1,7 @@
 //! Decompresses primitives that are compressed with Draco (`KHR_draco_mesh_compression`), with the crate `draco-core`,
 //! before anything else reads them.
 //!
-//! The crate can limit the number of faces and the size of the result, but not the memory that it takes meanwhile. So [`Decoding`]
+//! The crate can limit the number of faces and the size of the result, but not the memory that it takes meanwhile. So [`memory`]
 //! bounds that by what the data says about itself, and nothing is decoded that the budget has no room for.
 //!
 //! Source: Khronos, `KHR_draco_mesh_compression`,
@@ -29,7 +29,7 @@ use geometry::mesh::{Borrowed, MemoryAccount, MemoryRefused};
 use geometry::progress::Progress;
 
 use header::Header;
-use memory::Decoding;
+use memory::decoding_bytes;
 
 /// Why a primitive can't be decompressed, as a clause.
 enum DecodeError {
@@ -97,15 +97,14 @@ impl Stream<'_> {
         let passed_over = 16 * (self.packed.ids.len() - attributes.len() + self.packed.others) as u64;
         let most = (kept + passed_over).saturating_mul(vertices);
         let walked = tables::walk(bytes, &header);
-        let decoding =
-            Decoding { header: &header, walked: &walked, data: bytes.len() as u64, points: vertices, values: most };
         let own = kept.saturating_mul(vertices).saturating_add(indices.saturating_mul(4));
         // The decoder frees all but the result before this is copied.
-        let peak = decoding.peak().max(decoding.result().saturating_add(own));
+        let peak = decoding_bytes(&header, &walked, bytes.len() as u64, vertices, most).max(own);
         let budget = self.accessors.budget;
         let decoding_memory = Borrowed::from(budget);
         budget.borrow(peak).map_err(|refused| DecodeError::TooMuch(too_much(refused, budget)))?;
-        let most = decoding.stride().map_or(most, |stride| most.min(stride.saturating_mul(vertices)));
+        let stride = walked.attributes.map(|all| all.iter().map(|coded| coded.components * coded.size).sum::<u64>());
+        let most = stride.map_or(most, |stride| most.min(stride.saturating_mul(vertices)));
         let limits = DecodeLimits::default().with_max_points(vertices).with_max_faces(indices / 3);
         let mut buffer = DecoderBuffer::new(bytes).with_limits(limits.with_max_decoded_bytes(most));
         let mut mesh = Mesh::new();

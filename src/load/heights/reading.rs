@@ -9,10 +9,9 @@ use png::{BitDepth, DecodingError};
 
 use super::{HeightError, MAX_SIZE};
 use crate::files::{file_reason, open_file};
-use crate::images::metadata_limits;
-use crate::jpeg_memory::{coefficient_bytes, most_coefficient_bytes};
+use crate::images::{decoding_bytes, metadata_limits};
 use crate::memory_budget::Budget;
-use crate::webp_memory::webp_bytes;
+use crate::webp;
 use geometry::mesh::build_limits::{Borrowed, MemoryAccount, MemoryRefused, borrowing};
 use geometry::mesh::heights::{HeightMap, angle_bytes};
 use geometry::progress::{Cancelled, Progress};
@@ -141,21 +140,18 @@ impl ImageFile<'_> {
             error => self.stopped_or(self.fail(error.to_string())),
         };
         let unread = |error: io::Error| self.stopped_or(self.fail(error.to_string()));
-        let known = coefficient_bytes(&mut reader).map_err(unread)?;
         self.budget.allow(length);
-        let of_webp = webp_bytes(&mut reader, self.budget.left()).map_err(unread)?;
+        webp::check(&mut reader, self.budget.allowed()).map_err(unread)?;
         let mut reader = ImageReader::new(reader).with_guessed_format().map_err(unread)?;
         let decoding = Borrowed::from(self.budget);
         if reader.format() == Some(ImageFormat::Png) {
             reader.limits(metadata_limits(self.budget));
         }
-        let is_jpeg = reader.format() == Some(ImageFormat::Jpeg);
         let decoder = reader.into_decoder().map_err(undecoded)?;
         let size = self.check(decoder.dimensions().into())?;
         let (color, count) = (decoder.color_type(), decoder.total_bytes());
-        let working = if is_jpeg { known.unwrap_or_else(|| most_coefficient_bytes(size)) } else { of_webp };
-        // It is freed before a map is made from the pixels. A JPEG decoder also keeps the file's bytes.
-        self.afford(size, length, count, working)?;
+        // What decoding takes is freed before a map is made from the pixels. A JPEG decoder also keeps the file's bytes.
+        self.afford(size, length, count, decoding_bytes(&decoder) - count)?;
         let mut bytes = vec![0; count as usize];
         decoder.read_image(&mut bytes).map_err(undecoded)?;
         drop(decoding);

@@ -6,6 +6,8 @@ use draco_core::{DecoderBuffer, DracoError, GeometryMetadata};
 
 /// The flag that says that metadata follows.
 const METADATA: u16 = 0x8000;
+/// The most bytes of a header that are read: most of them may be metadata, which take up to a hundred times as much memory.
+const LONGEST: usize = 1 << 20;
 /// The version that glTF uses.
 const VERSION: [u8; 2] = [2, 2];
 
@@ -47,7 +49,7 @@ impl Header {
     /// A clause if the data isn't a mesh, or has another version.
     pub(super) fn read(bytes: &[u8]) -> Result<Self, String> {
         let cut = |_: DracoError| format!("has data that ends within its header, after {} bytes", bytes.len());
-        let mut buffer = DecoderBuffer::new(bytes);
+        let mut buffer = DecoderBuffer::new(&bytes[..bytes.len().min(LONGEST)]);
         let mut start = [0; 9];
         buffer.decode_bytes(&mut start).map_err(cut)?;
         let [b'D', b'R', b'A', b'C', b'O', major, minor, kind, method] = start else {

@@ -28,19 +28,7 @@ pub(super) struct Walked {
     /// The greatest amount of memory that tables of probabilities take at one time, in bytes.
     pub tables: u64,
     /// The attributes; none if the walk didn't come to them.
-    pub decoders: Option<Vec<AttributeDecoder>>,
-    /// The largest number of flags that the prediction of an attribute has; none if the walk didn't come to the end.
-    pub flags: Option<u64>,
-}
-
-/// The attributes that are decoded together.
-#[derive(Debug)]
-pub(super) struct AttributeDecoder {
-    /// Whether they may have seams of their own.
-    pub is_seamed: bool,
-    /// Whether vertices are visited in an order that depends on how many neighbours are known.
-    pub by_degree: bool,
-    pub attributes: Vec<Coded>,
+    pub attributes: Option<Vec<Coded>>,
 }
 
 /// An attribute, as its decoder's header has it.
@@ -50,7 +38,7 @@ pub(super) struct Coded {
     /// The size of a component, in bytes.
     pub size: u64,
     /// 0 for values as they are, 1 for integers, 2 for quantised values, 3 for normals.
-    pub decoder: u8,
+    decoder: u8,
 }
 
 /// Walks over data with this header.
@@ -60,11 +48,7 @@ pub(super) fn walk(bytes: &[u8], header: &Header) -> Walked {
     let known = walk.symbols * PER_WHOLE_SYMBOL;
     let rest = &bytes[walk.walked.min(bytes.len())..];
     let unknown = (rest.len() as u64 * SYMBOLS_A_BYTE * PER_SYMBOL).max(symbols(rest) * PER_WHOLE_SYMBOL);
-    Walked {
-        tables: if is_whole { known } else { known.max(unknown) },
-        decoders: walk.decoders,
-        flags: is_whole.then_some(walk.flags),
-    }
+    Walked { tables: if is_whole { known } else { known.max(unknown) }, attributes: walk.attributes }
 }
 
 /// Returns the greatest number of symbols of a complete table in these bytes. A byte whose two lowest bits are set says
@@ -91,16 +75,14 @@ struct Walk<'a> {
     walked: usize,
     /// The greatest number of symbols of a table.
     symbols: u64,
-    decoders: Option<Vec<AttributeDecoder>>,
-    /// The greatest number of flags of an attribute.
-    flags: u64,
+    attributes: Option<Vec<Coded>>,
 }
 
 impl<'a> Walk<'a> {
     fn new(bytes: &'a [u8], start: usize) -> Self {
         let mut buffer = DecoderBuffer::new(bytes);
         buffer.set_version(2, 2);
-        Self { buffer, walked: start, symbols: 0, decoders: None, flags: 0 }
+        Self { buffer, walked: start, symbols: 0, attributes: None }
     }
 
     fn mesh(&mut self, header: &Header) -> Option<()> {
@@ -108,11 +90,7 @@ impl<'a> Walk<'a> {
             Connectivity::Sequential { points } => self.indices(header.triangles.checked_mul(3)?, points)?,
             Connectivity::Edgebreaker(counts) => self.edgebreaker(&counts)?,
         }
-        let seamed = match header.connectivity {
-            Connectivity::Sequential { .. } => None,
-            Connectivity::Edgebreaker(Edgebreaker { seamed, .. }) => Some(seamed),
-        };
-        self.attributes(seamed)
+        self.attributes(matches!(header.connectivity, Connectivity::Edgebreaker(_)))
     }
 
     fn byte(&mut self) -> Option<u8> {
@@ -237,31 +215,21 @@ impl<'a> Walk<'a> {
         (read == count).then_some(())
     }
 
-    /// The attributes, of which as many as `seamed` may have seams of their own; none without a traversal.
-    fn attributes(&mut self, seamed: Option<u64>) -> Option<()> {
-        let count = self.byte()?;
-        let mut decoders: Vec<_> = (0..count)
-            .map(|_| AttributeDecoder { is_seamed: false, by_degree: false, attributes: Vec::new() })
-            .collect();
-        if let Some(seamed) = seamed {
-            for decoder in &mut decoders {
-                // The number of the seams, the kind, and the traversal.
-                let [seams, kind, traversal] = [self.byte()?, self.byte()?, self.byte()?];
-                decoder.is_seamed = kind != 0 && u64::from(seams) < seamed;
-                decoder.by_degree = traversal == 1;
-            }
+    /// The attributes, in groups that are decoded together.
+    fn attributes(&mut self, has_traversals: bool) -> Option<()> {
+        let groups = self.byte()?;
+        if has_traversals {
+            // The number of the seams, the kind, and the traversal.
+            self.skip(3 * u64::from(groups))?;
         }
-        for decoder in &mut decoders {
-            decoder.attributes = self.header()?;
-        }
-        let all: Vec<Vec<Coded>> = decoders.iter().map(|decoder| decoder.attributes.clone()).collect();
-        self.decoders = Some(decoders);
-        for coded in all {
-            for attribute in &coded {
+        let groups = (0..groups).map(|_| self.header()).collect::<Option<Vec<_>>>()?;
+        self.attributes = Some(groups.concat());
+        for group in groups {
+            for attribute in &group {
                 self.reached();
                 self.values(attribute)?;
             }
-            for attribute in coded {
+            for attribute in group {
                 self.skip(match attribute.decoder {
                     // The least values, the range and the number of bits.
                     2 => 4 * (attribute.components + 1) + 1,
@@ -316,15 +284,11 @@ impl<'a> Walk<'a> {
             0 | 1 => self.skip(TRANSFORM),
             // Several parallelograms, of which flags say which are used.
             4 => {
-                let mut flags = 0;
                 for _ in 0..PARALLELOGRAMS {
-                    let count = self.varint()? as u32;
-                    if count > 0 {
+                    if self.varint()? as u32 > 0 {
                         self.bits()?;
                     }
-                    flags += u64::from(count);
                 }
-                self.flags = self.flags.max(flags);
                 self.skip(TRANSFORM)
             }
             // Texture coordinates by positions: the number of orientations, and these.
@@ -421,7 +385,7 @@ mod tests {
             let (reached, memory) = walk(bytes);
             println!("{name}: {reached:?} of {} bytes, {} KiB of tables", bytes.len(), memory >> 10);
             let header = Header::read(bytes).expect("a header");
-            assert!(super::walk(bytes, &header).decoders.is_some(), "{name}: its attributes aren't found");
+            assert!(super::walk(bytes, &header).attributes.is_some(), "{name}: its attributes aren't found");
             if let Some(reached) = reached {
                 whole += 1;
                 assert_eq!(reached, bytes.len(), "{name}");

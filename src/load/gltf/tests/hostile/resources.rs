@@ -109,7 +109,7 @@ fn images() -> [(&'static str, Vec<u8>, &'static str); 17] {
         ("a WebP image of no px", riff(&lossy(0, 0)), "texture | \"m\" | decoded"),
         ("a WebP image of 16,383 px without data", riff(&lossy(16_383, 16_383)), "texture | \"m\" | 16383 | 512"),
         ("a WebP image within a smaller one", riff(&[canvas(0), lossy(9_999, 9_999)].concat()), "1 x 1 | 9999 x 9999"),
-        ("a WebP image with 586 MiB of prefix codes in 1.6", of_groups(28_000), "texture | \"m\" | 4 x 4 | 591 | 520"),
+        ("a WebP image with 586 MiB of prefix codes in 1.6", of_groups(28_000), "texture | \"m\" | prefix codes | 520"),
         ("a WebP image of prefix codes that are cut off", of_groups(99)[..4000].to_vec(), "texture | \"m\" | decoded"),
         ("a WebP animation", riff(&canvas(2)), "texture | \"m\" | animation"),
         ("a KTX2 header that is cut off", plain(37, [1, 1], &[0; 4])[..60].to_vec(), "KTX2 header | 68 | 60"),

@@ -1,7 +1,6 @@
 //! Reads numbers of any width from bytes, the lowest bit of each byte first.
 
 /// A position in bytes, counted in bits.
-#[derive(Clone, Debug)]
 pub(super) struct Bits<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -33,14 +32,9 @@ impl<'a> Bits<'a> {
         bits
     }
 
-    /// Returns how many bytes have been begun.
-    pub(super) fn bytes_read(&self) -> usize {
-        self.at.div_ceil(8)
-    }
-
     /// Returns whether more was read than there is.
     pub(super) fn is_past_end(&self) -> bool {
-        self.bytes_read() > self.bytes.len()
+        self.at > 8 * self.bytes.len()
     }
 }
 

@@ -2,8 +2,8 @@
 //!
 //! Source: KTX 2.0 specification, appendix "BasisLZ", section on Huffman coding.
 
-use crate::bits::Bits;
-use crate::prefix_code::PrefixCode;
+use super::bits::Bits;
+use super::prefix_code::PrefixCode;
 
 /// The order in which lengths of the codes of lengths are stored.
 const ORDER: [usize; 21] = [17, 18, 19, 20, 0, 8, 7, 9, 6, 10, 5, 11, 4, 12, 3, 13, 2, 14, 1, 15, 16];

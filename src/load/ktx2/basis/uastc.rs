@@ -285,3 +285,27 @@ impl Endpoints {
         (lowest & 128) | ((above * factor + places) ^ lowest) >> 2
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_of_uastc_mean_what_the_specification_says() {
+        // The mode of one colour.
+        let mut solid = [0; 16];
+        solid[..5].copy_from_slice(&(0x17_u64 | 0x4433_2211 << 5).to_le_bytes()[..5]);
+        assert_eq!(texels(&solid), Some([[0x11, 0x22, 0x33, 0x44]; 16]));
+        // Mode 1: after 6 and 15 bits six endpoints of 8 bits, then weights of 2 bits, the first one without its highest.
+        let mut bits = 0x35_u128;
+        for (i, end) in [0_u128, 255, 10, 10, 255, 0].into_iter().enumerate() {
+            bits |= end << (21 + 8 * i);
+        }
+        bits |= 0b111_0011 << 69;
+        let texels = super::texels(&bits.to_le_bytes()).expect("a mode");
+        assert_eq!(texels[..4], [[84, 10, 171, 255], [84, 10, 171, 255], [171, 10, 84, 255], [255, 10, 0, 255]]);
+        assert_eq!(texels[4..], [[0, 10, 255, 255]; 12]);
+        // The code that no mode has.
+        assert_eq!(super::texels(&[0x45; 16]), None);
+    }
+}

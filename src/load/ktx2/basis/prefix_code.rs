@@ -30,26 +30,6 @@ impl PrefixCode {
         (taken == room || symbols.len() == 1).then_some(Self { counts, symbols })
     }
 
-    /// The code of one symbol, or of two: 0 stands for the first one.
-    pub(super) fn short(first: u16, second: Option<u16>) -> Self {
-        let symbols: Vec<_> = [Some(first), second].into_iter().flatten().collect();
-        let mut counts = [0; LONGEST + 1];
-        counts[1] = symbols.len() as u32;
-        Self { counts, symbols }
-    }
-
-    /// The symbol, if there is only one.
-    pub(super) fn single(&self) -> Option<u16> {
-        let [symbol] = self.symbols[..] else { return None };
-        Some(symbol)
-    }
-
-    /// How many symbols have codes longer than this, in bits, and the length of the longest code.
-    pub(super) fn longer_than(&self, bits: usize) -> (u32, usize) {
-        let longest = self.counts.iter().rposition(|&count| count > 0).unwrap_or(0);
-        (self.counts[bits + 1..].iter().sum(), longest)
-    }
-
     /// Reads a symbol; none if no code begins like the bits.
     pub(super) fn symbol(&self, bits: &mut Bits) -> Option<u32> {
         let ahead = bits.peek(LONGEST as u32);
@@ -80,7 +60,6 @@ mod tests {
         let mut bits = Bits::new(&[0b1110_1101, 0b10]);
         let symbols: Vec<_> = (0..4).map(|_| code.symbol(&mut bits)).collect();
         assert_eq!(symbols, [Some(0), Some(2), Some(3), Some(1)]);
-        assert_eq!((code.longer_than(1), code.longer_than(3)), ((3, 3), (0, 3)));
     }
 
     #[test]
@@ -89,7 +68,6 @@ mod tests {
         assert!(is_refused(&[1, 2]) && is_refused(&[1, 1, 1]) && is_refused(&[0]));
         let one = PrefixCode::of(&[0, 1]).expect("one symbol needs no other");
         assert_eq!([0, 1].map(|byte| one.symbol(&mut Bits::new(&[byte]))), [Some(1), None]);
-        assert_eq!(one.single(), Some(1));
         assert_eq!(PrefixCode::default().symbol(&mut Bits::new(&[0])), None);
     }
 }
