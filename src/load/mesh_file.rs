@@ -442,15 +442,15 @@ mod tests {
             ("a.usd", "usd2gltf -i"),
             ("a.DAE", "assimp export FILE.dae"),
             ("a.abc", "alembic_import"),
-            ("a.max", "3ds Max"),
+            ("a.mb", "from Maya"),
             ("a.stp", "gmsh"),
-            ("a.mtl", "open the .obj file"),
+            ("a.rar", "unpack it"),
         ];
         for (name, advice) in by_name {
             assert!(said(name, b"could be anything").contains(advice), "{name}");
         }
-        assert!(said("a.ply.gz", b"\x1f\x8b\x08").contains("is compressed with gzip"));
-        assert!(said("a.ply", b"\x1f\x8b\x08").contains("is compressed with gzip"));
+        assert!(said("a.ply.gz", b"\x1f\x8b\x08").contains("is a packed file"));
+        assert!(said("a.ply", b"\x1f\x8b\x08").contains("is a packed file"));
         assert!(said("a.blend", b"\x1f\x8b\x08").contains("is a Blender file"));
     }
 

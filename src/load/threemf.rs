@@ -1,6 +1,5 @@
-//! Reads 3MF: the objects that a file's build places, with their components, materials, colours and textures, also in layers. Axes are
-//! turned so that Y points up, and the file's unit becomes metres, unless another axis or unit was chosen: then its coordinates are
-//! taken as they are.
+//! Reads 3MF: the objects that a file's build places, with their components, materials, colours and textures. Axes are turned so that
+//! Y points up, and the file's unit becomes metres, unless another axis or unit was chosen: then its coordinates are taken as they are.
 //!
 //! A file is a zip archive with parts in XML. Parts are unpacked and parsed piece by piece, so none is in memory as a whole.
 //!
@@ -9,9 +8,7 @@
 mod archive;
 mod document;
 mod images;
-mod layers;
 mod looks;
-mod mixtures;
 mod model;
 mod placing;
 mod properties;
@@ -55,8 +52,7 @@ pub(super) fn read(
     };
     budget.release(bytes.len() as u64);
     drop(bytes);
-    let (mut faces, textured) =
-        placing::place((&document, &images), &import, &budget, &progress.part(0.4, 0.5), &mut notes)?;
+    let (mut faces, textured) = placing::place(&document, &import, &budget, &progress.part(0.4, 0.5), &mut notes)?;
     images.give(&textured, &mut faces, (document.held(), &budget), progress, &mut notes)?;
     let holds = document.holds();
     document.release(&budget);

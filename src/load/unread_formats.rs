@@ -26,15 +26,14 @@ pub(super) fn of_extension(extension: &str) -> Option<&'static UnreadFormat> {
 
 /// Returns the format of a compressed file by the extension, since what is compressed can't be seen.
 pub(super) fn of_compressed(start: &[u8], extension: &str) -> Option<&'static UnreadFormat> {
-    let is_compressed = start.starts_with(GZIP) || start.starts_with(ZSTANDARD);
-    of_extension(extension).filter(|_| is_compressed)
+    of_extension(extension).filter(|_| PACKED.iter().any(|magic| start.starts_with(magic)))
 }
 
-const GZIP: &[u8] = b"\x1f\x8b";
-const ZSTANDARD: &[u8] = b"\x28\xb5\x2f\xfd";
+/// How files begin that are compressed with gzip and Zstandard, and archives of 7-Zip and RAR.
+const PACKED: [&[u8]; 4] = [b"\x1f\x8b", b"\x28\xb5\x2f\xfd", b"7z\xbc\xaf\x27\x1c", b"Rar!\x1a\x07"];
 
 /// The commands are those of the converters' own documentation.
-const UNREAD: [UnreadFormat; 22] = [
+const UNREAD: [UnreadFormat; 8] = [
     UnreadFormat {
         is: "a USD file",
         extensions: &["usd", "usda", "usdc", "usdz"],
@@ -73,13 +72,6 @@ const UNREAD: [UnreadFormat; 22] = [
         advice: "convert it with `assimp export FILE.3ds FILE.glb -fglb2`",
     },
     UnreadFormat {
-        is: "a scene of 3ds Max",
-        extensions: &["max"],
-        // A compound file, as old documents of offices are too.
-        begins: |_, _| false,
-        advice: "export it as FBX or glTF from 3ds Max",
-    },
-    UnreadFormat {
         is: "a scene of Maya",
         extensions: &["ma", "mb"],
         begins: |start, _| {
@@ -89,99 +81,16 @@ const UNREAD: [UnreadFormat; 22] = [
         advice: "export it as FBX from Maya",
     },
     UnreadFormat {
-        is: "a scene of Cinema 4D",
-        extensions: &["c4d"],
-        begins: |start, _| start.starts_with(b"QC4DC4D6"),
-        advice: "export it as FBX or glTF from Cinema 4D",
-    },
-    UnreadFormat {
-        is: "a LightWave file",
-        extensions: &["lwo"],
-        begins: |start, _| start.starts_with(b"FORM") && matches!(start.get(8..12), Some(b"LWO2" | b"LWO3" | b"LWOB")),
-        advice: "convert it with `assimp export FILE.lwo FILE.glb -fglb2`",
-    },
-    UnreadFormat {
         is: "a STEP file, which holds curved surfaces instead of a mesh",
         extensions: &["step", "stp", "p21"],
         begins: |start, _| start.starts_with(b"ISO-10303-21;"),
         advice: "make triangles of it with `gmsh FILE.step -2 -o FILE.stl`",
     },
     UnreadFormat {
-        is: "an IGES file, which holds curved surfaces instead of a mesh",
-        extensions: &["iges", "igs"],
-        // Lines have 80 columns; the last 8 hold the section, which is S at the start, and the line's number.
-        begins: |start, _| matches!(start.get(72..80), Some(b"S      1" | b"S0000001")),
-        advice: "make triangles of it with `gmsh FILE.iges -2 -o FILE.stl`",
-    },
-    UnreadFormat {
-        is: "a Rhino file, which holds curved surfaces instead of a mesh",
-        extensions: &["3dm"],
-        begins: |start, _| start.starts_with(b"3D Geometry File Format"),
-        advice: "export its mesh as OBJ or glTF from Rhino",
-    },
-    UnreadFormat {
-        is: "a SketchUp file",
-        extensions: &["skp"],
-        begins: |start, _| start.starts_with(b"\xff\xfe\xff\x0eS\0k\0e\0t\0c\0h\0U\0p\0"),
-        advice: "export it as glTF, OBJ or STL from SketchUp",
-    },
-    UnreadFormat {
-        is: "a VRML file",
-        extensions: &["wrl", "vrml"],
-        begins: |start, _| start.starts_with(b"#VRML V"),
-        advice: "convert it with `assimp export FILE.wrl FILE.glb -fglb2`",
-    },
-    UnreadFormat {
-        is: "an X3D file",
-        extensions: &["x3d", "x3db", "x3dv"],
-        begins: |start, _| start.starts_with(b"#X3D V") || is_xml(start) && find(start, b"<X3D").is_some(),
-        advice: "convert it with `assimp export FILE.x3d FILE.glb -fglb2`",
-    },
-    UnreadFormat {
-        is: "an HDF5 file, as older Alembic files are",
-        extensions: &["h5", "hdf5"],
-        begins: |start, _| start.starts_with(b"\x89HDF\r\n\x1a\n"),
-        advice: "export the model as glTF from the program that wrote it",
-    },
-    UnreadFormat {
-        is: "a library of materials for OBJ files",
-        extensions: &["mtl"],
-        begins: |_, _| false,
-        advice: "open the .obj file that names it",
-    },
-    UnreadFormat {
-        is: "compressed with gzip",
-        extensions: &["gz"],
-        begins: |start, _| start.starts_with(GZIP),
-        advice: "unpack it with `gunzip FILE.gz` and open what it held",
-    },
-    UnreadFormat {
-        is: "compressed with Zstandard",
-        extensions: &["zst"],
-        begins: |start, _| start.starts_with(ZSTANDARD),
-        advice: "unpack it with `unzstd FILE.zst` and open what it held",
-    },
-    UnreadFormat {
-        is: "an archive",
-        extensions: &["7z", "rar"],
-        begins: |start, _| start.starts_with(b"7z\xbc\xaf\x27\x1c") || start.starts_with(b"Rar!\x1a\x07"),
+        is: "a packed file (gzip, Zstandard, 7-Zip or RAR)",
+        extensions: &["7z", "gz", "rar", "zst"],
+        begins: |start, _| PACKED.iter().any(|magic| start.starts_with(magic)),
         advice: "unpack it and open the model that it held",
-    },
-    UnreadFormat {
-        is: "a pointer of Git LFS in place of the model",
-        extensions: &[],
-        begins: |start, _| start.starts_with(b"version https://git-lfs.github.com/spec/"),
-        advice: "fetch the model with `git lfs pull`, or check out with LFS",
-    },
-    UnreadFormat {
-        is: "a page in HTML, as a failed download leaves it",
-        extensions: &["html", "htm"],
-        begins: |start, _| {
-            let start = start.trim_ascii_start();
-            let begins = |with: &[u8]| start.get(..with.len()).is_some_and(|own| own.eq_ignore_ascii_case(with));
-            begins(b"<!doctype html") || begins(b"<html")
-        },
-        advice: "fetch the model itself",
     },
 ];
 
@@ -216,11 +125,7 @@ mod tests {
     fn advice_names_a_command_or_a_program() {
         for format in &UNREAD {
             assert_eq!(format.advice.matches('`').count() % 2, 0, "{}", format.is);
-            assert!(
-                ["convert", "export", "make", "unpack", "open", "fetch"]
-                    .iter()
-                    .any(|verb| format.advice.starts_with(verb))
-            );
+            assert!(["convert", "export", "make", "unpack"].iter().any(|verb| format.advice.starts_with(verb)));
         }
     }
 
@@ -236,17 +141,10 @@ mod tests {
         assert_eq!(is(&zip, 100), Some("a USD file"));
         let studio = [&b"\x4d\x4d"[..], &1000_u32.to_le_bytes(), &[2, 0]].concat();
         assert_eq!([is(&studio, 1000), is(&studio, 999)], [Some("a file of 3D Studio"), None]);
-        let iges = format!("{:<72}S      1\n", "a part");
-        assert!(is(iges.as_bytes(), 81).is_some_and(|is| is.starts_with("an IGES file")));
         let xml = b"<?xml version=\"1.0\"?>\n<COLLADA version=\"1.4.1\">";
         assert_eq!(is(xml, 40), Some("a Collada file"));
         assert_eq!(is(b"FOR4\0\0\0\x10Maya", 40), Some("a scene of Maya"));
-        assert_eq!(is(b"FORM\0\0\0\x10LWO2", 40), Some("a LightWave file"));
         assert_eq!(is(b"FORM\0\0\0\x10AIFF", 40), None);
-        let pointer = b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a2146\nsize 12345\n";
-        assert_eq!(is(pointer, 130), Some("a pointer of Git LFS in place of the model"));
-        let page = "a page in HTML, as a failed download leaves it";
-        assert_eq!([is(b"\n<!DOCTYPE html><html>", 40), is(b"<HTML><body>", 40)], [Some(page); 2]);
     }
 
     #[test]
@@ -254,7 +152,7 @@ mod tests {
         let is = |start: &[u8], extension: &str| of_compressed(start, extension).map(|format| format.is);
         assert_eq!(is(b"\x28\xb5\x2f\xfd\0", "blend"), Some("a Blender file"));
         assert_eq!(is(b"\x1f\x8b\x08\0", "blend"), Some("a Blender file"));
-        assert_eq!(is(b"\x1f\x8b\x08\0", "gz"), Some("compressed with gzip"));
+        assert_eq!(is(b"\x1f\x8b\x08\0", "gz"), Some("a packed file (gzip, Zstandard, 7-Zip or RAR)"));
         assert_eq!([is(b"\x1f\x8b\x08\0", "bin"), is(b"BLENDER", "blend")], [None, None]);
     }
 }

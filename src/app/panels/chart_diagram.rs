@@ -5,7 +5,7 @@ use egui_plot::{GridInput, GridMark, Plot, PlotPoint, PlotTransform};
 
 use crate::app::jobs::chart_job::Charted;
 use inspect::plot::INK;
-use lab::chart::{Axis, Cost, Fill, Method, MethodStyle, RADIUS, Row, Setting, Shape, Tick, method_styles, tick_text};
+use lab::chart::{Axis, Cost, Fill, Method, MethodStyle, RADIUS, Row, Setting, Shape, Tick, method_styles};
 
 /// What is drawn.
 pub(super) struct Diagram<'a> {
@@ -29,64 +29,11 @@ pub(super) enum Spot<'a> {
 const REACH: f32 = 9.0;
 /// The radius of the rings around the window's own setting and around the point under the pointer, in points.
 const RING: f32 = 8.5;
-/// How far the axes go beyond the outermost values, and how far below them values that count as 0 are drawn, in decades.
-const SLACK: f64 = 0.1;
-const ZERO: f64 = 0.35;
-
-/// Logarithms of values along an axis.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Logs {
-    low: f64,
-    high: f64,
-    /// Where values that count as 0 are drawn; none if there are no such values.
-    zero: Option<f64>,
-}
-
-impl Logs {
-    /// An axis for these values. Those that aren't above `floor` count as 0.
-    fn around(values: impl Iterator<Item = f64>, floor: f64) -> Self {
-        let (mut low, mut high, mut has_zero) = (f64::INFINITY, f64::NEG_INFINITY, false);
-        for value in values {
-            if value > floor {
-                (low, high) = (low.min(value.log10()), high.max(value.log10()));
-            } else {
-                has_zero = true;
-            }
-        }
-        // Without values the axis still has a range.
-        if low > high {
-            (low, high) = (-1.0, 1.0);
-        }
-        let low = low - SLACK;
-        Self { low, high: high + SLACK, zero: has_zero.then_some(low - ZERO) }
-    }
-
-    fn place(&self, value: f64) -> f64 {
-        let log = value.log10();
-        self.zero.filter(|_| log < self.low).unwrap_or(log)
-    }
-
-    fn start(&self) -> f64 {
-        self.zero.map_or(self.low, |zero| zero - SLACK)
-    }
-
-    /// The same ticks as in the chart's files.
-    fn marks(&self, (from, to): (f64, f64)) -> Vec<GridMark> {
-        let values = [from.max(self.low), to].map(|log| 10f64.powf(log));
-        let ticks = Axis { values, px: [0.0, 1.0], zero_px: 0.0 }.ticks();
-        // The plot draws steps of 1 with a number and small steps as fine lines.
-        let mark = |Tick { value, named }| GridMark { value: value.log10(), step_size: if named { 1.0 } else { 0.03 } };
-        let zero = self.zero.map(|value| GridMark { value, step_size: 1.0 });
-        ticks.into_iter().map(mark).chain(zero).collect()
-    }
-
-    fn text(&self, mark: GridMark) -> String {
-        if self.zero.is_some_and(|zero| mark.value < zero + 1e-9) {
-            "0".into()
-        } else {
-            tick_text(10f64.powf(mark.value))
-        }
-    }
+/// The ticks between two places: the same as in the chart's files.
+fn marks(axis: &Axis, (from, to): (f64, f64)) -> Vec<GridMark> {
+    // The plot draws steps of 1 with a number and small steps as fine lines.
+    let mark = |Tick { place, named }| GridMark { value: place, step_size: if named { 1.0 } else { 0.03 } };
+    axis.ticks([from, to]).into_iter().map(mark).collect()
 }
 
 impl<'a> Diagram<'a> {
@@ -94,17 +41,17 @@ impl<'a> Diagram<'a> {
     pub(super) fn show(&self, ui: &mut egui::Ui) -> Option<(Spot<'a>, bool)> {
         let subject = &self.charted.subject;
         let spots = self.spots();
-        let x = Logs::around(spots.iter().map(|(_, [cost, _])| *cost), 0.0);
-        let y = Logs::around(spots.iter().map(|(_, [_, error])| *error), subject.floor() * subject.unit());
+        let x = Axis::around(spots.iter().map(|(_, [cost, _])| *cost), 0.0);
+        let y = Axis::around(spots.iter().map(|(_, [_, error])| *error), subject.floor() * subject.unit());
         // A plot keeps its view until it is reset, so each cost has a plot of its own.
         let plot = Plot::new(("chart", self.cost == Cost::Ms))
             .x_axis_label(self.cost.name())
             .y_axis_label(if subject.truth.is_some() { "Error, % of diagonal" } else { "Error, px" })
             .grid_color(ui.visuals().weak_text_color().gamma_multiply(0.5))
-            .x_grid_spacer(move |input: GridInput| x.marks(input.bounds))
-            .y_grid_spacer(move |input: GridInput| y.marks(input.bounds))
-            .x_axis_formatter(move |mark, _| x.text(mark))
-            .y_axis_formatter(move |mark, _| y.text(mark))
+            .x_grid_spacer(move |input: GridInput| marks(&x, input.bounds))
+            .y_grid_spacer(move |input: GridInput| marks(&y, input.bounds))
+            .x_axis_formatter(move |mark, _| x.text(mark.value))
+            .y_axis_formatter(move |mark, _| y.text(mark.value))
             .include_x(x.start())
             .include_x(x.high)
             .include_y(y.start())
@@ -199,8 +146,8 @@ impl<'a> Diagram<'a> {
 struct Canvas {
     painter: egui::Painter,
     transform: PlotTransform,
-    x: Logs,
-    y: Logs,
+    x: Axis,
+    y: Axis,
 }
 
 impl Canvas {
@@ -286,27 +233,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_below_the_floor_are_drawn_below_all_others_and_labelled_0() {
-        let logs = Logs::around([0.0, 0.01, 10.0].into_iter(), 1e-7);
-        let places = [0.0, 0.01, 10.0].map(|value| logs.place(value));
-        assert!(logs.start() < places[0] && places[0] < places[1] && places[2] < logs.high, "{places:?}");
-        assert_eq!((places[1], places[2]), (-2.0, 1.0));
-        let marks = logs.marks((logs.start(), logs.high));
-        let named: Vec<_> = marks.iter().filter(|mark| mark.step_size == 1.0).map(|mark| logs.text(*mark)).collect();
-        assert_eq!(named, ["0.01", "0.1", "1", "10", "0"]);
-        let positive = Logs::around([0.01, 10.0].into_iter(), 1e-7);
-        assert_eq!((positive.zero, positive.start()), (None, positive.low), "without zeros no room is kept for them");
-    }
-
-    #[test]
-    fn axes_of_small_ranges_have_ticks() {
-        for (least, most) in [(25.0, 38.0), (0.2, 0.21), (3.0, 3.0)] {
-            let logs = Logs::around([least, most].into_iter(), 0.0);
-            let marks = logs.marks((logs.start(), logs.high));
-            assert!(marks.iter().any(|mark| mark.step_size == 1.0), "{least} to {most}");
-            assert!(marks.iter().all(|mark| mark.value.is_finite()));
-        }
-        let none = Logs::around(std::iter::empty(), 0.0);
-        assert!(none.start() < none.high);
+    fn named_ticks_are_those_of_the_chart_s_files() {
+        let axis = Axis::around([0.0, 0.01, 10.0].into_iter(), 1e-7);
+        let marks = marks(&axis, (axis.start(), axis.high));
+        let named = marks.iter().filter(|mark| mark.step_size == 1.0);
+        assert_eq!(named.map(|mark| axis.text(mark.value)).collect::<Vec<_>>(), ["0", "0.01", "0.1", "1", "10"]);
     }
 }

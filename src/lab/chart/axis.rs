@@ -1,85 +1,110 @@
-//! A logarithmic axis: the position of each value, and its ticks.
+//! A logarithmic axis: the place of each value, and its ticks.
+
+use std::ops::Range;
 
 use geometry::numbers::grouped;
+use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 
-/// A logarithmic axis.
+/// A logarithmic axis. Places on it are logarithms to the base 10.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Axis {
-    /// The least and the greatest value.
-    pub values: [f64; 2],
-    /// Where the axis starts and ends, in px of the chart.
-    pub px: [f64; 2],
-    /// The space at the low end for values that count as 0, in px; 0 if there are none.
-    pub zero_px: f64,
+    low: f64,
+    pub high: f64,
+    /// The place of values that count as 0; none if there are no such values.
+    zero: Option<f64>,
 }
 
-/// A marked value.
+/// A marked place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tick {
-    pub value: f64,
+    pub place: f64,
     /// Whether the value is written beside the axis.
     pub named: bool,
 }
 
-/// By which factor the axis goes beyond the outermost values.
-const SLACK: f64 = 1.25;
+/// How far axes go beyond the outermost values, and how far below them values that count as 0 are drawn, in decades.
+const SLACK: f64 = 0.1;
+const ZERO: f64 = 0.35;
 
 impl Axis {
-    /// An axis that holds all values above `floor`. Smaller ones count as 0.
-    pub fn around(values: impl Iterator<Item = f64>, floor: f64, px: [f64; 2]) -> Self {
-        let (mut least, mut most, mut has_zero) = (f64::INFINITY, 0.0_f64, false);
+    /// An axis for these values. Those that aren't above `floor` count as 0.
+    pub fn around(values: impl Iterator<Item = f64>, floor: f64) -> Self {
+        let (mut low, mut high, mut has_zero) = (f64::INFINITY, f64::NEG_INFINITY, false);
         for value in values {
             if value > floor {
-                (least, most) = (least.min(value), most.max(value));
+                (low, high) = (low.min(value.log10()), high.max(value.log10()));
             } else {
                 has_zero = true;
             }
         }
-        // Without values, the axis shows some range.
-        let values = if most > 0.0 { [least / SLACK, most * SLACK] } else { [0.1, 10.0] };
-        Self { values, px, zero_px: if has_zero { 22.0 } else { 0.0 } }
-    }
-
-    /// The position of a value in px. Values below the axis are at its zero.
-    pub fn place(&self, value: f64) -> f64 {
-        let [from, to] = self.px;
-        let zero = from + self.zero_px * (to - from).signum();
-        if value < self.values[0] {
-            return from + 0.4 * (zero - from);
+        // Without values the axis still has a range.
+        if low > high {
+            (low, high) = (-1.0, 1.0);
         }
-        let [low, high] = self.values.map(f64::log10);
-        zero + (value.log10() - low) / (high - low) * (to - zero)
+        let low = low - SLACK;
+        Self { low, high: high + SLACK, zero: has_zero.then_some(low - ZERO) }
     }
 
-    /// The ticks. Powers of ten are named; on short axes, digits between them are named too.
-    pub fn ticks(&self) -> Vec<Tick> {
-        let [low, high] = self.values;
-        let decades = (high / low).log10();
+    pub fn place(&self, value: f64) -> f64 {
+        let log = value.log10();
+        self.zero.filter(|_| log < self.low).unwrap_or(log)
+    }
+
+    pub fn start(&self) -> f64 {
+        self.zero.map_or(self.low, |zero| zero - SLACK)
+    }
+
+    /// The ticks between two places. Powers of ten are named; on short axes, digits between them are named too.
+    pub fn ticks(&self, [from, to]: [f64; 2]) -> Vec<Tick> {
+        let from = from.max(self.low);
+        let decades = to - from;
         let named: &[u32] = match decades {
             d if d > 2.2 => &[1],
             d if d > 0.9 => &[1, 2, 5],
             _ => &[1, 2, 3, 4, 5, 6, 8],
         };
-        let mut ticks = Vec::new();
-        for decade in low.log10().floor() as i32..=high.log10().ceil() as i32 {
+        let mut ticks: Vec<_> = self.zero.map(|place| Tick { place, named: true }).into_iter().collect();
+        for decade in from.floor() as i32..=to.ceil() as i32 {
             for digit in 1..10 {
-                let value = f64::from(digit) * 10f64.powi(decade);
-                if (low..=high).contains(&value) && (decades < 6.0 || digit == 1) {
-                    ticks.push(Tick { value, named: named.contains(&digit) });
+                let place = f64::from(decade) + f64::from(digit).log10();
+                if (from..=to).contains(&place) && (decades < 6.0 || digit == 1) {
+                    ticks.push(Tick { place, named: named.contains(&digit) });
                 }
             }
         }
         ticks
     }
+
+    /// The value at a place as short text.
+    pub fn text(&self, place: f64) -> String {
+        let value = 10f64.powf(place);
+        match value {
+            _ if self.zero.is_some_and(|zero| place < zero + 1e-9) => "0".to_owned(),
+            _ if value >= 0.999e6 => format!("{} M", grouped((value / 1e6).round() as u64)),
+            _ if value >= 0.999 => grouped(value.round() as u64),
+            _ => super::words::plain(value),
+        }
+    }
 }
 
-/// A tick's value as short text.
-pub fn tick_text(value: f64) -> String {
-    if value >= 0.999e6 {
-        format!("{} M", grouped((value / 1e6).round() as u64))
-    } else if value >= 0.999 {
-        grouped(value.round() as u64)
-    } else {
-        super::words::plain(value)
+/// An axis of the plotting library, whose coordinates are the values.
+impl Ranged for Axis {
+    type FormatOption = DefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, value: &f64, (from, to): (i32, i32)) -> i32 {
+        let along = (self.place(*value) - self.start()) / (self.high - self.start());
+        from + (along * f64::from(to - from)).round() as i32
+    }
+
+    /// Named ticks are bold, and others are light.
+    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
+        let is_named = !hint.weight().allow_light_points();
+        let ticks = self.ticks([self.start(), self.high]).into_iter();
+        ticks.filter(|tick| tick.named == is_named).map(|tick| 10f64.powf(tick.place)).collect()
+    }
+
+    fn range(&self) -> Range<f64> {
+        10f64.powf(self.start())..10f64.powf(self.high)
     }
 }

@@ -20,7 +20,7 @@ enum Sample {
     Front,
 }
 
-/// The number of entries in a line of partitionings and normals.
+/// The number of entries in a line of LODs, or of partitionings and normals.
 const IN_A_LINE: usize = 3;
 
 /// Every method of a subject, with its style.
@@ -48,7 +48,7 @@ fn same(a: &Method, b: &Method) -> bool {
     a.partitioning == b.partitioning && a.normals == b.normals
 }
 
-/// The lines of the legend: one for surfaces, one for LODs, and more for partitionings and normals if there are several.
+/// The lines of the legend: those of surfaces, of LODs, and of partitionings and normals if there are several.
 pub(super) fn legend(subjects: &[Subject]) -> Vec<Vec<Entry>> {
     let Some(subject) = subjects.iter().max_by_key(|subject| subject.methods().len()) else { return Vec::new() };
     let variants = variants(&subject.methods());
@@ -67,14 +67,18 @@ pub(super) fn legend(subjects: &[Subject]) -> Vec<Vec<Entry>> {
         add(&mut lods, Sample::Line(dash(method.lod)), name);
     }
     add(&mut surfaces, Sample::Front, "nothing has less error at less cost".to_owned());
-    let mut lines = vec![surfaces, lods];
+    let mut pairs = Vec::new();
     for (index, method) in variants.iter().enumerate() {
-        if index % IN_A_LINE == 0 {
-            lines.push(Vec::new());
-        }
         let style = MethodStyle { color: INK, shape: Shape::Disc, ..MethodStyle::of(*method, index) };
         let name = format!("{}, {} normals", method.partitioning.name(), method.normals.name());
-        lines.last_mut().into_iter().for_each(|line| add(line, Sample::Marker(style), name.clone()));
+        add(&mut pairs, Sample::Marker(style), name);
+    }
+    let mut lines = vec![surfaces];
+    for mut entries in [lods, pairs] {
+        while !entries.is_empty() {
+            let rest = entries.split_off(entries.len().min(IN_A_LINE));
+            lines.push(std::mem::replace(&mut entries, rest));
+        }
     }
     lines
 }

@@ -15,7 +15,7 @@ mod save;
 mod setting;
 mod words;
 
-pub use axis::{Axis, Tick, tick_text};
+pub use axis::{Axis, Tick};
 pub use bench::{Bench, Effort, Probe, whole};
 pub use cost::Cost;
 pub use legend::method_styles;

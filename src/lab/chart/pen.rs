@@ -13,10 +13,9 @@ pub(super) struct Pen<'a, DB: DrawingBackend>(pub &'a DrawingArea<DB, Shift>);
 
 pub(super) type Drawn<DB> = Result<(), DrawingAreaErrorKind<<DB as DrawingBackend>::ErrorType>>;
 
-/// Text starts at its place, is centred on it, or ends there.
+/// Text starts at its place, or is centred on it.
 pub(super) const LEFT: Pos = Pos { h_pos: HPos::Left, v_pos: VPos::Center };
 pub(super) const MIDDLE: Pos = Pos { h_pos: HPos::Center, v_pos: VPos::Center };
-pub(super) const RIGHT: Pos = Pos { h_pos: HPos::Right, v_pos: VPos::Center };
 
 /// The colour under the front: the points that no other point beats.
 pub(super) const FRONT: RGBColor = RGBColor(214, 214, 214);
@@ -24,12 +23,18 @@ pub(super) const FRONT: RGBColor = RGBColor(214, 214, 214);
 /// The radius of a marker in px.
 pub const RADIUS: f64 = 3.6;
 
-fn px([x, y]: [f64; 2]) -> (i32, i32) {
+/// The px that are drawn for a place.
+pub(super) fn px([x, y]: [f64; 2]) -> (i32, i32) {
     let density = f64::from(DENSITY);
     ((x * density).round() as i32, (y * density).round() as i32)
 }
 
-fn width(px: f64) -> u32 {
+/// The place of px that are drawn.
+pub(super) fn place_of((x, y): (i32, i32)) -> [f64; 2] {
+    [x, y].map(|px| f64::from(px) / f64::from(DENSITY))
+}
+
+pub(super) fn width(px: f64) -> u32 {
     (px * f64::from(DENSITY)).round() as u32
 }
 
@@ -45,18 +50,9 @@ impl<DB: DrawingBackend> Pen<'_, DB> {
         }
     }
 
-    pub(super) fn rect(&self, min: [f64; 2], max: [f64; 2], style: impl Into<ShapeStyle>) -> Drawn<DB> {
-        self.0.draw(&Rectangle::new([px(min), px(max)], style))
-    }
-
     /// Draws text at a place. `size` is its height in px.
     pub(super) fn text(&self, text: &str, at: [f64; 2], size: i32, pos: Pos) -> Drawn<DB> {
         self.0.draw_text(text, &font(size).pos(pos), px(at))
-    }
-
-    /// Draws text that runs upwards, centred on a place.
-    pub(super) fn text_upwards(&self, text: &str, at: [f64; 2], size: i32) -> Drawn<DB> {
-        self.0.draw_text(text, &font(size).pos(MIDDLE).transform(FontTransform::Rotate270), px(at))
     }
 
     /// The width of text in px. In an SVG file it is an estimate, since the viewer's font may be wider.
@@ -79,7 +75,7 @@ impl<DB: DrawingBackend> Pen<'_, DB> {
         }
     }
 
-    fn shape(&self, at: [f64; 2], shape: Shape, radius: f64, style: ShapeStyle) -> Drawn<DB> {
+    pub(super) fn shape(&self, at: [f64; 2], shape: Shape, radius: f64, style: ShapeStyle) -> Drawn<DB> {
         if shape == Shape::Disc {
             return self.0.draw(&Circle::new(px(at), width(radius) as i32, style));
         }
@@ -90,6 +86,6 @@ impl<DB: DrawingBackend> Pen<'_, DB> {
     }
 }
 
-fn font(size: i32) -> TextStyle<'static> {
+pub(super) fn font(size: i32) -> TextStyle<'static> {
     plot::font(size * DENSITY as i32).color(&INK)
 }

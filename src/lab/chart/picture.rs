@@ -2,12 +2,14 @@
 
 use image::RgbImage;
 use plotters::coord::Shift;
+use plotters::coord::cartesian::Cartesian2d;
 use plotters::prelude::*;
 
-use super::axis::{Axis, Tick, tick_text};
+use super::axis::Axis;
 use super::labels::{Rect, Wanted, place};
 use super::legend::{Entry, draw_legend, legend, method_styles};
-use super::pen::{Drawn, FRONT, LEFT, MIDDLE, Pen, RIGHT};
+use super::method_style::Shape;
+use super::pen::{Drawn, FRONT, LEFT, MIDDLE, Pen, font, place_of, px, width};
 use super::{Cost, Method, Row, Subject};
 use inspect::plot::{self, ChartError, DENSITY, INK};
 
@@ -22,12 +24,15 @@ const PANEL_HEIGHT: f64 = 380.0;
 const HEAD: f64 = 48.0;
 const FOOT: f64 = 50.0;
 const LINE: f64 = 19.0;
+/// The space beyond the names of axes, in px.
+const DESCRIBED: f64 = 10.0;
 /// Sizes of text, in px.
 const TITLE: i32 = 18;
 const TEXT: i32 = 14;
 const SMALL: i32 = 12;
 
 const GRID: RGBColor = RGBColor(236, 236, 236);
+const FINE_GRID: RGBColor = RGBColor(246, 246, 246);
 
 /// Draws charts as a bitmap.
 ///
@@ -102,10 +107,8 @@ fn draw_subject<DB: DrawingBackend>(pen: &Pen<DB>, subject: &Subject, lines: &[S
     let after = LEFT_MARGIN + pen.text_width(&subject.title, TITLE) * 1.08 + 12.0;
     pen.text(&facts, [after, top + 21.0], TEXT, LEFT)?;
     let across = (f64::from(WIDTH) - LEFT_MARGIN - RIGHT_MARGIN - BETWEEN) / 2.0;
-    for (cost, column) in [(Cost::Ms, 0.0), (Cost::Triangles, 1.0)] {
-        let min = [LEFT_MARGIN + column * (across + BETWEEN), top + HEAD];
-        let frame = Rect { min, max: [min[0] + across, min[1] + PANEL_HEIGHT] };
-        Panel::new(subject, cost, frame).draw(pen, column == 0.0)?;
+    for (cost, left, margin) in [(Cost::Ms, 0.0, LEFT_MARGIN), (Cost::Triangles, LEFT_MARGIN + across, BETWEEN)] {
+        Panel { subject, cost }.draw(pen, [left, top + HEAD], [margin, across])?;
     }
     let mut y = top + HEAD + PANEL_HEIGHT + FOOT + LINE / 2.0;
     for line in lines {
@@ -115,38 +118,63 @@ fn draw_subject<DB: DrawingBackend>(pen: &Pen<DB>, subject: &Subject, lines: &[S
     Ok(())
 }
 
-/// One diagram: the error over one cost.
+/// The error over one cost.
+type Diagram<'a, DB> = ChartContext<'a, DB, Cartesian2d<Axis, Axis>>;
+
+/// One diagram.
 struct Panel<'a> {
     subject: &'a Subject,
     cost: Cost,
-    frame: Rect,
-    x: Axis,
-    y: Axis,
 }
 
-impl<'a> Panel<'a> {
-    fn new(subject: &'a Subject, cost: Cost, frame: Rect) -> Self {
-        let known = || subject.rows.iter().filter(|row| subject.error(row).is_some());
-        let x = Axis::around(known().map(|row| cost.of(row)), 0.0, [frame.min[0], frame.max[0]]);
-        let errors = subject.rows.iter().filter_map(|row| subject.error(row));
-        let shown = errors.map(|error| error * subject.unit());
-        let y = Axis::around(shown, subject.floor() * subject.unit(), [frame.max[1], frame.min[1]]);
-        Self { subject, cost, frame, x, y }
+impl Panel<'_> {
+    /// Draws the axes, from a corner on. `margin` is the space to the left of the diagram, and `across` its width, in px; the first one
+    /// has the names of errors there.
+    fn axes<'d, DB: DrawingBackend>(
+        &self,
+        pen: &Pen<'d, DB>,
+        [left, top]: [f64; 2],
+        [margin, across]: [f64; 2],
+    ) -> Result<Diagram<'d, DB>, DrawingAreaErrorKind<DB::ErrorType>> {
+        let known = || self.subject.rows.iter().filter_map(|row| Some((row, self.subject.error(row)?)));
+        let unit = self.subject.unit();
+        let x = Axis::around(known().map(|(row, _)| self.cost.of(row)), 0.0);
+        let y = Axis::around(known().map(|(_, error)| error * unit), self.subject.floor() * unit);
+        let area = pen.0.clone().shrink(px([left, top]), px([margin + across, PANEL_HEIGHT + FOOT]));
+        let mut chart = ChartBuilder::on(&area)
+            .margin_left(width(DESCRIBED))
+            .margin_bottom(width(DESCRIBED))
+            .x_label_area_size(width(FOOT - DESCRIBED))
+            .y_label_area_size(width(margin - DESCRIBED))
+            .build_cartesian_2d(x, y)?;
+        let is_first = left == 0.0;
+        chart
+            .configure_mesh()
+            .x_desc(self.cost.name())
+            .y_desc(if is_first { self.subject.error_name() } else { "" })
+            .axis_desc_style(font(TEXT))
+            .label_style(font(TEXT))
+            .x_label_formatter(&|value| x.text(x.place(*value)))
+            .y_label_formatter(&|value| if is_first { y.text(y.place(*value)) } else { String::new() })
+            .set_all_tick_mark_size(width(5.0))
+            .bold_line_style(GRID.stroke_width(DENSITY))
+            .light_line_style(FINE_GRID.stroke_width(DENSITY))
+            .axis_style(INK.stroke_width(DENSITY))
+            .draw()?;
+        Ok(chart)
     }
 
-    fn point(&self, row: &Row, error: f64) -> [f64; 2] {
-        [self.x.place(self.cost.of(row)), self.y.place(error * self.subject.unit())]
-    }
-
-    fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>, is_first: bool) -> Drawn<DB> {
-        self.draw_axes(pen, is_first)?;
+    fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>, corner: [f64; 2], across: [f64; 2]) -> Drawn<DB> {
+        let chart = self.axes(pen, corner, across)?;
+        let point =
+            |row: &Row, error: f64| place_of(chart.backend_coord(&(self.cost.of(row), error * self.subject.unit())));
         let races = self.subject.races();
         let fronts: Vec<_> = races.iter().map(|race| race.front(|row| self.cost.of(row))).collect();
         for front in &fronts {
-            let points: Vec<_> = front.iter().map(|(row, error)| self.point(row, *error)).collect();
+            let points: Vec<_> = front.iter().map(|(row, error)| point(row, *error)).collect();
             pen.line(&points, FRONT, 9.0, None)?;
-            // A front of one point is no line, so each point gets a square.
-            points.iter().try_for_each(|[x, y]| pen.rect([x - 4.5, y - 4.5], [x + 4.5, y + 4.5], FRONT.filled()))?;
+            // Discs, because a front of one point has no line.
+            points.iter().try_for_each(|at| pen.shape(*at, Shape::Disc, 4.5, FRONT.filled()))?;
         }
         let methods = method_styles(self.subject);
         let rows = |method: Method| {
@@ -156,68 +184,40 @@ impl<'a> Panel<'a> {
         let mut all: Vec<(&Row, [f64; 2])> = Vec::new();
         let mut lines = Vec::new();
         for (method, style) in &methods {
-            let points: Vec<_> = rows(*method).map(|(row, error)| (row, self.point(row, error))).collect();
+            let points: Vec<_> = rows(*method).map(|(row, error)| (row, point(row, error))).collect();
             let path: Vec<_> = points.iter().map(|(_, point)| *point).collect();
             pen.line(&path, style.color, 1.4, style.dash)?;
             lines.extend(path.windows(2).map(|ends| [ends[0], ends[1]]));
             all.extend(points);
         }
         for (method, style) in &methods {
-            rows(*method).try_for_each(|(row, error)| pen.marker(self.point(row, error), style))?;
+            rows(*method).try_for_each(|(row, error)| pen.marker(point(row, error), style))?;
         }
         // Points on the front get their labels first.
         let is_front = |row: &Row| fronts.iter().flatten().any(|(other, _)| std::ptr::eq(*other, row));
         all.sort_by_key(|(row, _)| !is_front(row));
-        self.draw_labels(pen, &all, &lines)
+        let (across, down) = chart.plotting_area().get_pixel_range();
+        let frame = Rect { min: place_of((across.start, down.start)), max: place_of((across.end, down.end)) };
+        draw_labels(pen, &all, &lines, frame)
     }
+}
 
-    fn draw_labels<DB: DrawingBackend>(
-        &self,
-        pen: &Pen<DB>,
-        all: &[(&Row, [f64; 2])],
-        lines: &[[[f64; 2]; 2]],
-    ) -> Drawn<DB> {
-        let texts: Vec<String> = all.iter().map(|(row, _)| row.setting.label()).collect();
-        let points: Vec<_> = all.iter().map(|(_, point)| *point).collect();
-        let size = |text: &str| [pen.text_width(text, SMALL) * 1.08, f64::from(SMALL)];
-        let wanted: Vec<_> = points.iter().zip(&texts).map(|(&at, text)| Wanted { at, size: size(text) }).collect();
-        for (text, rect) in texts.iter().zip(place(&wanted, &points, lines, self.frame)) {
-            if let Some(Rect { min, max }) = rect {
-                pen.text(text, [(min[0] + max[0]) / 2.0, (min[1] + max[1]) / 2.0], SMALL, MIDDLE)?;
-            }
+fn draw_labels<DB: DrawingBackend>(
+    pen: &Pen<DB>,
+    all: &[(&Row, [f64; 2])],
+    lines: &[[[f64; 2]; 2]],
+    frame: Rect,
+) -> Drawn<DB> {
+    let texts: Vec<String> = all.iter().map(|(row, _)| row.setting.label()).collect();
+    let points: Vec<_> = all.iter().map(|(_, point)| *point).collect();
+    let size = |text: &str| [pen.text_width(text, SMALL) * 1.08, f64::from(SMALL)];
+    let wanted: Vec<_> = points.iter().zip(&texts).map(|(&at, text)| Wanted { at, size: size(text) }).collect();
+    for (text, rect) in texts.iter().zip(place(&wanted, &points, lines, frame)) {
+        if let Some(Rect { min, max }) = rect {
+            pen.text(text, [(min[0] + max[0]) / 2.0, (min[1] + max[1]) / 2.0], SMALL, MIDDLE)?;
         }
-        Ok(())
     }
-
-    fn draw_axes<DB: DrawingBackend>(&self, pen: &Pen<DB>, is_first: bool) -> Drawn<DB> {
-        let Rect { min: [left, top], max: [right, bottom] } = self.frame;
-        for Tick { value, named } in self.x.ticks() {
-            let x = self.x.place(value);
-            if named {
-                pen.line(&[[x, top], [x, bottom]], GRID, 1.0, None)?;
-                pen.text(&tick_text(value), [x, bottom + 14.0], TEXT, MIDDLE)?;
-            }
-            pen.line(&[[x, bottom], [x, bottom + if named { 5.0 } else { 3.0 }]], INK, 1.0, None)?;
-        }
-        let zero = (self.y.zero_px > 0.0).then_some(Tick { value: 0.0, named: true });
-        for Tick { value, named } in self.y.ticks().into_iter().chain(zero) {
-            let y = self.y.place(value);
-            if named {
-                pen.line(&[[left, y], [right, y]], GRID, 1.0, None)?;
-            }
-            if named && is_first {
-                let text = if value > 0.0 { tick_text(value) } else { "0".to_owned() };
-                pen.text(&text, [left - 9.0, y], TEXT, RIGHT)?;
-            }
-            pen.line(&[[left - if named { 5.0 } else { 3.0 }, y], [left, y]], INK, 1.0, None)?;
-        }
-        pen.line(&[[left, top], [left, bottom], [right, bottom]], INK, 1.0, None)?;
-        pen.text(self.cost.name(), [(left + right) / 2.0, bottom + 34.0], TEXT, MIDDLE)?;
-        if !is_first {
-            return Ok(());
-        }
-        pen.text_upwards(self.subject.error_name(), [left - 52.0, (top + bottom) / 2.0], TEXT)
-    }
+    Ok(())
 }
 
 /// Breaks text between words into lines of at most `letters` letters.

@@ -336,10 +336,24 @@ fn charts_without_rows_or_errors_are_drawn() {
 
 #[test]
 fn values_of_0_lie_at_the_bottom() {
-    let axis = axis::Axis::around([0.0, 0.01, 1.0].into_iter(), 1e-7, [400.0, 0.0]);
+    let axis = Axis::around([0.0, 0.01, 1.0].into_iter(), 1e-7);
     let places = [0.0, 0.01, 1.0].map(|value| axis.place(value));
-    assert!(places[0] > places[1] && places[1] > places[2] && places[0] < 400.0, "{places:?}");
-    let none = axis::Axis::around([0.01, 1.0].into_iter(), 1e-7, [400.0, 0.0]);
-    assert!(none.place(0.01) > places[1], "no space for 0 without a value of 0");
-    assert!(none.ticks().iter().all(|tick| (0.0..=400.0).contains(&none.place(tick.value))));
+    assert!(axis.start() < places[0] && places[0] < places[1] && places[1] < places[2], "{places:?}");
+    assert_eq!(places.map(|place| axis.text(place)), ["0", "0.01", "1"]);
+    let none = Axis::around([0.01, 1.0].into_iter(), 1e-7);
+    assert!(none.start() > axis.start(), "no space for 0 without a value of 0");
+    let ticks = none.ticks([none.start(), none.high]);
+    assert!(!ticks.is_empty() && ticks.iter().all(|tick| (none.start()..=none.high).contains(&tick.place)));
+}
+
+#[test]
+fn axes_of_small_ranges_have_ticks() {
+    for (least, most) in [(25.0, 38.0), (0.2, 0.21), (3.0, 3.0)] {
+        let axis = Axis::around([least, most].into_iter(), 0.0);
+        let ticks = axis.ticks([axis.start(), axis.high]);
+        assert!(ticks.iter().any(|tick| tick.named), "{least} to {most}");
+        assert!(ticks.iter().all(|tick| tick.place.is_finite()));
+    }
+    let none = Axis::around(std::iter::empty(), 0.0);
+    assert!(none.start() < none.high);
 }

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use load::Source;
 use load::format::Format;
+use walkdir::{DirEntry, WalkDir};
 
 /// A folder that can't be looked through.
 #[derive(Debug)]
@@ -37,31 +38,19 @@ pub fn assets(given: &[Source]) -> Result<Vec<Source>, FolderError> {
 }
 
 fn meshes_in(folder: &Path) -> Result<Vec<PathBuf>, FolderError> {
-    let (mut folders, mut files) = (vec![folder.to_owned()], Vec::new());
-    while let Some(folder) = folders.pop() {
-        look_through(&folder, &mut folders, &mut files).map_err(|error| FolderError { folder, error })?;
-    }
-    files.sort();
-    Ok(files)
-}
-
-fn look_through(folder: &Path, folders: &mut Vec<PathBuf>, files: &mut Vec<PathBuf>) -> io::Result<()> {
-    for entry in std::fs::read_dir(folder)? {
-        let entry = entry?;
+    let is_shown = |entry: &DirEntry| entry.depth() == 0 || !entry.file_name().as_encoded_bytes().starts_with(b".");
+    let mut files = Vec::new();
+    for entry in WalkDir::new(folder).sort_by_file_name().into_iter().filter_entry(is_shown) {
+        let entry = entry
+            .map_err(|error| FolderError { folder: error.path().unwrap_or(folder).to_owned(), error: error.into() })?;
         let path = entry.path();
-        if entry.file_name().as_encoded_bytes().starts_with(b".") {
-            continue;
-        }
-        let kind = entry.file_type()?;
         // A link to a file that is gone is an asset that can't be opened.
-        let is_lost = kind.is_symlink() && !path.exists();
-        if kind.is_dir() {
-            folders.push(path);
-        } else if Format::of_name(&path).is_some() && (path.is_file() || is_lost) {
-            files.push(path);
+        let is_lost = entry.path_is_symlink() && !path.exists();
+        if Format::of_name(path).is_some() && (path.is_file() || is_lost) {
+            files.push(entry.into_path());
         }
     }
-    Ok(())
+    Ok(files)
 }
 
 #[cfg(test)]

@@ -29,7 +29,7 @@ pub enum ConfigError {
 }
 
 /// A configuration.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct Config {
     /// Its path, for messages.
     path: String,
@@ -38,7 +38,7 @@ pub struct Config {
 }
 
 /// A section for some of the files.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 struct Files {
     pattern: Pattern,
     line: usize,
@@ -220,15 +220,20 @@ impl Reader<'_> {
             let (mut path, mut own) = (None, Section::default());
             for (key, value) in self.table(section, "a section that begins with [[files]]")? {
                 match key.get_ref().as_ref() {
-                    "path" => path = Some((self.text(value)?, self.line(key.span()))),
+                    "path" => {
+                        let pattern = Pattern::parse(&self.text(value)?).map_err(|error| {
+                            self.error(value.span(), &format!("this is no pattern of paths: {error}"))
+                        })?;
+                        path = Some((pattern, self.line(key.span())));
+                    }
                     name if self.take(name, value, &mut own)? => {}
                     name => return Err(self.unknown(key.span(), name, &["path", "fail-on", "options", "cameras"])),
                 }
             }
             let without =
                 || self.error(section.span(), "a section of [[files]] needs a path, such as path = \"props/*.glb\"");
-            let (path, line) = path.ok_or_else(without)?;
-            files.push(Files { pattern: Pattern::new(&path), line, section: own });
+            let (pattern, line) = path.ok_or_else(without)?;
+            files.push(Files { pattern, line, section: own });
         }
         Ok(files)
     }
@@ -370,6 +375,7 @@ mod tests {
             ("[cameras]\nfront = [0, 10]", 2, "such as [cameras.front] with camera = [0, 10]"),
             ("[[files]]\nfail-on = []", 1, "needs a path"),
             ("[[files]]\npath = 3", 2, "expected a text"),
+            ("[[files]]\npath = \"a[z-a].glb\"", 2, "this is no pattern of paths"),
             ("files = 3", 1, "[[files]]"),
             ("[options]\ntolerance = \n", 2, "this is no TOML"),
             ("include = \"other.toml\"", 1, "there is no key include"),

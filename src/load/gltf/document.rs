@@ -1,8 +1,7 @@
-//! Parses a document so that the `gltf` crate accepts it.
+//! Parses a document for the `gltf` crate. Our [schema](super::schema) is the only check: it holds whatever the crate takes for granted.
 
 use ::gltf::Document;
 use ::gltf::json::Root;
-use ::gltf::json::validation::Error as ValidationError;
 use serde_json::{Map, Value, json};
 
 use super::cameras::CameraSources;
@@ -12,10 +11,9 @@ use super::lights::LightSources;
 use super::material_lists::MaterialLists;
 use super::node_parts::{self, NodeParts};
 use super::notes::Notes;
-use super::reach::{Beside, Reach};
+use super::reach::{Beside, Reach, list};
 use super::repair::{self, Faults};
 use super::scenes::Scenes;
-use super::schema_check::Replaced;
 use super::{GltfError, extension_table, glb, json, schema, schema_check, variants};
 use crate::memory_budget::Budget;
 use crate::selection::Selection;
@@ -75,9 +73,9 @@ pub(super) fn parse(
         reach = Reach::of(root, &beside);
     }
     let faults = repair::repair(root, &reach, (lists.materials.len(), requires_draco), budget, &mut notes)?;
-    let extensions = checked(root, &faults, budget)?;
+    let extensions = checked(root, &faults)?;
     let root: Root = serde_json::from_value(value).map_err(not_gltf)?;
-    let document = Document::from_json(root).map_err(first_fault)?;
+    let document = Document::from_json_without_validation(root);
     drop(json);
     let too_large =
         |refused: MemoryRefused| GltfError::Document { pointer: "its JSON".to_owned(), reason: refused.into() };
@@ -130,38 +128,20 @@ fn take_animations(root: &mut Map<String, Value>) -> Vec<Value> {
     }
 }
 
-/// Checks a document that was repaired against the schema, and adds what the `gltf` crate asks for and files may lack. Returns what it
-/// says about extensions.
+/// Checks a document that was repaired against the schema, which is all that the `gltf` crate takes for granted. Returns what it says about
+/// extensions.
 ///
 /// # Errors
 /// [`GltfError::Document`].
-fn checked(root: &mut Map<String, Value>, faults: &Faults, budget: &Budget) -> Result<Extensions, GltfError> {
-    schema_check::check(root, schema::DOCUMENT, &faults.replaced)?;
+fn checked(root: &mut Map<String, Value>, faults: &Faults) -> Result<Extensions, GltfError> {
+    schema_check::check(root, schema::DOCUMENT, &faults.replaced_views)?;
     let extensions = Extensions::of(root);
-    add_spares(root, &faults.replaced);
     complete(root);
-    complete_bare(root, budget)?;
     Ok(extensions)
 }
 
 fn not_gltf(reason: impl ToString) -> GltfError {
     GltfError::NotGltf { reason: reason.to_string() }
-}
-
-/// Returns the first error of the `gltf` crate's own validation, after ours found none. There may be as many errors as
-/// members.
-fn first_fault(error: ::gltf::Error) -> GltfError {
-    let ::gltf::Error::Validation(faults) = error else { return not_gltf(error) };
-    let Some((path, fault)) = faults.first() else { return not_gltf("it is invalid") };
-    let pointer = format!("/{}", path.as_str().replace(['.', '['], "/").replace([']', '"'], ""));
-    let reason = match fault {
-        ValidationError::IndexOutOfBounds => "is an index of something that doesn't exist",
-        ValidationError::Invalid => "has a value that isn't allowed",
-        ValidationError::Missing => "is missing",
-        ValidationError::Oversize => "is too large for any memory",
-        ValidationError::Unsupported => "isn't supported",
-    };
-    GltfError::Document { pointer, reason: reason.to_owned() }
 }
 
 /// Checks that the document is one of glTF 2.0, and needs no later version.
@@ -194,73 +174,13 @@ fn is_known(least: &str) -> bool {
     !matches!(parts, Some((Ok(major), Ok(minor))) if (major, minor) > (2, 0))
 }
 
-/// Adds what empty elements refer to. A primitive without positions is never read, but the crate requires them.
-fn add_spares(root: &mut Map<String, Value>, replaced: &Replaced) {
-    let accessors = root.get("accessors").and_then(Value::as_array).map_or(0, Vec::len);
-    let mut is_bare = false;
-    for mesh in objects(root, "meshes") {
-        for primitive in objects(mesh, "primitives") {
-            let Some(Value::Object(attributes)) = primitive.get_mut("attributes") else { continue };
-            attributes.entry("POSITION").or_insert_with(|| {
-                is_bare = true;
-                accessors.into()
-            });
-        }
-    }
-    let list = |root: &mut Map<String, Value>, name: &str, spare: Value| {
-        if let Value::Array(values) = root.entry(name).or_insert_with(|| json!([])) {
-            values.push(spare);
-        }
-    };
-    if is_bare {
-        list(root, "accessors", json!({ "componentType": 5126, "count": 0, "type": "VEC3" }));
-    }
-    let is_empty =
-        |root: &Map<String, Value>, name: &str| root.get(name).and_then(Value::as_array).is_none_or(Vec::is_empty);
-    let needs_view = is_bare || !replaced.accessors.is_empty();
-    if is_empty(root, "bufferViews") && needs_view {
-        list(root, "bufferViews", json!({ "buffer": 0, "byteLength": 0 }));
-    }
-    if is_empty(root, "buffers") && !is_empty(root, "bufferViews") {
-        list(root, "buffers", json!({ "byteLength": 0, "uri": "" }));
-    }
-}
-
-/// Adds members that the crate's validation requires.
+/// Adds members that the `gltf` crate asks for, but that may be missing.
 fn complete(root: &mut Map<String, Value>) {
     for scene in objects(root, "scenes") {
-        // A scene may be empty, but the crate requires the member.
         scene.entry("nodes").or_insert_with(|| json!([]));
     }
-    let mut positions = Vec::new();
-    for mesh in objects(root, "meshes") {
-        let primitives = mesh.get("primitives").and_then(Value::as_array).into_iter().flatten();
-        let position = |primitive: &Value| primitive.get("attributes")?.get("POSITION")?.as_u64();
-        positions.extend(primitives.filter_map(position));
+    // Empty views refer to a buffer.
+    if list(root, "buffers").is_empty() && !list(root, "bufferViews").is_empty() {
+        root.insert("buffers".to_owned(), json!([{ "byteLength": 0, "uri": "" }]));
     }
-    positions.sort_unstable();
-    positions.dedup();
-    let mut accessors: Vec<_> = objects(root, "accessors").collect();
-    for index in positions {
-        if let Some(accessor) = usize::try_from(index).ok().and_then(|index| accessors.get_mut(index)) {
-            // The specification requires these, but some exporters leave them out, and they aren't used here.
-            accessor.insert("min".to_owned(), json!([0.0, 0.0, 0.0]));
-            accessor.insert("max".to_owned(), json!([0.0, 0.0, 0.0]));
-        }
-    }
-}
-
-/// Adds sparse values, none of them, to accessors without a buffer view: such an accessor is all zeros (glTF 2.0,
-/// section 3.6.2) or compressed by Draco, but the crate requires a view or sparse values.
-fn complete_bare(root: &mut Map<String, Value>, budget: &Budget) -> Result<(), GltfError> {
-    let is_bare =
-        |accessor: &&mut Map<String, Value>| ["bufferView", "sparse"].iter().all(|name| !accessor.contains_key(*name));
-    let count = objects(root, "accessors").filter(is_bare).count();
-    let too_large = |reason| GltfError::Document { pointer: "its JSON".to_owned(), reason };
-    budget.borrow(count as u64 * 3 * json::PER_OBJECT).map_err(|refused| too_large(refused.into()))?;
-    for accessor in objects(root, "accessors").filter(is_bare) {
-        let (indices, values) = (json!({ "bufferView": 0, "componentType": 5121 }), json!({ "bufferView": 0 }));
-        accessor.insert("sparse".to_owned(), json!({ "count": 0, "indices": indices, "values": values }));
-    }
-    Ok(())
 }

@@ -1,7 +1,7 @@
 //! Reads the triangles of a primitive: lists, strips and fans, with or without indices.
 
 use ::gltf::mesh::Mode;
-use ::gltf::{Document, Mesh, Primitive};
+use ::gltf::{Document, Mesh, Primitive, Semantic};
 
 use super::accessor::List;
 use super::animated_vertices::AnimatedVertices;
@@ -117,11 +117,12 @@ impl PrimitiveReader {
         Self { import, ..Self::default() }
     }
 
-    /// Returns whether a primitive consists of points or lines, and counts it if so.
+    /// Returns whether a primitive consists of points or lines, or has no positions, and counts it if so.
     pub(super) fn skip(&mut self, primitive: &Primitive) -> bool {
         let count = match primitive.mode() {
             Mode::Points => &mut self.points,
             Mode::Lines | Mode::LineLoop | Mode::LineStrip => &mut self.lines,
+            _ if primitive.get(&Semantic::Positions).is_none() => &mut self.read,
             Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan => return false,
         };
         *count += 1;

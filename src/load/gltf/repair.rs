@@ -10,7 +10,7 @@ use super::json::{PER_OBJECT, PER_READ};
 use super::notes::Notes;
 use super::reach::{Reach, Use, is_drawn, is_influence, list, packed};
 use super::schema::{self, INSTANCING, is_detail};
-use super::schema_check::{Checker, Replaced};
+use super::schema_check::Checker;
 use crate::memory_budget::Budget;
 use geometry::mesh::{MemoryAccount, MemoryRefused};
 
@@ -22,8 +22,8 @@ const ROUNDING: f64 = 1e-3;
 pub(crate) struct Faults {
     pub accessors: HashMap<usize, String>,
     pub views: HashMap<usize, String>,
-    /// The elements of lists that were replaced by empty ones, whose own indices needn't exist.
-    pub replaced: Replaced,
+    /// The views that were replaced by empty ones, whose buffer needn't exist.
+    pub replaced_views: Vec<bool>,
 }
 
 /// Repairs a document. `reach` says what of it is used; `materials` is the number of its materials.
@@ -228,11 +228,8 @@ fn drop_index(object: &mut Map<String, Value>, name: &str, count: usize) -> bool
 
 /// Replaces accessors, views and buffers that aren't used by empty ones, and broken ones that only details use.
 fn repair_data(root: &mut Map<String, Value>, reach: &Reach) -> Faults {
-    let replaced = Replaced::default();
-    let checker = Checker::new(root, schema::DOCUMENT, &replaced);
-    let mut faults = Faults::default();
-    faults.replaced.accessors = vec![false; reach.accessors.len()];
-    faults.replaced.views = vec![false; reach.views.len()];
+    let checker = Checker::new(root, schema::DOCUMENT, &[]);
+    let mut faults = Faults { replaced_views: vec![false; reach.views.len()], ..Faults::default() };
     for (i, accessor) in elements(root, "accessors").iter_mut().enumerate() {
         let fault = match reach.accessors[i] {
             Use::Shape => continue,
@@ -243,8 +240,7 @@ fn repair_data(root: &mut Map<String, Value>, reach: &Reach) -> Faults {
             Use::None => None,
         };
         faults.accessors.extend(fault.map(|fault| (i, reason(fault))));
-        faults.replaced.accessors[i] = true;
-        *accessor = json!({ "bufferView": 0, "componentType": 5126, "count": 0, "type": "SCALAR" });
+        *accessor = json!({ "componentType": 5126, "count": 0, "type": "SCALAR" });
     }
     for (i, view) in elements(root, "bufferViews").iter_mut().enumerate() {
         let fault = match reach.views[i] {
@@ -256,7 +252,7 @@ fn repair_data(root: &mut Map<String, Value>, reach: &Reach) -> Faults {
             Use::None => None,
         };
         faults.views.extend(fault.map(|fault| (i, reason(fault))));
-        faults.replaced.views[i] = true;
+        faults.replaced_views[i] = true;
         *view = json!({ "buffer": 0, "byteLength": 0 });
     }
     for (i, buffer) in elements(root, "buffers").iter_mut().enumerate() {

@@ -16,30 +16,9 @@ use super::schema::{Field, MemberKind};
 pub(super) fn check(
     document: &mut Map<String, Value>,
     schema: &'static [Field],
-    replaced: &Replaced,
+    replaced_views: &[bool],
 ) -> Result<(), GltfError> {
-    Checker::new(document, schema, replaced).object(document, schema, &JsonPointer(None, Part::Root))
-}
-
-/// Which elements of a document's lists were replaced by empty ones, and aren't checked.
-#[derive(Debug, Default)]
-pub(crate) struct Replaced {
-    pub accessors: Vec<bool>,
-    pub views: Vec<bool>,
-}
-
-impl Replaced {
-    fn has(&self, path: &JsonPointer) -> bool {
-        let JsonPointer(Some(JsonPointer(Some(JsonPointer(None, _)), Part::Name(list))), Part::Place(place)) = path
-        else {
-            return false;
-        };
-        match *list {
-            "accessors" => self.accessors.get(*place) == Some(&true),
-            "bufferViews" => self.views.get(*place) == Some(&true),
-            _ => false,
-        }
-    }
+    Checker::new(document, schema, replaced_views).object(document, schema, &JsonPointer(None, Part::Root))
 }
 
 /// A place in the document.
@@ -79,13 +58,14 @@ impl JsonPointer<'_> {
 pub(super) struct Checker<'a> {
     /// The number of elements of each of the document's lists.
     counts: HashMap<&'static str, u64>,
-    replaced: &'a Replaced,
+    /// Which buffer views were replaced by empty ones, and aren't checked.
+    replaced_views: &'a [bool],
 }
 
 impl<'a> Checker<'a> {
-    pub(super) fn new(document: &Map<String, Value>, schema: &'static [Field], replaced: &'a Replaced) -> Self {
+    pub(super) fn new(document: &Map<String, Value>, schema: &'static [Field], replaced_views: &'a [bool]) -> Self {
         let count = |field: &Field| Some((field.name, document.get(field.name)?.as_array()?.len() as u64));
-        Self { counts: schema.iter().filter_map(count).collect(), replaced }
+        Self { counts: schema.iter().filter_map(count).collect(), replaced_views }
     }
 
     /// Checks one element of one of the document's lists.
@@ -160,9 +140,13 @@ impl<'a> Checker<'a> {
                 Value::Object(object) => self.object(object, fields, path),
                 other => path.should_be("an object", other),
             },
-            MemberKind::Objects(fields) => each(value, path, |value, path| match self.replaced.has(path) {
-                true => Ok(()),
-                false => self.value(value, &MemberKind::Object(fields), path),
+            MemberKind::Objects(fields) => each(value, path, |value, path| match path {
+                JsonPointer(Some(JsonPointer(_, Part::Name("bufferViews"))), Part::Place(place))
+                    if self.replaced_views.get(*place) == Some(&true) =>
+                {
+                    Ok(())
+                }
+                _ => self.value(value, &MemberKind::Object(fields), path),
             }),
             MemberKind::Attributes(is_read) => self.attributes(value, *is_read, path),
             MemberKind::Targets(is_read) => each(value, path, |value, path| self.attributes(value, *is_read, path)),

@@ -8,7 +8,7 @@ use std::rc::Rc;
 
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 
-use super::properties::{Group, LayerFaults};
+use super::properties::Group;
 use super::texture2d::Texture2d;
 use super::xml::{Element, Step};
 use super::{broken, too_large};
@@ -168,10 +168,8 @@ enum Kind {
     Texture,
     Coordinates,
     Coordinate,
-    Composites,
-    Composite,
-    Layers,
-    LayersEntry,
+    Combined,
+    CombinedEntry,
     Ignored,
 }
 
@@ -190,10 +188,8 @@ impl Kind {
             (Self::Resources, b"texture2d") => Self::Texture,
             (Self::Resources, b"texture2dgroup") => Self::Coordinates,
             (Self::Coordinates, b"tex2coord") => Self::Coordinate,
-            (Self::Resources, b"compositematerials") => Self::Composites,
-            (Self::Composites, b"composite") => Self::Composite,
-            (Self::Resources, b"multiproperties") => Self::Layers,
-            (Self::Layers, b"multi") => Self::LayersEntry,
+            (Self::Resources, b"compositematerials" | b"multiproperties") => Self::Combined,
+            (Self::Combined, b"composite" | b"multi") => Self::CombinedEntry,
             (Self::Object, b"mesh") => Self::Mesh,
             (Self::Object, b"components") => Self::Components,
             (Self::Object, b"metadatagroup") => Self::Ignored,
@@ -214,9 +210,6 @@ impl Kind {
 struct Counts {
     repeated: usize,
     bad_colors: usize,
-    absent_constituents: usize,
-    bad_shares: usize,
-    layers: LayerFaults,
 }
 
 /// Collects what a part has from its tags.
@@ -272,9 +265,7 @@ impl<'a> ModelReader<'a> {
             Step::Close => {
                 match self.open.pop() {
                     Some(Kind::Object) => self.end_object(),
-                    Some(Kind::Materials | Kind::Colors | Kind::Coordinates | Kind::Composites | Kind::Layers) => {
-                        self.end_group()
-                    }
+                    Some(Kind::Materials | Kind::Colors | Kind::Coordinates | Kind::Combined) => self.end_group(),
                     _ => {}
                 }
                 Ok(())
@@ -300,10 +291,8 @@ impl<'a> ModelReader<'a> {
             Kind::Shape => self.unread(|unread| unread.shape = true),
             Kind::Materials => self.begin_group(element, Group::Materials(Vec::new()))?,
             Kind::Colors => self.begin_group(element, Group::Colors(Vec::new()))?,
-            Kind::Composites => self.begin_composites(element)?,
-            Kind::Composite => self.composite(element)?,
-            Kind::Layers => self.begin_layers(element)?,
-            Kind::LayersEntry => self.layers_entry(element)?,
+            Kind::Combined => self.begin_combined(element)?,
+            Kind::CombinedEntry => self.combined(element)?,
             Kind::Texture => self.texture(element)?,
             Kind::Coordinates => {
                 // A texture without a number is one that isn't there.
@@ -495,14 +484,10 @@ impl<'a> ModelReader<'a> {
         if !self.is_model {
             return Err(self.broken("it isn't a 3MF model: its first element isn't called \"model\""));
         }
-        let Counts { repeated, bad_colors, absent_constituents, bad_shares, layers } = self.found;
+        let Counts { repeated, bad_colors } = self.found;
         self.notes.extend(crate::face_builder::counted([
             (repeated, "objects with the id of another, left out"),
             (bad_colors, "colours that aren't #RRGGBB or #RRGGBBAA, replaced by white"),
-            (absent_constituents, "materials of mixtures that aren't in the file, left out of them"),
-            (bad_shares, "shares of materials in mixtures that aren't numbers from 0 on, replaced by 0"),
-            (layers.beyond, "layers of properties beyond the first 16, left out"),
-            (layers.methods, "ways to blend layers that are neither mix nor multiply, replaced by mix"),
         ]));
         Ok(self.part)
     }

@@ -5,9 +5,7 @@ use std::collections::HashMap;
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::document::{Document, ObjectAt};
-use super::images::Images;
-use super::looks::{Faults, Looks, Resolved};
-use super::mixtures::Textured;
+use super::looks::{Faults, Looks, Resolved, Textured};
 use super::model::{Object, Placed, Triangle};
 use super::properties::Group;
 use super::{broken, too_large};
@@ -32,7 +30,7 @@ const TRIANGLES: u64 = 4096;
 /// # Errors
 /// [`ReadError`].
 pub(super) fn place<'a>(
-    (document, images): (&Document, &Images),
+    document: &Document,
     import: &Import,
     budget: &'a Budget,
     progress: &Progress,
@@ -53,11 +51,7 @@ pub(super) fn place<'a>(
     budget.release(least);
     let mut faces = FaceBuilder::new(usize::try_from(budget.files()).unwrap_or(usize::MAX), budget).importing(*import);
     faces.expect(usize::try_from(total).unwrap_or(usize::MAX), document.geometry.vertices.len());
-    let colors = |group: &Group| match group {
-        Group::Colors(colors) => !colors.is_empty(),
-        Group::Composites(_) | Group::Layers(_) => true,
-        Group::Materials(_) | Group::Texture { .. } => false,
-    };
+    let colors = |group: &Group| matches!(group, Group::Colors(colors) if !colors.is_empty());
     if document.parts.iter().any(|part| part.groups.values().any(colors)) {
         faces.color();
     }
@@ -66,7 +60,7 @@ pub(super) fn place<'a>(
         document,
         counted: &counter.counted,
         faces,
-        looks: Looks::new(document, images),
+        looks: Looks::new(document),
         corners: Vec::new(),
         found: Faults::default(),
         progress,

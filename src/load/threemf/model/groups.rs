@@ -1,11 +1,9 @@
-//! Reads what triangles look like: textures, and groups of materials, colours, texture coordinates, mixtures and layers.
-
-use glam::Vec4;
+//! Reads what triangles look like: textures, and groups of materials, colours and texture coordinates.
 
 use super::{ModelReader, PER_ENTRY};
 use crate::read_error::ReadError;
 use crate::text_lines::{number_or_nan, words};
-use crate::threemf::properties::{Composites, Group, LayerFaults, MultiProperties};
+use crate::threemf::properties::Group;
 use crate::threemf::texture2d::Texture2d;
 use crate::threemf::xml::Element;
 
@@ -62,40 +60,27 @@ impl ModelReader<'_> {
         Ok(())
     }
 
-    /// Begins mixtures of materials, which stand before them in the file (core specification, chapter 3.4).
-    pub(super) fn begin_composites(&mut self, element: &Element) -> Result<(), ReadError> {
-        let words = element.attribute(b"matindices").map_or(0, |text| words(&text).count());
-        self.geometry.hold(3 * (words * size_of::<Option<Vec4>>()) as u64, self.budget)?;
-        let materials = element.number(b"matid").and_then(|id| self.part.groups.get(&id));
-        let composites = Composites::of(element, materials);
-        self.found.absent_constituents += composites.absent();
-        self.begin_group(element, Group::Composites(composites))
+    /// Begins layers of groups, or mixtures of materials. A group that isn't named is one that isn't there.
+    pub(super) fn begin_combined(&mut self, element: &Element) -> Result<(), ReadError> {
+        let lowest = first_of(element, b"pids", first_of(element, b"matid", u32::MAX));
+        let first = first_of(element, b"matindices", 0);
+        self.begin_group(element, Group::Combined { lowest, first, entries: Vec::new() })
     }
 
-    pub(super) fn composite(&mut self, element: &Element) -> Result<(), ReadError> {
-        if let Some((_, Group::Composites(composites))) = &mut self.group {
-            self.geometry.hold(3 * size_of::<Vec4>() as u64, self.budget)?;
-            let (color, bad) = composites.mixed(&element.text(b"values").unwrap_or_default());
-            composites.colors.push(color);
-            self.found.bad_shares += bad;
+    pub(super) fn combined(&mut self, element: &Element) -> Result<(), ReadError> {
+        if let Some((_, Group::Combined { first, entries, .. })) = &mut self.group {
+            self.geometry.hold(3 * size_of::<u32>() as u64, self.budget)?;
+            entries.push(first_of(element, b"pindices", *first));
         }
         Ok(())
     }
+}
 
-    pub(super) fn begin_layers(&mut self, element: &Element) -> Result<(), ReadError> {
-        let (layers, LayerFaults { beyond, methods }) = MultiProperties::of(element);
-        self.found.layers.beyond += beyond;
-        self.found.layers.methods += methods;
-        self.begin_group(element, Group::Layers(layers))
-    }
-
-    pub(super) fn layers_entry(&mut self, element: &Element) -> Result<(), ReadError> {
-        if let Some((_, Group::Layers(layers))) = &mut self.group {
-            self.geometry.hold(3 * (layers.layers.len() * size_of::<u32>()) as u64, self.budget)?;
-            layers.push(&element.text(b"pindices").unwrap_or_default());
-        }
-        Ok(())
-    }
+/// The first number of an attribute; another one without any, and one that nothing has for what isn't a number.
+fn first_of(element: &Element, name: &[u8], otherwise: u32) -> u32 {
+    let text = element.attribute(name).unwrap_or_default();
+    let Some(word) = words(&text).next() else { return otherwise };
+    std::str::from_utf8(word).ok().and_then(|word| word.parse().ok()).unwrap_or(u32::MAX)
 }
 
 /// Parses a colour: `#RRGGBB` or `#RRGGBBAA`.
