@@ -22,7 +22,7 @@ use crate::engine::{Engine, Loaded, MeasurementResults, Measurements, Runs, Silh
 use crate::gates::Judgement;
 use crate::gpu::{Given, GpuError, Recorder, SurfaceShader, Timing};
 use crate::load::panorama::Panorama;
-use crate::measure::{AccuracyOptions, DeviationField, ScreenError, Silhouette, patch_edges};
+use crate::measure::{AccuracyOptions, DeviationField, ScreenError, Silhouette, patch_edges, patch_width};
 use crate::mesh::{Bounds, Mesh, Moment, Texture, t_junctions};
 use crate::progress::Progress;
 use crate::render::{
@@ -386,7 +386,8 @@ impl Shot {
         lines.extend(&self.subject.more_lines[half as usize]);
         if let Some(patch) = self.subject.selected {
             let outlines = measured.map(|measured| &measured.outlines);
-            lines.extend(patch_lines(&patch_edges(topology, patch, outlines, settings.tessellation.convention)));
+            let edges = patch_edges(topology, patch, outlines, settings.tessellation.convention);
+            lines.extend(patch_lines(&edges, patch_width(topology, patch, outlines)));
         }
         Ok(lines)
     }

@@ -9,7 +9,7 @@ use std::fmt;
 use std::str::FromStr;
 
 pub(crate) use judgement::{Facts, Judgement, judge};
-pub(crate) use place::{EdgeSpot, Place, Spot};
+pub(crate) use place::{EdgeSpot, PatchSpot, Place, Spot};
 pub(crate) use standpoint::Standpoints;
 
 use crate::names::every;

@@ -29,7 +29,7 @@ pub(crate) use cracks::{CrackedEdge, Cracks};
 pub(crate) use deviation_field::{DeviationField, DeviationMeasurement, DeviationTarget, MOST_TRIANGLES};
 pub(crate) use folds::FoldedPatch;
 pub(crate) use indices::{IndexDifference, Meaning, index_differences};
-pub(crate) use outlines::{EdgeSide, patch_edges};
+pub(crate) use outlines::{EdgeSide, patch_edges, patch_facing, patch_width};
 pub(crate) use points_agreement::{PointsAgreement, PointsDisagreement};
 pub(crate) use screen_error::{PatchesAbove, ScreenError, ScreenErrorMeasurement};
 pub(crate) use seams::{SeamTurns, Seams};

@@ -4,9 +4,9 @@ use egui::Response;
 use glam::Vec3;
 
 use crate::app::App;
-use crate::gates::Spot;
+use crate::gates::{PatchSpot, Spot};
 use crate::gpu::GpuError;
-use crate::measure::patch_edges;
+use crate::measure::{patch_edges, patch_facing, patch_width};
 use crate::mesh::Topology;
 use crate::render::{LineSegment, Picked, PickedTriangle, Picking, Pixel, patch_lines};
 use crate::settings::SplitSide;
@@ -161,9 +161,15 @@ impl App {
     /// Shows the selected patch.
     pub(in crate::app) fn frame_patch(&mut self) {
         let (Some(patch), Some(document)) = (self.selected_patch(), &self.document) else { return };
-        let corners = document.shown().1.patch_positions(patch);
-        let at = corners.iter().map(|corner| corner / 3.0).sum();
-        self.show_place(SplitSide::Right, &Spot::Patch { corners, at }, Some(patch));
+        let topology = &document.shown().1;
+        let corners = topology.patch_positions(patch);
+        // In the middle of what was emitted, since the middle of a flat triangle may lie below the surface.
+        let border = self.patch_edges(topology, patch, SplitSide::Right).concat();
+        let at = border.iter().map(|point| point / border.len() as f32).sum();
+        let outlines = self.results().map(|results| &results.found.outlines);
+        let facing = patch_facing(topology, patch, outlines).normalize_or_zero().as_vec3();
+        let spot = PatchSpot { facing, ..PatchSpot::of(corners, at) };
+        self.show_place(SplitSide::Right, &Spot::Patch(spot), Some(patch));
     }
 
     pub(in crate::app) fn outlined(&self) -> Outlined {
@@ -187,7 +193,8 @@ impl App {
         (0..3)
             .filter(|&i| Some(sides[domain_side(self.convention(), i) as usize]) == cracked)
             .for_each(|i| edges[i as usize].clear());
-        lines.extend(patch_lines(&edges));
+        let outlines = self.measured(half).found().map(|found| &found.outlines);
+        lines.extend(patch_lines(&edges, patch_width(topology, patch, outlines)));
         lines
     }
 
