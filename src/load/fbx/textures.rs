@@ -7,7 +7,7 @@ use crate::load::images::{decode_halved, texture_size};
 use crate::load::memory_budget::Budget;
 use crate::load::notes::Notes;
 use crate::load::texture_room::{Scaling, TextureRoom};
-use crate::load::uri::Files;
+use crate::load::uri::{Files, shown};
 use crate::mesh::mipmap::MipFilter;
 use crate::mesh::{Sampling, Texture, Wrap, borrowing};
 
@@ -92,7 +92,7 @@ impl<'a> Textures<'a> {
             // The name isn't a URI, so a % is a letter.
             match self.files.read(&name.replace('%', "%25"), false) {
                 Ok(bytes) => return read(&bytes),
-                Err(reason) => problem = reason,
+                Err(reason) => problem = format!("\"{}\" can't be read: {reason}", shown(&name)),
             }
         }
         Err(problem)
