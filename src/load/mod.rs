@@ -63,7 +63,7 @@ pub(crate) use uri::percent_decoded;
 #[cfg(test)]
 pub(crate) use format::Format;
 pub(crate) use heights::HeightSource;
-pub(crate) use import::{FileUnit, Import, LengthUnit, NormalSource, UNIT_METRES};
+pub(crate) use import::{FileUnit, Import, LengthUnit, NormalSource, UNIT_METRES, is_of_lacking_normals};
 pub(crate) use memory_budget::Budget;
 pub(crate) use source::Source;
 #[cfg(test)]
