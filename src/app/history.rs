@@ -119,15 +119,7 @@ impl App {
             return;
         }
         if !self.is_opening() {
-            if let Some(settings) = self.taken_back.take() {
-                // Files that were opened again have changed settings. If the mesh wasn't read anew, its import is the one that is there.
-                self.settings = Settings { import: self.settings.import, ..settings };
-                self.replace_again::<LodShader>();
-                self.replace_again::<SurfaceShader>();
-                self.replace_by_factors();
-                // A file of light may be gone.
-                self.cancel_environment();
-            }
+            self.takes_back = false;
             self.history.note(&self.undoable());
         }
         self.view_history.note(&self.viewport.camera, context.input(|input| input.time));
@@ -167,6 +159,7 @@ impl App {
     pub(super) fn take_preparation(&mut self) {
         let Undoable { preparation, settings, .. } = self.undoable();
         self.hidden = Arc::new(preparation.hidden.clone());
+        self.takes_back = false;
         self.history.change_all(|step| {
             step.preparation = preparation.clone();
             step.settings.tessellation.displacement = settings.tessellation.displacement;
@@ -206,7 +199,7 @@ impl App {
     pub fn undo(&mut self, context: &egui::Context) {
         let state = self.state_to_leave();
         // A file that is still being read is no step yet: reading it is what is taken back.
-        let only_opens = self.is_opening() && self.taken_back.is_none() && self.history.now.as_ref() == Some(&state);
+        let only_opens = self.is_opening() && !self.takes_back && self.history.now.as_ref() == Some(&state);
         let before = if only_opens { Some(state) } else { self.history.undo(&state) };
         self.take_back(context, before);
     }
@@ -217,10 +210,10 @@ impl App {
         self.take_back(context, after);
     }
 
-    /// The present state; or while a step is still being taken back, that step.
+    /// The present state; or while a step is still being taken back, that step with the present settings.
     fn state_to_leave(&self) -> Undoable {
-        let step = self.history.now.as_ref().filter(|_| self.taken_back.is_some());
-        step.cloned().unwrap_or_else(|| self.undoable())
+        let step = self.history.now.clone().filter(|_| self.takes_back);
+        step.map_or_else(|| self.undoable(), |step| Undoable { settings: self.settings_without_files(), ..step })
     }
 
     fn take_back(&mut self, context: &egui::Context, step: Option<Undoable>) {
@@ -230,13 +223,25 @@ impl App {
         jobs.factors.take_if(|_| self.given.is_none());
         jobs.load.take_if(|load| load.keep_view);
         self.take_back_files(context, files);
-        self.settings = settings;
+        self.put_settings(settings);
         self.hidden = Arc::new(preparation.hidden.clone());
         let preparation = Preparation { import: settings.import, ..preparation };
         if self.preparation() != preparation {
             self.prepare(context, |own| *own = preparation);
         }
-        self.taken_back = Some(settings);
+        self.takes_back = true;
+    }
+
+    /// Sets all settings, and lets open files take the place of theirs again.
+    pub(super) fn put_settings(&mut self, settings: Settings) {
+        self.settings = settings;
+        self.replace_again::<LodShader>();
+        self.replace_again::<SurfaceShader>();
+        self.replace_by_factors();
+        if self.jobs.environment.is_none() {
+            // A file of light may be gone.
+            self.cancel_environment();
+        }
     }
 
     /// Opens the files that were open at a step of undo, and closes others.

@@ -55,8 +55,8 @@ pub struct App {
     /// The names of parts of the file that are to be left out.
     hidden: Arc<Vec<String>>,
     history: History<Undoable>,
-    /// The settings of a step of undo, until all of its files are read.
-    taken_back: Option<Settings>,
+    /// Whether files of a step of undo are being read.
+    takes_back: bool,
     view_history: ViewHistory,
     /// The mesh that is open; none before the first one is loaded.
     document: Option<Document>,
@@ -98,7 +98,7 @@ impl App {
             settings: if source.is_some() { Settings::opening() } else { Settings::greeting() },
             hidden: Arc::default(),
             history: History::default(),
-            taken_back: None,
+            takes_back: false,
             view_history: ViewHistory::default(),
             document: None,
             truth: None,
@@ -237,6 +237,23 @@ impl App {
         self.document.as_ref().is_some_and(|document| document.checks.is_busy())
     }
 
+    /// Takes files that were read. Those of a step of undo change no settings: these are as in that step, but for what the user has set
+    /// since.
+    fn take_opened(&mut self, context: &egui::Context) {
+        let settings = self.settings_without_files();
+        self.take_loaded(context);
+        self.take_truth();
+        self.take_factors(context);
+        self.take_shader::<LodShader>();
+        self.take_shader::<SurfaceShader>();
+        self.take_matcap();
+        self.take_environment();
+        if self.takes_back {
+            // If the mesh wasn't read anew, its import is the one that is there.
+            self.put_settings(Settings { import: self.settings.import, ..settings });
+        }
+    }
+
     fn take_explained(&mut self) {
         if let Err(stopped) = self.jobs.explain.take() {
             self.dialogs.error = Some(format!("explaining the patch {stopped}; another patch starts it again"));
@@ -268,15 +285,7 @@ impl eframe::App for App {
             return self.fatal_screen_keys(context);
         }
         self.window.fitting.fit(context);
-        self.take_loaded(context);
-        self.take_truth();
-        self.take_factors(context);
-        self.take_shader::<LodShader>();
-        self.stop_slow_shader::<LodShader>();
-        self.take_shader::<SurfaceShader>();
-        self.stop_slow_shader::<SurfaceShader>();
-        self.take_matcap();
-        self.take_environment();
+        self.take_opened(context);
         self.take_checks();
         self.take_explained();
         self.take_dialog(context);

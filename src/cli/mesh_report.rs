@@ -31,7 +31,7 @@ pub(super) struct Info {
     pub weld: f32,
     /// The crease band; all other numbers are of the mesh that has it.
     pub crease_band: CreaseBand,
-    /// Triangles without area: those left out because two corners lie on one point, and those of `collinear`.
+    /// Triangles that are left out because two of their corners lie on one point.
     pub degenerate: u32,
     /// Triangles whose three corners lie in line, to within rounding. They are patches, since their edges join others'.
     pub collinear: u32,
@@ -133,14 +133,13 @@ impl Info {
         let normal_faults = NormalFaults::of(mesh, topology);
         let counts = || (topology.edge_counts(), euler_characteristic(topology), mesh.bounds());
         let ((edges, euler_characteristic, bounds), joins) = both(counts, || weld_previews(mesh, exact, progress));
-        let collinear = collinear(topology);
         Ok(Self {
             name: mesh.name.clone(),
             triangles: mesh.triangles.len() as u32,
             weld,
             crease_band: CreaseBand::default(),
-            degenerate: topology.degenerate + collinear,
-            collinear,
+            degenerate: topology.degenerate,
+            collinear: collinear(topology),
             corners: mesh.corners.len() as u32,
             points: topology.points.len() as u32,
             materials: mesh.materials.iter().map(MaterialInfo::of).collect(),
@@ -216,13 +215,9 @@ impl Info {
             _ => "where exactly equal".to_owned(),
         };
         writeln!(f, "{}", shown(&self.name))?;
-        let (degenerate, collinear) = (self.degenerate, self.collinear);
-        write!(f, "triangles     {} ({} degenerate, left out", self.triangles, degenerate - collinear)?;
-        writeln!(
-            f,
-            "{})",
-            if collinear > 0 { format!("; {collinear} degenerate, with their corners in line") } else { String::new() }
-        )?;
+        let Self { triangles, degenerate, collinear, .. } = self;
+        let in_line = if *collinear > 0 { format!("; {collinear} with their corners in line") } else { String::new() };
+        writeln!(f, "triangles     {triangles} ({degenerate} degenerate, left out{in_line})")?;
         writeln!(f, "points        {} (welded {welded})", self.points)?;
         writeln!(f, "corners       {}", self.corners)?;
         writeln!(f, "edges         {}", self.edges.total())?;
@@ -358,7 +353,7 @@ mod tests {
     }
 
     #[test]
-    fn triangles_in_line_are_degenerate_and_said_to_be() {
+    fn triangles_in_line_are_not_degenerate_and_are_said() {
         let mut all = comb();
         // A third, a tenth and a sum of them are rounded; the second is bent by a thousandth.
         let at = |x: f32, y: f32| Corner { position: Vec3::new(x, y, 0.1 * x), normal: Vec3::Z, uv: Vec2::ZERO };
@@ -374,9 +369,9 @@ mod tests {
         let added = [first, first + 3].map(|a| [a, a + 1, a + 2]);
         all.triangles = all.triangles.iter().copied().chain(added).chain([[0, 0, 1]]).collect::<Vec<_>>().into();
         let info = info(&all, 0.0);
-        assert_eq!((info.triangles, info.degenerate, info.collinear), (16, 2, 1));
+        assert_eq!((info.triangles, info.degenerate, info.collinear), (16, 1, 1));
         let text = info.to_string();
-        assert!(text.contains("16 (1 degenerate, left out; 1 degenerate, with their corners in line)"), "{text}");
+        assert!(text.contains("16 (1 degenerate, left out; 1 with their corners in line)"), "{text}");
     }
 
     /// A triangle over the edge from 0 to 16 along x, and twelve with their tips on it.

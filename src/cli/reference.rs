@@ -91,7 +91,8 @@ impl Verdict {
             None if self.comparison.px == 0 => format!("all px are equal, as they must be since {why}"),
             None => format!("{px}, and none may since {why}"),
             Some(threshold) => format!(
-                "{px}, and the mean of the worst 8 x 8 px by {worst_square:.2}, of which {threshold} are allowed since {why}"
+                "{px}; the worst square of 8 x 8 px differs by {worst_square:.2} steps on average, and {threshold} are allowed since \
+                 {why}"
             ),
         }
     }

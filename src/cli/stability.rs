@@ -131,7 +131,7 @@ impl Args {
         }
         let topology = Topology::build_within(&subject.mesh, subject.weld, &Progress::new())?;
         let junctions = t_junctions(&topology, &Progress::new())?;
-        let leaks = Leaks::uncounted(&topology).unwrap_or(Leaks::NearPlane);
+        let leaks = Leaks::uncounted(&topology).unwrap_or(Leaks::InNoView);
         let facts = Facts {
             junctions: Some(&junctions),
             warnings: Some(warnings),
@@ -230,6 +230,24 @@ fn keep_promises(rows: &[Row]) -> Result<(), CliError> {
 mod tests {
     use super::*;
     use crate::mesh::Mesh;
+
+    #[test]
+    fn leaks_of_a_closed_mesh_that_no_view_could_count_fail_with_that_reason() {
+        #[derive(clap::Parser)]
+        struct Command {
+            #[command(flatten)]
+            args: Args,
+        }
+        let Command { args } = clap::Parser::parse_from(["stability", "--fail-on", "leaks"]);
+        let subject = Subject::new("torus".into(), crate::mesh::Shape::Torus.build(), 0.0);
+        let loaded = Loaded { subject, warnings: Vec::new() };
+        let failed = args.judge_mesh(&loaded, &args.effort(), &[]).expect("a judgement");
+        let [Failure { sentence, .. }] = &failed[..] else { panic!("{} failures", failed.len()) };
+        assert!(
+            sentence.starts_with("torus fails the gate leaks: leaks could be counted in none of the views"),
+            "{sentence}"
+        );
+    }
 
     #[test]
     fn names_and_pictures_are_unique() {

@@ -228,12 +228,13 @@ impl Cells {
         let width = 2.0 * fit;
         let positions = if positions.len() > MOST_POSITIONS { &[] } else { positions };
         let numbered = positions.iter().zip(0..);
-        let all = numbered.map(|(position, number)| (Self::cell(position.as_dvec3(), width), number)).collect();
-        Self { all, width }
+        let cell = |(position, number): (&Vec3, u32)| Some((Self::cell(position.as_dvec3(), width)?, number));
+        Self { all: numbered.filter_map(cell).collect(), width }
     }
 
-    fn cell(position: DVec3, width: f64) -> [i64; 3] {
-        (position / width).floor().to_array().map(|place| place as i64)
+    /// None for a position that isn't finite.
+    fn cell(position: DVec3, width: f64) -> Option<[i64; 3]> {
+        position.is_finite().then(|| (position / width).floor().to_array().map(|place| place as i64))
     }
 
     /// One of the positions that is within `fit` of this one along each axis; it may be within twice that.
@@ -241,7 +242,7 @@ impl Cells {
         (0..8_u32).find_map(|corner| {
             let sign = |axis: u32| if corner >> axis & 1 == 1 { 0.5 } else { -0.5 };
             let near = position + DVec3::new(sign(0), sign(1), sign(2)) * self.width;
-            self.all.get(&Self::cell(near, self.width)).copied()
+            self.all.get(&Self::cell(near, self.width)?).copied()
         })
     }
 }
@@ -298,6 +299,13 @@ mod tests {
         let theirs = DVec3::new(105.0, -300.0, 200.0);
         assert!(made.ours(theirs).distance(place) < 1e-12);
         assert!(Alignment { axes: [(0, true), (1, false), (2, false)], ..Alignment::NONE }.mirrors());
+    }
+
+    #[test]
+    fn a_position_that_is_not_finite_is_near_none() {
+        let origin = Cells::new(&[Vec3::ZERO], 0.1);
+        assert_eq!([DVec3::splat(0.05), DVec3::NAN, DVec3::INFINITY].map(|at| origin.at(at)), [Some(0), None, None]);
+        assert_eq!(Cells::new(&[Vec3::NAN], 0.1).at(DVec3::ZERO), None);
     }
 
     #[test]

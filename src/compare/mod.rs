@@ -134,16 +134,20 @@ pub(crate) fn compare(
     let apart = apart(asked, empty.ulp);
     let own_mesh = OwnMesh::new(ours.tessellated, apart);
     let twins = |own: &[Vec3], positions: &[DVec3]| Twins::find(&own_mesh, own, theirs, positions, apart);
-    let as_they_are = in_our_coordinates(theirs, None);
-    let is_ours = twins(&ours.vertices(), &as_they_are).are_all();
-    let own = if is_ours { None } else { Locator::of_own(ours) };
+    let vertices = ours.vertices();
+    let mut positions: Vec<_> = theirs.positions.iter().map(|position| position.as_dvec3()).collect();
+    let mut own_twins = twins(&vertices, &positions);
+    let own = if own_twins.are_all() { None } else { Locator::of_own(ours) };
     let frame = own.as_ref().and_then(|own| Alignment::find(theirs, own, ours, fit));
-    let positions = in_our_coordinates(theirs, frame.as_ref());
+    if let Some(frame) = &frame {
+        positions.iter_mut().for_each(|position| *position = frame.ours(*position));
+        own_twins = twins(&vertices, &positions);
+    }
     if let Some(Frame::Space(space)) = &frame {
         exactness.within = exactness.within.max(rounding_in(space, theirs));
     }
     let twins = |own: &[Vec3]| twins(own, &positions);
-    let on_own = Overlaid::new(theirs, ours.topology, (own, twins(&ours.vertices())), &positions, fit, progress)?;
+    let on_own = Overlaid::new(theirs, ours.topology, (own, own_twins), &positions, fit, progress)?;
     let laid = Laid::new(ours, on_own, twins, progress)?;
     let assignment = Assignment::new(&laid.overlaid, progress)?;
     let outcomes = Outcomes::new(ours, &own_mesh, &assignment, exactness, progress)?;
@@ -183,15 +187,6 @@ fn rounding_in(space: &Space, theirs: &ForeignMesh) -> f64 {
     const UNITS: f64 = 4.0;
     let moved = |position: &Vec3| ulp_at(position.abs().max_element()) * space.stretch(position.as_dvec3());
     UNITS * theirs.positions.iter().map(moved).fold(0.0, f64::max)
-}
-
-/// Their vertices in our coordinates, if it is known how these follow from theirs.
-fn in_our_coordinates(theirs: &ForeignMesh, frame: Option<&Frame>) -> Vec<DVec3> {
-    let positions = theirs.positions.iter().map(|position| position.as_dvec3());
-    match frame {
-        Some(frame) => positions.map(|position| frame.ours(position)).collect(),
-        None => positions.collect(),
-    }
 }
 
 /// Their vertices over the surface that they lie on, and which one that is.

@@ -118,6 +118,10 @@ fn count(kind: GateKind, facts: &Facts) -> Count {
                                     this mesh aren't: mend it, or leave this gate out for it")
             }
             Leaks::NearPlane => Err("leaks can't be counted where the near plane cuts the mesh: move the camera away"),
+            Leaks::InNoView => {
+                Err("leaks could be counted in none of the views: the near plane cuts the mesh in each, or \
+                                    positions aren't finite")
+            }
         },
         GateKind::TJunctions => {
             let junctions = known(facts.junctions)?.len() as u64;
@@ -190,9 +194,7 @@ impl EdgePlace {
         let edge = &topology.edges[index as usize];
         let sides = topology.edge_sides(edge).iter();
         let triangles = sides.map(|side| topology.patches[side.patch() as usize].triangle).collect();
-        let ends = topology.edge_points(edge).map(|point| topology.points[point as usize]);
-        let at = at.unwrap_or(ends[0] * 0.5 + ends[1] * 0.5);
-        Self { triangles, spot: EdgeSpot { ends, facing: topology.edge_facing(edge), at } }
+        Self { triangles, spot: EdgeSpot::new(topology, index, at) }
     }
 
     /// Between which triangles it is, and where.

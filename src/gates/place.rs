@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3, vec2};
 use serde::{Serialize, Serializer};
 
 use crate::measure::FoldedPatch;
-use crate::mesh::Bounds;
+use crate::mesh::{Bounds, Topology};
 use crate::render::Camera;
 use crate::render::camera::FIELDS_OF_VIEW;
 use crate::view::{ScreenView, seen_on_plane};
@@ -123,6 +123,14 @@ impl PatchSpot {
 }
 
 impl EdgeSpot {
+    /// A place on the edge with this index. Without a position, it is the middle.
+    pub(crate) fn new(topology: &Topology, index: u32, at: Option<Vec3>) -> Self {
+        let edge = &topology.edges[index as usize];
+        let ends = topology.edge_points(edge).map(|point| topology.points[point as usize]);
+        let at = at.unwrap_or(ends[0] * 0.5 + ends[1] * 0.5);
+        Self { ends, facing: topology.edge_facing(edge), at }
+    }
+
     /// The part of the edge around a gap between these two positions, so large that one sees how wide the gap is, and from where it is
     /// widest.
     pub(crate) fn at_gap(self, [a, b]: [Vec3; 2]) -> Self {

@@ -180,24 +180,38 @@ impl RigBuilder {
     }
 
     /// Builds the rig of a mesh whose corners have these bindings, and puts corners below nodes that are scaled to nothing at rest where
-    /// they are then. If that is impossible, returns a warning.
-    pub(super) fn finish(self, mesh: &mut Mesh, corners: &[u32]) -> Result<Rig, String> {
-        if let Some(problem) = self.problem {
-            return Err(format!("animations are left out: {problem}."));
-        }
+    /// they are then. If no rig can be built, returns a warning.
+    pub(super) fn finish(mut self, mesh: &mut Mesh, corners: &[u32]) -> Result<Rig, String> {
         let mut rig = Rig {
-            bindings: corners.iter().map(|&id| self.bound[id as usize].binding).collect(),
+            bindings: Vec::new(),
             tangents: Vec::new(),
-            alike: corners.iter().map(|&id| self.bound[id as usize].alike).collect(),
-            deltas: self.deltas,
-            nodes: self.nodes,
-            joints: self.joints,
-            morphs: self.morphs,
-            clips: self.clips,
+            alike: Vec::new(),
+            deltas: std::mem::take(&mut self.deltas),
+            nodes: std::mem::take(&mut self.nodes),
+            joints: std::mem::take(&mut self.joints),
+            morphs: std::mem::take(&mut self.morphs),
+            clips: std::mem::take(&mut self.clips),
             lights: Vec::new(),
             cameras: Vec::new(),
             reach: Reach::default(),
         };
+        if self.problem.is_none() {
+            self.bind_corners(&mut rig, mesh, corners);
+        }
+        self.grown.iter().for_each(|(node, rest)| rig.nodes[*node as usize].rest = *rest);
+        let rest = rig.rest();
+        for (corner, &id) in mesh.corners.iter_mut().zip(corners) {
+            let binding = self.bound.get(id as usize).map(|bound| &bound.binding);
+            if let Some(binding) = binding.filter(|own| is_moved_by(own, &rig.joints, &self.is_grown)) {
+                corner.position = posed(binding, &rig.deltas, &rest);
+            }
+        }
+        self.problem.map_or(Ok(rig), |problem| Err(format!("animations are left out: {problem}.")))
+    }
+
+    fn bind_corners(&self, rig: &mut Rig, mesh: &Mesh, corners: &[u32]) {
+        rig.bindings = corners.iter().map(|&id| self.bound[id as usize].binding).collect();
+        rig.alike = corners.iter().map(|&id| self.bound[id as usize].alike).collect();
         let rest = rig.rest();
         for ((binding, corner), &id) in rig.bindings.iter_mut().zip(&mesh.corners).zip(corners) {
             if self.bound[id as usize].without_normal {
@@ -213,17 +227,8 @@ impl RigBuilder {
             };
             rig.tangents = bindings.map(tangent).collect();
         }
-        refer_to_tangents(&mut rig, &self.tangent_deltas);
+        refer_to_tangents(rig, &self.tangent_deltas);
         rig.reach = Reach::of(&rig.bindings, &rig.deltas).including(&self.tangent_deltas);
-        self.grown.iter().for_each(|(node, rest)| rig.nodes[*node as usize].rest = *rest);
-        let rest = rig.rest();
-        for (corner, &id) in mesh.corners.iter_mut().zip(corners) {
-            let binding = &self.bound[id as usize].binding;
-            if is_moved_by(binding, &rig.joints, &self.is_grown) {
-                corner.position = posed(binding, &rig.deltas, &rest);
-            }
-        }
-        Ok(rig)
     }
 
     fn joint(&mut self, joint: Joint) -> u32 {
@@ -371,9 +376,6 @@ impl NodeBinder<'_> {
 
     /// Returns the number of a vertex's binding. `corner` is the vertex at rest.
     pub(super) fn bind(&mut self, frame: &VertexFrame, vertex: UndeformedVertex, corner: &InputCorner) -> u32 {
-        if self.binder.problem.is_some() {
-            return 0;
-        }
         let (joints, weights) = match frame.rigid {
             Some(joint) => ([joint, 0, 0, 0], [1.0, 0.0, 0.0, 0.0]),
             None => self.influences(vertex.influences.unwrap_or_default()),
@@ -386,6 +388,11 @@ impl NodeBinder<'_> {
         let (position, normal) = frame.space.take(vertex.position, normal, vertex.deltas);
         let binding = Binding { position, normal, joints, weights, ..Binding::default() };
         let mut bound = BoundVertex { binding, alike: 0, without_normal, tangent: None };
+        if self.binder.problem.is_some() {
+            // Without a rig, only what has grown is bound, to be put back. Others have the number of no binding.
+            let is_grown = is_moved_by(&bound.binding, &self.binder.joints, &self.binder.is_grown);
+            return if is_grown { self.binder.bind(bound, &[], &[]) } else { u32::MAX };
+        }
         let Some((tangent, displacements)) = vertex.tangent.filter(|_| !without_normal) else {
             return self.binder.bind(bound, vertex.deltas, &[]);
         };

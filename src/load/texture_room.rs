@@ -27,6 +27,20 @@ pub(super) struct Scaling {
     pub reason: String,
 }
 
+impl Scaling {
+    /// What is said of a texture of a size in px after its name: that it is left out, if it can't be read, or to which size it is scaled
+    /// down. None if it isn't.
+    pub(super) fn said(&self, [a, b]: [u32; 2], read: Result<[u32; 2], &String>) -> Option<String> {
+        let Self { halvings, reason } = self;
+        match read {
+            Err(reason) => Some(format!("is left out: {reason}.")),
+            Ok([c, d]) => {
+                (*halvings > 0).then(|| format!("is scaled down from {a} x {b} px to {c} x {d} px: {reason}."))
+            }
+        }
+    }
+}
+
 impl TextureRoom {
     /// The room in a budget of which `reserved` bytes are left for the rest of the load. On the graphics card, textures may take as
     /// much as the whole load.

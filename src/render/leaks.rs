@@ -171,6 +171,8 @@ pub(crate) enum Leaks {
     BothWays,
     /// The near plane of the view cuts the mesh open.
     NearPlane,
+    /// Of several views there is none in which they could be counted.
+    InNoView,
 }
 
 impl Leaks {

@@ -172,8 +172,7 @@ fn write_corners(folder: &Folder, corners: &[([f32; 3], [f32; 3])]) -> String {
         "buffers": [{ "byteLength": bytes.len(), "uri": "data.bin" }],
     });
     std::fs::write(folder.path("data.bin"), bytes).expect("a writable folder");
-    let path = folder.write("triangles.gltf", document.to_string());
-    path
+    folder.write("triangles.gltf", document.to_string())
 }
 
 /// Writes a tetrahedron with one face moved by 1e-4 along each axis.

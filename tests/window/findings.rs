@@ -139,6 +139,19 @@ fn the_worst_crack_is_that_of_the_headline_and_its_gap_is_seen() {
 }
 
 #[test]
+fn the_gap_of_the_selected_edge_is_that_of_the_headline_while_lod_is_frozen() {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let mut harness = opened(&folder, &torn());
+    choose(&mut harness, "Surface", "PN");
+    let finding = button(&harness, |text| text.contains("cracked edges, widest"));
+    click(&mut harness, &finding);
+    harness.get_by_label_contains("LOD is frozen");
+    let (_, px) = finding.split_once("widest ").expect("a width");
+    // In the headline's facts, and in the selected edge's; the picture comes much nearer.
+    assert_eq!(harness.get_all_by_label(px).count(), 2, "{px}");
+}
+
+#[test]
 fn shading_seams_are_no_cracks() {
     let mut harness = window(Some(Source::Shape(Shape::CubeSmooth)));
     choose(&mut harness, "Shading", "Surface normals");

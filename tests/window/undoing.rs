@@ -129,3 +129,29 @@ fn every_way_to_prepare_the_mesh_is_undone_and_redone() {
     settle(&mut harness);
     assert_eq!(state(harness.state()), before);
 }
+
+#[test]
+fn what_is_set_while_undo_reads_files_again_stays_and_is_a_step() {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let mut harness = uniform(Some(vase()));
+    let context = harness.ctx.clone();
+    harness.state_mut().open_matcap(&context, heights(&folder, "ball.png"));
+    settle(&mut harness);
+    let opened = state(harness.state());
+    harness.state_mut().undo(&context);
+    settle(&mut harness);
+    harness.state_mut().redo(&context);
+    let command = all(&harness.state().availability()).into_iter().find(|command| command.name == "Overlay: Cracks");
+    harness.state_mut().give(&context, &command.expect("a command"));
+    assert!(harness.state().matcap_image().is_none(), "it is being read");
+    settle(&mut harness);
+    let set = state(harness.state());
+    assert!(set.0.overlays.cracks != opened.0.overlays.cracks);
+    assert_eq!((set.0.overlays.colors, &set.3), (opened.0.overlays.colors, &opened.3));
+    harness.state_mut().undo(&context);
+    settle(&mut harness);
+    assert_eq!(state(harness.state()), opened);
+    harness.state_mut().redo(&context);
+    settle(&mut harness);
+    assert_eq!(state(harness.state()), set);
+}

@@ -24,22 +24,7 @@ pub(crate) struct BackgroundJob<T>(Receiver<Result<T, Stopped>>);
 impl<T: Send + 'static> BackgroundJob<T> {
     /// Starts a job. The window is repainted when it ends, even if it panics.
     pub(crate) fn start(context: &egui::Context, job: impl FnOnce() -> T + Send + 'static) -> Self {
-        Self::sending(context, || Some(caught(job)))
-    }
-
-    /// Starts a thread that sends a result, if there is one, and repaints the window.
-    fn sending(context: &egui::Context, result: impl FnOnce() -> Option<Result<T, Stopped>> + Send + 'static) -> Self {
-        let (sender, done) = channel();
-        let (refused, context) = (sender.clone(), context.clone());
-        let thread = spawn(move || {
-            // The receiver is gone if the result is no longer wanted.
-            let _ = result().map(|result| sender.send(result));
-            context.request_repaint();
-        });
-        if thread.is_none() {
-            let _ = refused.send(Err(Stopped("the system can't start another thread".into())));
-        }
-        Self(done)
+        Self(sent(Some(context), || Some(caught(job))))
     }
 
     /// Returns the result once the job has ended, and only once.
@@ -49,7 +34,7 @@ impl<T: Send + 'static> BackgroundJob<T> {
 
     /// Returns the same job, which repaints another window when it ends.
     pub(crate) fn waking(self, context: &egui::Context) -> Self {
-        Self::sending(context, move || self.0.recv().ok())
+        Self(sent(Some(context), move || self.0.recv().ok()))
     }
 }
 
@@ -58,6 +43,24 @@ impl<T> BackgroundJob<T> {
     pub(crate) fn wait(self) {
         let _ = self.0.recv();
     }
+}
+
+/// Starts a thread that sends a result, if there is one, and repaints a window. If the system refuses, that is the result.
+pub(super) fn sent<T: Send + 'static>(
+    context: Option<&egui::Context>,
+    result: impl FnOnce() -> Option<Result<T, Stopped>> + Send + 'static,
+) -> Receiver<Result<T, Stopped>> {
+    let (sender, done) = channel();
+    let (refused, context) = (sender.clone(), context.cloned());
+    let thread = spawn(move || {
+        // The receiver is gone if the result is no longer wanted.
+        let _ = result().map(|result| sender.send(result));
+        context.iter().for_each(egui::Context::request_repaint);
+    });
+    if thread.is_none() {
+        let _ = refused.send(Err(Stopped("the system can't start another thread".into())));
+    }
+    done
 }
 
 /// Starts a thread. Returns none if the system refuses.

@@ -53,6 +53,9 @@ pub(crate) struct Results {
     /// Emitted vertices and triangles.
     pub totals: (u64, u64),
     pub seen: Seen,
+    /// The cracked edge whose gap is the widest in px, and that gap.
+    pub widest_crack: Option<(u32, f64)>,
+    pub shading_seams: u64,
 }
 
 impl Results {
@@ -62,11 +65,12 @@ impl Results {
         edge.gap_px(view.clip_from_object, 2.0 * view.half_viewport)
     }
 
-    /// The cracked edge whose gap is the widest in px, and that gap.
-    pub(crate) fn widest_crack(&self) -> Option<(&CrackedEdge, f64)> {
-        let gaps = self.found.cracks.cracked().iter().map(|edge| (edge, self.gap_px(edge)));
+    /// Finds the widest gap again, seen from where LOD is computed for now.
+    fn look_from(&mut self, seen: Seen) {
+        self.seen = seen;
+        let gaps = self.found.cracks.cracked().iter().map(|crack| (crack.edge, self.gap_px(crack)));
         // The first of those that are as wide, which has the widest gap in object units.
-        gaps.reduce(|a, b| if b.1 > a.1 { b } else { a })
+        self.widest_crack = gaps.reduce(|a, b| if b.1 > a.1 { b } else { a });
     }
 }
 
@@ -167,21 +171,23 @@ impl MeasureJob {
         let Some(ended) = walk.go_on(gpu, scene)? else { return Ok(()) };
         self.walk = None;
         let Some(Surveyed { whole, closed, sizes }) = ended.map_err(Trouble::Measuring)? else { return Ok(()) };
-        match (whole, &mut self.results) {
-            (Some((found, agreement)), results) => {
-                *results = Some(Results { of, found, agreement, sizes, totals, seen: *seen });
-                self.closed = closed;
-                self.generation += 1;
-            }
-            (None, Some(results)) => (results.sizes, results.seen) = (sizes, *seen),
-            (None, None) => {}
+        if let Some((found, agreement)) = whole {
+            let shading_seams = found.cracks.shading_seams().count() as u64;
+            let results =
+                Results { of, found, agreement, sizes, totals, seen: *seen, widest_crack: None, shading_seams };
+            self.results = Some(results);
+            self.closed = closed;
+            self.generation += 1;
+        } else if let Some(results) = &mut self.results {
+            results.sizes = sizes;
         }
+        self.results.iter_mut().for_each(|results| results.look_from(*seen));
         Ok(())
     }
 
-    /// The part of all chunks that has been copied, 0 to 1; none if none are being copied.
-    pub(crate) fn fraction(&self, chunks: usize) -> Option<f32> {
-        self.walk.as_ref()?.copied(chunks)
+    /// The part of several chunks that has been copied, 0 to 1; none if none are being copied.
+    pub(crate) fn fraction(&self) -> Option<f32> {
+        self.walk.as_ref()?.copied()
     }
 }
 

@@ -317,7 +317,7 @@ impl App {
         *S::setting(&mut self.settings.tessellation) = S::MEANWHILE;
     }
 
-    /// Takes new versions of the file.
+    /// Takes new versions of the file, unless they take too long.
     pub(in crate::app) fn take_shader<S: Replacing>(&mut self) {
         let own = *S::setting(&mut self.settings.tessellation);
         let Some(open) = S::slot(self) else { return };
@@ -344,6 +344,7 @@ impl App {
             open.replaced = own;
             *S::setting(&mut self.settings.tessellation) = S::MEANWHILE;
         }
+        self.stop_slow_shader::<S>();
     }
 
     /// Whether the functions give the factors that are shown. Under subtriangulation, which has the same number of segments everywhere,
@@ -358,7 +359,7 @@ impl App {
     }
 
     /// Goes back to the version before, if loops of the present one took too long for the picture that was counted.
-    pub(in crate::app) fn stop_slow_shader<S: Replacing>(&mut self) {
+    fn stop_slow_shader<S: Replacing>(&mut self) {
         let Some(document) = &self.document else { return };
         let (report, shown) = (S::report(&document.scene.tessellator), S::shown(document));
         let Some(open) = S::slot(self) else { return };

@@ -1,9 +1,9 @@
 //! A walk over what a scene emits while the window goes on: chunk after chunk is copied back without waiting, and a thread of its own
 //! visits them.
 
-use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, TrySendError, channel, sync_channel};
+use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, TrySendError, sync_channel};
 
-use super::background_job::{Stopped, caught, spawn};
+use super::background_job::{Stopped, caught, sent};
 use crate::gpu::{Gpu, GpuError, Readback, Recorder, Timing, vertices_of};
 use crate::measure::{EmittedChunk, Visitor};
 use crate::progress::Progress;
@@ -18,6 +18,8 @@ pub(crate) struct Walk<T> {
     ended: Receiver<Result<T, Stopped>>,
     /// None once everything is copied.
     copying: Option<Copying>,
+    /// How many chunks there are.
+    chunks: usize,
     wanted: Progress,
 }
 
@@ -67,20 +69,15 @@ impl<T: Send + 'static> Walk<T> {
         visit: impl FnOnce(&Parts) -> Option<T> + Send + 'static,
     ) -> Result<Self, GpuError> {
         let (parts, received) = sync_channel(WAITING);
-        let (sender, ended) = channel();
         let wanted = Progress::default();
         let copying = match first {
             Some(readback) => Some(Copying { part: Part::First(readback), next_chunk: 0, parts }),
             None => copy_chunk(gpu, scene, 0, parts)?,
         };
         let (chunks, still_wanted) = (scene.tessellator.chunk_count(), wanted.clone());
-        spawn(move || {
-            let walk = || visit(&Parts { received, chunks, wanted: &still_wanted });
-            if let Some(result) = caught(walk).transpose() {
-                let _ = sender.send(result);
-            }
-        });
-        Ok(Self { ended, copying, wanted })
+        let walk = move || visit(&Parts { received, chunks, wanted: &still_wanted });
+        let ended = sent(None, || caught(walk).transpose());
+        Ok(Self { ended, copying, chunks, wanted })
     }
 
     /// Goes on copying. Returns how the walk ended, once it has.
@@ -100,9 +97,10 @@ impl<T: Send + 'static> Walk<T> {
 }
 
 impl<T> Walk<T> {
-    /// The part of all chunks that has been copied, 0 to 1; none if none are being copied.
-    pub(in crate::app) fn copied(&self, chunks: usize) -> Option<f32> {
-        self.copying.as_ref().map(|copying| copying.next_chunk as f32 / chunks.max(1) as f32)
+    /// The part of several chunks that has been copied, 0 to 1; none if none are being copied.
+    pub(in crate::app) fn copied(&self) -> Option<f32> {
+        let copying = self.copying.as_ref().filter(|_| self.chunks > 1)?;
+        Some(copying.next_chunk as f32 / self.chunks as f32)
     }
 
     /// The part of its work that the thread says it has done, 0 to 1.

@@ -41,33 +41,28 @@ impl App {
         let mut clicked = None;
         let which = document.generation as u32 ^ results.seen.inputs.tessellation.surface as u32;
         list(ui, "worst edges", (cracked.len(), which), |ui, row| {
-            let response = self.worst_edge(ui, topology, &cracked[row]);
+            let crack = &cracked[row];
+            let kind = kind_name(topology.edges[crack.edge as usize].kind);
+            let text = RichText::new(format!("{:<7}{kind:<13}{:>9}", crack.edge, short(crack.gap))).monospace();
+            let response = ui.selectable_label(self.viewport.selected_edge == Some(crack.edge), text);
             if response.clicked() {
-                clicked = Some(cracked[row].edge);
+                clicked = Some(crack.edge);
             }
-            response
+            response.on_hover_ui(|ui| {
+                ui.label(format!(
+                    "The gap is {} px wide as the camera of LOD sees it, {} ULP. {} points and {} normals differ; the factors {}. A click \
+                     frames the edge.",
+                    short(results.gap_px(crack)),
+                    short(crack.gap / ulp(topology)),
+                    crack.different_bits,
+                    crack.different_normals,
+                    if crack.different_factors { "differ" } else { "agree" },
+                ));
+            })
         });
         if let Some(edge) = clicked {
             self.select_edge(edge);
         }
-    }
-
-    /// A row of the list of worst edges.
-    fn worst_edge(&self, ui: &mut egui::Ui, topology: &Topology, crack: &CrackedEdge) -> egui::Response {
-        let edge = crack.edge;
-        let kind = kind_name(topology.edges[edge as usize].kind);
-        let text = RichText::new(format!("{edge:<7}{kind:<13}{:>9}", short(crack.gap))).monospace();
-        let response = ui.selectable_label(self.viewport.selected_edge == Some(edge), text);
-        response.on_hover_ui(|ui| {
-            ui.label(format!(
-                "The gap is {} px on screen, {} ULP. {} points and {} normals differ; the factors {}. A click frames the edge.",
-                short(self.viewport.picture.gap_of_edge_px(crack)),
-                short(crack.gap / ulp(topology)),
-                crack.different_bits,
-                crack.different_normals,
-                if crack.different_factors { "differ" } else { "agree" },
-            ));
-        })
     }
 
     /// The selected edge: its kind, its gap, and the points of each side.
@@ -87,12 +82,12 @@ impl App {
             });
         });
         ui.separator();
-        let found = self.results().map(|results| &results.found);
-        let sides = found.map(|found| found.outlines.edge(topology, edge)).unwrap_or_default();
+        let results = self.results();
+        let sides = results.map(|results| results.found.outlines.edge(topology, edge)).unwrap_or_default();
         egui::Grid::new("edge").num_columns(2).min_col_width(104.0).show(ui, |ui| {
             fact(ui, "Kind", kind, "How the normals and uvs of the edge's sides agree.");
-            if let Some(crack) = found.and_then(|found| crack_in(found, edge)) {
-                let (px, ulps) = (self.viewport.picture.gap_of_edge_px(crack), crack.gap / ulp(topology));
+            if let Some((results, crack)) = results.and_then(|own| Some((own, crack_in(&own.found, edge)?))) {
+                let (px, ulps) = (results.gap_px(crack), crack.gap / ulp(topology));
                 fact(ui, "Gap", &format!("{} units", short(crack.gap)), "Largest distance between two sides.");
                 fact(
                     ui,
@@ -100,7 +95,7 @@ impl App {
                     &format!("{} ULP", short(ulps)),
                     "In units of the last place of the mesh's largest coordinate.",
                 );
-                fact(ui, "", &format!("{} px", short(px)), "The gap on screen.");
+                fact(ui, "", &format!("{} px", short(px)), "The gap as the camera of LOD sees it.");
                 let hover = "Points whose normals differ although the mesh's normals agree.";
                 fact(ui, "Normals differ", &grouped(crack.different_normals.into()), hover);
                 if let Some(patch) = crack.discarded {
@@ -178,17 +173,14 @@ impl App {
     }
 
     fn edge_spot(&self, topology: &Topology, edge: u32, at: Option<Vec3>) -> EdgeSpot {
-        let own = &topology.edges[edge as usize];
-        let ends = topology.edge_points(own).map(|point| topology.points[point as usize]);
-        let whole = EdgeSpot { ends, facing: topology.edge_facing(own), at: ends[0] * 0.5 + ends[1] * 0.5 };
         let found = self.results().map(|results| &results.found);
         if let Some(crack) = found.and_then(|found| crack_in(found, edge)).filter(|crack| crack.gap > 0.0) {
-            return whole.at_gap(crack.widest);
+            return EdgeSpot::new(topology, edge, None).at_gap(crack.widest);
         }
         // What was emitted may bulge above the middle of the straight line, and hide it.
         let sides = found.map(|found| found.outlines.edge(topology, edge)).unwrap_or_default();
         let middle = sides.first().and_then(|side| side.positions().nth(side.points.len() / 2));
-        EdgeSpot { at: at.or(middle).unwrap_or(whole.at), ..whole }
+        EdgeSpot::new(topology, edge, at.or(middle))
     }
 
     /// The selected edge's crack in a half, if there is a gap.

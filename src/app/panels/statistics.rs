@@ -1,7 +1,6 @@
 //! The panel on the right: statistics of the tessellation and the mesh.
 
 use crate::app::App;
-use crate::app::jobs::measure_job::Results;
 use crate::app::sections::{Section, scrolling_column};
 use crate::app::text::{grouped, part, short};
 use crate::app::widgets::{fact, number, swatch};
@@ -123,7 +122,7 @@ impl App {
             fact(ui, "Largest gap", &gap(&Cracks::max_gap, "units"), hover);
             let hover = "The same in ULP of the mesh's largest coordinate.";
             fact(ui, "", &gap(&|cracks| cracks.max_gap() / ulp, "ULP"), hover);
-            let px = results.and_then(Results::widest_crack).map_or(0.0, |(_, px)| px);
+            let px = results.and_then(|results| results.widest_crack).map_or(0.0, |(_, px)| px);
             let hover = "The gap that is the widest as the camera of LOD sees it.";
             fact(ui, "", &gap(&|_| px, "px"), hover);
             ui.horizontal(|ui| {

@@ -114,12 +114,11 @@ impl App {
         const WIDTH: f32 = 150.0;
         let hover =
             "The number of edges whose sides differ in a position, and the widest gap as the camera of LOD sees it.";
-        match self.results().map(|results| (results.found.cracks.cracked().len(), results.widest_crack())) {
+        match self.results().map(|results| (results.found.cracks.cracked().len(), results.widest_crack)) {
             None => {
-                let chunks = self.document.as_ref().map_or(0, |document| document.scene.tessellator.chunk_count());
-                let text = match self.jobs.measure.fraction(chunks) {
+                let text = match self.jobs.measure.fraction() {
                     _ if self.is_playing() => "cracks: pause to measure".into(),
-                    Some(part) if chunks > 1 => format!("cracks … {:.0} %", 100.0 * part),
+                    Some(part) => format!("cracks … {:.0} %", 100.0 * part),
                     _ if self.is_busy() => "cracks …".into(),
                     _ => "cracks not measured".into(),
                 };

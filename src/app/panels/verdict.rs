@@ -4,7 +4,6 @@
 use egui::{Color32, RichText};
 
 use crate::app::App;
-use crate::app::jobs::measure_job::Results;
 use crate::app::sections::Section;
 use crate::app::text::{counted, grouped, short};
 use crate::app::widgets::{legible, rgb};
@@ -131,7 +130,7 @@ impl App {
         let Some(results) = self.results() else {
             return self.unknown("Cracks", "Cracks are measured while the picture rests.", Destination::Cracks);
         };
-        let Some((_, px)) = results.widest_crack() else {
+        let Some((_, px)) = results.widest_crack else {
             return Line::dim(
                 "No cracks",
                 "Every shared edge of what is drawn matches bit for bit.",
@@ -196,7 +195,7 @@ impl App {
     }
 
     fn seams_line(&self, color: Color32) -> Option<Line> {
-        let seams = self.results()?.found.cracks.shading_seams().count() as u64;
+        let seams = self.results()?.shading_seams;
         let hover = "Edges across which shading normals differ, although positions agree and so do the mesh's normals: light breaks \
                      there, but nothing is open. A click goes to the one with the most such points.";
         (seams > 0).then(|| Line::bad(counted(seams, "shading seam"), color, hover, Destination::ShadingSeams))
@@ -283,8 +282,8 @@ impl App {
     pub(in crate::app) fn go_to_widest_crack(&mut self) {
         self.settings.overlays.cracks = true;
         self.panels.open.set(Section::Cracks, true);
-        let widest = self.results().and_then(Results::widest_crack).map(|(crack, _)| crack.edge);
-        widest.into_iter().for_each(|edge| self.select_edge(edge));
+        let widest = self.results().and_then(|results| results.widest_crack);
+        widest.into_iter().for_each(|(edge, _)| self.select_edge(edge));
     }
 
     fn follow(&mut self, leads: Destination) {

@@ -10,7 +10,6 @@ use crate::app::Document;
 use crate::app::painting::{Painting, ShownPicture};
 use crate::engine::Engine;
 use crate::gpu::{GpuError, PassTime, Recorder, Timing, chunks_an_arena, take_times};
-use crate::measure::CrackedEdge;
 use crate::mesh::Moment;
 use crate::render::{Camera, Pixel, Renderer, Scene, Target};
 use crate::settings::{Colors, Settings, SplitSide};
@@ -172,11 +171,6 @@ impl Picture {
     /// The camera of the picture that is shown, and the picture's size in px.
     pub(crate) fn shown_camera(&self) -> Option<(Camera, Vec2)> {
         self.drawn.as_ref().map(|drawn| (drawn.camera, drawn.viewport))
-    }
-
-    /// The gap of an edge in px, in the view of the last picture.
-    pub(crate) fn gap_of_edge_px(&self, edge: &CrackedEdge) -> f64 {
-        self.drawn.as_ref().map_or(0.0, |drawn| edge.gap_px(drawn.clip_from_object, drawn.viewport))
     }
 
     /// A pixel of the last picture, counted from the left and the top, and the half whose scene is there. Where the left

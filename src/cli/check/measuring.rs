@@ -13,10 +13,8 @@ use super::plan::Job;
 use super::say_unkept;
 use crate::check::{Asset, Cache, GateResult, View};
 use crate::cli::picture_file::png_bytes;
-use crate::cli::shot::Shot;
 use crate::cli::{CliError, file_error, file_of};
 use crate::engine::{Engine, Loaded, Preparation};
-use crate::gates::Gate;
 use crate::load::LoadError;
 use crate::names::on_one_line;
 use crate::progress::Progress;
@@ -73,10 +71,18 @@ fn measure(job: &Job, engine: &Engine, pictures: bool, asset: &mut Asset) -> Res
         let mut shot = options.shot(engine.clone(), subject)?;
         let picture = if pictures { Some(encoded(job, shot.picture(None, &progress)?)?) } else { None };
         // What is about the mesh itself is the same in all views.
-        let gates: Vec<_> = job.gates.iter().copied().filter(|gate| index == 0 || !gate.kind.is_of_mesh()).collect();
+        let wanted = job.gates.iter().copied().filter(|gate| index == 0 || !gate.kind.is_of_mesh());
         let tolerance = options.surface.tessellation().tolerance;
-        let judged = |gate| judged(job, &mut shot, gate, tolerance, pictures);
-        let gates = gates.into_iter().map(judged).collect::<Result<Vec<_>, CliError>>()?.concat();
+        let mut gates = Vec::new();
+        for gate in wanted {
+            let start = Instant::now();
+            for judgement in &shot.judge(&[gate], tolerance, &progress)? {
+                // A gate that fails has a picture of its place.
+                let shown = if pictures && !judgement.passed { shot.evidence(judgement, &progress)? } else { None };
+                let evidence = shown.map(|picture| encoded(job, picture)).transpose()?;
+                gates.push(GateResult::new(judgement, evidence, start.elapsed().as_secs_f64()));
+            }
+        }
         asset.views.push(View { name: name.clone(), numbers: shot.numbers(), gates, picture });
     }
     let own = file_of(&job.source).map(Path::to_owned);
@@ -95,24 +101,6 @@ fn load(job: &Job, mut preparation: Preparation, progress: &Progress) -> Result<
         other => other,
     };
     Ok((loaded?, absent))
-}
-
-/// How a gate judges, with a picture of its place if it fails and pictures are wanted.
-fn judged(
-    job: &Job,
-    shot: &mut Shot,
-    gate: Gate,
-    tolerance_px: f32,
-    pictures: bool,
-) -> Result<Vec<GateResult>, CliError> {
-    let start = Instant::now();
-    let mut results = Vec::new();
-    for judgement in &shot.judge(&[gate], tolerance_px, &Progress::new())? {
-        let shown = if pictures && !judgement.passed { shot.evidence(judgement, &Progress::new())? } else { None };
-        let evidence = shown.map(|picture| encoded(job, picture)).transpose()?;
-        results.push(GateResult::new(judgement, evidence, start.elapsed().as_secs_f64()));
-    }
-    Ok(results)
 }
 
 /// A picture as it is on the page: no larger than it is shown there on a dense screen, a PNG file in base64.

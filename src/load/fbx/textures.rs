@@ -66,10 +66,8 @@ impl<'a> Textures<'a> {
         let (halvings, filter) = planned.map_or((0, MipFilter::Colors), |own| (own.scaling.halvings, own.filter));
         let read = || self.with_bytes(file, |bytes| decode_halved(bytes, halvings, filter, self.budget));
         let image = borrowing(self.budget, read).map(Arc::new);
-        if let (Some(Planned { size, scaling, .. }), Ok(image)) = (planned.filter(|_| halvings > 0), &image) {
-            let [[a, b], [c, d]] = [*size, image.size];
-            notes.push(format!("{what} is scaled down from {a} x {b} px to {c} x {d} px: {}.", scaling.reason));
-        }
+        let said = planned.zip(image.as_ref().ok()).and_then(|(own, image)| own.scaling.said(own.size, Ok(image.size)));
+        notes.extend(said.map(|said| format!("{what} {said}")));
         let image = image.map_err(|reason| notes.push(format!("{what} is left out: {reason}.")));
         self.images.insert(file.file_index, image.clone().ok());
         image.ok()

@@ -78,8 +78,8 @@ struct FoundImage {
 struct ReadImage {
     /// What was read, or a clause that says why it can't be.
     texture: Result<Arc<Texture>, String>,
-    /// From which size it was scaled down, and why; none once a warning said so.
-    scaled: Option<([u32; 2], String)>,
+    /// What is to be said of how it was scaled down; none once a warning said so.
+    scaled: Option<String>,
 }
 
 /// Some materials, of which the first few are named.
@@ -203,7 +203,7 @@ impl<'a> Materials<'a> {
         let bytes = texture_source::image(&self.lists.images, image, self.accessors, self.files);
         let texture =
             bytes.and_then(|bytes| decode_halved(&bytes, scaling.halvings, filter, self.budget)).map(Arc::new);
-        let scaled = (scaling.halvings > 0 && texture.is_ok()).then_some((size, scaling.reason));
+        let scaled = texture.as_ref().ok().and_then(|texture| scaling.said(size, Ok(texture.size)));
         self.images.insert(image, ReadImage { texture, scaled });
     }
 
@@ -315,11 +315,7 @@ impl<'a> Materials<'a> {
         let ReadImage { texture, scaled } = self.images.get_mut(&image)?;
         match texture {
             Ok(texture) => {
-                if let Some((size, reason)) = scaled.take() {
-                    let [[a, b], [c, d]] = [size, texture.size];
-                    let said = format!("{name} is scaled down from {a} x {b} px to {c} x {d} px: {reason}.");
-                    self.notes.get_mut().push(said);
-                }
+                self.notes.get_mut().extend(scaled.take().map(|said| format!("{name} {said}")));
                 Some(texture.clone())
             }
             Err(reason) => {

@@ -12,7 +12,7 @@ use crate::load::images::{decode_halved, texture_size};
 use crate::load::memory_budget::Budget;
 use crate::load::read_error::ReadError;
 use crate::load::text_lines::{shown, words};
-use crate::load::texture_room::{Scaling, TextureRoom};
+use crate::load::texture_room::TextureRoom;
 use crate::load::uri::Files;
 use crate::mesh::mipmap::MipFilter;
 use crate::mesh::{Alpha, Look, Material, Sampling, Wrap, borrowing};
@@ -258,20 +258,14 @@ impl<'a> Materials<'a> {
         };
         let sizes: Vec<_> = textures.iter().map(size).collect();
         let room = TextureRoom::of(self.budget, faces.bytes_to_finish().saturating_sub(freed));
-        for ((file, size), Scaling { halvings, reason }) in textures.iter().zip(&sizes).zip(room.scalings(&sizes)) {
+        for ((file, size), scaling) in textures.iter().zip(&sizes).zip(room.scalings(&sizes)) {
             progress.check()?;
             let filter = file.users.first().map_or(MipFilter::Colors, |(_, kind)| kind.filter());
-            let decode = |bytes: Vec<u8>| decode_halved(&bytes, halvings, filter, self.budget);
+            let decode = |bytes: Vec<u8>| decode_halved(&bytes, scaling.halvings, filter, self.budget);
             let texture = borrowing(self.budget, || self.beside(&file.name).and_then(decode)).map(Arc::new);
-            let said = match &texture {
-                Err(reason) => Some(format!("is left out: {reason}")),
-                Ok(texture) => {
-                    let [[a, b], [c, d]] = [*size, texture.size];
-                    (halvings > 0).then(|| format!("is scaled down from {a} x {b} px to {c} x {d} px: {reason}"))
-                }
-            };
+            let said = scaling.said(*size, texture.as_ref().map(|texture| texture.size));
             let (image, first) = (shown(file.name.as_bytes()), &file.first);
-            self.problems.extend(said.map(|said| format!("the texture {image} of material \"{first}\" {said}.")));
+            self.problems.extend(said.map(|said| format!("the texture {image} of material \"{first}\" {said}")));
             if let Ok(texture) = texture {
                 file.users.iter().for_each(|&(material, kind)| giving.give(faces, material, kind, &texture));
             }

@@ -8,7 +8,7 @@ use crate::load::images::{decode_halved, texture_size};
 use crate::load::memory_budget::Budget;
 use crate::load::read_error::ReadError;
 use crate::load::text_lines::{first_word, shown};
-use crate::load::texture_room::{Scaling, TextureRoom};
+use crate::load::texture_room::TextureRoom;
 use crate::load::uri::Files;
 use crate::mesh::mipmap::MipFilter;
 use crate::mesh::{Material, borrowing};
@@ -74,23 +74,14 @@ impl<'a> Textures<'a> {
         let sizes: Vec<_> = used().map(|(name, _)| size(name)).collect();
         let room = TextureRoom::of(budget, faces.bytes_to_finish().saturating_sub(freed));
         let mut problems = Vec::new();
-        for (((name, material), [a, b]), scaling) in used().zip(&sizes).zip(room.scalings(&sizes)) {
+        for (((name, material), size), scaling) in used().zip(&sizes).zip(room.scalings(&sizes)) {
             progress.check()?;
-            let Scaling { halvings, reason } = scaling;
-            let decode = |bytes: Vec<u8>| decode_halved(&bytes, halvings, MipFilter::Colors, budget);
+            let decode = |bytes: Vec<u8>| decode_halved(&bytes, scaling.halvings, MipFilter::Colors, budget);
             let texture = borrowing(budget, || read(name).and_then(decode));
-            match texture {
-                Err(reason) => problems.push(format!("the texture {} is left out: {reason}.", shown(name))),
-                Ok(texture) => {
-                    let [c, d] = texture.size;
-                    if halvings > 0 {
-                        let name = shown(name);
-                        problems.push(format!(
-                            "the texture {name} is scaled down from {a} x {b} px to {c} x {d} px: {reason}."
-                        ));
-                    }
-                    faces.material_mut(material).texture = Some(Arc::new(texture));
-                }
+            let said = scaling.said(*size, texture.as_ref().map(|texture| texture.size));
+            problems.extend(said.map(|said| format!("the texture {} {said}", shown(name))));
+            if let Ok(texture) = texture {
+                faces.material_mut(material).texture = Some(Arc::new(texture));
             }
         }
         Ok(problems)

@@ -127,14 +127,12 @@ impl Images {
         notes: &mut Notes,
     ) -> Result<BTreeMap<&'p str, Arc<Texture>>, Cancelled> {
         let mut decoded = BTreeMap::new();
-        for (path, Scaling { halvings, reason }) in paths.iter().zip(scalings) {
+        for (path, scaling) in paths.iter().zip(scalings) {
             progress.check()?;
-            let texture = self.of(path).and_then(|bytes| decode_halved(bytes, *halvings, MipFilter::Colors, budget));
-            let said = match &texture {
-                Err(reason) => Some(format!("is left out: {reason}")),
-                Ok(texture) => (*halvings > 0).then(|| scaled_down(self.size(path), texture.size, reason)),
-            };
-            notes.extend(said.map(|said| format!("the texture \"{}\" {said}.", shown(path))));
+            let texture =
+                self.of(path).and_then(|bytes| decode_halved(bytes, scaling.halvings, MipFilter::Colors, budget));
+            let said = scaling.said(self.size(path), texture.as_ref().map(|texture| texture.size));
+            notes.extend(said.map(|said| format!("the texture \"{}\" {said}", shown(path))));
             decoded.extend(texture.ok().map(|texture| (*path, Arc::new(texture))));
         }
         Ok(decoded)
@@ -237,20 +235,15 @@ fn blend(
     if let Err(refused) = budget.hold(decoded_bytes(size)) {
         return Ok(Err(refused.into()));
     }
-    if more.halvings > 0 {
+    if let Some(said) = more.said(whole, Ok(size)) {
         let name = mixture.images.last().map_or("", String::as_str);
-        let said = scaled_down(whole, size, &more.reason);
-        notes.push_once(format!("an image of layers with the texture \"{}\" {said}.", shown(name)));
+        notes.push_once(format!("an image of layers with the texture \"{}\" {said}", shown(name)));
     }
     Ok(Ok(mixture.blend(&images, size, progress)?))
 }
 
 fn larger(a: [u32; 2], b: [u32; 2]) -> [u32; 2] {
     [a[0].max(b[0]), a[1].max(b[1])]
-}
-
-fn scaled_down([a, b]: [u32; 2], [c, d]: [u32; 2], reason: &str) -> String {
-    format!("is scaled down from {a} x {b} px to {c} x {d} px: {reason}")
 }
 
 /// Shows an image on a material, which blends if the image has transparent texels and doesn't hide what is behind.

@@ -507,6 +507,21 @@ fn bad_animations_are_left_out_with_a_warning() {
 }
 
 #[test]
+fn of_many_faults_a_hundred_are_named_and_the_others_counted_before_the_repairs() {
+    let mut draft = triangle();
+    let normals = draft.vectors(&[[0.0, 0.0, 9.0], [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]]);
+    draft.root["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = json!(normals);
+    (0..130).for_each(|_| draft.animate(0, "translation", "VEC3", &[0.0], &[0.0, f32::NAN, 0.0]));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("faults.gltf");
+    std::fs::write(&path, draft.document().to_string()).unwrap();
+    let warnings = crate::load::mesh_file::load(&path, &Limits::default(), &Progress::new()).unwrap().warnings;
+    assert!(warnings[..100].iter().zip(0..).all(|(said, i)| said.starts_with(&format!("animation {i} is left out: "))));
+    let rest = ["30 more such sentences are left out.", "normals whose length wasn't 1, scaled to it: 1."];
+    assert_eq!(warnings[100..], rest);
+}
+
+#[test]
 fn values_that_are_no_numbers_are_left_out() {
     let mut draft = triangle();
     draft.animate(0, "translation", "VEC3", &[0.0], &[0.0, f32::NAN, 0.0]);
@@ -552,6 +567,25 @@ fn bad_morph_targets_leave_the_mesh_at_rest() {
     let [warning] = &mesh.warnings[..] else { panic!("{:?}", mesh.warnings) };
     assert!(warning.starts_with("animations are left out: /accessors/2 (POSITION of a morph target of"), "{warning}");
     assert!(mesh.rig.is_none());
+}
+
+#[test]
+fn a_part_that_is_scaled_to_nothing_stays_so_without_its_animations() {
+    let mut draft = growing(None);
+    let short = draft.vectors(&[[0.0; 3]; 2]);
+    // A second part, whose targets are broken, stands before it and beside it.
+    draft.push("meshes", draft.root["meshes"][0].clone());
+    draft.root["meshes"][1]["primitives"][0]["targets"] = json!([{ "POSITION": short }]);
+    draft.animate(2, "weights", "SCALAR", &[0.0, 1.0], &[0.0, 1.0]);
+    draft.push("nodes", json!({ "mesh": 1, "translation": [9, 0, 0] }));
+    for roots in [[1, 2], [2, 1]] {
+        draft.root["scenes"][0]["nodes"] = json!(roots);
+        let mesh = draft.read().unwrap();
+        let is_said = mesh.warnings.iter().any(|warning| warning.starts_with("animations are left out: "));
+        assert!(is_said && mesh.mesh.rig.is_none(), "{:?}", mesh.warnings);
+        let (there, beside): (Vec<_>, Vec<_>) = positions(&mesh.mesh).into_iter().partition(|[x, ..]| *x < 5.0);
+        assert_eq!((there, beside.len()), (vec![[1.0, 2.0, 3.0]; 6], 6));
+    }
 }
 
 #[test]

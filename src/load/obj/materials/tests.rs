@@ -127,8 +127,7 @@ fn only_64_material_files_are_read() {
     let folder = folder();
     let libraries: String = (0..1000).map(|i| format!("mtllib {}.mtl\n", i % 100)).collect();
     let warnings = read(&folder, &libraries, &["a"]).warnings;
-    assert_eq!(warnings.len(), 1 + 2, "{warnings:?}");
-    assert!(warnings[0].ends_with("(and 63 more like it)."), "{}", warnings[0]);
+    assert!(warnings.len() == 3 && warnings[0].ends_with(" (and 63 more like it)."), "{warnings:?}");
     assert!(warnings[1].starts_with("material files beyond the first 64, left out: "), "{}", warnings[1]);
 }
 
