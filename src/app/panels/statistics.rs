@@ -31,7 +31,7 @@ impl App {
             if self.panels.open.title(ui, Section::Patch) {
                 ui.push_id("patch", |ui| self.patch_section(ui));
             }
-            self.keep_under_pointer(ui, top);
+            let pushed = self.pushed_down(ui, top);
             ui.push_id("given", |ui| self.given_section(ui));
             ui.push_id("LOD shader", |ui| self.lod_shader_section(ui));
             self.deviation_section(ui);
@@ -56,6 +56,10 @@ impl App {
                 self.mesh_facts(ui);
             }
             self.pass_times(ui);
+            // Only now, since lists would take it for theirs.
+            if pushed != 0.0 {
+                ui.scroll_with_delta_animation(egui::vec2(0.0, -pushed), egui::style::ScrollAnimation::none());
+            }
         });
     }
 
@@ -134,16 +138,14 @@ impl App {
         });
     }
 
-    /// Scrolls by as much as the section of the patch, which begins at `top`, has grown, if the pointer is below it: what it points at
-    /// stays there.
-    fn keep_under_pointer(&mut self, ui: &egui::Ui, top: f32) {
+    /// By how much the section of the patch, which begins at `top`, pushes down what the pointer is over, in points: the panel is
+    /// scrolled as far, so that it stays there. 0 if the pointer is elsewhere.
+    fn pushed_down(&mut self, ui: &egui::Ui, top: f32) -> f32 {
         let height = ui.cursor().top() - top;
         let before = std::mem::replace(&mut self.panels.patch_height, height);
-        let is_below =
-            ui.ctx().pointer_latest_pos().is_some_and(|at| ui.clip_rect().contains(at) && at.y > top + before);
-        if is_below && height != before {
-            ui.scroll_with_delta_animation(egui::vec2(0.0, before - height), egui::style::ScrollAnimation::none());
-        }
+        let pointer = ui.ctx().pointer_latest_pos();
+        let is_below = pointer.is_some_and(|at| ui.clip_rect().contains(at) && at.y > top + before);
+        if is_below { height - before } else { 0.0 }
     }
 
     fn patch_facts(&self, ui: &mut egui::Ui) {
