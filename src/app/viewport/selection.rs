@@ -163,9 +163,13 @@ impl App {
         let (Some(patch), Some(document)) = (self.selected_patch(), &self.document) else { return };
         let topology = &document.shown().1;
         let corners = topology.patch_positions(patch);
-        // In the middle of what was emitted, since the middle of a flat triangle may lie below the surface.
-        let border = self.patch_edges(topology, patch, SplitSide::Right).concat();
-        let at = border.iter().map(|point| point / border.len() as f32).sum();
+        // As far from the middle of the flat triangle, which may lie below the surface, as edges bulge from their chords.
+        let bulge = |edge: &Vec<Vec3>| -> Vec3 {
+            let chord = edge.first().zip(edge.last()).map_or(Vec3::ZERO, |(a, b)| a * 0.5 + b * 0.5);
+            edge.iter().map(|point| (point - chord) / edge.len() as f32).sum()
+        };
+        let edges = self.patch_edges(topology, patch, SplitSide::Right);
+        let at = corners.into_iter().sum::<Vec3>() / 3.0 + edges.iter().map(bulge).sum::<Vec3>() / 3.0;
         let outlines = self.results().map(|results| &results.found.outlines);
         let facing = patch_facing(topology, patch, outlines).normalize_or_zero().as_vec3();
         let spot = PatchSpot { facing, ..PatchSpot::of(corners, at) };
