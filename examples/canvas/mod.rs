@@ -97,7 +97,11 @@ impl Canvas {
     }
 
     /// Draws the mesh in a render pass of the host's own.
-    pub(crate) fn draw(&self, encoder: &mut wgpu::CommandEncoder, mesh: &TessellatedMesh) -> Result<(), Box<dyn Error>> {
+    pub(crate) fn draw(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        mesh: &TessellatedMesh,
+    ) -> Result<(), Box<dyn Error>> {
         let color = self.color.create_view(&Default::default());
         let background = wgpu::Color { r: 0.02, g: 0.02, b: 0.03, a: 1.0 };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {

@@ -99,7 +99,11 @@ impl Reported {
 fn watch(device: &wgpu::Device) -> Reported {
     let reported = Reported::default();
     let noted = reported.clone();
-    device.on_uncaptured_error(Arc::new(move |error| noted.note(in_words(error))));
+    device.on_uncaptured_error(Arc::new(move |error| {
+        if !is_of_busy_surface(&error) {
+            noted.note(in_words(error));
+        }
+    }));
     let lost = reported.lost.clone();
     device.set_device_lost_callback(move |reason, message| {
         let destroyed = reason == wgpu::DeviceLostReason::Destroyed;
@@ -107,6 +111,13 @@ fn watch(device: &wgpu::Device) -> Reported {
         let _ = lost.set(if destroyed { "it was destroyed".into() } else { message.replace('\n', " ") });
     });
     reported
+}
+
+/// Whether a window's surface couldn't be made anew because another thread gave the device work while wgpu waited for it to be idle. The
+/// surface stays as it was, and the next frame tries again.
+fn is_of_busy_surface(error: &wgpu::Error) -> bool {
+    // wgpu has no type for it that can be named.
+    error.to_string().contains("Failed to wait for GPU to come idle before reconfiguring the Surface")
 }
 
 fn in_words(error: wgpu::Error) -> GpuError {
@@ -265,6 +276,19 @@ impl Gpu {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_surface_that_couldnt_wait_for_a_busy_device_is_no_error() {
+        let error = |text: &str| {
+            let source = Box::from(text);
+            wgpu::Error::Validation {
+                source,
+                description: format!("Validation Error Caused by: In Surface::configure {text}"),
+            }
+        };
+        assert!(is_of_busy_surface(&error("Failed to wait for GPU to come idle before reconfiguring the Surface")));
+        assert!(!is_of_busy_surface(&error("Invalid surface")));
+    }
 
     #[test]
     fn a_panic_of_a_callback_isnt_swallowed() {

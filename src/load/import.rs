@@ -84,6 +84,17 @@ impl Default for Import {
     }
 }
 
+/// What stands in the warning about normals that a file lacks, between what lacks them and what becomes of it.
+const WHICH_ARE: &str = ", which are ";
+
+/// Whether a warning is that about normals that a file lacks.
+pub fn is_of_lacking_normals(warning: &str) -> bool {
+    let lacking = warning.split_once(WHICH_ARE);
+    lacking.is_some_and(|(what, shown)| {
+        what.contains("without normals") && (shown.starts_with("flat") || shown.starts_with("smoothed below"))
+    })
+}
+
 impl Import {
     /// Whether all normals are made.
     pub(super) fn makes_normals(&self) -> bool {
@@ -118,7 +129,7 @@ impl Import {
             0.0 => "flat".to_owned(),
             angle => format!("smoothed below {angle} degrees"),
         };
-        (count, format!("{what}, which are {shown}"))
+        (count, format!("{what}{WHICH_ARE}{shown}"))
     }
 
     /// Turns and scales a mesh as the axis and the unit say that were chosen, so that Y points up and the unit is the metre.

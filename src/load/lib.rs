@@ -57,6 +57,7 @@ pub use uri::percent_decoded;
 
 pub use format::Format;
 pub use heights::HeightSource;
+pub use import::is_of_lacking_normals;
 pub use import::{FileUnit, Import, LengthUnit, NormalSource, UNIT_METRES};
 pub use memory_budget::Budget;
 pub use source::Source;

@@ -98,11 +98,13 @@ mod tests {
 
     #[test]
     fn sentences_that_differ_in_names_are_one_with_their_number() {
-        let missing = |name| format!("the map of \"{name}\" is left out: /images/{name}/a: there is no such file.");
+        let missing =
+            |name| format!("the map of \"{name}\" is left out: \"{name}.png\" can't be read: there is no such file.");
         let mut notes = Notes::default();
         notes.extend(["Hose", "Left lens", "Hose", "Wood"].map(missing));
         notes.push("the map of \"Hose\" is left out: /images/1: it is broken.".to_owned());
-        let first = "the map of \"Hose\" is left out: /images/Hose/a: there is no such file (and 3 more like it).";
+        let first =
+            "the map of \"Hose\" is left out: \"Hose.png\" can't be read: there is no such file (and 3 more like it).";
         assert_eq!(notes.into_warnings(), [first, "the map of \"Hose\" is left out: /images/1: it is broken."]);
     }
 

@@ -12,7 +12,7 @@ use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use super::memory_budget::Budget;
 use crate::files::{FileError, Limits, read_file};
 use geometry::mesh::MemoryAccount;
-use geometry::names::{on_one_line, shown_path};
+use geometry::names::on_one_line;
 use geometry::progress::Progress;
 
 /// The greatest size of a data URI, in bytes of decoded data.
@@ -40,7 +40,7 @@ impl<'a> Files<'a> {
     /// the program read other files.
     ///
     /// # Errors
-    /// A clause that says what is wrong and what to do.
+    /// A clause that says what is wrong and what to do, without the URI.
     pub(super) fn read(&self, uri: &str, is_kept: bool) -> Result<Vec<u8>, String> {
         let take = |bytes| if is_kept { self.budget.hold(bytes) } else { self.budget.borrow(bytes) };
         if let Some(data) = strip_scheme(uri, "data:") {
@@ -81,29 +81,29 @@ impl<'a> Files<'a> {
 
     /// Returns the path of the file itself, with links resolved.
     fn found(&self, relative: &Path) -> Result<PathBuf, String> {
-        let missing = |path: &Path, error: std::io::Error| {
+        let missing = |error: std::io::Error| {
             let reason = match error.kind() {
                 ErrorKind::NotFound => "there is no such file".to_owned(),
                 _ => error.to_string(),
             };
-            format!("{}: {reason}; put it where the document names it, or export as .glb", shown_path(path))
+            format!("{reason}; put it where the document names it, or export as .glb")
         };
         let folder = if self.folder.as_os_str().is_empty() { Path::new(".") } else { self.folder };
         let path = folder.join(relative);
         let in_other_case = || in_other_case(&folder.canonicalize().ok()?, relative);
         let real = path.canonicalize().or_else(|error| in_other_case().ok_or(error));
-        let real = real.map_err(|error| missing(&path, error))?;
-        let root = folder.canonicalize().map_err(|error| missing(folder, error))?;
+        let real = real.map_err(missing)?;
+        let root = folder.canonicalize().map_err(missing)?;
         if !real.starts_with(&root) {
-            return Err(format!(
-                "{} is a link to a file outside the document's folder, but only files in that folder and below are read; \
-                 put the file itself there",
-                shown_path(&path)
-            ));
+            return Err(
+                "it is a link to a file outside the document's folder, but only files in that folder and below are \
+                        read; put the file itself there"
+                    .to_owned(),
+            );
         }
         // A pipe or a device could block for ever.
-        if !real.metadata().map_err(|error| missing(&path, error))?.is_file() {
-            return Err(format!("{} is not a file; name one, or export as .glb", shown_path(&path)));
+        if !real.metadata().map_err(missing)?.is_file() {
+            return Err("it is not a file; name one, or export as .glb".to_owned());
         }
         Ok(real)
     }
@@ -287,7 +287,7 @@ mod tests {
         for missing in ["a.PNG", "wood.jpg", "outside.png", "maps", "wood.png/a.png"] {
             assert!(found(missing).is_err(), "{missing}");
         }
-        assert!(found("maps.png").unwrap_err().contains("model/maps.png: there is no such file"));
+        assert!(found("maps.png").unwrap_err().starts_with("there is no such file; "));
     }
 
     #[cfg(target_os = "linux")]

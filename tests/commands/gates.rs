@@ -321,6 +321,26 @@ fn evidence_is_seen_from_where_nothing_hides_it() {
 }
 
 #[test]
+fn evidence_of_a_fold_that_is_a_needle_shows_it() {
+    let folder = Folder::new();
+    let [mesh, picture, evidence] = ["needle.obj", "it.png", "evidence"].map(|name| folder.path(name));
+    // The rounded edge of a plate's corner, of which all that is emitted is turned over.
+    let needle = "v -0.0952 0.00003 0.1966\nv -0.1396 0.0001 0.2\nv -0.1589 0.0001 0.2\n\
+                  vn 0.0003 -0.9999 0.0118\nvn 0.0002 -0.2872 0.9579\nvn -0.7175 -0.2665 0.6436\n";
+    let back = "v -0.16 0 -0.2\nv 0.16 0 -0.2\nv 0.16 0.08 -0.2\nvn 0 0 -1\n";
+    std::fs::write(&mesh, format!("{needle}{back}f 1//1 2//2 3//3\nf 4//4 6//4 5//4\n")).expect("a writable folder");
+    failure(
+        &[&["render", &mesh, "-o", &picture, "--fail-on", "folds", "--evidence", &evidence], &VIEW[..]].concat(),
+        1,
+    );
+    let shown = Path::new(&evidence).join("it-folds.png");
+    let picture = image::open(&shown).expect("a PNG file").into_rgb8();
+    let of_fold = |pixel: &&image::Rgb<u8>| pixel[0].abs_diff(189) < 20 && pixel[1] < 90 && pixel[2] > 230;
+    let folded = picture.pixels().filter(of_fold).count();
+    assert!(folded > 60, "{folded} px are of a fold");
+}
+
+#[test]
 fn evidence_of_an_engines_frame_comes_closer_too_and_px_are_those_of_its_picture() {
     let folder = Folder::new();
     let mesh = write_torn_at_the_back(&folder, false);

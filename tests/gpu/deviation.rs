@@ -72,7 +72,8 @@ fn face(target: &Target) -> (Scene, Camera, [Vec3; 3]) {
     let (loaded, scene) = crate::scene(Shape::Icosahedron);
     let corners = loaded.topology.patch_corners(0).map(|corner| loaded.mesh.corners[corner as usize].position);
     let mut camera = Camera::framing(&scene.bounds, target.viewport());
-    camera.frame_triangle(corners, &scene.bounds);
+    let [a, b, c] = corners;
+    camera.frame_at((a + b + c) / 3.0, a.distance(b), (b - a).cross(c - a).normalize(), &scene.bounds);
     (scene, camera, corners)
 }
 

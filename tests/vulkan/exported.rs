@@ -229,7 +229,8 @@ pub(crate) struct Row {
 }
 
 /// The ways to displace that can be exported.
-pub(crate) const DISPLACEMENTS: [Displacement; 3] = [Displacement::On, Displacement::AsPublished, Displacement::PerPatch];
+pub(crate) const DISPLACEMENTS: [Displacement; 3] =
+    [Displacement::On, Displacement::AsPublished, Displacement::PerPatch];
 
 /// Compares every surface under every LOD, in both languages.
 ///

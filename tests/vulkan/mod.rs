@@ -1,6 +1,10 @@
 //! Vulkan as it is, for what wgpu has none of: tessellation stages. The bench draws our patches with them, and tests run exported
 //! shaders on them.
-#![allow(unsafe_code, clippy::undocumented_unsafe_blocks, reason = "every call of Vulkan is; handles live as long as their owner")]
+#![allow(
+    unsafe_code,
+    clippy::undocumented_unsafe_blocks,
+    reason = "every call of Vulkan is; handles live as long as their owner"
+)]
 
 pub(crate) mod agreement;
 pub(crate) mod bindings;

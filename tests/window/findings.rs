@@ -53,6 +53,28 @@ fn a_click_on_the_folds_shows_one_and_their_number_stays() {
     assert!(harness.query_by_label("LOD camera frozen").is_none());
 }
 
+/// The rounded edges of a plate's two corners: needles, of which PN-AEN turns all of what it emits over.
+fn needles() -> String {
+    let first = "v -0.0952 0.00003 0.1966\nv -0.1396 0.0001 0.2\nv -0.1589 0.0001 0.2\n\
+                 vn 0.0003 -0.9999 0.0118\nvn 0.0002 -0.2872 0.9579\nvn -0.7175 -0.2665 0.6436\n";
+    let second = "v 0.0935 0.0808 0.1966\nv 0.1375 0.0808 0.2\nv 0.1589 0.0808 0.2\n\
+                  vn 0 0.7623 0.6472\nvn 0 0.2894 0.9572\nvn 0.6834 0.2693 0.6786\n";
+    let back = "v -0.16 0 -0.2\nv 0.16 0 -0.2\nv 0.16 0.08 -0.2\nvn 0 0 -1\n";
+    format!("{first}{second}{back}f 1//1 2//2 3//3\nf 4//4 5//5 6//6\nf 7//7 9//7 8//7\n")
+}
+
+#[test]
+fn a_fold_that_is_a_needle_is_wide_enough_to_be_seen_beside_the_lines_of_the_selection() {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let mut harness = opened(&folder, &needles());
+    let finding = button(&harness, |text| text.ends_with(" folds"));
+    click(&mut harness, &finding);
+    assert!(harness.state().selected_triangle().is_some());
+    assert!(px_of(&harness, FOLD_COLOR) > 2000, "{} px are of a fold", px_of(&harness, FOLD_COLOR));
+    click(&mut harness, "Frame");
+    assert!(px_of(&harness, FOLD_COLOR) > 1000, "{} px are of the framed patch", px_of(&harness, FOLD_COLOR));
+}
+
 #[test]
 fn a_framed_patch_is_what_is_seen_in_the_middle() {
     let folder = tempfile::tempdir().expect("a writable temporary folder");
@@ -189,6 +211,60 @@ fn all_numbers_change_together_once_another_view_is_measured() {
     assert_eq!(all.len(), 2, "those before and those after: {all:#?}");
 }
 
+/// The text of the first label or button that contains this.
+fn said(harness: &Harness<App>, part: &str) -> String {
+    let node = harness.get_by_label_contains(part).accesskit_node();
+    node.label().or(node.value()).expect("a text")
+}
+
+#[test]
+fn what_was_counted_in_the_frozen_view_stays_and_the_holes_in_the_mesh_are_explained() {
+    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    let checked = button(&harness, |text| text.starts_with("Checked: "));
+    let (drawn, all) = checked["Checked: ".len()..].split_once(" of ").expect("two numbers");
+    let number = |text: &str| text.trim_end_matches(" patches").replace(',', "").parse::<u32>().expect("a number");
+    let left_out = number(all) - number(drawn);
+    assert!(left_out > 0, "{checked}: some face away");
+    let sizes = said(&harness, "% of triangles below 3 px");
+    harness.state_mut().select_triangle(Some(0));
+    settle(&mut harness);
+    click(&mut harness, "Frame");
+    assert_eq!(said(&harness, "% of triangles below 3 px"), sizes);
+    assert_eq!(button(&harness, |text| text.starts_with("Checked: ")), checked);
+    harness.get_by_label_contains(&format!("doesn't see them: {left_out} patches"));
+    press(&mut harness, Key::Z);
+    assert!(harness.query_by_label_contains("doesn't see them").is_none());
+    assert_ne!(said(&harness, "% of triangles below 3 px"), sizes, "a single patch is in view");
+}
+
+#[test]
+fn the_hover_text_of_a_finding_covers_no_other_finding() {
+    let mut harness = window(None);
+    let finding = harness.get_by_label("No cracks");
+    let left = finding.rect().left();
+    finding.hover();
+    harness.run_steps(60);
+    let hover = harness.get_by_label("Every shared edge of what is drawn matches bit for bit.").rect();
+    assert!(hover.right() <= left, "{hover} ends right of {left}");
+}
+
+#[test]
+fn a_row_that_selects_a_patch_stays_under_the_pointer() {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let mut harness = opened(&folder, &roofed());
+    let finding = button(&harness, |text| text.ends_with(" folds"));
+    click(&mut harness, &finding);
+    press(&mut harness, Key::Escape);
+    assert_eq!(harness.state().selected_triangle(), None);
+    scroll_to(&mut harness, "Folded patches");
+    let row = button(&harness, |text| text.starts_with("0    "));
+    let place = |harness: &Harness<App>| harness.get_by_label(&row).rect().center();
+    let before = place(&harness);
+    click(&mut harness, &row);
+    assert_eq!(harness.state().selected_triangle(), Some(0));
+    assert!(place(&harness).distance(before) < 1.0, "{before} {}", place(&harness));
+}
+
 /// A tetrahedron whose first corner is at this x.
 fn tetrahedron(x: f32, size: f32) -> String {
     let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -208,6 +284,7 @@ fn a_picture_of_nothing_says_so_and_offers_to_frame_the_mesh() {
     }
     settle(&mut harness);
     harness.get_by_label(NOTHING);
+    harness.get_by_label("Checked: 0 of 12 patches");
     click(&mut harness, "Frame the mesh");
     assert!(harness.query_by_label(NOTHING).is_none());
     assert!(harness.state().totals().is_some_and(|(_, triangles)| triangles > 0));

@@ -14,7 +14,7 @@ use pnaen::cli::Cli;
 use tempfile::TempDir;
 
 use crate::editing::{assert_draws, copied, press_with};
-use crate::{choose, press, resumed, settle, uniform, vase, window};
+use crate::{choose, click, press, resumed, settle, uniform, vase, window};
 
 /// Two squares that meet in an edge at a right angle, 1 high, 2 wide and 3 deep, without normals.
 const BENT: &str = "v 0 0 0\nv 2 0 0\nv 2 0 3\nv 0 0 3\nv 0 1 0\nv 2 1 0\nf 1 4 3 2\nf 1 2 6 5\n";
@@ -45,9 +45,13 @@ fn missing_normals_are_told_and_a_click_makes_them_flat() {
     harness.get_by_label("Missing normals: smoothed below 60\u{b0}").click();
     settle(&mut harness);
     assert_eq!((import(&harness).normals, import(&harness).crease_angle), (NormalSource::File, 0.0));
+    click(&mut harness, "Missing normals: flat");
+    assert_eq!(import(&harness).crease_angle, 60.0, "there is a way back");
+    press_with(&mut harness, Modifiers::COMMAND, Key::Z);
     harness.get_by_label("Missing normals: flat");
     press_with(&mut harness, Modifiers::COMMAND, Key::Z);
     assert_eq!(import(&harness).crease_angle, 60.0);
+    harness.get_by_label("No other warnings");
     harness.get_by_label("Missing normals: smoothed below 60\u{b0}");
     choose(&mut harness, "Normals", "Made anew");
     assert!(harness.query_by_label_contains("Missing normals").is_none(), "none is missed where all are made");

@@ -9,7 +9,7 @@ use inspect::render::layout::{FACTOR_COLORS, SIDE_COLORS};
 use load::Source;
 use pnaen::app::App;
 
-use crate::{choose, click, press, settle, uniform, window};
+use crate::{choose, click, press, scroll_to, settle, uniform, window};
 
 fn cube() -> Harness<'static, App> {
     uniform(Some(Source::Shape(Shape::CubeSplit)))
@@ -214,6 +214,7 @@ fn a_selected_edge_shows_the_colour_of_its_factor_and_a_halo() {
     let halo = SIDE_COLORS[0];
     let (alone, white) = (FACTOR_COLORS.map(|color| count(&harness, color)), count(&harness, halo));
     for (k, edge) in ["0-1", "1-2", "2-0"].into_iter().enumerate() {
+        scroll_to(&mut harness, &format!("Edge {edge} of the patch"));
         click(&mut harness, &format!("Edge {edge} of the patch"));
         assert!(harness.state().selected_edge().is_some());
         for (color, alone) in FACTOR_COLORS.into_iter().zip(alone) {

@@ -228,12 +228,12 @@ fn escape_stops_what_is_saved_and_says_so_for_a_while() {
     harness.key_press(Key::Escape);
     harness.run_steps(3);
     assert!(!harness.state().is_writing());
-    harness.get_by_label("Saving large.png was stopped.");
+    harness.get_by_label("Stopped: Saving large.png.");
     assert!(harness.query_by_label(STOP).is_none());
     assert_eq!(harness.state().selected_triangle(), Some(3), "the key does one thing at a time");
     // By itself it goes, and the status line has its numbers again.
     pass(&mut harness, 11.0);
-    assert!(harness.query_by_label_contains("was stopped").is_none());
+    assert!(harness.query_by_label_contains("Stopped:").is_none());
     harness.get_by_label_contains("256 to ");
     assert!(!path.exists());
 }

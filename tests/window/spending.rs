@@ -176,9 +176,9 @@ fn wrong_conventions_crack_under_adaptive_lod() {
         choose(&mut harness, "Convention", entry);
         assert_eq!((harness.state().settings().tessellation.convention, cracked(&harness)), (convention, Some(0)));
     }
-    choose(&mut harness, "Convention", "Mirrored, a mistake");
+    choose(&mut harness, "Convention", "Mirrored (mistake)");
     assert!(cracked(&harness) > Some(100), "{:?}", cracked(&harness));
-    choose(&mut harness, "Convention", "Rotated, a mistake");
+    choose(&mut harness, "Convention", "Rotated (mistake)");
     assert!(cracked(&harness) > Some(100), "{:?}", cracked(&harness));
     choose(&mut harness, "LOD", "Uniform");
     assert_eq!(cracked(&harness), Some(0));

@@ -103,7 +103,8 @@ fn the_reference_surfaces_path_can_be_typed_and_tab_reaches_the_buttons() {
     typed("elephant").into_iter().for_each(|event| harness.event(event));
     settle(&mut harness);
     assert_eq!((field(&harness).as_deref(), harness.state().settings()), (Some("elephant"), &settings));
-    (0..2).for_each(|_| press(&mut harness, Key::Tab));
+    // The first says that no name begins like this.
+    (0..3).for_each(|_| press(&mut harness, Key::Tab));
     assert!(harness.get_by_role_and_label(Role::Button, "Cancel").accesskit_node().is_focused());
     press(&mut harness, Key::W);
     assert_eq!(harness.state().settings(), &settings, "keys go to the window with the path");
@@ -126,11 +127,35 @@ fn tab_completes_a_path_and_quotes_and_uris_are_understood() {
     type_path(&mut harness, &folder.path().join("my").display().to_string(), Key::Tab);
     assert_eq!(field(&harness), Some(path.clone()));
     press(&mut harness, Key::Escape);
+    type_path(&mut harness, &format!("\"{}", folder.path().join("my").display()), Key::Tab);
+    assert_eq!(field(&harness), Some(format!("\"{path}\"")), "the quote is closed");
+    press(&mut harness, Key::Escape);
     for typed in [format!("\"{path}\""), format!("file://{}", path.replace(' ', "%20"))] {
         type_path(&mut harness, "shape:torus", Key::Enter);
         type_path(&mut harness, &typed, Key::Enter);
         assert_eq!(harness.state().source().map(ToString::to_string), Some(path.clone()), "{typed}");
     }
+}
+
+#[test]
+fn tab_that_cannot_choose_a_name_stays_in_the_field_and_says_so() {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let _ = [copy_vase(&folder, "vase-a.glb"), copy_vase(&folder, "vase-b.glb")];
+    let begun = folder.path().join("vase-").display().to_string();
+    let mut harness = window(None);
+    type_path(&mut harness, &begun, Key::Tab);
+    harness.get_by_label("These begin like this: vase-a.glb, vase-b.glb.");
+    harness.event(Event::Text("b".into()));
+    settle(&mut harness);
+    assert_eq!(field(&harness), Some(format!("{begun}b")), "the field still has the focus");
+    harness.event(Event::Text("x".into()));
+    settle(&mut harness);
+    assert!(harness.query_by_label_contains("begin like this").is_none());
+    press(&mut harness, Key::Tab);
+    harness.get_by_label("No file or folder there has a name that begins like this.");
+    harness.event(Event::Text("y".into()));
+    settle(&mut harness);
+    assert_eq!(field(&harness), Some(format!("{begun}bxy")));
 }
 
 #[test]

@@ -6,7 +6,7 @@ use egui::text::{CCursor, CCursorRange};
 use egui::{Event, Id, Key, TextEdit};
 
 use super::desktop_dialog::Asked;
-use super::typed_text::{completed, path_of};
+use super::typed_text::{Completion, completion, path_of};
 use crate::app::App;
 use crate::app::jobs::background_job::BackgroundJob;
 use geometry::names::shown_path;
@@ -40,13 +40,18 @@ pub(crate) enum Purpose {
 pub(crate) struct TypedPath {
     purpose: Purpose,
     path: String,
-    /// The path that the completion is about, and the completed path if there is more of it.
-    completion: (String, Option<String>),
+    /// The path that the completion is about.
+    completion: (String, Completion),
+    /// Whether it is said which names begin like the path, since Tab can't choose one of them. Then Tab leaves the field.
+    lists_names: bool,
     /// Why the path must be typed, if a dialog was asked for.
     why: Option<&'static str>,
     /// Events of keys that were pressed before the field had the focus; none once it has had the focus.
     early: Option<Vec<Event>>,
 }
+
+/// The most names that are listed under a path.
+const MOST_NAMES: usize = 8;
 
 /// The desktop's file dialog.
 pub(crate) struct PendingDialog {
@@ -203,8 +208,12 @@ impl TypedPath {
         }
         let label = ui.label(self.purpose.takes());
         self.complete(ui);
+        let takes_tab = self.takes_tab();
         let edit = TextEdit::singleline(&mut self.path).id(field()).desired_width(420.0);
-        let response = ui.add(edit.lock_focus(self.completion.1.is_some())).labelled_by(label.id);
+        let response = ui.add(edit.lock_focus(takes_tab)).labelled_by(label.id);
+        if self.lists_names {
+            ui.add(egui::Label::new(self.candidates()).wrap());
+        }
         let is_nowhere = ui.memory(|memory| memory.focused().is_none()) && !response.lost_focus();
         if self.early.is_some() || is_nowhere {
             response.request_focus();
@@ -226,16 +235,43 @@ impl TypedPath {
         .inner
     }
 
-    /// Lets Tab complete the path, where there is more of it.
+    /// Whether Tab does something in the field: it completes the path, or says which names begin like it.
+    fn takes_tab(&self) -> bool {
+        let (of, Completion { text, names }) = &self.completion;
+        let is_whole = names.len() == 1 && text.is_none();
+        let is_shape = of.starts_with("shape:");
+        !of.is_empty() && !is_whole && !is_shape && !self.lists_names
+    }
+
+    /// Lets Tab complete the path where there is more of it, or say which names begin like it.
     fn complete(&mut self, ui: &egui::Ui) {
         if self.completion.0 != self.path {
-            self.completion = (self.path.clone(), completed(&self.path));
+            self.completion = (self.path.clone(), completion(&self.path));
+            self.lists_names = false;
         }
-        let Some(completed) = self.completion.1.clone() else { return };
         let is_here = ui.memory(|memory| memory.has_focus(field()));
-        if is_here && ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, Key::Tab)) {
-            self.path = completed;
-            self.select_from(ui, self.path.chars().count());
+        let takes_tab = self.takes_tab() && is_here;
+        if !(takes_tab && ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, Key::Tab))) {
+            return;
+        }
+        match self.completion.1.text.clone() {
+            Some(completed) => {
+                self.path = completed;
+                self.select_from(ui, self.path.chars().count());
+            }
+            None => self.lists_names = true,
+        }
+    }
+
+    /// Says which names begin like the path.
+    fn candidates(&self) -> String {
+        let names = &self.completion.1.names;
+        match names.len() {
+            0 => "No file or folder there has a name that begins like this.".to_owned(),
+            count if count > MOST_NAMES => {
+                format!("{} and {} more begin like this.", names[..MOST_NAMES].join(", "), count - MOST_NAMES)
+            }
+            _ => format!("These begin like this: {}.", names.join(", ")),
         }
     }
 
@@ -262,7 +298,8 @@ impl App {
         let typed = self.dialogs.typed.as_ref().filter(|(of, _)| *of == purpose).map(|(_, path)| path.clone());
         let path = typed.unwrap_or_else(|| purpose.proposed(self.source(), self.dialogs.folder.as_deref()));
         let (completion, early) = Default::default();
-        self.dialogs.typed_path = Some(TypedPath { purpose, path, completion, why: None, early: Some(early) });
+        let (why, lists_names) = (None, false);
+        self.dialogs.typed_path = Some(TypedPath { purpose, path, completion, lists_names, why, early: Some(early) });
     }
 
     /// The same, if the desktop has no dialog.

@@ -23,13 +23,26 @@ pub(super) fn path_of(text: &str) -> String {
     }
 }
 
-/// The path with as much of a name added as all names in its folder that begin like it share; none if that is nothing.
-pub(super) fn completed(text: &str) -> Option<String> {
-    let path = path_of(text);
+/// How a path that is being typed may go on.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Completion {
+    /// The text with as much of a name added as all names in its folder that begin like it share; none if that is nothing.
+    pub text: Option<String>,
+    /// These names, sorted.
+    pub names: Vec<String>,
+}
+
+/// How a path may go on.
+pub(super) fn completion(text: &str) -> Completion {
+    // A quote that isn't closed yet is kept, and closed after the name of a file.
+    let opening = ['"', '\'']
+        .into_iter()
+        .find(|quote| text.trim().starts_with(*quote) && text.trim().matches(*quote).count() == 1);
+    let path = path_of(opening.map_or(text, |quote| text.trim().trim_start_matches(quote)));
     let start = path.rfind(is_separator).map_or(0, |at| at + 1);
     let (folder, begun) = path.split_at(start);
-    let entries = std::fs::read_dir(if folder.is_empty() { Path::new(".") } else { Path::new(folder) }).ok()?;
-    let names = entries.flatten().filter_map(|entry| {
+    let entries = std::fs::read_dir(if folder.is_empty() { Path::new(".") } else { Path::new(folder) });
+    let names = entries.into_iter().flatten().flatten().filter_map(|entry| {
         let mut name = entry.file_name().into_string().ok()?;
         // Hidden files are meant only by those who begin with their dot.
         if !name.starts_with(begun) || (begun.is_empty() && name.starts_with('.')) {
@@ -38,8 +51,16 @@ pub(super) fn completed(text: &str) -> Option<String> {
         name.extend(entry.path().is_dir().then_some(MAIN_SEPARATOR));
         Some(name)
     });
-    let shared = names.reduce(|a, b| a.chars().zip(b.chars()).take_while(|(a, b)| a == b).map(|(a, _)| a).collect())?;
-    (shared.len() > begun.len()).then(|| format!("{folder}{shared}"))
+    let mut names: Vec<String> = names.collect();
+    names.sort();
+    let both = |a: String, b: String| a.chars().zip(b.chars()).take_while(|(a, b)| a == b).map(|(a, _)| a).collect();
+    let shared = names.iter().cloned().reduce(both).filter(|shared| shared.len() > begun.len());
+    let text = shared.map(|shared| {
+        let is_whole = names.len() == 1 && !shared.ends_with(MAIN_SEPARATOR);
+        let quote = opening.map(String::from).unwrap_or_default();
+        format!("{quote}{folder}{shared}{}", if is_whole { quote.as_str() } else { "" })
+    });
+    Completion { text, names }
 }
 
 #[cfg(test)]
@@ -74,6 +95,7 @@ mod tests {
             std::fs::write(at(name), "").expect("a writable temporary folder");
         }
         std::fs::create_dir(at("models")).expect("a writable temporary folder");
+        let completed = |text: &str| completion(text).text;
         assert_eq!(completed(&at("v")), Some(at("vase-")));
         assert_eq!(completed(&at("vase-")), None, "both go on differently");
         assert_eq!(completed(&at("vase-b")), Some(at("vase-b.glb")));
@@ -81,5 +103,11 @@ mod tests {
         assert_eq!(completed(&at(".h")), Some(at(".hidden")));
         assert_eq!(completed(&at("x")), None);
         assert_eq!(completed(&at("nowhere/x")), None);
+        assert_eq!(completion(&at("vase-")).names, ["vase-a.glb", "vase-b.glb"]);
+        assert_eq!(completion(&at("nowhere/x")), Completion::default());
+        for quote in ["\"", "'"] {
+            assert_eq!(completed(&format!("{quote}{}", at("v"))), Some(format!("{quote}{}", at("vase-"))));
+            assert_eq!(completed(&format!(" {quote}{}", at("t"))), Some(format!("{quote}{}{quote}", at("torus.obj"))));
+        }
     }
 }

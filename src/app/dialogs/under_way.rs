@@ -68,6 +68,6 @@ impl App {
             Work::File => self.jobs.writing = None,
             Work::Drawing => return self.viewport.picture.cancel(),
         }
-        self.dialogs.notice = Some(Notice::new(format!("{} was stopped.", under_way.title)));
+        self.dialogs.notice = Some(Notice::new(format!("Stopped: {}.", under_way.title)));
     }
 }

@@ -25,7 +25,12 @@ pub(crate) struct ExplainJob {
 
 impl ExplainJob {
     /// Returns the explanation of a patch once it is there, and starts to make it if nobody has.
-    pub(crate) fn of(&mut self, context: &egui::Context, posed: &PosedMesh, wanted: EmittedPatch) -> Option<&ExplainedPatch> {
+    pub(crate) fn of(
+        &mut self,
+        context: &egui::Context,
+        posed: &PosedMesh,
+        wanted: EmittedPatch,
+    ) -> Option<&ExplainedPatch> {
         if self.of != Some(wanted) && self.under_way.is_none() {
             let posed = posed.clone();
             let explain = move || {

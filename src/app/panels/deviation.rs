@@ -238,6 +238,6 @@ impl App {
         let Some(worst) = self.known_deviation(half).and_then(|found| found.worst) else { return };
         let Some(document) = &self.document else { return };
         let corners = document.shown().1.patch_positions(worst.patch);
-        self.show_place(half, &Spot::Patch { corners, at: worst.emitted.as_vec3() }, None);
+        self.show_place(half, &Spot::patch(corners, worst.emitted.as_vec3()), None);
     }
 }

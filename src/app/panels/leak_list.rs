@@ -43,6 +43,7 @@ impl App {
     /// Shows cracks, and turns the camera to the one that a leak shows.
     pub(in crate::app) fn show_leak(&mut self, leak: &Leak) {
         self.settings.overlays.cracks = true;
+        self.keep_view();
         let edge = self.edge_of_leak(leak);
         edge.into_iter().for_each(|edge| self.select_edge(edge));
     }

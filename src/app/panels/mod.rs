@@ -43,6 +43,8 @@ pub(super) struct Panels {
     pub side: Side,
     /// The width of the crease band while it is being dragged, as a part of the bounding diagonal.
     pub dragged_crease_band: Option<f32>,
+    /// How high the section of the selected patch is, in points.
+    pub patch_height: f32,
     /// The displacement before it was last switched.
     pub last_displacement: Displacement,
 }
@@ -55,6 +57,7 @@ impl Default for Panels {
             are_hidden: false,
             side: Side::default(),
             dragged_crease_band: None,
+            patch_height: 0.0,
             last_displacement: Displacement::Off,
         }
     }

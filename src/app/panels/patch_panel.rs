@@ -186,9 +186,9 @@ impl SelectedPatch<'_> {
         let (name, hover) = match self.factors.filter(|factors| patch_has_rows(*factors)) {
             Some(factors) => {
                 let base = row_base(factors);
-                let flipped = if row_flip(factors) == 1 { " Diagonals are flipped." } else { "" };
+                let flipped = if row_flip(factors) == 1 { " Their diagonals run the other way." } else { "" };
                 let rows = row_count(factors);
-                ("width", format!("{rows} rows beside edge [{base}] widen to so many segments.{flipped}"))
+                ("width", format!("{rows} rows lie along edge [{base}]. The widest has so many segments.{flipped}"))
             }
             None => ("inside", "InsideTessFactor".to_owned()),
         };

@@ -27,9 +27,11 @@ impl App {
         scrolling_column(ui, |ui| {
             // Each in a scope of its own, so that rows that come and go don't take the focus from those below.
             ui.push_id("verdict", |ui| self.verdict(ui));
+            let top = ui.cursor().top();
             if self.panels.open.title(ui, Section::Patch) {
                 ui.push_id("patch", |ui| self.patch_section(ui));
             }
+            let pushed = self.pushed_down(ui, top);
             ui.push_id("given", |ui| self.given_section(ui));
             ui.push_id("LOD shader", |ui| self.lod_shader_section(ui));
             self.deviation_section(ui);
@@ -54,6 +56,10 @@ impl App {
                 self.mesh_facts(ui);
             }
             self.pass_times(ui);
+            // Only now, since lists would take it for theirs.
+            if pushed != 0.0 {
+                ui.scroll_with_delta_animation(egui::vec2(0.0, -pushed), egui::style::ScrollAnimation::none());
+            }
         });
     }
 
@@ -132,6 +138,16 @@ impl App {
         });
     }
 
+    /// By how much the section of the patch, which begins at `top`, pushes down what the pointer is over, in points: the panel is
+    /// scrolled as far, so that it stays there. 0 if the pointer is elsewhere.
+    fn pushed_down(&mut self, ui: &egui::Ui, top: f32) -> f32 {
+        let height = ui.cursor().top() - top;
+        let before = std::mem::replace(&mut self.panels.patch_height, height);
+        let pointer = ui.ctx().pointer_latest_pos();
+        let is_below = pointer.is_some_and(|at| ui.clip_rect().contains(at) && at.y > top + before);
+        if is_below { height - before } else { 0.0 }
+    }
+
     fn patch_facts(&self, ui: &mut egui::Ui) {
         let Some(document) = &self.document else { return };
         let all = document.loaded.topology.patches.len() as u64;
@@ -162,7 +178,7 @@ impl App {
         let small = results.map_or_else(unknown, |results| part(results.sizes.small, results.sizes.in_view));
         let low = results.map_or_else(unknown, |results| part(results.found.patches_low.into(), patches));
         egui::Grid::new("waste").num_columns(2).min_col_width(104.0).show(ui, |ui| {
-            let hover = "Triangles in view that are smaller than half of a square with sides of 3 px, and their share of all \
+            let hover = "Triangles in view with an area below 4.5 px, half of a square with sides of 3 px, and their share of all \
                          triangles in view.";
             marked(ui, "Below 3 px", &small, hover);
             let hover = "Patches whose factors are all below 2, and their share of all patches. They could be drawn without \

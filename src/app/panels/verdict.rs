@@ -9,7 +9,7 @@ use crate::app::text::{counted, grouped, short};
 use crate::app::widgets::{legible, rgb};
 use inspect::render::layout::{CRACK_COLOR, FOLD_COLOR, T_JUNCTION_COLOR};
 use inspect::settings::{Colors, Overlay};
-use load::{Import, NormalSource};
+use load::{Import, NormalSource, is_of_lacking_normals};
 
 /// Where a click on a line leads.
 #[derive(Clone, Copy)]
@@ -27,8 +27,10 @@ enum Destination {
     GivenFactors,
     Sizes,
     Factors,
-    /// Flat triangles where the file has no normals.
-    FlatNormals,
+    /// Another crease angle where the file has no normals: flat triangles, or smooth ones again.
+    CreaseAngle(f32),
+    /// The section that counts what isn't drawn.
+    Patches,
     Warnings,
 }
 
@@ -66,12 +68,15 @@ impl App {
         let lines = self.verdict_lines(ui.visuals());
         lines
             .into_iter()
-            .filter(|line| !matches!(line.leads, Destination::Sizes | Destination::FlatNormals))
+            .filter(|line| {
+                !matches!(line.leads, Destination::Sizes | Destination::CreaseAngle(_) | Destination::Patches)
+            })
             .find_map(|line| line.color)
     }
 
     fn verdict_lines(&self, visuals: &egui::Visuals) -> Vec<Line> {
         let lines = [
+            Some(self.checked_line(visuals.text_color())),
             Some(self.cracks_line()),
             Some(self.leaks_line()),
             Some(self.folds_line()),
@@ -80,7 +85,7 @@ impl App {
             self.given_line(visuals.warn_fg_color),
             Some(self.sizes_line(visuals.text_color())),
             Some(self.limit_line(visuals.warn_fg_color)),
-            self.normals_line(visuals.text_color()),
+            self.normals_line(visuals),
             Some(self.warnings_line(visuals.warn_fg_color)),
         ];
         lines.into_iter().flatten().collect()
@@ -96,6 +101,27 @@ impl App {
             );
         }
         Line::dim(format!("{what} \u{2026}"), hover, leads)
+    }
+
+    /// How much of the mesh the findings are about.
+    fn checked_line(&self, color: Color32) -> Line {
+        let hover = "Cracks, leaks, folds and sizes are found in the patches that are drawn. The others are out of the camera's view or \
+                     face away. A click opens the section that counts them.";
+        let (Some(document), Some(results)) = (&self.document, self.results()) else {
+            return self.unknown("Checked", hover, Destination::Patches);
+        };
+        let patches = document.loaded.topology.patches.len() as u64;
+        match u64::from(results.found.culled.total()) {
+            0 => Line::dim(
+                format!("Checked: {}", counted(patches, "patch")),
+                "All patches are drawn, and checked for cracks, leaks and folds.",
+                Destination::Patches,
+            ),
+            left_out => {
+                let text = format!("Checked: {} of {}", grouped(patches - left_out), counted(patches, "patch"));
+                Line::bad(text, color, hover, Destination::Patches)
+            }
+        }
     }
 
     fn cracks_line(&self) -> Line {
@@ -117,26 +143,28 @@ impl App {
     }
 
     fn leaks_line(&self) -> Line {
-        let hover = "Pixels of this view through which one can see into the closed mesh. A click goes to the cracked edge at the \
-                     largest group of them.";
+        let hover = "Pixels of the view through which one can see into the closed mesh. A click goes to the cracked edge at the largest \
+                     group of them, and freezes the view that they are counted in.";
+        let view = if self.viewport.frozen.is_some() { "the frozen view" } else { "this view" };
+        let none = || format!("No leaks in {view}");
         let waits = self.results().is_none();
         let junctions = self.document.as_ref().and_then(|document| document.checks.t_junctions());
         let has_cracks = self.results().is_none_or(|results| !results.found.cracks.cracked().is_empty());
         let is_whole = !has_cracks && junctions.is_some_and(|junctions| junctions.is_empty());
         if !waits && !self.may_leak() && is_whole {
-            return Line::dim("No leaks in this view", "No edge is cracked.", Destination::Leaks);
+            return Line::dim(none(), "No edge is cracked.", Destination::Leaks);
         }
         if !waits && !self.may_leak() {
-            let why = "Leaks are counted in views of a closed mesh, wound the same way everywhere, that is beyond the near plane \
-                       and wholly drawn. One can see into others anyway.";
+            let why = "Leaks can be counted only if the mesh is closed, all of its triangles are wound the same way, all of it lies before \
+                       the camera, and no patch is left out because it faces away.";
             return Line::dim("Leaks aren't counted", why, Destination::Leaks);
         }
         match self.leaks().filter(|_| !waits) {
             None => self.unknown("Leaks", "Leaks are counted while the picture rests.", Destination::Leaks),
-            Some([]) => Line::dim("No leaks in this view", hover, Destination::Leaks),
+            Some([]) => Line::dim(none(), hover, Destination::Leaks),
             Some(leaks) => {
                 let pixels: u64 = leaks.iter().map(|leak| u64::from(leak.pixels)).sum();
-                let text = format!("{} px leak in this view", grouped(pixels));
+                let text = format!("{} px leak in {view}", grouped(pixels));
                 Line::bad(text, rgb(CRACK_COLOR), hover, Destination::Leaks)
             }
         }
@@ -183,8 +211,8 @@ impl App {
     }
 
     fn sizes_line(&self, color: Color32) -> Line {
-        let hover = "Triangles in view that are smaller than half of a square with sides of 3 px: a GPU shades up to four times \
-                     as many px for them as they cover. A click colours triangles by their size.";
+        let hover = "The part of the triangles in view that cover less than 4.5 px, half of a square of 3 x 3 px. For each of them \
+                     a GPU shades up to four times as many px as it covers. A click colours triangles by their size.";
         let Some(sizes) = self.results().map(|results| &results.sizes) else {
             return self.unknown("Triangles below 3 px", hover, Destination::Sizes);
         };
@@ -210,27 +238,42 @@ impl App {
     }
 
     /// There only where the file lacks normals.
-    fn normals_line(&self, color: Color32) -> Option<Line> {
-        let loaded = &self.document.as_ref()?.loaded;
-        let Import { normals, crease_angle, .. } = loaded.preparation.import;
-        let hover = "Corners without a normal in the file got one of the triangles around them, so that these can curve. glTF has them \
-                     flat. A click makes them flat: it sets the crease angle to 0\u{b0}, and the mesh is loaded again.";
-        let are_missed = normals == NormalSource::File && loaded.read.repairs.normals_made > 0;
-        are_missed.then(|| match crease_angle {
-            0.0 => Line::dim("Missing normals: flat", hover, Destination::FlatNormals),
+    fn normals_line(&self, visuals: &egui::Visuals) -> Option<Line> {
+        let Import { crease_angle, .. } = self.document.as_ref()?.loaded.preparation.import;
+        self.lacks_normals().then(|| match crease_angle {
+            0.0 => {
+                let hover = "The file has no normals for some triangles, and these are flat. A click smooths them again: it sets the \
+                             crease angle back, and the mesh is loaded again.";
+                let smooth = Destination::CreaseAngle(Import::default().crease_angle);
+                Line::bad("Missing normals: flat".to_owned(), visuals.text_color(), hover, smooth)
+            }
             angle => {
+                let hover = "The file has no normals for some triangles. Where two of them meet at less than this angle they are shaded and \
+                             curved as one smooth surface. A glTF file means them to be flat. A click makes them flat: it sets the crease \
+                             angle to 0\u{b0}, and the mesh is loaded again.";
                 let text = format!("Missing normals: smoothed below {angle}\u{b0}");
-                Line::bad(text, color, hover, Destination::FlatNormals)
+                Line::bad(text, visuals.warn_fg_color, hover, Destination::CreaseAngle(0.0))
             }
         })
     }
 
+    /// Whether the file has no normals for some triangles, and they aren't made anew for all.
+    fn lacks_normals(&self) -> bool {
+        self.document.as_ref().is_some_and(|document| {
+            let loaded = &document.loaded;
+            loaded.preparation.import.normals == NormalSource::File && loaded.read.repairs.normals_made > 0
+        })
+    }
+
     fn warnings_line(&self, color: Color32) -> Line {
-        let warnings = self.warnings().count() as u64;
+        let has_line = self.lacks_normals();
+        let warnings = self.warnings().filter(|warning| !(has_line && is_of_lacking_normals(warning))).count() as u64;
         let hover = "What was repaired or left out when the file was read. A click lists it.";
         match warnings {
             _ if self.document.is_none() => Line::dim("Warnings \u{2026}", hover, Destination::Warnings),
+            0 if has_line => Line::dim("No other warnings", hover, Destination::Warnings),
             0 => Line::dim("No warnings", hover, Destination::Warnings),
+            _ if has_line => Line::bad(counted(warnings, "other warning"), color, hover, Destination::Warnings),
             _ => Line::bad(counted(warnings, "warning"), color, hover, Destination::Warnings),
         }
     }
@@ -280,10 +323,19 @@ impl App {
             Destination::Sizes if overlays.colors != Colors::TriangleSize => overlays.toggle(Overlay::TriangleSize),
             Destination::Factors if overlays.colors != Colors::Factors => overlays.toggle(Overlay::Factors),
             Destination::Sizes | Destination::Factors => {}
-            Destination::FlatNormals => self.settings.import.crease_angle = 0.0,
+            Destination::CreaseAngle(angle) => self.settings.import.crease_angle = angle,
+            Destination::Patches => self.panels.open.set(Section::Patches, true),
             Destination::Warnings => self.dialogs.shows_warnings = true,
         }
     }
+}
+
+/// Shows a hover text on the left, where it covers none of the other lines.
+fn hover_beside<'a>(response: &'a egui::Response, text: &str) -> &'a egui::Response {
+    let mut tooltip = egui::Tooltip::for_enabled(response);
+    tooltip.popup = tooltip.popup.align(egui::RectAlign::LEFT);
+    tooltip.show(|ui| ui.label(text));
+    response
 }
 
 /// Shows a line: a button in a colour, or where there is none, weak text at the same place and as high. Returns whether it was
@@ -296,11 +348,11 @@ fn row(ui: &mut egui::Ui, text: String, color: Option<Color32>, hover: &str) -> 
         match color {
             Some(color) => {
                 let text = RichText::new(text).color(legible(ui, color));
-                ui.button(text).on_hover_text(hover).clicked()
+                hover_beside(&ui.button(text), hover).clicked()
             }
             None => {
                 ui.add_space(ui.spacing().button_padding.x);
-                ui.weak(text).on_hover_text(hover);
+                hover_beside(&ui.weak(text), hover);
                 false
             }
         }

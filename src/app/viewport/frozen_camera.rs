@@ -4,8 +4,11 @@ use glam::Vec2;
 
 use crate::app::App;
 use crate::app::jobs::measure_job::Seen;
+use crate::app::text::counted;
+use crate::commands::{Action, key_name};
 use geometry::mesh::Bounds;
 use geometry::tessellate::{Clip, Lod, LodView};
+use geometry::view::ScreenView;
 use inspect::render::{Camera, LineSegment, lod_camera_lines};
 use inspect::settings::Settings;
 
@@ -17,6 +20,13 @@ pub(crate) struct FrozenCamera {
     pub viewport: Vec2,
     /// What LOD and clipping are computed for.
     pub view: LodView,
+}
+
+impl FrozenCamera {
+    /// The view through it of a mesh with these bounds.
+    pub(super) fn screen_view(&self, bounds: &Bounds) -> ScreenView {
+        ScreenView { clip_from_object: self.camera.clip_from_object(self.viewport, bounds), viewport: self.viewport }
+    }
 }
 
 impl App {
@@ -46,7 +56,14 @@ impl App {
             || tessellation.used_lod() != Lod::Uniform
             || tessellation.clip != Clip::Off
             || tessellation.cull_back_faces;
-        if self.viewport.frozen.is_some() || !follows {
+        if follows {
+            self.keep_view();
+        }
+    }
+
+    /// Freezes the view in which what the panels show was measured, also if only what is counted in a view depends on it.
+    pub(in crate::app) fn keep_view(&mut self) {
+        if self.viewport.frozen.is_some() {
             return;
         }
         match self.results().map(|results| results.seen) {
@@ -55,6 +72,15 @@ impl App {
             }
             None => self.freeze(),
         }
+    }
+
+    /// Says why the mesh has holes where the frozen camera doesn't see it; none if it has no such hole.
+    pub(super) fn left_out_note(&self) -> Option<String> {
+        let culled = self.viewport.frozen.and_then(|_| self.results()).map(|results| results.found.culled)?;
+        let left_out = counted((culled.out_of_view + culled.facing_away).into(), "patch");
+        let key = key_name(&Action::FreezeLodCamera);
+        (culled.out_of_view + culled.facing_away > 0)
+            .then(|| format!("Left out, since the frozen camera doesn't see them: {left_out} ({key} thaws LOD)"))
     }
 
     /// Moves the camera to where the frozen one is.

@@ -181,13 +181,19 @@ impl App {
         if is_busy || !document.scene.tessellator.is_counted() {
             return Ok(());
         }
+        let bounds = document.scene.bounds;
         let view = ScreenView { clip_from_object: wanted.clip_from_object, viewport: wanted.viewport };
-        let seen = wanted.camera.lod_view(wanted.viewport, &document.scene.bounds);
+        let seen = wanted.camera.lod_view(wanted.viewport, &bounds);
         let silhouette = SilhouetteView { size, seen, lod: wanted.inputs.view };
-        let measured = Seen { camera: wanted.camera, view, inputs: wanted.inputs };
+        // What is counted in a view stays that of the frozen one, with all other numbers.
+        let (camera, counted_in) = match self.viewport.frozen {
+            Some(frozen) => (frozen.camera, frozen.screen_view(&bounds)),
+            None => (wanted.camera, view),
+        };
+        let measured = Seen { camera, view: counted_in, inputs: wanted.inputs };
         self.jobs.measure.go_on(&self.engine.gpu, &mut document.scene, document.generation, &measured)?;
         self.measure_left(&measured)?;
-        self.count_leaks(context, view)?;
+        self.count_leaks(context, counted_in)?;
         self.compare_outlines(context, &wanted.settings.tessellation, &silhouette, view)?;
         Ok(())
     }
@@ -327,7 +333,7 @@ impl App {
         let distance = self.viewport.ruler.map(|ruler| ruler.text());
         let bookmarked = self.viewport.bookmarks.iter().position(|bookmark| *bookmark == self.viewport.camera);
         let bookmark = bookmarked.map(|index| format!("Bookmark {}", index + 1));
-        let texts = [previewed, frozen, grid, distance, bookmark].into_iter().flatten();
+        let texts = [previewed, frozen, self.left_out_note(), grid, distance, bookmark].into_iter().flatten();
         let notes: Vec<_> = texts.map(|text| (note_text(ui, &text, egui::Color32::from_gray(235)), text)).collect();
         let widest = notes.iter().map(|(galley, _)| galley.size().x).fold(0.0, f32::max);
         // In a narrow picture they are above the progress.

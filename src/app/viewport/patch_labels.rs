@@ -50,14 +50,16 @@ impl App {
         });
         let edges: Vec<_> = edges.collect();
         // Long names of edges if they don't overlap, else short ones, else none.
+        // What a finding leads to is in the middle of its half.
+        let free = rect.with_min_x(rect.left() + rect.width() * self.settings.split.unwrap_or(0.0)).center();
         for name in ["TessFactor", ""] {
             let named = edges.iter().map(|(i, place, value, color)| (*place, format!("{name}[{i}]{value}"), *color));
             let labels: Vec<_> = corners.iter().cloned().chain(named).collect();
-            if show(ui, rect, middle, &labels) {
+            if show(ui, rect, middle, free, &labels) {
                 return;
             }
         }
-        show(ui, rect, middle, &corners);
+        show(ui, rect, middle, free, &corners);
     }
 
     /// Outlines the untessellated triangle left of the split, where the picture has no lines over the mesh.
@@ -84,8 +86,8 @@ impl App {
 }
 
 /// Shows each text beside its position, on the side away from `middle`, if the position is in `rect`. Shows nothing and
-/// returns false if two would overlap.
-fn show(ui: &egui::Ui, rect: Rect, middle: Pos2, labels: &[(Pos2, String, Color32)]) -> bool {
+/// returns false if two would overlap, or one would cover `free`.
+fn show(ui: &egui::Ui, rect: Rect, middle: Pos2, free: Pos2, labels: &[(Pos2, String, Color32)]) -> bool {
     let mut placed: Vec<(Rect, _)> = Vec::new();
     for (place, text, color) in labels.iter().filter(|(place, ..)| rect.contains(*place)) {
         let galley = note_text(ui, text, *color);
@@ -94,7 +96,7 @@ fn show(ui: &egui::Ui, rect: Rect, middle: Pos2, labels: &[(Pos2, String, Color3
         let center = *place + away * (GAP + (away.x * half.x).abs() + (away.y * half.y).abs());
         let room = rect.shrink2(half);
         let own = Rect::from_center_size(if room.is_positive() { room.clamp(center) } else { center }, half * 2.0);
-        if placed.iter().any(|(other, _)| other.intersects(own)) {
+        if own.contains(free) || placed.iter().any(|(other, _)| other.intersects(own)) {
             return false;
         }
         placed.push((own, galley));
@@ -115,9 +117,10 @@ mod tests {
         let rect = Rect::from_min_max(pos2(0.0, 0.0), pos2(400.0, 300.0));
         let label = |x, y| (pos2(x, y), "TessFactor[0] = 8.00 -> 9".to_owned(), Color32::WHITE);
         egui::__run_test_ui(|ui| {
-            let all = |labels: &[_]| show(ui, rect, pos2(200.0, 150.0), labels);
+            let all = |labels: &[_]| show(ui, rect, pos2(200.0, 150.0), pos2(300.0, 150.0), labels);
             assert!(all(&[label(200.0, 50.0), label(200.0, 250.0)]), "above and below");
             assert!(!all(&[label(200.0, 50.0), label(210.0, 52.0)]), "one over the other");
+            assert!(!all(&[label(300.0, 150.0)]), "over the place that stays free");
             assert!(all(&[label(200.0, 50.0), label(200.0, -50.0)]), "positions out of sight have no label");
         });
     }

@@ -250,7 +250,13 @@ impl Picture {
 
     /// Draws what is wanted, if it isn't drawn yet and the device is free, in steps that keep the device busy for about so many ms
     /// at once. The counts come back first; until then, and until all steps are drawn, the last picture stays.
-    pub(crate) fn draw(&mut self, engine: &Engine, document: &mut Document, wanted: &Wanted, ms: f64) -> Result<(), GpuError> {
+    pub(crate) fn draw(
+        &mut self,
+        engine: &Engine,
+        document: &mut Document,
+        wanted: &Wanted,
+        ms: f64,
+    ) -> Result<(), GpuError> {
         self.counting = self.counting.filter(|counting| counting.document == document.generation);
         let mut keeps_on = |drawing: &mut Drawing| {
             drawing.wanted == *wanted || (drawing.steps <= self.short && drawing.wanted.document == document.generation)

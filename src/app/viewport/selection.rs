@@ -7,8 +7,8 @@ use crate::app::App;
 use geometry::mesh::Topology;
 use geometry::tessellate::{Convention, domain_side};
 use gpu::GpuError;
-use inspect::gates::Spot;
-use inspect::measure::patch_edges;
+use inspect::gates::{PatchSpot, Spot};
+use inspect::measure::{patch_edges, patch_facing, patch_width};
 use inspect::render::{LineSegment, Picked, PickedTriangle, Picking, Pixel, patch_lines};
 use inspect::settings::SplitSide;
 
@@ -161,9 +161,19 @@ impl App {
     /// Shows the selected patch.
     pub(in crate::app) fn frame_patch(&mut self) {
         let (Some(patch), Some(document)) = (self.selected_patch(), &self.document) else { return };
-        let corners = document.shown().1.patch_positions(patch);
-        let at = corners.iter().map(|corner| corner / 3.0).sum();
-        self.show_place(SplitSide::Right, &Spot::Patch { corners, at }, Some(patch));
+        let topology = &document.shown().1;
+        let corners = topology.patch_positions(patch);
+        // As far from the middle of the flat triangle, which may lie below the surface, as edges bulge from their chords.
+        let bulge = |edge: &Vec<Vec3>| -> Vec3 {
+            let chord = edge.first().zip(edge.last()).map_or(Vec3::ZERO, |(a, b)| a * 0.5 + b * 0.5);
+            edge.iter().map(|point| (point - chord) / edge.len() as f32).sum()
+        };
+        let edges = self.patch_edges(topology, patch, SplitSide::Right);
+        let at = corners.into_iter().sum::<Vec3>() / 3.0 + edges.iter().map(bulge).sum::<Vec3>() / 3.0;
+        let outlines = self.results().map(|results| &results.found.outlines);
+        let facing = patch_facing(topology, patch, outlines).normalize_or_zero().as_vec3();
+        let spot = PatchSpot { facing, ..PatchSpot::of(corners, at) };
+        self.show_place(SplitSide::Right, &Spot::Patch(spot), Some(patch));
     }
 
     pub(in crate::app) fn outlined(&self) -> Outlined {
@@ -187,7 +197,8 @@ impl App {
         (0..3)
             .filter(|&i| Some(sides[domain_side(self.convention(), i) as usize]) == cracked)
             .for_each(|i| edges[i as usize].clear());
-        lines.extend(patch_lines(&edges));
+        let outlines = self.measured(half).found().map(|found| &found.outlines);
+        lines.extend(patch_lines(&edges, patch_width(topology, patch, outlines)));
         lines
     }
 

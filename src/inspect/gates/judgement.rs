@@ -304,7 +304,7 @@ fn worst_error(facts: &Facts) -> Option<Place> {
     let triangle = facts.topology.patches[worst.patch as usize].triangle;
     let at = worst.emitted.as_vec3();
     let text = format!("the farthest, {} px, is of triangle {triangle} at {}", hundredths(worst.px), position(at));
-    Some(Place { text, triangles: vec![triangle], spot: Spot::Patch { corners, at } })
+    Some(Place { text, triangles: vec![triangle], spot: Spot::patch(corners, at) })
 }
 
 #[cfg(test)]

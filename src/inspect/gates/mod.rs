@@ -9,7 +9,7 @@ use std::fmt;
 use std::str::FromStr;
 
 pub use judgement::{Facts, Judgement, judge};
-pub use place::{EdgeSpot, Place, Spot};
+pub use place::{EdgeSpot, PatchSpot, Place, Spot};
 pub use standpoint::Standpoints;
 
 use geometry::names::every;

@@ -18,8 +18,10 @@ const OF_HEIGHT: f32 = 0.25;
 const AROUND_GAP: f32 = 16.0;
 /// The least part of the edge that is shown.
 const LEAST_PART: f32 = 1.0 / 64.0;
-/// A fold is shown with a part of the surface that is this many times as wide.
+/// A fold is shown with a part of the surface that is this many times as long, but at most this many times as wide as a fold that is a
+/// needle, so that it is no hair.
 const AROUND_FOLD: f32 = 4.0;
+const AROUND_NEEDLE: f32 = 16.0;
 
 /// The worst place that a gate found.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -37,11 +39,7 @@ pub struct Place {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Spot {
     Edge(EdgeSpot),
-    /// A patch, or a part of it: the positions of its corners, and the place on it.
-    Patch {
-        corners: [Vec3; 3],
-        at: Vec3,
-    },
+    Patch(PatchSpot),
     /// A leak of the judged picture: a px of it, from the picture's top left, how many px leak there, and the edge that is torn there
     /// if it is known.
     Leak {
@@ -59,11 +57,29 @@ pub struct EdgeSpot {
     pub at: Vec3,
 }
 
+/// A patch, or a part of it: the place on it, the direction that it faces there, how long the part that is shown is, and whether its
+/// back shows it as well as its front.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PatchSpot {
+    pub at: Vec3,
+    pub facing: Vec3,
+    pub size: f32,
+    pub both_sides: bool,
+}
+
 impl Spot {
-    /// The largest fold of a patch, with what is around it.
+    /// A patch with these corners, and a place on it.
+    pub fn patch(corners: [Vec3; 3], at: Vec3) -> Self {
+        Self::Patch(PatchSpot::of(corners, at))
+    }
+
+    /// The largest fold of a patch, with what is around it, or if it is a needle, its middle.
     pub fn fold(folded: &FoldedPatch) -> Self {
-        let at = folded.place();
-        Self::Patch { corners: folded.largest.map(|corner| at + (corner - at) * AROUND_FOLD), at }
+        let whole = PatchSpot::of(folded.largest, folded.place());
+        let [a, b, c] = folded.largest;
+        let width = (b - a).as_dvec3().cross((c - a).as_dvec3()).length() as f32 / whole.size;
+        let size = (AROUND_FOLD * whole.size).min(AROUND_NEEDLE * width);
+        Self::Patch(PatchSpot { size, both_sides: true, ..whole })
     }
 
     /// A camera that shows the spot if nothing hides it. `judged` is the camera of the judged picture, `viewport` that picture's
@@ -71,10 +87,10 @@ impl Spot {
     pub(super) fn camera(&self, judged: &Camera, viewport: Vec2, bounds: &Bounds) -> Camera {
         match *self {
             Self::Edge(edge) => edge.camera(judged, bounds),
-            Self::Patch { corners, at } => {
+            Self::Patch(PatchSpot { at, facing, size, .. }) => {
                 let mut camera = moving(judged);
-                camera.frame_triangle(corners, bounds);
-                Camera { target: at, ..camera }
+                camera.frame_at(at, size, facing, bounds);
+                camera
             }
             Self::Leak { px, pixels, .. } => {
                 let most = OF_HEIGHT * viewport.y / (pixels as f32).sqrt();
@@ -86,7 +102,7 @@ impl Spot {
     /// The position in object units; none for a leak at no known edge.
     pub fn at(&self) -> Option<Vec3> {
         match *self {
-            Self::Edge(EdgeSpot { at, .. }) | Self::Patch { at, .. } => Some(at),
+            Self::Edge(EdgeSpot { at, .. }) | Self::Patch(PatchSpot { at, .. }) => Some(at),
             Self::Leak { torn, .. } => Some(torn?.at),
         }
     }
@@ -94,6 +110,15 @@ impl Spot {
     /// The px of a leak, from the top left of the judged picture; none for other places.
     pub fn px(&self) -> Option<Vec2> {
         if let Self::Leak { px, .. } = *self { Some(px) } else { None }
+    }
+}
+
+impl PatchSpot {
+    /// The whole of a patch with these corners, and a place on it.
+    pub fn of([a, b, c]: [Vec3; 3], at: Vec3) -> Self {
+        let facing = (b - a).as_dvec3().cross((c - a).as_dvec3()).normalize_or_zero().as_vec3();
+        let size = a.distance(b).max(b.distance(c)).max(c.distance(a));
+        Self { at, facing, size, both_sides: false }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3, vec3};
 
-use super::place::{EdgeSpot, Spot, towards};
+use super::place::{EdgeSpot, PatchSpot, Spot, towards};
 use crate::render::Camera;
 use crate::render::camera::{FIELD_OF_VIEW, MAX_ELEVATION};
 use geometry::mesh::Bounds;
@@ -13,6 +13,8 @@ const DIRECTIONS: u32 = 64;
 const NEAR: f32 = 0.005;
 /// How well the back of a place shows it, where its front does so by 1.
 const OF_BACK: f32 = 0.25;
+/// How well a place that has no front is seen from within the mesh, where it is seen from outside by 1.
+const FROM_WITHIN: f64 = 0.5;
 /// How far the eye goes towards what hides the place, when it is seen from between the two.
 const BETWEEN: f32 = 0.9;
 
@@ -20,6 +22,8 @@ const BETWEEN: f32 = 0.9;
 pub struct Standpoints {
     /// The place, in object units; none if it isn't known, and then there is one camera alone.
     at: Option<Vec3>,
+    /// Whether both sides show it as well.
+    both_sides: bool,
     /// The size of its edge or patch, and a distance at which one is outside of the mesh, in object units.
     size: f32,
     beyond: f32,
@@ -34,16 +38,21 @@ impl Standpoints {
     /// mesh's.
     pub fn of(spot: &Spot, judged: &Camera, viewport: Vec2, bounds: &Bounds) -> Self {
         let first = spot.camera(judged, viewport, bounds);
+        let mut both_sides = false;
         let (size, facing) = match *spot {
             Spot::Edge(EdgeSpot { ends: [a, b], .. }) => (a.distance(b), first),
-            Spot::Patch { corners: [a, b, c], .. } => (a.distance(b).max(b.distance(c)).max(c.distance(a)), first),
+            Spot::Patch(PatchSpot { size, both_sides: both, .. }) => {
+                both_sides = both;
+                (size, first)
+            }
             Spot::Leak { torn: Some(torn), .. } => (torn.ends[0].distance(torn.ends[1]), torn.camera(judged, bounds)),
             Spot::Leak { torn: None, .. } => (0.0, first),
         };
         let at = spot.at();
-        let around = if at.is_some() { around(&facing) } else { Vec::new() };
-        let beyond = 4.0 * bounds.radius() + first.target.distance(bounds.center());
-        Self { at, size, beyond, first, around }
+        let of_back = if both_sides { 1.0 } else { OF_BACK };
+        let around = if at.is_some() { around(&facing, of_back) } else { Vec::new() };
+        let beyond = (4.0 * bounds.radius() + first.target.distance(bounds.center())).max(first.distance);
+        Self { at, both_sides, size, beyond, first, around }
     }
 
     /// Where lines of sight begin, all eyes, and how near to the place nothing hides it, in object units. None if the place isn't
@@ -53,6 +62,8 @@ impl Standpoints {
         let eye = |camera: &Camera| match camera.orthographic {
             // An orthographic view has no eye: what is farther away hides the place too.
             true => at + camera.axes()[2] * self.beyond,
+            // What is beyond the eye tells outside from within.
+            false if self.both_sides => at + (beside(*camera).eye() - at).normalize_or_zero() * self.beyond,
             false => beside(*camera).eye(),
         };
         let others = self.around.iter().map(|(camera, _)| camera);
@@ -65,11 +76,13 @@ impl Standpoints {
         if *first >= 1.0 {
             return self.first;
         }
-        let rated = self
-            .around
-            .iter()
-            .zip(others)
-            .map(|((camera, fitness), clear)| (camera, *clear, f64::from(*fitness) * clear));
+        let rated = self.around.iter().zip(others).map(|((camera, fitness), clear)| {
+            let (up_to_eye, there) = match self.both_sides {
+                true if *clear < 1.0 => ((clear * f64::from(self.beyond / camera.distance)).min(1.0), FROM_WITHIN),
+                _ => (*clear, 1.0),
+            };
+            (camera, up_to_eye, f64::from(*fitness) * up_to_eye * there)
+        });
         // The first of those that are as good.
         let best = rated.reduce(|a, b| if b.2 > a.2 { b } else { a });
         match best {
@@ -84,9 +97,9 @@ impl Standpoints {
 }
 
 /// Perspective cameras around what `facing` shows, that one first, each with how well it shows it: the more a camera faces it the
-/// better, its back shows it worse, and from the very side it isn't seen at all. The directions are those of the spherical
+/// better, its back shows it by `of_back` of that, and from the very side it isn't seen at all. The directions are those of the spherical
 /// Fibonacci point set (Keinert et al. 2015, "Spherical Fibonacci Mapping").
-fn around(facing: &Camera) -> Vec<(Camera, f32)> {
+fn around(facing: &Camera, of_back: f32) -> Vec<(Camera, f32)> {
     const GOLDEN_ANGLE: f32 = 2.399_963_2;
     let field_of_view = if facing.orthographic { FIELD_OF_VIEW } else { facing.field_of_view };
     let narrower = |angle: f32| (0.5 * angle).to_radians().tan();
@@ -103,7 +116,7 @@ fn around(facing: &Camera) -> Vec<(Camera, f32)> {
         let mut camera = towards(&facing, back * distance);
         camera.elevation = camera.elevation.clamp(-MAX_ELEVATION, MAX_ELEVATION);
         let faces = back.dot(front);
-        (camera, faces.max(-OF_BACK * faces))
+        (camera, faces.max(-of_back * faces))
     };
     std::iter::once((facing, 1.0)).chain((0..DIRECTIONS).map(direction).map(from)).collect()
 }
@@ -142,6 +155,23 @@ mod tests {
             assert!(!between.orthographic);
             assert!((between.distance / eyes[1].length() - 0.45).abs() < 1e-3, "{between:?}");
         }
+    }
+
+    #[test]
+    fn a_fold_is_seen_from_the_side_that_is_outside_of_the_mesh() {
+        let (camera, viewport, bounds) = judged(false);
+        let spot = PatchSpot { at: Vec3::ZERO, facing: Vec3::Z, size: 0.1, both_sides: true };
+        let standpoints = Standpoints::of(&Spot::Patch(spot), &camera, viewport, &bounds);
+        let (at, eyes, _) = standpoints.lines(|camera| camera).expect("a known place");
+        let beyond = eyes[0].distance(at);
+        assert!(beyond > 2.0 * bounds.radius(), "the lines go on to where the mesh ends: {beyond}");
+        // In front of it is the inside of the mesh, up to a wall behind the eye.
+        let clear: Vec<f64> = eyes.iter().map(|eye| if eye.z > 0.0 { 0.4 } else { 1.0 }).collect();
+        let camera = standpoints.clearest(&clear);
+        assert!((camera.eye() - at).normalize().z < -0.9 && camera.distance < 0.5, "{camera:?}");
+        // Hidden from outside everywhere: from where its front is seen, within the mesh.
+        let camera = standpoints.clearest(&vec![0.4; eyes.len()]);
+        assert!((camera.eye() - at).normalize().distance(Vec3::Z) < 1e-3 && camera.distance < 0.5, "{camera:?}");
     }
 
     #[test]

@@ -87,12 +87,12 @@ impl Cracks {
     /// Edges whose positions differ, the widest gap first. Light may pass through them.
     pub fn cracked(&self) -> &[CrackedEdge] {
         // Edges whose positions agree are at the end.
-        &self.edges[..self.edges.partition_point(|edge| edge.gap > 0.0 || edge.different_bits > 0)]
+        &self.edges[..self.edges.partition_point(CrackedEdge::is_cracked)]
     }
 
-    /// Shading seams: edges whose normals differ although the mesh's normals agree.
+    /// Shading seams: edges whose positions agree and whose normals differ, although the mesh's normals agree.
     pub fn shading_seams(&self) -> impl Iterator<Item = &CrackedEdge> {
-        self.edges.iter().filter(|edge| edge.different_normals > 0)
+        self.edges.iter().filter(|edge| edge.different_normals > 0 && !edge.is_cracked())
     }
 
     /// The widest gap, in object units.
@@ -107,6 +107,11 @@ impl Cracks {
 }
 
 impl CrackedEdge {
+    /// Whether positions differ.
+    fn is_cracked(&self) -> bool {
+        self.gap > 0.0 || self.different_bits > 0
+    }
+
     /// The gap on screen, in px; 0 behind the eye.
     pub fn gap_px(&self, clip_from_object: Mat4, viewport: Vec2) -> f64 {
         let [a, b] = self.widest.map(|p| project(clip_from_object, viewport, p));
@@ -241,6 +246,23 @@ mod tests {
     use geometry::tessellate::{
         Convention, Edges, HullFactors, Lod, LodView, Partitioning, Surface, Tessellation, tessellate, tessellate_given,
     };
+
+    #[test]
+    fn a_cracked_edge_is_no_shading_seam() {
+        let edge = |edge, gap, different_bits, different_normals| CrackedEdge {
+            edge,
+            different_bits,
+            different_normals,
+            different_factors: false,
+            gap,
+            widest: [Vec3::ZERO; 2],
+            discarded: None,
+        };
+        let edges = vec![edge(0, 0.1, 3, 3), edge(1, 0.0, 1, 2), edge(2, 0.0, 0, 4), edge(3, 0.0, 0, 0)];
+        let cracks = Cracks { edges, ..Cracks::default() }.sorted();
+        assert_eq!(cracks.shading_seams().map(|seam| seam.edge).collect::<Vec<_>>(), [2]);
+        assert_eq!(cracks.cracked().iter().map(|crack| crack.edge).collect::<Vec<_>>(), [0, 1]);
+    }
 
     /// A view that holds every shape, at an angle at which no two edges look alike.
     fn view() -> LodView {

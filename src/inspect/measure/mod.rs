@@ -31,6 +31,7 @@ pub use deviation_field::{DeviationField, DeviationMeasurement, DeviationTarget,
 pub use folds::FoldedPatch;
 pub use indices::{IndexDifference, Meaning, index_differences};
 pub use outlines::{EdgeSide, patch_edges};
+pub use outlines::{patch_facing, patch_width};
 pub use points_agreement::{PointsAgreement, PointsDisagreement};
 pub(crate) use screen_error::PatchesAbove;
 pub use screen_error::{ScreenError, ScreenErrorMeasurement};

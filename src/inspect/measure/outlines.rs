@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use super::asked_factors::AskedFactors;
 use geometry::mesh::{EdgeKind, Side, Topology};
@@ -47,6 +47,32 @@ pub fn patch_edges(
             None => vec![corners[k], corners[(k + 1) % 3]],
         }
     })
+}
+
+/// The sum of the emitted triangles' areas of a patch (an index into [`Topology::patches`]), each in the direction that it faces, times
+/// 2. Its border alone decides it. Without outlines, or if nothing was emitted, it is that of the mesh's triangle.
+pub fn patch_facing(topology: &Topology, patch: u32, outlines: Option<&Outlines>) -> DVec3 {
+    let corners = topology.patch_positions(patch);
+    let emitted = outlines.and_then(|outlines| outlines.patch(topology, patch));
+    let along = |k: usize| {
+        let Some(emitted) = &emitted else { return vec![corners[k], corners[(k + 1) % 3]] };
+        let mut points: Vec<Vec3> = emitted[k].positions().collect();
+        if topology.sides[topology.patches[patch as usize].sides[k] as usize].reversed() {
+            points.reverse();
+        }
+        points
+    };
+    let from_corner = |point: Vec3| (point - corners[0]).as_dvec3();
+    let of_side =
+        |points: Vec<Vec3>| -> DVec3 { points.windows(2).map(|p| from_corner(p[0]).cross(from_corner(p[1]))).sum() };
+    (0..3).map(along).map(of_side).sum()
+}
+
+/// How wide a patch is, as a part of its longest side.
+pub fn patch_width(topology: &Topology, patch: u32, outlines: Option<&Outlines>) -> f32 {
+    let [a, b, c] = topology.patch_positions(patch);
+    let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+    patch_facing(topology, patch, outlines).length() as f32 / longest.powi(2)
 }
 
 /// The points of one side of an edge.

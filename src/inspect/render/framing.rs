@@ -85,14 +85,9 @@ impl Camera {
         self.frame_at(a * 0.5 + b * 0.5, a.distance(b), facing, bounds);
     }
 
-    /// Puts a triangle in the middle, seen from the front, with its longest edge two thirds of the view's height long.
-    pub fn frame_triangle(&mut self, [a, b, c]: [Vec3; 3], bounds: &Bounds) {
-        let facing = (b - a).as_dvec3().cross((c - a).as_dvec3()).normalize_or_zero().as_vec3();
-        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-        self.frame_at(a / 3.0 + b / 3.0 + c / 3.0, longest, facing, bounds);
-    }
-
-    fn frame_at(&mut self, target: Vec3, length: f32, facing: Vec3, bounds: &Bounds) {
+    /// Puts a place in the middle, with what is `length` long there two thirds of the view's height long, seen from the direction
+    /// `facing`. If that is zero, the direction stays. `bounds` are the mesh's.
+    pub fn frame_at(&mut self, target: Vec3, length: f32, facing: Vec3, bounds: &Bounds) {
         self.target = target;
         let half = |angle: f32| (0.5 * angle).to_radians().tan();
         let nearer = half(FIELD_OF_VIEW) / half(self.field_of_view);
@@ -224,20 +219,21 @@ mod tests {
     }
 
     #[test]
-    fn a_framed_triangle_is_in_the_middle_and_faces_the_eye() {
+    fn a_framed_place_is_in_the_middle_and_faces_the_eye() {
         let viewport = vec2(800.0, 600.0);
         let mut camera = Camera::framing(&unit_bounds(), viewport);
         let corners = [vec3(0.5, 0.1, 0.2), vec3(0.9, 0.1, 0.3), vec3(0.6, 0.4, 0.5)];
-        camera.frame_triangle(corners, &unit_bounds());
         let [a, b, c] = corners;
-        assert!(camera.axes()[2].distance((b - a).cross(c - a).normalize()) < 1e-5);
+        let (facing, length) = ((b - a).cross(c - a).normalize(), a.distance(b).max(b.distance(c)).max(c.distance(a)));
+        camera.frame_at((a + b + c) / 3.0, length, facing, &unit_bounds());
+        assert!(camera.axes()[2].distance(facing) < 1e-5);
         let clip = camera.clip_from_object(viewport, &unit_bounds());
         let [a, b, c] = corners.map(|p| project(clip, viewport, p).expect("in front of the eye"));
         assert!((a + b + c).distance(viewport * 1.5) < 3.0);
         let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
         assert!((350.0..450.0).contains(&longest), "{longest} px");
         let before = camera;
-        camera.frame_triangle([Vec3::ONE; 3], &unit_bounds());
+        camera.frame_at(Vec3::ONE, 0.0, Vec3::ZERO, &unit_bounds());
         assert_eq!((camera.azimuth, camera.elevation), (before.azimuth, before.elevation), "a point faces nowhere");
         assert!(camera.distance > 0.0);
     }

@@ -65,11 +65,18 @@ pub fn worst_lines(emitted: Vec3, truth: Vec3) -> Vec<LineSegment> {
     [mark(OUTLINE_COLOR, 1.5), mark(WORST_COLOR, 0.0)].concat()
 }
 
-/// The outline of a selected patch: lines through the points of the edges that factors 0, 1 and 2 cut.
-pub fn patch_lines(edges: &[Vec<Vec3>; 3]) -> Vec<LineSegment> {
+/// A patch that is narrower than this, as a part of its length, has thinner lines around it, which would otherwise cover it; but not
+/// thinner than this part of others.
+const NARROW: f32 = 0.02;
+const THINNEST: f32 = 0.2;
+
+/// The outline of a selected patch: lines through the points of the edges that factors 0, 1 and 2 cut. `width` is the patch's, as a
+/// part of its length.
+pub fn patch_lines(edges: &[Vec<Vec3>; 3], width: f32) -> Vec<LineSegment> {
+    let thinner = (width / NARROW).clamp(THINNEST, 1.0);
     let edge = |points: &[Vec3], color, half_width| {
         let ends = points.windows(2).map(move |ends| LineSegment::new(ends[0], ends[1], color));
-        ends.map(|line| LineSegment { half_width, ..line }).collect::<Vec<_>>()
+        ends.map(|line| LineSegment { half_width: half_width * thinner, ..line }).collect::<Vec<_>>()
     };
     let outline = edges.iter().flat_map(|points| edge(points, OUTLINE_COLOR, 2.75));
     let colored = edges.iter().zip(FACTOR_COLORS).flat_map(|(points, color)| edge(points, color, 1.75));

@@ -289,14 +289,14 @@ impl Choice for Convention {
             ),
             Self::Rotated => (
                 "rotated",
-                "Rotated, a mistake",
-                "A mistake: factors in edge order, but weights as in Direct3D 11. Every edge gets the factor of another \
+                "Rotated (mistake)",
+                "Factors in edge order, but weights as in Direct3D 11. Every edge gets the factor of another \
                  edge, and adaptive LOD cracks.",
             ),
             Self::Mirrored => (
                 "mirrored",
-                "Mirrored, a mistake",
-                "A mistake: as in Direct3D 11, but with the first two factors exchanged, as if triangles were wound the \
+                "Mirrored (mistake)",
+                "As in Direct3D 11, but with the first two factors exchanged, as if triangles were wound the \
                  other way. Adaptive LOD cracks.",
             ),
         };

@@ -82,7 +82,7 @@ impl Choice for NormalMaps {
         let (name, label, text) = match self {
             Self::Auto => (
                 "auto",
-                "As heights say",
+                "With a height image",
                 "Left out where the heights come from the material's own image, which mostly has the relief of its normal map; \
                  drawn where they come from a height image.",
             ),

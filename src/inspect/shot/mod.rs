@@ -48,7 +48,7 @@ use surface_shader_report::SurfaceShaderStats;
 
 use crate::engine::{Engine, Loaded, MeasurementResults, Measurements, Runs, SilhouetteView};
 use crate::gates::Judgement;
-use crate::measure::{AccuracyOptions, DeviationField, ScreenError, Silhouette, patch_edges};
+use crate::measure::{AccuracyOptions, DeviationField, ScreenError, Silhouette, patch_edges, patch_width};
 use crate::render::{
     Camera, DEVIATION_PX_SCALE, Distances, LineSegment, Renderer, Scale, Scene, Target, axis_lines, crack_lines,
     deviation_scale, lay_over, lod_camera_lines, outlines_picture, patch_lines, t_junction_lines, worst_lines,
@@ -414,7 +414,8 @@ impl Shot {
         lines.extend(&self.subject.more_lines[half as usize]);
         if let Some(patch) = self.subject.selected {
             let outlines = measured.map(|measured| &measured.outlines);
-            lines.extend(patch_lines(&patch_edges(topology, patch, outlines, settings.tessellation.convention)));
+            let edges = patch_edges(topology, patch, outlines, settings.tessellation.convention);
+            lines.extend(patch_lines(&edges, patch_width(topology, patch, outlines)));
         }
         Ok(lines)
     }

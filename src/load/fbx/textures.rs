@@ -7,7 +7,7 @@ use crate::images::{decode_halved, texture_size};
 use crate::memory_budget::Budget;
 use crate::notes::Notes;
 use crate::texture_room::{Scaling, TextureRoom};
-use crate::uri::Files;
+use crate::uri::{Files, shown};
 use geometry::mesh::mipmap::MipFilter;
 use geometry::mesh::{Sampling, Texture, Wrap, borrowing};
 
@@ -90,7 +90,7 @@ impl<'a> Textures<'a> {
             // The name isn't a URI, so a % is a letter.
             match self.files.read(&name.replace('%', "%25"), false) {
                 Ok(bytes) => return read(&bytes),
-                Err(reason) => problem = reason,
+                Err(reason) => problem = format!("\"{}\" can't be read: {reason}", shown(&name)),
             }
         }
         Err(problem)

@@ -217,8 +217,6 @@ impl PrimitiveReader {
     /// Returns what was left out or repaired, one sentence each, except for the mesh's own repairs.
     pub(super) fn warnings(&self) -> Vec<String> {
         let (without_normals, made) = self.import.lacking_normals(self.without_normals, "primitives without normals");
-        let is_flat = self.import.crease_angle == 0.0;
-        let made = if is_flat { made } else { format!("{made}, where glTF has them flat (crease angle 0)") };
         let sentences = [
             (without_normals, made.as_str()),
             (self.bad_uvs, "uvs that aren't finite, replaced by (0, 0)"),
@@ -232,6 +230,10 @@ impl PrimitiveReader {
         ];
         let found = sentences.into_iter().filter(|(count, _)| *count > 0);
         let mut found: Vec<_> = found.map(|(count, sentence)| format!("{sentence}: {count}.")).collect();
+        if without_normals > 0 && self.import.crease_angle > 0.0 {
+            // It is the first.
+            found[0].push_str(" glTF asks for flat ones, which a crease angle of 0 gives.");
+        }
         if self.cut_weights > 0 {
             let (count, percent) = (self.cut_weights, self.largest_cut * 100.0);
             let said = "vertices that more than four joints move, of which the four with the largest weights are kept";

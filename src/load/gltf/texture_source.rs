@@ -96,7 +96,7 @@ pub(super) fn image<'a>(
         Some(Some(uri)) => files
             .read(uri, false)
             .map(Cow::Owned)
-            .map_err(|reason| format!("/images/{index} ({}) can't be read: {reason}", uri::shown(uri))),
+            .map_err(|reason| format!("\"{}\" can't be read: {reason}", uri::shown(uri))),
         Some(None) => Err(format!("/images/{index}/uri isn't text")),
         None => Err(format!("/images/{index} has neither a file nor a buffer view")),
     }

@@ -6,7 +6,11 @@
 //! `cargo bench --bench hardware -- emission` prints only how long rows take to emit beside rings, and `-- materials MESH...` only
 //! how long pictures of mesh files take in the light of a studio, with layers and without. `-- shaders` compares exported shaders on the
 //! driver's stages with our passes.
-#![allow(unsafe_code, clippy::undocumented_unsafe_blocks, reason = "every call of Vulkan is; handles live as long as their owner")]
+#![allow(
+    unsafe_code,
+    clippy::undocumented_unsafe_blocks,
+    reason = "every call of Vulkan is; handles live as long as their owner"
+)]
 
 mod copy;
 mod error;

@@ -36,7 +36,13 @@ impl Method {
     }
 
     /// Settings for a path that begins with this camera. LOD by edge length gets about as many triangles as rows have there.
-    pub(crate) fn tessellation(self, mesh: &Mesh, topology: &Topology, camera: &Camera, tolerance: f32) -> Tessellation {
+    pub(crate) fn tessellation(
+        self,
+        mesh: &Mesh,
+        topology: &Topology,
+        camera: &Camera,
+        tolerance: f32,
+    ) -> Tessellation {
         let Self { partitioning, lod } = self;
         let own = Tessellation { lod, tolerance, partitioning, ..Tessellation::default() };
         if self.keeps_tolerance() {

@@ -50,7 +50,7 @@ fn textures_are_decoded_wherever_they_are() {
 #[test]
 fn missing_and_broken_textures_are_warnings() {
     let images = [
-        (json!({ "uri": "missing%20one.png" }), "missing one.png"),
+        (json!({ "uri": "missing%20one.png" }), "\"missing%20one.png\" can't be read: there is no such file; put it"),
         (json!({ "uri": "/elsewhere.png" }), "an absolute path"),
         (json!({ "uri": "data:image/png;base64,AAAA" }), "can't be decoded"),
         (json!({ "bufferView": 0 }), "can't be decoded"),

@@ -67,7 +67,7 @@ fn missing_and_broken_files_cause_warnings() {
     let mesh = read(&folder, libraries, &["a", "b", "c"]);
     assert!(mesh.materials.iter().all(|material| material.texture.is_none()));
     let expected = [
-        ("the material file \"/etc/passwd\" is left out: ", "export as .glb (and 1 more like it)."),
+        ("the material file \"/etc/passwd\" is left out: there is no such file; put it ", "(and 1 more like it)"),
         ("the material file \"../m.mtl\" is left out: ", "with .."),
         ("the material file \"maps\" is left out: ", "is not a file"),
         ("the texture \"../up.png\" of material \"a\" is left out: ", "with .."),
