@@ -132,9 +132,11 @@ impl App {
         self.jobs.measure.cracks()
     }
 
-    /// Sizes of the triangles shown, if they were measured for the present view.
+    /// Sizes of the triangles shown, if they were measured for the present view, or for the frozen one if there is one.
     pub fn sizes_shown(&self) -> Option<&Sizes> {
-        let seen_from = self.viewport.picture.seen_from()?;
+        let bounds = self.document.as_ref()?.scene.bounds;
+        let frozen = self.viewport.frozen.map(|frozen| frozen.screen_view(&bounds));
+        let seen_from = frozen.or(self.viewport.picture.seen_from())?;
         self.jobs.measure.last().map(|results| &results.sizes).filter(|sizes| sizes.view == seen_from)
     }
 

@@ -166,6 +166,8 @@ fn a_triangle_is_selected_by_its_number_and_framed_by_a_key() {
     // Leave the field, where keys are text.
     press(&mut harness, egui::Key::Escape);
     typed(&mut harness, "5");
+    // What is emitted is the triangle itself.
+    choose(&mut harness, "Surface", "Flat");
     let app = harness.state();
     let topology = &app.loaded().expect("a mesh").topology;
     let [a, b, c] = topology.patch_positions(topology.patch_of(5).expect("no shape is degenerate"));

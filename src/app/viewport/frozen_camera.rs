@@ -24,7 +24,7 @@ pub(crate) struct FrozenCamera {
 
 impl FrozenCamera {
     /// The view through it of a mesh with these bounds.
-    pub(super) fn screen_view(&self, bounds: &Bounds) -> ScreenView {
+    pub(in crate::app) fn screen_view(&self, bounds: &Bounds) -> ScreenView {
         ScreenView { clip_from_object: self.camera.clip_from_object(self.viewport, bounds), viewport: self.viewport }
     }
 }
