@@ -332,7 +332,7 @@ fn load(source: &Source, preparation: &Preparation) -> Result<Loaded, CliError> 
     Ok(loaded)
 }
 
-/// Like [`load`], but fails if a file to be written is one that the mesh's file refers to.
+/// Like [`load()`], but fails if a file to be written is one that the mesh's file refers to.
 fn load_apart(source: &Source, preparation: &Preparation, written: &[Option<&Path>]) -> Result<Loaded, CliError> {
     let loaded = load(source, preparation)?;
     keep_apart(loaded.files.iter().map(|path| Some(path.as_path())), written.iter().copied())?;

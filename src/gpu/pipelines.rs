@@ -164,7 +164,7 @@ impl ComputePipelines {
         Self::in_groups([8, 32, 128])
     }
 
-    /// The same with workgroups of these sizes for searches: see [`SearchPipelines`].
+    /// The same with workgroups of these sizes for searches: see `SearchPipelines`.
     pub fn in_groups(groups: [u32; 3]) -> Self {
         let module = |file| Arc::new(ShaderModule::new(file));
         let (deform, nets, levels) = (module(&PASS_DEFORM), module(&PASS_NETS), module(&PASS_LEVELS));

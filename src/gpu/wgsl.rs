@@ -46,7 +46,7 @@ pub(crate) static LEAST_FACTORS: WgslFile =
 pub(crate) static LEAST_ROWS: WgslFile =
     WgslFile::new("least_rows", &[&FACTORS, &LEAST_FACTORS, &PIECE_ERROR, &SEARCH_GROUP]);
 pub(crate) static HEIGHT_LIST: WgslFile = WgslFile::new("height_list", &[&TYPES]);
-/// The module that has it also has [`HEIGHT_LIST`], or a file that declares the same functions.
+/// The module that has it also has `HEIGHT_LIST`, or a file that declares the same functions.
 pub static DISPLACE: WgslFile = WgslFile::new("displace", &[&FACTORS, &NORMAL, &SURFACE, &TYPES]);
 /// The module that has it declares the buffers that it reads.
 pub(crate) static DISPLACEMENT_SHARES: WgslFile = WgslFile::new("displacement_shares", &[&TYPES]);

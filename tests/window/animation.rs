@@ -138,6 +138,8 @@ fn speed_multiplies_time() {
 #[test]
 fn framing_a_selected_patch_uses_its_pose() {
     let (mut harness, _folder) = moving_window();
+    // What is emitted is the triangle itself, whose middle the camera looks at.
+    choose(&mut harness, "Surface", "Flat");
     harness.state_mut().select_triangle(Some(20));
     settle(&mut harness);
     choose(&mut harness, "Clip", CLIPS[0]);

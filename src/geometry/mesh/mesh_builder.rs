@@ -235,7 +235,7 @@ impl MeshBuilder {
 
     /// Builds the mesh. Triangles are grouped by material and keep their order otherwise. Corners with the same bits
     /// (-0 counts as 0) are merged, in the order of first use. Materials without triangles are left out. Normals that
-    /// are missing or have no direction are computed (see [`super::normals::fan_normals`]); others are scaled to unit
+    /// are missing or have no direction are computed (see `normals::fan_normals`); others are scaled to unit
     /// length (see [`GivenNormal`]). Coordinates of positions that are nearer to 0 than f32's least normal number
     /// become 0, since devices may treat them as 0. The mesh's `repairs` counts these changes. Takes time linear in the
     /// number of triangles.

@@ -1,4 +1,4 @@
-//! The results of [`super::connectivity`] in a table. On a GPU it is faster to read one word than to compute it. The
+//! The results of `connectivity` in a table. On a GPU it is faster to read one word than to compute it. The
 //! table depends on numbers of segments only, and is the same for all meshes.
 //!
 //! Twin: `shaders/connectivity_table.wgsl`, in which the table is the storage buffer `connectivity_table`.

@@ -24,7 +24,7 @@ pub struct CoverageView {
 
 impl CoverageView {
     /// Builds the view of a picture of `viewport` px. `subpixel_bits` is the adapter's: see
-    /// [`gpu::Gpu::subpixel_bits`].
+    /// `gpu::Gpu::subpixel_bits`.
     pub fn new(
         clip_from_object: Mat4,
         viewport: Vec2,

@@ -104,7 +104,7 @@ pub const FACING_MARGIN: f32 = 1e-3;
 /// The rounding error of a sum, relative to the sum of the absolute values of its terms.
 pub const FACING_ROUNDING: f32 = 1e-6;
 
-/// The second and third index of each of the [`polar_points`], as two digits to base 5, and its binomial weight. In a
+/// The second and third index of each of the `polar_points`, as two digits to base 5, and its binomial weight. In a
 /// product of two quadratic polynomials indices add up, so that digits go up to 4.
 pub const POLAR_INDICES: [usize; 6] = [0, 5, 10, 6, 2, 1];
 pub const POLAR_WEIGHTS: [f32; 6] = [1.0, 2.0, 1.0, 2.0, 1.0, 2.0];

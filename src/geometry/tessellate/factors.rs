@@ -186,7 +186,7 @@ pub(crate) fn base_by_edges(outside: [u32; 3]) -> u32 {
     u32::from(unlike[0] != least) + u32::from(unlike[0] != least && unlike[1] != least)
 }
 
-/// Returns the factor of the edge that [`base_by_edges`] makes the base: the rows then widen to what the base has.
+/// Returns the factor of the edge that `base_by_edges` makes the base: the rows then widen to what the base has.
 pub fn base_factor(edges: [f32; 3]) -> f32 {
     let factors = process(Partitioning::Rows, edges, 1.0);
     if patch_is_culled(factors) { edges[0] } else { edges[row_base(factors) as usize] }

@@ -1,4 +1,4 @@
-//! Parses a document for the `gltf` crate. Our [schema](super::schema) is the only check: it holds whatever the crate takes for granted.
+//! Parses a document for the `gltf` crate. Our schema is the only check: it holds whatever the crate takes for granted.
 
 use ::gltf::Document;
 use ::gltf::json::Root;
