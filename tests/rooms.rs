@@ -232,3 +232,17 @@ fn a_reexport_leads_to_where_it_is_declared() {
     assert_eq!(declared_in(&MODULES, &path("geometry::mesh::rig::Clip")), path("geometry::mesh::rig::clip"));
     assert_eq!(declared_in(&MODULES, &path("geometry::mesh::Mesh")), path("geometry::mesh"));
 }
+
+#[test]
+fn plain_commands_of_cargo_are_for_all_crates() {
+    let manifest = include_str!("../Cargo.toml");
+    let list = |name: &str| {
+        let line = manifest.lines().find_map(|line| line.strip_prefix(name)?.strip_prefix(" = ["));
+        let names = line.and_then(|line| line.strip_suffix(']')).expect("a list on one line").split(", ");
+        names.map(str::to_owned).collect::<BTreeSet<_>>()
+    };
+    let own = "\".\"".to_owned();
+    assert_eq!(list("default-members"), list("members").into_iter().chain([own]).collect());
+    let folders: Vec<_> = CRATES.iter().filter(|(_, folder)| !folder.is_empty()).collect();
+    assert!(folders.iter().all(|(_, folder)| list("members").contains(&format!("\"src/{folder}\""))));
+}
