@@ -284,7 +284,7 @@ fn twins_have_the_same_functions_in_the_same_order() {
     for shader in std::fs::read_dir(root.join("shaders")).expect("the folder of shaders") {
         let shader = shader.expect("a file").path();
         let name = shader.file_stem().expect("a name").to_string_lossy().into_owned();
-        let Ok(rust) = std::fs::read_to_string(root.join("src/tessellate").join(format!("{name}.rs"))) else {
+        let Ok(rust) = std::fs::read_to_string(root.join("src/geometry/tessellate").join(format!("{name}.rs"))) else {
             continue;
         };
         let wgsl = std::fs::read_to_string(&shader).expect("a shader");
