@@ -20,6 +20,9 @@ const PREVIEW: &str = "pnaen-preview.png";
 pub fn run() -> ExitCode {
     let arguments = Cli::parse();
     quiet_driver();
+    if let Err(error) = geometry::cores::start() {
+        return cli::fail(&format!("no thread can be started ({error}); let this user run more of them"));
+    }
     if let Some(command) = arguments.command {
         return cli::run(command);
     }

@@ -1,8 +1,44 @@
 //! Divides work among the processor's cores, by rayon's threads.
 
+use std::io;
 use std::ops::Range;
+use std::sync::mpsc::{Sender, channel};
 
 use rayon::prelude::*;
+use rayon::{ThreadBuilder, ThreadPoolBuildError, ThreadPoolBuilder};
+
+/// Starts the threads that all work is divided among: one a core, or as many as the system starts. A program calls it
+/// before any work; where nobody did, the first work starts one a core, and panics if the system refuses one.
+///
+/// # Errors
+/// The system starts no thread at all.
+pub fn start() -> Result<(), Box<dyn std::error::Error>> {
+    // Rayon's pool can't be built again with fewer threads, so they are started before it.
+    let threads = as_many_as_start(std::thread::available_parallelism()?.get(), |work| {
+        std::thread::Builder::new().spawn(work).map(drop)
+    })?;
+    let pool = ThreadPoolBuilder::new().num_threads(threads.len());
+    Ok(pool
+        .spawn_handler(|thread| threads[thread.index()].send(thread).map_err(|_| io::ErrorKind::Other.into()))
+        .build_global()?)
+}
+
+/// Starts up to `most` threads, each of which waits for its place in a pool. Fails if none starts.
+fn as_many_as_start(
+    most: usize,
+    start: impl Fn(Box<dyn FnOnce() + Send>) -> io::Result<()>,
+) -> io::Result<Vec<Sender<ThreadBuilder>>> {
+    let mut threads = Vec::new();
+    while threads.len() < most {
+        let (thread, place) = channel();
+        match start(Box::new(move || place.recv().into_iter().for_each(ThreadBuilder::run))) {
+            Ok(()) => threads.push(thread),
+            Err(error) if threads.is_empty() => return Err(error),
+            Err(_) => break,
+        }
+    }
+    Ok(threads)
+}
 
 /// Divides the numbers below `count` into ranges of at least `least` numbers, one for each core, and returns what `work`
 /// makes of each range, in the order of the ranges. What is made of all of them together must not depend on where one
@@ -26,12 +62,14 @@ pub fn split<T>(mut list: &mut [T], lengths: impl Iterator<Item = usize>) -> Vec
 ///
 /// # Errors
 /// The system can't start another thread.
-pub fn on_threads<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> Result<R, rayon::ThreadPoolBuildError> {
-    Ok(rayon::ThreadPoolBuilder::new().num_threads(threads).build()?.install(work))
+pub fn on_threads<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> Result<R, ThreadPoolBuildError> {
+    Ok(ThreadPoolBuilder::new().num_threads(threads).build()?.install(work))
 }
 
 #[cfg(test)]
 mod tests {
+    use std::cell::Cell;
+
     use super::*;
 
     #[test]
@@ -40,6 +78,20 @@ mod tests {
             let ranges = on_threads(threads, || in_ranges(1000, 1, |range| range.len())).expect("threads");
             assert_eq!(ranges.len(), threads);
         }
+    }
+
+    #[test]
+    fn as_many_threads_start_as_the_system_gives() {
+        for given in 1..=4 {
+            let started = Cell::new(0);
+            let start = |_| {
+                started.set(started.get() + 1);
+                if started.get() <= given { Ok(()) } else { Err(io::Error::other("no more")) }
+            };
+            let threads = as_many_as_start(3, start);
+            assert_eq!(threads.expect("one starts").len(), given.min(3));
+        }
+        assert!(as_many_as_start(3, |_| Err(io::Error::other("none"))).is_err());
     }
 
     #[test]
