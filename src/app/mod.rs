@@ -85,10 +85,23 @@ impl App {
     /// # Errors
     /// The window isn't drawn through wgpu.
     pub fn new(context: &eframe::CreationContext, source: Option<Source>, limits: Limits) -> Result<Self, GpuError> {
-        let render_state = context.wgpu_render_state.clone().ok_or(GpuError::NoAdapter)?;
+        let render_state = context.wgpu_render_state.as_ref().ok_or(GpuError::NoAdapter)?;
         let gpu = Gpu::new(&render_state.adapter, render_state.device.clone(), render_state.queue.clone());
-        let painting = Painting::new(&gpu, render_state.target_format)?;
-        let engine = Engine::new(gpu);
+        Self::with_engine(context, Engine::new(gpu), source, limits)
+    }
+
+    /// The same with an engine that others may use too. It must be on the device that the window is drawn with.
+    ///
+    /// # Errors
+    /// The window isn't drawn through wgpu, or the device is lost.
+    pub fn with_engine(
+        context: &eframe::CreationContext,
+        engine: Engine,
+        source: Option<Source>,
+        limits: Limits,
+    ) -> Result<Self, GpuError> {
+        let render_state = context.wgpu_render_state.clone().ok_or(GpuError::NoAdapter)?;
+        let painting = Painting::new(&engine.gpu, render_state.target_format)?;
         style::style(&context.egui_ctx);
         let mut app = Self {
             viewport: Viewport::new(&engine),

@@ -13,13 +13,12 @@ use geometry::progress::Progress;
 use geometry::tessellate::{Edges, Lod, Surface};
 use inspect::engine::Preparation;
 use inspect::settings::Settings;
-use load::files::Limits;
 use load::{HeightSource, Source};
 use pnaen::app::App;
 use pnaen::commands::{Action, Change, Command, FileAction, GESTURES, Menu, Place, all};
 use tempfile::TempDir;
 
-use crate::driver::PATIENCE;
+use crate::driver::{PATIENCE, open};
 use crate::{choose, press, run_command, settle, switch, uniform, window};
 
 fn commands(harness: &Harness<App>) -> Vec<Command> {
@@ -229,9 +228,7 @@ fn the_background_window_changes_the_colour() {
 
 #[test]
 fn the_keys_fit_a_small_screen_and_are_scrolled() {
-    let mut harness = Harness::builder().with_size([1280.0, 720.0]).wgpu().build_eframe(|context| {
-        App::new(context, None, Limits::default()).expect("these tests need a graphics adapter")
-    });
+    let mut harness = open(Harness::builder().with_size([1280.0, 720.0]), None, |_, _| ());
     settle(&mut harness);
     give(&mut harness, "Keys…");
     let list = harness.get_by_role_and_label(Role::Window, "Keys").rect();

@@ -7,14 +7,13 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use geometry::mesh::{Shape, UpAxis};
 use inspect::render::Camera;
-use load::files::Limits;
 use load::{FileUnit, Import, LengthUnit, NormalSource, Source};
 use pnaen::app::{App, Persistence};
 use pnaen::cli::Cli;
 use tempfile::TempDir;
 
 use crate::editing::{assert_draws, copied, press_with};
-use crate::{choose, click, press, resumed, settle, uniform, vase, window};
+use crate::{choose, click, open, press, resumed, settle, uniform, vase, window};
 
 /// Two squares that meet in an edge at a right angle, 1 high, 2 wide and 3 deep, without normals.
 const BENT: &str = "v 0 0 0\nv 2 0 0\nv 2 0 3\nv 0 0 3\nv 0 1 0\nv 2 1 0\nf 1 4 3 2\nf 1 2 6 5\n";
@@ -95,11 +94,9 @@ fn the_command_line_says_how_the_first_mesh_is_taken() {
     let opening = Cli::try_parse_from(arguments).expect("options of the window").opening;
     let (source, kept) = (Source::File(path), state.path().to_owned());
     let first = source.clone();
-    let mut harness = Harness::builder().with_size([1200.0, 960.0]).wgpu().build_eframe(move |context| {
-        let mut app = App::new(context, Some(first), Limits::default()).expect("these tests need a graphics adapter");
-        app.resume(&context.egui_ctx, Persistence::read(Some(&kept)));
-        app.open_as(&context.egui_ctx, |preparation| opening.change(preparation));
-        app
+    let mut harness = open(Harness::builder().with_size([1200.0, 960.0]), Some(first), |app, context| {
+        app.resume(context, Persistence::read(Some(&kept)));
+        app.open_as(context, |preparation| opening.change(preparation));
     });
     settle(&mut harness);
     let made = Import {

@@ -9,19 +9,16 @@ use glam::{Vec2, vec2};
 use inspect::measure::CrackedEdge;
 use inspect::settings::{Colors, Settings};
 use load::Source;
-use load::files::Limits;
 use pnaen::app::App;
 use tempfile::TempDir;
 
 use crate::editing::press_with;
-use crate::{choose, click, press, resumed, scroll_to, settle, switch, uniform_of, window};
+use crate::{choose, click, open, press, resumed, scroll_to, settle, switch, uniform_of, window};
 use documents::moving::{CLIPS, moving};
 
 /// A window of this size that was never open before, with all sections as they are then.
 pub(super) fn first_start(size: [f32; 2], source: Option<Source>) -> Harness<'static, App> {
-    let mut harness = Harness::builder().with_size(size).wgpu().build_eframe(move |context| {
-        App::new(context, source, Limits::default()).expect("these tests need a graphics adapter")
-    });
+    let mut harness = open(Harness::builder().with_size(size), source, |_, _| ());
     settle(&mut harness);
     harness
 }

@@ -8,7 +8,6 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use geometry::mesh::Shape;
 use load::Source;
-use load::files::Limits;
 use pnaen::app::App;
 
 use crate::{PATIENCE, STOP, click, copy_vase, press, settle, uniform, vase};
@@ -50,10 +49,9 @@ fn says_nothing(harness: &Harness<App>) {
 
 #[test]
 fn before_the_first_picture_the_view_has_its_background_and_everything_its_place() {
-    let builder = Harness::builder().with_size([1280.0, 720.0]).with_theme(egui::Theme::Dark).wgpu();
-    let mut harness = builder.build_eframe(|context| {
-        App::new(context, None, Limits::default()).expect("these tests need a graphics adapter")
-    });
+    let builder = Harness::builder().with_size([1280.0, 720.0]).with_theme(egui::Theme::Dark);
+    // The pipelines of another device are made already.
+    let mut harness = crate::open_alone(builder, None);
     harness.step();
     assert_eq!(harness.state().source(), None, "it is still being loaded");
     let below = harness.get_by_label("Waste").rect();
@@ -238,9 +236,7 @@ fn a_file_that_changes_while_it_is_loaded_is_refused_or_read_whole() {
 
 #[test]
 fn after_cancelling_the_first_load_another_file_can_be_opened() {
-    let mut harness = Harness::builder().with_size([1200.0, 960.0]).wgpu().build_eframe(|context| {
-        App::new(context, Some(slow()), Limits::default()).expect("these tests need a graphics adapter")
-    });
+    let mut harness = crate::open(Harness::builder().with_size([1200.0, 960.0]), Some(slow()), |_, _| ());
     harness.run_steps(2);
     click(&mut harness, STOP);
     assert_eq!(harness.state().source(), None);

@@ -14,10 +14,17 @@ use load::files::Limits;
 use load::{Source, load};
 use pnaen::app::App;
 
-use crate::{choose, click, press, settle, uniform, window};
+use crate::{choose, click, made_uniform, open_alone, press, settle, unfolded};
 
 /// The start of the message if the window goes on, and of no other.
 const SENTENCE: &str = "The graphics device was lost (it was destroyed). The window goes on with a new one";
+
+const SIZE: [f32; 2] = [1200.0, 960.0];
+
+/// A window whose device nothing else uses.
+fn alone(source: Source) -> Harness<'static, App> {
+    unfolded(open_alone(Harness::builder().with_size(SIZE), Some(source)))
+}
 
 /// Destroys the device, as a driver's reset does, and waits until the window has noticed.
 fn lose(harness: &mut Harness<App>) {
@@ -37,7 +44,7 @@ fn anew(harness: Harness<'static, App>) -> Harness<'static, App> {
     let before = harness.ctx.clone();
     let app = harness.into_state();
     Harness::builder()
-        .with_size([1200.0, 960.0])
+        .with_size(SIZE)
         .wgpu()
         .build_eframe(move |context| app.anew(context, &before).expect("these tests need a graphics adapter"))
 }
@@ -57,7 +64,7 @@ fn is_the_same(before: &Loaded, now: Option<&Loaded>) -> bool {
 
 #[test]
 fn everything_stays_and_the_picture_is_the_same_to_the_bit() {
-    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
+    let mut harness = made_uniform(alone(Source::Shape(Shape::Torus)));
     choose(&mut harness, "Surface", "PN");
     harness.get_by_role_and_label(Role::CheckBox, "Split view").click();
     settle(&mut harness);
@@ -94,7 +101,7 @@ fn everything_stays_and_the_picture_is_the_same_to_the_bit() {
 
 #[test]
 fn jobs_that_were_under_way_go_on_without_further_messages() {
-    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    let mut harness = alone(Source::Shape(Shape::Torus));
     choose(&mut harness, "Colours", "Deviation");
     let wanted: Source = "shape:icosphere@4".parse().expect("a shape");
     let (context, truth) = (harness.ctx.clone(), Source::Shape(Shape::Icosphere));
@@ -121,7 +128,7 @@ fn the_pose_stays() {
     let folder = tempfile::tempdir().expect("a writable temporary folder");
     let path = folder.path().join("moving.glb");
     std::fs::write(&path, documents::moving::moving()).expect("a writable folder");
-    let mut harness = window(Some(Source::File(path)));
+    let mut harness = alone(Source::File(path));
     harness.state_mut().choose_clip(Some(0));
     settle(&mut harness);
     harness.key_press(egui::Key::Space);
@@ -142,7 +149,7 @@ fn the_pose_stays() {
 fn after_a_second_loss_the_window_offers_to_save_and_to_try_again() {
     let folder = tempfile::tempdir().expect("a writable temporary folder");
     let path = folder.path().join("saved.obj");
-    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
+    let mut harness = made_uniform(alone(Source::Shape(Shape::Torus)));
     let (totals, loaded) = (harness.state().totals(), harness.state().loaded().cloned().expect("a torus"));
     lose(&mut harness);
     let mut harness = anew(harness);
@@ -188,7 +195,7 @@ fn said(harness: &mut Harness<App>, text: &str) {
 
 #[test]
 fn a_refused_command_is_reported_and_the_window_goes_on() {
-    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
+    let mut harness = made_uniform(alone(Source::Shape(Shape::Torus)));
     let (settings, pictures) = (*harness.state().settings(), harness.state().pictures());
     // A buffer can't be mapped both for reading and for writing, so the device refuses it.
     let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::MAP_WRITE;
@@ -206,10 +213,7 @@ fn a_refused_command_is_reported_and_the_window_goes_on() {
 #[test]
 fn a_second_loss_before_the_first_picture_shows_the_message() {
     let nowhere = Source::File(PathBuf::from("nowhere.glb"));
-    let harness = Harness::builder().with_size([1200.0, 960.0]).wgpu();
-    let mut harness = harness.build_eframe(move |context| {
-        App::new(context, Some(nowhere), Limits::default()).expect("these tests need a graphics adapter")
-    });
+    let mut harness = open_alone(Harness::builder().with_size(SIZE), Some(nowhere));
     lose(&mut harness);
     let mut harness = anew(harness);
     lose(&mut harness);

@@ -41,19 +41,20 @@ use geometry::mesh::Shape;
 use geometry::tessellate::{Clip, Edges, Lod, Partitioning, Surface, Tessellation};
 use inspect::settings::Colors;
 use load::Source;
-use load::files::Limits;
 use pnaen::app::{App, Persistence};
 use pnaen::cli::Cli;
 use pnaen::commands::{Action, all};
 use tempfile::TempDir;
 
-use driver::{PATIENCE, settle};
+use driver::{PATIENCE, open, open_alone, settle};
 
 fn window(source: Option<Source>) -> Harness<'static, App> {
     let source = source.or(Some(Source::Shape(Shape::CubeSplit)));
-    let mut harness = Harness::builder().with_size([1200.0, 960.0]).wgpu().build_eframe(move |context| {
-        App::new(context, source, Limits::default()).expect("these tests need a graphics adapter")
-    });
+    unfolded(open(Harness::builder().with_size([1200.0, 960.0]), source, |_, _| ()))
+}
+
+/// A window with all sections open and everything drawn.
+fn unfolded(mut harness: Harness<'static, App>) -> Harness<'static, App> {
     open_all_sections(&mut harness);
     settle(&mut harness);
     harness
@@ -61,11 +62,8 @@ fn window(source: Option<Source>) -> Harness<'static, App> {
 
 /// A window that goes on where the last one with this folder ended, and keeps its own state there.
 fn resumed(kept: &Path, size: [f32; 2], source: Option<Source>) -> Harness<'static, App> {
-    let kept = kept.to_owned();
-    let mut harness = Harness::builder().with_size(size).wgpu().build_eframe(move |context| {
-        let mut app = App::new(context, source, Limits::default()).expect("these tests need a graphics adapter");
-        app.resume(&context.egui_ctx, Persistence::read(Some(&kept)));
-        app
+    let mut harness = open(Harness::builder().with_size(size), source, |app, context| {
+        app.resume(context, Persistence::read(Some(kept)));
     });
     settle(&mut harness);
     harness
@@ -81,7 +79,10 @@ fn open_all_sections(harness: &mut Harness<App>) {
 
 /// A window that draws every patch with one factor and fractional partitioning, so that counts don't depend on the view.
 fn uniform(source: Option<Source>) -> Harness<'static, App> {
-    let mut harness = window(source);
+    made_uniform(window(source))
+}
+
+fn made_uniform(mut harness: Harness<'static, App>) -> Harness<'static, App> {
     choose(&mut harness, "Partitioning", "Fractional odd");
     choose(&mut harness, "LOD", "Uniform");
     choose(&mut harness, "Clipping", "Off");
@@ -363,10 +364,8 @@ fn every_shape_is_in_the_menu() {
 #[test]
 fn both_themes_show_the_picture_and_legible_controls() {
     for theme in [egui::Theme::Dark, egui::Theme::Light] {
-        let mut harness =
-            Harness::builder().with_size([1200.0, 800.0]).with_theme(theme).wgpu().build_eframe(|context| {
-                App::new(context, Some(vase()), Limits::default()).expect("these tests need a graphics adapter")
-            });
+        let builder = Harness::builder().with_size([1200.0, 800.0]).with_theme(theme);
+        let mut harness = open(builder, Some(vase()), |_, _| ());
         settle(&mut harness);
         let picture = harness.render().expect("a picture of the window");
         let panel = picture.get_pixel(8, 700).0;

@@ -9,11 +9,13 @@ use geometry::view::project;
 use inspect::render::layout::{AXIS_COLORS, CRACK_COLOR, LOD_CAMERA_COLOR};
 use inspect::render::{Camera, Standpoint};
 use load::Source;
-use load::files::Limits;
 use pnaen::app::App;
 
 use crate::editing::{assert_draws, copied, press_with};
-use crate::{PATIENCE, choose, click, copy_vase, open_all_sections, press, resumed, settle, switch, uniform, window};
+use crate::{
+    PATIENCE, choose, click, copy_vase, open, open_all_sections, press, resumed, settle, switch, unfolded, uniform,
+    window,
+};
 
 /// How many px of the picture have about this sRGB colour.
 fn pixels_of(harness: &Harness<App>, color: [u8; 3]) -> usize {
@@ -119,12 +121,8 @@ fn the_ground_has_a_note_with_its_spacing_and_is_copied() {
 
 #[test]
 fn the_background_follows_the_theme_unless_it_is_set() {
-    let mut harness =
-        Harness::builder().with_size([1000.0, 700.0]).with_theme(Theme::Light).wgpu().build_eframe(|context| {
-            App::new(context, Some(Source::Shape(Shape::Torus)), Limits::default()).expect("an adapter")
-        });
-    open_all_sections(&mut harness);
-    settle(&mut harness);
+    let builder = Harness::builder().with_size([1000.0, 700.0]).with_theme(Theme::Light);
+    let mut harness = unfolded(open(builder, Some(Source::Shape(Shape::Torus)), |_, _| ()));
     let corner = |harness: &Harness<App>| {
         let picture = harness.state().read_picture().expect("a device").expect("a picture");
         picture.get_pixel(3, 3).0[1]

@@ -8,8 +8,14 @@ use inspect::settings::Colors;
 use load::Source;
 use pnaen::app::App;
 
-use crate::layout::first_start;
-use crate::{PATIENCE, choose, settle, vase};
+use crate::{PATIENCE, choose, open_alone, settle, vase};
+
+/// A window whose pipelines nothing else makes.
+fn start(source: Source) -> Harness<'static, App> {
+    let mut harness = open_alone(Harness::builder().with_size([1600.0, 1000.0]), Some(source));
+    settle(&mut harness);
+    harness
+}
 
 /// Runs frames for so long while nothing is done.
 fn wait(harness: &mut Harness<App>, time: Duration) {
@@ -55,7 +61,7 @@ fn drag(harness: &mut Harness<App>) {
 #[test]
 fn a_drag_after_a_pause_builds_no_pipeline() {
     for source in [vase(), Source::Shape(Shape::Torus)] {
-        let mut harness = first_start([1600.0, 1000.0], Some(source));
+        let mut harness = start(source);
         let pictures = harness.state().pictures();
         wait_for(&mut harness, 1);
         let before = made(&harness);
@@ -68,7 +74,7 @@ fn a_drag_after_a_pause_builds_no_pipeline() {
 
 #[test]
 fn a_preview_is_drawn_out_of_sight_once_for_the_same_pipelines() {
-    let mut harness = first_start([1600.0, 1000.0], Some(vase()));
+    let mut harness = start(vase());
     wait_for(&mut harness, 1);
     let (pictures, previews, totals) =
         (harness.state().pictures(), harness.state().previews(), harness.state().totals());
