@@ -126,3 +126,45 @@ fn links_within_the_folder_are_followed() {
     std::os::unix::fs::symlink("there", folder.path().join("link")).unwrap();
     assert_eq!(load(&path, &Limits::default(), &Progress::new()).unwrap().triangles.len(), 1);
 }
+
+/// A folder, links and a socket, which a corpus of files can't hold. Nothing outside the document's folder is read.
+#[cfg(unix)]
+#[test]
+fn what_is_no_file_of_the_folder_is_no_buffer() {
+    use std::os::unix::{fs::symlink, net::UnixListener};
+    let around = tempfile::tempdir().unwrap();
+    let folder = around.path().join("own");
+    std::fs::create_dir_all(folder.join("folder.bin")).unwrap();
+    std::fs::write(around.path().join("secret.bin"), [0; 72]).unwrap();
+    for (to, name) in [("../secret.bin", "link.bin"), ("/dev/zero", "device.bin"), ("loop.bin", "loop.bin")] {
+        symlink(to, folder.join(name)).unwrap();
+    }
+    let _socket = UnixListener::bind(folder.join("socket.bin"));
+    let endless = std::fs::metadata(folder.join("loop.bin")).unwrap_err().to_string();
+    let outside = "it is a link to a file outside the document's folder";
+    for (uri, said) in [
+        ("folder.bin", "not a file"),
+        ("link.bin", outside),
+        ("device.bin", outside),
+        ("loop.bin", &endless),
+        ("socket.bin", "not a file"),
+    ] {
+        let mut document = triangle().document();
+        document["buffers"][0]["uri"] = json!(uri);
+        let bytes = document.to_string().into_bytes();
+        let result = read(bytes, &folder, "draft", Selection::default(), &Limits::default(), &Progress::new());
+        let error = result.unwrap_err();
+        assert!(matches!(error, GltfError::Buffer { .. }), "{error:?}");
+        let sentence = error.to_string();
+        assert!(sentence.starts_with(&format!("/buffers/0 ({uri})")) && sentence.contains(said), "{sentence}");
+    }
+}
+
+#[test]
+fn a_truncated_glb_is_refused_wherever_it_ends() {
+    let glb = triangle().glb();
+    for length in 0..glb.len() {
+        let problem = read_bytes(&glb[..length]).unwrap_err();
+        assert!(matches!(problem, GltfError::NotGltf { .. }), "{length}: {problem}");
+    }
+}
