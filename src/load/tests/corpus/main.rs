@@ -83,15 +83,17 @@ fn block(name: &str, answer: Answer) -> String {
 }
 
 /// Reads a file on a thread of its own, so that a reader that hangs fails the test.
+///
+/// # Panics
+/// If the reader panics, or doesn't come to an end.
 fn answered_in_time(path: String, bytes: Vec<u8>) -> Answer {
     let (sender, receiver) = channel();
     let own = path.clone();
     std::thread::spawn(move || sender.send(answer(&own, bytes)));
-    match receiver.recv_timeout(PATIENCE) {
-        Ok(answer) => answer,
-        Err(RecvTimeoutError::Timeout) => Err(("none".to_owned(), format!("nothing after {PATIENCE:?}"))),
-        Err(RecvTimeoutError::Disconnected) => Err(("none".to_owned(), format!("{path} makes the reader panic"))),
-    }
+    receiver.recv_timeout(PATIENCE).unwrap_or_else(|fault| match fault {
+        RecvTimeoutError::Timeout => panic!("reading {path} hasn't come to an end after {PATIENCE:?}"),
+        RecvTimeoutError::Disconnected => panic!("reading {path} panics"),
+    })
 }
 
 fn answer(path: &str, bytes: Vec<u8>) -> Answer {
