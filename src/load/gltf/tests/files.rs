@@ -154,11 +154,12 @@ fn what_is_no_file_of_the_folder_is_no_buffer() {
     ] {
         let mut document = triangle().document();
         document["buffers"][0]["uri"] = json!(uri);
-        let bytes = document.to_string().into_bytes();
-        let result = read(bytes, &folder, "draft", Selection::default(), &Limits::default(), &Progress::new());
-        let error = result.unwrap_err();
-        assert!(matches!(error, GltfError::Buffer { .. }), "{error:?}");
-        assert_eq!(error.to_string(), format!("/buffers/0 ({uri}) can't be read: {said}"));
+        let path = folder.join("model.gltf");
+        std::fs::write(&path, document.to_string()).unwrap();
+        let error = load(&path, &Limits::default(), &Progress::new()).unwrap_err();
+        let LoadError::Gltf { problem, .. } = error else { panic!("{error:?}") };
+        assert!(matches!(*problem, GltfError::Buffer { .. }), "{problem:?}");
+        assert_eq!(problem.to_string(), format!("/buffers/0 ({uri}) can't be read: {said}"));
     }
 }
 
