@@ -13,8 +13,6 @@ pub mod files;
 pub mod format;
 mod gltf;
 pub mod heights;
-#[cfg(test)]
-mod hostile_files;
 mod images;
 pub mod import;
 mod ktx2;

@@ -394,7 +394,7 @@ mod tests {
 
     #[test]
     fn texts_in_utf_16_are_read() {
-        let document = std::fs::read_to_string(documents::in_repository("tests/fuzzed/seeds/gltf/triangle.gltf"));
+        let document = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/corpus/gltf/good/triangle.gltf"));
         let texts = [
             ("a.gltf", document.unwrap()),
             ("a.obj", obj::tests::cube()),

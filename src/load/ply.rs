@@ -511,7 +511,8 @@ impl<'a> Reader<'a, '_> {
         problems: Vec<String>,
     ) -> (FaceBuilder<'a>, String, Vec<String>) {
         let count = |name: &[u8]| {
-            header.elements.iter().filter(|element| element.name == name).map(|element| element.count).sum()
+            let own = header.elements.iter().filter(|element| element.name == name);
+            own.map(|element| element.count).fold(0, u64::saturating_add)
         };
         let [vertices, faces, strips]: [u64; 3] = [b"vertex" as &[u8], b"face", b"tristrips"].map(count);
         let cut = if self.cut_short.is_some() { ", but it was cut short" } else { "" };

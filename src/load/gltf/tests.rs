@@ -2,18 +2,13 @@ mod animations;
 mod cameras;
 mod compressed;
 mod files;
-mod hostile;
 mod lights;
 mod materials;
-mod mutations;
-mod odd;
 mod packed;
 mod parts;
 mod scenes;
 mod textures;
 mod variants;
-pub(crate) use mutations::seeds;
-pub(crate) use odd::odd;
 
 use base64::prelude::{BASE64_STANDARD, Engine};
 use glam::{Vec2, Vec3};

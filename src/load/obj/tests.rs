@@ -24,13 +24,6 @@ pub(crate) fn cube() -> String {
     format!("# made by a test\no cube\n{vertices}g sides\ns off\n{}", SIDES.iter().map(face).collect::<String>())
 }
 
-/// A file with every kind of statement.
-pub(crate) fn everything() -> String {
-    "mtllib nowhere.mtl\nv 0 0 0 1\nv 1 0 0\nv 1 1 0\nv 0.5 0.25 0\nv 0 1 0\nvt 0 0\nvt 1 1 0\nvn 0 0 1\nvn 0 1 0\ng a b\n\
-     usemtl red\nf 1/1/1 2/2/2 \\\n 3//1 4 5/-1\ns 1\np 1 2\nl 1/1 2/2\nusemtl blue\nf -5 -4 -3\nf 1 3 5 # the last\n"
-        .to_owned()
-}
-
 /// A strip of squares, of which each follows its vertices, in several pieces of the file. `number` writes the number of a vertex:
 /// its own from 0 on, and how many are above.
 fn strip(squares: usize, number: impl Fn(usize, usize) -> String) -> String {

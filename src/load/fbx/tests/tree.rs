@@ -27,8 +27,6 @@ pub(crate) enum Value {
     Longs(Vec<i64>),
     Reals(Vec<f64>),
     Bytes(Vec<u8>),
-    /// The bytes that stand for a value in a binary file; nothing in a text.
-    Raw(Vec<u8>),
 }
 
 /// How the arrays of a binary file are stored.
@@ -126,7 +124,6 @@ fn write_text(entry: &Entry, depth: usize, text: &mut String) {
         Value::Longs(values) => array(values.iter().map(i64::to_string).collect()),
         Value::Reals(values) => array(values.iter().map(|value| format!("{value:?}")).collect()),
         Value::Bytes(bytes) => format!(", \"{}\"", BASE64_STANDARD.encode(bytes)),
-        Value::Raw(_) => String::new(),
     });
     let values: Vec<String> = values.collect();
     let _ = write!(text, "{indent}{}: {}", entry.name, values.join(", "));
@@ -193,7 +190,6 @@ fn write_value(value: &Value, arrays: Arrays, bytes: &mut Vec<u8>) {
             write_blob(b'S', stored.as_bytes(), bytes);
         }
         Value::Bytes(value) => write_blob(b'R', value, bytes),
-        Value::Raw(value) => bytes.extend(value),
     }
 }
 
@@ -215,37 +211,6 @@ fn zlib_stored(content: &[u8]) -> Vec<u8> {
         stream.extend(*block);
     }
     stream.extend(adler32(content.iter().copied()).to_be_bytes());
-    stream
-}
-
-/// A zlib stream of so many bytes 0 (RFC 1951, section 3.2.6): about 158 times smaller.
-pub(crate) fn zlib_zeros(count: usize) -> Vec<u8> {
-    let (mut stream, mut bits, mut held) = (vec![0x78, 0x01], 0_u64, 0);
-    let mut put = |value: u64, width: u32, stream: &mut Vec<u8>| {
-        bits |= value << held;
-        held += width;
-        while held >= 8 {
-            stream.push(bits as u8);
-            bits >>= 8;
-            held -= 8;
-        }
-    };
-    // The last block, with fixed codes.
-    put(0b011, 3, &mut stream);
-    // Huffman codes begin with their highest bit: the literal 0 is 00110000, the length 258 is 11000101, the distance 1 is 00000.
-    let repeats = count.saturating_sub(1) / 258;
-    put(0b0000_1100, 8, &mut stream);
-    for _ in 0..repeats {
-        put(0b1010_0011, 8, &mut stream);
-        put(0, 5, &mut stream);
-    }
-    for _ in 0..(count.saturating_sub(1) % 258) {
-        put(0b0000_1100, 8, &mut stream);
-    }
-    // The end of the block, and what fills the last byte.
-    put(0, 7, &mut stream);
-    put(0, 7, &mut stream);
-    stream.extend(adler32(std::iter::repeat_n(0, count)).to_be_bytes());
     stream
 }
 

@@ -126,3 +126,48 @@ fn links_within_the_folder_are_followed() {
     std::os::unix::fs::symlink("there", folder.path().join("link")).unwrap();
     assert_eq!(load(&path, &Limits::default(), &Progress::new()).unwrap().triangles.len(), 1);
 }
+
+/// A folder, links and a socket, which a corpus of files can't hold. Nothing outside the document's folder is read.
+#[cfg(unix)]
+#[test]
+fn what_is_no_file_of_the_folder_is_no_buffer() {
+    use std::os::unix::{fs::symlink, net::UnixListener};
+    let around = tempfile::tempdir().unwrap();
+    let folder = around.path().join("own");
+    std::fs::create_dir_all(folder.join("folder.bin")).unwrap();
+    std::fs::write(around.path().join("secret.bin"), [0; 72]).unwrap();
+    for (to, name) in [("../secret.bin", "link.bin"), ("/dev/zero", "device.bin"), ("loop.bin", "loop.bin")] {
+        symlink(to, folder.join(name)).unwrap();
+    }
+    let _socket = UnixListener::bind(folder.join("socket.bin"));
+    let endless = std::fs::metadata(folder.join("loop.bin")).unwrap_err().to_string();
+    let endless = format!("{endless}; put it where the document names it, or export as .glb");
+    let no_file = "it is not a file; name one, or export as .glb";
+    let outside = "it is a link to a file outside the document's folder, but only files in that folder and below are read; \
+                   put the file itself there";
+    for (uri, said) in [
+        ("folder.bin", no_file),
+        ("link.bin", outside),
+        ("device.bin", outside),
+        ("loop.bin", &endless),
+        ("socket.bin", no_file),
+    ] {
+        let mut document = triangle().document();
+        document["buffers"][0]["uri"] = json!(uri);
+        let path = folder.join("model.gltf");
+        std::fs::write(&path, document.to_string()).unwrap();
+        let error = load(&path, &Limits::default(), &Progress::new()).unwrap_err();
+        let LoadError::Gltf { problem, .. } = error else { panic!("{error:?}") };
+        assert!(matches!(*problem, GltfError::Buffer { .. }), "{problem:?}");
+        assert_eq!(problem.to_string(), format!("/buffers/0 ({uri}) can't be read: {said}"));
+    }
+}
+
+#[test]
+fn a_truncated_glb_is_refused_wherever_it_ends() {
+    let glb = triangle().glb();
+    for length in 0..glb.len() {
+        let problem = read_bytes(&glb[..length]).unwrap_err();
+        assert!(matches!(problem, GltfError::NotGltf { .. }), "{length}: {problem}");
+    }
+}

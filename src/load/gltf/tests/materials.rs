@@ -25,33 +25,6 @@ fn square(material: Value) -> Draft {
     draft
 }
 
-/// A square whose material has everything that is read, and some that isn't.
-pub(super) fn everything() -> Draft {
-    let moved =
-        json!({ "KHR_texture_transform": { "offset": [0.5, 0], "rotation": 1, "scale": [2, 3], "texCoord": 1 } });
-    let mut draft = square(json!({
-        "name": "paint", "doubleSided": true, "alphaMode": "MASK", "alphaCutoff": 0.25, "emissiveFactor": [0.5, 0.25, 0],
-        "pbrMetallicRoughness": {
-            "baseColorFactor": [0.1, 0.2, 0.3, 0.4], "metallicFactor": 0.5, "roughnessFactor": 0.75,
-            "baseColorTexture": { "index": 0 }, "metallicRoughnessTexture": { "index": 1 },
-        },
-        "normalTexture": { "index": 0, "scale": 2, "extensions": moved },
-        "occlusionTexture": { "index": 2, "strength": 0.125, "texCoord": 1 },
-        "emissiveTexture": { "index": 0 },
-        "extensions": {
-            "KHR_materials_emissive_strength": { "emissiveStrength": 8 }, "KHR_materials_ior": { "ior": 1.25 },
-            "KHR_materials_specular": { "specularFactor": 0.5, "specularColorFactor": [1, 2, 3] },
-            "KHR_materials_clearcoat": {
-                "clearcoatFactor": 0.5, "clearcoatTexture": { "index": 0 }, "clearcoatNormalTexture": { "index": 2 },
-            },
-            "KHR_materials_sheen": {},
-        },
-    }));
-    let colors = draft.floats("VEC4", &[0.5; 16]);
-    attribute(&mut draft, "COLOR_0", colors);
-    draft
-}
-
 fn attribute(draft: &mut Draft, name: &str, accessor: usize) {
     draft.root["meshes"][0]["primitives"][0]["attributes"][name] = json!(accessor);
 }

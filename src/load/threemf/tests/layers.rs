@@ -63,22 +63,3 @@ fn of_mixtures_the_first_material_is_shown() {
     assert_eq!((mesh.materials[0].name.as_str(), mesh.materials.len()), ("ABS", 1));
     assert_eq!(mesh.warnings, [WARNING]);
 }
-
-/// Each triangle has another colour below the texture.
-pub(crate) fn many_layers(count: usize) -> Vec<u8> {
-    let colors: String = (0..count).map(|i| format!("<m:color color=\"#{i:06X}\"/>")).collect();
-    let entries: String = (0..count).map(|i| format!("<m:multi pindices=\"{i} 0\"/>")).collect();
-    let triangles: String =
-        (0..count).map(|i| format!("<triangle v1=\"0\" v2=\"1\" v3=\"2\" pid=\"9\" p1=\"{i}\"/>")).collect();
-    let whole = mesh([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], []);
-    let whole = whole.replace("<triangles>", &format!("<triangles>{triangles}"));
-    let resources = format!(
-        "{RESOURCES}<m:colorgroup id=\"8\">{colors}</m:colorgroup><m:multiproperties id=\"9\" pids=\"8 4\">{entries}\
-         </m:multiproperties><object id=\"10\">{whole}</object>"
-    );
-    zip(&[
-        Entry::stored("_rels/.rels", relationships().as_bytes()),
-        Entry::stored(MODEL, model(&resources, "<item objectid=\"10\"/>").as_bytes()),
-        Entry::stored("a.png", &png([[255, 255, 255, 0], [0, 255, 0, 128]])),
-    ])
-}

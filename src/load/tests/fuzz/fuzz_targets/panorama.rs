@@ -1,0 +1,8 @@
+#![no_main]
+
+#[path = "../../fuzzed/bodies.rs"]
+mod bodies;
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| {
+    bodies::panorama(data, bodies::NOWHERE);
+});
