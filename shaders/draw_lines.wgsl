@@ -171,17 +171,13 @@ fn normal_vertex(
     return line(index, own, true);
 }
 
-fn line_coverage(in: LineVaryings) -> f32 {
-    return 1.0 - smoothstep(in.half_width - 0.5, in.half_width + 0.5, abs(in.across));
-}
-
 @fragment
 fn line_fragment(in: LineVaryings) -> @location(0) vec4<f32> {
-    return vec4<f32>(in.color, line_coverage(in));
+    return vec4<f32>(in.color, line_coverage(abs(in.across), in.half_width));
 }
 
 @fragment
 fn hidden_line_fragment(in: LineVaryings) -> @location(0) vec4<f32> {
     // So many blended over each other have the opacity HIDDEN.
-    return vec4<f32>(in.color, (1.0 - pow(1.0 - HIDDEN, 1.0 / in.times)) * line_coverage(in));
+    return vec4<f32>(in.color, (1.0 - pow(1.0 - HIDDEN, 1.0 / in.times)) * line_coverage(abs(in.across), in.half_width));
 }

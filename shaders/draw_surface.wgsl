@@ -1,5 +1,6 @@
 // Draws the surface with overlays, the emitted triangles or the input triangles: lit by the lights at the camera or by light from all
 // around, and cut by the masks of materials.
+// With: draw_surface_vertices
 
 // The last argument is the colour of the material in light from all around: none, since the lights at the camera take its place.
 @fragment

@@ -1,5 +1,6 @@
 // Displaces the vertices of one chunk after they were emitted, and turns their normals: one invocation a vertex. Twin:
 // src/geometry/tessellate/mesh_displacement.rs.
+// With: height_list
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<uniform> slab: Slab;

@@ -1,6 +1,7 @@
 // The vertices and triangles of one chunk: what the tessellator and the domain shader would output. Each workgroup makes
 // thousands of consecutive vertices (or triangles) and each invocation several, so that finding their patches is little
 // work.
+// With: connectivity_table
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<uniform> slab: Slab;

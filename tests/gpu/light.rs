@@ -99,7 +99,7 @@ fn run_in(environment: &Environment, view: &LightView, cases: &[Case]) -> Vec<Fo
     let gpu = &engine().gpu;
     let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("light"),
-        source: wgpu::ShaderSource::Wgsl((ENVIRONMENT.module_text() + ENTRY).into()),
+        source: wgpu::ShaderSource::Wgsl((ENVIRONMENT.text() + ENTRY).into()),
     });
     let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
         label: Some("light"),

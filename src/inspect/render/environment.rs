@@ -9,16 +9,14 @@ use super::blur_levels::ENVIRONMENT_LEVELS;
 use super::cube_map::CubeMap;
 use super::dfg::{DFG_SIZE, dfg_table};
 use super::irradiance::{Irradiance, irradiance};
-use super::prefilter_pass::{REFLECTANCE, cube_view, prefilter};
+use super::prefilter_pass::{cube_view, prefilter};
 use super::studio::studio_light;
 use super::tone::TONE_CURVE_NEUTRAL;
-use gpu::wgsl::WgslFile;
-use gpu::{Gpu, GpuError, Lazy, uniform_buffer};
+use gpu::{Gpu, GpuError, Lazy, WgslModule, uniform_buffer};
 use load::panorama::Panorama;
 
-static TONE: WgslFile = WgslFile::new("tone", &[]);
 /// A shader module that has it binds [`Environment::entries`] in group 1 from binding 16 on.
-pub static ENVIRONMENT: WgslFile = WgslFile::new("environment", &[&REFLECTANCE, &TONE]);
+pub const ENVIRONMENT: WgslModule = WgslModule("environment");
 
 /// The binding of the `Surroundings` in `shaders/environment.wgsl`.
 const SURROUNDINGS_BINDING: u32 = 19;

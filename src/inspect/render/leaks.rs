@@ -9,9 +9,7 @@ use wgpu::util::DeviceExt;
 use super::Scene;
 use super::adding_pipeline::Adding;
 use geometry::mesh::Topology;
-use gpu::{Gpu, GpuError, Lazy, Readback, Recorder, ShaderModule, Timing, WgslFile, bind_group};
-
-pub(super) static DRAW_LEAKS: WgslFile = WgslFile::new("draw_leaks", &[]);
+use gpu::{Gpu, GpuError, Lazy, Readback, Recorder, ShaderModule, Timing, bind_group};
 
 /// The count of each pixel, which may be negative. This format holds every whole number up to 2048, and every adapter can blend
 /// it.
@@ -38,7 +36,7 @@ impl Default for LeakCounter {
 impl LeakCounter {
     /// Compiles nothing yet.
     pub(crate) fn new() -> Self {
-        Self { module: ShaderModule::new(&DRAW_LEAKS), pipeline: Lazy::default() }
+        Self { module: ShaderModule::new("draw_leaks"), pipeline: Lazy::default() }
     }
 
     fn pipeline(&self, gpu: &Gpu) -> Result<&wgpu::RenderPipeline, GpuError> {

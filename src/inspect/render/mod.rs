@@ -68,25 +68,3 @@ pub use scene::{LineSegment, Scene};
 pub(crate) use silhouette::{SilhouetteCoverage, SilhouetteDrawer, padded_clip};
 pub use target::{Target, samples};
 pub use window::WindowPipelines;
-
-#[cfg(test)]
-/// The shader files with entry points for drawing and picking, and the light that draws read. Each makes one shader module.
-static MODULES: [&gpu::WgslFile; 17] = [
-    &coverage::PASS_COVERAGE,
-    &environment::ENVIRONMENT,
-    &leaks::DRAW_LEAKS,
-    &mipmap_pass::PASS_MIPMAP,
-    &pick::DRAW_PICK,
-    &pipelines::DRAW_BACKGROUND,
-    &pipelines::DRAW_CLEAR,
-    &pipelines::DRAW_GROUND,
-    &pipelines::DRAW_LINES,
-    &pipelines::DRAW_LIT,
-    &pipelines::DRAW_PLAIN,
-    &pipelines::DRAW_SURFACE,
-    &pipelines::LAYERS_MULTISAMPLED,
-    &pipelines::LAYERS_SINGLE,
-    &prefilter_pass::PASS_PREFILTER,
-    &silhouette::DRAW_SILHOUETTE,
-    &window::DRAW_WINDOW,
-];

@@ -4,90 +4,10 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::draws::{Draw, Triangles};
-use super::environment::{Backdrop, ENVIRONMENT};
+use super::environment::Backdrop;
 use super::materials::{Materials, depths_entry};
-use super::prefilter_pass::REFLECTANCE;
 use super::target::samples;
-use gpu::wgsl::{CONVENTION, CURVATURE, FACTORS, LOAD_NET, LOADS, NORMAL, OCTAHEDRAL_NORMAL, SURFACE, TYPES, WgslFile};
 use gpu::{Gpu, GpuError, Lazy, ShaderModule};
-
-pub(super) static DRAW_TYPES: WgslFile = WgslFile::new("draw_types", &[&TYPES]);
-pub(super) static DRAW_BACKGROUND: WgslFile =
-    WgslFile::new("draw_background", &[&DRAW_TYPES, &ENVIRONMENT, &REFLECTANCE]);
-pub(super) static DRAW_CLEAR: WgslFile = WgslFile::new("draw_clear", &[]);
-static DRAW_DENSITY: WgslFile = WgslFile::new("draw_density", &[]);
-pub(super) static DRAW_GROUND: WgslFile = WgslFile::new("draw_ground", &[&DRAW_DENSITY, &DRAW_TYPES]);
-static DRAW_LIGHT: WgslFile = WgslFile::new("draw_light", &[]);
-pub(super) static DRAW_LIT: WgslFile = WgslFile::new(
-    "draw_lit",
-    &[&DRAW_LIGHT, &DRAW_MASK, &DRAW_MATERIAL, &DRAW_NORMAL, &DRAW_TYPES, &OCTAHEDRAL_NORMAL, &SURFACE, &TYPES],
-);
-static DRAW_LOOKS: WgslFile = WgslFile::new("draw_looks", &[&DRAW_DENSITY]);
-static DRAW_MASK: WgslFile = WgslFile::new("draw_mask", &[&DRAW_MATERIAL]);
-static PUNCTUAL: WgslFile = WgslFile::new("punctual", &[]);
-static DRAW_MATERIAL: WgslFile =
-    WgslFile::new("draw_material", &[&DRAW_NORMAL, &DRAW_TYPES, &ENVIRONMENT, &PUNCTUAL, &REFLECTANCE, &TYPES]);
-static DRAW_NORMAL: WgslFile = WgslFile::new("draw_normal", &[&FACTORS, &LOAD_NET, &LOADS, &NORMAL, &TYPES]);
-pub(super) static DRAW_PLAIN: WgslFile =
-    WgslFile::new("draw_plain", &[&DRAW_LIGHT, &DRAW_NORMAL, &DRAW_TYPES, &OCTAHEDRAL_NORMAL, &SURFACE, &TYPES]);
-static DRAW_OVERLAYS: WgslFile = WgslFile::new(
-    "draw_overlays",
-    &[
-        &CURVATURE,
-        &DRAW_DENSITY,
-        &DRAW_LIGHT,
-        &DRAW_LOOKS,
-        &DRAW_MATERIAL,
-        &DRAW_NORMAL,
-        &DRAW_SURFACE_INPUTS,
-        &DRAW_TYPES,
-        &LOAD_NET,
-        &NORMAL,
-        &SURFACE,
-    ],
-);
-pub(super) static DRAW_SURFACE: WgslFile = WgslFile::new(
-    "draw_surface",
-    &[
-        &DRAW_LIGHT,
-        &DRAW_MASK,
-        &DRAW_MATERIAL,
-        &DRAW_NORMAL,
-        &DRAW_SURFACE_COLOR,
-        &DRAW_SURFACE_INPUTS,
-        &DRAW_SURFACE_VERTICES,
-    ],
-);
-static DRAW_SURFACE_COLOR: WgslFile = WgslFile::new(
-    "draw_surface_color",
-    &[
-        &DRAW_DENSITY,
-        &DRAW_LIGHT,
-        &DRAW_LOOKS,
-        &DRAW_MATERIAL,
-        &DRAW_NORMAL,
-        &DRAW_OVERLAYS,
-        &DRAW_SURFACE_INPUTS,
-        &DRAW_TYPES,
-    ],
-);
-static DRAW_SURFACE_INPUTS: WgslFile = WgslFile::new("draw_surface_inputs", &[&DRAW_TYPES, &TYPES]);
-static DRAW_SURFACE_VERTICES: WgslFile = WgslFile::new(
-    "draw_surface_vertices",
-    &[&CONVENTION, &DRAW_NORMAL, &DRAW_SURFACE_INPUTS, &DRAW_TYPES, &FACTORS, &OCTAHEDRAL_NORMAL, &SURFACE, &TYPES],
-);
-pub(super) static DRAW_LINES: WgslFile =
-    WgslFile::new("draw_lines", &[&DRAW_TYPES, &FACTORS, &OCTAHEDRAL_NORMAL, &TYPES]);
-
-/// The module that has it declares the depths that it compares with.
-static DRAW_LAYERS: WgslFile = WgslFile::new("draw_layers", &[&DRAW_MATERIAL]);
-static DRAW_LIT_LAYERS: WgslFile =
-    WgslFile::new("draw_lit_layers", &[&DRAW_LAYERS, &DRAW_LIT, &DRAW_MATERIAL, &DRAW_NORMAL]);
-static DRAW_SURFACE_LAYERS: WgslFile =
-    WgslFile::new("draw_surface_layers", &[&DRAW_LAYERS, &DRAW_MATERIAL, &DRAW_NORMAL, &DRAW_SURFACE]);
-pub(super) static LAYERS_SINGLE: WgslFile = WgslFile::new("layers_single", &[&DRAW_LIT_LAYERS, &DRAW_SURFACE_LAYERS]);
-pub(super) static LAYERS_MULTISAMPLED: WgslFile =
-    WgslFile::new("layers_multisampled", &[&DRAW_LIT_LAYERS, &DRAW_SURFACE_LAYERS]);
 
 /// The pipeline of each [`Draw`], and the layouts of their bind groups.
 pub(super) struct DrawPipelines {
@@ -134,14 +54,14 @@ impl DrawPipelines {
             chunk_layout: chunk_layout(gpu),
             measured_layout: measured_layout(gpu),
             layer_layout: layer_layout(gpu),
-            plain: ShaderModule::new(&DRAW_PLAIN),
-            lit: ShaderModule::new(&DRAW_LIT),
-            surface: ShaderModule::new(&DRAW_SURFACE),
-            layers: ShaderModule::new(if is_multisampled { &LAYERS_MULTISAMPLED } else { &LAYERS_SINGLE }),
-            clear: ShaderModule::new(&DRAW_CLEAR),
-            background: ShaderModule::new(&DRAW_BACKGROUND),
-            ground: ShaderModule::new(&DRAW_GROUND),
-            lines: ShaderModule::new(&DRAW_LINES),
+            plain: ShaderModule::new("draw_plain"),
+            lit: ShaderModule::new("draw_lit"),
+            surface: ShaderModule::new("draw_surface"),
+            layers: ShaderModule::new(if is_multisampled { "layers_multisampled" } else { "layers_single" }),
+            clear: ShaderModule::new("draw_clear"),
+            background: ShaderModule::new("draw_background"),
+            ground: ShaderModule::new("draw_ground"),
+            lines: ShaderModule::new("draw_lines"),
             pipelines: Default::default(),
         }
     }

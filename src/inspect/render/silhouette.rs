@@ -5,9 +5,7 @@ use wgpu::util::DeviceExt;
 
 use super::adding_pipeline::Adding;
 use crate::measure::{OutlineOf, SampleGrid};
-use gpu::{ChunkBuffers, Gpu, GpuError, Lazy, Readback, Recorder, ShaderModule, WgslFile, bind_group};
-
-pub(super) static DRAW_SILHOUETTE: WgslFile = WgslFile::new("draw_silhouette", &[]);
+use gpu::{ChunkBuffers, Gpu, GpuError, Lazy, Readback, Recorder, ShaderModule, bind_group};
 
 /// A channel for each of [`OutlineOf::ALL`].
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -21,7 +19,7 @@ pub(crate) struct SilhouetteDrawer {
 impl SilhouetteDrawer {
     /// Compiles nothing yet.
     pub(crate) fn new() -> Self {
-        Self { module: ShaderModule::new(&DRAW_SILHOUETTE), pipeline: Lazy::default() }
+        Self { module: ShaderModule::new("draw_silhouette"), pipeline: Lazy::default() }
     }
 
     /// Starts with nothing covered. `clip_from_object` is that of the picture without its margin.

@@ -3,10 +3,7 @@
 //! all of them for every pixel. That takes longer than most pictures.
 
 use super::Target;
-use gpu::wgsl::WgslFile;
 use gpu::{Gpu, GpuError, ShaderModule};
-
-pub(super) static DRAW_WINDOW: WgslFile = WgslFile::new("draw_window", &[]);
 
 /// The pipelines for windows whose textures have one format. Each draws 3 vertices, without blending.
 pub struct WindowPipelines {
@@ -22,7 +19,7 @@ impl WindowPipelines {
     /// # Errors
     /// Out of memory, or a lost device.
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Result<Self, GpuError> {
-        let module = ShaderModule::new(&DRAW_WINDOW);
+        let module = ShaderModule::new("draw_window");
         let module = module.get(gpu)?;
         gpu.attempt(|| {
             let layout = picture_layout(gpu);

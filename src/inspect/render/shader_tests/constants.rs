@@ -348,7 +348,7 @@ fn wgsl_constants() -> BTreeMap<String, Vec<f64>> {
             let mut values = Vec::new();
             components(module, constant.init, &mut values);
             let known = all.entry(name.clone()).or_insert_with(|| values.clone());
-            assert_eq!(*known, values, "{name} in {}", file.name);
+            assert_eq!(*known, values, "{name} in {}", file.0);
         }
     }
     all
