@@ -45,12 +45,8 @@ fn triangles_of(edges: vec3<f32>, inside: f32) -> u32 {
 
 // Patches that one triangle shows, and others that need no search.
 @compute @workgroup_size(256)
-fn least_triangles_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let index = grid_index(workgroup, workgroups, local);
+fn least_triangles_main(invocation: Invocation) {
+    let index = grid_index(invocation);
     if index >= params.patch_count {
         return;
     }
@@ -70,15 +66,11 @@ fn least_triangles_main(
 
 // Each team of a workgroup searches the factors of one of the other patches after another.
 @compute @workgroup_size(GROUP)
-fn search_least_triangles_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    lane = local;
+fn search_least_triangles_main(invocation: Invocation) {
+    lane = invocation.local;
     team_size = GROUP;
     let teams = 1u;
-    for (var first = workgroup.x * teams; first < params.patch_count; first += workgroups.x * teams) {
+    for (var first = invocation.workgroup.x * teams; first < params.patch_count; first += invocation.workgroups.x * teams) {
         let index = min(first + team(), params.patch_count - 1u);
         let is_searched = first + team() == index && least_triangles[index] == 0u;
         var seen = load_seen(index);

@@ -23,12 +23,8 @@
 @group(0) @binding(12) var<storage, read> corner_patches: array<u32>;
 
 @compute @workgroup_size(256)
-fn directions_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let point = grid_index(workgroup, workgroups, local);
+fn directions_main(invocation: Invocation) {
+    let point = grid_index(invocation);
     if point >= params.point_count {
         return;
     }
@@ -44,12 +40,8 @@ fn directions_main(
 }
 
 @compute @workgroup_size(256)
-fn frames_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let corner = grid_index(workgroup, workgroups, local);
+fn frames_main(invocation: Invocation) {
+    let corner = grid_index(invocation);
     if corner >= arrayLength(&corner_ranges) {
         return;
     }
@@ -90,12 +82,8 @@ fn segments_of(index: u32, dominant: u32) -> f32 {
 }
 
 @compute @workgroup_size(256)
-fn factor_levels_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let index = grid_index(workgroup, workgroups, local);
+fn factor_levels_main(invocation: Invocation) {
+    let index = grid_index(invocation);
     if index >= params.factor_count {
         return;
     }
@@ -112,12 +100,8 @@ fn factor_levels_main(
 }
 
 @compute @workgroup_size(256)
-fn point_levels_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let point = grid_index(workgroup, workgroups, local);
+fn point_levels_main(invocation: Invocation) {
+    let point = grid_index(invocation);
     if point >= params.point_count {
         return;
     }

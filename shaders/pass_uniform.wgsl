@@ -21,17 +21,13 @@ const NOT_TAKEN: u32 = 9u;
 
 // Adds up the triangles of all patches. Each invocation takes several, since the waiting in a workgroup takes longer.
 @compute @workgroup_size(WORKGROUP)
-fn sum_triangles_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
+fn sum_triangles_main(invocation: Invocation) {
     var own = 0u;
-    for (var index = workgroup.x * WORKGROUP + local; index < params.patch_count; index += workgroups.x * WORKGROUP) {
+    for (var index = invocation.workgroup.x * WORKGROUP + invocation.local; index < params.patch_count; index += invocation.workgroups.x * WORKGROUP) {
         own += triangle_count(process(params.partitioning, edges_of(index, 0u), bitcast<f32>(inside_of(index))));
     }
-    let sum = workgroup_sum(local, vec2<u32>(own, 0u)).x;
-    if local == 0u {
+    let sum = workgroup_sum(invocation.local, vec2<u32>(own, 0u)).x;
+    if invocation.local == 0u {
         let before = atomicAdd(&edge_factors[counter_at(TRIANGLES)], sum);
         if before + sum < before {
             atomicAdd(&edge_factors[counter_at(TRIANGLES + 1u)], 1u);
@@ -95,14 +91,10 @@ fn factors_left() -> vec2<u32> {
 // Finds the factors that aren't enough for all patches. Workgroups go through the patches as long as any factor is left. Errors
 // don't fall steadily, so they try all that are left.
 @compute @workgroup_size(GROUP)
-fn search_uniform_factor_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    lane = local;
+fn search_uniform_factor_main(invocation: Invocation) {
+    lane = invocation.local;
     team_size = GROUP;
-    var index = workgroup.x;
+    var index = invocation.workgroup.x;
     var factors = factors_left();
     while any(factors != vec2<u32>(0u)) && index < params.patch_count {
         var seen = load_seen(index);
@@ -119,7 +111,7 @@ fn search_uniform_factor_main(
         if lane == 0u && any(factors != vec2<u32>(0u)) {
             dont_take(factors);
         }
-        index += workgroups.x;
+        index += invocation.workgroups.x;
         factors = factors_left();
     }
     if lane == 0u && index < params.patch_count {
@@ -129,12 +121,8 @@ fn search_uniform_factor_main(
 
 // Gives all edges the least factor that is left, if there is one.
 @compute @workgroup_size(WORKGROUP)
-fn take_uniform_factor_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let index = grid_index(workgroup, workgroups, local);
+fn take_uniform_factor_main(invocation: Invocation) {
+    let index = grid_index(invocation);
     let factors = ~not_taken();
     if index == 0u {
         // Patches take their inside factors anew if edges change.

@@ -3,9 +3,8 @@
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
-use wgpu::util::DeviceExt;
 
-use super::buffer::empty;
+use super::buffer::{empty, uniform_buffer};
 use super::compute_pipeline::{ComputePipeline, ShaderModule};
 use super::pipelines::WORKGROUP;
 use super::readback::read_buffers;
@@ -61,11 +60,8 @@ impl DomainPass {
         sets: &[[f32; 4]],
     ) -> Result<Vec<DomainPattern>, GpuError> {
         let params = DomainParams { partitioning: partitioning as u32, set_count: sets.len() as u32 };
-        let init = |label, contents: &[u8], usage| {
-            gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
-        };
-        let params = init("domain.params", bytemuck::bytes_of(&params), wgpu::BufferUsages::UNIFORM);
-        let factors = init("domain.factors", bytemuck::cast_slice(sets), wgpu::BufferUsages::STORAGE);
+        let params = uniform_buffer(gpu, "domain.params", bytemuck::bytes_of(&params));
+        let factors = uniform_buffer(gpu, "domain.factors", bytemuck::cast_slice(sets));
         let counts = empty::<[u32; 2]>(gpu, "domain counts", sets.len())?;
         let points = empty::<[u32; 2]>(gpu, "domain points", sets.len() * DOMAIN_POINTS)?;
         let triangles = empty::<[u32; 3]>(gpu, "domain triangles", sets.len() * DOMAIN_TRIANGLES)?;

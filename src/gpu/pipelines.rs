@@ -3,8 +3,7 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use wgpu::util::DeviceExt;
-
+use super::buffer::uniform_buffer;
 use super::compute_pipeline::{ComputePipeline, Pass, ShaderModule};
 use super::lazy::Lazy;
 use super::own_functions::{OwnPipelines, RecentPipelines};
@@ -129,27 +128,20 @@ impl ComputePipelines {
     /// # Errors
     /// Out of memory, or a lost device.
     pub(super) fn patterns(&self, gpu: &Gpu) -> Result<&wgpu::Buffer, GpuError> {
-        self.patterns.get_or_make(gpu, || {
-            gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("patterns"),
-                contents: bytemuck::cast_slice(&connectivity_table::CONNECTIVITY_TABLE),
-                usage: wgpu::BufferUsages::STORAGE,
-            })
-        })
+        let table = || uniform_buffer(gpu, "patterns", bytemuck::cast_slice(&connectivity_table::CONNECTIVITY_TABLE));
+        self.patterns.get_or_make(gpu, table)
     }
 }
 
-/// A bind group of whole buffers, each at its binding number.
-pub fn bind_group(
+/// A bind group of what is at each binding number.
+pub fn bind_group<'a>(
     gpu: &Gpu,
     label: &str,
     layout: &wgpu::BindGroupLayout,
-    buffers: &[(u32, &wgpu::Buffer)],
+    bound: impl IntoIterator<Item = (u32, wgpu::BindingResource<'a>)>,
 ) -> wgpu::BindGroup {
-    let entries: Vec<_> = buffers
-        .iter()
-        .map(|&(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
-        .collect();
+    let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
+    let entries: Vec<_> = bound.into_iter().map(entry).collect();
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
 }
 

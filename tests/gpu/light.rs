@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Vec2, Vec3, Vec4, vec3};
-use gpu::read_buffer;
+use gpu::{bind_group, read_buffer};
 use inspect::render::blur_levels::{ENVIRONMENT_LEVELS, level_of_roughness, prefiltered, roughness_of_level};
 use inspect::render::cube_map::CubeMap;
 use inspect::render::dfg::{environment_dfg, environment_sheen};
@@ -115,18 +115,15 @@ fn run_in(environment: &Environment, view: &LightView, cases: &[Case]) -> Vec<Fo
     };
     let input = buffer(bytemuck::cast_slice(cases));
     let output = buffer(bytemuck::cast_slice(&vec![Found::zeroed(); cases.len()]));
-    let group = |index, entries: &[_]| {
-        let layout = &pipeline.get_bind_group_layout(index);
-        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("light"), layout, entries })
-    };
-    let buffers = [(0, &input), (1, &output)]
-        .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() });
+    let layout = |index| pipeline.get_bind_group_layout(index);
+    let buffers = [(0, input.as_entire_binding()), (1, output.as_entire_binding())];
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
     pass.set_pipeline(&pipeline);
-    pass.set_bind_group(0, &group(0, &buffers), &[]);
+    pass.set_bind_group(0, &bind_group(gpu, "light", &layout(0), buffers), &[]);
     let surroundings = environment.surroundings(gpu, view);
-    pass.set_bind_group(1, &group(1, &environment.entries(16, &surroundings)), &[]);
+    let light = environment.bound(16, &surroundings);
+    pass.set_bind_group(1, &bind_group(gpu, "light", &layout(1), light), &[]);
     pass.dispatch_workgroups((cases.len() as u32).div_ceil(64), 1, 1);
     drop(pass);
     gpu.queue.submit([encoder.finish()]);

@@ -12,7 +12,7 @@ use super::irradiance::{Irradiance, irradiance};
 use super::prefilter_pass::{cube_view, prefilter};
 use super::studio::studio_light;
 use super::tone::TONE_CURVE_NEUTRAL;
-use gpu::{Gpu, GpuError, Lazy, WgslModule, uniform_buffer};
+use gpu::{Gpu, GpuError, Lazy, WgslModule, filled_texture, flat_texture, uniform_buffer};
 use load::panorama::Panorama;
 
 /// A shader module that has it binds [`Environment::entries`] in group 1 from binding 16 on.
@@ -26,6 +26,9 @@ const ENVIRONMENT_SIZE: u32 = 128;
 
 /// Width and height of the studio's panorama, in px. Its soft boxes have edges that are five px wide.
 const STUDIO_SIZE: [u32; 2] = [512, 256];
+
+/// Four half floats a texel.
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 /// Twin of `Surroundings` in `shaders/environment.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -159,13 +162,12 @@ impl Environment {
     }
 
     /// What is bound there, with what [`Self::surroundings`] returns.
-    pub fn entries<'a>(&'a self, first: u32, surroundings: &'a wgpu::Buffer) -> [wgpu::BindGroupEntry<'a>; 4] {
-        let view = wgpu::BindingResource::TextureView;
+    pub fn bound<'a>(&'a self, first: u32, surroundings: &'a wgpu::Buffer) -> [(u32, wgpu::BindingResource<'a>); 4] {
         [
-            wgpu::BindGroupEntry { binding: first, resource: view(&self.cube) },
-            wgpu::BindGroupEntry { binding: first + 1, resource: wgpu::BindingResource::Sampler(&self.sampler) },
-            wgpu::BindGroupEntry { binding: first + 2, resource: view(&self.dfg) },
-            wgpu::BindGroupEntry { binding: first + 3, resource: surroundings.as_entire_binding() },
+            (first, wgpu::BindingResource::TextureView(&self.cube)),
+            (first + 1, wgpu::BindingResource::Sampler(&self.sampler)),
+            (first + 2, wgpu::BindingResource::TextureView(&self.dfg)),
+            (first + 3, surroundings.as_entire_binding()),
         ]
     }
 }
@@ -194,11 +196,11 @@ impl Backdrop {
     }
 
     /// What is bound there, with what [`Environment::surroundings`] returns.
-    pub(super) fn entries<'a>(&'a self, surroundings: &'a wgpu::Buffer) -> [wgpu::BindGroupEntry<'a>; 3] {
+    pub(super) fn bound<'a>(&'a self, surroundings: &'a wgpu::Buffer) -> [(u32, wgpu::BindingResource<'a>); 3] {
         [
-            wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&self.panorama) },
-            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&self.sampler) },
-            wgpu::BindGroupEntry { binding: SURROUNDINGS_BINDING, resource: surroundings.as_entire_binding() },
+            (0, wgpu::BindingResource::TextureView(&self.panorama)),
+            (1, wgpu::BindingResource::Sampler(&self.sampler)),
+            (SURROUNDINGS_BINDING, surroundings.as_entire_binding()),
         ]
     }
 }
@@ -232,16 +234,9 @@ fn empty_cube(gpu: &Gpu, size: u32) -> wgpu::Texture {
 }
 
 fn cube_descriptor(size: u32, levels: u32, usage: wgpu::TextureUsages) -> wgpu::TextureDescriptor<'static> {
-    wgpu::TextureDescriptor {
-        label: Some("environment"),
-        size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 6 },
-        mip_level_count: levels,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba16Float,
-        usage: usage | wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    }
+    let face = flat_texture("environment", [size; 2], FORMAT, usage | wgpu::TextureUsages::TEXTURE_BINDING);
+    let size = wgpu::Extent3d { depth_or_array_layers: 6, ..face.size };
+    wgpu::TextureDescriptor { size, mip_level_count: levels, ..face }
 }
 
 /// The bytes of a pixel in half floats, whose largest number is 65,504.
@@ -251,24 +246,7 @@ fn half_floats(light: Vec3) -> [u8; 8] {
 
 fn upload_panorama(gpu: &Gpu, panorama: &Panorama) -> wgpu::TextureView {
     let bytes: Vec<u8> = panorama.pixels().iter().flat_map(|&light| half_floats(light)).collect();
-    upload_flat(gpu, "panorama", panorama.size(), &bytes)
-}
-
-/// Uploads an image of one level, four half floats a pixel.
-fn upload_flat(gpu: &Gpu, label: &str, [width, height]: [u32; 2], bytes: &[u8]) -> wgpu::TextureView {
-    let descriptor = wgpu::TextureDescriptor {
-        label: Some(label),
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba16Float,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    };
-    let order = wgpu::util::TextureDataOrder::LayerMajor;
-    let texture = gpu.device.create_texture_with_data(&gpu.queue, &descriptor, order, bytes);
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
+    filled_texture(gpu, "panorama", panorama.size(), FORMAT, &bytes)
 }
 
 /// Uploads all levels.
@@ -287,5 +265,5 @@ fn upload(gpu: &Gpu, light: &CubeMap) -> wgpu::Texture {
 
 fn upload_dfg(gpu: &Gpu) -> wgpu::TextureView {
     let bytes: Vec<u8> = dfg_table().iter().flatten().flat_map(|&part| f16::from_f32(part).to_ne_bytes()).collect();
-    upload_flat(gpu, "directional albedo", [DFG_SIZE; 2], &bytes)
+    filled_texture(gpu, "directional albedo", [DFG_SIZE; 2], FORMAT, &bytes)
 }

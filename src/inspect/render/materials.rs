@@ -1,7 +1,5 @@
 //! Materials on the device: their constants, images and samplers.
 
-use wgpu::util::DeviceExt;
-
 use super::environment::Environment;
 use super::layout::{self, LEAST_SEEN, MapPlace};
 use super::mipmap_pass::Mipmaps;
@@ -10,7 +8,7 @@ use super::target::samples;
 use super::textures::{ImageUse, Samplers, Textures, white};
 use geometry::mesh::mipmap::MipFilter;
 use geometry::mesh::{Alpha, Map, MapUv, Material, Sampling, Slot};
-use gpu::{Gpu, GpuError};
+use gpu::{Gpu, GpuError, bind_group, uniform_buffer};
 
 /// Where the bindings of the light from all around begin in the group of a lit material; the same in `shaders/environment.wgsl`.
 const LIGHT_BINDING: u32 = 16;
@@ -88,11 +86,7 @@ impl Materials {
         material: &Material,
         textures: &mut Textures,
     ) -> Result<UploadedMaterial, GpuError> {
-        let constants = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("material"),
-            contents: bytemuck::bytes_of(&constants(material)),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
+        let constants = uniform_buffer(gpu, "material", bytemuck::bytes_of(&constants(material)));
         let sampler = |sampling| self.samplers.get(gpu, sampling);
         let mut images = std::array::from_fn(|_| (self.white.clone(), sampler(Sampling::default())));
         if let Some(texture) = &material.texture {
@@ -105,7 +99,7 @@ impl Materials {
                 images[1 + slot as usize] = (view, sampler(map.sampling));
             }
         }
-        let group = bind_group(gpu, "material", &self.layout, &own_entries(&constants, &images, &[0]));
+        let group = bind_group(gpu, "material", &self.layout, own_bound(&constants, &images, &[0]));
         Ok(UploadedMaterial { group, constants, images })
     }
 
@@ -117,11 +111,11 @@ impl Materials {
         (environment, surroundings): (&Environment, &wgpu::Buffer),
         lights: Option<&wgpu::Buffer>,
     ) -> Vec<wgpu::BindGroup> {
-        let lights = entry(FILE_LIGHTS_BINDING, lights.unwrap_or(&self.no_lights).as_entire_binding());
-        let light = [&environment.entries(LIGHT_BINDING, surroundings)[..], &[lights]].concat();
+        let lights = (FILE_LIGHTS_BINDING, lights.unwrap_or(&self.no_lights).as_entire_binding());
+        let light = [&environment.bound(LIGHT_BINDING, surroundings)[..], &[lights]].concat();
         let group = |own: &UploadedMaterial| {
-            let entries = [own_entries(&own.constants, &own.images, &all_images()), light.clone()].concat();
-            bind_group(gpu, "lit material", &self.lit_layout, &entries)
+            let bound = [own_bound(&own.constants, &own.images, &all_images()), light.clone()].concat();
+            bind_group(gpu, "lit material", &self.lit_layout, bound)
         };
         materials.iter().map(group).collect()
     }
@@ -133,10 +127,10 @@ impl Materials {
         materials: &[UploadedMaterial],
         hiding: &wgpu::TextureView,
     ) -> Vec<wgpu::BindGroup> {
-        let depths = [entry(HIDING_DEPTHS_BINDING, wgpu::BindingResource::TextureView(hiding))];
+        let depths = [(HIDING_DEPTHS_BINDING, wgpu::BindingResource::TextureView(hiding))];
         let group = |own: &UploadedMaterial| {
-            let entries = [&own_entries(&own.constants, &own.images, &IMAGES_OF_LAYERS)[..], &depths].concat();
-            bind_group(gpu, "found material", &self.found_layout, &entries)
+            let bound = [&own_bound(&own.constants, &own.images, &IMAGES_OF_LAYERS)[..], &depths].concat();
+            bind_group(gpu, "found material", &self.found_layout, bound)
         };
         materials.iter().map(group).collect()
     }
@@ -228,29 +222,16 @@ fn bind_group_layout(gpu: &Gpu, label: &str, entries: &[wgpu::BindGroupLayoutEnt
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
 }
 
-fn entry(binding: u32, resource: wgpu::BindingResource<'_>) -> wgpu::BindGroupEntry<'_> {
-    wgpu::BindGroupEntry { binding, resource }
-}
-
-/// The constants of a material, and the entries of [`image_entries`].
-fn own_entries<'a>(
+/// The constants of a material, and what is bound for [`image_entries`].
+fn own_bound<'a>(
     constants: &'a wgpu::Buffer,
     images: &'a [(wgpu::TextureView, wgpu::Sampler); IMAGES],
     bound: &[usize],
-) -> Vec<wgpu::BindGroupEntry<'a>> {
+) -> Vec<(u32, wgpu::BindingResource<'a>)> {
     let both = bound.iter().flat_map(|&image| {
         let ((view, sampler), binding) = (&images[image], image_binding(image));
-        let sampler = entry(binding + 1, wgpu::BindingResource::Sampler(sampler));
-        [entry(binding, wgpu::BindingResource::TextureView(view)), sampler]
+        let view = wgpu::BindingResource::TextureView(view);
+        [(binding, view), (binding + 1, wgpu::BindingResource::Sampler(sampler))]
     });
-    std::iter::once(entry(0, constants.as_entire_binding())).chain(both).collect()
-}
-
-fn bind_group(
-    gpu: &Gpu,
-    label: &str,
-    layout: &wgpu::BindGroupLayout,
-    entries: &[wgpu::BindGroupEntry],
-) -> wgpu::BindGroup {
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries })
+    std::iter::once((0, constants.as_entire_binding())).chain(both).collect()
 }

@@ -1,6 +1,6 @@
 //! Draws pictures of a scene on the device, as a camera sees it, with one indirect draw per material into an offscreen texture.
 
-mod adding_pipeline;
+mod adding;
 pub mod blur_levels;
 pub mod camera;
 mod coverage;

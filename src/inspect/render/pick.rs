@@ -3,14 +3,16 @@
 use std::sync::Arc;
 
 use glam::{DMat4, DVec4, Mat4, dvec2};
-use wgpu::util::DeviceExt;
 
 use super::Scene;
 use super::layout::{FOUND_EMITTED, Pick};
 use super::steps::halves;
 use super::target::DEPTH_FORMAT;
 use gpu::layout::Vertex;
-use gpu::{ComputePipeline, Gpu, GpuError, Lazy, Readback, RecordPasses, Recorder, ShaderModule, Timing};
+use gpu::{
+    ComputePipeline, Gpu, GpuError, Lazy, Readback, RecordPasses, Recorder, ShaderModule, Timing, empty, flat_texture,
+    uniform_buffer, whole,
+};
 
 /// `pick_fragment` draws two numbers. Every adapter can draw into this format, which has four.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
@@ -101,7 +103,7 @@ impl Picker {
     /// # Errors
     /// A pipeline can't be made: out of memory, or a lost device.
     pub fn start(&self, gpu: &Gpu, scene: &mut Scene, pixel: &Pixel) -> Result<Picking, GpuError> {
-        let run = Run::new(gpu, pixel);
+        let run = Run::new(gpu, pixel)?;
         let mut timing = Timing::Off;
         let mut recorder = Recorder::new(gpu, &mut timing);
         if pixel.is_left() {
@@ -156,32 +158,19 @@ struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    fn new(gpu: &'a Gpu, pixel: &Pixel) -> Self {
+    fn new(gpu: &'a Gpu, pixel: &Pixel) -> Result<Self, GpuError> {
         let texture = |format, usage| {
-            let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("pick"),
-                size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | usage,
-                view_formats: &[],
-            });
-            texture.create_view(&wgpu::TextureViewDescriptor::default())
-        };
-        let buffer = |contents: &[u8], usage| {
-            gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some("pick"), contents, usage })
+            let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | usage;
+            whole(&gpu.device.create_texture(&flat_texture("pick", [1, 1], format, usage)))
         };
         let matrix = pixel_from_object(pixel).to_cols_array_2d();
-        let pick: Pick = bytemuck::Zeroable::zeroed();
-        Self {
+        Ok(Self {
             gpu,
-            pixel_from_object: buffer(bytemuck::bytes_of(&matrix), wgpu::BufferUsages::UNIFORM),
+            pixel_from_object: uniform_buffer(gpu, "pick", bytemuck::bytes_of(&matrix)),
             drawn: texture(FORMAT, wgpu::TextureUsages::TEXTURE_BINDING),
             depth: texture(DEPTH_FORMAT, wgpu::TextureUsages::empty()),
-            pick: buffer(bytemuck::bytes_of(&pick), wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC),
-        }
+            pick: empty::<Pick>(gpu, "pick", 1)?,
+        })
     }
 
     /// Draws a number of corners, and takes the result if it is in front of everything that was drawn before.

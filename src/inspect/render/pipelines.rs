@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::draws::{Draw, Triangles};
+use super::draws::{Draw, Shading, SurfaceDraw, Triangles};
 use super::environment::Backdrop;
 use super::materials::{Materials, depths_entry};
 use super::target::samples;
@@ -72,14 +72,11 @@ impl DrawPipelines {
     /// Out of memory, or a lost device.
     pub(super) fn get(&self, gpu: &Gpu, draw: Draw) -> Result<wgpu::RenderPipeline, GpuError> {
         let module = match draw {
-            Draw::Plain(_) | Draw::Textured(_) | Draw::PixelNormals(_) => &self.plain,
-            Draw::Lit(..) => &self.lit,
-            Draw::Indexed(..) | Draw::Pulled(..) | Draw::Source => &self.surface,
-            Draw::LitIndexed(..) | Draw::LitPulled(..) | Draw::LitSource(..) => &self.surface,
-            Draw::LookIndexed(..) | Draw::LookPulled(..) | Draw::LookSource(_) => &self.surface,
-            Draw::Cut(..) => &self.surface,
-            Draw::Layer(..) => &self.layers,
-            Draw::LayerClear(_) => &self.clear,
+            Draw::Surface(SurfaceDraw { layer: Some(_), .. }) => &self.layers,
+            Draw::Surface(SurfaceDraw { triangles: Triangles::Bare, shading: Shading::Lit(_), .. }) => &self.lit,
+            Draw::Surface(SurfaceDraw { triangles: Triangles::Bare, .. }) => &self.plain,
+            Draw::Surface(_) => &self.surface,
+            Draw::LayerClear { .. } => &self.clear,
             Draw::Background => &self.background,
             Draw::Ground => &self.ground,
             Draw::Lines(_) | Draw::Normals(_) => &self.lines,
@@ -92,26 +89,24 @@ impl DrawPipelines {
 
     /// The layouts of the groups that a pipeline binds.
     fn layouts(&self, draw: Draw) -> Vec<Option<&wgpu::BindGroupLayout>> {
-        let (scene, material) = (Some(&self.scene_layout), Some(&self.material_layout));
-        let (chunk, deviation) = (Some(&self.chunk_layout), Some(&self.measured_layout));
-        let (lit, layer) = (Some(&self.lit_layout), Some(&self.layer_layout));
+        let (scene, chunk) = (Some(&self.scene_layout), Some(&self.chunk_layout));
         match draw {
-            Draw::Plain(_) | Draw::Textured(_) | Draw::PixelNormals(_) => vec![scene, material],
-            Draw::Indexed(..) | Draw::Pulled(..) | Draw::LookIndexed(..) | Draw::LookPulled(..) => {
-                vec![scene, material, chunk, deviation]
+            Draw::Surface(SurfaceDraw { triangles, shading, layer, .. }) => {
+                let material = match (layer, shading) {
+                    (Some(layer), _) if layer.finds() => &self.found_layout,
+                    (_, Shading::Lit(_)) => &self.lit_layout,
+                    _ => &self.material_layout,
+                };
+                let last = if layer.is_some() { &self.layer_layout } else { &self.measured_layout };
+                let has_overlays = layer.is_some() || triangles != Triangles::Bare;
+                let chunk = chunk.filter(|_| triangles.have_factors());
+                let mut layouts = vec![scene, Some(material)];
+                if has_overlays {
+                    layouts.extend([chunk, Some(last)]);
+                }
+                layouts
             }
-            Draw::Source | Draw::LookSource(_) => vec![scene, material, None, deviation],
-            Draw::Cut(Triangles::Source, ..) => vec![scene, material, None, deviation],
-            Draw::Cut(..) => vec![scene, material, chunk, deviation],
-            Draw::Lit(..) => vec![scene, lit],
-            Draw::LitIndexed(..) | Draw::LitPulled(..) => vec![scene, lit, chunk, deviation],
-            Draw::LitSource(..) => vec![scene, lit, None, deviation],
-            Draw::Layer(draw, triangles, ..) => {
-                let material = if draw.finds() { Some(&self.found_layout) } else { lit };
-                let has_chunk = matches!(triangles, Triangles::Indexed | Triangles::Pulled);
-                vec![scene, material, chunk.filter(|_| has_chunk), layer]
-            }
-            Draw::LayerClear(_) => Vec::new(),
+            Draw::LayerClear { .. } => Vec::new(),
             Draw::Background => vec![scene, Some(&self.background_layout)],
             Draw::Ground | Draw::Lines(_) => vec![scene],
             Draw::Normals(_) => vec![scene, None, chunk],

@@ -3,7 +3,7 @@
 //! all of them for every pixel. That takes longer than most pictures.
 
 use super::Target;
-use gpu::{Gpu, GpuError, ShaderModule};
+use gpu::{Gpu, GpuError, ShaderModule, bind_group};
 
 /// The pipelines for windows whose textures have one format. Each draws 3 vertices, without blending.
 pub struct WindowPipelines {
@@ -39,14 +39,9 @@ impl WindowPipelines {
             ..Default::default()
         });
         let view = target.shown_view(self.format.is_srgb());
-        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("window"),
-            layout: &self.layout,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&view) },
-                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&sampler) },
-            ],
-        })
+        let picture = wgpu::BindingResource::TextureView(&view);
+        let bound = [(0, picture), (1, wgpu::BindingResource::Sampler(&sampler))];
+        bind_group(gpu, "window", &self.layout, bound)
     }
 }
 
