@@ -7,19 +7,6 @@
 // that is enough. Such patches ask again, for no less than what their edges have, and all patches whose edges then have other
 // factors take their inside factors anew. There are a few such rounds.
 
-// In storage, not a uniform: some software drivers compile a shader again for every value of a uniform that it branches on.
-@group(0) @binding(0) var<storage, read> params: Params;
-@group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
-@group(0) @binding(2) var<storage, read> patches: array<Patch>;
-@group(0) @binding(3) var<storage, read> curve_nets: array<CurveNet>;
-@group(0) @binding(5) var<storage, read> corners: array<Corner>;
-// A bit for each patch: whether it has a texture.
-@group(0) @binding(6) var<storage, read> textured: array<u32>;
-// See search_state.wgsl.
-@group(0) @binding(4) var<storage, read_write> edge_factors: array<atomic<u32>>;
-// See search_state.wgsl.
-@group(0) @binding(7) var<storage, read_write> search_workgroups: array<array<u32, 3>, 5>;
-
 // The searches: for the factors that patches ask for, for their inside factors, and for what patches ask for again.
 const SEARCH_ASKED: u32 = 0u;
 const SEARCH_INSIDE: u32 = 1u;

@@ -1,19 +1,6 @@
 // LOD by error: if one factor for all edges keeps the tolerance with fewer triangles than what patches have asked for, all edges
 // get the least such factor.
 
-// In storage, not a uniform: some software drivers compile a shader again for every value of a uniform that it branches on.
-@group(0) @binding(0) var<storage, read> params: Params;
-@group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
-@group(0) @binding(2) var<storage, read> patches: array<Patch>;
-@group(0) @binding(3) var<storage, read> curve_nets: array<CurveNet>;
-// See search_state.wgsl.
-@group(0) @binding(4) var<storage, read_write> edge_factors: array<atomic<u32>>;
-@group(0) @binding(5) var<storage, read> corners: array<Corner>;
-// A bit for each patch: whether it has a texture.
-@group(0) @binding(6) var<storage, read> textured: array<u32>;
-// See search_state.wgsl.
-@group(0) @binding(7) var<storage, read_write> search_workgroups: array<array<u32, 3>, 5>;
-
 // The counters: the low word of the number of all triangles, beside which is the high one; and the first of two words with a
 // bit for each factor that isn't taken.
 const TRIANGLES: u32 = 7u;

@@ -48,6 +48,11 @@ pub fn uniform_buffer(gpu: &Gpu, label: &str, contents: &[u8]) -> wgpu::Buffer {
     })
 }
 
+/// The size of buffers together.
+pub fn bytes_of<'a>(buffers: impl IntoIterator<Item = &'a wgpu::Buffer>) -> u64 {
+    buffers.into_iter().map(wgpu::Buffer::size).sum()
+}
+
 /// What to say of a texture with one layer, one level and one sample a texel.
 pub fn flat_texture(
     label: &str,

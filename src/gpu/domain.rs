@@ -40,15 +40,11 @@ pub struct DomainPass {
 
 impl Default for DomainPass {
     fn default() -> Self {
-        Self::new()
+        Self { pipeline: ComputePipeline::new(&Arc::new(ShaderModule::new("pass_domain")), "domain_main") }
     }
 }
 
 impl DomainPass {
-    pub fn new() -> Self {
-        Self { pipeline: ComputePipeline::new(&Arc::new(ShaderModule::new("pass_domain")), "domain_main") }
-    }
-
     /// Tessellates each set of four factors: of the edges where U, V and W is 0, and inside. At most a thousand sets at once.
     ///
     /// # Errors

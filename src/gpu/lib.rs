@@ -40,7 +40,7 @@ pub mod wgsl_tokens;
 pub use adapters::{AdapterChoice, BACKENDS, adapters, best_adapter, driver, identity, kind};
 pub use arena::{VERTEX_HALF, chunks_an_arena, vertices_of};
 pub use bound_pass::BoundPass;
-pub use buffer::{empty, filled_texture, flat_texture, uniform_buffer, whole};
+pub use buffer::{bytes_of, empty, filled_texture, flat_texture, uniform_buffer, whole};
 pub use compute_pipeline::{ComputePipeline, ShaderModule};
 pub use device::{Gpu, device_descriptor};
 pub use domain::{DomainParams, DomainPass, DomainPattern};

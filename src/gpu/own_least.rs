@@ -57,12 +57,7 @@ impl OwnLeast {
         if self.done.as_ref() == Some(params) {
             return Ok(());
         }
-        let own = [
-            ("params", &self.params),
-            ("edge_factors", &self.factors),
-            ("least_factors", &self.factors),
-            ("least_triangles", &self.triangles),
-        ];
+        let own = [("params", &self.params), ("edge_factors", &self.factors), ("least_triangles", &self.triangles)];
         let (mesh, on) = (on.mesh, PassInputs { own: &own, bound: &self.bound, ..*on });
         let mut steps = vec![on.over(EDGE_FACTORS, mesh.factor_count)?];
         if params.displacement != 0 {

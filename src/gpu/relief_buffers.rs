@@ -1,6 +1,6 @@
 //! What displacement needs in device memory: height images, and what patches share where they meet.
 
-use super::buffer::{filled, filled_texture, uniform_buffer};
+use super::buffer::{bytes_of, filled, filled_texture, uniform_buffer};
 use super::layout::{HeightMap, Share};
 use super::{Gpu, GpuError};
 use geometry::mesh::{Dominance, Heights, MAX_LEVELS, MAX_MAPS, Mesh, Topology};
@@ -97,7 +97,7 @@ impl ReliefBuffers {
     pub fn bytes(&self) -> u64 {
         let corners = [&self.corner_ranges, &self.corner_patches];
         let points = [&self.part_starts, &self.parts, &self.factor_starts, &self.factors];
-        corners.iter().chain(&points).map(|buffer| buffer.size()).sum()
+        bytes_of(corners) + bytes_of(points)
     }
 }
 

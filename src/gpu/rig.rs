@@ -1,7 +1,7 @@
 //! What deforms a mesh, in device memory: joints, morph targets, and a pose of them.
 
 use super::bound_pass::Step;
-use super::buffer::filled;
+use super::buffer::{bytes_of, filled};
 use super::pass_inputs::{BoundPasses, PassInputs};
 use super::pipelines::{DEFORM_CORNERS, DEFORM_POINTS};
 use super::{Gpu, GpuError};
@@ -67,9 +67,7 @@ impl RigBuffers {
     }
 
     pub(super) fn bytes(&self) -> u64 {
-        [&self.bindings, &self.tangents, &self.deltas, &self.palette, &self.morph_weights, &self.point_corners]
-            .iter()
-            .map(|buffer| buffer.size())
-            .sum()
+        let pose = [&self.palette, &self.morph_weights];
+        bytes_of(pose) + bytes_of([&self.bindings, &self.tangents, &self.deltas, &self.point_corners])
     }
 }

@@ -3,7 +3,7 @@
 use std::num::NonZeroU64;
 
 use super::arena::Arena;
-use super::buffer::{empty, uniform_buffer};
+use super::buffer::{bytes_of, empty, uniform_buffer};
 use super::layout::{Chunk, DrawArgs, EmitArgs, PatchFactors, Slab};
 use super::mesh_buffers::MeshBuffers;
 use super::pipelines::WORKGROUP;
@@ -69,10 +69,7 @@ impl SlabBuffers {
 
     /// Bytes of everything but uniforms.
     pub(super) fn bytes(&self) -> u64 {
-        [&self.patch_factors, &self.offsets, &self.chunks, &self.emit_args, &self.draw_args]
-            .iter()
-            .map(|buffer| buffer.size())
-            .sum()
+        bytes_of([&self.patch_factors, &self.offsets, &self.chunks, &self.emit_args, &self.draw_args])
     }
 
     /// Bind group 1 of the passes over a chunk: the chunk's number in this slab.

@@ -15,7 +15,8 @@ use inspect::render::reflectance::{
     transmitted,
 };
 use inspect::render::studio::studio_light;
-use inspect::render::tone::{TONE_CURVE_NEUTRAL, TONE_CURVE_NONE, tone_mapped};
+use inspect::render::tone::tone_mapped;
+use inspect::settings::ToneCurve;
 use load::panorama::Panorama;
 use wgpu::util::DeviceExt;
 
@@ -217,7 +218,7 @@ fn off(a: Vec3, b: Vec3) -> f32 {
 #[test]
 fn shaders_light_as_their_twins_do() {
     let environment = Environment::studio(&engine().gpu).expect("a small environment");
-    let view = LightView { brightness: 0.0, rotation: 40.0, exposure: -0.5, tone_curve: TONE_CURVE_NEUTRAL };
+    let view = LightView { brightness: 0.0, rotation: 40.0, exposure: -0.5, tone_curve: ToneCurve::Neutral };
     let twin = Twin::studio(view.rotation);
     let cases = cases(2000);
     let mut most = [0.0_f32; 9];
@@ -315,7 +316,7 @@ fn panoramas_stand_the_right_way_round_and_turn_from_front_to_right() {
 #[test]
 fn without_a_tone_curve_exposure_is_a_factor() {
     let environment = Environment::uniform(&engine().gpu, [0.5; 3]).expect("a small environment");
-    let view = LightView { exposure: 3.0, tone_curve: TONE_CURVE_NONE, ..LightView::default() };
+    let view = LightView { exposure: 3.0, tone_curve: ToneCurve::None, ..LightView::default() };
     for found in run_in(&environment, &view, &cases(50)) {
         assert!(found.shown.truncate().distance(8.0 * found.ambient) < 1e-5);
     }

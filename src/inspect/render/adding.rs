@@ -2,6 +2,7 @@
 
 use glam::Mat4;
 
+use super::render_pipeline::PipelineParts;
 use gpu::{
     ChunkBuffers, Gpu, GpuError, Lazy, Readback, Recorder, ShaderModule, VERTEX_HALF, flat_texture, uniform_buffer,
     whole,
@@ -57,31 +58,13 @@ impl Adding {
             step_mode: wgpu::VertexStepMode::Vertex,
             attributes: &wgpu::vertex_attr_array![0 => Float32x3],
         };
-        gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some(self.fragment),
-            layout: None,
-            vertex: wgpu::VertexState {
-                module,
-                entry_point: Some("adding_vertex"),
-                compilation_options: Default::default(),
-                buffers: &[Some(vertex)],
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: None,
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module,
-                entry_point: Some(self.fragment),
-                compilation_options: Default::default(),
-                targets: &[Some(wgpu::ColorTargetState {
-                    format: self.format,
-                    blend: Some(wgpu::BlendState { color: add, alpha: add }),
-                    write_mask: self.channels,
-                })],
-            }),
-            multiview_mask: None,
-            cache: None,
-        })
+        let target = wgpu::ColorTargetState {
+            format: self.format,
+            blend: Some(wgpu::BlendState { color: add, alpha: add }),
+            write_mask: self.channels,
+        };
+        let parts = PipelineParts::new(module, ["adding_vertex", self.fragment], Some(target));
+        PipelineParts { vertex_buffers: vec![Some(vertex)], ..parts }.pipeline(gpu)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Deviation on the device: the distances to a reference surface, and the colour scales for them.
 
 use super::Scale;
-use super::scale::{FACTOR_SCALE, curvature_scale};
+use super::scale::{FACTOR_SCALE, curvature_scale, hex_colors};
 use crate::measure::DeviationField;
 use crate::settings::{Colors, DeviationUnit, Settings};
 use gpu::{Gpu, uniform_buffer};
@@ -39,15 +39,7 @@ impl Deviations {
 pub const DEVIATION_PX_SCALE: Scale = Scale {
     least: 0.1,
     most: 10.0,
-    colors: [
-        [0x72, 0x01, 0xa8],
-        [0x9c, 0x17, 0x9e],
-        [0xbd, 0x37, 0x86],
-        [0xd8, 0x57, 0x6b],
-        [0xed, 0x79, 0x53],
-        [0xfb, 0x9f, 0x3a],
-        [0xfd, 0xca, 0x26],
-    ],
+    colors: hex_colors([0x7201a8, 0x9c179e, 0xbd3786, 0xd8576b, 0xed7953, 0xfb9f3a, 0xfdca26]),
 };
 
 /// The greatest value of a scale divided by the least: two decades. Most of a surface deviates by at least a tenth of the

@@ -2,8 +2,9 @@
 
 use super::draws::{Draw, Faces, LayerDraw, Occluded, Shading, SurfaceDraw, Triangles};
 use super::needs::{Cut, Needs};
+use super::render_pipeline::depth_state;
 use super::scene::LineSegment;
-use super::target::{COLOR_FORMAT, DEPTH_FORMAT};
+use super::target::COLOR_FORMAT;
 use crate::settings::NormalsAt;
 use gpu::VERTEX_HALF;
 
@@ -123,13 +124,7 @@ impl Draw {
         };
         // The ground, lines and layers are blended over surfaces.
         let is_blended = composites || matches!(self, Self::Ground | Self::Lines(_) | Self::Normals(_));
-        wgpu::DepthStencilState {
-            format: DEPTH_FORMAT,
-            depth_write_enabled: Some(!is_blended),
-            depth_compare: Some(compare),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState::default(),
-        }
+        depth_state(!is_blended, compare)
     }
 
     /// How colours are written; `None` in passes without colours.

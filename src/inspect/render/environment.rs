@@ -8,10 +8,11 @@ use wgpu::util::DeviceExt;
 use super::blur_levels::ENVIRONMENT_LEVELS;
 use super::cube_map::CubeMap;
 use super::dfg::{DFG_SIZE, dfg_table};
+use super::group_layouts::{Binding, FRAGMENT, IMAGE, SAMPLER, UNIFORM, image};
 use super::irradiance::{Irradiance, irradiance};
 use super::prefilter_pass::{cube_view, prefilter};
 use super::studio::studio_light;
-use super::tone::TONE_CURVE_NEUTRAL;
+use crate::settings::ToneCurve;
 use gpu::{Gpu, GpuError, Lazy, WgslModule, filled_texture, flat_texture, uniform_buffer};
 use load::panorama::Panorama;
 
@@ -48,7 +49,7 @@ pub(crate) struct Surroundings {
 }
 
 /// How an environment is turned and shown.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LightView {
     /// In EV: each doubles the light from all around.
     pub brightness: f32,
@@ -56,14 +57,7 @@ pub struct LightView {
     pub rotation: f32,
     /// In EV: each doubles what is seen.
     pub exposure: f32,
-    /// `TONE_CURVE_*` in `shaders/tone.wgsl`.
-    pub tone_curve: u32,
-}
-
-impl Default for LightView {
-    fn default() -> Self {
-        Self { brightness: 0.0, rotation: 0.0, exposure: 0.0, tone_curve: TONE_CURVE_NEUTRAL }
-    }
+    pub tone_curve: ToneCurve,
 }
 
 /// Light from all around on the device: a cube map, blurred by GGX from level to level; irradiance as spherical harmonics; and
@@ -137,28 +131,10 @@ impl Environment {
         uniform_buffer(gpu, "surroundings", bytemuck::bytes_of(&surroundings(&self.irradiance, view)))
     }
 
-    /// Layout entries of the cube map, its sampler, the table and the `Surroundings`, which fragment shaders read, at this
-    /// binding and the next three.
-    pub(crate) fn layout_entries(first: u32) -> [wgpu::BindGroupLayoutEntry; 4] {
-        let texture = |view_dimension| wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: true },
-            view_dimension,
-            multisampled: false,
-        };
-        let uniform = wgpu::BufferBindingType::Uniform;
-        let types = [
-            texture(wgpu::TextureViewDimension::Cube),
-            wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-            texture(wgpu::TextureViewDimension::D2),
-            wgpu::BindingType::Buffer { ty: uniform, has_dynamic_offset: false, min_binding_size: None },
-        ];
-        let mut binding = first;
-        types.map(|ty| {
-            let entry =
-                wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None };
-            binding += 1;
-            entry
-        })
+    /// The cube map, its sampler, the table and the `Surroundings`, which fragment shaders read, from this binding on.
+    pub(super) fn bindings(first: u32) -> [Binding; 4] {
+        let types = [image(wgpu::TextureViewDimension::Cube), SAMPLER, IMAGE, UNIFORM];
+        [0, 1, 2, 3].map(|k| (first + k as u32, FRAGMENT, types[k]))
     }
 
     /// What is bound there, with what [`Self::surroundings`] returns.
@@ -184,16 +160,9 @@ impl Backdrop {
         Self { panorama: upload_panorama(gpu, panorama), sampler }
     }
 
-    /// Layout entries of the panorama, its sampler and the `Surroundings`.
-    pub(super) fn layout_entries() -> [wgpu::BindGroupLayoutEntry; 3] {
-        let [.., panorama, surroundings] = Environment::layout_entries(SURROUNDINGS_BINDING - 3);
-        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-        [
-            wgpu::BindGroupLayoutEntry { binding: 0, ..panorama },
-            wgpu::BindGroupLayoutEntry { binding: 1, ty: sampler, ..panorama },
-            surroundings,
-        ]
-    }
+    /// The panorama, its sampler and the `Surroundings`.
+    pub(super) const BINDINGS: [Binding; 3] =
+        [(0, FRAGMENT, IMAGE), (1, FRAGMENT, SAMPLER), (SURROUNDINGS_BINDING, FRAGMENT, UNIFORM)];
 
     /// What is bound there, with what [`Environment::surroundings`] returns.
     pub(super) fn bound<'a>(&'a self, surroundings: &'a wgpu::Buffer) -> [(u32, wgpu::BindingResource<'a>); 3] {
@@ -213,7 +182,7 @@ fn surroundings(irradiance: &Irradiance, view: &LightView) -> Surroundings {
         light_from_object: [light_from_object.x_axis, light_from_object.y_axis, light_from_object.z_axis].map(padded),
         brightness: view.brightness.exp2(),
         exposure: view.exposure.exp2(),
-        tone_curve: view.tone_curve,
+        tone_curve: view.tone_curve as u32,
         _pad: 0,
     }
 }

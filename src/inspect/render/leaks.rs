@@ -23,12 +23,6 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R16Float;
 /// and another behind, the two cancel; the pixels around it still count.)
 pub(crate) struct LeakCounter(Adding);
 
-impl Default for LeakCounter {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 impl LeakCounter {
     /// Compiles nothing yet.
     pub(crate) fn new() -> Self {

@@ -1,10 +1,10 @@
 //! Materials on the device: their constants, images and samplers.
 
 use super::environment::Environment;
+use super::group_layouts::{Binding, FRAGMENT, IMAGE, SAMPLER, UNIFORM, depths, group_layout};
 use super::layout::{self, LEAST_SEEN, MapPlace};
 use super::mipmap_pass::Mipmaps;
 use super::punctual::upload_lights;
-use super::target::samples;
 use super::textures::{ImageUse, Samplers, Textures, white};
 use geometry::mesh::mipmap::MipFilter;
 use geometry::mesh::{Alpha, Map, MapUv, Material, Sampling, Slot};
@@ -57,13 +57,13 @@ pub struct UploadedMaterial {
 
 impl Materials {
     pub fn new(gpu: &Gpu) -> Self {
-        let own = |images: &[usize]| [vec![uniform_entry(0)], image_entries(images)].concat();
-        let depths = [depths_entry(gpu, HIDING_DEPTHS_BINDING)];
-        let lights = [Environment::layout_entries(LIGHT_BINDING).to_vec(), vec![uniform_entry(FILE_LIGHTS_BINDING)]];
+        let depths = [(HIDING_DEPTHS_BINDING, FRAGMENT, depths(gpu))];
+        let lights = [&Environment::bindings(LIGHT_BINDING)[..], &[(FILE_LIGHTS_BINDING, FRAGMENT, UNIFORM)]].concat();
+        let (lit, found) = ([own_bindings(&all_images()), lights], [&own_bindings(&IMAGES_OF_LAYERS)[..], &depths]);
         Self {
-            layout: bind_group_layout(gpu, "material", &own(&[0])),
-            lit_layout: bind_group_layout(gpu, "lit material", &[own(&all_images()), lights.concat()].concat()),
-            found_layout: bind_group_layout(gpu, "found material", &[&own(&IMAGES_OF_LAYERS)[..], &depths].concat()),
+            layout: group_layout(gpu, "material", &own_bindings(&[0])),
+            lit_layout: group_layout(gpu, "lit material", &lit.concat()),
+            found_layout: group_layout(gpu, "found material", &found.concat()),
             white: white(gpu),
             no_lights: upload_lights(gpu, &[]),
             samplers: Samplers::default(),
@@ -177,29 +177,11 @@ fn map_place(map: Option<&Map>) -> MapPlace {
     }
 }
 
-fn uniform_entry(binding: u32) -> wgpu::BindGroupLayoutEntry {
-    let ty = wgpu::BufferBindingType::Uniform;
-    layout_entry(binding, wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None })
-}
-
-/// A texture and a sampler for each of these images.
-fn image_entries(images: &[usize]) -> Vec<wgpu::BindGroupLayoutEntry> {
-    let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-    let both = |&image: &usize| {
-        let texture = texture_type(wgpu::TextureSampleType::Float { filterable: true }, false);
-        let binding = image_binding(image);
-        [layout_entry(binding, texture), layout_entry(binding + 1, sampler)]
-    };
-    images.iter().flat_map(both).collect()
-}
-
-/// Depths of layers.
-pub(super) fn depths_entry(gpu: &Gpu, binding: u32) -> wgpu::BindGroupLayoutEntry {
-    layout_entry(binding, texture_type(wgpu::TextureSampleType::Depth, samples(gpu) > 1))
-}
-
-fn texture_type(sample_type: wgpu::TextureSampleType, multisampled: bool) -> wgpu::BindingType {
-    wgpu::BindingType::Texture { sample_type, view_dimension: wgpu::TextureViewDimension::D2, multisampled }
+/// The constants, and a texture and a sampler for each of these images.
+fn own_bindings(images: &[usize]) -> Vec<Binding> {
+    let both = images.iter().map(|&image| image_binding(image));
+    let both = both.flat_map(|binding| [(binding, FRAGMENT, IMAGE), (binding + 1, FRAGMENT, SAMPLER)]);
+    std::iter::once((0, FRAGMENT, UNIFORM)).chain(both).collect()
 }
 
 fn all_images() -> [usize; IMAGES] {
@@ -214,15 +196,7 @@ fn image_binding(image: usize) -> u32 {
     }
 }
 
-fn layout_entry(binding: u32, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None }
-}
-
-fn bind_group_layout(gpu: &Gpu, label: &str, entries: &[wgpu::BindGroupLayoutEntry]) -> wgpu::BindGroupLayout {
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
-}
-
-/// The constants of a material, and what is bound for [`image_entries`].
+/// What is bound at [`own_bindings`].
 fn own_bound<'a>(
     constants: &'a wgpu::Buffer,
     images: &'a [(wgpu::TextureView, wgpu::Sampler); IMAGES],

@@ -6,6 +6,7 @@ use glam::{DMat4, DVec4, Mat4, dvec2};
 
 use super::Scene;
 use super::layout::{FOUND_EMITTED, Pick};
+use super::render_pipeline::{PipelineParts, depth_state};
 use super::steps::halves;
 use super::target::DEPTH_FORMAT;
 use gpu::layout::Vertex;
@@ -237,35 +238,7 @@ fn pixel_from_object(pixel: &Pixel) -> Mat4 {
 }
 
 fn pipeline(gpu: &Gpu, module: &wgpu::ShaderModule, vertex: &str) -> wgpu::RenderPipeline {
-    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(vertex),
-        layout: None,
-        vertex: wgpu::VertexState {
-            module,
-            entry_point: Some(vertex),
-            compilation_options: Default::default(),
-            buffers: &[],
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: DEPTH_FORMAT,
-            depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::Greater),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState::default(),
-        }),
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module,
-            entry_point: Some("pick_fragment"),
-            compilation_options: Default::default(),
-            targets: &[Some(wgpu::ColorTargetState {
-                format: FORMAT,
-                blend: None,
-                write_mask: wgpu::ColorWrites::ALL,
-            })],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
+    let depth = Some(depth_state(true, wgpu::CompareFunction::Greater));
+    let parts = PipelineParts::new(module, [vertex, "pick_fragment"], Some(FORMAT.into()));
+    PipelineParts { depth, ..parts }.pipeline(gpu)
 }

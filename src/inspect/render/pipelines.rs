@@ -5,7 +5,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::draws::{Draw, Shading, SurfaceDraw, Triangles};
 use super::environment::Backdrop;
-use super::materials::{Materials, depths_entry};
+use super::group_layouts::{FRAGMENT, READ, UNIFORM, VERTEX, depths, group_layout};
+use super::materials::Materials;
+use super::render_pipeline::PipelineParts;
 use super::target::samples;
 use gpu::{Gpu, GpuError, Lazy, ShaderModule};
 
@@ -45,15 +47,23 @@ impl DrawPipelines {
     /// Makes the layouts. Compiles nothing yet.
     pub(super) fn new(gpu: &Gpu, materials: &Materials) -> Self {
         let is_multisampled = samples(gpu) > 1;
+        let both = VERTEX | FRAGMENT;
+        // Vertex shaders have as many storage buffers as WebGPU allows.
+        let scene = [
+            [0, 1, 2, 3].map(|binding| (binding, both, READ)).to_vec(),
+            vec![(4, VERTEX, READ), (5, VERTEX, READ), (6, both, UNIFORM)],
+            vec![(7, FRAGMENT, READ), (8, FRAGMENT, UNIFORM), (9, FRAGMENT, READ)],
+        ];
+        let [measured, least] = [(0, FRAGMENT, READ), (1, VERTEX, READ)];
         Self {
-            scene_layout: scene_layout(gpu),
+            scene_layout: group_layout(gpu, "scene", &scene.concat()),
             material_layout: materials.layout.clone(),
             lit_layout: materials.lit_layout.clone(),
             found_layout: materials.found_layout.clone(),
-            background_layout: background_layout(gpu),
-            chunk_layout: chunk_layout(gpu),
-            measured_layout: measured_layout(gpu),
-            layer_layout: layer_layout(gpu),
+            background_layout: group_layout(gpu, "background", &Backdrop::BINDINGS),
+            chunk_layout: group_layout(gpu, "chunk", &[(0, VERTEX, UNIFORM), (1, VERTEX, READ)]),
+            measured_layout: group_layout(gpu, "measured", &[measured, least]),
+            layer_layout: group_layout(gpu, "layer", &[measured, least, (2, FRAGMENT, depths(gpu))]),
             plain: ShaderModule::new("draw_plain"),
             lit: ShaderModule::new("draw_lit"),
             surface: ShaderModule::new("draw_surface"),
@@ -84,7 +94,16 @@ impl DrawPipelines {
         let module = module.get(gpu)?;
         // Nothing is made while the lock is held, so that a picture doesn't wait for pipelines of another.
         let own = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner).entry(draw).or_default().clone();
-        own.get_or_make(gpu, || pipeline(gpu, &self.layouts(draw), module, draw)).cloned()
+        let parts = || PipelineParts {
+            constants: draw.constants(),
+            layouts: Some(self.layouts(draw)),
+            vertex_buffers: draw.vertex_buffers(),
+            cull_mode: draw.cull_mode(),
+            depth: Some(draw.depth_stencil()),
+            samples: samples(gpu),
+            ..PipelineParts::new(module, [draw.vertex_entry(), draw.fragment_entry()], draw.color_target())
+        };
+        own.get_or_make(gpu, || parts().pipeline(gpu)).cloned()
     }
 
     /// The layouts of the groups that a pipeline binds.
@@ -112,90 +131,4 @@ impl DrawPipelines {
             Draw::Normals(_) => vec![scene, None, chunk],
         }
     }
-}
-
-fn scene_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let (vertex, fragment) = (wgpu::ShaderStages::VERTEX, wgpu::ShaderStages::FRAGMENT);
-    let mut entries: Vec<_> = (0..4).map(|binding| buffer_entry(binding, READ, vertex | fragment)).collect();
-    entries.extend((4..6).map(|binding| buffer_entry(binding, READ, vertex)));
-    entries.push(buffer_entry(6, wgpu::BufferBindingType::Uniform, vertex | fragment));
-    // Vertex shaders have as many storage buffers as WebGPU allows.
-    entries.push(buffer_entry(7, READ, fragment));
-    entries.push(buffer_entry(8, wgpu::BufferBindingType::Uniform, fragment));
-    entries.push(buffer_entry(9, READ, fragment));
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("scene"), entries: &entries })
-}
-
-fn chunk_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let entries = [(0, wgpu::BufferBindingType::Uniform), (1, READ)]
-        .map(|(binding, ty)| buffer_entry(binding, ty, wgpu::ShaderStages::VERTEX));
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("chunk"), entries: &entries })
-}
-
-fn measured_entries() -> [wgpu::BindGroupLayoutEntry; 2] {
-    [buffer_entry(0, READ, wgpu::ShaderStages::FRAGMENT), buffer_entry(1, READ, wgpu::ShaderStages::VERTEX)]
-}
-
-fn background_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let entries = Backdrop::layout_entries();
-    gpu.device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("background"), entries: &entries })
-}
-
-fn measured_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let entries = measured_entries();
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("measured"), entries: &entries })
-}
-
-fn layer_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let entries = [&measured_entries()[..], &[depths_entry(gpu, 2)]].concat();
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("layer"), entries: &entries })
-}
-
-const READ: wgpu::BufferBindingType = wgpu::BufferBindingType::Storage { read_only: true };
-
-fn buffer_entry(
-    binding: u32,
-    ty: wgpu::BufferBindingType,
-    visibility: wgpu::ShaderStages,
-) -> wgpu::BindGroupLayoutEntry {
-    let ty = wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
-    wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None }
-}
-
-fn pipeline(
-    gpu: &Gpu,
-    layouts: &[Option<&wgpu::BindGroupLayout>],
-    module: &wgpu::ShaderModule,
-    draw: Draw,
-) -> wgpu::RenderPipeline {
-    let (vertex, fragment) = (draw.vertex_entry(), draw.fragment_entry());
-    let constants = draw.constants();
-    let color = draw.color_target().map(Some);
-    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some(vertex),
-        bind_group_layouts: layouts,
-        ..Default::default()
-    });
-    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(vertex),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module,
-            entry_point: Some(vertex),
-            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
-            buffers: &draw.vertex_buffers(),
-        },
-        primitive: wgpu::PrimitiveState { cull_mode: draw.cull_mode(), ..Default::default() },
-        depth_stencil: Some(draw.depth_stencil()),
-        multisample: wgpu::MultisampleState { count: samples(gpu), ..Default::default() },
-        fragment: Some(wgpu::FragmentState {
-            module,
-            entry_point: Some(fragment),
-            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
-            targets: color.as_slice(),
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
 }

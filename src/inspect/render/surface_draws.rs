@@ -27,7 +27,7 @@ pub(super) fn surface_draw(
     Draw::Surface(SurfaceDraw { triangles, faces, normals, shading, layer: None })
 }
 
-/// What colours a material, and which of its faces are drawn where both are or only fronts.
+/// What colours a material, and which of its faces are drawn: these, unless it has fronts only.
 fn shading(settings: &Settings, mesh: &Mesh, material: &Material, faces: Faces, kind: PictureKind) -> (Shading, Faces) {
     if let Some(cut) = Cut::of(settings, mesh, material, kind) {
         return (Shading::Cut(cut), faces);

@@ -6,8 +6,7 @@ use super::Renderer;
 use crate::render::Scene;
 use crate::render::draws::Draw;
 use crate::render::environment::{Environment, LightView};
-use crate::render::tone::{TONE_CURVE_NEUTRAL, TONE_CURVE_NONE};
-use crate::settings::{Colors, Lighting, Settings, ToneCurve};
+use crate::settings::{Colors, Lighting, Settings};
 use gpu::{ChunkBuffers, GpuError, bind_group};
 
 /// The light from all around in a picture.
@@ -92,9 +91,6 @@ fn light_view(settings: &Settings) -> LightView {
         brightness: settings.environment_brightness,
         rotation: settings.light_rotation,
         exposure: settings.exposure,
-        tone_curve: match settings.tone_curve {
-            ToneCurve::Neutral => TONE_CURVE_NEUTRAL,
-            ToneCurve::None => TONE_CURVE_NONE,
-        },
+        tone_curve: settings.tone_curve,
     }
 }

@@ -36,12 +36,12 @@ impl Renderer {
         if is_empty(all) {
             return Ok(());
         }
-        let half = part.map_or(SplitSide::Right, LayerPart::half);
+        let half = part.map_or(SplitSide::Right, |part| part.half);
         let Some(frame) = &frames[half as usize] else { return Ok(()) };
         // The mesh without tessellation is drawn with the right half's scene.
         let drawn = scene.half(half).unwrap_or(scene);
         let triangles = match part {
-            Some(LayerPart::Source) => Triangles::Source,
+            Some(LayerPart { chunk: None, .. }) => Triangles::Source,
             _ => emitted_triangles(settings),
         };
         let surfaces = Surfaces {
@@ -67,10 +67,10 @@ impl Renderer {
             render_pass.set_bind_group(3, &layer_group, &[]);
             match part {
                 None => {}
-                Some(LayerPart::Source) => {
+                Some(LayerPart { chunk: None, .. }) => {
                     self.draw_source(render_pass, &surfaces.materials, drawn, layer_areas[half as usize]);
                 }
-                Some(LayerPart::Chunk(_, chunk)) => {
+                Some(LayerPart { chunk: Some(chunk), .. }) => {
                     let chunk = drawn.tessellator.chunk(chunk);
                     self.draw_chunk(render_pass, drawn, layer_areas[half as usize], &surfaces, &chunk);
                 }
