@@ -14,14 +14,10 @@ struct LitVaryings {
 }
 
 @vertex
-fn lit_vertex(
-    @location(0) position: vec3<f32>,
-    @location(1) normal: u32,
-    @location(2) key: vec2<u32>,
-    @location(3) uv: vec2<f32>,
-) -> LitVaryings {
-    let clip = lit_frame.clip_from_object * vec4<f32>(position, 1.0);
-    return LitVaryings(clip, unpack_normal(normal), uv, vec2<f32>(key_uv(key)) * UNIT, key_patch(key));
+fn lit_vertex(vertex: EmittedVertex) -> LitVaryings {
+    let clip = lit_frame.clip_from_object * vec4<f32>(vertex.position, 1.0);
+    let weights = vec2<f32>(key_uv(vertex.key)) * UNIT;
+    return LitVaryings(clip, unpack_normal(vertex.normal), vertex.uv, weights, key_patch(vertex.key));
 }
 
 fn lit_normal(in: LitVaryings) -> vec3<f32> {

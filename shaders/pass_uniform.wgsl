@@ -10,7 +10,8 @@ const NOT_TAKEN: u32 = 9u;
 @compute @workgroup_size(WORKGROUP)
 fn sum_triangles_main(invocation: Invocation) {
     var own = 0u;
-    for (var index = invocation.workgroup.x * WORKGROUP + invocation.local; index < params.patch_count; index += invocation.workgroups.x * WORKGROUP) {
+    let first = invocation.workgroup.x * WORKGROUP + invocation.local;
+    for (var index = first; index < params.patch_count; index += invocation.workgroups.x * WORKGROUP) {
         own += triangle_count(process(params.partitioning, edges_of(index, 0u), bitcast<f32>(inside_of(index))));
     }
     let sum = workgroup_sum(invocation.local, vec2<u32>(own, 0u)).x;

@@ -1,5 +1,5 @@
-// What passes of LOD by error read, and what they have found so far: where it is in `edge_factors`. They are bits of numbers, whose order
-// is that of the numbers since none is negative. One after another:
+// What passes of LOD by error read, and what they have found so far. That is in `edge_factors`, as bits of numbers, whose order is
+// that of the numbers since none is negative. One after another:
 // - the factors of edges;
 // - the least factor of each edge;
 // - the factor that each patch's heights need inside it, if it is displaced;

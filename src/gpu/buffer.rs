@@ -72,12 +72,12 @@ pub fn flat_texture(
     }
 }
 
-/// All of a texture.
+/// A view of all of a texture.
 pub fn whole(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-/// A texture like that, with its texels.
+/// A view of a texture like that with these texels, which shaders sample.
 pub fn filled_texture(
     gpu: &Gpu,
     label: &str,

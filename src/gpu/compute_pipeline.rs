@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 use std::collections::HashMap;
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use wgpu::naga;
 
@@ -61,7 +61,8 @@ impl ShaderModule {
         })
     }
 
-    /// Binds what an entry point uses of group 0 to what each of its variables stands for, under the layout that wgpu makes of it.
+    /// Binds what an entry point uses of group 0 to what each of its variables stands for, under the layout that wgpu makes of
+    /// it.
     pub fn bind<'a>(
         &self,
         gpu: &Gpu,
@@ -78,6 +79,19 @@ impl ShaderModule {
         let entries: Vec<_> = used.filter_map(entry).collect();
         let descriptor = wgpu::BindGroupDescriptor { label: Some(entry_point), layout, entries: &entries };
         gpu.device.create_bind_group(&descriptor)
+    }
+}
+
+/// Shader modules by the names of the files with their entry points.
+#[derive(Default)]
+pub struct ShaderModules(Mutex<HashMap<&'static str, Arc<ShaderModule>>>);
+
+impl ShaderModules {
+    /// The module of this name, which is the same at every call.
+    pub fn get(&self, name: &'static str) -> Arc<ShaderModule> {
+        // What is behind the lock is whole even if a thread panicked while it held it.
+        let mut modules = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        modules.entry(name).or_insert_with(|| Arc::new(ShaderModule::new(name))).clone()
     }
 }
 

@@ -41,7 +41,7 @@ pub use adapters::{AdapterChoice, BACKENDS, adapters, best_adapter, driver, iden
 pub use arena::{VERTEX_HALF, chunks_an_arena, vertices_of};
 pub use bound_pass::BoundPass;
 pub use buffer::{bytes_of, empty, filled_texture, flat_texture, uniform_buffer, whole};
-pub use compute_pipeline::{ComputePipeline, ShaderModule};
+pub use compute_pipeline::{ComputePipeline, ShaderModule, ShaderModules};
 pub use device::{Gpu, device_descriptor};
 pub use domain::{DomainParams, DomainPass, DomainPattern};
 pub use error::GpuError;

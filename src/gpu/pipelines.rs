@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::buffer::uniform_buffer;
-use super::compute_pipeline::{ComputePipeline, Pass, ShaderModule};
+use super::compute_pipeline::{ComputePipeline, Pass, ShaderModules};
 use super::lazy::Lazy;
 use super::own_functions::{OwnPipelines, RecentPipelines};
 use super::own_lod::LodShader;
@@ -49,12 +49,12 @@ pub(super) const EMIT_TRIANGLES: Pass = Pass::new("pass_emit", "emit_triangles_m
 /// The displacement of a chunk's vertices.
 pub(super) const DISPLACE: Pass = Pass::new("pass_displace", "displace_main");
 
-/// The pipelines of the passes, each made when it is first needed, and what they share. They belong to the device on which they are
-/// first asked for.
+/// The pipelines of the passes, each made when it is first needed, and what they share. They belong to the device on which they
+/// are first asked for.
 pub struct ComputePipelines {
     /// The sizes of workgroups that search: see [`Self::search`].
     groups: [u32; 3],
-    modules: Mutex<HashMap<&'static str, Arc<ShaderModule>>>,
+    modules: ShaderModules,
     pipelines: Mutex<HashMap<Pass, Arc<ComputePipeline>>>,
     patterns: Lazy<wgpu::Buffer>,
     own_lods: RecentPipelines<LodShader>,
@@ -80,7 +80,7 @@ impl ComputePipelines {
     pub fn in_groups(groups: [u32; 3]) -> Self {
         Self {
             groups,
-            modules: Mutex::default(),
+            modules: ShaderModules::default(),
             pipelines: Mutex::default(),
             patterns: Lazy::default(),
             own_lods: RecentPipelines::default(),
@@ -90,19 +90,17 @@ impl ComputePipelines {
 
     /// The pipeline of a pass. Compiles nothing.
     pub(super) fn get(&self, pass: Pass) -> Arc<ComputePipeline> {
-        // What is behind the locks is whole even if a thread panicked while it held one.
+        // What is behind the lock is whole even if a thread panicked while it held it.
         let mut pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
-        let made = pipelines.entry(pass).or_insert_with(|| {
-            let mut modules = self.modules.lock().unwrap_or_else(PoisonError::into_inner);
-            let module = modules.entry(pass.module).or_insert_with(|| Arc::new(ShaderModule::new(pass.module)));
-            Arc::new(ComputePipeline::of(module, pass))
-        });
+        let made = pipelines
+            .entry(pass)
+            .or_insert_with(|| Arc::new(ComputePipeline::of(&self.modules.get(pass.module), pass)));
         made.clone()
     }
 
-    /// A pass that searches factors of so many patches (see `shaders/search_group.wgsl`). Its workgroups may have any size. A software
-    /// driver computes the invocations of a workgroup one after the other, and those that were in vain take time; if patches alone
-    /// don't fill a GPU, larger workgroups do.
+    /// A pass that searches factors of so many patches (see `shaders/search_group.wgsl`). Its workgroups may have any size. A
+    /// software driver computes the invocations of a workgroup one after the other, and those that were in vain take time; if
+    /// patches alone don't fill a GPU, larger workgroups do.
     pub(super) fn search(&self, gpu: &Gpu, pass: Pass, patches: u32) -> Pass {
         let [on_software, many_patches, few_patches] = self.groups;
         let size = match patches {

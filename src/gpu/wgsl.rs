@@ -8,8 +8,8 @@ use super::wgsl_tokens::{Token, declared, tokens};
 /// A shader module: the name of the file with its entry points, without `.wgsl`.
 ///
 /// WGSL has no imports: a module is one text. Declarations may stand in any order, so it is the text of its files, one after
-/// another. A file needs those that declare what it uses. What can't be told from names, since several files declare the same ones or
-/// a file has more entry points, a line of its own names: `// With: name, another`.
+/// another. A file needs those that declare what it uses. Where names can't tell them, since several files declare the same ones
+/// or none is used of one with more entry points, a line of the file does: `// With: name, another`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct WgslModule(pub &'static str);
 

@@ -64,8 +64,7 @@ impl Draw {
             Self::LayerClear { .. } => "clear_vertex",
             Self::Background => "background_vertex",
             Self::Ground => "ground_vertex",
-            Self::Lines(Occluded::Through) => "hidden_line_vertex",
-            Self::Lines(Occluded::InSight) => "line_vertex",
+            Self::Lines(_) => "line_vertex",
             Self::Normals(_) => "normal_vertex",
         }
     }
@@ -77,8 +76,7 @@ impl Draw {
             Self::LayerClear { .. } => "clear_fragment",
             Self::Background => "background_fragment",
             Self::Ground => "ground_fragment",
-            Self::Lines(Occluded::Through) | Self::Normals(Occluded::Through) => "hidden_line_fragment",
-            Self::Lines(Occluded::InSight) | Self::Normals(Occluded::InSight) => "line_fragment",
+            Self::Lines(_) | Self::Normals(_) => "line_fragment",
         }
     }
 
@@ -161,6 +159,7 @@ impl Draw {
         match self {
             Self::Surface(surface) => surface.constants(),
             Self::LayerClear { at_infinity, .. } => vec![("CLEAR_DEPTH", if at_infinity { 0.0 } else { 1.0 })],
+            Self::Lines(Occluded::Through) | Self::Normals(Occluded::Through) => vec![("THROUGH_SURFACES", 1.0)],
             _ => Vec::new(),
         }
     }

@@ -146,7 +146,7 @@ impl Draw {
 }
 
 impl SurfaceDraw {
-    /// Whether pictures have such surfaces, other than the fronts alone of those that seldom are culled.
+    /// Whether pictures have such surfaces. Of those that are seldom culled, the fronts alone count as none.
     fn is_common(&self) -> bool {
         let (is_bare, at_vertices) = (self.triangles == Triangles::Bare, self.normals == NormalsAt::Vertices);
         let is_shaded = match self.shading {

@@ -59,11 +59,12 @@ impl Materials {
     pub fn new(gpu: &Gpu) -> Self {
         let depths = [(HIDING_DEPTHS_BINDING, FRAGMENT, depths(gpu))];
         let lights = [&Environment::bindings(LIGHT_BINDING)[..], &[(FILE_LIGHTS_BINDING, FRAGMENT, UNIFORM)]].concat();
-        let (lit, found) = ([own_bindings(&all_images()), lights], [&own_bindings(&IMAGES_OF_LAYERS)[..], &depths]);
+        let lit = [own_bindings(&all_images()), lights].concat();
+        let found = [&own_bindings(&IMAGES_OF_LAYERS)[..], &depths].concat();
         Self {
             layout: group_layout(gpu, "material", &own_bindings(&[0])),
-            lit_layout: group_layout(gpu, "lit material", &lit.concat()),
-            found_layout: group_layout(gpu, "found material", &found.concat()),
+            lit_layout: group_layout(gpu, "lit material", &lit),
+            found_layout: group_layout(gpu, "found material", &found),
             white: white(gpu),
             no_lights: upload_lights(gpu, &[]),
             samplers: Samplers::default(),

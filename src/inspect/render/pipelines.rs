@@ -9,7 +9,7 @@ use super::group_layouts::{FRAGMENT, READ, UNIFORM, VERTEX, depths, group_layout
 use super::materials::Materials;
 use super::render_pipeline::PipelineParts;
 use super::target::samples;
-use gpu::{Gpu, GpuError, Lazy, ShaderModule};
+use gpu::{Gpu, GpuError, Lazy, ShaderModules};
 
 /// The pipeline of each [`Draw`], and the layouts of their bind groups.
 pub(super) struct DrawPipelines {
@@ -32,21 +32,13 @@ pub(super) struct DrawPipelines {
     found_layout: wgpu::BindGroupLayout,
     /// Group 3 where layers are drawn: the same, and the depths of the layer that was found last.
     pub layer_layout: wgpu::BindGroupLayout,
-    plain: ShaderModule,
-    lit: ShaderModule,
-    surface: ShaderModule,
-    layers: ShaderModule,
-    clear: ShaderModule,
-    background: ShaderModule,
-    ground: ShaderModule,
-    lines: ShaderModule,
+    modules: ShaderModules,
     pipelines: Mutex<HashMap<Draw, Arc<Lazy<wgpu::RenderPipeline>>>>,
 }
 
 impl DrawPipelines {
     /// Makes the layouts. Compiles nothing yet.
     pub(super) fn new(gpu: &Gpu, materials: &Materials) -> Self {
-        let is_multisampled = samples(gpu) > 1;
         let both = VERTEX | FRAGMENT;
         // Vertex shaders have as many storage buffers as WebGPU allows.
         let scene = [
@@ -64,14 +56,7 @@ impl DrawPipelines {
             chunk_layout: group_layout(gpu, "chunk", &[(0, VERTEX, UNIFORM), (1, VERTEX, READ)]),
             measured_layout: group_layout(gpu, "measured", &[measured, least]),
             layer_layout: group_layout(gpu, "layer", &[measured, least, (2, FRAGMENT, depths(gpu))]),
-            plain: ShaderModule::new("draw_plain"),
-            lit: ShaderModule::new("draw_lit"),
-            surface: ShaderModule::new("draw_surface"),
-            layers: ShaderModule::new(if is_multisampled { "layers_multisampled" } else { "layers_single" }),
-            clear: ShaderModule::new("draw_clear"),
-            background: ShaderModule::new("draw_background"),
-            ground: ShaderModule::new("draw_ground"),
-            lines: ShaderModule::new("draw_lines"),
+            modules: ShaderModules::default(),
             pipelines: Default::default(),
         }
     }
@@ -81,16 +66,17 @@ impl DrawPipelines {
     /// # Errors
     /// Out of memory, or a lost device.
     pub(super) fn get(&self, gpu: &Gpu, draw: Draw) -> Result<wgpu::RenderPipeline, GpuError> {
-        let module = match draw {
-            Draw::Surface(SurfaceDraw { layer: Some(_), .. }) => &self.layers,
-            Draw::Surface(SurfaceDraw { triangles: Triangles::Bare, shading: Shading::Lit(_), .. }) => &self.lit,
-            Draw::Surface(SurfaceDraw { triangles: Triangles::Bare, .. }) => &self.plain,
-            Draw::Surface(_) => &self.surface,
-            Draw::LayerClear { .. } => &self.clear,
-            Draw::Background => &self.background,
-            Draw::Ground => &self.ground,
-            Draw::Lines(_) | Draw::Normals(_) => &self.lines,
-        };
+        let module = self.modules.get(match draw {
+            Draw::Surface(SurfaceDraw { layer: Some(_), .. }) if samples(gpu) > 1 => "layers_multisampled",
+            Draw::Surface(SurfaceDraw { layer: Some(_), .. }) => "layers_single",
+            Draw::Surface(SurfaceDraw { triangles: Triangles::Bare, shading: Shading::Lit(_), .. }) => "draw_lit",
+            Draw::Surface(SurfaceDraw { triangles: Triangles::Bare, .. }) => "draw_plain",
+            Draw::Surface(_) => "draw_surface",
+            Draw::LayerClear { .. } => "draw_clear",
+            Draw::Background => "draw_background",
+            Draw::Ground => "draw_ground",
+            Draw::Lines(_) | Draw::Normals(_) => "draw_lines",
+        });
         let module = module.get(gpu)?;
         // Nothing is made while the lock is held, so that a picture doesn't wait for pipelines of another.
         let own = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner).entry(draw).or_default().clone();
