@@ -1,5 +1,6 @@
 // Connectivity: which points the triangles inside a patch join. Each triangle is computed from its number alone. Twin:
 // src/geometry/tessellate/connectivity.rs.
+// With: domain
 
 // Which of the 31 places before a side's middle have a point. Points appear in the order of a breadth-first bisection:
 // place 16, then 8 and 24, then 4, 12, 20, 28, and so on.

@@ -1,5 +1,6 @@
 // The results of connectivity.wgsl in a table: the storage buffer `connectivity_table`, which the module that includes
 // this declares. Twin: src/geometry/tessellate/connectivity_table.rs.
+// With: domain
 
 // The numbers of segments that half a side may have: 0 to 32.
 const PATTERN_HALVES: u32 = 33u;

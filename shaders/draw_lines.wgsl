@@ -44,11 +44,11 @@ fn in_front(a: vec4<f32>, b: vec4<f32>) -> vec4<f32> {
 }
 
 struct Line {
-    start: vec3<f32>,
-    end: vec3<f32>,
-    color: vec3<f32>,
-    half_width: f32,
-    times: f32,
+    @location(0) start: vec3<f32>,
+    @location(1) end: vec3<f32>,
+    @location(2) color: vec3<f32>,
+    @location(3) half_width: f32,
+    @location(4) times: f32,
 }
 
 // With caps, a line reaches beyond its ends by half its width, so that lines join without a notch. A dot always has them.
@@ -78,29 +78,13 @@ fn line(index: u32, own: Line, has_caps: bool) -> LineVaryings {
     return LineVaryings(vec4<f32>(clip.xy + offset * clip.w, z, clip.w), side * reach, own.color, half_width, own.times);
 }
 
-@vertex
-fn line_vertex(
-    @builtin(vertex_index) index: u32,
-    @location(0) start: vec3<f32>,
-    @location(1) end: vec3<f32>,
-    @location(2) color: vec3<f32>,
-    @location(3) half_width: f32,
-    @location(4) times: f32,
-) -> LineVaryings {
-    return line(index, Line(start, end, color, half_width, times), true);
-}
+// Whether all of a line is drawn, faintly, even behind surfaces.
+override THROUGH_SURFACES: bool = false;
 
-// Without caps: where the faint lines of a chain overlapped, it would not be faint.
+// Without caps where lines are faint: where those of a chain overlapped, it would not be faint.
 @vertex
-fn hidden_line_vertex(
-    @builtin(vertex_index) index: u32,
-    @location(0) start: vec3<f32>,
-    @location(1) end: vec3<f32>,
-    @location(2) color: vec3<f32>,
-    @location(3) half_width: f32,
-    @location(4) times: f32,
-) -> LineVaryings {
-    return line(index, Line(start, end, color, half_width, times), false);
+fn line_vertex(@builtin(vertex_index) index: u32, own: Line) -> LineVaryings {
+    return line(index, own, !THROUGH_SURFACES);
 }
 
 // How many px a unit of length across the view is, at a depth.
@@ -145,43 +129,33 @@ fn usual_times(domain: vec2<u32>) -> f32 {
 }
 
 @vertex
-fn normal_vertex(
-    @builtin(vertex_index) index: u32,
-    @location(0) position: vec3<f32>,
-    @location(1) normal: u32,
-    @location(2) key: vec2<u32>,
-) -> LineVaryings {
-    let w = dot(vec4<f32>(position, 1.0), vec4<f32>(
+fn normal_vertex(@builtin(vertex_index) index: u32, vertex: EmittedVertex) -> LineVaryings {
+    let w = dot(vec4<f32>(vertex.position, 1.0), vec4<f32>(
         frame.clip_from_object[0].w,
         frame.clip_from_object[1].w,
         frame.clip_from_object[2].w,
         frame.clip_from_object[3].w,
     ));
     let px = px_per_unit(max(w, 1e-30));
-    let direction = unpack_normal(normal);
-    let to_eye = normalize(frame.eye.xyz - position * frame.eye.w);
+    let direction = unpack_normal(vertex.normal);
+    let to_eye = normalize(frame.eye.xyz - vertex.position * frame.eye.w);
     // Where vertices are closer than NORMAL_SPACING, only some get a normal. At silhouettes, where patches look small, the
     // least factor keeps enough of them.
-    let area = area_per_vertex(key_patch(key)) * px * px * max(abs(dot(direction, to_eye)), 0.2);
-    if w <= 0.0 || chance(key_patch(key), key_uv(key)) * NORMAL_SPACING * NORMAL_SPACING >= area {
+    let area = area_per_vertex(key_patch(vertex.key)) * px * px * max(abs(dot(direction, to_eye)), 0.2);
+    if w <= 0.0 || chance(key_patch(vertex.key), key_uv(vertex.key)) * NORMAL_SPACING * NORMAL_SPACING >= area {
         return LineVaryings();
     }
-    let end = position + direction * (NORMAL_LENGTH / px);
-    let own = Line(position, end, NORMAL_COLOR, NORMAL_HALF_WIDTH, usual_times(key_uv(key)));
+    let end = vertex.position + direction * (NORMAL_LENGTH / px);
+    let own = Line(vertex.position, end, NORMAL_COLOR, NORMAL_HALF_WIDTH, usual_times(key_uv(vertex.key)));
     return line(index, own, true);
-}
-
-fn line_coverage(in: LineVaryings) -> f32 {
-    return 1.0 - smoothstep(in.half_width - 0.5, in.half_width + 0.5, abs(in.across));
 }
 
 @fragment
 fn line_fragment(in: LineVaryings) -> @location(0) vec4<f32> {
-    return vec4<f32>(in.color, line_coverage(in));
-}
-
-@fragment
-fn hidden_line_fragment(in: LineVaryings) -> @location(0) vec4<f32> {
-    // So many blended over each other have the opacity HIDDEN.
-    return vec4<f32>(in.color, (1.0 - pow(1.0 - HIDDEN, 1.0 / in.times)) * line_coverage(in));
+    var opacity = line_coverage(abs(in.across), in.half_width);
+    if THROUGH_SURFACES {
+        // So many blended over each other have the opacity HIDDEN.
+        opacity *= 1.0 - pow(1.0 - HIDDEN, 1.0 / in.times);
+    }
+    return vec4<f32>(in.color, opacity);
 }

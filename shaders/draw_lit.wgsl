@@ -14,14 +14,14 @@ struct LitVaryings {
 }
 
 @vertex
-fn lit_vertex(
-    @location(0) position: vec3<f32>,
-    @location(1) normal: u32,
-    @location(2) key: vec2<u32>,
-    @location(3) uv: vec2<f32>,
-) -> LitVaryings {
-    let clip = lit_frame.clip_from_object * vec4<f32>(position, 1.0);
-    return LitVaryings(clip, unpack_normal(normal), uv, vec2<f32>(key_uv(key)) * UNIT, key_patch(key));
+fn lit_vertex(vertex: EmittedVertex) -> LitVaryings {
+    let clip = lit_frame.clip_from_object * vec4<f32>(vertex.position, 1.0);
+    let weights = vec2<f32>(key_uv(vertex.key)) * UNIT;
+    return LitVaryings(clip, unpack_normal(vertex.normal), vertex.uv, weights, key_patch(vertex.key));
+}
+
+fn lit_normal(in: LitVaryings) -> vec3<f32> {
+    return drawn_normal(normalize(in.normal), in.patch_index, in.weights);
 }
 
 fn lit_place(in: LitVaryings, normal: vec3<f32>, front: bool) -> SurfacePlace {
@@ -48,20 +48,10 @@ fn masked_lit_pixel(in: LitVaryings, normal: vec3<f32>, front: bool) -> MaskedPi
 
 @fragment
 fn lit_fragment(in: LitVaryings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    return lit_color(in, normalize(in.normal), front);
-}
-
-@fragment
-fn pixel_lit_fragment(in: LitVaryings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    return lit_color(in, pixel_normal(in.patch_index, in.weights), front);
+    return lit_color(in, lit_normal(in), front);
 }
 
 @fragment
 fn masked_lit_fragment(in: LitVaryings, @builtin(front_facing) front: bool) -> MaskedPixel {
-    return masked_lit_pixel(in, normalize(in.normal), front);
-}
-
-@fragment
-fn pixel_masked_lit_fragment(in: LitVaryings, @builtin(front_facing) front: bool) -> MaskedPixel {
-    return masked_lit_pixel(in, pixel_normal(in.patch_index, in.weights), front);
+    return masked_lit_pixel(in, lit_normal(in), front);
 }

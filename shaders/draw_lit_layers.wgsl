@@ -29,14 +29,5 @@ fn lit_layer_fragment(
     @builtin(front_facing) front: bool,
     @builtin(sample_index) sample: u32,
 ) -> @location(0) vec4<f32> {
-    return lit_layer(in, normalize(in.normal), front, sample);
-}
-
-@fragment
-fn pixel_lit_layer_fragment(
-    in: LitVaryings,
-    @builtin(front_facing) front: bool,
-    @builtin(sample_index) sample: u32,
-) -> @location(0) vec4<f32> {
-    return lit_layer(in, pixel_normal(in.patch_index, in.weights), front, sample);
+    return lit_layer(in, lit_normal(in), front, sample);
 }

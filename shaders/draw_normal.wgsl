@@ -7,6 +7,9 @@
 // What the passes were given. A software driver compiles the shader for each surface and kind of normals.
 @group(0) @binding(8) var<uniform> params: Params;
 
+// Whether normals are evaluated at pixels, where vertices have some.
+override NORMALS_AT_PIXELS: bool = false;
+
 // Returns weights u and v from 0 to 1 in 16.16 fixed point. At a triangle's border the middle of a pixel may lie outside the
 // patch. The nearest place on its border is returned there.
 fn patch_place(weights: vec2<f32>) -> vec2<u32> {
@@ -37,4 +40,12 @@ fn pixel_normal(patch_index: u32, weights: vec2<f32>) -> vec3<f32> {
         return surface_normal(params.surface, load_net(patch_index), u, v, linear);
     }
     return linear;
+}
+
+// The normal of a pixel, of which vertices gave `own`.
+fn drawn_normal(own: vec3<f32>, patch_index: u32, weights: vec2<f32>) -> vec3<f32> {
+    if NORMALS_AT_PIXELS {
+        return pixel_normal(patch_index, weights);
+    }
+    return own;
 }

@@ -35,12 +35,9 @@ struct TexturedVaryings {
 }
 
 @vertex
-fn textured_vertex(
-    @location(0) position: vec3<f32>,
-    @location(1) normal: u32,
-    @location(3) uv: vec2<f32>,
-) -> TexturedVaryings {
-    return TexturedVaryings(plain_frame.clip_from_object * vec4<f32>(position, 1.0), unpack_normal(normal), uv);
+fn textured_vertex(vertex: EmittedVertex) -> TexturedVaryings {
+    let clip = plain_frame.clip_from_object * vec4<f32>(vertex.position, 1.0);
+    return TexturedVaryings(clip, unpack_normal(vertex.normal), vertex.uv);
 }
 
 @fragment
@@ -59,13 +56,10 @@ struct PixelVaryings {
 }
 
 @vertex
-fn pixel_vertex(
-    @location(0) position: vec3<f32>,
-    @location(2) key: vec2<u32>,
-    @location(3) uv: vec2<f32>,
-) -> PixelVaryings {
-    let weights = vec2<f32>(key_uv(key)) * UNIT;
-    return PixelVaryings(plain_frame.clip_from_object * vec4<f32>(position, 1.0), weights, uv, key_patch(key));
+fn pixel_vertex(vertex: EmittedVertex) -> PixelVaryings {
+    let weights = vec2<f32>(key_uv(vertex.key)) * UNIT;
+    let clip = plain_frame.clip_from_object * vec4<f32>(vertex.position, 1.0);
+    return PixelVaryings(clip, weights, vertex.uv, key_patch(vertex.key));
 }
 
 @fragment

@@ -1,36 +1,25 @@
 // Draws the surface with overlays, the emitted triangles or the input triangles: lit by the lights at the camera or by light from all
 // around, and cut by the masks of materials.
+// With: draw_surface_vertices
+
+fn surface_normal_of(in: Varyings) -> vec3<f32> {
+    return drawn_normal(in.normal, in.patch_index, in.domain.xy);
+}
 
 // The last argument is the colour of the material in light from all around: none, since the lights at the camera take its place.
 @fragment
 fn surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    return vec4<f32>(surface_color(in, in.normal, front, vec4<f32>(0.0)).rgb, 1.0);
-}
-
-@fragment
-fn pixel_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    let normal = pixel_normal(in.patch_index, in.domain.xy);
-    return vec4<f32>(surface_color(in, normal, front, vec4<f32>(0.0)).rgb, 1.0);
+    return vec4<f32>(surface_color(in, surface_normal_of(in), front, vec4<f32>(0.0)).rgb, 1.0);
 }
 
 @fragment
 fn lit_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    return lit_surface_color(in, in.normal, front);
-}
-
-@fragment
-fn pixel_lit_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    return lit_surface_color(in, pixel_normal(in.patch_index, in.domain.xy), front);
+    return lit_surface_color(in, surface_normal_of(in), front);
 }
 
 @fragment
 fn masked_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> MaskedPixel {
-    return masked_surface_pixel(in, in.normal, front);
-}
-
-@fragment
-fn pixel_masked_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> MaskedPixel {
-    return masked_surface_pixel(in, pixel_normal(in.patch_index, in.domain.xy), front);
+    return masked_surface_pixel(in, surface_normal_of(in), front);
 }
 
 fn masked_surface_pixel(in: Varyings, normal: vec3<f32>, front: bool) -> MaskedPixel {
@@ -42,12 +31,7 @@ fn masked_surface_pixel(in: Varyings, normal: vec3<f32>, front: bool) -> MaskedP
 // The same with the lights at the camera.
 @fragment
 fn cut_samples_fragment(in: Varyings, @builtin(front_facing) front: bool) -> MaskedPixel {
-    return cut_samples_pixel(in, in.normal, front);
-}
-
-@fragment
-fn pixel_cut_samples_fragment(in: Varyings, @builtin(front_facing) front: bool) -> MaskedPixel {
-    return cut_samples_pixel(in, pixel_normal(in.patch_index, in.domain.xy), front);
+    return cut_samples_pixel(in, surface_normal_of(in), front);
 }
 
 fn cut_samples_pixel(in: Varyings, normal: vec3<f32>, front: bool) -> MaskedPixel {
@@ -57,12 +41,7 @@ fn cut_samples_pixel(in: Varyings, normal: vec3<f32>, front: bool) -> MaskedPixe
 
 @fragment
 fn cut_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    return cut_surface_color(in, in.normal, front);
-}
-
-@fragment
-fn pixel_cut_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    return cut_surface_color(in, pixel_normal(in.patch_index, in.domain.xy), front);
+    return cut_surface_color(in, surface_normal_of(in), front);
 }
 
 fn cut_surface_color(in: Varyings, normal: vec3<f32>, front: bool) -> vec4<f32> {

@@ -31,14 +31,5 @@ fn surface_layer_fragment(
     @builtin(front_facing) front: bool,
     @builtin(sample_index) sample: u32,
 ) -> @location(0) vec4<f32> {
-    return surface_layer(in, in.normal, front, sample);
-}
-
-@fragment
-fn pixel_surface_layer_fragment(
-    in: Varyings,
-    @builtin(front_facing) front: bool,
-    @builtin(sample_index) sample: u32,
-) -> @location(0) vec4<f32> {
-    return surface_layer(in, pixel_normal(in.patch_index, in.domain.xy), front, sample);
+    return surface_layer(in, surface_normal_of(in), front, sample);
 }

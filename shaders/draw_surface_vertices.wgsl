@@ -97,14 +97,11 @@ fn unit_corner(k: u32) -> vec3<f32> {
 }
 
 @vertex
-fn indexed_vertex(
-    @location(0) position: vec3<f32>,
-    @location(1) normal: u32,
-    @location(2) key: vec2<u32>,
-    @location(3) uv: vec2<f32>,
-) -> Varyings {
-    let out = varyings(position, unpack_normal(normal), uv, key_patch(key), key_uv(key), vec3<f32>(1.0));
-    return with_factors(out, key_patch(key));
+fn indexed_vertex(vertex: EmittedVertex) -> Varyings {
+    let patch_index = key_patch(vertex.key);
+    let normal = unpack_normal(vertex.normal);
+    let out = varyings(vertex.position, normal, vertex.uv, patch_index, key_uv(vertex.key), vec3<f32>(1.0));
+    return with_factors(out, patch_index);
 }
 
 @vertex

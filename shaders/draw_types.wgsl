@@ -110,3 +110,11 @@ const OVERLAY_ZEBRA: u32 = 4096u;
 const OVERLAY_SHADING_NORMALS: u32 = 8192u;
 const OVERLAY_UV_CHECKER: u32 = 16384u;
 const OVERLAY_SILHOUETTE: u32 = 32768u;
+
+// An emitted vertex as draws get it: its two halves (see Vertex in types.wgsl).
+struct EmittedVertex {
+    @location(0) position: vec3<f32>,
+    @location(1) normal: u32,
+    @location(2) key: vec2<u32>,
+    @location(3) uv: vec2<f32>,
+}

@@ -1,5 +1,6 @@
 // Layers in pictures with several samples a pixel: the depths that they are compared with. layers_single.wgsl has the same
 // functions for the others.
+// With: draw_lit_layers, draw_surface_layers
 
 @group(3) @binding(2) var passed_depths: texture_depth_multisampled_2d;
 @group(1) @binding(35) var hiding_depths: texture_depth_multisampled_2d;

@@ -1,5 +1,6 @@
 // LOD by error: the factors with the fewest triangles whose pattern stays within a tolerance. Twin:
 // src/geometry/tessellate/least_factors.rs.
+// With: connectivity
 
 // The part of the tolerance that bounds may use up. The rest is for rounding.
 const BOUND_SHARE: f32 = 0.999;

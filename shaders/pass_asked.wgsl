@@ -7,19 +7,6 @@
 // that is enough. Such patches ask again, for no less than what their edges have, and all patches whose edges then have other
 // factors take their inside factors anew. There are a few such rounds.
 
-// In storage, not a uniform: some software drivers compile a shader again for every value of a uniform that it branches on.
-@group(0) @binding(0) var<storage, read> params: Params;
-@group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
-@group(0) @binding(2) var<storage, read> patches: array<Patch>;
-@group(0) @binding(3) var<storage, read> curve_nets: array<CurveNet>;
-@group(0) @binding(5) var<storage, read> corners: array<Corner>;
-// A bit for each patch: whether it has a texture.
-@group(0) @binding(6) var<storage, read> textured: array<u32>;
-// See search_state.wgsl.
-@group(0) @binding(4) var<storage, read_write> edge_factors: array<atomic<u32>>;
-// See search_state.wgsl.
-@group(0) @binding(7) var<storage, read_write> search_workgroups: array<array<u32, 3>, 5>;
-
 // The searches: for the factors that patches ask for, for their inside factors, and for what patches ask for again.
 const SEARCH_ASKED: u32 = 0u;
 const SEARCH_INSIDE: u32 = 1u;
@@ -145,12 +132,8 @@ fn inside_of_one() -> f32 {
 
 // Patches that are left out ask, too: what others look like doesn't depend on it.
 @compute @workgroup_size(256)
-fn asked_factors_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let index = grid_index(workgroup, workgroups, local);
+fn asked_factors_main(invocation: Invocation) {
+    let index = grid_index(invocation);
     if index >= params.patch_count {
         return;
     }
@@ -190,12 +173,8 @@ fn is_small(factors: PatchFactors) -> bool {
 
 // Looks whether the first pattern of a patch is enough. Otherwise the patch is searched later.
 @compute @workgroup_size(WORKGROUP)
-fn first_patterns_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let i = grid_index(workgroup, workgroups, local);
+fn first_patterns_main(invocation: Invocation) {
+    let i = grid_index(invocation);
     if i >= alone_count() {
         return;
     }
@@ -256,15 +235,11 @@ fn next_patch(search: u32, workgroups: u32) -> u32 {
 
 // Searches what patches ask for, or ask for again.
 @compute @workgroup_size(GROUP)
-fn search_asked_factors_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    lane = local;
+fn search_asked_factors_main(invocation: Invocation) {
+    lane = invocation.local;
     let search = select(SEARCH_ASKED, SEARCH_AGAIN, is_later_round());
-    begun = workgroup.x;
-    var next = next_patch(search, workgroups.x);
+    begun = invocation.workgroup.x;
+    var next = next_patch(search, invocation.workgroups.x);
     while any_team(next != NO_MORE) {
         let is_searched = next != NO_MORE;
         let index = select(0u, next, is_searched);
@@ -289,7 +264,7 @@ fn search_asked_factors_main(
             }
             atomicStore(&edge_factors[inner_at(index)], bitcast<u32>(asked.inner));
         }
-        next = next_patch(search, workgroups.x);
+        next = next_patch(search, invocation.workgroups.x);
     }
 }
 
@@ -299,12 +274,8 @@ fn is_later_round() -> bool {
 }
 
 @compute @workgroup_size(256)
-fn inside_factors_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let index = grid_index(workgroup, workgroups, local);
+fn inside_factors_main(invocation: Invocation) {
+    let index = grid_index(invocation);
     if index >= params.patch_count {
         return;
     }
@@ -351,14 +322,10 @@ fn needs_more(patch_index: u32, chosen: Enough, edges: vec3<f32>, inside: f32) -
 
 // Searches the inside factors of patches beside what their edges have.
 @compute @workgroup_size(GROUP)
-fn search_inside_factors_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    lane = local;
-    begun = workgroup.x;
-    var next = next_patch(SEARCH_INSIDE, workgroups.x);
+fn search_inside_factors_main(invocation: Invocation) {
+    lane = invocation.local;
+    begun = invocation.workgroup.x;
+    var next = next_patch(SEARCH_INSIDE, invocation.workgroups.x);
     while any_team(next != NO_MORE) {
         let is_searched = next != NO_MORE;
         let index = select(0u, next, is_searched);
@@ -378,18 +345,14 @@ fn search_inside_factors_main(
                 search_later(SEARCH_AGAIN, index, edges, least);
             }
         }
-        next = next_patch(SEARCH_INSIDE, workgroups.x);
+        next = next_patch(SEARCH_INSIDE, invocation.workgroups.x);
     }
 }
 
 // Ends a round: what edges have becomes the least that they may get.
 @compute @workgroup_size(256)
-fn keep_factors_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let index = grid_index(workgroup, workgroups, local);
+fn keep_factors_main(invocation: Invocation) {
+    let index = grid_index(invocation);
     if index == 0u {
         clear_search(SEARCH_INSIDE);
         atomicAdd(&edge_factors[counter_at(ROUNDS_OVER)], 1u);

@@ -106,12 +106,8 @@ fn counts_main(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_invoc
 
 // The same factors for every patch of the mesh, for reading them back.
 @compute @workgroup_size(256)
-fn hull_factors_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let index = grid_index(workgroup, workgroups, local);
+fn hull_factors_main(invocation: Invocation) {
+    let index = grid_index(invocation);
     if index < params.patch_count {
         let net = needed_net(index);
         if cull_reason(params.clip, params.culls_back == 1u, params.view, net) == NOT_CULLED {

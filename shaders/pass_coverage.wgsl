@@ -46,32 +46,28 @@ fn tile_of(workgroup: vec3<u32>, workgroups: vec3<u32>) -> u32 {
 }
 
 @compute @workgroup_size(256)
-fn coverage_marks_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let tile = tile_of(workgroup, workgroups);
+fn coverage_marks_main(invocation: Invocation) {
+    let tile = tile_of(invocation.workgroup, invocation.workgroups);
     var own = 0u;
     for (var round = 0u; round < ROUNDS; round++) {
-        own |= u32(is_kept(tile * TILE + round * WORKGROUP + local)) << round;
+        own |= u32(is_kept(tile * TILE + round * WORKGROUP + invocation.local)) << round;
     }
-    kept_in_rounds[local] = own;
+    kept_in_rounds[invocation.local] = own;
     workgroupBarrier();
     // A word of marks comes from 32 neighbouring invocations, in one round.
     var word = 0u;
-    if local < TILE_WORDS {
-        let first = local % 8u * 32u;
+    if invocation.local < TILE_WORDS {
+        let first = invocation.local % 8u * 32u;
         for (var i = 0u; i < 32u; i++) {
-            word |= ((kept_in_rounds[first + i] >> (local / 8u)) & 1u) << i;
+            word |= ((kept_in_rounds[first + i] >> (invocation.local / 8u)) & 1u) << i;
         }
-        if (tile * TILE_WORDS + local) * 32u < sieve.triangle_count {
-            marks[tile * TILE_WORDS + local] = word;
+        if (tile * TILE_WORDS + invocation.local) * 32u < sieve.triangle_count {
+            marks[tile * TILE_WORDS + invocation.local] = word;
         }
     }
     let count = countOneBits(word);
-    let before = workgroup_scan(local, vec2<u32>(count, 0u)).x;
-    if local == WORKGROUP - 1u && tile * TILE < sieve.triangle_count {
+    let before = workgroup_scan(invocation.local, vec2<u32>(count, 0u)).x;
+    if invocation.local == WORKGROUP - 1u && tile * TILE < sieve.triangle_count {
         tile_starts[tile] = before + count;
     }
 }
@@ -122,25 +118,21 @@ var<workgroup> tile_marks: array<u32, TILE_WORDS>;
 var<workgroup> word_starts: array<u32, TILE_WORDS>;
 
 @compute @workgroup_size(256)
-fn coverage_keep_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let tile = tile_of(workgroup, workgroups);
+fn coverage_keep_main(invocation: Invocation) {
+    let tile = tile_of(invocation.workgroup, invocation.workgroups);
     var word = 0u;
-    if local < TILE_WORDS && (tile * TILE_WORDS + local) * 32u < sieve.triangle_count {
-        word = marks[tile * TILE_WORDS + local];
+    if invocation.local < TILE_WORDS && (tile * TILE_WORDS + invocation.local) * 32u < sieve.triangle_count {
+        word = marks[tile * TILE_WORDS + invocation.local];
     }
-    let before = workgroup_scan(local, vec2<u32>(countOneBits(word), 0u)).x;
-    if local < TILE_WORDS {
-        tile_marks[local] = word;
-        word_starts[local] = before;
+    let before = workgroup_scan(invocation.local, vec2<u32>(countOneBits(word), 0u)).x;
+    if invocation.local < TILE_WORDS {
+        tile_marks[invocation.local] = word;
+        word_starts[invocation.local] = before;
     }
     workgroupBarrier();
     let start = tile_starts[min(tile, arrayLength(&tile_starts) - 1u)];
     for (var round = 0u; round < ROUNDS; round++) {
-        let triangle = round * WORKGROUP + local;
+        let triangle = round * WORKGROUP + invocation.local;
         let own = tile_marks[triangle / 32u];
         let bit = 1u << triangle % 32u;
         if (own & bit) != 0u {

@@ -67,12 +67,8 @@ fn posed_matrix(bound: Binding) -> JointMatrix {
 }
 
 @compute @workgroup_size(256)
-fn deform_corners_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let index = grid_index(workgroup, workgroups, local);
+fn deform_corners_main(invocation: Invocation) {
+    let index = grid_index(invocation);
     if index < arrayLength(&bindings) {
         let bound = bindings[index];
         let normal = morphed_normal(bound);
@@ -84,12 +80,8 @@ fn deform_corners_main(
 }
 
 @compute @workgroup_size(256)
-fn deform_points_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let index = grid_index(workgroup, workgroups, local);
+fn deform_points_main(invocation: Invocation) {
+    let index = grid_index(invocation);
     if index < arrayLength(&point_corners) {
         points[index] = vec4<f32>(posed_position(point_corners[index]), 0.0);
     }

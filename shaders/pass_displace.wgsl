@@ -1,5 +1,6 @@
 // Displaces the vertices of one chunk after they were emitted, and turns their normals: one invocation a vertex. Twin:
 // src/geometry/tessellate/mesh_displacement.rs.
+// With: height_list
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<uniform> slab: Slab;
@@ -174,12 +175,8 @@ fn rise_at(at: Lookup, offset: f32) -> Rise {
 }
 
 @compute @workgroup_size(256)
-fn displace_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let index = grid_index(workgroup, workgroups, local);
+fn displace_main(invocation: Invocation) {
+    let index = grid_index(invocation);
     if index >= chunks[chunk_index].vertex_count {
         return;
     }

@@ -1,4 +1,5 @@
 // The tessellator alone, without a mesh: sets of factors in, domain points and triangles out.
+// With: connectivity
 
 struct DomainParams {
     partitioning: u32,

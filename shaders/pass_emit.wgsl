@@ -1,6 +1,7 @@
 // The vertices and triangles of one chunk: what the tessellator and the domain shader would output. Each workgroup makes
 // thousands of consecutive vertices (or triangles) and each invocation several, so that finding their patches is little
 // work.
+// With: connectivity_table
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<uniform> slab: Slab;
@@ -251,23 +252,19 @@ fn emit_patch_vertices(plan: EmitPlan, hull: HullPatch, patch_index: u32, start:
 }
 
 @compute @workgroup_size(VERTEX_WORKGROUP)
-fn emit_vertices_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
+fn emit_vertices_main(invocation: Invocation) {
     let chunk = chunks[chunk_index];
     let items = emit_items(chunk.vertex_count);
-    let first = emit_first(workgroup, workgroups, items);
+    let first = emit_first(invocation.workgroup, invocation.workgroups, items);
     let last = chunk.first_vertex + min(first + items, chunk.vertex_count) - 1u;
     let begin = chunk.first_patch - slab.first_patch;
     let end = chunk.patch_end - slab.first_patch;
-    let entry = find_together(0u, chunk.first_vertex + first, begin, end, local, VERTEX_WORKGROUP);
+    let entry = find_together(0u, chunk.first_vertex + first, begin, end, invocation.local, VERTEX_WORKGROUP);
     let turns = items / VERTEX_WORKGROUP;
     if is_of_large_patches(0u, items, last, entry, end) {
-        vertices_by_patch(chunk, entry, first, turns, local);
+        vertices_by_patch(chunk, entry, first, turns, invocation.local);
     } else {
-        vertices_by_item(chunk, entry, first, turns, local);
+        vertices_by_item(chunk, entry, first, turns, invocation.local);
     }
 }
 
@@ -332,23 +329,19 @@ fn emit_patch_triangles(plan: EmitPlan, base: u32, start: u32, first: u32, end: 
 }
 
 @compute @workgroup_size(TRIANGLE_WORKGROUP)
-fn emit_triangles_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
+fn emit_triangles_main(invocation: Invocation) {
     let chunk = chunks[chunk_index];
     let items = emit_items(chunk.triangle_count);
-    let first = emit_first(workgroup, workgroups, items);
+    let first = emit_first(invocation.workgroup, invocation.workgroups, items);
     let last = chunk.first_triangle + min(first + items, chunk.triangle_count) - 1u;
     let begin = chunk.first_patch - slab.first_patch;
     let end = chunk.patch_end - slab.first_patch;
-    let entry = find_together(1u, chunk.first_triangle + first, begin, end, local, TRIANGLE_WORKGROUP);
+    let entry = find_together(1u, chunk.first_triangle + first, begin, end, invocation.local, TRIANGLE_WORKGROUP);
     let turns = items / TRIANGLE_WORKGROUP;
     if is_of_large_patches(1u, items, last, entry, end) {
-        triangles_by_patch(chunk, entry, first, turns, local);
+        triangles_by_patch(chunk, entry, first, turns, invocation.local);
     } else {
-        triangles_by_item(chunk, entry, first, turns, local);
+        triangles_by_item(chunk, entry, first, turns, invocation.local);
     }
 }
 

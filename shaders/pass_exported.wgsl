@@ -1,6 +1,7 @@
 // Exported compute passes: tessellates patches of nine indices (eighteen if they are displaced) without any other preparation by the
 // host. It runs hull_main with an invocation a patch, then offsets_main in one workgroup, and then emit_main with a workgroup a
 // patch.
+// With: connectivity
 
 // Indices a patch, which src/inspect/shader_files puts in place of this.
 const PATCH_INDICES: u32 = 9u;

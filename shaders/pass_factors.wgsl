@@ -94,12 +94,8 @@ fn lod_factor(index: u32) -> f32 {
 }
 
 @compute @workgroup_size(256)
-fn edge_factors_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let index = grid_index(workgroup, workgroups, local);
+fn edge_factors_main(invocation: Invocation) {
+    let index = grid_index(invocation);
     if index >= params.factor_count {
         return;
     }
@@ -118,12 +114,8 @@ fn edge_factors_main(
 
 // The factor that the heights of every patch need inside it: the largest that its own height image needs along its sides.
 @compute @workgroup_size(256)
-fn heights_inside_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let index = grid_index(workgroup, workgroups, local);
+fn heights_inside_main(invocation: Invocation) {
+    let index = grid_index(invocation);
     if index >= params.patch_count {
         return;
     }

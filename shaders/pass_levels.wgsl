@@ -1,6 +1,7 @@
 // What points, edges and corners share where a mesh is displaced. When the mesh or its pose changes: the direction in which
 // every point moves, and the gradients of the texture coordinates at every corner. When factors change: the level of the
 // height image whose px are about as long as the segments of an edge, and for every point the finest level of its edges.
+// With: height_list
 
 // In storage, not a uniform: some software drivers compile a shader again for every value of a uniform that it branches on.
 @group(0) @binding(0) var<storage, read> params: Params;
@@ -10,51 +11,47 @@
 @group(0) @binding(4) var<storage, read> edge_factors: array<f32>;
 @group(0) @binding(5) var<storage, read> given_factors: array<vec4<u32>>;
 @group(0) @binding(6) var<storage, read_write> shares: array<Share>;
-// Where the list of each point (or corner) starts in one of the next two buffers, then where the last list ends.
-@group(0) @binding(7) var<storage, read> starts: array<u32>;
+// Where the list of each point starts in `parts`, and in `point_factors`, then where the last list ends.
+@group(0) @binding(7) var<storage, read> part_starts: array<u32>;
+@group(0) @binding(10) var<storage, read> factor_starts: array<u32>;
 // A corner of the point, and the bits of its weight in the point's direction.
 @group(0) @binding(8) var<storage, read> parts: array<vec2<u32>>;
+// The factors of the point's edges.
 @group(0) @binding(9) var<storage, read> point_factors: array<u32>;
+// Where the list of each corner starts in `corner_patches`, and where it ends.
+@group(0) @binding(11) var<storage, read> corner_ranges: array<vec2<u32>>;
+@group(0) @binding(12) var<storage, read> corner_patches: array<u32>;
 
 @compute @workgroup_size(256)
-fn directions_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let point = grid_index(workgroup, workgroups, local);
+fn directions_main(invocation: Invocation) {
+    let point = grid_index(invocation);
     if point >= params.point_count {
         return;
     }
     var sum = vec3<f32>(0.0);
-    for (var i = starts[point]; i < starts[point + 1u]; i++) {
+    for (var i = part_starts[point]; i < part_starts[point + 1u]; i++) {
         sum += corners[parts[i].x].normal * bitcast<f32>(parts[i].y);
     }
     var dominant = vec3<f32>(0.0, 0.0, 1.0);
-    if starts[point] < starts[point + 1u] {
-        dominant = corners[parts[starts[point]].x].normal;
+    if part_starts[point] < part_starts[point + 1u] {
+        dominant = corners[parts[part_starts[point]].x].normal;
     }
     shares[point].direction = unit_or(sum, dominant);
 }
 
-// Here `point_factors` holds the patches of each corner, and `starts` where they start and end: two numbers a corner.
 @compute @workgroup_size(256)
-fn frames_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let corner = grid_index(workgroup, workgroups, local);
-    if 2u * corner + 1u >= arrayLength(&starts) {
+fn frames_main(invocation: Invocation) {
+    let corner = grid_index(invocation);
+    if corner >= arrayLength(&corner_ranges) {
         return;
     }
     var u = vec3<f32>(0.0);
     var v = vec3<f32>(0.0);
     var area = 0.0;
-    for (var i = starts[2u * corner]; i < starts[2u * corner + 1u]; i++) {
-        let at = patches[point_factors[i]].points;
+    for (var i = corner_ranges[corner].x; i < corner_ranges[corner].y; i++) {
+        let at = patches[corner_patches[i]].points;
         let positions = array<vec3<f32>, 3>(points[at[0]].xyz, points[at[1]].xyz, points[at[2]].xyz);
-        let own = uv_gradients(positions, patch_uvs(point_factors[i]));
+        let own = uv_gradients(positions, patch_uvs(corner_patches[i]));
         u += own.u;
         v += own.v;
         area += own.area;
@@ -85,12 +82,8 @@ fn segments_of(index: u32, dominant: u32) -> f32 {
 }
 
 @compute @workgroup_size(256)
-fn factor_levels_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let index = grid_index(workgroup, workgroups, local);
+fn factor_levels_main(invocation: Invocation) {
+    let index = grid_index(invocation);
     if index >= params.factor_count {
         return;
     }
@@ -107,17 +100,13 @@ fn factor_levels_main(
 }
 
 @compute @workgroup_size(256)
-fn point_levels_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let point = grid_index(workgroup, workgroups, local);
+fn point_levels_main(invocation: Invocation) {
+    let point = grid_index(invocation);
     if point >= params.point_count {
         return;
     }
     var finest = 3.4e38;
-    for (var i = starts[point]; i < starts[point + 1u]; i++) {
+    for (var i = factor_starts[point]; i < factor_starts[point + 1u]; i++) {
         finest = min(finest, shares[params.point_count + point_factors[i]].level);
     }
     shares[point].level = finest;

@@ -11,12 +11,8 @@
 @group(0) @binding(6) var<storage, read_write> curve_nets: array<CurveNet>;
 
 @compute @workgroup_size(256)
-fn curve_nets_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let index = grid_index(workgroup, workgroups, local);
+fn curve_nets_main(invocation: Invocation) {
+    let index = grid_index(invocation);
     if index >= params.curve_count {
         return;
     }
@@ -47,12 +43,8 @@ fn curve_nets_main(
 }
 
 @compute @workgroup_size(256)
-fn centers_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let index = grid_index(workgroup, workgroups, local);
+fn centers_main(invocation: Invocation) {
+    let index = grid_index(invocation);
     if index >= params.patch_count {
         return;
     }

@@ -47,12 +47,8 @@ fn own_start_main() {
 // The factor of every side. One invocation for each, so that all sides run the same code: compilers may round differently in
 // copies of it.
 @compute @workgroup_size(256)
-fn own_edges_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let index = grid_index(workgroup, workgroups, local);
+fn own_edges_main(invocation: Invocation) {
+    let index = grid_index(invocation);
     if index >= 3u * params.patch_count || has_stopped() {
         return;
     }
@@ -74,12 +70,8 @@ fn own_edges_main(
 
 // The inside factor of every patch.
 @compute @workgroup_size(256)
-fn own_insides_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let index = grid_index(workgroup, workgroups, local);
+fn own_insides_main(invocation: Invocation) {
+    let index = grid_index(invocation);
     if index >= params.patch_count || has_stopped() {
         return;
     }
@@ -93,12 +85,8 @@ fn own_insides_main(
 
 // Counts factors that are NaN. If there was too much work, makes every factor 1.
 @compute @workgroup_size(256)
-fn own_finish_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let index = grid_index(workgroup, workgroups, local);
+fn own_finish_main(invocation: Invocation) {
+    let index = grid_index(invocation);
     if index >= params.patch_count {
         return;
     }

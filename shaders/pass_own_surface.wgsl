@@ -36,12 +36,8 @@ fn own_surface_start_main() {
 // The control points of every side. One invocation for each, so that all sides run the same code: compilers may round differently in
 // copies of it.
 @compute @workgroup_size(256)
-fn own_surface_points_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let index = grid_index(workgroup, workgroups, local);
+fn own_surface_points_main(invocation: Invocation) {
+    let index = grid_index(invocation);
     if index >= 3u * params.patch_count || has_stopped() {
         return;
     }
@@ -82,12 +78,8 @@ fn has_numbers(point: vec3<f32>) -> bool {
 
 // Makes a side straight if its control points aren't numbers, and counts it. If there was too much work, makes all sides straight.
 @compute @workgroup_size(256)
-fn own_surface_finish_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let index = grid_index(workgroup, workgroups, local);
+fn own_surface_finish_main(invocation: Invocation) {
+    let index = grid_index(invocation);
     if index >= params.curve_count {
         return;
     }

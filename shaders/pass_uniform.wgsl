@@ -1,19 +1,6 @@
 // LOD by error: if one factor for all edges keeps the tolerance with fewer triangles than what patches have asked for, all edges
 // get the least such factor.
 
-// In storage, not a uniform: some software drivers compile a shader again for every value of a uniform that it branches on.
-@group(0) @binding(0) var<storage, read> params: Params;
-@group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
-@group(0) @binding(2) var<storage, read> patches: array<Patch>;
-@group(0) @binding(3) var<storage, read> curve_nets: array<CurveNet>;
-// See search_state.wgsl.
-@group(0) @binding(4) var<storage, read_write> edge_factors: array<atomic<u32>>;
-@group(0) @binding(5) var<storage, read> corners: array<Corner>;
-// A bit for each patch: whether it has a texture.
-@group(0) @binding(6) var<storage, read> textured: array<u32>;
-// See search_state.wgsl.
-@group(0) @binding(7) var<storage, read_write> search_workgroups: array<array<u32, 3>, 5>;
-
 // The counters: the low word of the number of all triangles, beside which is the high one; and the first of two words with a
 // bit for each factor that isn't taken.
 const TRIANGLES: u32 = 7u;
@@ -21,17 +8,14 @@ const NOT_TAKEN: u32 = 9u;
 
 // Adds up the triangles of all patches. Each invocation takes several, since the waiting in a workgroup takes longer.
 @compute @workgroup_size(WORKGROUP)
-fn sum_triangles_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
+fn sum_triangles_main(invocation: Invocation) {
     var own = 0u;
-    for (var index = workgroup.x * WORKGROUP + local; index < params.patch_count; index += workgroups.x * WORKGROUP) {
+    let first = invocation.workgroup.x * WORKGROUP + invocation.local;
+    for (var index = first; index < params.patch_count; index += invocation.workgroups.x * WORKGROUP) {
         own += triangle_count(process(params.partitioning, edges_of(index, 0u), bitcast<f32>(inside_of(index))));
     }
-    let sum = workgroup_sum(local, vec2<u32>(own, 0u)).x;
-    if local == 0u {
+    let sum = workgroup_sum(invocation.local, vec2<u32>(own, 0u)).x;
+    if invocation.local == 0u {
         let before = atomicAdd(&edge_factors[counter_at(TRIANGLES)], sum);
         if before + sum < before {
             atomicAdd(&edge_factors[counter_at(TRIANGLES + 1u)], 1u);
@@ -95,14 +79,10 @@ fn factors_left() -> vec2<u32> {
 // Finds the factors that aren't enough for all patches. Workgroups go through the patches as long as any factor is left. Errors
 // don't fall steadily, so they try all that are left.
 @compute @workgroup_size(GROUP)
-fn search_uniform_factor_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    lane = local;
+fn search_uniform_factor_main(invocation: Invocation) {
+    lane = invocation.local;
     team_size = GROUP;
-    var index = workgroup.x;
+    var index = invocation.workgroup.x;
     var factors = factors_left();
     while any(factors != vec2<u32>(0u)) && index < params.patch_count {
         var seen = load_seen(index);
@@ -119,7 +99,7 @@ fn search_uniform_factor_main(
         if lane == 0u && any(factors != vec2<u32>(0u)) {
             dont_take(factors);
         }
-        index += workgroups.x;
+        index += invocation.workgroups.x;
         factors = factors_left();
     }
     if lane == 0u && index < params.patch_count {
@@ -129,12 +109,8 @@ fn search_uniform_factor_main(
 
 // Gives all edges the least factor that is left, if there is one.
 @compute @workgroup_size(WORKGROUP)
-fn take_uniform_factor_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let index = grid_index(workgroup, workgroups, local);
+fn take_uniform_factor_main(invocation: Invocation) {
+    let index = grid_index(invocation);
     let factors = ~not_taken();
     if index == 0u {
         // Patches take their inside factors anew if edges change.

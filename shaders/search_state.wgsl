@@ -1,5 +1,5 @@
-// What LOD by error has found so far, and where it is in `edge_factors`, which the module that has this declares. They are bits of
-// numbers, whose order is that of the numbers since none is negative. One after another:
+// What passes of LOD by error read, and what they have found so far. That is in `edge_factors`, as bits of numbers, whose order is
+// that of the numbers since none is negative. One after another:
 // - the factors of edges;
 // - the least factor of each edge;
 // - the factor that each patch's heights need inside it, if it is displaced;
@@ -12,6 +12,17 @@
 //   from the end.
 // Software drivers take time for what has nothing to do. There `search_workgroups` has the numbers of workgroups: of the three
 // searches, of the next pass over patches, and of the next pass over edges.
+
+// In storage, not a uniform: some software drivers compile a shader again for every value of a uniform that it branches on.
+@group(0) @binding(0) var<storage, read> params: Params;
+@group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
+@group(0) @binding(2) var<storage, read> patches: array<Patch>;
+@group(0) @binding(3) var<storage, read> curve_nets: array<CurveNet>;
+@group(0) @binding(4) var<storage, read_write> edge_factors: array<atomic<u32>>;
+@group(0) @binding(5) var<storage, read> corners: array<Corner>;
+// A bit for each patch: whether it has a texture.
+@group(0) @binding(6) var<storage, read> textured: array<u32>;
+@group(0) @binding(7) var<storage, read_write> search_workgroups: array<array<u32, 3>, 5>;
 
 const NEXT_PATCHES: u32 = 3u;
 const NEXT_EDGES: u32 = 4u;

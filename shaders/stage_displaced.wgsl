@@ -2,6 +2,7 @@
 // their language. A patch has eighteen indices: the nine of stage_patch.wgsl, the dominant corner on each of its three points,
 // and for each of its sides the two corners of the edge's dominant side (McDonald 2011). pass_levels.wgsl and
 // pass_displace.wgsl do the same for a whole mesh.
+// With: stage_heights
 
 // What patches agree on where they meet, which src/inspect/shader_files puts in place of this.
 const CHOSEN_DISPLACEMENT: u32 = DISPLACEMENT_ON;

@@ -221,7 +221,14 @@ fn workgroup_grid(workgroups: u32) -> array<u32, 3> {
     return array<u32, 3>(x, (workgroups + GRID_WIDTH - 1u) / GRID_WIDTH, 1u);
 }
 
-// The index of an invocation in such a grid.
-fn grid_index(workgroup: vec3<u32>, workgroups: vec3<u32>, local: u32) -> u32 {
-    return (workgroup.y * workgroups.x + workgroup.x) * WORKGROUP + local;
+// Where an invocation is in such a grid.
+struct Invocation {
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+}
+
+// Its index.
+fn grid_index(own: Invocation) -> u32 {
+    return (own.workgroup.y * own.workgroups.x + own.workgroup.x) * WORKGROUP + own.local;
 }

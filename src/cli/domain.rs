@@ -62,7 +62,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         Device::Cpu => sets.iter().try_for_each(|set| write(&on_cpu(args.partitioning, set)))?,
         Device::Gpu => {
             let gpu = Gpu::chosen(&args.adapter.choice())?;
-            let pass = DomainPass::new();
+            let pass = DomainPass::default();
             for batch in sets.chunks(BATCH) {
                 pass.run(&gpu, args.partitioning, batch)?.iter().try_for_each(&mut write)?;
             }

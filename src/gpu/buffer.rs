@@ -1,4 +1,4 @@
-//! Buffers in device memory.
+//! Buffers and textures in device memory.
 
 use bytemuck::Pod;
 use wgpu::util::DeviceExt;
@@ -46,6 +46,52 @@ pub fn uniform_buffer(gpu: &Gpu, label: &str, contents: &[u8]) -> wgpu::Buffer {
         contents,
         usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
     })
+}
+
+/// The size of buffers together.
+pub fn bytes_of<'a>(buffers: impl IntoIterator<Item = &'a wgpu::Buffer>) -> u64 {
+    buffers.into_iter().map(wgpu::Buffer::size).sum()
+}
+
+/// What to say of a texture with one layer, one level and one sample a texel.
+pub fn flat_texture(
+    label: &str,
+    [width, height]: [u32; 2],
+    format: wgpu::TextureFormat,
+    usage: wgpu::TextureUsages,
+) -> wgpu::TextureDescriptor<'_> {
+    wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage,
+        view_formats: &[],
+    }
+}
+
+/// A view of all of a texture.
+pub fn whole(texture: &wgpu::Texture) -> wgpu::TextureView {
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+/// A view of a texture like that with these texels, which shaders sample.
+pub fn filled_texture(
+    gpu: &Gpu,
+    label: &str,
+    size: [u32; 2],
+    format: wgpu::TextureFormat,
+    bytes: &[u8],
+) -> wgpu::TextureView {
+    let descriptor = flat_texture(label, size, format, wgpu::TextureUsages::TEXTURE_BINDING);
+    whole(&gpu.device.create_texture_with_data(
+        &gpu.queue,
+        &descriptor,
+        wgpu::util::TextureDataOrder::LayerMajor,
+        bytes,
+    ))
 }
 
 fn check_size<T>(gpu: &Gpu, what: &'static str, count: usize) -> Result<(), GpuError> {

@@ -1,10 +1,14 @@
 //! Shader modules and compute pipelines, each made when it is first needed.
 
 use std::borrow::Cow;
-use std::sync::Arc;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
+use wgpu::naga;
+
+use super::bound_pass::BoundPass;
 use super::lazy::Lazy;
-use super::wgsl::WgslFile;
+use super::wgsl::WgslModule;
 use super::{Gpu, GpuError};
 
 /// A shader module, made when it is first needed.
@@ -12,24 +16,36 @@ pub struct ShaderModule {
     name: &'static str,
     text: ModuleText,
     made: Lazy<wgpu::ShaderModule>,
+    /// What each entry point uses of group 0: bindings and the names of their variables.
+    variables: OnceLock<HashMap<String, Vec<(u32, String)>>>,
 }
 
 /// Where a module's text comes from.
 enum ModuleText {
-    /// The file with its entry points, and the files that it needs.
-    File(&'static WgslFile),
+    Files(WgslModule),
     Made(String),
 }
 
 impl ShaderModule {
-    /// The module whose entry points are in `file`.
-    pub fn new(file: &'static WgslFile) -> Self {
-        Self { name: file.name, text: ModuleText::File(file), made: Lazy::default() }
+    /// The module whose entry points are in the file of this name.
+    pub fn new(name: &'static str) -> Self {
+        Self::with(name, ModuleText::Files(WgslModule(name)))
     }
 
     /// The module with this text.
     pub(super) fn of_text(name: &'static str, text: String) -> Self {
-        Self { name, text: ModuleText::Made(text), made: Lazy::default() }
+        Self::with(name, ModuleText::Made(text))
+    }
+
+    fn with(name: &'static str, text: ModuleText) -> Self {
+        Self { name, text, made: Lazy::default(), variables: OnceLock::new() }
+    }
+
+    fn text(&self) -> Cow<'_, str> {
+        match &self.text {
+            ModuleText::Files(module) => Cow::Owned(module.text()),
+            ModuleText::Made(text) => Cow::Borrowed(&**text),
+        }
     }
 
     /// The module on the device, which is the same at every call.
@@ -38,40 +54,102 @@ impl ShaderModule {
     /// Out of memory, or a lost device.
     pub fn get(&self, gpu: &Gpu) -> Result<&wgpu::ShaderModule, GpuError> {
         self.made.get_or_make(gpu, || {
-            let text = match &self.text {
-                ModuleText::File(file) => Cow::Owned(file.module_text()),
-                ModuleText::Made(text) => Cow::Borrowed(&**text),
-            };
             gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some(self.name),
-                source: wgpu::ShaderSource::Wgsl(text),
+                source: wgpu::ShaderSource::Wgsl(self.text()),
             })
         })
+    }
+
+    /// Binds what an entry point uses of group 0 to what each of its variables stands for, under the layout that wgpu makes of
+    /// it.
+    pub fn bind<'a>(
+        &self,
+        gpu: &Gpu,
+        entry_point: &str,
+        layout: &wgpu::BindGroupLayout,
+        resource: impl Fn(&str) -> Option<wgpu::BindingResource<'a>>,
+    ) -> wgpu::BindGroup {
+        // A text that can't be read makes no pipeline either, which is reported.
+        let variables = self.variables.get_or_init(|| variables(&self.text()).unwrap_or_default());
+        let used = variables.get(entry_point).into_iter().flatten();
+        let entry = |(binding, name): &(u32, String)| {
+            Some(wgpu::BindGroupEntry { binding: *binding, resource: resource(name)? })
+        };
+        let entries: Vec<_> = used.filter_map(entry).collect();
+        let descriptor = wgpu::BindGroupDescriptor { label: Some(entry_point), layout, entries: &entries };
+        gpu.device.create_bind_group(&descriptor)
+    }
+}
+
+/// Shader modules by the names of the files with their entry points.
+#[derive(Default)]
+pub struct ShaderModules(Mutex<HashMap<&'static str, Arc<ShaderModule>>>);
+
+impl ShaderModules {
+    /// The module of this name, which is the same at every call.
+    pub fn get(&self, name: &'static str) -> Arc<ShaderModule> {
+        // What is behind the lock is whole even if a thread panicked while it held it.
+        let mut modules = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        modules.entry(name).or_insert_with(|| Arc::new(ShaderModule::new(name))).clone()
+    }
+}
+
+/// The bindings and names of the variables of group 0 that each entry point of a module uses.
+fn variables(text: &str) -> Option<HashMap<String, Vec<(u32, String)>>> {
+    let module = naga::front::wgsl::parse_str(text).ok()?;
+    // wgpu checks it.
+    let unchecked = naga::valid::ValidationFlags::empty();
+    let info = naga::valid::Validator::new(unchecked, naga::valid::Capabilities::all()).validate(&module).ok()?;
+    let of = |(index, entry_point): (usize, &naga::EntryPoint)| {
+        let used = info.get_entry_point(index);
+        let variable = |(handle, variable): (naga::Handle<naga::GlobalVariable>, &naga::GlobalVariable)| {
+            let binding = variable.binding.filter(|binding| binding.group == 0 && !used[handle].is_empty())?;
+            Some((binding.binding, variable.name.clone()?))
+        };
+        (entry_point.name.clone(), module.global_variables.iter().filter_map(variable).collect())
+    };
+    Some(module.entry_points.iter().enumerate().map(of).collect())
+}
+
+/// Which pass a compute pipeline runs: an entry point, with values of its module's `override` constants.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Pass {
+    pub(super) module: &'static str,
+    entry_point: &'static str,
+    constants: [Option<(&'static str, u32)>; 2],
+}
+
+impl Pass {
+    pub(super) const fn new(module: &'static str, entry_point: &'static str) -> Self {
+        Self { module, entry_point, constants: [None; 2] }
+    }
+
+    /// The same with a value for a constant. It has up to two.
+    pub(super) fn with(self, constant: &'static str, value: u32) -> Self {
+        Self { constants: [Some((constant, value)), self.constants[0]], ..self }
     }
 }
 
 /// A compute pipeline whose bind group layouts are what its entry point uses, made when it is first needed.
 pub struct ComputePipeline {
     module: Arc<ShaderModule>,
-    entry_point: &'static str,
-    /// Values of the module's `override` constants, by name.
-    constants: Vec<(&'static str, f64)>,
+    pub(super) pass: Pass,
     made: Lazy<wgpu::ComputePipeline>,
 }
 
 impl ComputePipeline {
     pub fn new(module: &Arc<ShaderModule>, entry_point: &'static str) -> Self {
-        Self { module: module.clone(), entry_point, constants: Vec::new(), made: Lazy::default() }
+        Self::of(module, Pass::new(module.name, entry_point))
     }
 
-    /// The same with a value for one of the module's `override` constants.
-    pub(super) fn with(mut self, constant: &'static str, value: u32) -> Self {
-        self.constants.push((constant, value.into()));
-        self
+    /// The pipeline of a pass of this module.
+    pub(super) fn of(module: &Arc<ShaderModule>, pass: Pass) -> Self {
+        Self { module: module.clone(), pass, made: Lazy::default() }
     }
 
     pub fn entry_point(&self) -> &'static str {
-        self.entry_point
+        self.pass.entry_point
     }
 
     /// The pipeline on the device, which is the same at every call.
@@ -80,18 +158,31 @@ impl ComputePipeline {
     /// Out of memory, or a lost device.
     pub fn get(&self, gpu: &Gpu) -> Result<&wgpu::ComputePipeline, GpuError> {
         let module = self.module.get(gpu)?;
+        let constants = self.pass.constants.iter().flatten().map(|&(name, value)| (name, f64::from(value)));
+        let constants: Vec<_> = constants.collect();
         self.made.get_or_make(gpu, || {
             gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(self.entry_point),
+                label: Some(self.pass.entry_point),
                 layout: None,
                 module,
-                entry_point: Some(self.entry_point),
-                compilation_options: wgpu::PipelineCompilationOptions {
-                    constants: &self.constants,
-                    ..Default::default()
-                },
+                entry_point: Some(self.pass.entry_point),
+                compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
                 cache: None,
             })
         })
+    }
+
+    /// The pass with group 0 bound to what each of its variables stands for.
+    ///
+    /// # Errors
+    /// The pipeline can't be made: out of memory, or a lost device.
+    pub fn bind<'a>(
+        &self,
+        gpu: &Gpu,
+        resource: impl Fn(&str) -> Option<wgpu::BindingResource<'a>>,
+    ) -> Result<BoundPass, GpuError> {
+        let pipeline = self.get(gpu)?.clone();
+        let group = self.module.bind(gpu, self.pass.entry_point, &pipeline.get_bind_group_layout(0), resource);
+        Ok(BoundPass { pipeline, group })
     }
 }

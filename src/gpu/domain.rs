@@ -3,14 +3,11 @@
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
-use wgpu::util::DeviceExt;
 
-use super::bound_pass::BoundPass;
-use super::buffer::empty;
+use super::buffer::{empty, uniform_buffer};
 use super::compute_pipeline::{ComputePipeline, ShaderModule};
 use super::pipelines::WORKGROUP;
 use super::readback::read_buffers;
-use super::wgsl::{CONNECTIVITY, DOMAIN, FACTORS, WgslFile};
 use super::{Gpu, GpuError};
 use geometry::tessellate::Partitioning;
 
@@ -21,8 +18,6 @@ pub struct DomainParams {
     pub partitioning: u32,
     pub set_count: u32,
 }
-
-pub(super) static PASS_DOMAIN: WgslFile = WgslFile::new("pass_domain", &[&CONNECTIVITY, &DOMAIN, &FACTORS]);
 
 /// The most points that a set of factors gives, at factor 64; `DOMAIN_POINTS` in the shader.
 pub const DOMAIN_POINTS: usize = 3169;
@@ -45,15 +40,11 @@ pub struct DomainPass {
 
 impl Default for DomainPass {
     fn default() -> Self {
-        Self::new()
+        Self { pipeline: ComputePipeline::new(&Arc::new(ShaderModule::new("pass_domain")), "domain_main") }
     }
 }
 
 impl DomainPass {
-    pub fn new() -> Self {
-        Self { pipeline: ComputePipeline::new(&Arc::new(ShaderModule::new(&PASS_DOMAIN)), "domain_main") }
-    }
-
     /// Tessellates each set of four factors: of the edges where U, V and W is 0, and inside. At most a thousand sets at once.
     ///
     /// # Errors
@@ -65,16 +56,21 @@ impl DomainPass {
         sets: &[[f32; 4]],
     ) -> Result<Vec<DomainPattern>, GpuError> {
         let params = DomainParams { partitioning: partitioning as u32, set_count: sets.len() as u32 };
-        let init = |label, contents: &[u8], usage| {
-            gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
-        };
-        let params = init("domain.params", bytemuck::bytes_of(&params), wgpu::BufferUsages::UNIFORM);
-        let factors = init("domain.factors", bytemuck::cast_slice(sets), wgpu::BufferUsages::STORAGE);
+        let params = uniform_buffer(gpu, "domain.params", bytemuck::bytes_of(&params));
+        let factors = uniform_buffer(gpu, "domain.factors", bytemuck::cast_slice(sets));
         let counts = empty::<[u32; 2]>(gpu, "domain counts", sets.len())?;
         let points = empty::<[u32; 2]>(gpu, "domain points", sets.len() * DOMAIN_POINTS)?;
         let triangles = empty::<[u32; 3]>(gpu, "domain triangles", sets.len() * DOMAIN_TRIANGLES)?;
-        let buffers = [(0, &params), (1, &factors), (2, &counts), (3, &points), (4, &triangles)];
-        let bound = BoundPass::new(gpu, &self.pipeline, &buffers)?;
+        let bound = self.pipeline.bind(gpu, |name| {
+            let buffer = match name {
+                "domain_params" => &params,
+                "factor_sets" => &factors,
+                "domain_counts" => &counts,
+                "domain_points" => &points,
+                _ => &triangles,
+            };
+            Some(buffer.as_entire_binding())
+        })?;
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let workgroups = [DOMAIN_TRIANGLES.div_ceil(WORKGROUP as usize) as u32, sets.len() as u32, 1];
         bound.dispatch(&mut encoder.begin_compute_pass(&Default::default()), workgroups);

@@ -128,27 +128,15 @@ impl Context {
 }
 
 fn check_limits(has: &wgpu::Limits) -> Result<(), GpuError> {
-    let needs = wgpu::Limits::default();
-    let pairs = [
-        (
-            "storage buffers in a shader stage",
-            has.max_storage_buffers_per_shader_stage,
-            needs.max_storage_buffers_per_shader_stage,
-        ),
-        (
-            "invocations in a compute workgroup",
-            has.max_compute_invocations_per_workgroup,
-            needs.max_compute_invocations_per_workgroup,
-        ),
-        ("bytes of workgroup memory", has.max_compute_workgroup_storage_size, needs.max_compute_workgroup_storage_size),
-        (
-            "workgroups in a dispatch",
-            has.max_compute_workgroups_per_dimension,
-            needs.max_compute_workgroups_per_dimension,
-        ),
+    let limits: [(_, fn(&wgpu::Limits) -> u32); 4] = [
+        ("storage buffers in a shader stage", |limits| limits.max_storage_buffers_per_shader_stage),
+        ("invocations in a compute workgroup", |limits| limits.max_compute_invocations_per_workgroup),
+        ("bytes of workgroup memory", |limits| limits.max_compute_workgroup_storage_size),
+        ("workgroups in a dispatch", |limits| limits.max_compute_workgroups_per_dimension),
     ];
-    match pairs.into_iter().find(|(_, has, needs)| has < needs) {
-        Some((what, has, needs)) => Err(GpuError::Limits { what, has: has.into(), needs: needs.into() }),
+    let needs = wgpu::Limits::default();
+    match limits.into_iter().find(|(_, limit)| limit(has) < limit(&needs)) {
+        Some((what, limit)) => Err(GpuError::Limits { what, has: limit(has).into(), needs: limit(&needs).into() }),
         None => Ok(()),
     }
 }

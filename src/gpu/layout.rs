@@ -3,6 +3,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
+pub use geometry::mesh::Curve;
 pub use geometry::mesh::rig::{Binding, Delta, JointMatrix};
 pub use geometry::tessellate::{PatchFactors, Vertex};
 
@@ -111,15 +112,6 @@ impl CornerDetail {
             tangent: detail.tangent.extend(detail.bitangent_sign).to_array(),
         }
     }
-}
-
-/// A curve, which some or all sides of an edge share: its end points in the edge's direction, and its run of sides.
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-#[repr(C)]
-pub struct Curve {
-    pub points: [u32; 2],
-    pub first_side: u32,
-    pub side_count: u32,
 }
 
 /// The two inner control points of a curve: the one near its start, and the one near its end.

@@ -20,14 +20,12 @@ mod hull;
 pub mod layout;
 mod lazy;
 mod mesh_buffers;
-mod mesh_passes;
 pub mod own_functions;
 mod own_least;
 pub mod own_lod;
-mod own_lod_passes;
 pub mod own_surface;
-mod own_surface_passes;
 mod params;
+mod pass_inputs;
 mod pipelines;
 pub mod readback;
 pub mod recorder;
@@ -42,15 +40,15 @@ pub mod wgsl_tokens;
 pub use adapters::{AdapterChoice, BACKENDS, adapters, best_adapter, driver, identity, kind};
 pub use arena::{VERTEX_HALF, chunks_an_arena, vertices_of};
 pub use bound_pass::BoundPass;
-pub use buffer::{empty, uniform_buffer};
-pub use compute_pipeline::{ComputePipeline, ShaderModule};
+pub use buffer::{bytes_of, empty, filled_texture, flat_texture, uniform_buffer, whole};
+pub use compute_pipeline::{ComputePipeline, ShaderModule, ShaderModules};
 pub use device::{Gpu, device_descriptor};
 pub use domain::{DomainParams, DomainPass, DomainPattern};
 pub use error::GpuError;
 pub use lazy::Lazy;
 pub(crate) use mesh_buffers::MeshBuffers;
 pub use mesh_buffers::SEARCH_COUNTERS;
-pub use own_functions::{OwnReport, OwnShader};
+pub use own_functions::{OwnPipelines, OwnReport, OwnShader};
 pub use own_lod::{Given, LodShader};
 pub use own_surface::SurfaceShader;
 pub use pipelines::{ComputePipelines, GRID_WIDTH, MOST_WORKGROUPS, WORKGROUP, bind_group, grid};
@@ -58,23 +56,4 @@ pub use readback::{Readback, read_buffer, read_buffers, read_texture};
 pub use recorder::{DRAWING, PASSES, PassTime, RecordPasses, Recorder, Timing, take_times};
 pub use search_passes::{NEXT_EDGES, NEXT_PATCHES, SEARCH_AGAIN, SEARCH_ASKED, SEARCH_INSIDE};
 pub use tessellator::{ChunkBuffers, Tessellator};
-pub use wgsl::WgslFile;
-
-/// The files with the entry points of the passes: one shader module each.
-pub static MODULES: [&WgslFile; 15] = [
-    &pipelines::PASS_DEFORM,
-    &pipelines::PASS_NETS,
-    &own_surface::PASS_OWN_SURFACE,
-    &pipelines::PASS_FACTORS,
-    &own_lod::PASS_OWN_LOD,
-    &pipelines::PASS_ASKED,
-    &pipelines::PASS_UNIFORM,
-    &pipelines::PASS_LEAST,
-    &pipelines::PASS_LEVELS,
-    &pipelines::PASS_COUNTS,
-    &pipelines::PASS_SCAN,
-    &pipelines::PASS_CHUNKS,
-    &pipelines::PASS_EMIT,
-    &pipelines::PASS_DISPLACE,
-    &domain::PASS_DOMAIN,
-];
+pub use wgsl::WgslModule;

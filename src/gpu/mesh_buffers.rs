@@ -1,7 +1,7 @@
 //! A mesh in device memory.
 
-use super::buffer::{empty, filled};
-use super::layout::{Corner, CornerDetail, Curve, CurveNet, Patch};
+use super::buffer::{bytes_of, empty, filled};
+use super::layout::{Corner, CornerDetail, CurveNet, Patch};
 use super::relief_buffers::{ReliefBuffers, details, patch_maps, shares};
 use super::{Gpu, GpuError};
 use geometry::mesh::{Curves, Dominance, Mesh, Sharing, Topology};
@@ -65,18 +65,17 @@ impl MeshBuffers {
             all_shares = shares(mesh, dominance, &texel_lengths);
         }
         let factor_room = 2 * grouped.factor_count() as usize + 5 * topology.patches.len() + SEARCH_COUNTERS as usize;
-        let curves: Vec<Curve> = grouped.curves.iter().map(curve).collect();
         Ok(Self {
             points: filled(gpu, "points", &points)?,
             corners: filled(gpu, "corners", &corners(mesh))?,
             corner_details: filled(gpu, "corner details", &corner_details(mesh))?,
             patches: filled(gpu, "patches", &patches(topology, &grouped))?,
-            curves: filled(gpu, "curves", &curves)?,
+            curves: filled(gpu, "curves", &grouped.curves)?,
             curve_sides: filled(gpu, "sides", &grouped.sides)?,
             factor_curves: filled(gpu, "edges", &grouped.factor_curves)?,
             material_patches: filled(gpu, "materials", &material_patches)?,
             textured: filled(gpu, "textured", &textured(mesh, topology))?,
-            curve_nets: empty::<CurveNet>(gpu, "curve nets", curves.len())?,
+            curve_nets: empty::<CurveNet>(gpu, "curve nets", grouped.curves.len())?,
             edge_factors: empty::<f32>(gpu, "edge factors", factor_room)?,
             search_workgroups: empty::<[u32; 3]>(gpu, "search workgroups", 5)?,
             shares: filled(gpu, "shares", &all_shares)?,
@@ -86,30 +85,19 @@ impl MeshBuffers {
             point_count: topology.points.len() as u32,
             patch_count: topology.patches.len() as u32,
             factor_count: grouped.factor_count(),
-            curve_count: curves.len() as u32,
+            curve_count: grouped.curves.len() as u32,
             material_count: material_patches.len() as u32,
         })
     }
 
     /// Bytes of points, topology, nets and factors.
     pub fn bytes(&self) -> u64 {
-        [
-            &self.points,
-            &self.corners,
-            &self.corner_details,
-            &self.patches,
-            &self.curves,
-            &self.curve_sides,
-            &self.factor_curves,
-            &self.material_patches,
-            &self.textured,
-            &self.curve_nets,
-            &self.edge_factors,
-            &self.shares,
-        ]
-        .iter()
-        .map(|buffer| buffer.size())
-        .sum::<u64>()
+        let topology = [&self.patches, &self.curves, &self.curve_sides, &self.factor_curves, &self.material_patches];
+        let computed = [&self.curve_nets, &self.edge_factors];
+        let attributes = [&self.points, &self.corners, &self.corner_details, &self.textured, &self.shares];
+        bytes_of(topology)
+            + bytes_of(computed)
+            + bytes_of(attributes)
             + self.relief.as_ref().map_or(0, ReliefBuffers::bytes)
     }
 }
@@ -140,10 +128,6 @@ fn textured(mesh: &Mesh, topology: &Topology) -> Vec<u32> {
         }
     }
     bits
-}
-
-fn curve(curve: &geometry::mesh::Curve) -> Curve {
-    Curve { points: curve.points, first_side: curve.first_side, side_count: curve.side_count }
 }
 
 fn patches(topology: &Topology, grouped: &Curves) -> Vec<Patch> {

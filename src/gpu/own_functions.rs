@@ -6,11 +6,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use bytemuck::{Pod, Zeroable};
 
-use super::wgsl::{WgslFile, joined};
+use super::compute_pipeline::{ComputePipeline, ShaderModule};
+use super::wgsl::{WgslModule, joined};
 use super::wgsl_tokens::{declared, tokens};
-
-/// Bounds the work of loops. The module that has it declares the buffer `report`.
-pub(super) static OWN_WORK: WgslFile = WgslFile::new("own_work", &[]);
+use super::{Gpu, GpuError};
 
 /// What stands before every name of this program in a module that has functions of the user's own.
 pub const OWN_PREFIX: &str = "pnaen_";
@@ -24,20 +23,22 @@ pub struct OwnFunction {
     pub result: &'static str,
     /// How it must be declared.
     pub signature: &'static str,
-    /// What has its place in the module of a file without it.
-    pub stand_in: &'static WgslFile,
+    /// The WGSL file that has its place in the module of a user's file without it.
+    pub stand_in: &'static str,
 }
 
 /// What a user's file is for.
 pub struct OwnPurpose {
     /// What such a file is called: "LOD shader".
     pub name: &'static str,
-    /// The structs that its functions get and give.
-    pub contract: &'static WgslFile,
+    /// The WGSL file with the structs that its functions get and give.
+    pub contract: &'static str,
     /// The first one a file must have.
     pub functions: &'static [OwnFunction],
     /// The passes that call them.
-    pub pass: &'static WgslFile,
+    pub module: WgslModule,
+    /// The entry points of these passes, in the order in which they run.
+    pub entry_points: &'static [&'static str],
 }
 
 /// The text of a user's file, checked and bounded, as `inspect::own_shader` makes it.
@@ -72,19 +73,19 @@ impl OwnText {
 
 impl OwnPurpose {
     fn module_text(&self, own: &OwnText) -> String {
-        let is_replaced = |file: &WgslFile| {
+        let is_replaced = |file: &str| {
             let mut functions = self.functions.iter().zip(&own.has);
-            functions.any(|(function, &has)| has && function.stand_in.name == file.name)
+            functions.any(|(function, &has)| has && function.stand_in == file)
         };
-        let is_ours = |file: &&WgslFile| file.name != self.contract.name && !is_replaced(file);
-        let ours: Vec<_> = self.pass.module_files().into_iter().filter(is_ours).collect();
-        format!("{}\n{}\n{}", own.text, self.contract.text, self.prefixed(&joined(&ours)))
+        let is_ours = |file: &&str| *file != self.contract && !is_replaced(file);
+        let ours: Vec<_> = self.module.files().into_iter().filter(is_ours).collect();
+        format!("{}\n{}\n{}", own.text, shaders::text(self.contract), self.prefixed(&joined(&ours)))
     }
 
     /// Puts the prefix before every name that a text declares, but not before those of the user's functions.
     fn prefixed(&self, text: &str) -> String {
         let all = tokens(text);
-        let names: HashSet<_> = declared(&all).iter().map(|name| name.text).collect();
+        let names: HashSet<_> = declared(&all).iter().map(|(_, name)| name.text).collect();
         let (mut out, mut copied) = (String::with_capacity(text.len() * 5 / 4), 0);
         for token in all.iter().filter(|token| names.contains(token.text) && !self.has_function(token.text)) {
             out += &text[copied..token.at];
@@ -106,8 +107,8 @@ impl OwnPurpose {
         let all = tokens(&text);
         let scalars = ["bool", "f32", "i32", "u32"].into_iter().map(str::to_owned);
         let used = all.windows(2).filter(|pair| pair[0].is_word() && ["(", "<"].contains(&pair[1].text));
-        let of_contract = tokens(self.contract.text);
-        let used = used.map(|pair| pair[0].text).chain(declared(&of_contract).into_iter().map(|name| name.text));
+        let of_contract = tokens(shaders::text(self.contract));
+        let used = used.map(|pair| pair[0].text).chain(declared(&of_contract).into_iter().map(|(_, name)| name.text));
         used.filter(|name| !self.has_function(name)).map(str::to_owned).chain(scalars).collect()
     }
 }
@@ -123,27 +124,46 @@ pub struct OwnReport {
     pub not_numbers: u32,
 }
 
+/// The pipelines of a user's file, one for each of the purpose's entry points.
+pub struct OwnPipelines(pub(super) Vec<ComputePipeline>);
+
+impl OwnPipelines {
+    /// Compiles nothing yet.
+    fn new<S: OwnShader>(shader: &S) -> Self {
+        let module = Arc::new(ShaderModule::of_text(S::purpose().module.0, shader.module_text()));
+        Self(S::purpose().entry_points.iter().map(|entry_point| ComputePipeline::new(&module, entry_point)).collect())
+    }
+
+    /// Compiles them.
+    ///
+    /// # Errors
+    /// The driver refuses them, out of memory, or a lost device.
+    pub fn prepare(&self, gpu: &Gpu) -> Result<(), GpuError> {
+        self.0.iter().try_for_each(|pipeline| pipeline.get(gpu).map(|_| ()))
+    }
+}
+
 /// The pipelines of users' files for one purpose that were asked for last.
-pub(super) struct RecentPipelines<S, P>(Mutex<Vec<(Arc<S>, Arc<P>)>>);
+pub(super) struct RecentPipelines<S>(Mutex<Vec<(Arc<S>, Arc<OwnPipelines>)>>);
 
 /// For how many files pipelines are kept: those that are shown, and those that replace them.
 const KEPT: usize = 2;
 
-impl<S, P> Default for RecentPipelines<S, P> {
+impl<S> Default for RecentPipelines<S> {
     fn default() -> Self {
         Self(Mutex::default())
     }
 }
 
-impl<S: PartialEq, P> RecentPipelines<S, P> {
+impl<S: OwnShader> RecentPipelines<S> {
     /// The pipelines of a file. Those of the same text are the same.
-    pub(super) fn of(&self, shader: &Arc<S>, make: impl FnOnce(&S) -> P) -> Arc<P> {
+    pub(super) fn of(&self, shader: &Arc<S>) -> Arc<OwnPipelines> {
         // What is behind the lock is whole even if a thread panicked while it held it.
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let place = kept.iter().position(|(known, _)| known == shader);
         let found = match place {
             Some(place) => kept.remove(place),
-            None => (shader.clone(), Arc::new(make(shader))),
+            None => (shader.clone(), Arc::new(OwnPipelines::new(&**shader))),
         };
         let pipelines = found.1.clone();
         kept.truncate(KEPT - 1);

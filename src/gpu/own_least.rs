@@ -1,19 +1,20 @@
 //! The own least of every patch: the fewest triangles with which it alone would keep the tolerance of LOD by error. Its passes
 //! run only if someone wants to see that.
 
-use std::sync::OnceLock;
-
-use super::bound_pass::{BoundPass, PassInputs};
+use super::bound_pass::{Step, Workgroups};
 use super::buffer::{empty, uniform_buffer};
+use super::compute_pipeline::Pass;
 use super::layout::Params;
-use super::mesh_passes::factor_buffers;
-use super::pipelines::{ComputePipelines, MOST_WORKGROUPS, grid};
+use super::mesh_buffers::MeshBuffers;
+use super::pass_inputs::{BoundPasses, PassInputs};
+use super::pipelines::{
+    ComputePipelines, EDGE_FACTORS, HEIGHTS_INSIDE, LEAST_TRIANGLES, MOST_WORKGROUPS, SEARCH_LEAST_TRIANGLES,
+};
 use super::recorder::RecordPasses;
-use super::search_passes::asked_buffers;
 use super::{Gpu, GpuError};
 use geometry::tessellate::Partitioning;
 
-/// The passes, bound to one set of mesh buffers: when those are replaced, so must this be.
+/// What the passes have of their own, beside one set of mesh buffers: when those are replaced, so must this be.
 pub(super) struct OwnLeast {
     /// Those of LOD by error, whichever LOD is used.
     params: wgpu::Buffer,
@@ -21,39 +22,24 @@ pub(super) struct OwnLeast {
     factors: wgpu::Buffer,
     /// The number of triangles of each patch.
     pub triangles: wgpu::Buffer,
-    edge_factors: BoundPass,
-    /// Bound once a displaced mesh needs it.
-    heights_inside: OnceLock<BoundPass>,
-    least_triangles: BoundPass,
-    /// Of the patterns of Direct3D, then of rows. Each is bound once it is needed.
-    searches: [OnceLock<BoundPass>; 2],
+    bound: BoundPasses,
     /// The parameters that the numbers were computed with.
     done: Option<Params>,
 }
 
 impl OwnLeast {
-    /// Binds the passes. They compute nothing yet.
+    /// Computes nothing yet.
     ///
     /// # Errors
-    /// More patches than the adapter binds memory for, or a pipeline can't be made.
-    pub(super) fn new(on: &PassInputs) -> Result<Self, GpuError> {
-        let (gpu, mesh, pipelines) = (on.gpu, on.mesh, on.pipelines);
+    /// More patches than the adapter binds memory for.
+    pub(super) fn new(gpu: &Gpu, mesh: &MeshBuffers) -> Result<Self, GpuError> {
         let zeroed: Params = bytemuck::Zeroable::zeroed();
-        let params = uniform_buffer(gpu, "least parameters", bytemuck::bytes_of(&zeroed));
         let room = mesh.edge_factors.size() as usize / size_of::<f32>();
-        let factors = empty::<f32>(gpu, "least factors", room)?;
-        let triangles = empty::<u32>(gpu, "least triangles", mesh.patch_count as usize)?;
-        let of_patches = [&asked_buffers(mesh, &params, &factors)[..], &[(7, &triangles)]].concat();
-        let edge_factors = BoundPass::new(gpu, &pipelines.edge_factors, &factor_buffers(mesh, &params, &factors))?;
-        let least_triangles = BoundPass::new(gpu, &pipelines.least_triangles, &of_patches)?;
         Ok(Self {
-            params,
-            factors,
-            triangles,
-            edge_factors,
-            heights_inside: OnceLock::new(),
-            least_triangles,
-            searches: Default::default(),
+            params: uniform_buffer(gpu, "least parameters", bytemuck::bytes_of(&zeroed)),
+            factors: empty::<f32>(gpu, "least factors", room)?,
+            triangles: empty::<u32>(gpu, "least triangles", mesh.patch_count as usize)?,
+            bound: BoundPasses::default(),
             done: None,
         })
     }
@@ -71,26 +57,18 @@ impl OwnLeast {
         if self.done.as_ref() == Some(params) {
             return Ok(());
         }
-        let mesh = on.mesh;
-        let heights_inside = if params.displacement == 0 {
-            None
-        } else {
-            let buffers = [&factor_buffers(mesh, &self.params, &self.factors)[..], &[(7, &mesh.patches)]].concat();
-            Some(BoundPass::once(&self.heights_inside, on.gpu, &on.pipelines.heights_inside, &buffers)?)
-        };
-        let kind = usize::from(params.partitioning == Partitioning::Rows as u32);
-        let pipeline = on.pipelines.search_least_triangles[kind].of(on.gpu, mesh.patch_count);
-        let of_patches = [&asked_buffers(mesh, &self.params, &self.factors)[..], &[(7, &self.triangles)]].concat();
-        let search = BoundPass::once(&self.searches[kind], on.gpu, pipeline, &of_patches)?;
+        let own = [("params", &self.params), ("edge_factors", &self.factors), ("least_triangles", &self.triangles)];
+        let (mesh, on) = (on.mesh, PassInputs { own: &own, bound: &self.bound, ..*on });
+        let mut steps = vec![on.over(EDGE_FACTORS, mesh.factor_count)?];
+        if params.displacement != 0 {
+            steps.push(on.over(HEIGHTS_INSIDE, mesh.patch_count)?);
+        }
+        steps.push(on.over(LEAST_TRIANGLES, mesh.patch_count)?);
+        let search = search(on.gpu, on.pipelines, mesh.patch_count, params.partitioning == Partitioning::Rows as u32);
+        let workgroups = Workgroups::Grid([mesh.patch_count.min(MOST_WORKGROUPS), 1, 1]);
+        steps.push(Step { bound: on.bound(search)?, workgroups });
         on.gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(params));
-        recorder.compute("least", |pass| {
-            self.edge_factors.dispatch(pass, grid(mesh.factor_count));
-            if let Some(heights_inside) = heights_inside {
-                heights_inside.dispatch(pass, grid(mesh.patch_count));
-            }
-            self.least_triangles.dispatch(pass, grid(mesh.patch_count));
-            search.dispatch(pass, [mesh.patch_count.min(MOST_WORKGROUPS), 1, 1]);
-        });
+        recorder.compute("least", |pass| steps.iter().for_each(|step| step.run(pass)));
         self.done = Some(*params);
         Ok(())
     }
@@ -105,12 +83,15 @@ impl OwnLeast {
     }
 }
 
+fn search(gpu: &Gpu, pipelines: &ComputePipelines, patches: u32, has_rows: bool) -> Pass {
+    pipelines.search(gpu, SEARCH_LEAST_TRIANGLES, patches).with("SEARCHES_ROWS", has_rows.into())
+}
+
 /// Makes the pipelines of the passes for a number of patches, on any thread.
 ///
 /// # Errors
 /// Out of memory, or a lost device.
 pub(super) fn prepare(gpu: &Gpu, pipelines: &ComputePipelines, patches: u32, has_rows: bool) -> Result<(), GpuError> {
-    pipelines.edge_factors.get(gpu)?;
-    pipelines.least_triangles.get(gpu)?;
-    pipelines.search_least_triangles[usize::from(has_rows)].of(gpu, patches).get(gpu).map(|_| ())
+    let passes = [EDGE_FACTORS, LEAST_TRIANGLES, search(gpu, pipelines, patches, has_rows)];
+    passes.into_iter().try_for_each(|pass| pipelines.get(pass).get(gpu).map(|_| ()))
 }

@@ -1,41 +1,32 @@
-//! Factors from functions of the user's own, in place of those of LOD: the module that runs them, and its pipelines.
+//! Factors from functions of the user's own, in place of those of LOD.
 
 use std::sync::Arc;
 
-use super::compute_pipeline::{ComputePipeline, ShaderModule};
-use super::own_functions::{OWN_WORK, OwnFunction, OwnPurpose, OwnShader, OwnText};
-use super::wgsl::{CONVENTION, FACTORS, LOAD_NET, LOADS, TYPES, WgslFile};
+use super::own_functions::{OwnFunction, OwnPurpose, OwnShader, OwnText};
+use super::wgsl::WgslModule;
 use geometry::tessellate::HullFactors;
-
-static LOD_CONTRACT: WgslFile = WgslFile::new("lod_contract", &[]);
-static OWN_EDGE_FACTOR: WgslFile = WgslFile::new("own_edge_factor", &[&LOD_CONTRACT]);
-static OWN_INSIDE_FACTOR: WgslFile =
-    WgslFile::new("own_inside_factor", &[&CONVENTION, &FACTORS, &LOD_CONTRACT, &TYPES]);
-pub(super) static PASS_OWN_LOD: WgslFile = WgslFile::new(
-    "pass_own_lod",
-    &[&CONVENTION, &LOAD_NET, &LOADS, &LOD_CONTRACT, &OWN_EDGE_FACTOR, &OWN_INSIDE_FACTOR, &OWN_WORK, &TYPES],
-);
 
 pub static LOD_PURPOSE: OwnPurpose = OwnPurpose {
     name: "LOD shader",
-    contract: &LOD_CONTRACT,
+    contract: "lod_contract",
     functions: &[
         OwnFunction {
             name: "edge_factor",
             parameters: &["Edge", "Triangle", "View"],
             result: "f32",
             signature: "fn edge_factor(edge: Edge, triangle: Triangle, view: View) -> f32",
-            stand_in: &OWN_EDGE_FACTOR,
+            stand_in: "own_edge_factor",
         },
         OwnFunction {
             name: "inside_factor",
             parameters: &["Triangle", "vec3", "View"],
             result: "f32",
             signature: "fn inside_factor(triangle: Triangle, factors: vec3<f32>, view: View) -> f32",
-            stand_in: &OWN_INSIDE_FACTOR,
+            stand_in: "own_inside_factor",
         },
     ],
-    pass: &PASS_OWN_LOD,
+    module: WgslModule("pass_own_lod"),
+    entry_points: &["pnaen_own_start_main", "pnaen_own_edges_main", "pnaen_own_insides_main", "pnaen_own_finish_main"],
 };
 
 /// Functions of the user's own for factors.
@@ -68,34 +59,5 @@ pub enum Given {
 impl From<Vec<HullFactors>> for Given {
     fn from(factors: Vec<HullFactors>) -> Self {
         Self::Factors(factors)
-    }
-}
-
-/// The pipelines of one user's functions.
-pub struct OwnLodPipelines {
-    pub(super) start: ComputePipeline,
-    pub(super) edges: ComputePipeline,
-    pub(super) insides: ComputePipeline,
-    pub(super) finish: ComputePipeline,
-}
-
-impl OwnLodPipelines {
-    /// Compiles nothing yet.
-    pub(super) fn new(shader: &LodShader) -> Self {
-        let module = Arc::new(ShaderModule::of_text(PASS_OWN_LOD.name, shader.module_text()));
-        Self {
-            start: ComputePipeline::new(&module, "pnaen_own_start_main"),
-            edges: ComputePipeline::new(&module, "pnaen_own_edges_main"),
-            insides: ComputePipeline::new(&module, "pnaen_own_insides_main"),
-            finish: ComputePipeline::new(&module, "pnaen_own_finish_main"),
-        }
-    }
-
-    /// Compiles them.
-    ///
-    /// # Errors
-    /// The driver refuses them, out of memory, or a lost device.
-    pub fn prepare(&self, gpu: &super::Gpu) -> Result<(), super::GpuError> {
-        [&self.start, &self.edges, &self.insides, &self.finish].iter().try_for_each(|one| one.get(gpu).map(|_| ()))
     }
 }

@@ -1,28 +1,20 @@
-//! Control points from a function of the user's own, in place of those of a surface: the module that runs it, and its
-//! pipelines.
+//! Control points from a function of the user's own, in place of those of a surface.
 
-use std::sync::Arc;
-
-use super::compute_pipeline::{ComputePipeline, ShaderModule};
-use super::own_functions::{OWN_WORK, OwnFunction, OwnPurpose, OwnShader, OwnText};
-use super::wgsl::{CONTROL_POINTS, TYPES, WgslFile};
-
-static SURFACE_CONTRACT: WgslFile = WgslFile::new("surface_contract", &[]);
-static OWN_EDGE_POINTS: WgslFile = WgslFile::new("own_edge_points", &[&SURFACE_CONTRACT]);
-pub(super) static PASS_OWN_SURFACE: WgslFile =
-    WgslFile::new("pass_own_surface", &[&CONTROL_POINTS, &OWN_EDGE_POINTS, &OWN_WORK, &SURFACE_CONTRACT, &TYPES]);
+use super::own_functions::{OwnFunction, OwnPurpose, OwnShader, OwnText};
+use super::wgsl::WgslModule;
 
 pub static SURFACE_PURPOSE: OwnPurpose = OwnPurpose {
     name: "surface shader",
-    contract: &SURFACE_CONTRACT,
+    contract: "surface_contract",
     functions: &[OwnFunction {
         name: "edge_points",
         parameters: &["SurfaceEdge", "SurfaceTriangle"],
         result: "EdgePoints",
         signature: "fn edge_points(edge: SurfaceEdge, triangle: SurfaceTriangle) -> EdgePoints",
-        stand_in: &OWN_EDGE_POINTS,
+        stand_in: "own_edge_points",
     }],
-    pass: &PASS_OWN_SURFACE,
+    module: WgslModule("pass_own_surface"),
+    entry_points: &["pnaen_own_surface_start_main", "pnaen_own_surface_points_main", "pnaen_own_surface_finish_main"],
 };
 
 /// A function of the user's own for control points.
@@ -40,32 +32,5 @@ impl OwnShader for SurfaceShader {
 
     fn own(&self) -> &OwnText {
         &self.0
-    }
-}
-
-/// The pipelines of one user's function.
-pub struct OwnSurfacePipelines {
-    pub(super) start: ComputePipeline,
-    pub(super) points: ComputePipeline,
-    pub(super) finish: ComputePipeline,
-}
-
-impl OwnSurfacePipelines {
-    /// Compiles nothing yet.
-    pub(super) fn new(shader: &SurfaceShader) -> Self {
-        let module = Arc::new(ShaderModule::of_text(PASS_OWN_SURFACE.name, shader.module_text()));
-        Self {
-            start: ComputePipeline::new(&module, "pnaen_own_surface_start_main"),
-            points: ComputePipeline::new(&module, "pnaen_own_surface_points_main"),
-            finish: ComputePipeline::new(&module, "pnaen_own_surface_finish_main"),
-        }
-    }
-
-    /// Compiles them.
-    ///
-    /// # Errors
-    /// The driver refuses them, out of memory, or a lost device.
-    pub fn prepare(&self, gpu: &super::Gpu) -> Result<(), super::GpuError> {
-        [&self.start, &self.points, &self.finish].iter().try_for_each(|one| one.get(gpu).map(|_| ()))
     }
 }

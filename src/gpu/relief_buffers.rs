@@ -1,6 +1,6 @@
 //! What displacement needs in device memory: height images, and what patches share where they meet.
 
-use super::buffer::{filled, uniform_buffer};
+use super::buffer::{bytes_of, filled, filled_texture, uniform_buffer};
 use super::layout::{HeightMap, Share};
 use super::{Gpu, GpuError};
 use geometry::mesh::{Dominance, Heights, MAX_LEVELS, MAX_MAPS, Mesh, Topology};
@@ -44,7 +44,13 @@ impl HeightImages {
         }
         all.resize((rows * HEIGHTS_ACROSS) as usize, 0.0);
         Ok(Self {
-            view: upload(gpu, &all, rows),
+            view: filled_texture(
+                gpu,
+                "heights",
+                [HEIGHTS_ACROSS, rows],
+                wgpu::TextureFormat::R32Float,
+                bytemuck::cast_slice(&all),
+            ),
             maps: uniform_buffer(gpu, "height maps", bytemuck::cast_slice(&table)),
             bytes: 4 * all.len() as u64,
         })
@@ -53,23 +59,6 @@ impl HeightImages {
     pub(crate) fn bytes(&self) -> u64 {
         self.bytes
     }
-}
-
-fn upload(gpu: &Gpu, heights: &[f32], rows: u32) -> wgpu::TextureView {
-    use wgpu::util::DeviceExt;
-    let descriptor = wgpu::TextureDescriptor {
-        label: Some("heights"),
-        size: wgpu::Extent3d { width: HEIGHTS_ACROSS, height: rows, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::R32Float,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    };
-    let (order, bytes) = (wgpu::util::TextureDataOrder::LayerMajor, bytemuck::cast_slice(heights));
-    let texture = gpu.device.create_texture_with_data(&gpu.queue, &descriptor, order, bytes);
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
 /// Which corners, edges and patches meet where, for a mesh whose sides are grouped into curves by a [`Sharing`](geometry::mesh::Sharing).
@@ -108,7 +97,7 @@ impl ReliefBuffers {
     pub fn bytes(&self) -> u64 {
         let corners = [&self.corner_ranges, &self.corner_patches];
         let points = [&self.part_starts, &self.parts, &self.factor_starts, &self.factors];
-        corners.iter().chain(&points).map(|buffer| buffer.size()).sum()
+        bytes_of(corners) + bytes_of(points)
     }
 }
 

@@ -1,8 +1,9 @@
 //! What deforms a mesh, in device memory: joints, morph targets, and a pose of them.
 
-use super::bound_pass::{BoundPass, PassInputs};
-use super::buffer::filled;
-use super::pipelines::grid;
+use super::bound_pass::Step;
+use super::buffer::{bytes_of, filled};
+use super::pass_inputs::{BoundPasses, PassInputs};
+use super::pipelines::{DEFORM_CORNERS, DEFORM_POINTS};
 use super::{Gpu, GpuError};
 use geometry::mesh::{Pose, Rig, Topology};
 
@@ -47,26 +48,26 @@ impl RigBuffers {
         Ok(())
     }
 
-    /// The passes that deform the mesh, in the order in which they run: its corners' normals and tangents, and its points. Each comes with
-    /// the grid that it runs over.
+    /// The passes that deform the mesh, in the order in which they run: its corners' normals and tangents, and its points.
     ///
     /// # Errors
     /// A pipeline can't be made: out of memory, or a lost device.
-    pub(super) fn passes(&self, on: &PassInputs) -> Result<[(BoundPass, [u32; 3]); 2], GpuError> {
-        let inputs = [(0, &self.bindings), (1, &self.deltas), (2, &self.palette), (3, &self.morph_weights)];
-        let details = [(7, &self.tangents), (8, &on.mesh.corner_details)];
-        let corners = [&inputs[..], &[(5, &on.mesh.corners)], &details].concat();
-        let points = [&inputs[..], &[(4, &self.point_corners), (6, &on.mesh.points)]].concat();
-        Ok([
-            (BoundPass::new(on.gpu, &on.pipelines.deform_corners, &corners)?, grid(self.corner_count)),
-            (BoundPass::new(on.gpu, &on.pipelines.deform_points, &points)?, grid(self.point_count)),
-        ])
+    pub(super) fn steps(&self, on: &PassInputs) -> Result<[Step; 2], GpuError> {
+        let own = [
+            ("bindings", &self.bindings),
+            ("deltas", &self.deltas),
+            ("palette", &self.palette),
+            ("morph_weights", &self.morph_weights),
+            ("point_corners", &self.point_corners),
+            ("tangents", &self.tangents),
+        ];
+        // The buffers of a pose are its own.
+        let on = PassInputs { own: &own, bound: &BoundPasses::default(), ..*on };
+        Ok([on.over(DEFORM_CORNERS, self.corner_count)?, on.over(DEFORM_POINTS, self.point_count)?])
     }
 
     pub(super) fn bytes(&self) -> u64 {
-        [&self.bindings, &self.tangents, &self.deltas, &self.palette, &self.morph_weights, &self.point_corners]
-            .iter()
-            .map(|buffer| buffer.size())
-            .sum()
+        let pose = [&self.palette, &self.morph_weights];
+        bytes_of(pose) + bytes_of([&self.bindings, &self.tangents, &self.deltas, &self.point_corners])
     }
 }

@@ -1,52 +1,30 @@
 //! The passes of LOD by error in which patches look for factors: see `shaders/pass_asked.wgsl` and `shaders/pass_uniform.wgsl`.
 
-use std::sync::OnceLock;
-
 use super::GpuError;
-use super::bound_pass::{BoundPass, PassInputs};
-use super::compute_pipeline::ComputePipeline;
-use super::mesh_buffers::MeshBuffers;
-use super::pipelines::{SearchPipelines, WORKGROUP};
+use super::bound_pass::{Step, Workgroups};
+use super::compute_pipeline::Pass;
+use super::pass_inputs::PassInputs;
+use super::pipelines::{WORKGROUP, grid};
 use geometry::tessellate::rounds;
 
-/// These belong to one set of mesh buffers: when those are replaced, so must this be.
-#[derive(Default)]
-pub(super) struct SearchPasses {
-    /// For the patterns of Direct3D, then for rows; by [`SearchPass`].
-    bound: [[OnceLock<BoundPass>; 12]; 2],
-}
-
-/// The entry points, without `_main`.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum SearchPass {
-    AskedFactors,
-    FirstPatterns,
-    SearchWorkgroups,
-    RoundWorkgroups,
-    SearchAskedFactors,
-    InsideFactors,
-    SearchInsideFactors,
-    KeepFactors,
-    SumTriangles,
-    Candidates,
-    SearchUniformFactor,
-    TakeUniformFactor,
-}
+const ASKED_FACTORS: Pass = Pass::new("pass_asked", "asked_factors_main");
+const FIRST_PATTERNS: Pass = Pass::new("pass_asked", "first_patterns_main");
+const COUNT_WORKGROUPS: Pass = Pass::new("pass_asked", "search_workgroups_main");
+const ROUND_WORKGROUPS: Pass = Pass::new("pass_asked", "round_workgroups_main");
+const SEARCH_ASKED_FACTORS: Pass = Pass::new("pass_asked", "search_asked_factors_main");
+const INSIDE_FACTORS: Pass = Pass::new("pass_asked", "inside_factors_main");
+const SEARCH_INSIDE_FACTORS: Pass = Pass::new("pass_asked", "search_inside_factors_main");
+const KEEP_FACTORS: Pass = Pass::new("pass_asked", "keep_factors_main");
+const SUM_TRIANGLES: Pass = Pass::new("pass_uniform", "sum_triangles_main");
+const CANDIDATES: Pass = Pass::new("pass_uniform", "candidates_main");
+const SEARCH_UNIFORM_FACTOR: Pass = Pass::new("pass_uniform", "search_uniform_factor_main");
+const TAKE_UNIFORM_FACTOR: Pass = Pass::new("pass_uniform", "take_uniform_factor_main");
 
 /// Software drivers take time for what has nothing to do, and GPUs take less for that than for counting what has.
-const SOFTWARE_ONLY: [SearchPass; 3] =
-    [SearchPass::FirstPatterns, SearchPass::SearchWorkgroups, SearchPass::RoundWorkgroups];
+const SOFTWARE_ONLY: [Pass; 3] = [FIRST_PATTERNS, COUNT_WORKGROUPS, ROUND_WORKGROUPS];
 
-/// What a pass has an invocation or a workgroup for.
-#[derive(Clone, Copy)]
-pub(super) enum Each<'a> {
-    Edge,
-    Patch,
-    /// It has so many workgroups.
-    Workgroups(u32),
-    /// It has as many workgroups as this buffer says, so many bytes into it.
-    Counted(&'a wgpu::Buffer, u64),
-}
+/// `ALONE` in `shaders/pass_asked.wgsl` for a software driver, which computes few invocations of a workgroup side by side.
+const ALONE: u32 = 32;
 
 /// The most workgroups of a search: enough for the largest GPUs.
 const SEARCH_WORKGROUPS: u32 = 8192;
@@ -62,87 +40,45 @@ pub const SEARCH_AGAIN: u32 = 2;
 pub const NEXT_PATCHES: u32 = 3;
 pub const NEXT_EDGES: u32 = 4;
 
-impl SearchPasses {
-    /// All passes in their order, for rows or for the patterns of Direct3D.
-    ///
-    /// # Errors
-    /// A pipeline can't be made: out of memory, or a lost device.
-    pub(super) fn steps<'a>(
-        &'a self,
-        on: &PassInputs<'a>,
-        has_rows: bool,
-    ) -> Result<Vec<(&'a BoundPass, Each<'a>)>, GpuError> {
-        use SearchPass::*;
-        let (patches, software) = (on.mesh.patch_count, on.gpu.is_software());
-        let counted = |place: u32, otherwise| match software {
-            true => Each::Counted(&on.mesh.search_workgroups, u64::from(place) * size_of::<[u32; 3]>() as u64),
-            false => otherwise,
-        };
-        let searched = |search| counted(search, Each::Workgroups(patches.min(SEARCH_WORKGROUPS)));
-        let [next_patches, next_edges] = [counted(NEXT_PATCHES, Each::Patch), counted(NEXT_EDGES, Each::Edge)];
-        let [adding, searching] = UNIFORM_WORKGROUPS[usize::from(software)];
-        let one = Each::Workgroups(1);
-        let take_insides =
-            |each| [(InsideFactors, each), (SearchWorkgroups, one), (SearchInsideFactors, searched(SEARCH_INSIDE))];
+/// All passes in their order, for rows or for the patterns of Direct3D.
+///
+/// # Errors
+/// A pipeline can't be made: out of memory, or a lost device.
+pub(super) fn search_steps(on: &PassInputs, has_rows: bool) -> Result<Vec<Step>, GpuError> {
+    let (mesh, software) = (on.mesh, on.gpu.is_software());
+    let patches = mesh.patch_count;
+    let [each_patch, each_edge] = [patches, mesh.factor_count].map(|items| Workgroups::Grid(grid(items)));
+    let line = |workgroups| Workgroups::Grid([workgroups, 1, 1]);
+    let counted = |place: u32, otherwise: Workgroups| match software {
+        true => Workgroups::Counted(mesh.search_workgroups.clone(), u64::from(place) * size_of::<[u32; 3]>() as u64),
+        false => otherwise,
+    };
+    let searched = |search| counted(search, line(patches.min(SEARCH_WORKGROUPS)));
+    let (next_patches, next_edges) =
+        (counted(NEXT_PATCHES, each_patch.clone()), counted(NEXT_EDGES, each_edge.clone()));
+    let [adding, searching] = UNIFORM_WORKGROUPS[usize::from(software)];
+    let sized = |pass| on.pipelines.search(on.gpu, pass, patches);
+    let [search_asked, search_inside] =
+        [SEARCH_ASKED_FACTORS, SEARCH_INSIDE_FACTORS].map(|pass| sized(pass).with("SEARCHES_ROWS", has_rows.into()));
+    let take_insides =
+        |each| [(INSIDE_FACTORS, each), (COUNT_WORKGROUPS, line(1)), (search_inside, searched(SEARCH_INSIDE))];
+    let asked = if software { ASKED_FACTORS.with("ALONE", ALONE) } else { ASKED_FACTORS };
 
-        let mut steps = vec![(AskedFactors, Each::Patch), (SearchWorkgroups, one), (FirstPatterns, next_patches)];
-        steps.extend([(SearchWorkgroups, one), (SearchAskedFactors, searched(SEARCH_ASKED))]);
-        steps.extend(take_insides(Each::Patch));
-        for round in 1..rounds(has_rows) {
-            steps.push((KeepFactors, if round == 1 { Each::Edge } else { next_edges }));
-            steps.extend([(RoundWorkgroups, one), (SearchAskedFactors, searched(SEARCH_AGAIN))]);
-            steps.extend(take_insides(next_patches));
-        }
-        steps.push((KeepFactors, next_edges));
-        steps.push((SumTriangles, Each::Workgroups(patches.div_ceil(WORKGROUP).min(adding))));
-        steps.extend([(Candidates, one), (SearchUniformFactor, Each::Workgroups(patches.min(searching)))]);
-        steps.push((TakeUniformFactor, Each::Edge));
-        steps.extend(take_insides(next_patches));
-
-        steps.retain(|(pass, _)| software || !SOFTWARE_ONLY.contains(pass));
-        steps.into_iter().map(|(pass, each)| Ok((self.bound(on, pass, has_rows)?, each))).collect()
+    let mut steps =
+        vec![(asked, each_patch.clone()), (COUNT_WORKGROUPS, line(1)), (FIRST_PATTERNS, next_patches.clone())];
+    steps.extend([(COUNT_WORKGROUPS, line(1)), (search_asked, searched(SEARCH_ASKED))]);
+    steps.extend(take_insides(each_patch));
+    for round in 1..rounds(has_rows) {
+        steps.push((KEEP_FACTORS, if round == 1 { each_edge.clone() } else { next_edges.clone() }));
+        steps.extend([(ROUND_WORKGROUPS, line(1)), (search_asked, searched(SEARCH_AGAIN))]);
+        steps.extend(take_insides(next_patches.clone()));
     }
+    steps.push((KEEP_FACTORS, next_edges));
+    steps.push((SUM_TRIANGLES, line(patches.div_ceil(WORKGROUP).min(adding))));
+    steps.extend([(CANDIDATES, line(1)), (sized(SEARCH_UNIFORM_FACTOR), line(patches.min(searching)))]);
+    steps.push((TAKE_UNIFORM_FACTOR, each_edge));
+    steps.extend(take_insides(next_patches));
 
-    fn bound<'a>(&'a self, on: &PassInputs<'a>, pass: SearchPass, has_rows: bool) -> Result<&'a BoundPass, GpuError> {
-        use SearchPass::*;
-        let (mesh, pipelines, kind) = (on.mesh, on.pipelines, usize::from(has_rows));
-        let of_patches = asked_buffers(mesh, on.params, &mesh.edge_factors);
-        let factors = [(0, on.params), (4, &mesh.edge_factors)];
-        let counted = [factors[0], factors[1], (7, &mesh.search_workgroups)];
-        let summed = [factors[0], factors[1], (2, &mesh.patches)];
-        let sized = |search: &'a SearchPipelines| search.of(on.gpu, mesh.patch_count);
-        let (pipeline, buffers): (&ComputePipeline, &[_]) = match pass {
-            AskedFactors if on.gpu.is_software() => (&pipelines.asked_before_first_patterns, &of_patches),
-            AskedFactors => (&pipelines.asked_factors, &of_patches),
-            FirstPatterns => (&pipelines.first_patterns, &of_patches),
-            SearchWorkgroups => (&pipelines.search_workgroups, &counted),
-            RoundWorkgroups => (&pipelines.round_workgroups, &counted),
-            SearchAskedFactors => (sized(&pipelines.search_asked_factors[kind]), &of_patches),
-            InsideFactors => (&pipelines.inside_factors, &of_patches),
-            SearchInsideFactors => (sized(&pipelines.search_inside_factors[kind]), &of_patches),
-            KeepFactors => (&pipelines.keep_factors, &factors),
-            SumTriangles => (&pipelines.sum_triangles, &summed),
-            Candidates => (&pipelines.candidates, &factors),
-            SearchUniformFactor => (sized(&pipelines.search_uniform_factor), &of_patches),
-            TakeUniformFactor => (&pipelines.take_uniform_factor, &counted),
-        };
-        BoundPass::once(&self.bound[kind][pass as usize], on.gpu, pipeline, buffers)
-    }
-}
-
-/// What passes over patches read under LOD by error. `factors` are laid out as [`MeshBuffers::edge_factors`].
-pub(super) fn asked_buffers<'a>(
-    mesh: &'a MeshBuffers,
-    params: &'a wgpu::Buffer,
-    factors: &'a wgpu::Buffer,
-) -> [(u32, &'a wgpu::Buffer); 7] {
-    [
-        (0, params),
-        (1, &mesh.points),
-        (2, &mesh.patches),
-        (3, &mesh.curve_nets),
-        (4, factors),
-        (5, &mesh.corners),
-        (6, &mesh.textured),
-    ]
+    steps.retain(|(pass, _)| software || !SOFTWARE_ONLY.contains(pass));
+    steps.into_iter().map(|(pass, workgroups)| Ok(Step { bound: on.bound(pass)?, workgroups })).collect()
 }

@@ -12,16 +12,16 @@ use glam::Mat4;
 use super::arena::Arena;
 use super::buffer::{filled, uniform_buffer};
 use super::layout::{Chunk, Params};
-use super::mesh_passes::MeshPasses;
 use super::own_least::OwnLeast;
 use super::params::params_of;
+use super::pass_inputs::BoundPasses;
 use super::readback::Readback;
 use super::relief_buffers::HeightImages;
 use super::rig::RigBuffers;
-use super::slab::SlabPasses;
+use super::slab::SlabBuffers;
 use super::{ComputePipelines, Given, Gpu, GpuError, MeshBuffers, OwnReport, hull};
 use geometry::mesh::{Mesh, Pose, Sharing, Topology};
-use geometry::tessellate::{self, Clip, Convention, Displacement, Edges, HullFactors, Inputs, PosedMesh, Solid};
+use geometry::tessellate::{self, Clip, Convention, Edges, HullFactors, Inputs, PosedMesh, Solid};
 
 pub use output::ChunkBuffers;
 use own_surface::OwnSurface;
@@ -55,8 +55,11 @@ pub struct Tessellator {
     /// What takes the place of the surface, if something does.
     own_surface: Option<OwnSurface>,
     arena: Arena,
-    slabs: Vec<SlabPasses>,
-    mesh_passes: MeshPasses,
+    slabs: Vec<SlabBuffers>,
+    /// The passes over the mesh.
+    bound: BoundPasses,
+    /// Those over each slab.
+    slab_passes: Vec<BoundPasses>,
     /// Made when it is first asked for.
     own_least: Option<OwnLeast>,
     /// None if the mesh has no heights.
@@ -142,7 +145,7 @@ impl Tessellator {
         let mut slabs = Vec::new();
         for first_patch in (0..buffers.patch_count.max(1)).step_by(SLAB_PATCHES as usize) {
             let patch_count = (buffers.patch_count - first_patch).min(SLAB_PATCHES);
-            slabs.push(SlabPasses::new(gpu, &buffers, &arena, first_patch, patch_count)?);
+            slabs.push(SlabBuffers::new(gpu, &buffers, &arena, first_patch, patch_count)?);
         }
         let params: Params = bytemuck::Zeroable::zeroed();
         let params_buffer = uniform_buffer(gpu, "params", bytemuck::bytes_of(&params));
@@ -166,8 +169,9 @@ impl Tessellator {
             own_lod_report: None,
             own_surface: None,
             arena,
+            slab_passes: slabs.iter().map(|_| BoundPasses::default()).collect(),
             slabs,
-            mesh_passes: MeshPasses::default(),
+            bound: BoundPasses::default(),
             own_least: None,
             images,
             nets_done: None,
@@ -245,9 +249,9 @@ impl Tessellator {
 
     /// Lets go of what passes are bound to, since some of those buffers were replaced.
     fn unbind(&mut self) {
-        self.mesh_passes = MeshPasses::default();
+        self.bound = BoundPasses::default();
         self.own_least = None;
-        self.slabs.iter_mut().for_each(SlabPasses::unbind);
+        self.slab_passes.fill_with(BoundPasses::default);
     }
 
     /// Forgets all that was computed, so that every pass runs again: for timing.
@@ -277,11 +281,6 @@ impl Tessellator {
     fn hides_backs(&self, inputs: &Inputs) -> bool {
         let is_ours = self.given.is_none() && self.own_surface.is_none();
         is_ours && self.posed.pose().is_none() && self.solid.is_some_and(|solid| solid.hides_backs(inputs))
-    }
-
-    /// The height images, if vertices are displaced by them.
-    fn displacing_images(&self) -> Option<&HeightImages> {
-        self.images.as_ref().filter(|_| self.params.displacement != Displacement::Off as u32)
     }
 
     /// Counts the changes of what is emitted: views that don't matter under the inputs are none.
@@ -391,6 +390,6 @@ impl Tessellator {
         let images = self.images.as_ref().map_or(0, HeightImages::bytes);
         let rig = self.rig.as_ref().map_or(0, RigBuffers::bytes);
         let least = self.own_least.as_ref().map_or(0, OwnLeast::bytes);
-        images + rig + least + self.slabs.iter().map(SlabPasses::bytes).sum::<u64>()
+        images + rig + least + self.slabs.iter().map(SlabBuffers::bytes).sum::<u64>()
     }
 }

@@ -1,88 +1,85 @@
-//! The WGSL files that passes are made of, and how a shader module is put together from them.
+//! How a shader module is put together from the WGSL files of `shaders/`.
 
-/// One file of `shaders/`.
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::sync::LazyLock;
+
+use super::wgsl_tokens::{Token, declared, tokens};
+
+/// A shader module: the name of the file with its entry points, without `.wgsl`.
 ///
-/// WGSL has no imports: a module is one text. Declarations may stand in any order, and names are unique across all files, so a
-/// module is the text of its files, one after another.
-pub struct WgslFile {
-    /// The file's name without its folder and `.wgsl`.
-    pub name: &'static str,
-    pub text: &'static str,
-    /// The files that declare what this one uses.
-    pub needs: &'static [&'static WgslFile],
+/// WGSL has no imports: a module is one text. Declarations may stand in any order, so it is the text of its files, one after
+/// another. A file needs those that declare what it uses. Where names can't tell them, since several files declare the same ones
+/// or none is used of one with more entry points, a line of the file does: `// With: name, another`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct WgslModule(pub &'static str);
+
+/// What is known of the names in a file.
+struct WgslFile {
+    declared: BTreeSet<&'static str>,
+    /// Names that one other file declares, and that file.
+    uses: BTreeMap<&'static str, &'static str>,
+    /// The files that a line of it names.
+    with: BTreeSet<&'static str>,
 }
 
-// Files that several passes share. A file that only one pass has is declared where that pass is.
-pub(crate) static QUOTIENTS: WgslFile = WgslFile::new("quotients", &[]);
-pub static FACTORS: WgslFile = WgslFile::new("factors", &[&QUOTIENTS]);
-pub(crate) static DOMAIN_ROW: WgslFile = WgslFile::new("domain_row", &[&FACTORS]);
-pub static RINGS: WgslFile = WgslFile::new("rings", &[]);
-/// A module has it beside [`DOMAIN`].
-pub static ROWS: WgslFile = WgslFile::new("rows", &[&DOMAIN_ROW, &FACTORS, &QUOTIENTS]);
-pub(crate) static SUBTRIANGULATION: WgslFile = WgslFile::new("subtriangulation", &[&FACTORS]);
-/// Beside it a module has [`CONNECTIVITY`] or [`CONNECTIVITY_TABLE`], which declare the same functions.
-pub static DOMAIN: WgslFile = WgslFile::new("domain", &[&DOMAIN_ROW, &FACTORS, &RINGS, &ROWS, &SUBTRIANGULATION]);
-pub static CONNECTIVITY: WgslFile = WgslFile::new("connectivity", &[&DOMAIN, &RINGS]);
-pub static CONNECTIVITY_TABLE: WgslFile = WgslFile::new("connectivity_table", &[&DOMAIN, &RINGS]);
-pub static CONVENTION: WgslFile = WgslFile::new("convention", &[&FACTORS]);
-pub static SURFACE: WgslFile = WgslFile::new("surface", &[&FACTORS]);
-pub static CONTROL_POINTS: WgslFile = WgslFile::new("control_points", &[&SURFACE]);
-pub static CULL: WgslFile = WgslFile::new("cull", &[&LOD, &SURFACE]);
-pub static OCTAHEDRAL_NORMAL: WgslFile = WgslFile::new("octahedral_normal", &[]);
-pub static NORMAL: WgslFile = WgslFile::new("normal", &[&FACTORS, &SURFACE]);
-pub static CURVATURE: WgslFile = WgslFile::new("curvature", &[&FACTORS, &SURFACE]);
-pub static LOD: WgslFile = WgslFile::new("lod", &[]);
-pub static TYPES: WgslFile = WgslFile::new("types", &[&LOD]);
-pub(crate) static DISPLACEMENT_FACTOR: WgslFile = WgslFile::new("displacement_factor", &[&LOD, &TYPES]);
-pub(crate) static PIECE_ERROR: WgslFile = WgslFile::new("piece_error", &[&LOD, &SURFACE]);
-pub(crate) static FLAT_PATCH: WgslFile = WgslFile::new("flat_patch", &[&LOD, &PIECE_ERROR, &SURFACE]);
-/// The module that has it declares the buffers that it reads.
-pub(crate) static SLIDES: WgslFile = WgslFile::new("slides", &[&FLAT_PATCH, &LEAST_FACTORS, &LOAD_NET, &PIECE_ERROR]);
-pub(crate) static SEARCH_GROUP: WgslFile = WgslFile::new("search_group", &[]);
-/// The module that has it declares the buffers that it reads.
-pub(crate) static SEARCH_STATE: WgslFile = WgslFile::new("search_state", &[&DISPLACEMENT_FACTOR]);
-pub(crate) static LEAST_FACTORS: WgslFile =
-    WgslFile::new("least_factors", &[&CONNECTIVITY, &DOMAIN, &FACTORS, &LOD, &PIECE_ERROR, &SEARCH_GROUP]);
-pub(crate) static LEAST_ROWS: WgslFile =
-    WgslFile::new("least_rows", &[&FACTORS, &LEAST_FACTORS, &PIECE_ERROR, &SEARCH_GROUP]);
-pub(crate) static HEIGHT_LIST: WgslFile = WgslFile::new("height_list", &[&TYPES]);
-/// The module that has it also has `HEIGHT_LIST`, or a file that declares the same functions.
-pub static DISPLACE: WgslFile = WgslFile::new("displace", &[&FACTORS, &NORMAL, &SURFACE, &TYPES]);
-/// The module that has it declares the buffers that it reads.
-pub(crate) static DISPLACEMENT_SHARES: WgslFile = WgslFile::new("displacement_shares", &[&TYPES]);
-/// The module that has it declares the buffers that it reads, and has [`LOADS`] or functions of the same names.
-pub static LOAD_NET: WgslFile = WgslFile::new("load_net", &[&SURFACE, &TYPES]);
-pub static LOADS: WgslFile = WgslFile::new("loads", &[&TYPES]);
-pub static WORKGROUP_SCAN: WgslFile = WgslFile::new("workgroup_scan", &[&TYPES]);
-
-impl WgslFile {
-    /// The file of this name in `shaders/`, whose declarations use those of other files.
-    pub const fn new(name: &'static str, needs: &'static [&'static Self]) -> Self {
-        Self { name, text: shaders::text(name), needs }
+static FILES: LazyLock<HashMap<&'static str, WgslFile>> = LazyLock::new(|| {
+    let texts: Vec<_> = shaders::TEXTS.iter().map(|&(name, text)| (name, text, tokens(text))).collect();
+    let mut declaring: HashMap<&str, Vec<(&str, bool)>> = HashMap::new();
+    // No file needs a pass.
+    for (name, _, all) in texts.iter().filter(|(name, ..)| !name.starts_with("pass_")) {
+        for (keyword, own) in declared(all).into_iter().filter(|(keyword, _)| keyword.text != "var") {
+            declaring.entry(own.text).or_default().push((name, keyword.text == "fn"));
+        }
     }
+    let file = |(name, text, all): &(&'static str, &'static str, Vec<Token<'static>>)| {
+        let used = used_names(all).filter_map(|(word, is_called)| match declaring.get(word).map(Vec::as_slice) {
+            Some(&[(file, is_function)]) if file != *name && (is_called || !is_function) => Some((word, file)),
+            _ => None,
+        });
+        let with = text.lines().filter_map(|line| line.strip_prefix("// With: ")).flat_map(|names| names.split(", "));
+        let declared = declared(all).into_iter().map(|(_, own)| own.text).collect();
+        (*name, WgslFile { declared, uses: used.collect(), with: with.collect() })
+    };
+    texts.iter().map(file).collect()
+});
 
-    /// The files of the module whose entry points are in this file: this one, and whatever it needs directly or through others.
-    /// Each is there once, after those that it needs.
-    pub fn module_files(&'static self) -> Vec<&'static Self> {
+/// The names in a text that aren't those of members, and whether each is called.
+fn used_names<'a>(all: &[Token<'a>]) -> impl Iterator<Item = (&'a str, bool)> {
+    let text = |index: usize| all.get(index).map(|token| token.text);
+    let names =
+        (0..all.len()).filter(move |&index| all[index].is_word() && (index == 0 || text(index - 1) != Some(".")));
+    names.map(move |index| (all[index].text, text(index + 1) == Some("(")))
+}
+
+impl WgslModule {
+    /// The names of its files. Each is there once, after those that it needs.
+    pub fn files(self) -> Vec<&'static str> {
         let mut files = Vec::new();
-        self.add_to(&mut files);
+        self.add(self.0, &mut BTreeSet::new(), &mut files);
         files
     }
 
-    fn add_to(&'static self, files: &mut Vec<&'static Self>) {
-        if files.iter().all(|file| file.name != self.name) {
-            self.needs.iter().for_each(|needed| needed.add_to(files));
-            files.push(self);
+    fn add(self, file: &'static str, begun: &mut BTreeSet<&'static str>, files: &mut Vec<&'static str>) {
+        if begun.insert(file) {
+            self.needs(file).into_iter().for_each(|needed| self.add(needed, begun, files));
+            files.push(file);
         }
     }
 
-    /// The text of that module.
-    pub fn module_text(&'static self) -> String {
-        joined(&self.module_files())
+    /// The files that one of its files needs. What the one with the entry points declares isn't taken from another.
+    fn needs(self, file: &str) -> BTreeSet<&'static str> {
+        let (own, root) = (&FILES[file], &FILES[self.0]);
+        let used = own.uses.iter().filter(|(name, _)| !own.declared.contains(*name) && !root.declared.contains(*name));
+        used.map(|(_, file)| *file).chain(own.with.iter().copied()).collect()
+    }
+
+    /// Its text.
+    pub fn text(self) -> String {
+        joined(&self.files())
     }
 }
 
 /// One text of these files.
-pub fn joined(files: &[&WgslFile]) -> String {
-    files.iter().map(|file| file.text).collect::<Vec<_>>().join("\n")
+pub fn joined(files: &[&str]) -> String {
+    files.iter().map(|name| shaders::text(name)).collect::<Vec<_>>().join("\n")
 }

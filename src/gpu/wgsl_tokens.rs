@@ -75,24 +75,26 @@ pub fn tokens(text: &str) -> Vec<Token<'_>> {
     tokens
 }
 
-/// Returns the names that a text declares outside of functions, structs and templates.
-pub fn declared<'a>(tokens: &[Token<'a>]) -> Vec<Token<'a>> {
+/// Returns the names that a text declares outside of functions, structs and templates, each after its keyword.
+pub fn declared<'a>(tokens: &[Token<'a>]) -> Vec<(Token<'a>, Token<'a>)> {
     let (mut names, mut depth) = (Vec::new(), 0_usize);
     for (index, token) in tokens.iter().enumerate() {
         match token.text {
             "{" => depth += 1,
             "}" => depth = depth.saturating_sub(1),
-            "fn" | "struct" | "const" | "override" | "alias" if depth == 0 => names.extend(tokens.get(index + 1)),
+            "fn" | "struct" | "const" | "override" | "alias" if depth == 0 => {
+                names.extend(tokens.get(index + 1).map(|name| (*token, *name)));
+            }
             "var" if depth == 0 => {
                 // The template of an address space may stand before the name.
                 let template = tokens.get(index + 1).filter(|next| next.text == "<");
                 let end = template.and_then(|_| tokens[index..].iter().position(|token| token.text == ">"));
-                names.extend(tokens.get(index + end.unwrap_or(0) + 1));
+                names.extend(tokens.get(index + end.unwrap_or(0) + 1).map(|name| (*token, *name)));
             }
             _ => {}
         }
     }
-    names.retain(Token::is_word);
+    names.retain(|(_, name)| name.is_word());
     names
 }
 
@@ -114,7 +116,7 @@ mod tests {
     fn declarations_are_found_outside_of_braces_only() {
         let text = "const A = 1; struct B { c: f32 } fn d(e: B) { const f = 2; var g = 3; } var<private> h: u32; \
                     @group(0) @binding(1) var<storage, read_write> i: B; alias j = f32; override k = 1; var l: sampler;";
-        let names: Vec<_> = declared(&tokens(text)).iter().map(|token| token.text).collect();
+        let names: Vec<_> = declared(&tokens(text)).iter().map(|(_, name)| name.text).collect();
         assert_eq!(names, ["A", "B", "d", "h", "i", "j", "k", "l"]);
     }
 }

@@ -15,7 +15,7 @@ use inspect::render::environment::Environment;
 use inspect::render::layout::{linear, srgb};
 use inspect::render::punctual::{PunctualLight, direct_light};
 use inspect::render::studio::studio_light;
-use inspect::render::tone::{TONE_CURVE_NEUTRAL, tone_mapped};
+use inspect::render::tone::tone_mapped;
 use inspect::render::{Camera, Renderer, Scene, Target};
 use inspect::settings::{Colors, FileLights, Lighting, NormalsAt, Overlays, Settings, ToneCurve};
 use load::environment_file::EnvironmentFile;
@@ -157,7 +157,7 @@ fn the_light_is_seen_behind_the_mesh() {
             let turn = glam::Mat3::from_rotation_y(-settings.light_rotation.to_radians());
             let light = radiance(turn * direction(&camera, viewport, at));
             let shown =
-                tone_mapped(light * (settings.exposure + settings.environment_brightness).exp2(), TONE_CURVE_NEUTRAL);
+                tone_mapped(light * (settings.exposure + settings.environment_brightness).exp2(), ToneCurve::Neutral);
             let found = linear_of(&picture, px);
             assert!(found.distance(shown) < 0.015, "{px:?} {camera:?}: {found}, not {shown}");
         }

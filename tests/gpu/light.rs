@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Vec2, Vec3, Vec4, vec3};
-use gpu::read_buffer;
+use gpu::{bind_group, read_buffer};
 use inspect::render::blur_levels::{ENVIRONMENT_LEVELS, level_of_roughness, prefiltered, roughness_of_level};
 use inspect::render::cube_map::CubeMap;
 use inspect::render::dfg::{environment_dfg, environment_sheen};
@@ -15,7 +15,8 @@ use inspect::render::reflectance::{
     transmitted,
 };
 use inspect::render::studio::studio_light;
-use inspect::render::tone::{TONE_CURVE_NEUTRAL, TONE_CURVE_NONE, tone_mapped};
+use inspect::render::tone::tone_mapped;
+use inspect::settings::ToneCurve;
 use load::panorama::Panorama;
 use wgpu::util::DeviceExt;
 
@@ -99,7 +100,7 @@ fn run_in(environment: &Environment, view: &LightView, cases: &[Case]) -> Vec<Fo
     let gpu = &engine().gpu;
     let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("light"),
-        source: wgpu::ShaderSource::Wgsl((ENVIRONMENT.module_text() + ENTRY).into()),
+        source: wgpu::ShaderSource::Wgsl((ENVIRONMENT.text() + ENTRY).into()),
     });
     let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
         label: Some("light"),
@@ -115,18 +116,15 @@ fn run_in(environment: &Environment, view: &LightView, cases: &[Case]) -> Vec<Fo
     };
     let input = buffer(bytemuck::cast_slice(cases));
     let output = buffer(bytemuck::cast_slice(&vec![Found::zeroed(); cases.len()]));
-    let group = |index, entries: &[_]| {
-        let layout = &pipeline.get_bind_group_layout(index);
-        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("light"), layout, entries })
-    };
-    let buffers = [(0, &input), (1, &output)]
-        .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() });
+    let layout = |index| pipeline.get_bind_group_layout(index);
+    let buffers = [(0, input.as_entire_binding()), (1, output.as_entire_binding())];
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
     pass.set_pipeline(&pipeline);
-    pass.set_bind_group(0, &group(0, &buffers), &[]);
+    pass.set_bind_group(0, &bind_group(gpu, "light", &layout(0), buffers), &[]);
     let surroundings = environment.surroundings(gpu, view);
-    pass.set_bind_group(1, &group(1, &environment.entries(16, &surroundings)), &[]);
+    let light = environment.bound(16, &surroundings);
+    pass.set_bind_group(1, &bind_group(gpu, "light", &layout(1), light), &[]);
     pass.dispatch_workgroups((cases.len() as u32).div_ceil(64), 1, 1);
     drop(pass);
     gpu.queue.submit([encoder.finish()]);
@@ -220,7 +218,7 @@ fn off(a: Vec3, b: Vec3) -> f32 {
 #[test]
 fn shaders_light_as_their_twins_do() {
     let environment = Environment::studio(&engine().gpu).expect("a small environment");
-    let view = LightView { brightness: 0.0, rotation: 40.0, exposure: -0.5, tone_curve: TONE_CURVE_NEUTRAL };
+    let view = LightView { brightness: 0.0, rotation: 40.0, exposure: -0.5, tone_curve: ToneCurve::Neutral };
     let twin = Twin::studio(view.rotation);
     let cases = cases(2000);
     let mut most = [0.0_f32; 9];
@@ -318,7 +316,7 @@ fn panoramas_stand_the_right_way_round_and_turn_from_front_to_right() {
 #[test]
 fn without_a_tone_curve_exposure_is_a_factor() {
     let environment = Environment::uniform(&engine().gpu, [0.5; 3]).expect("a small environment");
-    let view = LightView { exposure: 3.0, tone_curve: TONE_CURVE_NONE, ..LightView::default() };
+    let view = LightView { exposure: 3.0, tone_curve: ToneCurve::None, ..LightView::default() };
     for found in run_in(&environment, &view, &cases(50)) {
         assert!(found.shown.truncate().distance(8.0 * found.ambient) < 1e-5);
     }

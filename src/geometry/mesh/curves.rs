@@ -2,6 +2,8 @@
 //! in the edge's own direction, so that all sides agree to the last bit. In the published algorithms nothing is shared,
 //! and each side has a curve of its own.
 
+use bytemuck::{Pod, Zeroable};
+
 use super::{Edge, Mesh, Topology};
 
 /// Which sides of an edge share a curve.
@@ -30,7 +32,8 @@ impl Sharing {
 }
 
 /// The sides of an edge that share control points.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
 pub struct Curve {
     /// The end points, in the curve's direction: the edge's direction, or the patch's if nothing is shared.
     pub points: [u32; 2],

@@ -2,7 +2,6 @@
 
 use super::Tessellator;
 use crate::buffer::{empty, filled};
-use crate::own_lod_passes::OwnLodPasses;
 use crate::{Given, GpuError, OwnReport};
 use geometry::tessellate::HullFactors;
 
@@ -43,18 +42,5 @@ impl Tessellator {
     /// What functions of the user's own reported when the counts were last known, if they give factors.
     pub fn own_lod_report(&self) -> Option<OwnReport> {
         self.own_lod_report.filter(|_| self.counts_done)
-    }
-
-    /// The passes of functions of the user's own, if they give factors.
-    ///
-    /// # Errors
-    /// A pipeline can't be made: out of memory, or a lost device.
-    pub(super) fn own_lod(&self) -> Result<Option<&OwnLodPasses>, GpuError> {
-        match (&self.given, &self.own_report) {
-            (Some(Given::Shader(shader)), Some(report)) => {
-                self.mesh_passes.own_lod(&self.inputs_of_passes(), shader, report).map(Some)
-            }
-            _ => Ok(None),
-        }
     }
 }

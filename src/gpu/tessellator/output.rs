@@ -82,7 +82,7 @@ impl Tessellator {
             draw_args_offset: u64::from(chunk_index) * row,
             patch_factors: &slab.patch_factors,
             first_patch: slab.slab.first_patch,
-            slab: &slab.slab_buffer,
+            slab: &slab.uniform,
         }
     }
 

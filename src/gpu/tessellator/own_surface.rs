@@ -4,14 +4,13 @@ use std::sync::Arc;
 
 use super::Tessellator;
 use crate::buffer::empty;
-use crate::own_surface_passes::OwnSurfacePasses;
 use crate::{GpuError, LodShader, OwnReport, OwnShader, SurfaceShader};
 use geometry::mesh::Sharing;
 use geometry::tessellate::{Inputs, Surface, Tessellation, own_sharing, sharing};
 
 /// A function that gives control points.
 pub(super) struct OwnSurface {
-    shader: Arc<SurfaceShader>,
+    pub(super) shader: Arc<SurfaceShader>,
     /// Where it reports, an [`OwnReport`].
     pub(super) report: wgpu::Buffer,
     /// What it reported last.
@@ -70,14 +69,5 @@ impl Tessellator {
     pub(super) fn sharing(&self, inputs: &Inputs) -> Sharing {
         let own = inputs.tessellation;
         if self.own_surface.is_some() { own_sharing(own.edges) } else { sharing(own.surface, own.edges) }
-    }
-
-    /// The passes of that function, if there is one.
-    ///
-    /// # Errors
-    /// A pipeline can't be made: out of memory, or a lost device.
-    pub(super) fn own_surface_passes(&self) -> Result<Option<&OwnSurfacePasses>, GpuError> {
-        let bound = |own: &OwnSurface| self.mesh_passes.own_surface(&self.inputs_of_passes(), &own.shader, &own.report);
-        self.own_surface.as_ref().map(bound).transpose()
     }
 }

@@ -1,17 +1,58 @@
 //! The passes, in the order in which they run.
 
 use super::Tessellator;
-use crate::GpuError;
-use crate::bound_pass::{BoundPass, PassInputs};
-use crate::layout::EmitArgs;
+use crate::bound_pass::{BoundPass, Step, Workgroups};
+use crate::layout::{EmitArgs, Params};
 use crate::own_least::{self, OwnLeast};
 use crate::params::params_of;
-use crate::pipelines::grid;
+use crate::pass_inputs::PassInputs;
+use crate::pipelines::{
+    CENTERS, CHUNKS, COUNTS, CURVE_NETS, DIRECTIONS, DISPLACE, EDGE_FACTORS, EMIT_TRIANGLES, EMIT_VERTICES,
+    FACTOR_LEVELS, FRAMES, HEIGHTS_INSIDE, POINT_LEVELS, SCAN, grid,
+};
 use crate::readback::Readback;
 use crate::recorder::{RecordPasses, Recorder};
-use crate::search_passes::Each;
-use crate::slab::{SCAN_BLOCK, SlabPasses};
-use geometry::tessellate::{Displacement, Lod, Partitioning, Tessellation, own_least_inputs};
+use crate::search_passes::search_steps;
+use crate::slab::SCAN_BLOCK;
+use crate::{Given, GpuError, OwnPipelines};
+use geometry::tessellate::{Displacement, Lod, Normals, Partitioning, Tessellation, own_least_inputs};
+
+/// What settings say about which passes run, and with which constants.
+#[derive(Clone, Copy)]
+struct Choices {
+    by_error: bool,
+    has_rows: bool,
+    displaces: bool,
+    /// Of [`Normals`].
+    normals: u32,
+}
+
+impl Choices {
+    fn of(tessellation: &Tessellation) -> Self {
+        Self {
+            by_error: tessellation.used_lod() == Lod::Error,
+            has_rows: tessellation.partitioning == Partitioning::Rows,
+            displaces: tessellation.displacement != Displacement::Off,
+            normals: tessellation.normals as u32,
+        }
+    }
+
+    fn of_params(params: &Params) -> Self {
+        Self {
+            by_error: params.lod == Lod::Error as u32,
+            has_rows: params.partitioning == Partitioning::Rows as u32,
+            displaces: params.displacement != Displacement::Off as u32,
+            normals: params.normals,
+        }
+    }
+}
+
+/// Records passes under one name, if there are any.
+fn record(recorder: &mut impl RecordPasses, name: &'static str, steps: &[Step]) {
+    if !steps.is_empty() {
+        recorder.compute(name, |pass| steps.iter().for_each(|step| step.run(pass)));
+    }
+}
 
 impl Tessellator {
     /// Records the passes that decide what will be emitted: deform and nets (where they are out of date), factors, counts,
@@ -43,18 +84,20 @@ impl Tessellator {
 
     fn record_chunks(&mut self, recorder: &mut impl RecordPasses) -> Result<(), GpuError> {
         if let Some(rig) = self.rig.as_ref().filter(|_| self.posed.pose().is_some() && !self.is_deformed) {
-            let passes = rig.passes(&self.inputs_of_passes())?;
-            recorder.compute("deform", |pass| passes.iter().for_each(|(bound, grid)| bound.dispatch(pass, *grid)));
+            record(recorder, "deform", &rig.steps(&self.inputs_of_passes())?);
             self.is_deformed = true;
         }
         let shape = (self.params.surface, self.params.alpha);
         if self.nets_done != Some(shape) {
-            self.record_nets(recorder)?;
+            record(recorder, "nets", &self.nets()?);
+            record(recorder, "directions", &self.directions()?);
             self.nets_done = Some(shape);
         }
-        self.record_factors(recorder)?;
-        for slab in &self.slabs {
-            self.record_counts(recorder, slab)?;
+        let choices = Choices::of_params(&self.params);
+        record(recorder, "factors", &self.factors(choices)?);
+        record(recorder, "levels", &self.levels(choices)?);
+        for slab in 0..self.slabs.len() {
+            self.counts(slab)?.into_iter().for_each(|(name, step)| record(recorder, name, &[step]));
         }
         Ok(())
     }
@@ -65,32 +108,14 @@ impl Tessellator {
     /// # Errors
     /// Out of memory, or a lost device.
     pub fn prepare(&self, tessellation: &Tessellation) -> Result<(), GpuError> {
-        let (on, passes) = (self.inputs_of_passes(), &self.mesh_passes);
-        let rows = tessellation.partitioning == Partitioning::Rows;
-        if self.own_surface_passes()?.is_none() {
-            passes.curve_nets(&on)?;
-        }
-        passes.centers(&on)?;
-        passes.edge_factors(&on)?;
-        self.own_lod()?;
-        if tessellation.used_lod() == Lod::Error {
-            passes.searches.steps(&on, rows)?;
-        }
-        if let Some((relief, images)) = self.buffers.relief.as_ref().zip(self.images.as_ref()) {
-            passes.directions(&on, relief)?;
-            passes.frames(&on, relief)?;
-            if tessellation.displacement != Displacement::Off {
-                passes.factor_levels(&on, images)?;
-                passes.point_levels(&on, relief)?;
-                self.slabs.iter().try_for_each(|slab| slab.displace(&on, images).map(|_| ()))?;
-            }
-        }
-        for slab in &self.slabs {
-            slab.counts(&on)?;
-            slab.scan(&on)?;
-            slab.chunks(&on)?;
-            slab.emit_vertices(&on, rows, tessellation.normals as usize)?;
-            slab.emit_triangles(&on, rows)?;
+        let choices = Choices::of(tessellation);
+        self.nets()?;
+        self.directions()?;
+        self.factors(choices)?;
+        self.levels(choices)?;
+        for slab in 0..self.slabs.len() {
+            self.counts(slab)?;
+            self.emission(slab, choices)?;
         }
         Ok(())
     }
@@ -105,7 +130,7 @@ impl Tessellator {
         let params = params_of(&own_least_inputs(inputs), &self.mesh, &self.buffers, None, false);
         let mut own_least = match self.own_least.take() {
             Some(own_least) => own_least,
-            None => OwnLeast::new(&self.inputs_of_passes())?,
+            None => OwnLeast::new(&self.gpu, &self.buffers)?,
         };
         let recorded = own_least.record(&self.inputs_of_passes(), &params, recorder);
         self.own_least = Some(own_least);
@@ -120,7 +145,7 @@ impl Tessellator {
         own_least::prepare(&self.gpu, &self.pipelines, self.buffers.patch_count, partitioning == Partitioning::Rows)
     }
 
-    /// What passes over the mesh and its slabs are bound to.
+    /// What passes over the mesh are bound to.
     pub(super) fn inputs_of_passes(&self) -> PassInputs<'_> {
         PassInputs {
             gpu: &self.gpu,
@@ -129,81 +154,89 @@ impl Tessellator {
             params: &self.params_buffer,
             given: &self.given_buffer,
             arena: &self.arena,
+            images: self.images.as_ref(),
+            bound: &self.bound,
+            slab: None,
+            own: &[],
         }
     }
 
-    fn record_nets(&self, recorder: &mut impl RecordPasses) -> Result<(), GpuError> {
-        let (on, passes) = (self.inputs_of_passes(), &self.mesh_passes);
-        let (own, centers) = (self.own_surface_passes()?, passes.centers(&on)?);
-        let curve_nets = if own.is_none() { Some(passes.curve_nets(&on)?) } else { None };
-        recorder.compute("nets", |pass| {
-            if let Some(curve_nets) = curve_nets {
-                curve_nets.dispatch(pass, grid(self.buffers.curve_count));
+    /// What passes over a slab are bound to.
+    fn inputs_of_slab(&self, slab: usize) -> PassInputs<'_> {
+        PassInputs { bound: &self.slab_passes[slab], slab: Some(&self.slabs[slab]), ..self.inputs_of_passes() }
+    }
+
+    /// The control points of every curve, and at the centre of every patch.
+    fn nets(&self) -> Result<Vec<Step>, GpuError> {
+        let (on, mesh) = (self.inputs_of_passes(), &self.buffers);
+        let mut steps = match &self.own_surface {
+            Some(own) => {
+                let pipelines = self.pipelines.own_surface(&own.shader);
+                own_steps(&on, &pipelines, &own.report, &[1, 3 * mesh.patch_count, mesh.curve_count])?
             }
-            if let Some(own) = own {
-                own.dispatch(pass, self.buffers.patch_count, self.buffers.curve_count);
+            None => vec![on.over(CURVE_NETS, mesh.curve_count)?],
+        };
+        steps.push(on.over(CENTERS, mesh.patch_count)?);
+        Ok(steps)
+    }
+
+    /// Where displacement moves points to.
+    fn directions(&self) -> Result<Vec<Step>, GpuError> {
+        let (on, mesh) = (self.inputs_of_passes(), &self.buffers);
+        let Some(relief) = &mesh.relief else { return Ok(Vec::new()) };
+        Ok(vec![on.over(DIRECTIONS, mesh.point_count)?, on.over(FRAMES, relief.corner_count)?])
+    }
+
+    /// Factors of LOD, or of functions of the user's own.
+    fn factors(&self, choices: Choices) -> Result<Vec<Step>, GpuError> {
+        let (on, mesh) = (self.inputs_of_passes(), &self.buffers);
+        match (&self.given, &self.own_report) {
+            (Some(Given::Shader(shader)), Some(report)) => {
+                let (pipelines, patches) = (self.pipelines.own_lod(shader), mesh.patch_count);
+                return own_steps(&on, &pipelines, report, &[1, 3 * patches, patches, patches]);
             }
-            centers.dispatch(pass, grid(self.buffers.patch_count));
-        });
-        if let Some(relief) = &self.buffers.relief {
-            let (directions, frames) = (passes.directions(&on, relief)?, passes.frames(&on, relief)?);
-            recorder.compute("directions", |pass| {
-                directions.dispatch(pass, grid(self.buffers.point_count));
-                frames.dispatch(pass, grid(relief.corner_count));
-            });
+            (Some(_), _) => return Ok(Vec::new()),
+            (None, _) => {}
         }
-        Ok(())
+        let mut steps = vec![on.over(EDGE_FACTORS, mesh.factor_count)?];
+        if choices.by_error {
+            if choices.displaces && mesh.relief.is_some() {
+                steps.push(on.over(HEIGHTS_INSIDE, mesh.patch_count)?);
+            }
+            steps.extend(search_steps(&on, choices.has_rows)?);
+        }
+        Ok(steps)
     }
 
-    /// LOD's factors, and if vertices are displaced the levels at which heights are looked up.
-    fn record_factors(&self, recorder: &mut impl RecordPasses) -> Result<(), GpuError> {
-        let (on, passes) = (self.inputs_of_passes(), &self.mesh_passes);
-        if let Some(own_lod) = self.own_lod()? {
-            recorder.compute("factors", |pass| own_lod.dispatch(pass, self.buffers.patch_count));
+    /// If vertices are displaced, the levels at which heights are looked up.
+    fn levels(&self, choices: Choices) -> Result<Vec<Step>, GpuError> {
+        let (on, mesh) = (self.inputs_of_passes(), &self.buffers);
+        if !choices.displaces || mesh.relief.is_none() {
+            return Ok(Vec::new());
         }
-        if self.given.is_none() {
-            let edge_factors = passes.edge_factors(&on)?;
-            let by_error = self.params.lod == Lod::Error as u32;
-            let by_heights = by_error && self.displacing_images().is_some();
-            let heights_inside = if by_heights { Some(passes.heights_inside(&on)?) } else { None };
-            let asked = if by_error {
-                Some(passes.searches.steps(&on, self.params.partitioning == Partitioning::Rows as u32)?)
-            } else {
-                None
-            };
-            recorder.compute("factors", |pass| {
-                edge_factors.dispatch(pass, grid(self.buffers.factor_count));
-                if let Some(heights_inside) = heights_inside {
-                    heights_inside.dispatch(pass, grid(self.buffers.patch_count));
-                }
-                for (step, each) in asked.into_iter().flatten() {
-                    match each {
-                        Each::Edge => step.dispatch(pass, grid(self.buffers.factor_count)),
-                        Each::Patch => step.dispatch(pass, grid(self.buffers.patch_count)),
-                        Each::Workgroups(count) => step.dispatch(pass, [count, 1, 1]),
-                        Each::Counted(workgroups, offset) => step.dispatch_indirect(pass, workgroups, offset),
-                    }
-                }
-            });
-        }
-        if let Some((relief, images)) = self.buffers.relief.as_ref().zip(self.displacing_images()) {
-            let (factor_levels, point_levels) = (passes.factor_levels(&on, images)?, passes.point_levels(&on, relief)?);
-            recorder.compute("levels", |pass| {
-                factor_levels.dispatch(pass, grid(self.buffers.factor_count));
-                point_levels.dispatch(pass, grid(self.buffers.point_count));
-            });
-        }
-        Ok(())
+        Ok(vec![on.over(FACTOR_LEVELS, mesh.factor_count)?, on.over(POINT_LEVELS, mesh.point_count)?])
     }
 
-    fn record_counts(&self, recorder: &mut impl RecordPasses, slab: &SlabPasses) -> Result<(), GpuError> {
-        let on = self.inputs_of_passes();
-        let (counts, scan, chunks) = (slab.counts(&on)?, slab.scan(&on)?, slab.chunks(&on)?);
-        let blocks = [(slab.slab.patch_count + 1).div_ceil(SCAN_BLOCK), 1, 1];
-        recorder.compute("counts", |pass| counts.dispatch(pass, blocks));
-        recorder.compute("scan", |pass| scan.dispatch(pass, blocks));
-        recorder.compute("chunks", |pass| chunks.dispatch(pass, [1, 1, 1]));
-        Ok(())
+    /// What a slab will emit.
+    fn counts(&self, slab: usize) -> Result<[(&'static str, Step); 3], GpuError> {
+        let on = self.inputs_of_slab(slab);
+        let blocks = (self.slabs[slab].slab.patch_count + 1).div_ceil(SCAN_BLOCK);
+        let step = |pass, workgroups| {
+            Ok::<_, GpuError>(Step { bound: on.bound(pass)?, workgroups: Workgroups::Grid([workgroups, 1, 1]) })
+        };
+        Ok([("counts", step(COUNTS, blocks)?), ("scan", step(SCAN, blocks)?), ("chunks", step(CHUNKS, 1)?)])
+    }
+
+    /// What emits the vertices of a chunk of a slab and its triangles, and what displaces it.
+    fn emission(&self, slab: usize, choices: Choices) -> Result<(BoundPass, BoundPass, Option<BoundPass>), GpuError> {
+        let on = self.inputs_of_slab(slab);
+        let rows = u32::from(choices.has_rows);
+        let vertices = EMIT_VERTICES.with("EMIT_NORMALS", choices.normals.min(Normals::Surface as u32));
+        let own = [("connectivity_table", self.pipelines.patterns(&self.gpu)?)];
+        let triangles = PassInputs { own: &own, ..on }.bound(EMIT_TRIANGLES.with("EMIT_ROWS", rows))?;
+        let displaces = choices.displaces && self.images.is_some();
+        let displace = if displaces { Some(on.bound(DISPLACE)?) } else { None };
+        Ok((on.bound(vertices.with("EMIT_ROWS", rows))?, triangles, displace))
     }
 
     /// Records the emission of chunk `index` into the arena, unless the arena already holds it.
@@ -224,26 +257,37 @@ impl Tessellator {
         slab_index: usize,
         chunk_index: u32,
     ) -> Result<(), GpuError> {
-        let (on, slab) = (self.inputs_of_passes(), &self.slabs[slab_index]);
-        let rows = self.params.partitioning == Partitioning::Rows as u32;
-        let vertices = slab.emit_vertices(&on, rows, self.params.normals as usize)?;
-        let triangles = slab.emit_triangles(&on, rows)?;
-        let displace = self.displacing_images().map(|images| slab.displace(&on, images)).transpose()?;
+        let (vertices, triangles, displace) = self.emission(slab_index, Choices::of_params(&self.params))?;
+        let slab = &self.slabs[slab_index];
         let args = u64::from(chunk_index) * size_of::<EmitArgs>() as u64;
         let run = |pass: &mut wgpu::ComputePass, bound: &BoundPass, field: usize| {
-            pass.set_pipeline(&bound.pipeline);
-            pass.set_bind_group(0, &bound.group, &[]);
+            bound.set(pass);
             pass.set_bind_group(1, &slab.chunk_number(&self.gpu, &bound.pipeline, chunk_index), &[]);
             pass.dispatch_workgroups_indirect(&slab.emit_args, args + field as u64);
         };
         recorder.compute("emit", |pass| {
-            run(pass, vertices, std::mem::offset_of!(EmitArgs, vertices));
-            run(pass, triangles, std::mem::offset_of!(EmitArgs, triangles));
+            run(pass, &vertices, std::mem::offset_of!(EmitArgs, vertices));
+            run(pass, &triangles, std::mem::offset_of!(EmitArgs, triangles));
         });
         if let Some(displace) = displace {
-            recorder.compute("displace", |pass| run(pass, displace, std::mem::offset_of!(EmitArgs, displaced)));
+            recorder.compute("displace", |pass| run(pass, &displace, std::mem::offset_of!(EmitArgs, displaced)));
         }
         self.emitted = Some((slab_index, chunk_index));
         Ok(())
     }
+}
+
+/// The passes of functions of the user's own, each with an invocation for each of so many items.
+fn own_steps(
+    on: &PassInputs,
+    pipelines: &OwnPipelines,
+    report: &wgpu::Buffer,
+    items: &[u32],
+) -> Result<Vec<Step>, GpuError> {
+    let own = [("report", report)];
+    let on = PassInputs { own: &own, ..*on };
+    let step = |(pipeline, items): (_, &u32)| {
+        Ok(Step { bound: on.bound_by(pipeline)?, workgroups: Workgroups::Grid(grid(*items)) })
+    };
+    pipelines.0.iter().zip(items).map(step).collect()
 }

@@ -170,7 +170,7 @@ fn check_names(text: &str, tokens: &[Token], purpose: &OwnPurpose) -> Result<(),
         return fault(token, FaultKind::Prefix);
     }
     let needed: HashSet<String> = purpose.needed_names();
-    match declared(tokens).iter().find(|token| needed.contains(token.text)) {
+    match declared(tokens).iter().map(|(_, name)| name).find(|name| needed.contains(name.text)) {
         Some(token) => fault(token, FaultKind::Taken),
         None => Ok(()),
     }

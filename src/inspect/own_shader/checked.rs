@@ -21,7 +21,7 @@ pub(super) const MOST_MEMORY: u64 = 16_384;
 /// Checks a user's text. Returns which of the purpose's functions it has.
 pub(super) fn check(text: &str, source: &Source, purpose: &OwnPurpose) -> Result<Vec<bool>, Fault> {
     check_purpose(source, purpose)?;
-    let whole = format!("{text}\n{}", purpose.contract.text);
+    let whole = format!("{text}\n{}", shaders::text(purpose.contract));
     let module = parse_str(&whole).map_err(|error| of_parser(text, &error))?;
     check_globals(text, &module)?;
     let mut has = Vec::new();
@@ -57,7 +57,7 @@ fn check_purpose(source: &Source, purpose: &OwnPurpose) -> Result<(), Fault> {
 /// Holds bounded functions to it that every loop of theirs is bounded.
 pub(super) fn check_loops(functions: &str, purpose: &OwnPurpose) -> Result<(), Fault> {
     let spend = format!("fn {OWN_PREFIX}spend(work: u32) -> bool {{ return false; }}");
-    let whole = format!("{functions}\n{}\n{spend}", purpose.contract.text);
+    let whole = format!("{functions}\n{}\n{spend}", shaders::text(purpose.contract));
     let module = parse_str(&whole).map_err(|error| of_parser(functions, &error))?;
     let spend = module.functions.iter().find(|(_, own)| own.name.as_deref() == Some(&format!("{OWN_PREFIX}spend")));
     let calls_spend = |statement: &Statement| matches!(statement, Statement::Call { function, .. } if Some(*function) == spend.map(|(handle, _)| handle));

@@ -7,14 +7,10 @@ use bytemuck::{Pod, Zeroable};
 
 use geometry::tessellate::CoverageView;
 use gpu::layout::DrawArgs;
-use gpu::wgsl::{TYPES, WORKGROUP_SCAN, WgslFile};
 use gpu::{
-    BoundPass, ChunkBuffers, ComputePipeline, Gpu, GpuError, RecordPasses, Recorder, ShaderModule, WORKGROUP, empty,
-    grid, read_buffer, uniform_buffer,
+    ChunkBuffers, ComputePipeline, Gpu, GpuError, RecordPasses, Recorder, ShaderModule, WORKGROUP, empty, grid,
+    read_buffer, uniform_buffer,
 };
-
-static COVERAGE: WgslFile = WgslFile::new("coverage", &[]);
-pub(super) static PASS_COVERAGE: WgslFile = WgslFile::new("pass_coverage", &[&COVERAGE, &TYPES, &WORKGROUP_SCAN]);
 
 /// How many triangles each workgroup tests; `TILE` in `shaders/pass_coverage.wgsl`.
 pub(super) const TILE: u32 = 2048;
@@ -41,7 +37,7 @@ pub(super) struct CoveragePipelines {
 impl CoveragePipelines {
     /// Compiles nothing yet.
     pub(super) fn new() -> Self {
-        let module = Arc::new(ShaderModule::new(&PASS_COVERAGE));
+        let module = Arc::new(ShaderModule::new("pass_coverage"));
         Self {
             marks: ComputePipeline::new(&module, "coverage_marks_main"),
             starts: ComputePipeline::new(&module, "coverage_starts_main"),
@@ -121,13 +117,21 @@ impl Coverage {
         };
         let sieve = uniform_buffer(gpu, "coverage", bytemuck::bytes_of(&sieve));
         let [(vertices, _), _] = chunk.vertices();
-        let shared = [(0, &sieve), (3, &self.marks), (4, &self.tile_starts)];
-        let taken = [(1, vertices), (2, chunk.indices)];
-        let draws = [(5, chunk.draw_args), (6, &self.draw_args)];
-        let kept = [shared[1], shared[2], taken[1], (7, &self.indices)];
-        let marks = BoundPass::new(gpu, &pipelines.marks, &[&shared[..], &taken].concat())?;
-        let starts = BoundPass::new(gpu, &pipelines.starts, &[&shared[..], &draws].concat())?;
-        let keep = BoundPass::new(gpu, &pipelines.keep, &[&shared[..1], &kept].concat())?;
+        let buffer = |name: &str| {
+            let buffer = match name {
+                "sieve" => &sieve,
+                "vertex_halves" => vertices,
+                "indices" => chunk.indices,
+                "marks" => &self.marks,
+                "tile_starts" => &self.tile_starts,
+                "draw_args" => chunk.draw_args,
+                "kept_args" => &self.draw_args,
+                _ => &self.indices,
+            };
+            Some(buffer.as_entire_binding())
+        };
+        let [marks, starts, keep] = [&pipelines.marks, &pipelines.starts, &pipelines.keep];
+        let (marks, starts, keep) = (marks.bind(gpu, buffer)?, starts.bind(gpu, buffer)?, keep.bind(gpu, buffer)?);
         let tiles = grid(chunk.chunk.triangle_count.div_ceil(TILE) * WORKGROUP);
         recorder.compute("coverage", |pass| {
             marks.dispatch(pass, tiles);

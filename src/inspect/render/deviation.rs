@@ -1,12 +1,10 @@
 //! Deviation on the device: the distances to a reference surface, and the colour scales for them.
 
-use wgpu::util::DeviceExt;
-
 use super::Scale;
-use super::scale::{FACTOR_SCALE, curvature_scale};
+use super::scale::{FACTOR_SCALE, curvature_scale, hex_colors};
 use crate::measure::DeviationField;
 use crate::settings::{Colors, DeviationUnit, Settings};
-use gpu::Gpu;
+use gpu::{Gpu, uniform_buffer};
 
 /// The distances from what is emitted to the reference surface.
 pub(super) struct Deviations {
@@ -24,23 +22,15 @@ impl Deviations {
         let known = |sample: &f32| if sample.is_nan() { -1.0 } else { *sample };
         let buffer = |samples: &Vec<f32>| {
             let contents: Vec<f32> = [field.steps as f32].into_iter().chain(samples.iter().map(known)).collect();
-            buffer(gpu, &contents)
+            uniform_buffer(gpu, "deviation", bytemuck::cast_slice(&contents))
         };
         Self { chunks: field.chunks.iter().map(buffer).collect(), scale, of }
     }
 
     /// The buffer that is bound where no distances are known: it has no samples.
     pub(super) fn unknown(gpu: &Gpu) -> wgpu::Buffer {
-        buffer(gpu, &[0.0])
+        uniform_buffer(gpu, "deviation", bytemuck::bytes_of(&0.0_f32))
     }
-}
-
-fn buffer(gpu: &Gpu, contents: &[f32]) -> wgpu::Buffer {
-    gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: Some("deviation"),
-        contents: bytemuck::cast_slice(contents),
-        usage: wgpu::BufferUsages::STORAGE,
-    })
 }
 
 /// The scale for distances on screen, in px. It is plasma (Smith and van der Walt 2015, CC0) from 2 to 8 ninths: its lightness
@@ -49,15 +39,7 @@ fn buffer(gpu: &Gpu, contents: &[f32]) -> wgpu::Buffer {
 pub const DEVIATION_PX_SCALE: Scale = Scale {
     least: 0.1,
     most: 10.0,
-    colors: [
-        [0x72, 0x01, 0xa8],
-        [0x9c, 0x17, 0x9e],
-        [0xbd, 0x37, 0x86],
-        [0xd8, 0x57, 0x6b],
-        [0xed, 0x79, 0x53],
-        [0xfb, 0x9f, 0x3a],
-        [0xfd, 0xca, 0x26],
-    ],
+    colors: hex_colors([0x7201a8, 0x9c179e, 0xbd3786, 0xd8576b, 0xed7953, 0xfb9f3a, 0xfdca26]),
 };
 
 /// The greatest value of a scale divided by the least: two decades. Most of a surface deviates by at least a tenth of the

@@ -7,39 +7,12 @@ use crate::settings::{Choice, NormalsAt};
 /// What a pipeline draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Draw {
-    /// Emitted triangles with the material's colour alone.
-    Plain(Faces),
-    /// Emitted triangles with the material's colour and texture.
-    Textured(Faces),
-    /// The same with normals that are evaluated at pixels.
-    PixelNormals(Faces),
-    /// Emitted triangles with overlays that need no data of whole triangles.
-    Indexed(Faces, NormalsAt),
-    /// Emitted triangles with any overlays. The shader pulls each corner from the vertex buffer, so that it knows the barycentric
-    /// coordinates in the triangle.
-    Pulled(Faces, NormalsAt),
-    /// The input triangles, with any overlays.
-    Source,
-    /// Emitted triangles with materials in light from all around.
-    Lit(Faces, NormalsAt, Needs),
-    /// [`Self::Indexed`] with such materials.
-    LitIndexed(Faces, NormalsAt, Needs),
-    /// [`Self::Pulled`] with such materials.
-    LitPulled(Faces, NormalsAt, Needs),
-    /// [`Self::Source`] with such materials.
-    LitSource(Faces, Needs),
-    /// [`Self::Indexed`], [`Self::Pulled`] or [`Self::Source`] of a material that a mask cuts.
-    Cut(Triangles, Faces, NormalsAt, Cut),
-    /// [`Self::Indexed`] in the variant of a look.
-    LookIndexed(Faces, NormalsAt, Look),
-    /// [`Self::Pulled`] in such a variant.
-    LookPulled(Faces, NormalsAt, Look),
-    /// [`Self::Source`] in such a variant.
-    LookSource(Look),
-    /// Triangles with such materials where they show what is behind them.
-    Layer(LayerDraw, Triangles, Faces, NormalsAt, Needs),
-    /// Depths of layers where nothing is found.
-    LayerClear(LayerClear),
+    Surface(SurfaceDraw),
+    /// Depths of layers where nothing is found: that at infinity, or that of the near plane.
+    LayerClear {
+        at_infinity: bool,
+        has_colors: bool,
+    },
     /// The light from all around, behind everything.
     Background,
     /// The grid on the ground.
@@ -48,6 +21,17 @@ pub(super) enum Draw {
     Lines(Occluded),
     /// A line along the normal of every emitted vertex.
     Normals(Occluded),
+}
+
+/// How triangles of the mesh are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct SurfaceDraw {
+    pub triangles: Triangles,
+    pub faces: Faces,
+    pub normals: NormalsAt,
+    pub shading: Shading,
+    /// What is done where they show what is behind them; none where they hide it.
+    pub layer: Option<LayerDraw>,
 }
 
 /// What a pipeline does with layers. The first three are numbers of LAYER_* in `shaders/draw_layers.wgsl`.
@@ -72,28 +56,40 @@ impl LayerDraw {
     }
 }
 
-/// Which depths of layers a pipeline sets.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum LayerClear {
-    /// Those before the search begins: the depth of the near plane.
-    Begin,
-    /// Those of a pass away from the eye: the depth at infinity.
-    Away,
-    /// Those of a pass back toward the eye, which has colours too: the depth of the near plane.
-    Back,
-}
-
-/// How a pipeline for layers gets its triangles.
+/// How a pipeline gets its triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Triangles {
-    /// As [`Draw::Lit`] does.
-    Lit,
-    /// As [`Draw::LitIndexed`] does.
+    /// Emitted ones, without overlays.
+    Bare,
+    /// Emitted ones, with overlays that need no data of whole triangles.
     Indexed,
-    /// As [`Draw::LitPulled`] does.
+    /// Emitted ones, with any overlays. The shader pulls each corner from the vertex buffer, so that it knows the barycentric
+    /// coordinates in the triangle.
     Pulled,
-    /// As [`Draw::LitSource`] does.
+    /// The input triangles, with any overlays.
     Source,
+}
+
+impl Triangles {
+    /// Whether shaders read the factors of the patches in a chunk.
+    pub(super) fn have_factors(self) -> bool {
+        matches!(self, Self::Indexed | Self::Pulled)
+    }
+}
+
+/// What colours a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Shading {
+    /// The material's colour alone, in the lights at the camera.
+    Plain,
+    /// Its colour and texture.
+    Textured,
+    /// The same where a mask cuts the material.
+    Cut(Cut),
+    /// A look, which has a variant of the shader.
+    Look(Look),
+    /// Materials in light from all around.
+    Lit(Needs),
 }
 
 /// Which faces are drawn.
@@ -102,10 +98,6 @@ pub(super) enum Faces {
     Both,
     /// Those that face the eye.
     Fronts,
-}
-
-impl Faces {
-    const BOTH: [Self; 2] = [Self::Both, Self::Fronts];
 }
 
 /// Which part of a line is drawn.
@@ -117,90 +109,58 @@ pub(super) enum Occluded {
     InSight,
 }
 
+impl Occluded {
+    pub(super) const BOTH: [Self; 2] = [Self::Through, Self::InSight];
+}
+
 impl Draw {
-    /// Every pipeline that there is but those of looks; of those that light materials, the ones with all that materials can need.
+    /// Every pipeline that there is; of those that light materials, the ones with all that materials can need.
     pub(super) fn all() -> Vec<Self> {
-        let triangles = [Triangles::Lit, Triangles::Indexed, Triangles::Pulled, Triangles::Source];
-        let layers = triangles.into_iter().flat_map(|triangles| {
-            let places: &[_] = match triangles {
-                Triangles::Source => &[NormalsAt::Vertices],
-                _ => &[NormalsAt::Vertices, NormalsAt::Pixels],
-            };
-            let composites = [LayerDraw::Over, LayerDraw::Filter, LayerDraw::Add].into_iter();
-            let composites = composites.flat_map(|draw| places.iter().map(move |&at| (draw, at)));
-            let finds = [LayerDraw::Away, LayerDraw::Toward].map(|draw| (draw, NormalsAt::Vertices));
-            composites.chain(finds).map(move |(draw, at)| Self::Layer(draw, triangles, Faces::Both, at, Needs::ALL))
-        });
         let masked = Needs { masked_samples: true, ..Needs::ALL };
-        let masks = NormalsAt::ALL.iter().flat_map(move |&at| {
-            let kinds = [Self::Lit, Self::LitIndexed, Self::LitPulled];
-            kinds.map(|kind: fn(Faces, NormalsAt, Needs) -> Self| kind(Faces::Both, at, masked))
-        });
-        let cuts = [false, true].into_iter().flat_map(|samples| {
-            let cut = Cut { details: true, samples };
-            let emitted = NormalsAt::ALL.iter().flat_map(move |&at| {
-                [Triangles::Indexed, Triangles::Pulled].map(|triangles| Self::Cut(triangles, Faces::Both, at, cut))
-            });
-            emitted.chain([Self::Cut(Triangles::Source, Faces::Both, NormalsAt::Vertices, cut)])
-        });
-        Self::OTHERS
-            .into_iter()
-            .chain(layers)
-            .chain(masks)
-            .chain([Self::LitSource(Faces::Both, masked)])
-            .chain(cuts)
-            .collect()
+        let cuts = [false, true].map(|samples| Shading::Cut(Cut { details: true, samples }));
+        let mut shadings = vec![Shading::Plain, Shading::Textured, Shading::Lit(Needs::ALL), Shading::Lit(masked)];
+        shadings.extend(cuts.into_iter().chain(Look::ALL.map(Shading::Look)));
+        let layers = [LayerDraw::Over, LayerDraw::Filter, LayerDraw::Add, LayerDraw::Away, LayerDraw::Toward];
+        let mut all = vec![Self::Background, Self::Ground];
+        all.extend(Occluded::BOTH.into_iter().flat_map(|part| [Self::Lines(part), Self::Normals(part)]));
+        for (at_infinity, has_colors) in [(false, false), (true, false), (false, true)] {
+            all.push(Self::LayerClear { at_infinity, has_colors });
+        }
+        let all_faces = [Faces::Both, Faces::Fronts];
+        for triangles in [Triangles::Bare, Triangles::Indexed, Triangles::Pulled, Triangles::Source] {
+            for (&normals, faces) in NormalsAt::ALL.iter().flat_map(|at| all_faces.map(|faces| (at, faces))) {
+                for &shading in &shadings {
+                    let draws = [None].into_iter().chain(layers.map(Some)).map(|layer| SurfaceDraw {
+                        triangles,
+                        faces,
+                        normals,
+                        shading,
+                        layer,
+                    });
+                    all.extend(draws.filter(SurfaceDraw::is_common).map(Self::Surface));
+                }
+            }
+        }
+        all
     }
+}
 
-    /// Those that don't draw layers.
-    const OTHERS: [Self; 37] = [
-        Self::Plain(Faces::Both),
-        Self::Plain(Faces::Fronts),
-        Self::Textured(Faces::Both),
-        Self::Textured(Faces::Fronts),
-        Self::PixelNormals(Faces::Both),
-        Self::PixelNormals(Faces::Fronts),
-        Self::Indexed(Faces::Both, NormalsAt::Vertices),
-        Self::Indexed(Faces::Fronts, NormalsAt::Vertices),
-        Self::Indexed(Faces::Both, NormalsAt::Pixels),
-        Self::Indexed(Faces::Fronts, NormalsAt::Pixels),
-        Self::Pulled(Faces::Both, NormalsAt::Vertices),
-        Self::Pulled(Faces::Fronts, NormalsAt::Vertices),
-        Self::Pulled(Faces::Both, NormalsAt::Pixels),
-        Self::Pulled(Faces::Fronts, NormalsAt::Pixels),
-        Self::Source,
-        Self::Lit(Faces::Both, NormalsAt::Vertices, Needs::ALL),
-        Self::Lit(Faces::Fronts, NormalsAt::Vertices, Needs::ALL),
-        Self::Lit(Faces::Both, NormalsAt::Pixels, Needs::ALL),
-        Self::Lit(Faces::Fronts, NormalsAt::Pixels, Needs::ALL),
-        Self::LitIndexed(Faces::Both, NormalsAt::Vertices, Needs::ALL),
-        Self::LitIndexed(Faces::Fronts, NormalsAt::Vertices, Needs::ALL),
-        Self::LitIndexed(Faces::Both, NormalsAt::Pixels, Needs::ALL),
-        Self::LitIndexed(Faces::Fronts, NormalsAt::Pixels, Needs::ALL),
-        Self::LitPulled(Faces::Both, NormalsAt::Vertices, Needs::ALL),
-        Self::LitPulled(Faces::Fronts, NormalsAt::Vertices, Needs::ALL),
-        Self::LitPulled(Faces::Both, NormalsAt::Pixels, Needs::ALL),
-        Self::LitPulled(Faces::Fronts, NormalsAt::Pixels, Needs::ALL),
-        Self::LitSource(Faces::Both, Needs::ALL),
-        Self::LayerClear(LayerClear::Begin),
-        Self::LayerClear(LayerClear::Away),
-        Self::LayerClear(LayerClear::Back),
-        Self::Background,
-        Self::Ground,
-        Self::Lines(Occluded::Through),
-        Self::Lines(Occluded::InSight),
-        Self::Normals(Occluded::Through),
-        Self::Normals(Occluded::InSight),
-    ];
-
-    /// The pipelines of all looks.
-    pub(super) fn of_looks() -> impl Iterator<Item = Self> {
-        let kinds = Faces::BOTH.into_iter().flat_map(|faces| NormalsAt::ALL.iter().map(move |&places| (faces, places)));
-        Look::ALL.into_iter().flat_map(move |look| {
-            let emitted = kinds.clone().flat_map(move |(faces, places)| {
-                [Self::LookIndexed(faces, places, look), Self::LookPulled(faces, places, look)]
-            });
-            emitted.chain([Self::LookSource(look)])
-        })
+impl SurfaceDraw {
+    /// Whether pictures have such surfaces. Of those that are seldom culled, the fronts alone count as none.
+    fn is_common(&self) -> bool {
+        let (is_bare, at_vertices) = (self.triangles == Triangles::Bare, self.normals == NormalsAt::Vertices);
+        let is_shaded = match self.shading {
+            Shading::Plain => is_bare && at_vertices,
+            Shading::Cut(_) | Shading::Look(_) => !is_bare,
+            Shading::Textured | Shading::Lit(_) => true,
+        };
+        let is_layer = match self.layer {
+            Some(layer) => self.shading == Shading::Lit(Needs::ALL) && (at_vertices || !layer.finds()),
+            None => true,
+        };
+        let is_masked = matches!(self.shading, Shading::Cut(_) | Shading::Lit(Needs { masked_samples: true, .. }));
+        let is_source = self.triangles == Triangles::Source;
+        let has_fronts = !is_masked && !is_source && self.layer.is_none();
+        is_shaded && is_layer && (at_vertices || !is_source) && (has_fronts || self.faces == Faces::Both)
     }
 }

@@ -8,17 +8,16 @@ use wgpu::util::DeviceExt;
 use super::blur_levels::ENVIRONMENT_LEVELS;
 use super::cube_map::CubeMap;
 use super::dfg::{DFG_SIZE, dfg_table};
+use super::group_layouts::{Binding, FRAGMENT, IMAGE, SAMPLER, UNIFORM, image};
 use super::irradiance::{Irradiance, irradiance};
-use super::prefilter_pass::{REFLECTANCE, cube_view, prefilter};
+use super::prefilter_pass::{cube_view, prefilter};
 use super::studio::studio_light;
-use super::tone::TONE_CURVE_NEUTRAL;
-use gpu::wgsl::WgslFile;
-use gpu::{Gpu, GpuError, Lazy, uniform_buffer};
+use crate::settings::ToneCurve;
+use gpu::{Gpu, GpuError, Lazy, WgslModule, filled_texture, flat_texture, uniform_buffer};
 use load::panorama::Panorama;
 
-static TONE: WgslFile = WgslFile::new("tone", &[]);
 /// A shader module that has it binds [`Environment::entries`] in group 1 from binding 16 on.
-pub static ENVIRONMENT: WgslFile = WgslFile::new("environment", &[&REFLECTANCE, &TONE]);
+pub const ENVIRONMENT: WgslModule = WgslModule("environment");
 
 /// The binding of the `Surroundings` in `shaders/environment.wgsl`.
 const SURROUNDINGS_BINDING: u32 = 19;
@@ -28,6 +27,9 @@ const ENVIRONMENT_SIZE: u32 = 128;
 
 /// Width and height of the studio's panorama, in px. Its soft boxes have edges that are five px wide.
 const STUDIO_SIZE: [u32; 2] = [512, 256];
+
+/// Four half floats a texel.
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 /// Twin of `Surroundings` in `shaders/environment.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -47,7 +49,7 @@ pub(crate) struct Surroundings {
 }
 
 /// How an environment is turned and shown.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LightView {
     /// In EV: each doubles the light from all around.
     pub brightness: f32,
@@ -55,14 +57,7 @@ pub struct LightView {
     pub rotation: f32,
     /// In EV: each doubles what is seen.
     pub exposure: f32,
-    /// `TONE_CURVE_*` in `shaders/tone.wgsl`.
-    pub tone_curve: u32,
-}
-
-impl Default for LightView {
-    fn default() -> Self {
-        Self { brightness: 0.0, rotation: 0.0, exposure: 0.0, tone_curve: TONE_CURVE_NEUTRAL }
-    }
+    pub tone_curve: ToneCurve,
 }
 
 /// Light from all around on the device: a cube map, blurred by GGX from level to level; irradiance as spherical harmonics; and
@@ -136,38 +131,19 @@ impl Environment {
         uniform_buffer(gpu, "surroundings", bytemuck::bytes_of(&surroundings(&self.irradiance, view)))
     }
 
-    /// Layout entries of the cube map, its sampler, the table and the `Surroundings`, which fragment shaders read, at this
-    /// binding and the next three.
-    pub(crate) fn layout_entries(first: u32) -> [wgpu::BindGroupLayoutEntry; 4] {
-        let texture = |view_dimension| wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: true },
-            view_dimension,
-            multisampled: false,
-        };
-        let uniform = wgpu::BufferBindingType::Uniform;
-        let types = [
-            texture(wgpu::TextureViewDimension::Cube),
-            wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-            texture(wgpu::TextureViewDimension::D2),
-            wgpu::BindingType::Buffer { ty: uniform, has_dynamic_offset: false, min_binding_size: None },
-        ];
-        let mut binding = first;
-        types.map(|ty| {
-            let entry =
-                wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None };
-            binding += 1;
-            entry
-        })
+    /// The cube map, its sampler, the table and the `Surroundings`, which fragment shaders read, from this binding on.
+    pub(super) fn bindings(first: u32) -> [Binding; 4] {
+        let types = [image(wgpu::TextureViewDimension::Cube), SAMPLER, IMAGE, UNIFORM];
+        [0, 1, 2, 3].map(|k| (first + k as u32, FRAGMENT, types[k]))
     }
 
     /// What is bound there, with what [`Self::surroundings`] returns.
-    pub fn entries<'a>(&'a self, first: u32, surroundings: &'a wgpu::Buffer) -> [wgpu::BindGroupEntry<'a>; 4] {
-        let view = wgpu::BindingResource::TextureView;
+    pub fn bound<'a>(&'a self, first: u32, surroundings: &'a wgpu::Buffer) -> [(u32, wgpu::BindingResource<'a>); 4] {
         [
-            wgpu::BindGroupEntry { binding: first, resource: view(&self.cube) },
-            wgpu::BindGroupEntry { binding: first + 1, resource: wgpu::BindingResource::Sampler(&self.sampler) },
-            wgpu::BindGroupEntry { binding: first + 2, resource: view(&self.dfg) },
-            wgpu::BindGroupEntry { binding: first + 3, resource: surroundings.as_entire_binding() },
+            (first, wgpu::BindingResource::TextureView(&self.cube)),
+            (first + 1, wgpu::BindingResource::Sampler(&self.sampler)),
+            (first + 2, wgpu::BindingResource::TextureView(&self.dfg)),
+            (first + 3, surroundings.as_entire_binding()),
         ]
     }
 }
@@ -184,23 +160,16 @@ impl Backdrop {
         Self { panorama: upload_panorama(gpu, panorama), sampler }
     }
 
-    /// Layout entries of the panorama, its sampler and the `Surroundings`.
-    pub(super) fn layout_entries() -> [wgpu::BindGroupLayoutEntry; 3] {
-        let [.., panorama, surroundings] = Environment::layout_entries(SURROUNDINGS_BINDING - 3);
-        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-        [
-            wgpu::BindGroupLayoutEntry { binding: 0, ..panorama },
-            wgpu::BindGroupLayoutEntry { binding: 1, ty: sampler, ..panorama },
-            surroundings,
-        ]
-    }
+    /// The panorama, its sampler and the `Surroundings`.
+    pub(super) const BINDINGS: [Binding; 3] =
+        [(0, FRAGMENT, IMAGE), (1, FRAGMENT, SAMPLER), (SURROUNDINGS_BINDING, FRAGMENT, UNIFORM)];
 
     /// What is bound there, with what [`Environment::surroundings`] returns.
-    pub(super) fn entries<'a>(&'a self, surroundings: &'a wgpu::Buffer) -> [wgpu::BindGroupEntry<'a>; 3] {
+    pub(super) fn bound<'a>(&'a self, surroundings: &'a wgpu::Buffer) -> [(u32, wgpu::BindingResource<'a>); 3] {
         [
-            wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&self.panorama) },
-            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&self.sampler) },
-            wgpu::BindGroupEntry { binding: SURROUNDINGS_BINDING, resource: surroundings.as_entire_binding() },
+            (0, wgpu::BindingResource::TextureView(&self.panorama)),
+            (1, wgpu::BindingResource::Sampler(&self.sampler)),
+            (SURROUNDINGS_BINDING, surroundings.as_entire_binding()),
         ]
     }
 }
@@ -213,7 +182,7 @@ fn surroundings(irradiance: &Irradiance, view: &LightView) -> Surroundings {
         light_from_object: [light_from_object.x_axis, light_from_object.y_axis, light_from_object.z_axis].map(padded),
         brightness: view.brightness.exp2(),
         exposure: view.exposure.exp2(),
-        tone_curve: view.tone_curve,
+        tone_curve: view.tone_curve as u32,
         _pad: 0,
     }
 }
@@ -234,16 +203,9 @@ fn empty_cube(gpu: &Gpu, size: u32) -> wgpu::Texture {
 }
 
 fn cube_descriptor(size: u32, levels: u32, usage: wgpu::TextureUsages) -> wgpu::TextureDescriptor<'static> {
-    wgpu::TextureDescriptor {
-        label: Some("environment"),
-        size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 6 },
-        mip_level_count: levels,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba16Float,
-        usage: usage | wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    }
+    let face = flat_texture("environment", [size; 2], FORMAT, usage | wgpu::TextureUsages::TEXTURE_BINDING);
+    let size = wgpu::Extent3d { depth_or_array_layers: 6, ..face.size };
+    wgpu::TextureDescriptor { size, mip_level_count: levels, ..face }
 }
 
 /// The bytes of a pixel in half floats, whose largest number is 65,504.
@@ -253,24 +215,7 @@ fn half_floats(light: Vec3) -> [u8; 8] {
 
 fn upload_panorama(gpu: &Gpu, panorama: &Panorama) -> wgpu::TextureView {
     let bytes: Vec<u8> = panorama.pixels().iter().flat_map(|&light| half_floats(light)).collect();
-    upload_flat(gpu, "panorama", panorama.size(), &bytes)
-}
-
-/// Uploads an image of one level, four half floats a pixel.
-fn upload_flat(gpu: &Gpu, label: &str, [width, height]: [u32; 2], bytes: &[u8]) -> wgpu::TextureView {
-    let descriptor = wgpu::TextureDescriptor {
-        label: Some(label),
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba16Float,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    };
-    let order = wgpu::util::TextureDataOrder::LayerMajor;
-    let texture = gpu.device.create_texture_with_data(&gpu.queue, &descriptor, order, bytes);
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
+    filled_texture(gpu, "panorama", panorama.size(), FORMAT, &bytes)
 }
 
 /// Uploads all levels.
@@ -289,5 +234,5 @@ fn upload(gpu: &Gpu, light: &CubeMap) -> wgpu::Texture {
 
 fn upload_dfg(gpu: &Gpu) -> wgpu::TextureView {
     let bytes: Vec<u8> = dfg_table().iter().flatten().flat_map(|&part| f16::from_f32(part).to_ne_bytes()).collect();
-    upload_flat(gpu, "directional albedo", [DFG_SIZE; 2], &bytes)
+    filled_texture(gpu, "directional albedo", [DFG_SIZE; 2], FORMAT, &bytes)
 }

@@ -1,13 +1,11 @@
 //! The constants that all draws of a picture read.
 
-use wgpu::util::DeviceExt;
-
 use super::deviation::scale_of;
 use super::ground::Ground;
 use super::layout::{Frame, overlay_bits};
 use super::{Camera, Scene, Target};
 use crate::settings::{DeviationUnit, Settings};
-use gpu::Gpu;
+use gpu::{Gpu, uniform_buffer};
 
 /// Uploads the constants of a picture of a scene, or of a half of it that begins at the column `left`.
 pub(super) fn frame(
@@ -44,9 +42,5 @@ pub(super) fn frame(
         coarseness: target.coarseness as f32,
         _pad: [0.0; 2],
     };
-    gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: Some("frame"),
-        contents: bytemuck::bytes_of(&frame),
-        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::UNIFORM,
-    })
+    uniform_buffer(gpu, "frame", bytemuck::bytes_of(&frame))
 }

@@ -4,14 +4,11 @@ use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
 use glam::{DVec2, Mat4, Vec2, dvec2};
-use wgpu::util::DeviceExt;
 
 use super::Scene;
-use super::adding_pipeline::Adding;
+use super::adding::{Added, Adding};
 use geometry::mesh::Topology;
-use gpu::{Gpu, GpuError, Lazy, Readback, Recorder, ShaderModule, Timing, WgslFile, bind_group};
-
-pub(super) static DRAW_LEAKS: WgslFile = WgslFile::new("draw_leaks", &[]);
+use gpu::{Gpu, GpuError, Readback, Recorder, Timing};
 
 /// The count of each pixel, which may be negative. This format holds every whole number up to 2048, and every adapter can blend
 /// it.
@@ -24,26 +21,12 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R16Float;
 /// rule. So all triangles are drawn without a depth test; front faces add 1 and back faces subtract 1. A pixel that isn't 0 at
 /// the end sees the inside through a crack, or the outside from within. (If a line of sight passes through one crack in front
 /// and another behind, the two cancel; the pixels around it still count.)
-pub(crate) struct LeakCounter {
-    module: ShaderModule,
-    pipeline: Lazy<wgpu::RenderPipeline>,
-}
-
-impl Default for LeakCounter {
-    fn default() -> Self {
-        Self::new()
-    }
-}
+pub(crate) struct LeakCounter(Adding);
 
 impl LeakCounter {
     /// Compiles nothing yet.
     pub(crate) fn new() -> Self {
-        Self { module: ShaderModule::new(&DRAW_LEAKS), pipeline: Lazy::default() }
-    }
-
-    fn pipeline(&self, gpu: &Gpu) -> Result<&wgpu::RenderPipeline, GpuError> {
-        let module = self.module.get(gpu)?;
-        self.pipeline.get_or_make(gpu, || pipeline(gpu, module))
+        Self(Adding::new("leak_fragment", FORMAT, wgpu::BlendFactor::One, wgpu::ColorWrites::RED))
     }
 
     /// Starts to count the leaks of a picture of `size` (width and height in px).
@@ -56,24 +39,7 @@ impl LeakCounter {
         if width > limit || height > limit {
             return Err(GpuError::PictureTooLarge { width, height, limit });
         }
-        let pipeline = self.pipeline(gpu)?;
-        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("leaks"),
-            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: FORMAT,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
-        let uniform = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("leaks"),
-            contents: bytemuck::bytes_of(&clip.to_cols_array_2d()),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
-        let group = bind_group(gpu, "leaks", &pipeline.get_bind_group_layout(0), &[(0, &uniform)]);
-        Ok(LeakCount { texture, pipeline: pipeline.clone(), group, next_chunk: 0 })
+        Ok(LeakCount { added: self.0.start(gpu, [width, height], clip)?, next_chunk: 0 })
     }
 
     /// The leaks in a picture of `size` (width and height in px), the largest first. The scene's counts must be known, its mesh must
@@ -94,9 +60,7 @@ impl LeakCounter {
 
 /// A count under way.
 pub struct LeakCount {
-    texture: wgpu::Texture,
-    pipeline: wgpu::RenderPipeline,
-    group: wgpu::BindGroup,
+    added: Added,
     next_chunk: usize,
 }
 
@@ -107,7 +71,6 @@ impl LeakCount {
     /// # Errors
     /// The device was lost.
     pub fn draw_next(&mut self, gpu: &Gpu, scene: &mut Scene) -> Result<Option<Readback>, GpuError> {
-        let view = self.texture.create_view(&wgpu::TextureViewDescriptor::default());
         let mut timing = Timing::Off;
         let mut recorder = Recorder::new(gpu, &mut timing);
         let (index, chunks) = (self.next_chunk, scene.tessellator.chunk_count());
@@ -115,29 +78,10 @@ impl LeakCount {
         if index < chunks {
             scene.tessellator.emit(&mut recorder, index)?;
         }
-        let load = if index == 0 { wgpu::LoadOp::Clear(wgpu::Color::BLACK) } else { wgpu::LoadOp::Load };
-        let mut pass = recorder.encoder().begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("leaks"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
-            })],
-            ..Default::default()
-        });
-        if index < chunks {
-            let chunk = scene.tessellator.chunk(index);
-            pass.set_pipeline(&self.pipeline);
-            pass.set_bind_group(0, &self.group, &[]);
-            let [(places, bytes), _] = chunk.vertices();
-            pass.set_vertex_buffer(0, places.slice(bytes));
-            pass.set_index_buffer(chunk.indices.slice(..), wgpu::IndexFormat::Uint32);
-            pass.draw_indexed(0..3 * chunk.chunk.triangle_count, 0, 0..1);
-        }
-        drop(pass);
+        let chunk = (index < chunks).then(|| scene.tessellator.chunk(index));
+        self.added.draw(&mut recorder, wgpu::Color::WHITE, chunk.as_ref());
         let is_last = index + 1 >= chunks;
-        let mut counts = is_last.then(|| Readback::of_texture(gpu, recorder.encoder(), &self.texture));
+        let mut counts = is_last.then(|| self.added.read(gpu, &mut recorder));
         recorder.submit();
         counts.iter_mut().for_each(Readback::request);
         Ok(counts)
@@ -226,17 +170,6 @@ fn leak_of(pixels: &[usize], width: usize) -> Leak {
     let apart = |center: &DVec2| center.distance_squared(middle);
     let nearest = centers().min_by(|a, b| apart(a).total_cmp(&apart(b))).unwrap_or(middle);
     Leak { px: nearest.as_vec2(), pixels: pixels.len() as u32 }
-}
-
-fn pipeline(gpu: &Gpu, module: &wgpu::ShaderModule) -> wgpu::RenderPipeline {
-    let adding = Adding {
-        label: "leaks",
-        entry_points: ["leak_vertex", "leak_fragment"],
-        format: FORMAT,
-        factor: wgpu::BlendFactor::One,
-        channels: wgpu::ColorWrites::RED,
-    };
-    adding.pipeline(gpu, module)
 }
 
 #[cfg(test)]

@@ -3,7 +3,6 @@
 use std::array;
 
 use glam::{Vec3, vec3};
-use wgpu::util::DeviceExt;
 
 use super::layout::{self, srgb};
 use super::materials::Materials;
@@ -11,7 +10,7 @@ use super::textures::{ImageUse, upload};
 use crate::settings::{Choice, Matcap};
 use geometry::mesh::Texture;
 use geometry::mesh::mipmap::MipFilter;
-use gpu::{Gpu, GpuError, Lazy};
+use gpu::{Gpu, GpuError, Lazy, bind_group, uniform_buffer};
 
 /// The sides of a matcap's picture, in px.
 const SIDE: u32 = 512;
@@ -34,7 +33,7 @@ impl Matcaps {
     /// # Errors
     /// Out of memory, or a lost device.
     pub(super) fn group(&self, gpu: &Gpu, materials: &Materials, matcap: Matcap) -> Result<&wgpu::BindGroup, GpuError> {
-        self.groups[matcap as usize].get_or_try_make(|| bind_group(gpu, materials, &picture(matcap)))
+        self.groups[matcap as usize].get_or_try_make(|| sphere_group(gpu, materials, &picture(matcap)))
     }
 }
 
@@ -46,17 +45,13 @@ impl MatcapPicture {
     /// # Errors
     /// Out of memory, or a lost device.
     pub(super) fn new(gpu: &Gpu, materials: &Materials, picture: &Texture) -> Result<Self, GpuError> {
-        bind_group(gpu, materials, picture).map(Self)
+        sphere_group(gpu, materials, picture).map(Self)
     }
 }
 
-fn bind_group(gpu: &Gpu, materials: &Materials, picture: &Texture) -> Result<wgpu::BindGroup, GpuError> {
+fn sphere_group(gpu: &Gpu, materials: &Materials, picture: &Texture) -> Result<wgpu::BindGroup, GpuError> {
     // Nothing of the material is seen.
-    let constants = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: Some("matcap"),
-        contents: &[0; size_of::<layout::Material>()],
-        usage: wgpu::BufferUsages::UNIFORM,
-    });
+    let constants = uniform_buffer(gpu, "matcap", &[0; size_of::<layout::Material>()]);
     let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("matcap"),
         mag_filter: wgpu::FilterMode::Linear,
@@ -65,16 +60,12 @@ fn bind_group(gpu: &Gpu, materials: &Materials, picture: &Texture) -> Result<wgp
         ..Default::default()
     });
     let view = upload(gpu, &materials.mipmaps, picture, ImageUse::of(MipFilter::Colors))?;
-    let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
-    Ok(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("matcap"),
-        layout: &materials.layout,
-        entries: &[
-            entry(0, constants.as_entire_binding()),
-            entry(1, wgpu::BindingResource::TextureView(&view)),
-            entry(2, wgpu::BindingResource::Sampler(&sampler)),
-        ],
-    }))
+    let bound = [
+        (0, constants.as_entire_binding()),
+        (1, wgpu::BindingResource::TextureView(&view)),
+        (2, wgpu::BindingResource::Sampler(&sampler)),
+    ];
+    Ok(bind_group(gpu, "matcap", &materials.layout, bound))
 }
 
 /// The picture of a sphere. Outside the sphere it goes on as on its outline.

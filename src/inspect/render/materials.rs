@@ -1,16 +1,14 @@
 //! Materials on the device: their constants, images and samplers.
 
-use wgpu::util::DeviceExt;
-
 use super::environment::Environment;
+use super::group_layouts::{Binding, FRAGMENT, IMAGE, SAMPLER, UNIFORM, depths, group_layout};
 use super::layout::{self, LEAST_SEEN, MapPlace};
 use super::mipmap_pass::Mipmaps;
 use super::punctual::upload_lights;
-use super::target::samples;
 use super::textures::{ImageUse, Samplers, Textures, white};
 use geometry::mesh::mipmap::MipFilter;
 use geometry::mesh::{Alpha, Map, MapUv, Material, Sampling, Slot};
-use gpu::{Gpu, GpuError};
+use gpu::{Gpu, GpuError, bind_group, uniform_buffer};
 
 /// Where the bindings of the light from all around begin in the group of a lit material; the same in `shaders/environment.wgsl`.
 const LIGHT_BINDING: u32 = 16;
@@ -59,13 +57,14 @@ pub struct UploadedMaterial {
 
 impl Materials {
     pub fn new(gpu: &Gpu) -> Self {
-        let own = |images: &[usize]| [vec![uniform_entry(0)], image_entries(images)].concat();
-        let depths = [depths_entry(gpu, HIDING_DEPTHS_BINDING)];
-        let lights = [Environment::layout_entries(LIGHT_BINDING).to_vec(), vec![uniform_entry(FILE_LIGHTS_BINDING)]];
+        let depths = [(HIDING_DEPTHS_BINDING, FRAGMENT, depths(gpu))];
+        let lights = [&Environment::bindings(LIGHT_BINDING)[..], &[(FILE_LIGHTS_BINDING, FRAGMENT, UNIFORM)]].concat();
+        let lit = [own_bindings(&all_images()), lights].concat();
+        let found = [&own_bindings(&IMAGES_OF_LAYERS)[..], &depths].concat();
         Self {
-            layout: bind_group_layout(gpu, "material", &own(&[0])),
-            lit_layout: bind_group_layout(gpu, "lit material", &[own(&all_images()), lights.concat()].concat()),
-            found_layout: bind_group_layout(gpu, "found material", &[&own(&IMAGES_OF_LAYERS)[..], &depths].concat()),
+            layout: group_layout(gpu, "material", &own_bindings(&[0])),
+            lit_layout: group_layout(gpu, "lit material", &lit),
+            found_layout: group_layout(gpu, "found material", &found),
             white: white(gpu),
             no_lights: upload_lights(gpu, &[]),
             samplers: Samplers::default(),
@@ -88,11 +87,7 @@ impl Materials {
         material: &Material,
         textures: &mut Textures,
     ) -> Result<UploadedMaterial, GpuError> {
-        let constants = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("material"),
-            contents: bytemuck::bytes_of(&constants(material)),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
+        let constants = uniform_buffer(gpu, "material", bytemuck::bytes_of(&constants(material)));
         let sampler = |sampling| self.samplers.get(gpu, sampling);
         let mut images = std::array::from_fn(|_| (self.white.clone(), sampler(Sampling::default())));
         if let Some(texture) = &material.texture {
@@ -105,7 +100,7 @@ impl Materials {
                 images[1 + slot as usize] = (view, sampler(map.sampling));
             }
         }
-        let group = bind_group(gpu, "material", &self.layout, &own_entries(&constants, &images, &[0]));
+        let group = bind_group(gpu, "material", &self.layout, own_bound(&constants, &images, &[0]));
         Ok(UploadedMaterial { group, constants, images })
     }
 
@@ -117,11 +112,11 @@ impl Materials {
         (environment, surroundings): (&Environment, &wgpu::Buffer),
         lights: Option<&wgpu::Buffer>,
     ) -> Vec<wgpu::BindGroup> {
-        let lights = entry(FILE_LIGHTS_BINDING, lights.unwrap_or(&self.no_lights).as_entire_binding());
-        let light = [&environment.entries(LIGHT_BINDING, surroundings)[..], &[lights]].concat();
+        let lights = (FILE_LIGHTS_BINDING, lights.unwrap_or(&self.no_lights).as_entire_binding());
+        let light = [&environment.bound(LIGHT_BINDING, surroundings)[..], &[lights]].concat();
         let group = |own: &UploadedMaterial| {
-            let entries = [own_entries(&own.constants, &own.images, &all_images()), light.clone()].concat();
-            bind_group(gpu, "lit material", &self.lit_layout, &entries)
+            let bound = [own_bound(&own.constants, &own.images, &all_images()), light.clone()].concat();
+            bind_group(gpu, "lit material", &self.lit_layout, bound)
         };
         materials.iter().map(group).collect()
     }
@@ -133,10 +128,10 @@ impl Materials {
         materials: &[UploadedMaterial],
         hiding: &wgpu::TextureView,
     ) -> Vec<wgpu::BindGroup> {
-        let depths = [entry(HIDING_DEPTHS_BINDING, wgpu::BindingResource::TextureView(hiding))];
+        let depths = [(HIDING_DEPTHS_BINDING, wgpu::BindingResource::TextureView(hiding))];
         let group = |own: &UploadedMaterial| {
-            let entries = [&own_entries(&own.constants, &own.images, &IMAGES_OF_LAYERS)[..], &depths].concat();
-            bind_group(gpu, "found material", &self.found_layout, &entries)
+            let bound = [&own_bound(&own.constants, &own.images, &IMAGES_OF_LAYERS)[..], &depths].concat();
+            bind_group(gpu, "found material", &self.found_layout, bound)
         };
         materials.iter().map(group).collect()
     }
@@ -183,29 +178,11 @@ fn map_place(map: Option<&Map>) -> MapPlace {
     }
 }
 
-fn uniform_entry(binding: u32) -> wgpu::BindGroupLayoutEntry {
-    let ty = wgpu::BufferBindingType::Uniform;
-    layout_entry(binding, wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None })
-}
-
-/// A texture and a sampler for each of these images.
-fn image_entries(images: &[usize]) -> Vec<wgpu::BindGroupLayoutEntry> {
-    let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-    let both = |&image: &usize| {
-        let texture = texture_type(wgpu::TextureSampleType::Float { filterable: true }, false);
-        let binding = image_binding(image);
-        [layout_entry(binding, texture), layout_entry(binding + 1, sampler)]
-    };
-    images.iter().flat_map(both).collect()
-}
-
-/// Depths of layers.
-pub(super) fn depths_entry(gpu: &Gpu, binding: u32) -> wgpu::BindGroupLayoutEntry {
-    layout_entry(binding, texture_type(wgpu::TextureSampleType::Depth, samples(gpu) > 1))
-}
-
-fn texture_type(sample_type: wgpu::TextureSampleType, multisampled: bool) -> wgpu::BindingType {
-    wgpu::BindingType::Texture { sample_type, view_dimension: wgpu::TextureViewDimension::D2, multisampled }
+/// The constants, and a texture and a sampler for each of these images.
+fn own_bindings(images: &[usize]) -> Vec<Binding> {
+    let both = images.iter().map(|&image| image_binding(image));
+    let both = both.flat_map(|binding| [(binding, FRAGMENT, IMAGE), (binding + 1, FRAGMENT, SAMPLER)]);
+    std::iter::once((0, FRAGMENT, UNIFORM)).chain(both).collect()
 }
 
 fn all_images() -> [usize; IMAGES] {
@@ -220,37 +197,16 @@ fn image_binding(image: usize) -> u32 {
     }
 }
 
-fn layout_entry(binding: u32, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None }
-}
-
-fn bind_group_layout(gpu: &Gpu, label: &str, entries: &[wgpu::BindGroupLayoutEntry]) -> wgpu::BindGroupLayout {
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
-}
-
-fn entry(binding: u32, resource: wgpu::BindingResource<'_>) -> wgpu::BindGroupEntry<'_> {
-    wgpu::BindGroupEntry { binding, resource }
-}
-
-/// The constants of a material, and the entries of [`image_entries`].
-fn own_entries<'a>(
+/// What is bound at [`own_bindings`].
+fn own_bound<'a>(
     constants: &'a wgpu::Buffer,
     images: &'a [(wgpu::TextureView, wgpu::Sampler); IMAGES],
     bound: &[usize],
-) -> Vec<wgpu::BindGroupEntry<'a>> {
+) -> Vec<(u32, wgpu::BindingResource<'a>)> {
     let both = bound.iter().flat_map(|&image| {
         let ((view, sampler), binding) = (&images[image], image_binding(image));
-        let sampler = entry(binding + 1, wgpu::BindingResource::Sampler(sampler));
-        [entry(binding, wgpu::BindingResource::TextureView(view)), sampler]
+        let view = wgpu::BindingResource::TextureView(view);
+        [(binding, view), (binding + 1, wgpu::BindingResource::Sampler(sampler))]
     });
-    std::iter::once(entry(0, constants.as_entire_binding())).chain(both).collect()
-}
-
-fn bind_group(
-    gpu: &Gpu,
-    label: &str,
-    layout: &wgpu::BindGroupLayout,
-    entries: &[wgpu::BindGroupEntry],
-) -> wgpu::BindGroup {
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries })
+    std::iter::once((0, constants.as_entire_binding())).chain(both).collect()
 }

@@ -5,11 +5,7 @@ use std::sync::Arc;
 use bytemuck::{Pod, Zeroable};
 
 use geometry::mesh::mipmap::{MipFilter, SRGB_TABLE, level_count, level_size, wanted_texels};
-use gpu::wgsl::WgslFile;
 use gpu::{ComputePipeline, Gpu, GpuError, ShaderModule, uniform_buffer};
-
-static MIPMAP: WgslFile = WgslFile::new("mipmap", &[]);
-pub(crate) static PASS_MIPMAP: WgslFile = WgslFile::new("pass_mipmap", &[&MIPMAP]);
 
 /// Numbers that are kept of each level for the test of a mask.
 pub(crate) const ALPHAS: u32 = 257;
@@ -41,25 +37,16 @@ pub(super) struct AlphaTest {
 
 /// The passes. Their pipelines are made when an image first has several levels.
 pub(super) struct Mipmaps {
-    average: Pass,
+    average: ComputePipeline,
     /// For the test of a mask, in this order.
-    tested: [Pass; 3],
-}
-
-/// A pass over a level, and the bindings that it has.
-struct Pass {
-    pipeline: ComputePipeline,
-    bindings: &'static [u32],
+    tested: [ComputePipeline; 3],
 }
 
 impl Mipmaps {
     pub(super) fn new() -> Self {
-        let module = Arc::new(ShaderModule::new(&PASS_MIPMAP));
-        let pass = |name, bindings| Pass { pipeline: ComputePipeline::new(&module, name), bindings };
-        Self {
-            average: pass("mip_main", &[0, 1, 2, 3]),
-            tested: [pass("mip_count", &[0, 3, 4]), pass("mip_choose", &[0, 4]), pass("mip_cover", &[0, 3, 4])],
-        }
+        let module = Arc::new(ShaderModule::new("pass_mipmap"));
+        let pass = |name| ComputePipeline::new(&module, name);
+        Self { average: pass("mip_main"), tested: ["mip_count", "mip_choose", "mip_cover"].map(pass) }
     }
 
     /// Fills all levels of an image of 8-bit RGBA but the first, which must be there already. `first` is a view of that, without
@@ -80,58 +67,51 @@ impl Mipmaps {
             return Ok(());
         }
         let tested = if test.is_some() { &self.tested[..] } else { &[] };
-        std::iter::once(&self.average).chain(tested).try_for_each(|pass| pass.pipeline.get(gpu).map(|_| ()))?;
+        std::iter::once(&self.average).chain(tested).try_for_each(|pass| pass.get(gpu).map(|_| ()))?;
         let levels: Vec<_> = level_params(size, filter, test).collect();
         let buffers = gpu.attempt(|| Buffers::new(gpu, size))?;
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("mipmap") };
         let mut encoder = gpu.device.create_command_encoder(&descriptor);
         // Each level is averaged from the one before before any alpha is scaled.
         for params in &levels {
-            self.average.record(gpu, &mut encoder, &buffers, first, params)?;
+            record(&self.average, gpu, &mut encoder, &buffers, first, params)?;
         }
         for (params, pass) in levels.iter().flat_map(|params| tested.iter().map(move |pass| (params, pass))) {
-            pass.record(gpu, &mut encoder, &buffers, first, params)?;
+            record(pass, gpu, &mut encoder, &buffers, first, params)?;
         }
         levels.iter().for_each(|params| copy(params, &mut encoder, &buffers.texels, image));
         gpu.attempt(|| gpu.queue.submit([encoder.finish()])).map(|_| ())
     }
 }
 
-impl Pass {
-    /// # Errors
-    /// The pipeline can't be made: out of memory, or a lost device.
-    fn record(
-        &self,
-        gpu: &Gpu,
-        encoder: &mut wgpu::CommandEncoder,
-        buffers: &Buffers,
-        first: &wgpu::TextureView,
-        params: &MipParams,
-    ) -> Result<(), GpuError> {
-        let pipeline = self.pipeline.get(gpu)?;
-        let uniform = uniform_buffer(gpu, "mipmap", bytemuck::bytes_of(params));
-        let all = [
-            uniform.as_entire_binding(),
-            wgpu::BindingResource::TextureView(first),
-            buffers.table.as_entire_binding(),
-            buffers.texels.as_entire_binding(),
-            buffers.alphas.as_entire_binding(),
-        ];
-        let bound = (0..).zip(all).filter(|(binding, _)| self.bindings.contains(binding));
-        let entries: Vec<_> = bound.map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
-        let layout = pipeline.get_bind_group_layout(0);
-        let descriptor = wgpu::BindGroupDescriptor { label: Some("mipmap"), layout: &layout, entries: &entries };
-        let group = gpu.device.create_bind_group(&descriptor);
-        let [across, down] = match self.pipeline.entry_point() {
-            "mip_choose" => [1, 1],
-            _ => params.target_size.map(|side| side.div_ceil(8)),
-        };
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_pipeline(pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.dispatch_workgroups(across, down, 1);
-        Ok(())
-    }
+/// Records a pass over a level.
+///
+/// # Errors
+/// The pipeline can't be made: out of memory, or a lost device.
+fn record(
+    pipeline: &ComputePipeline,
+    gpu: &Gpu,
+    encoder: &mut wgpu::CommandEncoder,
+    buffers: &Buffers,
+    first: &wgpu::TextureView,
+    params: &MipParams,
+) -> Result<(), GpuError> {
+    let uniform = uniform_buffer(gpu, "mipmap", bytemuck::bytes_of(params));
+    let bound = pipeline.bind(gpu, |name| {
+        Some(match name {
+            "params" => uniform.as_entire_binding(),
+            "image" => wgpu::BindingResource::TextureView(first),
+            "levels" => buffers.texels.as_entire_binding(),
+            "alphas" => buffers.alphas.as_entire_binding(),
+            _ => buffers.table.as_entire_binding(),
+        })
+    })?;
+    let [across, down] = match pipeline.entry_point() {
+        "mip_choose" => [1, 1],
+        _ => params.target_size.map(|side| side.div_ceil(8)),
+    };
+    bound.dispatch(&mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default()), [across, down, 1]);
+    Ok(())
 }
 
 /// What the passes over an image work in.

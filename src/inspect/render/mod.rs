@@ -1,6 +1,6 @@
 //! Draws pictures of a scene on the device, as a camera sees it, with one indirect draw per material into an offscreen texture.
 
-mod adding_pipeline;
+mod adding;
 pub mod blur_levels;
 pub mod camera;
 mod coverage;
@@ -16,6 +16,7 @@ mod file_view;
 mod frame;
 mod framing;
 mod ground;
+mod group_layouts;
 pub mod irradiance;
 mod layers;
 pub mod layout;
@@ -36,6 +37,7 @@ pub mod prefilter;
 pub(crate) mod prefilter_pass;
 pub mod punctual;
 pub mod reflectance;
+mod render_pipeline;
 pub mod renderer;
 mod scale;
 pub mod scene;
@@ -68,25 +70,3 @@ pub use scene::{LineSegment, Scene};
 pub(crate) use silhouette::{SilhouetteCoverage, SilhouetteDrawer, padded_clip};
 pub use target::{Target, samples};
 pub use window::WindowPipelines;
-
-#[cfg(test)]
-/// The shader files with entry points for drawing and picking, and the light that draws read. Each makes one shader module.
-static MODULES: [&gpu::WgslFile; 17] = [
-    &coverage::PASS_COVERAGE,
-    &environment::ENVIRONMENT,
-    &leaks::DRAW_LEAKS,
-    &mipmap_pass::PASS_MIPMAP,
-    &pick::DRAW_PICK,
-    &pipelines::DRAW_BACKGROUND,
-    &pipelines::DRAW_CLEAR,
-    &pipelines::DRAW_GROUND,
-    &pipelines::DRAW_LINES,
-    &pipelines::DRAW_LIT,
-    &pipelines::DRAW_PLAIN,
-    &pipelines::DRAW_SURFACE,
-    &pipelines::LAYERS_MULTISAMPLED,
-    &pipelines::LAYERS_SINGLE,
-    &prefilter_pass::PASS_PREFILTER,
-    &silhouette::DRAW_SILHOUETTE,
-    &window::DRAW_WINDOW,
-];

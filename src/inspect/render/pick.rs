@@ -3,18 +3,17 @@
 use std::sync::Arc;
 
 use glam::{DMat4, DVec4, Mat4, dvec2};
-use wgpu::util::DeviceExt;
 
 use super::Scene;
 use super::layout::{FOUND_EMITTED, Pick};
-use super::pipelines::DRAW_TYPES;
+use super::render_pipeline::{PipelineParts, depth_state};
 use super::steps::halves;
 use super::target::DEPTH_FORMAT;
 use gpu::layout::Vertex;
-use gpu::wgsl::{FACTORS, SURFACE, TYPES, WgslFile};
-use gpu::{ComputePipeline, Gpu, GpuError, Lazy, Readback, RecordPasses, Recorder, ShaderModule, Timing};
-
-pub(super) static DRAW_PICK: WgslFile = WgslFile::new("draw_pick", &[&DRAW_TYPES, &FACTORS, &SURFACE, &TYPES]);
+use gpu::{
+    ComputePipeline, Gpu, GpuError, Lazy, Readback, RecordPasses, Recorder, ShaderModule, Timing, empty, flat_texture,
+    uniform_buffer, whole,
+};
 
 /// `pick_fragment` draws two numbers. Every adapter can draw into this format, which has four.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
@@ -72,9 +71,7 @@ struct Search {
     module: Arc<ShaderModule>,
     vertex: &'static str,
     draw: Lazy<wgpu::RenderPipeline>,
-    draw_bindings: &'static [u32],
     take: ComputePipeline,
-    take_bindings: &'static [u32],
 }
 
 /// A result on its way to the host.
@@ -89,24 +86,16 @@ impl Default for Picker {
 impl Picker {
     /// Compiles nothing yet.
     pub fn new() -> Self {
-        let module = Arc::new(ShaderModule::new(&DRAW_PICK));
+        let module = Arc::new(ShaderModule::new("draw_pick"));
+        let search = |vertex, take| Search {
+            module: module.clone(),
+            vertex,
+            draw: Lazy::default(),
+            take: ComputePipeline::new(&module, take),
+        };
         Self {
-            emitted: Search {
-                module: module.clone(),
-                vertex: "pick_emitted_vertex",
-                draw: Lazy::default(),
-                draw_bindings: &[0, 3, 4],
-                take: ComputePipeline::new(&module, "pick_emitted_main"),
-                take_bindings: &[3, 4, 5, 6],
-            },
-            source: Search {
-                vertex: "pick_source_vertex",
-                draw: Lazy::default(),
-                draw_bindings: &[0, 1, 2],
-                take: ComputePipeline::new(&module, "pick_source_main"),
-                take_bindings: &[5, 6],
-                module,
-            },
+            emitted: search("pick_emitted_vertex", "pick_emitted_main"),
+            source: search("pick_source_vertex", "pick_source_main"),
         }
     }
 
@@ -115,7 +104,7 @@ impl Picker {
     /// # Errors
     /// A pipeline can't be made: out of memory, or a lost device.
     pub fn start(&self, gpu: &Gpu, scene: &mut Scene, pixel: &Pixel) -> Result<Picking, GpuError> {
-        let run = Run::new(gpu, pixel);
+        let run = Run::new(gpu, pixel)?;
         let mut timing = Timing::Off;
         let mut recorder = Recorder::new(gpu, &mut timing);
         if pixel.is_left() {
@@ -170,32 +159,19 @@ struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    fn new(gpu: &'a Gpu, pixel: &Pixel) -> Self {
+    fn new(gpu: &'a Gpu, pixel: &Pixel) -> Result<Self, GpuError> {
         let texture = |format, usage| {
-            let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("pick"),
-                size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | usage,
-                view_formats: &[],
-            });
-            texture.create_view(&wgpu::TextureViewDescriptor::default())
-        };
-        let buffer = |contents: &[u8], usage| {
-            gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some("pick"), contents, usage })
+            let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | usage;
+            whole(&gpu.device.create_texture(&flat_texture("pick", [1, 1], format, usage)))
         };
         let matrix = pixel_from_object(pixel).to_cols_array_2d();
-        let pick: Pick = bytemuck::Zeroable::zeroed();
-        Self {
+        Ok(Self {
             gpu,
-            pixel_from_object: buffer(bytemuck::bytes_of(&matrix), wgpu::BufferUsages::UNIFORM),
+            pixel_from_object: uniform_buffer(gpu, "pick", bytemuck::bytes_of(&matrix)),
             drawn: texture(FORMAT, wgpu::TextureUsages::TEXTURE_BINDING),
             depth: texture(DEPTH_FORMAT, wgpu::TextureUsages::empty()),
-            pick: buffer(bytemuck::bytes_of(&pick), wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC),
-        }
+            pick: empty::<Pick>(gpu, "pick", 1)?,
+        })
     }
 
     /// Draws a number of corners, and takes the result if it is in front of everything that was drawn before.
@@ -209,7 +185,6 @@ impl<'a> Run<'a> {
     ) -> Result<(), GpuError> {
         let module = search.module.get(self.gpu)?;
         let draw = search.draw.get_or_make(self.gpu, || pipeline(self.gpu, module, search.vertex))?;
-        let take = search.take.get(self.gpu)?;
         let depth = if first { wgpu::LoadOp::Clear(0.0) } else { wgpu::LoadOp::Load };
         let color = wgpu::RenderPassColorAttachment {
             view: &self.drawn,
@@ -222,38 +197,31 @@ impl<'a> Run<'a> {
             depth_ops: Some(wgpu::Operations { load: depth, store: wgpu::StoreOp::Store }),
             stencil_ops: None,
         };
-        let group = self.group(scene, &draw.get_bind_group_layout(0), search.draw_bindings);
+        let resource = |name: &str| self.resource(scene, name);
+        let group = search.module.bind(self.gpu, search.vertex, &draw.get_bind_group_layout(0), resource);
         recorder.render("pick", Some(color), Some(depth), |pass| {
             pass.set_pipeline(draw);
             pass.set_bind_group(0, &group, &[]);
             pass.draw(0..corners, 0..1);
         });
-        let group = self.group(scene, &take.get_bind_group_layout(0), search.take_bindings);
-        recorder.compute("pick", |pass| {
-            pass.set_pipeline(take);
-            pass.set_bind_group(0, &group, &[]);
-            pass.dispatch_workgroups(1, 1, 1);
-        });
+        let take = search.take.bind(self.gpu, resource)?;
+        recorder.compute("pick", |pass| take.dispatch(pass, [1, 1, 1]));
         Ok(())
     }
 
-    fn group(&self, scene: &Scene, layout: &wgpu::BindGroupLayout, bindings: &[u32]) -> wgpu::BindGroup {
+    /// What a variable of the shaders stands for.
+    fn resource<'b>(&'b self, scene: &'b Scene, name: &str) -> Option<wgpu::BindingResource<'b>> {
         let buffers = scene.tessellator.buffers();
         let (vertices, indices) = scene.tessellator.arena();
-        // In the order of their binding numbers in the shader.
-        let all = [
-            self.pixel_from_object.as_entire_binding(),
-            buffers.points.as_entire_binding(),
-            buffers.patches.as_entire_binding(),
-            vertices.as_entire_binding(),
-            indices.as_entire_binding(),
-            wgpu::BindingResource::TextureView(&self.drawn),
-            self.pick.as_entire_binding(),
-        ];
-        let entries = (0..).zip(all).filter(|(binding, _)| bindings.contains(binding));
-        let entries: Vec<_> = entries.map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
-        let descriptor = wgpu::BindGroupDescriptor { label: Some("pick"), layout, entries: &entries };
-        self.gpu.device.create_bind_group(&descriptor)
+        Some(match name {
+            "pixel_from_object" => self.pixel_from_object.as_entire_binding(),
+            "points" => buffers.points.as_entire_binding(),
+            "patches" => buffers.patches.as_entire_binding(),
+            "vertex_halves" => vertices.as_entire_binding(),
+            "indices" => indices.as_entire_binding(),
+            "pick" => self.pick.as_entire_binding(),
+            _ => wgpu::BindingResource::TextureView(&self.drawn),
+        })
     }
 }
 
@@ -270,35 +238,7 @@ fn pixel_from_object(pixel: &Pixel) -> Mat4 {
 }
 
 fn pipeline(gpu: &Gpu, module: &wgpu::ShaderModule, vertex: &str) -> wgpu::RenderPipeline {
-    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(vertex),
-        layout: None,
-        vertex: wgpu::VertexState {
-            module,
-            entry_point: Some(vertex),
-            compilation_options: Default::default(),
-            buffers: &[],
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: DEPTH_FORMAT,
-            depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::Greater),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState::default(),
-        }),
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module,
-            entry_point: Some("pick_fragment"),
-            compilation_options: Default::default(),
-            targets: &[Some(wgpu::ColorTargetState {
-                format: FORMAT,
-                blend: None,
-                write_mask: wgpu::ColorWrites::ALL,
-            })],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
+    let depth = Some(depth_state(true, wgpu::CompareFunction::Greater));
+    let parts = PipelineParts::new(module, [vertex, "pick_fragment"], Some(FORMAT.into()));
+    PipelineParts { depth, ..parts }.pipeline(gpu)
 }

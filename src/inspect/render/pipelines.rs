@@ -3,91 +3,13 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::draws::{Draw, Triangles};
-use super::environment::{Backdrop, ENVIRONMENT};
-use super::materials::{Materials, depths_entry};
-use super::prefilter_pass::REFLECTANCE;
+use super::draws::{Draw, Shading, SurfaceDraw, Triangles};
+use super::environment::Backdrop;
+use super::group_layouts::{FRAGMENT, READ, UNIFORM, VERTEX, depths, group_layout};
+use super::materials::Materials;
+use super::render_pipeline::PipelineParts;
 use super::target::samples;
-use gpu::wgsl::{CONVENTION, CURVATURE, FACTORS, LOAD_NET, LOADS, NORMAL, OCTAHEDRAL_NORMAL, SURFACE, TYPES, WgslFile};
-use gpu::{Gpu, GpuError, Lazy, ShaderModule};
-
-pub(super) static DRAW_TYPES: WgslFile = WgslFile::new("draw_types", &[&TYPES]);
-pub(super) static DRAW_BACKGROUND: WgslFile =
-    WgslFile::new("draw_background", &[&DRAW_TYPES, &ENVIRONMENT, &REFLECTANCE]);
-pub(super) static DRAW_CLEAR: WgslFile = WgslFile::new("draw_clear", &[]);
-static DRAW_DENSITY: WgslFile = WgslFile::new("draw_density", &[]);
-pub(super) static DRAW_GROUND: WgslFile = WgslFile::new("draw_ground", &[&DRAW_DENSITY, &DRAW_TYPES]);
-static DRAW_LIGHT: WgslFile = WgslFile::new("draw_light", &[]);
-pub(super) static DRAW_LIT: WgslFile = WgslFile::new(
-    "draw_lit",
-    &[&DRAW_LIGHT, &DRAW_MASK, &DRAW_MATERIAL, &DRAW_NORMAL, &DRAW_TYPES, &OCTAHEDRAL_NORMAL, &SURFACE, &TYPES],
-);
-static DRAW_LOOKS: WgslFile = WgslFile::new("draw_looks", &[&DRAW_DENSITY]);
-static DRAW_MASK: WgslFile = WgslFile::new("draw_mask", &[&DRAW_MATERIAL]);
-static PUNCTUAL: WgslFile = WgslFile::new("punctual", &[]);
-static DRAW_MATERIAL: WgslFile =
-    WgslFile::new("draw_material", &[&DRAW_NORMAL, &DRAW_TYPES, &ENVIRONMENT, &PUNCTUAL, &REFLECTANCE, &TYPES]);
-static DRAW_NORMAL: WgslFile = WgslFile::new("draw_normal", &[&FACTORS, &LOAD_NET, &LOADS, &NORMAL, &TYPES]);
-pub(super) static DRAW_PLAIN: WgslFile =
-    WgslFile::new("draw_plain", &[&DRAW_LIGHT, &DRAW_NORMAL, &DRAW_TYPES, &OCTAHEDRAL_NORMAL, &SURFACE, &TYPES]);
-static DRAW_OVERLAYS: WgslFile = WgslFile::new(
-    "draw_overlays",
-    &[
-        &CURVATURE,
-        &DRAW_DENSITY,
-        &DRAW_LIGHT,
-        &DRAW_LOOKS,
-        &DRAW_MATERIAL,
-        &DRAW_NORMAL,
-        &DRAW_SURFACE_INPUTS,
-        &DRAW_TYPES,
-        &LOAD_NET,
-        &NORMAL,
-        &SURFACE,
-    ],
-);
-pub(super) static DRAW_SURFACE: WgslFile = WgslFile::new(
-    "draw_surface",
-    &[
-        &DRAW_LIGHT,
-        &DRAW_MASK,
-        &DRAW_MATERIAL,
-        &DRAW_NORMAL,
-        &DRAW_SURFACE_COLOR,
-        &DRAW_SURFACE_INPUTS,
-        &DRAW_SURFACE_VERTICES,
-    ],
-);
-static DRAW_SURFACE_COLOR: WgslFile = WgslFile::new(
-    "draw_surface_color",
-    &[
-        &DRAW_DENSITY,
-        &DRAW_LIGHT,
-        &DRAW_LOOKS,
-        &DRAW_MATERIAL,
-        &DRAW_NORMAL,
-        &DRAW_OVERLAYS,
-        &DRAW_SURFACE_INPUTS,
-        &DRAW_TYPES,
-    ],
-);
-static DRAW_SURFACE_INPUTS: WgslFile = WgslFile::new("draw_surface_inputs", &[&DRAW_TYPES, &TYPES]);
-static DRAW_SURFACE_VERTICES: WgslFile = WgslFile::new(
-    "draw_surface_vertices",
-    &[&CONVENTION, &DRAW_NORMAL, &DRAW_SURFACE_INPUTS, &DRAW_TYPES, &FACTORS, &OCTAHEDRAL_NORMAL, &SURFACE, &TYPES],
-);
-pub(super) static DRAW_LINES: WgslFile =
-    WgslFile::new("draw_lines", &[&DRAW_TYPES, &FACTORS, &OCTAHEDRAL_NORMAL, &TYPES]);
-
-/// The module that has it declares the depths that it compares with.
-static DRAW_LAYERS: WgslFile = WgslFile::new("draw_layers", &[&DRAW_MATERIAL]);
-static DRAW_LIT_LAYERS: WgslFile =
-    WgslFile::new("draw_lit_layers", &[&DRAW_LAYERS, &DRAW_LIT, &DRAW_MATERIAL, &DRAW_NORMAL]);
-static DRAW_SURFACE_LAYERS: WgslFile =
-    WgslFile::new("draw_surface_layers", &[&DRAW_LAYERS, &DRAW_MATERIAL, &DRAW_NORMAL, &DRAW_SURFACE]);
-pub(super) static LAYERS_SINGLE: WgslFile = WgslFile::new("layers_single", &[&DRAW_LIT_LAYERS, &DRAW_SURFACE_LAYERS]);
-pub(super) static LAYERS_MULTISAMPLED: WgslFile =
-    WgslFile::new("layers_multisampled", &[&DRAW_LIT_LAYERS, &DRAW_SURFACE_LAYERS]);
+use gpu::{Gpu, GpuError, Lazy, ShaderModules};
 
 /// The pipeline of each [`Draw`], and the layouts of their bind groups.
 pub(super) struct DrawPipelines {
@@ -110,38 +32,31 @@ pub(super) struct DrawPipelines {
     found_layout: wgpu::BindGroupLayout,
     /// Group 3 where layers are drawn: the same, and the depths of the layer that was found last.
     pub layer_layout: wgpu::BindGroupLayout,
-    plain: ShaderModule,
-    lit: ShaderModule,
-    surface: ShaderModule,
-    layers: ShaderModule,
-    clear: ShaderModule,
-    background: ShaderModule,
-    ground: ShaderModule,
-    lines: ShaderModule,
+    modules: ShaderModules,
     pipelines: Mutex<HashMap<Draw, Arc<Lazy<wgpu::RenderPipeline>>>>,
 }
 
 impl DrawPipelines {
     /// Makes the layouts. Compiles nothing yet.
     pub(super) fn new(gpu: &Gpu, materials: &Materials) -> Self {
-        let is_multisampled = samples(gpu) > 1;
+        let both = VERTEX | FRAGMENT;
+        // Vertex shaders have as many storage buffers as WebGPU allows.
+        let scene = [
+            [0, 1, 2, 3].map(|binding| (binding, both, READ)).to_vec(),
+            vec![(4, VERTEX, READ), (5, VERTEX, READ), (6, both, UNIFORM)],
+            vec![(7, FRAGMENT, READ), (8, FRAGMENT, UNIFORM), (9, FRAGMENT, READ)],
+        ];
+        let [measured, least] = [(0, FRAGMENT, READ), (1, VERTEX, READ)];
         Self {
-            scene_layout: scene_layout(gpu),
+            scene_layout: group_layout(gpu, "scene", &scene.concat()),
             material_layout: materials.layout.clone(),
             lit_layout: materials.lit_layout.clone(),
             found_layout: materials.found_layout.clone(),
-            background_layout: background_layout(gpu),
-            chunk_layout: chunk_layout(gpu),
-            measured_layout: measured_layout(gpu),
-            layer_layout: layer_layout(gpu),
-            plain: ShaderModule::new(&DRAW_PLAIN),
-            lit: ShaderModule::new(&DRAW_LIT),
-            surface: ShaderModule::new(&DRAW_SURFACE),
-            layers: ShaderModule::new(if is_multisampled { &LAYERS_MULTISAMPLED } else { &LAYERS_SINGLE }),
-            clear: ShaderModule::new(&DRAW_CLEAR),
-            background: ShaderModule::new(&DRAW_BACKGROUND),
-            ground: ShaderModule::new(&DRAW_GROUND),
-            lines: ShaderModule::new(&DRAW_LINES),
+            background_layout: group_layout(gpu, "background", &Backdrop::BINDINGS),
+            chunk_layout: group_layout(gpu, "chunk", &[(0, VERTEX, UNIFORM), (1, VERTEX, READ)]),
+            measured_layout: group_layout(gpu, "measured", &[measured, least]),
+            layer_layout: group_layout(gpu, "layer", &[measured, least, (2, FRAGMENT, depths(gpu))]),
+            modules: ShaderModules::default(),
             pipelines: Default::default(),
         }
     }
@@ -151,136 +66,55 @@ impl DrawPipelines {
     /// # Errors
     /// Out of memory, or a lost device.
     pub(super) fn get(&self, gpu: &Gpu, draw: Draw) -> Result<wgpu::RenderPipeline, GpuError> {
-        let module = match draw {
-            Draw::Plain(_) | Draw::Textured(_) | Draw::PixelNormals(_) => &self.plain,
-            Draw::Lit(..) => &self.lit,
-            Draw::Indexed(..) | Draw::Pulled(..) | Draw::Source => &self.surface,
-            Draw::LitIndexed(..) | Draw::LitPulled(..) | Draw::LitSource(..) => &self.surface,
-            Draw::LookIndexed(..) | Draw::LookPulled(..) | Draw::LookSource(_) => &self.surface,
-            Draw::Cut(..) => &self.surface,
-            Draw::Layer(..) => &self.layers,
-            Draw::LayerClear(_) => &self.clear,
-            Draw::Background => &self.background,
-            Draw::Ground => &self.ground,
-            Draw::Lines(_) | Draw::Normals(_) => &self.lines,
-        };
+        let module = self.modules.get(match draw {
+            Draw::Surface(SurfaceDraw { layer: Some(_), .. }) if samples(gpu) > 1 => "layers_multisampled",
+            Draw::Surface(SurfaceDraw { layer: Some(_), .. }) => "layers_single",
+            Draw::Surface(SurfaceDraw { triangles: Triangles::Bare, shading: Shading::Lit(_), .. }) => "draw_lit",
+            Draw::Surface(SurfaceDraw { triangles: Triangles::Bare, .. }) => "draw_plain",
+            Draw::Surface(_) => "draw_surface",
+            Draw::LayerClear { .. } => "draw_clear",
+            Draw::Background => "draw_background",
+            Draw::Ground => "draw_ground",
+            Draw::Lines(_) | Draw::Normals(_) => "draw_lines",
+        });
         let module = module.get(gpu)?;
         // Nothing is made while the lock is held, so that a picture doesn't wait for pipelines of another.
         let own = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner).entry(draw).or_default().clone();
-        own.get_or_make(gpu, || pipeline(gpu, &self.layouts(draw), module, draw)).cloned()
+        let parts = || PipelineParts {
+            constants: draw.constants(),
+            layouts: Some(self.layouts(draw)),
+            vertex_buffers: draw.vertex_buffers(),
+            cull_mode: draw.cull_mode(),
+            depth: Some(draw.depth_stencil()),
+            samples: samples(gpu),
+            ..PipelineParts::new(module, [draw.vertex_entry(), draw.fragment_entry()], draw.color_target())
+        };
+        own.get_or_make(gpu, || parts().pipeline(gpu)).cloned()
     }
 
     /// The layouts of the groups that a pipeline binds.
     fn layouts(&self, draw: Draw) -> Vec<Option<&wgpu::BindGroupLayout>> {
-        let (scene, material) = (Some(&self.scene_layout), Some(&self.material_layout));
-        let (chunk, deviation) = (Some(&self.chunk_layout), Some(&self.measured_layout));
-        let (lit, layer) = (Some(&self.lit_layout), Some(&self.layer_layout));
+        let (scene, chunk) = (Some(&self.scene_layout), Some(&self.chunk_layout));
         match draw {
-            Draw::Plain(_) | Draw::Textured(_) | Draw::PixelNormals(_) => vec![scene, material],
-            Draw::Indexed(..) | Draw::Pulled(..) | Draw::LookIndexed(..) | Draw::LookPulled(..) => {
-                vec![scene, material, chunk, deviation]
+            Draw::Surface(SurfaceDraw { triangles, shading, layer, .. }) => {
+                let material = match (layer, shading) {
+                    (Some(layer), _) if layer.finds() => &self.found_layout,
+                    (_, Shading::Lit(_)) => &self.lit_layout,
+                    _ => &self.material_layout,
+                };
+                let last = if layer.is_some() { &self.layer_layout } else { &self.measured_layout };
+                let has_overlays = layer.is_some() || triangles != Triangles::Bare;
+                let chunk = chunk.filter(|_| triangles.have_factors());
+                let mut layouts = vec![scene, Some(material)];
+                if has_overlays {
+                    layouts.extend([chunk, Some(last)]);
+                }
+                layouts
             }
-            Draw::Source | Draw::LookSource(_) => vec![scene, material, None, deviation],
-            Draw::Cut(Triangles::Source, ..) => vec![scene, material, None, deviation],
-            Draw::Cut(..) => vec![scene, material, chunk, deviation],
-            Draw::Lit(..) => vec![scene, lit],
-            Draw::LitIndexed(..) | Draw::LitPulled(..) => vec![scene, lit, chunk, deviation],
-            Draw::LitSource(..) => vec![scene, lit, None, deviation],
-            Draw::Layer(draw, triangles, ..) => {
-                let material = if draw.finds() { Some(&self.found_layout) } else { lit };
-                let has_chunk = matches!(triangles, Triangles::Indexed | Triangles::Pulled);
-                vec![scene, material, chunk.filter(|_| has_chunk), layer]
-            }
-            Draw::LayerClear(_) => Vec::new(),
+            Draw::LayerClear { .. } => Vec::new(),
             Draw::Background => vec![scene, Some(&self.background_layout)],
             Draw::Ground | Draw::Lines(_) => vec![scene],
             Draw::Normals(_) => vec![scene, None, chunk],
         }
     }
-}
-
-fn scene_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let (vertex, fragment) = (wgpu::ShaderStages::VERTEX, wgpu::ShaderStages::FRAGMENT);
-    let mut entries: Vec<_> = (0..4).map(|binding| buffer_entry(binding, READ, vertex | fragment)).collect();
-    entries.extend((4..6).map(|binding| buffer_entry(binding, READ, vertex)));
-    entries.push(buffer_entry(6, wgpu::BufferBindingType::Uniform, vertex | fragment));
-    // Vertex shaders have as many storage buffers as WebGPU allows.
-    entries.push(buffer_entry(7, READ, fragment));
-    entries.push(buffer_entry(8, wgpu::BufferBindingType::Uniform, fragment));
-    entries.push(buffer_entry(9, READ, fragment));
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("scene"), entries: &entries })
-}
-
-fn chunk_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let entries = [(0, wgpu::BufferBindingType::Uniform), (1, READ)]
-        .map(|(binding, ty)| buffer_entry(binding, ty, wgpu::ShaderStages::VERTEX));
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("chunk"), entries: &entries })
-}
-
-fn measured_entries() -> [wgpu::BindGroupLayoutEntry; 2] {
-    [buffer_entry(0, READ, wgpu::ShaderStages::FRAGMENT), buffer_entry(1, READ, wgpu::ShaderStages::VERTEX)]
-}
-
-fn background_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let entries = Backdrop::layout_entries();
-    gpu.device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("background"), entries: &entries })
-}
-
-fn measured_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let entries = measured_entries();
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("measured"), entries: &entries })
-}
-
-fn layer_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let entries = [&measured_entries()[..], &[depths_entry(gpu, 2)]].concat();
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("layer"), entries: &entries })
-}
-
-const READ: wgpu::BufferBindingType = wgpu::BufferBindingType::Storage { read_only: true };
-
-fn buffer_entry(
-    binding: u32,
-    ty: wgpu::BufferBindingType,
-    visibility: wgpu::ShaderStages,
-) -> wgpu::BindGroupLayoutEntry {
-    let ty = wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
-    wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None }
-}
-
-fn pipeline(
-    gpu: &Gpu,
-    layouts: &[Option<&wgpu::BindGroupLayout>],
-    module: &wgpu::ShaderModule,
-    draw: Draw,
-) -> wgpu::RenderPipeline {
-    let (vertex, fragment) = (draw.vertex_entry(), draw.fragment_entry());
-    let constants = draw.constants();
-    let color = draw.color_target().map(Some);
-    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some(vertex),
-        bind_group_layouts: layouts,
-        ..Default::default()
-    });
-    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(vertex),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module,
-            entry_point: Some(vertex),
-            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
-            buffers: &draw.vertex_buffers(),
-        },
-        primitive: wgpu::PrimitiveState { cull_mode: draw.cull_mode(), ..Default::default() },
-        depth_stencil: Some(draw.depth_stencil()),
-        multisample: wgpu::MultisampleState { count: samples(gpu), ..Default::default() },
-        fragment: Some(wgpu::FragmentState {
-            module,
-            entry_point: Some(fragment),
-            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
-            targets: color.as_slice(),
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
 }

@@ -2,10 +2,9 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec3, Vec4, Vec4Swizzles};
-use wgpu::util::DeviceExt;
 
 use geometry::mesh::{Light, LightKind, MOST_LIGHTS};
-use gpu::Gpu;
+use gpu::{Gpu, uniform_buffer};
 
 /// A light as shaders have it.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -71,11 +70,7 @@ fn cone(inner: f32, outer: f32) -> [f32; 2] {
 pub(super) fn upload_lights(gpu: &Gpu, lights: &[Light]) -> wgpu::Buffer {
     let mut packed = [PunctualLight::zeroed(); MOST_LIGHTS];
     packed.iter_mut().zip(lights).for_each(|(packed, light)| *packed = light.into());
-    gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: Some("lights"),
-        contents: bytemuck::cast_slice(&packed),
-        usage: wgpu::BufferUsages::UNIFORM,
-    })
+    uniform_buffer(gpu, "lights", bytemuck::cast_slice(&packed))
 }
 
 #[cfg(test)]

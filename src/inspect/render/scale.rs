@@ -13,21 +13,25 @@ pub struct Scale {
     pub colors: [[u8; 3]; Scale::STOPS],
 }
 
+/// Colours from their hexadecimal numbers, whose first two digits are red.
+pub(super) const fn hex_colors(numbers: [u32; Scale::STOPS]) -> [[u8; 3]; Scale::STOPS] {
+    let mut colors = [[0; 3]; Scale::STOPS];
+    let mut stop = 0;
+    while stop < Scale::STOPS {
+        let [_, red, green, blue] = numbers[stop].to_be_bytes();
+        colors[stop] = [red, green, blue];
+        stop += 1;
+    }
+    colors
+}
+
 /// The scale for tessellation factors, with a colour for each power of two. It is the upper six eighths of viridis (Smith and
 /// van der Walt 2015, CC0): its lightness grows evenly for any colour vision, and the dark end is left out, since dark lines
 /// would vanish on it.
 pub const FACTOR_SCALE: Scale = Scale {
     least: 1.0,
     most: 64.0,
-    colors: [
-        [0x3b, 0x52, 0x8b],
-        [0x2c, 0x72, 0x8e],
-        [0x21, 0x91, 0x8c],
-        [0x28, 0xae, 0x80],
-        [0x5e, 0xc9, 0x62],
-        [0xad, 0xdc, 0x30],
-        [0xfd, 0xe7, 0x25],
-    ],
+    colors: hex_colors([0x3b528b, 0x2c728e, 0x21918c, 0x28ae80, 0x5ec962, 0xaddc30, 0xfde725]),
 };
 
 /// The scale for sizes of triangles in px. It is blue, darker for larger triangles, and can't be confused with
@@ -35,15 +39,7 @@ pub const FACTOR_SCALE: Scale = Scale {
 pub(crate) const SIZE_SCALE: Scale = Scale {
     least: SMALL_PX as f32,
     most: 64.0,
-    colors: [
-        [0xe4, 0xee, 0xf6],
-        [0xcb, 0xde, 0xee],
-        [0xae, 0xcb, 0xe3],
-        [0x8f, 0xb5, 0xd6],
-        [0x70, 0x9d, 0xc6],
-        [0x55, 0x84, 0xb2],
-        [0x3d, 0x6a, 0x9b],
-    ],
+    colors: hex_colors([0xe4eef6, 0xcbdeee, 0xaecbe3, 0x8fb5d6, 0x709dc6, 0x5584b2, 0x3d6a9b]),
 };
 
 /// The scale for how many times as many triangles a patch has as its own least. It runs from cream to a dark red (ColorBrewer's
@@ -51,15 +47,7 @@ pub(crate) const SIZE_SCALE: Scale = Scale {
 pub const EXCESS_SCALE: Scale = Scale {
     least: 1.0,
     most: 16.0,
-    colors: [
-        [0xfe, 0xf0, 0xd9],
-        [0xfd, 0xd4, 0x9e],
-        [0xfd, 0xbb, 0x84],
-        [0xfc, 0x8d, 0x59],
-        [0xef, 0x65, 0x48],
-        [0xd7, 0x30, 0x1f],
-        [0xb0, 0x00, 0x10],
-    ],
+    colors: hex_colors([0xfef0d9, 0xfdd49e, 0xfdbb84, 0xfc8d59, 0xef6548, 0xd7301f, 0xb00010]),
 };
 
 /// The scale for texels of an image beside one px of the picture: orange where there are fewer than one, purple where there are more,
@@ -67,28 +55,13 @@ pub const EXCESS_SCALE: Scale = Scale {
 pub const DENSITY_SCALE: Scale = Scale {
     least: 0.125,
     most: 8.0,
-    colors: [
-        [0xb3, 0x58, 0x06],
-        [0xf1, 0xa3, 0x40],
-        [0xfe, 0xe0, 0xb6],
-        [0xf7, 0xf7, 0xf7],
-        [0xd8, 0xda, 0xeb],
-        [0x99, 0x8e, 0xc3],
-        [0x54, 0x27, 0x88],
-    ],
+    colors: hex_colors([0xb35806, 0xf1a340, 0xfee0b6, 0xf7f7f7, 0xd8daeb, 0x998ec3, 0x542788]),
 };
 
 /// The colours of the scale of curvature: blue where it is below 0, red where it is above, and light grey at 0 (ColorBrewer's
 /// RdBu, which people with any colour vision can tell apart).
-const CURVATURE_COLORS: [[u8; 3]; Scale::STOPS] = [
-    [0x21, 0x66, 0xac],
-    [0x67, 0xa9, 0xcf],
-    [0xd1, 0xe5, 0xf0],
-    [0xf7, 0xf7, 0xf7],
-    [0xfd, 0xdb, 0xc7],
-    [0xef, 0x8a, 0x62],
-    [0xb2, 0x18, 0x2b],
-];
+const CURVATURE_COLORS: [[u8; 3]; Scale::STOPS] =
+    hex_colors([0x2166ac, 0x67a9cf, 0xd1e5f0, 0xf7f7f7, 0xfddbc7, 0xef8a62, 0xb2182b]);
 
 /// The scale of mean curvatures in 1 / object unit, for a mesh with this bounding radius in object units. `ends` is the curvature
 /// at its ends in 1 / bounding radius. The result has two digits.

@@ -30,29 +30,18 @@ pub(super) struct LayerStep {
     pub is_first: bool,
 }
 
-/// Triangles that are drawn in layers.
+/// Triangles that are drawn in layers: those of a half's chunk, or without one those of the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum LayerPart {
-    /// Those of the mesh, in the left half.
-    Source,
-    /// Those of a half's chunk.
-    Chunk(SplitSide, usize),
-}
-
-impl LayerPart {
-    pub(super) fn half(self) -> SplitSide {
-        match self {
-            Self::Source => SplitSide::Left,
-            Self::Chunk(half, _) => half,
-        }
-    }
+pub(super) struct LayerPart {
+    pub half: SplitSide,
+    pub chunk: Option<usize>,
 }
 
 impl Step {
     pub(super) fn half(&self) -> SplitSide {
         match self {
             Self::Surface(half, _) | Self::Normals(half, _) => *half,
-            Self::Layer(LayerStep { part: Some(LayerPart::Chunk(half, _)), .. }) => *half,
+            Self::Layer(LayerStep { part: Some(LayerPart { half, chunk: Some(_) }), .. }) => *half,
             Self::Over | Self::Layer(_) => SplitSide::Right,
         }
     }
@@ -60,8 +49,8 @@ impl Step {
     pub(super) fn chunk(&self) -> Option<usize> {
         match self {
             Self::Surface(_, chunk) | Self::Normals(_, chunk) => Some(*chunk),
-            Self::Layer(LayerStep { part: Some(LayerPart::Chunk(_, chunk)), .. }) => Some(*chunk),
-            Self::Over | Self::Layer(_) => None,
+            Self::Layer(LayerStep { part, .. }) => part.and_then(|part| part.chunk),
+            Self::Over => None,
         }
     }
 }
@@ -74,9 +63,10 @@ pub(super) fn steps(scene: &Scene, settings: &Settings) -> Vec<Step> {
     let all: Vec<_> = SplitSide::BOTH.into_iter().flat_map(chunks).collect();
     let mut steps: Vec<_> = all.iter().map(|&(half, chunk)| Step::Surface(half, chunk)).collect();
     if settings.shows_materials() && has_layers(scene.tessellator.mesh()) {
-        let source = (settings.split.is_some() && drawn(SplitSide::Left).is_none()).then_some(LayerPart::Source);
-        let parts = source.into_iter().chain(all.iter().map(|&(half, chunk)| LayerPart::Chunk(half, chunk)));
-        steps.extend(layer_steps(&parts.collect::<Vec<_>>()));
+        let has_source = settings.split.is_some() && drawn(SplitSide::Left).is_none();
+        let source = has_source.then_some(LayerPart { half: SplitSide::Left, chunk: None });
+        let chunks = all.iter().map(|&(half, chunk)| LayerPart { half, chunk: Some(chunk) });
+        steps.extend(layer_steps(&source.into_iter().chain(chunks).collect::<Vec<_>>()));
     }
     if settings.overlays.normals {
         steps.extend(all.iter().map(|&(half, chunk)| Step::Normals(half, chunk)));

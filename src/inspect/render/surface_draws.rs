@@ -1,6 +1,6 @@
 //! Decides what draws the surface of each material, by what a picture shows.
 
-use super::draws::{Draw, Faces, Triangles};
+use super::draws::{Draw, Faces, Shading, SurfaceDraw, Triangles};
 use super::layout::overlay_bits;
 use super::look::Look;
 use super::needs::{Cut, Needs, PictureKind};
@@ -16,30 +16,27 @@ pub(super) fn surface_draw(
     faces: Faces,
     kind: PictureKind,
 ) -> Draw {
-    let places = settings.used_normals_at(mesh);
-    let triangles = emitted_triangles(settings);
+    let (mut triangles, normals) = (emitted_triangles(settings), settings.used_normals_at(mesh));
+    let (shading, faces) = shading(settings, mesh, material, faces, kind);
+    if triangles == Triangles::Bare && matches!(shading, Shading::Cut(_) | Shading::Look(_)) {
+        triangles = Triangles::Indexed;
+    }
+    // Where nothing but the colour is drawn, no texture is read either.
+    let is_plain = triangles == Triangles::Bare && normals == NormalsAt::Vertices && material.texture.is_none();
+    let shading = if is_plain && shading == Shading::Textured { Shading::Plain } else { shading };
+    Draw::Surface(SurfaceDraw { triangles, faces, normals, shading, layer: None })
+}
+
+/// What colours a material, and which of its faces are drawn: these, unless it has fronts only.
+fn shading(settings: &Settings, mesh: &Mesh, material: &Material, faces: Faces, kind: PictureKind) -> (Shading, Faces) {
     if let Some(cut) = Cut::of(settings, mesh, material, kind) {
-        let triangles = if triangles == Triangles::Lit { Triangles::Indexed } else { triangles };
-        return Draw::Cut(triangles, faces, places, cut);
+        return (Shading::Cut(cut), faces);
     }
-    match (triangles, Look::of(settings.overlays.colors)) {
-        _ if settings.shows_materials() => {
-            let draw = match triangles {
-                Triangles::Pulled => Draw::LitPulled,
-                Triangles::Indexed => Draw::LitIndexed,
-                _ => Draw::Lit,
-            };
-            let faces = own_faces(settings, material).unwrap_or(faces);
-            draw(faces, places, Needs::of(mesh, material, settings, kind).own(material, kind))
-        }
-        (Triangles::Pulled, Some(look)) => Draw::LookPulled(faces, places, look),
-        (_, Some(look)) => Draw::LookIndexed(faces, places, look),
-        (Triangles::Pulled, None) => Draw::Pulled(faces, places),
-        (Triangles::Indexed, None) => Draw::Indexed(faces, places),
-        _ if places == NormalsAt::Pixels => Draw::PixelNormals(faces),
-        _ if material.texture.is_some() => Draw::Textured(faces),
-        _ => Draw::Plain(faces),
+    if settings.shows_materials() {
+        let needs = Needs::of(mesh, material, settings, kind).own(material, kind);
+        return (Shading::Lit(needs), own_faces(settings, material).unwrap_or(faces));
     }
+    (Look::of(settings.overlays.colors).map_or(Shading::Textured, Shading::Look), faces)
 }
 
 /// The faces of a material that are drawn whatever hides the backs of others. Backs that show through fronts would count twice, so that
@@ -65,21 +62,13 @@ pub(super) fn emitted_triangles(settings: &Settings) -> Triangles {
     } else if overlay_bits(&settings.overlays) != 0 {
         Triangles::Indexed
     } else {
-        Triangles::Lit
+        Triangles::Bare
     }
 }
 
 /// The pipeline for input triangles of a material, in such pictures.
 pub(super) fn source_draw(settings: &Settings, mesh: &Mesh, material: &Material, kind: PictureKind) -> Draw {
-    if let Some(cut) = Cut::of(settings, mesh, material, kind) {
-        return Draw::Cut(Triangles::Source, Faces::Both, NormalsAt::Vertices, cut);
-    }
-    match Look::of(settings.overlays.colors) {
-        _ if settings.shows_materials() => {
-            let faces = own_faces(settings, material).unwrap_or(Faces::Both);
-            Draw::LitSource(faces, Needs::of(mesh, material, &undisplaced(settings), kind).own(material, kind))
-        }
-        Some(look) => Draw::LookSource(look),
-        None => Draw::Source,
-    }
+    let (shading, faces) = shading(&undisplaced(settings), mesh, material, Faces::Both, kind);
+    let (triangles, normals) = (Triangles::Source, NormalsAt::Vertices);
+    Draw::Surface(SurfaceDraw { triangles, faces, normals, shading, layer: None })
 }

@@ -1,7 +1,7 @@
 //! The texture that a picture is drawn into.
 
 use super::layout::{linear, srgb};
-use gpu::{Gpu, GpuError, Lazy, read_texture};
+use gpu::{Gpu, GpuError, Lazy, flat_texture, read_texture, whole};
 
 /// The format in which pictures are drawn and resolved: 8-bit RGBA, encoded as sRGB.
 pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
@@ -44,27 +44,20 @@ impl Target {
         if width > limit || height > limit {
             return Err(GpuError::PictureTooLarge { width, height, limit });
         }
-        let texture = |label, format, samples, usage, view_formats: &[wgpu::TextureFormat]| {
-            gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
-                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: samples,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage,
-                view_formats,
-            })
-        };
         let drawn = wgpu::TextureUsages::RENDER_ATTACHMENT;
         let shown = drawn | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
-        let resolved = texture("target", SHOWN_FORMAT, 1, shown, &[COLOR_FORMAT]);
+        let flat = |label, format, usage| flat_texture(label, [width, height], format, usage);
+        let resolved = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            view_formats: &[COLOR_FORMAT],
+            ..flat("target", SHOWN_FORMAT, shown)
+        });
         let resolved_srgb =
             resolved.create_view(&wgpu::TextureViewDescriptor { format: Some(COLOR_FORMAT), ..Default::default() });
-        let view = |texture: wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let samples = samples(gpu);
-        let multisampled =
-            (samples > 1).then(|| view(texture("target.multisampled", COLOR_FORMAT, samples, drawn, &[])));
+        let sample_count = samples(gpu);
+        let multisampled = (sample_count > 1).then(|| {
+            let own = flat("target.multisampled", COLOR_FORMAT, drawn);
+            whole(&gpu.device.create_texture(&wgpu::TextureDescriptor { sample_count, ..own }))
+        });
         let depth = depth_view(gpu, "target.depth", [width, height]);
         let (size, layer_depths) = ([width, height], Lazy::default());
         let (is_transparent, is_draft, coarseness) = (false, false, 1);
@@ -118,7 +111,7 @@ impl Target {
         if is_linear {
             return self.resolved_srgb.clone();
         }
-        self.resolved.create_view(&wgpu::TextureViewDescriptor::default())
+        whole(&self.resolved)
     }
 
     /// Width and height in px.
@@ -186,18 +179,10 @@ impl Target {
 }
 
 /// A texture of depths that can be attached, and read by shaders.
-fn depth_view(gpu: &Gpu, label: &str, [width, height]: [u32; 2]) -> wgpu::TextureView {
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some(label),
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: samples(gpu),
-        dimension: wgpu::TextureDimension::D2,
-        format: DEPTH_FORMAT,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    });
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
+fn depth_view(gpu: &Gpu, label: &str, size: [u32; 2]) -> wgpu::TextureView {
+    let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+    let descriptor = flat_texture(label, size, DEPTH_FORMAT, usage);
+    whole(&gpu.device.create_texture(&wgpu::TextureDescriptor { sample_count: samples(gpu), ..descriptor }))
 }
 
 /// A depth attachment that is first cleared to a depth, or keeps what it has.

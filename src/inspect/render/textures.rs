@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::mipmap_pass::{AlphaTest, Mipmaps, level_bytes};
 use geometry::mesh::mipmap::{MipFilter, covered, halved, level_count};
 use geometry::mesh::{Alpha, Material, Sampling, Texture, Wrap};
-use gpu::{Gpu, GpuError};
+use gpu::{Gpu, GpuError, flat_texture};
 
 /// What an image is to a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -175,20 +175,15 @@ fn fits(gpu: &Gpu, size: [u32; 2]) -> bool {
 /// An image on the device, with room for all its mip levels, of which the first is there. It can be sampled and copied to, and used
 /// as `usage` says.
 pub(super) fn first_level(gpu: &Gpu, texture: &Texture, usage: wgpu::TextureUsages) -> wgpu::Texture {
-    let [width, height] = texture.size;
-    let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST | usage;
     let on_device = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("material"),
-        size,
         mip_level_count: level_count(texture.size),
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: COLORS,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST | usage,
         view_formats: &[NUMBERS],
+        ..flat_texture("material", texture.size, COLORS, usage)
     });
-    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * width), rows_per_image: None };
-    gpu.queue.write_texture(on_device.as_image_copy(), &texture.rgba, layout, size);
+    let layout =
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * texture.size[0]), rows_per_image: None };
+    gpu.queue.write_texture(on_device.as_image_copy(), &texture.rgba, layout, on_device.size());
     on_device
 }
 

@@ -2,9 +2,7 @@
 
 use glam::Vec3;
 
-/// Numbers of the curves.
-pub const TONE_CURVE_NEUTRAL: u32 = 0;
-pub const TONE_CURVE_NONE: u32 = 1;
+use crate::settings::ToneCurve;
 
 /// Below this, colours are shown as they are, and above they are compressed.
 pub(crate) const COMPRESSION_START: f32 = 0.76;
@@ -27,10 +25,10 @@ pub(crate) fn neutral_tone(color: Vec3) -> Vec3 {
     (shifted * (compressed / peak)).lerp(Vec3::splat(compressed), white)
 }
 
-/// Linear RGB to show, by the curve of that number; 0 to 1 under the neutral one.
-pub fn tone_mapped(color: Vec3, curve: u32) -> Vec3 {
+/// Linear RGB to show, by a curve; 0 to 1 under the neutral one.
+pub fn tone_mapped(color: Vec3, curve: ToneCurve) -> Vec3 {
     let light = color.max(Vec3::ZERO);
-    if curve == TONE_CURVE_NEUTRAL { neutral_tone(light) } else { light }
+    if curve == ToneCurve::Neutral { neutral_tone(light) } else { light }
 }
 
 #[cfg(test)]
@@ -54,7 +52,7 @@ mod tests {
 
     #[test]
     fn greys_rise_with_the_light_and_stay_below_one() {
-        let shown: Vec<f32> = ramp().map(|light| tone_mapped(Vec3::splat(light), TONE_CURVE_NEUTRAL).x).collect();
+        let shown: Vec<f32> = ramp().map(|light| tone_mapped(Vec3::splat(light), ToneCurve::Neutral).x).collect();
         assert_eq!(shown[0], 0.0);
         assert!(shown.windows(2).all(|pair| pair[0] < pair[1]), "monotone");
         assert!(shown.iter().all(|&value| value < 1.0));
@@ -65,7 +63,7 @@ mod tests {
     fn every_colour_stays_in_the_cube_and_keeps_the_order_of_its_channels() {
         for peak in ramp() {
             for part in [0.0, 0.1, 0.5, 0.9] {
-                let shown = tone_mapped(Vec3::new(peak, peak * part, peak * part * part), TONE_CURVE_NEUTRAL);
+                let shown = tone_mapped(Vec3::new(peak, peak * part, peak * part * part), ToneCurve::Neutral);
                 assert!(shown.min_element() >= -1e-7 && shown.max_element() <= 1.0, "{peak} {part}: {shown}");
                 assert!(shown.x >= shown.y && shown.y >= shown.z, "{peak} {part}: {shown}");
             }
@@ -80,6 +78,6 @@ mod tests {
 
     #[test]
     fn no_curve_leaves_light_as_it_is() {
-        assert_eq!(tone_mapped(Vec3::new(3.0, 0.5, -1.0), TONE_CURVE_NONE), Vec3::new(3.0, 0.5, 0.0));
+        assert_eq!(tone_mapped(Vec3::new(3.0, 0.5, -1.0), ToneCurve::None), Vec3::new(3.0, 0.5, 0.0));
     }
 }

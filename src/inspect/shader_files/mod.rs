@@ -17,10 +17,7 @@ use thiserror::Error;
 
 use geometry::names::every;
 use geometry::tessellate::{Displacement, Edges, Lod, Partitioning, Surface, Tessellation};
-use gpu::WgslFile;
-use gpu::wgsl::{
-    CONNECTIVITY, CONTROL_POINTS, CONVENTION, CULL, DISPLACE, DOMAIN, FACTORS, LOD, NORMAL, SURFACE, TYPES,
-};
+use gpu::WgslModule;
 
 use crate::settings::{Choice, Description};
 use branches::{Known, without_dead_branches};
@@ -30,20 +27,9 @@ use displaced::{Relief, with_fetch, without_fetch};
 
 use translation::{StageLanguage, TranslationError, translated};
 
-static STAGE_PATCH: WgslFile =
-    WgslFile::new("stage_patch", &[&CONTROL_POINTS, &CONVENTION, &CULL, &FACTORS, &LOD, &NORMAL, &SURFACE, &TYPES]);
-static STAGE_HEIGHTS: WgslFile = WgslFile::new("stage_heights", &[&TYPES]);
-static STAGE_DISPLACED: WgslFile = WgslFile::new(
-    "stage_displaced",
-    &[&CONVENTION, &DISPLACE, &FACTORS, &NORMAL, &STAGE_HEIGHTS, &STAGE_PATCH, &SURFACE, &TYPES],
-);
-static PASS_EXPORTED: WgslFile = WgslFile::new(
-    "pass_exported",
-    &[&CONNECTIVITY, &CONTROL_POINTS, &DISPLACE, &DOMAIN, &FACTORS, &STAGE_DISPLACED, &STAGE_PATCH, &SURFACE],
-);
-
-/// The modules of shaders that are only exported.
-pub static MODULES: [&WgslFile; 1] = [&PASS_EXPORTED];
+/// What stages have in common, and the compute passes.
+const STAGES: WgslModule = WgslModule("stage_displaced");
+const PASSES: WgslModule = WgslModule("pass_exported");
 
 /// A shading language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -192,7 +178,7 @@ const LEVELS_ROOTS: [&str; 5] = ["StageConstants", "HeightConstants", "hull_side
 
 impl Export<'_> {
     /// All declarations of our shaders with the choices made, and without the branches that they never take.
-    fn declarations(&self, module: &'static WgslFile) -> Vec<Declaration> {
+    fn declarations(&self, module: WgslModule) -> Vec<Declaration> {
         let choices = choices(self.tessellation);
         let of = |name: &str| choices.iter().find(|(own, _)| *own == name).map_or("", |(_, value)| *value);
         let mut values = choices.to_vec();
@@ -209,7 +195,7 @@ impl Export<'_> {
             false_conditions.extend(["patch_is_subtriangulated(factors)", "plan.kind == PATTERN_SUBTRIANGULATED"]);
         }
         let known = Known { values: &values, false_conditions: &false_conditions };
-        let mut all = declarations(&module.module_text());
+        let mut all = declarations(&module.text());
         for own in &mut all {
             if own.is_function {
                 own.lines = without_dead_branches(&own.lines, &known);
@@ -223,7 +209,7 @@ impl Export<'_> {
 
     /// The functions that a file needs, in its language.
     fn functions(&self, language: StageLanguage, roots: &[&str]) -> Result<String, TranslationError> {
-        let all = needed(&self.declarations(&STAGE_DISPLACED), roots);
+        let all = needed(&self.declarations(STAGES), roots);
         Ok(with_fetch(language, &translated(language, &without_fetch(all), &PRECISE_ROOTS)?))
     }
 
@@ -300,7 +286,7 @@ impl Export<'_> {
     }
 
     fn wgsl(&self) -> Vec<ShaderFile> {
-        let texts = needed(&self.declarations(&PASS_EXPORTED), &["hull_main", "offsets_main", "emit_main"]);
+        let texts = needed(&self.declarations(PASSES), &["hull_main", "offsets_main", "emit_main"]);
         let mut text = readme::header(self);
         let mut before: Option<&Declaration> = None;
         for own in &texts {

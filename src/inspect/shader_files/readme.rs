@@ -256,11 +256,11 @@ fn displaced_text(export: &Export) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shader_files::STAGE_DISPLACED;
+    use crate::shader_files::STAGES;
 
     /// The size of a struct of the shaders, and the places of its members, in bytes.
     fn members(name: &str) -> (u32, Vec<(u32, String)>) {
-        let module = naga::front::wgsl::parse_str(&STAGE_DISPLACED.module_text()).expect("valid WGSL");
+        let module = naga::front::wgsl::parse_str(&STAGES.text()).expect("valid WGSL");
         let (_, own) = module.types.iter().find(|(_, own)| own.name.as_deref() == Some(name)).expect("the struct");
         let naga::TypeInner::Struct { members, span } = &own.inner else { panic!("{name} is no struct") };
         (*span, members.iter().map(|member| (member.offset, member.name.clone().unwrap_or_default())).collect())

@@ -6,8 +6,7 @@ use super::Renderer;
 use crate::render::Scene;
 use crate::render::draws::Draw;
 use crate::render::environment::{Environment, LightView};
-use crate::render::tone::{TONE_CURVE_NEUTRAL, TONE_CURVE_NONE};
-use crate::settings::{Colors, Lighting, Settings, ToneCurve};
+use crate::settings::{Colors, Lighting, Settings};
 use gpu::{ChunkBuffers, GpuError, bind_group};
 
 /// The light from all around in a picture.
@@ -57,10 +56,9 @@ impl Renderer {
 
     /// The pipeline and the bind group that draw this light behind everything.
     pub(super) fn background(&self, light: &PictureLight) -> Result<(wgpu::RenderPipeline, wgpu::BindGroup), GpuError> {
-        let entries = light.environment.backdrop(&self.gpu)?.entries(&light.surroundings);
-        let layout = &self.pipelines.background_layout;
-        let descriptor = wgpu::BindGroupDescriptor { label: Some("background"), layout, entries: &entries };
-        Ok((self.get(Draw::Background)?, self.gpu.device.create_bind_group(&descriptor)))
+        let bound = light.environment.backdrop(&self.gpu)?.bound(&light.surroundings);
+        let group = bind_group(&self.gpu, "background", &self.pipelines.background_layout, bound);
+        Ok((self.get(Draw::Background)?, group))
     }
 
     pub(super) fn scene_group(&self, scene: &Scene, frame: &wgpu::Buffer) -> wgpu::BindGroup {
@@ -70,19 +68,20 @@ impl Renderer {
         let of_mesh = [&buffers.points, &buffers.corners, &buffers.patches];
         let bound =
             [&[frame][..], &of_mesh, &[vertices, indices, frame, nets, params, &buffers.corner_details]].concat();
-        let bound: Vec<_> = (0..).zip(bound).collect();
-        bind_group(&self.gpu, "scene", &self.pipelines.scene_layout, &bound)
+        let bound = (0..).zip(bound.into_iter().map(wgpu::Buffer::as_entire_binding));
+        bind_group(&self.gpu, "scene", &self.pipelines.scene_layout, bound)
     }
 
     pub(super) fn measured_group(&self, scene: &Scene, chunk: Option<usize>) -> wgpu::BindGroup {
         let known = scene.known_deviation().zip(chunk).and_then(|(deviation, chunk)| deviation.chunks.get(chunk));
         let least = scene.tessellator.own_least();
-        let bound = [(0, known.unwrap_or(&self.unknown)), (1, least.unwrap_or(&self.unknown))];
-        bind_group(&self.gpu, "measured", &self.pipelines.measured_layout, &bound)
+        let bound = [known, least].map(|known| known.unwrap_or(&self.unknown).as_entire_binding());
+        bind_group(&self.gpu, "measured", &self.pipelines.measured_layout, (0..).zip(bound))
     }
 
     pub(super) fn chunk_group(&self, chunk: &ChunkBuffers) -> wgpu::BindGroup {
-        bind_group(&self.gpu, "chunk", &self.pipelines.chunk_layout, &[(0, chunk.slab), (1, chunk.patch_factors)])
+        let bound = [chunk.slab, chunk.patch_factors].map(wgpu::Buffer::as_entire_binding);
+        bind_group(&self.gpu, "chunk", &self.pipelines.chunk_layout, (0..).zip(bound))
     }
 }
 
@@ -92,9 +91,6 @@ fn light_view(settings: &Settings) -> LightView {
         brightness: settings.environment_brightness,
         rotation: settings.light_rotation,
         exposure: settings.exposure,
-        tone_curve: match settings.tone_curve {
-            ToneCurve::Neutral => TONE_CURVE_NEUTRAL,
-            ToneCurve::None => TONE_CURVE_NONE,
-        },
+        tone_curve: settings.tone_curve,
     }
 }

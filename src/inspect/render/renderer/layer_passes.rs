@@ -4,7 +4,7 @@ use super::Renderer;
 use super::picture::Picture;
 use super::surfaces::{MaterialDraw, Surfaces};
 use crate::render::covered_area::{Area, covered_area, intersection, is_empty, union};
-use crate::render::draws::{Draw, Faces, LayerClear, LayerDraw, Triangles};
+use crate::render::draws::{Draw, Faces, LayerDraw, Shading, SurfaceDraw, Triangles};
 use crate::render::layers::LayerPass;
 use crate::render::needs::{Needs, PictureKind, has_layers};
 use crate::render::steps::{LayerPart, LayerStep};
@@ -14,7 +14,7 @@ use crate::render::{Camera, Scene, Target};
 use crate::settings::{NormalsAt, Settings, SplitSide};
 use geometry::mesh::{Material, Mesh};
 use geometry::tessellate::{Surface, Tessellation};
-use gpu::{GpuError, Recorder};
+use gpu::{GpuError, Recorder, bind_group};
 
 /// How far rounding moves a vertex at most, in units in the last place of the mesh's largest coordinate.
 const ROUNDING_ULPS: f32 = 64.0;
@@ -36,12 +36,12 @@ impl Renderer {
         if is_empty(all) {
             return Ok(());
         }
-        let half = part.map_or(SplitSide::Right, LayerPart::half);
+        let half = part.map_or(SplitSide::Right, |part| part.half);
         let Some(frame) = &frames[half as usize] else { return Ok(()) };
         // The mesh without tessellation is drawn with the right half's scene.
         let drawn = scene.half(half).unwrap_or(scene);
         let triangles = match part {
-            Some(LayerPart::Source) => Triangles::Source,
+            Some(LayerPart { chunk: None, .. }) => Triangles::Source,
             _ => emitted_triangles(settings),
         };
         let surfaces = Surfaces {
@@ -67,10 +67,10 @@ impl Renderer {
             render_pass.set_bind_group(3, &layer_group, &[]);
             match part {
                 None => {}
-                Some(LayerPart::Source) => {
+                Some(LayerPart { chunk: None, .. }) => {
                     self.draw_source(render_pass, &surfaces.materials, drawn, layer_areas[half as usize]);
                 }
-                Some(LayerPart::Chunk(_, chunk)) => {
+                Some(LayerPart { chunk: Some(chunk), .. }) => {
                     let chunk = drawn.tessellator.chunk(chunk);
                     self.draw_chunk(render_pass, drawn, layer_areas[half as usize], &surfaces, &chunk);
                 }
@@ -91,7 +91,7 @@ impl Renderer {
     ) -> Result<(Option<f32>, Option<wgpu::RenderPipeline>), GpuError> {
         match pass.nothing() {
             Some(depth) if is_whole => Ok((Some(depth), None)),
-            Some(_) => Ok((None, Some(self.get(Draw::LayerClear(clear_of(pass)))?))),
+            Some(depth) => Ok((None, Some(self.get(clear(pass, depth))?))),
             None => Ok((None, None)),
         }
     }
@@ -147,23 +147,13 @@ impl Renderer {
         // Colours that show measurements hide everything behind them.
         let unknown = || self.unknown.as_entire_binding();
         let bound = [unknown(), unknown(), wgpu::BindingResource::TextureView(passed)];
-        let entries: Vec<_> =
-            (0..).zip(bound).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
-        Ok(self.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("layer"),
-            layout: &self.pipelines.layer_layout,
-            entries: &entries,
-        }))
+        Ok(bind_group(&self.gpu, "layer", &self.pipelines.layer_layout, (0..).zip(bound)))
     }
 }
 
-/// How a pass sets depths where nothing is found.
-fn clear_of(pass: LayerPass) -> LayerClear {
-    match pass {
-        LayerPass::Begin => LayerClear::Begin,
-        LayerPass::Away { .. } => LayerClear::Away,
-        LayerPass::Back { .. } => LayerClear::Back,
-    }
+/// What sets the depths of a pass to this one.
+fn clear(pass: LayerPass, depth: f32) -> Draw {
+    Draw::LayerClear { at_infinity: depth == 0.0, has_colors: matches!(pass, LayerPass::Back { .. }) }
 }
 
 /// An area that holds all pixels which layers cover in a picture of a scene with these settings.
@@ -206,15 +196,19 @@ fn draws(
             if finds { all } else { &all[..all.len() - 1] }
         }
     };
-    let places = |draw: LayerDraw| match draw {
-        _ if draw.finds() => NormalsAt::Vertices,
+    let normals = |layer: LayerDraw| match layer {
+        _ if layer.finds() => NormalsAt::Vertices,
         _ if triangles == Triangles::Source => NormalsAt::Vertices,
         _ => settings.used_normals_at(mesh),
     };
     let shown = if triangles == Triangles::Source { undisplaced(settings) } else { *settings };
-    let needs = Needs::of(mesh, material, &shown, kind);
+    let shading = Shading::Lit(Needs::of(mesh, material, &shown, kind));
     let faces = own_faces(settings, material).unwrap_or(Faces::Both);
-    own.iter().map(|&draw| (draw, Draw::Layer(draw, triangles, faces, places(draw), needs))).collect()
+    let draw = |&layer: &LayerDraw| {
+        let own = SurfaceDraw { triangles, faces, normals: normals(layer), shading, layer: Some(layer) };
+        (layer, Draw::Surface(own))
+    };
+    own.iter().map(draw).collect()
 }
 
 /// All draws of a mesh's layers with these settings.
@@ -229,6 +223,6 @@ pub(super) fn layer_draws(settings: &Settings, mesh: &Mesh, kind: PictureKind) -
         let draws = move |(material, pass)| draws(mesh, material, pass, triangles, settings, kind);
         passes.flat_map(draws).map(|(_, draw)| draw)
     };
-    let clears = [LayerClear::Begin, LayerClear::Away, LayerClear::Back].map(Draw::LayerClear);
+    let clears = LayerPass::all().filter_map(|pass| pass.nothing().map(|depth| clear(pass, depth)));
     triangles.flat_map(of).chain(clears).collect()
 }

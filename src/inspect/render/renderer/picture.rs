@@ -1,7 +1,7 @@
 //! Draws a picture, step by step: see [`steps`](crate::render::steps).
 
 use super::Renderer;
-use super::surfaces::{MaterialDraw, Surfaces};
+use super::surfaces::{MaterialDraw, Surfaces, confine};
 use crate::render::covered_area::{Area, is_empty};
 use crate::render::draws::{Draw, Occluded};
 use crate::render::frame::frame;
@@ -214,17 +214,8 @@ fn ground_step(steps: &[Step], scene: &Scene, camera: &Camera) -> usize {
     before_layers.unwrap_or(steps.len() - 1)
 }
 
-fn draw_lines(
-    pass: &mut wgpu::RenderPass,
-    pipelines: &[wgpu::RenderPipeline; 2],
-    scene: &Scene,
-    [x, y, width, height]: Area,
-) {
-    if let Some((buffer, count)) = &scene.lines
-        && width > 0
-        && height > 0
-    {
-        pass.set_scissor_rect(x, y, width, height);
+fn draw_lines(pass: &mut wgpu::RenderPass, pipelines: &[wgpu::RenderPipeline; 2], scene: &Scene, area: Area) {
+    if let Some((buffer, count)) = scene.lines.as_ref().filter(|_| confine(pass, area)) {
         pass.set_vertex_buffer(0, buffer.slice(..));
         for pipeline in pipelines {
             pass.set_pipeline(pipeline);

@@ -33,7 +33,7 @@ impl Renderer {
         draws.extend(settings.shows_environment().then_some(Draw::Background));
         draws.extend(settings.overlays.grid.then_some(Draw::Ground));
         if settings.overlays.normals {
-            draws.extend([Occluded::Through, Occluded::InSight].map(Draw::Normals));
+            draws.extend(Occluded::BOTH.map(Draw::Normals));
         }
         draws.into_iter().try_for_each(|draw| self.get(draw).map(|_| ()))
     }
@@ -70,9 +70,6 @@ impl Renderer {
     /// # Errors
     /// Out of memory, or a lost device.
     pub fn prepare_all(&self) -> Result<(), GpuError> {
-        Draw::all()
-            .into_iter()
-            .chain(Draw::of_looks())
-            .try_for_each(|draw| self.pipelines.get(&self.gpu, draw).map(|_| ()))
+        Draw::all().into_iter().try_for_each(|draw| self.get(draw).map(|_| ()))
     }
 }

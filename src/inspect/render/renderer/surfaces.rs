@@ -2,7 +2,7 @@
 
 use super::Renderer;
 use crate::render::coverage::Coverage;
-use crate::render::covered_area::Area;
+use crate::render::covered_area::{Area, is_empty};
 use crate::render::draws::{Draw, Faces, Triangles};
 use crate::render::surface_draws::{emitted_triangles, source_draw, surface_draw};
 use crate::render::{Camera, Scene, Target};
@@ -106,12 +106,11 @@ impl Renderer {
         pass: &mut wgpu::RenderPass,
         materials: &[Vec<MaterialDraw>],
         scene: &Scene,
-        [x, y, width, height]: Area,
+        area: Area,
     ) {
-        if width == 0 || height == 0 {
+        if !confine(pass, area) {
             return;
         }
-        pass.set_scissor_rect(x, y, width, height);
         let patches = &scene.tessellator.topology().material_patches;
         for (draws, patches) in materials.iter().zip(patches) {
             for (pipeline, group) in draws {
@@ -126,14 +125,13 @@ impl Renderer {
         &self,
         pass: &mut wgpu::RenderPass,
         scene: &Scene,
-        [x, y, width, height]: Area,
+        area: Area,
         surfaces: &Surfaces,
         chunk: &ChunkBuffers,
     ) {
-        if width == 0 || height == 0 {
+        if !confine(pass, area) {
             return;
         }
-        pass.set_scissor_rect(x, y, width, height);
         pass.set_bind_group(2, &self.chunk_group(chunk), &[]);
         let sifted = scene.coverage.as_ref().filter(|_| surfaces.sifted);
         let (indices, draw_args, mut args) = match sifted {
@@ -163,13 +161,12 @@ impl Renderer {
         &self,
         pass: &mut wgpu::RenderPass,
         pipelines: impl Iterator<Item = &'a wgpu::RenderPipeline>,
-        [x, y, width, height]: Area,
+        area: Area,
         chunk: &ChunkBuffers,
     ) {
-        if width == 0 || height == 0 {
+        if !confine(pass, area) {
             return;
         }
-        pass.set_scissor_rect(x, y, width, height);
         pass.set_bind_group(2, &self.chunk_group(chunk), &[]);
         set_vertices(pass, chunk);
         for pipeline in pipelines {
@@ -177,6 +174,15 @@ impl Renderer {
             pass.draw(0..6, 0..chunk.chunk.vertex_count);
         }
     }
+}
+
+/// Confines draws to an area. Returns false if nothing is in it.
+pub(super) fn confine(pass: &mut wgpu::RenderPass, area: Area) -> bool {
+    let [x, y, width, height] = area;
+    if !is_empty(area) {
+        pass.set_scissor_rect(x, y, width, height);
+    }
+    !is_empty(area)
 }
 
 fn set_vertices(pass: &mut wgpu::RenderPass, chunk: &ChunkBuffers) {

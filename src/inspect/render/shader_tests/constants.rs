@@ -18,8 +18,8 @@ use crate::render::mipmap_pass::ALPHAS;
 use crate::render::reflectance::{COAT_F0, LEAST_ALPHA};
 use crate::render::scale::Scale;
 use crate::render::sheen::LEAST_SHEEN_ALPHA;
-use crate::render::tone::{COMPRESSION_START, DESATURATION, TONE_CURVE_NEUTRAL, TONE_CURVE_NONE};
-use crate::settings::{Colors, Overlays};
+use crate::render::tone::{COMPRESSION_START, DESATURATION};
+use crate::settings::{Colors, Overlays, ToneCurve};
 use geometry::mesh::mipmap::MipFilter;
 use geometry::mesh::{EdgeKind, MAX_LEVELS, MAX_MAPS, MOST_LIGHTS, Slot};
 use geometry::tessellate::shared_constants::{
@@ -148,8 +148,8 @@ fn table() -> Vec<(&'static str, Expected)> {
         ("DFG_SIZE", number(DFG_SIZE)),
         ("MOST_LIGHTS", number(MOST_LIGHTS as u32)),
         ("HALF_VIEW", Expected(vec![f64::from(0.5 * FIELD_OF_VIEW).to_radians().tan()], 1e-7)),
-        ("TONE_CURVE_NEUTRAL", number(TONE_CURVE_NEUTRAL)),
-        ("TONE_CURVE_NONE", number(TONE_CURVE_NONE)),
+        ("TONE_CURVE_NEUTRAL", number(ToneCurve::Neutral as u32)),
+        ("TONE_CURVE_NONE", number(ToneCurve::None as u32)),
         ("COMPRESSION_START", number(COMPRESSION_START)),
         ("DESATURATION", number(DESATURATION)),
         ("COAT_F0", number(COAT_F0)),
@@ -348,7 +348,7 @@ fn wgsl_constants() -> BTreeMap<String, Vec<f64>> {
             let mut values = Vec::new();
             components(module, constant.init, &mut values);
             let known = all.entry(name.clone()).or_insert_with(|| values.clone());
-            assert_eq!(*known, values, "{name} in {}", file.name);
+            assert_eq!(*known, values, "{name} in {}", file.0);
         }
     }
     all
