@@ -49,9 +49,6 @@ pub struct AdapterOption {
 
 impl AdapterOption {
     /// Refuses --adapter where the CPU computes.
-    ///
-    /// # Errors
-    /// An adapter was named, and `is_cpu` is set.
     pub fn check(&self, is_cpu: bool) -> Result<(), CliError> {
         match is_cpu && self.adapter.is_some() {
             true => Err(CliError::Usage(

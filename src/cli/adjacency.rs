@@ -83,9 +83,6 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 }
 
 /// Writes what displacement needs of every corner: 32-bit floating-point numbers, little-endian.
-///
-/// # Errors
-/// The mesh isn't displaced by one image everywhere, or the file can't be written.
 fn write_corners(loaded: &Loaded, path: &Path) -> Result<(), CliError> {
     let corners = displaced_corners(&loaded.mesh, &loaded.topology);
     let corners = corners.ok_or_else(|| CliError::NotOneImage { file: loaded.source.to_string() })?;
@@ -94,9 +91,6 @@ fn write_corners(loaded: &Loaded, path: &Path) -> Result<(), CliError> {
 }
 
 /// Reports on standard error where a file's indices differ from those of the mesh.
-///
-/// # Errors
-/// They differ, or the file doesn't hold indices of this mesh.
 fn compare_with(layout: Layout, path: &Path, bytes: &[u8], loaded: &Loaded, computed: &[u32]) -> Result<(), CliError> {
     let (mesh, topology) = (&loaded.mesh, &loaded.topology);
     let name = if path.as_os_str() == "-" { "standard input".to_owned() } else { shown_path(path) };

@@ -21,9 +21,6 @@ pub struct AnimationOption {
 
 impl AnimationOption {
     /// Returns the chosen moment, or none at rest. Warns on standard error about a time beyond the end.
-    ///
-    /// # Errors
-    /// There is no animation of that name.
     pub fn moment(&self, loaded: &Loaded) -> Result<Option<Moment>, CliError> {
         let Some(name) = &self.animation else { return Ok(None) };
         let rig = loaded.mesh.rig.as_deref();

@@ -116,8 +116,6 @@ fn samples(text: &str) -> Result<usize, String> {
 }
 
 impl Args {
-    /// # Errors
-    /// No setting is left to try, or `--truth` was given with several meshes.
     fn settings(&self) -> Result<Vec<Setting>, CliError> {
         if self.truth.is_some() && self.files.len() != 1 {
             return Err(CliError::Usage("--truth takes one mesh: chart the others on their own"));

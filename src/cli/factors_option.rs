@@ -31,9 +31,6 @@ pub struct Given {
 
 impl FactorsOption {
     /// Reads the file, if one was named, and reports on standard error where its factors disagree.
-    ///
-    /// # Errors
-    /// The file can't be read, isn't for this mesh, or has factors that the partitioning doesn't take.
     pub fn read(
         &self,
         mesh: &Mesh,

@@ -36,9 +36,6 @@ impl FailOnOption {
 
 impl GateOptions {
     /// Writes pictures of the failed gates' worst places, if they were asked for. `stem` begins their names.
-    ///
-    /// # Errors
-    /// The folder can't be made, a picture can't be written, or the device was lost.
     pub(super) fn write_evidence(&self, shot: &mut Shot, judged: &[Judgement], stem: &Path) -> Result<(), CliError> {
         let Some(folder) = self.evidence.as_deref() else { return Ok(()) };
         for judgement in judged.iter().filter(|judgement| !judgement.passed) {
@@ -50,9 +47,6 @@ impl GateOptions {
 
 /// Writes a picture of a failed gate's worst place into a folder, which is made if it isn't there; nothing if it is about no place.
 /// `stem` begins its name.
-///
-/// # Errors
-/// The folder can't be made, the picture can't be written, or the device was lost.
 pub(super) fn write_evidence_of(
     shot: &mut Shot,
     judgement: &Judgement,

@@ -21,9 +21,6 @@ pub struct LodShaderOption {
 
 impl LodShaderOption {
     /// Reads the file, if one was named.
-    ///
-    /// # Errors
-    /// It can't be read or used, or the partitioning has the same number of segments everywhere.
     pub fn read(&self, tessellation: &Tessellation) -> Result<Option<Given>, CliError> {
         let Some(path) = &self.lod_shader else { return Ok(None) };
         if tessellation.partitioning == Partitioning::Subtriangulation {
@@ -35,9 +32,6 @@ impl LodShaderOption {
     }
 
     /// Checks that no file has factors as well.
-    ///
-    /// # Errors
-    /// One has.
     pub(crate) fn check_alone(&self, factors: &FactorsOption) -> Result<(), CliError> {
         match self.lod_shader.is_some() && factors.given.is_some() {
             true => Err(CliError::Usage("--factors and --lod-shader both take the place of LOD: choose one")),
@@ -46,9 +40,6 @@ impl LodShaderOption {
     }
 
     /// Checks that nothing is to be computed on the CPU.
-    ///
-    /// # Errors
-    /// It is.
     pub fn check(&self, is_on_cpu: bool) -> Result<(), CliError> {
         match self.lod_shader.is_some() && is_on_cpu {
             true => Err(CliError::Usage("--lod-shader runs on the graphics adapter: leave --device cpu away")),

@@ -116,9 +116,6 @@ pub(super) struct BoundsInfo {
 impl Info {
     /// Gathers the numbers of a mesh without a crease band and of the topology built from it; `weld` is the tolerance of
     /// [`Topology::build_within`], and `warnings` are those of loading.
-    ///
-    /// # Errors
-    /// [`Cancelled`] when `progress` says so.
     pub(super) fn of(
         mesh: &Mesh,
         topology: &Topology,

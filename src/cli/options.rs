@@ -74,17 +74,11 @@ impl Default for SurfaceOptions {
 
 impl SurfaceOptions {
     /// Checks what parsing can't: options that need one another.
-    ///
-    /// # Errors
-    /// Names the options that can't be together, or the one that is missing.
     pub fn check(&self) -> Result<(), CliError> {
         self.check_with(None)
     }
 
     /// Like [`Self::check`], where `other` is a second surface that is tessellated with these options too.
-    ///
-    /// # Errors
-    /// The same.
     pub(crate) fn check_with(&self, other: Option<Surface>) -> Result<(), CliError> {
         let settings = self.settings();
         let own = settings.tessellation;
@@ -144,9 +138,6 @@ impl SurfaceOptions {
     /// Returns settings whose tolerance is raised until there are no more triangles than `--max-triangles` allows. Standard
     /// error tells the raised tolerance. `count` returns the number of triangles for settings. [`Self::check`] has made sure
     /// that `--max-triangles` comes with LOD by error.
-    ///
-    /// # Errors
-    /// There are too many triangles at any tolerance, or `count` fails.
     pub(crate) fn within_budget(
         &self,
         mut count: impl FnMut(&Settings) -> Result<u64, CliError>,
@@ -176,9 +167,6 @@ impl SurfaceOptions {
 
     /// Returns the camera of these options for a mesh with these bounds, at a moment of one of its clips. Without a distance it shows
     /// everything that is drawn.
-    ///
-    /// # Errors
-    /// The mesh has no camera of the name that was asked for, or the matrix isn't that of a view.
     pub fn camera(&self, mesh: &Mesh, moment: Option<Moment>, bounds: &Bounds) -> Result<Camera, CliError> {
         self.view.camera(self, mesh, moment, bounds)
     }

@@ -8,9 +8,6 @@ use geometry::names::shown_path;
 use load::{HeightSource, Source};
 
 /// Checks that the files to be written are different from each other and from those to be read.
-///
-/// # Errors
-/// A file to be written has no name, is read or written already, is a folder, or there is no folder for it.
 pub(super) fn keep_apart<'a>(
     read: impl IntoIterator<Item = Option<&'a Path>>,
     written: impl IntoIterator<Item = Option<&'a Path>>,

@@ -22,9 +22,6 @@ pub struct ReferenceOptions {
 }
 
 /// Tells on standard error how pictures compare with their references.
-///
-/// # Errors
-/// The one that differs, or how many do.
 pub(super) fn conclude(all: Vec<Result<String, ShotError>>) -> Result<(), CliError> {
     let count = all.len();
     let mut differing = Vec::new();

@@ -78,9 +78,6 @@ pub(super) fn run(args: &Args, line: &str) -> Result<(), CliError> {
 }
 
 /// Like [`run`], with an engine that is made once the arguments have been checked.
-///
-/// # Errors
-/// Those of the command.
 pub fn run_with(args: &Args, line: &str, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
     let files = ViewFiles::new(&args.output, ENDINGS, &args.cameras);
     let views = files.views(
@@ -117,9 +114,6 @@ pub fn run_with(args: &Args, line: &str, engine: impl FnOnce() -> Result<Engine,
 }
 
 /// Writes the stats of all pictures, and says which gates failed and which pictures differ from their references.
-///
-/// # Errors
-/// Stats can't be written, a gate failed, or a picture differs.
 fn conclude(args: &Args, all: Vec<Drawn>) -> Result<(), CliError> {
     let (mut stats, mut judgements, mut failed) = (Vec::new(), Vec::new(), Vec::new());
     for drawn in all {

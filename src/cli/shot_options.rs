@@ -57,9 +57,6 @@ pub struct ShotOptions {
 impl ShotOptions {
     /// Checks the options, and that no file to be written is one that is read. `read` are files that the command reads besides
     /// those of these options.
-    ///
-    /// # Errors
-    /// Names the options that can't be together, or the file.
     pub(super) fn check(
         &self,
         file: &Source,
@@ -89,9 +86,6 @@ impl ShotOptions {
     }
 
     /// Checks a camera that isn't known before the mesh is.
-    ///
-    /// # Errors
-    /// It can't be together with other options.
     pub(super) fn check_camera(&self, camera: &Camera) -> Result<(), CliError> {
         match camera.is_mirrored() && self.picture.0.split.is_some() {
             true => Err(CliError::Usage(
@@ -102,9 +96,6 @@ impl ShotOptions {
     }
 
     /// Reads the mesh and all other files. Returns what is drawn, and what was found about a file of factors.
-    ///
-    /// # Errors
-    /// A file can't be read, or isn't for this mesh.
     pub(super) fn subject(
         &self,
         file: &Source,
@@ -114,9 +105,6 @@ impl ShotOptions {
     }
 
     /// Like [`Self::subject`], for a mesh that was loaded as these options say.
-    ///
-    /// # Errors
-    /// A file can't be read, or isn't for this mesh.
     pub(super) fn subject_of(&self, loaded: Loaded) -> Result<(Subject, Option<FactorsFile>), CliError> {
         let limits = self.surface.weld.limit.limits();
         let own_lod = self.own_lod.read(&self.surface.tessellation())?;
@@ -156,9 +144,6 @@ impl ShotOptions {
     }
 
     /// Uploads the subject, and tessellates it as these options say, within the budget of triangles.
-    ///
-    /// # Errors
-    /// Those of the device, or there are too many triangles at any tolerance.
     pub(super) fn shot(&self, engine: Engine, mut subject: Subject) -> Result<Shot, CliError> {
         let mut scene = engine.scene(&subject.loaded, subject.arena_bytes)?;
         subject.dress(&engine, &mut scene)?;

@@ -20,17 +20,11 @@ pub struct SurfaceShaderOption {
 
 impl SurfaceShaderOption {
     /// Reads the file, if one was named.
-    ///
-    /// # Errors
-    /// It can't be read or used.
     pub fn read(&self) -> Result<Option<Arc<SurfaceShader>>, CliError> {
         Ok(self.surface_shader.as_deref().map(read_own_shader).transpose()?)
     }
 
     /// Checks that nothing is to be computed on the CPU, and that no gate needs the surface there.
-    ///
-    /// # Errors
-    /// Something is, or a gate does.
     pub fn check(&self, is_on_cpu: bool, gates: &[Gate]) -> Result<(), CliError> {
         if self.surface_shader.is_none() {
             return Ok(());
@@ -47,9 +41,6 @@ impl SurfaceShaderOption {
     }
 
     /// Refuses to compare with the limit surface.
-    ///
-    /// # Errors
-    /// There is a shader.
     pub(crate) fn check_deviation(&self) -> Result<(), CliError> {
         match self.surface_shader {
             Some(_) => Err(CliError::Usage(

@@ -65,9 +65,6 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 }
 
 /// Like [`run`], with an engine that is made once the arguments have been checked.
-///
-/// # Errors
-/// Those of the command.
 pub fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
     args.check()?;
     let files = ViewFiles::new(&args.output, &["glb", "obj"], &args.cameras);

@@ -23,9 +23,6 @@ pub struct TruthOption {
 
 impl TruthOption {
     /// The surface to compare with: that of `--truth`, or if the overlay is shown the exact surface or the limit surface.
-    ///
-    /// # Errors
-    /// The mesh of `--truth` can't be read, or the compared mesh is in a pose.
     pub(crate) fn reference_surface(
         &self,
         loaded: &Loaded,

@@ -39,9 +39,6 @@ impl<'a> ViewFiles<'a> {
     }
 
     /// The views that a command works for. `several` says what to do where one file is named for several views.
-    ///
-    /// # Errors
-    /// One file is named for several views, or the file of cameras can't be read.
     pub(super) fn views(
         &self,
         cameras: &CamerasOption,
@@ -87,9 +84,6 @@ impl<'a> ViewFiles<'a> {
     }
 
     /// Makes the folder, if it is one and isn't there.
-    ///
-    /// # Errors
-    /// It can't be made.
     pub(super) fn make_folder(&self) -> Result<(), CliError> {
         if !self.is_folder() {
             return Ok(());
@@ -109,9 +103,6 @@ impl View {
     }
 
     /// The view's camera, for a mesh with these bounds at a moment of one of its clips.
-    ///
-    /// # Errors
-    /// The mesh has no camera of the name that was asked for, or the matrix isn't that of a view.
     pub(super) fn camera(
         &self,
         surface: &SurfaceOptions,

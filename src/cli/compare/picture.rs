@@ -35,9 +35,6 @@ const WIDE: f32 = 2.0;
 const NARROW: f32 = 0.75;
 
 /// Draws the picture and writes it.
-///
-/// # Errors
-/// There is no adapter, the device was lost, or the file can't be written.
 pub(super) fn draw(
     args: &Args,
     path: &Path,

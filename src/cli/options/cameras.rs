@@ -67,9 +67,6 @@ impl CamerasOption {
 
     /// The views, each with a name of its own; none if the command works for a single one. `view` has the options that stand beside
     /// `--cameras`.
-    ///
-    /// # Errors
-    /// The file can't be read, or isn't one of cameras.
     pub fn views(&self, view: &ViewOptions) -> Result<Option<Vec<NamedView>>, CliError> {
         let Some(cameras) = &self.cameras else { return Ok(None) };
         match cameras {

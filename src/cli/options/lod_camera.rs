@@ -49,9 +49,6 @@ impl Default for LodCameraOption {
 
 impl LodCameraOption {
     /// The LOD camera and its view's size in px, if it isn't the picture's. `own` are the options of the picture's camera.
-    ///
-    /// # Errors
-    /// None of its own: those of [`SurfaceOptions::camera`].
     pub fn camera(
         &self,
         own: &SurfaceOptions,

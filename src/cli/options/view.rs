@@ -142,9 +142,6 @@ impl From<Upwards> for ClipY {
 impl ViewOptions {
     /// Returns the camera of these options for a mesh with these bounds, at a moment of one of its clips. Without a distance it shows
     /// everything that is drawn as `surface` says.
-    ///
-    /// # Errors
-    /// The mesh has no camera of the name that was asked for, or the matrix isn't that of a view.
     pub fn camera(
         &self,
         surface: &SurfaceOptions,

@@ -18,9 +18,6 @@ use lab::stability::{Failure, Subject, Tried, viewport};
 const ENLARGED: u32 = 3;
 
 /// Draws the worst place of each gate that failed.
-///
-/// # Errors
-/// A picture can't be written, or the device was lost.
 pub(super) fn write(folder: &Path, engine: &Engine, all: &[Loaded], failed: &[Failure]) -> Result<(), CliError> {
     for failure in failed {
         let Some(own) = all.iter().find(|own| own.subject.name == failure.case) else { continue };

@@ -54,9 +54,6 @@ pub struct Probe {
 
 impl Bench<'_> {
     /// Measures a setting. Returns `None` if it has more triangles than the effort allows.
-    ///
-    /// # Errors
-    /// The device was lost.
     pub fn measure(&mut self, setting: &Setting) -> Result<Option<Row>, GpuError> {
         let probe = self.probe(&setting.applied(&self.base))?;
         Ok(probe.map(|probe| self.row(setting, probe)))
@@ -71,9 +68,6 @@ impl Bench<'_> {
 
     /// Measures any settings, without their clipping and culling: a comparison with a reference surface needs all of the mesh.
     /// Returns `None` if that has more triangles than the effort allows.
-    ///
-    /// # Errors
-    /// The device was lost.
     pub fn probe(&mut self, settings: &Settings) -> Result<Option<Probe>, GpuError> {
         let Self { engine, scene, target, camera, .. } = self;
         let settings = whole(settings);

@@ -52,9 +52,6 @@ impl Cache {
 
     /// Keeps what was found about an asset. `files` are those that were read for it, from `start` on. What couldn't be checked isn't
     /// kept, since the reason may lie elsewhere; neither is what was written meanwhile, since it may not be what was measured.
-    ///
-    /// # Errors
-    /// The errors of the file system.
     pub fn put(&self, inputs: Inputs, files: &[PathBuf], start: SystemTime, asset: &Asset) -> io::Result<()> {
         let modified = |path: &PathBuf| std::fs::metadata(path).and_then(|about| about.modified());
         let is_newer = |path| modified(path).is_ok_and(|time| time >= start);

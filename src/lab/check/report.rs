@@ -185,9 +185,6 @@ impl Report {
     }
 
     /// The report as JSON.
-    ///
-    /// # Errors
-    /// None that are known: every value can be serialised.
     pub fn json(&self) -> serde_json::Result<String> {
         let assets: Vec<_> = self.assets.iter().map(asset_json).collect();
         let report = serde_json::json!({

@@ -68,9 +68,6 @@ const LEAST: usize = 1 << 10;
 const STEP: usize = 1 << 12;
 
 /// Returns what `make` makes of the numbers below `count`, on all cores.
-///
-/// # Errors
-/// [`Cancelled`].
 pub(super) fn made_of_all<R: Send>(
     count: usize,
     progress: &Progress,
@@ -91,9 +88,6 @@ pub(super) fn made_of_all<R: Send>(
 
 impl<'a> Overlaid<'a> {
     /// Finds the place of each of their vertices: that of our vertex that it is, or the nearest.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     pub(super) fn new(
         theirs: &'a ForeignMesh,
         topology: &'a Topology,
@@ -111,9 +105,6 @@ impl<'a> Overlaid<'a> {
     }
 
     /// The same vertices over another surface.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     pub(super) fn over(
         &self,
         surface: (Option<Locator<'a>>, Twins<'a>),
@@ -241,9 +232,6 @@ pub(super) fn domain_area([a, b, c]: [[f64; 2]; 3]) -> f64 {
 impl<'a> Assignment<'a> {
     /// Assigns all triangles whose corners can be told apart: the twins of ours to the patches that emit these, and others to those that
     /// they lie on.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     pub(super) fn new(overlaid: &'a Overlaid<'a>, progress: &Progress) -> Result<Self, Cancelled> {
         let (triangles, twins) = (&overlaid.theirs.triangles, &overlaid.twins);
         let winding = if twins.are_all() { Winding::Alike } else { overlaid.winding() };

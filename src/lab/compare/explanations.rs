@@ -120,9 +120,6 @@ struct Sampled {
 
 impl Explainer<'_> {
     /// Returns the simplest explanations, which all give their points. `different` are the patches whose points differ from ours.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     pub(super) fn explain(&self, different: &[u32], progress: &Progress) -> Result<Vec<Explanation>, Cancelled> {
         let sample = self.sample(different);
         let own = self.inputs.tessellation.partitioning;

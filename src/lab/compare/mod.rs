@@ -114,9 +114,6 @@ const FAR: f64 = 0.02;
 const MANY_FAR: f64 = 0.2;
 
 /// Compares another program's tessellation with ours.
-///
-/// # Errors
-/// [`Cancelled`].
 pub fn compare(
     ours: &Ours,
     theirs: &ForeignMesh,
@@ -205,9 +202,6 @@ struct Laid<'a> {
 
 impl<'a> Laid<'a> {
     /// Seeks their surface, from where they lie over ours.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     fn new(
         ours: &Ours<'a>,
         on_own: Overlaid<'a>,
@@ -296,9 +290,6 @@ impl Comparison {
     }
 
     /// Names what differs, where theirs is a tessellation of our mesh.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     fn name_differences(
         &mut self,
         laid: &Laid,
@@ -332,9 +323,6 @@ impl Comparison {
     }
 
     /// Where another convention gives all of their points, it also explains a few that seem to be moved, and their triangles.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     fn leave_to_factors(&mut self, conventions: &Conventions) -> Result<(), Cancelled> {
         let is_known = self.findings.iter().any(|finding| matches!(finding, Finding::Factors { .. }));
         if !is_known || !self.findings.iter().any(Finding::is_about_few_points) {
@@ -354,9 +342,6 @@ impl Comparison {
     }
 
     /// Says what distances between the same vertices mean, where nothing else was found but how coordinates are meant.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     fn judge_distances(&mut self, outcomes: &Outcomes, conventions: &Conventions) -> Result<(), Cancelled> {
         let Conventions { ours, exactness: Exactness { within, .. }, .. } = *conventions;
         let Some(farthest) = self.farthest.filter(|farthest| farthest.distance > within) else { return Ok(()) };
@@ -387,9 +372,6 @@ struct Conventions<'a> {
 
 impl Conventions<'_> {
     /// Finds the convention among some of the others under which what we emit passes `suits`, which gets our outcomes under it.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     fn other(
         &self,
         among: impl Fn(&Convention) -> bool,

@@ -111,9 +111,6 @@ const SUITS: f64 = 0.97;
 
 impl<'a> Outcomes<'a> {
     /// Compares all patches.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     pub(super) fn new(
         ours: &Ours,
         own_mesh: &'a OwnMesh<'a>,
@@ -231,9 +228,6 @@ impl<'a> Outcomes<'a> {
 
     /// Explains where points differ, and returns the sides that are cut differently. `other` is the surface that their vertices lie on, if
     /// it isn't ours. `None` if no point differs but for that surface or for displacement.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     pub(super) fn explain(
         &self,
         ours: &Ours,

@@ -38,9 +38,6 @@ const TEXT: u32 = 18;
 
 /// Draws the methods in rows of three, each under its name: 916 by 808 px. For a sweep, draws the chart of PN-AEN, with
 /// factors up to `sweep_to`: 960 by 600 px.
-///
-/// # Errors
-/// The device fails.
 pub fn picture(case: &Subject, engine: &Engine, sweep_to: f32) -> Result<RgbImage, PictureError> {
     if case.probe == Probe::Sweep {
         return chart(case, sweep_to);
