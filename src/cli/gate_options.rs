@@ -2,11 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{CliError, file_error};
+use super::{CliError, make_folder};
 use geometry::progress::Progress;
 use inspect::gates::{Gate, GateKind, Judgement};
 use inspect::shot::{Shot, write_picture};
-use load::files::file_reason;
 
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct GateOptions {
@@ -54,7 +53,7 @@ pub(super) fn write_evidence_of(
     stem: &Path,
 ) -> Result<(), CliError> {
     let Some(picture) = shot.evidence(judgement, &Progress::new())? else { return Ok(()) };
-    std::fs::create_dir_all(folder).map_err(|error| file_error(folder, "made", &file_reason(&error)))?;
+    make_folder(folder)?;
     Ok(write_picture(&folder.join(evidence_name(stem, judgement.kind)), &picture.into())?)
 }
 

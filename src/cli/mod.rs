@@ -61,9 +61,11 @@ use inspect::export::ExportError;
 use inspect::own_shader::OwnShaderError;
 use inspect::settings::Settings;
 use inspect::shader_files::ShaderError;
-use inspect::shot::{ShotError, files, given};
+use inspect::shot::files::{file_error, read_bytes, read_text, to_json, write_bytes, write_text};
+use inspect::shot::{ShotError, given};
 use lab::check::ConfigError;
 use load::environment_file::EnvironmentError;
+use load::files::file_reason;
 use load::{LoadError, MatcapError, Source};
 
 /// Shows what tessellation does to a mesh in a window; commands write pictures, meshes and numbers instead
@@ -161,8 +163,6 @@ pub enum CliError {
     #[error("{path} is {by} by the same command, so it isn't overwritten; choose another name")]
     Taken { path: String, by: &'static str },
     #[error(transparent)]
-    Picture(#[from] lab::stability::PictureError),
-    #[error(transparent)]
     Gallery(#[from] lab::gallery::GalleryError),
     #[error("{count} of the table's lines break a promise; the first is {method} on {case}")]
     Promise { count: usize, case: String, method: &'static str },
@@ -218,7 +218,7 @@ pub enum CliError {
     #[error("{0}")]
     Check(String),
     #[error(transparent)]
-    Config(ConfigError),
+    Config(#[from] ConfigError),
     #[error("there is nothing to check: the folders have no meshes in them; name others")]
     NoAssets,
     #[error("the output could not be written: {0}")]
@@ -280,8 +280,7 @@ pub fn run(command: Command) -> ExitCode {
 
 /// Prints an error on standard error, and returns the exit code of a failure.
 pub fn fail(error: &dyn std::fmt::Display) -> ExitCode {
-    // Standard error may be closed too; then nobody reads it.
-    let _ = writeln!(std::io::stderr(), "pnaen: {}", on_one_line(&error.to_string()));
+    note(&error.to_string());
     ExitCode::FAILURE
 }
 
@@ -301,28 +300,9 @@ pub fn preview(
     render::run(&args, &line)
 }
 
-fn read_text(path: &Path) -> Result<String, CliError> {
-    Ok(files::read_text(path)?)
-}
-
-fn read_bytes(path: &Path) -> Result<Vec<u8>, CliError> {
-    Ok(files::read_bytes(path)?)
-}
-
-fn write_text(path: &Path, text: &str) -> Result<(), CliError> {
-    Ok(files::write_text(path, text)?)
-}
-
-fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
-    Ok(files::write_bytes(path, bytes)?)
-}
-
-fn to_json(value: &impl serde::Serialize) -> Result<String, CliError> {
-    Ok(files::to_json(value)?)
-}
-
-fn file_error(path: &Path, doing: &'static str, reason: &dyn std::fmt::Display) -> CliError {
-    files::file_error(path, doing, reason).into()
+/// Makes a folder, unless it is there.
+fn make_folder(folder: &Path) -> Result<(), CliError> {
+    Ok(std::fs::create_dir_all(folder).map_err(|error| file_error(folder, "made", &file_reason(&error)))?)
 }
 
 /// Loads a mesh for a command. Standard error tells what was left out or repaired.
@@ -352,18 +332,16 @@ impl Telling {
     fn say(&mut self, text: impl FnOnce() -> String) {
         if self.0.elapsed() >= Self::EVERY {
             self.0 = Instant::now();
-            let _ = writeln!(std::io::stderr(), "pnaen: {}", text());
+            note(&text());
         }
     }
 }
 
-/// Says something on standard error that is no error.
+/// Says something on standard error, which may be closed; then nobody reads it.
 fn note(text: &str) {
     let _ = writeln!(std::io::stderr(), "pnaen: {}", on_one_line(text));
 }
 
 fn warn(warnings: &[String]) {
-    for warning in warnings {
-        let _ = writeln!(std::io::stderr(), "pnaen: warning: {}", on_one_line(warning));
-    }
+    warnings.iter().for_each(|warning| note(&format!("warning: {warning}")));
 }

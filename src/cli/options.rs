@@ -7,13 +7,12 @@ mod opening;
 mod values;
 mod view;
 
-use std::io::Write;
-
+use clap::Args;
 use clap::builder::{OsStringValueParser, TypedValueParser};
-use clap::{Args, Parser};
 use glam::Vec2;
 
-use super::{AnimationOption, CliError};
+use super::{AnimationOption, CliError, note};
+use geometry::mesh::crease_band::WIDEST;
 use geometry::mesh::{Bounds, FileCamera, Mesh, Moment};
 use geometry::tessellate::{Displacement, Lod, Partitioning, Surface, Tessellation, tolerance_within_budget};
 use inspect::engine::Preparation;
@@ -24,15 +23,12 @@ use load::HeightSource;
 use load::files::Limits;
 
 pub(crate) use cameras::{CamerasOption, NamedView};
-pub(crate) use declared::choice;
-pub(crate) use declared::{ImportOptions, PictureOptions, TessellationOptions, number_of};
+use declared::GivenTessellation;
+pub(crate) use declared::{Declared, ImportOptions, PictureOptions, TessellationOptions, choice, named, number_of};
 pub(crate) use lod_camera::LodCameraOption;
 pub(crate) use opening::OpeningOptions;
-pub(crate) use values::{CameraOption, whole_from};
-pub(crate) use values::{Position, Size, model, picture, source, steps, whole};
+pub(crate) use values::{CameraOption, Position, Size, model, picture, source, whole, whole_from, within};
 pub(crate) use view::ViewOptions;
-
-use values::{bytes, crease_band, weld};
 
 /// How a mesh is tessellated, and where it is seen from.
 #[derive(Clone, Debug, Args)]
@@ -60,15 +56,15 @@ pub struct SurfaceOptions {
     pub view: ViewOptions,
 }
 
+/// The options of an empty command line.
+pub(crate) fn defaults<T: Args>() -> T {
+    let matches = T::augment_args(clap::Command::new("pnaen")).get_matches_from(["pnaen"]);
+    T::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
+}
+
 impl Default for SurfaceOptions {
-    /// The options of an empty command line.
     fn default() -> Self {
-        #[derive(Parser)]
-        struct Defaults {
-            #[command(flatten)]
-            options: SurfaceOptions,
-        }
-        Defaults::parse_from(["pnaen"]).options
+        defaults()
     }
 }
 
@@ -115,7 +111,7 @@ impl SurfaceOptions {
 
     /// How the mesh is tessellated.
     pub fn tessellation(&self) -> Tessellation {
-        let TessellationOptions { tessellation, displacement } = self.tessellation;
+        let GivenTessellation { tessellation, displacement } = self.tessellation.0;
         let usual = if self.height.is_some() { Displacement::On } else { Displacement::Off };
         Tessellation {
             displacement: displacement.unwrap_or(usual),
@@ -152,10 +148,7 @@ impl SurfaceOptions {
             return Err(CliError::Budget { most, least, largest });
         };
         if tolerance > asked {
-            let _ = writeln!(
-                std::io::stderr(),
-                "pnaen: tolerance raised from {asked} to {tolerance} px, for no more than {most} triangles"
-            );
+            note(&format!("tolerance raised from {asked} to {tolerance} px, for no more than {most} triangles"));
         }
         Ok(at(tolerance))
     }
@@ -191,13 +184,13 @@ fn file_camera<'a>(mesh: &str, cameras: &'a [FileCamera], wanted: &str) -> Resul
 #[derive(Clone, Debug, Default, Args)]
 pub struct WeldOption {
     /// Weld points within this distance, relative to the bounding diagonal; 0 joins only exactly equal positions
-    #[arg(long, value_name = "TOLERANCE", default_value_t = 0.0, value_parser = weld)]
+    #[arg(long, value_name = "TOLERANCE", default_value_t = 0.0, value_parser = within(0.0..=0.1))]
     pub weld: f32,
     /// Cut triangles back from creases (edges with split normals) by this width, and fill the gap with a band of small
     /// triangles that share one normal on the crease, so that PN triangles don't crack there (Vlachos et al. 2001). Relative
     /// to the bounding diagonal, 0 to 0.1; 0 makes no band. It is at most a third of an edge, and half the radius of a
     /// triangle's incircle
-    #[arg(long, alias = "rim", value_name = "WIDTH", default_value_t = 0.0, value_parser = crease_band, allow_hyphen_values = true)]
+    #[arg(long, alias = "rim", value_name = "WIDTH", default_value_t = 0.0, value_parser = within(0.0..=WIDEST), allow_hyphen_values = true)]
     pub crease_band: f32,
     /// Show the materials that a glTF file has for this variant (KHR_materials_variants), by name; `info` lists the variants
     #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
@@ -235,18 +228,17 @@ impl WeldOption {
 pub struct LimitOption {
     /// Refuse a file larger than this, and larger buffers and images that it refers to: a number of bytes, or one with the
     /// unit KiB, MiB or GiB
-    #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = bytes)]
+    #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = values::bytes)]
     pub max_size: u64,
     /// Refuse a mesh that would take more memory to load than this plus four times the size of its files, and scale textures down
     /// to it: a number of bytes, or one with the unit KiB, MiB or GiB
-    #[arg(long, value_name = "SIZE", default_value = "512MiB", value_parser = bytes)]
+    #[arg(long, value_name = "SIZE", default_value = "512MiB", value_parser = values::bytes)]
     pub max_memory: u64,
 }
 
 impl Default for LimitOption {
     fn default() -> Self {
-        let Limits { file, memory } = Limits::default();
-        Self { max_size: file, max_memory: memory }
+        defaults()
     }
 }
 

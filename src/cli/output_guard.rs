@@ -22,7 +22,7 @@ pub(super) fn keep_apart<'a>(
             return Err(CliError::NoFolder { path: shown_path(path), folder: shown_path(folder) });
         }
         if path.is_dir() {
-            return Err(file_error(path, "written", &"it is a folder; name a file"));
+            return Err(file_error(path, "written", &"it is a folder; name a file").into());
         }
         let Some(place) = place(path) else { continue };
         if let Some((_, by)) = taken.iter().find(|(other, _)| *other == place) {

@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use super::gate_options::{GateOptions, failures};
-use super::options::{CamerasOption, PictureOptions, TessellationOptions};
+use super::options::{CamerasOption, Declared};
 use super::reference::{self, ReferenceOptions};
 use super::shot_options::ShotOptions;
 use super::view_files::{View, ViewFiles};
-use super::{AdapterOption, CliError, LimitOption, SurfaceOptions, WeldOption, options, to_json, write_text};
+use super::{AdapterOption, CliError, LimitOption, SurfaceOptions, options, to_json, write_text};
 use geometry::progress::Progress;
 use gpu::GpuError;
 use inspect::engine::Engine;
@@ -55,13 +55,13 @@ impl Args {
         adapter: AdapterOption,
         output: &Path,
     ) -> Self {
-        let tessellation = TessellationOptions { tessellation: settings.tessellation, displacement: None };
-        let weld = WeldOption { limit, ..WeldOption::default() };
-        let surface = SurfaceOptions { tessellation, weld, ..SurfaceOptions::default() };
+        let mut surface = SurfaceOptions::default();
+        surface.tessellation.0.tessellation = settings.tessellation;
+        surface.weld.limit = limit;
         Self {
             file,
             output: output.to_owned(),
-            shot: ShotOptions { surface, picture: PictureOptions(settings), ..ShotOptions::default() },
+            shot: ShotOptions { surface, picture: Declared(settings), ..ShotOptions::default() },
             stats: None,
             measure_error: true,
             cameras: CamerasOption::default(),

@@ -3,9 +3,8 @@
 use std::path::PathBuf;
 
 use super::options::TessellationOptions;
-use super::{CliError, file_error, options, write_text};
+use super::{CliError, make_folder, options, write_text};
 use inspect::shader_files::{Language, shader_files};
-use load::files::file_reason;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -30,7 +29,7 @@ pub(super) fn run(args: &Args, line: &str) -> Result<(), CliError> {
              own rule in its place",
         ));
     }
-    let files = shader_files(args.language, &args.tessellation.tessellation, line)?;
-    std::fs::create_dir_all(&args.output).map_err(|error| file_error(&args.output, "made", &file_reason(&error)))?;
-    files.iter().try_for_each(|file| write_text(&args.output.join(file.name), &file.text))
+    let files = shader_files(args.language, &args.tessellation.0.tessellation, line)?;
+    make_folder(&args.output)?;
+    Ok(files.iter().try_for_each(|file| write_text(&args.output.join(file.name), &file.text))?)
 }

@@ -121,16 +121,14 @@ impl ShotOptions {
         let (given, factors_file) = given.map(|given| (given.factors, given.stats)).unzip();
         let subject = Subject {
             moment: self.surface.animation.moment(&loaded)?,
-            settings: self.surface.settings_of(&self.picture.0),
-            loaded,
             given: given.map(Given::from).or(own_lod),
             surface_shader,
             matcap: matcap.map(Arc::new),
             environment,
             reference_surface,
             selected,
-            more_lines: Default::default(),
             arena_bytes: self.surface.arena_bytes(),
+            ..Subject::new(loaded, self.surface.settings_of(&self.picture.0))
         };
         Ok((subject, factors_file))
     }

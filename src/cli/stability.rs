@@ -5,12 +5,12 @@ mod evidence;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use super::gate_options::GateOptions;
-use super::options::whole;
+use super::options::{named, whole};
 use super::tessellate::Device;
-use super::{AdapterOption, CliError, WeldOption, file_error, to_json, write_text};
+use super::{AdapterOption, CliError, WeldOption, make_folder, to_json, write_text};
 use geometry::mesh::{Topology, t_junctions};
 use geometry::progress::Progress;
 use inspect::engine::Engine;
@@ -21,7 +21,6 @@ use lab::stability::{
     page, picture, run as run_case, table,
 };
 use load::Source;
-use load::files::file_reason;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -57,9 +56,8 @@ pub struct Args {
 
 /// Parses a method's name.
 fn method() -> impl TypedValueParser<Value = Method> {
-    let unknown = "no such method";
-    PossibleValuesParser::new(Method::ALL.map(Method::option))
-        .try_map(move |name| Method::ALL.into_iter().find(|method| method.option() == name).ok_or(unknown))
+    let find = |name: &str| Method::ALL.into_iter().find(|method| method.option() == name);
+    named(Method::ALL.map(|method| PossibleValue::new(method.option())), find)
 }
 
 /// What runs, and the warnings of loading it.
@@ -167,9 +165,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let subjects = args.subjects()?;
     let engine = if args.device == Some(Device::Cpu) { None } else { Some(Engine::chosen(&args.adapter.choice())?) };
     let effort = args.effort();
-    if let Some(folder) = &args.output {
-        std::fs::create_dir_all(folder).map_err(|error| file_error(folder, "made", &file_reason(&error)))?;
-    }
+    args.output.as_deref().map_or(Ok(()), make_folder)?;
     let (mut rows, mut sections, mut failed) = (Vec::new(), Vec::new(), Vec::new());
     for loaded in &subjects {
         let own = run_case(&loaded.subject, engine.as_ref(), &effort)?;

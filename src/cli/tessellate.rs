@@ -187,7 +187,13 @@ impl Ready<'_> {
         surface_shader: Option<Arc<SurfaceShader>>,
     ) -> Result<Vec<String>, CliError> {
         let mut scene = engine.scene(&self.loaded, self.args.surface.arena_bytes())?;
-        let mut subject = self.subject(given, surface_shader);
+        let mut subject = Subject {
+            moment: self.moment,
+            given,
+            surface_shader,
+            arena_bytes: self.args.surface.arena_bytes(),
+            ..Subject::new(self.loaded.clone(), self.args.surface.settings())
+        };
         subject.dress(&engine, &mut scene)?;
         let mut failed = Vec::new();
         for (index, (view, camera)) in views.iter().enumerate() {
@@ -211,23 +217,6 @@ impl Ready<'_> {
             }
         }
         Ok(failed)
-    }
-
-    /// What a picture of the mesh would be drawn from.
-    fn subject(&self, given: Option<Given>, surface_shader: Option<Arc<SurfaceShader>>) -> Subject {
-        Subject {
-            loaded: self.loaded.clone(),
-            moment: self.moment,
-            given,
-            surface_shader,
-            matcap: None,
-            environment: None,
-            settings: self.args.surface.settings(),
-            reference_surface: None,
-            selected: None,
-            more_lines: Default::default(),
-            arena_bytes: self.args.surface.arena_bytes(),
-        }
     }
 
     /// What gates judge, seen from `camera`.

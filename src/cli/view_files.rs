@@ -3,13 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use super::options::{CamerasOption, NamedView, SurfaceOptions};
-use super::{CliError, file_error};
+use super::{CliError, make_folder};
 use geometry::mesh::{Bounds, Mesh, Moment};
 use geometry::names::shown;
 use inspect::export::ending;
 use inspect::render::Camera;
 use load::Source;
-use load::files::file_reason;
 
 /// What stands for a view's name in names of files.
 const NAME: &str = "{}";
@@ -85,10 +84,7 @@ impl<'a> ViewFiles<'a> {
 
     /// Makes the folder, if it is one and isn't there.
     pub(super) fn make_folder(&self) -> Result<(), CliError> {
-        if !self.is_folder() {
-            return Ok(());
-        }
-        std::fs::create_dir_all(self.place).map_err(|error| file_error(self.place, "made", &file_reason(&error)))
+        if self.is_folder() { make_folder(self.place) } else { Ok(()) }
     }
 }
 

@@ -10,7 +10,7 @@ use crate::cli::shot_options::ShotOptions;
 use crate::cli::{CliError, file_error, note};
 use geometry::names::{on_one_line, shown, shown_path};
 use inspect::gates::Gate;
-use lab::check::{Config, ConfigError, FolderError, Inputs, OptionValue, Section, assets};
+use lab::check::{Config, FolderError, Inputs, OptionValue, Section, assets};
 use load::Source;
 use load::files::file_reason;
 
@@ -228,10 +228,4 @@ fn said(error: &clap::Error) -> String {
     let lines = text.lines().take_while(|line| !line.trim().is_empty());
     let line = lines.map(str::trim).collect::<Vec<_>>().join(" ");
     line.strip_prefix("error: ").unwrap_or(&line).to_owned()
-}
-
-impl From<ConfigError> for CliError {
-    fn from(error: ConfigError) -> Self {
-        Self::Config(error)
-    }
 }

@@ -99,7 +99,7 @@ fn around(index: u32, count: u32, view: &ViewOptions) -> NamedView {
 /// Reads a file of cameras.
 fn read(path: &Path) -> Result<Vec<NamedView>, CliError> {
     let text = read_text(path)?;
-    let fail = |reason: String| file_error(path, "read", &reason);
+    let fail = |reason: String| CliError::from(file_error(path, "read", &reason));
     let is_json = text.trim_start().starts_with(['[', '{']);
     let views = if is_json { of_json(&text) } else { of_lines(&text) }.map_err(fail)?;
     if views.is_empty() || views.len() > MOST {

@@ -4,7 +4,7 @@ use clap::Args;
 use glam::Vec2;
 
 use super::values::{angle, field_of_view};
-use super::{CameraOption, Position, Size, SurfaceOptions, ViewOptions};
+use super::{CameraOption, Position, Size, SurfaceOptions, ViewOptions, defaults};
 use crate::cli::CliError;
 use geometry::mesh::{Bounds, Mesh};
 use inspect::render::Camera;
@@ -36,14 +36,7 @@ pub struct LodCameraOption {
 
 impl Default for LodCameraOption {
     fn default() -> Self {
-        Self {
-            lod_camera: None,
-            lod_target: None,
-            lod_size: None,
-            lod_orthographic: false,
-            lod_field_of_view: FIELD_OF_VIEW,
-            lod_roll: 0.0,
-        }
+        defaults()
     }
 }
 

@@ -31,27 +31,36 @@ use geometry::tessellate::Vertex;
 use gpu::{DRAWING, PassTime};
 use inspect::settings::Choice;
 
-/// The columns of a row written as CSV.
-pub const COLUMNS: [&str; 18] = [
-    "mesh",
-    "adapter",
-    "surface",
-    "normals",
-    "partitioning",
-    "lod",
-    "setting",
-    "triangles",
-    "vertices",
-    "bytes",
-    "ms_tessellate",
-    "ms_draw",
-    "ms_total",
-    "max_error",
-    "rms_error",
-    "max_error_px",
-    "normal_error_deg",
-    "triangles_by_error",
+/// The columns of a row written as CSV. Numbers read back exactly, and unknown values are empty.
+const COLUMNS: [(&str, fn(&Row) -> String); 18] = [
+    ("mesh", |row| row.mesh.clone()),
+    ("adapter", |row| row.adapter.clone()),
+    ("surface", |row| row.setting.method.surface.name().to_owned()),
+    ("normals", |row| row.setting.method.normals.name().to_owned()),
+    ("partitioning", |row| row.setting.method.partitioning.name().to_owned()),
+    ("lod", |row| row.setting.method.lod.name().to_owned()),
+    ("setting", |row| row.setting.to_string()),
+    ("triangles", |row| row.triangles.to_string()),
+    ("vertices", |row| row.vertices.to_string()),
+    ("bytes", |row| row.bytes().to_string()),
+    ("ms_tessellate", |row| row.time.tessellate.to_string()),
+    ("ms_draw", |row| row.time.draw.to_string()),
+    ("ms_total", |row| row.time.total().to_string()),
+    ("max_error", |row| known(row.errors.map(|errors| errors.largest))),
+    ("rms_error", |row| known(row.errors.map(|errors| errors.rms))),
+    ("max_error_px", |row| known(row.max_error_px)),
+    ("normal_error_deg", |row| known(row.errors.map(|errors| errors.normal_degrees))),
+    ("triangles_by_error", |row| known(row.triangles_by_error)),
 ];
+
+fn known(number: Option<impl ToString>) -> String {
+    number.map_or_else(String::new, |number| number.to_string())
+}
+
+/// The names of the columns of [`Row::record`].
+pub fn columns() -> [&'static str; 18] {
+    COLUMNS.map(|(name, _)| name)
+}
 
 /// The measurements of one setting.
 #[derive(Clone, Debug, PartialEq)]
@@ -112,30 +121,9 @@ impl Row {
         self.vertices * size_of::<Vertex>() as u64 + self.triangles * 12
     }
 
-    /// The fields of [`COLUMNS`]. Numbers read back exactly, and unknown values are empty.
+    /// The row as a record of CSV.
     pub fn record(&self) -> [String; 18] {
-        let Method { surface, normals, partitioning, lod } = self.setting.method;
-        let known = |number: Option<f64>| number.map_or_else(String::new, |number| number.to_string());
-        [
-            self.mesh.clone(),
-            self.adapter.clone(),
-            surface.name().to_owned(),
-            normals.name().to_owned(),
-            partitioning.name().to_owned(),
-            lod.name().to_owned(),
-            self.setting.to_string(),
-            self.triangles.to_string(),
-            self.vertices.to_string(),
-            self.bytes().to_string(),
-            self.time.tessellate.to_string(),
-            self.time.draw.to_string(),
-            self.time.total().to_string(),
-            known(self.errors.map(|errors| errors.largest)),
-            known(self.errors.map(|errors| errors.rms)),
-            known(self.max_error_px),
-            known(self.errors.map(|errors| errors.normal_degrees)),
-            self.triangles_by_error.map_or_else(String::new, |triangles| triangles.to_string()),
-        ]
+        COLUMNS.map(|(_, text)| text(self))
     }
 }
 
@@ -166,6 +154,17 @@ impl Subject {
         };
         error.filter(|error| error.is_finite())
     }
+}
+
+/// Each value once, in the order in which they come first.
+fn distinct<T: PartialEq>(values: impl IntoIterator<Item = T>) -> Vec<T> {
+    let mut all = Vec::new();
+    for value in values {
+        if !all.contains(&value) {
+            all.push(value);
+        }
+    }
+    all
 }
 
 #[cfg(test)]

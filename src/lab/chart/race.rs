@@ -1,6 +1,6 @@
 //! Compares rows: which ones no other row beats, and which method reaches an error fastest.
 
-use super::{Cost, Method, Row, Subject};
+use super::{Cost, Method, Row, Subject, distinct};
 use geometry::tessellate::Surface;
 
 /// The rows of a mesh that can be compared, with their errors. With a reference surface these are all rows. Without one they
@@ -79,13 +79,7 @@ impl Subject {
 
     /// All methods, in the order of their first rows.
     pub fn methods(&self) -> Vec<Method> {
-        let mut methods = Vec::new();
-        for row in &self.rows {
-            if !methods.contains(&row.setting.method) {
-                methods.push(row.setting.method);
-            }
-        }
-        methods
+        distinct(self.rows.iter().map(|row| row.setting.method))
     }
 }
 

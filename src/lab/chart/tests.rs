@@ -170,7 +170,7 @@ fn rows_read_back_from_csv() {
     rows[2].time.draw = 0.1 + 0.2;
     rows[2].triangles_by_error = None;
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(COLUMNS).expect("a header");
+    writer.write_record(columns()).expect("a header");
     rows.iter().for_each(|row| writer.write_record(row.record()).expect("a row"));
     let bytes = writer.into_inner().expect("a buffer");
     let mut reader = csv::Reader::from_reader(&bytes[..]);
@@ -313,7 +313,7 @@ fn the_ending_decides_how_a_chart_is_saved() {
     assert_eq!(saved("a.PNG")[1..4], *b"PNG");
     let table = String::from_utf8(saved("a.csv")).expect("text");
     assert_eq!(table.lines().count(), 1 + shown.rows.len());
-    assert_eq!(table.lines().next(), Some(&COLUMNS.join(",")[..]));
+    assert_eq!(table.lines().next(), Some(&columns().join(",")[..]));
     let other = save(&folder.path().join("a.txt"), &shown).map_err(|error| error.to_string());
     assert!(other.is_err_and(|text| text.contains(".svg, .png or .csv")));
     let nowhere = save(&folder.path().join("nowhere/a.svg"), &shown).map_err(|error| error.to_string());

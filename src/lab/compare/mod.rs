@@ -29,7 +29,7 @@ use glam::{DMat4, DVec3, Vec3};
 pub use findings::{Finding, plural, point};
 pub use foreign::ForeignMesh;
 pub use matching::Farthest;
-pub use outcomes::{SideCut, SideDifference};
+pub use outcomes::SideDifference;
 pub use patch_starts::patch_starts;
 
 use geometry::mesh::{Bounds, Mesh, Topology};
