@@ -229,7 +229,7 @@ impl Session {
         let mut bench = Bench {
             engine: &self.engine,
             mesh: loaded.source.to_string(),
-            camera: view.camera(&loaded.mesh, None, &scene.bounds)?,
+            camera: view.view.camera(&view, &loaded.mesh, None, &scene.bounds)?,
             scene,
             target: &self.target,
             truth: truth.as_ref().map(|(truth, _)| truth),

@@ -34,6 +34,14 @@ impl FailOnOption {
 }
 
 impl GateOptions {
+    /// Refuses what needs the device that draws, where the CPU computes.
+    pub(super) fn check(&self, is_on_cpu: bool) -> Result<(), CliError> {
+        match is_on_cpu && (self.evidence.is_some() || self.gates.has(GateKind::Leaks)) {
+            true => Err(CliError::Usage("--fail-on leaks and --evidence need --device gpu, which draws")),
+            false => Ok(()),
+        }
+    }
+
     /// Writes pictures of the failed gates' worst places, if they were asked for. `stem` begins their names.
     pub(super) fn write_evidence(&self, shot: &mut Shot, judged: &[Judgement], stem: &Path) -> Result<(), CliError> {
         let Some(folder) = self.evidence.as_deref() else { return Ok(()) };

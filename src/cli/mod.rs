@@ -22,6 +22,7 @@ mod material_report;
 mod mesh_report;
 mod options;
 mod output_guard;
+mod posed;
 mod reference;
 mod render;
 mod shaders;
@@ -48,7 +49,7 @@ pub(crate) use lod_shader_option::LodShaderOption;
 use output_guard::{file_of, file_of_heights, keep_apart};
 
 pub(crate) use options::{LimitOption, OpeningOptions, SurfaceOptions, WeldOption};
-pub use render::run_with as render_with;
+pub use render::{preview, run_with as render_with};
 pub(crate) use surface_shader_option::SurfaceShaderOption;
 pub use tessellate::run_with as tessellate_with;
 pub(crate) use truth::TruthOption;
@@ -59,7 +60,6 @@ use gpu::GpuError;
 use inspect::engine::{Loaded, Preparation};
 use inspect::export::ExportError;
 use inspect::own_shader::OwnShaderError;
-use inspect::settings::Settings;
 use inspect::shader_files::ShaderError;
 use inspect::shot::files::{file_error, read_bytes, read_text, to_json, write_bytes, write_text};
 use inspect::shot::{ShotError, given};
@@ -282,22 +282,6 @@ pub fn run(command: Command) -> ExitCode {
 pub fn fail(error: &dyn std::fmt::Display) -> ExitCode {
     note(&error.to_string());
     ExitCode::FAILURE
-}
-
-/// Writes the picture that the window would have shown, for machines without a display.
-pub fn preview(
-    source: Option<Source>,
-    opening: &OpeningOptions,
-    (limit, adapter): (LimitOption, AdapterOption),
-    path: &Path,
-) -> Result<(), CliError> {
-    let settings = if source.is_some() { Settings::opening() } else { Settings::greeting() };
-    let line = given(std::env::args_os());
-    let mut args = render::Args::preview(source.unwrap_or_default(), settings, limit, adapter, path);
-    let weld = &mut args.shot.surface.weld;
-    weld.import.0 = opening.import(weld.import.0);
-    weld.hide_part = opening.hidden().to_vec();
-    render::run(&args, &line)
 }
 
 /// Makes a folder, unless it is there.

@@ -12,11 +12,12 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 use glam::Vec2;
 
 use super::{AnimationOption, CliError, note};
+use geometry::mesh::FileCamera;
 use geometry::mesh::crease_band::WIDEST;
-use geometry::mesh::{Bounds, FileCamera, Mesh, Moment};
-use geometry::tessellate::{Displacement, Lod, Partitioning, Surface, Tessellation, tolerance_within_budget};
-use inspect::engine::Preparation;
-use inspect::render::Camera;
+use geometry::tessellate::{Displacement, Lod, LodView, Partitioning, Surface, Tessellation, tolerance_within_budget};
+use gpu::Timing;
+use inspect::engine::{Engine, Preparation};
+use inspect::render::Scene;
 use inspect::settings::options::TOLERANCE_RANGE;
 use inspect::settings::{ARENA_BYTES, Settings};
 use load::HeightSource;
@@ -69,13 +70,8 @@ impl Default for SurfaceOptions {
 }
 
 impl SurfaceOptions {
-    /// Checks what parsing can't: options that need one another.
-    pub fn check(&self) -> Result<(), CliError> {
-        self.check_with(None)
-    }
-
-    /// Like [`Self::check`], where `other` is a second surface that is tessellated with these options too.
-    pub(crate) fn check_with(&self, other: Option<Surface>) -> Result<(), CliError> {
+    /// Checks what parsing can't: options that need one another. `other` is a second surface that is tessellated with them too.
+    pub(crate) fn check(&self, other: Option<Surface>) -> Result<(), CliError> {
         let settings = self.settings();
         let own = settings.tessellation;
         if own.partitioning == Partitioning::Subtriangulation && own.lod != Lod::Uniform {
@@ -153,15 +149,22 @@ impl SurfaceOptions {
         Ok(at(tolerance))
     }
 
+    /// The same where the device counts the triangles.
+    pub(crate) fn within_budget_on(
+        &self,
+        engine: &Engine,
+        scene: &mut Scene,
+        view: LodView,
+    ) -> Result<Settings, CliError> {
+        self.within_budget(|settings| {
+            engine.count(scene, &settings.inputs(view), &mut Timing::Off)?;
+            Ok(scene.tessellator.totals().1)
+        })
+    }
+
     /// Memory for output on the device, in bytes.
     pub fn arena_bytes(&self) -> u64 {
         self.arena << 20
-    }
-
-    /// Returns the camera of these options for a mesh with these bounds, at a moment of one of its clips. Without a distance it shows
-    /// everything that is drawn.
-    pub fn camera(&self, mesh: &Mesh, moment: Option<Moment>, bounds: &Bounds) -> Result<Camera, CliError> {
-        self.view.camera(self, mesh, moment, bounds)
     }
 
     /// Width and height in px.

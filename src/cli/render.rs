@@ -7,13 +7,13 @@ use super::options::{CamerasOption, Declared};
 use super::reference::{self, ReferenceOptions};
 use super::shot_options::ShotOptions;
 use super::view_files::{View, ViewFiles};
-use super::{AdapterOption, CliError, LimitOption, SurfaceOptions, options, to_json, write_text};
+use super::{AdapterOption, CliError, LimitOption, OpeningOptions, SurfaceOptions, options, to_json, write_text};
 use geometry::progress::Progress;
 use gpu::GpuError;
 use inspect::engine::Engine;
 use inspect::render::Camera;
 use inspect::settings::Settings;
-use inspect::shot::{Reference, Shot, ShotError, Stats, StatsWanted};
+use inspect::shot::{Reference, Shot, ShotError, Stats, StatsWanted, given};
 use load::Source;
 
 #[derive(Debug, clap::Args)]
@@ -46,30 +46,32 @@ pub struct Args {
 /// The ending of pictures.
 const ENDINGS: &[&str] = &["png"];
 
-impl Args {
-    /// The arguments that draw what the window shows when it opens with these settings.
-    pub fn preview(
-        file: Source,
-        settings: Settings,
-        limit: LimitOption,
-        adapter: AdapterOption,
-        output: &Path,
-    ) -> Self {
-        let mut surface = SurfaceOptions::default();
-        surface.tessellation.0.tessellation = settings.tessellation;
-        surface.weld.limit = limit;
-        Self {
-            file,
-            output: output.to_owned(),
-            shot: ShotOptions { surface, picture: Declared(settings), ..ShotOptions::default() },
-            stats: None,
-            measure_error: true,
-            cameras: CamerasOption::default(),
-            reference: ReferenceOptions::default(),
-            gates: GateOptions::default(),
-            adapter,
-        }
-    }
+/// Writes the picture that the window would have shown, for machines without a display.
+pub fn preview(
+    source: Option<Source>,
+    opening: &OpeningOptions,
+    limit: LimitOption,
+    adapter: AdapterOption,
+    output: &Path,
+) -> Result<(), CliError> {
+    let settings = if source.is_some() { Settings::opening() } else { Settings::greeting() };
+    let mut surface = SurfaceOptions::default();
+    surface.tessellation.0.tessellation = settings.tessellation;
+    surface.weld.limit = limit;
+    surface.weld.import.0 = opening.import(surface.weld.import.0);
+    surface.weld.hide_part = opening.hidden().to_vec();
+    let args = Args {
+        file: source.unwrap_or_default(),
+        output: output.to_owned(),
+        shot: ShotOptions { surface, picture: Declared(settings), ..ShotOptions::default() },
+        stats: None,
+        measure_error: true,
+        cameras: CamerasOption::default(),
+        reference: ReferenceOptions::default(),
+        gates: GateOptions::default(),
+        adapter,
+    };
+    run(&args, &given(std::env::args_os()))
 }
 
 /// Runs the command, which was given as this line.

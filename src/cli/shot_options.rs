@@ -9,11 +9,11 @@ use super::{
     file_of_heights, keep_apart, load_apart, warn,
 };
 use geometry::progress::Progress;
-use gpu::{Given, Timing};
+use gpu::Given;
 use inspect::engine::{Engine, Loaded};
 use inspect::render::Camera;
 use inspect::render::environment::Environment;
-use inspect::settings::{Colors, Lighting, Settings};
+use inspect::settings::{Colors, Lighting};
 use inspect::shot::{FactorsFile, ReferenceSurface, Shot, ShotView, Subject};
 use load::environment_file::EnvironmentFile;
 use load::panorama::Panorama;
@@ -63,7 +63,7 @@ impl ShotOptions {
         read: &[Option<&Path>],
         written: &[Option<&Path>],
     ) -> Result<(), CliError> {
-        self.surface.check_with(self.picture.0.split_surface)?;
+        self.surface.check(self.picture.0.split_surface)?;
         self.own_lod.check_alone(&self.given)?;
         if self.matcap_image.is_some() && self.picture.0.overlays.colors != Colors::Matcap {
             return Err(CliError::Usage("--matcap-image needs --overlay matcap, which shows it"));
@@ -150,7 +150,7 @@ impl ShotOptions {
         }
         let mesh = &subject.loaded.mesh;
         let view = ShotView {
-            camera: self.surface.camera(mesh, subject.moment, &scene.bounds)?,
+            camera: self.surface.view.camera(&self.surface, mesh, subject.moment, &scene.bounds)?,
             lod_camera: self.lod.camera(&self.surface, mesh, &scene.bounds)?,
             size: self.surface.size.0,
             transparent: self.transparent,
@@ -158,10 +158,7 @@ impl ShotOptions {
         };
         self.check_camera(&view.camera)?;
         let lod_view = view.lod_view(&scene);
-        let within: Settings = self.surface.within_budget(|settings| {
-            engine.count(&mut scene, &settings.inputs(lod_view), &mut Timing::Off)?;
-            Ok(scene.tessellator.totals().1)
-        })?;
+        let within = self.surface.within_budget_on(&engine, &mut scene, lod_view)?;
         subject.settings = subject.settings.with(within.tessellation);
         Ok(Shot::new(engine, scene, subject, view)?)
     }

@@ -77,11 +77,7 @@ impl Args {
                  tessellate",
             ));
         }
-        let draws = self.gates.evidence.is_some() || self.gates.gates.has(GateKind::Leaks);
-        if draws && self.device == Some(Device::Cpu) {
-            return Err(CliError::Usage("--fail-on leaks and --evidence need --device gpu, which draws"));
-        }
-        Ok(())
+        self.gates.check(self.device == Some(Device::Cpu))
     }
 
     fn cases(&self) -> impl Iterator<Item = Subject> {

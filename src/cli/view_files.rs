@@ -106,7 +106,9 @@ impl View {
         moment: Option<Moment>,
         bounds: &Bounds,
     ) -> Result<Camera, CliError> {
-        let Some(NamedView { name, view }) = &self.named else { return surface.camera(mesh, moment, bounds) };
+        let Some(NamedView { name, view }) = &self.named else {
+            return surface.view.camera(surface, mesh, moment, bounds);
+        };
         let of_view = |error: CliError| CliError::View { view: shown(name), error: Box::new(error) };
         view.camera(surface, mesh, moment, bounds).map_err(of_view)
     }
