@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use clap::builder::{OsStringValueParser, TypedValueParser};
 
 use super::{
-    CliError, WeldOption, file_of, file_of_heights, keep_apart, load_apart, note, options, read_bytes, write_bytes,
+    CliError, WeldOption, file_of, file_of_heights, keep_apart, load_apart, note, options, read_bytes, refuse,
+    write_bytes,
 };
 use geometry::mesh::adjacency::{Layout, Part};
 use geometry::names::shown_path;
@@ -51,11 +52,10 @@ pub struct Args {
 const SAID: usize = 10;
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
-    if args.output.is_none() && args.against.is_none() && args.corners.is_none() {
-        return Err(CliError::Usage(
-            "give -o to write a file, --against to compare one with the mesh, or --corners for what displacement needs",
-        ));
-    }
+    refuse(
+        args.output.is_none() && args.against.is_none() && args.corners.is_none(),
+        "give -o to write a file, --against to compare one with the mesh, or --corners for what displacement needs",
+    )?;
     let written = [args.output.as_deref(), args.corners.as_deref()];
     let read_files = [file_of(&args.file), args.against.as_deref(), file_of_heights(args.height.as_ref())];
     keep_apart(read_files, written)?;

@@ -14,7 +14,7 @@ use super::interrupt::stop_on_interrupt;
 use super::options::{CameraOption, Size, whole_from};
 use super::{
     AdapterOption, CliError, SurfaceOptions, Telling, WeldOption, file_error, file_of, keep_apart, load_apart,
-    make_folder, options, write_text,
+    make_folder, options, refuse, write_text,
 };
 use geometry::progress::Progress;
 use geometry::tessellate::{Normals, Partitioning, Surface, Tessellation};
@@ -111,13 +111,9 @@ fn is_svg(path: &Path) -> bool {
 
 impl Args {
     fn settings(&self) -> Result<Vec<Setting>, CliError> {
-        if self.truth.is_some() && self.files.len() != 1 {
-            return Err(CliError::Usage("--truth takes one mesh: chart the others on their own"));
-        }
+        refuse(self.truth.is_some() && self.files.len() != 1, "--truth takes one mesh: chart the others on their own")?;
         let settings = self.plan().settings();
-        if settings.is_empty() {
-            return Err(CliError::Usage("subtriangulation has uniform LOD only: add uniform to --lods"));
-        }
+        refuse(settings.is_empty(), "subtriangulation has uniform LOD only: add uniform to --lods")?;
         Ok(settings)
     }
 

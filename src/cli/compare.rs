@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 
 use super::posed::Posed;
 use super::{
-    AdapterOption, CliError, FactorsOption, SurfaceOptions, file_of, file_of_heights, keep_apart, options, to_json,
-    warn, write_text,
+    AdapterOption, CliError, FactorsOption, SurfaceOptions, file_of, file_of_heights, keep_apart, options, refuse,
+    to_json, warn, write_text,
 };
 use geometry::names::shown_path;
 use geometry::progress::Progress;
@@ -90,13 +90,15 @@ const MOST: u64 = 100_000_000;
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
     args.surface.check(None)?;
-    if args.adapter.adapter.is_some() && args.output.is_none() {
-        return Err(CliError::Usage("--adapter draws the picture of -o: give -o as well, or leave --adapter out"));
-    }
+    refuse(
+        args.adapter.adapter.is_some() && args.output.is_none(),
+        "--adapter draws the picture of -o: give -o as well, or leave --adapter out",
+    )?;
     let is_csv = has_csv_ending(&args.theirs);
-    if args.position_column.is_some() && !is_csv {
-        return Err(CliError::Usage("--position-column names a column of a .csv file, which THEIRS isn't"));
-    }
+    refuse(
+        args.position_column.is_some() && !is_csv,
+        "--position-column names a column of a .csv file, which THEIRS isn't",
+    )?;
     let heights = file_of_heights(args.surface.height.as_ref());
     let read = [Some(&*args.theirs), file_of(&args.mesh), heights, args.given.given.as_deref()];
     keep_apart(read, [args.output.as_deref()])?;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
 
-use super::{AdapterOption, CliError, Telling, WeldOption, make_folder, options, warn, write_text};
+use super::{AdapterOption, CliError, Telling, WeldOption, make_folder, options, refuse, warn, write_text};
 use inspect::engine::{Engine, Preparation};
 use inspect::settings::options::{FACTOR, HEIGHT_SCALE, MIDLEVEL};
 use inspect::shot::write_picture;
@@ -43,11 +43,10 @@ pub struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
-    if args.camera.distance.is_some() {
-        return Err(CliError::Usage(
-            "--camera takes AZIMUTH,ELEVATION here: the distance is chosen so that each tile is filled",
-        ));
-    }
+    refuse(
+        args.camera.distance.is_some(),
+        "--camera takes AZIMUTH,ELEVATION here: the distance is chosen so that each tile is filled",
+    )?;
     let options = GalleryOptions {
         source: args.file.clone(),
         preparation: Preparation { heights: args.height.clone(), ..args.weld.preparation() },

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{CliError, make_folder};
+use super::{CliError, make_folder, refuse};
 use geometry::progress::Progress;
 use inspect::gates::{Gate, GateKind, Judgement};
 use inspect::shot::{Shot, write_picture};
@@ -36,10 +36,10 @@ impl FailOnOption {
 impl GateOptions {
     /// Refuses what needs the device that draws, where the CPU computes.
     pub(super) fn check(&self, is_on_cpu: bool) -> Result<(), CliError> {
-        match is_on_cpu && (self.evidence.is_some() || self.gates.has(GateKind::Leaks)) {
-            true => Err(CliError::Usage("--fail-on leaks and --evidence need --device gpu, which draws")),
-            false => Ok(()),
-        }
+        refuse(
+            is_on_cpu && (self.evidence.is_some() || self.gates.has(GateKind::Leaks)),
+            "--fail-on leaks and --evidence need --device gpu, which draws",
+        )
     }
 
     /// Writes pictures of the failed gates' worst places, if they were asked for. `stem` begins their names.

@@ -66,6 +66,7 @@ use inspect::shot::{ShotError, given};
 use lab::check::ConfigError;
 use load::environment_file::EnvironmentError;
 use load::files::file_reason;
+use load::mesh_file::choice;
 use load::{LoadError, MatcapError, Source};
 
 /// Shows what tessellation does to a mesh in a window; commands write pictures, meshes and numbers instead
@@ -227,13 +228,7 @@ pub enum CliError {
 
 /// Returns which cameras there are, as the end of a message.
 fn said_of_cameras(known: &[String]) -> String {
-    const NAMED: usize = 20;
-    let names: Vec<_> = known.iter().take(NAMED).map(|name| shown(name)).collect();
-    match known.len().saturating_sub(NAMED) {
-        _ if known.is_empty() => "it has no cameras, so leave --file-camera away".to_owned(),
-        0 => format!("choose one of {}", names.join(", ")),
-        more => format!("choose one of {} and {more} more, which `pnaen info` lists", names.join(", ")),
-    }
+    if known.is_empty() { "it has no cameras, so leave --file-camera away".to_owned() } else { choice(known) }
 }
 
 /// Runs a command. A closed pipe is no failure: the reader wants no more.
@@ -282,6 +277,11 @@ pub fn run(command: Command) -> ExitCode {
 pub fn fail(error: &dyn std::fmt::Display) -> ExitCode {
     note(&error.to_string());
     ExitCode::FAILURE
+}
+
+/// Refuses options that can't be together, or that need others.
+fn refuse(is_wrong: bool, why: &'static str) -> Result<(), CliError> {
+    if is_wrong { Err(CliError::Usage(why)) } else { Ok(()) }
 }
 
 /// Makes a folder, unless it is there.

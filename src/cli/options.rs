@@ -11,7 +11,7 @@ use clap::Args;
 use clap::builder::{OsStringValueParser, TypedValueParser};
 use glam::Vec2;
 
-use super::{AnimationOption, CliError, note};
+use super::{AnimationOption, CliError, note, refuse};
 use geometry::mesh::FileCamera;
 use geometry::mesh::crease_band::WIDEST;
 use geometry::tessellate::{Displacement, Lod, LodView, Partitioning, Surface, Tessellation, tolerance_within_budget};
@@ -74,29 +74,29 @@ impl SurfaceOptions {
     pub(crate) fn check(&self, other: Option<Surface>) -> Result<(), CliError> {
         let settings = self.settings();
         let own = settings.tessellation;
-        if own.partitioning == Partitioning::Subtriangulation && own.lod != Lod::Uniform {
-            return Err(CliError::Usage(
-                "--partitioning subtriangulation has the same number of segments everywhere: it needs --lod uniform",
-            ));
-        }
-        if self.weld.crease_band > 0.0 && self.animation.animation.is_some() {
-            return Err(CliError::Usage(
-                "--animation can't be combined with --crease-band: its triangles belong to no joint or node that moves",
-            ));
-        }
+        refuse(
+            own.partitioning == Partitioning::Subtriangulation && own.lod != Lod::Uniform,
+            "--partitioning subtriangulation has the same number of segments everywhere: it needs --lod uniform",
+        )?;
+        refuse(
+            self.weld.crease_band > 0.0 && self.animation.animation.is_some(),
+            "--animation can't be combined with --crease-band: its triangles belong to no joint or node that moves",
+        )?;
         let usual = Tessellation::default();
         let takes_heights = self.height.is_some() || own.displacement != Displacement::Off;
-        if !takes_heights && (own.height_scale != usual.height_scale || own.midlevel != usual.midlevel) {
-            return Err(CliError::Usage("--height-scale and --midlevel need --height, or --displacement"));
-        }
+        refuse(
+            !takes_heights && (own.height_scale != usual.height_scale || own.midlevel != usual.midlevel),
+            "--height-scale and --midlevel need --height, or --displacement",
+        )?;
         let has_strength = own.surface.is_phong() || other.is_some_and(Surface::is_phong);
-        if !has_strength && own.alpha != usual.alpha {
-            return Err(CliError::Usage("--alpha needs --surface phong or phong-aen, whose strength it is"));
-        }
-        if self.max_triangles.is_some() && own.lod != Lod::Error {
-            return Err(CliError::Usage("--max-triangles needs --lod error, whose tolerance it raises"));
-        }
-        Ok(())
+        refuse(
+            !has_strength && own.alpha != usual.alpha,
+            "--alpha needs --surface phong or phong-aen, whose strength it is",
+        )?;
+        refuse(
+            self.max_triangles.is_some() && own.lod != Lod::Error,
+            "--max-triangles needs --lod error, whose tolerance it raises",
+        )
     }
 
     /// What is done to the mesh after it was read. Displacement without an image uses the materials' images.

@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{CliError, file_error};
+use super::{CliError, file_error, refuse};
 use geometry::names::shown_path;
 use load::{HeightSource, Source};
 
@@ -15,9 +15,7 @@ pub(super) fn keep_apart<'a>(
     let mut taken: Vec<(PathBuf, &'static str)> =
         read.into_iter().flatten().filter_map(|path| Some((place(path)?, "read"))).collect();
     for path in written.into_iter().flatten() {
-        if path.as_os_str().is_empty() {
-            return Err(CliError::Usage("an output has no name; name a file"));
-        }
+        refuse(path.as_os_str().is_empty(), "an output has no name; name a file")?;
         if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
             return Err(CliError::NoFolder { path: shown_path(path), folder: shown_path(folder) });
         }

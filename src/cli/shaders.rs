@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::options::TessellationOptions;
-use super::{CliError, make_folder, options, write_text};
+use super::{CliError, make_folder, options, refuse, write_text};
 use inspect::shader_files::{Language, shader_files};
 
 #[derive(Debug, clap::Args)]
@@ -23,12 +23,11 @@ pub struct Args {
 
 /// Runs the command, which was given as this line.
 pub(super) fn run(args: &Args, line: &str) -> Result<(), CliError> {
-    if args.surface_shader.is_some() {
-        return Err(CliError::Usage(
-            "--surface-shader can't be exported, only the rules of --surface can: write the shaders of one of them, and put your \
+    refuse(
+        args.surface_shader.is_some(),
+        "--surface-shader can't be exported, only the rules of --surface can: write the shaders of one of them, and put your \
              own rule in its place",
-        ));
-    }
+    )?;
     let files = shader_files(args.language, &args.tessellation.0.tessellation, line)?;
     make_folder(&args.output)?;
     Ok(files.iter().try_for_each(|file| write_text(&args.output.join(file.name), &file.text))?)

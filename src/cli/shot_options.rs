@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::options::{LodCameraOption, PictureOptions, whole_from};
 use super::{
     CliError, FactorsOption, LodShaderOption, SurfaceOptions, SurfaceShaderOption, TruthOption, file_of,
-    file_of_heights, keep_apart, load_apart, warn,
+    file_of_heights, keep_apart, load_apart, refuse, warn,
 };
 use geometry::progress::Progress;
 use gpu::Given;
@@ -65,18 +65,13 @@ impl ShotOptions {
     ) -> Result<(), CliError> {
         self.surface.check(self.picture.0.split_surface)?;
         self.own_lod.check_alone(&self.given)?;
-        if self.matcap_image.is_some() && self.picture.0.overlays.colors != Colors::Matcap {
-            return Err(CliError::Usage("--matcap-image needs --overlay matcap, which shows it"));
-        }
-        match (&self.environment, self.picture.0.lighting == Lighting::Environment) {
-            (Some(_), false) => {
-                return Err(CliError::Usage("--environment is the light of --lighting environment: choose one light"));
-            }
-            (None, true) => {
-                return Err(CliError::Usage("--lighting environment needs --environment, the file that has the light"));
-            }
-            _ => {}
-        }
+        refuse(
+            self.matcap_image.is_some() && self.picture.0.overlays.colors != Colors::Matcap,
+            "--matcap-image needs --overlay matcap, which shows it",
+        )?;
+        let (has_file, needs_file) = (self.environment.is_some(), self.picture.0.lighting == Lighting::Environment);
+        refuse(has_file && !needs_file, "--environment is the light of --lighting environment: choose one light")?;
+        refuse(needs_file && !has_file, "--lighting environment needs --environment, the file that has the light")?;
         let truth = self.truth.truth.as_ref().and_then(file_of);
         let heights = file_of_heights(self.surface.height.as_ref());
         let (factors, matcap) = (self.given.given.as_deref(), self.matcap_image.as_deref());
@@ -87,12 +82,10 @@ impl ShotOptions {
 
     /// Checks a camera that isn't known before the mesh is.
     pub(super) fn check_camera(&self, camera: &Camera) -> Result<(), CliError> {
-        match camera.is_mirrored() && self.picture.0.split.is_some() {
-            true => Err(CliError::Usage(
-                "--split can't be combined with a --view-projection that mirrors: its halves would change places",
-            )),
-            false => Ok(()),
-        }
+        refuse(
+            camera.is_mirrored() && self.picture.0.split.is_some(),
+            "--split can't be combined with a --view-projection that mirrors: its halves would change places",
+        )
     }
 
     /// Reads the mesh and all other files. Returns what is drawn, and what was found about a file of factors.

@@ -10,7 +10,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use super::gate_options::GateOptions;
 use super::options::{named, whole};
 use super::tessellate::Device;
-use super::{AdapterOption, CliError, WeldOption, make_folder, to_json, write_text};
+use super::{AdapterOption, CliError, WeldOption, make_folder, refuse, to_json, write_text};
 use geometry::mesh::{Topology, t_junctions};
 use geometry::progress::Progress;
 use inspect::engine::Engine;
@@ -71,12 +71,11 @@ impl Args {
     fn check(&self) -> Result<(), CliError> {
         self.adapter.check(self.device == Some(Device::Cpu))?;
         let single = [GateKind::AboveTolerance, GateKind::Triangles, GateKind::Bytes];
-        if single.into_iter().any(|kind| self.gates.gates.has(kind)) {
-            return Err(CliError::Usage(
-                "--fail-on above-tolerance, triangles and bytes judge one tessellation, and stability runs many: use render or \
+        refuse(
+            single.into_iter().any(|kind| self.gates.gates.has(kind)),
+            "--fail-on above-tolerance, triangles and bytes judge one tessellation, and stability runs many: use render or \
                  tessellate",
-            ));
-        }
+        )?;
         self.gates.check(self.device == Some(Device::Cpu))
     }
 

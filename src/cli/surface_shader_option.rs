@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::CliError;
+use super::{CliError, refuse};
 use gpu::SurfaceShader;
 use inspect::gates::{Gate, GateKind};
 use inspect::own_shader::read_own_shader;
@@ -29,25 +29,19 @@ impl SurfaceShaderOption {
         if self.surface_shader.is_none() {
             return Ok(());
         }
-        if is_on_cpu {
-            return Err(CliError::Usage("--surface-shader runs on the graphics adapter: leave --device cpu away"));
-        }
-        if gates.iter().any(|gate| gate.kind == GateKind::AboveTolerance) {
-            return Err(CliError::Usage(
-                "--fail-on above-tolerance measures on the CPU, where the surface of --surface-shader isn't known: choose other gates",
-            ));
-        }
-        Ok(())
+        refuse(is_on_cpu, "--surface-shader runs on the graphics adapter: leave --device cpu away")?;
+        refuse(
+            gates.iter().any(|gate| gate.kind == GateKind::AboveTolerance),
+            "--fail-on above-tolerance measures on the CPU, where the surface of --surface-shader isn't known: choose other gates",
+        )
     }
 
     /// Refuses to compare with the limit surface.
     pub(crate) fn check_deviation(&self) -> Result<(), CliError> {
-        match self.surface_shader {
-            Some(_) => Err(CliError::Usage(
-                "--overlay deviation compares with the surface on the CPU, where that of --surface-shader isn't known: name another \
-                 one with --truth",
-            )),
-            None => Ok(()),
-        }
+        refuse(
+            self.surface_shader.is_some(),
+            "--overlay deviation compares with the surface on the CPU, where that of --surface-shader isn't known: name another \
+             one with --truth",
+        )
     }
 }

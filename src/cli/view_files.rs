@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::options::{CamerasOption, NamedView, SurfaceOptions};
-use super::{CliError, make_folder};
+use super::{CliError, make_folder, refuse};
 use geometry::mesh::{Bounds, Mesh, Moment};
 use geometry::names::shown;
 use inspect::export::ending;
@@ -44,9 +44,7 @@ impl<'a> ViewFiles<'a> {
         surface: &SurfaceOptions,
         several: &'static str,
     ) -> Result<Vec<View>, CliError> {
-        if self.has_views && self.names_one() {
-            return Err(CliError::Usage(several));
-        }
+        refuse(self.has_views && self.names_one(), several)?;
         let view = |named: NamedView| View { file: self.of(Some(&named.name)), named: Some(named) };
         Ok(match cameras.views(&surface.view)? {
             Some(views) => views.into_iter().map(view).collect(),

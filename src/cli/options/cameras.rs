@@ -7,7 +7,7 @@ use clap::{Args, Parser};
 use serde_json::Value;
 
 use super::{CameraOption, ViewOptions};
-use crate::cli::{CliError, file_error, read_text};
+use crate::cli::{CliError, file_error, read_text, refuse};
 use geometry::names::{on_one_line, shown};
 
 /// The most views.
@@ -72,12 +72,11 @@ impl CamerasOption {
         match cameras {
             Cameras::Around(count) => Ok(Some((0..*count).map(|index| around(index, *count, view)).collect())),
             Cameras::File(path) => {
-                if *view != ViewOptions::default() {
-                    return Err(CliError::Usage(
-                        "--cameras FILE has each camera's options: write --target, --orthographic, --field-of-view and \
+                refuse(
+                    *view != ViewOptions::default(),
+                    "--cameras FILE has each camera's options: write --target, --orthographic, --field-of-view and \
                          --roll into the file",
-                    ));
-                }
+                )?;
                 read(path).map(Some)
             }
         }

@@ -16,7 +16,7 @@ mod setting;
 mod words;
 
 pub use axis::{Axis, Tick};
-pub use bench::{Bench, Effort, Probe, whole};
+pub use bench::{Bench, Effort, whole};
 pub use cost::Cost;
 pub use legend::method_styles;
 pub use method_style::{Fill, MethodStyle, Shape, dash};
@@ -40,17 +40,17 @@ const COLUMNS: [(&str, fn(&Row) -> String); 18] = [
     ("partitioning", |row| row.setting.method.partitioning.name().to_owned()),
     ("lod", |row| row.setting.method.lod.name().to_owned()),
     ("setting", |row| row.setting.to_string()),
-    ("triangles", |row| row.triangles.to_string()),
-    ("vertices", |row| row.vertices.to_string()),
+    ("triangles", |row| row.probe.triangles.to_string()),
+    ("vertices", |row| row.probe.vertices.to_string()),
     ("bytes", |row| row.bytes().to_string()),
-    ("ms_tessellate", |row| row.time.tessellate.to_string()),
-    ("ms_draw", |row| row.time.draw.to_string()),
-    ("ms_total", |row| row.time.total().to_string()),
-    ("max_error", |row| known(row.errors.map(|errors| errors.largest))),
-    ("rms_error", |row| known(row.errors.map(|errors| errors.rms))),
-    ("max_error_px", |row| known(row.max_error_px)),
-    ("normal_error_deg", |row| known(row.errors.map(|errors| errors.normal_degrees))),
-    ("triangles_by_error", |row| known(row.triangles_by_error)),
+    ("ms_tessellate", |row| row.probe.time.tessellate.to_string()),
+    ("ms_draw", |row| row.probe.time.draw.to_string()),
+    ("ms_total", |row| row.probe.time.total().to_string()),
+    ("max_error", |row| known(row.probe.errors.map(|errors| errors.largest))),
+    ("rms_error", |row| known(row.probe.errors.map(|errors| errors.rms))),
+    ("max_error_px", |row| known(row.probe.max_error_px)),
+    ("normal_error_deg", |row| known(row.probe.errors.map(|errors| errors.normal_degrees))),
+    ("triangles_by_error", |row| known(row.probe.triangles_by_error)),
 ];
 
 fn known(number: Option<impl ToString>) -> String {
@@ -69,6 +69,12 @@ pub struct Row {
     pub mesh: String,
     pub adapter: String,
     pub setting: Setting,
+    pub probe: Probe,
+}
+
+/// The cost and the errors of some settings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Probe {
     pub triangles: u64,
     pub vertices: u64,
     pub time: Time,
@@ -118,7 +124,7 @@ impl Time {
 impl Row {
     /// The size of the emitted vertices and indices.
     pub fn bytes(&self) -> u64 {
-        self.vertices * size_of::<Vertex>() as u64 + self.triangles * 12
+        self.probe.vertices * size_of::<Vertex>() as u64 + self.probe.triangles * 12
     }
 
     /// The row as a record of CSV.
@@ -143,14 +149,14 @@ pub struct Subject {
 impl Subject {
     /// The largest error of a row: a part of the reference surface's diagonal, or px without a reference surface.
     pub fn error(&self, row: &Row) -> Option<f64> {
-        self.error_of(row.errors, row.max_error_px)
+        self.error_of(&row.probe)
     }
 
-    /// The largest error of any measurements: see [`Self::error`].
-    pub fn error_of(&self, errors: Option<Errors>, max_error_px: Option<f64>) -> Option<f64> {
+    /// The largest error of any settings: see [`Self::error`].
+    pub fn error_of(&self, probe: &Probe) -> Option<f64> {
         let error = match self.truth {
-            Some(_) => errors.map(|errors| errors.largest),
-            None => max_error_px,
+            Some(_) => probe.errors.map(|errors| errors.largest),
+            None => probe.max_error_px,
         };
         error.filter(|error| error.is_finite())
     }

@@ -28,14 +28,8 @@ pub(super) struct Overlaid<'a> {
     pub fit: f64,
 }
 
-/// How most of their triangles are wound.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Winding {
-    /// As the patches that they lie on.
-    Alike,
-    /// The other way.
-    Turned,
-}
+/// How most of their triangles are wound: 1 as the patches that they lie on, -1 the other way.
+type Winding = f64;
 
 /// Their triangles, patch by patch.
 pub(super) struct Assignment<'a> {
@@ -138,10 +132,10 @@ impl<'a> Overlaid<'a> {
     /// How most of their triangles are wound that lie on the nearest patch.
     fn winding(&self) -> Winding {
         let triangles = &self.theirs.triangles;
-        let fit = |triangle: [u32; 3]| self.fit_on(self.nearest_patch(triangle), triangle, Winding::Alike);
+        let fit = |triangle: [u32; 3]| self.fit_on(self.nearest_patch(triangle), triangle, 1.0);
         let fits = spread(triangles.len(), WOUND).map(|index| fit(triangles[index])).filter(|fit| fit.corners == 3);
         let (alike, turned): (Vec<Fit>, Vec<Fit>) = fits.partition(|fit| fit.is_wound_alike);
-        if turned.len() > alike.len() { Winding::Turned } else { Winding::Alike }
+        if turned.len() > alike.len() { -1.0 } else { 1.0 }
     }
 
     fn fit_on(&self, patch: u32, triangle: [u32; 3], winding: Winding) -> Fit {
@@ -205,7 +199,7 @@ impl Fit {
         let area = domain_area(places.map(|place| place.weights));
         Self {
             corners: places.iter().filter(|place| place.distance <= fit).count(),
-            is_wound_alike: if winding == Winding::Alike { area > 0.0 } else { area < 0.0 },
+            is_wound_alike: winding * area > 0.0,
             distance: places.iter().map(|place| place.distance).sum(),
         }
     }
@@ -234,7 +228,7 @@ impl<'a> Assignment<'a> {
     /// they lie on.
     pub(super) fn new(overlaid: &'a Overlaid<'a>, progress: &Progress) -> Result<Self, Cancelled> {
         let (triangles, twins) = (&overlaid.theirs.triangles, &overlaid.twins);
-        let winding = if twins.are_all() { Winding::Alike } else { overlaid.winding() };
+        let winding = if twins.are_all() { 1.0 } else { overlaid.winding() };
         let patches = made_of_all(triangles.len(), progress, |index| match twins.corners(index as u32) {
             Some([vertex, ..]) => twins.place(vertex).patch,
             None if twins.is_thin(index as u32) => 0,

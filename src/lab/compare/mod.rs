@@ -77,7 +77,7 @@ impl Exactness {
 }
 
 /// What differs.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Comparison {
     /// The most important first; empty if the two are the same.
     pub findings: Vec<Finding>,
@@ -273,19 +273,11 @@ impl Comparison {
     /// Without anything that was found.
     fn new(ours: &Ours, theirs: &ForeignMesh) -> Self {
         Self {
-            findings: Vec::new(),
             vertices: theirs.positions.len() as u64,
             triangles: theirs.triangles.len() as u64,
-            patches: 0,
-            from_surface: 0.0,
-            farthest: None,
             ulp: ulp(ours.topology),
             diagonal: Bounds::of(ours.topology.points.iter().copied()).diagonal().into(),
-            sides: Vec::new(),
-            different: Vec::new(),
-            missing: Vec::new(),
-            strays: Vec::new(),
-            positions: Vec::new(),
+            ..Self::default()
         }
     }
 

@@ -85,7 +85,7 @@ impl Part {
 
     /// Whether a row is the mesh without tessellation: one triangle for each patch.
     fn is_plain(&self, row: &super::Row) -> bool {
-        row.triangles == self.patches
+        row.probe.triangles == self.patches
     }
 }
 

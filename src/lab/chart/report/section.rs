@@ -49,12 +49,12 @@ fn facts(part: &Part) -> String {
 
 /// The columns after a row's name: whether they need a reference surface, and their texts.
 const COLUMNS: [(&str, bool, fn(&Row) -> String); 6] = [
-    ("triangles", false, |row| grouped(row.triangles)),
-    ("ms", false, |row| short(row.time.total())),
-    ("largest error, %", true, |row| known(row.errors.map(|errors| 100.0 * errors.largest))),
-    ("RMS error, %", true, |row| known(row.errors.map(|errors| 100.0 * errors.rms))),
-    ("largest error, px", false, |row| known(row.max_error_px)),
-    ("normals, degrees", true, |row| known(row.errors.map(|errors| errors.normal_degrees))),
+    ("triangles", false, |row| grouped(row.probe.triangles)),
+    ("ms", false, |row| short(row.probe.time.total())),
+    ("largest error, %", true, |row| known(row.probe.errors.map(|errors| 100.0 * errors.largest))),
+    ("RMS error, %", true, |row| known(row.probe.errors.map(|errors| 100.0 * errors.rms))),
+    ("largest error, px", false, |row| known(row.probe.max_error_px)),
+    ("normals, degrees", true, |row| known(row.probe.errors.map(|errors| errors.normal_degrees))),
 ];
 
 fn known(number: Option<f64>) -> String {
@@ -106,7 +106,7 @@ fn best(part: &Part, race: &Race) -> (String, Vec<String>) {
         }
         let cheapest = |method| race.cheapest(error, Cost::Triangles, |row| row.setting.method == method);
         let mut reached: Vec<&Row> = methods().filter_map(cheapest).collect();
-        reached.sort_by_key(|row| row.triangles);
+        reached.sort_by_key(|row| row.probe.triangles);
         for row in &reached {
             let names = [level.clone(), part.subject.name(row.setting.method), row.setting.label()];
             rows.push(names.into_iter().chain(cells(part, row)).collect());

@@ -20,8 +20,8 @@ pub(super) fn wastes(parts: &[Part]) -> Vec<Waste> {
     let of = |method: Method| {
         let times = |part: &Part, row: &Row| -> Option<f64> {
             let is_meant = row.setting.method == method && !part.is_plain(row);
-            let needed = row.triangles_by_error.filter(|needed| is_meant && *needed > 0)?;
-            Some(row.triangles as f64 / needed as f64)
+            let needed = row.probe.triangles_by_error.filter(|needed| is_meant && *needed > 0)?;
+            Some(row.probe.triangles as f64 / needed as f64)
         };
         let rows = parts.iter().flat_map(|part| part.subject.rows.iter().filter_map(move |row| times(part, row)));
         let all: Vec<f64> = rows.collect();
