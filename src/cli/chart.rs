@@ -19,6 +19,7 @@ use super::{
 use geometry::progress::Progress;
 use geometry::tessellate::{Normals, Partitioning, Surface, Tessellation};
 use inspect::engine::{Engine, Loaded};
+use inspect::export::ending;
 use inspect::measure::AccuracyOptions;
 use inspect::render::Target;
 use inspect::settings::options::{FACTOR, PIXELS, TOLERANCE};
@@ -97,16 +98,11 @@ pub struct Args {
 fn picture() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(|path| {
         let path = PathBuf::from(path);
-        if is_svg(&path) || path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
-            Ok(path)
-        } else {
-            Err("charts are SVG or PNG files: name it .svg or .png")
+        match ending(&path).as_str() {
+            "svg" | "png" => Ok(path),
+            _ => Err("charts are SVG or PNG files: name it .svg or .png"),
         }
     })
-}
-
-fn is_svg(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg"))
 }
 
 impl Args {
@@ -272,7 +268,7 @@ impl Session {
 /// Writes the picture, and prints its sentences unless the table goes to standard output.
 fn publish(args: &Args, subjects: &[Subject]) -> Result<(), CliError> {
     match &args.output {
-        Some(path) if is_svg(path) => write_text(path, &svg(subjects)?)?,
+        Some(path) if ending(path) == "svg" => write_text(path, &svg(subjects)?)?,
         Some(path) => inspect::shot::write_picture(path, &bitmap(subjects)?.into())?,
         None => {}
     }

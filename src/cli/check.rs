@@ -19,7 +19,6 @@ use geometry::cores::in_ranges;
 use inspect::engine::Engine;
 use lab::check::{Asset, Cache, Report, junit, page, sarif};
 use load::Source;
-use load::files::file_reason;
 
 use plan::Job;
 
@@ -159,9 +158,4 @@ fn measured(
         drop(others);
     });
     done.into_inner().unwrap_or_else(PoisonError::into_inner).0
-}
-
-/// Says on standard error that the cache can't be used.
-fn say_unkept(error: &std::io::Error) {
-    note(&format!("what was found can't be kept: {}", file_reason(error)));
 }

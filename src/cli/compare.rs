@@ -14,6 +14,7 @@ use geometry::names::shown_path;
 use geometry::progress::Progress;
 use geometry::view::ulp;
 use inspect::engine::Loaded;
+use inspect::export::ending;
 use lab::compare::{Exactness, ForeignMesh, Ours, compare};
 use load::csv_vertices::{CsvVertices, read_vertices};
 use load::files::Limits;
@@ -94,7 +95,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         args.adapter.adapter.is_some() && args.output.is_none(),
         "--adapter draws the picture of -o: give -o as well, or leave --adapter out",
     )?;
-    let is_csv = has_csv_ending(&args.theirs);
+    let is_csv = matches!(ending(&args.theirs).as_str(), "csv" | "tsv");
     refuse(
         args.position_column.is_some() && !is_csv,
         "--position-column names a column of a .csv file, which THEIRS isn't",
@@ -138,11 +139,6 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         0 => Ok(()),
         count => Err(CliError::NotTheSame { theirs: name, count }),
     }
-}
-
-/// Whether a file's name says that it is CSV.
-fn has_csv_ending(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv") || ending.eq_ignore_ascii_case("tsv"))
 }
 
 /// Reads the other program's triangles, and half a unit of their last decimal. Standard error tells what was left out.

@@ -165,8 +165,6 @@ pub enum CliError {
     Taken { path: String, by: &'static str },
     #[error(transparent)]
     Gallery(#[from] lab::gallery::GalleryError),
-    #[error("{count} of the table's lines break a promise; the first is {method} on {case}")]
-    Promise { count: usize, case: String, method: &'static str },
     #[error("{0}")]
     Usage(&'static str),
     #[error(

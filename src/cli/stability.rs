@@ -17,8 +17,8 @@ use inspect::engine::Engine;
 use inspect::gates::{Facts, GateKind, judge};
 use inspect::render::Leaks;
 use lab::stability::{
-    CASES, Case, Effort, Failure, LEGEND, Method, PAGE, Row, Section, Subject, Verdict, are_judged, failures, lines,
-    page, picture, run as run_case, table,
+    CASES, Case, Effort, Failure, LEGEND, Line, Method, PAGE, Row, Subject, Verdict, are_judged, failures, lines, page,
+    picture, run as run_case, table,
 };
 use load::Source;
 
@@ -142,16 +142,12 @@ impl Args {
         Ok(failure.collect())
     }
 
-    /// Draws the picture of a subject into the folder of `-o`, if there are one and a device. Returns what the page says.
-    fn section(&self, subject: &Subject, engine: Option<&Engine>, effort: &Effort) -> Result<Section, CliError> {
-        let mut file = None;
-        if let (Some(folder), Some(engine)) = (&self.output, engine) {
-            let drawn = picture(subject, engine, effort.sweep_to)?;
-            let name = file_name(&subject.name);
-            inspect::shot::write_picture(&folder.join(&name), &drawn.into())?;
-            file = Some(name);
-        }
-        Ok(Section { name: subject.name.clone(), about: subject.about.clone(), picture: file })
+    /// Draws the picture of a subject into the folder of `-o`, if there are one and a device. Returns the file's name.
+    fn picture(&self, subject: &Subject, engine: Option<&Engine>, effort: &Effort) -> Result<Option<String>, CliError> {
+        let Some((folder, engine)) = self.output.as_ref().zip(engine) else { return Ok(None) };
+        let name = file_name(&subject.name);
+        inspect::shot::write_picture(&folder.join(&name), &picture(subject, engine, effort.sweep_to)?.into())?;
+        Ok(Some(name))
     }
 }
 
@@ -171,7 +167,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
             let rest = text.split_once('\n').map_or("", |(_, rest)| rest);
             write_text("-".as_ref(), if rows.is_empty() { &text } else { rest })?;
         }
-        sections.push(args.section(&loaded.subject, engine.as_ref(), &effort)?);
+        sections.push((&loaded.subject, args.picture(&loaded.subject, engine.as_ref(), &effort)?));
         rows.extend(own);
     }
     if let Some(folder) = &args.output {
@@ -187,7 +183,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         evidence::write(folder, engine, &subjects, &failed)?;
     }
     let mut said: Vec<String> = failed.into_iter().map(|failure| failure.sentence).collect();
-    said.extend(keep_promises(&rows).err().map(|broken| broken.to_string()));
+    said.extend(broken_promises(&rows));
     if said.is_empty() { Ok(()) } else { Err(CliError::Gates(said)) }
 }
 
@@ -208,13 +204,11 @@ fn file_name(name: &str) -> String {
     format!("{}.png", Path::new(&stem).file_stem().unwrap_or_default().to_string_lossy())
 }
 
-/// Fails if a promise doesn't hold.
-fn keep_promises(rows: &[Row]) -> Result<(), CliError> {
+/// Says which promises don't hold.
+fn broken_promises(rows: &[Row]) -> Option<String> {
     let broken: Vec<_> = lines(rows).into_iter().filter(|line| line.verdict == Verdict::BreaksPromise).collect();
-    match broken.first() {
-        None => Ok(()),
-        Some(line) => Err(CliError::Promise { count: broken.len(), case: line.case.clone(), method: line.method }),
-    }
+    let (count, Line { case, method, .. }) = (broken.len(), broken.first()?);
+    Some(format!("{count} of the table's lines break a promise; the first is {method} on {case}"))
 }
 
 #[cfg(test)]

@@ -16,7 +16,7 @@ pub use cases::{CASES, Case, CaseView, Probe};
 pub use gates::{Failure, are_judged, failures};
 pub use meshes::soup;
 pub use picture::picture;
-pub use report::{LEGEND, PAGE, Section, Verdict, lines, page, table};
+pub use report::{LEGEND, Line, PAGE, Verdict, lines, page, table};
 pub use run::{Effort, run};
 pub use views::{random as random_camera, viewport};
 
