@@ -31,7 +31,7 @@ pub fn run() -> ExitCode {
         Err(code) => return code,
     };
     let Cli { file, opening, limit, adapter, .. } = arguments;
-    if let Err(error) = cli::preview(file, &opening, (limit, adapter), Path::new(PREVIEW)) {
+    if let Err(error) = cli::preview(file, &opening, limit, adapter, Path::new(PREVIEW)) {
         return cli::fail(&error);
     }
     // A closed standard output is no failure.

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use super::CliError;
+use super::{CliError, refuse};
 use gpu::{AdapterChoice, GpuError, adapters, best_adapter, driver, kind};
 
 #[derive(Debug, clap::Args)]
@@ -49,16 +49,11 @@ pub struct AdapterOption {
 
 impl AdapterOption {
     /// Refuses --adapter where the CPU computes.
-    ///
-    /// # Errors
-    /// An adapter was named, and `is_cpu` is set.
     pub fn check(&self, is_cpu: bool) -> Result<(), CliError> {
-        match is_cpu && self.adapter.is_some() {
-            true => Err(CliError::Usage(
-                "--adapter chooses a graphics adapter, but --device cpu uses none: leave one of them out",
-            )),
-            false => Ok(()),
-        }
+        refuse(
+            is_cpu && self.adapter.is_some(),
+            "--adapter chooses a graphics adapter, but --device cpu uses none: leave one of them out",
+        )
     }
 
     pub fn choice(&self) -> AdapterChoice {

@@ -1,11 +1,13 @@
 //! `pnaen adjacency`: writes PN-AEN's index buffer, or compares a file with it.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
 
-use super::{CliError, WeldOption, file_of, file_of_heights, keep_apart, load_apart, options, read_bytes, write_bytes};
+use super::{
+    CliError, WeldOption, file_of, file_of_heights, keep_apart, load_apart, note, options, read_bytes, refuse,
+    write_bytes,
+};
 use geometry::mesh::adjacency::{Layout, Part};
 use geometry::names::shown_path;
 use geometry::tessellate::displaced_corners;
@@ -50,11 +52,10 @@ pub struct Args {
 const SAID: usize = 10;
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
-    if args.output.is_none() && args.against.is_none() && args.corners.is_none() {
-        return Err(CliError::Usage(
-            "give -o to write a file, --against to compare one with the mesh, or --corners for what displacement needs",
-        ));
-    }
+    refuse(
+        args.output.is_none() && args.against.is_none() && args.corners.is_none(),
+        "give -o to write a file, --against to compare one with the mesh, or --corners for what displacement needs",
+    )?;
     let written = [args.output.as_deref(), args.corners.as_deref()];
     let read_files = [file_of(&args.file), args.against.as_deref(), file_of_heights(args.height.as_ref())];
     keep_apart(read_files, written)?;
@@ -70,7 +71,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         write_adjacency(&loaded, args.indices, &computed, format, path)?;
         let (left_out, all) = (loaded.topology.degenerate, loaded.mesh.triangles.len());
         if format == Format::Bin && left_out > 0 {
-            say(&format!(
+            note(&format!(
                 "{left_out} of {all} triangles are degenerate and have no patch; the JSON's patch_triangles has the triangle \
                  of each patch"
             ));
@@ -83,20 +84,14 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 }
 
 /// Writes what displacement needs of every corner: 32-bit floating-point numbers, little-endian.
-///
-/// # Errors
-/// The mesh isn't displaced by one image everywhere, or the file can't be written.
 fn write_corners(loaded: &Loaded, path: &Path) -> Result<(), CliError> {
     let corners = displaced_corners(&loaded.mesh, &loaded.topology);
     let corners = corners.ok_or_else(|| CliError::NotOneImage { file: loaded.source.to_string() })?;
     let bytes: Vec<u8> = corners.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
-    write_bytes(path, &bytes)
+    Ok(write_bytes(path, &bytes)?)
 }
 
 /// Reports on standard error where a file's indices differ from those of the mesh.
-///
-/// # Errors
-/// They differ, or the file doesn't hold indices of this mesh.
 fn compare_with(layout: Layout, path: &Path, bytes: &[u8], loaded: &Loaded, computed: &[u32]) -> Result<(), CliError> {
     let (mesh, topology) = (&loaded.mesh, &loaded.topology);
     let name = if path.as_os_str() == "-" { "standard input".to_owned() } else { shown_path(path) };
@@ -105,14 +100,14 @@ fn compare_with(layout: Layout, path: &Path, bytes: &[u8], loaded: &Loaded, comp
     let differences = index_differences(mesh, topology, layout, &given, computed);
     let patches = topology.patches.len();
     if differences.is_empty() {
-        say(&format!("{name}: 0 of {patches} patches differ"));
+        note(&format!("{name}: 0 of {patches} patches differ"));
         return Ok(());
     }
     if differences.len() > SAID {
-        say(&format!("the first {SAID} of {} differences:", differences.len()));
+        note(&format!("the first {SAID} of {} differences:", differences.len()));
     }
     for difference in differences.iter().take(SAID) {
-        say(&difference_text(loaded, difference, &given, computed));
+        note(&difference_text(loaded, difference, &given, computed));
     }
     let worst: Vec<_> = differences
         .chunk_by(|a, b| a.patch == b.patch)
@@ -120,11 +115,6 @@ fn compare_with(layout: Layout, path: &Path, bytes: &[u8], loaded: &Loaded, comp
         .collect();
     let differ = if worst.len() == 1 { "differs" } else { "differ" };
     Err(CliError::OtherIndices { path: name, different: worst.len(), patches, differ, meanings: counted(worst) })
-}
-
-fn say(line: &str) {
-    // Standard error may be closed; then nobody reads it.
-    let _ = writeln!(std::io::stderr(), "pnaen: {line}");
 }
 
 fn difference_text(loaded: &Loaded, difference: &IndexDifference, given: &[u32], computed: &[u32]) -> String {

@@ -1,10 +1,8 @@
 //! The options `--animation` and `--time`, which choose a pose.
 
-use std::io::Write;
-
 use clap::Args;
 
-use super::CliError;
+use super::{CliError, note};
 use geometry::mesh::Moment;
 use inspect::engine::Loaded;
 
@@ -21,9 +19,6 @@ pub struct AnimationOption {
 
 impl AnimationOption {
     /// Returns the chosen moment, or none at rest. Warns on standard error about a time beyond the end.
-    ///
-    /// # Errors
-    /// There is no animation of that name.
     pub fn moment(&self, loaded: &Loaded) -> Result<Option<Moment>, CliError> {
         let Some(name) = &self.animation else { return Ok(None) };
         let rig = loaded.mesh.rig.as_deref();
@@ -37,7 +32,7 @@ impl AnimationOption {
         if self.time > duration {
             // Files have times in f32: an f64 would print digits that the file doesn't have.
             let end = duration as f32;
-            let _ = writeln!(std::io::stderr(), "pnaen: {name} ends at {end} s; the pose at its end is shown");
+            note(&format!("{name} ends at {end} s; the pose at its end is shown"));
         }
         Ok(Some(Moment { clip, time: self.time.min(duration) }))
     }

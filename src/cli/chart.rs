@@ -13,19 +13,20 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 use super::interrupt::stop_on_interrupt;
 use super::options::{CameraOption, Size, whole_from};
 use super::{
-    AdapterOption, CliError, SurfaceOptions, Telling, WeldOption, file_error, file_of, keep_apart, load_apart, options,
-    write_text,
+    AdapterOption, CliError, SurfaceOptions, Telling, WeldOption, file_error, file_of, keep_apart, load_apart,
+    make_folder, options, refuse, write_text,
 };
 use geometry::progress::Progress;
 use geometry::tessellate::{Normals, Partitioning, Surface, Tessellation};
 use inspect::engine::{Engine, Loaded};
+use inspect::export::ending;
 use inspect::measure::AccuracyOptions;
 use inspect::render::Target;
 use inspect::settings::options::{FACTOR, PIXELS, TOLERANCE};
 use inspect::settings::{ARENA_BYTES, Settings};
 use inspect::truth::Truth;
 use lab::chart::report::{LeftOut, Part, TABLE};
-use lab::chart::{Bench, COLUMNS, Effort, LodKind, Plan, Setting, Subject, bitmap, has_converged, svg};
+use lab::chart::{Bench, Effort, LodKind, Plan, Setting, Subject, bitmap, columns, has_converged, svg};
 use load::Source;
 use load::files::file_reason;
 
@@ -70,7 +71,7 @@ pub struct Args {
     pub max_triangles: u64,
     /// Sample points on the reference surface, besides its vertices and points on its edges; at least as many are taken on the
     /// emitted triangles
-    #[arg(long, value_name = "N", default_value_t = AccuracyOptions::default().samples, value_parser = samples)]
+    #[arg(long, value_name = "N", default_value_t = AccuracyOptions::default().samples, value_parser = options::whole(100..=10_000_000_usize))]
     pub samples: usize,
     /// Width and height of the view, in px
     #[arg(long, value_name = "WxH", default_value = "1280x720")]
@@ -97,35 +98,18 @@ pub struct Args {
 fn picture() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(|path| {
         let path = PathBuf::from(path);
-        if is_svg(&path) || path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
-            Ok(path)
-        } else {
-            Err("charts are SVG or PNG files: name it .svg or .png")
+        match ending(&path).as_str() {
+            "svg" | "png" => Ok(path),
+            _ => Err("charts are SVG or PNG files: name it .svg or .png"),
         }
     })
 }
 
-fn is_svg(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg"))
-}
-
-/// Parses a number of sample points.
-fn samples(text: &str) -> Result<usize, String> {
-    let number = text.parse().ok().filter(|number| (100..=10_000_000).contains(number));
-    number.ok_or_else(|| "expected a whole number from 100 to 10000000".into())
-}
-
 impl Args {
-    /// # Errors
-    /// No setting is left to try, or `--truth` was given with several meshes.
     fn settings(&self) -> Result<Vec<Setting>, CliError> {
-        if self.truth.is_some() && self.files.len() != 1 {
-            return Err(CliError::Usage("--truth takes one mesh: chart the others on their own"));
-        }
+        refuse(self.truth.is_some() && self.files.len() != 1, "--truth takes one mesh: chart the others on their own")?;
         let settings = self.plan().settings();
-        if settings.is_empty() {
-            return Err(CliError::Usage("subtriangulation has uniform LOD only: add uniform to --lods"));
-        }
+        refuse(settings.is_empty(), "subtriangulation has uniform LOD only: add uniform to --lods")?;
         Ok(settings)
     }
 
@@ -182,9 +166,10 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     };
     let sources = args.meshes();
     let meshes: Vec<Loading> = sources.iter().map(load_one).collect::<Result<_, CliError>>()?;
-    let folder = args.report.as_deref().map(report::make_folder).transpose()?;
+    // Before anything is measured, so that a command that takes minutes doesn't fail at its end.
+    args.report.as_deref().map_or(Ok(()), make_folder)?;
     let engine = Engine::chosen(&args.adapter.choice())?;
-    let tables = args.csv.iter().cloned().chain(folder.as_ref().map(|folder| folder.join(TABLE)));
+    let tables = args.csv.iter().cloned().chain(args.report.as_ref().map(|folder| folder.join(TABLE)));
     let mut session = Session {
         target: Target::new(&engine.gpu, args.size.0)?,
         engine,
@@ -202,7 +187,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         let part = Part { subject, patches, split_edges, picture, left_out };
         parts.extend((!part.subject.rows.is_empty()).then_some(part));
     }
-    if let Some(folder) = &folder {
+    if let Some(folder) = &args.report {
         report::write(folder, &report::occasion(&session.engine.gpu), &parts)?;
     }
     let subjects: Vec<Subject> = parts.into_iter().map(|part| part.subject).collect();
@@ -236,7 +221,7 @@ impl Session {
         let mut bench = Bench {
             engine: &self.engine,
             mesh: loaded.source.to_string(),
-            camera: view.camera(&loaded.mesh, None, &scene.bounds)?,
+            camera: view.view.camera(&view, &loaded.mesh, None, &scene.bounds)?,
             scene,
             target: &self.target,
             truth: truth.as_ref().map(|(truth, _)| truth),
@@ -283,7 +268,7 @@ impl Session {
 /// Writes the picture, and prints its sentences unless the table goes to standard output.
 fn publish(args: &Args, subjects: &[Subject]) -> Result<(), CliError> {
     match &args.output {
-        Some(path) if is_svg(path) => write_text(path, &svg(subjects)?)?,
+        Some(path) if ending(path) == "svg" => write_text(path, &svg(subjects)?)?,
         Some(path) => inspect::shot::write_picture(path, &bitmap(subjects)?.into())?,
         None => {}
     }
@@ -295,7 +280,7 @@ fn publish(args: &Args, subjects: &[Subject]) -> Result<(), CliError> {
         text += &format!("{}\n", subject.title);
         text.extend(subject.sentences().iter().map(|sentence| format!("  {sentence}\n")));
     }
-    write_text("-".as_ref(), &text)
+    Ok(write_text("-".as_ref(), &text)?)
 }
 
 /// A CSV file that is flushed after each line, so that an interrupted command leaves whole lines.
@@ -312,7 +297,7 @@ impl Table {
             Box::new(File::create(path).map_err(|error| file_error(path, "written", &file_reason(&error)))?)
         };
         let mut table = Self { path: path.to_owned(), writer: csv::Writer::from_writer(out) };
-        table.add(&COLUMNS)?;
+        table.add(&columns())?;
         Ok(table)
     }
 
@@ -320,7 +305,7 @@ impl Table {
         let written = self.writer.write_record(record).map_err(std::io::Error::from);
         written.and_then(|()| self.writer.flush()).map_err(|error| match self.path.as_os_str() == "-" {
             true => CliError::Output(error),
-            false => file_error(&self.path, "written", &error),
+            false => file_error(&self.path, "written", &error).into(),
         })
     }
 }

@@ -14,12 +14,11 @@ use clap::ValueEnum;
 
 use super::gate_options::FailOnOption;
 use super::interrupt::stop_on_interrupt;
-use super::{AdapterOption, CliError, Telling, file_error, file_of, keep_apart, note, options, write_text};
+use super::{AdapterOption, CliError, Telling, file_of, keep_apart, make_folder, note, options, write_text};
 use geometry::cores::in_ranges;
 use inspect::engine::Engine;
 use lab::check::{Asset, Cache, Report, junit, page, sarif};
 use load::Source;
-use load::files::file_reason;
 
 use plan::Job;
 
@@ -75,9 +74,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let jobs = plan::plan(args)?;
     let read = jobs.iter().map(|job| file_of(&job.source));
     keep_apart(read.chain([plan::config_path(args)]), [Some(&*args.output)])?;
-    for folder in [&args.page, &args.cache].into_iter().flatten() {
-        std::fs::create_dir_all(folder).map_err(|error| file_error(folder, "made", &file_reason(&error)))?;
-    }
+    [&args.page, &args.cache].into_iter().flatten().try_for_each(|folder| make_folder(folder))?;
     let stop = stop_on_interrupt("asset");
     let report = checked(args, &jobs, &stop)?;
     if let Some(folder) = &args.page {
@@ -161,9 +158,4 @@ fn measured(
         drop(others);
     });
     done.into_inner().unwrap_or_else(PoisonError::into_inner).0
-}
-
-/// Says on standard error that the cache can't be used.
-fn say_unkept(error: &std::io::Error) {
-    note(&format!("what was found can't be kept: {}", file_reason(error)));
 }

@@ -5,16 +5,16 @@ mod report;
 
 use std::path::{Path, PathBuf};
 
+use super::posed::Posed;
 use super::{
-    AdapterOption, CliError, FactorsOption, SurfaceOptions, file_of, file_of_heights, keep_apart, load_apart, options,
+    AdapterOption, CliError, FactorsOption, SurfaceOptions, file_of, file_of_heights, keep_apart, options, refuse,
     to_json, warn, write_text,
 };
 use geometry::names::shown_path;
 use geometry::progress::Progress;
-use geometry::tessellate::{self, HullFactors, Inputs, Tessellated, bounds_through};
 use geometry::view::ulp;
 use inspect::engine::Loaded;
-use inspect::settings::Settings;
+use inspect::export::ending;
 use lab::compare::{Exactness, ForeignMesh, Ours, compare};
 use load::csv_vertices::{CsvVertices, read_vertices};
 use load::files::Limits;
@@ -90,34 +90,36 @@ fn within(text: &str) -> Result<Within, String> {
 const MOST: u64 = 100_000_000;
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
-    args.surface.check()?;
-    if args.adapter.adapter.is_some() && args.output.is_none() {
-        return Err(CliError::Usage("--adapter draws the picture of -o: give -o as well, or leave --adapter out"));
-    }
-    let is_csv = has_csv_ending(&args.theirs);
-    if args.position_column.is_some() && !is_csv {
-        return Err(CliError::Usage("--position-column names a column of a .csv file, which THEIRS isn't"));
-    }
+    args.surface.check(None)?;
+    refuse(
+        args.adapter.adapter.is_some() && args.output.is_none(),
+        "--adapter draws the picture of -o: give -o as well, or leave --adapter out",
+    )?;
+    let is_csv = matches!(ending(&args.theirs).as_str(), "csv" | "tsv");
+    refuse(
+        args.position_column.is_some() && !is_csv,
+        "--position-column names a column of a .csv file, which THEIRS isn't",
+    )?;
     let heights = file_of_heights(args.surface.height.as_ref());
     let read = [Some(&*args.theirs), file_of(&args.mesh), heights, args.given.given.as_deref()];
     keep_apart(read, [args.output.as_deref()])?;
-    let loaded = load_apart(&args.mesh, &args.surface.preparation(), &[args.output.as_deref()])?;
-    let moment = args.surface.animation.moment(&loaded)?;
-    let posed = loaded.posed(moment);
-    if posed.topology.patches.is_empty() {
+    let own = Posed::load(&args.surface, &args.mesh, &[args.output.as_deref()])?;
+    let Loaded { mesh, topology, .. } = &own.posed;
+    if topology.patches.is_empty() {
         return Err(CliError::NothingToCompare { file: args.mesh.to_string() });
     }
-    let given = args.given.read(&posed.mesh, &posed.topology, &args.surface.tessellation())?.map(|given| given.factors);
-    let bounds = bounds_through(&loaded.mesh, moment.map(|moment| moment.clip));
-    let camera = args.surface.camera(&posed.mesh, moment, &bounds)?;
-    let inputs = inputs(args, &posed, camera.lod_view(args.surface.viewport(), &bounds))?;
-    let tessellated = tessellated(args, &posed, &inputs, given.as_deref())?;
+    let given = args.given.read(mesh, topology, &args.surface.tessellation())?.map(|given| given.factors);
+    let camera = args.surface.view.camera(&args.surface, mesh, own.moment, &own.bounds)?;
+    let inputs = own.inputs(own.lod_view(&camera))?;
+    let tessellated = own.tessellated(&inputs, given.as_deref(), |_, triangles| match triangles > MOST {
+        true => Err(CliError::TooFine { file: args.mesh.to_string(), triangles, most: MOST }),
+        false => Ok(()),
+    })?;
     let (theirs, resolution) = theirs(args, is_csv)?;
-    let one_ulp = ulp(&posed.topology);
-    let within = args.within.units(one_ulp).max(2.0 * resolution);
+    let within = args.within.units(ulp(topology)).max(2.0 * resolution);
     let ours = Ours {
-        mesh: &posed.mesh,
-        topology: &posed.topology,
+        mesh,
+        topology,
         inputs: &inputs,
         given: given.as_deref(),
         matrix: args.surface.view.matrix().map(|matrix| matrix.clip_from_object),
@@ -131,44 +133,12 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let text = if args.json { to_json(&report.json())? } else { report.text() };
     write_text("-".as_ref(), &text)?;
     if let Some(path) = &args.output {
-        picture::draw(args, path, &loaded, &camera, &ours, &theirs, &comparison)?;
+        picture::draw(args, path, &own.loaded, &camera, &ours, &theirs, &comparison)?;
     }
     match comparison.findings.len() {
         0 => Ok(()),
         count => Err(CliError::NotTheSame { theirs: name, count }),
     }
-}
-
-/// Whether a file's name says that it is CSV.
-fn has_csv_ending(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv") || ending.eq_ignore_ascii_case("tsv"))
-}
-
-/// What our tessellation depends on, within the budget of triangles.
-fn inputs(args: &Args, posed: &Loaded, view: tessellate::LodView) -> Result<Inputs, CliError> {
-    let count = |settings: &Settings| Ok(tessellate::totals(&posed.mesh, &posed.topology, &settings.inputs(view)).1);
-    Ok(args.surface.within_budget(count)?.inputs(view))
-}
-
-/// Our tessellation.
-fn tessellated(
-    args: &Args,
-    posed: &Loaded,
-    inputs: &Inputs,
-    given: Option<&[HullFactors]>,
-) -> Result<Tessellated, CliError> {
-    let (mesh, topology) = (&posed.mesh, &posed.topology);
-    let (_, triangles) = match given {
-        Some(given) => tessellate::given_totals(given, inputs),
-        None => tessellate::totals(mesh, topology, inputs),
-    };
-    if triangles > MOST {
-        return Err(CliError::TooFine { file: args.mesh.to_string(), triangles, most: MOST });
-    }
-    Ok(match given {
-        Some(given) => tessellate::tessellate_given(mesh, topology, inputs, given),
-        None => tessellate::tessellate(mesh, topology, inputs, None),
-    })
 }
 
 /// Reads the other program's triangles, and half a unit of their last decimal. Standard error tells what was left out.

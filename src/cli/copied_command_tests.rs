@@ -14,7 +14,7 @@ use load::files::Limits;
 use load::{HeightSource, Source};
 use proptest::prelude::*;
 
-use crate::cli::options::PictureOptions;
+use crate::cli::options::Declared;
 use crate::cli::{Cli, CliError, Command, render};
 use geometry::mesh::Bounds;
 use inspect::settings::{Matcap, Overlays, random};
@@ -227,8 +227,8 @@ proptest! {
         let preparation = Preparation { heights, import: settings.import, ..Preparation::default() };
         let (source, camera) = ("shape:torus@2".parse().expect("a shape"), camera());
         let args = parsed(&shown(&source, &preparation, &settings, &camera).line());
-        let PictureOptions(picture) = args.shot.picture;
-        prop_assert!(args.shot.surface.check_with(picture.split_surface).is_ok());
+        let Declared(picture) = args.shot.picture;
+        prop_assert!(args.shot.surface.check(picture.split_surface).is_ok());
         prop_assert_eq!(args.shot.surface.preparation(), preparation);
         // Options without effect may have any value. Which they are, `unused_options_have_no_effect` holds.
         let used = |settings: Settings| {

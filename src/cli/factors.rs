@@ -3,18 +3,16 @@
 use std::path::PathBuf;
 
 use super::options::CamerasOption;
+use super::posed::Posed;
 use super::tessellate::Device;
 use super::view_files::{View, ViewFiles};
 use super::{
-    AdapterOption, CliError, LodShaderOption, SurfaceOptions, file_of, file_of_heights, keep_apart, load_apart,
-    write_text,
+    AdapterOption, CliError, LodShaderOption, SurfaceOptions, file_of, file_of_heights, keep_apart, write_text,
 };
-use geometry::mesh::Moment;
-use geometry::tessellate::{self, HullFactors, LodView, bounds_through};
-use gpu::{Given, Timing};
-use inspect::engine::{Engine, Loaded};
+use geometry::tessellate::{HullFactors, LodView, hull_factors};
+use gpu::Given;
+use inspect::engine::Engine;
 use inspect::render::Scene;
-use inspect::settings::Settings;
 use inspect::shot::files::computed;
 use inspect::shot::report_own_lod;
 use load::Source;
@@ -43,7 +41,7 @@ pub struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
-    args.surface.check()?;
+    args.surface.check(None)?;
     args.adapter.check(args.device == Device::Cpu)?;
     args.own_lod.check(args.device == Device::Cpu)?;
     let files = ViewFiles::new(&args.output, &["csv"], &args.cameras);
@@ -54,27 +52,18 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let shader = args.own_lod.lod_shader.as_deref();
     keep_apart([file_of(&args.file), heights, shader, args.cameras.file()], written.iter().copied())?;
     let own_lod = args.own_lod.read(&args.surface.tessellation())?;
-    let loaded = load_apart(&args.file, &args.surface.preparation(), &written)?;
-    let moment = args.surface.animation.moment(&loaded)?;
-    let posed = loaded.posed(moment);
-    let (mesh, topology) = (&posed.mesh, &posed.topology);
-    let bounds = bounds_through(&loaded.mesh, moment.map(|moment| moment.clip));
-    let lod_view = |view: &View| {
-        let camera = view.camera(&args.surface, mesh, moment, &bounds)?;
-        Ok(camera.lod_view(args.surface.viewport(), &bounds))
-    };
+    let mesh = Posed::load(&args.surface, &args.file, &written)?;
+    let topology = &mesh.posed.topology;
+    let lod_view = |view: &View| Ok(mesh.lod_view(&mesh.camera(view)?));
     let lod_views = views.iter().map(lod_view).collect::<Result<Vec<_>, CliError>>()?;
     let mut on_gpu = match args.device {
         Device::Cpu => None,
-        Device::Gpu => Some(args.uploaded(&loaded, moment, own_lod)?),
+        Device::Gpu => Some(args.uploaded(&mesh, own_lod)?),
     };
     files.make_folder()?;
     for (index, (view, lod_view)) in views.iter().zip(lod_views).enumerate() {
         let factors = match &mut on_gpu {
-            None => {
-                let count = |settings: &Settings| Ok(tessellate::totals(mesh, topology, &settings.inputs(lod_view)).1);
-                tessellate::hull_factors(mesh, topology, &args.surface.within_budget(count)?.inputs(lod_view))
-            }
+            None => hull_factors(&mesh.posed.mesh, topology, &mesh.inputs(lod_view)?),
             Some((engine, scene)) => args.factors_on_gpu(engine, scene, lod_view, index == 0)?,
         };
         write_text(&view.file, &to_csv(topology, &factors, args.surface.tessellation().partitioning))?;
@@ -84,16 +73,11 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 
 impl Args {
     /// A mesh on the device, in its pose, and what takes the place of LOD there.
-    fn uploaded(
-        &self,
-        loaded: &Loaded,
-        moment: Option<Moment>,
-        own_lod: Option<Given>,
-    ) -> Result<(Engine, Scene), CliError> {
+    fn uploaded(&self, mesh: &Posed, own_lod: Option<Given>) -> Result<(Engine, Scene), CliError> {
         let engine = Engine::chosen(&self.adapter.choice())?;
-        let mut scene = engine.scene(loaded, self.surface.arena_bytes())?;
+        let mut scene = engine.scene(&mesh.loaded, self.surface.arena_bytes())?;
         scene.tessellator.give(own_lod)?;
-        scene.set_moment(moment)?;
+        scene.set_moment(mesh.moment)?;
         Ok((engine, scene))
     }
 
@@ -105,10 +89,7 @@ impl Args {
         lod_view: LodView,
         is_first: bool,
     ) -> Result<Vec<HullFactors>, CliError> {
-        let settings = self.surface.within_budget(|settings| {
-            engine.count(scene, &settings.inputs(lod_view), &mut Timing::Off)?;
-            Ok(scene.tessellator.totals().1)
-        })?;
+        let settings = self.surface.within_budget_on(engine, scene, lod_view)?;
         let factors = computed(engine, scene, &settings.inputs(lod_view))?;
         if is_first {
             report_own_lod(engine, scene)?;

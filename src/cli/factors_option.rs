@@ -1,9 +1,8 @@
 //! The option `--factors`: factors from a file in place of LOD's, and a report on where they disagree.
 
-use std::io::Write;
 use std::path::PathBuf;
 
-use super::CliError;
+use super::{CliError, note};
 use geometry::mesh::{Mesh, Topology};
 use geometry::tessellate::{HullFactors, Tessellation};
 use inspect::measure::Agreement;
@@ -31,9 +30,6 @@ pub struct Given {
 
 impl FactorsOption {
     /// Reads the file, if one was named, and reports on standard error where its factors disagree.
-    ///
-    /// # Errors
-    /// The file can't be read, isn't for this mesh, or has factors that the partitioning doesn't take.
     pub fn read(
         &self,
         mesh: &Mesh,
@@ -44,9 +40,7 @@ impl FactorsOption {
         let Some(path) = &self.given else { return Ok(None) };
         let factors = read_factors(path, mesh, topology, tessellation.partitioning)?;
         let agreement = Agreement::of(topology, &factors, convention);
-        for line in said(topology, &agreement, convention) {
-            let _ = writeln!(std::io::stderr(), "pnaen: {line}");
-        }
+        said(topology, &agreement, convention).iter().for_each(|line| note(line));
         let stats = FactorsFile::new(path, topology, &agreement, convention);
         Ok(Some(Given { factors, stats }))
     }

@@ -4,12 +4,11 @@ use std::path::PathBuf;
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
 
-use super::{AdapterOption, CliError, Telling, WeldOption, file_error, options, warn, write_text};
+use super::{AdapterOption, CliError, Telling, WeldOption, make_folder, options, refuse, warn, write_text};
 use inspect::engine::{Engine, Preparation};
 use inspect::settings::options::{FACTOR, HEIGHT_SCALE, MIDLEVEL};
 use inspect::shot::write_picture;
 use lab::gallery::{Exhibit, Gallery, GalleryOptions, PAGE, exhibits, page};
-use load::files::file_reason;
 use load::{HeightSource, Source};
 
 #[derive(Debug, clap::Args)]
@@ -44,11 +43,10 @@ pub struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
-    if args.camera.distance.is_some() {
-        return Err(CliError::Usage(
-            "--camera takes AZIMUTH,ELEVATION here: the distance is chosen so that each tile is filled",
-        ));
-    }
+    refuse(
+        args.camera.distance.is_some(),
+        "--camera takes AZIMUTH,ELEVATION here: the distance is chosen so that each tile is filled",
+    )?;
     let options = GalleryOptions {
         source: args.file.clone(),
         preparation: Preparation { heights: args.height.clone(), ..args.weld.preparation() },
@@ -59,7 +57,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         elevation: args.camera.elevation.clamp(-89.9, 89.9),
     };
     let engine = Engine::chosen(&args.adapter.choice())?;
-    std::fs::create_dir_all(&args.output).map_err(|error| file_error(&args.output, "made", &file_reason(&error)))?;
+    make_folder(&args.output)?;
     let mut gallery = Gallery::new(options, &engine);
     warn(&gallery.warnings()?);
     let (mut all, mut telling) = (Vec::new(), Telling::new());
@@ -69,7 +67,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         all.push((exhibit, shown));
     }
     let subject = args.file.as_ref().map(Source::title);
-    write_text(&args.output.join(PAGE), &page(subject.as_deref(), &engine.gpu.info.name, &all))
+    Ok(write_text(&args.output.join(PAGE), &page(subject.as_deref(), &engine.gpu.info.name, &all))?)
 }
 
 /// Which tile is being drawn.

@@ -2,11 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{CliError, file_error};
+use super::{CliError, make_folder, refuse};
 use geometry::progress::Progress;
 use inspect::gates::{Gate, GateKind, Judgement};
 use inspect::shot::{Shot, write_picture};
-use load::files::file_reason;
 
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct GateOptions {
@@ -35,10 +34,15 @@ impl FailOnOption {
 }
 
 impl GateOptions {
+    /// Refuses what needs the device that draws, where the CPU computes.
+    pub(super) fn check(&self, is_on_cpu: bool) -> Result<(), CliError> {
+        refuse(
+            is_on_cpu && (self.evidence.is_some() || self.gates.has(GateKind::Leaks)),
+            "--fail-on leaks and --evidence need --device gpu, which draws",
+        )
+    }
+
     /// Writes pictures of the failed gates' worst places, if they were asked for. `stem` begins their names.
-    ///
-    /// # Errors
-    /// The folder can't be made, a picture can't be written, or the device was lost.
     pub(super) fn write_evidence(&self, shot: &mut Shot, judged: &[Judgement], stem: &Path) -> Result<(), CliError> {
         let Some(folder) = self.evidence.as_deref() else { return Ok(()) };
         for judgement in judged.iter().filter(|judgement| !judgement.passed) {
@@ -50,9 +54,6 @@ impl GateOptions {
 
 /// Writes a picture of a failed gate's worst place into a folder, which is made if it isn't there; nothing if it is about no place.
 /// `stem` begins its name.
-///
-/// # Errors
-/// The folder can't be made, the picture can't be written, or the device was lost.
 pub(super) fn write_evidence_of(
     shot: &mut Shot,
     judgement: &Judgement,
@@ -60,7 +61,7 @@ pub(super) fn write_evidence_of(
     stem: &Path,
 ) -> Result<(), CliError> {
     let Some(picture) = shot.evidence(judgement, &Progress::new())? else { return Ok(()) };
-    std::fs::create_dir_all(folder).map_err(|error| file_error(folder, "made", &file_reason(&error)))?;
+    make_folder(folder)?;
     Ok(write_picture(&folder.join(evidence_name(stem, judgement.kind)), &picture.into())?)
 }
 

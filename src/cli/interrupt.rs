@@ -1,8 +1,9 @@
 //! Ctrl-C of commands that keep what they have done.
 
-use std::io::Write;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::note;
 
 /// The exit code after Ctrl-C: 128 + SIGINT, as shells return it.
 pub(super) const INTERRUPTED: u8 = 130;
@@ -16,8 +17,7 @@ pub(super) fn stop_on_interrupt(piece: &'static str) -> Arc<AtomicBool> {
         if set.swap(true, Ordering::Relaxed) {
             std::process::exit(i32::from(INTERRUPTED));
         }
-        let said = format!("pnaen: ending after this {piece}; Ctrl-C again ends at once");
-        let _ = writeln!(std::io::stderr(), "{said}");
+        note(&format!("ending after this {piece}; Ctrl-C again ends at once"));
     });
     stop
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{CliError, FactorsOption};
+use super::{CliError, FactorsOption, refuse};
 use geometry::tessellate::{Partitioning, Tessellation};
 use gpu::Given;
 use inspect::own_shader::read_own_shader;
@@ -21,38 +21,28 @@ pub struct LodShaderOption {
 
 impl LodShaderOption {
     /// Reads the file, if one was named.
-    ///
-    /// # Errors
-    /// It can't be read or used, or the partitioning has the same number of segments everywhere.
     pub fn read(&self, tessellation: &Tessellation) -> Result<Option<Given>, CliError> {
         let Some(path) = &self.lod_shader else { return Ok(None) };
-        if tessellation.partitioning == Partitioning::Subtriangulation {
-            return Err(CliError::Usage(
-                "--lod-shader can't be combined with --partitioning subtriangulation, which has the same number of segments everywhere",
-            ));
-        }
+        refuse(
+            tessellation.partitioning == Partitioning::Subtriangulation,
+            "--lod-shader can't be combined with --partitioning subtriangulation, which has the same number of segments everywhere",
+        )?;
         Ok(Some(Given::Shader(read_own_shader(path)?)))
     }
 
     /// Checks that no file has factors as well.
-    ///
-    /// # Errors
-    /// One has.
     pub(crate) fn check_alone(&self, factors: &FactorsOption) -> Result<(), CliError> {
-        match self.lod_shader.is_some() && factors.given.is_some() {
-            true => Err(CliError::Usage("--factors and --lod-shader both take the place of LOD: choose one")),
-            false => Ok(()),
-        }
+        refuse(
+            self.lod_shader.is_some() && factors.given.is_some(),
+            "--factors and --lod-shader both take the place of LOD: choose one",
+        )
     }
 
     /// Checks that nothing is to be computed on the CPU.
-    ///
-    /// # Errors
-    /// It is.
     pub fn check(&self, is_on_cpu: bool) -> Result<(), CliError> {
-        match self.lod_shader.is_some() && is_on_cpu {
-            true => Err(CliError::Usage("--lod-shader runs on the graphics adapter: leave --device cpu away")),
-            false => Ok(()),
-        }
+        refuse(
+            self.lod_shader.is_some() && is_on_cpu,
+            "--lod-shader runs on the graphics adapter: leave --device cpu away",
+        )
     }
 }

@@ -9,13 +9,12 @@ use super::light_report::LightInfo;
 use super::material_report::MaterialInfo;
 use geometry::mesh::crease_band::CreaseBand;
 use geometry::mesh::rig::{AnimatedCounts, Clip, Rig};
-use geometry::mesh::{
-    EdgeCounts, Mesh, NormalFaults, Repairs, TJunction, Topology, WeldPreview, t_junctions, weld_previews,
-};
+use geometry::mesh::{EdgeCounts, NormalFaults, Repairs, TJunction, Topology, WeldPreview, t_junctions, weld_previews};
 use geometry::names::{on_one_line, shown};
 use geometry::numbers::exact;
 use geometry::progress::{Cancelled, Progress};
 use geometry::view::ulp_at;
+use inspect::engine::Loaded;
 use load::parts::Part;
 
 /// How many T-junctions the text lists.
@@ -46,7 +45,7 @@ pub(super) struct Info {
     /// Which of them this is; none if the file has no scenes.
     pub scene: Option<usize>,
     /// The parts that the file has; empty for formats without any.
-    pub parts: Vec<PartInfo>,
+    pub parts: Vec<Part>,
     pub animations: Vec<AnimationInfo>,
     pub edges: EdgeCounts,
     /// What each weld tolerance on offer would join and collapse, compared with the exact weld.
@@ -78,21 +77,6 @@ pub(super) struct AnimationInfo {
     pub moved: AnimatedCounts,
 }
 
-/// A part of the file.
-#[derive(Clone, Debug, Serialize)]
-pub(super) struct PartInfo {
-    pub name: String,
-    pub triangles: u32,
-    /// Whether it is left out.
-    pub hidden: bool,
-}
-
-impl PartInfo {
-    pub(super) fn of(part: &Part) -> Self {
-        Self { name: part.name.clone(), triangles: part.triangles, hidden: part.is_hidden }
-    }
-}
-
 /// A T-junction with positions, in object units.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(super) struct TJunctionInfo {
@@ -114,30 +98,21 @@ pub(super) struct BoundsInfo {
 }
 
 impl Info {
-    /// Gathers the numbers of a mesh without a crease band and of the topology built from it; `weld` is the tolerance of
-    /// [`Topology::build_within`], and `warnings` are those of loading.
-    ///
-    /// # Errors
-    /// [`Cancelled`] when `progress` says so.
-    pub(super) fn of(
-        mesh: &Mesh,
-        topology: &Topology,
-        weld: f32,
-        warnings: &[String],
-        progress: &Progress,
-    ) -> Result<Self, Cancelled> {
-        let exact = (weld == 0.0).then_some(topology);
+    pub(super) fn of(loaded: &Loaded, progress: &Progress) -> Result<Self, Cancelled> {
+        let (mesh, topology, weld) = (&*loaded.mesh, &*loaded.topology, loaded.preparation.weld);
+        // A weld tolerance applies to the mesh as it was read, before it got its crease band.
+        let exact = (weld == 0.0 && loaded.crease_band.width == 0.0).then_some(topology);
         let t_junctions = t_junctions(topology, progress)?;
         // Divided among the cores already.
         let normal_faults = NormalFaults::of(mesh, topology);
         let counts = || (topology.edge_counts(), euler_characteristic(topology), mesh.bounds());
         let ((edges, euler_characteristic, bounds), joins) =
-            rayon::join(counts, || weld_previews(mesh, exact, progress));
+            rayon::join(counts, || weld_previews(&loaded.read, exact, progress));
         Ok(Self {
             name: mesh.name.clone(),
             triangles: mesh.triangles.len() as u32,
             weld,
-            crease_band: CreaseBand::default(),
+            crease_band: loaded.crease_band,
             degenerate: topology.degenerate,
             collinear: collinear(topology),
             corners: mesh.corners.len() as u32,
@@ -145,10 +120,10 @@ impl Info {
             materials: mesh.materials.iter().map(MaterialInfo::of).collect(),
             lights: mesh.lights.iter().map(LightInfo::of).collect(),
             cameras: mesh.cameras.iter().map(CameraInfo::of).collect(),
-            variants: Vec::new(),
-            scenes: Vec::new(),
-            scene: None,
-            parts: Vec::new(),
+            variants: loaded.variants.clone(),
+            scenes: loaded.scenes.clone(),
+            scene: loaded.scene,
+            parts: loaded.parts.to_vec(),
             animations: mesh.rig.as_deref().map_or_else(Vec::new, animations),
             edges,
             joins: joins?,
@@ -160,7 +135,7 @@ impl Info {
             euler_characteristic,
             closed: topology.is_closed(),
             oriented: topology.is_oriented(),
-            warnings: warnings.to_vec(),
+            warnings: loaded.warnings.clone(),
         })
     }
 }
@@ -190,9 +165,9 @@ impl fmt::Display for Info {
             let is_read = if Some(i) == self.scene { ", which is shown" } else { "" };
             writeln!(f, "scene         {}{is_read}", shown(scene))?;
         }
-        for PartInfo { name, triangles, hidden } in self.parts.iter().filter(|_| self.parts.len() > 1) {
-            let is_hidden = if *hidden { ", left out" } else { "" };
-            writeln!(f, "part          {}: {triangles} triangles{is_hidden}", shown(name))?;
+        for Part { name, triangles, is_hidden } in self.parts.iter().filter(|_| self.parts.len() > 1) {
+            let left_out = if *is_hidden { ", left out" } else { "" };
+            writeln!(f, "part          {}: {triangles} triangles{left_out}", shown(name))?;
         }
         for AnimationInfo { name, duration, moved } in &self.animations {
             // Files have times in f32: an f64 would print digits that the file doesn't have.
@@ -310,16 +285,21 @@ fn euler_characteristic(topology: &Topology) -> i64 {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use glam::{Vec2, Vec3};
 
     use super::*;
-    use geometry::mesh::Corner;
     use geometry::mesh::shapes::Shape;
+    use geometry::mesh::{Corner, Mesh};
+    use inspect::engine::Preparation;
 
     fn info(mesh: &Mesh, weld: f32) -> Info {
         let progress = Progress::new();
         let topology = Topology::build_within(mesh, weld, &progress).unwrap();
-        Info::of(mesh, &topology, weld, &[], &progress).unwrap()
+        let preparation = Preparation { weld, ..Preparation::default() };
+        let loaded = Loaded { preparation, ..Loaded::of_mesh(Arc::new(mesh.clone()), Arc::new(topology)) };
+        Info::of(&loaded, &progress).unwrap()
     }
 
     #[test]

@@ -22,6 +22,7 @@ mod material_report;
 mod mesh_report;
 mod options;
 mod output_guard;
+mod posed;
 mod reference;
 mod render;
 mod shaders;
@@ -48,7 +49,7 @@ pub(crate) use lod_shader_option::LodShaderOption;
 use output_guard::{file_of, file_of_heights, keep_apart};
 
 pub(crate) use options::{LimitOption, OpeningOptions, SurfaceOptions, WeldOption};
-pub use render::run_with as render_with;
+pub use render::{preview, run_with as render_with};
 pub(crate) use surface_shader_option::SurfaceShaderOption;
 pub use tessellate::run_with as tessellate_with;
 pub(crate) use truth::TruthOption;
@@ -59,11 +60,13 @@ use gpu::GpuError;
 use inspect::engine::{Loaded, Preparation};
 use inspect::export::ExportError;
 use inspect::own_shader::OwnShaderError;
-use inspect::settings::Settings;
 use inspect::shader_files::ShaderError;
-use inspect::shot::{ShotError, files, given};
+use inspect::shot::files::{file_error, read_bytes, read_text, to_json, write_bytes, write_text};
+use inspect::shot::{ShotError, given};
 use lab::check::ConfigError;
 use load::environment_file::EnvironmentError;
+use load::files::file_reason;
+use load::mesh_file::choice;
 use load::{LoadError, MatcapError, Source};
 
 /// Shows what tessellation does to a mesh in a window; commands write pictures, meshes and numbers instead
@@ -161,11 +164,7 @@ pub enum CliError {
     #[error("{path} is {by} by the same command, so it isn't overwritten; choose another name")]
     Taken { path: String, by: &'static str },
     #[error(transparent)]
-    Picture(#[from] lab::stability::PictureError),
-    #[error(transparent)]
     Gallery(#[from] lab::gallery::GalleryError),
-    #[error("{count} of the table's lines break a promise; the first is {method} on {case}")]
-    Promise { count: usize, case: String, method: &'static str },
     #[error("{0}")]
     Usage(&'static str),
     #[error(
@@ -218,7 +217,7 @@ pub enum CliError {
     #[error("{0}")]
     Check(String),
     #[error(transparent)]
-    Config(ConfigError),
+    Config(#[from] ConfigError),
     #[error("there is nothing to check: the folders have no meshes in them; name others")]
     NoAssets,
     #[error("the output could not be written: {0}")]
@@ -227,13 +226,7 @@ pub enum CliError {
 
 /// Returns which cameras there are, as the end of a message.
 fn said_of_cameras(known: &[String]) -> String {
-    const NAMED: usize = 20;
-    let names: Vec<_> = known.iter().take(NAMED).map(|name| shown(name)).collect();
-    match known.len().saturating_sub(NAMED) {
-        _ if known.is_empty() => "it has no cameras, so leave --file-camera away".to_owned(),
-        0 => format!("choose one of {}", names.join(", ")),
-        more => format!("choose one of {} and {more} more, which `pnaen info` lists", names.join(", ")),
-    }
+    if known.is_empty() { "it has no cameras, so leave --file-camera away".to_owned() } else { choice(known) }
 }
 
 /// Runs a command. A closed pipe is no failure: the reader wants no more.
@@ -280,49 +273,18 @@ pub fn run(command: Command) -> ExitCode {
 
 /// Prints an error on standard error, and returns the exit code of a failure.
 pub fn fail(error: &dyn std::fmt::Display) -> ExitCode {
-    // Standard error may be closed too; then nobody reads it.
-    let _ = writeln!(std::io::stderr(), "pnaen: {}", on_one_line(&error.to_string()));
+    note(&error.to_string());
     ExitCode::FAILURE
 }
 
-/// Writes the picture that the window would have shown, for machines without a display.
-pub fn preview(
-    source: Option<Source>,
-    opening: &OpeningOptions,
-    (limit, adapter): (LimitOption, AdapterOption),
-    path: &Path,
-) -> Result<(), CliError> {
-    let settings = if source.is_some() { Settings::opening() } else { Settings::greeting() };
-    let line = given(std::env::args_os());
-    let mut args = render::Args::preview(source.unwrap_or_default(), settings, limit, adapter, path);
-    let weld = &mut args.shot.surface.weld;
-    weld.import.0 = opening.import(weld.import.0);
-    weld.hide_part = opening.hidden().to_vec();
-    render::run(&args, &line)
+/// Refuses options that can't be together, or that need others.
+fn refuse(is_wrong: bool, why: &'static str) -> Result<(), CliError> {
+    if is_wrong { Err(CliError::Usage(why)) } else { Ok(()) }
 }
 
-fn read_text(path: &Path) -> Result<String, CliError> {
-    Ok(files::read_text(path)?)
-}
-
-fn read_bytes(path: &Path) -> Result<Vec<u8>, CliError> {
-    Ok(files::read_bytes(path)?)
-}
-
-fn write_text(path: &Path, text: &str) -> Result<(), CliError> {
-    Ok(files::write_text(path, text)?)
-}
-
-fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
-    Ok(files::write_bytes(path, bytes)?)
-}
-
-fn to_json(value: &impl serde::Serialize) -> Result<String, CliError> {
-    Ok(files::to_json(value)?)
-}
-
-fn file_error(path: &Path, doing: &'static str, reason: &dyn std::fmt::Display) -> CliError {
-    files::file_error(path, doing, reason).into()
+/// Makes a folder, unless it is there.
+fn make_folder(folder: &Path) -> Result<(), CliError> {
+    Ok(std::fs::create_dir_all(folder).map_err(|error| file_error(folder, "made", &file_reason(&error)))?)
 }
 
 /// Loads a mesh for a command. Standard error tells what was left out or repaired.
@@ -352,18 +314,16 @@ impl Telling {
     fn say(&mut self, text: impl FnOnce() -> String) {
         if self.0.elapsed() >= Self::EVERY {
             self.0 = Instant::now();
-            let _ = writeln!(std::io::stderr(), "pnaen: {}", text());
+            note(&text());
         }
     }
 }
 
-/// Says something on standard error that is no error.
+/// Says something on standard error, which may be closed; then nobody reads it.
 fn note(text: &str) {
     let _ = writeln!(std::io::stderr(), "pnaen: {}", on_one_line(text));
 }
 
 fn warn(warnings: &[String]) {
-    for warning in warnings {
-        let _ = writeln!(std::io::stderr(), "pnaen: warning: {}", on_one_line(warning));
-    }
+    warnings.iter().for_each(|warning| note(&format!("warning: {warning}")));
 }

@@ -7,32 +7,29 @@ mod opening;
 mod values;
 mod view;
 
-use std::io::Write;
-
+use clap::Args;
 use clap::builder::{OsStringValueParser, TypedValueParser};
-use clap::{Args, Parser};
 use glam::Vec2;
 
-use super::{AnimationOption, CliError};
-use geometry::mesh::{Bounds, FileCamera, Mesh, Moment};
-use geometry::tessellate::{Displacement, Lod, Partitioning, Surface, Tessellation, tolerance_within_budget};
-use inspect::engine::Preparation;
-use inspect::render::Camera;
+use super::{AnimationOption, CliError, note, refuse};
+use geometry::mesh::FileCamera;
+use geometry::mesh::crease_band::WIDEST;
+use geometry::tessellate::{Displacement, Lod, LodView, Partitioning, Surface, Tessellation, tolerance_within_budget};
+use gpu::Timing;
+use inspect::engine::{Engine, Preparation};
+use inspect::render::Scene;
 use inspect::settings::options::TOLERANCE_RANGE;
 use inspect::settings::{ARENA_BYTES, Settings};
 use load::HeightSource;
 use load::files::Limits;
 
 pub(crate) use cameras::{CamerasOption, NamedView};
-pub(crate) use declared::choice;
-pub(crate) use declared::{ImportOptions, PictureOptions, TessellationOptions, number_of};
+use declared::GivenTessellation;
+pub(crate) use declared::{Declared, ImportOptions, PictureOptions, TessellationOptions, choice, named, number_of};
 pub(crate) use lod_camera::LodCameraOption;
 pub(crate) use opening::OpeningOptions;
-pub(crate) use values::{CameraOption, whole_from};
-pub(crate) use values::{Position, Size, model, picture, source, steps, whole};
+pub(crate) use values::{CameraOption, Position, Size, model, picture, source, whole, whole_from, within};
 pub(crate) use view::ViewOptions;
-
-use values::{bytes, crease_band, weld};
 
 /// How a mesh is tessellated, and where it is seen from.
 #[derive(Clone, Debug, Args)]
@@ -60,57 +57,46 @@ pub struct SurfaceOptions {
     pub view: ViewOptions,
 }
 
+/// The options of an empty command line.
+pub(crate) fn defaults<T: Args>() -> T {
+    let matches = T::augment_args(clap::Command::new("pnaen")).get_matches_from(["pnaen"]);
+    T::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
+}
+
 impl Default for SurfaceOptions {
-    /// The options of an empty command line.
     fn default() -> Self {
-        #[derive(Parser)]
-        struct Defaults {
-            #[command(flatten)]
-            options: SurfaceOptions,
-        }
-        Defaults::parse_from(["pnaen"]).options
+        defaults()
     }
 }
 
 impl SurfaceOptions {
-    /// Checks what parsing can't: options that need one another.
-    ///
-    /// # Errors
-    /// Names the options that can't be together, or the one that is missing.
-    pub fn check(&self) -> Result<(), CliError> {
-        self.check_with(None)
-    }
-
-    /// Like [`Self::check`], where `other` is a second surface that is tessellated with these options too.
-    ///
-    /// # Errors
-    /// The same.
-    pub(crate) fn check_with(&self, other: Option<Surface>) -> Result<(), CliError> {
+    /// Checks what parsing can't: options that need one another. `other` is a second surface that is tessellated with them too.
+    pub(crate) fn check(&self, other: Option<Surface>) -> Result<(), CliError> {
         let settings = self.settings();
         let own = settings.tessellation;
-        if own.partitioning == Partitioning::Subtriangulation && own.lod != Lod::Uniform {
-            return Err(CliError::Usage(
-                "--partitioning subtriangulation has the same number of segments everywhere: it needs --lod uniform",
-            ));
-        }
-        if self.weld.crease_band > 0.0 && self.animation.animation.is_some() {
-            return Err(CliError::Usage(
-                "--animation can't be combined with --crease-band: its triangles belong to no joint or node that moves",
-            ));
-        }
+        refuse(
+            own.partitioning == Partitioning::Subtriangulation && own.lod != Lod::Uniform,
+            "--partitioning subtriangulation has the same number of segments everywhere: it needs --lod uniform",
+        )?;
+        refuse(
+            self.weld.crease_band > 0.0 && self.animation.animation.is_some(),
+            "--animation can't be combined with --crease-band: its triangles belong to no joint or node that moves",
+        )?;
         let usual = Tessellation::default();
         let takes_heights = self.height.is_some() || own.displacement != Displacement::Off;
-        if !takes_heights && (own.height_scale != usual.height_scale || own.midlevel != usual.midlevel) {
-            return Err(CliError::Usage("--height-scale and --midlevel need --height, or --displacement"));
-        }
+        refuse(
+            !takes_heights && (own.height_scale != usual.height_scale || own.midlevel != usual.midlevel),
+            "--height-scale and --midlevel need --height, or --displacement",
+        )?;
         let has_strength = own.surface.is_phong() || other.is_some_and(Surface::is_phong);
-        if !has_strength && own.alpha != usual.alpha {
-            return Err(CliError::Usage("--alpha needs --surface phong or phong-aen, whose strength it is"));
-        }
-        if self.max_triangles.is_some() && own.lod != Lod::Error {
-            return Err(CliError::Usage("--max-triangles needs --lod error, whose tolerance it raises"));
-        }
-        Ok(())
+        refuse(
+            !has_strength && own.alpha != usual.alpha,
+            "--alpha needs --surface phong or phong-aen, whose strength it is",
+        )?;
+        refuse(
+            self.max_triangles.is_some() && own.lod != Lod::Error,
+            "--max-triangles needs --lod error, whose tolerance it raises",
+        )
     }
 
     /// What is done to the mesh after it was read. Displacement without an image uses the materials' images.
@@ -121,7 +107,7 @@ impl SurfaceOptions {
 
     /// How the mesh is tessellated.
     pub fn tessellation(&self) -> Tessellation {
-        let TessellationOptions { tessellation, displacement } = self.tessellation;
+        let GivenTessellation { tessellation, displacement } = self.tessellation.0;
         let usual = if self.height.is_some() { Displacement::On } else { Displacement::Off };
         Tessellation {
             displacement: displacement.unwrap_or(usual),
@@ -144,9 +130,6 @@ impl SurfaceOptions {
     /// Returns settings whose tolerance is raised until there are no more triangles than `--max-triangles` allows. Standard
     /// error tells the raised tolerance. `count` returns the number of triangles for settings. [`Self::check`] has made sure
     /// that `--max-triangles` comes with LOD by error.
-    ///
-    /// # Errors
-    /// There are too many triangles at any tolerance, or `count` fails.
     pub(crate) fn within_budget(
         &self,
         mut count: impl FnMut(&Settings) -> Result<u64, CliError>,
@@ -161,26 +144,27 @@ impl SurfaceOptions {
             return Err(CliError::Budget { most, least, largest });
         };
         if tolerance > asked {
-            let _ = writeln!(
-                std::io::stderr(),
-                "pnaen: tolerance raised from {asked} to {tolerance} px, for no more than {most} triangles"
-            );
+            note(&format!("tolerance raised from {asked} to {tolerance} px, for no more than {most} triangles"));
         }
         Ok(at(tolerance))
+    }
+
+    /// The same where the device counts the triangles.
+    pub(crate) fn within_budget_on(
+        &self,
+        engine: &Engine,
+        scene: &mut Scene,
+        view: LodView,
+    ) -> Result<Settings, CliError> {
+        self.within_budget(|settings| {
+            engine.count(scene, &settings.inputs(view), &mut Timing::Off)?;
+            Ok(scene.tessellator.totals().1)
+        })
     }
 
     /// Memory for output on the device, in bytes.
     pub fn arena_bytes(&self) -> u64 {
         self.arena << 20
-    }
-
-    /// Returns the camera of these options for a mesh with these bounds, at a moment of one of its clips. Without a distance it shows
-    /// everything that is drawn.
-    ///
-    /// # Errors
-    /// The mesh has no camera of the name that was asked for, or the matrix isn't that of a view.
-    pub fn camera(&self, mesh: &Mesh, moment: Option<Moment>, bounds: &Bounds) -> Result<Camera, CliError> {
-        self.view.camera(self, mesh, moment, bounds)
     }
 
     /// Width and height in px.
@@ -203,13 +187,13 @@ fn file_camera<'a>(mesh: &str, cameras: &'a [FileCamera], wanted: &str) -> Resul
 #[derive(Clone, Debug, Default, Args)]
 pub struct WeldOption {
     /// Weld points within this distance, relative to the bounding diagonal; 0 joins only exactly equal positions
-    #[arg(long, value_name = "TOLERANCE", default_value_t = 0.0, value_parser = weld)]
+    #[arg(long, value_name = "TOLERANCE", default_value_t = 0.0, value_parser = within(0.0..=0.1))]
     pub weld: f32,
     /// Cut triangles back from creases (edges with split normals) by this width, and fill the gap with a band of small
     /// triangles that share one normal on the crease, so that PN triangles don't crack there (Vlachos et al. 2001). Relative
     /// to the bounding diagonal, 0 to 0.1; 0 makes no band. It is at most a third of an edge, and half the radius of a
     /// triangle's incircle
-    #[arg(long, alias = "rim", value_name = "WIDTH", default_value_t = 0.0, value_parser = crease_band, allow_hyphen_values = true)]
+    #[arg(long, alias = "rim", value_name = "WIDTH", default_value_t = 0.0, value_parser = within(0.0..=WIDEST), allow_hyphen_values = true)]
     pub crease_band: f32,
     /// Show the materials that a glTF file has for this variant (KHR_materials_variants), by name; `info` lists the variants
     #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
@@ -247,18 +231,17 @@ impl WeldOption {
 pub struct LimitOption {
     /// Refuse a file larger than this, and larger buffers and images that it refers to: a number of bytes, or one with the
     /// unit KiB, MiB or GiB
-    #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = bytes)]
+    #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = values::bytes)]
     pub max_size: u64,
     /// Refuse a mesh that would take more memory to load than this plus four times the size of its files, and scale textures down
     /// to it: a number of bytes, or one with the unit KiB, MiB or GiB
-    #[arg(long, value_name = "SIZE", default_value = "512MiB", value_parser = bytes)]
+    #[arg(long, value_name = "SIZE", default_value = "512MiB", value_parser = values::bytes)]
     pub max_memory: u64,
 }
 
 impl Default for LimitOption {
     fn default() -> Self {
-        let Limits { file, memory } = Limits::default();
-        Self { max_size: file, max_memory: memory }
+        defaults()
     }
 }
 

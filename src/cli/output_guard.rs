@@ -3,14 +3,11 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{CliError, file_error};
+use super::{CliError, file_error, refuse};
 use geometry::names::shown_path;
 use load::{HeightSource, Source};
 
 /// Checks that the files to be written are different from each other and from those to be read.
-///
-/// # Errors
-/// A file to be written has no name, is read or written already, is a folder, or there is no folder for it.
 pub(super) fn keep_apart<'a>(
     read: impl IntoIterator<Item = Option<&'a Path>>,
     written: impl IntoIterator<Item = Option<&'a Path>>,
@@ -18,14 +15,12 @@ pub(super) fn keep_apart<'a>(
     let mut taken: Vec<(PathBuf, &'static str)> =
         read.into_iter().flatten().filter_map(|path| Some((place(path)?, "read"))).collect();
     for path in written.into_iter().flatten() {
-        if path.as_os_str().is_empty() {
-            return Err(CliError::Usage("an output has no name; name a file"));
-        }
+        refuse(path.as_os_str().is_empty(), "an output has no name; name a file")?;
         if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
             return Err(CliError::NoFolder { path: shown_path(path), folder: shown_path(folder) });
         }
         if path.is_dir() {
-            return Err(file_error(path, "written", &"it is a folder; name a file"));
+            return Err(file_error(path, "written", &"it is a folder; name a file").into());
         }
         let Some(place) = place(path) else { continue };
         if let Some((_, by)) = taken.iter().find(|(other, _)| *other == place) {

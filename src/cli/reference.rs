@@ -1,10 +1,9 @@
 //! The option `--reference`: compares the picture with a reference picture.
 
-use std::io::Write;
 use std::path::PathBuf;
 
-use super::CliError;
-use super::options::steps;
+use super::options::within;
+use super::{CliError, note};
 use inspect::shot::ShotError;
 
 /// The reference, and how much a picture may differ from it.
@@ -17,31 +16,24 @@ pub struct ReferenceOptions {
     pub reference: Option<PathBuf>,
     /// Largest mean difference of a square of 8 x 8 px that passes, in steps of 255, whatever drew the reference; without it,
     /// 1.5 if something else drew it
-    #[arg(long, value_name = "STEPS", value_parser = steps, requires = "reference")]
+    #[arg(long, value_name = "STEPS", value_parser = within(0.0..=255.0), requires = "reference")]
     pub threshold: Option<f32>,
 }
 
 /// Tells on standard error how pictures compare with their references.
-///
-/// # Errors
-/// The one that differs, or how many do.
 pub(super) fn conclude(all: Vec<Result<String, ShotError>>) -> Result<(), CliError> {
     let count = all.len();
     let mut differing = Vec::new();
     for said in all {
         match said {
-            Ok(said) => {
-                let _ = writeln!(std::io::stderr(), "pnaen: {said}");
-            }
+            Ok(said) => note(&said),
             Err(error) => differing.push(error),
         }
     }
     if count == 1 {
         return differing.pop().map_or(Ok(()), |error| Err(error.into()));
     }
-    for error in &differing {
-        let _ = writeln!(std::io::stderr(), "pnaen: {error}");
-    }
+    differing.iter().for_each(|error| note(&error.to_string()));
     match differing.len() {
         0 => Ok(()),
         different => Err(CliError::ManyDifferent { different, all: count }),

@@ -3,17 +3,17 @@
 use std::path::{Path, PathBuf};
 
 use super::gate_options::{GateOptions, failures};
-use super::options::{CamerasOption, PictureOptions, TessellationOptions};
+use super::options::{CamerasOption, Declared};
 use super::reference::{self, ReferenceOptions};
 use super::shot_options::ShotOptions;
 use super::view_files::{View, ViewFiles};
-use super::{AdapterOption, CliError, LimitOption, SurfaceOptions, WeldOption, options, to_json, write_text};
+use super::{AdapterOption, CliError, LimitOption, OpeningOptions, SurfaceOptions, options, to_json, write_text};
 use geometry::progress::Progress;
 use gpu::GpuError;
 use inspect::engine::Engine;
 use inspect::render::Camera;
 use inspect::settings::Settings;
-use inspect::shot::{Reference, Shot, ShotError, Stats, StatsWanted};
+use inspect::shot::{Reference, Shot, ShotError, Stats, StatsWanted, given};
 use load::Source;
 
 #[derive(Debug, clap::Args)]
@@ -46,30 +46,32 @@ pub struct Args {
 /// The ending of pictures.
 const ENDINGS: &[&str] = &["png"];
 
-impl Args {
-    /// The arguments that draw what the window shows when it opens with these settings.
-    pub fn preview(
-        file: Source,
-        settings: Settings,
-        limit: LimitOption,
-        adapter: AdapterOption,
-        output: &Path,
-    ) -> Self {
-        let tessellation = TessellationOptions { tessellation: settings.tessellation, displacement: None };
-        let weld = WeldOption { limit, ..WeldOption::default() };
-        let surface = SurfaceOptions { tessellation, weld, ..SurfaceOptions::default() };
-        Self {
-            file,
-            output: output.to_owned(),
-            shot: ShotOptions { surface, picture: PictureOptions(settings), ..ShotOptions::default() },
-            stats: None,
-            measure_error: true,
-            cameras: CamerasOption::default(),
-            reference: ReferenceOptions::default(),
-            gates: GateOptions::default(),
-            adapter,
-        }
-    }
+/// Writes the picture that the window would have shown, for machines without a display.
+pub fn preview(
+    source: Option<Source>,
+    opening: &OpeningOptions,
+    limit: LimitOption,
+    adapter: AdapterOption,
+    output: &Path,
+) -> Result<(), CliError> {
+    let settings = if source.is_some() { Settings::opening() } else { Settings::greeting() };
+    let mut surface = SurfaceOptions::default();
+    surface.tessellation.0.tessellation = settings.tessellation;
+    surface.weld.limit = limit;
+    surface.weld.import.0 = opening.import(surface.weld.import.0);
+    surface.weld.hide_part = opening.hidden().to_vec();
+    let args = Args {
+        file: source.unwrap_or_default(),
+        output: output.to_owned(),
+        shot: ShotOptions { surface, picture: Declared(settings), ..ShotOptions::default() },
+        stats: None,
+        measure_error: true,
+        cameras: CamerasOption::default(),
+        reference: ReferenceOptions::default(),
+        gates: GateOptions::default(),
+        adapter,
+    };
+    run(&args, &given(std::env::args_os()))
 }
 
 /// Runs the command, which was given as this line.
@@ -78,9 +80,6 @@ pub(super) fn run(args: &Args, line: &str) -> Result<(), CliError> {
 }
 
 /// Like [`run`], with an engine that is made once the arguments have been checked.
-///
-/// # Errors
-/// Those of the command.
 pub fn run_with(args: &Args, line: &str, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
     let files = ViewFiles::new(&args.output, ENDINGS, &args.cameras);
     let views = files.views(
@@ -117,9 +116,6 @@ pub fn run_with(args: &Args, line: &str, engine: impl FnOnce() -> Result<Engine,
 }
 
 /// Writes the stats of all pictures, and says which gates failed and which pictures differ from their references.
-///
-/// # Errors
-/// Stats can't be written, a gate failed, or a picture differs.
 fn conclude(args: &Args, all: Vec<Drawn>) -> Result<(), CliError> {
     let (mut stats, mut judgements, mut failed) = (Vec::new(), Vec::new(), Vec::new());
     for drawn in all {

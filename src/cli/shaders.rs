@@ -3,9 +3,8 @@
 use std::path::PathBuf;
 
 use super::options::TessellationOptions;
-use super::{CliError, file_error, options, write_text};
+use super::{CliError, make_folder, options, refuse, write_text};
 use inspect::shader_files::{Language, shader_files};
-use load::files::file_reason;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -24,13 +23,12 @@ pub struct Args {
 
 /// Runs the command, which was given as this line.
 pub(super) fn run(args: &Args, line: &str) -> Result<(), CliError> {
-    if args.surface_shader.is_some() {
-        return Err(CliError::Usage(
-            "--surface-shader can't be exported, only the rules of --surface can: write the shaders of one of them, and put your \
+    refuse(
+        args.surface_shader.is_some(),
+        "--surface-shader can't be exported, only the rules of --surface can: write the shaders of one of them, and put your \
              own rule in its place",
-        ));
-    }
-    let files = shader_files(args.language, &args.tessellation.tessellation, line)?;
-    std::fs::create_dir_all(&args.output).map_err(|error| file_error(&args.output, "made", &file_reason(&error)))?;
-    files.iter().try_for_each(|file| write_text(&args.output.join(file.name), &file.text))
+    )?;
+    let files = shader_files(args.language, &args.tessellation.0.tessellation, line)?;
+    make_folder(&args.output)?;
+    Ok(files.iter().try_for_each(|file| write_text(&args.output.join(file.name), &file.text))?)
 }

@@ -6,14 +6,14 @@ use std::sync::Arc;
 use super::options::{LodCameraOption, PictureOptions, whole_from};
 use super::{
     CliError, FactorsOption, LodShaderOption, SurfaceOptions, SurfaceShaderOption, TruthOption, file_of,
-    file_of_heights, keep_apart, load_apart, warn,
+    file_of_heights, keep_apart, load_apart, refuse, warn,
 };
 use geometry::progress::Progress;
-use gpu::{Given, Timing};
+use gpu::Given;
 use inspect::engine::{Engine, Loaded};
 use inspect::render::Camera;
 use inspect::render::environment::Environment;
-use inspect::settings::{Colors, Lighting, Settings};
+use inspect::settings::{Colors, Lighting};
 use inspect::shot::{FactorsFile, ReferenceSurface, Shot, ShotView, Subject};
 use load::environment_file::EnvironmentFile;
 use load::panorama::Panorama;
@@ -57,29 +57,21 @@ pub struct ShotOptions {
 impl ShotOptions {
     /// Checks the options, and that no file to be written is one that is read. `read` are files that the command reads besides
     /// those of these options.
-    ///
-    /// # Errors
-    /// Names the options that can't be together, or the file.
     pub(super) fn check(
         &self,
         file: &Source,
         read: &[Option<&Path>],
         written: &[Option<&Path>],
     ) -> Result<(), CliError> {
-        self.surface.check_with(self.picture.0.split_surface)?;
+        self.surface.check(self.picture.0.split_surface)?;
         self.own_lod.check_alone(&self.given)?;
-        if self.matcap_image.is_some() && self.picture.0.overlays.colors != Colors::Matcap {
-            return Err(CliError::Usage("--matcap-image needs --overlay matcap, which shows it"));
-        }
-        match (&self.environment, self.picture.0.lighting == Lighting::Environment) {
-            (Some(_), false) => {
-                return Err(CliError::Usage("--environment is the light of --lighting environment: choose one light"));
-            }
-            (None, true) => {
-                return Err(CliError::Usage("--lighting environment needs --environment, the file that has the light"));
-            }
-            _ => {}
-        }
+        refuse(
+            self.matcap_image.is_some() && self.picture.0.overlays.colors != Colors::Matcap,
+            "--matcap-image needs --overlay matcap, which shows it",
+        )?;
+        let (has_file, needs_file) = (self.environment.is_some(), self.picture.0.lighting == Lighting::Environment);
+        refuse(has_file && !needs_file, "--environment is the light of --lighting environment: choose one light")?;
+        refuse(needs_file && !has_file, "--lighting environment needs --environment, the file that has the light")?;
         let truth = self.truth.truth.as_ref().and_then(file_of);
         let heights = file_of_heights(self.surface.height.as_ref());
         let (factors, matcap) = (self.given.given.as_deref(), self.matcap_image.as_deref());
@@ -89,22 +81,14 @@ impl ShotOptions {
     }
 
     /// Checks a camera that isn't known before the mesh is.
-    ///
-    /// # Errors
-    /// It can't be together with other options.
     pub(super) fn check_camera(&self, camera: &Camera) -> Result<(), CliError> {
-        match camera.is_mirrored() && self.picture.0.split.is_some() {
-            true => Err(CliError::Usage(
-                "--split can't be combined with a --view-projection that mirrors: its halves would change places",
-            )),
-            false => Ok(()),
-        }
+        refuse(
+            camera.is_mirrored() && self.picture.0.split.is_some(),
+            "--split can't be combined with a --view-projection that mirrors: its halves would change places",
+        )
     }
 
     /// Reads the mesh and all other files. Returns what is drawn, and what was found about a file of factors.
-    ///
-    /// # Errors
-    /// A file can't be read, or isn't for this mesh.
     pub(super) fn subject(
         &self,
         file: &Source,
@@ -114,9 +98,6 @@ impl ShotOptions {
     }
 
     /// Like [`Self::subject`], for a mesh that was loaded as these options say.
-    ///
-    /// # Errors
-    /// A file can't be read, or isn't for this mesh.
     pub(super) fn subject_of(&self, loaded: Loaded) -> Result<(Subject, Option<FactorsFile>), CliError> {
         let limits = self.surface.weld.limit.limits();
         let own_lod = self.own_lod.read(&self.surface.tessellation())?;
@@ -133,16 +114,14 @@ impl ShotOptions {
         let (given, factors_file) = given.map(|given| (given.factors, given.stats)).unzip();
         let subject = Subject {
             moment: self.surface.animation.moment(&loaded)?,
-            settings: self.surface.settings_of(&self.picture.0),
-            loaded,
             given: given.map(Given::from).or(own_lod),
             surface_shader,
             matcap: matcap.map(Arc::new),
             environment,
             reference_surface,
             selected,
-            more_lines: Default::default(),
             arena_bytes: self.surface.arena_bytes(),
+            ..Subject::new(loaded, self.surface.settings_of(&self.picture.0))
         };
         Ok((subject, factors_file))
     }
@@ -156,9 +135,6 @@ impl ShotOptions {
     }
 
     /// Uploads the subject, and tessellates it as these options say, within the budget of triangles.
-    ///
-    /// # Errors
-    /// Those of the device, or there are too many triangles at any tolerance.
     pub(super) fn shot(&self, engine: Engine, mut subject: Subject) -> Result<Shot, CliError> {
         let mut scene = engine.scene(&subject.loaded, subject.arena_bytes)?;
         subject.dress(&engine, &mut scene)?;
@@ -167,7 +143,7 @@ impl ShotOptions {
         }
         let mesh = &subject.loaded.mesh;
         let view = ShotView {
-            camera: self.surface.camera(mesh, subject.moment, &scene.bounds)?,
+            camera: self.surface.view.camera(&self.surface, mesh, subject.moment, &scene.bounds)?,
             lod_camera: self.lod.camera(&self.surface, mesh, &scene.bounds)?,
             size: self.surface.size.0,
             transparent: self.transparent,
@@ -175,10 +151,7 @@ impl ShotOptions {
         };
         self.check_camera(&view.camera)?;
         let lod_view = view.lod_view(&scene);
-        let within: Settings = self.surface.within_budget(|settings| {
-            engine.count(&mut scene, &settings.inputs(lod_view), &mut Timing::Off)?;
-            Ok(scene.tessellator.totals().1)
-        })?;
+        let within = self.surface.within_budget_on(&engine, &mut scene, lod_view)?;
         subject.settings = subject.settings.with(within.tessellation);
         Ok(Shot::new(engine, scene, subject, view)?)
     }

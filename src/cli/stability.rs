@@ -5,23 +5,22 @@ mod evidence;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use super::gate_options::GateOptions;
-use super::options::whole;
+use super::options::{named, whole};
 use super::tessellate::Device;
-use super::{AdapterOption, CliError, WeldOption, file_error, to_json, write_text};
+use super::{AdapterOption, CliError, WeldOption, make_folder, refuse, to_json, write_text};
 use geometry::mesh::{Topology, t_junctions};
 use geometry::progress::Progress;
 use inspect::engine::Engine;
 use inspect::gates::{Facts, GateKind, judge};
 use inspect::render::Leaks;
 use lab::stability::{
-    CASES, Case, Effort, Failure, LEGEND, Method, PAGE, Row, Section, Subject, Verdict, are_judged, failures, lines,
-    page, picture, run as run_case, table,
+    CASES, Case, Effort, Failure, LEGEND, Line, Method, PAGE, Row, Subject, Verdict, are_judged, failures, lines, page,
+    picture, run as run_case, table,
 };
 use load::Source;
-use load::files::file_reason;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -57,9 +56,8 @@ pub struct Args {
 
 /// Parses a method's name.
 fn method() -> impl TypedValueParser<Value = Method> {
-    let unknown = "no such method";
-    PossibleValuesParser::new(Method::ALL.map(Method::option))
-        .try_map(move |name| Method::ALL.into_iter().find(|method| method.option() == name).ok_or(unknown))
+    let find = |name: &str| Method::ALL.into_iter().find(|method| method.option() == name);
+    named(Method::ALL.map(|method| PossibleValue::new(method.option())), find)
 }
 
 /// What runs, and the warnings of loading it.
@@ -73,17 +71,12 @@ impl Args {
     fn check(&self) -> Result<(), CliError> {
         self.adapter.check(self.device == Some(Device::Cpu))?;
         let single = [GateKind::AboveTolerance, GateKind::Triangles, GateKind::Bytes];
-        if single.into_iter().any(|kind| self.gates.gates.has(kind)) {
-            return Err(CliError::Usage(
-                "--fail-on above-tolerance, triangles and bytes judge one tessellation, and stability runs many: use render or \
+        refuse(
+            single.into_iter().any(|kind| self.gates.gates.has(kind)),
+            "--fail-on above-tolerance, triangles and bytes judge one tessellation, and stability runs many: use render or \
                  tessellate",
-            ));
-        }
-        let draws = self.gates.evidence.is_some() || self.gates.gates.has(GateKind::Leaks);
-        if draws && self.device == Some(Device::Cpu) {
-            return Err(CliError::Usage("--fail-on leaks and --evidence need --device gpu, which draws"));
-        }
-        Ok(())
+        )?;
+        self.gates.check(self.device == Some(Device::Cpu))
     }
 
     fn cases(&self) -> impl Iterator<Item = Subject> {
@@ -149,16 +142,12 @@ impl Args {
         Ok(failure.collect())
     }
 
-    /// Draws the picture of a subject into the folder of `-o`, if there are one and a device. Returns what the page says.
-    fn section(&self, subject: &Subject, engine: Option<&Engine>, effort: &Effort) -> Result<Section, CliError> {
-        let mut file = None;
-        if let (Some(folder), Some(engine)) = (&self.output, engine) {
-            let drawn = picture(subject, engine, effort.sweep_to)?;
-            let name = file_name(&subject.name);
-            inspect::shot::write_picture(&folder.join(&name), &drawn.into())?;
-            file = Some(name);
-        }
-        Ok(Section { name: subject.name.clone(), about: subject.about.clone(), picture: file })
+    /// Draws the picture of a subject into the folder of `-o`, if there are one and a device. Returns the file's name.
+    fn picture(&self, subject: &Subject, engine: Option<&Engine>, effort: &Effort) -> Result<Option<String>, CliError> {
+        let Some((folder, engine)) = self.output.as_ref().zip(engine) else { return Ok(None) };
+        let name = file_name(&subject.name);
+        inspect::shot::write_picture(&folder.join(&name), &picture(subject, engine, effort.sweep_to)?.into())?;
+        Ok(Some(name))
     }
 }
 
@@ -167,9 +156,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let subjects = args.subjects()?;
     let engine = if args.device == Some(Device::Cpu) { None } else { Some(Engine::chosen(&args.adapter.choice())?) };
     let effort = args.effort();
-    if let Some(folder) = &args.output {
-        std::fs::create_dir_all(folder).map_err(|error| file_error(folder, "made", &file_reason(&error)))?;
-    }
+    args.output.as_deref().map_or(Ok(()), make_folder)?;
     let (mut rows, mut sections, mut failed) = (Vec::new(), Vec::new(), Vec::new());
     for loaded in &subjects {
         let own = run_case(&loaded.subject, engine.as_ref(), &effort)?;
@@ -180,7 +167,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
             let rest = text.split_once('\n').map_or("", |(_, rest)| rest);
             write_text("-".as_ref(), if rows.is_empty() { &text } else { rest })?;
         }
-        sections.push(args.section(&loaded.subject, engine.as_ref(), &effort)?);
+        sections.push((&loaded.subject, args.picture(&loaded.subject, engine.as_ref(), &effort)?));
         rows.extend(own);
     }
     if let Some(folder) = &args.output {
@@ -196,7 +183,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         evidence::write(folder, engine, &subjects, &failed)?;
     }
     let mut said: Vec<String> = failed.into_iter().map(|failure| failure.sentence).collect();
-    said.extend(keep_promises(&rows).err().map(|broken| broken.to_string()));
+    said.extend(broken_promises(&rows));
     if said.is_empty() { Ok(()) } else { Err(CliError::Gates(said)) }
 }
 
@@ -217,13 +204,11 @@ fn file_name(name: &str) -> String {
     format!("{}.png", Path::new(&stem).file_stem().unwrap_or_default().to_string_lossy())
 }
 
-/// Fails if a promise doesn't hold.
-fn keep_promises(rows: &[Row]) -> Result<(), CliError> {
+/// Says which promises don't hold.
+fn broken_promises(rows: &[Row]) -> Option<String> {
     let broken: Vec<_> = lines(rows).into_iter().filter(|line| line.verdict == Verdict::BreaksPromise).collect();
-    match broken.first() {
-        None => Ok(()),
-        Some(line) => Err(CliError::Promise { count: broken.len(), case: line.case.clone(), method: line.method }),
-    }
+    let (count, Line { case, method, .. }) = (broken.len(), broken.first()?);
+    Some(format!("{count} of the table's lines break a promise; the first is {method} on {case}"))
 }
 
 #[cfg(test)]

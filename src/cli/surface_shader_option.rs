@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::CliError;
+use super::{CliError, refuse};
 use gpu::SurfaceShader;
 use inspect::gates::{Gate, GateKind};
 use inspect::own_shader::read_own_shader;
@@ -20,43 +20,28 @@ pub struct SurfaceShaderOption {
 
 impl SurfaceShaderOption {
     /// Reads the file, if one was named.
-    ///
-    /// # Errors
-    /// It can't be read or used.
     pub fn read(&self) -> Result<Option<Arc<SurfaceShader>>, CliError> {
         Ok(self.surface_shader.as_deref().map(read_own_shader).transpose()?)
     }
 
     /// Checks that nothing is to be computed on the CPU, and that no gate needs the surface there.
-    ///
-    /// # Errors
-    /// Something is, or a gate does.
     pub fn check(&self, is_on_cpu: bool, gates: &[Gate]) -> Result<(), CliError> {
         if self.surface_shader.is_none() {
             return Ok(());
         }
-        if is_on_cpu {
-            return Err(CliError::Usage("--surface-shader runs on the graphics adapter: leave --device cpu away"));
-        }
-        if gates.iter().any(|gate| gate.kind == GateKind::AboveTolerance) {
-            return Err(CliError::Usage(
-                "--fail-on above-tolerance measures on the CPU, where the surface of --surface-shader isn't known: choose other gates",
-            ));
-        }
-        Ok(())
+        refuse(is_on_cpu, "--surface-shader runs on the graphics adapter: leave --device cpu away")?;
+        refuse(
+            gates.iter().any(|gate| gate.kind == GateKind::AboveTolerance),
+            "--fail-on above-tolerance measures on the CPU, where the surface of --surface-shader isn't known: choose other gates",
+        )
     }
 
     /// Refuses to compare with the limit surface.
-    ///
-    /// # Errors
-    /// There is a shader.
     pub(crate) fn check_deviation(&self) -> Result<(), CliError> {
-        match self.surface_shader {
-            Some(_) => Err(CliError::Usage(
-                "--overlay deviation compares with the surface on the CPU, where that of --surface-shader isn't known: name another \
-                 one with --truth",
-            )),
-            None => Ok(()),
-        }
+        refuse(
+            self.surface_shader.is_some(),
+            "--overlay deviation compares with the surface on the CPU, where that of --surface-shader isn't known: name another \
+             one with --truth",
+        )
     }
 }

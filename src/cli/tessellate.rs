@@ -7,21 +7,21 @@ use clap::ValueEnum;
 
 use super::gate_options::{GateOptions, failures};
 use super::options::CamerasOption;
+use super::posed::Posed;
 use super::view_files::{View, ViewFiles};
 use super::{
     AdapterOption, CliError, FactorsOption, LodShaderOption, SurfaceOptions, SurfaceShaderOption, file_of,
-    file_of_heights, keep_apart, load_apart, options, warn,
+    file_of_heights, keep_apart, options, warn,
 };
-use geometry::mesh::{Bounds, Moment, t_junctions};
+use geometry::mesh::t_junctions;
 use geometry::progress::Progress;
-use geometry::tessellate::{self, HullFactors, Inputs, LodView, Tessellated, Tessellation, bounds_through};
+use geometry::tessellate::{HullFactors, Inputs, Tessellated, Tessellation};
 use gpu::{Given, GpuError, SurfaceShader, Timing};
 use inspect::engine::{Engine, Loaded};
 use inspect::export::Exported;
 use inspect::gates::{Facts, GateKind, Judgement, judge};
 use inspect::measure::{AskedFactors, EmittedChunk, Measured, ScreenErrorMeasurement, Visitor};
 use inspect::render::{Camera, Scene};
-use inspect::settings::Settings;
 use inspect::shot::{Shot, ShotView, Subject, report_own_lod, report_own_surface};
 use load::Source;
 
@@ -65,9 +65,6 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 }
 
 /// Like [`run`], with an engine that is made once the arguments have been checked.
-///
-/// # Errors
-/// Those of the command.
 pub fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
     args.check()?;
     let files = ViewFiles::new(&args.output, &["glb", "obj"], &args.cameras);
@@ -81,13 +78,11 @@ pub fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) 
     keep_apart(read, written.iter().copied())?;
     let own_lod = args.own_lod.read(&args.surface.tessellation())?;
     let surface_shader = args.own_surface.read()?;
-    let loaded = load_apart(&args.file, &args.surface.preparation(), &written)?;
-    let moment = args.surface.animation.moment(&loaded)?;
-    let bounds = bounds_through(&loaded.mesh, moment.map(|moment| moment.clip));
-    let ready = Ready { args, posed: loaded.posed(moment), loaded, moment, bounds };
-    let given = args.given.read(&ready.posed.mesh, &ready.posed.topology, &args.surface.tessellation())?;
+    let ready = Ready { args, mesh: Posed::load(&args.surface, &args.file, &written)? };
+    let Loaded { mesh, topology, .. } = &ready.mesh.posed;
+    let given = args.given.read(mesh, topology, &args.surface.tessellation())?;
     let given = given.map(|given| given.factors);
-    let views = views.iter().map(|view| Ok((view, ready.camera(view)?))).collect::<Result<Vec<_>, CliError>>()?;
+    let views = views.iter().map(|view| Ok((view, ready.mesh.camera(view)?))).collect::<Result<Vec<_>, CliError>>()?;
     let failed = match args.device {
         Device::Cpu => ready.on_cpu(&views, given.as_deref())?,
         Device::Gpu => ready.on_gpu(&views, engine()?, given.map(Given::from).or(own_lod), surface_shader)?,
@@ -98,15 +93,12 @@ pub fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) 
 impl Args {
     /// Checks the options before anything is read.
     fn check(&self) -> Result<(), CliError> {
-        self.surface.check()?;
+        self.surface.check(None)?;
         self.adapter.check(self.device == Device::Cpu)?;
         self.own_lod.check(self.device == Device::Cpu)?;
         self.own_lod.check_alone(&self.given)?;
         self.own_surface.check(self.device == Device::Cpu, &self.gates.gates.fail_on)?;
-        let draws = self.gates.evidence.is_some() || self.gates.gates.has(GateKind::Leaks);
-        if draws && self.device == Device::Cpu {
-            return Err(CliError::Usage("--fail-on leaks and --evidence need --device gpu, which draws"));
-        }
+        self.gates.check(self.device == Device::Cpu)?;
         Exported::check_ending(&self.output)?;
         Ok(())
     }
@@ -115,33 +107,18 @@ impl Args {
 /// A mesh that is ready to be tessellated for each view.
 struct Ready<'a> {
     args: &'a Args,
-    /// At rest, and in the pose that is tessellated.
-    loaded: Loaded,
-    posed: Loaded,
-    moment: Option<Moment>,
-    /// Of the mesh through its clip.
-    bounds: Bounds,
+    mesh: Posed<'a>,
 }
 
 impl Ready<'_> {
-    /// The camera of a view.
-    fn camera(&self, view: &View) -> Result<Camera, CliError> {
-        view.camera(&self.args.surface, &self.posed.mesh, self.moment, &self.bounds)
-    }
-
-    /// What LOD and clipping are computed for.
-    fn lod_view(&self, camera: &Camera) -> LodView {
-        camera.lod_view(self.args.surface.viewport(), &self.bounds)
-    }
-
     /// Checks that the view's file can hold so many vertices and triangles, before they are there.
     fn check(&self, view: &View, vertices: u64, triangles: u64) -> Result<(), CliError> {
-        Ok(Exported::check(&view.file, &self.posed.mesh, vertices, triangles)?)
+        Ok(Exported::check(&view.file, &self.mesh.posed.mesh, vertices, triangles)?)
     }
 
     /// Writes what was tessellated for a view. Standard error tells what couldn't be written.
     fn write(&self, view: &View, tessellated: &Tessellated) -> Result<(), CliError> {
-        let exported = Exported::new(&self.posed.mesh, &self.posed.topology, tessellated);
+        let exported = Exported::new(&self.mesh.posed.mesh, &self.mesh.posed.topology, tessellated);
         warn(&exported.write(&view.file)?);
         Ok(())
     }
@@ -150,35 +127,14 @@ impl Ready<'_> {
     fn on_cpu(&self, views: &[(&View, Camera)], given: Option<&[HullFactors]>) -> Result<Vec<String>, CliError> {
         let mut failed = Vec::new();
         for (view, camera) in views {
-            let (inputs, tessellated) = self.tessellated_on_cpu(view, camera, given)?;
+            let inputs = self.mesh.inputs(self.mesh.lod_view(camera))?;
+            let check = |vertices, triangles| self.check(view, vertices, triangles);
+            let tessellated = self.mesh.tessellated(&inputs, given, check)?;
             self.write(view, &tessellated)?;
             let judged = self.judged_on_cpu(given, &inputs, &tessellated)?;
             failed.extend(failures(&view.name_of(&self.args.file), &judged));
         }
         Ok(failed)
-    }
-
-    /// What the CPU tessellates for a view, within the budget of triangles, and with which inputs.
-    fn tessellated_on_cpu(
-        &self,
-        view: &View,
-        camera: &Camera,
-        given: Option<&[HullFactors]>,
-    ) -> Result<(Inputs, Tessellated), CliError> {
-        let (mesh, topology) = (&self.posed.mesh, &self.posed.topology);
-        let lod_view = self.lod_view(camera);
-        let count = |settings: &Settings| Ok(tessellate::totals(mesh, topology, &settings.inputs(lod_view)).1);
-        let inputs = self.args.surface.within_budget(count)?.inputs(lod_view);
-        let (vertices, triangles) = match given {
-            Some(given) => tessellate::given_totals(given, &inputs),
-            None => tessellate::totals(mesh, topology, &inputs),
-        };
-        self.check(view, vertices, triangles)?;
-        let tessellated = match given {
-            Some(given) => tessellate::tessellate_given(mesh, topology, &inputs, given),
-            None => tessellate::tessellate(mesh, topology, &inputs, None),
-        };
-        Ok((inputs, tessellated))
     }
 
     /// The same on the device.
@@ -189,16 +145,19 @@ impl Ready<'_> {
         given: Option<Given>,
         surface_shader: Option<Arc<SurfaceShader>>,
     ) -> Result<Vec<String>, CliError> {
-        let mut scene = engine.scene(&self.loaded, self.args.surface.arena_bytes())?;
-        let mut subject = self.subject(given, surface_shader);
+        let mut scene = engine.scene(&self.mesh.loaded, self.args.surface.arena_bytes())?;
+        let mut subject = Subject {
+            moment: self.mesh.moment,
+            given,
+            surface_shader,
+            arena_bytes: self.args.surface.arena_bytes(),
+            ..Subject::new(self.mesh.loaded.clone(), self.args.surface.settings())
+        };
         subject.dress(&engine, &mut scene)?;
         let mut failed = Vec::new();
         for (index, (view, camera)) in views.iter().enumerate() {
-            let lod_view = self.lod_view(camera);
-            let settings = self.args.surface.within_budget(|settings| {
-                engine.count(&mut scene, &settings.inputs(lod_view), &mut Timing::Off)?;
-                Ok(scene.tessellator.totals().1)
-            })?;
+            let lod_view = self.mesh.lod_view(camera);
+            let settings = self.args.surface.within_budget_on(&engine, &mut scene, lod_view)?;
             engine.count(&mut scene, &settings.inputs(lod_view), &mut Timing::Off)?;
             if index == 0 {
                 report_own_surface(&engine, &scene)?;
@@ -214,23 +173,6 @@ impl Ready<'_> {
             }
         }
         Ok(failed)
-    }
-
-    /// What a picture of the mesh would be drawn from.
-    fn subject(&self, given: Option<Given>, surface_shader: Option<Arc<SurfaceShader>>) -> Subject {
-        Subject {
-            loaded: self.loaded.clone(),
-            moment: self.moment,
-            given,
-            surface_shader,
-            matcap: None,
-            environment: None,
-            settings: self.args.surface.settings(),
-            reference_surface: None,
-            selected: None,
-            more_lines: Default::default(),
-            arena_bytes: self.args.surface.arena_bytes(),
-        }
     }
 
     /// What gates judge, seen from `camera`.
@@ -256,7 +198,7 @@ impl Ready<'_> {
         out: &Tessellated,
     ) -> Result<Vec<Judgement>, CliError> {
         let gates = &self.args.gates.gates;
-        let (mesh, topology) = (&self.posed.mesh, &self.posed.topology);
+        let (mesh, topology) = (&self.mesh.posed.mesh, &self.mesh.posed.topology);
         let Tessellation { edges, convention, .. } = inputs.tessellation;
         let measured = gates.fail_on.iter().any(|gate| gate.kind.needs_survey()).then(|| {
             let of_lod = || AskedFactors::new(edges, convention, out.edge_factors.clone());
@@ -269,10 +211,10 @@ impl Ready<'_> {
             measurement.take(&EmittedChunk::whole(&out.vertices, &out.triangles));
             measurement.above()
         });
-        let junctions = || t_junctions(&self.loaded.topology, &Progress::new());
+        let junctions = || t_junctions(&self.mesh.loaded.topology, &Progress::new());
         let junctions = gates.has(GateKind::TJunctions).then(junctions).transpose()?;
         let facts = Facts {
-            warnings: Some(&self.posed.warnings),
+            warnings: Some(&self.mesh.posed.warnings),
             emitted: Some((out.vertices.len() as u64, out.triangles.len() as u64)),
             measured: measured.as_ref(),
             junctions: junctions.as_deref(),

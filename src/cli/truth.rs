@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use clap::Args;
 
-use super::{CliError, SurfaceOptions, options};
+use super::{CliError, SurfaceOptions, options, refuse};
 use geometry::progress::Progress;
 use geometry::tessellate::Displacement;
 use inspect::engine::Loaded;
@@ -23,9 +23,6 @@ pub struct TruthOption {
 
 impl TruthOption {
     /// The surface to compare with: that of `--truth`, or if the overlay is shown the exact surface or the limit surface.
-    ///
-    /// # Errors
-    /// The mesh of `--truth` can't be read, or the compared mesh is in a pose.
     pub(crate) fn reference_surface(
         &self,
         loaded: &Loaded,
@@ -34,11 +31,7 @@ impl TruthOption {
     ) -> Result<Option<ReferenceSurface>, CliError> {
         let moves = surface.animation.animation.is_some();
         if let Some(source) = &self.truth {
-            if moves {
-                return Err(CliError::Usage(
-                    "--truth can't be combined with --animation: the reference surface doesn't move",
-                ));
-            }
+            refuse(moves, "--truth can't be combined with --animation: the reference surface doesn't move")?;
             let none = || CliError::NoTruth { file: source.to_string() };
             let truth = Truth::load(source, surface.weld.import.0, &surface.weld.limit.limits(), &Progress::new())?
                 .ok_or_else(none)?;

@@ -6,7 +6,7 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 
 use super::options::whole;
 use super::shot_options::ShotOptions;
-use super::{AdapterOption, CliError, Telling};
+use super::{AdapterOption, CliError, Telling, refuse};
 use geometry::progress::Progress;
 use inspect::engine::Engine;
 use inspect::export::ending;
@@ -39,9 +39,10 @@ pub(super) fn run(args: &Args, line: &str) -> Result<(), CliError> {
     let written = turn.files(&args.output);
     let written: Vec<_> = written.iter().map(|path| Some(path.as_path())).collect();
     args.shot.check(&args.file, &[], &written)?;
-    if args.shot.surface.view.view_projection.is_some() {
-        return Err(CliError::Usage("--view-projection is one view, and a turntable turns its camera: use --camera"));
-    }
+    refuse(
+        args.shot.surface.view.view_projection.is_some(),
+        "--view-projection is one view, and a turntable turns its camera: use --camera",
+    )?;
     let (subject, _) = args.shot.subject(&args.file, &written)?;
     let mut shot = args.shot.shot(Engine::chosen(&args.adapter.choice())?, subject)?;
     shot.report_own_shaders()?;

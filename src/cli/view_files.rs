@@ -3,13 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use super::options::{CamerasOption, NamedView, SurfaceOptions};
-use super::{CliError, file_error};
+use super::{CliError, make_folder, refuse};
 use geometry::mesh::{Bounds, Mesh, Moment};
 use geometry::names::shown;
 use inspect::export::ending;
 use inspect::render::Camera;
 use load::Source;
-use load::files::file_reason;
 
 /// What stands for a view's name in names of files.
 const NAME: &str = "{}";
@@ -39,18 +38,13 @@ impl<'a> ViewFiles<'a> {
     }
 
     /// The views that a command works for. `several` says what to do where one file is named for several views.
-    ///
-    /// # Errors
-    /// One file is named for several views, or the file of cameras can't be read.
     pub(super) fn views(
         &self,
         cameras: &CamerasOption,
         surface: &SurfaceOptions,
         several: &'static str,
     ) -> Result<Vec<View>, CliError> {
-        if self.has_views && self.names_one() {
-            return Err(CliError::Usage(several));
-        }
+        refuse(self.has_views && self.names_one(), several)?;
         let view = |named: NamedView| View { file: self.of(Some(&named.name)), named: Some(named) };
         Ok(match cameras.views(&surface.view)? {
             Some(views) => views.into_iter().map(view).collect(),
@@ -87,14 +81,8 @@ impl<'a> ViewFiles<'a> {
     }
 
     /// Makes the folder, if it is one and isn't there.
-    ///
-    /// # Errors
-    /// It can't be made.
     pub(super) fn make_folder(&self) -> Result<(), CliError> {
-        if !self.is_folder() {
-            return Ok(());
-        }
-        std::fs::create_dir_all(self.place).map_err(|error| file_error(self.place, "made", &file_reason(&error)))
+        if self.is_folder() { make_folder(self.place) } else { Ok(()) }
     }
 }
 
@@ -109,9 +97,6 @@ impl View {
     }
 
     /// The view's camera, for a mesh with these bounds at a moment of one of its clips.
-    ///
-    /// # Errors
-    /// The mesh has no camera of the name that was asked for, or the matrix isn't that of a view.
     pub(super) fn camera(
         &self,
         surface: &SurfaceOptions,
@@ -119,7 +104,9 @@ impl View {
         moment: Option<Moment>,
         bounds: &Bounds,
     ) -> Result<Camera, CliError> {
-        let Some(NamedView { name, view }) = &self.named else { return surface.camera(mesh, moment, bounds) };
+        let Some(NamedView { name, view }) = &self.named else {
+            return surface.view.camera(surface, mesh, moment, bounds);
+        };
         let of_view = |error: CliError| CliError::View { view: shown(name), error: Box::new(error) };
         view.camera(surface, mesh, moment, bounds).map_err(of_view)
     }

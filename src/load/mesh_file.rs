@@ -93,7 +93,8 @@ fn said_of_parts(known: &[String]) -> String {
     if known.is_empty() { "it has no named parts, so leave --hide-part away".to_owned() } else { choice(known) }
 }
 
-fn choice(known: &[String]) -> String {
+/// Says which names there are to choose from, as the end of a message.
+pub fn choice(known: &[String]) -> String {
     const NAMED: usize = 20;
     let names: Vec<_> = known.iter().take(NAMED).map(|name| shown(name)).collect();
     match known.len().checked_sub(NAMED) {

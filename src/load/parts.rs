@@ -2,6 +2,8 @@
 
 use std::collections::HashMap;
 
+use serde::Serialize;
+
 use super::memory_budget::Budget;
 use geometry::mesh::{MemoryAccount, MemoryRefused};
 
@@ -12,11 +14,12 @@ const MAX_PARTS: usize = 1 << 16;
 const PER_PART: u64 = 150;
 
 /// A part of a file.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Part {
     pub name: String,
     /// How many triangles it has, also while they are left out.
     pub triangles: u32,
+    #[serde(rename = "hidden")]
     pub is_hidden: bool,
 }
 

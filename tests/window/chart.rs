@@ -81,7 +81,7 @@ fn legend_and_list_are_whole(harness: &Harness<App>) {
 }
 
 fn error(row: &Row) -> f64 {
-    row.errors.map_or(f64::INFINITY, |errors| errors.largest)
+    row.probe.errors.map_or(f64::INFINITY, |errors| errors.largest)
 }
 
 #[test]
@@ -95,10 +95,10 @@ fn the_chart_is_measured_and_a_setting_of_its_front_is_applied() {
     legend_and_list_are_whole(&harness);
     let rows = harness.state().chart_rows().to_vec();
     assert_eq!(rows.len(), 10);
-    assert!(rows.iter().all(|row| row.time.total() > 0.0 && error(row) > 0.0 && row.mesh == "shape:icosahedron"));
+    assert!(rows.iter().all(|row| row.probe.time.total() > 0.0 && error(row) > 0.0 && row.mesh == "shape:icosahedron"));
     assert!(harness.query_by_label_contains("Icosahedron against exact icosahedron").is_some());
     let own = harness.state().chart_current().expect("measured first");
-    assert!(own.triangles > rows[0].triangles);
+    assert!(own.triangles > rows[0].probe.triangles);
     // The setting with the least error is always on the front.
     let best = rows.iter().min_by(|a, b| error(a).total_cmp(&error(b))).expect("ten rows").setting;
     let before = *harness.state().settings();
@@ -216,6 +216,6 @@ fn methods_can_be_chosen_and_without_a_reference_surface_errors_are_in_px() {
     let mut surfaces: Vec<_> = rows.iter().map(|row| row.setting.method.surface).collect();
     surfaces.dedup();
     assert!(rows.len() == 4 && !surfaces.contains(&Surface::Flat) && surfaces.contains(&Surface::Pn), "{surfaces:?}");
-    assert!(rows.iter().all(|row| row.errors.is_none() && row.max_error_px.is_some()));
+    assert!(rows.iter().all(|row| row.probe.errors.is_none() && row.probe.max_error_px.is_some()));
     assert!(harness.query_all_by_label_contains("each surface's own limit").count() > 0);
 }

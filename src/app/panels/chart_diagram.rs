@@ -83,8 +83,8 @@ impl<'a> Diagram<'a> {
         let of_row = |row: &'a Row| Some((Spot::Row(row), [self.cost.of(row), subject.error(row)? * subject.unit()]));
         let current = self.charted.current.and_then(|(_, probe)| {
             let probe = probe?;
-            let error = subject.error_of(probe.errors, probe.max_error_px)? * subject.unit();
-            Some((Spot::Current, [self.cost.either(probe.time.total(), probe.triangles), error]))
+            let error = subject.error_of(&probe)? * subject.unit();
+            Some((Spot::Current, [self.cost.of_probe(&probe), error]))
         });
         subject.rows.iter().filter_map(of_row).chain(current).collect()
     }

@@ -10,7 +10,7 @@ use crate::app::text::{grouped, short};
 use crate::app::widgets::{dense, list, switch_button, text_width, unclicked};
 use geometry::tessellate::Surface;
 use inspect::settings::Choice;
-use lab::chart::{Cost, LodKind, MethodStyle, Plan, Probe, Row, Setting, dash, method_styles};
+use lab::chart::{Cost, LodKind, MethodStyle, Plan, Probe, Setting, dash, method_styles};
 
 /// Heights of the panel, and the width of the list in it, in points.
 const HEIGHT: f32 = 320.0;
@@ -187,7 +187,7 @@ fn switch<T: PartialEq>(ui: &mut egui::Ui, all: &mut Vec<T>, one: T, name: &str)
 fn picked(ui: &mut egui::Ui, diagram: &Diagram) -> Option<Setting> {
     let (spot, is_clicked) = diagram.show(ui)?;
     let text = match spot {
-        Spot::Row(row) => format!("{}\n{}", named(&row.setting), facts(diagram.charted, &probe(row))),
+        Spot::Row(row) => format!("{}\n{}", named(&row.setting), facts(diagram.charted, &row.probe)),
         Spot::Current => {
             let measured = diagram.charted.current.and_then(|(_, probe)| probe)?;
             format!("The window's settings\n{}", facts(diagram.charted, &measured))
@@ -209,11 +209,6 @@ fn picked(ui: &mut egui::Ui, diagram: &Diagram) -> Option<Setting> {
 /// A setting in the words of the settings panel.
 fn named(setting: &Setting) -> String {
     format!("{} {setting}", setting.method.surface.label())
-}
-
-fn probe(row: &Row) -> Probe {
-    let Row { triangles, vertices, time, errors, max_error_px, triangles_by_error, .. } = *row;
-    Probe { triangles, vertices, time, errors, max_error_px, triangles_by_error }
 }
 
 /// The measurements of a point, as text.
@@ -305,8 +300,8 @@ fn front_list(ui: &mut egui::Ui, diagram: &Diagram) -> Option<Setting> {
         let (row, error) = front[index];
         let error = subject.shown_error(error);
         let cost = match diagram.cost {
-            Cost::Ms => short(row.time.total()),
-            Cost::Triangles => grouped(row.triangles),
+            Cost::Ms => short(row.probe.time.total()),
+            Cost::Triangles => grouped(row.probe.triangles),
         };
         let name = named(&row.setting);
         let text = dense(format!("{error:>7} {cost:>width$}  {name}"));
@@ -316,7 +311,7 @@ fn front_list(ui: &mut egui::Ui, diagram: &Diagram) -> Option<Setting> {
         if response.clicked() {
             applied = Some(row.setting);
         }
-        response.on_hover_text(format!("{name}\n{}", facts(diagram.charted, &probe(row))))
+        response.on_hover_text(format!("{name}\n{}", facts(diagram.charted, &row.probe)))
     });
     applied
 }

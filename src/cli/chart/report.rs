@@ -1,17 +1,16 @@
 //! `--report`: the folder that `pnaen chart` writes its page to, and what is charted if no mesh was named.
 
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::SystemTime;
 
-use super::super::{CliError, file_error, write_text};
+use super::super::{CliError, write_text};
 use geometry::mesh::Shape;
 use geometry::numbers::utc;
 use gpu::Gpu;
 use lab::chart::report::{Occasion, PAGE, Part, page};
 use lab::chart::svg;
 use load::Source;
-use load::files::file_reason;
 
 /// Shapes with an exact surface each, round ones first.
 const SHAPES: [Shape; 7] =
@@ -67,18 +66,12 @@ fn command_line(arguments: impl Iterator<Item = OsString>) -> String {
     ["pnaen".to_owned()].into_iter().chain(arguments.map(typed)).collect::<Vec<_>>().join(" ")
 }
 
-/// Makes the folder before anything is measured, so that a command that takes minutes doesn't fail at its end.
-pub(super) fn make_folder(folder: &Path) -> Result<PathBuf, CliError> {
-    std::fs::create_dir_all(folder).map_err(|error| file_error(folder, "made", &file_reason(&error)))?;
-    Ok(folder.to_owned())
-}
-
 /// Writes the page and its pictures.
 pub(super) fn write(folder: &Path, occasion: &Occasion, parts: &[Part]) -> Result<(), CliError> {
     for part in parts {
         write_text(&folder.join(&part.picture), &svg(std::slice::from_ref(&part.subject))?)?;
     }
-    write_text(&folder.join(PAGE), &page(occasion, parts))
+    Ok(write_text(&folder.join(PAGE), &page(occasion, parts))?)
 }
 
 #[cfg(test)]

@@ -10,14 +10,14 @@ use image::imageops::FilterType;
 use image::{DynamicImage, RgbaImage};
 
 use super::plan::Job;
-use super::say_unkept;
-use crate::cli::{CliError, file_error, file_of};
+use crate::cli::{CliError, file_error, file_of, note};
 use geometry::names::on_one_line;
 use geometry::progress::Progress;
 use inspect::engine::{Engine, Loaded, Preparation};
 use inspect::shot::png_bytes;
 use lab::check::{Asset, Cache, GateResult, View};
 use load::LoadError;
+use load::files::file_reason;
 
 /// The most px along a side of a picture on the page.
 const MOST_PX: u32 = 704;
@@ -55,7 +55,7 @@ pub(super) fn measured(
     if let Some((cache, files)) = cache.filter(|_| job.is_kept).zip(files)
         && let Err(error) = cache.put(job.inputs(), &files, start, &asset)
     {
-        say_unkept(&error);
+        note(&format!("what was found can't be kept: {}", file_reason(&error)));
     }
     (asset, absent)
 }

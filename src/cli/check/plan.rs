@@ -10,7 +10,7 @@ use crate::cli::shot_options::ShotOptions;
 use crate::cli::{CliError, file_error, note};
 use geometry::names::{on_one_line, shown, shown_path};
 use inspect::gates::Gate;
-use lab::check::{Config, ConfigError, FolderError, Inputs, OptionValue, Section, assets};
+use lab::check::{Config, FolderError, Inputs, OptionValue, Section, assets};
 use load::Source;
 use load::files::file_reason;
 
@@ -61,9 +61,6 @@ pub(super) fn config_path(args: &Args) -> Option<&Path> {
 }
 
 /// What is to be checked, in the order in which it is reported.
-///
-/// # Errors
-/// A folder or the configuration can't be read, the configuration is wrong, or there is nothing to check.
 pub(super) fn plan(args: &Args) -> Result<Vec<Job>, CliError> {
     let path = config_path(args);
     let command = Options::command();
@@ -82,9 +79,6 @@ pub(super) fn plan(args: &Args) -> Result<Vec<Job>, CliError> {
 }
 
 /// Checks each value by itself, also those of sections that hold for no asset.
-///
-/// # Errors
-/// A value is none of its option's, or the path of a file that isn't there, with its line.
 fn check_options(config: &Config, command: &Command, folder: &Path) -> Result<(), CliError> {
     for option in config.options() {
         let known = command.get_arguments().find(|arg| arg.get_long() == Some(&option.name));
@@ -210,9 +204,6 @@ fn words(option: &OptionValue) -> Vec<String> {
 }
 
 /// Reads options, each of which is right by itself, as the command line does.
-///
-/// # Errors
-/// They can't be together.
 fn parsed(config: &Config, options: &[OptionValue], source: &Source) -> Result<ShotOptions, CliError> {
     let own =
         Options::try_parse_from(options.iter().flat_map(words)).map_err(|error| config.clash(&said(&error)))?.shot;
@@ -237,10 +228,4 @@ fn said(error: &clap::Error) -> String {
     let lines = text.lines().take_while(|line| !line.trim().is_empty());
     let line = lines.map(str::trim).collect::<Vec<_>>().join(" ");
     line.strip_prefix("error: ").unwrap_or(&line).to_owned()
-}
-
-impl From<ConfigError> for CliError {
-    fn from(error: ConfigError) -> Self {
-        Self::Config(error)
-    }
 }

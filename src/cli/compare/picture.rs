@@ -35,9 +35,6 @@ const WIDE: f32 = 2.0;
 const NARROW: f32 = 0.75;
 
 /// Draws the picture and writes it.
-///
-/// # Errors
-/// There is no adapter, the device was lost, or the file can't be written.
 pub(super) fn draw(
     args: &Args,
     path: &Path,
@@ -52,26 +49,24 @@ pub(super) fn draw(
     let topology = Topology::of(&mesh);
     let (mesh, topology) = (Arc::new(mesh), Arc::new(topology));
     let shown = Loaded { read: mesh.clone(), mesh, topology, ..loaded.clone() };
-    let lines = Lines::of(ours, comparison);
+    let there = differences(ours, comparison).into_iter().filter(|(_, lines)| !lines.is_empty());
+    let (mut names, mut lines): (Vec<Named>, Vec<_>) = there.unzip();
+    // Sides are seen over patches.
+    if let [(SIDE, _), (PATCH, _), ..] = names[..] {
+        lines.swap(0, 1);
+    }
     let subject = Subject {
-        loaded: shown,
-        moment: None,
-        given: None,
-        surface_shader: None,
-        matcap: None,
-        environment: None,
-        settings: settings(),
         reference_surface: our_mesh(ours).map(|truth| ReferenceSurface::Truth("ours".to_owned(), Arc::new(truth))),
-        selected: None,
-        more_lines: [Vec::new(), lines.all()],
+        more_lines: [Vec::new(), lines.concat()],
         arena_bytes: args.surface.arena_bytes(),
+        ..Subject::new(shown, settings())
     };
     let scene = engine.scene(&subject.loaded, subject.arena_bytes)?;
     let view =
         ShotView { camera: *camera, lod_camera: None, size: args.surface.size.0, transparent: false, legend: true };
-    let has_worst = subject.reference_surface.is_some();
+    names.extend(subject.reference_surface.is_some().then_some((WORST_COLOR, "largest distance from ours")));
     let mut picture = Shot::new(engine, scene, subject, view)?.picture(None, &Progress::new())?;
-    draw_key(&mut picture, "What differs", &lines.names(has_worst))?;
+    draw_key(&mut picture, "What differs", &names)?;
     Ok(write_picture(path, &picture.into())?)
 }
 
@@ -98,58 +93,31 @@ fn our_mesh(ours: &Ours) -> Option<Truth> {
     Truth::of_mesh(&Mesh::from_slices(&slices).ok()?)
 }
 
-/// What differs, as lines and dots.
-#[derive(Default)]
-struct Lines {
-    sides: Vec<LineSegment>,
-    patches: Vec<LineSegment>,
-    missing: Vec<LineSegment>,
-    moved: Vec<LineSegment>,
-}
-
-impl Lines {
-    fn of(ours: &Ours, comparison: &Comparison) -> Self {
-        let outlines = Outlines::new(ours);
-        let half_width = |count: usize| if count > FEW { NARROW } else { WIDE };
-        let of_patches = |patches: &[u32], color| {
-            let half_width = half_width(patches.len());
-            let lines = patches.iter().flat_map(|patch| [0, 1, 2].map(|side| (*patch, side)));
-            let lines = lines.flat_map(|(patch, side)| outlines.lines(patch, side, color, half_width));
-            lines.take(MOST).collect()
-        };
-        let of_side = |side: &SideDifference| {
-            let patch = ours.topology.patch_of(side.triangle)?;
-            Some(outlines.lines(patch, side.side as usize, SIDE, half_width(comparison.sides.len())))
-        };
-        let dot = |place: &DVec3| {
-            let place = place.as_vec3();
-            LineSegment { half_width: 4.0, ..LineSegment::new(place, place, MOVED) }
-        };
-        Self {
-            sides: comparison.sides.iter().filter_map(of_side).flatten().take(MOST).collect(),
-            patches: of_patches(&comparison.different, PATCH),
-            missing: of_patches(&comparison.missing, MISSING),
-            moved: comparison.strays.iter().take(MOST).map(dot).collect(),
-        }
-    }
-
-    /// Those that are seen over others come last.
-    fn all(&self) -> Vec<LineSegment> {
-        [&self.patches[..], &self.sides, &self.missing, &self.moved].concat()
-    }
-
-    /// The names of those that there are, and of the mark at the largest distance if there is one.
-    fn names(&self, has_worst: bool) -> Vec<Named> {
-        let named = [
-            (&self.sides, SIDE, "side that is cut differently"),
-            (&self.patches, PATCH, "patch that differs"),
-            (&self.missing, MISSING, "patch without triangles"),
-            (&self.moved, MOVED, "vertex off the surface"),
-        ];
-        let there = named.into_iter().filter(|(lines, ..)| !lines.is_empty());
-        let worst = has_worst.then_some((WORST_COLOR, "largest distance from ours"));
-        there.map(|(_, color, name)| (color, name)).chain(worst).collect()
-    }
+/// What differs, as lines and dots: each kind with its colour and its name.
+fn differences(ours: &Ours, comparison: &Comparison) -> [(Named, Vec<LineSegment>); 4] {
+    let outlines = Outlines::new(ours);
+    let half_width = |count: usize| if count > FEW { NARROW } else { WIDE };
+    let of_patches = |patches: &[u32], color| {
+        let half_width = half_width(patches.len());
+        let lines = patches.iter().flat_map(|patch| [0, 1, 2].map(|side| (*patch, side)));
+        let lines = lines.flat_map(|(patch, side)| outlines.lines(patch, side, color, half_width));
+        lines.take(MOST).collect()
+    };
+    let of_side = |side: &SideDifference| {
+        let patch = ours.topology.patch_of(side.triangle)?;
+        Some(outlines.lines(patch, side.side as usize, SIDE, half_width(comparison.sides.len())))
+    };
+    let dot = |place: &DVec3| {
+        let place = place.as_vec3();
+        LineSegment { half_width: 4.0, ..LineSegment::new(place, place, MOVED) }
+    };
+    let sides = comparison.sides.iter().filter_map(of_side).flatten().take(MOST).collect();
+    [
+        ((SIDE, "side that is cut differently"), sides),
+        ((PATCH, "patch that differs"), of_patches(&comparison.different, PATCH)),
+        ((MISSING, "patch without triangles"), of_patches(&comparison.missing, MISSING)),
+        ((MOVED, "vertex off the surface"), comparison.strays.iter().take(MOST).map(dot).collect()),
+    ]
 }
 
 /// Our vertices on the outlines of patches.

@@ -102,12 +102,13 @@ impl Report<'_> {
             ours: farthest.ours.to_array(),
             distance: distance(farthest.distance),
         };
+        let finding = |finding: &Finding| JsonFinding { kind: finding.kind(), text: finding.text() };
         let triangle = |patch: &u32| self.ours.topology.patches[*patch as usize].triangle;
         Json {
             theirs: self.theirs,
             mesh: self.mesh,
             same: found.findings.is_empty(),
-            findings: found.findings.iter().map(JsonFinding::of).collect(),
+            findings: found.findings.iter().map(finding).collect(),
             vertices: found.vertices,
             triangles: found.triangles,
             our_triangles: self.ours.tessellated.triangles.len() as u64,
@@ -117,7 +118,7 @@ impl Report<'_> {
             from_surface: distance(found.from_surface),
             farthest: found.farthest.map(place),
             sides_different: found.sides.len() as u64,
-            sides: found.sides.iter().take(LISTED).map(JsonSide::of).collect(),
+            sides: &found.sides[..found.sides.len().min(LISTED)],
             triangles_different: found.different.iter().take(LISTED).map(triangle).collect(),
             triangles_missing: found.missing.iter().take(LISTED).map(triangle).collect(),
         }
@@ -140,7 +141,7 @@ pub(super) struct Json<'a> {
     from_surface: Distance,
     farthest: Option<Place>,
     sides_different: u64,
-    sides: Vec<JsonSide>,
+    sides: &'a [SideDifference],
     /// Triangles of the mesh whose patches differ, and those whose patches have no triangles.
     triangles_different: Vec<u32>,
     triangles_missing: Vec<u32>,
@@ -150,12 +151,6 @@ pub(super) struct Json<'a> {
 struct JsonFinding {
     kind: &'static str,
     text: String,
-}
-
-impl JsonFinding {
-    fn of(finding: &Finding) -> Self {
-        Self { kind: finding.kind(), text: finding.text() }
-    }
 }
 
 #[derive(Debug, Serialize)]
@@ -171,27 +166,4 @@ struct Place {
     theirs: [f64; 3],
     ours: [f64; 3],
     distance: Distance,
-}
-
-#[derive(Debug, Serialize)]
-struct JsonSide {
-    triangle: u32,
-    side: u32,
-    points: [[f32; 3]; 2],
-    theirs: JsonCut,
-    ours: JsonCut,
-}
-
-#[derive(Debug, Serialize)]
-struct JsonCut {
-    segments: u64,
-    factor: f64,
-}
-
-impl JsonSide {
-    fn of(side: &SideDifference) -> Self {
-        let cut = |cut: lab::compare::SideCut| JsonCut { segments: cut.segments, factor: cut.factor };
-        let SideDifference { triangle, side, ends, theirs, ours } = *side;
-        Self { triangle, side, points: ends, theirs: cut(theirs), ours: cut(ours) }
-    }
 }

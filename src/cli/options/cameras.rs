@@ -7,7 +7,7 @@ use clap::{Args, Parser};
 use serde_json::Value;
 
 use super::{CameraOption, ViewOptions};
-use crate::cli::{CliError, file_error, read_text};
+use crate::cli::{CliError, file_error, read_text, refuse};
 use geometry::names::{on_one_line, shown};
 
 /// The most views.
@@ -67,20 +67,16 @@ impl CamerasOption {
 
     /// The views, each with a name of its own; none if the command works for a single one. `view` has the options that stand beside
     /// `--cameras`.
-    ///
-    /// # Errors
-    /// The file can't be read, or isn't one of cameras.
     pub fn views(&self, view: &ViewOptions) -> Result<Option<Vec<NamedView>>, CliError> {
         let Some(cameras) = &self.cameras else { return Ok(None) };
         match cameras {
             Cameras::Around(count) => Ok(Some((0..*count).map(|index| around(index, *count, view)).collect())),
             Cameras::File(path) => {
-                if *view != ViewOptions::default() {
-                    return Err(CliError::Usage(
-                        "--cameras FILE has each camera's options: write --target, --orthographic, --field-of-view and \
+                refuse(
+                    *view != ViewOptions::default(),
+                    "--cameras FILE has each camera's options: write --target, --orthographic, --field-of-view and \
                          --roll into the file",
-                    ));
-                }
+                )?;
                 read(path).map(Some)
             }
         }
@@ -102,7 +98,7 @@ fn around(index: u32, count: u32, view: &ViewOptions) -> NamedView {
 /// Reads a file of cameras.
 fn read(path: &Path) -> Result<Vec<NamedView>, CliError> {
     let text = read_text(path)?;
-    let fail = |reason: String| file_error(path, "read", &reason);
+    let fail = |reason: String| CliError::from(file_error(path, "read", &reason));
     let is_json = text.trim_start().starts_with(['[', '{']);
     let views = if is_json { of_json(&text) } else { of_lines(&text) }.map_err(fail)?;
     if views.is_empty() || views.len() > MOST {

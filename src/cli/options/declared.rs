@@ -11,106 +11,109 @@ use geometry::tessellate::{Displacement, Tessellation};
 use inspect::settings::{Choice, Declaration, Description, Kind, Lighting, Settings, Value, descriptions, options};
 use load::Import;
 
+/// Options that are made from declarations.
+pub trait Group: Clone + Default {
+    const ALL: &'static [&'static Declaration];
+
+    fn arg(declaration: &'static Declaration) -> Arg {
+        with_default(arg(declaration), declaration)
+    }
+
+    /// Takes what was given on the command line.
+    fn take(&mut self, matches: &ArgMatches) -> Result<(), Error>;
+}
+
+/// The values of a group's options.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Declared<T>(pub T);
+
 /// How a mesh is tessellated.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct TessellationOptions {
+pub(crate) type TessellationOptions = Declared<GivenTessellation>;
+
+/// How a picture is drawn: settings with the usual tessellation.
+pub(crate) type PictureOptions = Declared<Settings>;
+
+/// How the geometry of a file is taken.
+pub(crate) type ImportOptions = Declared<Import>;
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GivenTessellation {
     pub tessellation: Tessellation,
     /// Given on the command line; without it, displacement depends on whether there are heights.
     pub displacement: Option<Displacement>,
 }
 
-/// How a picture is drawn: settings with the usual tessellation.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct PictureOptions(pub Settings);
-
-/// How the geometry of a file is taken.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ImportOptions(pub Import);
-
 const WITHOUT_DISPLACEMENT: &str =
     "By default on with --height, else off. Without --height, the materials' images are the height map";
 
-impl clap::Args for TessellationOptions {
+impl<T: Group> clap::Args for Declared<T> {
     fn augment_args(command: Command) -> Command {
-        let own = |declaration: &'static Declaration| match declaration.name == options::DISPLACEMENT.name {
+        command.args(T::ALL.iter().map(|declaration| T::arg(declaration)))
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl<T: Group> FromArgMatches for Declared<T> {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
+        let mut own = Self::default();
+        own.update_from_arg_matches(matches)?;
+        Ok(own)
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
+        self.0.take(matches)
+    }
+}
+
+impl Group for GivenTessellation {
+    const ALL: &'static [&'static Declaration] = &options::TESSELLATION;
+
+    fn arg(declaration: &'static Declaration) -> Arg {
+        match declaration.name == options::DISPLACEMENT.name {
             true => arg(declaration).help(format!("{} {WITHOUT_DISPLACEMENT}", declaration.text)),
             false => with_default(arg(declaration), declaration),
-        };
-        command.args(options::TESSELLATION.map(own))
+        }
     }
 
-    fn augment_args_for_update(command: Command) -> Command {
-        Self::augment_args(command)
-    }
-}
-
-impl FromArgMatches for TessellationOptions {
-    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
-        let mut own = Self::default();
-        own.update_from_arg_matches(matches)?;
-        Ok(own)
-    }
-
-    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
+    fn take(&mut self, matches: &ArgMatches) -> Result<(), Error> {
         let mut settings = Settings::from(self.tessellation);
-        options::TESSELLATION.iter().try_for_each(|declaration| take(declaration, matches, &mut settings))?;
+        take(Self::ALL, matches, &mut settings)?;
         self.tessellation = settings.tessellation;
-        let is_given = matches.contains_id(options::DISPLACEMENT.name);
-        self.displacement = if is_given { Some(self.tessellation.displacement) } else { self.displacement };
-        Ok(())
-    }
-}
-
-impl clap::Args for PictureOptions {
-    fn augment_args(command: Command) -> Command {
-        let own = |declaration: &'static Declaration| with_default(arg(declaration), declaration);
-        let needs_split = |arg: Arg| arg.requires(options::SPLIT.name);
-        command.args(options::PICTURE.map(own)).mut_arg(options::SPLIT_SURFACE.name, needs_split)
-    }
-
-    fn augment_args_for_update(command: Command) -> Command {
-        Self::augment_args(command)
-    }
-}
-
-impl FromArgMatches for PictureOptions {
-    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
-        let mut own = Self::default();
-        own.update_from_arg_matches(matches)?;
-        Ok(own)
-    }
-
-    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
-        options::PICTURE.iter().try_for_each(|declaration| take(declaration, matches, &mut self.0))?;
-        let is_given = matches.value_source(options::LIGHTING.name) == Some(ValueSource::CommandLine);
-        if !is_given && matches.try_contains_id("environment").is_ok_and(|has_file| has_file) {
-            self.0.lighting = Lighting::Environment;
+        if matches.contains_id(options::DISPLACEMENT.name) {
+            self.displacement = Some(self.tessellation.displacement);
         }
         Ok(())
     }
 }
 
-impl clap::Args for ImportOptions {
-    fn augment_args(command: Command) -> Command {
-        command.args(options::IMPORT.map(|declaration| with_default(arg(declaration), declaration)))
+impl Group for Settings {
+    const ALL: &'static [&'static Declaration] = &options::PICTURE;
+
+    fn arg(declaration: &'static Declaration) -> Arg {
+        let arg = with_default(arg(declaration), declaration);
+        if declaration.name == options::SPLIT_SURFACE.name { arg.requires(options::SPLIT.name) } else { arg }
     }
 
-    fn augment_args_for_update(command: Command) -> Command {
-        Self::augment_args(command)
+    fn take(&mut self, matches: &ArgMatches) -> Result<(), Error> {
+        take(Self::ALL, matches, self)?;
+        let is_given = matches.value_source(options::LIGHTING.name) == Some(ValueSource::CommandLine);
+        if !is_given && matches.try_contains_id("environment").is_ok_and(|has_file| has_file) {
+            self.lighting = Lighting::Environment;
+        }
+        Ok(())
     }
 }
 
-impl FromArgMatches for ImportOptions {
-    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
-        let mut own = Self::default();
-        own.update_from_arg_matches(matches)?;
-        Ok(own)
-    }
+impl Group for Import {
+    const ALL: &'static [&'static Declaration] = &options::IMPORT;
 
-    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
-        let mut settings = Settings { import: self.0, ..Settings::default() };
-        options::IMPORT.iter().try_for_each(|declaration| take(declaration, matches, &mut settings))?;
-        self.0 = settings.import;
+    fn take(&mut self, matches: &ArgMatches) -> Result<(), Error> {
+        let mut settings = Settings { import: *self, ..Settings::default() };
+        take(Self::ALL, matches, &mut settings)?;
+        *self = settings.import;
         Ok(())
     }
 }
@@ -189,17 +192,18 @@ fn possible(description: Description) -> PossibleValue {
 }
 
 /// Puts what was given on the command line into settings.
-fn take(declaration: &Declaration, matches: &ArgMatches, settings: &mut Settings) -> Result<(), Error> {
-    let name = declaration.name;
-    match given(declaration, matches) {
-        Some(value) if !declaration.set(settings, value.clone()) => {
+fn take(all: &[&Declaration], matches: &ArgMatches, settings: &mut Settings) -> Result<(), Error> {
+    for declaration in all {
+        let Some(value) = given(declaration, matches) else { continue };
+        if !declaration.set(settings, value.clone()) {
             // Only a list of overlays is refused as a whole: values that are wrong by themselves never come here.
+            let name = declaration.name;
             let message =
                 format!("--{name} can't be {value}: each of these colours the whole surface, so choose one\n");
-            Err(Error::raw(ErrorKind::ValueValidation, message))
+            return Err(Error::raw(ErrorKind::ValueValidation, message));
         }
-        _ => Ok(()),
     }
+    Ok(())
 }
 
 /// Returns the value of an option, if it has one.
@@ -219,9 +223,15 @@ fn name_of(value: &Value) -> Option<&'static str> {
 
 /// Reads one of several named values.
 pub(crate) fn choice<T: Choice + Send + Sync>() -> impl TypedValueParser<Value = T> {
-    let unknown = "no such value";
-    PossibleValuesParser::new(descriptions::<T>().into_iter().map(possible))
-        .try_map(move |name| T::named(&name).ok_or(unknown))
+    named(descriptions::<T>().into_iter().map(possible), T::named)
+}
+
+/// Reads one of several names, each of which `find` has a value for.
+pub(crate) fn named<T: Clone + Send + Sync + 'static>(
+    names: impl IntoIterator<Item = PossibleValue>,
+    find: impl Fn(&str) -> Option<T> + Clone + Send + Sync + 'static,
+) -> impl TypedValueParser<Value = T> {
+    PossibleValuesParser::new(names).try_map(move |name| find(&name).ok_or("no such value"))
 }
 
 /// Reads a number of an option's range.
@@ -269,7 +279,7 @@ mod tests {
         match Cli::try_parse_from(usual.iter().chain(arguments))?.command {
             Some(Run::Render(args)) => Ok(Settings {
                 import: args.shot.surface.weld.import.0,
-                ..args.shot.picture.0.with(args.shot.surface.tessellation.tessellation)
+                ..args.shot.picture.0.with(args.shot.surface.tessellation.0.tessellation)
             }),
             other => panic!("{other:?}"),
         }

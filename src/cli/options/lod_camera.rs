@@ -4,7 +4,7 @@ use clap::Args;
 use glam::Vec2;
 
 use super::values::{angle, field_of_view};
-use super::{CameraOption, Position, Size, SurfaceOptions, ViewOptions};
+use super::{CameraOption, Position, Size, SurfaceOptions, ViewOptions, defaults};
 use crate::cli::CliError;
 use geometry::mesh::{Bounds, Mesh};
 use inspect::render::Camera;
@@ -36,22 +36,12 @@ pub struct LodCameraOption {
 
 impl Default for LodCameraOption {
     fn default() -> Self {
-        Self {
-            lod_camera: None,
-            lod_target: None,
-            lod_size: None,
-            lod_orthographic: false,
-            lod_field_of_view: FIELD_OF_VIEW,
-            lod_roll: 0.0,
-        }
+        defaults()
     }
 }
 
 impl LodCameraOption {
     /// The LOD camera and its view's size in px, if it isn't the picture's. `own` are the options of the picture's camera.
-    ///
-    /// # Errors
-    /// None of its own: those of [`SurfaceOptions::camera`].
     pub fn camera(
         &self,
         own: &SurfaceOptions,
@@ -70,6 +60,6 @@ impl LodCameraOption {
             ..own.view.clone()
         };
         let options = SurfaceOptions { view, size: self.lod_size.unwrap_or(own.size), ..own.clone() };
-        Ok(Some((options.camera(mesh, None, bounds)?, options.viewport())))
+        Ok(Some((options.view.camera(&options, mesh, None, bounds)?, options.viewport())))
     }
 }

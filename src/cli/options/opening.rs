@@ -1,8 +1,8 @@
 //! How the window takes the mesh that it opens first.
 
-use clap::{ArgMatches, Args, Command, Error, FromArgMatches};
+use clap::{Arg, ArgMatches, Args, Error};
 
-use super::declared::{arg, given};
+use super::declared::{Declared, Group, arg, given};
 use inspect::engine::Preparation;
 use inspect::settings::{Declaration, Settings, Value, options};
 use load::Import;
@@ -11,7 +11,7 @@ use load::Import;
 #[derive(Clone, Debug, Default, Args)]
 pub struct OpeningOptions {
     #[command(flatten)]
-    import: GivenImport,
+    import: Declared<GivenImport>,
     /// Leave out this part of a glTF file, an OBJ file or a text file of STL, by the name of its node, object, group or solid; may be
     /// given several times. `info` lists the parts
     #[arg(long, value_name = "NAME", allow_hyphen_values = true, requires = "file")]
@@ -25,7 +25,7 @@ struct GivenImport(Vec<(&'static Declaration, Value)>);
 impl OpeningOptions {
     /// Whether none was given.
     pub fn is_empty(&self) -> bool {
-        self.import.0.is_empty() && self.hide_part.is_empty()
+        self.import.0.0.is_empty() && self.hide_part.is_empty()
     }
 
     /// Changes what the given options are about.
@@ -37,7 +37,7 @@ impl OpeningOptions {
     /// How the geometry of a file is taken, which is `usual` without options.
     pub fn import(&self, usual: Import) -> Import {
         let mut settings = Settings { import: usual, ..Settings::default() };
-        for (declaration, value) in &self.import.0 {
+        for (declaration, value) in &self.import.0.0 {
             declaration.set(&mut settings, value.clone());
         }
         settings.import
@@ -49,26 +49,16 @@ impl OpeningOptions {
     }
 }
 
-impl Args for GivenImport {
-    fn augment_args(command: Command) -> Command {
-        command.args(options::IMPORT.map(arg))
+impl Group for GivenImport {
+    const ALL: &'static [&'static Declaration] = &options::IMPORT;
+
+    fn arg(declaration: &'static Declaration) -> Arg {
+        arg(declaration)
     }
 
-    fn augment_args_for_update(command: Command) -> Command {
-        Self::augment_args(command)
-    }
-}
-
-impl FromArgMatches for GivenImport {
-    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
-        let mut own = Self::default();
-        own.update_from_arg_matches(matches)?;
-        Ok(own)
-    }
-
-    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
+    fn take(&mut self, matches: &ArgMatches) -> Result<(), Error> {
         let value = |declaration: &&'static Declaration| Some((*declaration, given(declaration, matches)?));
-        self.0 = options::IMPORT.iter().filter_map(value).collect();
+        self.0 = Self::ALL.iter().filter_map(value).collect();
         Ok(())
     }
 }

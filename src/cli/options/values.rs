@@ -8,7 +8,6 @@ use std::str::FromStr;
 use clap::builder::{OsStringValueParser, TypedValueParser};
 use glam::Vec3;
 
-use geometry::mesh::crease_band::WIDEST;
 use inspect::render::camera::FIELDS_OF_VIEW;
 use load::Source;
 use load::format::Format;
@@ -70,9 +69,7 @@ impl FromStr for CameraOption {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let numbers: Option<Vec<f32>> =
-            text.split(',').map(|number| number.trim().parse().ok().filter(|x: &f32| x.is_finite())).collect();
-        match numbers.as_deref() {
+        match numbers(text).as_deref() {
             Some(&[azimuth, elevation]) => Ok(Self { azimuth, elevation, distance: None }),
             Some(&[azimuth, elevation, distance]) if distance > 0.0 => {
                 Ok(Self { azimuth, elevation, distance: Some(distance) })
@@ -80,12 +77,6 @@ impl FromStr for CameraOption {
             _ => Err("expected AZIMUTH,ELEVATION in degrees and perhaps a DISTANCE above 0 in bounding radii, such as 30,20,2.5".into()),
         }
     }
-}
-
-/// Parses a difference of colours in steps of 255.
-pub(crate) fn steps(text: &str) -> Result<f32, String> {
-    let steps = text.trim().parse().ok().filter(|steps| (0.0..=255.0).contains(steps));
-    steps.ok_or_else(|| "expected a number from 0 to 255".to_owned())
 }
 
 /// Parses a vertical field of view in degrees.
@@ -109,9 +100,7 @@ impl FromStr for Position {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let numbers: Option<Vec<f32>> =
-            text.split(',').map(|number| number.trim().parse().ok().filter(|x: &f32| x.is_finite())).collect();
-        let place = numbers.and_then(|numbers| <[f32; 3]>::try_from(numbers).ok());
+        let place = numbers(text).and_then(|numbers| <[f32; 3]>::try_from(numbers).ok());
         place.map(|place| Self(place.into())).ok_or_else(|| "expected X,Y,Z in object units, such as 0,1.5,0".into())
     }
 }
@@ -158,19 +147,17 @@ where
     }
 }
 
-/// Parses a weld tolerance, relative to the bounding diagonal, from 0 to 0.1.
-pub(super) fn weld(text: &str) -> Result<f32, String> {
-    within(text, 0.0..=0.1)
+/// Parses a number of a range.
+pub(crate) fn within(range: RangeInclusive<f32>) -> impl Fn(&str) -> Result<f32, String> + Clone {
+    move |text: &str| {
+        let number = text.trim().parse().ok().filter(|number| range.contains(number));
+        number.ok_or_else(|| format!("expected a number from {} to {}", range.start(), range.end()))
+    }
 }
 
-/// Parses the width of a crease band, relative to the bounding diagonal.
-pub(super) fn crease_band(text: &str) -> Result<f32, String> {
-    within(text, 0.0..=WIDEST)
-}
-
-fn within(text: &str, range: RangeInclusive<f32>) -> Result<f32, String> {
-    let number = text.parse().ok().filter(|number| range.contains(number));
-    number.ok_or_else(|| format!("expected a number from {} to {}", range.start(), range.end()))
+/// Reads finite numbers between commas.
+fn numbers(text: &str) -> Option<Vec<f32>> {
+    text.split(',').map(|number| number.trim().parse().ok().filter(|x: &f32| x.is_finite())).collect()
 }
 
 #[cfg(test)]
@@ -213,6 +200,7 @@ mod tests {
         for bad in ["", "0", "0GiB", "-1", "1.5GiB", "GiB", "1GB", "1e9", "99999999999GiB", "+1"] {
             assert!(bytes(bad).is_err(), "{bad}");
         }
+        let weld = within(0.0..=0.1);
         assert!(weld("0").is_ok() && weld("1e-7") == Ok(1e-7) && weld("0.1").is_ok());
         assert!(weld("0.11").is_err() && weld("-1e-7").is_err() && weld("nan").is_err() && weld("").is_err());
     }

@@ -2,11 +2,12 @@
 
 use std::str::FromStr;
 
+use clap::builder::{PossibleValue, TypedValueParser};
 use clap::{Args, ValueEnum};
 use glam::DMat4;
 
 use super::values::{angle, field_of_view};
-use super::{CameraOption, Position, SurfaceOptions, file_camera};
+use super::{CameraOption, Position, SurfaceOptions, defaults, file_camera, named};
 use crate::cli::CliError;
 use geometry::mesh::{Bounds, Mesh, Moment};
 use inspect::render::Camera;
@@ -55,17 +56,16 @@ pub struct ViewOptions {
     #[arg(long, value_enum, default_value_t = MatrixOrder::ColumnMajor, requires = "view_projection")]
     pub matrix_order: MatrixOrder,
     /// The depth that the matrix gives the near plane and what is far away
-    #[arg(long, value_enum, default_value_t = Depth::ZeroToOne, requires = "view_projection")]
-    pub depth: Depth,
+    #[arg(long, value_parser = one_of(&DEPTHS), default_value = "zero-to-one", requires = "view_projection")]
+    pub depth: DepthRange,
     /// Where the matrix has +y on the screen
-    #[arg(long, value_enum, default_value_t = Upwards::Up, requires = "view_projection")]
-    pub clip_y: Upwards,
+    #[arg(long, value_parser = one_of(&UPWARDS), default_value = "up", requires = "view_projection")]
+    pub clip_y: ClipY,
 }
 
 impl Default for ViewOptions {
-    /// The options of an empty command line.
     fn default() -> Self {
-        SurfaceOptions::default().view
+        defaults()
     }
 }
 
@@ -101,50 +101,25 @@ pub enum MatrixOrder {
 }
 
 /// Depth after the division by w.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Depth {
-    /// 0 on the near plane, 1 far away (Direct3D, Vulkan, Metal, WebGPU)
-    ZeroToOne,
-    /// 1 on the near plane, 0 far away (the same with depth reversed)
-    Reversed,
-    /// -1 on the near plane, 1 far away (OpenGL)
-    MinusOneToOne,
-}
-
-impl From<Depth> for DepthRange {
-    fn from(depth: Depth) -> Self {
-        match depth {
-            Depth::ZeroToOne => Self::ZeroToOne,
-            Depth::Reversed => Self::Reversed,
-            Depth::MinusOneToOne => Self::MinusOneToOne,
-        }
-    }
-}
+const DEPTHS: [(&str, &str, DepthRange); 3] = [
+    ("zero-to-one", "0 on the near plane, 1 far away (Direct3D, Vulkan, Metal, WebGPU)", DepthRange::ZeroToOne),
+    ("reversed", "1 on the near plane, 0 far away (the same with depth reversed)", DepthRange::Reversed),
+    ("minus-one-to-one", "-1 on the near plane, 1 far away (OpenGL)", DepthRange::MinusOneToOne),
+];
 
 /// Where +y of clip space is on the screen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Upwards {
-    /// Direct3D, Metal, WebGPU, OpenGL
-    Up,
-    /// Vulkan
-    Down,
-}
+const UPWARDS: [(&str, &str, ClipY); 2] =
+    [("up", "Direct3D, Metal, WebGPU, OpenGL", ClipY::Up), ("down", "Vulkan", ClipY::Down)];
 
-impl From<Upwards> for ClipY {
-    fn from(upwards: Upwards) -> Self {
-        match upwards {
-            Upwards::Up => Self::Up,
-            Upwards::Down => Self::Down,
-        }
-    }
+/// Reads one of these, each of which has a name and a text.
+fn one_of<T: Copy + Send + Sync + 'static>(all: &'static [(&str, &str, T)]) -> impl TypedValueParser<Value = T> {
+    let names = all.iter().map(|(name, text, _)| PossibleValue::new(*name).help(*text));
+    named(names, |name| all.iter().find(|own| own.0 == name).map(|own| own.2))
 }
 
 impl ViewOptions {
     /// Returns the camera of these options for a mesh with these bounds, at a moment of one of its clips. Without a distance it shows
     /// everything that is drawn as `surface` says.
-    ///
-    /// # Errors
-    /// The mesh has no camera of the name that was asked for, or the matrix isn't that of a view.
     pub fn camera(
         &self,
         surface: &SurfaceOptions,
@@ -177,7 +152,7 @@ impl ViewOptions {
             MatrixOrder::ColumnMajor => listed,
             MatrixOrder::RowMajor => listed.transpose(),
         };
-        Some(ViewProjection { clip_from_object, depth: self.depth.into(), y: self.clip_y.into() })
+        Some(ViewProjection { clip_from_object, depth: self.depth, y: self.clip_y })
     }
 }
 

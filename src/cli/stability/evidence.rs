@@ -18,9 +18,6 @@ use lab::stability::{Failure, Subject, Tried, viewport};
 const ENLARGED: u32 = 3;
 
 /// Draws the worst place of each gate that failed.
-///
-/// # Errors
-/// A picture can't be written, or the device was lost.
 pub(super) fn write(folder: &Path, engine: &Engine, all: &[Loaded], failed: &[Failure]) -> Result<(), CliError> {
     for failure in failed {
         let Some(own) = all.iter().find(|own| own.subject.name == failure.case) else { continue };
@@ -43,19 +40,7 @@ fn shot(engine: &Engine, Loaded { subject, warnings }: &Loaded, tried: Tried) ->
     let topology = Arc::new(Topology::build_within(&mesh, *weld, &Progress::new())?);
     let loaded = LoadedMesh { warnings: warnings.clone(), ..LoadedMesh::of_mesh(mesh, topology) };
     let Tried { settings, camera, moment } = tried;
-    let shown = ShotSubject {
-        loaded,
-        moment,
-        given: None,
-        surface_shader: None,
-        matcap: None,
-        environment: None,
-        settings,
-        reference_surface: None,
-        selected: None,
-        more_lines: Default::default(),
-        arena_bytes: ARENA_BYTES,
-    };
+    let shown = ShotSubject { moment, ..ShotSubject::new(loaded, settings) };
     let mut scene = engine.scene(&shown.loaded, ARENA_BYTES)?;
     shown.dress(engine, &mut scene)?;
     let size = viewport().to_array().map(|side| side as u32 * ENLARGED);

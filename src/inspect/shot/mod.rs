@@ -53,7 +53,7 @@ use crate::render::{
     Camera, DEVIATION_PX_SCALE, Distances, LineSegment, Renderer, Scale, Scene, Target, axis_lines, crack_lines,
     deviation_scale, lay_over, lod_camera_lines, outlines_picture, patch_lines, t_junction_lines, worst_lines,
 };
-use crate::settings::{Colors, DeviationUnit, Settings, SplitSide};
+use crate::settings::{ARENA_BYTES, Colors, DeviationUnit, Settings, SplitSide};
 use geometry::mesh::{Bounds, Mesh, Moment, Texture, t_junctions};
 use geometry::progress::Progress;
 use geometry::tessellate::{Inputs, LodView};
@@ -135,6 +135,23 @@ pub struct Shot {
 }
 
 impl Subject {
+    /// The mesh at rest with these settings, and nothing else.
+    pub fn new(loaded: Loaded, settings: Settings) -> Self {
+        Self {
+            loaded,
+            moment: None,
+            given: None,
+            surface_shader: None,
+            matcap: None,
+            environment: None,
+            settings,
+            reference_surface: None,
+            selected: None,
+            more_lines: Default::default(),
+            arena_bytes: ARENA_BYTES,
+        }
+    }
+
     /// Gives a scene of the mesh its factors, its control points, its matcap and its pose.
     ///
     /// # Errors

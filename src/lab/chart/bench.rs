@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::{Errors, Row, Setting, Time};
+use super::{Errors, Probe, Row, Setting, Time};
 use geometry::tessellate::{Clip, Tessellation};
 use gpu::{GpuError, Timing};
 use inspect::engine::{Engine, MeasurementResults, Measurements, Runs};
@@ -41,39 +41,16 @@ pub struct Bench<'a> {
     pub effort: Effort,
 }
 
-/// The cost and the errors of some settings: see [`Row`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Probe {
-    pub triangles: u64,
-    pub vertices: u64,
-    pub time: Time,
-    pub errors: Option<Errors>,
-    pub max_error_px: Option<f64>,
-    pub triangles_by_error: Option<u64>,
-}
-
 impl Bench<'_> {
     /// Measures a setting. Returns `None` if it has more triangles than the effort allows.
-    ///
-    /// # Errors
-    /// The device was lost.
     pub fn measure(&mut self, setting: &Setting) -> Result<Option<Row>, GpuError> {
         let probe = self.probe(&setting.applied(&self.base))?;
-        Ok(probe.map(|probe| self.row(setting, probe)))
-    }
-
-    /// The row for a setting and its measurements.
-    pub fn row(&self, setting: &Setting, probe: Probe) -> Row {
-        let Probe { triangles, vertices, time, errors, max_error_px, triangles_by_error } = probe;
         let (mesh, adapter) = (self.mesh.clone(), self.engine.gpu.info.name.clone());
-        Row { mesh, adapter, setting: *setting, triangles, vertices, time, errors, max_error_px, triangles_by_error }
+        Ok(probe.map(|probe| Row { mesh, adapter, setting: *setting, probe }))
     }
 
     /// Measures any settings, without their clipping and culling: a comparison with a reference surface needs all of the mesh.
     /// Returns `None` if that has more triangles than the effort allows.
-    ///
-    /// # Errors
-    /// The device was lost.
     pub fn probe(&mut self, settings: &Settings) -> Result<Option<Probe>, GpuError> {
         let Self { engine, scene, target, camera, .. } = self;
         let settings = whole(settings);

@@ -1,6 +1,6 @@
 //! The two costs of a setting: time, or triangles.
 
-use super::Row;
+use super::{Probe, Row};
 
 /// A cost of a setting: time in ms, or triangles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -12,14 +12,13 @@ pub enum Cost {
 
 impl Cost {
     pub fn of(self, row: &Row) -> f64 {
-        self.either(row.time.total(), row.triangles)
+        self.of_probe(&row.probe)
     }
 
-    /// Returns `ms` or `triangles`, whichever this cost is.
-    pub fn either(self, ms: f64, triangles: u64) -> f64 {
+    pub fn of_probe(self, probe: &Probe) -> f64 {
         match self {
-            Self::Ms => ms,
-            Self::Triangles => triangles as f64,
+            Self::Ms => probe.time.total(),
+            Self::Triangles => probe.triangles as f64,
         }
     }
 

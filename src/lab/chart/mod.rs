@@ -16,7 +16,7 @@ mod setting;
 mod words;
 
 pub use axis::{Axis, Tick};
-pub use bench::{Bench, Effort, Probe, whole};
+pub use bench::{Bench, Effort, whole};
 pub use cost::Cost;
 pub use legend::method_styles;
 pub use method_style::{Fill, MethodStyle, Shape, dash};
@@ -31,27 +31,36 @@ use geometry::tessellate::Vertex;
 use gpu::{DRAWING, PassTime};
 use inspect::settings::Choice;
 
-/// The columns of a row written as CSV.
-pub const COLUMNS: [&str; 18] = [
-    "mesh",
-    "adapter",
-    "surface",
-    "normals",
-    "partitioning",
-    "lod",
-    "setting",
-    "triangles",
-    "vertices",
-    "bytes",
-    "ms_tessellate",
-    "ms_draw",
-    "ms_total",
-    "max_error",
-    "rms_error",
-    "max_error_px",
-    "normal_error_deg",
-    "triangles_by_error",
+/// The columns of a row written as CSV. Numbers read back exactly, and unknown values are empty.
+const COLUMNS: [(&str, fn(&Row) -> String); 18] = [
+    ("mesh", |row| row.mesh.clone()),
+    ("adapter", |row| row.adapter.clone()),
+    ("surface", |row| row.setting.method.surface.name().to_owned()),
+    ("normals", |row| row.setting.method.normals.name().to_owned()),
+    ("partitioning", |row| row.setting.method.partitioning.name().to_owned()),
+    ("lod", |row| row.setting.method.lod.name().to_owned()),
+    ("setting", |row| row.setting.to_string()),
+    ("triangles", |row| row.probe.triangles.to_string()),
+    ("vertices", |row| row.probe.vertices.to_string()),
+    ("bytes", |row| row.bytes().to_string()),
+    ("ms_tessellate", |row| row.probe.time.tessellate.to_string()),
+    ("ms_draw", |row| row.probe.time.draw.to_string()),
+    ("ms_total", |row| row.probe.time.total().to_string()),
+    ("max_error", |row| known(row.probe.errors.map(|errors| errors.largest))),
+    ("rms_error", |row| known(row.probe.errors.map(|errors| errors.rms))),
+    ("max_error_px", |row| known(row.probe.max_error_px)),
+    ("normal_error_deg", |row| known(row.probe.errors.map(|errors| errors.normal_degrees))),
+    ("triangles_by_error", |row| known(row.probe.triangles_by_error)),
 ];
+
+fn known(number: Option<impl ToString>) -> String {
+    number.map_or_else(String::new, |number| number.to_string())
+}
+
+/// The names of the columns of [`Row::record`].
+pub fn columns() -> [&'static str; 18] {
+    COLUMNS.map(|(name, _)| name)
+}
 
 /// The measurements of one setting.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,6 +69,12 @@ pub struct Row {
     pub mesh: String,
     pub adapter: String,
     pub setting: Setting,
+    pub probe: Probe,
+}
+
+/// The cost and the errors of some settings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Probe {
     pub triangles: u64,
     pub vertices: u64,
     pub time: Time,
@@ -109,33 +124,12 @@ impl Time {
 impl Row {
     /// The size of the emitted vertices and indices.
     pub fn bytes(&self) -> u64 {
-        self.vertices * size_of::<Vertex>() as u64 + self.triangles * 12
+        self.probe.vertices * size_of::<Vertex>() as u64 + self.probe.triangles * 12
     }
 
-    /// The fields of [`COLUMNS`]. Numbers read back exactly, and unknown values are empty.
+    /// The row as a record of CSV.
     pub fn record(&self) -> [String; 18] {
-        let Method { surface, normals, partitioning, lod } = self.setting.method;
-        let known = |number: Option<f64>| number.map_or_else(String::new, |number| number.to_string());
-        [
-            self.mesh.clone(),
-            self.adapter.clone(),
-            surface.name().to_owned(),
-            normals.name().to_owned(),
-            partitioning.name().to_owned(),
-            lod.name().to_owned(),
-            self.setting.to_string(),
-            self.triangles.to_string(),
-            self.vertices.to_string(),
-            self.bytes().to_string(),
-            self.time.tessellate.to_string(),
-            self.time.draw.to_string(),
-            self.time.total().to_string(),
-            known(self.errors.map(|errors| errors.largest)),
-            known(self.errors.map(|errors| errors.rms)),
-            known(self.max_error_px),
-            known(self.errors.map(|errors| errors.normal_degrees)),
-            self.triangles_by_error.map_or_else(String::new, |triangles| triangles.to_string()),
-        ]
+        COLUMNS.map(|(_, text)| text(self))
     }
 }
 
@@ -155,17 +149,28 @@ pub struct Subject {
 impl Subject {
     /// The largest error of a row: a part of the reference surface's diagonal, or px without a reference surface.
     pub fn error(&self, row: &Row) -> Option<f64> {
-        self.error_of(row.errors, row.max_error_px)
+        self.error_of(&row.probe)
     }
 
-    /// The largest error of any measurements: see [`Self::error`].
-    pub fn error_of(&self, errors: Option<Errors>, max_error_px: Option<f64>) -> Option<f64> {
+    /// The largest error of any settings: see [`Self::error`].
+    pub fn error_of(&self, probe: &Probe) -> Option<f64> {
         let error = match self.truth {
-            Some(_) => errors.map(|errors| errors.largest),
-            None => max_error_px,
+            Some(_) => probe.errors.map(|errors| errors.largest),
+            None => probe.max_error_px,
         };
         error.filter(|error| error.is_finite())
     }
+}
+
+/// Each value once, in the order in which they come first.
+fn distinct<T: PartialEq>(values: impl IntoIterator<Item = T>) -> Vec<T> {
+    let mut all = Vec::new();
+    for value in values {
+        if !all.contains(&value) {
+            all.push(value);
+        }
+    }
+    all
 }
 
 #[cfg(test)]

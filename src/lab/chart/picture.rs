@@ -35,18 +35,12 @@ const GRID: RGBColor = RGBColor(236, 236, 236);
 const FINE_GRID: RGBColor = RGBColor(246, 246, 246);
 
 /// Draws charts as a bitmap.
-///
-/// # Errors
-/// The font can't be used.
 pub fn bitmap(subjects: &[Subject]) -> Result<RgbImage, ChartError> {
     let layout = Layout::of(subjects);
     plot::bitmap([WIDTH, layout.height()], |area| layout.draw(area))
 }
 
 /// Draws charts as an SVG file. Its labels are text.
-///
-/// # Errors
-/// The font can't be used.
 pub fn svg(subjects: &[Subject]) -> Result<String, ChartError> {
     plot::use_font()?;
     let layout = Layout::of(subjects);

@@ -1,6 +1,6 @@
 //! Compares rows: which ones no other row beats, and which method reaches an error fastest.
 
-use super::{Cost, Method, Row, Subject};
+use super::{Cost, Method, Row, Subject, distinct};
 use geometry::tessellate::Surface;
 
 /// The rows of a mesh that can be compared, with their errors. With a reference surface these are all rows. Without one they
@@ -53,14 +53,14 @@ pub fn has_converged(rows: &[Row], method: Method) -> bool {
     let Some(last) = own.next() else { return false };
     let errors = |row: &Row| {
         let [largest, rms, degrees] =
-            row.errors.map_or([0.0; 3], |errors| [errors.largest, errors.rms, errors.normal_degrees]);
-        [largest, rms, degrees, row.max_error_px.unwrap_or(0.0)]
+            row.probe.errors.map_or([0.0; 3], |errors| [errors.largest, errors.rms, errors.normal_degrees]);
+        [largest, rms, degrees, row.probe.max_error_px.unwrap_or(0.0)]
     };
     let is_no_closer = |earlier: &Row| {
         let pairs = errors(earlier).into_iter().zip(errors(last));
         pairs.into_iter().all(|(before, now)| now >= (1.0 - CLOSER) * before)
     };
-    own.any(|row| row.triangles.saturating_mul(FINER) <= last.triangles && is_no_closer(row))
+    own.any(|row| row.probe.triangles.saturating_mul(FINER) <= last.probe.triangles && is_no_closer(row))
 }
 
 impl Subject {
@@ -79,13 +79,7 @@ impl Subject {
 
     /// All methods, in the order of their first rows.
     pub fn methods(&self) -> Vec<Method> {
-        let mut methods = Vec::new();
-        for row in &self.rows {
-            if !methods.contains(&row.setting.method) {
-                methods.push(row.setting.method);
-            }
-        }
-        methods
+        distinct(self.rows.iter().map(|row| row.setting.method))
     }
 }
 

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use image::ImageFormat;
 use thiserror::Error;
 
-use super::{COLUMNS, Subject, bitmap, svg};
+use super::{Subject, bitmap, columns, svg};
 use geometry::names::shown_path;
 use inspect::plot::ChartError;
 use load::files::file_reason;
@@ -45,7 +45,7 @@ pub fn save(path: &Path, subject: &Subject) -> Result<(), SaveError> {
 
 fn table(subject: &Subject) -> std::io::Result<Vec<u8>> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(COLUMNS)?;
+    writer.write_record(columns())?;
     for row in &subject.rows {
         writer.write_record(row.record())?;
     }

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::distinct;
 use geometry::names::every;
 use geometry::tessellate::{Lod, Normals, Partitioning, Surface, Tessellation};
 use inspect::settings::{Choice, Description, Settings};
@@ -185,22 +186,16 @@ pub fn coarse_first(settings: Vec<Setting>) -> Vec<Setting> {
 impl Plan {
     /// All settings, method by method, each from coarse to fine as listed. Subtriangulation is only tried with uniform LOD.
     pub fn settings(&self) -> Vec<Setting> {
-        let mut all: Vec<Setting> = Vec::new();
-        for method in self.methods() {
+        let settings = |method: Method| {
             let values = match method.lod {
                 LodKind::Uniform => &self.factors,
                 LodKind::Paper => &self.pixels,
                 LodKind::Error | LodKind::ErrorRows => &self.tolerances,
             };
-            let settings = values.iter().map(|&value| Setting { method, value });
-            // A setting that was named twice is tried once.
-            settings.for_each(|setting| {
-                if !all.contains(&setting) {
-                    all.push(setting);
-                }
-            });
-        }
-        all
+            values.iter().map(move |&value| Setting { method, value })
+        };
+        // A setting that was named twice is tried once.
+        distinct(self.methods().into_iter().flat_map(settings))
     }
 
     fn methods(&self) -> Vec<Method> {

@@ -15,12 +15,14 @@ pub(super) fn row(surface: Surface, lod: LodKind, value: f32, (ms, triangles, er
         mesh: "shape:torus".into(),
         adapter: "an adapter, made up".into(),
         setting: Setting { method: method(surface, lod), value },
-        triangles,
-        vertices: 3 * triangles,
-        time: Time { tessellate: 0.25 * ms, draw: 0.75 * ms },
-        errors: Some(Errors { largest: error, rms: 0.5 * error, normal_degrees: 3.0 }),
-        max_error_px: Some(error),
-        triangles_by_error: Some(triangles.div_ceil(2)),
+        probe: Probe {
+            triangles,
+            vertices: 3 * triangles,
+            time: Time { tessellate: 0.25 * ms, draw: 0.75 * ms },
+            errors: Some(Errors { largest: error, rms: 0.5 * error, normal_degrees: 3.0 }),
+            max_error_px: Some(error),
+            triangles_by_error: Some(triangles.div_ceil(2)),
+        },
     }
 }
 
@@ -59,9 +61,9 @@ fn the_front_has_the_points_that_no_other_beats() {
     let races = subject.races();
     let [race] = &races[..] else { panic!("one reference surface makes one group, not {}", races.len()) };
     let labels = |front: Vec<(&Row, f64)>| front.iter().map(|(row, _)| row.setting.to_string()).collect::<Vec<_>>();
-    assert_eq!(labels(race.front(|row| row.time.total())), ["factor 1", "factor 2", "error 4 px", "error 1 px"]);
+    assert_eq!(labels(race.front(|row| row.probe.time.total())), ["factor 1", "factor 2", "error 4 px", "error 1 px"]);
     assert_eq!(
-        labels(race.front(|row| row.triangles as f64)),
+        labels(race.front(|row| row.probe.triangles as f64)),
         ["factor 1", "factor 2", "error 4 px", "error 1 px"],
         "factor 4 is beaten: it takes 160 triangles for an error that 90 reach"
     );
@@ -120,7 +122,7 @@ fn the_fastest_row_is_found_and_the_next_is_of_another_method() {
     let subject = subject(Some("it"), some_rows());
     let race = &subject.races()[0];
     let win = race.win(0.005).expect("three rows reach it");
-    assert_eq!((win.fastest.setting.to_string(), win.fastest.time.total()), ("error 4 px".into(), 2.5));
+    assert_eq!((win.fastest.setting.to_string(), win.fastest.probe.time.total()), ("error 4 px".into(), 2.5));
     assert_eq!(win.next.map(|next| next.setting.to_string()), Some("factor 4".into()));
     assert_eq!(race.win(0.0005).and_then(|win| win.next), None);
     assert_eq!(race.win(0.0001), None);
@@ -143,9 +145,9 @@ fn sentences_name_the_fastest_methods() {
     // Each surface is compared with its own limit. Flat has no error then, and isn't compared with PN-AEN.
     let mut rows = some_rows();
     for row in &mut rows {
-        row.errors = None;
+        row.probe.errors = None;
         let flat = row.setting.method.surface == Surface::Flat;
-        row.max_error_px = row.max_error_px.map(|px| if flat { 1e-6 } else { 100.0 * px });
+        row.probe.max_error_px = row.probe.max_error_px.map(|px| if flat { 1e-6 } else { 100.0 * px });
     }
     let sentences = subject(None, rows).sentences();
     assert_eq!(sentences.len(), 3, "{sentences:?}");
@@ -165,12 +167,12 @@ fn names_have_only_what_tells_methods_apart() {
 #[test]
 fn rows_read_back_from_csv() {
     let mut rows = some_rows();
-    rows[1].errors = None;
-    rows[1].max_error_px = None;
-    rows[2].time.draw = 0.1 + 0.2;
-    rows[2].triangles_by_error = None;
+    rows[1].probe.errors = None;
+    rows[1].probe.max_error_px = None;
+    rows[2].probe.time.draw = 0.1 + 0.2;
+    rows[2].probe.triangles_by_error = None;
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(COLUMNS).expect("a header");
+    writer.write_record(columns()).expect("a header");
     rows.iter().for_each(|row| writer.write_record(row.record()).expect("a row"));
     let bytes = writer.into_inner().expect("a buffer");
     let mut reader = csv::Reader::from_reader(&bytes[..]);
@@ -182,10 +184,10 @@ fn rows_read_back_from_csv() {
     assert_eq!(records.len(), rows.len());
     for (record, row) in records.iter().zip(&rows) {
         assert_eq!(record.iter().collect::<Vec<_>>(), row.record());
-        assert_eq!(record[12].parse(), Ok(row.time.total()));
-        assert_eq!(record[13].parse().ok(), row.errors.map(|errors| errors.largest));
-        assert_eq!(record[17].parse().ok(), row.triangles_by_error);
-        assert_eq!(record[9].parse(), Ok(3 * row.triangles * 32 + 12 * row.triangles));
+        assert_eq!(record[12].parse(), Ok(row.probe.time.total()));
+        assert_eq!(record[13].parse().ok(), row.probe.errors.map(|errors| errors.largest));
+        assert_eq!(record[17].parse().ok(), row.probe.triangles_by_error);
+        assert_eq!(record[9].parse(), Ok(3 * row.probe.triangles * 32 + 12 * row.probe.triangles));
     }
     assert_eq!((&records[2][2], &records[2][5], &records[2][6]), ("pn-aen", "uniform", "factor 2"));
     assert_eq!((&records[6][0], &records[6][6], &records[1][15]), ("shape:torus", "error 1 px", ""));
@@ -313,7 +315,7 @@ fn the_ending_decides_how_a_chart_is_saved() {
     assert_eq!(saved("a.PNG")[1..4], *b"PNG");
     let table = String::from_utf8(saved("a.csv")).expect("text");
     assert_eq!(table.lines().count(), 1 + shown.rows.len());
-    assert_eq!(table.lines().next(), Some(&COLUMNS.join(",")[..]));
+    assert_eq!(table.lines().next(), Some(&columns().join(",")[..]));
     let other = save(&folder.path().join("a.txt"), &shown).map_err(|error| error.to_string());
     assert!(other.is_err_and(|text| text.contains(".svg, .png or .csv")));
     let nowhere = save(&folder.path().join("nowhere/a.svg"), &shown).map_err(|error| error.to_string());
@@ -323,7 +325,7 @@ fn the_ending_decides_how_a_chart_is_saved() {
 #[test]
 fn charts_without_rows_or_errors_are_drawn() {
     let zero = row(Surface::PnAen, LodKind::Uniform, 64.0, (1.0, 7, 0.0));
-    let unknown = Row { errors: None, max_error_px: None, ..zero.clone() };
+    let unknown = Row { probe: Probe { errors: None, max_error_px: None, ..zero.probe }, ..zero.clone() };
     for rows in [Vec::new(), vec![unknown], vec![zero.clone()], [some_rows(), vec![zero]].concat()] {
         let shown = [subject(Some("the exact surface"), rows.clone()), subject(None, rows)];
         let picture = bitmap(&shown).expect("it draws");

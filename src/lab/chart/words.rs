@@ -59,11 +59,11 @@ impl Subject {
 
     fn says(&self, win: &Win) -> String {
         let Win { error, fastest, next } = *win;
-        let (name, ms) = (self.named(fastest), fastest.time.total());
-        let cost = format!("{} ms, {} triangles", short(ms), grouped(fastest.triangles));
+        let (name, ms) = (self.named(fastest), fastest.probe.time.total());
+        let cost = format!("{} ms, {} triangles", short(ms), grouped(fastest.probe.triangles));
         let rest = match next {
             Some(next) => {
-                let times = if ms > 0.0 { next.time.total() / ms } else { 1.0 };
+                let times = if ms > 0.0 { next.probe.time.total() / ms } else { 1.0 };
                 format!("{times:.1} times faster than {}", self.named(next))
             }
             None => "and nothing else reaches it".to_owned(),

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use serde::{Deserialize, Serialize};
+use walkdir::WalkDir;
 
 use super::report::Asset;
 use load::files::write_whole;
@@ -52,9 +53,6 @@ impl Cache {
 
     /// Keeps what was found about an asset. `files` are those that were read for it, from `start` on. What couldn't be checked isn't
     /// kept, since the reason may lie elsewhere; neither is what was written meanwhile, since it may not be what was measured.
-    ///
-    /// # Errors
-    /// The errors of the file system.
     pub fn put(&self, inputs: Inputs, files: &[PathBuf], start: SystemTime, asset: &Asset) -> io::Result<()> {
         let modified = |path: &PathBuf| std::fs::metadata(path).and_then(|about| about.modified());
         let is_newer = |path| modified(path).is_ok_and(|time| time >= start);
@@ -90,18 +88,10 @@ fn hash_of_file(path: &Path) -> io::Result<String> {
 /// folder can't be read.
 fn listing(asset: &Path) -> Option<String> {
     let folder = asset.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let (mut folders, mut names) = (vec![folder.to_owned()], Vec::new());
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).ok()? {
-            let entry = entry.ok()?;
-            if entry.file_type().ok()?.is_dir() {
-                folders.push(entry.path());
-            }
-            names.push(entry.path());
-            if names.len() > MOST_LISTED {
-                return None;
-            }
-        }
+    let entries = WalkDir::new(folder).min_depth(1).into_iter().take(MOST_LISTED + 1);
+    let mut names = entries.map(|entry| Some(entry.ok()?.into_path())).collect::<Option<Vec<_>>>()?;
+    if names.len() > MOST_LISTED {
+        return None;
     }
     names.sort();
     let mut hasher = blake3::Hasher::new();

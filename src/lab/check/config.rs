@@ -94,9 +94,6 @@ impl Config {
     }
 
     /// Reads a configuration from its text. `path` names it in messages.
-    ///
-    /// # Errors
-    /// As [`Self::read`].
     fn parse(path: &str, text: &str, known: KnownOptions) -> Result<Self, ConfigError> {
         let reader = Reader { path, text, known };
         let table = DeTable::parse(text).map_err(|error| {

@@ -12,9 +12,6 @@ use geometry::names::on_one_line;
 const OPENED: &str = "opens";
 
 /// Writes the report.
-///
-/// # Errors
-/// None that are known: it is written into memory.
 pub fn junit(report: &Report) -> io::Result<String> {
     let mut writer = Writer::new_with_indent(Vec::new(), b' ', 2);
     writer.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;

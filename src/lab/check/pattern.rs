@@ -12,8 +12,6 @@ pub(super) struct Pattern {
 }
 
 impl Pattern {
-    /// # Errors
-    /// The text is no pattern, such as one with a range that ends before it begins.
     pub(super) fn parse(text: &str) -> Result<Self, ignore::Error> {
         let mut builder = GitignoreBuilder::new("");
         // The folder of the configuration may be named.

@@ -42,6 +42,7 @@ pub struct View {
     pub numbers: Numbers,
     pub gates: Vec<GateResult>,
     /// A PNG file in base64, if pictures were asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub picture: Option<String>,
 }
 
@@ -59,6 +60,7 @@ pub struct GateResult {
     #[serde(rename = "where")]
     pub place: Option<GatePlace>,
     /// A picture of the place, a PNG file in base64.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub evidence: Option<String>,
     /// How long this run took to judge it, in s: 0 if the asset is unchanged.
     #[serde(skip)]
@@ -185,11 +187,8 @@ impl Report {
     }
 
     /// The report as JSON.
-    ///
-    /// # Errors
-    /// None that are known: every value can be serialised.
     pub fn json(&self) -> serde_json::Result<String> {
-        let assets: Vec<_> = self.assets.iter().map(asset_json).collect();
+        let assets = self.assets.iter().map(asset_json).collect::<serde_json::Result<Vec<_>>>()?;
         let report = serde_json::json!({
             "pnaen": env!("CARGO_PKG_VERSION"),
             "passed": self.count(Status::Passed),
@@ -203,23 +202,15 @@ impl Report {
 }
 
 /// An asset as JSON, without its pictures.
-fn asset_json(asset: &Asset) -> serde_json::Value {
-    let gate = |gate: &GateResult| {
-        let GateResult { name, limit, found, passed, text, place, .. } = gate;
-        serde_json::json!({
-            "name": name, "limit": limit, "found": found, "passed": passed, "text": text, "where": place,
-        })
-    };
-    let view = |view: &View| {
-        let gates: Vec<_> = view.gates.iter().map(gate).collect();
-        serde_json::json!({ "name": view.name, "numbers": view.numbers, "gates": gates })
-    };
-    let views: Vec<_> = asset.views.iter().map(view).collect();
-    let Asset { path, unchanged, error, warnings, .. } = asset;
-    serde_json::json!({
-        "path": path, "status": asset.status().name(), "unchanged": unchanged, "error": error, "warnings": warnings,
-        "views": views,
-    })
+fn asset_json(asset: &Asset) -> serde_json::Result<serde_json::Value> {
+    let mut plain = asset.clone();
+    for view in &mut plain.views {
+        view.picture = None;
+        view.gates.iter_mut().for_each(|gate| gate.evidence = None);
+    }
+    let mut json = serde_json::to_value(plain)?;
+    json["status"] = asset.status().name().into();
+    Ok(json)
 }
 
 /// A report with an asset of each kind.

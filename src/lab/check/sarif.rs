@@ -12,9 +12,6 @@ use inspect::gates::GateKind;
 const BROKEN: &str = "opens";
 
 /// Writes the report.
-///
-/// # Errors
-/// None that are known: every value can be serialised.
 pub fn sarif(report: &Report) -> serde_json::Result<String> {
     let rule = |name: &str, text: &str| json!({ "id": name, "shortDescription": { "text": text } });
     let gates = GateKind::ALL.map(|kind| rule(kind.name(), kind.text()));

@@ -28,14 +28,8 @@ pub(super) struct Overlaid<'a> {
     pub fit: f64,
 }
 
-/// How most of their triangles are wound.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Winding {
-    /// As the patches that they lie on.
-    Alike,
-    /// The other way.
-    Turned,
-}
+/// How most of their triangles are wound: 1 as the patches that they lie on, -1 the other way.
+type Winding = f64;
 
 /// Their triangles, patch by patch.
 pub(super) struct Assignment<'a> {
@@ -68,9 +62,6 @@ const LEAST: usize = 1 << 10;
 const STEP: usize = 1 << 12;
 
 /// Returns what `make` makes of the numbers below `count`, on all cores.
-///
-/// # Errors
-/// [`Cancelled`].
 pub(super) fn made_of_all<R: Send>(
     count: usize,
     progress: &Progress,
@@ -91,9 +82,6 @@ pub(super) fn made_of_all<R: Send>(
 
 impl<'a> Overlaid<'a> {
     /// Finds the place of each of their vertices: that of our vertex that it is, or the nearest.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     pub(super) fn new(
         theirs: &'a ForeignMesh,
         topology: &'a Topology,
@@ -111,9 +99,6 @@ impl<'a> Overlaid<'a> {
     }
 
     /// The same vertices over another surface.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     pub(super) fn over(
         &self,
         surface: (Option<Locator<'a>>, Twins<'a>),
@@ -147,10 +132,10 @@ impl<'a> Overlaid<'a> {
     /// How most of their triangles are wound that lie on the nearest patch.
     fn winding(&self) -> Winding {
         let triangles = &self.theirs.triangles;
-        let fit = |triangle: [u32; 3]| self.fit_on(self.nearest_patch(triangle), triangle, Winding::Alike);
+        let fit = |triangle: [u32; 3]| self.fit_on(self.nearest_patch(triangle), triangle, 1.0);
         let fits = spread(triangles.len(), WOUND).map(|index| fit(triangles[index])).filter(|fit| fit.corners == 3);
         let (alike, turned): (Vec<Fit>, Vec<Fit>) = fits.partition(|fit| fit.is_wound_alike);
-        if turned.len() > alike.len() { Winding::Turned } else { Winding::Alike }
+        if turned.len() > alike.len() { -1.0 } else { 1.0 }
     }
 
     fn fit_on(&self, patch: u32, triangle: [u32; 3], winding: Winding) -> Fit {
@@ -214,7 +199,7 @@ impl Fit {
         let area = domain_area(places.map(|place| place.weights));
         Self {
             corners: places.iter().filter(|place| place.distance <= fit).count(),
-            is_wound_alike: if winding == Winding::Alike { area > 0.0 } else { area < 0.0 },
+            is_wound_alike: winding * area > 0.0,
             distance: places.iter().map(|place| place.distance).sum(),
         }
     }
@@ -241,12 +226,9 @@ pub(super) fn domain_area([a, b, c]: [[f64; 2]; 3]) -> f64 {
 impl<'a> Assignment<'a> {
     /// Assigns all triangles whose corners can be told apart: the twins of ours to the patches that emit these, and others to those that
     /// they lie on.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     pub(super) fn new(overlaid: &'a Overlaid<'a>, progress: &Progress) -> Result<Self, Cancelled> {
         let (triangles, twins) = (&overlaid.theirs.triangles, &overlaid.twins);
-        let winding = if twins.are_all() { Winding::Alike } else { overlaid.winding() };
+        let winding = if twins.are_all() { 1.0 } else { overlaid.winding() };
         let patches = made_of_all(triangles.len(), progress, |index| match twins.corners(index as u32) {
             Some([vertex, ..]) => twins.place(vertex).patch,
             None if twins.is_thin(index as u32) => 0,

@@ -1,5 +1,7 @@
 //! Which one change of our factors gives the points that another program has.
 
+use std::collections::HashMap;
+
 use super::assignment::{Assignment, Part, domain_area};
 use super::cuts::cuts_of;
 use super::domain_points::{DomainPoints, pattern_points};
@@ -120,9 +122,6 @@ struct Sampled {
 
 impl Explainer<'_> {
     /// Returns the simplest explanations, which all give their points. `different` are the patches whose points differ from ours.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     pub(super) fn explain(&self, different: &[u32], progress: &Progress) -> Result<Vec<Explanation>, Cancelled> {
         let sample = self.sample(different);
         let own = self.inputs.tessellation.partitioning;
@@ -153,16 +152,13 @@ impl Explainer<'_> {
         (sample, different): (&[Sampled], &[u32]),
         progress: &Progress,
     ) -> Result<Vec<Explanation>, Cancelled> {
-        let mut written: Vec<(Partitioning, Vec<HullFactors>)> = Vec::new();
+        let mut written: HashMap<Partitioning, Vec<HullFactors>> = HashMap::new();
         for group in groups {
             let mut found = Vec::new();
             for explanation in group {
                 progress.check()?;
-                if !written.iter().any(|(partitioning, _)| *partitioning == explanation.partitioning) {
-                    written.push((explanation.partitioning, self.written(inputs, explanation.partitioning)));
-                }
-                let factors = written.iter().find(|(partitioning, _)| *partitioning == explanation.partitioning);
-                let Some((_, factors)) = factors else { continue };
+                let Explanation { partitioning, .. } = explanation;
+                let factors = written.entry(partitioning).or_insert_with(|| self.written(inputs, partitioning));
                 if self.explains(explanation, factors, sample, different) {
                     found.push(explanation);
                 }

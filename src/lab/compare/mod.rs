@@ -29,7 +29,7 @@ use glam::{DMat4, DVec3, Vec3};
 pub use findings::{Finding, plural, point};
 pub use foreign::ForeignMesh;
 pub use matching::Farthest;
-pub use outcomes::{SideCut, SideDifference};
+pub use outcomes::SideDifference;
 pub use patch_starts::patch_starts;
 
 use geometry::mesh::{Bounds, Mesh, Topology};
@@ -77,7 +77,7 @@ impl Exactness {
 }
 
 /// What differs.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Comparison {
     /// The most important first; empty if the two are the same.
     pub findings: Vec<Finding>,
@@ -114,9 +114,6 @@ const FAR: f64 = 0.02;
 const MANY_FAR: f64 = 0.2;
 
 /// Compares another program's tessellation with ours.
-///
-/// # Errors
-/// [`Cancelled`].
 pub fn compare(
     ours: &Ours,
     theirs: &ForeignMesh,
@@ -205,9 +202,6 @@ struct Laid<'a> {
 
 impl<'a> Laid<'a> {
     /// Seeks their surface, from where they lie over ours.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     fn new(
         ours: &Ours<'a>,
         on_own: Overlaid<'a>,
@@ -279,26 +273,15 @@ impl Comparison {
     /// Without anything that was found.
     fn new(ours: &Ours, theirs: &ForeignMesh) -> Self {
         Self {
-            findings: Vec::new(),
             vertices: theirs.positions.len() as u64,
             triangles: theirs.triangles.len() as u64,
-            patches: 0,
-            from_surface: 0.0,
-            farthest: None,
             ulp: ulp(ours.topology),
             diagonal: Bounds::of(ours.topology.points.iter().copied()).diagonal().into(),
-            sides: Vec::new(),
-            different: Vec::new(),
-            missing: Vec::new(),
-            strays: Vec::new(),
-            positions: Vec::new(),
+            ..Self::default()
         }
     }
 
     /// Names what differs, where theirs is a tessellation of our mesh.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     fn name_differences(
         &mut self,
         laid: &Laid,
@@ -332,9 +315,6 @@ impl Comparison {
     }
 
     /// Where another convention gives all of their points, it also explains a few that seem to be moved, and their triangles.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     fn leave_to_factors(&mut self, conventions: &Conventions) -> Result<(), Cancelled> {
         let is_known = self.findings.iter().any(|finding| matches!(finding, Finding::Factors { .. }));
         if !is_known || !self.findings.iter().any(Finding::is_about_few_points) {
@@ -354,9 +334,6 @@ impl Comparison {
     }
 
     /// Says what distances between the same vertices mean, where nothing else was found but how coordinates are meant.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     fn judge_distances(&mut self, outcomes: &Outcomes, conventions: &Conventions) -> Result<(), Cancelled> {
         let Conventions { ours, exactness: Exactness { within, .. }, .. } = *conventions;
         let Some(farthest) = self.farthest.filter(|farthest| farthest.distance > within) else { return Ok(()) };
@@ -387,9 +364,6 @@ struct Conventions<'a> {
 
 impl Conventions<'_> {
     /// Finds the convention among some of the others under which what we emit passes `suits`, which gets our outcomes under it.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     fn other(
         &self,
         among: impl Fn(&Convention) -> bool,

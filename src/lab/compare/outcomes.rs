@@ -1,5 +1,7 @@
 //! What came out for every patch, and what follows from all of them together.
 
+use serde::Serialize;
+
 use super::assignment::{Assignment, made_of_all};
 use super::corner_orders::CornerOrder;
 use super::cuts::{Cut, cuts_of};
@@ -51,12 +53,13 @@ struct Offsets {
 }
 
 /// A side of a patch that is cut differently.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SideDifference {
     /// The patch's triangle of the mesh, and which of its sides it is (from corner k to corner k + 1).
     pub triangle: u32,
     pub side: u32,
     /// Both ends, in object units.
+    #[serde(rename = "points")]
     pub ends: [[f32; 3]; 2],
     pub theirs: SideCut,
     pub ours: SideCut,
@@ -73,7 +76,7 @@ struct OtherCuts {
 }
 
 /// How a side is cut.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SideCut {
     pub segments: u64,
     /// The tessellation factor that gives it.
@@ -111,9 +114,6 @@ const SUITS: f64 = 0.97;
 
 impl<'a> Outcomes<'a> {
     /// Compares all patches.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     pub(super) fn new(
         ours: &Ours,
         own_mesh: &'a OwnMesh<'a>,
@@ -231,9 +231,6 @@ impl<'a> Outcomes<'a> {
 
     /// Explains where points differ, and returns the sides that are cut differently. `other` is the surface that their vertices lie on, if
     /// it isn't ours. `None` if no point differs but for that surface or for displacement.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     pub(super) fn explain(
         &self,
         ours: &Ours,

@@ -53,9 +53,6 @@ impl<'a> Trial<'a> {
 
     /// Returns the surface of ours that the vertices lie on, or what a usual mistake makes of our own; `None` if they lie on none of these
     /// better than on our own.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     pub(super) fn other_surface(&self, progress: &Progress) -> Result<Option<OwnSurface>, Cancelled> {
         let found = match self.best(self.candidates(), progress)? {
             Some(found) => Some(found),
@@ -71,9 +68,6 @@ impl<'a> Trial<'a> {
     }
 
     /// The first of the surfaces that the most vertices lie on, if nearly all do.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     fn best(&self, among: Vec<OwnSurface>, progress: &Progress) -> Result<Option<(OwnSurface, Fitting)>, Cancelled> {
         let mut best: Option<(OwnSurface, Fitting)> = None;
         for surface in among {

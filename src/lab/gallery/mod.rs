@@ -82,9 +82,6 @@ impl<'a> Gallery<'a> {
 
     /// Draws an exhibit's tiles in rows. Returns the picture, and the results of each tile in order. `starting` is called with
     /// the index of each tile before it is drawn.
-    ///
-    /// # Errors
-    /// [`GalleryError`].
     pub fn draw(
         &mut self,
         exhibit: &Exhibit,
@@ -114,9 +111,6 @@ impl<'a> Gallery<'a> {
     }
 
     /// The warnings about the mesh that the user named: see [`load::LoadedMesh::warnings`].
-    ///
-    /// # Errors
-    /// The mesh can't be loaded.
     pub fn warnings(&mut self) -> Result<Vec<String>, GalleryError> {
         match self.options.source.clone() {
             Some(source) => Ok(self.load(source, 0.0)?.warnings.clone()),

@@ -18,18 +18,18 @@ const LEGEND: &str = "Edges are red where the gap between their sides is at leas
      ms: of all passes that tessellate, and of drawing without marks. Drawing leaves out the backs of closed surfaces that \
      don't tear. Factors are lower than asked for where a tile would have more than about 2,000,000 triangles.\n";
 
-const COLUMNS: [&str; 11] = [
-    "",
-    "factor",
-    "triangles",
-    "error, px",
-    "points that differ",
-    "widest gap, px",
-    "widest gap, units",
-    "normals that differ",
-    "folds",
-    "ms to tessellate",
-    "ms to draw",
+/// The columns after a tile's name.
+const COLUMNS: [(&str, fn(&TileResults) -> String); 10] = [
+    ("factor", |shown| shown.factor.to_string()),
+    ("triangles", |shown| grouped(shown.triangles)),
+    ("error, px", |shown| shown.error_px.map_or("-".to_owned(), hundredths)),
+    ("points that differ", |shown| grouped(shown.different_bits)),
+    ("widest gap, px", |shown| hundredths(shown.max_gap_px)),
+    ("widest gap, units", |shown| short(shown.max_gap)),
+    ("normals that differ", |shown| grouped(shown.different_normals)),
+    ("folds", |shown| grouped(shown.folds)),
+    ("ms to tessellate", |shown| hundredths(shown.tessellation_ms)),
+    ("ms to draw", |shown| hundredths(shown.draw_ms)),
 ];
 
 /// Returns the page in Markdown: every exhibit with its picture, and a line for each of its tiles. `subject` is the mesh, if
@@ -54,21 +54,11 @@ pub fn page(subject: Option<&str>, adapter: &str, shown: &[(Exhibit, Vec<TileRes
 /// Returns a table with the results of each tile.
 fn table(tiles: &[Tile], shown: &[TileResults]) -> String {
     let row = |(tile, shown): (&Tile, &TileResults)| {
-        vec![
-            format!("`{}`", tile.name),
-            shown.factor.to_string(),
-            grouped(shown.triangles),
-            shown.error_px.map_or("-".to_owned(), hundredths),
-            grouped(shown.different_bits),
-            hundredths(shown.max_gap_px),
-            short(shown.max_gap),
-            grouped(shown.different_normals),
-            grouped(shown.folds),
-            hundredths(shown.tessellation_ms),
-            hundredths(shown.draw_ms),
-        ]
+        let numbers = COLUMNS.map(|(_, text)| text(shown));
+        [format!("`{}`", tile.name)].into_iter().chain(numbers).collect()
     };
-    markdown::table(&COLUMNS, &[0], &tiles.iter().zip(shown).map(row).collect::<Vec<_>>())
+    let columns: Vec<&str> = [""].into_iter().chain(COLUMNS.map(|(name, _)| name)).collect();
+    markdown::table(&columns, &[0], &tiles.iter().zip(shown).map(row).collect::<Vec<_>>())
 }
 
 #[cfg(test)]

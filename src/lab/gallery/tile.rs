@@ -65,9 +65,6 @@ pub(super) fn affordable(inputs: &Inputs, scene: &Scene) -> Inputs {
 }
 
 /// Times, measures and draws a tile. Returns its picture and its results.
-///
-/// # Errors
-/// The device fails.
 pub(super) fn draw_tile(
     context: &TileContext,
     settings: Settings,

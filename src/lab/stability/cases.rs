@@ -1,5 +1,8 @@
 //! The cases: what each mesh is, why it breaks tessellators, and what is measured on it.
 
+use glam::{Vec3, vec3};
+
+use super::meshes::{scaled, with_normals};
 use super::{Subject, meshes};
 use geometry::mesh::{Mesh, Shape};
 
@@ -117,7 +120,7 @@ pub const CASES: [Case; 34] = [
     Case {
         name: "slivers",
         about: "A cube stretched to a needle, whose triangles are a million times longer than wide.",
-        mesh: meshes::slivers,
+        mesh: || scaled(Shape::CubeSplit, vec3(1.0, 1e-6, 1e-6), Vec3::ZERO),
         view: CaseView { azimuth: 60.0, distance: 1.2, ..DEFAULT_VIEW },
         ..CASE
     },
@@ -145,20 +148,26 @@ pub const CASES: [Case; 34] = [
         name: "zero-normals",
         about: "A third of the corners have normals of length zero, which have no direction. They get smooth normals \
                 instead (angle-weighted over faces within 60 degrees), and `info` counts them.",
-        mesh: meshes::zero_normals,
+        mesh: || with_normals(Shape::Icosphere, |t, k, c| if (t + k) % 3 == 0 { Vec3::ZERO } else { c.normal }),
         ..CASE
     },
     Case {
         name: "nan-normals",
         about: "Half of the corners have normals that hold NaN or infinity. They are treated as zero normals are.",
-        mesh: meshes::nan_normals,
+        mesh: || {
+            with_normals(Shape::Icosphere, |t, k, c| match (t + k) % 4 {
+                0 => Vec3::NAN,
+                1 => vec3(f32::INFINITY, 0.0, c.normal.z),
+                _ => c.normal,
+            })
+        },
         ..CASE
     },
     Case {
         name: "long-normals",
         about: "Normals with lengths from 1e-30 to 1e30. They are brought to length 1 in double precision, and \
                 counted.",
-        mesh: meshes::long_normals,
+        mesh: || with_normals(Shape::Icosphere, |t, k, c| c.normal * [1e-30, 0.5, 1e30, 1.0][(t + k) % 4]),
         ..CASE
     },
     Case {
@@ -166,7 +175,7 @@ pub const CASES: [Case; 34] = [
         about: "Every other triangle has its normals the other way, so that the normals on both sides of its edges \
                 are opposite. The control points stay, since they are the same for a normal and its opposite; the \
                 shading flips, as the file says; and nothing cancels to NaN. `info` counts such edges.",
-        mesh: meshes::opposite_normals,
+        mesh: || with_normals(Shape::Icosphere, |t, _, c| if t % 2 == 0 { c.normal } else { -c.normal }),
         ..CASE
     },
     Case {
@@ -180,21 +189,26 @@ pub const CASES: [Case; 34] = [
         name: "inward-normals",
         about: "Normals that point against their faces. The surface stays, since control points are the same for a \
                 normal and its opposite; it is shaded as the file says. `info` counts such corners.",
-        mesh: meshes::inward_normals,
+        mesh: || with_normals(Shape::Icosphere, |_, _, c| -c.normal),
         ..CASE
     },
     Case {
         name: "huge",
         about: "A torus with coordinates of 1e7, where one unit in the last place is 1.",
-        mesh: meshes::huge,
+        mesh: || scaled(Shape::Torus, Vec3::splat(1e7), Vec3::ZERO),
         ..CASE
     },
-    Case { name: "tiny", about: "A torus with coordinates of 1e-7.", mesh: meshes::tiny, ..CASE },
+    Case {
+        name: "tiny",
+        about: "A torus with coordinates of 1e-7.",
+        mesh: || scaled(Shape::Torus, Vec3::splat(1e-7), Vec3::ZERO),
+        ..CASE
+    },
     Case {
         name: "far-away",
         about: "A torus with a radius of one unit, eight thousand units from the origin. The last bits of its \
                 coordinates are a thousandth of its size, so that what differs as published can be seen.",
-        mesh: meshes::far_away,
+        mesh: || scaled(Shape::Torus, Vec3::ONE, vec3(4000.0, -7000.0, 2500.0)),
         ..CASE
     },
     Case {
@@ -271,7 +285,7 @@ pub const CASES: [Case; 34] = [
         about: "A cube displaced by waves, whose faces have their own normals and texture coordinates. With \
                 dominance alone, as published, each face moves along its own normals, and the cube bursts. If each \
                 point moves along one direction, it stays closed.",
-        mesh: meshes::height_splits,
+        mesh: || meshes::displaced(Shape::CubeSplit.build()),
         view: CaseView { factor: 12.0, ..DEFAULT_VIEW },
         ..CASE
     },

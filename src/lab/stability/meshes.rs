@@ -2,7 +2,7 @@
 
 mod techniques;
 
-pub(super) use techniques::{dart, height_seams, height_splits, inflection, moving};
+pub(super) use techniques::{dart, displaced, height_seams, inflection, moving};
 
 use glam::{Vec2, Vec3, vec3};
 
@@ -37,11 +37,11 @@ fn changed(shape: Shape, change: impl Fn(usize, usize, Corner) -> Corner) -> Mes
     mesh(triangles.map(|(t, corners)| [0, 1, 2].map(|k| InputCorner::from(change(t, k, corners[k])))))
 }
 
-fn scaled(shape: Shape, scale: Vec3, offset: Vec3) -> Mesh {
+pub(super) fn scaled(shape: Shape, scale: Vec3, offset: Vec3) -> Mesh {
     changed(shape, |_, _, corner| Corner { position: corner.position * scale + offset, ..corner })
 }
 
-fn with_normals(shape: Shape, normal: impl Fn(usize, usize, Corner) -> Vec3) -> Mesh {
+pub(super) fn with_normals(shape: Shape, normal: impl Fn(usize, usize, Corner) -> Vec3) -> Mesh {
     changed(shape, |t, k, corner| Corner { normal: normal(t, k, corner), ..corner })
 }
 
@@ -78,11 +78,6 @@ pub(super) fn duplicates() -> Mesh {
     mesh(triangles(Shape::Torus).into_iter().flat_map(repeated).map(|corners| corners.map(InputCorner::from)))
 }
 
-/// A cube stretched to a needle, whose triangles are a million times longer than wide.
-pub(super) fn slivers() -> Mesh {
-    scaled(Shape::CubeSplit, vec3(1.0, 1e-6, 1e-6), Vec3::ZERO)
-}
-
 /// A saddle in which every other triangle writes zeros as -0.
 pub(super) fn signed_zeros() -> Mesh {
     changed(Shape::Saddle, |t, _, corner| {
@@ -111,30 +106,6 @@ pub(super) fn mirrored() -> Mesh {
     mesh(both.map(|corners| corners.map(InputCorner::from)))
 }
 
-/// An icosphere with a zero normal on every third corner.
-pub(super) fn zero_normals() -> Mesh {
-    with_normals(Shape::Icosphere, |t, k, c| if (t + k) % 3 == 0 { Vec3::ZERO } else { c.normal })
-}
-
-/// An icosphere with normals that hold NaN and infinity.
-pub(super) fn nan_normals() -> Mesh {
-    with_normals(Shape::Icosphere, |t, k, c| match (t + k) % 4 {
-        0 => Vec3::NAN,
-        1 => vec3(f32::INFINITY, 0.0, c.normal.z),
-        _ => c.normal,
-    })
-}
-
-/// An icosphere with normals of lengths from 1e-30 to 1e30.
-pub(super) fn long_normals() -> Mesh {
-    with_normals(Shape::Icosphere, |t, k, c| c.normal * [1e-30, 0.5, 1e30, 1.0][(t + k) % 4])
-}
-
-/// An icosphere in which every other triangle has its normals the other way.
-pub(super) fn opposite_normals() -> Mesh {
-    with_normals(Shape::Icosphere, |t, _, c| if t % 2 == 0 { c.normal } else { -c.normal })
-}
-
 /// A cube whose normals run along its edges.
 pub(super) fn edge_normals() -> Mesh {
     let triangles = triangles(Shape::CubeSplit).into_iter();
@@ -144,26 +115,6 @@ pub(super) fn edge_normals() -> Mesh {
             corner(c[k].position, along.normalize())
         })
     }))
-}
-
-/// An icosphere whose normals point inwards, against its faces.
-pub(super) fn inward_normals() -> Mesh {
-    with_normals(Shape::Icosphere, |_, _, c| -c.normal)
-}
-
-/// A torus with coordinates of 1e7.
-pub(super) fn huge() -> Mesh {
-    scaled(Shape::Torus, Vec3::splat(1e7), Vec3::ZERO)
-}
-
-/// A torus with coordinates of 1e-7.
-pub(super) fn tiny() -> Mesh {
-    scaled(Shape::Torus, Vec3::splat(1e-7), Vec3::ZERO)
-}
-
-/// A torus of one unit, thousands of units from the origin.
-pub(super) fn far_away() -> Mesh {
-    scaled(Shape::Torus, Vec3::ONE, vec3(4000.0, -7000.0, 2500.0))
 }
 
 /// A saddle whose middle line has denormal coordinates, which many devices take for zero.
@@ -282,7 +233,12 @@ impl Random {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stability::CASES;
     use geometry::mesh::{NormalFaults, Topology, t_junctions};
+
+    fn made(name: &str) -> Mesh {
+        (CASES.iter().find(|case| case.name == name).expect("a case").mesh)()
+    }
 
     fn topology(mesh: &Mesh) -> Topology {
         Topology::build(mesh, &Progress::new()).expect("nobody cancels")
@@ -302,9 +258,11 @@ mod tests {
             topology(&signed_zeros()).edge_counts().boundary == topology(&Shape::Saddle.build()).edge_counts().boundary
         );
         assert!(topology(&mirrored()).is_closed_and_oriented());
-        assert!(topology(&far_away()).is_closed_and_oriented());
-        assert!(zero_normals().repairs.normals_replaced > 50 && nan_normals().repairs.normals_replaced > 50);
-        assert!(long_normals().repairs.normals_rescaled > 50);
+        assert!(topology(&made("far-away")).is_closed_and_oriented());
+        assert!(
+            made("zero-normals").repairs.normals_replaced > 50 && made("nan-normals").repairs.normals_replaced > 50
+        );
+        assert!(made("long-normals").repairs.normals_rescaled > 50);
         assert!(denormals().repairs.denormals > 5);
         let seam = near_seam();
         assert!(topology(&seam).edge_counts().boundary > 20);
@@ -316,9 +274,9 @@ mod tests {
     #[test]
     fn each_fault_of_normals_is_counted() {
         let faults = |mesh: &Mesh| NormalFaults::of(mesh, &topology(mesh));
-        assert!(faults(&opposite_normals()).opposite > 20);
+        assert!(faults(&made("opposite-normals")).opposite > 20);
         assert!(faults(&edge_normals()).along_edge > 20);
-        assert_eq!(faults(&inward_normals()).against_face, 240);
+        assert_eq!(faults(&made("inward-normals")).against_face, 240);
     }
 
     #[test]

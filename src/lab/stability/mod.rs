@@ -15,14 +15,15 @@ pub(crate) use cases::DEFAULT_VIEW;
 pub use cases::{CASES, Case, CaseView, Probe};
 pub use gates::{Failure, are_judged, failures};
 pub use meshes::soup;
-pub use picture::{PictureError, picture};
-pub use report::{LEGEND, PAGE, Section, Verdict, lines, page, table};
+pub use picture::picture;
+pub use report::{LEGEND, Line, PAGE, Verdict, lines, page, table};
 pub use run::{Effort, run};
 pub use views::{random as random_camera, viewport};
 
 use serde::Serialize;
 
 use geometry::mesh::{Mesh, Moment};
+use geometry::names::every;
 use geometry::tessellate::{Clip, Displacement, Edges, Lod, Partitioning, Surface, Tessellation};
 use inspect::render::Camera;
 use inspect::settings::Settings;
@@ -62,50 +63,35 @@ pub enum Method {
 }
 
 impl Method {
-    pub const ALL: [Self; 9] = [
-        Self::Flat,
-        Self::Pn,
-        Self::PnAenAsPublished,
-        Self::PnAen,
-        Self::PnCrease,
-        Self::Phong,
-        Self::PhongAen,
-        Self::Nagata,
-        Self::NagataAen,
-    ];
+    pub const ALL: [Self; 9] =
+        every![Method: Flat, Pn, PnAenAsPublished, PnAen, PnCrease, Phong, PhongAen, Nagata, NagataAen];
 
-    /// The name in tables and files.
-    pub const fn name(self) -> &'static str {
+    /// The name in tables and files, and the surface.
+    const fn parts(self) -> (&'static str, Surface) {
         match self {
-            Self::Flat => "flat",
-            Self::Pn => "PN",
-            Self::PnAenAsPublished => "PN-AEN as published",
-            Self::PnAen => "PN-AEN",
-            Self::PnCrease => "PN crease",
-            Self::Phong => "Phong",
-            Self::PhongAen => "Phong AEN",
-            Self::Nagata => "Nagata",
-            Self::NagataAen => "Nagata AEN",
+            Self::Flat => ("flat", Surface::Flat),
+            Self::Pn => ("PN", Surface::Pn),
+            Self::PnAenAsPublished => ("PN-AEN as published", Surface::PnAen),
+            Self::PnAen => ("PN-AEN", Surface::PnAen),
+            Self::PnCrease => ("PN crease", Surface::PnCrease),
+            Self::Phong => ("Phong", Surface::Phong),
+            Self::PhongAen => ("Phong AEN", Surface::PhongAen),
+            Self::Nagata => ("Nagata", Surface::Nagata),
+            Self::NagataAen => ("Nagata AEN", Surface::NagataAen),
         }
+    }
+
+    pub const fn name(self) -> &'static str {
+        self.parts().0
+    }
+
+    pub const fn surface(self) -> Surface {
+        self.parts().1
     }
 
     /// The name on the command line.
     pub fn option(self) -> String {
         self.name().to_lowercase().replace(' ', "-")
-    }
-
-    /// The surface of this method.
-    pub const fn surface(self) -> Surface {
-        match self {
-            Self::Flat => Surface::Flat,
-            Self::Pn => Surface::Pn,
-            Self::PnAenAsPublished | Self::PnAen => Surface::PnAen,
-            Self::PnCrease => Surface::PnCrease,
-            Self::Phong => Surface::Phong,
-            Self::PhongAen => Surface::PhongAen,
-            Self::Nagata => Surface::Nagata,
-            Self::NagataAen => Surface::NagataAen,
-        }
     }
 
     /// The settings for this method with a uniform factor.
@@ -132,12 +118,8 @@ impl Method {
             Self::PnAenAsPublished => (Lod::Paper, Clip::Paper),
             _ => (Lod::EdgeLength, Clip::Frustum),
         };
-        self.settings(partitioning, 5.0).with(Tessellation {
-            lod,
-            clip,
-            pixels,
-            ..self.settings(partitioning, 5.0).tessellation
-        })
+        let settings = self.settings(partitioning, 5.0);
+        settings.with(Tessellation { lod, clip, pixels, ..settings.tessellation })
     }
 }
 

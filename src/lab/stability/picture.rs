@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use glam::Vec2;
 use image::{DynamicImage, RgbImage};
-use thiserror::Error;
 
 use super::sweep_chart::sweep_chart;
 use super::{Method, Probe, Subject, views};
@@ -14,18 +13,10 @@ use geometry::tessellate::{LodView, Partitioning};
 use gpu::{GpuError, Timing};
 use inspect::engine::Engine;
 use inspect::measure::{SWEEP_STEP, sweep};
-use inspect::plot::{ChartError, contact_sheet};
+use inspect::plot::contact_sheet;
 use inspect::render::{LineSegment, Target, crack_lines, t_junction_lines};
 use inspect::settings::{ARENA_BYTES, Overlays, Settings};
-
-/// Why there is no picture.
-#[derive(Debug, Error)]
-pub enum PictureError {
-    #[error(transparent)]
-    Gpu(#[from] GpuError),
-    #[error(transparent)]
-    Chart(#[from] ChartError),
-}
+use inspect::shot::ShotError;
 
 /// The width and height of each method's picture, in px.
 const PART: [u32; 2] = [300, 240];
@@ -38,10 +29,7 @@ const TEXT: u32 = 18;
 
 /// Draws the methods in rows of three, each under its name: 916 by 808 px. For a sweep, draws the chart of PN-AEN, with
 /// factors up to `sweep_to`: 960 by 600 px.
-///
-/// # Errors
-/// The device fails.
-pub fn picture(case: &Subject, engine: &Engine, sweep_to: f32) -> Result<RgbImage, PictureError> {
+pub fn picture(case: &Subject, engine: &Engine, sweep_to: f32) -> Result<RgbImage, ShotError> {
     if case.probe == Probe::Sweep {
         return chart(case, sweep_to);
     }
@@ -85,7 +73,7 @@ fn parts(case: &Subject, engine: &Engine) -> Result<Vec<RgbImage>, GpuError> {
     Method::ALL.into_iter().map(part).collect()
 }
 
-fn chart(case: &Subject, sweep_to: f32) -> Result<RgbImage, PictureError> {
+fn chart(case: &Subject, sweep_to: f32) -> Result<RgbImage, ShotError> {
     let topology = Topology::build_within(&case.mesh, case.weld, &Progress::new()).unwrap_or_default();
     let view = LodView::new(glam::Mat4::IDENTITY, Vec2::ONE);
     let swept = Partitioning::ALL.map(|partitioning| {

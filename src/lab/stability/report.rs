@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Quantity, Row};
+use super::{Quantity, Row, Subject};
 
 /// The results of one method on one case: for each quantity, the worst number over devices and partitionings.
 #[derive(Clone, Debug, PartialEq)]
@@ -134,18 +134,9 @@ pub fn table(lines: &[Line]) -> String {
 /// The page's file name.
 pub const PAGE: &str = "stability.md";
 
-/// What a page says about one subject, besides its numbers.
-#[derive(Clone, Debug)]
-pub struct Section {
-    pub name: String,
-    /// A paragraph; may be empty.
-    pub about: String,
-    /// The picture's file name, in the page's folder.
-    pub picture: Option<String>,
-}
-
-/// Returns the page in Markdown. It has a section for each subject: the text about it, its picture, and a table of its rows.
-pub fn page(sections: &[Section], rows: &[Row]) -> String {
+/// Returns the page in Markdown. It has a section for each subject: the text about it, its picture, which is a file in the page's
+/// folder, and a table of its rows.
+pub fn page(sections: &[(&Subject, Option<String>)], rows: &[Row]) -> String {
     let mut text = String::from("# Where tessellation breaks\n\n");
     let mut devices: Vec<_> = rows.iter().map(|row| row.device.as_str()).collect();
     devices.sort_unstable();
@@ -159,7 +150,7 @@ pub fn page(sections: &[Section], rows: &[Row]) -> String {
         capitalised(LEGEND)
     );
     let lines = lines(rows);
-    for Section { name, about, picture } in sections {
+    for (Subject { name, about, .. }, picture) in sections {
         let _ = writeln!(text, "## {name}\n");
         if !about.is_empty() {
             let _ = writeln!(text, "{about}\n");
@@ -226,9 +217,8 @@ mod tests {
 
     #[test]
     fn a_page_without_a_picture_or_text_leaves_them_out() {
-        let section = |picture: Option<&str>| {
-            [Section { name: "split".to_owned(), about: String::new(), picture: picture.map(str::to_owned) }]
-        };
+        let subject = Subject::new("split".to_owned(), geometry::mesh::Mesh::default(), 0.0);
+        let section = |picture: Option<&str>| [(&subject, picture.map(str::to_owned))];
         let rows = [row("PN", Quantity::Points, 7.0, false)];
         let text = page(&section(None), &rows);
         assert!(text.contains("run on: cpu.") && !text.contains("!["), "{text}");

@@ -27,9 +27,6 @@ type Drawn = Result<(), DrawingAreaErrorKind<<BitMapBackend<'static> as DrawingB
 /// Draws the largest jump of each step over the factor, on logarithmic axes. A partitioning that pops has a stem for each
 /// pop; fractional ones have lines. Jumps are shown as parts of `diagonal`, the mesh's in object units; a jump of 0 is at
 /// the bottom. The last argument is the width and height in px.
-///
-/// # Errors
-/// The width or the height is outside [`CHART_RANGE`].
 pub(super) fn sweep_chart(sweeps: &[Sweep], diagonal: f64, [width, height]: [u32; 2]) -> Result<RgbImage, ChartError> {
     if !(CHART_RANGE.contains(&width) && CHART_RANGE.contains(&height)) {
         return Err(ChartError::Size(width, height));

@@ -1,7 +1,7 @@
 //! How often each method is on the front, that is, has settings that no other setting beats.
 
-use super::Part;
-use crate::chart::{Cost, Method, Row};
+use super::{Part, titled};
+use crate::chart::{Cost, Method, Row, distinct};
 use geometry::numbers::grouped;
 use inspect::settings::Choice;
 use load::markdown;
@@ -59,15 +59,9 @@ pub(super) fn table_of(parts: &[Part]) -> String {
             [name(parts, method)].into_iter().chain(counts).collect()
         })
         .collect();
-    if rows.is_empty() {
-        return String::new();
-    }
-    format!(
-        "\n### How often each method is on the front\n\nThe number of meshes on which a method has settings that no other \
-         setting beats, in triangles or in ms, and the number of these settings. The mesh without tessellation doesn't \
-         count.\n\n{}",
-        markdown::table(&COLUMNS, &[0], &rows)
-    )
+    let about = "The number of meshes on which a method has settings that no other setting beats, in triangles or in ms, \
+                 and the number of these settings. The mesh without tessellation doesn't count.";
+    titled("How often each method is on the front", about, &COLUMNS, &rows)
 }
 
 /// A number of meshes in words.
@@ -84,18 +78,14 @@ pub(super) fn name(parts: &[Part], method: Method) -> String {
 /// The names of methods. If all tried methods of a surface are among them, they get one name.
 pub(super) fn brief(parts: &[Part], methods: &[Method]) -> Vec<String> {
     let tried: Vec<Method> = parts.iter().flat_map(|part| part.subject.methods()).collect();
-    let mut names = Vec::new();
-    for method in methods {
+    let name = |method: &Method| {
         let mut own = tried.iter().filter(|other| other.surface == method.surface);
-        let name = match own.all(|other| methods.contains(other)) {
+        match own.all(|other| methods.contains(other)) {
             true => format!("{} by any LOD", method.surface.name()),
             false => name(parts, *method),
-        };
-        if !names.contains(&name) {
-            names.push(name);
         }
-    }
-    names
+    };
+    distinct(methods.iter().map(name))
 }
 
 /// The sentences that name the methods on most fronts, and those on none.

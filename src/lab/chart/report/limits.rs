@@ -1,9 +1,9 @@
 //! How close each surface gets to the reference surface, at any cost.
 
-use super::Part;
 use super::fronts::meshes;
 use super::lods::Range;
-use crate::chart::{Race, has_converged};
+use super::{Part, titled};
+use crate::chart::{Race, distinct, has_converged};
 use geometry::numbers::short;
 use geometry::tessellate::Surface;
 use inspect::settings::{Choice, Settings};
@@ -29,13 +29,7 @@ pub(super) fn limit(part: &Part, race: &Race, surface: Surface) -> Option<Limit>
 
 /// All surfaces that were tried, in the order of rows.
 pub(super) fn surfaces(parts: &[Part]) -> Vec<Surface> {
-    let mut all = Vec::new();
-    for method in parts.iter().flat_map(|part| part.subject.methods()) {
-        if !all.contains(&method.surface) {
-            all.push(method.surface);
-        }
-    }
-    all
+    distinct(parts.iter().flat_map(|part| part.subject.methods()).map(|method| method.surface))
 }
 
 /// A table of how close every surface gets on every mesh with a reference surface.
@@ -52,17 +46,12 @@ pub(super) fn table_of(parts: &[Part]) -> String {
         Some([markdown::plain(&part.subject.title)].into_iter().chain(cells).collect())
     };
     let rows: Vec<_> = parts.iter().filter_map(row).collect();
-    if rows.is_empty() {
-        return String::new();
-    }
     let names = surfaces.iter().map(|surface| format!("{}, %", surface.name()));
     let columns: Vec<String> = ["mesh".to_owned()].into_iter().chain(names).collect();
     let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
-    format!(
-        "\n### How close each surface gets\n\nThe smallest value that the largest error has at any setting; \"or less\" \
-         where finer settings might come closer still.\n\n{}",
-        markdown::table(&columns, &[0], &rows)
-    )
+    let about = "The smallest value that the largest error has at any setting; \"or less\" where finer settings might come \
+                 closer still.";
+    titled("How close each surface gets", about, &columns, &rows)
 }
 
 /// The sentences about how close surfaces get.
@@ -110,18 +99,11 @@ fn stops(parts: &[Part], surface: Surface) -> Option<String> {
 /// Compares a surface's error with that of flat triangles, in words.
 fn closer(range: &Range, meshes: usize) -> String {
     let Range { mean, least, most } = *range;
-    let (times, word) = if mean >= 1.0 { (mean, "closer") } else { (1.0 / mean, "farther away") };
+    let [times, from, to] = if mean >= 1.0 { [mean, least, most] } else { [mean, most, least].map(f64::recip) };
+    let word = if mean >= 1.0 { "closer" } else { "farther away" };
     match meshes {
         1 => format!("{} times {word} than `flat`", short(times)),
-        _ if mean >= 1.0 => {
-            format!("{} times {word} than `flat` (geometric mean; {} to {})", short(times), short(least), short(most))
-        }
-        _ => format!(
-            "{} times {word} than `flat` (geometric mean; {} to {})",
-            short(times),
-            short(1.0 / most),
-            short(1.0 / least)
-        ),
+        _ => format!("{} times {word} than `flat` (geometric mean; {} to {})", short(times), short(from), short(to)),
     }
 }
 

@@ -1,7 +1,8 @@
 //! What LOD by error saves compared with another LOD, at equal error.
 
 use super::Part;
-use crate::chart::{Cost, LodKind, Race, Row};
+use crate::chart::{Cost, LodKind, Race, Row, distinct};
+use geometry::tessellate::Surface;
 
 /// How much less LOD by error costs than another LOD, over surfaces, meshes and errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,13 +49,8 @@ fn is_coarsest(part: &Part, row: &Row) -> bool {
 }
 
 /// Each surface with each error at which it is compared.
-fn cases(part: &Part, race: &Race) -> Vec<(geometry::tessellate::Surface, f64)> {
-    let mut surfaces = Vec::new();
-    for (row, _) in &race.entries {
-        if !surfaces.contains(&row.setting.method.surface) {
-            surfaces.push(row.setting.method.surface);
-        }
-    }
+fn cases(part: &Part, race: &Race) -> Vec<(Surface, f64)> {
+    let surfaces = distinct(race.entries.iter().map(|(row, _)| row.setting.method.surface));
     let levels = race.levels(usize::MAX, part.subject.floor());
     surfaces.iter().flat_map(|surface| levels.iter().map(move |level| (*surface, *level))).collect()
 }

@@ -13,7 +13,7 @@ use std::fmt::Write;
 
 use super::{Race, Subject};
 use answers::tables;
-use load::markdown::plain;
+use load::markdown::{plain, table};
 use section::section;
 
 /// The file names of the page and of its table.
@@ -85,7 +85,7 @@ impl Part {
 
     /// Whether a row is the mesh without tessellation: one triangle for each patch.
     fn is_plain(&self, row: &super::Row) -> bool {
-        row.triangles == self.patches
+        row.probe.triangles == self.patches
     }
 }
 
@@ -104,6 +104,14 @@ pub fn page(occasion: &Occasion, parts: &[Part]) -> String {
     text += &fronts::table_of(parts);
     text.extend(parts.iter().map(section));
     text
+}
+
+/// A table with its heading and a paragraph about it; empty without rows. Its first column has words.
+fn titled(title: &str, about: &str, columns: &[&str], rows: &[Vec<String>]) -> String {
+    match rows {
+        [] => String::new(),
+        rows => format!("\n### {title}\n\n{about}\n\n{}", table(columns, &[0], rows)),
+    }
 }
 
 /// Explains the numbers.

@@ -47,27 +47,26 @@ fn facts(part: &Part) -> String {
     format!("{} triangles; {against}; seen at {width} x {height} px.", grouped(part.patches))
 }
 
-/// The columns after a row's name.
-fn columns(part: &Part) -> &'static [&'static str] {
-    match part.has_truth() {
-        true => &["triangles", "ms", "largest error, %", "RMS error, %", "largest error, px", "normals, degrees"],
-        false => &["triangles", "ms", "largest error, px"],
-    }
+/// The columns after a row's name: whether they need a reference surface, and their texts.
+const COLUMNS: [(&str, bool, fn(&Row) -> String); 6] = [
+    ("triangles", false, |row| grouped(row.probe.triangles)),
+    ("ms", false, |row| short(row.probe.time.total())),
+    ("largest error, %", true, |row| known(row.probe.errors.map(|errors| 100.0 * errors.largest))),
+    ("RMS error, %", true, |row| known(row.probe.errors.map(|errors| 100.0 * errors.rms))),
+    ("largest error, px", false, |row| known(row.probe.max_error_px)),
+    ("normals, degrees", true, |row| known(row.probe.errors.map(|errors| errors.normal_degrees))),
+];
+
+fn known(number: Option<f64>) -> String {
+    number.map_or_else(|| "-".to_owned(), short)
 }
 
-fn cells(part: &Part, row: &Row) -> Vec<String> {
-    let known = |number: Option<f64>| number.map_or_else(|| "-".to_owned(), short);
-    let percent = |number: f64| 100.0 * number;
-    let mut cells = vec![grouped(row.triangles), short(row.time.total())];
-    if part.has_truth() {
-        cells.push(known(row.errors.map(|errors| percent(errors.largest))));
-        cells.push(known(row.errors.map(|errors| percent(errors.rms))));
-    }
-    cells.push(known(row.max_error_px));
-    if part.has_truth() {
-        cells.push(known(row.errors.map(|errors| errors.normal_degrees)));
-    }
-    cells
+fn columns(part: &Part) -> impl Iterator<Item = &'static str> {
+    COLUMNS.into_iter().filter(|(_, needs_truth, _)| part.has_truth() || !needs_truth).map(|(name, ..)| name)
+}
+
+fn cells(part: &Part, row: &Row) -> impl Iterator<Item = String> {
+    COLUMNS.into_iter().filter(|(_, needs_truth, _)| part.has_truth() || !needs_truth).map(|(.., text)| text(row))
 }
 
 /// A table of the rows that no other row beats, in triangles or in ms.
@@ -87,7 +86,7 @@ fn front(part: &Part, race: &Race) -> String {
         names.into_iter().chain(cells(part, row)).collect()
     };
     let names = ["method", "setting", "unbeaten in"];
-    let columns: Vec<&str> = names.iter().chain(columns(part)).copied().collect();
+    let columns: Vec<&str> = names.into_iter().chain(columns(part)).collect();
     markdown::table(&columns, &[0, 1, 2], &rows.iter().map(line).collect::<Vec<_>>())
 }
 
@@ -107,7 +106,7 @@ fn best(part: &Part, race: &Race) -> (String, Vec<String>) {
         }
         let cheapest = |method| race.cheapest(error, Cost::Triangles, |row| row.setting.method == method);
         let mut reached: Vec<&Row> = methods().filter_map(cheapest).collect();
-        reached.sort_by_key(|row| row.triangles);
+        reached.sort_by_key(|row| row.probe.triangles);
         for row in &reached {
             let names = [level.clone(), part.subject.name(row.setting.method), row.setting.label()];
             rows.push(names.into_iter().chain(cells(part, row)).collect());
@@ -123,6 +122,6 @@ fn best(part: &Part, race: &Race) -> (String, Vec<String>) {
         return (String::new(), said);
     }
     let names = ["error of at most", "method", "setting"];
-    let columns: Vec<&str> = names.iter().chain(columns(part)).copied().collect();
+    let columns: Vec<&str> = names.into_iter().chain(columns(part)).collect();
     (markdown::table(&columns, &[0, 1, 2], &rows), said)
 }

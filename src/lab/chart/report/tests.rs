@@ -3,7 +3,7 @@ use super::lods::saving;
 use super::waste::{table_of, wastes};
 use super::*;
 use crate::chart::tests::{row, subject};
-use crate::chart::{Cost, LodKind, Row, has_converged};
+use crate::chart::{Cost, LodKind, Probe, Row, has_converged};
 use geometry::tessellate::Surface;
 
 use LodKind::{Error, Paper, Uniform};
@@ -113,10 +113,10 @@ fn a_method_has_converged_when_finer_is_no_closer() {
     let method = flat[0].setting.method;
     assert!(!has_converged(&flat[..1], method) && has_converged(&flat, method));
     let mut falling = flat.clone();
-    falling[1].errors = row(Flat, Uniform, 2.0, (1.5, 40, 0.028)).errors;
+    falling[1].probe.errors = row(Flat, Uniform, 2.0, (1.5, 40, 0.028)).probe.errors;
     assert!(!has_converged(&falling, method), "7 % less is closer");
     let mut turning = flat.clone();
-    turning[1].errors.as_mut().expect("known").normal_degrees = 2.0;
+    turning[1].probe.errors.as_mut().expect("known").normal_degrees = 2.0;
     assert!(!has_converged(&turning, method), "its normals still turn");
     let near = [flat[0].clone(), row(Flat, Uniform, 1.5, (1.2, 20, 0.03))];
     assert!(!has_converged(&near, method), "twice the triangles are too few to tell");
@@ -214,7 +214,8 @@ fn without_a_reference_surface_surfaces_are_not_compared() {
 
 #[test]
 fn triangles_are_held_against_those_that_lod_by_error_needs() {
-    let needing = |needed: Option<u64>, row: Row| Row { triangles_by_error: needed, ..row };
+    let needing =
+        |needed: Option<u64>, row: Row| Row { probe: Probe { triangles_by_error: needed, ..row.probe }, ..row };
     let two = |needed: [Option<u64>; 2]| {
         part(vec![
             needing(Some(10), row(PnAen, Uniform, 1.0, (1.0, 10, 0.03))),

@@ -1,10 +1,9 @@
 //! How many times the triangles that LOD by error needs each method draws.
 
 use super::lods::Range;
-use super::{Part, fronts};
-use crate::chart::{Method, Row};
+use super::{Part, fronts, titled};
+use crate::chart::{Method, Row, distinct};
 use geometry::numbers::short;
-use load::markdown;
 
 /// The triangles of a method's settings, divided by those with which LOD by error comes as close.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,17 +16,12 @@ pub(super) struct Waste {
 
 /// The waste of every method, the least first. The mesh without tessellation doesn't count, since nothing can be saved there.
 pub(super) fn wastes(parts: &[Part]) -> Vec<Waste> {
-    let mut methods: Vec<Method> = Vec::new();
-    for method in parts.iter().flat_map(|part| part.subject.methods()) {
-        if !methods.contains(&method) {
-            methods.push(method);
-        }
-    }
+    let methods = distinct(parts.iter().flat_map(|part| part.subject.methods()));
     let of = |method: Method| {
         let times = |part: &Part, row: &Row| -> Option<f64> {
             let is_meant = row.setting.method == method && !part.is_plain(row);
-            let needed = row.triangles_by_error.filter(|needed| is_meant && *needed > 0)?;
-            Some(row.triangles as f64 / needed as f64)
+            let needed = row.probe.triangles_by_error.filter(|needed| is_meant && *needed > 0)?;
+            Some(row.probe.triangles as f64 / needed as f64)
         };
         let rows = parts.iter().flat_map(|part| part.subject.rows.iter().filter_map(move |row| times(part, row)));
         let all: Vec<f64> = rows.collect();
@@ -46,13 +40,7 @@ pub(super) fn table_of(parts: &[Part]) -> String {
         vec![fronts::name(parts, method), count.to_string(), short(mean), short(least), short(most)]
     };
     let rows: Vec<_> = wastes(parts).iter().map(line).collect();
-    if rows.is_empty() {
-        return String::new();
-    }
-    format!(
-        "\n### How far each method is from the fewest triangles\n\n{ABOUT}\n\n{}",
-        markdown::table(&COLUMNS, &[0], &rows)
-    )
+    titled("How far each method is from the fewest triangles", ABOUT, &COLUMNS, &rows)
 }
 
 /// Explains the table.

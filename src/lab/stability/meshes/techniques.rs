@@ -51,7 +51,8 @@ fn waves() -> HeightMap {
     HeightMap::new([32, 32], (0..1024).map(height).collect())
 }
 
-fn displaced(mut mesh: Mesh) -> Mesh {
+/// A mesh displaced by waves.
+pub(crate) fn displaced(mut mesh: Mesh) -> Mesh {
     mesh.heights = Some(Arc::new(Heights::everywhere(&mesh, waves())));
     mesh
 }
@@ -66,11 +67,6 @@ pub(crate) fn height_seams() -> Mesh {
         corners.map(|c| InputCorner { uv: c.uv + shift, ..InputCorner::from(c) })
     });
     displaced(mesh(triangles))
-}
-
-/// A cube with split normals, displaced by waves.
-pub(crate) fn height_splits() -> Mesh {
-    displaced(Shape::CubeSplit.build())
 }
 
 /// A cylinder that bends about its middle and swells in a clip of two seconds. It has two joints, whose weights change along
