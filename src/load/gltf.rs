@@ -1,7 +1,7 @@
 //! Reads glTF 2.0 (`.gltf`, `.glb` and `.vrm`): the triangles of one scene in their rest pose, and its animations.
 //!
-//! [`reach`] finds what the scene uses. What the shape depends on is checked strictly, and a fault is an error. A fault of anything
-//! else costs a warning ([`repair`]).
+//! [`reach`] finds what the scene uses, and [`repair`] takes out the rest. An accessor, a buffer view or a buffer that is wrong is an error for
+//! the shape, which can't do without it, and a warning for anything else.
 //!
 //! The `gltf` crate parses the document. Its accessor readers aren't used, since they panic on some broken files;
 //! [`accessor`] reads instead, and checks every range.
@@ -13,6 +13,7 @@ mod animated_vertices;
 mod animations;
 mod buffers;
 mod cameras;
+mod carried;
 mod decompressed_primitive;
 mod document;
 mod draco;
@@ -69,6 +70,7 @@ use geometry::mesh::{Borrowed, MemoryAccount, Mesh};
 use geometry::progress::Progress;
 
 use accessor::Accessors;
+use buffers::Buffers;
 use extensions::InstancingExtension;
 use instances::Instances;
 use materials::Materials;
@@ -93,19 +95,31 @@ pub(super) fn read(
     limits: &Limits,
     progress: &Progress,
 ) -> Result<LoadedMesh, GltfError> {
+    // A cancelled read of a file isn't an error of what needs it.
+    read_scene(bytes, folder, name, selected, limits, progress).map_err(|error| match progress.check() {
+        Ok(()) => error,
+        Err(cancelled) => cancelled.into(),
+    })
+}
+
+fn read_scene(
+    bytes: Vec<u8>,
+    folder: &Path,
+    name: &str,
+    selected: Selection,
+    limits: &Limits,
+    progress: &Progress,
+) -> Result<LoadedMesh, GltfError> {
     let budget = Budget::new(bytes.len(), limits);
     let mut parsed = document::parse(bytes, selected, &budget, progress)?;
     let (document, notes) = (&parsed.document, &mut parsed.notes);
     let (extensions, reach, lists) = (&parsed.extensions, &parsed.reach, &parsed.lists);
     progress.check()?;
     let files = Files::new(folder, limits, &budget, progress);
-    let buffers =
-        buffers::load(document, &files, (&reach.buffers, &extensions.fallback), parsed.blob, notes, progress)?;
+    let buffers = Buffers::new(document, &extensions.fallback, &parsed.faults, &files, parsed.blob);
     progress.set(0.3);
     let placed = nodes::place(document, &reach.hiding, notes)?;
-    let known = (&buffers[..], parsed.faults, &reach.views[..]);
-    let read_copy = |buffer| buffers::read_copy(document, &files, buffer);
-    let mut accessors = Accessors::new(document, extensions, known, (&budget, &mut *notes), read_copy)?;
+    let mut accessors = Accessors::new(document, buffers, &extensions.compressed, &parsed.faults, &budget);
     accessors.unpacked = draco::unpack(&accessors, document, &placed, &extensions.packed, progress)?;
     let mut warnings = Vec::new();
     let clips = animations::read(parsed.animations, document, &accessors, &mut warnings);
@@ -160,18 +174,18 @@ pub(super) fn read(
     if parsed.parts.beyond > 0 {
         notes.push(format!("named nodes beyond the first 65,536, which can't be hidden: {}.", parsed.parts.beyond));
     }
+    notes.append(accessors.notes.take());
     notes.append(materials.into_notes());
     notes.append(std::mem::take(&mut primitives.notes));
     notes.extend(primitives.warnings());
     budget.release(accessors.buffer_bytes());
     drop(accessors);
-    drop(buffers);
     budget.release(lists.bytes());
     drop(parsed.lists);
     progress.set(0.8);
     let (mut of_lights, mut of_cameras) = (Notes::default(), Notes::default());
-    let lights = parsed.lights.shown(&placed, &mut of_lights);
-    let cameras = parsed.cameras.shown(&placed, &mut of_cameras);
+    let lights = lights::shown(&parsed.lights, &placed, &mut of_lights);
+    let cameras = cameras::shown(&parsed.cameras, &placed, &mut of_cameras);
     let mounts = [mounts(binder.as_ref(), &lights), mounts(binder.as_ref(), &cameras)];
     let mut mesh = finished(name, (builder, details, binder), notes, (&budget, progress))?;
     if let Some(rig) = mesh.rig.as_mut().and_then(Arc::get_mut) {

@@ -18,7 +18,7 @@ use ::gltf::mesh::Mode;
 use ::gltf::{Document, Primitive, Semantic};
 use draco_core::{DataType, DecodeLimits, DecoderBuffer, ErrorKind, Mesh, MeshDecoder, PointAttribute, PointIndex};
 
-use super::accessor::component;
+use super::accessor::{DataError, component};
 use super::decompressed_primitive::{Attribute, DecompressedPrimitive};
 use super::extensions::DracoExtension;
 use super::nodes::Placed;
@@ -37,11 +37,22 @@ enum DecodeError {
     Wrong(String),
     /// It would take too much memory.
     TooMuch(String),
+    /// Something else in the document is wrong.
+    Elsewhere(GltfError),
 }
 
 impl From<String> for DecodeError {
     fn from(reason: String) -> Self {
         Self::Wrong(reason)
+    }
+}
+
+impl From<DataError> for DecodeError {
+    fn from(error: DataError) -> Self {
+        match error {
+            DataError::Here(reason) => Self::Wrong(reason),
+            DataError::Elsewhere(error) => Self::Elsewhere(error),
+        }
     }
 }
 
@@ -71,6 +82,7 @@ pub(super) fn unpack(
         let made = Stream { accessors, primitive: &primitive, packed }.unpack().map_err(|fault| match fault {
             DecodeError::Wrong(reason) => GltfError::Document { pointer: pointer(), reason },
             DecodeError::TooMuch(reason) => GltfError::Draco { pointer: pointer(), reason },
+            DecodeError::Elsewhere(error) => error,
         })?;
         unpacked.insert(place, made);
     }
@@ -94,7 +106,7 @@ impl Stream<'_> {
         let attributes = self.attributes()?;
         let kept = attributes.iter().map(|(_, accessor)| 4 * width(accessor) as u64).sum::<u64>();
         // An attribute that isn't read has at most four numbers.
-        let passed_over = 16 * (self.packed.ids.len() - attributes.len() + self.packed.others) as u64;
+        let passed_over = 16 * (self.packed.len() - attributes.len()) as u64;
         let most = (kept + passed_over).saturating_mul(vertices);
         let walked = tables::walk(bytes, &header);
         let own = kept.saturating_mul(vertices).saturating_add(indices.saturating_mul(4));
@@ -120,28 +132,34 @@ impl Stream<'_> {
     }
 
     /// Returns the numbers of vertices and indices in the accessors.
-    fn counts(&self) -> Result<[u64; 2], String> {
+    fn counts(&self) -> Result<[u64; 2], DataError> {
         if self.primitive.mode() != Mode::Triangles {
-            return Err("belongs to a strip or a fan, but only compressed lists of triangles are read".to_owned());
+            let reason = "belongs to a strip or a fan, but only compressed lists of triangles are read";
+            return Err(reason.to_owned().into());
         }
-        let indices = self.primitive.indices().ok_or("belongs to a primitive without indices, which Draco needs")?;
-        let positions = self.primitive.get(&Semantic::Positions).ok_or("belongs to a primitive without positions")?;
+        let lacks = |what: &str| format!("belongs to a primitive without {what}");
+        let indices = self.primitive.indices().ok_or_else(|| lacks("indices, which Draco needs"))?;
+        let positions = self.primitive.get(&Semantic::Positions).ok_or_else(|| lacks("positions"))?;
+        self.accessors.check_sound(&positions)?;
+        self.accessors.check_sound(&indices)?;
         Ok([positions.count() as u64, indices.count() as u64])
     }
 
     /// Returns the attributes that are read from the compressed data.
-    fn attributes(&self) -> Result<Vec<(String, Accessor<'_>)>, String> {
+    fn attributes(&self) -> Result<Vec<(String, Accessor<'_>)>, DataError> {
         let named = self.primitive.attributes().map(|(semantic, accessor)| (semantic.to_string(), accessor));
-        let found: Vec<_> = named.filter(|(name, _)| self.packed.ids.contains_key(name)).collect();
+        let found: Vec<_> = named.filter(|(name, _)| self.packed.id(name).is_some()).collect();
         if !found.iter().any(|(name, _)| name == "POSITION") {
-            return Err("names no POSITION among its attributes".to_owned());
+            return Err("names no POSITION among its attributes".to_owned().into());
         }
-        // An accessor with zero sparse values isn't sparse (see `document`).
-        let mut strict = found.iter().filter(|(name, _)| !is_detail(name));
-        match strict.find(|(_, accessor)| accessor.sparse().is_some_and(|sparse| sparse.count() > 0)) {
-            Some((name, _)) => Err(format!("holds {name}, but its accessor is sparse")),
-            None => Ok(found),
+        for (name, accessor) in found.iter().filter(|(name, _)| !is_detail(name)) {
+            self.accessors.check_sound(accessor)?;
+            // An accessor with zero sparse values isn't sparse.
+            if accessor.sparse().is_some_and(|sparse| sparse.count() > 0) {
+                return Err(format!("holds {name}, but its accessor is sparse").into());
+            }
         }
+        Ok(found)
     }
 }
 
@@ -174,7 +192,7 @@ fn taken(
         ));
     }
     let attribute = |(name, accessor): &(String, Accessor)| {
-        let id = packed.ids[name];
+        let id = packed.id(name).unwrap_or_default();
         let from = mesh.attribute_by_unique_id(id);
         let from = from.ok_or_else(|| format!("says that {name} is attribute {id}, which its data doesn't have"))?;
         Ok(Attribute { name: name.clone(), width: width(accessor), values: values(name, from, accessor, vertices)? })

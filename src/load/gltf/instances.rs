@@ -38,25 +38,21 @@ impl<'a> Instances<'a> {
         let count = count(document, own);
         let role = |name: &str| format!("{name} of the instances of node {node}");
         let found = |index: Option<usize>, name: &str| -> Result<Option<Accessor<'_>>, GltfError> {
-            let accessor = index.and_then(|index| document.accessors().nth(index));
-            match accessor.filter(|accessor| accessor.count() != count) {
-                None => Ok(index.and_then(|index| document.accessors().nth(index))),
-                Some(odd) => {
-                    let reason = format!("has {} elements for {count} instances", odd.count());
-                    Err(GltfError::Accessor { accessor: odd.index(), role: role(name), reason })
-                }
+            let Some(accessor) = index.and_then(|index| document.accessors().nth(index)) else { return Ok(None) };
+            accessors.check_sound(&accessor)?;
+            if accessor.count() == count {
+                return Ok(Some(accessor));
             }
+            let reason = format!("has {} elements for {count} instances", accessor.count());
+            Err(GltfError::Accessor { accessor: accessor.index(), role: role(name), reason })
         };
         let vectors = |index, name: &str| {
             found(index, name)?.map(|accessor| accessors.list::<3>(&accessor, &role(name))).transpose()
         };
+        let translations = vectors(own.translation, "TRANSLATION")?;
         let rotations = found(own.rotation, "ROTATION")?;
-        Ok(Self {
-            count,
-            translations: vectors(own.translation, "TRANSLATION")?,
-            rotations: rotations.map(|accessor| accessors.list::<4>(&accessor, &role("ROTATION"))).transpose()?,
-            scales: vectors(own.scale, "SCALE")?,
-        })
+        let rotations = rotations.map(|accessor| accessors.list::<4>(&accessor, &role("ROTATION"))).transpose()?;
+        Ok(Self { count, translations, rotations, scales: vectors(own.scale, "SCALE")? })
     }
 
     /// Returns the transforms from each instance's own space to the node's.

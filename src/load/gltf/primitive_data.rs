@@ -68,6 +68,7 @@ impl<'a> PrimitiveData<'a> {
         let Some(accessor) = self.primitive.get(&Semantic::Normals).filter(|_| !self.makes_normals) else {
             return Ok(None);
         };
+        self.accessors.check_sound(&accessor)?;
         if accessor.count() == count {
             return self.list(&accessor, &Semantic::Normals.to_string(), count).map(Some);
         }
@@ -100,17 +101,12 @@ impl<'a> PrimitiveData<'a> {
         count: usize,
         notes: &mut Notes,
     ) -> Option<List<'a, [f32; N]>> {
-        match self.list(accessor, attribute, count) {
-            Ok(list) => Some(list),
-            Err(GltfError::Accessor { accessor, role, reason }) => {
-                notes.push_once(format!("/accessors/{accessor} ({role}) {reason}; it is left out."));
-                None
-            }
-            Err(other) => {
-                notes.push_once(format!("{other}; it is left out."));
-                None
-            }
-        }
+        let list = self.list(accessor, attribute, count);
+        let left_out = |error: GltfError| {
+            let (i, reason) = (accessor.index(), error.into_clause());
+            notes.push_once(format!("/accessors/{i} ({attribute} of {}) {reason}; it is left out.", self.name));
+        };
+        list.map_err(left_out).ok()
     }
 
     /// Returns an attribute's values, of which there must be as many as vertices.
@@ -124,7 +120,7 @@ impl<'a> PrimitiveData<'a> {
         count: usize,
     ) -> Result<List<'a, [f32; N]>, GltfError> {
         let role = format!("{attribute} of {}", self.name);
-        self.accessors.check_sound(accessor, &role)?;
+        self.accessors.check_sound(accessor)?;
         if accessor.count() != count {
             let reason = format!("has {} elements for {count} vertices", accessor.count());
             return Err(GltfError::Accessor { accessor: accessor.index(), role, reason });

@@ -137,6 +137,12 @@ impl SceneSize {
             let name = primitive::name(mesh, &primitive);
             // The size of decompressed data has been compared with the accessors.
             let is_unpacked = accessors.unpacked.contains_key(&[mesh.index(), primitive.index()]);
+            if !is_unpacked {
+                let targets =
+                    primitive.morph_targets().flat_map(|own| [own.positions(), own.normals(), own.tangents()]);
+                let attributes = primitive.attributes().map(|(_, accessor)| accessor);
+                attributes.chain(targets.flatten()).for_each(|accessor| accessors.prepare(&accessor));
+            }
             let check = |accessor: &Accessor, role: &str| match is_unpacked {
                 true => Ok(()),
                 false => accessors.check(accessor, &format!("{role} of {name}")),

@@ -9,6 +9,7 @@ use super::accessor::List;
 use super::materials::DetailNeeds;
 use super::notes::Notes;
 use super::primitive_data::PrimitiveData;
+use super::vertices::VertexRepairs;
 use geometry::mesh::CornerDetail;
 
 /// The lists of one primitive.
@@ -18,7 +19,6 @@ pub(super) struct VertexDetails<'a> {
     tangents: Option<List<'a, [f32; 4]>>,
     /// What each morph target that is used adds to tangents. Empty if none adds anything: tangents turn along with normals then.
     tangent_targets: Vec<Option<List<'a, [f32; 3]>>>,
-    pub repairs: DetailRepairs,
 }
 
 /// What morph targets do to tangents at rest.
@@ -36,19 +36,6 @@ enum Colors<'a> {
     Rgba(List<'a, [f32; 4]>),
 }
 
-/// Counts of repaired vertices.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct DetailRepairs {
-    /// Colours that aren't finite, which became white.
-    pub bad_colors: usize,
-    /// Tangents without a direction, for which others are computed.
-    pub bad_tangents: usize,
-    /// Texture coordinates that aren't finite, which became (0, 0).
-    pub bad_uvs: usize,
-    /// Primitives without texture coordinates that a map of their material uses.
-    pub missing_uvs: usize,
-}
-
 impl<'a> VertexDetails<'a> {
     /// Prepares to read the details of `count` vertices. Without normals of the file, its tangents aren't used (specification,
     /// section 3.7.2.1). `uses_target` says which morph targets displace vertices, at rest or in a clip.
@@ -57,6 +44,7 @@ impl<'a> VertexDetails<'a> {
         count: usize,
         needs: DetailNeeds,
         uses_target: impl Fn(usize) -> bool,
+        repairs: &mut VertexRepairs,
         notes: &mut Notes,
     ) -> Self {
         let mut read = Self {
@@ -67,7 +55,6 @@ impl<'a> VertexDetails<'a> {
             colors: colors(source, count, notes),
             tangents: None,
             tangent_targets: Vec::new(),
-            repairs: DetailRepairs::default(),
         };
         if needs.tangents && source.has_normals(count) {
             read.tangents = source.detail(Semantic::Tangents, count, notes);
@@ -76,14 +63,24 @@ impl<'a> VertexDetails<'a> {
             read.tangent_targets = tangent_targets(source, count, uses_target, notes);
         }
         let is_missing = (0..2).any(|set| needs.sets[set] && read.sets[set].is_none());
-        read.repairs.missing_uvs = usize::from(is_missing);
+        repairs.missing_uvs += usize::from(is_missing);
         read
     }
 
     /// Reads a vertex. Morph targets change its tangent, and then `linear` transforms its directions into the scene's space.
-    pub(super) fn read(&mut self, i: usize, linear: &DMat3, morph: &TangentMorph) -> CornerDetail {
-        let (tangent, bitangent_sign) = self.tangent(i, linear, morph);
-        CornerDetail { uvs: [0, 1].map(|set| self.uv(set, i)), color: self.color(i), tangent, bitangent_sign }
+    pub(super) fn read(
+        &self,
+        i: usize,
+        linear: &DMat3,
+        morph: &TangentMorph,
+        repairs: &mut VertexRepairs,
+    ) -> CornerDetail {
+        let (tangent, bitangent_sign) = self.tangent(i, linear, morph).unwrap_or_else(|| {
+            repairs.bad_tangents += 1;
+            (Vec3::ZERO, 1.0)
+        });
+        let uvs = [0, 1].map(|set| self.uv(set, i, repairs));
+        CornerDetail { uvs, color: self.color(i, repairs), tangent, bitangent_sign }
     }
 
     /// Returns the tangent of a vertex in the file if morph targets displace it; none if they turn it along with the normal, or
@@ -105,16 +102,16 @@ impl<'a> VertexDetails<'a> {
         list.map_or([0.0; 3], |list| list.get(i)).map(|x| if x.is_finite() { x } else { 0.0 })
     }
 
-    fn uv(&mut self, set: usize, i: usize) -> Vec2 {
+    fn uv(&self, set: usize, i: usize, repairs: &mut VertexRepairs) -> Vec2 {
         let uv: Vec2 = self.sets[set].as_ref().map_or(Vec2::ZERO, |list| list.get(i).into());
         if uv.is_finite() {
             return uv;
         }
-        self.repairs.bad_uvs += 1;
+        repairs.bad_uvs += 1;
         Vec2::ZERO
     }
 
-    fn color(&mut self, i: usize) -> Vec4 {
+    fn color(&self, i: usize, repairs: &mut VertexRepairs) -> Vec4 {
         let color = match &self.colors {
             None => return Vec4::ONE,
             Some(Colors::Rgb(list)) => Vec3::from(list.get(i)).extend(1.0),
@@ -123,13 +120,14 @@ impl<'a> VertexDetails<'a> {
         if color.is_finite() {
             return color.clamp(Vec4::ZERO, Vec4::ONE);
         }
-        self.repairs.bad_colors += 1;
+        repairs.bad_colors += 1;
         Vec4::ONE
     }
 
-    /// A map that mirrors turns the bitangent around: it is a cross product.
-    fn tangent(&mut self, i: usize, linear: &DMat3, morph: &TangentMorph) -> (Vec3, f32) {
-        let Some(tangents) = &self.tangents else { return (Vec3::ZERO, 1.0) };
+    /// Returns a tangent, zero if there are none, and the sign of the bitangent; none for a tangent without a direction. A map that mirrors
+    /// turns the bitangent around: it is a cross product.
+    fn tangent(&self, i: usize, linear: &DMat3, morph: &TangentMorph) -> Option<(Vec3, f32)> {
+        let Some(tangents) = &self.tangents else { return Some((Vec3::ZERO, 1.0)) };
         let [x, y, z, sign] = tangents.get(i);
         let own = Vec3::new(x, y, z);
         let unit = own.as_dvec3().normalize_or_zero();
@@ -142,12 +140,9 @@ impl<'a> VertexDetails<'a> {
             }),
         };
         let turned = (*linear * morphed).try_normalize().map(DVec3::as_vec3);
-        let Some(tangent) = turned.filter(|_| own.is_finite() && !sign.is_nan()) else {
-            self.repairs.bad_tangents += 1;
-            return (Vec3::ZERO, 1.0);
-        };
+        let tangent = turned.filter(|_| own.is_finite() && !sign.is_nan())?;
         let mirrored = linear.determinant() < 0.0;
-        (tangent, if (sign < 0.0) == mirrored { 1.0 } else { -1.0 })
+        Some((tangent, if (sign < 0.0) == mirrored { 1.0 } else { -1.0 }))
     }
 }
 

@@ -40,13 +40,19 @@ pub(super) struct Vertex {
     pub rescaled: bool,
 }
 
-/// Counts of repaired vertices.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// Counts of what was repaired in vertices.
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct VertexRepairs {
-    /// Vertices of a primitive without normals.
-    pub no_normals: usize,
+    /// Primitives without normals.
+    pub without_normals: usize,
     /// Vertices with texture coordinates that aren't finite, which became (0, 0).
     pub bad_uvs: usize,
+    /// Primitives without texture coordinates that a map of their material uses.
+    pub missing_uvs: usize,
+    /// Vertices with colours that aren't finite, which became white.
+    pub bad_colors: usize,
+    /// Vertices with tangents without a direction, for which others are computed.
+    pub bad_tangents: usize,
     /// Vertices whose weights don't add up to anything, or that name a joint that doesn't exist; they stay where the
     /// mesh has them.
     pub bad_weights: usize,
@@ -152,7 +158,8 @@ pub(super) struct Vertices<'a> {
 }
 
 impl<'a> Vertices<'a> {
-    /// Prepares to read; `uvs` says which texture coordinates. Texture coordinates that can't be read are left out, with a note.
+    /// Prepares to read; `uvs` says which texture coordinates. Texture coordinates that can't be read are left out, with a note. What is
+    /// repaired is added to `repairs`.
     ///
     /// # Errors
     /// [`GltfError::Accessor`] and [`GltfError::Primitive`].
@@ -160,18 +167,22 @@ impl<'a> Vertices<'a> {
         source: PrimitiveData<'a>,
         pose: &'a NodePose<'a>,
         uvs: Uvs,
+        mut repairs: VertexRepairs,
         notes: &mut Notes,
     ) -> Result<Self, GltfError> {
         let positions = source.primitive.get(&Semantic::Positions).ok_or_else(|| source.problem("has no positions"))?;
         let count = positions.count();
         let weights = pose.weights.iter().copied();
         let weighed = source.primitive.morph_targets().zip(weights).filter(|(_, weight)| *weight != 0.0);
+        let at = source.list(&positions, "POSITION", count)?;
+        let normals = source.normals(count, notes)?;
+        repairs.without_normals += usize::from(normals.is_none() && count > 0);
         Ok(Self {
             pose,
             transform: uvs.transform,
             count,
-            positions: source.list(&positions, "POSITION", count)?,
-            normals: source.normals(count, notes)?,
+            positions: at,
+            normals,
             uvs: source.detail(Semantic::TexCoords(uvs.set), count, notes),
             targets: weighed
                 .map(|(target, weight)| Ok((weight, source.target(&target, count)?)))
@@ -179,7 +190,7 @@ impl<'a> Vertices<'a> {
             influences: Influences::read(source, pose, count, notes)?,
             joints: None,
             details: None,
-            repairs: VertexRepairs::default(),
+            repairs,
         })
     }
 
@@ -220,7 +231,6 @@ impl<'a> Vertices<'a> {
         let linear = DMat3::from_mat4(matrix);
         // A normal without a direction becomes zero, which the builder replaces and counts.
         let normal = normal.map(|normal| turned(normal, &linear).unwrap_or(Vec3::ZERO));
-        self.repairs.no_normals += usize::from(normal.is_none());
         let mut uv = self.uvs.as_ref().map_or(Vec2::ZERO, |uvs| uvs.get(i).into());
         if let Some(transform) = self.transform {
             uv = transform.apply(uv);
@@ -232,8 +242,8 @@ impl<'a> Vertices<'a> {
         let rescaled = matches!(own, Some(GivenNormal::Rescaled(_))) && normal != Some(Vec3::ZERO);
         let mirrored = linear.determinant() < 0.0;
         let morph = self.tangent_morph(i);
-        let read = |details: &mut VertexDetails| details.read(i, &linear, &morph);
-        let detail = self.details.as_mut().map_or_else(CornerDetail::default, read);
+        let read = |details: &VertexDetails| details.read(i, &linear, &morph, &mut self.repairs);
+        let detail = self.details.as_ref().map_or_else(CornerDetail::default, read);
         Vertex { corner: InputCorner { position, normal, uv }, detail, mirrored, rescaled }
     }
 
