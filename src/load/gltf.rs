@@ -14,7 +14,6 @@ mod animations;
 mod buffers;
 mod cameras;
 mod carried;
-mod decompressed_primitive;
 mod document;
 mod draco;
 mod extension_table;
@@ -95,28 +94,13 @@ pub(super) fn read(
     limits: &Limits,
     progress: &Progress,
 ) -> Result<LoadedMesh, GltfError> {
-    // A cancelled read of a file isn't an error of what needs it.
-    read_scene(bytes, folder, name, selected, limits, progress).map_err(|error| match progress.check() {
-        Ok(()) => error,
-        Err(cancelled) => cancelled.into(),
-    })
-}
-
-fn read_scene(
-    bytes: Vec<u8>,
-    folder: &Path,
-    name: &str,
-    selected: Selection,
-    limits: &Limits,
-    progress: &Progress,
-) -> Result<LoadedMesh, GltfError> {
     let budget = Budget::new(bytes.len(), limits);
     let mut parsed = document::parse(bytes, selected, &budget, progress)?;
     let (document, notes) = (&parsed.document, &mut parsed.notes);
     let (extensions, reach, lists) = (&parsed.extensions, &parsed.reach, &parsed.lists);
     progress.check()?;
     let files = Files::new(folder, limits, &budget, progress);
-    let buffers = Buffers::new(document, &extensions.fallback, &parsed.faults, &files, parsed.blob);
+    let buffers = Buffers::new(document, &extensions.fallback, &parsed.faults, &files, parsed.blob, progress);
     progress.set(0.3);
     let placed = nodes::place(document, &reach.hiding, notes)?;
     let mut accessors = Accessors::new(document, buffers, &extensions.compressed, &parsed.faults, &budget);
@@ -184,8 +168,8 @@ fn read_scene(
     drop(parsed.lists);
     progress.set(0.8);
     let (mut of_lights, mut of_cameras) = (Notes::default(), Notes::default());
-    let lights = lights::shown(&parsed.lights, &placed, &mut of_lights);
-    let cameras = cameras::shown(&parsed.cameras, &placed, &mut of_cameras);
+    let lights = parsed.lights.shown(&placed, &mut of_lights);
+    let cameras = parsed.cameras.shown(&placed, &mut of_cameras);
     let mounts = [mounts(binder.as_ref(), &lights), mounts(binder.as_ref(), &cameras)];
     let mut mesh = finished(name, (builder, details, binder), notes, (&budget, progress))?;
     if let Some(rig) = mesh.rig.as_mut().and_then(Arc::get_mut) {

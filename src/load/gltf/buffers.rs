@@ -8,6 +8,7 @@ use ::gltf::json::Buffer;
 use super::GltfError;
 use super::schema_check::Faults;
 use crate::uri::{self, Files};
+use geometry::progress::Progress;
 
 /// The buffers of a document.
 pub(crate) struct Buffers<'a> {
@@ -21,6 +22,7 @@ pub(crate) struct Buffers<'a> {
     owner: Option<usize>,
     /// What was read, cut to the lengths in the document; or a clause that says what is wrong.
     read: Vec<OnceCell<Result<Vec<u8>, String>>>,
+    progress: &'a Progress,
 }
 
 impl<'a> Buffers<'a> {
@@ -30,18 +32,20 @@ impl<'a> Buffers<'a> {
         faults: &'a Faults,
         files: &'a Files<'a>,
         chunk: Option<Vec<u8>>,
+        progress: &'a Progress,
     ) -> Self {
         let list = &document.as_json().buffers[..];
         let may_own = |i: &usize| list[*i].uri.is_none() && !fallback[*i] && !faults.contains_key(&("buffers", *i));
         let owner = (0..list.len()).find(may_own);
         let read = list.iter().map(|_| OnceCell::new()).collect();
-        Self { list, fallback, faults, files, chunk: Cell::new(chunk), owner, read }
+        Self { list, fallback, faults, files, chunk: Cell::new(chunk), owner, read, progress }
     }
 
     /// Returns the bytes of a buffer. A fallback without a URI has none.
     ///
     /// # Errors
-    /// [`GltfError::Document`] for one that is wrong, and [`GltfError::Buffer`] for one that is missing or too short.
+    /// [`GltfError::Document`] for one that is wrong, [`GltfError::Buffer`] for one that is missing or too short, and
+    /// [`GltfError::Cancelled`].
     pub(super) fn bytes(&self, i: usize) -> Result<&[u8], GltfError> {
         if let Some(fault) = self.faults.get(&("buffers", i)) {
             return Err(fault.clone().into());
@@ -58,6 +62,8 @@ impl<'a> Buffers<'a> {
                 )
             }
         });
+        // A cancelled read isn't an error of the buffer.
+        self.progress.check()?;
         let uri = || buffer.uri.as_deref().map_or("the binary chunk".to_owned(), uri::shown);
         read.as_deref().map_err(|reason| GltfError::Buffer { buffer: i, uri: uri(), reason: reason.clone() })
     }

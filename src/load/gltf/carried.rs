@@ -27,45 +27,48 @@ pub(super) struct Carrier {
     pub index: usize,
 }
 
-/// Where a document has lights or cameras.
-pub(super) struct Place {
+/// A light or a camera.
+pub(super) trait Carriable: Sized {
+    /// What it is where its node puts it.
+    type Placed;
+    const KIND: Kind;
+
+    fn read(members: &Members) -> Option<Self>;
+
+    /// Returns it with its node's place, none if that isn't finite.
+    fn at(&self, carrier: &Carrier, global: &DMat4) -> Option<Self::Placed>;
+}
+
+/// Where a document has lights or cameras, and what is said of them.
+pub(super) struct Kind {
     /// The document's list of them, as a JSON pointer without its first slash.
     pub list: &'static str,
     /// The extension of nodes, if it isn't the nodes themselves, that has the index of one.
     pub extension: Option<&'static str>,
     /// The member that is the index.
     pub member: &'static str,
-}
-
-/// How many are shown, and what is said of others.
-pub(super) struct Most {
-    pub count: usize,
-    /// What is said if there are more, after their number.
-    pub more: String,
+    /// How many are shown, and what is said before and after that number if there are more.
+    pub most: usize,
+    pub more: [&'static str; 2],
     /// What is said of a node that has one which can't be placed.
     pub unplaced: &'static str,
 }
 
-impl<T> Carried<T> {
+impl<T: Carriable> Carried<T> {
     /// Reads a list, and takes out of nodes which of its elements they have.
-    pub(super) fn take(
-        root: &mut Map<String, Value>,
-        list: &[Value],
-        place: &Place,
-        read: impl Fn(&Members) -> Option<T>,
-        notes: &RefCell<Notes>,
-    ) -> Self {
-        let element = |(i, value)| read(&Members::of(value, format!("/{}/{i}", place.list), notes)?);
+    pub(super) fn take(root: &mut Map<String, Value>, list: &[Value], notes: &RefCell<Notes>) -> Self {
+        let kind = T::KIND;
+        let element = |(i, value)| T::read(&Members::of(value, format!("/{}/{i}", kind.list), notes)?);
         let list: Vec<_> = list.iter().enumerate().map(element).collect();
         let mut nodes = Vec::new();
         for (node, object) in objects(root, "nodes").enumerate() {
-            let (own, pointer) = match place.extension {
+            let (own, pointer) = match kind.extension {
                 Some(name) => (take_extension(object, name), format!("/nodes/{node}/extensions/{name}")),
-                None => (object.remove(place.member).map(|own| json!({ place.member: own })), format!("/nodes/{node}")),
+                None => (object.remove(kind.member).map(|own| json!({ kind.member: own })), format!("/nodes/{node}")),
             };
             let Some(own) = own else { continue };
-            let index = Members::of(&own, pointer, notes)
-                .and_then(|members| members.index(place.member, place.list, list.len()));
+            let members = Members::of(&own, pointer, notes);
+            let index = members.and_then(|members| members.index(kind.member, kind.list, list.len()));
             let name = || object.get("name").and_then(Value::as_str).map(str::to_owned);
             nodes.extend(index.map(|index| Carrier { node, name: name(), index }));
         }
@@ -77,28 +80,24 @@ impl<T> Carried<T> {
         self.nodes.iter().map(|own| own.node)
     }
 
-    /// Those of the nodes that the scene shows, each with its node, as `at` puts them where they are at rest.
-    pub(super) fn shown<U>(
-        &self,
-        placed: &Placed,
-        most: &Most,
-        at: impl Fn(&T, &Carrier, &DMat4) -> Option<U>,
-        notes: &mut Notes,
-    ) -> Vec<(usize, U)> {
+    /// Those of the nodes that the scene shows, where they are at rest, each with its node.
+    pub(super) fn shown(&self, placed: &Placed, notes: &mut Notes) -> Vec<(usize, T::Placed)> {
+        let kind = T::KIND;
         if self.nodes.is_empty() {
             return Vec::new();
         }
         let is_shown = placed.is_shown();
         let shown = self.nodes.iter().filter(|own| is_shown.get(own.node) == Some(&true));
         let all: Vec<_> = shown.filter_map(|own| Some((own, self.list[own.index].as_ref()?))).collect();
-        if all.len() > most.count {
-            notes.push(format!("The scene has {} {}", all.len(), most.more));
+        if all.len() > kind.most {
+            let [before, after] = kind.more;
+            notes.push(format!("The scene has {} {before} {} {after}.", all.len(), kind.most));
         }
         let mut found = Vec::new();
-        for (own, thing) in all.into_iter().take(most.count) {
-            match placed.global.get(own.node).and_then(|global| at(thing, own, global)) {
+        for (own, thing) in all.into_iter().take(kind.most) {
+            match placed.global.get(own.node).and_then(|global| thing.at(own, global)) {
                 Some(thing) => found.push((own.node, thing)),
-                None => notes.push(format!("/nodes/{} has {}; it is left out.", own.node, most.unplaced)),
+                None => notes.push(format!("/nodes/{} has {}; it is left out.", own.node, kind.unplaced)),
             }
         }
         found

@@ -19,7 +19,6 @@ use ::gltf::{Document, Primitive, Semantic};
 use draco_core::{DataType, DecodeLimits, DecoderBuffer, ErrorKind, Mesh, MeshDecoder, PointAttribute, PointIndex};
 
 use super::accessor::{DataError, component};
-use super::decompressed_primitive::{Attribute, DecompressedPrimitive};
 use super::extensions::DracoExtension;
 use super::nodes::Placed;
 use super::schema::{DRACO, is_detail};
@@ -30,6 +29,23 @@ use geometry::progress::Progress;
 
 use header::Header;
 use memory::decoding_bytes;
+
+/// The data of a decompressed primitive.
+pub(crate) struct DecompressedPrimitive {
+    /// The indices of vertices, three for each triangle.
+    pub indices: Vec<u32>,
+    /// By their names in glTF, the numbers of attributes, as many for each vertex as their accessors say; or why one that a primitive can
+    /// do without can't be read, as a clause.
+    pub attributes: HashMap<String, Result<Vec<f32>, String>>,
+}
+
+impl DecompressedPrimitive {
+    /// Returns the size in memory, in bytes.
+    pub(crate) fn bytes(&self) -> u64 {
+        let values: usize = self.attributes.values().flatten().map(Vec::len).sum();
+        4 * (self.indices.len() + values) as u64
+    }
+}
 
 /// Why a primitive can't be decompressed, as a clause.
 enum DecodeError {
@@ -73,8 +89,7 @@ pub(super) fn unpack(
     for (mesh, primitive) in shown.flat_map(|mesh| mesh.primitives().map(move |primitive| (mesh.index(), primitive))) {
         let place = [mesh, primitive.index()];
         let Some(packed) = packed.get(mesh).and_then(|mesh| mesh.get(place[1])?.as_ref()) else { continue };
-        let is_read = !matches!(primitive.mode(), Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip);
-        if !is_read || unpacked.contains_key(&place) {
+        if unpacked.contains_key(&place) {
             continue;
         }
         progress.check()?;
@@ -191,22 +206,22 @@ fn taken(
             "holds {points} vertices and {faces} triangles, but its accessors have {vertices} and {triangles}"
         ));
     }
-    let attribute = |(name, accessor): &(String, Accessor)| {
+    let read = |name: &str, accessor: &Accessor| {
         let id = packed.id(name).unwrap_or_default();
         let from = mesh.attribute_by_unique_id(id);
         let from = from.ok_or_else(|| format!("says that {name} is attribute {id}, which its data doesn't have"))?;
-        Ok(Attribute { name: name.clone(), width: width(accessor), values: values(name, from, accessor, vertices)? })
+        values(name, from, accessor, vertices)
     };
-    let (mut read, mut left_out) = (Vec::new(), Vec::new());
-    for named in attributes {
-        match attribute(named) {
-            Ok(values) => read.push(values),
-            Err(reason) if is_detail(&named.0) => left_out.push((named.0.clone(), reason)),
-            Err(reason) => return Err(reason),
+    let mut read_attributes = HashMap::new();
+    for (name, accessor) in attributes {
+        let values = read(name, accessor);
+        if let (Err(reason), false) = (&values, is_detail(name)) {
+            return Err(reason.clone());
         }
+        read_attributes.insert(name.clone(), values);
     }
     let indices = mesh.faces().as_flattened().iter().map(|point| point.0).collect();
-    Ok(DecompressedPrimitive { indices, attributes: read, left_out })
+    Ok(DecompressedPrimitive { indices, attributes: read_attributes })
 }
 
 /// Converts an attribute's numbers, vertex by vertex, to what its accessor says that they mean.

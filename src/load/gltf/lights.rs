@@ -5,18 +5,15 @@
 use std::cell::RefCell;
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 
-use glam::Vec3;
+use glam::{DMat4, Vec3};
 use serde_json::{Map, Value};
 
-use super::carried::{Carried, Most, Place, take_extension};
+use super::carried::{Carriable, Carried, Carrier, Kind, take_extension};
 use super::lenient::Members;
-use super::nodes::Placed;
 use super::notes::Notes;
 use geometry::mesh::{Light, LightKind, MOST_LIGHTS};
 
 const EXTENSION: &str = "KHR_lights_punctual";
-const PLACE: Place =
-    Place { list: "extensions/KHR_lights_punctual/lights", extension: Some(EXTENSION), member: "light" };
 
 /// From 0 to the largest intensity that is read: it is finite, also times a colour.
 const POSITIVE: [f32; 2] = [0.0, 1e18];
@@ -28,36 +25,44 @@ pub(super) fn take(root: &mut Map<String, Value>, notes: &RefCell<Notes>) -> Car
     let lights = match take_extension(root, EXTENSION).map(|mut own| own.get_mut("lights").map(Value::take)) {
         Some(Some(Value::Array(lights))) => lights,
         Some(_) => {
-            notes.borrow_mut().push(format!("/{} isn't a list; there are no lights.", PLACE.list));
+            notes.borrow_mut().push(format!("/{} isn't a list; there are no lights.", Light::KIND.list));
             Vec::new()
         }
         None => Vec::new(),
     };
-    Carried::take(root, &lights, &PLACE, light, notes)
+    Carried::take(root, &lights, notes)
 }
 
-/// The lights of the nodes that the scene shows, where they are at rest, each with its node: at most [`MOST_LIGHTS`].
-pub(super) fn shown(lights: &Carried<Light>, placed: &Placed, notes: &mut Notes) -> Vec<(usize, Light)> {
-    let more = format!("lights, of which only the first {MOST_LIGHTS} shine.");
-    let most = Most { count: MOST_LIGHTS, more, unplaced: "a light at no finite place" };
-    lights.shown(placed, &most, |light, _, global| light.at(global), notes)
-}
-
-/// Reads a light.
-fn light(members: &Members) -> Option<Light> {
-    let color = Vec3::from(members.numbers("color", [1.0; 3], [0.0, 1.0]));
-    let intensity = color * members.number("intensity", 1.0, POSITIVE);
-    let range = || members.has("range").then(|| members.number("range", 1.0, RANGE));
-    let kind = match members.text("type") {
-        Some("directional") => LightKind::Directional,
-        Some("point") => LightKind::Point { range: range() },
-        Some("spot") => spot(members, range()),
-        _ => {
-            members.say("isn't a directional, a point or a spot light; it is left out");
-            return None;
-        }
+impl Carriable for Light {
+    type Placed = Self;
+    const KIND: Kind = Kind {
+        list: "extensions/KHR_lights_punctual/lights",
+        extension: Some(EXTENSION),
+        member: "light",
+        most: MOST_LIGHTS,
+        more: ["lights, of which only the first", "shine"],
+        unplaced: "a light at no finite place",
     };
-    Some(Light { kind, intensity, place: Vec3::ZERO, direction: Vec3::NEG_Z })
+
+    fn read(members: &Members) -> Option<Self> {
+        let color = Vec3::from(members.numbers("color", [1.0; 3], [0.0, 1.0]));
+        let intensity = color * members.number("intensity", 1.0, POSITIVE);
+        let range = || members.has("range").then(|| members.number("range", 1.0, RANGE));
+        let kind = match members.text("type") {
+            Some("directional") => LightKind::Directional,
+            Some("point") => LightKind::Point { range: range() },
+            Some("spot") => spot(members, range()),
+            _ => {
+                members.say("isn't a directional, a point or a spot light; it is left out");
+                return None;
+            }
+        };
+        Some(Self { kind, intensity, place: Vec3::ZERO, direction: Vec3::NEG_Z })
+    }
+
+    fn at(&self, _: &Carrier, global: &DMat4) -> Option<Self> {
+        Self::at(*self, global)
+    }
 }
 
 fn spot(members: &Members, range: Option<f32>) -> LightKind {

@@ -4,12 +4,11 @@ use ::gltf::mesh::Mode;
 use ::gltf::{Document, Mesh, Primitive, Semantic};
 
 use super::accessor::List;
-use super::animated_vertices::AnimatedVertices;
+use super::animated_vertices::{self, AnimatedVertices};
 use super::materials::Resolved;
 use super::notes::Notes;
 use super::primitive_data::PrimitiveData;
 use super::rig_builder::NodeBinder;
-use super::vertex_details::VertexDetails;
 use crate::Budget;
 use crate::face_builder::{is_near, unplaced};
 use crate::import::Import;
@@ -124,24 +123,17 @@ impl PrimitiveReader {
     ///
     /// # Errors
     /// [`GltfError::Accessor`], [`GltfError::Primitive`] and [`GltfError::TooLarge`].
-    pub(super) fn read(&mut self, job: Job, binder: Option<&mut NodeBinder>) -> Result<(), GltfError> {
+    pub(super) fn read(&mut self, job: Job, mut binder: Option<&mut NodeBinder>) -> Result<(), GltfError> {
         let Job { mesh, primitive, pose, material, accessors, builder, details } = job;
         let name = name(mesh, primitive);
         let unpacked = accessors.unpacked.get(&[mesh.index(), primitive.index()]);
         let source =
             PrimitiveData { primitive, name: &name, accessors, unpacked, makes_normals: self.import.makes_normals() };
-        let mut vertices = Vertices::new(source, pose, material.uvs, self.repairs, &mut self.notes)?;
-        if details.is_some() {
-            let is_animated = binder.as_ref().is_some_and(|binder| binder.first_weight().is_some());
-            let has_weight = |target: usize| pose.weights.get(target).is_some_and(|weight| *weight != 0.0);
-            let uses_target = |target: usize| is_animated || has_weight(target);
-            let (count, needs, repairs) = (vertices.count, material.needs, &mut vertices.repairs);
-            let details = VertexDetails::new(source, count, needs, uses_target, repairs, &mut self.notes);
-            vertices.details = Some(details);
-        }
-        let moving = binder.map(|binder| AnimatedVertices::new(source, &vertices, pose.instance, binder));
+        let is_morphing = animated_vertices::may_morph(binder.as_deref_mut(), primitive);
+        let (is_detailed, repairs, budget) = (details.is_some(), self.repairs, accessors.budget);
+        let mut vertices = Vertices::new(source, pose, material, is_detailed, is_morphing, repairs, &mut self.notes)?;
+        let moving = binder.map(|binder| AnimatedVertices::new(budget, &vertices, pose.instance, is_morphing, binder));
         let indices = Indices::of(&source, vertices.count)?;
-        let budget = accessors.budget;
         // The number and the marks of each vertex's corner, and a bit that says whether it is used.
         budget.borrow(vertices.count as u64 * 5 + vertices.count as u64 / 8).map_err(too_large)?;
         let used = used(&indices, vertices.count).map_err(|reason| source.problem(reason))?;

@@ -3,7 +3,6 @@
 use std::collections::HashMap;
 
 use ::gltf::accessor::Accessor;
-use ::gltf::mesh::Mode;
 use ::gltf::{Document, Mesh, Semantic};
 
 use super::extensions::InstancingExtension;
@@ -131,9 +130,8 @@ impl SceneSize {
         let mut size = Self::default();
         for primitive in mesh.primitives() {
             size.primitives += 1;
-            let Some(positions) = primitive.get(&Semantic::Positions).filter(|_| is_read(primitive.mode())) else {
-                continue;
-            };
+            // Points and lines have no attributes.
+            let Some(positions) = primitive.get(&Semantic::Positions) else { continue };
             let name = primitive::name(mesh, &primitive);
             // The size of decompressed data has been compared with the accessors.
             let is_unpacked = accessors.unpacked.contains_key(&[mesh.index(), primitive.index()]);
@@ -189,8 +187,4 @@ impl SceneSize {
         self.elements = self.elements.saturating_add(other.elements);
         self.primitives = self.primitives.saturating_add(other.primitives);
     }
-}
-
-fn is_read(mode: Mode) -> bool {
-    matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)
 }
