@@ -75,7 +75,7 @@ use instances::Instances;
 use materials::Materials;
 use nodes::Placed;
 use primitive::PrimitiveReader;
-use scene_size::{PerVertex, SceneNeeds};
+use scene_size::SceneNeeds;
 
 pub use gltf_error::GltfError;
 
@@ -83,9 +83,6 @@ pub use gltf_error::GltfError;
 ///
 /// `folder` is the document's folder; `name` becomes the mesh's name. `selected` says which scene is read, and with the materials of
 /// which variant, if the document has it. `limits` apply to the files that the document names.
-///
-/// # Errors
-/// [`GltfError`].
 pub(super) fn read(
     bytes: Vec<u8>,
     folder: &Path,
@@ -118,12 +115,9 @@ pub(super) fn read(
         binder = RigBuilder::new(clips, &nodes, &mut warnings);
     }
     notes.extend(warnings);
-    let mut materials = Materials::new(lists, document, &placed, (&accessors, &files), &budget)?;
+    let mut materials = Materials::new(lists, document, &placed, &accessors, &files)?;
     let is_detailed = needs_details(document, &placed, &materials);
-    let check = |moves| {
-        let beside = PerVertex { moves, is_detailed };
-        scene_size::check(document, (&placed, &extensions.instances), &accessors, &budget, beside)
-    };
+    let check = |moves| scene_size::check(document, &placed, &extensions.instances, &accessors, moves, is_detailed);
     let needs = afforded(check, &mut binder, moves_meshes, notes)?;
     materials.read_images(needs.bytes, progress)?;
     let mut scene = Scene {
@@ -171,7 +165,7 @@ pub(super) fn read(
     let lights = parsed.lights.shown(&placed, &mut of_lights);
     let cameras = parsed.cameras.shown(&placed, &mut of_cameras);
     let mounts = [mounts(binder.as_ref(), &lights), mounts(binder.as_ref(), &cameras)];
-    let mut mesh = finished(name, (builder, details, binder), notes, (&budget, progress))?;
+    let mut mesh = finished(name, builder, details, binder, notes, &budget, progress)?;
     if let Some(rig) = mesh.rig.as_mut().and_then(Arc::get_mut) {
         [rig.lights, rig.cameras] = mounts;
     }
@@ -215,18 +209,18 @@ impl<'a> Scene<'a> {
         let skin = node.skin().map(|skin| skin::read(&skin, self.accessors)).transpose()?;
         let joints = skin.as_ref().map_or_else(Vec::new, |skin| skin.matrices(self.global));
         let Some(own) = self.instances.get(&node.index()) else {
-            return self.add_once(&node, &mesh, (skin.as_ref(), &joints), DMat4::IDENTITY, progress);
+            return self.add_once(&node, &mesh, skin.as_ref(), &joints, DMat4::IDENTITY, progress);
         };
         if skin.is_some() {
             // Vertices of a skin don't move with their node.
             let said = "has instances of a mesh that a skin moves, which EXT_mesh_gpu_instancing doesn't define";
             self.primitives.notes.push(format!("/nodes/{} {said}; it is shown once.", node.index()));
-            return self.add_once(&node, &mesh, (skin.as_ref(), &joints), DMat4::IDENTITY, progress);
+            return self.add_once(&node, &mesh, skin.as_ref(), &joints, DMat4::IDENTITY, progress);
         }
         let (document, accessors) = (self.document, self.accessors);
         let instances = Instances::read(document, accessors, own, node.index())?;
         for instance in instances.transforms() {
-            self.add_once(&node, &mesh, (None, &[]), instance, progress)?;
+            self.add_once(&node, &mesh, None, &[], instance, progress)?;
         }
         Ok(())
     }
@@ -236,7 +230,8 @@ impl<'a> Scene<'a> {
         &mut self,
         node: &Node,
         mesh: &::gltf::Mesh,
-        (skin, joints): (Option<&SkinJoints>, &[DMat4]),
+        skin: Option<&SkinJoints>,
+        joints: &[DMat4],
         instance: DMat4,
         progress: &Progress,
     ) -> Result<(), GltfError> {
@@ -268,21 +263,14 @@ impl<'a> Scene<'a> {
 
 /// Returns whether corners of what is shown need more than position, normal and texture coordinates.
 fn needs_details(document: &Document, placed: &Placed, materials: &Materials) -> bool {
-    let mut seen = vec![false; document.meshes().len()];
-    let shown = placed.shown.iter().filter_map(|&node| document.nodes().nth(node)?.mesh());
-    let mut meshes = shown.filter(|mesh| !std::mem::replace(&mut seen[mesh.index()], true));
-    meshes.any(|mesh| {
-        mesh.primitives().any(|primitive| {
-            primitive.get(&Semantic::Colors(0)).is_some() || materials.needs_details(&primitive.material())
-        })
+    let mut primitives = placed.meshes(document).flat_map(|mesh| mesh.primitives());
+    primitives.any(|primitive| {
+        primitive.get(&Semantic::Colors(0)).is_some() || materials.needs_details(&primitive.material())
     })
 }
 
 /// Returns what a scene needs, if that fits into memory. Animations that move only lights and cameras are left out where it fits
 /// without them alone.
-///
-/// # Errors
-/// Those of `check`.
 fn afforded(
     check: impl Fn(bool) -> Result<SceneNeeds, GltfError>,
     binder: &mut Option<RigBuilder>,
@@ -313,9 +301,12 @@ fn mounts<T>(binder: Option<&RigBuilder>, shown: &[(usize, T)]) -> Vec<Joint> {
 /// [`GltfError::TooLarge`] and [`GltfError::Cancelled`].
 fn finished(
     name: &str,
-    (builder, details, binder): (MeshBuilder, Option<DetailTable>, Option<RigBuilder>),
+    builder: MeshBuilder,
+    details: Option<DetailTable>,
+    binder: Option<RigBuilder>,
     notes: &mut Notes,
-    (budget, progress): (&Budget, &Progress),
+    budget: &Budget,
+    progress: &Progress,
 ) -> Result<Mesh, GltfError> {
     let (mut mesh, mut bindings) = builder.finish_bound(name.to_owned(), budget, progress)?;
     if let Some(details) = details {

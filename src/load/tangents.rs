@@ -55,9 +55,6 @@ struct DetailedMesh<'a> {
 
 /// Gives tangents to the corners of normal-mapped triangles that have none, so many triangles at a time. A corner that gets several becomes
 /// several corners, which differ in nothing else. Returns a warning for each material that gets none.
-///
-/// # Errors
-/// [`Cancelled`].
 fn complete(
     batch: usize,
     mut detailed: DetailedMesh,

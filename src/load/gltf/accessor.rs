@@ -234,9 +234,6 @@ impl<'a> Accessors<'a> {
     }
 
     /// Returns a list of the same elements as [`numbers`](Self::numbers), which are decoded when they are read.
-    ///
-    /// # Errors
-    /// The same as [`numbers`](Self::numbers)'.
     pub(crate) fn list<const N: usize>(
         &self,
         accessor: &Accessor,
@@ -323,9 +320,6 @@ impl<'a> Accessors<'a> {
 
     /// Checks that the accessor's elements lie within its buffer view. Types and sparse values are checked when they
     /// are read.
-    ///
-    /// # Errors
-    /// The same as [`Self::numbers`]'.
     pub(crate) fn check(&self, accessor: &Accessor, role: &str) -> Result<(), GltfError> {
         self.check_sound(accessor)?;
         let found = match accessor.view() {

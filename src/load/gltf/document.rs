@@ -74,11 +74,17 @@ pub(super) fn parse(
     if parts.is_cut {
         reach = Reach::of(root, show_hidden);
     }
-    repair::repair(root, &reach, (lists.materials.len(), requires_draco), budget, notes.get_mut())?;
+    repair::repair(root, &reach, lists.materials.len(), requires_draco, budget, notes.get_mut())?;
     // The `gltf` crate takes nothing for granted that this doesn't check.
     let faults = schema_check::check(root, schema::DOCUMENT)?;
+    // Empty views refer to a buffer.
+    if list(root, "buffers").is_empty() && !list(root, "bufferViews").is_empty() {
+        root.insert("buffers".to_owned(), json!([{ "byteLength": 0 }]));
+    }
     let extensions = Extensions::of(root);
-    complete(root);
+    for scene in objects(root, "scenes") {
+        scene.entry("nodes").or_insert_with(|| json!([]));
+    }
     let root: Root = serde_json::from_value(value).map_err(not_gltf)?;
     let document = Document::from_json_without_validation(root);
     drop(json);
@@ -165,15 +171,4 @@ fn check_version(root: &mut Map<String, Value>, notes: &mut Notes) -> Result<(),
 fn is_known(least: &str) -> bool {
     let parts = least.split_once('.').map(|(major, minor)| (major.parse::<u64>(), minor.parse::<u64>()));
     !matches!(parts, Some((Ok(major), Ok(minor))) if (major, minor) > (2, 0))
-}
-
-/// Adds members that the `gltf` crate asks for, but that may be missing.
-fn complete(root: &mut Map<String, Value>) {
-    for scene in objects(root, "scenes") {
-        scene.entry("nodes").or_insert_with(|| json!([]));
-    }
-    // Empty views refer to a buffer.
-    if list(root, "buffers").is_empty() && !list(root, "bufferViews").is_empty() {
-        root.insert("buffers".to_owned(), json!([{ "byteLength": 0, "uri": "" }]));
-    }
 }

@@ -47,31 +47,6 @@ impl DecompressedPrimitive {
     }
 }
 
-/// Why a primitive can't be decompressed, as a clause.
-enum DecodeError {
-    /// The data is wrong.
-    Wrong(String),
-    /// It would take too much memory.
-    TooMuch(String),
-    /// Something else in the document is wrong.
-    Elsewhere(GltfError),
-}
-
-impl From<String> for DecodeError {
-    fn from(reason: String) -> Self {
-        Self::Wrong(reason)
-    }
-}
-
-impl From<DataError> for DecodeError {
-    fn from(error: DataError) -> Self {
-        match error {
-            DataError::Here(reason) => Self::Wrong(reason),
-            DataError::Elsewhere(error) => Self::Elsewhere(error),
-        }
-    }
-}
-
 /// Decompresses the primitives that are shown, by mesh and primitive.
 ///
 /// # Errors
@@ -85,21 +60,19 @@ pub(super) fn unpack(
     progress: &Progress,
 ) -> Result<HashMap<[usize; 2], DecompressedPrimitive>, GltfError> {
     let mut unpacked = HashMap::new();
-    let shown = placed.shown.iter().filter_map(|&node| document.nodes().nth(node)?.mesh());
-    for (mesh, primitive) in shown.flat_map(|mesh| mesh.primitives().map(move |primitive| (mesh.index(), primitive))) {
-        let place = [mesh, primitive.index()];
-        let Some(packed) = packed.get(mesh).and_then(|mesh| mesh.get(place[1])?.as_ref()) else { continue };
-        if unpacked.contains_key(&place) {
-            continue;
+    for mesh in placed.meshes(document) {
+        for (primitive, packed) in mesh.primitives().zip(packed.get(mesh.index()).into_iter().flatten()) {
+            let Some(packed) = packed else { continue };
+            progress.check()?;
+            let place = [mesh.index(), primitive.index()];
+            let pointer = format!("/meshes/{}/primitives/{}/extensions/{DRACO}", place[0], place[1]);
+            let stream = Stream { accessors, primitive: &primitive, packed, pointer: &pointer };
+            let made = stream.unpack().map_err(|error| match error {
+                DataError::Here(reason) => GltfError::Document { pointer: pointer.clone(), reason },
+                DataError::Elsewhere(error) => error,
+            })?;
+            unpacked.insert(place, made);
         }
-        progress.check()?;
-        let pointer = || format!("/meshes/{mesh}/primitives/{}/extensions/{DRACO}", place[1]);
-        let made = Stream { accessors, primitive: &primitive, packed }.unpack().map_err(|fault| match fault {
-            DecodeError::Wrong(reason) => GltfError::Document { pointer: pointer(), reason },
-            DecodeError::TooMuch(reason) => GltfError::Draco { pointer: pointer(), reason },
-            DecodeError::Elsewhere(error) => error,
-        })?;
-        unpacked.insert(place, made);
     }
     Ok(unpacked)
 }
@@ -109,10 +82,12 @@ struct Stream<'a> {
     accessors: &'a Accessors<'a>,
     primitive: &'a Primitive<'a>,
     packed: &'a DracoExtension,
+    /// Its place in the document.
+    pointer: &'a str,
 }
 
 impl Stream<'_> {
-    fn unpack(&self) -> Result<DecompressedPrimitive, DecodeError> {
+    fn unpack(&self) -> Result<DecompressedPrimitive, DataError> {
         let [vertices, indices] = self.counts()?;
         let view = self.accessors.view(self.packed.view).ok_or_else(|| "has no buffer view".to_owned())?;
         let bytes = self.accessors.view_bytes(&view)?;
@@ -129,7 +104,7 @@ impl Stream<'_> {
         let peak = decoding_bytes(&header, &walked, bytes.len() as u64, vertices, most).max(own);
         let budget = self.accessors.budget;
         let decoding_memory = Borrowed::from(budget);
-        budget.borrow(peak).map_err(|refused| DecodeError::TooMuch(too_much(refused, budget)))?;
+        budget.borrow(peak).map_err(|refused| self.too_large(too_much(refused, budget)))?;
         let stride = walked.attributes.map(|all| all.iter().map(|coded| coded.components * coded.size).sum::<u64>());
         let most = stride.map_or(most, |stride| most.min(stride.saturating_mul(vertices)));
         let limits = DecodeLimits::default().with_max_points(vertices).with_max_faces(indices / 3);
@@ -142,8 +117,12 @@ impl Stream<'_> {
         let unpacked = taken(&mesh, &attributes, self.packed, [vertices as usize, indices as usize / 3])?;
         drop(mesh);
         drop(decoding_memory);
-        budget.hold(unpacked.bytes()).map_err(|refused| DecodeError::TooMuch(refused.into()))?;
+        budget.hold(unpacked.bytes()).map_err(|refused| self.too_large(refused.into()))?;
         Ok(unpacked)
+    }
+
+    fn too_large(&self, reason: String) -> GltfError {
+        GltfError::Draco { pointer: self.pointer.to_owned(), reason }
     }
 
     /// Returns the numbers of vertices and indices in the accessors.

@@ -77,9 +77,6 @@ impl<'a> Indices<'a> {
 
     /// Calls `take` with the number of the first index, and some indices, until it has had all. All lists but the last have
     /// [`BLOCK`] indices.
-    ///
-    /// # Errors
-    /// Those of `take`.
     fn in_blocks<E>(&self, mut take: impl FnMut(usize, &[u32]) -> Result<(), E>) -> Result<(), E> {
         let mut block = Vec::with_capacity(BLOCK.min(self.count));
         for first in (0..self.count).step_by(BLOCK) {
@@ -137,7 +134,7 @@ impl PrimitiveReader {
         // The number and the marks of each vertex's corner, and a bit that says whether it is used.
         budget.borrow(vertices.count as u64 * 5 + vertices.count as u64 / 8).map_err(too_large)?;
         let used = used(&indices, vertices.count).map_err(|reason| source.problem(reason))?;
-        let kept = KeptVertices::of(&mut vertices, &used, (moving, details), builder, budget)?;
+        let kept = KeptVertices::of(&mut vertices, &used, moving, details, builder, budget)?;
         let (mode, count) = (primitive.mode(), indices.count);
         self.repairs = vertices.repairs;
         self.read += 1;
@@ -145,7 +142,7 @@ impl PrimitiveReader {
             self.left_over += count % 3;
         }
         builder.make_room_for_triangles(material.index, most_triangles(mode, count), budget).map_err(too_large)?;
-        let unplaced = self.add_triangles(mode, &indices, &kept, (builder, material.index))?;
+        let unplaced = self.add_triangles(mode, &indices, &kept, builder, material.index)?;
         if unplaced > 0 {
             self.unplaced.0 += unplaced;
             self.unplaced.1.get_or_insert_with(|| name.clone());
@@ -160,7 +157,8 @@ impl PrimitiveReader {
         mode: Mode,
         indices: &Indices,
         kept: &KeptVertices,
-        (builder, material): (&mut MeshBuilder, usize),
+        builder: &mut MeshBuilder,
+        material: usize,
     ) -> Result<usize, GltfError> {
         let mut unplaced = 0;
         let mut add = |[a, b, c]: [u32; 3]| {
@@ -255,7 +253,8 @@ impl KeptVertices {
     fn of(
         vertices: &mut Vertices,
         used: &[u64],
-        (mut moving, mut details): (Option<AnimatedVertices>, Option<&mut DetailTable>),
+        mut moving: Option<AnimatedVertices>,
+        mut details: Option<&mut DetailTable>,
         builder: &mut MeshBuilder,
         budget: &Budget,
     ) -> Result<Self, GltfError> {

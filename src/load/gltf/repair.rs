@@ -14,25 +14,27 @@ use geometry::mesh::{MemoryAccount, MemoryRefused};
 /// How far a rotation's length may be from 1 without a warning: quaternions in files are rounded.
 const ROUNDING: f64 = 1e-3;
 
-/// Repairs a document. `reach` says what of it is used; `materials` is the number of its materials.
+/// Repairs a document. `reach` says what of it is used; `materials` is the number of its materials, and `requires_draco` says whether it
+/// requires the extension.
 ///
 /// # Errors
 /// [`GltfError::Document`] if what replaces broken parts would take too much memory.
 pub(super) fn repair(
     root: &mut Map<String, Value>,
     reach: &Reach,
-    (materials, requires_draco): (usize, bool),
+    materials: usize,
+    requires_draco: bool,
     budget: &Budget,
     notes: &mut Notes,
 ) -> Result<(), GltfError> {
     let too_large =
         |refused: MemoryRefused| GltfError::Document { pointer: "its JSON".to_owned(), reason: refused.into() };
     hold_replacements(root, budget).map_err(too_large)?;
-    let kept_draco = kept_draco(root, reach, requires_draco);
     repair_nodes(root, reach, notes);
     let mut positionless = 0;
     let accessors = list(root, "accessors").len();
-    for (i, mesh) in elements(root, "meshes").iter_mut().enumerate() {
+    let mut meshes = root.remove("meshes");
+    for (i, mesh) in meshes.iter_mut().filter_map(Value::as_array_mut).flatten().enumerate() {
         if !reach.meshes[i] {
             *mesh = json!({ "primitives": [] });
             continue;
@@ -43,8 +45,11 @@ pub(super) fn repair(
                 let mode = primitive.get("mode").and_then(Value::as_u64).filter(|mode| *mode <= 6).unwrap_or(4);
                 positionless += usize::from(mode > 3);
                 *primitive = json!({ "mode": mode, "attributes": {} });
-            } else if let Value::Object(primitive) = primitive {
-                primitives.repair(k, primitive, kept_draco[i].get(k) == Some(&true));
+                continue;
+            }
+            let keeps_draco = packed(root, primitive, requires_draco).is_some();
+            if let Value::Object(primitive) = primitive {
+                primitives.repair(k, primitive, keeps_draco);
             }
         }
         let has_targets = primitives.has_targets;
@@ -52,6 +57,7 @@ pub(super) fn repair(
             mesh.remove("weights");
         }
     }
+    root.extend(meshes.map(|meshes| ("meshes".to_owned(), meshes)));
     if positionless > 0 {
         notes.push(format!("primitives without positions, left out: {positionless}."));
     }
@@ -79,16 +85,6 @@ fn hold_replacements(root: &Map<String, Value>, budget: &Budget) -> Result<(), M
     let others = elements().chain(list(root, "nodes")).chain(primitives()).filter(|value| !value.is_object()).count();
     budget.borrow(small as u64 * PER_OBJECT)?;
     budget.hold(others as u64 * PER_READ)
-}
-
-/// For each mesh and primitive, whether it is read from Draco data.
-fn kept_draco(root: &Map<String, Value>, reach: &Reach, requires_draco: bool) -> Vec<Vec<bool>> {
-    let of = |(i, mesh): (usize, &Value)| -> Vec<bool> {
-        let primitives = mesh.get("primitives").and_then(Value::as_array).filter(|_| reach.meshes[i]);
-        let kept = |primitive| packed(root, primitive, requires_draco).is_some();
-        primitives.into_iter().flatten().map(kept).collect()
-    };
-    list(root, "meshes").iter().enumerate().map(of).collect()
 }
 
 fn repair_nodes(root: &mut Map<String, Value>, reach: &Reach, notes: &mut Notes) {

@@ -22,12 +22,6 @@ pub(super) enum MemberKind {
     },
     /// A list of numbers that fit an f32, with this length if there is one.
     Numbers(Option<usize>),
-    /// A list of `count` numbers from `least` to `most`.
-    Within {
-        count: usize,
-        least: f64,
-        most: f64,
-    },
     Text,
     /// Text; anything else is ignored.
     Name,
@@ -50,8 +44,7 @@ pub(super) enum MemberKind {
 }
 
 use MemberKind::{
-    Attributes, Code, Flag, Ids, Index, Indices, Name, Numbers, Object, Objects, Parts, Targets, Text, Whole, Within,
-    Word,
+    Attributes, Code, Flag, Ids, Index, Indices, Name, Numbers, Object, Objects, Parts, Targets, Text, Whole, Word,
 };
 
 const fn needed(name: &'static str, kind: MemberKind) -> Field {
@@ -100,7 +93,7 @@ static NODE: &[Field] = &[
     may("skin", Index("skins")),
     may("matrix", Numbers(Some(16))),
     may("translation", Numbers(Some(3))),
-    may("rotation", Within { count: 4, least: -1.0, most: 1.0 }),
+    may("rotation", Numbers(Some(4))),
     may("scale", Numbers(Some(3))),
     may("weights", Numbers(None)),
     may("extensions", Object(&[may(INSTANCING, Object(&[needed("attributes", Attributes(is_placement))]))])),

@@ -103,8 +103,7 @@ impl Checker {
             MemberKind::Index(list) => self.index(value, list, path),
             MemberKind::Indices(list) => each(value, path, |value, path| self.index(value, list, path)),
             MemberKind::Whole { least, most } => whole(value, *least, *most, path),
-            MemberKind::Numbers(count) => numbers(value, *count, NUMBER, path),
-            MemberKind::Within { count, least, most } => numbers(value, Some(*count), [*least, *most], path),
+            MemberKind::Numbers(count) => numbers(value, *count, path),
             MemberKind::Text | MemberKind::Name => fits(value.is_string(), "text"),
             MemberKind::Flag => fits(value.is_boolean(), "true or false"),
             MemberKind::Code(codes) if value.as_u64().is_some_and(|own| codes.contains(&own)) => Ok(()),
@@ -181,25 +180,22 @@ fn whole(value: &Value, least: u64, most: u64, path: &JsonPointer) -> Result<(),
     }
 }
 
-/// The least and the greatest f32.
-const NUMBER: [f64; 2] = [f32::MIN as f64, f32::MAX as f64];
-
-fn numbers(value: &mut Value, count: Option<usize>, range: [f64; 2], path: &JsonPointer) -> Result<(), Fault> {
+fn numbers(value: &mut Value, count: Option<usize>, path: &JsonPointer) -> Result<(), Fault> {
     if let (Some(values), Some(count)) = (value.as_array(), count)
         && values.len() != count
     {
         return path.fail(format!("should have {count} numbers but has {}", values.len()));
     }
-    each(value, path, |value, path| number(value, range, path))
-}
-
-fn number(value: &Value, [least, most]: [f64; 2], path: &JsonPointer) -> Result<(), Fault> {
-    match value.as_f64() {
-        Some(number) if number < least => path.fail(format!("is {value}, but must be at least {:?}", least as f32)),
-        Some(number) if number > most => path.fail(format!("is {value}, but must be at most {:?}", most as f32)),
+    each(value, path, |value, path| match value.as_f64() {
+        Some(number) if number < f32::MIN.into() => {
+            path.fail(format!("is {value}, but must be at least {:?}", f32::MIN))
+        }
+        Some(number) if number > f32::MAX.into() => {
+            path.fail(format!("is {value}, but must be at most {:?}", f32::MAX))
+        }
         Some(_) => Ok(()),
         None => path.should_be("a number", value),
-    }
+    })
 }
 
 fn one_of<T: ToString>(choices: &[T]) -> String {
