@@ -1,7 +1,7 @@
 //! Reads glTF 2.0 (`.gltf`, `.glb` and `.vrm`): the triangles of one scene in their rest pose, and its animations.
 //!
-//! [`reach`] finds what the scene uses. What the shape depends on is checked strictly, and a fault is an error. A fault of anything
-//! else costs a warning ([`repair`]).
+//! [`reach`] finds what the scene uses, and [`repair`] takes out the rest. An accessor, a buffer view or a buffer that is wrong is an error for
+//! the shape, which can't do without it, and a warning for anything else.
 //!
 //! The `gltf` crate parses the document. Its accessor readers aren't used, since they panic on some broken files;
 //! [`accessor`] reads instead, and checks every range.
@@ -13,7 +13,7 @@ mod animated_vertices;
 mod animations;
 mod buffers;
 mod cameras;
-mod decompressed_primitive;
+mod carried;
 mod document;
 mod draco;
 mod extension_table;
@@ -69,12 +69,13 @@ use geometry::mesh::{Borrowed, MemoryAccount, Mesh};
 use geometry::progress::Progress;
 
 use accessor::Accessors;
+use buffers::Buffers;
 use extensions::InstancingExtension;
 use instances::Instances;
 use materials::Materials;
 use nodes::Placed;
 use primitive::PrimitiveReader;
-use scene_size::{PerVertex, SceneNeeds};
+use scene_size::SceneNeeds;
 
 pub use gltf_error::GltfError;
 
@@ -82,9 +83,6 @@ pub use gltf_error::GltfError;
 ///
 /// `folder` is the document's folder; `name` becomes the mesh's name. `selected` says which scene is read, and with the materials of
 /// which variant, if the document has it. `limits` apply to the files that the document names.
-///
-/// # Errors
-/// [`GltfError`].
 pub(super) fn read(
     bytes: Vec<u8>,
     folder: &Path,
@@ -99,13 +97,10 @@ pub(super) fn read(
     let (extensions, reach, lists) = (&parsed.extensions, &parsed.reach, &parsed.lists);
     progress.check()?;
     let files = Files::new(folder, limits, &budget, progress);
-    let buffers =
-        buffers::load(document, &files, (&reach.buffers, &extensions.fallback), parsed.blob, notes, progress)?;
+    let buffers = Buffers::new(document, &extensions.fallback, &parsed.faults, &files, parsed.blob, progress);
     progress.set(0.3);
     let placed = nodes::place(document, &reach.hiding, notes)?;
-    let known = (&buffers[..], parsed.faults, &reach.views[..]);
-    let read_copy = |buffer| buffers::read_copy(document, &files, buffer);
-    let mut accessors = Accessors::new(document, extensions, known, (&budget, &mut *notes), read_copy)?;
+    let mut accessors = Accessors::new(document, buffers, &extensions.compressed, &parsed.faults, &budget);
     accessors.unpacked = draco::unpack(&accessors, document, &placed, &extensions.packed, progress)?;
     let mut warnings = Vec::new();
     let clips = animations::read(parsed.animations, document, &accessors, &mut warnings);
@@ -120,12 +115,9 @@ pub(super) fn read(
         binder = RigBuilder::new(clips, &nodes, &mut warnings);
     }
     notes.extend(warnings);
-    let mut materials = Materials::new(lists, document, &placed, (&accessors, &files), &budget)?;
+    let mut materials = Materials::new(lists, document, &placed, &accessors, &files)?;
     let is_detailed = needs_details(document, &placed, &materials);
-    let check = |moves| {
-        let beside = PerVertex { moves, is_detailed };
-        scene_size::check(document, (&placed, &extensions.instances), &accessors, &budget, beside)
-    };
+    let check = |moves| scene_size::check(document, &placed, &extensions.instances, &accessors, moves, is_detailed);
     let needs = afforded(check, &mut binder, moves_meshes, notes)?;
     materials.read_images(needs.bytes, progress)?;
     let mut scene = Scene {
@@ -160,12 +152,12 @@ pub(super) fn read(
     if parsed.parts.beyond > 0 {
         notes.push(format!("named nodes beyond the first 65,536, which can't be hidden: {}.", parsed.parts.beyond));
     }
+    notes.append(accessors.notes.take());
     notes.append(materials.into_notes());
     notes.append(std::mem::take(&mut primitives.notes));
     notes.extend(primitives.warnings());
     budget.release(accessors.buffer_bytes());
     drop(accessors);
-    drop(buffers);
     budget.release(lists.bytes());
     drop(parsed.lists);
     progress.set(0.8);
@@ -173,7 +165,7 @@ pub(super) fn read(
     let lights = parsed.lights.shown(&placed, &mut of_lights);
     let cameras = parsed.cameras.shown(&placed, &mut of_cameras);
     let mounts = [mounts(binder.as_ref(), &lights), mounts(binder.as_ref(), &cameras)];
-    let mut mesh = finished(name, (builder, details, binder), notes, (&budget, progress))?;
+    let mut mesh = finished(name, builder, details, binder, notes, &budget, progress)?;
     if let Some(rig) = mesh.rig.as_mut().and_then(Arc::get_mut) {
         [rig.lights, rig.cameras] = mounts;
     }
@@ -217,18 +209,18 @@ impl<'a> Scene<'a> {
         let skin = node.skin().map(|skin| skin::read(&skin, self.accessors)).transpose()?;
         let joints = skin.as_ref().map_or_else(Vec::new, |skin| skin.matrices(self.global));
         let Some(own) = self.instances.get(&node.index()) else {
-            return self.add_once(&node, &mesh, (skin.as_ref(), &joints), DMat4::IDENTITY, progress);
+            return self.add_once(&node, &mesh, skin.as_ref(), &joints, DMat4::IDENTITY, progress);
         };
         if skin.is_some() {
             // Vertices of a skin don't move with their node.
             let said = "has instances of a mesh that a skin moves, which EXT_mesh_gpu_instancing doesn't define";
             self.primitives.notes.push(format!("/nodes/{} {said}; it is shown once.", node.index()));
-            return self.add_once(&node, &mesh, (skin.as_ref(), &joints), DMat4::IDENTITY, progress);
+            return self.add_once(&node, &mesh, skin.as_ref(), &joints, DMat4::IDENTITY, progress);
         }
         let (document, accessors) = (self.document, self.accessors);
         let instances = Instances::read(document, accessors, own, node.index())?;
         for instance in instances.transforms() {
-            self.add_once(&node, &mesh, (None, &[]), instance, progress)?;
+            self.add_once(&node, &mesh, None, &[], instance, progress)?;
         }
         Ok(())
     }
@@ -238,7 +230,8 @@ impl<'a> Scene<'a> {
         &mut self,
         node: &Node,
         mesh: &::gltf::Mesh,
-        (skin, joints): (Option<&SkinJoints>, &[DMat4]),
+        skin: Option<&SkinJoints>,
+        joints: &[DMat4],
         instance: DMat4,
         progress: &Progress,
     ) -> Result<(), GltfError> {
@@ -270,21 +263,14 @@ impl<'a> Scene<'a> {
 
 /// Returns whether corners of what is shown need more than position, normal and texture coordinates.
 fn needs_details(document: &Document, placed: &Placed, materials: &Materials) -> bool {
-    let mut seen = vec![false; document.meshes().len()];
-    let shown = placed.shown.iter().filter_map(|&node| document.nodes().nth(node)?.mesh());
-    let mut meshes = shown.filter(|mesh| !std::mem::replace(&mut seen[mesh.index()], true));
-    meshes.any(|mesh| {
-        mesh.primitives().any(|primitive| {
-            primitive.get(&Semantic::Colors(0)).is_some() || materials.needs_details(&primitive.material())
-        })
+    let mut primitives = placed.meshes(document).flat_map(|mesh| mesh.primitives());
+    primitives.any(|primitive| {
+        primitive.get(&Semantic::Colors(0)).is_some() || materials.needs_details(&primitive.material())
     })
 }
 
 /// Returns what a scene needs, if that fits into memory. Animations that move only lights and cameras are left out where it fits
 /// without them alone.
-///
-/// # Errors
-/// Those of `check`.
 fn afforded(
     check: impl Fn(bool) -> Result<SceneNeeds, GltfError>,
     binder: &mut Option<RigBuilder>,
@@ -315,9 +301,12 @@ fn mounts<T>(binder: Option<&RigBuilder>, shown: &[(usize, T)]) -> Vec<Joint> {
 /// [`GltfError::TooLarge`] and [`GltfError::Cancelled`].
 fn finished(
     name: &str,
-    (builder, details, binder): (MeshBuilder, Option<DetailTable>, Option<RigBuilder>),
+    builder: MeshBuilder,
+    details: Option<DetailTable>,
+    binder: Option<RigBuilder>,
     notes: &mut Notes,
-    (budget, progress): (&Budget, &Progress),
+    budget: &Budget,
+    progress: &Progress,
 ) -> Result<Mesh, GltfError> {
     let (mut mesh, mut bindings) = builder.finish_bound(name.to_owned(), budget, progress)?;
     if let Some(details) = details {

@@ -41,7 +41,7 @@ pub(super) fn with_details(
 ) -> Result<Vec<u32>, BuildError> {
     let (mut details, mut bindings) = table.into_lists(numbers, budget)?;
     let detailed = DetailedMesh { mesh, details: &mut details, bindings: &mut bindings };
-    notes.extend(complete(detailed, budget, progress)?);
+    notes.extend(complete(BATCH, detailed, budget, progress)?);
     mesh.details = Some(Arc::new(details));
     Ok(bindings)
 }
@@ -53,16 +53,9 @@ struct DetailedMesh<'a> {
     bindings: &'a mut Vec<u32>,
 }
 
-/// Gives tangents to the corners of normal-mapped triangles that have none. A corner that gets several becomes several corners,
-/// which differ in nothing else. Returns a warning for each material that gets none.
-///
-/// # Errors
-/// [`Cancelled`].
-fn complete(detailed: DetailedMesh, budget: &dyn MemoryAccount, progress: &Progress) -> Result<Vec<String>, Cancelled> {
-    complete_by(BATCH, detailed, budget, progress)
-}
-
-fn complete_by(
+/// Gives tangents to the corners of normal-mapped triangles that have none, so many triangles at a time. A corner that gets several becomes
+/// several corners, which differ in nothing else. Returns a warning for each material that gets none.
+fn complete(
     batch: usize,
     mut detailed: DetailedMesh,
     budget: &dyn MemoryAccount,
@@ -297,7 +290,7 @@ mod tests {
             let (mut mesh, count) = (torus.clone(), torus.corners.len());
             let (mut details, mut bindings) = (vec![CornerDetail::default(); count], vec![0; count]);
             let detailed = DetailedMesh { mesh: &mut mesh, details: &mut details, bindings: &mut bindings };
-            let warnings = complete_by(batch, detailed, &Unlimited, &Progress::new()).expect("nobody cancels");
+            let warnings = complete(batch, detailed, &Unlimited, &Progress::new()).expect("nobody cancels");
             assert!(warnings.is_empty(), "{warnings:?}");
             let all = mesh.triangles.as_flattened().iter().map(|&corner| details[corner as usize]).collect::<Vec<_>>();
             assert!(all.iter().all(|detail| (detail.tangent.length() - 1.0).abs() < 1e-5));

@@ -1,6 +1,7 @@
 //! Reads accessors: typed lists in buffers, sparse or not, normalised or not. Every range is checked first.
 
 use std::borrow::Cow;
+use std::cell::{OnceCell, RefCell};
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -9,12 +10,12 @@ use ::gltf::accessor::{Accessor, DataType, Dimensions};
 use ::gltf::{Document, buffer};
 
 use super::GltfError;
-use super::decompressed_primitive::DecompressedPrimitive;
-use super::extensions::{Extensions, MeshoptExtension, MeshoptMode};
+use super::buffers::Buffers;
+use super::draco::DecompressedPrimitive;
+use super::extensions::{MeshoptExtension, MeshoptMode};
 use super::meshopt::{Decompressed, decompress};
 use super::notes::Notes;
-use super::reach::Use;
-use super::repair::Faults;
+use super::schema_check::{Fault, Faults};
 use crate::memory_budget::Budget;
 use geometry::mesh::MemoryAccount;
 
@@ -22,19 +23,54 @@ use geometry::mesh::MemoryAccount;
 /// file's size limits those.
 const MAX_ZEROS: usize = 1 << 24;
 
+/// The data of a view that was compressed, and the number of bytes from one element to the next, 0 if they are packed tightly. None if its
+/// uncompressed copy is read.
+type ViewData = Option<(Decompressed, usize)>;
+
 /// Reads the accessors of one document.
 pub(crate) struct Accessors<'a> {
     document: &'a Document,
-    buffers: &'a [Vec<u8>],
-    /// For each buffer view, its decompressed bytes and their stride, if it is compressed.
-    decompressed: Vec<Option<(Decompressed, usize)>>,
-    /// The buffers with copies of data that can't be decompressed, by number.
-    copies: HashMap<usize, Vec<u8>>,
+    buffers: Buffers<'a>,
+    /// For each buffer view, how it is compressed, and its data once something needed it.
+    compressed: &'a [Option<MeshoptExtension>],
+    decompressed: Vec<OnceCell<Result<ViewData, Fault>>>,
     /// By mesh and primitive, the data that Draco compressed.
     pub unpacked: HashMap<[usize; 2], DecompressedPrimitive>,
-    /// What can't be read, because it is broken and only details use it.
-    faults: Faults,
+    faults: &'a Faults,
     pub budget: &'a Budget,
+    /// What was repaired.
+    pub notes: RefCell<Notes>,
+}
+
+/// Why data can't be read.
+#[derive(Debug)]
+pub(crate) enum DataError {
+    /// A clause about what needs it.
+    Here(String),
+    /// Something else in the document is wrong.
+    Elsewhere(GltfError),
+}
+
+impl From<String> for DataError {
+    fn from(reason: String) -> Self {
+        Self::Here(reason)
+    }
+}
+
+impl From<GltfError> for DataError {
+    fn from(error: GltfError) -> Self {
+        Self::Elsewhere(error)
+    }
+}
+
+impl DataError {
+    /// The error of an accessor with this role.
+    fn of(self, accessor: &Accessor, role: &str) -> GltfError {
+        match self {
+            Self::Here(reason) => GltfError::Accessor { accessor: accessor.index(), role: role.to_owned(), reason },
+            Self::Elsewhere(error) => error,
+        }
+    }
 }
 
 /// Converts the bytes of an element into its value.
@@ -115,75 +151,60 @@ impl<'a> Elements<'a> {
 }
 
 impl<'a> Accessors<'a> {
-    /// Decompresses the compressed buffer views. One that can't be is read from its uncompressed copy, if the document has one:
-    /// `read_copy` reads a buffer that is only a copy. Otherwise, if only details use it, it becomes a fault.
-    ///
-    /// # Errors
-    /// [`GltfError::Document`] for a view that can't be decompressed.
     pub(crate) fn new(
         document: &'a Document,
-        extensions: &Extensions,
-        (buffers, faults, views): (&'a [Vec<u8>], Faults, &[Use]),
-        (budget, notes): (&'a Budget, &mut Notes),
-        read_copy: impl Fn(usize) -> Result<Vec<u8>, String>,
-    ) -> Result<Self, GltfError> {
-        let (decompressed, copies, unpacked) = (Vec::new(), HashMap::new(), HashMap::new());
-        let mut accessors = Self { document, buffers, decompressed, copies, unpacked, faults, budget };
-        for (view, compressed) in document.views().zip(&extensions.compressed) {
-            let made = compressed.as_ref().map(|compressed| accessors.decompress(&view, compressed)).transpose();
-            let made = match made {
-                Ok(made) => made,
-                Err(reason) => {
-                    let i = view.index();
-                    let name = compressed.as_ref().map_or("", |own| own.name);
-                    let pointer = format!("/bufferViews/{i}/extensions/{name}");
-                    let has_copy = compressed.as_ref().is_some_and(|own| accessors.has_copy(&view, own, &read_copy));
-                    match views.get(i) {
-                        _ if has_copy => {
-                            notes.push(format!("{pointer} {reason}; its uncompressed copy is read instead."));
-                        }
-                        Some(Use::Shape) => return Err(GltfError::Document { pointer, reason }),
-                        _ => _ = accessors.faults.views.insert(i, format!("can't be used: {pointer} {reason}")),
-                    }
-                    None
+        buffers: Buffers<'a>,
+        compressed: &'a [Option<MeshoptExtension>],
+        faults: &'a Faults,
+        budget: &'a Budget,
+    ) -> Self {
+        let decompressed = compressed.iter().map(|_| OnceCell::new()).collect();
+        let (unpacked, notes) = (HashMap::new(), RefCell::default());
+        Self { document, buffers, compressed, decompressed, unpacked, faults, budget, notes }
+    }
+
+    /// Returns the data of a view that is compressed; none if it isn't, or if its uncompressed copy is read since the compressed data is
+    /// broken.
+    fn decompressed(&self, view: &buffer::View) -> Result<Option<&(Decompressed, usize)>, Fault> {
+        let i = view.index();
+        let Some(compressed) = self.compressed.get(i).and_then(Option::as_ref) else { return Ok(None) };
+        let made = self.decompressed[i].get_or_init(|| match self.decompress(view, compressed) {
+            Ok(made) => Ok(Some(made)),
+            Err(reason) => {
+                let pointer = format!("/bufferViews/{i}/extensions/{}", compressed.name);
+                if !self.has_copy(view, compressed) {
+                    return Err(Fault { pointer, reason });
                 }
-            };
-            accessors.decompressed.push(made);
-        }
-        Ok(accessors)
+                self.notes.borrow_mut().push(format!("{pointer} {reason}; its uncompressed copy is read instead."));
+                Ok(None)
+            }
+        });
+        made.as_ref().map(Option::as_ref).map_err(Fault::clone)
     }
 
     /// Returns whether there is an uncompressed copy of a compressed view: its own bytes, in another place than the compressed ones.
-    fn has_copy(
-        &mut self,
-        view: &buffer::View,
-        compressed: &MeshoptExtension,
-        read_copy: impl Fn(usize) -> Result<Vec<u8>, String>,
-    ) -> bool {
+    fn has_copy(&self, view: &buffer::View, compressed: &MeshoptExtension) -> bool {
         let (buffer, offset, length) = (view.buffer().index(), view.offset() as u64, view.length() as u64);
         let is_before = |[start, length]: [u64; 2], next: u64| start.saturating_add(length) <= next;
         let (own, other) = ([offset, length], [compressed.offset, compressed.length]);
-        if buffer == compressed.buffer && !is_before(own, other[0]) && !is_before(other, own[0]) {
-            return false;
-        }
-        if self.buffers.get(buffer).is_some_and(Vec::is_empty) && !self.copies.contains_key(&buffer) {
-            let Ok(bytes) = read_copy(buffer) else { return false };
-            self.copies.insert(buffer, bytes);
-        }
-        self.range(buffer, offset, length).is_ok()
+        let is_apart = buffer != compressed.buffer || is_before(own, other[0]) || is_before(other, own[0]);
+        is_apart && self.range(buffer, offset, length).is_ok()
     }
 
     /// # Errors
-    /// [`GltfError::Accessor`] for one that is broken and that only details use.
-    pub(crate) fn check_sound(&self, accessor: &Accessor, role: &str) -> Result<(), GltfError> {
-        let fault = self.faults.accessors.get(&accessor.index()).cloned();
-        let fail = |reason| Err(GltfError::Accessor { accessor: accessor.index(), role: role.to_owned(), reason });
-        fault.map_or(Ok(()), fail)
+    /// [`GltfError::Document`] for an accessor that is wrong.
+    pub(crate) fn check_sound(&self, accessor: &Accessor) -> Result<(), GltfError> {
+        let fault = self.faults.get(&("accessors", accessor.index()));
+        fault.map_or(Ok(()), |fault| Err(fault.clone().into()))
     }
 
     fn decompress(&self, view: &buffer::View, compressed: &MeshoptExtension) -> Result<(Decompressed, usize), String> {
         let MeshoptExtension { buffer, offset, length, stride, count, mode, .. } = *compressed;
-        let made = decompress(compressed, self.range(buffer, offset, length)?, self.budget)?;
+        let bytes = self.range(buffer, offset, length).map_err(|error| match error {
+            DataError::Here(reason) => reason,
+            DataError::Elsewhere(error) => error.into_clause(),
+        })?;
+        let made = decompress(compressed, bytes, self.budget)?;
         let (said, has) = (view.length(), made.bytes().len());
         if said != has {
             return Err(format!(
@@ -205,31 +226,24 @@ impl<'a> Accessors<'a> {
         if let Some(values) = list.decoded {
             return Ok(values.into_owned());
         }
-        let fail = |reason| GltfError::Accessor { accessor: accessor.index(), role: role.to_owned(), reason };
-        self.budget
-            .borrow((list.elements.count * size_of::<[f32; N]>()) as u64)
-            .map_err(|refused| fail(refused.into()))?;
+        let borrowed = self.budget.borrow((list.elements.count * size_of::<[f32; N]>()) as u64);
+        borrowed.map_err(|refused| DataError::Here(refused.into()).of(accessor, role))?;
         let mut values = Vec::with_capacity(list.elements.count);
         list.append(0..list.elements.count, &mut values);
         Ok(values)
     }
 
     /// Returns a list of the same elements as [`numbers`](Self::numbers), which are decoded when they are read.
-    ///
-    /// # Errors
-    /// The same as [`numbers`](Self::numbers)'.
     pub(crate) fn list<const N: usize>(
         &self,
         accessor: &Accessor,
         role: &str,
     ) -> Result<List<'_, [f32; N]>, GltfError> {
-        let fail = |reason| GltfError::Accessor { accessor: accessor.index(), role: role.to_owned(), reason };
-        self.check_sound(accessor, role)?;
-        if accessor.dimensions().multiplicity() != N {
-            return Err(fail(format!(
-                "has {:?} elements, but {N} numbers an element are needed",
-                accessor.dimensions()
-            )));
+        self.check_sound(accessor)?;
+        let dimensions = accessor.dimensions();
+        if dimensions.multiplicity() != N {
+            let reason = format!("has {dimensions:?} elements, but {N} numbers an element are needed");
+            return Err(DataError::Here(reason).of(accessor, role));
         }
         let (kind, normalized) = (accessor.data_type(), accessor.normalized());
         let decode = move |bytes: &[u8]| {
@@ -243,7 +257,7 @@ impl<'a> Accessors<'a> {
             DataType::F32 => self.read(accessor, [0.0; N], floats),
             _ => self.read(accessor, [0.0; N], decode),
         };
-        list.map_err(fail)
+        list.map_err(|error| error.of(accessor, role))
     }
 
     /// Returns a list of single unsigned integers.
@@ -251,70 +265,73 @@ impl<'a> Accessors<'a> {
     /// # Errors
     /// [`GltfError::Accessor`] if the elements are anything else, or if the data isn't in its buffer.
     pub(crate) fn indices(&self, accessor: &Accessor, role: &str) -> Result<List<'_, u32>, GltfError> {
-        let fail = |reason| GltfError::Accessor { accessor: accessor.index(), role: role.to_owned(), reason };
-        let unsigned = matches!(accessor.data_type(), DataType::U8 | DataType::U16 | DataType::U32);
-        if accessor.dimensions() != Dimensions::Scalar || !unsigned {
-            let (dimensions, kind) = (accessor.dimensions(), accessor.data_type());
-            return Err(fail(format!(
-                "has {dimensions:?} elements of {kind:?}, but single unsigned integers are needed"
-            )));
+        self.check_sound(accessor)?;
+        let (dimensions, kind) = (accessor.dimensions(), accessor.data_type());
+        if dimensions != Dimensions::Scalar || !matches!(kind, DataType::U8 | DataType::U16 | DataType::U32) {
+            let reason = format!("has {dimensions:?} elements of {kind:?}, but single unsigned integers are needed");
+            return Err(DataError::Here(reason).of(accessor, role));
         }
-        let list = match accessor.data_type() {
+        let list = match kind {
             DataType::U32 => self.read(accessor, 0, word),
             _ => self.read(accessor, 0, unsigned_integer),
         };
-        list.map_err(fail)
+        list.map_err(|error| error.of(accessor, role))
     }
 
     /// Returns the size of all buffers and decompressed data, in bytes.
     pub(crate) fn buffer_bytes(&self) -> u64 {
-        let decompressed =
-            self.decompressed.iter().flatten().map(|(decompressed, _)| decompressed.bytes().len() as u64);
+        let made = self.decompressed.iter().filter_map(|made| made.get()?.as_ref().ok()?.as_ref());
+        let made = made.map(|(made, _)| made.bytes().len() as u64);
         let unpacked = self.unpacked.values().map(DecompressedPrimitive::bytes);
-        let buffers = self.buffers.iter().chain(self.copies.values()).map(|buffer| buffer.len() as u64);
-        buffers.chain(decompressed).chain(unpacked).sum()
+        made.chain(unpacked).sum::<u64>() + self.buffers.size()
     }
 
     /// Returns the bytes of a buffer view.
     ///
     /// # Errors
     /// A clause that names the view if its buffer is too short.
-    pub(crate) fn view_bytes(&self, view: &buffer::View) -> Result<&[u8], String> {
+    pub(crate) fn view_bytes(&self, view: &buffer::View) -> Result<&[u8], DataError> {
         let i = view.index();
-        if let Some(fault) = self.faults.views.get(&i) {
-            return Err(format!("uses /bufferViews/{i}, which {fault}"));
+        if let Some(fault) = self.faults.get(&("bufferViews", i)) {
+            return Err(GltfError::from(fault.clone()).into());
         }
-        if let Some(Some((decompressed, _))) = self.decompressed.get(i) {
-            return Ok(decompressed.bytes());
+        if let Some((made, _)) = self.decompressed(view).map_err(GltfError::from)? {
+            return Ok(made.bytes());
         }
         let bytes = self.range(view.buffer().index(), view.offset() as u64, view.length() as u64);
-        bytes.map_err(|reason| format!("uses /bufferViews/{i}, which {reason}"))
+        bytes.map_err(|error| match error {
+            DataError::Here(reason) => format!("uses /bufferViews/{i}, which {reason}").into(),
+            other => other,
+        })
     }
 
     /// # Errors
     /// A clause if the buffer is too short.
-    fn range(&self, buffer: usize, offset: u64, length: u64) -> Result<&[u8], String> {
-        let bytes = self.copies.get(&buffer).or(self.buffers.get(buffer)).map_or(&[][..], Vec::as_slice);
+    fn range(&self, buffer: usize, offset: u64, length: u64) -> Result<&[u8], DataError> {
+        let bytes = self.buffers.bytes(buffer)?;
         let start = usize::try_from(offset).ok();
         let end = start.zip(usize::try_from(length).ok()).and_then(|(start, length)| start.checked_add(length));
         let range = start.zip(end).and_then(|(start, end)| bytes.get(start..end));
+        let has = bytes.len();
         range.ok_or_else(|| {
-            format!("takes {length} bytes from byte {offset} of /buffers/{buffer}, which has {} bytes", bytes.len())
+            format!("takes {length} bytes from byte {offset} of /buffers/{buffer}, which has {has} bytes").into()
         })
     }
 
     /// Checks that the accessor's elements lie within its buffer view. Types and sparse values are checked when they
     /// are read.
-    ///
-    /// # Errors
-    /// The same as [`Self::numbers`]'.
     pub(crate) fn check(&self, accessor: &Accessor, role: &str) -> Result<(), GltfError> {
+        self.check_sound(accessor)?;
         let found = match accessor.view() {
             Some(view) => self.elements(&view, accessor.offset(), accessor.size(), accessor.count()).map(|_| ()),
-            None => zeros(accessor.count()),
+            None => zeros(accessor.count()).map_err(DataError::from),
         };
-        let fail = |reason| GltfError::Accessor { accessor: accessor.index(), role: role.to_owned(), reason };
-        found.map_err(fail)
+        found.map_err(|error| error.of(accessor, role))
+    }
+
+    /// Reads the data of an accessor's view, if it can be read, so that its memory counts.
+    pub(crate) fn prepare(&self, accessor: &Accessor) {
+        _ = accessor.view().map(|view| self.view_bytes(&view).is_ok());
     }
 
     /// Returns the view with this index, if there is one.
@@ -327,7 +344,7 @@ impl<'a> Accessors<'a> {
         accessor: &Accessor,
         zero: T,
         decode: impl Fn(&[u8]) -> T + Copy + 'b,
-    ) -> Result<List<'b, T>, String> {
+    ) -> Result<List<'b, T>, DataError> {
         let (size, count) = (accessor.size(), accessor.count());
         let elements = match accessor.view() {
             Some(view) => Some(self.elements(&view, accessor.offset(), size, count)?),
@@ -339,7 +356,7 @@ impl<'a> Accessors<'a> {
         if let (Some(elements), None) = (elements, accessor.sparse()) {
             return Ok(List::in_buffer(elements, decode, zero));
         }
-        self.budget.borrow((count as u64).saturating_mul(size_of::<T>() as u64))?;
+        self.budget.borrow((count as u64).saturating_mul(size_of::<T>() as u64)).map_err(String::from)?;
         let mut values = Vec::with_capacity(count);
         values.extend(elements.into_iter().flat_map(Elements::iter).map(decode));
         values.resize(count, zero);
@@ -356,7 +373,7 @@ impl<'a> Accessors<'a> {
         sparse: &Sparse,
         size: usize,
         decode: impl Fn(&[u8]) -> T,
-    ) -> Result<(), String> {
+    ) -> Result<(), DataError> {
         let (indices, new) = (sparse.indices(), sparse.values());
         let index_size = match indices.index_type() {
             IndexType::U8 => 1,
@@ -375,14 +392,21 @@ impl<'a> Accessors<'a> {
     }
 
     /// Returns `count` elements of `size` bytes in a view, from a byte offset on.
-    fn elements(&self, view: &buffer::View, offset: usize, size: usize, count: usize) -> Result<Elements<'_>, String> {
+    fn elements(
+        &self,
+        view: &buffer::View,
+        offset: usize,
+        size: usize,
+        count: usize,
+    ) -> Result<Elements<'_>, DataError> {
         let bytes = self.view_bytes(view)?;
-        let compressed = self.decompressed.get(view.index()).and_then(Option::as_ref);
-        let stride = view.stride().or(compressed.map(|(_, stride)| *stride).filter(|stride| *stride > 0));
+        let made = self.decompressed(view).map_err(GltfError::from)?;
+        let stride = view.stride().or(made.map(|(_, stride)| *stride).filter(|stride| *stride > 0));
         let stride = stride.unwrap_or(size);
         if stride < size {
             let i = view.index();
-            return Err(format!("has elements of {size} bytes, but in /bufferViews/{i} they are {stride} bytes apart"));
+            let reason = format!("has elements of {size} bytes, but in /bufferViews/{i} they are {stride} bytes apart");
+            return Err(reason.into());
         }
         let needed = match count {
             0 => Some(0),
@@ -394,7 +418,7 @@ impl<'a> Accessors<'a> {
             }
             _ => {
                 let needed = needed.map_or("more than 2^64".to_owned(), |needed| needed.to_string());
-                Err(format!("needs {needed} bytes of /bufferViews/{}, which has {}", view.index(), bytes.len()))
+                Err(format!("needs {needed} bytes of /bufferViews/{}, which has {}", view.index(), bytes.len()).into())
             }
         }
     }

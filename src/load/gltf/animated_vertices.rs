@@ -1,12 +1,11 @@
 //! Binds the vertices of a primitive of an animated mesh.
 
+use ::gltf::{Primitive, Semantic};
 use glam::DMat4;
 
-use super::GltfError;
-use super::primitive_data::{MorphTarget, PrimitiveData};
 use super::rig_builder::{MAX_BOUND, NodeBinder, UndeformedVertex, VertexFrame};
-use super::vertex_details::VertexDetails;
 use super::vertices::Vertices;
+use crate::memory_budget::Budget;
 use geometry::mesh::MemoryAccount;
 use geometry::mesh::mesh_builder::InputCorner;
 use geometry::mesh::rig::Delta;
@@ -19,11 +18,9 @@ const PER_TANGENT: u64 = 120;
 pub(super) struct AnimatedVertices<'a, 'b, 'c> {
     binder: &'b mut NodeBinder<'c>,
     frame: VertexFrame,
-    source: PrimitiveData<'a>,
+    budget: &'a Budget,
     /// Where the node's weights start, if a clip changes them.
     first_weight: Option<u32>,
-    /// The morph targets of those weights.
-    targets: Vec<MorphTarget<'a>>,
     /// The displacements of the vertex that is being bound.
     deltas: Vec<Delta>,
     /// What each of them adds to the vertex's tangent; empty if tangents turn along with normals.
@@ -32,68 +29,60 @@ pub(super) struct AnimatedVertices<'a, 'b, 'c> {
     found: usize,
 }
 
+/// Returns whether a clip changes the weights of a primitive's morph targets. They aren't to be read if they have too many elements.
+pub(super) fn may_morph(binder: Option<&mut NodeBinder>, primitive: &Primitive) -> bool {
+    let Some(binder) = binder.filter(|binder| binder.first_weight().is_some()) else { return false };
+    let vertices = primitive.get(&Semantic::Positions).map_or(0, |positions| positions.count());
+    let looked = binder.look_at(primitive.morph_targets().count().saturating_mul(vertices));
+    looked.map_err(|problem| binder.give_up(problem)).is_ok()
+}
+
 impl<'a, 'b, 'c> AnimatedVertices<'a, 'b, 'c> {
-    /// `instance` is the transform from the mesh's space to its node's.
+    /// `instance` is the transform from the mesh's space to its node's. Whether a clip changes weights is known from [`may_morph`].
     pub(super) fn new(
-        source: PrimitiveData<'a>,
+        budget: &'a Budget,
         vertices: &Vertices,
         instance: DMat4,
+        is_morphing: bool,
         binder: &'b mut NodeBinder<'c>,
     ) -> Self {
-        let (frame, first_weight) = (binder.frame(vertices.is_skinned(), instance), binder.first_weight());
-        let (targets, deltas, tangents) = (Vec::new(), Vec::new(), Vec::new());
-        let mut moving = Self { binder, frame, source, first_weight, targets, deltas, tangents, found: 0 };
-        if first_weight.is_some() {
-            match moving.read_targets(vertices.count) {
-                Ok(targets) => moving.targets = targets,
-                Err(problem) => moving.binder.give_up(problem),
-            }
+        let frame = binder.frame(vertices.is_skinned(), instance);
+        let mut first_weight = binder.first_weight().filter(|_| is_morphing);
+        if let Some(problem) = &vertices.unmorphed {
+            binder.give_up(problem.clone());
+            first_weight = None;
         }
-        moving
-    }
-
-    /// # Errors
-    /// A clause if the targets can't be read, or if there are too many.
-    fn read_targets(&mut self, count: usize) -> Result<Vec<MorphTarget<'a>>, String> {
-        let targets = self.source.primitive.morph_targets();
-        self.binder.look_at(targets.clone().count().saturating_mul(count))?;
-        let targets: Result<_, GltfError> = targets.map(|target| self.source.target(&target, count)).collect();
-        targets.map_err(|problem| problem.to_string())
+        Self { binder, frame, budget, first_weight, deltas: Vec::new(), tangents: Vec::new(), found: 0 }
     }
 
     /// Returns the number of the binding of the vertex that was read last.
     pub(super) fn bind(&mut self, i: usize, vertices: &Vertices, corner: &InputCorner) -> u32 {
-        let details = vertices.details.as_ref().filter(|details| details.displaces_tangents());
-        if let Err(problem) = self.displace(i, details) {
+        if let Err(problem) = self.displace(i, vertices) {
             self.binder.give_up(problem);
         }
         let (position, normal) = vertices.undeformed(i, self.first_weight.is_none());
         let normal = normal.unwrap_or_default();
-        let tangent = details.filter(|_| self.first_weight.is_some()).and_then(|details| details.displaced_tangent(i));
+        let tangent = self.first_weight.and_then(|_| vertices.displaced_tangent(i));
         let tangent = tangent.map(|tangent| (tangent, &mut self.tangents[..]));
         let (influences, deltas) = (vertices.joints(), &mut self.deltas);
         let vertex = UndeformedVertex { position, normal, influences, deltas, tangent };
         self.binder.bind(&self.frame, vertex, corner)
     }
 
-    /// Collects the displacements of a vertex by the targets that move or turn it, at weight 1. Components that aren't
-    /// finite become 0. `tangents` are the details of vertices whose tangents are displaced.
+    /// Collects the displacements of a vertex by the targets that move or turn it, at weight 1.
     ///
     /// # Errors
     /// A clause if they take too much memory.
-    fn displace(&mut self, i: usize, tangents: Option<&VertexDetails>) -> Result<(), String> {
+    fn displace(&mut self, i: usize, vertices: &Vertices) -> Result<(), String> {
         self.deltas.clear();
         self.tangents.clear();
         let Some(first_weight) = self.first_weight else { return Ok(()) };
-        for (index, (target, weight)) in self.targets.iter().zip(first_weight..).enumerate() {
-            let [position, normal] = [&target.positions, &target.normals].map(|list| {
-                let vector = list.as_ref().map_or([0.0; 3], |list| list.get(i));
-                vector.map(|x| if x.is_finite() { x } else { 0.0 })
-            });
-            let tangent = tangents.map(|details| details.tangent_displacement(index, i));
-            if position != [0.0; 3] || normal != [0.0; 3] || tangent.is_some_and(|tangent| tangent != [0.0; 3]) {
+        let has_tangents = vertices.displaces_tangents();
+        for (target, weight) in vertices.targets.iter().zip(first_weight..) {
+            let [position, normal, tangent] = target.displacements(i);
+            if [position, normal, tangent] != [[0.0; 3]; 3] {
                 self.deltas.push(Delta { position, weight, normal, tangent: 0 });
-                self.tangents.extend(tangent);
+                self.tangents.extend(has_tangents.then_some(tangent));
             }
         }
         self.found += self.deltas.len();
@@ -101,7 +90,7 @@ impl<'a, 'b, 'c> AnimatedVertices<'a, 'b, 'c> {
             return Err(format!("there are more than {MAX_BOUND} displacements of vertices"));
         }
         let memory = self.deltas.len() as u64 * PER_DELTA + self.tangents.len() as u64 * PER_TANGENT;
-        let kept = self.source.accessors.budget.hold(memory);
+        let kept = self.budget.hold(memory);
         kept.map_err(|reason| format!("{} displacements of vertices {reason}", self.found))
     }
 }

@@ -9,7 +9,7 @@ use ::gltf::Document;
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::{Accessors, GltfError, nodes};
+use super::{Accessors, nodes};
 use geometry::mesh::rig::{Channel, Clip, Interpolation, Keys, Property};
 use geometry::mesh::{MemoryAccount, borrowing};
 
@@ -175,12 +175,8 @@ impl Reader<'_> {
             left.ok_or_else(|| format!("brings the document above the limit of {MAX_NUMBERS} animated numbers"))?;
         let budget = self.accessors.budget;
         let numbers = borrowing(budget, || self.accessors.numbers::<N>(&accessor, role));
-        let numbers = numbers.map_err(|problem| match problem {
-            GltfError::Accessor { accessor, reason, .. } => {
-                format!("has {role} in /accessors/{accessor}, which {reason}")
-            }
-            problem => problem.to_string(),
-        })?;
+        let numbers =
+            numbers.map_err(|error| format!("has {role} in /accessors/{index}, which {}", error.into_clause()))?;
         let numbers = numbers.into_flattened();
         // They stay in memory as long as the mesh.
         let kept = budget.hold(size_of_val(&numbers[..]) as u64);

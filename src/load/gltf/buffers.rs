@@ -1,72 +1,77 @@
-//! Reads the bytes of a document's buffers.
+//! Reads the bytes of a document's buffers, each when something first needs it.
+
+use std::cell::{Cell, OnceCell};
 
 use ::gltf::Document;
+use ::gltf::json::Buffer;
 
 use super::GltfError;
-use super::notes::Notes;
-use super::reach::Use;
+use super::schema_check::Faults;
 use crate::uri::{self, Files};
 use geometry::progress::Progress;
 
-/// Reads the buffers that are used, and cuts each to the length in the document. `blob` is the binary chunk of a `.glb`. A buffer
-/// that is marked in `fallback` stays empty, since its data is decompressed from another buffer. So does one that only details
-/// use and that can't be read.
-///
-/// # Errors
-/// [`GltfError::Buffer`] for a buffer that is missing or too short, and [`GltfError::Cancelled`].
-pub(super) fn load(
-    document: &Document,
-    files: &Files,
-    (uses, fallback): (&[Use], &[bool]),
-    mut blob: Option<Vec<u8>>,
-    notes: &mut Notes,
-    progress: &Progress,
-) -> Result<Vec<Vec<u8>>, GltfError> {
-    let json = &document.as_json().buffers;
-    let mut buffers = Vec::with_capacity(json.len());
-    for (i, buffer) in json.iter().enumerate() {
-        progress.check()?;
-        let used = uses.get(i).copied().unwrap_or_default();
-        if used == Use::None && fallback.get(i) != Some(&true) && buffer.uri.is_none() {
-            // The chunk belongs to this buffer and to no other.
-            blob = None;
-        }
-        if used == Use::None || fallback.get(i) == Some(&true) {
-            buffers.push(Vec::new());
-            continue;
-        }
-        let length = buffer.byte_length.0;
-        let bytes = match &buffer.uri {
-            Some(uri) => files.read(uri, true),
-            None => {
-                blob.take().ok_or_else(|| "the document has no binary chunk for it; export the model again".to_owned())
-            }
-        };
-        // A cancelled read isn't an error of the buffer.
-        progress.check()?;
-        let uri = || buffer.uri.as_deref().map_or("the binary chunk".to_owned(), uri::shown);
-        let bytes = match bytes.and_then(|bytes| cut(bytes, length)) {
-            Ok(bytes) => bytes,
-            Err(reason) if used == Use::Shape => return Err(GltfError::Buffer { buffer: i, uri: uri(), reason }),
-            Err(reason) => {
-                notes.push(format!("/buffers/{i} ({}) can't be read: {reason}. It is left out.", uri()));
-                Vec::new()
-            }
-        };
-        buffers.push(bytes);
-        progress.set(0.3 * (i + 1) as f32 / json.len() as f32);
-    }
-    Ok(buffers)
+/// The buffers of a document.
+pub(crate) struct Buffers<'a> {
+    list: &'a [Buffer],
+    /// For each buffer, whether it is only a fallback for programs that can't decompress, and may have no data.
+    fallback: &'a [bool],
+    faults: &'a Faults,
+    files: &'a Files<'a>,
+    /// The binary chunk of a `.glb`, and the buffer that it belongs to.
+    chunk: Cell<Option<Vec<u8>>>,
+    owner: Option<usize>,
+    /// What was read, cut to the lengths in the document; or a clause that says what is wrong.
+    read: Vec<OnceCell<Result<Vec<u8>, String>>>,
+    progress: &'a Progress,
 }
 
-/// Reads a buffer that is only a copy of data which others hold compressed.
-///
-/// # Errors
-/// A clause if it has no data, or too little.
-pub(super) fn read_copy(document: &Document, files: &Files, buffer: usize) -> Result<Vec<u8>, String> {
-    let buffer = document.as_json().buffers.get(buffer).ok_or("there is no such buffer")?;
-    let uri = buffer.uri.as_deref().ok_or("it has no data")?;
-    cut(files.read(uri, true)?, buffer.byte_length.0)
+impl<'a> Buffers<'a> {
+    pub(super) fn new(
+        document: &'a Document,
+        fallback: &'a [bool],
+        faults: &'a Faults,
+        files: &'a Files<'a>,
+        chunk: Option<Vec<u8>>,
+        progress: &'a Progress,
+    ) -> Self {
+        let list = &document.as_json().buffers[..];
+        let may_own = |i: &usize| list[*i].uri.is_none() && !fallback[*i] && !faults.contains_key(&("buffers", *i));
+        let owner = (0..list.len()).find(may_own);
+        let read = list.iter().map(|_| OnceCell::new()).collect();
+        Self { list, fallback, faults, files, chunk: Cell::new(chunk), owner, read, progress }
+    }
+
+    /// Returns the bytes of a buffer. A fallback without a URI has none.
+    ///
+    /// # Errors
+    /// [`GltfError::Document`] for one that is wrong, [`GltfError::Buffer`] for one that is missing or too short, and
+    /// [`GltfError::Cancelled`].
+    pub(super) fn bytes(&self, i: usize) -> Result<&[u8], GltfError> {
+        if let Some(fault) = self.faults.get(&("buffers", i)) {
+            return Err(fault.clone().into());
+        }
+        let Some((buffer, read)) = self.list.get(i).zip(self.read.get(i)) else { return Ok(&[]) };
+        let read = read.get_or_init(|| match &buffer.uri {
+            Some(uri) => cut(self.files.read(uri, true)?, buffer.byte_length.0),
+            None if self.fallback[i] => Ok(Vec::new()),
+            None => {
+                let chunk = if self.owner == Some(i) { self.chunk.take() } else { None };
+                cut(
+                    chunk.ok_or("the document has no binary chunk for it; export the model again")?,
+                    buffer.byte_length.0,
+                )
+            }
+        });
+        // A cancelled read isn't an error of the buffer.
+        self.progress.check()?;
+        let uri = || buffer.uri.as_deref().map_or("the binary chunk".to_owned(), uri::shown);
+        read.as_deref().map_err(|reason| GltfError::Buffer { buffer: i, uri: uri(), reason: reason.clone() })
+    }
+
+    /// Returns the size of all buffers that were read, in bytes.
+    pub(super) fn size(&self) -> u64 {
+        self.read.iter().filter_map(|read| Some(read.get()?.as_ref().ok()?.len() as u64)).sum()
+    }
 }
 
 fn cut(mut bytes: Vec<u8>, length: u64) -> Result<Vec<u8>, String> {

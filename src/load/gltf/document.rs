@@ -1,23 +1,26 @@
 //! Parses a document for the `gltf` crate. Our schema is the only check: it holds whatever the crate takes for granted.
 
+use std::cell::RefCell;
+
 use ::gltf::Document;
 use ::gltf::json::Root;
 use serde_json::{Map, Value, json};
 
-use super::cameras::CameraSources;
+use super::cameras::{self, CameraSource};
+use super::carried::Carried;
 use super::extensions::Extensions;
 use super::json::objects;
-use super::lights::LightSources;
+use super::lights;
 use super::material_lists::MaterialLists;
 use super::node_parts::{self, NodeParts};
 use super::notes::Notes;
-use super::reach::{Beside, Reach, list};
-use super::repair::{self, Faults};
+use super::reach::{Reach, list};
 use super::scenes::Scenes;
-use super::{GltfError, extension_table, glb, json, schema, schema_check, variants};
+use super::schema_check::Faults;
+use super::{GltfError, extension_table, glb, json, repair, schema, schema_check, variants};
 use crate::memory_budget::Budget;
 use crate::selection::Selection;
-use geometry::mesh::{Borrowed, MemoryAccount, MemoryRefused};
+use geometry::mesh::{Borrowed, Light, MemoryAccount, MemoryRefused};
 use geometry::progress::Progress;
 
 /// A validated document, the binary chunk of a `.glb`, and what was left out.
@@ -29,8 +32,8 @@ pub(super) struct Parsed {
     pub animations: Vec<Value>,
     /// The document's materials and images, not yet checked (see [`super::materials`]).
     pub lists: MaterialLists,
-    pub lights: LightSources,
-    pub cameras: CameraSources,
+    pub lights: Carried<Light>,
+    pub cameras: Carried<CameraSource>,
     /// The names of the document's material variants.
     pub variants: Vec<String>,
     pub scenes: Scenes,
@@ -52,34 +55,42 @@ pub(super) fn parse(
     budget: &Budget,
     progress: &Progress,
 ) -> Result<Parsed, GltfError> {
-    let mut notes = Notes::default();
+    let mut notes = RefCell::default();
     let json = Borrowed::from(budget);
-    let (mut value, blob) = json_and_blob(bytes, budget, &mut notes, progress)?;
+    let (mut value, blob) = json_and_blob(bytes, budget, notes.get_mut(), progress)?;
     let Value::Object(root) = &mut value else { return Err(not_gltf("its JSON isn't an object")) };
-    check_version(root, &mut notes)?;
-    extension_table::check(root, &mut notes)?;
+    check_version(root, notes.get_mut())?;
+    extension_table::check(root, notes.get_mut())?;
     let requires_draco = extension_table::requires(root, schema::DRACO);
     let animations = take_animations(root);
-    let variants = variants::choose(root, selected.variant, &mut notes);
-    let scenes = Scenes::choose(root, selected.scene, &mut notes);
-    let lists = MaterialLists::take(root, &mut notes);
-    let lights = LightSources::take(root, &mut notes);
-    let cameras = CameraSources::take(root, &mut notes);
+    let variants = variants::choose(root, selected.variant, notes.get_mut());
+    let scenes = Scenes::choose(root, selected.scene, notes.get_mut());
+    let lists = MaterialLists::take(root, &notes);
+    let lights = lights::take(root, &notes);
+    let cameras = cameras::take(root, &notes);
     let show_hidden = selected.import.show_hidden;
-    let beside = Beside { animations: &animations, images: &lists.images, requires_draco, show_hidden };
-    let mut reach = Reach::of(root, &beside);
+    let mut reach = Reach::of(root, show_hidden);
     let parts = node_parts::take(root, &reach, selected.hidden, budget)?;
     if parts.is_cut {
-        reach = Reach::of(root, &beside);
+        reach = Reach::of(root, show_hidden);
     }
-    let faults = repair::repair(root, &reach, (lists.materials.len(), requires_draco), budget, &mut notes)?;
-    let extensions = checked(root, &faults)?;
+    repair::repair(root, &reach, lists.materials.len(), requires_draco, budget, notes.get_mut())?;
+    // The `gltf` crate takes nothing for granted that this doesn't check.
+    let faults = schema_check::check(root, schema::DOCUMENT)?;
+    // Empty views refer to a buffer.
+    if list(root, "buffers").is_empty() && !list(root, "bufferViews").is_empty() {
+        root.insert("buffers".to_owned(), json!([{ "byteLength": 0 }]));
+    }
+    let extensions = Extensions::of(root);
+    for scene in objects(root, "scenes") {
+        scene.entry("nodes").or_insert_with(|| json!([]));
+    }
     let root: Root = serde_json::from_value(value).map_err(not_gltf)?;
     let document = Document::from_json_without_validation(root);
     drop(json);
     let too_large =
         |refused: MemoryRefused| GltfError::Document { pointer: "its JSON".to_owned(), reason: refused.into() };
-    budget.hold(lists.bytes() + lights.bytes() + cameras.bytes()).map_err(too_large)?;
+    budget.hold(lists.bytes()).map_err(too_large)?;
     Ok(Parsed {
         document,
         blob,
@@ -93,7 +104,7 @@ pub(super) fn parse(
         parts,
         reach,
         faults,
-        notes,
+        notes: notes.into_inner(),
     })
 }
 
@@ -128,18 +139,6 @@ fn take_animations(root: &mut Map<String, Value>) -> Vec<Value> {
     }
 }
 
-/// Checks a document that was repaired against the schema, which is all that the `gltf` crate takes for granted. Returns what it says about
-/// extensions.
-///
-/// # Errors
-/// [`GltfError::Document`].
-fn checked(root: &mut Map<String, Value>, faults: &Faults) -> Result<Extensions, GltfError> {
-    schema_check::check(root, schema::DOCUMENT, &faults.replaced_views)?;
-    let extensions = Extensions::of(root);
-    complete(root);
-    Ok(extensions)
-}
-
 fn not_gltf(reason: impl ToString) -> GltfError {
     GltfError::NotGltf { reason: reason.to_string() }
 }
@@ -172,15 +171,4 @@ fn check_version(root: &mut Map<String, Value>, notes: &mut Notes) -> Result<(),
 fn is_known(least: &str) -> bool {
     let parts = least.split_once('.').map(|(major, minor)| (major.parse::<u64>(), minor.parse::<u64>()));
     !matches!(parts, Some((Ok(major), Ok(minor))) if (major, minor) > (2, 0))
-}
-
-/// Adds members that the `gltf` crate asks for, but that may be missing.
-fn complete(root: &mut Map<String, Value>) {
-    for scene in objects(root, "scenes") {
-        scene.entry("nodes").or_insert_with(|| json!([]));
-    }
-    // Empty views refer to a buffer.
-    if list(root, "buffers").is_empty() && !list(root, "bufferViews").is_empty() {
-        root.insert("buffers".to_owned(), json!([{ "byteLength": 0, "uri": "" }]));
-    }
 }

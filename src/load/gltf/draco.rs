@@ -18,8 +18,7 @@ use ::gltf::mesh::Mode;
 use ::gltf::{Document, Primitive, Semantic};
 use draco_core::{DataType, DecodeLimits, DecoderBuffer, ErrorKind, Mesh, MeshDecoder, PointAttribute, PointIndex};
 
-use super::accessor::component;
-use super::decompressed_primitive::{Attribute, DecompressedPrimitive};
+use super::accessor::{DataError, component};
 use super::extensions::DracoExtension;
 use super::nodes::Placed;
 use super::schema::{DRACO, is_detail};
@@ -31,17 +30,20 @@ use geometry::progress::Progress;
 use header::Header;
 use memory::decoding_bytes;
 
-/// Why a primitive can't be decompressed, as a clause.
-enum DecodeError {
-    /// The data is wrong.
-    Wrong(String),
-    /// It would take too much memory.
-    TooMuch(String),
+/// The data of a decompressed primitive.
+pub(crate) struct DecompressedPrimitive {
+    /// The indices of vertices, three for each triangle.
+    pub indices: Vec<u32>,
+    /// By their names in glTF, the numbers of attributes, as many for each vertex as their accessors say; or why one that a primitive can
+    /// do without can't be read, as a clause.
+    pub attributes: HashMap<String, Result<Vec<f32>, String>>,
 }
 
-impl From<String> for DecodeError {
-    fn from(reason: String) -> Self {
-        Self::Wrong(reason)
+impl DecompressedPrimitive {
+    /// Returns the size in memory, in bytes.
+    pub(crate) fn bytes(&self) -> u64 {
+        let values: usize = self.attributes.values().flatten().map(Vec::len).sum();
+        4 * (self.indices.len() + values) as u64
     }
 }
 
@@ -58,21 +60,19 @@ pub(super) fn unpack(
     progress: &Progress,
 ) -> Result<HashMap<[usize; 2], DecompressedPrimitive>, GltfError> {
     let mut unpacked = HashMap::new();
-    let shown = placed.shown.iter().filter_map(|&node| document.nodes().nth(node)?.mesh());
-    for (mesh, primitive) in shown.flat_map(|mesh| mesh.primitives().map(move |primitive| (mesh.index(), primitive))) {
-        let place = [mesh, primitive.index()];
-        let Some(packed) = packed.get(mesh).and_then(|mesh| mesh.get(place[1])?.as_ref()) else { continue };
-        let is_read = !matches!(primitive.mode(), Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip);
-        if !is_read || unpacked.contains_key(&place) {
-            continue;
+    for mesh in placed.meshes(document) {
+        for (primitive, packed) in mesh.primitives().zip(packed.get(mesh.index()).into_iter().flatten()) {
+            let Some(packed) = packed else { continue };
+            progress.check()?;
+            let place = [mesh.index(), primitive.index()];
+            let pointer = format!("/meshes/{}/primitives/{}/extensions/{DRACO}", place[0], place[1]);
+            let stream = Stream { accessors, primitive: &primitive, packed, pointer: &pointer };
+            let made = stream.unpack().map_err(|error| match error {
+                DataError::Here(reason) => GltfError::Document { pointer: pointer.clone(), reason },
+                DataError::Elsewhere(error) => error,
+            })?;
+            unpacked.insert(place, made);
         }
-        progress.check()?;
-        let pointer = || format!("/meshes/{mesh}/primitives/{}/extensions/{DRACO}", place[1]);
-        let made = Stream { accessors, primitive: &primitive, packed }.unpack().map_err(|fault| match fault {
-            DecodeError::Wrong(reason) => GltfError::Document { pointer: pointer(), reason },
-            DecodeError::TooMuch(reason) => GltfError::Draco { pointer: pointer(), reason },
-        })?;
-        unpacked.insert(place, made);
     }
     Ok(unpacked)
 }
@@ -82,10 +82,12 @@ struct Stream<'a> {
     accessors: &'a Accessors<'a>,
     primitive: &'a Primitive<'a>,
     packed: &'a DracoExtension,
+    /// Its place in the document.
+    pointer: &'a str,
 }
 
 impl Stream<'_> {
-    fn unpack(&self) -> Result<DecompressedPrimitive, DecodeError> {
+    fn unpack(&self) -> Result<DecompressedPrimitive, DataError> {
         let [vertices, indices] = self.counts()?;
         let view = self.accessors.view(self.packed.view).ok_or_else(|| "has no buffer view".to_owned())?;
         let bytes = self.accessors.view_bytes(&view)?;
@@ -94,7 +96,7 @@ impl Stream<'_> {
         let attributes = self.attributes()?;
         let kept = attributes.iter().map(|(_, accessor)| 4 * width(accessor) as u64).sum::<u64>();
         // An attribute that isn't read has at most four numbers.
-        let passed_over = 16 * (self.packed.ids.len() - attributes.len() + self.packed.others) as u64;
+        let passed_over = 16 * (self.packed.len() - attributes.len()) as u64;
         let most = (kept + passed_over).saturating_mul(vertices);
         let walked = tables::walk(bytes, &header);
         let own = kept.saturating_mul(vertices).saturating_add(indices.saturating_mul(4));
@@ -102,7 +104,7 @@ impl Stream<'_> {
         let peak = decoding_bytes(&header, &walked, bytes.len() as u64, vertices, most).max(own);
         let budget = self.accessors.budget;
         let decoding_memory = Borrowed::from(budget);
-        budget.borrow(peak).map_err(|refused| DecodeError::TooMuch(too_much(refused, budget)))?;
+        budget.borrow(peak).map_err(|refused| self.too_large(too_much(refused, budget)))?;
         let stride = walked.attributes.map(|all| all.iter().map(|coded| coded.components * coded.size).sum::<u64>());
         let most = stride.map_or(most, |stride| most.min(stride.saturating_mul(vertices)));
         let limits = DecodeLimits::default().with_max_points(vertices).with_max_faces(indices / 3);
@@ -115,33 +117,43 @@ impl Stream<'_> {
         let unpacked = taken(&mesh, &attributes, self.packed, [vertices as usize, indices as usize / 3])?;
         drop(mesh);
         drop(decoding_memory);
-        budget.hold(unpacked.bytes()).map_err(|refused| DecodeError::TooMuch(refused.into()))?;
+        budget.hold(unpacked.bytes()).map_err(|refused| self.too_large(refused.into()))?;
         Ok(unpacked)
     }
 
+    fn too_large(&self, reason: String) -> GltfError {
+        GltfError::Draco { pointer: self.pointer.to_owned(), reason }
+    }
+
     /// Returns the numbers of vertices and indices in the accessors.
-    fn counts(&self) -> Result<[u64; 2], String> {
+    fn counts(&self) -> Result<[u64; 2], DataError> {
         if self.primitive.mode() != Mode::Triangles {
-            return Err("belongs to a strip or a fan, but only compressed lists of triangles are read".to_owned());
+            let reason = "belongs to a strip or a fan, but only compressed lists of triangles are read";
+            return Err(reason.to_owned().into());
         }
-        let indices = self.primitive.indices().ok_or("belongs to a primitive without indices, which Draco needs")?;
-        let positions = self.primitive.get(&Semantic::Positions).ok_or("belongs to a primitive without positions")?;
+        let lacks = |what: &str| format!("belongs to a primitive without {what}");
+        let indices = self.primitive.indices().ok_or_else(|| lacks("indices, which Draco needs"))?;
+        let positions = self.primitive.get(&Semantic::Positions).ok_or_else(|| lacks("positions"))?;
+        self.accessors.check_sound(&positions)?;
+        self.accessors.check_sound(&indices)?;
         Ok([positions.count() as u64, indices.count() as u64])
     }
 
     /// Returns the attributes that are read from the compressed data.
-    fn attributes(&self) -> Result<Vec<(String, Accessor<'_>)>, String> {
+    fn attributes(&self) -> Result<Vec<(String, Accessor<'_>)>, DataError> {
         let named = self.primitive.attributes().map(|(semantic, accessor)| (semantic.to_string(), accessor));
-        let found: Vec<_> = named.filter(|(name, _)| self.packed.ids.contains_key(name)).collect();
+        let found: Vec<_> = named.filter(|(name, _)| self.packed.id(name).is_some()).collect();
         if !found.iter().any(|(name, _)| name == "POSITION") {
-            return Err("names no POSITION among its attributes".to_owned());
+            return Err("names no POSITION among its attributes".to_owned().into());
         }
-        // An accessor with zero sparse values isn't sparse (see `document`).
-        let mut strict = found.iter().filter(|(name, _)| !is_detail(name));
-        match strict.find(|(_, accessor)| accessor.sparse().is_some_and(|sparse| sparse.count() > 0)) {
-            Some((name, _)) => Err(format!("holds {name}, but its accessor is sparse")),
-            None => Ok(found),
+        for (name, accessor) in found.iter().filter(|(name, _)| !is_detail(name)) {
+            self.accessors.check_sound(accessor)?;
+            // An accessor with zero sparse values isn't sparse.
+            if accessor.sparse().is_some_and(|sparse| sparse.count() > 0) {
+                return Err(format!("holds {name}, but its accessor is sparse").into());
+            }
         }
+        Ok(found)
     }
 }
 
@@ -173,22 +185,22 @@ fn taken(
             "holds {points} vertices and {faces} triangles, but its accessors have {vertices} and {triangles}"
         ));
     }
-    let attribute = |(name, accessor): &(String, Accessor)| {
-        let id = packed.ids[name];
+    let read = |name: &str, accessor: &Accessor| {
+        let id = packed.id(name).unwrap_or_default();
         let from = mesh.attribute_by_unique_id(id);
         let from = from.ok_or_else(|| format!("says that {name} is attribute {id}, which its data doesn't have"))?;
-        Ok(Attribute { name: name.clone(), width: width(accessor), values: values(name, from, accessor, vertices)? })
+        values(name, from, accessor, vertices)
     };
-    let (mut read, mut left_out) = (Vec::new(), Vec::new());
-    for named in attributes {
-        match attribute(named) {
-            Ok(values) => read.push(values),
-            Err(reason) if is_detail(&named.0) => left_out.push((named.0.clone(), reason)),
-            Err(reason) => return Err(reason),
+    let mut read_attributes = HashMap::new();
+    for (name, accessor) in attributes {
+        let values = read(name, accessor);
+        if let (Err(reason), false) = (&values, is_detail(name)) {
+            return Err(reason.clone());
         }
+        read_attributes.insert(name.clone(), values);
     }
     let indices = mesh.faces().as_flattened().iter().map(|point| point.0).collect();
-    Ok(DecompressedPrimitive { indices, attributes: read, left_out })
+    Ok(DecompressedPrimitive { indices, attributes: read_attributes })
 }
 
 /// Converts an attribute's numbers, vertex by vertex, to what its accessor says that they mean.

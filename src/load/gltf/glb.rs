@@ -52,60 +52,33 @@ pub(super) fn parts(bytes: &[u8]) -> Result<Parts, GltfError> {
             "the file was cut short: its header says that it has {length} bytes, but it has {has}"
         )));
     }
-    let mut chunks = Chunks { bytes, length, next: HEADER, count: 0 };
-    let Some((b"JSON", mut json)) = chunks.next()? else {
-        return Err(fail("its first chunk isn't JSON".to_owned()));
-    };
-    // The padding should be spaces, but some exporters write zeros.
-    json.end -= bytes[json.clone()].iter().rev().take_while(|byte| **byte == 0).count();
-    let mut bin = None;
-    while let Some((kind, range)) = chunks.next()? {
-        if kind == b"BIN\0" {
-            bin = Some(range);
+    let (mut next, mut json, mut bin) = (HEADER, None, None);
+    for i in 0.. {
+        let left = length.saturating_sub(next);
+        if left == 0 || bin.is_some() {
             break;
         }
-    }
-    let is_longer = chunks.next > length;
-    let said =
-        || format!("The file's header says that it has {length} bytes, but its parts go on until {}.", chunks.next);
-    Ok(Parts { json, bin, warning: is_longer.then(said) })
-}
-
-/// A chunk's kind, and the range of its data.
-type Chunk<'a> = (&'a [u8; 4], Range<usize>);
-
-struct Chunks<'a> {
-    bytes: &'a [u8],
-    /// The length in the header, in bytes.
-    length: usize,
-    next: usize,
-    count: usize,
-}
-
-impl<'a> Chunks<'a> {
-    /// Returns the next chunk; none at the end.
-    fn next(&mut self) -> Result<Option<Chunk<'a>>, GltfError> {
-        let left = self.length.saturating_sub(self.next);
-        if left == 0 {
-            return Ok(None);
+        let kind = bytes[next..length].get(4..CHUNK_HEADER).ok_or_else(|| {
+            fail(format!("chunk {i} ends within its header, which takes {CHUNK_HEADER} bytes: {left} are left"))
+        })?;
+        let (start, size) = (next + CHUNK_HEADER, number(bytes, next));
+        let left = bytes.len() - start;
+        if size > left {
+            return Err(fail(format!("chunk {i} says that it has {size} bytes, but {left} are left")));
         }
-        let fail = |reason| Err(GltfError::NotGltf { reason });
-        let (i, at) = (self.count, self.next);
-        let Some(kind) = self.bytes[at..self.length].get(4..CHUNK_HEADER).and_then(<[u8]>::first_chunk) else {
-            return fail(format!(
-                "chunk {i} ends within its header, which takes {CHUNK_HEADER} bytes: {left} are left"
-            ));
-        };
-        let length = number(self.bytes, at);
-        let left = self.bytes.len() - at - CHUNK_HEADER;
-        if length > left {
-            return fail(format!("chunk {i} says that it has {length} bytes, but {left} are left"));
+        next = start + size;
+        match (i, kind) {
+            (0, b"JSON") => json = Some(start..next),
+            (0, _) => break,
+            (_, b"BIN\0") => bin = Some(start..next),
+            _ => {}
         }
-        let start = at + CHUNK_HEADER;
-        self.count += 1;
-        self.next = start + length;
-        Ok(Some((kind, start..self.next)))
     }
+    let mut json = json.ok_or_else(|| fail("its first chunk isn't JSON".to_owned()))?;
+    // The padding should be spaces, but some exporters write zeros.
+    json.end -= bytes[json.clone()].iter().rev().take_while(|byte| **byte == 0).count();
+    let said = || format!("The file's header says that it has {length} bytes, but its parts go on until {next}.");
+    Ok(Parts { json, bin, warning: (next > length).then(said) })
 }
 
 /// Reads a little-endian 32-bit number; 0 beyond the end.

@@ -40,6 +40,17 @@ pub enum GltfError {
     Empty { holds: String },
 }
 
+impl GltfError {
+    /// Says why something that a model can do without isn't read, as a clause.
+    pub(super) fn into_clause(self) -> String {
+        match self {
+            Self::Accessor { reason, .. } => reason,
+            Self::Document { pointer, reason } => format!("can't be used: {pointer} {reason}"),
+            other => format!("can't be used: {other}"),
+        }
+    }
+}
+
 /// Returns what a user can do about a member.
 fn remedy(pointer: &str) -> &'static str {
     if pointer.starts_with("/skins/") || pointer.ends_with("/skin") {

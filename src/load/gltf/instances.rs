@@ -4,7 +4,6 @@
 //! <https://github.com/KhronosGroup/glTF/tree/main/extensions/2.0/Vendor/EXT_mesh_gpu_instancing>.
 
 use ::gltf::Document;
-use ::gltf::accessor::Accessor;
 use glam::{DMat4, Quat, Vec3};
 
 use super::accessor::List;
@@ -30,32 +29,17 @@ impl<'a> Instances<'a> {
     /// # Errors
     /// [`GltfError::Accessor`] if the transforms can't be read, or aren't equally many.
     pub(super) fn read(
-        document: &Document,
+        document: &'a Document,
         accessors: &'a Accessors<'a>,
         own: &InstancingExtension,
         node: usize,
     ) -> Result<Self, GltfError> {
-        let count = count(document, own);
-        let role = |name: &str| format!("{name} of the instances of node {node}");
-        let found = |index: Option<usize>, name: &str| -> Result<Option<Accessor<'_>>, GltfError> {
-            let accessor = index.and_then(|index| document.accessors().nth(index));
-            match accessor.filter(|accessor| accessor.count() != count) {
-                None => Ok(index.and_then(|index| document.accessors().nth(index))),
-                Some(odd) => {
-                    let reason = format!("has {} elements for {count} instances", odd.count());
-                    Err(GltfError::Accessor { accessor: odd.index(), role: role(name), reason })
-                }
-            }
-        };
-        let vectors = |index, name: &str| {
-            found(index, name)?.map(|accessor| accessors.list::<3>(&accessor, &role(name))).transpose()
-        };
-        let rotations = found(own.rotation, "ROTATION")?;
+        let source = Source { document, accessors, count: count(document, own), node };
         Ok(Self {
-            count,
-            translations: vectors(own.translation, "TRANSLATION")?,
-            rotations: rotations.map(|accessor| accessors.list::<4>(&accessor, &role("ROTATION"))).transpose()?,
-            scales: vectors(own.scale, "SCALE")?,
+            count: source.count,
+            translations: source.list(own.translation, "TRANSLATION")?,
+            rotations: source.list(own.rotation, "ROTATION")?,
+            scales: source.list(own.scale, "SCALE")?,
         })
     }
 
@@ -74,5 +58,31 @@ impl<'a> Instances<'a> {
             };
             placement.matrix()
         })
+    }
+}
+
+/// Where a node's instances are read from.
+struct Source<'a> {
+    document: &'a Document,
+    accessors: &'a Accessors<'a>,
+    count: usize,
+    node: usize,
+}
+
+impl<'a> Source<'a> {
+    fn list<const N: usize>(
+        &self,
+        accessor: Option<usize>,
+        name: &str,
+    ) -> Result<Option<List<'a, [f32; N]>>, GltfError> {
+        let accessor = accessor.and_then(|index| self.document.accessors().nth(index));
+        let Some(accessor) = accessor else { return Ok(None) };
+        let role = format!("{name} of the instances of node {}", self.node);
+        self.accessors.check_sound(&accessor)?;
+        if accessor.count() != self.count {
+            let reason = format!("has {} elements for {} instances", accessor.count(), self.count);
+            return Err(GltfError::Accessor { accessor: accessor.index(), role, reason });
+        }
+        self.accessors.list(&accessor, &role).map(Some)
     }
 }

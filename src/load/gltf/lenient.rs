@@ -160,6 +160,23 @@ impl<'a> Members<'a> {
     }
 }
 
+/// Takes a list out of a document; what is something else becomes a sentence that ends like this.
+pub(super) fn take_list(
+    root: &mut Map<String, Value>,
+    name: &str,
+    otherwise: &str,
+    notes: &RefCell<Notes>,
+) -> Vec<Value> {
+    match root.remove(name) {
+        Some(Value::Array(values)) => values,
+        None | Some(Value::Null) => Vec::new(),
+        Some(other) => {
+            notes.borrow_mut().push(format!("/{name} is {}, not a list; {otherwise}.", shown(&other)));
+            Vec::new()
+        }
+    }
+}
+
 /// Formats a number without a long row of zeros.
 fn short(number: f32) -> String {
     if number.abs() < 1e6 { number.to_string() } else { format!("{number:e}") }

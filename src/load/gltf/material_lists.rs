@@ -1,11 +1,13 @@
 //! Takes materials, textures, samplers and images out of a document before it is checked, since their faults don't keep the
 //! model from loading.
 
+use std::cell::RefCell;
+
 use serde_json::{Map, Value};
 
 use super::json;
+use super::lenient::take_list;
 use super::notes::Notes;
-use super::schema_check::shown;
 
 /// The document's lists, as they are.
 #[derive(Debug, Default)]
@@ -18,16 +20,9 @@ pub(super) struct MaterialLists {
 
 impl MaterialLists {
     /// Takes the lists, and leaves one of as many materials, which have only their indices.
-    pub(super) fn take(root: &mut Map<String, Value>, notes: &mut Notes) -> Self {
-        let mut list = |name: &str| match root.remove(name) {
-            Some(Value::Array(values)) => values,
-            None | Some(Value::Null) => Vec::new(),
-            Some(other) => {
-                notes.push(format!("/{name} is {}, not a list; it is left out.", shown(&other)));
-                Vec::new()
-            }
-        };
-        let [materials, textures, samplers, images] = ["materials", "textures", "samplers", "images"].map(&mut list);
+    pub(super) fn take(root: &mut Map<String, Value>, notes: &RefCell<Notes>) -> Self {
+        let list = |name| take_list(root, name, "it is left out", notes);
+        let [materials, textures, samplers, images] = ["materials", "textures", "samplers", "images"].map(list);
         if !materials.is_empty() {
             root.insert("materials".to_owned(), materials.iter().map(|_| Value::Object(Map::new())).collect());
         }

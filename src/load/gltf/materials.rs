@@ -28,7 +28,7 @@ use geometry::progress::Progress;
 const NAMED: usize = 3;
 
 /// A material's index in the builder, and what its corners need.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(super) struct Resolved {
     pub index: usize,
     pub uvs: Uvs,
@@ -98,14 +98,14 @@ impl<'a> Materials<'a> {
         lists: &'a MaterialLists,
         document: &Document,
         placed: &Placed,
-        (accessors, files): (&'a Accessors<'a>, &'a Files<'a>),
-        budget: &'a Budget,
+        accessors: &'a Accessors<'a>,
+        files: &'a Files<'a>,
     ) -> Result<Self, GltfError> {
         let mut materials = Self {
             lists,
             accessors,
             files,
-            budget,
+            budget: accessors.budget,
             sources: HashMap::new(),
             resolved: HashMap::new(),
             textures: HashMap::new(),
@@ -115,14 +115,8 @@ impl<'a> Materials<'a> {
             undrawn: BTreeMap::new(),
             notes: RefCell::default(),
         };
-        let mut seen = vec![false; document.meshes().len()];
-        for mesh in placed.shown.iter().filter_map(|&node| document.nodes().nth(node)?.mesh()) {
-            if std::mem::replace(&mut seen[mesh.index()], true) {
-                continue;
-            }
-            for primitive in mesh.primitives() {
-                materials.look_at(primitive.material().index())?;
-            }
+        for primitive in placed.meshes(document).flat_map(|mesh| mesh.primitives()) {
+            materials.look_at(primitive.material().index())?;
         }
         Ok(materials)
     }
@@ -221,7 +215,7 @@ impl<'a> Materials<'a> {
             return Ok(resolved);
         }
         self.look_at(key)?;
-        let Some(source) = self.sources.get(&key).cloned() else { return Ok(Resolved::of(0, Uvs::default(), None)) };
+        let Some(source) = self.sources.get(&key).cloned() else { return Ok(Resolved::default()) };
         let name = name(&source, key);
         let filter = MipFilter::of_base_color(source.look.alpha);
         let base = source.base_map.and_then(|map| self.texture(map.texture, filter, "texture", &name));
@@ -235,11 +229,11 @@ impl<'a> Materials<'a> {
         }
         let (texture, sampling) =
             base.map_or((None, Sampling::default()), |(texture, sampling)| (Some(texture), sampling));
-        let resolved = Resolved::of(0, source.own_uvs(), Some(&look));
+        let (uvs, needs) = (source.own_uvs(), DetailNeeds::of(&look));
         let MaterialSource { base_color, double_sided, .. } = source;
         let triangles = 0..0;
         let made = Material { name, base_color, texture, sampling, double_sided, look, triangles };
-        let resolved = Resolved { index: builder.material(made), ..resolved };
+        let resolved = Resolved { index: builder.material(made), uvs, needs };
         self.resolved.insert(key, resolved);
         Ok(resolved)
     }
@@ -336,16 +330,15 @@ impl<'a> Materials<'a> {
     }
 }
 
-impl Resolved {
-    fn of(index: usize, uvs: Uvs, look: Option<&Look>) -> Self {
-        let mut needs = DetailNeeds::default();
-        for map in look.into_iter().flat_map(|look| look.maps.iter().flatten()) {
+impl DetailNeeds {
+    fn of(look: &Look) -> Self {
+        let mut needs = Self { tangents: look.tangent_map().is_some(), ..Self::default() };
+        for map in look.maps.iter().flatten() {
             if let MapUv::Set(set, _) = map.uv {
                 needs.sets[set] = true;
             }
         }
-        needs.tangents = look.is_some_and(|look| look.tangent_map().is_some());
-        Self { index, uvs, needs }
+        needs
     }
 }
 

@@ -1,7 +1,7 @@
 //! Places the nodes of a document: their global transforms, and which ones the scene shows.
 
 use ::gltf::scene::Transform;
-use ::gltf::{Document, Node};
+use ::gltf::{Document, Mesh, Node};
 use glam::{DMat4, Mat4};
 
 use super::GltfError;
@@ -21,6 +21,13 @@ pub(crate) struct Placed {
 }
 
 impl Placed {
+    /// Returns the meshes that the scene shows, each once.
+    pub(super) fn meshes<'a>(&self, document: &'a Document) -> impl Iterator<Item = Mesh<'a>> {
+        let mut seen = vec![false; document.meshes().len()];
+        let shown = self.shown.iter().filter_map(|&node| document.nodes().nth(node)?.mesh());
+        shown.filter(move |mesh| !std::mem::replace(&mut seen[mesh.index()], true))
+    }
+
     /// Returns for each node whether the scene shows it.
     pub(super) fn is_shown(&self) -> Vec<bool> {
         let mut is_shown = vec![false; self.global.len()];

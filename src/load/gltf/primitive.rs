@@ -4,12 +4,11 @@ use ::gltf::mesh::Mode;
 use ::gltf::{Document, Mesh, Primitive, Semantic};
 
 use super::accessor::List;
-use super::animated_vertices::AnimatedVertices;
+use super::animated_vertices::{self, AnimatedVertices};
 use super::materials::Resolved;
 use super::notes::Notes;
 use super::primitive_data::PrimitiveData;
 use super::rig_builder::NodeBinder;
-use super::vertex_details::{DetailRepairs, VertexDetails};
 use crate::Budget;
 use crate::face_builder::{is_near, unplaced};
 use crate::import::Import;
@@ -17,7 +16,7 @@ use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::{MemoryAccount, MemoryRefused};
 
 pub(super) use super::vertices::NodePose;
-use super::vertices::{Vertex, Vertices};
+use super::vertices::{Vertex, VertexRepairs, Vertices};
 use super::{Accessors, GltfError};
 use geometry::mesh::mesh_builder::{CornerRepairs, MeshBuilder, StoredCorner};
 
@@ -28,16 +27,7 @@ pub(super) struct PrimitiveReader {
     read: usize,
     points: usize,
     lines: usize,
-    /// Primitives without normals.
-    without_normals: usize,
-    /// Vertices with texture coordinates that aren't finite.
-    bad_uvs: usize,
-    /// Vertices with unusable weights.
-    bad_weights: usize,
-    /// Vertices that more than four joints move, and the largest part of a vertex's weights that was left out.
-    cut_weights: usize,
-    largest_cut: f64,
-    details: DetailRepairs,
+    repairs: VertexRepairs,
     /// What is wrong with attributes that a primitive can do without.
     pub notes: Notes,
     /// Indices at the end of a list that don't make a whole triangle.
@@ -87,9 +77,6 @@ impl<'a> Indices<'a> {
 
     /// Calls `take` with the number of the first index, and some indices, until it has had all. All lists but the last have
     /// [`BLOCK`] indices.
-    ///
-    /// # Errors
-    /// Those of `take`.
     fn in_blocks<E>(&self, mut take: impl FnMut(usize, &[u32]) -> Result<(), E>) -> Result<(), E> {
         let mut block = Vec::with_capacity(BLOCK.min(self.count));
         for first in (0..self.count).step_by(BLOCK) {
@@ -133,31 +120,29 @@ impl PrimitiveReader {
     ///
     /// # Errors
     /// [`GltfError::Accessor`], [`GltfError::Primitive`] and [`GltfError::TooLarge`].
-    pub(super) fn read(&mut self, job: Job, binder: Option<&mut NodeBinder>) -> Result<(), GltfError> {
+    pub(super) fn read(&mut self, job: Job, mut binder: Option<&mut NodeBinder>) -> Result<(), GltfError> {
         let Job { mesh, primitive, pose, material, accessors, builder, details } = job;
         let name = name(mesh, primitive);
         let unpacked = accessors.unpacked.get(&[mesh.index(), primitive.index()]);
         let source =
             PrimitiveData { primitive, name: &name, accessors, unpacked, makes_normals: self.import.makes_normals() };
-        let mut vertices = Vertices::new(source, pose, material.uvs, &mut self.notes)?;
-        if details.is_some() {
-            let is_animated = binder.as_ref().is_some_and(|binder| binder.first_weight().is_some());
-            let has_weight = |target: usize| pose.weights.get(target).is_some_and(|weight| *weight != 0.0);
-            let uses_target = |target: usize| is_animated || has_weight(target);
-            let details = VertexDetails::new(source, vertices.count, material.needs, uses_target, &mut self.notes);
-            vertices.details = Some(details);
-        }
-        let moving = binder.map(|binder| AnimatedVertices::new(source, &vertices, pose.instance, binder));
+        let is_morphing = animated_vertices::may_morph(binder.as_deref_mut(), primitive);
+        let (is_detailed, repairs, budget) = (details.is_some(), self.repairs, accessors.budget);
+        let mut vertices = Vertices::new(source, pose, material, is_detailed, is_morphing, repairs, &mut self.notes)?;
+        let moving = binder.map(|binder| AnimatedVertices::new(budget, &vertices, pose.instance, is_morphing, binder));
         let indices = Indices::of(&source, vertices.count)?;
-        let budget = accessors.budget;
         // The number and the marks of each vertex's corner, and a bit that says whether it is used.
         budget.borrow(vertices.count as u64 * 5 + vertices.count as u64 / 8).map_err(too_large)?;
         let used = used(&indices, vertices.count).map_err(|reason| source.problem(reason))?;
-        let kept = KeptVertices::of(&mut vertices, &used, (moving, details), builder, budget)?;
+        let kept = KeptVertices::of(&mut vertices, &used, moving, details, builder, budget)?;
         let (mode, count) = (primitive.mode(), indices.count);
-        self.count(&vertices, mode, count);
+        self.repairs = vertices.repairs;
+        self.read += 1;
+        if mode == Mode::Triangles {
+            self.left_over += count % 3;
+        }
         builder.make_room_for_triangles(material.index, most_triangles(mode, count), budget).map_err(too_large)?;
-        let unplaced = self.add_triangles(mode, &indices, &kept, (builder, material.index))?;
+        let unplaced = self.add_triangles(mode, &indices, &kept, builder, material.index)?;
         if unplaced > 0 {
             self.unplaced.0 += unplaced;
             self.unplaced.1.get_or_insert_with(|| name.clone());
@@ -172,7 +157,8 @@ impl PrimitiveReader {
         mode: Mode,
         indices: &Indices,
         kept: &KeptVertices,
-        (builder, material): (&mut MeshBuilder, usize),
+        builder: &mut MeshBuilder,
+        material: usize,
     ) -> Result<usize, GltfError> {
         let mut unplaced = 0;
         let mut add = |[a, b, c]: [u32; 3]| {
@@ -195,35 +181,18 @@ impl PrimitiveReader {
         Ok(unplaced)
     }
 
-    fn count(&mut self, vertices: &Vertices, mode: Mode, indices: usize) {
-        self.read += 1;
-        let repairs = &vertices.repairs;
-        if let Some(VertexDetails { repairs, .. }) = &vertices.details {
-            self.details.bad_colors += repairs.bad_colors;
-            self.details.bad_tangents += repairs.bad_tangents;
-            self.details.missing_uvs += repairs.missing_uvs;
-            self.bad_uvs += repairs.bad_uvs;
-        }
-        self.without_normals += usize::from(repairs.no_normals > 0);
-        self.bad_uvs += repairs.bad_uvs;
-        self.bad_weights += repairs.bad_weights;
-        self.cut_weights += repairs.cut_weights;
-        self.largest_cut = self.largest_cut.max(repairs.largest_cut);
-        if mode == Mode::Triangles {
-            self.left_over += indices % 3;
-        }
-    }
-
     /// Returns what was left out or repaired, one sentence each, except for the mesh's own repairs.
     pub(super) fn warnings(&self) -> Vec<String> {
-        let (without_normals, made) = self.import.lacking_normals(self.without_normals, "primitives without normals");
+        let VertexRepairs { without_normals, bad_uvs, missing_uvs, bad_colors, bad_tangents, bad_weights, .. } =
+            self.repairs;
+        let (without_normals, made) = self.import.lacking_normals(without_normals, "primitives without normals");
         let sentences = [
             (without_normals, made.as_str()),
-            (self.bad_uvs, "uvs that aren't finite, replaced by (0, 0)"),
-            (self.details.missing_uvs, "primitives without the texture coordinates of a map, which has (0, 0) there"),
-            (self.details.bad_colors, "colours of vertices that aren't finite, replaced by white"),
-            (self.details.bad_tangents, "tangents without a direction, replaced by ones that are computed"),
-            (self.bad_weights, "vertices with unusable joints or weights, left unskinned"),
+            (bad_uvs, "uvs that aren't finite, replaced by (0, 0)"),
+            (missing_uvs, "primitives without the texture coordinates of a map, which has (0, 0) there"),
+            (bad_colors, "colours of vertices that aren't finite, replaced by white"),
+            (bad_tangents, "tangents without a direction, replaced by ones that are computed"),
+            (bad_weights, "vertices with unusable joints or weights, left unskinned"),
             (self.left_over, "indices at the end of triangle lists that make no whole triangle, left out"),
             (self.points, "primitives of points, left out"),
             (self.lines, "primitives of lines, left out"),
@@ -234,8 +203,8 @@ impl PrimitiveReader {
             // It is the first.
             found[0].push_str(" glTF asks for flat ones, which a crease angle of 0 gives.");
         }
-        if self.cut_weights > 0 {
-            let (count, percent) = (self.cut_weights, self.largest_cut * 100.0);
+        if self.repairs.cut_weights > 0 {
+            let (count, percent) = (self.repairs.cut_weights, self.repairs.largest_cut * 100.0);
             let said = "vertices that more than four joints move, of which the four with the largest weights are kept";
             found.push(format!("{said}: {count}. At most {percent:.2} % of a vertex's weights are left out."));
         }
@@ -284,7 +253,8 @@ impl KeptVertices {
     fn of(
         vertices: &mut Vertices,
         used: &[u64],
-        (mut moving, mut details): (Option<AnimatedVertices>, Option<&mut DetailTable>),
+        mut moving: Option<AnimatedVertices>,
+        mut details: Option<&mut DetailTable>,
         builder: &mut MeshBuilder,
         budget: &Budget,
     ) -> Result<Self, GltfError> {

@@ -4,15 +4,9 @@ use ::gltf::accessor::Accessor;
 use ::gltf::{Primitive, Semantic};
 
 use super::accessor::List;
-use super::decompressed_primitive::DecompressedPrimitive;
+use super::draco::DecompressedPrimitive;
 use super::notes::Notes;
 use super::{Accessors, GltfError};
-
-/// The displacements by a morph target at weight 1.
-pub(super) struct MorphTarget<'a> {
-    pub positions: Option<List<'a, [f32; 3]>>,
-    pub normals: Option<List<'a, [f32; 3]>>,
-}
 
 /// The source of a primitive's attributes.
 #[derive(Clone, Copy)]
@@ -30,22 +24,6 @@ pub(super) struct PrimitiveData<'a> {
 impl<'a> PrimitiveData<'a> {
     pub(super) fn problem(&self, reason: impl Into<String>) -> GltfError {
         GltfError::Primitive { primitive: self.name.to_owned(), reason: reason.into() }
-    }
-
-    /// # Errors
-    /// [`GltfError::Accessor`].
-    pub(super) fn target(
-        &self,
-        target: &::gltf::mesh::MorphTarget,
-        count: usize,
-    ) -> Result<MorphTarget<'a>, GltfError> {
-        let list = |accessor: Option<Accessor>, attribute| {
-            accessor.map(|accessor| self.list(&accessor, attribute, count)).transpose()
-        };
-        Ok(MorphTarget {
-            positions: list(target.positions(), "POSITION of a morph target")?,
-            normals: list(target.normals(), "NORMAL of a morph target")?,
-        })
     }
 
     /// # Errors
@@ -68,6 +46,7 @@ impl<'a> PrimitiveData<'a> {
         let Some(accessor) = self.primitive.get(&Semantic::Normals).filter(|_| !self.makes_normals) else {
             return Ok(None);
         };
+        self.accessors.check_sound(&accessor)?;
         if accessor.count() == count {
             return self.list(&accessor, &Semantic::Normals.to_string(), count).map(Some);
         }
@@ -100,17 +79,12 @@ impl<'a> PrimitiveData<'a> {
         count: usize,
         notes: &mut Notes,
     ) -> Option<List<'a, [f32; N]>> {
-        match self.list(accessor, attribute, count) {
-            Ok(list) => Some(list),
-            Err(GltfError::Accessor { accessor, role, reason }) => {
-                notes.push_once(format!("/accessors/{accessor} ({role}) {reason}; it is left out."));
-                None
-            }
-            Err(other) => {
-                notes.push_once(format!("{other}; it is left out."));
-                None
-            }
-        }
+        let list = self.list(accessor, attribute, count);
+        let left_out = |error: GltfError| {
+            let (i, reason) = (accessor.index(), error.into_clause());
+            notes.push_once(format!("/accessors/{i} ({attribute} of {}) {reason}; it is left out.", self.name));
+        };
+        list.map_err(left_out).ok()
     }
 
     /// Returns an attribute's values, of which there must be as many as vertices.
@@ -124,21 +98,21 @@ impl<'a> PrimitiveData<'a> {
         count: usize,
     ) -> Result<List<'a, [f32; N]>, GltfError> {
         let role = format!("{attribute} of {}", self.name);
-        self.accessors.check_sound(accessor, &role)?;
+        self.accessors.check_sound(accessor)?;
         if accessor.count() != count {
             let reason = format!("has {} elements for {count} vertices", accessor.count());
             return Err(GltfError::Accessor { accessor: accessor.index(), role, reason });
         }
-        match self.unpacked.and_then(|unpacked| unpacked.values(attribute)) {
-            Some(values) => Ok(List::of(values, [0.0; N])),
-            None => match self.unpacked.and_then(|unpacked| unpacked.lacks(attribute)) {
-                // The accessor has no other data.
-                Some(reason) => {
-                    let reason = format!("can't be decompressed, since its primitive {reason}");
-                    Err(GltfError::Accessor { accessor: accessor.index(), role, reason })
-                }
-                None => self.accessors.list(accessor, &role),
-            },
+        match self.unpacked.and_then(|unpacked| unpacked.attributes.get(attribute)) {
+            Some(Ok(values)) if accessor.dimensions().multiplicity() == N => {
+                Ok(List::of(values.as_chunks().0, [0.0; N]))
+            }
+            // The accessor has no other data.
+            Some(Err(reason)) => {
+                let reason = format!("can't be decompressed, since its primitive {reason}");
+                Err(GltfError::Accessor { accessor: accessor.index(), role, reason })
+            }
+            _ => self.accessors.list(accessor, &role),
         }
     }
 }

@@ -4,21 +4,7 @@ use std::collections::HashMap;
 
 use serde_json::{Map, Value};
 
-use super::schema::{
-    DRACO, INSTANCING, KHR_MESHOPT, MESHOPT, VISIBILITY, is_attribute, is_detail, is_displacement, is_placement,
-};
-
-/// How something is used.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Use {
-    /// Not at all.
-    #[default]
-    None,
-    /// By looks or animations: a fault costs a warning.
-    Detail,
-    /// By the shape: a fault is an error.
-    Shape,
-}
+use super::schema::{DRACO, KHR_MESHOPT, MESHOPT, VISIBILITY};
 
 /// What the scene uses. The lists are those of the document.
 #[derive(Debug, Default)]
@@ -33,67 +19,31 @@ pub(super) struct Reach {
     pub hidden: usize,
     pub meshes: Vec<bool>,
     pub skins: Vec<bool>,
-    pub accessors: Vec<Use>,
-    pub views: Vec<Use>,
-    pub buffers: Vec<Use>,
     /// For each mesh, whether its vertices say which joints move them.
     bound: Vec<bool>,
     /// For each mesh, whether a node that is shown gives it a skin.
     skinned: Vec<bool>,
     /// For each mesh, the morph targets that have a weight at rest.
     weighed: HashMap<usize, Vec<bool>>,
-    /// The meshes whose own weights are used.
-    own_weights: Vec<bool>,
-    /// How the data of each accessor is used. It isn't where Draco has the data.
-    data: Vec<Use>,
-}
-
-/// What else uses accessors and buffer views.
-pub(super) struct Beside<'a> {
-    pub animations: &'a [Value],
-    pub images: &'a [Value],
-    pub requires_draco: bool,
-    /// Whether nodes that hide themselves are shown too.
-    pub show_hidden: bool,
 }
 
 impl Reach {
-    /// Follows the scene that the document names, or all nodes if it has no scenes. Indices of things that don't exist are left
-    /// aside here.
-    pub(super) fn of(root: &Map<String, Value>, beside: &Beside) -> Self {
+    /// Follows the scene that the document names, or all nodes if it has no scenes; `show_hidden` says whether nodes that hide themselves
+    /// are shown too. Indices of things that don't exist are left aside here.
+    pub(super) fn of(root: &Map<String, Value>, show_hidden: bool) -> Self {
         let count = |name| list(root, name).len();
         let mut reach = Self {
             nodes: vec![false; count("nodes")],
             shown: vec![false; count("nodes")],
-            hiding: list(root, "nodes").iter().map(|node| !beside.show_hidden && hides(node)).collect(),
+            hiding: list(root, "nodes").iter().map(|node| !show_hidden && hides(node)).collect(),
             meshes: vec![false; count("meshes")],
             skins: vec![false; count("skins")],
-            accessors: vec![Use::None; count("accessors")],
-            data: vec![Use::None; count("accessors")],
-            views: vec![Use::None; count("bufferViews")],
-            buffers: vec![Use::None; count("buffers")],
             bound: list(root, "meshes").iter().map(is_bound).collect(),
             skinned: vec![false; count("meshes")],
-            own_weights: vec![false; count("meshes")],
             ..Self::default()
         };
         reach.walk(root);
-        reach.look_at_nodes(root);
-        for (i, mesh) in list(root, "meshes").iter().enumerate() {
-            let primitives = if reach.meshes[i] { values(mesh, "primitives") } else { &[] };
-            for primitive in primitives {
-                reach.look_at_primitive(root, i, primitive, beside.requires_draco);
-            }
-        }
-        for sampler in beside.animations.iter().flat_map(|animation| values(animation, "samplers")) {
-            for name in ["input", "output"] {
-                reach.mark(index(sampler, name), Use::Detail, true);
-            }
-        }
-        for view in beside.images.iter().filter_map(|image| index(image, "bufferView")) {
-            raise(&mut reach.views, view, Use::Detail);
-        }
-        reach.follow_data(root);
+        reach.look_at_meshes(root);
         reach
     }
 
@@ -107,10 +57,9 @@ impl Reach {
         mesh.is_some_and(|mesh| self.bound.get(mesh) == Some(&true))
     }
 
-    /// Returns how a mesh's morph target is used.
-    pub(super) fn target(&self, mesh: usize, target: usize) -> Use {
-        let is_weighed = self.weighed.get(&mesh).and_then(|weighed| weighed.get(target));
-        if is_weighed == Some(&true) { Use::Shape } else { Use::Detail }
+    /// Returns whether a mesh's morph target has a weight at rest.
+    pub(super) fn is_weighed(&self, mesh: usize, target: usize) -> bool {
+        self.weighed.get(&mesh).and_then(|weighed| weighed.get(target)) == Some(&true)
     }
 
     /// Finds the nodes of the scene and below, those whose mesh is shown, and the joints of these.
@@ -169,101 +118,24 @@ impl Reach {
         self.is_bound(index(node, "mesh")).then_some(skin)
     }
 
-    /// Looks at the nodes whose meshes are shown: their meshes, instances, and weights of morph targets.
-    fn look_at_nodes(&mut self, root: &Map<String, Value>) {
+    /// Looks at the nodes whose meshes are shown: their meshes, and weights of morph targets.
+    fn look_at_meshes(&mut self, root: &Map<String, Value>) {
         let meshes = list(root, "meshes");
-        for (i, node) in list(root, "nodes").iter().enumerate() {
-            if !self.shown[i] {
-                continue;
-            }
-            for (name, accessor) in extension(node, INSTANCING).into_iter().flat_map(|own| members(own, "attributes")) {
-                if is_placement(name) {
-                    self.mark(whole(accessor), Use::Shape, true);
-                }
-            }
+        // The meshes whose own weights are used.
+        let mut own_weights = vec![false; meshes.len()];
+        for (_, node) in list(root, "nodes").iter().enumerate().filter(|(i, _)| self.shown[*i]) {
             let Some(mesh) = index(node, "mesh").filter(|mesh| *mesh < meshes.len()) else { continue };
             self.meshes[mesh] = true;
             self.skinned[mesh] |= node.get("skin").is_some_and(|skin| !skin.is_null());
             let weights = match node.get("weights").filter(|weights| !weights.is_null()) {
                 Some(_) => values(node, "weights"),
-                None if std::mem::replace(&mut self.own_weights[mesh], true) => &[],
+                None if std::mem::replace(&mut own_weights[mesh], true) => &[],
                 None => values(&meshes[mesh], "weights"),
             };
             let weighed = self.weighed.entry(mesh).or_default();
             weighed.resize(weighed.len().max(weights.len()), false);
             weighed.iter_mut().zip(weights).for_each(|(weighed, weight)| *weighed |= weight.as_f64() != Some(0.0));
         }
-        for (i, skin) in list(root, "skins").iter().enumerate() {
-            if self.skins[i] {
-                self.mark(index(skin, "inverseBindMatrices"), Use::Shape, true);
-            }
-        }
-    }
-
-    fn look_at_primitive(&mut self, root: &Map<String, Value>, mesh: usize, primitive: &Value, requires_draco: bool) {
-        if !is_drawn(primitive) {
-            return;
-        }
-        let packed = packed(root, primitive, requires_draco);
-        let is_packed = |name: &str| packed.is_some_and(|packed| attribute(packed, name).is_some());
-        for (name, accessor) in members(primitive, "attributes").filter(|(name, _)| is_attribute(name)) {
-            let found = match name {
-                _ if is_detail(name) => Use::Detail,
-                _ if is_influence(name) && !self.is_skinned(mesh) => continue,
-                _ => Use::Shape,
-            };
-            self.mark(whole(accessor), found, !is_packed(name));
-        }
-        self.mark(index(primitive, "indices"), Use::Shape, packed.is_none());
-        for (i, target) in values(primitive, "targets").iter().enumerate() {
-            let of_target = self.target(mesh, i);
-            for (name, accessor) in target.as_object().into_iter().flatten().filter(|(name, _)| is_displacement(name)) {
-                self.mark(whole(accessor), if is_detail(name) { Use::Detail } else { of_target }, true);
-            }
-        }
-        if let Some(view) = packed.and_then(|packed| index(packed, "bufferView")) {
-            raise(&mut self.views, view, Use::Shape);
-        }
-    }
-
-    fn mark(&mut self, accessor: Option<usize>, found: Use, has_data: bool) {
-        let Some(accessor) = accessor else { return };
-        raise(&mut self.accessors, accessor, found);
-        if has_data {
-            raise(&mut self.data, accessor, found);
-        }
-    }
-
-    /// Follows accessors to their views, and views to their buffers.
-    fn follow_data(&mut self, root: &Map<String, Value>) {
-        for (accessor, found) in list(root, "accessors").iter().zip(&self.data) {
-            let sparse = ["/sparse/indices", "/sparse/values"].map(|place| accessor.pointer(place));
-            for place in [Some(accessor)].into_iter().chain(sparse).flatten() {
-                if let Some(view) = index(place, "bufferView") {
-                    raise(&mut self.views, view, *found);
-                }
-            }
-        }
-        for (view, found) in list(root, "bufferViews").iter().zip(&self.views) {
-            // A compressed view's own buffer is only a fallback, which is read if the compressed data is broken.
-            let packed = compression(view).map(|(_, packed)| packed);
-            let source = packed.unwrap_or(view);
-            let copy = index(view, "buffer").filter(|_| packed.is_some() && *found != Use::None);
-            let is_copy =
-                |buffer: &usize| list(root, "buffers").get(*buffer).is_some_and(|buffer| compression(buffer).is_some());
-            if let Some(buffer) = copy.filter(is_copy) {
-                raise(&mut self.buffers, buffer, Use::Detail);
-            }
-            if let Some(buffer) = index(source, "buffer") {
-                raise(&mut self.buffers, buffer, *found);
-            }
-        }
-    }
-}
-
-fn raise(uses: &mut [Use], place: usize, found: Use) {
-    if let Some(known) = uses.get_mut(place) {
-        *known = found.max(*known);
     }
 }
 
@@ -320,17 +192,12 @@ fn values<'a>(object: &'a Value, name: &str) -> &'a [Value] {
     object.get(name).and_then(Value::as_array).map_or(&[], Vec::as_slice)
 }
 
-fn members<'a>(object: &'a Value, name: &str) -> impl Iterator<Item = (&'a str, &'a Value)> {
-    let members = object.get(name).and_then(Value::as_object).into_iter().flatten();
-    members.map(|(name, value)| (name.as_str(), value))
-}
-
 /// The extension that compresses a buffer view, or that is about such views on a buffer, with its name.
 pub(super) fn compression(object: &Value) -> Option<(&'static str, &Value)> {
     [KHR_MESHOPT, MESHOPT].into_iter().find_map(|name| Some((name, extension(object, name)?)))
 }
 
-fn extension<'a>(object: &'a Value, name: &str) -> Option<&'a Value> {
+pub(super) fn extension<'a>(object: &'a Value, name: &str) -> Option<&'a Value> {
     object.get("extensions")?.get(name).filter(|own| !own.is_null())
 }
 

@@ -1,50 +1,40 @@
 //! Takes out of a document what the scene doesn't use, and what may be wrong without changing the shape, so that neither
-//! keeps the model from loading. What is left is checked strictly.
-
-use std::collections::HashMap;
+//! keeps the model from loading. What is left is [checked](super::schema_check).
 
 use serde_json::{Map, Value, json};
 
 use super::GltfError;
 use super::json::{PER_OBJECT, PER_READ};
 use super::notes::Notes;
-use super::reach::{Reach, Use, is_drawn, is_influence, list, packed};
-use super::schema::{self, INSTANCING, is_detail};
-use super::schema_check::Checker;
+use super::reach::{Reach, is_drawn, is_influence, list, packed};
+use super::schema::{INSTANCING, is_detail};
 use crate::memory_budget::Budget;
 use geometry::mesh::{MemoryAccount, MemoryRefused};
 
 /// How far a rotation's length may be from 1 without a warning: quaternions in files are rounded.
 const ROUNDING: f64 = 1e-3;
 
-/// Why accessors and buffer views that only looks and animations use can't be read, by index.
-#[derive(Debug, Default)]
-pub(crate) struct Faults {
-    pub accessors: HashMap<usize, String>,
-    pub views: HashMap<usize, String>,
-    /// The views that were replaced by empty ones, whose buffer needn't exist.
-    pub replaced_views: Vec<bool>,
-}
-
-/// Repairs a document. `reach` says what of it is used; `materials` is the number of its materials.
+/// Repairs a document. `reach` says what of it is used; `materials` is the number of its materials, and `requires_draco` says whether it
+/// requires the extension.
 ///
 /// # Errors
 /// [`GltfError::Document`] if what replaces broken parts would take too much memory.
 pub(super) fn repair(
     root: &mut Map<String, Value>,
     reach: &Reach,
-    (materials, requires_draco): (usize, bool),
+    materials: usize,
+    requires_draco: bool,
     budget: &Budget,
     notes: &mut Notes,
-) -> Result<Faults, GltfError> {
+) -> Result<(), GltfError> {
     let too_large =
         |refused: MemoryRefused| GltfError::Document { pointer: "its JSON".to_owned(), reason: refused.into() };
     hold_replacements(root, budget).map_err(too_large)?;
-    let kept_draco = kept_draco(root, reach, requires_draco);
     repair_nodes(root, reach, notes);
     let mut positionless = 0;
     let accessors = list(root, "accessors").len();
-    for (i, mesh) in elements(root, "meshes").iter_mut().enumerate() {
+    let mut meshes = root.remove("meshes");
+    for (i, mesh) in meshes.iter_mut().filter_map(Value::as_array_mut).flatten().enumerate() {
         if !reach.meshes[i] {
             *mesh = json!({ "primitives": [] });
             continue;
@@ -55,8 +45,11 @@ pub(super) fn repair(
                 let mode = primitive.get("mode").and_then(Value::as_u64).filter(|mode| *mode <= 6).unwrap_or(4);
                 positionless += usize::from(mode > 3);
                 *primitive = json!({ "mode": mode, "attributes": {} });
-            } else if let Value::Object(primitive) = primitive {
-                primitives.repair(k, primitive, kept_draco[i].get(k) == Some(&true));
+                continue;
+            }
+            let keeps_draco = packed(root, primitive, requires_draco).is_some();
+            if let Value::Object(primitive) = primitive {
+                primitives.repair(k, primitive, keeps_draco);
             }
         }
         let has_targets = primitives.has_targets;
@@ -64,6 +57,7 @@ pub(super) fn repair(
             mesh.remove("weights");
         }
     }
+    root.extend(meshes.map(|meshes| ("meshes".to_owned(), meshes)));
     if positionless > 0 {
         notes.push(format!("primitives without positions, left out: {positionless}."));
     }
@@ -76,8 +70,7 @@ pub(super) fn repair(
     for (skin, _) in elements(root, "skins").iter_mut().zip(&reach.skins).filter(|(_, is_used)| !**is_used) {
         *skin = json!({ "joints": [] });
     }
-    let faults = repair_data(root, reach);
-    Ok(faults)
+    Ok(())
 }
 
 /// Counts what may be put in place of elements that aren't objects, or have no members.
@@ -92,16 +85,6 @@ fn hold_replacements(root: &Map<String, Value>, budget: &Budget) -> Result<(), M
     let others = elements().chain(list(root, "nodes")).chain(primitives()).filter(|value| !value.is_object()).count();
     budget.borrow(small as u64 * PER_OBJECT)?;
     budget.hold(others as u64 * PER_READ)
-}
-
-/// For each mesh and primitive, whether it is read from Draco data.
-fn kept_draco(root: &Map<String, Value>, reach: &Reach, requires_draco: bool) -> Vec<Vec<bool>> {
-    let of = |(i, mesh): (usize, &Value)| -> Vec<bool> {
-        let primitives = mesh.get("primitives").and_then(Value::as_array).filter(|_| reach.meshes[i]);
-        let kept = |primitive| packed(root, primitive, requires_draco).is_some();
-        primitives.into_iter().flatten().map(kept).collect()
-    };
-    list(root, "meshes").iter().enumerate().map(of).collect()
 }
 
 fn repair_nodes(root: &mut Map<String, Value>, reach: &Reach, notes: &mut Notes) {
@@ -199,8 +182,7 @@ impl Primitives<'_> {
         let targets = primitive.get_mut("targets").and_then(Value::as_array_mut).into_iter().flatten();
         for (t, target) in targets.enumerate() {
             let Value::Object(target) = target else { continue };
-            let shapes: &[_] =
-                if self.reach.target(self.mesh, t) == Use::Detail { &["POSITION", "NORMAL"] } else { &[] };
+            let shapes: &[_] = if self.reach.is_weighed(self.mesh, t) { &[] } else { &["POSITION", "NORMAL"] };
             for name in shapes.iter().chain(&["TANGENT"]) {
                 self.drop_accessor(target, name, &format!("{place}/targets/{t}"));
             }
@@ -223,58 +205,6 @@ fn drop_index(object: &mut Map<String, Value>, name: &str, count: usize) -> bool
         None | Some(Value::Null) => false,
         Some(value) if is_index(value) => false,
         Some(_) => object.remove(name).is_some(),
-    }
-}
-
-/// Replaces accessors, views and buffers that aren't used by empty ones, and broken ones that only details use.
-fn repair_data(root: &mut Map<String, Value>, reach: &Reach) -> Faults {
-    let checker = Checker::new(root, schema::DOCUMENT, &[]);
-    let mut faults = Faults { replaced_views: vec![false; reach.views.len()], ..Faults::default() };
-    for (i, accessor) in elements(root, "accessors").iter_mut().enumerate() {
-        let fault = match reach.accessors[i] {
-            Use::Shape => continue,
-            Use::Detail => match checker.element("accessors", i, accessor, schema::ACCESSOR) {
-                Ok(()) => continue,
-                Err(fault) => Some(fault),
-            },
-            Use::None => None,
-        };
-        faults.accessors.extend(fault.map(|fault| (i, reason(fault))));
-        *accessor = json!({ "componentType": 5126, "count": 0, "type": "SCALAR" });
-    }
-    for (i, view) in elements(root, "bufferViews").iter_mut().enumerate() {
-        let fault = match reach.views[i] {
-            Use::Shape => continue,
-            Use::Detail => match checker.element("bufferViews", i, view, schema::VIEW) {
-                Ok(()) => continue,
-                Err(fault) => Some(fault),
-            },
-            Use::None => None,
-        };
-        faults.views.extend(fault.map(|fault| (i, reason(fault))));
-        faults.replaced_views[i] = true;
-        *view = json!({ "buffer": 0, "byteLength": 0 });
-    }
-    for (i, buffer) in elements(root, "buffers").iter_mut().enumerate() {
-        let is_kept = match reach.buffers[i] {
-            Use::Shape => true,
-            Use::Detail => checker.element("buffers", i, buffer, schema::BUFFER).is_ok(),
-            Use::None => false,
-        };
-        if !is_kept {
-            // A buffer without a URI is the binary chunk of a .glb, also if it isn't read.
-            let uri = buffer.get("uri").and_then(Value::as_str).map(str::to_owned);
-            *buffer = uri.map_or(json!({ "byteLength": 0 }), |uri| json!({ "byteLength": 0, "uri": uri }));
-        }
-    }
-    faults
-}
-
-/// Returns what is wrong with a member, as a clause.
-fn reason(fault: GltfError) -> String {
-    match fault {
-        GltfError::Document { pointer, reason } => format!("can't be used: {pointer} {reason}"),
-        other => format!("can't be used: {other}"),
     }
 }
 

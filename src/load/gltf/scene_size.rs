@@ -3,13 +3,12 @@
 use std::collections::HashMap;
 
 use ::gltf::accessor::Accessor;
-use ::gltf::mesh::Mode;
 use ::gltf::{Document, Mesh, Semantic};
 
 use super::extensions::InstancingExtension;
 use super::nodes::Placed;
 use super::{Accessors, GltfError, instances, primitive};
-use crate::memory_budget::{Budget, edge_bytes};
+use crate::memory_budget::edge_bytes;
 use geometry::mesh::build_limits::MAX_TRIANGLES;
 use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::interner::Interner;
@@ -31,15 +30,6 @@ const PER_PRIMITIVE: u64 = 200;
 
 /// Memory for the details of a corner once they are read, in bytes.
 const PER_DETAIL: u64 = 104;
-
-/// What vertices have beside position, normal and texture coordinates.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct PerVertex {
-    /// Bindings to joints.
-    pub moves: bool,
-    /// Details of corners.
-    pub is_detailed: bool,
-}
 
 /// The size of a mesh, or of all that is shown.
 #[derive(Clone, Copy, Debug, Default)]
@@ -66,17 +56,20 @@ pub(crate) struct SceneNeeds {
     pub bytes: u64,
 }
 
-/// Checks that the data of everything that is shown is there, and that the budget has room for it.
+/// Checks that the data of everything that is shown is there, and that the budget has room for it. `moves` says whether vertices have
+/// bindings to joints, and `is_detailed` whether corners have details.
 ///
 /// # Errors
 /// [`GltfError::Accessor`], and [`GltfError::TooLarge`].
 pub(crate) fn check(
     document: &Document,
-    (placed, instances): (&Placed, &HashMap<usize, InstancingExtension>),
+    placed: &Placed,
+    instances: &HashMap<usize, InstancingExtension>,
     accessors: &Accessors,
-    budget: &Budget,
-    beside: PerVertex,
+    moves: bool,
+    is_detailed: bool,
 ) -> Result<SceneNeeds, GltfError> {
+    let budget = accessors.budget;
     let mut known: HashMap<usize, SceneSize> = HashMap::new();
     let mut all = SceneSize::default();
     for node in placed.shown.iter().filter_map(|&index| document.nodes().nth(index)) {
@@ -90,7 +83,7 @@ pub(crate) fn check(
             }
         };
         let own = instances.get(&node.index()).filter(|_| node.skin().is_none());
-        all.add(size.times(own.map_or(1, |own| instances::count(document, own) as u64)));
+        all.add(size, own.map_or(1, |own| instances::count(document, own) as u64));
         let joints = node.skin().map_or(0, |skin| skin.joints().len() as u64);
         all.elements = all.elements.saturating_add(joints);
     }
@@ -104,8 +97,7 @@ pub(crate) fn check(
     if all.elements > MAX_ELEMENTS {
         return refuse(all.elements, "vertices, displacements of vertices and indices", MAX_ELEMENTS);
     }
-    let is_detailed = beside.is_detailed;
-    let moving = if beside.moves { all.vertices.saturating_mul(PER_BOUND) } else { 0 };
+    let moving = if moves { all.vertices.saturating_mul(PER_BOUND) } else { 0 };
     let details = if is_detailed { DetailTable::bytes_for(all.corners as usize) } else { 0 };
     let read = Interner::bytes_for(all.corners as usize) + all.triangles * PER_TRIANGLE;
     // All triangles are put into one list after the buffers have been freed.
@@ -130,13 +122,20 @@ impl SceneSize {
     fn of(mesh: &Mesh, accessors: &Accessors) -> Result<Self, GltfError> {
         let mut size = Self::default();
         for primitive in mesh.primitives() {
-            size.primitives += 1;
-            let Some(positions) = primitive.get(&Semantic::Positions).filter(|_| is_read(primitive.mode())) else {
+            // Points and lines have no attributes.
+            let Some(positions) = primitive.get(&Semantic::Positions) else {
+                size.primitives += 1;
                 continue;
             };
             let name = primitive::name(mesh, &primitive);
             // The size of decompressed data has been compared with the accessors.
             let is_unpacked = accessors.unpacked.contains_key(&[mesh.index(), primitive.index()]);
+            if !is_unpacked {
+                let targets =
+                    primitive.morph_targets().flat_map(|own| [own.positions(), own.normals(), own.tangents()]);
+                let attributes = primitive.attributes().map(|(_, accessor)| accessor);
+                attributes.chain(targets.flatten()).for_each(|accessor| accessors.prepare(&accessor));
+            }
             let check = |accessor: &Accessor, role: &str| match is_unpacked {
                 true => Ok(()),
                 false => accessors.check(accessor, &format!("{role} of {name}")),
@@ -151,40 +150,27 @@ impl SceneSize {
             let triangles = primitive::most_triangles(primitive.mode(), indices as usize) as u64;
             let used = vertices.min(triangles.saturating_mul(3));
             let targets = primitive.morph_targets().len() as u64;
-            size.add(Self {
+            let own = Self {
                 triangles,
                 corners: if primitive.indices().is_some() { used } else { used.min(triangles / 2 + 2) },
                 vertices: used,
                 zeros: if positions.view().is_none() && !is_unpacked { vertices } else { 0 },
                 elements: vertices.saturating_mul(1 + targets).saturating_add(indices),
-                primitives: 0,
-            });
+                primitives: 1,
+            };
+            size.add(own, 1);
         }
         Ok(size)
     }
 
-    /// Returns the size of so many instances.
-    fn times(self, count: u64) -> Self {
-        Self {
-            triangles: self.triangles.saturating_mul(count),
-            corners: self.corners.saturating_mul(count),
-            vertices: self.vertices.saturating_mul(count),
-            zeros: self.zeros.saturating_mul(count),
-            elements: self.elements.saturating_mul(count),
-            primitives: self.primitives.saturating_mul(count),
-        }
+    /// Adds another size, so many times.
+    fn add(&mut self, other: Self, times: u64) {
+        let add = |to: &mut u64, from: u64| *to = to.saturating_add(from.saturating_mul(times));
+        add(&mut self.triangles, other.triangles);
+        add(&mut self.corners, other.corners);
+        add(&mut self.vertices, other.vertices);
+        add(&mut self.zeros, other.zeros);
+        add(&mut self.elements, other.elements);
+        add(&mut self.primitives, other.primitives);
     }
-
-    fn add(&mut self, other: Self) {
-        self.triangles = self.triangles.saturating_add(other.triangles);
-        self.corners = self.corners.saturating_add(other.corners);
-        self.vertices = self.vertices.saturating_add(other.vertices);
-        self.zeros = self.zeros.saturating_add(other.zeros);
-        self.elements = self.elements.saturating_add(other.elements);
-        self.primitives = self.primitives.saturating_add(other.primitives);
-    }
-}
-
-fn is_read(mode: Mode) -> bool {
-    matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)
 }

@@ -19,11 +19,7 @@ impl Scenes {
     /// document names that scene afterwards.
     pub(super) fn choose(root: &mut Map<String, Value>, wanted: Option<&str>, notes: &mut Notes) -> Self {
         let scenes = root.get("scenes").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
-        let name = |(i, scene): (usize, &Value)| match scene.get("name").and_then(Value::as_str) {
-            Some(name) => name.to_owned(),
-            None => format!("scene {i}"),
-        };
-        let names: Vec<_> = scenes.iter().enumerate().map(name).collect();
+        let names = names(scenes, "scene");
         let own = root.remove("scene").filter(|own| !own.is_null());
         let default = own.as_ref().and_then(Value::as_u64).and_then(|own| usize::try_from(own).ok());
         let default = default.filter(|own| *own < names.len());
@@ -38,6 +34,15 @@ impl Scenes {
         }
         Self { names, shown }
     }
+}
+
+/// Returns the names of some objects, of which one that is missing is made of what they are and the number.
+pub(super) fn names(list: &[Value], what: &str) -> Vec<String> {
+    let name = |(i, own): (usize, &Value)| match own.get("name").and_then(Value::as_str) {
+        Some(name) => name.to_owned(),
+        None => format!("{what} {i}"),
+    };
+    list.iter().enumerate().map(name).collect()
 }
 
 /// Returns which of some scenes a text means: the first of that name, or else the one of that number, counted from 0.

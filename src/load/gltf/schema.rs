@@ -22,12 +22,6 @@ pub(super) enum MemberKind {
     },
     /// A list of numbers that fit an f32, with this length if there is one.
     Numbers(Option<usize>),
-    /// A list of `count` numbers from `least` to `most`.
-    Within {
-        count: usize,
-        least: f64,
-        most: f64,
-    },
     Text,
     /// Text; anything else is ignored.
     Name,
@@ -39,6 +33,8 @@ pub(super) enum MemberKind {
     Word(&'static [&'static str]),
     Object(&'static [Field]),
     Objects(&'static [Field]),
+    /// Objects that only what reads them needs: one with a fault is replaced by this one, and its fault is kept.
+    Parts(&'static [Field], &'static str),
     /// Indices of accessors by attribute name; the function says which names are read.
     Attributes(fn(&str) -> bool),
     /// A list of morph targets, each like `Attributes`.
@@ -48,7 +44,7 @@ pub(super) enum MemberKind {
 }
 
 use MemberKind::{
-    Attributes, Code, Flag, Ids, Index, Indices, Name, Numbers, Object, Objects, Targets, Text, Whole, Within, Word,
+    Attributes, Code, Flag, Ids, Index, Indices, Name, Numbers, Object, Objects, Parts, Targets, Text, Whole, Word,
 };
 
 const fn needed(name: &'static str, kind: MemberKind) -> Field {
@@ -84,9 +80,9 @@ pub(super) static DOCUMENT: &[Field] = &[
     may("meshes", Objects(MESH)),
     may("skins", Objects(SKIN)),
     may("materials", Objects(&[])),
-    may("accessors", Objects(ACCESSOR)),
-    may("bufferViews", Objects(VIEW)),
-    may("buffers", Objects(BUFFER)),
+    may("accessors", Parts(ACCESSOR, r#"{"componentType":5126,"count":0,"type":"SCALAR"}"#)),
+    may("bufferViews", Parts(VIEW, r#"{"buffer":0,"byteLength":0}"#)),
+    may("buffers", Parts(BUFFER, r#"{"byteLength":0}"#)),
     may("scene", Index("scenes")),
     may("scenes", Objects(&[may("nodes", Indices("nodes"))])),
 ];
@@ -97,7 +93,7 @@ static NODE: &[Field] = &[
     may("skin", Index("skins")),
     may("matrix", Numbers(Some(16))),
     may("translation", Numbers(Some(3))),
-    may("rotation", Within { count: 4, least: -1.0, most: 1.0 }),
+    may("rotation", Numbers(Some(4))),
     may("scale", Numbers(Some(3))),
     may("weights", Numbers(None)),
     may("extensions", Object(&[may(INSTANCING, Object(&[needed("attributes", Attributes(is_placement))]))])),
@@ -118,7 +114,7 @@ static PACKED: &[Field] = &[needed("bufferView", Index("bufferViews")), needed("
 
 static SKIN: &[Field] = &[needed("joints", Indices("nodes")), may("inverseBindMatrices", Index("accessors"))];
 
-pub(super) static ACCESSOR: &[Field] = &[
+static ACCESSOR: &[Field] = &[
     may("bufferView", Index("bufferViews")),
     may("byteOffset", COUNT),
     needed("componentType", Code(&[5120, 5121, 5122, 5123, 5125, 5126])),
@@ -140,37 +136,32 @@ static SPARSE_INDICES: &[Field] = &[
     needed("componentType", Code(&[5121, 5123, 5125])),
 ];
 
-pub(super) static VIEW: &[Field] = &[
+static VIEW: &[Field] = &[
     needed("buffer", Index("buffers")),
     may("byteOffset", COUNT),
     needed("byteLength", COUNT),
     may("byteStride", Whole { least: 4, most: 252 }),
-    may("extensions", Object(&[may(MESHOPT, Object(COMPRESSED)), may(KHR_MESHOPT, Object(KHR_COMPRESSED))])),
+    may("extensions", Object(&[may(MESHOPT, Object(&COMPRESSED)), may(KHR_MESHOPT, Object(&KHR_COMPRESSED))])),
 ];
 
-static COMPRESSED: &[Field] = &[
-    needed("buffer", Index("buffers")),
-    may("byteOffset", COUNT),
-    needed("byteLength", COUNT),
-    needed("byteStride", Whole { least: 1, most: 256 }),
-    needed("count", COUNT),
-    needed("mode", Word(&["ATTRIBUTES", "TRIANGLES", "INDICES"])),
-    may("filter", Word(&["NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"])),
-];
+static COMPRESSED: [Field; 7] = compressed(&["NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"]);
+static KHR_COMPRESSED: [Field; 7] = compressed(&["NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL", "COLOR"]);
 
-static KHR_COMPRESSED: &[Field] = &[
-    needed("buffer", Index("buffers")),
-    may("byteOffset", COUNT),
-    needed("byteLength", COUNT),
-    needed("byteStride", Whole { least: 1, most: 256 }),
-    needed("count", COUNT),
-    needed("mode", Word(&["ATTRIBUTES", "TRIANGLES", "INDICES"])),
-    may("filter", Word(&["NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL", "COLOR"])),
-];
+const fn compressed(filters: &'static [&'static str]) -> [Field; 7] {
+    [
+        needed("buffer", Index("buffers")),
+        may("byteOffset", COUNT),
+        needed("byteLength", COUNT),
+        needed("byteStride", Whole { least: 1, most: 256 }),
+        needed("count", COUNT),
+        needed("mode", Word(&["ATTRIBUTES", "TRIANGLES", "INDICES"])),
+        may("filter", Word(filters)),
+    ]
+}
 
 const FALLBACK: MemberKind = Object(&[may("fallback", Flag)]);
 
-pub(super) static BUFFER: &[Field] = &[
+static BUFFER: &[Field] = &[
     needed("byteLength", COUNT),
     may("uri", Text),
     may("extensions", Object(&[may(MESHOPT, FALLBACK), may(KHR_MESHOPT, FALLBACK)])),

@@ -1,6 +1,7 @@
 //! Compares a document with a [schema](super::schema) before anything else reads it, and removes what isn't in the
 //! schema.
 
+use std::cell::RefCell;
 use std::collections::HashMap;
 use std::fmt;
 
@@ -9,16 +10,33 @@ use serde_json::{Map, Value};
 use super::GltfError;
 use super::schema::{Field, MemberKind};
 
-/// Checks a document, member by member, and removes all members that the schema doesn't name.
+/// A member that has a value that it can't have.
+#[derive(Clone, Debug)]
+pub(crate) struct Fault {
+    pub pointer: String,
+    /// What is wrong, as a clause.
+    pub reason: String,
+}
+
+impl From<Fault> for GltfError {
+    fn from(Fault { pointer, reason }: Fault) -> Self {
+        Self::Document { pointer, reason }
+    }
+}
+
+/// The accessors, buffer views and buffers that can't be used, by list and index. What reads one fails with its fault.
+pub(crate) type Faults = HashMap<(&'static str, usize), Fault>;
+
+/// Checks a document, member by member, and removes all members that the schema doesn't name. Returns the faults of parts that nothing
+/// may need.
 ///
 /// # Errors
-/// [`GltfError::Document`] for the first member that is wrong.
-pub(super) fn check(
-    document: &mut Map<String, Value>,
-    schema: &'static [Field],
-    replaced_views: &[bool],
-) -> Result<(), GltfError> {
-    Checker::new(document, schema, replaced_views).object(document, schema, &JsonPointer(None, Part::Root))
+/// The first other member that is wrong.
+pub(super) fn check(document: &mut Map<String, Value>, schema: &'static [Field]) -> Result<Faults, Fault> {
+    let count = |field: &Field| Some((field.name, document.get(field.name)?.as_array()?.len() as u64));
+    let checker = Checker { counts: schema.iter().filter_map(count).collect(), faults: RefCell::default() };
+    checker.object(document, schema, &JsonPointer(None, Part::Root))?;
+    Ok(checker.faults.into_inner())
 }
 
 /// A place in the document.
@@ -45,108 +63,61 @@ impl fmt::Display for JsonPointer<'_> {
 }
 
 impl JsonPointer<'_> {
-    fn fail<T>(&self, reason: String) -> Result<T, GltfError> {
-        Err(GltfError::Document { pointer: self.to_string(), reason })
+    fn fail<T>(&self, reason: String) -> Result<T, Fault> {
+        Err(Fault { pointer: self.to_string(), reason })
     }
 
-    fn should_be<T>(&self, what: &str, value: &Value) -> Result<T, GltfError> {
+    fn should_be<T>(&self, what: &str, value: &Value) -> Result<T, Fault> {
         self.fail(format!("should be {what} but is {}", shown(value)))
     }
 }
 
 /// Checks objects of one document.
-pub(super) struct Checker<'a> {
+struct Checker {
     /// The number of elements of each of the document's lists.
     counts: HashMap<&'static str, u64>,
-    /// Which buffer views were replaced by empty ones, and aren't checked.
-    replaced_views: &'a [bool],
+    faults: RefCell<Faults>,
 }
 
-impl<'a> Checker<'a> {
-    pub(super) fn new(document: &Map<String, Value>, schema: &'static [Field], replaced_views: &'a [bool]) -> Self {
-        let count = |field: &Field| Some((field.name, document.get(field.name)?.as_array()?.len() as u64));
-        Self { counts: schema.iter().filter_map(count).collect(), replaced_views }
-    }
-
-    /// Checks one element of one of the document's lists.
-    ///
-    /// # Errors
-    /// [`GltfError::Document`] for the first member that is wrong.
-    pub(super) fn element(
-        &self,
-        list: &str,
-        place: usize,
-        value: &mut Value,
-        fields: &'static [Field],
-    ) -> Result<(), GltfError> {
-        let path = JsonPointer(None, Part::Root);
-        let path = JsonPointer(Some(&path), Part::Name(list));
-        self.value(value, &MemberKind::Object(fields), &JsonPointer(Some(&path), Part::Place(place)))
-    }
-
-    fn object(
-        &self,
-        object: &mut Map<String, Value>,
-        fields: &'static [Field],
-        path: &JsonPointer,
-    ) -> Result<(), GltfError> {
+impl Checker {
+    fn object(&self, object: &mut Map<String, Value>, fields: &[Field], path: &JsonPointer) -> Result<(), Fault> {
         // Null stands for a missing member.
-        object.retain(|name, value| !value.is_null() && fields.iter().any(|field| field.name == name));
+        object.retain(|name, value| {
+            let field = fields.iter().find(|field| field.name == name).filter(|_| !value.is_null());
+            field.is_some_and(|field| !matches!(field.kind, MemberKind::Name) || value.is_string())
+        });
         for field in fields {
             let path = JsonPointer(Some(path), Part::Name(field.name));
             match object.get_mut(field.name) {
                 None if field.required => return path.fail("is missing".to_owned()),
                 None => {}
-                Some(Value::String(_)) if matches!(field.kind, MemberKind::Name) => {}
-                Some(_) if matches!(field.kind, MemberKind::Name) => {
-                    object.remove(field.name);
-                }
-                Some(value) => self.value(value, &field.kind, &path)?,
+                Some(value) => self.value(value, field, &path)?,
             }
         }
         Ok(())
     }
 
-    fn value(&self, value: &mut Value, kind: &MemberKind, path: &JsonPointer) -> Result<(), GltfError> {
-        match kind {
+    fn value(&self, value: &mut Value, field: &Field, path: &JsonPointer) -> Result<(), Fault> {
+        let fits = |is: bool, what: &str| if is { Ok(()) } else { path.should_be(what, value) };
+        match &field.kind {
             MemberKind::Index(list) => self.index(value, list, path),
             MemberKind::Indices(list) => each(value, path, |value, path| self.index(value, list, path)),
             MemberKind::Whole { least, most } => whole(value, *least, *most, path),
-            MemberKind::Numbers(count) => numbers(value, *count, NUMBER, path),
-            MemberKind::Within { count, least, most } => numbers(value, Some(*count), [*least, *most], path),
-            MemberKind::Text | MemberKind::Name => {
-                if value.is_string() {
-                    Ok(())
-                } else {
-                    path.should_be("text", value)
+            MemberKind::Numbers(count) => numbers(value, *count, path),
+            MemberKind::Text | MemberKind::Name => fits(value.is_string(), "text"),
+            MemberKind::Flag => fits(value.is_boolean(), "true or false"),
+            MemberKind::Code(codes) if value.as_u64().is_some_and(|own| codes.contains(&own)) => Ok(()),
+            MemberKind::Code(codes) => path.should_be(&one_of(codes), value),
+            MemberKind::Word(words) if value.as_str().is_some_and(|own| words.contains(&own)) => Ok(()),
+            MemberKind::Word(words) => path.should_be(&one_of(words), value),
+            MemberKind::Object(fields) => self.fields(value, fields, path),
+            MemberKind::Objects(fields) => each(value, path, |value, path| self.fields(value, fields, path)),
+            MemberKind::Parts(fields, empty) => each(value, path, |value, path| {
+                if let (Err(fault), JsonPointer(_, Part::Place(place))) = (self.fields(value, fields, path), path) {
+                    self.faults.borrow_mut().insert((field.name, *place), fault);
+                    *value = serde_json::from_str(empty).unwrap_or_default();
                 }
-            }
-            MemberKind::Flag => {
-                if value.is_boolean() {
-                    Ok(())
-                } else {
-                    path.should_be("true or false", value)
-                }
-            }
-            MemberKind::Code(codes) => match value.as_u64() {
-                Some(code) if codes.contains(&code) => Ok(()),
-                _ => path.should_be(&one_of(codes), value),
-            },
-            MemberKind::Word(words) => match value.as_str() {
-                Some(word) if words.contains(&word) => Ok(()),
-                _ => path.should_be(&one_of(words), value),
-            },
-            MemberKind::Object(fields) => match value {
-                Value::Object(object) => self.object(object, fields, path),
-                other => path.should_be("an object", other),
-            },
-            MemberKind::Objects(fields) => each(value, path, |value, path| match path {
-                JsonPointer(Some(JsonPointer(_, Part::Name("bufferViews"))), Part::Place(place))
-                    if self.replaced_views.get(*place) == Some(&true) =>
-                {
-                    Ok(())
-                }
-                _ => self.value(value, &MemberKind::Object(fields), path),
+                Ok(())
             }),
             MemberKind::Attributes(is_read) => self.attributes(value, *is_read, path),
             MemberKind::Targets(is_read) => each(value, path, |value, path| self.attributes(value, *is_read, path)),
@@ -154,7 +125,14 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn index(&self, value: &Value, list: &str, path: &JsonPointer) -> Result<(), GltfError> {
+    fn fields(&self, value: &mut Value, fields: &[Field], path: &JsonPointer) -> Result<(), Fault> {
+        match value {
+            Value::Object(object) => self.object(object, fields, path),
+            other => path.should_be("an object", other),
+        }
+    }
+
+    fn index(&self, value: &Value, list: &str, path: &JsonPointer) -> Result<(), Fault> {
         let count = self.counts.get(list).copied().unwrap_or(0);
         match value.as_u64() {
             Some(index) if index < count => Ok(()),
@@ -164,7 +142,7 @@ impl<'a> Checker<'a> {
     }
 
     /// Checks an object whose members are indices of accessors, and removes those that aren't read.
-    fn attributes(&self, value: &mut Value, is_read: fn(&str) -> bool, path: &JsonPointer) -> Result<(), GltfError> {
+    fn attributes(&self, value: &mut Value, is_read: fn(&str) -> bool, path: &JsonPointer) -> Result<(), Fault> {
         let Value::Object(attributes) = value else { return path.should_be("an object", value) };
         attributes.retain(|name, _| is_read(name));
         for (name, value) in attributes {
@@ -175,7 +153,7 @@ impl<'a> Checker<'a> {
 }
 
 /// Checks an object whose members are ids of attributes. Those of attributes that aren't read may be anything.
-fn ids(value: &Value, is_read: fn(&str) -> bool, path: &JsonPointer) -> Result<(), GltfError> {
+fn ids(value: &Value, is_read: fn(&str) -> bool, path: &JsonPointer) -> Result<(), Fault> {
     let Value::Object(ids) = value else { return path.should_be("an object", value) };
     let mut read = ids.iter().filter(|(name, _)| is_read(name));
     read.try_for_each(|(name, id)| whole(id, 0, u64::from(u32::MAX), &JsonPointer(Some(path), Part::Name(name))))
@@ -184,8 +162,8 @@ fn ids(value: &Value, is_read: fn(&str) -> bool, path: &JsonPointer) -> Result<(
 fn each(
     value: &mut Value,
     path: &JsonPointer,
-    mut check: impl FnMut(&mut Value, &JsonPointer) -> Result<(), GltfError>,
-) -> Result<(), GltfError> {
+    mut check: impl FnMut(&mut Value, &JsonPointer) -> Result<(), Fault>,
+) -> Result<(), Fault> {
     let Value::Array(values) = value else { return path.should_be("a list", value) };
     for (place, value) in values.iter_mut().enumerate() {
         check(value, &JsonPointer(Some(path), Part::Place(place)))?;
@@ -193,7 +171,7 @@ fn each(
     Ok(())
 }
 
-fn whole(value: &Value, least: u64, most: u64, path: &JsonPointer) -> Result<(), GltfError> {
+fn whole(value: &Value, least: u64, most: u64, path: &JsonPointer) -> Result<(), Fault> {
     match value.as_u64() {
         Some(number) if (least..=most).contains(&number) => Ok(()),
         Some(number) if number < least => path.fail(format!("is {number}, but must be at least {least}")),
@@ -202,25 +180,22 @@ fn whole(value: &Value, least: u64, most: u64, path: &JsonPointer) -> Result<(),
     }
 }
 
-/// The least and the greatest f32.
-const NUMBER: [f64; 2] = [f32::MIN as f64, f32::MAX as f64];
-
-fn numbers(value: &mut Value, count: Option<usize>, range: [f64; 2], path: &JsonPointer) -> Result<(), GltfError> {
+fn numbers(value: &mut Value, count: Option<usize>, path: &JsonPointer) -> Result<(), Fault> {
     if let (Some(values), Some(count)) = (value.as_array(), count)
         && values.len() != count
     {
         return path.fail(format!("should have {count} numbers but has {}", values.len()));
     }
-    each(value, path, |value, path| number(value, range, path))
-}
-
-fn number(value: &Value, [least, most]: [f64; 2], path: &JsonPointer) -> Result<(), GltfError> {
-    match value.as_f64() {
-        Some(number) if number < least => path.fail(format!("is {value}, but must be at least {:?}", least as f32)),
-        Some(number) if number > most => path.fail(format!("is {value}, but must be at most {:?}", most as f32)),
+    each(value, path, |value, path| match value.as_f64() {
+        Some(number) if number < f32::MIN.into() => {
+            path.fail(format!("is {value}, but must be at least {:?}", f32::MIN))
+        }
+        Some(number) if number > f32::MAX.into() => {
+            path.fail(format!("is {value}, but must be at most {:?}", f32::MAX))
+        }
         Some(_) => Ok(()),
         None => path.should_be("a number", value),
-    }
+    })
 }
 
 fn one_of<T: ToString>(choices: &[T]) -> String {

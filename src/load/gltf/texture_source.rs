@@ -8,6 +8,7 @@ use std::cell::RefCell;
 use serde_json::Value;
 
 use super::Accessors;
+use super::accessor::DataError;
 use super::lenient::Members;
 use super::notes::Notes;
 use super::schema::{BASISU, WEBP};
@@ -89,8 +90,12 @@ pub(super) fn image<'a>(
         let view = view.as_u64().and_then(|view| accessors.view(usize::try_from(view).ok()?));
         let view =
             view.ok_or_else(|| format!("/images/{index}/bufferView isn't one of the document's buffer views"))?;
-        let bytes = accessors.view_bytes(&view).map(Cow::Borrowed);
-        return bytes.map_err(|reason| format!("/images/{index} {reason}"));
+        return accessors.view_bytes(&view).map(Cow::Borrowed).map_err(|error| match error {
+            DataError::Here(reason) => format!("/images/{index} {reason}"),
+            DataError::Elsewhere(error) => {
+                format!("/images/{index} uses /bufferViews/{}, which {}", view.index(), error.into_clause())
+            }
+        });
     }
     match member("uri").map(Value::as_str) {
         Some(Some(uri)) => files

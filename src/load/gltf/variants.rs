@@ -7,6 +7,7 @@ use serde_json::{Map, Value};
 
 use super::json::objects;
 use super::notes::Notes;
+use super::scenes;
 
 const VARIANTS: &str = "KHR_materials_variants";
 
@@ -25,7 +26,6 @@ pub(super) fn choose(root: &mut Map<String, Value>, wanted: Option<&str>, notes:
     names
 }
 
-/// Returns the names, of which one that is missing is made of the variant's index.
 fn names(root: &Map<String, Value>, notes: &mut Notes) -> Vec<String> {
     let Some(extension) = root.get("extensions").and_then(|extensions| extensions.get(VARIANTS)) else {
         return Vec::new();
@@ -34,11 +34,7 @@ fn names(root: &Map<String, Value>, notes: &mut Notes) -> Vec<String> {
         notes.push(format!("/extensions/{VARIANTS}/variants isn't a list; materials have no variants."));
         return Vec::new();
     };
-    let name = |(i, variant): (usize, &Value)| match variant.get("name").and_then(Value::as_str) {
-        Some(name) => name.to_owned(),
-        None => format!("variant {i}"),
-    };
-    variants.iter().enumerate().map(name).collect()
+    scenes::names(variants, "variant")
 }
 
 /// Returns the index of the material that a primitive has for a variant, as the document has it: it is checked with all others.

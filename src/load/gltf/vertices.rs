@@ -1,15 +1,16 @@
 //! Reads a primitive's vertices in their rest pose: attributes, morph targets, then the skin or the node's transform.
 
 use ::gltf::Semantic;
-use glam::{DMat3, DMat4, DQuat, Vec2, Vec3};
+use ::gltf::accessor::Accessor;
+use glam::{DMat3, DMat4, DQuat, DVec3, Vec2, Vec3};
 
 use super::GltfError;
 use super::accessor::List;
-use super::material_source::Uvs;
+use super::materials::Resolved;
 use super::notes::Notes;
-use super::primitive_data::{MorphTarget, PrimitiveData};
+use super::primitive_data::PrimitiveData;
 use super::uv_transform::UvTransform;
-use super::vertex_details::{TangentMorph, VertexDetails};
+use super::vertex_details::VertexDetails;
 use crate::binding_space::turned;
 use geometry::mesh::CornerDetail;
 use geometry::mesh::mesh_builder::InputCorner;
@@ -30,6 +31,26 @@ pub(super) struct NodePose<'a> {
     pub weights: &'a [f32],
 }
 
+/// The displacements by a morph target at weight 1.
+pub(super) struct MorphTarget<'a> {
+    /// Its weight at rest.
+    weight: f32,
+    positions: Option<List<'a, [f32; 3]>>,
+    normals: Option<List<'a, [f32; 3]>>,
+    /// None if nothing needs tangents.
+    tangents: Option<List<'a, [f32; 3]>>,
+}
+
+impl MorphTarget<'_> {
+    /// Returns what it adds to the position, the normal and the tangent of a vertex. Components that aren't finite become 0.
+    pub(super) fn displacements(&self, i: usize) -> [[f32; 3]; 3] {
+        [&self.positions, &self.normals, &self.tangents].map(|list| {
+            let vector = list.as_ref().map_or([0.0; 3], |list| list.get(i));
+            vector.map(|x| if x.is_finite() { x } else { 0.0 })
+        })
+    }
+}
+
 /// A vertex in the scene's space.
 pub(super) struct Vertex {
     pub corner: InputCorner,
@@ -40,13 +61,19 @@ pub(super) struct Vertex {
     pub rescaled: bool,
 }
 
-/// Counts of repaired vertices.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// Counts of what was repaired in vertices.
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct VertexRepairs {
-    /// Vertices of a primitive without normals.
-    pub no_normals: usize,
+    /// Primitives without normals.
+    pub without_normals: usize,
     /// Vertices with texture coordinates that aren't finite, which became (0, 0).
     pub bad_uvs: usize,
+    /// Primitives without texture coordinates that a map of their material uses.
+    pub missing_uvs: usize,
+    /// Vertices with colours that aren't finite, which became white.
+    pub bad_colors: usize,
+    /// Vertices with tangents without a direction, for which others are computed.
+    pub bad_tangents: usize,
     /// Vertices whose weights don't add up to anything, or that name a joint that doesn't exist; they stay where the
     /// mesh has them.
     pub bad_weights: usize,
@@ -59,14 +86,6 @@ pub(super) struct VertexRepairs {
 /// The joints of a skin that move each vertex, and their weights, in sets of four.
 struct Influences<'a> {
     sets: Vec<[List<'a, [f32; 4]>; 2]>,
-}
-
-/// What is done with a vertex's joints.
-enum Influenced {
-    /// They are used; this part of their weights is left out.
-    By(f64),
-    /// They can't be used.
-    Unusable,
 }
 
 impl<'a> Influences<'a> {
@@ -99,8 +118,9 @@ impl<'a> Influences<'a> {
     }
 
     /// Collects the joints of a vertex, with weights that are scaled to add up to 1, since quantised weights don't
-    /// exactly. Of more than [`MOST_JOINTS`] those with the largest weights are kept. The skin has `joint_count` joints.
-    fn of(&self, vertex: usize, joint_count: usize, found: &mut Vec<(usize, f64)>) -> Influenced {
+    /// exactly. Of more than [`MOST_JOINTS`] those with the largest weights are kept. The skin has `joint_count` joints. Returns the part of the
+    /// weights that is left out, or none if the joints can't be used.
+    fn of(&self, vertex: usize, joint_count: usize, found: &mut Vec<(usize, f64)>) -> Option<f64> {
         let slots =
             self.sets.iter().flat_map(|[joints, weights]| joints.get(vertex).into_iter().zip(weights.get(vertex)));
         let slots = slots.filter(|(_, weight)| *weight != 0.0);
@@ -108,9 +128,9 @@ impl<'a> Influences<'a> {
         found.clear();
         found.extend(slots.map(|(joint, weight)| (joint as usize, f64::from(weight) / total)));
         if !total.is_finite() || total <= 0.0 || found.iter().any(|(joint, _)| *joint >= joint_count) {
-            return Influenced::Unusable;
+            return None;
         }
-        Influenced::By(if found.len() > MOST_JOINTS { cut(found) } else { 0.0 })
+        Some(if found.len() > MOST_JOINTS { cut(found) } else { 0.0 })
     }
 }
 
@@ -141,46 +161,93 @@ pub(super) struct Vertices<'a> {
     positions: List<'a, [f32; 3]>,
     normals: Option<List<'a, [f32; 3]>>,
     uvs: Option<List<'a, [f32; 2]>>,
-    /// The morph targets with a weight other than 0 at rest.
-    targets: Vec<(f32, MorphTarget<'a>)>,
+    /// The morph targets that have a weight at rest; all of them if a clip changes the weights.
+    pub targets: Vec<MorphTarget<'a>>,
+    /// What keeps a clip from changing the weights.
+    pub unmorphed: Option<String>,
     influences: Option<Influences<'a>>,
     /// The joints of the vertex that was read last; none if they are unusable.
     joints: Option<Vec<(usize, f64)>>,
     /// What corners have beside that; none if no material needs it.
-    pub details: Option<VertexDetails<'a>>,
+    details: Option<VertexDetails<'a>>,
     pub repairs: VertexRepairs,
 }
 
 impl<'a> Vertices<'a> {
-    /// Prepares to read; `uvs` says which texture coordinates. Texture coordinates that can't be read are left out, with a note.
+    /// Prepares to read what a material needs; details of corners if `is_detailed`, and all morph targets if `is_morphing`. What the shape
+    /// can do without is left out with a note if it can't be read. What is repaired is added to `repairs`.
     ///
     /// # Errors
     /// [`GltfError::Accessor`] and [`GltfError::Primitive`].
     pub(super) fn new(
         source: PrimitiveData<'a>,
         pose: &'a NodePose<'a>,
-        uvs: Uvs,
+        material: Resolved,
+        is_detailed: bool,
+        is_morphing: bool,
+        mut repairs: VertexRepairs,
         notes: &mut Notes,
     ) -> Result<Self, GltfError> {
         let positions = source.primitive.get(&Semantic::Positions).ok_or_else(|| source.problem("has no positions"))?;
         let count = positions.count();
-        let weights = pose.weights.iter().copied();
-        let weighed = source.primitive.morph_targets().zip(weights).filter(|(_, weight)| *weight != 0.0);
-        Ok(Self {
+        let positions = source.list(&positions, "POSITION", count)?;
+        let normals = source.normals(count, notes)?;
+        repairs.without_normals += usize::from(normals.is_none() && count > 0);
+        let uvs = source.detail(Semantic::TexCoords(material.uvs.set), count, notes);
+        let details = is_detailed.then(|| VertexDetails::new(source, count, material.needs, &mut repairs, notes));
+        let mut vertices = Self {
             pose,
-            transform: uvs.transform,
+            transform: material.uvs.transform,
             count,
-            positions: source.list(&positions, "POSITION", count)?,
-            normals: source.normals(count, notes)?,
-            uvs: source.detail(Semantic::TexCoords(uvs.set), count, notes),
-            targets: weighed
-                .map(|(target, weight)| Ok((weight, source.target(&target, count)?)))
-                .collect::<Result<_, GltfError>>()?,
+            positions,
+            normals,
+            uvs,
+            targets: Vec::new(),
+            unmorphed: None,
             influences: Influences::read(source, pose, count, notes)?,
             joints: None,
-            details: None,
-            repairs: VertexRepairs::default(),
-        })
+            details,
+            repairs,
+        };
+        vertices.read_targets(source, is_morphing, notes)?;
+        Ok(vertices)
+    }
+
+    /// # Errors
+    /// [`GltfError::Accessor`] for a target that has a weight at rest.
+    fn read_targets(
+        &mut self,
+        source: PrimitiveData<'a>,
+        is_morphing: bool,
+        notes: &mut Notes,
+    ) -> Result<(), GltfError> {
+        let has_tangents = self.details.as_ref().is_some_and(|details| details.tangents.is_some());
+        let weights = self.pose.weights.iter().copied().chain(std::iter::repeat(0.0));
+        for (target, weight) in source.primitive.morph_targets().zip(weights) {
+            if weight == 0.0 && !is_morphing {
+                continue;
+            }
+            let list = |accessor: Option<Accessor>, name: &str| {
+                accessor
+                    .map(|accessor| source.list(&accessor, &format!("{name} of a morph target"), self.count))
+                    .transpose()
+            };
+            let shape = list(target.positions(), "POSITION")
+                .and_then(|positions| Ok((positions, list(target.normals(), "NORMAL")?)));
+            let (positions, normals) = match shape {
+                Ok(shape) => shape,
+                Err(error) if weight != 0.0 => return Err(error),
+                Err(error) => {
+                    self.unmorphed.get_or_insert(error.to_string());
+                    continue;
+                }
+            };
+            let tangents = target.tangents().filter(|_| has_tangents);
+            let tangents = tangents
+                .and_then(|accessor| source.optional(&accessor, "TANGENT of a morph target", self.count, notes));
+            self.targets.push(MorphTarget { weight, positions, normals, tangents });
+        }
+        Ok(())
     }
 
     pub(super) fn is_skinned(&self) -> bool {
@@ -197,14 +264,13 @@ impl<'a> Vertices<'a> {
     pub(super) fn undeformed(&self, i: usize, is_morphed: bool) -> (Vec3, Option<Vec3>) {
         let mut position = Vec3::from(self.positions.get(i));
         let mut normal = self.normals.as_ref().map(|normals| Vec3::from(normals.get(i)));
-        let targets = if is_morphed { self.targets.as_slice() } else { &[] };
         // Each displacement times its weight (specification, section 3.7.2.2).
-        for (weight, target) in targets {
+        for target in self.targets.iter().filter(|target| is_morphed && target.weight != 0.0) {
             if let Some(positions) = &target.positions {
-                position += Vec3::from(positions.get(i)) * *weight;
+                position += Vec3::from(positions.get(i)) * target.weight;
             }
             if let (Some(normals), Some(normal)) = (&target.normals, &mut normal) {
-                *normal += Vec3::from(normals.get(i)) * *weight;
+                *normal += Vec3::from(normals.get(i)) * target.weight;
             }
         }
         (position, normal)
@@ -215,12 +281,11 @@ impl<'a> Vertices<'a> {
         let matrix = self.matrix(i);
         let (position, normal) = self.undeformed(i, true);
         // The normal before morphing, which doesn't preserve unit length.
-        let own = if self.targets.is_empty() { normal } else { self.undeformed(i, false).1 }.map(GivenNormal::new);
+        let own = if self.is_morphed() { self.undeformed(i, false).1 } else { normal }.map(GivenNormal::new);
         let position = matrix.transform_point3(position.as_dvec3()).as_vec3();
         let linear = DMat3::from_mat4(matrix);
         // A normal without a direction becomes zero, which the builder replaces and counts.
         let normal = normal.map(|normal| turned(normal, &linear).unwrap_or(Vec3::ZERO));
-        self.repairs.no_normals += usize::from(normal.is_none());
         let mut uv = self.uvs.as_ref().map_or(Vec2::ZERO, |uvs| uvs.get(i).into());
         if let Some(transform) = self.transform {
             uv = transform.apply(uv);
@@ -231,26 +296,65 @@ impl<'a> Vertices<'a> {
         }
         let rescaled = matches!(own, Some(GivenNormal::Rescaled(_))) && normal != Some(Vec3::ZERO);
         let mirrored = linear.determinant() < 0.0;
-        let morph = self.tangent_morph(i);
-        let read = |details: &mut VertexDetails| details.read(i, &linear, &morph);
-        let detail = self.details.as_mut().map_or_else(CornerDetail::default, read);
+        let detail = self.detail(i, &linear);
         Vertex { corner: InputCorner { position, normal, uv }, detail, mirrored, rescaled }
     }
 
-    /// Returns what the morph targets do to a vertex's tangent at rest.
-    fn tangent_morph(&self, i: usize) -> TangentMorph<'a> {
-        let Some(details) = self.details.as_ref().filter(|_| !self.targets.is_empty()) else {
-            return TangentMorph::Nothing;
-        };
-        if details.displaces_tangents() {
-            return TangentMorph::Displaced(self.pose.weights);
+    /// Whether a morph target has a weight at rest.
+    fn is_morphed(&self) -> bool {
+        self.targets.iter().any(|target| target.weight != 0.0)
+    }
+
+    /// Whether morph targets displace tangents, rather than turn them along with normals.
+    pub(super) fn displaces_tangents(&self) -> bool {
+        self.targets.iter().any(|target| target.tangents.is_some())
+    }
+
+    /// Returns the tangent of a vertex in the file if morph targets displace it; none if they turn it along with the normal, or
+    /// if the vertex has no tangent that can be used.
+    pub(super) fn displaced_tangent(&self, i: usize) -> Option<Vec3> {
+        let tangents = self.details.as_ref()?.tangents.as_ref().filter(|_| self.displaces_tangents());
+        let [x, y, z, sign] = tangents?.get(i);
+        let own = Vec3::new(x, y, z);
+        (own.is_finite() && own != Vec3::ZERO && !sign.is_nan()).then_some(own)
+    }
+
+    /// Reads the details of a vertex. Morph targets change its tangent, and then `linear` transforms its directions into the scene's space.
+    fn detail(&mut self, i: usize, linear: &DMat3) -> CornerDetail {
+        let Some(details) = &self.details else { return CornerDetail::default() };
+        let tangent = details.tangents.as_ref().map(|list| self.tangent(i, list.get(i), linear));
+        self.repairs.bad_tangents += usize::from(tangent == Some(None));
+        let (tangent, bitangent_sign) = tangent.flatten().unwrap_or((Vec3::ZERO, 1.0));
+        let uvs = [0, 1].map(|set| details.uv(set, i, &mut self.repairs));
+        CornerDetail { uvs, color: details.color(i, &mut self.repairs), tangent, bitangent_sign }
+    }
+
+    /// Transforms the tangent of a vertex; none if it has no direction. A map that mirrors turns the bitangent, whose sign this is, around:
+    /// it is a cross product.
+    fn tangent(&self, i: usize, [x, y, z, sign]: [f32; 4], linear: &DMat3) -> Option<(Vec3, f32)> {
+        let own = Vec3::new(x, y, z);
+        let tangent = (*linear * self.morphed_tangent(i, own)).try_normalize().map(DVec3::as_vec3);
+        let tangent = tangent.filter(|_| own.is_finite() && !sign.is_nan())?;
+        let mirrored = linear.determinant() < 0.0;
+        Some((tangent, if (sign < 0.0) == mirrored { 1.0 } else { -1.0 }))
+    }
+
+    /// Returns what the morph targets make of a vertex's tangent at rest.
+    fn morphed_tangent(&self, i: usize, own: Vec3) -> DVec3 {
+        let unit = own.as_dvec3().normalize_or_zero();
+        if !self.is_morphed() {
+            return unit;
         }
-        let unit = |is_morphed| self.undeformed(i, is_morphed).1?.as_dvec3().try_normalize();
-        match (unit(false), unit(true)) {
-            (Some(own), Some(morphed)) if own != morphed => {
-                TangentMorph::Turned(DQuat::from_rotation_arc(own, morphed))
-            }
-            _ => TangentMorph::Nothing,
+        if self.displaces_tangents() {
+            // Each displacement times its weight (specification, section 3.7.2.2).
+            return self.targets.iter().fold(own.as_dvec3(), |sum, target| {
+                sum + Vec3::from(target.displacements(i)[2]).as_dvec3() * f64::from(target.weight)
+            });
+        }
+        let normal = |is_morphed| self.undeformed(i, is_morphed).1?.as_dvec3().try_normalize();
+        match (normal(false), normal(true)) {
+            (Some(own), Some(morphed)) if own != morphed => DQuat::from_rotation_arc(own, morphed) * unit,
+            _ => unit,
         }
     }
 
@@ -259,16 +363,12 @@ impl<'a> Vertices<'a> {
     fn matrix(&mut self, i: usize) -> DMat4 {
         let Some(influences) = &self.influences else { return self.pose.global };
         let mut joints = self.joints.take().unwrap_or_default();
-        match influences.of(i, self.pose.joints.len(), &mut joints) {
-            Influenced::By(cut) => {
-                self.repairs.cut_weights += usize::from(cut > 0.0);
-                self.repairs.largest_cut = self.repairs.largest_cut.max(cut);
-            }
-            Influenced::Unusable => {
-                self.repairs.bad_weights += 1;
-                return DMat4::IDENTITY;
-            }
-        }
+        let Some(cut) = influences.of(i, self.pose.joints.len(), &mut joints) else {
+            self.repairs.bad_weights += 1;
+            return DMat4::IDENTITY;
+        };
+        self.repairs.cut_weights += usize::from(cut > 0.0);
+        self.repairs.largest_cut = self.repairs.largest_cut.max(cut);
         let weighed = |sum, &(joint, weight): &(usize, f64)| sum + self.pose.joints[joint] * weight;
         let matrix = joints.iter().fold(DMat4::ZERO, weighed);
         self.joints = Some(joints);

@@ -11,27 +11,11 @@ const LONGEST: usize = 1 << 20;
 /// The version that glTF uses.
 const VERSION: [u8; 2] = [2, 2];
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Header {
     pub triangles: u64,
-    pub connectivity: Connectivity,
-    /// Where the header ends, in bytes.
-    pub end: usize,
-}
-
-/// How the vertices of the triangles are encoded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Connectivity {
-    /// As a list.
-    Sequential {
-        points: u64,
-    },
-    Edgebreaker(Edgebreaker),
-}
-
-/// The numbers of an edgebreaker traversal.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Edgebreaker {
+    /// The number of vertices if the triangles' vertices are a list; none if they are encoded by edgebreaker, as the rest says.
+    pub listed: Option<u64>,
     /// 0 for the standard traversal, 2 for one by valence.
     pub traversal: u8,
     /// The number of vertices before seams split them, with those that are joined again: one for each split.
@@ -42,6 +26,8 @@ pub(super) struct Edgebreaker {
     pub symbols: u64,
     /// The number of events that say where the boundary was split.
     pub events: u64,
+    /// Where the header ends, in bytes.
+    pub end: usize,
 }
 
 impl Header {
@@ -69,8 +55,8 @@ impl Header {
         }
         if method == 0 {
             let triangles = buffer.decode_varint().map_err(cut)?;
-            let points = buffer.decode_varint().map_err(cut)?;
-            return Ok(Self { triangles, connectivity: Connectivity::Sequential { points }, end: buffer.position() });
+            let listed = Some(buffer.decode_varint().map_err(cut)?);
+            return Ok(Self { triangles, listed, end: buffer.position(), ..Self::default() });
         }
         let traversal = buffer.decode_u8().map_err(cut)?;
         // The decoder keeps 32 bits of this number.
@@ -81,8 +67,7 @@ impl Header {
         let splits = buffer.decode_varint().map_err(cut)?;
         let events = buffer.decode_varint().map_err(cut)?;
         let vertices = encoded.saturating_add(splits);
-        let counts = Edgebreaker { traversal, vertices, seamed, symbols, events };
-        Ok(Self { triangles, connectivity: Connectivity::Edgebreaker(counts), end: buffer.position() })
+        Ok(Self { triangles, listed: None, traversal, vertices, seamed, symbols, events, end: buffer.position() })
     }
 
     /// Checks that the size agrees with the accessors.
@@ -94,11 +79,9 @@ impl Header {
         if triangles.checked_mul(3) != Some(indices) {
             return Err(format!("holds {triangles} triangles, but the accessor of its indices has {indices} indices"));
         }
-        match self.connectivity {
-            Connectivity::Sequential { points } if points != vertices => {
-                Err(format!("holds {points} vertices, but its accessors have {vertices}"))
-            }
-            _ => Ok(()),
+        match self.listed.filter(|points| *points != vertices) {
+            Some(points) => Err(format!("holds {points} vertices, but its accessors have {vertices}")),
+            None => Ok(()),
         }
     }
 }

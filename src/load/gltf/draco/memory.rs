@@ -2,7 +2,7 @@
 //! takes less. Data that was made to do harm may have seams along all edges, or bytes where the accessors have floats; it takes less
 //! than twice as much.
 
-use super::header::{Connectivity, Header};
+use super::header::Header;
 use super::tables::Walked;
 
 /// Memory for each byte of the header, most of which may be metadata, in bytes.
@@ -26,12 +26,11 @@ const UNKNOWN_VALUE: u64 = 7;
 /// accessors, and `values` the greatest size of all values of the result together, in bytes.
 pub(super) fn decoding_bytes(header: &Header, walked: &Walked, data: u64, points: u64, values: u64) -> u64 {
     let triangles = header.triangles;
-    let connectivity = match header.connectivity {
-        Connectivity::Sequential { .. } => triangles.saturating_mul(LISTED),
-        Connectivity::Edgebreaker(counts) => {
-            let vertices = counts.vertices.min(triangles.saturating_mul(4)).saturating_mul(VERTEX);
-            triangles.saturating_mul(CONNECTED + SEAMED * counts.seamed).saturating_add(vertices)
-        }
+    let connectivity = if header.listed.is_some() {
+        triangles.saturating_mul(LISTED)
+    } else {
+        let vertices = header.vertices.min(triangles.saturating_mul(4)).saturating_mul(VERTEX);
+        triangles.saturating_mul(CONNECTED + SEAMED * header.seamed).saturating_add(vertices)
     };
     let (count, values) = match &walked.attributes {
         Some(attributes) => {

@@ -12,7 +12,7 @@
 use draco_core::symbol_encoding::{SymbolEncodingOptions, decode_symbols};
 use draco_core::{DataType, DecoderBuffer};
 
-use super::header::{Connectivity, Edgebreaker, Header};
+use super::header::Header;
 
 /// Memory for each symbol of a table of probabilities, in bytes.
 const PER_SYMBOL: u64 = 8;
@@ -86,11 +86,11 @@ impl<'a> Walk<'a> {
     }
 
     fn mesh(&mut self, header: &Header) -> Option<()> {
-        match header.connectivity {
-            Connectivity::Sequential { points } => self.indices(header.triangles.checked_mul(3)?, points)?,
-            Connectivity::Edgebreaker(counts) => self.edgebreaker(&counts)?,
+        match header.listed {
+            Some(points) => self.indices(header.triangles.checked_mul(3)?, points)?,
+            None => self.edgebreaker(header)?,
         }
-        self.attributes(matches!(header.connectivity, Connectivity::Edgebreaker(_)))
+        self.attributes(header.listed.is_none())
     }
 
     fn byte(&mut self) -> Option<u8> {
@@ -126,8 +126,8 @@ impl<'a> Walk<'a> {
         Some(())
     }
 
-    fn edgebreaker(&mut self, counts: &Edgebreaker) -> Option<()> {
-        let &Edgebreaker { traversal, seamed, symbols, events, .. } = counts;
+    fn edgebreaker(&mut self, header: &Header) -> Option<()> {
+        let &Header { traversal, seamed, symbols, events, .. } = header;
         for _ in 0..events {
             self.varint()?;
             self.varint()?;

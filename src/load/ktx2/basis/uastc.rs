@@ -2,7 +2,7 @@
 //! another packing.
 //!
 //! Sources: KTX 2.0 specification, appendix "UASTC texture encoding"; Khronos Data Format Specification 1.3, chapter 23 (ASTC):
-//! section 23.13 for endpoints, 23.15 for weights, 23.21 for partitions.
+//! section 23.13 for endpoints, 23.15 for weights, 23.21 for partitions, which are tables here.
 
 /// The number of bytes of a block.
 pub(super) const BLOCK: usize = 16;
@@ -33,8 +33,9 @@ struct Endpoints {
 #[derive(Clone, Copy)]
 enum Partition {
     One,
-    /// Bits of an index into seeds of ASTC's partitions, how many subsets these have, and the subsets by index and texel.
-    Of(u32, usize, &'static [[u8; 16]]),
+    /// Bits of an index, how many subsets there are, and by index the subsets of the texels: one bit each for two, two bits for three, those
+    /// of the first texel lowest.
+    Of(u32, usize, &'static [u32]),
 }
 
 /// Which component has weights of its own.
@@ -101,71 +102,29 @@ static MODES: [Mode; 19] = [
 ];
 
 /// Partitions that ASTC and BC7 have in common.
-static TWO_SUBSETS: [[u8; 16]; 30] = subsets(
-    2,
-    [
-        28, 20, 16, 29, 91, 9, 107, 72, 149, 204, 50, 114, 496, 17, 78, 39, 252, 828, 43, 156, 116, 210, 476, 273, 684,
-        359, 246, 195, 694, 524,
-    ],
-);
-static THREE_SUBSETS: [[u8; 16]; 11] = subsets(3, [260, 74, 32, 156, 183, 15, 745, 0, 335, 902, 254]);
+static TWO_SUBSETS: [u32; 30] = [
+    0xcccc, 0x8888, 0x1111, 0xecc8, 0x377f, 0xfeec, 0x0137, 0x137f, 0xc800, 0x0013, 0xfe80, 0x17ff, 0x0017, 0x00ff,
+    0xfff0, 0x0fff, 0xff71, 0x8eff, 0x08ce, 0x008c, 0x7310, 0xceff, 0x7331, 0x088c, 0xceef, 0x6666, 0xf00f, 0x5555,
+    0x0f0f, 0x36c9,
+];
+static THREE_SUBSETS: [u32; 11] = [
+    0xa5a5_0000,
+    0xaa00_5555,
+    0xaa00_0055,
+    0x0000_aa55,
+    0x2525_2525,
+    0x9494_9494,
+    0x5858_5858,
+    0x5656_0202,
+    0x9292_9292,
+    0x55aa_0055,
+    0xa050_50a0,
+];
 /// Partitions into two, which BC7 has only as partitions into three.
-static OTHER_TWO_SUBSETS: [[u8; 16]; 19] =
-    subsets(2, [36, 48, 61, 137, 161, 183, 226, 281, 302, 307, 479, 495, 593, 594, 605, 799, 812, 988, 993]);
-
-const fn subsets<const N: usize>(count: u32, seeds: [u32; N]) -> [[u8; 16]; N] {
-    let mut all = [[0; 16]; N];
-    let mut i = 0;
-    while i < N {
-        let mut texel = 0;
-        while texel < 16 {
-            all[i][texel] = subset(seeds[i], count, texel as u32 % 4, texel as u32 / 4);
-            texel += 1;
-        }
-        i += 1;
-    }
-    all
-}
-
-/// Returns the subset of a texel of a block of 4 x 4, for 2 or 3 subsets.
-const fn subset(seed: u32, count: u32, x: u32, y: u32) -> u8 {
-    let seed = seed + (count - 1) * 1024;
-    let number = hashed(seed);
-    let odd = if seed & 2 != 0 { 4 } else { 5 };
-    let even = if count == 3 { 6 } else { 5 };
-    let [along_x, along_y] = if seed & 1 != 0 { [odd, even] } else { [even, odd] };
-    // Small blocks are looked at in twice their size.
-    let [x, y] = [2 * x, 2 * y];
-    let mut sums = [0; 3];
-    let mut i = 0;
-    while i < count as usize {
-        let [a, b] = [(number >> (8 * i)) & 15, (number >> (8 * i + 4)) & 15];
-        let constant = number >> (14 - 4 * i);
-        sums[i] = (((a * a) >> along_x) * x + ((b * b) >> along_y) * y + constant) & 63;
-        i += 1;
-    }
-    if sums[0] >= sums[1] && sums[0] >= sums[2] {
-        0
-    } else if sums[1] >= sums[2] {
-        1
-    } else {
-        2
-    }
-}
-
-const fn hashed(seed: u32) -> u32 {
-    let mut p = seed;
-    p ^= p >> 15;
-    p = p.wrapping_sub(p << 17);
-    p = p.wrapping_add(p << 7);
-    p = p.wrapping_add(p << 4);
-    p ^= p >> 5;
-    p = p.wrapping_add(p << 16);
-    p ^= p >> 7;
-    p ^= p >> 3;
-    p ^= p << 6;
-    p ^ (p >> 17)
-}
+static OTHER_TWO_SUBSETS: [u32; 19] = [
+    0x00f0, 0x4444, 0x0133, 0xcc80, 0xf0ff, 0x2222, 0xffc8, 0xccce, 0x3c03, 0x00ee, 0x7700, 0x3003, 0x00ce, 0xff80,
+    0x6fff, 0x1333, 0x11ff, 0x136c, 0x00ef,
+];
 
 /// The bits of a block that haven't been read, the next one lowest.
 struct BlockBits(u128);
@@ -190,8 +149,8 @@ pub(super) fn texels(block: &[u8; BLOCK]) -> Option<[[u8; 4]; 16]> {
     }
     bits.take(mode.hints);
     let (count, subsets) = match mode.partition {
-        Partition::One => (1, &[0; 16]),
-        Partition::Of(width, count, subsets) => (count, subsets.get(bits.take(width) as usize)?),
+        Partition::One => (1, 0),
+        Partition::Of(width, count, subsets) => (count, *subsets.get(bits.take(width) as usize)?),
     };
     let second = match mode.plane {
         Plane::None => None,
@@ -201,15 +160,16 @@ pub(super) fn texels(block: &[u8; BLOCK]) -> Option<[[u8; 4]; 16]> {
     let ends = mode.ends(&mut bits, count);
     let mut texels = [[0; 4]; 16];
     let mut seen = [false; 3];
-    for (texel, &subset) in texels.iter_mut().zip(subsets) {
+    for (i, texel) in texels.iter_mut().enumerate() {
+        let subset = (subsets >> (i * (count - 1))) as usize & ((1 << (count - 1)) - 1);
         // The highest bit of the first weight of a subset is 0, and isn't stored.
-        let is_first = !std::mem::replace(&mut seen[usize::from(subset)], true);
+        let is_first = !std::mem::replace(&mut seen[subset], true);
         let mut weight = || unquantized(bits.take(mode.weight_bits - u32::from(is_first)), mode.weight_bits);
         let all = weight();
         let own = second.map(|component| (component, weight()));
         for (component, value) in texel.iter_mut().enumerate() {
             let weight = own.filter(|own| own.0 == component).map_or(all, |own| own.1);
-            let [low, high] = ends[usize::from(subset)][component].map(|end| end * 257);
+            let [low, high] = ends[subset][component].map(|end| end * 257);
             *value = ((low * (64 - weight) + high * weight + 32) >> 14) as u8;
         }
     }
