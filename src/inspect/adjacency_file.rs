@@ -8,57 +8,25 @@ use thiserror::Error;
 
 use geometry::mesh::adjacency::Layout;
 use geometry::mesh::{Mesh, Topology};
-use geometry::names::every;
 
-use crate::settings::{Choice, Description};
+use crate::settings::choices;
 
-/// The format of a file of indices.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// Indices, the corners that they refer to, and the triangle of each patch
-    Json,
-    /// The indices only: unsigned 32-bit integers, little-endian
-    Bin,
-}
-
-impl Choice for Layout {
-    const ALL: &'static [Self] = &Layout::ALL;
-
-    fn description(self) -> Description {
-        match self {
-            Self::Six => Description::new(
-                "6",
-                "6",
-                "What PN-AEN adds to the mesh's own index buffer: the neighbours' corners along the sides 0-1, 1-2, 2-0.",
-            ),
-            Self::Nine => Description::new("9", "9", "The triangle's corners 0, 1, 2, then the six."),
-            Self::Twelve => {
-                Description::new("12", "12", "The nine, then the dominant corners on the points of corners 0, 1, 2.")
-            }
-            Self::Eighteen => Description::new(
-                "18",
-                "18",
-                "The twelve, then the corners of the dominant sides of the edges 0-1, 1-2, 2-0: what exported shaders need to displace.",
-            ),
-        }
+choices! {
+    /// The format of a file of indices.
+    pub enum Format {
+        Json => "json", "JSON", "The indices, the corners that they refer to, and the triangle of each patch.";
+        Bin => "bin", "Binary", "Only the indices: 32-bit unsigned integers, little-endian.";
     }
 }
 
-impl Choice for Format {
-    const ALL: &'static [Self] = &every![Format: Json, Bin];
-
-    fn description(self) -> Description {
-        match self {
-            Self::Json => Description::new(
-                "json",
-                "JSON",
-                "The indices, the corners that they refer to, and the triangle of each patch.",
-            ),
-            Self::Bin => {
-                Description::new("bin", "Binary", "Only the indices: 32-bit unsigned integers, little-endian.")
-            }
-        }
-    }
+choices! { Layout:
+    Six => "6", "6",
+        "What PN-AEN adds to the mesh's own index buffer: the neighbours' corners along the sides 0-1, 1-2, 2-0.";
+    Nine => "9", "9", "The triangle's corners 0, 1, 2, then the six.";
+    Twelve => "12", "12", "The nine, then the dominant corners on the points of corners 0, 1, 2.";
+    Eighteen => "18", "18",
+        "The twelve, then the corners of the dominant sides of the edges 0-1, 1-2, 2-0: what exported shaders need \
+         to displace.";
 }
 
 impl Format {

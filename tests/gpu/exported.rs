@@ -164,7 +164,7 @@ fn the_example_has_the_passes_that_are_exported_and_makes_its_moments() {
 fn what_hardware_has_no_equal_of_is_refused_with_what_can_be_exported() {
     let refused =
         |language, own: Tessellation| shader_files(language, &own, "a test").expect_err("refused").to_string();
-    for language in Language::ALL {
+    for &language in Language::ALL {
         let by_error = refused(language, Tessellation { lod: Lod::Error, ..Tessellation::default() });
         assert!(by_error.contains("LOD by error") && by_error.contains("--lod uniform"), "{by_error}");
     }

@@ -12,7 +12,7 @@ pub(super) fn written_settings(settings: &Settings) -> Json {
             Value::Pair(pair) => pair.map(|number| json!(number)).to_vec(),
             value => vec![written(value)],
         };
-        members.extend(option.saved_as.iter().map(|&name| name.to_owned()).zip(values));
+        members.extend(option.members().into_iter().zip(values));
     }
     members.into()
 }
@@ -43,7 +43,7 @@ pub(super) fn read_settings(value: &Json) -> Settings {
 
 fn read(option: &Declaration, all: &Json) -> Option<Value> {
     let number = |value: &Json| value.as_f64().map(|number| number as f32);
-    let members: Vec<&Json> = option.saved_as.iter().map(|name| &all[name]).collect();
+    let members: Vec<&Json> = option.members().iter().map(|name| &all[name]).collect();
     match (&option.kind, &members[..]) {
         (Kind::Choice(_), [name]) => option.kind.named(name.as_str()?).map(Value::Name),
         (Kind::Several(_), [names]) => {

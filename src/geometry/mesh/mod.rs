@@ -31,7 +31,6 @@ pub mod rig;
 pub mod shapes;
 mod slices;
 mod smooth_points;
-mod spatial_hash;
 pub mod t_junctions;
 pub mod topology;
 mod unfinished_mesh;

@@ -1,13 +1,10 @@
 //! Finds out which points have another point nearby: only those can change when points are welded within a tolerance.
 
-use std::iter::zip;
 use std::ops::ControlFlow::{Break, Continue};
-use std::ops::Range;
 
 use glam::Vec3;
 
 use super::cell_chains::CellChains;
-use super::cell_grid::{CellGrid, CellHash};
 use crate::cores::in_ranges;
 
 /// How many other points are compared with a point at most. A point in a crowd counts as near to another one without a
@@ -23,10 +20,6 @@ const WIDTH: f64 = 4.0;
 /// How much farther a search goes, for the rounding of distances.
 const ROOM: f64 = 1.0 + 1e-6;
 
-/// How many points are looked at together: first their cells are found, then what these have is read, so that the processor fetches
-/// many from memory at once.
-const BATCH: usize = 32;
-
 /// The least number of points that are worth a thread.
 const LEAST: usize = 1 << 14;
 
@@ -41,23 +34,19 @@ impl NearPoints {
     /// the same. `tolerances` are above 0, in object units, and ascending. Within those that most points have another one in,
     /// no search is made, and all points count as near. Takes linear time.
     pub(super) fn find(points: &[Vec3], numbers: &[u32], tolerances: &[f64]) -> Self {
-        let points = Points { points, numbers };
-        let searches = tolerances.iter().map(|&reach| NearestPoint::new(points, perhaps_near(points, reach), reach));
+        let searches = tolerances.iter().map(|&reach| NearestPoint::new(points, numbers, reach));
         let Some((furthest, search)) = searches.enumerate().rev().find(|(_, search)| search.leaves_out_most()) else {
             return Self { first: vec![0; points.len()] };
         };
         let tolerances = &tolerances[..=furthest];
         // No search goes further.
         let beyond = furthest as u8 + 1;
-        let near = &search.near;
-        let first_of = |point: &u32| match search.nearest(*point) {
+        let first_of = |point: usize| match search.nearest(point as u32) {
             Nearest::At(distance) => tolerances.partition_point(|tolerance| *tolerance < distance) as u8,
             Nearest::Beyond => beyond,
             Nearest::Unknown => 0,
         };
-        let found = in_ranges(near.len(), LEAST, |range| near[range].iter().map(first_of).collect::<Vec<_>>()).concat();
-        let mut first = vec![beyond; points.len()];
-        near.iter().zip(found).for_each(|(&point, found)| first[point as usize] = found);
+        let first = in_ranges(points.len(), LEAST, |range| range.map(first_of).collect::<Vec<_>>()).concat();
         Self { first }
     }
 
@@ -73,138 +62,6 @@ impl NearPoints {
     }
 }
 
-/// Points and their numbers; there are none if all are 0.
-#[derive(Clone, Copy)]
-struct Points<'a> {
-    points: &'a [Vec3],
-    numbers: &'a [u32],
-}
-
-impl Points<'_> {
-    fn len(&self) -> usize {
-        self.points.len()
-    }
-
-    fn at(&self, point: u32) -> (Vec3, u32) {
-        let number = self.numbers.get(point as usize).copied().unwrap_or_default();
-        (self.points[point as usize], number)
-    }
-}
-
-/// Which cells of a grid have points. Cells with the same hash count as one.
-struct OccupiedCells<'a, F> {
-    points: Points<'a>,
-    /// Returns one of those in the cells by its index.
-    some: F,
-    grid: CellGrid,
-    /// The greatest squared distance, in cells, of a cell within reach.
-    most: f64,
-    /// For 64 cells each, a bit for those with at least one point, and one for those with at least two.
-    cells: Vec<[u64; 2]>,
-}
-
-impl<'a, F: Fn(usize) -> u32 + Sync> OccupiedCells<'a, F> {
-    /// Puts `count` of the points into cells; `some` returns one of them by its index.
-    fn new(points: Points<'a>, count: usize, some: F, reach: f64) -> Self {
-        let grid = CellGrid::new(WIDTH * reach);
-        // 16 cells a point, so that few have the same hash.
-        let words = (count / (CellHash::BLOCK / 16)).next_power_of_two();
-        // On two cores at most, since each needs all cells.
-        let mut halves = in_ranges(count, (count / 2).max(LEAST), |range| {
-            let (mut cells, mut batch) = (vec![[0; 2]; words], Vec::new());
-            for indices in batches(range) {
-                batch.clear();
-                batch.extend(indices.map(|index| {
-                    let (position, number) = points.at(some(index));
-                    grid.at(position, number).place(words * CellHash::BLOCK)
-                }));
-                for &place in &batch {
-                    let (word, bit) = bit_of(place);
-                    let [once, twice]: &mut [u64; 2] = &mut cells[word];
-                    *twice |= *once & bit;
-                    *once |= bit;
-                }
-            }
-            cells
-        })
-        .into_iter();
-        let mut cells = halves.next().unwrap_or_default();
-        for other in halves {
-            for ([once, twice], [other_once, other_twice]) in cells.iter_mut().zip(other) {
-                *twice |= other_twice | (*once & other_once);
-                *once |= other_once;
-            }
-        }
-        Self { points, some, most: grid.most(reach * ROOM), grid, cells }
-    }
-
-    /// Returns the points, of those with an index below `count`, that another one may be within reach of, in the order of their
-    /// indices: all that have one, and few others.
-    fn perhaps_near(&self, count: usize) -> Vec<u32> {
-        let of_range = |range: Range<usize>| {
-            let mut near = Vec::new();
-            let (mut places, mut have_other) = ([[0; 8]; BATCH], [false; BATCH]);
-            for indices in batches(range) {
-                let points = indices.map(&self.some);
-                zip(&mut places, points.clone()).for_each(|(places, point)| *places = self.places(point));
-                zip(&mut have_other, &places).for_each(|(has_other, [own, ..])| *has_other = self.has_two(*own));
-                zip(&mut have_other, &places).for_each(|(has_other, places)| *has_other |= self.has_other(places));
-                near.extend(zip(points, have_other).filter(|(_, has_other)| *has_other).map(|(point, _)| point));
-            }
-            near
-        };
-        in_ranges(count, LEAST, of_range).concat()
-    }
-
-    /// Returns the places of a point's cell and of those within reach.
-    fn places(&self, point: u32) -> [usize; 8] {
-        let (position, number) = self.points.at(point);
-        let near = self.grid.near(position, number);
-        let own = near[0].1.place(self.cells.len() * CellHash::BLOCK);
-        let mut places = [own; 8];
-        for (place, &(away, cell)) in zip(&mut places[1..], &near[1..]) {
-            let other = cell.place(self.cells.len() * CellHash::BLOCK);
-            // Cells out of reach are replaced, which is faster than a branch.
-            *place = if away > self.most { own } else { other };
-        }
-        places
-    }
-
-    /// Returns whether the cell at a place has more than one point.
-    fn has_two(&self, place: usize) -> bool {
-        let (word, bit) = bit_of(place);
-        self.cells[word][1] & bit != 0
-    }
-
-    /// Returns whether a cell at one of these places, another than the first, has points.
-    fn has_other(&self, &[own, ref others @ ..]: &[usize; 8]) -> bool {
-        others.iter().fold(false, |has, &place| {
-            let (word, bit) = bit_of(place);
-            has | ((place != own) & (self.cells[word][0] & bit != 0))
-        })
-    }
-}
-
-/// Divides indices into batches.
-fn batches(range: Range<usize>) -> impl Iterator<Item = Range<usize>> {
-    range.clone().step_by(BATCH).map(move |start| start..range.end.min(start + BATCH))
-}
-
-/// The word and the bit of a cell's place.
-fn bit_of(place: usize) -> (usize, u64) {
-    (place / CellHash::BLOCK, 1 << (place % CellHash::BLOCK))
-}
-
-/// Returns the points that another one may be within reach of, in ascending order: all that have one, and few others.
-fn perhaps_near(points: Points, reach: f64) -> Vec<u32> {
-    let near = OccupiedCells::new(points, points.len(), |index| index as u32, reach).perhaps_near(points.len());
-    if near.len() > points.len() / 2 {
-        return near;
-    }
-    // Cells of other points are no longer in the way.
-    OccupiedCells::new(points, near.len(), |index| near[index], reach).perhaps_near(near.len())
-}
-
 /// The nearest other point.
 enum Nearest {
     /// At a distance that is no more than the reach, in object units.
@@ -217,34 +74,38 @@ enum Nearest {
 
 /// Searches for the nearest other point.
 struct NearestPoint<'a> {
-    points: Points<'a>,
-    /// All that have another one within reach, and some others, in ascending order.
-    near: Vec<u32>,
+    points: &'a [Vec3],
+    /// There are none if all are 0.
+    numbers: &'a [u32],
     /// How far one can search, in object units.
     reach: f64,
     chains: CellChains,
 }
 
 impl<'a> NearestPoint<'a> {
-    fn new(points: Points<'a>, near: Vec<u32>, reach: f64) -> Self {
-        let mut chains = CellChains::with_capacity(WIDTH * reach, near.len());
-        for &point in &near {
-            let (position, number) = points.at(point);
-            chains.push(position, number);
+    fn new(points: &'a [Vec3], numbers: &'a [u32], reach: f64) -> Self {
+        let chains = CellChains::with_capacity(WIDTH * reach, points.len());
+        let mut search = Self { points, numbers, reach, chains };
+        for point in 0..points.len() as u32 {
+            search.chains.push(points[point as usize], search.number(point));
         }
-        Self { points, near, reach, chains }
+        search
+    }
+
+    fn number(&self, point: u32) -> u32 {
+        self.numbers.get(point as usize).copied().unwrap_or_default()
     }
 
     /// Returns the nearest other point with the same number.
     fn nearest(&self, point: u32) -> Nearest {
-        let (position, number) = self.points.at(point);
+        let (position, number) = (self.points[point as usize], self.number(point));
         let (mut least, mut count) = (f64::INFINITY, 0);
         let tried = self.chains.near(position, number, self.reach * ROOM, |item, square, reach| {
             if count == TRIES {
                 return Break(());
             }
             count += 1;
-            if square < least && self.near[item as usize] != point {
+            if square < least && item != point {
                 least = square;
                 *reach = reach.min(square.sqrt());
             }
@@ -259,12 +120,9 @@ impl<'a> NearestPoint<'a> {
 
     /// Returns whether most points have no other one within reach, by an estimate. Only then is a search for all worth its time.
     fn leaves_out_most(&self) -> bool {
-        if self.near.len() <= self.points.len() / 2 {
-            return true;
-        }
-        let step = (self.near.len() / SAMPLES).max(1);
-        let samples = self.near.iter().step_by(step);
-        let is_beyond = |point: &&u32| matches!(self.nearest(**point), Nearest::Beyond);
+        let step = (self.points.len() / SAMPLES).max(1);
+        let samples = (0..self.points.len() as u32).step_by(step);
+        let is_beyond = |point: &u32| matches!(self.nearest(*point), Nearest::Beyond);
         2 * samples.clone().filter(is_beyond).count() >= samples.len()
     }
 }

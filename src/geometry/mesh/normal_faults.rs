@@ -200,8 +200,8 @@ mod tests {
     }
 
     #[test]
-    fn an_edge_of_300_000_sides() {
-        let tilts = (0..300_000).map(|i| Vec3::new(0.0, -1e-6 * i as f32, 1.0).normalize());
+    fn an_edge_of_60_000_sides() {
+        let tilts = (0..60_000).map(|i| Vec3::new(0.0, -5e-6 * i as f32, 1.0).normalize());
         let pages: Vec<_> = tilts.map(|normal| [normal, Vec3::Z]).collect();
         assert_eq!(faults(&book(&pages)).opposite, 0);
     }

@@ -7,10 +7,12 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use bytemuck::zeroed_vec;
 use foldhash::fast::RandomState;
 use glam::{Vec2, Vec3};
+use hashbrown::HashTable;
+use hashbrown::hash_table::Entry;
 use rayon::prelude::*;
 
 use super::cell_chains::CellChains;
-use super::cell_grid::CellGrid;
+use super::cell_grid::{CellGrid, spread};
 use crate::cores::{in_ranges, ranges, split};
 
 /// The least number of positions that are worth a thread.
@@ -21,7 +23,8 @@ const PART: usize = 1 << 14;
 const MOST_PARTS: usize = 256;
 
 /// The most memory that an exact weld needs while it runs, in bytes for each position: 9 for its hash and index, 4 for its point, and 22
-/// in tables that are three eighths full at least. Where many positions are equal, lists double, but tables are small.
+/// in tables, which take 9 bytes a place and are seven sixteenths full at least. Where many positions are equal, lists double, but
+/// tables are small.
 pub(super) const WELD_BYTES: u64 = 36;
 
 /// Joins equal positions into points. Two positions are equal if all three coordinates have the same value (-0 equals
@@ -76,7 +79,7 @@ fn first_equal(count: usize, place: impl Fn(usize) -> (Vec3, u32) + Sync) -> Vec
     // Each is written by one core at most.
     let first: Vec<AtomicU32> = (0..count as u32).map(AtomicU32::new).collect();
     in_ranges(parts, 1, |own| {
-        let mut table = Vec::new();
+        let mut table = HashTable::new();
         for part in own {
             let hashed: Vec<&[u64]> = ranges.iter().map(|of_parts| &of_parts[part][..]).collect();
             find_equal(&mut table, &hashed, |a, b| key(a as usize) == key(b as usize), &first);
@@ -85,47 +88,21 @@ fn first_equal(count: usize, place: impl Fn(usize) -> (Vec3, u32) + Sync) -> Vec
     first.into_iter().map(AtomicU32::into_inner).collect()
 }
 
-/// A place of a table without a position: there are fewer positions.
-const FREE: u64 = u64::MAX;
-
 /// Writes the first of equal positions for each position of a part, each of which is given as its hash and its index. `table` has room
 /// that is used again.
-fn find_equal(table: &mut Vec<u64>, part: &[&[u64]], is_equal: impl Fn(u32, u32) -> bool, first: &[AtomicU32]) {
+fn find_equal(table: &mut HashTable<u64>, part: &[&[u64]], is_equal: impl Fn(u32, u32) -> bool, first: &[AtomicU32]) {
+    let spread = |&own: &u64| spread((own >> 32) as u32);
     let positions: usize = part.iter().map(|own| own.len()).sum();
-    // A part with many more positions has many equal ones, which need one place together.
-    let places = (positions.min(2 * PART) * 4 / 3 + 1).next_power_of_two();
     table.clear();
-    table.resize(places, FREE);
-    let mut used = 0;
-    for &own in part.iter().copied().flatten() {
-        let is_same = |other: u64| other >> 32 == own >> 32 && is_equal(other as u32, own as u32);
-        let at = place_of(table, own, is_same);
-        if table[at] != FREE {
-            first[own as u32 as usize].store(table[at] as u32, Ordering::Relaxed);
-            continue;
-        }
-        table[at] = own;
-        used += 1;
-        if 4 * used > 3 * table.len() {
-            let mut larger = vec![FREE; 2 * table.len()];
-            for own in table.iter().copied().filter(|own| *own != FREE) {
-                let at = place_of(&larger, own, |_| false);
-                larger[at] = own;
-            }
-            *table = larger;
+    // A part with many more positions has many equal ones, which need one place together.
+    table.reserve(positions.min(2 * PART), spread);
+    for own in part.iter().copied().flatten() {
+        let is_same = |other: &u64| *other >> 32 == own >> 32 && is_equal(*other as u32, *own as u32);
+        match table.entry(spread(own), is_same, spread) {
+            Entry::Occupied(there) => first[*own as u32 as usize].store(*there.get() as u32, Ordering::Relaxed),
+            Entry::Vacant(free) => drop(free.insert(*own)),
         }
     }
-}
-
-/// The place of a position that is given as its hash and its index: that of the one that is the same, or else a free one. A quarter
-/// of the places is free.
-fn place_of(table: &[u64], own: u64, is_same: impl Fn(u64) -> bool) -> usize {
-    // Parts differ in the highest bits of the hash.
-    let mut at = (own >> 32) as usize & (table.len() - 1);
-    while table[at] != FREE && !is_same(table[at]) {
-        at = (at + 1) & (table.len() - 1);
-    }
-    at
 }
 
 /// Joins positions within a tolerance, in object units, into points. Distinct positions are taken in the order of their
@@ -284,13 +261,13 @@ mod tests {
         let hashed: Vec<u64> = (0..count).map(|i| (i % distinct) << 32 | i).collect();
         let is_equal = |a: u32, b: u32| a % distinct as u32 == b % distinct as u32;
         let first: Vec<AtomicU32> = (0..count as u32).map(AtomicU32::new).collect();
-        let mut table = Vec::new();
+        let mut table = HashTable::new();
         find_equal(&mut table, &[&hashed[..70_000], &hashed[70_000..]], is_equal, &first);
-        assert_eq!(table.len(), 1 << 18, "grown");
+        assert!(table.len() == distinct as usize && table.capacity() > 2 * PART, "grown");
         assert!((0..).zip(&first).all(|(i, first)| first.load(Ordering::Relaxed) == i % distinct as u32));
         let equal: Vec<u64> = (0..count).map(|i| 7 << 32 | i).collect();
         find_equal(&mut table, &[&equal], |_, _| true, &first);
-        assert!(table.len() <= 4 * PART && first.iter().all(|first| first.load(Ordering::Relaxed) == 0));
+        assert!(table.len() == 1 && first.iter().all(|first| first.load(Ordering::Relaxed) == 0));
     }
 
     #[test]

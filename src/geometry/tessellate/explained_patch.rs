@@ -8,7 +8,7 @@ use super::factors::{
 };
 use super::least_factors::{BEYOND_LAST, Chosen};
 use super::mesh_displacement::{MeshDisplacement, displacing_heights};
-use super::mesh_factors::surface_tolerance;
+use super::mesh_factors::MeshLod;
 use super::mesh_tessellation::seen_with_reach;
 use super::piece_error::{SeenPatch, may_slide, piece_error};
 use super::{
@@ -158,18 +158,16 @@ pub fn explain_patch(
         ControlNets::of_edges(mesh, topology, searched, edges_around(topology, patch).into_iter())
     };
     let displacement = MeshDisplacement::new(&nets, searched);
-    let displacement = displacement.as_ref();
-    let least = |factor| nets.least_edge_factor(searched, displacement, factor);
-    let seen = nets.seen_patch(searched, displacement, patch);
-    let first = nets.first_least(searched, patch, &seen, least);
-    let own = nets.own_least_factors(searched, displacement, patch, &seen, first);
+    let lod = MeshLod { nets: &nets, inputs: searched, displacement: displacement.as_ref() };
+    let seen = lod.seen_patch(patch);
+    let own = lod.own_least_factors(patch, &seen);
     let by_error = inputs.tessellation.lod == Lod::Error;
     let is_flat = by_error && may_slide(&seen, searched.tessellation.tolerance);
     let mut measured = seen;
     if !is_flat {
         (measured.off_plane, measured.off_line) = (3.4e38, 3.4e38);
     }
-    let tolerance = surface_tolerance(inputs, displacement);
+    let tolerance = lod.surface_tolerance();
     let errors = pattern_errors(&measured, inputs.tessellation.convention, used);
     let mut own_least = own_least(searched.tessellation.partitioning, own);
     // The search doesn't try all factors. What is drawn may have fewer triangles than it found, because neighbours asked for more
@@ -183,15 +181,7 @@ pub fn explain_patch(
     ExplainedPatch {
         tolerance,
         edges: by_error.then(|| {
-            [0, 1, 2].map(|k| {
-                nets.explain_edge(
-                    searched,
-                    displacement,
-                    patch,
-                    k,
-                    used_factor(inputs.tessellation.convention, used, k),
-                )
-            })
+            [0, 1, 2].map(|k| lod.explain_edge(patch, k, used_factor(inputs.tessellation.convention, used, k)))
         }),
         is_flat,
         errors,
@@ -204,12 +194,8 @@ pub fn own_least_triangles(mesh: &Mesh, topology: &Topology, inputs: &Inputs) ->
     let searched = &own_least_inputs(&seen_with_reach(mesh, inputs));
     let nets = ControlNets::new(mesh, topology, searched);
     let displacement = MeshDisplacement::new(&nets, searched);
-    let least = |factor| nets.least_edge_factor(searched, displacement.as_ref(), factor);
-    let own = |patch| {
-        let seen = nets.seen_patch(searched, displacement.as_ref(), patch);
-        let first = nets.first_least(searched, patch, &seen, least);
-        nets.own_least_factors(searched, displacement.as_ref(), patch, &seen, first)
-    };
+    let lod = MeshLod { nets: &nets, inputs: searched, displacement: displacement.as_ref() };
+    let own = |patch| lod.own_least_factors(patch, &lod.seen_patch(patch));
     let patches = 0..topology.patches.len() as u32;
     patches.map(|patch| own_least(searched.tessellation.partitioning, own(patch)).triangles).collect()
 }
@@ -225,33 +211,26 @@ fn edges_around(topology: &Topology, patch: u32) -> Vec<u32> {
     all
 }
 
-impl ControlNets<'_> {
+impl MeshLod<'_> {
     /// Returns what was asked of the edge of a patch's side. A factor that no other patch shares, as published, is asked
     /// for by this one alone.
-    fn explain_edge(
-        &self,
-        inputs: &Inputs,
-        displacement: Option<&MeshDisplacement>,
-        patch: u32,
-        side: usize,
-        used: f32,
-    ) -> ExplainedEdge {
-        let factor = self.patch_factor(patch, side);
-        let least = |factor| self.least_edge_factor(inputs, displacement, factor);
+    fn explain_edge(&self, patch: u32, side: usize, used: f32) -> ExplainedEdge {
+        let (nets, topology) = (self.nets, self.nets.topology);
+        let factor = nets.patch_factor(patch, side);
         let asked = |patch: u32, side: usize| {
-            let seen = self.seen_patch(inputs, displacement, patch);
-            let first = self.first_least(inputs, patch, &seen, least);
-            self.asked_by_patch(inputs, displacement, patch, &seen, first, 0.0).edges[(side + 2) % 3]
+            let seen = self.seen_patch(patch);
+            let least = self.first_least(patch, &seen, |factor| self.least_edge_factor(factor));
+            self.asked_by_patch(patch, &seen, least, 0.0).edges[(side + 2) % 3]
         };
-        let own_side = self.topology.sides[self.topology.patches[patch as usize].sides[side] as usize];
-        let sides = self.topology.edge_sides(&self.topology.edges[own_side.edge as usize]).iter();
+        let own_side = topology.sides[topology.patches[patch as usize].sides[side] as usize];
+        let sides = topology.edge_sides(&topology.edges[own_side.edge as usize]).iter();
         let others = sides.filter(|other| (other.patch(), other.index()) != (patch, side));
-        let others = others.filter(|other| self.patch_factor(other.patch(), other.index()) == factor);
+        let others = others.filter(|other| nets.patch_factor(other.patch(), other.index()) == factor);
         let others: Vec<_> = others.map(|other| (other.patch(), asked(other.patch(), other.index()))).collect();
         let own = asked(patch, side);
         let most = others.iter().map(|&(_, factor)| factor).fold(own, f32::max);
         let got = if used > 0.0 && is_enough(most) { used } else { most.max(used) };
-        ExplainedEdge { least: least(factor), own, others, got }
+        ExplainedEdge { least: self.least_edge_factor(factor), own, others, got }
     }
 }
 

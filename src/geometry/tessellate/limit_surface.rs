@@ -4,6 +4,7 @@ use glam::{DMat2, DVec2, DVec3, Vec3};
 
 use super::control_nets::ControlNets;
 use super::mesh_displacement::MeshDisplacement;
+use super::mesh_factors::MeshLod;
 use super::piece_error::{SeenPatch, may_slide};
 use super::{ControlNet, Inputs, Lod, Surface};
 use crate::mesh::{Mesh, Topology};
@@ -39,7 +40,7 @@ impl<'a> LimitSurface<'a> {
 
     /// Returns a patch as it is seen.
     pub fn seen_patch(&self, inputs: &Inputs, patch: u32) -> SeenPatch {
-        self.nets.seen_patch(inputs, self.displacement.as_ref(), patch)
+        MeshLod { nets: &self.nets, inputs, displacement: self.displacement.as_ref() }.seen_patch(patch)
     }
 
     /// Returns whether LOD by error allows points of a patch to slide along its surface, which is flat: see `flat_patch.rs`.

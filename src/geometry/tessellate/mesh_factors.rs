@@ -34,41 +34,268 @@ pub fn rounds(has_rows: bool) -> u32 {
     if has_rows { 5 } else { 4 }
 }
 
-impl ControlNets<'_> {
+/// What LOD computes a mesh's factors from: its control nets, and what displaces it with these inputs.
+#[derive(Clone, Copy)]
+pub(super) struct MeshLod<'a> {
+    pub nets: &'a ControlNets<'a>,
+    pub inputs: &'a Inputs,
+    pub displacement: Option<&'a MeshDisplacement<'a>>,
+}
+
+impl MeshLod<'_> {
     /// Returns the factors that LOD gives: to each edge the largest that any of its curves needs, or under LOD by error that
     /// any of its patches asks for. With edges as published, each curve has its own factor.
-    pub(super) fn mesh_factors(&self, inputs: &Inputs, displacement: Option<&MeshDisplacement>) -> MeshFactors {
-        if inputs.tessellation.lod == Lod::Error {
-            return self.factors_by_error(inputs, displacement);
+    pub(super) fn mesh_factors(&self) -> MeshFactors {
+        if self.inputs.tessellation.lod == Lod::Error {
+            return self.factors_by_error();
         }
         let largest = |form: &dyn Fn([Vec3; 4]) -> f32, curves: &[u32]| {
-            (curves[0]..curves[1]).map(|curve| form(self.curve_points(curve))).fold(1.0, f32::max)
+            (curves[0]..curves[1]).map(|curve| form(self.nets.curve_points(curve))).fold(1.0, f32::max)
         };
         let edge = |curves: &[u32]| {
-            let Inputs { tessellation: Tessellation { factor, pixels, near, far, .. }, ref view } = *inputs;
-            let factor = match inputs.tessellation.lod {
+            let Inputs { tessellation: Tessellation { factor, pixels, near, far, .. }, ref view } = *self.inputs;
+            let factor = match self.inputs.tessellation.lod {
                 Lod::Uniform => factor,
                 Lod::Paper => largest(&|net| paper_edge_factor(view, pixels, net), curves),
                 Lod::EdgeLength => largest(&|net| edge_length_factor(view, pixels, net), curves),
                 Lod::Distance => largest(&|net| distance_factor(view, factor, near, far, net), curves),
                 Lod::Error => 1.0,
             };
-            if inputs.tessellation.partitioning == Partitioning::Pow2 { round_pow2(factor) } else { factor }
+            if self.inputs.tessellation.partitioning == Partitioning::Pow2 { round_pow2(factor) } else { factor }
         };
-        MeshFactors { edges: self.curves.factor_curves.windows(2).map(edge).collect(), insides: Vec::new() }
+        MeshFactors { edges: self.nets.curves.factor_curves.windows(2).map(edge).collect(), insides: Vec::new() }
     }
 
     /// Returns factors of edges, and beside them what LOD gives to insides.
-    pub(super) fn factors_beside(
-        &self,
-        inputs: &Inputs,
-        displacement: Option<&MeshDisplacement>,
-        edges: &[f32],
-    ) -> MeshFactors {
-        let inside = |patch| self.inside_factor(inputs, displacement, patch, self.edges_of_patch(edges, patch), 0.0);
-        let patches = 0..self.topology.patches.len() as u32;
-        let insides = if inputs.tessellation.lod == Lod::Error { patches.map(inside).collect() } else { Vec::new() };
+    pub(super) fn factors_beside(&self, edges: &[f32]) -> MeshFactors {
+        let inside = |patch| self.inside_factor(patch, self.nets.edges_of_patch(edges, patch), 0.0);
+        let patches = 0..self.nets.topology.patches.len() as u32;
+        let insides =
+            if self.inputs.tessellation.lod == Lod::Error { patches.map(inside).collect() } else { Vec::new() };
         MeshFactors { edges: edges.to_vec(), insides }
+    }
+
+    /// Returns the factors of LOD by error: to each edge the largest that its patches ask for. Patches that are left out
+    /// ask, too: what others look like doesn't depend on it.
+    ///
+    /// Beside factors that other patches asked for, a patch may need a much larger inside factor than it has chosen, or find
+    /// none that suffices. Such patches ask again, for no less than what their edges have.
+    fn factors_by_error(&self) -> MeshFactors {
+        let Tessellation { surface, partitioning, .. } = self.inputs.tessellation;
+        let edges = 0..self.nets.curves.factor_curves.len() as u32 - 1;
+        let least: Vec<f32> = edges.map(|factor| self.least_edge_factor(factor)).collect();
+        let mut asked = vec![whole_segments(partitioning, 1.0); least.len()];
+        let ask = |patch: u32, edges: [f32; 3], asked: &mut [f32]| {
+            for (k, own) in [1, 2, 0].into_iter().zip(edges) {
+                let factor = self.nets.patch_factor(patch, k) as usize;
+                asked[factor] = asked[factor].max(own);
+            }
+        };
+        let mut chosen = Vec::new();
+        for patch in 0..self.nets.topology.patches.len() as u32 {
+            let seen = self.seen_patch(patch);
+            let least = self.first_least(patch, &seen, |factor| least[factor as usize]);
+            let own = self.asked_by_patch(patch, &seen, least, 0.0);
+            ask(patch, own.edges, &mut asked);
+            chosen.push(own);
+        }
+        let rounds = rounds(partitioning == Partitioning::Rows);
+        for round in 1..=rounds {
+            let before = asked.clone();
+            for (patch, chosen) in (0..).zip(&mut chosen) {
+                let edges = self.nets.edges_of_patch(&before, patch);
+                if edges == chosen.edges {
+                    continue;
+                }
+                let inside = self.inside_factor(patch, edges, chosen.inner);
+                let again = match partitioning {
+                    Partitioning::Rows => rows_ask_again(chosen, edges, inside),
+                    _ => asks_again(chosen.inside, inside),
+                };
+                let asks = surface != Surface::Flat && round < rounds && again;
+                *chosen = Chosen { edges, inside, ..*chosen };
+                if asks {
+                    let seen = self.seen_patch(patch);
+                    let own = self.asked_by_patch(patch, &seen, edges, chosen.inner);
+                    ask(patch, own.edges, &mut asked);
+                    if own.inside != BEYOND_LAST {
+                        *chosen = own;
+                    }
+                }
+            }
+            if asked == before {
+                break;
+            }
+        }
+        let insides: Vec<f32> = chosen.iter().map(|chosen| chosen.inside).collect();
+        let factors = MeshFactors { edges: asked, insides };
+        let Some(factor) = self.uniform_factor(&factors) else { return factors };
+        let beside = |(patch, chosen): (u32, Chosen)| self.inside_factor(patch, [factor; 3], chosen.inner);
+        MeshFactors { edges: vec![factor; least.len()], insides: (0..).zip(chosen).map(beside).collect() }
+    }
+
+    /// Returns the least factor that keeps LOD by error's tolerance if all edges have it, if that takes fewer triangles than
+    /// these factors.
+    fn uniform_factor(&self, factors: &MeshFactors) -> Option<f32> {
+        let Tessellation { surface, partitioning, .. } = self.inputs.tessellation;
+        if surface == Surface::Flat {
+            return None;
+        }
+        let patches = 0..self.nets.topology.patches.len() as u32;
+        let of_patch = |patch| {
+            let [u, v, w] = self.nets.edges_of_patch(&factors.edges, patch);
+            u64::from(triangle_count(process(partitioning, [u, v, w], factors.insides[patch as usize])))
+        };
+        let triangles: u64 = patches.clone().map(of_patch).sum();
+        let is_candidate = |factor: &f32| {
+            let each = triangle_count(process(partitioning, [*factor; 3], *factor));
+            let exists = *factor <= last_factor(partitioning) && whole_segments(partitioning, *factor) == *factor;
+            exists && triangles > u64::from(each) * patches.len() as u64
+        };
+        // If one triangle were enough for every patch, none would have more.
+        let mut left: Vec<f32> = (2..=64).map(|factor| factor as f32).filter(is_candidate).collect();
+        let tolerance = self.surface_tolerance();
+        for patch in patches.clone() {
+            if left.is_empty() {
+                break;
+            }
+            let seen = self.seen_patch(patch);
+            let heights = self.heights_inside(patch);
+            left.retain(|&factor| uniform_suffices(&seen, tolerance, partitioning, factor, heights));
+        }
+        left.first().copied()
+    }
+
+    /// Returns a patch as it is seen.
+    pub(super) fn seen_patch(&self, patch: u32) -> SeenPatch {
+        let net = self.nets.patch(patch);
+        let mut seen = seen_patch(&self.inputs.view, &net);
+        if self.is_plain(patch) {
+            seen.off_plane = plane_error(&self.inputs.view, &net);
+            seen.off_line = line_error(&self.inputs.view, &net);
+        }
+        seen
+    }
+
+    /// Returns the factors that a patch asks for at least, of the edges U == 0, V == 0 and W == 0: what `least` returns for
+    /// each. Where points may slide along an edge, what the edge needs at the same places doesn't count.
+    pub(super) fn first_least(&self, patch: u32, seen: &SeenPatch, least: impl Fn(u32) -> f32) -> [f32; 3] {
+        let Tessellation { partitioning, tolerance, .. } = self.inputs.tessellation;
+        match may_slide(seen, tolerance) {
+            true => [whole_segments(partitioning, 1.0); 3],
+            false => [1, 2, 0].map(|k| least(self.nets.patch_factor(patch, k))),
+        }
+    }
+
+    /// Returns the factors that a patch asks for under LOD by error, and the inside factor that it would take beside these. `least`
+    /// are the least that the edges U == 0, V == 0 and W == 0 may get, and `inner` is as in [`Chosen`].
+    pub(super) fn asked_by_patch(&self, patch: u32, seen: &SeenPatch, least: [f32; 3], inner: f32) -> Chosen {
+        let Tessellation { surface, partitioning, .. } = self.inputs.tessellation;
+        let inside = self.heights_inside(patch);
+        if surface == Surface::Flat {
+            return Chosen { edges: least, inside: whole_segments(partitioning, inside), inner };
+        }
+        let tolerance = self.surface_tolerance();
+        match partitioning {
+            Partitioning::Rows => asked_rows(seen, tolerance, least, inside),
+            _ => asked_factors(seen, tolerance, partitioning, least, inside, inner),
+        }
+    }
+
+    /// Returns the factors with which a patch alone would keep the tolerance with the fewest triangles: its *own least*.
+    pub(super) fn own_least_factors(&self, patch: u32, seen: &SeenPatch) -> Chosen {
+        let Tessellation { surface, partitioning, .. } = self.inputs.tessellation;
+        let least = self.first_least(patch, seen, |factor| self.least_edge_factor(factor));
+        let inside = self.heights_inside(patch);
+        if surface == Surface::Flat {
+            return Chosen { edges: least, inside: whole_segments(partitioning, inside), inner: 0.0 };
+        }
+        let tolerance = self.surface_tolerance();
+        match partitioning {
+            Partitioning::Rows => own_least_rows(seen, tolerance, least, inside),
+            _ => own_least_factors(seen, tolerance, partitioning, least, inside),
+        }
+    }
+
+    /// Returns whether nothing on a patch depends on where its points slide.
+    fn is_plain(&self, patch: u32) -> bool {
+        let material = self.nets.mesh.materials.get(self.nets.topology.material_of(patch));
+        let corners = self.nets.topology.patch_corners(patch);
+        self.displacement.is_none()
+            && material.is_none_or(|material| material.texture.is_none())
+            && normals_agree(corners.map(|corner| self.nets.mesh.corners[corner as usize].normal))
+    }
+
+    /// Returns the least factor that an edge may get: for its curves and, with displacement, for all heights on its
+    /// sides.
+    pub(super) fn least_edge_factor(&self, factor: u32) -> f32 {
+        let Tessellation { surface, partitioning, .. } = self.inputs.tessellation;
+        let curves = &self.nets.curves.factor_curves[factor as usize..factor as usize + 2];
+        let own = |curve: u32| match surface {
+            Surface::Flat => 1.0,
+            _ => {
+                let tolerance = self.surface_tolerance();
+                least_edge_factor(&self.inputs.view, tolerance, partitioning, self.nets.curve_points(curve))
+            }
+        };
+        let heights = self.heights_factor(factor, Maps::All);
+        whole_segments(partitioning, (curves[0]..curves[1]).map(own).fold(heights, f32::max))
+    }
+
+    /// Returns the factor that an edge needs for the heights of some maps.
+    fn heights_factor(&self, factor: u32, maps: Maps) -> f32 {
+        let Some(displacement) = self.displacement else { return 1.0 };
+        let curves = &self.nets.curves.factor_curves[factor as usize..factor as usize + 2];
+        let own = |curve: u32| {
+            let points = self.nets.curves.curves[curve as usize].points;
+            displacement.edge_factor(self.inputs, factor, maps, points, self.nets.curve_points(curve))
+        };
+        (curves[0]..curves[1]).map(own).fold(1.0, f32::max)
+    }
+
+    /// Returns the inside factor that a patch's heights need: the largest that they need along its sides.
+    fn heights_inside(&self, patch: u32) -> f32 {
+        let Some(maps) = self.displacement.map(|displacement| displacement.own_map(patch)) else { return 1.0 };
+        let own = |side| self.heights_factor(self.nets.patch_factor(patch, side), maps);
+        own(0).max(own(1)).max(own(2))
+    }
+
+    /// Returns the inside factor of a patch under LOD by error: the least that suffices beside these factors of its edges.
+    /// `inner` is as in [`Chosen`].
+    fn inside_factor(&self, patch: u32, edges: [f32; 3], inner: f32) -> f32 {
+        let Tessellation { surface, partitioning, .. } = self.inputs.tessellation;
+        let heights = whole_segments(partitioning, self.heights_inside(patch));
+        if surface == Surface::Flat {
+            return heights;
+        }
+        let seen = self.seen_patch(patch);
+        let tolerance = self.surface_tolerance();
+        match partitioning {
+            Partitioning::Rows => rows_beside(&seen, tolerance, edges, heights),
+            _ => least_inside_factor(&seen, tolerance, partitioning, edges, (heights, inner)),
+        }
+    }
+
+    /// Returns the part of LOD by error's tolerance that is for the surface without displacement, in px.
+    pub(super) fn surface_tolerance(&self) -> f32 {
+        self.inputs.tessellation.tolerance * if self.displacement.is_some() { SURFACE_SHARE } else { 1.0 }
+    }
+}
+
+impl ControlNets<'_> {
+    /// Returns the factors that the hull shader writes for a patch. The sides' factors are in the order of the
+    /// convention. The inside factor is the largest of the three, or that of LOD by error. Under rows it is that of the base.
+    pub(super) fn hull_factors(&self, inputs: &Inputs, factors: &MeshFactors, patch: u32) -> HullFactors {
+        let sides = [0, 1, 2].map(|side| factors.edges[self.patch_factor(patch, side) as usize]);
+        let Tessellation { convention, partitioning, .. } = inputs.tessellation;
+        let written = HullFactors::of_sides(convention, sides, sides[0].max(sides[1]).max(sides[2]));
+        let found = factors.insides.get(patch as usize).copied();
+        let inside = match (partitioning, found) {
+            (Partitioning::Rows, Some(inside)) => inside_of_base(convention, inside),
+            (Partitioning::Rows, None) => base_factor(written.edges),
+            (_, found) => found.unwrap_or(written.inside),
+        };
+        HullFactors { inside, ..written }
     }
 
     /// Returns the four control points of a curve, in object units.
@@ -84,270 +311,10 @@ impl ControlNets<'_> {
         [1, 2, 0].map(|side| factors[self.patch_factor(patch, side) as usize])
     }
 
-    /// Returns the factors of LOD by error: to each edge the largest that its patches ask for. Patches that are left out
-    /// ask, too: what others look like doesn't depend on it.
-    ///
-    /// Beside factors that other patches asked for, a patch may need a much larger inside factor than it has chosen, or find
-    /// none that suffices. Such patches ask again, for no less than what their edges have.
-    fn factors_by_error(&self, inputs: &Inputs, displacement: Option<&MeshDisplacement>) -> MeshFactors {
-        let Tessellation { surface, partitioning, .. } = inputs.tessellation;
-        let edges = 0..self.curves.factor_curves.len() as u32 - 1;
-        let least: Vec<f32> = edges.map(|factor| self.least_edge_factor(inputs, displacement, factor)).collect();
-        let mut asked = vec![whole_segments(partitioning, 1.0); least.len()];
-        let ask = |patch: u32, edges: [f32; 3], asked: &mut [f32]| {
-            for (k, own) in [1, 2, 0].into_iter().zip(edges) {
-                let factor = self.patch_factor(patch, k) as usize;
-                asked[factor] = asked[factor].max(own);
-            }
-        };
-        let mut chosen = Vec::new();
-        for patch in 0..self.topology.patches.len() as u32 {
-            let seen = self.seen_patch(inputs, displacement, patch);
-            let least = self.first_least(inputs, patch, &seen, |factor| least[factor as usize]);
-            let own = self.asked_by_patch(inputs, displacement, patch, &seen, least, 0.0);
-            ask(patch, own.edges, &mut asked);
-            chosen.push(own);
-        }
-        let rounds = rounds(partitioning == Partitioning::Rows);
-        for round in 1..=rounds {
-            let before = asked.clone();
-            for (patch, chosen) in (0..).zip(&mut chosen) {
-                let edges = self.edges_of_patch(&before, patch);
-                if edges == chosen.edges {
-                    continue;
-                }
-                let inside = self.inside_factor(inputs, displacement, patch, edges, chosen.inner);
-                let again = match partitioning {
-                    Partitioning::Rows => rows_ask_again(chosen, edges, inside),
-                    _ => asks_again(chosen.inside, inside),
-                };
-                let asks = surface != Surface::Flat && round < rounds && again;
-                *chosen = Chosen { edges, inside, ..*chosen };
-                if asks {
-                    let seen = self.seen_patch(inputs, displacement, patch);
-                    let own = self.asked_by_patch(inputs, displacement, patch, &seen, edges, chosen.inner);
-                    ask(patch, own.edges, &mut asked);
-                    if own.inside != BEYOND_LAST {
-                        *chosen = own;
-                    }
-                }
-            }
-            if asked == before {
-                break;
-            }
-        }
-        let insides: Vec<f32> = chosen.iter().map(|chosen| chosen.inside).collect();
-        let factors = MeshFactors { edges: asked, insides };
-        let Some(factor) = self.uniform_factor(inputs, displacement, &factors) else { return factors };
-        let beside =
-            |(patch, chosen): (u32, Chosen)| self.inside_factor(inputs, displacement, patch, [factor; 3], chosen.inner);
-        MeshFactors { edges: vec![factor; least.len()], insides: (0..).zip(chosen).map(beside).collect() }
-    }
-
-    /// Returns the least factor that keeps LOD by error's tolerance if all edges have it, if that takes fewer triangles than
-    /// these factors.
-    fn uniform_factor(
-        &self,
-        inputs: &Inputs,
-        displacement: Option<&MeshDisplacement>,
-        factors: &MeshFactors,
-    ) -> Option<f32> {
-        let Tessellation { surface, partitioning, .. } = inputs.tessellation;
-        if surface == Surface::Flat {
-            return None;
-        }
-        let patches = 0..self.topology.patches.len() as u32;
-        let of_patch = |patch| {
-            let [u, v, w] = self.edges_of_patch(&factors.edges, patch);
-            u64::from(triangle_count(process(partitioning, [u, v, w], factors.insides[patch as usize])))
-        };
-        let triangles: u64 = patches.clone().map(of_patch).sum();
-        let is_candidate = |factor: &f32| {
-            let each = triangle_count(process(partitioning, [*factor; 3], *factor));
-            let exists = *factor <= last_factor(partitioning) && whole_segments(partitioning, *factor) == *factor;
-            exists && triangles > u64::from(each) * patches.len() as u64
-        };
-        // If one triangle were enough for every patch, none would have more.
-        let mut left: Vec<f32> = (2..=64).map(|factor| factor as f32).filter(is_candidate).collect();
-        let tolerance = surface_tolerance(inputs, displacement);
-        for patch in patches.clone() {
-            if left.is_empty() {
-                break;
-            }
-            let seen = self.seen_patch(inputs, displacement, patch);
-            let heights = self.heights_inside(inputs, displacement, patch);
-            left.retain(|&factor| uniform_suffices(&seen, tolerance, partitioning, factor, heights));
-        }
-        left.first().copied()
-    }
-
-    /// Returns a patch as it is seen.
-    pub(super) fn seen_patch(&self, inputs: &Inputs, displacement: Option<&MeshDisplacement>, patch: u32) -> SeenPatch {
-        let net = self.patch(patch);
-        let mut seen = seen_patch(&inputs.view, &net);
-        if self.is_plain(displacement, patch) {
-            seen.off_plane = plane_error(&inputs.view, &net);
-            seen.off_line = line_error(&inputs.view, &net);
-        }
-        seen
-    }
-
-    /// Returns the factors that a patch asks for at least, of the edges U == 0, V == 0 and W == 0: what `least` returns for
-    /// each. Where points may slide along an edge, what the edge needs at the same places doesn't count.
-    pub(super) fn first_least(
-        &self,
-        inputs: &Inputs,
-        patch: u32,
-        seen: &SeenPatch,
-        least: impl Fn(u32) -> f32,
-    ) -> [f32; 3] {
-        let Tessellation { partitioning, tolerance, .. } = inputs.tessellation;
-        match may_slide(seen, tolerance) {
-            true => [whole_segments(partitioning, 1.0); 3],
-            false => [1, 2, 0].map(|k| least(self.patch_factor(patch, k))),
-        }
-    }
-
-    /// Returns the factors that a patch asks for under LOD by error, and the inside factor that it would take beside these. `least`
-    /// are the least that the edges U == 0, V == 0 and W == 0 may get, and `inner` is as in [`Chosen`].
-    pub(super) fn asked_by_patch(
-        &self,
-        inputs: &Inputs,
-        displacement: Option<&MeshDisplacement>,
-        patch: u32,
-        seen: &SeenPatch,
-        least: [f32; 3],
-        inner: f32,
-    ) -> Chosen {
-        let Tessellation { surface, partitioning, .. } = inputs.tessellation;
-        let inside = self.heights_inside(inputs, displacement, patch);
-        if surface == Surface::Flat {
-            return Chosen { edges: least, inside: whole_segments(partitioning, inside), inner };
-        }
-        let tolerance = surface_tolerance(inputs, displacement);
-        match partitioning {
-            Partitioning::Rows => asked_rows(seen, tolerance, least, inside),
-            _ => asked_factors(seen, tolerance, partitioning, least, inside, inner),
-        }
-    }
-
-    /// Returns the factors with which a patch alone would keep the tolerance with the fewest triangles: its *own least*. `least`
-    /// are the least factors that its edges U == 0, V == 0 and W == 0 may get.
-    pub(super) fn own_least_factors(
-        &self,
-        inputs: &Inputs,
-        displacement: Option<&MeshDisplacement>,
-        patch: u32,
-        seen: &SeenPatch,
-        least: [f32; 3],
-    ) -> Chosen {
-        let Tessellation { surface, partitioning, .. } = inputs.tessellation;
-        let inside = self.heights_inside(inputs, displacement, patch);
-        if surface == Surface::Flat {
-            return Chosen { edges: least, inside: whole_segments(partitioning, inside), inner: 0.0 };
-        }
-        let tolerance = surface_tolerance(inputs, displacement);
-        match partitioning {
-            Partitioning::Rows => own_least_rows(seen, tolerance, least, inside),
-            _ => own_least_factors(seen, tolerance, partitioning, least, inside),
-        }
-    }
-
-    /// Returns whether nothing on a patch depends on where its points slide.
-    fn is_plain(&self, displacement: Option<&MeshDisplacement>, patch: u32) -> bool {
-        let material = self.mesh.materials.get(self.topology.material_of(patch));
-        let corners = self.topology.patch_corners(patch);
-        displacement.is_none()
-            && material.is_none_or(|material| material.texture.is_none())
-            && normals_agree(corners.map(|corner| self.mesh.corners[corner as usize].normal))
-    }
-
     /// Returns the index of the factor of a patch's side.
     pub(super) fn patch_factor(&self, patch: u32, side: usize) -> u32 {
         self.curves.factor(self.topology, self.topology.patches[patch as usize].sides[side])
     }
-
-    /// Returns the least factor that an edge may get: for its curves and, with displacement, for all heights on its
-    /// sides.
-    pub(super) fn least_edge_factor(
-        &self,
-        inputs: &Inputs,
-        displacement: Option<&MeshDisplacement>,
-        factor: u32,
-    ) -> f32 {
-        let Tessellation { surface, partitioning, .. } = inputs.tessellation;
-        let curves = &self.curves.factor_curves[factor as usize..factor as usize + 2];
-        let own = |curve: u32| match surface {
-            Surface::Flat => 1.0,
-            _ => {
-                let tolerance = surface_tolerance(inputs, displacement);
-                least_edge_factor(&inputs.view, tolerance, partitioning, self.curve_points(curve))
-            }
-        };
-        let heights = self.heights_factor(inputs, displacement, factor, Maps::All);
-        whole_segments(partitioning, (curves[0]..curves[1]).map(own).fold(heights, f32::max))
-    }
-
-    /// Returns the factor that an edge needs for the heights of some maps.
-    fn heights_factor(&self, inputs: &Inputs, displacement: Option<&MeshDisplacement>, factor: u32, maps: Maps) -> f32 {
-        let Some(displacement) = displacement else { return 1.0 };
-        let curves = &self.curves.factor_curves[factor as usize..factor as usize + 2];
-        let own = |curve: u32| {
-            let points = self.curves.curves[curve as usize].points;
-            displacement.edge_factor(inputs, factor, maps, points, self.curve_points(curve))
-        };
-        (curves[0]..curves[1]).map(own).fold(1.0, f32::max)
-    }
-
-    /// Returns the inside factor that a patch's heights need: the largest that they need along its sides.
-    fn heights_inside(&self, inputs: &Inputs, displacement: Option<&MeshDisplacement>, patch: u32) -> f32 {
-        let Some(maps) = displacement.map(|displacement| displacement.own_map(patch)) else { return 1.0 };
-        let own = |side| self.heights_factor(inputs, displacement, self.patch_factor(patch, side), maps);
-        own(0).max(own(1)).max(own(2))
-    }
-
-    /// Returns the inside factor of a patch under LOD by error: the least that suffices beside these factors of its edges.
-    /// `inner` is as in [`Chosen`].
-    fn inside_factor(
-        &self,
-        inputs: &Inputs,
-        displacement: Option<&MeshDisplacement>,
-        patch: u32,
-        edges: [f32; 3],
-        inner: f32,
-    ) -> f32 {
-        let Tessellation { surface, partitioning, .. } = inputs.tessellation;
-        let heights = whole_segments(partitioning, self.heights_inside(inputs, displacement, patch));
-        if surface == Surface::Flat {
-            return heights;
-        }
-        let seen = self.seen_patch(inputs, displacement, patch);
-        let tolerance = surface_tolerance(inputs, displacement);
-        match partitioning {
-            Partitioning::Rows => rows_beside(&seen, tolerance, edges, heights),
-            _ => least_inside_factor(&seen, tolerance, partitioning, edges, (heights, inner)),
-        }
-    }
-
-    /// Returns the factors that the hull shader writes for a patch. The sides' factors are in the order of the
-    /// convention. The inside factor is the largest of the three, or that of LOD by error. Under rows it is that of the base.
-    pub(super) fn hull_factors(&self, inputs: &Inputs, factors: &MeshFactors, patch: u32) -> HullFactors {
-        let sides = [0, 1, 2].map(|side| factors.edges[self.patch_factor(patch, side) as usize]);
-        let Tessellation { convention, partitioning, .. } = inputs.tessellation;
-        let written = HullFactors::of_sides(convention, sides, sides[0].max(sides[1]).max(sides[2]));
-        let found = factors.insides.get(patch as usize).copied();
-        let inside = match (partitioning, found) {
-            (Partitioning::Rows, Some(inside)) => inside_of_base(convention, inside),
-            (Partitioning::Rows, None) => base_factor(written.edges),
-            (_, found) => found.unwrap_or(written.inside),
-        };
-        HullFactors { inside, ..written }
-    }
-}
-
-/// Returns the part of LOD by error's tolerance that is for the surface without displacement, in px.
-pub(super) fn surface_tolerance(inputs: &Inputs, displacement: Option<&MeshDisplacement>) -> f32 {
-    inputs.tessellation.tolerance * if displacement.is_some() { SURFACE_SHARE } else { 1.0 }
 }
 
 #[cfg(test)]
@@ -371,20 +338,20 @@ mod tests {
         };
         let inputs = Inputs::new(&own, LodView::new(seen, Vec2::splat(300.0)));
         let nets = ControlNets::new(&mesh, &topology, &inputs);
+        let lod = MeshLod { nets: &nets, inputs: &inputs, displacement: None };
         let given = |factor| MeshFactors {
             edges: vec![factor; topology.edges.len()],
             insides: vec![factor; topology.patches.len()],
         };
         let suffices = |factor| {
             let mut patches = 0..topology.patches.len() as u32;
-            let of_patch = |patch| {
-                uniform_suffices(&nets.seen_patch(&inputs, None, patch), own.tolerance, own.partitioning, factor, 1.0)
-            };
+            let of_patch =
+                |patch| uniform_suffices(&lod.seen_patch(patch), own.tolerance, own.partitioning, factor, 1.0);
             patches.all(of_patch)
         };
-        let factor = nets.uniform_factor(&inputs, None, &given(64.0)).expect("some factor suffices");
+        let factor = lod.uniform_factor(&given(16.0)).expect("some factor suffices");
         assert!(factor > 2.0 && suffices(factor) && (2..factor as u32).all(|less| !suffices(less as f32)), "{factor}");
-        assert_eq!(nets.uniform_factor(&inputs, None, &given(factor)), None, "it has no fewer triangles");
-        assert_eq!(nets.uniform_factor(&inputs, None, &given(factor + 1.0)), Some(factor));
+        assert_eq!(lod.uniform_factor(&given(factor)), None, "it has no fewer triangles");
+        assert_eq!(lod.uniform_factor(&given(factor + 1.0)), Some(factor));
     }
 }

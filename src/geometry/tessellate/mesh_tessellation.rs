@@ -5,11 +5,12 @@ use glam::{Vec2, Vec3};
 
 use super::control_nets::ControlNets;
 use super::mesh_displacement::{MeshDisplacement, displacement_reach};
+use super::mesh_factors::MeshLod;
 use super::vertex::{Vertex, pack_key};
 use super::{
-    ControlNet, Edges, FIXED_ONE, HullFactors, Inputs, LodView, NOT_CULLED, Normals, PatchFactors, Solid,
-    corner_weights, cull_reason, domain_plan, domain_point, domain_triangle, edge_normal, edge_position, edge_uv,
-    linear_normal, linear_uv, outline_place, pack_normal, patch_position, point_count, quadratic_edge_normal,
+    Clip, ControlNet, Edges, FIXED_ONE, HullFactors, Inputs, LodView, NOT_CULLED, Normals, PatchFactors, Solid,
+    Tessellation, corner_weights, cull_reason, domain_plan, domain_point, domain_triangle, edge_normal, edge_position,
+    edge_uv, linear_normal, linear_uv, outline_place, pack_normal, patch_position, point_count, quadratic_edge_normal,
     quadratic_normal, surface_normal, triangle_count,
 };
 use crate::mesh::{Mesh, Topology};
@@ -47,10 +48,8 @@ pub fn tessellate(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: Op
     let nets = ControlNets::new(mesh, topology, inputs);
     let displacement = MeshDisplacement::new(&nets, inputs);
     let culls_back = culls_back(mesh, topology, inputs);
-    let made = match factors {
-        Some(edges) => nets.factors_beside(inputs, displacement.as_ref(), edges),
-        None => nets.mesh_factors(inputs, displacement.as_ref()),
-    };
+    let lod = MeshLod { nets: &nets, inputs, displacement: displacement.as_ref() };
+    let made = factors.map_or_else(|| lod.mesh_factors(), |edges| lod.factors_beside(edges));
     let displacement = displacement.map(|displacement| displacement.with_levels(&made.edges));
     let written = |patch| nets.hull_factors(inputs, &made, patch);
     let out = nets.emit(inputs, displacement.as_ref(), culls_back, written);
@@ -86,7 +85,7 @@ pub fn hull_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<Hu
     let nets = ControlNets::new(mesh, topology, inputs);
     let displacement = MeshDisplacement::new(&nets, inputs);
     let culls_back = culls_back(mesh, topology, inputs);
-    let factors = nets.mesh_factors(inputs, displacement.as_ref());
+    let factors = MeshLod { nets: &nets, inputs, displacement: displacement.as_ref() }.mesh_factors();
     let written = |patch| {
         let net = nets.patch(patch);
         match cull_reason(inputs.tessellation.clip, culls_back, &inputs.view, &net) {
@@ -99,25 +98,14 @@ pub fn hull_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<Hu
 
 /// Returns the numbers of vertices and triangles that [`tessellate`] would emit without clipping and culling.
 pub fn totals(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> (u64, u64) {
-    let inputs = &seen_with_reach(mesh, inputs);
-    let nets = ControlNets::new(mesh, topology, inputs);
-    let factors = nets.mesh_factors(inputs, MeshDisplacement::new(&nets, inputs).as_ref());
-    let patches = 0..topology.patches.len() as u32;
-    let written = patches.map(|patch| nets.hull_factors(inputs, &factors, patch));
-    sums(written.map(|written| written.process(inputs.tessellation.partitioning)))
+    let tessellation = Tessellation { clip: Clip::Off, cull_back_faces: false, ..inputs.tessellation };
+    given_totals(&hull_factors(mesh, topology, &Inputs { tessellation, ..*inputs }), inputs)
 }
 
 /// Returns the numbers of vertices and triangles that [`tessellate_given`] would emit without clipping.
 pub fn given_totals(given: &[HullFactors], inputs: &Inputs) -> (u64, u64) {
-    sums(
-        given
-            .iter()
-            .map(|written| written.rounded(inputs.tessellation.partitioning).process(inputs.tessellation.partitioning)),
-    )
-}
-
-/// Adds up the numbers of points and triangles of patches.
-fn sums(patches: impl Iterator<Item = PatchFactors>) -> (u64, u64) {
+    let partitioning = inputs.tessellation.partitioning;
+    let patches = given.iter().map(|written| written.rounded(partitioning).process(partitioning));
     let counts = patches.map(|factors| (u64::from(point_count(factors)), u64::from(triangle_count(factors))));
     counts.fold((0, 0), |sum, count| (sum.0 + count.0, sum.1 + count.1))
 }
@@ -126,7 +114,8 @@ fn sums(patches: impl Iterator<Item = PatchFactors>) -> (u64, u64) {
 pub fn edge_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<f32> {
     let inputs = &seen_with_reach(mesh, inputs);
     let nets = ControlNets::new(mesh, topology, inputs);
-    nets.mesh_factors(inputs, MeshDisplacement::new(&nets, inputs).as_ref()).edges
+    let displacement = MeshDisplacement::new(&nets, inputs);
+    MeshLod { nets: &nets, inputs, displacement: displacement.as_ref() }.mesh_factors().edges
 }
 
 impl ControlNets<'_> {

@@ -1,10 +1,9 @@
 //! The error on screen: the distance in px between what was emitted and its limit surface.
 
-use std::thread;
-
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
 use super::visitor::{EmittedChunk, Visitor};
+use geometry::cores::in_ranges;
 use geometry::mesh::{Mesh, Topology};
 use geometry::tessellate::{ControlNet, FIXED_ONE, Inputs, LimitSurface, LodView, Vertex};
 
@@ -138,15 +137,8 @@ impl Visitor for ScreenErrorMeasurement<'_> {
     /// Samples triangles on a grid that divides their edges. Corners aren't sampled, since they lie on the surface except for
     /// rounding.
     fn take(&mut self, chunk: &EmittedChunk) {
-        let workers = thread::available_parallelism().map_or(1, |cores| cores.get());
-        let share = chunk.triangles.len().div_ceil(workers).max(1);
         let this = &*self;
-        let found: Vec<_> = thread::scope(|scope| {
-            let run = |part| scope.spawn(move || this.worst_of(chunk.vertices, part));
-            let threads: Vec<_> = chunk.triangles.chunks(share).map(run).collect();
-            let joined = threads.into_iter().map(thread::ScopedJoinHandle::join);
-            joined.map(|found| found.unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
-        });
+        let found = in_ranges(chunk.triangles.len(), 1, |range| this.worst_of(chunk.vertices, &chunk.triangles[range]));
         for (worst, above) in found {
             self.worst = self.worst.into_iter().chain(worst).reduce(worse);
             // The triangles of a patch may have been divided among threads.

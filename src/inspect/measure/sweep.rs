@@ -6,11 +6,11 @@
 //! All patches have the same factor and so the same triangles in the domain. A place's triangle is found once per factor.
 
 use std::ops::RangeInclusive;
-use std::sync::Mutex;
 use std::thread;
 
 use glam::{DVec3, Vec3};
 
+use super::accuracy::blocks;
 use geometry::mesh::{Mesh, Topology};
 use geometry::tessellate::{
     Clip, Convention, FIXED_ONE, Inputs, Lod, Partitioning, PatchFactors, Tessellated, Tessellation, Vertex, process,
@@ -61,7 +61,7 @@ pub fn sweep(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: RangeIn
     let (first, last) = factors.into_inner();
     let count = ((last - first) / step).floor().max(0.0) as u32;
     let still = |k: u32| SweepStep { factor: first + k as f32 * step, jump: 0.0, patch: 0, place: [0, 0] };
-    let mut steps: Vec<_> = (1..=count).map(still).collect();
+    let steps: Vec<_> = (1..=count).map(still).collect();
 
     let inputs = Inputs {
         tessellation: Tessellation {
@@ -74,18 +74,14 @@ pub fn sweep(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: RangeIn
     };
     let places = Places::new(places());
     let states = States { mesh, topology, inputs, places: &places };
-    // Small pieces keep all threads busy, since high factors take far longer than low ones.
-    let pieces = Mutex::new(steps.chunks_mut(32));
-    let next = || pieces.lock().ok().and_then(|mut pieces| pieces.next());
-    thread::scope(|scope| {
-        for _ in 0..thread::available_parallelism().map_or(1, usize::from) {
-            scope.spawn(|| {
-                while let Some(piece) = next() {
-                    states.measure(piece, step);
-                }
-            });
-        }
-    });
+    // Blocks keep all threads busy, since high factors take far longer than low ones.
+    let threads = thread::available_parallelism().map_or(1, usize::from);
+    let steps = blocks(steps.len(), threads, |range| {
+        let mut block = steps[range].to_vec();
+        states.measure(&mut block, step);
+        block
+    })
+    .concat();
     Sweep { partitioning: inputs.tessellation.partitioning, step, steps }
 }
 

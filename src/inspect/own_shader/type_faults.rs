@@ -1,7 +1,9 @@
 //! Says in WGSL's words what is wrong with types: the compiler's messages have numbers of its own for expressions and types.
 
+use naga::back::binary_operation_str;
+use naga::common::wgsl::TryToWgsl;
 use naga::valid::{CallError, ExpressionError, FunctionError, ValidationError};
-use naga::{BinaryOperator, Scalar, ScalarKind, TypeInner, VectorSize};
+use naga::{TypeInner, VectorSize};
 
 /// What is wrong, if it is one of the mistakes that are made often.
 pub(super) fn said(error: &ValidationError) -> Option<String> {
@@ -35,52 +37,18 @@ fn said_of_call(error: &CallError) -> Option<String> {
 fn said_of_expression(error: &ExpressionError) -> Option<String> {
     let ExpressionError::InvalidBinaryOperandTypes { op, lhs_type, rhs_type, .. } = error else { return None };
     let [left, right] = [type_name(lhs_type)?, type_name(rhs_type)?];
-    Some(format!("`{}` can't be between {left} and {right}", sign(*op)))
+    Some(format!("`{}` can't be between {left} and {right}", binary_operation_str(*op)))
 }
 
 /// A type of numbers as WGSL names it.
 fn type_name(of: &TypeInner) -> Option<String> {
     let count = |size: VectorSize| size as u8;
     match *of {
-        TypeInner::Scalar(scalar) => scalar_name(scalar).map(str::to_owned),
-        TypeInner::Vector { size, scalar } => Some(format!("vec{}<{}>", count(size), scalar_name(scalar)?)),
+        TypeInner::Scalar(scalar) => scalar.try_to_wgsl().map(str::to_owned),
+        TypeInner::Vector { size, scalar } => Some(format!("vec{}<{}>", count(size), scalar.try_to_wgsl()?)),
         TypeInner::Matrix { columns, rows, scalar } => {
-            Some(format!("mat{}x{}<{}>", count(columns), count(rows), scalar_name(scalar)?))
+            Some(format!("mat{}x{}<{}>", count(columns), count(rows), scalar.try_to_wgsl()?))
         }
         _ => None,
-    }
-}
-
-fn scalar_name(scalar: Scalar) -> Option<&'static str> {
-    match (scalar.kind, scalar.width) {
-        (ScalarKind::Float, 4) => Some("f32"),
-        (ScalarKind::Sint, 4) => Some("i32"),
-        (ScalarKind::Uint, 4) => Some("u32"),
-        (ScalarKind::Bool, _) => Some("bool"),
-        _ => None,
-    }
-}
-
-fn sign(op: BinaryOperator) -> &'static str {
-    use BinaryOperator as Op;
-    match op {
-        Op::Add => "+",
-        Op::Subtract => "-",
-        Op::Multiply => "*",
-        Op::Divide => "/",
-        Op::Modulo => "%",
-        Op::Equal => "==",
-        Op::NotEqual => "!=",
-        Op::Less => "<",
-        Op::LessEqual => "<=",
-        Op::Greater => ">",
-        Op::GreaterEqual => ">=",
-        Op::And => "&",
-        Op::ExclusiveOr => "^",
-        Op::InclusiveOr => "|",
-        Op::LogicalAnd => "&&",
-        Op::LogicalOr => "||",
-        Op::ShiftLeft => "<<",
-        Op::ShiftRight => ">>",
     }
 }

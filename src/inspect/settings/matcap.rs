@@ -1,45 +1,21 @@
 //! Lit spheres that a surface can be shown with.
 
-use super::{Choice, Description};
-use geometry::names::every;
+use super::choices;
 
-/// A matcap: a picture of a lit sphere, from which every place of a surface takes the colour that the sphere has at the same
-/// normal (Sloan et al., The Lit Sphere, 2001).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Matcap {
-    #[default]
-    RedClay,
-    Chrome,
-    Pearl,
-    TwoTone,
-}
-
-impl Choice for Matcap {
-    const ALL: &'static [Self] = &every![Matcap: RedClay, Chrome, Pearl, TwoTone];
-
-    fn description(self) -> Description {
-        let (name, label, text) = match self {
-            Self::RedClay => (
-                "red-clay",
-                "Red clay",
-                "Dark red clay with a soft sheen, as in sculpting programs. It shows fine relief.",
-            ),
-            Self::Chrome => (
-                "chrome",
-                "Chrome",
-                "A mirror under a bright sky, with a sharp horizon and lamps. Their reflections show dents and kinks.",
-            ),
-            Self::Pearl => (
-                "pearl",
-                "Pearl",
-                "Pale and smooth, with colours that change towards the outline. It shows soft changes of form.",
-            ),
-            Self::TwoTone => (
-                "two-tone",
-                "Two-tone",
-                "Warm light from the left and cool light from the right, which meet in a soft line. It shows the large form.",
-            ),
-        };
-        Description::new(name, label, text)
+choices! {
+    /// A matcap: a picture of a lit sphere, from which every place of a surface takes the colour that the sphere has at the same
+    /// normal (Sloan et al., The Lit Sphere, 2001).
+    #[derive(Default, Hash)]
+    pub enum Matcap {
+        #[default]
+        RedClay => "red-clay", "Red clay",
+            "Dark red clay with a soft sheen, as in sculpting programs. It shows fine relief.";
+        Chrome => "chrome", "Chrome",
+            "A mirror under a bright sky, with a sharp horizon and lamps. Their reflections show dents and kinks.";
+        Pearl => "pearl", "Pearl",
+            "Pale and smooth, with colours that change towards the outline. It shows soft changes of form.";
+        TwoTone => "two-tone", "Two-tone",
+            "Warm light from the left and cool light from the right, which meet in a soft line. It shows the large \
+             form.";
     }
 }

@@ -16,12 +16,12 @@ mod value;
 use glam::{Mat4, Vec2};
 
 use geometry::mesh::{Heights, Material, Mesh};
-use geometry::names::every;
 use geometry::tessellate::{
     Clip, Displacement, Inputs, Lod, LodView, Partitioning, Surface, Tessellation, displacement_reach,
 };
 use load::Import;
 
+pub(crate) use choice::choices;
 pub use choice::{Choice, Description, descriptions};
 pub use light::{FileLights, Lighting, NormalMaps, ToneCurve};
 pub use matcap::Matcap;
@@ -119,58 +119,27 @@ impl SplitSide {
     pub const BOTH: [Self; 2] = [Self::Left, Self::Right];
 }
 
-/// Where the normals that a surface is shaded with are evaluated.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum NormalsAt {
-    /// At emitted vertices; triangles interpolate them.
-    #[default]
-    Vertices,
-    /// At every pixel, at its place in the patch.
-    Pixels,
-}
-
-impl Choice for NormalsAt {
-    const ALL: &'static [Self] = &every![NormalsAt: Vertices, Pixels];
-
-    fn description(self) -> Description {
-        let (name, label, text) = match self {
-            Self::Vertices => (
-                "vertices",
-                "Vertices",
-                "Normals are evaluated at vertices and interpolated in every triangle, so that shading depends on the \
-                 triangles.",
-            ),
-            Self::Pixels => (
-                "pixels",
-                "Pixels",
-                "The pixel shader evaluates the patch's normal at every pixel, so that shading stays the same however \
-                 few triangles a patch has.",
-            ),
-        };
-        Description::new(name, label, text)
+choices! {
+    /// Where the normals that a surface is shaded with are evaluated.
+    #[derive(Default, Hash)]
+    pub enum NormalsAt {
+        #[default]
+        Vertices => "vertices", "Vertices",
+            "Normals are evaluated at vertices and interpolated in every triangle, so that shading depends on the \
+             triangles.";
+        Pixels => "pixels", "Pixels",
+            "The pixel shader evaluates the patch's normal at every pixel, so that shading stays the same however \
+             few triangles a patch has.";
     }
 }
 
-/// The unit of distances on the surface.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum DeviationUnit {
-    /// Object units, which don't depend on the view.
-    #[default]
-    Units,
-    /// Px that the distance takes across the view, at its depth.
-    Px,
-}
-
-impl Choice for DeviationUnit {
-    const ALL: &'static [Self] = &every![DeviationUnit: Units, Px];
-
-    fn description(self) -> Description {
-        match self {
-            Self::Units => Description::new("units", "Object units", "Object units, which don't depend on the view."),
-            Self::Px => {
-                Description::new("px", "Px", "The length of the distance on screen, in px, if it lay across the view.")
-            }
-        }
+choices! {
+    /// The unit of distances on the surface.
+    #[derive(Default)]
+    pub enum DeviationUnit {
+        #[default]
+        Units => "units", "Object units", "Object units, which don't depend on the view.";
+        Px => "px", "Px", "The length of the distance on screen, in px, if it lay across the view.";
     }
 }
 

@@ -1,265 +1,123 @@
 //! What is drawn over the shaded surface, or in place of its colours.
 
-use super::{Choice, Description};
-use geometry::names::every;
+use super::{Choice, Description, choices};
 
-/// What the surface's colours mean: one thing at a time.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Colors {
-    /// The mesh's own.
-    #[default]
-    Material,
-    /// One matte material for all of the mesh, so that the shape alone is judged.
-    Clay,
-    /// The colours of a lit sphere at the same normals.
-    Matcap,
-    /// Stripes that the surface reflects.
-    Zebra,
-    /// The directions of shading normals.
-    ShadingNormals,
-    /// The directions of the normals of the curved surface itself.
-    SurfaceNormals,
-    /// The mean curvature of the curved surface itself.
-    Curvature,
-    /// A checker over texture coordinates.
-    UvChecker,
-    /// How many texels of an image lie in a px.
-    TexelDensity,
-    /// Domain coordinates: u red, v green, w blue.
-    Barycentric,
-    /// Factors as the tessellator uses them: inside each patch, and along each edge.
-    Factors,
-    /// How large each triangle is on screen.
-    TriangleSize,
-    /// Patches whose factors are all below 2.
-    LowFactors,
-    /// How many times as many triangles each patch has as it needs by itself.
-    Excess,
-    /// The distance to the reference surface.
-    Deviation,
-    /// Dim clay, over which the outlines of the triangles, of the source mesh and of the surface are drawn.
-    Silhouette,
-}
-
-/// What is drawn over the shaded surface; any of them together.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Overlays {
-    pub colors: Colors,
-    /// Edges of the tessellated triangles.
-    pub wireframe: bool,
-    /// Borders of the input triangles.
-    pub patches: bool,
-    /// Borders of the input triangles in the colour of their edge's kind.
-    pub adjacency: bool,
-    /// Edges whose sides differ in position.
-    pub cracks: bool,
-    /// Triangles that face away from the side that their patch faces.
-    pub folds: bool,
-    /// Faces seen from behind.
-    pub back_faces: bool,
-    /// Open edges that another triangle's point lies on, and those points.
-    pub t_junctions: bool,
-    /// Normals of emitted vertices.
-    pub normals: bool,
-    /// The ground under the mesh, and the axes.
-    pub grid: bool,
-}
-
-/// One of [`Overlays`], by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Overlay {
-    Wireframe,
-    Patches,
-    Clay,
-    Matcap,
-    Zebra,
-    ShadingNormals,
-    SurfaceNormals,
-    Curvature,
-    UvChecker,
-    TexelDensity,
-    Barycentric,
-    Adjacency,
-    Cracks,
-    Folds,
-    TJunctions,
-    BackFaces,
-    Factors,
-    TriangleSize,
-    LowFactors,
-    Excess,
-    Normals,
-    Grid,
-    Deviation,
-    Silhouette,
-}
-
-impl Overlay {
-    pub const ALL: [Self; 24] = every![Overlay:
-        Wireframe, Patches, Clay, Matcap, Zebra, ShadingNormals, SurfaceNormals, Curvature, UvChecker, TexelDensity, Barycentric, Adjacency, Cracks, Folds, TJunctions,
-        BackFaces, Factors, TriangleSize, LowFactors, Excess, Normals, Grid, Deviation, Silhouette,
-    ];
-}
-
-impl Choice for Overlay {
-    const ALL: &'static [Self] = &Self::ALL;
-
-    fn description(self) -> Description {
-        let (name, label, text) = match self {
-            Self::Wireframe => ("wireframe", "Wireframe", "Edges of the tessellated triangles."),
-            Self::Patches => ("patches", "Patch borders", "Edges of the mesh's own triangles."),
-            Self::Clay => (
-                "clay",
-                "Clay",
-                "Shows the mesh in one matte warm grey, without its own colours, textures and gloss, so that only its shape \
-                 is seen.",
-            ),
-            Self::Matcap => (
-                "matcap",
-                "Matcap",
-                "Gives each place of the surface the colour that a lit sphere has at the same shading normal, as sculpting \
-                 programs do. The light stays with the view.",
-            ),
-            Self::Zebra => (
-                "zebra",
-                "Zebra",
-                "Black and white stripes around the mesh, as the shading normals reflect them. Stripes jump where the tangent \
-                 breaks, and have a kink where the curvature does.",
-            ),
-            Self::ShadingNormals => (
-                "shading-normals",
-                "Shading normals",
-                "Colours the surface by its unit shading normal in object space, as normal maps do: x red, y green, z blue, \
-                 each from -1 (0) to 1 (255).",
-            ),
-            Self::SurfaceNormals => (
-                "surface-normals",
-                "Surface normals",
-                "Colours the surface by the unit normal of each curved patch itself, in the colours of the shading normals. \
-                 They differ from the shading normals where shading pretends, and jump where patches meet at an angle. \
-                 Displacement isn't in them.",
-            ),
-            Self::Curvature => (
-                "curvature",
-                "Curvature",
-                "Colours the surface by the mean curvature of each curved patch itself, in 1 / object unit: red where it \
-                 bulges, blue where it is hollow, and light grey where it is flat or a saddle. A sphere of radius r has 1 / r. \
-                 Displacement isn't in it.",
-            ),
-            Self::UvChecker => (
-                "uv-checker",
-                "UV checker",
-                "A checker over texture coordinates, with 8 by 8 squares in one unit of u and v and blue lines around each \
-                 unit. Red grows with u and green with v, so that mirrored and turned charts are seen.",
-            ),
-            Self::TexelDensity => (
-                "texel-density",
-                "Texel density",
-                "Colours the surface by how many texels of the base colour's image lie side by side in a px of the picture: \
-                 orange where the image is magnified, purple where it has more detail than is seen. A material without an \
-                 image counts as if it had one of 1024 x 1024 px.",
-            ),
-            Self::Barycentric => (
-                "barycentric",
-                "Barycentric",
-                "Colours the surface by domain coordinates: u red on corner 0, v green on corner 1, w blue on corner 2.",
-            ),
-            Self::Adjacency => {
-                ("adjacency", "Adjacency edges", "Edges of the mesh's own triangles, coloured by the kind of edge.")
-            }
-            Self::Cracks => (
-                "cracks",
-                "Cracks",
-                "Edges along which neighbouring triangles put a point at different positions; faint behind the surface.",
-            ),
-            Self::Folds => ("folds", "Folds", "Triangles that face away from the side that their patch faces."),
-            Self::TJunctions => (
-                "t-junctions",
-                "T-junctions",
-                "Open edges that a point of another triangle lies on; faint behind the surface.",
-            ),
-            Self::BackFaces => {
-                ("back-faces", "Back faces", "Triangles seen from behind: of open meshes, or wound the other way.")
-            }
-            Self::Factors => (
-                "factors",
-                "Factors",
-                "Colours the surface by tessellation factors after clamping and rounding: the inside factor inside each \
-                 patch, and along each edge the factor of that edge.",
-            ),
-            Self::TriangleSize => (
-                "triangle-size",
-                "Triangle size",
-                "Colours triangles by their size on screen: the side, in px, of the square that has twice the triangle's \
-                 area. Those below 3 px stand out: a GPU shades up to four times as many px for them as they cover.",
-            ),
-            Self::LowFactors => (
-                "low-factors",
-                "Factors below 2",
-                "Colours patches whose edge and inside factors are all below 2: without tessellation they would look almost \
-                 the same and cost less.",
-            ),
-            Self::Excess => (
-                "excess",
-                "Excess triangles",
-                "Colours patches by how many times as many triangles they have as their own least: the fewest with which a \
-                 patch alone would keep the tolerance of LOD by error.",
-            ),
-            Self::Normals => (
-                "normals",
-                "Normals",
-                "Normals of the tessellated vertices, 18 px long across the view; faint behind the surface. Where there are \
-                 many, about one every 24 px is drawn.",
-            ),
-            Self::Grid => (
-                "grid",
-                "Ground grid",
-                "The ground under the mesh, with lines at multiples of a round number of object units, and the axes x (red), \
-                 y (green) and z (blue) from the origin.",
-            ),
-            Self::Deviation => (
-                "deviation",
-                "Deviation",
-                "Colours the surface by its distance to the reference surface: the exact surface of a shape made in code, a \
-                 mesh that was chosen, or else the surface that the tessellation converges to.",
-            ),
-            Self::Silhouette => (
-                "silhouette",
-                "Silhouette",
-                "Shows the outline of the tessellated triangles over those of the source mesh and of the curved surface, and how \
-                 many px it is from them at most. Where only one line is seen, the outlines agree. A ring is around the place \
-                 where two are farthest apart.",
-            ),
-        };
-        Description::new(name, label, text)
+choices! {
+    /// One of [`Overlays`], by name.
+    pub enum Overlay {
+        Wireframe => "wireframe", "Wireframe", "Edges of the tessellated triangles.";
+        Patches => "patches", "Patch borders", "Edges of the mesh's own triangles.";
+        Clay => "clay", "Clay",
+            "Shows the mesh in one matte warm grey, without its own colours, textures and gloss, so that only its \
+             shape is seen.";
+        Matcap => "matcap", "Matcap",
+            "Gives each place of the surface the colour that a lit sphere has at the same shading normal, as \
+             sculpting programs do. The light stays with the view.";
+        Zebra => "zebra", "Zebra",
+            "Black and white stripes around the mesh, as the shading normals reflect them. Stripes jump where the \
+             tangent breaks, and have a kink where the curvature does.";
+        ShadingNormals => "shading-normals", "Shading normals",
+            "Colours the surface by its unit shading normal in object space, as normal maps do: x red, y green, z \
+             blue, each from -1 (0) to 1 (255).";
+        SurfaceNormals => "surface-normals", "Surface normals",
+            "Colours the surface by the unit normal of each curved patch itself, in the colours of the shading \
+             normals. They differ from the shading normals where shading pretends, and jump where patches meet at an \
+             angle. Displacement isn't in them.";
+        Curvature => "curvature", "Curvature",
+            "Colours the surface by the mean curvature of each curved patch itself, in 1 / object unit: red where it \
+             bulges, blue where it is hollow, and light grey where it is flat or a saddle. A sphere of radius r has \
+             1 / r. Displacement isn't in it.";
+        UvChecker => "uv-checker", "UV checker",
+            "A checker over texture coordinates, with 8 by 8 squares in one unit of u and v and blue lines around \
+             each unit. Red grows with u and green with v, so that mirrored and turned charts are seen.";
+        TexelDensity => "texel-density", "Texel density",
+            "Colours the surface by how many texels of the base colour's image lie side by side in a px of the \
+             picture: orange where the image is magnified, purple where it has more detail than is seen. A material \
+             without an image counts as if it had one of 1024 x 1024 px.";
+        Barycentric => "barycentric", "Barycentric",
+            "Colours the surface by domain coordinates: u red on corner 0, v green on corner 1, w blue on corner 2.";
+        Adjacency => "adjacency", "Adjacency edges", "Edges of the mesh's own triangles, coloured by the kind of edge.";
+        Cracks => "cracks", "Cracks",
+            "Edges along which neighbouring triangles put a point at different positions; faint behind the surface.";
+        Folds => "folds", "Folds", "Triangles that face away from the side that their patch faces.";
+        TJunctions => "t-junctions", "T-junctions",
+            "Open edges that a point of another triangle lies on; faint behind the surface.";
+        BackFaces => "back-faces", "Back faces", "Triangles seen from behind: of open meshes, or wound the other way.";
+        Factors => "factors", "Factors",
+            "Colours the surface by tessellation factors after clamping and rounding: the inside factor inside each \
+             patch, and along each edge the factor of that edge.";
+        TriangleSize => "triangle-size", "Triangle size",
+            "Colours triangles by their size on screen: the side, in px, of the square that has twice the triangle's \
+             area. Those below 3 px stand out: a GPU shades up to four times as many px for them as they cover.";
+        LowFactors => "low-factors", "Factors below 2",
+            "Colours patches whose edge and inside factors are all below 2: without tessellation they would look \
+             almost the same and cost less.";
+        Excess => "excess", "Excess triangles",
+            "Colours patches by how many times as many triangles they have as their own least: the fewest with which \
+             a patch alone would keep the tolerance of LOD by error.";
+        Normals => "normals", "Normals",
+            "Normals of the tessellated vertices, 18 px long across the view; faint behind the surface. Where there \
+             are many, about one every 24 px is drawn.";
+        Grid => "grid", "Ground grid",
+            "The ground under the mesh, with lines at multiples of a round number of object units, and the axes x \
+             (red), y (green) and z (blue) from the origin.";
+        Deviation => "deviation", "Deviation",
+            "Colours the surface by its distance to the reference surface: the exact surface of a shape made in \
+             code, a mesh that was chosen, or else the surface that the tessellation converges to.";
+        Silhouette => "silhouette", "Silhouette",
+            "Shows the outline of the tessellated triangles over those of the source mesh and of the curved surface, \
+             and how many px it is from them at most. Where only one line is seen, the outlines agree. A ring is \
+             around the place where two are farthest apart.";
     }
 }
 
-impl Choice for Colors {
-    const ALL: &'static [Self] = &every![Colors:
-        Material, Clay, Matcap, Zebra, ShadingNormals, SurfaceNormals, Curvature, UvChecker, TexelDensity, Barycentric, Factors, TriangleSize, LowFactors, Excess, Deviation, Silhouette,
-    ];
-
-    fn description(self) -> Description {
-        match self {
-            Self::Material => Description::new("material", "Material", "The mesh's own colours."),
-            Self::Clay => Overlay::Clay.description(),
-            Self::Matcap => Overlay::Matcap.description(),
-            Self::Zebra => Overlay::Zebra.description(),
-            Self::ShadingNormals => Overlay::ShadingNormals.description(),
-            Self::SurfaceNormals => Overlay::SurfaceNormals.description(),
-            Self::Curvature => Overlay::Curvature.description(),
-            Self::UvChecker => Overlay::UvChecker.description(),
-            Self::TexelDensity => Overlay::TexelDensity.description(),
-            Self::Barycentric => Overlay::Barycentric.description(),
-            Self::Factors => Overlay::Factors.description(),
-            Self::TriangleSize => Overlay::TriangleSize.description(),
-            Self::LowFactors => Overlay::LowFactors.description(),
-            Self::Excess => Overlay::Excess.description(),
-            Self::Deviation => Overlay::Deviation.description(),
-            Self::Silhouette => Overlay::Silhouette.description(),
+/// Sorts overlays into those that colour the surface, one at a time, and those that are switched on by themselves.
+macro_rules! overlays {
+    (colors: $($color:ident)+; switches: $($switch:ident as $field:ident)+) => {
+        /// What the surface's colours mean: one thing at a time. But for the first, see [`Overlay`].
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        pub enum Colors {
+            /// The mesh's own.
+            #[default]
+            Material,
+            $($color),+
         }
-    }
+
+        impl Choice for Colors {
+            const ALL: &'static [Self] = &[Self::Material, $(Self::$color),+];
+
+            fn description(self) -> Description {
+                match self {
+                    Self::Material => Description::new("material", "Material", "The mesh's own colours."),
+                    $(Self::$color => Overlay::$color.description(),)+
+                }
+            }
+        }
+
+        /// What is drawn over the shaded surface; any of them together. Switches are called as their [`Overlay`].
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        pub struct Overlays {
+            pub colors: Colors,
+            $(pub $field: bool),+
+        }
+
+        impl Overlays {
+            /// The control that turns `overlay` on.
+            pub fn control(&mut self, overlay: Overlay) -> Control<'_> {
+                match overlay {
+                    $(Overlay::$color => Control::Colors(&mut self.colors, Colors::$color),)+
+                    $(Overlay::$switch => Control::Switch(&mut self.$field),)+
+                }
+            }
+        }
+    };
+}
+
+overlays! {
+    colors: Clay Matcap Zebra ShadingNormals SurfaceNormals Curvature UvChecker TexelDensity Barycentric Factors TriangleSize
+        LowFactors Excess Deviation Silhouette;
+    switches: Wireframe as wireframe Patches as patches Adjacency as adjacency Cracks as cracks Folds as folds
+        BackFaces as back_faces TJunctions as t_junctions Normals as normals Grid as grid
 }
 
 impl Colors {
@@ -276,36 +134,6 @@ pub enum Control<'a> {
 }
 
 impl Overlays {
-    /// The control that turns `overlay` on.
-    pub fn control(&mut self, overlay: Overlay) -> Control<'_> {
-        Control::Switch(match overlay {
-            Overlay::Clay => return Control::Colors(&mut self.colors, Colors::Clay),
-            Overlay::Matcap => return Control::Colors(&mut self.colors, Colors::Matcap),
-            Overlay::Zebra => return Control::Colors(&mut self.colors, Colors::Zebra),
-            Overlay::ShadingNormals => return Control::Colors(&mut self.colors, Colors::ShadingNormals),
-            Overlay::SurfaceNormals => return Control::Colors(&mut self.colors, Colors::SurfaceNormals),
-            Overlay::Curvature => return Control::Colors(&mut self.colors, Colors::Curvature),
-            Overlay::UvChecker => return Control::Colors(&mut self.colors, Colors::UvChecker),
-            Overlay::TexelDensity => return Control::Colors(&mut self.colors, Colors::TexelDensity),
-            Overlay::Barycentric => return Control::Colors(&mut self.colors, Colors::Barycentric),
-            Overlay::Factors => return Control::Colors(&mut self.colors, Colors::Factors),
-            Overlay::TriangleSize => return Control::Colors(&mut self.colors, Colors::TriangleSize),
-            Overlay::LowFactors => return Control::Colors(&mut self.colors, Colors::LowFactors),
-            Overlay::Excess => return Control::Colors(&mut self.colors, Colors::Excess),
-            Overlay::Deviation => return Control::Colors(&mut self.colors, Colors::Deviation),
-            Overlay::Silhouette => return Control::Colors(&mut self.colors, Colors::Silhouette),
-            Overlay::Wireframe => &mut self.wireframe,
-            Overlay::Patches => &mut self.patches,
-            Overlay::Adjacency => &mut self.adjacency,
-            Overlay::Cracks => &mut self.cracks,
-            Overlay::Folds => &mut self.folds,
-            Overlay::TJunctions => &mut self.t_junctions,
-            Overlay::BackFaces => &mut self.back_faces,
-            Overlay::Normals => &mut self.normals,
-            Overlay::Grid => &mut self.grid,
-        })
-    }
-
     /// Turns an overlay on if it is off, and off if it is on. One that colours the surface takes the place of another.
     pub fn toggle(&mut self, overlay: Overlay) {
         match self.control(overlay) {
@@ -316,7 +144,7 @@ impl Overlays {
 
     /// Those that are on.
     pub fn on(mut self) -> impl Iterator<Item = Overlay> {
-        Overlay::ALL.into_iter().filter(move |overlay| match self.control(*overlay) {
+        Overlay::ALL.iter().copied().filter(move |overlay| match self.control(*overlay) {
             Control::Switch(switch) => *switch,
             Control::Colors(colors, own) => *colors == own,
         })
@@ -343,7 +171,7 @@ mod tests {
     #[test]
     fn one_overlay_at_a_time_colours_the_surface() {
         let mut overlays = Overlays::default();
-        for overlay in Overlay::ALL {
+        for &overlay in Overlay::ALL {
             overlays.toggle(overlay);
             assert_ne!(overlays, Overlays::default(), "{overlay:?}");
         }

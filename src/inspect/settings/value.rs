@@ -17,8 +17,9 @@ pub struct Declaration {
     pub kind: Kind,
     /// What the option is without a value; none if it always has one.
     pub unset: Option<Description>,
-    /// The members of saved settings that hold it: two for a pair, and none for what isn't saved.
-    pub saved_as: &'static [&'static str],
+    /// The members of saved settings that hold it, if it isn't its own name with underscores: two for a pair, and none for what isn't
+    /// saved.
+    pub saved_as: Option<&'static [&'static str]>,
     /// Why the option has no effect under these settings, in a sentence; none if it has.
     pub no_effect: fn(&Settings) -> Option<&'static str>,
     /// Where settings have its value.
@@ -89,6 +90,14 @@ impl Declaration {
     pub fn set(&self, settings: &mut Settings, value: Value) -> bool {
         let is_taken = if value == Value::Unset { self.unset.is_some() } else { self.kind.takes(&value) };
         is_taken && (self.access.set)(settings, value)
+    }
+
+    /// The members of saved settings that hold it.
+    pub fn members(&self) -> Vec<String> {
+        match self.saved_as {
+            Some(members) => members.iter().map(|&name| name.to_owned()).collect(),
+            None => vec![self.name.replace('-', "_")],
+        }
     }
 
     /// The default value.

@@ -5,7 +5,6 @@
 //! take. What differs between languages, the inputs and outputs of the stages, is in `templates/`.
 
 mod branches;
-mod choices;
 mod declarations;
 mod displaced;
 mod readme;
@@ -15,13 +14,11 @@ mod translation;
 
 use thiserror::Error;
 
-use geometry::names::every;
 use geometry::tessellate::{Displacement, Edges, Lod, Partitioning, Surface, Tessellation};
 use gpu::WgslModule;
 
-use crate::settings::{Choice, Description};
+use crate::settings::{Choice, choices};
 use branches::{Known, without_dead_branches};
-use choices::choices;
 use declarations::{Declaration, declarations, needed};
 use displaced::{Relief, with_fetch, without_fetch};
 
@@ -31,40 +28,12 @@ use translation::{StageLanguage, TranslationError, translated};
 const STAGES: WgslModule = WgslModule("stage_displaced");
 const PASSES: WgslModule = WgslModule("pass_exported");
 
-/// A shading language.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Language {
-    /// Vertex, hull and domain shader for Direct3D 11 and 12
-    Hlsl,
-    /// Vertex, tessellation control and tessellation evaluation shader for Vulkan and OpenGL
-    Glsl,
-    /// Compute passes for WebGPU
-    Wgsl,
-}
-
-impl Language {
-    pub const ALL: [Self; 3] = every![Language: Hlsl, Glsl, Wgsl];
-}
-
-impl Choice for Language {
-    const ALL: &'static [Self] = &Language::ALL;
-
-    fn description(self) -> Description {
-        match self {
-            Self::Hlsl => {
-                Description::new("hlsl", "HLSL", "Vertex, hull and domain shader for Direct3D 11 and 12: patch.hlsl.")
-            }
-            Self::Glsl => Description::new(
-                "glsl",
-                "GLSL",
-                "The same stages for Vulkan and OpenGL: patch.vert, patch.tesc and patch.tese.",
-            ),
-            Self::Wgsl => Description::new(
-                "wgsl",
-                "WGSL",
-                "Compute passes for WebGPU, which has no tessellation stages: tessellate.wgsl.",
-            ),
-        }
+choices! {
+    /// A shading language.
+    pub enum Language {
+        Hlsl => "hlsl", "HLSL", "Vertex, hull and domain shader for Direct3D 11 and 12: patch.hlsl.";
+        Glsl => "glsl", "GLSL", "The same stages for Vulkan and OpenGL: patch.vert, patch.tesc and patch.tese.";
+        Wgsl => "wgsl", "WGSL", "Compute passes for WebGPU, which has no tessellation stages: tessellate.wgsl.";
     }
 }
 
@@ -148,6 +117,28 @@ fn check(language: Language, tessellation: &Tessellation) -> Result<(), ShaderEr
     )
 }
 
+/// Returns the constants that a tessellation decides, each with the name of its value, as the shaders have them.
+fn choices_of(own: &Tessellation) -> [(&'static str, String); 10] {
+    fn constant(kind: &str, value: impl Choice) -> String {
+        format!("{kind}_{}", value.name()).to_uppercase().replace('-', "_")
+    }
+    let is_displaced = own.displacement != Displacement::Off;
+    // Displaced patches may show their fronts where the surface shows its back, so they are never culled.
+    let culling = if own.cull_back_faces && !is_displaced { "CULLING_ON" } else { "CULLING_OFF" };
+    [
+        ("CHOSEN_SURFACE", constant("surface", own.surface)),
+        ("CHOSEN_EDGES", constant("edges", own.edges)),
+        ("CHOSEN_LOD", constant("lod", own.used_lod())),
+        ("CHOSEN_PARTITIONING", constant("partitioning", own.partitioning)),
+        ("CHOSEN_CLIP", constant("clip", own.clip)),
+        ("CHOSEN_CULLING", culling.to_owned()),
+        ("CHOSEN_CONVENTION", constant("convention", own.convention)),
+        ("CHOSEN_NORMALS", constant("normals", own.normals)),
+        ("CHOSEN_DISPLACEMENT", constant("displacement", own.displacement)),
+        ("PATCH_INDICES", if is_displaced { "18u" } else { "9u" }.to_owned()),
+    ]
+}
+
 /// What is exported.
 struct Export<'a> {
     language: Language,
@@ -179,9 +170,9 @@ const LEVELS_ROOTS: [&str; 5] = ["StageConstants", "HeightConstants", "hull_side
 impl Export<'_> {
     /// All declarations of our shaders with the choices made, and without the branches that they never take.
     fn declarations(&self, module: WgslModule) -> Vec<Declaration> {
-        let choices = choices(self.tessellation);
-        let of = |name: &str| choices.iter().find(|(own, _)| *own == name).map_or("", |(_, value)| *value);
-        let mut values = choices.to_vec();
+        let choices = choices_of(self.tessellation);
+        let of = |name: &str| choices.iter().find(|(own, _)| *own == name).map_or("", |(_, value)| value);
+        let mut values: Vec<(&str, &str)> = choices.iter().map(|(name, value)| (*name, value.as_str())).collect();
         values.extend([
             ("surface", of("CHOSEN_SURFACE")),
             ("partitioning", of("CHOSEN_PARTITIONING")),

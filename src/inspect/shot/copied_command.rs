@@ -137,21 +137,17 @@ impl CopiedCommand<'_> {
 
     /// Writes the files of factors, of shaders, of a matcap and of light, the reference surface, the selection, the pose and the camera.
     fn view(&self, line: &mut Line) {
-        if let Some(path) = self.factors {
-            line.option("--factors", named(&Source::File(path.to_owned())));
-        }
-        if let Some(path) = self.lod_shader {
-            line.option("--lod-shader", named(&Source::File(path.to_owned())));
-        }
-        if let Some(path) = self.surface_shader {
-            line.option("--surface-shader", named(&Source::File(path.to_owned())));
-        }
-        if let Some(path) = self.matcap_image.filter(|_| self.settings.overlays.colors == Colors::Matcap) {
-            line.option("--matcap-image", named(&Source::File(path.to_owned())));
-        }
+        let colors_are_of_matcap = self.settings.overlays.colors == Colors::Matcap;
         let uses_file = self.settings.lighting == Lighting::Environment && self.settings.shows_materials();
-        if let Some(path) = self.environment.filter(|_| uses_file) {
-            line.option("--environment", named(&Source::File(path.to_owned())));
+        let files = [
+            ("--factors", self.factors),
+            ("--lod-shader", self.lod_shader),
+            ("--surface-shader", self.surface_shader),
+            ("--matcap-image", self.matcap_image.filter(|_| colors_are_of_matcap)),
+            ("--environment", self.environment.filter(|_| uses_file)),
+        ];
+        for (name, path) in files.into_iter().filter_map(|(name, path)| Some((name, path?))) {
+            line.option(name, named(&Source::File(path.to_owned())));
         }
         if let (Some(truth), None) = (self.truth, self.animation) {
             line.option("--truth", named(truth));

@@ -14,7 +14,7 @@ use geometry::tessellate::{Convention, HullFactors, Partitioning};
 use load::factors_file::from_csv;
 
 /// How many edges standard error lists.
-pub(crate) const SAID: usize = 10;
+const SAID: usize = 10;
 
 /// How many edges the stats list.
 pub(crate) const LISTED: usize = 10_000;
@@ -53,19 +53,28 @@ pub fn said(topology: &Topology, agreement: &Agreement, convention: Convention) 
 
 /// Returns which edges disagree, as lines for standard error.
 pub fn agreement_lines(topology: &Topology, agreement: &Agreement) -> Vec<String> {
-    let (different, compared) = (agreement.edges.len(), agreement.edges_compared);
-    let mut lines = vec![format!("{different} of {compared} edges have different factors on their sides")];
-    if agreement.patches_culled > 0 {
-        lines.push(format!(
-            "{} of {} patches are left out, because one of their factors is not greater than 0",
-            agreement.patches_culled,
-            topology.patches.len()
-        ));
-    }
-    if different > SAID {
+    let (culled, patches) = (agreement.patches_culled, topology.patches.len());
+    let left_out =
+        format!("{culled} of {patches} patches are left out, because one of their factors is not greater than 0");
+    let counts = [agreement.edges.len() as u64, agreement.edges_compared];
+    let texts = agreement.edges.iter().map(|edge| edge_text(topology, edge));
+    different_lines("factors", counts, if culled > 0 { std::slice::from_ref(&left_out) } else { &[] }, texts)
+}
+
+/// Returns how many edges have different ones of what is named on their sides, of how many, then `more`, and which these are, the
+/// ones that differ the most first; as lines for standard error.
+pub(crate) fn different_lines(
+    named: &str,
+    [different, compared]: [u64; 2],
+    more: &[String],
+    edges: impl Iterator<Item = String>,
+) -> Vec<String> {
+    let mut lines = vec![format!("{different} of {compared} edges have different {named} on their sides")];
+    lines.extend_from_slice(more);
+    if different > SAID as u64 {
         lines.push(format!("the {SAID} edges that differ the most:"));
     }
-    lines.extend(agreement.edges.iter().take(SAID).map(|edge| edge_text(topology, edge)));
+    lines.extend(edges.take(SAID));
     lines
 }
 

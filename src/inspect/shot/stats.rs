@@ -6,11 +6,10 @@ use serde::Serialize;
 
 use super::camera_stats::ViewStats;
 use super::factors_report::FactorsFile;
-use super::lod_shader_report::LodShaderStats;
 use super::outline_stats::SilhouetteStats;
+use super::own_shader_report::{LodShaderStats, SurfaceShaderStats};
 use super::reference::ReferenceStats;
 use super::reference_surface::{AccuracyStats, DeviationStats};
-use super::surface_shader_report::SurfaceShaderStats;
 use crate::engine::{Engine, Loaded};
 use crate::gates::{GateKind, Judgement};
 use crate::measure::{Measured, SeamTurns, Seams};
@@ -22,7 +21,7 @@ use geometry::view::{ScreenView, ulp};
 use gpu::PassTime;
 
 /// What was done and what it cost. Times are medians in ms.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 pub struct Stats {
     /// The name of the view, if there are several.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -97,7 +96,7 @@ pub struct Stats {
 }
 
 /// What was drawn, in the options' names.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 struct SettingsStats {
     surface: &'static str,
     /// Of Phong tessellation alone.
@@ -161,7 +160,7 @@ pub struct AnimationStats {
 }
 
 /// Memory, in bytes.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 struct Bytes {
     /// Corners and triangles as loaded.
     input: u64,
@@ -171,7 +170,7 @@ struct Bytes {
     arena: u64,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 pub(crate) struct CrackStats {
     edge_points: u64,
     edges_compared: u64,
@@ -205,7 +204,7 @@ impl CrackStats {
 }
 
 /// Angles between the shading normals of both sides of uv seams and split normals.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 struct SeamStats {
     #[serde(flatten)]
     shading: SeamTurnStats,
@@ -213,7 +212,7 @@ struct SeamStats {
     mapped: Option<SeamTurnStats>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 struct SeamTurnStats {
     edges: u64,
     points: u64,
@@ -266,7 +265,6 @@ impl Stats {
         let mut ms: BTreeMap<_, _> = passes.iter().map(|time| (time.pass, time.ms)).collect();
         ms.extend([("load", loaded.load_ms), ("topology", loaded.topology_ms)]);
         Self {
-            view: None,
             adapter: engine.gpu.info.name.clone(),
             settings: SettingsStats::new(settings, scene.tessellator.surface_shader().is_some()),
             triangles_in: mesh.triangles.len() as u64,
@@ -281,8 +279,6 @@ impl Stats {
             patches_facing_away: measured.culled.facing_away,
             patches_below_factor_2: measured.patches_low,
             triangles_out,
-            triangles_in_view: 0,
-            triangles_below_3_px: 0,
             vertices_out,
             bytes: Bytes {
                 input: (size_of_val(&mesh.corners[..]) + size_of_val(&mesh.triangles[..])) as u64,
@@ -291,25 +287,10 @@ impl Stats {
             },
             cracks: CrackStats::new(measured, topology, view),
             seams: SeamStats::new(&measured.seams),
-            leaks: None,
             folds: measured.folds,
             not_finite: measured.not_finite,
-            max_error_px: None,
-            patches_flat: None,
-            lod_comparison: None,
-            factors_capped: 0,
-            factors_file: None,
-            lod_shader: None,
-            surface_shader: None,
-            accuracy: None,
-            deviation: None,
-            silhouette: None,
-            left: None,
-            animation: None,
-            camera: None,
-            reference: None,
-            gates: Vec::new(),
             ms,
+            ..Self::default()
         }
     }
 }

@@ -1,8 +1,7 @@
 //! Builds the levels of a height map, and measures how much detail each level loses.
 
-use std::num::NonZero;
-
 use super::{HeightMap, MAX_KEPT, MAX_LEVELS};
+use crate::cores::in_ranges;
 use crate::progress::{Cancelled, Progress};
 
 impl HeightMap {
@@ -147,33 +146,6 @@ fn shrink<E: From<Cancelled>>(
     Ok(())
 }
 
-/// Fills an image of this width row by row, on all processors.
-fn by_rows(
-    out: &mut [f32],
-    width: usize,
-    progress: &Progress,
-    fill: impl Fn(usize, &mut [f32]) + Sync,
-) -> Result<(), Cancelled> {
-    let threads = std::thread::available_parallelism().map_or(1, NonZero::get);
-    let band = (out.len() / width).div_ceil(threads).max(1);
-    let fill_band = |first: usize, rows: &mut [f32]| {
-        for (k, row) in rows.chunks_mut(width).enumerate() {
-            progress.check()?;
-            if first == 0 {
-                progress.set(k as f32 / band as f32);
-            }
-            fill(first + k, row);
-        }
-        Ok(())
-    };
-    let fill_band = &fill_band;
-    std::thread::scope(|scope| {
-        let start = |(index, rows)| scope.spawn(move || fill_band(index * band, rows));
-        let bands: Vec<_> = out.chunks_mut(band * width).enumerate().map(start).collect();
-        bands.into_iter().try_for_each(|band| band.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-    })
-}
-
 /// Returns the greatest difference between the pixels of level 0 and level `level`, interpolated there. Pixels of a
 /// repeating image beyond the last centre of the level are left out: the opposite borders of many images don't quite
 /// match.
@@ -183,9 +155,8 @@ fn lost_detail(map: &HeightMap, level: u32, progress: &Progress) -> Result<f32, 
     let start = (0..level).map(|l| map.level_size(l)).map(|[x, y]| (x * y) as usize).sum::<usize>();
     let (columns, rows) = (places(width, across, map.repeats), places(height, down, map.repeats));
     let own = &map.heights[start..start + across * down];
-    let mut lost = vec![0.0_f32; height];
-    by_rows(&mut lost, 1, progress, |y, lost| {
-        let Some((upper, lower, below)) = rows[y] else { return };
+    let lost = |y: usize| {
+        let Some((upper, lower, below)) = rows[y] else { return 0.0 };
         let line = |row: usize| &own[row * across..(row + 1) * across];
         let between: Vec<f32> = line(upper).iter().zip(line(lower)).map(|(a, b)| a + (b - a) * below).collect();
         let all = map.heights[y * width..(y + 1) * width].iter().zip(&columns);
@@ -193,9 +164,20 @@ fn lost_detail(map: &HeightMap, level: u32, progress: &Progress) -> Result<f32, 
             let (left, right, beside) = (*column)?;
             Some((height - (between[left] + (between[right] - between[left]) * beside)).abs())
         });
-        lost[0] = differences.fold(0.0, f32::max);
-    })?;
-    Ok(lost.into_iter().fold(0.0, f32::max))
+        differences.fold(0.0, f32::max)
+    };
+    let parts = in_ranges(height, 1, |rows| {
+        let (mut most, first, count) = (0.0_f32, rows.start, rows.len());
+        for y in rows {
+            progress.check()?;
+            if first == 0 {
+                progress.set(y as f32 / count as f32);
+            }
+            most = most.max(lost(y));
+        }
+        Ok(most)
+    });
+    parts.into_iter().try_fold(0.0, |most: f32, part| Ok(most.max(part?)))
 }
 
 /// For each of `count` pixels of level 0 along an axis, returns the two of a level's `own` pixels that it lies between,

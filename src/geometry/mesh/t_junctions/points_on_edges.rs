@@ -1,12 +1,14 @@
 //! Finds points that lie on straight open edges.
 
+use std::collections::HashMap;
+
+use foldhash::fast::RandomState;
 use glam::DVec3;
 
 use super::line_segment::LineSegment;
 use super::{TRIES, corners, open_edges};
 use crate::mesh::bounding_box_tree::BoundingBoxTree;
 use crate::mesh::bounds::Bounds;
-use crate::mesh::spatial_hash::SpatialHash;
 use crate::mesh::weld_preview::TOLERANCES;
 use crate::mesh::{Edge, Topology};
 
@@ -77,21 +79,18 @@ fn shortest(topology: &Topology) -> Vec<f64> {
     shortest
 }
 
-/// Returns the ends of all boundary edges, each once, but only the first few in any one place.
+/// Returns the ends of all boundary edges, each once, but only the first few in any one place: a cell of a grid.
 fn boundary_points(topology: &Topology, shortest: &[f64], tolerance: f64) -> Vec<(DVec3, u32)> {
-    let mut spots = SpatialHash::new(tolerance);
+    // How many points a cell has, by the bits of its coordinates. They never become integers, which could overflow, and adding 0 turns
+    // -0 into +0.
+    let mut spots: HashMap<[u64; 3], usize, RandomState> = HashMap::default();
+    let cell = |place: DVec3| place.to_array().map(|x| ((x / (2.0 * tolerance)).floor() + 0.0).to_bits());
     let place_of = |point: u32| topology.points[point as usize].as_dvec3();
-    // For each point, how many points have been counted in its place, itself included.
-    let mut tried = vec![0_usize; topology.points.len()];
     let open = (0..topology.points.len() as u32).filter(|&point| shortest[point as usize].is_finite());
     let few = open.filter(|&point| {
-        let before = spots.at(place_of(point), place_of).map_or(0, |latest| tried[latest as usize]);
-        let is_one = before < TRIES;
-        if is_one {
-            tried[point as usize] = before + 1;
-            spots.put(point, place_of);
-        }
-        is_one
+        let count = spots.entry(cell(place_of(point))).or_default();
+        *count += 1;
+        *count <= TRIES
     });
     few.map(|point| (place_of(point), point)).collect()
 }

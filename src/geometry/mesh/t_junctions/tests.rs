@@ -181,17 +181,17 @@ fn loose_fan(n: u32, base: impl Fn(u32) -> Vec3) -> Topology {
 
 #[test]
 fn long_edges_and_crowded_spots_stay_fast() {
-    let n = 100_000;
+    let n = 30_000;
     let crowd = loose_fan(n, |i| Vec3::new(1.0, 1.0, 5e-11 * i as f32));
-    assert_eq!((found(&crowd).len(), crowd.points.len()), (0, 200_001), "all on two spots");
-    let round = loose_fan(n, |i| Vec2::from((i as f32 * 3e-5).sin_cos()).extend(0.0));
-    assert_eq!((found(&round).len(), round.points.len()), (0, 200_001), "all along a line");
+    assert_eq!((found(&crowd).len(), crowd.points.len()), (0, 60_001), "all on two spots");
+    let round = loose_fan(n, |i| Vec2::from((i as f32 * 1e-4).sin_cos()).extend(0.0));
+    assert_eq!((found(&round).len(), round.points.len()), (0, 60_001), "all along a line");
 }
 
 #[test]
-fn a_fan_of_300_000_triangles() {
-    let n = 300_000;
-    let base = |i: u32| Vec2::from((i as f32 * 2e-5).sin_cos()).extend(0.0);
+fn a_fan_of_60_000_triangles() {
+    let n = 60_000;
+    let base = |i: u32| Vec2::from((i as f32 * 1e-4).sin_cos()).extend(0.0);
     let places: Vec<_> = (0..=n).map(|i| if i == n { Vec3::Z } else { base(i) }).collect();
     let triangles: Vec<_> = (0..n - 1).map(|i| [n, i, i + 1]).collect();
     assert_eq!(found(&topology(&places, &triangles)).len(), 0);

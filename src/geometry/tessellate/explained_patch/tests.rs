@@ -46,9 +46,10 @@ fn what_edges_were_asked_for_and_got_is_what_lod_by_error_gives_them() {
         let nets = ControlNets::new(&mesh, &topology, &inputs);
         let given = edge_factors(&mesh, &topology, &inputs);
         let out = tessellate(&mesh, &topology, &inputs, None);
-        for patch in 0..topology.patches.len() as u32 {
+        let explain = |(patch, used)| explain_patch(&mesh, &topology, &inputs, patch, used);
+        let all: Vec<ExplainedPatch> = (0..).zip(out.patch_factors.iter().copied()).map(explain).collect();
+        for (patch, explained) in (0..).zip(&all) {
             let used = out.patch_factors[patch as usize];
-            let explained = explain_patch(&mesh, &topology, &inputs, patch, used);
             let what = format!("{kind:?} {tessellation:?}, patch {patch}: {explained:?}");
             let edges = explained.edges.as_ref().expect("LOD is by error");
             for (side, edge) in edges.iter().enumerate() {
@@ -57,8 +58,7 @@ fn what_edges_were_asked_for_and_got_is_what_lod_by_error_gives_them() {
                 assert!(edge.got >= edge.own || edge.decided_by() == DecidedBy::All, "{what}");
                 decided[edge.decided_by() as usize] += 1;
                 for &(other, asked) in &edge.others {
-                    let used = out.patch_factors[other as usize];
-                    let of_other = explain_patch(&mesh, &topology, &inputs, other, used).edges.expect("as above");
+                    let of_other = all[other as usize].edges.as_ref().expect("as above");
                     assert!(of_other.iter().any(|back| back.own == asked && back.got == edge.got), "{what}");
                 }
             }
@@ -126,7 +126,7 @@ fn errors_are_bounds_and_near_the_largest_distance() {
     let (mesh, topology, inputs) = shape(Shape::Icosahedron, Tessellation::default());
     let used = process(Partitioning::Integer, [3.0, 2.0, 4.0], 3.0);
     let nets = ControlNets::new(&mesh, &topology, &inputs);
-    let seen = nets.seen_patch(&inputs, None, 0);
+    let seen = MeshLod { nets: &nets, inputs: &inputs, displacement: None }.seen_patch(0);
     let errors = pattern_errors(&seen, Convention::D3d11, used).expect("it is emitted");
     // At a tolerance below the largest bound the search finds a place that is farther off.
     let beyond = |tolerance: f32| {

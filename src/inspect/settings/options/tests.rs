@@ -120,7 +120,7 @@ fn every_field_is_reached_by_exactly_one_declaration() {
         let expected = if matches!(declaration.kind, Kind::Pair(_)) { 2 } else { 1 };
         assert_eq!(fields.len(), expected, "{} sets {fields:?}", declaration.name);
         assert!(
-            declaration.saved_as.is_empty() || declaration.saved_as == fields,
+            declaration.members().is_empty() || declaration.members() == fields,
             "saved settings call {} by its fields",
             declaration.name
         );

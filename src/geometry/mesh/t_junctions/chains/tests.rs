@@ -218,7 +218,7 @@ fn a_path_that_ends_blindly_hides_no_chain() {
 
 #[test]
 fn chains_of_many_points_and_many_paths_stay_fast() {
-    let n = 30_000;
+    let n = 10_000;
     let arc = |i: u32| {
         let x = i as f32 / n as f32;
         vec3(x, -0.2 * x * (1.0 - x), 0.0)

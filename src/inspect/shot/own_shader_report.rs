@@ -1,0 +1,172 @@
+//! Where what shaders of the user's own give disagrees: factors of an LOD shader, control points of a surface shader.
+
+use std::io::Write;
+
+use serde::Serialize;
+
+use super::factors_report::{EdgeStats, LISTED, agreement_lines, different_lines, end_points, point_text};
+use crate::engine::Engine;
+use crate::measure::{Agreement, PointsAgreement, PointsDisagreement};
+use crate::render::Scene;
+use geometry::mesh::Topology;
+use geometry::numbers::short;
+use gpu::GpuError;
+
+/// Reports on standard error where the factors of an LOD shader disagree, if the scene has one, and how many aren't numbers. The
+/// counts must be known.
+///
+/// # Errors
+/// The device was lost.
+pub fn report_own_lod(engine: &Engine, scene: &Scene) -> Result<(), GpuError> {
+    if let Some(agreement) = agreement(engine, scene)? {
+        let lines = agreement_lines(scene.tessellator.topology(), &agreement);
+        report(&lines, not_numbers_said(lod_not_numbers(scene)));
+    }
+    Ok(())
+}
+
+/// Reports on standard error where the control points of a surface shader disagree, if the scene has one, and how many aren't
+/// numbers. The counts must be known.
+///
+/// # Errors
+/// The device was lost.
+pub fn report_own_surface(engine: &Engine, scene: &Scene) -> Result<(), GpuError> {
+    if let Some(agreement) = engine.own_points_agreement(scene)? {
+        let topology = scene.tessellator.topology();
+        let counts = [agreement.edges.len() as u64, agreement.edges_compared];
+        let texts = agreement.edges.iter().map(|edge| edge_text(topology, edge));
+        report(&different_lines("control points", counts, &[], texts), straight_sides_said(surface_not_numbers(scene)));
+    }
+    Ok(())
+}
+
+fn report(lines: &[String], warning: Option<String>) {
+    for line in lines.iter().cloned().chain(warning.map(|said| format!("warning: {said}"))) {
+        let _ = writeln!(std::io::stderr(), "pnaen: {line}");
+    }
+}
+
+/// What is said about factors that aren't numbers, if there are any.
+pub fn not_numbers_said(count: u32) -> Option<String> {
+    match count {
+        0 => None,
+        1 => Some(
+            "1 factor of the LOD shader isn't a number (NaN): it culls its patch, or inside counts as 1.".to_owned(),
+        ),
+        _ => Some(format!(
+            "{count} factors of the LOD shader aren't numbers (NaN): they cull their patches, or inside count as 1."
+        )),
+    }
+}
+
+/// What is said about sides whose control points aren't numbers, if there are any.
+pub fn straight_sides_said(count: u32) -> Option<String> {
+    match count {
+        0 => None,
+        1 => Some(
+            "1 side got a control point of the surface shader that is infinite or no number (NaN): it is straight."
+                .to_owned(),
+        ),
+        _ => Some(format!(
+            "{count} sides got control points of the surface shader that are infinite or no numbers (NaN): they are straight."
+        )),
+    }
+}
+
+fn lod_not_numbers(scene: &Scene) -> u32 {
+    scene.tessellator.own_lod_report().map_or(0, |report| report.not_numbers)
+}
+
+fn surface_not_numbers(scene: &Scene) -> u32 {
+    scene.tessellator.own_surface_report().map_or(0, |report| report.not_numbers)
+}
+
+/// How the factors of an LOD shader agree; none without one.
+fn agreement(engine: &Engine, scene: &Scene) -> Result<Option<Agreement>, GpuError> {
+    if scene.tessellator.own_factors().is_none() {
+        return Ok(None);
+    }
+    let factors = engine.own_factors(scene)?;
+    Ok(Some(Agreement::of(scene.tessellator.topology(), &factors, scene.tessellator.convention())))
+}
+
+fn edge_text(topology: &Topology, edge: &PointsDisagreement) -> String {
+    let ([a, b], [one, other]) = (end_points(topology, edge.edge).map(point_text), edge.triangles);
+    format!(
+        "{a} to {b}: {} object units between the control points of triangles {one} and {other}",
+        short(edge.distance)
+    )
+}
+
+/// How the factors of an LOD shader disagree, as JSON.
+#[derive(Debug, Serialize)]
+pub struct LodShaderStats {
+    edges_compared: u64,
+    edges_different: u64,
+    patches_culled: u64,
+    /// Factors that are NaN.
+    not_numbers: u32,
+    /// The largest differences first, at most [`LISTED`].
+    edges: Vec<EdgeStats>,
+}
+
+impl LodShaderStats {
+    /// Of a scene with an LOD shader; none of others. The counts must be known.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn of(engine: &Engine, scene: &Scene) -> Result<Option<Self>, GpuError> {
+        let topology = scene.tessellator.topology();
+        Ok(agreement(engine, scene)?.map(|Agreement { edges_compared, patches_culled, edges, .. }| Self {
+            edges_compared,
+            edges_different: edges.len() as u64,
+            patches_culled,
+            not_numbers: lod_not_numbers(scene),
+            edges: edges.iter().take(LISTED).map(|edge| EdgeStats::new(topology, edge)).collect(),
+        }))
+    }
+}
+
+/// How the control points of a surface shader disagree, as JSON.
+#[derive(Debug, Serialize)]
+pub struct SurfaceShaderStats {
+    edges_compared: u64,
+    edges_different: u64,
+    /// The largest distance between control points that should be the same, in object units.
+    max_distance: f64,
+    /// Sides that are straight, because a control point is infinite or NaN.
+    not_numbers: u32,
+    /// The largest distances first, at most [`LISTED`].
+    edges: Vec<EdgePointsStats>,
+}
+
+#[derive(Debug, Serialize)]
+struct EdgePointsStats {
+    /// The edge's ends, in object units.
+    points: [[f32; 3]; 2],
+    /// The triangles of the two sides that are farthest apart.
+    triangles: [u32; 2],
+    distance: f64,
+}
+
+impl SurfaceShaderStats {
+    /// Of a scene with a surface shader; none of others. The counts must be known.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn of(engine: &Engine, scene: &Scene) -> Result<Option<Self>, GpuError> {
+        let topology = scene.tessellator.topology();
+        let edge = |&PointsDisagreement { edge, distance, triangles }: &PointsDisagreement| EdgePointsStats {
+            points: end_points(topology, edge),
+            triangles,
+            distance,
+        };
+        Ok(engine.own_points_agreement(scene)?.map(|agreement: PointsAgreement| Self {
+            edges_compared: agreement.edges_compared,
+            edges_different: agreement.edges.len() as u64,
+            max_distance: agreement.max_distance(),
+            not_numbers: surface_not_numbers(scene),
+            edges: agreement.edges.iter().take(LISTED).map(edge).collect(),
+        }))
+    }
+}
