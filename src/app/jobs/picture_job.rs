@@ -2,8 +2,7 @@
 
 use std::path::Path;
 
-use super::document::arena_bytes;
-use super::matcap::ChosenMatcap;
+use super::scenes::arena_bytes;
 use crate::app::App;
 use geometry::progress::Progress;
 use gpu::{Gpu, GpuError};
@@ -148,7 +147,7 @@ impl App {
             moment: document.moment,
             given: document.scene.tessellator.given().cloned(),
             surface_shader: document.scene.tessellator.surface_shader().cloned(),
-            matcap: self.matcap.as_ref().map(ChosenMatcap::picture),
+            matcap: self.matcap.as_ref().map(|chosen| chosen.content.clone()),
             // The scene is made from one that has it.
             environment: None,
             settings,

@@ -1,10 +1,8 @@
 //! The state of the chart panel: which settings are measured when, whether the chart is out of date, and saving it.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::app::App;
-use crate::app::dialogs::typed_path::Purpose;
-use crate::app::jobs::background_job::BackgroundJob;
 use crate::app::jobs::chart_job::{ChartBasis, ChartJob, Charted, Job};
 use geometry::tessellate::Tessellation;
 use inspect::settings::Settings;
@@ -21,7 +19,6 @@ pub(crate) struct Chart {
     pub(in crate::app) charting: ChartJob,
     /// The window's settings, if they aren't in the chart, and since when they are unchanged, on the window's clock in s.
     still: Option<(Settings, f64)>,
-    pub(in crate::app) saving: Option<BackgroundJob<Result<(), String>>>,
 }
 
 /// How long settings that aren't in the chart must stay unchanged before they are measured as well, in s.
@@ -34,10 +31,9 @@ impl Chart {
     }
 
     /// Stops measuring and frees the chart's device, which may be lost like the window's. The results so far stay.
-    pub(in crate::app) fn go_on_in(&mut self, context: &egui::Context) {
+    pub(in crate::app) fn close(&mut self) {
         self.charting.close();
         self.still = None;
-        self.saving = self.saving.take().map(|saving| saving.waking(context));
     }
 
     pub(in crate::app) fn charted(&self) -> Option<&Charted> {
@@ -150,11 +146,6 @@ impl App {
         if let Err(error) = self.panels.chart.charting.take() {
             self.dialogs.error = Some(error);
         }
-        if let Some(ended) = self.panels.chart.saving.as_ref().and_then(BackgroundJob::take) {
-            self.panels.chart.saving = None;
-            let saved = ended.unwrap_or_else(|stopped| Err(format!("saving the chart {stopped}")));
-            self.dialogs.error = saved.err().or(self.dialogs.error.take());
-        }
         self.measure_current(context);
     }
 
@@ -183,22 +174,6 @@ impl App {
     /// Makes the chart's measuring wait while the window draws or measures.
     pub(in crate::app) fn hold_chart(&self) {
         self.panels.chart.charting.hold(self.is_busy());
-    }
-
-    pub(in crate::app) fn save_dialog(&mut self, context: &egui::Context) {
-        self.dialog(Purpose::SaveChart, context, || {
-            let dialog = rfd::FileDialog::new().set_title("Save the chart").set_file_name("chart.svg");
-            let kinds = [("SVG picture", "svg"), ("PNG picture", "png"), ("CSV table", "csv")];
-            let dialog = kinds.into_iter().fold(dialog, |dialog, (name, ending)| dialog.add_filter(name, &[ending]));
-            dialog.save_file()
-        });
-    }
-
-    pub(in crate::app) fn save_chart_beside(&mut self, context: &egui::Context, path: PathBuf) {
-        let Some(charted) = self.panels.chart.charted() else { return };
-        let subject = charted.subject.clone();
-        let write = move || save(&path, &subject).map_err(|error| error.to_string());
-        self.panels.chart.saving = Some(BackgroundJob::start(context, write));
     }
 }
 

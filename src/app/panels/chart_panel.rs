@@ -8,6 +8,7 @@ use crate::app::jobs::chart_job::Charted;
 use crate::app::painting::panel_frame;
 use crate::app::text::{grouped, short};
 use crate::app::widgets::{dense, list, switch_button, text_width, unclicked};
+use crate::commands::{Purpose, Written};
 use geometry::tessellate::Surface;
 use inspect::settings::Choice;
 use lab::chart::{Cost, LodKind, MethodStyle, Plan, Probe, Row, Setting, dash, method_styles};
@@ -94,10 +95,10 @@ impl App {
         }
         ui.separator();
         self.methods_menu(ui);
-        let has_rows = !self.chart_rows().is_empty() && self.panels.chart.saving.is_none();
+        let has_rows = !self.chart_rows().is_empty() && !self.is_writing();
         let save = ui.add_enabled(has_rows, egui::Button::new("Save chart…"));
         if save.on_hover_text("As a picture (.svg, .png) or a table (.csv).").clicked() {
-            self.save_dialog(ui.ctx());
+            self.ask_for(ui.ctx(), Purpose::Write(Written::Chart));
         }
     }
 

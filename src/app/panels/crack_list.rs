@@ -44,7 +44,7 @@ impl App {
             let crack = &cracked[row];
             let kind = kind_name(topology.edges[crack.edge as usize].kind);
             let text = RichText::new(format!("{:<7}{kind:<13}{:>9}", crack.edge, short(crack.gap))).monospace();
-            let response = ui.selectable_label(self.viewport.selected_edge == Some(crack.edge), text);
+            let response = ui.selectable_label(self.selected_edge() == Some(crack.edge), text);
             if response.clicked() {
                 clicked = Some(crack.edge);
             }
@@ -67,7 +67,7 @@ impl App {
 
     /// The selected edge: its kind, its gap, and the points of each side.
     pub(in crate::app) fn edge_details(&mut self, ui: &mut egui::Ui) {
-        let (Some(edge), Some(document)) = (self.viewport.selected_edge, &self.document) else { return };
+        let (Some(edge), Some(document)) = (self.selected_edge(), &self.document) else { return };
         let topology = &document.loaded.topology;
         let kind = kind_name(topology.edges[edge as usize].kind);
         let mut closed = false;
@@ -111,7 +111,7 @@ impl App {
             point_rows(ui, &sides);
         }
         if closed {
-            self.viewport.selected_edge = None;
+            self.select_only_edge(None);
         }
     }
 
@@ -135,7 +135,7 @@ impl App {
         list(ui, "t-junctions", (junctions.len(), junctions[0].point), |ui, row| {
             let TJunction { edge, point, t, .. } = junctions[row];
             let text = RichText::new(format!("{point:<9}{edge:<9}{t:>11.3}")).monospace();
-            let response = ui.selectable_label(self.viewport.selected_edge == Some(edge), text);
+            let response = ui.selectable_label(self.selected_edge() == Some(edge), text);
             let response =
                 response.on_hover_text("Where the point lies along the edge, from 0 to 1. A click frames the edge.");
             if response.clicked() {
@@ -167,8 +167,7 @@ impl App {
             return;
         }
         let spot = self.edge_spot(topology, edge, at);
-        self.viewport.selected_edge = Some(edge);
-        self.keep_triangle_of(edge);
+        self.select_edge_alone(edge);
         self.show_place(SplitSide::Right, &Spot::Edge(spot), None);
     }
 
@@ -185,16 +184,16 @@ impl App {
 
     /// The selected edge's crack in a half, if there is a gap.
     pub(in crate::app) fn selected_gap(&self, half: SplitSide) -> Option<&CrackedEdge> {
-        let found = self.measured(half).found()?;
-        crack_in(found, self.viewport.selected_edge?).filter(|crack| crack.gap > 0.0)
+        let found = self.found(half)?;
+        crack_in(found, self.selected_edge()?).filter(|crack| crack.gap > 0.0)
     }
 
     /// The lines that mark the selected edge: each side in a colour of its own, the later ones thinner so that sides that
     /// coincide both show, and a dot where they are farthest apart. If its patches emit nothing, it is the straight line. An edge of
     /// the selected patch has wider ones, of which a halo is seen around the colour of the edge's factor.
     pub(in crate::app) fn selection_lines(&self, topology: &Topology, half: SplitSide) -> Vec<LineSegment> {
-        let Some(edge) = self.viewport.selected_edge else { return Vec::new() };
-        let sides = self.measured(half).found().map(|found| found.outlines.edge(topology, edge)).unwrap_or_default();
+        let Some(edge) = self.selected_edge() else { return Vec::new() };
+        let sides = self.found(half).map(|found| found.outlines.edge(topology, edge)).unwrap_or_default();
         let mut polylines: Vec<Vec<Vec3>> = sides.iter().map(|side| side.positions().collect()).collect();
         if polylines.iter().all(|points| points.len() < 2) {
             polylines = vec![

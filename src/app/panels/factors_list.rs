@@ -17,7 +17,7 @@ impl App {
         if !self.panels.open.title(ui, Section::Factors) {
             return;
         }
-        let Some(compared) = given.compared() else {
+        let Some(compared) = &given.content.compared else {
             ui.weak("The factors are being compared\u{2026}");
             return;
         };
@@ -45,13 +45,13 @@ impl App {
     pub(super) fn agreement(&self) -> Option<&Agreement> {
         match self.uses_lod_shader() {
             true => self.results()?.agreement.as_ref(),
-            false => Some(&self.given.as_ref()?.compared()?.agreement),
+            false => Some(&self.given.as_ref()?.content.compared.as_ref()?.agreement),
         }
     }
 
     /// Says which convention fits, if edges differ under the one that is set, and offers it.
     fn convention_advice(&mut self, ui: &mut egui::Ui) {
-        let Some(compared) = self.given.as_ref().and_then(|given| given.compared()) else { return };
+        let Some(compared) = self.given.as_ref().and_then(|given| given.content.compared.as_ref()) else { return };
         let Some((nearest, different)) = compared.agreement.nearest() else { return };
         let own = compared.agreement.edges.len() as u64;
         if different >= own {
@@ -85,7 +85,7 @@ impl App {
             let own = &edges[row];
             let [least, greatest] = own.extremes().map(|(_, factor)| short(factor.into()));
             let text = format!("{:<9}{least:>9}{greatest:>9}", own.edge);
-            let is_selected = self.viewport.selected_edge == Some(own.edge);
+            let is_selected = self.selected_edge() == Some(own.edge);
             let response = ui.selectable_label(is_selected, RichText::new(text).monospace());
             let response = response.on_hover_text(sides_text(own));
             if response.clicked() {

@@ -173,7 +173,9 @@ impl App {
     fn waste_facts(&self, ui: &mut egui::Ui) {
         let Some(document) = &self.document else { return };
         let patches = document.loaded.topology.patches.len() as u64;
-        let unknown = || if self.jobs.measure.is_busy() { "…".to_owned() } else { "-".to_owned() };
+        let unknown = || {
+            if document.right().measure.is_busy() { "…".to_owned() } else { "-".to_owned() }
+        };
         let results = self.results();
         let small = results.map_or_else(unknown, |results| part(results.sizes.small, results.sizes.in_view));
         let low = results.map_or_else(unknown, |results| part(results.found.patches_low.into(), patches));

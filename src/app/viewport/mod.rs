@@ -3,14 +3,14 @@
 mod axis_gizmo;
 mod camera;
 mod frozen_camera;
-mod highlight;
-pub(super) mod left_half;
+pub(super) mod highlight;
+mod left_half;
 pub(super) mod legend;
 pub(super) mod pace;
 pub(super) mod panel;
 mod patch_labels;
 pub(super) mod picture;
-mod place;
+pub(super) mod place;
 pub(super) mod playback;
 pub(super) mod preview;
 mod preview_pace;
@@ -23,15 +23,11 @@ use inspect::render::Camera;
 
 use camera::FollowedCamera;
 use frozen_camera::FrozenCamera;
-use highlight::Highlight;
-use left_half::LeftHalf;
 use pace::Pace;
 use picture::Picture;
-use place::Showing;
 use playback::Playback;
 use preview::Preview;
 use ruler::Ruler;
-use selection::Selection;
 use warm_up::WarmUp;
 
 /// What the viewport shows, and from where.
@@ -58,16 +54,10 @@ pub(super) struct Viewport {
     pub preview: Preview,
     pub warm_up: WarmUp,
     pub playback: Playback,
-    pub left: LeftHalf,
-    /// What the lines over the mesh were last made from.
-    pub highlight: Option<Highlight>,
-    pub selection: Selection,
-    /// The place that is about to be shown.
-    pub showing: Option<Showing>,
+    /// Whether a list or a menu was open when a button of the pointer was pressed last.
+    pub closes_list: bool,
     /// Measures distances between places that are clicked on, while it is in use.
     pub ruler: Option<Ruler>,
-    /// The selected edge: an index into the edges of the topology that is shown.
-    pub selected_edge: Option<u32>,
 }
 
 impl Viewport {
@@ -87,12 +77,8 @@ impl Viewport {
             preview: Preview::new(engine),
             warm_up: WarmUp::default(),
             playback: Playback::default(),
-            left: LeftHalf::default(),
-            highlight: None,
-            selection: Selection::default(),
-            showing: None,
+            closes_list: false,
             ruler: None,
-            selected_edge: None,
         }
     }
 }

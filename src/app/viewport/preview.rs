@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 
 use super::picture::{Picture, Wanted};
 use super::preview_pace::PreviewPace;
-use crate::app::App;
-use crate::app::jobs::document::Document;
+use crate::app::jobs::job_list::Jobs;
 use crate::app::painting::{Painting, ShownPicture};
+use crate::app::{App, Document};
 use geometry::tessellate::{Clip, Inputs, Lod, Tessellation};
 use geometry::view::ScreenView;
 use gpu::{GpuError, Recorder, Timing};
@@ -221,9 +221,10 @@ pub(super) fn count(engine: &Engine, scene: &mut Scene, wanted: &Wanted) -> Resu
 
 /// Decides what a preview of the wanted picture draws.
 fn shape_of(
+    jobs: &mut Jobs,
     context: &egui::Context,
     engine: &Engine,
-    document: &mut Document,
+    document: &Document,
     wanted: &Wanted,
     is_frozen: bool,
 ) -> Shape {
@@ -242,7 +243,7 @@ fn shape_of(
     }
     if patches > LARGE * most
         && document.moment.is_none()
-        && document.stand_in.is_made(context, engine, &document.loaded, (LARGE * most) as usize)
+        && document.stand_in.is_made(jobs, context, engine, &document.loaded, (LARGE * most) as usize)
     {
         return Shape::StandIn;
     }
@@ -293,7 +294,8 @@ impl App {
         let preview = &mut self.viewport.preview;
         preview.land();
         preview.fit(&self.painting, &self.engine, full.viewport)?;
-        let light = self.environment.as_ref().filter(|_| full.environment > 0).map(|open| open.environment.clone());
+        let light =
+            self.environment.as_ref().filter(|_| full.environment > 0).map(|open| open.content.environment.clone());
         let scene = match (shape, document.stand_in.scene()) {
             (Shape::StandIn, Some(stand_in)) => {
                 stand_in.matcap.clone_from(&document.scene.matcap);
@@ -316,8 +318,8 @@ impl App {
 
     /// What a preview of the wanted picture draws; none before a mesh is open.
     pub(super) fn cheaper_picture(&mut self, context: &egui::Context, full: &Wanted) -> Option<(Wanted, Shape)> {
-        let document = self.document.as_mut()?;
-        let shape = shape_of(context, &self.engine, document, full, self.viewport.frozen.is_some());
+        let document = self.document.as_ref()?;
+        let shape = shape_of(&mut self.jobs, context, &self.engine, document, full, self.viewport.frozen.is_some());
         let settings = settings_of(shape, &full.settings);
         let inputs = Inputs::new(&settings.tessellation, full.inputs.view);
         Some((Wanted { settings, inputs, ..*full }, shape))

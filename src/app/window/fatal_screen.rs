@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::app::App;
-use crate::app::dialogs::typed_path::{absolute, name_beside};
+use crate::app::dialogs::purpose::{absolute, name_beside};
 use crate::app::jobs::background_job::BackgroundJob;
 use crate::commands::{Action, FileAction, QUIT, with_key};
 use geometry::mesh::Moment;
