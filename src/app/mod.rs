@@ -72,7 +72,6 @@ pub struct App {
     surface_shader: Option<OpenShader<SurfaceShader>>,
     /// A picture of a lit sphere in place of those that are made in code, if one was opened.
     matcap: Option<OpenFile<Arc<Texture>>>,
-    /// The file of light that is open, if one is.
     environment: Option<OpenFile<Light>>,
     viewport: Viewport,
     panels: Panels,
@@ -199,7 +198,6 @@ impl App {
         self.viewport.warm_up.is_busy()
     }
 
-    /// Switches previews off or on.
     pub fn switch_previews(&mut self) {
         self.viewport.preview.is_on = !self.viewport.preview.is_on;
     }
@@ -246,7 +244,7 @@ impl eframe::App for App {
         self.compare_again(context);
         self.stop_slow_shader::<LodShader>();
         self.stop_slow_shader::<SurfaceShader>();
-        self.take_chart(context);
+        self.measure_current(context);
         self.take_device_problem();
         self.take_dropped(context);
         self.hold_typing(context);

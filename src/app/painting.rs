@@ -18,7 +18,6 @@ impl Painting {
         WindowPipelines::new(gpu, format).map(Self)
     }
 
-    /// What shows the picture of a target.
     pub(super) fn shown(&self, gpu: &Gpu, target: &Target, filter: wgpu::FilterMode) -> ShownPicture {
         ShownPicture { pipeline: self.0.picture.clone(), group: self.0.shown(gpu, target, filter) }
     }

@@ -8,7 +8,6 @@ use inspect::settings::options::{LOD_IS_FIXED, NORMALS_FOLLOW_TRIANGLES};
 /// The greatest number of bookmarks of a file: one for each key from 1 to 9.
 pub(crate) const MOST_BOOKMARKS: usize = 9;
 
-/// What a command needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Need {
     Document,
@@ -119,7 +118,6 @@ pub struct Availability {
     pub has: Vec<Need>,
     /// The number of the file's bookmarks.
     pub bookmarks: usize,
-    /// The names of the file's cameras.
     pub file_cameras: Vec<String>,
     /// The names of the mesh's animation clips.
     pub clips: Vec<String>,

@@ -19,7 +19,6 @@ impl Beside {
     pub const ALL: [Self; 6] = every![Beside: Truth, Factors, LodShader, SurfaceShader, Matcap, Environment];
 }
 
-/// What is written as a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Written {
     Chart,
@@ -34,7 +33,6 @@ pub enum Written {
     Mesh,
 }
 
-/// What a file is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
     Open,

@@ -35,7 +35,7 @@ fn values(option: &'static Declaration, label: Option<&str>, needs: &'static [Ne
     let values = option.kind.descriptions();
     let values = values.iter().map(|value| (Some(value.name), value.label, value.text));
     let command = |(value, name, text): (Option<&'static str>, &'static str, &'static str)| {
-        Command::new(Change::Option(option.name, value), format!("{label}: {name}"), text).needs(needs)
+        Command::new(Change::Option(option.name, value), format!("{label}: {name}")).text(text).needs(needs)
     };
     unset.chain(values).map(command).collect()
 }
@@ -96,7 +96,7 @@ fn overlay_key(overlay: Overlay) -> KeyboardShortcut {
 fn colors_and_overlays() -> Vec<Command> {
     let (material, colors) = (Colors::Material, "Colours");
     let own = format!("{colors}: {}", material.label());
-    let mut all = vec![Command::new(Change::MaterialColors, own, material.text())];
+    let mut all = vec![Command::new(Change::MaterialColors, own).text(material.text())];
     all.extend(Overlay::ALL.iter().map(|&overlay| {
         let mut overlays = Overlays::default();
         let (name, needs_coordinates) = match overlays.control(overlay) {
@@ -104,7 +104,7 @@ fn colors_and_overlays() -> Vec<Command> {
             Control::Switch(_) => (format!("Overlay: {}", overlay.label()), false),
         };
         let needs: &[Need] = if needs_coordinates { &[Need::TextureCoordinates] } else { &[] };
-        let command = Command::new(Change::Overlay(overlay), name, overlay.text());
+        let command = Command::new(Change::Overlay(overlay), name).text(overlay.text());
         command.keys([overlay_key(overlay)]).needs(needs)
     }));
     all
@@ -113,33 +113,32 @@ fn colors_and_overlays() -> Vec<Command> {
 /// Commands that change the mesh's preparation and load it again.
 fn mesh() -> Vec<Command> {
     let exact = "Joins corners whose positions are exactly equal.";
-    let mut all = vec![Command::new(Preparing::Weld(0.0), "Weld: Exact", exact).needs(&[Need::Document])];
+    let mut all = vec![Command::new(Preparing::Weld(0.0), "Weld: Exact").text(exact).needs(&[Need::Document])];
     all.extend(TOLERANCES.map(|tolerance| {
         let text = format!("Joins positions within {tolerance:e} of the bounding diagonal.");
-        Command::new(Preparing::Weld(tolerance), format!("Weld: {tolerance:e}"), text).needs(&[Need::Document])
+        Command::new(Preparing::Weld(tolerance), format!("Weld: {tolerance:e}")).text(text).needs(&[Need::Document])
     }));
     let on = format!("Makes a band of small triangles along creases, {CREASE_BAND} of the bounding diagonal wide.");
     all.extend([
-        Command::new(Preparing::CreaseBand(CREASE_BAND), "Crease band: On", on).needs(&[Need::Document]),
-        Command::new(Preparing::CreaseBand(0.0), "Crease band: Off", "Leaves creases as the mesh has them.")
+        Command::new(Preparing::CreaseBand(CREASE_BAND), "Crease band: On").text(on).needs(&[Need::Document]),
+        Command::new(Preparing::CreaseBand(0.0), "Crease band: Off")
+            .text("Leaves creases as the mesh has them.")
             .needs(&[Need::Document]),
-        Command::new(Preparing::NoHeights, "Height map: None", "Removes the height map.").needs(&[Need::Document]),
-        Command::new(
-            Preparing::HeightsFromMaterials,
-            "Height map: Material",
-            "Displaces the mesh by the brightness of each material's base colour image.",
-        )
-        .needs(&[Need::Document]),
+        Command::new(Preparing::NoHeights, "Height map: None").text("Removes the height map.").needs(&[Need::Document]),
+        Command::new(Preparing::HeightsFromMaterials, "Height map: Material")
+            .text("Displaces the mesh by the brightness of each material's base colour image.")
+            .needs(&[Need::Document]),
     ]);
     all
 }
 
 fn clips(now: &Availability) -> Vec<Command> {
     let rest = "Shows the mesh as it is without any clip.";
-    let mut all = vec![Command::new(Action::AnimationClip(None), "Animation: Rest pose", rest).needs(&[Need::Clips])];
+    let mut all =
+        vec![Command::new(Action::AnimationClip(None), "Animation: Rest pose").text(rest).needs(&[Need::Clips])];
     all.extend(now.clips.iter().take(CLIPS).enumerate().map(|(i, clip)| {
         let name = format!("Animation: {}", shortened(clip, 40));
-        Command::new(Action::AnimationClip(Some(i)), name, "Shows this clip from its start.").needs(&[Need::Clips])
+        Command::new(Action::AnimationClip(Some(i)), name).text("Shows this clip from its start.").needs(&[Need::Clips])
     }));
     all
 }
@@ -148,7 +147,7 @@ fn recent(now: &Availability) -> Vec<Command> {
     let open = |path: &PathBuf| {
         let name = format!("Recent: {}", path.file_name().unwrap_or_default().to_string_lossy());
         let text = format!("Opens {}.", path.display());
-        Command::new(FileAction::OpenRecent(path.clone()), name, text).submenu(Submenu::OpenRecent)
+        Command::new(FileAction::OpenRecent(path.clone()), name).text(text).submenu(Submenu::OpenRecent)
     };
     now.recent.iter().map(open).collect()
 }
@@ -156,20 +155,21 @@ fn recent(now: &Availability) -> Vec<Command> {
 fn file_cameras(now: &Availability) -> Vec<Command> {
     let go = |(index, name): (usize, &String)| {
         let text = "Looks through this camera of the file: with its place, direction and height of view.";
-        Command::new(CameraAction::OfFile(index), format!("Camera: {}", shortened(name, 40)), text)
+        Command::new(CameraAction::OfFile(index), format!("Camera: {}", shortened(name, 40)))
+            .text(text)
             .submenu(Submenu::FileCameras)
     };
     now.file_cameras.iter().enumerate().map(go).collect()
 }
 
-/// The keys of the bookmarks, from the first one on.
 const BOOKMARK_KEYS: [Key; MOST_BOOKMARKS] =
     [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
 
 fn bookmarks(now: &Availability) -> Vec<Command> {
     let go = |(index, key): (usize, Key)| {
         let text = format!("Goes to the view of bookmark {}.", index + 1);
-        Command::new(CameraAction::Bookmark(index), format!("Bookmark {}", index + 1), text)
+        Command::new(CameraAction::Bookmark(index), format!("Bookmark {}", index + 1))
+            .text(text)
             .keys([alt(key)])
             .submenu(Submenu::Bookmarks)
     };

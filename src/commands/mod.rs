@@ -91,7 +91,6 @@ impl From<Preparing> for Action {
     }
 }
 
-/// An action on files.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FileAction {
     /// With the desktop's dialog, or a typed path where there is none.
@@ -108,7 +107,6 @@ pub enum FileAction {
     Quit,
 }
 
-/// An action that moves the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CameraAction {
     Frame,
@@ -121,7 +119,6 @@ pub enum CameraAction {
     Bookmark(usize),
     /// Through a camera of the file: an index into the mesh's cameras.
     OfFile(usize),
-    /// To where the frozen LOD camera is.
     ThroughFrozen,
     Orthographic,
     Orbit(Direction),
@@ -227,8 +224,19 @@ pub struct Command {
 
 impl Command {
     /// A command that is always possible, without keys, and in no menu.
-    fn new(action: impl Into<Action>, name: impl Into<Cow<'static, str>>, text: impl Into<Cow<'static, str>>) -> Self {
-        Self { action: action.into(), name: name.into(), text: text.into(), keys: Vec::new(), place: None, needs: &[] }
+    fn new(action: impl Into<Action>, name: impl Into<Cow<'static, str>>) -> Self {
+        Self {
+            action: action.into(),
+            name: name.into(),
+            text: Cow::Borrowed(""),
+            keys: Vec::new(),
+            place: None,
+            needs: &[],
+        }
+    }
+
+    fn text(self, text: impl Into<Cow<'static, str>>) -> Self {
+        Self { text: text.into(), ..self }
     }
 
     fn keys(self, keys: impl Into<Vec<KeyboardShortcut>>) -> Self {
@@ -311,7 +319,6 @@ fn with_symbols(name: String) -> String {
     name.replace("OpenBracket", "[").replace("CloseBracket", "]")
 }
 
-/// Every command that there is now.
 pub fn all(now: &Availability) -> Vec<Command> {
     let mut all = fixed::commands();
     all.extend(generated::commands(now));

@@ -19,7 +19,6 @@ impl App {
         self.copy_line(context, self.command_of(context.theme(), choices, &self.viewport.camera, None, None));
     }
 
-    /// Copies a command, and shows it in a window.
     pub(in crate::app) fn copy_line(&mut self, context: &egui::Context, command: Option<String>) {
         let Some(command) = command else { return };
         context.copy_text(command.clone());

@@ -121,7 +121,6 @@ fn scrolled(ui: &mut egui::Ui, entries: impl FnOnce(&mut egui::Ui)) {
     egui::ScrollArea::vertical().min_scrolled_height(most).max_height(most).show(ui, entries);
 }
 
-/// Shows a submenu. Returns the command that is chosen in it.
 fn submenu_entries<'a>(
     ui: &mut egui::Ui,
     submenu: Submenu,

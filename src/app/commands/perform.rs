@@ -13,7 +13,6 @@ use load::{HeightSource, Import, Source};
 const WHITE_PAPER: &str = "https://developer.download.nvidia.com/whitepapers/2010/PN-AEN-Triangles-Whitepaper.pdf";
 
 impl App {
-    /// The action that was performed last.
     pub fn last_action(&self) -> Option<&Action> {
         self.commands.last.as_ref()
     }
@@ -65,7 +64,6 @@ impl App {
         }
     }
 
-    /// Performs a command, if it is possible.
     pub fn give(&mut self, context: &Context, command: &Command) {
         if command.why_not(&self.availability()).is_none() {
             self.perform(context, &command.action);

@@ -15,11 +15,9 @@ use crate::commands::{Beside, Purpose};
 use geometry::names::shown_path;
 use load::{FileError, Source};
 
-/// A path that is being typed.
 pub(crate) struct TypedPath {
     purpose: Purpose,
     path: String,
-    /// The path that the completion is about.
     completion: (String, Completion),
     /// Whether it is said which names begin like the path, since Tab can't choose one of them. Then Tab leaves the field.
     lists_names: bool,
@@ -293,7 +291,6 @@ fn found(source: Source) -> Result<Source, String> {
     Ok(source)
 }
 
-/// The id of the text field.
 fn field() -> Id {
     Id::unique("typed path")
 }

@@ -13,7 +13,6 @@ const SHOWN: [(Work, &str); 4] = [
     (Work::File, "Stops it. Nothing is written."),
 ];
 
-/// What is under way, as it is shown.
 pub(crate) struct UnderWay {
     /// None is a long drawing.
     work: Option<Work>,
@@ -46,7 +45,6 @@ impl App {
         })
     }
 
-    /// What a load is at.
     fn load_title(&self, job: &Job) -> String {
         let load = self.jobs.load();
         let heights = load.and_then(|load| load.preparation.heights.as_ref());

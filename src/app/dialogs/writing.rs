@@ -103,7 +103,6 @@ impl App {
         Ok(())
     }
 
-    /// Starts to write the chart as it is now.
     fn write_chart(&mut self, context: &egui::Context, path: PathBuf) {
         let Some(charted) = self.panels.chart.charted() else { return };
         let subject = charted.subject.clone();

@@ -191,7 +191,6 @@ impl App {
     /// Puts a document in the place of the one before, with which all goes that belonged to it. The same mesh keeps its view.
     fn take_document(&mut self, context: &egui::Context, document: Document, keep_view: bool) {
         self.dialogs.typed = None;
-        self.panels.chart.stop();
         self.jobs.stop_of_document();
         self.viewport.preview.forget();
         let place = |document: &Document| (document.loaded.scene, document.loaded.preparation.import.placement());

@@ -12,7 +12,6 @@ use inspect::render::environment::Environment;
 use inspect::settings::Lighting;
 use load::environment_file::{EnvironmentError, EnvironmentFile};
 
-/// The light of a file.
 pub(crate) struct Light {
     /// What was repaired, in sentences.
     pub warnings: Vec<String>,

@@ -4,7 +4,6 @@ use super::job_list::Work;
 use crate::app::App;
 use geometry::tessellate::{ExplainedPatch, Inputs, PatchFactors, PosedMesh, explain_patch};
 
-/// A patch as it was emitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct EmittedPatch {
     /// The tessellation's number, which is another in every pose.

@@ -70,7 +70,6 @@ impl App {
         });
     }
 
-    /// The file that factors were read from, if one was.
     pub fn factors_file(&self) -> Option<&Path> {
         self.given.as_ref().map(|given| &*given.path)
     }

@@ -35,6 +35,8 @@ pub(crate) enum Work {
     Checks,
     /// Explaining the selected patch.
     Explanation,
+    /// Measuring settings for the chart.
+    Chart,
     /// The scene of the left half.
     LeftHalf,
     /// The mesh that previews draw in place of a large one.
@@ -44,7 +46,7 @@ pub(crate) enum Work {
 impl Work {
     /// Whether the picture, or what is said about it, waits for it.
     fn is_waited_for(self) -> bool {
-        !matches!(self, Self::File | Self::Dialog | Self::State | Self::Checks | Self::StandIn)
+        !matches!(self, Self::File | Self::Dialog | Self::State | Self::Checks | Self::Chart | Self::StandIn)
     }
 
     /// Whether it reads a file beside the mesh.
@@ -55,7 +57,7 @@ impl Work {
 
     /// Whether it ends with the document.
     fn is_of_document(self) -> bool {
-        matches!(self, Self::Checks | Self::Explanation | Self::LeftHalf | Self::StandIn)
+        matches!(self, Self::Checks | Self::Explanation | Self::Chart | Self::LeftHalf | Self::StandIn)
     }
 }
 

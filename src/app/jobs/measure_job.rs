@@ -42,7 +42,6 @@ pub(crate) struct MeasureJob {
     pub generation: u64,
 }
 
-/// What was measured of a picture.
 pub(crate) struct Results {
     /// The tessellation's number.
     pub of: u64,
@@ -82,7 +81,6 @@ pub(crate) struct Seen {
     pub inputs: Inputs,
 }
 
-/// What the thread returns.
 struct Surveyed {
     /// None if only the view is another one than before.
     whole: Option<(Measured, Option<Agreement>)>,

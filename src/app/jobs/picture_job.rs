@@ -127,7 +127,6 @@ impl App {
         choices.size.unwrap_or_else(|| self.viewport.picture.size().to_array().map(|side| side as u32))
     }
 
-    /// The settings that a picture is saved with.
     pub(in crate::app) fn saved_settings_of(&self, theme: egui::Theme, choices: &PictureChoices) -> Settings {
         let settings = self.settings_in(theme);
         if choices.overlays { settings } else { Settings { overlays: Overlays::default(), ..settings } }

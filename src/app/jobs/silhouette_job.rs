@@ -34,7 +34,6 @@ enum Comparing {
     Finding(BackgroundJob<Option<(Silhouette, RgbaImage)>>),
 }
 
-/// A result.
 struct Found {
     silhouette: Silhouette,
     picture: RgbaImage,

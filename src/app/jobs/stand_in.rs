@@ -11,7 +11,6 @@ use inspect::render::Scene;
 /// Memory for its output, in bytes for each triangle: three indices, and vertices of which each triangle has its own at worst.
 const BYTES_A_TRIANGLE: u64 = 12 + 3 * 32;
 
-/// The stand-in of a mesh.
 #[derive(Default)]
 pub(crate) enum StandIn {
     #[default]

@@ -18,24 +18,13 @@ pub(crate) struct Chart {
     pub(in crate::app) effort: Effort,
     pub(in crate::app) charting: ChartJob,
     /// The window's settings, if they aren't in the chart, and since when they are unchanged, on the window's clock in s.
-    still: Option<(Settings, f64)>,
+    pub(in crate::app) still: Option<(Settings, f64)>,
 }
 
 /// How long settings that aren't in the chart must stay unchanged before they are measured as well, in s.
 const STILL: f64 = 0.4;
 
 impl Chart {
-    /// Stops measuring; the results so far stay.
-    pub(crate) fn stop(&mut self) {
-        self.charting.stop();
-    }
-
-    /// Stops measuring and frees the chart's device, which may be lost like the window's. The results so far stay.
-    pub(in crate::app) fn close(&mut self) {
-        self.charting.close();
-        self.still = None;
-    }
-
     pub(in crate::app) fn charted(&self) -> Option<&Charted> {
         self.charting.charted.as_ref()
     }
@@ -45,7 +34,7 @@ impl App {
     pub(in crate::app) fn toggle_chart(&mut self) {
         self.panels.chart.is_open = !self.panels.chart.is_open;
         if !self.panels.chart.is_open {
-            self.panels.chart.charting.close();
+            self.close_chart();
         }
     }
 
@@ -54,12 +43,6 @@ impl App {
         (self.panels.chart.plan, self.panels.chart.effort) = (plan, effort);
     }
 
-    /// How many of the chart's settings are done, and how many there are; none if it isn't measuring.
-    pub fn charting(&self) -> Option<(usize, usize)> {
-        self.panels.chart.charting.progress()
-    }
-
-    /// The rows that were measured for the chart.
     pub fn chart_rows(&self) -> &[Row] {
         self.panels.chart.charted().map_or(&[], |charted| &charted.subject.rows)
     }
@@ -113,7 +96,7 @@ impl App {
         let current = self.unknown_current().filter(|_| !is_listed);
         let adapter = self.render_state.adapter.clone();
         let job = Job { adapter, loaded, of, truth, current, settings, effort: self.chart_effort() };
-        self.panels.chart.charting.start(context, job);
+        self.panels.chart.charting.start(&mut self.jobs, context, job);
     }
 
     /// The settings that are tried, in order.
@@ -141,15 +124,8 @@ impl App {
         (!listed && !known).then_some(current)
     }
 
-    /// Takes new results, and starts to measure the window's own settings once they stay unchanged.
-    pub(in crate::app) fn take_chart(&mut self, context: &egui::Context) {
-        if let Err(error) = self.panels.chart.charting.take() {
-            self.dialogs.error = Some(error);
-        }
-        self.measure_current(context);
-    }
-
-    fn measure_current(&mut self, context: &egui::Context) {
+    /// Starts to measure the window's own settings once they stay unchanged.
+    pub(in crate::app) fn measure_current(&mut self, context: &egui::Context) {
         let is_idle = self.panels.chart.is_open && self.charting().is_none() && !self.is_busy() && !self.is_playing();
         let of = self.panels.chart.charted().map(|charted| charted.of).filter(|_| is_idle);
         let wanted = of.filter(|of| Some(*of) == self.chart_of()).and_then(|of| Some((of, self.unknown_current()?)));
@@ -168,7 +144,7 @@ impl App {
         let (adapter, truth) = (self.render_state.adapter.clone(), self.yardstick().1);
         let (effort, settings) = (self.chart_effort(), Vec::new());
         let job = Job { adapter, loaded, of, truth, current: Some(current), settings, effort };
-        self.panels.chart.charting.start(context, job);
+        self.panels.chart.charting.start(&mut self.jobs, context, job);
     }
 
     /// Makes the chart's measuring wait while the window draws or measures.

@@ -5,6 +5,7 @@ use egui::RichText;
 use super::chart_diagram::{Diagram, Inks, Spot, line, marker};
 use crate::app::App;
 use crate::app::jobs::chart_job::Charted;
+use crate::app::jobs::job_list::Work;
 use crate::app::painting::panel_frame;
 use crate::app::text::{grouped, short};
 use crate::app::widgets::{dense, list, switch_button, text_width, unclicked};
@@ -114,18 +115,17 @@ impl App {
         ui.add(egui::Label::new(text).truncate()).on_hover_text(format!("{hover}{facts}"));
     }
 
-    /// Whether there is something to measure.
     pub(in crate::app) fn can_measure_chart(&self) -> bool {
-        let is_idle = self.panels.chart.is_open && self.panels.chart.charting.progress().is_none();
+        let is_idle = self.panels.chart.is_open && self.charting().is_none();
         is_idle && self.document.is_some() && !self.chart_settings().is_empty()
     }
 
     /// Shows the button that starts or cancels measuring. Returns how many settings are done, and how many there are.
     fn measure_button(&mut self, ui: &mut egui::Ui) -> (usize, usize) {
         let button = |text| egui::Button::new(text).min_size(egui::vec2(BUTTON_WIDTH, 0.0));
-        if let Some(progress) = self.panels.chart.charting.progress() {
+        if let Some(progress) = self.charting() {
             if ui.add(button("Cancel")).on_hover_text("Stops measuring; the results so far stay.").clicked() {
-                self.panels.chart.stop();
+                self.jobs.stop(Work::Chart);
             }
             return progress;
         }

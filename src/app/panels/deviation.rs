@@ -115,7 +115,6 @@ impl App {
         SplitSide::BOTH.map(|half| marked(half).map_or(0, |job| job.generation))
     }
 
-    /// What the legend shows about distances.
     pub(in crate::app) fn legend_distances(&self) -> Distances {
         let unit = self.settings.deviation_in;
         let scale = match unit {
@@ -224,7 +223,6 @@ impl App {
         Some(f64::from(at(worst.emitted)?.distance(at(worst.truth)?)))
     }
 
-    /// Shows a half's worst point.
     fn frame_worst(&mut self, half: SplitSide) {
         let Some(worst) = self.known_deviation(half).and_then(|found| found.worst) else { return };
         let Some(document) = &self.document else { return };

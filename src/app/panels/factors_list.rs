@@ -6,7 +6,7 @@ use egui::RichText;
 use crate::app::App;
 use crate::app::sections::Section;
 use crate::app::text::{counted, grouped, short};
-use crate::app::widgets::{columns, fact, list};
+use crate::app::widgets::{FoundRow, columns, fact, found_list};
 use inspect::measure::{Agreement, Disagreement};
 use inspect::settings::Choice;
 
@@ -79,21 +79,17 @@ impl App {
         }
         columns(ui, &format!("{:<9}{:>9}{:>9}", "edge", "least", "greatest"), true)
             .on_hover_text("The least and the greatest factor of a side of the edge.");
-        let mut clicked = None;
         let first = edges.first().map_or(0, |edge| edge.edge);
-        list(ui, "different factors", (edges.len(), first), |ui, row| {
+        let clicked = found_list(ui, "different factors", (edges.len(), first), |row| {
             let own = &edges[row];
             let [least, greatest] = own.extremes().map(|(_, factor)| short(factor.into()));
-            let text = format!("{:<9}{least:>9}{greatest:>9}", own.edge);
-            let is_selected = self.selected_edge() == Some(own.edge);
-            let response = ui.selectable_label(is_selected, RichText::new(text).monospace());
-            let response = response.on_hover_text(sides_text(own));
-            if response.clicked() {
-                clicked = Some(own.edge);
+            FoundRow {
+                columns: format!("{:<9}{least:>9}{greatest:>9}", own.edge),
+                is_selected: self.selected_edge() == Some(own.edge),
+                hover: sides_text(own),
             }
-            response
         });
-        if let Some(edge) = clicked {
+        if let Some(edge) = clicked.map(|row| edges[row].edge) {
             self.select_edge(edge);
         }
     }

@@ -49,7 +49,6 @@ impl App {
         }
     }
 
-    /// The names of the file's cameras.
     pub(in crate::app) fn file_camera_names(&self) -> Vec<String> {
         let cameras = self.document.as_ref().map(|document| &document.loaded.mesh.cameras);
         cameras.into_iter().flatten().map(|camera| camera.name.clone()).collect()

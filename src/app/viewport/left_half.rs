@@ -91,7 +91,6 @@ impl App {
         self.document.as_ref()?.right().measure.last()
     }
 
-    /// What was measured of what a half shows, once it is.
     pub(in crate::app) fn found(&self, half: SplitSide) -> Option<&Measured> {
         self.document.as_ref()?.halves[half as usize].measure.found()
     }

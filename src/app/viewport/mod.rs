@@ -23,6 +23,7 @@ use inspect::render::Camera;
 
 use camera::FollowedCamera;
 use frozen_camera::FrozenCamera;
+use legend::PaintedLegend;
 use pace::Pace;
 use picture::Picture;
 use playback::Playback;
@@ -30,7 +31,6 @@ use preview::Preview;
 use ruler::Ruler;
 use warm_up::WarmUp;
 
-/// What the viewport shows, and from where.
 pub(super) struct Viewport {
     /// Where it was in the last frame, in points.
     pub rect: egui::Rect,
@@ -50,6 +50,7 @@ pub(super) struct Viewport {
     /// Whether a line of help is over the picture: at a first start, until anything is done.
     pub greets: bool,
     pub picture: Picture,
+    pub legend: Option<PaintedLegend>,
     pub pace: Pace,
     pub preview: Preview,
     pub warm_up: WarmUp,
@@ -73,6 +74,7 @@ impl Viewport {
             last_split: 0.5,
             greets: false,
             picture: Picture::new(engine),
+            legend: None,
             pace: Pace::default(),
             preview: Preview::new(engine),
             warm_up: WarmUp::default(),

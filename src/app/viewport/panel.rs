@@ -6,7 +6,6 @@ use egui::{PointerButton, Sense};
 use glam::{Vec2, vec2};
 
 use super::axis_gizmo::axes_place;
-use super::legend::legend;
 use super::picture::Wanted;
 use crate::app::jobs::job_list::Work;
 use crate::app::jobs::measure_job::{Seen, Trouble};
@@ -96,9 +95,7 @@ impl App {
         self.greeting(ui, rect);
         self.corner_notes(ui, rect);
         self.axis_gizmo(ui, rect);
-        if let Some(document) = &self.document {
-            legend(ui, rect, &self.settings, document.scene.bounds.radius(), &self.legend_distances());
-        }
+        self.legend(ui, rect);
     }
 
     /// Goes on with drawing and all measurements.

@@ -80,7 +80,6 @@ impl Drawing {
 /// Pictures of output that fills the arena up to so many times are short.
 const SHORT: usize = 8;
 
-/// The picture and what it cost.
 pub(crate) struct Picture {
     pub target: Option<(Target, ShownPicture)>,
     /// The last picture, of another size. It is shown stretched until the first one of the new size is drawn.
@@ -186,7 +185,6 @@ impl Picture {
         Some((half, Pixel { split: None, ..pixel }))
     }
 
-    /// The view of the picture that is shown.
     pub(crate) fn seen_from(&self) -> Option<ScreenView> {
         let Wanted { clip_from_object, viewport, .. } = self.drawn?;
         Some(ScreenView { clip_from_object, viewport })

@@ -59,7 +59,6 @@ impl App {
         self.document.as_ref()?.selection.hit.as_ref().filter(|(of, _)| *of == emitted).map(|(_, triangle)| triangle)
     }
 
-    /// The patch of the selected triangle.
     pub(in crate::app) fn selected_patch(&self) -> Option<u32> {
         self.document.as_ref()?.loaded.topology.patch_of(self.selected_triangle()?)
     }
@@ -160,7 +159,6 @@ impl App {
         document.selection = Selection { triangle: Some(patch.triangle), edge, hit, ..Selection::default() };
     }
 
-    /// Shows the selected patch.
     pub(in crate::app) fn frame_patch(&mut self) {
         let (Some(patch), Some(document)) = (self.selected_patch(), &self.document) else { return };
         let topology = &document.shown().1;

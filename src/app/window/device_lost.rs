@@ -122,7 +122,7 @@ impl App {
         let preview = Preview::new(&engine).with(self.viewport.preview.is_on);
         (self.engine, self.render_state, self.painting) = (engine, render_state, painting);
         (self.viewport.picture, self.viewport.preview) = (viewport, preview);
-        self.viewport.warm_up = WarmUp::default();
+        (self.viewport.warm_up, self.viewport.legend) = (WarmUp::default(), None);
         if let Some((document, scene)) = self.document.as_mut().zip(scene) {
             document.move_to(scene);
         }
@@ -146,7 +146,7 @@ impl App {
         self.watch_shader::<LodShader>(context);
         self.watch_shader::<SurfaceShader>(context);
         self.dialogs.pending.iter_mut().for_each(|dialog| dialog.since = f64::NEG_INFINITY);
-        self.panels.chart.close();
+        self.close_chart();
         self.persistence.move_to_another_window();
         self.viewport.playback.go_on_in(context);
     }

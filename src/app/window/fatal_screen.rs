@@ -12,7 +12,6 @@ use gpu::Gpu;
 use inspect::engine::Loaded;
 use inspect::export::Exported;
 
-/// The state of the screen.
 pub(crate) struct FatalScreen {
     /// The device that this screen alone is drawn with.
     pub gpu: Gpu,
