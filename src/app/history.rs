@@ -19,14 +19,12 @@ const MOST: usize = 200;
 /// Movements of the camera that follow each other within so many seconds are one step.
 const ONE_MOVEMENT: f64 = 0.5;
 
-/// What undo brings back.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Undoable {
     /// Those that files with factors or functions of the user's own take the place of are as before.
     pub settings: Settings,
     /// How the mesh is prepared, but for the import, which is in the settings.
     pub preparation: Preparation,
-    /// What is open beside the mesh.
     pub beside: [Option<Source>; Beside::ALL.len()],
 }
 

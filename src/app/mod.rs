@@ -146,7 +146,6 @@ impl App {
         self.document.as_ref()?.selection.edge
     }
 
-    /// The mesh that is open, as it was loaded.
     pub fn loaded(&self) -> Option<&Loaded> {
         self.document.as_ref().map(|document| &document.loaded)
     }

@@ -33,7 +33,6 @@ pub(super) fn panel_frame(ui: &egui::Ui) -> egui::Frame {
     egui::Frame::side_top_panel(ui.style()).fill(Color32::TRANSPARENT)
 }
 
-/// A picture that the window can show.
 #[derive(Clone)]
 pub(super) struct ShownPicture {
     pipeline: wgpu::RenderPipeline,

@@ -218,7 +218,6 @@ pub(super) fn legible(ui: &egui::Ui, color: egui::Color32) -> egui::Color32 {
     if ui.visuals().dark_mode { color } else { color.lerp_to_gamma(egui::Color32::BLACK, 0.3) }
 }
 
-/// A small rectangle of a colour.
 pub(super) fn swatch(ui: &mut egui::Ui, color: [u8; 3]) {
     let (rect, _) = ui.allocate_exact_size(SWATCH, egui::Sense::hover());
     // Its outline shows where its colour is that of the background.

@@ -116,7 +116,6 @@ pub(crate) const NO_TEXTURE_COORDINATES: &str = "The mesh has no texture coordin
 pub struct Availability {
     /// What there is.
     pub has: Vec<Need>,
-    /// The number of the file's bookmarks.
     pub bookmarks: usize,
     pub file_cameras: Vec<String>,
     /// The names of the mesh's animation clips.

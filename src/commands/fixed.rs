@@ -9,7 +9,6 @@ use super::{
 use geometry::mesh::Shape;
 use inspect::render::Standpoint;
 
-/// What displacing by a height image does.
 pub(crate) const HEIGHT_IMAGE: &str =
     "Displaces the mesh by the brightness of a PNG, JPEG or WebP image, which covers all materials.";
 
@@ -32,7 +31,6 @@ const LOD_SHADER: &str =
 const SURFACE_SHADER: &str = "Opens a WGSL file with your own function for the control points of edges in place of a \
                               surface, and follows its changes.";
 
-/// What a file of light is for.
 pub const ENVIRONMENT: &str =
     "Opens a panorama (.hdr or .exr) whose light shines on the mesh in place of the studio's.";
 
@@ -284,7 +282,6 @@ fn view() -> Vec<Command> {
     ]
 }
 
-/// The six standard views.
 fn standpoints() -> Vec<Command> {
     let all = [
         (Standpoint::Front, "Front", "Looks from the front.", plain(Key::Num1)),
@@ -301,7 +298,6 @@ fn standpoints() -> Vec<Command> {
     all.map(look).into()
 }
 
-/// Commands that move the camera with keys.
 fn camera() -> Vec<Command> {
     use Direction::{Down, Left, Right, Up};
     let mut commands = Vec::new();

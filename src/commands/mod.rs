@@ -178,7 +178,6 @@ impl Menu {
     }
 }
 
-/// A list that a menu opens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Submenu {
     OpenRecent,
@@ -200,7 +199,6 @@ impl Submenu {
     }
 }
 
-/// Where a command is in the menus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// In a menu, in its group of this number; lines separate the groups.

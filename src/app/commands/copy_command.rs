@@ -14,7 +14,6 @@ impl App {
         self.copy_command_of(context, &PictureChoices::default());
     }
 
-    /// The same for a picture with these choices.
     pub(in crate::app) fn copy_command_of(&mut self, context: &egui::Context, choices: &PictureChoices) {
         self.copy_line(context, self.command_of(context.theme(), choices, &self.viewport.camera, None, None));
     }

@@ -27,7 +27,6 @@ pub(super) enum Forgetting {
     Bookmarks,
 }
 
-/// Windows and dialogs that are open.
 #[derive(Default)]
 pub(super) struct Dialogs {
     /// The desktop's file dialog, until it is answered.

@@ -27,10 +27,8 @@ pub(crate) struct TypedPath {
     early: Option<Vec<Event>>,
 }
 
-/// The most names that are listed under a path.
 const MOST_NAMES: usize = 8;
 
-/// The desktop's file dialog.
 pub(crate) struct PendingDialog {
     /// When it was asked for, on the window's clock in s.
     pub since: f64,
@@ -50,7 +48,6 @@ impl PendingDialog {
 /// Why a path is typed where a dialog was asked for.
 const NO_DIALOG: &str = "This desktop has no file dialog (neither a portal nor zenity). Type the path instead.";
 
-/// The button that was pressed.
 enum Answer {
     Accept,
     Cancel,

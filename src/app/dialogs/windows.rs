@@ -4,7 +4,6 @@ use super::notice::Notice;
 use crate::app::App;
 
 impl App {
-    /// Shows the small windows that are open.
     pub(in crate::app) fn windows(&mut self, context: &egui::Context) {
         self.path_window(context);
         self.keys_window(context);

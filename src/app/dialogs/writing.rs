@@ -21,7 +21,6 @@ use inspect::shot::{ShotError, frame_name};
 use lab::chart::save;
 
 impl App {
-    /// Whether a file is being written.
     pub fn is_writing(&self) -> bool {
         self.jobs.has(Work::File)
     }

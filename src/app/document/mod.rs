@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::jobs::deviation_job::DeviationJob;
 use super::jobs::explain_job::Explanation;
+use super::jobs::given::FromFiles;
 use super::jobs::leak_job::LeakJob;
 use super::jobs::measure_job::MeasureJob;
 use super::jobs::mesh_checks::Checks;
@@ -22,21 +23,14 @@ use inspect::render::Scene;
 use inspect::settings::SplitSide;
 use inspect::truth::Truth;
 
-/// The mesh that is open.
 pub(crate) struct Document {
     pub loaded: Loaded,
     pub scene: Scene,
     pub edges: EdgeCounts,
     /// The moment whose pose the scene has; none at rest.
     pub moment: Option<Moment>,
-    /// The number of the factors of a file that the scene has; 0 for those of LOD.
-    pub given: u64,
-    /// The number of the function that gives the scene's control points; 0 for a surface's own.
-    pub surface_shader: u64,
-    /// The number of the picture of a lit sphere that the scene has; 0 for those that are made in code.
-    pub matcap: u64,
-    /// The number of the file whose light the scene has; 0 for none.
-    pub environment: u64,
+    /// What the scene has of files.
+    pub from_files: FromFiles,
     pub checks: Arc<Checks>,
     /// What previews draw in place of a large mesh.
     pub stand_in: StandIn,
@@ -88,10 +82,7 @@ impl Document {
         Self {
             edges: loaded.topology.edge_counts(),
             moment: None,
-            given: 0,
-            surface_shader: 0,
-            matcap: 0,
-            environment: 0,
+            from_files: FromFiles::default(),
             checks: Arc::default(),
             stand_in: StandIn::default(),
             diagonal: scene.bounds.diagonal(),
@@ -119,7 +110,7 @@ impl Document {
     /// Takes a scene on another device, for which everything is measured and made anew. What is selected stays.
     pub(in crate::app) fn move_to(&mut self, scene: Scene) {
         (self.scene, self.moment, self.stand_in) = (scene, None, StandIn::default());
-        (self.given, self.surface_shader, self.matcap, self.environment) = (0, 0, 0, 0);
+        self.from_files = FromFiles::default();
         self.halves.iter_mut().for_each(Measurements::forget);
         (self.leaks, self.silhouette) = (LeakJob::default(), SilhouetteJob::default());
         self.highlight = None;

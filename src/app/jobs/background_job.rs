@@ -18,7 +18,6 @@ const MAX_REASON: usize = 200;
 #[error("stopped unexpectedly ({0})")]
 pub(crate) struct Stopped(String);
 
-/// A job under way.
 pub(crate) struct BackgroundJob<T>(Receiver<Result<T, Stopped>>);
 
 impl<T: Send + 'static> BackgroundJob<T> {

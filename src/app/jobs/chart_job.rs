@@ -45,7 +45,6 @@ pub(crate) struct Job {
     pub effort: Effort,
 }
 
-/// The results so far.
 pub(crate) struct Charted {
     pub of: ChartBasis,
     pub subject: Subject,
@@ -95,7 +94,6 @@ pub(crate) struct ChartJob {
     pub charted: Option<Charted>,
 }
 
-/// What a run has found.
 enum ChartMessage {
     Engine(Box<Engine>),
     Row(Box<Row>),
@@ -181,7 +179,6 @@ impl App {
     }
 }
 
-/// The state of the thread.
 struct Worker {
     sender: Sender<ChartMessage>,
     wanted: Progress,

@@ -69,23 +69,4 @@ impl App {
             self.settings.lighting = Lighting::Studio;
         }
     }
-
-    /// Gives the scene the light of the file while no picture is under way. Returns the number of the one that the picture has, or
-    /// 0 if it has none.
-    pub(in crate::app) fn give_environment(&mut self) -> u64 {
-        let wanted = self.environment_wanted();
-        let Some(document) = &mut self.document else { return 0 };
-        if document.environment != wanted && self.viewport.picture.is_free() {
-            let open = self.environment.as_ref().filter(|_| wanted > 0);
-            document.scene.set_environment(open.map(|open| open.content.environment.clone()));
-            document.environment = wanted;
-        }
-        document.environment
-    }
-
-    /// The number of the file whose light the picture should have; 0 for none.
-    pub(in crate::app) fn environment_wanted(&self) -> u64 {
-        let is_used = self.settings.lighting == Lighting::Environment;
-        self.environment.as_ref().filter(|_| is_used).map_or(0, |open| open.generation)
-    }
 }

@@ -5,15 +5,13 @@ use std::sync::Arc;
 
 use super::beside::{OpenFile, absolute_path};
 use super::job_list::Work;
-use super::own_shader_job::OpenShader;
 use crate::app::App;
 use geometry::mesh::Topology;
 use geometry::names::shown_path;
 use geometry::tessellate::{Convention, HullFactors, Lod, Partitioning};
-use gpu::{Given, GpuError, LodShader};
+use gpu::LodShader;
 use inspect::engine::Loaded;
 use inspect::measure::Agreement;
-use inspect::settings::SplitSide;
 use inspect::shot::read_factors;
 
 /// Factors that a file has for each patch of the mesh that is open.
@@ -30,6 +28,12 @@ pub(crate) struct GivenFactors {
 pub(crate) struct ComparedFactors {
     convention: Convention,
     pub agreement: Agreement,
+}
+
+impl GivenFactors {
+    pub(super) fn factors(&self) -> Vec<HullFactors> {
+        self.factors.to_vec()
+    }
 }
 
 impl ComparedFactors {
@@ -121,35 +125,6 @@ impl App {
                 given.content.compared = Some(compared);
             }
         });
-    }
-
-    /// The number of what takes the place of LOD: functions of the user's own, or a file; 0 for LOD.
-    pub(in crate::app) fn given_wanted(&self) -> u64 {
-        let shader = self.lod_shader.as_ref().filter(|_| self.uses_lod_shader()).and_then(OpenShader::shader);
-        let of_file = self.given.as_ref().map_or(0, |given| given.generation);
-        shader.map_or(of_file, |(_, generation)| generation)
-    }
-
-    /// Gives the scenes the factors of the file or the functions of the user's own, or takes them back, while no picture is under way. Returns the number of those
-    /// that the picture has; 0 for those of LOD.
-    ///
-    /// # Errors
-    /// More patches than the adapter binds memory for.
-    pub(in crate::app) fn give_factors(&mut self) -> Result<u64, GpuError> {
-        let shader = self.lod_shader.as_ref().filter(|_| self.uses_lod_shader()).and_then(OpenShader::shader);
-        let wanted = self.given_wanted();
-        let Some(document) = &mut self.document else { return Ok(0) };
-        if document.given != wanted && self.viewport.picture.is_free() && !self.jobs.has(Work::LeftHalf) {
-            let file = self.given.as_ref().map(|given| Given::Factors(given.content.factors.to_vec()));
-            let given = shader.map(|(shader, _)| Given::Shader(shader)).or(file);
-            for half in SplitSide::BOTH {
-                if let Some(scene) = document.scene.half_mut(half) {
-                    scene.tessellator.give(given.clone())?;
-                }
-            }
-            document.given = wanted;
-        }
-        Ok(document.given)
     }
 }
 

@@ -27,13 +27,10 @@ pub(crate) enum Work {
     SurfaceShader,
     /// A file that is being written.
     File,
-    /// The desktop's file dialog.
     Dialog,
     /// The window's state, which is being saved.
     State,
-    /// The checks of the mesh that is open.
     Checks,
-    /// Explaining the selected patch.
     Explanation,
     /// Measuring settings for the chart.
     Chart,
@@ -103,7 +100,6 @@ pub(crate) struct Jobs {
     jobs: Vec<Job>,
     /// Whether some were started by a window that is closed.
     of_another_window: bool,
-    /// The limits of files that are opened.
     pub limits: Limits,
     /// What is being loaded, or was loaded last.
     pub last_load: Option<Load>,

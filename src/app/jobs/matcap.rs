@@ -6,7 +6,6 @@ use std::sync::Arc;
 use super::beside::{OpenFile, absolute_path};
 use super::job_list::Work;
 use crate::app::App;
-use geometry::mesh::Texture;
 use geometry::names::shown_path;
 use inspect::settings::Colors;
 use load::load_matcap;
@@ -32,25 +31,5 @@ impl App {
     pub(in crate::app) fn forget_matcap(&mut self) {
         self.matcap = None;
         self.jobs.stop(Work::Matcap);
-    }
-
-    /// Gives the scene the picture of a file, or takes it back, while no picture is under way. Returns the number of the one that
-    /// the scene has; 0 for those that are made in code.
-    pub(in crate::app) fn give_matcap(&mut self) -> u64 {
-        let wanted = self.matcap.as_ref().map_or(0, |chosen| chosen.generation);
-        let Some(document) = &mut self.document else { return 0 };
-        if document.matcap != wanted && self.viewport.picture.is_free() {
-            let upload = |chosen: &OpenFile<Arc<Texture>>| self.engine.renderer.matcap(&chosen.content);
-            match self.matcap.as_ref().map(upload).transpose() {
-                Ok(picture) => (document.scene.matcap, document.matcap) = (picture, wanted),
-                Err(error) => {
-                    (document.scene.matcap, document.matcap) = (None, 0);
-                    self.forget_matcap();
-                    self.dialogs.error = Some(error.to_string());
-                    return 0;
-                }
-            }
-        }
-        document.matcap
     }
 }

@@ -21,7 +21,6 @@ impl Checks {
         self.normal_faults.get()
     }
 
-    /// All T-junctions, once found.
     pub(crate) fn t_junctions(&self) -> Option<&[TJunction]> {
         self.t_junctions.get().map(Vec::as_slice)
     }

@@ -22,7 +22,6 @@ use inspect::settings::Settings;
 pub(crate) trait Replacing: OwnShader {
     type Setting: Copy;
 
-    /// Watching its file.
     const WORK: Work;
 
     /// The setting while functions take its place. Nothing depends on it then.
@@ -75,7 +74,7 @@ impl Replacing for LodShader {
     }
 
     fn shown(app: &App) -> u64 {
-        app.document.as_ref().map_or(0, |document| document.given)
+        app.document.as_ref().map_or(0, |document| document.from_files.factors)
     }
 }
 
@@ -107,7 +106,7 @@ impl Replacing for SurfaceShader {
     }
 
     fn shown(app: &App) -> u64 {
-        app.document.as_ref().map_or(0, |document| document.surface_shader)
+        app.document.as_ref().map_or(0, |document| document.from_files.surface)
     }
 }
 
@@ -346,26 +345,5 @@ impl App {
     pub(in crate::app) fn straight_sides_said(&self) -> Option<String> {
         let report = self.document.as_ref()?.scene.tessellator.own_surface_report()?;
         inspect::shot::straight_sides_said(report.not_numbers)
-    }
-
-    /// The number of the function that is to give control points; 0 for the surface's own.
-    pub(in crate::app) fn surface_shader_wanted(&self) -> u64 {
-        self.surface_shader.as_ref().and_then(OpenShader::shader).map_or(0, |(_, generation)| generation)
-    }
-
-    /// Gives the scene the function of the user's own for control points, or takes it back, while no picture is under way. Returns
-    /// the number of the one that the picture has.
-    ///
-    /// # Errors
-    /// Out of memory, or a lost device.
-    pub(in crate::app) fn give_surface_shader(&mut self) -> Result<u64, GpuError> {
-        let wanted = self.surface_shader_wanted();
-        let shader = self.surface_shader.as_ref().and_then(OpenShader::shader);
-        let Some(document) = &mut self.document else { return Ok(0) };
-        if document.surface_shader != wanted && self.viewport.picture.is_free() && !self.jobs.has(Work::LeftHalf) {
-            document.scene.tessellator.set_surface_shader(shader.map(|(shader, _)| shader))?;
-            document.surface_shader = wanted;
-        }
-        Ok(document.surface_shader)
     }
 }

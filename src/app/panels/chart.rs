@@ -8,7 +8,6 @@ use geometry::tessellate::Tessellation;
 use inspect::settings::Settings;
 use lab::chart::{Cost, Effort, Plan, Probe, Row, SaveError, Setting, coarse_first, save, whole};
 
-/// The state of the chart panel.
 #[derive(Default)]
 pub(crate) struct Chart {
     pub is_open: bool,
@@ -99,7 +98,6 @@ impl App {
         self.panels.chart.charting.start(&mut self.jobs, context, job);
     }
 
-    /// The settings that are tried, in order.
     pub(in crate::app) fn chart_settings(&self) -> Vec<Setting> {
         let plan = Plan { normals: vec![self.settings.tessellation.normals], ..self.panels.chart.plan.clone() };
         coarse_first(plan.settings())

@@ -153,7 +153,6 @@ impl Canvas {
     }
 }
 
-/// Colours of this theme.
 pub(super) struct Inks {
     /// Drawn around points, to set them off from what is under them.
     halo: Color32,
@@ -187,7 +186,6 @@ impl Inks {
     }
 }
 
-/// Draws a method's line, dashed or not.
 pub(super) fn line(painter: &egui::Painter, points: &[Pos2], stroke: Stroke, dash: Option<[f64; 2]>) {
     match dash {
         None => {

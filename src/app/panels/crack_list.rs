@@ -109,7 +109,6 @@ impl App {
         }
     }
 
-    /// A list of T-junctions; a click frames one.
     pub(in crate::app) fn t_junction_list(&mut self, ui: &mut egui::Ui) {
         let Some(junctions) = self.document.as_ref().and_then(|document| document.checks.t_junctions()) else { return };
         if junctions.is_empty() {

@@ -47,7 +47,6 @@ impl App {
         self.document.as_ref().is_some_and(|document| document.loaded.mesh.heights.is_some())
     }
 
-    /// The row for the height map, and the rows of its options while there is one.
     pub(in crate::app) fn height_rows(&mut self, ui: &mut egui::Ui) {
         let heights = self.preparation().heights;
         let label = ui.label("Height map");

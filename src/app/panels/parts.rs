@@ -45,7 +45,6 @@ impl App {
     }
 }
 
-/// Hides a part, or shows it again.
 fn toggle(hidden: &mut Vec<String>, name: &str) {
     match hidden.iter().position(|other| other == name) {
         Some(index) => drop(hidden.remove(index)),

@@ -22,7 +22,6 @@ use inspect::measure::EdgeSide;
 use inspect::render::PickedTriangle;
 use inspect::render::layout::FACTOR_COLORS;
 
-/// What was clicked in the section.
 enum Wish {
     Select(Option<u32>),
     Edge(u32),

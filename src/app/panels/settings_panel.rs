@@ -248,7 +248,6 @@ fn options_of_lods() -> impl Iterator<Item = &'static Declaration> {
     options::TESSELLATION.into_iter().filter(depends_on_lod).filter(|option| option.name != options::FACTOR.name)
 }
 
-/// The keys that raise and lower the factor.
 fn factor_keys() -> String {
     let [up, down] = [Change::FactorUp, Change::FactorDown].map(|change| key_name(&Action::Setting(change)));
     format!("{up} and {down}")

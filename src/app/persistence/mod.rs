@@ -53,7 +53,6 @@ impl Persistence {
         Self { place, written: kept.clone(), kept, said, ..Self::default() }
     }
 
-    /// The settings that the window opens with.
     pub fn settings(&self) -> &Settings {
         &self.kept.settings
     }

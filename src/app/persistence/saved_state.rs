@@ -163,7 +163,6 @@ impl SavedState {
     }
 }
 
-/// Reads an absolute path.
 fn absolute(value: &Value) -> Option<String> {
     value.as_str().filter(|path| Path::new(path).is_absolute()).map(str::to_owned)
 }

@@ -144,11 +144,8 @@ impl App {
     /// Returns what the picture is to show, and whether all that it needs is there; none without a mesh.
     fn wanted(&mut self, context: &egui::Context, size: [u32; 2]) -> Result<Option<(Wanted, bool)>, Trouble> {
         let (deviation, moment) = (self.deviation_shown(), self.moment());
-        let (given, matcap) = (self.give_factors()?, self.give_matcap());
-        let surface_shader = self.give_surface_shader()?;
-        let has_given = given == self.given_wanted() && surface_shader == self.surface_shader_wanted();
-        let environment = self.give_environment();
-        let has_light = environment == self.environment_wanted();
+        self.give_from_files()?;
+        let from_files = self.from_files();
         let settings = self.settings_in(context.theme());
         let Some(document) = &self.document else { return Ok(None) };
         let viewport = vec2(size[0] as f32, size[1] as f32);
@@ -160,17 +157,14 @@ impl App {
             moment: document.moment,
             lines: document.highlight.map_or(0, |marked| marked.generation),
             deviation,
-            given,
-            surface_shader,
-            matcap,
-            environment,
+            from_files: document.from_files,
             camera,
             settings,
             inputs: settings.inputs(view),
             clip_from_object: camera.clip_from_object(viewport, &document.scene.bounds),
             viewport,
         };
-        Ok(Some((wanted, has_light && has_given && document.moment == moment)))
+        Ok(Some((wanted, document.from_files == from_files && document.moment == moment)))
     }
 
     /// Measures what is shown, if it is at rest.

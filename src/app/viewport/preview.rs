@@ -47,7 +47,6 @@ pub(crate) enum Shape {
     StandIn,
 }
 
-/// What is known of the preview, and its target.
 pub(crate) struct Preview {
     /// Whether there are previews at all. Somebody who judges LOD in motion switches them off.
     pub is_on: bool,
@@ -116,7 +115,6 @@ impl Preview {
         self.drawn.as_ref().filter(|(drawn, _)| Some(drawn.camera) != full).map(|(drawn, shape)| (drawn, *shape))
     }
 
-    /// The preview that was drawn last.
     pub(crate) fn picture(&self) -> Option<&ShownPicture> {
         self.target.as_ref().map(|(_, shown)| shown)
     }
@@ -238,7 +236,7 @@ fn shape_of(
         _ => tessellator.totals().1 as f32,
     };
     // Factors of a file stay as they are, however many triangles they ask for.
-    if !follows && (triangles <= kept || wanted.given != 0) {
+    if !follows && (triangles <= kept || wanted.from_files.factors != 0) {
         return Shape::Same;
     }
     if patches > LARGE * most
@@ -251,7 +249,6 @@ fn shape_of(
     Shape::Factor((most / patches.max(1.0)).sqrt().floor().clamp(1.0, largest.max(1.0)))
 }
 
-/// The settings under which a preview is drawn.
 fn settings_of(shape: Shape, settings: &Settings) -> Settings {
     let mut cheap = *settings;
     // Both need data that is computed for what is emitted.
@@ -294,8 +291,11 @@ impl App {
         let preview = &mut self.viewport.preview;
         preview.land();
         preview.fit(&self.painting, &self.engine, full.viewport)?;
-        let light =
-            self.environment.as_ref().filter(|_| full.environment > 0).map(|open| open.content.environment.clone());
+        let light = self
+            .environment
+            .as_ref()
+            .filter(|_| full.from_files.light > 0)
+            .map(|open| open.content.environment.clone());
         let scene = match (shape, document.stand_in.scene()) {
             (Shape::StandIn, Some(stand_in)) => {
                 stand_in.matcap.clone_from(&document.scene.matcap);

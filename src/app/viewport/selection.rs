@@ -63,7 +63,6 @@ impl App {
         self.document.as_ref()?.loaded.topology.patch_of(self.selected_triangle()?)
     }
 
-    /// The convention of factors and weights.
     pub(in crate::app) fn convention(&self) -> Convention {
         self.settings.tessellation.convention
     }
@@ -98,7 +97,6 @@ impl App {
         topology.patches[patch as usize].sides.iter().any(|&side| topology.sides[side as usize].edge == edge)
     }
 
-    /// Deselects the triangle and the edge.
     pub(in crate::app) fn deselect(&mut self) {
         self.document.iter_mut().for_each(|document| document.selection = Selection::default());
     }

@@ -34,7 +34,6 @@ pub(crate) struct WarmUp {
     drawings: u64,
 }
 
-/// What is under way.
 enum Step {
     /// A scene of its own is made, since that of the window keeps the triangles of its picture.
     Making(BackgroundJob<Result<Scene, GpuError>>, Wanted),

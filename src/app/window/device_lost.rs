@@ -151,7 +151,6 @@ impl App {
         self.viewport.playback.go_on_in(context);
     }
 
-    /// Shows an error that the device has reported.
     pub(in crate::app) fn take_device_problem(&mut self) {
         if let Err(problem) = self.engine.gpu.check() {
             self.dialogs.error = Some(problem.to_string());
