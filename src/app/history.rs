@@ -2,11 +2,11 @@
 //! neither is in the way of the other.
 
 use std::collections::VecDeque;
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::App;
-use super::jobs::own_shader_job::OpenShader;
+use super::jobs::job_list::Work;
+use crate::commands::Beside;
 use gpu::{LodShader, SurfaceShader};
 use inspect::engine::Preparation;
 use inspect::render::Camera;
@@ -19,26 +19,13 @@ const MOST: usize = 200;
 /// Movements of the camera that follow each other within so many seconds are one step.
 const ONE_MOVEMENT: f64 = 0.5;
 
-/// What undo brings back.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Undoable {
     /// Those that files with factors or functions of the user's own take the place of are as before.
     pub settings: Settings,
     /// How the mesh is prepared, but for the import, which is in the settings.
     pub preparation: Preparation,
-    pub files: OpenFiles,
-}
-
-/// The files that are open beside the mesh.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct OpenFiles {
-    /// The reference surface.
-    truth: Option<Source>,
-    factors: Option<PathBuf>,
-    lod_shader: Option<PathBuf>,
-    surface_shader: Option<PathBuf>,
-    matcap: Option<PathBuf>,
-    environment: Option<PathBuf>,
+    pub beside: [Option<Source>; Beside::ALL.len()],
 }
 
 /// The states before and after the present one.
@@ -127,31 +114,16 @@ impl App {
 
     fn undoable(&self) -> Undoable {
         let prepared = self.document.as_ref().map(|document| document.loaded.preparation.clone());
-        let path = |path: Option<&Path>| path.map(Path::to_owned);
         Undoable {
             settings: self.settings_without_files(),
             preparation: Preparation { import: Import::default(), ..prepared.unwrap_or_default() },
-            files: OpenFiles {
-                truth: self.truth().cloned(),
-                factors: path(self.factors_file()),
-                lod_shader: path(self.open_shader_file::<LodShader>()),
-                surface_shader: path(self.open_shader_file::<SurfaceShader>()),
-                matcap: path(self.matcap_image()),
-                environment: path(self.environment_file()),
-            },
+            beside: Beside::ALL.map(|beside| self.beside(beside)),
         }
     }
 
     /// Whether the mesh, or a file beside it, is being read anew, so that settings may follow from it.
     fn is_opening(&self) -> bool {
-        let jobs = &self.jobs;
-        jobs.load.as_ref().is_some_and(|load| load.keep_view)
-            || jobs.truth_load.is_some()
-            || jobs.environment.is_some()
-            || jobs.factors.is_some()
-            || jobs.matcap.is_some()
-            || self.lod_shader.as_ref().is_some_and(OpenShader::is_opening)
-            || self.surface_shader.as_ref().is_some_and(OpenShader::is_opening)
+        self.jobs.load().is_some_and(|load| load.keep_view) || self.jobs.opens_beside()
     }
 
     /// Takes over the hidden parts of a mesh that was opened: those of the command line, or none. This isn't a step of undo: all steps
@@ -163,7 +135,8 @@ impl App {
         self.history.change_all(|step| {
             step.preparation = preparation.clone();
             step.settings.tessellation.displacement = settings.tessellation.displacement;
-            (step.files.truth, step.files.factors) = (None, None);
+            step.beside[Beside::Truth as usize] = None;
+            step.beside[Beside::Factors as usize] = None;
         });
     }
 
@@ -217,12 +190,20 @@ impl App {
     }
 
     fn take_back(&mut self, context: &egui::Context, step: Option<Undoable>) {
-        let Some(Undoable { settings, preparation, files }) = step else { return };
-        let jobs = &mut self.jobs;
-        (jobs.truth_load, jobs.matcap, jobs.environment) = (None, None, None);
-        jobs.factors.take_if(|_| self.given.is_none());
-        jobs.load.take_if(|load| load.keep_view);
-        self.take_back_files(context, files);
+        let Some(Undoable { settings, preparation, beside: files }) = step else { return };
+        [Work::Truth, Work::Matcap, Work::Light].into_iter().for_each(|work| self.jobs.stop(work));
+        if self.given.is_none() {
+            self.jobs.stop(Work::Factors);
+        }
+        if self.jobs.load().is_some_and(|load| load.keep_view) {
+            self.jobs.stop(Work::Mesh);
+        }
+        for (beside, source) in Beside::ALL.into_iter().zip(files) {
+            if self.beside(beside) != source {
+                self.close_beside(beside);
+                source.into_iter().for_each(|source| self.open_beside(context, beside, source));
+            }
+        }
         self.put_settings(settings);
         self.hidden = Arc::new(preparation.hidden.clone());
         let preparation = Preparation { import: settings.import, ..preparation };
@@ -238,32 +219,9 @@ impl App {
         self.replace_again::<LodShader>();
         self.replace_again::<SurfaceShader>();
         self.replace_by_factors();
-        if self.jobs.environment.is_none() {
+        if !self.jobs.has(Work::Light) {
             // A file of light may be gone.
             self.cancel_environment();
-        }
-    }
-
-    /// Opens the files that were open at a step of undo, and closes others.
-    fn take_back_files(&mut self, context: &egui::Context, files: OpenFiles) {
-        let OpenFiles { truth, factors, lod_shader, surface_shader, matcap, environment } = files;
-        if self.truth() != truth.as_ref() {
-            self.forget_truth();
-            truth.into_iter().for_each(|source| self.open_truth(context, source));
-        }
-        if self.factors_file() != factors.as_deref() {
-            self.forget_factors();
-            factors.into_iter().for_each(|path| self.open_factors(context, path));
-        }
-        self.take_back_shader::<LodShader>(context, lod_shader);
-        self.take_back_shader::<SurfaceShader>(context, surface_shader);
-        if self.matcap_image() != matcap.as_deref() {
-            self.forget_matcap();
-            matcap.into_iter().for_each(|path| self.open_matcap(context, path));
-        }
-        if self.environment_file() != environment.as_deref() {
-            self.close_environment();
-            environment.into_iter().for_each(|path| self.read_environment(context, path, false));
         }
     }
 }

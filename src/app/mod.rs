@@ -2,6 +2,7 @@
 
 mod commands;
 mod dialogs;
+mod document;
 mod history;
 mod jobs;
 mod painting;
@@ -20,22 +21,23 @@ use std::sync::Arc;
 
 use image::RgbaImage;
 
+use geometry::mesh::Texture;
 use gpu::{Gpu, GpuError, LodShader, SurfaceShader};
 use inspect::engine::{Engine, Loaded};
 use inspect::measure::{Cracks, Sizes};
 use inspect::render::Camera;
-use inspect::settings::Settings;
+use inspect::settings::{Settings, SplitSide};
 use load::Source;
 use load::files::Limits;
 
 use commands::Commands;
 use dialogs::Dialogs;
+use document::Document;
 use history::{History, Undoable, ViewHistory};
-use jobs::Jobs;
-use jobs::document::Document;
-use jobs::environment_job::OpenEnvironment;
+use jobs::beside::OpenFile;
+use jobs::environment_job::Light;
 use jobs::given_factors::GivenFactors;
-use jobs::matcap::ChosenMatcap;
+use jobs::job_list::{Jobs, Work};
 use jobs::own_shader_job::OpenShader;
 use jobs::truth::ChosenTruth;
 use painting::{Painting, panel_frame};
@@ -63,15 +65,14 @@ pub struct App {
     /// The reference surface that was chosen for the mesh, if one was.
     truth: Option<ChosenTruth>,
     /// Factors of a file in place of those of LOD, if there are any.
-    given: Option<GivenFactors>,
+    given: Option<OpenFile<GivenFactors>>,
     /// The file with functions of the user's own in place of LOD, if one is open.
     lod_shader: Option<OpenShader<LodShader>>,
     /// The file with a function of the user's own in place of the surface, if one is open.
     surface_shader: Option<OpenShader<SurfaceShader>>,
     /// A picture of a lit sphere in place of those that are made in code, if one was opened.
-    matcap: Option<ChosenMatcap>,
-    /// The file of light that is open, if one is.
-    environment: Option<OpenEnvironment>,
+    matcap: Option<OpenFile<Arc<Texture>>>,
+    environment: Option<OpenFile<Light>>,
     viewport: Viewport,
     panels: Panels,
     jobs: Jobs,
@@ -121,7 +122,7 @@ impl App {
             matcap: None,
             environment: None,
             panels: Panels::default(),
-            jobs: Jobs { limits, ..Jobs::default() },
+            jobs: Jobs::new(limits),
             dialogs: Dialogs::default(),
             commands: Commands::default(),
             persistence: Persistence::default(),
@@ -142,7 +143,7 @@ impl App {
 
     /// Cracks of what is shown, once they are measured.
     pub fn cracks(&self) -> Option<&Cracks> {
-        self.jobs.measure.cracks()
+        self.found(SplitSide::Right).map(|found| &found.cracks)
     }
 
     /// Sizes of the triangles shown, if they were measured for the present view, or for the frozen one if there is one.
@@ -150,15 +151,14 @@ impl App {
         let bounds = self.document.as_ref()?.scene.bounds;
         let frozen = self.viewport.frozen.map(|frozen| frozen.screen_view(&bounds));
         let seen_from = frozen.or(self.viewport.picture.seen_from())?;
-        self.jobs.measure.last().map(|results| &results.sizes).filter(|sizes| sizes.view == seen_from)
+        self.last_results().map(|results| &results.sizes).filter(|sizes| sizes.view == seen_from)
     }
 
     /// The selected edge: an index into the topology's edges.
     pub fn selected_edge(&self) -> Option<u32> {
-        self.viewport.selected_edge
+        self.document.as_ref()?.selection.edge
     }
 
-    /// The mesh that is open, as it was loaded.
     pub fn loaded(&self) -> Option<&Loaded> {
         self.document.as_ref().map(|document| &document.loaded)
     }
@@ -210,7 +210,6 @@ impl App {
         self.viewport.warm_up.is_busy()
     }
 
-    /// Switches previews off or on.
     pub fn switch_previews(&mut self) {
         self.viewport.preview.is_on = !self.viewport.preview.is_on;
     }
@@ -227,59 +226,12 @@ impl App {
 
     /// Whether something is still being loaded, drawn or measured.
     pub fn is_busy(&self) -> bool {
-        let loads = self.jobs.load.is_some()
-            || self.jobs.truth_load.is_some()
-            || self.jobs.environment.is_some()
-            || self.jobs.factors.is_some()
-            || self.lod_shader.as_ref().is_some_and(OpenShader::is_opening)
-            || self.surface_shader.as_ref().is_some_and(OpenShader::is_opening)
-            || self.jobs.matcap.is_some();
-        let measures = self.jobs.measure.is_busy()
-            || self.jobs.leaks.is_busy()
-            || self.jobs.silhouette.is_busy()
-            || self.jobs.deviation.is_busy()
-            || self.viewport.left.is_busy();
-        loads
-            || measures
-            || self.jobs.explain.is_busy()
-            || self.viewport.picture.is_busy()
-            || self.viewport.selection.is_busy()
-            || self.viewport.showing.is_some()
+        self.jobs.is_busy() || self.document.as_ref().is_some_and(Document::is_busy) || self.viewport.picture.is_busy()
     }
 
     /// Whether the mesh is still being checked. The checks' results don't change the picture by themselves.
     pub fn is_checking(&self) -> bool {
-        self.document.as_ref().is_some_and(|document| document.checks.is_busy())
-    }
-
-    /// Takes files that were read. Those of a step of undo change no settings: these are as in that step, but for what the user has set
-    /// since.
-    fn take_opened(&mut self, context: &egui::Context) {
-        let settings = self.settings_without_files();
-        self.take_loaded(context);
-        self.take_truth();
-        self.take_factors(context);
-        self.take_shader::<LodShader>();
-        self.take_shader::<SurfaceShader>();
-        self.take_matcap();
-        self.take_environment();
-        if self.takes_back {
-            // If the mesh wasn't read anew, its import is the one that is there.
-            self.put_settings(Settings { import: self.settings.import, ..settings });
-        }
-    }
-
-    fn take_explained(&mut self) {
-        if let Err(stopped) = self.jobs.explain.take() {
-            self.dialogs.error = Some(format!("explaining the patch {stopped}; another patch starts it again"));
-        }
-    }
-
-    fn take_checks(&mut self) {
-        let stopped = self.document.as_mut().and_then(|document| document.checks.take_stopped());
-        if let Some(stopped) = stopped {
-            self.dialogs.error = Some(format!("checking the mesh {stopped}; what it found until then is shown"));
-        }
+        self.jobs.has(Work::Checks)
     }
 }
 
@@ -300,12 +252,11 @@ impl eframe::App for App {
             return self.fatal_screen_keys(context);
         }
         self.window.fitting.fit(context);
-        self.take_opened(context);
-        self.take_checks();
-        self.take_explained();
-        self.take_dialog(context);
-        self.take_chart(context);
-        self.take_written();
+        self.take_found(context);
+        self.compare_again(context);
+        self.stop_slow_shader::<LodShader>();
+        self.stop_slow_shader::<SurfaceShader>();
+        self.measure_current(context);
         self.take_device_problem();
         self.take_dropped(context);
         self.hold_typing(context);

@@ -18,7 +18,6 @@ impl Painting {
         WindowPipelines::new(gpu, format).map(Self)
     }
 
-    /// What shows the picture of a target.
     pub(super) fn shown(&self, gpu: &Gpu, target: &Target, filter: wgpu::FilterMode) -> ShownPicture {
         ShownPicture { pipeline: self.0.picture.clone(), group: self.0.shown(gpu, target, filter) }
     }
@@ -34,7 +33,6 @@ pub(super) fn panel_frame(ui: &egui::Ui) -> egui::Frame {
     egui::Frame::side_top_panel(ui.style()).fill(Color32::TRANSPARENT)
 }
 
-/// A picture that the window can show.
 #[derive(Clone)]
 pub(super) struct ShownPicture {
     pipeline: wgpu::RenderPipeline,

@@ -2,7 +2,6 @@
 
 use geometry::tessellate::{Convention, domain_side, factor_side, weight_corner};
 
-/// Names of the weights.
 pub(super) const LETTERS: [char; 3] = ['u', 'v', 'w'];
 
 /// The weight that is 1 on corner `k`.

@@ -74,7 +74,6 @@ impl Section {
     }
 }
 
-/// Which sections are open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::app) struct OpenSections([bool; Section::ALL.len()]);
 

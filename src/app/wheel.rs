@@ -11,7 +11,6 @@ const PAUSE: f64 = 0.4;
 struct Turn {
     start: f64,
     last: f64,
-    /// The list at which it began.
     list: Option<Id>,
 }
 

@@ -137,6 +137,46 @@ pub(super) fn list(
     }
 }
 
+/// A row of what was found: its columns, whether it is selected, and its hover text.
+pub(super) struct FoundRow {
+    pub columns: String,
+    pub is_selected: bool,
+    pub hover: String,
+}
+
+/// A [`list`] of what was found. Returns the row that was clicked.
+pub(super) fn found_list(
+    ui: &mut egui::Ui,
+    name: &str,
+    rows: (usize, u32),
+    row: impl Fn(usize) -> FoundRow,
+) -> Option<usize> {
+    let mut clicked = None;
+    list(ui, name, rows, |ui, index| {
+        let FoundRow { columns, is_selected, hover } = row(index);
+        let response = ui.selectable_label(is_selected, RichText::new(columns).monospace()).on_hover_text(hover);
+        if response.clicked() {
+            clicked = Some(index);
+        }
+        response
+    });
+    clicked
+}
+
+/// The title of a list, after a swatch of its colour if it has one.
+pub(super) fn list_title(ui: &mut egui::Ui, color: Option<[u8; 3]>, text: &str, hover: &str) {
+    ui.add_space(4.0);
+    marked(ui, color, text, hover);
+}
+
+/// A text after a swatch of its colour, if it has one.
+pub(super) fn marked(ui: &mut egui::Ui, color: Option<[u8; 3]>, text: &str, hover: &str) {
+    ui.horizontal(|ui| {
+        color.into_iter().for_each(|color| swatch(ui, color));
+        ui.label(text).on_hover_text(hover);
+    });
+}
+
 /// The row that a pressed key goes to from row `index` of `count`.
 fn next_row(ui: &egui::Ui, index: usize, count: usize) -> Option<usize> {
     let pressed = |key| ui.input(|input| input.key_pressed(key));
@@ -169,7 +209,6 @@ pub(super) fn text_width_in(ui: &egui::Ui, text: &str, font: egui::FontId) -> f3
     ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::PLACEHOLDER).size().x
 }
 
-/// An sRGB colour as egui has it.
 pub(super) fn rgb([r, g, b]: [u8; 3]) -> egui::Color32 {
     egui::Color32::from_rgb(r, g, b)
 }
@@ -179,7 +218,6 @@ pub(super) fn legible(ui: &egui::Ui, color: egui::Color32) -> egui::Color32 {
     if ui.visuals().dark_mode { color } else { color.lerp_to_gamma(egui::Color32::BLACK, 0.3) }
 }
 
-/// A small rectangle of a colour.
 pub(super) fn swatch(ui: &mut egui::Ui, color: [u8; 3]) {
     let (rect, _) = ui.allocate_exact_size(SWATCH, egui::Sense::hover());
     // Its outline shows where its colour is that of the background.

@@ -1,10 +1,8 @@
 //! Changes of settings that are commands.
 
-use geometry::mesh::UpAxis;
-use geometry::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
-use inspect::settings::options::FACTOR_RANGE;
-use inspect::settings::{Colors, DeviationUnit, NormalsAt, Overlay, Settings};
-use load::{FileUnit, LengthUnit, NormalSource};
+use geometry::tessellate::{Edges, Lod};
+use inspect::settings::options::{self, FACTOR_RANGE};
+use inspect::settings::{Colors, Overlay, Settings, Value};
 
 /// A change of settings. Its result depends on the settings alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,25 +13,10 @@ pub enum Change {
     AdaptiveLod,
     ToggleEdges,
     CullBackFaces,
-    Surface(Surface),
-    /// None is the untessellated mesh.
-    LeftSurface(Option<Surface>),
-    Shading(Normals),
-    NormalsAt(NormalsAt),
-    Partitioning(Partitioning),
-    Edges(Edges),
-    Lod(Lod),
-    Clipping(Clip),
-    Convention(Convention),
-    Displacement(Displacement),
     MaterialColors,
-    DeviationIn(DeviationUnit),
     Overlay(Overlay),
-    MeshNormals(NormalSource),
-    /// None is the axis that the file says.
-    Up(Option<UpAxis>),
-    /// None is the unit that the file says.
-    Unit(Option<LengthUnit>),
+    /// The option with this name gets the value with this name, or none.
+    Option(&'static str, Option<&'static str>),
 }
 
 impl Change {
@@ -50,22 +33,13 @@ impl Change {
                 }
             }
             Self::CullBackFaces => settings.tessellation.cull_back_faces = !settings.tessellation.cull_back_faces,
-            Self::Surface(surface) => settings.tessellation.surface = surface,
-            Self::LeftSurface(surface) => settings.split_surface = surface,
-            Self::Shading(normals) => settings.tessellation.normals = normals,
-            Self::NormalsAt(places) => settings.normals_at = places,
-            Self::Partitioning(partitioning) => settings.tessellation.partitioning = partitioning,
-            Self::Edges(edges) => settings.tessellation.edges = edges,
-            Self::Lod(lod) => settings.tessellation.lod = lod,
-            Self::Clipping(clip) => settings.tessellation.clip = clip,
-            Self::Convention(convention) => settings.tessellation.convention = convention,
-            Self::Displacement(displacement) => settings.tessellation.displacement = displacement,
             Self::MaterialColors => settings.overlays.colors = Colors::Material,
-            Self::DeviationIn(unit) => settings.deviation_in = unit,
             Self::Overlay(overlay) => settings.overlays.toggle(overlay),
-            Self::MeshNormals(normals) => settings.import.normals = normals,
-            Self::Up(axis) => settings.import.up = axis,
-            Self::Unit(unit) => settings.import.unit = unit.map(FileUnit::Named),
+            Self::Option(name, value) => {
+                if let Some(option) = options::all().find(|option| option.name == name) {
+                    option.set(settings, value.map_or(Value::Unset, Value::Name));
+                }
+            }
         }
     }
 }

@@ -3,6 +3,7 @@
 
 mod availability;
 mod change;
+mod files;
 mod fixed;
 mod generated;
 #[cfg(test)]
@@ -17,8 +18,10 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 use geometry::mesh::Shape;
 use inspect::render::Standpoint;
 
-pub(crate) use availability::{Availability, BACKS_ARE_SEEN, MADE_IN_CODE, MOST_BOOKMARKS, NO_TEXTURE_COORDINATES};
+pub use availability::{Availability, Need};
+pub(crate) use availability::{BACKS_ARE_SEEN, MADE_IN_CODE, MOST_BOOKMARKS, NO_TEXTURE_COORDINATES};
 pub use change::Change;
+pub use files::{Beside, Purpose, Written};
 pub use fixed::ENVIRONMENT;
 pub(crate) use fixed::{HEIGHT_IMAGE, MATCAP_IMAGE};
 
@@ -64,45 +67,46 @@ pub enum Action {
     WhitePaper,
 }
 
-/// An action on files.
+impl From<FileAction> for Action {
+    fn from(action: FileAction) -> Self {
+        Self::File(action)
+    }
+}
+
+impl From<CameraAction> for Action {
+    fn from(action: CameraAction) -> Self {
+        Self::Camera(action)
+    }
+}
+
+impl From<Change> for Action {
+    fn from(change: Change) -> Self {
+        Self::Setting(change)
+    }
+}
+
+impl From<Preparing> for Action {
+    fn from(preparing: Preparing) -> Self {
+        Self::Prepare(preparing)
+    }
+}
+
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FileAction {
-    Open,
+    /// With the desktop's dialog, or a typed path where there is none.
+    Ask(Purpose),
     OpenPath,
     OpenRecent(PathBuf),
     OpenShape(Shape),
     OpenVase,
     Reload,
-    HeightImage,
-    Truth,
-    TruthPath,
-    ForgetTruth,
-    Factors,
-    FactorsPath,
-    ForgetFactors,
-    LodShader,
-    LodShaderPath,
-    CloseLodShader,
-    SurfaceShader,
-    SurfaceShaderPath,
-    CloseSurfaceShader,
-    Matcap,
-    Environment,
-    EnvironmentPath,
-    CloseEnvironment,
+    Close(Beside),
+    /// Opens the window that chooses how a picture is saved.
     SavePicture,
-    SavePicturePath,
     SaveTurntable,
-    SaveFactors,
-    SaveAdjacency,
-    SaveStats,
-    ExportMesh,
-    ExportMeshPath,
-    SaveChart,
     Quit,
 }
 
-/// An action that moves the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CameraAction {
     Frame,
@@ -115,7 +119,6 @@ pub enum CameraAction {
     Bookmark(usize),
     /// Through a camera of the file: an index into the mesh's cameras.
     OfFile(usize),
-    /// To where the frozen LOD camera is.
     ThroughFrozen,
     Orthographic,
     Orbit(Direction),
@@ -175,7 +178,6 @@ impl Menu {
     }
 }
 
-/// A list that a menu opens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Submenu {
     OpenRecent,
@@ -197,16 +199,12 @@ impl Submenu {
     }
 }
 
-/// Where a command is in the menus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// In a menu, in its group of this number; lines separate the groups.
     Menu(Menu, u8),
     Submenu(Submenu),
 }
-
-/// Why a command is not possible, in a sentence; none if it is.
-type WhyNot = fn(&Availability) -> Option<&'static str>;
 
 /// Something that a person can do.
 #[derive(Clone, Debug)]
@@ -219,13 +217,24 @@ pub struct Command {
     /// Keys that do the same, the usual one first.
     pub keys: Vec<KeyboardShortcut>,
     pub place: Option<Place>,
-    why_not: WhyNot,
+    needs: &'static [Need],
 }
 
 impl Command {
     /// A command that is always possible, without keys, and in no menu.
-    fn new(action: Action, name: impl Into<Cow<'static, str>>, text: impl Into<Cow<'static, str>>) -> Self {
-        Self { action, name: name.into(), text: text.into(), keys: Vec::new(), place: None, why_not: |_| None }
+    fn new(action: impl Into<Action>, name: impl Into<Cow<'static, str>>) -> Self {
+        Self {
+            action: action.into(),
+            name: name.into(),
+            text: Cow::Borrowed(""),
+            keys: Vec::new(),
+            place: None,
+            needs: &[],
+        }
+    }
+
+    fn text(self, text: impl Into<Cow<'static, str>>) -> Self {
+        Self { text: text.into(), ..self }
     }
 
     fn keys(self, keys: impl Into<Vec<KeyboardShortcut>>) -> Self {
@@ -240,13 +249,13 @@ impl Command {
         Self { place: Some(Place::Submenu(submenu)), ..self }
     }
 
-    fn unless(self, why_not: WhyNot) -> Self {
-        Self { why_not, ..self }
+    fn needs(self, needs: &'static [Need]) -> Self {
+        Self { needs, ..self }
     }
 
     /// Why it is not possible now, in a sentence; none if it is.
     pub fn why_not(&self, now: &Availability) -> Option<&'static str> {
-        (self.why_not)(now)
+        now.why_not(self.needs)
     }
 
     /// The name without the setting's name in front: "PN" for "Surface: PN".
@@ -256,9 +265,9 @@ impl Command {
 
     /// Whether its keys work even while text is being typed or a window asks for something.
     pub fn works_while_typing(&self) -> bool {
-        use FileAction::{Open, OpenPath, Quit};
+        use FileAction::{Ask, OpenPath, Quit};
         match &self.action {
-            Action::File(action) => matches!(action, Open | OpenPath | Quit),
+            Action::File(action) => matches!(action, Ask(Purpose::Open) | OpenPath | Quit),
             Action::Cancel | Action::SearchCommands => true,
             Action::LargerText | Action::SmallerText | Action::UsualText => true,
             _ => false,
@@ -308,7 +317,6 @@ fn with_symbols(name: String) -> String {
     name.replace("OpenBracket", "[").replace("CloseBracket", "]")
 }
 
-/// Every command that there is now.
 pub fn all(now: &Availability) -> Vec<Command> {
     let mut all = fixed::commands();
     all.extend(generated::commands(now));

@@ -19,7 +19,7 @@ use pnaen::commands::{Action, Change, Command, FileAction, GESTURES, Menu, Place
 use tempfile::TempDir;
 
 use crate::driver::{PATIENCE, open};
-use crate::{choose, press, run_command, settle, switch, uniform, window};
+use crate::{choose, click, press, run_command, settle, switch, uniform, window};
 
 fn commands(harness: &Harness<App>) -> Vec<Command> {
     all(&harness.state().availability())
@@ -82,8 +82,7 @@ fn every_key_of_the_table_gives_its_command() {
             press_shortcut(&mut harness, key);
             assert_eq!(harness.state().last_action(), Some(&command.action), "{}: {key:?}", command.name);
             pressed += 1;
-            use FileAction::{ExportMesh, Open};
-            if matches!(&command.action, Action::File(Open | ExportMesh)) {
+            if matches!(&command.action, Action::File(FileAction::Ask(_))) {
                 wait_for_dialog(&mut harness);
             }
             if command.action == Action::PlayOrPause {
@@ -253,9 +252,16 @@ fn the_keys_fit_a_small_screen_and_are_scrolled() {
     assert!(row(&harness).is_some(), "{}", last.name);
 }
 
-/// Performs a command that asks for a path, and types the path.
+/// The command that opens the window that chooses how a picture is saved.
+const SAVE_PICTURE: &str = "Save picture…";
+
+/// Performs a command that asks for a path where there is no file dialog, and types the path.
 fn write_as(harness: &mut Harness<App>, command: &str, path: &Path) {
     give(harness, command);
+    if command == SAVE_PICTURE {
+        click(harness, "Save…");
+    }
+    wait(harness, |app| app.path_asked_for().is_some());
     harness.run_steps(2);
     // Typing replaces the proposed path.
     harness.get_by_role(Role::TextInput).type_text(&path.display().to_string());
@@ -280,7 +286,7 @@ fn the_picture_is_saved_as_it_is_shown() {
     let folder = tempfile::tempdir().expect("a writable temporary folder");
     let mut harness = window(Some(Source::Shape(Shape::Torus)));
     let path = folder.path().join("torus.png");
-    write_as(&mut harness, "Save picture path…", &path);
+    write_as(&mut harness, SAVE_PICTURE, &path);
     let saved = image::open(&path).expect("a picture").to_rgba8();
     assert_eq!(saved, harness.state().read_picture().expect("a device").expect("a picture"));
     assert!(harness.query_by_label_contains("torus.png is written.").is_some());
@@ -288,11 +294,11 @@ fn the_picture_is_saved_as_it_is_shown() {
     assert!(harness.query_by_label_contains("is written.").is_none());
     // A typed path never replaces a file.
     press(&mut harness, Key::W);
-    write_as(&mut harness, "Save picture path…", &path);
+    write_as(&mut harness, SAVE_PICTURE, &path);
     assert!(harness.query_by_label_contains("torus.png exists already").is_some());
     assert_eq!(image::open(&path).expect("a picture").to_rgba8(), saved);
     press(&mut harness, Key::Escape);
-    write_as(&mut harness, "Save picture path…", &folder.path().join("torus.jpg"));
+    write_as(&mut harness, SAVE_PICTURE, &folder.path().join("torus.jpg"));
     assert!(harness.query_by_label_contains("torus.jpg: the name must end in .png").is_some());
     assert!(!folder.path().join("torus.jpg").exists());
 }
@@ -304,7 +310,7 @@ fn an_exported_mesh_is_the_one_that_the_command_writes() {
     let (_, triangles) = harness.state().totals().expect("a torus");
     for name in ["torus.glb", "torus.obj"] {
         let path = folder.path().join(name);
-        write_as(&mut harness, "Export mesh path…", &path);
+        write_as(&mut harness, "Export mesh…", &path);
         assert!(harness.query_by_label_contains(&format!("{name} is written.")).is_some());
         assert!(harness.query_by_label_contains("aren't in the file").is_none(), "all patches are written");
         press(&mut harness, Key::Escape);
@@ -319,7 +325,7 @@ fn an_exported_mesh_is_the_one_that_the_command_writes() {
             "{name} differs from the command's file"
         );
     }
-    write_as(&mut harness, "Export mesh path…", &folder.path().join("torus.ply"));
+    write_as(&mut harness, "Export mesh…", &folder.path().join("torus.ply"));
     assert!(harness.query_by_label_contains("torus.ply: the name must end in").is_some());
 }
 
@@ -329,7 +335,7 @@ fn an_export_says_how_many_patches_are_left_out() {
     let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     switch(&mut harness, "Cull back faces");
     settle(&mut harness);
-    write_as(&mut harness, "Export mesh path…", &folder.path().join("torus.glb"));
+    write_as(&mut harness, "Export mesh…", &folder.path().join("torus.glb"));
     harness.get_by_label_contains("of 256 patches aren't drawn in this view, and aren't in the file.");
 }
 

@@ -99,8 +99,12 @@ fn the_reference_surfaces_path_can_be_typed_and_tab_reaches_the_buttons() {
     let mut harness = window(None);
     let settings = *harness.state().settings();
     click(&mut harness, "File");
-    harness.get_by_label("Reference surface path…").click();
+    harness.get_by_label("Reference surface…").click();
+    harness.step();
     typed("elephant").into_iter().for_each(|event| harness.event(event));
+    while field(&harness).is_none() {
+        harness.step();
+    }
     settle(&mut harness);
     assert_eq!((field(&harness).as_deref(), harness.state().settings()), (Some("elephant"), &settings));
     // The first says that no name begins like this.

@@ -8,7 +8,7 @@ use inspect::engine::Preparation;
 use inspect::settings::Settings;
 use load::{HeightSource, Source};
 use pnaen::app::App;
-use pnaen::commands::{Action, Change, all};
+use pnaen::commands::{Action, Change, FileAction, all};
 use tempfile::TempDir;
 
 use crate::environment::panorama;
@@ -64,7 +64,7 @@ fn every_command_for_a_setting_is_undone_and_redone() {
     let mut count = 0;
     for command in all(&harness.state().availability()).into_iter().filter(|command| is_setting(&command.action)) {
         // Settings are there at once; only what loads the mesh again takes a while.
-        let loads = matches!(command.action, Action::Prepare(_) | Action::Setting(Change::MeshNormals(_)));
+        let loads = matches!(command.action, Action::Prepare(_) | Action::Setting(Change::Option("mesh-normals", _)));
         let take: fn(&mut Harness<App>) = if loads { settle } else { |harness| harness.run_steps(3) };
         change_with(&mut harness, &command.name, take, |app, context| app.give(context, &command));
         count += 1;
@@ -101,8 +101,7 @@ fn every_file_beside_the_mesh_is_undone_and_redone() {
     change(&mut harness, "the factors", |app, context| app.open_factors(context, factors));
     change(&mut harness, "the LOD shader", |app, context| app.open_lod_shader(context, lod));
     change(&mut harness, "the surface shader", |app, context| app.open_surface_shader(context, surface));
-    let closing =
-        |action: &Action| matches!(action, Action::File(action) if format!("{action:?}").starts_with(['C', 'F']));
+    let closing = |action: &Action| matches!(action, Action::File(FileAction::Close(_)));
     let mut closed = Vec::new();
     for command in all(&harness.state().availability()).into_iter().filter(|command| closing(&command.action)) {
         change(&mut harness, &command.name, |app, context| app.give(context, &command));

@@ -14,12 +14,10 @@ impl App {
         self.copy_command_of(context, &PictureChoices::default());
     }
 
-    /// The same for a picture with these choices.
     pub(in crate::app) fn copy_command_of(&mut self, context: &egui::Context, choices: &PictureChoices) {
         self.copy_line(context, self.command_of(context.theme(), choices, &self.viewport.camera, None, None));
     }
 
-    /// Copies a command, and shows it in a window.
     pub(in crate::app) fn copy_line(&mut self, context: &egui::Context, command: Option<String>) {
         let Some(command) = command else { return };
         context.copy_text(command.clone());

@@ -3,7 +3,7 @@
 use egui::{Event, Key, KeyboardShortcut};
 
 use crate::app::App;
-use crate::commands::{Action, Command, FileAction, all};
+use crate::commands::{Action, Command, FileAction, Purpose, all};
 
 /// The key that hides the panels while no control has the focus.
 const TAB: KeyboardShortcut = KeyboardShortcut::new(egui::Modifiers::NONE, Key::Tab);
@@ -56,7 +56,7 @@ impl App {
             }
             for place in take_presses(context, shortcut) {
                 self.give(context, command);
-                if matches!(command.action, Action::File(FileAction::Open | FileAction::OpenPath)) {
+                if matches!(command.action, Action::File(FileAction::Ask(Purpose::Open) | FileAction::OpenPath)) {
                     // The keys after this one are text.
                     return self.hold_from(context, place);
                 }

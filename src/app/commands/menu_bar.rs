@@ -84,56 +84,13 @@ impl App {
     /// Whether a menu's command that switches something is on; none for other commands, also those that are in no menu.
     fn is_on(&self, context: &egui::Context, action: &Action) -> Option<bool> {
         match action {
-            Action::Camera(action) => match action {
-                CameraAction::Orthographic => Some(self.viewport.camera.orthographic),
-                CameraAction::Frame
-                | CameraAction::FramePatch
-                | CameraAction::LookFrom(_)
-                | CameraAction::Before
-                | CameraAction::After
-                | CameraAction::Bookmark(_)
-                | CameraAction::OfFile(_)
-                | CameraAction::ThroughFrozen
-                | CameraAction::Orbit(_)
-                | CameraAction::Pan(_)
-                | CameraAction::ZoomIn
-                | CameraAction::ZoomOut => None,
-            },
+            Action::Camera(CameraAction::Orthographic) => Some(self.viewport.camera.orthographic),
             Action::Chart => Some(self.panels.chart.is_open),
             Action::HidePanels => Some(self.panels.are_hidden),
             Action::Ruler => Some(self.viewport.ruler.is_some()),
             Action::Previews => Some(self.viewport.preview.is_on),
             Action::Theme(theme) => Some(context.options(|options| options.theme_preference) == *theme),
-            Action::File(_)
-            | Action::Setting(_)
-            | Action::Prepare(_)
-            | Action::Undo
-            | Action::Redo
-            | Action::CopyAsCommand
-            | Action::ResetSettings
-            | Action::ForgetEverything
-            | Action::SplitView
-            | Action::FocusControls
-            | Action::OpenAllSections
-            | Action::FoldAllSections
-            | Action::Warnings
-            | Action::FreezeLodCamera
-            | Action::AddBookmark
-            | Action::ForgetBookmarks
-            | Action::Background
-            | Action::MeasureChart
-            | Action::WidestCrack
-            | Action::LargerText
-            | Action::SmallerText
-            | Action::UsualText
-            | Action::ToggleDisplacement
-            | Action::PlayOrPause
-            | Action::AnimationClip(_)
-            | Action::Deselect
-            | Action::Cancel
-            | Action::SearchCommands
-            | Action::Keys
-            | Action::WhitePaper => None,
+            _ => None,
         }
     }
 }
@@ -164,7 +121,6 @@ fn scrolled(ui: &mut egui::Ui, entries: impl FnOnce(&mut egui::Ui)) {
     egui::ScrollArea::vertical().min_scrolled_height(most).max_height(most).show(ui, entries);
 }
 
-/// Shows a submenu. Returns the command that is chosen in it.
 fn submenu_entries<'a>(
     ui: &mut egui::Ui,
     submenu: Submenu,

@@ -21,6 +21,5 @@ pub(super) struct Commands {
     pub copied: Option<String>,
     /// The menu of the bar whose name was clicked last, unless that closed it.
     pub clicked_menu: Option<Menu>,
-    /// The action that was performed last.
     pub last: Option<Action>,
 }

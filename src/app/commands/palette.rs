@@ -8,7 +8,6 @@ use crate::commands::{Availability, Command, all, shown_key};
 /// How many commands are listed at once.
 const LISTED: usize = 14;
 
-/// The search, while it is open.
 pub(crate) struct Palette {
     query: String,
     /// The index, among the commands found, of the one that Enter chooses.
@@ -88,7 +87,6 @@ impl Palette {
 }
 
 impl App {
-    /// Opens the window that searches for a command.
     pub(in crate::app) fn search_commands(&mut self) {
         let now = self.availability();
         self.commands.palette = Some(Palette { query: String::new(), at: 0, commands: all(&now), now });

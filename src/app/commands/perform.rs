@@ -4,8 +4,7 @@ use egui::{Context, OpenUrl, ViewportCommand, gui_zoom};
 
 use crate::app::App;
 use crate::app::dialogs::Forgetting;
-use crate::app::dialogs::typed_path::Purpose;
-use crate::commands::{Action, Availability, Command, FileAction, Preparing};
+use crate::commands::{Action, Availability, Command, FileAction, MOST_BOOKMARKS, Need, Preparing, Purpose};
 use geometry::tessellate::Tessellation;
 use gpu::{LodShader, SurfaceShader};
 use inspect::settings::{Colors, Declaration, Settings, options};
@@ -14,7 +13,6 @@ use load::{HeightSource, Import, Source};
 const WHITE_PAPER: &str = "https://developer.download.nvidia.com/whitepapers/2010/PN-AEN-Triangles-Whitepaper.pdf";
 
 impl App {
-    /// The action that was performed last.
     pub fn last_action(&self) -> Option<&Action> {
         self.commands.last.as_ref()
     }
@@ -23,42 +21,49 @@ impl App {
     pub fn availability(&self) -> Availability {
         let has_effect = |option: &Declaration| (option.no_effect)(&self.settings).is_none();
         let lets_lod = self.given.is_none() && !self.uses_lod_shader();
+        let document = self.document.as_ref();
+        let (bookmarks, clips) = (self.viewport.bookmarks.len(), self.clip_names());
+        let needs = [
+            (Need::Document, document.is_some()),
+            (Need::File, self.source().is_some_and(|source| source.shape().is_none())),
+            (Need::Picture, self.viewport.picture.drawn.is_some()),
+            (Need::NoWriting, !self.is_writing()),
+            (Need::Truth, self.truth.is_some()),
+            (Need::Factors, self.given.is_some()),
+            (Need::LodShader, self.lod_shader.is_some()),
+            (Need::SurfaceShader, self.surface_shader.is_some()),
+            (Need::Surface, !self.uses_surface_shader()),
+            (Need::Environment, self.environment.is_some()),
+            (Need::Undo, self.can_undo()),
+            (Need::Redo, self.can_redo()),
+            (Need::ViewBefore, self.has_view_before()),
+            (Need::ViewAfter, self.has_view_after()),
+            (Need::Bookmarks, bookmarks > 0),
+            (Need::RoomForBookmarks, bookmarks < MOST_BOOKMARKS),
+            (Need::Selection, self.selected_edge().is_some() || self.selected_triangle().is_some()),
+            (Need::SelectedPatch, self.selected_patch().is_some()),
+            (Need::Heights, self.has_heights()),
+            (Need::TextureCoordinates, document.is_some_and(|document| document.has_texture_coordinates)),
+            (Need::NormalsAt, has_effect(&options::NORMALS_AT)),
+            (Need::Factor, has_effect(&options::FACTOR) && lets_lod),
+            (Need::Lod, has_effect(&options::LOD) && lets_lod),
+            (Need::Culling, self.can_cull_back_faces()),
+            (Need::Split, self.settings.split.is_some()),
+            (Need::Frozen, self.viewport.frozen.is_some()),
+            (Need::Deviation, self.settings.overlays.colors == Colors::Deviation),
+            (Need::MeasurableChart, self.can_measure_chart()),
+            (Need::Chart, !self.chart_rows().is_empty()),
+            (Need::Clips, !clips.is_empty()),
+        ];
         Availability {
-            has_document: self.document.is_some(),
-            is_of_a_file: self.source().is_some_and(|source| source.shape().is_none()),
-            has_picture: self.viewport.picture.drawn.is_some(),
-            has_truth: self.truth.is_some(),
-            has_factors: self.given.is_some(),
-            has_lod_shader: self.lod_shader.is_some(),
-            has_surface_shader: self.surface_shader.is_some(),
-            takes_surface: !self.uses_surface_shader(),
-            has_environment: self.environment.is_some(),
-            can_undo: self.can_undo(),
-            can_redo: self.can_redo(),
-            has_view_before: self.has_view_before(),
-            has_view_after: self.has_view_after(),
-            bookmarks: self.viewport.bookmarks.len(),
-            has_selection: self.viewport.selected_edge.is_some() || self.selected_triangle().is_some(),
-            has_selected_patch: self.selected_patch().is_some(),
-            has_heights: self.has_heights(),
-            has_texture_coordinates: self.document.as_ref().is_some_and(|document| document.has_texture_coordinates),
-            takes_normals_at: has_effect(&options::NORMALS_AT),
-            takes_factor: has_effect(&options::FACTOR) && lets_lod,
-            takes_lod: has_effect(&options::LOD) && lets_lod,
-            can_cull_back_faces: self.can_cull_back_faces(),
-            is_split: self.settings.split.is_some(),
-            is_frozen: self.viewport.frozen.is_some(),
-            shows_deviation: self.settings.overlays.colors == Colors::Deviation,
-            can_measure_chart: self.can_measure_chart(),
-            has_chart: !self.chart_rows().is_empty() && self.panels.chart.saving.is_none(),
-            is_writing: self.is_writing(),
+            has: needs.into_iter().filter(|(_, holds)| *holds).map(|(need, _)| need).collect(),
+            bookmarks,
             file_cameras: self.file_camera_names(),
-            clips: self.clip_names(),
+            clips,
             recent: self.persistence.recent().map(Into::into).collect(),
         }
     }
 
-    /// Performs a command, if it is possible.
     pub fn give(&mut self, context: &Context, command: &Command) {
         if command.why_not(&self.availability()).is_none() {
             self.perform(context, &command.action);
@@ -116,38 +121,15 @@ impl App {
 
     fn perform_on_files(&mut self, context: &Context, action: &FileAction) {
         match action {
-            FileAction::Open => self.open_dialog(context),
+            FileAction::Ask(purpose) => self.ask_for(context, *purpose),
             FileAction::OpenPath => self.type_path(Purpose::Open),
             FileAction::OpenRecent(path) => self.open(context, Source::File(path.clone())),
             FileAction::OpenShape(shape) => self.open(context, Source::Shape(*shape)),
             FileAction::OpenVase => self.open(context, Source::Vase),
             FileAction::Reload => self.reload(context),
-            FileAction::HeightImage => self.height_dialog(context),
-            FileAction::Truth => self.truth_dialog(context),
-            FileAction::TruthPath => self.type_path(Purpose::Truth),
-            FileAction::ForgetTruth => self.forget_truth(),
-            FileAction::Factors => self.factors_dialog(context),
-            FileAction::FactorsPath => self.type_path(Purpose::Factors),
-            FileAction::ForgetFactors => self.forget_factors(),
-            FileAction::LodShader => self.lod_shader_dialog(context),
-            FileAction::LodShaderPath => self.type_path(Purpose::LodShader),
-            FileAction::CloseLodShader => self.forget_shader::<LodShader>(),
-            FileAction::SurfaceShader => self.surface_shader_dialog(context),
-            FileAction::SurfaceShaderPath => self.type_path(Purpose::SurfaceShader),
-            FileAction::CloseSurfaceShader => self.forget_shader::<SurfaceShader>(),
-            FileAction::Matcap => self.matcap_dialog(context),
-            FileAction::Environment => self.environment_dialog(context),
-            FileAction::EnvironmentPath => self.type_path(Purpose::Environment),
-            FileAction::CloseEnvironment => self.close_environment(),
+            FileAction::Close(beside) => self.close_beside(*beside),
             FileAction::SavePicture => self.dialogs.picture.is_open = true,
-            FileAction::SavePicturePath => self.type_path(Purpose::SavePicture),
             FileAction::SaveTurntable => self.dialogs.turntable.is_open = true,
-            FileAction::SaveFactors => self.numbers_dialog(context, Purpose::SaveFactors),
-            FileAction::SaveAdjacency => self.numbers_dialog(context, Purpose::SaveAdjacency),
-            FileAction::SaveStats => self.numbers_dialog(context, Purpose::SaveStats),
-            FileAction::ExportMesh => self.export_dialog(context),
-            FileAction::ExportMeshPath => self.type_path(Purpose::ExportMesh),
-            FileAction::SaveChart => self.save_dialog(context),
             FileAction::Quit => context.send_viewport_cmd(ViewportCommand::Close),
         }
     }

@@ -6,7 +6,6 @@ use std::sync::Once;
 
 use log::{Level, LevelFilter, Log, Metadata, Record};
 
-/// The outcome of a dialog.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Asked {
     Chosen(PathBuf),

@@ -4,6 +4,7 @@ mod background;
 mod desktop_dialog;
 mod notice;
 pub(super) mod picture_window;
+pub(super) mod purpose;
 mod turntable_window;
 pub(super) mod typed_path;
 mod typed_text;
@@ -12,6 +13,7 @@ mod warnings;
 pub(super) mod windows;
 mod writing;
 
+use crate::commands::Purpose;
 use notice::Notice;
 use picture_window::PictureWindow;
 use turntable_window::TurntableWindow;
@@ -25,7 +27,6 @@ pub(super) enum Forgetting {
     Bookmarks,
 }
 
-/// Windows and dialogs that are open.
 #[derive(Default)]
 pub(super) struct Dialogs {
     /// The desktop's file dialog, until it is answered.
@@ -33,7 +34,7 @@ pub(super) struct Dialogs {
     /// The path that is being typed, while that window is open.
     pub typed_path: Option<TypedPath>,
     /// What was typed last as the path of a file to read, until a mesh is opened: it may have a mistake.
-    pub typed: Option<(typed_path::Purpose, String)>,
+    pub typed: Option<(Purpose, String)>,
     /// The folder of the last path that was typed for a file to write.
     pub folder: Option<std::path::PathBuf>,
     /// The last error, until its window is closed.

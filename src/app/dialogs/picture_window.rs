@@ -4,6 +4,7 @@ use egui::{DragValue, Grid, Ui};
 
 use crate::app::App;
 use crate::app::jobs::picture_job::PictureChoices;
+use crate::commands::{Purpose, Written};
 use inspect::render::has_legend;
 
 /// The sides of pictures, in px: those that the option `--size` takes.
@@ -35,7 +36,7 @@ impl App {
         });
         self.dialogs.picture = PictureWindow { is_open: is_open && !saves, choices };
         if saves {
-            self.picture_dialog(context);
+            self.ask_for(context, Purpose::Write(Written::Picture));
         } else if copies {
             self.copy_command_of(context, &choices);
         }

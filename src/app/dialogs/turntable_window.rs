@@ -5,6 +5,7 @@ use egui::{DragValue, Grid, Ui};
 use super::picture_window::LABELS;
 use crate::app::App;
 use crate::app::jobs::picture_job::PictureChoices;
+use crate::commands::{Purpose, Written};
 use inspect::shot::{FPS, FRAMES, Turn};
 
 /// The choices, which last as long as the program runs, and whether the window is open.
@@ -34,7 +35,8 @@ impl App {
         own.is_open = is_open && !saves;
         self.dialogs.turntable = own;
         if saves {
-            self.turntable_dialog(context, own.is_gif);
+            let written = if own.is_gif { Written::Gif } else { Written::Folder };
+            self.ask_for(context, Purpose::Write(written));
         } else if copies {
             let (theme, turn) = (context.theme(), Some((own.turn, own.is_gif)));
             let command = self.command_of(theme, &own.choices, &self.viewport.camera, None, turn);

@@ -5,42 +5,19 @@ use std::path::Path;
 use egui::text::{CCursor, CCursorRange};
 use egui::{Event, Id, Key, TextEdit};
 
-use super::desktop_dialog::Asked;
+use super::desktop_dialog::{Asked, ask};
+use super::purpose::{self, is_written, kinds, proposed, proposed_name};
 use super::typed_text::{Completion, completion, path_of};
 use crate::app::App;
-use crate::app::jobs::background_job::BackgroundJob;
+use crate::app::jobs::background_job::Stopped;
+use crate::app::jobs::job_list::Work;
+use crate::commands::{Beside, Purpose};
 use geometry::names::shown_path;
-use load::format::known_extensions;
 use load::{FileError, Source};
 
-/// What a path is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Purpose {
-    Open,
-    Heights,
-    Truth,
-    Factors,
-    LodShader,
-    SurfaceShader,
-    /// A picture of a lit sphere.
-    Matcap,
-    Environment,
-    SaveChart,
-    SavePicture,
-    /// A turntable as PNG files.
-    SaveFolder,
-    SaveGif,
-    SaveFactors,
-    SaveAdjacency,
-    SaveStats,
-    ExportMesh,
-}
-
-/// A path that is being typed.
 pub(crate) struct TypedPath {
     purpose: Purpose,
     path: String,
-    /// The path that the completion is about.
     completion: (String, Completion),
     /// Whether it is said which names begin like the path, since Tab can't choose one of them. Then Tab leaves the field.
     lists_names: bool,
@@ -50,13 +27,9 @@ pub(crate) struct TypedPath {
     early: Option<Vec<Event>>,
 }
 
-/// The most names that are listed under a path.
 const MOST_NAMES: usize = 8;
 
-/// The desktop's file dialog.
 pub(crate) struct PendingDialog {
-    pub purpose: Purpose,
-    pub job: BackgroundJob<Asked>,
     /// When it was asked for, on the window's clock in s.
     pub since: f64,
     /// Events of keys that were pressed since, for the text field that replaces a missing dialog.
@@ -75,121 +48,6 @@ impl PendingDialog {
 /// Why a path is typed where a dialog was asked for.
 const NO_DIALOG: &str = "This desktop has no file dialog (neither a portal nor zenity). Type the path instead.";
 
-impl Purpose {
-    fn title(self) -> &'static str {
-        match self {
-            Self::Open => "Open path",
-            Self::Heights => "Height image path",
-            Self::Truth => "Reference surface path",
-            Self::Factors => "Factors path",
-            Self::LodShader => "LOD shader path",
-            Self::SurfaceShader => "Surface shader path",
-            Self::Matcap => "Matcap path",
-            Self::Environment => "Environment path",
-            Self::SaveChart => "Save chart",
-            Self::SavePicture => "Save picture",
-            Self::SaveFolder | Self::SaveGif => "Save turntable",
-            Self::SaveFactors => "Save factors",
-            Self::SaveAdjacency => "Save adjacency",
-            Self::SaveStats => "Save stats",
-            Self::ExportMesh => "Export mesh",
-        }
-    }
-
-    /// Whether the path is that of a file to write.
-    fn is_written(self) -> bool {
-        let is_read = matches!(
-            self,
-            Self::Open
-                | Self::Heights
-                | Self::Truth
-                | Self::Factors
-                | Self::LodShader
-                | Self::SurfaceShader
-                | Self::Matcap
-                | Self::Environment
-        );
-        !is_read
-    }
-
-    /// The kinds of file that can be typed.
-    fn takes(self) -> String {
-        match self {
-            Self::Open => format!(
-                "A {} file, shape:NAME, a height image (.png, .jpg, .webp), or an environment (.hdr, .exr)",
-                known_extensions()
-            ),
-            Self::Heights | Self::Matcap => "A .png, .jpg or .webp image".to_owned(),
-            Self::Truth => format!("A {} file, or shape:NAME", known_extensions()),
-            Self::Factors => "A .csv file with the factors of every triangle".to_owned(),
-            Self::LodShader => "A .wgsl file with the function edge_factor".to_owned(),
-            Self::SurfaceShader => "A .wgsl file with the function edge_points".to_owned(),
-            Self::Environment => "A .hdr or .exr panorama".to_owned(),
-            Self::SaveChart => "A new .svg, .png or .csv file".to_owned(),
-            Self::SavePicture => "A new .png file".to_owned(),
-            Self::SaveFolder => "A new folder".to_owned(),
-            Self::SaveGif => "A new .gif file".to_owned(),
-            Self::SaveFactors => "A new .csv file".to_owned(),
-            Self::SaveAdjacency => "A new .json or .bin file".to_owned(),
-            Self::SaveStats => "A new .json file".to_owned(),
-            Self::ExportMesh => "A new .glb or .obj file".to_owned(),
-        }
-    }
-
-    fn button(self) -> &'static str {
-        match self {
-            _ if !self.is_written() => "Open",
-            Self::ExportMesh => "Export",
-            _ => "Save",
-        }
-    }
-
-    /// The path that the text field starts with. `folder` is where a file was written last.
-    fn proposed(self, open: Option<&Source>, folder: Option<&Path>) -> String {
-        let written = |name: &str| {
-            unused(folder.map_or_else(|| absolute(name), |folder| folder.join(name).display().to_string()))
-        };
-        let title = open.map_or_else(|| "mesh".to_owned(), Source::title);
-        match (self, open) {
-            (Self::Open | Self::Truth, Some(Source::File(path))) => path.display().to_string(),
-            (Self::Open | Self::Truth | Self::Heights, _) => String::new(),
-            (Self::Factors | Self::LodShader | Self::SurfaceShader, _) => String::new(),
-            (Self::Matcap | Self::Environment, _) => String::new(),
-            (Self::SaveChart, _) => written("chart.svg"),
-            (Self::SavePicture, _) => written(&name_beside(&title, "-view.png")),
-            (Self::SaveFolder, _) => written(&name_beside(&title, "-turntable")),
-            (Self::SaveGif, _) => written(&name_beside(&title, "-turntable.gif")),
-            (Self::SaveFactors, _) => written(&name_beside(&title, "-factors.csv")),
-            (Self::SaveAdjacency, _) => written(&name_beside(&title, "-adjacency.json")),
-            (Self::SaveStats, _) => written(&name_beside(&title, "-stats.json")),
-            (Self::ExportMesh, _) => written(&name_beside(&title, "-tessellated.glb")),
-        }
-    }
-}
-
-/// The path itself, or if there is such a file, one whose name ends with the first number from 2 on that is free.
-fn unused(path: String) -> String {
-    let (stem, ending) = match path.rsplit_once('.') {
-        Some((stem, ending)) if !ending.contains(['/', '\\']) => (stem, format!(".{ending}")),
-        _ => (path.as_str(), String::new()),
-    };
-    let numbered = (2..).map(|number| format!("{stem}-{number}{ending}"));
-    std::iter::once(path.clone()).chain(numbered).find(|path| !Path::new(path).exists()).unwrap_or(path.clone())
-}
-
-/// The path of a name in the working folder.
-pub(crate) fn absolute(name: &str) -> String {
-    std::path::absolute(name).map_or_else(|_| name.to_owned(), |path| path.display().to_string())
-}
-
-/// The name of a file that is made from a mesh with this title: the title's ending is replaced by `ending`.
-pub(crate) fn name_beside(title: &str, ending: &str) -> String {
-    let stem = Path::new(title).file_stem().unwrap_or_default().to_string_lossy();
-    // A shape's title has a colon, which some systems forbid in file names.
-    stem.replace([':', '@', ' '], "-") + ending
-}
-
-/// The button that was pressed.
 enum Answer {
     Accept,
     Cancel,
@@ -197,7 +55,7 @@ enum Answer {
 
 impl TypedPath {
     fn show(&mut self, context: &egui::Context) -> Option<Answer> {
-        let window = egui::Window::new(self.purpose.title()).resizable(false).collapsible(false);
+        let window = egui::Window::new(purpose::title(self.purpose)).resizable(false).collapsible(false);
         let window = window.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO);
         window.show(context, |ui| self.rows(ui)).and_then(|shown| shown.inner).flatten()
     }
@@ -206,7 +64,7 @@ impl TypedPath {
         if let Some(why) = self.why {
             ui.label(why);
         }
-        let label = ui.label(self.purpose.takes());
+        let label = ui.label(purpose::takes(self.purpose));
         self.complete(ui);
         let takes_tab = self.takes_tab();
         let edit = TextEdit::singleline(&mut self.path).id(field()).desired_width(420.0);
@@ -227,8 +85,8 @@ impl TypedPath {
         let entered = response.lost_focus() && ui.input_mut(takes_enter);
         let is_empty = self.path.trim().is_empty();
         ui.horizontal(|ui| {
-            let accepted =
-                ui.add_enabled(!is_empty, egui::Button::new(self.purpose.button())).clicked() || (entered && !is_empty);
+            let accepted = ui.add_enabled(!is_empty, egui::Button::new(purpose::button(self.purpose))).clicked()
+                || (entered && !is_empty);
             let cancelled = ui.button("Cancel").clicked();
             accepted.then_some(Answer::Accept).or(cancelled.then_some(Answer::Cancel))
         })
@@ -287,7 +145,7 @@ impl TypedPath {
 impl App {
     /// The title of the window in which a path is typed, and why it is shown if a dialog was asked for.
     pub fn path_asked_for(&self) -> Option<(&'static str, Option<&'static str>)> {
-        self.dialogs.typed_path.as_ref().map(|typed| (typed.purpose.title(), typed.why))
+        self.dialogs.typed_path.as_ref().map(|typed| (purpose::title(typed.purpose), typed.why))
     }
 
     /// Opens the window in which a path is typed, with a proposed path.
@@ -296,7 +154,7 @@ impl App {
             return;
         }
         let typed = self.dialogs.typed.as_ref().filter(|(of, _)| *of == purpose).map(|(_, path)| path.clone());
-        let path = typed.unwrap_or_else(|| purpose.proposed(self.source(), self.dialogs.folder.as_deref()));
+        let path = typed.unwrap_or_else(|| proposed(purpose, self.source(), self.dialogs.folder.as_deref()));
         let (completion, early) = Default::default();
         let (why, lists_names) = (None, false);
         self.dialogs.typed_path = Some(TypedPath { purpose, path, completion, lists_names, why, early: Some(early) });
@@ -349,41 +207,21 @@ impl App {
         let Some(TypedPath { purpose, path, .. }) = &self.dialogs.typed_path else { return };
         let (purpose, typed, path) = (*purpose, path.clone(), path_of(path));
         let path = path.as_str();
-        let taken = match purpose {
+        let source = match purpose {
             // This window doesn't ask before it replaces a file, so it never does.
-            _ if purpose.is_written() && Path::new(path).exists() => {
+            Purpose::Write(_) if Path::new(path).exists() => {
                 Err(format!("{} exists already: choose another name", shown_path(Path::new(path))))
             }
-            _ if purpose.is_written()
-                || matches!(
-                    purpose,
-                    Purpose::Factors
-                        | Purpose::LodShader
-                        | Purpose::SurfaceShader
-                        | Purpose::Matcap
-                        | Purpose::Environment
-                ) =>
-            {
-                let source = Source::File(path.into());
-                let is_there = if purpose.is_written() { Ok(()) } else { exists(&source) };
-                is_there.and_then(|()| self.take_source(context, purpose, source))
-            }
-            _ => match path.parse::<Source>() {
-                Ok(source) => exists(&source).and_then(|()| self.take_source(context, purpose, source)),
-                Err(error) => Err(error.to_string()),
-            },
+            Purpose::Write(_) => Ok(Source::File(path.into())),
+            Purpose::Beside(beside) if beside != Beside::Truth => found(Source::File(path.into())),
+            _ => path.parse::<Source>().map_err(|error| error.to_string()).and_then(found),
         };
-        match taken {
-            Ok(()) if purpose.is_written() => {
-                self.dialogs.folder = Path::new(path).parent().map(Path::to_owned);
-                self.dialogs.typed_path = None;
-            }
-            Ok(()) => {
-                self.dialogs.typed = Some((purpose, typed));
-                self.dialogs.typed_path = None;
-            }
-            Err(why) => self.dialogs.error = Some(why),
+        match source.and_then(|source| self.take_source(context, purpose, source)) {
+            Ok(()) if is_written(purpose) => self.dialogs.folder = Path::new(path).parent().map(Path::to_owned),
+            Ok(()) => self.dialogs.typed = Some((purpose, typed)),
+            Err(why) => return self.dialogs.error = Some(why),
         }
+        self.dialogs.typed_path = None;
     }
 
     /// Opens or writes the file that was chosen.
@@ -392,29 +230,37 @@ impl App {
     /// Why the file can't be written, in a sentence.
     fn take_source(&mut self, context: &egui::Context, purpose: Purpose, source: Source) -> Result<(), String> {
         match (purpose, source) {
-            (Purpose::Truth, source) => self.open_truth(context, source),
-            (Purpose::Factors, Source::File(path)) => self.open_factors(context, path),
-            (Purpose::LodShader, Source::File(path)) => self.open_lod_shader(context, path),
-            (Purpose::SurfaceShader, Source::File(path)) => self.open_surface_shader(context, path),
-            (Purpose::Matcap, Source::File(path)) => self.open_matcap(context, path),
-            (Purpose::Environment, Source::File(path)) => self.open_environment(context, path),
-            (Purpose::SaveChart, Source::File(path)) => self.save_chart_beside(context, path),
-            (Purpose::SavePicture, Source::File(path)) => self.save_picture(context, path)?,
-            (Purpose::SaveFolder | Purpose::SaveGif, Source::File(path)) => self.save_turntable(context, path)?,
-            (Purpose::SaveFactors, Source::File(path)) => self.save_factors(context, path)?,
-            (Purpose::SaveAdjacency, Source::File(path)) => self.save_adjacency(context, path)?,
-            (Purpose::SaveStats, Source::File(path)) => self.save_stats(context, path)?,
-            (Purpose::ExportMesh, Source::File(path)) => self.export_mesh(context, path)?,
-            (Purpose::Open | Purpose::Heights, Source::File(path)) => self.open_path(context, path),
+            (Purpose::Write(written), Source::File(path)) => return self.write_as(context, written, path),
+            (Purpose::Beside(beside), source) => self.open_beside(context, beside, source),
+            (_, Source::File(path)) => self.open_path(context, path),
             (_, source) => self.open(context, source),
         }
         Ok(())
     }
 
+    /// Asks for a file with the desktop's dialog.
+    pub(in crate::app) fn ask_for(&mut self, context: &egui::Context, purpose: Purpose) {
+        if self.jobs.has(Work::Dialog) {
+            return;
+        }
+        let name = proposed_name(purpose, self.source());
+        let choose = move || {
+            let dialog = rfd::FileDialog::new().set_title(purpose::title(purpose));
+            let kinds = kinds(purpose).into_iter();
+            let dialog = kinds.fold(dialog, |dialog, (name, endings)| dialog.add_filter(name, &endings));
+            match name {
+                Some(name) => dialog.set_file_name(name).save_file(),
+                None => dialog.pick_file(),
+            }
+        };
+        let land = move |app: &mut Self, context: &_, ended| app.take_answer(context, purpose, ended);
+        self.jobs.start(context, Work::Dialog, String::new(), move |_| ask(choose), land);
+        self.dialogs.pending = Some(PendingDialog { since: context.input(|input| input.time), early: Vec::new() });
+    }
+
     /// Takes the answer of the desktop's dialog, or opens the window to type a path if there is no dialog.
-    pub(in crate::app) fn take_dialog(&mut self, context: &egui::Context) {
-        let Some(ended) = self.dialogs.pending.as_ref().and_then(|dialog| dialog.job.take()) else { return };
-        let Some(PendingDialog { purpose, early, .. }) = self.dialogs.pending.take() else { return };
+    fn take_answer(&mut self, context: &egui::Context, purpose: Purpose, ended: Result<Asked, Stopped>) {
+        let early = self.dialogs.pending.take().map(|dialog| dialog.early).unwrap_or_default();
         match ended {
             Ok(Asked::Chosen(path)) => {
                 let taken = self.take_source(context, purpose, Source::File(path));
@@ -430,17 +276,18 @@ impl App {
     }
 }
 
-/// Whether a file that was typed is there. If not, the window stays open, so that the path can be mended.
+/// Returns what was typed if it is there. If not, the window stays open, so that the path can be mended.
 ///
 /// # Errors
 /// Why it can't be read, in a sentence.
-fn exists(source: &Source) -> Result<(), String> {
-    let Source::File(path) = source else { return Ok(()) };
-    let refused = |source| FileError::Io { path: path.clone(), source }.to_string();
-    std::fs::metadata(path).map(|_| ()).map_err(refused)
+fn found(source: Source) -> Result<Source, String> {
+    if let Source::File(path) = &source {
+        let refused = |source| FileError::Io { path: path.clone(), source }.to_string();
+        std::fs::metadata(path).map_err(refused)?;
+    }
+    Ok(source)
 }
 
-/// The id of the text field.
 fn field() -> Id {
     Id::unique("typed path")
 }

@@ -4,7 +4,6 @@ use std::path::{MAIN_SEPARATOR, Path, is_separator};
 
 use load::percent_decoded;
 
-/// The path that a text stands for.
 pub(super) fn path_of(text: &str) -> String {
     let text = text.trim();
     let quoted = ['"', '\''].iter().find_map(|quote| text.strip_prefix(*quote)?.strip_suffix(*quote));

@@ -2,22 +2,20 @@
 
 use super::notice::Notice;
 use crate::app::App;
-use crate::app::jobs::environment_job::file_name;
+use crate::app::jobs::job_list::{Job, Work};
 use geometry::progress::Stage;
 
-/// Something that can be stopped.
-#[derive(Clone, Copy, PartialEq)]
-enum Work {
-    Mesh,
-    Truth,
-    Light,
-    File,
-    Drawing,
-}
+/// The jobs that are shown, and what stopping them does, in sentences.
+const SHOWN: [(Work, &str); 4] = [
+    (Work::Mesh, "Stops loading. The mesh that is open stays."),
+    (Work::Truth, "Stops loading. The reference surface before it stays."),
+    (Work::Light, "Stops reading. The light before it stays."),
+    (Work::File, "Stops it. Nothing is written."),
+];
 
-/// What is under way, as it is shown.
 pub(crate) struct UnderWay {
-    work: Work,
+    /// None is a long drawing.
+    work: Option<Work>,
     /// A clause such as "Saving torus.png".
     pub title: String,
     /// From 0 to 1.
@@ -29,44 +27,42 @@ pub(crate) struct UnderWay {
 }
 
 impl App {
-    /// What is under way; of several, the first in this order.
+    /// What is under way; of several, the first in the order of [`SHOWN`], and at last a long drawing.
     pub(in crate::app) fn under_way(&self) -> Option<UnderWay> {
-        let (jobs, picture) = (&self.jobs, &self.viewport.picture);
-        let (work, title, done, stopping) = if let Some(load) = &jobs.load {
-            let title = match (load.progress.stage(), &load.preparation.heights) {
-                (Stage::Heights, Some(heights)) => format!("Reading heights: {}", heights.title()),
-                (Stage::Device, _) => format!("Preparing to draw {}", load.source.title()),
-                _ => format!("Loading {}", load.source.title()),
-            };
-            (Work::Mesh, title, load.progress.fraction(), "Stops loading. The mesh that is open stays.")
-        } else if let Some(load) = &jobs.truth_load {
-            let title = format!("Loading the reference surface {}", load.source.title());
-            (Work::Truth, title, load.progress.fraction(), "Stops loading. The reference surface before it stays.")
-        } else if let Some(load) = &jobs.environment {
-            let title = format!("Reading the light of {}", file_name(&load.path));
-            (Work::Light, title, load.progress.fraction(), "Stops reading. The light before it stays.")
-        } else if let Some(writing) = &jobs.writing {
-            (Work::File, writing.title(), writing.progress.fraction(), "Stops it. Nothing is written.")
-        } else {
-            let drawing = picture.drawing.as_ref().filter(|_| picture.is_long())?;
-            let title = format!("Drawing {}", self.triangles());
-            (Work::Drawing, title, drawing.done(), "Stops drawing. The last picture and all settings stay.")
-        };
-        let drawing = picture.drawing.as_ref().filter(|_| work == Work::Drawing);
-        Some(UnderWay { work, title, done, seconds_left: drawing.and_then(|drawing| drawing.seconds_left()), stopping })
+        let mut jobs = SHOWN.iter().filter_map(|(work, stopping)| Some((*work, self.jobs.get(*work)?, *stopping)));
+        if let Some((work, job, stopping)) = jobs.next() {
+            let title = if work == Work::Mesh { self.load_title(job) } else { job.title.clone() };
+            let done = job.progress.fraction();
+            return Some(UnderWay { work: Some(work), title, done, seconds_left: None, stopping });
+        }
+        let drawing = self.viewport.picture.drawing.as_ref().filter(|_| self.viewport.picture.is_long())?;
+        Some(UnderWay {
+            work: None,
+            title: format!("Drawing {}", self.triangles()),
+            done: drawing.done(),
+            seconds_left: drawing.seconds_left(),
+            stopping: "Stops drawing. The last picture and all settings stay.",
+        })
+    }
+
+    fn load_title(&self, job: &Job) -> String {
+        let load = self.jobs.load();
+        let heights = load.and_then(|load| load.preparation.heights.as_ref());
+        match (job.progress.stage(), heights, load) {
+            (Stage::Heights, Some(heights), _) => format!("Reading heights: {}", heights.title()),
+            (Stage::Device, _, Some(load)) => format!("Preparing to draw {}", load.source.title()),
+            _ => job.title.clone(),
+        }
     }
 
     /// Stops it, and says so. Over a drawing that was stopped the picture itself says it.
     pub(in crate::app) fn stop(&mut self, under_way: &UnderWay) {
-        match under_way.work {
-            Work::Mesh => {
-                self.jobs.load = None;
-                self.keep_file_choices();
-            }
-            Work::Truth => self.jobs.truth_load = None,
+        let Some(work) = under_way.work else { return self.viewport.picture.cancel() };
+        self.jobs.stop(work);
+        match work {
+            Work::Mesh => self.keep_file_choices(),
             Work::Light => self.cancel_environment(),
-            Work::File => self.jobs.writing = None,
-            Work::Drawing => return self.viewport.picture.cancel(),
+            _ => {}
         }
         self.dialogs.notice = Some(Notice::new(format!("Stopped: {}.", under_way.title)));
     }

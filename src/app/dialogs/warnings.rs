@@ -6,7 +6,7 @@ impl App {
     /// What was repaired or left out of the mesh's files and of the file of light.
     pub(in crate::app) fn warnings(&self) -> impl Iterator<Item = &str> {
         let of_mesh = self.document.iter().flat_map(|document| &document.loaded.warnings);
-        of_mesh.chain(self.environment.iter().flat_map(|open| &open.warnings)).map(String::as_str)
+        of_mesh.chain(self.environment.iter().flat_map(|open| &open.content.warnings)).map(String::as_str)
     }
 
     pub(in crate::app) fn warnings_window(&mut self, context: &egui::Context) {

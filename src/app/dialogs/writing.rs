@@ -5,10 +5,12 @@ use std::path::{Path, PathBuf};
 use super::notice::Notice;
 use super::turntable_window::TurntableWindow;
 use crate::app::App;
-use crate::app::jobs::document::arena_bytes;
+use crate::app::jobs::beside::file_name;
 use crate::app::jobs::export_job::Export;
+use crate::app::jobs::job_list::Work;
 use crate::app::jobs::picture_job::PictureChoices;
-use crate::app::jobs::writing_job::WritingJob;
+use crate::app::jobs::scenes::arena_bytes;
+use crate::commands::Written;
 use geometry::mesh::adjacency::Layout;
 use geometry::names::shown_path;
 use geometry::progress::Progress;
@@ -16,11 +18,11 @@ use inspect::adjacency_file::Format;
 use inspect::export::{Exported, ending};
 use inspect::shot::files::write_adjacency;
 use inspect::shot::{ShotError, frame_name};
+use lab::chart::save;
 
 impl App {
-    /// Whether a file is being written, other than the chart's.
     pub fn is_writing(&self) -> bool {
-        self.jobs.writing.is_some()
+        self.jobs.has(Work::File)
     }
 
     /// Starts to draw the picture as was last chosen, and to write it as a PNG file.
@@ -100,6 +102,29 @@ impl App {
         Ok(())
     }
 
+    fn write_chart(&mut self, context: &egui::Context, path: PathBuf) {
+        let Some(charted) = self.panels.chart.charted() else { return };
+        let subject = charted.subject.clone();
+        self.write(context, path, move |path, _| save(path, &subject).map_err(|error| error.to_string()));
+    }
+
+    /// Starts to write a file.
+    ///
+    /// # Errors
+    /// The path has the ending of another kind of file; as a sentence.
+    pub(super) fn write_as(&mut self, context: &egui::Context, what: Written, path: PathBuf) -> Result<(), String> {
+        match what {
+            Written::Chart => self.write_chart(context, path),
+            Written::Picture => self.save_picture(context, path)?,
+            Written::Folder | Written::Gif => self.save_turntable(context, path)?,
+            Written::Factors => self.save_factors(context, path)?,
+            Written::Adjacency => self.save_adjacency(context, path)?,
+            Written::Stats => self.save_stats(context, path)?,
+            Written::Mesh => self.export_mesh(context, path)?,
+        }
+        Ok(())
+    }
+
     fn write(
         &mut self,
         context: &egui::Context,
@@ -107,7 +132,29 @@ impl App {
         write: impl FnOnce(&Path, &Progress) -> Result<(), String> + Send + 'static,
     ) {
         let write = |path: &Path, progress: &Progress| write(path, progress).map(|()| Vec::new());
-        self.jobs.writing = Some(WritingJob::start(context, "Saving", path, write));
+        self.write_with_warnings(context, "Saving", path, write);
+    }
+
+    /// Starts to write a file, and then shows what was written, or why it couldn't be. `write` returns sentences about what couldn't be
+    /// written, or fails with one, and ends early if it is cancelled.
+    fn write_with_warnings(
+        &mut self,
+        context: &egui::Context,
+        doing: &str,
+        path: PathBuf,
+        write: impl FnOnce(&Path, &Progress) -> Result<Vec<String>, String> + Send + 'static,
+    ) {
+        let (title, shown) = (format!("{doing} {}", file_name(&path)), shown_path(&path));
+        let write = move |progress: &Progress| write(&path, progress);
+        self.jobs.start(context, Work::File, title, write, move |app, _, ended| {
+            match ended.unwrap_or_else(|stopped| Err(format!("{shown}: writing it {stopped}"))) {
+                Ok(warnings) => {
+                    let said = [vec![format!("{shown} is written.")], warnings].concat().join("\n");
+                    app.dialogs.notice = Some(Notice::new(said));
+                }
+                Err(why) => app.dialogs.error = Some(why),
+            }
+        });
     }
 
     /// Starts to write the mesh that is emitted for this view, or for the frozen one, as a .glb or .obj file.
@@ -123,18 +170,8 @@ impl App {
         let make = document.scene.beside(arena_bytes(&engine));
         let export = Export { engine, loaded, moment, inputs };
         let write = move |path: &Path, progress: &_| export.run(make, path, progress);
-        self.jobs.writing = Some(WritingJob::start(context, "Exporting", path, write));
+        self.write_with_warnings(context, "Exporting", path, write);
         Ok(())
-    }
-
-    /// Shows what was written, or why it couldn't be.
-    pub(in crate::app) fn take_written(&mut self) {
-        let Some(ended) = self.jobs.writing.as_ref().and_then(WritingJob::take) else { return };
-        self.jobs.writing = None;
-        match ended {
-            Ok(written) => self.dialogs.notice = Some(Notice::new(written)),
-            Err(why) => self.dialogs.error = Some(why),
-        }
     }
 }
 

@@ -18,7 +18,6 @@ const MAX_REASON: usize = 200;
 #[error("stopped unexpectedly ({0})")]
 pub(crate) struct Stopped(String);
 
-/// A job under way.
 pub(crate) struct BackgroundJob<T>(Receiver<Result<T, Stopped>>);
 
 impl<T: Send + 'static> BackgroundJob<T> {
@@ -30,18 +29,6 @@ impl<T: Send + 'static> BackgroundJob<T> {
     /// Returns the result once the job has ended, and only once.
     pub(crate) fn take(&self) -> Option<Result<T, Stopped>> {
         self.0.try_recv().ok()
-    }
-
-    /// Returns the same job, which repaints another window when it ends.
-    pub(crate) fn waking(self, context: &egui::Context) -> Self {
-        Self(sent(Some(context), move || self.0.recv().ok()))
-    }
-}
-
-impl<T> BackgroundJob<T> {
-    /// Waits for it to end.
-    pub(crate) fn wait(self) {
-        let _ = self.0.recv();
     }
 }
 
@@ -128,22 +115,6 @@ mod tests {
         };
         assert!(result.is_ok_and(|went| !went));
         assert!(job.take().is_none(), "nothing more is to come");
-    }
-
-    #[test]
-    fn a_job_that_moves_to_another_window_repaints_that_window() {
-        let (go, wait) = channel::<()>();
-        let first = egui::Context::default();
-        let job = BackgroundJob::start(&first, move || wait.recv().is_ok());
-        let (second, (woken, wakes)) = (egui::Context::default(), channel());
-        second.set_request_repaint_callback(move |_| {
-            let _ = woken.send(());
-        });
-        let job = job.waking(&second);
-        assert!(job.take().is_none(), "it is under way");
-        go.send(()).expect("it waits");
-        wakes.recv_timeout(Duration::from_secs(30)).expect("the window is woken");
-        assert!(job.take().is_some_and(|result| result.is_ok_and(|went| went)));
     }
 
     #[test]

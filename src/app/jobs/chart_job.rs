@@ -3,11 +3,13 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
+use std::sync::mpsc::{Sender, TryRecvError, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
 use super::background_job::{caught, spawn};
+use super::job_list::{Jobs, Work};
+use crate::app::App;
 use geometry::mesh::Moment;
 use geometry::progress::Progress;
 use gpu::{Gpu, GpuError};
@@ -43,7 +45,6 @@ pub(crate) struct Job {
     pub effort: Effort,
 }
 
-/// The results so far.
 pub(crate) struct Charted {
     pub of: ChartBasis,
     pub subject: Subject,
@@ -84,26 +85,13 @@ impl Charted {
 pub(crate) struct ChartJob {
     /// Kept while the chart is open, because making its pipelines takes longer than measuring a setting.
     engine: Option<Engine>,
-    running: Option<Running>,
+    /// How many settings of the last run are done, and how many there are.
+    progress: (usize, usize),
+    /// While this is set, no new setting is measured.
+    held: Arc<AtomicBool>,
     /// A run that was cancelled may not have ended yet; the next one waits for it.
     last: Option<JoinHandle<()>>,
     pub charted: Option<Charted>,
-}
-
-/// A run under way; dropping it cancels it.
-struct Running {
-    found: Receiver<ChartMessage>,
-    wanted: Progress,
-    /// While this is set, no new setting is measured.
-    held: Arc<AtomicBool>,
-    done: usize,
-    all: usize,
-}
-
-impl Drop for Running {
-    fn drop(&mut self) {
-        self.wanted.cancel();
-    }
 }
 
 enum ChartMessage {
@@ -116,20 +104,19 @@ enum ChartMessage {
 }
 
 impl ChartJob {
-    /// How many settings are done, and how many there are; none if no run is under way.
-    pub(crate) fn progress(&self) -> Option<(usize, usize)> {
-        self.running.as_ref().map(|running| (running.done, running.all))
-    }
-
     /// Starts a run, whose results are added to those so far.
-    pub(crate) fn start(&mut self, context: &egui::Context, job: Job) {
-        self.stop();
+    pub(crate) fn start(&mut self, jobs: &mut Jobs, context: &egui::Context, job: Job) {
         let (sender, found) = channel();
-        let (wanted, held) = (Progress::new(), Arc::new(AtomicBool::new(false)));
-        let all = job.settings.len() + usize::from(job.current.is_some());
+        self.progress = (0, job.settings.len() + usize::from(job.current.is_some()));
+        self.held = Arc::default();
+        let progress = Progress::new();
         let (engine, last, context) = (self.engine.clone(), self.last.take(), context.clone());
-        let worker = Worker { sender, wanted: wanted.clone(), held: held.clone(), context };
-        self.running = Some(Running { found, wanted, held, done: 0, all });
+        let worker = Worker { sender, wanted: progress.clone(), held: self.held.clone(), context };
+        jobs.follow(Work::Chart, progress, move || {
+            let message = found.try_recv();
+            let is_there = !matches!(message, Err(TryRecvError::Empty));
+            is_there.then(|| Box::new(move |app: &mut App, _: &_| app.take_charted(message.ok())) as _)
+        });
         self.last = spawn(move || {
             // If the last run failed, it has reported that itself.
             let _ = last.map(JoinHandle::join);
@@ -144,57 +131,54 @@ impl ChartJob {
         });
     }
 
-    /// Stops the run; its results so far stay.
-    pub(crate) fn stop(&mut self) {
-        self.running = None;
-    }
-
     /// Frees the device.
-    pub(crate) fn close(&mut self) {
-        self.stop();
+    pub(crate) fn free(&mut self) {
         self.engine = None;
     }
 
     /// Makes the run wait before its next setting, or lets it go on.
     pub(crate) fn hold(&self, hold: bool) {
-        if let Some(running) = &self.running {
-            running.held.store(hold, Ordering::Relaxed);
-        }
-    }
-
-    /// Takes the results that have come in.
-    ///
-    /// # Errors
-    /// Why the run has failed.
-    pub(crate) fn take(&mut self) -> Result<(), String> {
-        let Some(running) = &mut self.running else { return Ok(()) };
-        let Some(charted) = &mut self.charted else { return Ok(()) };
-        loop {
-            match running.found.try_recv() {
-                Ok(ChartMessage::Engine(engine)) => {
-                    self.engine = Some(*engine);
-                    continue;
-                }
-                Ok(ChartMessage::Row(row)) => charted.add(*row),
-                Ok(ChartMessage::LeftOut(setting)) => charted.left_out.push(setting),
-                Ok(ChartMessage::Current(settings, probe)) => charted.current = Some((*settings, probe)),
-                Ok(ChartMessage::Failed(why)) => {
-                    self.close();
-                    return Err(why);
-                }
-                Err(TryRecvError::Empty) => return Ok(()),
-                Err(TryRecvError::Disconnected) => {
-                    let is_whole = running.done == running.all;
-                    self.stop();
-                    return if is_whole { Ok(()) } else { Err("Measuring the chart stopped unexpectedly".into()) };
-                }
-            }
-            running.done += 1;
-        }
+        self.held.store(hold, Ordering::Relaxed);
     }
 }
 
-/// The state of the thread.
+impl App {
+    /// How many of the chart's settings are done, and how many there are; none if it isn't measuring.
+    pub fn charting(&self) -> Option<(usize, usize)> {
+        self.jobs.has(Work::Chart).then_some(self.panels.chart.charting.progress)
+    }
+
+    /// Stops measuring and frees the chart's device. The results so far stay.
+    pub(in crate::app) fn close_chart(&mut self) {
+        self.jobs.stop(Work::Chart);
+        self.panels.chart.still = None;
+        self.panels.chart.charting.free();
+    }
+
+    /// Takes what a run has found; none if it has ended.
+    fn take_charted(&mut self, message: Option<ChartMessage>) {
+        let ChartJob { engine, progress, charted, .. } = &mut self.panels.chart.charting;
+        match (message, charted) {
+            (Some(ChartMessage::Engine(made)), _) => return *engine = Some(*made),
+            (Some(ChartMessage::Row(row)), Some(charted)) => charted.add(*row),
+            (Some(ChartMessage::LeftOut(setting)), Some(charted)) => charted.left_out.push(setting),
+            (Some(ChartMessage::Current(settings, probe)), Some(charted)) => charted.current = Some((*settings, probe)),
+            (Some(ChartMessage::Failed(why)), _) => {
+                self.close_chart();
+                return self.dialogs.error = Some(why);
+            }
+            (None, _) => {
+                if progress.0 < progress.1 {
+                    self.dialogs.error = Some("Measuring the chart stopped unexpectedly".into());
+                }
+                return self.jobs.stop(Work::Chart);
+            }
+            (_, None) => {}
+        }
+        progress.0 += 1;
+    }
+}
+
 struct Worker {
     sender: Sender<ChartMessage>,
     wanted: Progress,

@@ -21,7 +21,6 @@ pub(crate) struct DeviationJob {
 /// What a result depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct DeviationBasis {
-    pub document: u64,
     pub tessellation: u64,
     /// Counts reference surfaces.
     pub truth: u64,

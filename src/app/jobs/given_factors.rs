@@ -3,27 +3,23 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::background_job::BackgroundJob;
-use super::own_shader_job::{OpenShader, new_generation};
+use super::beside::{OpenFile, absolute_path};
+use super::job_list::Work;
 use crate::app::App;
 use geometry::mesh::Topology;
 use geometry::names::shown_path;
 use geometry::tessellate::{Convention, HullFactors, Lod, Partitioning};
-use gpu::{Given, GpuError, LodShader};
+use gpu::LodShader;
 use inspect::engine::Loaded;
 use inspect::measure::Agreement;
-use inspect::settings::SplitSide;
 use inspect::shot::read_factors;
 
 /// Factors that a file has for each patch of the mesh that is open.
 pub(crate) struct GivenFactors {
-    pub path: PathBuf,
-    /// A number of its own for each, from 1 on.
-    pub generation: u64,
     factors: Arc<Vec<HullFactors>>,
     partitioning: Partitioning,
-    /// None while they are compared under another convention than before.
-    compared: Option<ComparedFactors>,
+    /// Where they disagree; none while they are compared under another convention than before.
+    pub compared: Option<ComparedFactors>,
     /// The LOD before.
     pub lod: Lod,
 }
@@ -34,39 +30,16 @@ pub(crate) struct ComparedFactors {
     pub agreement: Agreement,
 }
 
-/// Reading a file of factors, or comparing its factors under another convention.
-pub(crate) struct FactorsJob {
-    path: PathBuf,
-    job: BackgroundJob<Result<Read, String>>,
-}
-
-/// What the job's thread sends.
-struct Read {
-    factors: Arc<Vec<HullFactors>>,
-    partitioning: Partitioning,
-    compared: ComparedFactors,
-}
-
 impl GivenFactors {
-    /// The file's name.
-    pub(crate) fn name(&self) -> String {
-        shown_path(Path::new(self.path.file_name().unwrap_or_default()))
-    }
-
-    pub(crate) fn compared(&self) -> Option<&ComparedFactors> {
-        self.compared.as_ref()
+    pub(super) fn factors(&self) -> Vec<HullFactors> {
+        self.factors.to_vec()
     }
 }
 
-impl FactorsJob {
-    /// Lets the job repaint another window when it ends.
-    pub(crate) fn waking(self, context: &egui::Context) -> Self {
-        Self { job: self.job.waking(context), ..self }
+impl ComparedFactors {
+    fn new(topology: &Topology, factors: &[HullFactors], convention: Convention) -> Self {
+        Self { convention, agreement: Agreement::of(topology, factors, convention) }
     }
-}
-
-fn compare(topology: &Topology, factors: &[HullFactors], convention: Convention) -> ComparedFactors {
-    ComparedFactors { convention, agreement: Agreement::of(topology, factors, convention) }
 }
 
 /// Whether the columns of a file that was read for one partitioning say the same under another.
@@ -81,19 +54,26 @@ impl App {
         let Some(document) = &self.document else { return };
         let Loaded { mesh, topology, .. } = &document.loaded;
         let (mesh, topology) = (mesh.clone(), topology.clone());
-        // A dash would be standard input, and the copied command needs the whole path.
-        let path = std::path::absolute(&path).unwrap_or(path);
+        let path = absolute_path(path);
         let own = self.settings.tessellation;
         let (wanted, partitioning) = (path.clone(), own.partitioning);
-        let read = move || {
-            let factors = read_factors(&wanted, &mesh, &topology, partitioning).map_err(|error| error.to_string())?;
-            let compared = compare(&topology, &factors, own.convention);
-            Ok(Read { factors: Arc::new(factors), partitioning, compared })
+        let read = move |_: &_| {
+            let factors =
+                read_factors(&wanted, &mesh, &topology, partitioning).map_err(|error| Some(error.to_string()))?;
+            let compared = ComparedFactors::new(&topology, &factors, own.convention);
+            Ok((Arc::new(factors), compared))
         };
-        self.jobs.factors = Some(FactorsJob { path, job: BackgroundJob::start(context, read) });
+        let what = (Work::Factors, String::new(), shown_path(&path));
+        self.read_beside(context, what, read, move |app, (factors, compared)| {
+            app.forget_shader::<LodShader>();
+            // The file's factors take LOD's place: nothing follows the view.
+            let lod = std::mem::replace(&mut app.settings.tessellation.lod, Lod::Uniform);
+            let lod = app.given.as_ref().map_or(lod, |given| given.content.lod);
+            let given = GivenFactors { factors, partitioning, compared: Some(compared), lod };
+            app.given = Some(OpenFile::new(path, given));
+        });
     }
 
-    /// The file that factors were read from, if one was.
     pub fn factors_file(&self) -> Option<&Path> {
         self.given.as_ref().map(|given| &*given.path)
     }
@@ -101,15 +81,15 @@ impl App {
     /// Puts the file's factors in the place of an LOD that was set while they are used.
     pub(in crate::app) fn replace_by_factors(&mut self) {
         if let Some(given) = &mut self.given {
-            given.lod = std::mem::replace(&mut self.settings.tessellation.lod, Lod::Uniform);
+            given.content.lod = std::mem::replace(&mut self.settings.tessellation.lod, Lod::Uniform);
         }
     }
 
     /// Goes back to the factors of LOD.
     pub(in crate::app) fn forget_factors(&mut self) {
-        self.jobs.factors = None;
+        self.jobs.stop(Work::Factors);
         if let Some(given) = self.given.take() {
-            self.settings.tessellation.lod = given.lod;
+            self.settings.tessellation.lod = given.content.lod;
         }
     }
 
@@ -122,80 +102,29 @@ impl App {
         }
     }
 
-    /// Takes factors that were read, and compares them anew if the convention has changed.
-    pub(in crate::app) fn take_factors(&mut self, context: &egui::Context) {
-        if let Some(ended) = self.jobs.factors.as_ref().and_then(|factors| factors.job.take())
-            && let Some(FactorsJob { path, .. }) = self.jobs.factors.take()
-        {
-            match ended.unwrap_or_else(|stopped| Err(format!("reading {} {stopped}", shown_path(&path)))) {
-                Ok(read) => self.take_read(path, read),
-                Err(why) => self.dialogs.error = Some(why),
-            }
-        }
-        self.compare_again(context);
-    }
-
-    fn take_read(&mut self, path: PathBuf, Read { factors, partitioning, compared }: Read) {
-        self.forget_shader::<LodShader>();
-        let same = self.given.take().filter(|given| Arc::ptr_eq(&given.factors, &factors));
-        let lod = same.as_ref().map_or(self.settings.tessellation.lod, |given| given.lod);
-        let generation = same.map_or_else(new_generation, |given| given.generation);
-        // The file's factors take LOD's place: nothing follows the view.
-        self.settings.tessellation.lod = Lod::Uniform;
-        self.given = Some(GivenFactors { path, generation, factors, partitioning, compared: Some(compared), lod });
-    }
-
-    fn compare_again(&mut self, context: &egui::Context) {
+    /// Compares factors anew if the convention has changed, or reads their file anew if the partitioning reads it in another way.
+    pub(in crate::app) fn compare_again(&mut self, context: &egui::Context) {
         let own = self.settings.tessellation;
         let Some((given, document)) = self.given.as_mut().zip(self.document.as_ref()) else { return };
-        if self.jobs.factors.is_some() {
+        if self.jobs.has(Work::Factors) {
             return;
         }
-        if !are_alike(given.partitioning, own.partitioning) {
-            let path = given.path.clone();
+        let path = given.path.clone();
+        if !are_alike(given.content.partitioning, own.partitioning) {
             self.forget_factors();
             return self.open_factors(context, path);
         }
-        if given.compared.as_ref().is_none_or(|compared| compared.convention == own.convention) {
+        if given.content.compared.as_ref().is_none_or(|compared| compared.convention == own.convention) {
             return;
         }
-        given.compared = None;
-        let (factors, topology) = (given.factors.clone(), document.loaded.topology.clone());
-        let (path, partitioning) = (given.path.clone(), given.partitioning);
-        let again = move || {
-            let compared = compare(&topology, &factors, own.convention);
-            Ok(Read { factors, partitioning, compared })
-        };
-        self.jobs.factors = Some(FactorsJob { path, job: BackgroundJob::start(context, again) });
-    }
-
-    /// The number of what takes the place of LOD: functions of the user's own, or a file; 0 for LOD.
-    pub(in crate::app) fn given_wanted(&self) -> u64 {
-        let shader = self.lod_shader.as_ref().filter(|_| self.uses_lod_shader()).and_then(OpenShader::shader);
-        let of_file = self.given.as_ref().map_or(0, |given| given.generation);
-        shader.map_or(of_file, |(_, generation)| generation)
-    }
-
-    /// Gives the scenes the factors of the file or the functions of the user's own, or takes them back, while no picture is under way. Returns the number of those
-    /// that the picture has; 0 for those of LOD.
-    ///
-    /// # Errors
-    /// More patches than the adapter binds memory for.
-    pub(in crate::app) fn give_factors(&mut self) -> Result<u64, GpuError> {
-        let shader = self.lod_shader.as_ref().filter(|_| self.uses_lod_shader()).and_then(OpenShader::shader);
-        let wanted = self.given_wanted();
-        let Some(document) = &mut self.document else { return Ok(0) };
-        if document.given != wanted && self.viewport.picture.is_free() && self.viewport.left.is_made() {
-            let file = self.given.as_ref().map(|given| Given::Factors(given.factors.to_vec()));
-            let given = shader.map(|(shader, _)| Given::Shader(shader)).or(file);
-            for half in SplitSide::BOTH {
-                if let Some(scene) = document.scene.half_mut(half) {
-                    scene.tessellator.give(given.clone())?;
-                }
+        given.content.compared = None;
+        let (factors, topology) = (given.content.factors.clone(), document.loaded.topology.clone());
+        let compare = move |_: &_| Ok(ComparedFactors::new(&topology, &factors, own.convention));
+        self.read_beside(context, (Work::Factors, String::new(), shown_path(&path)), compare, |app, compared| {
+            if let Some(given) = &mut app.given {
+                given.content.compared = Some(compared);
             }
-            document.given = wanted;
-        }
-        Ok(document.given)
+        });
     }
 }
 

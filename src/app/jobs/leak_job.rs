@@ -12,8 +12,8 @@ use inspect::render::{Leak, LeakCount, Scene, leaks_in};
 /// The leaks of what is shown, once counted.
 #[derive(Default)]
 pub(crate) struct LeakJob {
-    /// The document, the tessellation and the view that they are counted for.
-    of: Option<(u64, u64, ScreenView)>,
+    /// The tessellation and the view that they are counted for.
+    of: Option<(u64, ScreenView)>,
     counting: Option<Counting>,
     found: Option<Vec<Leak>>,
 }
@@ -27,7 +27,7 @@ enum Counting {
 impl LeakJob {
     /// The leaks in a view, the largest first, once they are counted.
     fn found(&self, view: ScreenView) -> Option<&[Leak]> {
-        let is_same = self.of.is_some_and(|(.., counted)| counted == view);
+        let is_same = self.of.is_some_and(|(_, counted)| counted == view);
         self.found.as_deref().filter(|_| is_same)
     }
 
@@ -40,8 +40,7 @@ impl LeakJob {
         self.counting = None;
     }
 
-    /// Goes on counting document `document`, whose counts must be known, or starts over if its tessellation or the view has
-    /// changed.
+    /// Goes on counting a scene's leaks, whose counts must be known, or starts over if its tessellation or the view has changed.
     ///
     /// # Errors
     /// The device was lost, or the thread panicked.
@@ -50,10 +49,9 @@ impl LeakJob {
         context: &egui::Context,
         engine: &Engine,
         scene: &mut Scene,
-        document: u64,
         view: ScreenView,
     ) -> Result<(), Trouble> {
-        let of = Some((document, scene.tessellator.generation(), view));
+        let of = Some((scene.tessellator.generation(), view));
         if self.of != of {
             let size = view.viewport.to_array().map(|side| side as u32);
             let count = engine.start_leaks(size, view.clip_from_object)?;
@@ -92,29 +90,27 @@ impl App {
     /// Whether leaks can be counted in the view that was measured last: the mesh is closed and beyond the near plane, and nothing was
     /// left out.
     pub(in crate::app) fn may_leak(&self) -> bool {
-        self.results().is_some_and(|results| self.jobs.measure.is_closed_in(results.seen.view))
+        let measure = self.document.as_ref().map(|document| &document.right().measure);
+        measure.zip(self.results()).is_some_and(|(measure, results)| measure.is_closed_in(results.seen.view))
     }
 
     /// Goes on counting leaks once everything else of what is shown was measured.
     pub(in crate::app) fn count_leaks(&mut self, context: &egui::Context, view: ScreenView) -> Result<(), Trouble> {
-        if self.jobs.measure.is_busy() {
+        let Some(document) = &mut self.document else { return Ok(()) };
+        let measure = &document.right().measure;
+        if measure.is_busy() {
             return Ok(());
         }
-        let may_leak = self.jobs.measure.is_closed_in(view) && self.jobs.measure.found().is_some();
-        match self.document.as_mut().filter(|_| may_leak) {
-            Some(document) => {
-                self.jobs.leaks.go_on(context, &self.engine, &mut document.scene, document.generation, view)
-            }
-            None => {
-                self.jobs.leaks.give_up();
-                Ok(())
-            }
+        if measure.is_closed_in(view) && measure.found().is_some() {
+            return document.leaks.go_on(context, &self.engine, &mut document.scene, view);
         }
+        document.leaks.give_up();
+        Ok(())
     }
 
     /// The leaks in the view that was measured last, the largest first, once they are counted.
     pub fn leaks(&self) -> Option<&[Leak]> {
-        self.jobs.leaks.found(self.results()?.seen.view)
+        self.document.as_ref()?.leaks.found(self.results()?.seen.view)
     }
 
     /// The cracked edge that comes closest to a leak on screen.

@@ -9,7 +9,7 @@ use geometry::tessellate::{Convention, Edges, HullFactors, Inputs, PatchFactors,
 use geometry::view::ScreenView;
 use gpu::{Given, Gpu, GpuError, Readback};
 use inspect::engine::measurements::closed_extent;
-use inspect::measure::{Agreement, AskedFactors, CrackedEdge, Cracks, Measured, Sizes, Survey};
+use inspect::measure::{Agreement, AskedFactors, CrackedEdge, Measured, Sizes, Survey};
 use inspect::render::{Camera, Scene};
 
 /// Why a measurement ended without a result.
@@ -32,8 +32,8 @@ pub(crate) enum Trouble {
 /// The measurement of the tessellation that is shown, and the last results.
 #[derive(Default)]
 pub(crate) struct MeasureJob {
-    /// The document and tessellation that the last measurement is about, and from where it is seen.
-    of: Option<((u64, u64), ScreenView)>,
+    /// The tessellation that the last measurement is about, and from where it is seen.
+    of: Option<(u64, ScreenView)>,
     walk: Option<Walk<Surveyed>>,
     results: Option<Results>,
     /// The extent of a mesh whose leaks can be counted: see [`closed_extent`].
@@ -42,10 +42,9 @@ pub(crate) struct MeasureJob {
     pub generation: u64,
 }
 
-/// What was measured of a picture.
 pub(crate) struct Results {
-    /// The document and tessellation.
-    pub of: (u64, u64),
+    /// The tessellation's number.
+    pub of: u64,
     pub found: Measured,
     /// How the factors of an LOD shader agree.
     pub agreement: Option<Agreement>,
@@ -82,7 +81,6 @@ pub(crate) struct Seen {
     pub inputs: Inputs,
 }
 
-/// What the thread returns.
 struct Surveyed {
     /// None if only the view is another one than before.
     whole: Option<(Measured, Option<Agreement>)>,
@@ -120,11 +118,6 @@ impl MeasureJob {
         self.results.as_ref()
     }
 
-    /// The cracks of what is shown, once measured.
-    pub(crate) fn cracks(&self) -> Option<&Cracks> {
-        self.found().map(|found| &found.cracks)
-    }
-
     /// Whether what was measured last of this document is closed, and beyond the near plane of a view.
     pub(crate) fn is_closed_in(&self, view: ScreenView) -> bool {
         self.closed.is_some_and(|extent| is_beyond_near(view.clip_from_object, extent))
@@ -135,8 +128,8 @@ impl MeasureJob {
     }
 
     /// Stops a measurement of another tessellation, whose results aren't wanted any more.
-    pub(crate) fn keep_only(&mut self, document: u64, tessellation: u64) {
-        if self.of.is_some_and(|(of, _)| of != (document, tessellation)) {
+    pub(crate) fn keep_only(&mut self, tessellation: u64) {
+        if self.of.is_some_and(|(of, _)| of != tessellation) {
             (self.of, self.walk) = (None, None);
             self.generation += 1;
         }
@@ -152,12 +145,12 @@ impl MeasureJob {
         *self = Self { generation: self.generation + 1, ..Self::default() };
     }
 
-    /// Goes on measuring document `document`, whose counts must be known. Starts over if its tessellation or its view has changed.
+    /// Goes on measuring a scene, whose counts must be known. Starts over if its tessellation or its view has changed.
     ///
     /// # Errors
     /// The device was lost, or the measurement's thread panicked.
-    pub(crate) fn go_on(&mut self, gpu: &Gpu, scene: &mut Scene, document: u64, seen: &Seen) -> Result<(), Trouble> {
-        let (of, totals) = ((document, scene.tessellator.generation()), scene.tessellator.totals());
+    pub(crate) fn go_on(&mut self, gpu: &Gpu, scene: &mut Scene, seen: &Seen) -> Result<(), Trouble> {
+        let (of, totals) = (scene.tessellator.generation(), scene.tessellator.totals());
         if self.of != Some((of, seen.view)) {
             // Another view of the same triangles changes nothing but their sizes.
             let is_known = self.results.as_ref().is_some_and(|results| results.of == of);

@@ -3,12 +3,12 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
+use std::sync::mpsc::{Sender, TryRecvError, channel};
 use std::time::{Duration, SystemTime};
 
 use super::background_job::{caught, spawn};
-use super::document::Document;
+use super::beside::{absolute_path, file_name, new_generation};
+use super::job_list::Work;
 use crate::app::App;
 use geometry::names::shown_path;
 use geometry::progress::Progress;
@@ -21,6 +21,8 @@ use inspect::settings::Settings;
 /// A file whose functions take the place of a setting.
 pub(crate) trait Replacing: OwnShader {
     type Setting: Copy;
+
+    const WORK: Work;
 
     /// The setting while functions take its place. Nothing depends on it then.
     const MEANWHILE: Self::Setting;
@@ -40,12 +42,14 @@ pub(crate) trait Replacing: OwnShader {
     /// What it reported of the picture that was counted.
     fn report(tessellator: &Tessellator) -> Option<OwnReport>;
 
-    /// The number of the version that the document's scene has.
-    fn shown(document: &Document) -> u64;
+    /// The number of the version that the document's scene has; 0 for none.
+    fn shown(app: &App) -> u64;
 }
 
 impl Replacing for LodShader {
     type Setting = Lod;
+
+    const WORK: Work = Work::LodShader;
 
     const MEANWHILE: Lod = Lod::Uniform;
 
@@ -69,13 +73,15 @@ impl Replacing for LodShader {
         tessellator.own_lod_report()
     }
 
-    fn shown(document: &Document) -> u64 {
-        document.given
+    fn shown(app: &App) -> u64 {
+        app.document.as_ref().map_or(0, |document| document.from_files.factors)
     }
 }
 
 impl Replacing for SurfaceShader {
     type Setting = Surface;
+
+    const WORK: Work = Work::SurfaceShader;
 
     const MEANWHILE: Surface = Surface::Pn;
 
@@ -99,8 +105,8 @@ impl Replacing for SurfaceShader {
         tessellator.own_surface_report()
     }
 
-    fn shown(document: &Document) -> u64 {
-        document.surface_shader
+    fn shown(app: &App) -> u64 {
+        app.document.as_ref().map_or(0, |document| document.from_files.surface)
     }
 }
 
@@ -116,15 +122,13 @@ pub(crate) struct OpenShader<S: Replacing> {
     before: Option<Version<S>>,
     /// Why the newest version can't be used, in a sentence.
     error: Option<String>,
-    watch: Watch<S>,
     /// The setting that is there again when the file is closed.
     replaced: S::Setting,
 }
 
 impl<S: Replacing> OpenShader<S> {
-    /// The file's name.
     pub(crate) fn name(&self) -> String {
-        shown_path(Path::new(self.path.file_name().unwrap_or_default()))
+        file_name(&self.path)
     }
 
     /// Why the newest version of the file can't be used, in a sentence.
@@ -137,21 +141,10 @@ impl<S: Replacing> OpenShader<S> {
         self.shader.is_some()
     }
 
-    /// Whether the file is read for the first time.
-    pub(crate) fn is_opening(&self) -> bool {
-        self.shader.is_none() && self.error.is_none()
-    }
-
     /// What is used, and its number.
     pub(crate) fn shader(&self) -> Option<Version<S>> {
         self.shader.clone()
     }
-}
-
-/// A number for what takes the place of a setting, which nothing else has, from 1 on.
-pub(super) fn new_generation() -> u64 {
-    static GENERATION: AtomicU64 = AtomicU64::new(1);
-    GENERATION.fetch_add(1, Ordering::Relaxed)
 }
 
 /// How often the file is looked at.
@@ -159,28 +152,6 @@ const EVERY: Duration = Duration::from_millis(250);
 
 /// What came of reading the file.
 type Read<S> = Result<Arc<S>, String>;
-
-/// The thread that watches the file. It ends when this is dropped.
-struct Watch<S> {
-    versions: Receiver<Read<S>>,
-    wanted: Progress,
-}
-
-impl<S> Drop for Watch<S> {
-    fn drop(&mut self) {
-        self.wanted.cancel();
-    }
-}
-
-impl<S: Replacing> Watch<S> {
-    fn start(engine: &Engine, context: &egui::Context, path: PathBuf) -> Self {
-        let (sender, versions) = channel();
-        let wanted = Progress::default();
-        let (engine, context, still_wanted) = (engine.clone(), context.clone(), wanted.clone());
-        spawn(move || watch(&engine, &context, &path, &sender, &still_wanted));
-        Self { versions, wanted }
-    }
-}
 
 /// When a file was last written, and its length in bytes; none while it isn't there.
 fn stamp(path: &Path) -> Option<(Option<SystemTime>, u64)> {
@@ -232,25 +203,25 @@ impl App {
     }
 
     fn open_shader<S: Replacing>(&mut self, context: &egui::Context, path: PathBuf) {
-        // A dash would be standard input, and the copied command needs the whole path.
-        let path = std::path::absolute(&path).unwrap_or(path);
         self.forget_shader::<S>();
-        *S::slot(self) = Some(OpenShader {
-            watch: Watch::start(&self.engine, context, path.clone()),
-            path,
-            shader: None,
-            before: None,
-            error: None,
-            replaced: *S::setting(&mut self.settings.tessellation),
-        });
+        let replaced = *S::setting(&mut self.settings.tessellation);
+        *S::slot(self) =
+            Some(OpenShader { path: absolute_path(path), shader: None, before: None, error: None, replaced });
+        self.watch_shader::<S>(context);
     }
 
-    /// Reads the file again, even if it hasn't changed, and watches it for this window.
-    pub(in crate::app) fn reload_shader<S: Replacing>(&mut self, context: &egui::Context) {
-        let engine = self.engine.clone();
-        if let Some(open) = S::slot(self) {
-            open.watch = Watch::start(&engine, context, open.path.clone());
-        }
+    /// Reads the file, even if it hasn't changed, and watches it for this window.
+    pub(in crate::app) fn watch_shader<S: Replacing>(&mut self, context: &egui::Context) {
+        let Some(path) = S::open_in(self).map(|open| open.path.clone()) else { return };
+        let (sender, versions) = channel();
+        let progress = Progress::default();
+        let (engine, context, wanted) = (self.engine.clone(), context.clone(), progress.clone());
+        spawn(move || watch(&engine, &context, &path, &sender, &wanted));
+        self.jobs.follow(S::WORK, progress, move || {
+            let version = versions.try_recv();
+            let is_there = !matches!(version, Err(TryRecvError::Empty));
+            is_there.then(|| Box::new(move |app: &mut Self, _: &_| app.take_version::<S>(version.ok())) as _)
+        });
     }
 
     /// The file with functions that give factors, if it is open and one of its versions can be used.
@@ -271,7 +242,7 @@ impl App {
     /// The settings with those that are there again when files of factors and shaders are closed.
     pub(in crate::app) fn settings_without_files(&self) -> Settings {
         let mut own = self.settings.tessellation;
-        own.lod = self.given.as_ref().map_or(own.lod, |given| given.lod);
+        own.lod = self.given.as_ref().map_or(own.lod, |given| given.content.lod);
         self.put_back::<LodShader>(&mut own);
         self.put_back::<SurfaceShader>(&mut own);
         self.settings.with(own)
@@ -298,15 +269,8 @@ impl App {
         let mut own = self.settings.tessellation;
         self.put_back::<S>(&mut own);
         self.settings.tessellation = own;
+        self.jobs.stop(S::WORK);
         *S::slot(self) = None;
-    }
-
-    /// Lets the file that was open at a step of undo be open again.
-    pub(in crate::app) fn take_back_shader<S: Replacing>(&mut self, context: &egui::Context, path: Option<PathBuf>) {
-        if self.open_shader_file::<S>() != path.as_deref() {
-            *S::slot(self) = None;
-            path.into_iter().for_each(|path| self.open_shader::<S>(context, path));
-        }
     }
 
     /// Puts functions in the place of a setting that was set while they are used.
@@ -317,26 +281,24 @@ impl App {
         *S::setting(&mut self.settings.tessellation) = S::MEANWHILE;
     }
 
-    /// Takes new versions of the file, unless they take too long.
-    pub(in crate::app) fn take_shader<S: Replacing>(&mut self) {
+    /// Takes a new version of the file; none if its watch has ended.
+    fn take_version<S: Replacing>(&mut self, version: Option<Read<S>>) {
         let own = *S::setting(&mut self.settings.tessellation);
         let Some(open) = S::slot(self) else { return };
         let was_used = open.is_used();
-        loop {
-            match open.watch.versions.try_recv() {
-                Ok(Ok(shader)) => {
-                    open.error = None;
-                    if open.shader.as_ref().is_none_or(|(known, _)| *known != shader) {
-                        open.before = open.shader.replace((shader, new_generation()));
-                    }
+        match version {
+            Some(Ok(shader)) => {
+                open.error = None;
+                if open.shader.as_ref().is_none_or(|(known, _)| *known != shader) {
+                    open.before = open.shader.replace((shader, new_generation()));
                 }
-                Ok(Err(why)) => open.error = Some(why),
-                Err(TryRecvError::Empty) => break,
-                Err(TryRecvError::Disconnected) => {
-                    let why = format!("watching {} stopped unexpectedly; open it again", open.name());
-                    open.error.get_or_insert(why);
-                    break;
-                }
+            }
+            Some(Err(why)) => open.error = Some(why),
+            None => {
+                let why = format!("watching {} stopped unexpectedly; open it again", open.name());
+                open.error.get_or_insert(why);
+                self.jobs.stop(S::WORK);
+                return;
             }
         }
         if open.is_used() && !was_used {
@@ -344,7 +306,6 @@ impl App {
             open.replaced = own;
             *S::setting(&mut self.settings.tessellation) = S::MEANWHILE;
         }
-        self.stop_slow_shader::<S>();
     }
 
     /// Whether the functions give the factors that are shown. Under subtriangulation, which has the same number of segments everywhere,
@@ -359,9 +320,9 @@ impl App {
     }
 
     /// Goes back to the version before, if loops of the present one took too long for the picture that was counted.
-    fn stop_slow_shader<S: Replacing>(&mut self) {
+    pub(in crate::app) fn stop_slow_shader<S: Replacing>(&mut self) {
         let Some(document) = &self.document else { return };
-        let (report, shown) = (S::report(&document.scene.tessellator), S::shown(document));
+        let (report, shown) = (S::report(&document.scene.tessellator), S::shown(self));
         let Some(open) = S::slot(self) else { return };
         let is_shown = open.shader.as_ref().is_some_and(|(_, generation)| *generation == shown);
         if is_shown && report.is_some_and(|report| report.stopped > 0) {
@@ -384,26 +345,5 @@ impl App {
     pub(in crate::app) fn straight_sides_said(&self) -> Option<String> {
         let report = self.document.as_ref()?.scene.tessellator.own_surface_report()?;
         inspect::shot::straight_sides_said(report.not_numbers)
-    }
-
-    /// The number of the function that is to give control points; 0 for the surface's own.
-    pub(in crate::app) fn surface_shader_wanted(&self) -> u64 {
-        self.surface_shader.as_ref().and_then(OpenShader::shader).map_or(0, |(_, generation)| generation)
-    }
-
-    /// Gives the scene the function of the user's own for control points, or takes it back, while no picture is under way. Returns
-    /// the number of the one that the picture has.
-    ///
-    /// # Errors
-    /// Out of memory, or a lost device.
-    pub(in crate::app) fn give_surface_shader(&mut self) -> Result<u64, GpuError> {
-        let wanted = self.surface_shader_wanted();
-        let shader = self.surface_shader.as_ref().and_then(OpenShader::shader);
-        let Some(document) = &mut self.document else { return Ok(0) };
-        if document.surface_shader != wanted && self.viewport.picture.is_free() && self.viewport.left.is_made() {
-            document.scene.tessellator.set_surface_shader(shader.map(|(shader, _)| shader))?;
-            document.surface_shader = wanted;
-        }
-        Ok(document.surface_shader)
     }
 }

@@ -2,8 +2,7 @@
 
 use std::path::Path;
 
-use super::document::arena_bytes;
-use super::matcap::ChosenMatcap;
+use super::scenes::arena_bytes;
 use crate::app::App;
 use geometry::progress::Progress;
 use gpu::{Gpu, GpuError};
@@ -128,7 +127,6 @@ impl App {
         choices.size.unwrap_or_else(|| self.viewport.picture.size().to_array().map(|side| side as u32))
     }
 
-    /// The settings that a picture is saved with.
     pub(in crate::app) fn saved_settings_of(&self, theme: egui::Theme, choices: &PictureChoices) -> Settings {
         let settings = self.settings_in(theme);
         if choices.overlays { settings } else { Settings { overlays: Overlays::default(), ..settings } }
@@ -148,7 +146,7 @@ impl App {
             moment: document.moment,
             given: document.scene.tessellator.given().cloned(),
             surface_shader: document.scene.tessellator.surface_shader().cloned(),
-            matcap: self.matcap.as_ref().map(ChosenMatcap::picture),
+            matcap: self.matcap.as_ref().map(|chosen| chosen.content.clone()),
             // The scene is made from one that has it.
             environment: None,
             settings,

@@ -19,12 +19,12 @@ use inspect::settings::Colors;
 /// The comparison of outlines, and its last result.
 #[derive(Default)]
 pub(crate) struct SilhouetteJob {
-    /// The document, the tessellation and the view that outlines are compared for.
-    of: Option<(u64, u64, ScreenView)>,
+    /// The tessellation and the view that outlines are compared for.
+    of: Option<(u64, ScreenView)>,
     under_way: Option<Comparing>,
     found: Option<Found>,
-    /// A tessellator of this document, kept for the next comparison.
-    kept: Option<(u64, Tessellator)>,
+    /// A tessellator that is kept for the next comparison.
+    kept: Option<Tessellator>,
 }
 
 enum Comparing {
@@ -34,7 +34,6 @@ enum Comparing {
     Finding(BackgroundJob<Option<(Silhouette, RgbaImage)>>),
 }
 
-/// A result.
 struct Found {
     silhouette: Silhouette,
     picture: RgbaImage,
@@ -51,12 +50,11 @@ impl SilhouetteJob {
         self.under_way = None;
     }
 
-    fn found(&self, of: (u64, u64, ScreenView)) -> Option<&Found> {
+    fn found(&self, of: (u64, ScreenView)) -> Option<&Found> {
         self.found.as_ref().filter(|_| self.of == Some(of))
     }
 
-    /// Goes on comparing what the scene of document `document` shows, whose counts must be known, or starts over if its
-    /// tessellation or the view has changed.
+    /// Goes on comparing what a scene shows, whose counts must be known, or starts over if its tessellation or the view has changed.
     ///
     /// # Errors
     /// The device was lost or has no memory left, or a thread panicked.
@@ -65,18 +63,18 @@ impl SilhouetteJob {
         context: &egui::Context,
         engine: &Engine,
         scene: &Scene,
-        document: u64,
-        (tessellation, view, screen): (&Tessellation, &SilhouetteView, ScreenView),
+        tessellation: &Tessellation,
+        view: &SilhouetteView,
+        screen: ScreenView,
     ) -> Result<(), Trouble> {
-        let of = Some((document, scene.tessellator.generation(), screen));
+        let of = Some((scene.tessellator.generation(), screen));
         if self.of != of {
             if let Some(Comparing::Drawing(drawing)) = self.under_way.take() {
-                self.kept =
-                    Some((document, drawing.tessellator)).filter(|_| self.of.is_some_and(|of| of.0 == document));
+                self.kept = Some(drawing.tessellator);
             }
             (self.of, self.found) = (of, None);
-            self.under_way = Some(match self.kept.take().filter(|kept| kept.0 == document) {
-                Some((_, tessellator)) => draw(engine, scene, tessellator, tessellation, view)?,
+            self.under_way = Some(match self.kept.take() {
+                Some(tessellator) => draw(engine, scene, tessellator, tessellation, view)?,
                 None => {
                     let (gpu, make) = (engine.gpu.clone(), beside(scene));
                     Comparing::Making(BackgroundJob::start(context, move || gpu.attempt(make)?))
@@ -93,7 +91,7 @@ impl SilhouetteJob {
             Some(Comparing::Drawing(mut drawing)) => Some(match drawing.step(&engine.gpu)? {
                 None => Comparing::Drawing(drawing),
                 Some(texels) => {
-                    self.kept = Some((document, drawing.tessellator));
+                    self.kept = Some(drawing.tessellator);
                     Comparing::Copying(texels, drawing.grid)
                 }
             }),
@@ -148,22 +146,22 @@ impl App {
         view: &SilhouetteView,
         screen: ScreenView,
     ) -> Result<(), Trouble> {
-        if !self.shows_silhouette() {
-            self.jobs.silhouette = SilhouetteJob::default();
+        let shows = self.shows_silhouette();
+        let Some(document) = &mut self.document else { return Ok(()) };
+        if !shows {
+            document.silhouette = SilhouetteJob::default();
             return Ok(());
         }
-        if self.jobs.measure.is_busy() || self.jobs.leaks.is_busy() {
+        if document.right().measure.is_busy() || document.leaks.is_busy() {
             return Ok(());
         }
-        let Some(document) = &self.document else { return Ok(()) };
-        let what = (tessellation, view, screen);
-        self.jobs.silhouette.go_on(context, &self.engine, &document.scene, document.generation, what)
+        document.silhouette.go_on(context, &self.engine, &document.scene, tessellation, view, screen)
     }
 
     fn found_outlines(&self) -> Option<&Found> {
         let document = self.document.as_ref().filter(|_| self.shows_silhouette())?;
         let view = self.viewport.picture.seen_from()?;
-        self.jobs.silhouette.found((document.generation, document.scene.tessellator.generation(), view))
+        document.silhouette.found((document.scene.tessellator.generation(), view))
     }
 
     /// The outlines of what is shown, once they are compared.

@@ -3,59 +3,55 @@
 
 use std::sync::Arc;
 
-use super::background_job::BackgroundJob;
+use super::job_list::{Jobs, Work};
 use geometry::mesh::{Material, Mesh, Topology};
-use gpu::GpuError;
 use inspect::engine::{Engine, Loaded};
 use inspect::render::Scene;
 
 /// Memory for its output, in bytes for each triangle: three indices, and vertices of which each triangle has its own at worst.
 const BYTES_A_TRIANGLE: u64 = 12 + 3 * 32;
 
-/// The stand-in of a mesh.
 #[derive(Default)]
-pub(crate) struct StandIn {
-    making: Option<BackgroundJob<Result<Scene, GpuError>>>,
-    scene: Option<Box<Scene>>,
-    /// A stand-in that can't be made isn't tried again: previews do without.
-    failed: bool,
+pub(crate) enum StandIn {
+    #[default]
+    NotMade,
+    Made(Box<Scene>),
+    /// It isn't tried again: previews do without.
+    Failed,
 }
 
 impl StandIn {
     pub(crate) fn scene(&mut self) -> Option<&mut Scene> {
-        self.scene.as_deref_mut()
-    }
-
-    /// Whether it will be made soon.
-    pub(crate) fn is_being_made(&self) -> bool {
-        self.making.is_some()
+        match self {
+            Self::Made(scene) => Some(scene),
+            _ => None,
+        }
     }
 
     /// Whether it is made. The first call starts that, with about so many triangles.
     pub(crate) fn is_made(
-        &mut self,
+        &self,
+        jobs: &mut Jobs,
         context: &egui::Context,
         engine: &Engine,
         loaded: &Loaded,
         triangles: usize,
     ) -> bool {
-        if let Some(made) = self.making.as_ref().and_then(BackgroundJob::take) {
-            self.making = None;
-            match made {
-                Ok(Ok(scene)) => self.scene = Some(Box::new(scene)),
-                _ => self.failed = true,
-            }
-        }
-        if self.scene.is_none() && self.making.is_none() && !self.failed {
-            let (engine, mesh) = (engine.clone(), loaded.mesh.clone());
-            let topology = loaded.topology.clone();
-            self.making = Some(BackgroundJob::start(context, move || {
+        if matches!(self, Self::NotMade) && !jobs.has(Work::StandIn) {
+            let (engine, mesh, topology) = (engine.clone(), loaded.mesh.clone(), loaded.topology.clone());
+            let make = move |_: &_| {
                 let mesh = Arc::new(simplified(&mesh, &topology, triangles));
                 let topology = Arc::new(Topology::of(&mesh));
                 engine.gpu.attempt(|| engine.scene_of(mesh, topology, BYTES_A_TRIANGLE * 2 * triangles as u64))?
-            }));
+            };
+            jobs.start(context, Work::StandIn, String::new(), make, |app, _, made| {
+                if let Some(document) = &mut app.document {
+                    document.stand_in =
+                        made.ok().and_then(Result::ok).map_or(Self::Failed, |scene| Self::Made(Box::new(scene)));
+                }
+            });
         }
-        self.scene.is_some()
+        matches!(self, Self::Made(_))
     }
 }
 

@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use super::background_job::BackgroundJob;
+use super::beside::new_generation;
+use super::job_list::Work;
 use crate::app::App;
 use geometry::progress::Progress;
 use geometry::tessellate::Displacement;
 use inspect::settings::Colors;
 use inspect::truth::Truth;
-use load::files::Limits;
-use load::{Import, LoadError, Source};
+use load::{LoadError, Source};
 
 /// A reference surface that was chosen for the mesh.
 pub(crate) struct ChosenTruth {
@@ -19,46 +19,21 @@ pub(crate) struct ChosenTruth {
     generation: u64,
 }
 
-/// The load of a reference surface. Dropping it cancels it.
-pub(crate) struct TruthLoad {
-    pub source: Source,
-    pub progress: Progress,
-    /// None only for a moment, inside [`Self::wake`].
-    job: Option<BackgroundJob<Result<ChosenTruth, Option<String>>>>,
-}
-
-impl TruthLoad {
-    /// Starts to load on a thread of its own.
-    fn start(context: &egui::Context, source: Source, import: Import, limits: Limits) -> Self {
-        static GENERATION: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(2);
-        let generation = GENERATION.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-        let progress = Progress::new();
-        let (wanted, own_progress) = (source.clone(), progress.clone());
-        let load = move || match Truth::load(&wanted, import, &limits, &own_progress) {
-            Ok(Some(truth)) => Ok(ChosenTruth { source: wanted, truth: Arc::new(truth), generation }),
+impl App {
+    /// Starts to load a reference surface. Until it is loaded, the one before it stays.
+    pub fn open_truth(&mut self, context: &egui::Context, source: Source) {
+        let (wanted, import, limits) = (source.clone(), self.preparation().import, self.jobs.limits);
+        let load = move |progress: &Progress| match Truth::load(&wanted, import, &limits, progress) {
+            Ok(Some(truth)) => Ok(Arc::new(truth)),
             Ok(None) => Err(Some(format!("{wanted} can't be a reference surface: it has no triangles"))),
             Err(LoadError::Cancelled(_)) => Err(None),
             Err(error) => Err(Some(error.to_string())),
         };
-        Self { job: Some(BackgroundJob::start(context, load)), source, progress }
-    }
-
-    /// Lets the job repaint another window when it ends.
-    pub(in crate::app) fn wake(&mut self, context: &egui::Context) {
-        self.job = self.job.take().map(|job| job.waking(context));
-    }
-}
-
-impl Drop for TruthLoad {
-    fn drop(&mut self) {
-        self.progress.cancel();
-    }
-}
-
-impl App {
-    /// Starts to load a reference surface. Until it is loaded, the one before it stays.
-    pub fn open_truth(&mut self, context: &egui::Context, source: Source) {
-        self.jobs.truth_load = Some(TruthLoad::start(context, source, self.preparation().import, self.jobs.limits));
+        let title = format!("Loading the reference surface {}", source.title());
+        self.read_beside(context, (Work::Truth, title, source.title()), load, |app, truth| {
+            app.truth = Some(ChosenTruth { source, truth, generation: new_generation() });
+            app.settings.overlays.colors = Colors::Deviation;
+        });
     }
 
     /// Loads a reference surface of a file again, which is turned and scaled as the mesh is.
@@ -77,24 +52,7 @@ impl App {
     /// Goes back to the default reference surface: the exact surface of a shape, or the limit surface.
     pub(in crate::app) fn forget_truth(&mut self) {
         self.truth = None;
-        self.jobs.truth_load = None;
-    }
-
-    pub(in crate::app) fn take_truth(&mut self) {
-        let Some(load) = &self.jobs.truth_load else { return };
-        let Some(result) = load.job.as_ref().and_then(BackgroundJob::take) else { return };
-        let stopped = |stopped| format!("{}: loading it {stopped}; the file may be damaged", load.source.title());
-        let result = result.unwrap_or_else(|error| Err(Some(stopped(error))));
-        self.jobs.truth_load = None;
-        match result {
-            Ok(chosen) => {
-                self.truth = Some(chosen);
-                self.settings.overlays.colors = Colors::Deviation;
-            }
-            Err(Some(error)) => self.dialogs.error = Some(error),
-            // It was cancelled in the window, so no message is needed.
-            Err(None) => {}
-        }
+        self.jobs.stop(Work::Truth);
     }
 
     /// The reference surface that distances are measured from: its number, the surface (none for the limit surface), and

@@ -18,7 +18,6 @@ pub(crate) struct Walk<T> {
     ended: Receiver<Result<T, Stopped>>,
     /// None once everything is copied.
     copying: Option<Copying>,
-    /// How many chunks there are.
     chunks: usize,
     wanted: Progress,
 }
@@ -33,7 +32,6 @@ struct Copying {
     parts: SyncSender<Part>,
 }
 
-/// What is copied back.
 enum Part {
     /// What a walk needs besides what is emitted.
     First(Readback),
@@ -44,7 +42,6 @@ enum Part {
 /// What the thread receives, in order.
 pub(in crate::app) struct Parts<'a> {
     received: Receiver<Part>,
-    /// How many chunks there are.
     chunks: usize,
     pub wanted: &'a Progress,
 }

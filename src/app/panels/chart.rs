@@ -1,16 +1,13 @@
 //! The state of the chart panel: which settings are measured when, whether the chart is out of date, and saving it.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::app::App;
-use crate::app::dialogs::typed_path::Purpose;
-use crate::app::jobs::background_job::BackgroundJob;
 use crate::app::jobs::chart_job::{ChartBasis, ChartJob, Charted, Job};
 use geometry::tessellate::Tessellation;
 use inspect::settings::Settings;
 use lab::chart::{Cost, Effort, Plan, Probe, Row, SaveError, Setting, coarse_first, save, whole};
 
-/// The state of the chart panel.
 #[derive(Default)]
 pub(crate) struct Chart {
     pub is_open: bool,
@@ -20,26 +17,13 @@ pub(crate) struct Chart {
     pub(in crate::app) effort: Effort,
     pub(in crate::app) charting: ChartJob,
     /// The window's settings, if they aren't in the chart, and since when they are unchanged, on the window's clock in s.
-    still: Option<(Settings, f64)>,
-    pub(in crate::app) saving: Option<BackgroundJob<Result<(), String>>>,
+    pub(in crate::app) still: Option<(Settings, f64)>,
 }
 
 /// How long settings that aren't in the chart must stay unchanged before they are measured as well, in s.
 const STILL: f64 = 0.4;
 
 impl Chart {
-    /// Stops measuring; the results so far stay.
-    pub(crate) fn stop(&mut self) {
-        self.charting.stop();
-    }
-
-    /// Stops measuring and frees the chart's device, which may be lost like the window's. The results so far stay.
-    pub(in crate::app) fn go_on_in(&mut self, context: &egui::Context) {
-        self.charting.close();
-        self.still = None;
-        self.saving = self.saving.take().map(|saving| saving.waking(context));
-    }
-
     pub(in crate::app) fn charted(&self) -> Option<&Charted> {
         self.charting.charted.as_ref()
     }
@@ -49,7 +33,7 @@ impl App {
     pub(in crate::app) fn toggle_chart(&mut self) {
         self.panels.chart.is_open = !self.panels.chart.is_open;
         if !self.panels.chart.is_open {
-            self.panels.chart.charting.close();
+            self.close_chart();
         }
     }
 
@@ -58,12 +42,6 @@ impl App {
         (self.panels.chart.plan, self.panels.chart.effort) = (plan, effort);
     }
 
-    /// How many of the chart's settings are done, and how many there are; none if it isn't measuring.
-    pub fn charting(&self) -> Option<(usize, usize)> {
-        self.panels.chart.charting.progress()
-    }
-
-    /// The rows that were measured for the chart.
     pub fn chart_rows(&self) -> &[Row] {
         self.panels.chart.charted().map_or(&[], |charted| &charted.subject.rows)
     }
@@ -117,10 +95,9 @@ impl App {
         let current = self.unknown_current().filter(|_| !is_listed);
         let adapter = self.render_state.adapter.clone();
         let job = Job { adapter, loaded, of, truth, current, settings, effort: self.chart_effort() };
-        self.panels.chart.charting.start(context, job);
+        self.panels.chart.charting.start(&mut self.jobs, context, job);
     }
 
-    /// The settings that are tried, in order.
     pub(in crate::app) fn chart_settings(&self) -> Vec<Setting> {
         let plan = Plan { normals: vec![self.settings.tessellation.normals], ..self.panels.chart.plan.clone() };
         coarse_first(plan.settings())
@@ -145,20 +122,8 @@ impl App {
         (!listed && !known).then_some(current)
     }
 
-    /// Takes new results, and starts to measure the window's own settings once they stay unchanged.
-    pub(in crate::app) fn take_chart(&mut self, context: &egui::Context) {
-        if let Err(error) = self.panels.chart.charting.take() {
-            self.dialogs.error = Some(error);
-        }
-        if let Some(ended) = self.panels.chart.saving.as_ref().and_then(BackgroundJob::take) {
-            self.panels.chart.saving = None;
-            let saved = ended.unwrap_or_else(|stopped| Err(format!("saving the chart {stopped}")));
-            self.dialogs.error = saved.err().or(self.dialogs.error.take());
-        }
-        self.measure_current(context);
-    }
-
-    fn measure_current(&mut self, context: &egui::Context) {
+    /// Starts to measure the window's own settings once they stay unchanged.
+    pub(in crate::app) fn measure_current(&mut self, context: &egui::Context) {
         let is_idle = self.panels.chart.is_open && self.charting().is_none() && !self.is_busy() && !self.is_playing();
         let of = self.panels.chart.charted().map(|charted| charted.of).filter(|_| is_idle);
         let wanted = of.filter(|of| Some(*of) == self.chart_of()).and_then(|of| Some((of, self.unknown_current()?)));
@@ -177,28 +142,12 @@ impl App {
         let (adapter, truth) = (self.render_state.adapter.clone(), self.yardstick().1);
         let (effort, settings) = (self.chart_effort(), Vec::new());
         let job = Job { adapter, loaded, of, truth, current: Some(current), settings, effort };
-        self.panels.chart.charting.start(context, job);
+        self.panels.chart.charting.start(&mut self.jobs, context, job);
     }
 
     /// Makes the chart's measuring wait while the window draws or measures.
     pub(in crate::app) fn hold_chart(&self) {
         self.panels.chart.charting.hold(self.is_busy());
-    }
-
-    pub(in crate::app) fn save_dialog(&mut self, context: &egui::Context) {
-        self.dialog(Purpose::SaveChart, context, || {
-            let dialog = rfd::FileDialog::new().set_title("Save the chart").set_file_name("chart.svg");
-            let kinds = [("SVG picture", "svg"), ("PNG picture", "png"), ("CSV table", "csv")];
-            let dialog = kinds.into_iter().fold(dialog, |dialog, (name, ending)| dialog.add_filter(name, &[ending]));
-            dialog.save_file()
-        });
-    }
-
-    pub(in crate::app) fn save_chart_beside(&mut self, context: &egui::Context, path: PathBuf) {
-        let Some(charted) = self.panels.chart.charted() else { return };
-        let subject = charted.subject.clone();
-        let write = move || save(&path, &subject).map_err(|error| error.to_string());
-        self.panels.chart.saving = Some(BackgroundJob::start(context, write));
     }
 }
 

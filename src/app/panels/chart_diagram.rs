@@ -7,17 +7,14 @@ use crate::app::jobs::chart_job::Charted;
 use inspect::plot::INK;
 use lab::chart::{Axis, Cost, Fill, Method, MethodStyle, RADIUS, Row, Setting, Shape, Tick, method_styles};
 
-/// What is drawn.
 pub(super) struct Diagram<'a> {
     pub charted: &'a Charted,
     pub cost: Cost,
     /// Whether the chart is out of date.
     pub is_stale: bool,
-    /// The window's own setting.
     pub own: Option<Setting>,
 }
 
-/// A point of the diagram.
 #[derive(Clone, Copy)]
 pub(super) enum Spot<'a> {
     Row(&'a Row),
@@ -156,7 +153,6 @@ impl Canvas {
     }
 }
 
-/// Colours of this theme.
 pub(super) struct Inks {
     /// Drawn around points, to set them off from what is under them.
     halo: Color32,
@@ -190,7 +186,6 @@ impl Inks {
     }
 }
 
-/// Draws a method's line, dashed or not.
 pub(super) fn line(painter: &egui::Painter, points: &[Pos2], stroke: Stroke, dash: Option<[f64; 2]>) {
     match dash {
         None => {
@@ -207,7 +202,6 @@ pub(super) fn line(painter: &egui::Painter, points: &[Pos2], stroke: Stroke, das
     }
 }
 
-/// A method's point.
 pub(super) fn marker(painter: &egui::Painter, at: Pos2, style: &MethodStyle, inks: &Inks) {
     let color = inks.of(style);
     let shape = |radius: f64, color: Color32| {

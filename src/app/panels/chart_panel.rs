@@ -5,9 +5,11 @@ use egui::RichText;
 use super::chart_diagram::{Diagram, Inks, Spot, line, marker};
 use crate::app::App;
 use crate::app::jobs::chart_job::Charted;
+use crate::app::jobs::job_list::Work;
 use crate::app::painting::panel_frame;
 use crate::app::text::{grouped, short};
 use crate::app::widgets::{dense, list, switch_button, text_width, unclicked};
+use crate::commands::{Purpose, Written};
 use geometry::tessellate::Surface;
 use inspect::settings::Choice;
 use lab::chart::{Cost, LodKind, MethodStyle, Plan, Probe, Setting, dash, method_styles};
@@ -94,10 +96,10 @@ impl App {
         }
         ui.separator();
         self.methods_menu(ui);
-        let has_rows = !self.chart_rows().is_empty() && self.panels.chart.saving.is_none();
+        let has_rows = !self.chart_rows().is_empty() && !self.is_writing();
         let save = ui.add_enabled(has_rows, egui::Button::new("Save chart…"));
         if save.on_hover_text("As a picture (.svg, .png) or a table (.csv).").clicked() {
-            self.save_dialog(ui.ctx());
+            self.ask_for(ui.ctx(), Purpose::Write(Written::Chart));
         }
     }
 
@@ -113,18 +115,17 @@ impl App {
         ui.add(egui::Label::new(text).truncate()).on_hover_text(format!("{hover}{facts}"));
     }
 
-    /// Whether there is something to measure.
     pub(in crate::app) fn can_measure_chart(&self) -> bool {
-        let is_idle = self.panels.chart.is_open && self.panels.chart.charting.progress().is_none();
+        let is_idle = self.panels.chart.is_open && self.charting().is_none();
         is_idle && self.document.is_some() && !self.chart_settings().is_empty()
     }
 
     /// Shows the button that starts or cancels measuring. Returns how many settings are done, and how many there are.
     fn measure_button(&mut self, ui: &mut egui::Ui) -> (usize, usize) {
         let button = |text| egui::Button::new(text).min_size(egui::vec2(BUTTON_WIDTH, 0.0));
-        if let Some(progress) = self.panels.chart.charting.progress() {
+        if let Some(progress) = self.charting() {
             if ui.add(button("Cancel")).on_hover_text("Stops measuring; the results so far stay.").clicked() {
-                self.panels.chart.stop();
+                self.jobs.stop(Work::Chart);
             }
             return progress;
         }

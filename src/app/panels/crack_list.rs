@@ -5,7 +5,7 @@ use egui::RichText;
 use super::statistics::EDGE_KINDS;
 use crate::app::App;
 use crate::app::text::{grouped, short};
-use crate::app::widgets::{columns, fact, list, number, swatch};
+use crate::app::widgets::{FoundRow, columns, fact, found_list, list, list_title, number, swatch};
 use crate::commands::{Action, with_key};
 use geometry::mesh::{EdgeKind, TJunction, Topology};
 use geometry::view::ulp;
@@ -33,23 +33,17 @@ impl App {
             return;
         }
         let topology = &document.loaded.topology;
-        ui.add_space(4.0);
-        ui.label("Worst edges").on_hover_text(
-            "Edges whose sides put a point at different positions, the widest gap first; a click frames one.",
-        );
+        let hover = "Edges whose sides put a point at different positions, the widest gap first; a click frames one.";
+        list_title(ui, None, "Worst edges", hover);
         columns(ui, &format!("{:<7}{:<13}{:>9}", "edge", "kind", "gap, units"), true);
-        let mut clicked = None;
         let which = document.generation as u32 ^ results.seen.inputs.tessellation.surface as u32;
-        list(ui, "worst edges", (cracked.len(), which), |ui, row| {
+        let clicked = found_list(ui, "worst edges", (cracked.len(), which), |row| {
             let crack = &cracked[row];
             let kind = kind_name(topology.edges[crack.edge as usize].kind);
-            let text = RichText::new(format!("{:<7}{kind:<13}{:>9}", crack.edge, short(crack.gap))).monospace();
-            let response = ui.selectable_label(self.viewport.selected_edge == Some(crack.edge), text);
-            if response.clicked() {
-                clicked = Some(crack.edge);
-            }
-            response.on_hover_ui(|ui| {
-                ui.label(format!(
+            FoundRow {
+                columns: format!("{:<7}{kind:<13}{:>9}", crack.edge, short(crack.gap)),
+                is_selected: self.selected_edge() == Some(crack.edge),
+                hover: format!(
                     "The gap is {} px wide as the camera of LOD sees it, {} ULP. {} points and {} normals differ; the factors {}. A click \
                      frames the edge.",
                     short(results.gap_px(crack)),
@@ -57,17 +51,17 @@ impl App {
                     crack.different_bits,
                     crack.different_normals,
                     if crack.different_factors { "differ" } else { "agree" },
-                ));
-            })
+                ),
+            }
         });
-        if let Some(edge) = clicked {
+        if let Some(edge) = clicked.map(|row| cracked[row].edge) {
             self.select_edge(edge);
         }
     }
 
     /// The selected edge: its kind, its gap, and the points of each side.
     pub(in crate::app) fn edge_details(&mut self, ui: &mut egui::Ui) {
-        let (Some(edge), Some(document)) = (self.viewport.selected_edge, &self.document) else { return };
+        let (Some(edge), Some(document)) = (self.selected_edge(), &self.document) else { return };
         let topology = &document.loaded.topology;
         let kind = kind_name(topology.edges[edge as usize].kind);
         let mut closed = false;
@@ -111,11 +105,10 @@ impl App {
             point_rows(ui, &sides);
         }
         if closed {
-            self.viewport.selected_edge = None;
+            self.select_only_edge(None);
         }
     }
 
-    /// A list of T-junctions; a click frames one.
     pub(in crate::app) fn t_junction_list(&mut self, ui: &mut egui::Ui) {
         let Some(junctions) = self.document.as_ref().and_then(|document| document.checks.t_junctions()) else { return };
         if junctions.is_empty() {
@@ -131,19 +124,15 @@ impl App {
             number(ui, &grouped(junctions.len() as u64));
         });
         columns(ui, &format!("{:<9}{:<9}{:>11}", "point", "edge", "at, 0 to 1"), true);
-        let mut clicked: Option<TJunction> = None;
-        list(ui, "t-junctions", (junctions.len(), junctions[0].point), |ui, row| {
+        let clicked = found_list(ui, "t-junctions", (junctions.len(), junctions[0].point), |row| {
             let TJunction { edge, point, t, .. } = junctions[row];
-            let text = RichText::new(format!("{point:<9}{edge:<9}{t:>11.3}")).monospace();
-            let response = ui.selectable_label(self.viewport.selected_edge == Some(edge), text);
-            let response =
-                response.on_hover_text("Where the point lies along the edge, from 0 to 1. A click frames the edge.");
-            if response.clicked() {
-                clicked = Some(junctions[row]);
+            FoundRow {
+                columns: format!("{point:<9}{edge:<9}{t:>11.3}"),
+                is_selected: self.selected_edge() == Some(edge),
+                hover: "Where the point lies along the edge, from 0 to 1. A click frames the edge.".to_owned(),
             }
-            response
         });
-        if let Some(junction) = clicked {
+        if let Some(junction) = clicked.map(|row| junctions[row]) {
             self.show_junction(&junction);
         }
     }
@@ -167,8 +156,7 @@ impl App {
             return;
         }
         let spot = self.edge_spot(topology, edge, at);
-        self.viewport.selected_edge = Some(edge);
-        self.keep_triangle_of(edge);
+        self.select_edge_alone(edge);
         self.show_place(SplitSide::Right, &Spot::Edge(spot), None);
     }
 
@@ -183,18 +171,17 @@ impl App {
         EdgeSpot::new(topology, edge, at.or(middle))
     }
 
-    /// The selected edge's crack in a half, if there is a gap.
     pub(in crate::app) fn selected_gap(&self, half: SplitSide) -> Option<&CrackedEdge> {
-        let found = self.measured(half).found()?;
-        crack_in(found, self.viewport.selected_edge?).filter(|crack| crack.gap > 0.0)
+        let found = self.found(half)?;
+        crack_in(found, self.selected_edge()?).filter(|crack| crack.gap > 0.0)
     }
 
     /// The lines that mark the selected edge: each side in a colour of its own, the later ones thinner so that sides that
     /// coincide both show, and a dot where they are farthest apart. If its patches emit nothing, it is the straight line. An edge of
     /// the selected patch has wider ones, of which a halo is seen around the colour of the edge's factor.
     pub(in crate::app) fn selection_lines(&self, topology: &Topology, half: SplitSide) -> Vec<LineSegment> {
-        let Some(edge) = self.viewport.selected_edge else { return Vec::new() };
-        let sides = self.measured(half).found().map(|found| found.outlines.edge(topology, edge)).unwrap_or_default();
+        let Some(edge) = self.selected_edge() else { return Vec::new() };
+        let sides = self.found(half).map(|found| found.outlines.edge(topology, edge)).unwrap_or_default();
         let mut polylines: Vec<Vec<Vec3>> = sides.iter().map(|side| side.positions().collect()).collect();
         if polylines.iter().all(|points| points.len() < 2) {
             polylines = vec![

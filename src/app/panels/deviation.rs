@@ -18,11 +18,8 @@ use inspect::render::{DEVIATION_PX_SCALE, Distances, LineSegment, Scale, deviati
 use inspect::settings::{Choice, Colors, DeviationUnit, SplitSide, options};
 
 impl App {
-    fn deviating(&self, half: SplitSide) -> &DeviationJob {
-        match half {
-            SplitSide::Left => &self.viewport.left.deviating,
-            SplitSide::Right => &self.jobs.deviation,
-        }
+    fn deviating(&self, half: SplitSide) -> Option<&DeviationJob> {
+        Some(&self.document.as_ref()?.halves[half as usize].deviation)
     }
 
     fn deviation_of(&self, half: SplitSide) -> Option<DeviationBasis> {
@@ -31,8 +28,8 @@ impl App {
         }
         let document = self.document.as_ref()?;
         let tessellation = document.scene.half(half)?.tessellator.generation();
-        let (document, truth, limit) = (document.generation, self.yardstick().0, self.settings.tessellation.surface);
-        Some(DeviationBasis { document, tessellation, truth, limit })
+        let (truth, limit) = (self.yardstick().0, self.settings.tessellation.surface);
+        Some(DeviationBasis { tessellation, truth, limit })
     }
 
     /// Whether there is nothing to compare with: the CPU doesn't know the limit surface of a shader.
@@ -46,11 +43,8 @@ impl App {
 
     /// Counts changes of the deviation that the picture shows; 0 without the overlay.
     pub(in crate::app) fn deviation_shown(&self) -> u64 {
-        if self.shows_deviation() {
-            self.jobs.deviation.generation + self.viewport.left.deviating.generation
-        } else {
-            0
-        }
+        let jobs = SplitSide::BOTH.into_iter().filter_map(|half| self.deviating(half));
+        if self.shows_deviation() { jobs.map(|job| job.generation).sum() } else { 0 }
     }
 
     /// The largest distance of a half from the reference surface, once it is known.
@@ -60,7 +54,7 @@ impl App {
 
     fn known_deviation(&self, half: SplitSide) -> Option<&DeviationResult> {
         self.settings.half(half)?;
-        self.deviating(half).found_of(self.deviation_of(half)?)
+        self.deviating(half)?.found_of(self.deviation_of(half)?)
     }
 
     /// Goes on measuring if the overlay is on, no clip plays and no picture is under way. Without a reference surface both
@@ -68,8 +62,8 @@ impl App {
     /// half would be that half itself.
     pub(in crate::app) fn deviate(&mut self, inputs: &Inputs) -> Result<(), Trouble> {
         if !self.shows_deviation() || self.viewport.playback.is_playing() {
-            self.jobs.deviation.stop();
-            self.viewport.left.deviating.stop();
+            let halves = self.document.iter_mut().flat_map(|document| &mut document.halves);
+            halves.for_each(|half| half.deviation.stop());
             return Ok(());
         }
         if !self.viewport.picture.is_free() || self.viewport.picture.cancelled.is_some() {
@@ -83,11 +77,7 @@ impl App {
             let scene = document.scene.half_mut(half).filter(|scene| is_posed && scene.tessellator.is_counted());
             let Some(scene) = scene else { continue };
             let target = || truth.map_or_else(|| DeviationTarget::Limit(Box::new(*inputs)), DeviationTarget::Truth);
-            let deviating = match half {
-                SplitSide::Left => &mut self.viewport.left.deviating,
-                SplitSide::Right => &mut self.jobs.deviation,
-            };
-            deviating.go_on(&self.engine.gpu, scene, of, target)?;
+            document.halves[half as usize].deviation.go_on(&self.engine.gpu, scene, of, target)?;
         }
         self.scale_deviation();
         Ok(())
@@ -98,7 +88,7 @@ impl App {
         let scene = &self.document.as_ref()?.scene;
         let shown = SplitSide::BOTH.into_iter().filter(|half| self.settings.half(*half).is_some());
         let largest =
-            shown.filter_map(|half| self.deviating(half).found()).map(DeviationResult::largest).reduce(f64::max)?;
+            shown.filter_map(|half| self.deviating(half)?.found()).map(DeviationResult::largest).reduce(f64::max)?;
         Some(deviation_scale(largest, scene.ulp()))
     }
 
@@ -121,10 +111,10 @@ impl App {
     /// The number of the result that each half's mark shows; 0 for no mark.
     pub(in crate::app) fn worst_marked(&self) -> [u64; 2] {
         let is_marked = |half| self.shows_deviation() && self.known_deviation(half).is_some();
-        SplitSide::BOTH.map(|half| if is_marked(half) { self.deviating(half).generation } else { 0 })
+        let marked = |half| self.deviating(half).filter(|_| is_marked(half));
+        SplitSide::BOTH.map(|half| marked(half).map_or(0, |job| job.generation))
     }
 
-    /// What the legend shows about distances.
     pub(in crate::app) fn legend_distances(&self) -> Distances {
         let unit = self.settings.deviation_in;
         let scale = match unit {
@@ -133,7 +123,7 @@ impl App {
         };
         let known = |half| self.known_deviation(half);
         let is_partial = SplitSide::BOTH.into_iter().filter_map(known).any(|found| found.left_out > 0);
-        let measured = SplitSide::BOTH.into_iter().filter_map(|half| self.deviating(half).fraction()).reduce(f32::min);
+        let measured = SplitSide::BOTH.into_iter().filter_map(|half| self.deviating(half)?.fraction()).reduce(f32::min);
         let outlines = self.silhouette_shown().map(|silhouette| silhouette.distances);
         Distances { unit, scale, is_partial, measured, outlines }
     }
@@ -233,7 +223,6 @@ impl App {
         Some(f64::from(at(worst.emitted)?.distance(at(worst.truth)?)))
     }
 
-    /// Shows a half's worst point.
     fn frame_worst(&mut self, half: SplitSide) {
         let Some(worst) = self.known_deviation(half).and_then(|found| found.worst) else { return };
         let Some(document) = &self.document else { return };

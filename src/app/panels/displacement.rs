@@ -4,9 +4,8 @@ use std::path::{Path, PathBuf};
 
 use super::option_rows::{option_hover, option_row, option_row_with};
 use crate::app::App;
-use crate::app::dialogs::typed_path::Purpose;
 use crate::app::text::short;
-use crate::commands::{Action, HEIGHT_IMAGE, key_name};
+use crate::commands::{Action, HEIGHT_IMAGE, Purpose, key_name};
 use geometry::tessellate::Displacement;
 use inspect::settings::options;
 use load::environment_file::is_environment;
@@ -30,14 +29,6 @@ impl App {
         }
     }
 
-    /// Asks for an image to displace the mesh by.
-    pub(in crate::app) fn height_dialog(&mut self, context: &egui::Context) {
-        self.dialog(Purpose::Heights, context, || {
-            let dialog = rfd::FileDialog::new().set_title("Open a height image");
-            dialog.add_filter("Images", &["png", "jpg", "jpeg", "webp"]).pick_file()
-        });
-    }
-
     /// Loads the same mesh again with another height map, or without one.
     pub fn displace(&mut self, context: &egui::Context, heights: Option<HeightSource>) {
         self.prepare(context, |preparation| preparation.heights = heights);
@@ -56,7 +47,6 @@ impl App {
         self.document.as_ref().is_some_and(|document| document.loaded.mesh.heights.is_some())
     }
 
-    /// The row for the height map, and the rows of its options while there is one.
     pub(in crate::app) fn height_rows(&mut self, ui: &mut egui::Ui) {
         let heights = self.preparation().heights;
         let label = ui.label("Height map");
@@ -76,7 +66,7 @@ impl App {
             }
             let is_file = matches!(heights, Some(HeightSource::File(_)));
             if entry("Image file…", is_file, HEIGHT_IMAGE) {
-                self.height_dialog(ui.ctx());
+                self.ask_for(ui.ctx(), Purpose::Heights);
             }
         });
         combo.response.labelled_by(label.id).on_hover_text(

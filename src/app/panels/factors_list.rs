@@ -6,7 +6,7 @@ use egui::RichText;
 use crate::app::App;
 use crate::app::sections::Section;
 use crate::app::text::{counted, grouped, short};
-use crate::app::widgets::{columns, fact, list};
+use crate::app::widgets::{FoundRow, columns, fact, found_list};
 use inspect::measure::{Agreement, Disagreement};
 use inspect::settings::Choice;
 
@@ -17,7 +17,7 @@ impl App {
         if !self.panels.open.title(ui, Section::Factors) {
             return;
         }
-        let Some(compared) = given.compared() else {
+        let Some(compared) = &given.content.compared else {
             ui.weak("The factors are being compared\u{2026}");
             return;
         };
@@ -45,13 +45,13 @@ impl App {
     pub(super) fn agreement(&self) -> Option<&Agreement> {
         match self.uses_lod_shader() {
             true => self.results()?.agreement.as_ref(),
-            false => Some(&self.given.as_ref()?.compared()?.agreement),
+            false => Some(&self.given.as_ref()?.content.compared.as_ref()?.agreement),
         }
     }
 
     /// Says which convention fits, if edges differ under the one that is set, and offers it.
     fn convention_advice(&mut self, ui: &mut egui::Ui) {
-        let Some(compared) = self.given.as_ref().and_then(|given| given.compared()) else { return };
+        let Some(compared) = self.given.as_ref().and_then(|given| given.content.compared.as_ref()) else { return };
         let Some((nearest, different)) = compared.agreement.nearest() else { return };
         let own = compared.agreement.edges.len() as u64;
         if different >= own {
@@ -79,21 +79,17 @@ impl App {
         }
         columns(ui, &format!("{:<9}{:>9}{:>9}", "edge", "least", "greatest"), true)
             .on_hover_text("The least and the greatest factor of a side of the edge.");
-        let mut clicked = None;
         let first = edges.first().map_or(0, |edge| edge.edge);
-        list(ui, "different factors", (edges.len(), first), |ui, row| {
+        let clicked = found_list(ui, "different factors", (edges.len(), first), |row| {
             let own = &edges[row];
             let [least, greatest] = own.extremes().map(|(_, factor)| short(factor.into()));
-            let text = format!("{:<9}{least:>9}{greatest:>9}", own.edge);
-            let is_selected = self.viewport.selected_edge == Some(own.edge);
-            let response = ui.selectable_label(is_selected, RichText::new(text).monospace());
-            let response = response.on_hover_text(sides_text(own));
-            if response.clicked() {
-                clicked = Some(own.edge);
+            FoundRow {
+                columns: format!("{:<9}{least:>9}{greatest:>9}", own.edge),
+                is_selected: self.selected_edge() == Some(own.edge),
+                hover: sides_text(own),
             }
-            response
         });
-        if let Some(edge) = clicked {
+        if let Some(edge) = clicked.map(|row| edges[row].edge) {
             self.select_edge(edge);
         }
     }

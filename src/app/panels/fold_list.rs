@@ -1,10 +1,8 @@
 //! The list of patches with folds.
 
-use egui::RichText;
-
 use crate::app::App;
 use crate::app::text::{grouped, short};
-use crate::app::widgets::{columns, list, swatch};
+use crate::app::widgets::{FoundRow, columns, found_list, list_title};
 use inspect::gates::Spot;
 use inspect::measure::FoldedPatch;
 use inspect::render::layout::FOLD_COLOR;
@@ -19,36 +17,22 @@ impl App {
         if found.folded.is_empty() {
             return;
         }
-        ui.add_space(4.0);
-        ui.horizontal(|ui| {
-            swatch(ui, FOLD_COLOR);
-            ui.label("Folded patches").on_hover_text(
-                "Patches with triangles that face away from the side that the patch faces, the largest area first. A click \
-                 frames one.",
-            );
-        });
+        let hover = "Patches with triangles that face away from the side that the patch faces, the largest area first. A click frames one.";
+        list_title(ui, Some(FOLD_COLOR), "Folded patches", hover);
         columns(ui, &format!("{:<10}{:>7}{:>12}", "triangle", "folds", "area"), true)
             .on_hover_text("The triangle of the mesh, its folds, and their area in square object units.");
-        let patches = &document.loaded.topology.patches;
-        let mut clicked = None;
-        list(
-            ui,
-            "folded patches",
-            (found.folded.len(), found.folded[0].patch ^ (found.folded[0].area as f32).to_bits()),
-            |ui, row| {
-                let folded = &found.folded[row];
-                let triangle = patches.get(folded.patch as usize).map_or(0, |patch| patch.triangle);
-                let text = format!("{triangle:<10}{:>7}{:>12}", grouped(folded.folds.into()), short(folded.area));
-                let is_selected = self.selected_patch() == Some(folded.patch);
-                let response = ui.selectable_label(is_selected, RichText::new(text).monospace());
-                let response = response.on_hover_text("A click selects the triangle and frames its largest fold.");
-                if response.clicked() {
-                    clicked = Some(*folded);
-                }
-                response
-            },
-        );
-        if let Some(folded) = clicked {
+        let (patches, first) = (&document.loaded.topology.patches, &found.folded[0]);
+        let which = first.patch ^ (first.area as f32).to_bits();
+        let clicked = found_list(ui, "folded patches", (found.folded.len(), which), |row| {
+            let folded = &found.folded[row];
+            let triangle = patches.get(folded.patch as usize).map_or(0, |patch| patch.triangle);
+            FoundRow {
+                columns: format!("{triangle:<10}{:>7}{:>12}", grouped(folded.folds.into()), short(folded.area)),
+                is_selected: self.selected_patch() == Some(folded.patch),
+                hover: "A click selects the triangle and frames its largest fold.".to_owned(),
+            }
+        });
+        if let Some(folded) = clicked.map(|row| found.folded[row]) {
             self.show_fold(&folded);
         }
     }

@@ -1,10 +1,8 @@
 //! The list of leaks.
 
-use egui::RichText;
-
 use crate::app::App;
 use crate::app::text::grouped;
-use crate::app::widgets::{columns, list};
+use crate::app::widgets::{FoundRow, columns, found_list, list_title};
 use inspect::render::Leak;
 
 impl App {
@@ -14,28 +12,21 @@ impl App {
         if leaks.is_empty() {
             return;
         }
-        ui.add_space(4.0);
-        ui.label("Leaks").on_hover_text(
-            "Places in the picture where one can see into the closed mesh, the largest first. A click frames the cracked edge \
-             there.",
-        );
+        let hover = "Places in the picture where one can see into the closed mesh, the largest first. A click frames the cracked edge \
+                     there.";
+        list_title(ui, None, "Leaks", hover);
         columns(ui, &format!("{:>6}{:>8}{:>15}", "x, px", "y, px", "px that leak"), true)
             .on_hover_text("The pixel in the middle of the leak, from the picture's top left, and the leak's size.");
-        let mut clicked = None;
-        let first = leaks[0].px.x as u32;
-        list(ui, "leaks", (leaks.len(), first), |ui, row| {
+        let clicked = found_list(ui, "leaks", (leaks.len(), leaks[0].px.x as u32), |row| {
             let leak = &leaks[row];
             let [x, y] = leak.px.floor().to_array();
-            let text = format!("{x:>6.0}{y:>8.0}{:>15}", grouped(leak.pixels.into()));
-            let response = ui.selectable_label(false, RichText::new(text).monospace());
-            let response =
-                response.on_hover_text("A click selects the cracked edge that comes closest, and frames it.");
-            if response.clicked() {
-                clicked = Some(*leak);
+            FoundRow {
+                columns: format!("{x:>6.0}{y:>8.0}{:>15}", grouped(leak.pixels.into())),
+                is_selected: false,
+                hover: "A click selects the cracked edge that comes closest, and frames it.".to_owned(),
             }
-            response
         });
-        if let Some(leak) = clicked {
+        if let Some(leak) = clicked.map(|row| leaks[row]) {
             self.show_leak(&leak);
         }
     }

@@ -2,8 +2,7 @@
 
 use super::option_rows::{option_hover, option_row};
 use crate::app::App;
-use crate::app::jobs::environment_job::file_name;
-use crate::commands::ENVIRONMENT;
+use crate::commands::{Beside, ENVIRONMENT, Purpose};
 use inspect::settings::{Lighting, options};
 
 impl App {
@@ -40,7 +39,7 @@ impl App {
         let is_new = self.settings.lighting == Lighting::Environment && before != Lighting::Environment;
         if is_new && self.environment.is_none() {
             self.settings.lighting = before;
-            self.environment_dialog(ui.ctx());
+            self.ask_for(ui.ctx(), Purpose::Beside(Beside::Environment));
         }
     }
 
@@ -49,13 +48,13 @@ impl App {
         let Some(open) = &self.environment else {
             ui.label("");
             if ui.button("Open environment…").on_hover_text(ENVIRONMENT).clicked() {
-                self.environment_dialog(ui.ctx());
+                self.ask_for(ui.ctx(), Purpose::Beside(Beside::Environment));
             }
             ui.end_row();
             return;
         };
         ui.label("Panorama").on_hover_text("The file of light that is open (--environment).");
-        ui.add(egui::Label::new(file_name(&open.path)).truncate()).on_hover_text(open.path.display().to_string());
+        ui.add(egui::Label::new(open.name()).truncate()).on_hover_text(open.path.display().to_string());
         ui.end_row();
         ui.label("");
         let hover = "Closes the panorama of light. The studio shines again.";

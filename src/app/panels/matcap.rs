@@ -2,20 +2,11 @@
 
 use super::option_rows::with_note;
 use crate::app::App;
-use crate::app::dialogs::typed_path::Purpose;
-use crate::app::jobs::matcap::ChosenMatcap;
-use crate::commands::MATCAP_IMAGE;
+use crate::app::jobs::beside::OpenFile;
+use crate::commands::{Beside, MATCAP_IMAGE, Purpose};
 use inspect::settings::{Choice, Matcap, options};
 
 impl App {
-    /// Asks for a picture of a lit sphere.
-    pub(in crate::app) fn matcap_dialog(&mut self, context: &egui::Context) {
-        self.dialog(Purpose::Matcap, context, || {
-            let dialog = rfd::FileDialog::new().set_title("Open a matcap");
-            dialog.add_filter("Images", &["png", "jpg", "jpeg", "webp"]).pick_file()
-        });
-    }
-
     /// The row. It is there while the overlay is on.
     pub(super) fn matcap_row(&mut self, ui: &mut egui::Ui) {
         if (options::MATCAP.no_effect)(&self.settings).is_some() {
@@ -23,7 +14,7 @@ impl App {
         }
         let label = ui.label(options::MATCAP.label);
         let own = self.settings.matcap;
-        let image = self.matcap.as_ref().map(ChosenMatcap::name);
+        let image = self.matcap.as_ref().map(OpenFile::name);
         let shown = image.clone().unwrap_or_else(|| own.label().to_owned());
         let combo = egui::ComboBox::from_id_salt("Lit sphere").selected_text(shown).truncate();
         let combo = combo.show_ui(ui, |ui| {
@@ -35,7 +26,7 @@ impl App {
                 }
             }
             if ui.selectable_label(image.is_some(), "Image file…").on_hover_text(MATCAP_IMAGE).clicked() {
-                self.matcap_dialog(ui.ctx());
+                self.ask_for(ui.ctx(), Purpose::Beside(Beside::Matcap));
             }
         });
         combo.response.labelled_by(label.id).on_hover_text(with_note(options::MATCAP.text, "--matcap, --matcap-image"));

@@ -3,7 +3,6 @@
 use egui::RichText;
 
 use crate::app::App;
-use crate::app::dialogs::typed_path::Purpose;
 use crate::app::jobs::own_shader_job::Replacing;
 use gpu::{LodShader, SurfaceShader};
 
@@ -13,7 +12,6 @@ struct Texts {
     hover: &'static str,
     /// What is shown while no version of the file can be used.
     stays: &'static str,
-    read_again: &'static str,
     close: &'static str,
     close_hover: &'static str,
 }
@@ -22,7 +20,6 @@ const OF_LOD: Texts = Texts {
     label: "LOD shader",
     hover: "Functions of this file compute factors in place of LOD.",
     stays: "LOD stays.",
-    read_again: "Read again",
     close: "Close the shader",
     close_hover: "Closes the LOD shader. LOD computes factors again.",
 };
@@ -31,26 +28,11 @@ const OF_SURFACE: Texts = Texts {
     label: "Shader",
     hover: "A function of this file computes the control points of edges in place of a surface. Left of a split, it doesn't.",
     stays: "The surface stays.",
-    read_again: "Read surface again",
     close: "Close the surface",
     close_hover: "Closes the surface shader. The surface that was chosen before is back.",
 };
 
 impl App {
-    /// Asks for the file with the functions.
-    pub(in crate::app) fn lod_shader_dialog(&mut self, context: &egui::Context) {
-        self.dialog(Purpose::LodShader, context, || {
-            rfd::FileDialog::new().set_title("Choose an LOD shader").add_filter("WGSL", &["wgsl"]).pick_file()
-        });
-    }
-
-    /// Asks for the file with the function for control points.
-    pub(in crate::app) fn surface_shader_dialog(&mut self, context: &egui::Context) {
-        self.dialog(Purpose::SurfaceShader, context, || {
-            rfd::FileDialog::new().set_title("Choose a surface shader").add_filter("WGSL", &["wgsl"]).pick_file()
-        });
-    }
-
     /// The rows of the LOD shader, if it is open. Returns whether it takes the place of LOD, so that nothing of that can be set.
     pub(super) fn lod_shader_rows(&mut self, ui: &mut egui::Ui) -> bool {
         self.shader_rows::<LodShader>(ui, &OF_LOD);
@@ -81,16 +63,8 @@ impl App {
             ui.end_row();
         }
         ui.label("");
-        let hover = "Reads the file again. That happens by itself whenever it changes.";
-        let reads = ui.button(texts.read_again).on_hover_text(hover).clicked();
-        ui.end_row();
-        // The panel is too narrow for both buttons beside each other.
-        ui.label("");
         let closes = ui.button(texts.close).on_hover_text(texts.close_hover).clicked();
         ui.end_row();
-        if reads {
-            self.reload_shader::<S>(ui.ctx());
-        }
         if closes {
             self.forget_shader::<S>();
         }

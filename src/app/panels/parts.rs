@@ -36,9 +36,7 @@ impl App {
             response
         });
         let are_hidden = parts.iter().any(|part| part.is_hidden);
-        let all = ui.add_enabled(are_hidden, egui::Button::new("Show all parts"));
-        let all = all.on_hover_text("Shows the parts that are hidden.").on_disabled_hover_text("No part is hidden.");
-        if all.clicked() {
+        if are_hidden && ui.button("Show all parts").on_hover_text("Shows the parts that are hidden.").clicked() {
             self.hidden = Arc::default();
         }
         if let Some(row) = clicked {
@@ -47,7 +45,6 @@ impl App {
     }
 }
 
-/// Hides a part, or shows it again.
 fn toggle(hidden: &mut Vec<String>, name: &str) {
     match hidden.iter().position(|other| other == name) {
         Some(index) => drop(hidden.remove(index)),

@@ -11,7 +11,6 @@ use geometry::tessellate::{
     triangle_count,
 };
 
-/// An explanation, and the patch that it is about.
 pub(super) struct ShownExplanation<'a> {
     pub topology: &'a Topology,
     pub convention: Convention,

@@ -6,12 +6,11 @@ use super::crack_list::kind_name;
 use super::patch_explanation::ShownExplanation;
 use super::patch_pattern::{pattern_plot, weights_text};
 use super::statistics::EDGE_KINDS;
-use crate::app::App;
-use crate::app::jobs::document::Document;
 use crate::app::jobs::explain_job::EmittedPatch;
 use crate::app::patch_names::{LETTERS, ends_text, letter, mistake};
 use crate::app::text::{factor, short};
 use crate::app::widgets::{SWATCH, dense, swatch, title};
+use crate::app::{App, Document};
 use crate::commands::{Action, with_key};
 use geometry::mesh::{Mesh, Topology, adjacency};
 use geometry::tessellate::factors::{patch_has_rows, patch_is_culled, row_base, row_count, row_flip};
@@ -23,7 +22,6 @@ use inspect::measure::EdgeSide;
 use inspect::render::PickedTriangle;
 use inspect::render::layout::FACTOR_COLORS;
 
-/// What was clicked in the section.
 enum Wish {
     Select(Option<u32>),
     Edge(u32),
@@ -73,7 +71,7 @@ impl App {
                     patch,
                     convention,
                     lod: self.settings.tessellation.used_lod(),
-                    selected_edge: self.viewport.selected_edge,
+                    selected_edge: self.selected_edge(),
                     factors: found.map(|found| found.outlines.factors(patch)),
                     sides: found.and_then(|found| found.outlines.patch(topology, patch)),
                     hit: self.hit().copied(),
@@ -84,8 +82,7 @@ impl App {
                     ui.spacing_mut().item_spacing.y = 3.0;
                     ui.spacing_mut().interact_size.y = 16.0;
                     shown.factor_rows(ui);
-                    let explain = &mut self.jobs.explain;
-                    let explained = question.and_then(|(question, posed)| explain.of(ui.ctx(), &posed, question));
+                    let explained = question.as_ref().and_then(|(question, _)| self.explained(question));
                     let by_error = shown.lod == Lod::Error;
                     if is_of_shader {
                         ui.add(egui::Label::new(NOT_EXPLAINED).wrap());
@@ -99,12 +96,15 @@ impl App {
                     shown.index_rows(ui);
                     shown.hit_rows(ui);
                 });
+                if let Some((question, posed)) = question {
+                    self.explain(ui.ctx(), posed, question);
+                }
             }
         }
         match wish {
             None => {}
             Some(Wish::Select(triangle)) => self.select_triangle(triangle),
-            Some(Wish::Edge(edge)) => self.viewport.selected_edge = Some(edge),
+            Some(Wish::Edge(edge)) => self.select_only_edge(Some(edge)),
             Some(Wish::Frame) => self.frame_patch(),
             Some(Wish::Deselect) => self.deselect(),
         }
@@ -116,8 +116,7 @@ impl App {
         let (document, results) = (self.document.as_ref()?, self.results()?);
         let factors = results.found.outlines.factors(patch);
         let tessellator = &document.scene.tessellator;
-        let (document, tessellation) = results.of;
-        let emitted = EmittedPatch { document, tessellation, patch, inputs: results.seen.inputs, factors };
+        let emitted = EmittedPatch { tessellation: results.of, patch, inputs: results.seen.inputs, factors };
         // What explains a patch computes its surface on the CPU, which doesn't know a shader's.
         let is_known = !self.uses_surface_shader();
         (is_known && !patch_is_culled(factors)).then(|| (emitted, tessellator.posed().clone()))

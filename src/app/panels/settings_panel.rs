@@ -2,6 +2,7 @@
 
 use super::option_rows::{option_hover, option_row};
 use crate::app::App;
+use crate::app::jobs::job_list::Work;
 use crate::app::sections::{Section, scrolling_column};
 use crate::app::text::short;
 use crate::app::widgets::{LABEL_WIDTH, chooser, fixed};
@@ -189,7 +190,7 @@ impl App {
                         ));
                     }
                 }
-                None if document.checks.is_busy() => drop(ui.weak("trying tolerances…")),
+                None if self.jobs.has(Work::Checks) => drop(ui.weak("trying tolerances…")),
                 None => drop(ui.weak("not tried")),
             }
         });
@@ -206,15 +207,6 @@ impl App {
     fn view_rows(&mut self, ui: &mut egui::Ui) {
         if self.settings.split.is_some() {
             option_row(ui, &options::SPLIT_SURFACE, &mut self.settings, "");
-            let mut percent = self.settings.split.unwrap_or(self.viewport.last_split) * 100.0;
-            let label = ui.label(options::SPLIT.label);
-            let slider = egui::Slider::new(&mut percent, 0.0..=100.0).max_decimals(0).suffix(" %");
-            let hover = "The position of the divider, in percent of the view's width from the left (--split).";
-            if ui.add(slider).labelled_by(label.id).on_hover_text(hover).changed() {
-                self.viewport.last_split = percent / 100.0;
-                self.settings.split = Some(self.viewport.last_split);
-            }
-            ui.end_row();
         }
         shown_option_row(ui, &options::CURVATURE_SCALE, &mut self.settings);
         self.matcap_row(ui);
@@ -256,7 +248,6 @@ fn options_of_lods() -> impl Iterator<Item = &'static Declaration> {
     options::TESSELLATION.into_iter().filter(depends_on_lod).filter(|option| option.name != options::FACTOR.name)
 }
 
-/// The keys that raise and lower the factor.
 fn factor_keys() -> String {
     let [up, down] = [Change::FactorUp, Change::FactorDown].map(|change| key_name(&Action::Setting(change)));
     format!("{up} and {down}")

@@ -29,7 +29,6 @@ impl Side {
     ];
 }
 
-/// Where the panels are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Arrangement {
     Hidden,

@@ -3,7 +3,7 @@
 use crate::app::App;
 use crate::app::sections::{Section, scrolling_column};
 use crate::app::text::{grouped, part, short};
-use crate::app::widgets::{fact, number, swatch};
+use crate::app::widgets::{fact, marked, number, swatch};
 use geometry::mesh::EdgeKind;
 use geometry::view::ulp;
 use inspect::measure::{Cracks, Culled, SeamTurns};
@@ -115,13 +115,9 @@ impl App {
             fact(ui, "Factors differ", &count(|cracks| cracks.different_factors), hover);
             let hover = "Points whose normals differ in at least one bit although the normals in the file agree.";
             fact(ui, "Normals differ", &count(|cracks| cracks.different_normals), hover);
-            ui.horizontal(|ui| {
-                swatch(ui, CRACK_COLOR);
-                ui.label("Cracked edges")
-                    .on_hover_text("Edges with a point that differs. The overlay Cracks shows them.");
-            });
-            number(ui, &count(|cracks| cracks.cracked().len() as u64));
-            ui.end_row();
+            let hover = "Edges with a point that differs. The overlay Cracks shows them.";
+            let cracked = count(|cracks| cracks.cracked().len() as u64);
+            marked_fact(ui, CRACK_COLOR, "Cracked edges", &cracked, hover);
             let hover = "The largest distance between two sides' positions of one point, in object units.";
             fact(ui, "Largest gap", &gap(&Cracks::max_gap, "units"), hover);
             let hover = "The same in ULP of the mesh's largest coordinate.";
@@ -129,12 +125,9 @@ impl App {
             let px = results.and_then(|results| results.widest_crack).map_or(0.0, |(_, px)| px);
             let hover = "The gap that is the widest as the camera of LOD sees it.";
             fact(ui, "", &gap(&|_| px, "px"), hover);
-            ui.horizontal(|ui| {
-                swatch(ui, FOLD_COLOR);
-                ui.label("Folds").on_hover_text("Triangles that face away from the side that their patch faces.");
-            });
-            number(ui, &results.map_or_else(|| "…".into(), |results| grouped(results.found.folds)));
-            ui.end_row();
+            let hover = "Triangles that face away from the side that their patch faces.";
+            let folds = results.map_or_else(|| "…".into(), |results| grouped(results.found.folds));
+            marked_fact(ui, FOLD_COLOR, "Folds", &folds, hover);
         });
     }
 
@@ -173,17 +166,19 @@ impl App {
     fn waste_facts(&self, ui: &mut egui::Ui) {
         let Some(document) = &self.document else { return };
         let patches = document.loaded.topology.patches.len() as u64;
-        let unknown = || if self.jobs.measure.is_busy() { "…".to_owned() } else { "-".to_owned() };
+        let unknown = || {
+            if document.right().measure.is_busy() { "…".to_owned() } else { "-".to_owned() }
+        };
         let results = self.results();
         let small = results.map_or_else(unknown, |results| part(results.sizes.small, results.sizes.in_view));
         let low = results.map_or_else(unknown, |results| part(results.found.patches_low.into(), patches));
         egui::Grid::new("waste").num_columns(2).min_col_width(104.0).show(ui, |ui| {
             let hover = "Triangles in view with an area below 4.5 px, half of a square with sides of 3 px, and their share of all \
                          triangles in view.";
-            marked(ui, "Below 3 px", &small, hover);
+            marked_fact(ui, WASTE_COLOR, "Below 3 px", &small, hover);
             let hover = "Patches whose factors are all below 2, and their share of all patches. They could be drawn without \
                          tessellation.";
-            marked(ui, "Below factor 2", &low, hover);
+            marked_fact(ui, WASTE_COLOR, "Below factor 2", &low, hover);
         });
     }
 
@@ -217,13 +212,6 @@ impl App {
                     "Extent of the mesh in object units; over the whole clip, if one is chosen.",
                 );
             }
-            fact(ui, "Loading", &format!("{} ms", short(document.loaded.load_ms)), "Reading the file.");
-            fact(
-                ui,
-                "Topology",
-                &format!("{} ms", short(document.loaded.topology_ms)),
-                "Welding points and finding edges.",
-            );
         });
     }
 
@@ -261,12 +249,9 @@ fn degrees(angle: f64) -> String {
     format!("{angle:.2}°")
 }
 
-/// A row with the colour that marks waste on the mesh.
-fn marked(ui: &mut egui::Ui, name: &str, value: &str, hover: &str) {
-    ui.horizontal(|ui| {
-        swatch(ui, WASTE_COLOR);
-        ui.label(name).on_hover_text(hover);
-    });
+/// A row with the colour that marks it on the mesh.
+fn marked_fact(ui: &mut egui::Ui, color: [u8; 3], name: &str, value: &str, hover: &str) {
+    marked(ui, Some(color), name, hover);
     number(ui, value);
     ui.end_row();
 }

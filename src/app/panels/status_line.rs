@@ -3,6 +3,7 @@
 use egui::RichText;
 
 use crate::app::App;
+use crate::app::jobs::measure_job::MeasureJob;
 use crate::app::text::{counted, grouped, mebibytes, short};
 use crate::app::widgets::{legible, rgb, status, text_width};
 use crate::commands::{Action, key_name};
@@ -22,7 +23,7 @@ impl App {
                 return;
             }
             let Some(document) = &self.document else {
-                let text = if self.jobs.load.is_some() { "" } else { "nothing is open" };
+                let text = if self.jobs.load().is_some() { "" } else { "nothing is open" };
                 ui.weak(text);
                 return;
             };
@@ -116,7 +117,8 @@ impl App {
             "The number of edges whose sides differ in a position, and the widest gap as the camera of LOD sees it.";
         match self.results().map(|results| (results.found.cracks.cracked().len(), results.widest_crack)) {
             None => {
-                let text = match self.jobs.measure.fraction() {
+                let measure = self.document.as_ref().map(|document| &document.right().measure);
+                let text = match measure.and_then(MeasureJob::fraction) {
                     _ if self.is_playing() => "cracks: pause to measure".into(),
                     Some(part) => format!("cracks … {:.0} %", 100.0 * part),
                     _ if self.is_busy() => "cracks …".into(),

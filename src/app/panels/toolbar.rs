@@ -51,7 +51,6 @@ impl App {
         });
     }
 
-    /// The list of what the surface's colours mean.
     fn colors_list(&mut self, ui: &mut egui::Ui) {
         let has_coordinates = self.document.as_ref().is_some_and(|document| document.has_texture_coordinates);
         let colors = &mut self.settings.overlays.colors;

@@ -34,7 +34,6 @@ enum Destination {
     Warnings,
 }
 
-/// A line of the verdict.
 struct Line {
     text: String,
     /// None where all is well: such a line is dim, and leads nowhere.

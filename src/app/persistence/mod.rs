@@ -12,7 +12,7 @@ use egui::ViewportCommand;
 
 use crate::app::App;
 use crate::app::dialogs::Forgetting;
-use crate::app::jobs::background_job::BackgroundJob;
+use crate::app::jobs::job_list::{Jobs, Work};
 use crate::app::sections::OpenSections;
 use gpu::{LodShader, SurfaceShader};
 use inspect::render::Camera;
@@ -39,7 +39,6 @@ pub struct Persistence {
     written: SavedState,
     /// Since when `kept` differs from `written`, on the window's clock in s.
     changed: Option<f64>,
-    writing: Option<BackgroundJob<Result<(), String>>>,
     /// The problem with the file, which is shown only once.
     said: Option<String>,
     /// The path of the file that is open, if it is among the saved ones.
@@ -54,7 +53,6 @@ impl Persistence {
         Self { place, written: kept.clone(), kept, said, ..Self::default() }
     }
 
-    /// The settings that the window opens with.
     pub fn settings(&self) -> &Settings {
         &self.kept.settings
     }
@@ -130,37 +128,34 @@ impl Persistence {
         }
     }
 
-    /// Writes changes once they have been collected for a while. Returns the first failure, as a sentence.
-    fn write_on(&mut self, context: &egui::Context) -> Option<String> {
-        let place = self.place.as_ref()?;
-        if let Some(ended) = self.writing.as_ref().and_then(BackgroundJob::take) {
-            self.writing = None;
-            let failed = ended.unwrap_or_else(|stopped| Err(format!("saving settings {stopped}"))).err();
-            if failed.is_some() && self.said.is_none() {
-                self.said.clone_from(&failed);
-                return failed;
-            }
-        }
+    /// Writes changes once they have been collected for a while. The first failure is shown.
+    fn write_on(&mut self, context: &egui::Context, jobs: &mut Jobs) {
+        let Some(place) = &self.place else { return };
         if self.kept == self.written {
             self.changed = None;
-            return None;
+            return;
         }
         let now = context.input(|input| input.time);
         let since = now - *self.changed.get_or_insert(now);
         if since < REST {
             context.request_repaint_after(std::time::Duration::from_secs_f64(REST - since));
-        } else if self.writing.is_none() {
+        } else if !jobs.has(Work::State) {
             let (place, kept) = (place.clone(), self.kept.clone());
             self.written = kept.clone();
-            self.writing = Some(BackgroundJob::start(context, move || state_file::write(&place, &kept)));
+            let write = move |_: &_| state_file::write(&place, &kept);
+            jobs.start(context, Work::State, String::new(), write, |app, _, ended| {
+                let failed = ended.unwrap_or_else(|stopped| Err(format!("saving settings {stopped}"))).err();
+                if failed.is_some() && app.persistence.said.is_none() {
+                    app.persistence.said.clone_from(&failed);
+                    app.dialogs.error = app.dialogs.error.take().or(failed);
+                }
+            });
         }
-        None
     }
 
     /// Goes on in another window, which has another clock.
-    pub(in crate::app) fn go_on_in(&mut self, context: &egui::Context) {
+    pub(in crate::app) fn move_to_another_window(&mut self) {
         self.changed = None;
-        self.writing = self.writing.take().map(|writing| writing.waking(context));
     }
 
     /// Writes all changes that aren't written yet.
@@ -169,9 +164,6 @@ impl Persistence {
     /// Why the file can't be written, as a sentence.
     fn finish(&mut self) -> Result<(), String> {
         let Some(place) = &self.place else { return Ok(()) };
-        if let Some(writing) = self.writing.take() {
-            writing.wait();
-        }
         if self.kept == self.written {
             return Ok(());
         }
@@ -227,7 +219,7 @@ impl App {
         self.dialogs.error = lasting.said.take().or(self.dialogs.error.take());
         self.persistence = lasting;
         // The mesh that is being opened may have been turned or scaled before.
-        let opening = self.jobs.load.as_ref().filter(|load| !load.keep_view);
+        let opening = self.jobs.load().filter(|load| !load.keep_view);
         let opening = opening.map(|load| (load.source.clone(), load.preparation.import));
         let is_otherwise =
             |(source, import): &(Source, Import)| self.persistence.import_of(source, &self.settings) != *import;
@@ -265,12 +257,12 @@ impl App {
         let placement = placement.unwrap_or_default();
         let settings = self.settings_without_files();
         self.persistence.take(context, &settings, self.panels.open, files, placement, seen);
-        let failed = self.persistence.write_on(context);
-        self.dialogs.error = self.dialogs.error.take().or(failed);
+        self.persistence.write_on(context, &mut self.jobs);
     }
 
     /// Writes the last changes when the window is closed.
     pub(in crate::app) fn keep_for_good(&mut self) -> Result<(), String> {
+        self.jobs.wait_for(Work::State);
         self.persistence.finish()
     }
 

@@ -29,7 +29,6 @@ const SAME_SIZE: RangeInclusive<f32> = 0.5..=2.0;
 const THEMES: [(ThemePreference, &str); 3] =
     [(ThemePreference::System, "system"), (ThemePreference::Light, "light"), (ThemePreference::Dark, "dark")];
 
-/// Everything that is saved.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct SavedState {
     /// Without displacement, axis and unit, which depend on the mesh.
@@ -56,7 +55,6 @@ pub struct WindowGeometry {
     pub zoom: f32,
 }
 
-/// A file that was open.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct SavedFile {
     /// The absolute path.
@@ -165,7 +163,6 @@ impl SavedState {
     }
 }
 
-/// Reads an absolute path.
 fn absolute(value: &Value) -> Option<String> {
     value.as_str().filter(|path| Path::new(path).is_absolute()).map(str::to_owned)
 }

@@ -19,7 +19,6 @@ const LEAST_PICTURE: Vec2 = vec2(230.0, 200.0);
 /// What the title of a split's right half takes at most, in points: it stands between the divider and the axes, or above them.
 const TITLE: Vec2 = vec2(110.0, 26.0);
 
-/// An end of an axis.
 struct End {
     standpoint: Standpoint,
     /// 0 x, 1 y, 2 z.

@@ -6,6 +6,7 @@ use crate::app::App;
 use crate::commands::{CameraAction, Direction};
 use geometry::mesh::Moment;
 use inspect::render::Camera;
+use inspect::settings::SplitSide;
 
 /// Degrees that the camera turns at a press of an arrow key.
 const DEGREES_PER_KEY: f32 = 7.5;
@@ -48,7 +49,6 @@ impl App {
         }
     }
 
-    /// The names of the file's cameras.
     pub(in crate::app) fn file_camera_names(&self) -> Vec<String> {
         let cameras = self.document.as_ref().map(|document| &document.loaded.mesh.cameras);
         cameras.into_iter().flatten().map(|camera| camera.name.clone()).collect()
@@ -91,7 +91,7 @@ impl App {
 
     /// Whether nothing of the mesh is to be seen in the picture, as far as that is measured.
     pub(in crate::app) fn shows_nothing(&self) -> bool {
-        let sizes = self.results().filter(|_| self.jobs.measure.found().is_some()).map(|results| &results.sizes);
+        let sizes = self.results().filter(|_| self.found(SplitSide::Right).is_some()).map(|results| &results.sizes);
         sizes.is_some_and(|sizes| Some(sizes.view) == self.viewport.picture.seen_from() && sizes.show_nothing())
     }
 
@@ -106,7 +106,7 @@ impl App {
         if self.viewport.opened == Some(self.viewport.camera) && self.shows_nothing() {
             self.frame_anew();
         }
-        if self.jobs.measure.found().is_some() {
+        if self.found(SplitSide::Right).is_some() {
             self.viewport.opened = None;
         }
     }

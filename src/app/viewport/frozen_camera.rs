@@ -12,7 +12,6 @@ use geometry::view::ScreenView;
 use inspect::render::{Camera, LineSegment, lod_camera_lines};
 use inspect::settings::Settings;
 
-/// A camera as it was when LOD was frozen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FrozenCamera {
     pub camera: Camera,

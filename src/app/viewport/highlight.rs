@@ -3,8 +3,7 @@
 use super::frozen_camera::FrozenCamera;
 use super::ruler::Ruler;
 use super::selection::Outlined;
-use crate::app::App;
-use crate::app::jobs::document::Document;
+use crate::app::{App, Document};
 use geometry::mesh::{Bounds, Moment, Topology};
 use inspect::render::{LineSegment, axis_lines, crack_lines, t_junction_lines};
 use inspect::settings::SplitSide;
@@ -12,7 +11,6 @@ use inspect::settings::SplitSide;
 /// Everything that the lines over the mesh depend on.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Highlight {
-    document: u64,
     /// The number of each half's measurement.
     measured: [u64; 2],
     /// The number of the scene in the left half; 0 for none.
@@ -38,32 +36,31 @@ impl App {
         let Some(document) = &self.document else { return };
         let overlays = self.settings.overlays;
         let junctions = document.checks.t_junctions().filter(|_| overlays.t_junctions);
-        let is_selected = self.viewport.selected_edge.is_some() || self.selected_triangle().is_some();
+        let is_selected = self.selected_edge().is_some() || self.selected_triangle().is_some();
         let is_marked = junctions.is_some() || is_selected;
         let posed = if is_marked { document.posed() } else { None };
-        let measured = |half| if overlays.cracks || is_selected { self.measured(half).generation } else { 0 };
+        let shows_measured = overlays.cracks || is_selected;
         let wanted = Highlight {
-            document: document.generation,
-            measured: SplitSide::BOTH.map(measured),
-            left: document.scene.half(SplitSide::Left).map_or(0, |_| self.viewport.left.made),
+            measured: document.halves.each_ref().map(|half| if shows_measured { half.measure.generation } else { 0 }),
+            left: document.scene.half(SplitSide::Left).map_or(0, |_| document.left_made),
             axes: overlays.grid.then_some(document.scene.bounds),
             cracks: overlays.cracks,
             t_junctions: junctions.is_some(),
-            selected_edge: self.viewport.selected_edge,
+            selected_edge: self.selected_edge(),
             outlined: self.outlined(),
             worst: self.worst_marked(),
             ruler: self.viewport.ruler,
             frozen: self.frozen_shown(),
             moment: document.moment.filter(|_| is_marked).map(|moment| (moment, posed.is_some())),
-            generation: self.viewport.highlight.map_or(0, |marked| marked.generation),
+            generation: document.highlight.map_or(0, |marked| marked.generation),
         };
-        if self.viewport.highlight == Some(wanted) {
+        if document.highlight == Some(wanted) {
             return;
         }
         let lines =
             SplitSide::BOTH.map(|half| self.marks(half, document, posed.as_ref().map(|(_, topology)| &**topology)));
-        self.viewport.highlight = Some(Highlight { generation: wanted.generation + 1, ..wanted });
         if let Some(document) = &mut self.document {
+            document.highlight = Some(Highlight { generation: wanted.generation + 1, ..wanted });
             for (half, lines) in SplitSide::BOTH.into_iter().zip(lines) {
                 if let Some(scene) = document.scene.half_mut(half) {
                     scene.set_lines(&self.engine.gpu, &lines);
@@ -79,7 +76,7 @@ impl App {
         if let Some((topology, junctions)) = posed.zip(document.checks.t_junctions()).filter(|_| overlays.t_junctions) {
             lines.extend(t_junction_lines(topology, junctions));
         }
-        if let Some(found) = self.measured(half).found().filter(|_| overlays.cracks) {
+        if let Some(found) = self.found(half).filter(|_| overlays.cracks) {
             lines.extend(crack_lines(found, &document.loaded.topology));
         }
         lines.extend(self.worst_mark(half));

@@ -3,14 +3,14 @@
 mod axis_gizmo;
 mod camera;
 mod frozen_camera;
-mod highlight;
-pub(super) mod left_half;
+pub(super) mod highlight;
+mod left_half;
 pub(super) mod legend;
 pub(super) mod pace;
 pub(super) mod panel;
 mod patch_labels;
 pub(super) mod picture;
-mod place;
+pub(super) mod place;
 pub(super) mod playback;
 pub(super) mod preview;
 mod preview_pace;
@@ -23,18 +23,14 @@ use inspect::render::Camera;
 
 use camera::FollowedCamera;
 use frozen_camera::FrozenCamera;
-use highlight::Highlight;
-use left_half::LeftHalf;
+use legend::PaintedLegend;
 use pace::Pace;
 use picture::Picture;
-use place::Showing;
 use playback::Playback;
 use preview::Preview;
 use ruler::Ruler;
-use selection::Selection;
 use warm_up::WarmUp;
 
-/// What the viewport shows, and from where.
 pub(super) struct Viewport {
     /// Where it was in the last frame, in points.
     pub rect: egui::Rect,
@@ -54,20 +50,15 @@ pub(super) struct Viewport {
     /// Whether a line of help is over the picture: at a first start, until anything is done.
     pub greets: bool,
     pub picture: Picture,
+    pub legend: Option<PaintedLegend>,
     pub pace: Pace,
     pub preview: Preview,
     pub warm_up: WarmUp,
     pub playback: Playback,
-    pub left: LeftHalf,
-    /// What the lines over the mesh were last made from.
-    pub highlight: Option<Highlight>,
-    pub selection: Selection,
-    /// The place that is about to be shown.
-    pub showing: Option<Showing>,
+    /// Whether a list or a menu was open when a button of the pointer was pressed last.
+    pub closes_list: bool,
     /// Measures distances between places that are clicked on, while it is in use.
     pub ruler: Option<Ruler>,
-    /// The selected edge: an index into the edges of the topology that is shown.
-    pub selected_edge: Option<u32>,
 }
 
 impl Viewport {
@@ -83,16 +74,13 @@ impl Viewport {
             last_split: 0.5,
             greets: false,
             picture: Picture::new(engine),
+            legend: None,
             pace: Pace::default(),
             preview: Preview::new(engine),
             warm_up: WarmUp::default(),
             playback: Playback::default(),
-            left: LeftHalf::default(),
-            highlight: None,
-            selection: Selection::default(),
-            showing: None,
+            closes_list: false,
             ruler: None,
-            selected_edge: None,
         }
     }
 }

@@ -6,12 +6,12 @@ use egui::{PointerButton, Sense};
 use glam::{Vec2, vec2};
 
 use super::axis_gizmo::axes_place;
-use super::legend::legend;
 use super::picture::Wanted;
-use crate::app::App;
+use crate::app::jobs::job_list::Work;
 use crate::app::jobs::measure_job::{Seen, Trouble};
 use crate::app::text::counted;
 use crate::app::widgets::rgb;
+use crate::app::{App, Document};
 use crate::commands::{Action, CameraAction, key_name, with_key};
 use geometry::view::ScreenView;
 use gpu::GpuError;
@@ -95,9 +95,7 @@ impl App {
         self.greeting(ui, rect);
         self.corner_notes(ui, rect);
         self.axis_gizmo(ui, rect);
-        if let Some(document) = &self.document {
-            legend(ui, rect, &self.settings, document.scene.bounds.radius(), &self.legend_distances());
-        }
+        self.legend(ui, rect);
     }
 
     /// Goes on with drawing and all measurements.
@@ -121,9 +119,10 @@ impl App {
             self.viewport.picture.refuse(&mut document.scene, &wanted);
             return Err(problem.into());
         }
-        self.jobs.measure.keep_only(document.generation, document.scene.tessellator.generation());
-        if let Some(left) = document.scene.half(SplitSide::Left) {
-            self.viewport.left.measuring.keep_only(document.generation, left.tessellator.generation());
+        for half in SplitSide::BOTH {
+            if let Some(scene) = document.scene.half(half) {
+                document.halves[half as usize].measure.keep_only(scene.tessellator.generation());
+            }
         }
         let shown = is_whole && self.viewport.picture.drawn.as_ref() == Some(&wanted);
         self.viewport.picture.outdated = !shown && self.viewport.picture.cancelled.is_none();
@@ -134,7 +133,7 @@ impl App {
         self.go_on_showing(shown)?;
         self.deviate(&wanted.inputs)?;
         if let Err(problem) = self.engine.gpu.check() {
-            self.give_up_measuring();
+            self.document.iter_mut().for_each(Document::give_up_measuring);
             return Err(problem.into());
         }
         self.ask_for_next_frame(context)?;
@@ -145,11 +144,8 @@ impl App {
     /// Returns what the picture is to show, and whether all that it needs is there; none without a mesh.
     fn wanted(&mut self, context: &egui::Context, size: [u32; 2]) -> Result<Option<(Wanted, bool)>, Trouble> {
         let (deviation, moment) = (self.deviation_shown(), self.moment());
-        let (given, matcap) = (self.give_factors()?, self.give_matcap());
-        let surface_shader = self.give_surface_shader()?;
-        let has_given = given == self.given_wanted() && surface_shader == self.surface_shader_wanted();
-        let environment = self.give_environment();
-        let has_light = environment == self.environment_wanted();
+        self.give_from_files()?;
+        let from_files = self.from_files();
         let settings = self.settings_in(context.theme());
         let Some(document) = &self.document else { return Ok(None) };
         let viewport = vec2(size[0] as f32, size[1] as f32);
@@ -159,19 +155,16 @@ impl App {
         let wanted = Wanted {
             document: document.generation,
             moment: document.moment,
-            lines: self.viewport.highlight.map_or(0, |marked| marked.generation),
+            lines: document.highlight.map_or(0, |marked| marked.generation),
             deviation,
-            given,
-            surface_shader,
-            matcap,
-            environment,
+            from_files: document.from_files,
             camera,
             settings,
             inputs: settings.inputs(view),
             clip_from_object: camera.clip_from_object(viewport, &document.scene.bounds),
             viewport,
         };
-        Ok(Some((wanted, has_light && has_given && document.moment == moment)))
+        Ok(Some((wanted, document.from_files == from_files && document.moment == moment)))
     }
 
     /// Measures what is shown, if it is at rest.
@@ -191,27 +184,19 @@ impl App {
             None => (wanted.camera, view),
         };
         let measured = Seen { camera, view: counted_in, inputs: wanted.inputs };
-        self.jobs.measure.go_on(&self.engine.gpu, &mut document.scene, document.generation, &measured)?;
+        let right = &mut document.halves[SplitSide::Right as usize];
+        right.measure.go_on(&self.engine.gpu, &mut document.scene, &measured)?;
         self.measure_left(&measured)?;
         self.count_leaks(context, counted_in)?;
         self.compare_outlines(context, &wanted.settings.tessellation, &silhouette, view)?;
         Ok(())
     }
 
-    fn give_up_measuring(&mut self) {
-        self.jobs.measure.give_up();
-        self.jobs.leaks.give_up();
-        self.jobs.silhouette.give_up();
-        self.viewport.left.measuring.give_up();
-        self.jobs.deviation.give_up();
-        self.viewport.left.deviating.give_up();
-    }
-
     /// Asks for the next frame, if anything is under way.
     fn ask_for_next_frame(&mut self, context: &egui::Context) -> Result<(), Trouble> {
-        let measures =
-            self.jobs.deviation.is_busy() || self.viewport.left.deviating.is_busy() || !self.viewport.left.is_made();
-        let copies = self.jobs.measure.is_busy() || self.viewport.left.measuring.is_busy();
+        let mut halves = self.document.iter().flat_map(|document| &document.halves);
+        let measures = halves.clone().any(|half| half.deviation.is_busy()) || self.jobs.has(Work::LeftHalf);
+        let copies = halves.any(|half| half.measure.is_busy());
         let measures_only = measures && self.viewport.picture.is_free() && !copies;
         if self.pick()? || (self.is_busy() && !measures_only) {
             context.request_repaint();
@@ -316,7 +301,7 @@ impl App {
     fn is_untouched(&self) -> bool {
         let is_vase = self.source().is_none_or(|source| *source == Source::Vase);
         let is_framed = self.viewport.framed.is_none_or(|framed| framed == self.viewport.camera);
-        let is_selected = self.viewport.selected_edge.is_some() || self.selected_triangle().is_some();
+        let is_selected = self.selected_edge().is_some() || self.selected_triangle().is_some();
         is_vase && is_framed && !is_selected && self.settings == Settings::greeting()
     }
 
@@ -353,7 +338,7 @@ impl App {
     /// The line of help at a first start, at the lower border of the picture. It leaves that place to the progress of a load.
     fn greeting(&mut self, ui: &egui::Ui, rect: egui::Rect) {
         self.viewport.greets &= self.is_untouched();
-        if !self.viewport.greets || self.jobs.load.is_some() {
+        if !self.viewport.greets || self.jobs.load().is_some() {
             return;
         }
         let position = rect.center_bottom() + egui::vec2(0.0, -14.0);
@@ -375,7 +360,7 @@ impl App {
         let is_old = self.document.as_ref().map(|document| document.generation)
             != self.viewport.picture.drawn.as_ref().map(|drawn| drawn.document);
         let is_cancelled = self.viewport.picture.cancelled.is_some();
-        if self.document.is_some() && !is_cancelled && (is_old || self.viewport.left.takes_long()) {
+        if self.document.is_some() && !is_cancelled && (is_old || self.left_takes_long()) {
             note(ui, rect.center_top() + egui::vec2(0.0, 40.0), egui::Align2::CENTER_TOP, "Tessellating…");
         }
         if let Some(under_way) = self.under_way() {

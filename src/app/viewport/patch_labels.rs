@@ -77,7 +77,9 @@ impl App {
 
     /// Factor `i` of a patch as LOD gave it, and the number of segments.
     fn factor_text(&self, patch: u32, i: u32) -> String {
-        let (Some(document), Some(found)) = (&self.document, self.jobs.measure.found()) else { return " = …".into() };
+        let (Some(document), Some(found)) = (&self.document, self.found(SplitSide::Right)) else {
+            return " = …".into();
+        };
         let Some(sides) = found.outlines.patch(&document.loaded.topology, patch) else { return String::new() };
         let asked = sides[factor_side(self.convention(), i) as usize].factor;
         let cut = segments(found.outlines.factors(patch).outside[i as usize]);

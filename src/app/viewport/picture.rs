@@ -7,6 +7,7 @@ use glam::{Mat4, Vec2, vec2};
 
 use super::pace::next_steps;
 use crate::app::Document;
+use crate::app::jobs::given::FromFiles;
 use crate::app::painting::{Painting, ShownPicture};
 use geometry::mesh::Moment;
 use geometry::tessellate::{Inputs, Tessellation};
@@ -24,14 +25,7 @@ pub(crate) struct Wanted {
     pub lines: u64,
     /// The number of the deviation result that is shown.
     pub deviation: u64,
-    /// The number of the factors of a file; 0 for those of LOD.
-    pub given: u64,
-    /// The number of the function that gives control points; 0 for the surface's own.
-    pub surface_shader: u64,
-    /// The number of the picture of a lit sphere; 0 for those that are made in code.
-    pub matcap: u64,
-    /// The number of the file whose light it has; 0 for none.
-    pub environment: u64,
+    pub from_files: FromFiles,
     pub camera: Camera,
     pub settings: Settings,
     pub inputs: Inputs,
@@ -80,7 +74,6 @@ impl Drawing {
 /// Pictures of output that fills the arena up to so many times are short.
 const SHORT: usize = 8;
 
-/// The picture and what it cost.
 pub(crate) struct Picture {
     pub target: Option<(Target, ShownPicture)>,
     /// The last picture, of another size. It is shown stretched until the first one of the new size is drawn.
@@ -92,7 +85,6 @@ pub(crate) struct Picture {
     counting: Option<Wanted>,
     /// The picture that is being drawn, step by step.
     pub drawing: Option<Drawing>,
-    /// The picture whose drawing was cancelled.
     pub cancelled: Option<Wanted>,
     /// Whether the picture shown is not the one wanted.
     pub outdated: bool,
@@ -186,7 +178,6 @@ impl Picture {
         Some((half, Pixel { split: None, ..pixel }))
     }
 
-    /// The view of the picture that is shown.
     pub(crate) fn seen_from(&self) -> Option<ScreenView> {
         let Wanted { clip_from_object, viewport, .. } = self.drawn?;
         Some(ScreenView { clip_from_object, viewport })
@@ -334,7 +325,7 @@ impl Picture {
             (drawn.document, drawn.moment, drawn.camera) == (wanted.document, wanted.moment, wanted.camera)
         };
         // Nothing may be measured of a surface shader.
-        let shows = wanted.settings.overlays.colors == Colors::Deviation && wanted.surface_shader == 0;
+        let shows = wanted.settings.overlays.colors == Colors::Deviation && wanted.from_files.surface == 0;
         let mut halves =
             SplitSide::BOTH.into_iter().filter_map(|half| wanted.settings.half(half).and(scene.half(half)));
         let is_known = halves.all(Scene::knows_deviation);

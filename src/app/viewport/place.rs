@@ -32,7 +32,9 @@ impl App {
         if !patch.and_then(factors).is_some_and(patch_is_culled) {
             self.keep_measured();
         }
-        self.viewport.showing = Some(Showing { half, standpoints, patch, walk: None });
+        if let Some(document) = &mut self.document {
+            document.showing = Some(Showing { half, standpoints, patch, walk: None });
+        }
     }
 
     /// Goes on with finding out what hides the place that is about to be shown. `is_drawn` says whether the picture is complete.
@@ -40,8 +42,9 @@ impl App {
     /// # Errors
     /// The device was lost, or the thread that follows the lines of sight panicked.
     pub(in crate::app) fn go_on_showing(&mut self, is_drawn: bool) -> Result<(), Trouble> {
-        let Some(showing) = &mut self.viewport.showing else { return Ok(()) };
-        let scene = self.document.as_mut().and_then(|document| document.scene.half_mut(showing.half));
+        let Some(document) = &mut self.document else { return Ok(()) };
+        let Some(showing) = &mut document.showing else { return Ok(()) };
+        let scene = document.scene.half_mut(showing.half);
         // What is never drawn hides nothing.
         let waits = self.viewport.picture.cancelled.is_none() && !self.viewport.playback.is_playing();
         let (true, Some(scene)) = (waits, scene) else {
@@ -76,7 +79,8 @@ impl App {
 
     /// Turns the camera to the place. `clear` has the part of each line of sight that is clear, if that is known.
     fn look(&mut self, clear: &[f64]) {
-        let Some(Showing { half, standpoints, .. }) = self.viewport.showing.take() else { return };
+        let showing = self.document.as_mut().and_then(|document| document.showing.take());
+        let Some(Showing { half, standpoints, .. }) = showing else { return };
         let size = self.viewport.picture.size();
         self.viewport.camera = beside(standpoints.clearest(clear), self.settings.split, half, size);
     }

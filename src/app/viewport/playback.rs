@@ -58,7 +58,6 @@ impl App {
         self.viewport.playback.is_playing()
     }
 
-    /// The clips of the mesh that is open.
     fn clips(&self) -> &[Clip] {
         let rig = self.document.as_ref().and_then(|document| document.loaded.mesh.rig.as_deref());
         rig.map_or(&[], |rig| &rig.clips)

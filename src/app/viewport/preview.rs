@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 
 use super::picture::{Picture, Wanted};
 use super::preview_pace::PreviewPace;
-use crate::app::App;
-use crate::app::jobs::document::Document;
+use crate::app::jobs::job_list::Jobs;
 use crate::app::painting::{Painting, ShownPicture};
+use crate::app::{App, Document};
 use geometry::tessellate::{Clip, Inputs, Lod, Tessellation};
 use geometry::view::ScreenView;
 use gpu::{GpuError, Recorder, Timing};
@@ -47,7 +47,6 @@ pub(crate) enum Shape {
     StandIn,
 }
 
-/// What is known of the preview, and its target.
 pub(crate) struct Preview {
     /// Whether there are previews at all. Somebody who judges LOD in motion switches them off.
     pub is_on: bool,
@@ -116,7 +115,6 @@ impl Preview {
         self.drawn.as_ref().filter(|(drawn, _)| Some(drawn.camera) != full).map(|(drawn, shape)| (drawn, *shape))
     }
 
-    /// The preview that was drawn last.
     pub(crate) fn picture(&self) -> Option<&ShownPicture> {
         self.target.as_ref().map(|(_, shown)| shown)
     }
@@ -221,9 +219,10 @@ pub(super) fn count(engine: &Engine, scene: &mut Scene, wanted: &Wanted) -> Resu
 
 /// Decides what a preview of the wanted picture draws.
 fn shape_of(
+    jobs: &mut Jobs,
     context: &egui::Context,
     engine: &Engine,
-    document: &mut Document,
+    document: &Document,
     wanted: &Wanted,
     is_frozen: bool,
 ) -> Shape {
@@ -237,12 +236,12 @@ fn shape_of(
         _ => tessellator.totals().1 as f32,
     };
     // Factors of a file stay as they are, however many triangles they ask for.
-    if !follows && (triangles <= kept || wanted.given != 0) {
+    if !follows && (triangles <= kept || wanted.from_files.factors != 0) {
         return Shape::Same;
     }
     if patches > LARGE * most
         && document.moment.is_none()
-        && document.stand_in.is_made(context, engine, &document.loaded, (LARGE * most) as usize)
+        && document.stand_in.is_made(jobs, context, engine, &document.loaded, (LARGE * most) as usize)
     {
         return Shape::StandIn;
     }
@@ -250,7 +249,6 @@ fn shape_of(
     Shape::Factor((most / patches.max(1.0)).sqrt().floor().clamp(1.0, largest.max(1.0)))
 }
 
-/// The settings under which a preview is drawn.
 fn settings_of(shape: Shape, settings: &Settings) -> Settings {
     let mut cheap = *settings;
     // Both need data that is computed for what is emitted.
@@ -293,7 +291,11 @@ impl App {
         let preview = &mut self.viewport.preview;
         preview.land();
         preview.fit(&self.painting, &self.engine, full.viewport)?;
-        let light = self.environment.as_ref().filter(|_| full.environment > 0).map(|open| open.environment.clone());
+        let light = self
+            .environment
+            .as_ref()
+            .filter(|_| full.from_files.light > 0)
+            .map(|open| open.content.environment.clone());
         let scene = match (shape, document.stand_in.scene()) {
             (Shape::StandIn, Some(stand_in)) => {
                 stand_in.matcap.clone_from(&document.scene.matcap);
@@ -316,8 +318,8 @@ impl App {
 
     /// What a preview of the wanted picture draws; none before a mesh is open.
     pub(super) fn cheaper_picture(&mut self, context: &egui::Context, full: &Wanted) -> Option<(Wanted, Shape)> {
-        let document = self.document.as_mut()?;
-        let shape = shape_of(context, &self.engine, document, full, self.viewport.frozen.is_some());
+        let document = self.document.as_ref()?;
+        let shape = shape_of(&mut self.jobs, context, &self.engine, document, full, self.viewport.frozen.is_some());
         let settings = settings_of(shape, &full.settings);
         let inputs = Inputs::new(&settings.tessellation, full.inputs.view);
         Some((Wanted { settings, inputs, ..*full }, shape))

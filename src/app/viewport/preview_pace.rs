@@ -26,7 +26,6 @@ pub(super) struct PreviewPace {
 }
 
 impl PreviewPace {
-    /// Whether the device has finished all previews.
     pub(super) fn is_idle(&self) -> bool {
         self.in_flight.is_empty()
     }

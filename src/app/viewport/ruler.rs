@@ -8,7 +8,6 @@ use geometry::view::{ScreenView, seen_on_plane};
 use inspect::render::layout::OUTLINE_COLOR;
 use inspect::render::{LineSegment, Picked, Pixel};
 
-/// The ruler while it is in use.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Ruler {
     /// The places that were clicked on, in object units. The second is none without the first.

@@ -12,15 +12,15 @@ use inspect::measure::{patch_edges, patch_facing, patch_width};
 use inspect::render::{LineSegment, Picked, PickedTriangle, Picking, Pixel, patch_lines};
 use inspect::settings::SplitSide;
 
-/// The selected triangle, and a click that is still being answered. The selected edge is [`App::selected_edge`].
+/// The selected triangle and edge, and a click that is still being answered.
 #[derive(Default)]
 pub(crate) struct Selection {
     /// Index into the mesh's triangles.
     triangle: Option<u32>,
+    /// Index into the edges of the topology that is shown.
+    pub edge: Option<u32>,
     /// The emitted triangle that was clicked on, and its tessellation's number.
     hit: Option<(u64, PickedTriangle)>,
-    /// Whether a list or a menu was open when a button of the pointer was pressed last.
-    closes_list: bool,
     /// A click on a picture whose tessellation isn't known yet.
     clicked: Option<(SplitSide, Pixel)>,
     /// The search for the triangle under a click, its tessellation's number (none for the left half's), and where the click was.
@@ -36,9 +36,9 @@ pub(crate) struct Outlined {
 }
 
 impl Selection {
-    /// Keeps the selected triangle, and forgets everything about the tessellation.
+    /// Keeps what is selected, and forgets everything about the tessellation.
     pub(crate) fn forget_tessellation(&mut self) {
-        *self = Self { triangle: self.triangle, ..Self::default() };
+        *self = Self { triangle: self.triangle, edge: self.edge, ..Self::default() };
     }
 
     /// Whether a click is still being answered.
@@ -50,40 +50,44 @@ impl Selection {
 impl App {
     /// The selected triangle: an index into the mesh's triangles.
     pub fn selected_triangle(&self) -> Option<u32> {
-        self.viewport.selection.triangle
+        self.document.as_ref()?.selection.triangle
     }
 
     /// The emitted triangle that was clicked on, until the tessellation changes.
     pub fn hit(&self) -> Option<&PickedTriangle> {
         let emitted = self.document.as_ref()?.scene.tessellator.generation();
-        self.viewport.selection.hit.as_ref().filter(|(of, _)| *of == emitted).map(|(_, triangle)| triangle)
+        self.document.as_ref()?.selection.hit.as_ref().filter(|(of, _)| *of == emitted).map(|(_, triangle)| triangle)
     }
 
-    /// The patch of the selected triangle.
     pub(in crate::app) fn selected_patch(&self) -> Option<u32> {
-        self.document.as_ref()?.loaded.topology.patch_of(self.viewport.selection.triangle?)
+        self.document.as_ref()?.loaded.topology.patch_of(self.selected_triangle()?)
     }
 
-    /// The convention of factors and weights.
     pub(in crate::app) fn convention(&self) -> Convention {
         self.settings.tessellation.convention
     }
 
     /// Selects a triangle. The selected edge stays if it is one of its edges.
     pub fn select_triangle(&mut self, triangle: Option<u32>) {
-        let Some(document) = &self.document else { return };
+        let Some(document) = &mut self.document else { return };
         let triangle = triangle.filter(|&triangle| (triangle as usize) < document.loaded.mesh.triangles.len());
-        self.viewport.selection = Selection { triangle, ..Selection::default() };
-        if self.viewport.selected_edge.is_some_and(|edge| !self.patch_has(edge)) {
-            self.viewport.selected_edge = None;
+        document.selection = Selection { triangle, edge: document.selection.edge, ..Selection::default() };
+        if self.selected_edge().is_some_and(|edge| !self.patch_has(edge)) {
+            self.select_only_edge(None);
         }
     }
 
-    /// Deselects the triangle, unless `edge` is one of its edges.
-    pub(in crate::app) fn keep_triangle_of(&mut self, edge: u32) {
+    /// Selects an edge or none. The selected triangle stays.
+    pub(in crate::app) fn select_only_edge(&mut self, edge: Option<u32>) {
+        self.document.iter_mut().for_each(|document| document.selection.edge = edge);
+    }
+
+    /// Selects an edge. The selected triangle stays if it is one of its edges.
+    pub(in crate::app) fn select_edge_alone(&mut self, edge: u32) {
         if !self.patch_has(edge) {
-            self.viewport.selection = Selection::default();
+            self.deselect();
         }
+        self.select_only_edge(Some(edge));
     }
 
     /// Whether it is an edge of the selected patch.
@@ -93,29 +97,24 @@ impl App {
         topology.patches[patch as usize].sides.iter().any(|&side| topology.sides[side as usize].edge == edge)
     }
 
-    /// Deselects the triangle and the edge.
     pub(in crate::app) fn deselect(&mut self) {
-        self.viewport.selection = Selection::default();
-        self.viewport.selected_edge = None;
+        self.document.iter_mut().for_each(|document| document.selection = Selection::default());
     }
 
     /// Notes whether the pointer is pressed while a list is open: such a click only closes the list. Must come before the lists are
     /// shown, since they close themselves.
     pub(in crate::app) fn note_press(&mut self, context: &egui::Context) {
         if context.input(|input| input.pointer.any_pressed()) {
-            self.viewport.selection.closes_list = egui::Popup::is_any_open(context);
+            self.viewport.closes_list = egui::Popup::is_any_open(context);
         }
     }
 
     /// Starts to answer a click on the picture.
     pub(in crate::app) fn click(&mut self, response: &Response, pixels_per_point: f32) {
         let Some(pointer) = response.interact_pointer_pos().filter(|_| response.clicked()) else { return };
-        if self.viewport.selection.closes_list {
-            return;
-        }
+        let Some(document) = self.document.as_mut().filter(|_| !self.viewport.closes_list) else { return };
         let place = (pointer - response.rect.min) * pixels_per_point;
-        self.viewport.selection.clicked =
-            self.viewport.picture.pixel([place.x.max(0.0) as u32, place.y.max(0.0) as u32]);
+        document.selection.clicked = self.viewport.picture.pixel([place.x.max(0.0) as u32, place.y.max(0.0) as u32]);
     }
 
     /// Searches for what was clicked on, on the device. Returns true once the result is taken.
@@ -125,7 +124,7 @@ impl App {
     pub(in crate::app) fn pick(&mut self) -> Result<bool, GpuError> {
         let Some(document) = &mut self.document else { return Ok(false) };
         if document.scene.tessellator.is_counted()
-            && let Some((half, pixel)) = self.viewport.selection.clicked.take()
+            && let Some((half, pixel)) = document.selection.clicked.take()
             && let Some(scene) = document.scene.half_mut(half)
         {
             // Picking in a tessellation of many chunks would take as long as drawing it, so its emitted triangles are left out.
@@ -134,11 +133,11 @@ impl App {
             let pixel = Pixel { split, ..pixel };
             let picking = self.engine.picker.start(&self.engine.gpu, scene, &pixel)?;
             let emitted = (half == SplitSide::Right).then(|| scene.tessellator.generation());
-            self.viewport.selection.picking = Some((emitted, pixel, picking));
+            document.selection.picking = Some((emitted, pixel, picking));
         }
-        let Some((emitted, pixel, mut picking)) = self.viewport.selection.picking.take() else { return Ok(false) };
+        let Some((emitted, pixel, mut picking)) = document.selection.picking.take() else { return Ok(false) };
         let Some(found) = picking.poll()? else {
-            self.viewport.selection.picking = Some((emitted, pixel, picking));
+            document.selection.picking = Some((emitted, pixel, picking));
             return Ok(false);
         };
         if !self.measure_to(&pixel, found.as_ref()) {
@@ -148,17 +147,16 @@ impl App {
     }
 
     fn take_picked(&mut self, emitted: Option<u64>, found: Option<Picked>) {
-        let (Some(picked), Some(document)) = (found, &self.document) else { return self.deselect() };
+        let (Some(picked), Some(document)) = (found, &mut self.document) else { return self.deselect() };
         let topology = &document.loaded.topology;
         let Some(patch) = topology.patches.get(picked.patch as usize) else { return self.deselect() };
         // The weight is a corner's number, and side k + 1 lies opposite corner k.
         let side = patch.sides[(picked.weight as usize + 1) % 3];
-        self.viewport.selected_edge = Some(topology.sides[side as usize].edge);
+        let edge = Some(topology.sides[side as usize].edge);
         let hit = emitted.zip(picked.triangle);
-        self.viewport.selection = Selection { triangle: Some(patch.triangle), hit, ..Selection::default() };
+        document.selection = Selection { triangle: Some(patch.triangle), edge, hit, ..Selection::default() };
     }
 
-    /// Shows the selected patch.
     pub(in crate::app) fn frame_patch(&mut self) {
         let (Some(patch), Some(document)) = (self.selected_patch(), &self.document) else { return };
         let topology = &document.shown().1;
@@ -177,12 +175,12 @@ impl App {
     }
 
     pub(in crate::app) fn outlined(&self) -> Outlined {
-        Outlined { triangle: self.viewport.selection.triangle, hit: self.hit().map(|hit| hit.number) }
+        Outlined { triangle: self.selected_triangle(), hit: self.hit().map(|hit| hit.number) }
     }
 
     /// See [`patch_edges`].
     pub(in crate::app) fn patch_edges(&self, topology: &Topology, patch: u32, half: SplitSide) -> [Vec<Vec3>; 3] {
-        patch_edges(topology, patch, self.measured(half).found().map(|found| &found.outlines), self.convention())
+        patch_edges(topology, patch, self.found(half).map(|found| &found.outlines), self.convention())
     }
 
     /// The lines that mark the selected patch: the emitted triangle that was clicked on, and the patch's edges in their factors'
@@ -197,7 +195,7 @@ impl App {
         (0..3)
             .filter(|&i| Some(sides[domain_side(self.convention(), i) as usize]) == cracked)
             .for_each(|i| edges[i as usize].clear());
-        let outlines = self.measured(half).found().map(|found| &found.outlines);
+        let outlines = self.found(half).map(|found| &found.outlines);
         lines.extend(patch_lines(&edges, patch_width(topology, patch, outlines)));
         lines
     }

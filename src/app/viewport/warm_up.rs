@@ -9,7 +9,8 @@ use super::picture::Wanted;
 use super::preview::{Shape, count};
 use crate::app::App;
 use crate::app::jobs::background_job::BackgroundJob;
-use crate::app::jobs::document::arena_bytes;
+use crate::app::jobs::job_list::Work;
+use crate::app::jobs::scenes::arena_bytes;
 use gpu::{GpuError, Recorder, Timing};
 use inspect::engine::Engine;
 use inspect::render::{DraftPipelines, Scene, Target};
@@ -33,7 +34,6 @@ pub(crate) struct WarmUp {
     drawings: u64,
 }
 
-/// What is under way.
 enum Step {
     /// A scene of its own is made, since that of the window keeps the triangles of its picture.
     Making(BackgroundJob<Result<Scene, GpuError>>, Wanted),
@@ -139,9 +139,7 @@ impl App {
             return;
         }
         let Some((wanted, shape)) = self.cheaper_picture(context, full) else { return };
-        let Some(document) = self.document.as_mut().filter(|document| !document.stand_in.is_being_made()) else {
-            return;
-        };
+        let Some(document) = self.document.as_mut().filter(|_| !self.jobs.has(Work::StandIn)) else { return };
         let scene = match (shape, document.stand_in.scene()) {
             (Shape::StandIn, Some(stand_in)) => stand_in,
             _ => &mut document.scene,

@@ -6,11 +6,8 @@ use std::time::{Duration, Instant};
 
 use super::fatal_screen::FatalScreen;
 use crate::app::App;
-use crate::app::dialogs::typed_path::PendingDialog;
-use crate::app::jobs::document::{Load, scene_of};
-use crate::app::jobs::leak_job::LeakJob;
-use crate::app::jobs::mesh_checks::Checks;
-use crate::app::jobs::silhouette_job::SilhouetteJob;
+use crate::app::jobs::job_list::Work;
+use crate::app::jobs::scenes::scene_of;
 use crate::app::painting::Painting;
 use crate::app::persistence::WindowGeometry;
 use crate::app::style::style;
@@ -125,64 +122,35 @@ impl App {
         let preview = Preview::new(&engine).with(self.viewport.preview.is_on);
         (self.engine, self.render_state, self.painting) = (engine, render_state, painting);
         (self.viewport.picture, self.viewport.preview) = (viewport, preview);
-        self.viewport.warm_up = WarmUp::default();
+        (self.viewport.warm_up, self.viewport.legend) = (WarmUp::default(), None);
         if let Some((document, scene)) = self.document.as_mut().zip(scene) {
-            (document.scene, document.moment) = (scene, None);
-            (document.given, document.surface_shader) = (0, 0);
-            (document.matcap, document.environment) = (0, 0);
-            if document.checks.is_busy() {
-                document.checks = Checks::start(context, &document.loaded);
-            }
-            let title = format!("{} - pnaen", document.loaded.source.title());
-            context.send_viewport_cmd(egui::ViewportCommand::Title(title));
+            document.move_to(scene);
         }
-        self.jobs.measure.forget();
-        self.jobs.leaks = LeakJob::default();
-        self.jobs.silhouette = SilhouetteJob::default();
-        self.jobs.deviation.forget();
-        self.viewport.left.forget();
-        self.viewport.highlight = None;
-        self.viewport.selection.forget_tessellation();
+        self.say_title(context);
         self.go_on_in(context);
         self.keep_playback(true);
         Ok(())
     }
 
-    /// Lets jobs go on and repaint this window. Those that need the lost device start over.
+    /// Lets jobs go on in this window. Those that need the lost device start over.
     fn go_on_in(&mut self, context: &egui::Context) {
-        if let Some(load) = self.jobs.load.take() {
-            let (source, preparation) = (load.source.clone(), load.preparation.clone());
-            self.jobs.load =
-                Some(Load::start(&self.engine, context, source, preparation, self.settings, load.keep_view));
-        }
-        if let Some(load) = &mut self.jobs.truth_load {
-            load.wake(context);
-        }
+        self.jobs.move_to_another_window();
+        [Work::LeftHalf, Work::StandIn].into_iter().for_each(|work| self.jobs.stop(work));
+        self.load_anew(context);
         // What the lost device had of it is gone too.
         if let Some(path) = self.environment_file().map(Path::to_owned) {
             let is_chosen = self.settings.lighting == Lighting::Environment;
             self.environment = None;
             self.read_environment(context, path, is_chosen);
         }
-        self.jobs.factors = self.jobs.factors.take().map(|job| job.waking(context));
-        self.reload_shader::<LodShader>(context);
-        self.reload_shader::<SurfaceShader>(context);
-        self.jobs.matcap = self.jobs.matcap.take().map(|job| job.waking(context));
-        if let Some(writing) = &mut self.jobs.writing {
-            writing.wake(context);
-        }
-        self.jobs.explain.go_on_in(context);
-        self.dialogs.pending = self.dialogs.pending.take().map(|dialog| PendingDialog {
-            job: dialog.job.waking(context),
-            since: f64::NEG_INFINITY,
-            ..dialog
-        });
-        self.panels.chart.go_on_in(context);
-        self.persistence.go_on_in(context);
+        self.watch_shader::<LodShader>(context);
+        self.watch_shader::<SurfaceShader>(context);
+        self.dialogs.pending.iter_mut().for_each(|dialog| dialog.since = f64::NEG_INFINITY);
+        self.close_chart();
+        self.persistence.move_to_another_window();
         self.viewport.playback.go_on_in(context);
     }
 
-    /// Shows an error that the device has reported.
     pub(in crate::app) fn take_device_problem(&mut self) {
         if let Err(problem) = self.engine.gpu.check() {
             self.dialogs.error = Some(problem.to_string());

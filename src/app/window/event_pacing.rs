@@ -7,7 +7,6 @@ use std::collections::VecDeque;
 
 use egui::Event;
 
-/// Events that wait for their frame.
 #[derive(Debug, Default)]
 pub(in crate::app) struct PacedEvents(VecDeque<Event>);
 

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::app::App;
-use crate::app::dialogs::typed_path::{absolute, name_beside};
+use crate::app::dialogs::purpose::{absolute, name_beside};
 use crate::app::jobs::background_job::BackgroundJob;
 use crate::commands::{Action, FileAction, QUIT, with_key};
 use geometry::mesh::Moment;
@@ -12,7 +12,6 @@ use gpu::Gpu;
 use inspect::engine::Loaded;
 use inspect::export::Exported;
 
-/// The state of the screen.
 pub(crate) struct FatalScreen {
     /// The device that this screen alone is drawn with.
     pub gpu: Gpu,

@@ -8,7 +8,6 @@ use egui::{Vec2, ViewportCommand, ViewportInfo};
 /// Desktops that tell the size of the frame do so within this time.
 const TOLD_WITHIN: Duration = Duration::from_secs(2);
 
-/// Whether the window has been fitted.
 #[derive(Debug, Default)]
 pub(in crate::app) struct Fitting {
     start: Option<Instant>,

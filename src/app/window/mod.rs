@@ -13,7 +13,6 @@ use fitting::Fitting;
 
 pub use run::{WindowError, run};
 
-/// The state of the window itself.
 #[derive(Default)]
 pub(super) struct WindowState {
     /// The losses of the devices that it was drawn with.

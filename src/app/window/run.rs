@@ -115,7 +115,6 @@ fn sized(frame: &WindowGeometry) -> egui::ViewportBuilder {
         .with_min_inner_size(LEAST_SIZE)
 }
 
-/// The state of a window that was closed.
 struct Closed {
     app: App,
     context: egui::Context,

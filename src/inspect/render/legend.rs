@@ -1,4 +1,4 @@
-//! What a legend says about the surface's colours. The window paints it over the viewport, and commands into their pictures.
+//! What a legend says about the surface's colours.
 
 use super::layout::{CHECKER_LIGHT, CHECKER_LINE, CHECKER_U, CHECKER_V, TEXELS_WITHOUT_IMAGE, srgb};
 use super::outlines_picture::SILHOUETTE_COLORS;
@@ -7,6 +7,7 @@ use crate::measure::{OutlineDistance, OutlineDistances, OutlineOf};
 use crate::settings::{Colors, DeviationUnit, Settings};
 
 /// The contents of a legend.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Legend {
     pub title: String,
     /// The hover text.
@@ -14,7 +15,17 @@ pub struct Legend {
     pub shown: Shown,
 }
 
+impl Legend {
+    /// What a screen reader says of it: the title, and what is said of colours in rows.
+    pub fn spoken(&self) -> String {
+        let Shown::Rows(rows) = &self.shown else { return self.title.clone() };
+        let rows: Vec<_> = rows.iter().map(|(_, text)| text.as_str()).collect();
+        format!("{}: {}", self.title, rows.join(", "))
+    }
+}
+
 /// What a legend shows.
+#[derive(Clone, Debug, PartialEq)]
 pub enum Shown {
     /// The title alone.
     Title,
@@ -32,13 +43,12 @@ pub enum Shown {
     Colors(Vec<([u8; 3], &'static str)>),
     /// sRGB colours under the title, each in a row with what is said of it.
     Rows(Vec<([u8; 3], String)>),
+    /// A patch in its barycentric colours.
+    Barycentric,
 }
 
 /// How many colours stand in a row.
-pub const COLUMNS: usize = 3;
-
-/// The title of the legend of barycentric colours.
-pub const BARYCENTRIC_TITLE: &str = "Barycentric, weights in the patch";
+pub(crate) const COLUMNS: usize = 3;
 
 /// What is known of the distances to the reference surface, and between outlines.
 pub struct Distances {
@@ -58,15 +68,20 @@ pub fn has_legend(colors: Colors) -> bool {
     !matches!(colors, Colors::Material | Colors::Clay | Colors::Matcap)
 }
 
-/// The legend of a picture's colours, if they have one. That of barycentric colours is a drawing instead. `radius` is the mesh's
-/// bounding radius in object units.
+/// The legend of a picture's colours, if they have one. `radius` is the mesh's bounding radius in object units.
 pub fn legend_of(settings: &Settings, radius: f32, distances: &Distances) -> Option<Legend> {
     let legend = |title: &str, meaning: &str, shown: Shown| {
         Some(Legend { title: title.to_owned(), meaning: meaning.to_owned(), shown })
     };
     let scale = |scale: Scale, ticks: &[f32], waste: bool| Shown::Scale { scale, ticks: ticks.to_vec(), waste };
     match settings.overlays.colors {
-        Colors::Material | Colors::Clay | Colors::Matcap | Colors::Barycentric => None,
+        Colors::Material | Colors::Clay | Colors::Matcap => None,
+        Colors::Barycentric => legend(
+            "Barycentric, weights in the patch",
+            "Each place has the weights u, v and w of its patch's corners as red, green and blue. A corner, where its weight is 1 and the \
+             others are 0, has one pure colour; along an edge the colour of the opposite corner is missing; in the middle all are equal.",
+            Shown::Barycentric,
+        ),
         Colors::Zebra => legend(
             "Stripes break at creases",
             "Stripes that the surface reflects. A stripe breaks off where the surface has a crease, and has a corner where only \
@@ -206,7 +221,7 @@ fn silhouette_legend(distances: Option<OutlineDistances>) -> Legend {
 }
 
 /// Formats a tick as shortly as possible. The ends of scales are round numbers.
-pub fn tick_text(tick: f32) -> String {
+pub(crate) fn tick_text(tick: f32) -> String {
     if tick < 0.0 {
         return format!("-{}", tick_text(-tick));
     }

@@ -1,4 +1,4 @@
-//! Draws the legend of the surface's colours into a picture, as the window shows it over the viewport.
+//! Draws the legend of the surface's colours: into a picture, or for the window to show over the viewport.
 
 use image::{RgbaImage, imageops};
 use plotters::backend::BitMapBackend;
@@ -8,8 +8,8 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use crate::plot::{self, ChartError, DENSITY};
 use crate::render::layout::{WASTE_COLOR, srgb};
-use crate::render::{BARYCENTRIC_TITLE, COLUMNS, Distances, Scale, Shown, legend_of, tick_text};
-use crate::settings::{Colors, Settings};
+use crate::render::{COLUMNS, Distances, Legend, Scale, Shown, legend_of, tick_text};
+use crate::settings::Settings;
 
 /// Sizes in points: the bar of the scale, the block of one colour before it, the margin, and the text.
 const BAR: [f64; 2] = [196.0, 12.0];
@@ -40,28 +40,61 @@ pub(crate) fn draw_legend(
     radius: f32,
     distances: &Distances,
 ) -> Result<(), ChartError> {
-    if settings.overlays.colors == Colors::Barycentric {
-        return draw_plate(picture, BARYCENTRIC, barycentric);
-    }
     let Some(legend) = legend_of(settings, radius, distances) else { return Ok(()) };
+    let point = point_in(picture.dimensions(), inner_size(&legend), None);
+    let plate = plate(inner_size(&legend), point, |pen| paint(pen, &legend))?;
+    lay_in_corner(picture, &plate, Side::Right, point);
+    Ok(())
+}
+
+/// The legend as a picture, for one of this size in px whose texts are drawn with so many px a point.
+///
+/// # Errors
+/// The font can't be used.
+pub fn legend_picture(legend: &Legend, room: [u32; 2], point: f64) -> Result<RgbaImage, ChartError> {
+    let point = point_in(room.into(), inner_size(legend), Some(point));
+    plate(inner_size(legend), point, |pen| paint(pen, legend))
+}
+
+/// Width and height inside the plate's margins, in points.
+fn inner_size(legend: &Legend) -> [f64; 2] {
+    let rows = |count: usize| [BAR[0], 18.0 + ROW * count as f64];
+    match &legend.shown {
+        Shown::Title => TITLE,
+        Shown::Waste => [112.0, 14.0],
+        Shown::Scale { waste, .. } => [before_scale(*waste) + BAR[0], 52.0],
+        Shown::Colors(colors) => rows(colors.len().div_ceil(COLUMNS)),
+        Shown::Rows(texts) => rows(texts.len()),
+        Shown::Barycentric => BARYCENTRIC,
+    }
+}
+
+/// The width of what stands before a scale, in points.
+fn before_scale(has_waste: bool) -> f64 {
+    if has_waste { BLOCK_WIDTH + 10.0 } else { 0.0 }
+}
+
+fn paint(pen: &Pen, legend: &Legend) -> Drawn {
     let title = &legend.title;
     match &legend.shown {
-        Shown::Title => draw_plate(picture, TITLE, |pen| pen.text(title, [0.0, 7.0], LEFT)),
-        Shown::Waste => draw_plate(picture, [112.0, 14.0], |pen| named(pen, [0.0, 7.0], WASTE_COLOR, title)),
-        Shown::Scale { scale: shown, ticks, waste } => {
-            let before = if *waste { BLOCK_WIDTH + 10.0 } else { 0.0 };
-            draw_plate(picture, [before + BAR[0], 52.0], |pen| scale(pen, title, shown, ticks, before))
-        }
-        Shown::Colors(colors) => {
-            let rows = colors.len().div_ceil(COLUMNS);
-            draw_plate(picture, [BAR[0], 18.0 + ROW * rows as f64], |pen| named_colors(pen, title, colors))
-        }
-        Shown::Rows(rows) => draw_plate(picture, [BAR[0], 18.0 + ROW * rows.len() as f64], |pen| {
-            pen.text(title, [0.0, 0.0], LEFT_TOP)?;
-            let middles = (0..).map(|row| 18.0 + ROW * (f64::from(row) + 0.5));
-            rows.iter().zip(middles).try_for_each(|((color, text), middle)| named(pen, [0.0, middle], *color, text))
-        }),
+        Shown::Title => pen.text(title, [0.0, 7.0], LEFT),
+        Shown::Waste => named(pen, [0.0, 7.0], WASTE_COLOR, title),
+        Shown::Scale { scale: shown, ticks, waste } => scale(pen, title, shown, ticks, before_scale(*waste)),
+        Shown::Colors(colors) => named_colors(pen, title, colors),
+        Shown::Rows(rows) => named_rows(pen, title, rows.iter().map(|(color, text)| (*color, text.as_str()))),
+        Shown::Barycentric => barycentric(pen, title),
     }
+}
+
+/// Colours under a title, each in a row with what it stands for.
+fn named_rows<'a>(pen: &Pen, title: &str, mut rows: impl Iterator<Item = ([u8; 3], &'a str)>) -> Drawn {
+    pen.text(title, [0.0, 0.0], LEFT_TOP)?;
+    let mut middle = 18.0 + 0.5 * ROW;
+    rows.try_for_each(|(color, text)| {
+        named(pen, [0.0, middle], color, text)?;
+        middle += ROW;
+        Ok(())
+    })
 }
 
 /// A colour and what it stands for.
@@ -75,11 +108,11 @@ pub fn draw_key(picture: &mut RgbaImage, title: &str, rows: &[Named]) -> Result<
     if rows.is_empty() {
         return Ok(());
     }
-    draw_plate_at(picture, Side::Left, [BAR[0], 18.0 + ROW * rows.len() as f64], |pen| {
-        pen.text(title, [0.0, 0.0], LEFT_TOP)?;
-        let middles = (0..).map(|row| 18.0 + ROW * (f64::from(row) + 0.5));
-        rows.iter().zip(middles).try_for_each(|((color, text), middle)| named(pen, [0.0, middle], *color, text))
-    })
+    let inner = [BAR[0], 18.0 + ROW * rows.len() as f64];
+    let point = point_in(picture.dimensions(), inner, None);
+    let plate = plate(inner, point, |pen| named_rows(pen, title, rows.iter().copied()))?;
+    lay_in_corner(picture, &plate, Side::Left, point);
+    Ok(())
 }
 
 /// Which of the lower corners a plate is in.
@@ -89,34 +122,36 @@ enum Side {
     Right,
 }
 
-/// Draws a plate into the lower right corner, with this much room inside, in points, and what `paint` puts there.
-fn draw_plate(picture: &mut RgbaImage, inner: [f64; 2], paint: impl FnOnce(&Pen) -> Drawn) -> Result<(), ChartError> {
-    draw_plate_at(picture, Side::Right, inner, paint)
+/// The size of a plate with this much room inside, in points.
+fn plate_size(inner: [f64; 2]) -> [f64; 2] {
+    [inner[0] + 2.0 * MARGIN, inner[1] + 12.0]
 }
 
-fn draw_plate_at(
-    picture: &mut RgbaImage,
-    side: Side,
-    inner: [f64; 2],
-    paint: impl FnOnce(&Pen) -> Drawn,
-) -> Result<(), ChartError> {
-    let (width, height) = picture.dimensions();
-    let size = [inner[0] + 2.0 * MARGIN, inner[1] + 12.0];
-    let room = [width, height].map(f64::from);
-    let usual = (room[0].min(room[1]) / POINTS_A_SIDE).max(1.0);
-    // In a small picture all of it becomes smaller.
-    let point = usual.min(room[0] / (size[0] + 2.0 * MARGIN)).min(room[1] / (size[1] + 2.0 * MARGIN));
-    let px = size.map(|side| ((side * point).round() as u32).max(1));
+/// How many px a point has in a picture: as many as is usual for its size, unless that is given. In a small picture all of a plate
+/// with this much room inside becomes smaller.
+fn point_in((width, height): (u32, u32), inner: [f64; 2], usual: Option<f64>) -> f64 {
+    let (room, size) = ([width, height].map(f64::from), plate_size(inner));
+    let usual = usual.unwrap_or((room[0].min(room[1]) / POINTS_A_SIDE).max(1.0));
+    usual.min(room[0] / (size[0] + 2.0 * MARGIN)).min(room[1] / (size[1] + 2.0 * MARGIN))
+}
+
+/// A plate with this much room inside, in points, and what `paint` puts there.
+fn plate(inner: [f64; 2], point: f64, paint: impl FnOnce(&Pen) -> Drawn) -> Result<RgbaImage, ChartError> {
+    let px = plate_size(inner).map(|side| ((side * point).round() as u32).max(1));
     let plate = plot::bitmap(px, |area| {
         area.fill(&PLATE)?;
         paint(&Pen { area, point: point * f64::from(DENSITY), origin: [MARGIN, 6.0] })
     })?;
-    let plate = image::DynamicImage::from(plate).to_rgba8();
+    Ok(image::DynamicImage::from(plate).to_rgba8())
+}
+
+fn lay_in_corner(picture: &mut RgbaImage, plate: &RgbaImage, side: Side, point: f64) {
     let margin = (MARGIN * point).round() as u32;
-    let at = [width - px[0].min(width), height - px[1].min(height)].map(|side| i64::from(side.saturating_sub(margin)));
+    let at =
+        [picture.width() - plate.width().min(picture.width()), picture.height() - plate.height().min(picture.height())];
+    let at = at.map(|side| i64::from(side.saturating_sub(margin)));
     let left = if side == Side::Left { i64::from(margin) } else { at[0] };
-    imageops::replace(picture, &plate, left, at[1]);
-    Ok(())
+    imageops::replace(picture, plate, left, at[1]);
 }
 
 type Drawn = Result<(), DrawingAreaErrorKind<<BitMapBackend<'static> as DrawingBackend>::ErrorType>>;
@@ -207,8 +242,8 @@ const BARYCENTRIC: [f64; 2] = [180.0, 78.0];
 const PATCH: [f64; 2] = [66.0, 56.0];
 
 /// A patch in its barycentric colours, and which corner each colour belongs to.
-fn barycentric(pen: &Pen) -> Drawn {
-    pen.text(BARYCENTRIC_TITLE, [0.0, 0.0], LEFT_TOP)?;
+fn barycentric(pen: &Pen, title: &str) -> Drawn {
+    pen.text(title, [0.0, 0.0], LEFT_TOP)?;
     let top = BARYCENTRIC[1] - PATCH[1];
     let ((left, above), (right, below)) = (pen.px([0.0, top]), pen.px([PATCH[0], BARYCENTRIC[1]]));
     for (y, x) in (above..below).flat_map(|y| (left..right).map(move |x| (y, x))) {

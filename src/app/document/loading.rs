@@ -1,0 +1,282 @@
+//! Opens meshes and loads them again. A new load cancels the one before it.
+
+use std::io::ErrorKind;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::Document;
+use crate::app::App;
+use crate::app::jobs::background_job::Stopped;
+use crate::app::jobs::job_list::{Load, Work};
+use crate::app::jobs::scenes::scene_of;
+use geometry::progress::{Progress, Stage};
+use gpu::GpuError;
+use inspect::engine::{self, Engine, Preparation};
+use inspect::render::Camera;
+use inspect::settings::Settings;
+use load::environment_file::is_environment;
+use load::files::FileError;
+use load::format::Format;
+use load::{Import, LoadError, Source};
+
+/// Why a mesh could not be loaded.
+struct NotLoaded {
+    /// The reason, as a sentence.
+    why: String,
+    /// Whether the file doesn't exist.
+    is_gone: bool,
+}
+
+impl NotLoaded {
+    fn because(why: String) -> Self {
+        Self { why, is_gone: false }
+    }
+
+    fn panicked(source: &Source, stopped: &Stopped) -> Self {
+        Self::because(format!("{}: loading it {stopped}; the file may be damaged", source.title()))
+    }
+}
+
+/// The part of a load that reading the mesh counts as. Compiling shaders, of which no part is known, is the rest.
+const READ: f32 = 0.8;
+
+/// Loads a mesh, and makes the pipelines that a picture with these settings needs, so that the first picture doesn't wait for the
+/// driver's compiler. No reason is given if it was cancelled.
+fn load(
+    engine: &Engine,
+    source: &Source,
+    preparation: &Preparation,
+    settings: &Settings,
+    progress: &Progress,
+) -> Result<Document, Option<NotLoaded>> {
+    let loaded = match engine::load(source, preparation, &progress.part(0.0, READ)) {
+        Ok(loaded) => loaded,
+        Err(LoadError::Cancelled(_)) => return Err(None),
+        Err(error) => {
+            let is_gone =
+                matches!(&error, LoadError::File(FileError::Io { source, .. }) if source.kind() == ErrorKind::NotFound);
+            return Err(Some(NotLoaded { why: error.to_string(), is_gone }));
+        }
+    };
+    let no_room = |error: GpuError| Some(NotLoaded::because(format!("{}: {error}", source.title())));
+    progress.enter(Stage::Device);
+    progress.set(READ);
+    let scene = scene_of(engine, &loaded).map_err(no_room)?;
+    engine.prepare(&scene, settings).map_err(no_room)?;
+    Ok(Document::new(loaded, scene))
+}
+
+impl App {
+    /// Starts to load a mesh on a thread of its own; a load that is under way is cancelled. If it is the mesh that is open,
+    /// it keeps its view and its preparation.
+    pub fn open(&mut self, context: &egui::Context, source: Source) {
+        let same = self.document.as_ref().filter(|document| document.loaded.source == source);
+        let preparation = same.map(|document| document.loaded.preparation.clone());
+        let keep_view = preparation.is_some();
+        let preparation = preparation.unwrap_or_else(|| self.plain(&source));
+        // It is about the file before.
+        self.dialogs.notice = None;
+        self.load(context, source, preparation, keep_view);
+    }
+
+    /// Takes the mesh that is being opened as the command line says, instead of as it was kept.
+    pub fn open_as(&mut self, context: &egui::Context, change: impl FnOnce(&mut Preparation)) {
+        let Some(load) = self.jobs.load() else { return };
+        let (source, mut preparation) = (load.source.clone(), load.preparation.clone());
+        change(&mut preparation);
+        self.settings.import = preparation.import;
+        self.load(context, source, preparation, false);
+    }
+
+    /// Loads the same mesh again after `change` has changed its preparation.
+    pub fn prepare(&mut self, context: &egui::Context, change: impl FnOnce(&mut Preparation)) {
+        let Some(source) = self.source().cloned() else { return };
+        let mut preparation = self.preparation();
+        change(&mut preparation);
+        self.load(context, source, preparation, true);
+    }
+
+    /// Begins a load that is under way anew, on another device.
+    pub(in crate::app) fn load_anew(&mut self, context: &egui::Context) {
+        if let Some(Load { source, preparation, keep_view, .. }) = self.jobs.load() {
+            self.load(context, source.clone(), preparation.clone(), *keep_view);
+        }
+    }
+
+    fn load(&mut self, context: &egui::Context, source: Source, preparation: Preparation, keep_view: bool) {
+        let (engine, settings) = (self.engine.clone(), self.settings);
+        let (wanted, prepared) = (source.clone(), preparation.clone());
+        let read = move |progress: &Progress| load(&engine, &wanted, &prepared, &settings, progress);
+        self.jobs.start(context, Work::Mesh, format!("Loading {}", source.title()), read, Self::take_loaded);
+        self.jobs.last_load = Some(Load { source, preparation, keep_view, remark: None });
+    }
+
+    /// The preparation of the mesh, or of the load of the same mesh that is under way.
+    pub(in crate::app) fn preparation(&self) -> Preparation {
+        let again = self.jobs.load().filter(|load| load.keep_view).map(|load| &load.preparation);
+        let shown = self.document.as_ref().map(|document| &document.loaded.preparation);
+        again.or(shown).cloned().unwrap_or_else(|| self.plain(&Source::default()))
+    }
+
+    /// A preparation that leaves the mesh as the file has it, but for normals, axis and unit that were chosen.
+    fn plain(&self, source: &Source) -> Preparation {
+        let import = self.persistence.import_of(source, &self.settings);
+        Preparation { limits: self.jobs.limits, import, ..Preparation::default() }
+    }
+
+    /// Loads the mesh again if its normals, its axis, its unit or its hidden parts were changed, also by undo. While something is dragged,
+    /// and while another mesh is being loaded, it waits.
+    pub(in crate::app) fn follow_file_choices(&mut self, context: &egui::Context) {
+        let opens_another = self.jobs.load().is_some_and(|load| !load.keep_view);
+        if self.document.is_none() || opens_another || context.egui_is_using_pointer() {
+            return;
+        }
+        let (import, hidden) = (self.settings.import, self.hidden.clone());
+        let wanted = |preparation: &Preparation| preparation.import == import && preparation.hidden == *hidden;
+        if !wanted(&self.preparation()) {
+            self.prepare(context, |preparation| {
+                (preparation.import, preparation.hidden) = (import, hidden.to_vec());
+            });
+        }
+    }
+
+    /// Goes back to the normals, the axis, the unit and the hidden parts that the mesh has, after a load that came to nothing.
+    pub(in crate::app) fn keep_file_choices(&mut self) {
+        if let Some(document) = &self.document {
+            self.settings.import = document.loaded.preparation.import;
+            self.hidden = Arc::new(document.loaded.preparation.hidden.clone());
+        }
+    }
+
+    /// Takes over the axis and the unit of a mesh that was opened. This isn't a step of undo, because it follows from the mesh.
+    fn take_placement(&mut self) {
+        let Some(document) = &self.document else { return };
+        let Import { up, unit, .. } = document.loaded.preparation.import;
+        let place = move |settings: &mut Settings| {
+            (settings.import.up, settings.import.unit) = (up, unit);
+        };
+        place(&mut self.settings);
+        self.history.change_all(|step| place(&mut step.settings));
+    }
+
+    /// Loads the same mesh again; settings and camera stay.
+    pub fn reload(&mut self, context: &egui::Context) {
+        let source = self.source().cloned();
+        source.into_iter().for_each(|source| self.open(context, source));
+    }
+
+    fn take_loaded(&mut self, context: &egui::Context, ended: Result<Result<Document, Option<NotLoaded>>, Stopped>) {
+        let Some(Load { source, keep_view, remark, .. }) = self.jobs.last_load.take() else { return };
+        match ended.unwrap_or_else(|stopped| Err(Some(NotLoaded::panicked(&source, &stopped)))) {
+            Ok(document) => {
+                self.take_document(context, document, keep_view);
+                self.dialogs.error = remark.or(self.dialogs.error.take());
+            }
+            Err(Some(NotLoaded { mut why, is_gone })) => {
+                if is_gone && self.persistence.gone(&source) {
+                    why += "; it was removed from the recent files";
+                }
+                self.dialogs.error = Some(why);
+                self.keep_file_choices();
+                // If the first file can't be loaded, the window shows its default mesh.
+                if self.document.is_none() {
+                    self.open(context, Source::default());
+                }
+            }
+            // It was cancelled in the window, so no message is needed.
+            Err(None) => {}
+        }
+    }
+
+    /// Puts a document in the place of the one before, with which all goes that belonged to it. The same mesh keeps its view.
+    fn take_document(&mut self, context: &egui::Context, document: Document, keep_view: bool) {
+        self.dialogs.typed = None;
+        self.jobs.stop_of_document();
+        self.viewport.preview.forget();
+        let place = |document: &Document| (document.loaded.scene, document.loaded.preparation.import.placement());
+        let placed = place(&document);
+        let before = self.document.replace(document);
+        self.say_title(context);
+        self.check_mesh(context);
+        // Scenes may be at different places, and of different sizes.
+        let was_placed = before.as_ref().map(place);
+        let is_placed_anew = was_placed.is_some_and(|before| before != placed);
+        let is_turned = was_placed.is_some_and(|before| before.1 != placed.1);
+        if !keep_view || is_turned {
+            (self.viewport.frozen, self.viewport.ruler) = (None, None);
+        }
+        if !keep_view {
+            self.forget_truth();
+        } else if is_turned {
+            self.follow_truth(context);
+        }
+        let is_first = before.is_none();
+        if !is_first {
+            self.dialogs.error = None;
+        }
+        self.take_heights(before.and_then(|document| document.loaded.preparation.heights).as_ref());
+        if !keep_view {
+            self.take_placement();
+            self.take_preparation();
+        }
+        self.keep_playback(keep_view);
+        if !keep_view && !is_first {
+            self.face_another();
+        }
+        if !keep_view || is_placed_anew {
+            self.frame();
+        }
+        self.look_as_before(keep_view);
+        self.viewport.opened = Some(self.viewport.camera);
+        self.keep_factors(context, keep_view);
+    }
+
+    /// Names the mesh in the window's title.
+    pub(in crate::app) fn say_title(&self, context: &egui::Context) {
+        if let Some(source) = self.source() {
+            context.send_viewport_cmd(egui::ViewportCommand::Title(format!("{} - pnaen", source.title())));
+        }
+    }
+
+    /// Looks at another mesh from the usual direction, without what only a first start has.
+    fn face_another(&mut self) {
+        self.viewport.camera = Camera::framing(&Default::default(), glam::Vec2::ONE);
+        let import = self.settings.import;
+        if self.settings == (Settings { import, ..Settings::greeting() }) {
+            self.settings = Settings { import, ..Settings::opening() };
+        }
+    }
+
+    /// Opens a file that is dropped on the window. Of several, it opens the first mesh, or else the first file, and the first
+    /// environment beside it.
+    pub(in crate::app) fn take_dropped(&mut self, context: &egui::Context) {
+        let dropped: Vec<PathBuf> =
+            context.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect());
+        let (environments, others): (Vec<_>, Vec<_>) = dropped.into_iter().partition(|path| is_environment(path));
+        if let Some(path) = environments.into_iter().next() {
+            self.open_environment(context, path);
+        }
+        let mesh = others.iter().find(|path| Format::of_name(path).is_some());
+        let Some(path) = mesh.or(others.first()) else { return };
+        self.open_path(context, path.clone());
+        if let Some(load) = self.jobs.last_load.as_mut().filter(|_| others.len() > 1) {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            load.remark =
+                Some(format!("{} files were dropped. Only one can be open, so {name} was opened.", others.len()));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::jobs::background_job::caught;
+
+    #[test]
+    fn a_load_that_panics_returns_an_error_that_names_the_file() {
+        let indices: &[u32] = std::hint::black_box(&[]);
+        let stopped = caught(|| panic!("index {} of {}", 7, indices.len())).map(|()| ()).expect_err("it panicked");
+        let said = NotLoaded::panicked(&Source::File("models/odd.glb".into()), &stopped).why;
+        assert_eq!(said, "odd.glb: loading it stopped unexpectedly (index 7 of 0); the file may be damaged");
+    }
+}

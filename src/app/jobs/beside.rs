@@ -1,0 +1,109 @@
+//! Files that are open beside the mesh: what they have in common.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use super::job_list::Work;
+use crate::app::App;
+use crate::commands::Beside;
+use geometry::names::shown_path;
+use geometry::progress::Progress;
+use gpu::{LodShader, SurfaceShader};
+use load::Source;
+
+/// A file that is open, and what was read from it.
+pub(crate) struct OpenFile<T> {
+    /// Absolute: a dash would be standard input, and copied commands and the next window need all of it.
+    pub path: PathBuf,
+    /// A number of its own for each file that was read.
+    pub generation: u64,
+    pub content: T,
+}
+
+impl<T> OpenFile<T> {
+    pub(crate) fn new(path: PathBuf, content: T) -> Self {
+        Self { path, generation: new_generation(), content }
+    }
+
+    pub(crate) fn name(&self) -> String {
+        file_name(&self.path)
+    }
+}
+
+/// The file's name without its folder.
+pub(crate) fn file_name(path: &Path) -> String {
+    shown_path(Path::new(path.file_name().unwrap_or(path.as_os_str())))
+}
+
+/// The path from the root, or as it is without a working folder.
+pub(crate) fn absolute_path(path: PathBuf) -> PathBuf {
+    std::path::absolute(&path).unwrap_or(path)
+}
+
+/// A number that nothing else has, from 2 on.
+pub(crate) fn new_generation() -> u64 {
+    static GENERATION: AtomicU64 = AtomicU64::new(2);
+    GENERATION.fetch_add(1, Ordering::Relaxed)
+}
+
+impl App {
+    /// Starts to read `what`, a source as messages name it. `take` gets what was read; until then, all stays as it is. `read` fails with
+    /// a sentence, or without one if it was cancelled.
+    pub(super) fn read_beside<T: Send + 'static>(
+        &mut self,
+        context: &egui::Context,
+        (work, title, what): (Work, String, String),
+        read: impl FnOnce(&Progress) -> Result<T, Option<String>> + Send + 'static,
+        take: impl FnOnce(&mut Self, T) + 'static,
+    ) {
+        self.jobs.start(context, work, title, read, move |app, _, ended| {
+            match ended.unwrap_or_else(|stopped| Err(Some(format!("reading {what} {stopped}")))) {
+                Ok(read) => take(app, read),
+                Err(why) => {
+                    if work == Work::Light {
+                        app.cancel_environment();
+                    }
+                    app.dialogs.error = why.or(app.dialogs.error.take());
+                }
+            }
+        });
+    }
+
+    /// What is open, or being opened, beside the mesh.
+    pub(in crate::app) fn beside(&self, beside: Beside) -> Option<Source> {
+        let path = match beside {
+            Beside::Truth => return self.truth().cloned(),
+            Beside::Factors => self.factors_file(),
+            Beside::LodShader => self.open_shader_file::<LodShader>(),
+            Beside::SurfaceShader => self.open_shader_file::<SurfaceShader>(),
+            Beside::Matcap => self.matcap_image(),
+            Beside::Environment => self.environment_file(),
+        };
+        path.map(|path| Source::File(path.to_owned()))
+    }
+
+    pub(in crate::app) fn close_beside(&mut self, beside: Beside) {
+        match beside {
+            Beside::Truth => self.forget_truth(),
+            Beside::Factors => self.forget_factors(),
+            Beside::LodShader => self.forget_shader::<LodShader>(),
+            Beside::SurfaceShader => self.forget_shader::<SurfaceShader>(),
+            Beside::Matcap => self.forget_matcap(),
+            Beside::Environment => self.close_environment(),
+        }
+    }
+
+    /// Starts to open a file beside the mesh, or a shape as the reference surface. Until it is read, what is open stays.
+    pub(in crate::app) fn open_beside(&mut self, context: &egui::Context, beside: Beside, source: Source) {
+        match (beside, source) {
+            (Beside::Truth, source) => self.open_truth(context, source),
+            (Beside::Factors, Source::File(path)) => self.open_factors(context, path),
+            (Beside::LodShader, Source::File(path)) => self.open_lod_shader(context, path),
+            (Beside::SurfaceShader, Source::File(path)) => self.open_surface_shader(context, path),
+            (Beside::Matcap, Source::File(path)) => self.open_matcap(context, path),
+            (Beside::Environment, Source::File(path)) => self.open_environment(context, path),
+            // Shapes are surfaces, and nothing else.
+            _ => {}
+        }
+    }
+}

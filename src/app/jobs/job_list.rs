@@ -1,0 +1,252 @@
+//! The jobs that are under way: one list, which is polled, waited for and stopped in one place.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use super::background_job::{BackgroundJob, Stopped};
+use crate::app::App;
+use geometry::progress::Progress;
+use inspect::engine::Preparation;
+use inspect::settings::Settings;
+use load::Source;
+use load::files::Limits;
+
+/// What a job is for. There is one job for each at most: a new one takes the place of the one before it, which is stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Work {
+    Mesh,
+    /// The reference surface.
+    Truth,
+    /// The file of light.
+    Light,
+    /// Reading a file of factors, or comparing its factors under another convention.
+    Factors,
+    Matcap,
+    /// Watching the file of the LOD shader. It goes on after the first version.
+    LodShader,
+    SurfaceShader,
+    /// A file that is being written.
+    File,
+    Dialog,
+    /// The window's state, which is being saved.
+    State,
+    Checks,
+    Explanation,
+    /// Measuring settings for the chart.
+    Chart,
+    /// The scene of the left half.
+    LeftHalf,
+    /// The mesh that previews draw in place of a large one.
+    StandIn,
+}
+
+impl Work {
+    /// Whether the picture, or what is said about it, waits for it.
+    fn is_waited_for(self) -> bool {
+        !matches!(self, Self::File | Self::Dialog | Self::State | Self::Checks | Self::Chart | Self::StandIn)
+    }
+
+    /// Whether it reads a file beside the mesh.
+    fn is_beside(self) -> bool {
+        use Work::{Factors, Light, LodShader, Matcap, SurfaceShader, Truth};
+        matches!(self, Truth | Light | Factors | Matcap | LodShader | SurfaceShader)
+    }
+
+    /// Whether it ends with the document.
+    fn is_of_document(self) -> bool {
+        matches!(self, Self::Checks | Self::Explanation | Self::Chart | Self::LeftHalf | Self::StandIn)
+    }
+}
+
+/// What is done in the window with what a job found.
+type Landing = Box<dyn FnOnce(&mut App, &egui::Context)>;
+
+/// A job under way. Dropping it cancels it.
+pub(crate) struct Job {
+    work: Work,
+    /// What is under way, such as "Saving torus.png", if it is shown.
+    pub title: String,
+    pub progress: Progress,
+    pub since: Instant,
+    /// Returns what the job has found since the last call.
+    poll: Box<dyn FnMut() -> Option<Landing>>,
+    /// Whether it goes on after it has found something.
+    goes_on: bool,
+    has_landed: bool,
+}
+
+impl Drop for Job {
+    fn drop(&mut self) {
+        self.progress.cancel();
+    }
+}
+
+/// How often jobs are polled that would wake a window that is closed.
+const EVERY: Duration = Duration::from_millis(50);
+
+/// The load of a mesh, and what it is to become.
+pub(crate) struct Load {
+    pub source: Source,
+    /// How the mesh is being prepared.
+    pub preparation: Preparation,
+    /// Whether the camera stays where it is, because the same mesh is loaded again.
+    pub keep_view: bool,
+    /// A message to show once the mesh is loaded.
+    pub remark: Option<String>,
+}
+
+#[derive(Default)]
+pub(crate) struct Jobs {
+    jobs: Vec<Job>,
+    /// Whether some were started by a window that is closed.
+    of_another_window: bool,
+    pub limits: Limits,
+    /// What is being loaded, or was loaded last.
+    pub last_load: Option<Load>,
+    /// The file of light that is being read, or was read last.
+    pub light: Option<PathBuf>,
+}
+
+impl Jobs {
+    pub(crate) fn new(limits: Limits) -> Self {
+        Self { limits, ..Self::default() }
+    }
+
+    /// The load of a mesh that is under way.
+    pub(crate) fn load(&self) -> Option<&Load> {
+        self.last_load.as_ref().filter(|_| self.has(Work::Mesh))
+    }
+
+    /// Starts a job on a thread of its own. `land` gets its result, or why there is none, in the window.
+    pub(crate) fn start<T: Send + 'static>(
+        &mut self,
+        context: &egui::Context,
+        work: Work,
+        title: String,
+        job: impl FnOnce(&Progress) -> T + Send + 'static,
+        land: impl FnOnce(&mut App, &egui::Context, Result<T, Stopped>) + 'static,
+    ) {
+        let progress = Progress::new();
+        let own = progress.clone();
+        let running = BackgroundJob::start(context, move || job(&own));
+        let mut land = Some(land);
+        let poll = move || {
+            let (ended, land) = (running.take()?, land.take()?);
+            let landing: Landing = Box::new(move |app, context| land(app, context, ended));
+            Some(landing)
+        };
+        self.add(Job {
+            work,
+            title,
+            progress,
+            since: Instant::now(),
+            poll: Box::new(poll),
+            goes_on: false,
+            has_landed: false,
+        });
+    }
+
+    /// Adds a job that goes on until it is stopped. `poll` returns what it has found since the last call.
+    pub(crate) fn follow(
+        &mut self,
+        work: Work,
+        progress: Progress,
+        mut poll: impl FnMut() -> Option<Landing> + 'static,
+    ) {
+        let poll = Box::new(move || poll());
+        self.add(Job {
+            work,
+            title: String::new(),
+            progress,
+            since: Instant::now(),
+            poll,
+            goes_on: true,
+            has_landed: false,
+        });
+    }
+
+    fn add(&mut self, job: Job) {
+        self.stop(job.work);
+        self.jobs.push(job);
+    }
+
+    pub(crate) fn get(&self, work: Work) -> Option<&Job> {
+        self.jobs.iter().find(|job| job.work == work)
+    }
+
+    pub(crate) fn has(&self, work: Work) -> bool {
+        self.get(work).is_some()
+    }
+
+    /// Stops a job, if there is one. Nothing is done with what it finds.
+    pub(crate) fn stop(&mut self, work: Work) {
+        self.jobs.retain(|job| job.work != work);
+    }
+
+    /// Stops the jobs about a document that is open no more.
+    pub(crate) fn stop_of_document(&mut self) {
+        self.jobs.retain(|job| !job.work.is_of_document());
+    }
+
+    /// Whether something is under way that the picture, or what is said about it, waits for.
+    pub(crate) fn is_busy(&self) -> bool {
+        self.jobs.iter().any(|job| job.work.is_waited_for() && !job.has_landed)
+    }
+
+    /// Whether a file beside the mesh is being read.
+    pub(crate) fn opens_beside(&self) -> bool {
+        self.jobs.iter().any(|job| job.work.is_beside() && !job.has_landed)
+    }
+
+    /// Waits for a job, whose result isn't wanted.
+    pub(crate) fn wait_for(&mut self, work: Work) {
+        for job in self.jobs.iter_mut().filter(|job| job.work == work) {
+            while (job.poll)().is_none() {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+        }
+        self.stop(work);
+    }
+
+    /// Lets jobs go on in another window.
+    pub(crate) fn move_to_another_window(&mut self) {
+        self.of_another_window = true;
+    }
+
+    /// Takes what a job has found. The scene of the left half waits until no picture is under way.
+    fn take(&mut self, is_free: bool) -> Option<(Work, Landing)> {
+        let is_ready = |job: &Job| is_free || job.work != Work::LeftHalf;
+        let mut jobs = self.jobs.iter_mut().enumerate().filter(|(_, job)| is_ready(job));
+        let (place, landing) = jobs.find_map(|(place, job)| (job.poll)().map(|landing| (place, landing)))?;
+        let job = &mut self.jobs[place];
+        job.has_landed = true;
+        let work = job.work;
+        if !job.goes_on {
+            self.jobs.remove(place);
+        }
+        Some((work, landing))
+    }
+}
+
+impl App {
+    /// Takes what jobs have found. Files of a step of undo change no settings: these are as in that step, but for what the user has set
+    /// since.
+    pub(in crate::app) fn take_found(&mut self, context: &egui::Context) {
+        // Framing a mesh needs the viewport's size, which is known after the first frame.
+        if self.viewport.picture.target.is_none() {
+            return;
+        }
+        while let Some((work, land)) = self.jobs.take(self.viewport.picture.is_free()) {
+            let settings = self.settings_without_files();
+            land(self, context);
+            if self.takes_back && (work == Work::Mesh || work.is_beside()) {
+                // If the mesh wasn't read anew, its import is the one that is there.
+                self.put_settings(Settings { import: self.settings.import, ..settings });
+            }
+        }
+        self.jobs.of_another_window &= !self.jobs.jobs.is_empty();
+        if self.jobs.of_another_window {
+            context.request_repaint_after(EVERY);
+        }
+    }
+}
