@@ -22,7 +22,7 @@ use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use geometry::mesh::mipmap::SRGB_TABLE;
 use geometry::mesh::polygon::{self, CutQuality, triangulate};
 use geometry::mesh::rig::LARGEST_COORDINATE;
-use geometry::mesh::{CornerDetail, Material, MemoryAccount, Mesh};
+use geometry::mesh::{CornerDetail, Material, Mesh};
 use geometry::progress::Progress;
 
 /// The greatest number of materials. A file with more is refused, since each takes memory and a draw call.
@@ -46,7 +46,7 @@ pub(super) fn read_faces(
     progress: &Progress,
     gather: impl for<'a> FnOnce(&[u8], Import, &'a Budget, &'a Progress) -> Result<Gathered<'a>, ReadError>,
 ) -> Result<LoadedMesh, ReadError> {
-    let budget = Budget::new(bytes.len(), limits);
+    let budget = Budget::new(bytes.len(), limits.memory);
     let (faces, holds, warnings) = gather(&bytes, import, &budget, progress)?;
     budget.release(bytes.len() as u64);
     drop(bytes);

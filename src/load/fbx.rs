@@ -33,7 +33,7 @@ use super::rig_builder::RigBuilder;
 use super::tangents;
 use super::uri::Files;
 use crate::files::Limits;
-use geometry::mesh::{MemoryAccount, MemoryRefused};
+use geometry::mesh::MemoryRefused;
 use geometry::progress::Progress;
 
 use nodes::Placed;
@@ -77,7 +77,7 @@ pub(super) fn read_here(
     limits: &Limits,
     progress: &Progress,
 ) -> Result<LoadedMesh, ReadError> {
-    let budget = Budget::new(bytes.len(), limits);
+    let budget = Budget::new(bytes.len(), limits.memory);
     let scene = parse::scene(&bytes, &import, &budget, &progress.part(0.0, 0.3))?;
     budget.release(bytes.len() as u64);
     drop(bytes);

@@ -21,7 +21,7 @@ mod ktx2;
 mod loaded_mesh;
 pub mod markdown;
 mod matcap_image;
-pub mod memory_budget;
+mod memory_budget;
 pub mod mesh_file;
 mod notes;
 mod obj;

@@ -34,7 +34,6 @@ use super::text_lines::{Line, Lines, first_word, of_utf16, shown, words};
 use super::triangle_block::BLOCK;
 use super::uri::Files;
 use crate::files::Limits;
-use geometry::mesh::MemoryAccount;
 use geometry::mesh::build_limits::MemoryRefused;
 use geometry::mesh::mesh_builder::InputCorner;
 use geometry::progress::Progress;
@@ -63,7 +62,7 @@ pub(super) fn read(
     progress: &Progress,
 ) -> Result<LoadedMesh, ReadError> {
     let Selection { import, hidden, .. } = selected;
-    let budget = Budget::new(bytes.len(), limits);
+    let budget = Budget::new(bytes.len(), limits.memory);
     let bytes = of_utf16(&bytes, |bytes| budget.hold(bytes)).map_err(too_large)?.unwrap_or(bytes);
     let files = Files::new(folder, limits, &budget, progress);
     let pieces = Piece::all(&bytes);

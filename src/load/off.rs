@@ -13,10 +13,10 @@ use super::memory_budget::Budget;
 use super::read_error::{FilePosition, ReadError};
 use super::text_lines::{Line, Lines, first_word, number, shown, words};
 use crate::files::Limits;
+use geometry::mesh::Material;
 use geometry::mesh::build_limits::MemoryRefused;
 use geometry::mesh::chunked_vec::ChunkedVec;
 use geometry::mesh::mesh_builder::InputCorner;
-use geometry::mesh::{Material, MemoryAccount};
 use geometry::progress::Progress;
 
 /// The most numbers of a vertex that are read: a homogeneous position, a normal, a colour and texture coordinates.

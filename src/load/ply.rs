@@ -23,8 +23,8 @@ use super::recent_corners::VertexNumbers;
 use super::text_lines::shown;
 use super::uri::Files;
 use crate::files::Limits;
+use geometry::mesh::Material;
 use geometry::mesh::mesh_builder::InputCorner;
-use geometry::mesh::{Material, MemoryAccount};
 use geometry::progress::Progress;
 
 use header::{Element, Header, Property, PropertyKind, Scalar};

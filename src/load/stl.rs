@@ -19,8 +19,8 @@ use super::read_error::{FilePosition, ReadError};
 use super::selection::Selection;
 use super::text_lines::{Line, Lines, first_word, has_comma, numbers_or_nan, shown};
 use crate::files::Limits;
+use geometry::mesh::Material;
 use geometry::mesh::mesh_builder::InputCorner;
-use geometry::mesh::{Material, MemoryAccount};
 use geometry::progress::Progress;
 
 use colors::Colors;
@@ -42,7 +42,7 @@ pub(super) fn read(
     limits: &Limits,
     progress: &Progress,
 ) -> Result<LoadedMesh, ReadError> {
-    let budget = Budget::new(bytes.len(), limits);
+    let budget = Budget::new(bytes.len(), limits.memory);
     let mut faces = FaceBuilder::new(bytes.len(), &budget).importing(selected.import).hiding(selected.hidden);
     let material = faces.material(Material::plain("default", [1.0; 4]))?;
     let mut reader = Reader {

@@ -169,6 +169,14 @@ pub(super) fn of_utf16<E>(bytes: &[u8], hold: impl FnOnce(u64) -> Result<(), E>)
     Ok(Some(text))
 }
 
+/// Returns the number, from 1, of the line with the first text at `byte` or after it. A CSV reader's own line number
+/// is too low where it skips empty lines before a record.
+pub(super) fn line_at(text: &[u8], byte: usize) -> usize {
+    let start = byte.min(text.len());
+    let passed = text[start..].iter().take_while(|&&byte| byte == b'\n' || byte == b'\r').count();
+    1 + text[..start + passed].iter().filter(|&&byte| byte == b'\n').count()
+}
+
 /// Returns the start of a word for a message, in quotes.
 pub(super) fn shown(word: &[u8]) -> String {
     let start = String::from_utf8_lossy(&word[..word.len().min(160)]);

@@ -21,7 +21,7 @@ use super::memory_budget::Budget;
 use super::notes::Notes;
 use super::read_error::{FilePosition, ReadError};
 use crate::files::Limits;
-use geometry::mesh::{MemoryAccount, MemoryRefused};
+use geometry::mesh::MemoryRefused;
 use geometry::names::shown;
 use geometry::progress::Progress;
 
@@ -40,7 +40,7 @@ pub(super) fn read(
     limits: &Limits,
     progress: &Progress,
 ) -> Result<LoadedMesh, ReadError> {
-    let budget = Budget::new(bytes.len(), limits);
+    let budget = Budget::new(bytes.len(), limits.memory);
     let mut notes = Notes::default();
     let (document, images) = {
         let archive = Archive::new(&bytes, &budget)?;

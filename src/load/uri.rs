@@ -11,7 +11,6 @@ use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 
 use super::memory_budget::Budget;
 use crate::files::{FileError, Limits, read_file};
-use geometry::mesh::MemoryAccount;
 use geometry::names::on_one_line;
 use geometry::progress::Progress;
 

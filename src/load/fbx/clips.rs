@@ -19,7 +19,6 @@ use crate::attachment::LocalTransform;
 use crate::memory_budget::Budget;
 use crate::notes::Notes;
 use crate::read_error::ReadError;
-use geometry::mesh::MemoryAccount;
 use geometry::mesh::rig::{Channel, Clip, Interpolation, Keys, Placement, Property};
 use geometry::progress::Progress;
 

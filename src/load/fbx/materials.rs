@@ -14,7 +14,7 @@ use crate::notes::Notes;
 use crate::packing;
 use crate::read_error::ReadError;
 use crate::uri::Files;
-use geometry::mesh::{Alpha, Map, MapUv, Material, MemoryAccount, Sampling, Slot, Texture};
+use geometry::mesh::{Alpha, Map, MapUv, Material, Sampling, Slot, Texture};
 
 /// The materials of all polygons.
 pub(super) struct Materials<'a> {

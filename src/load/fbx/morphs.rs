@@ -6,7 +6,6 @@ use super::convert::vec3;
 use super::too_large;
 use crate::memory_budget::Budget;
 use crate::read_error::ReadError;
-use geometry::mesh::MemoryAccount;
 use geometry::mesh::rig::Delta;
 
 /// Returns the channels of a mesh, in the order of its targets.

@@ -9,7 +9,6 @@ use super::too_large;
 use crate::import::Import;
 use crate::memory_budget::Budget;
 use crate::read_error::{FilePosition, ReadError};
-use geometry::mesh::MemoryAccount;
 use geometry::progress::{Cancelled, Progress};
 
 /// How deep nodes may be nested.

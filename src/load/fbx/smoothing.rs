@@ -10,7 +10,6 @@ use super::convert::vec3;
 use super::too_large;
 use crate::memory_budget::Budget;
 use crate::read_error::ReadError;
-use geometry::mesh::MemoryAccount;
 use geometry::mesh::union_find::UnionFind;
 
 /// Memory for each corner, in bytes: its side in the table, whose room is up to twice as large, its set, and two normals.

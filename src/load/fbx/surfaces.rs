@@ -18,7 +18,7 @@ use crate::rig_builder::{NodeBinder, RigBuilder, UndeformedVertex, VertexFrame};
 use crate::uri::Files;
 use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::rig::Delta;
-use geometry::mesh::{Borrowed, CornerDetail, MemoryAccount};
+use geometry::mesh::{Borrowed, CornerDetail};
 use geometry::progress::Progress;
 
 /// How many polygons are read before the job asks whether it was cancelled.

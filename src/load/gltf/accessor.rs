@@ -16,7 +16,6 @@ use super::notes::Notes;
 use super::reach::Use;
 use super::repair::Faults;
 use crate::memory_budget::Budget;
-use geometry::mesh::MemoryAccount;
 
 /// The greatest number of elements of an accessor without a buffer view (zeros except for sparse values), since no
 /// file's size limits those.

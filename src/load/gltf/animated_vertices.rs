@@ -7,7 +7,6 @@ use super::primitive_data::{MorphTarget, PrimitiveData};
 use super::rig_builder::{MAX_BOUND, NodeBinder, UndeformedVertex, VertexFrame};
 use super::vertex_details::VertexDetails;
 use super::vertices::Vertices;
-use geometry::mesh::MemoryAccount;
 use geometry::mesh::mesh_builder::InputCorner;
 use geometry::mesh::rig::Delta;
 

@@ -17,7 +17,7 @@ use super::scenes::Scenes;
 use super::{GltfError, extension_table, glb, json, schema, schema_check, variants};
 use crate::memory_budget::Budget;
 use crate::selection::Selection;
-use geometry::mesh::{Borrowed, MemoryAccount, MemoryRefused};
+use geometry::mesh::{Borrowed, MemoryRefused};
 use geometry::progress::Progress;
 
 /// A validated document, the binary chunk of a `.glb`, and what was left out.

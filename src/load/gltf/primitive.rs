@@ -13,8 +13,8 @@ use super::vertex_details::{DetailRepairs, VertexDetails};
 use crate::Budget;
 use crate::face_builder::{is_near, unplaced};
 use crate::import::Import;
+use geometry::mesh::MemoryRefused;
 use geometry::mesh::detail_table::DetailTable;
-use geometry::mesh::{MemoryAccount, MemoryRefused};
 
 pub(super) use super::vertices::NodePose;
 use super::vertices::{Vertex, Vertices};

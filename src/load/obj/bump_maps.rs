@@ -10,7 +10,7 @@ use crate::memory_budget::Budget;
 use crate::read_error::ReadError;
 use crate::texture_room::decoded_bytes;
 use geometry::mesh::mipmap::MipFilter;
-use geometry::mesh::{MemoryAccount, Texture, borrowing};
+use geometry::mesh::{Texture, borrowing};
 use geometry::progress::Progress;
 
 /// An image is looked at with no more px a side than this.

@@ -6,7 +6,7 @@ use crate::memory_budget::Budget;
 use crate::read_error::ReadError;
 use crate::text_lines::Lines;
 use geometry::cores::in_ranges;
-use geometry::mesh::{Borrowed, MemoryAccount};
+use geometry::mesh::Borrowed;
 use geometry::progress::Progress;
 
 /// The least size of a piece but the last, in bytes. One ends at the next line end that ends a statement.

@@ -13,7 +13,6 @@ use crate::memory_budget::Budget;
 use crate::read_error::ReadError;
 use crate::recent_corners::VertexNumbers;
 use crate::text_lines::words;
-use geometry::mesh::MemoryAccount;
 
 /// Memory for an entry of the table while it grows, in bytes: the old and the new table exist at the same time.
 const PER_ENTRY: u64 = 3 * (size_of::<((usize, u32), Vec3)>() as u64 + 1);

@@ -7,7 +7,6 @@ use super::{Statement, next_statement, too_large};
 use crate::memory_budget::Budget;
 use crate::read_error::ReadError;
 use crate::text_lines::{first_word, has_comma, number_or_nan, words};
-use geometry::mesh::MemoryAccount;
 use geometry::mesh::chunked_vec::ChunkedVec;
 
 /// The most numbers that a position has, with a weight and a colour.

@@ -13,7 +13,6 @@ use flate2::bufread::DeflateDecoder;
 use super::{broken, too_large};
 use crate::memory_budget::Budget;
 use crate::read_error::{FilePosition, ReadError};
-use geometry::mesh::MemoryAccount;
 
 /// The greatest number of files in an archive.
 const MAX_ENTRIES: usize = 1 << 16;

@@ -10,7 +10,6 @@ use crate::format::Format;
 use crate::memory_budget::Budget;
 use crate::notes::Notes;
 use crate::read_error::ReadError;
-use geometry::mesh::MemoryAccount;
 use geometry::names::shown;
 use geometry::progress::Progress;
 

@@ -15,7 +15,7 @@ use crate::notes::Notes;
 use crate::read_error::ReadError;
 use crate::texture_room::TextureRoom;
 use geometry::mesh::mipmap::MipFilter;
-use geometry::mesh::{Alpha, MemoryAccount, Texture};
+use geometry::mesh::{Alpha, Texture};
 use geometry::names::shown;
 use geometry::progress::{Cancelled, Progress};
 

@@ -16,7 +16,6 @@ use crate::memory_budget::Budget;
 use crate::notes::Notes;
 use crate::read_error::ReadError;
 use crate::text_lines::{number, shown, words};
-use geometry::mesh::MemoryAccount;
 use geometry::mesh::chunked_vec::ChunkedVec;
 use geometry::names;
 

@@ -14,7 +14,6 @@ use crate::import::Import;
 use crate::memory_budget::{Budget, edge_bytes};
 use crate::notes::Notes;
 use crate::read_error::{FilePosition, ReadError};
-use geometry::mesh::MemoryAccount;
 use geometry::mesh::build_limits::MAX_TRIANGLES;
 use geometry::mesh::mesh_builder::InputCorner;
 use geometry::progress::Progress;
