@@ -7,14 +7,13 @@ mod seeds;
 mod table;
 
 use std::fmt::{Debug, Display};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
 use super::{Format, ReadError, fbx, obj, off, ply, stl, threemf};
-use crate::files::Limits;
-use crate::selection::Selection;
-use crate::{Import, LoadedMesh};
+use crate::LoadedMesh;
+use crate::model_file::ModelFile;
 use geometry::progress::Progress;
 
 /// How long reading a file is waited for.
@@ -68,14 +67,15 @@ pub(super) fn named_files() -> Vec<PathBuf> {
 fn read(format: Format, bytes: &[u8]) -> Result<LoadedMesh, ReadError> {
     let bytes = bytes.to_vec();
     unhung(move || {
-        let (folder, name, limits, progress) = (Path::new("nowhere"), "broken", &Limits::default(), &Progress::new());
+        let progress = Progress::new();
+        let file = &ModelFile::of_test("broken", &progress);
         match format {
-            Format::Fbx => fbx::read(bytes, folder, name, Import::default(), limits, progress),
-            Format::Obj => obj::read(bytes, folder, name, Selection::default(), limits, progress),
-            Format::Stl => stl::read(bytes, name, Selection::default(), limits, progress),
-            Format::Ply => ply::read(bytes, folder, name, Import::default(), limits, progress),
-            Format::Off => off::read(bytes, name, Import::default(), limits, progress),
-            Format::ThreeMf => threemf::read(bytes, name, Import::default(), limits, progress),
+            Format::Fbx => fbx::read(bytes, file),
+            Format::Obj => obj::read(bytes, file),
+            Format::Stl => stl::read(bytes, file),
+            Format::Ply => ply::read(bytes, file),
+            Format::Off => off::read(bytes, file),
+            Format::ThreeMf => threemf::read(bytes, file),
             Format::Gltf => panic!("glTF has hostile files of its own, in gltf/tests"),
         }
     })

@@ -23,6 +23,7 @@ pub mod markdown;
 mod matcap_image;
 mod memory_budget;
 pub mod mesh_file;
+mod model_file;
 mod notes;
 mod obj;
 mod off;

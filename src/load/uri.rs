@@ -22,8 +22,8 @@ pub(super) struct Files<'a> {
     /// The document's folder.
     folder: &'a Path,
     limits: &'a Limits,
-    budget: &'a Budget,
-    progress: &'a Progress,
+    pub budget: &'a Budget,
+    pub progress: &'a Progress,
     /// The files that have been added to the budget.
     counted: RefCell<HashSet<PathBuf>>,
 }
