@@ -19,7 +19,7 @@ pub(super) enum Content {
 /// format, or of none.
 pub(super) fn recognised(start: &[u8], length: u64) -> Option<Content> {
     let unit_pairs = start.len() / 2 * 2;
-    let text = of_utf16(&start[..unit_pairs], |_| Ok::<(), ()>(())).ok().flatten();
+    let text = of_utf16(&start[..unit_pairs]);
     let read = |format| Content::Read { format, is_utf16: text.is_some() };
     binary(start, length).map(read).or_else(|| {
         if let Some(unread) = unread_formats::of_content(start, length) {

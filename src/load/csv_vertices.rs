@@ -1,8 +1,6 @@
 //! Reads the vertices that a frame debugger exports as CSV from its view of a mesh: a line for each vertex in the order in which
 //! triangles use them, three lines a triangle, and a column for each component of each attribute, such as `POSITION.x`.
 
-use std::fs::File;
-use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use csv::{ByteRecord, Reader, ReaderBuilder, Trim};
@@ -10,8 +8,9 @@ use glam::Vec3;
 use thiserror::Error;
 
 use super::memory_budget::Budget;
-use crate::files::{FileError, Limits, Stamp, open_file};
-use geometry::mesh::build_limits::{Borrowed, MemoryAccount, MemoryRefused};
+use super::text_lines::line_at;
+use crate::files::{FileError, Limits, read_file};
+use geometry::mesh::build_limits::MemoryRefused;
 use geometry::names::{shortened, shown, shown_path};
 use geometry::progress::{Cancelled, Progress};
 
@@ -107,7 +106,7 @@ const LINES: usize = 1 << 16;
 /// What frame debuggers write where there is no value.
 const NOTHING: [&[u8]; 3] = [b"", b"-", b"---"];
 
-/// Reads a file line by line. `column` names the attribute that is the position, without its components; without it, it is found
+/// Reads a file. `column` names the attribute that is the position, without its components; without it, it is found
 /// by its name.
 ///
 /// # Errors
@@ -118,49 +117,31 @@ pub fn read_vertices(
     limits: &Limits,
     progress: &Progress,
 ) -> Result<CsvVertices, CsvError> {
-    let io = |source| FileError::Io { path: path.to_owned(), source };
-    let opened = open_file(path).map_err(io)?;
-    let (file, about) = opened.ok_or_else(|| FileError::NotAFile { path: path.to_owned() })?;
-    if about.len() > limits.file {
-        let (bytes, limit) = (about.len(), limits.file);
-        return Err(FileError::TooLarge { path: path.to_owned(), bytes, limit }.into());
-    }
-    let before = Stamp::of(&about);
-    let budget = Budget::new(0, limits);
-    budget.allow(about.len());
-    let found = Lines::open(file, path)
-        .and_then(|mut lines| {
-            let attribute = chosen(&lines.attributes(), column)?;
-            Ok((lines, attribute))
-        })
-        .map_err(|fault| CsvError::Broken { path: path.to_owned(), fault })?;
-    let (lines, attribute) = found;
-    let read = lines.read(&attribute, &budget, progress)?;
-    let vertices = read.map_err(|fault| CsvError::Broken { path: path.to_owned(), fault })?;
-    before.check(path)?;
-    Ok(vertices)
+    let bytes = read_file(path, limits, |_| Ok::<_, CsvError>(()), progress)?;
+    let broken = |fault| CsvError::Broken { path: path.to_owned(), fault };
+    let lines = Lines::open(&bytes).map_err(broken)?;
+    let attribute = chosen(&lines.attributes(), column).map_err(broken)?;
+    let read = lines.read(&attribute, &Budget::new(bytes.len(), limits.memory), progress)?;
+    read.map_err(broken)
 }
 
 /// The lines of a file behind its header.
-struct Lines {
-    reader: Reader<BufReader<File>>,
-    /// The same file, to count its lines.
-    file: PathBuf,
+struct Lines<'a> {
+    text: &'a [u8],
+    reader: Reader<&'a [u8]>,
     header: Vec<String>,
     separator: u8,
 }
 
-impl Lines {
-    fn open(file: File, path: &Path) -> Result<Self, CsvFault> {
-        let mut text = BufReader::with_capacity(1 << 16, file);
-        let start = text.fill_buf().map_err(|error| CsvFault::Unreadable(error.to_string()))?;
-        if start.is_empty() {
+impl<'a> Lines<'a> {
+    fn open(text: &'a [u8]) -> Result<Self, CsvFault> {
+        if text.is_empty() {
             return Err(CsvFault::Empty);
         }
-        if start.starts_with(&[0xff, 0xfe]) || start.starts_with(&[0xfe, 0xff]) {
+        if text.starts_with(&[0xff, 0xfe]) || text.starts_with(&[0xfe, 0xff]) {
             return Err(CsvFault::Utf16);
         }
-        let first = start.split(|byte| matches!(byte, b'\n' | b'\r')).next().unwrap_or_default().to_vec();
+        let first = text.split(|byte| matches!(byte, b'\n' | b'\r')).next().unwrap_or_default();
         let count = |separator: &u8| first.iter().filter(|byte| *byte == separator).count();
         let separator = SEPARATORS.into_iter().rev().max_by_key(count).unwrap_or(b',');
         let mut reader = ReaderBuilder::new().flexible(true).trim(Trim::All).delimiter(separator).from_reader(text);
@@ -170,13 +151,13 @@ impl Lines {
         if names.iter().all(|name| name.is_empty() || is_number(name))
             || names.iter().filter(|name| is_number(name)).count() > 2
         {
-            return Err(CsvFault::Header { line: shortened(&String::from_utf8_lossy(&first), 60) });
+            return Err(CsvFault::Header { line: shortened(&String::from_utf8_lossy(first), 60) });
         }
-        Ok(Self { reader, file: path.to_owned(), header: names, separator })
+        Ok(Self { text, reader, header: names, separator })
     }
 
     /// The attributes with three components and more, in the order of the columns.
-    fn attributes(&mut self) -> Vec<Attribute> {
+    fn attributes(&self) -> Vec<Attribute> {
         let mut found: Vec<(String, [Option<usize>; 4])> = Vec::new();
         for (column, name) in self.header.iter().enumerate() {
             let Some((base, component)) = component_of(name) else { continue };
@@ -203,14 +184,12 @@ impl Lines {
         let mut vertices = CsvVertices::default();
         let mut decimals = 0;
         let mut record = ByteRecord::new();
-        let list = Borrowed::from(budget);
         loop {
             if vertices.positions.len().is_multiple_of(LINES) {
                 progress.check()?;
                 // A list that grows is copied to one that is twice as long.
                 let room = vertices.positions.capacity() * size_of::<Vec3>() + 2 * LINES * size_of::<Vec3>();
-                budget.give_back(&list);
-                if let Err(refused) = budget.borrow(2 * room as u64) {
+                if let Err(refused) = budget.check(2 * room as u64) {
                     return Ok(Err(refused.into()));
                 }
             }
@@ -225,8 +204,8 @@ impl Lines {
             match self.position(&record, attribute, &mut decimals) {
                 Ok(position) => vertices.positions.push(position),
                 Err(fault) => {
-                    let byte = record.position().map_or(0, csv::Position::byte);
-                    return Ok(Err(CsvFault::Line { line: line_at(&self.file, byte), fault }));
+                    let byte = record.position().map_or(0, |at| at.byte() as usize);
+                    return Ok(Err(CsvFault::Line { line: line_at(self.text, byte) as u64, fault }));
                 }
             }
         }
@@ -261,23 +240,6 @@ impl Lines {
         }
         Ok(position)
     }
-}
-
-/// Returns the number, from 1, of the line with the first text at `byte` or after it. The CSV reader's own line number is too low
-/// where it skips empty lines before a record. Only a file with a fault is read again. Returns 0 if it can't be.
-fn line_at(path: &Path, byte: u64) -> u64 {
-    let Ok(file) = File::open(path) else { return 0 };
-    let (mut lines, mut place) = (1, 0);
-    for next in BufReader::new(file).bytes().map_while(Result::ok) {
-        match next {
-            b'\n' => lines += 1,
-            b'\r' => {}
-            _ if place >= byte => break,
-            _ => {}
-        }
-        place += 1;
-    }
-    lines
 }
 
 /// Parses a number. Where commas don't separate values, they may be the decimal point. Counts the decimals, those of numbers

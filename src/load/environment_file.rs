@@ -14,7 +14,7 @@ use image::{ImageDecoder, ImageError, ImageResult};
 use super::memory_budget::Budget;
 use super::panorama::{Panorama, Repaired};
 use crate::files::{FileError, Limits, read_file};
-use geometry::mesh::{MemoryAccount, MemoryRefused};
+use geometry::mesh::MemoryRefused;
 use geometry::names::{shown, shown_path};
 use geometry::progress::{Cancelled, Progress};
 
@@ -133,7 +133,7 @@ impl EnvironmentFile {
     /// [`EnvironmentFault`].
     pub fn read(bytes: &[u8], limits: &Limits, progress: &Progress) -> Result<Self, EnvironmentFault> {
         let kind = Kind::of(bytes)?;
-        let budget = Budget::new(bytes.len(), limits);
+        let budget = Budget::new(bytes.len(), limits.memory);
         let pixels = pixels(kind, bytes, &budget, &progress.part(0.0, 0.7));
         // Cancelling stops the decoder with some error.
         progress.check()?;

@@ -8,21 +8,22 @@ use glam::{Vec2, Vec3, Vec4};
 use super::import::Import;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::{Budget, edge_bytes};
+use super::model_file::ModelFile;
 use super::notes::Notes;
 use super::parts::Parts;
 use super::read_error::{FilePosition, ReadError};
 use super::recent_corners::{RecentCorners, VertexNumbers};
 use super::tangents;
 use super::triangle_block::{self, TriangleBlock};
+use super::uri::Files;
 use super::warnings::repair_warnings;
-use crate::files::Limits;
-use geometry::mesh::build_limits::{MAX_TRIANGLES, MemoryRefused};
+use geometry::mesh::build_limits::MAX_TRIANGLES;
 use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use geometry::mesh::mipmap::SRGB_TABLE;
 use geometry::mesh::polygon::{self, CutQuality, triangulate};
 use geometry::mesh::rig::LARGEST_COORDINATE;
-use geometry::mesh::{CornerDetail, Material, MemoryAccount, Mesh};
+use geometry::mesh::{CornerDetail, Material, Mesh, Slot};
 use geometry::progress::Progress;
 
 /// The greatest number of materials. A file with more is refused, since each takes memory and a draw call.
@@ -31,82 +32,47 @@ const MAX_MATERIALS: usize = 1 << 16;
 /// The greatest number of corners of a face. A file with a larger face is refused.
 pub(super) const MAX_CORNERS: usize = 1 << 19;
 
-/// What a reader finds in a file: its faces, what it holds in case it has no triangles, and warnings.
-pub(super) type Gathered<'a> = (FaceBuilder<'a>, String, Vec<String>);
-
-/// Builds a mesh called `name` from a file's bytes, whose faces `gather` reads.
+/// Builds a mesh from a file's bytes, whose faces `gather` reads. It also says what the file holds in case it has no triangles.
 ///
 /// # Errors
 /// Those of `gather`, [`ReadError::Empty`] and [`ReadError::Cancelled`].
 pub(super) fn read_faces(
     bytes: Vec<u8>,
-    name: &str,
-    import: Import,
-    limits: &Limits,
-    progress: &Progress,
-    gather: impl for<'a> FnOnce(&[u8], Import, &'a Budget, &'a Progress) -> Result<Gathered<'a>, ReadError>,
+    file: &ModelFile,
+    gather: impl for<'a> FnOnce(&[u8], &'a Files<'a>, FaceBuilder<'a>) -> Result<(FaceBuilder<'a>, String), ReadError>,
 ) -> Result<LoadedMesh, ReadError> {
-    let budget = Budget::new(bytes.len(), limits);
-    let (faces, holds, warnings) = gather(&bytes, import, &budget, progress)?;
+    let budget = Budget::new(bytes.len(), file.limits.memory);
+    let files = Files::new(file.folder, &file.limits, &budget, file.progress);
+    let (faces, holds) = gather(&bytes, &files, FaceBuilder::new(file, &budget))?;
     budget.release(bytes.len() as u64);
     drop(bytes);
-    faces.finish(name, holds, warnings, &progress.part(0.5, 1.0))
+    let loaded = faces.finish(file.name, holds, &file.progress.part(0.5, 1.0))?;
+    Ok(LoadedMesh { files: files.named(), ..loaded })
 }
 
 /// A corner of a face.
-pub(super) trait FaceCorner: Copy {
-    fn corner(&mut self) -> &mut InputCorner;
-
-    /// A number of the reader's. Corners with different ones aren't merged.
-    fn number(&self) -> u32 {
-        0
-    }
-
-    /// What determines the corner and its number, if the file has numbers for it.
-    fn vertex(&self) -> Option<VertexNumbers> {
-        None
-    }
-}
-
-impl FaceCorner for InputCorner {
-    fn corner(&mut self) -> &mut InputCorner {
-        self
-    }
-}
-
-/// A corner with its number.
 #[derive(Clone, Copy)]
 pub(super) struct NumberedCorner {
     pub corner: InputCorner,
+    /// A number of the reader's. Corners with different ones aren't merged.
     pub number: u32,
     /// What determines both, if the file has numbers for it. Then corners with the same numbers must be the same.
     pub vertex: Option<VertexNumbers>,
 }
 
-impl FaceCorner for NumberedCorner {
-    fn corner(&mut self) -> &mut InputCorner {
-        &mut self.corner
-    }
-
-    fn number(&self) -> u32 {
-        self.number
-    }
-
-    fn vertex(&self) -> Option<VertexNumbers> {
-        self.vertex
-    }
-}
-
 /// The mesh that is being built, and counts of what was repaired or left out.
 pub(super) struct FaceBuilder<'a> {
     memory: &'a Budget,
-    import: Import,
+    pub import: Import,
+    /// What was repaired or left out.
+    pub notes: Notes,
     parts: Parts,
     builder: MeshBuilder,
     recent: RecentCorners,
     block: TriangleBlock,
     /// The colours of corners, if the file has any, or if corners may need tangents.
     colors: Option<DetailTable>,
+    are_colored: bool,
     materials: usize,
     triangles: usize,
     work: polygon::WorkBudget,
@@ -127,19 +93,22 @@ pub(super) struct FaceBuilder<'a> {
 }
 
 impl<'a> FaceBuilder<'a> {
-    /// Starts a mesh from a file of `bytes` bytes.
-    pub(super) fn new(bytes: usize, memory: &'a Budget) -> Self {
+    /// Starts a mesh, whose normals are made, and whose parts are left out, as was selected.
+    pub(super) fn new(file: &ModelFile, memory: &'a Budget) -> Self {
+        let import = file.selected.import;
         Self {
             memory,
-            import: Import::default(),
-            parts: Parts::default(),
-            builder: MeshBuilder::new(),
+            import,
+            notes: Notes::default(),
+            parts: Parts::hiding(file.selected.hidden),
+            builder: MeshBuilder::with_crease_angle(import.crease_angle),
             recent: RecentCorners::default(),
             block: TriangleBlock::default(),
             colors: None,
+            are_colored: false,
             materials: 0,
             triangles: 0,
-            work: polygon::WorkBudget::new(bytes),
+            work: polygon::WorkBudget::new(usize::try_from(memory.files()).unwrap_or(usize::MAX)),
             too_small: 0,
             repeated: 0,
             somehow: 0,
@@ -150,22 +119,12 @@ impl<'a> FaceBuilder<'a> {
         }
     }
 
-    /// Makes normals as these options say. No face was added yet.
-    pub(super) fn importing(self, import: Import) -> Self {
-        Self { import, builder: MeshBuilder::with_crease_angle(import.crease_angle), ..self }
-    }
-
-    /// Leaves out the faces of parts with these names.
-    pub(super) fn hiding(self, hidden: &[String]) -> Self {
-        Self { parts: Parts::hiding(hidden), ..self }
-    }
-
     /// Says which part the next faces belong to, by its name.
     ///
     /// # Errors
     /// [`ReadError::TooLarge`].
     pub(super) fn enter_part(&mut self, name: &[u8]) -> Result<(), ReadError> {
-        self.parts.enter(name, self.memory).map_err(too_large)
+        Ok(self.parts.enter(name, self.memory)?)
     }
 
     /// Whether any part was entered.
@@ -201,6 +160,12 @@ impl<'a> FaceBuilder<'a> {
 
     /// Keeps the colours of corners, and gives them tangents where a normal map needs them.
     pub(super) fn color(&mut self) {
+        self.are_colored = true;
+        self.colors.get_or_insert_default();
+    }
+
+    /// Gives corners tangents if a normal map needs them.
+    pub(super) fn expect_normal_maps(&mut self) {
         self.colors.get_or_insert_default();
     }
 
@@ -211,7 +176,7 @@ impl<'a> FaceBuilder<'a> {
     /// [`ReadError::TooLarge`].
     pub(super) fn number(&mut self, color: Vec4) -> Result<u32, ReadError> {
         let Some(colors) = &mut self.colors else { return Ok(0) };
-        colors.number(CornerDetail { color, ..CornerDetail::default() }, 0, self.memory).map_err(too_large)
+        Ok(colors.number(CornerDetail { color, ..CornerDetail::default() }, 0, self.memory)?)
     }
 
     /// Announces that about `triangles` more triangles, and about `corners` more distinct corners, will be added.
@@ -233,16 +198,16 @@ impl<'a> FaceBuilder<'a> {
     pub(super) fn add(
         &mut self,
         material: usize,
-        corners: &mut Vec<impl FaceCorner>,
+        corners: &mut Vec<NumberedCorner>,
         place: FilePosition,
     ) -> Result<(), ReadError> {
-        if !corners.iter_mut().all(|corner| is_near(corner.corner())) {
+        if !corners.iter().all(|at| is_near(&at.corner)) {
             self.unplaced.0 += 1;
             self.unplaced.1.get_or_insert(place);
             return Ok(());
         }
         let bad_uvs = self.bad_uvs;
-        for corner in corners.iter_mut().map(FaceCorner::corner) {
+        for NumberedCorner { corner, .. } in corners.iter_mut() {
             if self.import.makes_normals() {
                 corner.normal = None;
             }
@@ -253,9 +218,9 @@ impl<'a> FaceBuilder<'a> {
         }
         if corners.len() > 3 {
             let given = corners.len();
-            corners.dedup_by_key(|corner| corner.corner().position);
-            let first = corners.first_mut().map(|corner| corner.corner().position);
-            if corners.len() > 1 && first == corners.last_mut().map(|corner| corner.corner().position) {
+            corners.dedup_by_key(|at| at.corner.position);
+            let first = corners.first().map(|at| at.corner.position);
+            if corners.len() > 1 && first == corners.last().map(|at| at.corner.position) {
                 corners.pop();
             }
             self.repeated += given - corners.len();
@@ -268,7 +233,7 @@ impl<'a> FaceBuilder<'a> {
             return Ok(());
         }
         self.make_room(material, corners.len() - 2)?;
-        self.builder.make_room(corners.len(), self.memory).map_err(too_large)?;
+        self.builder.make_room(corners.len(), self.memory)?;
         // Repairs are counted again wherever their vertices are used.
         self.cut(material, corners, bad_uvs == self.bad_uvs);
         Ok(())
@@ -324,7 +289,7 @@ impl<'a> FaceBuilder<'a> {
             }
             count += 1;
         }
-        self.builder.make_room(block.corners().len(), self.memory).map_err(too_large)?;
+        self.builder.make_room(block.corners().len(), self.memory)?;
         block.store(&mut recent, |corners, stored| self.builder.corners(corners, stored));
         self.recent = recent;
         self.parts.leave_out(count);
@@ -339,16 +304,15 @@ impl<'a> FaceBuilder<'a> {
         if self.triangles as u64 > MAX_TRIANGLES {
             return Err(ReadError::TooMany { limit: MAX_TRIANGLES, what: "triangles" });
         }
-        self.builder.make_room_for_triangles(material, triangles, self.memory).map_err(too_large)
+        Ok(self.builder.make_room_for_triangles(material, triangles, self.memory)?)
     }
 
     /// Cuts a face into triangles. Corners are remembered for faces with the same vertices, unless they were repaired.
-    fn cut<C: FaceCorner>(&mut self, material: usize, corners: &mut [C], is_remembered: bool) {
+    fn cut(&mut self, material: usize, corners: &[NumberedCorner], is_remembered: bool) {
         let (builder, recent) = (&mut self.builder, &mut self.recent);
-        let mut add = |triangle: [C; 3]| {
-            let stored = triangle.map(|mut corner| {
-                let vertex = corner.vertex();
-                let mut store = || builder.corner(*corner.corner(), corner.number());
+        let mut add = |triangle: [NumberedCorner; 3]| {
+            let stored = triangle.map(|NumberedCorner { corner, number, vertex }| {
+                let mut store = || builder.corner(corner, number);
                 match vertex.filter(|_| is_remembered) {
                     Some(vertex) => recent.get(vertex, store),
                     None => store(),
@@ -356,11 +320,11 @@ impl<'a> FaceBuilder<'a> {
             });
             builder.stored_triangle(material, stored);
         };
-        if let Ok(triangle) = (&*corners).try_into() {
-            add(triangle);
+        if let &[a, b, c] = corners {
+            add([a, b, c]);
             return;
         }
-        let outline: Vec<Vec3> = corners.iter_mut().map(|corner| corner.corner().position).collect();
+        let outline: Vec<Vec3> = corners.iter().map(|at| at.corner.position).collect();
         self.cut.clear();
         let cut = triangulate(&outline, &mut self.work, &mut self.cut);
         self.somehow += usize::from(cut == CutQuality::MayOverlap);
@@ -369,33 +333,26 @@ impl<'a> FaceBuilder<'a> {
         }
     }
 
-    /// Builds the mesh. `holds` says what the file has instead if it has no triangles; `warnings` are the reader's own.
+    /// Builds the mesh. `holds` says what the file has instead if it has no triangles.
     ///
     /// # Errors
     /// [`ReadError::Empty`] and [`ReadError::Cancelled`].
-    pub(super) fn finish(
-        mut self,
-        name: &str,
-        holds: String,
-        warnings: Vec<String>,
-        progress: &Progress,
-    ) -> Result<LoadedMesh, ReadError> {
+    pub(super) fn finish(mut self, name: &str, holds: String, progress: &Progress) -> Result<LoadedMesh, ReadError> {
         let (file_bytes, memory, colors) = (self.memory.files(), self.memory, self.colors.take());
+        let are_colored = self.are_colored;
         let hides_all = self.builder.is_empty() && self.parts.are_hidden();
         let holds = if hides_all { format!("{holds}, and its parts are hidden") } else { holds };
         let (parts, beyond) = std::mem::take(&mut self.parts).into_list();
-        let (mut mesh, numbers, mut warnings) = self.finish_numbered(name, holds, warnings, progress)?;
-        if let Some(colors) = colors {
-            let mut notes = Notes::default();
+        let (mut mesh, numbers, mut notes) = self.finish_numbered(name, holds, progress)?;
+        let has_normals = |material: &Material| material.look.maps[Slot::Normal as usize].is_some();
+        if let Some(colors) = colors.filter(|_| are_colored || mesh.materials.iter().any(has_normals)) {
             tangents::with_details(&mut mesh, colors, &numbers, &mut notes, (memory, progress))?;
-            warnings.extend(notes.into_warnings());
         }
-        let beyond = (beyond, "objects and groups beyond the first 65,536, which can't be hidden");
-        warnings.extend(counted([beyond]));
-        Ok(LoadedMesh { mesh, warnings, parts, file_bytes, ..LoadedMesh::default() })
+        notes.extend(counted([(beyond, "objects and groups beyond the first 65,536, which can't be hidden")]));
+        Ok(LoadedMesh { mesh, warnings: notes.into_warnings(), parts, file_bytes, ..LoadedMesh::default() })
     }
 
-    /// Builds the mesh as [`finish`](Self::finish) does, and returns each corner's number and the warnings too.
+    /// Builds the mesh as [`finish`](Self::finish) does, and returns each corner's number and the notes too.
     ///
     /// # Errors
     /// As [`finish`](Self::finish).
@@ -403,9 +360,8 @@ impl<'a> FaceBuilder<'a> {
         mut self,
         name: &str,
         holds: String,
-        mut warnings: Vec<String>,
         progress: &Progress,
-    ) -> Result<(Mesh, Vec<u32>, Vec<String>), ReadError> {
+    ) -> Result<(Mesh, Vec<u32>, Notes), ReadError> {
         // No more corners are stored.
         (self.recent, self.block) = Default::default();
         if self.builder.is_empty() {
@@ -416,8 +372,9 @@ impl<'a> FaceBuilder<'a> {
             let flawed: String = self.flawed().map(|flawed| format!(", and {flawed}")).collect();
             return Err(ReadError::Empty { holds: holds + &small + &flawed });
         }
-        warnings.extend(self.flawed().map(|flawed| format!("{flawed}; they are left out.")));
-        warnings.extend(counted([
+        let flawed = self.flawed().map(|flawed| format!("{flawed}; they are left out."));
+        self.notes.extend(flawed);
+        self.notes.extend(counted([
             (self.bad_uvs, "uvs that aren't finite, replaced by (0, 0)"),
             (self.too_small, "faces of fewer than 3 corners, left out"),
             (self.repeated, "corners of polygons at the position of the corner before, left out"),
@@ -427,8 +384,8 @@ impl<'a> FaceBuilder<'a> {
             ),
         ]));
         let (mesh, numbers) = self.builder.finish_bound(name.to_owned(), self.memory, progress)?;
-        warnings.extend(repair_warnings(&mesh.repairs, &self.import));
-        Ok((mesh, numbers, warnings))
+        self.notes.extend(repair_warnings(&mesh.repairs, &self.import));
+        Ok((mesh, numbers, self.notes))
     }
 
     /// Says how many faces have impossible positions, and how many have numbers of positions that aren't there, if any.
@@ -455,10 +412,6 @@ fn faces_with(count: usize, what: &str, first: &str) -> String {
 /// Whether a position can be drawn. A comparison with NaN is false.
 pub(super) fn is_near(corner: &InputCorner) -> bool {
     corner.position.abs().cmple(Vec3::splat(LARGEST_COORDINATE)).all()
-}
-
-fn too_large(refused: MemoryRefused) -> ReadError {
-    ReadError::TooLarge { reason: refused.into() }
 }
 
 /// Decodes a vertex's colour: red, green and blue are encoded as sRGB, as scanners and painting programs write them.

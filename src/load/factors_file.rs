@@ -3,6 +3,7 @@
 
 use thiserror::Error;
 
+use super::text_lines::line_at;
 use geometry::mesh::Topology;
 use geometry::tessellate::{HullFactors, Partitioning, RowChoice};
 
@@ -91,7 +92,7 @@ pub fn from_csv(
 ) -> Result<Vec<HullFactors>, FactorsError> {
     let mut reader = csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(text.as_bytes());
     let byte = |at: Option<&csv::Position>| at.map_or(0, |at| at.byte() as usize);
-    let fault = |byte: usize, fault| FactorsError { line: line_at(text, byte), fault };
+    let fault = |byte: usize, fault| FactorsError { line: line_at(text.as_bytes(), byte), fault };
     let columns = match reader.headers() {
         Ok(header) if header == columns(false) => columns(false),
         Ok(header) if header == columns(true) && partitioning == Partitioning::Rows => columns(true),
@@ -110,7 +111,7 @@ pub fn from_csv(
         let beyond = LineFault::Beyond { patch, count: triangles };
         let place = lines.get_mut(patch as usize).ok_or_else(|| fault(at, beyond))?;
         if let Some((first, _)) = place {
-            let first = line_at(text, *first);
+            let first = line_at(text.as_bytes(), *first);
             return Err(fault(at, LineFault::Again { patch, first }));
         }
         *place = Some((at, factors));
@@ -150,15 +151,6 @@ fn line(record: &csv::StringRecord, columns: &'static [&'static str]) -> Result<
         other => return Err(LineFault::Base(quoted(other))),
     };
     Ok((patch, HullFactors { edges, inside: RowChoice { base, width: number(5)? }.inside() }))
-}
-
-/// Returns the number, from 1, of the line with the first text at `byte` or after it. The CSV reader's own line number
-/// is too low where it skips empty lines before a record.
-fn line_at(text: &str, byte: usize) -> usize {
-    let bytes = text.as_bytes();
-    let start = byte.min(bytes.len());
-    let passed = bytes[start..].iter().take_while(|&&byte| byte == b'\n' || byte == b'\r').count();
-    1 + bytes[..start + passed].iter().filter(|&&byte| byte == b'\n').count()
 }
 
 #[cfg(test)]

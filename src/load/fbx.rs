@@ -21,20 +21,16 @@ mod surfaces;
 mod textures;
 mod vertices;
 
-use std::path::Path;
 use std::sync::Arc;
 
-use super::import::Import;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
+use super::model_file::ModelFile;
 use super::notes::Notes;
 use super::read_error::ReadError;
 use super::rig_builder::RigBuilder;
 use super::tangents;
 use super::uri::Files;
-use crate::files::Limits;
-use geometry::mesh::{MemoryAccount, MemoryRefused};
-use geometry::progress::Progress;
 
 use nodes::Placed;
 use surfaces::Surfaces;
@@ -45,21 +41,12 @@ const STACK: usize = 8 << 20;
 
 /// Builds a mesh from a file's bytes.
 ///
-/// `folder` is the file's folder; `name` becomes the mesh's name. `limits` apply to the textures that the file names.
-///
 /// # Errors
 /// [`ReadError`]. A missing texture isn't an error but a warning.
-pub(super) fn read(
-    bytes: Vec<u8>,
-    folder: &Path,
-    name: &str,
-    import: Import,
-    limits: &Limits,
-    progress: &Progress,
-) -> Result<LoadedMesh, ReadError> {
-    let job = || read_here(bytes, folder, name, import, limits, progress);
+pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, ReadError> {
     std::thread::scope(|scope| {
-        let thread = std::thread::Builder::new().name("fbx".to_owned()).stack_size(STACK).spawn_scoped(scope, job);
+        let thread = std::thread::Builder::new().name("fbx".to_owned()).stack_size(STACK);
+        let thread = thread.spawn_scoped(scope, || read_here(bytes, file));
         let thread = thread.map_err(|error| ReadError::NoThread { reason: error.to_string() })?;
         thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     })
@@ -69,40 +56,34 @@ pub(super) fn read(
 ///
 /// # Errors
 /// As [`read`].
-pub(super) fn read_here(
-    bytes: Vec<u8>,
-    folder: &Path,
-    name: &str,
-    import: Import,
-    limits: &Limits,
-    progress: &Progress,
-) -> Result<LoadedMesh, ReadError> {
-    let budget = Budget::new(bytes.len(), limits);
+pub(super) fn read_here(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, ReadError> {
+    let (import, progress) = (file.selected.import, file.progress);
+    let budget = Budget::new(bytes.len(), file.limits.memory);
     let scene = parse::scene(&bytes, &import, &budget, &progress.part(0.0, 0.3))?;
     budget.release(bytes.len() as u64);
     drop(bytes);
     let mut notes = Notes::default();
     left_out::warn(&scene, &mut notes);
     let mut placed = Placed::new(&scene, import.show_hidden, &budget, &mut notes)?;
-    let clips = clips::read(&scene, &placed, (&budget, &progress.part(0.3, 0.4)), &mut notes)?;
+    let clips = clips::read(&scene, &placed, &budget, &progress.part(0.3, 0.4), &mut notes)?;
     placed.grow(&clips);
     let mut warnings = Vec::new();
     let binder = RigBuilder::new(clips, &placed.scene, &mut warnings);
     notes.extend(warnings);
-    let files = Files::new(folder, limits, &budget, progress);
-    let mut surfaces = Surfaces::new(&scene, &placed, import, (&files, &budget), binder)?;
+    let files = Files::new(file.folder, &file.limits, &budget, progress);
+    let mut surfaces = Surfaces::new(&scene, &placed, file, &files, binder)?;
     for (i, &node) in placed.shown.iter().enumerate() {
         progress.set(0.4 + 0.4 * i as f32 / placed.shown.len() as f32);
         surfaces.add(node, progress)?;
     }
     let holds = left_out::holds(&scene, &placed);
-    let (faces, details, binder) = surfaces.into_parts(&mut notes);
+    let (mut faces, details, binder) = surfaces.into_parts(&mut notes);
+    faces.notes = notes;
     budget.release(scene.metadata.result_memory_used as u64);
     drop(placed);
     drop(scene);
     progress.set(0.8);
-    let (mut mesh, mut numbers, warnings) = faces.finish_numbered(name, holds, Vec::new(), &progress.part(0.8, 1.0))?;
-    notes.extend(warnings);
+    let (mut mesh, mut numbers, mut notes) = faces.finish_numbered(file.name, holds, &progress.part(0.8, 1.0))?;
     if let Some(details) = details {
         numbers = tangents::with_details(&mut mesh, details, &numbers, &mut notes, (&budget, progress))?;
     }
@@ -113,10 +94,6 @@ pub(super) fn read_here(
     }
     let (files, file_bytes) = (files.named(), budget.files());
     Ok(LoadedMesh { mesh, warnings: notes.into_warnings(), files, file_bytes, ..LoadedMesh::default() })
-}
-
-fn too_large(refused: MemoryRefused) -> ReadError {
-    ReadError::TooLarge { reason: refused.into() }
 }
 
 #[cfg(test)]

@@ -65,7 +65,7 @@ use crate::files::Limits;
 use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::mesh_builder::MeshBuilder;
 use geometry::mesh::rig::Joint;
-use geometry::mesh::{Borrowed, MemoryAccount, Mesh};
+use geometry::mesh::{Borrowed, Mesh};
 use geometry::progress::Progress;
 
 use accessor::Accessors;
@@ -91,7 +91,7 @@ pub(super) fn read(
     limits: &Limits,
     progress: &Progress,
 ) -> Result<LoadedMesh, GltfError> {
-    let budget = Budget::new(bytes.len(), limits);
+    let budget = Budget::new(bytes.len(), limits.memory);
     let mut parsed = document::parse(bytes, selected, &budget, progress)?;
     let (document, notes) = (&parsed.document, &mut parsed.notes);
     let (extensions, reach, lists) = (&parsed.extensions, &parsed.reach, &parsed.lists);

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use image::ColorType;
 
 use super::memory_budget::Budget;
-use geometry::mesh::build_limits::{MemoryAccount, MemoryRefused};
+use geometry::mesh::build_limits::MemoryRefused;
 use geometry::mesh::heights::{HeightMap, Heights, MAX_KEPT, MAX_MAPS, angle_bytes};
 use geometry::mesh::{Mesh, Texture};
 use geometry::names::shown_path;

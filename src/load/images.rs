@@ -9,7 +9,7 @@ use super::memory_budget::Budget;
 use super::texture_room::decoded_bytes;
 use super::webp;
 use geometry::mesh::Texture;
-use geometry::mesh::build_limits::{Borrowed, MemoryAccount, MemoryRefused, borrowing};
+use geometry::mesh::build_limits::{Borrowed, MemoryRefused, borrowing};
 use geometry::mesh::mipmap::{MipFilter, RowHalver, halved, level_size};
 
 /// The greatest width and height of a texture that is read, in px.

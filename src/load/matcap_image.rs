@@ -27,7 +27,7 @@ pub enum MatcapError {
 /// [`MatcapError`].
 pub fn load_matcap(path: &Path, limits: &Limits) -> Result<Texture, MatcapError> {
     let bytes = read_file::<FileError>(path, limits, |_| Ok(()), &Progress::new())?;
-    let budget = Budget::new(bytes.len(), limits);
+    let budget = Budget::new(bytes.len(), limits.memory);
     decode_texture(&bytes, &budget).map_err(|reason| MatcapError::Image { path: path.to_owned(), reason })
 }
 

@@ -7,10 +7,10 @@ use super::format::{Format, extension_of, known_extensions};
 use super::gltf::{self, GltfError, scenes};
 use super::heights::HeightError;
 use super::loaded_mesh::LoadedMesh;
-use super::notes::Notes;
+use super::model_file::ModelFile;
 use super::read_error::ReadError;
 use super::selection::Selection;
-use super::text_lines::of_utf16;
+use super::text_lines::in_utf8;
 use super::unread_formats::{self, UnreadFormat};
 use super::{fbx, obj, off, ply, stl, threemf};
 use crate::files::{FileError, Limits, Stamp, read_file};
@@ -264,11 +264,6 @@ fn begins_as_json(start: &[u8]) -> bool {
     matches!(text.first(), None | Some(b'{' | b'['))
 }
 
-/// Returns a text in UTF-16 in UTF-8. That takes half as much memory again, which every file is allowed.
-fn in_utf8(bytes: Vec<u8>) -> Vec<u8> {
-    of_utf16(&bytes, |_| Ok::<(), ()>(())).ok().flatten().unwrap_or(bytes)
-}
-
 /// Builds a mesh from a file's bytes, as [`load`] does. `path` is the path of the file; the files that it names are
 /// looked for in its folder. A variant or a scene that the file doesn't have is left aside.
 ///
@@ -282,29 +277,22 @@ pub fn read(
     limits: &Limits,
     progress: &Progress,
 ) -> Result<LoadedMesh, LoadError> {
-    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    let name = &path.file_stem().unwrap_or_default().to_string_lossy();
     let folder = path.parent().unwrap_or(Path::new(""));
-    let import = selected.import;
+    let file = &ModelFile { folder, name, selected, limits: *limits, progress };
+    let broken = |fault| of_fault(fault, path);
     let mut loaded = match format {
         Format::Gltf => {
-            gltf::read(bytes, folder, &name, selected, limits, progress).map_err(|problem| of_problem(problem, path))
+            gltf::read(bytes, folder, name, selected, limits, progress).map_err(|problem| of_problem(problem, path))
         }
-        Format::Fbx => fbx::read(bytes, folder, &name, import, limits, progress).map_err(|fault| of_fault(fault, path)),
-        Format::Obj => {
-            obj::read(bytes, folder, &name, selected, limits, progress).map_err(|fault| of_fault(fault, path))
-        }
-        Format::Stl => stl::read(bytes, &name, selected, limits, progress).map_err(|fault| of_fault(fault, path)),
-        Format::Ply => ply::read(bytes, folder, &name, import, limits, progress).map_err(|fault| of_fault(fault, path)),
-        Format::Off => off::read(bytes, &name, import, limits, progress).map_err(|fault| of_fault(fault, path)),
-        Format::ThreeMf => threemf::read(bytes, &name, import, limits, progress).map_err(|fault| of_fault(fault, path)),
+        Format::Fbx => fbx::read(bytes, file).map_err(broken),
+        Format::Obj => obj::read(bytes, file).map_err(broken),
+        Format::Stl => stl::read(bytes, file).map_err(broken),
+        Format::Ply => ply::read(bytes, file).map_err(broken),
+        Format::Off => off::read(bytes, file).map_err(broken),
+        Format::ThreeMf => threemf::read(bytes, file).map_err(broken),
     }?;
-    import.place(&mut loaded.mesh);
-    // The other readers' lists are short already, and end with how many sentences are left out.
-    if matches!(format, Format::Obj | Format::Stl | Format::Ply | Format::Off) {
-        let mut notes = Notes::default();
-        notes.extend(std::mem::take(&mut loaded.warnings));
-        loaded.warnings = notes.into_warnings();
-    }
+    selected.import.place(&mut loaded.mesh);
     Ok(loaded)
 }
 

@@ -2,14 +2,13 @@
 //!
 //! All groups and objects become one mesh, of which some may be left out. Weights are ignored. The file is read twice, on all
 //! cores: first vertices and materials, then faces, so that faces may come before their vertices. If smoothing groups make
-//! normals, it is read a third time in between.
+//! normals, faces are read twice.
 //!
 //! The crate `tobj` isn't used. It panics on an index near 2^63, gives a corner without a normal the normal of another
 //! corner, doesn't know continued lines, and names no line in its errors.
 //!
 //! Source: Wavefront Technologies 1992, "Advanced Visualizer Manual", appendix B1.
 
-mod bump_maps;
 mod faces;
 mod materials;
 mod mtl;
@@ -19,27 +18,21 @@ mod textures;
 mod vertices;
 
 use std::borrow::Cow;
-use std::path::Path;
 
 use glam::Vec4;
 
-use super::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, counted, linear_color};
+use super::face_builder::{FaceBuilder, NumberedCorner, counted, linear_color, read_faces};
 use super::import::Import;
 use super::loaded_mesh::LoadedMesh;
-use super::memory_budget::Budget;
+use super::model_file::ModelFile;
 use super::read_error::{FilePosition, ReadError};
 use super::recent_corners::VertexNumbers;
-use super::selection::Selection;
-use super::text_lines::{Line, Lines, first_word, of_utf16, shown, words};
+use super::text_lines::{Line, Lines, first_word, in_utf8};
 use super::triangle_block::BLOCK;
 use super::uri::Files;
-use crate::files::Limits;
-use geometry::mesh::MemoryAccount;
-use geometry::mesh::build_limits::MemoryRefused;
 use geometry::mesh::mesh_builder::InputCorner;
-use geometry::progress::Progress;
 
-use faces::{FacePiece, Found, NONE, StatementCounts, fitting, index};
+use faces::{FacePiece, Found, NONE, StatementCounts};
 use materials::Materials;
 use pieces::{Piece, in_pieces};
 use smoothing::Smoothing;
@@ -50,68 +43,64 @@ const DEFAULT_PART: &[u8] = b"default";
 
 /// Builds a mesh from a file's bytes.
 ///
-/// `folder` is the file's folder; `name` becomes the mesh's name.
-///
 /// # Errors
 /// [`ReadError`]. A missing material or texture isn't an error but a warning.
-pub(super) fn read(
-    bytes: Vec<u8>,
-    folder: &Path,
-    name: &str,
-    selected: Selection,
-    limits: &Limits,
-    progress: &Progress,
-) -> Result<LoadedMesh, ReadError> {
-    let Selection { import, hidden, .. } = selected;
-    let budget = Budget::new(bytes.len(), limits);
-    let bytes = of_utf16(&bytes, |bytes| budget.hold(bytes)).map_err(too_large)?.unwrap_or(bytes);
-    let files = Files::new(folder, limits, &budget, progress);
-    let pieces = Piece::all(&bytes);
+pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, ReadError> {
+    read_faces(in_utf8(bytes), file, gather)
+}
+
+/// Reads all faces.
+fn gather<'a>(
+    bytes: &[u8],
+    files: &'a Files<'a>,
+    faces: FaceBuilder<'a>,
+) -> Result<(FaceBuilder<'a>, String), ReadError> {
+    let (budget, progress) = (files.budget, files.progress);
+    let pieces = Piece::all(bytes);
     let (mut vertices, mut above) = (Vertices::default(), Vec::with_capacity(pieces.len()));
-    let mut materials = Materials::new(&files, &budget);
-    let take = |_: &Piece, more: VertexPiece| {
+    let mut materials = Materials::new(files);
+    let take = |more: VertexPiece| {
         above.push(vertices.counts());
-        vertices.add(&more, &budget)?;
+        vertices.add(&more, budget)?;
         more.libraries.iter().for_each(|names| materials.add_library(names));
         more.error.map_or(Ok(()), Err)
     };
-    in_pieces(&pieces, |_, piece| VertexPiece::parse(piece), take, (&budget, &progress.part(0.0, 0.2)))?;
-    bump_maps::find_normal_maps(&mut materials, &pieces, (&budget, &progress.part(0.2, 0.25)))?;
+    in_pieces(&pieces, |_, piece| VertexPiece::parse(piece), take, budget, &progress.part(0.0, 0.25))?;
     let counts = vertices.counts();
-    let mut smoothing = Smoothing::new(&vertices, &budget);
-    let is_smoothed = vertices.is_smoothed && !import.makes_normals();
+    let parse = |i: usize, piece: &Piece| FacePiece::parse(piece, above[i], counts);
+    let held = budget.held();
+    let mut smoothing = Smoothing::new(&vertices, budget);
+    let is_smoothed = vertices.is_smoothed && !faces.import.makes_normals();
     if is_smoothed {
-        each(&bytes, &progress.part(0.25, 0.3), |line| smoothing.take(line))?;
+        in_pieces(&pieces, parse, |made| smoothing.take(&made), budget, &progress.part(0.25, 0.3))?;
     }
+    let of_smoothing = budget.held() - held;
     let mut reader = Reader {
         vertices: &vertices,
-        above: [0; 3],
-        faces: FaceBuilder::new(bytes.len(), &budget).importing(import).hiding(hidden),
+        faces,
         materials,
         part: Default::default(),
         smoothing: is_smoothed.then_some(smoothing),
         corners: Vec::new(),
-        numbers: Vec::new(),
         found: Counts::default(),
     };
-    if !vertices.colors.is_empty() || reader.materials.have_normal_maps() {
+    if !vertices.colors.is_empty() {
         reader.faces.color();
     }
-    let parse = |i: usize, piece: &Piece| FacePiece::parse(piece, above[i], counts);
-    let take = |piece: &Piece, made| reader.take_piece(piece, made);
-    in_pieces(&pieces, parse, take, (&budget, &progress.part(0.3, 0.5)))?;
-    reader.smoothing.take().into_iter().for_each(Smoothing::release);
-    let freed = bytes.len() as u64 + vertices.bytes();
-    reader.materials.read_textures(&mut reader.faces, freed, progress)?;
-    let mut warnings = reader.materials.warnings();
-    warnings.extend(reader.found.warnings(&import, &vertices));
-    let holds = reader.found.holds(&vertices);
-    let faces = reader.faces;
-    budget.release(freed);
-    drop(pieces);
-    drop((bytes, vertices));
-    let loaded = faces.finish(name, holds, warnings, &progress.part(0.5, 1.0))?;
-    Ok(LoadedMesh { files: files.named(), ..loaded })
+    if reader.materials.may_have_normal_maps() {
+        reader.faces.expect_normal_maps();
+    }
+    in_pieces(&pieces, parse, |made| reader.take_piece(made), budget, &progress.part(0.3, 0.5))?;
+    reader.smoothing = None;
+    budget.release(of_smoothing);
+    let Reader { mut faces, mut materials, found, .. } = reader;
+    materials.read_textures(&mut faces, bytes.len() as u64 + vertices.bytes())?;
+    faces.notes.extend(materials.warnings());
+    let warnings = found.warnings(&faces.import, &vertices);
+    faces.notes.extend(warnings);
+    let holds = found.holds(&vertices);
+    budget.release(vertices.bytes());
+    Ok((faces, holds))
 }
 
 /// A statement: a line, joined with the lines that continue it.
@@ -143,39 +132,24 @@ impl<'a> Statement<'a> {
 }
 
 /// Calls `take` with each statement.
-fn each(
-    bytes: &[u8],
-    progress: &Progress,
+///
+/// # Errors
+/// [`ReadError::Broken`] for a line that is too long, and those of `take`.
+fn each_statement(
+    mut lines: Lines,
     mut take: impl FnMut(&Statement) -> Result<(), ReadError>,
 ) -> Result<(), ReadError> {
-    let (mut lines, mut next) = (Lines::new(bytes), 0);
-    let mut taken = Ok(());
-    while next_statement(&mut lines, |statement| taken = take(statement))? {
-        std::mem::replace(&mut taken, Ok(()))?;
-        if lines.count() >= next {
-            next = lines.count() + 4096;
-            progress.set(1.0 - lines.rest().len() as f32 / bytes.len() as f32);
-            progress.check()?;
+    while let Some(line) = lines.next()? {
+        // A comment may end with a backslash, as in the path of a Windows folder.
+        let is_whole = line.text.last() != Some(&b'\\') || line.text.trim_ascii_start().starts_with(b"#");
+        if is_whole {
+            take(&Statement::of(&line))?;
+        } else {
+            let text = continued(line.text, &mut lines)?;
+            take(&Statement::of(&Line { text: &text, number: line.number }))?;
         }
     }
     Ok(())
-}
-
-/// Passes the next statement to `take`. Returns false at the end of the text.
-///
-/// # Errors
-/// [`ReadError::Broken`] for a line that is too long.
-fn next_statement(lines: &mut Lines, take: impl FnOnce(&Statement)) -> Result<bool, ReadError> {
-    let Some(line) = lines.next()? else { return Ok(false) };
-    // A comment may end with a backslash, as in the path of a Windows folder.
-    let is_whole = line.text.last() != Some(&b'\\') || line.text.trim_ascii_start().starts_with(b"#");
-    if is_whole {
-        take(&Statement::of(&line));
-    } else {
-        let text = continued(line.text, lines)?;
-        take(&Statement::of(&Line { text: &text, number: line.number }));
-    }
-    Ok(true)
 }
 
 /// Returns a line joined with the lines that continue it. A line that ends with `\` is continued.
@@ -201,10 +175,6 @@ fn without_comment(text: &[u8]) -> &[u8] {
     &text[..comment.unwrap_or(text.len())]
 }
 
-fn too_large(refused: MemoryRefused) -> ReadError {
-    ReadError::TooLarge { reason: refused.into() }
-}
-
 /// What was found among the faces.
 #[derive(Default)]
 struct Counts {
@@ -214,27 +184,20 @@ struct Counts {
     without_normals: usize,
     /// Faces whose missing normals came from their smoothing groups.
     smoothed: usize,
-    /// Corners with more than three numbers.
-    long_corners: usize,
-    /// Corners whose normal, or whose texture coordinates, aren't in the file.
-    absent_normals: usize,
-    absent_uvs: usize,
 }
 
 impl Counts {
-    fn warnings(&self, import: &Import, vertices: &Vertices) -> impl Iterator<Item = String> {
+    fn warnings(&self, import: &Import, vertices: &Vertices) -> impl Iterator<Item = String> + use<> {
         let lacking = import.lacking_normals(self.without_normals, "faces without normals, or with some missing");
-        let StatementCounts { points, lines, surfaces, calls, unknown } = self.statements;
+        let StatementCounts { points, lines, surfaces, calls, unknown, .. } = self.statements;
+        let StatementCounts { long_corners, absent_uvs, absent_normals, .. } = self.statements;
         let others = counted([
             (self.smoothed, "faces without normals, or with some missing, which got those of their smoothing groups"),
             (vertices.with_commas, "statements with a comma in a number, which was taken for its point"),
             (vertices.flat, "positions of two numbers, which are placed at z = 0"),
-            (self.long_corners, "corners with more than three numbers, of which the first three are read"),
-            (self.absent_normals, "corners with the number of a normal that isn't in the file, left out"),
-            (
-                self.absent_uvs,
-                "corners with the number of texture coordinates that aren't in the file, replaced by (0, 0)",
-            ),
+            (long_corners, "corners with more than three numbers, of which the first three are read"),
+            (absent_normals, "corners with the number of a normal that isn't in the file, left out"),
+            (absent_uvs, "corners with the number of texture coordinates that aren't in the file, replaced by (0, 0)"),
             (points, "points (p), left out"),
             (lines, "lines (l), left out"),
             (surfaces, "free-form curves and surfaces (curv, curv2, surf), which aren't read"),
@@ -272,51 +235,51 @@ fn triangles(faces: &[Found], start: usize) -> usize {
 /// Reads the faces of a file.
 struct Reader<'v, 'a> {
     vertices: &'v Vertices,
-    /// The numbers of positions, texture coordinates and normals above the current statement.
-    above: [usize; 3],
     faces: FaceBuilder<'a>,
     materials: Materials<'a>,
     /// The names of the object and of the group that the next faces belong to.
     part: [Vec<u8>; 2],
     /// The normals that smoothing groups make, if there are groups.
     smoothing: Option<Smoothing<'v>>,
-    /// The corners of the face that is being read, and their numbers.
+    /// The corners of the face that is being read.
     corners: Vec<NumberedCorner>,
-    numbers: Vec<VertexNumbers>,
     found: Counts,
 }
 
 impl Reader<'_, '_> {
-    /// Takes the faces of the next piece of the file, and what else it has.
-    fn take_piece(&mut self, piece: &Piece, made: FacePiece) -> Result<(), ReadError> {
-        self.found.statements.add(made.counts);
-        let (mut start, mut found) = (0, made.found.as_slice());
+    /// Takes what was found in the next piece of the file.
+    fn take_piece(&mut self, made: FacePiece) -> Result<(), ReadError> {
+        let FacePiece { found, corners, counts, error } = made;
+        self.found.statements.add(counts);
+        let (mut start, mut found) = (0, found.as_slice());
         while let [first, others @ ..] = found {
             let run = triangles(found, start);
             if run > 0 {
                 let (faces, others) = found.split_at(run);
                 let end = start + 3 * run;
-                self.take_triangles(faces, made.corners[start..end].as_chunks().0)?;
+                self.take_triangles(faces, corners[start..end].as_chunks().0)?;
                 (start, found) = (end, others);
                 continue;
             }
-            match *first {
+            match first {
                 Found::Face { line, end } => {
                     self.found.faces += 1;
-                    self.add_face(&made.corners[start..end as usize], FilePosition::Line(line))?;
-                    start = end as usize;
+                    self.add_face(&corners[start..*end as usize], FilePosition::Line(*line))?;
+                    start = *end as usize;
                 }
-                Found::Other { at, lines, above } => {
-                    self.above = above.map(|count| count as usize);
-                    let mut taken = Ok(());
-                    let mut lines = piece.lines_from(at as usize, lines);
-                    next_statement(&mut lines, |statement| taken = self.take(statement))?;
-                    taken?;
+                Found::Absent { line } => {
+                    self.found.faces += 1;
+                    self.begin_parts()?;
+                    self.faces.leave_out(FilePosition::Line(*line));
                 }
+                Found::Smoothing(group) => self.smoothing.iter_mut().for_each(|smoothing| smoothing.group = *group),
+                Found::Object(name) => self.enter_part(0, name)?,
+                Found::Group(name) => self.enter_part(1, name)?,
+                Found::Material(name) => self.materials.enter(name),
             }
             found = others;
         }
-        made.error.map_or(Ok(()), Err)
+        error.map_or(Ok(()), Err)
     }
 
     /// Takes faces that are triangles, and their corners.
@@ -334,21 +297,9 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// Takes a statement that isn't a plain face.
-    fn take(&mut self, statement: &Statement) -> Result<(), ReadError> {
-        match statement.word {
-            b"f" | b"fo" => self.face(statement)?,
-            b"s" => self.smoothing.iter_mut().for_each(|smoothing| smoothing.enter(statement.rest())),
-            word @ (b"o" | b"g") => self.enter_part(word, statement.rest())?,
-            b"usemtl" => self.materials.enter(statement.rest()),
-            _ => {}
-        }
-        Ok(())
-    }
-
-    /// Begins an object (`o`) or a group (`g`). A part is a group of an object.
-    fn enter_part(&mut self, word: &[u8], name: &[u8]) -> Result<(), ReadError> {
-        self.part[usize::from(word == b"g")] = name.to_vec();
+    /// Begins an object (0) or a group (1). A part is a group of an object.
+    fn enter_part(&mut self, kind: usize, name: &[u8]) -> Result<(), ReadError> {
+        self.part[kind] = name.to_vec();
         let [object, group] = &self.part;
         match (object.is_empty(), group.is_empty()) {
             (true, true) => self.faces.enter_part(DEFAULT_PART),
@@ -356,29 +307,6 @@ impl Reader<'_, '_> {
             (false, _) if group.is_empty() || group == object => self.faces.enter_part(object),
             (false, _) => self.faces.enter_part(&[object, &b"/"[..], group].concat()),
         }
-    }
-
-    fn face(&mut self, statement: &Statement) -> Result<(), ReadError> {
-        self.found.faces += 1;
-        let mut numbers = std::mem::take(&mut self.numbers);
-        numbers.clear();
-        for word in words(statement.rest()) {
-            if numbers.len() == MAX_CORNERS {
-                return Err(statement.place().error(format!("the face has more than {MAX_CORNERS} corners")));
-            }
-            match self.corner(word).map_err(|reason| statement.place().error(reason))? {
-                Some(corner) => numbers.push(corner),
-                None => {
-                    self.begin_parts()?;
-                    self.faces.leave_out(statement.place());
-                    self.numbers = numbers;
-                    return Ok(());
-                }
-            }
-        }
-        self.add_face(&numbers, statement.place())?;
-        self.numbers = numbers;
-        Ok(())
     }
 
     /// Enters the part of faces that belong to none, if there was none before.
@@ -427,31 +355,6 @@ impl Reader<'_, '_> {
         let added = self.faces.add_triangles(material, plain, |vertex| Some(corner_of(vertices, vertex)))?;
         self.found.without_normals += plain[..added].iter().filter(|triangle| lacks_normals(triangle)).count();
         Ok(added)
-    }
-
-    /// Parses a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`. Returns its numbers; none if the position isn't in the file.
-    ///
-    /// # Errors
-    /// A clause that says what isn't a number.
-    fn corner(&mut self, word: &[u8]) -> Result<Option<VertexNumbers>, String> {
-        let mut parts = word.split(|&byte| byte == b'/');
-        let [position, uv, normal] = [0, 1, 2].map(|_| parts.next().filter(|part| !part.is_empty()));
-        self.found.long_corners += usize::from(parts.next().is_some());
-        let Some(position) = position else {
-            return Err(format!("{} isn't a corner, such as 1, 1/2, 1//3 or 1/2/3", shown(word)));
-        };
-        let counts = self.vertices.counts();
-        let Some(position) = index(position, self.above[0], counts[0])?.and_then(fitting) else { return Ok(None) };
-        // A corner needs its position alone.
-        let optional = |word: Option<&[u8]>, kind: usize, absent: &mut usize| {
-            let found = word.and_then(|word| index(word, self.above[kind], counts[kind]).ok().flatten());
-            let number = found.and_then(fitting);
-            *absent += usize::from(word.is_some() && number.is_none());
-            number.unwrap_or(NONE)
-        };
-        let uv = optional(uv, 1, &mut self.found.absent_uvs);
-        let normal = optional(normal, 2, &mut self.found.absent_normals);
-        Ok(Some([position, uv, normal]))
     }
 }
 

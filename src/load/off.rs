@@ -6,17 +6,18 @@
 
 use glam::{Vec2, Vec3, Vec4};
 
-use super::face_builder::{FaceBuilder, Gathered, MAX_CORNERS, NumberedCorner, counted, linear_color, read_faces};
+use super::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, counted, linear_color, read_faces};
 use super::import::Import;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
+use super::model_file::ModelFile;
 use super::read_error::{FilePosition, ReadError};
-use super::text_lines::{Line, Lines, first_word, number, shown, words};
-use crate::files::Limits;
+use super::text_lines::{Line, Lines, first_word, number, parsed, shown, words};
+use super::uri::Files;
+use geometry::mesh::Material;
 use geometry::mesh::build_limits::MemoryRefused;
 use geometry::mesh::chunked_vec::ChunkedVec;
 use geometry::mesh::mesh_builder::InputCorner;
-use geometry::mesh::{Material, MemoryAccount};
 use geometry::progress::Progress;
 
 /// The most numbers of a vertex that are read: a homogeneous position, a normal, a colour and texture coordinates.
@@ -25,18 +26,12 @@ const MAX_NUMBERS: usize = 4 + 3 + 4 + 2;
 /// The fewest bytes of a face: `1 0` and the end of its line.
 const LEAST_FACE: usize = 4;
 
-/// Builds a mesh called `name` from a file's bytes.
+/// Builds a mesh from a file's bytes.
 ///
 /// # Errors
 /// [`ReadError`].
-pub(super) fn read(
-    bytes: Vec<u8>,
-    name: &str,
-    import: Import,
-    limits: &Limits,
-    progress: &Progress,
-) -> Result<LoadedMesh, ReadError> {
-    read_faces(bytes, name, import, limits, progress, gather)
+pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, ReadError> {
+    read_faces(bytes, file, gather)
 }
 
 /// Returns whether a text begins with the keyword of OFF, with the numbers of vertices and faces behind it, or with that of binary
@@ -57,25 +52,24 @@ pub(super) fn begins(text: &[u8]) -> bool {
 /// Reads all faces.
 fn gather<'a>(
     bytes: &[u8],
-    import: Import,
-    budget: &'a Budget,
-    progress: &'a Progress,
-) -> Result<Gathered<'a>, ReadError> {
-    let mut rows = Rows::new(bytes, Some(progress));
+    files: &'a Files<'a>,
+    mut faces: FaceBuilder<'a>,
+) -> Result<(FaceBuilder<'a>, String), ReadError> {
+    let mut rows = Rows::new(bytes, Some(files.progress));
     let header = Header::read(&mut rows)?;
-    let vertices = Vertices::read(&header, &mut rows, budget)?;
-    let mut faces = FaceBuilder::new(bytes.len(), budget).importing(import);
+    let vertices = Vertices::read(&header, &mut rows, files.budget)?;
     let material = faces.material(Material::plain("default", [1.0; 4]))?;
     let most = header.faces.min(bytes.len() / LEAST_FACE);
     faces.expect(most, vertices.positions.len().min(most.saturating_mul(4)));
     let (corners, colors, found) = (Vec::new(), Vec::new(), Counts::default());
     let mut reader = Reader { faces, material, vertices: &vertices, corners, colors, is_colored: false, found };
-    let mut warnings = reader.read(&header, &mut rows)?;
-    warnings.extend(reader.found.warnings(&vertices, &import));
-    let holds = format!("it holds {} vertices and {} faces", header.vertices, header.faces);
-    let faces = reader.faces;
-    budget.release(vertices.bytes());
-    Ok((faces, holds, warnings))
+    let cut_short = reader.read(&header, &mut rows)?;
+    let Reader { mut faces, found, .. } = reader;
+    faces.notes.extend(cut_short);
+    let warnings = found.warnings(&vertices, &faces.import);
+    faces.notes.extend(warnings);
+    files.budget.release(vertices.bytes());
+    Ok((faces, format!("it holds {} vertices and {} faces", header.vertices, header.faces)))
 }
 
 /// The lines of a file without comments and empty lines.
@@ -200,7 +194,7 @@ fn keyword(text: &[u8]) -> (&[u8], &[u8]) {
 
 /// Parses the numbers of vertices and faces. That of edges, which may be wrong, is left aside.
 fn counts(text: &[u8]) -> Option<(usize, usize)> {
-    let mut counts = words(text).map(|word| std::str::from_utf8(word).ok()?.parse().ok());
+    let mut counts = words(text).map(parsed);
     Some((counts.next()??, counts.next()??))
 }
 
@@ -224,7 +218,7 @@ impl Vertices {
                 let reason = format!("the file ends after {i} of its {} vertices", header.vertices);
                 FilePosition::Everywhere.error(reason)
             })?;
-            vertices.add(header.kind, row.text, budget).map_err(too_large)?;
+            vertices.add(header.kind, row.text, budget)?;
         }
         Ok(vertices)
     }
@@ -288,10 +282,6 @@ fn encoded(color: [f32; 4], scale: f32) -> Vec4 {
     linear_color([r, g, b, if color[3].is_nan() { 255 } else { a }])
 }
 
-fn too_large(refused: MemoryRefused) -> ReadError {
-    ReadError::TooLarge { reason: refused.into() }
-}
-
 /// Numbers of what was left out.
 #[derive(Default)]
 struct Counts {
@@ -329,16 +319,16 @@ struct Reader<'v, 'a> {
 
 impl Reader<'_, '_> {
     /// Reads the faces, as far as the file goes. Returns a warning if it ends too early.
-    fn read(&mut self, header: &Header, rows: &mut Rows) -> Result<Vec<String>, ReadError> {
+    fn read(&mut self, header: &Header, rows: &mut Rows) -> Result<Option<String>, ReadError> {
         if !self.vertices.colors.is_empty() {
             self.color()?;
         }
         for i in 0..header.faces {
             let cut_short = || {
                 let count = header.faces;
-                vec![format!(
+                Some(format!(
                     "The file was cut short: it says that it has {count} faces, but it ends after {i}. Only those are shown."
-                )]
+                ))
             };
             let Some(row) = rows.next()? else { return Ok(cut_short()) };
             match self.face(&row) {
@@ -349,7 +339,7 @@ impl Reader<'_, '_> {
         while rows.next()?.is_some() {
             self.found.after_faces += 1;
         }
-        Ok(Vec::new())
+        Ok(None)
     }
 
     /// From now on corners have colours. Those before are white.
@@ -417,10 +407,6 @@ impl Reader<'_, '_> {
         }
         Some(encoded(color, if is_whole { 1.0 / 255.0 } else { 1.0 }))
     }
-}
-
-fn parsed(word: &[u8]) -> Option<usize> {
-    std::str::from_utf8(word).ok()?.parse().ok()
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //! colour and opacity, apart, and glossiness is the reverse of roughness.
 
 use crate::memory_budget::Budget;
-use geometry::mesh::{MemoryAccount, Texture};
+use geometry::mesh::Texture;
 
 /// Returns an image with roughness in green and metalness in blue, as glTF has them. Both are read from those channels: images of
 /// one number are grey, and those that hold both have them there. Without an image the number is 1.
@@ -75,7 +75,6 @@ fn joined(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::files::Limits;
 
     fn texture(size: [u32; 2], texels: &[[u8; 4]]) -> Texture {
         Texture { size, rgba: texels.as_flattened().to_vec() }
@@ -83,7 +82,7 @@ mod tests {
 
     #[test]
     fn roughness_and_metalness_share_an_image_of_the_larger_size() {
-        let budget = Budget::new(0, &Limits::default());
+        let budget = Budget::new(0, crate::Limits::default().memory);
         let rough = texture([2, 1], &[[10, 20, 30, 40], [50, 60, 70, 80]]);
         let metal = texture([1, 2], &[[1, 2, 3, 4], [5, 6, 7, 8]]);
         let both = metallic_roughness(Some(&rough), false, Some(&metal), &budget).expect("memory for 4 texels");
@@ -95,7 +94,7 @@ mod tests {
 
     #[test]
     fn roughness_is_what_glossiness_leaves() {
-        let budget = Budget::new(0, &Limits::default());
+        let budget = Budget::new(0, crate::Limits::default().memory);
         let glossy = texture([2, 1], &[[1, 2, 3, 0], [4, 5, 6, 200]]);
         let rough = roughness(&glossy, 0.5, &budget).expect("memory for 2 texels");
         assert_eq!(
@@ -106,7 +105,7 @@ mod tests {
 
     #[test]
     fn opacity_is_alpha_or_else_a_shade() {
-        let budget = Budget::new(0, &Limits::default());
+        let budget = Budget::new(0, crate::Limits::default().memory);
         let color = texture([1, 1], &[[1, 2, 3, 255]]);
         let of = |texel| with_opacity(Some(&color), &texture([1, 1], &[texel]), &budget).expect("memory for a texel");
         assert_eq!(of([9, 9, 9, 100]).rgba, [1, 2, 3, 100]);
@@ -115,7 +114,7 @@ mod tests {
 
     #[test]
     fn images_that_take_too_much_memory_are_refused() {
-        let budget = Budget::new(0, &Limits { memory: 15, ..Limits::default() });
+        let budget = Budget::new(0, 15);
         let opacity = texture([2, 2], &[[0; 4]; 4]);
         assert!(with_opacity(None, &opacity, &budget).is_err());
     }

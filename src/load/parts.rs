@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use serde::Serialize;
 
 use super::memory_budget::Budget;
-use geometry::mesh::{MemoryAccount, MemoryRefused};
+use geometry::mesh::MemoryRefused;
 
 /// The greatest number of parts. The triangles of others belong to none, and are always shown.
 const MAX_PARTS: usize = 1 << 16;

@@ -10,22 +10,17 @@ mod textures;
 mod upcoming;
 mod values;
 
-use std::path::Path;
-
 use glam::{Vec2, Vec3, Vec4};
 
-use super::face_builder::{FaceBuilder, Gathered, MAX_CORNERS, NumberedCorner, counted, linear_color, read_faces};
-use super::import::Import;
+use super::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, counted, linear_color, read_faces};
 use super::loaded_mesh::LoadedMesh;
-use super::memory_budget::Budget;
+use super::model_file::ModelFile;
 use super::read_error::{FilePosition, ReadError};
 use super::recent_corners::VertexNumbers;
 use super::text_lines::shown;
 use super::uri::Files;
-use crate::files::Limits;
+use geometry::mesh::Material;
 use geometry::mesh::mesh_builder::InputCorner;
-use geometry::mesh::{Material, MemoryAccount};
-use geometry::progress::Progress;
 
 use header::{Element, Header, Property, PropertyKind, Scalar};
 use textures::Textures;
@@ -59,37 +54,21 @@ const SLOTS: usize = 12;
 /// The first attribute of colours.
 const RED: usize = 8;
 
-/// Builds a mesh called `name` from a file's bytes. Images are looked for in `folder`.
+/// Builds a mesh from a file's bytes.
 ///
 /// # Errors
 /// [`ReadError`]. An image that is missing isn't an error but a warning.
-pub(super) fn read(
-    bytes: Vec<u8>,
-    folder: &Path,
-    name: &str,
-    import: Import,
-    limits: &Limits,
-    progress: &Progress,
-) -> Result<LoadedMesh, ReadError> {
-    let mut named = Vec::new();
-    let loaded = read_faces(bytes, name, import, limits, progress, |bytes, import, budget, progress| {
-        let files = Files::new(folder, limits, budget, progress);
-        let gathered = gather(bytes, import, (&files, budget), progress);
-        named = files.named();
-        gathered
-    })?;
-    Ok(LoadedMesh { files: named, ..loaded })
+pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, ReadError> {
+    read_faces(bytes, file, gather)
 }
 
 /// Reads all faces.
 fn gather<'a>(
     bytes: &[u8],
-    import: Import,
-    (files, budget): (&Files, &'a Budget),
-    progress: &'a Progress,
-) -> Result<Gathered<'a>, ReadError> {
+    files: &'a Files<'a>,
+    mut faces: FaceBuilder<'a>,
+) -> Result<(FaceBuilder<'a>, String), ReadError> {
     let header = header::read(bytes)?;
-    let mut faces = FaceBuilder::new(bytes.len(), budget).importing(import);
     let material = faces.material(Material::plain("default", [1.0; 4]))?;
     let mut reader = Reader {
         faces,
@@ -100,8 +79,7 @@ fn gather<'a>(
         corners: Vec::new(),
         wedges: Vec::new(),
         cut_short: None,
-        budget,
-        progress,
+        files,
     };
     let mut values = Values::new(&header, bytes.len());
     let mut before_vertices = Vec::new();
@@ -132,8 +110,8 @@ fn gather<'a>(
         reader.read_lists(element, &mut values)?;
     }
     let freed = bytes.len() as u64 + reader.vertices.as_ref().map_or(0, Vertices::bytes);
-    let problems = reader.textures.give(&mut reader.faces, (files, budget), freed, progress)?;
-    Ok(reader.finish(&header, &import, (values.left_over(), values.long_lines), problems))
+    let problems = reader.textures.give(&mut reader.faces, files, freed)?;
+    Ok(reader.finish(&header, &values, problems))
 }
 
 /// The attributes of the vertices. Normals, uvs or colours are empty if the file has none.
@@ -199,8 +177,7 @@ struct Reader<'a, 'h> {
     wedges: Vec<f32>,
     /// A warning about a file that ends too early.
     cut_short: Option<String>,
-    budget: &'a Budget,
-    progress: &'a Progress,
+    files: &'a Files<'a>,
 }
 
 impl<'a> Reader<'a, '_> {
@@ -216,7 +193,7 @@ impl<'a> Reader<'a, '_> {
         let count = usize::try_from(element.count).unwrap_or_default();
         let beside = 12 * u64::from(has_normals) + 8 * u64::from(has_uvs) + 4 * u64::from(has_colors);
         let bytes = count as u64 * (12 + beside);
-        self.budget.hold(bytes).map_err(|refused| ReadError::TooLarge { reason: refused.into() })?;
+        self.files.budget.hold(bytes)?;
         let room = |has: bool| if has { count } else { 0 };
         let mut vertices = Vertices {
             positions: Vec::with_capacity(count),
@@ -498,18 +475,11 @@ impl<'a> Reader<'a, '_> {
     }
 
     fn progress(&self, values: &Values) -> Result<(), ReadError> {
-        self.progress.set(0.5 * values.fraction());
-        self.progress.check()?;
-        Ok(())
+        self.files.progress.set(0.5 * values.fraction());
+        Ok(self.files.progress.check()?)
     }
 
-    fn finish(
-        self,
-        header: &Header,
-        import: &Import,
-        (left_over, long_lines): (usize, usize),
-        problems: Vec<String>,
-    ) -> (FaceBuilder<'a>, String, Vec<String>) {
+    fn finish(self, header: &Header, values: &Values, problems: Vec<String>) -> (FaceBuilder<'a>, String) {
         let count = |name: &[u8]| {
             let own = header.elements.iter().filter(|element| element.name == name);
             own.map(|element| element.count).fold(0, u64::saturating_add)
@@ -519,18 +489,19 @@ impl<'a> Reader<'a, '_> {
         let holds = format!("it holds {vertices} vertices, {faces} faces and {strips} strips of triangles{cut}");
         let read = self.vertices.unwrap_or_default();
         let without_normals = if read.normals.is_empty() { read.positions.len() } else { 0 };
-        let mut warnings = Vec::from_iter(self.cut_short);
-        let (without_normals, made) = import.lacking_normals(without_normals, "vertices without normals");
-        warnings.extend(counted([
+        let mut faces = self.faces;
+        faces.notes.extend(self.cut_short);
+        let (without_normals, made) = faces.import.lacking_normals(without_normals, "vertices without normals");
+        faces.notes.extend(counted([
             (header.other_lines, "lines of the header that aren't part of the format, left out"),
             (without_normals, made.as_str()),
-            (long_lines, "lines with more numbers than their element has, left out"),
-            (left_over, "bytes after the last element, left out"),
+            (values.long_lines, "lines with more numbers than their element has, left out"),
+            (values.left_over(), "bytes after the last element, left out"),
             (header.images.len() - self.textures.len(), "images beyond the first 256, left out"),
         ]));
-        warnings.extend(problems);
-        self.budget.release(read.bytes());
-        (self.faces, holds, warnings)
+        faces.notes.extend(problems);
+        self.files.budget.release(read.bytes());
+        (faces, holds)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use geometry::mesh::build_limits::BuildError;
+use geometry::mesh::{BuildError, MemoryRefused};
 use geometry::progress::Cancelled;
 
 /// Why an FBX, OBJ, STL, PLY, OFF or 3MF file could not be loaded. The message doesn't contain the file's path.
@@ -33,6 +33,12 @@ pub enum ReadError {
     /// The file has no triangles.
     #[error("no triangles: {holds}")]
     Empty { holds: String },
+}
+
+impl From<MemoryRefused> for ReadError {
+    fn from(refused: MemoryRefused) -> Self {
+        Self::TooLarge { reason: refused.into() }
+    }
 }
 
 impl From<BuildError> for ReadError {

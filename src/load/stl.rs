@@ -12,15 +12,13 @@ mod colors;
 
 use glam::{Vec2, Vec3, Vec4};
 
-use super::face_builder::{FaceBuilder, NumberedCorner, counted};
+use super::face_builder::{FaceBuilder, NumberedCorner, counted, read_faces};
 use super::loaded_mesh::LoadedMesh;
-use super::memory_budget::Budget;
+use super::model_file::ModelFile;
 use super::read_error::{FilePosition, ReadError};
-use super::selection::Selection;
 use super::text_lines::{Line, Lines, first_word, has_comma, numbers_or_nan, shown};
-use crate::files::Limits;
+use geometry::mesh::Material;
 use geometry::mesh::mesh_builder::InputCorner;
-use geometry::mesh::{Material, MemoryAccount};
 use geometry::progress::Progress;
 
 use colors::Colors;
@@ -31,35 +29,27 @@ const HEADER: usize = 84;
 /// The size of a binary triangle in bytes: a normal, three positions, and 16 bits, in which some programs put a [colour](colors).
 const TRIANGLE: usize = 50;
 
-/// Builds a mesh called `name` from a file's bytes.
+/// Builds a mesh from a file's bytes.
 ///
 /// # Errors
 /// [`ReadError`].
-pub(super) fn read(
-    bytes: Vec<u8>,
-    name: &str,
-    selected: Selection,
-    limits: &Limits,
-    progress: &Progress,
-) -> Result<LoadedMesh, ReadError> {
-    let budget = Budget::new(bytes.len(), limits);
-    let mut faces = FaceBuilder::new(bytes.len(), &budget).importing(selected.import).hiding(selected.hidden);
-    let material = faces.material(Material::plain("default", [1.0; 4]))?;
-    let mut reader = Reader {
-        faces,
-        material,
-        corners: Vec::new(),
-        progress,
-        bytes: bytes.len(),
-        other_lines: 0,
-        open_facets: 0,
-        with_commas: 0,
-        cut_short: None,
-    };
-    let (holds, warnings) = if is_text(&bytes) { reader.text(&bytes)? } else { reader.binary(&bytes)? };
-    budget.release(bytes.len() as u64);
-    drop(bytes);
-    reader.faces.finish(name, holds, warnings, &progress.part(0.5, 1.0))
+pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, ReadError> {
+    read_faces(bytes, file, |bytes, files, mut faces| {
+        let material = faces.material(Material::plain("default", [1.0; 4]))?;
+        let mut reader = Reader {
+            faces,
+            material,
+            corners: Vec::new(),
+            progress: files.progress,
+            bytes: bytes.len(),
+            other_lines: 0,
+            open_facets: 0,
+            with_commas: 0,
+            cut_short: None,
+        };
+        let holds = if is_text(bytes) { reader.text(bytes)? } else { reader.binary(bytes)? };
+        Ok((reader.faces, holds))
+    })
 }
 
 /// Returns whether the file is text. Many binary files begin with "solid" too, but their size fits.
@@ -115,8 +105,8 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// Reads a binary file. Returns what it holds in case it has no triangles, and warnings.
-    fn binary(&mut self, bytes: &[u8]) -> Result<(String, Vec<String>), ReadError> {
+    /// Reads a binary file. Returns what it holds in case it has no triangles.
+    fn binary(&mut self, bytes: &[u8]) -> Result<String, ReadError> {
         let Some(count) = triangles_said(bytes) else {
             let length = bytes.len();
             let reason = format!(
@@ -150,24 +140,24 @@ impl Reader<'_> {
             self.add([a, b, c].map(position_of), color, FilePosition::Byte(HEADER + i * TRIANGLE))?;
         }
         if is_uncounted {
-            let warning =
-                format!("The header says that the file has 0 triangles. The {said} that follow it are shown.");
-            return Ok((String::new(), vec![warning]));
+            let shown = format!("The header says that the file has 0 triangles. The {said} that follow it are shown.");
+            self.faces.notes.push(shown);
+            return Ok(String::new());
         }
         if there < said {
-            let warning = format!(
+            self.faces.notes.push(format!(
                 "The file was cut short: its header says that it has {count} triangles, but it ends after {there}. Only \
                  those are shown."
-            );
-            return Ok((format!("its header says that it has {count} triangles, but none is whole"), vec![warning]));
+            ));
+            return Ok(format!("its header says that it has {count} triangles, but none is whole"));
         }
         let surplus = bytes.len() - size(count) as usize;
-        let warnings = counted([(surplus, "bytes after the last triangle, left out")]);
-        Ok(("its header says that it has 0 triangles".to_owned(), warnings.collect()))
+        self.faces.notes.extend(counted([(surplus, "bytes after the last triangle, left out")]));
+        Ok("its header says that it has 0 triangles".to_owned())
     }
 
     /// Reads a text file; returns the same as [`binary`](Self::binary).
-    fn text(&mut self, bytes: &[u8]) -> Result<(String, Vec<String>), ReadError> {
+    fn text(&mut self, bytes: &[u8]) -> Result<String, ReadError> {
         let mut lines = Lines::new(bytes);
         let (mut solids, mut open) = (0, false);
         let mut next = lines.next()?;
@@ -195,14 +185,14 @@ impl Reader<'_> {
                 next = lines.next()?;
             }
         }
-        let mut warnings = Vec::from_iter(self.cut_short.take());
-        warnings.extend(counted([
+        self.faces.notes.extend(self.cut_short.take());
+        self.faces.notes.extend(counted([
             (self.open_facets, "facets without an end"),
             (self.with_commas, "lines with a comma in a number, which was taken for its point"),
             (usize::from(open), "solids without an end: the file may have been cut short"),
             (self.other_lines, "lines that aren't part of the format, left out"),
         ]));
-        Ok((format!("it holds {solids} solids without facets"), warnings))
+        Ok(format!("it holds {solids} solids without facets"))
     }
 
     /// Reads the lines after a facet's first line. Returns the line after it, if it was read to find that the facet has no end.

@@ -11,7 +11,7 @@ use super::notes::Notes;
 use geometry::mesh::build_limits::BuildError;
 use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::weld::weld;
-use geometry::mesh::{Borrowed, Corner, CornerDetail, CornerDetails, MapUv, Material, MemoryAccount, Mesh};
+use geometry::mesh::{Borrowed, Budget, Corner, CornerDetail, CornerDetails, MapUv, Material, Mesh};
 use geometry::progress::{Cancelled, Progress};
 
 /// How many triangles get their tangents together. The tangents of a corner depend on the triangles around it alone, so that a
@@ -37,7 +37,7 @@ pub(super) fn with_details(
     table: DetailTable,
     numbers: &[u32],
     notes: &mut Notes,
-    (budget, progress): (&dyn MemoryAccount, &Progress),
+    (budget, progress): (&Budget, &Progress),
 ) -> Result<Vec<u32>, BuildError> {
     let (mut details, mut bindings) = table.into_lists(numbers, budget)?;
     let detailed = DetailedMesh { mesh, details: &mut details, bindings: &mut bindings };
@@ -58,7 +58,7 @@ struct DetailedMesh<'a> {
 fn complete(
     batch: usize,
     mut detailed: DetailedMesh,
-    budget: &dyn MemoryAccount,
+    budget: &Budget,
     progress: &Progress,
 ) -> Result<Vec<String>, Cancelled> {
     let mapped = detailed.mesh.materials.iter().filter_map(|material| detailed.mapped(material)).collect::<Vec<_>>();
@@ -271,7 +271,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use geometry::mesh::{Map, Sampling, Shape, Slot, Texture, Unlimited};
+    use geometry::mesh::{Budget, Map, Sampling, Shape, Slot, Texture};
 
     fn tangents(corners: Vec<Corner>) -> Vec<(Vec3, f32)> {
         let mut surface = Surface::new(corners);
@@ -290,7 +290,7 @@ mod tests {
             let (mut mesh, count) = (torus.clone(), torus.corners.len());
             let (mut details, mut bindings) = (vec![CornerDetail::default(); count], vec![0; count]);
             let detailed = DetailedMesh { mesh: &mut mesh, details: &mut details, bindings: &mut bindings };
-            let warnings = complete(batch, detailed, &Unlimited, &Progress::new()).expect("nobody cancels");
+            let warnings = complete(batch, detailed, &Budget::unlimited(), &Progress::new()).expect("nobody cancels");
             assert!(warnings.is_empty(), "{warnings:?}");
             let all = mesh.triangles.as_flattened().iter().map(|&corner| details[corner as usize]).collect::<Vec<_>>();
             assert!(all.iter().all(|detail| (detail.tangent.length() - 1.0).abs() < 1e-5));

@@ -117,10 +117,14 @@ pub(super) fn first_word(text: &[u8]) -> (&[u8], &[u8]) {
     (&text[..length], text[length..].trim_ascii_start())
 }
 
+/// Parses a word as a number of this type; none if it isn't one.
+pub(super) fn parsed<T: std::str::FromStr>(word: &[u8]) -> Option<T> {
+    std::str::from_utf8(word).ok()?.parse().ok()
+}
+
 /// Parses a number, or returns why the word isn't one.
 pub(super) fn number(word: &[u8]) -> Result<f32, String> {
-    let number = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
-    number.ok_or_else(|| format!("{} isn't a number", shown(word)))
+    parsed(word).ok_or_else(|| format!("{} isn't a number", shown(word)))
 }
 
 /// Parses the first N words as numbers, and ignores further words. What isn't there is NaN.
@@ -132,8 +136,7 @@ pub(super) fn numbers_or_nan<const N: usize>(text: &[u8]) -> [f32; N] {
 /// Parses a number; what isn't one is NaN. A comma may stand for the point, as programs write it that take numbers from the system's
 /// language.
 pub(super) fn number_or_nan(word: &[u8]) -> f32 {
-    let own = |word: &[u8]| std::str::from_utf8(word).ok()?.parse().ok();
-    own(word).or_else(|| own(&with_point(word)?)).unwrap_or(f32::NAN)
+    parsed(word).or_else(|| parsed(&with_point(word)?)).unwrap_or(f32::NAN)
 }
 
 /// Returns a word with a point instead of its comma, if it has a single comma and no point.
@@ -148,15 +151,14 @@ pub(super) fn has_comma(text: &[u8]) -> bool {
     memchr(b',', text).is_some()
 }
 
-/// Returns a text in UTF-8, if it is in UTF-16 and says so with a byte order mark; `hold` is asked before memory is taken.
-pub(super) fn of_utf16<E>(bytes: &[u8], hold: impl FnOnce(u64) -> Result<(), E>) -> Result<Option<Vec<u8>>, E> {
+/// Returns a text in UTF-8, if it is in UTF-16 and says so with a byte order mark.
+pub(super) fn of_utf16(bytes: &[u8]) -> Option<Vec<u8>> {
     let (is_big, units) = match bytes {
         [0xff, 0xfe, units @ ..] => (false, units),
         [0xfe, 0xff, units @ ..] => (true, units),
-        _ => return Ok(None),
+        _ => return None,
     };
     // A unit of 16 bits becomes 3 bytes at most.
-    hold(3 * (units.len() / 2) as u64)?;
     let mut text = Vec::with_capacity(3 * (units.len() / 2));
     let units = units
         .as_chunks::<2>()
@@ -166,7 +168,20 @@ pub(super) fn of_utf16<E>(bytes: &[u8], hold: impl FnOnce(u64) -> Result<(), E>)
     for letter in char::decode_utf16(units) {
         text.extend(letter.unwrap_or(char::REPLACEMENT_CHARACTER).encode_utf8(&mut [0; 4]).bytes());
     }
-    Ok(Some(text))
+    Some(text)
+}
+
+/// Returns a text in UTF-8. From UTF-16 that takes half as much memory again, which every file is allowed.
+pub(super) fn in_utf8(bytes: Vec<u8>) -> Vec<u8> {
+    of_utf16(&bytes).unwrap_or(bytes)
+}
+
+/// Returns the number, from 1, of the line with the first text at `byte` or after it. A CSV reader's own line number
+/// is too low where it skips empty lines before a record.
+pub(super) fn line_at(text: &[u8], byte: usize) -> usize {
+    let start = byte.min(text.len());
+    let passed = text[start..].iter().take_while(|&&byte| byte == b'\n' || byte == b'\r').count();
+    1 + text[..start + passed].iter().filter(|&&byte| byte == b'\n').count()
 }
 
 /// Returns the start of a word for a message, in quotes.
@@ -233,11 +248,10 @@ mod tests {
     fn utf_16_is_read_in_both_byte_orders() {
         let text = "v 1 \u{1f98a}\n";
         let units = |bytes: fn(u16) -> [u8; 2]| text.encode_utf16().flat_map(bytes).collect::<Vec<_>>();
-        let read = |mark: [u8; 2], units: Vec<u8>| of_utf16(&[mark.to_vec(), units].concat(), |_| Ok::<(), ()>(()));
-        assert_eq!(read([0xff, 0xfe], units(u16::to_le_bytes)), Ok(Some(text.as_bytes().to_vec())));
-        assert_eq!(read([0xfe, 0xff], units(u16::to_be_bytes)), Ok(Some(text.as_bytes().to_vec())));
-        assert_eq!(of_utf16(text.as_bytes(), |_| Ok::<(), ()>(())), Ok(None));
-        assert_eq!(of_utf16(&[0xff, 0xfe, b'v', 0], Err), Err(3));
-        assert_eq!(read([0xff, 0xfe], vec![0, 0xd8, b'v']), Ok(Some("\u{fffd}".as_bytes().to_vec())), "half of a pair");
+        let read = |mark: [u8; 2], units: Vec<u8>| of_utf16(&[mark.to_vec(), units].concat());
+        assert_eq!(read([0xff, 0xfe], units(u16::to_le_bytes)), Some(text.as_bytes().to_vec()));
+        assert_eq!(read([0xfe, 0xff], units(u16::to_be_bytes)), Some(text.as_bytes().to_vec()));
+        assert_eq!(of_utf16(text.as_bytes()), None);
+        assert_eq!(read([0xff, 0xfe], vec![0, 0xd8, b'v']), Some("\u{fffd}".as_bytes().to_vec()), "half of a pair");
     }
 }

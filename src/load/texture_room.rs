@@ -1,10 +1,14 @@
 //! How small a mesh's textures must be, so that all of them fit the memory that they may take.
 
+use std::borrow::Cow;
 use std::collections::BinaryHeap;
+use std::sync::Arc;
 
+use super::images::{decode_halved, texture_size};
 use super::memory_budget::Budget;
-use geometry::mesh::MemoryRefused;
-use geometry::mesh::mipmap::{level_count, level_size};
+use geometry::mesh::mipmap::{MipFilter, level_count, level_size};
+use geometry::mesh::{MemoryRefused, Texture, borrowing};
+use geometry::progress::{Cancelled, Progress};
 
 /// The greatest width and height of a texture that is shown, in px: every adapter has textures of that size (WebGPU, default limits).
 pub(super) const MOST_SIDE: u32 = 8192;
@@ -39,6 +43,39 @@ impl Scaling {
             }
         }
     }
+}
+
+/// An image that was read, unless it can't be; and what is said of it after its name, if anything.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ReadImage {
+    pub texture: Option<Arc<Texture>>,
+    pub said: Option<String>,
+}
+
+/// Reads images, and scales the largest down until all fit. `bytes` returns an image's file and how its texels are averaged; `reserved`
+/// is the memory that the rest of the load takes, in bytes.
+///
+/// # Errors
+/// [`Cancelled`].
+pub(super) fn read_images<'b, I: Copy>(
+    images: &[I],
+    bytes: impl Fn(I) -> Result<(Cow<'b, [u8]>, MipFilter), String>,
+    reserved: u64,
+    budget: &Budget,
+    progress: &Progress,
+) -> Result<Vec<ReadImage>, Cancelled> {
+    let size = |image: &I| borrowing(budget, || bytes(*image).ok().and_then(|(bytes, _)| texture_size(&bytes)));
+    let sizes: Vec<_> = images.iter().map(|image| size(image).unwrap_or_default()).collect();
+    let scalings = TextureRoom::of(budget, reserved).scalings(&sizes);
+    let all = images.iter().zip(sizes).zip(scalings);
+    let read = all.map(|((image, size), scaling)| {
+        progress.check()?;
+        let decode = |(bytes, filter): (Cow<[u8]>, _)| decode_halved(&bytes, scaling.halvings, filter, budget);
+        let texture = borrowing(budget, || bytes(*image).and_then(decode));
+        let said = scaling.said(size, texture.as_ref().map(|texture| texture.size));
+        Ok(ReadImage { texture: texture.ok().map(Arc::new), said })
+    });
+    read.collect()
 }
 
 impl TextureRoom {

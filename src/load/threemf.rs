@@ -12,61 +12,47 @@ mod looks;
 mod model;
 mod placing;
 mod properties;
-mod texture2d;
 mod xml;
 
-use super::import::Import;
+use super::face_builder::FaceBuilder;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
-use super::notes::Notes;
+use super::model_file::ModelFile;
 use super::read_error::{FilePosition, ReadError};
-use crate::files::Limits;
-use geometry::mesh::{MemoryAccount, MemoryRefused};
 use geometry::names::shown;
-use geometry::progress::Progress;
 
 use archive::Archive;
 use document::Document;
 use images::Images;
 
-/// Builds a mesh called `name` from a file's bytes.
+/// Builds a mesh from a file's bytes.
 ///
 /// # Errors
 /// [`ReadError`].
-pub(super) fn read(
-    bytes: Vec<u8>,
-    name: &str,
-    import: Import,
-    limits: &Limits,
-    progress: &Progress,
-) -> Result<LoadedMesh, ReadError> {
-    let budget = Budget::new(bytes.len(), limits);
-    let mut notes = Notes::default();
-    let (document, images) = {
-        let archive = Archive::new(&bytes, &budget)?;
-        let document = Document::read(&archive, &budget, &progress.part(0.0, 0.4), &mut notes)?;
-        let images = Images::unpack(&archive, &document, &budget, progress)?;
-        notes.extend(archive.warning());
-        archive.release(&budget);
-        (document, images)
-    };
-    budget.release(bytes.len() as u64);
+pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, ReadError> {
+    let (budget, progress) = (Budget::new(bytes.len(), file.limits.memory), file.progress);
+    let mut faces = FaceBuilder::new(file, &budget);
+    let archive = Archive::new(&bytes, &budget)?;
+    let of_archive = budget.held();
+    let document = Document::read(&archive, &budget, &progress.part(0.0, 0.4), &mut faces.notes)?;
+    let of_document = budget.held() - of_archive;
+    let images = Images::unpack(&archive, &document, &budget, progress)?;
+    faces.notes.extend(archive.warning());
+    // The file's own bytes are among those.
+    budget.release(of_archive);
+    drop(archive);
     drop(bytes);
-    let (mut faces, textured) = placing::place(&document, &import, &budget, &progress.part(0.4, 0.5), &mut notes)?;
-    images.give(&textured, &mut faces, (document.held(), &budget), progress, &mut notes)?;
+    let textured = placing::place(&document, &mut faces, &budget, &progress.part(0.4, 0.5))?;
+    images.give(&textured, &mut faces, of_document, &budget, progress)?;
     let holds = document.holds();
-    document.release(&budget);
+    budget.release(of_document);
     drop(document);
-    faces.finish(name, holds, notes.into_warnings(), &progress.part(0.5, 1.0))
+    faces.finish(file.name, holds, &progress.part(0.5, 1.0))
 }
 
 /// An error in a part of the archive.
 fn broken(part: &str, reason: impl std::fmt::Display) -> ReadError {
     FilePosition::Everywhere.error(format!("{}: {reason}", shown(part)))
-}
-
-fn too_large(refused: MemoryRefused) -> ReadError {
-    ReadError::TooLarge { reason: refused.into() }
 }
 
 #[cfg(test)]

@@ -11,7 +11,6 @@ use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 
 use super::memory_budget::Budget;
 use crate::files::{FileError, Limits, read_file};
-use geometry::mesh::MemoryAccount;
 use geometry::names::on_one_line;
 use geometry::progress::Progress;
 
@@ -23,8 +22,8 @@ pub(super) struct Files<'a> {
     /// The document's folder.
     folder: &'a Path,
     limits: &'a Limits,
-    budget: &'a Budget,
-    progress: &'a Progress,
+    pub budget: &'a Budget,
+    pub progress: &'a Progress,
     /// The files that have been added to the budget.
     counted: RefCell<HashSet<PathBuf>>,
 }

@@ -1,6 +1,6 @@
 //! Crease bands, under PN triangles: nothing is left to tear.
 
-use geometry::mesh::{Shape, Topology, Unlimited, with_crease_band};
+use geometry::mesh::{Budget, Shape, Topology, with_crease_band};
 use geometry::progress::Progress;
 use geometry::tessellate::{Edges, Partitioning, Surface, Tessellation};
 use inspect::engine::{Preparation, load};
@@ -67,7 +67,8 @@ fn with_a_crease_band_pn_is_whole_on_whatever_breaks_tessellators() {
     let cases = CASES.iter().map(|case| (case.name, (case.mesh)(), case.weld));
     for (name, mesh, weld) in cases.chain((0..8).map(|seed| ("soup", soup(seed), 0.0))) {
         let welded = Topology::build_within(&mesh, weld, &progress).expect("nobody cancels");
-        let (mesh, ..) = with_crease_band(&mesh, &welded, 0.01, &Unlimited, &progress).expect("nobody cancels");
+        let (mesh, ..) =
+            with_crease_band(&mesh, &welded, 0.01, &Budget::unlimited(), &progress).expect("nobody cancels");
         let mut scene = scene_of(mesh, 0.0);
         let camera = camera(&scene);
         for edges in [Edges::PerEdge, Edges::AsPublished] {

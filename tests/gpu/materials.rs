@@ -16,8 +16,8 @@ use inspect::render::environment::Environment;
 use inspect::render::layout::{linear, srgb};
 use inspect::render::{Camera, Renderer, Target};
 use inspect::settings::{Lighting, NormalMaps, NormalsAt, Overlays, Settings, ToneCurve};
+use load::Budget;
 use load::HeightSource;
-use load::memory_budget::Budget;
 
 use crate::engine;
 use crate::looks::{square_of, square_picture};

@@ -7,9 +7,9 @@ use geometry::mesh::Heights;
 use geometry::mesh::shapes::Shape;
 use geometry::progress::Progress;
 use image::{DynamicImage, ImageFormat, RgbImage};
+use load::Budget;
 use load::Limits;
 use load::heights::{HeightError, HeightSource};
-use load::memory_budget::Budget;
 
 use super::counting::peak_of;
 use super::{ALONE, temporary};
@@ -23,7 +23,7 @@ fn read(name: &str, bytes: &[u8]) -> (Result<Heights, HeightError>, usize) {
 fn read_within(name: &str, bytes: &[u8], times: usize) -> (Result<Heights, HeightError>, usize) {
     let file = temporary(name, bytes);
     let (mesh, source) = (Shape::CubeSplit.build(), HeightSource::File(file.to_path_buf()));
-    let budget = Budget::of_mesh(&mesh, 0, &Limits::default());
+    let budget = Budget::of_mesh(&mesh, 0, Limits::default().memory);
     let (result, took) = peak_of(|| source.load(&mesh, &[], &budget, &Progress::new()));
     let allowed = 4 * bytes.len() + Limits::default().memory as usize;
     println!("{name}: {} of {} MiB, read: {}", took >> 20, allowed >> 20, result.is_ok());

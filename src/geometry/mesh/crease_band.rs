@@ -23,7 +23,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::build_limits::{BuildError, MAX_TRIANGLES, MemoryAccount};
+use super::build_limits::{Budget, BuildError, MAX_TRIANGLES};
 use super::detail_table::DetailTable;
 use super::mesh_builder::{InputCorner, MeshBuilder, StoredCorner};
 use super::{Corner, Mesh, Topology};
@@ -71,7 +71,7 @@ pub fn with_crease_band(
     mesh: &Mesh,
     topology: &Topology,
     width: f32,
-    budget: &dyn MemoryAccount,
+    budget: &Budget,
     progress: &Progress,
 ) -> Result<(Mesh, Topology, CreaseBand), BuildError> {
     let take = |bytes: usize| budget.hold(bytes as u64);
@@ -90,7 +90,7 @@ pub fn with_crease_band(
 
 /// Gives all sides of each edge one normal in the cut mesh as well: where parts of a mesh lie on each other, cuts of
 /// one part may fall onto those of another, and make edges that neither part had.
-fn agreed(cut: Mesh, budget: &dyn MemoryAccount, progress: &Progress) -> Result<(Mesh, Topology), BuildError> {
+fn agreed(cut: Mesh, budget: &Budget, progress: &Progress) -> Result<(Mesh, Topology), BuildError> {
     let topology = Topology::build_afforded(&cut, 0.0, budget, progress)?;
     budget.hold((PER_PATCH * topology.patches.len()) as u64)?;
     let fans = Fans::of(&cut, &topology);
@@ -110,7 +110,7 @@ fn agreed(cut: Mesh, budget: &dyn MemoryAccount, progress: &Progress) -> Result<
 fn rebuilt(
     mesh: &Mesh,
     topology: &Topology,
-    budget: &dyn MemoryAccount,
+    budget: &Budget,
     progress: &Progress,
     mut pieces: impl FnMut(u32, &mut dyn FnMut([Corner; 3])),
 ) -> Result<Mesh, BuildError> {

@@ -1,7 +1,7 @@
 //! Numbers for the details of corners, while a mesh is being built.
 
 use super::CornerDetail;
-use super::build_limits::{MemoryAccount, MemoryRefused};
+use super::build_limits::{Budget, MemoryRefused};
 use super::corner_details::CornerDetails;
 use super::interner::Interner;
 
@@ -27,12 +27,7 @@ impl DetailTable {
     ///
     /// # Errors
     /// [`MemoryRefused`].
-    pub fn number(
-        &mut self,
-        detail: CornerDetail,
-        binding: u32,
-        budget: &dyn MemoryAccount,
-    ) -> Result<u32, MemoryRefused> {
+    pub fn number(&mut self, detail: CornerDetail, binding: u32, budget: &Budget) -> Result<u32, MemoryRefused> {
         if self.ids.room() == 0 || self.details.len() == self.details.capacity() {
             self.grow(budget)?;
         }
@@ -45,7 +40,7 @@ impl DetailTable {
         Ok(id)
     }
 
-    fn grow(&mut self, budget: &dyn MemoryAccount) -> Result<(), MemoryRefused> {
+    fn grow(&mut self, budget: &Budget) -> Result<(), MemoryRefused> {
         let (count, capacity) = (self.details.len(), self.details.capacity());
         let more = (count / 2).max(64);
         budget.exchange((capacity * PER_ENTRY) as u64, ((count + more) * PER_ENTRY) as u64)?;
@@ -61,11 +56,7 @@ impl DetailTable {
     ///
     /// # Errors
     /// [`MemoryRefused`].
-    pub fn into_lists(
-        self,
-        numbers: &[u32],
-        budget: &dyn MemoryAccount,
-    ) -> Result<(CornerDetails, Vec<u32>), MemoryRefused> {
+    pub fn into_lists(self, numbers: &[u32], budget: &Budget) -> Result<(CornerDetails, Vec<u32>), MemoryRefused> {
         budget.release(self.ids.bytes());
         budget.hold((numbers.len() * PER_ENTRY) as u64)?;
         let details = numbers.iter().map(|&id| self.details.get(id as usize).copied().unwrap_or_default()).collect();
@@ -94,17 +85,18 @@ mod tests {
     use glam::Vec2;
 
     use super::*;
-    use crate::mesh::Unlimited;
+    use crate::mesh::Budget;
 
     #[test]
     fn equal_pairs_have_equal_numbers() {
         let detail = |i: u32| CornerDetail { uvs: [Vec2::splat(i as f32), Vec2::ZERO], ..CornerDetail::default() };
         let mut table = DetailTable::default();
-        let numbers: Vec<u32> =
-            (0..1000).map(|i| table.number(detail(i % 100), i % 7, &Unlimited).expect("memory is unlimited")).collect();
-        assert_eq!(numbers[0], table.number(detail(0), 0, &Unlimited).expect("memory is unlimited"));
+        let numbers: Vec<u32> = (0..1000)
+            .map(|i| table.number(detail(i % 100), i % 7, &Budget::unlimited()).expect("memory is unlimited"))
+            .collect();
+        assert_eq!(numbers[0], table.number(detail(0), 0, &Budget::unlimited()).expect("memory is unlimited"));
         assert_eq!((table.details.len(), numbers[700], numbers[999]), (700, 0, numbers[299]));
-        let (details, bindings) = table.into_lists(&numbers, &Unlimited).expect("memory is unlimited");
+        let (details, bindings) = table.into_lists(&numbers, &Budget::unlimited()).expect("memory is unlimited");
         for i in 0..1000 {
             assert_eq!((details[i as usize], bindings[i as usize]), (detail(i % 100), i % 7));
         }

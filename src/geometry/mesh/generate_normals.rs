@@ -6,14 +6,13 @@ use std::ops::Range;
 use glam::Vec3;
 
 use super::Corner;
-use super::build_limits::BuildError;
+use super::build_limits::{Borrowed, Budget, BuildError, borrowing};
 use super::chunked_vec::ChunkedVec;
 use super::normals::{Face, fan_normals};
 use super::smooth_points::give_normals;
 use super::unfinished_mesh::{CornerPoints, UnfinishedMesh};
 use super::weld::plus_zero3;
 use crate::cores::in_ranges;
-use crate::mesh::build_limits::{Borrowed, MemoryAccount, borrowing};
 use crate::progress::Progress;
 
 /// Memory for each face of the largest fan, in bytes.
@@ -42,7 +41,7 @@ const SMALL_FAN: usize = 256;
 pub(crate) fn generate_normals(
     mesh: &mut UnfinishedMesh,
     crease_angle: f32,
-    budget: &dyn MemoryAccount,
+    budget: &Budget,
     progress: &Progress,
 ) -> Result<(), BuildError> {
     let _scope = Borrowed::from(budget);
@@ -60,7 +59,7 @@ fn with_fans(
     mesh: &mut UnfinishedMesh,
     (points, done): (&CornerPoints, &[bool]),
     crease_angle: f32,
-    budget: &dyn MemoryAccount,
+    budget: &Budget,
     progress: &Progress,
 ) -> Result<(), BuildError> {
     let points = UndonePoints { points, done };
@@ -110,7 +109,7 @@ struct CornersByPoint {
 }
 
 impl CornersByPoint {
-    fn new(mesh: &UnfinishedMesh, points: &UndonePoints, budget: &dyn MemoryAccount) -> Result<Self, BuildError> {
+    fn new(mesh: &UnfinishedMesh, points: &UndonePoints, budget: &Budget) -> Result<Self, BuildError> {
         let count = points.points.count(mesh);
         let corners = mesh.triangles.as_flattened();
         budget.borrow(4 * count as u64)?;
@@ -171,7 +170,7 @@ struct AddedCorners<'a> {
     made: ChunkedVec<(u32, Vec3)>,
     /// The number of the first added corner.
     first: u32,
-    budget: &'a dyn MemoryAccount,
+    budget: &'a Budget,
 }
 
 impl AddedCorners<'_> {
@@ -300,7 +299,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::mesh::build_limits::Unlimited;
+    use crate::mesh::build_limits::Budget;
     use crate::mesh::shapes::Shape;
 
     fn without_normals(corners: impl Iterator<Item = Corner>, triangles: &[[u32; 3]]) -> UnfinishedMesh {
@@ -322,9 +321,9 @@ mod tests {
     /// The meshes that both ways make.
     fn both(mesh: impl Fn() -> UnfinishedMesh, crease_angle: f32) -> [UnfinishedMesh; 2] {
         let (mut fast, mut slow) = (mesh(), mesh());
-        generate_normals(&mut fast, crease_angle, &Unlimited, &Progress::new()).unwrap();
-        let points = CornerPoints::of(&slow, &Unlimited).unwrap();
-        with_fans(&mut slow, (&points, &[]), crease_angle, &Unlimited, &Progress::new()).unwrap();
+        generate_normals(&mut fast, crease_angle, &Budget::unlimited(), &Progress::new()).unwrap();
+        let points = CornerPoints::of(&slow, &Budget::unlimited()).unwrap();
+        with_fans(&mut slow, (&points, &[]), crease_angle, &Budget::unlimited(), &Progress::new()).unwrap();
         [fast, slow]
     }
 
@@ -360,8 +359,8 @@ mod tests {
             let whole =
                 || without_normals(made.corners.iter().map(|c| Corner { uv: Vec2::ZERO, ..*c }), &made.triangles);
             let mut mesh = whole();
-            let points = CornerPoints::of(&mesh, &Unlimited).unwrap();
-            let done = give_normals(&mut mesh, &points, 60.0, &Unlimited, &Progress::new()).unwrap();
+            let points = CornerPoints::of(&mesh, &Budget::unlimited()).unwrap();
+            let done = give_normals(&mut mesh, &points, 60.0, &Budget::unlimited(), &Progress::new()).unwrap();
             assert_eq!(done.iter().all(|done| *done), is_smooth, "{shape:?}");
             let [fast, slow] = both(whole, 60.0);
             assert_eq!(bits(&fast), bits(&slow), "{shape:?}");

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use glam::{Vec2, Vec3};
 
-use super::build_limits::{Borrowed, BuildError, MemoryAccount, MemoryRefused, Unlimited, borrowing};
+use super::build_limits::{Borrowed, Budget, BuildError, MemoryRefused, borrowing};
 use super::generate_normals::generate_normals;
 use super::normals::{CREASE_ANGLE, GivenNormal};
 use super::unfinished_mesh::UnfinishedMesh;
@@ -108,7 +108,7 @@ impl MeshBuilder {
     ///
     /// # Errors
     /// [`MemoryRefused`].
-    pub fn make_room(&mut self, corners: usize, budget: &dyn MemoryAccount) -> Result<(), MemoryRefused> {
+    pub fn make_room(&mut self, corners: usize, budget: &Budget) -> Result<(), MemoryRefused> {
         if self.distinct.room() >= corners {
             return Ok(());
         }
@@ -137,7 +137,7 @@ impl MeshBuilder {
         &mut self,
         material: usize,
         triangles: usize,
-        budget: &dyn MemoryAccount,
+        budget: &Budget,
     ) -> Result<(), MemoryRefused> {
         // If there is a single material, its triangles needn't be copied into one list in the end.
         let is_single = self.groups.len() == 1 && self.is_empty();
@@ -243,7 +243,7 @@ impl MeshBuilder {
     /// # Errors
     /// [`Cancelled`] when `progress` says so.
     pub fn finish(self, name: String, progress: &Progress) -> Result<Mesh, Cancelled> {
-        match self.finish_bound(name, &Unlimited, progress) {
+        match self.finish_bound(name, &Budget::unlimited(), progress) {
             Ok((mesh, _)) => Ok(mesh),
             // Memory is unlimited, so cancellation is the only possible error.
             Err(_) => Err(Cancelled),
@@ -258,7 +258,7 @@ impl MeshBuilder {
     pub fn finish_bound(
         mut self,
         name: String,
-        budget: &dyn MemoryAccount,
+        budget: &Budget,
         progress: &Progress,
     ) -> Result<(Mesh, Vec<u32>), BuildError> {
         self.distinct.close(budget);
@@ -284,7 +284,7 @@ impl MeshBuilder {
     }
 
     /// Joins all triangles into one list, and returns it with the materials that have triangles.
-    fn gathered(&mut self, budget: &dyn MemoryAccount) -> Result<(Vec<[u32; 3]>, Vec<Material>), BuildError> {
+    fn gathered(&mut self, budget: &Budget) -> Result<(Vec<[u32; 3]>, Vec<Material>), BuildError> {
         let used = |group: &Group| group.runs.iter().any(|run| !run.is_empty());
         let mut groups: Vec<Group> = std::mem::take(&mut self.groups).into_iter().filter(used).collect();
         let is_full = |run: &Vec<[u32; 3]>| run.len() == run.capacity();

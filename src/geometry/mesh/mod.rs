@@ -54,7 +54,7 @@ pub use rig::{Moment, Pose, Rig};
 pub use slices::{MeshSlices, SliceError};
 pub use topology::{Edge, EdgeCounts, EdgeKind, Patch, Side, Topology};
 
-pub use build_limits::{Borrowed, BuildError, MemoryAccount, MemoryRefused, Unlimited, borrowing};
+pub use build_limits::{Borrowed, Budget, BuildError, MemoryRefused, borrowing};
 pub use crease_band::{CreaseBand, with_crease_band};
 pub use curves::{Curve, Curves, Sharing};
 pub use dominance::Dominance;
@@ -104,6 +104,24 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// The size in memory, in bytes. A texture that materials share counts once.
+    pub fn bytes(&self) -> u64 {
+        let of_material = |material: &Material| {
+            let maps = material.look.maps.clone().into_iter().flatten().map(|map| map.texture);
+            material.texture.clone().into_iter().chain(maps)
+        };
+        let mut textures: Vec<_> = self.materials.iter().flat_map(of_material).collect();
+        textures.sort_unstable_by_key(Arc::as_ptr);
+        textures.dedup_by_key(|texture| Arc::as_ptr(texture));
+        let textures: usize = textures.iter().map(|texture| texture.rgba.capacity()).sum();
+        let materials: usize =
+            self.materials.iter().map(|material| size_of::<Material>() + material.name.capacity()).sum();
+        let rig = self.rig.as_ref().map_or(0, |rig| rig.bytes());
+        let [corners, triangles] = [self.corners.capacity() * 32, self.triangles.capacity() * 12];
+        let details = self.details.as_ref().map_or(0, |details| size_of_val(&details[..]));
+        (corners + triangles + textures + materials + rig + details) as u64
+    }
+
     /// Returns the lights of the file in a pose. One without a finite place there stays where it is at rest.
     pub fn lights_in(&self, pose: &Pose) -> Vec<Light> {
         let mut lights = self.lights.clone();

@@ -3,7 +3,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::build_limits::{BuildError, MemoryAccount};
+use super::build_limits::{Budget, BuildError};
 use super::normals::{FAN_LIMIT, faces_of, limit_of, unit_mean};
 use super::unfinished_mesh::{CornerPoints, UnfinishedMesh};
 use super::weld::plus_zero3;
@@ -66,7 +66,7 @@ pub(super) fn give_normals(
     mesh: &mut UnfinishedMesh,
     points: &CornerPoints,
     crease_angle: f32,
-    budget: &dyn MemoryAccount,
+    budget: &Budget,
     progress: &Progress,
 ) -> Result<Vec<bool>, BuildError> {
     let count = points.count(mesh);

@@ -9,11 +9,10 @@ use bytemuck::Zeroable;
 use glam::Vec3;
 use serde::Serialize;
 
-use super::build_limits::{BuildError, Unlimited};
+use super::build_limits::{Borrowed, Budget, BuildError};
 use super::union_find::UnionFind;
 use super::weld::{WELD_BYTES, weld_alike};
 use super::{Corner, Mesh};
-use crate::mesh::build_limits::{Borrowed, MemoryAccount};
 use crate::progress::{Cancelled, Progress};
 
 /// A mesh's patches and the edges between them.
@@ -161,7 +160,7 @@ impl Topology {
     /// # Errors
     /// [`Cancelled`] when `progress` says so.
     pub fn build_within(mesh: &Mesh, tolerance: f32, progress: &Progress) -> Result<Self, Cancelled> {
-        match Self::build_afforded(mesh, tolerance, &Unlimited, progress) {
+        match Self::build_afforded(mesh, tolerance, &Budget::unlimited(), progress) {
             Ok(topology) => Ok(topology),
             // Memory is unlimited, so cancellation is the only possible error.
             Err(_) => Err(Cancelled),
@@ -175,7 +174,7 @@ impl Topology {
     pub fn build_afforded(
         mesh: &Mesh,
         tolerance: f32,
-        budget: &dyn MemoryAccount,
+        budget: &Budget,
         progress: &Progress,
     ) -> Result<Self, BuildError> {
         let take = |bytes: usize| budget.hold(bytes as u64);

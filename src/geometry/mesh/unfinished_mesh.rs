@@ -1,7 +1,7 @@
 //! A mesh whose corners may still lack normals, and the points that its corners lie on.
 
 use super::Corner;
-use super::build_limits::{BuildError, MemoryAccount};
+use super::build_limits::{Budget, BuildError};
 use super::weld::{WELD_BYTES, weld};
 
 /// A mesh that is being built. Missing normals are NaN.
@@ -29,7 +29,7 @@ pub(super) enum CornerPoints {
 }
 
 impl CornerPoints {
-    pub(super) fn of(mesh: &UnfinishedMesh, budget: &dyn MemoryAccount) -> Result<Self, BuildError> {
+    pub(super) fn of(mesh: &UnfinishedMesh, budget: &Budget) -> Result<Self, BuildError> {
         // Corners that are nothing but positions differ in their positions.
         let plain = |corner: &Corner| corner.normal.x.is_nan() && corner.uv == glam::Vec2::ZERO;
         if mesh.bindings.is_empty() && mesh.corners.iter().all(plain) {

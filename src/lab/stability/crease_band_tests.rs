@@ -5,7 +5,7 @@ use proptest::prelude::*;
 
 use super::{CASES, soup};
 use geometry::mesh::crease_band::{CreaseBand, with_crease_band};
-use geometry::mesh::{Corner, EdgeKind, Mesh, Side, Topology, Unlimited};
+use geometry::mesh::{Corner, EdgeKind, Mesh, Side, Topology, Budget};
 use geometry::progress::Progress;
 
 fn topology(mesh: &Mesh) -> Topology {
@@ -16,7 +16,7 @@ fn topology(mesh: &Mesh) -> Topology {
 fn banded_within(mesh: &Mesh, weld: f32, width: f32) -> (Mesh, Topology, CreaseBand) {
     let progress = Progress::new();
     let before = Topology::build_within(mesh, weld, &progress).unwrap();
-    let (made, after, band) = with_crease_band(mesh, &before, width, &Unlimited, &progress).unwrap();
+    let (made, after, band) = with_crease_band(mesh, &before, width, &Budget::unlimited(), &progress).unwrap();
     assert_eq!(after.edges, topology(&made).edges);
     for edge in &after.edges {
         let normals = |side: &Side| after.side_corners(side).map(|corner| made.corners[corner as usize].normal);

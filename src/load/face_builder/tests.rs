@@ -34,19 +34,20 @@ pub(crate) fn assert_cube(mesh: &Mesh) {
     }
 }
 
-fn corners(places: &[[f32; 2]]) -> Vec<InputCorner> {
+fn corners(places: &[[f32; 2]]) -> Vec<NumberedCorner> {
     let corner = |&[x, y]: &[f32; 2]| InputCorner { position: Vec3::new(x, y, 0.0), normal: None, uv: Vec2::ZERO };
-    places.iter().map(corner).collect()
+    places.iter().map(|place| NumberedCorner { corner: corner(place), number: 0, vertex: None }).collect()
 }
 
 fn added(places: &[&[[f32; 2]]]) -> Result<LoadedMesh, ReadError> {
-    let budget = Budget::unlimited();
-    let mut faces = FaceBuilder::new(0, &budget);
+    let (budget, progress) = (Budget::unlimited(), Progress::new());
+    let mut faces = FaceBuilder::new(&ModelFile::of_test("faces", &progress), &budget);
     let material = faces.material(Material::plain("default", [1.0; 4]))?;
     for places in places {
         faces.add(material, &mut corners(places), FilePosition::Line(7))?;
     }
-    faces.finish("faces", "nothing".to_owned(), vec!["said first.".to_owned()], &Progress::new())
+    faces.notes.push("said first.".to_owned());
+    faces.finish("faces", "nothing".to_owned(), &progress)
 }
 
 #[test]
@@ -84,8 +85,8 @@ fn faces_at_impossible_positions_are_left_out() {
 
 #[test]
 fn corners_keep_their_colours() {
-    let budget = Budget::unlimited();
-    let mut faces = FaceBuilder::new(0, &budget);
+    let (budget, progress) = (Budget::unlimited(), Progress::new());
+    let mut faces = FaceBuilder::new(&ModelFile::of_test("faces", &progress), &budget);
     let material = faces.material(Material::plain("default", [1.0; 4])).unwrap();
     faces.color();
     let square = corners(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
@@ -93,15 +94,14 @@ fn corners_keep_their_colours() {
     // The same corners in other colours are other corners.
     for colors in [colors, [Vec4::ONE; 4]] {
         let numbers = colors.map(|color| faces.number(color).unwrap());
-        let numbered =
-            square.iter().zip(numbers).map(|(&corner, number)| NumberedCorner { corner, number, vertex: None });
+        let numbered = square.iter().zip(numbers).map(|(&at, number)| NumberedCorner { number, ..at });
         faces.add(material, &mut numbered.collect(), FilePosition::Everywhere).unwrap();
     }
-    let mesh = faces.finish("faces", String::new(), Vec::new(), &Progress::new()).unwrap();
+    let mesh = faces.finish("faces", String::new(), &progress).unwrap();
     let details = mesh.details.as_ref().expect("it has colours");
     assert_eq!((mesh.corners.len(), details.len()), (7, 7), "the white corner is shared");
     for (corner, detail) in mesh.corners.iter().zip(details.iter()).take(4) {
-        let at = square.iter().position(|at| at.position == corner.position).unwrap();
+        let at = square.iter().position(|at| at.corner.position == corner.position).unwrap();
         assert_eq!(detail.color, colors[at]);
     }
     assert!((colors[1].y - 0.503).abs() < 0.001, "sRGB is decoded: {}", colors[1].y);

@@ -14,12 +14,10 @@ use super::looks::name;
 use super::morphs::{channels, shape_weights};
 use super::nodes::{Placed, is_on, is_set};
 use super::parse::{half, refused};
-use super::too_large;
 use crate::attachment::LocalTransform;
 use crate::memory_budget::Budget;
 use crate::notes::Notes;
 use crate::read_error::ReadError;
-use geometry::mesh::MemoryAccount;
 use geometry::mesh::rig::{Channel, Clip, Interpolation, Keys, Placement, Property};
 use geometry::progress::Progress;
 
@@ -43,7 +41,8 @@ const MAX_SEGMENTS: usize = 1 << 10;
 pub(super) fn read(
     scene: &Scene,
     placed: &Placed,
-    (budget, progress): (&Budget, &Progress),
+    budget: &Budget,
+    progress: &Progress,
     notes: &mut Notes,
 ) -> Result<Vec<Clip>, ReadError> {
     let mut reader =
@@ -120,7 +119,7 @@ impl Reader<'_> {
             Err(error) => return Err(refused(&error, self.budget)),
         };
         let bytes = baked.metadata.result_memory_used as u64;
-        self.budget.hold(bytes).map_err(too_large)?;
+        self.budget.hold(bytes)?;
         let span = Span::of(&stack.anim, [baked.key_time_min, baked.key_time_max]);
         let beyond = Beyond::new(anim, span, (SAMPLES, self.samples_left));
         let mut curves = Curves { anim, span, beyond };

@@ -7,14 +7,13 @@ use ufbx::{Mesh, Node, RefList};
 
 use super::looks::{LookSource, MapSource, MapUvs};
 use super::textures::{Textures, of_file, sampling};
-use super::too_large;
 use crate::face_builder::FaceBuilder;
 use crate::memory_budget::Budget;
 use crate::notes::Notes;
 use crate::packing;
 use crate::read_error::ReadError;
 use crate::uri::Files;
-use geometry::mesh::{Alpha, Map, MapUv, Material, MemoryAccount, Sampling, Slot, Texture};
+use geometry::mesh::{Alpha, Map, MapUv, Material, Sampling, Slot, Texture};
 
 /// The materials of all polygons.
 pub(super) struct Materials<'a> {
@@ -39,18 +38,25 @@ pub(super) struct Resolved {
 }
 
 impl<'a> Materials<'a> {
-    pub(super) fn new(files: &'a Files<'a>, budget: &'a Budget) -> Self {
+    pub(super) fn new(files: &'a Files<'a>) -> Self {
         Self {
-            textures: Textures::new(files, budget),
-            budget,
+            textures: Textures::new(files),
+            budget: files.budget,
             resolved: HashMap::new(),
             undrawn: BTreeMap::new(),
             notes: Notes::default(),
         }
     }
 
-    /// Plans how the images of all materials of these meshes fit; `reserved` is the memory that the rest of the load takes, in bytes.
-    pub(super) fn plan<'m>(&mut self, meshes: impl Iterator<Item = (&'m Node, &'m Mesh)>, reserved: u64) {
+    /// Reads the images of all materials of these meshes; `reserved` is the memory that the rest of the load takes, in bytes.
+    ///
+    /// # Errors
+    /// [`ReadError::Cancelled`].
+    pub(super) fn read_images<'m>(
+        &mut self,
+        meshes: impl Iterator<Item = (&'m Node, &'m Mesh)>,
+        reserved: u64,
+    ) -> Result<(), ReadError> {
         let mut seen = HashSet::new();
         let sources = meshes.flat_map(|(node, mesh)| {
             let is_new = seen.insert(mesh.element.typed_id);
@@ -58,7 +64,7 @@ impl<'a> Materials<'a> {
             node.materials.iter().chain(own).map(move |material| LookSource::new(material, mesh))
         });
         let images: Vec<_> = sources.flat_map(|source| source.images().collect::<Vec<_>>()).collect();
-        self.textures.plan(images.into_iter(), reserved);
+        Ok(self.textures.read(images.into_iter(), reserved)?)
     }
 
     /// Finds a material of a node's mesh by its index there, or adds it to the builder.
@@ -85,7 +91,7 @@ impl<'a> Materials<'a> {
         if let Some(&resolved) = self.resolved.get(&key) {
             return Ok(resolved);
         }
-        self.budget.hold(size_of::<Material>() as u64).map_err(too_large)?;
+        self.budget.hold(size_of::<Material>() as u64)?;
         for what in &source.undrawn {
             self.undrawn.entry(what).or_default().push(source.name.clone());
         }

@@ -3,10 +3,8 @@
 use ufbx::{BlendChannel, BlendShape, Mesh};
 
 use super::convert::vec3;
-use super::too_large;
 use crate::memory_budget::Budget;
 use crate::read_error::ReadError;
-use geometry::mesh::MemoryAccount;
 use geometry::mesh::rig::Delta;
 
 /// Returns the channels of a mesh, in the order of its targets.
@@ -67,7 +65,7 @@ impl<'a> Morphs<'a> {
             return Err(ReadError::TooMany { limit: u32::MAX.into(), what: "offsets of blend shapes" });
         }
         let vertices = mesh.num_vertices;
-        budget.borrow(count * 8 + (vertices as u64 + 1) * 8).map_err(too_large)?;
+        budget.borrow(count * 8 + (vertices as u64 + 1) * 8)?;
         let known = |vertex: &&u32| (**vertex as usize) < vertices;
         let mut starts = vec![0_u32; vertices + 1];
         for &vertex in shapes.iter().flat_map(|shape| shape.offset_vertices.iter().filter(known)) {

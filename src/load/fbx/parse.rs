@@ -5,11 +5,9 @@ use ufbx::{
 };
 use ufbx::{ProgressCb, ProgressResult, SceneRoot};
 
-use super::too_large;
 use crate::import::Import;
 use crate::memory_budget::Budget;
 use crate::read_error::{FilePosition, ReadError};
-use geometry::mesh::MemoryAccount;
 use geometry::progress::{Cancelled, Progress};
 
 /// How deep nodes may be nested.
@@ -53,7 +51,7 @@ pub(super) fn scene(
         ErrorType::TruncatedFile if !is_fbx(bytes) => no_fbx(),
         _ => refused(&error, budget),
     })?;
-    budget.hold(scene.metadata.result_memory_used as u64).map_err(too_large)?;
+    budget.hold(scene.metadata.result_memory_used as u64)?;
     Ok(scene)
 }
 
@@ -81,7 +79,7 @@ pub(super) fn refused(error: &ufbx::Error, budget: &Budget) -> ReadError {
         ErrorType::Cancelled => Cancelled.into(),
         ErrorType::MemoryLimit | ErrorType::AllocationLimit | ErrorType::OutOfMemory => {
             match budget.hold(budget.left().saturating_add(1 << 20)) {
-                Err(refused) => too_large(refused),
+                Err(refused) => refused.into(),
                 Ok(()) => everywhere("there isn't enough memory to read it"),
             }
         }

@@ -7,10 +7,8 @@ use glam::{DVec3, Vec3};
 use ufbx::Mesh;
 
 use super::convert::vec3;
-use super::too_large;
 use crate::memory_budget::Budget;
 use crate::read_error::ReadError;
-use geometry::mesh::MemoryAccount;
 use geometry::mesh::union_find::UnionFind;
 
 /// Memory for each corner, in bytes: its side in the table, whose room is up to twice as large, its set, and two normals.
@@ -31,7 +29,7 @@ pub(super) fn normals(mesh: &Mesh, budget: &Budget) -> Result<Option<Vec<Vec3>>,
     if mesh.edge_smoothing.is_empty() && mesh.face_smoothing.is_empty() {
         return Ok(None);
     }
-    budget.borrow(PER_CORNER * mesh.num_indices as u64).map_err(too_large)?;
+    budget.borrow(PER_CORNER * mesh.num_indices as u64)?;
     let smooth = smooth_edges(mesh);
     let mut sets = UnionFind::new(mesh.num_indices);
     let mut sides: HashMap<Vertices, Side, FixedState> = HashMap::default();

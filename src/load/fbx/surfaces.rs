@@ -7,18 +7,17 @@ use super::convert::{vec2, vec4};
 use super::materials::{self, Materials, Resolved};
 use super::nodes::Placed;
 use super::skin::Skin;
-use super::too_large;
 use super::vertices::Vertices;
 use crate::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, counted};
-use crate::import::Import;
 use crate::memory_budget::{Budget, edge_bytes};
+use crate::model_file::ModelFile;
 use crate::notes::Notes;
 use crate::read_error::{FilePosition, ReadError};
 use crate::rig_builder::{NodeBinder, RigBuilder, UndeformedVertex, VertexFrame};
 use crate::uri::Files;
 use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::rig::Delta;
-use geometry::mesh::{Borrowed, CornerDetail, MemoryAccount};
+use geometry::mesh::{Borrowed, CornerDetail};
 use geometry::progress::Progress;
 
 /// How many polygons are read before the job asks whether it was cancelled.
@@ -33,7 +32,6 @@ const PER_DELTA: u64 = 250;
 pub(super) struct Surfaces<'s, 'a> {
     scene: &'s Scene,
     placed: &'s Placed,
-    import: Import,
     budget: &'a Budget,
     materials: Materials<'a>,
     faces: FaceBuilder<'a>,
@@ -60,35 +58,33 @@ impl<'s, 'a> Surfaces<'s, 'a> {
     pub(super) fn new(
         scene: &'s Scene,
         placed: &'s Placed,
-        import: Import,
-        (files, budget): (&'a Files<'a>, &'a Budget),
+        file: &ModelFile,
+        files: &'a Files<'a>,
         binder: Option<RigBuilder>,
     ) -> Result<Self, ReadError> {
+        let budget = files.budget;
         let meshes = || {
             let nodes = placed.shown.iter().map(|&node| &scene.nodes[node]);
             nodes.filter_map(|node| Some((node, node.mesh.as_deref()?)))
         };
         let is_detailed = materials::need_details(meshes());
-        let mut faces =
-            FaceBuilder::new(usize::try_from(budget.files()).unwrap_or(usize::MAX), budget).importing(import);
+        let mut faces = FaceBuilder::new(file, budget);
         let triangles = meshes().fold(0_usize, |sum, (_, mesh)| sum.saturating_add(mesh.num_triangles));
         // Many copies of a mesh are refused before any is read.
         let memory = (triangles as u64).saturating_mul(12);
-        budget.hold(memory).map_err(too_large)?;
-        budget.release(memory);
+        budget.check(memory)?;
         faces.expect(triangles, 0);
-        let mut materials = Materials::new(files, budget);
+        let mut materials = Materials::new(files);
         let corners = meshes().fold(0_u64, |sum, (_, mesh)| sum.saturating_add(mesh.num_indices as u64));
         let details = if is_detailed { DetailTable::bytes_for(corners as usize) } else { 0 };
         // What the parsed file takes has been freed when the edges are made.
         let parsed = scene.metadata.result_memory_used as u64;
         let edges = edge_bytes(corners, triangles as u64).saturating_sub(parsed);
         let ahead = corners.saturating_mul(PER_CORNER).saturating_add(memory);
-        materials.plan(meshes(), ahead.max(edges).saturating_add(details));
+        materials.read_images(meshes(), ahead.max(edges).saturating_add(details))?;
         Ok(Self {
             scene,
             placed,
-            import,
             budget,
             materials,
             faces,
@@ -108,7 +104,7 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         let _scope = Borrowed::from(self.budget);
         let global = &self.placed.global;
         let skin = Skin::new((node, mesh), global);
-        let vertices = Vertices::new((node, mesh), global[index], skin.as_ref(), &self.import, self.budget)?;
+        let vertices = Vertices::new((node, mesh), global[index], skin.as_ref(), &self.faces.import, self.budget)?;
         self.found.without_normals += usize::from(vertices.is_without_normals());
         let binder = self.binder.as_mut().map(|binder| {
             let binder = binder.node(index, skin.as_ref().map(|skin| &skin.joints));
@@ -142,7 +138,7 @@ impl<'s, 'a> Surfaces<'s, 'a> {
     pub(super) fn into_parts(self, notes: &mut Notes) -> (FaceBuilder<'a>, Option<DetailTable>, Option<RigBuilder>) {
         notes.append(self.materials.into_notes());
         let Counts { without_normals, holes, bad_uvs, bad_colors, many_joints } = self.found;
-        let (without_normals, made) = self.import.lacking_normals(without_normals, "meshes without normals");
+        let (without_normals, made) = self.faces.import.lacking_normals(without_normals, "meshes without normals");
         notes.extend(counted([
             (without_normals, made.as_str()),
             (holes, "polygons that are holes, left out"),
@@ -232,7 +228,7 @@ impl MeshReader<'_, '_, '_> {
         }
         if let Some(table) = self.details.take() {
             let detail = self.detail(corner, material);
-            number = table.number(detail, number, self.budget).map_err(too_large)?;
+            number = table.number(detail, number, self.budget)?;
             self.details = Some(table);
         }
         Ok((NumberedCorner { corner: posed.corner, number, vertex: None }, mirrors(&posed.linear)))
@@ -311,7 +307,7 @@ impl<'b> Binder<'b> {
             false => (&self.skinned, Some(influences)),
         };
         let memory = deltas.len() as u64 * PER_DELTA;
-        budget.hold(memory).map_err(too_large)?;
+        budget.hold(memory)?;
         let before = self.node.deltas();
         let normal = normal.unwrap_or_default();
         let vertex = UndeformedVertex { position, normal, influences, deltas, tangent: None };

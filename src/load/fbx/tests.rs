@@ -8,19 +8,16 @@ mod spans;
 mod surfaces;
 pub(crate) mod tree;
 
-use std::path::Path;
-
 use super::read_here;
-use crate::files::Limits;
-use crate::import::Import;
 use crate::loaded_mesh::LoadedMesh;
+use crate::model_file::ModelFile;
 use crate::read_error::ReadError;
 use geometry::progress::Progress;
 
 use tree::{Arrays, Entry, binary, text};
 
 fn read(bytes: &[u8]) -> Result<LoadedMesh, ReadError> {
-    read_here(bytes.to_vec(), Path::new("nowhere"), "test", Import::default(), &Limits::default(), &Progress::new())
+    read_here(bytes.to_vec(), &ModelFile::of_test("test", &Progress::new()))
 }
 
 /// Reads a file as text, as plain binary and as compressed binary. All must give the same mesh.

@@ -17,7 +17,6 @@ use super::meshopt::{Decompressed, decompress};
 use super::notes::Notes;
 use super::schema_check::{Fault, Faults};
 use crate::memory_budget::Budget;
-use geometry::mesh::MemoryAccount;
 
 /// The greatest number of elements of an accessor without a buffer view (zeros except for sparse values), since no
 /// file's size limits those.

@@ -6,7 +6,6 @@ use glam::DMat4;
 use super::rig_builder::{MAX_BOUND, NodeBinder, UndeformedVertex, VertexFrame};
 use super::vertices::Vertices;
 use crate::memory_budget::Budget;
-use geometry::mesh::MemoryAccount;
 use geometry::mesh::mesh_builder::InputCorner;
 use geometry::mesh::rig::Delta;
 

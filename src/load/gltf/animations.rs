@@ -10,8 +10,8 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::{Accessors, nodes};
+use geometry::mesh::borrowing;
 use geometry::mesh::rig::{Channel, Clip, Interpolation, Keys, Property};
-use geometry::mesh::{MemoryAccount, borrowing};
 
 /// The greatest number of numbers in all clips together: more than any model has, and little enough for any memory.
 const MAX_NUMBERS: usize = 1 << 26;

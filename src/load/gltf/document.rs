@@ -20,7 +20,7 @@ use super::schema_check::Faults;
 use super::{GltfError, extension_table, glb, json, repair, schema, schema_check, variants};
 use crate::memory_budget::Budget;
 use crate::selection::Selection;
-use geometry::mesh::{Borrowed, Light, MemoryAccount, MemoryRefused};
+use geometry::mesh::{Borrowed, Light, MemoryRefused};
 use geometry::progress::Progress;
 
 /// A validated document, the binary chunk of a `.glb`, and what was left out.

@@ -24,7 +24,7 @@ use super::nodes::Placed;
 use super::schema::{DRACO, is_detail};
 use super::{Accessors, GltfError};
 use crate::memory_budget::Budget;
-use geometry::mesh::{Borrowed, MemoryAccount, MemoryRefused};
+use geometry::mesh::{Borrowed, MemoryRefused};
 use geometry::progress::Progress;
 
 use header::Header;

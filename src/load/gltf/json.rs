@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 
 use super::GltfError;
 use crate::memory_budget::Budget;
-use geometry::mesh::{MemoryAccount, MemoryRefused};
+use geometry::mesh::MemoryRefused;
 use geometry::progress::{Cancelled, Progress};
 
 /// How deep lists and objects may be nested. The specification itself needs 8 levels; `extras` may need more.

@@ -21,7 +21,7 @@ use crate::texture_room::{Scaling, TextureRoom, decoded_bytes};
 use crate::uri::Files;
 use geometry::mesh::mesh_builder::MeshBuilder;
 use geometry::mesh::mipmap::MipFilter;
-use geometry::mesh::{Borrowed, Look, Map, MapUv, Material, MemoryAccount, MemoryRefused, Sampling, Slot, Texture};
+use geometry::mesh::{Borrowed, Look, Map, MapUv, Material, MemoryRefused, Sampling, Slot, Texture};
 use geometry::progress::Progress;
 
 /// How many materials a sentence names.

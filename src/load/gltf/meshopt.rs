@@ -7,7 +7,6 @@ use meshopt::ffi;
 
 use super::extensions::{MeshoptExtension, MeshoptFilter, MeshoptMode};
 use crate::memory_budget::Budget;
-use geometry::mesh::MemoryAccount;
 
 /// The data of a decompressed view, aligned to 4 bytes for its elements.
 pub(super) struct Decompressed {

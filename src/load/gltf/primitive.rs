@@ -12,8 +12,8 @@ use super::rig_builder::NodeBinder;
 use crate::Budget;
 use crate::face_builder::{is_near, unplaced};
 use crate::import::Import;
+use geometry::mesh::MemoryRefused;
 use geometry::mesh::detail_table::DetailTable;
-use geometry::mesh::{MemoryAccount, MemoryRefused};
 
 pub(super) use super::vertices::NodePose;
 use super::vertices::{Vertex, VertexRepairs, Vertices};

@@ -9,7 +9,7 @@ use super::notes::Notes;
 use super::reach::{Reach, is_drawn, is_influence, list, packed};
 use super::schema::{INSTANCING, is_detail};
 use crate::memory_budget::Budget;
-use geometry::mesh::{MemoryAccount, MemoryRefused};
+use geometry::mesh::MemoryRefused;
 
 /// How far a rotation's length may be from 1 without a warning: quaternions in files are rounded.
 const ROUNDING: f64 = 1e-3;

@@ -12,7 +12,7 @@ use crate::memory_budget::edge_bytes;
 use geometry::mesh::build_limits::MAX_TRIANGLES;
 use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::interner::Interner;
-use geometry::mesh::{MemoryAccount, MemoryRefused, borrowing};
+use geometry::mesh::{MemoryRefused, borrowing};
 
 /// The greatest number of vertices, their displacements and indices, each counted as often as it is used.
 const MAX_ELEMENTS: u64 = 1 << 29;

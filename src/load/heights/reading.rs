@@ -12,7 +12,7 @@ use crate::files::{file_reason, open_file};
 use crate::images::{decoding_bytes, metadata_limits};
 use crate::memory_budget::Budget;
 use crate::webp;
-use geometry::mesh::build_limits::{Borrowed, MemoryAccount, MemoryRefused, borrowing};
+use geometry::mesh::build_limits::{Borrowed, MemoryRefused, borrowing};
 use geometry::mesh::heights::{HeightMap, angle_bytes};
 use geometry::progress::{Cancelled, Progress};
 

@@ -45,7 +45,7 @@ fn images_are_halved_as_levels_are_made() {
         let bytes = encoded(&of(&source), format);
         assert_eq!(texture_size(&bytes), Some([37, 22]));
         for halvings in 0..7 {
-            let budget = Budget::new(0, &crate::files::Limits::default());
+            let budget = Budget::new(0, crate::Limits::default().memory);
             let left = budget.left();
             let made = decode_halved(&bytes, halvings, MipFilter::AlphaWeighted, &budget).expect("an image");
             let expected = (0..halvings).fold(source.clone(), |texture, _| halved(&texture, MipFilter::AlphaWeighted));
@@ -77,7 +77,7 @@ fn tga_and_bmp_images_are_read_within_limits() {
     (header[13], header[15]) = (0x3f, 0x3f);
     let large = [&header[..], &[0xff; 100]].concat();
     let limits = crate::files::Limits { memory: 64 << 20, ..Default::default() };
-    let said = decode_texture(&large, &Budget::new(large.len(), &limits)).expect_err("it would take 1 GiB");
+    let said = decode_texture(&large, &Budget::new(large.len(), limits.memory)).expect_err("it would take 1 GiB");
     assert!(said.contains("16130 x 16130 px would take"), "{said}");
     assert!(decode_texture(&[0x40; 200], &Budget::unlimited()).is_err(), "no format");
 }
@@ -87,9 +87,9 @@ fn a_png_is_read_in_rows_where_the_whole_image_does_not_fit() {
     let image: DynamicImage = image::RgbImage::from_pixel(2000, 1000, Rgb([9, 8, 7])).into();
     let limits = crate::files::Limits { memory: 10 << 20, ..Default::default() };
     // 8 MB of pixels, and 6 MB of the decoder's if it is decoded whole.
-    let decoded = decode_texture(&encoded(&image, ImageFormat::Png), &Budget::new(0, &limits));
+    let decoded = decode_texture(&encoded(&image, ImageFormat::Png), &Budget::new(0, limits.memory));
     assert_eq!(decoded.map(|texture| texture.size), Ok([2000, 1000]));
-    let refused = decode_texture(&encoded(&image, ImageFormat::Jpeg), &Budget::new(0, &limits));
+    let refused = decode_texture(&encoded(&image, ImageFormat::Jpeg), &Budget::new(0, limits.memory));
     assert!(refused.is_err_and(|said| said.contains("2000 x 1000 px would take at least 14 MiB")));
 }
 

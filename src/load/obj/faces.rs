@@ -1,11 +1,12 @@
 //! The faces of an OBJ file, as numbers of positions, texture coordinates and normals.
 
 use super::pieces::Piece;
-use super::{Statement, next_statement};
+use super::vertices::group;
+use super::{Statement, each_statement};
 use crate::face_builder::MAX_CORNERS;
 use crate::read_error::ReadError;
 use crate::recent_corners::VertexNumbers;
-use crate::text_lines::{shown, words};
+use crate::text_lines::{parsed, shown, words};
 
 /// The number of what a corner doesn't have.
 pub(super) const NONE: u32 = u32::MAX;
@@ -23,15 +24,24 @@ pub(super) struct FacePiece {
 
 /// A statement that was found.
 pub(super) enum Found {
-    /// A face without a fault, its line, and where its corners end among those of the piece. They begin where those of the face
-    /// before end.
-    Face { line: usize, end: u32 },
-    /// Another statement, or a face that needs a closer look: where it begins in the piece, how many lines come before it, and
-    /// how many positions, texture coordinates and normals.
-    Other { at: u32, lines: usize, above: [u32; 3] },
+    /// A face, its line, and where its corners end among those of the piece. They begin where those of the face before end.
+    Face {
+        line: usize,
+        end: u32,
+    },
+    /// A face with the number of a position that isn't in the file, and its line.
+    Absent {
+        line: usize,
+    },
+    /// The smoothing group of the next faces.
+    Smoothing(u32),
+    /// The names of what the next faces belong to.
+    Object(Box<[u8]>),
+    Group(Box<[u8]>),
+    Material(Box<[u8]>),
 }
 
-/// Numbers of statements that don't make triangles; for points, the number of points.
+/// Numbers of statements that don't make triangles, and of flaws; for points, the number of points.
 #[derive(Clone, Copy, Default)]
 pub(super) struct StatementCounts {
     pub points: usize,
@@ -40,6 +50,11 @@ pub(super) struct StatementCounts {
     /// Of other files and of programs.
     pub calls: usize,
     pub unknown: usize,
+    /// Corners of faces with more than three numbers.
+    pub long_corners: usize,
+    /// Corners whose texture coordinates, or whose normal, aren't in the file.
+    pub absent_uvs: usize,
+    pub absent_normals: usize,
 }
 
 impl StatementCounts {
@@ -49,6 +64,9 @@ impl StatementCounts {
         self.surfaces += other.surfaces;
         self.calls += other.calls;
         self.unknown += other.unknown;
+        self.long_corners += other.long_corners;
+        self.absent_uvs += other.absent_uvs;
+        self.absent_normals += other.absent_normals;
     }
 }
 
@@ -80,33 +98,26 @@ const SILENT: [&[u8]; 21] = [
 impl FacePiece {
     /// Parses a piece of a file that has `counts` positions, texture coordinates and normals, `above` of them before the piece.
     pub(super) fn parse(piece: &Piece, mut above: [usize; 3], counts: [usize; 3]) -> Self {
-        let (mut found, mut lines) = (Self::default(), piece.lines());
-        loop {
-            let (at, before) = (piece.bytes.len() - lines.rest().len(), lines.count());
-            let other =
-                |above: [usize; 3]| Found::Other { at: at as u32, lines: before, above: above.map(|n| n as u32) };
-            let next = next_statement(&mut lines, |statement| match statement.word {
+        let mut found = Self::default();
+        let ended = each_statement(piece.lines(), |statement| {
+            let name = || statement.rest().into();
+            match statement.word {
                 b"v" => above[0] += 1,
                 b"vt" => above[1] += 1,
                 b"vn" => above[2] += 1,
-                b"f" | b"fo" => {
-                    let face = found.face(statement, above, counts);
-                    found.found.push(face.unwrap_or_else(|| other(above)));
-                }
-                b"s" | b"o" | b"g" | b"usemtl" => found.found.push(other(above)),
+                b"f" | b"fo" => found.face(statement, above, counts)?,
+                b"s" => found.found.push(Found::Smoothing(group(statement.rest()))),
+                b"o" => found.found.push(Found::Object(name())),
+                b"g" => found.found.push(Found::Group(name())),
+                b"usemtl" => found.found.push(Found::Material(name())),
                 // Material files were read with the vertices.
                 b"" | b"mtllib" => {}
                 word => found.count(word, statement),
-            });
-            match next {
-                Ok(true) => {}
-                Ok(false) => return found,
-                Err(error) => {
-                    found.error = Some(error);
-                    return found;
-                }
             }
-        }
+            Ok(())
+        });
+        found.error = ended.err();
+        found
     }
 
     fn count(&mut self, word: &[u8], statement: &Statement) {
@@ -119,38 +130,50 @@ impl FacePiece {
         }
     }
 
-    /// Parses a face; none if it isn't plain, of which nothing is kept then.
-    fn face(&mut self, statement: &Statement, above: [usize; 3], counts: [usize; 3]) -> Option<Found> {
-        let start = self.corners.len();
+    /// Parses a face. Nothing is kept of one with the number of a position that isn't in the file.
+    fn face(&mut self, statement: &Statement, above: [usize; 3], counts: [usize; 3]) -> Result<(), ReadError> {
+        let (line, start) = (statement.number, self.corners.len());
         for word in words(statement.rest()) {
-            let corner = plain_corner(word, above, counts).filter(|_| self.corners.len() - start < MAX_CORNERS);
-            let Some(corner) = corner else {
-                self.corners.truncate(start);
-                return None;
-            };
-            self.corners.push(corner);
+            if self.corners.len() - start == MAX_CORNERS {
+                return Err(statement.place().error(format!("the face has more than {MAX_CORNERS} corners")));
+            }
+            match self.corner(word, above, counts).map_err(|reason| statement.place().error(reason))? {
+                Some(corner) => self.corners.push(corner),
+                None => {
+                    self.corners.truncate(start);
+                    self.found.push(Found::Absent { line });
+                    return Ok(());
+                }
+            }
         }
-        Some(Found::Face { line: statement.number, end: u32::try_from(self.corners.len()).ok()? })
+        // Pieces are far smaller.
+        let end = u32::try_from(self.corners.len()).unwrap_or(u32::MAX);
+        self.found.push(Found::Face { line, end });
+        Ok(())
     }
-}
 
-/// Parses a corner of numbers that are all in the file. None if it needs a closer look.
-fn plain_corner(word: &[u8], above: [usize; 3], counts: [usize; 3]) -> Option<VertexNumbers> {
-    let mut numbers = [NONE; 3];
-    let mut parts = word.split(|&byte| byte == b'/');
-    for (i, number) in numbers.iter_mut().enumerate() {
-        let Some(part) = parts.next() else { break };
-        if i == 0 || !part.is_empty() {
-            *number = fitting(index(part, above[i], counts[i]).ok()??)?;
-        }
+    /// Parses a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`. Returns its numbers; none if the position isn't in the file.
+    ///
+    /// # Errors
+    /// A clause that says what isn't a number.
+    fn corner(&mut self, word: &[u8], above: [usize; 3], counts: [usize; 3]) -> Result<Option<VertexNumbers>, String> {
+        let mut parts = word.split(|&byte| byte == b'/');
+        let [position, uv, normal] = [0, 1, 2].map(|_| parts.next().filter(|part| !part.is_empty()));
+        self.counts.long_corners += usize::from(parts.next().is_some());
+        let Some(position) = position else {
+            return Err(format!("{} isn't a corner, such as 1, 1/2, 1//3 or 1/2/3", shown(word)));
+        };
+        let Some(position) = index(position, above[0], counts[0])? else { return Ok(None) };
+        // A corner needs its position alone.
+        let optional = |word: Option<&[u8]>, kind: usize, absent: &mut usize| {
+            let number = word.and_then(|word| index(word, above[kind], counts[kind]).ok().flatten());
+            *absent += usize::from(word.is_some() && number.is_none());
+            number.unwrap_or(NONE)
+        };
+        let uv = optional(uv, 1, &mut self.counts.absent_uvs);
+        let normal = optional(normal, 2, &mut self.counts.absent_normals);
+        Ok(Some([position, uv, normal]))
     }
-    parts.next().is_none().then_some(numbers)
-}
-
-/// Returns a number as one of 32 bits, none of which is [`NONE`]. Larger ones don't occur: the file would be larger than any that is
-/// read.
-pub(super) fn fitting(number: usize) -> Option<u32> {
-    u32::try_from(number).ok().filter(|number| *number != NONE)
 }
 
 /// Parses an index into a list of `count` items, and returns it counted from 0; none if the list has no such item. The file counts
@@ -158,17 +181,19 @@ pub(super) fn fitting(number: usize) -> Option<u32> {
 ///
 /// # Errors
 /// A clause that says what isn't a number.
-pub(super) fn index(word: &[u8], above: usize, count: usize) -> Result<Option<usize>, String> {
+fn index(word: &[u8], above: usize, count: usize) -> Result<Option<u32>, String> {
     let whole = |number: f64| (number.fract() == 0.0).then_some(number as i128);
-    let float = || whole(std::str::from_utf8(word).ok()?.parse().ok()?);
+    let float = || whole(parsed(word)?);
     let number = whole_number(word).map(i128::from).or_else(float);
     let number = number.ok_or_else(|| format!("{} isn't the index of a position", shown(word)))?;
     let distance = usize::try_from(number.unsigned_abs()).unwrap_or(usize::MAX);
-    Ok(match number {
+    let found = match number {
         0 => None,
         1.. => (distance <= count).then(|| distance - 1),
         _ => above.checked_sub(distance),
-    })
+    };
+    // Larger ones don't occur: the file would be larger than any that is read.
+    Ok(found.and_then(|found| u32::try_from(found).ok()).filter(|found| *found != NONE))
 }
 
 /// Parses a whole number.
@@ -178,5 +203,5 @@ fn whole_number(word: &[u8]) -> Option<i64> {
     if is_short {
         return Some(word.iter().fold(0, |number, digit| 10 * number + i64::from(digit - b'0')));
     }
-    std::str::from_utf8(word).ok().and_then(|word| word.parse().ok())
+    parsed(word)
 }

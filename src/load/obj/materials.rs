@@ -1,22 +1,19 @@
 //! The materials of an OBJ file. Files in its folder describe them; each is made when a face first uses it.
 
-use std::collections::{HashMap, HashSet};
-use std::sync::Arc;
+use std::borrow::Cow;
+use std::collections::HashMap;
 
 use glam::Vec2;
 
 use super::mtl::{self, MtlMaterial, MtlTexture};
-use super::textures::{Giving, TextureUse};
+use super::textures::{Giving, TextureUse, are_normals};
 use crate::face_builder::{FaceBuilder, counted};
-use crate::images::{decode_halved, texture_size};
-use crate::memory_budget::Budget;
 use crate::read_error::ReadError;
 use crate::text_lines::{shown, words};
-use crate::texture_room::TextureRoom;
+use crate::texture_room::{ReadImage, decoded_bytes, read_images};
 use crate::uri::Files;
 use geometry::mesh::mipmap::MipFilter;
 use geometry::mesh::{Alpha, Look, Material, Sampling, Wrap, borrowing};
-use geometry::progress::Progress;
 
 /// The greatest number of material files that are read.
 const MAX_LIBRARIES: usize = 64;
@@ -33,7 +30,6 @@ struct TextureFile {
 /// The materials of the faces.
 pub(super) struct Materials<'a> {
     files: &'a Files<'a>,
-    budget: &'a Budget,
     /// The names of the material files.
     libraries: Vec<String>,
     described: HashMap<Vec<u8>, MtlMaterial>,
@@ -55,15 +51,12 @@ pub(super) struct Materials<'a> {
     bumped: usize,
     /// Materials in use whose bump map was taken for a normal map.
     with_normals_as_bumps: usize,
-    /// The names of such materials.
-    normals_as_bumps: HashSet<Vec<u8>>,
 }
 
 impl<'a> Materials<'a> {
-    pub(super) fn new(files: &'a Files<'a>, budget: &'a Budget) -> Self {
+    pub(super) fn new(files: &'a Files<'a>) -> Self {
         Self {
             files,
-            budget,
             libraries: Vec::new(),
             described: HashMap::new(),
             name: Vec::new(),
@@ -78,7 +71,6 @@ impl<'a> Materials<'a> {
             undescribed: 0,
             bumped: 0,
             with_normals_as_bumps: 0,
-            normals_as_bumps: HashSet::new(),
         }
     }
 
@@ -108,7 +100,7 @@ impl<'a> Materials<'a> {
             self.libraries_left_out += 1;
             return;
         }
-        match borrowing(self.budget, || self.beside(&name).and_then(|bytes| mtl::read(&bytes))) {
+        match borrowing(self.files.budget, || self.files.read_path(&name).and_then(|bytes| mtl::read(&bytes))) {
             Ok((materials, bad)) => {
                 self.bad_statements += bad;
                 // Of several materials with one name the first counts, as in most programs.
@@ -124,28 +116,9 @@ impl<'a> Materials<'a> {
         self.libraries.push(name);
     }
 
-    /// Whether any material has a normal map.
-    pub(super) fn have_normal_maps(&self) -> bool {
-        self.described.values().any(|material| material.normal_texture.is_some())
-    }
-
-    /// Returns the names of the materials that have a bump map and no normal map.
-    pub(super) fn with_bump_maps(&self) -> HashSet<Vec<u8>> {
-        let has_one = |material: &&MtlMaterial| material.bump_texture.is_some() && material.normal_texture.is_none();
-        self.described.values().filter(has_one).map(|material| material.name.clone()).collect()
-    }
-
-    /// Returns the file of a material's bump map.
-    pub(super) fn bump_map(&self, name: &[u8]) -> Option<String> {
-        Some(self.described.get(name)?.bump_texture.as_ref()?.file.clone())
-    }
-
-    /// Makes the bump map of a material its normal map.
-    pub(super) fn take_bumps_for_normals(&mut self, name: &[u8]) {
-        if let Some(material) = self.described.get_mut(name) {
-            material.normal_texture = material.bump_texture.take();
-            self.normals_as_bumps.insert(name.to_vec());
-        }
+    /// Whether any material has a normal map, or a bump map that may be one.
+    pub(super) fn may_have_normal_maps(&self) -> bool {
+        self.described.values().any(|material| material.normal_texture.is_some() || material.bump_texture.is_some())
     }
 
     /// Reads `usemtl`: the material of the next faces.
@@ -210,13 +183,15 @@ impl<'a> Materials<'a> {
         // Programs write both, or one of them.
         let alpha = if alpha == 1.0 { 1.0 - transparency } else { alpha };
         self.bumped += usize::from(described.bump_texture.is_some());
-        self.with_normals_as_bumps += usize::from(self.normals_as_bumps.contains(&self.name));
-        let strength = described.normal_texture.as_ref().map_or(1.0, |texture| texture.strength);
+        let strength = |texture: &Option<MtlTexture>| texture.as_ref().map_or(1.0, |texture| texture.strength);
+        let (normal, bump) = (strength(&described.normal_texture), strength(&described.bump_texture));
+        let bump_texture = described.bump_texture.filter(|_| described.normal_texture.is_none());
         // The first one says where all are.
         let uses = [
             (TextureUse::BaseColor, described.texture),
             (TextureUse::Emissive, described.emissive_texture),
-            (TextureUse::Normal(strength), described.normal_texture),
+            (TextureUse::Normal(normal), described.normal_texture),
+            (TextureUse::Bump(bump), bump_texture),
             (TextureUse::Opacity, described.opacity_texture),
             (TextureUse::Roughness(roughness.unwrap_or(1.0)), described.roughness_texture),
             (TextureUse::Metalness(metallic.unwrap_or(1.0)), described.metallic_texture),
@@ -244,33 +219,35 @@ impl<'a> Materials<'a> {
     ///
     /// # Errors
     /// [`ReadError::Cancelled`].
-    pub(super) fn read_textures(
-        &mut self,
-        faces: &mut FaceBuilder,
-        freed: u64,
-        progress: &Progress,
-    ) -> Result<(), ReadError> {
+    pub(super) fn read_textures(&mut self, faces: &mut FaceBuilder, freed: u64) -> Result<(), ReadError> {
         let textures = std::mem::take(&mut self.textures);
         let mut giving = Giving::default();
-        let size = |file: &TextureFile| {
-            let read = || self.beside(&file.name).ok().and_then(|bytes| texture_size(&bytes));
-            borrowing(self.budget, read).unwrap_or_default()
-        };
-        let sizes: Vec<_> = textures.iter().map(size).collect();
-        let room = TextureRoom::of(self.budget, faces.bytes_to_finish().saturating_sub(freed));
-        for ((file, size), scaling) in textures.iter().zip(&sizes).zip(room.scalings(&sizes)) {
-            progress.check()?;
+        let bytes = |file: &TextureFile| {
             let filter = file.users.first().map_or(MipFilter::Colors, |(_, kind)| kind.filter());
-            let decode = |bytes: Vec<u8>| decode_halved(&bytes, scaling.halvings, filter, self.budget);
-            let texture = borrowing(self.budget, || self.beside(&file.name).and_then(decode)).map(Arc::new);
-            let said = scaling.said(*size, texture.as_ref().map(|texture| texture.size));
+            Ok((Cow::Owned(self.files.read_path(&file.name)?), filter))
+        };
+        let reserved = faces.bytes_to_finish().saturating_sub(freed);
+        let images: Vec<_> = textures.iter().collect();
+        let images = read_images(&images, bytes, reserved, self.files.budget, self.files.progress)?;
+        for (file, ReadImage { texture, said }) in textures.into_iter().zip(images) {
+            let (mut users, bumps): (Vec<_>, Vec<_>) =
+                file.users.into_iter().partition(|(_, kind)| !matches!(kind, TextureUse::Bump(_)));
+            if !bumps.is_empty() && texture.as_ref().is_some_and(|texture| are_normals(texture)) {
+                self.bumped -= bumps.len();
+                self.with_normals_as_bumps += bumps.len();
+                users.extend(bumps);
+            }
+            if users.is_empty() {
+                // Heights aren't drawn.
+                self.files.budget.release(texture.map_or(0, |texture| decoded_bytes(texture.size)));
+                continue;
+            }
             let (image, first) = (shown(file.name.as_bytes()), &file.first);
             self.problems.extend(said.map(|said| format!("the texture {image} of material \"{first}\" {said}")));
-            if let Ok(texture) = texture {
-                file.users.iter().for_each(|&(material, kind)| giving.give(faces, material, kind, &texture));
-            }
+            let given = texture.iter().flat_map(|texture| users.iter().map(move |user| (user, texture)));
+            given.for_each(|(&(material, kind), texture)| giving.give(faces, material, kind, texture));
         }
-        self.problems.extend(giving.finish(faces, self.budget));
+        self.problems.extend(giving.finish(faces, self.files.budget));
         Ok(())
     }
 
@@ -291,11 +268,6 @@ impl<'a> Materials<'a> {
             ),
         ]));
         warnings
-    }
-
-    /// Reads a file in the OBJ file's folder or below it, under the same rules as a glTF document's URIs.
-    pub(super) fn beside(&self, name: &str) -> Result<Vec<u8>, String> {
-        self.files.read_path(name)
     }
 }
 

@@ -1,12 +1,11 @@
 //! Divides a text into pieces that are parsed on all cores. What is made of the pieces is taken in their order, so the result is
 //! that of a reader which goes from line to line.
 
-use super::too_large;
 use crate::memory_budget::Budget;
 use crate::read_error::ReadError;
 use crate::text_lines::Lines;
 use geometry::cores::in_ranges;
-use geometry::mesh::{Borrowed, MemoryAccount};
+use geometry::mesh::Borrowed;
 use geometry::progress::Progress;
 
 /// The least size of a piece but the last, in bytes. One ends at the next line end that ends a statement.
@@ -56,12 +55,7 @@ impl<'a> Piece<'a> {
 
     /// Returns its lines.
     pub(super) fn lines(&self) -> Lines<'a> {
-        self.lines_from(0, self.above)
-    }
-
-    /// Returns its lines from a byte on, above which the text has so many lines.
-    pub(super) fn lines_from(&self, byte: usize, above: usize) -> Lines<'a> {
-        Lines::of_part(&self.bytes[byte..], self.end, above)
+        Lines::of_part(self.bytes, self.end, self.above)
     }
 }
 
@@ -75,15 +69,16 @@ fn length(text: &[u8], end: u8) -> usize {
     memchr::memchr_iter(end, far).find(is_last).map_or(text.len(), |at| LEAST + at + 1)
 }
 
-/// Parses pieces on all cores, and passes each piece and what is made of it to `take`, in their order.
+/// Parses pieces on all cores, and passes what is made of each to `take`, in their order.
 ///
 /// # Errors
 /// Those of `take`, [`ReadError::TooLarge`] and [`ReadError::Cancelled`].
 pub(super) fn in_pieces<'a, T: Send>(
     pieces: &[Piece<'a>],
     parse: impl Fn(usize, &Piece<'a>) -> T + Sync,
-    mut take: impl FnMut(&Piece<'a>, T) -> Result<(), ReadError>,
-    (budget, progress): (&Budget, &Progress),
+    mut take: impl FnMut(T) -> Result<(), ReadError>,
+    budget: &Budget,
+    progress: &Progress,
 ) -> Result<(), ReadError> {
     let mut first = 0;
     while first < pieces.len() {
@@ -92,10 +87,10 @@ pub(super) fn in_pieces<'a, T: Send>(
         let some = &pieces[first..first + group(&pieces[first..], budget.left())];
         let _scope = Borrowed::from(budget);
         let bytes: usize = some.iter().map(|piece| piece.bytes.len().min(LONGEST)).sum();
-        budget.borrow(bytes as u64 * PER_BYTE).map_err(too_large)?;
+        budget.borrow(bytes as u64 * PER_BYTE)?;
         let own = |i: usize| parse(first + i, &some[i]);
         let made = in_ranges(some.len(), 1, |range| range.map(own).collect::<Vec<_>>());
-        some.iter().zip(made.into_iter().flatten()).try_for_each(|(piece, made)| take(piece, made))?;
+        made.into_iter().flatten().try_for_each(&mut take)?;
         first += some.len();
     }
     Ok(())

@@ -5,85 +5,65 @@ use std::collections::HashMap;
 use foldhash::fast::RandomState;
 use glam::Vec3;
 
-use super::faces::index;
-use super::vertices::{Vertices, group};
-use super::{MAX_CORNERS, Statement, too_large};
+use super::faces::{FacePiece, Found};
+use super::vertices::Vertices;
 use crate::face_builder::NumberedCorner;
 use crate::memory_budget::Budget;
 use crate::read_error::ReadError;
 use crate::recent_corners::VertexNumbers;
-use crate::text_lines::words;
-use geometry::mesh::MemoryAccount;
 
 /// Memory for an entry of the table while it grows, in bytes: the old and the new table exist at the same time.
-const PER_ENTRY: u64 = 3 * (size_of::<((usize, u32), Vec3)>() as u64 + 1);
+const PER_ENTRY: u64 = 3 * (size_of::<((u32, u32), Vec3)>() as u64 + 1);
 
 /// The sums of normals at positions, by smoothing group.
 pub(super) struct Smoothing<'v> {
     vertices: &'v Vertices,
     budget: &'v Budget,
     /// The group of the next faces. Faces in group 0 are flat.
-    group: u32,
-    /// The number of positions above the current statement.
-    above: usize,
-    sums: HashMap<(usize, u32), Vec3, RandomState>,
-    held: u64,
-    /// The positions of the face that is being read.
-    outline: Vec<usize>,
+    pub group: u32,
+    sums: HashMap<(u32, u32), Vec3, RandomState>,
 }
 
 impl<'v> Smoothing<'v> {
     pub(super) fn new(vertices: &'v Vertices, budget: &'v Budget) -> Self {
-        let sums = HashMap::default();
-        Self { vertices, budget, group: 0, above: 0, sums, held: 0, outline: Vec::new() }
+        Self { vertices, budget, group: 0, sums: HashMap::default() }
     }
 
-    /// Gives back the memory of the table.
-    pub(super) fn release(self) {
-        self.budget.release(self.held);
-    }
-
-    /// Reads the group of the next faces.
-    pub(super) fn enter(&mut self, text: &[u8]) {
-        self.group = group(text);
-    }
-
-    /// Adds the face of a statement, if it is one, to the sums of its group. What is wrong with a face is said when it is read as
+    /// Adds the faces of a piece of the file to the sums of their groups. What is wrong with a face is said when it is read as
     /// a face.
     ///
     /// # Errors
     /// [`ReadError::TooLarge`].
-    pub(super) fn take(&mut self, statement: &Statement) -> Result<(), ReadError> {
-        match statement.word {
-            b"v" => self.above += 1,
-            b"s" => self.enter(statement.rest()),
-            b"f" | b"fo" if self.group != 0 => self.add(statement.rest())?,
-            _ => {}
+    pub(super) fn take(&mut self, piece: &FacePiece) -> Result<(), ReadError> {
+        let mut start = 0;
+        for found in &piece.found {
+            match found {
+                Found::Smoothing(group) => self.group = *group,
+                Found::Face { end, .. } => {
+                    let end = *end as usize;
+                    if self.group != 0 {
+                        self.add(&piece.corners[start..end])?;
+                    }
+                    start = end;
+                }
+                _ => {}
+            }
         }
         Ok(())
     }
 
-    fn add(&mut self, rest: &[u8]) -> Result<(), ReadError> {
-        let count = self.vertices.positions.len();
-        let number = |word: &[u8]| {
-            let position = word.split(|&byte| byte == b'/').next().unwrap_or_default();
-            index(position, self.above, count).ok().flatten()
-        };
-        self.outline.clear();
-        self.outline.extend(words(rest).take(MAX_CORNERS).filter_map(number));
-        let positions: Vec<Vec3> = self.outline.iter().map(|&number| self.position(number)).collect();
+    fn add(&mut self, corners: &[VertexNumbers]) -> Result<(), ReadError> {
+        let positions: Vec<Vec3> = corners.iter().map(|[number, ..]| self.position(*number)).collect();
         let face = face_normal(&positions);
         if !face.is_finite() {
             return Ok(());
         }
-        for (i, &number) in self.outline.iter().enumerate() {
+        for (i, &[number, ..]) in corners.iter().enumerate() {
             let at = |step: usize| positions[(i + step) % positions.len()];
             let angle = (at(1) - at(0)).angle_between(at(positions.len() - 1) - at(0));
             let key = (number, self.group);
             if self.sums.len() == self.sums.capacity() && !self.sums.contains_key(&key) {
-                let more = self.sums.len().max(64) as u64 * PER_ENTRY;
-                self.budget.hold(more).map_err(too_large)?;
-                self.held += more;
+                self.budget.hold(self.sums.len().max(64) as u64 * PER_ENTRY)?;
             }
             // An edge without a length has no angle.
             *self.sums.entry(key).or_default() += if angle.is_finite() { angle * face } else { Vec3::ZERO };
@@ -91,8 +71,8 @@ impl<'v> Smoothing<'v> {
         Ok(())
     }
 
-    fn position(&self, number: usize) -> Vec3 {
-        self.vertices.positions.get(number).copied().unwrap_or(Vec3::NAN)
+    fn position(&self, number: u32) -> Vec3 {
+        self.vertices.positions.get(number as usize).copied().unwrap_or(Vec3::NAN)
     }
 
     /// Gives a face's corners the normals that they lack. `numbers` begin with those of their positions. Returns false if a group has
@@ -102,7 +82,7 @@ impl<'v> Smoothing<'v> {
         let face = face_normal(&positions);
         let mut is_whole = true;
         for ([number, ..], at) in numbers.iter().zip(corners).filter(|(_, at)| at.corner.normal.is_none()) {
-            let sum = if self.group == 0 { Some(&face) } else { self.sums.get(&(*number as usize, self.group)) };
+            let sum = if self.group == 0 { Some(&face) } else { self.sums.get(&(*number, self.group)) };
             at.corner.normal = sum.and_then(|sum| sum.try_normalize());
             // The group determines it too.
             at.vertex = None;

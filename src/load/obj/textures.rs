@@ -9,6 +9,13 @@ use crate::packing::{metallic_roughness, with_opacity};
 use geometry::mesh::mipmap::MipFilter;
 use geometry::mesh::{Alpha, Map, MapUv, Material, Slot, Texture};
 
+/// How far the square of a normal's length may be from 1. Eight bits a number take it as far as 0.03; halving, and programs that
+/// don't normalise, take it further.
+const LENGTH_ROOM: f32 = 0.35;
+
+/// Which part of the texels must be normals.
+const LEAST_PART: f32 = 0.9;
+
 /// What an image is for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum TextureUse {
@@ -16,6 +23,9 @@ pub(super) enum TextureUse {
     Emissive,
     /// Normals in tangent space, and the factor of their slopes.
     Normal(f32),
+    /// Heights, or normals in tangent space with the factor of their slopes. The statement `map_Bump` stands for heights, but Blender,
+    /// for one, writes normal maps so.
+    Bump(f32),
     Opacity,
     /// Roughness, and the factor of it.
     Roughness(f32),
@@ -28,7 +38,7 @@ impl TextureUse {
     pub(super) fn filter(self) -> MipFilter {
         match self {
             Self::BaseColor | Self::Emissive => MipFilter::Colors,
-            Self::Normal(_) => MipFilter::Normals,
+            Self::Normal(_) | Self::Bump(_) => MipFilter::Normals,
             Self::Opacity | Self::Roughness(_) | Self::Metalness(_) => MipFilter::Numbers,
         }
     }
@@ -59,7 +69,7 @@ impl Giving {
                 }
                 set_map(material, Slot::Emissive, texture);
             }
-            TextureUse::Normal(strength) => {
+            TextureUse::Normal(strength) | TextureUse::Bump(strength) => {
                 material.look.normal_scale = strength;
                 set_map(material, Slot::Normal, texture);
             }
@@ -118,4 +128,51 @@ impl Giving {
 
 fn set_map(material: &mut Material, slot: Slot, texture: Arc<Texture>) {
     material.look.maps[slot as usize] = Some(Map { texture, uv: MapUv::Own, sampling: material.sampling });
+}
+
+/// Whether nearly all texels are unit vectors that point away from the surface, and blue is the largest of the three on average.
+pub(super) fn are_normals(texture: &Texture) -> bool {
+    let texels = texture.rgba.as_chunks::<4>().0;
+    let (mut sums, mut units) = ([0.0_f64; 3], 0_usize);
+    for &[r, g, b, _] in texels {
+        let normal = [r, g, b].map(|channel| f32::from(channel) / 127.5 - 1.0);
+        let square: f32 = normal.iter().map(|x| x * x).sum();
+        units += usize::from((square - 1.0).abs() < LENGTH_ROOM && normal[2] > 0.0);
+        sums.iter_mut().zip([r, g, b]).for_each(|(sum, channel)| *sum += f64::from(channel));
+    }
+    let [r, g, b] = sums;
+    !texels.is_empty() && units as f32 >= LEAST_PART * texels.len() as f32 && b > 1.2 * r.max(g)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn texture(texel: impl Fn(u32, u32) -> [u8; 3]) -> Texture {
+        let texels = (0..64 * 64).map(|i| texel(i % 64, i / 64));
+        Texture { size: [64; 2], rgba: texels.flat_map(|[r, g, b]| [r, g, b, 255]).collect() }
+    }
+
+    /// Normals of waves that are so steep.
+    fn waves(steep: f32) -> Texture {
+        texture(|x, y| {
+            let slope = [(x as f32 * 0.4).sin() * steep, (y as f32 * 0.3).cos() * steep];
+            let normal = glam::Vec3::new(slope[0], slope[1], 1.0).normalize();
+            (normal * 127.5 + 127.5).round().to_array().map(|channel| channel as u8)
+        })
+    }
+
+    #[test]
+    fn images_of_normals_are_told_from_heights_and_colours() {
+        assert!([0.0, 0.3, 1.0].into_iter().all(|steep| are_normals(&waves(steep))));
+        let heights = |from: u32, to: u32| texture(move |x, y| [(from + (x * y) % (to - from)) as u8; 3]);
+        assert!(
+            [(0, 255), (100, 140), (190, 210), (200, 203)]
+                .into_iter()
+                .all(|(from, to)| !are_normals(&heights(from, to)))
+        );
+        assert!(!are_normals(&texture(|x, y| [(x * 4) as u8, (y * 4) as u8, 255])), "blue alone isn't enough");
+        assert!(!are_normals(&texture(|_, _| [20, 40, 255])), "a blue wall");
+        assert!(!are_normals(&Texture { size: [0; 2], rgba: Vec::new() }));
+    }
 }

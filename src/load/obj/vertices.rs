@@ -3,11 +3,10 @@
 use glam::{Vec2, Vec3};
 
 use super::pieces::Piece;
-use super::{Statement, next_statement, too_large};
+use super::{Statement, each_statement};
 use crate::memory_budget::Budget;
 use crate::read_error::ReadError;
-use crate::text_lines::{first_word, has_comma, number_or_nan, words};
-use geometry::mesh::MemoryAccount;
+use crate::text_lines::{first_word, has_comma, number_or_nan, parsed, words};
 use geometry::mesh::chunked_vec::ChunkedVec;
 
 /// The most numbers that a position has, with a weight and a colour.
@@ -64,7 +63,7 @@ impl Vertices {
 
 fn extend<T: Copy>(list: &mut ChunkedVec<T>, items: &[T], budget: &Budget) -> Result<(), ReadError> {
     items.iter().try_for_each(|item| {
-        budget.hold(list.next_bytes()).map_err(too_large)?;
+        budget.hold(list.next_bytes())?;
         list.push(*item);
         Ok(())
     })
@@ -88,17 +87,13 @@ pub(super) struct VertexPiece {
 
 impl VertexPiece {
     pub(super) fn parse(piece: &Piece) -> Self {
-        let (mut found, mut lines) = (Self::default(), piece.lines());
-        loop {
-            match next_statement(&mut lines, |statement| found.take(statement)) {
-                Ok(true) => {}
-                Ok(false) => return found,
-                Err(error) => {
-                    found.error = Some(error);
-                    return found;
-                }
-            }
-        }
+        let mut found = Self::default();
+        let ended = each_statement(piece.lines(), |statement| {
+            found.take(statement);
+            Ok(())
+        });
+        found.error = ended.err();
+        found
     }
 
     fn take(&mut self, statement: &Statement) {
@@ -154,7 +149,7 @@ fn numbers<const N: usize>(text: &[u8]) -> ([f32; N], usize) {
 
 /// Parses the number of a smoothing group: 0 for `off`, and for what isn't a number.
 pub(super) fn group(text: &[u8]) -> u32 {
-    std::str::from_utf8(first_word(text).0).ok().and_then(|word| word.parse().ok()).unwrap_or(0)
+    parsed(first_word(text).0).unwrap_or(0)
 }
 
 /// Returns a colour as bytes. Scanning programs write 0 to 1, and some 0 to 255.

@@ -4,13 +4,11 @@ use super::*;
 use crate::face_builder::tests::{POINTS, SIDES, assert_cube};
 
 fn read(text: &str) -> LoadedMesh {
-    super::read(text.as_bytes().to_vec(), "cube", Import::default(), &Limits::default(), &Progress::new()).unwrap()
+    super::read(text.as_bytes().to_vec(), &ModelFile::of_test("cube", &Progress::new())).unwrap()
 }
 
 fn refused(text: &str) -> String {
-    super::read(text.as_bytes().to_vec(), "", Import::default(), &Limits::default(), &Progress::new())
-        .unwrap_err()
-        .to_string()
+    super::read(text.as_bytes().to_vec(), &ModelFile::of_test("", &Progress::new())).unwrap_err().to_string()
 }
 
 /// A cube of six squares, with lines before, between and behind its vertices and faces.
@@ -160,8 +158,5 @@ fn cancelling_stops_the_work() {
     let progress = Progress::new();
     progress.cancel();
     let text = cube().into_bytes();
-    assert!(matches!(
-        super::read(text, "", Import::default(), &Limits::default(), &progress),
-        Err(ReadError::Cancelled(_))
-    ));
+    assert!(matches!(super::read(text, &ModelFile::of_test("", &progress)), Err(ReadError::Cancelled(_))));
 }

@@ -2,7 +2,7 @@
 
 use super::textures;
 use crate::read_error::{FilePosition, ReadError};
-use crate::text_lines::{Line, Lines, first_word, shown};
+use crate::text_lines::{Line, Lines, first_word, parsed, shown};
 
 /// How values are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -156,8 +156,7 @@ fn element<'a>(line: &Line<'a>) -> Result<Element<'a>, String> {
     let (Some(name), Some(count), None) = (words.next(), words.next(), words.next()) else {
         return Err("an element needs a name and a number".to_owned());
     };
-    let number = std::str::from_utf8(count).ok().and_then(|count| count.parse().ok());
-    let count = number.ok_or_else(|| format!("{} isn't a number of elements", shown(count)))?;
+    let count = parsed(count).ok_or_else(|| format!("{} isn't a number of elements", shown(count)))?;
     Ok(Element { name, count, properties: Vec::new() })
 }
 

@@ -1,16 +1,19 @@
 //! PLY files as programs write them, in all three encodings.
 
+use std::path::Path;
+
 use header::{Encoding, Scalar};
 
 use super::*;
 use crate::face_builder::tests::{POINTS, SIDES, assert_cube};
+use geometry::progress::Progress;
 
 fn read(bytes: &[u8]) -> LoadedMesh {
     read_in(Path::new("nowhere"), bytes)
 }
 
 fn read_in(folder: &Path, bytes: &[u8]) -> LoadedMesh {
-    super::read(bytes.to_vec(), folder, "cube", Import::default(), &Limits::default(), &Progress::new()).unwrap()
+    super::read(bytes.to_vec(), &ModelFile { folder, ..ModelFile::of_test("cube", &Progress::new()) }).unwrap()
 }
 
 /// Writes numbers in one of the encodings.
@@ -175,10 +178,7 @@ fn strips_alternate_begin_anew_and_are_stitched() {
 fn cancelling_stops_the_work() {
     let progress = Progress::new();
     progress.cancel();
-    assert!(matches!(
-        super::read(cube(1, 6, 4), Path::new("nowhere"), "", Import::default(), &Limits::default(), &progress),
-        Err(ReadError::Cancelled(_))
-    ));
+    assert!(matches!(super::read(cube(1, 6, 4), &ModelFile::of_test("", &progress)), Err(ReadError::Cancelled(_))));
 }
 
 #[test]

@@ -1,19 +1,16 @@
 //! The images that comments of a PLY file name (`comment TextureFile wood.png`), as MeshLab and programs for scans write them. A face
 //! shows that of its `texnumber`, or the first one.
 
-use std::sync::Arc;
+use std::borrow::Cow;
 
 use crate::face_builder::FaceBuilder;
-use crate::images::{decode_halved, texture_size};
-use crate::memory_budget::Budget;
 use crate::read_error::ReadError;
 use crate::text_lines::{first_word, shown};
-use crate::texture_room::TextureRoom;
+use crate::texture_room::read_images;
 use crate::uri::Files;
+use geometry::mesh::Material;
 use geometry::mesh::mipmap::MipFilter;
-use geometry::mesh::{Material, borrowing};
 use geometry::names;
-use geometry::progress::Progress;
 
 /// How many images are read. Each is a material of its own.
 const MAX_IMAGES: usize = 256;
@@ -59,29 +56,19 @@ impl<'a> Textures<'a> {
     ///
     /// # Errors
     /// [`ReadError::Cancelled`].
-    pub(super) fn give(
-        &self,
-        faces: &mut FaceBuilder,
-        (files, budget): (&Files, &Budget),
-        freed: u64,
-        progress: &Progress,
-    ) -> Result<Vec<String>, ReadError> {
-        let used = || self.names.iter().zip(&self.materials).filter_map(|(name, material)| Some((*name, (*material)?)));
-        let read = |name: &[u8]| files.read_path(&String::from_utf8_lossy(name));
-        let size = |name: &[u8]| {
-            borrowing(budget, || read(name).ok().and_then(|bytes| texture_size(&bytes)).unwrap_or_default())
+    pub(super) fn give(&self, faces: &mut FaceBuilder, files: &Files, freed: u64) -> Result<Vec<String>, ReadError> {
+        let used: Vec<_> = self.names.iter().zip(&self.materials).filter(|(_, own)| own.is_some()).collect();
+        let bytes = |(name, _): (&&[u8], _)| {
+            let bytes = files.read_path(&String::from_utf8_lossy(name))?;
+            Ok((Cow::Owned(bytes), MipFilter::Colors))
         };
-        let sizes: Vec<_> = used().map(|(name, _)| size(name)).collect();
-        let room = TextureRoom::of(budget, faces.bytes_to_finish().saturating_sub(freed));
+        let reserved = faces.bytes_to_finish().saturating_sub(freed);
+        let images = read_images(&used, bytes, reserved, files.budget, files.progress)?;
         let mut problems = Vec::new();
-        for (((name, material), size), scaling) in used().zip(&sizes).zip(room.scalings(&sizes)) {
-            progress.check()?;
-            let decode = |bytes: Vec<u8>| decode_halved(&bytes, scaling.halvings, MipFilter::Colors, budget);
-            let texture = borrowing(budget, || read(name).and_then(decode));
-            let said = scaling.said(*size, texture.as_ref().map(|texture| texture.size));
-            problems.extend(said.map(|said| format!("the texture {} {said}", shown(name))));
-            if let Ok(texture) = texture {
-                faces.material_mut(material).texture = Some(Arc::new(texture));
+        for ((name, material), image) in used.into_iter().zip(images) {
+            problems.extend(image.said.map(|said| format!("the texture {} {said}", shown(name))));
+            if let Some(material) = material.filter(|_| image.texture.is_some()) {
+                faces.material_mut(material).texture = image.texture;
             }
         }
         Ok(problems)

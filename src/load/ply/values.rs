@@ -2,7 +2,7 @@
 
 use super::header::{Element, Encoding, Header, Property, PropertyKind, Scalar};
 use crate::read_error::{FilePosition, ReadError};
-use crate::text_lines::{Line, Lines, number, shown, words};
+use crate::text_lines::{Line, Lines, first_word, number, parsed, shown, words};
 
 /// The position of the next value.
 #[derive(Clone)]
@@ -311,7 +311,7 @@ impl<'a> Values<'a> {
     }
 
     fn word(&mut self) -> Result<f64, ReadError> {
-        let (word, rest) = crate::text_lines::first_word(self.left);
+        let (word, rest) = first_word(self.left);
         if word.is_empty() {
             self.ends = self.is_last();
             let count = words(self.line.text).count();
@@ -319,8 +319,7 @@ impl<'a> Values<'a> {
         }
         self.left = rest;
         // Parsed as f64, so that indices are exact.
-        let wide = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
-        wide.ok_or_else(|| self.place().error(number(word).err().unwrap_or_default()))
+        parsed(word).ok_or_else(|| self.place().error(number(word).err().unwrap_or_default()))
     }
 
     /// Returns how many bytes follow the last element.

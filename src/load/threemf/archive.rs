@@ -10,10 +10,9 @@ use std::io::{self, Read};
 use flate2::Crc;
 use flate2::bufread::DeflateDecoder;
 
-use super::{broken, too_large};
+use super::broken;
 use crate::memory_budget::Budget;
 use crate::read_error::{FilePosition, ReadError};
-use geometry::mesh::MemoryAccount;
 
 /// The greatest number of files in an archive.
 const MAX_ENTRIES: usize = 1 << 16;
@@ -45,8 +44,6 @@ pub(super) struct Archive<'a> {
     unpacked: Cell<u64>,
     /// How many parts had another checksum than the archive says.
     wrong_sums: Cell<usize>,
-    /// The memory that the budget holds, in bytes.
-    held: u64,
 }
 
 /// A file in the archive.
@@ -62,7 +59,7 @@ struct Entry {
 }
 
 impl<'a> Archive<'a> {
-    /// Reads the archive's directory.
+    /// Reads the archive's directory, whose memory the budget holds.
     ///
     /// # Errors
     /// [`ReadError::Broken`], [`ReadError::TooMany`] and [`ReadError::TooLarge`].
@@ -70,7 +67,7 @@ impl<'a> Archive<'a> {
         let directory = directory(bytes).ok_or_else(|| {
             FilePosition::Everywhere.error("it isn't a whole zip archive: it has no directory at its end")
         })?;
-        let (mut entries, mut rest, mut held) = (Vec::new(), directory, 0);
+        let (mut entries, mut rest) = (Vec::new(), directory);
         while rest.starts_with(ENTRY) {
             if entries.len() == MAX_ENTRIES {
                 return Err(ReadError::TooMany { limit: MAX_ENTRIES as u64, what: "files in its archive" });
@@ -79,25 +76,12 @@ impl<'a> Archive<'a> {
                 FilePosition::Byte(bytes.len() - rest.len()).error("the archive's directory is damaged")
             })?;
             // A list that grows may take three times its size.
-            let own = (3 * size_of::<Entry>() + entry.name.len()) as u64;
-            budget.hold(own).map_err(too_large)?;
-            held += own;
+            budget.hold((3 * size_of::<Entry>() + entry.name.len()) as u64)?;
             entries.push(entry);
             rest = tail;
         }
-        Ok(Self {
-            bytes,
-            entries,
-            most: budget.allowed(),
-            unpacked: Cell::default(),
-            wrong_sums: Cell::default(),
-            held,
-        })
-    }
-
-    /// Gives the memory of the directory back.
-    pub(super) fn release(self, budget: &Budget) {
-        budget.release(self.held);
+        let (unpacked, wrong_sums) = (Cell::default(), Cell::default());
+        Ok(Self { bytes, entries, most: budget.allowed(), unpacked, wrong_sums })
     }
 
     /// The number of files.

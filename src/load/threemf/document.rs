@@ -4,13 +4,12 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use super::archive::{Archive, Unpacked};
-use super::model::{Geometry, ModelReader, Part, Placed};
+use super::model::{Geometry, ModelReader, Part, Placed, UNREAD};
 use super::{broken, xml};
 use crate::format::Format;
 use crate::memory_budget::Budget;
 use crate::notes::Notes;
 use crate::read_error::ReadError;
-use geometry::mesh::MemoryAccount;
 use geometry::names::shown;
 use geometry::progress::Progress;
 
@@ -36,7 +35,7 @@ pub(super) struct Document {
 pub(super) type ObjectAt = (usize, u32);
 
 impl Document {
-    /// Reads the model, and the parts that it names (production extension).
+    /// Reads the model, and the parts that it names (production extension). The budget holds its memory.
     ///
     /// # Errors
     /// [`ReadError`].
@@ -88,25 +87,12 @@ impl Document {
         let objects: usize = self.parts.iter().map(|part| part.objects.len()).sum();
         let items = self.parts.first().map_or(0, |part| part.items.len());
         let triangles = self.geometry.triangles.len();
-        let all = || self.parts.iter().flat_map(|part| part.objects.values());
-        let others = [
-            (all().filter(|object| object.unread.beams).count(), "beam lattices"),
-            (all().filter(|object| object.unread.slices).count(), "stacks of slices"),
-            (all().filter(|object| object.unread.shape).count(), "other shapes"),
-        ];
-        let others = others.into_iter().filter(|(count, _)| *count > 0);
+        let all: Vec<_> = self.parts.iter().flat_map(|part| part.objects.values()).collect();
+        let count = |unread: usize| all.iter().filter(|object| object.unread[unread]).count();
+        let others = UNREAD.iter().enumerate().map(|(unread, (what, _))| (count(unread), what));
+        let others = others.filter(|(count, _)| *count > 0);
         let others: String = others.map(|(count, what)| format!(", {count} {what} (export them as meshes)")).collect();
         format!("it holds {objects} objects with {triangles} triangles{others}, and its build has {items} items")
-    }
-
-    /// How many bytes the budget holds for it.
-    pub(super) fn held(&self) -> u64 {
-        self.geometry.held()
-    }
-
-    /// Gives its memory back, which ends once it is dropped.
-    pub(super) fn release(&self, budget: &Budget) {
-        budget.release(self.held());
     }
 }
 

@@ -1,5 +1,6 @@
 //! Unpacks the images of textures, and gives them to the materials that show them.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
 use std::io::Read;
 use std::sync::Arc;
@@ -9,13 +10,11 @@ use super::document::Document;
 use super::looks::Textured;
 use super::properties::Group;
 use crate::face_builder::FaceBuilder;
-use crate::images::{decode_halved, texture_size};
 use crate::memory_budget::Budget;
-use crate::notes::Notes;
 use crate::read_error::ReadError;
-use crate::texture_room::TextureRoom;
+use crate::texture_room::{ReadImage, read_images};
 use geometry::mesh::mipmap::MipFilter;
-use geometry::mesh::{Alpha, MemoryAccount, Texture};
+use geometry::mesh::{Alpha, Texture};
 use geometry::names::shown;
 use geometry::progress::{Cancelled, Progress};
 
@@ -63,31 +62,24 @@ impl Images {
         self,
         textured: &[Textured],
         faces: &mut FaceBuilder,
-        (freed, budget): (u64, &Budget),
+        freed: u64,
+        budget: &Budget,
         progress: &Progress,
-        notes: &mut Notes,
     ) -> Result<(), Cancelled> {
         let mut users: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
         textured.iter().for_each(|shows| users.entry(&shows.path).or_default().push(shows.material));
         let packed = self.held();
-        let room = TextureRoom::of(budget, faces.bytes_to_finish().saturating_sub(freed + packed));
-        let sizes: Vec<_> = users.keys().map(|path| self.size(path)).collect();
-        for ((path, materials), scaling) in users.iter().zip(room.scalings(&sizes)) {
-            progress.check()?;
-            let texture =
-                self.of(path).and_then(|bytes| decode_halved(bytes, scaling.halvings, MipFilter::Colors, budget));
-            let said = scaling.said(self.size(path), texture.as_ref().map(|texture| texture.size));
-            notes.extend(said.map(|said| format!("the texture \"{}\" {said}", shown(path))));
-            let Ok(texture) = texture.map(Arc::new) else { continue };
-            materials.iter().for_each(|&material| show(faces, material, &texture));
+        let reserved = faces.bytes_to_finish().saturating_sub(freed + packed);
+        let paths: Vec<_> = users.keys().copied().collect();
+        let bytes = |path| Ok((Cow::Borrowed(self.of(path)?), MipFilter::Colors));
+        let images = read_images(&paths, bytes, reserved, budget, progress)?;
+        for ((path, materials), ReadImage { texture, said }) in users.iter().zip(images) {
+            faces.notes.extend(said.map(|said| format!("the texture \"{}\" {said}", shown(path))));
+            let given = texture.iter().flat_map(|texture| materials.iter().map(move |material| (*material, texture)));
+            given.for_each(|(material, texture)| show(faces, material, texture));
         }
         budget.release(packed);
         Ok(())
-    }
-
-    /// An image's size in px; 0 if it isn't one that is read.
-    fn size(&self, path: &str) -> [u32; 2] {
-        self.of(path).ok().and_then(texture_size).unwrap_or_default()
     }
 
     fn of(&self, path: &str) -> Result<&[u8], String> {

@@ -6,8 +6,7 @@ use glam::{Vec2, Vec4};
 
 use super::document::Document;
 use super::model::{Object, TriangleLook};
-use super::properties::{Group, material_color};
-use super::texture2d::Texture2d;
+use super::properties::{Group, Texture2d, material_color};
 use crate::face_builder::{FaceBuilder, counted, linear_color};
 use crate::read_error::ReadError;
 use geometry::mesh::{Alpha, Material};

@@ -8,15 +8,13 @@ use std::rc::Rc;
 
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 
-use super::properties::Group;
-use super::texture2d::Texture2d;
+use super::broken;
+use super::properties::{Group, Texture2d};
 use super::xml::{Element, Step};
-use super::{broken, too_large};
 use crate::memory_budget::Budget;
 use crate::notes::Notes;
 use crate::read_error::ReadError;
-use crate::text_lines::{number, shown, words};
-use geometry::mesh::MemoryAccount;
+use crate::text_lines::{number, parsed, shown, words};
 use geometry::mesh::chunked_vec::ChunkedVec;
 use geometry::names;
 
@@ -35,6 +33,9 @@ const EXTENSIONS: [(&str, &str, bool); 8] = [
     ("3dmanufacturing/securecontent", "secure content", false),
 ];
 
+/// Where the elements of resources are.
+const RESOURCES: &[u8] = b"/model/resources/";
+
 /// The vertices and triangles of all objects. Each object has a range of both.
 #[derive(Default)]
 pub(super) struct Geometry {
@@ -43,7 +44,6 @@ pub(super) struct Geometry {
     /// The distinct properties of triangles.
     pub looks: Vec<TriangleLook>,
     numbers: HashMap<TriangleLook, u32>,
-    held: u64,
 }
 
 /// A triangle of an object.
@@ -73,24 +73,13 @@ impl TriangleLook {
 }
 
 impl Geometry {
-    fn hold(&mut self, bytes: u64, budget: &Budget) -> Result<(), ReadError> {
-        budget.hold(bytes).map_err(too_large)?;
-        self.held += bytes;
-        Ok(())
-    }
-
-    /// How many bytes the budget holds for it.
-    pub(super) fn held(&self) -> u64 {
-        self.held
-    }
-
     /// Returns the number of properties for [`Triangle::look`].
     fn look(&mut self, look: TriangleLook, budget: &Budget) -> Result<u32, ReadError> {
         if let Some(number) = self.numbers.get(&look) {
             return Ok(*number);
         }
         // The list grows by half, and the map to twice its size.
-        self.hold(6 * size_of::<TriangleLook>() as u64, budget)?;
+        budget.hold(6 * size_of::<TriangleLook>() as u64)?;
         self.looks.push(look);
         let number = self.looks.len() as u32;
         self.numbers.insert(look, number);
@@ -122,17 +111,19 @@ pub(super) struct Object {
     pub group: Option<u32>,
     pub entry: Option<u32>,
     pub components: Vec<Placed>,
-    pub unread: Unread,
+    /// Which of [`UNREAD`] it has.
+    pub unread: [bool; UNREAD.len()],
 }
 
-/// What an object has that isn't read.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Unread {
-    pub beams: bool,
-    pub slices: bool,
-    /// A shape that is neither a mesh nor components.
-    pub shape: bool,
-}
+/// What an object may have that isn't read: in general, and in an object of the build.
+pub(super) const UNREAD: [(&str, &str); 3] = [
+    ("beam lattices", "beams (beam lattice extension)"),
+    ("stacks of slices", "slices (slice extension)"),
+    ("other shapes", "a shape that is neither a mesh nor components"),
+];
+const BEAMS: usize = 0;
+const SLICES: usize = 1;
+const SHAPE: usize = 2;
 
 /// An object at a place.
 #[derive(Clone)]
@@ -141,68 +132,6 @@ pub(super) struct Placed {
     /// The part that has the object; none for the same part.
     pub path: Option<Rc<str>>,
     pub transform: DAffine3,
-}
-
-/// The elements that mean something, by where they stand.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
-    Document,
-    Model,
-    Resources,
-    Build,
-    Item,
-    Object,
-    Mesh,
-    Vertices,
-    Vertex,
-    Triangles,
-    Triangle,
-    Components,
-    Component,
-    Beams,
-    Shape,
-    Materials,
-    Material,
-    Colors,
-    Color,
-    Texture,
-    Coordinates,
-    Coordinate,
-    Combined,
-    CombinedEntry,
-    Ignored,
-}
-
-impl Kind {
-    fn of(parent: Self, name: &[u8]) -> Self {
-        match (parent, name) {
-            (Self::Document, b"model") => Self::Model,
-            (Self::Model, b"resources") => Self::Resources,
-            (Self::Model, b"build") => Self::Build,
-            (Self::Build, b"item") => Self::Item,
-            (Self::Resources, b"object") => Self::Object,
-            (Self::Resources, b"basematerials") => Self::Materials,
-            (Self::Materials, b"base") => Self::Material,
-            (Self::Resources, b"colorgroup") => Self::Colors,
-            (Self::Colors, b"color") => Self::Color,
-            (Self::Resources, b"texture2d") => Self::Texture,
-            (Self::Resources, b"texture2dgroup") => Self::Coordinates,
-            (Self::Coordinates, b"tex2coord") => Self::Coordinate,
-            (Self::Resources, b"compositematerials" | b"multiproperties") => Self::Combined,
-            (Self::Combined, b"composite" | b"multi") => Self::CombinedEntry,
-            (Self::Object, b"mesh") => Self::Mesh,
-            (Self::Object, b"components") => Self::Components,
-            (Self::Object, b"metadatagroup") => Self::Ignored,
-            (Self::Object, _) => Self::Shape,
-            (Self::Components, b"component") => Self::Component,
-            (Self::Mesh, b"vertices") => Self::Vertices,
-            (Self::Vertices, b"vertex") => Self::Vertex,
-            (Self::Mesh, b"triangles") => Self::Triangles,
-            (Self::Triangles, b"triangle") => Self::Triangle,
-            (Self::Mesh, b"beamlattice") => Self::Beams,
-            _ => Self::Ignored,
-        }
-    }
 }
 
 /// Numbers of what was repaired or left out.
@@ -217,7 +146,8 @@ pub(super) struct ModelReader<'a> {
     part: Part,
     geometry: &'a mut Geometry,
     budget: &'a Budget,
-    open: Vec<Kind>,
+    /// The names of the elements that are open, each behind a slash.
+    open: Vec<u8>,
     /// The object that is open, with its number.
     object: Option<(u32, Object)>,
     group: Option<(u32, Group)>,
@@ -257,51 +187,68 @@ impl<'a> ModelReader<'a> {
     pub(super) fn take(&mut self, step: Step) -> Result<(), ReadError> {
         match step {
             Step::Open(element) => {
-                let parent = self.open.last().copied().unwrap_or(Kind::Document);
-                let kind = Kind::of(parent, element.name());
-                self.open.push(kind);
-                self.enter(kind, &element)
+                self.open.push(b'/');
+                // Elements that mean something have short names.
+                let is_short = element.name().len() < 40 && !element.name().contains(&b'/');
+                self.open.extend(if is_short { element.name() } else { b"?" });
+                let path = std::mem::take(&mut self.open);
+                let entered = self.enter(&path, &element);
+                self.open = path;
+                entered
             }
             Step::Close => {
-                match self.open.pop() {
-                    Some(Kind::Object) => self.end_object(),
-                    Some(Kind::Materials | Kind::Colors | Kind::Coordinates | Kind::Combined) => self.end_group(),
+                match self.open.as_slice() {
+                    b"/model/resources/object" => self.end_object(),
+                    path if path.strip_prefix(RESOURCES).is_some_and(|name| !name.contains(&b'/')) => self.end_group(),
                     _ => {}
                 }
+                self.open.truncate(memchr::memrchr(b'/', &self.open).unwrap_or(0));
                 Ok(())
             }
         }
     }
 
-    fn enter(&mut self, kind: Kind, element: &Element) -> Result<(), ReadError> {
-        match kind {
-            Kind::Model => self.model(element),
-            Kind::Object => self.begin_object(element)?,
-            Kind::Vertex => self.vertex(element)?,
-            Kind::Triangle => self.triangle(element)?,
-            Kind::Item => {
+    /// Reads an element, which means something by where it stands.
+    fn enter(&mut self, path: &[u8], element: &Element) -> Result<(), ReadError> {
+        match path {
+            b"/model/resources/object/mesh/vertices/vertex" => self.vertex(element)?,
+            b"/model/resources/object/mesh/triangles/triangle" => self.triangle(element)?,
+            b"/model/resources/texture2dgroup/tex2coord" => self.coordinate(element)?,
+            b"/model/resources/basematerials/base" | b"/model/resources/colorgroup/color" => self.entry(element)?,
+            b"/model/resources/compositematerials/composite" | b"/model/resources/multiproperties/multi" => {
+                self.combined(element)?;
+            }
+            b"/model" => self.model(element),
+            b"/model/build/item" => {
                 let item = self.placed(element)?;
                 self.part.items.push(item);
             }
-            Kind::Component => {
+            b"/model/resources/object" => self.begin_object(element)?,
+            b"/model/resources/object/components/component" => {
                 let component = self.placed(element)?;
                 self.object.iter_mut().for_each(|(_, object)| object.components.push(component.clone()));
             }
-            Kind::Beams => self.unread(|unread| unread.beams = true),
-            Kind::Shape => self.unread(|unread| unread.shape = true),
-            Kind::Materials => self.begin_group(element, Group::Materials(Vec::new()))?,
-            Kind::Colors => self.begin_group(element, Group::Colors(Vec::new()))?,
-            Kind::Combined => self.begin_combined(element)?,
-            Kind::CombinedEntry => self.combined(element)?,
-            Kind::Texture => self.texture(element)?,
-            Kind::Coordinates => {
+            b"/model/resources/object/mesh/beamlattice" => self.unread(BEAMS),
+            b"/model/resources/object/mesh"
+            | b"/model/resources/object/components"
+            | b"/model/resources/object/metadatagroup" => {}
+            b"/model/resources/basematerials" => self.begin_group(element, Group::Materials(Vec::new()))?,
+            b"/model/resources/colorgroup" => self.begin_group(element, Group::Colors(Vec::new()))?,
+            b"/model/resources/compositematerials" | b"/model/resources/multiproperties" => {
+                self.begin_combined(element)?;
+            }
+            b"/model/resources/texture2d" => self.texture(element)?,
+            b"/model/resources/texture2dgroup" => {
                 // A texture without a number is one that isn't there.
                 let texture = element.number(b"texid").unwrap_or(u32::MAX);
                 self.begin_group(element, Group::Texture { texture, coordinates: Vec::new() })?;
             }
-            Kind::Coordinate => self.coordinate(element)?,
-            Kind::Material | Kind::Color => self.entry(element)?,
-            _ => {}
+            _ => {
+                let in_object = path.strip_prefix(b"/model/resources/object/");
+                if in_object.is_some_and(|name| !name.contains(&b'/')) {
+                    self.unread(SHAPE);
+                }
+            }
         }
         Ok(())
     }
@@ -310,10 +257,8 @@ impl<'a> ModelReader<'a> {
         broken(&self.part.name, reason)
     }
 
-    fn unread(&mut self, set: impl FnOnce(&mut Unread)) {
-        if let Some((_, object)) = &mut self.object {
-            set(&mut object.unread);
-        }
+    fn unread(&mut self, what: usize) {
+        self.object.iter_mut().for_each(|(_, object)| object.unread[what] = true);
     }
 
     fn model(&mut self, element: &Element) {
@@ -350,16 +295,16 @@ impl<'a> ModelReader<'a> {
 
     fn begin_object(&mut self, element: &Element) -> Result<(), ReadError> {
         let id = self.id(element, "object")?;
-        self.geometry.hold(PER_ENTRY, self.budget)?;
+        self.budget.hold(PER_ENTRY)?;
         let (vertices, triangles) = (self.geometry.vertices.len(), self.geometry.triangles.len());
-        let object = Object {
+        let mut object = Object {
             vertices: vertices..vertices,
             triangles: triangles..triangles,
             group: element.number(b"pid"),
             entry: element.number(b"pindex"),
-            unread: Unread { slices: element.attribute(b"slicestackid").is_some(), ..Unread::default() },
             ..Object::default()
         };
+        object.unread[SLICES] = element.attribute(b"slicestackid").is_some();
         self.object = Some((id, object));
         Ok(())
     }
@@ -392,7 +337,7 @@ impl<'a> ModelReader<'a> {
             };
             *axis = number(value.trim_ascii()).unwrap_or(f32::NAN);
         }
-        self.geometry.hold(self.geometry.vertices.next_bytes(), self.budget)?;
+        self.budget.hold(self.geometry.vertices.next_bytes())?;
         self.geometry.vertices.push(position);
         Ok(())
     }
@@ -411,7 +356,7 @@ impl<'a> ModelReader<'a> {
                 b"p3" => &mut look.entries[2],
                 _ => continue,
             };
-            *slot = std::str::from_utf8(value.trim_ascii()).ok().and_then(|value| value.parse().ok());
+            *slot = parsed(value.trim_ascii());
         }
         let [Some(a), Some(b), Some(c)] = corners else {
             let (id, triangle) = self.place();
@@ -421,7 +366,7 @@ impl<'a> ModelReader<'a> {
         };
         let is_plain = look.entries[0].is_none();
         let look = if is_plain { 0 } else { self.geometry.look(look, self.budget)? };
-        self.geometry.hold(self.geometry.triangles.next_bytes(), self.budget)?;
+        self.budget.hold(self.geometry.triangles.next_bytes())?;
         self.geometry.triangles.push(Triangle { corners: [a, b, c], look });
         Ok(())
     }
@@ -434,7 +379,7 @@ impl<'a> ModelReader<'a> {
 
     /// Reads an item of the build, or a component of an object.
     fn placed(&mut self, element: &Element) -> Result<Placed, ReadError> {
-        self.geometry.hold(2 * size_of::<Placed>() as u64, self.budget)?;
+        self.budget.hold(2 * size_of::<Placed>() as u64)?;
         let object =
             element.number(b"objectid").ok_or_else(|| self.broken("a component or an item has no objectid"))?;
         let path = match element.text(b"path") {
@@ -453,7 +398,7 @@ impl<'a> ModelReader<'a> {
         if let Some(known) = self.paths.get(&path) {
             return Ok(known.clone());
         }
-        self.geometry.hold(PER_ENTRY + 2 * path.len() as u64, self.budget)?;
+        self.budget.hold(PER_ENTRY + 2 * path.len() as u64)?;
         let shared: Rc<str> = Rc::from(path.as_str());
         self.paths.insert(path, shared.clone());
         Ok(shared)
@@ -464,8 +409,7 @@ impl<'a> ModelReader<'a> {
         let mut numbers = [f64::NAN; 12];
         let mut count = 0;
         for word in words(text) {
-            let number = std::str::from_utf8(word).ok().and_then(|word| word.parse::<f64>().ok());
-            numbers.iter_mut().skip(count).take(1).for_each(|slot| *slot = number.unwrap_or(f64::NAN));
+            numbers.iter_mut().skip(count).take(1).for_each(|slot| *slot = parsed(word).unwrap_or(f64::NAN));
             count += 1;
         }
         if count != 12 || !numbers.iter().all(|number| number.is_finite()) {

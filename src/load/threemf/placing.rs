@@ -4,17 +4,16 @@ use std::collections::HashMap;
 
 use glam::{DAffine3, DMat3, DVec3};
 
+use super::broken;
 use super::document::{Document, ObjectAt};
 use super::looks::{Faults, Looks, Resolved, Textured};
-use super::model::{Object, Placed, Triangle};
+use super::model::{Object, Placed, Triangle, UNREAD};
 use super::properties::Group;
-use super::{broken, too_large};
 use crate::face_builder::{FaceBuilder, NumberedCorner, counted};
 use crate::import::Import;
 use crate::memory_budget::{Budget, edge_bytes};
 use crate::notes::Notes;
 use crate::read_error::{FilePosition, ReadError};
-use geometry::mesh::MemoryAccount;
 use geometry::mesh::build_limits::MAX_TRIANGLES;
 use geometry::mesh::mesh_builder::InputCorner;
 use geometry::progress::Progress;
@@ -25,18 +24,17 @@ const MAX_NESTING: usize = 64;
 /// How many triangles are placed before the job asks whether it was cancelled.
 const TRIANGLES: u64 = 4096;
 
-/// Places everything that the build has, or all objects if it has nothing. Also returns which materials show images.
+/// Places everything that the build has, or all objects if it has nothing. Returns which materials show images.
 ///
 /// # Errors
 /// [`ReadError`].
-pub(super) fn place<'a>(
+pub(super) fn place(
     document: &Document,
-    import: &Import,
-    budget: &'a Budget,
+    faces: &mut FaceBuilder,
+    budget: &Budget,
     progress: &Progress,
-    notes: &mut Notes,
-) -> Result<(FaceBuilder<'a>, Vec<Textured>), ReadError> {
-    let items = items(document, notes);
+) -> Result<Vec<Textured>, ReadError> {
+    let items = items(document, &mut faces.notes);
     let mut counter = Counter { document, counted: HashMap::new(), missing: 0 };
     let mut total = 0_u64;
     for item in &items {
@@ -46,16 +44,13 @@ pub(super) fn place<'a>(
         return Err(ReadError::TooMany { limit: MAX_TRIANGLES, what: "triangles" });
     }
     // Many copies of an object are refused before any is made.
-    let least = edge_bytes(0, total);
-    budget.hold(least).map_err(too_large)?;
-    budget.release(least);
-    let mut faces = FaceBuilder::new(usize::try_from(budget.files()).unwrap_or(usize::MAX), budget).importing(*import);
+    budget.check(edge_bytes(0, total))?;
     faces.expect(usize::try_from(total).unwrap_or(usize::MAX), document.geometry.vertices.len());
     let colors = |group: &Group| matches!(group, Group::Colors(colors) if !colors.is_empty());
     if document.parts.iter().any(|part| part.groups.values().any(colors)) {
         faces.color();
     }
-    let root = of_file(document, import);
+    let root = of_file(document, &faces.import);
     let mut placer = Placer {
         document,
         counted: &counter.counted,
@@ -70,10 +65,11 @@ pub(super) fn place<'a>(
     for item in &items {
         placer.placed(0, item, root)?;
     }
-    notes.extend(counted([(counter.missing, "components and items whose object isn't in the file, left out")]));
-    notes.extend(unread(document, counter.counted.keys()));
-    notes.extend(placer.found.warnings());
-    Ok((placer.faces, placer.looks.into_textured()))
+    let Placer { faces, looks, found, .. } = placer;
+    faces.notes.extend(counted([(counter.missing, "components and items whose object isn't in the file, left out")]));
+    faces.notes.extend(unread(document, &counter.counted));
+    faces.notes.extend(found.warnings());
+    Ok(looks.into_textured())
 }
 
 /// Turns axes so that Y points up in place of Z, and scales the file's unit to metres, unless another axis or unit was chosen.
@@ -137,25 +133,18 @@ impl Counter<'_> {
 }
 
 /// Says what isn't read of these objects.
-fn unread<'o>(document: &Document, shown: impl Iterator<Item = &'o ObjectAt>) -> impl Iterator<Item = String> {
-    let [mut beams, mut slices, mut shapes] = [0; 3];
-    for (part, id) in shown {
-        let unread = document.parts[*part].objects[id].unread;
-        beams += usize::from(unread.beams);
-        slices += usize::from(unread.slices);
-        shapes += usize::from(unread.shape);
-    }
-    counted([
-        (beams, "objects of the build with beams (beam lattice extension), which aren't read"),
-        (slices, "objects of the build with slices (slice extension), which aren't read"),
-        (shapes, "objects of the build that are neither a mesh nor components, which aren't read"),
-    ])
+fn unread<T>(document: &Document, shown: &HashMap<ObjectAt, T>) -> Vec<String> {
+    let shown: Vec<_> = shown.keys().map(|(part, id)| &document.parts[*part].objects[id]).collect();
+    let count = |unread: usize| shown.iter().filter(|object| object.unread[unread]).count();
+    let kinds = UNREAD.iter().enumerate();
+    let said = kinds.map(|(i, (_, what))| (count(i), format!("objects of the build with {what}, which aren't read")));
+    counted(said).collect()
 }
 
 struct Placer<'d, 'a> {
     document: &'d Document,
     counted: &'d HashMap<ObjectAt, Option<u64>>,
-    faces: FaceBuilder<'a>,
+    faces: &'d mut FaceBuilder<'a>,
     looks: Looks<'d>,
     corners: Vec<NumberedCorner>,
     found: Faults,
@@ -189,7 +178,7 @@ impl Placer<'_, '_> {
             let Some(&Triangle { corners, look }) = self.document.geometry.triangles.get(i) else { continue };
             let resolved = match last {
                 Some((number, resolved)) if number == look => resolved,
-                _ => self.looks.resolve(&mut self.faces, at.0, object, look)?,
+                _ => self.looks.resolve(self.faces, at.0, object, look)?,
             };
             last = Some((look, resolved));
             self.found.count(resolved.fault);

@@ -4,8 +4,7 @@ use glam::{DVec3, Vec2, Vec3};
 use proptest::prelude::*;
 
 use super::*;
-use crate::mesh::build_limits::tests::Counted;
-use crate::mesh::{CornerDetail, EdgeCounts, Material, MemoryRefused, Shape, Side, Unlimited, weld};
+use crate::mesh::{Budget, CornerDetail, EdgeCounts, Material, MemoryRefused, Shape, Side, weld};
 
 fn topology(mesh: &Mesh) -> Topology {
     Topology::build(mesh, &Progress::new()).unwrap()
@@ -15,7 +14,7 @@ fn topology(mesh: &Mesh) -> Topology {
 fn banded_within(mesh: &Mesh, weld: f32, width: f32) -> (Mesh, Topology, CreaseBand) {
     let progress = Progress::new();
     let before = Topology::build_within(mesh, weld, &progress).unwrap();
-    let (made, after, band) = with_crease_band(mesh, &before, width, &Unlimited, &progress).unwrap();
+    let (made, after, band) = with_crease_band(mesh, &before, width, &Budget::unlimited(), &progress).unwrap();
     assert_eq!(after.edges, topology(&made).edges);
     for edge in &after.edges {
         let normals = |side: &Side| after.side_corners(side).map(|corner| made.corners[corner as usize].normal);
@@ -306,13 +305,16 @@ fn cancelling_stops_the_work() {
     let cube = Shape::CubeSplit.build();
     let topology = topology(&cube);
     progress.cancel();
-    assert!(matches!(with_crease_band(&cube, &topology, 0.01, &Unlimited, &progress), Err(BuildError::Cancelled(_))));
+    assert!(matches!(
+        with_crease_band(&cube, &topology, 0.01, &Budget::unlimited(), &progress),
+        Err(BuildError::Cancelled(_))
+    ));
 }
 
 #[test]
 fn the_account_is_asked_for_every_patch_and_every_edge() {
     let mesh = Shape::CubeSplit.build();
-    let (before, none) = (topology(&mesh), Counted { allowed: 0, ..Counted::default() });
+    let (before, none) = (topology(&mesh), Budget::new(0, 0));
     let refused = with_crease_band(&mesh, &before, 0.01, &none, &Progress::new()).err();
     let needed = (PER_PATCH * 12 + size_of::<EdgeCuts>() * 18) as u64;
     assert_eq!(refused, Some(BuildError::Memory(MemoryRefused { needed, allowed: 0 })));

@@ -1,7 +1,7 @@
 //! A list of distinct corners.
 
 use crate::mesh::Corner;
-use crate::mesh::build_limits::{MemoryAccount, MemoryRefused};
+use crate::mesh::build_limits::{Budget, MemoryRefused};
 use crate::mesh::interner::Interner;
 
 /// Corners that differ in some bit or in their binding, in the order of their first appearance.
@@ -52,7 +52,7 @@ impl DistinctCorners {
     ///
     /// # Errors
     /// [`MemoryRefused`].
-    pub(super) fn make_room(&mut self, more: usize, budget: &dyn MemoryAccount) -> Result<(), MemoryRefused> {
+    pub(super) fn make_room(&mut self, more: usize, budget: &Budget) -> Result<(), MemoryRefused> {
         let (count, capacity) = (self.corners.len(), self.corners.capacity());
         if capacity - count < more {
             budget.exchange(capacity as u64 * 32, (count + more) as u64 * 32)?;
@@ -67,7 +67,7 @@ impl DistinctCorners {
     }
 
     /// Frees the table that finds equal corners: no more corners will be added.
-    pub(super) fn close(&mut self, budget: &dyn MemoryAccount) {
+    pub(super) fn close(&mut self, budget: &Budget) {
         budget.release(self.ids.bytes());
         self.ids = Interner::default();
     }

@@ -6,7 +6,6 @@ use proptest::prelude::*;
 use super::*;
 use crate::cores::on_threads;
 use crate::mesh::Material;
-use crate::mesh::build_limits::tests::Counted;
 use crate::mesh::shapes::Shape;
 
 /// A mesh whose point i lies at (i, i * i, 0). `corners` holds the point of each corner.
@@ -277,12 +276,12 @@ fn a_triangle_knows_its_patch_unless_it_is_degenerate() {
 
 #[test]
 fn the_account_holds_what_a_topology_takes() {
-    let (mesh, budget) = (Shape::Torus.build(), Counted::default());
+    let (mesh, budget) = (Shape::Torus.build(), Budget::unlimited());
     let own = Topology::build_afforded(&mesh, 0.0, &budget, &Progress::new()).unwrap();
     let by_point = size_of_val(&own.points[..]) + size_of_val(&own.point_corners[..]);
     let by_corner = size_of_val(&own.corner_points[..]);
     let by_patch = size_of_val(&own.patches[..]) + size_of_val(&own.sides[..]) + size_of_val(&own.edges[..]);
-    assert_eq!(budget.held.get(), (by_point + by_corner + by_patch) as u64);
+    assert_eq!(budget.held(), (by_point + by_corner + by_patch) as u64);
 }
 
 #[test]

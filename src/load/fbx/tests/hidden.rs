@@ -1,14 +1,13 @@
 //! What a file hides: nodes and layers that are switched off, and clips that show and hide nodes.
 
-use std::path::Path;
-
 use super::documents::{Link, add, curves, document, geometry, model, stack};
 use super::tree::{Entry, object, one, properties, text};
 use super::{loaded, read};
 use crate::fbx::read_here;
-use crate::files::Limits;
 use crate::import::Import;
 use crate::loaded_mesh::LoadedMesh;
+use crate::model_file::ModelFile;
+use crate::selection::Selection;
 use geometry::progress::Progress;
 
 const TRIANGLE: [f64; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
@@ -77,8 +76,10 @@ fn nodes_and_layers_that_are_off_are_hidden_unless_they_are_asked_for() {
         loaded.warnings
     );
     let import = Import { show_hidden: true, ..Import::default() };
-    let (folder, limits) = (Path::new("nowhere"), Limits::default());
-    let all = read_here(text(&layered()), folder, "test", import, &limits, &Progress::new()).expect("no fault");
+    let progress = Progress::new();
+    let selected = Selection { import, ..Selection::default() };
+    let file = ModelFile { selected, ..ModelFile::of_test("test", &progress) };
+    let all = read_here(text(&layered()), &file).expect("no fault");
     assert_eq!(all.triangles.len(), 3);
     assert!(all.warnings.iter().all(|warning| !warning.contains("hides")), "{:?}", all.warnings);
 }

@@ -3,7 +3,6 @@
 use super::super::{morphs, parse};
 use super::documents::morphed_square;
 use super::tree::text;
-use crate::files::Limits;
 use crate::import::Import;
 use crate::memory_budget::Budget;
 use geometry::progress::Progress;
@@ -11,7 +10,7 @@ use geometry::progress::Progress;
 #[test]
 fn weights_are_linear_between_shapes_and_beyond_the_last() {
     let bytes = text(&morphed_square());
-    let budget = Budget::new(bytes.len(), &Limits::default());
+    let budget = Budget::new(bytes.len(), crate::Limits::default().memory);
     let scene = parse::scene(&bytes, &Import::default(), &budget, &Progress::new()).expect("a file without a fault");
     let channel = &scene.blend_channels[0];
     for (weight, expected) in [

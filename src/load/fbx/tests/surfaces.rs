@@ -7,7 +7,7 @@ use super::tree::{one, text};
 use super::{loaded, near, read};
 use crate::fbx::{read as read_on_a_thread, read_here};
 use crate::files::Limits;
-use crate::import::Import;
+use crate::model_file::ModelFile;
 use crate::read_error::ReadError;
 use geometry::mesh::{Alpha, Wrap};
 use geometry::progress::Progress;
@@ -191,8 +191,9 @@ fn images_are_looked_for_beside_the_model_and_nowhere_else() {
     std::fs::write(folder.path().join("outside.png"), image()).expect("a file");
     let read = |path: &str| {
         let bytes = text(&textured_square(Err(path)));
-        let read =
-            read_here(bytes, &inner, "test", Import::default(), &Limits::default(), &Progress::new()).expect("a mesh");
+        let progress = Progress::new();
+        let file = ModelFile { folder: &inner, ..ModelFile::of_test("test", &progress) };
+        let read = read_here(bytes, &file).expect("a mesh");
         (read.materials[0].texture.is_some(), read.warnings.join("\n"), read.files.len())
     };
     for path in ["C:\\\\work\\\\wood.png", "wood.png", "/elsewhere/wood.png", "..\\\\wood.png", "maps\\\\oak 50%25.png"]
@@ -215,9 +216,9 @@ fn images_that_do_not_fit_are_halved() {
         gray.write_to(&mut png, image::ImageFormat::Png).expect("an image in memory");
         let bytes = text(&textured_square(Ok(png.get_ref())));
         let limits = Limits { memory, ..Limits::default() };
-        let read =
-            read_here(bytes, std::path::Path::new("nowhere"), "test", Import::default(), &limits, &Progress::new());
-        let read = read.expect("a mesh, whatever its textures are");
+        let progress = Progress::new();
+        let file = ModelFile { limits, ..ModelFile::of_test("test", &progress) };
+        let read = read_here(bytes, &file).expect("a mesh, whatever its textures are");
         (read.materials[0].texture.as_ref().map(|texture| texture.size), read.warnings.join("\n"))
     };
     assert_eq!(read([2048, 2048], 64 << 20), (Some([2048; 2]), String::new()));
@@ -258,18 +259,11 @@ fn a_load_can_be_cancelled_and_runs_within_its_memory() {
     let bytes = text(&smoothed_prism());
     let progress = Progress::new();
     progress.cancel();
-    let cancelled = read_on_a_thread(
-        bytes.clone(),
-        std::path::Path::new("nowhere"),
-        "test",
-        Import::default(),
-        &Limits::default(),
-        &progress,
-    );
+    let cancelled = read_on_a_thread(bytes.clone(), &ModelFile::of_test("test", &progress));
     assert!(matches!(cancelled, Err(ReadError::Cancelled(_))), "{cancelled:?}");
     let limits = Limits { memory: 0, ..Limits::default() };
-    let refused =
-        read_here(bytes, std::path::Path::new("nowhere"), "test", Import::default(), &limits, &Progress::new());
+    let progress = Progress::new();
+    let refused = read_here(bytes, &ModelFile { limits, ..ModelFile::of_test("test", &progress) });
     let said = refused.map(|_| ()).expect_err("a parser needs more than that").to_string();
     assert!(
         said.contains(" of memory, but files of this size may take only ") && said.contains("--max-memory"),

@@ -2,14 +2,13 @@
 
 use super::{ModelReader, PER_ENTRY};
 use crate::read_error::ReadError;
-use crate::text_lines::{number_or_nan, words};
-use crate::threemf::properties::Group;
-use crate::threemf::texture2d::Texture2d;
+use crate::text_lines::{number_or_nan, parsed, words};
+use crate::threemf::properties::{Group, Texture2d};
 use crate::threemf::xml::Element;
 
 impl ModelReader<'_> {
     pub(super) fn begin_group(&mut self, element: &Element, group: Group) -> Result<(), ReadError> {
-        self.geometry.hold(PER_ENTRY, self.budget)?;
+        self.budget.hold(PER_ENTRY)?;
         self.group = Some((self.id(element, "of properties")?, group));
         Ok(())
     }
@@ -21,7 +20,7 @@ impl ModelReader<'_> {
 
     pub(super) fn texture(&mut self, element: &Element) -> Result<(), ReadError> {
         let (id, texture) = (self.id(element, "texture2d")?, Texture2d::of(element));
-        self.geometry.hold(PER_ENTRY + 2 * texture.path.len() as u64, self.budget)?;
+        self.budget.hold(PER_ENTRY + 2 * texture.path.len() as u64)?;
         self.part.textures.entry(id).or_insert(texture);
         Ok(())
     }
@@ -31,7 +30,7 @@ impl ModelReader<'_> {
         let at = |name: &[u8]| element.attribute(name).map_or(f32::NAN, |value| number_or_nan(value.trim_ascii()));
         if let Some((_, Group::Texture { coordinates, .. })) = &mut self.group {
             // A list that grows may take three times its size.
-            self.geometry.hold(3 * size_of::<[f32; 2]>() as u64, self.budget)?;
+            self.budget.hold(3 * size_of::<[f32; 2]>() as u64)?;
             coordinates.push([at(b"u"), at(b"v")]);
         }
         Ok(())
@@ -48,11 +47,11 @@ impl ModelReader<'_> {
         match &mut self.group {
             Some((_, Group::Materials(materials))) => {
                 let name = element.text(b"name").unwrap_or_default();
-                self.geometry.hold(3 * (size_of::<(String, [u8; 4])>() + name.len()) as u64, self.budget)?;
+                self.budget.hold(3 * (size_of::<(String, [u8; 4])>() + name.len()) as u64)?;
                 materials.push((name, color));
             }
             Some((_, Group::Colors(colors))) => {
-                self.geometry.hold(3 * size_of::<[u8; 4]>() as u64, self.budget)?;
+                self.budget.hold(3 * size_of::<[u8; 4]>() as u64)?;
                 colors.push(color);
             }
             _ => {}
@@ -69,7 +68,7 @@ impl ModelReader<'_> {
 
     pub(super) fn combined(&mut self, element: &Element) -> Result<(), ReadError> {
         if let Some((_, Group::Combined { first, entries, .. })) = &mut self.group {
-            self.geometry.hold(3 * size_of::<u32>() as u64, self.budget)?;
+            self.budget.hold(3 * size_of::<u32>() as u64)?;
             entries.push(first_of(element, b"pindices", *first));
         }
         Ok(())
@@ -80,7 +79,7 @@ impl ModelReader<'_> {
 fn first_of(element: &Element, name: &[u8], otherwise: u32) -> u32 {
     let text = element.attribute(name).unwrap_or_default();
     let Some(word) = words(&text).next() else { return otherwise };
-    std::str::from_utf8(word).ok().and_then(|word| word.parse().ok()).unwrap_or(u32::MAX)
+    parsed(word).unwrap_or(u32::MAX)
 }
 
 /// Parses a colour: `#RRGGBB` or `#RRGGBBAA`.
