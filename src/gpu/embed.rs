@@ -128,7 +128,8 @@ impl Context {
 }
 
 fn check_limits(has: &wgpu::Limits) -> Result<(), GpuError> {
-    let limits: [(_, fn(&wgpu::Limits) -> u32); 4] = [
+    type Limit = fn(&wgpu::Limits) -> u32;
+    let limits: [(&'static str, Limit); 4] = [
         ("storage buffers in a shader stage", |limits| limits.max_storage_buffers_per_shader_stage),
         ("invocations in a compute workgroup", |limits| limits.max_compute_invocations_per_workgroup),
         ("bytes of workgroup memory", |limits| limits.max_compute_workgroup_storage_size),
