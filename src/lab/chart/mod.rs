@@ -31,8 +31,11 @@ use geometry::tessellate::Vertex;
 use gpu::{DRAWING, PassTime};
 use inspect::settings::Choice;
 
+/// A column's name, and its text of a row.
+type Column = (&'static str, fn(&Row) -> String);
+
 /// The columns of a row written as CSV. Numbers read back exactly, and unknown values are empty.
-const COLUMNS: [(&str, fn(&Row) -> String); 18] = [
+const COLUMNS: [Column; 18] = [
     ("mesh", |row| row.mesh.clone()),
     ("adapter", |row| row.adapter.clone()),
     ("surface", |row| row.setting.method.surface.name().to_owned()),

@@ -18,8 +18,11 @@ const LEGEND: &str = "Edges are red where the gap between their sides is at leas
      ms: of all passes that tessellate, and of drawing without marks. Drawing leaves out the backs of closed surfaces that \
      don't tear. Factors are lower than asked for where a tile would have more than about 2,000,000 triangles.\n";
 
+/// A column's name, and its text of a tile.
+type Column = (&'static str, fn(&TileResults) -> String);
+
 /// The columns after a tile's name.
-const COLUMNS: [(&str, fn(&TileResults) -> String); 10] = [
+const COLUMNS: [Column; 10] = [
     ("factor", |shown| shown.factor.to_string()),
     ("triangles", |shown| grouped(shown.triangles)),
     ("error, px", |shown| shown.error_px.map_or("-".to_owned(), hundredths)),

@@ -47,8 +47,11 @@ fn facts(part: &Part) -> String {
     format!("{} triangles; {against}; seen at {width} x {height} px.", grouped(part.patches))
 }
 
+/// A column's name, whether it needs a reference surface, and its text of a row.
+type Column = (&'static str, bool, fn(&Row) -> String);
+
 /// The columns after a row's name: whether they need a reference surface, and their texts.
-const COLUMNS: [(&str, bool, fn(&Row) -> String); 6] = [
+const COLUMNS: [Column; 6] = [
     ("triangles", false, |row| grouped(row.probe.triangles)),
     ("ms", false, |row| short(row.probe.time.total())),
     ("largest error, %", true, |row| known(row.probe.errors.map(|errors| 100.0 * errors.largest))),
