@@ -100,11 +100,13 @@ fn the_reference_surfaces_path_can_be_typed_and_tab_reaches_the_buttons() {
     let settings = *harness.state().settings();
     click(&mut harness, "File");
     harness.get_by_label("Reference surface…").click();
-    harness.step();
-    typed("elephant").into_iter().for_each(|event| harness.event(event));
-    while field(&harness).is_none() {
+    let start = std::time::Instant::now();
+    while harness.state().path_asked_for().is_none() {
+        assert!(start.elapsed() < crate::driver::PATIENCE, "no path is asked for");
+        std::thread::sleep(std::time::Duration::from_millis(2));
         harness.step();
     }
+    typed("elephant").into_iter().for_each(|event| harness.event(event));
     settle(&mut harness);
     assert_eq!((field(&harness).as_deref(), harness.state().settings()), (Some("elephant"), &settings));
     // The first says that no name begins like this.

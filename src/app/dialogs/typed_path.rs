@@ -245,7 +245,7 @@ impl App {
         }
         let name = proposed_name(purpose, self.source());
         let choose = move || {
-            let dialog = rfd::FileDialog::new().set_title(purpose::title(purpose));
+            let dialog = rfd::FileDialog::new().set_title(purpose::title(purpose).trim_end_matches(" path"));
             let kinds = kinds(purpose).into_iter();
             let dialog = kinds.fold(dialog, |dialog, (name, endings)| dialog.add_filter(name, &endings));
             match name {
