@@ -1,7 +1,7 @@
 //! Reads glTF 2.0 (`.gltf`, `.glb` and `.vrm`): the triangles of one scene in their rest pose, and its animations.
 //!
-//! [`reach`] finds what the scene uses, and [`repair`] takes out the rest. An accessor, a buffer view or a buffer that is wrong is an error for
-//! the shape, which can't do without it, and a warning for anything else.
+//! [`schema_check`] takes out what is wrong in a document, and [`reach`] finds what the scene uses of it. Then [`repair`] decides which faults
+//! are errors: those that the shape depends on. Others cost a warning. The fault of an accessor, a buffer view or a buffer is for what reads it.
 //!
 //! The `gltf` crate parses the document. Its accessor readers aren't used, since they panic on some broken files;
 //! [`accessor`] reads instead, and checks every range.

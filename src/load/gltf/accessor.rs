@@ -193,8 +193,7 @@ impl<'a> Accessors<'a> {
     /// # Errors
     /// [`GltfError::Document`] for an accessor that is wrong.
     pub(crate) fn check_sound(&self, accessor: &Accessor) -> Result<(), GltfError> {
-        let fault = self.faults.get(&("accessors", accessor.index()));
-        fault.map_or(Ok(()), |fault| Err(fault.clone().into()))
+        Ok(self.faults.check("accessors", accessor.index())?)
     }
 
     fn decompress(&self, view: &buffer::View, compressed: &MeshoptExtension) -> Result<(Decompressed, usize), String> {
@@ -291,9 +290,7 @@ impl<'a> Accessors<'a> {
     /// A clause that names the view if its buffer is too short.
     pub(crate) fn view_bytes(&self, view: &buffer::View) -> Result<&[u8], DataError> {
         let i = view.index();
-        if let Some(fault) = self.faults.get(&("bufferViews", i)) {
-            return Err(GltfError::from(fault.clone()).into());
-        }
+        self.faults.check("bufferViews", i).map_err(GltfError::from)?;
         if let Some((made, _)) = self.decompressed(view).map_err(GltfError::from)? {
             return Ok(made.bytes());
         }

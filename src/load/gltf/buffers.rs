@@ -35,7 +35,7 @@ impl<'a> Buffers<'a> {
         progress: &'a Progress,
     ) -> Self {
         let list = &document.as_json().buffers[..];
-        let may_own = |i: &usize| list[*i].uri.is_none() && !fallback[*i] && !faults.contains_key(&("buffers", *i));
+        let may_own = |i: &usize| list[*i].uri.is_none() && !fallback[*i] && faults.check("buffers", *i).is_ok();
         let owner = (0..list.len()).find(may_own);
         let read = list.iter().map(|_| OnceCell::new()).collect();
         Self { list, fallback, faults, files, chunk: Cell::new(chunk), owner, read, progress }
@@ -47,9 +47,7 @@ impl<'a> Buffers<'a> {
     /// [`GltfError::Document`] for one that is wrong, [`GltfError::Buffer`] for one that is missing or too short, and
     /// [`GltfError::Cancelled`].
     pub(super) fn bytes(&self, i: usize) -> Result<&[u8], GltfError> {
-        if let Some(fault) = self.faults.get(&("buffers", i)) {
-            return Err(fault.clone().into());
-        }
+        self.faults.check("buffers", i)?;
         let Some((buffer, read)) = self.list.get(i).zip(self.read.get(i)) else { return Ok(&[]) };
         let read = read.get_or_init(|| match &buffer.uri {
             Some(uri) => cut(self.files.read(uri, true)?, buffer.byte_length.0),

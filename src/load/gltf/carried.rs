@@ -61,7 +61,7 @@ impl<T: Carriable> Carried<T> {
         let element = |(i, value)| T::read(&Members::of(value, format!("/{}/{i}", kind.list), notes)?);
         let list: Vec<_> = list.iter().enumerate().map(element).collect();
         let mut nodes = Vec::new();
-        for (node, object) in objects(root, "nodes").enumerate() {
+        for (node, object) in objects(root, "nodes") {
             let (own, pointer) = match kind.extension {
                 Some(name) => (take_extension(object, name), format!("/nodes/{node}/extensions/{name}")),
                 None => (object.remove(kind.member).map(|own| json!({ kind.member: own })), format!("/nodes/{node}")),

@@ -9,15 +9,16 @@ use serde_json::{Map, Value, json};
 use super::cameras::{self, CameraSource};
 use super::carried::Carried;
 use super::extensions::Extensions;
-use super::json::objects;
+use super::json::{list, objects};
 use super::lights;
 use super::material_lists::MaterialLists;
 use super::node_parts::{self, NodeParts};
 use super::notes::Notes;
-use super::reach::{Reach, list};
+use super::reach::Reach;
+use super::repair::Settled;
 use super::scenes::Scenes;
 use super::schema_check::Faults;
-use super::{GltfError, extension_table, glb, json, repair, schema, schema_check, variants};
+use super::{GltfError, extension_table, extensions, glb, json, repair, schema, schema_check, variants};
 use crate::memory_budget::Budget;
 use crate::selection::Selection;
 use geometry::mesh::{Borrowed, Light, MemoryRefused};
@@ -68,24 +69,30 @@ pub(super) fn parse(
     let lists = MaterialLists::take(root, &notes);
     let lights = lights::take(root, &notes);
     let cameras = cameras::take(root, &notes);
-    let show_hidden = selected.import.show_hidden;
-    let mut reach = Reach::of(root, show_hidden);
-    let parts = node_parts::take(root, &reach, selected.hidden, budget)?;
-    if parts.is_cut {
-        reach = Reach::of(root, show_hidden);
-    }
-    repair::repair(root, &reach, lists.materials.len(), requires_draco, budget, notes.get_mut())?;
+    let hiding = if selected.import.show_hidden { Vec::new() } else { extensions::hiding(root) };
+    let rotations = repair::before_check(root, budget)?;
     // The `gltf` crate takes nothing for granted that this doesn't check.
     let faults = schema_check::check(root, schema::DOCUMENT)?;
     // Empty views refer to a buffer.
     if list(root, "buffers").is_empty() && !list(root, "bufferViews").is_empty() {
         root.insert("buffers".to_owned(), json!([{ "byteLength": 0 }]));
     }
-    let extensions = Extensions::of(root);
-    for scene in objects(root, "scenes") {
+    let mut extensions = Extensions::of(root);
+    for (_, scene) in objects(root, "scenes") {
         scene.entry("nodes").or_insert_with(|| json!([]));
     }
-    let root: Root = serde_json::from_value(value).map_err(not_gltf)?;
+    let mut root: Root = serde_json::from_value(value).map_err(not_gltf)?;
+    if !requires_draco {
+        extensions.leave_out_packed(&root);
+    }
+    let mut reach = Reach::of(&root, &faults, hiding);
+    let parts = node_parts::take(&mut root, &extensions.instances, &reach, selected.hidden, budget)?;
+    if parts.is_cut {
+        reach = Reach::of(&root, &faults, reach.hiding);
+    }
+    let materials = lists.materials.len();
+    let settled = Settled { reach: &reach, faults: &faults, rotations, materials, requires_draco };
+    settled.settle(&mut root, notes.get_mut())?;
     let document = Document::from_json_without_validation(root);
     drop(json);
     let too_large =

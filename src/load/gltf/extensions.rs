@@ -2,12 +2,14 @@
 
 use std::collections::HashMap;
 
+use ::gltf::json::Root;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
-use super::reach::{compression, extension, list};
-use super::schema::{DRACO, INSTANCING, is_attribute};
+use super::json::list;
+use super::reach::has_data;
+use super::schema::{DRACO, INSTANCING, KHR_MESHOPT, MESHOPT, VISIBILITY, is_attribute};
 
 /// The data of a document's extensions.
 #[derive(Debug, Default)]
@@ -81,7 +83,7 @@ pub(crate) enum MeshoptFilter {
 }
 
 impl Extensions {
-    /// Reads the extensions of a document that has been [repaired](super::repair) and [checked](super::schema_check).
+    /// Reads the extensions of a document that has been [checked](super::schema_check).
     pub(crate) fn of(root: &Map<String, Value>) -> Self {
         let compressed = |view: &Value| {
             let (name, own) = compression(view)?;
@@ -100,10 +102,40 @@ impl Extensions {
             instances: list(root, "nodes").iter().enumerate().filter_map(instances).collect(),
         }
     }
+
+    /// Leaves aside compressed data of primitives that are also there uncompressed, for a document that doesn't require it.
+    pub(crate) fn leave_out_packed(&mut self, root: &Root) {
+        let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+        for (packed, primitive) in self.packed.iter_mut().flatten().zip(primitives) {
+            *packed = packed.take().filter(|_| !has_data(root, primitive));
+        }
+    }
+}
+
+/// For each node, whether it hides itself and what is below.
+pub(super) fn hiding(root: &Map<String, Value>) -> Vec<bool> {
+    let is_visible = |node| extension(node, VISIBILITY).and_then(|own| own.get("visible"));
+    list(root, "nodes").iter().map(|node| is_visible(node) == Some(&Value::Bool(false))).collect()
+}
+
+/// The extension that compresses a buffer view, or that is about such views on a buffer, with its name.
+fn compression(object: &Value) -> Option<(&'static str, &Value)> {
+    [KHR_MESHOPT, MESHOPT].into_iter().find_map(|name| Some((name, extension(object, name)?)))
+}
+
+fn extension<'a>(object: &'a Value, name: &str) -> Option<&'a Value> {
+    object.get("extensions")?.get(name).filter(|own| !own.is_null())
 }
 
 fn read<T: DeserializeOwned>(value: &Value) -> Option<T> {
     serde_json::from_value(value.clone()).ok()
+}
+
+impl InstancingExtension {
+    /// Returns the first accessor, whose number of elements is that of the instances.
+    pub(crate) fn first(&self) -> Option<usize> {
+        self.translation.or(self.rotation).or(self.scale)
+    }
 }
 
 impl DracoExtension {

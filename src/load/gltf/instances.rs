@@ -21,8 +21,7 @@ pub(super) struct Instances<'a> {
 
 /// Returns the number of a node's instances: that of the first attribute, or 1 without any.
 pub(super) fn count(document: &Document, own: &InstancingExtension) -> usize {
-    let first = own.translation.or(own.rotation).or(own.scale);
-    first.and_then(|first| document.accessors().nth(first)).map_or(1, |accessor| accessor.count())
+    own.first().and_then(|first| document.accessors().nth(first)).map_or(1, |accessor| accessor.count())
 }
 
 impl<'a> Instances<'a> {

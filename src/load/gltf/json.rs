@@ -61,12 +61,18 @@ fn make_whole(value: &mut Value) {
     }
 }
 
-/// Returns the objects in one of an object's lists.
+/// Returns one of the document's lists; an empty one if it is missing or no list.
+pub(super) fn list<'a>(root: &'a Map<String, Value>, name: &str) -> &'a [Value] {
+    root.get(name).and_then(Value::as_array).map_or(&[], Vec::as_slice)
+}
+
+/// Returns the objects in one of an object's lists, with their indices.
 pub(super) fn objects<'a>(
     object: &'a mut Map<String, Value>,
     list: &str,
-) -> impl Iterator<Item = &'a mut Map<String, Value>> {
-    object.get_mut(list).and_then(Value::as_array_mut).into_iter().flatten().filter_map(Value::as_object_mut)
+) -> impl Iterator<Item = (usize, &'a mut Map<String, Value>)> {
+    let values = object.get_mut(list).and_then(Value::as_array_mut).into_iter().flatten().enumerate();
+    values.filter_map(|(i, value)| Some((i, value.as_object_mut()?)))
 }
 
 /// Returns the memory of a value that has been parsed, in bytes, by the same estimate.

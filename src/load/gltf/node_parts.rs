@@ -1,10 +1,16 @@
 //! The named nodes of a scene that have a mesh, as parts that can be left out.
 
-use serde_json::{Map, Value};
+use std::collections::HashMap;
 
-use super::GltfError;
-use super::reach::{Reach, list};
-use super::schema::INSTANCING;
+use ::gltf::Semantic;
+use ::gltf::json::mesh::Primitive;
+use ::gltf::json::validation::Checked;
+use ::gltf::json::{Mesh, Root};
+use ::gltf::mesh::Mode;
+
+use super::extensions::InstancingExtension;
+use super::reach::{Reach, attribute};
+use super::{GltfError, primitive};
 use crate::memory_budget::Budget;
 use crate::parts::{Part, Parts};
 use geometry::mesh::MemoryRefused;
@@ -25,60 +31,50 @@ pub(super) struct NodeParts {
 /// # Errors
 /// [`GltfError::TooLarge`].
 pub(super) fn take(
-    root: &mut Map<String, Value>,
+    root: &mut Root,
+    instances: &HashMap<usize, InstancingExtension>,
     reach: &Reach,
     hidden: &[String],
     budget: &Budget,
 ) -> Result<NodeParts, GltfError> {
     let mut parts = Parts::hiding(hidden);
     let mut cut = Vec::new();
-    for (i, node) in list(root, "nodes").iter().enumerate().filter(|(i, _)| reach.shown[*i]) {
-        let mesh = node.get("mesh").and_then(Value::as_u64).and_then(|mesh| list(root, "meshes").get(mesh as usize));
-        let name = |value: &Value| value.get("name").and_then(Value::as_str).map(str::to_owned);
-        let name = name(node).or_else(|| name(mesh?)).filter(|name| !name.is_empty());
-        let (Some(mesh), Some(name)) = (mesh, name) else { continue };
+    for (i, node) in root.nodes.iter().enumerate().filter(|(i, _)| reach.shown[*i]) {
+        let Some(mesh) = node.mesh.map(|mesh| &root.meshes[mesh.value()]) else { continue };
+        let Some(name) = node.name.as_ref().or(mesh.name.as_ref()).filter(|name| !name.is_empty()) else { continue };
         let too_large = |refused: MemoryRefused| GltfError::TooLarge {
             what: "the list of named nodes".to_owned(),
             reason: refused.into(),
         };
         parts.enter(name.as_bytes(), budget).map_err(too_large)?;
-        if parts.leave_out(triangles(root, mesh).saturating_mul(instances(root, node))) {
+        let first = instances.get(&i).and_then(InstancingExtension::first);
+        if parts.leave_out(triangles(root, mesh).saturating_mul(first.map_or(1, |first| count(root, first)))) {
             cut.push(i);
         }
     }
-    let nodes = root.get_mut("nodes").and_then(Value::as_array_mut).map_or(&mut [][..], Vec::as_mut_slice);
-    for &i in &cut {
-        if let Some(node) = nodes.get_mut(i).and_then(Value::as_object_mut) {
-            ["mesh", "skin", "weights"].iter().for_each(|member| _ = node.remove(*member));
-        }
+    let is_cut = !cut.is_empty();
+    for node in cut {
+        (root.nodes[node].mesh, root.nodes[node].skin) = (None, None);
     }
     let (list, beyond) = parts.into_list();
-    Ok(NodeParts { list, beyond, is_cut: !cut.is_empty() })
+    Ok(NodeParts { list, beyond, is_cut })
 }
 
 /// Returns how many triangles a mesh has, with those of strips that only connect parts.
-fn triangles(root: &Map<String, Value>, mesh: &Value) -> usize {
-    let primitives = mesh.get("primitives").and_then(Value::as_array).into_iter().flatten();
-    let of = |primitive: &Value| {
-        let positions = primitive.get("attributes").and_then(|attributes| attributes.get("POSITION"));
-        let corners = count(root, primitive.get("indices").or(positions));
-        match primitive.get("mode").and_then(Value::as_u64).unwrap_or(4) {
-            4 => corners / 3,
-            5 | 6 => corners.saturating_sub(2),
+fn triangles(root: &Root, mesh: &Mesh) -> usize {
+    let of = |own: &Primitive| {
+        let corners = own.indices.map(|indices| indices.value()).or(attribute(own, &Semantic::Positions));
+        match own.mode {
+            Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => {
+                primitive::most_triangles(mode, corners.map_or(0, |corners| count(root, corners)))
+            }
             _ => 0,
         }
     };
-    primitives.map(of).fold(0, usize::saturating_add)
+    mesh.primitives.iter().map(of).fold(0, usize::saturating_add)
 }
 
-/// Returns how often a node's mesh is shown.
-fn instances(root: &Map<String, Value>, node: &Value) -> usize {
-    let of = || node.get("extensions")?.get(INSTANCING)?.get("attributes")?.as_object()?.values().next();
-    of().map_or(1, |accessor| count(root, Some(accessor)))
-}
-
-/// Returns how many elements an accessor has; 0 if there is none. A whole number may be written as 4.0.
-fn count(root: &Map<String, Value>, accessor: Option<&Value>) -> usize {
-    let own = accessor.and_then(Value::as_f64).and_then(|accessor| list(root, "accessors").get(accessor as usize));
-    own.and_then(|own| own.get("count")?.as_f64()).map_or(0, |count| count as usize)
+/// Returns how many elements an accessor has.
+fn count(root: &Root, accessor: usize) -> usize {
+    root.accessors.get(accessor).map_or(0, |own| own.count.0 as usize)
 }

@@ -1,7 +1,7 @@
 //! Places the nodes of a document: their global transforms, and which ones the scene shows.
 
 use ::gltf::scene::Transform;
-use ::gltf::{Document, Mesh, Node};
+use ::gltf::{Document, Mesh, Node, json};
 use glam::{DMat4, Mat4};
 
 use super::GltfError;
@@ -47,38 +47,43 @@ impl Placed {
 /// # Errors
 /// [`GltfError::Document`] for a node that is its own ancestor.
 pub(super) fn place(document: &Document, hiding: &[bool], notes: &mut Notes) -> Result<Placed, GltfError> {
-    let nodes: Vec<Node> = document.nodes().collect();
-    let parents = parents(&nodes, notes);
+    let nodes = &document.as_json().nodes;
+    let parents = parents(nodes, |[parent, place, child, first]| {
+        notes.push(format!(
+            "/nodes/{parent}/children/{place} is {child}, which is already among /nodes/{first}/children; it is placed \
+             only there."
+        ));
+    });
     let roots: Vec<usize> = (0..nodes.len()).filter(|&node| parents[node].is_none()).collect();
     let mut global = vec![DMat4::IDENTITY; nodes.len()];
-    let order = walk(&nodes, &parents, &roots, &[]);
+    let order = walk(nodes, &parents, &roots, &[]);
     if order.len() < nodes.len() {
         return Err(circle(&parents, &order));
     }
-    for &node in &order {
-        let above = parents[node].map_or(DMat4::IDENTITY, |parent| global[parent]);
-        global[node] = below(above, local(&nodes[node]));
+    for node in order.iter().filter_map(|&node| document.nodes().nth(node)) {
+        let above = parents[node.index()].map_or(DMat4::IDENTITY, |parent| global[parent]);
+        global[node.index()] = below(above, local(&node));
     }
     let roots = document.default_scene().map_or(roots, |scene| scene.nodes().map(|node| node.index()).collect());
-    Ok(Placed { global, shown: walk(&nodes, &parents, &roots, hiding), parents, order })
+    Ok(Placed { global, shown: walk(nodes, &parents, &roots, hiding), parents, order })
 }
 
-/// Returns the first parent of each node.
-fn parents(nodes: &[Node], notes: &mut Notes) -> Vec<Option<usize>> {
+/// Returns the first parent of each node. Calls `doubled` with each other one, the place among its children, the child, and its first parent.
+pub(super) fn parents(nodes: &[json::Node], mut doubled: impl FnMut([usize; 4])) -> Vec<Option<usize>> {
     let mut parents = vec![None; nodes.len()];
-    for node in nodes {
-        for (place, child) in node.children().enumerate() {
-            let (child, parent) = (child.index(), node.index());
+    for (parent, node) in nodes.iter().enumerate() {
+        for (place, child) in children(node).enumerate() {
             match parents[child] {
                 None => parents[child] = Some(parent),
-                Some(first) => notes.push(format!(
-                    "/nodes/{parent}/children/{place} is {child}, which is already among /nodes/{first}/children; it is placed \
-                     only there."
-                )),
+                Some(first) => doubled([parent, place, child, first]),
             }
         }
     }
     parents
+}
+
+fn children(node: &json::Node) -> impl Iterator<Item = usize> {
+    node.children.iter().flatten().map(|child| child.value())
 }
 
 /// Returns an error that names a node of a cycle, for nodes that can't be reached from a node without a parent.
@@ -94,7 +99,7 @@ fn circle(parents: &[Option<usize>], reached: &[usize]) -> GltfError {
 }
 
 /// Returns nodes and what is below them, without those that are hidden.
-fn walk(nodes: &[Node], parents: &[Option<usize>], roots: &[usize], hiding: &[bool]) -> Vec<usize> {
+pub(super) fn walk(nodes: &[json::Node], parents: &[Option<usize>], roots: &[usize], hiding: &[bool]) -> Vec<usize> {
     let mut seen = vec![false; nodes.len()];
     let mut order = Vec::new();
     let mut open: Vec<usize> = roots.iter().rev().copied().collect();
@@ -102,8 +107,7 @@ fn walk(nodes: &[Node], parents: &[Option<usize>], roots: &[usize], hiding: &[bo
         if !std::mem::replace(&mut seen[node], true) && hiding.get(node) != Some(&true) {
             order.push(node);
             let first = open.len();
-            let children = nodes[node].children().map(|child| child.index());
-            open.extend(children.filter(|&child| parents[child] == Some(node)));
+            open.extend(children(&nodes[node]).filter(|&child| parents[child] == Some(node)));
             open[first..].reverse();
         }
     }

@@ -27,6 +27,7 @@ pub(super) struct PrimitiveReader {
     read: usize,
     points: usize,
     lines: usize,
+    positionless: usize,
     repairs: VertexRepairs,
     /// What is wrong with attributes that a primitive can do without.
     pub notes: Notes,
@@ -109,7 +110,10 @@ impl PrimitiveReader {
         let count = match primitive.mode() {
             Mode::Points => &mut self.points,
             Mode::Lines | Mode::LineLoop | Mode::LineStrip => &mut self.lines,
-            _ if primitive.get(&Semantic::Positions).is_none() => &mut self.read,
+            _ if primitive.get(&Semantic::Positions).is_none() => {
+                self.read += 1;
+                &mut self.positionless
+            }
             Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan => return false,
         };
         *count += 1;
@@ -196,6 +200,7 @@ impl PrimitiveReader {
             (self.left_over, "indices at the end of triangle lists that make no whole triangle, left out"),
             (self.points, "primitives of points, left out"),
             (self.lines, "primitives of lines, left out"),
+            (self.positionless, "primitives without positions, left out"),
         ];
         let found = sentences.into_iter().filter(|(count, _)| *count > 0);
         let mut found: Vec<_> = found.map(|(count, sentence)| format!("{sentence}: {count}.")).collect();

@@ -1,10 +1,14 @@
-//! Finds out what the scene that is shown uses of a document, before anything is checked: what isn't used may be broken.
+//! Finds out what the scene that is shown uses of a document: what isn't used may be wrong.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
-use serde_json::{Map, Value};
+use ::gltf::Semantic;
+use ::gltf::json::mesh::Primitive;
+use ::gltf::json::validation::Checked;
+use ::gltf::json::{Mesh, Root};
 
-use super::schema::{DRACO, KHR_MESHOPT, MESHOPT, VISIBILITY};
+use super::nodes::{parents, walk};
+use super::schema_check::Faults;
 
 /// What the scene uses. The lists are those of the document.
 #[derive(Debug, Default)]
@@ -20,199 +24,90 @@ pub(super) struct Reach {
     pub meshes: Vec<bool>,
     pub skins: Vec<bool>,
     /// For each mesh, whether its vertices say which joints move them.
-    bound: Vec<bool>,
+    pub bound: Vec<bool>,
     /// For each mesh, whether a node that is shown gives it a skin.
-    skinned: Vec<bool>,
-    /// For each mesh, the morph targets that have a weight at rest.
-    weighed: HashMap<usize, Vec<bool>>,
+    pub skinned: Vec<bool>,
+    /// For each mesh that is used, the morph targets that have a weight at rest.
+    pub weighed: HashMap<usize, BTreeSet<usize>>,
 }
 
 impl Reach {
-    /// Follows the scene that the document names, or all nodes if it has no scenes; `show_hidden` says whether nodes that hide themselves
-    /// are shown too. Indices of things that don't exist are left aside here.
-    pub(super) fn of(root: &Map<String, Value>, show_hidden: bool) -> Self {
-        let count = |name| list(root, name).len();
-        let mut reach = Self {
-            nodes: vec![false; count("nodes")],
-            shown: vec![false; count("nodes")],
-            hiding: list(root, "nodes").iter().map(|node| !show_hidden && hides(node)).collect(),
-            meshes: vec![false; count("meshes")],
-            skins: vec![false; count("skins")],
-            bound: list(root, "meshes").iter().map(is_bound).collect(),
-            skinned: vec![false; count("meshes")],
-            ..Self::default()
+    /// Follows the scene that the document names, or all nodes if it has no scenes.
+    pub(super) fn of(root: &Root, faults: &Faults, hiding: Vec<bool>) -> Self {
+        let is_bound = |(m, mesh): (usize, &Mesh)| {
+            let has = |k: usize, own: &Primitive, name: Semantic| {
+                attribute(own, &name).is_some()
+                    || faults.at(format_args!("/meshes/{m}/primitives/{k}/attributes/{}", name.to_string())).is_some()
+            };
+            let binds = |(k, own)| has(k, own, Semantic::Joints(0)) && has(k, own, Semantic::Weights(0));
+            mesh.primitives.iter().enumerate().any(binds)
         };
-        reach.walk(root);
-        reach.look_at_meshes(root);
+        let mut reach = Self {
+            nodes: vec![root.scene.is_none(); root.nodes.len()],
+            shown: vec![false; root.nodes.len()],
+            hiding,
+            hidden: 0,
+            meshes: vec![false; root.meshes.len()],
+            skins: vec![false; root.skins.len()],
+            bound: root.meshes.iter().enumerate().map(is_bound).collect(),
+            skinned: vec![false; root.meshes.len()],
+            weighed: HashMap::new(),
+        };
+        reach.walk(root, faults);
         reach
     }
 
-    /// Returns whether a skin of a node that is shown moves a mesh.
-    pub(super) fn is_skinned(&self, mesh: usize) -> bool {
-        self.skinned[mesh] && self.bound[mesh]
-    }
-
-    /// Returns whether vertices of a mesh say which joints move them.
-    pub(super) fn is_bound(&self, mesh: Option<usize>) -> bool {
-        mesh.is_some_and(|mesh| self.bound.get(mesh) == Some(&true))
-    }
-
-    /// Returns whether a mesh's morph target has a weight at rest.
-    pub(super) fn is_weighed(&self, mesh: usize, target: usize) -> bool {
-        self.weighed.get(&mesh).and_then(|weighed| weighed.get(target)) == Some(&true)
-    }
-
-    /// Finds the nodes of the scene and below, those whose mesh is shown, and the joints of these.
-    fn walk(&mut self, root: &Map<String, Value>) {
-        let nodes = list(root, "nodes");
-        let scene = root.get("scene").and_then(Value::as_u64).and_then(|scene| usize::try_from(scene).ok());
-        let scene = scene.and_then(|scene| list(root, "scenes").get(scene));
-        let parents = parents(nodes);
+    fn walk(&mut self, root: &Root, faults: &Faults) {
+        let parents = parents(&root.nodes, |_| {});
         // Without scenes all nodes are shown, also those of a circle, which is refused later.
-        let roots: Vec<_> = scene.map_or_else(
-            || (0..nodes.len()).filter(|node| parents[*node].is_none()).collect(),
-            |scene| indices(scene, "nodes").filter(|node| *node < nodes.len()).collect(),
-        );
-        let mut below = vec![false; nodes.len()];
-        let mut open: Vec<_> = roots.iter().map(|node| (*node, false)).collect();
-        let mut hung = Vec::new();
-        while let Some((node, hidden)) = open.pop() {
-            if std::mem::replace(&mut self.nodes[node], true) {
-                continue;
-            }
-            let hidden = hidden || self.hiding[node];
-            let has_mesh = nodes[node].get("mesh").is_some_and(|mesh| !mesh.is_null());
-            self.shown[node] = has_mesh && !hidden;
-            self.hidden += usize::from(has_mesh && hidden);
-            if self.shown[node] {
-                hung.extend(self.skin_of(root, node));
-            }
-            // A node has one place, among the children of its first parent.
-            let children = indices(&nodes[node], "children");
-            for child in children.filter(|child| parents.get(*child) == Some(&Some(node))) {
-                below[child] = true;
-                open.push((child, hidden));
-            }
+        let roots: Vec<usize> = match &root.scene {
+            Some(scene) => root.scenes[scene.value()].nodes.iter().map(|node| node.value()).collect(),
+            None => (0..parents.len()).filter(|&node| parents[node].is_none()).collect(),
+        };
+        let has_mesh =
+            |node: usize| root.nodes[node].mesh.is_some() || faults.at(format_args!("/nodes/{node}/mesh")).is_some();
+        let scene = walk(&root.nodes, &parents, &roots, &[]);
+        let visible = walk(&root.nodes, &parents, &roots, &self.hiding);
+        let count = |nodes: &[usize]| nodes.iter().filter(|&&node| has_mesh(node)).count();
+        self.hidden = count(&scene) - count(&visible);
+        let mut open = scene;
+        open.extend(&roots);
+        for node in visible.into_iter().filter(|&node| has_mesh(node)) {
+            self.shown[node] = true;
+            open.extend(self.look_at_shown(root, node));
         }
-        if scene.is_none() {
-            self.nodes.fill(true);
-        }
-        hung.sort_unstable();
-        hung.dedup();
-        let skins = list(root, "skins");
-        let joints = hung.iter().flat_map(|skin| indices(&skins[*skin], "joints"));
-        let mut open: Vec<_> = roots.into_iter().chain(joints.filter(|joint| *joint < nodes.len())).collect();
-        hung.iter().for_each(|skin| self.skins[*skin] = true);
+        let mut seen = vec![false; root.nodes.len()];
         while let Some(node) = open.pop() {
             self.nodes[node] = true;
-            if !std::mem::replace(&mut below[node], true) {
+            if !std::mem::replace(&mut seen[node], true) {
                 open.extend(parents[node]);
             }
         }
     }
 
-    /// Returns the skin that moves a node's mesh.
-    fn skin_of(&self, root: &Map<String, Value>, node: usize) -> Option<usize> {
-        let node = list(root, "nodes").get(node)?;
-        let skin = index(node, "skin").filter(|skin| *skin < self.skins.len())?;
-        self.is_bound(index(node, "mesh")).then_some(skin)
-    }
-
-    /// Looks at the nodes whose meshes are shown: their meshes, and weights of morph targets.
-    fn look_at_meshes(&mut self, root: &Map<String, Value>) {
-        let meshes = list(root, "meshes");
-        // The meshes whose own weights are used.
-        let mut own_weights = vec![false; meshes.len()];
-        for (_, node) in list(root, "nodes").iter().enumerate().filter(|(i, _)| self.shown[*i]) {
-            let Some(mesh) = index(node, "mesh").filter(|mesh| *mesh < meshes.len()) else { continue };
-            self.meshes[mesh] = true;
-            self.skinned[mesh] |= node.get("skin").is_some_and(|skin| !skin.is_null());
-            let weights = match node.get("weights").filter(|weights| !weights.is_null()) {
-                Some(_) => values(node, "weights"),
-                None if std::mem::replace(&mut own_weights[mesh], true) => &[],
-                None => values(&meshes[mesh], "weights"),
-            };
-            let weighed = self.weighed.entry(mesh).or_default();
-            weighed.resize(weighed.len().max(weights.len()), false);
-            weighed.iter_mut().zip(weights).for_each(|(weighed, weight)| *weighed |= weight.as_f64() != Some(0.0));
-        }
+    /// Looks at a node whose mesh is shown. Returns the joints that move it.
+    fn look_at_shown(&mut self, root: &Root, node: usize) -> Vec<usize> {
+        let node = &root.nodes[node];
+        let Some(mesh) = node.mesh.map(|mesh| mesh.value()) else { return Vec::new() };
+        self.meshes[mesh] = true;
+        self.skinned[mesh] |= node.skin.is_some();
+        let weights = node.weights.as_ref().or(root.meshes[mesh].weights.as_ref()).into_iter().flatten();
+        let weighed = weights.enumerate().filter(|(_, weight)| **weight != 0.0).map(|(target, _)| target);
+        self.weighed.entry(mesh).or_default().extend(weighed);
+        let skin = node.skin.map(|skin| skin.value()).filter(|skin| self.bound[mesh] && !self.skins[*skin]);
+        let Some(skin) = skin else { return Vec::new() };
+        self.skins[skin] = true;
+        root.skins[skin].joints.iter().map(|joint| joint.value()).collect()
     }
 }
 
-/// Returns the first parent of each node.
-fn parents(nodes: &[Value]) -> Vec<Option<usize>> {
-    let mut parents = vec![None; nodes.len()];
-    for (parent, node) in nodes.iter().enumerate() {
-        for child in indices(node, "children") {
-            if let Some(known) = parents.get_mut(child) {
-                known.get_or_insert(parent);
-            }
-        }
-    }
-    parents
+/// Returns the accessor of an attribute.
+pub(super) fn attribute(primitive: &Primitive, name: &Semantic) -> Option<usize> {
+    primitive.attributes.get(&Checked::Valid(name.clone())).map(|accessor| accessor.value())
 }
 
-fn hides(node: &Value) -> bool {
-    extension(node, VISIBILITY).and_then(|own| own.get("visible")) == Some(&Value::Bool(false))
-}
-
-/// Returns whether a primitive has triangles: it has positions, and consists neither of points nor of lines.
-pub(super) fn is_drawn(primitive: &Value) -> bool {
-    attribute(primitive, "POSITION").is_some() && !matches!(primitive.get("mode").and_then(Value::as_u64), Some(0..=3))
-}
-
-/// Returns whether vertices of a mesh say which joints move them.
-fn is_bound(mesh: &Value) -> bool {
-    let binds = |primitive: &Value| {
-        is_drawn(primitive) && ["JOINTS_0", "WEIGHTS_0"].iter().all(|name| attribute(primitive, name).is_some())
-    };
-    values(mesh, "primitives").iter().any(binds)
-}
-
-/// Returns whether an attribute says how joints move vertices.
-pub(super) fn is_influence(name: &str) -> bool {
-    name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_")
-}
-
-/// Returns the Draco data that a primitive is read from. If the document doesn't require Draco, a primitive that also has
-/// uncompressed data is read from that.
-pub(super) fn packed<'a>(root: &Map<String, Value>, primitive: &'a Value, requires_draco: bool) -> Option<&'a Value> {
-    let position = attribute(primitive, "POSITION").and_then(whole);
-    let position = position.and_then(|position| list(root, "accessors").get(position));
-    let is_beside = position.and_then(|position| position.get("bufferView")).is_some_and(|view| !view.is_null());
-    extension(primitive, DRACO).filter(|_| requires_draco || !is_beside)
-}
-
-/// Returns one of the document's lists; an empty one if it is missing or no list.
-pub(super) fn list<'a>(root: &'a Map<String, Value>, name: &str) -> &'a [Value] {
-    root.get(name).and_then(Value::as_array).map_or(&[], Vec::as_slice)
-}
-
-fn values<'a>(object: &'a Value, name: &str) -> &'a [Value] {
-    object.get(name).and_then(Value::as_array).map_or(&[], Vec::as_slice)
-}
-
-/// The extension that compresses a buffer view, or that is about such views on a buffer, with its name.
-pub(super) fn compression(object: &Value) -> Option<(&'static str, &Value)> {
-    [KHR_MESHOPT, MESHOPT].into_iter().find_map(|name| Some((name, extension(object, name)?)))
-}
-
-pub(super) fn extension<'a>(object: &'a Value, name: &str) -> Option<&'a Value> {
-    object.get("extensions")?.get(name).filter(|own| !own.is_null())
-}
-
-fn attribute<'a>(object: &'a Value, name: &str) -> Option<&'a Value> {
-    object.get("attributes")?.get(name).filter(|value| !value.is_null())
-}
-
-fn whole(value: &Value) -> Option<usize> {
-    value.as_u64().and_then(|value| usize::try_from(value).ok())
-}
-
-fn index(object: &Value, name: &str) -> Option<usize> {
-    object.get(name).and_then(whole)
-}
-
-fn indices<'a>(object: &'a Value, name: &str) -> impl Iterator<Item = usize> + 'a {
-    values(object, name).iter().filter_map(whole)
+/// Whether a primitive's positions are also there uncompressed.
+pub(super) fn has_data(root: &Root, primitive: &Primitive) -> bool {
+    let positions = attribute(primitive, &Semantic::Positions).and_then(|index| root.accessors.get(index));
+    positions.is_some_and(|positions| positions.buffer_view.is_some())
 }

@@ -1,76 +1,158 @@
-//! Takes out of a document what the scene doesn't use, and what may be wrong without changing the shape, so that neither
-//! keeps the model from loading. What is left is [checked](super::schema_check).
+//! Takes out of a document what the scene doesn't use, and decides which faults keep the model from loading: those of what its shape depends
+//! on.
 
+use ::gltf::json::{Node, Root};
 use serde_json::{Map, Value, json};
 
 use super::GltfError;
-use super::json::{PER_OBJECT, PER_READ};
+use super::json::{PER_OBJECT, PER_READ, list, objects};
 use super::notes::Notes;
-use super::reach::{Reach, is_drawn, is_influence, list, packed};
-use super::schema::{INSTANCING, is_detail};
+use super::reach::{Reach, has_data};
+use super::schema::is_detail;
+use super::schema_check::{Fault, Faults};
 use crate::memory_budget::Budget;
 use geometry::mesh::MemoryRefused;
 
 /// How far a rotation's length may be from 1 without a warning: quaternions in files are rounded.
 const ROUNDING: f64 = 1e-3;
 
-/// Repairs a document. `reach` says what of it is used; `materials` is the number of its materials, and `requires_draco` says whether it
-/// requires the extension.
+/// Repairs a document before it is checked: rotations that aren't unit quaternions, and primitives that aren't triangles, which become empty.
+/// Returns what was wrong with the rotations of nodes, as sentences.
 ///
 /// # Errors
 /// [`GltfError::Document`] if what replaces broken parts would take too much memory.
-pub(super) fn repair(
-    root: &mut Map<String, Value>,
-    reach: &Reach,
-    materials: usize,
-    requires_draco: bool,
-    budget: &Budget,
-    notes: &mut Notes,
-) -> Result<(), GltfError> {
+pub(super) fn before_check(root: &mut Map<String, Value>, budget: &Budget) -> Result<Vec<(usize, String)>, GltfError> {
     let too_large =
         |refused: MemoryRefused| GltfError::Document { pointer: "its JSON".to_owned(), reason: refused.into() };
     hold_replacements(root, budget).map_err(too_large)?;
-    repair_nodes(root, reach, notes);
-    let mut positionless = 0;
-    let accessors = list(root, "accessors").len();
-    let mut meshes = root.remove("meshes");
-    for (i, mesh) in meshes.iter_mut().filter_map(Value::as_array_mut).flatten().enumerate() {
-        if !reach.meshes[i] {
-            *mesh = json!({ "primitives": [] });
-            continue;
+    for (_, mesh) in objects(root, "meshes") {
+        for (_, primitive) in objects(mesh, "primitives").filter(|(_, primitive)| !is_drawn(primitive)) {
+            let mode = primitive.remove("mode").filter(|mode| mode.as_u64().is_some_and(|mode| mode <= 6));
+            *primitive = Map::from_iter([("attributes".to_owned(), json!({}))]);
+            primitive.extend(mode.map(|mode| ("mode".to_owned(), mode)));
         }
-        let mut primitives = Primitives { reach, mesh: i, materials, accessors, has_targets: false, notes };
-        for (k, primitive) in array(mesh, "primitives").iter_mut().enumerate() {
-            if primitive.is_object() && !is_drawn(primitive) {
-                let mode = primitive.get("mode").and_then(Value::as_u64).filter(|mode| *mode <= 6).unwrap_or(4);
-                positionless += usize::from(mode > 3);
-                *primitive = json!({ "mode": mode, "attributes": {} });
-                continue;
+    }
+    Ok(objects(root, "nodes").filter_map(|(i, node)| Some((i, repair_rotation(node, i)?))).collect())
+}
+
+/// Returns whether a primitive has triangles: it has positions, and consists neither of points nor of lines.
+fn is_drawn(primitive: &Map<String, Value>) -> bool {
+    let positions = primitive.get("attributes").and_then(|attributes| attributes.get("POSITION"));
+    positions.is_some_and(|own| !own.is_null()) && !matches!(primitive.get("mode").and_then(Value::as_u64), Some(0..=3))
+}
+
+/// What is known of a document after the check.
+pub(super) struct Settled<'a> {
+    pub reach: &'a Reach,
+    pub faults: &'a Faults,
+    pub rotations: Vec<(usize, String)>,
+    /// The number of the document's materials, and whether it requires Draco.
+    pub materials: usize,
+    pub requires_draco: bool,
+}
+
+/// What a fault does.
+enum Verdict {
+    /// Nothing, since nothing uses what is wrong.
+    Unused,
+    /// The model can do without: a sentence.
+    LeftOut(String),
+    Refused,
+}
+
+impl Settled<'_> {
+    /// Takes out what isn't used.
+    ///
+    /// # Errors
+    /// The first fault of what the shape depends on. Those of accessors, buffer views and buffers are for what reads them.
+    pub(super) fn settle(self, root: &mut Root, notes: &mut Notes) -> Result<(), GltfError> {
+        for (pointer, reason) in &self.faults.0 {
+            match self.verdict(root, pointer) {
+                Verdict::Unused => {}
+                Verdict::LeftOut(sentence) => notes.push(sentence),
+                Verdict::Refused => {
+                    return Err(Fault { pointer: pointer.clone(), reason: reason.clone() }.into());
+                }
             }
-            let keeps_draco = packed(root, primitive, requires_draco).is_some();
-            if let Value::Object(primitive) = primitive {
-                primitives.repair(k, primitive, keeps_draco);
+        }
+        let Self { reach, rotations, .. } = self;
+        notes.extend(rotations.into_iter().filter(|(node, _)| reach.nodes[*node]).map(|(_, said)| said));
+        for (i, node) in root.nodes.iter_mut().enumerate() {
+            if !reach.nodes[i] {
+                *node = Node::default();
             }
+            node.mesh = node.mesh.filter(|_| reach.shown[i]);
+            node.skin = node.skin.filter(|_| node.mesh.is_some_and(|mesh| reach.bound[mesh.value()]));
         }
-        let has_targets = primitives.has_targets;
-        if let Some(mesh) = mesh.as_object_mut().filter(|_| !has_targets) {
-            mesh.remove("weights");
+        if reach.hidden > 0 {
+            let said = "nodes that KHR_node_visibility hides, with meshes that aren't shown (--show-hidden shows them)";
+            notes.push(format!("{said}: {}.", reach.hidden));
+        }
+        Ok(())
+    }
+
+    fn verdict(&self, root: &Root, pointer: &str) -> Verdict {
+        let mut parts = pointer.split('/').skip(1);
+        let list = parts.next().unwrap_or_default();
+        // Without a number it is the list itself.
+        let Some(i) = parts.next().and_then(|place| place.parse::<usize>().ok()) else { return Verdict::Refused };
+        let inside: Vec<&str> = parts.collect();
+        let reach = self.reach;
+        let used = |is: bool| if is { Verdict::Refused } else { Verdict::Unused };
+        match list {
+            "accessors" | "bufferViews" | "buffers" => Verdict::Unused,
+            "scenes" => used(root.scene.is_some_and(|scene| scene.value() == i)),
+            "skins" => used(reach.skins[i]),
+            "nodes" => {
+                let mesh = root.nodes[i].mesh.filter(|_| reach.shown[i]).map(|mesh| mesh.value());
+                used(match inside.first() {
+                    Some(&("mesh" | "extensions")) => reach.shown[i],
+                    Some(&"skin") => mesh.is_some_and(|mesh| reach.bound[mesh]),
+                    Some(&"weights") => mesh.is_some_and(|mesh| has_targets(root, mesh)),
+                    _ => reach.nodes[i],
+                })
+            }
+            "meshes" if reach.meshes[i] => self.verdict_of_mesh(root, i, pointer, &inside),
+            "meshes" => Verdict::Unused,
+            _ => Verdict::Refused,
         }
     }
-    root.extend(meshes.map(|meshes| ("meshes".to_owned(), meshes)));
-    if positionless > 0 {
-        notes.push(format!("primitives without positions, left out: {positionless}."));
-    }
-    let scene = root.get("scene").and_then(Value::as_u64);
-    for (i, other) in elements(root, "scenes").iter_mut().enumerate() {
-        if scene != Some(i as u64) {
-            *other = json!({ "nodes": [] });
+
+    fn verdict_of_mesh(&self, root: &Root, mesh: usize, pointer: &str, inside: &[&str]) -> Verdict {
+        let used = |is: bool| if is { Verdict::Refused } else { Verdict::Unused };
+        let left_out = |is_needed: bool| match is_needed {
+            true => Verdict::Refused,
+            false => Verdict::LeftOut(format!(
+                "{pointer} isn't one of the {} accessors; it is left out.",
+                root.accessors.len()
+            )),
+        };
+        let primitive = |k: &str| k.parse::<usize>().ok().and_then(|k| root.meshes[mesh].primitives.get(k));
+        match inside {
+            ["weights", ..] => used(has_targets(root, mesh)),
+            ["primitives", _, "material"] => Verdict::LeftOut(format!(
+                "{pointer} isn't one of the {} materials; the default material is used.",
+                self.materials
+            )),
+            ["primitives", k, "extensions", ..] => {
+                used(self.requires_draco || !primitive(k).is_some_and(|own| has_data(root, own)))
+            }
+            ["primitives", _, "attributes", name] if name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_") => {
+                used(self.reach.skinned[mesh] && self.reach.bound[mesh])
+            }
+            ["primitives", _, "attributes", name] => left_out(!is_detail(name)),
+            ["primitives", _, "targets", target, name] => {
+                let weighed = self.reach.weighed.get(&mesh);
+                let is_weighed = weighed.zip(target.parse().ok()).is_some_and(|(all, target)| all.contains(&target));
+                left_out(is_weighed && *name != "TANGENT")
+            }
+            _ => Verdict::Refused,
         }
     }
-    for (skin, _) in elements(root, "skins").iter_mut().zip(&reach.skins).filter(|(_, is_used)| !**is_used) {
-        *skin = json!({ "joints": [] });
-    }
-    Ok(())
+}
+
+fn has_targets(root: &Root, mesh: usize) -> bool {
+    root.meshes[mesh].primitives.iter().any(|primitive| primitive.targets.is_some())
 }
 
 /// Counts what may be put in place of elements that aren't objects, or have no members.
@@ -87,131 +169,24 @@ fn hold_replacements(root: &Map<String, Value>, budget: &Budget) -> Result<(), M
     budget.hold(others as u64 * PER_READ)
 }
 
-fn repair_nodes(root: &mut Map<String, Value>, reach: &Reach, notes: &mut Notes) {
-    let has_targets: Vec<_> = list(root, "meshes").iter().map(has_targets).collect();
-    for (i, value) in elements(root, "nodes").iter_mut().enumerate() {
-        if !reach.nodes[i] {
-            *value = Value::Object(Map::new());
-            continue;
-        }
-        let Value::Object(node) = value else { continue };
-        repair_rotation(node, i, notes);
-        let mesh = node.get("mesh").and_then(Value::as_u64).and_then(|mesh| usize::try_from(mesh).ok());
-        if !reach.shown[i] {
-            ["mesh", "skin", "weights", "extensions"].into_iter().for_each(|name| drop(node.remove(name)));
-        }
-        if !reach.is_bound(mesh) {
-            node.remove("skin");
-        }
-        if mesh.is_none_or(|mesh| has_targets.get(mesh) == Some(&false)) {
-            node.remove("weights");
-        }
-        let own = node.remove("extensions").and_then(|mut all| all.as_object_mut()?.remove(INSTANCING));
-        if let Some(own) = own {
-            node.insert("extensions".to_owned(), json!({ INSTANCING: own }));
-        }
-    }
-    if reach.hidden > 0 {
-        let said = "nodes that KHR_node_visibility hides, with meshes that aren't shown (--show-hidden shows them)";
-        notes.push(format!("{said}: {}.", reach.hidden));
-    }
-}
-
-fn has_targets(mesh: &Value) -> bool {
-    let primitives = mesh.get("primitives").and_then(Value::as_array);
-    primitives.into_iter().flatten().any(|primitive| is_drawn(primitive) && primitive.get("targets").is_some())
-}
-
-/// Gives a rotation that isn't a unit quaternion the length 1. Says so if it is more than rounding.
-fn repair_rotation(node: &mut Map<String, Value>, i: usize, notes: &mut Notes) {
-    let Some(values) = node.get("rotation").and_then(Value::as_array).filter(|values| values.len() == 4) else {
-        return;
-    };
+/// Gives a rotation that isn't a unit quaternion the length 1. Returns what is said of it if that is more than rounding.
+fn repair_rotation(node: &mut Map<String, Value>, i: usize) -> Option<String> {
+    let values = node.get("rotation")?.as_array().filter(|values| values.len() == 4)?;
     // What isn't a number is reported later.
-    let Some(numbers) = values.iter().map(Value::as_f64).collect::<Option<Vec<_>>>() else { return };
+    let numbers = values.iter().map(Value::as_f64).collect::<Option<Vec<_>>>()?;
     let largest = numbers.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
     if largest == 0.0 {
         node.remove("rotation");
-        notes.push(format!("/nodes/{i}/rotation is a quaternion of zeros; it is left out."));
-        return;
+        return Some(format!("/nodes/{i}/rotation is a quaternion of zeros; it is left out."));
     }
     // Divided by the largest number, squares don't overflow.
     let over = numbers.iter().map(|x| (x / largest).powi(2)).sum::<f64>().sqrt();
     let length = largest * over;
     let is_far = (length - 1.0).abs() > ROUNDING;
-    if is_far {
-        let length = if length < 1000.0 { format!("{length:.3}") } else { format!("{length:.1e}") };
-        notes.push(format!("/nodes/{i}/rotation is a quaternion of length {length}, not 1; it is scaled to 1."));
-    }
     if is_far || largest > 1.0 {
         let unit: Vec<_> = numbers.iter().map(|x| x / largest / over).collect();
         node.insert("rotation".to_owned(), json!(unit));
     }
-}
-
-/// The primitives of a mesh that is used.
-struct Primitives<'a> {
-    reach: &'a Reach,
-    mesh: usize,
-    /// How many materials and accessors the document has.
-    materials: usize,
-    accessors: usize,
-    has_targets: bool,
-    notes: &'a mut Notes,
-}
-
-impl Primitives<'_> {
-    /// Takes out what is wrong with a primitive's looks, and what isn't used.
-    fn repair(&mut self, k: usize, primitive: &mut Map<String, Value>, keeps_draco: bool) {
-        let place = format!("/meshes/{}/primitives/{k}", self.mesh);
-        if drop_index(primitive, "material", self.materials) {
-            let said = format!("{place}/material isn't one of the {} materials", self.materials);
-            self.notes.push(format!("{said}; the default material is used."));
-        }
-        let own = primitive.remove("extensions").filter(|_| keeps_draco);
-        if let Some(own) = own {
-            primitive.insert("extensions".to_owned(), own);
-        }
-        if let Some(attributes) = primitive.get_mut("attributes").and_then(Value::as_object_mut) {
-            attributes.retain(|name, _| !is_influence(name) || self.reach.is_skinned(self.mesh));
-            let details: Vec<_> = attributes.keys().filter(|name| is_detail(name)).cloned().collect();
-            for name in details {
-                self.drop_accessor(attributes, &name, &format!("{place}/attributes"));
-            }
-        }
-        let targets = primitive.get_mut("targets").and_then(Value::as_array_mut).into_iter().flatten();
-        for (t, target) in targets.enumerate() {
-            let Value::Object(target) = target else { continue };
-            let shapes: &[_] = if self.reach.is_weighed(self.mesh, t) { &[] } else { &["POSITION", "NORMAL"] };
-            for name in shapes.iter().chain(&["TANGENT"]) {
-                self.drop_accessor(target, name, &format!("{place}/targets/{t}"));
-            }
-        }
-        self.has_targets |= primitive.contains_key("targets");
-    }
-
-    fn drop_accessor(&mut self, object: &mut Map<String, Value>, name: &str, place: &str) {
-        if drop_index(object, name, self.accessors) {
-            let said = format!("{place}/{name} isn't one of the {} accessors; it is left out.", self.accessors);
-            self.notes.push(said);
-        }
-    }
-}
-
-/// Removes a member that isn't an index below `count`. Returns whether there was one.
-fn drop_index(object: &mut Map<String, Value>, name: &str, count: usize) -> bool {
-    let is_index = |value: &Value| value.as_u64().is_some_and(|index| index < count as u64);
-    match object.get(name) {
-        None | Some(Value::Null) => false,
-        Some(value) if is_index(value) => false,
-        Some(_) => object.remove(name).is_some(),
-    }
-}
-
-fn elements<'a>(root: &'a mut Map<String, Value>, name: &str) -> &'a mut [Value] {
-    root.get_mut(name).and_then(Value::as_array_mut).map_or(&mut [], Vec::as_mut_slice)
-}
-
-fn array<'a>(object: &'a mut Value, name: &str) -> &'a mut [Value] {
-    object.get_mut(name).and_then(Value::as_array_mut).map_or(&mut [], Vec::as_mut_slice)
+    let length = if length < 1000.0 { format!("{length:.3}") } else { format!("{length:.1e}") };
+    is_far.then(|| format!("/nodes/{i}/rotation is a quaternion of length {length}, not 1; it is scaled to 1."))
 }

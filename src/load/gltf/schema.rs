@@ -33,7 +33,7 @@ pub(super) enum MemberKind {
     Word(&'static [&'static str]),
     Object(&'static [Field]),
     Objects(&'static [Field]),
-    /// Objects that only what reads them needs: one with a fault is replaced by this one, and its fault is kept.
+    /// Objects, of which one that can't be read is replaced by this one.
     Parts(&'static [Field], &'static str),
     /// Indices of accessors by attribute name; the function says which names are read.
     Attributes(fn(&str) -> bool),
@@ -76,18 +76,19 @@ pub(super) const TRANSFORM: &str = "KHR_texture_transform";
 
 pub(super) static DOCUMENT: &[Field] = &[
     needed("asset", Object(&[needed("version", Text)])),
-    may("nodes", Objects(NODE)),
-    may("meshes", Objects(MESH)),
-    may("skins", Objects(SKIN)),
+    may("nodes", Parts(NODE, "{}")),
+    may("meshes", Parts(MESH, r#"{"primitives":[]}"#)),
+    may("skins", Parts(SKIN, r#"{"joints":[]}"#)),
     may("materials", Objects(&[])),
     may("accessors", Parts(ACCESSOR, r#"{"componentType":5126,"count":0,"type":"SCALAR"}"#)),
     may("bufferViews", Parts(VIEW, r#"{"buffer":0,"byteLength":0}"#)),
     may("buffers", Parts(BUFFER, r#"{"byteLength":0}"#)),
     may("scene", Index("scenes")),
-    may("scenes", Objects(&[may("nodes", Indices("nodes"))])),
+    may("scenes", Parts(&[may("nodes", Indices("nodes"))], "{}")),
 ];
 
 static NODE: &[Field] = &[
+    may("name", Name),
     may("children", Indices("nodes")),
     may("mesh", Index("meshes")),
     may("skin", Index("skins")),

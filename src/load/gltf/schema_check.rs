@@ -2,8 +2,9 @@
 //! schema.
 
 use std::cell::RefCell;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::fmt;
+use std::ops::Bound;
 
 use serde_json::{Map, Value};
 
@@ -24,14 +25,35 @@ impl From<Fault> for GltfError {
     }
 }
 
-/// The accessors, buffer views and buffers that can't be used, by list and index. What reads one fails with its fault.
-pub(crate) type Faults = HashMap<(&'static str, usize), Fault>;
+/// What is wrong in a document, by place. What the schema doesn't require was removed there.
+#[derive(Debug, Default)]
+pub(crate) struct Faults(pub BTreeMap<String, String>);
 
-/// Checks a document, member by member, and removes all members that the schema doesn't name. Returns the faults of parts that nothing
-/// may need.
+impl Faults {
+    /// Returns the first fault of a place, or of what is in it.
+    pub(crate) fn at(&self, place: fmt::Arguments) -> Option<Fault> {
+        if self.0.is_empty() {
+            return None;
+        }
+        let place = &place.to_string()[..];
+        // What is in a place comes before other places that begin alike.
+        let (pointer, reason) = self.0.range::<str, _>((Bound::Included(place), Bound::Unbounded)).next()?;
+        let rest = pointer.strip_prefix(place)?;
+        let fault = || Fault { pointer: pointer.clone(), reason: reason.clone() };
+        (rest.is_empty() || rest.starts_with('/')).then(fault)
+    }
+
+    /// # Errors
+    /// The first fault of an element of one of the document's lists.
+    pub(crate) fn check(&self, list: &str, i: usize) -> Result<(), Fault> {
+        self.at(format_args!("/{list}/{i}")).map_or(Ok(()), Err)
+    }
+}
+
+/// Checks a document, member by member, and removes all members that the schema doesn't name, and those that are wrong.
 ///
 /// # Errors
-/// The first other member that is wrong.
+/// A member that is wrong and that there is no document without.
 pub(super) fn check(document: &mut Map<String, Value>, schema: &'static [Field]) -> Result<Faults, Fault> {
     let count = |field: &Field| Some((field.name, document.get(field.name)?.as_array()?.len() as u64));
     let checker = Checker { counts: schema.iter().filter_map(count).collect(), faults: RefCell::default() };
@@ -88,18 +110,28 @@ impl Checker {
         });
         for field in fields {
             let path = JsonPointer(Some(path), Part::Name(field.name));
-            match object.get_mut(field.name) {
-                None if field.required => return path.fail("is missing".to_owned()),
-                None => {}
-                Some(value) => self.value(value, field, &path)?,
+            let checked = match object.get_mut(field.name) {
+                None if field.required => path.fail("is missing".to_owned()),
+                None => Ok(()),
+                Some(value) => self.value(value, &field.kind, &path),
+            };
+            if field.required {
+                checked?;
+            } else if let Err(fault) = checked {
+                object.remove(field.name);
+                self.keep(fault);
             }
         }
         Ok(())
     }
 
-    fn value(&self, value: &mut Value, field: &Field, path: &JsonPointer) -> Result<(), Fault> {
+    fn keep(&self, fault: Fault) {
+        self.faults.borrow_mut().0.insert(fault.pointer, fault.reason);
+    }
+
+    fn value(&self, value: &mut Value, kind: &MemberKind, path: &JsonPointer) -> Result<(), Fault> {
         let fits = |is: bool, what: &str| if is { Ok(()) } else { path.should_be(what, value) };
-        match &field.kind {
+        match kind {
             MemberKind::Index(list) => self.index(value, list, path),
             MemberKind::Indices(list) => each(value, path, |value, path| self.index(value, list, path)),
             MemberKind::Whole { least, most } => whole(value, *least, *most, path),
@@ -113,8 +145,8 @@ impl Checker {
             MemberKind::Object(fields) => self.fields(value, fields, path),
             MemberKind::Objects(fields) => each(value, path, |value, path| self.fields(value, fields, path)),
             MemberKind::Parts(fields, empty) => each(value, path, |value, path| {
-                if let (Err(fault), JsonPointer(_, Part::Place(place))) = (self.fields(value, fields, path), path) {
-                    self.faults.borrow_mut().insert((field.name, *place), fault);
+                if let Err(fault) = self.fields(value, fields, path) {
+                    self.keep(fault);
                     *value = serde_json::from_str(empty).unwrap_or_default();
                 }
                 Ok(())
@@ -141,13 +173,14 @@ impl Checker {
         }
     }
 
-    /// Checks an object whose members are indices of accessors, and removes those that aren't read.
+    /// Checks an object whose members are indices of accessors, and removes those that aren't read or are wrong.
     fn attributes(&self, value: &mut Value, is_read: fn(&str) -> bool, path: &JsonPointer) -> Result<(), Fault> {
         let Value::Object(attributes) = value else { return path.should_be("an object", value) };
-        attributes.retain(|name, _| is_read(name));
-        for (name, value) in attributes {
-            self.index(value, "accessors", &JsonPointer(Some(path), Part::Name(name)))?;
-        }
+        attributes.retain(|name, value| {
+            let is_here = is_read(name) && !value.is_null();
+            let path = JsonPointer(Some(path), Part::Name(name));
+            is_here && self.index(value, "accessors", &path).map_err(|fault| self.keep(fault)).is_ok()
+        });
         Ok(())
     }
 }

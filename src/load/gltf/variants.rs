@@ -16,8 +16,8 @@ const VARIANTS: &str = "KHR_materials_variants";
 pub(super) fn choose(root: &mut Map<String, Value>, wanted: Option<&str>, notes: &mut Notes) -> Vec<String> {
     let names = names(root, notes);
     let Some(wanted) = wanted.and_then(|wanted| names.iter().position(|name| name == wanted)) else { return names };
-    for mesh in objects(root, "meshes") {
-        for primitive in objects(mesh, "primitives") {
+    for (_, mesh) in objects(root, "meshes") {
+        for (_, primitive) in objects(mesh, "primitives") {
             if let Some(material) = material(primitive, wanted) {
                 primitive.insert("material".to_owned(), material);
             }
