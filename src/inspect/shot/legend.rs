@@ -53,14 +53,9 @@ pub(crate) fn draw_legend(
             draw_plate(picture, [before + BAR[0], 52.0], |pen| scale(pen, title, shown, ticks, before))
         }
         Shown::Colors(colors) => {
-            let rows = colors.len().div_ceil(COLUMNS);
-            draw_plate(picture, [BAR[0], 18.0 + ROW * rows as f64], |pen| named_colors(pen, title, colors))
+            draw_plate(picture, named_size(colors.len(), COLUMNS), |pen| named_colors(pen, title, colors, COLUMNS))
         }
-        Shown::Rows(rows) => draw_plate(picture, [BAR[0], 18.0 + ROW * rows.len() as f64], |pen| {
-            pen.text(title, [0.0, 0.0], LEFT_TOP)?;
-            let middles = (0..).map(|row| 18.0 + ROW * (f64::from(row) + 0.5));
-            rows.iter().zip(middles).try_for_each(|((color, text), middle)| named(pen, [0.0, middle], *color, text))
-        }),
+        Shown::Rows(rows) => draw_plate(picture, named_size(rows.len(), 1), |pen| named_colors(pen, title, rows, 1)),
     }
 }
 
@@ -75,11 +70,7 @@ pub fn draw_key(picture: &mut RgbaImage, title: &str, rows: &[Named]) -> Result<
     if rows.is_empty() {
         return Ok(());
     }
-    draw_plate_at(picture, Side::Left, [BAR[0], 18.0 + ROW * rows.len() as f64], |pen| {
-        pen.text(title, [0.0, 0.0], LEFT_TOP)?;
-        let middles = (0..).map(|row| 18.0 + ROW * (f64::from(row) + 0.5));
-        rows.iter().zip(middles).try_for_each(|((color, text), middle)| named(pen, [0.0, middle], *color, text))
-    })
+    draw_plate_at(picture, Side::Left, named_size(rows.len(), 1), |pen| named_colors(pen, title, rows, 1))
 }
 
 /// Which of the lower corners a plate is in.
@@ -160,12 +151,17 @@ fn named(pen: &Pen, [left, middle]: [f64; 2], color: [u8; 3], name: &str) -> Dra
     pen.text(name, [left + BAR[1] + 8.0, middle], LEFT)
 }
 
+/// The room that named colours take.
+fn named_size(colors: usize, columns: usize) -> [f64; 2] {
+    [BAR[0], 18.0 + ROW * colors.div_ceil(columns) as f64]
+}
+
 /// Colours with their names, under their title.
-fn named_colors(pen: &Pen, title: &str, colors: &[([u8; 3], &str)]) -> Drawn {
+fn named_colors(pen: &Pen, title: &str, colors: &[([u8; 3], impl AsRef<str>)], columns: usize) -> Drawn {
     pen.text(title, [0.0, 0.0], LEFT_TOP)?;
-    for (index, &(color, name)) in colors.iter().enumerate() {
-        let [column, row] = [index % COLUMNS, index / COLUMNS].map(|place| place as f64);
-        named(pen, [column * BAR[0] / COLUMNS as f64, 18.0 + ROW * (row + 0.5)], color, name)?;
+    for (index, (color, name)) in colors.iter().enumerate() {
+        let [column, row] = [index % columns, index / columns].map(|place| place as f64);
+        named(pen, [column * BAR[0] / columns as f64, 18.0 + ROW * (row + 0.5)], *color, name.as_ref())?;
     }
     Ok(())
 }
