@@ -182,20 +182,10 @@ impl Slot {
     /// How many there are.
     pub const COUNT: usize = 12;
     /// All of them, in the order of [`Look::maps`].
-    pub const ALL: [Self; Self::COUNT] = [
-        Self::MetallicRoughness,
-        Self::Normal,
-        Self::Occlusion,
-        Self::Emissive,
-        Self::Transmission,
-        Self::SheenColor,
-        Self::SheenRoughness,
-        Self::Clearcoat,
-        Self::ClearcoatRoughness,
-        Self::ClearcoatNormal,
-        Self::Specular,
-        Self::SpecularColor,
-    ];
+    pub const ALL: [Self; Self::COUNT] = crate::names::every!(Slot:
+        MetallicRoughness, Normal, Occlusion, Emissive, Transmission, SheenColor, SheenRoughness, Clearcoat,
+        ClearcoatRoughness, ClearcoatNormal, Specular, SpecularColor
+    );
 }
 
 /// An image on a surface.

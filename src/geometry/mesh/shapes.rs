@@ -75,35 +75,27 @@ impl Shape {
 
     /// Returns the name in commands, as in `shape:torus`.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::CubeSplit => "cube-split",
-            Self::CubeSmooth => "cube-smooth",
-            Self::Icosahedron => "icosahedron",
-            Self::Icosphere => "icosphere",
-            Self::Ellipsoid => "ellipsoid",
-            Self::Torus => "torus",
-            Self::Cylinder => "cylinder",
-            Self::Cone => "cone",
-            Self::Saddle => "saddle",
-            Self::Bicubic => "bicubic",
-            Self::Moebius => "moebius",
-        }
+        self.names().0
     }
 
     /// Returns the name for menus.
     pub fn title(self) -> &'static str {
+        self.names().1
+    }
+
+    fn names(self) -> (&'static str, &'static str) {
         match self {
-            Self::CubeSplit => "Cube, split normals",
-            Self::CubeSmooth => "Cube, smooth normals",
-            Self::Icosahedron => "Icosahedron",
-            Self::Icosphere => "Icosphere",
-            Self::Ellipsoid => "Ellipsoid",
-            Self::Torus => "Torus",
-            Self::Cylinder => "Cylinder with caps",
-            Self::Cone => "Cone",
-            Self::Saddle => "Saddle",
-            Self::Bicubic => "Bicubic patches",
-            Self::Moebius => "Moebius strip",
+            Self::CubeSplit => ("cube-split", "Cube, split normals"),
+            Self::CubeSmooth => ("cube-smooth", "Cube, smooth normals"),
+            Self::Icosahedron => ("icosahedron", "Icosahedron"),
+            Self::Icosphere => ("icosphere", "Icosphere"),
+            Self::Ellipsoid => ("ellipsoid", "Ellipsoid"),
+            Self::Torus => ("torus", "Torus"),
+            Self::Cylinder => ("cylinder", "Cylinder with caps"),
+            Self::Cone => ("cone", "Cone"),
+            Self::Saddle => ("saddle", "Saddle"),
+            Self::Bicubic => ("bicubic", "Bicubic patches"),
+            Self::Moebius => ("moebius", "Moebius strip"),
         }
     }
 

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use gpu::wgsl_tokens::{declared, tokens};
+
 /// A declaration of a WGSL file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Declaration {
@@ -62,24 +64,12 @@ pub(super) fn declarations(text: &str) -> Vec<Declaration> {
         let is_whole = if is_block { line == "}" } else { !is_attribute && line.ends_with(';') };
         if is_whole {
             let is_function = head.starts_with("fn ");
-            let name = declared_name(head).to_owned();
+            let name = declared(&tokens(head)).first().map_or("", |name| name.text).to_owned();
             let (comment, lines) = (std::mem::take(&mut comment), std::mem::take(&mut lines));
             found.push(Declaration { name, is_function, comment, lines });
         }
     }
     found
-}
-
-/// Returns the name that a declaration's first line declares.
-fn declared_name(head: &str) -> &str {
-    // `@group(0) @binding(1) var<storage, read> name: ...`
-    let after_keyword = match head.split_once("var<") {
-        Some((_, rest)) => rest.split_once("> ").map_or("", |(_, name)| name),
-        None => head
-            .rsplit_once(" var ")
-            .map_or_else(|| head.split_once(' ').map_or("", |(_, name)| name), |(_, name)| name),
-    };
-    words(after_keyword).next().map_or("", |(word, _)| word)
 }
 
 /// Returns the declarations that `roots` need, directly or through others, with the roots, in their order.

@@ -10,9 +10,6 @@ use super::{Edge, EdgeKind, Patch, Side, Topology, is_degenerate};
 use crate::cores::{ranges, split};
 use crate::mesh::Corner;
 
-/// Around a point with more sides than this, they are sorted in n log n steps.
-const MANY_SIDES: usize = 24;
-
 /// The least number of triangles that are worth a thread.
 const LEAST: usize = 1 << 14;
 
@@ -85,7 +82,8 @@ pub(super) fn sides(triangles: &[[u32; 3]], corner_points: &[u32], starts: &[u32
         }
         let mut edges = 0;
         for run in runs {
-            sort_by_edge(&mut sides[run.clone()]);
+            // Sides of one edge stay in the order of their patches.
+            sides[run.clone()].sort_by_key(|side| side.edge);
             edges += sides[run].chunk_by(|a, b| a.edge == b.edge).count();
         }
         edges
@@ -160,20 +158,4 @@ pub(super) fn connect(patches: &mut [Patch], sides: &[Side]) {
             }
         }
     });
-}
-
-/// Sorts sides by their edge, then by patch. They come in the order of their patches.
-fn sort_by_edge(sides: &mut [Side]) {
-    if sides.len() > MANY_SIDES {
-        return sides.sort_unstable_by_key(|side| (side.edge, side.code));
-    }
-    // Insertion, which leaves sides of one edge in their order.
-    for i in 1..sides.len() {
-        let (mut at, side) = (i, sides[i]);
-        while at > 0 && sides[at - 1].edge > side.edge {
-            sides[at] = sides[at - 1];
-            at -= 1;
-        }
-        sides[at] = side;
-    }
 }
