@@ -174,7 +174,12 @@ pub enum CliError {
     Budget { most: u64, least: u64, largest: f32 },
     #[error("{file} has triangles 0 to {last}, and no triangle {triangle}")]
     NoTriangle { file: String, last: usize, triangle: u32 },
-    #[error("{} has no camera {}; {}", shown(mesh), shown(wanted), said_of_cameras(known))]
+    #[error(
+        "{} has no camera {}; {}",
+        shown(mesh),
+        shown(wanted),
+        choice(known, "it has no cameras, so leave --file-camera away")
+    )]
     NoCamera { mesh: String, wanted: String, known: Vec<String> },
     #[error("{view}: {error}")]
     View { view: String, error: Box<CliError> },
@@ -222,11 +227,6 @@ pub enum CliError {
     NoAssets,
     #[error("the output could not be written: {0}")]
     Output(std::io::Error),
-}
-
-/// Returns which cameras there are, as the end of a message.
-fn said_of_cameras(known: &[String]) -> String {
-    if known.is_empty() { "it has no cameras, so leave --file-camera away".to_owned() } else { choice(known) }
 }
 
 /// Runs a command. A closed pipe is no failure: the reader wants no more.

@@ -65,39 +65,40 @@ pub enum LoadError {
     #[error("{} has no triangles to show: {holds}", shown_path(path))]
     Empty { path: PathBuf, holds: String },
     /// The file doesn't have the material variant.
-    #[error("{} has no material variant {}; {}", shown_path(path), shown(variant), said_of(known))]
+    #[error(
+        "{} has no material variant {}; {}",
+        shown_path(path),
+        shown(variant),
+        choice(known, "it has no variants, so leave --variant away")
+    )]
     NoVariant { path: PathBuf, variant: String, known: Vec<String> },
     /// The file doesn't have a part that should be left out.
-    #[error("{} has no part {}; {}", shown_path(path), shown(part), said_of_parts(known))]
+    #[error(
+        "{} has no part {}; {}",
+        shown_path(path),
+        shown(part),
+        choice(known, "it has no named parts, so leave --hide-part away")
+    )]
     NoPart { path: PathBuf, part: String, known: Vec<String> },
     /// The shape is made in code, where Y is up.
     #[error("{shape} is made in code with Y up, in metres: leave --up and --unit away")]
     Shape { shape: String },
     /// The file doesn't have the scene.
-    #[error("{} has no scene {}; {}", shown_path(path), shown(scene), said_of_scenes(known))]
+    #[error(
+        "{} has no scene {}; {}",
+        shown_path(path),
+        shown(scene),
+        choice(known, "it has no scenes, so leave --scene away")
+    )]
     NoScene { path: PathBuf, scene: String, known: Vec<String> },
 }
 
-/// Returns which variants there are, as the end of a message.
-fn said_of(known: &[String]) -> String {
-    if known.is_empty() { "it has no variants, so leave --variant away".to_owned() } else { choice(known) }
-}
-
-/// Returns which scenes there are, as the end of a message.
-fn said_of_scenes(known: &[String]) -> String {
-    if known.is_empty() { "it has no scenes, so leave --scene away".to_owned() } else { choice(known) }
-}
-
-/// Returns which parts there are, as the end of a message.
-fn said_of_parts(known: &[String]) -> String {
-    if known.is_empty() { "it has no named parts, so leave --hide-part away".to_owned() } else { choice(known) }
-}
-
-/// Says which names there are to choose from, as the end of a message.
-pub fn choice(known: &[String]) -> String {
+/// Returns which of something there are, as the end of a message; `none` says that there are none.
+pub fn choice(known: &[String], none: &str) -> String {
     const NAMED: usize = 20;
     let names: Vec<_> = known.iter().take(NAMED).map(|name| shown(name)).collect();
     match known.len().checked_sub(NAMED) {
+        _ if known.is_empty() => none.to_owned(),
         None | Some(0) => format!("choose one of {}", names.join(", ")),
         Some(more) => format!("choose one of {} and {more} more, which `pnaen info` lists", names.join(", ")),
     }

@@ -8,7 +8,7 @@ use super::attachment::{Attachment, SceneNodes, attachments};
 use super::binding_space::{BindingSpace, posed, unturned, untwisted};
 use geometry::mesh::mesh_builder::InputCorner;
 use geometry::mesh::normals::GivenNormal;
-use geometry::mesh::rig::{AnimatedNode, Binding, Clip, Delta, Joint, Morph, Placement, Property, Reach, Rig};
+use geometry::mesh::rig::{Binding, Clip, Delta, Joint, Morph, Placement, Property, Reach, Rig};
 use geometry::mesh::{CornerDetail, CornerDetails, Mesh};
 
 /// The greatest number of bound vertices, and of their displacements, which limits the memory.
@@ -18,9 +18,8 @@ const MAX_DISPLACED: usize = 1 << 28;
 
 /// Collects bindings, node by node, and builds a [`Rig`] of them.
 pub(super) struct RigBuilder {
-    /// The targets of their channels are `nodes` and `morphs`.
-    clips: Vec<Clip>,
-    nodes: Vec<AnimatedNode>,
+    /// What is there of it so far, without bindings.
+    rig: Rig,
     /// For each node of the scene, the animated node that moves it.
     attachments: Vec<Attachment>,
     /// The animated nodes that are scaled to nothing at rest, with their placements then. Until the rig is finished, they are as large as
@@ -28,16 +27,13 @@ pub(super) struct RigBuilder {
     grown: Vec<(u32, Placement)>,
     /// Which animated nodes are these, or below them.
     is_grown: Vec<bool>,
-    morphs: Vec<Morph>,
     /// For each node whose morph targets a clip weights, its index in `morphs`.
     node_morphs: HashMap<usize, usize>,
-    joints: Vec<Joint>,
     joint_ids: HashMap<(Option<u32>, [[u64; 16]; 2]), u32>,
     bound: Vec<BoundVertex>,
     bound_ids: HashMap<[u32; 8], u32>,
     /// Numbers for distinct lists of joints, weights and displacements.
     lists: HashMap<Vec<u32>, u32>,
-    deltas: Vec<Delta>,
     /// The displacements of tangents. Until the rig is finished, [`Delta::tangent`] is 1 more than an index into these.
     tangent_deltas: Vec<[f32; 3]>,
     /// How many elements of morph targets have been read.
@@ -99,19 +95,15 @@ impl RigBuilder {
             is_grown[i] |= node.parent.is_some_and(|parent| is_grown[parent as usize]);
         }
         let mut binder = Self {
-            clips: Vec::new(),
-            nodes,
+            rig: Rig { nodes, ..Rig::default() },
             attachments,
             grown,
             is_grown,
-            morphs: Vec::new(),
             node_morphs: HashMap::new(),
-            joints: Vec::new(),
             joint_ids: HashMap::new(),
             bound: Vec::new(),
             bound_ids: HashMap::new(),
             lists: HashMap::new(),
-            deltas: Vec::new(),
             tangent_deltas: Vec::new(),
             displaced: 0,
             problem: None,
@@ -122,10 +114,10 @@ impl RigBuilder {
             if clip.channels.is_empty() {
                 warnings.push(format!("animation \"{name}\" moves nothing that is shown; it is left out."));
             } else {
-                binder.clips.push(clip);
+                binder.rig.clips.push(clip);
             }
         }
-        (!binder.clips.is_empty()).then_some(binder)
+        (!binder.rig.clips.is_empty()).then_some(binder)
     }
 
     /// Adds the morph targets of the nodes that are shown and whose weights a clip changes.
@@ -136,8 +128,8 @@ impl RigBuilder {
         }
         let mut first_weight = 0;
         for (node, rest) in scene.morphed.iter().filter(|(node, _)| weighed[*node]) {
-            self.node_morphs.insert(*node, self.morphs.len());
-            self.morphs.push(Morph { first_weight, rest: rest.clone() });
+            self.node_morphs.insert(*node, self.rig.morphs.len());
+            self.rig.morphs.push(Morph { first_weight, rest: rest.clone() });
             first_weight += rest.len() as u32;
         }
     }
@@ -160,7 +152,7 @@ impl RigBuilder {
     pub(super) fn node<'a>(&'a mut self, node: usize, skin: Option<&'a SkinJoints>) -> NodeBinder<'a> {
         for &joint in skin.map_or(&[][..], |skin| &skin.nodes) {
             if let Some(Attachment { node: Some(node), .. }) = self.attachments.get(joint) {
-                self.nodes[*node as usize].is_joint = true;
+                self.rig.nodes[*node as usize].is_joint = true;
             }
         }
         let skin_joints = vec![None; skin.map_or(0, |skin| skin.nodes.len())];
@@ -182,19 +174,7 @@ impl RigBuilder {
     /// Builds the rig of a mesh whose corners have these bindings, and puts corners below nodes that are scaled to nothing at rest where
     /// they are then. If no rig can be built, returns a warning.
     pub(super) fn finish(mut self, mesh: &mut Mesh, corners: &[u32]) -> Result<Rig, String> {
-        let mut rig = Rig {
-            bindings: Vec::new(),
-            tangents: Vec::new(),
-            alike: Vec::new(),
-            deltas: std::mem::take(&mut self.deltas),
-            nodes: std::mem::take(&mut self.nodes),
-            joints: std::mem::take(&mut self.joints),
-            morphs: std::mem::take(&mut self.morphs),
-            clips: std::mem::take(&mut self.clips),
-            lights: Vec::new(),
-            cameras: Vec::new(),
-            reach: Reach::default(),
-        };
+        let mut rig = std::mem::take(&mut self.rig);
         if self.problem.is_none() {
             self.bind_corners(&mut rig, mesh, corners);
         }
@@ -235,8 +215,8 @@ impl RigBuilder {
         let bits = |matrix: DMat4| matrix.to_cols_array().map(|x| (x + 0.0).to_bits());
         let key = (joint.node, [joint.offset, joint.place].map(bits));
         *self.joint_ids.entry(key).or_insert_with(|| {
-            self.joints.push(joint);
-            self.joints.len() as u32 - 1
+            self.rig.joints.push(joint);
+            self.rig.joints.len() as u32 - 1
         })
     }
 
@@ -256,7 +236,7 @@ impl RigBuilder {
         };
         let hung = joints.into_iter().chain(weights.map(f32::to_bits));
         // What has one position at rest only because it is scaled to nothing doesn't stay together.
-        let is_grown = is_moved_by(&bound.binding, &self.joints, &self.is_grown);
+        let is_grown = is_moved_by(&bound.binding, &self.rig.joints, &self.is_grown);
         let hung = hung.chain(bits(position).into_iter().filter(|_| is_grown));
         bound.alike = self.list(hung.chain(list(|delta| delta.position)).collect());
         // No weight has the number that the tangents begin with.
@@ -270,15 +250,15 @@ impl RigBuilder {
         let next = self.bound.len() as u32;
         let id = *self.bound_ids.entry([bound.alike, turned, x, y, z, a, b, c]).or_insert(next);
         if id == next {
-            bound.binding.first_delta = self.deltas.len() as u32;
+            bound.binding.first_delta = self.rig.deltas.len() as u32;
             bound.binding.delta_count = deltas.len() as u32;
             let first = self.tangent_deltas.len() as u32 + 1;
             let numbers = (first..first + tangents.len() as u32).chain(std::iter::repeat(0));
-            self.deltas.extend(deltas.iter().zip(numbers).map(|(delta, tangent)| Delta { tangent, ..*delta }));
+            self.rig.deltas.extend(deltas.iter().zip(numbers).map(|(delta, tangent)| Delta { tangent, ..*delta }));
             self.tangent_deltas.extend_from_slice(tangents);
             self.bound.push(bound);
         }
-        if self.bound.len().max(self.deltas.len()) > MAX_BOUND {
+        if self.bound.len().max(self.rig.deltas.len()) > MAX_BOUND {
             self.give_up(format!("there are more than {MAX_BOUND} vertices, or displacements of them"));
         }
         id
@@ -339,7 +319,7 @@ impl NodeBinder<'_> {
     /// and not once at rest.
     pub(super) fn first_weight(&self) -> Option<u32> {
         let morph = self.binder.node_morphs.get(&self.node)?;
-        Some(self.binder.morphs[*morph].first_weight)
+        Some(self.binder.rig.morphs[*morph].first_weight)
     }
 
     /// Counts elements of morph targets that are about to be read.
@@ -371,7 +351,7 @@ impl NodeBinder<'_> {
 
     /// Returns how many displacements are stored, of all vertices together.
     pub(super) fn deltas(&self) -> usize {
-        self.binder.deltas.len()
+        self.binder.rig.deltas.len()
     }
 
     /// Returns the number of a vertex's binding. `corner` is the vertex at rest.
@@ -390,7 +370,7 @@ impl NodeBinder<'_> {
         let mut bound = BoundVertex { binding, alike: 0, without_normal, tangent: None };
         if self.binder.problem.is_some() {
             // Without a rig, only what has grown is bound, to be put back. Others have the number of no binding.
-            let is_grown = is_moved_by(&bound.binding, &self.binder.joints, &self.binder.is_grown);
+            let is_grown = is_moved_by(&bound.binding, &self.binder.rig.joints, &self.binder.is_grown);
             return if is_grown { self.binder.bind(bound, &[], &[]) } else { u32::MAX };
         }
         let Some((tangent, displacements)) = vertex.tangent.filter(|_| !without_normal) else {

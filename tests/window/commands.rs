@@ -18,8 +18,8 @@ use pnaen::app::App;
 use pnaen::commands::{Action, Change, Command, FileAction, GESTURES, Menu, Place, all};
 use tempfile::TempDir;
 
-use crate::driver::{PATIENCE, open};
-use crate::{choose, click, press, run_command, settle, switch, uniform, window};
+use crate::driver::PATIENCE;
+use crate::{choose, click, open, press, run_command, settle, switch, uniform, window};
 
 fn commands(harness: &Harness<App>) -> Vec<Command> {
     all(&harness.state().availability())

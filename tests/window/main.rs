@@ -17,6 +17,7 @@ mod lists;
 mod loading;
 mod lod_shader;
 mod lost;
+mod opening;
 mod picking;
 mod saving;
 mod scenes;
@@ -46,7 +47,8 @@ use pnaen::cli::Cli;
 use pnaen::commands::{Action, all};
 use tempfile::TempDir;
 
-use driver::{PATIENCE, open, open_alone, settle};
+use driver::{PATIENCE, settle};
+use opening::{open, open_alone};
 
 fn window(source: Option<Source>) -> Harness<'static, App> {
     let source = source.or(Some(Source::Shape(Shape::CubeSplit)));

@@ -81,7 +81,7 @@ impl<'a> Materials<'a> {
             let key = (None, Vec::new());
             return match self.resolved.get(&key) {
                 Some(&resolved) => Ok(resolved),
-                None => self.add(key, Made::plain(Material::plain("default", [1.0; 4])), faces),
+                None => self.add(key, Material::plain("default", [1.0; 4]), MapUvs::default(), faces),
             };
         };
         let source = LookSource::new(material, mesh);
@@ -95,23 +95,29 @@ impl<'a> Materials<'a> {
         for what in &source.undrawn {
             self.undrawn.entry(what).or_default().push(source.name.clone());
         }
-        let made = self.make(&source);
-        self.add(key, made, faces)
+        let material = self.make(&source);
+        self.add(key, material, source.own_uvs(), faces)
     }
 
     fn add(
         &mut self,
         key: (Option<u32>, Vec<usize>),
-        Made { material, own, sets }: Made,
+        material: Material,
+        own: MapUvs,
         faces: &mut FaceBuilder,
     ) -> Result<Resolved, ReadError> {
+        let mut sets = [false; 2];
+        for map in material.look.maps.iter().flatten() {
+            if let MapUv::Set(set, _) = map.uv {
+                sets[set] = true;
+            }
+        }
         let resolved = Resolved { index: faces.material(material)?, own, sets };
         self.resolved.insert(key, resolved);
         Ok(resolved)
     }
 
-    fn make(&mut self, source: &LookSource) -> Made {
-        let own = source.own_uvs();
+    fn make(&mut self, source: &LookSource) -> Material {
         let mut look = source.look.clone();
         look.maps[Slot::MetallicRoughness as usize] = self.metallic_roughness(source);
         for (slot, map, what) in [
@@ -132,19 +138,9 @@ impl<'a> Materials<'a> {
         if look.maps[Slot::Emissive as usize].is_none() && source.emission.is_some() {
             look.emissive = [0.0; 3];
         }
-        let mut sets = [false; 2];
-        for map in look.maps.iter().flatten() {
-            if let MapUv::Set(set, _) = map.uv {
-                sets[set] = true;
-            }
-        }
         let LookSource { name, base_color, double_sided, .. } = source;
         let (name, base_color, double_sided) = (name.clone(), *base_color, *double_sided);
-        Made {
-            material: Material { name, base_color, texture, sampling, double_sided, look, triangles: 0..0 },
-            own,
-            sets,
-        }
+        Material { name, base_color, texture, sampling, double_sided, look, triangles: 0..0 }
     }
 
     /// Returns the image of the base colour, with the opacity as its alpha.
@@ -222,19 +218,6 @@ impl<'a> Materials<'a> {
             notes.push(format!("materials with {what}, which isn't drawn: {}.", names.join(", ")));
         }
         notes
-    }
-}
-
-/// A material that was made.
-struct Made {
-    material: Material,
-    own: MapUvs,
-    sets: [bool; 2],
-}
-
-impl Made {
-    fn plain(material: Material) -> Self {
-        Self { material, own: MapUvs::default(), sets: [false; 2] }
     }
 }
 

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 
 use glam::Vec2;
 
-use super::mtl::{self, MtlMaterial, MtlTexture};
-use super::textures::{Giving, TextureUse, are_normals};
+use super::mtl::{self, MtlMap, MtlMaterial, MtlTexture};
+use super::textures::{Giving, TextureUser, are_normals};
 use crate::face_builder::{FaceBuilder, counted};
 use crate::read_error::ReadError;
 use crate::text_lines::{shown, words};
@@ -23,8 +23,7 @@ struct TextureFile {
     name: String,
     /// The name of the first material that uses it.
     first: String,
-    /// The indices of materials.
-    users: Vec<(usize, TextureUse)>,
+    users: Vec<TextureUser>,
 }
 
 /// The materials of the faces.
@@ -118,7 +117,8 @@ impl<'a> Materials<'a> {
 
     /// Whether any material has a normal map, or a bump map that may be one.
     pub(super) fn may_have_normal_maps(&self) -> bool {
-        self.described.values().any(|material| material.normal_texture.is_some() || material.bump_texture.is_some())
+        let mut maps = self.described.values().flat_map(|material| material.textures.keys());
+        maps.any(|map| matches!(map, MtlMap::Normal | MtlMap::Bump))
     }
 
     /// Reads `usemtl`: the material of the next faces.
@@ -142,14 +142,14 @@ impl<'a> Materials<'a> {
         let name = material.name.clone();
         let index = faces.material(material)?;
         // One place serves all images of a material.
-        let place = textures.first().map(|(_, texture)| [texture.scale, texture.offset].map(Vec2::from));
+        let place = textures.first().map(|(.., texture)| [texture.scale, texture.offset].map(Vec2::from));
         self.places.extend(place.filter(|place| *place != [Vec2::ONE, Vec2::ZERO]).map(|place| (index, place)));
-        for (kind, MtlTexture { file, .. }) in textures {
+        for (map, factor, MtlTexture { file, .. }) in textures {
             let number = *self.numbers.entry(file.clone()).or_insert(self.textures.len());
             if number == self.textures.len() {
                 self.textures.push(TextureFile { name: file, first: name.clone(), users: Vec::new() });
             }
-            self.textures[number].users.push((index, kind));
+            self.textures[number].users.push(TextureUser { material: index, map, factor });
         }
         self.indices.insert(self.name.clone(), index);
         self.index = Some(index);
@@ -169,35 +169,23 @@ impl<'a> Materials<'a> {
         Vec2::new(u, 1.0 - v)
     }
 
-    /// The material of the next faces, and its textures, which are read last.
-    fn make(&mut self) -> (Material, Vec<(TextureUse, MtlTexture)>) {
+    /// The material of the next faces, and its textures with their factors, which are read last.
+    fn make(&mut self) -> (Material, Vec<(MtlMap, f32, MtlTexture)>) {
         if self.name.is_empty() {
             return (Material::plain("default", [1.0; 4]), Vec::new());
         }
         let shown = String::from_utf8_lossy(&self.name).into_owned();
-        let Some(described) = self.described.get(&self.name).cloned() else {
+        let Some(described) = self.described.get(&self.name) else {
             self.undescribed += 1;
             return (Material::plain(&shown, [1.0; 4]), Vec::new());
         };
-        let MtlMaterial { color: [r, g, b], emissive, alpha, transparency, roughness, metallic, .. } = described;
+        let &MtlMaterial { color: [r, g, b], emissive, alpha, transparency, roughness, metallic, .. } = described;
         // Programs write both, or one of them.
         let alpha = if alpha == 1.0 { 1.0 - transparency } else { alpha };
-        self.bumped += usize::from(described.bump_texture.is_some());
-        let strength = |texture: &Option<MtlTexture>| texture.as_ref().map_or(1.0, |texture| texture.strength);
-        let (normal, bump) = (strength(&described.normal_texture), strength(&described.bump_texture));
-        let bump_texture = described.bump_texture.filter(|_| described.normal_texture.is_none());
-        // The first one says where all are.
-        let uses = [
-            (TextureUse::BaseColor, described.texture),
-            (TextureUse::Emissive, described.emissive_texture),
-            (TextureUse::Normal(normal), described.normal_texture),
-            (TextureUse::Bump(bump), bump_texture),
-            (TextureUse::Opacity, described.opacity_texture),
-            (TextureUse::Roughness(roughness.unwrap_or(1.0)), described.roughness_texture),
-            (TextureUse::Metalness(metallic.unwrap_or(1.0)), described.metallic_texture),
-        ];
-        let textures: Vec<_> = uses.into_iter().filter_map(|(kind, texture)| Some((kind, texture?))).collect();
-        let is_clamped = textures.first().is_some_and(|(_, texture)| texture.is_clamped);
+        self.bumped += usize::from(described.textures.contains_key(&MtlMap::Bump));
+        let with_factor = |(map, texture): (_, &MtlTexture)| (map, described.factor(map, texture), texture.clone());
+        let textures: Vec<_> = described.maps().map(with_factor).collect();
+        let is_clamped = textures.first().is_some_and(|(.., texture)| texture.is_clamped);
         let wrap = if is_clamped { Wrap::Clamp } else { Wrap::Repeat };
         // Some programs write 0 for what they show as opaque.
         let is_transparent = alpha > 0.0 && alpha < 1.0;
@@ -223,15 +211,15 @@ impl<'a> Materials<'a> {
         let textures = std::mem::take(&mut self.textures);
         let mut giving = Giving::default();
         let bytes = |file: &TextureFile| {
-            let filter = file.users.first().map_or(MipFilter::Colors, |(_, kind)| kind.filter());
+            let filter = file.users.first().map_or(MipFilter::Colors, |user| user.map.filter());
             Ok((Cow::Owned(self.files.read_path(&file.name)?), filter))
         };
         let reserved = faces.bytes_to_finish().saturating_sub(freed);
         let images: Vec<_> = textures.iter().collect();
         let images = read_images(&images, bytes, reserved, self.files.budget, self.files.progress)?;
         for (file, ReadImage { texture, said }) in textures.into_iter().zip(images) {
-            let (mut users, bumps): (Vec<_>, Vec<_>) =
-                file.users.into_iter().partition(|(_, kind)| !matches!(kind, TextureUse::Bump(_)));
+            let (bumps, mut users): (Vec<_>, Vec<_>) =
+                file.users.into_iter().partition(|user| user.map == MtlMap::Bump);
             if !bumps.is_empty() && texture.as_ref().is_some_and(|texture| are_normals(texture)) {
                 self.bumped -= bumps.len();
                 self.with_normals_as_bumps += bumps.len();
@@ -245,7 +233,7 @@ impl<'a> Materials<'a> {
             let (image, first) = (shown(file.name.as_bytes()), &file.first);
             self.problems.extend(said.map(|said| format!("the texture {image} of material \"{first}\" {said}")));
             let given = texture.iter().flat_map(|texture| users.iter().map(move |user| (user, texture)));
-            given.for_each(|(&(material, kind), texture)| giving.give(faces, material, kind, texture));
+            given.for_each(|(user, texture)| giving.give(faces, user, texture));
         }
         self.problems.extend(giving.finish(faces, self.files.budget));
         Ok(())

@@ -3,7 +3,10 @@
 //! The crate `tobj` isn't used. It drops a whole file because of one statement that it can't read, and takes the
 //! options of `map_Kd` for a part of the file name.
 
+use std::collections::BTreeMap;
+
 use crate::text_lines::{Lines, first_word, number, numbers_or_nan, words};
+use geometry::mesh::mipmap::MipFilter;
 
 /// A material in a material file.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,12 +14,8 @@ pub(super) struct MtlMaterial {
     pub name: Vec<u8>,
     /// Kd: the diffuse colour, linear.
     pub color: [f32; 3],
-    /// map_Kd: the diffuse texture.
-    pub texture: Option<MtlTexture>,
     /// Ke: the colour that is emitted, linear.
     pub emissive: [f32; 3],
-    /// map_Ke: the texture that multiplies it.
-    pub emissive_texture: Option<MtlTexture>,
     /// d: how opaque it is, 0 to 1.
     pub alpha: f32,
     /// Tr: how transparent it is, 0 to 1, in files that don't say how opaque it is.
@@ -25,17 +24,51 @@ pub(super) struct MtlMaterial {
     pub roughness: Option<f32>,
     /// Pm: 0 for dielectrics, 1 for metals.
     pub metallic: Option<f32>,
-    /// map_d: how opaque it is.
-    pub opacity_texture: Option<MtlTexture>,
-    /// map_Pr: the texture that multiplies the roughness.
-    pub roughness_texture: Option<MtlTexture>,
-    /// map_Pm: the texture that multiplies how much of a metal it is.
-    pub metallic_texture: Option<MtlTexture>,
-    /// norm: normals in tangent space.
-    pub normal_texture: Option<MtlTexture>,
-    /// map_Bump or bump: heights, or normals in tangent space.
-    pub bump_texture: Option<MtlTexture>,
+    pub textures: BTreeMap<MtlMap, MtlTexture>,
 }
+
+/// What a texture is for. The first one that a material has says where all are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum MtlMap {
+    /// map_Kd: the diffuse texture.
+    BaseColor,
+    /// map_Ke: what multiplies the colour that is emitted.
+    Emissive,
+    /// norm: normals in tangent space.
+    Normal,
+    /// map_Bump or bump: heights, or normals in tangent space. Blender, for one, writes normal maps so.
+    Bump,
+    /// map_d: how opaque it is.
+    Opacity,
+    /// map_Pr: what multiplies the roughness.
+    Roughness,
+    /// map_Pm: what multiplies how much of a metal it is.
+    Metalness,
+}
+
+impl MtlMap {
+    /// How the image is halved.
+    pub(super) fn filter(self) -> MipFilter {
+        match self {
+            Self::BaseColor | Self::Emissive => MipFilter::Colors,
+            Self::Normal | Self::Bump => MipFilter::Normals,
+            Self::Opacity | Self::Roughness | Self::Metalness => MipFilter::Numbers,
+        }
+    }
+}
+
+/// The statements of maps.
+const MAP_STATEMENTS: [(&[u8], MtlMap); 9] = [
+    (b"map_Kd", MtlMap::BaseColor),
+    (b"map_Ke", MtlMap::Emissive),
+    (b"norm", MtlMap::Normal),
+    (b"map_Bump", MtlMap::Bump),
+    (b"map_bump", MtlMap::Bump),
+    (b"bump", MtlMap::Bump),
+    (b"map_d", MtlMap::Opacity),
+    (b"map_Pr", MtlMap::Roughness),
+    (b"map_Pm", MtlMap::Metalness),
+];
 
 impl MtlMaterial {
     /// A white material.
@@ -43,18 +76,29 @@ impl MtlMaterial {
         Self {
             name: name.to_vec(),
             color: [1.0; 3],
-            texture: None,
             emissive: [0.0; 3],
-            emissive_texture: None,
             alpha: 1.0,
             transparency: 0.0,
             roughness: None,
             metallic: None,
-            opacity_texture: None,
-            roughness_texture: None,
-            metallic_texture: None,
-            normal_texture: None,
-            bump_texture: None,
+            textures: BTreeMap::new(),
+        }
+    }
+
+    /// Its maps that count: heights don't beside normals.
+    pub(super) fn maps(&self) -> impl Iterator<Item = (MtlMap, &MtlTexture)> {
+        let has_normals = self.textures.contains_key(&MtlMap::Normal);
+        let counts = move |map: &MtlMap| *map != MtlMap::Bump || !has_normals;
+        self.textures.iter().filter(move |(map, _)| counts(map)).map(|(map, texture)| (*map, texture))
+    }
+
+    /// What the numbers of a map are multiplied by.
+    pub(super) fn factor(&self, map: MtlMap, texture: &MtlTexture) -> f32 {
+        match map {
+            MtlMap::Normal | MtlMap::Bump => texture.strength,
+            MtlMap::Roughness => self.roughness.unwrap_or(1.0),
+            MtlMap::Metalness => self.metallic.unwrap_or(1.0),
+            MtlMap::BaseColor | MtlMap::Emissive | MtlMap::Opacity => 1.0,
         }
     }
 }
@@ -99,14 +143,11 @@ fn take(material: &mut MtlMaterial, word: &[u8], rest: &[u8]) -> Option<()> {
         b"Tr" => material.transparency = part(rest)?,
         b"Pr" => material.roughness = Some(part(rest)?),
         b"Pm" => material.metallic = Some(part(rest)?),
-        b"map_Kd" => material.texture = Some(texture(rest)),
-        b"map_Ke" => material.emissive_texture = Some(texture(rest)),
-        b"map_d" => material.opacity_texture = Some(texture(rest)),
-        b"map_Pr" => material.roughness_texture = Some(texture(rest)),
-        b"map_Pm" => material.metallic_texture = Some(texture(rest)),
-        b"norm" => material.normal_texture = Some(texture(rest)),
-        b"map_Bump" | b"map_bump" | b"bump" => material.bump_texture = Some(texture(rest)),
-        _ => {}
+        word => {
+            if let Some((_, map)) = MAP_STATEMENTS.iter().find(|(statement, _)| *statement == word) {
+                material.textures.insert(*map, texture(rest));
+            }
+        }
     }
     Some(())
 }
@@ -181,18 +222,20 @@ mod tests {
         let place = |file: &str| MtlTexture { file: file.to_owned(), ..texture(b"") };
         let wood = MtlMaterial {
             color: [0.5, 0.25, 1.0],
-            texture: Some(MtlTexture { scale: [2.0, 3.0], is_clamped: true, ..place("a b.png") }),
             emissive: [2.0; 3],
-            emissive_texture: Some(MtlTexture { offset: [0.5, 0.0], ..place("glow.png") }),
             alpha: 0.5,
             transparency: 0.5,
             roughness: Some(0.25),
             metallic: Some(1.0),
-            normal_texture: Some(MtlTexture { strength: 2.5, ..place("n.png") }),
-            opacity_texture: Some(place("d.png")),
-            roughness_texture: Some(place("r.png")),
-            metallic_texture: Some(place("m.png")),
-            bump_texture: Some(place("b.png")),
+            textures: BTreeMap::from([
+                (MtlMap::BaseColor, MtlTexture { scale: [2.0, 3.0], is_clamped: true, ..place("a b.png") }),
+                (MtlMap::Emissive, MtlTexture { offset: [0.5, 0.0], ..place("glow.png") }),
+                (MtlMap::Normal, MtlTexture { strength: 2.5, ..place("n.png") }),
+                (MtlMap::Bump, place("b.png")),
+                (MtlMap::Opacity, place("d.png")),
+                (MtlMap::Roughness, place("r.png")),
+                (MtlMap::Metalness, place("m.png")),
+            ]),
             ..MtlMaterial::named(b"old wood")
         };
         let plain = MtlMaterial { color: [0.5; 3], ..MtlMaterial::named(b"plain") };

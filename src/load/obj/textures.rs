@@ -3,10 +3,10 @@
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
+use super::mtl::MtlMap;
 use crate::face_builder::FaceBuilder;
 use crate::memory_budget::Budget;
 use crate::packing::{metallic_roughness, with_opacity};
-use geometry::mesh::mipmap::MipFilter;
 use geometry::mesh::{Alpha, Map, MapUv, Material, Slot, Texture};
 
 /// How far the square of a normal's length may be from 1. Eight bits a number take it as far as 0.03; halving, and programs that
@@ -16,32 +16,13 @@ const LENGTH_ROOM: f32 = 0.35;
 /// Which part of the texels must be normals.
 const LEAST_PART: f32 = 0.9;
 
-/// What an image is for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum TextureUse {
-    BaseColor,
-    Emissive,
-    /// Normals in tangent space, and the factor of their slopes.
-    Normal(f32),
-    /// Heights, or normals in tangent space with the factor of their slopes. The statement `map_Bump` stands for heights, but Blender,
-    /// for one, writes normal maps so.
-    Bump(f32),
-    Opacity,
-    /// Roughness, and the factor of it.
-    Roughness(f32),
-    /// How much of a metal it is, and the factor of it.
-    Metalness(f32),
-}
-
-impl TextureUse {
-    /// How the image is halved.
-    pub(super) fn filter(self) -> MipFilter {
-        match self {
-            Self::BaseColor | Self::Emissive => MipFilter::Colors,
-            Self::Normal(_) | Self::Bump(_) => MipFilter::Normals,
-            Self::Opacity | Self::Roughness(_) | Self::Metalness(_) => MipFilter::Numbers,
-        }
-    }
+/// A material that uses an image.
+pub(super) struct TextureUser {
+    /// Its index.
+    pub material: usize,
+    pub map: MtlMap,
+    /// What the image's numbers are multiplied by.
+    pub factor: f32,
 }
 
 /// The images of a material that are joined with others.
@@ -58,27 +39,28 @@ pub(super) struct Giving(BTreeMap<usize, Parts>);
 
 impl Giving {
     /// Gives an image to a material of this index.
-    pub(super) fn give(&mut self, faces: &mut FaceBuilder, index: usize, kind: TextureUse, texture: &Arc<Texture>) {
+    pub(super) fn give(&mut self, faces: &mut FaceBuilder, user: &TextureUser, texture: &Arc<Texture>) {
+        let &TextureUser { material: index, map, factor } = user;
         let (material, texture) = (faces.material_mut(index), texture.clone());
-        match kind {
-            TextureUse::BaseColor => material.texture = Some(texture),
-            TextureUse::Emissive => {
+        match map {
+            MtlMap::BaseColor => material.texture = Some(texture),
+            MtlMap::Emissive => {
                 // A texture alone shines as it is.
                 if material.look.emissive == [0.0; 3] {
                     material.look.emissive = [1.0; 3];
                 }
                 set_map(material, Slot::Emissive, texture);
             }
-            TextureUse::Normal(strength) | TextureUse::Bump(strength) => {
-                material.look.normal_scale = strength;
+            MtlMap::Normal | MtlMap::Bump => {
+                material.look.normal_scale = factor;
                 set_map(material, Slot::Normal, texture);
             }
-            TextureUse::Opacity => self.0.entry(index).or_default().opacity = Some(texture),
-            TextureUse::Roughness(factor) => {
+            MtlMap::Opacity => self.0.entry(index).or_default().opacity = Some(texture),
+            MtlMap::Roughness => {
                 material.look.roughness = factor;
                 self.0.entry(index).or_default().roughness = Some(texture);
             }
-            TextureUse::Metalness(factor) => {
+            MtlMap::Metalness => {
                 material.look.metallic = factor;
                 self.0.entry(index).or_default().metalness = Some(texture);
             }

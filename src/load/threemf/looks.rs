@@ -9,7 +9,7 @@ use super::model::{Object, TriangleLook};
 use super::properties::{Group, Texture2d, material_color};
 use crate::face_builder::{FaceBuilder, counted, linear_color};
 use crate::read_error::ReadError;
-use geometry::mesh::{Alpha, Material};
+use geometry::mesh::{Alpha, Look, Material};
 use geometry::names::shown;
 
 /// The material of a triangle, the numbers of its corners' colours, and their texture coordinates.
@@ -56,27 +56,27 @@ pub(super) struct Textured {
     pub path: String,
 }
 
+/// What tells materials apart.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum MaterialKey {
+    /// That of triangles without one, opaque or translucent.
+    Plain(bool),
+    /// By part, group and entry.
+    Named(usize, u32, u32),
+    /// By part and texture.
+    Textured(usize, u32),
+}
+
 /// The materials that have been needed so far.
 pub(super) struct Looks<'d> {
     document: &'d Document,
-    /// Materials that are used, by part, group and entry.
-    materials: HashMap<(usize, u32, u32), usize>,
-    /// Materials with a texture, by part and texture.
-    with_textures: HashMap<(usize, u32), usize>,
+    materials: HashMap<MaterialKey, usize>,
     textured: Vec<Textured>,
-    /// The material of triangles without one, opaque and translucent.
-    plain: [Option<usize>; 2],
 }
 
 impl<'d> Looks<'d> {
     pub(super) fn new(document: &'d Document) -> Self {
-        Self {
-            document,
-            materials: HashMap::new(),
-            with_textures: HashMap::new(),
-            textured: Vec::new(),
-            plain: [None; 2],
-        }
+        Self { document, materials: HashMap::new(), textured: Vec::new() }
     }
 
     /// Which materials show images.
@@ -124,8 +124,12 @@ impl<'d> Looks<'d> {
         match part_of.groups.get(&group) {
             Some(Group::Materials(materials)) => {
                 // A material is that of the whole triangle.
-                if let Some((name, color)) = materials.get(corners[0] as usize) {
-                    return self.material(faces, (part, group, corners[0]), name, *color);
+                let entry = corners[0];
+                if let Some((name, color)) = materials.get(entry as usize) {
+                    let color = material_color(*color);
+                    let name = || if name.is_empty() { format!("material {entry}") } else { shown(name) };
+                    let make = || Material { look: look(color.w < 1.0), ..Material::plain(&name(), color.to_array()) };
+                    return self.material(faces, MaterialKey::Named(part, group, entry), make);
                 }
             }
             Some(Group::Colors(colors)) => {
@@ -152,70 +156,50 @@ impl<'d> Looks<'d> {
     /// A triangle with colours at its corners, in linear RGBA.
     fn colored(&mut self, faces: &mut FaceBuilder, colors: [Vec4; 3]) -> Result<Resolved, ReadError> {
         let is_translucent = colors.iter().any(|color| color.w < 1.0);
-        let mut numbers = [0; 3];
-        for (number, color) in numbers.iter_mut().zip(colors) {
+        let name = if is_translucent { "translucent" } else { "default" };
+        let make = || Material { look: look(is_translucent), ..Material::plain(name, [1.0; 4]) };
+        let mut resolved = self.material(faces, MaterialKey::Plain(is_translucent), make)?;
+        for (number, color) in resolved.numbers.iter_mut().zip(colors) {
             *number = faces.number(color)?;
         }
-        Ok(Resolved { material: self.plain(faces, is_translucent)?, numbers, uvs: [Vec2::ZERO; 3], fault: None })
+        Ok(resolved)
     }
 
     /// A triangle with a texture at these texture coordinates, whose v counts from the bottom.
     fn textured(
         &mut self,
         faces: &mut FaceBuilder,
-        key: (usize, u32),
+        (part, id): (usize, u32),
         texture: &Texture2d,
         uvs: [[f32; 2]; 3],
     ) -> Result<Resolved, ReadError> {
-        let material = match self.with_textures.get(&key) {
-            Some(known) => *known,
-            None => {
-                let name = if texture.name().is_empty() { format!("texture {}", key.1) } else { shown(texture.name()) };
-                let material =
-                    faces.material(Material { sampling: texture.sampling, ..Material::plain(&name, [1.0; 4]) })?;
-                self.textured.push(Textured { material, path: texture.path.clone() });
-                *self.with_textures.entry(key).or_insert(material)
-            }
-        };
+        let known = self.materials.len();
+        let name = || if texture.name().is_empty() { format!("texture {id}") } else { shown(texture.name()) };
+        let make = || Material { sampling: texture.sampling, ..Material::plain(&name(), [1.0; 4]) };
+        let resolved = self.material(faces, MaterialKey::Textured(part, id), make)?;
+        if self.materials.len() > known {
+            self.textured.push(Textured { material: resolved.material, path: texture.path.clone() });
+        }
         let fault = uvs.iter().any(|uv| texture.leaves(*uv)).then_some(Fault::Beyond);
-        let number = faces.number(Vec4::ONE)?;
-        Ok(Resolved { material, numbers: [number; 3], uvs: uvs.map(|[u, v]| Vec2::new(u, 1.0 - v)), fault })
+        Ok(Resolved { uvs: uvs.map(|[u, v]| Vec2::new(u, 1.0 - v)), fault, ..resolved })
     }
 
-    /// The material of triangles that only have colours.
-    fn plain(&mut self, faces: &mut FaceBuilder, is_translucent: bool) -> Result<usize, ReadError> {
-        let slot = &mut self.plain[usize::from(is_translucent)];
-        if let Some(plain) = *slot {
-            return Ok(plain);
-        }
-        let mut plain = Material::plain(if is_translucent { "translucent" } else { "default" }, [1.0; 4]);
-        if is_translucent {
-            plain.look.alpha = Alpha::Blend;
-        }
-        Ok(*slot.insert(faces.material(plain)?))
-    }
-
-    /// A triangle of a material.
+    /// A white triangle of a material, which `make` makes when it is first needed.
     fn material(
         &mut self,
         faces: &mut FaceBuilder,
-        key: (usize, u32, u32),
-        name: &str,
-        color: [u8; 4],
+        key: MaterialKey,
+        make: impl FnOnce() -> Material,
     ) -> Result<Resolved, ReadError> {
         let material = match self.materials.get(&key) {
             Some(known) => *known,
-            None => {
-                let color = material_color(color);
-                let name = if name.is_empty() { format!("material {}", key.2) } else { shown(name) };
-                let mut material = Material::plain(&name, color.to_array());
-                if color.w < 1.0 {
-                    material.look.alpha = Alpha::Blend;
-                }
-                *self.materials.entry(key).or_insert(faces.material(material)?)
-            }
+            None => *self.materials.entry(key).or_insert(faces.material(make())?),
         };
         let number = faces.number(Vec4::ONE)?;
         Ok(Resolved { material, numbers: [number; 3], uvs: [Vec2::ZERO; 3], fault: None })
     }
+}
+
+fn look(is_translucent: bool) -> Look {
+    Look { alpha: if is_translucent { Alpha::Blend } else { Alpha::Opaque }, ..Look::default() }
 }

@@ -88,6 +88,7 @@ impl Geometry {
 }
 
 /// One part of a model.
+#[derive(Default)]
 pub(super) struct Part {
     /// Its name in the archive.
     pub name: String,
@@ -159,15 +160,7 @@ pub(super) struct ModelReader<'a> {
 
 impl<'a> ModelReader<'a> {
     pub(super) fn new(name: &str, geometry: &'a mut Geometry, budget: &'a Budget, notes: &'a mut Notes) -> Self {
-        let part = Part {
-            name: name.to_owned(),
-            unit: 1e-3,
-            objects: HashMap::new(),
-            order: Vec::new(),
-            groups: HashMap::new(),
-            textures: HashMap::new(),
-            items: Vec::new(),
-        };
+        let part = Part { name: name.to_owned(), unit: 1e-3, ..Part::default() };
         Self {
             part,
             geometry,
