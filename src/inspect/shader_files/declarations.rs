@@ -64,7 +64,7 @@ pub(super) fn declarations(text: &str) -> Vec<Declaration> {
         let is_whole = if is_block { line == "}" } else { !is_attribute && line.ends_with(';') };
         if is_whole {
             let is_function = head.starts_with("fn ");
-            let name = declared(&tokens(head)).first().map_or("", |name| name.text).to_owned();
+            let name = declared(&tokens(head)).first().map_or("", |(_, name)| name.text).to_owned();
             let (comment, lines) = (std::mem::take(&mut comment), std::mem::take(&mut lines));
             found.push(Declaration { name, is_function, comment, lines });
         }
