@@ -275,7 +275,7 @@ mod tests {
     #[test]
     fn a_load_that_panics_returns_an_error_that_names_the_file() {
         let indices: &[u32] = std::hint::black_box(&[]);
-        let stopped = caught(|| panic!("index {} of {}", 7, indices.len())).map(|()| ()).expect_err("it panicked");
+        let stopped = caught::<()>(|| panic!("index {} of {}", 7, indices.len())).expect_err("it panicked");
         let said = NotLoaded::panicked(&Source::File("models/odd.glb".into()), &stopped).why;
         assert_eq!(said, "odd.glb: loading it stopped unexpectedly (index 7 of 0); the file may be damaged");
     }

@@ -20,7 +20,7 @@ pub(crate) struct FromFiles {
 
 impl App {
     /// What the picture should have.
-    pub(in crate::app) fn from_files(&self) -> FromFiles {
+    pub(in crate::app) fn wanted_from_files(&self) -> FromFiles {
         let lod = self.lod_shader.as_ref().filter(|_| self.uses_lod_shader()).and_then(OpenShader::shader);
         let factors = self.given.as_ref().map_or(0, |given| given.generation);
         let surface = self.surface_shader.as_ref().and_then(OpenShader::shader);
@@ -38,7 +38,7 @@ impl App {
     /// # Errors
     /// More patches than the adapter binds memory for, out of memory, or a lost device.
     pub(in crate::app) fn give_from_files(&mut self) -> Result<(), GpuError> {
-        let wanted = self.from_files();
+        let wanted = self.wanted_from_files();
         let Some(document) = self.document.as_mut().filter(|_| self.viewport.picture.is_free()) else { return Ok(()) };
         let (has, scene) = (&mut document.from_files, &mut document.scene);
         if !self.jobs.has(Work::LeftHalf) {

@@ -145,7 +145,7 @@ impl App {
     fn wanted(&mut self, context: &egui::Context, size: [u32; 2]) -> Result<Option<(Wanted, bool)>, Trouble> {
         let (deviation, moment) = (self.deviation_shown(), self.moment());
         self.give_from_files()?;
-        let from_files = self.from_files();
+        let from_files = self.wanted_from_files();
         let settings = self.settings_in(context.theme());
         let Some(document) = &self.document else { return Ok(None) };
         let viewport = vec2(size[0] as f32, size[1] as f32);
