@@ -16,7 +16,7 @@ use crate::settings::ToneCurve;
 use gpu::{Gpu, GpuError, Lazy, WgslModule, filled_texture, flat_texture, uniform_buffer};
 use load::panorama::Panorama;
 
-/// A shader module that has it binds [`Environment::entries`] in group 1 from binding 16 on.
+/// A shader module that has it binds [`Environment::bound`] in group 1 from binding 16 on.
 pub const ENVIRONMENT: WgslModule = WgslModule("environment");
 
 /// The binding of the `Surroundings` in `shaders/environment.wgsl`.
