@@ -14,6 +14,7 @@ mod animations;
 mod buffers;
 mod cameras;
 mod carried;
+mod decompressed_primitive;
 mod document;
 mod draco;
 mod extension_table;
@@ -44,6 +45,7 @@ mod texture_source;
 mod uv_transform;
 mod variants;
 mod vertex_details;
+mod vertex_repairs;
 mod vertices;
 
 use std::collections::HashMap;

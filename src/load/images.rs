@@ -6,7 +6,6 @@ use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Li
 
 use super::ktx2::{self, Ktx2};
 use super::memory_budget::Budget;
-use super::texture_room::decoded_bytes;
 use super::webp;
 use geometry::mesh::Texture;
 use geometry::mesh::build_limits::{Borrowed, MemoryRefused, borrowing};
@@ -65,6 +64,11 @@ pub(super) fn decode_halved(
     let refused = |refused| too_large(texture.size, refused);
     budget.hold(decoded_bytes(texture.size)).map_err(refused)?;
     Ok(texture)
+}
+
+/// The size of a decoded texture, in bytes.
+pub(super) fn decoded_bytes([width, height]: [u32; 2]) -> u64 {
+    4 * u64::from(width) * u64::from(height)
 }
 
 /// Returns how much memory it takes to decode an image and to convert it to RGBA, in bytes. Some decoders take up to 8 bytes a pixel beside

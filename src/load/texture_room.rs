@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::collections::BinaryHeap;
 use std::sync::Arc;
 
-use super::images::{decode_halved, texture_size};
+use super::images::{decode_halved, decoded_bytes, texture_size};
 use super::memory_budget::Budget;
 use geometry::mesh::mipmap::{MipFilter, level_count, level_size};
 use geometry::mesh::{MemoryRefused, Texture, borrowing};
@@ -141,11 +141,6 @@ fn within_most_side(size: [u32; 2]) -> u32 {
 
 fn pixels([width, height]: [u32; 2]) -> u64 {
     u64::from(width) * u64::from(height)
-}
-
-/// The size of a decoded texture, in bytes.
-pub(super) fn decoded_bytes(size: [u32; 2]) -> u64 {
-    4 * pixels(size)
 }
 
 /// The size of a texture with all its mip levels, in bytes.

@@ -22,6 +22,7 @@ use load::Limits;
 use load::source::Source;
 use pnaen::app::App;
 use pnaen::app::persistence::Persistence;
+use pnaen::commands::{Action, all};
 
 use driver::settle;
 use figures::Part;
@@ -104,6 +105,9 @@ fn loads(harness: &mut Harness<App>, folder: &Path, effort: &Effort) -> Part {
     part
 }
 
+/// How many settings are changed before all are reset.
+const CHANGES: usize = 3;
+
 /// All controls that can be used now.
 fn controls(harness: &Harness<App>) -> Vec<(Role, String)> {
     let kinds = [Role::CheckBox, Role::ComboBox, Role::Slider];
@@ -167,12 +171,19 @@ fn settings(harness: &mut Harness<App>, folder: &Path, effort: &Effort) -> Part 
     }
     need_every_pipeline(harness);
     let (mut part, mut random) = (Part { what: "settings", taken: Vec::new() }, Rng::with_seed(5));
+    let all = all(&harness.state().availability());
+    let reset = all.iter().find(|command| command.action == Action::ResetSettings).expect("a command");
     for step in 0..effort.settings {
         change(harness, &mut random);
         if step % effort.compared == effort.compared - 1 {
             shows_what_a_new_window_does(harness, folder, SIZE);
         }
-        part.taken.push(figures::now(harness.state()));
+        // What some settings need is theirs: memory is compared with the same settings.
+        if step % CHANGES == CHANGES - 1 {
+            harness.state_mut().give(&context, reset);
+            settle(harness);
+            part.taken.push(figures::now(harness.state()));
+        }
     }
     part
 }

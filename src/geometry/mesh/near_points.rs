@@ -79,13 +79,18 @@ struct NearestPoint<'a> {
     numbers: &'a [u32],
     /// How far one can search, in object units.
     reach: f64,
+    /// The square of the largest distance between points of the cells that a search looks at. What is farther away has its cell's hash by
+    /// chance, which is another chance in every search.
+    widest: f64,
     chains: CellChains,
 }
 
 impl<'a> NearestPoint<'a> {
     fn new(points: &'a [Vec3], numbers: &'a [u32], reach: f64) -> Self {
         let chains = CellChains::with_capacity(WIDTH * reach, points.len());
-        let mut search = Self { points, numbers, reach, chains };
+        // Two cells along each axis.
+        let widest = 3.0 * (2.0 * WIDTH * reach).powi(2) * ROOM;
+        let mut search = Self { points, numbers, reach, widest, chains };
         for point in 0..points.len() as u32 {
             search.chains.push(points[point as usize], search.number(point));
         }
@@ -101,10 +106,12 @@ impl<'a> NearestPoint<'a> {
         let (position, number) = (self.points[point as usize], self.number(point));
         let (mut least, mut count) = (f64::INFINITY, 0);
         let tried = self.chains.near(position, number, self.reach * ROOM, |item, square, reach| {
-            if count == TRIES {
-                return Break(());
+            if square <= self.widest {
+                if count == TRIES {
+                    return Break(());
+                }
+                count += 1;
             }
-            count += 1;
             if square < least && item != point {
                 least = square;
                 *reach = reach.min(square.sqrt());

@@ -11,7 +11,7 @@ use ::gltf::{Document, buffer};
 
 use super::GltfError;
 use super::buffers::Buffers;
-use super::draco::DecompressedPrimitive;
+use super::decompressed_primitive::DecompressedPrimitive;
 use super::extensions::{MeshoptExtension, MeshoptMode};
 use super::meshopt::{Decompressed, decompress};
 use super::notes::Notes;

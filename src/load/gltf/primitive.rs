@@ -15,8 +15,9 @@ use crate::import::Import;
 use geometry::mesh::MemoryRefused;
 use geometry::mesh::detail_table::DetailTable;
 
+use super::vertex_repairs::VertexRepairs;
 pub(super) use super::vertices::NodePose;
-use super::vertices::{Vertex, VertexRepairs, Vertices};
+use super::vertices::{Vertex, Vertices};
 use super::{Accessors, GltfError};
 use geometry::mesh::mesh_builder::{CornerRepairs, MeshBuilder, StoredCorner};
 

@@ -4,7 +4,7 @@ use ::gltf::accessor::Accessor;
 use ::gltf::{Primitive, Semantic};
 
 use super::accessor::List;
-use super::draco::DecompressedPrimitive;
+use super::decompressed_primitive::DecompressedPrimitive;
 use super::notes::Notes;
 use super::{Accessors, GltfError};
 

@@ -9,7 +9,7 @@ use super::accessor::List;
 use super::materials::DetailNeeds;
 use super::notes::Notes;
 use super::primitive_data::PrimitiveData;
-use super::vertices::VertexRepairs;
+use super::vertex_repairs::VertexRepairs;
 
 /// The lists of one primitive.
 pub(super) struct VertexDetails<'a> {

@@ -11,6 +11,7 @@ use super::notes::Notes;
 use super::primitive_data::PrimitiveData;
 use super::uv_transform::UvTransform;
 use super::vertex_details::VertexDetails;
+use super::vertex_repairs::VertexRepairs;
 use crate::binding_space::turned;
 use geometry::mesh::CornerDetail;
 use geometry::mesh::mesh_builder::InputCorner;
@@ -59,28 +60,6 @@ pub(super) struct Vertex {
     pub mirrored: bool,
     /// Whether its normal has a direction, but wasn't of unit length in the file.
     pub rescaled: bool,
-}
-
-/// Counts of what was repaired in vertices.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct VertexRepairs {
-    /// Primitives without normals.
-    pub without_normals: usize,
-    /// Vertices with texture coordinates that aren't finite, which became (0, 0).
-    pub bad_uvs: usize,
-    /// Primitives without texture coordinates that a map of their material uses.
-    pub missing_uvs: usize,
-    /// Vertices with colours that aren't finite, which became white.
-    pub bad_colors: usize,
-    /// Vertices with tangents without a direction, for which others are computed.
-    pub bad_tangents: usize,
-    /// Vertices whose weights don't add up to anything, or that name a joint that doesn't exist; they stay where the
-    /// mesh has them.
-    pub bad_weights: usize,
-    /// Vertices that more than [`MOST_JOINTS`] joints move.
-    pub cut_weights: usize,
-    /// The largest part of a vertex's weights that was left out, of 1.
-    pub largest_cut: f64,
 }
 
 /// The joints of a skin that move each vertex, and their weights, in sets of four.
