@@ -135,39 +135,24 @@ impl Jobs {
             let landing: Landing = Box::new(move |app, context| land(app, context, ended));
             Some(landing)
         };
-        self.add(Job {
-            work,
-            title,
-            progress,
-            since: Instant::now(),
-            poll: Box::new(poll),
-            goes_on: false,
-            has_landed: false,
-        });
+        self.add(work, title, progress, false, Box::new(poll));
     }
 
     /// Adds a job that goes on until it is stopped. `poll` returns what it has found since the last call.
-    pub(crate) fn follow(
-        &mut self,
-        work: Work,
-        progress: Progress,
-        mut poll: impl FnMut() -> Option<Landing> + 'static,
-    ) {
-        let poll = Box::new(move || poll());
-        self.add(Job {
-            work,
-            title: String::new(),
-            progress,
-            since: Instant::now(),
-            poll,
-            goes_on: true,
-            has_landed: false,
-        });
+    pub(crate) fn follow(&mut self, work: Work, progress: Progress, poll: impl FnMut() -> Option<Landing> + 'static) {
+        self.add(work, String::new(), progress, true, Box::new(poll));
     }
 
-    fn add(&mut self, job: Job) {
-        self.stop(job.work);
-        self.jobs.push(job);
+    fn add(
+        &mut self,
+        work: Work,
+        title: String,
+        progress: Progress,
+        goes_on: bool,
+        poll: Box<dyn FnMut() -> Option<Landing>>,
+    ) {
+        self.stop(work);
+        self.jobs.push(Job { work, title, progress, since: Instant::now(), poll, goes_on, has_landed: false });
     }
 
     pub(crate) fn get(&self, work: Work) -> Option<&Job> {
