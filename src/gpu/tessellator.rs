@@ -117,7 +117,7 @@ impl Tessellator {
     /// Makes another tessellator of the same mesh, on whatever thread: it shares mesh, topology and height images, and has
     /// output of its own. What takes the place of LOD and of the surface is the same.
     pub fn beside(&self, arena_bytes: u64) -> impl FnOnce() -> Result<Self, GpuError> + Send + use<> {
-        let (gpu, pipelines, solid) = (self.gpu.clone(), self.pipelines.clone(), self.solid);
+        let (gpu, pipelines, solid) = (self.gpu.clone(), self.pipelines.clone(), self.solid.clone());
         let (mesh, images) =
             ((self.mesh.clone(), self.topology.clone()), self.images.as_ref().map(HeightImages::shared));
         let (given, surface_shader) = (self.given.clone(), self.surface_shader().cloned());
@@ -280,7 +280,8 @@ impl Tessellator {
     /// Given factors and control points of the user's own may tear any edge, and a pose may turn a part inside out.
     fn hides_backs(&self, inputs: &Inputs) -> bool {
         let is_ours = self.given.is_none() && self.own_surface.is_none();
-        is_ours && self.posed.pose().is_none() && self.solid.is_some_and(|solid| solid.hides_backs(inputs))
+        let hides = |solid: &Solid| solid.hides_backs(&self.mesh, &self.topology, inputs);
+        is_ours && self.posed.pose().is_none() && self.solid.as_ref().is_some_and(hides)
     }
 
     /// Counts the changes of what is emitted: views that don't matter under the inputs are none.

@@ -63,7 +63,8 @@ pub(super) fn seen_with_reach(mesh: &Mesh, inputs: &Inputs) -> Inputs {
 
 /// Returns whether patches that show only their backs are left out.
 fn culls_back(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> bool {
-    inputs.tessellation.cull_back_faces && Solid::find(mesh, topology).is_some_and(|solid| solid.hides_backs(inputs))
+    inputs.tessellation.cull_back_faces
+        && Solid::find(mesh, topology).is_some_and(|solid| solid.hides_backs(mesh, topology, inputs))
 }
 
 /// Tessellates the mesh with the factors that a hull shader wrote for each patch, instead of LOD's. Patches that show

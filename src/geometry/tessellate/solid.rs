@@ -1,6 +1,9 @@
 //! Solids: meshes whose back faces can't be seen from outside.
 
+use std::sync::OnceLock;
+
 use glam::{Mat4, Vec3};
+use rayon::prelude::*;
 
 use super::{Displacement, Edges, Inputs, Surface, beyond_near, side_control_points, straight_control_point};
 use crate::mesh::{Alpha, EdgeKind, Material, Mesh, Topology};
@@ -11,13 +14,13 @@ use crate::mesh::{Alpha, EdgeKind, Material, Mesh, Topology};
 /// A line of sight that starts outside enters the mesh before it leaves it, so each back face is hidden by a front
 /// face. (If a mesh intersects itself inside out, a back face may come first. Leaving it out then shows what is behind
 /// it, but never a hole.)
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Solid {
     /// The least and the greatest coordinates, in object units.
     pub extent: [Vec3; 2],
-    /// The largest distance of control points from the triangles that they belong to, for each surface, in object
-    /// units.
-    reaches: [f32; Surface::ALL.len()],
+    /// The largest distance of control points from the triangles that they belong to, in object units, for each surface that
+    /// has been asked for.
+    reaches: [OnceLock<f32>; Surface::ALL.len()],
     /// Whether surfaces for which [`Surface::tears`] crack on this mesh.
     pub has_split_normals: bool,
 }
@@ -36,24 +39,25 @@ impl Solid {
         }
         let bounds = mesh.bounds();
         let has_split_normals = topology.edges.iter().any(|edge| edge.kind == EdgeKind::Split);
-        let reaches = Surface::ALL.map(|surface| control_point_reach(surface, mesh, topology));
-        Some(Self { extent: [bounds.min, bounds.max], reaches, has_split_normals })
+        Some(Self { extent: [bounds.min, bounds.max], reaches: Default::default(), has_split_normals })
     }
 
     /// Returns whether no back face can be seen with these inputs: the tessellation has no cracks, and the near plane
-    /// doesn't cut the mesh.
-    pub fn hides_backs(&self, inputs: &Inputs) -> bool {
+    /// doesn't cut the mesh, which is the one that [`Self::find`] was given.
+    pub fn hides_backs(&self, mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> bool {
         let tears = inputs.tessellation.surface.tears() && self.has_split_normals;
         // A displaced surface may show its back anywhere.
         let whole = inputs.tessellation.displacement == Displacement::Off && !tears;
         let holds =
             inputs.tessellation.edges == Edges::PerEdge && inputs.tessellation.convention.is_consistent() && whole;
-        holds && is_beyond_near(inputs.view.clip_from_object, self.extent_of(inputs.tessellation.surface))
+        let extent = || self.extent_of(inputs.tessellation.surface, mesh, topology);
+        holds && is_beyond_near(inputs.view.clip_from_object, extent())
     }
 
     /// Returns the least and the greatest coordinates of all control points of a surface, in object units.
-    fn extent_of(&self, surface: Surface) -> [Vec3; 2] {
-        let reach = Vec3::splat(self.reaches[surface as usize]);
+    fn extent_of(&self, surface: Surface, mesh: &Mesh, topology: &Topology) -> [Vec3; 2] {
+        let reach = self.reaches[surface as usize].get_or_init(|| control_point_reach(surface, mesh, topology));
+        let reach = Vec3::splat(*reach);
         [self.extent[0] - reach, self.extent[1] + reach]
     }
 }
@@ -71,7 +75,7 @@ fn control_point_reach(surface: Surface, mesh: &Mesh, topology: &Topology) -> f3
         let own = ab.distance(straight_control_point(a, b)).max(ba.distance(straight_control_point(b, a)));
         if surface == Surface::PnCrease { own.max(a.distance(b) * (1.0 / 3.0)) } else { own }
     };
-    topology.sides.iter().map(side).fold(0.0, f32::max) * 1.5
+    topology.sides.par_iter().map(side).reduce(|| 0.0, f32::max) * 1.5
 }
 
 /// Returns whether a box, given by its least and greatest coordinates, lies completely beyond the near plane.
@@ -140,7 +144,7 @@ mod tests {
             let topology = Topology::build(&mesh, &Progress::default()).expect("nobody cancels");
             let Some(solid) = Solid::find(&mesh, &topology) else { continue };
             for surface in Surface::ALL {
-                let [min, max] = solid.extent_of(surface);
+                let [min, max] = solid.extent_of(surface, &mesh, &topology);
                 let tessellation = Tessellation { surface, alpha: 1.0, ..Tessellation::default() };
                 let inputs = Inputs::new(&tessellation, LodView::new(Mat4::IDENTITY, glam::Vec2::ONE));
                 let limit = LimitSurface::new(&mesh, &topology, &inputs);
