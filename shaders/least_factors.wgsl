@@ -233,6 +233,23 @@ struct Chosen {
     inner: f32,
 }
 
+// What the factors of a patch's edges are that are looked for: what the patch asks its edges for, what it would have if no
+// neighbour asked for anything, or what its edges have, beside which only the inside is looked for.
+const WANTED_ASKED: u32 = 0u;
+const WANTED_OWN: u32 = 1u;
+const WANTED_GIVEN: u32 = 2u;
+
+// What a patch looks for.
+struct Sought {
+    // The least factors that the edges U == 0, V == 0 and W == 0 may get, or those that they have.
+    least: vec3<f32>,
+    // The least inside factor; of rows the least number of rows and of segments of a row.
+    inside: f32,
+    // As in `Chosen`.
+    inner: f32,
+    wanted: u32,
+}
+
 // A step of a search: an inside factor; whether its inner triangles are looked at, or its rows; and whether the other ones are
 // known to be within the tolerance.
 struct Step {
@@ -265,39 +282,32 @@ fn next_step(partitioning: u32, inside: f32, inner: f32, error: f32, tolerance: 
     return Step(next, inner == 0.0, false);
 }
 
-// Returns the factors with which a patch is within the tolerance and has the fewest triangles, if a segment of an edge counts as
-// `segment` triangles. `least` are the least factors that the edges may get, `least_inside` is the least inside factor, and
-// `inner` is as in `Chosen`. If no factors are enough, it returns `least` and BEYOND_LAST. Not for patches of which one triangle
-// suffices, or with a least factor above 64.
-fn fewest_triangles(
-    seen: ptr<function, SeenPatch>,
-    tolerance: f32,
-    partitioning: u32,
-    least: vec3<f32>,
-    least_inside: f32,
-    inner: f32,
-    segment: f32,
-) -> Chosen {
+// Returns the factors with which a patch is within the tolerance and has the fewest triangles. If no factors are enough, it
+// returns the least ones and BEYOND_LAST. Not for patches of which one triangle suffices, or with a least factor above 64.
+fn fewest_triangles(seen: ptr<function, SeenPatch>, tolerance: f32, partitioning: u32, sought: Sought) -> Chosen {
     let within = BOUND_SHARE * tolerance;
     let slides = may_slide(seen, within);
-    var best = Chosen(least, BEYOND_LAST, inner);
+    let segment = select(1.0, 2.0, sought.wanted == WANTED_ASKED);
+    var best = Chosen(sought.least, BEYOND_LAST, sought.inner);
     var fewest = 3.4e38;
     // Written so that each function is called in one place only: drivers compile a copy for each call.
-    var step = first_step(partitioning, least_inside, inner);
-    var edges = least;
+    var step = first_step(partitioning, sought.inside, sought.inner);
+    var edges = sought.least;
     var rows = vec3<bool>(true);
     var goes_on = step.inside <= 64.0;
     while any_team(goes_on) {
         let inside = step.inside;
-        let wanted = vec4<bool>(rows & vec3<bool>(!step.is_inner), step.is_inner) & vec4<bool>(goes_on);
-        let errors = part_errors(seen, within, process(partitioning, edges, inside), wanted);
+        let looked_at = vec4<bool>(rows & vec3<bool>(!step.is_inner), step.is_inner) & vec4<bool>(goes_on);
+        let errors = part_errors(seen, within, process(partitioning, edges, inside), looked_at);
         if !goes_on {
             continue;
         }
         let fails = errors > vec4<f32>(within);
         for (var k = 0u; k < 3u; k++) {
-            if fails[k] {
-                edges[k] = next_row_factor(partitioning, slides, least[k], inside, edges[k], errors[k], within);
+            if fails[k] && sought.wanted == WANTED_GIVEN {
+                edges[k] = BEYOND_LAST;
+            } else if fails[k] {
+                edges[k] = next_row_factor(partitioning, slides, sought.least[k], inside, edges[k], errors[k], within);
             }
         }
         let cost = pattern_cost(edges, inside, segment);
@@ -316,77 +326,18 @@ fn fewest_triangles(
         }
         if is_over {
             step = next_step(partitioning, inside, best.inner, errors.w, within);
-            edges = least;
+            edges = sought.least;
             rows = vec3<bool>(true);
-            goes_on = step.inside <= 64.0 && pattern_cost(least, step.inside, segment) < fewest;
+            goes_on = step.inside <= 64.0 && pattern_cost(sought.least, step.inside, segment) < fewest;
         }
     }
     return best;
-}
-
-// Returns the factors that a patch asks its edges for, and the inside factor that it would take beside these. See
-// fewest_triangles.
-fn asked_factors(
-    seen: ptr<function, SeenPatch>,
-    tolerance: f32,
-    partitioning: u32,
-    least: vec3<f32>,
-    least_inside: f32,
-    inner: f32,
-) -> Chosen {
-    // Every segment of an edge is a triangle's side in this patch and in its neighbour.
-    return fewest_triangles(seen, tolerance, partitioning, least, least_inside, inner, 2.0);
 }
 
 // Returns whether a patch asks its edges again: beside what other patches asked for, its inside factor is much larger than
 // the one that it has chosen.
 fn asks_again(chosen: f32, inside: f32) -> bool {
     return inside > 64.0 || inside > 1.1 * chosen + 1.0;
-}
-
-// Returns the factors with which a patch has the fewest triangles if no neighbour asks for anything. See fewest_triangles.
-fn own_least_factors(
-    seen: ptr<function, SeenPatch>,
-    tolerance: f32,
-    partitioning: u32,
-    least: vec3<f32>,
-    least_inside: f32,
-) -> Chosen {
-    return fewest_triangles(seen, tolerance, partitioning, least, least_inside, 0.0, 1.0);
-}
-
-// Returns the least inside factor, `least` or more, that keeps a patch within `tolerance` px of its surface beside these
-// factors of the edges U == 0, V == 0 and W == 0; BEYOND_LAST if none does. `inner` is as in `Chosen`. Not for patches of which
-// one triangle suffices, or with a factor above 64.
-fn least_inside_factor(
-    seen: ptr<function, SeenPatch>,
-    tolerance: f32,
-    partitioning: u32,
-    edges: vec3<f32>,
-    least: f32,
-    inner: f32,
-) -> f32 {
-    let within = BOUND_SHARE * tolerance;
-    var result = BEYOND_LAST;
-    var known = inner;
-    var step = first_step(partitioning, least, inner);
-    var goes_on = step.inside <= 64.0;
-    while any_team(goes_on) {
-        let wanted = vec4<bool>(vec3<bool>(!step.is_inner), step.is_inner) & vec4<bool>(goes_on);
-        let errors = part_errors(seen, within, process(partitioning, edges, step.inside), wanted);
-        if !goes_on {
-            continue;
-        }
-        if any(errors > vec4<f32>(within)) {
-            step = next_step(partitioning, step.inside, known, errors.w, within);
-        } else {
-            known = select(known, step.inside, step.is_inner && known == 0.0);
-            result = select(BEYOND_LAST, step.inside, step.is_last);
-            step = Step(step.inside, !step.is_inner, true);
-        }
-        goes_on = step.inside <= 64.0 && result > 64.0;
-    }
-    return result;
 }
 
 // Returns whether a patch is within `tolerance` px of its surface if its edges and its inside all have one factor.

@@ -63,27 +63,28 @@ struct Tried {
     lessened: u32,
 }
 
-// What a search looks for.
-struct Sought {
-    // The least factors of the edges U == 0, V == 0 and W == 0.
-    least: vec3<f32>,
-    // The least number of rows and of segments of a row.
-    inside: f32,
-    // Whether the edges have these factors, so that only base and width are chosen.
-    is_given: bool,
-    // As how many triangles a segment of an edge counts.
-    segment: f32,
+// As how many triangles a segment of an edge counts where a patch asks for it.
+const ASKED_SEGMENT: f32 = 1.75;
+
+// Returns as how many triangles a segment of an edge counts.
+fn segment_cost(sought: Sought) -> f32 {
+    return select(1.0, ASKED_SEGMENT, sought.wanted == WANTED_ASKED);
+}
+
+// Returns whether the edges have their factors, so that only base and width are chosen.
+fn is_given(sought: Sought) -> bool {
+    return sought.wanted == WANTED_GIVEN;
 }
 
 // Returns the least number of rows beside a base.
 fn least_rows(sought: Sought, base: u32) -> f32 {
     let beside = max(sought.least[(base + 1u) % 3u], sought.least[(base + 2u) % 3u]);
-    return select(max(beside, sought.inside), beside, sought.is_given);
+    return select(max(beside, sought.inside), beside, is_given(sought));
 }
 
 // Returns the least number of a base's segments with rows of some width.
 fn least_segments(sought: Sought, base: u32, width: f32) -> f32 {
-    return select(max(sought.least[base], width), sought.least[base], sought.is_given);
+    return select(max(sought.least[base], width), sought.least[base], is_given(sought));
 }
 
 // Returns an expected number rounded down, or the least one.
@@ -94,7 +95,7 @@ fn expected_at_least(number: f32, least: f32) -> f32 {
 // Returns the rows with which the search beside a base starts.
 fn first_rows(sought: Sought, base: u32, expected: Expected, share: f32) -> Tried {
     let least = least_rows(sought, base);
-    let rows = select(expected_at_least(share * expected.rows, least), least, sought.is_given);
+    let rows = select(expected_at_least(share * expected.rows, least), least, is_given(sought));
     let width = expected_at_least(share * expected.width, sought.inside);
     return Tried(base, expected.flips, rows, width, least_segments(sought, base, width), vec2<f32>(0.0), 0u);
 }
@@ -109,7 +110,7 @@ fn first_shares(slides: bool) -> vec2<f32> {
 fn expected_cost(sought: Sought, base: u32, expected: Expected) -> f32 {
     let rows = max(expected.rows, least_rows(sought, base));
     let width = max(expected.width, sought.inside);
-    let cost = rows * width + sought.segment * (rows + 0.5 * least_segments(sought, base, width));
+    let cost = rows * width + segment_cost(sought) * (rows + 0.5 * least_segments(sought, base, width));
     // NaN comes last. Where bases cost about the same, rounding must not choose: only 5 bits of the mantissa count.
     return select(3e38, bitcast<f32>(bitcast<u32>(cost) & 0xfffc0000u), cost < 3e38);
 }
@@ -119,7 +120,7 @@ fn edges_of_rows(sought: Sought, tried: Tried) -> vec3<f32> {
     var edges = vec3<f32>(tried.segments);
     edges[(tried.base + 2u) % 3u] = tried.rows - tried.fewer.x;
     edges[(tried.base + 1u) % 3u] = tried.rows - tried.fewer.y;
-    return select(edges, sought.least, sought.is_given);
+    return select(edges, sought.least, is_given(sought));
 }
 
 // Returns the inside factor that says which rows.
@@ -142,11 +143,11 @@ fn grown_rows(sought: Sought, tried: Tried, expected: Expected, error: f32, tole
     let across = expected.across / (tried.rows * tried.rows);
     let along = expected.along / (tried.width * tried.width);
     // Beyond what second derivatives ask for, more segments rarely help.
-    let part = select(0.125, select(0.25, 0.0, tried.width < 1.5 * expected.width), sought.is_given);
+    let part = select(0.125, select(0.25, 0.0, tried.width < 1.5 * expected.width), is_given(sought));
     let more_rows = next_number(tried.rows, part, 0.8 * ratio * tried.rows);
     let more_width = next_number(tried.width, part, 0.8 * ratio * tried.width);
     var grown = tried;
-    if sought.is_given {
+    if is_given(sought) {
         // There may be too few rows for any width.
         grown.width = select(more_width, BEYOND_LAST, 0.5 * across > tolerance);
     } else if ratio > 1.5 {
@@ -181,7 +182,7 @@ fn with_less(sought: Sought, enough: Tried, kind: u32) -> Tried {
 // Returns whether there are such rows, and whether they differ from others that are tried.
 fn is_possible(sought: Sought, enough: Tried, less: Tried) -> bool {
     let kind = less.lessened;
-    if sought.is_given {
+    if is_given(sought) {
         // The edges have their factors.
         return (kind == 2u || kind == 4u) && less.width >= sought.inside;
     }
@@ -252,7 +253,7 @@ fn fewest_rows(seen: ptr<function, SeenPatch>, tolerance: f32, sought: Sought) -
     while any_team(goes_on) {
         let edges = edges_of_rows(sought, tried);
         let factors = process(PARTITIONING_ROWS, edges, inside_of_rows(tried));
-        let cost = cost_of_rows(factors, sought.segment);
+        let cost = cost_of_rows(factors, segment_cost(sought));
         let is_worth = goes_on && tried.rows <= 64.0 && tried.width <= 64.0 && cost < fewest;
         let errors = part_errors(seen, within, factors, vec4<bool>(is_worth));
         if !goes_on {
@@ -282,25 +283,6 @@ fn fewest_rows(seen: ptr<function, SeenPatch>, tolerance: f32, sought: Sought) -
     return best;
 }
 
-// As how many triangles a segment of an edge counts where a patch asks for it.
-const ASKED_SEGMENT: f32 = 1.75;
-
-// Returns the factors that a patch asks its edges for, and the rows that it would take beside these. See fewest_rows.
-fn asked_rows(seen: ptr<function, SeenPatch>, tolerance: f32, least: vec3<f32>, inside: f32) -> Chosen {
-    return fewest_rows(seen, tolerance, Sought(least, inside, false, ASKED_SEGMENT));
-}
-
-// Returns the factors with which a patch has the fewest triangles if no neighbour asks for anything. See fewest_rows.
-fn own_least_rows(seen: ptr<function, SeenPatch>, tolerance: f32, least: vec3<f32>, inside: f32) -> Chosen {
-    return fewest_rows(seen, tolerance, Sought(least, inside, false, 1.0));
-}
-
-// Returns the inside factor of the rows with the fewest triangles that keep a patch within a tolerance beside these factors of its
-// edges; BEYOND_LAST if none do. See fewest_rows.
-fn rows_beside(seen: ptr<function, SeenPatch>, tolerance: f32, edges: vec3<f32>, inside: f32) -> f32 {
-    return fewest_rows(seen, tolerance, Sought(edges, inside, true, 1.0)).inside;
-}
-
 // Returns the number of points inside a patch.
 fn points_inside(edges: vec3<f32>, inside: f32) -> f32 {
     let factors = process(PARTITIONING_ROWS, edges, inside);
@@ -309,6 +291,6 @@ fn points_inside(edges: vec3<f32>, inside: f32) -> f32 {
 
 // Returns whether a patch asks its edges again: beside what other patches asked for, it has many more points inside than with
 // what it has chosen.
-fn rows_ask_again(chosen_edges: vec3<f32>, chosen_inside: f32, edges: vec3<f32>, inside: f32) -> bool {
-    return inside == BEYOND_LAST || points_inside(edges, inside) > 1.1 * points_inside(chosen_edges, chosen_inside) + 2.0;
+fn rows_ask_again(chosen: f32, points: f32) -> bool {
+    return points > 1.1 * chosen + 2.0;
 }

@@ -102,8 +102,8 @@ fn edge_factors_main(invocation: Invocation) {
     let factor = lod_factor(index);
     if params.lod == LOD_ERROR {
         // No patch is searched yet.
-        for (var i = index; i < SEARCH_COUNTERS; i += params.factor_count) {
-            edge_factors[2u * params.factor_count + 3u * params.patch_count + i] = 0.0;
+        for (var i = index; i < params.patch_count + SEARCH_COUNTERS; i += params.factor_count) {
+            edge_factors[2u * (params.factor_count + params.patch_count) + i] = 0.0;
         }
         edge_factors[index] = whole_segments(params.partitioning, 1.0);
         edge_factors[params.factor_count + index] = whole_segments(params.partitioning, factor);

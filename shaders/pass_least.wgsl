@@ -41,11 +41,12 @@ fn search_least_triangles_main(invocation: Invocation) {
         var seen = load_seen(index);
         let least = first_least(&seen, edges_of(index, params.factor_count));
         let inside = select(BEYOND_LAST, heights_inside(index), is_searched);
+        let sought = Sought(least, inside, 0.0, WANTED_OWN);
         var own: Chosen;
         if SEARCHES_ROWS == 1u {
-            own = own_least_rows(&seen, surface_tolerance(), least, inside);
+            own = fewest_rows(&seen, surface_tolerance(), sought);
         } else {
-            own = own_least_factors(&seen, surface_tolerance(), params.partitioning, least, inside);
+            own = fewest_triangles(&seen, surface_tolerance(), params.partitioning, sought);
         }
         if leads_team() && is_searched {
             least_triangles[index] = triangles_of(own.edges, own.inside);

@@ -3,8 +3,8 @@
 
 // The counters: the low word of the number of all triangles, beside which is the high one; and the first of two words with a
 // bit for each factor that isn't taken.
-const TRIANGLES: u32 = 7u;
-const NOT_TAKEN: u32 = 9u;
+const TRIANGLES: u32 = 4u;
+const NOT_TAKEN: u32 = 6u;
 
 // Adds up the triangles of all patches. Each invocation takes several, since the waiting in a workgroup takes longer.
 @compute @workgroup_size(WORKGROUP)
@@ -112,10 +112,6 @@ fn search_uniform_factor_main(invocation: Invocation) {
 fn take_uniform_factor_main(invocation: Invocation) {
     let index = grid_index(invocation);
     let factors = ~not_taken();
-    if index == 0u {
-        // Patches take their inside factors anew if edges change.
-        search_workgroups[NEXT_PATCHES] = grid(select(0u, params.patch_count, any(factors != vec2<u32>(0u))));
-    }
     if index < params.factor_count && any(factors != vec2<u32>(0u)) {
         let first = 1u + select(32u + firstTrailingBit(factors.y), firstTrailingBit(factors.x), factors.x != 0u);
         atomicStore(&edge_factors[index], bitcast<u32>(f32(first)));

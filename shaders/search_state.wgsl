@@ -3,15 +3,13 @@
 // - the factors of edges;
 // - the least factor of each edge;
 // - the factor that each patch's heights need inside it, if it is displaced;
-// - the inside factors of patches, or first what they have chosen;
-// - the least factors with which their inner triangles are within the tolerance, 0 where they aren't known;
-// - the counters (SEARCH_COUNTERS in types.wgsl), 0 before a search: the numbers of large patches and then of small patches of three
-//   searches, the number of rounds that are over, two words with the number of all triangles, and two with a bit for each factor
-//   that isn't taken for all edges;
-// - the patches of the first two searches, one after the other, and those of the third: large ones from the start, small ones
-//   from the end.
-// Software drivers take time for what has nothing to do. There `search_workgroups` has the numbers of workgroups: of the three
-// searches, of the next pass over patches, and of the next pass over edges.
+// - the inside factors of patches;
+// - what each patch knows (see Known), 0 before it has been looked at;
+// - the counters (SEARCH_COUNTERS in types.wgsl), 0 before a search: the numbers of large and of small patches that are searched, of
+//   workgroups that are done, and of searches that are over; two words with the number of all triangles, and two with a bit for each
+//   factor that isn't taken for all edges;
+// - the patches that are searched: large ones from the start, small ones from the end.
+// Software drivers take time for what has nothing to do. There `search_workgroups` has the number of workgroups of the next search.
 
 // In storage, not a uniform: some software drivers compile a shader again for every value of a uniform that it branches on.
 @group(0) @binding(0) var<storage, read> params: Params;
@@ -22,23 +20,16 @@
 @group(0) @binding(5) var<storage, read> corners: array<Corner>;
 // A bit for each patch: whether it has a texture.
 @group(0) @binding(6) var<storage, read> textured: array<u32>;
-@group(0) @binding(7) var<storage, read_write> search_workgroups: array<array<u32, 3>, 5>;
-
-const NEXT_PATCHES: u32 = 3u;
-const NEXT_EDGES: u32 = 4u;
+@group(0) @binding(7) var<storage, read_write> search_workgroups: array<u32, 3>;
 
 // Where the inside factor of a patch is.
 fn inside_at(patch_index: u32) -> u32 {
     return 2u * params.factor_count + params.patch_count + patch_index;
 }
 
-// Where the least factor is with which a patch's inner triangles are within the tolerance.
-fn inner_at(patch_index: u32) -> u32 {
+// Where that is which a patch knows.
+fn known_at(patch_index: u32) -> u32 {
     return inside_at(params.patch_count + patch_index);
-}
-
-fn known_inner(patch_index: u32) -> f32 {
-    return bitcast<f32>(atomicLoad(&edge_factors[inner_at(patch_index)]));
 }
 
 // The factor that a patch's heights need inside it.
@@ -67,7 +58,7 @@ fn edges_of(patch_index: u32, first: u32) -> vec3<f32> {
 
 // Where a counter is.
 fn counter_at(counter: u32) -> u32 {
-    return inner_at(params.patch_count) + counter;
+    return known_at(params.patch_count) + counter;
 }
 
 fn inside_of(patch_index: u32) -> u32 {

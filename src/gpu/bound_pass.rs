@@ -30,8 +30,8 @@ pub(crate) struct Step {
 #[derive(Clone)]
 pub(crate) enum Workgroups {
     Grid([u32; 3]),
-    /// As many as this buffer says, so many bytes into it.
-    Counted(wgpu::Buffer, u64),
+    /// As many as this buffer says.
+    Counted(wgpu::Buffer),
 }
 
 impl Step {
@@ -39,7 +39,7 @@ impl Step {
         self.bound.set(pass);
         match &self.workgroups {
             Workgroups::Grid([x, y, z]) => pass.dispatch_workgroups(*x, *y, *z),
-            Workgroups::Counted(buffer, offset) => pass.dispatch_workgroups_indirect(buffer, *offset),
+            Workgroups::Counted(buffer) => pass.dispatch_workgroups_indirect(buffer, 0),
         }
     }
 }

@@ -54,6 +54,5 @@ pub use own_surface::SurfaceShader;
 pub use pipelines::{ComputePipelines, GRID_WIDTH, MOST_WORKGROUPS, WORKGROUP, bind_group, grid};
 pub use readback::{Readback, read_buffer, read_buffers, read_texture};
 pub use recorder::{DRAWING, PASSES, PassTime, RecordPasses, Recorder, Timing, take_times};
-pub use search_passes::{NEXT_EDGES, NEXT_PATCHES, SEARCH_AGAIN, SEARCH_ASKED, SEARCH_INSIDE};
 pub use tessellator::{ChunkBuffers, Tessellator};
 pub use wgsl::WgslModule;

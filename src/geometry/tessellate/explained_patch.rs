@@ -6,7 +6,7 @@ use super::factors::{
     ROW_BASE_STEP, inside_segments, patch_has_rows, patch_is_culled, patch_is_minimal, patch_is_subtriangulated,
     row_width, segments,
 };
-use super::least_factors::{BEYOND_LAST, Chosen};
+use super::least_factors::{BEYOND_LAST, Chosen, Wanted};
 use super::mesh_displacement::{MeshDisplacement, displacing_heights};
 use super::mesh_factors::MeshLod;
 use super::mesh_tessellation::seen_with_reach;
@@ -220,7 +220,7 @@ impl MeshLod<'_> {
         let asked = |patch: u32, side: usize| {
             let seen = self.seen_patch(patch);
             let least = self.first_least(patch, &seen, |factor| self.least_edge_factor(factor));
-            self.asked_by_patch(patch, &seen, least, 0.0).edges[(side + 2) % 3]
+            self.fewest(patch, &seen, least, 0.0, Wanted::Asked).edges[(side + 2) % 3]
         };
         let own_side = topology.sides[topology.patches[patch as usize].sides[side] as usize];
         let sides = topology.edge_sides(&topology.edges[own_side.edge as usize]).iter();

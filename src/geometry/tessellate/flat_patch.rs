@@ -109,7 +109,7 @@ pub(super) fn line_error(view: &LodView, net: &ControlNet) -> f32 {
 mod tests {
     use super::*;
     use crate::tessellate::factors::{Partitioning, process};
-    use crate::tessellate::least_factors::{asked_factors, least_inside_factor};
+    use crate::tessellate::least_factors::{Chosen, Sought, Wanted, fewest_triangles};
     use crate::tessellate::piece_error::{SeenPatch, piece_error, seen_patch};
     use crate::tessellate::{FIXED_ONE, domain_plan, domain_point, domain_triangle, triangle_count};
     use glam::{Mat4, vec3};
@@ -241,12 +241,14 @@ mod tests {
             }
             net.center += vec3(moves[12], moves[13], 0.0);
             let patch = seen(&VIEW, &net);
-            let asked =
-                |patch: &SeenPatch| asked_factors(patch, tolerance, Partitioning::Integer, [1.0; 3], 1.0, 0.0).edges;
-            let edges = asked(&patch);
-            let inside = least_inside_factor(&patch, tolerance, Partitioning::Integer, edges, (1.0, 0.0));
+            let found = |patch: &SeenPatch, least, wanted| {
+                let sought = Sought { least, inside: 1.0, inner: 0.0, wanted };
+                fewest_triangles(patch, tolerance, Partitioning::Integer, &sought)
+            };
+            let Chosen { edges, .. } = found(&patch, [1.0; 3], Wanted::Asked);
+            let inside = found(&patch, edges, Wanted::Given).inside;
             prop_assert!(inside <= 64.0);
-            let same_place = asked(&seen_patch(&VIEW, &net));
+            let same_place = found(&seen_patch(&VIEW, &net), [1.0; 3], Wanted::Asked).edges;
             prop_assert!(edges.iter().sum::<f32>() <= same_place.iter().sum::<f32>() + 2.0);
             let factors = process(Partitioning::Integer, edges, inside);
             let (plan, outline) = (domain_plan(factors), outline(&net));

@@ -13,8 +13,8 @@ use glam::{Vec2, Vec3};
 
 use super::domain::{DomainPlan, domain_plan, domain_triangle_places};
 use super::factors::{
-    FIXED_ONE, Partitioning, PatchFactors, inside_segments, patch_has_rows, patch_is_minimal, process, round_pow2,
-    segments, triangle_count,
+    FIXED_ONE, Partitioning, PatchFactors, ROW_BASE_STEP, inside_segments, patch_has_rows, patch_is_minimal, process,
+    round_pow2, segments, triangle_count,
 };
 use super::lod::LodView;
 use super::piece_error::{SeenPatch, clip_point, deeper, depth_scale, may_slide, near_depth, piece_error};
@@ -117,7 +117,7 @@ fn triangle_error_at(patch: &SeenPatch, tolerance: f32, plan: &DomainPlan, t: u3
 
 /// Returns whether one triangle is within the tolerance in place of the patch, with these least factors of its edges and of
 /// its inside.
-pub(super) fn single_suffices(
+fn single_suffices(
     patch: &SeenPatch,
     tolerance: f32,
     partitioning: Partitioning,
@@ -213,6 +213,45 @@ pub(super) struct Chosen {
     pub inner: f32,
 }
 
+/// What the factors of a patch's edges are that are looked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Wanted {
+    /// What the patch asks its edges for. Every segment of an edge is a triangle's side in this patch and in its neighbour.
+    Asked,
+    /// What it would have if no neighbour asked for anything.
+    Own,
+    /// What its edges have: only the inside is looked for.
+    Given,
+}
+
+/// What a patch looks for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sought {
+    /// The least factors that the edges U == 0, V == 0 and W == 0 may get, or those that they have.
+    pub least: [f32; 3],
+    /// The least inside factor; of rows the least number of rows and of segments of a row.
+    pub inside: f32,
+    /// As in [`Chosen`].
+    pub inner: f32,
+    pub wanted: Wanted,
+}
+
+/// Returns what a patch gets without a search: if one triangle is within the tolerance, or if more segments are sought than
+/// there are.
+pub(super) fn without_search(
+    patch: &SeenPatch,
+    within: f32,
+    partitioning: Partitioning,
+    sought: &Sought,
+) -> Option<Chosen> {
+    let Sought { least, inside, inner, .. } = *sought;
+    let chosen = |inside| Some(Chosen { edges: least, inside, inner });
+    if single_suffices(patch, within, partitioning, least, inside) {
+        return chosen(if partitioning == Partitioning::Rows { (ROW_BASE_STEP + 1) as f32 } else { 1.0 });
+    }
+    if least[0].max(least[1]).max(least[2]).max(inside) > 64.0 { chosen(BEYOND_LAST) } else { None }
+}
+
 /// A step of a search: an inside factor; whether its inner triangles are looked at, or its rows; and whether the other ones
 /// are known to be within the tolerance.
 #[derive(Clone, Copy)]
@@ -246,37 +285,36 @@ fn next_step(partitioning: Partitioning, inside: f32, inner: f32, error: f32, to
     Step { inside: next, is_inner: inner == 0.0, is_last: false }
 }
 
-/// Returns the factors with which a patch is within the tolerance and has the fewest triangles, if a segment of an edge
-/// counts as `segment` triangles. `least` are the least factors that the edges may get, `least_inside` is the least
-/// inside factor, and `inner` is as in [`Chosen`]. If no factors are enough, it returns `least` and [`BEYOND_LAST`].
-fn fewest_triangles(
+/// Returns the factors with which a patch is within the tolerance and has the fewest triangles. If no factors are enough, it
+/// returns the least ones and [`BEYOND_LAST`].
+pub(super) fn fewest_triangles(
     patch: &SeenPatch,
     tolerance: f32,
     partitioning: Partitioning,
-    least: [f32; 3],
-    (least_inside, inner): (f32, f32),
-    segment: f32,
+    sought: &Sought,
 ) -> Chosen {
     let within = BOUND_SHARE * tolerance;
+    if let Some(chosen) = without_search(patch, within, partitioning, sought) {
+        return chosen;
+    }
+    let Sought { least, inside: least_inside, inner, wanted } = *sought;
     let slides = may_slide(patch, within);
+    let segment = if wanted == Wanted::Asked { 2.0 } else { 1.0 };
     let mut best = Chosen { edges: least, inside: BEYOND_LAST, inner };
-    if least[0].max(least[1]).max(least[2]).max(least_inside) > 64.0 {
-        return best;
-    }
-    if single_suffices(patch, within, partitioning, least, least_inside) {
-        return Chosen { inside: 1.0, ..best };
-    }
     let mut fewest = 3.4e38;
     let mut step = first_step(partitioning, least_inside, inner);
     let (mut edges, mut rows) = (least, [true; 3]);
     while step.inside <= 64.0 && pattern_cost(least, step.inside, segment) < fewest {
         let Step { inside, is_inner, is_last } = step;
-        let wanted = if is_inner { [false, false, false, true] } else { [rows[0], rows[1], rows[2], false] };
-        let errors = part_errors(patch, within, process(partitioning, edges, inside), wanted);
+        let looked_at = if is_inner { [false, false, false, true] } else { [rows[0], rows[1], rows[2], false] };
+        let errors = part_errors(patch, within, process(partitioning, edges, inside), looked_at);
         let fails = errors.map(|error| error > within);
         for k in (0..3).filter(|&k| fails[k]) {
             let [factor, error] = [edges[k], errors[k]];
-            edges[k] = next_row_factor(partitioning, slides, [least[k], inside], factor, error, within);
+            edges[k] = match wanted {
+                Wanted::Given => BEYOND_LAST,
+                _ => next_row_factor(partitioning, slides, [least[k], inside], factor, error, within),
+            };
         }
         let cost = pattern_cost(edges, inside, segment);
         let mut is_over = fails[3] || cost >= fewest || edges[0].max(edges[1]).max(edges[2]) > 64.0;
@@ -299,70 +337,10 @@ fn fewest_triangles(
     best
 }
 
-/// Returns the factors that a patch asks its edges for, and the inside factor that it would take beside these. See
-/// [`fewest_triangles`].
-pub(super) fn asked_factors(
-    patch: &SeenPatch,
-    tolerance: f32,
-    partitioning: Partitioning,
-    least: [f32; 3],
-    least_inside: f32,
-    inner: f32,
-) -> Chosen {
-    // Every segment of an edge is a triangle's side in this patch and in its neighbour.
-    fewest_triangles(patch, tolerance, partitioning, least, (least_inside, inner), 2.0)
-}
-
 /// Returns whether a patch asks its edges again: beside what other patches asked for, its inside factor is much larger
 /// than the one that it has chosen.
 pub(super) fn asks_again(chosen: f32, inside: f32) -> bool {
     inside > 64.0 || inside > 1.1 * chosen + 1.0
-}
-
-/// Returns the factors with which a patch has the fewest triangles if no neighbour asks for anything. See
-/// [`fewest_triangles`].
-pub(super) fn own_least_factors(
-    patch: &SeenPatch,
-    tolerance: f32,
-    partitioning: Partitioning,
-    least: [f32; 3],
-    least_inside: f32,
-) -> Chosen {
-    fewest_triangles(patch, tolerance, partitioning, least, (least_inside, 0.0), 1.0)
-}
-
-/// Returns the least inside factor, `least` or more, that keeps a patch within `tolerance` px of its surface beside these
-/// factors of the edges U == 0, V == 0 and W == 0; [`BEYOND_LAST`] if none does. `inner` is as in [`Chosen`].
-pub(super) fn least_inside_factor(
-    patch: &SeenPatch,
-    tolerance: f32,
-    partitioning: Partitioning,
-    edges: [f32; 3],
-    (least, inner): (f32, f32),
-) -> f32 {
-    let within = BOUND_SHARE * tolerance;
-    let largest = edges[0].max(edges[1]).max(edges[2]).max(least);
-    if single_suffices(patch, within, partitioning, edges, least) {
-        return 1.0;
-    }
-    if largest > 64.0 {
-        return BEYOND_LAST;
-    }
-    let (mut step, mut known) = (first_step(partitioning, least, inner), inner);
-    while step.inside <= 64.0 {
-        let Step { inside, is_inner, is_last } = step;
-        let wanted = [!is_inner, !is_inner, !is_inner, is_inner];
-        let errors = part_errors(patch, within, process(partitioning, edges, inside), wanted);
-        if errors.iter().any(|error| *error > within) {
-            step = next_step(partitioning, inside, known, errors[3], within);
-        } else if is_last {
-            return inside;
-        } else {
-            known = if is_inner && known == 0.0 { inside } else { known };
-            step = Step { inside, is_inner: !is_inner, is_last: true };
-        }
-    }
-    BEYOND_LAST
 }
 
 /// Returns whether a patch is within `tolerance` px of its surface if its edges and its inside all have one factor.

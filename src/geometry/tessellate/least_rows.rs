@@ -13,7 +13,7 @@
 use glam::Vec2;
 
 use super::factors::{Partitioning, PatchFactors, ROW_BASE_STEP, outer_count, point_count, process};
-use super::least_factors::{BEYOND_LAST, BOUND_SHARE, Chosen, part_errors, single_suffices};
+use super::least_factors::{BEYOND_LAST, BOUND_SHARE, Chosen, Sought, Wanted, part_errors, without_search};
 use super::piece_error::{SecondForms, SeenPatch, may_slide, second_forms, triangle_error};
 
 /// What second derivatives say of rows beside a base.
@@ -71,28 +71,29 @@ struct Tried {
     lessened: u32,
 }
 
-/// What a search looks for.
-#[derive(Clone, Copy)]
-struct Sought {
-    /// The least factors of the edges U == 0, V == 0 and W == 0.
-    least: [f32; 3],
-    /// The least number of rows and of segments of a row.
-    inside: f32,
-    /// Whether the edges have these factors, so that only base and width are chosen.
-    is_given: bool,
-    /// As how many triangles a segment of an edge counts.
-    segment: f32,
+/// As how many triangles a segment of an edge counts where a patch asks for it. It is a triangle's side in this patch and in its
+/// neighbour; but the neighbour often asks for it, too.
+pub const ASKED_SEGMENT: f32 = 1.75;
+
+/// Returns as how many triangles a segment of an edge counts.
+fn segment_cost(sought: &Sought) -> f32 {
+    if sought.wanted == Wanted::Asked { ASKED_SEGMENT } else { 1.0 }
+}
+
+/// Returns whether the edges have their factors, so that only base and width are chosen.
+fn is_given(sought: &Sought) -> bool {
+    sought.wanted == Wanted::Given
 }
 
 /// Returns the least number of rows beside a base.
 fn least_rows(sought: &Sought, base: usize) -> f32 {
     let beside = sought.least[(base + 1) % 3].max(sought.least[(base + 2) % 3]);
-    if sought.is_given { beside } else { beside.max(sought.inside) }
+    if is_given(sought) { beside } else { beside.max(sought.inside) }
 }
 
 /// Returns the least number of a base's segments with rows of some width.
 fn least_segments(sought: &Sought, base: usize, width: f32) -> f32 {
-    if sought.is_given { sought.least[base] } else { sought.least[base].max(width) }
+    if is_given(sought) { sought.least[base] } else { sought.least[base].max(width) }
 }
 
 /// Returns an expected number rounded down, or the least one.
@@ -103,7 +104,7 @@ fn expected_at_least(number: f32, least: f32) -> f32 {
 /// Returns the rows with which the search beside a base starts.
 fn first_rows(sought: &Sought, base: usize, expected: &Expected, share: f32) -> Tried {
     let least = least_rows(sought, base);
-    let rows = if sought.is_given { least } else { expected_at_least(share * expected.rows, least) };
+    let rows = if is_given(sought) { least } else { expected_at_least(share * expected.rows, least) };
     let width = expected_at_least(share * expected.width, sought.inside);
     let segments = least_segments(sought, base, width);
     Tried { base, flips: expected.flips, rows, width, segments, fewer: [0.0; 2], lessened: 0 }
@@ -119,14 +120,14 @@ fn first_shares(slides: bool) -> [f32; 2] {
 fn expected_cost(sought: &Sought, base: usize, expected: &Expected) -> f32 {
     let rows = expected.rows.max(least_rows(sought, base));
     let width = expected.width.max(sought.inside);
-    let cost = rows * width + sought.segment * (rows + 0.5 * least_segments(sought, base, width));
+    let cost = rows * width + segment_cost(sought) * (rows + 0.5 * least_segments(sought, base, width));
     // NaN comes last. Where bases cost about the same, rounding must not choose: only 5 bits of the mantissa count.
     if cost < 3e38 { f32::from_bits(cost.to_bits() & 0xfffc_0000) } else { 3e38 }
 }
 
 /// Returns the factors of the edges.
 fn edges_of_rows(sought: &Sought, tried: &Tried) -> [f32; 3] {
-    if sought.is_given {
+    if is_given(sought) {
         return sought.least;
     }
     let mut edges = [tried.segments; 3];
@@ -155,14 +156,14 @@ fn grown_rows(sought: &Sought, tried: Tried, expected: &Expected, error: f32, to
     let across = expected.across / (tried.rows * tried.rows);
     let along = expected.along / (tried.width * tried.width);
     // Beyond what second derivatives ask for, more segments rarely help.
-    let part = match sought.is_given {
+    let part = match is_given(sought) {
         true if tried.width < 1.5 * expected.width => 0.0,
         true => 0.25,
         false => 0.125,
     };
     let more = |number: f32| next_number(number, part, 0.8 * ratio * number);
     let (mut rows, mut width) = (tried.rows, tried.width);
-    if sought.is_given {
+    if is_given(sought) {
         // There may be too few rows for any width.
         width = if 0.5 * across > tolerance { BEYOND_LAST } else { more(width) };
     } else if ratio > 1.5 {
@@ -200,7 +201,7 @@ fn with_less(sought: &Sought, enough: &Tried, kind: u32) -> Tried {
 /// Returns whether there are such rows, and whether they differ from others that are tried.
 fn is_possible(sought: &Sought, enough: &Tried, less: &Tried) -> bool {
     let kind = less.lessened;
-    if sought.is_given {
+    if is_given(sought) {
         // The edges have their factors.
         return (kind == 2 || kind == 4) && less.width >= sought.inside;
     }
@@ -256,16 +257,12 @@ fn bases_by_cost([u, v, w]: [f32; 3]) -> [usize; 3] {
 
 /// Returns the rows with which a patch is within the tolerance, and has the fewest triangles of those that are tried. If no rows
 /// are enough, it returns the least factors and [`BEYOND_LAST`].
-fn fewest_rows(patch: &SeenPatch, tolerance: f32, sought: &Sought) -> Chosen {
+pub(super) fn fewest_rows(patch: &SeenPatch, tolerance: f32, sought: &Sought) -> Chosen {
     let within = BOUND_SHARE * tolerance;
+    if let Some(chosen) = without_search(patch, within, Partitioning::Rows, sought) {
+        return chosen;
+    }
     let mut best = Chosen { edges: sought.least, inside: BEYOND_LAST, inner: 0.0 };
-    let [u, v, w] = sought.least;
-    if u.max(v).max(w).max(sought.inside) > 64.0 {
-        return best;
-    }
-    if single_suffices(patch, within, Partitioning::Rows, sought.least, sought.inside) {
-        return Chosen { inside: (ROW_BASE_STEP + 1) as f32, ..best };
-    }
     let shares = first_shares(may_slide(patch, within));
     let all = [0, 1, 2].map(|base| expected_rows(patch, base, within));
     let costs = [0, 1, 2].map(|base| expected_cost(sought, base, &all[base]));
@@ -278,7 +275,7 @@ fn fewest_rows(patch: &SeenPatch, tolerance: f32, sought: &Sought) -> Chosen {
     while goes_on {
         let edges = edges_of_rows(sought, &tried);
         let factors = process(Partitioning::Rows, edges, inside_of_rows(&tried));
-        let cost = cost_of_rows(factors, sought.segment);
+        let cost = cost_of_rows(factors, segment_cost(sought));
         let is_worth = tried.rows <= 64.0 && tried.width <= 64.0 && cost < fewest;
         let errors = part_errors(patch, within, factors, [is_worth; 4]);
         let error = errors[0].max(errors[1]).max(errors[2]).max(errors[3]);
@@ -302,27 +299,6 @@ fn fewest_rows(patch: &SeenPatch, tolerance: f32, sought: &Sought) -> Chosen {
         }
     }
     best
-}
-
-/// As how many triangles a segment of an edge counts where a patch asks for it. It is a triangle's side in this patch and in its
-/// neighbour; but the neighbour often asks for it, too.
-pub const ASKED_SEGMENT: f32 = 1.75;
-
-/// Returns the factors that a patch asks its edges for, and the rows that it would take beside these. `least` are the least
-/// factors that the edges may get, and `inside` is the least number of rows and of segments of a row.
-pub(super) fn asked_rows(patch: &SeenPatch, tolerance: f32, least: [f32; 3], inside: f32) -> Chosen {
-    fewest_rows(patch, tolerance, &Sought { least, inside, is_given: false, segment: ASKED_SEGMENT })
-}
-
-/// Returns the factors with which a patch has the fewest triangles if no neighbour asks for anything.
-pub(super) fn own_least_rows(patch: &SeenPatch, tolerance: f32, least: [f32; 3], inside: f32) -> Chosen {
-    fewest_rows(patch, tolerance, &Sought { least, inside, is_given: false, segment: 1.0 })
-}
-
-/// Returns the inside factor of the rows with the fewest triangles that keep a patch within a tolerance beside these factors of
-/// its edges; [`BEYOND_LAST`] if none do.
-pub(super) fn rows_beside(patch: &SeenPatch, tolerance: f32, edges: [f32; 3], inside: f32) -> f32 {
-    fewest_rows(patch, tolerance, &Sought { least: edges, inside, is_given: true, segment: 1.0 }).inside
 }
 
 /// Returns the number of points inside a patch.

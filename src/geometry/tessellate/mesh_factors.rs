@@ -8,10 +8,10 @@ use super::factors::base_factor;
 use super::flat_patch::{line_error, normals_agree, plane_error};
 use super::hull_factors::inside_of_base;
 use super::least_factors::{
-    BEYOND_LAST, Chosen, asked_factors, asks_again, last_factor, least_edge_factor, least_inside_factor,
-    own_least_factors, uniform_suffices, whole_segments,
+    BEYOND_LAST, Chosen, Sought, Wanted, asks_again, fewest_triangles, last_factor, least_edge_factor,
+    uniform_suffices, whole_segments,
 };
-use super::least_rows::{asked_rows, own_least_rows, rows_ask_again, rows_beside};
+use super::least_rows::{fewest_rows, rows_ask_again};
 use super::mesh_displacement::MeshDisplacement;
 use super::piece_error::{SeenPatch, may_slide, seen_patch};
 use super::texel_lengths::Maps;
@@ -68,7 +68,7 @@ impl MeshLod<'_> {
 
     /// Returns factors of edges, and beside them what LOD gives to insides.
     pub(super) fn factors_beside(&self, edges: &[f32]) -> MeshFactors {
-        let inside = |patch| self.inside_factor(patch, self.nets.edges_of_patch(edges, patch), 0.0);
+        let inside = |patch| self.beside(patch, self.nets.edges_of_patch(edges, patch), 0.0).inside;
         let patches = 0..self.nets.topology.patches.len() as u32;
         let insides =
             if self.inputs.tessellation.lod == Lod::Error { patches.map(inside).collect() } else { Vec::new() };
@@ -95,7 +95,7 @@ impl MeshLod<'_> {
         for patch in 0..self.nets.topology.patches.len() as u32 {
             let seen = self.seen_patch(patch);
             let least = self.first_least(patch, &seen, |factor| least[factor as usize]);
-            let own = self.asked_by_patch(patch, &seen, least, 0.0);
+            let own = self.fewest(patch, &seen, least, 0.0, Wanted::Asked);
             ask(patch, own.edges, &mut asked);
             chosen.push(own);
         }
@@ -107,16 +107,16 @@ impl MeshLod<'_> {
                 if edges == chosen.edges {
                     continue;
                 }
-                let inside = self.inside_factor(patch, edges, chosen.inner);
+                let beside = self.beside(patch, edges, chosen.inner);
                 let again = match partitioning {
-                    Partitioning::Rows => rows_ask_again(chosen, edges, inside),
-                    _ => asks_again(chosen.inside, inside),
+                    Partitioning::Rows => rows_ask_again(chosen, edges, beside.inside),
+                    _ => asks_again(chosen.inside, beside.inside),
                 };
                 let asks = surface != Surface::Flat && round < rounds && again;
-                *chosen = Chosen { edges, inside, ..*chosen };
+                *chosen = beside;
                 if asks {
                     let seen = self.seen_patch(patch);
-                    let own = self.asked_by_patch(patch, &seen, edges, chosen.inner);
+                    let own = self.fewest(patch, &seen, edges, chosen.inner, Wanted::Asked);
                     ask(patch, own.edges, &mut asked);
                     if own.inside != BEYOND_LAST {
                         *chosen = own;
@@ -130,7 +130,7 @@ impl MeshLod<'_> {
         let insides: Vec<f32> = chosen.iter().map(|chosen| chosen.inside).collect();
         let factors = MeshFactors { edges: asked, insides };
         let Some(factor) = self.uniform_factor(&factors) else { return factors };
-        let beside = |(patch, chosen): (u32, Chosen)| self.inside_factor(patch, [factor; 3], chosen.inner);
+        let beside = |(patch, chosen): (u32, Chosen)| self.beside(patch, [factor; 3], chosen.inner).inside;
         MeshFactors { edges: vec![factor; least.len()], insides: (0..).zip(chosen).map(beside).collect() }
     }
 
@@ -187,34 +187,30 @@ impl MeshLod<'_> {
         }
     }
 
-    /// Returns the factors that a patch asks for under LOD by error, and the inside factor that it would take beside these. `least`
-    /// are the least that the edges U == 0, V == 0 and W == 0 may get, and `inner` is as in [`Chosen`].
-    pub(super) fn asked_by_patch(&self, patch: u32, seen: &SeenPatch, least: [f32; 3], inner: f32) -> Chosen {
+    /// Returns the factors with which a patch keeps LOD by error's tolerance with the fewest triangles. `least` are the least that
+    /// the edges U == 0, V == 0 and W == 0 may get, or those that they have, and `inner` is as in [`Chosen`].
+    pub(super) fn fewest(&self, patch: u32, seen: &SeenPatch, least: [f32; 3], inner: f32, wanted: Wanted) -> Chosen {
         let Tessellation { surface, partitioning, .. } = self.inputs.tessellation;
         let inside = self.heights_inside(patch);
         if surface == Surface::Flat {
             return Chosen { edges: least, inside: whole_segments(partitioning, inside), inner };
         }
-        let tolerance = self.surface_tolerance();
+        let (tolerance, sought) = (self.surface_tolerance(), Sought { least, inside, inner, wanted });
         match partitioning {
-            Partitioning::Rows => asked_rows(seen, tolerance, least, inside),
-            _ => asked_factors(seen, tolerance, partitioning, least, inside, inner),
+            Partitioning::Rows => fewest_rows(seen, tolerance, &sought),
+            _ => fewest_triangles(seen, tolerance, partitioning, &sought),
         }
+    }
+
+    /// Returns the same beside the factors that the edges have.
+    fn beside(&self, patch: u32, edges: [f32; 3], inner: f32) -> Chosen {
+        self.fewest(patch, &self.seen_patch(patch), edges, inner, Wanted::Given)
     }
 
     /// Returns the factors with which a patch alone would keep the tolerance with the fewest triangles: its *own least*.
     pub(super) fn own_least_factors(&self, patch: u32, seen: &SeenPatch) -> Chosen {
-        let Tessellation { surface, partitioning, .. } = self.inputs.tessellation;
         let least = self.first_least(patch, seen, |factor| self.least_edge_factor(factor));
-        let inside = self.heights_inside(patch);
-        if surface == Surface::Flat {
-            return Chosen { edges: least, inside: whole_segments(partitioning, inside), inner: 0.0 };
-        }
-        let tolerance = self.surface_tolerance();
-        match partitioning {
-            Partitioning::Rows => own_least_rows(seen, tolerance, least, inside),
-            _ => own_least_factors(seen, tolerance, partitioning, least, inside),
-        }
+        self.fewest(patch, seen, least, 0.0, Wanted::Own)
     }
 
     /// Returns whether nothing on a patch depends on where its points slide.
@@ -258,22 +254,6 @@ impl MeshLod<'_> {
         let Some(maps) = self.displacement.map(|displacement| displacement.own_map(patch)) else { return 1.0 };
         let own = |side| self.heights_factor(self.nets.patch_factor(patch, side), maps);
         own(0).max(own(1)).max(own(2))
-    }
-
-    /// Returns the inside factor of a patch under LOD by error: the least that suffices beside these factors of its edges.
-    /// `inner` is as in [`Chosen`].
-    fn inside_factor(&self, patch: u32, edges: [f32; 3], inner: f32) -> f32 {
-        let Tessellation { surface, partitioning, .. } = self.inputs.tessellation;
-        let heights = whole_segments(partitioning, self.heights_inside(patch));
-        if surface == Surface::Flat {
-            return heights;
-        }
-        let seen = self.seen_patch(patch);
-        let tolerance = self.surface_tolerance();
-        match partitioning {
-            Partitioning::Rows => rows_beside(&seen, tolerance, edges, heights),
-            _ => least_inside_factor(&seen, tolerance, partitioning, edges, (heights, inner)),
-        }
     }
 
     /// Returns the part of LOD by error's tolerance that is for the surface without displacement, in px.

@@ -2,6 +2,38 @@ use glam::{Mat4, vec3};
 use proptest::prelude::*;
 
 use super::*;
+
+fn asked_factors(
+    patch: &SeenPatch,
+    tolerance: f32,
+    partitioning: Partitioning,
+    least: [f32; 3],
+    inside: f32,
+    inner: f32,
+) -> Chosen {
+    fewest_triangles(patch, tolerance, partitioning, &Sought { least, inside, inner, wanted: Wanted::Asked })
+}
+
+fn own_least_factors(
+    patch: &SeenPatch,
+    tolerance: f32,
+    partitioning: Partitioning,
+    least: [f32; 3],
+    inside: f32,
+) -> Chosen {
+    fewest_triangles(patch, tolerance, partitioning, &Sought { least, inside, inner: 0.0, wanted: Wanted::Own })
+}
+
+fn least_inside_factor(
+    patch: &SeenPatch,
+    tolerance: f32,
+    partitioning: Partitioning,
+    edges: [f32; 3],
+    (inside, inner): (f32, f32),
+) -> f32 {
+    let sought = Sought { least: edges, inside, inner, wanted: Wanted::Given };
+    fewest_triangles(patch, tolerance, partitioning, &sought).inside
+}
 use crate::tessellate::ControlNet;
 use crate::tessellate::piece_error::seen_patch;
 

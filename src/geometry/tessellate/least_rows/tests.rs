@@ -4,6 +4,18 @@ use glam::{Mat4, Vec3, vec3};
 use proptest::prelude::*;
 
 use super::*;
+
+fn asked_rows(patch: &SeenPatch, tolerance: f32, least: [f32; 3], inside: f32) -> Chosen {
+    fewest_rows(patch, tolerance, &Sought { least, inside, inner: 0.0, wanted: Wanted::Asked })
+}
+
+fn own_least_rows(patch: &SeenPatch, tolerance: f32, least: [f32; 3], inside: f32) -> Chosen {
+    fewest_rows(patch, tolerance, &Sought { least, inside, inner: 0.0, wanted: Wanted::Own })
+}
+
+fn rows_beside(patch: &SeenPatch, tolerance: f32, edges: [f32; 3], inside: f32) -> f32 {
+    fewest_rows(patch, tolerance, &Sought { least: edges, inside, inner: 0.0, wanted: Wanted::Given }).inside
+}
 use crate::tessellate::factors::{row_count, row_width, segments, triangle_count};
 use crate::tessellate::piece_error::seen_patch;
 use crate::tessellate::{ControlNet, LodView};

@@ -34,10 +34,7 @@ use geometry::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, 
 use gpu::domain::{DOMAIN_POINTS, DOMAIN_TRIANGLES};
 use gpu::layout::LOD_GIVEN;
 use gpu::relief_buffers::HEIGHTS_ACROSS;
-use gpu::{
-    GRID_WIDTH, MOST_WORKGROUPS, NEXT_EDGES, NEXT_PATCHES, SEARCH_AGAIN, SEARCH_ASKED, SEARCH_COUNTERS, SEARCH_INSIDE,
-    WORKGROUP,
-};
+use gpu::{GRID_WIDTH, MOST_WORKGROUPS, SEARCH_COUNTERS, WORKGROUP};
 
 /// Constants that only WGSL has, with the reason.
 const WGSL_ALONE: &[(&[&str], &str)] = &[
@@ -65,9 +62,10 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
         "in Rust, an enum without numbers",
     ),
     (&["AT_CORNER", "ON_SIDE", "INSIDE"], "in Rust, an enum without numbers"),
+    (&["WANTED_ASKED", "WANTED_OWN", "WANTED_GIVEN"], "in Rust, an enum without numbers"),
     (&["FOUND_SOURCE"], "in Rust, any number other than 0 and FOUND_EMITTED means the same"),
     (
-        &["ALL_MAPS", "NO_PATCH", "NO_MORE", "NONE_ENOUGH"],
+        &["ALL_MAPS", "NO_PATCH", "NO_MORE", "GIVEN"],
         "markers within one pass, or within one word that no other pass reads",
     ),
     (
@@ -79,7 +77,10 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
         "how much work functions of the user's own may be, which only the device counts",
     ),
     (&["LARGE"], "how one pass divides its work; no result depends on it"),
-    (&["SMALL", "ROUNDS_OVER", "TRIANGLES", "NOT_TAKEN"], "counters of passes"),
+    (
+        &["LARGE_PATCHES", "SMALL_PATCHES", "WORKGROUPS_DONE", "SEARCHES_OVER", "TRIANGLES", "NOT_TAKEN"],
+        "counters of passes",
+    ),
     (&["TILE_WORDS", "ROUNDS"], "follow from TILE"),
     (
         &["NEARER", "HIDDEN", "NORMAL_LENGTH", "NORMAL_HALF_WIDTH", "NORMAL_SPACING", "DENSE", "SPARSE"],
@@ -228,11 +229,6 @@ fn of_the_mathematics() -> Vec<(&'static str, Expected)> {
         ("PARTIAL_STEPS", number(PARTIAL_STEPS)),
         ("MOST_WORKGROUPS", number(MOST_WORKGROUPS)),
         ("SEARCH_COUNTERS", number(SEARCH_COUNTERS)),
-        ("SEARCH_ASKED", number(SEARCH_ASKED)),
-        ("SEARCH_INSIDE", number(SEARCH_INSIDE)),
-        ("SEARCH_AGAIN", number(SEARCH_AGAIN)),
-        ("NEXT_PATCHES", number(NEXT_PATCHES)),
-        ("NEXT_EDGES", number(NEXT_EDGES)),
         ("SPREAD", number(SPREAD)),
         ("ASKED_SEGMENT", number(ASKED_SEGMENT)),
         ("LESSENINGS", number(LESSENINGS)),
