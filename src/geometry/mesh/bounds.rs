@@ -150,6 +150,13 @@ mod tests {
     }
 
     #[test]
+    fn bounds_grow_on_every_side() {
+        let bounds = Bounds::of([Vec3::ZERO, Vec3::X * 2.0].into_iter()).grown(0.5);
+        assert_eq!((bounds.min, bounds.max), (Vec3::splat(-0.5), Vec3::new(2.5, 0.5, 0.5)));
+        assert_eq!(bounds.radius(), 1.5);
+    }
+
+    #[test]
     fn nothing_has_no_size() {
         assert_eq!(Mesh::default().bounds(), Bounds::default());
     }

@@ -212,6 +212,14 @@ mod tests {
     }
 
     #[test]
+    fn a_limit_of_less_than_a_mebibyte_is_said_in_kibibytes() {
+        let said = |allowed| Budget::new(0, allowed).hold(1 << 30).unwrap_err().to_string();
+        for (allowed, expected) in [((1 << 20) - 1, "1023 KiB"), (1 << 20, "1 MiB")] {
+            assert!(said(allowed).contains(&format!("may take only {expected} (")), "{}", said(allowed));
+        }
+    }
+
+    #[test]
     fn a_scope_returns_what_was_borrowed_in_it_and_nothing_else() {
         let budget = Budget::unlimited();
         budget.borrow(5).unwrap();

@@ -90,9 +90,11 @@ fn reorient_rig(rig: &mut Rig, transform: DMat4) {
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec2;
     use proptest::prelude::*;
 
     use super::*;
+    use crate::mesh::Corner;
 
     const ALL: [UpAxis; 6] = [UpAxis::X, UpAxis::Y, UpAxis::Z, UpAxis::NegX, UpAxis::NegY, UpAxis::NegZ];
 
@@ -105,6 +107,20 @@ mod tests {
         }
         // Z up to Y up, as modelling programs export it.
         assert_eq!(UpAxis::Z.turn(Vec3::new(1.0, 2.0, 3.0)), Vec3::new(1.0, 3.0, -2.0));
+    }
+
+    #[test]
+    fn what_becomes_zero_has_no_sign() {
+        let position = Vec3::new(-0.0, -f32::MIN_POSITIVE, -1.0);
+        let corner = Corner { position, normal: Vec3::Z, uv: Vec2::ZERO };
+        let mut mesh = Mesh { corners: vec![corner], ..Mesh::default() };
+        // Half of the least normal number is a subnormal one; a smaller part of it is rounded to -0.
+        for scale in [0.5, 1e-10] {
+            reorient(&mut mesh, UpAxis::Y, scale);
+            let [x, y, _] = mesh.corners[0].position.to_array().map(f32::to_bits);
+            assert_eq!([x, y], [0, 0], "{scale}");
+            mesh.corners[0].position = position;
+        }
     }
 
     proptest! {

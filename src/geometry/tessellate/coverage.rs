@@ -193,6 +193,14 @@ mod tests {
     }
 
     #[test]
+    fn corners_lie_where_the_picture_shows_them() {
+        for px in [vec2(3.0, 5.0), vec2(60.0, 20.0), vec2(10.0, 50.0)] {
+            let corner = screen_corner(&view(1, false), at(px));
+            assert!(corner.at.distance(px) < 1e-4, "{corner:?}, not at {px}");
+        }
+    }
+
+    #[test]
     fn what_rounding_may_put_before_the_near_plane_is_not_placed() {
         let reach = |z: f32| screen_corner(&view(1, false), vec3(0.0, 0.0, z)).reach;
         assert!(reach(0.999) > 0.0 && reach(1.001) < 0.0);

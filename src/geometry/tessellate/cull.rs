@@ -245,6 +245,21 @@ mod tests {
     }
 
     #[test]
+    fn a_patch_that_hardly_leaves_a_corner_faces_away_all_the_same() {
+        let mut clip_from_object = Mat4::from_diagonal(glam::Vec4::new(1.0, 1.0, 0.0, 0.0));
+        clip_from_object.z_axis.w = 1.0;
+        clip_from_object.w_axis.z = 0.01;
+        let view = LodView::new(clip_from_object, Vec2::ONE);
+        let corners = [vec3(0.0, 0.0, 3.0), vec3(0.0, 1.0, 3.0), vec3(1.0, 0.0, 3.0)];
+        for part in [0.3, 1e-4, 1e-8] {
+            let mut net = flat(corners);
+            net.edges[0] = corners[0].lerp(corners[1], part);
+            net.edges[5] = corners[0].lerp(corners[2], part);
+            assert!(faces_away(&view, &net), "{part}");
+        }
+    }
+
+    #[test]
     fn margins_are_the_lengths_of_the_planes_normals() {
         // No two rows are perpendicular to w, as they would be before a camera that looks straight ahead.
         let rows = [[3.0, 0.0, 0.0, 0.0], [0.0, 4.0, 0.0, 0.0], [0.0, 0.0, 2.0, 0.0], [1.0, 2.0, 5.0, 1.0]];

@@ -1,6 +1,9 @@
+use std::sync::Arc;
+
 use glam::{DQuat, DVec3, dvec3};
 
 use super::*;
+use crate::mesh::Shape;
 
 fn keys(times: &[f32], values: &[f32], width: usize, interpolation: Interpolation) -> Keys {
     Keys { times: times.to_vec(), values: values.to_vec(), width, interpolation }
@@ -39,6 +42,15 @@ fn cubic_splines_have_their_values_and_slopes() {
     // The middle of a Hermite curve: the mean of the values, plus an eighth of the difference of the slopes times the
     // duration.
     assert!((at(2.0) - (3.0 + 2.0 * (3.0 + 2.0) / 8.0)).abs() < 1e-12);
+}
+
+#[test]
+fn a_rig_takes_memory_of_its_mesh() {
+    let rig = Rig { alike: vec![0; 1000], ..Rig::default() };
+    let mut mesh = Shape::Torus.build();
+    let still = mesh.bytes();
+    mesh.rig = Some(Arc::new(rig));
+    assert_eq!(mesh.bytes(), still + 4000);
 }
 
 #[test]

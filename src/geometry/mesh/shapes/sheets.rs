@@ -67,6 +67,15 @@ mod tests {
     use super::*;
 
     #[test]
+    fn each_sheet_shows_a_texture_once() {
+        for triangles in [saddle(0), moebius()] {
+            let uvs = triangles.as_flattened().iter().map(|corner| corner.uv);
+            let (least, greatest) = (uvs.clone().fold(Vec2::MAX, Vec2::min), uvs.fold(Vec2::MIN, Vec2::max));
+            assert_eq!((least, greatest), (Vec2::ZERO, Vec2::ONE));
+        }
+    }
+
+    #[test]
     fn normals_of_the_moebius_strip_are_perpendicular_to_it() {
         let at = |turn: f32, across: f32| moebius_at(turn, across).0;
         let step = 1e-2;
