@@ -303,11 +303,13 @@ fn fewest_triangles(seen: ptr<function, SeenPatch>, tolerance: f32, partitioning
             continue;
         }
         let fails = errors > vec4<f32>(within);
-        for (var k = 0u; k < 3u; k++) {
-            if fails[k] && sought.wanted == WANTED_GIVEN {
-                edges[k] = BEYOND_LAST;
-            } else if fails[k] {
-                edges[k] = next_row_factor(partitioning, slides, sought.least[k], inside, edges[k], errors[k], within);
+        if sought.wanted == WANTED_GIVEN {
+            edges = select(edges, vec3<f32>(BEYOND_LAST), fails.xyz);
+        } else {
+            for (var k = 0u; k < 3u; k++) {
+                if fails[k] {
+                    edges[k] = next_row_factor(partitioning, slides, sought.least[k], inside, edges[k], errors[k], within);
+                }
             }
         }
         let cost = pattern_cost(edges, inside, segment);

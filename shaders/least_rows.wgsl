@@ -200,7 +200,9 @@ fn is_possible(sought: Sought, enough: Tried, less: Tried) -> bool {
 // Returns rows with less than some that are enough, by the first kind of lessening after `lessened` that there is; with a `lessened`
 // above LESSENINGS, if there is none.
 fn lesser_rows(sought: Sought, enough: Tried, lessened: u32) -> Tried {
-    for (var kind = lessened + 1u; kind <= LESSENINGS; kind++) {
+    // Beside given edges there are no others after the fourth.
+    let last = select(LESSENINGS, 4u, is_given(sought));
+    for (var kind = lessened + 1u; kind <= last; kind++) {
         let less = with_less(sought, enough, kind);
         if is_possible(sought, enough, less) {
             return less;

@@ -170,17 +170,14 @@ fn search_patches_main(invocation: Invocation) {
     let is_last = atomicLoad(&edge_factors[counter_at(SEARCHES_OVER)]) >= ROUNDS;
     begun = invocation.workgroup.x;
     var next = next_patch(invocation.workgroups.x);
-    var asks_again_now = false;
-    var known: Known;
+    var is_asking_again = false;
     while any_team(next != NO_MORE) {
         let is_searched = next != NO_MORE;
         let index = select(0u, next & ~GIVEN, is_searched);
         var seen = load_seen(index);
-        if !asks_again_now {
-            known = known_from(atomicLoad(&edge_factors[known_at(index)]));
-        }
+        let known = known_from(atomicLoad(&edge_factors[known_at(index)]));
         let chosen = bitcast<f32>(inside_of(index));
-        let is_given = is_searched && next >= GIVEN && !asks_again_now;
+        let is_given = is_searched && next >= GIVEN && !is_asking_again;
         let heights = select(BEYOND_LAST, heights_inside(index), is_searched);
         let sought = Sought(known.edges, heights, known.inner, select(WANTED_ASKED, WANTED_GIVEN, is_given));
         var found: Chosen;
@@ -194,15 +191,16 @@ fn search_patches_main(invocation: Invocation) {
                 ask(index, found.edges);
             }
             // What asks again has found an inside factor before.
-            if !asks_again_now || found.inside != BEYOND_LAST {
+            if !is_asking_again || found.inside != BEYOND_LAST {
                 set_inside(index, found.inside);
                 set_known(index, found.edges, found.inner);
             }
         }
-        known.inner = found.inner;
-        asks_again_now = is_given && !is_last && needs_more(chosen, found);
-        if any_team(asks_again_now) {
-            next = select(NO_MORE, next, asks_again_now);
+        // The patch is read again with what it knows now.
+        storageBarrier();
+        is_asking_again = is_given && !is_last && needs_more(chosen, found);
+        if any_team(is_asking_again) {
+            next = select(NO_MORE, next, is_asking_again);
         } else {
             next = next_patch(invocation.workgroups.x);
         }

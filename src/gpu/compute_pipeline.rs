@@ -117,17 +117,19 @@ fn variables(text: &str) -> Option<HashMap<String, Vec<(u32, String)>>> {
 pub(super) struct Pass {
     pub(super) module: &'static str,
     entry_point: &'static str,
-    constants: [Option<(&'static str, u32)>; 2],
+    constants: [Option<(&'static str, u32)>; 3],
 }
 
 impl Pass {
     pub(super) const fn new(module: &'static str, entry_point: &'static str) -> Self {
-        Self { module, entry_point, constants: [None; 2] }
+        Self { module, entry_point, constants: [None; 3] }
     }
 
-    /// The same with a value for a constant. It has up to two.
+    /// The same with a value for a constant. It has up to three.
     pub(super) fn with(self, constant: &'static str, value: u32) -> Self {
-        Self { constants: [Some((constant, value)), self.constants[0]], ..self }
+        let [first, second, third] = self.constants;
+        assert!(third.is_none(), "{} would lose the value of a constant", self.entry_point);
+        Self { constants: [Some((constant, value)), first, second], ..self }
     }
 }
 

@@ -220,7 +220,9 @@ fn is_possible(sought: &Sought, enough: &Tried, less: &Tried) -> bool {
 /// Returns rows with less than some that are enough, by the first kind of lessening after `lessened` that there is; with a
 /// `lessened` above [`LESSENINGS`], if there is none.
 fn lesser_rows(sought: &Sought, enough: Tried, lessened: u32) -> Tried {
-    for kind in lessened + 1..=LESSENINGS {
+    // Beside given edges there are no others after the fourth.
+    let last = if is_given(sought) { 4 } else { LESSENINGS };
+    for kind in lessened + 1..=last {
         let less = with_less(sought, &enough, kind);
         if is_possible(sought, &enough, &less) {
             return less;
