@@ -8,7 +8,7 @@ use geometry::mesh::{Curves, Dominance, Mesh, Sharing, Topology};
 use geometry::tessellate::texel_lengths;
 
 /// `SEARCH_COUNTERS` in `shaders/types.wgsl`: how many counters the searches of LOD by error have.
-pub const SEARCH_COUNTERS: u32 = 8;
+pub const SEARCH_COUNTERS: u32 = 10;
 
 /// A mesh and its topology on the device, with room for the control nets and factors that passes compute.
 pub struct MeshBuffers {
@@ -64,7 +64,7 @@ impl MeshBuffers {
             let texel_lengths = texel_lengths(heights, mesh, topology, dominance);
             all_shares = shares(mesh, dominance, &texel_lengths);
         }
-        let factor_room = 2 * grouped.factor_count() as usize + 4 * topology.patches.len() + SEARCH_COUNTERS as usize;
+        let factor_room = 2 * grouped.factor_count() as usize + 5 * topology.patches.len() + SEARCH_COUNTERS as usize;
         Ok(Self {
             points: filled(gpu, "points", &points)?,
             corners: filled(gpu, "corners", &corners(mesh))?,

@@ -34,13 +34,13 @@ pub(super) fn search_steps(on: &PassInputs, has_rows: bool) -> Result<Vec<Step>,
     let sized = |pass| on.pipelines.search(on.gpu, pass, patches);
     let search = sized(SEARCH_PATCHES).with("SEARCHES_ROWS", has_rows.into()).with("ROUNDS", rounds(has_rows));
     // Software drivers take time for what has nothing to do, and GPUs take less for that than for counting what has.
-    let round = match software {
-        true => {
-            let counted = Workgroups::Counted(mesh.search_workgroups.clone());
-            vec![(LIST_PATCHES, each_patch), (COUNT_WORKGROUPS, line(1)), (search, counted)]
-        }
-        false => vec![(LIST_PATCHES, each_patch), (search, line(patches.min(SEARCH_WORKGROUPS)))],
+    let search = match software {
+        true => vec![(COUNT_WORKGROUPS, line(1)), (search, Workgroups::Counted(mesh.search_workgroups.clone()))],
+        false => vec![(search, line(patches.min(SEARCH_WORKGROUPS)))],
     };
+    let list = [(LIST_PATCHES, each_patch)];
+    let first = [&list[..], &search].concat();
+    let round = [&first[..], &search].concat();
     let [adding, searching] = UNIFORM_WORKGROUPS[usize::from(software)];
     let uniform = [
         (SUM_TRIANGLES, line(patches.div_ceil(WORKGROUP).min(adding))),
@@ -48,6 +48,7 @@ pub(super) fn search_steps(on: &PassInputs, has_rows: bool) -> Result<Vec<Step>,
         (sized(SEARCH_UNIFORM_FACTOR), line(patches.min(searching))),
         (TAKE_UNIFORM_FACTOR, each_edge),
     ];
-    let steps = (0..=rounds(has_rows)).flat_map(|_| round.clone()).chain(uniform).chain(round.clone());
+    let rounds = (0..rounds(has_rows)).flat_map(|_| round.clone());
+    let steps = first.iter().cloned().chain(rounds).chain(uniform).chain(first.iter().cloned());
     steps.map(|(pass, workgroups)| Ok(Step { bound: on.bound(pass)?, workgroups })).collect()
 }

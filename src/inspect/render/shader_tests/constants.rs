@@ -64,10 +64,7 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
     (&["AT_CORNER", "ON_SIDE", "INSIDE"], "in Rust, an enum without numbers"),
     (&["WANTED_ASKED", "WANTED_OWN", "WANTED_GIVEN"], "in Rust, an enum without numbers"),
     (&["FOUND_SOURCE"], "in Rust, any number other than 0 and FOUND_EMITTED means the same"),
-    (
-        &["ALL_MAPS", "NO_PATCH", "NO_MORE", "GIVEN"],
-        "markers within one pass, or within one word that no other pass reads",
-    ),
+    (&["ALL_MAPS", "NO_PATCH", "NO_MORE"], "markers within one pass, or within one word that no other pass reads"),
     (
         &["VERTEX_WORKGROUP", "TRIANGLE_WORKGROUP", "LANES"],
         "how one pass divides its work; it is dispatched indirectly",
@@ -78,7 +75,17 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
     ),
     (&["LARGE"], "how one pass divides its work; no result depends on it"),
     (
-        &["LARGE_PATCHES", "SMALL_PATCHES", "WORKGROUPS_DONE", "SEARCHES_OVER", "TRIANGLES", "NOT_TAKEN"],
+        &[
+            "LARGE_PATCHES",
+            "LIST_COUNTERS",
+            "ASKING",
+            "GIVEN",
+            "SMALL_PATCHES",
+            "WORKGROUPS_DONE",
+            "SEARCHES_OVER",
+            "TRIANGLES",
+            "NOT_TAKEN",
+        ],
         "counters of passes",
     ),
     (&["TILE_WORDS", "ROUNDS"], "follow from TILE"),
