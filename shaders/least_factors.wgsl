@@ -250,6 +250,16 @@ struct Sought {
     wanted: u32,
 }
 
+// Returns the inside factor that a patch gets without a search, 0 if there is none: if one triangle is within the tolerance, or if
+// more segments are sought than there are.
+fn without_search(seen: ptr<function, SeenPatch>, within: f32, partitioning: u32, sought: Sought) -> f32 {
+    if single_suffices(seen, within, partitioning, sought.least, sought.inside) {
+        return select(1.0, f32(ROW_BASE_STEP + 1u), partitioning == PARTITIONING_ROWS);
+    }
+    let most = max(max(max(sought.least.x, sought.least.y), sought.least.z), sought.inside);
+    return select(0.0, BEYOND_LAST, most > 64.0);
+}
+
 // A step of a search: an inside factor; whether its inner triangles are looked at, or its rows; and whether the other ones are
 // known to be within the tolerance.
 struct Step {

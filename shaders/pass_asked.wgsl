@@ -81,11 +81,6 @@ fn ask(patch_index: u32, asked: vec3<f32>) {
     }
 }
 
-// The inside factor of a patch that is one triangle.
-fn inside_of_one() -> f32 {
-    return select(1.0, f32(ROW_BASE_STEP + 1u), params.partitioning == PARTITIONING_ROWS);
-}
-
 // Returns the size that a patch has chosen, which is the less it may not exceed by much: its inside factor, or under rows the number
 // of points inside it.
 fn chosen_size(edges: vec3<f32>, inside: f32) -> f32 {
@@ -114,15 +109,15 @@ fn list_patches_main(invocation: Invocation) {
         edges = first_least(&seen, edges_of(index, params.factor_count));
     }
     let heights = heights_inside(index);
-    var inside = BEYOND_LAST;
-    if params.surface == SURFACE_FLAT {
-        inside = whole_segments(params.partitioning, heights);
-    } else if single_suffices(&seen, BOUND_SHARE * surface_tolerance(), params.partitioning, edges, heights) {
-        inside = inside_of_one();
-    } else if max(max(max(edges.x, edges.y), edges.z), heights) <= 64.0 {
-        // In place of the inside factor the search reads the size that was chosen.
-        inside = select(chosen_size(known.edges, bitcast<f32>(inside_of(index))), 0.0, is_first);
-        search_later(select(GIVEN, ASKING, is_first), index, edges, heights);
+    var inside = whole_segments(params.partitioning, heights);
+    if params.surface != SURFACE_FLAT {
+        let sought = Sought(edges, heights, known.inner, WANTED_GIVEN);
+        inside = without_search(&seen, BOUND_SHARE * surface_tolerance(), params.partitioning, sought);
+        if inside == 0.0 {
+            // In place of the inside factor the search reads the size that was chosen.
+            inside = select(chosen_size(known.edges, bitcast<f32>(inside_of(index))), 0.0, is_first);
+            search_later(select(GIVEN, ASKING, is_first), index, edges, heights);
+        }
     }
     if is_first && inside > 0.0 {
         ask(index, edges);

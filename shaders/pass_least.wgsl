@@ -18,15 +18,12 @@ fn least_triangles_main(invocation: Invocation) {
     var seen = load_seen(index);
     let least = first_least(&seen, edges_of(index, params.factor_count));
     let inside = heights_inside(index);
-    var triangles = 0u;
-    if params.surface == SURFACE_FLAT {
-        triangles = triangles_of(least, whole_segments(params.partitioning, inside));
-    } else if max(max(max(least.x, least.y), least.z), inside) > 64.0 {
-        triangles = triangles_of(least, BEYOND_LAST);
-    } else if single_suffices(&seen, BOUND_SHARE * surface_tolerance(), params.partitioning, least, inside) {
-        triangles = triangles_of(least, 1.0);
+    var own = whole_segments(params.partitioning, inside);
+    if params.surface != SURFACE_FLAT {
+        let sought = Sought(least, inside, 0.0, WANTED_OWN);
+        own = without_search(&seen, BOUND_SHARE * surface_tolerance(), params.partitioning, sought);
     }
-    least_triangles[index] = triangles;
+    least_triangles[index] = select(triangles_of(least, own), 0u, own == 0.0);
 }
 
 // Each team of a workgroup searches the factors of one of the other patches after another.

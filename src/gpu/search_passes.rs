@@ -15,8 +15,8 @@ const CANDIDATES: Pass = Pass::new("pass_uniform", "candidates_main");
 const SEARCH_UNIFORM_FACTOR: Pass = Pass::new("pass_uniform", "search_uniform_factor_main");
 const TAKE_UNIFORM_FACTOR: Pass = Pass::new("pass_uniform", "take_uniform_factor_main");
 
-/// The most workgroups of a search: enough for the largest GPUs.
-const SEARCH_WORKGROUPS: u32 = 8192;
+/// The most workgroups of a search: as many as the largest GPUs run at once. Each says that it is done, one after the other.
+const SEARCH_WORKGROUPS: u32 = 4096;
 
 /// For one factor for all edges: the most workgroups that add up triangles (each of so few patches that 32 bits hold the sum), and
 /// the most that search. Mostly each looks at one patch, and then no factor is left. First on a GPU, then on a software driver.

@@ -236,20 +236,20 @@ pub(super) struct Sought {
     pub wanted: Wanted,
 }
 
-/// Returns what a patch gets without a search: if one triangle is within the tolerance, or if more segments are sought than
-/// there are.
+/// Returns the inside factor that a patch gets without a search, if there is one: if one triangle is within the tolerance, or if
+/// more segments are sought than there are.
 pub(super) fn without_search(
     patch: &SeenPatch,
     within: f32,
     partitioning: Partitioning,
     sought: &Sought,
-) -> Option<Chosen> {
-    let Sought { least, inside, inner, .. } = *sought;
-    let chosen = |inside| Some(Chosen { edges: least, inside, inner });
+) -> Option<f32> {
+    let Sought { least, inside, .. } = *sought;
     if single_suffices(patch, within, partitioning, least, inside) {
-        return chosen(if partitioning == Partitioning::Rows { (ROW_BASE_STEP + 1) as f32 } else { 1.0 });
+        return Some(if partitioning == Partitioning::Rows { (ROW_BASE_STEP + 1) as f32 } else { 1.0 });
     }
-    if least[0].max(least[1]).max(least[2]).max(inside) > 64.0 { chosen(BEYOND_LAST) } else { None }
+    let most = least[0].max(least[1]).max(least[2]).max(inside);
+    if most > 64.0 { Some(BEYOND_LAST) } else { None }
 }
 
 /// A step of a search: an inside factor; whether its inner triangles are looked at, or its rows; and whether the other ones
@@ -294,10 +294,10 @@ pub(super) fn fewest_triangles(
     sought: &Sought,
 ) -> Chosen {
     let within = BOUND_SHARE * tolerance;
-    if let Some(chosen) = without_search(patch, within, partitioning, sought) {
-        return chosen;
-    }
     let Sought { least, inside: least_inside, inner, wanted } = *sought;
+    if let Some(inside) = without_search(patch, within, partitioning, sought) {
+        return Chosen { edges: least, inside, inner };
+    }
     let slides = may_slide(patch, within);
     let segment = if wanted == Wanted::Asked { 2.0 } else { 1.0 };
     let mut best = Chosen { edges: least, inside: BEYOND_LAST, inner };

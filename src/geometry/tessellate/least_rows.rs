@@ -261,10 +261,10 @@ fn bases_by_cost([u, v, w]: [f32; 3]) -> [usize; 3] {
 /// are enough, it returns the least factors and [`BEYOND_LAST`].
 pub(super) fn fewest_rows(patch: &SeenPatch, tolerance: f32, sought: &Sought) -> Chosen {
     let within = BOUND_SHARE * tolerance;
-    if let Some(chosen) = without_search(patch, within, Partitioning::Rows, sought) {
-        return chosen;
-    }
     let mut best = Chosen { edges: sought.least, inside: BEYOND_LAST, inner: 0.0 };
+    if let Some(inside) = without_search(patch, within, Partitioning::Rows, sought) {
+        return Chosen { inside, ..best };
+    }
     let shares = first_shares(may_slide(patch, within));
     let all = [0, 1, 2].map(|base| expected_rows(patch, base, within));
     let costs = [0, 1, 2].map(|base| expected_cost(sought, base, &all[base]));
