@@ -34,7 +34,7 @@ fn next_list() -> u32 {
 }
 
 // Some software drivers end the loops of an invocation after 65,535 turns, and take microseconds even for workgroups that have
-// nothing to do. So there is one for each patch that is searched, up to as many as can be dispatched, and one that ends the round.
+// nothing to do. So there is one for each patch that is searched, up to as many as can be dispatched, and at least one, which ends the search.
 @compute @workgroup_size(1)
 fn search_workgroups_main() {
     let large = atomicLoad(&edge_factors[list_counter_at(next_list(), LARGE_PATCHES)]);
@@ -81,8 +81,8 @@ fn ask(patch_index: u32, asked: vec3<f32>) {
     }
 }
 
-// Returns the size that a patch has chosen, which is the less it may not exceed by much: its inside factor, or under rows the number
-// of points inside it.
+// Returns the size of what a patch has chosen: its inside factor, or under rows the number of points inside it. If it later needs
+// one that is much larger, it asks again.
 fn chosen_size(edges: vec3<f32>, inside: f32) -> f32 {
     if params.partitioning == PARTITIONING_ROWS {
         return points_inside(edges, inside);

@@ -188,3 +188,24 @@ impl ComputePipeline {
         Ok(BoundPass { pipeline, group })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PASS: Pass = Pass::new("pass_asked", "search_patches_main");
+
+    #[test]
+    fn a_pass_keeps_all_of_its_constants() {
+        let pass = PASS.with("A", 1).with("B", 2).with("C", 3);
+        let mut kept: Vec<_> = pass.constants.into_iter().flatten().collect();
+        kept.sort_unstable();
+        assert_eq!(kept, [("A", 1), ("B", 2), ("C", 3)]);
+    }
+
+    #[test]
+    #[should_panic(expected = "search_patches_main would lose the value of a constant")]
+    fn a_constant_too_many_is_not_lost_in_silence() {
+        let _ = PASS.with("A", 1).with("B", 2).with("C", 3).with("D", 4);
+    }
+}
