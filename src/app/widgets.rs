@@ -85,7 +85,8 @@ const LIST_ROWS: f32 = 6.0;
 pub(super) fn list(
     ui: &mut egui::Ui,
     name: &str,
-    (count, first): (usize, u32),
+    count: usize,
+    first: u32,
     mut row: impl FnMut(&mut egui::Ui, usize) -> egui::Response,
 ) {
     let height = ui.text_style_height(&egui::TextStyle::Monospace).max(ui.spacing().interact_size.y);
@@ -148,11 +149,12 @@ pub(super) struct FoundRow {
 pub(super) fn found_list(
     ui: &mut egui::Ui,
     name: &str,
-    rows: (usize, u32),
+    count: usize,
+    first: u32,
     row: impl Fn(usize) -> FoundRow,
 ) -> Option<usize> {
     let mut clicked = None;
-    list(ui, name, rows, |ui, index| {
+    list(ui, name, count, first, |ui, index| {
         let FoundRow { columns, is_selected, hover } = row(index);
         let response = ui.selectable_label(is_selected, RichText::new(columns).monospace()).on_hover_text(hover);
         if response.clicked() {

@@ -1,5 +1,6 @@
 //! Meshes, and their tessellation on the CPU: the reference that the passes of the GPU follow.
 
+pub mod casts;
 pub mod cores;
 pub mod mesh;
 pub mod names;

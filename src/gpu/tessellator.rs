@@ -90,7 +90,7 @@ impl Tessellator {
     ) -> Result<Self, GpuError> {
         let images = mesh.heights.as_deref().map(|heights| HeightImages::new(gpu, heights)).transpose()?;
         let solid = Solid::find(&mesh, &topology);
-        Self::with(gpu, pipelines, (mesh, topology), solid, images, |mesh| Arena::new(gpu, mesh, arena_bytes))
+        Self::with(gpu, pipelines, mesh, topology, solid, images, |mesh| Arena::new(gpu, mesh, arena_bytes))
     }
 
     /// Uploads a mesh for a host program that draws without waiting for the GPU: all output has to fit the arena at once, which has
@@ -111,19 +111,19 @@ impl Tessellator {
         }
         let images = mesh.heights.as_deref().map(|heights| HeightImages::new(gpu, heights)).transpose()?;
         let (solid, arena) = (Solid::find(&mesh, &topology), Arena::with_room(gpu, vertices, triangles)?);
-        Self::with(gpu, pipelines, (mesh, topology), solid, images, |_| Ok(arena))
+        Self::with(gpu, pipelines, mesh, topology, solid, images, |_| Ok(arena))
     }
 
     /// Makes another tessellator of the same mesh, on whatever thread: it shares mesh, topology and height images, and has
     /// output of its own. What takes the place of LOD and of the surface is the same.
     pub fn beside(&self, arena_bytes: u64) -> impl FnOnce() -> Result<Self, GpuError> + Send + use<> {
         let (gpu, pipelines, solid) = (self.gpu.clone(), self.pipelines.clone(), self.solid.clone());
-        let (mesh, images) =
-            ((self.mesh.clone(), self.topology.clone()), self.images.as_ref().map(HeightImages::shared));
+        let (mesh, topology) = (self.mesh.clone(), self.topology.clone());
+        let images = self.images.as_ref().map(HeightImages::shared);
         let (given, surface_shader) = (self.given.clone(), self.surface_shader().cloned());
         move || {
             let make_arena = |mesh: &MeshBuffers| Arena::new(&gpu, mesh, arena_bytes);
-            let mut other = Self::with(&gpu, pipelines, mesh, solid, images, make_arena)?;
+            let mut other = Self::with(&gpu, pipelines, mesh, topology, solid, images, make_arena)?;
             if given.is_some() {
                 other.give(given)?;
             }
@@ -135,7 +135,8 @@ impl Tessellator {
     fn with(
         gpu: &Gpu,
         pipelines: Arc<ComputePipelines>,
-        (mesh, topology): (Arc<Mesh>, Arc<Topology>),
+        mesh: Arc<Mesh>,
+        topology: Arc<Topology>,
         solid: Option<Solid>,
         images: Option<HeightImages>,
         make_arena: impl FnOnce(&MeshBuffers) -> Result<Arena, GpuError>,

@@ -1,5 +1,6 @@
 //! Finds out which animated node each node of a scene is attached to: the nearest ancestor that a clip moves.
 
+use geometry::casts::to_u32;
 use glam::{DMat4, DVec3};
 
 use geometry::mesh::rig::{AnimatedNode, Clip, Placement, Property};
@@ -97,7 +98,7 @@ pub(super) fn attachments(scene: &SceneNodes, moved: &[bool]) -> (Vec<AnimatedNo
         attachments[node] = match local.placement().filter(|_| moved[node]) {
             Some(rest) => {
                 animated.push(AnimatedNode { parent: above.node, between: above.below, rest, is_joint: false });
-                Attachment { node: Some(animated.len() as u32 - 1), below: DMat4::IDENTITY }
+                Attachment { node: Some(to_u32(animated.len()) - 1), below: DMat4::IDENTITY }
             }
             None => Attachment { below: above.below * local.matrix(), ..above },
         };

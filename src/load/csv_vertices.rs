@@ -10,6 +10,7 @@ use thiserror::Error;
 use super::memory_budget::Budget;
 use super::text_lines::line_at;
 use crate::files::{FileError, Limits, read_file};
+use geometry::casts::to_usize;
 use geometry::mesh::build_limits::MemoryRefused;
 use geometry::names::{shortened, shown, shown_path};
 use geometry::progress::{Cancelled, Progress};
@@ -204,7 +205,7 @@ impl<'a> Lines<'a> {
             match self.position(&record, attribute, &mut decimals) {
                 Ok(position) => vertices.positions.push(position),
                 Err(fault) => {
-                    let byte = record.position().map_or(0, |at| at.byte() as usize);
+                    let byte = record.position().map_or(0, |at| to_usize(at.byte()));
                     return Ok(Err(CsvFault::Line { line: line_at(self.text, byte) as u64, fault }));
                 }
             }
@@ -244,6 +245,7 @@ impl<'a> Lines<'a> {
 
 /// Parses a number. Where commas don't separate values, they may be the decimal point. Counts the decimals, those of numbers
 /// with an exponent as if they had none.
+#[expect(clippy::cast_possible_truncation, reason = "so many decimals are far beyond the limit")]
 fn number(text: &[u8], separator: u8, decimals: &mut i32) -> Option<f32> {
     if NOTHING.contains(&text) {
         return Some(f32::NAN);

@@ -346,7 +346,7 @@ impl<'a> FaceBuilder<'a> {
         let (mut mesh, numbers, mut notes) = self.finish_numbered(name, holds, progress)?;
         let has_normals = |material: &Material| material.look.maps[Slot::Normal as usize].is_some();
         if let Some(colors) = colors.filter(|_| are_colored || mesh.materials.iter().any(has_normals)) {
-            tangents::with_details(&mut mesh, colors, &numbers, &mut notes, (memory, progress))?;
+            tangents::with_details(&mut mesh, colors, &numbers, &mut notes, memory, progress)?;
         }
         notes.extend(counted([(beyond, "objects and groups beyond the first 65,536, which can't be hidden")]));
         Ok(LoadedMesh { mesh, warnings: notes.into_warnings(), parts, file_bytes, ..LoadedMesh::default() })

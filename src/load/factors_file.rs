@@ -4,6 +4,7 @@
 use thiserror::Error;
 
 use super::text_lines::line_at;
+use geometry::casts::to_usize;
 use geometry::mesh::Topology;
 use geometry::tessellate::{HullFactors, Partitioning, RowChoice};
 
@@ -91,7 +92,7 @@ pub fn from_csv(
     partitioning: Partitioning,
 ) -> Result<Vec<HullFactors>, FactorsError> {
     let mut reader = csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(text.as_bytes());
-    let byte = |at: Option<&csv::Position>| at.map_or(0, |at| at.byte() as usize);
+    let byte = |at: Option<&csv::Position>| at.map_or(0, |at| to_usize(at.byte()));
     let fault = |byte: usize, fault| FactorsError { line: line_at(text.as_bytes(), byte), fault };
     let columns = match reader.headers() {
         Ok(header) if header == columns(false) => columns(false),

@@ -85,7 +85,7 @@ pub(super) fn read_here(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, 
     progress.set(0.8);
     let (mut mesh, mut numbers, mut notes) = faces.finish_numbered(file.name, holds, &progress.part(0.8, 1.0))?;
     if let Some(details) = details {
-        numbers = tangents::with_details(&mut mesh, details, &numbers, &mut notes, (&budget, progress))?;
+        numbers = tangents::with_details(&mut mesh, details, &numbers, &mut notes, &budget, progress)?;
     }
     match binder.map(|binder| binder.finish(&mut mesh, &numbers)) {
         Some(Ok(rig)) => mesh.rig = Some(Arc::new(rig)),

@@ -312,7 +312,7 @@ fn finished(
 ) -> Result<Mesh, GltfError> {
     let (mut mesh, mut bindings) = builder.finish_bound(name.to_owned(), budget, progress)?;
     if let Some(details) = details {
-        bindings = tangents::with_details(&mut mesh, details, &bindings, notes, (budget, progress))?;
+        bindings = tangents::with_details(&mut mesh, details, &bindings, notes, budget, progress)?;
     }
     match binder.map(|binder| binder.finish(&mut mesh, &bindings)) {
         Some(Ok(rig)) => mesh.rig = Some(Arc::new(rig)),

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use image::ColorType;
 
 use super::memory_budget::Budget;
+use geometry::casts::to_u32;
 use geometry::mesh::build_limits::MemoryRefused;
 use geometry::mesh::heights::{HeightMap, Heights, MAX_KEPT, MAX_MAPS, angle_bytes};
 use geometry::mesh::{Mesh, Texture};
@@ -124,7 +125,7 @@ fn from_materials(
             known.push(texture);
             known.len() - 1
         });
-        Some(index as u32)
+        Some(to_u32(index))
     });
     let of_material = of_material.collect();
     let count = known.len();

@@ -7,6 +7,7 @@ use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Li
 use super::ktx2::{self, Ktx2};
 use super::memory_budget::Budget;
 use super::webp;
+use geometry::casts::to_usize;
 use geometry::mesh::Texture;
 use geometry::mesh::build_limits::{Borrowed, MemoryRefused, borrowing};
 use geometry::mesh::mipmap::{MipFilter, RowHalver, halved, level_size};
@@ -143,7 +144,7 @@ fn decode_rows(bytes: &[u8], halvings: u32, filter: MipFilter, budget: &Budget) 
     budget.borrow(decoded_bytes(made).saturating_add(rows)).map_err(|refused| too_large(size, refused))?;
     let mut line = vec![0; line];
     let mut halvers: Vec<_> = (0..halvings).map(|level| RowHalver::new(level_size(size, level), filter)).collect();
-    let mut rgba = Vec::with_capacity(decoded_bytes(made) as usize);
+    let mut rgba = Vec::with_capacity(to_usize(decoded_bytes(made)));
     for _ in 0..size[1] {
         reader.read_row(&mut line).map_err(undecoded)?;
         let row = rgba_row(&line, color, depth == png::BitDepth::Sixteen);
@@ -154,6 +155,7 @@ fn decode_rows(bytes: &[u8], halvings: u32, filter: MipFilter, budget: &Budget) 
 }
 
 /// Converts a row of pixels of 8 or 16 bits a channel to RGBA of 8 bits.
+#[expect(clippy::cast_possible_truncation, reason = "at most 255")]
 fn rgba_row(line: &[u8], color: png::ColorType, is_wide: bool) -> Vec<u8> {
     let (channels, width) = (color.samples(), if is_wide { 2 } else { 1 });
     let channel = |px: &[u8], index: usize| match is_wide {

@@ -9,6 +9,7 @@ mod basis;
 pub(super) mod tests;
 mod zstandard;
 
+use geometry::casts::{to_u32, to_usize};
 use std::borrow::Cow;
 
 use geometry::mesh::mipmap::level_size;
@@ -95,7 +96,7 @@ impl<'a> Ktx2<'a> {
         let mut file =
             Self { bytes, size: [width, height], codec, is_zstd, levels: Vec::new(), global: [long(64)?, long(72)?] };
         for level in 0..count.max(1) {
-            let at = (HEADER + LEVEL * u64::from(level)) as usize;
+            let at = to_usize(HEADER + LEVEL * u64::from(level));
             file.add_level(long(at)?, long(at + 8)?, long(at + 16)?)?;
         }
         if matches!(codec, Codec::Etc1s(_)) {
@@ -120,7 +121,7 @@ impl<'a> Ktx2<'a> {
 
     /// Returns the width and height of a level, in px.
     fn level_size(&self, level: usize) -> [u32; 2] {
-        level_size(self.size, level as u32)
+        level_size(self.size, to_u32(level))
     }
 
     /// Returns how many bytes the data of a level has; none if its size doesn't say.
@@ -136,7 +137,7 @@ impl<'a> Ktx2<'a> {
 
     /// Returns how many levels the file has: at least one.
     pub(super) fn level_count(&self) -> u32 {
-        self.levels.len() as u32
+        to_u32(self.levels.len())
     }
 
     /// Returns how much memory it takes to decode a level that the file has beside its pixels, in bytes.
@@ -158,7 +159,7 @@ impl<'a> Ktx2<'a> {
         let index = index as usize;
         let level = &self.levels[index];
         let data = if self.is_zstd {
-            let unpacked = zstandard::decompress(level.bytes, level.length as usize);
+            let unpacked = zstandard::decompress(level.bytes, to_usize(level.length));
             unpacked.map(Cow::Owned).map_err(|reason| format!("its Zstandard data {reason}"))?
         } else {
             Cow::Borrowed(level.bytes)

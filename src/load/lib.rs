@@ -1,6 +1,8 @@
 //! Loads meshes from glTF, FBX, OBJ, STL, PLY, OFF and 3MF files, height images and textures, within limits of file size and memory.
 //! Everything in a file is checked before it is used.
 
+#![cfg_attr(not(test), warn(clippy::cast_possible_truncation))]
+
 mod attachment;
 mod binding_space;
 mod content;

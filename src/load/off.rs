@@ -14,6 +14,7 @@ use super::model_file::ModelFile;
 use super::read_error::{FilePosition, ReadError};
 use super::text_lines::{Line, Lines, first_word, number, parsed, shown, words};
 use super::uri::Files;
+use geometry::casts::to_byte;
 use geometry::mesh::Material;
 use geometry::mesh::build_limits::MemoryRefused;
 use geometry::mesh::chunked_vec::ChunkedVec;
@@ -278,7 +279,7 @@ impl Vertices {
 /// Decodes a colour whose channels lie from 0 to 1 once they are multiplied by `scale`. Alpha is 1 if it is NaN.
 fn encoded(color: [f32; 4], scale: f32) -> Vec4 {
     // The conversion takes NaN for 0.
-    let [r, g, b, a] = color.map(|channel| (channel * scale * 255.0).round() as u8);
+    let [r, g, b, a] = color.map(|channel| to_byte(channel * scale * 255.0));
     linear_color([r, g, b, if color[3].is_nan() { 255 } else { a }])
 }
 

@@ -2,6 +2,7 @@
 //! colour and opacity, apart, and glossiness is the reverse of roughness.
 
 use crate::memory_budget::Budget;
+use geometry::casts::{to_byte, to_usize};
 use geometry::mesh::Texture;
 
 /// Returns an image with roughness in green and metalness in blue, as glTF has them. Both are read from those channels: images of
@@ -28,7 +29,7 @@ pub(super) fn metallic_roughness(
 pub(super) fn roughness(glossiness: &Texture, factor: f32, budget: &Budget) -> Result<Texture, String> {
     joined(Some(glossiness), None, budget, |glossy, _| {
         let glossiness = factor * f32::from(glossy.map_or(255, |texel| texel[3]));
-        [255, (255.0 - glossiness).round() as u8, 255, 255]
+        [255, to_byte(255.0 - glossiness), 255, 255]
     })
 }
 
@@ -60,7 +61,7 @@ fn joined(
         let texture = texture?;
         let [own_x, own_y] = [(x, width, 0), (y, height, 1)]
             .map(|(at, all, i): (u32, u32, usize)| u64::from(at) * u64::from(texture.size[i]) / u64::from(all));
-        let at = (own_y * u64::from(texture.size[0]) + own_x) as usize;
+        let at = to_usize(own_y * u64::from(texture.size[0]) + own_x);
         texture.rgba.as_chunks::<4>().0.get(at).copied()
     };
     let mut rgba = Vec::with_capacity(width as usize * height as usize * 4);

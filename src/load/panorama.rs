@@ -1,5 +1,6 @@
 //! Panoramas: pictures of all directions, longitude across and latitude down.
 
+use geometry::casts::to_u32;
 use std::f32::consts::{PI, TAU};
 
 use glam::Vec3;
@@ -53,7 +54,7 @@ impl Panorama {
 
     /// Width and height in pixels.
     pub fn size(&self) -> [u32; 2] {
-        [self.width as u32, self.height as u32]
+        [to_u32(self.width), to_u32(self.height)]
     }
 
     /// Row by row from the top, in linear RGB.
@@ -87,6 +88,7 @@ impl Panorama {
     }
 
     /// The light from a unit direction. The panorama's middle is at -Z, +X is to the right of it, and +Y is at the top.
+    #[expect(clippy::cast_possible_truncation, reason = "whole numbers around the picture")]
     pub fn light_from(&self, direction: Vec3) -> Vec3 {
         let across = (0.5 + direction.x.atan2(-direction.z) / TAU) * self.width as f32 - 0.5;
         let down = direction.y.clamp(-1.0, 1.0).acos() / PI * self.height as f32 - 0.5;

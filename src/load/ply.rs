@@ -19,6 +19,7 @@ use super::read_error::{FilePosition, ReadError};
 use super::recent_corners::VertexNumbers;
 use super::text_lines::shown;
 use super::uri::Files;
+use geometry::casts::{to_byte, to_f32};
 use geometry::mesh::Material;
 use geometry::mesh::mesh_builder::InputCorner;
 
@@ -126,6 +127,7 @@ struct Vertices {
 
 impl Vertices {
     /// Returns the number of a vertex, its corner, and its colour: linear RGBA. None if there is no such vertex.
+    #[expect(clippy::cast_possible_truncation, reason = "one that is changed names no vertex or image")]
     fn corner(&self, index: f64) -> Option<(usize, InputCorner, Vec4)> {
         let vertex = index as usize;
         // The conversion changes an index that is negative, not whole or not finite.
@@ -222,7 +224,7 @@ impl<'a> Reader<'a, '_> {
             }
             if has_colors {
                 // The conversion takes NaN for 0.
-                vertices.colors.push(color.map(|channel| (channel * scale * 255.0).round() as u8));
+                vertices.colors.push(color.map(|channel| to_byte(channel * scale * 255.0)));
             }
         }
         Ok(vertices)
@@ -345,7 +347,7 @@ impl<'a> Reader<'a, '_> {
                 PropertyKind::List { count, item } if Some(k) == of_face.wedges => {
                     let length = values.count(count, item)?;
                     for i in 0..length {
-                        let value = values.next(item)? as f32;
+                        let value = to_f32(values.next(item)?);
                         if i < 2 * MAX_CORNERS {
                             self.wedges.push(value);
                         }
@@ -353,7 +355,7 @@ impl<'a> Reader<'a, '_> {
                 }
                 PropertyKind::One(scalar) if Some(k) == of_face.image => image = values.next(scalar)?,
                 PropertyKind::One(scalar) if let Some(channel) = of_face.channel(k) => {
-                    color[channel] = values.next(scalar)? as f32;
+                    color[channel] = to_f32(values.next(scalar)?);
                 }
                 kind => values.skip_one(kind)?,
             }
@@ -371,6 +373,7 @@ impl<'a> Reader<'a, '_> {
     }
 
     /// Finds the material of a face by the number of its image. Returns the colour that it has in place of those of its vertices.
+    #[expect(clippy::cast_possible_truncation, reason = "one that is changed names no vertex or image")]
     fn look(&mut self, of_face: FaceProperties, image: f64, color: [f32; 4]) -> Result<Option<Vec4>, ReadError> {
         if of_face.image.is_some() {
             // The conversion would take a negative number for 0.
@@ -380,7 +383,7 @@ impl<'a> Reader<'a, '_> {
                 return Ok(Some(Vec4::ONE));
             }
         }
-        let encoded = |scale: f32| color.map(|channel| (channel * scale * 255.0).round() as u8);
+        let encoded = |scale: f32| color.map(|channel| to_byte(channel * scale * 255.0));
         Ok(of_face.color.map(|(_, scale)| linear_color(encoded(scale))))
     }
 
@@ -516,7 +519,7 @@ fn read_values(
     values.begin(element, i)?;
     for (property, slot) in element.properties.iter().zip(slots) {
         match (property.kind, slot) {
-            (PropertyKind::One(scalar), Some(slot)) => found[*slot] = values.next(scalar)? as f32,
+            (PropertyKind::One(scalar), Some(slot)) => found[*slot] = to_f32(values.next(scalar)?),
             (kind, _) => values.skip_one(kind)?,
         }
     }

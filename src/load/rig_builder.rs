@@ -6,6 +6,7 @@ use glam::{DMat4, Vec3};
 
 use super::attachment::{Attachment, SceneNodes, attachments};
 use super::binding_space::{BindingSpace, posed, unturned, untwisted};
+use geometry::casts::{to_f32, to_u32};
 use geometry::mesh::mesh_builder::InputCorner;
 use geometry::mesh::normals::GivenNormal;
 use geometry::mesh::rig::{Binding, Clip, Delta, Joint, Morph, Placement, Property, Reach, Rig};
@@ -130,7 +131,7 @@ impl RigBuilder {
         for (node, rest) in scene.morphed.iter().filter(|(node, _)| weighed[*node]) {
             self.node_morphs.insert(*node, self.rig.morphs.len());
             self.rig.morphs.push(Morph { first_weight, rest: rest.clone() });
-            first_weight += rest.len() as u32;
+            first_weight += to_u32(rest.len());
         }
     }
 
@@ -139,7 +140,7 @@ impl RigBuilder {
         clip.channels.retain_mut(|channel| {
             let node = channel.target as usize;
             let target = match channel.property {
-                Property::Weights => self.node_morphs.get(&node).map(|&morph| morph as u32),
+                Property::Weights => self.node_morphs.get(&node).map(|&morph| to_u32(morph)),
                 _ => self.attachments[node].node.filter(|_| moved[node]),
             };
             channel.target = target.unwrap_or_default();
@@ -216,12 +217,12 @@ impl RigBuilder {
         let key = (joint.node, [joint.offset, joint.place].map(bits));
         *self.joint_ids.entry(key).or_insert_with(|| {
             self.rig.joints.push(joint);
-            self.rig.joints.len() as u32 - 1
+            to_u32(self.rig.joints.len()) - 1
         })
     }
 
     fn list(&mut self, list: Vec<u32>) -> u32 {
-        let next = self.lists.len() as u32;
+        let next = to_u32(self.lists.len());
         *self.lists.entry(list).or_insert(next)
     }
 
@@ -247,13 +248,13 @@ impl RigBuilder {
         });
         let turned = self.list(list(|delta| delta.normal).chain(displaced).collect());
         let ([x, y, z], [a, b, c]) = (bits(position), bits(normal));
-        let next = self.bound.len() as u32;
+        let next = to_u32(self.bound.len());
         let id = *self.bound_ids.entry([bound.alike, turned, x, y, z, a, b, c]).or_insert(next);
         if id == next {
-            bound.binding.first_delta = self.rig.deltas.len() as u32;
-            bound.binding.delta_count = deltas.len() as u32;
-            let first = self.tangent_deltas.len() as u32 + 1;
-            let numbers = (first..first + tangents.len() as u32).chain(std::iter::repeat(0));
+            bound.binding.first_delta = to_u32(self.rig.deltas.len());
+            bound.binding.delta_count = to_u32(deltas.len());
+            let first = to_u32(self.tangent_deltas.len()) + 1;
+            let numbers = (first..first + to_u32(tangents.len())).chain(std::iter::repeat(0));
             self.rig.deltas.extend(deltas.iter().zip(numbers).map(|(delta, tangent)| Delta { tangent, ..*delta }));
             self.tangent_deltas.extend_from_slice(tangents);
             self.bound.push(bound);
@@ -268,7 +269,7 @@ impl RigBuilder {
 /// Puts the displacements of tangents behind the tangents of a rig, and lets its deltas refer to them there. They are left out
 /// if the rig has no tangents.
 fn refer_to_tangents(rig: &mut Rig, displacements: &[[f32; 3]]) {
-    let first = rig.tangents.len() as u32;
+    let first = to_u32(rig.tangents.len());
     for delta in &mut rig.deltas {
         delta.tangent = if first > 0 && delta.tangent > 0 { first + delta.tangent - 1 } else { 0 };
     }
@@ -398,7 +399,7 @@ impl NodeBinder<'_> {
         }
         let (mut joints, mut weights) = ([0; 4], [0.0; 4]);
         for (i, (joint, weight)) in slots.into_iter().enumerate().take(4) {
-            (joints[i], weights[i]) = (joint, weight as f32);
+            (joints[i], weights[i]) = (joint, to_f32(weight));
         }
         (joints, weights)
     }

@@ -17,6 +17,7 @@ use super::loaded_mesh::LoadedMesh;
 use super::model_file::ModelFile;
 use super::read_error::{FilePosition, ReadError};
 use super::text_lines::{Line, Lines, first_word, has_comma, numbers_or_nan, shown};
+use geometry::casts::to_usize;
 use geometry::mesh::Material;
 use geometry::mesh::mesh_builder::InputCorner;
 use geometry::progress::Progress;
@@ -151,7 +152,7 @@ impl Reader<'_> {
             ));
             return Ok(format!("its header says that it has {count} triangles, but none is whole"));
         }
-        let surplus = bytes.len() - size(count) as usize;
+        let surplus = bytes.len() - to_usize(size(count));
         self.faces.notes.extend(counted([(surplus, "bytes after the last triangle, left out")]));
         Ok("its header says that it has 0 triangles".to_owned())
     }

@@ -8,6 +8,7 @@ use bevy_mikktspace::{Geometry, TangentSpace, generate_tangents};
 use glam::{Vec2, Vec3};
 
 use super::notes::Notes;
+use geometry::casts::to_u32;
 use geometry::mesh::build_limits::BuildError;
 use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::weld::weld;
@@ -37,7 +38,8 @@ pub(super) fn with_details(
     table: DetailTable,
     numbers: &[u32],
     notes: &mut Notes,
-    (budget, progress): (&Budget, &Progress),
+    budget: &Budget,
+    progress: &Progress,
 ) -> Result<Vec<u32>, BuildError> {
     let (mut details, mut bindings) = table.into_lists(numbers, budget)?;
     let detailed = DetailedMesh { mesh, details: &mut details, bindings: &mut bindings };
@@ -208,7 +210,7 @@ impl DetailedMesh<'_> {
                         bindings.push(bindings[c]);
                         details.push(CornerDetail { tangent, bitangent_sign: sign, ..own });
                         around.point_of.push(around.point_of[c]);
-                        mesh.corners.len() as u32 - 1
+                        to_u32(mesh.corners.len()) - 1
                     });
                 }
             }

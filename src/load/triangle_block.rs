@@ -1,6 +1,7 @@
 //! Looks up the corners of many triangles together: the processor then waits for memory once for several of them.
 
 use super::recent_corners::{RecentCorners, VertexNumbers};
+use geometry::casts::to_u32;
 use geometry::mesh::mesh_builder::{CornerRepairs, InputCorner, StoredCorner};
 
 /// How many triangles are looked up together. All that is kept for them fits beside the vertices that are remembered.
@@ -47,7 +48,7 @@ impl TriangleBlock {
                 continue;
             }
             let Some(corner) = corner_of(vertex)? else { return Ok(false) };
-            let new = StoredCorner { id: self.corners.len() as u32, repairs: CornerRepairs(NEW) };
+            let new = StoredCorner { id: to_u32(self.corners.len()), repairs: CornerRepairs(NEW) };
             self.corners.push(corner);
             self.vertices.push(vertex);
             *own = recent.get(vertex, || new);

@@ -190,6 +190,7 @@ fn relative_path(uri: &str) -> Result<PathBuf, String> {
 }
 
 /// Decodes %XX. A % that isn't followed by two hexadecimal digits stays.
+#[expect(clippy::cast_possible_truncation, reason = "two digits of 4 bits each")]
 pub fn percent_decoded(text: &str) -> Vec<u8> {
     let digit = |byte: &u8| char::from(*byte).to_digit(16);
     let mut decoded = Vec::with_capacity(text.len());

@@ -6,6 +6,7 @@
 //!
 //! Source: RFC 9649, section 2.
 
+use geometry::casts::{to_u32, to_usize};
 use std::io::{self, Cursor, Error, ErrorKind, Read, Seek, SeekFrom};
 
 use image::ImageDecoder;
@@ -117,10 +118,10 @@ fn check_codes(data: impl Read, size: [u32; 2], memory: u64) -> io::Result<()> {
 fn has_pixels(size: [u32; 2], data: &[u8]) -> bool {
     // With alpha the decoder writes into the given pixels, and not into some that it drops if data is missing.
     let header = (size[0] - 1) | (size[1] - 1) << 14 | 1 << 28;
-    let length = (data.len() as u32 + 5).to_le_bytes();
+    let length = (to_u32(data.len()) + 5).to_le_bytes();
     let file = [&b"RIFF"[..], &length, b"WEBPVP8L", &length, &[0x2f], &header.to_le_bytes(), data].concat();
     let Ok(decoder) = WebPDecoder::new(Cursor::new(file)) else { return false };
-    let mut pixels = vec![UNTOUCHED; decoder.total_bytes() as usize];
+    let mut pixels = vec![UNTOUCHED; to_usize(decoder.total_bytes())];
     decoder.read_image(&mut pixels).is_ok() || pixels.iter().any(|&byte| byte != UNTOUCHED)
 }
 

@@ -52,7 +52,9 @@ impl App {
     pub(super) fn read_beside<T: Send + 'static>(
         &mut self,
         context: &egui::Context,
-        (work, title, what): (Work, String, String),
+        work: Work,
+        title: String,
+        what: String,
         read: impl FnOnce(&Progress) -> Result<T, Option<String>> + Send + 'static,
         take: impl FnOnce(&mut Self, T) + 'static,
     ) {

@@ -42,7 +42,7 @@ impl App {
         };
         self.jobs.light = Some(path.clone());
         let title = format!("Reading the light of {}", file_name(&path));
-        self.read_beside(context, (Work::Light, title, shown_path(&path)), read, move |app, light| {
+        self.read_beside(context, Work::Light, title, shown_path(&path), read, move |app, light| {
             app.environment = Some(OpenFile::new(path, light));
             if is_chosen {
                 app.settings.lighting = Lighting::Environment;

@@ -63,8 +63,8 @@ impl App {
             let compared = ComparedFactors::new(&topology, &factors, own.convention);
             Ok((Arc::new(factors), compared))
         };
-        let what = (Work::Factors, String::new(), shown_path(&path));
-        self.read_beside(context, what, read, move |app, (factors, compared)| {
+        let what = shown_path(&path);
+        self.read_beside(context, Work::Factors, String::new(), what, read, move |app, (factors, compared)| {
             app.forget_shader::<LodShader>();
             // The file's factors take LOD's place: nothing follows the view.
             let lod = std::mem::replace(&mut app.settings.tessellation.lod, Lod::Uniform);
@@ -120,7 +120,7 @@ impl App {
         given.content.compared = None;
         let (factors, topology) = (given.content.factors.clone(), document.loaded.topology.clone());
         let compare = move |_: &_| Ok(ComparedFactors::new(&topology, &factors, own.convention));
-        self.read_beside(context, (Work::Factors, String::new(), shown_path(&path)), compare, |app, compared| {
+        self.read_beside(context, Work::Factors, String::new(), shown_path(&path), compare, |app, compared| {
             if let Some(given) = &mut app.given {
                 given.content.compared = Some(compared);
             }

@@ -16,7 +16,7 @@ impl App {
         let path = absolute_path(path);
         let (wanted, limits, what) = (path.clone(), self.jobs.limits, shown_path(&path));
         let read = move |_: &_| load_matcap(&wanted, &limits).map_err(|error| Some(error.to_string()));
-        self.read_beside(context, (Work::Matcap, String::new(), what), read, |app, picture| {
+        self.read_beside(context, Work::Matcap, String::new(), what, read, |app, picture| {
             app.matcap = Some(OpenFile::new(path, Arc::new(picture)));
             app.settings.overlays.colors = Colors::Matcap;
         });

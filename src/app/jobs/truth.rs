@@ -30,7 +30,7 @@ impl App {
             Err(error) => Err(Some(error.to_string())),
         };
         let title = format!("Loading the reference surface {}", source.title());
-        self.read_beside(context, (Work::Truth, title, source.title()), load, |app, truth| {
+        self.read_beside(context, Work::Truth, title, source.title(), load, |app, truth| {
             app.truth = Some(ChosenTruth { source, truth, generation: new_generation() });
             app.settings.overlays.colors = Colors::Deviation;
         });

@@ -37,7 +37,7 @@ impl App {
         list_title(ui, None, "Worst edges", hover);
         columns(ui, &format!("{:<7}{:<13}{:>9}", "edge", "kind", "gap, units"), true);
         let which = document.generation as u32 ^ results.seen.inputs.tessellation.surface as u32;
-        let clicked = found_list(ui, "worst edges", (cracked.len(), which), |row| {
+        let clicked = found_list(ui, "worst edges", cracked.len(), which, |row| {
             let crack = &cracked[row];
             let kind = kind_name(topology.edges[crack.edge as usize].kind);
             FoundRow {
@@ -124,7 +124,7 @@ impl App {
             number(ui, &grouped(junctions.len() as u64));
         });
         columns(ui, &format!("{:<9}{:<9}{:>11}", "point", "edge", "at, 0 to 1"), true);
-        let clicked = found_list(ui, "t-junctions", (junctions.len(), junctions[0].point), |row| {
+        let clicked = found_list(ui, "t-junctions", junctions.len(), junctions[0].point, |row| {
             let TJunction { edge, point, t, .. } = junctions[row];
             FoundRow {
                 columns: format!("{point:<9}{edge:<9}{t:>11.3}"),
@@ -249,7 +249,7 @@ fn point_rows(ui: &mut egui::Ui, sides: &[EdgeSide]) {
     let Some((first, others)) = sides.split_first() else { return };
     let count = sides.iter().map(|side| side.points.len()).max().unwrap_or(0);
     columns(ui, &format!("{:<6}{:>23}", "point", "gap, units"), true);
-    list(ui, "points", (count, first.triangle), |ui, index| {
+    list(ui, "points", count, first.triangle, |ui, index| {
         let place = |side: &EdgeSide| side.positions().nth(index);
         let gaps = others.iter().map(|other| Some(f64::from(place(first)?.distance(place(other)?))));
         let gap = gaps

@@ -80,7 +80,7 @@ impl App {
         columns(ui, &format!("{:<9}{:>9}{:>9}", "edge", "least", "greatest"), true)
             .on_hover_text("The least and the greatest factor of a side of the edge.");
         let first = edges.first().map_or(0, |edge| edge.edge);
-        let clicked = found_list(ui, "different factors", (edges.len(), first), |row| {
+        let clicked = found_list(ui, "different factors", edges.len(), first, |row| {
             let own = &edges[row];
             let [least, greatest] = own.extremes().map(|(_, factor)| short(factor.into()));
             FoundRow {

@@ -23,7 +23,7 @@ impl App {
             .on_hover_text("The triangle of the mesh, its folds, and their area in square object units.");
         let (patches, first) = (&document.loaded.topology.patches, &found.folded[0]);
         let which = first.patch ^ (first.area as f32).to_bits();
-        let clicked = found_list(ui, "folded patches", (found.folded.len(), which), |row| {
+        let clicked = found_list(ui, "folded patches", found.folded.len(), which, |row| {
             let folded = &found.folded[row];
             let triangle = patches.get(folded.patch as usize).map_or(0, |patch| patch.triangle);
             FoundRow {

@@ -17,7 +17,7 @@ impl App {
         list_title(ui, None, "Leaks", hover);
         columns(ui, &format!("{:>6}{:>8}{:>15}", "x, px", "y, px", "px that leak"), true)
             .on_hover_text("The pixel in the middle of the leak, from the picture's top left, and the leak's size.");
-        let clicked = found_list(ui, "leaks", (leaks.len(), leaks[0].px.x as u32), |row| {
+        let clicked = found_list(ui, "leaks", leaks.len(), leaks[0].px.x as u32, |row| {
             let leak = &leaks[row];
             let [x, y] = leak.px.floor().to_array();
             FoundRow {

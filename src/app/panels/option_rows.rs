@@ -24,11 +24,11 @@ pub(super) fn option_row_with(ui: &mut egui::Ui, option: &Declaration, settings:
             choice_row(ui, option, Some(other.name), settings, hover);
             // The list may have changed it.
             if option.get(settings) == Value::Number(number) {
-                number_row(ui, (option, row), range, number, settings, hover);
+                number_row(ui, option, row, range, number, settings, hover);
             }
         }
         (Kind::Number(range), Value::Number(number)) => {
-            number_row(ui, (option, option.label), range, number, settings, hover);
+            number_row(ui, option, option.label, range, number, settings, hover);
         }
         (_, Value::Name(name)) => choice_row(ui, option, Some(name), settings, hover),
         (Kind::Choice(_) | Kind::NameOrNumber { .. }, Value::Unset) => choice_row(ui, option, None, settings, hover),
@@ -57,7 +57,8 @@ fn beyond(ui: &egui::Ui, number: &str) -> f32 {
 /// A row with a slider for the number of an option. The row's name is given with the option.
 fn number_row(
     ui: &mut egui::Ui,
-    (option, name): (&Declaration, &str),
+    option: &Declaration,
+    name: &str,
     range: &Range,
     mut number: f32,
     settings: &mut Settings,

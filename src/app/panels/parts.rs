@@ -20,7 +20,7 @@ impl App {
             return;
         }
         let mut clicked = None;
-        list(ui, "parts", (parts.len(), 0), |ui, row| {
+        list(ui, "parts", parts.len(), 0, |ui, row| {
             let part = &parts[row];
             let mut is_shown = !part.is_hidden;
             let hover = format!(

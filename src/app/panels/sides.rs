@@ -73,7 +73,7 @@ impl App {
             let gap = ui.spacing().item_spacing.x;
             let size = egui::vec2(0.5 * (ui.available_width() - gap), ui.spacing().interact_size.y + 4.0);
             for (side, name, hover) in Side::ALL {
-                tab(ui, &mut self.panels, (side, name), hover, size, worst);
+                tab(ui, &mut self.panels, side, name, hover, size, worst);
             }
         });
         match (self.panels.side, room) {
@@ -93,7 +93,8 @@ impl App {
 fn tab(
     ui: &mut egui::Ui,
     panels: &mut Panels,
-    (side, name): (Side, &str),
+    side: Side,
+    name: &str,
     hover: &str,
     size: egui::Vec2,
     worst: Option<Color32>,

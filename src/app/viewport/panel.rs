@@ -366,20 +366,20 @@ impl App {
         if let Some(under_way) = self.under_way() {
             let stop = format!("Stop ({})", key_name(&Action::Cancel));
             let done = Some((under_way.done, under_way.seconds_left));
-            if progress(ui, rect, &under_way.title, done, (&stop, under_way.stopping)) {
+            if progress(ui, rect, &under_way.title, done, &stop, under_way.stopping) {
                 self.stop(&under_way);
             }
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
         } else if self.viewport.picture.cancelled.is_some() {
             let hover = "Draws the picture with these settings after all. Any change of settings draws it too.";
-            if progress(ui, rect, &format!("Not drawn: {}", self.triangles()), None, ("Draw", hover)) {
+            if progress(ui, rect, &format!("Not drawn: {}", self.triangles()), None, "Draw", hover) {
                 self.viewport.picture.cancelled = None;
                 ui.ctx().request_repaint();
             }
         } else if self.shows_nothing() {
             let hover =
                 with_key("Moves the camera so that it sees all of the mesh.", &Action::Camera(CameraAction::Frame));
-            if progress(ui, rect, "Nothing of the mesh is in view.", None, ("Frame the mesh", &hover)) {
+            if progress(ui, rect, "Nothing of the mesh is in view.", None, "Frame the mesh", &hover) {
                 self.frame_anew();
             }
         }
@@ -417,7 +417,8 @@ fn progress(
     rect: egui::Rect,
     title: &str,
     done: Option<(f32, Option<f64>)>,
-    (button, hover): (&str, &str),
+    button: &str,
+    hover: &str,
 ) -> bool {
     let area = progress_place(rect);
     let show = |ui: &mut egui::Ui| {

@@ -8,6 +8,7 @@
 use std::ops::Range;
 
 use super::topology::{Patch, Side, Topology};
+use crate::casts::to_u32;
 use crate::names::every;
 
 /// How many indices a patch has, and which.
@@ -81,11 +82,11 @@ impl Layout {
     pub fn parts(self) -> impl Iterator<Item = (Part, Range<usize>)> {
         let first = pair(0).start - self.of_eighteen().start;
         let corners = (self != Self::Six).then_some((Part::Corners, 0..3));
-        let sides = (0..3).map(move |k| (Part::Side(k as u32), first + 2 * k..first + 2 * k + 2));
+        let sides = (0..3).map(move |k| (Part::Side(to_u32(k)), first + 2 * k..first + 2 * k + 2));
         let has_dominant = matches!(self, Self::Twelve | Self::Eighteen);
         let dominant = has_dominant.then_some((Part::Dominant, 9..12));
         let dominant_sides = if self == Self::Eighteen { 0..3 } else { 0..0 };
-        let dominant_sides = dominant_sides.map(|k: usize| (Part::DominantSide(k as u32), 12 + 2 * k..14 + 2 * k));
+        let dominant_sides = dominant_sides.map(|k: usize| (Part::DominantSide(to_u32(k)), 12 + 2 * k..14 + 2 * k));
         corners.into_iter().chain(sides).chain(dominant).chain(dominant_sides)
     }
 }

@@ -3,6 +3,7 @@
 use super::interner::Interner;
 use super::rig::Binding;
 use super::{Corner, Mesh};
+use crate::casts::to_u32;
 
 /// The most corners that are found to be alike, so that work for each of them with all triangles of all of them is limited.
 const MOST: u32 = 64;
@@ -11,7 +12,7 @@ impl Mesh {
     /// Returns for each corner the first one that differs from it in its [`details`](Self::details) alone, or the corner itself.
     /// Where very many corners are alike, each is returned itself.
     pub fn alike_corners(&self) -> Vec<u32> {
-        let own = 0..self.corners.len() as u32;
+        let own = 0..to_u32(self.corners.len());
         if self.details.is_none() {
             return own.collect();
         }

@@ -6,6 +6,7 @@ use glam::{DVec3, Vec3, Vec3A};
 
 use super::Mesh;
 use super::weld::plus_zero3;
+use crate::casts::to_f32;
 use crate::cores::in_ranges;
 
 /// The least number of corners that are worth a thread.
@@ -35,7 +36,7 @@ impl Bounds {
         }
         // Which zero is the least depends on the order of the positions.
         let bounds = Self { min: plus_zero3(min), max: plus_zero3(max), radius: 0.0 };
-        Self { radius: square(bounds.center().as_dvec3()).sqrt() as f32, ..bounds }
+        Self { radius: to_f32(square(bounds.center().as_dvec3()).sqrt()), ..bounds }
     }
 
     /// Returns the centre of the box.
@@ -46,7 +47,7 @@ impl Bounds {
 
     /// Returns the length of the box's diagonal.
     pub fn diagonal(&self) -> f32 {
-        self.min.as_dvec3().distance(self.max.as_dvec3()) as f32
+        to_f32(self.min.as_dvec3().distance(self.max.as_dvec3()))
     }
 
     /// Returns bounds that hold everything in these after it has moved by up to `by` object units.

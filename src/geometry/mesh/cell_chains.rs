@@ -7,6 +7,7 @@ use hashbrown::HashTable;
 use hashbrown::hash_table::Entry;
 
 use super::cell_grid::{CellGrid, spread};
+use crate::casts::to_u32;
 
 /// The number that ends a chain.
 const NONE: u32 = u32::MAX;
@@ -48,7 +49,7 @@ impl CellChains {
 
     /// Adds the next item, and returns which one it is.
     pub(super) fn push(&mut self, position: Vec3, number: u32) -> u32 {
-        let item = self.items.len() as u32;
+        let item = to_u32(self.items.len());
         if number != 0 || !self.numbers.is_empty() {
             self.numbers.resize(self.items.len(), 0);
             self.numbers.push(number);

@@ -131,7 +131,7 @@ fn rebuilt(
                 for (corner, kept) in corners.into_iter().zip(&mut kept) {
                     let number = match &mut details {
                         Some((details, table)) => {
-                            table.number(detail_in((mesh, details), topology, triangle, &corner), 0, budget)?
+                            table.number(detail_in(mesh, details, topology, triangle, &corner), 0, budget)?
                         }
                         None => 0,
                     };

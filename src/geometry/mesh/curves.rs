@@ -5,6 +5,7 @@
 use bytemuck::{Pod, Zeroable};
 
 use super::{Edge, Mesh, Topology};
+use crate::casts::to_u32;
 
 /// Which sides of an edge share a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,7 +62,7 @@ impl Curves {
     /// Groups the sides of every edge into curves. Takes time linear in the number of sides, except for edges with many
     /// sides.
     pub fn build(mesh: &Mesh, topology: &Topology, sharing: Sharing) -> Self {
-        Self::build_some(mesh, topology, sharing, 0..topology.edges.len() as u32)
+        Self::build_some(mesh, topology, sharing, 0..to_u32(topology.edges.len()))
     }
 
     /// Does the same for some edges alone, in ascending order. The other edges have no curves.
@@ -78,7 +79,7 @@ impl Curves {
         }
         for index in edges {
             let edge = &topology.edges[index as usize];
-            let first = curves.curves.len() as u32;
+            let first = to_u32(curves.curves.len());
             match sharing {
                 Sharing::AllSides => {
                     let sides = topology.side_range(edge);
@@ -91,14 +92,14 @@ impl Curves {
             }
             if !per_patch {
                 // The next edge starts where this one ends.
-                let end = curves.curves.len() as u32;
+                let end = to_u32(curves.curves.len());
                 curves.factor_curves[index as usize] = first;
                 if let Some(next) = curves.factor_curves.get_mut(index as usize + 1) {
                     *next = end;
                 }
             }
         }
-        curves.factor_curves.push(curves.curves.len() as u32);
+        curves.factor_curves.push(to_u32(curves.curves.len()));
         curves
     }
 
@@ -114,7 +115,7 @@ impl Curves {
 
     /// Returns the number of factors.
     pub fn factor_count(&self) -> u32 {
-        self.factor_curves.len() as u32 - 1
+        to_u32(self.factor_curves.len()) - 1
     }
 
     /// Adds a curve in the edge's direction for the sides `all`. Its control points are computed from the sides
@@ -155,7 +156,7 @@ impl Curves {
             let other = (with_neighbour && sides.len() == 2).then(|| sides.start + sides.start + 1 - side);
             let asked = std::iter::once(side).chain(other);
             if self.per_patch {
-                self.factor_curves.push(self.curves.len() as u32);
+                self.factor_curves.push(to_u32(self.curves.len()));
             }
             let corners = asked.map(|side| turned(topology.side_corners(&topology.sides[side as usize])));
             self.side_curves[side as usize] = self.push(turned(topology.edge_points(edge)), corners);
@@ -163,11 +164,11 @@ impl Curves {
     }
 
     fn push(&mut self, points: [u32; 2], sides: impl Iterator<Item = [u32; 2]>) -> u32 {
-        let first_side = self.sides.len() as u32;
+        let first_side = to_u32(self.sides.len());
         self.sides.extend(sides);
-        let side_count = self.sides.len() as u32 - first_side;
+        let side_count = to_u32(self.sides.len()) - first_side;
         self.curves.push(Curve { points, first_side, side_count });
-        self.curves.len() as u32 - 1
+        to_u32(self.curves.len()) - 1
     }
 }
 

@@ -3,6 +3,7 @@
 //! corners on a point in the direction in which the point is displaced.
 
 use super::{Curves, Topology};
+use crate::casts::to_u32;
 
 /// The dominant sides and corners, and lists of each point's corners and factors.
 #[derive(Clone, Debug, Default)]
@@ -37,7 +38,7 @@ impl Dominance {
                 let corner = topology.corners(patch)[k];
                 let point = topology.corner_points[corner as usize];
                 let known = &mut corners[point as usize];
-                *known = (*known).min(index * 4 + k as u32);
+                *known = (*known).min(index * 4 + to_u32(k));
                 parts.push((point, corner));
                 let own = dominance.patch_factors[index as usize];
                 factors.extend([(point, own[k]), (point, own[(k + 2) % 3])]);
@@ -64,7 +65,7 @@ fn sides(topology: &Topology, curves: &Curves) -> Vec<u32> {
     let mut sides = vec![0; curves.factor_count() as usize];
     for (index, side) in (0..).zip(&topology.sides) {
         let first = &topology.sides[topology.edges[side.edge as usize].first_side as usize];
-        sides[curves.factor(topology, index) as usize] = first.patch() * 4 + first.index() as u32;
+        sides[curves.factor(topology, index) as usize] = first.patch() * 4 + to_u32(first.index());
     }
     sides
 }

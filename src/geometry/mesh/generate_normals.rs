@@ -12,6 +12,7 @@ use super::normals::{Face, fan_normals};
 use super::smooth_points::give_normals;
 use super::unfinished_mesh::{CornerPoints, UnfinishedMesh};
 use super::weld::plus_zero3;
+use crate::casts::to_u32;
 use crate::cores::in_ranges;
 use crate::progress::Progress;
 
@@ -49,7 +50,7 @@ pub(crate) fn generate_normals(
     let done = borrowing(budget, || give_normals(mesh, &points, crease_angle, budget, progress))?;
     if done.is_empty() || done.contains(&false) {
         budget.borrow(done.len() as u64)?;
-        with_fans(mesh, (&points, &done), crease_angle, budget, progress)?;
+        with_fans(mesh, &points, &done, crease_angle, budget, progress)?;
     }
     Ok(())
 }
@@ -57,14 +58,15 @@ pub(crate) fn generate_normals(
 /// Does the same for points that aren't done yet, with lists of the faces around them. `done` is empty if that is no point.
 fn with_fans(
     mesh: &mut UnfinishedMesh,
-    (points, done): (&CornerPoints, &[bool]),
+    points: &CornerPoints,
+    done: &[bool],
     crease_angle: f32,
     budget: &Budget,
     progress: &Progress,
 ) -> Result<(), BuildError> {
     let points = UndonePoints { points, done };
     let mut around = CornersByPoint::new(mesh, &points, budget)?;
-    let mut added = AddedCorners { made: ChunkedVec::default(), first: mesh.corners.len() as u32, budget };
+    let mut added = AddedCorners { made: ChunkedVec::default(), first: to_u32(mesh.corners.len()), budget };
     let (mut fan, mut next) = (Fan::default(), 0);
     while next < around.ends.len() {
         progress.check()?;
@@ -175,7 +177,7 @@ struct AddedCorners<'a> {
 
 impl AddedCorners<'_> {
     fn add(&mut self, like: u32, normal: Vec3) -> Result<u32, BuildError> {
-        let id = self.first + self.made.len() as u32;
+        let id = self.first + to_u32(self.made.len());
         self.budget.borrow(self.made.next_bytes())?;
         self.made.push((like, normal));
         Ok(id)
@@ -254,7 +256,7 @@ impl Fan {
         ids.clear();
         ids.extend(corners.iter().map(|&corner| mesh.corner(corner)));
         order.clear();
-        order.extend(0..ids.len() as u32);
+        order.extend(0..to_u32(ids.len()));
         let key = |i: u32, ids: &[u32], mesh: &UnfinishedMesh| {
             let (id, normal) = (ids[i as usize], normals[i as usize]);
             let uv = mesh.corners[id as usize].uv.to_array().map(f32::to_bits);
@@ -323,7 +325,7 @@ mod tests {
         let (mut fast, mut slow) = (mesh(), mesh());
         generate_normals(&mut fast, crease_angle, &Budget::unlimited(), &Progress::new()).unwrap();
         let points = CornerPoints::of(&slow, &Budget::unlimited()).unwrap();
-        with_fans(&mut slow, (&points, &[]), crease_angle, &Budget::unlimited(), &Progress::new()).unwrap();
+        with_fans(&mut slow, &points, &[], crease_angle, &Budget::unlimited(), &Progress::new()).unwrap();
         [fast, slow]
     }
 

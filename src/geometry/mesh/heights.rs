@@ -6,6 +6,7 @@ mod pyramid;
 use glam::Vec2;
 
 use super::Mesh;
+use crate::casts::to_f32;
 use crate::progress::{Cancelled, Progress};
 
 /// The greatest width and height of a height map, in px. Larger images are scaled down.
@@ -141,7 +142,7 @@ fn angles(mesh: &Mesh) -> Vec<f32> {
         let at = triangle.map(|corner| mesh.corners[corner as usize].position.as_dvec3());
         for k in 0..3 {
             let [a, b] = [1, 2].map(|step| (at[(k + step) % 3] - at[k]).normalize_or_zero());
-            angles[triangle[k] as usize] += a.cross(b).length().atan2(a.dot(b)) as f32;
+            angles[triangle[k] as usize] += to_f32(a.cross(b).length().atan2(a.dot(b)));
         }
     }
     angles

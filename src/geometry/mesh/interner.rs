@@ -1,5 +1,6 @@
 //! Gives equal keys equal numbers, while the keyed items lie in a list of the caller's.
 
+use crate::casts::to_u32;
 use std::hash::{BuildHasher, Hash};
 use std::hint::black_box;
 
@@ -35,7 +36,7 @@ impl Interner {
         if let Some(&id) = self.table.find(hash, |&id| key_of(id) == key) {
             return (id, false);
         }
-        let id = self.table.len() as u32;
+        let id = to_u32(self.table.len());
         if self.table.len() == self.table.capacity() {
             self.reserve(self.table.len().max(8), &key_of);
         }
@@ -52,7 +53,7 @@ impl Interner {
         self.table = HashTable::new();
         self.table = HashTable::with_capacity(count + more);
         let hash = |&id: &u32| self.hasher.hash_one(key_of(id));
-        for id in 0..count as u32 {
+        for id in 0..to_u32(count) {
             self.table.insert_unique(hash(&id), id, hash);
         }
     }

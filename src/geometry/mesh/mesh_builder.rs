@@ -12,6 +12,7 @@ use super::normals::{CREASE_ANGLE, GivenNormal};
 use super::unfinished_mesh::UnfinishedMesh;
 use super::weld::{plus_zero2, plus_zero3};
 use super::{Corner, Material, Mesh, Repairs};
+use crate::casts::to_u32;
 use crate::progress::{Cancelled, Progress};
 
 use distinct_corners::DistinctCorners;
@@ -300,9 +301,9 @@ impl MeshBuilder {
         }
         let mut materials = Vec::with_capacity(groups.len());
         for Group { mut material, runs } in groups {
-            let first = if is_whole { 0 } else { triangles.len() as u32 };
+            let first = if is_whole { 0 } else { to_u32(triangles.len()) };
             runs.into_iter().for_each(|run| triangles.extend(run));
-            material.triangles = Range { start: first, end: triangles.len() as u32 };
+            material.triangles = Range { start: first, end: to_u32(triangles.len()) };
             materials.push(material);
         }
         Ok((triangles, materials))

@@ -10,6 +10,7 @@ use std::sync::LazyLock;
 use glam::{Vec3, Vec4, vec3};
 
 use super::{Alpha, Slot, Texture};
+use crate::casts::to_f32;
 
 /// How the texels of an image are averaged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -48,7 +49,7 @@ pub static SRGB_TABLE: LazyLock<[f32; 512]> = LazyLock::new(|| {
         let encoded = if i < 256 { i as f64 } else { ((i - 256) as f64 - 0.5).max(0.0) } / 255.0;
         // IEC 61966-2-1.
         let linear = if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) };
-        linear as f32
+        to_f32(linear)
     })
 });
 
@@ -103,6 +104,7 @@ impl MipSum {
         self.total += weight;
     }
 
+    #[expect(clippy::cast_possible_truncation, reason = "at most 255, and at most the texels of a level")]
     fn texel(&self, filter: MipFilter) -> [u8; 4] {
         let color = match filter {
             MipFilter::Numbers => self.plain / self.total,
@@ -217,6 +219,7 @@ pub fn covered(texture: &Texture, least: u32) -> u64 {
 
 /// How many texels of a level must pass the test of alpha, so that as large a part of it does as of the image, of which `covered`
 /// texels do.
+#[expect(clippy::cast_possible_truncation, reason = "at most 255, and at most the texels of a level")]
 pub fn wanted_texels(covered: u64, size: [u32; 2], level: u32) -> u32 {
     let texels = |size: [u32; 2]| u64::from(size[0]) * u64::from(size[1]);
     let all = texels(size).max(1);
@@ -244,6 +247,7 @@ fn scaled_alpha(alpha: u32, from: u32, least: u32) -> u32 {
 
 /// All levels of an image but the first. If `least` is the least alpha that passes the test of a mask, alpha is scaled on each
 /// level so that as large a part of it passes as of the image (Castaño 2010, "Computing Alpha Mipmaps").
+#[expect(clippy::cast_possible_truncation, reason = "at most 255, and at most the texels of a level")]
 pub fn mip_levels(texture: &Texture, filter: MipFilter, least: Option<u32>) -> Vec<Texture> {
     let mut levels: Vec<Texture> = Vec::new();
     for _ in 1..level_count(texture.size) {

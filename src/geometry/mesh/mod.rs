@@ -1,5 +1,7 @@
 //! Geometry: triangles with corners ([`Mesh`]); and the points, edges and sides that they meet in ([`Topology`]).
 
+#![cfg_attr(not(test), warn(clippy::cast_possible_truncation))]
+
 pub mod adjacency;
 mod alike_corners;
 mod bounding_box_tree;

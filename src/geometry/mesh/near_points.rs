@@ -5,6 +5,7 @@ use std::ops::ControlFlow::{Break, Continue};
 use glam::Vec3;
 
 use super::cell_chains::CellChains;
+use crate::casts::to_u32;
 use crate::cores::in_ranges;
 
 /// How many other points are compared with a point at most. A point in a crowd counts as near to another one without a
@@ -33,6 +34,7 @@ impl NearPoints {
     /// Compares `points` with each other; only those with the same number can be near. There are no numbers if all are
     /// the same. `tolerances` are above 0, in object units, and ascending. Within those that most points have another one in,
     /// no search is made, and all points count as near. Takes linear time.
+    #[expect(clippy::cast_possible_truncation, reason = "there are few tolerances")]
     pub(super) fn find(points: &[Vec3], numbers: &[u32], tolerances: &[f64]) -> Self {
         let searches = tolerances.iter().map(|&reach| NearestPoint::new(points, numbers, reach));
         let Some((furthest, search)) = searches.enumerate().rev().find(|(_, search)| search.leaves_out_most()) else {
@@ -41,7 +43,7 @@ impl NearPoints {
         let tolerances = &tolerances[..=furthest];
         // No search goes further.
         let beyond = furthest as u8 + 1;
-        let first_of = |point: usize| match search.nearest(point as u32) {
+        let first_of = |point: usize| match search.nearest(to_u32(point)) {
             Nearest::At(distance) => tolerances.partition_point(|tolerance| *tolerance < distance) as u8,
             Nearest::Beyond => beyond,
             Nearest::Unknown => 0,
@@ -91,7 +93,7 @@ impl<'a> NearestPoint<'a> {
         // Two cells along each axis.
         let widest = 3.0 * (2.0 * WIDTH * reach).powi(2) * ROOM;
         let mut search = Self { points, numbers, reach, widest, chains };
-        for point in 0..points.len() as u32 {
+        for point in 0..to_u32(points.len()) {
             search.chains.push(points[point as usize], search.number(point));
         }
         search
@@ -128,7 +130,7 @@ impl<'a> NearestPoint<'a> {
     /// Returns whether most points have no other one within reach, by an estimate. Only then is a search for all worth its time.
     fn leaves_out_most(&self) -> bool {
         let step = (self.points.len() / SAMPLES).max(1);
-        let samples = (0..self.points.len() as u32).step_by(step);
+        let samples = (0..to_u32(self.points.len())).step_by(step);
         let is_beyond = |point: &u32| matches!(self.nearest(*point), Nearest::Beyond);
         2 * samples.clone().filter(is_beyond).count() >= samples.len()
     }

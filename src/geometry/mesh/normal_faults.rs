@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::Mesh;
 use super::topology::{Edge, Patch, Side, Topology};
+use crate::casts::to_u32;
 use crate::cores::in_ranges;
 
 /// Two unit vectors count as parallel if the magnitude of their dot product is greater than this: within 2.6 degrees.
@@ -48,7 +49,7 @@ impl NormalFaults {
             in_ranges(topology.edges.len(), LEAST, |range| topology.edges[range].iter().filter(opposed).count());
         Self {
             against_face: of_patches.iter().map(|faults| faults.against_face).sum(),
-            opposite: of_edges.into_iter().sum::<usize>() as u32,
+            opposite: to_u32(of_edges.into_iter().sum::<usize>()),
             along_edge: of_patches.iter().map(|faults| faults.along_edge).sum(),
         }
     }

@@ -1,6 +1,7 @@
 //! Checks the normals that a mesh comes with, and computes normals where there is no usable one: smooth between faces
 //! that meet at up to the crease angle, creased elsewhere.
 
+use crate::casts::to_u32;
 use std::collections::HashMap;
 
 use glam::{DVec3, Vec3};
@@ -195,13 +196,17 @@ fn are_near(fan: &[Face], limit: f64) -> bool {
 
 /// Groups faces by direction, in a grid with `along` cells for each unit of an axis. Returns each cell as one face
 /// (mean normal, total angle), and the cell of each face.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "whole numbers; those too large meet at the ends, which only merges cells"
+)]
 fn gather(fan: &[Face], along: f64) -> (Vec<Face>, Vec<u32>) {
     let mut ids: HashMap<[i64; 3], u32> = HashMap::new();
     let mut sums: Vec<(DVec3, f64)> = Vec::new();
     let mut cell_of = Vec::with_capacity(fan.len());
     for face in fan {
         let key = (face.normal * along).round().to_array().map(|x| x as i64);
-        let cell = *ids.entry(key).or_insert(sums.len() as u32);
+        let cell = *ids.entry(key).or_insert(to_u32(sums.len()));
         if cell as usize == sums.len() {
             sums.push((DVec3::ZERO, 0.0));
         }

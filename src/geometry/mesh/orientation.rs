@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::{DMat3, DMat4, Vec3};
 
 use super::{LightKind, Mesh, Projection, Rig};
+use crate::casts::to_f32;
 
 /// An axis of a file's coordinates, which points up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -49,7 +50,7 @@ pub fn reorient(mesh: &mut Mesh, up: UpAxis, scale: f64) {
         return;
     }
     let length = |length: f32| {
-        let scaled = (f64::from(length) * scale) as f32;
+        let scaled = to_f32(f64::from(length) * scale);
         if scaled.is_subnormal() { 0.0 } else { scaled }
     };
     let place = |v: Vec3| Vec3::from(up.turn(v).to_array().map(length)) + Vec3::ZERO;

@@ -9,6 +9,7 @@
 mod animated_node;
 pub mod clip;
 
+use crate::casts::to_f32;
 use std::fmt;
 
 use bytemuck::{Pod, Zeroable};
@@ -218,7 +219,7 @@ impl Rig {
             let target = channel.target as usize;
             if channel.property == Property::Weights {
                 let first = self.morphs[target].first_weight as usize;
-                channel.keys.sample(time, |i, value| weights[first + i] = value as f32);
+                channel.keys.sample(time, |i, value| weights[first + i] = to_f32(value));
             } else {
                 placements[target].animate(channel, time);
             }

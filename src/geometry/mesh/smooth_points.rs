@@ -7,6 +7,7 @@ use super::build_limits::{Budget, BuildError};
 use super::normals::{FAN_LIMIT, faces_of, limit_of, unit_mean};
 use super::unfinished_mesh::{CornerPoints, UnfinishedMesh};
 use super::weld::plus_zero3;
+use crate::casts::{to_f32, to_u32};
 use crate::cores::in_ranges;
 use crate::progress::Progress;
 
@@ -43,7 +44,7 @@ impl PointSum {
         let rounded = normal.as_vec3();
         (self.least, self.most) = (self.least.min(rounded), self.most.max(rounded));
         self.sum += angle * normal;
-        let fits = normal != DVec3::ZERO && self.faces < FAN_LIMIT as u32;
+        let fits = normal != DVec3::ZERO && self.faces < to_u32(FAN_LIMIT);
         self.faces = if fits { self.faces + 1 } else { Self::APART };
     }
 
@@ -77,7 +78,7 @@ pub(super) fn give_normals(
         return Ok(Vec::new());
     }
     // A little less than the square of the distance between unit normals at that angle, for the rounding to f32.
-    let chord = (2.0 - 2.0 * limit_of(crease_angle)) as f32 - 2e-6;
+    let chord = to_f32(2.0 - 2.0 * limit_of(crease_angle)) - 2e-6;
     let mut sums = vec![PointSum::NONE; count];
     for block in mesh.triangles.chunks(BLOCK) {
         progress.check()?;

@@ -8,6 +8,7 @@ mod points_on_edges;
 use serde::Serialize;
 
 use super::topology::{Edge, EdgeKind, Topology};
+use crate::casts::to_f32;
 use crate::progress::{Cancelled, Progress};
 
 use chains::ChainSearch;
@@ -104,7 +105,7 @@ fn list(topology: &Topology, edge: u32, of: &Edge, points: &mut Vec<u32>, all: &
     let mut places: Vec<_> = places.collect();
     places.sort_by(|((a, _), _), ((b, _), _)| a.total_cmp(b));
     let junction =
-        |((t, distance), point): ((f64, f64), u32)| TJunction { edge, point, t: t as f32, distance: distance as f32 };
+        |((t, distance), point): ((f64, f64), u32)| TJunction { edge, point, t: to_f32(t), distance: to_f32(distance) };
     all.extend(places.into_iter().map(junction));
 }
 

@@ -13,6 +13,7 @@ use super::build_limits::{Borrowed, Budget, BuildError};
 use super::union_find::UnionFind;
 use super::weld::{WELD_BYTES, weld_alike};
 use super::{Corner, Mesh};
+use crate::casts::to_u32;
 use crate::progress::{Cancelled, Progress};
 
 /// A mesh's patches and the edges between them.
@@ -196,7 +197,7 @@ impl Topology {
         let (point_corners, has_many) = first_corners(&corner_points, points.len());
         let mut topology = Self {
             point_corners,
-            degenerate: (mesh.triangles.len() - patches.len()) as u32,
+            degenerate: to_u32(mesh.triangles.len() - patches.len()),
             material_patches: material_patches(mesh, &patches),
             triangles: mesh.triangles.clone(),
             points,
@@ -257,9 +258,9 @@ impl Topology {
         }
         let mut volumes = vec![None; self.patches.len()];
         for i in 0..self.patches.len() {
-            let [a, b, c] = self.patch_positions(i as u32).map(Vec3::as_dvec3);
+            let [a, b, c] = self.patch_positions(to_u32(i)).map(Vec3::as_dvec3);
             // Measured from a corner of the part, so that a part far from the origin loses no precision.
-            let (at, volume) = volumes[parts.of(i as u32) as usize].get_or_insert((a, 0.0));
+            let (at, volume) = volumes[parts.of(to_u32(i)) as usize].get_or_insert((a, 0.0));
             *volume += (a - *at).dot((b - *at).cross(c - *at)) / 6.0;
         }
         volumes.into_iter().flatten().map(|(_, volume)| volume)
@@ -273,7 +274,7 @@ impl Topology {
             EdgeKind::Smooth | EdgeKind::Split | EdgeKind::Seam => 2,
             EdgeKind::NonManifold => {
                 let (own, rest) = (self.sides[first as usize].edge, &self.sides[first as usize..]);
-                rest.iter().take_while(|side| side.edge == own).count() as u32
+                to_u32(rest.iter().take_while(|side| side.edge == own).count())
             }
         };
         first..first + count
@@ -310,7 +311,7 @@ impl Topology {
     /// Returns the patch of a triangle of the mesh; none if the triangle is degenerate.
     pub fn patch_of(&self, triangle: u32) -> Option<u32> {
         // Patches are in the order of their triangles.
-        self.patches.binary_search_by_key(&triangle, |patch| patch.triangle).ok().map(|patch| patch as u32)
+        self.patches.binary_search_by_key(&triangle, |patch| patch.triangle).ok().map(to_u32)
     }
 
     /// Returns the positions of a patch's points, in object units.
@@ -400,7 +401,7 @@ fn first_corners(corner_points: &[u32], points: usize) -> (Vec<u32>, Vec<bool>) 
 /// Returns the range of each material's patches. Patches are in the order of their triangles, so a range of triangles
 /// becomes a range of patches.
 fn material_patches(mesh: &Mesh, patches: &[Patch]) -> Vec<Range<u32>> {
-    let before = |triangle: u32| patches.partition_point(|patch| patch.triangle < triangle) as u32;
+    let before = |triangle: u32| to_u32(patches.partition_point(|patch| patch.triangle < triangle));
     mesh.materials.iter().map(|m| before(m.triangles.start)..before(m.triangles.end)).collect()
 }
 

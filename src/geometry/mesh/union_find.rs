@@ -1,5 +1,7 @@
 //! Disjoint sets that can be merged (union-find).
 
+use crate::casts::to_u32;
+
 /// Items 0 to n - 1, each in one set (Tarjan 1975: union by linking, with path halving).
 pub struct UnionFind {
     /// For each item, another item of the same set; or itself, if it stands for the set.
@@ -9,7 +11,7 @@ pub struct UnionFind {
 impl UnionFind {
     /// Makes a set of its own for each item.
     pub fn new(items: usize) -> Self {
-        Self { links: (0..items as u32).collect() }
+        Self { links: (0..to_u32(items)).collect() }
     }
 
     /// Returns the set of an item, named by one of its items. All items of a set get the same name until the next join.

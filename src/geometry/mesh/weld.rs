@@ -13,6 +13,7 @@ use rayon::prelude::*;
 
 use super::cell_chains::CellChains;
 use super::cell_grid::{CellGrid, spread};
+use crate::casts::to_u32;
 use crate::cores::{in_ranges, ranges, split};
 
 /// The least number of positions that are worth a thread.
@@ -47,8 +48,8 @@ fn weld_exactly(count: usize, place: impl Fn(usize) -> (Vec3, u32) + Sync) -> (V
         point_of[i] = if first < i {
             point_of[first]
         } else {
-            firsts.push(i as u32);
-            firsts.len() as u32 - 1
+            firsts.push(to_u32(i));
+            to_u32(firsts.len()) - 1
         };
     }
     (firsts, point_of)
@@ -77,7 +78,7 @@ fn first_equal(count: usize, place: impl Fn(usize) -> (Vec3, u32) + Sync) -> Vec
         of_parts
     });
     // Each is written by one core at most.
-    let first: Vec<AtomicU32> = (0..count as u32).map(AtomicU32::new).collect();
+    let first: Vec<AtomicU32> = (0..to_u32(count)).map(AtomicU32::new).collect();
     in_ranges(parts, 1, |own| {
         let mut table = HashTable::new();
         for part in own {
@@ -90,6 +91,7 @@ fn first_equal(count: usize, place: impl Fn(usize) -> (Vec3, u32) + Sync) -> Vec
 
 /// Writes the first of equal positions for each position of a part, each of which is given as its hash and its index. `table` has room
 /// that is used again.
+#[expect(clippy::cast_possible_truncation, reason = "the lower half is the number, the upper half the hash")]
 fn find_equal(table: &mut HashTable<u64>, part: &[&[u64]], is_equal: impl Fn(u32, u32) -> bool, first: &[AtomicU32]) {
     let spread = |&own: &u64| spread((own >> 32) as u32);
     let positions: usize = part.iter().map(|own| own.len()).sum();

@@ -11,6 +11,7 @@ use super::Mesh;
 use super::near_points::NearPoints;
 use super::topology::{EdgeKind, Topology, is_degenerate};
 use super::weld::merge_within;
+use crate::casts::to_u32;
 use crate::cores::in_ranges;
 use crate::progress::{Cancelled, Progress};
 
@@ -101,6 +102,7 @@ struct Exact<'a> {
 }
 
 impl<'a> Exact<'a> {
+    #[expect(clippy::cast_possible_truncation, reason = "a side is one of three")]
     fn of(mesh: &Mesh, mut topology: Cow<'a, Topology>) -> Self {
         let open = topology.edges.iter().filter(|edge| edge.kind == EdgeKind::Boundary);
         let open = open.map(|edge| {
@@ -138,10 +140,10 @@ impl<'a> Exact<'a> {
             (points[point as usize], number)
         };
         if near.all_within(k) {
-            return merge_within((0..points.len() as u32).map(place), tolerance).1;
+            return merge_within((0..to_u32(points.len())).map(place), tolerance).1;
         }
         let (_, merged) = merge_within(near.within(k).map(place), tolerance);
-        let mut joined: Vec<u32> = (0..points.len() as u32).collect();
+        let mut joined: Vec<u32> = (0..to_u32(points.len())).collect();
         // For each merged point, the first that it was made of.
         let mut first = Vec::new();
         for (point, merged) in near.within(k).zip(merged) {
@@ -159,7 +161,7 @@ impl<'a> Exact<'a> {
             |triangle: &[u32; 3]| triangle.map(|corner| joined[self.topology.corner_points[corner as usize] as usize]);
         if self.open.is_empty() {
             let degenerate = mesh.triangles.iter().filter(|triangle| is_degenerate(points(triangle))).count();
-            return [0, degenerate as u32 - self.degenerate];
+            return [0, to_u32(degenerate) - self.degenerate];
         }
         // For each edge that a boundary edge becomes, given by its points (the lower first), the number of its sides.
         let key = |points: [u32; 3], side: usize| {
@@ -189,7 +191,7 @@ impl<'a> Exact<'a> {
             }
         }
         let shared = self.open.iter().filter_map(own).filter(|key| sides[key] > 1);
-        [shared.count() as u32, degenerate - self.degenerate]
+        [to_u32(shared.count()), degenerate - self.degenerate]
     }
 }
 

@@ -109,7 +109,8 @@ impl Materials {
         &self,
         gpu: &Gpu,
         materials: &[UploadedMaterial],
-        (environment, surroundings): (&Environment, &wgpu::Buffer),
+        environment: &Environment,
+        surroundings: &wgpu::Buffer,
         lights: Option<&wgpu::Buffer>,
     ) -> Vec<wgpu::BindGroup> {
         let lights = (FILE_LIGHTS_BINDING, lights.unwrap_or(&self.no_lights).as_entire_binding());

@@ -85,7 +85,8 @@ impl<'a> Overlaid<'a> {
     pub(super) fn new(
         theirs: &'a ForeignMesh,
         topology: &'a Topology,
-        (locator, twins): (Option<Locator<'a>>, Twins<'a>),
+        locator: Option<Locator<'a>>,
+        twins: Twins<'a>,
         positions: &'a [DVec3],
         fit: f64,
         progress: &Progress,
@@ -101,10 +102,11 @@ impl<'a> Overlaid<'a> {
     /// The same vertices over another surface.
     pub(super) fn over(
         &self,
-        surface: (Option<Locator<'a>>, Twins<'a>),
+        locator: Option<Locator<'a>>,
+        twins: Twins<'a>,
         progress: &Progress,
     ) -> Result<Self, Cancelled> {
-        Self::new(self.theirs, self.topology, surface, self.positions, self.fit, progress)
+        Self::new(self.theirs, self.topology, locator, twins, self.positions, self.fit, progress)
     }
 
     /// Their vertices that don't lie on the surface.
@@ -314,8 +316,9 @@ mod tests {
                 let own: Vec<DVec3> = theirs.positions.iter().map(|position| position.as_dvec3()).collect();
                 let progress = Progress::new();
                 // As if none of them were ours.
-                let over = (locator, Twins::none(&theirs));
-                let overlaid = Overlaid::new(&theirs, &topology, over, &own, 1e-5, &progress).expect("nobody cancels");
+                let twins = Twins::none(&theirs);
+                let overlaid =
+                    Overlaid::new(&theirs, &topology, locator, twins, &own, 1e-5, &progress).expect("nobody cancels");
                 assert!(overlaid.strays().is_empty(), "{shape} {surface:?}");
                 let assignment = Assignment::new(&overlaid, &progress).expect("nobody cancels");
                 let mut emitted = vec![0; topology.patches.len()];

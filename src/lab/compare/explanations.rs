@@ -133,7 +133,7 @@ impl Explainer<'_> {
         if let Some(other) = self.other {
             // LOD of another surface has other factors, which are no mistake.
             let groups = [same.clone()].into_iter().chain(self.groups(own, uniform));
-            let found = self.first(groups, other, (&sample, different), progress)?;
+            let found = self.first(groups, other, &sample, different, progress)?;
             if !found.is_empty() {
                 return Ok(found);
             }
@@ -141,7 +141,7 @@ impl Explainer<'_> {
         // Where vertices are displaced, points of the same factors may seem to be others.
         let is_rough = !self.assignment.overlaid.fit.is_finite();
         let groups = is_rough.then_some(same).into_iter().chain(self.groups(own, uniform));
-        self.first(groups, self.inputs, (&sample, different), progress)
+        self.first(groups, self.inputs, &sample, different, progress)
     }
 
     /// Returns the explanations of the first group that has one, where LOD has these inputs.
@@ -149,7 +149,8 @@ impl Explainer<'_> {
         &self,
         groups: impl Iterator<Item = Vec<Explanation>>,
         inputs: &Inputs,
-        (sample, different): (&[Sampled], &[u32]),
+        sample: &[Sampled],
+        different: &[u32],
         progress: &Progress,
     ) -> Result<Vec<Explanation>, Cancelled> {
         let mut written: HashMap<Partitioning, Vec<HullFactors>> = HashMap::new();

@@ -144,7 +144,7 @@ pub fn compare(
         exactness.within = exactness.within.max(rounding_in(space, theirs));
     }
     let twins = |own: &[Vec3]| twins(own, &positions);
-    let on_own = Overlaid::new(theirs, ours.topology, (own, own_twins), &positions, fit, progress)?;
+    let on_own = Overlaid::new(theirs, ours.topology, own, own_twins, &positions, fit, progress)?;
     let laid = Laid::new(ours, on_own, twins, progress)?;
     let assignment = Assignment::new(&laid.overlaid, progress)?;
     let outcomes = Outcomes::new(ours, &own_mesh, &assignment, exactness, progress)?;
@@ -218,16 +218,16 @@ impl<'a> Laid<'a> {
         let overlaid = match &other {
             Some(other) => {
                 let own = other.positions(mesh, topology, &tessellated.vertices);
-                on_own.over((surface(other), twins(&own)), progress)?
+                on_own.over(surface(other), twins(&own), progress)?
             }
             None => on_own,
         };
         let is_fitted = overlaid.strays().len() as f64 <= STRAYS * overlaid.positions.len() as f64;
-        let base = || (surface(&undisplaced(ours.inputs).into()), Twins::none(overlaid.theirs));
+        let base = || surface(&undisplaced(ours.inputs).into());
         let overlaid = match is_fitted {
             true => overlaid,
             // Where they are displaced, every vertex counts as near its place.
-            false => Overlaid { fit: f64::INFINITY, ..overlaid.over(base(), progress)? },
+            false => Overlaid { fit: f64::INFINITY, ..overlaid.over(base(), Twins::none(overlaid.theirs), progress)? },
         };
         Ok(Self { overlaid, other, off_own: strays.len() as u64, is_fitted, fit })
     }

@@ -37,7 +37,7 @@ pub(super) struct Beyond {
 }
 
 impl Beyond {
-    pub(super) fn new(anim: &Anim, span: Span, (rate, left): (f64, usize)) -> Self {
+    pub(super) fn new(anim: &Anim, span: Span, rate: f64, left: usize) -> Self {
         let mut edges: HashMap<u32, [Option<f64>; 2]> = HashMap::new();
         for prop in anim.layers.into_iter().flat_map(|layer| &layer.anim_props) {
             for curve in prop.anim_value.curves.iter().flatten() {
@@ -64,6 +64,7 @@ impl Beyond {
     }
 
     /// Returns the times in s at which an object is sampled beyond its key frames, in order; none if no curve of it goes on.
+    #[expect(clippy::cast_possible_truncation, reason = "a whole number within limits")]
     pub(super) fn times(&mut self, element: u32) -> Vec<f64> {
         let Some([until, from]) = self.edges.get(&element).copied() else { return Vec::new() };
         let Span { begin, end } = self.span;

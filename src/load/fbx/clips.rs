@@ -18,6 +18,7 @@ use crate::attachment::LocalTransform;
 use crate::memory_budget::Budget;
 use crate::notes::Notes;
 use crate::read_error::ReadError;
+use geometry::casts::{to_f32, to_u32};
 use geometry::mesh::rig::{Channel, Clip, Interpolation, Keys, Placement, Property};
 use geometry::progress::Progress;
 
@@ -121,7 +122,7 @@ impl Reader<'_> {
         let bytes = baked.metadata.result_memory_used as u64;
         self.budget.hold(bytes)?;
         let span = Span::of(&stack.anim, [baked.key_time_min, baked.key_time_max]);
-        let beyond = Beyond::new(anim, span, (SAMPLES, self.samples_left));
+        let beyond = Beyond::new(anim, span, SAMPLES, self.samples_left);
         let mut curves = Curves { anim, span, beyond };
         let channels = self.channels(&baked, &mut curves);
         self.samples_left = curves.beyond.left();
@@ -129,7 +130,7 @@ impl Reader<'_> {
         self.budget.release(bytes);
         Ok(channels.map(|channels| {
             let last = channels.iter().filter_map(|channel| channel.keys.times.last());
-            let duration = last.fold((span.end - span.begin) as f32, |a: f32, b| a.max(*b)).into();
+            let duration = last.fold(to_f32(span.end - span.begin), |a: f32, b| a.max(*b)).into();
             Clip { name: name(&stack.element), duration, channels }
         }))
     }
@@ -233,7 +234,7 @@ impl Reader<'_> {
         let mut keys = Keys { times: Vec::new(), values: Vec::new(), width, interpolation: Interpolation::Linear };
         self.take(times.len().saturating_mul(width + 1))?;
         for time in times {
-            let at = (time - span.begin) as f32;
+            let at = to_f32(time - span.begin);
             if !at.is_finite() || keys.times.last().is_some_and(|&last| at <= last) {
                 continue;
             }
@@ -242,7 +243,7 @@ impl Reader<'_> {
                 shape_weights(channel, interpolated(own, time).unwrap_or(channel.weight), &mut keys.values);
             }
         }
-        Ok((!keys.times.is_empty()).then_some(Channel { target: node as u32, property: Property::Weights, keys }))
+        Ok((!keys.times.is_empty()).then_some(Channel { target: to_u32(node), property: Property::Weights, keys }))
     }
 
     /// Returns key frames whose times grow from the clip's beginning; those that are too close for an f32 are left out.
@@ -254,7 +255,7 @@ impl Reader<'_> {
         self.take(own.len().saturating_mul(N + 1))?;
         let mut keys = Keys { times: Vec::new(), values: Vec::new(), width: N, interpolation: Interpolation::Linear };
         for (time, value) in own {
-            let (time, value) = ((time - span.begin) as f32, value.map(|x| x as f32));
+            let (time, value) = (to_f32(time - span.begin), value.map(to_f32));
             if !time.is_finite() || value.iter().any(|x| !x.is_finite()) {
                 return Err("it has times or values that aren't finite".to_owned());
             }

@@ -5,6 +5,7 @@ use glam::{DVec3, Vec3};
 use ufbx::{MaterialMap, Mesh, ShaderType, Texture};
 
 use super::convert::{matrix, vec4};
+use geometry::casts::to_f32;
 use geometry::mesh::mipmap::MipFilter;
 use geometry::mesh::{Alpha, Look};
 
@@ -83,7 +84,7 @@ impl<'a> LookSource<'a> {
             ..Look::default()
         };
         if features.pbr.enabled && !is_old(material.shader_type) {
-            look.ior = number(&pbr.specular_ior, 1.5).max(1.0) as f32;
+            look.ior = to_f32(number(&pbr.specular_ior, 1.5).max(1.0));
             look.specular = unit(number(&pbr.specular_factor, 1.0));
             look.transmission = unit(number(&pbr.transmission_factor, 0.0));
             look.clearcoat = unit(number(&pbr.coat_factor, 0.0));
@@ -189,7 +190,7 @@ fn map_source<'a>(map: &'a MaterialMap, mesh: &Mesh) -> Option<MapSource<'a>> {
         let [a, b, c] = [own.x_axis.x, own.y_axis.x, own.w_axis.x];
         let [d, e, f] = [own.x_axis.y, own.y_axis.y, own.w_axis.y];
         // FBX counts v from the bottom: both v and v' become 1 minus themselves.
-        let turned = [a, -b, b + c, -d, e, 1.0 - e - f].map(|x| x as f32);
+        let turned = [a, -b, b + c, -d, e, 1.0 - e - f].map(to_f32);
         transform = if turned.iter().all(|x| x.is_finite()) { turned } else { transform };
     }
     Some(MapSource { texture, uvs: MapUvs { set, transform } })
@@ -208,5 +209,5 @@ fn rgb(map: &MaterialMap) -> Option<DVec3> {
 }
 
 fn unit(number: f64) -> f32 {
-    number.clamp(0.0, 1.0) as f32
+    to_f32(number.clamp(0.0, 1.0))
 }

@@ -74,7 +74,8 @@ impl<'a> Materials<'a> {
     pub(super) fn resolve(
         &mut self,
         index: u32,
-        (node, mesh): (&Node, &Mesh),
+        node: &Node,
+        mesh: &Mesh,
         faces: &mut FaceBuilder,
     ) -> Result<Resolved, ReadError> {
         let Some(material) = of_node(node, mesh, index) else {

@@ -5,6 +5,7 @@ use ufbx::{BlendChannel, BlendShape, Mesh};
 use super::convert::vec3;
 use crate::memory_budget::Budget;
 use crate::read_error::ReadError;
+use geometry::casts::to_f32;
 use geometry::mesh::rig::Delta;
 
 /// Returns the channels of a mesh, in the order of its targets.
@@ -34,7 +35,7 @@ pub(super) fn shape_weights(channel: &BlendChannel, weight: f64, weights: &mut V
     let part = (weight - from) / (to - from);
     for (shape, weight) in [(before, 1.0 - part), (after, part)] {
         if let Some(shape) = shape.filter(|_| weight.is_finite()) {
-            weights[first + shape] = weight as f32;
+            weights[first + shape] = to_f32(weight);
         }
     }
 }

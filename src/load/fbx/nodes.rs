@@ -42,7 +42,7 @@ impl Placed {
         // A stable sort, which keeps siblings in order.
         order.sort_by_key(|&node| nodes[node].node_depth);
         let rest: Vec<Placement> = nodes.into_iter().map(|node| placement(&node.local_transform)).collect();
-        let is_hidden = hidden(scene, show_hidden, (&order, &parents), notes);
+        let is_hidden = hidden(scene, show_hidden, &order, &parents, notes);
         let with_mesh = || (0..nodes.len()).filter(|&node| nodes[node].mesh.is_some());
         let shown: Vec<usize> = with_mesh().filter(|&node| !is_hidden[node]).collect();
         let hidden = with_mesh().count() - shown.len();
@@ -112,7 +112,8 @@ pub(super) fn is_on(element: &Element, name: &str) -> bool {
 fn hidden(
     scene: &Scene,
     show_hidden: bool,
-    (order, parents): (&[usize], &[Option<usize>]),
+    order: &[usize],
+    parents: &[Option<usize>],
     notes: &mut Notes,
 ) -> Vec<bool> {
     let mut is_off: Vec<bool> = scene.nodes.into_iter().map(|node| !is_on(&node.element, "Visibility")).collect();

@@ -24,7 +24,7 @@ pub(super) struct Skin<'a> {
 impl<'a> Skin<'a> {
     /// Reads the skin of a node's mesh, if it has one. `global` has the places of all nodes. Joints move the mesh as the first of its
     /// nodes has it; the others have copies.
-    pub(super) fn new((node, mesh): (&Node, &'a Mesh), global: &[DMat4]) -> Option<Self> {
+    pub(super) fn new(node: &Node, mesh: &'a Mesh, global: &[DMat4]) -> Option<Self> {
         let deformer = mesh.skin_deformers.into_iter().next()?;
         let placed = |node: &Node| global[nodes::index(node)] * matrix(&node.geometry_to_node);
         let place = match mesh.element.instances.first() {

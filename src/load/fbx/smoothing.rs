@@ -9,6 +9,7 @@ use ufbx::Mesh;
 use super::convert::vec3;
 use crate::memory_budget::Budget;
 use crate::read_error::ReadError;
+use geometry::casts::to_u32;
 use geometry::mesh::union_find::UnionFind;
 
 /// Memory for each corner, in bytes: its side in the table, whose room is up to twice as large, its set, and two normals.
@@ -72,7 +73,7 @@ fn summed(mesh: &Mesh, sets: &mut UnionFind) -> Vec<Vec3> {
             sums[sets.of(corner) as usize] += normal;
         }
     }
-    (0..mesh.num_indices as u32).map(|corner| sums[sets.of(corner) as usize].normalize_or_zero().as_vec3()).collect()
+    (0..to_u32(mesh.num_indices)).map(|corner| sums[sets.of(corner) as usize].normalize_or_zero().as_vec3()).collect()
 }
 
 /// Returns a polygon's normal, twice as long as its area is large (Newell's method: Sutherland, Sproull and Schumacker 1974).

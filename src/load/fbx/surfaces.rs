@@ -15,6 +15,7 @@ use crate::notes::Notes;
 use crate::read_error::{FilePosition, ReadError};
 use crate::rig_builder::{NodeBinder, RigBuilder, UndeformedVertex, VertexFrame};
 use crate::uri::Files;
+use geometry::casts::{to_u32, to_usize};
 use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::rig::Delta;
 use geometry::mesh::{Borrowed, CornerDetail};
@@ -76,7 +77,7 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         faces.expect(triangles, 0);
         let mut materials = Materials::new(files);
         let corners = meshes().fold(0_u64, |sum, (_, mesh)| sum.saturating_add(mesh.num_indices as u64));
-        let details = if is_detailed { DetailTable::bytes_for(corners as usize) } else { 0 };
+        let details = if is_detailed { DetailTable::bytes_for(to_usize(corners)) } else { 0 };
         // What the parsed file takes has been freed when the edges are made.
         let parsed = scene.metadata.result_memory_used as u64;
         let edges = edge_bytes(corners, triangles as u64).saturating_sub(parsed);
@@ -103,8 +104,8 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         let Some(mesh) = node.mesh.as_ref() else { return Ok(()) };
         let _scope = Borrowed::from(self.budget);
         let global = &self.placed.global;
-        let skin = Skin::new((node, mesh), global);
-        let vertices = Vertices::new((node, mesh), global[index], skin.as_ref(), &self.faces.import, self.budget)?;
+        let skin = Skin::new(node, mesh, global);
+        let vertices = Vertices::new(node, mesh, global[index], skin.as_ref(), &self.faces.import, self.budget)?;
         self.found.without_normals += usize::from(vertices.is_without_normals());
         let binder = self.binder.as_mut().map(|binder| {
             let binder = binder.node(index, skin.as_ref().map(|skin| &skin.joints));
@@ -205,7 +206,7 @@ impl MeshReader<'_, '_, '_> {
         if let Some(resolved) = self.resolved[slot] {
             return Ok(resolved);
         }
-        let resolved = self.materials.resolve(slot as u32, (self.node, self.mesh), self.faces)?;
+        let resolved = self.materials.resolve(to_u32(slot), self.node, self.mesh, self.faces)?;
         self.resolved[slot] = Some(resolved);
         Ok(resolved)
     }
@@ -218,7 +219,7 @@ impl MeshReader<'_, '_, '_> {
         if let Some(skin) = self.vertices.skin {
             self.found.many_joints += usize::from(skin.influences(vertex, &mut self.influences));
         }
-        let mut posed = self.vertices.posed((corner, vertex), &self.influences, &self.deltas);
+        let mut posed = self.vertices.posed(corner, vertex, &self.influences, &self.deltas);
         posed.corner.uv = self.own_uv(corner, material);
         let mut number = 0;
         if let Some(binder) = &mut self.binder {

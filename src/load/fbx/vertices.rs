@@ -46,7 +46,8 @@ impl<'a> Vertices<'a> {
     /// # Errors
     /// [`ReadError::TooLarge`].
     pub(super) fn new(
-        (node, mesh): (&Node, &'a Mesh),
+        node: &Node,
+        mesh: &'a Mesh,
         at: DMat4,
         skin: Option<&'a Skin<'a>>,
         import: &Import,
@@ -90,7 +91,8 @@ impl<'a> Vertices<'a> {
     /// what its morph targets add. Its position may be too far away, or not be finite.
     pub(super) fn posed(
         &self,
-        (corner, vertex): (usize, usize),
+        corner: usize,
+        vertex: usize,
         influences: &[(usize, f64)],
         deltas: &[Delta],
     ) -> PosedCorner {

@@ -451,6 +451,7 @@ fn unsigned_integer(bytes: &[u8]) -> u32 {
 }
 
 /// Decodes one number by the specification's sections 3.6.2.2 (data types) and 3.11 (normalised integers).
+#[expect(clippy::cast_possible_truncation, reason = "the type says how many of the bits count")]
 pub(super) fn component(bytes: &[u8], kind: DataType, normalized: bool) -> f32 {
     let bits = unsigned_integer(bytes);
     let (value, one) = match kind {

@@ -10,6 +10,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::{Accessors, nodes};
+use geometry::casts::to_u32;
 use geometry::mesh::borrowing;
 use geometry::mesh::rig::{Channel, Clip, Interpolation, Keys, Property};
 
@@ -135,7 +136,7 @@ impl Reader<'_> {
         let sampler = sampler
             .ok_or_else(|| format!("uses sampler {}, but the animation has {}", entry.sampler, samplers.len()))?;
         let keys = self.keys(sampler, property, width)?;
-        Ok(Some(Channel { target: index as u32, property, keys }))
+        Ok(Some(Channel { target: to_u32(index), property, keys }))
     }
 
     fn keys(&mut self, sampler: &Sampler, property: Property, width: usize) -> Result<Keys, String> {

@@ -25,6 +25,7 @@ use super::nodes::Placed;
 use super::schema::{DRACO, is_detail};
 use super::{Accessors, GltfError};
 use crate::memory_budget::Budget;
+use geometry::casts::{to_u32, to_usize};
 use geometry::mesh::{Borrowed, MemoryRefused};
 use geometry::progress::Progress;
 
@@ -98,7 +99,7 @@ impl Stream<'_> {
             ErrorKind::LimitExceeded => format!("decompresses to more than {vertices} vertices"),
             _ => format!("can't be decompressed: its {} bytes aren't complete Draco data", bytes.len()),
         })?;
-        let unpacked = taken(&mesh, &attributes, self.packed, [vertices as usize, indices as usize / 3])?;
+        let unpacked = taken(&mesh, &attributes, self.packed, [to_usize(vertices), to_usize(indices) / 3])?;
         drop(mesh);
         drop(decoding_memory);
         budget.hold(unpacked.bytes()).map_err(|refused| self.too_large(refused.into()))?;
@@ -211,7 +212,7 @@ fn values(name: &str, from: &PointAttribute, accessor: &Accessor, vertices: usiz
     let (size, data) = (own.size(), from.buffer().data());
     let mut values = Vec::with_capacity(vertices * width);
     for vertex in 0..vertices {
-        let start = (from.mapped_index(PointIndex(vertex as u32)).0 as usize).checked_mul(width * size);
+        let start = (from.mapped_index(PointIndex(to_u32(vertex))).0 as usize).checked_mul(width * size);
         let element = start.and_then(|start| data.get(start..)?.get(..width * size));
         let element = element.ok_or_else(|| format!("holds no {name} for vertex {vertex}"))?;
         values.extend(element.chunks_exact(size).map(|bytes| component(bytes, own, normalized)));

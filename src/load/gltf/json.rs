@@ -45,6 +45,7 @@ pub(super) fn parse(text: &[u8], budget: &Budget, progress: &Progress) -> Result
 
 /// Replaces floating-point numbers that are whole by integers, so that an index may be written as 4.0 or 4e0: JSON doesn't tell
 /// them apart (RFC 8259, section 6). Numbers from 2^53 on stay, since not every integer there is an f64.
+#[expect(clippy::cast_possible_truncation, reason = "a whole number that both types have")]
 fn make_whole(value: &mut Value) {
     const EXACT: f64 = (1_u64 << 53) as f64;
     match value {

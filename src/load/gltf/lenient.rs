@@ -8,6 +8,7 @@ use serde_json::{Map, Value};
 
 use super::notes::Notes;
 use super::schema_check::shown;
+use geometry::casts::to_f32;
 
 /// An object, and where in the document it is.
 pub(super) struct Members<'a> {
@@ -104,7 +105,7 @@ impl<'a> Members<'a> {
             );
             most
         } else {
-            number as f32
+            to_f32(number)
         }
     }
 

@@ -7,6 +7,7 @@ use meshopt::ffi;
 
 use super::extensions::{MeshoptExtension, MeshoptFilter, MeshoptMode};
 use crate::memory_budget::Budget;
+use geometry::casts::to_usize;
 
 /// The data of a decompressed view, aligned to 4 bytes for its elements.
 pub(super) struct Decompressed {
@@ -31,7 +32,7 @@ pub(super) fn decompress(view: &MeshoptExtension, bytes: &[u8], budget: &Budget)
     let length = view.count.saturating_mul(view.stride as u64);
     budget.hold(length)?;
     // Both fit, since the budget has accepted them.
-    let (count, length) = (view.count as usize, length as usize);
+    let (count, length) = (to_usize(view.count), to_usize(length));
     let mut words = vec![0_u32; length.div_ceil(4)];
     let to = words.as_mut_ptr();
     let code = match view.mode {

@@ -13,6 +13,7 @@ use super::reach::{Reach, attribute};
 use super::{GltfError, primitive};
 use crate::memory_budget::Budget;
 use crate::parts::{Part, Parts};
+use geometry::casts::to_usize;
 use geometry::mesh::MemoryRefused;
 
 /// The parts of a scene.
@@ -76,5 +77,5 @@ fn triangles(root: &Root, mesh: &Mesh) -> usize {
 
 /// Returns how many elements an accessor has.
 fn count(root: &Root, accessor: usize) -> usize {
-    root.accessors.get(accessor).map_or(0, |own| own.count.0 as usize)
+    root.accessors.get(accessor).map_or(0, |own| to_usize(own.count.0))
 }

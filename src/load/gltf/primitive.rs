@@ -12,6 +12,7 @@ use super::rig_builder::NodeBinder;
 use crate::Budget;
 use crate::face_builder::{is_near, unplaced};
 use crate::import::Import;
+use geometry::casts::to_u32;
 use geometry::mesh::MemoryRefused;
 use geometry::mesh::detail_table::DetailTable;
 
@@ -74,7 +75,7 @@ impl<'a> Indices<'a> {
     }
 
     fn get(&self, i: usize) -> u32 {
-        self.list.as_ref().map_or(i as u32, |list| list.get(i))
+        self.list.as_ref().map_or(to_u32(i), |list| list.get(i))
     }
 
     /// Calls `take` with the number of the first index, and some indices, until it has had all. All lists but the last have
@@ -86,7 +87,7 @@ impl<'a> Indices<'a> {
             block.clear();
             match &self.list {
                 Some(list) => list.append(range, &mut block),
-                None => block.extend(range.map(|i| i as u32)),
+                None => block.extend(range.map(to_u32)),
             }
             take(first, &block)?;
         }
@@ -265,7 +266,7 @@ impl KeptVertices {
         budget: &Budget,
     ) -> Result<Self, GltfError> {
         let is_stored =
-            |kept: &Self, i: usize| used[i / 64] & 1 << (i % 64) != 0 && !kept.has(i as u32, Self::UNPLACED);
+            |kept: &Self, i: usize| used[i / 64] & 1 << (i % 64) != 0 && !kept.has(to_u32(i), Self::UNPLACED);
         let mut kept = Self::new(vertices.count);
         let (mut corners, mut stored) = (Vec::with_capacity(TOGETHER), Vec::with_capacity(TOGETHER));
         for first in (0..vertices.count).step_by(TOGETHER) {

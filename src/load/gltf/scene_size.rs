@@ -9,6 +9,7 @@ use super::extensions::InstancingExtension;
 use super::nodes::Placed;
 use super::{Accessors, GltfError, instances, primitive};
 use crate::memory_budget::edge_bytes;
+use geometry::casts::to_usize;
 use geometry::mesh::build_limits::MAX_TRIANGLES;
 use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::interner::Interner;
@@ -98,8 +99,8 @@ pub(crate) fn check(
         return refuse(all.elements, "vertices, displacements of vertices and indices", MAX_ELEMENTS);
     }
     let moving = if moves { all.vertices.saturating_mul(PER_BOUND) } else { 0 };
-    let details = if is_detailed { DetailTable::bytes_for(all.corners as usize) } else { 0 };
-    let read = Interner::bytes_for(all.corners as usize) + all.triangles * PER_TRIANGLE;
+    let details = if is_detailed { DetailTable::bytes_for(to_usize(all.corners)) } else { 0 };
+    let read = Interner::bytes_for(to_usize(all.corners)) + all.triangles * PER_TRIANGLE;
     // All triangles are put into one list after the buffers have been freed.
     let finished = (all.corners * 4 + all.triangles * 2 * PER_TRIANGLE).saturating_sub(accessors.buffer_bytes());
     let finished = if all.primitives > 1 { finished } else { 0 };
@@ -115,7 +116,7 @@ pub(crate) fn check(
     // By then the file's data has been freed.
     let edges = edge_bytes(all.corners, all.triangles) + if is_detailed { all.corners * PER_DETAIL } else { 0 };
     let bytes = ahead.max(edges.saturating_sub(accessors.buffer_bytes()));
-    Ok(SceneNeeds { vertices: all.vertices as usize, corners: all.corners as usize, bytes })
+    Ok(SceneNeeds { vertices: to_usize(all.vertices), corners: to_usize(all.corners), bytes })
 }
 
 impl SceneSize {
@@ -147,7 +148,7 @@ impl SceneSize {
                 check(&accessor, "indices")?;
                 indices = accessor.count() as u64;
             }
-            let triangles = primitive::most_triangles(primitive.mode(), indices as usize) as u64;
+            let triangles = primitive::most_triangles(primitive.mode(), to_usize(indices)) as u64;
             let used = vertices.min(triangles.saturating_mul(3));
             let targets = primitive.morph_targets().len() as u64;
             let own = Self {

@@ -10,6 +10,7 @@ use super::materials::DetailNeeds;
 use super::notes::Notes;
 use super::primitive_data::PrimitiveData;
 use super::vertex_repairs::VertexRepairs;
+use geometry::casts::to_u32;
 
 /// The lists of one primitive.
 pub(super) struct VertexDetails<'a> {
@@ -35,7 +36,7 @@ impl<'a> VertexDetails<'a> {
         notes: &mut Notes,
     ) -> Self {
         let sets = [0, 1].map(|set| {
-            let list = needs.sets[set].then(|| source.detail(Semantic::TexCoords(set as u32), count, notes));
+            let list = needs.sets[set].then(|| source.detail(Semantic::TexCoords(to_u32(set)), count, notes));
             list.flatten()
         });
         repairs.missing_uvs += usize::from((0..2).any(|set| needs.sets[set] && sets[set].is_none()));

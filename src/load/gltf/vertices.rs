@@ -99,6 +99,7 @@ impl<'a> Influences<'a> {
     /// Collects the joints of a vertex, with weights that are scaled to add up to 1, since quantised weights don't
     /// exactly. Of more than [`MOST_JOINTS`] those with the largest weights are kept. The skin has `joint_count` joints. Returns the part of the
     /// weights that is left out, or none if the joints can't be used.
+    #[expect(clippy::cast_possible_truncation, reason = "numbers of joints are whole, and few")]
     fn of(&self, vertex: usize, joint_count: usize, found: &mut Vec<(usize, f64)>) -> Option<f64> {
         let slots =
             self.sets.iter().flat_map(|[joints, weights]| joints.get(vertex).into_iter().zip(weights.get(vertex)));

@@ -12,6 +12,7 @@ use crate::files::{file_reason, open_file};
 use crate::images::{decoding_bytes, metadata_limits};
 use crate::memory_budget::Budget;
 use crate::webp;
+use geometry::casts::to_usize;
 use geometry::mesh::build_limits::{Borrowed, MemoryRefused, borrowing};
 use geometry::mesh::heights::{HeightMap, angle_bytes};
 use geometry::progress::{Cancelled, Progress};
@@ -152,7 +153,7 @@ impl ImageFile<'_> {
         let (color, count) = (decoder.color_type(), decoder.total_bytes());
         // What decoding takes is freed before a map is made from the pixels. A JPEG decoder also keeps the file's bytes.
         self.afford(size, length, count, decoding_bytes(&decoder) - count)?;
-        let mut bytes = vec![0; count as usize];
+        let mut bytes = vec![0; to_usize(count)];
         decoder.read_image(&mut bytes).map_err(undecoded)?;
         drop(decoding);
         Ok(map_of_px(size, color, &bytes, &self.progress.part(0.6, 1.0))?)

@@ -1,6 +1,8 @@
 //! Decodes the two codecs of Basis Universal, ETC1S and UASTC. They are here because no crate for them is both fuzzed and kept: `basisu` has
 //! one release, and `basis-universal` 0.3.1 builds the C++ encoder along with its decoder, both of version 1.16, where 2.1 is current.
 
+#![expect(clippy::cast_possible_truncation, reason = "a code's bits are as many as the type has room for")]
+
 mod bits;
 mod etc1s;
 mod huffman;

@@ -181,6 +181,7 @@ impl FacePiece {
 ///
 /// # Errors
 /// A clause that says what isn't a number.
+#[expect(clippy::cast_possible_truncation, reason = "a whole number; one too large becomes the end, which no list has")]
 fn index(word: &[u8], above: usize, count: usize) -> Result<Option<u32>, String> {
     let whole = |number: f64| (number.fract() == 0.0).then_some(number as i128);
     let float = || whole(parsed(word)?);

@@ -7,6 +7,7 @@ use super::{Statement, each_statement};
 use crate::memory_budget::Budget;
 use crate::read_error::ReadError;
 use crate::text_lines::{first_word, has_comma, number_or_nan, parsed, words};
+use geometry::casts::to_byte;
 use geometry::mesh::chunked_vec::ChunkedVec;
 
 /// The most numbers that a position has, with a weight and a colour.
@@ -156,6 +157,6 @@ pub(super) fn group(text: &[u8]) -> u32 {
 fn stored_color(color: [f32; 3]) -> [u8; 4] {
     let scale = if color.iter().any(|channel| *channel > 1.0) { 1.0 } else { 255.0 };
     // The conversion takes NaN for 0.
-    let [r, g, b] = color.map(|channel| (channel * scale).round() as u8);
+    let [r, g, b] = color.map(|channel| to_byte(channel * scale));
     [r, g, b, 255]
 }

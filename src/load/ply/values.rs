@@ -3,6 +3,7 @@
 use super::header::{Element, Encoding, Header, Property, PropertyKind, Scalar};
 use crate::read_error::{FilePosition, ReadError};
 use crate::text_lines::{Line, Lines, first_word, number, parsed, shown, words};
+use geometry::casts::{to_f32, to_usize};
 
 /// The position of the next value.
 #[derive(Clone)]
@@ -119,7 +120,7 @@ impl<'a> Values<'a> {
             return Ok(());
         }
         if fixed && self.encoding != Encoding::Text {
-            self.bytes = self.bytes.get((size * element.count) as usize..).unwrap_or_default();
+            self.bytes = self.bytes.get(to_usize(size * element.count)..).unwrap_or_default();
             return Ok(());
         }
         for i in 0..element.count {
@@ -235,7 +236,7 @@ impl<'a> Values<'a> {
                 (Scalar::F32, Encoding::LittleEndian) => {
                     bytes.first_chunk().map_or(0.0, |own| f32::from_le_bytes(*own))
                 }
-                (_, encoding) => decoded(bytes, scalar, encoding).unwrap_or_default() as f32,
+                (_, encoding) => to_f32(decoded(bytes, scalar, encoding).unwrap_or_default()),
             };
         }
         self.bytes = rest;
@@ -287,6 +288,7 @@ impl<'a> Values<'a> {
     ///
     /// # Errors
     /// [`ReadError::Broken`].
+    #[expect(clippy::cast_possible_truncation, reason = "a whole number that fits in what is left of the file")]
     pub(super) fn count(&mut self, count: Scalar, item: Scalar) -> Result<usize, ReadError> {
         let place = self.place();
         let said = self.next(count)?;

@@ -68,6 +68,7 @@ impl Colors {
 const OWN_BIT: u16 = 1 << 15;
 
 /// Widens the lowest 5 bits to a byte.
+#[expect(clippy::cast_possible_truncation, reason = "at most 255")]
 fn widened(bits: u16) -> u8 {
     ((u32::from(bits & 31) * 255 + 15) / 31) as u8
 }

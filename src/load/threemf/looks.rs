@@ -105,10 +105,10 @@ impl<'d> Looks<'d> {
         let Some((group, first)) = group.zip(first) else { return self.unpainted(faces, None) };
         let corners = own.of_corners(first);
         let Some(Group::Combined { lowest, entries, .. }) = self.document.parts[part].groups.get(&group) else {
-            return self.painted(faces, (part, group), corners);
+            return self.painted(faces, part, group, corners);
         };
         let corners = corners.map(|corner| entries.get(corner as usize).copied().unwrap_or(u32::MAX));
-        let resolved = self.painted(faces, (part, *lowest), corners)?;
+        let resolved = self.painted(faces, part, *lowest, corners)?;
         Ok(Resolved { fault: resolved.fault.or(Some(Fault::Combined)), ..resolved })
     }
 
@@ -116,7 +116,8 @@ impl<'d> Looks<'d> {
     fn painted(
         &mut self,
         faces: &mut FaceBuilder,
-        (part, group): (usize, u32),
+        part: usize,
+        group: u32,
         corners: [u32; 3],
     ) -> Result<Resolved, ReadError> {
         let document: &'d Document = self.document;
@@ -141,7 +142,7 @@ impl<'d> Looks<'d> {
             Some(Group::Texture { texture, coordinates }) => {
                 let uvs = corners.map(|corner| coordinates.get(corner as usize).copied());
                 if let (Some(shown), [Some(a), Some(b), Some(c)]) = (part_of.textures.get(texture), uvs) {
-                    return self.textured(faces, (part, *texture), shown, [a, b, c]);
+                    return self.textured(faces, part, *texture, shown, [a, b, c]);
                 }
             }
             Some(Group::Combined { .. }) | None => {}
@@ -169,7 +170,8 @@ impl<'d> Looks<'d> {
     fn textured(
         &mut self,
         faces: &mut FaceBuilder,
-        (part, id): (usize, u32),
+        part: usize,
+        id: u32,
         texture: &Texture2d,
         uvs: [[f32; 2]; 3],
     ) -> Result<Resolved, ReadError> {

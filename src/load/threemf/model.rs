@@ -15,6 +15,7 @@ use crate::memory_budget::Budget;
 use crate::notes::Notes;
 use crate::read_error::ReadError;
 use crate::text_lines::{number, parsed, shown, words};
+use geometry::casts::to_u32;
 use geometry::mesh::chunked_vec::ChunkedVec;
 use geometry::names;
 
@@ -81,7 +82,7 @@ impl Geometry {
         // The list grows by half, and the map to twice its size.
         budget.hold(6 * size_of::<TriangleLook>() as u64)?;
         self.looks.push(look);
-        let number = self.looks.len() as u32;
+        let number = to_u32(self.looks.len());
         self.numbers.insert(look, number);
         Ok(number)
     }

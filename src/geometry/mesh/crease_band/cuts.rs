@@ -3,6 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use super::fans::{Fans, blend, corner_at, shared};
+use crate::casts::{to_f32, to_u32};
 use crate::mesh::{Edge, Mesh, Side, Topology};
 
 /// The greatest part of an edge between an end and the cut near it.
@@ -70,7 +71,7 @@ impl Cuts {
                 let is_apart = position.as_dvec3() != from;
                 let normal = fans.normal_at(&sides[0], end).filter(|_| !is_apart);
                 let normal = normal.unwrap_or_else(|| shared(sides.iter().map(at)));
-                Some(Cut { part: part as f32, position, normal })
+                Some(Cut { part: to_f32(part), position, normal })
             });
         }
         cuts
@@ -78,7 +79,7 @@ impl Cuts {
 
     /// Returns the number of edges with split normals.
     pub(super) fn creases(&self) -> u32 {
-        self.edges.iter().filter(|edge| edge.is_creased).count() as u32
+        to_u32(self.edges.iter().filter(|edge| edge.is_creased).count())
     }
 
     /// Returns how far from an end an edge is cut, as a multiple of the width; none if it isn't cut there.

@@ -3,12 +3,14 @@
 use glam::DVec3;
 
 use super::on_point;
+use crate::casts::to_f32;
 use crate::mesh::{Corner, CornerDetail, CornerDetails, Mesh, Topology};
 
 /// Returns the details of a corner that lies in a triangle of the mesh: those of the triangle's own corner if it is at its
 /// position, otherwise linear between all three.
 pub(super) fn detail_in(
-    (mesh, details): (&Mesh, &CornerDetails),
+    mesh: &Mesh,
+    details: &CornerDetails,
     topology: &Topology,
     triangle: u32,
     corner: &Corner,
@@ -20,7 +22,7 @@ pub(super) fn detail_in(
         return own[k];
     }
     let weights = weights(positions.map(|position| position.as_dvec3()), corner.position.as_dvec3());
-    CornerDetail::blended(own.each_ref(), weights.map(|weight| weight as f32))
+    CornerDetail::blended(own.each_ref(), weights.map(to_f32))
 }
 
 /// Returns how much each of three points counts at a position between them. They add up to 1.

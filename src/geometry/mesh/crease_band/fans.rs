@@ -2,6 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
+use crate::casts::to_u32;
 use crate::mesh::union_find::UnionFind;
 use crate::mesh::weld::plus_zero3;
 use crate::mesh::{Mesh, Side, Topology};
@@ -30,7 +31,7 @@ impl Fans {
                 }
             }
         }
-        let fan_of: Vec<u32> = (0..count as u32).map(|slot| parts.of(slot)).collect();
+        let fan_of: Vec<u32> = (0..to_u32(count)).map(|slot| parts.of(slot)).collect();
         let corners = topology.patches.iter().flat_map(|patch| topology.corners(patch));
         let mut keys: Vec<_> =
             fan_of.iter().zip(corners).map(|(&fan, c)| (fan, key(mesh.corners[c as usize].normal))).collect();
@@ -60,7 +61,7 @@ impl Fans {
 }
 
 fn slot(patch: u32, k: usize) -> u32 {
-    3 * patch + k as u32
+    3 * patch + to_u32(k)
 }
 
 /// Returns which of its patch's corners a side has at an end of its edge, 0 to 2.

@@ -7,6 +7,7 @@ use glam::{DVec3, Vec2, Vec3};
 use super::cuts::{Cuts, EdgeCuts};
 use super::fans::{Fans, blend};
 use super::on_point;
+use crate::casts::{to_f32, to_u32};
 use crate::mesh::{Corner, Mesh, Topology};
 
 /// The greatest part of the way from a corner to the centre of the incircle.
@@ -131,7 +132,7 @@ fn twins(topology: &Topology) -> HashMap<u32, u32> {
         points.sort_unstable();
         (points, index)
     };
-    let mut patches: Vec<_> = (0..topology.patches.len() as u32).map(points).collect();
+    let mut patches: Vec<_> = (0..to_u32(topology.patches.len())).map(points).collect();
     patches.sort_unstable();
     let groups = patches.chunk_by(|a, b| a.0 == b.0);
     groups.flat_map(|group| group.iter().zip(0..).skip(1)).map(|(&(_, patch), rank)| (patch, rank)).collect()
@@ -165,7 +166,7 @@ impl CutPatch {
         let perimeter: f64 = opposite.iter().sum();
         let weight = |i: usize| part * opposite[i] / perimeter;
         let offset = |i: usize| weight(i) * (p[i] - p[k]);
-        let uv_offset = |i: usize| weight(i) as f32 * (self.own[i].uv - self.own[k].uv);
+        let uv_offset = |i: usize| to_f32(weight(i)) * (self.own[i].uv - self.own[k].uv);
         let (next, last) = ((k + 1) % 3, (k + 2) % 3);
         let position: DVec3 = p[k] + offset(next) + offset(last);
         let position: Vec3 = position.as_vec3();

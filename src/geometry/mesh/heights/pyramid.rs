@@ -1,6 +1,7 @@
 //! Builds the levels of a height map, and measures how much detail each level loses.
 
 use super::{HeightMap, MAX_KEPT, MAX_LEVELS};
+use crate::casts::to_u32;
 use crate::cores::in_ranges;
 use crate::progress::{Cancelled, Progress};
 
@@ -42,7 +43,7 @@ impl HeightMap {
             heights.extend_from_slice(&next);
             done = end;
         }
-        Ok(Self { size: fitted, levels: sizes.len() as u32, repeats: false, heights })
+        Ok(Self { size: fitted, levels: to_u32(sizes.len()), repeats: false, heights })
     }
 
     /// Returns how many bytes it takes to build a map from an image of this size, the map included.
@@ -63,7 +64,7 @@ impl HeightMap {
             detail[level] = detail[level - 1];
             // Beyond the last level, the difference stays what it is there.
             if level < self.levels as usize {
-                let lost = lost_detail(self, level as u32, &progress.part(part(level), part(level + 1)))?;
+                let lost = lost_detail(self, to_u32(level), &progress.part(part(level), part(level + 1)))?;
                 detail[level] = detail[level].max(lost);
             }
         }
@@ -79,6 +80,7 @@ struct Taps {
 
 /// Returns the weights for scaling a row of `from` pixels down to `to` pixels, or leaving it as it is. The filter is a
 /// triangle with a width of two pixels of the shorter row.
+#[expect(clippy::cast_possible_truncation, reason = "whole numbers within the image")]
 fn taps(from: u32, to: u32) -> Vec<Taps> {
     let ratio = from as f32 / to as f32;
     let of = |i: u32| {
@@ -86,7 +88,7 @@ fn taps(from: u32, to: u32) -> Vec<Taps> {
         let first = (middle - ratio).floor().max(0.0) as u32;
         let end = ((middle + ratio).ceil() as u32).clamp(first + 1, from);
         let weight = |k: u32| (1.0 - (k as f32 + 0.5 - middle).abs() / ratio).max(0.0);
-        let zeros = (first..end).take_while(|&k| weight(k) == 0.0).count() as u32;
+        let zeros = to_u32((first..end).take_while(|&k| weight(k) == 0.0).count());
         let weights: Vec<f32> = (first + zeros..end).map(weight).take_while(|&weight| weight > 0.0).collect();
         let sum: f32 = weights.iter().sum();
         Taps { first: (first + zeros) as usize, weights: weights.into_iter().map(|weight| weight / sum).collect() }
@@ -183,6 +185,7 @@ fn lost_detail(map: &HeightMap, level: u32, progress: &Progress) -> Result<f32, 
 /// For each of `count` pixels of level 0 along an axis, returns the two of a level's `own` pixels that it lies between,
 /// and how far it lies from the first of them towards the second, 0 to 1. Returns none for pixels of a repeating image
 /// that lie outside the level's pixel centres.
+#[expect(clippy::cast_possible_truncation, reason = "whole numbers within the image")]
 fn places(count: usize, own: usize, repeats: bool) -> Vec<Option<(usize, usize, f32)>> {
     let place = |i: usize| {
         let at = (i as f32 + 0.5) / count as f32 * own as f32 - 0.5;

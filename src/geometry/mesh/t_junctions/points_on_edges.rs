@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use super::line_segment::LineSegment;
 use super::{TRIES, corners, open_edges};
+use crate::casts::to_u32;
 use crate::mesh::bounding_box_tree::BoundingBoxTree;
 use crate::mesh::bounds::Bounds;
 use crate::mesh::weld_preview::TOLERANCES;
@@ -86,7 +87,7 @@ fn boundary_points(topology: &Topology, shortest: &[f64], tolerance: f64) -> Vec
     let mut spots: HashMap<[u64; 3], usize, RandomState> = HashMap::default();
     let cell = |place: DVec3| place.to_array().map(|x| ((x / (2.0 * tolerance)).floor() + 0.0).to_bits());
     let place_of = |point: u32| topology.points[point as usize].as_dvec3();
-    let open = (0..topology.points.len() as u32).filter(|&point| shortest[point as usize].is_finite());
+    let open = (0..to_u32(topology.points.len())).filter(|&point| shortest[point as usize].is_finite());
     let few = open.filter(|&point| {
         let count = spots.entry(cell(place_of(point))).or_default();
         *count += 1;

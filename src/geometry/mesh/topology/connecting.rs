@@ -7,6 +7,7 @@ use bytemuck::zeroed_vec;
 use rayon::prelude::*;
 
 use super::{Edge, EdgeKind, Patch, Side, Topology, is_degenerate};
+use crate::casts::to_u32;
 use crate::cores::{ranges, split};
 use crate::mesh::Corner;
 
@@ -34,7 +35,7 @@ pub(super) fn patches(triangles: &[[u32; 3]], corner_points: &[u32], points: usi
         for triangle in range.clone() {
             let [a, b, c] = triangles[triangle].map(|corner| corner_points[corner as usize]);
             if !is_degenerate([a, b, c]) {
-                patches[kept].triangle = triangle as u32;
+                patches[kept].triangle = to_u32(triangle);
                 kept += 1;
                 [(a, b), (b, c), (c, a)].into_iter().for_each(|(a, b)| starts[a.min(b) as usize + 1] += 1);
             }
@@ -69,7 +70,7 @@ pub(super) fn sides(triangles: &[[u32; 3]], corner_points: &[u32], starts: &[u32
     let edges = parts.map(|(sides, PointRange { points, sides: range, .. })| {
         let runs =
             points.clone().map(|point| starts[point] as usize - range.start..starts[point + 1] as usize - range.start);
-        let mut next: Vec<u32> = runs.clone().map(|run| run.start as u32).collect();
+        let mut next: Vec<u32> = runs.clone().map(|run| to_u32(run.start)).collect();
         // Each core looks at all triangles.
         let points_of = triangles.iter().map(|corners| corners.map(|corner| corner_points[corner as usize]));
         for (index, [a, b, c]) in (0..).zip(points_of.filter(|points| !is_degenerate(*points))) {
@@ -125,10 +126,10 @@ pub(super) fn edges(
     let of_sides = split(sides, ranges.iter().map(|range| range.sides.len()));
     let of_edges = split(&mut edges, ranges.iter().map(|range| range.edges.len()));
     ranges.par_iter().zip(of_sides).zip(of_edges).for_each(|((range, sides), edges)| {
-        let mut numbered = zip(range.edges.start as u32.., edges.iter_mut());
+        let mut numbered = zip(to_u32(range.edges.start).., edges.iter_mut());
         for point in range.points.clone() {
             let (start, end) = (starts[point] as usize, starts[point + 1] as usize);
-            let mut first_side = start as u32;
+            let mut first_side = to_u32(start);
             let around = &mut sides[start - range.sides.start..end - range.sides.start];
             for run in around.chunk_by_mut(|a, b| a.edge == b.edge) {
                 let high = run[0].edge as usize;
@@ -140,7 +141,7 @@ pub(super) fn edges(
                 let Some((number, edge)) = numbered.next() else { return };
                 *edge = Edge { first_side, kind, shares_corners };
                 run.iter_mut().for_each(|side| side.edge = number);
-                first_side += run.len() as u32;
+                first_side += to_u32(run.len());
             }
         }
     });

@@ -51,7 +51,7 @@ impl Renderer {
             return Ok(scene.materials.iter().map(|own| own.group.clone()).collect());
         };
         let lights = scene.lights.as_ref();
-        Ok(self.materials.lit_groups(&self.gpu, &scene.materials, (environment, surroundings), lights))
+        Ok(self.materials.lit_groups(&self.gpu, &scene.materials, environment, surroundings, lights))
     }
 
     /// The pipeline and the bind group that draw this light behind everything.

@@ -33,6 +33,7 @@ pub(super) struct Header {
 impl Header {
     /// # Errors
     /// A clause if the data isn't a mesh, or has another version.
+    #[expect(clippy::cast_possible_truncation, reason = "the decoder keeps 32 bits of it")]
     pub(super) fn read(bytes: &[u8]) -> Result<Self, String> {
         let cut = |_: DracoError| format!("has data that ends within its header, after {} bytes", bytes.len());
         let mut buffer = DecoderBuffer::new(&bytes[..bytes.len().min(LONGEST)]);

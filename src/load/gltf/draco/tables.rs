@@ -13,6 +13,7 @@ use draco_core::symbol_encoding::{SymbolEncodingOptions, decode_symbols};
 use draco_core::{DataType, DecoderBuffer};
 
 use super::header::Header;
+use geometry::casts::to_usize;
 
 /// Memory for each symbol of a table of probabilities, in bytes.
 const PER_SYMBOL: u64 = 8;
@@ -163,6 +164,7 @@ impl<'a> Walk<'a> {
     }
 
     /// Coded bits: their probability, their length in bytes, and they themselves.
+    #[expect(clippy::cast_possible_truncation, reason = "the decoder keeps 32 bits of it")]
     fn bits(&mut self) -> Option<()> {
         self.byte()?;
         let length = self.varint()?;
@@ -179,7 +181,7 @@ impl<'a> Walk<'a> {
             return self.symbols();
         }
         let options = SymbolEncodingOptions::default();
-        decode_symbols(count as usize, 1, &options, &mut self.buffer, &mut Vec::new()).ok()
+        decode_symbols(to_usize(count), 1, &options, &mut self.buffer, &mut Vec::new()).ok()
     }
 
     /// Coded symbols.
@@ -265,6 +267,7 @@ impl<'a> Walk<'a> {
     }
 
     /// The values of an attribute, with what their prediction needs.
+    #[expect(clippy::cast_possible_truncation, reason = "the decoder keeps 32 bits of it")]
     fn values(&mut self, attribute: &Coded) -> Option<()> {
         if !(1..=3).contains(&attribute.decoder) {
             return None;
