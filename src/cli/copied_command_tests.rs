@@ -73,7 +73,7 @@ fn camera() -> Camera {
 fn options_with_default_values_are_left_out() {
     let (source, preparation) = (Source::File("my models/it's.glb".into()), Preparation::default());
     let camera = Camera { azimuth: -30.0, distance: 5.0, ..camera() };
-    let line = shown(&source, &preparation, &Settings::default(), &camera).line();
+    let line = shown(&source, &preparation, &Settings::usual(), &camera).line();
     let mesh = if cfg!(windows) { "\"my models/it's.glb\"" } else { r"'my models/it'\''s.glb'" };
     let picture = if cfg!(windows) { "\"it's-view.png\"" } else { r"'it'\''s-view.png'" };
     let view = "--size 640x480 --camera=-30,20,2.5 --target 0,0,0";
@@ -177,7 +177,7 @@ fn the_file_of_the_light_is_written_while_it_is_used() {
 #[test]
 fn a_turn_is_written_as_a_turntable() {
     let (source, preparation) = ("shape:torus".parse().expect("a shape"), Preparation::default());
-    let (settings, camera) = (Settings::default(), camera());
+    let (settings, camera) = (Settings::usual(), camera());
     let with = |turn| CopiedCommand { turn, ..shown(&source, &preparation, &settings, &camera) }.line();
     let usual = with(Some((Turn::default(), false)));
     assert!(usual.starts_with("pnaen turntable shape:torus -o torus-turntable --size 640x480"), "{usual}");

@@ -8,14 +8,15 @@ use inspect::shader_files::{Language, shader_files};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Language of the shaders
-    #[arg(long, value_parser = options::choice::<Language>())]
-    pub language: Language,
-    /// Folder to write into; it is made if it isn't there
-    #[arg(short, long, value_name = "DIR")]
-    pub output: PathBuf,
+    // Is read before the language, without which it has LOD by error.
     #[command(flatten)]
     pub tessellation: TessellationOptions,
+    /// Language of the shaders
+    #[arg(long, display_order = 0, value_parser = options::choice::<Language>())]
+    pub language: Language,
+    /// Folder to write into; it is made if it isn't there
+    #[arg(short, long, value_name = "DIR", display_order = 0)]
+    pub output: PathBuf,
     /// Is refused: only the rules of --surface can be exported
     #[arg(long, value_name = "WGSL", hide = true)]
     pub surface_shader: Option<PathBuf>,

@@ -129,7 +129,7 @@ fn a_difference_is_said_and_fails() {
 fn json_has_the_findings_and_the_sides() {
     let folder = Folder::new();
     let theirs = emitted(&folder, "a.obj", &["--factor", "6"]);
-    let said = compared(&theirs, &["--json"], 1);
+    let said = compared(&theirs, &["--json", "--factor", "8"], 1);
     let found: Value = serde_json::from_str(&said).expect("JSON");
     assert_eq!((&found["same"], &found["findings"][0]["kind"]), (&Value::Bool(false), &Value::from("factors")));
     assert_eq!(found["sides"][0]["ours"]["segments"], 9);

@@ -177,7 +177,7 @@ fn lines_of_degenerate_triangles_are_optional() {
 fn errors_in_a_file_are_one_line_with_the_line_number() {
     let folder = Folder::new();
     let [file, obj] = ["wrong.csv", "out.obj"].map(|name| folder.path(name));
-    let text = output(&["factors", "shape:cube-split", "-o", "-", "--device", "cpu"]);
+    let text = output(&["factors", "shape:cube-split", "-o", "-", "--device", "cpu", "--factor", "8"]);
     let lines: Vec<_> = text.lines().collect();
     let with = |at: usize, line: &str| [&lines[..at], &[line], &lines[at + 1..]].concat().join("\n");
     for (text, words) in [

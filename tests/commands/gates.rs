@@ -380,7 +380,11 @@ fn tessellate_is_judged_alike_on_both_devices() {
     let said = ["cpu", "gpu"].map(|device| {
         let out = folder.path(&format!("{device}.glb"));
         let said = failure(
-            &["tessellate", "shape:cube-split", "--surface", "pn", "-o", &out, "--device", device, "--fail-on", gates],
+            &[
+                &["tessellate", "shape:cube-split", "--surface", "pn", "--factor", "8", "-o", &out][..],
+                &["--device", device, "--fail-on", gates],
+            ]
+            .concat(),
             1,
         );
         assert!(Path::new(&out).exists());

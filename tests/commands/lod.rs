@@ -128,6 +128,6 @@ fn a_budget_of_triangles_raises_the_tolerance_and_reports_it() {
         &[&["render", "-o", &picture, "--max-triangles", "200"], &by_error[..]].concat(),
         &["256 triangles", "more than 200"],
     );
-    let said = failure(&["render", "shape:torus", "-o", &picture, "--max-triangles", "200"], 2);
+    let said = failure(&["render", "shape:torus", "-o", &picture, "--factor", "8", "--max-triangles", "200"], 2);
     assert!(said.contains("--lod error"), "{said}");
 }

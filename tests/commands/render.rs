@@ -82,7 +82,7 @@ fn shared_edges_crack_as_published_and_not_if_computed_per_edge() {
         |options: &[&str]| stats(&[&["shape:torus", "--surface", "pn-aen"], options].concat())["cracks"].clone();
     let published = ["--edges", "as-published"];
     let adaptive = ["--lod", "paper", "--pixels", "4"];
-    let uniform = cracks(&published);
+    let uniform = cracks(&[&published[..], &["--factor", "8"]].concat());
     assert!(number(&uniform, "/different_bits") > 0.0 && number(&uniform, "/max_gap") > 0.0, "{uniform}");
     assert_eq!(uniform["different_factors"], 0, "a uniform factor is the same from every side: {uniform}");
     let paper = cracks(&[&published[..], &adaptive].concat());

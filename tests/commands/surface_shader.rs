@@ -66,8 +66,8 @@ fn a_surface_of_ones_own_is_written_turned_and_split() {
     let folder = Folder::new();
     let [own, ours] = ["own.obj", "ours.obj"].map(|name| folder.path(name));
     let flat = write(&folder, "flat.wgsl", "mix(edge.a, edge.b, 1.0 / 3.0)", "mix(edge.b, edge.a, 1.0 / 3.0)");
-    both(&["tessellate", "shape:torus", "-o", &own, "--surface-shader", &flat]);
-    both(&["tessellate", "shape:torus", "-o", &ours, "--surface", "flat"]);
+    both(&["tessellate", "shape:torus", "--factor", "8", "-o", &own, "--surface-shader", &flat]);
+    both(&["tessellate", "shape:torus", "--factor", "8", "-o", &ours, "--surface", "flat"]);
     let positions = |path: &str| -> Vec<f32> {
         let text = std::fs::read_to_string(path).expect("a mesh");
         let points = text.lines().filter_map(|line| line.strip_prefix("v "));

@@ -7,7 +7,7 @@ use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command, Error, FromArgMatches};
 
-use geometry::tessellate::{Displacement, Tessellation};
+use geometry::tessellate::{Displacement, Lod, Partitioning, Tessellation};
 use inspect::settings::{Choice, Declaration, Description, Kind, Lighting, Settings, Value, descriptions, options};
 use load::Import;
 
@@ -36,15 +36,26 @@ pub(crate) type PictureOptions = Declared<Settings>;
 /// How the geometry of a file is taken.
 pub(crate) type ImportOptions = Declared<Import>;
 
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GivenTessellation {
     pub tessellation: Tessellation,
     /// Given on the command line; without it, displacement depends on whether there are heights.
     pub displacement: Option<Displacement>,
 }
 
+impl Default for GivenTessellation {
+    fn default() -> Self {
+        Self { tessellation: Settings::usual().tessellation, displacement: None }
+    }
+}
+
 const WITHOUT_DISPLACEMENT: &str =
     "By default on with --height, else off. Without --height, the materials' images are the height map";
+/// Arguments that say factors, or that leave no room for LOD by error: a factor, a file or a shader of factors, and the language of
+/// written shaders.
+const WITHOUT_LOD: [&str; 4] = ["factor", "given", "lod_shader", "language"];
+const USUAL_LOD: &str = "With --factor it is uniform, unless this option says otherwise";
+const USUAL_PARTITIONING: &str = "By default rows under LOD by error, else fractional-odd";
 
 impl<T: Group> clap::Args for Declared<T> {
     fn augment_args(command: Command) -> Command {
@@ -72,9 +83,13 @@ impl Group for GivenTessellation {
     const ALL: &'static [&'static Declaration] = &options::TESSELLATION;
 
     fn arg(declaration: &'static Declaration) -> Arg {
-        match declaration.name == options::DISPLACEMENT.name {
-            true => arg(declaration).help(format!("{} {WITHOUT_DISPLACEMENT}", declaration.text)),
-            false => with_default(arg(declaration), declaration),
+        let own = arg(declaration);
+        let more = |text: &str| format!("{} {text}", declaration.text);
+        match declaration.name {
+            name if name == options::DISPLACEMENT.name => own.help(more(WITHOUT_DISPLACEMENT)),
+            name if name == options::PARTITIONING.name => own.help(more(USUAL_PARTITIONING)),
+            name if name == options::LOD.name => with_default(own, declaration).help(more(USUAL_LOD)),
+            _ => with_default(own, declaration),
         }
     }
 
@@ -82,6 +97,19 @@ impl Group for GivenTessellation {
         let mut settings = Settings::from(self.tessellation);
         take(Self::ALL, matches, &mut settings)?;
         self.tessellation = settings.tessellation;
+        let is_given = |id: &str| {
+            matches.try_contains_id(id).is_ok_and(|is_known| is_known)
+                && matches.value_source(id) == Some(ValueSource::CommandLine)
+        };
+        let own = &mut self.tessellation;
+        if !is_given(options::LOD.name)
+            && (own.partitioning == Partitioning::Subtriangulation || WITHOUT_LOD.into_iter().any(is_given))
+        {
+            own.lod = Lod::Uniform;
+        }
+        if !is_given(options::PARTITIONING.name) {
+            own.partitioning = own.lod.usual_partitioning();
+        }
         if matches.contains_id(options::DISPLACEMENT.name) {
             self.displacement = Some(self.tessellation.displacement);
         }
@@ -268,7 +296,8 @@ mod tests {
             }
             let default = option.default();
             let has_default = !matches!(default, Value::Unset | Value::Switch(_) | Value::Names(_));
-            if has_default && name != options::DISPLACEMENT.name {
+            // What the default of these is depends on others.
+            if has_default && ![options::DISPLACEMENT.name, options::PARTITIONING.name].contains(&name) {
                 assert!(help.contains(&format!("[default: {default}]")), "{name}");
             }
         }
@@ -286,8 +315,30 @@ mod tests {
     }
 
     #[test]
+    fn what_gives_factors_stands_for_uniform_lod_and_each_lod_has_its_partitioning() {
+        use Lod::{EdgeLength, Error, Uniform};
+        use Partitioning::{FractionalOdd, Integer, Rows, Subtriangulation};
+        for (arguments, lod, partitioning) in [
+            ("", Error, Rows),
+            ("--factor=8", Uniform, FractionalOdd),
+            ("--factor=8 --lod=error", Error, Rows),
+            ("--lod=uniform", Uniform, FractionalOdd),
+            ("--lod=edge-length", EdgeLength, FractionalOdd),
+            ("--lod=uniform --partitioning=rows", Uniform, Rows),
+            ("--partitioning=integer", Error, Integer),
+            ("--partitioning=subtriangulation", Uniform, Subtriangulation),
+            ("--factors=a.csv", Uniform, FractionalOdd),
+            ("--lod-shader=a.wgsl", Uniform, FractionalOdd),
+        ] {
+            let words: Vec<_> = arguments.split_whitespace().map(String::from).collect();
+            let own = read(&words).expect("valid options").tessellation;
+            assert_eq!((own.lod, own.partitioning), (lod, partitioning), "{arguments}");
+        }
+    }
+
+    #[test]
     fn every_option_is_read_from_the_command_line() {
-        assert_eq!(read(&[]).expect("nothing is given"), Settings::default());
+        assert_eq!(read(&[]).expect("nothing is given"), Settings::usual());
         for option in options::all() {
             let value = match &option.kind {
                 Kind::Choice(all) => all().last().map_or(Value::Unset, |value| Value::Name(value.name)),
@@ -297,7 +348,9 @@ mod tests {
                 Kind::Switch => Value::Switch(true),
                 Kind::Color => Value::Color([1, 2, 3]),
             };
-            let mut expected = Settings::default();
+            // A factor stands for uniform LOD.
+            let mut expected =
+                if option.name == options::FACTOR.name { Settings::default() } else { Settings::usual() };
             let mut arguments = Vec::new();
             if option.name == options::SPLIT_SURFACE.name {
                 assert!(read(&[format!("--{}={value}", option.name)]).is_err(), "it needs a split");
@@ -309,6 +362,9 @@ mod tests {
                 _ => format!("--{}={value}", option.name),
             });
             assert!(option.set(&mut expected, value));
+            if option.name == options::LOD.name {
+                expected = expected.under(expected.tessellation.lod);
+            }
             assert_eq!(read(&arguments).expect("a value of the option"), expected, "{arguments:?}");
             assert!(read(&[format!("--{}=odd", option.name)]).is_err(), "{}", option.name);
         }

@@ -62,7 +62,7 @@ impl Default for Tessellation {
             normals: Normals::Linear,
             edges: Edges::PerEdge,
             factor: 8.0,
-            partitioning: Partitioning::FractionalOdd,
+            partitioning: Lod::Uniform.usual_partitioning(),
             lod: Lod::Uniform,
             pixels: 8.0,
             tolerance: 0.25,

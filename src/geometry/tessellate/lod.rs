@@ -3,6 +3,7 @@
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
+use super::factors::Partitioning;
 use crate::names::every;
 
 /// Where edge factors come from.
@@ -27,6 +28,11 @@ pub enum Lod {
 impl Lod {
     /// All values, in the order in which lists show them.
     pub const ALL: [Self; 5] = every![Lod: Uniform, Error, EdgeLength, Distance, Paper];
+
+    /// The partitioning that is usual with it: the one with the fewest triangles, or Direct3D's one without jumps.
+    pub fn usual_partitioning(self) -> Partitioning {
+        if self == Self::Error { Partitioning::Rows } else { Partitioning::FractionalOdd }
+    }
 }
 
 /// The view that LOD and clipping are computed for.

@@ -16,9 +16,7 @@ mod value;
 use glam::{Mat4, Vec2};
 
 use geometry::mesh::{Heights, Material, Mesh};
-use geometry::tessellate::{
-    Clip, Displacement, Inputs, Lod, LodView, Partitioning, Surface, Tessellation, displacement_reach,
-};
+use geometry::tessellate::{Clip, Displacement, Inputs, Lod, LodView, Surface, Tessellation, displacement_reach};
 use load::Import;
 
 pub(crate) use choice::choices;
@@ -144,19 +142,16 @@ choices! {
 }
 
 impl Settings {
-    /// The settings of a first start: LOD by error with the fewest triangles, which rows have, with patches that can't be seen left
-    /// out, and the wireframe.
+    /// The settings of commands without options: LOD by error with the fewest triangles, which rows have.
+    pub fn usual() -> Self {
+        Self::default().under(Lod::Error)
+    }
+
+    /// The settings of the window's first start: the usual ones, with patches that can't be seen left out. Commands keep these,
+    /// since a written mesh is to be whole.
     pub fn opening() -> Self {
-        Self {
-            tessellation: Tessellation {
-                lod: Lod::Error,
-                partitioning: Partitioning::Rows,
-                clip: Clip::Frustum,
-                cull_back_faces: true,
-                ..Tessellation::default()
-            },
-            ..Self::default()
-        }
+        let usual = Self::usual();
+        usual.with(Tessellation { clip: Clip::Frustum, cull_back_faces: true, ..usual.tessellation })
     }
 
     /// Returns the settings of the window's first start, which show at once what tessellation does: the mesh as it came beside
@@ -169,6 +164,11 @@ impl Settings {
     /// The sRGB colour behind the mesh.
     pub fn background_color(&self) -> [u8; 3] {
         self.background.unwrap_or(DARK_BACKGROUND)
+    }
+
+    /// These settings under another LOD, with the partitioning that is usual there.
+    pub fn under(&self, lod: Lod) -> Self {
+        self.with(Tessellation { lod, partitioning: lod.usual_partitioning(), ..self.tessellation })
     }
 
     /// These settings with another tessellation.
@@ -231,6 +231,7 @@ impl Settings {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use geometry::tessellate::Partitioning;
 
     #[test]
     fn subtriangulation_uses_uniform_lod_and_keeps_the_chosen_one() {

@@ -100,9 +100,9 @@ impl Declaration {
         }
     }
 
-    /// The default value.
+    /// The default value of commands.
     pub fn default(&self) -> Value {
-        self.get(&Settings::default())
+        self.get(&Settings::usual())
     }
 
     /// The range of its numbers; none if its values aren't numbers.

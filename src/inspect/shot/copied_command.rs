@@ -9,7 +9,7 @@ use super::turn::Turn;
 use crate::engine::Preparation;
 use crate::render::Camera;
 use crate::settings::{Colors, Declaration, Lighting, Settings, Value, options};
-use geometry::tessellate::{Displacement, Tessellation};
+use geometry::tessellate::{Displacement, Lod, Tessellation};
 use load::files::Limits;
 use load::{HeightSource, Source};
 
@@ -113,12 +113,14 @@ impl CopiedCommand<'_> {
         let own = self.settings.tessellation;
         let has_lod = self.factors.is_none() && self.lod_shader.is_none();
         let tessellation = if has_lod { own } else { Tessellation { lod, factor, ..own } };
+        let usual = Settings::default().under(tessellation.lod);
+        let usual = if has_lod { usual.with(Tessellation { lod: Lod::Error, ..usual.tessellation }) } else { usual };
         let shown = Settings { background, ..self.settings.with(tessellation) };
         let displaced = |displacement, of: &Settings| of.with(Tessellation { displacement, ..of.tessellation });
         let (own, usual) = match self.preparation.heights {
             // With --height the surface is displaced unless --displacement says otherwise.
-            Some(_) => (shown, displaced(Displacement::On, &Settings::default())),
-            None => (displaced(Displacement::Off, &shown), Settings::default()),
+            Some(_) => (shown, displaced(Displacement::On, &usual)),
+            None => (displaced(Displacement::Off, &shown), usual),
         };
         let is_replaced = |name: &str| {
             (self.surface_shader.is_some() && name == options::SURFACE.name)

@@ -134,7 +134,9 @@ impl<'a> Outcomes<'a> {
             Reach { domain: exact_reach(ours, patch, exact).clamp(LEAST_REACH, LARGEST_REACH / most), fit }
         };
         let reaches: Vec<Reach> = patches.clone().map(reach).collect();
-        let has_lod = ours.given.is_none() && ours.inputs.tessellation.used_lod() != Lod::Uniform;
+        // LOD by error has whole factors, like those of one number.
+        let lod = ours.inputs.tessellation.used_lod();
+        let has_last_bits = ours.given.is_none() && !matches!(lod, Lod::Uniform | Lod::Error);
         let theirs = |patch: &u32| assignment.count(*patch) > 0;
         let emitted = |patch: &u32| own_mesh.emits(*patch);
         let all = made_of_all(patches.len(), progress, |patch| {
@@ -143,7 +145,7 @@ impl<'a> Outcomes<'a> {
                 return Outcome::default();
             }
             let own = own_mesh.patch(patch);
-            let slack = if has_lod { LAST_BITS * own.stretch() } else { 0.0 };
+            let slack = if has_last_bits { LAST_BITS * own.stretch() } else { 0.0 };
             Outcome { slack, ..Outcome::of(assignment, &own, patch, reaches[patch as usize]) }
         })?;
         let missing = patches.clone().filter(|patch| emitted(patch) && !theirs(patch)).collect();

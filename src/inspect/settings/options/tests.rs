@@ -114,9 +114,9 @@ fn another(declaration: &Declaration) -> Value {
 fn every_field_is_reached_by_exactly_one_declaration() {
     let mut reached = Vec::new();
     for declaration in all() {
-        let mut settings = Settings::default();
+        let mut settings = Settings::usual();
         assert!(declaration.set(&mut settings, another(declaration)), "{}", declaration.name);
-        let fields = changed(&settings, &Settings::default());
+        let fields = changed(&settings, &Settings::usual());
         let expected = if matches!(declaration.kind, Kind::Pair(_)) { 2 } else { 1 };
         assert_eq!(fields.len(), expected, "{} sets {fields:?}", declaration.name);
         assert!(
