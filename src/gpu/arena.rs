@@ -11,6 +11,7 @@ use super::buffer::empty;
 use super::layout::Vertex;
 use super::mesh_buffers::MeshBuffers;
 use super::{Gpu, GpuError};
+use geometry::cores::fill;
 use geometry::tessellate::{Partitioning, point_count, process, triangle_count};
 
 /// How many chunks an arena is divided into on a software adapter, where output doesn't fit it at once.
@@ -120,14 +121,24 @@ pub const VERTEX_HALF: u64 = 16;
 
 /// Puts vertices together: `halves` holds the first halves of all of them, then the second halves.
 pub fn vertices_of(halves: &[u8]) -> Vec<Vertex> {
-    let (first, second) = halves.split_at(halves.len() / 2);
-    let half = VERTEX_HALF as usize;
-    let whole = |(a, b): (&[u8], &[u8])| {
-        let mut vertex = Vertex::zeroed();
-        let (to_a, to_b) = bytemuck::bytes_of_mut(&mut vertex).split_at_mut(half);
-        to_a.copy_from_slice(a);
-        to_b.copy_from_slice(b);
-        vertex
-    };
-    first.chunks_exact(half).zip(second.chunks_exact(half)).map(whole).collect()
+    let mut vertices = Vec::new();
+    put_together(halves, &mut vertices);
+    vertices
 }
+
+/// Does the same in a list that is used again, on all cores.
+pub fn put_together(halves: &[u8], vertices: &mut Vec<Vertex>) {
+    let half = VERTEX_HALF as usize;
+    let (first, second) = halves.split_at(halves.len() / 2);
+    vertices.resize(first.len() / half, Vertex::zeroed());
+    fill(vertices, LEAST, |i| {
+        let mut vertex = Vertex::zeroed();
+        let (a, b) = bytemuck::bytes_of_mut(&mut vertex).split_at_mut(half);
+        a.copy_from_slice(&first[i * half..][..half]);
+        b.copy_from_slice(&second[i * half..][..half]);
+        vertex
+    });
+}
+
+/// As many vertices as a core of its own is worth.
+const LEAST: usize = 1 << 14;

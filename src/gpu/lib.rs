@@ -38,7 +38,7 @@ pub mod wgsl;
 pub mod wgsl_tokens;
 
 pub use adapters::{AdapterChoice, BACKENDS, adapters, best_adapter, driver, identity, kind};
-pub use arena::{VERTEX_HALF, chunks_an_arena, vertices_of};
+pub use arena::{VERTEX_HALF, chunks_an_arena, put_together, vertices_of};
 pub use bound_pass::BoundPass;
 pub use buffer::{bytes_of, empty, filled_texture, flat_texture, uniform_buffer, whole};
 pub use compute_pipeline::{ComputePipeline, ShaderModule, ShaderModules};
@@ -52,7 +52,7 @@ pub use own_functions::{OwnPipelines, OwnReport, OwnShader};
 pub use own_lod::{Given, LodShader};
 pub use own_surface::SurfaceShader;
 pub use pipelines::{ComputePipelines, GRID_WIDTH, MOST_WORKGROUPS, WORKGROUP, bind_group, grid};
-pub use readback::{Readback, read_buffer, read_buffers, read_texture};
+pub use readback::{Readback, read_buffer, read_buffers, read_texture, with_buffers};
 pub use recorder::{DRAWING, PASSES, PassTime, RecordPasses, Recorder, Timing, take_times};
 pub use tessellator::{ChunkBuffers, Tessellator};
 pub use wgsl::WgslModule;

@@ -113,11 +113,12 @@ impl Readback {
     /// # Errors
     /// The device was lost, or it has refused a command that nobody was told of yet.
     pub fn wait(&mut self, gpu: &Gpu) -> Result<Vec<u8>, GpuError> {
-        self.wait_at_most(gpu, PATIENCE)
+        self.arrive(gpu, PATIENCE)?;
+        self.bytes()
     }
 
-    /// The same, if the bytes come before `patience` has passed once the device has done all that was submitted.
-    fn wait_at_most(&mut self, gpu: &Gpu, patience: Duration) -> Result<Vec<u8>, GpuError> {
+    /// Waits for the bytes, no longer than `patience` once the device has done all that was submitted.
+    fn arrive(&mut self, gpu: &Gpu, patience: Duration) -> Result<(), GpuError> {
         self.request();
         gpu.wait();
         // A command that was refused explains more than the mapping that failed because of it.
@@ -130,7 +131,7 @@ impl Readback {
             gpu.check()?;
             self.mapped(received?)?;
         }
-        self.bytes()
+        Ok(())
     }
 
     fn mapped(&mut self, result: Result<(), wgpu::BufferAsyncError>) -> Result<(), GpuError> {
@@ -144,11 +145,23 @@ impl Readback {
     /// # Errors
     /// The bytes aren't here, or the device was lost.
     pub fn bytes(&self) -> Result<Vec<u8>, GpuError> {
+        self.with_bytes(<[u8]>::to_vec)
+    }
+
+    /// Gives the bytes, which must be here, to `take`, without a copy of those of buffers. They are aligned to 8 bytes. It may be
+    /// called on another thread than the one that polled.
+    ///
+    /// # Errors
+    /// The bytes aren't here, or the device was lost.
+    pub fn with_bytes<R>(&self, take: impl FnOnce(&[u8]) -> R) -> Result<R, GpuError> {
         let view = self.staging.get_mapped_range(..).map_err(failed)?;
         Ok(match self.layout {
-            Layout::Packed(bytes) => view[..bytes].to_vec(),
-            Layout::Rows { used, stride } if used == stride => view.to_vec(),
-            Layout::Rows { used, stride } => view.chunks_exact(stride).flat_map(|row| &row[..used]).copied().collect(),
+            Layout::Packed(bytes) => take(&view[..bytes]),
+            Layout::Rows { used, stride } if used == stride => take(&view),
+            Layout::Rows { used, stride } => {
+                let rows = view.chunks_exact(stride).flat_map(|row| &row[..used]);
+                take(&rows.copied().collect::<Vec<_>>())
+            }
         })
     }
 }
@@ -171,6 +184,20 @@ pub fn read_buffers<'a>(
 ) -> Result<Vec<u8>, GpuError> {
     let parts: Vec<_> = parts.into_iter().filter(|(_, bytes)| !bytes.is_empty()).collect();
     if parts.is_empty() { Ok(Vec::new()) } else { Readback::start(gpu, parts).wait(gpu) }
+}
+
+/// Reads ranges of bytes of buffers as [`read_buffers`] does, and gives them to `take` without a copy.
+///
+/// # Errors
+/// The device was lost.
+pub fn with_buffers<'a, R>(
+    gpu: &Gpu,
+    parts: impl IntoIterator<Item = (&'a wgpu::Buffer, Range<u64>)>,
+    take: impl FnOnce(&[u8]) -> R,
+) -> Result<R, GpuError> {
+    let mut readback = Readback::start(gpu, parts);
+    readback.arrive(gpu, PATIENCE)?;
+    readback.with_bytes(take)
 }
 
 /// Reads a texture's texels row by row, waiting for them: see [`Readback::of_texture`].
@@ -206,7 +233,7 @@ mod tests {
         let (sender, receiver) = channel();
         let state = State::Requested(Mutex::new(receiver));
         let mut readback = Readback { staging, layout: Layout::Packed(4), state };
-        let read = readback.wait_at_most(&gpu, Duration::from_millis(1));
+        let read = readback.arrive(&gpu, Duration::from_millis(1));
         assert!(matches!(read, Err(GpuError::Readback(_))), "{read:?}");
         drop(sender);
     }

@@ -53,16 +53,9 @@ impl Export {
     /// Reads back what is emitted, chunk by chunk. Returns none if it was cancelled.
     fn read(&self, scene: &mut Scene, progress: &Progress) -> Result<Option<Tessellated>, GpuError> {
         let mut out = Tessellated::default();
-        let chunks = scene.tessellator.chunk_count();
-        for index in 0..chunks {
-            if progress.check().is_err() {
-                return Ok(None);
-            }
-            let mut append = |chunk: &EmittedChunk| out.append(chunk.vertices, chunk.triangles);
-            self.engine.visit_chunk(scene, index, &mut [&mut append])?;
-            progress.set(READING * (index + 1) as f32 / chunks as f32);
-        }
-        Ok(Some(out))
+        let mut append = |chunk: &EmittedChunk| out.append(chunk.vertices, chunk.triangles);
+        self.engine.visit_watched(scene, &mut [&mut append], &progress.part(0.0, READING))?;
+        Ok(progress.check().is_ok().then_some(out))
     }
 }
 

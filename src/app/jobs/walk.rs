@@ -6,8 +6,8 @@ use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, TrySendError, sync_cha
 use super::background_job::{Stopped, caught, sent};
 use geometry::progress::Progress;
 use geometry::tessellate::Vertex;
-use gpu::{Gpu, GpuError, Readback, Recorder, Timing, vertices_of};
-use inspect::measure::{EmittedChunk, Visitor};
+use gpu::{Gpu, GpuError, Readback, Recorder, Timing};
+use inspect::measure::{Visitor, visit_bytes};
 use inspect::render::Scene;
 
 /// How many parts may wait for the thread: each is as large as the arena.
@@ -160,15 +160,11 @@ impl Parts<'_> {
 
     /// Gives all chunks to every visitor, as they come. Returns none if nobody wants the walk any more, or the device was lost.
     pub(in crate::app) fn visit(&self, visitors: &mut [&mut dyn Visitor]) -> Option<()> {
-        let mut count = 0;
+        let (mut count, mut vertices) = (0, Vec::new());
         for part in &self.received {
             self.wanted.check().ok()?;
             let Part::Chunk { first_patch, vertex_bytes, readback } = part else { continue };
-            let bytes = readback.bytes().ok()?;
-            let (vertices, indices) = bytes.split_at(vertex_bytes);
-            let (vertices, triangles) = (vertices_of(vertices), bytemuck::pod_collect_to_vec::<u8, [u32; 3]>(indices));
-            let chunk = EmittedChunk { first_patch, vertices: &vertices, triangles: &triangles };
-            visitors.iter_mut().for_each(|visitor| visitor.take(&chunk));
+            readback.with_bytes(|bytes| visit_bytes(first_patch, vertex_bytes, bytes, &mut vertices, visitors)).ok()?;
             count += 1;
         }
         self.wanted.check().ok()?;

@@ -1,7 +1,7 @@
 //! Finds out which positions are the same point.
 
 use std::hash::BuildHasher;
-use std::ops::{ControlFlow, Range};
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use bytemuck::zeroed_vec;
@@ -9,12 +9,11 @@ use foldhash::fast::RandomState;
 use glam::{Vec2, Vec3};
 use hashbrown::HashTable;
 use hashbrown::hash_table::Entry;
-use rayon::prelude::*;
 
 use super::cell_chains::CellChains;
 use super::cell_grid::{CellGrid, spread};
 use crate::casts::to_u32;
-use crate::cores::{in_ranges, ranges, split};
+use crate::cores::{fill, in_ranges};
 
 /// The least number of positions that are worth a thread.
 const LEAST: usize = 1 << 14;
@@ -133,10 +132,7 @@ pub fn weld_alike(count: usize, place: impl Fn(usize) -> (Vec3, u32) + Sync, tol
 /// Returns the position at each of these indices.
 fn points_at(firsts: &[u32], position: impl Fn(usize) -> Vec3 + Sync) -> Vec<Vec3> {
     let mut points: Vec<Vec3> = zeroed_vec(firsts.len());
-    let ranges: Vec<_> = ranges(firsts.len(), LEAST).collect();
-    split(&mut points, ranges.iter().map(Range::len)).into_par_iter().zip(ranges).for_each(|(points, range)| {
-        points.iter_mut().zip(&firsts[range]).for_each(|(point, first)| *point = position(*first as usize));
-    });
+    fill(&mut points, LEAST, |i| position(firsts[i] as usize));
     points
 }
 

@@ -91,11 +91,7 @@ impl Engine {
         visitors.extend(deviation.as_mut().map(|visitor| visitor as &mut dyn Visitor));
         visitors.extend(accuracy.as_mut().map(|visitor| visitor as &mut dyn Visitor));
         visitors.extend(sizes.as_mut().map(|visitor| visitor as &mut dyn Visitor));
-        let chunks = scene.tessellator.chunk_count();
-        for index in (0..chunks).take_while(|_| progress.check().is_ok()) {
-            self.visit_chunk(scene, index, &mut visitors)?;
-            progress.set((index + 1) as f32 / chunks as f32);
-        }
+        self.visit_watched(scene, &mut visitors, progress)?;
         Ok(MeasurementResults {
             survey: survey.map(Survey::finish),
             flat_patches: screen_error.as_ref().map(ScreenErrorMeasurement::flat_patches),

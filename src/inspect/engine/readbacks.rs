@@ -5,12 +5,13 @@ use std::sync::atomic::Ordering;
 use glam::Vec3;
 
 use super::Engine;
-use crate::measure::{AskedFactors, EmittedChunk, PointsAgreement, Visitor};
+use crate::measure::{AskedFactors, EmittedChunk, PointsAgreement, Visitor, visit_bytes};
 use crate::render::Scene;
 use geometry::mesh::Curves;
+use geometry::progress::Progress;
 use geometry::tessellate::{HullFactors, Inputs, Lod, Partitioning, PatchFactors, Tessellated, Tessellation};
 use gpu::layout::CurveNet;
-use gpu::{Given, GpuError, Recorder, Timing, read_buffer, read_buffers, vertices_of};
+use gpu::{Given, GpuError, Recorder, Timing, read_buffer, read_buffers, with_buffers};
 
 impl Engine {
     /// Walks once over everything that is emitted: each chunk is emitted, read back once, and given to every visitor. Reads
@@ -19,38 +20,38 @@ impl Engine {
     /// # Errors
     /// The device was lost.
     pub fn visit(&self, scene: &mut Scene, visitors: &mut [&mut dyn Visitor]) -> Result<(), GpuError> {
-        if visitors.is_empty() {
-            return Ok(());
-        }
-        for index in 0..scene.tessellator.chunk_count() {
-            self.visit_chunk(scene, index, visitors)?;
-        }
-        Ok(())
+        self.visit_watched(scene, visitors, &Progress::new())
     }
 
-    /// Gives one chunk of everything that is emitted to every visitor.
+    /// Does the same, and reports how much was read. If `progress` is cancelled, the walk ends early.
     ///
     /// # Errors
-    /// The device was lost.
-    pub fn visit_chunk(
+    /// The same.
+    pub fn visit_watched(
         &self,
         scene: &mut Scene,
-        index: usize,
         visitors: &mut [&mut dyn Visitor],
+        progress: &Progress,
     ) -> Result<(), GpuError> {
-        let mut timing = Timing::Off;
-        let mut recorder = Recorder::new(&self.gpu, &mut timing);
-        scene.tessellator.emit(&mut recorder, index)?;
-        recorder.submit();
-        let buffers = scene.tessellator.chunk(index);
-        let [first, second] = buffers.vertices();
-        let triangle_bytes = u64::from(buffers.chunk.triangle_count) * size_of::<[u32; 3]>() as u64;
-        let bytes = read_buffers(&self.gpu, [first, second, (buffers.indices, 0..triangle_bytes)])?;
-        self.chunks_read.fetch_add(1, Ordering::Relaxed);
-        let (halves, indices) = bytes.split_at(bytes.len() - triangle_bytes as usize);
-        let (first_patch, vertices, triangles) = (buffers.chunk.first_patch, vertices_of(halves), cast(indices));
-        let chunk = EmittedChunk { first_patch, vertices: &vertices, triangles: &triangles };
-        visitors.iter_mut().for_each(|visitor| visitor.take(&chunk));
+        let chunks = if visitors.is_empty() { 0 } else { scene.tessellator.chunk_count() };
+        // Of all chunks, since memory that is new takes longer than the copy.
+        let mut vertices = Vec::new();
+        for index in (0..chunks).take_while(|_| progress.check().is_ok()) {
+            let mut timing = Timing::Off;
+            let mut recorder = Recorder::new(&self.gpu, &mut timing);
+            scene.tessellator.emit(&mut recorder, index)?;
+            recorder.submit();
+            let buffers = scene.tessellator.chunk(index);
+            let triangle_bytes = u64::from(buffers.chunk.triangle_count) * size_of::<[u32; 3]>() as u64;
+            let triangles = (buffers.indices, 0..triangle_bytes);
+            let [first, second] = buffers.vertices();
+            let vertex_bytes = (first.1.end - first.1.start) + (second.1.end - second.1.start);
+            with_buffers(&self.gpu, [first, second, triangles], |bytes| {
+                visit_bytes(buffers.chunk.first_patch, vertex_bytes as usize, bytes, &mut vertices, visitors);
+            })?;
+            self.chunks_read.fetch_add(1, Ordering::Relaxed);
+            progress.set((index + 1) as f32 / chunks as f32);
+        }
         Ok(())
     }
 

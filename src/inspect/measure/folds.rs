@@ -3,6 +3,8 @@
 
 use glam::{DVec3, Vec3};
 
+use super::survey::LEAST;
+use geometry::cores::in_ranges;
 use geometry::mesh::Topology;
 use geometry::tessellate::Vertex;
 
@@ -67,16 +69,28 @@ impl FoldedPatch {
     }
 }
 
-/// Finds the folded ones among triangles, which are indices into `vertices` and come patch after patch, and adds them to the
-/// patches found so far.
+/// Returns the patches with folds among triangles, which are indices into `vertices` and come patch after patch.
 pub(super) fn find(
     topology: &Topology,
     ulp: f64,
     vertices: &[Vertex],
     triangles: &[[u32; 3]],
-    found: &mut Vec<FoldedPatch>,
-) {
+) -> impl Iterator<Item = FoldedPatch> {
+    let patch = |i: usize| vertices[triangles[i][0] as usize].patch();
+    // Where a patch begins or all triangles end, from `i` on.
+    let begins =
+        |i: usize| (i..triangles.len()).find(|&i| i == 0 || patch(i) != patch(i - 1)).unwrap_or(triangles.len());
+    in_ranges(triangles.len(), LEAST, |range| {
+        of_whole_patches(topology, ulp, vertices, &triangles[begins(range.start)..begins(range.end)])
+    })
+    .into_iter()
+    .flatten()
+}
+
+/// The same for fewer triangles.
+fn of_whole_patches(topology: &Topology, ulp: f64, vertices: &[Vertex], triangles: &[[u32; 3]]) -> Vec<FoldedPatch> {
     let at = |index: u32| Vec3::from(vertices[index as usize].position).as_dvec3();
+    let mut found: Vec<FoldedPatch> = Vec::new();
     let (mut patch, mut patch_facing) = (u32::MAX, DVec3::ZERO);
     for triangle in triangles {
         let own = vertices[triangle[0] as usize].patch();
@@ -94,6 +108,7 @@ pub(super) fn find(
             }
         }
     }
+    found
 }
 
 fn corners(topology: &Topology, patch: u32) -> [DVec3; 3] {
@@ -111,9 +126,7 @@ mod tests {
     use glam::{Mat4, Vec2};
 
     fn found(topology: &Topology, vertices: &[Vertex], triangles: &[[u32; 3]]) -> Vec<FoldedPatch> {
-        let mut found = Vec::new();
-        find(topology, 1e-9, vertices, triangles, &mut found);
-        found
+        find(topology, 1e-9, vertices, triangles).collect()
     }
 
     #[test]

@@ -8,8 +8,9 @@ use super::folds::{self, FoldedPatch};
 use super::outlines::Outlines;
 use super::seams::Seams;
 use super::visitor::{EmittedChunk, Visitor};
+use geometry::cores::in_ranges;
 use geometry::mesh::{Mesh, Topology};
-use geometry::tessellate::{FACING_AWAY, OUT_OF_VIEW, PatchFactors, Tessellated, patch_is_culled};
+use geometry::tessellate::{FACING_AWAY, OUT_OF_VIEW, PatchFactors, Tessellated, Vertex, patch_is_culled};
 use geometry::view::ulp;
 
 /// The measurements so far.
@@ -104,18 +105,31 @@ impl<'a> Survey<'a> {
     }
 }
 
+/// How many vertices or triangles are worth a core.
+pub(super) const LEAST: usize = 1 << 14;
+
+/// How many vertices have an infinite or NaN position or uv, and the least and greatest coordinates of the others.
+fn extent_of(vertices: &[Vertex]) -> (u64, [Vec3; 2]) {
+    let (mut not_finite, mut extent) = (0, [Vec3::INFINITY, Vec3::NEG_INFINITY]);
+    for vertex in vertices {
+        let position = Vec3::from(vertex.position);
+        if position.is_finite() && vertex.uv.iter().all(|x| x.is_finite()) {
+            extent = [extent[0].min(position), extent[1].max(position)];
+        } else {
+            not_finite += 1;
+        }
+    }
+    (not_finite, extent)
+}
+
 impl Visitor for Survey<'_> {
     fn take(&mut self, chunk: &EmittedChunk) {
         let EmittedChunk { first_patch, vertices, triangles } = *chunk;
         self.outlines.take(first_patch, vertices);
-        folds::find(self.topology, self.ulp, vertices, triangles, &mut self.folded);
-        for vertex in vertices {
-            let position = Vec3::from(vertex.position);
-            if !(position.is_finite() && vertex.uv.iter().all(|x| x.is_finite())) {
-                self.not_finite += 1;
-                continue;
-            }
-            self.extent = [self.extent[0].min(position), self.extent[1].max(position)];
+        self.folded.extend(folds::find(self.topology, self.ulp, vertices, triangles));
+        for (not_finite, [least, most]) in in_ranges(vertices.len(), LEAST, |range| extent_of(&vertices[range])) {
+            self.not_finite += not_finite;
+            self.extent = [self.extent[0].min(least), self.extent[1].max(most)];
         }
     }
 }
@@ -132,10 +146,35 @@ impl Measured {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use geometry::cores::on_threads;
     use geometry::mesh::Shape;
     use geometry::progress::Progress;
     use geometry::tessellate::{Inputs, LodView, Partitioning, Tessellation, tessellate};
     use glam::{Mat4, Vec2};
+
+    #[test]
+    fn any_number_of_cores_finds_the_same() {
+        let mesh = Shape::Torus.build();
+        let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
+        let tessellation = Tessellation { factor: 32.0, ..Tessellation::default() };
+        let inputs = Inputs::new(&tessellation, LodView::new(Mat4::IDENTITY, Vec2::ONE));
+        let mut out = tessellate(&mesh, &topology, &inputs, None);
+        // Points on the other side of the torus turn the triangles around them over.
+        let far = |vertex: &mut Vertex| vertex.position = vertex.position.map(|x| -x);
+        out.vertices.iter_mut().step_by(997).for_each(far);
+        out.vertices.iter_mut().step_by(10_007).for_each(|vertex| vertex.uv = [f32::NAN, 0.0]);
+        let measured = |threads| {
+            let asked = AskedFactors::new(tessellation.edges, tessellation.convention, out.edge_factors.clone());
+            on_threads(threads, || Measured::of(&mesh, &topology, asked, &out)).expect("threads")
+        };
+        let alone = measured(1);
+        assert!(alone.folds > 300 && alone.folded.iter().any(|patch| patch.folds > 1), "{}", alone.folds);
+        for threads in [2, 5] {
+            let own = measured(threads);
+            assert_eq!((own.folds, &own.folded, own.not_finite), (alone.folds, &alone.folded, alone.not_finite));
+            assert_eq!(own.extent, alone.extent);
+        }
+    }
 
     #[test]
     fn a_torus_is_measured_from_end_to_end() {
