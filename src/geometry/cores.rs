@@ -53,6 +53,22 @@ pub fn ranges(count: usize, least: usize) -> impl Iterator<Item = Range<usize>> 
     (0..ranges).map(move |number| number * count / ranges..(number + 1) * count / ranges)
 }
 
+/// Does `work` with each item of a list, on all cores.
+///
+/// # Errors
+/// One of those of `work`. Others may then not be done.
+pub fn each<T: Sync, E: Send>(list: &[T], work: impl Fn(&T) -> Result<(), E> + Sync) -> Result<(), E> {
+    list.par_iter().try_for_each(&work)
+}
+
+/// Replaces each item of a list by what `make` makes of its index, on all cores, each of which has at least `least` items.
+pub fn fill<T: Send>(list: &mut [T], least: usize, make: impl Fn(usize) -> T + Sync) {
+    let ranges: Vec<_> = ranges(list.len(), least).collect();
+    split(list, ranges.iter().map(Range::len)).into_par_iter().zip(ranges).for_each(|(part, range)| {
+        part.iter_mut().zip(range).for_each(|(item, i)| *item = make(i));
+    });
+}
+
 /// Divides a list into parts of so many items each.
 pub fn split<T>(mut list: &mut [T], lengths: impl Iterator<Item = usize>) -> Vec<&mut [T]> {
     lengths.map(|length| list.split_off_mut(..length).unwrap_or_default()).collect()

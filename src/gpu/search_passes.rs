@@ -1,7 +1,6 @@
 //! The passes of LOD by error in which patches look for factors: see `shaders/pass_asked.wgsl` and `shaders/pass_uniform.wgsl`.
 
-use super::GpuError;
-use super::bound_pass::{Step, Workgroups};
+use super::bound_pass::Workgroups;
 use super::compute_pipeline::Pass;
 use super::pass_inputs::PassInputs;
 use super::pipelines::{WORKGROUP, grid};
@@ -23,10 +22,7 @@ const SEARCH_WORKGROUPS: u32 = 4096;
 const UNIFORM_WORKGROUPS: [[u32; 2]; 2] = [[1024, 2048], [32, 128]];
 
 /// All passes in their order, for rows or for the patterns of Direct3D.
-///
-/// # Errors
-/// A pipeline can't be made: out of memory, or a lost device.
-pub(super) fn search_steps(on: &PassInputs, has_rows: bool) -> Result<Vec<Step>, GpuError> {
+pub(super) fn search_passes(on: &PassInputs, has_rows: bool) -> Vec<(Pass, Workgroups)> {
     let (mesh, software) = (on.mesh, on.gpu.is_software());
     let patches = mesh.patch_count;
     let [each_patch, each_edge] = [patches, mesh.factor_count].map(|items| Workgroups::Grid(grid(items)));
@@ -49,6 +45,5 @@ pub(super) fn search_steps(on: &PassInputs, has_rows: bool) -> Result<Vec<Step>,
         (TAKE_UNIFORM_FACTOR, each_edge),
     ];
     let rounds = (0..rounds(has_rows)).flat_map(|_| round.clone());
-    let steps = first.iter().cloned().chain(rounds).chain(uniform).chain(first.iter().cloned());
-    steps.map(|(pass, workgroups)| Ok(Step { bound: on.bound(pass)?, workgroups })).collect()
+    first.iter().cloned().chain(rounds).chain(uniform).chain(first.iter().cloned()).collect()
 }

@@ -12,6 +12,7 @@ use std::sync::atomic::AtomicU64;
 
 use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, SilhouetteDrawer, Target};
 use crate::settings::{Settings, SplitSide};
+use geometry::cores::each;
 use geometry::mesh::{Mesh, Topology};
 use geometry::tessellate::{Inputs, LodView};
 use gpu::{AdapterChoice, ComputePipelines, Gpu, GpuError, Recorder, Timing};
@@ -76,14 +77,15 @@ impl Engine {
     }
 
     /// Makes the pipelines that a picture of the scene with these settings needs, as far as they are known before the scene is
-    /// counted. The window's loading thread calls this, so that the window doesn't wait for the driver's compiler. Commands
-    /// needn't call it.
+    /// counted, on all cores. The window's loading thread calls this, so that the window doesn't wait for the driver's compiler.
+    /// What isn't made here is made when it is needed, on one core.
     ///
     /// # Errors
     /// Out of memory, or a lost device.
     pub fn prepare(&self, scene: &Scene, settings: &Settings) -> Result<(), GpuError> {
-        scene.tessellator.prepare(&settings.tessellation)?;
-        self.renderer.prepare(scene, settings)
+        let works: [&(dyn Fn() -> Result<(), GpuError> + Sync); 2] =
+            [&|| scene.tessellator.prepare(&settings.tessellation), &|| self.renderer.prepare(scene, settings)];
+        each(&works, |work| work())
     }
 
     /// Adds the left half of a split view to a scene: a second tessellation, with an arena of `arena_bytes`.

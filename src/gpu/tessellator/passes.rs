@@ -1,7 +1,10 @@
 //! The passes, in the order in which they run.
 
+use std::collections::HashSet;
+
 use super::Tessellator;
 use crate::bound_pass::{BoundPass, Step, Workgroups};
+use crate::compute_pipeline::Pass;
 use crate::layout::{EmitArgs, Params};
 use crate::own_least::{self, OwnLeast};
 use crate::params::params_of;
@@ -12,9 +15,10 @@ use crate::pipelines::{
 };
 use crate::readback::Readback;
 use crate::recorder::{RecordPasses, Recorder};
-use crate::search_passes::search_steps;
+use crate::search_passes::search_passes;
 use crate::slab::SCAN_BLOCK;
 use crate::{Given, GpuError, OwnPipelines};
+use geometry::cores::each;
 use geometry::tessellate::{Displacement, Lod, Normals, Partitioning, Tessellation, own_least_inputs};
 
 /// What settings say about which passes run, and with which constants.
@@ -103,21 +107,28 @@ impl Tessellator {
     }
 
     /// Makes the pipelines of the passes under these settings, as far as that can be told before anything is counted, and binds
-    /// them. May run on any thread: passes that are recorded meanwhile wait for the pipelines that they need.
+    /// them, on all cores. May run on any thread: passes that are recorded meanwhile wait for the pipelines that they need.
     ///
     /// # Errors
     /// Out of memory, or a lost device.
     pub fn prepare(&self, tessellation: &Tessellation) -> Result<(), GpuError> {
         let choices = Choices::of(tessellation);
-        self.nets()?;
-        self.directions()?;
-        self.factors(choices)?;
-        self.levels(choices)?;
-        for slab in 0..self.slabs.len() {
-            self.counts(slab)?;
-            self.emission(slab, choices)?;
-        }
-        Ok(())
+        // What takes longest comes first, each pass once.
+        let on = self.inputs_of_passes();
+        let searches =
+            if choices.by_error && self.given.is_none() { search_passes(&on, choices.has_rows) } else { vec![] };
+        let searches: HashSet<Pass> = searches.into_iter().map(|(pass, _)| pass).collect();
+        each(&Vec::from_iter(searches), |pass| on.bound(*pass).map(drop))?;
+        let of_slabs =
+            || (0..self.slabs.len()).try_for_each(|slab| self.counts(slab).and(self.emission(slab, choices)).map(drop));
+        let works: [&(dyn Fn() -> Result<(), GpuError> + Sync); 5] = [
+            &of_slabs,
+            &|| self.nets().map(drop),
+            &|| self.directions().map(drop),
+            &|| self.factors(choices).map(drop),
+            &|| self.levels(choices).map(drop),
+        ];
+        each(&works, |work| work())
     }
 
     /// Records the passes that compute the own least of every patch ([`Self::own_least`]), unless that is known for the
@@ -203,7 +214,9 @@ impl Tessellator {
             if choices.displaces && mesh.relief.is_some() {
                 steps.push(on.over(HEIGHTS_INSIDE, mesh.patch_count)?);
             }
-            steps.extend(search_steps(&on, choices.has_rows)?);
+            for (pass, workgroups) in search_passes(&on, choices.has_rows) {
+                steps.push(Step { bound: on.bound(pass)?, workgroups });
+            }
         }
         Ok(steps)
     }

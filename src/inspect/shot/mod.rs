@@ -203,6 +203,7 @@ impl Shot {
             judged,
             error_place,
         };
+        shot.engine.prepare(&shot.scene, &shot.subject.settings)?;
         shot.count()?;
         Ok(shot)
     }

@@ -1,11 +1,14 @@
 //! Makes pipelines before a picture needs them.
 
+use std::collections::HashSet;
+
 use super::Renderer;
 use super::layer_passes::layer_draws;
 use crate::render::Scene;
 use crate::render::draws::{Draw, Faces, Occluded};
 use crate::render::surface_draws::{source_draw, surface_draw};
 use crate::settings::{Colors, Lighting, Settings, SplitSide};
+use geometry::cores::each;
 use gpu::GpuError;
 
 /// The pipelines that draw the surfaces of a mesh in drafts of pictures with the same settings.
@@ -35,7 +38,7 @@ impl Renderer {
         if settings.overlays.normals {
             draws.extend(Occluded::BOTH.map(Draw::Normals));
         }
-        draws.into_iter().try_for_each(|draw| self.get(draw).map(|_| ()))
+        each(&Vec::from_iter(HashSet::<Draw>::from_iter(draws)), |&draw| self.get(draw).map(drop))
     }
 
     /// The pipelines for surfaces that a [draft](crate::render::Target::draft) of the scene needs, as far as that is known before the scene is
