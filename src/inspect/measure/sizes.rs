@@ -7,8 +7,10 @@
 
 use glam::{Vec2, Vec3, Vec4};
 
+use super::survey::LEAST;
 use super::visitor::{EmittedChunk, Visitor};
-use geometry::tessellate::{beyond_near, planes_outside};
+use geometry::cores::in_ranges;
+use geometry::tessellate::{Vertex, beyond_near, planes_outside};
 use geometry::view::ScreenView;
 
 /// The size in px below which triangles count as small: they cost more than they show.
@@ -43,24 +45,38 @@ impl Sizes {
 
 impl Visitor for Sizes {
     fn take(&mut self, chunk: &EmittedChunk) {
+        for Self { in_view, small, cut, extent: [least, most], .. } in
+            in_ranges(chunk.triangles.len(), LEAST, |range| {
+                let mut own = Self::new(self.view);
+                chunk.triangles[range].iter().for_each(|triangle| own.count(chunk.vertices, triangle));
+                own
+            })
+        {
+            self.in_view += in_view;
+            self.small += small;
+            self.cut += cut;
+            self.extent = [self.extent[0].min(least), self.extent[1].max(most)];
+        }
+    }
+}
+
+impl Sizes {
+    fn count(&mut self, vertices: &[Vertex], triangle: &[u32; 3]) {
         let ScreenView { clip_from_object, viewport } = self.view;
-        let clip: Vec<Vec4> =
-            chunk.vertices.iter().map(|v| clip_from_object * Vec3::from(v.position).extend(1.0)).collect();
-        for triangle in chunk.triangles {
-            let corners = triangle.map(|index| clip[index as usize]);
-            if corners.into_iter().fold(!0, |shared, corner| shared & planes_outside(corner)) != 0 {
-                continue;
-            }
-            let Some(size) = size_px(corners, viewport) else {
-                self.cut += 1;
-                continue;
-            };
-            self.in_view += 1;
-            self.small += u64::from(size < SMALL_PX);
-            for corner in corners {
-                let px = corner.truncate().truncate() / corner.w * 0.5 * viewport;
-                self.extent = [self.extent[0].min(px), self.extent[1].max(px)];
-            }
+        let position = |index: u32| Vec3::from(vertices[index as usize].position);
+        let corners = triangle.map(|index| clip_from_object * position(index).extend(1.0));
+        if corners.into_iter().fold(!0, |shared, corner| shared & planes_outside(corner)) != 0 {
+            return;
+        }
+        let Some(size) = size_px(corners, viewport) else {
+            self.cut += 1;
+            return;
+        };
+        self.in_view += 1;
+        self.small += u64::from(size < SMALL_PX);
+        for corner in corners {
+            let px = corner.truncate().truncate() / corner.w * 0.5 * viewport;
+            self.extent = [self.extent[0].min(px), self.extent[1].max(px)];
         }
     }
 }
@@ -78,7 +94,6 @@ fn size_px(corners: [Vec4; 3], viewport: Vec2) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use geometry::tessellate::Vertex;
     use glam::{Mat4, vec3};
 
     /// A view with 10 px per unit, the origin in the middle, and depths from 0 to 1.
